@@ -1,0 +1,159 @@
+//! Powers, logarithms and sines in f32, put together from additions, multiplications and bit patterns alone.
+//!
+//! Each function is written once over [`Binary32`], which one `f32` answers and so does a lane of them. None uses a
+//! fused multiply-add and all keep one order of operations, so the scalar and every vector path give the same bits.
+//!
+//! | function | domain | largest error (tested in `tests/maths_error.rs`) |
+//! | --- | --- | --- |
+//! | [`exp2`] | clamped to -126..=126 | 3 ulp |
+//! | [`log2`] | normal positive numbers; smaller ones count as 2^-126 | 3 ulp, or 2^-24 absolute near 1 |
+//! | [`sin_pi`], [`cos_pi`] | ±2^20 | 2^-22 absolute |
+//! | [`sin`], [`cos`] | ±1000 rad | 2^-22 + 2^-23 times the angle, absolute |
+
+use core::f32::consts::{FRAC_1_PI, LN_2, LOG2_E, PI};
+use core::ops::{Add, Mul, Sub};
+
+/// The few operations that the functions of this module are put together from.
+///
+/// An implementation over a lane applies each to every member; the scalar and the lane have to agree to the bit.
+pub trait Binary32: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> {
+    /// `value` as a number beside `self`: a lane takes its width from `self`.
+    fn constant(self, value: f32) -> Self;
+    /// `low` where `self` is below it, `high` where `self` is above it, else `self`; NaN stays NaN.
+    fn limit(self, low: f32, high: f32) -> Self;
+    /// The magnitude.
+    fn magnitude(self) -> Self;
+    /// Two to the power of `self`, which is a whole number in -126..=127.
+    fn whole_power_of_two(self) -> Self;
+    /// Mantissa in [√½, √2) and whole exponent of a normal positive number.
+    fn split_exponent(self) -> (Self, Self);
+}
+
+/// Two to the power of `x`.
+#[inline(always)]
+pub fn exp2<T: Binary32>(x: T) -> T {
+    let x = x.limit(-126.0, 126.0);
+    let whole = round(x);
+    let rest = x - whole;
+    let power = horner(rest, [0.001_330_060_5, 0.009_669_691, 0.055_505_585, 0.240_222_83, LN_2, 1.0]);
+    power * whole.whole_power_of_two()
+}
+
+/// The logarithm of `x` to base two.
+#[inline(always)]
+pub fn log2<T: Binary32>(x: T) -> T {
+    let x = x.limit(f32::MIN_POSITIVE, f32::MAX);
+    let (mantissa, exponent) = x.split_exponent();
+    let t = mantissa - x.constant(1.0);
+    let slope = horner(
+        t,
+        [
+            0.125_837_03,
+            -0.207_269_76,
+            0.215_715_6,
+            -0.238_944_81,
+            0.287_916_24,
+            -0.360_703_68,
+            0.480_910_63,
+            -0.721_347_33,
+            LOG2_E,
+        ],
+    );
+    // A bit pattern forgets that it was NaN; zero times the number does not.
+    exponent + t * slope + x * x.constant(0.0)
+}
+
+/// sin(π `x`).
+#[inline(always)]
+pub fn sin_pi<T: Binary32>(x: T) -> T {
+    let half_turns = round(x);
+    alternating_sign(half_turns) * sin_pi_near_zero(x - half_turns)
+}
+
+/// cos(π `x`).
+#[inline(always)]
+pub fn cos_pi<T: Binary32>(x: T) -> T {
+    // cos(π r) = sin(π(½ - |r|)), where the difference is exact.
+    let half_turns = round(x);
+    let rest = (x - half_turns).magnitude();
+    alternating_sign(half_turns) * sin_pi_near_zero(x.constant(0.5) - rest)
+}
+
+/// The sine of `angle_rad`.
+#[inline(always)]
+pub fn sin<T: Binary32>(angle_rad: T) -> T {
+    sin_pi(angle_rad * angle_rad.constant(FRAC_1_PI))
+}
+
+/// The cosine of `angle_rad`.
+#[inline(always)]
+pub fn cos<T: Binary32>(angle_rad: T) -> T {
+    cos_pi(angle_rad * angle_rad.constant(FRAC_1_PI))
+}
+
+/// The nearest whole number, ties to even, for magnitudes below 2^22: adding 1.5·2^23 leaves no room for a fraction.
+#[inline(always)]
+pub fn round<T: Binary32>(x: T) -> T {
+    let large = x.constant(12_582_912.0);
+    (x + large) - large
+}
+
+/// sin(π `x`) for `x` in [-½, ½].
+#[inline(always)]
+fn sin_pi_near_zero<T: Binary32>(x: T) -> T {
+    x * horner(x * x, [0.077_560_39, -0.598_242_1, 2.550_069_8, -5.167_71, PI])
+}
+
+/// 1 for an even whole number and -1 for an odd one: half of an odd one lies half way between two whole numbers.
+#[inline(always)]
+fn alternating_sign<T: Binary32>(whole: T) -> T {
+    let half = whole * whole.constant(0.5);
+    whole.constant(1.0) - (half - round(half)).magnitude() * whole.constant(4.0)
+}
+
+/// A polynomial by Horner's rule, highest power first.
+#[inline(always)]
+fn horner<T: Binary32, const N: usize>(x: T, coefficients: [f32; N]) -> T {
+    let mut sum = x.constant(0.0);
+    let mut first = true;
+    for coefficient in coefficients {
+        let coefficient = x.constant(coefficient);
+        sum = if first { coefficient } else { sum * x + coefficient };
+        first = false;
+    }
+    sum
+}
+
+impl Binary32 for f32 {
+    #[inline(always)]
+    fn constant(self, value: f32) -> f32 {
+        value
+    }
+
+    #[inline(always)]
+    fn limit(self, low: f32, high: f32) -> f32 {
+        let raised = if self < low { low } else { self };
+        if raised > high { high } else { raised }
+    }
+
+    #[inline(always)]
+    fn magnitude(self) -> f32 {
+        f32::from_bits(self.to_bits() & 0x7fff_ffff)
+    }
+
+    #[inline(always)]
+    fn whole_power_of_two(self) -> f32 {
+        // 1.5·2^23 + n holds n in its lowest bits; adding the bias there and shifting makes it an exponent.
+        f32::from_bits((self + 12_582_912.0).to_bits().wrapping_add(127) << 23)
+    }
+
+    #[inline(always)]
+    fn split_exponent(self) -> (f32, f32) {
+        // Counting from √½ puts the mantissa into [√½, √2).
+        const SQRT_HALF: u32 = 0x3f35_04f3;
+        let above = self.to_bits().wrapping_sub(SQRT_HALF);
+        let exponent = (above as i32) >> 23;
+        let mantissa = f32::from_bits((above & 0x007f_ffff).wrapping_add(SQRT_HALF));
+        (mantissa, exponent as f32)
+    }
+}
