@@ -26,7 +26,6 @@ pub const MAX_THRESHOLD_CM: i16 = 255;
 /// assert_eq!(machine.tuple(), 1);
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Controller {
     /// Time between two readings of the sensor.
@@ -40,7 +39,6 @@ pub struct Controller {
 
 /// Motor commands, held until the sensor produces a value on the stated side of the threshold.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Tuple {
     /// Command of the left motor, -100..=100 (mot1).

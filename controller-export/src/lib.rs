@@ -1,0 +1,1 @@
+//! Turns a six-tuple controller into an onboard program.

@@ -1,0 +1,234 @@
+//! Poses, walls and rays in the plane: centimetres, radians, x right, y up, headings counter-clockwise from +x.
+
+use std::f64::consts::{PI, TAU};
+
+use glam::DVec2;
+
+/// Where something is and which way it faces.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pose {
+    /// Position in the world, cm.
+    pub position_cm: DVec2,
+    /// Heading in (-π, π].
+    pub heading_rad: f64,
+}
+
+/// A straight piece of wall, or one edge of an obstacle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Wall {
+    /// One end, cm.
+    pub from_cm: DVec2,
+    /// The other end, cm.
+    pub to_cm: DVec2,
+}
+
+/// An axis-parallel rectangle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rectangle {
+    /// Lower-left corner, cm.
+    pub low_cm: DVec2,
+    /// Upper-right corner, cm.
+    pub high_cm: DVec2,
+}
+
+/// Where a ray first meets a wall.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hit {
+    /// From the ray's origin, cm (D of the paper's figure 1).
+    pub distance_cm: f64,
+    /// Angle from the reversed ray to the wall's normal on this side, in (-π/2, π/2), positive when the normal lies
+    /// counter-clockwise of it. Its magnitude is α of the paper's figure 1.
+    pub incidence_rad: f64,
+    /// The wall that was met: its place in the list.
+    pub wall: usize,
+}
+
+impl Pose {
+    /// A pose; the heading is wrapped.
+    pub fn new(x_cm: f64, y_cm: f64, heading_rad: f64) -> Self {
+        Pose { position_cm: DVec2::new(x_cm, y_cm), heading_rad: wrap_rad(heading_rad) }
+    }
+
+    /// A unit vector along the heading.
+    pub fn direction(&self) -> DVec2 {
+        direction(self.heading_rad)
+    }
+
+    /// `other` as seen from here: forward, left, and the turn to its heading.
+    pub fn relative(&self, other: &Pose) -> Pose {
+        let unturn = direction(-self.heading_rad);
+        let position_cm = unturn.rotate(other.position_cm - self.position_cm);
+        Pose { position_cm, heading_rad: wrap_rad(other.heading_rad - self.heading_rad) }
+    }
+
+    /// The pose that `relative` describes as seen from here: the inverse of [`Pose::relative`].
+    pub fn compose(&self, relative: &Pose) -> Pose {
+        Pose {
+            position_cm: self.position_cm + self.direction().rotate(relative.position_cm),
+            heading_rad: wrap_rad(self.heading_rad + relative.heading_rad),
+        }
+    }
+}
+
+impl Rectangle {
+    /// Whether a point lies inside or on the edge.
+    pub fn contains(&self, point_cm: DVec2) -> bool {
+        point_cm.cmpge(self.low_cm).all() && point_cm.cmple(self.high_cm).all()
+    }
+
+    /// The four edges, counter-clockwise from the lower left corner.
+    pub fn edges(&self) -> [Wall; 4] {
+        let (low, high) = (self.low_cm, self.high_cm);
+        let corners = [low, DVec2::new(high.x, low.y), high, DVec2::new(low.x, high.y)];
+        std::array::from_fn(|i| Wall { from_cm: corners[i], to_cm: corners[(i + 1) % 4] })
+    }
+}
+
+impl Wall {
+    /// The distance along a ray to this wall with the signed incidence angle, if the ray meets it.
+    fn meet(&self, origin_cm: DVec2, direction: DVec2) -> Option<(f64, f64)> {
+        let along = self.to_cm - self.from_cm;
+        let across = direction.perp_dot(along);
+        if across == 0.0 {
+            return None;
+        }
+        let offset = self.from_cm - origin_cm;
+        let distance_cm = offset.perp_dot(along) / across;
+        let share = offset.perp_dot(direction) / across;
+        if distance_cm < 0.0 || !(0.0..=1.0).contains(&share) {
+            return None;
+        }
+        let normal = along.perp() * across.signum();
+        let back = -direction;
+        let normal = if normal.dot(back) < 0.0 { -normal } else { normal };
+        Some((distance_cm, libm::atan2(back.perp_dot(normal), back.dot(normal))))
+    }
+
+    /// The point of this wall nearest to `point_cm`.
+    pub fn nearest(&self, point_cm: DVec2) -> DVec2 {
+        let along = self.to_cm - self.from_cm;
+        let length2 = along.length_squared();
+        let share = if length2 > 0.0 { ((point_cm - self.from_cm).dot(along) / length2).clamp(0.0, 1.0) } else { 0.0 };
+        self.from_cm + along * share
+    }
+
+    /// The least distance between two straight pieces; zero where they cross.
+    pub fn distance_cm(&self, other: &Wall) -> f64 {
+        let (p, r) = (self.from_cm, self.to_cm - self.from_cm);
+        let (q, s) = (other.from_cm, other.to_cm - other.from_cm);
+        let across = r.perp_dot(s);
+        if across != 0.0 {
+            let (t, u) = ((q - p).perp_dot(s) / across, (q - p).perp_dot(r) / across);
+            if (0.0..=1.0).contains(&t) && (0.0..=1.0).contains(&u) {
+                return 0.0;
+            }
+        }
+        let ends = [
+            self.nearest(other.from_cm).distance(other.from_cm),
+            self.nearest(other.to_cm).distance(other.to_cm),
+            other.nearest(self.from_cm).distance(self.from_cm),
+            other.nearest(self.to_cm).distance(self.to_cm),
+        ];
+        ends.into_iter().fold(f64::INFINITY, f64::min)
+    }
+}
+
+/// The first wall that a ray meets; `direction` has length one.
+pub fn cast(walls: &[Wall], origin_cm: DVec2, direction: DVec2) -> Option<Hit> {
+    let mut first: Option<Hit> = None;
+    for (wall, w) in walls.iter().enumerate() {
+        if let Some((distance_cm, incidence_rad)) = w.meet(origin_cm, direction)
+            && first.is_none_or(|f| distance_cm < f.distance_cm)
+        {
+            first = Some(Hit { distance_cm, incidence_rad, wall });
+        }
+    }
+    first
+}
+
+/// A unit vector at an angle.
+pub fn direction(angle_rad: f64) -> DVec2 {
+    DVec2::new(libm::cos(angle_rad), libm::sin(angle_rad))
+}
+
+/// The same angle in (-π, π].
+pub fn wrap_rad(angle_rad: f64) -> f64 {
+    let wrapped = angle_rad - TAU * libm::round(angle_rad / TAU);
+    if wrapped <= -PI { wrapped + TAU } else { wrapped }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn room() -> Vec<Wall> {
+        Rectangle { low_cm: DVec2::ZERO, high_cm: DVec2::new(300.0, 220.0) }.edges().to_vec()
+    }
+
+    #[test]
+    fn a_ray_straight_at_a_wall_has_no_incidence_angle() {
+        let hit = cast(&room(), DVec2::new(100.0, 50.0), DVec2::X).unwrap();
+        assert_eq!((hit.distance_cm, hit.incidence_rad, hit.wall), (200.0, 0.0, 1));
+    }
+
+    #[test]
+    fn the_sign_of_the_incidence_tells_the_side() {
+        let hit = cast(&room(), DVec2::new(100.0, 50.0), direction(0.3)).unwrap();
+        // The normal points to -x (heading π); the reversed ray points to 0.3 - π, so the normal lies clockwise of it.
+        assert!((hit.incidence_rad + 0.3).abs() < 1e-12);
+        let hit = cast(&room(), DVec2::new(100.0, 50.0), direction(-0.2)).unwrap();
+        assert!((hit.incidence_rad - 0.2).abs() < 1e-12);
+    }
+
+    #[test]
+    fn an_open_map_gives_no_hit() {
+        let wall = Wall { from_cm: DVec2::new(0.0, 10.0), to_cm: DVec2::new(10.0, 10.0) };
+        assert_eq!(cast(&[wall], DVec2::new(5.0, 0.0), DVec2::NEG_Y), None);
+        assert_eq!(cast(&[wall], DVec2::new(5.0, 0.0), DVec2::X), None);
+    }
+
+    #[test]
+    fn half_a_turn_is_positive() {
+        assert_eq!(wrap_rad(-PI), PI);
+        assert_eq!(wrap_rad(3.0 * PI), PI);
+    }
+
+    fn pose() -> impl Strategy<Value = Pose> {
+        (-300.0..300.0, -300.0..300.0, -PI..PI).prop_map(|(x, y, h)| Pose::new(x, y, h))
+    }
+
+    proptest! {
+        #[test]
+        fn compose_undoes_relative(a in pose(), b in pose()) {
+            let back = a.compose(&a.relative(&b));
+            prop_assert!(back.position_cm.distance(b.position_cm) < 1e-9);
+            prop_assert!(wrap_rad(back.heading_rad - b.heading_rad).abs() < 1e-12);
+        }
+
+        #[test]
+        fn inside_a_room_every_ray_hits_where_it_says(x in 1.0..299.0, y in 1.0..219.0, h in -PI..PI) {
+            let (origin, way) = (DVec2::new(x, y), direction(h));
+            let hit = cast(&room(), origin, way).unwrap();
+            let at = origin + way * hit.distance_cm;
+            prop_assert!(room()[hit.wall].nearest(at).distance(at) < 1e-9);
+            prop_assert!(hit.incidence_rad.abs() <= PI / 2.0);
+            let normal_distance = room()[hit.wall].nearest(origin).distance(origin);
+            prop_assert!((hit.distance_cm * libm::cos(hit.incidence_rad) - normal_distance).abs() < 1e-6);
+        }
+
+        #[test]
+        fn distance_between_pieces_is_the_least_over_their_points(
+            a in prop::array::uniform4(-50.0..50.0), b in prop::array::uniform4(-50.0..50.0),
+        ) {
+            let wall = |v: [f64; 4]| Wall { from_cm: DVec2::new(v[0], v[1]), to_cm: DVec2::new(v[2], v[3]) };
+            let (a, b) = (wall(a), wall(b));
+            let sampled = (0..=2000).map(|i| {
+                let p = a.from_cm.lerp(a.to_cm, f64::from(i) / 2000.0);
+                b.nearest(p).distance(p)
+            }).fold(f64::INFINITY, f64::min);
+            let exact = a.distance_cm(&b);
+            prop_assert!(exact <= sampled + 1e-9 && sampled - exact < 0.05, "{exact} {sampled}");
+        }
+    }
+}

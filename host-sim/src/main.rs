@@ -1,0 +1,2 @@
+//! The command `mindgap`.
+fn main() {}

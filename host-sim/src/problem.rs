@@ -1,0 +1,40 @@
+//! What can go wrong outside the program: one line, with file and line number where there is one.
+
+use std::path::{Path, PathBuf};
+
+/// Why a command could not do what was asked.
+#[derive(Debug, thiserror::Error)]
+#[error("{}{what}", self.place())]
+pub struct Problem {
+    file: Option<PathBuf>,
+    line: Option<u64>,
+    what: String,
+}
+
+/// The result of anything that reads what a user gave.
+pub type Result<T> = std::result::Result<T, Problem>;
+
+impl Problem {
+    /// A problem that lies in no one file.
+    pub fn new(what: impl Into<String>) -> Self {
+        Problem { file: None, line: None, what: what.into() }
+    }
+
+    /// A problem with a whole file or folder.
+    pub fn in_file(file: &Path, what: impl Into<String>) -> Self {
+        Problem { file: Some(file.to_owned()), line: None, what: what.into() }
+    }
+
+    /// A problem at a line, counted from 1.
+    pub fn at_line(file: &Path, line: u64, what: impl Into<String>) -> Self {
+        Problem { file: Some(file.to_owned()), line: Some(line), what: what.into() }
+    }
+
+    fn place(&self) -> String {
+        match (&self.file, self.line) {
+            (Some(file), Some(line)) => format!("{}:{line}: ", file.display()),
+            (Some(file), None) => format!("{}: ", file.display()),
+            _ => String::new(),
+        }
+    }
+}

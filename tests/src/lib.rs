@@ -1,0 +1,1 @@
+//! What the tests share: the built command, and the folders of logs that a public clone does not have.
