@@ -10,7 +10,7 @@ pub type Generator = Xoshiro256PlusPlus;
 /// The generator for one purpose of a run. `place` tells purposes apart: for an individual it may be
 /// `[restart, generation, individual]`. Other places give unrelated streams.
 pub fn generator(seed: u64, place: &[u64]) -> Generator {
-    let mixed = place.iter().fold(mix(seed), |state, part| mix(state ^ mix(part.wrapping_add(1))));
+    let mixed = place.iter().fold(mix(seed), |state, part| mix(state.rotate_left(29) ^ mix(*part)));
     Generator::seed_from_u64(mixed)
 }
 
