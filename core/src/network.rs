@@ -128,7 +128,7 @@ impl<W: Copy, const N: usize> Network<W, N> {
         }
         let log2_x = x.map(S::log2_magnitude);
         for unit in &self.product {
-            let mut power = unit.value(&log2_x);
+            let mut power = unit.magnitude(&log2_x);
             if self.product_form == ProductForm::Signed {
                 power = power * unit.sign(&x);
             }
@@ -203,13 +203,13 @@ impl Scaling<f32> {
 impl<W: Copy, const N: usize> ProductUnit<W, N> {
     /// Magnitude of the product, from the logarithms of the inputs.
     #[inline(always)]
-    fn value<S: Scalar<Weight = W>>(&self, log2_x: &[S; N]) -> S {
+    pub fn magnitude<S: Scalar<Weight = W>>(&self, log2_x: &[S; N]) -> S {
         self.weighted_sum(log2_x).exp2()
     }
 
     /// Real part of the complex sign of the product.
     #[inline(always)]
-    fn sign<S: Scalar<Weight = W>>(&self, x: &[S; N]) -> S {
+    pub fn sign<S: Scalar<Weight = W>>(&self, x: &[S; N]) -> S {
         self.weighted_sum(&x.map(S::negative)).cos_pi()
     }
 

@@ -2,7 +2,12 @@
 //! measures both.
 
 pub mod chance;
+pub mod cli;
 pub mod files;
+pub mod genetic;
 pub mod geometry;
+pub mod lanes;
 pub mod logs;
 pub mod problem;
+pub mod learn;
+pub mod simulator;
