@@ -1,6 +1,7 @@
 //! The command `mindgap`: one file a command, nothing but arguments and printing.
 
 mod evaluate;
+mod evolve;
 mod progress;
 mod table;
 mod train;
@@ -25,6 +26,7 @@ struct Cli {
 enum Command {
     Train(train::Train),
     Evaluate(evaluate::Evaluate),
+    Evolve(evolve::Evolve),
 }
 
 /// Runs the command of this process's arguments. Exits with 0 when it did what was asked, 1 when it could not, and 2
@@ -33,6 +35,7 @@ pub fn run() -> ExitCode {
     let done = match Cli::parse().command {
         Command::Train(command) => command.run(),
         Command::Evaluate(command) => command.run(),
+        Command::Evolve(command) => command.run(),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,

@@ -31,6 +31,12 @@ impl<S: Simd> Lanes<S> {
     /// Members of a vector.
     pub const WIDTH: usize = S::F32_LANES;
 
+    /// Lanes of a vector.
+    #[inline(always)]
+    pub fn new(simd: S, values: S::f32s) -> Self {
+        Lanes { simd, values }
+    }
+
     /// The same number in every lane.
     #[inline(always)]
     pub fn splat(simd: S, value: f32) -> Self {

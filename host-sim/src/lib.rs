@@ -3,11 +3,13 @@
 
 pub mod chance;
 pub mod cli;
+pub mod evolve;
 pub mod files;
+pub mod folded;
 pub mod genetic;
 pub mod geometry;
 pub mod lanes;
+pub mod learn;
 pub mod logs;
 pub mod problem;
-pub mod learn;
 pub mod simulator;

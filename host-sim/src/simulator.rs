@@ -1,5 +1,10 @@
 //! The learned simulator: five networks, how reality scatters about them, and the robot that they stand for.
 
+mod batch;
+pub mod course;
+pub mod draws;
+pub mod motion;
+pub mod room;
 pub mod scatter;
 
 use std::path::Path;
@@ -40,6 +45,15 @@ pub struct Simulator {
     pub constant_reading: Option<ConstantReading>,
     /// The networks that the logs could not support.
     pub missing: Vec<Missing>,
+}
+
+/// What scatters in a simulated run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Noise {
+    /// Everything that the simulator learned: echoes that fail, residuals, constant readings.
+    Learned,
+    /// Echoes that fail, as in the paper, and nothing else.
+    Paper,
 }
 
 /// Where a simulator comes from.
@@ -83,10 +97,12 @@ impl Simulator {
         let version: SchemaOnly =
             serde_json::from_str(&text).map_err(|e| broken(path, &e, "is no simulator file of mindgap"))?;
         if version.schema != SCHEMA {
-            let what = format!("is a simulator file of version {}; this program reads version {SCHEMA}", version.schema);
+            let what =
+                format!("is a simulator file of version {}; this program reads version {SCHEMA}", version.schema);
             return Err(Problem::in_file(path, what));
         }
-        let simulator: Self = serde_json::from_str(&text).map_err(|e| broken(path, &e, "is a broken simulator file"))?;
+        let simulator: Self =
+            serde_json::from_str(&text).map_err(|e| broken(path, &e, "is a broken simulator file"))?;
         simulator.check(path)?;
         Ok(simulator)
     }

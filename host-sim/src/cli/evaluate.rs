@@ -38,12 +38,8 @@ impl Evaluate {
 /// Prints an evaluation as tables.
 pub fn print(evaluation: &Evaluation) {
     let Networks { turn, forward, lateral, echo_probability, echo_value } = &evaluation.networks;
-    let values = [
-        ("turn (deg)", turn),
-        ("forward (cm)", forward),
-        ("lateral (cm)", lateral),
-        ("echo value (cm)", echo_value),
-    ];
+    let values =
+        [("turn (deg)", turn), ("forward (cm)", forward), ("lateral (cm)", lateral), ("echo value (cm)", echo_value)];
     let rows: Vec<[String; 6]> = values
         .into_iter()
         .filter_map(|(name, value)| Some((name, value.as_ref()?)))

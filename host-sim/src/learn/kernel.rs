@@ -1,13 +1,13 @@
 //! The training kernel: the error of one network over all samples, in lanes.
 //!
-//! What does not depend on the weights is worked out once a data set: scaled inputs and their logarithms. Hidden
-//! summation units are linear and so is the output unit, so they fold into one affine map of the inputs.
+//! What does not depend on the weights is worked out once a data set: scaled inputs and their logarithms.
 
-use mindgap_core::network::{Activation, Network, ProductForm, Scaling};
+use mindgap_core::network::{Network, Scaling};
 use mindgap_core::scalar::Scalar;
 use pulp::{Arch, Simd, WithSimd};
 
 use super::dataset::Dataset;
+use crate::folded::Folded;
 use crate::lanes::{Lanes, WIDEST};
 
 /// Samples laid out for lanes: one row an input, filled up to whole blocks of [`WIDEST`] by samples without weight.
@@ -44,51 +44,12 @@ impl<const N: usize> Samples<N> {
     }
 }
 
-/// A network with its summation units folded into an affine map.
-struct Folded<'n, const N: usize> {
-    bias: f32,
-    slope: [f32; N],
-    network: &'n Network<f32, N>,
-}
-
-impl<'n, const N: usize> Folded<'n, N> {
-    fn new(network: &'n Network<f32, N>) -> Self {
-        let mut folded = Folded { bias: network.bias, slope: [0.0; N], network };
-        for unit in &network.summation {
-            folded.bias += unit.bias * unit.output;
-            for (slope, weight) in folded.slope.iter_mut().zip(unit.weights) {
-                *slope += weight * unit.output;
-            }
-        }
-        folded
-    }
-
-    #[inline(always)]
-    fn evaluate<S: Simd>(&self, x: &[Lanes<S>; N], log2_x: &[Lanes<S>; N]) -> Lanes<S> {
-        let mut sum = x[0].weight(self.bias);
-        for (x, slope) in x.iter().zip(self.slope) {
-            sum = sum + *x * x.weight(slope);
-        }
-        for unit in &self.network.product {
-            let mut power = unit.magnitude(log2_x);
-            if self.network.product_form == ProductForm::Signed {
-                power = power * unit.sign(x);
-            }
-            sum = sum + power * power.weight(unit.output);
-        }
-        match self.network.activation {
-            Activation::Linear => sum,
-            Activation::Ramp => sum.clamp(sum.zero(), sum.one()),
-        }
-    }
-}
-
-struct SquaredError<'a, 'n, const N: usize> {
+struct SquaredError<'a, const N: usize> {
     samples: &'a Samples<N>,
-    network: &'a Folded<'n, N>,
+    network: &'a Folded<N>,
 }
 
-impl<const N: usize> WithSimd for SquaredError<'_, '_, N> {
+impl<const N: usize> WithSimd for SquaredError<'_, N> {
     type Output = f64;
 
     #[inline(always)]
@@ -99,10 +60,11 @@ impl<const N: usize> WithSimd for SquaredError<'_, '_, N> {
         for block in (0..samples.targets.len()).step_by(WIDEST) {
             for (part, sum) in sums.iter_mut().take(parts).enumerate() {
                 let at = block + part * Lanes::<S>::WIDTH;
-                let row = |values: &Vec<f32>| Lanes::load(simd, &values[at..]);
-                let x = std::array::from_fn(|n| row(&samples.scaled[n]));
-                let log2_x = std::array::from_fn(|n| row(&samples.log2[n]));
-                let error = (self.network.evaluate(&x, &log2_x) - row(&samples.targets)) * row(&samples.weights);
+                let x = rows(simd, &samples.scaled, at);
+                let log2_x = rows(simd, &samples.log2, at);
+                let target = Lanes::load(simd, &samples.targets[at..]);
+                let weight = Lanes::load(simd, &samples.weights[at..]);
+                let error = (self.network.evaluate(&x, &log2_x) - target) * weight;
                 *sum = *sum + error * error;
             }
         }
@@ -114,11 +76,22 @@ impl<const N: usize> WithSimd for SquaredError<'_, '_, N> {
     }
 }
 
+/// One vector of each input.
+#[inline(always)]
+fn rows<S: Simd, const N: usize>(simd: S, inputs: &[Vec<f32>; N], at: usize) -> [Lanes<S>; N] {
+    let mut rows = [Lanes::splat(simd, 0.0); N];
+    for (row, input) in rows.iter_mut().zip(inputs) {
+        *row = Lanes::load(simd, &input[at..]);
+    }
+    rows
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::chance::generator;
     use crate::learn::genome::{Frame, Shape};
+    use mindgap_core::network::{Activation, ProductForm};
     use proptest::prelude::*;
     use rand::RngExt;
 
@@ -159,11 +132,12 @@ mod tests {
         #[test]
         fn every_instruction_set_gives_the_same_bits(genes in prop::collection::vec(-3f32..3.0, 22), signed in any::<bool>()) {
             let frame = frame(signed);
+            let samples = &Samples::new(&data(100), &frame.inputs, |t| t);
             let network = frame.network(&genes);
-            let samples = Samples::new(&data(100), &frame.inputs, |t| t);
-            let operation = || SquaredError { samples: &samples, network: &Folded::new(&network) };
-            let scalar = pulp::Scalar::new().vectorize(SquaredError { samples: &samples, network: &Folded::new(&network) });
-            prop_assert_eq!(scalar.to_bits(), Arch::new().dispatch(operation()).to_bits());
+            let network = &Folded::new(&network);
+            let scalar = pulp::Scalar::new().vectorize(SquaredError { samples, network });
+            let widest = Arch::new().dispatch(SquaredError { samples, network });
+            prop_assert_eq!(scalar.to_bits(), widest.to_bits());
         }
     }
 }

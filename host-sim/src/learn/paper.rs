@@ -35,12 +35,7 @@ pub struct Trained<const N: usize> {
 
 impl Default for Options {
     fn default() -> Self {
-        Options {
-            genetic: Settings::default(),
-            product_form: ProductForm::Positive,
-            start: 1.0,
-            exponent_bound: 5.0,
-        }
+        Options { genetic: Settings::default(), product_form: ProductForm::Positive, start: 1.0, exponent_bound: 5.0 }
     }
 }
 

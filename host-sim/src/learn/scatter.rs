@@ -93,7 +93,7 @@ mod tests {
         let residuals: Vec<f32> = contexts.iter().map(|c| (rng.random::<f32>() - 0.5) * c[1]).collect();
         let spread = spread(&contexts, &residuals);
         assert!(spread.is_sound());
-        let width = |alpha: f32| spread.residual([50.0, alpha], 0.999) - spread.residual([50.0, alpha], 0.0);
+        let width = |alpha: f32| spread.residual([50.0, alpha], LEVELS - 1) - spread.residual([50.0, alpha], 0);
         assert!((8.0..20.0).contains(&width(5.0)), "{}", width(5.0));
         assert!((65.0..85.0).contains(&width(85.0)), "{}", width(85.0));
     }
@@ -102,8 +102,8 @@ mod tests {
     fn few_residuals_stand_for_every_cell() {
         let spread = spread(&[[1.0, 1.0], [2.0, 2.0]], &[-1.0, 1.0]);
         assert!(spread.is_sound());
-        assert_eq!(spread.residual([0.0, 9.0], 0.1), -1.0);
-        assert_eq!(spread.residual([9.0, 0.0], 0.9), 1.0);
+        assert_eq!(spread.residual([0.0, 9.0], 1), -1.0);
+        assert_eq!(spread.residual([9.0, 0.0], LEVELS - 2), 1.0);
     }
 
     #[test]

@@ -26,9 +26,8 @@ pub struct ConstantReading {
 }
 
 impl Spread {
-    /// The residual for a uniform draw in [0, 1).
-    pub fn residual(&self, context: [f32; 2], draw: f32) -> f32 {
-        let level = ((draw * LEVELS as f32) as usize).min(LEVELS - 1);
+    /// One of the [`LEVELS`] equally likely residuals of a context.
+    pub fn residual(&self, context: [f32; 2], level: usize) -> f32 {
         self.residuals[self.cell(context)][level]
     }
 
