@@ -6,3 +6,4 @@ pub mod files;
 pub mod geometry;
 pub mod logs;
 pub mod problem;
+pub mod report;
