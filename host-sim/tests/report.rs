@@ -178,7 +178,7 @@ fn a_map_of_bare_walls_is_drawn() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(64))]
+    #![proptest_config(ProptestConfig::with_cases(24))]
     #[test]
     fn no_numbers_break_a_figure(raw in prop::collection::vec((any::<f64>(), any::<f64>()), 0..12)) {
         let points: Vec<DVec2> = raw.iter().copied().map(DVec2::from).collect();

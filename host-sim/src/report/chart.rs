@@ -66,16 +66,16 @@ pub fn is_range(range: &Range<f64>) -> bool {
     is_drawable(ends) && range.end - range.start > LEAST_SPAN * (1.0 + ends.abs().max_element())
 }
 
+/// Where a value lies in a range: 0 at its start, 1 at its end.
+pub fn share(range: &Range<f64>, value: f64) -> f64 {
+    (value - range.start) / (range.end - range.start)
+}
+
 impl Axis {
     /// An axis with at most about `most` numbers.
     pub fn new(name: impl Into<String>, range: Range<f64>, most: usize) -> Self {
         let ticks = Ticks::in_range(&range, most);
         Axis { name: name.into(), range, ticks }
-    }
-
-    /// A value as a share of the range.
-    pub fn share(&self, value: f64) -> f64 {
-        (value - self.range.start) / (self.range.end - self.range.start)
     }
 }
 
@@ -84,7 +84,7 @@ impl Ranged for Axis {
     type ValueType = f64;
 
     fn map(&self, value: &f64, (from, to): (i32, i32)) -> i32 {
-        from + libm::round(self.share(*value) * f64::from(to - from)) as i32
+        from + libm::round(share(&self.range, *value) * f64::from(to - from)) as i32
     }
 
     fn key_points<Hint: KeyPointHint>(&self, _: Hint) -> Vec<f64> {

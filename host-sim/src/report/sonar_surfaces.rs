@@ -12,7 +12,7 @@ use glam::DVec3;
 use plotters::prelude::{ColorMap, ViridisRGB};
 use plotters::style::RGBColor;
 
-use super::chart::{Axis, headed, heading_px, is_range, no_data};
+use super::chart::{Axis, headed, heading_px, is_range, no_data, share};
 use super::figure::Figure;
 use super::glyph::bead;
 use super::legend::{self, Entry};
@@ -110,10 +110,6 @@ impl Surface<'_> {
     fn value_axis(&self) -> Axis {
         Axis::new(self.value_name.as_str(), self.value.clone(), MOST_TICKS)
     }
-}
-
-fn share(range: &Range<f64>, value: f64) -> f64 {
-    (value - range.start) / (range.end - range.start)
 }
 
 /// The colour of a share of the scale.

@@ -6,7 +6,7 @@ use plotters::style::text_anchor::{HPos, VPos};
 use plotters::style::{Color, FontTransform, WHITE};
 
 use super::{Surface, colour};
-use crate::report::chart::Axis;
+use crate::report::chart::{Axis, share};
 use crate::report::figure::{Canvas, Drawn};
 use crate::report::glyph::{Place, bead, solid_line};
 use crate::report::projection::Projection;
@@ -150,5 +150,5 @@ impl View {
 
 /// Where an axis' ticks lie along it.
 fn shares(axis: &Axis) -> impl Iterator<Item = f64> {
-    axis.ticks.at.iter().map(|value| super::share(&axis.range, *value))
+    axis.ticks.at.iter().map(|value| share(&axis.range, *value))
 }
