@@ -12,4 +12,5 @@ pub mod lanes;
 pub mod learn;
 pub mod logs;
 pub mod problem;
+pub mod report;
 pub mod simulator;
