@@ -1,0 +1,3 @@
+//! The command line: one file a command, nothing but arguments and printing.
+
+pub mod record;
