@@ -3,6 +3,7 @@
 mod evaluate;
 mod evolve;
 mod progress;
+mod record;
 mod table;
 mod train;
 
@@ -24,6 +25,7 @@ struct Cli {
 
 #[derive(Subcommand)]
 enum Command {
+    Record(record::Record),
     Train(train::Train),
     Evaluate(evaluate::Evaluate),
     Evolve(evolve::Evolve),
@@ -33,6 +35,7 @@ enum Command {
 /// when the call is wrong.
 pub fn run() -> ExitCode {
     let done = match Cli::parse().command {
+        Command::Record(command) => command.run(),
         Command::Train(command) => command.run(),
         Command::Evaluate(command) => command.run(),
         Command::Evolve(command) => command.run(),
