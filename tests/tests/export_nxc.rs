@@ -1,12 +1,11 @@
 //! NXC programs go through the real compiler, `nbc`.
 
-use std::process::Command;
-
 use mindgap_controller_export::names::BrickName;
 use mindgap_controller_export::nxc::{self, NxcOptions};
 use mindgap_controller_export::wiring::{MotorPort, SensorPort, Wiring};
 use mindgap_controller_export::{ExportError, Origin};
 use mindgap_core::controller::{Controller, Tuple, When};
+use mindgap_tests::nbc::compile;
 
 /// The file version that firmware 1.28 and later runs.
 const FILE_VERSION: u8 = 6;
@@ -33,22 +32,6 @@ fn options() -> NxcOptions {
 
 fn full_options() -> NxcOptions {
     NxcOptions { log: Some("avoid.csv".parse().unwrap()), display: true, ..options() }
-}
-
-/// Compiles with the real compiler and returns the .rxe; panics with the compiler's words when it refuses.
-fn compile(source: &str) -> Vec<u8> {
-    let folder = tempfile::tempdir().unwrap();
-    // The compiler chooses the language by the ending; with another than .nxc it writes rubbish and reports success.
-    let (nxc, rxe) = (folder.path().join("program.nxc"), folder.path().join("program.rxe"));
-    std::fs::write(&nxc, source).unwrap();
-    let output = Command::new("nbc")
-        .args(["-v=128", "-sm-", &format!("-O={}", rxe.display())])
-        .arg(&nxc)
-        .output()
-        .expect("the NXC compiler is missing: apt-get install nbc");
-    assert!(output.status.success(), "{}\n{source}", String::from_utf8_lossy(&output.stderr));
-    assert_eq!(String::from_utf8_lossy(&output.stderr), "", "warnings in\n{source}");
-    std::fs::read(&rxe).expect("nbc reported success and wrote nothing")
 }
 
 #[test]
