@@ -4,7 +4,14 @@
 pub mod built_in_robot;
 pub mod chance;
 pub mod cli;
+pub mod evolve;
 pub mod files;
+pub mod folded;
+pub mod genetic;
 pub mod geometry;
+pub mod lanes;
+pub mod learn;
 pub mod logs;
 pub mod problem;
+pub mod report;
+pub mod simulator;
