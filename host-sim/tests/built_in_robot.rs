@@ -111,6 +111,58 @@ fn a_folder_of_logs_comes_back_as_it_went() {
 }
 
 #[test]
+fn every_effect_at_both_ends_of_its_range_gives_logs_that_can_be_read() {
+    let folder = tempfile::tempdir().unwrap();
+    for effect in Effect::all() {
+        let range = effect.strength_range();
+        for strength in [range.lowest, range.highest] {
+            let active = ActiveEffect { strength, ..ActiveEffect::new(effect) };
+            let logs = record(&default_robot(), &training_room(), 2, 12, &[active], 3).unwrap();
+            logs.write(&folder.path().join("logs")).unwrap();
+            let back = Logs::read(&folder.path().join("logs"), |warning| panic!("{warning}")).unwrap();
+            assert_eq!(back, logs, "{active}");
+            let poses = logs.runs.iter().flat_map(|run| &run.rows).filter_map(|row| row.pose);
+            let room = Rectangle { low_cm: DVec2::splat(-60.0), high_cm: DVec2::new(360.0, 280.0) };
+            assert!(poses.map(|pose| pose.position_cm).all(|at_cm| room.contains(at_cm)), "{active}");
+        }
+    }
+}
+
+#[test]
+fn two_effects_at_once_leave_both_marks() {
+    let both: Vec<ActiveEffect> = ["sonar_offset=8", "battery_sag=0.8"].map(|text| text.parse().unwrap()).into();
+    let logs = record(&default_robot(), &training_room(), 20, 60, &both, 4).unwrap();
+    let near = sonar(&logs).into_iter().filter(|s| s.distance_cm < 60.0 && s.alpha_deg() < 12.0);
+    let errors: Vec<f64> = near.filter_map(|s| Some(s.echo_cm? - s.distance_cm)).collect();
+    assert!(errors.iter().filter(|e| **e > 4.0).count() as f64 > 0.7 * errors.len() as f64);
+    let share = |late: bool| {
+        let chosen = motion(&logs).into_iter().filter(|s| s.speeds[0] + s.speeds[1] > 60.0 && (s.row > 40) == late);
+        let (way, commanded) = chosen.fold((0.0, 0.0), |(w, c), s| (w + s.forward_cm, c + s.speeds[0] + s.speeds[1]));
+        way / commanded
+    };
+    assert!(share(true) < 0.88 * share(false));
+}
+
+#[test]
+fn full_speed_and_wheel_counters_are_the_spec_s() {
+    let spec = default_robot();
+    let open = Scene { arena_cm: Some(DVec2::new(1000.0, 200.0)), ..Scene::default() };
+    let robot = BuiltInRobot::new(&spec, &open, &[]);
+    let mut rng = generator(8, &[]);
+    let mut body = robot.start(Pose::new(50.0, 100.0, 0.0), &mut rng);
+    body.drive([100.0, 100.0], 2000.0, &mut rng);
+    let (from_cm, from) = (body.true_pose().position_cm, body.row([0.0, 0.0], None, &mut rng));
+    body.drive([100.0, 100.0], 10_000.0, &mut rng);
+    let (to_cm, to) = (body.true_pose().position_cm, body.row([0.0, 0.0], None, &mut rng));
+    let speed_cm_s = from_cm.distance(to_cm) / 10.0;
+    assert!((speed_cm_s / spec.full_speed_cm_s - 1.0).abs() < 0.04, "{speed_cm_s}");
+    let turned_deg = to.rot_left_deg.unwrap() - from.rot_left_deg.unwrap();
+    let rolled_cm = turned_deg.to_radians() * spec.wheel_diameter_cm / 2.0;
+    assert!((rolled_cm / from_cm.distance(to_cm) - 1.0).abs() < 0.03, "{rolled_cm}");
+    assert!(to.battery_mv.unwrap() < 9000.0 && to.battery_mv.unwrap() > 5000.0);
+}
+
+#[test]
 fn a_room_without_room_is_a_problem() {
     let narrow = Scene { arena_cm: Some(DVec2::new(300.0, 15.0)), ..Scene::default() };
     assert!(record(&default_robot(), &narrow, 1, 10, &[], 1).unwrap_err().to_string().contains("no room"));

@@ -2,6 +2,8 @@
 
 use std::collections::VecDeque;
 
+use rand::RngExt;
+
 use super::BuiltInRobot;
 use super::drivetrain::Drivetrain;
 use super::sonar::Receiver;
@@ -18,6 +20,8 @@ pub struct Body<'a> {
     robot: &'a BuiltInRobot,
     drivetrain: Drivetrain,
     receiver: Receiver,
+    /// Where the robot was, back to when the sensor sent the ping that it now tells of.
+    trail: VecDeque<(f64, Pose)>,
     t_ms: f64,
     /// What the motor driver holds, and what is still on its way to it with the time of its arrival.
     command: [f64; 2],
@@ -34,6 +38,7 @@ impl<'a> Body<'a> {
             robot,
             drivetrain: Drivetrain::at_rest(&robot.hardware, at, rng),
             receiver: Receiver::default(),
+            trail: VecDeque::from([(0.0, at)]),
             t_ms: 0.0,
             command: [0.0, 0.0],
             on_the_way: VecDeque::new(),
@@ -45,7 +50,8 @@ impl<'a> Body<'a> {
     /// Gives the motors these commands, -100..=100, and lets time pass. A robot that touches something stays there.
     pub fn drive(&mut self, command: [f64; 2], duration_ms: f64, rng: &mut Generator) {
         let link = &self.robot.hardware.link;
-        self.on_the_way.push_back((self.t_ms + link.delay_ms, command.map(|c| link.passes(c))));
+        let due_ms = self.t_ms + link.delay_ms + link.delay_jitter_ms * rng.random::<f64>();
+        self.on_the_way.push_back((due_ms, command.map(|c| link.passes(c))));
         let end_ms = self.t_ms + duration_ms;
         while self.t_ms < end_ms && !self.crashed {
             while self.on_the_way.front().is_some_and(|(due_ms, _)| *due_ms <= self.t_ms) {
@@ -54,6 +60,7 @@ impl<'a> Body<'a> {
             let tick_ms = TICK_MS.min(end_ms - self.t_ms);
             self.clear_cm -= self.drivetrain.tick(&self.robot.hardware, self.command, tick_ms, rng);
             self.t_ms += tick_ms;
+            self.leave_trail();
             if self.clear_cm <= 0.0 {
                 self.clear_cm = self.robot.clearance_cm(&self.true_pose());
                 self.crashed = self.clear_cm <= 0.0;
@@ -79,8 +86,8 @@ impl<'a> Body<'a> {
 
     /// One reading of the ultrasonic sensor, cm.
     pub fn read_sonar(&mut self, rng: &mut Generator) -> Option<f64> {
-        let pose = self.true_pose();
-        self.receiver.read(&self.robot.hardware, &self.robot.sides, &pose, self.t_ms, rng)
+        let (_, pose) = self.trail[0];
+        self.receiver.read(&self.robot.hardware.sonar, &self.robot.sides, &pose, self.t_ms, rng)
     }
 
     /// Where the tracker sees the robot.
@@ -100,6 +107,14 @@ impl<'a> Body<'a> {
             rot_left_deg: Some(rot_left_deg),
             rot_right_deg: Some(rot_right_deg),
             battery_mv: Some((1000.0 * self.drivetrain.battery_v(&self.robot.hardware)).round()),
+        }
+    }
+
+    fn leave_trail(&mut self) {
+        self.trail.push_back((self.t_ms, self.true_pose()));
+        let pinged_ms = self.t_ms - self.robot.hardware.sonar.age_ms;
+        while self.trail.get(1).is_some_and(|(t_ms, _)| *t_ms <= pinged_ms) {
+            self.trail.pop_front();
         }
     }
 }

@@ -20,12 +20,14 @@ const STANDSTILL_M_S: f64 = 1e-4;
 #[derive(Clone, Debug)]
 pub(super) struct Drivetrain {
     pose: Pose,
+    /// A unit vector along the heading.
+    facing: DVec2,
     /// Forward and to the left, in the robot's own frame.
     speed_m_s: DVec2,
     turning_rad_s: f64,
     wheels: [Wheel; 2],
-    /// Which way the castor rolls, in the robot's own frame.
-    castor_rad: f64,
+    /// A unit vector along which the castor rolls, in the robot's own frame.
+    castor: DVec2,
     /// Drawn from the battery: now, and since the run began.
     current_a: f64,
     drawn_c: f64,
@@ -47,10 +49,11 @@ impl Drivetrain {
     pub fn at_rest(hardware: &Hardware, pose: Pose, rng: &mut Generator) -> Self {
         Drivetrain {
             pose,
+            facing: pose.direction(),
             speed_m_s: DVec2::ZERO,
             turning_rad_s: 0.0,
             wheels: [LEFT, RIGHT].map(|side| Wheel::at_rest(&hardware.motors[side], rng.random_range(0.0..TAU))),
-            castor_rad: 0.1 * normal(rng),
+            castor: direction(0.1 * normal(rng)),
             current_a: 0.0,
             drawn_c: 0.0,
             patch: Patch {
@@ -88,7 +91,7 @@ impl Drivetrain {
         let seconds = tick_ms / 1000.0;
         let (mut force_n, mut torque_nm) = self.wheels_push(hardware, command, seconds);
         let (castor_n, castor_nm) = self.castor_push(hardware, seconds);
-        force_n += castor_n + self.floor_push(hardware);
+        force_n += castor_n + self.weight_push(hardware);
         torque_nm += castor_nm;
         self.accelerate(hardware, force_n, torque_nm, seconds);
         self.advance(seconds)
@@ -101,7 +104,7 @@ impl Drivetrain {
         let arm_m = hardware.chassis.half_track_m + floor.contact_wander_m * self.patch.contact.value();
         let side_slip = self.speed_m_s.y - floor.toe_wander_rad * self.patch.toe.value() * self.speed_m_s.x;
         let (mut force_n, mut torque_nm) = (DVec2::ZERO, 0.0);
-        self.current_a = 0.0;
+        self.current_a = hardware.battery.idle_a;
         for (side, arm_m) in [(LEFT, -arm_m), (RIGHT, arm_m)] {
             let tick = Tick {
                 supply_v,
@@ -127,25 +130,25 @@ impl Drivetrain {
         if speed_m_s < STANDSTILL_M_S {
             return (DVec2::ZERO, 0.0);
         }
-        let across = direction(self.castor_rad).perp();
-        let astray = dragged_m_s.dot(across) / speed_m_s;
-        self.castor_rad = wrap_rad(self.castor_rad + astray * speed_m_s / castor.trail_m * seconds);
-        let force_n = across * (-castor.scrub_n * astray);
+        let across = self.castor.perp();
+        let across_m_s = dragged_m_s.dot(across);
+        self.castor = (self.castor + across * (across_m_s / castor.trail_m * seconds)).normalize();
+        let force_n = across * (-castor.scrub_n * across_m_s / speed_m_s);
         (force_n, -castor.behind_m * force_n.y)
     }
 
-    /// Gravity along the tilt, and the fibres' lean.
-    fn floor_push(&self, hardware: &Hardware) -> DVec2 {
+    /// Gravity along the tilt.
+    fn weight_push(&self, hardware: &Hardware) -> DVec2 {
         let floor = &hardware.floor;
         let weight_n = floor.downhill * (hardware.chassis.mass_kg * GRAVITY);
-        direction(-self.pose.heading_rad).rotate(weight_n)
+        DVec2::new(weight_n.dot(self.facing), weight_n.dot(self.facing.perp()))
     }
 
     fn accelerate(&mut self, hardware: &Hardware, force_n: DVec2, torque_nm: f64, seconds: f64) {
         let (chassis, floor) = (&hardware.chassis, &hardware.floor);
         let turned_away = -self.turning_rad_s * self.speed_m_s.perp();
         let free_m_s = (force_n / chassis.mass_kg + turned_away) * seconds;
-        let drag_n = hardware.castor.drag_n + self.nap_drag_n(hardware);
+        let drag_n = hardware.castor.drag_n + self.floor_drag_n(hardware);
         self.speed_m_s.x = dragged(self.speed_m_s.x, free_m_s.x, drag_n * seconds / chassis.mass_kg, 1.0);
         self.speed_m_s.y += free_m_s.y;
         let scrub_nm = floor.scrub_nm * (1.0 + floor.scrub_wander * self.patch.scrub.value()).max(0.0);
@@ -158,19 +161,22 @@ impl Drivetrain {
         );
     }
 
-    /// Fibres that lean hold back most when driven against them, and not at all the other way.
-    fn nap_drag_n(&self, hardware: &Hardware) -> f64 {
-        let nap_n = hardware.floor.nap_n;
-        let way = self.pose.direction() * self.speed_m_s.x.signum();
-        (nap_n.length() + nap_n.dot(way)) / 2.0
+    /// Fibres that lean hold back most when driven against them, and not at all the other way; a rough patch always.
+    fn floor_drag_n(&self, hardware: &Hardware) -> f64 {
+        let floor = &hardware.floor;
+        let way = self.facing * self.speed_m_s.x.signum();
+        let on_patch = self.pose.position_cm.distance(floor.patch_middle_cm) < floor.patch_radius_cm;
+        let patch_n = if on_patch { floor.patch_n } else { 0.0 };
+        (floor.nap_n.length() + floor.nap_n.dot(way)) / 2.0 + patch_n
     }
 
     fn advance(&mut self, seconds: f64) -> f64 {
         let turned_rad = self.turning_rad_s * seconds;
         let way_cm = self.speed_m_s * (100.0 * seconds);
-        let facing = direction(self.pose.heading_rad + turned_rad / 2.0);
-        self.pose.position_cm += facing.rotate(way_cm);
+        let faced = self.facing;
         self.pose.heading_rad = wrap_rad(self.pose.heading_rad + turned_rad);
+        self.facing = self.pose.direction();
+        self.pose.position_cm += ((faced + self.facing) / 2.0).rotate(way_cm);
         way_cm.length()
     }
 }

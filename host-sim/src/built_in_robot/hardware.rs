@@ -15,6 +15,10 @@ pub(super) const RIGHT: usize = 1;
 /// All parts, and the floor that they stand on.
 #[derive(Clone, Debug)]
 pub(super) struct Hardware {
+    /// Time between two rows of a log.
+    pub step_ms: f64,
+    /// Rim speed at command 100 with healthy parts.
+    pub full_speed_m_s: f64,
     pub link: Link,
     pub battery: Battery,
     pub motors: [Motor; 2],
@@ -31,6 +35,8 @@ pub(super) struct Hardware {
 pub(super) struct Link {
     /// From the logged time to the driver.
     pub delay_ms: f64,
+    /// At most so much more, another time for each command.
+    pub delay_jitter_ms: f64,
     /// The driver knows multiples of this command alone; zero for all.
     pub grain: f64,
     /// Standard deviation of a step's length.
@@ -41,6 +47,8 @@ pub(super) struct Link {
 pub(super) struct Battery {
     pub fresh_v: f64,
     pub inner_ohm: f64,
+    /// What the brick itself draws.
+    pub idle_a: f64,
     /// Voltage lost for each coulomb drawn since the run began.
     pub fade_v_per_c: f64,
 }
@@ -60,6 +68,8 @@ pub(super) struct Motor {
     pub viscous_nm_s: f64,
     /// Share of the commanded voltage that its bridge lets through.
     pub bridge: f64,
+    /// Share of the speed forwards that it reaches backwards.
+    pub backwards: f64,
     /// The bridge gives no more than this.
     pub limit_v: f64,
     /// Play between shaft and wheel.
@@ -112,6 +122,10 @@ pub(super) struct Floor {
     pub downhill: DVec2,
     /// Drag of leaning fibres when driven against them; the vector points the way of most drag.
     pub nap_n: DVec2,
+    /// Drag on a round patch in the middle of the room.
+    pub patch_n: f64,
+    pub patch_middle_cm: DVec2,
+    pub patch_radius_cm: f64,
     /// Torque against turning on the spot, from tyres as wide as these.
     pub scrub_nm: f64,
     /// Standard deviations of what changes from place to place: rolled way (share), where the tyre touches, toe angle,
@@ -138,6 +152,9 @@ pub(super) struct Sonar {
     /// Level of an echo from a wall one metre ahead, met squarely.
     pub level_db: f64,
     pub absorption_db_per_m: f64,
+    /// Level of an echo from anything but the arena's own sides, which are the first so many of all.
+    pub obstacle_db: f64,
+    pub arena_sides: usize,
     /// How far a wall's facets lean from its normal.
     pub facet_rad: f64,
     /// Share of the sound that a wall scatters every way.
@@ -165,8 +182,8 @@ pub(super) struct Sonar {
     pub crosstalk: f64,
     /// Share of the time that its plug has no contact.
     pub loose: f64,
-    /// Readings are handed out so many reads late.
-    pub reads_late: usize,
+    /// A reading is of a ping sent so long ago.
+    pub age_ms: f64,
 }
 
 /// The camera at the ceiling and the compass on the robot.
@@ -201,6 +218,7 @@ impl Hardware {
             breakaway: 1.4,
             viscous_nm_s: 0.0011,
             bridge: 1.0,
+            backwards: 1.0,
             limit_v: f64::INFINITY,
             play_rad: 0.0,
         };
@@ -215,14 +233,18 @@ impl Hardware {
             rolling: 0.04,
             flexing_s_per_m: 0.3,
         };
+        let full_speed_m_s = spec.full_speed_cm_s / 100.0;
         let castor = Castor { behind_m: 0.07, trail_m: 0.015, scrub_n: 0.0, drag_n: 0.05 };
         let battery = Battery {
-            fresh_v: voltage_for(&motor, &tyre, &castor, spec.full_speed_cm_s / 100.0),
+            fresh_v: voltage_for(&motor, &tyre, &castor, full_speed_m_s),
             inner_ohm: 0.3,
+            idle_a: 0.1,
             fade_v_per_c: 2e-4,
         };
         Hardware {
-            link: Link { delay_ms: 0.0, grain: 0.0, step_jitter_ms: 4.0 },
+            step_ms: spec.step_ms,
+            full_speed_m_s,
+            link: Link { delay_ms: 0.0, delay_jitter_ms: 0.0, grain: 0.0, step_jitter_ms: 4.0 },
             battery,
             motors: [motor.clone(), motor],
             tyres: [tyre.clone(), tyre],
@@ -231,13 +253,16 @@ impl Hardware {
             floor: Floor {
                 downhill: DVec2::ZERO,
                 nap_n: DVec2::ZERO,
+                patch_n: 0.0,
+                patch_middle_cm: middle_cm(scene),
+                patch_radius_cm: 70.0,
                 scrub_nm: 0.02,
                 roughness: 0.02,
                 contact_wander_m: 0.003,
                 toe_wander_rad: 0.02,
                 scrub_wander: 0.5,
             },
-            sonar: Sonar::new(spec),
+            sonar: Sonar::new(spec, scene),
             tracker: Tracker::new(scene),
         }
     }
@@ -246,11 +271,6 @@ impl Hardware {
     pub fn yielding_m_s_per_n(&self) -> f64 {
         let (motor, radius_m) = (&self.motors[LEFT], self.tyres[LEFT].radius_m);
         radius_m * radius_m / (motor.damping_nm_s() + motor.viscous_nm_s)
-    }
-
-    /// Rim speed at command 100, m/s, friction left aside.
-    pub fn full_speed_m_s(&self) -> f64 {
-        self.battery.fresh_v / self.motors[LEFT].back_emf_v_s * self.tyres[LEFT].radius_m
     }
 }
 
@@ -277,7 +297,7 @@ fn voltage_for(motor: &Motor, tyre: &Tyre, castor: &Castor, speed_m_s: f64) -> f
 }
 
 impl Sonar {
-    fn new(spec: &Robot) -> Self {
+    fn new(spec: &Robot, scene: &Scene) -> Self {
         let seat = &spec.ultrasonic;
         Sonar {
             place_cm: DVec2::new(seat.x_cm, seat.y_cm),
@@ -288,10 +308,12 @@ impl Sonar {
             edge_db: 20.0,
             lean_db: 0.0,
             level_db: 11.0,
-            absorption_db_per_m: 13.0,
+            absorption_db_per_m: 5.0,
+            obstacle_db: 0.0,
+            arena_sides: if scene.arena_cm.is_some() { 4 } else { 0 },
             facet_rad: 0.42,
             diffuse: 0.12,
-            mirror_db: 12.0,
+            mirror_db: 18.0,
             ping_db: 5.0,
             speckle_db: 2.0,
             scatter_cm: 0.7,
@@ -305,7 +327,7 @@ impl Sonar {
             ghost_cm: 0.0,
             crosstalk: 0.0,
             loose: 0.0,
-            reads_late: 0,
+            age_ms: 0.0,
         }
     }
 }

@@ -23,6 +23,8 @@ const PLACES_TRIED: usize = 10_000;
 const COMMANDS_TRIED: usize = 40;
 /// A robot that is told to stop stands after so many steps.
 const STEPS_TO_STAND: usize = 2;
+/// A run in which the robot hits something after all is driven again, so many times.
+const ATTEMPTS: u64 = 20;
 /// Places of generators: each run has one for what happens and one for what is feared.
 const DRIVING: u64 = 0;
 const FORESIGHT: u64 = 1;
@@ -43,14 +45,16 @@ pub fn record(
         return Err(Problem::new(format!("{runs} runs of {steps} steps: there must be at least one of each")));
     }
     let robot = BuiltInRobot::new(spec, scene, effects);
-    let runs = (0..runs)
+    let runs = (0..runs as u64)
         .into_par_iter()
         .map(|run| {
-            let [mut rng, mut foresight] = [DRIVING, FORESIGHT].map(|part| generator(seed, &[part, run as u64]));
-            let start = free_place(spec, scene, &mut rng).ok_or_else(|| no_room(spec))?;
-            let body = robot.start(start, &mut rng);
-            let rows = drive_about(&robot, body, spec.step_ms, steps, &mut rng, &mut foresight);
-            Ok(Run { name: format!("run-{run:03}"), rows })
+            let rows = (0..ATTEMPTS).find_map(|attempt| {
+                let mut rng = generator(seed, &[run, attempt, DRIVING]);
+                let mut foresight = generator(seed, &[run, attempt, FORESIGHT]);
+                let start = free_place(spec, scene, &mut rng)?;
+                drive_about(&robot, start, spec.step_ms, steps, &mut rng, &mut foresight)
+            });
+            Ok(Run { name: format!("run-{run:03}"), rows: rows.ok_or_else(|| no_room(spec))? })
         })
         .collect::<Result<Vec<Run>>>()?;
     Ok(Logs { robot: *spec, scene: scene.clone(), runs })
@@ -79,29 +83,31 @@ fn is_enclosed(scene: &Scene, at_cm: DVec2) -> bool {
     (0..8).all(|eighth| cast(&sides, at_cm, direction(f64::from(eighth) * FRAC_PI_4)).is_some())
 }
 
-/// One run's rows: one more than steps, since a step lies between two.
+/// One run's rows, one more than steps since a step lies between two; none when the robot hit something.
 fn drive_about(
     robot: &BuiltInRobot,
-    mut body: Body,
+    start: Pose,
     step_ms: f64,
     steps: usize,
     rng: &mut Generator,
     foresight: &mut Generator,
-) -> Vec<Row> {
+) -> Option<Vec<Row>> {
+    let mut body = robot.start(start, rng);
     let mut rows = Vec::with_capacity(steps + 1);
     let mut held = Held { command: [0.0, 0.0], steps: 0 };
-    for step in 0..=steps {
+    while !body.crashed() {
         if held.steps == 0 {
             held = safe_command(&body, step_ms, rng, foresight);
         }
         held.steps -= 1;
         let echo_cm = body.read_sonar(rng);
         rows.push(body.row(held.command, echo_cm, rng));
-        if step < steps {
-            body.drive(held.command, robot.step_length_ms(step_ms, rng), rng);
+        if rows.len() > steps {
+            return Some(rows);
         }
+        body.drive(held.command, robot.step_length_ms(step_ms, rng), rng);
     }
-    rows
+    None
 }
 
 /// A command, and for how many steps it is held.

@@ -2,11 +2,9 @@
 
 mod beam;
 
-use std::collections::VecDeque;
-
 use rand::RngExt;
 
-use super::hardware::{Hardware, Sonar};
+use super::hardware::Sonar;
 use super::noise::{happens, normal};
 use crate::chance::Generator;
 use crate::geometry::{Pose, Wall};
@@ -21,30 +19,14 @@ const FAINT_CM: f64 = 1.5;
 /// What the sensor remembers from reading to reading.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Receiver {
-    /// Readings that were taken and not handed out yet.
-    held_back: VecDeque<Option<f64>>,
-    /// Whether the plug had contact at the last reading, and when that was.
+    /// Whether the plug had no contact at the last reading, and when that was.
     loose: bool,
     last_ms: f64,
 }
 
 impl Receiver {
-    /// One reading with the robot at `pose`, `t_ms` into the run: whole centimetres, or none.
-    pub fn read(
-        &mut self,
-        hardware: &Hardware,
-        sides: &[Wall],
-        pose: &Pose,
-        t_ms: f64,
-        rng: &mut Generator,
-    ) -> Option<f64> {
-        let sonar = &hardware.sonar;
-        let fresh = self.listen(sonar, sides, pose, t_ms, rng);
-        self.held_back.push_back(fresh);
-        if self.held_back.len() > sonar.reads_late { self.held_back.pop_front().flatten() } else { None }
-    }
-
-    fn listen(&mut self, sonar: &Sonar, sides: &[Wall], pose: &Pose, t_ms: f64, rng: &mut Generator) -> Option<f64> {
+    /// One reading, `t_ms` into the run, of a ping sent with the robot at `pose`: whole centimetres, or none.
+    pub fn read(&mut self, sonar: &Sonar, sides: &[Wall], pose: &Pose, t_ms: f64, rng: &mut Generator) -> Option<f64> {
         let echo_cm = beam::first_echo(sonar, sides, pose, rng).map(|echo| {
             let late_cm = FAINT_CM * libm::pow(10.0, -echo.level_db / 20.0);
             echo.distance_cm + late_cm + (sonar.scatter_cm + sonar.grazing_cm * echo.grazing) * normal(rng)

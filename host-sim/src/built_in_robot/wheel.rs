@@ -53,10 +53,10 @@ impl Wheel {
     }
 
     pub fn tick(&mut self, motor: &Motor, tyre: &Tyre, tick: &Tick) -> Outcome {
-        let volts = (tick.duty * tick.supply_v * motor.bridge).clamp(-motor.limit_v, motor.limit_v);
+        let way = if tick.duty < 0.0 { motor.backwards } else { 1.0 };
+        let volts = (tick.duty * tick.supply_v * motor.bridge * way).clamp(-motor.limit_v, motor.limit_v);
         let current_a = (volts - motor.back_emf_v_s * self.turning_rad_s) / motor.winding_ohm;
-        let hub = 1.0 + tyre.eccentricity * libm::sin(self.turned_rad + self.rim_rad);
-        let radius_m = tyre.radius_m * hub * tick.roll;
+        let radius_m = tyre.radius_m * self.hub(tyre) * tick.roll;
         let slip = DVec2::new(self.turning_rad_s * radius_m, 0.0) - tick.ground_m_s;
         let mut push_n = tyre.push_n(slip);
         if !self.takes_up(motor, slip.x) {
@@ -75,6 +75,11 @@ impl Wheel {
         );
         self.turned_rad += self.turning_rad_s * tick.seconds;
         Outcome { push_n, current_a: current_a * tick.duty.abs() }
+    }
+
+    /// The hub's height over the floor against the tyre's radius.
+    fn hub(&self, tyre: &Tyre) -> f64 {
+        if tyre.eccentricity == 0.0 { 1.0 } else { 1.0 + tyre.eccentricity * libm::sin(self.turned_rad + self.rim_rad) }
     }
 
     /// Whether the gear's play is taken up on the side that the shaft now presses.
@@ -102,4 +107,54 @@ pub(super) fn dragged(speed: f64, free_change: f64, dry: f64, breakaway: f64) ->
     let free = speed + free_change;
     let left = free.abs() - dry;
     if left > 0.0 { left.copysign(free) } else { 0.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::built_in_robot::hardware::{Hardware, LEFT};
+    use crate::built_in_robot::{default_robot, training_room};
+
+    fn parts() -> (Motor, Tyre) {
+        let hardware = Hardware::new(&default_robot(), &training_room());
+        (hardware.motors[LEFT].clone(), hardware.tyres[LEFT].clone())
+    }
+
+    /// Runs a wheel lifted off the floor for a second; the speed of its shaft.
+    fn spun_rad_s(duty: f64, motor: &Motor) -> f64 {
+        let tyre = Tyre { load_n: 0.0, ..parts().1 };
+        let mut wheel = Wheel::at_rest(motor, 0.0);
+        for _ in 0..500 {
+            let tick = Tick { supply_v: 7.5, duty, ground_m_s: DVec2::ZERO, roll: 1.0, seconds: 0.002 };
+            wheel.tick(motor, &tyre, &tick);
+        }
+        wheel.turning_rad_s
+    }
+
+    #[test]
+    fn a_lifted_wheel_comes_to_where_torque_and_friction_balance() {
+        let (motor, _) = parts();
+        let (volts, speed) = (0.8 * 7.5, spun_rad_s(0.8, &motor));
+        let torque_nm = motor.torque_nm_per_a * (volts - motor.back_emf_v_s * speed) / motor.winding_ohm;
+        assert!((torque_nm - motor.friction_nm - motor.viscous_nm_s * speed).abs() < 1e-6, "{speed}");
+        assert_eq!(spun_rad_s(-0.8, &motor), -speed);
+    }
+
+    #[test]
+    fn a_motor_breaks_away_above_its_friction_at_rest_alone() {
+        let (motor, _) = parts();
+        let needed_v = motor.friction_nm * motor.breakaway / motor.torque_nm_per_a * motor.winding_ohm;
+        assert_eq!(spun_rad_s(0.99 * needed_v / 7.5, &motor), 0.0);
+        assert!(spun_rad_s(1.01 * needed_v / 7.5, &motor) > 0.1);
+    }
+
+    #[test]
+    fn a_tyre_pushes_against_its_slip_and_no_harder_than_its_grip() {
+        let (_, tyre) = parts();
+        for slip in [0.001, 0.01, 0.1, 1.0] {
+            let push_n = tyre.push_n(DVec2::new(slip, -slip));
+            assert!(push_n.x > 0.0 && push_n.y == -push_n.x && push_n.length() < tyre.grip * tyre.load_n);
+        }
+        assert!(tyre.push_n(DVec2::new(1.0, 0.0)).x < 0.9 * tyre.grip * tyre.load_n);
+    }
 }

@@ -68,7 +68,7 @@ catalogue! {
         Scale::rising("share of speed lost straight uphill at half power", 0.02, 0.08, 0.2),
         Some(Scale::free("direction of downhill in degrees", -180.0, 30.0, 180.0));
     table Slip "slip" "Tyres of little grip on this floor."
-        Scale::falling("change of command from which they slide", 8.0, 25.0, 100.0, 50.0), None;
+        Scale::falling("change of command from which they slide", 20.0, 40.0, 100.0, 40.0), None;
     table CarpetNap "carpet_nap" "Fibres that lean, and hold back what is driven against them."
         Scale::rising("share of speed lost against them at half power", 0.03, 0.1, 0.25),
         Some(Scale::free("direction of most drag in degrees", -180.0, -60.0, 180.0));
@@ -85,7 +85,7 @@ catalogue! {
     table SonarDropout "sonar_dropout" "The sensor's plug loses contact for a while."
         Scale::rising("share of readings lost", 0.05, 0.2, 0.45), None;
     table SonarLag "sonar_lag" "The sensor hands its readings out late."
-        Scale::rising("steps, whole", 1.0, 1.0, 3.0), None;
+        Scale::rising("steps", 0.5, 1.0, 3.0), None;
     table SonarAbsorption "sonar_absorption" "Walls that are soft."
         Scale::falling("factor on the sound that comes back", 0.1, 0.35, 1.0, 0.25), None;
     table SonarCrosstalk "sonar_crosstalk" "Somebody else's sensor is heard."
@@ -101,6 +101,28 @@ catalogue! {
     table CompassDisturbance "compass_disturbance" "Iron on the robot."
         Scale::rising("largest error of the heading in degrees", 2.0, 7.0, 15.0),
         Some(Scale::free("direction of the iron in degrees", -180.0, 70.0, 180.0));
+    other WheelEccentricity "wheel_eccentricity" "The wheels' hubs lie beside their middles."
+        Scale::rising("share of the radius", 0.05, 0.12, 0.2), None;
+    other Backlash "backlash" "Play in the gears."
+        Scale::rising("degrees at the wheel", 8.0, 25.0, 60.0), None;
+    other CastorKick "castor_kick" "A castor that pushes the tail aside while it swivels round."
+        Scale::rising("newtons", 0.3, 0.8, 1.5), None;
+    other BrushAdvance "brush_advance" "Motors whose brushes are set for one way: weaker backwards."
+        Scale::rising("share of speed lost backwards", 0.05, 0.2, 0.4), None;
+    other StickyPatch "sticky_patch" "A round patch of rough floor in the middle of the room."
+        Scale::rising("share of speed lost there at half power", 0.1, 0.25, 0.5), None;
+    other CommandQuantisation "command_quantisation" "The motor driver knows a few speeds alone."
+        Scale::rising("command between two of them", 8.0, 18.0, 30.0), None;
+    other LinkJitter "link_jitter" "Commands are late by another time each."
+        Scale::rising("ms at most", 80.0, 200.0, 350.0), None;
+    other SoftObstacles "soft_obstacles" "Obstacles of foam between the arena's hard walls."
+        Scale::rising("decibels lost at an obstacle", 5.0, 12.0, 25.0), None;
+    other SonarDrift "sonar_drift" "The sensor's timer drifts as it warms."
+        Scale::signed("share per minute", 0.08, 0.25, 0.5), None;
+    other SonarOneSided "sonar_one_sided" "The beam is louder on the left; below zero: on the right."
+        Scale::signed("decibels from the middle to an edge", 8.0, 20.0, 35.0), None;
+    other MarkerOffset "marker_offset" "The tracker's marker sits ahead of the axle; below zero: behind it."
+        Scale::signed("cm", 1.0, 4.0, 8.0), None;
     other Unchanged "unchanged" "Nothing at all: a robot like any other."
         Scale::rising("nothing", 0.0, 0.0, 0.0), None;
 }

@@ -5,7 +5,7 @@ use crate::built_in_robot::hardware::{GRAVITY, Hardware, LEFT, RIGHT};
 use crate::geometry::direction;
 
 /// Battery current in random driving, by which a fade per minute becomes one per coulomb.
-const USUAL_CURRENT_A: f64 = 0.25;
+const USUAL_CURRENT_A: f64 = 0.137;
 
 /// Push that a tyre needs, as a share of its load, when the command jumps from 0 to 100.
 const STEP_PUSH: f64 = 0.8;
@@ -64,7 +64,7 @@ pub(in crate::built_in_robot) fn fit(hardware: &mut Hardware, active: &ActiveEff
         Effect::SonarDropout => hardware.sonar.loose = strength,
         Effect::SonarYaw => hardware.sonar.yaw_rad += strength.to_radians(),
         Effect::SonarBeam => hardware.sonar.half_angle_rad *= strength,
-        Effect::SonarLag => hardware.sonar.reads_late += strength as usize,
+        Effect::SonarLag => hardware.sonar.age_ms += strength * hardware.step_ms,
         Effect::SonarAbsorption => hardware.sonar.level_db += 20.0 * libm::log10(strength),
         Effect::SonarCrosstalk => hardware.sonar.crosstalk = strength,
         Effect::SonarNoise => hardware.sonar.scatter_cm = libm::hypot(hardware.sonar.scatter_cm, strength),
@@ -76,18 +76,29 @@ pub(in crate::built_in_robot) fn fit(hardware: &mut Hardware, active: &ActiveEff
             let field = libm::sin(2.0 * strength.to_radians());
             hardware.tracker.iron += direction(detail.to_radians()) * field;
         }
+        Effect::WheelEccentricity => hardware.tyres.iter_mut().for_each(|tyre| tyre.eccentricity += strength),
+        Effect::Backlash => hardware.motors.iter_mut().for_each(|motor| motor.play_rad += strength.to_radians()),
+        Effect::CastorKick => hardware.castor.scrub_n += strength,
+        Effect::BrushAdvance => hardware.motors.iter_mut().for_each(|motor| motor.backwards *= 1.0 - strength),
+        Effect::StickyPatch => hardware.floor.patch_n += force_for_loss_n(hardware, strength),
+        Effect::CommandQuantisation => hardware.link.grain = hardware.link.grain.max(strength),
+        Effect::LinkJitter => hardware.link.delay_jitter_ms += strength,
+        Effect::SoftObstacles => hardware.sonar.obstacle_db -= strength,
+        Effect::SonarDrift => hardware.sonar.warming_per_min += strength,
+        Effect::SonarOneSided => hardware.sonar.lean_db += strength,
+        Effect::MarkerOffset => hardware.tracker.marker_cm.x += strength,
         Effect::Unchanged => {}
     }
 }
 
 /// Force on the body at which both wheels together lose this share of half their full speed.
 fn force_for_loss_n(hardware: &Hardware, share: f64) -> f64 {
-    2.0 * share * hardware.full_speed_m_s() / 2.0 / hardware.yielding_m_s_per_n()
+    share * hardware.full_speed_m_s / hardware.yielding_m_s_per_n()
 }
 
 /// Puts so much mass over one wheel that its rolling resistance takes this share of half its full speed.
 fn load(hardware: &mut Hardware, side: usize, share: f64) {
-    let half_speed_m_s = hardware.full_speed_m_s() / 2.0;
+    let half_speed_m_s = hardware.full_speed_m_s / 2.0;
     let drag_n = share * half_speed_m_s / hardware.yielding_m_s_per_n();
     let tyre = &mut hardware.tyres[side];
     let load_n = drag_n / (tyre.rolling + tyre.flexing_s_per_m * half_speed_m_s);
