@@ -152,9 +152,9 @@ pub enum Fault {
 }
 
 /// The brick while a program runs.
-struct Brick<'p, 'w, W> {
+struct Brick<'p, 'w> {
     program: &'p Program,
-    world: &'w mut W,
+    world: &'w mut dyn World,
     memory: Memory<'p>,
     schedule: Schedule,
     motors: [Motor; motors::PORTS],
@@ -177,7 +177,7 @@ impl Default for Limits {
 }
 
 /// Runs a program until it ends.
-pub fn run<W: World>(program: &Program, world: &mut W, limits: &Limits) -> Report {
+pub fn run(program: &Program, world: &mut dyn World, limits: &Limits) -> Report {
     let clump_bytes = program.pool_bytes() - program.data.len();
     let (memory, started) = match Memory::new(program) {
         Ok(memory) => (memory, None),
@@ -214,7 +214,7 @@ pub fn run<W: World>(program: &Program, world: &mut W, limits: &Limits) -> Repor
     }
 }
 
-impl<W: World> Brick<'_, '_, W> {
+impl Brick<'_, '_> {
     /// Passes of the firmware's scheduler, one a millisecond; those in which every clump sleeps are skipped.
     fn run(&mut self, limits: &Limits) -> End {
         loop {

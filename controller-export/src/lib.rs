@@ -1,6 +1,7 @@
 //! Turns a six-tuple controller into an onboard program.
 //!
 //! * [`nxc`]: readable NXC source for the LEGO NXT's standard firmware.
+//! * [`rxe`]: the compiled program itself, a third of the size.
 //! * [`brick`]: a brick in software, which runs such programs and proves them equal.
 //! * [`wiring`], [`names`], [`onboard`], [`origin`]: what the formats share: ports, file names on the brick, what a
 //!   program does beyond the controller, and where the controller came from.
@@ -14,6 +15,7 @@ pub mod names;
 pub mod nxc;
 pub mod onboard;
 pub mod origin;
+pub mod rxe;
 pub mod wiring;
 
 pub use error::ExportError;

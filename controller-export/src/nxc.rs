@@ -88,8 +88,11 @@ fn constants(controller: &Controller, options: &NxcOptions) -> Result<String, Ex
         ("SONAR_FAILED", "-1".to_owned(), ""),
         ("SONAR_WARM_UP_MS", onboard::SONAR_WARM_UP_MS.to_string(), ""),
         ("SONAR_TIMEOUT_MS", onboard::SONAR_TIMEOUT_MS.to_string(), ""),
+        ("SONAR_POLL_MS", onboard::SONAR_POLL_MS.to_string(), ""),
         ("FAILED_STEPS_TO_STOP", onboard::FAILED_STEPS_TO_STOP.to_string(), "in a row"),
         ("BRAKE_MS", onboard::BRAKE_MS.to_string(), "before the program's end lets go of the motors"),
+        ("FINISHED_HZ", onboard::FINISHED_HZ.to_string(), ""),
+        ("GAVE_UP_HZ", onboard::GAVE_UP_HZ.to_string(), ""),
     ];
     if let Some(log) = &options.log {
         rows.push(("LOG_NAME", format!("\"{log}\""), ""));

@@ -2,8 +2,10 @@
 
 mod evaluate;
 mod evolve;
+mod export;
 mod progress;
 mod record;
+mod simulate;
 mod table;
 mod train;
 
@@ -29,6 +31,8 @@ enum Command {
     Train(train::Train),
     Evaluate(evaluate::Evaluate),
     Evolve(evolve::Evolve),
+    Simulate(simulate::Simulate),
+    Export(export::Export),
 }
 
 /// Runs the command of this process's arguments. Exits with 0 when it did what was asked, 1 when it could not, and 2
@@ -39,6 +43,8 @@ pub fn run() -> ExitCode {
         Command::Train(command) => command.run(),
         Command::Evaluate(command) => command.run(),
         Command::Evolve(command) => command.run(),
+        Command::Simulate(command) => command.run(),
+        Command::Export(command) => command.run(),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,

@@ -73,10 +73,22 @@ impl Default for Settings {
     }
 }
 
-/// Runs the algorithm. `seed` fixes every draw; `watch` is told the generation and the best fitness so far.
-pub fn run(settings: &Settings, problem: &impl Problem, seed: u64, mut watch: impl FnMut(usize, f64)) -> Outcome {
+/// Runs the algorithm from a random population. `seed` fixes every draw; `watch` is told the generation and the best
+/// fitness so far.
+pub fn run(settings: &Settings, problem: &impl Problem, seed: u64, watch: impl FnMut(usize, f64)) -> Outcome {
     let mut rng = generator(seed, &[0]);
-    let mut population: Vec<Vec<f32>> = (0..settings.population).map(|_| problem.random(&mut rng)).collect();
+    let population = (0..settings.population).map(|_| problem.random(&mut rng)).collect();
+    run_from(population, settings, problem, seed, watch)
+}
+
+/// Runs the algorithm from a population that is there already, whose size it keeps.
+pub fn run_from(
+    mut population: Vec<Vec<f32>>,
+    settings: &Settings,
+    problem: &impl Problem,
+    seed: u64,
+    mut watch: impl FnMut(usize, f64),
+) -> Outcome {
     let mut best: Option<(Vec<f32>, f64)> = None;
     let mut history = Vec::new();
     loop {

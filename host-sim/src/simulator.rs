@@ -4,6 +4,7 @@ mod batch;
 pub mod course;
 pub mod draws;
 pub mod motion;
+pub mod rehearsal;
 pub mod room;
 pub mod scatter;
 

@@ -87,8 +87,8 @@ fn what_the_brick_cannot_run_is_refused_with_what_to_change() {
     wild.tuples[2].left = -128;
     assert_eq!(program(&wild, &options()).unwrap_err().to_string(), "tuple 3: a motor command is outside -100..100");
 
-    let hasty = Controller { step_ms: 99, ..controller() };
-    assert_eq!(program(&hasty, &options()), Err(ExportError::StepTooShort(99)));
+    let hasty = Controller { step_ms: 119, ..controller() };
+    assert_eq!(program(&hasty, &options()), Err(ExportError::StepTooShort(119)));
 
     let wiring = Wiring { left: MotorPort::C, ..Wiring::default() };
     assert_eq!(program(&controller(), &NxcOptions { wiring, ..options() }), Err(ExportError::OnePortForTwoMotors('C')));

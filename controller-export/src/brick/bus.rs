@@ -66,13 +66,13 @@ impl Port {
     }
 
     /// Starts an exchange.
-    pub(super) fn write<W: World>(
+    pub(super) fn write(
         &mut self,
         request: &[u8],
         answer_bytes: u8,
         port: usize,
         t_ms: u32,
-        world: &mut W,
+        world: &mut dyn World,
     ) -> i8 {
         self.settle(t_ms);
         let answer_bytes = usize::from(answer_bytes);

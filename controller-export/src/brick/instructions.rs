@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::arithmetic::{Operation, order};
 use super::memory::Place;
-use super::{Brick, Fault, What, World, polymorphic, text};
+use super::{Brick, Fault, What, polymorphic, text};
 use crate::bytecode::{Comparison, NONE, Op, SHORT_FORM, Type, VARIABLE_SIZE};
 
 /// What happens to the clump after an instruction; words of code count from its first.
@@ -19,7 +19,7 @@ pub(super) enum Flow {
     Stop,
 }
 
-impl<'p, W: World> Brick<'p, '_, W> {
+impl<'p> Brick<'p, '_> {
     pub(super) fn execute(&mut self, pc: usize) -> Result<Flow, Fault> {
         let word = self.word(pc)?;
         if word & SHORT_FORM != 0 {

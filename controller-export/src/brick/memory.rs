@@ -55,10 +55,12 @@ impl<'p> Memory<'p> {
         }
     }
 
+    #[inline]
     pub(super) fn entry(&self, id: u16) -> Result<Entry, Fault> {
         self.entries.get(usize::from(id)).copied().ok_or(Fault::Argument)
     }
 
+    #[inline]
     pub(super) fn kind(&self, id: u16) -> Result<Type, Fault> {
         Ok(self.entry(id)?.kind)
     }
@@ -66,7 +68,7 @@ impl<'p> Memory<'p> {
     /// An integer as the firmware's 32-bit accumulator holds it; a float is rounded to the nearest, halves away from 0.
     pub(super) fn get(&self, place: Place) -> Result<u32, Fault> {
         let entry = self.entry(place.id)?;
-        let at = entry.offset + place.base;
+        let at = entry.at(place.base);
         Ok(match entry.kind {
             Type::U8 => u32::from(self.read::<1>(at)?[0]),
             Type::I8 => self.read::<1>(at)?[0] as i8 as u32,
@@ -85,7 +87,7 @@ impl<'p> Memory<'p> {
     pub(super) fn get_float(&self, place: Place) -> Result<f32, Fault> {
         let entry = self.entry(place.id)?;
         match entry.kind {
-            Type::Float => Ok(f32::from_le_bytes(self.read(entry.offset + place.base)?)),
+            Type::Float => Ok(f32::from_le_bytes(self.read(entry.at(place.base))?)),
             kind if kind.is_signed() => Ok(self.get(place)? as i32 as f32),
             _ => Ok(self.get(place)? as f32),
         }
@@ -94,7 +96,7 @@ impl<'p> Memory<'p> {
     /// Stores as many low bytes as the type has.
     pub(super) fn set(&mut self, place: Place, value: u32) -> Result<(), Fault> {
         let entry = self.entry(place.id)?;
-        let at = entry.offset + place.base;
+        let at = entry.at(place.base);
         match entry.kind {
             Type::U8 | Type::I8 => self.write(at, [value as u8]),
             Type::U16 | Type::I16 => self.write(at, (value as u16).to_le_bytes()),
@@ -112,7 +114,7 @@ impl<'p> Memory<'p> {
     pub(super) fn set_float(&mut self, place: Place, value: f32) -> Result<(), Fault> {
         let entry = self.entry(place.id)?;
         match entry.kind {
-            Type::Float => self.write(entry.offset + place.base, value.to_le_bytes()),
+            Type::Float => self.write(entry.at(place.base), value.to_le_bytes()),
             _ => self.set(place, value as i64 as u32),
         }
     }
@@ -245,7 +247,7 @@ impl<'p> Memory<'p> {
                 }
             }
             kind => {
-                let at = entry.offset + place.base;
+                let at = entry.at(place.base);
                 bytes.extend(self.bytes.get(at..at + kind.bytes()).ok_or(Fault::Pointer)?);
             }
         }
@@ -264,7 +266,7 @@ impl<'p> Memory<'p> {
             }
             Type::Cluster => self.each_member(place, |memory, member| memory.unflatten(member, bytes)),
             kind => {
-                let at = entry.offset + place.base;
+                let at = entry.at(place.base);
                 let value = bytes.split_off(..kind.bytes()).ok_or(Fault::Pointer)?;
                 self.bytes.get_mut(at..at + kind.bytes()).ok_or(Fault::Pointer)?.copy_from_slice(value);
                 Ok(())
@@ -277,7 +279,7 @@ impl<'p> Memory<'p> {
         if entry.kind != Type::Array {
             return Err(Fault::Argument);
         }
-        let vector = usize::from(u16::from_le_bytes(self.read(entry.offset + array.base)?));
+        let vector = usize::from(u16::from_le_bytes(self.read(entry.at(array.base))?));
         if vector == TABLE || vector >= self.dope.len() {
             return Err(Fault::Pointer);
         }
@@ -322,7 +324,7 @@ impl<'p> Memory<'p> {
                 }
                 let vector = self.free.pop().ok_or(Fault::Memory)?;
                 self.dope[usize::from(vector)] = DopeVector { offset: None, element_bytes, count: 0, capacity: 0 };
-                self.write(entry.offset + element.base, vector.to_le_bytes())
+                self.write(entry.at(element.base), vector.to_le_bytes())
             }
             Type::Cluster => self.each_member(element, Self::add_arrays_in),
             _ => Ok(()),

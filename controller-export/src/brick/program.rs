@@ -36,7 +36,7 @@ pub struct LoadError(&'static str);
 pub(super) struct Entry {
     pub(super) kind: Type,
     /// Where it lies: in the dataspace, or within its array's element. A cluster has none.
-    pub(super) offset: usize,
+    offset: u16,
     /// Members of a cluster.
     pub(super) members: u16,
     /// The entry after this one and all its parts.
@@ -109,6 +109,13 @@ impl Program {
     }
 }
 
+impl Entry {
+    /// Its place in the dataspace, given that of the array element that it is part of.
+    pub(super) fn at(&self, base: usize) -> usize {
+        usize::from(self.offset) + base
+    }
+}
+
 struct Header {
     entries: u16,
     data_bytes: u16,
@@ -162,9 +169,9 @@ fn read_entries(table: &[u8]) -> Result<Vec<Entry>, LoadError> {
     for row in table.chunks_exact(4) {
         let kind = Type::from_number(row[0]).ok_or(LoadError("a data type that does not exist"))?;
         let offset = u16::from_le_bytes([row[2], row[3]]);
-        let members = if kind == Type::Cluster { offset } else { 0 };
+        let (offset, members) = if kind == Type::Cluster { (0, offset) } else { (offset, 0) };
         let stored = row[1] & DEFAULT_ZERO == 0;
-        entries.push(Entry { kind, offset: usize::from(offset), members, next: NONE, stored });
+        entries.push(Entry { kind, offset, members, next: NONE, stored });
     }
     // Parts follow their whole, so going backwards every part is known before the whole that it belongs to.
     let mut depths = vec![0; entries.len()];
@@ -226,7 +233,8 @@ fn inflate(entries: &[Entry], defaults: &[u8], header: &Header) -> Result<Vec<u8
         at = if entry.kind == Type::Array { usize::from(entry.next) } else { at + 1 };
         let bytes = entry.kind.bytes();
         if bytes > 0 {
-            let place = data.get_mut(entry.offset..entry.offset + bytes).ok_or(TOO_SMALL)?;
+            let at = entry.at(0);
+            let place = data.get_mut(at..at + bytes).ok_or(TOO_SMALL)?;
             if entry.stored {
                 place.copy_from_slice(stored.take(bytes)?);
             }

@@ -2,7 +2,7 @@
 
 use super::flash::status;
 use super::memory::Place;
-use super::{Brick, Fault, What, World};
+use super::{Brick, Fault, What};
 use crate::bytecode::{NONE, Syscall, Type, comm};
 
 const MOST_ARGUMENTS: usize = 16;
@@ -14,7 +14,7 @@ const BAD_FIELD: i8 = -17;
 const UI_MODULE: &[u8] = b"Ui.mod";
 const UI_BATTERY_MV: usize = 4;
 
-impl<W: World> Brick<'_, '_, W> {
+impl Brick<'_, '_> {
     pub(super) fn syscall(&mut self, number: u16, arguments: u16) -> Result<(), Fault> {
         let call = Syscall::from_number(number).ok_or(Fault::Instruction)?;
         let argument = self.arguments(arguments)?;

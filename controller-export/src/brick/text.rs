@@ -2,8 +2,7 @@
 
 /// A float as at most two decimals, or six digits and an exponent where it would not fit the display.
 pub(super) fn of_float(x: f32) -> String {
-    const WIDEST: f32 = 9_999_999_999_999.99;
-    const WIDEST_NEGATIVE: f32 = -999_999_999_999.99;
+    const FITS: std::ops::RangeInclusive<f32> = -999_999_999_999.99..=9_999_999_999_999.99;
     if !x.is_finite() {
         return if x.is_nan() {
             "nan"
@@ -14,7 +13,7 @@ pub(super) fn of_float(x: f32) -> String {
         }
         .to_owned();
     }
-    if x > WIDEST || x < WIDEST_NEGATIVE {
+    if !FITS.contains(&x) {
         return with_exponent(x);
     }
     let text = format!("{x:.2}");

@@ -8,7 +8,8 @@ use super::progress;
 use crate::evolve::controller_file::{ControllerFile, Origin};
 use crate::evolve::fitness::{Numbers, Task};
 use crate::evolve::genome::Coding;
-use crate::evolve::{paper, robust};
+use crate::evolve::paper;
+use crate::evolve::robust::{self, Quest};
 use crate::geometry::Pose;
 use crate::logs::Scene;
 use crate::problem::{Problem, Result};
@@ -60,22 +61,24 @@ impl Evolve {
         let start = start_of(&scene, self.start, &self.scene)?;
         let target_cm = scene.target_cm.ok_or_else(|| Problem::in_file(&self.scene, "has no [target]"))?;
         let noise = if self.paper || self.paper_noise { Noise::Paper } else { Noise::Learned };
-        let course = Course::new(&simulator, &scene, start, noise)?;
-        let task = Task {
-            course: &course,
-            target_cm,
-            coding: Coding::new(&simulator, self.max_steps),
-            runs: 5,
-            numbers: if self.common_numbers { Numbers::Common } else { Numbers::Fresh },
-            seed: self.seed,
-        };
+        let course = &Course::new(&simulator, &scene, start, noise)?;
+        let quiet_course = &Course::new(&simulator, &scene, start, Noise::Paper)?;
+        let coding = Coding::new(&simulator, self.max_steps);
+        let numbers = if self.common_numbers { Numbers::Common } else { Numbers::Fresh };
+        let seed = self.seed;
+        let (runs, floor_cm) = (paper::RUNS, paper::FLOOR_CM);
+        let task = Task { course, target_cm, coding, runs, floor_cm, numbers, seed };
         let settings = paper::settings();
-        let bar = progress::bar(settings.max_generations as u64);
+        let bar = progress::bar(if self.paper { settings.max_generations } else { robust::GENERATIONS } as u64);
         let watch = |generation: usize, fitness: f64| {
             bar.set_position(generation as u64 + 1);
             bar.set_message(format!("fitness {fitness:.3}"));
         };
-        let evolved = if self.paper { paper::evolve(&task, &settings, watch) } else { robust::evolve(&task, watch) };
+        let evolved = if self.paper {
+            paper::evolve(&task, &settings, watch)
+        } else {
+            robust::evolve(&Quest { course, quiet_course, target_cm, coding, numbers, seed }, watch)
+        };
         bar.finish_and_clear();
         let success = task.success(&evolved.controller, JUDGED_RUNS, JUDGING);
         let origin = Origin {

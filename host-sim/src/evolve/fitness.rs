@@ -10,8 +10,6 @@ use crate::genetic;
 use crate::simulator::course::{Course, Ending, Job, Outcome};
 use crate::simulator::motion::MotionTable;
 
-/// Distances below this count as this, since 1/d has no ceiling.
-pub const LEAST_DISTANCE_CM: f64 = 1.0;
 /// A run succeeds when it ends within this of the target, without a crash.
 pub const REACHED_CM: f64 = 15.0;
 
@@ -37,6 +35,8 @@ pub struct Task<'a> {
     pub coding: Coding,
     /// Runs whose fitness is summed (paper: five).
     pub runs: usize,
+    /// Distances below this count as this.
+    pub floor_cm: f64,
     /// Which random numbers the individuals meet.
     pub numbers: Numbers,
     /// Fixes every draw of the runs.
@@ -54,9 +54,10 @@ pub struct Success {
     pub median_cm: f64,
 }
 
-/// Equation (3): 0.5 / distance after a crash, else 1 / distance.
-pub fn fitness(outcome: &Outcome, target_cm: DVec2) -> f64 {
-    let distance_cm = outcome.end_cm.distance(target_cm).max(LEAST_DISTANCE_CM);
+/// Equation (3): 0.5 / distance after a crash, else 1 / distance. Distances below `floor_cm` count as that, since 1/d
+/// has no ceiling.
+pub fn fitness(outcome: &Outcome, target_cm: DVec2, floor_cm: f64) -> f64 {
+    let distance_cm = outcome.end_cm.distance(target_cm).max(floor_cm);
     if outcome.ending == Ending::Crashed { 0.5 / distance_cm } else { 1.0 / distance_cm }
 }
 
@@ -85,12 +86,22 @@ impl Task<'_> {
             jobs.extend((0..self.runs).map(|run| Job { controller, motions, seed: derive(self.seed, &place(run)) }));
         }
         let outcomes = self.course.run(&jobs);
-        outcomes.chunks(self.runs).map(|runs| runs.iter().map(|o| fitness(o, self.target_cm)).sum()).collect()
+        outcomes.chunks(self.runs).map(|runs| self.fitness_of(runs)).collect()
     }
 
     /// How a controller does in so many fresh runs.
     pub fn success(&self, controller: &Controller, runs: usize, purpose: u64) -> Success {
-        Success::of(&self.outcomes(controller, runs, purpose), self.target_cm)
+        self.success_of(&self.outcomes(controller, runs, purpose))
+    }
+
+    /// How outcomes did.
+    pub fn success_of(&self, outcomes: &[Outcome]) -> Success {
+        Success::of(outcomes, self.target_cm)
+    }
+
+    /// Summed fitness of outcomes.
+    pub fn fitness_of(&self, outcomes: &[Outcome]) -> f64 {
+        outcomes.iter().map(|o| fitness(o, self.target_cm, self.floor_cm)).sum()
     }
 }
 

@@ -22,6 +22,11 @@ pub fn settings() -> Settings {
     Settings { window: None, max_generations: 1000, ..Settings::default() }
 }
 
+/// Runs whose fitness is summed, since echoes fail at random.
+pub const RUNS: usize = 5;
+/// Distances below this count as this (the paper is silent; 1/d has no ceiling).
+pub const FLOOR_CM: f64 = 1.0;
+
 /// Evolves a controller as the paper does.
 pub fn evolve(task: &Task, settings: &Settings, watch: impl FnMut(usize, f64)) -> Evolved {
     let outcome = genetic::run(settings, task, task.seed, watch);

@@ -17,7 +17,7 @@ pub fn spread(contexts: &[[f32; 2]], residuals: &[f32]) -> Spread {
         let values = sorted(contexts.iter().map(|c| c[axis]));
         std::array::from_fn(|i| values.get(values.len() * (i + 1) / CELLS).copied().unwrap_or(0.0))
     });
-    let mut spread = Spread { edges, residuals: Vec::new() };
+    let mut spread = Spread { edges, residuals: Vec::new(), own_share: 1.0 };
     let mut cells = vec![Vec::new(); CELLS * CELLS];
     for (context, residual) in contexts.iter().zip(residuals) {
         cells[spread.cell(*context)].push(*residual);
@@ -35,6 +35,21 @@ pub fn spread(contexts: &[[f32; 2]], residuals: &[f32]) -> Spread {
         })
         .collect();
     spread
+}
+
+/// How much of the size of motion residuals is the robot's own. A tracker's error at a row enters the step before and
+/// the step after with opposite signs, which shows as a negative correlation of neighbours; what the robot does itself
+/// in one step and the next is taken to be independent. `runs` tells which residuals follow each other.
+pub fn own_share(residuals: &[f32], runs: &[usize]) -> f32 {
+    let square = |r: &f32| f64::from(r * r);
+    let variance = residuals.iter().map(square).sum::<f64>() / residuals.len() as f64;
+    let neighbours = residuals.windows(2).zip(runs.windows(2)).filter(|(_, runs)| runs[0] == runs[1]);
+    let products: Vec<f64> = neighbours.map(|(r, _)| f64::from(r[0] * r[1])).collect();
+    if variance <= 0.0 || products.is_empty() {
+        return 1.0;
+    }
+    let covariance = products.iter().sum::<f64>() / products.len() as f64;
+    (1.0 + 2.0 * covariance / variance).clamp(0.0, 1.0).sqrt() as f32
 }
 
 /// Finds a reading that comes too often among those far off what was predicted.
@@ -104,6 +119,26 @@ mod tests {
         assert!(spread.is_sound());
         assert_eq!(spread.residual([0.0, 9.0], 1), -1.0);
         assert_eq!(spread.residual([9.0, 0.0], LEVELS - 2), 1.0);
+    }
+
+    #[test]
+    fn the_trackers_part_of_residuals_is_told_from_the_robots() {
+        let mut rng = generator(4, &[]);
+        let mut error = || rng.random::<f32>() - 0.5;
+        // Twenty runs of a robot whose own scatter has half the variance of the whole.
+        let (mut residuals, mut runs) = (Vec::new(), Vec::new());
+        for run in 0..20 {
+            let mut before = error();
+            for _ in 0..200 {
+                let after = error();
+                residuals.push(std::f32::consts::SQRT_2 * error() + after - before);
+                runs.push(run);
+                before = after;
+            }
+        }
+        let share = own_share(&residuals, &runs);
+        assert!((share - std::f32::consts::FRAC_1_SQRT_2).abs() < 0.05, "{share}");
+        assert_eq!(own_share(&[], &[]), 1.0);
     }
 
     #[test]

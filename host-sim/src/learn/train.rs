@@ -60,7 +60,9 @@ pub struct Progress {
 pub fn train(logs: &Logs, options: &paper::Options, seed: u64, watch: impl Fn(Progress)) -> Result<Simulator> {
     let data = Datasets::from_logs(logs);
     let mut trainer = Trainer { options, seed, runs: logs.runs.len(), watch, missing: Vec::new() };
-    let (motion, sonar) = (motion_context as fn(&[f32; 4]) -> [f32; 2], sonar_context as fn(&[f32; 2]) -> [f32; 2]);
+    let motion = Scattering { context: motion_context, moves: true };
+    // D and α are the sonar's context themselves.
+    let sonar = Scattering { context: |inputs: &[f32; 2]| *inputs, moves: false };
     let linear = Activation::Linear;
     let turn = trainer.learn("turn", &data.turn, TABLE_ONE.turn, linear, motion);
     let forward = trainer.learn("forward", &data.forward, TABLE_ONE.forward, linear, motion);
@@ -116,7 +118,7 @@ impl<W: Fn(Progress)> Trainer<'_, W> {
         data: &Dataset<N>,
         shape: Shape,
         activation: Activation,
-        context: fn(&[f32; N]) -> [f32; 2],
+        Scattering { context, moves }: Scattering<N>,
     ) -> Option<Learned<N>> {
         let fitted = data.of_runs(|run| !is_held_out(run, self.runs));
         if let Some(reason) = unsupported(&fitted) {
@@ -127,9 +129,22 @@ impl<W: Fn(Progress)> Trainer<'_, W> {
         let trained = paper::train(&fitted, shape, activation, self.options, self.seed, watch);
         let judged = if self.runs >= HELD_OUT { data.of_runs(|run| is_held_out(run, self.runs)) } else { fitted };
         let contexts: Vec<[f32; 2]> = judged.inputs.iter().map(context).collect();
-        let spread = scatter::spread(&contexts, &residuals(&trained.network, &judged));
+        let residuals = residuals(&trained.network, &judged);
+        let mut spread = scatter::spread(&contexts, &residuals);
+        if moves {
+            spread.own_share = scatter::own_share(&residuals, &judged.runs);
+        }
         Some(Learned { network: trained.network, spread })
     }
+}
+
+/// What the scatter about a network depends on.
+#[derive(Clone, Copy)]
+struct Scattering<const N: usize> {
+    /// The two context variables.
+    context: fn(&[f32; N]) -> [f32; 2],
+    /// Whether the network predicts a difference of tracked poses.
+    moves: bool,
 }
 
 /// Why a data set trains nothing, if so.
@@ -159,9 +174,4 @@ fn split_constant_reading(value: &mut Learned<2>, data: &Dataset<2>) -> Option<C
 
 fn residuals<const N: usize>(network: &Network<f32, N>, data: &Dataset<N>) -> Vec<f32> {
     data.inputs.iter().zip(&data.targets).map(|(x, target)| target - network.evaluate(*x)).collect()
-}
-
-/// D and α are the sonar's context themselves.
-fn sonar_context(inputs: &[f32; 2]) -> [f32; 2] {
-    *inputs
 }
