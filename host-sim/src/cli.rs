@@ -1,5 +1,6 @@
 //! The command `mindgap`: one file a command, nothing but arguments and printing.
 
+mod demo;
 mod evaluate;
 mod evolve;
 mod export;
@@ -27,6 +28,7 @@ struct Cli {
 
 #[derive(Subcommand)]
 enum Command {
+    Demo(demo::Demo),
     Record(record::Record),
     Train(train::Train),
     Evaluate(evaluate::Evaluate),
@@ -39,6 +41,7 @@ enum Command {
 /// when the call is wrong.
 pub fn run() -> ExitCode {
     let done = match Cli::parse().command {
+        Command::Demo(command) => command.run(),
         Command::Record(command) => command.run(),
         Command::Train(command) => command.run(),
         Command::Evaluate(command) => command.run(),

@@ -4,6 +4,7 @@
 pub mod built_in_robot;
 pub mod chance;
 pub mod cli;
+pub mod demo;
 pub mod evolve;
 pub mod files;
 pub mod folded;

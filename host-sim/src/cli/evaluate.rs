@@ -35,8 +35,22 @@ impl Evaluate {
     }
 }
 
-/// Prints an evaluation as tables.
-pub fn print(evaluation: &Evaluation) {
+/// Prints an evaluation as tables, with the reliability of the probability.
+fn print(evaluation: &Evaluation) {
+    print_accuracy(evaluation);
+    if let Some(p) = &evaluation.networks.echo_probability {
+        let bins: Vec<[String; 3]> = p
+            .reliability
+            .iter()
+            .map(|b| [number(Some(b.predicted), 3), number(Some(b.observed), 3), b.n.to_string()])
+            .collect();
+        println!();
+        table::print(["predicted", "observed", "n"], &bins);
+    }
+}
+
+/// Prints the accuracy of every network.
+pub fn print_accuracy(evaluation: &Evaluation) {
     let Networks { turn, forward, lateral, echo_probability, echo_value } = &evaluation.networks;
     let values =
         [("turn (deg)", turn), ("forward (cm)", forward), ("lateral (cm)", lateral), ("echo value (cm)", echo_value)];
@@ -65,12 +79,5 @@ pub fn print(evaluation: &Evaluation) {
             p.n.to_string(),
         ];
         table::print(["probability", "Brier", "log loss", "AUC", "R2", "n"], &[row]);
-        let bins: Vec<[String; 3]> = p
-            .reliability
-            .iter()
-            .map(|b| [number(Some(b.predicted), 3), number(Some(b.observed), 3), b.n.to_string()])
-            .collect();
-        println!();
-        table::print(["predicted", "observed", "n"], &bins);
     }
 }

@@ -8,7 +8,7 @@ use mindgap_controller_export::nxc::{self, NxcOptions};
 use mindgap_controller_export::wiring::{MotorPort, SensorPort, Wiring};
 use mindgap_controller_export::{ExportError, Origin};
 
-use crate::evolve::controller_file::{self, ControllerFile};
+use crate::evolve::controller_file::ControllerFile;
 use crate::files;
 use crate::problem::{Problem, Result};
 
@@ -58,27 +58,11 @@ impl Export {
         let text = match self.format {
             Format::Nxc => {
                 let options = NxcOptions { program, wiring, log: self.log.clone(), display: self.display };
-                nxc::program(&file.controller, &origin(&file), &options).map_err(refused)?
+                nxc::program(&file.controller, &Origin::from(&file), &options).map_err(refused)?
             }
         };
         files::write(&self.out, text)?;
         println!("{} written", self.out.display());
         Ok(())
-    }
-}
-
-/// Where a controller came from, as the exporter prints it.
-pub fn origin(file: &ControllerFile) -> Origin {
-    let Some(controller_file::Origin { simulator, scene, start, seed, generations, fitness, .. }) = file.origin.clone()
-    else {
-        return Origin::default();
-    };
-    Origin {
-        simulator: Some(simulator),
-        scene: Some(scene),
-        start: Some(start),
-        seed: Some(seed),
-        generations: Some(generations as u32),
-        fitness: Some(fitness),
     }
 }

@@ -75,6 +75,21 @@ impl ControllerFile {
     }
 }
 
+/// What an exporter prints of it.
+impl From<&ControllerFile> for mindgap_controller_export::Origin {
+    fn from(file: &ControllerFile) -> Self {
+        let Some(origin) = file.origin.clone() else { return Self::default() };
+        Self {
+            simulator: Some(origin.simulator),
+            scene: Some(origin.scene),
+            start: Some(origin.start),
+            seed: Some(origin.seed),
+            generations: u32::try_from(origin.generations).ok(),
+            fitness: Some(origin.fitness),
+        }
+    }
+}
+
 #[derive(Serialize, Deserialize)]
 struct Form<T> {
     step_ms: u16,

@@ -108,14 +108,22 @@ impl Task<'_> {
 impl Success {
     /// The success of outcomes.
     pub fn of(outcomes: &[Outcome], target_cm: DVec2) -> Self {
-        let share = |count: usize| count as f64 / outcomes.len() as f64;
-        let mut distances: Vec<f64> = outcomes.iter().map(|o| o.end_cm.distance(target_cm)).collect();
-        distances.sort_by(f64::total_cmp);
-        Success {
-            rate: share(outcomes.iter().filter(|o| reached(o, target_cm)).count()),
-            crashed: share(outcomes.iter().filter(|o| o.ending == Ending::Crashed).count()),
-            median_cm: distances.get(distances.len() / 2).copied().unwrap_or(f64::NAN),
+        let end = |o: &Outcome| (o.end_cm.distance(target_cm), o.ending == Ending::Crashed);
+        Self::of_ends(outcomes.iter().map(end))
+    }
+
+    /// The success of runs of which only the distance to the target at the end is known, and whether they crashed.
+    pub fn of_ends(ends: impl Iterator<Item = (f64, bool)>) -> Self {
+        let (mut distances, mut reached, mut crashed) = (Vec::new(), 0, 0);
+        for (distance_cm, has_crashed) in ends {
+            distances.push(distance_cm);
+            crashed += usize::from(has_crashed);
+            reached += usize::from(!has_crashed && distance_cm <= REACHED_CM);
         }
+        distances.sort_by(f64::total_cmp);
+        let share = |count: usize| count as f64 / distances.len() as f64;
+        let median_cm = distances.get(distances.len() / 2).copied().unwrap_or(f64::NAN);
+        Success { rate: share(reached), crashed: share(crashed), median_cm }
     }
 }
 

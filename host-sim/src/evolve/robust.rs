@@ -11,7 +11,7 @@ use glam::DVec2;
 use mindgap_core::controller::Controller;
 use rayon::prelude::*;
 
-use super::fitness::{Numbers, REACHED_CM, Task};
+use super::fitness::{Numbers, REACHED_CM, Success, Task};
 use super::genome::Coding;
 use super::paper::Evolved;
 use crate::chance::derive;
@@ -44,8 +44,9 @@ const REFINING_RUNS: usize = 20;
 /// So many of the last population come into the final choice, each with so many fresh runs.
 const CANDIDATES: usize = 40;
 const CHOOSING_RUNS: usize = 200;
-/// Sets the choosing runs apart from all others.
+/// Set the choosing and the judging runs apart from all others.
 const CHOOSING: u64 = 2;
+const JUDGING: u64 = 1;
 
 /// What a controller is evolved for.
 pub struct Quest<'a> {
@@ -99,6 +100,11 @@ fn choose(task: &Task, population: &[Vec<f32>]) -> Evolved {
 }
 
 impl<'a> Quest<'a> {
+    /// How a controller does in so many fresh runs, which played no part in its evolution.
+    pub fn success(&self, controller: &Controller, runs: usize) -> Success {
+        self.task(self.course, REFINING_RUNS, self.seed).success(controller, runs, JUDGING)
+    }
+
     fn task(&self, course: &'a Course<'a>, runs: usize, seed: u64) -> Task<'a> {
         Task {
             course,
