@@ -1,0 +1,103 @@
+//! NXC programs go through the real compiler, `nbc`.
+
+use mindgap_controller_export::names::BrickName;
+use mindgap_controller_export::nxc::{self, NxcOptions};
+use mindgap_controller_export::wiring::{MotorPort, SensorPort, Wiring};
+use mindgap_controller_export::{ExportError, Origin};
+use mindgap_core::controller::{Controller, Tuple, When};
+use mindgap_tests::nbc::compile;
+
+/// The file version that firmware 1.28 and later runs.
+const FILE_VERSION: u8 = 6;
+
+fn controller() -> Controller {
+    let tuple = |left, right, when, threshold_cm| Tuple { left, right, when, threshold_cm };
+    Controller {
+        step_ms: 400,
+        max_steps: 150,
+        tuples: [
+            tuple(55, 48, When::Smaller, 42),
+            tuple(-100, 100, When::Larger, 0),
+            tuple(100, -100, When::Smaller, 255),
+            tuple(0, 0, When::Larger, 254),
+            tuple(7, -3, When::Smaller, 1),
+            tuple(60, 60, When::Larger, 128),
+        ],
+    }
+}
+
+fn options() -> NxcOptions {
+    NxcOptions { program: BrickName::program("avoid").unwrap(), wiring: Wiring::default(), log: None, display: false }
+}
+
+fn full_options() -> NxcOptions {
+    NxcOptions { log: Some("avoid.csv".parse().unwrap()), display: true, ..options() }
+}
+
+#[test]
+fn nbc_accepts_every_kind_of_program() {
+    let other_ports = Wiring { left: MotorPort::C, right: MotorPort::A, sonar: SensorPort::One };
+    let sizes = [
+        options(),
+        NxcOptions { wiring: other_ports, ..options() },
+        NxcOptions { display: true, ..options() },
+        full_options(),
+    ]
+    .map(|options| {
+        let rxe = compile(&nxc::program(&controller(), &Origin::default(), &options).unwrap());
+        assert_eq!(&rxe[..14], b"MindstormsNXT\0");
+        assert_eq!(rxe[15], FILE_VERSION);
+        rxe.len()
+    });
+    assert_eq!(sizes[0], sizes[1], "ports change no size");
+    assert!(sizes[1] < sizes[2] && sizes[2] < sizes[3], "{sizes:?}");
+    assert!(sizes[3] < 6000, "{sizes:?}");
+}
+
+#[test]
+fn the_first_lines_say_where_the_controller_came_from() {
+    let origin = Origin {
+        simulator: Some("sim.mgap\nStopAllTasks();".to_owned()),
+        seed: Some(7),
+        generations: Some(1000),
+        fitness: Some(0.25),
+        ..Origin::default()
+    };
+    let source = nxc::program(&controller(), &origin, &options()).unwrap();
+    for line in ["// simulator: sim.mgap?StopAllTasks();", "// seed: 7", "// generations: 1000", "// fitness: 0.25"] {
+        assert!(source.lines().any(|l| l == line), "{line} is missing in\n{source}");
+    }
+    compile(&source);
+}
+
+#[test]
+fn no_statement_depends_on_the_firmware() {
+    let source = nxc::program(&controller(), &Origin::default(), &full_options()).unwrap();
+    let code: Vec<_> = source.lines().filter_map(|line| line.split("//").next()).collect();
+    assert!(code.iter().any(|line| line.contains("LowspeedWrite")));
+    for construct in ["<<", ">>", "float", "SensorUS", "OnFwdReg"] {
+        assert!(!code.iter().any(|line| line.contains(construct)), "{construct}");
+    }
+}
+
+#[test]
+fn what_the_brick_cannot_run_is_refused_with_what_to_change() {
+    let program = |controller: &Controller, options: &NxcOptions| nxc::program(controller, &Origin::default(), options);
+    let mut wild = controller();
+    wild.tuples[2].left = -128;
+    assert_eq!(program(&wild, &options()).unwrap_err().to_string(), "tuple 3: a motor command is outside -100..100");
+
+    let hasty = Controller { step_ms: 99, ..controller() };
+    assert_eq!(program(&hasty, &options()), Err(ExportError::StepTooShort(99)));
+
+    let wiring = Wiring { left: MotorPort::C, ..Wiring::default() };
+    assert_eq!(program(&controller(), &NxcOptions { wiring, ..options() }), Err(ExportError::OnePortForTwoMotors('C')));
+}
+
+#[test]
+fn a_log_too_large_names_the_step_limit_that_fits() {
+    let long = |max_steps| nxc::program(&Controller { max_steps, ..controller() }, &Origin::default(), &full_options());
+    let Err(ExportError::LogTooLarge { max_steps, .. }) = long(u16::MAX) else { panic!("accepted") };
+    assert!(long(max_steps).is_ok());
+    assert!(matches!(long(max_steps + 1), Err(ExportError::LogTooLarge { .. })));
+}
