@@ -98,7 +98,6 @@ fn one_seed_gives_one_folder_on_any_number_of_threads() {
     let alone = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap().install(|| short(&effects, 5));
     assert_eq!(alone, short(&effects, 5));
     assert_ne!(alone, short(&effects, 6));
-    assert_eq!(short(&[ActiveEffect::new(Effect::Unchanged)], 5), short(&[], 5));
 }
 
 #[test]
@@ -125,6 +124,15 @@ fn every_effect_at_both_ends_of_its_range_gives_logs_that_can_be_read() {
             let room = Rectangle { low_cm: DVec2::splat(-60.0), high_cm: DVec2::new(360.0, 280.0) };
             assert!(poses.map(|pose| pose.position_cm).all(|at_cm| room.contains(at_cm)), "{active}");
         }
+    }
+}
+
+#[test]
+fn an_effect_of_neutral_strength_is_none() {
+    let healthy = short(&[], 5);
+    for effect in Effect::all() {
+        let neutral = ActiveEffect { strength: effect.strength_range().neutral, ..ActiveEffect::new(effect) };
+        assert_eq!(short(&[neutral], 5), healthy, "{neutral}");
     }
 }
 

@@ -1,6 +1,6 @@
 //! Effects: what can be made different in the built-in robot, each by its name in the contracts' table or beside it.
 //!
-//! An effect is another part or another floor ([`fitting`]), never a change to a simulator's step.
+//! An effect is another part or another floor (`fitting`), never a change to a simulator's step.
 
 mod catalogue;
 pub(super) mod fitting;

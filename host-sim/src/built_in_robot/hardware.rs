@@ -1,4 +1,4 @@
-//! What the built-in robot is made of, in SI units: an LEGO NXT differential drive as its parts are measured, before
+//! What the built-in robot is made of, in SI units: a LEGO NXT differential drive as its parts are measured, before
 //! any effect. Effects are other parts, so every number that one of them changes stands here, at its healthy value.
 
 use glam::DVec2;
@@ -170,7 +170,7 @@ pub(super) struct Sonar {
     /// Clock rate and delay of its timer.
     pub timer: f64,
     pub delay_cm: f64,
-    /// Change of its timing in a minute, as the air warms.
+    /// Change of its clock rate in a minute, as it warms.
     pub warming_per_min: f64,
     /// Chance that the transducer's own ringing triggers it, and at what distance.
     pub ringing: f64,

@@ -25,7 +25,8 @@ const COMMANDS_TRIED: usize = 40;
 const STEPS_TO_STAND: usize = 2;
 /// A run in which the robot hits something after all is driven again, so many times.
 const ATTEMPTS: u64 = 20;
-/// Places of generators: each run has one for what happens and one for what is feared.
+/// Places of generators: the purpose, and within it for each run one for what happens and one for what is feared.
+const RECORDING: u64 = u64::from_be_bytes(*b"record  ");
 const DRIVING: u64 = 0;
 const FORESIGHT: u64 = 1;
 
@@ -49,8 +50,8 @@ pub fn record(
         .into_par_iter()
         .map(|run| {
             let rows = (0..ATTEMPTS).find_map(|attempt| {
-                let mut rng = generator(seed, &[run, attempt, DRIVING]);
-                let mut foresight = generator(seed, &[run, attempt, FORESIGHT]);
+                let mut rng = generator(seed, &[RECORDING, run, attempt, DRIVING]);
+                let mut foresight = generator(seed, &[RECORDING, run, attempt, FORESIGHT]);
                 let start = free_place(spec, scene, &mut rng)?;
                 drive_about(&robot, start, spec.step_ms, steps, &mut rng, &mut foresight)
             });
@@ -62,7 +63,9 @@ pub fn record(
 
 fn no_room(spec: &Robot) -> Problem {
     let radius_cm = spec.body_radius_cm;
-    Problem::new(format!("the scene has no room between its walls for the robot, a disc of radius {radius_cm} cm"))
+    Problem::new(format!(
+        "the scene has no room between its walls for the robot to drive in, a disc of radius {radius_cm} cm"
+    ))
 }
 
 /// A random pose at which the robot has room to move.

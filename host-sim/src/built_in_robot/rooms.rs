@@ -5,7 +5,7 @@ use glam::DVec2;
 use crate::geometry::{Pose, Rectangle};
 use crate::logs::{Robot, Scene, Ultrasonic};
 
-/// The robot as its builder measured it: an LEGO NXT differential drive.
+/// The robot as its builder measured it: a LEGO NXT differential drive.
 pub fn default_robot() -> Robot {
     Robot {
         wheel_diameter_cm: 5.6,

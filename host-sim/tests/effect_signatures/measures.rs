@@ -37,7 +37,7 @@ pub fn with_effect<T>(effect: &str, measure: impl FnOnce(&Measured) -> T) -> T {
 
 fn measured_now(effect: &str) -> Measured {
     let effects: Vec<_> = effect.split_whitespace().map(|text| text.parse().expect("an effect")).collect();
-    let logs = record(&default_robot(), &training_room(), 24, 60, &effects, 2024).expect("the room is large enough");
+    let logs = record(&default_robot(), &training_room(), 20, 60, &effects, 2024).expect("the room is large enough");
     Measured { motion: motion(&logs), sonar: sonar(&logs), logs }
 }
 

@@ -63,12 +63,13 @@ fn sonar_yaw_makes_echoes_depend_on_the_side() {
 
 #[test]
 fn sonar_beam_wider_reads_shorter_at_oblique_walls() {
-    let error = |m: &Measured| {
-        median(errors(m.sonar.iter().filter(|s| (20.0..50.0).contains(&s.alpha_deg()) && s.distance_cm < 100.0)))
+    let ratio = |m: &Measured| {
+        let oblique = m.sonar.iter().filter(|s| (25.0..55.0).contains(&s.alpha_deg()) && s.distance_cm < 100.0);
+        median(oblique.filter_map(|s| Some(s.echo_cm? / s.distance_cm)))
     };
-    let (without, wide) = without_and_with("sonar_beam=2", error);
-    let narrow = with_effect("sonar_beam=0.3", error);
-    assert!(wide < without - 1.5 && narrow > without + 1.0, "{narrow} {without} {wide}");
+    let (without, wide) = without_and_with("sonar_beam=2.4", ratio);
+    let narrow = with_effect("sonar_beam=0.3", ratio);
+    assert!(wide < without - 0.03 && narrow > without + 0.03, "{narrow} {without} {wide}");
 }
 
 #[test]

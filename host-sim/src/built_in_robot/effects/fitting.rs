@@ -10,9 +10,12 @@ const USUAL_CURRENT_A: f64 = 0.137;
 /// Push that a tyre needs, as a share of its load, when the command jumps from 0 to 100.
 const STEP_PUSH: f64 = 0.8;
 
-/// Fits the robot with an effect.
+/// Fits the robot with an effect; one of neutral strength changes nothing.
 pub(in crate::built_in_robot) fn fit(hardware: &mut Hardware, active: &ActiveEffect) {
     let (strength, detail) = (active.strength, active.detail);
+    if strength == active.effect.strength_range().neutral {
+        return;
+    }
     match active.effect {
         Effect::BatterySag => {
             let lost_v_per_min = strength * hardware.battery.fresh_v;
