@@ -28,7 +28,7 @@ impl Demo {
         let watch = |stage: Stage| {
             line.set_message(match stage {
                 Stage::Recording => "recording logs of the built-in robot".into(),
-                Stage::Training(p) => format!("training {}: generation {}", p.network, p.generation),
+                Stage::Training(p) => progress::training(&p),
                 Stage::Evolving { start, generation } => {
                     format!("evolving for start {start}: generation {generation} of {}", robust::GENERATIONS)
                 }
