@@ -11,7 +11,7 @@ use crate::evolve::genome::Coding;
 use crate::evolve::paper;
 use crate::evolve::robust::{self, Quest};
 use crate::geometry::Pose;
-use crate::logs::Scene;
+use crate::logs::{Robot, Scene};
 use crate::problem::{Problem, Result};
 use crate::simulator::course::Course;
 use crate::simulator::{Noise, Simulator};
@@ -58,7 +58,7 @@ impl Evolve {
     pub fn run(&self) -> Result<String> {
         let simulator = Simulator::read(&self.sim)?;
         let scene = Scene::read(&self.scene)?;
-        let start = start_of(&scene, self.start, &self.scene)?;
+        let start = start_of(&scene, self.start, &simulator.robot, &self.scene)?;
         let target_cm = scene.target_cm.ok_or_else(|| Problem::in_file(&self.scene, "has no [target]"))?;
         let noise = if self.paper || self.paper_noise { Noise::Paper } else { Noise::Learned };
         let course = &Course::new(&simulator, &scene, start, noise)?;
@@ -103,14 +103,18 @@ impl Evolve {
     }
 }
 
-/// Start N (from 1) of a scene.
-pub fn start_of(scene: &Scene, number: usize, path: &Path) -> Result<Pose> {
+/// Start N (from 1) of a scene, where the robot has room.
+pub fn start_of(scene: &Scene, number: usize, robot: &Robot, path: &Path) -> Result<Pose> {
     let count = scene.starts.len();
-    number
-        .checked_sub(1)
-        .and_then(|i| scene.starts.get(i))
-        .copied()
-        .ok_or_else(|| Problem::in_file(path, format!("has {count} [[start]] table(s); there is no start {number}")))
+    let start = number.checked_sub(1).and_then(|i| scene.starts.get(i)).copied();
+    let start = start
+        .ok_or_else(|| Problem::in_file(path, format!("has {count} [[start]] table(s); there is no start {number}")))?;
+    let radius_cm = robot.body_radius_cm;
+    if !scene.has_room_for(start.position_cm, radius_cm) {
+        let what = format!("start {number} leaves no room for a robot of radius {radius_cm} cm");
+        return Err(Problem::in_file(path, what));
+    }
+    Ok(start)
 }
 
 /// A file's name alone: where it lay says nothing to others.

@@ -43,7 +43,8 @@ impl Record {
             None => training_room(),
         };
         let (runs, steps) = (self.runs as usize, self.steps as usize);
-        let logs = record(&default_robot(), &scene, runs, steps, &self.effects, self.seed)?;
+        let logs = record(&default_robot(), &scene, runs, steps, &self.effects, self.seed)
+            .map_err(|problem| self.scene.iter().fold(problem, |p, scene| p.or_in_file(scene)))?;
         logs.write(&self.out)?;
         Ok(format!("{}: {} runs of {} steps\n", self.out.display(), self.runs, self.steps))
     }

@@ -50,7 +50,7 @@ impl Simulate {
         let simulator = Simulator::read(&self.sim)?;
         let controller = ControllerFile::read(&self.controller)?.controller;
         let scene = Scene::read(&self.scene)?;
-        let start = start_of(&scene, self.start, &self.scene)?;
+        let start = start_of(&scene, self.start, &simulator.robot, &self.scene)?;
         let noise = if self.paper_noise { Noise::Paper } else { Noise::Learned };
         let course = Course::new(&simulator, &scene, start, noise)?;
         let rehearsal = Rehearsal::new(&course, &scene, &controller, self.runs as usize, self.seed);
