@@ -1,7 +1,7 @@
 //! The controller as an .rxe program, without a compiler: one clump of bytecode for standard firmware 1.28 and later.
 //!
-//! * [`layout`]: the dataspace and its arrays.
-//! * [`assembler`]: the instructions.
+//! * `layout`: the dataspace and its arrays.
+//! * `assembler`: the instructions.
 //!
 //! It does what the [NXC program](crate::nxc) does without log and display, in a third of its size.
 

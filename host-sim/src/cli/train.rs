@@ -35,7 +35,7 @@ enum Trainer {
 
 impl Train {
     /// Trains and writes the simulator.
-    pub fn run(&self) -> Result<()> {
+    pub fn run(&self) -> Result<String> {
         let logs = super::read_logs(&self.logs)?;
         let spinner = progress::spinner();
         let watch = |p: train::Progress| {
@@ -52,7 +52,6 @@ impl Train {
             eprintln!("mindgap: warning: no {} network: {}", missing.network, missing.reason);
         }
         simulator.write(&self.out)?;
-        println!("simulator written to {}", self.out.display());
-        Ok(())
+        Ok(format!("simulator written to {}\n", self.out.display()))
     }
 }
