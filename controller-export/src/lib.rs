@@ -2,6 +2,7 @@
 //!
 //! * [`nxc`]: readable NXC source for the LEGO NXT's standard firmware.
 //! * [`rxe`]: the compiled program itself, a third of the size.
+//! * [`rust`], [`c`]: constants for the core, and a header for everything that speaks C.
 //! * [`brick`]: a brick in software, which runs such programs and proves them equal.
 //! * [`wiring`], [`names`], [`onboard`], [`origin`]: what the formats share: ports, file names on the brick, what a
 //!   program does beyond the controller, and where the controller came from.
@@ -10,11 +11,13 @@
 
 pub mod brick;
 mod bytecode;
+pub mod c;
 pub mod error;
 pub mod names;
 pub mod nxc;
 pub mod onboard;
 pub mod origin;
+pub mod rust;
 pub mod rxe;
 pub mod wiring;
 
