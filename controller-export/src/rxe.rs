@@ -13,6 +13,7 @@ use mindgap_core::controller::{Controller, FULL_SPEED, TUPLES, When};
 use assembler::{Assembler, Label};
 use layout::{Array, Cluster, Number};
 
+use crate::budget::{Budget, Cost};
 use crate::bytecode::{
     Comparison, InputField, OutputField, RUN_STATE_RUNNING, SENSOR_LOW_SPEED_9V, SONAR_ADDRESS, SONAR_FIRST_ECHO,
     Syscall, Type, mode, update,
@@ -21,13 +22,16 @@ use crate::error::ExportError;
 use crate::onboard;
 use crate::wiring::Wiring;
 
+const COST: Cost = Cost { program_bytes: 0, memory_bytes: 0, step_instructions: 0 };
+
 /// The controller as the bytes of an .rxe file.
 ///
 /// # Errors
 /// What the brick cannot run: see [`ExportError`].
 pub fn program(controller: &Controller, wiring: &Wiring) -> Result<Vec<u8>, ExportError> {
-    onboard::check(controller)?;
+    controller.check()?;
     wiring.check()?;
+    budget(controller).check()?;
     let mut asm = Assembler::default();
     // Large values first, so that few bytes are lost between them.
     let next_ms = asm.number(Type::U32, 0);
@@ -97,6 +101,11 @@ pub fn program(controller: &Controller, wiring: &Wiring) -> Result<Vec<u8>, Expo
     asm.wait(brake_ms);
     asm.stop();
     Ok(asm.into_file())
+}
+
+/// What the program takes of the brick.
+pub fn budget(controller: &Controller) -> Budget {
+    Budget::new(COST, controller.step_ms, None)
 }
 
 /// The motors and the tuples' commands.

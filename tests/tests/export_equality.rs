@@ -1,6 +1,6 @@
 //! Onboard programs do what the core's stepping machine does: same tuples, same commands, same end, at the same times.
 
-use mindgap_controller_export::brick::{self, Drive, End, Event, Limits, Program, Report, Script, Sonar, What};
+use mindgap_controller_export::brick::{self, Drive, End, Event, Program, Report, Script, Setup, Sonar, What};
 use mindgap_controller_export::names::BrickName;
 use mindgap_controller_export::nxc::{self, NxcOptions};
 use mindgap_controller_export::onboard::{FAILED_STEPS_TO_STOP, NO_ECHO_CM, SHORTEST_STEP_MS, SONAR_TIMEOUT_MS};
@@ -94,7 +94,7 @@ fn expected(controller: &Controller, sonar: &[Sonar]) -> (Vec<Change>, Status) {
 
 fn run(program: &Program, wiring: &Wiring, sonar: &[Sonar]) -> Report {
     let mut world = Script { sonar_port: wiring.sonar as usize, ..Script::sonar(sonar) };
-    brick::run(program, &mut world, &Limits::default())
+    brick::run(program, &mut world, &Setup::default())
 }
 
 /// The motor commands of a run, left and right together, with their times.

@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::process::Command;
 
-use mindgap_controller_export::brick::{self, End, Limits, Program, Report, Script, Sonar};
+use mindgap_controller_export::brick::{self, End, Program, Report, Script, Setup, Sonar};
 use mindgap_controller_export::wiring::{MotorPort, Wiring};
 use mindgap_controller_export::{ExportError, rxe};
 use mindgap_core::controller::{Controller, Tuple, When};
@@ -29,7 +29,7 @@ fn controller() -> Controller {
 }
 
 fn run(file: &[u8], sonar: &[Sonar]) -> Report {
-    brick::run(&Program::load(file).unwrap(), &mut Script::sonar(sonar), &Limits::default())
+    brick::run(&Program::load(file).unwrap(), &mut Script::sonar(sonar), &Setup::default())
 }
 
 fn nbc(arguments: &[&str], folder: &Path) -> String {
