@@ -1,0 +1,67 @@
+//! `mindgap demo`
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::progress;
+use super::table::{self, number};
+use crate::demo::{self, Stage, Summary};
+use crate::evolve::robust;
+use crate::problem::Result;
+
+/// Do the whole job on the built-in robot: record, train, evolve, try, export, draw.
+#[derive(Args)]
+pub struct Demo {
+    /// Where to leave everything.
+    #[arg(long, default_value = "mindgap-out")]
+    out: PathBuf,
+    /// Fixes every draw.
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+}
+
+impl Demo {
+    /// Does the job and prints a table.
+    pub fn run(&self) -> Result<()> {
+        let line = progress::spinner();
+        let watch = |stage: Stage| {
+            line.set_message(match stage {
+                Stage::Recording => "recording logs of the built-in robot".into(),
+                Stage::Training(p) => format!("training {}: generation {}", p.network, p.generation),
+                Stage::Evolving { start, generation } => {
+                    format!("evolving for start {start}: generation {generation} of {}", robust::GENERATIONS)
+                }
+                Stage::Drawing => "drawing".into(),
+            });
+            line.tick();
+        };
+        let summary = demo::run(&self.out, self.seed, watch)?;
+        line.finish_and_clear();
+        print(&summary);
+        println!("\nlogs, simulator, controllers, NXC programs and pictures are in {}", self.out.display());
+        Ok(())
+    }
+}
+
+fn print(summary: &Summary) {
+    super::evaluate::print_accuracy(&summary.evaluation);
+    println!();
+    let percent = |rate: f64| format!("{:.0} %", 100.0 * rate);
+    let rows: Vec<[String; 5]> = summary
+        .starts
+        .iter()
+        .enumerate()
+        .map(|(i, s)| {
+            [
+                format!("start {}", i + 1),
+                percent(s.simulated.rate),
+                number(Some(s.simulated.median_cm), 1),
+                percent(s.real.rate),
+                number(Some(s.real.median_cm), 1),
+            ]
+        })
+        .collect();
+    let header = ["controller for", "simulated: reached", "median (cm)", "robot: reached", "median (cm)"];
+    table::print(header, &rows);
+}

@@ -1,0 +1,54 @@
+//! `mindgap train`
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+
+use super::progress;
+use crate::learn::{paper, train};
+use crate::problem::Result;
+
+/// Train the five networks of a simulator on a folder of logs.
+#[derive(Args)]
+pub struct Train {
+    /// Folder with robot.toml, scene.toml and run-*.csv.
+    logs: PathBuf,
+    /// The simulator file to write.
+    #[arg(long)]
+    out: PathBuf,
+    /// How to train.
+    #[arg(long, value_enum, default_value_t = Trainer::Paper)]
+    trainer: Trainer,
+    /// Fixes every draw.
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+}
+
+/// The trainers.
+#[derive(Clone, Copy, ValueEnum)]
+enum Trainer {
+    /// The paper's genetic algorithm on all weights.
+    Paper,
+}
+
+impl Train {
+    /// Trains and writes the simulator.
+    pub fn run(&self) -> Result<()> {
+        let logs = super::read_logs(&self.logs)?;
+        let spinner = progress::spinner();
+        let watch = |p: train::Progress| {
+            spinner.tick();
+            spinner.set_message(format!("{}: generation {}, error {:.3e}", p.network, p.generation, p.best_mse));
+        };
+        let simulator = match self.trainer {
+            Trainer::Paper => train::train(&logs, &paper::Options::default(), self.seed, watch)?,
+        };
+        spinner.finish_and_clear();
+        for missing in &simulator.missing {
+            eprintln!("mindgap: warning: no {} network: {}", missing.network, missing.reason);
+        }
+        simulator.write(&self.out)?;
+        println!("simulator written to {}", self.out.display());
+        Ok(())
+    }
+}

@@ -1,0 +1,10 @@
+//! Learning a simulator from logs: data sets, the trainers, and how well the networks do on logs they never saw.
+
+pub mod dataset;
+pub mod evaluate;
+pub mod genome;
+pub mod kernel;
+pub mod paper;
+pub mod scatter;
+pub mod statistics;
+pub mod train;
