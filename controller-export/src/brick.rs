@@ -2,7 +2,7 @@
 //!
 //! * [`Program`]: an .rxe file, checked. Any file that nbc makes for standard firmware (file versions 0.5 and 0.6).
 //! * [`run`]: runs it until it ends, on a clock of its own, and reports every [`Event`].
-//! * [`World`]: what the brick senses; [`Script`] is one that gives what it was told.
+//! * [`World`]: what the brick senses and moves; [`Script`] is one that gives what it was told.
 //!
 //! Left out: Bluetooth, mailboxes, pictures, colour sensors and motor regulation. A program that asks for one of the
 //! first four ends with [`Fault::Instruction`]; a motor does what its power says.

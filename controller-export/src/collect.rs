@@ -8,16 +8,20 @@
 use crate::budget::{Budget, Cost};
 use crate::error::ExportError;
 use crate::names::BrickName;
-use crate::nxc::source::{Constants, LOG, MOTORS, SONAR};
+use crate::nxc::source::{Constants, LOG, MOTORS, SONAR, TIME};
 use crate::wiring::Wiring;
 
 const DRIVE: &str = include_str!("collect/drive.nxc");
 const MAIN: &str = include_str!("collect/main.nxc");
 
 /// What nbc makes of the program.
-const COST: Cost = Cost { program_bytes: 0, memory_bytes: 0, step_instructions: 0 };
+const COST: Cost = Cost { program_bytes: 6_900, memory_bytes: 5_200, step_instructions: 1_250 };
 /// Steps in a row without an echo after which the robot looks for one.
 const MOST_UNSEEN_STEPS: u16 = 2;
+/// How much farther the way ahead has to be free after a turn.
+const PAST_CORNER_CM: u16 = 20;
+/// Power of the last step of a turn away from something.
+const PAST_CORNER_POWER: u16 = 15;
 /// Seeds that leave room for a thousand runs within the generator's 31 bits.
 const SEEDS: u32 = 1_000_000_000;
 
@@ -68,9 +72,11 @@ pub fn program(options: &CollectOptions) -> Result<String, ExportError> {
         .with("STEPS", steps, "")
         .with("NEAR_CM", near_cm, "nearer things make it turn away")
         .with("MOST_UNSEEN_STEPS", MOST_UNSEEN_STEPS, "then it looks for an echo")
+        .with("PAST_CORNER_CM", PAST_CORNER_CM, "more has to be free after a turn")
+        .with("PAST_CORNER_POWER", PAST_CORNER_POWER, "of the turn's last step")
         .with("SEED", seed % SEEDS + 1, "of the commands")
         .with("LOG_BYTES", budget.log_bytes, "of one run");
-    let parts = [&head, &constants.into_text(), SONAR, MOTORS, LOG, DRIVE, MAIN];
+    let parts = [&head, &constants.into_text(), TIME, SONAR, MOTORS, LOG, DRIVE, MAIN];
     Ok(parts.join("\n"))
 }
 

@@ -1,7 +1,7 @@
 //! The controller as an .rxe program, without a compiler: one clump of bytecode for standard firmware 1.28 and later.
 //!
-//! * [`layout`]: the dataspace and its arrays.
-//! * [`assembler`]: the instructions.
+//! `rxe/layout.rs` lays out the dataspace with its arrays, `rxe/assembler.rs` writes the instructions, and this module
+//! says which.
 //!
 //! It does what the [NXC program](crate::nxc) does without log and display, in a third of its size.
 
@@ -22,7 +22,8 @@ use crate::error::ExportError;
 use crate::onboard;
 use crate::wiring::Wiring;
 
-const COST: Cost = Cost { program_bytes: 0, memory_bytes: 0, step_instructions: 0 };
+/// What is [written](program), whatever the controller.
+const COST: Cost = Cost { program_bytes: 950, memory_bytes: 360, step_instructions: 90 };
 
 /// The controller as the bytes of an .rxe file.
 ///

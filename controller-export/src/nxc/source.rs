@@ -3,6 +3,8 @@
 use crate::onboard;
 use crate::wiring::Wiring;
 
+/// Waiting for a time.
+pub(crate) const TIME: &str = include_str!("time.nxc");
 /// Reading the ultrasonic sensor.
 pub(crate) const SONAR: &str = include_str!("sonar.nxc");
 /// Setting and stopping the motors.
