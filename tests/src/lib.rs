@@ -1,3 +1,4 @@
 //! What the tests share: the built command, and the folders of logs that a public clone does not have.
 
 pub mod nbc;
+pub mod on_board;
