@@ -11,6 +11,7 @@
 
 pub mod binary;
 pub mod controller;
+pub mod fixed_point;
 pub mod maths;
 pub mod network;
 pub mod scalar;

@@ -120,10 +120,7 @@ impl<W: Copy, const N: usize> Network<W, N> {
         let x: [S; N] = array::from_fn(|i| self.inputs[i].apply(inputs[i]));
         let mut sum = x[0].weight(self.bias);
         for unit in &self.summation {
-            let mut inner = sum.weight(unit.bias);
-            for (x, weight) in x.iter().zip(unit.weights) {
-                inner = inner + *x * x.weight(weight);
-            }
+            let inner = S::weighted_sum(sum.weight(unit.bias), &x, &unit.weights);
             sum = sum + inner * inner.weight(unit.output);
         }
         let log2_x = x.map(S::log2_magnitude);
@@ -134,10 +131,7 @@ impl<W: Copy, const N: usize> Network<W, N> {
             }
             sum = sum + power * power.weight(unit.output);
         }
-        match self.activation {
-            Activation::Linear => sum,
-            Activation::Ramp => sum.clamp(sum.zero(), sum.one()),
-        }
+        self.activation.apply(sum)
     }
 
     /// A network without hidden units, whose output is `bias` everywhere.
@@ -204,22 +198,24 @@ impl<W: Copy, const N: usize> ProductUnit<W, N> {
     /// Magnitude of the product, from the logarithms of the inputs.
     #[inline(always)]
     fn value<S: Scalar<Weight = W>>(&self, log2_x: &[S; N]) -> S {
-        self.weighted_sum(log2_x).exp2()
+        S::weighted_sum(log2_x[0].zero(), log2_x, &self.exponents).exp2()
     }
 
     /// Real part of the complex sign of the product.
     #[inline(always)]
     fn sign<S: Scalar<Weight = W>>(&self, x: &[S; N]) -> S {
-        self.weighted_sum(&x.map(S::negative)).cos_pi()
+        S::weighted_sum(x[0].zero(), &x.map(S::negative), &self.exponents).cos_pi()
     }
+}
 
+impl Activation {
+    /// The output for the sum that reaches the output unit.
     #[inline(always)]
-    fn weighted_sum<S: Scalar<Weight = W>>(&self, terms: &[S; N]) -> S {
-        let mut sum = terms[0].zero();
-        for (term, exponent) in terms.iter().zip(self.exponents) {
-            sum = sum + *term * term.weight(exponent);
+    pub fn apply<S: Scalar>(self, sum: S) -> S {
+        match self {
+            Activation::Linear => sum,
+            Activation::Ramp => sum.clamp(sum.zero(), sum.one()),
         }
-        sum
     }
 }
 

@@ -1,1 +1,3 @@
 //! What the tests share: the built command, and the folders of logs that a public clone does not have.
+
+pub mod fixed_point_error;
