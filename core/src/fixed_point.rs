@@ -98,3 +98,34 @@ impl<F: Format> Scalar for Saturating<FixedI32<F>> {
 pub(crate) fn saturate(wide: i64) -> i32 {
     wide.clamp(i64::from(i32::MIN), i64::from(i32::MAX)) as i32
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::network::{Network, ProductForm, ProductUnit, Scaling};
+    use fixed::types::I16F16;
+
+    #[test]
+    fn a_network_of_either_form_runs_in_q16_16() {
+        let number = I16F16::from_num::<f32>;
+        // 0.5 + 3 x^2 of x = input / 128, in the signed form on either side of zero.
+        let scaling = Scaling { gain: number(1.0 / 128.0), offset: number(0.0), low: number(-2.0), high: number(2.0) };
+        let mut network = Network::constant([scaling], number(0.5));
+        network.product.push(ProductUnit { exponents: [number(2.0)], output: number(3.0) }).unwrap();
+        network.product_form = ProductForm::Signed;
+        let at = |network: &Network<I16F16, 1>, input: f32| network.evaluate([Saturating(number(input))]).0;
+        assert_eq!([-128.0, -64.0, 128.0, 1e4].map(|x| at(&network, x)), [3.5, 1.25, 3.5, 12.5].map(number));
+        // An odd power keeps the sign.
+        network.product[0].exponents = [number(3.0)];
+        assert_eq!([-128.0, 64.0].map(|x| at(&network, x)), [-2.5, 0.875].map(number));
+    }
+
+    #[test]
+    fn a_weighted_sum_saturates_once_at_its_end() {
+        let number = |x: f64| Saturating(I16F16::from_num(x));
+        let [large, minus] = [I16F16::from_num(20_000), I16F16::from_num(-20_000)];
+        assert_eq!(Scalar::weighted_sum(number(1.0), &[number(2.0); 2], &[large, minus]), number(1.0));
+        assert_eq!(Scalar::weighted_sum(number(1.0), &[number(2.0); 2], &[large; 2]), Q16_16::MAX);
+        assert_eq!(Scalar::weighted_sum(Q16_16::MIN, &[Q16_16::MIN; 4], &[I16F16::MAX; 4]), Q16_16::MIN);
+    }
+}

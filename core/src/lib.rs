@@ -11,7 +11,9 @@
 
 pub mod binary;
 pub mod controller;
+pub mod fixed_network;
 pub mod fixed_point;
+pub mod folded;
 pub mod maths;
 pub mod network;
 pub mod scalar;

@@ -1,6 +1,6 @@
 //! A simulator neural network (SNN): one hidden layer, half summation and half product units (paper, section VII).
 
-use core::array;
+use core::{array, fmt};
 
 use serde::{Deserialize, Serialize};
 
@@ -110,6 +110,17 @@ pub enum InvalidNetwork {
     /// An input's range is empty, or holds a value that product units of this form cannot take.
     BadScaling,
 }
+
+impl fmt::Display for InvalidNetwork {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            InvalidNetwork::NotFinite => "a weight, exponent, bias or scaling is not a finite number",
+            InvalidNetwork::BadScaling => "an input's range is empty, or not above zero as product units need it",
+        })
+    }
+}
+
+impl core::error::Error for InvalidNetwork {}
 
 impl<W: Copy, const N: usize> Network<W, N> {
     /// The output for one sample, in the unit that the network was trained in. NaN in, NaN out; an input outside
