@@ -10,6 +10,7 @@
 #![cfg_attr(not(test), no_std)]
 
 pub mod binary;
+pub mod chance;
 pub mod controller;
 pub mod fixed_network;
 pub mod fixed_point;
