@@ -4,10 +4,10 @@ use std::fs;
 
 use crate::command::workspace;
 
-/// Compares with `tests/golden/NAME`. With `MINDGAP_BLESS=1` in the environment writes that file instead.
+/// Compares with `tests/tests/golden/NAME`. With `MINDGAP_BLESS=1` in the environment writes that file instead.
 #[track_caller]
 pub fn assert_golden(name: &str, text: &str) {
-    let path = workspace().join("tests/golden").join(name);
+    let path = workspace().join("tests/tests/golden").join(name);
     if std::env::var_os("MINDGAP_BLESS").is_some_and(|value| value == "1") {
         fs::write(&path, text).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
     }

@@ -1,8 +1,10 @@
-//! What the tests share: the built command, the folders of logs that a public clone does not have, golden files, and
-//! the compiler for NXT programs.
+//! What the tests share: the built command, the folders of logs that a public clone does not have, golden files,
+//! controllers compiled for the host, and the compiler for NXT programs.
 
 pub mod command;
 pub mod elsewhere;
+pub mod fixed_point_error;
 pub mod golden;
 pub mod nbc;
+pub mod on_board;
 pub mod rooms;

@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::process::Command;
 
-use mindgap_controller_export::brick::{self, End, Limits, Program, Report, Script, Sonar};
+use mindgap_controller_export::brick::{self, End, Program, Report, Script, Setup, Sonar};
 use mindgap_controller_export::wiring::{MotorPort, Wiring};
 use mindgap_controller_export::{ExportError, rxe};
 use mindgap_core::controller::{Controller, Tuple, When};
@@ -29,7 +29,7 @@ fn controller() -> Controller {
 }
 
 fn run(file: &[u8], sonar: &[Sonar]) -> Report {
-    brick::run(&Program::load(file).unwrap(), &mut Script::sonar(sonar), &Limits::default())
+    brick::run(&Program::load(file).unwrap(), &mut Script::sonar(sonar), &Setup::default())
 }
 
 fn nbc(arguments: &[&str], folder: &Path) -> String {
@@ -95,7 +95,7 @@ fn a_dead_sensor_stops_the_motors_within_two_steps() {
 #[test]
 fn what_the_brick_cannot_run_is_refused() {
     let hasty = Controller { step_ms: 1, ..controller() };
-    assert_eq!(rxe::program(&hasty, &Wiring::default()), Err(ExportError::StepTooShort(1)));
+    assert!(matches!(rxe::program(&hasty, &Wiring::default()), Err(ExportError::StepTooShort { step_ms: 1, .. })));
     let wiring = Wiring { right: MotorPort::B, ..Wiring::default() };
     assert_eq!(rxe::program(&controller(), &wiring), Err(ExportError::OnePortForTwoMotors('B')));
 }

@@ -21,7 +21,7 @@ fn an_nxc_program() {
     let workshop = Workshop::new();
     workshop.write(
         "six.toml",
-        std::fs::read(workspace().join("tests/golden/controller.toml")).expect("a fixed controller"),
+        std::fs::read(workspace().join("tests/tests/golden/controller.toml")).expect("a fixed controller"),
     );
     workshop.done("export six.toml --format nxc --out six.nxc --display");
     assert_golden("controller.nxc", &workshop.text("six.nxc"));

