@@ -22,7 +22,7 @@ use crate::simulator::course::Course;
 /// Generations of all runs of the genetic algorithm together.
 pub const GENERATIONS: usize = RESTARTS * EXPLORING.max_generations + REFINING.max_generations;
 
-const RESTARTS: usize = 4;
+const RESTARTS: usize = 5;
 const EXPLORING: Settings = Settings {
     population: 100,
     tournament: 7,
@@ -31,15 +31,10 @@ const EXPLORING: Settings = Settings {
     mutation: Mutation { chance: 0.1, unit: Unit::Gene, deviation: 0.2 },
     elite: 0,
     window: None,
-    max_generations: 150,
+    max_generations: 100,
 };
 const EXPLORING_RUNS: usize = 5;
-const REFINING: Settings = Settings {
-    elite: 5,
-    mutation: Mutation { chance: 0.1, unit: Unit::Gene, deviation: 0.05 },
-    max_generations: 100,
-    ..EXPLORING
-};
+const REFINING: Settings = Settings { elite: 5, max_generations: 150, ..EXPLORING };
 const REFINING_RUNS: usize = 20;
 /// So many of the last population come into the final choice, each with so many fresh runs.
 const CANDIDATES: usize = 40;

@@ -168,7 +168,7 @@ impl<W: Fn(Progress)> School<'_, W> {
         let residuals = residuals(&network, judged);
         let mut spread = scatter::spread(&contexts, &residuals);
         if moves {
-            spread.own_share = scatter::own_share(&residuals, &judged.runs);
+            spread.own_share = scatter::own_share(&spread, &contexts, &residuals, &judged.runs);
         }
         Some(Learned { network, spread })
     }

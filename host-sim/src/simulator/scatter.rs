@@ -14,9 +14,9 @@ pub struct Spread {
     pub edges: [[f32; CELLS - 1]; 2],
     /// [`LEVELS`] residuals a cell, ascending; cell (i, j) is entry i · [`CELLS`] + j.
     pub residuals: Vec<Vec<f32>>,
-    /// How much of a residual's size is the robot's own, 0 to 1; the rest is the tracker's, which a simulated robot has
-    /// none of.
-    pub own_share: f32,
+    /// For each cell, how much of a residual's size is the robot's own, 0 to 1; the rest is the tracker's, which a
+    /// simulated robot has none of.
+    pub own_share: Vec<f32>,
 }
 
 /// A wrong reading that the sensor produces now and then wherever it looks ("roughly 20cm", paper, section VIII).
@@ -44,7 +44,8 @@ impl Spread {
     pub fn is_sound(&self) -> bool {
         let finite = |values: &[f32]| values.iter().all(|v| v.is_finite());
         self.edges.iter().all(|e| finite(e))
-            && (0.0..=1.0).contains(&self.own_share)
+            && self.own_share.len() == CELLS * CELLS
+            && self.own_share.iter().all(|share| (0.0..=1.0).contains(share))
             && self.residuals.len() == CELLS * CELLS
             && self.residuals.iter().all(|r| r.len() == LEVELS && finite(r))
     }

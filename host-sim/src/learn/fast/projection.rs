@@ -10,10 +10,10 @@ use nalgebra::{Cholesky, DMatrix, DVector, Dyn, Owned};
 use crate::learn::dataset::Dataset;
 
 /// Holds linear weights back, per sample: power terms that are nearly alike would otherwise grow against each other.
-const RIDGE: f64 = 1e-6;
-/// Holds exponents back, per sample and in the unit of the scaled targets, so that power terms stay tame outside the
+const RIDGE: f64 = 1e-4;
+/// Holds exponents back, per sample and as a share of the targets' variance, so that power terms stay tame outside the
 /// data.
-const EXPONENT_RIDGE: f64 = 1e-6;
+const EXPONENT_RIDGE: f64 = 1e-5;
 
 /// A data set with exponents of `units` product units, as a least-squares problem in those exponents.
 ///
@@ -26,6 +26,8 @@ pub struct Projection<const N: usize> {
     /// Square roots of the samples' weights.
     roots: DVector<f64>,
     exponents: DVector<f64>,
+    /// What an exponent of one adds to the residuals.
+    exponent_prior: f64,
     fit: Fit,
 }
 
@@ -53,10 +55,12 @@ impl<const N: usize> Projection<N> {
             weights: DVector::zeros(0),
             residuals: DVector::zeros(0),
         };
+        let targets = DVector::from_iterator(count, data.targets.iter().map(|t| f64::from(*t)));
         let mut problem = Projection {
             log2_x: x.iter().map(|x| x.map(libm::log2)).collect(),
             x,
-            targets: DVector::from_iterator(count, data.targets.iter().map(|t| f64::from(*t))),
+            exponent_prior: (EXPONENT_RIDGE * count as f64 * targets.variance()).sqrt(),
+            targets,
             roots: DVector::from_element(count, 1.0),
             exponents,
             fit: nothing,
@@ -139,7 +143,7 @@ impl<const N: usize> LeastSquaresProblem<f64, Dyn, Dyn> for Projection<N> {
 
     fn residuals(&self) -> Option<DVector<f64>> {
         self.fit.normal.as_ref()?;
-        let prior = (EXPONENT_RIDGE * self.x.len() as f64).sqrt();
+        let prior = self.exponent_prior;
         let fitted = self.fit.residuals.iter().copied();
         let all = fitted.chain(self.exponents.iter().map(|e| prior * e));
         Some(DVector::from_iterator(self.fit.residuals.len() + self.exponents.len(), all))
@@ -160,8 +164,7 @@ impl<const N: usize> LeastSquaresProblem<f64, Dyn, Dyn> for Projection<N> {
         let taken_up = normal.solve(&self.fit.features.tr_mul(&change));
         let mut jacobian = DMatrix::zeros(rows + parameters, parameters);
         jacobian.rows_mut(0, rows).copy_from(&(change - &self.fit.features * taken_up));
-        let prior = (EXPONENT_RIDGE * count as f64).sqrt();
-        (0..parameters).for_each(|p| jacobian[(rows + p, p)] = prior);
+        (0..parameters).for_each(|p| jacobian[(rows + p, p)] = self.exponent_prior);
         Some(jacobian)
     }
 }
