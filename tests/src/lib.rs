@@ -1,5 +1,5 @@
-//! What the tests share: the built command, the folders of logs that a public clone does not have, golden files,
-//! controllers compiled for the host, and the compiler for NXT programs.
+//! What the tests share: the built command, the folders of logs that a public clone does not have, golden files, bricks
+//! on board the built-in robot, error bounds of fixed point, and the compiler for NXT programs.
 
 pub mod command;
 pub mod elsewhere;

@@ -27,14 +27,14 @@ fn record_drives_in_a_room_of_the_users_and_with_effects() {
     workshop.write("room.toml", "[arena]\nwidth_cm = 150\nheight_cm = 120\n");
     workshop.done("record --out plain --runs 2 --steps 10 --scene room.toml");
     workshop
-        .done("record --out weak --runs 2 --steps 10 --scene room.toml --effect drive_scale=0.5 --effect sonar_offset");
+        .done("record --out weak --runs 2 --steps 10 --scene room.toml --effect drive_scale=0.9 --effect sonar_offset");
     assert_eq!(workshop.bytes("plain/scene.toml"), workshop.bytes("weak/scene.toml"));
     assert_ne!(workshop.bytes("plain/run-000.csv"), workshop.bytes("weak/run-000.csv"));
 }
 
 #[test]
 fn every_trainer_gives_five_networks_that_evaluate_judges() {
-    for trainer in ["", "--trainer fast"] {
+    for trainer in ["", "--trainer paper"] {
         let workshop = Workshop::with_logs();
         workshop.done(&format!("train logs --out sim.json {trainer}"));
         let table = workshop.done("evaluate sim.json logs --json figures.json");
@@ -55,9 +55,19 @@ fn every_trainer_gives_five_networks_that_evaluate_judges() {
         has("lateral", &["r2", "mse", "n"]);
         has("echo_probability", &["r2", "brier", "log_loss", "auc", "n"]);
         has("echo_value", &["r2", "mse", "mae_cm", "n"]);
-        assert_eq!(networks["turn"]["n"], 6 * 25, "one sample a step");
-        assert_eq!(networks["echo_probability"]["n"], 6 * 26, "one sample a row");
+        let tracked = tracked(&workshop);
+        let steps = tracked.iter().flat_map(|run| run.windows(2)).filter(|pair| pair[0] && pair[1]).count();
+        assert_eq!(networks["turn"]["n"], steps, "one sample a step");
+        let rows = tracked.iter().flatten().filter(|seen| **seen).count();
+        assert_eq!(networks["echo_probability"]["n"], rows, "one sample a row");
     }
+}
+
+/// For each row of each run in `logs`, whether the tracker saw the robot.
+fn tracked(workshop: &Workshop) -> Vec<Vec<bool>> {
+    let run = |run: usize| workshop.text(&format!("logs/run-00{run}.csv"));
+    let seen = |line: &str| line.split(',').nth(3).is_some_and(|x_cm| !x_cm.is_empty());
+    (0..6).map(|i| run(i).lines().skip(1).map(seen).collect()).collect()
 }
 
 #[test]
