@@ -10,7 +10,11 @@
 #![cfg_attr(not(test), no_std)]
 
 pub mod binary;
+pub mod chance;
 pub mod controller;
+pub mod fixed_network;
+pub mod fixed_point;
+pub mod folded;
 pub mod maths;
 pub mod network;
 pub mod scalar;

@@ -20,7 +20,7 @@ use crate::evolve::genome::Coding;
 use crate::evolve::robust::{self, Quest};
 use crate::files;
 use crate::learn::evaluate::{self, Evaluation};
-use crate::learn::{paper, train};
+use crate::learn::train::{self, Trainer};
 use crate::logs::Scene;
 use crate::problem::{Problem, Result};
 use crate::simulator::course::Course;
@@ -104,8 +104,7 @@ pub fn run(out: &Path, seed: u64, watch: impl Fn(Stage)) -> Result<Summary> {
     let held_out = record(&scene, HELD_OUT_RUNS, Purpose::HeldOutLogs)?;
     held_out.write(&out.join("held-out-logs"))?;
     scene.write(&out.join("scene.toml"))?;
-    let options = paper::Options::default();
-    let simulator = train::train(&logs, &options, of(Purpose::Training), |p| watch(Stage::Training(p)))?;
+    let simulator = train::train(&logs, &Trainer::Fast, of(Purpose::Training), |p| watch(Stage::Training(p)))?;
     simulator.write(&out.join("simulator.json"))?;
     let evaluation = evaluate::evaluate(&simulator, &held_out)?;
     files::write_json(&out.join("evaluation.json"), &evaluation)?;

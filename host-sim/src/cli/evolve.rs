@@ -55,7 +55,7 @@ const JUDGING: u64 = 1;
 
 impl Evolve {
     /// Evolves and writes the controller.
-    pub fn run(&self) -> Result<()> {
+    pub fn run(&self) -> Result<String> {
         let simulator = Simulator::read(&self.sim)?;
         let scene = Scene::read(&self.scene)?;
         let start = start_of(&scene, self.start, &self.scene)?;
@@ -91,15 +91,15 @@ impl Evolve {
             success: success.rate,
         };
         ControllerFile { controller: evolved.controller, origin: Some(origin) }.write(&self.out)?;
-        println!(
-            "start {}: {:.0} % of {JUDGED_RUNS} fresh simulated runs reach the target, {:.0} % crash; median distance {:.1} cm",
+        Ok(format!(
+            "start {}: {:.0} % of {JUDGED_RUNS} fresh simulated runs reach the target, {:.0} % crash; median distance {:.1} cm\n\
+             controller written to {}\n",
             self.start,
             100.0 * success.rate,
             100.0 * success.crashed,
-            success.median_cm
-        );
-        println!("controller written to {}", self.out.display());
-        Ok(())
+            success.median_cm,
+            self.out.display()
+        ))
     }
 }
 

@@ -49,7 +49,7 @@ enum Format {
 
 impl Export {
     /// Writes the program.
-    pub fn run(&self) -> Result<()> {
+    pub fn run(&self) -> Result<String> {
         let file = ControllerFile::read(&self.controller)?;
         let refused = |e: ExportError| Problem::in_file(&self.controller, e.to_string());
         let stem = self.out.file_stem().unwrap_or_default().to_string_lossy();
@@ -62,7 +62,6 @@ impl Export {
             }
         };
         files::write(&self.out, text)?;
-        println!("{} written", self.out.display());
-        Ok(())
+        Ok(format!("{} written\n", self.out.display()))
     }
 }

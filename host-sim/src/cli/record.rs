@@ -37,7 +37,7 @@ impl Record {
     ///
     /// # Errors
     /// When the scene cannot be read or has no room for the robot, or when the logs cannot be written.
-    pub fn run(&self) -> Result<()> {
+    pub fn run(&self) -> Result<String> {
         let scene = match &self.scene {
             Some(path) => Scene::read(path)?,
             None => training_room(),
@@ -45,8 +45,7 @@ impl Record {
         let (runs, steps) = (self.runs as usize, self.steps as usize);
         let logs = record(&default_robot(), &scene, runs, steps, &self.effects, self.seed)?;
         logs.write(&self.out)?;
-        println!("{}: {} runs of {} steps", self.out.display(), self.runs, self.steps);
-        Ok(())
+        Ok(format!("{}: {} runs of {} steps\n", self.out.display(), self.runs, self.steps))
     }
 }
 

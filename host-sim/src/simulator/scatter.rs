@@ -7,7 +7,7 @@ pub const CELLS: usize = 4;
 /// Equally likely residuals that stand for a cell.
 pub const LEVELS: usize = 32;
 
-/// Residuals of a network by context: speed and change of speed for motion, D and α for the sonar.
+/// Residuals of a network by context: turning and driving command for motion, D and α for the sonar.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Spread {
     /// Inner borders of the cells along the two context variables, ascending.
@@ -50,9 +50,9 @@ impl Spread {
     }
 }
 
-/// The context of a motion network: mean magnitude of the commands, and of their change.
+/// The context of a motion network: how much the commands turn the robot, and how much they drive it on. Tyres slip
+/// more in a turn than on the straight.
 pub fn motion_context(speeds: &[f32; 4]) -> [f32; 2] {
-    let [left, right, previous_left, previous_right] = *speeds;
-    let mean = |a: f32, b: f32| 0.5 * (a.abs() + b.abs());
-    [mean(left, right), mean(left - previous_left, right - previous_right)]
+    let [left, right, ..] = *speeds;
+    [0.5 * (right - left).abs(), 0.5 * (right + left).abs()]
 }
