@@ -3,6 +3,7 @@
 
 pub mod command;
 pub mod elsewhere;
+pub mod controllers;
 pub mod fixed_point_error;
 pub mod golden;
 pub mod nbc;

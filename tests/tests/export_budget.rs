@@ -7,26 +7,14 @@ use mindgap_controller_export::names::BrickName;
 use mindgap_controller_export::nxc::{self, NxcOptions};
 use mindgap_controller_export::wiring::Wiring;
 use mindgap_controller_export::{ExportError, Origin, rxe};
-use mindgap_core::controller::{Controller, Tuple, When};
+use mindgap_core::controller::Controller;
+use mindgap_tests::controllers::at_its_limits;
 use mindgap_tests::nbc::compile;
 
 /// A budget may promise so much more than is taken.
 const SLACK: f64 = 1.25;
 /// The slowest brick.
 const INSTRUCTIONS_PER_MS: u32 = 80;
-
-fn controller() -> Controller {
-    let tuple = |when, threshold_cm| Tuple { left: -100, right: -100, when, threshold_cm };
-    let tuples = [
-        tuple(When::Smaller, 42),
-        tuple(When::Larger, 0),
-        tuple(When::Smaller, 255),
-        tuple(When::Larger, 128),
-        tuple(When::Smaller, 42),
-        tuple(When::Larger, 254),
-    ];
-    Controller { step_ms: 400, max_steps: 150, tuples }
-}
 
 fn nxc_options(log: bool, display: bool) -> NxcOptions {
     let program = BrickName::program("run").unwrap();
@@ -43,10 +31,10 @@ fn collect_options() -> CollectOptions {
 fn programs() -> Vec<(Vec<u8>, Budget)> {
     let nxc = [(false, false), (true, false), (false, true), (true, true)].map(|(log, display)| {
         let options = nxc_options(log, display);
-        let source = nxc::program(&controller(), &Origin::default(), &options).unwrap();
-        (compile(&source), nxc::budget(&controller(), &options))
+        let source = nxc::program(&at_its_limits(), &Origin::default(), &options).unwrap();
+        (compile(&source), nxc::budget(&at_its_limits(), &options))
     });
-    let rxe = (rxe::program(&controller(), &Wiring::default()).unwrap(), rxe::budget(&controller()));
+    let rxe = (rxe::program(&at_its_limits(), &Wiring::default()).unwrap(), rxe::budget(&at_its_limits()));
     let collect = (compile(&collect::program(&collect_options()).unwrap()), collect::budget(&collect_options()));
     nxc.into_iter().chain([rxe, collect]).collect()
 }
@@ -80,7 +68,7 @@ fn the_shortest_step_is_kept_by_the_slowest_brick() {
         assert!(budget.worst_step_ms <= 130, "{budget}");
     }
     let options = nxc_options(true, true);
-    let shortest = |step_ms| Controller { step_ms, ..controller() };
+    let shortest = |step_ms| Controller { step_ms, ..at_its_limits() };
     let Err(ExportError::StepTooShort { shortest_ms, .. }) = nxc::program(&shortest(1), &Origin::default(), &options)
     else {
         panic!("accepted")
@@ -100,7 +88,7 @@ fn the_shortest_step_is_kept_by_the_slowest_brick() {
 
 #[test]
 fn a_budget_prints_what_is_taken_of_what_there_is() {
-    let lines = nxc::budget(&controller(), &nxc_options(true, false)).to_string();
+    let lines = nxc::budget(&at_its_limits(), &nxc_options(true, false)).to_string();
     let expected = "program     4700 of 121124 bytes of flash\n\
                     log         7328 of 116424 bytes of flash\n\
                     memory      4500 of 32768 bytes\n\
