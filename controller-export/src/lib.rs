@@ -1,1 +1,3 @@
 //! Turns a six-tuple controller into an onboard program.
+
+pub mod rust_networks;
