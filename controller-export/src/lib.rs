@@ -21,6 +21,7 @@ pub mod nxc;
 pub mod onboard;
 pub mod origin;
 pub mod rust;
+pub mod rust_networks;
 pub mod rxe;
 pub mod wiring;
 

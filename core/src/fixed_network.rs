@@ -18,6 +18,7 @@ pub use quantise::{Quantised, Unrepresentable, Weight};
 use crate::fixed_point::{Q6_26, Q16_16, product, saturate};
 use crate::folded::PowerSum;
 use crate::network::{Activation, MAX_HALF};
+use crate::scalar::Scalar;
 
 /// A folded network in fixed point: `N` inputs, room for `POWERS` product units.
 #[derive(Clone, Debug, PartialEq)]
@@ -47,6 +48,14 @@ pub struct FixedScaling {
     pub high: I6F26,
 }
 
+/// Scaled inputs and their logarithms, which networks of equal [`inputs`](FixedNetwork::inputs) can share.
+#[derive(Clone, Copy, Debug)]
+pub struct ScaledInputs<const N: usize> {
+    x: [Q6_26; N],
+    log2_x: [Q6_26; N],
+    clamped: bool,
+}
+
 /// What a network answers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Output {
@@ -66,14 +75,24 @@ const CLAMP_TOLERANCE: i64 = 1 << 10;
 impl<const N: usize, const POWERS: usize> FixedNetwork<N, POWERS> {
     /// The output for one sample. Any weights and inputs give an answer; what does not fit saturates.
     pub fn evaluate(&self, inputs: [I16F16; N]) -> Output {
+        self.evaluate_scaled(&self.scale(inputs))
+    }
+
+    /// A sample as [`evaluate_scaled`](Self::evaluate_scaled) takes it.
+    pub fn scale(&self, inputs: [I16F16; N]) -> ScaledInputs<N> {
         let mut clamped = false;
         let x = array::from_fn(|i| {
             let (x, outside) = self.inputs[i].apply(inputs[i]);
             clamped |= outside;
             x
         });
-        let sum = self.sum.evaluate(&x);
-        Output { value: self.activation.apply(self.unscaled(sum)).0, clamped }
+        ScaledInputs { x, log2_x: x.map(Q6_26::log2_magnitude), clamped }
+    }
+
+    /// The output for a sample that was scaled by this network, or by another with equal `inputs`.
+    pub fn evaluate_scaled(&self, scaled: &ScaledInputs<N>) -> Output {
+        let sum = self.sum.evaluate(&scaled.x, &scaled.log2_x);
+        Output { value: self.activation.apply(self.unscaled(sum)).0, clamped: scaled.clamped }
     }
 
     /// The sum in Q16.16, rounded to nearest, without its division by two to the power of `output_shift`.

@@ -21,6 +21,7 @@ use fixed::types::extra::{IsLessOrEqual, LeEqU32, True, U16, U26, U30};
 use fixed::{FixedI32, Saturating};
 
 pub use cosine::cos_pi;
+use powers::exp2_of_sum;
 pub use powers::{exp2, log2};
 pub(crate) use product::product;
 
@@ -91,12 +92,32 @@ impl<F: Format> Scalar for Saturating<FixedI32<F>> {
         }
         Saturating(FixedI32::from_bits(saturate(sum)))
     }
+
+    /// The sum is exact. Not to be inlined: in a loop over product units the compiler would widen the logarithms once,
+    /// ahead of the loop, and then multiply 64 bits by 64.
+    #[inline(never)]
+    fn product_of_powers<const N: usize>(start: Self, logarithms: &[Self; N], exponents: &[FixedI32<F>; N]) -> Self {
+        // A logarithm is between -10 and 15, so a product has at most 61 bits.
+        const { assert!(N <= 4, "more products might not fit 64 bits") };
+        let mut sum = i64::from(start.0.to_bits()) << F::U32;
+        for (logarithm, exponent) in logarithms.iter().zip(exponents) {
+            sum = sum.wrapping_add(product(logarithm.0.to_bits(), exponent.to_bits()));
+        }
+        Saturating(exp2_of_sum(sum))
+    }
 }
 
 /// The nearest number of 32 bits.
 #[inline(always)]
 pub(crate) fn saturate(wide: i64) -> i32 {
-    wide.clamp(i64::from(i32::MIN), i64::from(i32::MAX)) as i32
+    let narrow = wide as i32;
+    if i64::from(narrow) == wide {
+        narrow
+    } else if wide < 0 {
+        i32::MIN
+    } else {
+        i32::MAX
+    }
 }
 
 #[cfg(test)]

@@ -68,19 +68,19 @@ impl<W: Copy, const N: usize, const POWERS: usize> FoldedNetwork<W, N, POWERS> {
     /// The output for one sample, in the unit that the network was trained in; an input outside the trained range
     /// counts as the range's end.
     pub fn evaluate<S: Scalar<Weight = W>>(&self, inputs: [S; N]) -> S {
-        self.activation.apply(self.sum.evaluate(&array::from_fn(|i| self.inputs[i].apply(inputs[i]))))
+        let x = array::from_fn(|i| self.inputs[i].apply(inputs[i]));
+        self.activation.apply(self.sum.evaluate(&x, &x.map(S::log2_magnitude)))
     }
 }
 
 impl<W: Copy, const N: usize, const POWERS: usize> PowerSum<W, N, POWERS> {
-    /// The sum at a scaled sample, every member of which is above zero.
+    /// The sum at a scaled sample, every member of which is above zero, given with its logarithms to base two.
     #[inline(always)]
-    pub fn evaluate<S: Scalar<Weight = W>>(&self, x: &[S; N]) -> S {
+    pub fn evaluate<S: Scalar<Weight = W>>(&self, x: &[S; N], log2_x: &[S; N]) -> S {
         const { assert!(N > 0, "a network has at least one input") };
         let mut sum = S::weighted_sum(x[0].weight(self.bias), x, &self.slopes);
-        let log2_x = x.map(S::log2_magnitude);
         for power in &self.powers {
-            let term = S::weighted_sum(x[0].weight(power.log2_weight), &log2_x, &power.exponents).exp2();
+            let term = S::product_of_powers(x[0].weight(power.log2_weight), log2_x, &power.exponents);
             sum = match power.sign {
                 Sign::Plus => sum + term,
                 Sign::Minus => sum - term,

@@ -216,7 +216,7 @@ impl<W: Copy, const N: usize> ProductUnit<W, N> {
     /// Magnitude of the product, from the logarithms of the inputs.
     #[inline(always)]
     pub fn magnitude<S: Scalar<Weight = W>>(&self, log2_x: &[S; N]) -> S {
-        S::weighted_sum(log2_x[0].zero(), log2_x, &self.exponents).exp2()
+        S::product_of_powers(log2_x[0].zero(), log2_x, &self.exponents)
     }
 
     /// Real part of the complex sign of the product.

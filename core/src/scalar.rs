@@ -35,6 +35,13 @@ pub trait Scalar: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = 
         }
         sum
     }
+
+    /// Two to the power of `start` + Σ `logarithms` · `exponents`: a product of powers. The logarithms come from
+    /// [`log2_magnitude`](Scalar::log2_magnitude).
+    #[inline(always)]
+    fn product_of_powers<const N: usize>(start: Self, logarithms: &[Self; N], exponents: &[Self::Weight; N]) -> Self {
+        Self::weighted_sum(start, logarithms, exponents).exp2()
+    }
 }
 
 /// The least magnitude that [`Scalar::log2_magnitude`] tells from zero: the policy for zero in the signed form.

@@ -2,10 +2,12 @@
 //! on board the built-in robot, error bounds of fixed point, and the compiler for NXT programs.
 
 pub mod command;
-pub mod elsewhere;
 pub mod controllers;
+pub mod elsewhere;
+pub mod firmware_networks;
 pub mod fixed_point_error;
 pub mod golden;
 pub mod nbc;
 pub mod on_board;
+pub mod plausible_networks;
 pub mod rooms;

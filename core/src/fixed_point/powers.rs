@@ -44,14 +44,24 @@ const STEPS: [u32; 32] = [
 
 /// Two to the power of `x`: the largest number where that does not fit, zero where it is under half an ulp.
 pub fn exp2<F: Format>(x: FixedI32<F>) -> FixedI32<F> {
-    let whole = x.to_bits() >> F::U32;
-    let fraction = (x.to_bits() as u32) << (32 - F::U32);
+    exp2_of_sum(i64::from(x.to_bits()) << F::U32)
+}
+
+/// Two to the power of a number with twice as many fractional bits, as products and their sums have.
+#[inline(always)]
+pub fn exp2_of_sum<F: Format>(x: i64) -> FixedI32<F> {
+    let whole = (x >> (2 * F::U32)) as i32;
+    let fraction = ((x << (64 - 2 * F::U32)) as u64 >> 32) as u32;
     // How far the mantissa, of 31 fractional bits, has to go down, less one for the bit that decides the rounding.
-    let bits = match u32::try_from(30 - F::I32 - whole) {
-        Ok(shift) => mantissa(exp2_of_fraction(fraction)).checked_shr(shift).map_or(0, |bits| (bits >> 1) + (bits & 1)),
-        Err(_) => u32::MAX,
-    };
-    FixedI32::from_bits(bits.min(i32::MAX as u32) as i32)
+    let shift = 30 - F::I32 - whole;
+    FixedI32::from_bits(match shift {
+        0..32 => {
+            let bits = mantissa(exp2_of_fraction(fraction)) >> shift;
+            ((bits >> 1) as i32).saturating_add((bits & 1) as i32)
+        }
+        32.. => 0,
+        _ => i32::MAX,
+    })
 }
 
 /// The logarithm of `x` to base two. Zero and negative numbers count as the least positive number.
@@ -66,14 +76,15 @@ pub fn log2<F: Format>(x: FixedI32<F>) -> FixedI32<F> {
 
 /// Two to the power of a number in [0, 1) with 32 fractional bits, less one, with 32 of them; error below 2^-31.
 fn exp2_of_fraction(fraction: u32) -> u32 {
-    // 2^(t/32) - 1 = t (C1 + t (C2 + t C3)) for t in [0, 1) with 37 fractional bits, within 8.5e-11.
-    const C1: u32 = 2_977_044_705;
-    const C2: u32 = 32_241_241;
-    const C3: u32 = 235_237;
+    // 2^(t/32) - 1 = t (C1 + t (C2 + t C3)) for t in [0, 1) with 36 fractional bits, within 8.5e-11.
+    const C1: u32 = 1_488_522_352;
+    const C2: u32 = 16_120_621;
+    const C3: u32 = 117_619;
     let step = STEPS[(fraction >> 27) as usize];
     let t = fraction << 5;
     let growth = upper_product(t, C1 + upper_product(t, C2 + upper_product(t, C3)));
-    step.saturating_add((upper_product(mantissa(step), growth) + 8) >> 4)
+    // (1 + step) · growth, from 36 down to 32 fractional bits. The sum comes no nearer to 2^32 than 1.
+    step + ((growth + upper_product(step, growth) + 8) >> 4)
 }
 
 /// The logarithm of one more than a number in [0, 1) with 32 fractional bits, with 32 of them; error below 2^-29.
@@ -106,6 +117,14 @@ mod tests {
         for (i, step) in STEPS.iter().enumerate() {
             let exact = libm::exp2(32.0 + i as f64 / 32.0) - libm::exp2(32.0);
             assert!((f64::from(*step) - exact).abs() <= 0.5, "step {i}");
+        }
+    }
+
+    #[test]
+    fn the_end_of_the_last_step_does_not_reach_the_next_power() {
+        for fraction in u32::MAX - 1000..=u32::MAX {
+            let exact = libm::exp2(32.0 + f64::from(fraction) / libm::exp2(32.0)) - libm::exp2(32.0);
+            assert!((f64::from(exp2_of_fraction(fraction)) - exact).abs() < 2.0, "{fraction}");
         }
     }
 
