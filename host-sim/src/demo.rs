@@ -30,7 +30,7 @@ use crate::simulator::{Noise, Simulator};
 const TRAINING_RUNS: usize = 100;
 const HELD_OUT_RUNS: usize = 30;
 const STEPS: usize = 60;
-const MAX_STEPS: u16 = 150;
+const MAX_STEPS: u16 = 60;
 /// Runs of each controller on the robot, and as many simulated ones beside them (paper, figure 4).
 const TRIALS: usize = 3;
 /// Fresh simulated runs that a success rate is taken from.
@@ -131,11 +131,10 @@ impl<W: Fn(Stage)> Job<'_, W> {
     fn start(&self, start: usize, [evolution, simulation, trial]: [u64; 3]) -> Result<Trial> {
         let pose = self.scene.starts[start];
         let course = &Course::new(self.simulator, self.scene, pose, Noise::Learned)?;
-        let quiet_course = &Course::new(self.simulator, self.scene, pose, Noise::Paper)?;
         let target_cm = self.scene.target_cm.ok_or_else(|| Problem::new("the scene has no target"))?;
         let coding = Coding::new(self.simulator, MAX_STEPS);
         let seed = derive(evolution, &[start as u64]);
-        let quest = Quest { course, quiet_course, target_cm, coding, numbers: Numbers::Fresh, seed };
+        let quest = Quest { course, target_cm, coding, numbers: Numbers::Fresh, seed };
         let tell = |generation, _| (self.watch)(Stage::Evolving { start: start + 1, generation });
         let evolved = robust::evolve(&quest, tell);
         let controller = evolved.controller;

@@ -41,7 +41,7 @@ pub struct Evolve {
     #[arg(long)]
     paper_noise: bool,
     /// Steps after which a controller gives up.
-    #[arg(long, default_value_t = 150, value_parser = value_parser!(u16).range(1..))]
+    #[arg(long, default_value_t = 60, value_parser = value_parser!(u16).range(1..))]
     max_steps: u16,
     /// Let all individuals of a generation meet the same random numbers.
     #[arg(long)]
@@ -62,7 +62,6 @@ impl Evolve {
         let target_cm = scene.target_cm.ok_or_else(|| Problem::in_file(&self.scene, "has no [target]"))?;
         let noise = if self.paper || self.paper_noise { Noise::Paper } else { Noise::Learned };
         let course = &Course::new(&simulator, &scene, start, noise)?;
-        let quiet_course = &Course::new(&simulator, &scene, start, Noise::Paper)?;
         let coding = Coding::new(&simulator, self.max_steps);
         let numbers = if self.common_numbers { Numbers::Common } else { Numbers::Fresh };
         let seed = self.seed;
@@ -77,7 +76,7 @@ impl Evolve {
         let evolved = if self.paper {
             paper::evolve(&task, &settings, watch)
         } else {
-            robust::evolve(&Quest { course, quiet_course, target_cm, coding, numbers, seed }, watch)
+            robust::evolve(&Quest { course, target_cm, coding, numbers, seed }, watch)
         };
         bar.finish_and_clear();
         let success = task.success(&evolved.controller, JUDGED_RUNS, JUDGING);
