@@ -53,6 +53,13 @@ pub fn evaluate(sample: &Sample) -> Answers {
     }
 }
 
+/// Draws a reading, if there is an echo.
+pub fn reading_cm(answers: &Answers, generator: &mut Generator) -> Option<I16F16> {
+    let deviation_cm = I16F16::ONE / 2;
+    happens(answers.echo_probability.value, generator)
+        .then(|| normal(answers.echo_value.value, deviation_cm, generator))
+}
+
 /// A sample from anywhere in the trained ranges, and now and then outside.
 pub fn sample(generator: &mut Generator) -> Sample {
     let mut between = |from: i32, to: i32| {
@@ -127,8 +134,6 @@ impl Robot {
         let ahead = cos_pi(self.heading_deg / 180);
         self.distance_cm = self.distance_cm.saturating_sub(answers.forward.value.saturating_mul(ahead));
         self.heading_deg = self.heading_deg.saturating_add(answers.turn.value);
-        let deviation_cm = I16F16::ONE / 2;
-        happens(answers.echo_probability.value, generator)
-            .then(|| normal(answers.echo_value.value, deviation_cm, generator))
+        reading_cm(&answers, generator)
     }
 }

@@ -11,7 +11,7 @@ mod on_target {
     use core::hint::black_box;
     use core::panic::PanicInfo;
 
-    use mindgap_core::chance::{Generator, happens, normal};
+    use mindgap_core::chance::Generator;
     use mindgap_core::controller::Machine;
     use mindgap_firmware::controller::CONTROLLER;
     use mindgap_firmware::job;
@@ -31,9 +31,7 @@ mod on_target {
             count_from_here();
             let answers = job::evaluate(&sample);
             count_to_here();
-            let reading_cm = happens(answers.echo_probability.value, &mut generator)
-                .then(|| normal(answers.echo_value.value, answers.lateral.value, &mut generator));
-            machine.step(&CONTROLLER, reading_cm);
+            machine.step(&CONTROLLER, job::reading_cm(&answers, &mut generator));
             black_box((machine.motors(&CONTROLLER), &answers));
         }
         #[cfg(feature = "reachable-panic")]

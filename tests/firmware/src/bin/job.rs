@@ -12,6 +12,8 @@ mod on_target {
     use core::panic::PanicInfo;
 
     use mindgap_core::chance::Generator;
+    use mindgap_core::controller::Machine;
+    use mindgap_firmware::controller::CONTROLLER;
     use mindgap_firmware::{job, report, stack};
     use rand_core::SeedableRng;
 
@@ -21,13 +23,16 @@ mod on_target {
     #[unsafe(no_mangle)]
     extern "C" fn main() -> ! {
         job::run();
-        report!("measured: stack {} bytes", stack::used_by(evaluate_once));
+        report!("measured: stack {} bytes", stack::used_by(one_step));
         semihosting::process::exit(0)
     }
 
-    fn evaluate_once() {
-        let sample = job::sample(&mut Generator::seed_from_u64(black_box(1)));
-        black_box(job::evaluate(&sample));
+    fn one_step() {
+        let mut generator = Generator::seed_from_u64(black_box(1));
+        let mut machine = Machine::start();
+        let answers = job::evaluate(&job::sample(&mut generator));
+        machine.step(&CONTROLLER, job::reading_cm(&answers, &mut generator));
+        black_box((machine.motors(&CONTROLLER), &answers));
     }
 
     #[panic_handler]
