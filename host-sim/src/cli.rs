@@ -1,6 +1,7 @@
 //! The command `mindgap`: one file a command, nothing but arguments and printing.
 
 mod demo;
+mod diagnose;
 mod evaluate;
 mod evolve;
 mod export;
@@ -29,6 +30,7 @@ struct Cli {
 #[derive(Subcommand)]
 enum Command {
     Demo(demo::Demo),
+    Diagnose(diagnose::Diagnose),
     Record(record::Record),
     Train(train::Train),
     Evaluate(evaluate::Evaluate),
@@ -42,6 +44,7 @@ enum Command {
 pub fn run() -> ExitCode {
     let done = match Cli::parse().command {
         Command::Demo(command) => command.run(),
+        Command::Diagnose(command) => command.run(),
         Command::Record(command) => command.run(),
         Command::Train(command) => command.run(),
         Command::Evaluate(command) => command.run(),

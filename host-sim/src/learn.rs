@@ -5,6 +5,7 @@ pub mod evaluate;
 pub mod genome;
 pub mod kernel;
 pub mod paper;
+pub mod reference;
 pub mod scatter;
 pub mod statistics;
 pub mod train;

@@ -5,6 +5,7 @@ use mindgap_core::network::{Activation, Network};
 use super::dataset::{Dataset, Datasets};
 use super::genome::Shape;
 use super::paper;
+use super::reference;
 use super::scatter;
 use crate::logs::Logs;
 use crate::problem::{Problem, Result};
@@ -78,7 +79,7 @@ pub fn train(logs: &Logs, options: &paper::Options, seed: u64, watch: impl Fn(Pr
     }
     let commands = logs.runs.iter().flat_map(|run| run.rows.iter().flat_map(|row| row.command()));
     let (low, high) = commands.fold((0.0, 0.0), |(l, h): (f64, f64), c| (l.min(c), h.max(c)));
-    Ok(Simulator {
+    let mut simulator = Simulator {
         schema: SCHEMA,
         origin: Origin {
             version: env!("CARGO_PKG_VERSION").into(),
@@ -94,8 +95,11 @@ pub fn train(logs: &Logs, options: &paper::Options, seed: u64, watch: impl Fn(Pr
         echo_probability,
         echo_value,
         constant_reading,
+        reference: None,
         missing: trainer.missing,
-    })
+    };
+    simulator.reference = Some(reference::learn(&simulator, logs));
+    Ok(simulator)
 }
 
 /// Whether a run is kept from training, so that residuals on it are honest; none is when there are too few.
