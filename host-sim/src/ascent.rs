@@ -27,8 +27,13 @@ pub struct Maximum {
 const DIFFERENCE: f64 = 0.004;
 /// Keeps the curvature invertible, in squared scores.
 const RIDGE: f64 = 1.0;
-/// Halvings of a step that does not climb.
-const HALVINGS: usize = 6;
+/// So often a step that does not climb is shortened, or one that does is lengthened.
+const LENGTHS: usize = 6;
+const SHORTER: f64 = 0.35;
+const LONGER: f64 = 2.5;
+
+/// A point on a line: the sum there, where it is, and the terms.
+type Trial = (f64, Vec<f64>, Vec<f64>);
 
 /// Climbs from `start` until a round gains less than `enough`, for `rounds` at most. `terms` gives the log-likelihood
 /// of each term at a point.
@@ -43,18 +48,17 @@ pub fn climb(
     let mut here = terms(&at);
     let mut scores = score(bounds, &at, &here, &terms);
     for _ in 0..rounds {
-        let mut direction = solve(&scores, &at, bounds);
         let before = sum(&here);
-        let mut gain = 0.0;
-        for _ in 0..HALVINGS {
-            let trial = moved(bounds, &at, &direction);
+        let direction = solve(&scores, &at, bounds);
+        let along = |length: f64| {
+            let trial = moved(bounds, &at, &direction.iter().map(|d| d * length).collect::<Vec<f64>>());
             let there = terms(&trial);
-            gain = sum(&there) - before;
-            if gain > 0.0 {
-                (at, here) = (trial, there);
-                break;
-            }
-            direction.iter_mut().for_each(|d| *d *= 0.4);
+            (sum(&there), trial, there)
+        };
+        let best = line_search(before, along);
+        let gain = best.as_ref().map_or(0.0, |b| b.0 - before);
+        if let Some((_, trial, there)) = best {
+            (at, here) = (trial, there);
         }
         if gain > 0.0 {
             scores = score(bounds, &at, &here, &terms);
@@ -89,11 +93,37 @@ impl Maximum {
     }
 }
 
+/// The best of a few lengths, if any climbs.
+fn line_search(before: f64, along: impl Fn(f64) -> Trial) -> Option<Trial> {
+    let mut length = 1.0;
+    let mut best = along(length);
+    if best.0 > before {
+        for _ in 0..LENGTHS {
+            length *= LONGER;
+            let further = along(length);
+            if further.0 <= best.0 {
+                break;
+            }
+            best = further;
+        }
+        return Some(best);
+    }
+    for _ in 0..LENGTHS {
+        length *= SHORTER;
+        best = along(length);
+        if best.0 > before {
+            return Some(best);
+        }
+    }
+    None
+}
+
 fn solve(scores: &[Vec<f64>], at: &[f64], bounds: &[Bounds]) -> Vec<f64> {
     let p = at.len();
     let gradient: Vec<f64> = (0..p).map(|i| scores.iter().map(|s| s[i]).sum()).collect();
     // A parameter that a bound holds stays out of the step.
-    let held = |i: usize| (at[i] <= bounds[i].low && gradient[i] < 0.0) || (at[i] >= bounds[i].high && gradient[i] > 0.0);
+    let held =
+        |i: usize| (at[i] <= bounds[i].low && gradient[i] < 0.0) || (at[i] >= bounds[i].high && gradient[i] > 0.0);
     let free: Vec<usize> = (0..p).filter(|i| !held(*i)).collect();
     let full = curvature(scores, |_| true);
     let matrix = DMatrix::from_fn(free.len(), free.len(), |r, c| full[(free[r], free[c])]);

@@ -4,16 +4,17 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use crate::files;
 use crate::gap::baseline::Baseline;
-use crate::gap::evidence::Evidence;
-use crate::gap::{effects, search};
+use crate::gap::verdict::Verdict;
+use crate::gap::{Diagnosis, diagnose};
 use crate::problem::Result;
 use crate::simulator::Simulator;
 
 /// Find the gap between a simulator and logs: where it lies, what causes it, and how far it shrinks.
 #[derive(Args)]
 pub struct Diagnose {
-    /// The simulator file, or the word kinematic.
+    /// The simulator file, or the word kinematic: the textbook's drive and an ideal sonar.
     sim: PathBuf,
     /// Folder of logs.
     logs: PathBuf,
@@ -26,16 +27,42 @@ impl Diagnose {
     /// Prints the diagnosis.
     pub fn run(&self) -> Result<()> {
         let simulator = Simulator::read(&self.sim)?;
-        let baseline = Baseline::learned(&simulator)?;
-        let evidence = Evidence::of(&super::read_logs(&self.logs)?);
-        let none = search::Fitted::none(&baseline, &evidence);
-        let mut all = search::extend(&none, &effects::all(), &baseline, &evidence);
-        all.sort_by(|a, b| b.gain_over(&none).nats.total_cmp(&a.gain_over(&none).nats));
-        println!("null m {:.1} s {:.1}", none.terms.motion.iter().sum::<f64>(), none.terms.sonar.iter().sum::<f64>());
-        for f in all.iter().take(8) {
-            let g = f.gain_over(&none);
-            println!("{:20} {:40} {:8.1} z {:5.1} {:?}", f.ids()[0], f.hypothesis.forms[0].name, g.nats, g.z(), f.values);
+        let logs = super::read_logs(&self.logs)?;
+        let diagnosis = diagnose(&Baseline::learned(&simulator)?, &logs);
+        print(&diagnosis);
+        if let Some(path) = &self.json {
+            files::write_json(path, &diagnosis)?;
         }
         Ok(())
+    }
+}
+
+/// Prints a diagnosis on one screen.
+fn print(diagnosis: &Diagnosis) {
+    match diagnosis.verdict {
+        Verdict::NoGap => println!("No gap: the logs agree with the simulator within its own error."),
+        Verdict::Known => println!("There is a gap, and known effects explain it:"),
+        Verdict::Unknown => println!("There is a gap, and no known effect explains it."),
+    }
+    for effect in &diagnosis.effects {
+        let parameters: Vec<String> = effect.parameters.iter().map(|(name, value)| format!("{name} {value}")).collect();
+        println!("  {:>3.0} %  {}: {}", 100.0 * effect.probability, effect.id, parameters.join(", "));
+        if !effect.ambiguous_with.is_empty() {
+            println!("         these logs cannot tell it from {}", effect.ambiguous_with.join(", "));
+        }
+    }
+    for place in &diagnosis.r#where {
+        println!("  {:>3.0} % of the gap in {}: {}", 100.0 * place.share, place.channel.name(), place.context);
+    }
+    if let Some(shrink) = &diagnosis.shrink {
+        let [low, high] = shrink.ci95.map(|share| 100.0 * share);
+        let closed = 100.0 * shrink.reducible_closed;
+        println!(
+            "Gap {:.3} -> {:.3} nats a step on runs not fitted on: {closed:.0} % of what is reducible ({low:.0} to {high:.0})",
+            shrink.before, shrink.after
+        );
+        if let Some(next) = &shrink.runner_up {
+            println!("Runner-up {}: {:.0} %", next.id, 100.0 * next.reducible_closed);
+        }
     }
 }

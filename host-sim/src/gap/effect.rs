@@ -88,6 +88,8 @@ pub struct Moment {
     pub pose: Pose,
     /// The same one and two rows earlier, where it is known.
     pub earlier: [Option<Pose>; 2],
+    /// What the sensor's axis meets: distance in cm and signed incidence in radians.
+    pub faced: Option<[f64; 2]>,
     /// Whether the row before had a reading.
     pub echo_before: Option<bool>,
     /// Middle of the scene, where a camera hangs, cm.

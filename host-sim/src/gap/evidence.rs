@@ -5,7 +5,7 @@ use std::ops::Range;
 use glam::DVec2;
 
 use super::effect::{Moment, Motion, WINDOW};
-use crate::geometry::{Pose, Wall};
+use crate::geometry::{Pose, Wall, cast};
 use crate::logs::{Logs, Robot, Run, samples};
 use crate::simulator::reference::sonar::{Fan, fan_at};
 
@@ -15,16 +15,16 @@ pub struct Evidence {
     pub robot: Robot,
     /// Everything that a ray can meet.
     pub sides: Vec<Wall>,
-    /// How many runs there are.
-    pub runs: usize,
+    /// How many blocks of rows are judged together: the runs, or parts of them where there are few.
+    pub blocks: usize,
     /// All rows with a pose.
     pub rows: Vec<Row>,
 }
 
 /// A row at which the tracker saw the robot.
 pub struct Row {
-    /// Which run.
-    pub run: usize,
+    /// Which block.
+    pub block: usize,
     /// What effects may look at.
     pub moment: Moment,
     /// What the step did, where its end was seen too.
@@ -37,6 +37,9 @@ pub struct Row {
     pub fan: Fan,
 }
 
+/// With fewer runs than this each is cut into parts, so that there is a scatter between blocks.
+const FEWEST_BLOCKS: usize = 8;
+
 impl Evidence {
     /// Takes all that counts out of logs.
     pub fn of(logs: &Logs) -> Self {
@@ -45,43 +48,45 @@ impl Evidence {
         let steps = samples::motion(logs);
         let mut steps = steps.iter().peekable();
         let mut rows = Vec::new();
+        let parts = FEWEST_BLOCKS.div_ceil(logs.runs.len());
         for (run, logged) in logs.runs.iter().enumerate() {
             for (k, row) in logged.rows.iter().enumerate() {
                 let Some(pose) = row.pose else { continue };
                 let step = steps.next_if(|s| (s.run, s.row) == (run, k));
-                let motion = step.map(|s| Motion {
-                    forward_cm: s.forward_cm,
-                    lateral_cm: s.lateral_cm,
-                    turn_rad: s.turn_rad,
-                });
-                let fan = fan_at(&sides, &logs.robot.ultrasonic.pose_on(&pose), 1.0);
+                let motion =
+                    step.map(|s| Motion { forward_cm: s.forward_cm, lateral_cm: s.lateral_cm, turn_rad: s.turn_rad });
+                let sensor = logs.robot.ultrasonic.pose_on(&pose);
+                let faced = cast(&sides, sensor.position_cm, sensor.direction());
+                let fan = fan_at(&sides, &sensor, 1.0);
                 let before = |back: usize| k.checked_sub(back).map(|i| &logged.rows[i]);
                 let moment = Moment {
                     elapsed_min: (row.t_ms - logged.rows[0].t_ms) / 60_000.0,
                     commands: window(logged, k),
                     pose,
                     earlier: [1, 2].map(|back| before(back).and_then(|r| r.pose)),
+                    faced: faced.map(|hit| [hit.distance_cm, hit.incidence_rad]),
                     echo_before: before(1).map(|r| r.echo_cm.is_some()),
                     middle_cm,
                     track_cm: logs.robot.track_cm,
                 };
                 let previous_echo_cm = before(1).and_then(|r| r.echo_cm);
-                rows.push(Row { run, moment, motion, echo_cm: row.echo_cm, previous_echo_cm, fan });
+                let block = run * parts + k * parts / logged.rows.len();
+                rows.push(Row { block, moment, motion, echo_cm: row.echo_cm, previous_echo_cm, fan });
             }
         }
-        Evidence { robot: logs.robot, sides, runs: logs.runs.len(), rows }
+        Evidence { robot: logs.robot, sides, blocks: logs.runs.len() * parts, rows }
     }
 
-    /// The rows of a run.
-    pub fn of_run(&self, run: usize) -> Range<usize> {
-        let begin = self.rows.partition_point(|row| row.run < run);
-        begin..self.rows.partition_point(|row| row.run <= run)
+    /// The rows of a block.
+    pub fn of_block(&self, block: usize) -> Range<usize> {
+        let begin = self.rows.partition_point(|row| row.block < block);
+        begin..self.rows.partition_point(|row| row.block <= block)
     }
 
-    /// Sums a number of each row by run.
-    pub fn by_run(&self, terms: &[f64]) -> Vec<f64> {
-        let mut sums = vec![0.0; self.runs];
-        self.rows.iter().zip(terms).for_each(|(row, t)| sums[row.run] += t);
+    /// Sums a number of each row by block.
+    pub fn by_block(&self, terms: &[f64]) -> Vec<f64> {
+        let mut sums = vec![0.0; self.blocks];
+        self.rows.iter().zip(terms).for_each(|(row, t)| sums[row.block] += t);
         sums
     }
 

@@ -4,6 +4,7 @@ use std::f64::consts::PI;
 use std::ops::Range;
 
 use super::baseline::{Baseline, Drive};
+use super::channel::Channel;
 use super::effect::{Act, Form, Motion, Sensor, Window};
 use super::evidence::{Evidence, Row};
 use crate::ascent::Bounds;
@@ -20,10 +21,29 @@ pub struct Hypothesis {
 /// Log-likelihoods by row and channel.
 #[derive(Clone, Debug)]
 pub struct Terms {
-    /// Of the motion.
-    pub motion: Vec<f64>,
-    /// Of echo and reading.
-    pub sonar: Vec<f64>,
+    /// Forward, lateral, turn.
+    pub motion: Vec<[f64; 3]>,
+    /// Echo rate, echo value.
+    pub sonar: Vec<[f64; 2]>,
+}
+
+impl Terms {
+    /// All channels of each row together.
+    pub fn total(&self) -> Vec<f64> {
+        let both = |(m, s): (&[f64; 3], &[f64; 2])| m.iter().sum::<f64>() + s.iter().sum::<f64>();
+        self.motion.iter().zip(&self.sonar).map(both).collect()
+    }
+
+    /// One channel of each row.
+    pub fn channel(&self, channel: Channel) -> Vec<f64> {
+        match channel {
+            Channel::Forward => self.motion.iter().map(|m| m[0]).collect(),
+            Channel::Lateral => self.motion.iter().map(|m| m[1]).collect(),
+            Channel::Turn => self.motion.iter().map(|m| m[2]).collect(),
+            Channel::EchoRate => self.sonar.iter().map(|s| s[0]).collect(),
+            Channel::EchoValue => self.sonar.iter().map(|s| s[1]).collect(),
+        }
+    }
 }
 
 /// A step that is so much wider than usual counts as a jump of the tracker.
@@ -62,35 +82,36 @@ impl Hypothesis {
         }
     }
 
-    /// The log-likelihood of one run, with the scatter of all.
-    pub fn of_run(
+    /// The log-likelihood of one block, with the scatter of all.
+    pub fn of_block(
         &self,
         baseline: &Baseline,
         evidence: &Evidence,
-        run: usize,
+        block: usize,
         values: &[f64],
         scatter: [f64; 3],
         untouched: &Terms,
     ) -> f64 {
-        let range = evidence.of_run(run);
+        let range = evidence.of_block(block);
         let motion: f64 = if self.moves() {
-            self.motion_terms(baseline, &evidence.rows[range.clone()], values, scatter).iter().sum()
+            self.motion_terms(baseline, &evidence.rows[range.clone()], values, scatter).as_flattened().iter().sum()
         } else {
-            untouched.motion[range.clone()].iter().sum()
+            untouched.motion[range.clone()].as_flattened().iter().sum()
         };
         let sonar: f64 = if self.senses() {
-            self.sonar_terms(baseline, evidence, range, values).iter().sum()
+            self.sonar_terms(baseline, evidence, range, values).as_flattened().iter().sum()
         } else {
-            untouched.sonar[range].iter().sum()
+            untouched.sonar[range].as_flattened().iter().sum()
         };
         motion + sonar
     }
 
     /// A nuisance of every hypothesis: the scatter may be larger than the simulator's, never smaller.
     pub fn scatter(&self, baseline: &Baseline, evidence: &Evidence, values: &[f64]) -> [f64; 3] {
-        baseline.motion.as_ref().map_or([1.0; 3], |drive| {
-            refitted(&self.residuals(drive, &evidence.rows, values), drive.scatter())
-        })
+        baseline
+            .motion
+            .as_ref()
+            .map_or([1.0; 3], |drive| refitted(&self.residuals(drive, &evidence.rows, values), drive.scatter()))
     }
 
     fn moves(&self) -> bool {
@@ -143,19 +164,28 @@ impl Hypothesis {
         rows.iter().map(residual).collect()
     }
 
-    fn motion_terms(&self, baseline: &Baseline, rows: &[Row], values: &[f64], scatter: [f64; 3]) -> Vec<f64> {
-        let Some(drive) = &baseline.motion else { return vec![0.0; rows.len()] };
+    /// The log-likelihoods of the motion channels with a given scatter.
+    pub fn motion_terms(&self, baseline: &Baseline, rows: &[Row], values: &[f64], scatter: [f64; 3]) -> Vec<[f64; 3]> {
+        let Some(drive) = &baseline.motion else { return vec![[0.0; 3]; rows.len()] };
         let residuals = self.residuals(drive, rows, values);
-        residuals.iter().map(|r| r.map_or(0.0, |r| (0..3).map(|c| log_density(r[c], scatter[c])).sum())).collect()
+        let densities = |r: [f64; 3]| [0, 1, 2].map(|c| log_density(r[c], scatter[c]));
+        residuals.into_iter().map(|r| r.map_or([0.0; 3], densities)).collect()
     }
 
-    fn sonar_terms(&self, baseline: &Baseline, evidence: &Evidence, rows: Range<usize>, values: &[f64]) -> Vec<f64> {
-        let Some(sonar) = &baseline.sonar else { return vec![0.0; rows.len()] };
+    fn sonar_terms(
+        &self,
+        baseline: &Baseline,
+        evidence: &Evidence,
+        rows: Range<usize>,
+        values: &[f64],
+    ) -> Vec<[f64; 2]> {
+        let Some(sonar) = &baseline.sonar else { return vec![[0.0; 2]; rows.len()] };
         let term = |row: &Row| {
             let sensor = self.sensor(row, values);
             let moved = sensor.robot != row.moment.pose || sensor.yaw_rad != 0.0 || sensor.width != 1.0;
             let fan = if moved { evidence.fan(&sensor.robot, sensor.yaw_rad, sensor.width) } else { row.fan };
-            sonar.log_likelihood(&fan, &sensor.change, row.echo_cm, row.previous_echo_cm)[0]
+            let [all, rate] = sonar.log_likelihood(&fan, &sensor.change, row.echo_cm, row.previous_echo_cm);
+            [rate, all - rate]
         };
         evidence.rows[rows].iter().map(term).collect()
     }

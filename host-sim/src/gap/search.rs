@@ -4,6 +4,7 @@ use rayon::prelude::*;
 
 use super::baseline::Baseline;
 use super::effect::Form;
+use super::effects;
 use super::evidence::Evidence;
 use super::hypothesis::{Hypothesis, Terms};
 use crate::ascent::{Maximum, climb};
@@ -17,7 +18,7 @@ pub struct Fitted {
     pub values: Vec<f64>,
     /// Log-likelihoods there.
     pub terms: Terms,
-    /// The log-likelihood of each run with the parameters fitted on the others.
+    /// The log-likelihood of each block with the parameters fitted on the others.
     pub held_out: Vec<f64>,
 }
 
@@ -30,23 +31,29 @@ pub struct Gain {
     pub error: f64,
 }
 
+/// What is judged, and against what.
+#[derive(Clone, Copy)]
+pub struct Given<'a> {
+    /// The simulator.
+    pub baseline: &'a Baseline<'a>,
+    /// The logs.
+    pub evidence: &'a Evidence,
+}
+
+/// What a parameter costs, nats.
+const OCCAM: f64 = 1.0;
 /// Rounds of a fit.
-const ROUNDS: usize = 12;
+const ROUNDS: usize = 30;
 /// A round that gains less ends the fit, nats.
-const ENOUGH: f64 = 0.05;
+const ENOUGH: f64 = 0.1;
 
 impl Fitted {
     /// No effect at all.
-    pub fn none(baseline: &Baseline, evidence: &Evidence) -> Self {
+    pub fn none(logs: &Given) -> Self {
         let hypothesis = Hypothesis::none();
-        let terms = hypothesis.terms(baseline, evidence, &[], None);
-        let held_out = evidence.by_run(&total(&terms));
+        let terms = hypothesis.terms(logs.baseline, logs.evidence, &[], None);
+        let held_out = logs.evidence.by_block(&terms.total());
         Fitted { hypothesis, values: Vec::new(), terms, held_out }
-    }
-
-    /// The log-likelihood of each row.
-    pub fn total(&self) -> Vec<f64> {
-        total(&self.terms)
     }
 
     /// The names of its effects.
@@ -54,40 +61,87 @@ impl Fitted {
         self.hypothesis.forms.iter().map(|f| f.id).collect()
     }
 
-    /// By how much this beats `other` on held-out runs.
+    /// The parameters of one of its effects.
+    pub fn values_of(&self, place: usize) -> &[f64] {
+        let forms = &self.hypothesis.forms;
+        let before: usize = forms[..place].iter().map(|f| f.parameters.len()).sum();
+        &self.values[before..before + forms[place].parameters.len()]
+    }
+
+    /// By how much this beats `other` on each held-out block.
+    pub fn gains_over(&self, other: &Fitted) -> Vec<f64> {
+        self.held_out.iter().zip(&other.held_out).map(|(a, b)| a - b).collect()
+    }
+
+    /// The same over all blocks.
     pub fn gain_over(&self, other: &Fitted) -> Gain {
-        Gain::of(self.held_out.iter().zip(&other.held_out).map(|(a, b)| a - b).collect())
+        Gain::of(&self.gains_over(other))
+    }
+
+    /// What ranks hypotheses: the held-out log-likelihood, less a little for each parameter, so that of two that
+    /// explain the same the simpler one is first.
+    pub fn score(&self) -> f64 {
+        self.held_out.iter().sum::<f64>() - OCCAM * self.values.len() as f64
+    }
+
+    /// Whether the effect that was added last touches a stage that others touch.
+    pub fn shares_a_stage(&self) -> bool {
+        let Some((last, others)) = self.hypothesis.forms.split_last() else { return false };
+        others.iter().any(|f| f.moves() && last.moves() || f.senses() && last.senses())
+    }
+
+    /// Whether no stage is touched by both.
+    fn is_apart_from(&self, other: &Fitted) -> bool {
+        let touches = |f: &Fitted| {
+            let forms = &f.hypothesis.forms;
+            [forms.iter().any(|f| f.moves()), forms.iter().any(|f| f.senses())]
+        };
+        touches(self).iter().zip(touches(other)).all(|(a, b)| !(*a && b))
+    }
+
+    /// This and a fit that is apart from it: nothing needs to be fitted again.
+    fn beside(&self, other: &Fitted, logs: &Given) -> Fitted {
+        let moved = other.hypothesis.forms.iter().any(|f| f.moves());
+        let terms = Terms {
+            motion: if moved { other.terms.motion.clone() } else { self.terms.motion.clone() },
+            sonar: if moved { self.terms.sonar.clone() } else { other.terms.sonar.clone() },
+        };
+        let none = Fitted::none(logs);
+        let held_out = self.held_out.iter().zip(other.gains_over(&none)).map(|(s, g)| s + g).collect();
+        let forms = self.hypothesis.forms.iter().chain(&other.hypothesis.forms).copied().collect();
+        let values = self.values.iter().chain(&other.values).copied().collect();
+        Fitted { hypothesis: Hypothesis { forms }, values, terms, held_out }
     }
 
     /// Adds one form and fits everything anew, from these values and the form's starts.
-    pub fn with(&self, form: &'static Form, baseline: &Baseline, evidence: &Evidence) -> Fitted {
+    pub fn with(&self, form: &'static Form, logs: &Given) -> Fitted {
         let hypothesis = self.hypothesis.with(form);
         let start = |own: &&'static [f64]| self.values.iter().chain(own.iter()).copied().collect::<Vec<f64>>();
-        fit(hypothesis, form.starts.iter().map(start).collect(), &self.terms, baseline, evidence)
+        fit(hypothesis, form.starts.iter().map(start).collect(), &self.terms, logs)
     }
 
     /// Leaves the effect at `place` out and fits the others anew.
-    pub fn without(&self, place: usize, baseline: &Baseline, evidence: &Evidence) -> Fitted {
+    pub fn without(&self, place: usize, logs: &Given) -> Fitted {
         let mut forms = self.hypothesis.forms.clone();
         let before: usize = forms[..place].iter().map(|f| f.parameters.len()).sum();
         let count = forms.remove(place).parameters.len();
         let mut values = self.values.clone();
         values.drain(before..before + count);
         if forms.is_empty() {
-            return Fitted::none(baseline, evidence);
+            return Fitted::none(logs);
         }
-        let none = Fitted::none(baseline, evidence);
-        fit(Hypothesis { forms }, vec![values], &none.terms, baseline, evidence)
+        let none = Fitted::none(logs);
+        fit(Hypothesis { forms }, vec![values], &none.terms, logs)
     }
 }
 
 impl Gain {
-    /// The gain of each run, together.
-    pub fn of(by_run: Vec<f64>) -> Self {
-        let n = by_run.len() as f64;
-        let nats: f64 = by_run.iter().sum();
+    /// The gain of each block, together.
+    pub fn of(by_block: &[f64]) -> Self {
+        let n = by_block.len() as f64;
+        let nats: f64 = by_block.iter().sum();
         let middle = nats / n;
-        let variance = by_run.iter().map(|d| (d - middle) * (d - middle)).sum::<f64>() / (n - 1.0).max(1.0);
+        let variance = by_block.iter().map(|d| (d - middle) * (d - middle)).sum::<f64>() / (n - 1.0).max(1.0);
         Gain { nats, error: (n * variance).sqrt() }
     }
 
@@ -97,49 +151,54 @@ impl Gain {
     }
 }
 
-/// Every form on top of what was found so far, side by side; the order is that of the forms.
-pub fn extend(so_far: &Fitted, forms: &[&'static Form], baseline: &Baseline, evidence: &Evidence) -> Vec<Fitted> {
-    let fresh = forms.iter().filter(|form| !so_far.ids().contains(&form.id)).collect::<Vec<_>>();
-    fresh.into_par_iter().map(|form| so_far.with(form, baseline, evidence)).collect()
+/// The best form of every effect on top of what was found so far, the best effect first. `alone` are the same forms
+/// fitted on nothing, where they are known: what touches other stages than those before need not be fitted again.
+pub fn extend(so_far: &Fitted, alone: Option<&[Fitted]>, logs: &Given) -> Vec<Fitted> {
+    let fresh: Vec<_> = effects::all().into_iter().filter(|form| !so_far.ids().contains(&form.id)).collect();
+    let one = |form: &&'static Form| {
+        let known = alone.into_iter().flatten().find(|f| std::ptr::eq(f.hypothesis.forms[0], *form));
+        match known.filter(|f| so_far.is_apart_from(f)) {
+            Some(known) => so_far.beside(known, logs),
+            None => so_far.with(form, logs),
+        }
+    };
+    fresh.par_iter().map(one).collect()
 }
 
-fn fit(
-    hypothesis: Hypothesis,
-    starts: Vec<Vec<f64>>,
-    untouched: &Terms,
-    baseline: &Baseline,
-    evidence: &Evidence,
-) -> Fitted {
+/// The best fit of each effect that was added last, best first.
+pub fn best_of_each(mut fits: Vec<Fitted>) -> Vec<Fitted> {
+    fits.sort_by(|a, b| b.score().total_cmp(&a.score()));
+    let mut seen = Vec::new();
+    fits.retain(|fit| {
+        let id = fit.ids().last().copied();
+        let fresh = !seen.contains(&id);
+        seen.push(id);
+        fresh
+    });
+    fits
+}
+
+fn fit(hypothesis: Hypothesis, starts: Vec<Vec<f64>>, untouched: &Terms, logs: &Given) -> Fitted {
     let bounds = hypothesis.bounds();
-    let terms = |at: &[f64]| total(&hypothesis.terms(baseline, evidence, at, Some(untouched)));
+    let terms = |at: &[f64]| hypothesis.terms(logs.baseline, logs.evidence, at, Some(untouched)).total();
     let value = |at: &[f64]| terms(at).iter().sum::<f64>();
     let best = starts.iter().map(|s| (value(s), s)).max_by(|a, b| a.0.total_cmp(&b.0));
     let start = best.map(|(_, s)| s.clone()).unwrap_or_default();
     let found = climb(&bounds, &start, ROUNDS, ENOUGH, terms);
-    let held_out = held_out(&found, &hypothesis, untouched, baseline, evidence);
-    let terms = hypothesis.terms(baseline, evidence, &found.at, Some(untouched));
+    let held_out = held_out(&found, &hypothesis, untouched, logs);
+    let terms = hypothesis.terms(logs.baseline, logs.evidence, &found.at, Some(untouched));
     Fitted { hypothesis, values: found.at, terms, held_out }
 }
 
-/// The log-likelihood of each run with the parameters that the others alone would have.
-fn held_out(
-    found: &Maximum,
-    hypothesis: &Hypothesis,
-    untouched: &Terms,
-    baseline: &Baseline,
-    evidence: &Evidence,
-) -> Vec<f64> {
+/// The log-likelihood of each block with the parameters that the others alone would have.
+fn held_out(found: &Maximum, hypothesis: &Hypothesis, untouched: &Terms, logs: &Given) -> Vec<f64> {
     let bounds = hypothesis.bounds();
-    let scatter = hypothesis.scatter(baseline, evidence, &found.at);
-    (0..evidence.runs)
-        .map(|run| {
-            let left_out = evidence.of_run(run);
+    let scatter = hypothesis.scatter(logs.baseline, logs.evidence, &found.at);
+    (0..logs.evidence.blocks)
+        .map(|block| {
+            let left_out = logs.evidence.of_block(block);
             let values = found.without(&bounds, |row| left_out.contains(&row));
-            hypothesis.of_run(baseline, evidence, run, &values, scatter, untouched)
+            hypothesis.of_block(logs.baseline, logs.evidence, block, &values, scatter, untouched)
         })
         .collect()
-}
-
-fn total(terms: &Terms) -> Vec<f64> {
-    terms.motion.iter().zip(&terms.sonar).map(|(m, s)| m + s).collect()
 }

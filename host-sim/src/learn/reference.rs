@@ -7,9 +7,9 @@ use crate::geometry::cast;
 use crate::learn::scatter;
 use crate::logs::{Logs, samples};
 use crate::simulator::Simulator;
+use crate::simulator::reference::Reference;
 use crate::simulator::reference::motion::{MotionReference, features};
 use crate::simulator::reference::sonar::{Change, Fan, STRENGTHS, SonarReference, fan_at};
-use crate::simulator::reference::Reference;
 
 /// Pulls the weights of the motion's correction towards zero, in squared features.
 const RIDGE: f64 = 0.3;
@@ -53,12 +53,8 @@ fn motion(simulator: &Simulator, logs: &Logs) -> Option<MotionReference> {
             row.iter().enumerate().for_each(|(i, f)| pull[i] += f * r[c]);
         }
         reference.weights[c] = normal.solve(&pull).iter().copied().collect();
-        let left: f64 = steps
-            .iter()
-            .zip(&residuals)
-            .map(|(s, r)| r[c] - reference.correction(&s.speeds)[c])
-            .map(|r| r * r)
-            .sum();
+        let left: f64 =
+            steps.iter().zip(&residuals).map(|(s, r)| r[c] - reference.correction(&s.speeds)[c]).map(|r| r * r).sum();
         reference.scatter[c] = (left / (steps.len() - width).max(1) as f64).sqrt();
     }
     Some(reference)

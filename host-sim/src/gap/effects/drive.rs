@@ -1,7 +1,7 @@
 //! Effects of the drive as a whole and of its halves: weaker motors, other wheels, another track.
 
 use super::{magnitude, rounded, side_of};
-use crate::gap::effect::{Reported, Act, Form, Moment, Motion, Parameter, Window};
+use crate::gap::effect::{Act, Form, Moment, Motion, Parameter, Reported, Window};
 
 /// The forms of this family.
 pub const FORMS: &[Form] = &[

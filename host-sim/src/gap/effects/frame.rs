@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use glam::DVec2;
 
 use super::rounded;
-use crate::gap::effect::{Reported, Act, Form, Moment, Motion, Parameter, Sensor};
+use crate::gap::effect::{Act, Form, Moment, Motion, Parameter, Reported, Sensor};
 use crate::geometry::{Pose, direction, wrap_rad};
 
 /// The forms of this family.

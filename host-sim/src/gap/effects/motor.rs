@@ -1,7 +1,7 @@
 //! Effects of the single motor: what a command does to a wheel, and when.
 
 use super::{magnitude, rounded};
-use crate::gap::effect::{Reported, Act, Form, Moment, Parameter, WINDOW, Window};
+use crate::gap::effect::{Act, Form, Moment, Parameter, Reported, WINDOW, Window};
 
 /// The forms of this family.
 pub const FORMS: &[Form] = &[
@@ -55,11 +55,11 @@ pub const FORMS: &[Form] = &[
     },
     Form {
         id: "inertia",
-        name: "the speed follows the command",
-        parameters: &[Parameter::new(0.0, 0.8, 0.0)],
-        starts: &[&[0.05], &[0.2], &[0.4]],
-        acts: &[Act::Commands(slow)],
-        report: |v, step_ms| vec![("ms", rounded(-step_ms / libm::log(v[0].max(1e-3))))],
+        name: "the step lags, and what lags dies away",
+        parameters: &[Parameter::new(0.0, 0.8, 0.0), Parameter::new(0.03, 0.8, 0.2)],
+        starts: &[&[0.1, 0.15], &[0.3, 0.2], &[0.5, 0.4]],
+        acts: &[Act::Commands(lagging)],
+        report: |v, step_ms| vec![("ms", rounded(v[0] * step_ms))],
     },
 ];
 
@@ -101,22 +101,25 @@ fn softly_limited(v: &[f64], _: &Moment, window: &mut Window) {
     }
 }
 
-/// `v[0]` steps late, broken steps mixed in proportion.
+/// `v[0]` steps late: the command before holds for the first part of the step. What it did to the wheels is over by then.
 fn late(v: &[f64], _: &Moment, window: &mut Window) {
     let (whole, part) = (v[0] as usize, v[0] % 1.0);
-    let before = *window;
-    for (i, c) in window.iter_mut().enumerate() {
-        let [newer, older] = [i + whole, i + whole + 1].map(|j| before[j.min(WINDOW - 1)]);
-        *c = [0, 1].map(|m| (1.0 - part) * newer[m] + part * older[m]);
-    }
+    window.rotate_left(whole);
+    let [now, before, ..] = window;
+    *now = [0, 1].map(|m| (1.0 - part) * now[m] + part * before[m]);
 }
 
-/// Each step the share `v[0]` of the speed before remains.
-fn slow(v: &[f64], _: &Moment, window: &mut Window) {
-    for i in (0..WINDOW - 1).rev() {
-        let before = window[i + 1];
-        window[i] = [0, 1].map(|m| (1.0 - v[0]) * window[i][m] + v[0] * before[m]);
+/// The share `v[0]` of a step still has the speed at its begin, which has come within `v[1]` of the command before.
+fn lagging(v: &[f64], _: &Moment, window: &mut Window) {
+    if v[0] == 0.0 {
+        return;
     }
+    let mut speed = window[WINDOW - 1];
+    for command in window[1..].iter().rev() {
+        speed = [0, 1].map(|m| command[m] + v[1] * (speed[m] - command[m]));
+    }
+    window[0] = [0, 1].map(|m| window[0][m] + v[0] * (speed[m] - window[0][m]));
+    window[1] = speed;
 }
 
 fn command(v: &[f64], _: f64) -> Reported {

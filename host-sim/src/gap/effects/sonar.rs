@@ -1,7 +1,7 @@
 //! Effects of the ultrasonic sensor: where it looks, what comes back, and what it makes of that.
 
 use super::rounded;
-use crate::gap::effect::{Reported, Act, Form, Moment, Parameter, Sensor};
+use crate::gap::effect::{Act, Form, Moment, Parameter, Reported, Sensor};
 use crate::geometry::{Pose, wrap_rad};
 
 /// The forms of this family.
@@ -36,6 +36,14 @@ pub const FORMS: &[Form] = &[
         parameters: &[Parameter::new(0.2, 4.0, 1.0)],
         starts: &[&[0.7], &[1.3], &[2.0]],
         acts: &[Act::Sensor(|v, _, s| s.width *= v[0])],
+        report: |v, _| vec![("factor", rounded(v[0]))],
+    },
+    Form {
+        id: "sonar_beam",
+        name: "another width, and another strength with it",
+        parameters: &[Parameter::new(0.2, 4.0, 1.0), Parameter::new(-4.0, 4.0, 0.0)],
+        starts: &[&[0.7, 0.1], &[1.3, -0.1], &[2.0, -0.5]],
+        acts: &[Act::Sensor(wider_and_stronger)],
         report: |v, _| vec![("factor", rounded(v[0]))],
     },
     Form {
@@ -115,7 +123,9 @@ pub const FORMS: &[Form] = &[
         name: "more scatter",
         parameters: &[Parameter::new(0.0, 15.0, 0.0)],
         starts: &[&[1.0], &[3.0]],
-        acts: &[Act::Sensor(|v, _, s| s.change.scatter_cm = (s.change.scatter_cm * s.change.scatter_cm + v[0] * v[0]).sqrt())],
+        acts: &[Act::Sensor(|v, _, s| {
+            s.change.scatter_cm = (s.change.scatter_cm * s.change.scatter_cm + v[0] * v[0]).sqrt()
+        })],
         report: |v, _| vec![("cm", rounded(v[0]))],
     },
 ];
@@ -140,6 +150,11 @@ const GHOST_STARTS: &[&[f64]] = &[
 ];
 const DAMPING: &[Parameter] = &[Parameter::new(-4.0, 8.0, 0.0)];
 const DAMPING_STARTS: &[&[f64]] = &[&[0.3], &[-0.3], &[1.5]];
+
+fn wider_and_stronger(v: &[f64], _: &Moment, sensor: &mut Sensor) {
+    sensor.width *= v[0];
+    sensor.change.damping += v[1];
+}
 
 fn ghost_for_echo(v: &[f64], _: &Moment, sensor: &mut Sensor) {
     sensor.change.ghost_for_echo = v[0];

@@ -86,6 +86,8 @@ pub struct Change {
     pub ghost_cm: f64,
     /// Chance of a random short reading.
     pub short: f64,
+    /// Chance of a random reading from beyond what the axis meets.
+    pub long: f64,
     /// Chance that the reading is the one before.
     pub stale: f64,
 }
@@ -104,6 +106,7 @@ impl Change {
         ghost_for_none: 0.0,
         ghost_cm: 20.0,
         short: 0.0,
+        long: 0.0,
         stale: 0.0,
     };
 }
@@ -111,7 +114,13 @@ impl Change {
 impl SonarReference {
     /// The log-likelihood of what was logged at a row, and the part of it that is about echo or none. `previous_cm` is
     /// the reading of the row before.
-    pub fn log_likelihood(&self, fan: &Fan, change: &Change, echo_cm: Option<f64>, previous_cm: Option<f64>) -> [f64; 2] {
+    pub fn log_likelihood(
+        &self,
+        fan: &Fan,
+        change: &Change,
+        echo_cm: Option<f64>,
+        previous_cm: Option<f64>,
+    ) -> [f64; 2] {
         let [any, density] = self.first_echo(fan, change, echo_cm);
         let echo = (any * (1.0 - change.lost) * (1.0 - self.lost)).clamp(STRAY, 1.0 - STRAY);
         let kept = (1.0 - change.short) * (1.0 - self.short);
@@ -130,6 +139,11 @@ impl SonarReference {
         let fresh = true_echo * (1.0 - change.ghost_for_echo) * (1.0 - self.constant[0])
             + echo * (1.0 - change.ghost_for_echo) * self.constant[0] * near(z, self.constant[1]);
         let mut reading = kept * (fresh + ghost * near(z, change.ghost_cm)) + (1.0 - kept) * before;
+        if change.long > 0.0 && z > reach {
+            reading += change.long * value * (1.0 / (high - reach).max(1.0) - reading / value);
+        } else {
+            reading *= 1.0 - change.long;
+        }
         if let Some(previous_cm) = previous_cm {
             reading = (1.0 - change.stale) * reading + change.stale * value * near(z, previous_cm);
         }
@@ -155,9 +169,8 @@ impl SonarReference {
                 let bias = self.bias[0] + self.bias[1] * ray.distance_cm + self.bias[2] * incidence;
                 let [low, high] = self.range_cm;
                 let middle = ((ray.distance_cm + bias) * change.gain + change.offset_cm).clamp(low, high);
-                let own = libm::exp(
-                    self.log_scatter[0] + self.log_scatter[1] * metres + self.log_scatter[2] * incidence,
-                );
+                let own =
+                    libm::exp(self.log_scatter[0] + self.log_scatter[1] * metres + self.log_scatter[2] * incidence);
                 let scatter = (own * own + change.scatter_cm * change.scatter_cm).sqrt();
                 density += none_yet * back * student(z - middle, scatter);
             }
@@ -165,38 +178,6 @@ impl SonarReference {
         }
         [1.0 - none_yet, density]
     }
-
-    /// The chance of a value and its likeliest size where nothing is changed.
-    pub fn expectation(&self, fan: &Fan, change: &Change) -> Expectation {
-        let none = self.log_likelihood(fan, change, None, None)[1];
-        let mut likeliest = (0.0, None);
-        let mut none_yet = 1.0;
-        let mut order = [0, 1, 2, 3, 4, 5, 6, 7, 8];
-        order.sort_by(|a: &usize, b| fan[*a].distance_cm.total_cmp(&fan[*b].distance_cm));
-        for i in order {
-            let ray = &fan[i];
-            if ray.distance_cm.is_infinite() {
-                break;
-            }
-            let strength: f64 = ray_features(ray, FAN_DEG[i]).iter().zip(&self.strength).map(|(f, w)| f * w).sum();
-            let back = logistic(strength);
-            if none_yet * back > likeliest.0 {
-                let bias = self.bias[0] + self.bias[1] * ray.distance_cm + self.bias[2] * ray.alpha_deg / 45.0;
-                likeliest = (none_yet * back, Some((ray.distance_cm + bias) * change.gain + change.offset_cm));
-            }
-            none_yet *= 1.0 - back;
-        }
-        Expectation { value: 1.0 - libm::exp(none), reading_cm: likeliest.1 }
-    }
-}
-
-/// What is expected of a row.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Expectation {
-    /// Chance of a value.
-    pub value: f64,
-    /// The likeliest reading, cm.
-    pub reading_cm: Option<f64>,
 }
 
 /// What a ray's strength is made of.
