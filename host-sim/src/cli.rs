@@ -4,6 +4,7 @@
 //! of it, as `mindgap evaluate ... | head -1` does, stops nothing halfway.
 
 mod demo;
+mod diagnose;
 mod evaluate;
 mod evolve;
 mod export;
@@ -33,6 +34,7 @@ struct Cli {
 #[derive(Subcommand)]
 enum Command {
     Demo(demo::Demo),
+    Diagnose(diagnose::Diagnose),
     Record(record::Record),
     Train(train::Train),
     Evaluate(evaluate::Evaluate),
@@ -46,6 +48,7 @@ enum Command {
 pub fn run() -> ExitCode {
     let done = match Cli::parse().command {
         Command::Demo(command) => command.run(),
+        Command::Diagnose(command) => command.run(),
         Command::Record(command) => command.run(),
         Command::Train(command) => command.run(),
         Command::Evaluate(command) => command.run(),

@@ -6,6 +6,7 @@ pub mod fast;
 pub mod genome;
 pub mod kernel;
 pub mod paper;
+pub mod reference;
 pub mod scatter;
 pub mod statistics;
 pub mod train;

@@ -4,6 +4,7 @@ mod batch;
 pub mod course;
 pub mod draws;
 pub mod motion;
+pub mod reference;
 pub mod rehearsal;
 pub mod room;
 pub mod scatter;
@@ -16,6 +17,8 @@ use serde::{Deserialize, Serialize};
 use crate::files;
 use crate::logs::Robot;
 use crate::problem::{Problem, Result};
+use motion::MotionNetworks;
+use reference::Reference;
 use scatter::{ConstantReading, Spread};
 
 /// The version of the simulator file that is written and read.
@@ -44,6 +47,9 @@ pub struct Simulator {
     pub echo_value: Option<Learned<2>>,
     /// A constant wrong reading that comes now and then, if there is one.
     pub constant_reading: Option<ConstantReading>,
+    /// What the training logs say beyond the networks: the yardstick of the gap.
+    #[serde(default)]
+    pub reference: Option<Reference>,
     /// The networks that the logs could not support.
     pub missing: Vec<Missing>,
 }
@@ -125,6 +131,11 @@ impl Simulator {
             let reason = self.missing.iter().find(|m| m.network == name).map_or("it is not there", |m| &m.reason);
             Problem::new(format!("the simulator has no {name} network: {reason}"))
         })
+    }
+
+    /// The three motion networks, if all are there.
+    pub fn motion_networks(&self) -> Option<MotionNetworks<'_>> {
+        MotionNetworks::of(self).ok()
     }
 
     fn check(&self, path: &Path) -> Result<()> {

@@ -6,6 +6,7 @@ use super::dataset::{Dataset, Datasets};
 use super::fast::{self, Loss};
 use super::genome::Shape;
 use super::paper;
+use super::reference;
 use super::scatter;
 use crate::logs::Logs;
 use crate::problem::{Problem, Result};
@@ -87,7 +88,7 @@ pub fn train(logs: &Logs, trainer: &Trainer, seed: u64, watch: impl Fn(Progress)
     }
     let commands = logs.runs.iter().flat_map(|run| run.rows.iter().flat_map(|row| row.command()));
     let (low, high) = commands.fold((0.0, 0.0), |(l, h): (f64, f64), c| (l.min(c), h.max(c)));
-    Ok(Simulator {
+    let mut simulator = Simulator {
         schema: SCHEMA,
         origin: Origin {
             version: env!("CARGO_PKG_VERSION").into(),
@@ -103,8 +104,11 @@ pub fn train(logs: &Logs, trainer: &Trainer, seed: u64, watch: impl Fn(Progress)
         echo_probability,
         echo_value,
         constant_reading,
+        reference: None,
         missing: school.missing,
-    })
+    };
+    simulator.reference = Some(reference::learn(&simulator, logs));
+    Ok(simulator)
 }
 
 /// Whether a run is kept from training, so that residuals on it are honest; none is when there are too few.
