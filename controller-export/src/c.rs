@@ -17,11 +17,11 @@ const MACHINE: &str = include_str!("c/machine.h");
 /// [`ExportError::Controller`].
 pub fn header(controller: &Controller, origin: &Origin) -> Result<String, ExportError> {
     controller.check()?;
-    let origin: String = origin.lines().iter().map(|line| format!(" *\n * {}", line.replace("*/", "* /"))).collect();
+    let origin: String = origin.lines().iter().map(|line| format!("\n * {}", line.replace("*/", "* /"))).collect();
     let Controller { step_ms, max_steps, .. } = controller;
     let head = format!(
         "/* A six-tuple controller. Set the motors to controller_motors_now(), and every CONTROLLER_STEP_MS read the sensor\n \
-         * once, call controller_step() and set the motors again.\n{origin} */\n\
+         * once, call controller_step() and set the motors again.\n *{origin}\n */\n\
          #ifndef MINDGAP_CONTROLLER_H\n\
          #define MINDGAP_CONTROLLER_H\n\
          \n\
