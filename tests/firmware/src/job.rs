@@ -15,6 +15,8 @@ use crate::report;
 const SEED: u64 = 1;
 const SAMPLES: u32 = 3000;
 const RUNS: u32 = 40;
+/// One half.
+pub const HALF: I16F16 = I16F16::from_bits(1 << 15);
 static CRC: Crc<u32> = Crc::<u32>::new(&CRC_32_ISO_HDLC);
 
 /// What the simulator says of one step.
@@ -55,9 +57,7 @@ pub fn evaluate(sample: &Sample) -> Answers {
 
 /// Draws a reading, if there is an echo.
 pub fn reading_cm(answers: &Answers, generator: &mut Generator) -> Option<I16F16> {
-    let deviation_cm = I16F16::ONE / 2;
-    happens(answers.echo_probability.value, generator)
-        .then(|| normal(answers.echo_value.value, deviation_cm, generator))
+    happens(answers.echo_probability.value, generator).then(|| normal(answers.echo_value.value, HALF, generator))
 }
 
 /// A sample from anywhere in the trained ranges, and now and then outside.

@@ -25,3 +25,17 @@ pub mod report_with {
     #[cfg(not(target_os = "none"))]
     pub use std::println;
 }
+
+/// A panic handler that calls what is defined nowhere: an image from which a panic can be reached does not link.
+#[macro_export]
+macro_rules! panics_must_not_link {
+    () => {
+        #[panic_handler]
+        fn panic(_: &core::panic::PanicInfo<'_>) -> ! {
+            unsafe extern "C" {
+                safe fn a_panic_can_be_reached() -> !;
+            }
+            a_panic_can_be_reached()
+        }
+    };
+}
