@@ -7,7 +7,7 @@ use clap::Args;
 use crate::files;
 use crate::gap::baseline::Baseline;
 use crate::gap::verdict::Verdict;
-use crate::gap::{Diagnosis, diagnose};
+use crate::gap::{Diagnosis, admission, diagnose, kinematic};
 use crate::problem::Result;
 use crate::simulator::Simulator;
 
@@ -23,12 +23,20 @@ pub struct Diagnose {
     json: Option<PathBuf>,
 }
 
+/// Stands for a simulator file: the textbook's.
+const KINEMATIC: &str = "kinematic";
+
 impl Diagnose {
     /// Prints the diagnosis.
     pub fn run(&self) -> Result<()> {
-        let simulator = Simulator::read(&self.sim)?;
         let logs = super::read_logs(&self.logs)?;
-        let diagnosis = diagnose(&Baseline::learned(&simulator)?, &logs);
+        let diagnosis = if self.sim.as_os_str() == KINEMATIC {
+            diagnose(kinematic::baseline(&logs), &logs)?
+        } else {
+            let simulator = Simulator::read(&self.sim)?;
+            admission::same_robot(&simulator.robot, &logs.robot)?;
+            diagnose(Baseline::learned(&simulator)?, &logs)?
+        };
         print(&diagnosis);
         if let Some(path) = &self.json {
             files::write_json(path, &diagnosis)?;
@@ -65,4 +73,8 @@ fn print(diagnosis: &Diagnosis) {
             println!("Runner-up {}: {:.0} %", next.id, 100.0 * next.reducible_closed);
         }
     }
+    if !diagnosis.untestable.is_empty() {
+        println!("Not excited by these logs, so neither there nor absent: {}", diagnosis.untestable.join(", "));
+    }
+    diagnosis.notes.iter().for_each(|note| println!("{note}"));
 }
