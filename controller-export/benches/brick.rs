@@ -2,7 +2,7 @@
 
 use divan::Bencher;
 use divan::counter::ItemsCount;
-use mindgap_controller_export::brick::{self, End, Limits, Program, Script, Sonar};
+use mindgap_controller_export::brick::{self, End, Program, Script, Setup, Sonar};
 use mindgap_controller_export::rxe;
 use mindgap_controller_export::wiring::Wiring;
 use mindgap_core::controller::{Controller, Tuple, When};
@@ -15,10 +15,10 @@ fn main() {
 #[divan::bench]
 fn busy_loop(bencher: Bencher) {
     let program = Program::load(&loop_program()).expect("a sound program");
-    let limits = Limits { run_ms: 1_000, instructions_per_ms: 1_000, ..Limits::default() };
-    let instructions = brick::run(&program, &mut Script::default(), &limits).instructions;
+    let setup = Setup { run_ms: 1_000, instructions_per_ms: 1_000, ..Setup::default() };
+    let instructions = brick::run(&program, &mut Script::default(), &setup).instructions;
     bencher.counter(ItemsCount::new(instructions)).bench(|| {
-        let report = brick::run(&program, &mut Script::default(), &limits);
+        let report = brick::run(&program, &mut Script::default(), &setup);
         assert_eq!((report.end, report.instructions), (End::OutOfTime, instructions));
     });
 }
@@ -32,7 +32,7 @@ fn controller_run(bencher: Bencher) {
     let program = Program::load(&file).expect("a sound program");
     bencher.counter(ItemsCount::new(1u32)).bench(|| {
         let mut world = Script::sonar([Sonar::Echo(100); 150]);
-        let report = brick::run(&program, &mut world, &Limits::default());
+        let report = brick::run(&program, &mut world, &Setup::default());
         assert_eq!((report.end, world.asked), (End::Finished, 150));
     });
 }

@@ -2,13 +2,13 @@
 //!
 //! * [`Program`]: an .rxe file, checked. Any file that nbc makes for standard firmware (file versions 0.5 and 0.6).
 //! * [`run`]: runs it until it ends, on a clock of its own, and reports every [`Event`].
-//! * [`World`]: what the brick senses; [`Script`] is one that gives what it was told.
+//! * [`World`]: what the brick senses and moves; [`Script`] is one that gives what it was told.
 //!
 //! Left out: Bluetooth, mailboxes, pictures, colour sensors and motor regulation. A program that asks for one of the
 //! first four ends with [`Fault::Instruction`]; a motor does what its power says.
 //!
 //! ```
-//! use mindgap_controller_export::brick::{self, End, Limits, Program, Script};
+//! use mindgap_controller_export::brick::{self, End, Program, Script, Setup};
 //!
 //! // An empty task, as nbc compiles it: one clump that stops.
 //! # let mut file = b"MindstormsNXT\0\0\x06".to_vec();
@@ -18,7 +18,7 @@
 //! # for word in [2u16, 10, 1, 0xFFFF, 0xFFFF] { file.extend(word.to_le_bytes()); }
 //! # file.extend([0, 0, 0, 0, 0x29, 0x40, 0xFF, 0xFF]);
 //! let program = Program::load(&file)?;
-//! let report = brick::run(&program, &mut Script::default(), &Limits::default());
+//! let report = brick::run(&program, &mut Script::default(), &Setup::default());
 //! assert_eq!(report.end, End::Finished);
 //! # Ok::<(), brick::LoadError>(())
 //! ```
@@ -54,17 +54,19 @@ use crate::onboard::FREE_FLASH_BYTES;
 /// Instructions that a clump runs before the next one has its turn.
 const TURN: u32 = 20;
 
-/// What a run may take, and how fast the brick is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Limits {
+/// The brick before a run: what it has, how fast it is, and when the run is given up.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Setup {
     /// Time after which the run is given up.
     pub run_ms: u32,
     /// Bytecode instructions in a millisecond; a brick manages 80 to 160.
     pub instructions_per_ms: u32,
     /// The clock when the program starts: the brick counts from when it was switched on.
     pub start_tick_ms: u32,
-    /// Free flash.
+    /// Flash for files.
     pub flash_bytes: u32,
+    /// Files that are there already.
+    pub files: BTreeMap<String, Vec<u8>>,
 }
 
 /// What a program did.
@@ -134,7 +136,7 @@ pub enum End {
     Aborted,
     /// The firmware gave up on it: the motors go on until somebody presses a button.
     Failed(Fault),
-    /// It was still running after [`Limits::run_ms`].
+    /// It was still running after [`Setup::run_ms`].
     OutOfTime,
 }
 
@@ -169,15 +171,21 @@ struct Brick<'p, 'w> {
     instructions: u64,
 }
 
-impl Default for Limits {
+impl Default for Setup {
     /// Ten minutes, 100 instructions a millisecond, switched on for five seconds, an empty file system.
     fn default() -> Self {
-        Limits { run_ms: 600_000, instructions_per_ms: 100, start_tick_ms: 5_000, flash_bytes: FREE_FLASH_BYTES }
+        Setup {
+            run_ms: 600_000,
+            instructions_per_ms: 100,
+            start_tick_ms: 5_000,
+            flash_bytes: FREE_FLASH_BYTES,
+            files: BTreeMap::new(),
+        }
     }
 }
 
 /// Runs a program until it ends.
-pub fn run(program: &Program, world: &mut dyn World, limits: &Limits) -> Report {
+pub fn run(program: &Program, world: &mut dyn World, setup: &Setup) -> Report {
     let clump_bytes = program.pool_bytes() - program.data.len();
     let (memory, started) = match Memory::new(program) {
         Ok(memory) => (memory, None),
@@ -190,15 +198,15 @@ pub fn run(program: &Program, world: &mut dyn World, limits: &Limits) -> Report 
         schedule: Schedule::new(program),
         motors: Default::default(),
         ports: Default::default(),
-        flash: Flash::new(limits.flash_bytes),
+        flash: Flash::new(setup.flash_bytes, &setup.files),
         forgotten_releases: [0; 4],
         chance: 1,
-        start_tick_ms: limits.start_tick_ms,
+        start_tick_ms: setup.start_tick_ms,
         t_ms: 0,
         events: Vec::new(),
         instructions: 0,
     };
-    let end = started.unwrap_or_else(|| brick.run(limits));
+    let end = started.unwrap_or_else(|| brick.run(setup));
     let motors = match end {
         End::Aborted => Default::default(),
         _ => brick.motors.each_ref().map(Motor::drive),
@@ -216,21 +224,21 @@ pub fn run(program: &Program, world: &mut dyn World, limits: &Limits) -> Report 
 
 impl Brick<'_, '_> {
     /// Passes of the firmware's scheduler, one a millisecond; those in which every clump sleeps are skipped.
-    fn run(&mut self, limits: &Limits) -> End {
+    fn run(&mut self, setup: &Setup) -> End {
         loop {
             if self.world.exit_pressed_ms().is_some_and(|exit_ms| self.t_ms >= exit_ms) {
                 return End::Aborted;
             }
-            if self.t_ms >= limits.run_ms {
+            if self.t_ms >= setup.run_ms {
                 return End::OutOfTime;
             }
             self.schedule.wake(self.t_ms);
-            match self.pass(limits.instructions_per_ms) {
+            match self.pass(setup.instructions_per_ms) {
                 Ok(None) => {}
                 Ok(Some(end)) => return end,
                 Err(fault) => return End::Failed(fault),
             }
-            let last_ms = self.world.exit_pressed_ms().unwrap_or(u32::MAX).min(limits.run_ms);
+            let last_ms = self.world.exit_pressed_ms().unwrap_or(u32::MAX).min(setup.run_ms);
             self.t_ms = match self.schedule.next_wake_ms() {
                 Some(wake_ms) => wake_ms.min(last_ms).max(self.t_ms + 1),
                 None => self.t_ms + 1,

@@ -2,17 +2,20 @@
 
 use mindgap_core::controller::InvalidController;
 
-use crate::onboard::{FREE_FLASH_BYTES, SHORTEST_STEP_MS};
-
 /// Why a controller cannot become an onboard program: one line that says what to change.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ExportError {
     /// A number of the controller is out of its range.
     #[error("{}", describe(.0))]
     Controller(InvalidController),
-    /// Two steps are closer together than a reading of the sensor takes.
-    #[error("step_ms is {0}, but a step with a reading takes up to {shortest} ms", shortest = SHORTEST_STEP_MS)]
-    StepTooShort(u16),
+    /// Two steps are closer together than a step takes.
+    #[error("step_ms is {step_ms}, but a step takes up to {shortest_ms} ms when the sensor hangs: raise it")]
+    StepTooShort {
+        /// Time between two steps.
+        step_ms: u16,
+        /// The shortest that there can be.
+        shortest_ms: u16,
+    },
     /// A file name that the brick refuses.
     #[error("\"{name}\" cannot be a file name on the brick: {why}")]
     Name {
@@ -35,15 +38,24 @@ pub enum ExportError {
     #[error("left and right motor cannot both be on port {0}")]
     OnePortForTwoMotors(char),
     /// A log that the brick's flash cannot hold.
-    #[error(
-        "the log of {bytes} bytes does not fit the {flash} bytes of flash: lower max_steps to {max_steps}, or log nothing",
-        flash = FREE_FLASH_BYTES
-    )]
+    #[error("the log takes {log_bytes} of {flash_bytes} bytes of flash: log at most {steps} steps, or nothing")]
     LogTooLarge {
         /// The size of the log.
-        bytes: u32,
-        /// The largest step limit whose log fits.
-        max_steps: u16,
+        log_bytes: u32,
+        /// What the program leaves of an empty flash.
+        flash_bytes: u32,
+        /// The most steps whose log fits.
+        steps: u16,
+    },
+    /// A number of a program that collects data is out of its range.
+    #[error("{name} is {value}; it has to lie in {range}")]
+    OutOfRange {
+        /// The number's name.
+        name: &'static str,
+        /// The number.
+        value: u32,
+        /// What it may be.
+        range: &'static str,
     },
 }
 

@@ -1,29 +1,29 @@
 //! Readable NXC source for the LEGO NXT's standard firmware (`nbc -v=128`).
 //!
 //! The parts that never change stand as NXC in the folder beside this file. Only whole numbers, no shifts and no product
-//! wider than 32 bits: what the compiler makes of those depends on the firmware.
+//! wider than 32 bits: what the compiler makes of those depends on the firmware. And no local variable gets its first value
+//! where it is declared: there nbc 1.2.1 takes a signed result for an unsigned one, or the reverse, when the function
+//! before ended with the other kind.
+
+pub(crate) mod source;
 
 use mindgap_core::controller::{Controller, FULL_SPEED, TUPLES, Tuple, When};
 
+use crate::budget::{Budget, Cost};
 use crate::error::ExportError;
 use crate::names::BrickName;
-use crate::onboard;
 use crate::origin::Origin;
 use crate::wiring::Wiring;
 
-const SONAR: &str = include_str!("nxc/sonar.nxc");
-const MOTORS: &str = include_str!("nxc/motors.nxc");
-const LOG: &str = include_str!("nxc/log.nxc");
-const DISPLAY: &str = include_str!("nxc/display.nxc");
+use source::{Constants, DISPLAY, LOG, MOTORS, SONAR, TIME};
+
 /// Lines that only a log or only the display needs start with `@log ` or `@display `.
 const RUN: &str = include_str!("nxc/run.nxc");
 
-/// The longest row that the log can hold, line end included: a time of ten digits, two commands, a reading, two wheel
-/// rotations of seven, and millivolts.
-const LOG_ROW_BYTES: u32 = 10 + 4 + 4 + 3 + 7 + 7 + 5 + 6 + 2;
-const LOG_HEADER_BYTES: u32 = 80;
-/// The row of the start; each step adds one.
-const LOG_EXTRA_ROWS: u32 = 1;
+/// What nbc makes of the program, and of what can be added to it.
+const PLAIN: Cost = Cost { program_bytes: 2_700, memory_bytes: 1_900, step_instructions: 430 };
+const WITH_LOG: Cost = Cost { program_bytes: 2_000, memory_bytes: 2_600, step_instructions: 330 };
+const WITH_DISPLAY: Cost = Cost { program_bytes: 1_000, memory_bytes: 1_000, step_instructions: 210 };
 
 /// What an NXC program does beside running the controller.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -43,12 +43,14 @@ pub struct NxcOptions {
 /// # Errors
 /// What the brick cannot run or store: see [`ExportError`].
 pub fn program(controller: &Controller, origin: &Origin, options: &NxcOptions) -> Result<String, ExportError> {
-    onboard::check(controller)?;
+    controller.check()?;
     options.wiring.check()?;
+    budget(controller, options).check()?;
     let parts = [
         Some(head(controller, origin, &options.program)),
-        Some(constants(controller, options)?),
+        Some(constants(controller, options)),
         Some(tables(controller)),
+        Some(TIME.to_owned()),
         Some(SONAR.to_owned()),
         Some(MOTORS.to_owned()),
         options.log.is_some().then(|| LOG.to_owned()),
@@ -56,6 +58,18 @@ pub fn program(controller: &Controller, origin: &Origin, options: &NxcOptions) -
         Some(run(options)),
     ];
     Ok(parts.into_iter().flatten().collect::<Vec<_>>().join("\n"))
+}
+
+/// What the program takes of the brick once it is compiled.
+pub fn budget(controller: &Controller, options: &NxcOptions) -> Budget {
+    let mut cost = PLAIN;
+    if options.log.is_some() {
+        cost = cost.plus(WITH_LOG);
+    }
+    if options.display {
+        cost = cost.plus(WITH_DISPLAY);
+    }
+    Budget::new(cost, controller.step_ms, options.log.as_ref().map(|_| controller.max_steps))
 }
 
 fn head(controller: &Controller, origin: &Origin, program: &BrickName) -> String {
@@ -75,44 +89,19 @@ fn head(controller: &Controller, origin: &Origin, program: &BrickName) -> String
     text
 }
 
-fn constants(controller: &Controller, options: &NxcOptions) -> Result<String, ExportError> {
-    let Wiring { left, right, sonar } = options.wiring;
-    let mut rows = vec![
-        ("LEFT", format!("OUT_{left}"), ""),
-        ("RIGHT", format!("OUT_{right}"), ""),
-        ("SONAR", format!("IN_{sonar}"), ""),
-        ("TUPLES", TUPLES.to_string(), ""),
-        ("STEP_MS", controller.step_ms.to_string(), ""),
-        ("MAX_STEPS", controller.max_steps.to_string(), ""),
-        ("NO_ECHO", onboard::NO_ECHO_CM.to_string(), "the sensor's own code"),
-        ("SONAR_FAILED", "-1".to_owned(), ""),
-        ("SONAR_WARM_UP_MS", onboard::SONAR_WARM_UP_MS.to_string(), ""),
-        ("SONAR_TIMEOUT_MS", onboard::SONAR_TIMEOUT_MS.to_string(), ""),
-        ("SONAR_POLL_MS", onboard::SONAR_POLL_MS.to_string(), ""),
-        ("FAILED_STEPS_TO_STOP", onboard::FAILED_STEPS_TO_STOP.to_string(), "in a row"),
-        ("BRAKE_MS", onboard::BRAKE_MS.to_string(), "before the program's end lets go of the motors"),
-        ("FINISHED_HZ", onboard::FINISHED_HZ.to_string(), ""),
-        ("GAVE_UP_HZ", onboard::GAVE_UP_HZ.to_string(), ""),
-    ];
+fn constants(controller: &Controller, options: &NxcOptions) -> String {
+    let mut constants = Constants::shared(&options.wiring)
+        .with("TUPLES", TUPLES, "")
+        .with("STEP_MS", controller.step_ms, "")
+        .with("MAX_STEPS", controller.max_steps, "");
     if let Some(log) = &options.log {
-        rows.push(("LOG_NAME", format!("\"{log}\""), ""));
-        rows.push(("LOG_BYTES", log_bytes(controller.max_steps)?.to_string(), "for the longest run"));
+        constants = constants.with("LOG_NAME", format!("\"{log}\""), "").with(
+            "LOG_BYTES",
+            budget(controller, options).log_bytes,
+            "for the longest run",
+        );
     }
-    let mut text = String::new();
-    for (name, value, comment) in rows {
-        let line = format!("#define {name:<20} {value}");
-        text += &if comment.is_empty() { line + "\n" } else { format!("{line:<34} // {comment}\n") };
-    }
-    Ok(text)
-}
-
-fn log_bytes(max_steps: u16) -> Result<u32, ExportError> {
-    let bytes = LOG_HEADER_BYTES + (u32::from(max_steps) + LOG_EXTRA_ROWS) * LOG_ROW_BYTES;
-    if bytes > onboard::FREE_FLASH_BYTES {
-        let rows = (onboard::FREE_FLASH_BYTES - LOG_HEADER_BYTES) / LOG_ROW_BYTES;
-        return Err(ExportError::LogTooLarge { bytes, max_steps: (rows - LOG_EXTRA_ROWS) as u16 });
-    }
-    Ok(bytes)
+    constants.into_text()
 }
 
 fn tables(controller: &Controller) -> String {

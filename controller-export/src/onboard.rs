@@ -1,10 +1,6 @@
 //! What every onboard program does beyond the controller: how long it waits for the ultrasonic sensor, when it takes
 //! the sensor for dead, and how it ends.
 
-use mindgap_core::controller::Controller;
-
-use crate::error::ExportError;
-
 /// The sensor's word for "no echo came back". It is no reading: the tuple is held.
 pub const NO_ECHO_CM: u8 = 255;
 
@@ -33,20 +29,5 @@ pub const GAVE_UP_HZ: u16 = 220;
 /// Volume of the tones, of 4.
 pub const TONE_VOLUME: u8 = 4;
 
-/// The shortest step: a sensor that hangs keeps its port busy for 100 ms.
-pub const SHORTEST_STEP_MS: u16 = 120;
-
 /// User flash of a brick with standard firmware 1.29 and an empty file system.
 pub const FREE_FLASH_BYTES: u32 = 121_124;
-
-/// Checks that a brick can run the controller.
-///
-/// # Errors
-/// [`ExportError::Controller`] or [`ExportError::StepTooShort`].
-pub fn check(controller: &Controller) -> Result<(), ExportError> {
-    controller.check()?;
-    if controller.step_ms < SHORTEST_STEP_MS {
-        return Err(ExportError::StepTooShort(controller.step_ms));
-    }
-    Ok(())
-}

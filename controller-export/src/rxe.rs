@@ -1,7 +1,7 @@
 //! The controller as an .rxe program, without a compiler: one clump of bytecode for standard firmware 1.28 and later.
 //!
-//! * [`layout`]: the dataspace and its arrays.
-//! * [`assembler`]: the instructions.
+//! `rxe/layout.rs` lays out the dataspace with its arrays, `rxe/assembler.rs` writes the instructions, and this module
+//! says which.
 //!
 //! It does what the [NXC program](crate::nxc) does without log and display, in a third of its size.
 
@@ -13,6 +13,7 @@ use mindgap_core::controller::{Controller, FULL_SPEED, TUPLES, When};
 use assembler::{Assembler, Label};
 use layout::{Array, Cluster, Number};
 
+use crate::budget::{Budget, Cost};
 use crate::bytecode::{
     Comparison, InputField, OutputField, RUN_STATE_RUNNING, SENSOR_LOW_SPEED_9V, SONAR_ADDRESS, SONAR_FIRST_ECHO,
     Syscall, Type, mode, update,
@@ -21,13 +22,17 @@ use crate::error::ExportError;
 use crate::onboard;
 use crate::wiring::Wiring;
 
+/// What is [written](program), whatever the controller.
+const COST: Cost = Cost { program_bytes: 950, memory_bytes: 360, step_instructions: 90 };
+
 /// The controller as the bytes of an .rxe file.
 ///
 /// # Errors
 /// What the brick cannot run: see [`ExportError`].
 pub fn program(controller: &Controller, wiring: &Wiring) -> Result<Vec<u8>, ExportError> {
-    onboard::check(controller)?;
+    controller.check()?;
     wiring.check()?;
+    budget(controller).check()?;
     let mut asm = Assembler::default();
     // Large values first, so that few bytes are lost between them.
     let next_ms = asm.number(Type::U32, 0);
@@ -97,6 +102,11 @@ pub fn program(controller: &Controller, wiring: &Wiring) -> Result<Vec<u8>, Expo
     asm.wait(brake_ms);
     asm.stop();
     Ok(asm.into_file())
+}
+
+/// What the program takes of the brick.
+pub fn budget(controller: &Controller) -> Budget {
+    Budget::new(COST, controller.step_ms, None)
 }
 
 /// The motors and the tuples' commands.

@@ -3,14 +3,23 @@
 //! * [`controller`]: a [`Tuple`](controller::Tuple), a [`Controller`](controller::Controller) of six of them, and the
 //!   [`Machine`](controller::Machine) that steps through it.
 //! * [`network`]: one hidden layer of summation and product units, evaluated over any [`Scalar`](scalar::Scalar).
-//! * [`maths`]: the only powers, logarithms and sines in use, the same bits on every machine.
+//! * [`folded`]: the same with its linear part folded together.
+//! * [`fixed_network`]: folded networks in fixed point, over the numbers and functions of [`fixed_point`].
+//! * [`chance`]: whether an echo comes back, and the scatter of a reading, in fixed point.
+//! * [`maths`]: the only powers, logarithms and sines of floats in use, the same bits on every machine.
 //! * [`binary`]: networks and controllers as checked bytes.
+//! * [`limits`]: what an NXT-class brick has room for, checked when this crate is compiled.
 //!
 //! Nothing here allocates, panics or calls the platform's maths.
 #![cfg_attr(not(test), no_std)]
 
 pub mod binary;
+pub mod chance;
 pub mod controller;
+pub mod fixed_network;
+pub mod fixed_point;
+pub mod folded;
+pub mod limits;
 pub mod maths;
 pub mod network;
 pub mod scalar;

@@ -1,5 +1,7 @@
 //! A simulator neural network (SNN): one hidden layer, half summation and half product units (paper, section VII).
 
+use core::fmt;
+
 use serde::{Deserialize, Serialize};
 
 use crate::scalar::Scalar;
@@ -109,6 +111,17 @@ pub enum InvalidNetwork {
     BadScaling,
 }
 
+impl fmt::Display for InvalidNetwork {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            InvalidNetwork::NotFinite => "a weight, exponent, bias or scaling is not a finite number",
+            InvalidNetwork::BadScaling => "an input's range is empty, or not above zero as product units need it",
+        })
+    }
+}
+
+impl core::error::Error for InvalidNetwork {}
+
 impl<W: Copy, const N: usize> Network<W, N> {
     /// The output for one sample, in the unit that the network was trained in. NaN in, NaN out; an input outside
     /// the trained range counts as the range's end.
@@ -126,10 +139,7 @@ impl<W: Copy, const N: usize> Network<W, N> {
         }
         let mut sum = x[0].weight(self.bias);
         for unit in &self.summation {
-            let mut inner = sum.weight(unit.bias);
-            for (x, weight) in x.iter().zip(unit.weights) {
-                inner = inner + *x * x.weight(weight);
-            }
+            let inner = S::weighted_sum(sum.weight(unit.bias), &x, &unit.weights);
             sum = sum + inner * inner.weight(unit.output);
         }
         for unit in &self.product {
@@ -139,10 +149,7 @@ impl<W: Copy, const N: usize> Network<W, N> {
             }
             sum = sum + power * power.weight(unit.output);
         }
-        match self.activation {
-            Activation::Linear => sum,
-            Activation::Ramp => sum.clamp(sum.zero(), sum.one()),
-        }
+        self.activation.apply(sum)
     }
 
     /// A network without hidden units, whose output is `bias` everywhere.
@@ -209,7 +216,7 @@ impl<W: Copy, const N: usize> ProductUnit<W, N> {
     /// Magnitude of the product, from the logarithms of the inputs.
     #[inline(always)]
     pub fn magnitude<S: Scalar<Weight = W>>(&self, log2_x: &[S; N]) -> S {
-        self.weighted_sum(log2_x).exp2()
+        S::product_of_powers(log2_x[0].zero(), log2_x, &self.exponents)
     }
 
     /// Real part of the complex sign of the product.
@@ -219,16 +226,18 @@ impl<W: Copy, const N: usize> ProductUnit<W, N> {
         for value in &mut negative {
             *value = value.negative();
         }
-        self.weighted_sum(&negative).cos_pi()
+        S::weighted_sum(x[0].zero(), &negative, &self.exponents).cos_pi()
     }
+}
 
+impl Activation {
+    /// The output for the sum that reaches the output unit.
     #[inline(always)]
-    fn weighted_sum<S: Scalar<Weight = W>>(&self, terms: &[S; N]) -> S {
-        let mut sum = terms[0].zero();
-        for (term, exponent) in terms.iter().zip(self.exponents) {
-            sum = sum + *term * term.weight(exponent);
+    pub fn apply<S: Scalar>(self, sum: S) -> S {
+        match self {
+            Activation::Linear => sum,
+            Activation::Ramp => sum.clamp(sum.zero(), sum.one()),
         }
-        sum
     }
 }
 

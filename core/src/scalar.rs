@@ -1,4 +1,4 @@
-//! What a network asks of a number. `f32` and `f64` answer here.
+//! What a network asks of a number. `f32` and `f64` answer here, Q16.16 in [`fixed_point`](crate::fixed_point).
 
 use core::ops::{Add, Mul, Sub};
 
@@ -25,6 +25,23 @@ pub trait Scalar: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = 
     fn negative(self) -> Self;
     /// cos(π `self`).
     fn cos_pi(self) -> Self;
+
+    /// `start` + Σ `terms` · `weights`, from the first term to the last.
+    #[inline(always)]
+    fn weighted_sum<const N: usize>(start: Self, terms: &[Self; N], weights: &[Self::Weight; N]) -> Self {
+        let mut sum = start;
+        for (term, weight) in terms.iter().zip(weights) {
+            sum = sum + *term * term.weight(*weight);
+        }
+        sum
+    }
+
+    /// Two to the power of `start` + Σ `logarithms` · `exponents`: a product of powers. The logarithms come from
+    /// [`log2_magnitude`](Scalar::log2_magnitude).
+    #[inline(always)]
+    fn product_of_powers<const N: usize>(start: Self, logarithms: &[Self; N], exponents: &[Self::Weight; N]) -> Self {
+        Self::weighted_sum(start, logarithms, exponents).exp2()
+    }
 }
 
 /// The least magnitude that [`Scalar::log2_magnitude`] tells from zero: the policy for zero in the signed form.

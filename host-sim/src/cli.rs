@@ -1,4 +1,7 @@
 //! The command `mindgap`: one file a command, nothing but arguments and printing.
+//!
+//! A command returns what it has to say, and says it only once everything is done: whoever reads just the first line
+//! of it, as `mindgap evaluate ... | head -1` does, stops nothing halfway.
 
 mod demo;
 mod diagnose;
@@ -11,13 +14,14 @@ mod simulate;
 mod table;
 mod train;
 
+use std::io::{self, ErrorKind, Write};
 use std::path::Path;
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 
 use crate::logs::Logs;
-use crate::problem::Result;
+use crate::problem::{Problem, Result};
 
 /// Learns a robot's simulator from its logs, evolves controllers in it, and finds what reality has that it lacks.
 #[derive(Parser)]
@@ -52,12 +56,23 @@ pub fn run() -> ExitCode {
         Command::Simulate(command) => command.run(),
         Command::Export(command) => command.run(),
     };
-    match done {
+    match done.and_then(|text| say(&text)) {
         Ok(()) => ExitCode::SUCCESS,
         Err(problem) => {
             eprintln!("mindgap: {problem}");
             ExitCode::FAILURE
         }
+    }
+}
+
+/// Writes to standard output. That nobody reads on is no problem.
+fn say(text: &str) -> Result<()> {
+    let mut out = io::stdout().lock();
+    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+        Err(e) if e.kind() != ErrorKind::BrokenPipe => {
+            Err(Problem::new(format!("standard output cannot be written: {e}")))
+        }
+        _ => Ok(()),
     }
 }
 

@@ -20,7 +20,7 @@ use crate::evolve::genome::Coding;
 use crate::evolve::robust::{self, Quest};
 use crate::files;
 use crate::learn::evaluate::{self, Evaluation};
-use crate::learn::{paper, train};
+use crate::learn::train::{self, Trainer};
 use crate::logs::Scene;
 use crate::problem::{Problem, Result};
 use crate::simulator::course::Course;
@@ -30,7 +30,7 @@ use crate::simulator::{Noise, Simulator};
 const TRAINING_RUNS: usize = 100;
 const HELD_OUT_RUNS: usize = 30;
 const STEPS: usize = 60;
-const MAX_STEPS: u16 = 150;
+const MAX_STEPS: u16 = 60;
 /// Runs of each controller on the robot, and as many simulated ones beside them (paper, figure 4).
 const TRIALS: usize = 3;
 /// Fresh simulated runs that a success rate is taken from.
@@ -104,8 +104,7 @@ pub fn run(out: &Path, seed: u64, watch: impl Fn(Stage)) -> Result<Summary> {
     let held_out = record(&scene, HELD_OUT_RUNS, Purpose::HeldOutLogs)?;
     held_out.write(&out.join("held-out-logs"))?;
     scene.write(&out.join("scene.toml"))?;
-    let options = paper::Options::default();
-    let simulator = train::train(&logs, &options, of(Purpose::Training), |p| watch(Stage::Training(p)))?;
+    let simulator = train::train(&logs, &Trainer::Fast, of(Purpose::Training), |p| watch(Stage::Training(p)))?;
     simulator.write(&out.join("simulator.json"))?;
     let evaluation = evaluate::evaluate(&simulator, &held_out)?;
     files::write_json(&out.join("evaluation.json"), &evaluation)?;
@@ -132,11 +131,10 @@ impl<W: Fn(Stage)> Job<'_, W> {
     fn start(&self, start: usize, [evolution, simulation, trial]: [u64; 3]) -> Result<Trial> {
         let pose = self.scene.starts[start];
         let course = &Course::new(self.simulator, self.scene, pose, Noise::Learned)?;
-        let quiet_course = &Course::new(self.simulator, self.scene, pose, Noise::Paper)?;
         let target_cm = self.scene.target_cm.ok_or_else(|| Problem::new("the scene has no target"))?;
         let coding = Coding::new(self.simulator, MAX_STEPS);
         let seed = derive(evolution, &[start as u64]);
-        let quest = Quest { course, quiet_course, target_cm, coding, numbers: Numbers::Fresh, seed };
+        let quest = Quest { course, target_cm, coding, numbers: Numbers::Fresh, seed };
         let tell = |generation, _| (self.watch)(Stage::Evolving { start: start + 1, generation });
         let evolved = robust::evolve(&quest, tell);
         let controller = evolved.controller;

@@ -2,6 +2,7 @@
 
 pub mod dataset;
 pub mod evaluate;
+pub mod fast;
 pub mod genome;
 pub mod kernel;
 pub mod paper;

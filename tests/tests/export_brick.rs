@@ -1,14 +1,14 @@
 //! The brick in software runs what the real compiler makes, and does what was seen in the real firmware.
 
 use mindgap_controller_export::brick::{
-    self, Drive, End, Fault, Limits, LoadError, Program, Report, Script, Sonar, What,
+    self, Drive, End, Fault, LoadError, Program, Report, Script, Setup, Sonar, What,
 };
 use mindgap_tests::nbc::{compile, compile_for};
 use proptest::prelude::*;
 use proptest::test_runner::TestRunner;
 
 fn run(source: &str, world: &mut Script) -> Report {
-    brick::run(&Program::load(&compile(source)).unwrap(), world, &Limits::default())
+    brick::run(&Program::load(&compile(source)).unwrap(), world, &Setup::default())
 }
 
 /// What a task with this body shows on the display.
@@ -199,7 +199,7 @@ fn the_compilers_defect_for_old_firmware_shows() {
         long t = CurrentTick(); int r = SensorUS(IN_4); NumOut(0, LCD_LINE2, CurrentTick() - t); }";
     let took_ms = |firmware| {
         let program = Program::load(&compile_for(source, firmware)).unwrap();
-        let report = brick::run(&program, &mut Script::sonar([Sonar::Echo(9); 2]), &Limits::default());
+        let report = brick::run(&program, &mut Script::sonar([Sonar::Echo(9); 2]), &Setup::default());
         texts(&report)[1].parse::<i32>().unwrap()
     };
     assert!((29..=33).contains(&took_ms("-v=128")), "{}", took_ms("-v=128"));
@@ -228,8 +228,8 @@ fn memory_is_packed_when_it_is_in_pieces() {
 #[test]
 fn a_program_that_never_ends_runs_out_of_time() {
     let report = run("task main() { while (true) Wait(7); }", &mut Script::default());
-    assert_eq!((report.end, report.ended_ms), (End::OutOfTime, Limits::default().run_ms));
-    let busy = Limits { run_ms: 1000, ..Limits::default() };
+    assert_eq!((report.end, report.ended_ms), (End::OutOfTime, Setup::default().run_ms));
+    let busy = Setup { run_ms: 1000, ..Setup::default() };
     let program = Program::load(&compile("task main() { int i; while (true) i++; }")).unwrap();
     let report = brick::run(&program, &mut Script::default(), &busy);
     assert_eq!((report.end, report.instructions), (End::OutOfTime, 100_000));
@@ -278,7 +278,7 @@ fn a_whole_program_is_loaded_and_a_cut_one_is_not() {
 #[test]
 fn broken_files_neither_panic_nor_hang() {
     let intact = a_program();
-    let limits = Limits { run_ms: 300, ..Limits::default() };
+    let setup = Setup { run_ms: 300, ..Setup::default() };
     let sonar = prop_oneof![any::<u8>().prop_map(Sonar::Echo), Just(Sonar::Silent), Just(Sonar::Hangs)];
     let changes = prop::collection::vec((0..intact.len(), any::<u8>()), 1..12);
     let config = ProptestConfig { cases: 3000, failure_persistence: None, ..ProptestConfig::default() };
@@ -288,9 +288,9 @@ fn broken_files_neither_panic_nor_hang() {
             rxe[at] = value;
         }
         if let Ok(program) = Program::load(&rxe) {
-            let report = brick::run(&program, &mut Script::sonar(sonar), &limits);
-            prop_assert!(report.ended_ms <= limits.run_ms);
-            prop_assert!(report.instructions <= u64::from(limits.run_ms) * u64::from(limits.instructions_per_ms));
+            let report = brick::run(&program, &mut Script::sonar(sonar), &setup);
+            prop_assert!(report.ended_ms <= setup.run_ms);
+            prop_assert!(report.instructions <= u64::from(setup.run_ms) * u64::from(setup.instructions_per_ms));
         }
         Ok(())
     });

@@ -1,9 +1,9 @@
 //! Onboard programs do what the core's stepping machine does: same tuples, same commands, same end, at the same times.
 
-use mindgap_controller_export::brick::{self, Drive, End, Event, Limits, Program, Report, Script, Sonar, What};
+use mindgap_controller_export::brick::{self, Drive, End, Event, Program, Report, Script, Setup, Sonar, What};
 use mindgap_controller_export::names::BrickName;
 use mindgap_controller_export::nxc::{self, NxcOptions};
-use mindgap_controller_export::onboard::{FAILED_STEPS_TO_STOP, NO_ECHO_CM, SHORTEST_STEP_MS, SONAR_TIMEOUT_MS};
+use mindgap_controller_export::onboard::{FAILED_STEPS_TO_STOP, NO_ECHO_CM, SONAR_TIMEOUT_MS};
 use mindgap_controller_export::wiring::{MotorPort, SensorPort, Wiring};
 use mindgap_controller_export::{Origin, rxe};
 use mindgap_core::controller::{Controller, Machine, Motors, Status, Tuple, When};
@@ -17,6 +17,8 @@ const RUNS: u32 = 10_000;
 /// Controllers that go through the real compiler, and runs of each.
 const COMPILED: usize = 24;
 const RUNS_OF_COMPILED: u32 = 100;
+/// The shortest step that every kind of program keeps.
+const SHORTEST_STEP_MS: u16 = 120;
 /// Time from a step's tick to its motor commands when the sensor answers.
 const LATENCY_MS: u32 = 15;
 /// How far two programs' times may lie apart.
@@ -94,7 +96,7 @@ fn expected(controller: &Controller, sonar: &[Sonar]) -> (Vec<Change>, Status) {
 
 fn run(program: &Program, wiring: &Wiring, sonar: &[Sonar]) -> Report {
     let mut world = Script { sonar_port: wiring.sonar as usize, ..Script::sonar(sonar) };
-    brick::run(program, &mut world, &Limits::default())
+    brick::run(program, &mut world, &Setup::default())
 }
 
 /// The motor commands of a run, left and right together, with their times.

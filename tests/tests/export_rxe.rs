@@ -3,33 +3,18 @@
 use std::path::Path;
 use std::process::Command;
 
-use mindgap_controller_export::brick::{self, End, Limits, Program, Report, Script, Sonar};
+use mindgap_controller_export::brick::{self, End, Program, Report, Script, Setup, Sonar};
 use mindgap_controller_export::wiring::{MotorPort, Wiring};
 use mindgap_controller_export::{ExportError, rxe};
-use mindgap_core::controller::{Controller, Tuple, When};
+use mindgap_core::controller::Controller;
+use mindgap_tests::controllers::at_its_limits;
 
 const MOST_FILE_BYTES: usize = 1_500;
 const MOST_POOL_BYTES: usize = 1_024;
 const MOST_INSTRUCTIONS_PER_STEP: u64 = 200;
 
-fn controller() -> Controller {
-    let tuple = |left, right, when, threshold_cm| Tuple { left, right, when, threshold_cm };
-    Controller {
-        step_ms: 400,
-        max_steps: 150,
-        tuples: [
-            tuple(55, 48, When::Smaller, 42),
-            tuple(-100, 100, When::Larger, 0),
-            tuple(100, -100, When::Smaller, 255),
-            tuple(0, 0, When::Larger, 254),
-            tuple(7, -3, When::Smaller, 1),
-            tuple(60, 60, When::Larger, 128),
-        ],
-    }
-}
-
 fn run(file: &[u8], sonar: &[Sonar]) -> Report {
-    brick::run(&Program::load(file).unwrap(), &mut Script::sonar(sonar), &Limits::default())
+    brick::run(&Program::load(file).unwrap(), &mut Script::sonar(sonar), &Setup::default())
 }
 
 fn nbc(arguments: &[&str], folder: &Path) -> String {
@@ -41,7 +26,7 @@ fn nbc(arguments: &[&str], folder: &Path) -> String {
 
 #[test]
 fn the_compiler_takes_the_file_apart_and_puts_it_together_again() {
-    let written = rxe::program(&controller(), &Wiring::default()).unwrap();
+    let written = rxe::program(&at_its_limits(), &Wiring::default()).unwrap();
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("own.rxe"), &written).unwrap();
     let text = nbc(&["-x", "own.rxe", "-O=own.nbc"], folder.path());
@@ -58,7 +43,7 @@ fn the_compiler_takes_the_file_apart_and_puts_it_together_again() {
 #[test]
 fn the_program_keeps_its_budget() {
     for max_steps in [1, u16::MAX] {
-        let file = rxe::program(&Controller { max_steps, ..controller() }, &Wiring::default()).unwrap();
+        let file = rxe::program(&Controller { max_steps, ..at_its_limits() }, &Wiring::default()).unwrap();
         assert!(file.len() <= MOST_FILE_BYTES, "{} bytes", file.len());
         let report = run(&file, &[Sonar::Echo(50)]);
         assert!(report.pool_bytes <= MOST_POOL_BYTES, "{} bytes of memory", report.pool_bytes);
@@ -67,7 +52,7 @@ fn the_program_keeps_its_budget() {
 
 #[test]
 fn no_step_takes_more_instructions_than_planned() {
-    let file = rxe::program(&controller(), &Wiring::default()).unwrap();
+    let file = rxe::program(&at_its_limits(), &Wiring::default()).unwrap();
     let instructions = |sonar: &[Sonar]| run(&file, sonar).instructions;
     let hangs_once = [Sonar::Hangs, Sonar::Echo(0), Sonar::Hangs, Sonar::Echo(1)];
     for sonar in [&[Sonar::Echo(41), Sonar::Echo(1), Sonar::Echo(0)][..], &[Sonar::Echo(255); 5], &hangs_once] {
@@ -80,7 +65,7 @@ fn no_step_takes_more_instructions_than_planned() {
 
 #[test]
 fn a_dead_sensor_stops_the_motors_within_two_steps() {
-    let file = rxe::program(&controller(), &Wiring::default()).unwrap();
+    let file = rxe::program(&at_its_limits(), &Wiring::default()).unwrap();
     for dead in [Sonar::Silent, Sonar::Hangs] {
         let report = run(&file, &[Sonar::Echo(60), dead, dead]);
         let stopped_ms = report.events.last().unwrap().t_ms - report.events[0].t_ms;
@@ -94,8 +79,8 @@ fn a_dead_sensor_stops_the_motors_within_two_steps() {
 
 #[test]
 fn what_the_brick_cannot_run_is_refused() {
-    let hasty = Controller { step_ms: 1, ..controller() };
-    assert_eq!(rxe::program(&hasty, &Wiring::default()), Err(ExportError::StepTooShort(1)));
+    let hasty = Controller { step_ms: 1, ..at_its_limits() };
+    assert!(matches!(rxe::program(&hasty, &Wiring::default()), Err(ExportError::StepTooShort { step_ms: 1, .. })));
     let wiring = Wiring { right: MotorPort::B, ..Wiring::default() };
-    assert_eq!(rxe::program(&controller(), &wiring), Err(ExportError::OnePortForTwoMotors('B')));
+    assert_eq!(rxe::program(&at_its_limits(), &wiring), Err(ExportError::OnePortForTwoMotors('B')));
 }

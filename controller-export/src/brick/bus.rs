@@ -47,10 +47,10 @@ impl Port {
         match InputField::from_number(field).ok_or(Fault::Instruction)? {
             InputField::Type => {
                 self.kind = value as u8;
-                self.invalid_until_ms = Some(t_ms + SETTLE_MS);
+                self.invalid_until_ms = Some(t_ms.saturating_add(SETTLE_MS));
             }
             InputField::Mode => self.mode = value as u8,
-            InputField::InvalidData => self.invalid_until_ms = (value != 0).then_some(t_ms + SETTLE_MS),
+            InputField::InvalidData => self.invalid_until_ms = (value != 0).then_some(t_ms.saturating_add(SETTLE_MS)),
             InputField::AdRaw | InputField::NormRaw | InputField::Scaled => {}
         }
         Ok(())
@@ -140,15 +140,15 @@ impl Port {
 }
 
 fn exchange(request: &[u8], answer_bytes: usize, t_ms: u32, sonar: impl FnOnce() -> Sonar) -> State {
-    let silence = State::Busy(t_ms + SILENCE_MS, None);
+    let silence = State::Busy(t_ms.saturating_add(SILENCE_MS), None);
     let [SONAR_ADDRESS, register, ..] = request else { return silence };
     if answer_bytes == 0 {
-        return State::Busy(t_ms + ANSWER_MS, Some(Vec::new()));
+        return State::Busy(t_ms.saturating_add(ANSWER_MS), Some(Vec::new()));
     }
     let echo = match sonar() {
         Sonar::Echo(echo_cm) => echo_cm,
         Sonar::Silent => return silence,
-        Sonar::Hangs => return State::Busy(t_ms + HANG_MS, None),
+        Sonar::Hangs => return State::Busy(t_ms.saturating_add(HANG_MS), None),
     };
     let registers = usize::from(*register)..usize::from(*register) + answer_bytes;
     let answer = registers.map(|register| match register.checked_sub(usize::from(SONAR_FIRST_ECHO)) {
@@ -156,5 +156,5 @@ fn exchange(request: &[u8], answer_bytes: usize, t_ms: u32, sonar: impl FnOnce()
         Some(1..8) => NO_FURTHER_ECHO,
         _ => FACTORY_ZERO,
     });
-    State::Busy(t_ms + ANSWER_MS, Some(answer.collect()))
+    State::Busy(t_ms.saturating_add(ANSWER_MS), Some(answer.collect()))
 }

@@ -48,8 +48,13 @@ struct Handle {
 }
 
 impl Flash {
-    pub(super) fn new(bytes: u32) -> Self {
-        Flash { files: BTreeMap::new(), handles: Default::default(), bytes }
+    /// A flash of so many bytes that holds these files.
+    pub(super) fn new(bytes: u32, files: &BTreeMap<String, Vec<u8>>) -> Self {
+        let file = |(name, content): (&String, &Vec<u8>)| {
+            let file = File { name: name.clone(), content: content.clone(), reserved: content.len() as u32 };
+            (name.to_ascii_lowercase(), file)
+        };
+        Flash { files: files.iter().map(file).collect(), handles: Default::default(), bytes }
     }
 
     pub(super) fn create(&mut self, name: &str, reserved: u32) -> Result<u8, u16> {

@@ -404,6 +404,7 @@ impl<'p> Brick<'p, '_> {
                 motor.set(pair[0], self.memory.get_id(pair[1])?)?;
             }
             if let Some(drive) = motor.apply(self.world.rotation_deg(port, self.t_ms)) {
+                self.world.motor(port, drive, self.t_ms);
                 self.emit(What::Motor { port, drive });
             }
         }

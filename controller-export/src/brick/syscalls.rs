@@ -98,7 +98,7 @@ impl Brick<'_, '_> {
                 self.memory.set_id(result, state)
             }
             Syscall::DrawText => {
-                let (x, y) = (argument[1] + 1, argument[1] + 2);
+                let [x, y, ..] = self.arguments(argument[1])?;
                 let (x, y) = (self.memory.get_id(x)? as i16, self.memory.get_id(y)? as i16);
                 let text = self.name(argument[2])?;
                 self.emit(What::Text { x, y, text });

@@ -2,16 +2,12 @@
 
 /// A float as at most two decimals, or six digits and an exponent where it would not fit the display.
 pub(super) fn of_float(x: f32) -> String {
-    const FITS: std::ops::RangeInclusive<f32> = -999_999_999_999.99..=9_999_999_999_999.99;
-    if !x.is_finite() {
-        return if x.is_nan() {
-            "nan"
-        } else if x > 0.0 {
-            "inf"
-        } else {
-            "-inf"
-        }
-        .to_owned();
+    const FITS: std::ops::RangeInclusive<f32> = -1e12..=1e13;
+    if x.is_nan() {
+        return "nan".to_owned();
+    }
+    if x.is_infinite() {
+        return if x > 0.0 { "inf" } else { "-inf" }.to_owned();
     }
     if !FITS.contains(&x) {
         return with_exponent(x);

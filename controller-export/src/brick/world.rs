@@ -1,9 +1,16 @@
-//! What a brick senses.
+//! What a brick senses, and what it moves.
 
-/// What is around the brick: sensors, buttons, battery, wheels. Times are milliseconds since the program started.
+use super::motors::Drive;
+
+/// What is around the brick: sensors, motors, buttons, battery. Times are milliseconds since the program started.
 pub trait World {
     /// What the ultrasonic sensor does with a request for its nearest echo; `port` counts from 0.
     fn sonar(&mut self, port: usize, t_ms: u32) -> Sonar;
+
+    /// A motor does this from now on; `port` counts from 0.
+    fn motor(&mut self, port: usize, drive: Drive, t_ms: u32) {
+        let _ = (port, drive, t_ms);
+    }
 
     /// Rotation of a motor's shaft; `port` counts from 0.
     fn rotation_deg(&mut self, port: usize, t_ms: u32) -> i32 {

@@ -22,13 +22,13 @@ pub struct Demo {
 }
 
 impl Demo {
-    /// Does the job and prints a table.
-    pub fn run(&self) -> Result<()> {
+    /// Does the job and tells how it went as tables.
+    pub fn run(&self) -> Result<String> {
         let line = progress::spinner();
         let watch = |stage: Stage| {
             line.set_message(match stage {
                 Stage::Recording => "recording logs of the built-in robot".into(),
-                Stage::Training(p) => format!("training {}: generation {}", p.network, p.generation),
+                Stage::Training(p) => progress::training(&p),
                 Stage::Evolving { start, generation } => {
                     format!("evolving for start {start}: generation {generation} of {}", robust::GENERATIONS)
                 }
@@ -38,15 +38,12 @@ impl Demo {
         };
         let summary = demo::run(&self.out, self.seed, watch)?;
         line.finish_and_clear();
-        print(&summary);
-        println!("\nlogs, simulator, controllers, NXC programs and pictures are in {}", self.out.display());
-        Ok(())
+        let out = self.out.display();
+        Ok(format!("{}\nlogs, simulator, controllers, NXC programs and pictures are in {out}\n", told(&summary)))
     }
 }
 
-fn print(summary: &Summary) {
-    super::evaluate::print_accuracy(&summary.evaluation);
-    println!();
+fn told(summary: &Summary) -> String {
     let percent = |rate: f64| format!("{:.0} %", 100.0 * rate);
     let rows: Vec<[String; 5]> = summary
         .starts
@@ -63,5 +60,5 @@ fn print(summary: &Summary) {
         })
         .collect();
     let header = ["controller for", "simulated: reached", "median (cm)", "robot: reached", "median (cm)"];
-    table::print(header, &rows);
+    format!("{}\n{}", super::evaluate::accuracy(&summary.evaluation), table::text(header, &rows))
 }

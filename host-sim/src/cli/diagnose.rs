@@ -14,7 +14,7 @@ use crate::simulator::Simulator;
 /// Find the gap between a simulator and logs: where it lies, what causes it, and how far it shrinks.
 #[derive(Args)]
 pub struct Diagnose {
-    /// The simulator file, or the word kinematic: the textbook's drive and an ideal sonar.
+    /// The simulator file.
     sim: PathBuf,
     /// Folder of logs.
     logs: PathBuf,
@@ -27,8 +27,8 @@ pub struct Diagnose {
 const KINEMATIC: &str = "kinematic";
 
 impl Diagnose {
-    /// Prints the diagnosis.
-    pub fn run(&self) -> Result<()> {
+    /// Diagnoses; returns the findings.
+    pub fn run(&self) -> Result<String> {
         let logs = super::read_logs(&self.logs)?;
         let diagnosis = if self.sim.as_os_str() == KINEMATIC {
             diagnose(kinematic::baseline(&logs), &logs)?
@@ -37,44 +37,51 @@ impl Diagnose {
             admission::same_robot(&simulator.robot, &logs.robot)?;
             diagnose(Baseline::learned(&simulator)?, &logs)?
         };
-        print(&diagnosis);
         if let Some(path) = &self.json {
             files::write_json(path, &diagnosis)?;
         }
-        Ok(())
+        Ok(text(&diagnosis))
     }
 }
 
-/// Prints a diagnosis on one screen.
-fn print(diagnosis: &Diagnosis) {
-    match diagnosis.verdict {
-        Verdict::NoGap => println!("No gap: the logs agree with the simulator within its own error."),
-        Verdict::Known => println!("There is a gap, and known effects explain it:"),
-        Verdict::Unknown => println!("There is a gap, and no known effect explains it."),
-    }
+/// A diagnosis on one screen.
+fn text(diagnosis: &Diagnosis) -> String {
+    let verdict = match diagnosis.verdict {
+        Verdict::NoGap => "No gap: the logs agree with the simulator within its own error.",
+        Verdict::Known => "There is a gap, and known effects explain it:",
+        Verdict::Unknown => "There is a gap, and no known effect explains it.",
+    };
+    let mut lines = vec![verdict.to_string()];
     for effect in &diagnosis.effects {
         let parameters: Vec<String> = effect.parameters.iter().map(|(name, value)| format!("{name} {value}")).collect();
-        println!("  {:>3.0} %  {}: {}", 100.0 * effect.probability, effect.id, parameters.join(", "));
+        lines.push(format!("  {:>3.0} %  {}: {}", 100.0 * effect.probability, effect.id, parameters.join(", ")));
         if !effect.ambiguous_with.is_empty() {
-            println!("         these logs cannot tell it from {}", effect.ambiguous_with.join(", "));
+            lines.push(format!("         these logs cannot tell it from {}", effect.ambiguous_with.join(", ")));
         }
     }
     for place in &diagnosis.r#where {
-        println!("  {:>3.0} % of the gap in {}: {}", 100.0 * place.share, place.channel.name(), place.context);
+        lines.push(format!(
+            "  {:>3.0} % of the gap in {}: {}",
+            100.0 * place.share,
+            place.channel.name(),
+            place.context
+        ));
     }
     if let Some(shrink) = &diagnosis.shrink {
         let [low, high] = shrink.ci95.map(|share| 100.0 * share);
         let closed = 100.0 * shrink.reducible_closed;
-        println!(
+        lines.push(format!(
             "Gap {:.3} -> {:.3} nats a step on runs not fitted on: {closed:.0} % of what is reducible ({low:.0} to {high:.0})",
             shrink.before, shrink.after
-        );
+        ));
         if let Some(next) = &shrink.runner_up {
-            println!("Runner-up {}: {:.0} %", next.id, 100.0 * next.reducible_closed);
+            lines.push(format!("Runner-up {}: {:.0} %", next.id, 100.0 * next.reducible_closed));
         }
     }
     if !diagnosis.untestable.is_empty() {
-        println!("Not excited by these logs, so neither there nor absent: {}", diagnosis.untestable.join(", "));
+        let ids = diagnosis.untestable.join(", ");
+        lines.push(format!("Not excited by these logs, so neither there nor absent: {ids}"));
     }
-    diagnosis.notes.iter().for_each(|note| println!("{note}"));
+    lines.extend(diagnosis.notes.iter().cloned());
+    lines.join("\n") + "\n"
 }

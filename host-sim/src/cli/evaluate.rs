@@ -23,34 +23,33 @@ pub struct Evaluate {
 }
 
 impl Evaluate {
-    /// Prints the figures.
-    pub fn run(&self) -> Result<()> {
+    /// Tells the figures.
+    pub fn run(&self) -> Result<String> {
         let simulator = Simulator::read(&self.sim)?;
         let evaluation = evaluate::evaluate(&simulator, &super::read_logs(&self.logs)?)?;
-        print(&evaluation);
         if let Some(path) = &self.json {
             files::write_json(path, &evaluation)?;
         }
-        Ok(())
+        Ok(told(&evaluation))
     }
 }
 
-/// Prints an evaluation as tables, with the reliability of the probability.
-fn print(evaluation: &Evaluation) {
-    print_accuracy(evaluation);
+/// An evaluation as tables, with the reliability of the probability.
+fn told(evaluation: &Evaluation) -> String {
+    let mut text = accuracy(evaluation);
     if let Some(p) = &evaluation.networks.echo_probability {
         let bins: Vec<[String; 3]> = p
             .reliability
             .iter()
             .map(|b| [number(Some(b.predicted), 3), number(Some(b.observed), 3), b.n.to_string()])
             .collect();
-        println!();
-        table::print(["predicted", "observed", "n"], &bins);
+        text += &format!("\n{}", table::text(["predicted", "observed", "n"], &bins));
     }
+    text
 }
 
-/// Prints the accuracy of every network.
-pub fn print_accuracy(evaluation: &Evaluation) {
+/// The accuracy of every network, as tables.
+pub fn accuracy(evaluation: &Evaluation) -> String {
     let Networks { turn, forward, lateral, echo_probability, echo_value } = &evaluation.networks;
     let values =
         [("turn (deg)", turn), ("forward (cm)", forward), ("lateral (cm)", lateral), ("echo value (cm)", echo_value)];
@@ -64,12 +63,11 @@ pub fn print_accuracy(evaluation: &Evaluation) {
             [name.into(), number(v.r2, 4), number(Some(v.mse), 4), slope, intercept, v.n.to_string()]
         })
         .collect();
-    table::print(["network", "R2", "MSE", "slope", "intercept", "n"], &rows);
+    let mut text = table::text(["network", "R2", "MSE", "slope", "intercept", "n"], &rows);
     if let Some(mae_cm) = echo_value.as_ref().and_then(|v| v.mae_cm) {
-        println!("echo value: mean absolute error {mae_cm:.2} cm");
+        text += &format!("echo value: mean absolute error {mae_cm:.2} cm\n");
     }
     if let Some(p) = echo_probability {
-        println!();
         let row = [
             "echo".to_string(),
             number(Some(p.brier), 4),
@@ -78,6 +76,8 @@ pub fn print_accuracy(evaluation: &Evaluation) {
             number(p.r2, 4),
             p.n.to_string(),
         ];
-        table::print(["probability", "Brier", "log loss", "AUC", "R2", "n"], &[row]);
+        let header = ["probability", "Brier", "log loss", "AUC", "R2", "n"];
+        text += &format!("\n{}", table::text(header, &[row]));
     }
+    text
 }

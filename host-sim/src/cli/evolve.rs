@@ -11,7 +11,7 @@ use crate::evolve::genome::Coding;
 use crate::evolve::paper;
 use crate::evolve::robust::{self, Quest};
 use crate::geometry::Pose;
-use crate::logs::Scene;
+use crate::logs::{Robot, Scene};
 use crate::problem::{Problem, Result};
 use crate::simulator::course::Course;
 use crate::simulator::{Noise, Simulator};
@@ -41,7 +41,7 @@ pub struct Evolve {
     #[arg(long)]
     paper_noise: bool,
     /// Steps after which a controller gives up.
-    #[arg(long, default_value_t = 150, value_parser = value_parser!(u16).range(1..))]
+    #[arg(long, default_value_t = 60, value_parser = value_parser!(u16).range(1..))]
     max_steps: u16,
     /// Let all individuals of a generation meet the same random numbers.
     #[arg(long)]
@@ -55,14 +55,13 @@ const JUDGING: u64 = 1;
 
 impl Evolve {
     /// Evolves and writes the controller.
-    pub fn run(&self) -> Result<()> {
+    pub fn run(&self) -> Result<String> {
         let simulator = Simulator::read(&self.sim)?;
         let scene = Scene::read(&self.scene)?;
-        let start = start_of(&scene, self.start, &self.scene)?;
+        let start = start_of(&scene, self.start, &simulator.robot, &self.scene)?;
         let target_cm = scene.target_cm.ok_or_else(|| Problem::in_file(&self.scene, "has no [target]"))?;
         let noise = if self.paper || self.paper_noise { Noise::Paper } else { Noise::Learned };
         let course = &Course::new(&simulator, &scene, start, noise)?;
-        let quiet_course = &Course::new(&simulator, &scene, start, Noise::Paper)?;
         let coding = Coding::new(&simulator, self.max_steps);
         let numbers = if self.common_numbers { Numbers::Common } else { Numbers::Fresh };
         let seed = self.seed;
@@ -77,7 +76,7 @@ impl Evolve {
         let evolved = if self.paper {
             paper::evolve(&task, &settings, watch)
         } else {
-            robust::evolve(&Quest { course, quiet_course, target_cm, coding, numbers, seed }, watch)
+            robust::evolve(&Quest { course, target_cm, coding, numbers, seed }, watch)
         };
         bar.finish_and_clear();
         let success = task.success(&evolved.controller, JUDGED_RUNS, JUDGING);
@@ -91,26 +90,30 @@ impl Evolve {
             success: success.rate,
         };
         ControllerFile { controller: evolved.controller, origin: Some(origin) }.write(&self.out)?;
-        println!(
-            "start {}: {:.0} % of {JUDGED_RUNS} fresh simulated runs reach the target, {:.0} % crash; median distance {:.1} cm",
+        Ok(format!(
+            "start {}: {:.0} % of {JUDGED_RUNS} fresh simulated runs reach the target, {:.0} % crash; median distance {:.1} cm\n\
+             controller written to {}\n",
             self.start,
             100.0 * success.rate,
             100.0 * success.crashed,
-            success.median_cm
-        );
-        println!("controller written to {}", self.out.display());
-        Ok(())
+            success.median_cm,
+            self.out.display()
+        ))
     }
 }
 
-/// Start N (from 1) of a scene.
-pub fn start_of(scene: &Scene, number: usize, path: &Path) -> Result<Pose> {
+/// Start N (from 1) of a scene, where the robot has room.
+pub fn start_of(scene: &Scene, number: usize, robot: &Robot, path: &Path) -> Result<Pose> {
     let count = scene.starts.len();
-    number
-        .checked_sub(1)
-        .and_then(|i| scene.starts.get(i))
-        .copied()
-        .ok_or_else(|| Problem::in_file(path, format!("has {count} [[start]] table(s); there is no start {number}")))
+    let start = number.checked_sub(1).and_then(|i| scene.starts.get(i)).copied();
+    let start = start
+        .ok_or_else(|| Problem::in_file(path, format!("has {count} [[start]] table(s); there is no start {number}")))?;
+    let radius_cm = robot.body_radius_cm;
+    if !scene.has_room_for(start.position_cm, radius_cm) {
+        let what = format!("start {number} leaves no room for a robot of radius {radius_cm} cm");
+        return Err(Problem::in_file(path, what));
+    }
+    Ok(start)
 }
 
 /// A file's name alone: where it lay says nothing to others.

@@ -2,6 +2,8 @@
 
 use indicatif::{ProgressBar, ProgressStyle};
 
+use crate::learn::train::Progress;
+
 /// A line that tells what is being done, with a spinner and the time gone by.
 pub fn spinner() -> ProgressBar {
     let bar = ProgressBar::new_spinner();
@@ -15,4 +17,12 @@ pub fn bar(steps: u64) -> ProgressBar {
     let style = ProgressStyle::with_template("{bar:30} {pos}/{len} [{elapsed}] {msg}").expect("the template is right");
     bar.set_style(style);
     bar
+}
+
+/// What training is at.
+pub fn training(progress: &Progress) -> String {
+    match progress.generation {
+        0 => format!("training {}", progress.network),
+        generation => format!("training {}: generation {generation}", progress.network),
+    }
 }

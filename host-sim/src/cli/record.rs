@@ -37,16 +37,16 @@ impl Record {
     ///
     /// # Errors
     /// When the scene cannot be read or has no room for the robot, or when the logs cannot be written.
-    pub fn run(&self) -> Result<()> {
+    pub fn run(&self) -> Result<String> {
         let scene = match &self.scene {
             Some(path) => Scene::read(path)?,
             None => training_room(),
         };
         let (runs, steps) = (self.runs as usize, self.steps as usize);
-        let logs = record(&default_robot(), &scene, runs, steps, &self.effects, self.seed)?;
+        let logs = record(&default_robot(), &scene, runs, steps, &self.effects, self.seed)
+            .map_err(|problem| self.scene.iter().fold(problem, |p, scene| p.or_in_file(scene)))?;
         logs.write(&self.out)?;
-        println!("{}: {} runs of {} steps", self.out.display(), self.runs, self.steps);
-        Ok(())
+        Ok(format!("{}: {} runs of {} steps\n", self.out.display(), self.runs, self.steps))
     }
 }
 

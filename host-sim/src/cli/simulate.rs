@@ -45,24 +45,23 @@ pub struct Simulate {
 const ROWS: usize = 20;
 
 impl Simulate {
-    /// Simulates and prints.
-    pub fn run(&self) -> Result<()> {
+    /// Simulates and tells how the runs ended.
+    pub fn run(&self) -> Result<String> {
         let simulator = Simulator::read(&self.sim)?;
         let controller = ControllerFile::read(&self.controller)?.controller;
         let scene = Scene::read(&self.scene)?;
-        let start = start_of(&scene, self.start, &self.scene)?;
+        let start = start_of(&scene, self.start, &simulator.robot, &self.scene)?;
         let noise = if self.paper_noise { Noise::Paper } else { Noise::Learned };
         let course = Course::new(&simulator, &scene, start, noise)?;
         let rehearsal = Rehearsal::new(&course, &scene, &controller, self.runs as usize, self.seed);
         if let Some(path) = &self.json {
             files::write_json(path, &rehearsal)?;
         }
-        print(&rehearsal);
-        Ok(())
+        Ok(told(&rehearsal))
     }
 }
 
-fn print(rehearsal: &Rehearsal) {
+fn told(rehearsal: &Rehearsal) -> String {
     let rows: Vec<[String; 6]> = rehearsal
         .runs
         .iter()
@@ -74,18 +73,18 @@ fn print(rehearsal: &Rehearsal) {
             [(i + 1).to_string(), run.ending.into(), run.steps.to_string(), x, y, number(run.distance_cm, 1)]
         })
         .collect();
-    table::print(["run", "ending", "steps", "x (cm)", "y (cm)", "to target (cm)"], &rows);
+    let mut text = table::text(["run", "ending", "steps", "x (cm)", "y (cm)", "to target (cm)"], &rows);
     if rehearsal.runs.len() > ROWS {
-        println!("... and {} more", rehearsal.runs.len() - ROWS);
+        text += &format!("... and {} more\n", rehearsal.runs.len() - ROWS);
     }
     let crashed = rehearsal.runs.iter().filter(|run| run.ending == "crashed").count();
     let crashes = format!("{crashed} of {} crashed", rehearsal.runs.len());
-    match rehearsal.success {
-        Some(success) => println!(
-            "{:.1} % of the runs reached the target (within {} cm, no crash); {crashes}",
+    text + &match rehearsal.success {
+        Some(success) => format!(
+            "{:.1} % of the runs reached the target (within {} cm, no crash); {crashes}\n",
             100.0 * success,
             rehearsal.reached_within_cm
         ),
-        None => println!("{crashes}; the scene has no target"),
+        None => format!("{crashes}; the scene has no target\n"),
     }
 }

@@ -1,7 +1,7 @@
 //! Plain tables for the terminal.
 
-/// Prints rows under a header, the first column to the left and all others to the right.
-pub fn print<const N: usize>(header: [&str; N], rows: &[[String; N]]) {
+/// Rows under a header, the first column to the left and all others to the right.
+pub fn text<const N: usize>(header: [&str; N], rows: &[[String; N]]) -> String {
     let widths: [usize; N] = std::array::from_fn(|i| {
         rows.iter().map(|row| row[i].chars().count()).chain([header[i].chars().count()]).max().unwrap_or(0)
     });
@@ -12,10 +12,10 @@ pub fn print<const N: usize>(header: [&str; N], rows: &[[String; N]]) {
                 if i == 0 { format!("{}{room}", cells[i]) } else { format!("{room}{}", cells[i]) }
             })
             .collect();
-        println!("{}", padded.join("  ").trim_end());
+        padded.join("  ").trim_end().to_owned() + "\n"
     };
-    line(header);
-    rows.iter().for_each(|row| line(row.each_ref().map(String::as_str)));
+    let body = rows.iter().map(|row| line(row.each_ref().map(String::as_str)));
+    line(header) + &body.collect::<String>()
 }
 
 /// A number with so many decimals, or a dash for none.

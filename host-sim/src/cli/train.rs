@@ -17,7 +17,7 @@ pub struct Train {
     #[arg(long)]
     out: PathBuf,
     /// How to train.
-    #[arg(long, value_enum, default_value_t = Trainer::Paper)]
+    #[arg(long, value_enum, default_value_t = Trainer::Fast)]
     trainer: Trainer,
     /// Fixes every draw.
     #[arg(long, default_value_t = 1)]
@@ -29,26 +29,29 @@ pub struct Train {
 enum Trainer {
     /// The paper's genetic algorithm on all weights.
     Paper,
+    /// Least squares for the linear weights, and a search for the exponents alone.
+    Fast,
 }
 
 impl Train {
     /// Trains and writes the simulator.
-    pub fn run(&self) -> Result<()> {
+    pub fn run(&self) -> Result<String> {
         let logs = super::read_logs(&self.logs)?;
         let spinner = progress::spinner();
         let watch = |p: train::Progress| {
             spinner.tick();
-            spinner.set_message(format!("{}: generation {}, error {:.3e}", p.network, p.generation, p.best_mse));
+            spinner.set_message(progress::training(&p));
         };
-        let simulator = match self.trainer {
-            Trainer::Paper => train::train(&logs, &paper::Options::default(), self.seed, watch)?,
+        let trainer = match self.trainer {
+            Trainer::Paper => train::Trainer::Paper(paper::Options::default()),
+            Trainer::Fast => train::Trainer::Fast,
         };
+        let simulator = train::train(&logs, &trainer, self.seed, watch)?;
         spinner.finish_and_clear();
         for missing in &simulator.missing {
             eprintln!("mindgap: warning: no {} network: {}", missing.network, missing.reason);
         }
         simulator.write(&self.out)?;
-        println!("simulator written to {}", self.out.display());
-        Ok(())
+        Ok(format!("simulator written to {}\n", self.out.display()))
     }
 }

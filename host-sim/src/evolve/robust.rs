@@ -1,10 +1,9 @@
 //! Evolution that does not stick, the default. A single run of the paper's procedure often ends in a poor controller,
-//! or in one that was lucky in its five runs. So here:
+//! or in one that was lucky in its five runs. So here, always under the noise that was learned:
 //!
-//! 1. several short runs of the genetic algorithm from different populations, gentler in selection and bolder in
-//!    mutation, with echoes that fail as the only noise: they find the ways there are;
-//! 2. one run that goes on from the best of all of them under the full learned noise, with more runs an individual and
-//!    an elite whose members are judged again in each generation;
+//! 1. large populations, gentler in selection and bolder in mutation, with few runs an individual: they find the ways
+//!    there are. Their elite is judged again in each generation;
+//! 2. one run that goes on from the best of them with small mutations and many runs an individual;
 //! 3. a choice among its last population by many fresh runs.
 
 use glam::DVec2;
@@ -22,27 +21,28 @@ use crate::simulator::course::Course;
 /// Generations of all runs of the genetic algorithm together.
 pub const GENERATIONS: usize = RESTARTS * EXPLORING.max_generations + REFINING.max_generations;
 
-const RESTARTS: usize = 4;
+const RESTARTS: usize = 2;
 const EXPLORING: Settings = Settings {
-    population: 100,
-    tournament: 7,
+    population: 1000,
+    tournament: 5,
     crossover_chance: 0.8,
     sbx_index: 15.0,
     mutation: Mutation { chance: 0.1, unit: Unit::Gene, deviation: 0.2 },
-    elite: 0,
+    elite: 20,
     window: None,
-    max_generations: 150,
+    max_generations: 120,
 };
-const EXPLORING_RUNS: usize = 5;
+const EXPLORING_RUNS: usize = 4;
 const REFINING: Settings = Settings {
+    population: 100,
+    mutation: Mutation { deviation: 0.05, ..EXPLORING.mutation },
     elite: 5,
-    mutation: Mutation { chance: 0.1, unit: Unit::Gene, deviation: 0.05 },
-    max_generations: 100,
+    max_generations: 60,
     ..EXPLORING
 };
 const REFINING_RUNS: usize = 20;
 /// So many of the last population come into the final choice, each with so many fresh runs.
-const CANDIDATES: usize = 40;
+const CANDIDATES: usize = 100;
 const CHOOSING_RUNS: usize = 200;
 /// Set the choosing and the judging runs apart from all others.
 const CHOOSING: u64 = 2;
@@ -52,8 +52,6 @@ const JUDGING: u64 = 1;
 pub struct Quest<'a> {
     /// Where it has to do well.
     pub course: &'a Course<'a>,
-    /// The same with echoes that fail as the only noise.
-    pub quiet_course: &'a Course<'a>,
     /// Where it has to stop, cm.
     pub target_cm: DVec2,
     /// What its genes stand for.
@@ -70,12 +68,12 @@ pub fn evolve(quest: &Quest, mut watch: impl FnMut(usize, f64)) -> Evolved {
     let mut ways = Vec::new();
     for restart in 0..RESTARTS {
         let seed = derive(quest.seed, &[restart as u64]);
-        let task = quest.task(quest.quiet_course, EXPLORING_RUNS, seed);
+        let task = quest.task(EXPLORING_RUNS, seed);
         let before = restart * EXPLORING.max_generations;
         let explored = genetic::run(&EXPLORING, &task, seed, |generation, best| watch(before + generation, best));
         ways.extend(explored.population.into_iter().take(REFINING.population / RESTARTS));
     }
-    let task = quest.task(quest.course, REFINING_RUNS, quest.seed);
+    let task = quest.task(REFINING_RUNS, quest.seed);
     let before = RESTARTS * EXPLORING.max_generations;
     let refined =
         genetic::run_from(ways, &REFINING, &task, quest.seed, |generation, best| watch(before + generation, best));
@@ -102,12 +100,12 @@ fn choose(task: &Task, population: &[Vec<f32>]) -> Evolved {
 impl<'a> Quest<'a> {
     /// How a controller does in so many fresh runs, which played no part in its evolution.
     pub fn success(&self, controller: &Controller, runs: usize) -> Success {
-        self.task(self.course, REFINING_RUNS, self.seed).success(controller, runs, JUDGING)
+        self.task(REFINING_RUNS, self.seed).success(controller, runs, JUDGING)
     }
 
-    fn task(&self, course: &'a Course<'a>, runs: usize, seed: u64) -> Task<'a> {
+    fn task(&self, runs: usize, seed: u64) -> Task<'a> {
         Task {
-            course,
+            course: self.course,
             target_cm: self.target_cm,
             coding: self.coding,
             runs,

@@ -4,6 +4,8 @@ use crate::simulator::scatter::{CELLS, ConstantReading, LEVELS, Spread};
 
 /// A cell with fewer residuals borrows those of its whole row.
 const FEWEST: usize = LEVELS;
+/// A cell with fewer pairs of neighbours takes the share of all.
+const FEWEST_NEIGHBOURS: usize = 50;
 /// A reading this far off the network's may be a constant wrong one.
 const FAR_OFF_CM: f32 = 10.0;
 /// Half the width of the window that a constant reading scatters in.
@@ -17,7 +19,7 @@ pub fn spread(contexts: &[[f32; 2]], residuals: &[f32]) -> Spread {
         let values = sorted(contexts.iter().map(|c| c[axis]));
         std::array::from_fn(|i| values.get(values.len() * (i + 1) / CELLS).copied().unwrap_or(0.0))
     });
-    let mut spread = Spread { edges, residuals: Vec::new(), own_share: 1.0 };
+    let mut spread = Spread { edges, residuals: Vec::new(), own_share: vec![1.0; CELLS * CELLS] };
     let mut cells = vec![Vec::new(); CELLS * CELLS];
     for (context, residual) in contexts.iter().zip(residuals) {
         cells[spread.cell(*context)].push(*residual);
@@ -37,19 +39,46 @@ pub fn spread(contexts: &[[f32; 2]], residuals: &[f32]) -> Spread {
     spread
 }
 
-/// How much of the size of motion residuals is the robot's own. A tracker's error at a row enters the step before and
-/// the step after with opposite signs, which shows as a negative correlation of neighbours; what the robot does itself
-/// in one step and the next is taken to be independent. `runs` tells which residuals follow each other.
-pub fn own_share(residuals: &[f32], runs: &[usize]) -> f32 {
-    let square = |r: &f32| f64::from(r * r);
-    let variance = residuals.iter().map(square).sum::<f64>() / residuals.len() as f64;
-    let neighbours = residuals.windows(2).zip(runs.windows(2)).filter(|(_, runs)| runs[0] == runs[1]);
-    let products: Vec<f64> = neighbours.map(|(r, _)| f64::from(r[0] * r[1])).collect();
-    if variance <= 0.0 || products.is_empty() {
-        return 1.0;
+/// For each cell of a motion network's spread, how much of the size of its residuals is the robot's own.
+///
+/// A tracker's error at a row enters the step before and the step after with opposite signs, which shows as a negative
+/// correlation of neighbours; what the robot does itself in one step and the next is taken to be independent. `runs`
+/// tells which residuals follow each other. A cell with few neighbours takes the share of all.
+pub fn own_share(spread: &Spread, contexts: &[[f32; 2]], residuals: &[f32], runs: &[usize]) -> Vec<f32> {
+    let mut sums = vec![Neighbours::default(); CELLS * CELLS];
+    let mut all = Neighbours::default();
+    for i in 1..residuals.len() {
+        if runs[i - 1] == runs[i] {
+            let (before, after) = (f64::from(residuals[i - 1]), f64::from(residuals[i]));
+            all.add(before, after);
+            sums[spread.cell(contexts[i])].add(before, after);
+        }
     }
-    let covariance = products.iter().sum::<f64>() / products.len() as f64;
-    (1.0 + 2.0 * covariance / variance).clamp(0.0, 1.0).sqrt() as f32
+    let share = |sum: &Neighbours| if sum.count >= FEWEST_NEIGHBOURS { sum.share() } else { all.share() };
+    sums.iter().map(share).collect()
+}
+
+/// Sums over residuals that follow each other.
+#[derive(Clone, Copy, Debug, Default)]
+struct Neighbours {
+    products: f64,
+    squares: f64,
+    count: usize,
+}
+
+impl Neighbours {
+    fn add(&mut self, before: f64, after: f64) {
+        self.products += before * after;
+        self.squares += after * after;
+        self.count += 1;
+    }
+
+    fn share(&self) -> f32 {
+        if self.squares <= 0.0 {
+            return 1.0;
+        }
+        (1.0 + 2.0 * self.products / self.squares).clamp(0.0, 1.0).sqrt() as f32
+    }
 }
 
 /// Finds a reading that comes too often among those far off what was predicted.
@@ -136,9 +165,11 @@ mod tests {
                 before = after;
             }
         }
-        let share = own_share(&residuals, &runs);
+        let contexts = vec![[0.0; 2]; residuals.len()];
+        let spread = spread(&contexts, &residuals);
+        let share = own_share(&spread, &contexts, &residuals, &runs)[spread.cell([0.0; 2])];
         assert!((share - std::f32::consts::FRAC_1_SQRT_2).abs() < 0.05, "{share}");
-        assert_eq!(own_share(&[], &[]), 1.0);
+        assert_eq!(own_share(&spread, &[], &[], &[]), vec![1.0; CELLS * CELLS]);
     }
 
     #[test]

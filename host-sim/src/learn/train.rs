@@ -3,6 +3,7 @@
 use mindgap_core::network::{Activation, Network};
 
 use super::dataset::{Dataset, Datasets};
+use super::fast::{self, Loss};
 use super::genome::Shape;
 use super::paper;
 use super::reference;
@@ -43,38 +44,46 @@ pub struct Shapes {
     pub echo_value: Shape,
 }
 
+/// How networks are trained.
+#[derive(Clone, Copy, Debug)]
+pub enum Trainer {
+    /// The paper's genetic algorithm on all weights.
+    Paper(paper::Options),
+    /// Least squares, with a search for the exponents alone.
+    Fast,
+}
+
 /// One of the five networks, as progress is told of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Progress {
     /// The network.
     pub network: &'static str,
-    /// Generations so far.
+    /// Generations so far, for the paper's trainer.
     pub generation: usize,
-    /// Mean squared error of the best so far, in the trainer's scaled unit.
-    pub best_mse: f64,
 }
 
-/// Trains the networks that `logs` support, by the paper's trainer, one after the other.
+/// Trains the networks that `logs` support, one after the other.
 ///
 /// # Errors
 /// When the logs support none; the reasons are named.
-pub fn train(logs: &Logs, options: &paper::Options, seed: u64, watch: impl Fn(Progress)) -> Result<Simulator> {
+pub fn train(logs: &Logs, trainer: &Trainer, seed: u64, watch: impl Fn(Progress)) -> Result<Simulator> {
     let data = Datasets::from_logs(logs);
-    let mut trainer = Trainer { options, seed, runs: logs.runs.len(), watch, missing: Vec::new() };
+    let mut school = School { trainer, seed, runs: logs.runs.len(), watch, missing: Vec::new() };
     let motion = Scattering { context: motion_context, moves: true };
     // D and α are the sonar's context themselves.
     let sonar = Scattering { context: |inputs: &[f32; 2]| *inputs, moves: false };
-    let linear = Activation::Linear;
-    let turn = trainer.learn("turn", &data.turn, TABLE_ONE.turn, linear, motion);
-    let forward = trainer.learn("forward", &data.forward, TABLE_ONE.forward, linear, motion);
-    let lateral = trainer.learn("lateral", &data.lateral, TABLE_ONE.lateral, linear, motion);
-    let ramp = Activation::Ramp;
+    let value = Kind { activation: Activation::Linear, loss: Loss::Squares };
+    let probability = Kind { activation: Activation::Ramp, loss: Loss::Logistic };
+    let reading = Kind { activation: Activation::Linear, loss: Loss::Mixture };
+    let turn = school.learn("turn", &data.turn, TABLE_ONE.turn, value, motion);
+    let forward = school.learn("forward", &data.forward, TABLE_ONE.forward, value, motion);
+    let lateral = school.learn("lateral", &data.lateral, TABLE_ONE.lateral, value, motion);
     let echo_probability =
-        trainer.learn("echo_probability", &data.echo_probability, TABLE_ONE.echo_probability, ramp, sonar);
-    let mut echo_value = trainer.learn("echo_value", &data.echo_value, TABLE_ONE.echo_value, linear, sonar);
+        school.learn("echo_probability", &data.echo_probability, TABLE_ONE.echo_probability, probability, sonar);
+    let mut echo_value = school.learn("echo_value", &data.echo_value, TABLE_ONE.echo_value, reading, sonar);
     let constant_reading = echo_value.as_mut().and_then(|value| split_constant_reading(value, &data.echo_value));
-    if trainer.missing.len() == NETWORKS {
-        let reasons: Vec<String> = trainer.missing.iter().map(|m| format!("{}: {}", m.network, m.reason)).collect();
+    if school.missing.len() == NETWORKS {
+        let reasons: Vec<String> = school.missing.iter().map(|m| format!("{}: {}", m.network, m.reason)).collect();
         return Err(Problem::new(format!("no network can be trained on these logs ({})", reasons.join("; "))));
     }
     let commands = logs.runs.iter().flat_map(|run| run.rows.iter().flat_map(|row| row.command()));
@@ -83,7 +92,7 @@ pub fn train(logs: &Logs, options: &paper::Options, seed: u64, watch: impl Fn(Pr
         schema: SCHEMA,
         origin: Origin {
             version: env!("CARGO_PKG_VERSION").into(),
-            trainer: "paper".into(),
+            trainer: trainer.name().into(),
             seed,
             runs: logs.runs.len(),
         },
@@ -96,7 +105,7 @@ pub fn train(logs: &Logs, options: &paper::Options, seed: u64, watch: impl Fn(Pr
         echo_value,
         constant_reading,
         reference: None,
-        missing: trainer.missing,
+        missing: school.missing,
     };
     simulator.reference = Some(reference::learn(&simulator, logs));
     Ok(simulator)
@@ -107,21 +116,40 @@ pub fn is_held_out(run: usize, runs: usize) -> bool {
     runs >= HELD_OUT && run % HELD_OUT == HELD_OUT - 1
 }
 
-struct Trainer<'a, W> {
-    options: &'a paper::Options,
+impl Trainer {
+    /// As the command line calls it.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Trainer::Paper(_) => "paper",
+            Trainer::Fast => "fast",
+        }
+    }
+}
+
+/// What all networks of a simulator have in common while they are trained.
+struct School<'a, W> {
+    trainer: &'a Trainer,
     seed: u64,
     runs: usize,
     watch: W,
     missing: Vec<Missing>,
 }
 
-impl<W: Fn(Progress)> Trainer<'_, W> {
+/// What a network predicts.
+#[derive(Clone, Copy)]
+struct Kind {
+    activation: Activation,
+    /// How the fast trainer counts its errors; the paper's squares them all.
+    loss: Loss,
+}
+
+impl<W: Fn(Progress)> School<'_, W> {
     fn learn<const N: usize>(
         &mut self,
         network: &'static str,
         data: &Dataset<N>,
         shape: Shape,
-        activation: Activation,
+        kind: Kind,
         Scattering { context, moves }: Scattering<N>,
     ) -> Option<Learned<N>> {
         let fitted = data.of_runs(|run| !is_held_out(run, self.runs));
@@ -129,16 +157,24 @@ impl<W: Fn(Progress)> Trainer<'_, W> {
             self.missing.push(Missing { network: network.into(), reason });
             return None;
         }
-        let watch = |generation, fitness: f64| (self.watch)(Progress { network, generation, best_mse: 1.0 / fitness });
-        let trained = paper::train(&fitted, shape, activation, self.options, self.seed, watch);
-        let judged = if self.runs >= HELD_OUT { data.of_runs(|run| is_held_out(run, self.runs)) } else { fitted };
+        let held_out = data.of_runs(|run| is_held_out(run, self.runs));
+        let judged = if held_out.is_empty() { &fitted } else { &held_out };
+        let watch = |generation| (self.watch)(Progress { network, generation });
+        watch(0);
+        let network = match self.trainer {
+            Trainer::Paper(options) => {
+                let watch = |generation, _| watch(generation);
+                paper::train(&fitted, shape, kind.activation, options, self.seed, watch).network
+            }
+            Trainer::Fast => fast::train(&fitted, judged, shape, kind.activation, kind.loss, self.seed).network,
+        };
         let contexts: Vec<[f32; 2]> = judged.inputs.iter().map(context).collect();
-        let residuals = residuals(&trained.network, &judged);
+        let residuals = residuals(&network, judged);
         let mut spread = scatter::spread(&contexts, &residuals);
         if moves {
-            spread.own_share = scatter::own_share(&residuals, &judged.runs);
+            spread.own_share = scatter::own_share(&spread, &contexts, &residuals, &judged.runs);
         }
-        Some(Learned { network: trained.network, spread })
+        Some(Learned { network, spread })
     }
 }
 

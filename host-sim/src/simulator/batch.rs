@@ -81,13 +81,12 @@ impl<W: FnMut(Moment), F: FnMut(usize, Outcome)> WithSimd for Batch<'_, W, F> {
             let from = (robots.x_cm, robots.y_cm);
             let may_touch = robots.advance(simd, &draws);
             let look = robots.look(simd);
-            for lane in 0..width {
+            for (lane, may_touch) in may_touch.into_iter().enumerate().take(width) {
                 let Some(run) = &mut robots.runs[lane] else { continue };
                 let to_cm = point(&robots.x_cm, &robots.y_cm, lane);
                 let from_cm = point(&from.0, &from.1, lane);
                 let radius_cm = self.course.robot.body_radius_cm;
-                let near = may_touch[lane] > 0.0;
-                let touch = if near { self.course.room.touch(from_cm, to_cm, radius_cm) } else { None };
+                let touch = if may_touch > 0.0 { self.course.room.touch(from_cm, to_cm, radius_cm) } else { None };
                 let echo_cm = look.echo_cm(lane, &draws, self.course);
                 let outcome = run.close_step(from_cm, to_cm, touch, echo_cm);
                 let at = outcome.map_or(to_cm, |o| o.end_cm);

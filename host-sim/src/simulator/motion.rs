@@ -71,7 +71,10 @@ impl<'s> MotionNetworks<'s> {
 
     /// Adds to a motion one of the residuals of each network, as far as it is the robot's own.
     pub fn scatter(&self, motion: &Motion, levels: [usize; 3]) -> Motion {
-        let residual = |spread: &Spread, i: usize| spread.own_share * spread.residuals[motion.cells[i]][levels[i]];
+        let residual = |spread: &Spread, i: usize| {
+            let cell = motion.cells[i];
+            spread.own_share[cell] * spread.residuals[cell][levels[i]]
+        };
         Motion {
             forward_cm: motion.forward_cm + residual(&self.forward.spread, 0),
             lateral_cm: motion.lateral_cm + residual(&self.lateral.spread, 1),

@@ -7,16 +7,16 @@ pub const CELLS: usize = 4;
 /// Equally likely residuals that stand for a cell.
 pub const LEVELS: usize = 32;
 
-/// Residuals of a network by context: speed and change of speed for motion, D and α for the sonar.
+/// Residuals of a network by context: turning and driving command for motion, D and α for the sonar.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Spread {
     /// Inner borders of the cells along the two context variables, ascending.
     pub edges: [[f32; CELLS - 1]; 2],
     /// [`LEVELS`] residuals a cell, ascending; cell (i, j) is entry i · [`CELLS`] + j.
     pub residuals: Vec<Vec<f32>>,
-    /// How much of a residual's size is the robot's own, 0 to 1; the rest is the tracker's, which a simulated robot has
-    /// none of.
-    pub own_share: f32,
+    /// For each cell, how much of a residual's size is the robot's own, 0 to 1; the rest is the tracker's, which a
+    /// simulated robot has none of.
+    pub own_share: Vec<f32>,
 }
 
 /// A wrong reading that the sensor produces now and then wherever it looks ("roughly 20cm", paper, section VIII).
@@ -44,15 +44,16 @@ impl Spread {
     pub fn is_sound(&self) -> bool {
         let finite = |values: &[f32]| values.iter().all(|v| v.is_finite());
         self.edges.iter().all(|e| finite(e))
-            && (0.0..=1.0).contains(&self.own_share)
+            && self.own_share.len() == CELLS * CELLS
+            && self.own_share.iter().all(|share| (0.0..=1.0).contains(share))
             && self.residuals.len() == CELLS * CELLS
             && self.residuals.iter().all(|r| r.len() == LEVELS && finite(r))
     }
 }
 
-/// The context of a motion network: mean magnitude of the commands, and of their change.
+/// The context of a motion network: how much the commands turn the robot, and how much they drive it on. Tyres slip
+/// more in a turn than on the straight.
 pub fn motion_context(speeds: &[f32; 4]) -> [f32; 2] {
-    let [left, right, previous_left, previous_right] = *speeds;
-    let mean = |a: f32, b: f32| 0.5 * (a.abs() + b.abs());
-    [mean(left, right), mean(left - previous_left, right - previous_right)]
+    let [left, right, ..] = *speeds;
+    [0.5 * (right - left).abs(), 0.5 * (right + left).abs()]
 }

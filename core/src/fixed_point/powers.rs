@@ -1,0 +1,157 @@
+//! Powers of two and logarithms to base two. Both split their range by the same 32 steps of 2^(1/32) and cover the
+//! step that is left by a cubic, so one table of 128 bytes serves both.
+
+use fixed::FixedI32;
+
+use super::product::upper_product;
+use super::{Format, saturate};
+
+/// 2^(i/32) - 1 with 32 fractional bits.
+const STEPS: [u32; 32] = [
+    0x0000_0000,
+    0x059b_0d31,
+    0x0b55_86d0,
+    0x1130_1d01,
+    0x172b_83c8,
+    0x1d48_7317,
+    0x2387_a6e7,
+    0x29e9_df52,
+    0x306f_e0a3,
+    0x371a_7374,
+    0x3dea_64c1,
+    0x44e0_8606,
+    0x4bfd_ad53,
+    0x5342_b56a,
+    0x5ab0_7dd5,
+    0x6247_eb04,
+    0x6a09_e668,
+    0x71f7_5e8f,
+    0x7a11_473f,
+    0x8258_9995,
+    0x8ace_5423,
+    0x9373_7b0d,
+    0x9c49_182a,
+    0xa550_3b24,
+    0xae89_f996,
+    0xb7f7_6f30,
+    0xc199_bdd8,
+    0xcb72_0dcf,
+    0xd581_8dd0,
+    0xdfc9_7338,
+    0xea4a_fa2a,
+    0xf507_65b7,
+];
+
+/// Two to the power of `x`: the largest number where that does not fit, zero where it is under half an ulp.
+pub fn exp2<F: Format>(x: FixedI32<F>) -> FixedI32<F> {
+    exp2_of_sum(i64::from(x.to_bits()) << F::U32)
+}
+
+/// Two to the power of a number with twice as many fractional bits, as products and their sums have.
+#[inline(always)]
+pub fn exp2_of_sum<F: Format>(x: i64) -> FixedI32<F> {
+    let whole = (x >> (2 * F::U32)) as i32;
+    let fraction = ((x << (64 - 2 * F::U32)) as u64 >> 32) as u32;
+    // How far the mantissa, of 31 fractional bits, has to go down, less one for the bit that decides the rounding.
+    let shift = 30 - F::I32 - whole;
+    FixedI32::from_bits(match shift {
+        0..32 => {
+            let bits = mantissa(exp2_of_fraction(fraction)) >> shift;
+            ((bits >> 1) as i32).saturating_add((bits & 1) as i32)
+        }
+        32.. => 0,
+        _ => i32::MAX,
+    })
+}
+
+/// The logarithm of `x` to base two. Zero and negative numbers count as the least positive number.
+pub fn log2<F: Format>(x: FixedI32<F>) -> FixedI32<F> {
+    let bits = x.to_bits().max(1) as u32;
+    let leading_zeros = bits.leading_zeros();
+    let whole = i64::from(31 - F::I32) - i64::from(leading_zeros);
+    let logarithm = (whole << 32) + log2_of_one_more(bits << leading_zeros << 1);
+    let half_ulp = 1 << (31 - F::U32);
+    FixedI32::from_bits(saturate((logarithm + half_ulp) >> (32 - F::U32)))
+}
+
+/// Two to the power of a number in [0, 1) with 32 fractional bits, less one, with 32 of them; error below 2^-31.
+fn exp2_of_fraction(fraction: u32) -> u32 {
+    // 2^(t/32) - 1 = t (C1 + t (C2 + t C3)) for t in [0, 1) with 36 fractional bits, within 8.5e-11.
+    const C1: u32 = 1_488_522_352;
+    const C2: u32 = 16_120_621;
+    const C3: u32 = 117_619;
+    let step = STEPS[(fraction >> 27) as usize];
+    let t = fraction << 5;
+    let growth = upper_product(t, C1 + upper_product(t, C2 + upper_product(t, C3)));
+    // (1 + step) · growth, from 36 down to 32 fractional bits. The sum comes no nearer to 2^32 than 1.
+    step + ((growth + upper_product(step, growth) + 8) >> 4)
+}
+
+/// The logarithm of one more than a number in [0, 1) with 32 fractional bits, with 32 of them; error below 2^-29.
+fn log2_of_one_more(fraction: u32) -> i64 {
+    // log2(1 + u) = u (C1 - u (C2 - u C3)) for u in [0, 2^(1/32) - 1], within 7.3e-10; 31, 32 and 27 fractional bits.
+    const C1: u32 = 3_098_162_573;
+    const C2: u32 = 3_097_363_789;
+    const C3: u32 = 62_557_795;
+    let above = STEPS.partition_point(|step| *step <= fraction);
+    // Dividing by 2^((above - 1)/32) is multiplying by half of 2^((33 - above)/32); nothing to divide in the first step.
+    let whole = mantissa(fraction);
+    let ratio = STEPS.get(33 - above).map_or(whole, |inverse| upper_product(whole, mantissa(*inverse)));
+    let u = ratio.saturating_sub(mantissa(0)) << 6;
+    let slope = C1 - (upper_product(u, C2 - upper_product(u, C3)) >> 6);
+    (((above as i64) - 1) << 27) + i64::from(upper_product(u, slope) >> 4)
+}
+
+/// One more than a number in [0, 1) with 32 fractional bits, with 31 of them.
+fn mantissa(fraction: u32) -> u32 {
+    (1 << 31) | (fraction >> 1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use fixed::types::{I6F26, I16F16};
+
+    #[test]
+    fn the_table_is_rounded_to_nearest() {
+        for (i, step) in STEPS.iter().enumerate() {
+            let exact = libm::exp2(32.0 + i as f64 / 32.0) - libm::exp2(32.0);
+            assert!((f64::from(*step) - exact).abs() <= 0.5, "step {i}");
+        }
+    }
+
+    #[test]
+    fn the_end_of_the_last_step_does_not_reach_the_next_power() {
+        for fraction in u32::MAX - 1000..=u32::MAX {
+            let exact = libm::exp2(32.0 + f64::from(fraction) / libm::exp2(32.0)) - libm::exp2(32.0);
+            assert!((f64::from(exp2_of_fraction(fraction)) - exact).abs() < 2.0, "{fraction}");
+        }
+    }
+
+    #[test]
+    fn whole_powers_are_exact() {
+        for n in -16..15 {
+            let power = I16F16::from_bits(1 << (n + 16));
+            assert_eq!(exp2(I16F16::from_num(n)), power);
+            assert_eq!(log2(power), I16F16::from_num(n));
+        }
+    }
+
+    #[test]
+    fn what_does_not_fit_saturates() {
+        assert_eq!(exp2(I16F16::from_num(15)), I16F16::MAX);
+        assert_eq!(exp2(I16F16::MAX), I16F16::MAX);
+        assert_eq!(exp2(I16F16::from_num(-17.1)), I16F16::ZERO);
+        assert_eq!(exp2(I16F16::MIN), I16F16::ZERO);
+        assert_eq!(exp2(I6F26::MAX), I6F26::MAX);
+        assert_eq!(exp2(I6F26::MIN), I6F26::ZERO);
+    }
+
+    #[test]
+    fn no_logarithm_of_zero_or_less_is_asked_for() {
+        for x in [I16F16::ZERO, I16F16::NEG_ONE, I16F16::MIN] {
+            assert_eq!(log2(x), I16F16::from_num(-16));
+        }
+        assert_eq!(log2(I6F26::MIN), I6F26::from_num(-26));
+    }
+}

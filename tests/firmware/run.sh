@@ -1,0 +1,151 @@
+#!/usr/bin/env bash
+# Builds the images for four processors, runs them in QEMU and compares what they print with the host, bit for bit.
+# Then it checks that no panic can be reached, and how much flash, stack and time the five networks and the controller
+# take. Installs what is missing. Ends with 1 and one line of reason where something is not as it should be.
+set -euo pipefail
+cd "$(dirname "$0")"
+
+MOST_FLASH=12288 # bytes of the image `bare`: code, five networks, one controller
+MOST_STACK=1023  # bytes
+DEFMT_PRINT=1.2.0
+logs=$(mktemp -d)
+trap 'rm -rf "$logs"' EXIT
+
+# The most instructions that all five networks may take together.
+most_instructions() {
+  case $1 in
+  thumbv7em-*) echo 4000 ;;
+  armv4t-*) echo 7000 ;;
+  *) echo 16000 ;;
+  esac
+}
+
+main() {
+  install_tools
+  cargo run --quiet --release --bin job >"$logs/host.txt"
+  for target in thumbv6m-none-eabi thumbv7em-none-eabi armv4t-none-eabi thumbv4t-none-eabi; do
+    check "$target"
+  done
+}
+
+check() {
+  local target=$1 folder=target/$1/release
+  build "$target" --bins || fail "$target: does not build, or a panic can be reached (see above)"
+  emulate "$target" "$folder/job" >"$logs/raw" || fail "$target: the job ended with $?"
+  text "$target" "$folder/job" <"$logs/raw" >"$logs/all.txt"
+  grep -v '^measured:' "$logs/all.txt" >"$logs/target.txt" || fail "$target: printed nothing"
+  diff "$logs/host.txt" "$logs/target.txt" || fail "$target: prints something else than the host (<)"
+
+  local stack flash instructions
+  stack=$(sed -n 's/^measured: stack \([0-9]*\) bytes$/\1/p' "$logs/all.txt")
+  flash=$(size "$folder/bare" | awk 'NR == 2 { print $1 + $2 }')
+  instructions=$(most_counted "$target" "$folder/bare")
+  echo "$target: $(wc -l <"$logs/host.txt") lines as on the host; $flash bytes of flash, $stack bytes of stack," \
+    "at most $instructions instructions for all five networks"
+  ((stack > 0 && stack <= MOST_STACK)) || fail "$target: takes more than $MOST_STACK bytes of stack"
+  ((flash > 0 && flash <= MOST_FLASH)) || fail "$target: takes more than $MOST_FLASH bytes of flash"
+  ((instructions > 0 && instructions <= $(most_instructions "$target"))) ||
+    fail "$target: takes more than $(most_instructions "$target") instructions"
+
+  # The check for panics has to be able to fail.
+  if build "$target" --bin bare --features reachable-panic 2>"$logs/panic.txt"; then
+    fail "$target: links although a panic can be reached"
+  fi
+  grep -q a_panic_can_be_reached "$logs/panic.txt" || fail "$target: the image with a panic fails for another reason"
+}
+
+# Builds with what there is: a ready-made core library, its source from rustup, or its source from Debian.
+build() {
+  local target=$1
+  shift
+  if rustup target add "$target" >/dev/null 2>&1; then
+    cargo build --quiet --release --target "$target" "$@"
+  elif rustup component add rust-src >/dev/null 2>&1; then
+    RUSTC_BOOTSTRAP=1 cargo build --quiet --release -Zbuild-std=core --target "$target" "$@"
+  else
+    install /usr/share/doc/rustc-web rustc-web
+    install /usr/share/doc/cargo-web cargo-web
+    install /usr/share/doc/rust-web-src rust-web-src
+    local lld
+    lld=$(find "$(rustc --print sysroot)/lib/rustlib" -name rust-lld -type f | head -1)
+    PATH="$(dirname "$lld"):$PATH" RUSTC_BOOTSTRAP=1 RUSTC=/usr/bin/rustc \
+      /usr/bin/cargo build --quiet --release -Zbuild-std=core --target "$target" "$@"
+  fi
+}
+
+emulate() {
+  local target=$1 image=$2
+  shift 2
+  case $target in
+  thumbv6m-*) emulate_board microbit "$image" "$@" ;;
+  thumbv7em-*) emulate_board mps2-an386 "$image" "$@" ;;
+  *) timeout 300 qemu-arm -cpu ti925t "$@" "$image" ;;
+  esac
+}
+
+emulate_board() {
+  local machine=$1 image=$2
+  shift 2
+  timeout 300 qemu-system-arm -machine "$machine" -kernel "$image" -display none -monitor none -serial none \
+    -semihosting-config enable=on,target=native "$@" </dev/null
+}
+
+# What an image printed: frames of defmt on Cortex-M, plain text on ARM7.
+text() {
+  case $1 in
+  *v4t-*) cat ;;
+  *) target/tools/bin/defmt-print -e "$2" --log-format '{s}' ;;
+  esac
+}
+
+# The largest number of instructions between the two marks of the image `bare`.
+most_counted() {
+  local target=$1 image=$2 each from to
+  case $target in
+  *v4t-*) each=$(one_by_one qemu-arm -one-insn-per-tb) ;;
+  *) each=$(one_by_one qemu-system-arm "-accel tcg,one-insn-per-tb=on") ;;
+  esac
+  # shellcheck disable=SC2086 # $each may be two words.
+  emulate "$target" "$image" $each -d exec,nochain -D "$logs/trace"
+  from=$(address "$image" count_from_here)
+  to=$(address "$image" count_to_here)
+  awk -F'[][/]' -v from="$from" -v to="$to" '
+    /^Trace/ && $3 == from { counts = 1; n = 0 }
+    /^Trace/ && $3 == to { counts = 0; if (n > most) most = n }
+    /^Trace/ && counts { n++ }
+    END { print most + 0 }' "$logs/trace"
+}
+
+# How this version of QEMU is told to translate one instruction at a time.
+one_by_one() {
+  if "$1" -help | grep -q -- -singlestep; then echo -singlestep; else echo "$2"; fi
+}
+
+# A symbol's address as QEMU's traces write it, without the mark of a Thumb function.
+address() {
+  printf '%08x' $((0x$(nm "$1" | awk -v name="$2" '$3 == name { print $1 }') & ~1))
+}
+
+install_tools() {
+  install qemu-arm qemu-user
+  install qemu-system-arm qemu-system-arm
+  install nm binutils
+  if ! target/tools/bin/defmt-print --version 2>/dev/null | grep -q "$DEFMT_PRINT"; then
+    cargo install --quiet --locked --root target/tools --version "$DEFMT_PRINT" defmt-print
+  fi
+}
+
+# Installs a Debian package unless this command or file is there.
+install() {
+  if ! command -v "$1" >/dev/null && ! [ -e "$1" ]; then
+    apt-get install --quiet --quiet --yes --no-install-recommends "$2" >&2 ||
+      fail "$1 is missing, and $2 cannot be installed"
+  fi
+}
+
+fail() {
+  echo "$1" >&2
+  exit 1
+}
+
+main
