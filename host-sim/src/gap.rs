@@ -4,6 +4,7 @@
 //! [`baseline`]; [`search`] fits it and judges it on runs that it was not fitted on, [`explanation`] settles on the
 //! effects that hold, [`generic`] bounds what any effect could explain, and [`verdict`] weighs it all.
 
+pub mod admission;
 pub mod baseline;
 pub mod channel;
 pub mod contexts;
@@ -11,9 +12,11 @@ pub mod diagnosis;
 pub mod effect;
 pub mod effects;
 pub mod evidence;
+pub mod excitation;
 pub mod explanation;
 pub mod generic;
 pub mod hypothesis;
+pub mod kinematic;
 pub mod search;
 pub mod shrink;
 pub mod verdict;

@@ -7,7 +7,7 @@ use clap::Args;
 use crate::files;
 use crate::gap::baseline::Baseline;
 use crate::gap::verdict::Verdict;
-use crate::gap::{Diagnosis, diagnose};
+use crate::gap::{Diagnosis, admission, diagnose, kinematic};
 use crate::problem::Result;
 use crate::simulator::Simulator;
 
@@ -23,12 +23,20 @@ pub struct Diagnose {
     json: Option<PathBuf>,
 }
 
+/// Stands for a simulator file: the textbook's.
+const KINEMATIC: &str = "kinematic";
+
 impl Diagnose {
     /// Diagnoses; returns the findings.
     pub fn run(&self) -> Result<String> {
-        let simulator = Simulator::read(&self.sim)?;
         let logs = super::read_logs(&self.logs)?;
-        let diagnosis = diagnose(&Baseline::learned(&simulator)?, &logs);
+        let diagnosis = if self.sim.as_os_str() == KINEMATIC {
+            diagnose(kinematic::baseline(&logs), &logs)?
+        } else {
+            let simulator = Simulator::read(&self.sim)?;
+            admission::same_robot(&simulator.robot, &logs.robot)?;
+            diagnose(Baseline::learned(&simulator)?, &logs)?
+        };
         if let Some(path) = &self.json {
             files::write_json(path, &diagnosis)?;
         }
@@ -70,5 +78,10 @@ fn text(diagnosis: &Diagnosis) -> String {
             lines.push(format!("Runner-up {}: {:.0} %", next.id, 100.0 * next.reducible_closed));
         }
     }
+    if !diagnosis.untestable.is_empty() {
+        let ids = diagnosis.untestable.join(", ");
+        lines.push(format!("Not excited by these logs, so neither there nor absent: {ids}"));
+    }
+    lines.extend(diagnosis.notes.iter().cloned());
     lines.join("\n") + "\n"
 }

@@ -3,15 +3,18 @@
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
+use super::admission;
 use super::baseline::Baseline;
 use super::channel::Channel;
 use super::contexts::{self, Part};
 use super::evidence::Evidence;
+use super::excitation::untestable;
 use super::explanation::Explanation;
 use super::search::Given;
 use super::shrink::{self, shrink};
 use super::verdict::Verdict;
 use crate::logs::Logs;
+use crate::problem::Result;
 
 /// What `mindgap diagnose --json` writes.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -28,6 +31,10 @@ pub struct Diagnosis {
     pub shrink: Option<Shrink>,
     /// What to log next to tell more.
     pub next_experiment: Option<String>,
+    /// Effects that these logs could not show: untestable, not absent.
+    pub untestable: Vec<String>,
+    /// What else limits this diagnosis.
+    pub notes: Vec<String>,
 }
 
 /// An effect that explains the gap.
@@ -85,15 +92,28 @@ pub struct RunnerUp {
 }
 
 /// Diagnoses logs.
-pub fn diagnose(baseline: &Baseline, logs: &Logs) -> Diagnosis {
-    let evidence = Evidence::of(logs);
-    let given = Given { baseline, evidence: &evidence };
+///
+/// # Errors
+/// When the logs say nothing that the baseline could be compared with.
+pub fn diagnose(mut baseline: Baseline, logs: &Logs) -> Result<Diagnosis> {
+    let fan_width = baseline.sonar.as_ref().map_or(1.0, |sonar| sonar.fan_width);
+    let evidence = Evidence::of(logs, fan_width);
+    let notes = admission::admit(&mut baseline, &evidence, logs)?;
+    let given = Given { baseline: &baseline, evidence: &evidence };
     let explanation = Explanation::find(&given);
     let verdict = explanation.verdict();
     let effects = if verdict == Verdict::Known { effects(&explanation, logs.robot.step_ms) } else { Vec::new() };
     let shrink = if verdict == Verdict::NoGap { None } else { shrink(&explanation, evidence.rows.len()) };
-    let r#where = contexts::parts(&explanation, &evidence).into_iter().map(Place::from).collect();
-    Diagnosis { schema: 1, verdict, effects, r#where, shrink: shrink.map(Shrink::from), next_experiment: None }
+    Ok(Diagnosis {
+        schema: 1,
+        verdict,
+        effects,
+        r#where: contexts::parts(&explanation, &evidence).into_iter().map(Place::from).collect(),
+        shrink: shrink.map(Shrink::from),
+        next_experiment: None,
+        untestable: untestable(&explanation.none, &given).into_iter().map(String::from).collect(),
+        notes,
+    })
 }
 
 fn effects(explanation: &Explanation, step_ms: f64) -> Vec<EffectFound> {

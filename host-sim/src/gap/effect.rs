@@ -90,6 +90,8 @@ pub struct Moment {
     pub earlier: [Option<Pose>; 2],
     /// What the sensor's axis meets: distance in cm and signed incidence in radians.
     pub faced: Option<[f64; 2]>,
+    /// What it met at the row before.
+    pub faced_before: Option<[f64; 2]>,
     /// Whether the row before had a reading.
     pub echo_before: Option<bool>,
     /// Middle of the scene, where a camera hangs, cm.

@@ -15,6 +15,8 @@ pub struct Evidence {
     pub robot: Robot,
     /// Everything that a ray can meet.
     pub sides: Vec<Wall>,
+    /// The beam against the usual fan.
+    pub fan_width: f64,
     /// How many blocks of rows are judged together: the runs, or parts of them where there are few.
     pub blocks: usize,
     /// All rows with a pose.
@@ -41,8 +43,8 @@ pub struct Row {
 const FEWEST_BLOCKS: usize = 8;
 
 impl Evidence {
-    /// Takes all that counts out of logs.
-    pub fn of(logs: &Logs) -> Self {
+    /// Takes all that counts out of logs, for a sensor whose beam is `fan_width` times as wide as the usual fan.
+    pub fn of(logs: &Logs, fan_width: f64) -> Self {
         let sides = logs.scene.sides();
         let middle_cm = middle(&sides);
         let steps = samples::motion(logs);
@@ -50,21 +52,24 @@ impl Evidence {
         let mut rows = Vec::new();
         let parts = FEWEST_BLOCKS.div_ceil(logs.runs.len());
         for (run, logged) in logs.runs.iter().enumerate() {
+            let mut faced_before = None;
             for (k, row) in logged.rows.iter().enumerate() {
                 let Some(pose) = row.pose else { continue };
                 let step = steps.next_if(|s| (s.run, s.row) == (run, k));
                 let motion =
                     step.map(|s| Motion { forward_cm: s.forward_cm, lateral_cm: s.lateral_cm, turn_rad: s.turn_rad });
                 let sensor = logs.robot.ultrasonic.pose_on(&pose);
-                let faced = cast(&sides, sensor.position_cm, sensor.direction());
-                let fan = fan_at(&sides, &sensor, 1.0);
+                let hit = cast(&sides, sensor.position_cm, sensor.direction());
+                let faced = hit.map(|hit| [hit.distance_cm, hit.incidence_rad]);
+                let fan = fan_at(&sides, &sensor, fan_width);
                 let before = |back: usize| k.checked_sub(back).map(|i| &logged.rows[i]);
                 let moment = Moment {
                     elapsed_min: (row.t_ms - logged.rows[0].t_ms) / 60_000.0,
                     commands: window(logged, k),
                     pose,
                     earlier: [1, 2].map(|back| before(back).and_then(|r| r.pose)),
-                    faced: faced.map(|hit| [hit.distance_cm, hit.incidence_rad]),
+                    faced,
+                    faced_before: std::mem::replace(&mut faced_before, faced),
                     echo_before: before(1).map(|r| r.echo_cm.is_some()),
                     middle_cm,
                     track_cm: logs.robot.track_cm,
@@ -74,7 +79,7 @@ impl Evidence {
                 rows.push(Row { block, moment, motion, echo_cm: row.echo_cm, previous_echo_cm, fan });
             }
         }
-        Evidence { robot: logs.robot, sides, blocks: logs.runs.len() * parts, rows }
+        Evidence { robot: logs.robot, sides, fan_width, blocks: logs.runs.len() * parts, rows }
     }
 
     /// The rows of a block.
@@ -94,7 +99,7 @@ impl Evidence {
     pub fn fan(&self, robot: &Pose, yaw_rad: f64, width: f64) -> Fan {
         let mut sensor = self.robot.ultrasonic.pose_on(robot);
         sensor.heading_rad += yaw_rad;
-        fan_at(&self.sides, &sensor, width)
+        fan_at(&self.sides, &sensor, self.fan_width * width)
     }
 }
 

@@ -41,13 +41,15 @@ impl Leftover {
 
 /// An effect has to gain this many nats on held-out runs,
 pub const LEAST_NATS: f64 = 12.0;
+/// more if many others could stand for it,
+const LEAST_NATS_IF_VAGUE: f64 = 25.0;
 /// and so many standard errors.
-const LEAST_Z: f64 = 2.2;
+const LEAST_Z: f64 = 2.8;
 /// A further effect on the same stage has to gain this share of what is explained already: less is within the reach of
 /// a form that is not quite right.
 const LEAST_SHARE: f64 = 0.08;
 /// and so many standard errors.
-const LEAST_Z_BESIDE: f64 = 3.0;
+const LEAST_Z_BESIDE: f64 = 3.5;
 /// A further effect that more than so many others could stand for is no more than a form that is not quite right.
 const MOST_RIVALS: usize = 3;
 /// A fit is better than another from here on, nats.
@@ -66,7 +68,8 @@ impl Explanation {
         let none = Fitted::none(logs);
         let alone = extend(&none, None, logs);
         let singles = best_of_each(alone.clone());
-        let first = singles.first().filter(|f| is_significant(&f.gain_over(&none), LEAST_NATS, LEAST_Z)).cloned();
+        let first = singles.first().filter(|f| is_significant(&f.gain_over(&none), LEAST_NATS, LEAST_Z));
+        let first = first.filter(|f| is_specific(f, &singles, &none)).cloned();
         let mut chosen = first.unwrap_or_else(|| none.clone());
         let mut rivals = vec![singles];
         while !chosen.ids().is_empty() && chosen.ids().len() < MOST_EFFECTS {
@@ -82,6 +85,11 @@ impl Explanation {
         let beyond_chosen = if chosen.ids().is_empty() { leftovers(&none, logs) } else { leftovers(&chosen, logs) };
         Explanation { none, chosen, rivals, beyond_none, beyond_chosen }
     }
+}
+
+/// Whether few enough others could stand for a fit that gains little: a misfit of the simulator is a bit like many.
+fn is_specific(fit: &Fitted, singles: &[Fitted], none: &Fitted) -> bool {
+    fit.gain_over(none).nats >= LEAST_NATS_IF_VAGUE || rivals_in_reach(fit, singles) <= MOST_RIVALS
 }
 
 fn is_worth_adding(fit: &Fitted, so_far: &Fitted, none: &Fitted) -> bool {

@@ -36,6 +36,8 @@ const ADEQUACY_WIDTH: f64 = 0.06;
 const GAP_WIDTH: f64 = 4.0;
 /// A rival with at least this share of the winner's weight is named beside it.
 pub const RIVAL: f64 = 0.12;
+/// An effect that more others than these could stand for is no cause that anybody could act on.
+const MOST_AMBIGUOUS: usize = 5;
 /// Differences below this are nothing, nats.
 const INDIFFERENT: f64 = 3.0;
 
@@ -60,7 +62,8 @@ impl Explanation {
     /// The answer.
     pub fn verdict(&self) -> Verdict {
         let named = !self.chosen.ids().is_empty();
-        if named && self.adequacy() >= ADEQUATE {
+        let vague = self.named().iter().any(|n| n.ambiguous_with.len() > MOST_AMBIGUOUS);
+        if named && !vague && self.adequacy() >= ADEQUATE {
             Verdict::Known
         } else if named || self.unexplained() > 0.0 {
             Verdict::Unknown

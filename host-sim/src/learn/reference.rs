@@ -1,15 +1,16 @@
 //! Learns what is normal beyond the networks: the yardstick of the gap.
 
 use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
 
 use crate::ascent::{Bounds, climb};
-use crate::geometry::cast;
+use crate::geometry::{Pose, cast};
 use crate::learn::scatter;
 use crate::logs::{Logs, samples};
 use crate::simulator::Simulator;
 use crate::simulator::reference::Reference;
 use crate::simulator::reference::motion::{MotionReference, features};
-use crate::simulator::reference::sonar::{Change, Fan, STRENGTHS, SonarReference, fan_at};
+use crate::simulator::reference::sonar::{Change, STRENGTHS, SonarReference, fan_at};
 
 /// Pulls the weights of the motion's correction towards zero, in squared features.
 const RIDGE: f64 = 0.3;
@@ -60,9 +61,9 @@ fn motion(simulator: &Simulator, logs: &Logs) -> Option<MotionReference> {
     Some(reference)
 }
 
-/// Bounds of the sonar's numbers: strengths, bias, scatter, and three chances.
-const SONAR_BOUNDS: [Bounds; STRENGTHS + 9] = {
-    let mut bounds = [Bounds { low: -60.0, high: 60.0 }; STRENGTHS + 9];
+/// Bounds of the sonar's numbers: strengths, bias, scatter, three chances, and the width of the beam.
+const SONAR_BOUNDS: [Bounds; STRENGTHS + 10] = {
+    let mut bounds = [Bounds { low: -60.0, high: 60.0 }; STRENGTHS + 10];
     bounds[STRENGTHS] = Bounds { low: -20.0, high: 20.0 };
     bounds[STRENGTHS + 1] = Bounds { low: -0.3, high: 0.3 };
     bounds[STRENGTHS + 2] = Bounds { low: -10.0, high: 10.0 };
@@ -72,14 +73,16 @@ const SONAR_BOUNDS: [Bounds; STRENGTHS + 9] = {
     bounds[STRENGTHS + 6] = Bounds { low: 0.0, high: 0.3 };
     bounds[STRENGTHS + 7] = Bounds { low: 0.0, high: 0.3 };
     bounds[STRENGTHS + 8] = Bounds { low: 0.0, high: 0.3 };
+    bounds[STRENGTHS + 9] = Bounds { low: 0.2, high: 2.5 };
     bounds
 };
 /// Where the search begins: a beam that sees what is near and faces it.
-const SONAR_START: [f64; STRENGTHS + 9] = [
+const SONAR_START: [f64; STRENGTHS + 10] = [
     3.0, -2.0, 0.0, -1.0, 0.0, 0.0, 0.0, 0.0, -1.0, -1.0, // strengths
     0.0, 0.0, 0.0, // bias
     0.5, 0.1, 0.1, // scatter
     0.01, 0.01, 0.01, // constant, short, lost
+    1.0,  // width
 ];
 const SONAR_ROUNDS: usize = 40;
 const SONAR_ENOUGH: f64 = 0.5;
@@ -87,12 +90,12 @@ const SONAR_ENOUGH: f64 = 0.5;
 fn sonar(simulator: &Simulator, logs: &Logs) -> Option<SonarReference> {
     let sides = logs.scene.sides();
     let mount = &logs.robot.ultrasonic;
-    let mut seen: Vec<(Fan, Option<f64>)> = Vec::new();
+    let mut seen: Vec<(Pose, Option<f64>)> = Vec::new();
     let (mut echoes, mut distances) = (Vec::new(), Vec::new());
     for row in logs.runs.iter().flat_map(|run| &run.rows) {
         let Some(pose) = row.pose else { continue };
         let sensor = mount.pose_on(&pose);
-        seen.push((fan_at(&sides, &sensor, 1.0), row.echo_cm));
+        seen.push((sensor, row.echo_cm));
         if let (Some(echo), Some(hit)) = (row.echo_cm, cast(&sides, sensor.position_cm, sensor.direction())) {
             echoes.push(echo as f32);
             distances.push(hit.distance_cm as f32);
@@ -106,7 +109,11 @@ fn sonar(simulator: &Simulator, logs: &Logs) -> Option<SonarReference> {
     let range_cm = [mount.min_cm, mount.max_cm];
     let terms = |at: &[f64]| {
         let reference = sonar_from(at, value_cm, range_cm);
-        seen.iter().map(|(fan, echo)| reference.log_likelihood(fan, &Change::NONE, *echo, None)[0]).collect()
+        let term = |(sensor, echo): &(Pose, Option<f64>)| {
+            let fan = fan_at(&sides, sensor, reference.fan_width);
+            reference.log_likelihood(&fan, &Change::NONE, *echo, None)[0]
+        };
+        seen.par_iter().map(term).collect()
     };
     let best = climb(&SONAR_BOUNDS, &SONAR_START, SONAR_ROUNDS, SONAR_ENOUGH, terms);
     Some(sonar_from(&best.at, value_cm, range_cm))
@@ -121,6 +128,7 @@ fn sonar_from(at: &[f64], value_cm: f64, range_cm: [f64; 2]) -> SonarReference {
         constant: [rest[6], value_cm],
         short: rest[7],
         lost: rest[8],
+        fan_width: rest[9],
         range_cm,
     }
 }

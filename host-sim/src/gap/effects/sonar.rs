@@ -47,6 +47,14 @@ pub const FORMS: &[Form] = &[
         report: |v, _| vec![("factor", rounded(v[0]))],
     },
     Form {
+        id: "sonar_beam",
+        name: "a beam where a ray was thought",
+        parameters: &[Parameter::new(1.0, 30.0, 1.0)],
+        starts: &[&[6.0], &[12.0], &[20.0]],
+        acts: &[Act::Sensor(|v, _, s| s.width *= v[0])],
+        report: |v, _| vec![("factor", rounded(v[0]))],
+    },
+    Form {
         id: "sonar_ghost",
         name: "in place of an echo",
         parameters: GHOST,
@@ -83,7 +91,7 @@ pub const FORMS: &[Form] = &[
         name: "the reading before",
         parameters: &[Parameter::new(0.0, 1.0, 0.0)],
         starts: &[&[0.1], &[0.5]],
-        acts: &[Act::Sensor(|v, _, s| s.change.stale = 1.0 - (1.0 - s.change.stale) * (1.0 - v[0]))],
+        acts: &[Act::Sensor(old_reading)],
         report: |v, _| vec![("steps", rounded(v[0]))],
     },
     Form {
@@ -148,6 +156,8 @@ const GHOST_STARTS: &[&[f64]] = &[
     &[0.05, 55.0],
     &[0.05, 60.0],
 ];
+/// Distances that differ by more are of something else, cm.
+const OTHER_CM: f64 = 4.0;
 const DAMPING: &[Parameter] = &[Parameter::new(-4.0, 8.0, 0.0)];
 const DAMPING_STARTS: &[&[f64]] = &[&[0.3], &[-0.3], &[1.5]];
 
@@ -169,6 +179,15 @@ fn ghost_for_any(v: &[f64], moment: &Moment, sensor: &mut Sensor) {
 fn dropout(v: &[f64], moment: &Moment, sensor: &mut Sensor) {
     let lost = if moment.echo_before == Some(false) { v[0] } else { v[1] };
     sensor.change.lost = 1.0 - (1.0 - sensor.change.lost) * (1.0 - lost);
+}
+
+/// A reading is old where it is the one before although something else is faced now; where the same is faced, readings
+/// repeat anyway.
+fn old_reading(v: &[f64], moment: &Moment, sensor: &mut Sensor) {
+    let (Some([now_cm, _]), Some([before_cm, _])) = (moment.faced, moment.faced_before) else { return };
+    if (now_cm - before_cm).abs() > OTHER_CM {
+        sensor.change.stale = v[0];
+    }
 }
 
 /// The robot's pose `v[0]` steps ago, between rows in proportion.

@@ -34,6 +34,8 @@ pub struct SonarReference {
     pub short: f64,
     /// Chance that a value is lost whatever came back.
     pub lost: f64,
+    /// The beam against [`FAN_DEG`].
+    pub fan_width: f64,
     /// What the sensor can report, cm.
     pub range_cm: [f64; 2],
 }
@@ -50,7 +52,7 @@ pub struct Ray {
 /// A fan's rays, in the order of [`FAN_DEG`].
 pub type Fan = [Ray; FAN_DEG.len()];
 
-/// What a sensor at `sensor` sees whose beam is `width` times as wide as the reference's.
+/// What a sensor at `sensor` sees whose beam is `width` times as wide as [`FAN_DEG`].
 pub fn fan_at(sides: &[Wall], sensor: &Pose, width: f64) -> Fan {
     FAN_DEG.map(|offset| {
         let way = direction(sensor.heading_rad + (offset * width).to_radians());
