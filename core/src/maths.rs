@@ -13,6 +13,13 @@
 use core::f32::consts::{FRAC_1_PI, LN_2, LOG2_E, PI};
 use core::ops::{Add, Mul, Sub};
 
+/// 1.5·2^23: an f32 near it has no room for a fraction, and holds a small whole summand in its lowest bits.
+pub const WHOLE: f32 = 12_582_912.0;
+/// Bit pattern of √½.
+pub const SQRT_HALF_BITS: u32 = 0x3f35_04f3;
+/// Bit pattern of 1.
+pub const ONE_BITS: u32 = 0x3f80_0000;
+
 /// The few operations that the functions of this module are put together from.
 ///
 /// An implementation over a lane applies each to every member; the scalar and the lane have to agree to the bit.
@@ -91,11 +98,11 @@ pub fn cos<T: Binary32>(angle_rad: T) -> T {
     cos_pi(angle_rad * angle_rad.constant(FRAC_1_PI))
 }
 
-/// The nearest whole number, ties to even, for magnitudes below 2^22: adding 1.5·2^23 leaves no room for a fraction.
+/// The nearest whole number, ties to even, for magnitudes below 2^22: beside [`WHOLE`] there is no room for a fraction.
 #[inline(always)]
 pub fn round<T: Binary32>(x: T) -> T {
-    let large = x.constant(12_582_912.0);
-    (x + large) - large
+    let whole = x.constant(WHOLE);
+    (x + whole) - whole
 }
 
 /// sin(π `x`) for `x` in [-½, ½].
@@ -143,17 +150,16 @@ impl Binary32 for f32 {
 
     #[inline(always)]
     fn whole_power_of_two(self) -> f32 {
-        // 1.5·2^23 + n holds n in its lowest bits; adding the bias there and shifting makes it an exponent.
-        f32::from_bits((self + 12_582_912.0).to_bits().wrapping_add(127) << 23)
+        // WHOLE + n holds n in its lowest bits; adding the bias there and shifting makes it an exponent.
+        f32::from_bits((self + WHOLE).to_bits().wrapping_add(127) << 23)
     }
 
     #[inline(always)]
     fn split_exponent(self) -> (f32, f32) {
         // Counting from √½ puts the mantissa into [√½, √2).
-        const SQRT_HALF: u32 = 0x3f35_04f3;
-        let above = self.to_bits().wrapping_sub(SQRT_HALF);
+        let above = self.to_bits().wrapping_sub(SQRT_HALF_BITS);
         let exponent = (above as i32) >> 23;
-        let mantissa = f32::from_bits((above & 0x007f_ffff).wrapping_add(SQRT_HALF));
+        let mantissa = f32::from_bits((above & 0x007f_ffff).wrapping_add(SQRT_HALF_BITS));
         (mantissa, exponent as f32)
     }
 }

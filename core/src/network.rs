@@ -1,6 +1,6 @@
 //! A simulator neural network (SNN): one hidden layer, half summation and half product units (paper, section VII).
 
-use core::{array, fmt};
+use core::fmt;
 
 use serde::{Deserialize, Serialize};
 
@@ -128,15 +128,22 @@ impl<W: Copy, const N: usize> Network<W, N> {
     #[inline(always)]
     pub fn evaluate<S: Scalar<Weight = W>>(&self, inputs: [S; N]) -> S {
         const { assert!(N > 0, "a network has at least one input") };
-        let x: [S; N] = array::from_fn(|i| self.inputs[i].apply(inputs[i]));
+        // Loops and not closures: a closure would not be compiled for the vectors of a lane.
+        let mut x = inputs;
+        for (x, scaling) in x.iter_mut().zip(&self.inputs) {
+            *x = scaling.apply(*x);
+        }
+        let mut log2_x = x;
+        for value in &mut log2_x {
+            *value = value.log2_magnitude();
+        }
         let mut sum = x[0].weight(self.bias);
         for unit in &self.summation {
             let inner = S::weighted_sum(sum.weight(unit.bias), &x, &unit.weights);
             sum = sum + inner * inner.weight(unit.output);
         }
-        let log2_x = x.map(S::log2_magnitude);
         for unit in &self.product {
-            let mut power = unit.value(&log2_x);
+            let mut power = unit.magnitude(&log2_x);
             if self.product_form == ProductForm::Signed {
                 power = power * unit.sign(&x);
             }
@@ -208,14 +215,18 @@ impl Scaling<f32> {
 impl<W: Copy, const N: usize> ProductUnit<W, N> {
     /// Magnitude of the product, from the logarithms of the inputs.
     #[inline(always)]
-    fn value<S: Scalar<Weight = W>>(&self, log2_x: &[S; N]) -> S {
+    pub fn magnitude<S: Scalar<Weight = W>>(&self, log2_x: &[S; N]) -> S {
         S::product_of_powers(log2_x[0].zero(), log2_x, &self.exponents)
     }
 
     /// Real part of the complex sign of the product.
     #[inline(always)]
-    fn sign<S: Scalar<Weight = W>>(&self, x: &[S; N]) -> S {
-        S::weighted_sum(x[0].zero(), &x.map(S::negative), &self.exponents).cos_pi()
+    pub fn sign<S: Scalar<Weight = W>>(&self, x: &[S; N]) -> S {
+        let mut negative = *x;
+        for value in &mut negative {
+            *value = value.negative();
+        }
+        S::weighted_sum(x[0].zero(), &negative, &self.exponents).cos_pi()
     }
 }
 
@@ -264,7 +275,7 @@ mod tests {
 
     /// The same network by the formulas of the paper and of Durbin and Rumelhart, in f64.
     fn by_formula(n: &Network<f32, 2>, inputs: [f32; 2]) -> f64 {
-        let x: [f64; 2] = array::from_fn(|i| {
+        let x: [f64; 2] = core::array::from_fn(|i| {
             let s = n.inputs[i];
             f64::from((inputs[i] * s.gain + s.offset).clamp(s.low, s.high))
         });

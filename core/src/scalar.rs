@@ -45,7 +45,7 @@ pub trait Scalar: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = 
 }
 
 /// The least magnitude that [`Scalar::log2_magnitude`] tells from zero: the policy for zero in the signed form.
-const LEAST_MAGNITUDE: f32 = 1.0 / 1024.0;
+pub const LEAST_MAGNITUDE: f32 = 1.0 / 1024.0;
 
 impl Scalar for f32 {
     type Weight = f32;

@@ -10,8 +10,12 @@ pub type Generator = Xoshiro256PlusPlus;
 /// The generator for one purpose of a run. `place` tells purposes apart: for an individual it may be
 /// `[restart, generation, individual]`. Other places give unrelated streams.
 pub fn generator(seed: u64, place: &[u64]) -> Generator {
-    let mixed = place.iter().fold(mix(seed), |state, part| mix(state.rotate_left(29) ^ mix(*part)));
-    Generator::seed_from_u64(mixed)
+    Generator::seed_from_u64(derive(seed, place))
+}
+
+/// The seed for one purpose of a run.
+pub fn derive(seed: u64, place: &[u64]) -> u64 {
+    place.iter().fold(mix(seed), |state, part| mix(state.rotate_left(29) ^ mix(*part)))
 }
 
 /// The finaliser of SplitMix64: every bit of the input moves every bit of the output.

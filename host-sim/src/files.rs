@@ -4,6 +4,7 @@ use std::fs;
 use std::io::Write;
 use std::path::Path;
 
+use serde::Serialize;
 use serde::de::DeserializeOwned;
 use tempfile::NamedTempFile;
 
@@ -51,6 +52,15 @@ pub fn write(path: &Path, content: impl AsRef<[u8]>) -> Result<()> {
         Ok(())
     };
     attempt().map_err(|e| Problem::in_file(path, format!("cannot be written: {e}")))
+}
+
+/// Writes a value as JSON.
+///
+/// # Errors
+/// As [`write()`].
+pub fn write_json(path: &Path, value: &impl Serialize) -> Result<()> {
+    let text = serde_json::to_string_pretty(value).map_err(|e| Problem::in_file(path, e.to_string()))?;
+    write(path, text + "\n")
 }
 
 /// Fills a folder under a temporary name beside `path`, then renames it. A folder that is there already is replaced

@@ -1,8 +1,20 @@
 //! The host harness: learns a robot's simulator neural networks from its logs, evolves controllers in them, and
 //! measures both.
 
+pub mod ascent;
+pub mod built_in_robot;
 pub mod chance;
+pub mod cli;
+pub mod demo;
+pub mod evolve;
 pub mod files;
+pub mod folded;
+pub mod gap;
+pub mod genetic;
 pub mod geometry;
+pub mod lanes;
+pub mod learn;
 pub mod logs;
 pub mod problem;
+pub mod report;
+pub mod simulator;

@@ -1,2 +1,7 @@
 //! The command `mindgap`.
-fn main() {}
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    mindgap_host_sim::cli::run()
+}

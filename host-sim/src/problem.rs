@@ -30,6 +30,11 @@ impl Problem {
         Problem { file: Some(file.to_owned()), line: Some(line), what: what.into() }
     }
 
+    /// The same problem, laid to `file` unless it has a file already.
+    pub fn or_in_file(self, file: &Path) -> Self {
+        Problem { file: self.file.or_else(|| Some(file.to_owned())), ..self }
+    }
+
     fn place(&self) -> String {
         match (&self.file, self.line) {
             (Some(file), Some(line)) => format!("{}:{line}: ", file.display()),

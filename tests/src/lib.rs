@@ -1,5 +1,13 @@
-//! What the tests share: the built command, and the folders of logs that a public clone does not have.
+//! What the tests share: the built command, the folders of logs that a public clone does not have, golden files, bricks
+//! on board the built-in robot, error bounds of fixed point, and the compiler for NXT programs.
 
+pub mod command;
+pub mod controllers;
+pub mod elsewhere;
 pub mod firmware_networks;
 pub mod fixed_point_error;
+pub mod golden;
+pub mod nbc;
+pub mod on_board;
 pub mod plausible_networks;
+pub mod rooms;

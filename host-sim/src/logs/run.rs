@@ -134,19 +134,23 @@ struct Columns([Option<usize>; COLUMNS.len()]);
 impl Columns {
     fn find(path: &Path, header: &StringRecord, warn: &mut impl FnMut(String)) -> Result<Self> {
         let mut places = [None; COLUMNS.len()];
+        let mut unknown = Vec::new();
         for (i, name) in header.iter().enumerate() {
             match COLUMNS.iter().position(|c| *c == name) {
-                None => warn(format!("{}:1: column {name:?} is not known and left out", path.display())),
+                None => unknown.push(name),
                 Some(c) if places[c].is_some() => {
                     return Err(Problem::at_line(path, 1, format!("column {name} stands twice")));
                 }
                 Some(c) => places[c] = Some(i),
             }
         }
-        match (0..REQUIRED).find(|c| places[*c].is_none()) {
-            Some(c) => Err(Problem::at_line(path, 1, format!("column {} is missing", COLUMNS[c]))),
-            None => Ok(Columns(places)),
+        if let Some(c) = (0..REQUIRED).find(|c| places[*c].is_none()) {
+            return Err(Problem::at_line(path, 1, format!("column {} is missing", COLUMNS[c])));
         }
+        for name in unknown {
+            warn(format!("{}:1: column {name:?} is not known and left out", path.display()));
+        }
+        Ok(Columns(places))
     }
 
     fn row(&self, record: &StringRecord) -> std::result::Result<Row, String> {

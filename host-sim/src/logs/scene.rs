@@ -72,6 +72,9 @@ impl Scene {
             if !is_point(DVec2::new(s.x_cm, s.y_cm)) || !s.heading_deg.is_finite() {
                 return Err(at(start, "a start needs finite numbers"));
             }
+            if !scene.holds(DVec2::new(s.x_cm, s.y_cm)) {
+                return Err(at(start, "the start lies outside the arena or inside an obstacle"));
+            }
             scene.starts.push(Pose::new(s.x_cm, s.y_cm, s.heading_deg.to_radians()));
         }
         if scene.sides().is_empty() {

@@ -1,0 +1,323 @@
+//! A brick in software: runs .rxe programs as the standard firmware does, in a world that is told what to sense.
+//!
+//! * [`Program`]: an .rxe file, checked. Any file that nbc makes for standard firmware (file versions 0.5 and 0.6).
+//! * [`run`]: runs it until it ends, on a clock of its own, and reports every [`Event`].
+//! * [`World`]: what the brick senses and moves; [`Script`] is one that gives what it was told.
+//!
+//! Left out: Bluetooth, mailboxes, pictures, colour sensors and motor regulation. A program that asks for one of the
+//! first four ends with [`Fault::Instruction`]; a motor does what its power says.
+//!
+//! ```
+//! use mindgap_controller_export::brick::{self, End, Program, Script, Setup};
+//!
+//! // An empty task, as nbc compiles it: one clump that stops.
+//! # let mut file = b"MindstormsNXT\0\0\x06".to_vec();
+//! # let header = [1u16, 12, 2, 10, 0, 10, 0, 0, 2, 1, 2];
+//! # for word in header { file.extend(word.to_le_bytes()); }
+//! # file.extend([1, 1, 0, 0]);
+//! # for word in [2u16, 10, 1, 0xFFFF, 0xFFFF] { file.extend(word.to_le_bytes()); }
+//! # file.extend([0, 0, 0, 0, 0x29, 0x40, 0xFF, 0xFF]);
+//! let program = Program::load(&file)?;
+//! let report = brick::run(&program, &mut Script::default(), &Setup::default());
+//! assert_eq!(report.end, End::Finished);
+//! # Ok::<(), brick::LoadError>(())
+//! ```
+
+mod arithmetic;
+mod bus;
+mod flash;
+mod instructions;
+mod memory;
+mod motors;
+mod polymorphic;
+mod program;
+mod schedule;
+mod syscalls;
+mod text;
+mod world;
+
+use std::collections::BTreeMap;
+
+pub use motors::Drive;
+pub use program::{LoadError, Program};
+pub use world::{Button, Script, Sonar, World};
+
+use bus::Port;
+use flash::Flash;
+use instructions::Flow;
+use memory::Memory;
+use motors::Motor;
+use schedule::Schedule;
+
+use crate::onboard::FREE_FLASH_BYTES;
+
+/// Instructions that a clump runs before the next one has its turn.
+const TURN: u32 = 20;
+
+/// The brick before a run: what it has, how fast it is, and when the run is given up.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Setup {
+    /// Time after which the run is given up.
+    pub run_ms: u32,
+    /// Bytecode instructions in a millisecond; a brick manages 80 to 160.
+    pub instructions_per_ms: u32,
+    /// The clock when the program starts: the brick counts from when it was switched on.
+    pub start_tick_ms: u32,
+    /// Flash for files.
+    pub flash_bytes: u32,
+    /// Files that are there already.
+    pub files: BTreeMap<String, Vec<u8>>,
+}
+
+/// What a program did.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Report {
+    /// What could be seen and heard, in its order.
+    pub events: Vec<Event>,
+    /// How the program ended.
+    pub end: End,
+    /// When it ended, in milliseconds since its start.
+    pub ended_ms: u32,
+    /// Instructions that it ran.
+    pub instructions: u64,
+    /// What each motor did when it ended.
+    pub motors: [Drive; motors::PORTS],
+    /// The files that it left, cut to what was written.
+    pub files: BTreeMap<String, Vec<u8>>,
+    /// The most memory that clump records, values and arrays took, in bytes.
+    pub pool_bytes: usize,
+}
+
+/// Something that could be seen or heard.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Event {
+    /// Milliseconds since the program started.
+    pub t_ms: u32,
+    /// What it was.
+    pub what: What,
+}
+
+/// What could be seen or heard.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum What {
+    /// A motor was told something, be it what it did already; `port` counts from 0.
+    Motor {
+        /// The motor's port.
+        port: usize,
+        /// What it does from now on.
+        drive: Drive,
+    },
+    /// A tone was started.
+    Tone {
+        /// Its frequency.
+        hz: u16,
+        /// Its length.
+        ms: u16,
+    },
+    /// A sound file was started.
+    Sound(String),
+    /// Text was drawn.
+    Text {
+        /// Pixels from the left.
+        x: i16,
+        /// Pixels from the bottom.
+        y: i16,
+        /// The text.
+        text: String,
+    },
+}
+
+/// How a program ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum End {
+    /// It came to its end or stopped itself.
+    Finished,
+    /// The dark button was pressed: the motors coast.
+    Aborted,
+    /// The firmware gave up on it: the motors go on until somebody presses a button.
+    Failed(Fault),
+    /// It was still running after [`Setup::run_ms`].
+    OutOfTime,
+}
+
+/// Why the firmware gives up on a program.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Fault {
+    /// An instruction or call that there is not, or code that runs past its end.
+    Instruction,
+    /// An operand of the wrong type, or an index outside its array.
+    Argument,
+    /// Data outside the dataspace.
+    Pointer,
+    /// No memory left.
+    Memory,
+}
+
+/// The brick while a program runs.
+struct Brick<'p, 'w> {
+    program: &'p Program,
+    world: &'w mut dyn World,
+    memory: Memory<'p>,
+    schedule: Schedule,
+    motors: [Motor; motors::PORTS],
+    ports: [Port; bus::PORTS],
+    flash: Flash,
+    /// Releases of each button that the program does not count any more.
+    forgotten_releases: [u8; 4],
+    chance: u32,
+    start_tick_ms: u32,
+    t_ms: u32,
+    events: Vec<Event>,
+    instructions: u64,
+}
+
+impl Default for Setup {
+    /// Ten minutes, 100 instructions a millisecond, switched on for five seconds, an empty file system.
+    fn default() -> Self {
+        Setup {
+            run_ms: 600_000,
+            instructions_per_ms: 100,
+            start_tick_ms: 5_000,
+            flash_bytes: FREE_FLASH_BYTES,
+            files: BTreeMap::new(),
+        }
+    }
+}
+
+/// Runs a program until it ends.
+pub fn run(program: &Program, world: &mut dyn World, setup: &Setup) -> Report {
+    let clump_bytes = program.pool_bytes() - program.data.len();
+    let (memory, started) = match Memory::new(program) {
+        Ok(memory) => (memory, None),
+        Err(memory) => (memory, Some(End::Failed(Fault::Memory))),
+    };
+    let mut brick = Brick {
+        program,
+        world,
+        memory,
+        schedule: Schedule::new(program),
+        motors: Default::default(),
+        ports: Default::default(),
+        flash: Flash::new(setup.flash_bytes, &setup.files),
+        forgotten_releases: [0; 4],
+        chance: 1,
+        start_tick_ms: setup.start_tick_ms,
+        t_ms: 0,
+        events: Vec::new(),
+        instructions: 0,
+    };
+    let end = started.unwrap_or_else(|| brick.run(setup));
+    let motors = match end {
+        End::Aborted => Default::default(),
+        _ => brick.motors.each_ref().map(Motor::drive),
+    };
+    Report {
+        events: brick.events,
+        end,
+        ended_ms: brick.t_ms,
+        instructions: brick.instructions,
+        motors,
+        files: brick.flash.into_files(),
+        pool_bytes: clump_bytes + brick.memory.most_bytes(),
+    }
+}
+
+impl Brick<'_, '_> {
+    /// Passes of the firmware's scheduler, one a millisecond; those in which every clump sleeps are skipped.
+    fn run(&mut self, setup: &Setup) -> End {
+        loop {
+            if self.world.exit_pressed_ms().is_some_and(|exit_ms| self.t_ms >= exit_ms) {
+                return End::Aborted;
+            }
+            if self.t_ms >= setup.run_ms {
+                return End::OutOfTime;
+            }
+            self.schedule.wake(self.t_ms);
+            match self.pass(setup.instructions_per_ms) {
+                Ok(None) => {}
+                Ok(Some(end)) => return end,
+                Err(fault) => return End::Failed(fault),
+            }
+            let last_ms = self.world.exit_pressed_ms().unwrap_or(u32::MAX).min(setup.run_ms);
+            self.t_ms = match self.schedule.next_wake_ms() {
+                Some(wake_ms) => wake_ms.min(last_ms).max(self.t_ms + 1),
+                None => self.t_ms + 1,
+            };
+        }
+    }
+
+    /// One millisecond: clumps run in turn.
+    fn pass(&mut self, instructions: u32) -> Result<Option<End>, Fault> {
+        let mut left = instructions.max(1);
+        while let Some(clump) = self.schedule.running() {
+            if left == 0 {
+                self.schedule.rotate();
+                return Ok(None);
+            }
+            let turn = TURN.min(left);
+            match self.turn(clump, turn, &mut left)? {
+                Turn::Over => self.schedule.rotate(),
+                Turn::Left => {}
+                Turn::Stop => return Ok(Some(End::Finished)),
+            }
+        }
+        Ok(self.schedule.is_empty().then_some(End::Finished))
+    }
+
+    /// Up to `turn` instructions of one clump.
+    fn turn(&mut self, clump: u8, turn: u32, left: &mut u32) -> Result<Turn, Fault> {
+        let (mut pc, end) = (self.schedule.pc(clump), self.program.clumps[usize::from(clump)].code.end);
+        for _ in 0..turn {
+            if pc >= end {
+                return Err(Fault::Instruction);
+            }
+            *left -= 1;
+            self.instructions += 1;
+            let flow = match self.execute(pc) {
+                // Memory in pieces: pack it and try once more.
+                Err(Fault::Memory) => {
+                    self.memory.compact();
+                    self.execute(pc)
+                }
+                flow => flow,
+            };
+            match flow? {
+                Flow::Next(words) => pc += words,
+                Flow::Branch(words) => {
+                    pc = pc.checked_add_signed(words.into()).ok_or(Fault::Instruction)?;
+                }
+                Flow::Suspend(words) => {
+                    self.schedule.set_pc(clump, pc + words);
+                    return Ok(Turn::Left);
+                }
+                Flow::Yield(words) => {
+                    self.schedule.set_pc(clump, pc + words);
+                    return Ok(Turn::Over);
+                }
+                Flow::ClumpEnds => return Ok(Turn::Left),
+                Flow::Stop => return Ok(Turn::Stop),
+            }
+        }
+        self.schedule.set_pc(clump, pc);
+        Ok(Turn::Over)
+    }
+
+    /// The brick's clock.
+    fn tick_ms(&self) -> u32 {
+        self.start_tick_ms.wrapping_add(self.t_ms)
+    }
+
+    fn emit(&mut self, what: What) {
+        self.events.push(Event { t_ms: self.t_ms, what });
+    }
+}
+
+/// How a clump's turn ended.
+enum Turn {
+    /// It may go on after the others.
+    Over,
+    /// It waits, or is done.
+    Left,
+    /// The program stops.
+    Stop,
+}

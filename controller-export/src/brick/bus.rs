@@ -1,0 +1,160 @@
+//! The four sensor ports: their types, and the slow digital bus that the ultrasonic sensor speaks on.
+//!
+//! Source: `c_lowspeed.c`, `c_input.c` and `cCmdLS…` in `c_cmd.c` of the firmware.
+
+use std::collections::VecDeque;
+
+use super::Fault;
+use super::world::{Sonar, World};
+use crate::bytecode::{InputField, SENSOR_LOW_SPEED, SENSOR_LOW_SPEED_9V, SONAR_ADDRESS, SONAR_FIRST_ECHO, comm};
+
+/// Sensor ports of a brick.
+pub(super) const PORTS: usize = 4;
+
+/// How long a port's values count as invalid after its type changed.
+const SETTLE_MS: u32 = 20;
+/// Two bytes out, the address again and one byte in, at 9600 bit/s.
+const ANSWER_MS: u32 = 6;
+/// Four calls without an acknowledgement.
+const SILENCE_MS: u32 = 6;
+const HANG_MS: u32 = 100;
+/// Size of the buffer in and out.
+const BUFFER_BYTES: usize = 16;
+const FACTORY_ZERO: u8 = 0;
+const NO_FURTHER_ECHO: u8 = 255;
+
+/// A sensor port.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Port {
+    kind: u8,
+    mode: u8,
+    invalid_until_ms: Option<u32>,
+    state: State,
+    received: VecDeque<u8>,
+}
+
+#[derive(Clone, Debug, Default)]
+enum State {
+    #[default]
+    Idle,
+    /// An exchange that ends at this time, with an answer or without.
+    Busy(u32, Option<Vec<u8>>),
+    Failed,
+}
+
+impl Port {
+    pub(super) fn set(&mut self, field: u16, value: u32, t_ms: u32) -> Result<(), Fault> {
+        match InputField::from_number(field).ok_or(Fault::Instruction)? {
+            InputField::Type => {
+                self.kind = value as u8;
+                self.invalid_until_ms = Some(t_ms.saturating_add(SETTLE_MS));
+            }
+            InputField::Mode => self.mode = value as u8,
+            InputField::InvalidData => self.invalid_until_ms = (value != 0).then_some(t_ms.saturating_add(SETTLE_MS)),
+            InputField::AdRaw | InputField::NormRaw | InputField::Scaled => {}
+        }
+        Ok(())
+    }
+
+    pub(super) fn get(&self, field: u16, t_ms: u32) -> Result<u32, Fault> {
+        Ok(match InputField::from_number(field).ok_or(Fault::Instruction)? {
+            InputField::Type => u32::from(self.kind),
+            InputField::Mode => u32::from(self.mode),
+            InputField::InvalidData => u32::from(!self.is_valid(t_ms)),
+            InputField::AdRaw | InputField::NormRaw | InputField::Scaled => 0,
+        })
+    }
+
+    /// Starts an exchange.
+    pub(super) fn write(
+        &mut self,
+        request: &[u8],
+        answer_bytes: u8,
+        port: usize,
+        t_ms: u32,
+        world: &mut dyn World,
+    ) -> i8 {
+        self.settle(t_ms);
+        let answer_bytes = usize::from(answer_bytes);
+        if request.len() > BUFFER_BYTES || answer_bytes > BUFFER_BYTES {
+            return comm::INVALID_SIZE;
+        }
+        let ready = match self.state {
+            State::Idle => self.is_digital() && self.is_valid(t_ms),
+            State::Failed => true,
+            State::Busy(..) => false,
+        };
+        if !ready {
+            return comm::NOT_READY;
+        }
+        self.state = exchange(request, answer_bytes, t_ms, || world.sonar(port, t_ms));
+        comm::OK
+    }
+
+    /// How the exchange stands, and how many bytes wait to be read.
+    pub(super) fn status(&mut self, t_ms: u32) -> (i8, u8) {
+        self.settle(t_ms);
+        let status = match self.state {
+            _ if !self.is_digital() || !self.is_valid(t_ms) => comm::NOT_READY,
+            State::Idle => comm::OK,
+            State::Busy(..) => comm::PENDING,
+            State::Failed => comm::BUS_ERROR,
+        };
+        (status, self.received.len() as u8)
+    }
+
+    /// Takes bytes that were received; fewer when fewer are there.
+    pub(super) fn read(&mut self, most: u8, t_ms: u32) -> (i8, Vec<u8>) {
+        let (status, _) = self.status(t_ms);
+        if status < 0 {
+            return (status, Vec::new());
+        }
+        let count = usize::from(most).min(self.received.len());
+        (status, self.received.drain(..count).collect())
+    }
+
+    fn is_digital(&self) -> bool {
+        matches!(self.kind, SENSOR_LOW_SPEED | SENSOR_LOW_SPEED_9V)
+    }
+
+    fn is_valid(&self, t_ms: u32) -> bool {
+        self.invalid_until_ms.is_none_or(|until| t_ms >= until)
+    }
+
+    fn settle(&mut self, t_ms: u32) {
+        match &mut self.state {
+            State::Busy(until, answer) if t_ms >= *until => match answer.take() {
+                Some(answer) => {
+                    // Like the firmware's ring buffer, which forgets what was not read in time.
+                    self.received.extend(answer);
+                    if self.received.len() >= BUFFER_BYTES {
+                        self.received.clear();
+                    }
+                    self.state = State::Idle;
+                }
+                None => self.state = State::Failed,
+            },
+            _ => {}
+        }
+    }
+}
+
+fn exchange(request: &[u8], answer_bytes: usize, t_ms: u32, sonar: impl FnOnce() -> Sonar) -> State {
+    let silence = State::Busy(t_ms.saturating_add(SILENCE_MS), None);
+    let [SONAR_ADDRESS, register, ..] = request else { return silence };
+    if answer_bytes == 0 {
+        return State::Busy(t_ms.saturating_add(ANSWER_MS), Some(Vec::new()));
+    }
+    let echo = match sonar() {
+        Sonar::Echo(echo_cm) => echo_cm,
+        Sonar::Silent => return silence,
+        Sonar::Hangs => return State::Busy(t_ms.saturating_add(HANG_MS), None),
+    };
+    let registers = usize::from(*register)..usize::from(*register) + answer_bytes;
+    let answer = registers.map(|register| match register.checked_sub(usize::from(SONAR_FIRST_ECHO)) {
+        Some(0) => echo,
+        Some(1..8) => NO_FURTHER_ECHO,
+        _ => FACTORY_ZERO,
+    });
+    State::Busy(t_ms.saturating_add(ANSWER_MS), Some(answer.collect()))
+}

@@ -1,0 +1,325 @@
+//! An .rxe file, read and checked: after this, every number that leads from one part of the file to another is sound.
+
+use std::ops::Range;
+
+use crate::bytecode::{
+    CLUMP_RECORD_BYTES, DEFAULT_ZERO, DOPE_VECTOR_BYTES, HEADER_BYTES, MAGIC, NONE, POOL_BYTES, Type,
+};
+
+/// The firmware refuses no nesting; the deepest that nbc makes of a sensible program is four.
+const DEEPEST_NESTING: u16 = 6;
+const OLDEST_MINOR_VERSION: u8 = 4;
+const NEWEST_MAJOR_VERSION: u8 = 1;
+/// One clump number is kept to say "none".
+const MOST_CLUMPS: u16 = 254;
+
+/// A program for the standard firmware, ready to run.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Program {
+    pub(super) entries: Vec<Entry>,
+    pub(super) clumps: Vec<Clump>,
+    pub(super) code: Vec<u16>,
+    /// The dataspace as it is when the program starts: values, then arrays.
+    pub(super) data: Vec<u8>,
+    pub(super) static_bytes: usize,
+    pub(super) dope: Vec<DopeVector>,
+    file_bytes: usize,
+}
+
+/// Why the firmware would refuse a program.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("no program for the standard firmware: {0}")]
+pub struct LoadError(&'static str);
+
+/// A value, or the description of an array's elements.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Entry {
+    pub(super) kind: Type,
+    /// Where it lies: in the dataspace, or within its array's element. A cluster has none.
+    offset: u16,
+    /// Members of a cluster.
+    pub(super) members: u16,
+    /// The entry after this one and all its parts.
+    pub(super) next: u16,
+    /// Whether its first value stands in the file; zero otherwise.
+    stored: bool,
+}
+
+/// A piece of code that is scheduled as a whole: a task or a subroutine.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Clump {
+    /// Other clumps that have to finish first.
+    pub(super) fire_count: u8,
+    pub(super) dependents: Vec<u8>,
+    /// Its instructions in the program's code.
+    pub(super) code: Range<usize>,
+}
+
+/// Where an array lies.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct DopeVector {
+    /// In the dataspace; `None` until the array has its first element.
+    pub(super) offset: Option<usize>,
+    pub(super) element_bytes: usize,
+    pub(super) count: usize,
+    /// Bytes that the array may grow to where it lies.
+    pub(super) capacity: usize,
+}
+
+impl Program {
+    /// Reads an .rxe file with every check that the firmware makes, and those that it leaves out.
+    ///
+    /// # Errors
+    /// [`LoadError`] names the first check that fails.
+    pub fn load(file: &[u8]) -> Result<Program, LoadError> {
+        let header = Header::read(file)?;
+        let mut rest = Reader { bytes: file, at: HEADER_BYTES };
+        let entries = read_entries(rest.take(4 * usize::from(header.entries))?)?;
+        rest.align();
+        let defaults = rest.take(usize::from(header.default_bytes))?;
+        rest.align();
+        let clumps = read_clumps(&mut rest, &header)?;
+        let code: Vec<u16> = words(rest.take(2 * usize::from(header.code_words))?).collect();
+        if rest.at != file.len() {
+            return Err(LoadError("bytes after the code"));
+        }
+        let data = inflate(&entries, defaults, &header)?;
+        let dope = read_dope_vectors(&data, &header)?;
+        let static_bytes = usize::from(header.static_bytes);
+        let program = Program { entries, clumps, code, data, static_bytes, dope, file_bytes: file.len() };
+        if program.pool_bytes() > POOL_BYTES {
+            return Err(LoadError("more data than the brick has memory for programs"));
+        }
+        Ok(program)
+    }
+
+    /// Size of the file.
+    pub fn file_bytes(&self) -> usize {
+        self.file_bytes
+    }
+
+    /// Memory that the program takes when it starts: clump records, values and arrays; the brick has 32,768 bytes.
+    pub fn pool_bytes(&self) -> usize {
+        (self.clumps.len() * CLUMP_RECORD_BYTES).next_multiple_of(4) + self.data.len()
+    }
+
+    /// Number of 16-bit words of code.
+    pub fn code_words(&self) -> usize {
+        self.code.len()
+    }
+}
+
+impl Entry {
+    /// Its place in the dataspace, given that of the array element that it is part of.
+    pub(super) fn at(&self, base: usize) -> usize {
+        usize::from(self.offset) + base
+    }
+}
+
+struct Header {
+    entries: u16,
+    data_bytes: u16,
+    static_bytes: u16,
+    default_bytes: u16,
+    dynamic_offset: u16,
+    dynamic_bytes: u16,
+    head: u16,
+    tail: u16,
+    dope_offset: u16,
+    clumps: u16,
+    code_words: u16,
+}
+
+impl Header {
+    fn read(file: &[u8]) -> Result<Header, LoadError> {
+        let header = file.get(..HEADER_BYTES).ok_or(LoadError("shorter than its header"))?;
+        if header[..MAGIC.len()] != MAGIC {
+            return Err(LoadError("it does not begin with MindstormsNXT"));
+        }
+        if header[14] > NEWEST_MAJOR_VERSION || header[15] < OLDEST_MINOR_VERSION {
+            return Err(LoadError("a file version that the firmware does not know"));
+        }
+        let mut fields = words(&header[16..]);
+        let mut field = || fields.next().ok_or(LoadError("shorter than its header"));
+        let header = Header {
+            entries: field()?,
+            data_bytes: field()?,
+            static_bytes: field()?,
+            default_bytes: field()?,
+            dynamic_offset: field()?,
+            dynamic_bytes: field()?,
+            head: field()?,
+            tail: field()?,
+            dope_offset: field()?,
+            clumps: field()?,
+            code_words: field()?,
+        };
+        if header.clumps == 0 || header.clumps > MOST_CLUMPS {
+            return Err(LoadError("no clump, or more than 254"));
+        }
+        if header.code_words == 0 || header.data_bytes == 0 || header.entries == NONE {
+            return Err(LoadError("no code or no data"));
+        }
+        Ok(header)
+    }
+}
+
+fn read_entries(table: &[u8]) -> Result<Vec<Entry>, LoadError> {
+    let mut entries = Vec::with_capacity(table.len() / 4);
+    for row in table.chunks_exact(4) {
+        let kind = Type::from_number(row[0]).ok_or(LoadError("a data type that does not exist"))?;
+        let offset = u16::from_le_bytes([row[2], row[3]]);
+        let (offset, members) = if kind == Type::Cluster { (0, offset) } else { (offset, 0) };
+        let stored = row[1] & DEFAULT_ZERO == 0;
+        entries.push(Entry { kind, offset, members, next: NONE, stored });
+    }
+    // Parts follow their whole, so going backwards every part is known before the whole that it belongs to.
+    let mut depths = vec![0; entries.len()];
+    for at in (0..entries.len()).rev() {
+        let parts = match entries[at].kind {
+            Type::Array => 1,
+            Type::Cluster => entries[at].members,
+            _ => 0,
+        };
+        let mut next = at + 1;
+        for _ in 0..parts {
+            let part = entries.get(next).ok_or(LoadError("an array or cluster without its parts"))?;
+            depths[at] = depths[at].max(depths[next] + 1);
+            next = usize::from(part.next);
+        }
+        if depths[at] > DEEPEST_NESTING {
+            return Err(LoadError("data nested too deeply"));
+        }
+        entries[at].next = u16::try_from(next).map_err(|_| LoadError("more data than can be numbered"))?;
+    }
+    Ok(entries)
+}
+
+fn read_clumps(rest: &mut Reader, header: &Header) -> Result<Vec<Clump>, LoadError> {
+    let records: Vec<_> = rest.take(4 * usize::from(header.clumps))?.chunks_exact(4).collect();
+    let starts: Vec<_> = records.iter().map(|r| usize::from(u16::from_le_bytes([r[2], r[3]]))).collect();
+    let ends = starts.iter().skip(1).copied().chain([usize::from(header.code_words)]);
+    let mut clumps = Vec::new();
+    for ((record, start), end) in records.iter().zip(&starts).zip(ends) {
+        if *start >= end {
+            return Err(LoadError("a clump without code"));
+        }
+        let dependents = rest.take(usize::from(record[1]))?.to_vec();
+        if dependents.iter().any(|clump| u16::from(*clump) >= header.clumps) {
+            return Err(LoadError("a clump waits for one that does not exist"));
+        }
+        clumps.push(Clump { fire_count: record[0], dependents, code: *start..end });
+    }
+    rest.align();
+    if clumps.iter().all(|clump| clump.fire_count > 0) {
+        return Err(LoadError("no clump starts"));
+    }
+    Ok(clumps)
+}
+
+/// Lays the stored defaults out as the dataspace.
+fn inflate(entries: &[Entry], defaults: &[u8], header: &Header) -> Result<Vec<u8>, LoadError> {
+    const TOO_SMALL: LoadError = LoadError("data outside the dataspace");
+    let (static_bytes, dynamic_at) = (usize::from(header.static_bytes), usize::from(header.dynamic_offset));
+    let (stored, dynamic) = defaults.split_at_checked(dynamic_at).ok_or(LoadError("defaults cut short"))?;
+    if dynamic.len() != usize::from(header.dynamic_bytes) {
+        return Err(LoadError("defaults cut short"));
+    }
+    let mut data = vec![0; usize::from(header.data_bytes)];
+    let mut stored = Reader { bytes: stored, at: 0 };
+    let mut at = 0;
+    while let Some(entry) = entries.get(at) {
+        // A cluster's members follow as entries of their own; an array's element is only described.
+        at = if entry.kind == Type::Array { usize::from(entry.next) } else { at + 1 };
+        let bytes = entry.kind.bytes();
+        if bytes > 0 {
+            let at = entry.at(0);
+            let place = data.get_mut(at..at + bytes).ok_or(TOO_SMALL)?;
+            if entry.stored {
+                place.copy_from_slice(stored.take(bytes)?);
+            }
+        }
+    }
+    if !stored.is_at_end() {
+        return Err(LoadError("more defaults than data"));
+    }
+    data.get_mut(static_bytes..static_bytes + dynamic.len()).ok_or(TOO_SMALL)?.copy_from_slice(dynamic);
+    Ok(data)
+}
+
+/// Reads the dope vectors and walks their list as the firmware's memory manager does: in the order of their offsets,
+/// links both ways, every vector once.
+fn read_dope_vectors(data: &[u8], header: &Header) -> Result<Vec<DopeVector>, LoadError> {
+    const BROKEN: LoadError = LoadError("broken list of arrays");
+    let at = usize::from(header.dope_offset);
+    let first = data.get(at..at + DOPE_VECTOR_BYTES).ok_or(BROKEN)?;
+    let [offset, element_bytes, count, ..] = fields(first);
+    if usize::from(offset) != at || usize::from(element_bytes) != DOPE_VECTOR_BYTES {
+        return Err(BROKEN);
+    }
+    let table = data.get(at..at + DOPE_VECTOR_BYTES * usize::from(count)).ok_or(BROKEN)?;
+    let vectors: Vec<_> = table.chunks_exact(DOPE_VECTOR_BYTES).map(fields).collect();
+
+    let mut list = Vec::new();
+    let mut next = header.head;
+    while next != NONE {
+        let [offset, .., link] = *vectors.get(usize::from(next)).ok_or(BROKEN)?;
+        if list.len() == vectors.len() || (link == NONE) != (next == header.tail) {
+            return Err(BROKEN);
+        }
+        list.push((next, offset));
+        next = link;
+    }
+    let placed = list.iter().filter(|(_, offset)| *offset != NONE);
+    if list.len() != vectors.len() || !placed.clone().is_sorted_by_key(|(_, offset)| *offset) {
+        return Err(BROKEN);
+    }
+
+    let mut dope = vec![DopeVector { offset: None, element_bytes: 0, count: 0, capacity: 0 }; vectors.len()];
+    let ends = placed.clone().skip(1).map(|(_, offset)| usize::from(*offset)).chain([data.len()]);
+    for ((vector, offset), end) in placed.zip(ends) {
+        let [_, element_bytes, count, ..] = vectors[usize::from(*vector)];
+        let (offset, element_bytes, count) = (usize::from(*offset), usize::from(element_bytes), usize::from(count));
+        if offset + element_bytes * count > end {
+            return Err(BROKEN);
+        }
+        let capacity = end - offset;
+        dope[usize::from(*vector)] = DopeVector { offset: Some(offset), element_bytes, count, capacity };
+    }
+    for (vector, [offset, element_bytes, ..]) in dope.iter_mut().zip(&vectors) {
+        if *offset == NONE {
+            vector.element_bytes = usize::from(*element_bytes);
+        }
+    }
+    Ok(dope)
+}
+
+fn fields(vector: &[u8]) -> [u16; 5] {
+    std::array::from_fn(|i| u16::from_le_bytes([vector[2 * i], vector[2 * i + 1]]))
+}
+
+fn words(bytes: &[u8]) -> impl Iterator<Item = u16> {
+    bytes.chunks_exact(2).map(|pair| u16::from_le_bytes([pair[0], pair[1]]))
+}
+
+struct Reader<'b> {
+    bytes: &'b [u8],
+    at: usize,
+}
+
+impl<'b> Reader<'b> {
+    fn take(&mut self, count: usize) -> Result<&'b [u8], LoadError> {
+        let taken = self.bytes.get(self.at..self.at + count).ok_or(LoadError("cut short"))?;
+        self.at += count;
+        Ok(taken)
+    }
+
+    /// The firmware reads words at even places only.
+    fn align(&mut self) {
+        self.at += self.at % 2;
+    }
+
+    fn is_at_end(&self) -> bool {
+        self.at >= self.bytes.len()
+    }
+}

@@ -1,0 +1,90 @@
+//! What a program takes of the brick, against what there is.
+
+use std::fmt;
+
+use crate::bytecode::POOL_BYTES;
+use crate::error::ExportError;
+use crate::nxc::source::{log_bytes, log_rows};
+use crate::onboard::FREE_FLASH_BYTES;
+
+/// Bytecode instructions in a millisecond, at least.
+const INSTRUCTIONS_PER_MS: u32 = 80;
+/// How long a sensor that hangs keeps its port busy; the next exchange has to begin after that.
+const HANG_MS: u32 = 100;
+/// Writing a row: a page of flash now and then.
+const LOG_ROW_MS: u32 = 5;
+
+/// What a program takes of the brick.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Budget {
+    /// Size of the .rxe file at most, in flash.
+    pub program_bytes: u32,
+    /// Memory for clumps, values and arrays at most.
+    pub memory_bytes: u32,
+    /// Flash that is reserved for the log.
+    pub log_bytes: u32,
+    /// Time between two steps.
+    pub step_ms: u16,
+    /// Time that a step takes at worst, when the sensor hangs.
+    pub worst_step_ms: u16,
+}
+
+/// What a kind of program takes, whatever its numbers.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Cost {
+    pub(crate) program_bytes: u32,
+    pub(crate) memory_bytes: u32,
+    /// Bytecode instructions of one step at worst.
+    pub(crate) step_instructions: u32,
+}
+
+impl Cost {
+    pub(crate) const fn plus(self, more: Cost) -> Cost {
+        Cost {
+            program_bytes: self.program_bytes + more.program_bytes,
+            memory_bytes: self.memory_bytes + more.memory_bytes,
+            step_instructions: self.step_instructions + more.step_instructions,
+        }
+    }
+}
+
+impl Budget {
+    /// The budget of a program that takes `cost`, and logs its start and `logged_steps` steps if at all.
+    pub(crate) fn new(cost: Cost, step_ms: u16, logged_steps: Option<u16>) -> Self {
+        let log_ms = if logged_steps.is_some() { LOG_ROW_MS } else { 0 };
+        Budget {
+            program_bytes: cost.program_bytes,
+            memory_bytes: cost.memory_bytes,
+            log_bytes: logged_steps.map_or(0, |steps| log_bytes(u32::from(steps) + 1)),
+            step_ms,
+            worst_step_ms: (HANG_MS + cost.step_instructions.div_ceil(INSTRUCTIONS_PER_MS) + log_ms) as u16,
+        }
+    }
+
+    /// Whether the brick can hold and run the program.
+    pub(crate) fn check(&self) -> Result<(), ExportError> {
+        let Budget { log_bytes, step_ms, worst_step_ms, .. } = *self;
+        if step_ms < worst_step_ms {
+            return Err(ExportError::StepTooShort { step_ms, shortest_ms: worst_step_ms });
+        }
+        let flash_bytes = FREE_FLASH_BYTES - self.program_bytes;
+        if log_bytes > flash_bytes {
+            let steps = log_rows(flash_bytes).saturating_sub(1) as u16;
+            return Err(ExportError::LogTooLarge { log_bytes, flash_bytes, steps });
+        }
+        Ok(())
+    }
+}
+
+/// One line an item: what is taken of what there is.
+impl fmt::Display for Budget {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let Budget { program_bytes, memory_bytes, log_bytes, step_ms, worst_step_ms } = self;
+        writeln!(f, "program  {program_bytes:>7} of {FREE_FLASH_BYTES} bytes of flash")?;
+        if *log_bytes > 0 {
+            writeln!(f, "log      {log_bytes:>7} of {} bytes of flash", FREE_FLASH_BYTES - program_bytes)?;
+        }
+        writeln!(f, "memory   {memory_bytes:>7} of {POOL_BYTES} bytes")?;
+        write!(f, "step     {worst_step_ms:>7} of {step_ms} ms at worst")
+    }
+}

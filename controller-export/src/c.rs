@@ -1,0 +1,46 @@
+//! The controller as a C99 header: its tuples as a table, and the machine that steps through them.
+//!
+//! It allocates nothing and needs `stdbool.h` and `stdint.h` alone. Reading the sensor, setting the motors and keeping
+//! time is left to the program that includes it.
+
+use mindgap_core::controller::{Controller, FULL_SPEED, TUPLES, When};
+
+use crate::error::ExportError;
+use crate::origin::Origin;
+
+/// `@tuples@` stands where the table goes.
+const MACHINE: &str = include_str!("c/machine.h");
+
+/// The controller as a header.
+///
+/// # Errors
+/// [`ExportError::Controller`].
+pub fn header(controller: &Controller, origin: &Origin) -> Result<String, ExportError> {
+    controller.check()?;
+    let origin: String = origin.lines().iter().map(|line| format!("\n * {}", line.replace("*/", "* /"))).collect();
+    let Controller { step_ms, max_steps, .. } = controller;
+    let head = format!(
+        "/* A six-tuple controller. Set the motors to controller_motors_now(), and every CONTROLLER_STEP_MS read the sensor\n \
+         * once, call controller_step() and set the motors again.\n *{origin}\n */\n\
+         #ifndef MINDGAP_CONTROLLER_H\n\
+         #define MINDGAP_CONTROLLER_H\n\
+         \n\
+         #include <stdbool.h>\n\
+         #include <stdint.h>\n\
+         \n\
+         #define CONTROLLER_TUPLES {TUPLES}\n\
+         #define CONTROLLER_STEP_MS {step_ms}\n\
+         #define CONTROLLER_MAX_STEPS {max_steps}\n"
+    );
+    Ok(head + &MACHINE.replace("@tuples@\n", &tuples(controller)))
+}
+
+fn tuples(controller: &Controller) -> String {
+    let mut text = "static const controller_tuple controller_tuples[CONTROLLER_TUPLES] = {\n".to_owned();
+    for tuple in &controller.tuples {
+        let [left, right] = [tuple.left, tuple.right].map(|speed| speed.clamp(-FULL_SPEED, FULL_SPEED));
+        let larger = tuple.when == When::Larger;
+        text += &format!("  {{{{{left:>4}, {right:>4}}}, {larger:>5}, {:>3}}},\n", tuple.threshold_cm);
+    }
+    text + "};\n"
+}

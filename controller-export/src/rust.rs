@@ -1,0 +1,39 @@
+//! The controller as a constant for programs that run [`mindgap_core`]'s own machine.
+
+use mindgap_core::controller::{Controller, Tuple, When};
+
+use crate::error::ExportError;
+use crate::origin::Origin;
+
+/// The controller as a Rust module with one constant, `CONTROLLER`.
+///
+/// # Errors
+/// [`ExportError::Controller`].
+pub fn module(controller: &Controller, origin: &Origin) -> Result<String, ExportError> {
+    controller.check()?;
+    let origin: String = origin.lines().iter().map(|line| format!("//!\n//! {line}\n")).collect();
+    let tuples: String = controller.tuples.iter().map(tuple).collect();
+    let Controller { step_ms, max_steps, .. } = controller;
+    Ok(format!(
+        "//! A six-tuple controller.\n\
+         {origin}\n\
+         use mindgap_core::controller::{{Controller, Tuple, When}};\n\
+         \n\
+         /// Run it with [`Machine`](mindgap_core::controller::Machine).\n\
+         #[rustfmt::skip]\n\
+         pub const CONTROLLER: Controller = Controller {{\n    \
+             step_ms: {step_ms},\n    \
+             max_steps: {max_steps},\n    \
+             tuples: [\n{tuples}    ],\n\
+         }};\n"
+    ))
+}
+
+fn tuple(tuple: &Tuple) -> String {
+    let Tuple { left, right, when, threshold_cm } = tuple;
+    let when = match when {
+        When::Larger => "When::Larger",
+        When::Smaller => "When::Smaller",
+    };
+    format!("        Tuple {{ left: {left}, right: {right}, when: {when}, threshold_cm: {threshold_cm} }},\n")
+}

@@ -1,0 +1,81 @@
+//! How fast the harness is: `cargo bench -p mindgap-host-sim`.
+
+use divan::Bencher;
+use divan::counter::ItemsCount;
+use mindgap_core::controller::{Controller, Tuple, When};
+use mindgap_core::network::Activation;
+use mindgap_host_sim::built_in_robot::{default_robot, four_obstacles, record, training_room};
+use mindgap_host_sim::chance::generator;
+use mindgap_host_sim::evolve::fitness::{Numbers, Task};
+use mindgap_host_sim::evolve::genome::Coding;
+use mindgap_host_sim::evolve::paper;
+use mindgap_host_sim::genetic::Settings;
+use mindgap_host_sim::learn::dataset::Dataset;
+use mindgap_host_sim::learn::genome::Shape;
+use mindgap_host_sim::learn::{paper as paper_trainer, train};
+use mindgap_host_sim::simulator::course::{Course, Job};
+use mindgap_host_sim::simulator::{Noise, Simulator};
+use rand::RngExt;
+
+const SEED: u64 = 1;
+const MAX_STEPS: u16 = 150;
+
+fn main() {
+    divan::main();
+}
+
+/// Simulated runs side by side on one thread, all their steps taken; the counter is robot-steps.
+#[divan::bench(args = [Noise::Paper, Noise::Learned])]
+fn robot_steps(bencher: Bencher, noise: Noise) {
+    const RUNS: u64 = 1000;
+    let (simulator, scene) = (simulator(), four_obstacles());
+    let course = Course::new(&simulator, &scene, scene.starts[0], noise).expect("the robot has room");
+    // It turns on the spot, and no reading is below zero: every run goes on to its last step.
+    let turning = Tuple { left: 30, right: -30, when: When::Smaller, threshold_cm: 0 };
+    let controller = &Controller { step_ms: 400, max_steps: MAX_STEPS, tuples: [turning; 6] };
+    let motions = &course.motions(controller);
+    let jobs: Vec<Job> = (0..RUNS).map(|seed| Job { controller, motions, seed }).collect();
+    let steps: u64 = course.run(&jobs).iter().map(|outcome| u64::from(outcome.steps)).sum();
+    bencher.counter(ItemsCount::new(steps)).bench(|| course.run(&jobs));
+}
+
+/// The paper's genetic algorithm on the weights of a 2-10-1 network, with 1000 samples; the counter is generations.
+#[divan::bench(sample_size = 1)]
+fn training_generations(bencher: Bencher) {
+    const GENERATIONS: usize = 100;
+    let mut rng = generator(SEED, &[]);
+    let mut data = Dataset::<2>::default();
+    for run in 0..1000 {
+        let (distance_cm, alpha_deg) = (rng.random_range(4.0..240.0), rng.random_range(0.0..90.0));
+        data.push([distance_cm, alpha_deg], distance_cm + 0.1 * alpha_deg, run);
+    }
+    let genetic = Settings { window: None, max_generations: GENERATIONS, ..Settings::default() };
+    let options = paper_trainer::Options { genetic, ..paper_trainer::Options::default() };
+    let train = || paper_trainer::train(&data, Shape::halves(10), Activation::Linear, &options, SEED, |_, _| {});
+    bencher.counter(ItemsCount::new(GENERATIONS)).bench(train);
+}
+
+/// One controller by the paper's procedure at its full size; the counter is generations.
+#[divan::bench(sample_size = 1, sample_count = 3)]
+fn evolving_generations(bencher: Bencher) {
+    let (simulator, scene) = (simulator(), four_obstacles());
+    let course = &Course::new(&simulator, &scene, scene.starts[0], Noise::Paper).expect("the robot has room");
+    let task = Task {
+        course,
+        target_cm: scene.target_cm.expect("the scene has a target"),
+        coding: Coding::new(&simulator, MAX_STEPS),
+        runs: paper::RUNS,
+        floor_cm: paper::FLOOR_CM,
+        numbers: Numbers::Fresh,
+        seed: SEED,
+    };
+    let settings = paper::settings();
+    let evolve = || paper::evolve(&task, &settings, |_, _| {});
+    bencher.counter(ItemsCount::new(settings.max_generations)).bench(evolve);
+}
+
+/// A simulator with networks of the paper's sizes, learned from few logs.
+fn simulator() -> Simulator {
+    let logs = record(&default_robot(), &training_room(), 20, 40, &[], SEED).expect("the room has room");
+    train::train(&logs, &train::Trainer::Fast, SEED, |_| {}).expect("these logs train all networks")
+}

@@ -1,0 +1,207 @@
+//! Maximises a sum of log-likelihoods within bounds: the method of Berndt, Hall, Hall and Hausman (1974), which takes
+//! the curvature from the scores themselves.
+
+use nalgebra::{DMatrix, DVector};
+
+/// A number to be fitted, within what is physically possible.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bounds {
+    /// Least value.
+    pub low: f64,
+    /// Largest value.
+    pub high: f64,
+}
+
+/// A maximum, and what is known of its surroundings.
+#[derive(Clone, Debug)]
+pub struct Maximum {
+    /// Where it lies.
+    pub at: Vec<f64>,
+    /// The log-likelihood of each term there.
+    pub terms: Vec<f64>,
+    /// The score of each term there, by parameter, per unit of the bounds' width.
+    pub scores: Vec<Vec<f64>>,
+}
+
+/// Derivatives are taken over this share of the bounds' width.
+const DIFFERENCE: f64 = 0.004;
+/// Keeps the curvature invertible, in squared scores.
+const RIDGE: f64 = 1.0;
+/// So often a step that does not climb is shortened, or one that does is lengthened.
+const LENGTHS: usize = 6;
+const SHORTER: f64 = 0.35;
+const LONGER: f64 = 2.5;
+
+/// A point on a line: the sum there, where it is, and the terms.
+type Trial = (f64, Vec<f64>, Vec<f64>);
+
+/// Climbs from `start` until a round gains less than `enough`, for `rounds` at most. `terms` gives the log-likelihood
+/// of each term at a point.
+pub fn climb(
+    bounds: &[Bounds],
+    start: &[f64],
+    rounds: usize,
+    enough: f64,
+    terms: impl Fn(&[f64]) -> Vec<f64>,
+) -> Maximum {
+    let mut at = start.to_vec();
+    let mut here = terms(&at);
+    let mut scores = score(bounds, &at, &here, &terms);
+    for _ in 0..rounds {
+        let before = sum(&here);
+        let direction = solve(&scores, &at, bounds);
+        let along = |length: f64| {
+            let trial = moved(bounds, &at, &direction.iter().map(|d| d * length).collect::<Vec<f64>>());
+            let there = terms(&trial);
+            (sum(&there), trial, there)
+        };
+        let best = line_search(before, along);
+        let gain = best.as_ref().map_or(0.0, |b| b.0 - before);
+        if let Some((_, trial, there)) = best {
+            (at, here) = (trial, there);
+        }
+        if gain > 0.0 {
+            scores = score(bounds, &at, &here, &terms);
+        }
+        if gain < enough {
+            break;
+        }
+    }
+    Maximum { at, terms: here, scores }
+}
+
+impl Maximum {
+    /// The value of the sum.
+    pub fn value(&self) -> f64 {
+        sum(&self.terms)
+    }
+
+    /// Where the maximum would lie without the terms for which `left_out` holds, to first order.
+    pub fn without(&self, bounds: &[Bounds], left_out: impl Fn(usize) -> bool) -> Vec<f64> {
+        let curvature = curvature(&self.scores, |i| !left_out(i));
+        let p = self.at.len();
+        // The full sum's gradient vanishes only where no bound holds it; what the kept terms pull beyond it moves the
+        // maximum.
+        let mut pull = DVector::zeros(p);
+        for (i, s) in self.scores.iter().enumerate() {
+            if left_out(i) {
+                pull -= DVector::from_column_slice(s);
+            }
+        }
+        let step = curvature.cholesky().map_or(DVector::zeros(p), |c| c.solve(&pull));
+        moved(bounds, &self.at, step.as_slice())
+    }
+}
+
+/// The best of a few lengths, if any climbs.
+fn line_search(before: f64, along: impl Fn(f64) -> Trial) -> Option<Trial> {
+    let mut length = 1.0;
+    let mut best = along(length);
+    if best.0 > before {
+        for _ in 0..LENGTHS {
+            length *= LONGER;
+            let further = along(length);
+            if further.0 <= best.0 {
+                break;
+            }
+            best = further;
+        }
+        return Some(best);
+    }
+    for _ in 0..LENGTHS {
+        length *= SHORTER;
+        best = along(length);
+        if best.0 > before {
+            return Some(best);
+        }
+    }
+    None
+}
+
+fn solve(scores: &[Vec<f64>], at: &[f64], bounds: &[Bounds]) -> Vec<f64> {
+    let p = at.len();
+    let gradient: Vec<f64> = (0..p).map(|i| scores.iter().map(|s| s[i]).sum()).collect();
+    // A parameter that a bound holds stays out of the step.
+    let held =
+        |i: usize| (at[i] <= bounds[i].low && gradient[i] < 0.0) || (at[i] >= bounds[i].high && gradient[i] > 0.0);
+    let free: Vec<usize> = (0..p).filter(|i| !held(*i)).collect();
+    let full = curvature(scores, |_| true);
+    let matrix = DMatrix::from_fn(free.len(), free.len(), |r, c| full[(free[r], free[c])]);
+    let pull = DVector::from_iterator(free.len(), free.iter().map(|i| gradient[*i]));
+    let mut step = vec![0.0; p];
+    if let Some(solved) = matrix.cholesky().map(|c| c.solve(&pull)) {
+        free.iter().zip(solved.iter()).for_each(|(i, s)| step[*i] = *s);
+    }
+    step
+}
+
+fn curvature(scores: &[Vec<f64>], kept: impl Fn(usize) -> bool) -> DMatrix<f64> {
+    let p = scores.first().map_or(0, Vec::len);
+    let mut matrix = DMatrix::from_diagonal_element(p, p, RIDGE);
+    for (_, s) in scores.iter().enumerate().filter(|(i, _)| kept(*i)) {
+        for r in 0..p {
+            for c in 0..p {
+                matrix[(r, c)] += s[r] * s[c];
+            }
+        }
+    }
+    matrix
+}
+
+fn score(bounds: &[Bounds], at: &[f64], here: &[f64], terms: &impl Fn(&[f64]) -> Vec<f64>) -> Vec<Vec<f64>> {
+    let mut scores = vec![vec![0.0; at.len()]; here.len()];
+    for (i, b) in bounds.iter().enumerate() {
+        let width = b.high - b.low;
+        let h = if at[i] + DIFFERENCE * width <= b.high { DIFFERENCE } else { -DIFFERENCE };
+        let mut beside = at.to_vec();
+        beside[i] += h * width;
+        let there = terms(&beside);
+        for (s, (a, b)) in scores.iter_mut().zip(there.iter().zip(here)) {
+            s[i] = (a - b) / h;
+        }
+    }
+    scores
+}
+
+fn moved(bounds: &[Bounds], at: &[f64], step: &[f64]) -> Vec<f64> {
+    let one = |((a, s), b): ((&f64, &f64), &Bounds)| (a + s * (b.high - b.low)).clamp(b.low, b.high);
+    at.iter().zip(step).zip(bounds).map(one).collect()
+}
+
+fn sum(terms: &[f64]) -> f64 {
+    terms.iter().sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const WIDE: Bounds = Bounds { low: -10.0, high: 10.0 };
+
+    /// Log-likelihood of values under a normal law of unknown mean and of deviation one.
+    fn normal(values: &[f64]) -> impl Fn(&[f64]) -> Vec<f64> {
+        move |at| values.iter().map(|v| -0.5 * (v - at[0]) * (v - at[0])).collect()
+    }
+
+    #[test]
+    fn the_mean_is_the_most_likely_middle() {
+        let values: Vec<f64> = (0..50).map(|i| 2.0 + 0.05 * (f64::from(i) - 24.5)).collect();
+        let found = climb(&[WIDE], &[-5.0], 50, 1e-9, normal(&values));
+        assert!((found.at[0] - 2.0).abs() < 0.05, "{:?}", found.at);
+    }
+
+    #[test]
+    fn a_bound_holds() {
+        let bounds = [Bounds { low: -10.0, high: 1.0 }];
+        let found = climb(&bounds, &[0.0], 50, 1e-9, normal(&[2.0, 3.0, 4.0]));
+        assert_eq!(found.at, [1.0]);
+    }
+
+    #[test]
+    fn leaving_terms_out_moves_the_maximum_away_from_them() {
+        let values: Vec<f64> = (0..40).map(|i| if i < 20 { 1.0 } else { 3.0 } + 0.9 * f64::from(i % 3 - 1)).collect();
+        let found = climb(&[WIDE], &[0.0], 50, 1e-9, normal(&values));
+        let without = found.without(&[WIDE], |i| i < 10)[0];
+        assert!(without > found.at[0] + 0.1, "{} {without}", found.at[0]);
+    }
+}

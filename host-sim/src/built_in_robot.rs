@@ -1,0 +1,68 @@
+//! The built-in robot: a stand-in for reality, so that the whole job can be done without a robot.
+//!
+//! It works from forces, voltages, torques, echo strengths and camera optics at small ticks of time, and shares no
+//! formula with the simulator that is learnt from its logs or with the effects that a diagnosis tries. Its logs are
+//! like any robot's.
+//!
+//! [`BuiltInRobot`] is the robot in its room, with what is different about it ([`effects`]); [`Body`] is a run of it;
+//! [`record`] makes random-command logs, [`run_controller`] tries a controller. Inside: `hardware` has every
+//! part's numbers, `drivetrain` and `wheel` the motion, `sonar` the sensor, `tracker` camera and compass.
+
+mod body;
+mod controller_run;
+mod drivetrain;
+pub mod effects;
+mod hardware;
+mod noise;
+mod recording;
+mod rooms;
+mod sonar;
+mod tracker;
+mod wheel;
+
+pub use body::Body;
+pub use controller_run::{Moment, Outcome, Track, run_controller};
+pub use effects::{ActiveEffect, Effect};
+pub use recording::record;
+pub use rooms::{default_robot, four_obstacles, training_room};
+
+use crate::chance::Generator;
+use crate::geometry::{Pose, Wall};
+use crate::logs::{Robot, Scene};
+use effects::fitting;
+use hardware::Hardware;
+use noise::normal;
+
+/// A robot in a room.
+#[derive(Clone, Debug)]
+pub struct BuiltInRobot {
+    body_radius_cm: f64,
+    hardware: Hardware,
+    sides: Vec<Wall>,
+}
+
+impl BuiltInRobot {
+    /// The robot that fits `spec`, in `scene`, with these effects switched on.
+    pub fn new(spec: &Robot, scene: &Scene, effects: &[ActiveEffect]) -> Self {
+        let mut hardware = Hardware::new(spec, scene);
+        effects.iter().for_each(|active| fitting::fit(&mut hardware, active));
+        BuiltInRobot { body_radius_cm: spec.body_radius_cm, hardware, sides: scene.sides() }
+    }
+
+    /// Puts the robot down at rest with a fresh battery: a run begins.
+    pub fn start(&self, at: Pose, rng: &mut Generator) -> Body<'_> {
+        Body::at_rest(self, at, rng)
+    }
+
+    /// How long a step of nominally `step_ms` takes this time, in whole milliseconds.
+    fn step_length_ms(&self, step_ms: f64, rng: &mut Generator) -> f64 {
+        (step_ms + self.hardware.link.step_jitter_ms * normal(rng)).round().max(1.0)
+    }
+
+    /// How far the robot's body at `pose` is from the nearest wall or obstacle, cm.
+    fn clearance_cm(&self, pose: &Pose) -> f64 {
+        let at_cm = pose.position_cm;
+        let nearest = self.sides.iter().map(|side| side.nearest(at_cm).distance(at_cm)).fold(f64::INFINITY, f64::min);
+        nearest - self.body_radius_cm
+    }
+}

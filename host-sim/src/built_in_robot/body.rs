@@ -1,0 +1,120 @@
+//! A run of the built-in robot, from rest.
+
+use std::collections::VecDeque;
+
+use rand::RngExt;
+
+use super::BuiltInRobot;
+use super::drivetrain::Drivetrain;
+use super::sonar::Receiver;
+use crate::chance::Generator;
+use crate::geometry::Pose;
+use crate::logs::Row;
+
+/// Length of a tick of the physics; short against how fast tyres take hold.
+const TICK_MS: f64 = 2.0;
+
+/// The built-in robot somewhere in a run.
+#[derive(Clone, Debug)]
+pub struct Body<'a> {
+    robot: &'a BuiltInRobot,
+    drivetrain: Drivetrain,
+    receiver: Receiver,
+    /// Where the robot was, back to when the sensor sent the ping that it now tells of.
+    trail: VecDeque<(f64, Pose)>,
+    t_ms: f64,
+    /// What the motor driver holds, and what is still on its way to it with the time of its arrival.
+    command: [f64; 2],
+    on_the_way: VecDeque<(f64, [f64; 2])>,
+    /// So far the robot can go before it could touch anything.
+    clear_cm: f64,
+    crashed: bool,
+}
+
+impl<'a> Body<'a> {
+    pub(super) fn at_rest(robot: &'a BuiltInRobot, at: Pose, rng: &mut Generator) -> Self {
+        let clear_cm = robot.clearance_cm(&at);
+        Body {
+            robot,
+            drivetrain: Drivetrain::at_rest(&robot.hardware, at, rng),
+            receiver: Receiver::default(),
+            trail: VecDeque::from([(0.0, at)]),
+            t_ms: 0.0,
+            command: [0.0, 0.0],
+            on_the_way: VecDeque::new(),
+            clear_cm,
+            crashed: clear_cm <= 0.0,
+        }
+    }
+
+    /// Gives the motors these commands, -100..=100, and lets time pass. A robot that touches something stays there.
+    pub fn drive(&mut self, command: [f64; 2], duration_ms: f64, rng: &mut Generator) {
+        let link = &self.robot.hardware.link;
+        let due_ms = self.t_ms + link.delay_ms + link.delay_jitter_ms * rng.random::<f64>();
+        self.on_the_way.push_back((due_ms, command.map(|c| link.passes(c))));
+        let end_ms = self.t_ms + duration_ms;
+        while self.t_ms < end_ms && !self.crashed {
+            while self.on_the_way.front().is_some_and(|(due_ms, _)| *due_ms <= self.t_ms) {
+                self.command = self.on_the_way.pop_front().map_or(self.command, |(_, command)| command);
+            }
+            let tick_ms = TICK_MS.min(end_ms - self.t_ms);
+            self.clear_cm -= self.drivetrain.tick(&self.robot.hardware, self.command, tick_ms, rng);
+            self.t_ms += tick_ms;
+            self.leave_trail();
+            if self.clear_cm <= 0.0 {
+                self.clear_cm = self.robot.clearance_cm(&self.true_pose());
+                self.crashed = self.clear_cm <= 0.0;
+            }
+        }
+        self.t_ms = end_ms;
+    }
+
+    /// Where the robot is.
+    pub fn true_pose(&self) -> Pose {
+        self.drivetrain.pose()
+    }
+
+    /// Whether it has touched a wall or an obstacle.
+    pub fn crashed(&self) -> bool {
+        self.crashed
+    }
+
+    /// How far its body is from the nearest wall or obstacle, cm.
+    pub fn clearance_cm(&self) -> f64 {
+        self.robot.clearance_cm(&self.true_pose())
+    }
+
+    /// One reading of the ultrasonic sensor, cm.
+    pub fn read_sonar(&mut self, rng: &mut Generator) -> Option<f64> {
+        let (_, pose) = self.trail[0];
+        self.receiver.read(&self.robot.hardware.sonar, &self.robot.sides, &pose, self.t_ms, rng)
+    }
+
+    /// Where the tracker sees the robot.
+    pub fn track(&self, rng: &mut Generator) -> Option<Pose> {
+        self.robot.hardware.tracker.see(&self.true_pose(), rng)
+    }
+
+    /// The row of a log for this moment, at which the motors are given `command` and the sensor read `echo_cm`.
+    pub fn row(&self, command: [f64; 2], echo_cm: Option<f64>, rng: &mut Generator) -> Row {
+        let [rot_left_deg, rot_right_deg] = self.drivetrain.counters_deg();
+        Row {
+            t_ms: self.t_ms,
+            left: command[0],
+            right: command[1],
+            pose: self.track(rng),
+            echo_cm,
+            rot_left_deg: Some(rot_left_deg),
+            rot_right_deg: Some(rot_right_deg),
+            battery_mv: Some((1000.0 * self.drivetrain.battery_v(&self.robot.hardware)).round()),
+        }
+    }
+
+    fn leave_trail(&mut self) {
+        self.trail.push_back((self.t_ms, self.true_pose()));
+        let pinged_ms = self.t_ms - self.robot.hardware.sonar.age_ms;
+        while self.trail.get(1).is_some_and(|(t_ms, _)| *t_ms <= pinged_ms) {
+            self.trail.pop_front();
+        }
+    }
+}

@@ -1,0 +1,78 @@
+//! A controller on the built-in robot: what "the real world" says of it.
+
+use mindgap_core::controller::{Controller, Machine, Motors, Status};
+
+use super::BuiltInRobot;
+use crate::chance::Generator;
+use crate::geometry::Pose;
+use crate::logs::{Row, Run};
+
+/// A controller's run, moment by moment.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Track {
+    /// One a step, the first before any; the last one step after the motors stopped, when the robot stands.
+    pub moments: Vec<Moment>,
+    /// How it ended.
+    pub outcome: Outcome,
+}
+
+/// One moment of a run.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Moment {
+    /// Where the robot was.
+    pub true_pose: Pose,
+    /// What was logged: the commands from here on, the tracked pose, the reading that led to them.
+    pub row: Row,
+}
+
+/// How a controller's run on the robot ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Outcome {
+    /// The sixth tuple's test held.
+    Finished,
+    /// The step limit was reached.
+    TimedOut,
+    /// The robot touched a wall or an obstacle, with its motors on or while it coasted to a halt.
+    Crashed,
+}
+
+/// Runs a controller from `start` until it stops the motors or the robot crashes.
+pub fn run_controller(robot: &BuiltInRobot, controller: &Controller, start: Pose, rng: &mut Generator) -> Track {
+    let mut body = robot.start(start, rng);
+    let mut machine = Machine::start();
+    let mut moments = Vec::new();
+    let mut echo_cm = None;
+    loop {
+        let command = speeds(machine.motors(controller));
+        moments.push(Moment { true_pose: body.true_pose(), row: body.row(command, echo_cm, rng) });
+        body.drive(command, robot.step_length_ms(f64::from(controller.step_ms), rng), rng);
+        if body.crashed() || machine.status() != Status::Running {
+            break;
+        }
+        echo_cm = body.read_sonar(rng);
+        machine.step(controller, echo_cm);
+    }
+    moments.push(Moment { true_pose: body.true_pose(), row: body.row([0.0, 0.0], None, rng) });
+    let outcome = match machine.status() {
+        _ if body.crashed() => Outcome::Crashed,
+        Status::Finished => Outcome::Finished,
+        Status::Running | Status::TimedOut => Outcome::TimedOut,
+    };
+    Track { moments, outcome }
+}
+
+impl Track {
+    /// Where the robot came to rest.
+    pub fn end(&self) -> Pose {
+        self.moments[self.moments.len() - 1].true_pose
+    }
+
+    /// The run as a log.
+    pub fn to_run(&self, name: impl Into<String>) -> Run {
+        Run { name: name.into(), rows: self.moments.iter().map(|moment| moment.row).collect() }
+    }
+}
+
+fn speeds(motors: Motors) -> [f64; 2] {
+    [f64::from(motors.left), f64::from(motors.right)]
+}

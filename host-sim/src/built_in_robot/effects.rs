@@ -1,0 +1,100 @@
+//! Effects: what can be made different in the built-in robot, each by its name in the contracts' table or beside it.
+//!
+//! An effect is another part or another floor (`fitting`), never a change to a simulator's step.
+
+mod catalogue;
+pub(super) mod fitting;
+mod scale;
+
+use std::fmt;
+use std::str::FromStr;
+
+pub use catalogue::Effect;
+pub use scale::Scale;
+
+use crate::chance::Generator;
+
+/// An effect that is switched on: `ID`, `ID=STRENGTH` or `ID=STRENGTH@DETAIL` as text.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ActiveEffect {
+    /// Which one.
+    pub effect: Effect,
+    /// How strong, in the unit of [`Effect::strength_range`].
+    pub strength: f64,
+    /// Its second number in the unit of [`Effect::detail_range`]; zero for an effect that has none.
+    pub detail: f64,
+}
+
+impl ActiveEffect {
+    /// The effect at its default strength, which logs show clearly.
+    pub fn new(effect: Effect) -> Self {
+        let detail = effect.detail_range().map_or(0.0, |range| range.default);
+        ActiveEffect { effect, strength: effect.strength_range().default, detail }
+    }
+
+    /// The effect at a random strength that is neither none nor beyond its range.
+    pub fn random(effect: Effect, rng: &mut Generator) -> Self {
+        let strength = effect.strength_range().draw(rng);
+        let detail = effect.detail_range().map_or(0.0, |range| range.draw(rng));
+        ActiveEffect { effect, strength, detail }
+    }
+}
+
+impl fmt::Display for ActiveEffect {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        write!(f, "{}={}", self.effect, self.strength)?;
+        if self.effect.detail_range().is_some() { write!(f, "@{}", self.detail) } else { Ok(()) }
+    }
+}
+
+impl FromStr for ActiveEffect {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let (id, numbers) = match text.split_once('=') {
+            Some((id, numbers)) => (id, Some(numbers)),
+            None => (text, None),
+        };
+        let mut active = ActiveEffect::new(id.parse()?);
+        let Some(numbers) = numbers else { return Ok(active) };
+        let (strength, detail) = match numbers.split_once('@') {
+            Some((strength, detail)) => (strength, Some(detail)),
+            None => (numbers, None),
+        };
+        active.strength = active.effect.strength_range().parse(strength).map_err(|what| format!("{id}: {what}"))?;
+        if let Some(detail) = detail {
+            let range = active.effect.detail_range().ok_or(format!("{id} has no second number"))?;
+            active.detail = range.parse(detail).map_err(|what| format!("{id}: {what}"))?;
+        }
+        Ok(active)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::chance::generator;
+
+    #[test]
+    fn text_and_effect_are_one() {
+        let mut rng = generator(1, &[]);
+        for effect in Effect::all() {
+            for active in [ActiveEffect::new(effect), ActiveEffect::random(effect, &mut rng)] {
+                assert_eq!(active.to_string().parse(), Ok(active));
+            }
+            assert_eq!(effect.id().parse(), Ok(ActiveEffect::new(effect)));
+        }
+    }
+
+    #[test]
+    fn a_wrong_name_or_number_is_told() {
+        let wrong = |text: &str| text.parse::<ActiveEffect>().unwrap_err();
+        let unknown = wrong("battery_sagg");
+        assert!(Effect::all().all(|effect| unknown.contains(effect.id())), "{unknown}");
+        assert!(wrong("battery_sag=much").contains("\"much\" is no number"));
+        assert!(wrong("battery_sag=-1").contains("between 0 and"));
+        assert!(wrong("battery_sag=NaN").contains("between 0 and"));
+        assert!(wrong("battery_sag=0.2@3").contains("no second number"));
+        assert!(wrong("slope=0.05@north").contains("\"north\" is no number"));
+    }
+}

@@ -1,0 +1,154 @@
+//! Random-command logs, as the paper's robot made them (section VI): random commands, each held for a few steps, with
+//! somebody standing by who lets the robot hit nothing.
+
+use std::f64::consts::{FRAC_PI_4, PI};
+
+use glam::DVec2;
+use rand::RngExt;
+use rayon::prelude::*;
+
+use super::{ActiveEffect, Body, BuiltInRobot};
+use crate::chance::{Generator, generator};
+use crate::geometry::{Pose, cast, direction};
+use crate::logs::{Logs, Robot, Row, Run, Scene};
+use crate::problem::{Problem, Result};
+
+/// Nothing comes nearer to the robot's body than this, cm.
+const KEPT_CLEAR_CM: f64 = 2.0;
+/// A run starts with at least this room round the body, cm.
+const START_ROOM_CM: f64 = 5.0;
+/// So many random places are tried before a room counts as too small.
+const PLACES_TRIED: usize = 10_000;
+/// So many random commands are tried before the robot is stopped.
+const COMMANDS_TRIED: usize = 40;
+/// A robot that is told to stop stands after so many steps.
+const STEPS_TO_STAND: usize = 2;
+/// A run in which the robot hits something after all is driven again, so many times.
+const ATTEMPTS: u64 = 20;
+/// Places of generators: the purpose, and within it for each run one for what happens and one for what is feared.
+const RECORDING: u64 = u64::from_be_bytes(*b"record  ");
+const DRIVING: u64 = 0;
+const FORESIGHT: u64 = 1;
+
+/// Logs of `runs` runs of `steps` steps each, the same for the same seed on any number of threads.
+///
+/// # Errors
+/// When the room has no place for the robot, or when there is nothing to record.
+pub fn record(
+    spec: &Robot,
+    scene: &Scene,
+    runs: usize,
+    steps: usize,
+    effects: &[ActiveEffect],
+    seed: u64,
+) -> Result<Logs> {
+    if runs == 0 || steps == 0 {
+        return Err(Problem::new(format!("{runs} runs of {steps} steps: there must be at least one of each")));
+    }
+    let robot = BuiltInRobot::new(spec, scene, effects);
+    let runs = (0..runs as u64)
+        .into_par_iter()
+        .map(|run| {
+            let rows = (0..ATTEMPTS).find_map(|attempt| {
+                let mut rng = generator(seed, &[RECORDING, run, attempt, DRIVING]);
+                let mut foresight = generator(seed, &[RECORDING, run, attempt, FORESIGHT]);
+                let start = free_place(spec, scene, &mut rng)?;
+                drive_about(&robot, start, spec.step_ms, steps, &mut rng, &mut foresight)
+            });
+            Ok(Run { name: format!("run-{run:03}"), rows: rows.ok_or_else(|| no_room(spec))? })
+        })
+        .collect::<Result<Vec<Run>>>()?;
+    Ok(Logs { robot: *spec, scene: scene.clone(), runs })
+}
+
+fn no_room(spec: &Robot) -> Problem {
+    let radius_cm = spec.body_radius_cm;
+    Problem::new(format!(
+        "the scene has no room between its walls for the robot to drive in, a disc of radius {radius_cm} cm"
+    ))
+}
+
+/// A random pose at which the robot has room to move.
+fn free_place(spec: &Robot, scene: &Scene, rng: &mut Generator) -> Option<Pose> {
+    let ends = || scene.sides().into_iter().flat_map(|side| [side.from_cm, side.to_cm]);
+    let low = ends().fold(DVec2::INFINITY, DVec2::min);
+    let high = ends().fold(DVec2::NEG_INFINITY, DVec2::max);
+    let heading_rad = rng.random_range(-PI..PI);
+    (0..PLACES_TRIED)
+        .map(|_| low + (high - low) * DVec2::new(rng.random(), rng.random()))
+        .find(|at_cm| is_enclosed(scene, *at_cm) && scene.has_room_for(*at_cm, spec.body_radius_cm + START_ROOM_CM))
+        .map(|at_cm| Pose::new(at_cm.x, at_cm.y, heading_rad))
+}
+
+/// Whether there is something in every direction: the robot cannot drive away from here.
+fn is_enclosed(scene: &Scene, at_cm: DVec2) -> bool {
+    let sides = scene.sides();
+    (0..8).all(|eighth| cast(&sides, at_cm, direction(f64::from(eighth) * FRAC_PI_4)).is_some())
+}
+
+/// One run's rows, one more than steps since a step lies between two; none when the robot hit something.
+fn drive_about(
+    robot: &BuiltInRobot,
+    start: Pose,
+    step_ms: f64,
+    steps: usize,
+    rng: &mut Generator,
+    foresight: &mut Generator,
+) -> Option<Vec<Row>> {
+    let mut body = robot.start(start, rng);
+    let mut rows = Vec::with_capacity(steps + 1);
+    let mut held = Held { command: [0.0, 0.0], steps: 0 };
+    while !body.crashed() {
+        if held.steps == 0 {
+            held = safe_command(&body, step_ms, rng, foresight);
+        }
+        held.steps -= 1;
+        let echo_cm = body.read_sonar(rng);
+        rows.push(body.row(held.command, echo_cm, rng));
+        if rows.len() > steps {
+            return Some(rows);
+        }
+        body.drive(held.command, robot.step_length_ms(step_ms, rng), rng);
+    }
+    None
+}
+
+/// A command, and for how many steps it is held.
+#[derive(Clone, Copy)]
+struct Held {
+    command: [f64; 2],
+    steps: usize,
+}
+
+/// A random command after which the robot can still be stopped clear of everything; stopping is always one.
+fn safe_command(body: &Body, step_ms: f64, rng: &mut Generator, foresight: &mut Generator) -> Held {
+    (0..COMMANDS_TRIED)
+        .map(|_| Held { command: random_command(rng), steps: rng.random_range(1..=3) })
+        .find(|held| stays_clear(body, held, step_ms, foresight))
+        .unwrap_or(Held { command: [0.0, 0.0], steps: 1 })
+}
+
+fn stays_clear(body: &Body, held: &Held, step_ms: f64, foresight: &mut Generator) -> bool {
+    let mut body = body.clone();
+    let then_stopped = [[0.0, 0.0]; STEPS_TO_STAND];
+    std::iter::repeat_n(held.command, held.steps).chain(then_stopped).all(|command| {
+        body.drive(command, step_ms, foresight);
+        !body.crashed() && body.clearance_cm() > KEPT_CLEAR_CM
+    })
+}
+
+/// Whole-number commands: straight on and back, arcs, spins and single wheels, slow and fast.
+fn random_command(rng: &mut Generator) -> [f64; 2] {
+    let pace = rng.random_range(15.0..=85.0);
+    let command: [f64; 2] = match rng.random_range(0..20) {
+        0..3 => [pace, pace],
+        3..11 => [pace * rng.random_range(0.2..=1.0), pace * rng.random_range(0.2..=1.0)],
+        11..15 => {
+            let turn = rng.random_range(10.0..=60.0);
+            if rng.random() { [turn, -turn] } else { [-turn, turn] }
+        }
+        15 => [-0.7 * pace, -0.7 * pace],
+        _ => [rng.random_range(-60.0..=80.0), rng.random_range(-60.0..=80.0)],
+    };
+    command.map(|c| c.round())
+}

@@ -1,0 +1,72 @@
+//! The ultrasonic sensor: when the beam's first echo triggers it, and what its electronics make of that.
+
+mod beam;
+
+use rand::RngExt;
+
+use super::hardware::Sonar;
+use super::noise::{happens, normal};
+use crate::chance::Generator;
+use crate::geometry::{Pose, Wall};
+
+/// Spread of the distance at which the transducer's own ringing, or a fixed thing, triggers the sensor.
+const TRIGGER_SPREAD_CM: f64 = 0.8;
+/// How long a plug without contact stays so.
+const LOOSE_FOR_MS: f64 = 1600.0;
+/// How much later an echo triggers the sensor that just reaches its threshold.
+const FAINT_CM: f64 = 1.5;
+
+/// What the sensor remembers from reading to reading.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Receiver {
+    /// Whether the plug had no contact at the last reading, and when that was.
+    loose: bool,
+    last_ms: f64,
+}
+
+impl Receiver {
+    /// One reading, `t_ms` into the run, of a ping sent with the robot at `pose`: whole centimetres, or none.
+    pub fn read(&mut self, sonar: &Sonar, sides: &[Wall], pose: &Pose, t_ms: f64, rng: &mut Generator) -> Option<f64> {
+        let echo_cm = beam::first_echo(sonar, sides, pose, rng).map(|echo| {
+            let late_cm = FAINT_CM * libm::pow(10.0, -echo.level_db / 20.0);
+            echo.distance_cm + late_cm + (sonar.scatter_cm + sonar.grazing_cm * echo.grazing) * normal(rng)
+        });
+        let heard_cm = earlier(echo_cm, trigger(sonar.ringing, sonar.ringing_cm, rng));
+        let heard_cm = earlier(heard_cm, trigger(sonar.ghost, sonar.ghost_cm, rng));
+        let heard_cm = if happens(sonar.crosstalk, rng) { foreign(sonar, heard_cm, rng) } else { heard_cm };
+        let warmed = 1.0 + sonar.warming_per_min * t_ms / 60_000.0;
+        let loose = self.loses_contact(sonar, t_ms, rng);
+        let reading_cm = ((heard_cm? + sonar.delay_cm) * sonar.timer * warmed).round();
+        (!loose && (sonar.min_cm..=sonar.max_cm).contains(&reading_cm)).then_some(reading_cm)
+    }
+
+    /// A plug that comes loose and back at random times, seen at the times of the readings.
+    fn loses_contact(&mut self, sonar: &Sonar, t_ms: f64, rng: &mut Generator) -> bool {
+        if sonar.loose > 0.0 {
+            let memory = libm::exp(-(t_ms - self.last_ms) / (LOOSE_FOR_MS * (1.0 - sonar.loose)));
+            let before = if self.loose { 1.0 } else { 0.0 };
+            self.loose = happens(sonar.loose + (before - sonar.loose) * memory, rng);
+            self.last_ms = t_ms;
+        }
+        self.loose
+    }
+}
+
+/// The distance at which something that is no wall triggers the sensor, now and then.
+fn trigger(probability: f64, distance_cm: f64, rng: &mut Generator) -> Option<f64> {
+    happens(probability, rng).then(|| distance_cm + TRIGGER_SPREAD_CM * normal(rng))
+}
+
+/// Another sensor's ping comes at any time before the own echo would, or before listening is half over.
+fn foreign(sonar: &Sonar, echo_cm: Option<f64>, rng: &mut Generator) -> Option<f64> {
+    let latest_cm = echo_cm.unwrap_or(f64::INFINITY).min(sonar.max_cm / 2.0).max(sonar.min_cm);
+    Some(rng.random_range(sonar.min_cm..=latest_cm))
+}
+
+/// What triggers the sensor first.
+fn earlier(a_cm: Option<f64>, b_cm: Option<f64>) -> Option<f64> {
+    match (a_cm, b_cm) {
+        (Some(a), Some(b)) => Some(a.min(b)),
+        (a, b) => a.or(b),
+    }
+}

@@ -1,0 +1,144 @@
+//! The beam: rays over its cone, each losing strength with angle, way and surface, and the first echo that is loud
+//! enough.
+
+use std::f64::consts::FRAC_PI_2;
+
+use glam::DVec2;
+
+use crate::built_in_robot::hardware::Sonar;
+use crate::built_in_robot::noise::normal;
+use crate::chance::Generator;
+use crate::geometry::{Hit, Pose, Wall, cast, direction};
+
+const RAYS: u32 = 15;
+/// Sound that has been mirrored starts a little off the wall, so that it does not meet it again.
+const OFF_WALL_CM: f64 = 1e-6;
+
+/// An echo that triggers the sensor.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Echo {
+    /// Half of the way that the sound went.
+    pub distance_cm: f64,
+    /// Above what triggers the sensor.
+    pub level_db: f64,
+    /// 0 for sound that met its wall squarely, 1 along it.
+    pub grazing: f64,
+}
+
+/// The nearest echo that triggers the sensor on a robot at `robot`.
+pub(super) fn first_echo(sonar: &Sonar, sides: &[Wall], robot: &Pose, rng: &mut Generator) -> Option<Echo> {
+    let sensor = robot.compose(&Pose { position_cm: sonar.place_cm, heading_rad: sonar.yaw_rad });
+    let ping_db = sonar.ping_db * normal(rng);
+    let mut first: Option<Echo> = None;
+    for ray in 0..RAYS {
+        // -1 at the right edge of the beam, 1 at the left one.
+        let aside = 2.0 * f64::from(ray) / f64::from(RAYS - 1) - 1.0;
+        let way = direction(sensor.heading_rad + aside * sonar.half_angle_rad);
+        let sent_db = sonar.level_db + ping_db - sonar.edge_db * aside * aside + sonar.lean_db * aside;
+        let speckle_db = sonar.speckle_db * normal(rng);
+        let Some(hit) = cast(sides, sensor.position_cm, way) else { continue };
+        let straight = returned(sonar, &hit);
+        let mirrored = mirrored(sonar, sides, sensor.position_cm, way, &hit);
+        for echo in [Some(straight), mirrored].into_iter().flatten() {
+            let level_db = echo.level_db + sent_db + speckle_db;
+            let nearer = first.is_none_or(|f| echo.distance_cm < f.distance_cm);
+            if level_db > 0.0 && echo.distance_cm >= sonar.min_cm && nearer {
+                first = Some(Echo { level_db, ..echo });
+            }
+        }
+    }
+    first
+}
+
+/// What a wall sends back, against a square echo from one metre: its facets scatter, so that the sound spreads on the
+/// way there and again on the way back.
+fn returned(sonar: &Sonar, hit: &Hit) -> Echo {
+    let spread_db = 2.0 * spread_db(hit.distance_cm);
+    let level_db = scattered_db(sonar, hit) - spread_db - absorbed_db(sonar, hit.distance_cm);
+    Echo { distance_cm: hit.distance_cm, level_db, grazing: grazing(hit) }
+}
+
+/// Sound that a wall mirrors to a second one, and that comes back the same way: the reading is too long. A mirror does
+/// not spread sound any further.
+fn mirrored(sonar: &Sonar, sides: &[Wall], from_cm: DVec2, way: DVec2, hit: &Hit) -> Option<Echo> {
+    let normal = direction(libm::atan2(-way.y, -way.x) + hit.incidence_rad);
+    let away = way - normal * (2.0 * way.dot(normal));
+    let at_cm = from_cm + way * hit.distance_cm + normal * OFF_WALL_CM;
+    let second = cast(sides, at_cm, away)?;
+    let distance_cm = hit.distance_cm + second.distance_cm;
+    let lost_db = spread_db(distance_cm) + absorbed_db(sonar, distance_cm) + 2.0 * sonar.mirror_db;
+    let level_db = scattered_db(sonar, &second) - lost_db;
+    Some(Echo { distance_cm, level_db, grazing: grazing(&second) })
+}
+
+/// What a wall sends back where it came from, against a square echo from a hard one: most by facets that happen to face
+/// the sensor.
+fn scattered_db(sonar: &Sonar, hit: &Hit) -> f64 {
+    let lean = hit.incidence_rad / sonar.facet_rad;
+    let facing = libm::cos(hit.incidence_rad);
+    let share = (1.0 - sonar.diffuse) * libm::exp(-lean * lean) + sonar.diffuse * facing * facing;
+    let surface_db = if hit.wall < sonar.arena_sides { 0.0 } else { sonar.obstacle_db };
+    20.0 * libm::log10(share) + surface_db
+}
+
+/// 0 for sound that meets a wall squarely, 1 along it.
+fn grazing(hit: &Hit) -> f64 {
+    hit.incidence_rad.abs() / FRAC_PI_2
+}
+
+/// What is lost by spreading over a way, against one metre.
+fn spread_db(way_cm: f64) -> f64 {
+    20.0 * libm::log10(way_cm.max(1.0) / 100.0)
+}
+
+/// What air takes, against one metre.
+fn absorbed_db(sonar: &Sonar, way_cm: f64) -> f64 {
+    sonar.absorption_db_per_m * (way_cm / 100.0 - 1.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::built_in_robot::hardware::Hardware;
+    use crate::built_in_robot::{default_robot, training_room};
+    use crate::chance::generator;
+    use crate::geometry::Rectangle;
+
+    /// A sensor at the axle's middle without chance in it.
+    fn steady() -> Sonar {
+        let sonar = Hardware::new(&default_robot(), &training_room()).sonar;
+        Sonar { place_cm: DVec2::ZERO, ping_db: 0.0, speckle_db: 0.0, ..sonar }
+    }
+
+    fn room() -> Vec<Wall> {
+        Rectangle { low_cm: DVec2::ZERO, high_cm: DVec2::new(200.0, 100.0) }.edges().to_vec()
+    }
+
+    fn echo(sonar: &Sonar, x_cm: f64, heading_deg: f64) -> Option<Echo> {
+        first_echo(sonar, &room(), &Pose::new(x_cm, 50.0, heading_deg.to_radians()), &mut generator(1, &[]))
+    }
+
+    #[test]
+    fn a_wall_straight_ahead_is_heard_at_its_distance_and_fainter_from_afar() {
+        let (near, far) = (echo(&steady(), 160.0, 0.0).unwrap(), echo(&steady(), 120.0, 0.0).unwrap());
+        assert!((near.distance_cm - 40.0).abs() < 1e-9 && (far.distance_cm - 80.0).abs() < 1e-9);
+        assert!(near.level_db > far.level_db + 10.0);
+    }
+
+    #[test]
+    fn an_oblique_wall_is_fainter_and_heard_at_the_near_side_of_the_beam() {
+        let (square, oblique) = (echo(&steady(), 160.0, 0.0).unwrap(), echo(&steady(), 160.0, 30.0).unwrap());
+        let along_axis_cm = 40.0 / libm::cos(30f64.to_radians());
+        assert!(oblique.level_db < square.level_db && oblique.grazing > 0.1);
+        assert!((40.0..along_axis_cm).contains(&oblique.distance_cm), "{}", oblique.distance_cm);
+    }
+
+    #[test]
+    fn sound_mirrored_into_a_corner_is_heard_too_late() {
+        // To the upper wall at 60 degrees from its normal, then on to the right one.
+        let sonar = Sonar { half_angle_rad: 0.0, diffuse: 0.0, mirror_db: 0.0, level_db: 30.0, ..steady() };
+        let found = echo(&sonar, 100.0, 30.0).unwrap();
+        let legs_cm = (50.0 / libm::sin(30f64.to_radians()), 100.0 / libm::cos(30f64.to_radians()) - 100.0);
+        assert!((found.distance_cm - legs_cm.0 - legs_cm.1).abs() < 1e-3, "{found:?}");
+    }
+}

@@ -1,0 +1,160 @@
+//! One motor, its gear, and the tyre that it turns: from a voltage to a push on the floor.
+
+use glam::DVec2;
+
+use super::hardware::{Motor, Tyre};
+
+/// What a wheel's parts are doing.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Wheel {
+    /// Turning speed of the motor's shaft at the axle.
+    turning_rad_s: f64,
+    /// How far the shaft has turned since the run began.
+    turned_rad: f64,
+    /// Where the shaft stands within the gear's play, from 0 (pulling back) to `play_rad` (pushing on).
+    in_play_rad: f64,
+    /// Where on its rim the wheel stood when the run began.
+    rim_rad: f64,
+}
+
+/// What happens at a wheel during one tick.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Tick {
+    /// Voltage at the bridge.
+    pub supply_v: f64,
+    /// Share of it that is commanded, -1..=1.
+    pub duty: f64,
+    /// How the floor passes under the hub: forward and to the left, m/s.
+    pub ground_m_s: DVec2,
+    /// Rolled way against turned angle, about 1.
+    pub roll: f64,
+    /// Length of the tick.
+    pub seconds: f64,
+}
+
+/// What comes of it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Outcome {
+    /// Push on the robot: forward and to the left.
+    pub push_n: DVec2,
+    /// Current from the battery.
+    pub current_a: f64,
+}
+
+impl Wheel {
+    /// A wheel at rest.
+    pub fn at_rest(motor: &Motor, rim_rad: f64) -> Self {
+        Wheel { in_play_rad: motor.play_rad / 2.0, rim_rad, ..Wheel::default() }
+    }
+
+    /// The motor's rotation counter, in whole degrees.
+    pub fn counter_deg(&self) -> f64 {
+        self.turned_rad.to_degrees().round()
+    }
+
+    pub fn tick(&mut self, motor: &Motor, tyre: &Tyre, tick: &Tick) -> Outcome {
+        let way = if tick.duty < 0.0 { motor.backwards } else { 1.0 };
+        let volts = (tick.duty * tick.supply_v * motor.bridge * way).clamp(-motor.limit_v, motor.limit_v);
+        let current_a = (volts - motor.back_emf_v_s * self.turning_rad_s) / motor.winding_ohm;
+        let radius_m = tyre.radius_m * self.hub(tyre) * tick.roll;
+        let slip = DVec2::new(self.turning_rad_s * radius_m, 0.0) - tick.ground_m_s;
+        let mut push_n = tyre.push_n(slip);
+        if !self.takes_up(motor, slip.x) {
+            push_n.x = 0.0;
+            self.in_play_rad = (self.in_play_rad + slip.x / radius_m * tick.seconds).clamp(0.0, motor.play_rad);
+        }
+        let free_nm = motor.torque_nm_per_a * current_a
+            - motor.viscous_nm_s * self.turning_rad_s
+            - (push_n.x + tyre.load_n * tyre.flexing_s_per_m * self.turning_rad_s * radius_m) * radius_m;
+        let dry_nm = motor.friction_nm + tyre.load_n * tyre.rolling * radius_m;
+        self.turning_rad_s = dragged(
+            self.turning_rad_s,
+            free_nm * tick.seconds / motor.inertia_kg_m2,
+            dry_nm * tick.seconds / motor.inertia_kg_m2,
+            motor.breakaway,
+        );
+        self.turned_rad += self.turning_rad_s * tick.seconds;
+        Outcome { push_n, current_a: current_a * tick.duty.abs() }
+    }
+
+    /// The hub's height over the floor against the tyre's radius.
+    fn hub(&self, tyre: &Tyre) -> f64 {
+        if tyre.eccentricity == 0.0 { 1.0 } else { 1.0 + tyre.eccentricity * libm::sin(self.turned_rad + self.rim_rad) }
+    }
+
+    /// Whether the gear's play is taken up on the side that the shaft now presses.
+    fn takes_up(&self, motor: &Motor, ahead_m_s: f64) -> bool {
+        if ahead_m_s >= 0.0 { self.in_play_rad >= motor.play_rad } else { self.in_play_rad <= 0.0 }
+    }
+}
+
+impl Tyre {
+    /// Push on the robot at this slip of the rim over the floor: nearly in proportion at first, then limited by grip,
+    /// less once it slides.
+    fn push_n(&self, slip_m_s: DVec2) -> DVec2 {
+        let slide2 = slip_m_s.length_squared();
+        let sliding = slide2 / (slide2 + 25.0 * self.creep_m_s * self.creep_m_s);
+        let grip = self.grip * (1.0 - (1.0 - self.sliding) * sliding);
+        slip_m_s * (grip * self.load_n / (slide2 + self.creep_m_s * self.creep_m_s).sqrt())
+    }
+}
+
+/// A speed after a free change and a dry friction that can take away at most `dry`, or `breakaway` times that from rest.
+pub(super) fn dragged(speed: f64, free_change: f64, dry: f64, breakaway: f64) -> f64 {
+    if speed == 0.0 && free_change.abs() <= breakaway * dry {
+        return 0.0;
+    }
+    let free = speed + free_change;
+    let left = free.abs() - dry;
+    if left > 0.0 { left.copysign(free) } else { 0.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::built_in_robot::hardware::{Hardware, LEFT};
+    use crate::built_in_robot::{default_robot, training_room};
+
+    fn parts() -> (Motor, Tyre) {
+        let hardware = Hardware::new(&default_robot(), &training_room());
+        (hardware.motors[LEFT].clone(), hardware.tyres[LEFT].clone())
+    }
+
+    /// Runs a wheel lifted off the floor for a second; the speed of its shaft.
+    fn spun_rad_s(duty: f64, motor: &Motor) -> f64 {
+        let tyre = Tyre { load_n: 0.0, ..parts().1 };
+        let mut wheel = Wheel::at_rest(motor, 0.0);
+        for _ in 0..500 {
+            let tick = Tick { supply_v: 7.5, duty, ground_m_s: DVec2::ZERO, roll: 1.0, seconds: 0.002 };
+            wheel.tick(motor, &tyre, &tick);
+        }
+        wheel.turning_rad_s
+    }
+
+    #[test]
+    fn a_lifted_wheel_comes_to_where_torque_and_friction_balance() {
+        let (motor, _) = parts();
+        let (volts, speed) = (0.8 * 7.5, spun_rad_s(0.8, &motor));
+        let torque_nm = motor.torque_nm_per_a * (volts - motor.back_emf_v_s * speed) / motor.winding_ohm;
+        assert!((torque_nm - motor.friction_nm - motor.viscous_nm_s * speed).abs() < 1e-6, "{speed}");
+        assert_eq!(spun_rad_s(-0.8, &motor), -speed);
+    }
+
+    #[test]
+    fn a_motor_breaks_away_above_its_friction_at_rest_alone() {
+        let (motor, _) = parts();
+        let needed_v = motor.friction_nm * motor.breakaway / motor.torque_nm_per_a * motor.winding_ohm;
+        assert_eq!(spun_rad_s(0.99 * needed_v / 7.5, &motor), 0.0);
+        assert!(spun_rad_s(1.01 * needed_v / 7.5, &motor) > 0.1);
+    }
+
+    #[test]
+    fn a_tyre_pushes_against_its_slip_and_no_harder_than_its_grip() {
+        let (_, tyre) = parts();
+        for slip in [0.001, 0.01, 0.1, 1.0] {
+            let push_n = tyre.push_n(DVec2::new(slip, -slip));
+            assert!(push_n.x > 0.0 && push_n.y == -push_n.x && push_n.length() < tyre.grip * tyre.load_n);
+        }
+        assert!(tyre.push_n(DVec2::new(1.0, 0.0)).x < 0.9 * tyre.grip * tyre.load_n);
+    }
+}

@@ -1,0 +1,82 @@
+//! The command `mindgap`: one file a command, nothing but arguments and printing.
+//!
+//! A command returns what it has to say, and says it only once everything is done: whoever reads just the first line
+//! of it, as `mindgap evaluate ... | head -1` does, stops nothing halfway.
+
+mod demo;
+mod diagnose;
+mod evaluate;
+mod evolve;
+mod export;
+mod progress;
+mod record;
+mod simulate;
+mod table;
+mod train;
+
+use std::io::{self, ErrorKind, Write};
+use std::path::Path;
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+use crate::logs::Logs;
+use crate::problem::{Problem, Result};
+
+/// Learns a robot's simulator from its logs, evolves controllers in it, and finds what reality has that it lacks.
+#[derive(Parser)]
+#[command(name = "mindgap", version)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    Demo(demo::Demo),
+    Diagnose(diagnose::Diagnose),
+    Record(record::Record),
+    Train(train::Train),
+    Evaluate(evaluate::Evaluate),
+    Evolve(evolve::Evolve),
+    Simulate(simulate::Simulate),
+    Export(export::Export),
+}
+
+/// Runs the command of this process's arguments. Exits with 0 when it did what was asked, 1 when it could not, and 2
+/// when the call is wrong.
+pub fn run() -> ExitCode {
+    let done = match Cli::parse().command {
+        Command::Demo(command) => command.run(),
+        Command::Diagnose(command) => command.run(),
+        Command::Record(command) => command.run(),
+        Command::Train(command) => command.run(),
+        Command::Evaluate(command) => command.run(),
+        Command::Evolve(command) => command.run(),
+        Command::Simulate(command) => command.run(),
+        Command::Export(command) => command.run(),
+    };
+    match done.and_then(|text| say(&text)) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(problem) => {
+            eprintln!("mindgap: {problem}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+/// Writes to standard output. That nobody reads on is no problem.
+fn say(text: &str) -> Result<()> {
+    let mut out = io::stdout().lock();
+    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+        Err(e) if e.kind() != ErrorKind::BrokenPipe => {
+            Err(Problem::new(format!("standard output cannot be written: {e}")))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Reads a folder of logs and tells its oddities on standard error.
+fn read_logs(folder: &Path) -> Result<Logs> {
+    Logs::read(folder, |warning| eprintln!("mindgap: warning: {warning}"))
+}

@@ -1,0 +1,64 @@
+//! `mindgap demo`
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::progress;
+use super::table::{self, number};
+use crate::demo::{self, Stage, Summary};
+use crate::evolve::robust;
+use crate::problem::Result;
+
+/// Do the whole job on the built-in robot: record, train, evolve, try, export, draw.
+#[derive(Args)]
+pub struct Demo {
+    /// Where to leave everything.
+    #[arg(long, default_value = "mindgap-out")]
+    out: PathBuf,
+    /// Fixes every draw.
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+}
+
+impl Demo {
+    /// Does the job and tells how it went as tables.
+    pub fn run(&self) -> Result<String> {
+        let line = progress::spinner();
+        let watch = |stage: Stage| {
+            line.set_message(match stage {
+                Stage::Recording => "recording logs of the built-in robot".into(),
+                Stage::Training(p) => progress::training(&p),
+                Stage::Evolving { start, generation } => {
+                    format!("evolving for start {start}: generation {generation} of {}", robust::GENERATIONS)
+                }
+                Stage::Drawing => "drawing".into(),
+            });
+            line.tick();
+        };
+        let summary = demo::run(&self.out, self.seed, watch)?;
+        line.finish_and_clear();
+        let out = self.out.display();
+        Ok(format!("{}\nlogs, simulator, controllers, NXC programs and pictures are in {out}\n", told(&summary)))
+    }
+}
+
+fn told(summary: &Summary) -> String {
+    let percent = |rate: f64| format!("{:.0} %", 100.0 * rate);
+    let rows: Vec<[String; 5]> = summary
+        .starts
+        .iter()
+        .enumerate()
+        .map(|(i, s)| {
+            [
+                format!("start {}", i + 1),
+                percent(s.simulated.rate),
+                number(Some(s.simulated.median_cm), 1),
+                percent(s.real.rate),
+                number(Some(s.real.median_cm), 1),
+            ]
+        })
+        .collect();
+    let header = ["controller for", "simulated: reached", "median (cm)", "robot: reached", "median (cm)"];
+    format!("{}\n{}", super::evaluate::accuracy(&summary.evaluation), table::text(header, &rows))
+}

@@ -1,0 +1,83 @@
+//! `mindgap evaluate`
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::table::{self, number};
+use crate::files;
+use crate::learn::evaluate::{self, Evaluation, Networks};
+use crate::problem::Result;
+use crate::simulator::Simulator;
+
+/// Judge a simulator's networks on logs that they were not trained on.
+#[derive(Args)]
+pub struct Evaluate {
+    /// The simulator file.
+    sim: PathBuf,
+    /// Folder of logs to judge on.
+    logs: PathBuf,
+    /// Also write the figures here.
+    #[arg(long)]
+    json: Option<PathBuf>,
+}
+
+impl Evaluate {
+    /// Tells the figures.
+    pub fn run(&self) -> Result<String> {
+        let simulator = Simulator::read(&self.sim)?;
+        let evaluation = evaluate::evaluate(&simulator, &super::read_logs(&self.logs)?)?;
+        if let Some(path) = &self.json {
+            files::write_json(path, &evaluation)?;
+        }
+        Ok(told(&evaluation))
+    }
+}
+
+/// An evaluation as tables, with the reliability of the probability.
+fn told(evaluation: &Evaluation) -> String {
+    let mut text = accuracy(evaluation);
+    if let Some(p) = &evaluation.networks.echo_probability {
+        let bins: Vec<[String; 3]> = p
+            .reliability
+            .iter()
+            .map(|b| [number(Some(b.predicted), 3), number(Some(b.observed), 3), b.n.to_string()])
+            .collect();
+        text += &format!("\n{}", table::text(["predicted", "observed", "n"], &bins));
+    }
+    text
+}
+
+/// The accuracy of every network, as tables.
+pub fn accuracy(evaluation: &Evaluation) -> String {
+    let Networks { turn, forward, lateral, echo_probability, echo_value } = &evaluation.networks;
+    let values =
+        [("turn (deg)", turn), ("forward (cm)", forward), ("lateral (cm)", lateral), ("echo value (cm)", echo_value)];
+    let rows: Vec<[String; 6]> = values
+        .into_iter()
+        .filter_map(|(name, value)| Some((name, value.as_ref()?)))
+        .map(|(name, v)| {
+            let (slope, intercept) = v.trend.map(|t| (t.slope, t.intercept)).unzip();
+            let trend = [number(slope, 3), number(intercept, 2)];
+            let [slope, intercept] = trend;
+            [name.into(), number(v.r2, 4), number(Some(v.mse), 4), slope, intercept, v.n.to_string()]
+        })
+        .collect();
+    let mut text = table::text(["network", "R2", "MSE", "slope", "intercept", "n"], &rows);
+    if let Some(mae_cm) = echo_value.as_ref().and_then(|v| v.mae_cm) {
+        text += &format!("echo value: mean absolute error {mae_cm:.2} cm\n");
+    }
+    if let Some(p) = echo_probability {
+        let row = [
+            "echo".to_string(),
+            number(Some(p.brier), 4),
+            number(Some(p.log_loss), 4),
+            number(p.auc, 4),
+            number(p.r2, 4),
+            p.n.to_string(),
+        ];
+        let header = ["probability", "Brier", "log loss", "AUC", "R2", "n"];
+        text += &format!("\n{}", table::text(header, &[row]));
+    }
+    text
+}

@@ -1,0 +1,122 @@
+//! `mindgap evolve`
+
+use std::path::{Path, PathBuf};
+
+use clap::{Args, value_parser};
+
+use super::progress;
+use crate::evolve::controller_file::{ControllerFile, Origin};
+use crate::evolve::fitness::{Numbers, Task};
+use crate::evolve::genome::Coding;
+use crate::evolve::paper;
+use crate::evolve::robust::{self, Quest};
+use crate::geometry::Pose;
+use crate::logs::{Robot, Scene};
+use crate::problem::{Problem, Result};
+use crate::simulator::course::Course;
+use crate::simulator::{Noise, Simulator};
+
+/// Evolve one controller in a simulator.
+#[derive(Args)]
+pub struct Evolve {
+    /// The simulator file.
+    sim: PathBuf,
+    /// The scene, with a target and starts.
+    #[arg(long)]
+    scene: PathBuf,
+    /// Which of the scene's starts, from 1.
+    #[arg(long, default_value_t = 1)]
+    start: usize,
+    /// The controller file to write.
+    #[arg(long)]
+    out: PathBuf,
+    /// Fixes every draw.
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Follow the paper exactly: one run of the genetic algorithm, its fittest individual, echoes that fail as the only
+    /// noise.
+    #[arg(long)]
+    paper: bool,
+    /// Echoes that fail are the only noise.
+    #[arg(long)]
+    paper_noise: bool,
+    /// Steps after which a controller gives up.
+    #[arg(long, default_value_t = 60, value_parser = value_parser!(u16).range(1..))]
+    max_steps: u16,
+    /// Let all individuals of a generation meet the same random numbers.
+    #[arg(long)]
+    common_numbers: bool,
+}
+
+/// Fresh runs that tell how well a controller does.
+const JUDGED_RUNS: usize = 200;
+/// Sets the judging runs apart from all others.
+const JUDGING: u64 = 1;
+
+impl Evolve {
+    /// Evolves and writes the controller.
+    pub fn run(&self) -> Result<String> {
+        let simulator = Simulator::read(&self.sim)?;
+        let scene = Scene::read(&self.scene)?;
+        let start = start_of(&scene, self.start, &simulator.robot, &self.scene)?;
+        let target_cm = scene.target_cm.ok_or_else(|| Problem::in_file(&self.scene, "has no [target]"))?;
+        let noise = if self.paper || self.paper_noise { Noise::Paper } else { Noise::Learned };
+        let course = &Course::new(&simulator, &scene, start, noise)?;
+        let coding = Coding::new(&simulator, self.max_steps);
+        let numbers = if self.common_numbers { Numbers::Common } else { Numbers::Fresh };
+        let seed = self.seed;
+        let (runs, floor_cm) = (paper::RUNS, paper::FLOOR_CM);
+        let task = Task { course, target_cm, coding, runs, floor_cm, numbers, seed };
+        let settings = paper::settings();
+        let bar = progress::bar(if self.paper { settings.max_generations } else { robust::GENERATIONS } as u64);
+        let watch = |generation: usize, fitness: f64| {
+            bar.set_position(generation as u64 + 1);
+            bar.set_message(format!("fitness {fitness:.3}"));
+        };
+        let evolved = if self.paper {
+            paper::evolve(&task, &settings, watch)
+        } else {
+            robust::evolve(&Quest { course, target_cm, coding, numbers, seed }, watch)
+        };
+        bar.finish_and_clear();
+        let success = task.success(&evolved.controller, JUDGED_RUNS, JUDGING);
+        let origin = Origin {
+            simulator: name(&self.sim),
+            scene: name(&self.scene),
+            start: self.start,
+            seed: self.seed,
+            generations: evolved.generations,
+            fitness: evolved.fitness,
+            success: success.rate,
+        };
+        ControllerFile { controller: evolved.controller, origin: Some(origin) }.write(&self.out)?;
+        Ok(format!(
+            "start {}: {:.0} % of {JUDGED_RUNS} fresh simulated runs reach the target, {:.0} % crash; median distance {:.1} cm\n\
+             controller written to {}\n",
+            self.start,
+            100.0 * success.rate,
+            100.0 * success.crashed,
+            success.median_cm,
+            self.out.display()
+        ))
+    }
+}
+
+/// Start N (from 1) of a scene, where the robot has room.
+pub fn start_of(scene: &Scene, number: usize, robot: &Robot, path: &Path) -> Result<Pose> {
+    let count = scene.starts.len();
+    let start = number.checked_sub(1).and_then(|i| scene.starts.get(i)).copied();
+    let start = start
+        .ok_or_else(|| Problem::in_file(path, format!("has {count} [[start]] table(s); there is no start {number}")))?;
+    let radius_cm = robot.body_radius_cm;
+    if !scene.has_room_for(start.position_cm, radius_cm) {
+        let what = format!("start {number} leaves no room for a robot of radius {radius_cm} cm");
+        return Err(Problem::in_file(path, what));
+    }
+    Ok(start)
+}
+
+/// A file's name alone: where it lay says nothing to others.
+fn name(path: &Path) -> String {
+    path.file_name().unwrap_or_default().to_string_lossy().into_owned()
+}

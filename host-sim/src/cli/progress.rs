@@ -1,0 +1,28 @@
+//! Progress on a terminal; nothing in a pipe.
+
+use indicatif::{ProgressBar, ProgressStyle};
+
+use crate::learn::train::Progress;
+
+/// A line that tells what is being done, with a spinner and the time gone by.
+pub fn spinner() -> ProgressBar {
+    let bar = ProgressBar::new_spinner();
+    bar.set_style(ProgressStyle::with_template("{spinner} [{elapsed}] {msg}").expect("the template is right"));
+    bar
+}
+
+/// A bar for so many steps of known number.
+pub fn bar(steps: u64) -> ProgressBar {
+    let bar = ProgressBar::new(steps);
+    let style = ProgressStyle::with_template("{bar:30} {pos}/{len} [{elapsed}] {msg}").expect("the template is right");
+    bar.set_style(style);
+    bar
+}
+
+/// What training is at.
+pub fn training(progress: &Progress) -> String {
+    match progress.generation {
+        0 => format!("training {}", progress.network),
+        generation => format!("training {}: generation {generation}", progress.network),
+    }
+}

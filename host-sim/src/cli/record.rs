@@ -1,0 +1,64 @@
+//! `mindgap record`: random-command logs of the built-in robot.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use crate::built_in_robot::{ActiveEffect, Effect, default_robot, record, training_room};
+use crate::logs::Scene;
+use crate::problem::Result;
+
+/// Records random-command logs of the built-in robot.
+#[derive(Args, Debug)]
+#[command(after_help = effects_help())]
+pub struct Record {
+    /// Folder for the logs
+    #[arg(long, value_name = "LOGS")]
+    out: PathBuf,
+    /// Room to drive in; a room with four obstacles when left out
+    #[arg(long, value_name = "FILE")]
+    scene: Option<PathBuf>,
+    /// Number of runs
+    #[arg(long, value_name = "N", default_value_t = 100, value_parser = clap::value_parser!(u32).range(1..=999))]
+    runs: u32,
+    /// Steps of each run
+    #[arg(long, value_name = "N", default_value_t = 60, value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    steps: u32,
+    /// What is different about the robot; may be given again
+    #[arg(long = "effect", value_name = "ID[=STRENGTH[@DETAIL]]")]
+    effects: Vec<ActiveEffect>,
+    /// Seed of all that is random
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    seed: u64,
+}
+
+impl Record {
+    /// Records and writes.
+    ///
+    /// # Errors
+    /// When the scene cannot be read or has no room for the robot, or when the logs cannot be written.
+    pub fn run(&self) -> Result<String> {
+        let scene = match &self.scene {
+            Some(path) => Scene::read(path)?,
+            None => training_room(),
+        };
+        let (runs, steps) = (self.runs as usize, self.steps as usize);
+        let logs = record(&default_robot(), &scene, runs, steps, &self.effects, self.seed)
+            .map_err(|problem| self.scene.iter().fold(problem, |p, scene| p.or_in_file(scene)))?;
+        logs.write(&self.out)?;
+        Ok(format!("{}: {} runs of {} steps\n", self.out.display(), self.runs, self.steps))
+    }
+}
+
+/// Every effect with its unit and default.
+fn effects_help() -> String {
+    let lines = Effect::all().map(|effect| {
+        let strength = effect.strength_range();
+        let place = if effect.in_table() { "" } else { " (no diagnosis knows it)" };
+        let about = effect.about();
+        let detail = effect.detail_range().map_or(String::new(), |d| format!("; @ {}, default {}", d.unit, d.default));
+        let range = format!("{} to {}, default {}", strength.lowest, strength.highest, strength.default);
+        format!("  {:<20} {about}{place}\n  {:<20} {}: {range}{detail}", effect.id(), "", strength.unit)
+    });
+    format!("Effects:\n{}", lines.collect::<Vec<_>>().join("\n"))
+}

@@ -1,0 +1,90 @@
+//! `mindgap simulate`
+
+use std::path::PathBuf;
+
+use clap::{Args, value_parser};
+
+use super::evolve::start_of;
+use super::table::{self, number};
+use crate::evolve::controller_file::ControllerFile;
+use crate::files;
+use crate::logs::Scene;
+use crate::problem::Result;
+use crate::simulator::course::Course;
+use crate::simulator::rehearsal::Rehearsal;
+use crate::simulator::{Noise, Simulator};
+
+/// Run a controller in a simulator.
+#[derive(Args)]
+pub struct Simulate {
+    /// The simulator file.
+    sim: PathBuf,
+    /// The controller file.
+    controller: PathBuf,
+    /// The scene.
+    #[arg(long)]
+    scene: PathBuf,
+    /// Which of the scene's starts, from 1.
+    #[arg(long, default_value_t = 1)]
+    start: usize,
+    /// How many runs.
+    #[arg(long, default_value_t = 10, value_parser = value_parser!(u32).range(1..=1_000_000))]
+    runs: u32,
+    /// Fixes every draw.
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Echoes that fail are the only noise.
+    #[arg(long)]
+    paper_noise: bool,
+    /// Also write paths and outcomes here.
+    #[arg(long)]
+    json: Option<PathBuf>,
+}
+
+/// Rows of the table at most.
+const ROWS: usize = 20;
+
+impl Simulate {
+    /// Simulates and tells how the runs ended.
+    pub fn run(&self) -> Result<String> {
+        let simulator = Simulator::read(&self.sim)?;
+        let controller = ControllerFile::read(&self.controller)?.controller;
+        let scene = Scene::read(&self.scene)?;
+        let start = start_of(&scene, self.start, &simulator.robot, &self.scene)?;
+        let noise = if self.paper_noise { Noise::Paper } else { Noise::Learned };
+        let course = Course::new(&simulator, &scene, start, noise)?;
+        let rehearsal = Rehearsal::new(&course, &scene, &controller, self.runs as usize, self.seed);
+        if let Some(path) = &self.json {
+            files::write_json(path, &rehearsal)?;
+        }
+        Ok(told(&rehearsal))
+    }
+}
+
+fn told(rehearsal: &Rehearsal) -> String {
+    let rows: Vec<[String; 6]> = rehearsal
+        .runs
+        .iter()
+        .take(ROWS)
+        .enumerate()
+        .map(|(i, run)| {
+            let end = [number(Some(run.end_x_cm), 1), number(Some(run.end_y_cm), 1)];
+            let [x, y] = end;
+            [(i + 1).to_string(), run.ending.into(), run.steps.to_string(), x, y, number(run.distance_cm, 1)]
+        })
+        .collect();
+    let mut text = table::text(["run", "ending", "steps", "x (cm)", "y (cm)", "to target (cm)"], &rows);
+    if rehearsal.runs.len() > ROWS {
+        text += &format!("... and {} more\n", rehearsal.runs.len() - ROWS);
+    }
+    let crashed = rehearsal.runs.iter().filter(|run| run.ending == "crashed").count();
+    let crashes = format!("{crashed} of {} crashed", rehearsal.runs.len());
+    text + &match rehearsal.success {
+        Some(success) => format!(
+            "{:.1} % of the runs reached the target (within {} cm, no crash); {crashes}\n",
+            100.0 * success,
+            rehearsal.reached_within_cm
+        ),
+        None => format!("{crashes}; the scene has no target\n"),
+    }
+}

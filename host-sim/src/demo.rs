@@ -1,0 +1,180 @@
+//! The whole job on the built-in robot: record, train, evaluate, evolve, simulate, try on the robot, export, draw.
+
+mod pictures;
+
+use std::fs;
+use std::path::Path;
+
+use glam::DVec2;
+use mindgap_controller_export::Origin;
+use mindgap_controller_export::names::BrickName;
+use mindgap_controller_export::nxc::{self, NxcOptions};
+use mindgap_controller_export::wiring::Wiring;
+use mindgap_core::controller::Controller;
+
+use crate::built_in_robot::{self, BuiltInRobot, Track};
+use crate::chance::{derive, generator};
+use crate::evolve::controller_file::{self, ControllerFile};
+use crate::evolve::fitness::{Numbers, Success};
+use crate::evolve::genome::Coding;
+use crate::evolve::robust::{self, Quest};
+use crate::files;
+use crate::learn::evaluate::{self, Evaluation};
+use crate::learn::train::{self, Trainer};
+use crate::logs::Scene;
+use crate::problem::{Problem, Result};
+use crate::simulator::course::Course;
+use crate::simulator::rehearsal::Rehearsal;
+use crate::simulator::{Noise, Simulator};
+
+const TRAINING_RUNS: usize = 100;
+const HELD_OUT_RUNS: usize = 30;
+const STEPS: usize = 60;
+const MAX_STEPS: u16 = 60;
+/// Runs of each controller on the robot, and as many simulated ones beside them (paper, figure 4).
+const TRIALS: usize = 3;
+/// Fresh simulated runs that a success rate is taken from.
+const JUDGED_RUNS: usize = 200;
+
+/// What each part of the job draws from.
+#[derive(Clone, Copy)]
+enum Purpose {
+    TrainingLogs,
+    HeldOutLogs,
+    Training,
+    Evolution,
+    Simulation,
+    Trial,
+}
+
+/// What is being done, for a progress display.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Stage {
+    /// Logs are recorded.
+    Recording,
+    /// A network is trained.
+    Training(train::Progress),
+    /// A controller is evolved.
+    Evolving {
+        /// For this start, from 1.
+        start: usize,
+        /// Generations so far.
+        generation: usize,
+    },
+    /// Controllers drive, and pictures are drawn.
+    Drawing,
+}
+
+/// What came out.
+pub struct Summary {
+    /// Accuracy of the networks on held-out logs.
+    pub evaluation: Evaluation,
+    /// One entry a start.
+    pub starts: Vec<StartSummary>,
+}
+
+/// How one start's controller does in simulation and in reality.
+pub struct StartSummary {
+    /// In many fresh simulated runs.
+    pub simulated: Success,
+    /// On the built-in robot.
+    pub real: Success,
+}
+
+/// A start's controller and its runs.
+struct Trial {
+    rehearsal: Rehearsal,
+    tracks: Vec<Track>,
+    summary: StartSummary,
+}
+
+/// Does the job and leaves everything in the folder `out`.
+///
+/// # Errors
+/// When `out` cannot be written.
+pub fn run(out: &Path, seed: u64, watch: impl Fn(Stage)) -> Result<Summary> {
+    fs::create_dir_all(out).map_err(|e| Problem::in_file(out, format!("cannot be made: {e}")))?;
+    let of = |purpose: Purpose| derive(seed, &[purpose as u64]);
+    watch(Stage::Recording);
+    let robot = built_in_robot::default_robot();
+    let scene = built_in_robot::four_obstacles();
+    let record = |room: &Scene, runs, purpose| built_in_robot::record(&robot, room, runs, STEPS, &[], of(purpose));
+    let logs = record(&built_in_robot::training_room(), TRAINING_RUNS, Purpose::TrainingLogs)?;
+    logs.write(&out.join("logs"))?;
+    let held_out = record(&scene, HELD_OUT_RUNS, Purpose::HeldOutLogs)?;
+    held_out.write(&out.join("held-out-logs"))?;
+    scene.write(&out.join("scene.toml"))?;
+    let simulator = train::train(&logs, &Trainer::Fast, of(Purpose::Training), |p| watch(Stage::Training(p)))?;
+    simulator.write(&out.join("simulator.json"))?;
+    let evaluation = evaluate::evaluate(&simulator, &held_out)?;
+    files::write_json(&out.join("evaluation.json"), &evaluation)?;
+    let job = Job { out, simulator: &simulator, scene: &scene, watch: &watch };
+    let trials = (0..scene.starts.len())
+        .map(|start| job.start(start, [Purpose::Evolution, Purpose::Simulation, Purpose::Trial].map(of)))
+        .collect::<Result<Vec<_>>>()?;
+    watch(Stage::Drawing);
+    pictures::networks(out, &simulator, &evaluation, &held_out)?;
+    pictures::paths(out, &scene, &trials)?;
+    Ok(Summary { evaluation, starts: trials.into_iter().map(|trial| trial.summary).collect() })
+}
+
+/// What every start has in common.
+struct Job<'a, W> {
+    out: &'a Path,
+    simulator: &'a Simulator,
+    scene: &'a Scene,
+    watch: &'a W,
+}
+
+impl<W: Fn(Stage)> Job<'_, W> {
+    /// Evolves, writes, simulates and tries the controller of one start (from 0).
+    fn start(&self, start: usize, [evolution, simulation, trial]: [u64; 3]) -> Result<Trial> {
+        let pose = self.scene.starts[start];
+        let course = &Course::new(self.simulator, self.scene, pose, Noise::Learned)?;
+        let target_cm = self.scene.target_cm.ok_or_else(|| Problem::new("the scene has no target"))?;
+        let coding = Coding::new(self.simulator, MAX_STEPS);
+        let seed = derive(evolution, &[start as u64]);
+        let quest = Quest { course, target_cm, coding, numbers: Numbers::Fresh, seed };
+        let tell = |generation, _| (self.watch)(Stage::Evolving { start: start + 1, generation });
+        let evolved = robust::evolve(&quest, tell);
+        let controller = evolved.controller;
+        let simulated = quest.success(&controller, JUDGED_RUNS);
+        let origin = controller_file::Origin {
+            simulator: "simulator.json".into(),
+            scene: "scene.toml".into(),
+            start: start + 1,
+            seed,
+            generations: evolved.generations,
+            fitness: evolved.fitness,
+            success: simulated.rate,
+        };
+        self.write(start + 1, &controller, origin)?;
+        let rehearsal = Rehearsal::new(course, self.scene, &controller, TRIALS, derive(simulation, &[start as u64]));
+        let robot = BuiltInRobot::new(&self.simulator.robot, self.scene, &[]);
+        let tracks: Vec<Track> = (0..TRIALS as u64)
+            .map(|run| {
+                let mut rng = generator(trial, &[start as u64, run]);
+                built_in_robot::run_controller(&robot, &controller, pose, &mut rng)
+            })
+            .collect();
+        let real = real_success(&tracks, target_cm);
+        Ok(Trial { rehearsal, tracks, summary: StartSummary { simulated, real } })
+    }
+
+    fn write(&self, number: usize, controller: &Controller, origin: controller_file::Origin) -> Result<()> {
+        let name = format!("start-{number}");
+        let in_file = |e: mindgap_controller_export::ExportError| Problem::new(e.to_string());
+        let program = BrickName::program(&name).map_err(in_file)?;
+        let options = NxcOptions { program, wiring: Wiring::default(), log: None, display: true };
+        let file = ControllerFile { controller: controller.clone(), origin: Some(origin) };
+        let source = nxc::program(controller, &Origin::from(&file), &options).map_err(in_file)?;
+        files::write(&self.out.join(format!("{name}.nxc")), source)?;
+        file.write(&self.out.join(format!("{name}.toml")))
+    }
+}
+
+fn real_success(tracks: &[Track], target_cm: DVec2) -> Success {
+    let crashed = |track: &Track| track.outcome == built_in_robot::Outcome::Crashed;
+    let distances = tracks.iter().map(|track| (track.end().position_cm.distance(target_cm), crashed(track)));
+    Success::of_ends(distances)
+}

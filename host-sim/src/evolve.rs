@@ -1,0 +1,7 @@
+//! Controllers evolved in a simulator (paper, section IX).
+
+pub mod controller_file;
+pub mod fitness;
+pub mod genome;
+pub mod paper;
+pub mod robust;

@@ -1,0 +1,143 @@
+//! Fitness of a controller: equation (3) of the paper, summed over several runs.
+
+use glam::DVec2;
+use mindgap_core::controller::Controller;
+use rayon::prelude::*;
+
+use super::genome::Coding;
+use crate::chance::{Generator, derive};
+use crate::genetic;
+use crate::simulator::course::{Course, Ending, Job, Outcome};
+use crate::simulator::motion::MotionTable;
+
+/// A run succeeds when it ends within this of the target, without a crash.
+pub const REACHED_CM: f64 = 15.0;
+
+/// Individuals that share the lanes of one batch.
+const TOGETHER: usize = 25;
+
+/// Which random numbers the individuals of a generation meet.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Numbers {
+    /// Every individual its own.
+    Fresh,
+    /// All the same ones, new in each generation.
+    Common,
+}
+
+/// A controller's task, as a problem for the genetic algorithm.
+pub struct Task<'a> {
+    /// Where it runs.
+    pub course: &'a Course<'a>,
+    /// Where it has to stop.
+    pub target_cm: DVec2,
+    /// What its genes stand for.
+    pub coding: Coding,
+    /// Runs whose fitness is summed (paper: five).
+    pub runs: usize,
+    /// Distances below this count as this.
+    pub floor_cm: f64,
+    /// Which random numbers the individuals meet.
+    pub numbers: Numbers,
+    /// Fixes every draw of the runs.
+    pub seed: u64,
+}
+
+/// How many of many runs succeeded, and how far from the target they ended.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Success {
+    /// Share of runs that ended within [`REACHED_CM`] of the target without a crash.
+    pub rate: f64,
+    /// Share of runs that crashed.
+    pub crashed: f64,
+    /// Median distance to the target at the end.
+    pub median_cm: f64,
+}
+
+/// Equation (3): 0.5 / distance after a crash, else 1 / distance. Distances below `floor_cm` count as that, since 1/d
+/// has no ceiling.
+pub fn fitness(outcome: &Outcome, target_cm: DVec2, floor_cm: f64) -> f64 {
+    let distance_cm = outcome.end_cm.distance(target_cm).max(floor_cm);
+    if outcome.ending == Ending::Crashed { 0.5 / distance_cm } else { 1.0 / distance_cm }
+}
+
+/// Whether a run reached the target.
+pub fn reached(outcome: &Outcome, target_cm: DVec2) -> bool {
+    outcome.ending != Ending::Crashed && outcome.end_cm.distance(target_cm) <= REACHED_CM
+}
+
+impl Task<'_> {
+    /// Outcomes of so many runs of a controller, whose draws no other call with another `purpose` meets.
+    pub fn outcomes(&self, controller: &Controller, runs: usize, purpose: u64) -> Vec<Outcome> {
+        let motions = &self.course.motions(controller);
+        let seed = |run: usize| derive(self.seed, &[purpose, run as u64]);
+        let jobs: Vec<Job> = (0..runs).map(|run| Job { controller, motions, seed: seed(run) }).collect();
+        self.course.run(&jobs)
+    }
+
+    /// Summed fitness of individuals, the first of which has the number `first` in its generation.
+    fn summed(&self, generation: usize, first: usize, individuals: &[Vec<f32>]) -> Vec<f64> {
+        let controllers: Vec<Controller> = individuals.iter().map(|genes| self.coding.controller(genes)).collect();
+        let motions: Vec<MotionTable> = controllers.iter().map(|c| self.course.motions(c)).collect();
+        let mut jobs = Vec::with_capacity(individuals.len() * self.runs);
+        for (i, (controller, motions)) in controllers.iter().zip(&motions).enumerate() {
+            let individual = if self.numbers == Numbers::Common { 0 } else { (first + i) as u64 };
+            let place = |run: usize| [0, generation as u64, individual, run as u64];
+            jobs.extend((0..self.runs).map(|run| Job { controller, motions, seed: derive(self.seed, &place(run)) }));
+        }
+        let outcomes = self.course.run(&jobs);
+        outcomes.chunks(self.runs).map(|runs| self.fitness_of(runs)).collect()
+    }
+
+    /// How a controller does in so many fresh runs.
+    pub fn success(&self, controller: &Controller, runs: usize, purpose: u64) -> Success {
+        self.success_of(&self.outcomes(controller, runs, purpose))
+    }
+
+    /// How outcomes did.
+    pub fn success_of(&self, outcomes: &[Outcome]) -> Success {
+        Success::of(outcomes, self.target_cm)
+    }
+
+    /// Summed fitness of outcomes.
+    pub fn fitness_of(&self, outcomes: &[Outcome]) -> f64 {
+        outcomes.iter().map(|o| fitness(o, self.target_cm, self.floor_cm)).sum()
+    }
+}
+
+impl Success {
+    /// The success of outcomes.
+    pub fn of(outcomes: &[Outcome], target_cm: DVec2) -> Self {
+        let end = |o: &Outcome| (o.end_cm.distance(target_cm), o.ending == Ending::Crashed);
+        Self::of_ends(outcomes.iter().map(end))
+    }
+
+    /// The success of runs of which only the distance to the target at the end is known, and whether they crashed.
+    pub fn of_ends(ends: impl Iterator<Item = (f64, bool)>) -> Self {
+        let (mut distances, mut reached, mut crashed) = (Vec::new(), 0, 0);
+        for (distance_cm, has_crashed) in ends {
+            distances.push(distance_cm);
+            crashed += usize::from(has_crashed);
+            reached += usize::from(!has_crashed && distance_cm <= REACHED_CM);
+        }
+        distances.sort_by(f64::total_cmp);
+        let share = |count: usize| count as f64 / distances.len() as f64;
+        let median_cm = distances.get(distances.len() / 2).copied().unwrap_or(f64::NAN);
+        Success { rate: share(reached), crashed: share(crashed), median_cm }
+    }
+}
+
+impl genetic::Problem for Task<'_> {
+    fn random(&self, rng: &mut Generator) -> Vec<f32> {
+        self.coding.random(rng)
+    }
+
+    fn repair(&self, genes: &mut [f32]) {
+        self.coding.repair(genes);
+    }
+
+    fn fitness(&self, generation: usize, population: &[Vec<f32>]) -> Vec<f64> {
+        let chunks = population.par_chunks(TOGETHER).enumerate();
+        chunks.flat_map_iter(|(chunk, genes)| self.summed(generation, chunk * TOGETHER, genes)).collect()
+    }
+}

@@ -1,0 +1,92 @@
+//! A controller as genes: "the different tuples of the controllers were directly encoded" (paper, section IX).
+
+use mindgap_core::controller::{Controller, MAX_THRESHOLD_CM, TUPLES, Tuple, When};
+use rand::RngExt;
+
+use crate::chance::Generator;
+use crate::simulator::Simulator;
+
+/// Genes of a tuple: left, right, larger or smaller, threshold.
+const GENES_PER_TUPLE: usize = 4;
+
+/// What genes can stand for. Every gene runs from 0 to 1 over its range, so that mutation means the same to all.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Coding {
+    /// Least and largest motor command: those that the simulator was trained on.
+    pub commands: [f32; 2],
+    /// Least and largest threshold: what the sensor can report.
+    pub thresholds_cm: [f32; 2],
+    /// Time of a step.
+    pub step_ms: u16,
+    /// Steps at most, since a threshold may never be met.
+    pub max_steps: u16,
+}
+
+impl Coding {
+    /// Genes of a controller.
+    pub const GENES: usize = TUPLES * GENES_PER_TUPLE;
+
+    /// The coding for a simulator's robot.
+    pub fn new(simulator: &Simulator, max_steps: u16) -> Self {
+        let sonar = &simulator.robot.ultrasonic;
+        Coding {
+            commands: simulator.commands,
+            thresholds_cm: [sonar.min_cm as f32, (sonar.max_cm as f32).min(f32::from(MAX_THRESHOLD_CM))],
+            step_ms: simulator.robot.step_ms.round() as u16,
+            max_steps,
+        }
+    }
+
+    /// A random individual.
+    pub fn random(&self, rng: &mut Generator) -> Vec<f32> {
+        (0..Self::GENES).map(|_| rng.random()).collect()
+    }
+
+    /// Brings genes back to 0..=1.
+    pub fn repair(&self, genes: &mut [f32]) {
+        genes.iter_mut().for_each(|gene| *gene = gene.clamp(0.0, 1.0));
+    }
+
+    /// The controller that genes stand for; commands and thresholds are whole, as a brick takes them.
+    pub fn controller(&self, genes: &[f32]) -> Controller {
+        let within = |[low, high]: [f32; 2], gene: f32| (low + gene * (high - low)).round();
+        let tuple = |g: &[f32]| Tuple {
+            left: within(self.commands, g[0]) as i8,
+            right: within(self.commands, g[1]) as i8,
+            when: if g[2] < 0.5 { When::Smaller } else { When::Larger },
+            threshold_cm: within(self.thresholds_cm, g[3]) as i16,
+        };
+        let tuples = std::array::from_fn(|t| tuple(&genes[t * GENES_PER_TUPLE..]));
+        Controller { step_ms: self.step_ms, max_steps: self.max_steps, tuples }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    const CODING: Coding =
+        Coding { commands: [-70.0, 80.0], thresholds_cm: [4.0, 240.0], step_ms: 400, max_steps: 150 };
+
+    proptest! {
+        #[test]
+        fn any_genes_make_a_controller_within_the_ranges(mut genes in prop::collection::vec(-2f32..3.0, Coding::GENES)) {
+            CODING.repair(&mut genes);
+            let controller = CODING.controller(&genes);
+            prop_assert_eq!(controller.check(), Ok(()));
+            for t in controller.tuples {
+                prop_assert!((-70..=80).contains(&t.left) && (-70..=80).contains(&t.right));
+                prop_assert!((4..=240).contains(&t.threshold_cm));
+            }
+        }
+    }
+
+    #[test]
+    fn genes_are_read_in_the_papers_order() {
+        let mut genes = vec![0.0; Coding::GENES];
+        genes[4..8].copy_from_slice(&[1.0, 0.0, 0.7, 0.5]);
+        let expected = Tuple { left: 80, right: -70, when: When::Larger, threshold_cm: 122 };
+        assert_eq!(CODING.controller(&genes).tuples[1], expected);
+    }
+}

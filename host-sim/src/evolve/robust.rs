@@ -1,0 +1,118 @@
+//! Evolution that does not stick, the default. A single run of the paper's procedure often ends in a poor controller,
+//! or in one that was lucky in its five runs. So here, always under the noise that was learned:
+//!
+//! 1. large populations, gentler in selection and bolder in mutation, with few runs an individual: they find the ways
+//!    there are. Their elite is judged again in each generation;
+//! 2. one run that goes on from the best of them with small mutations and many runs an individual;
+//! 3. a choice among its last population by many fresh runs.
+
+use glam::DVec2;
+use mindgap_core::controller::Controller;
+use rayon::prelude::*;
+
+use super::fitness::{Numbers, REACHED_CM, Success, Task};
+use super::genome::Coding;
+use super::paper::Evolved;
+use crate::chance::derive;
+use crate::genetic::mutation::{Mutation, Unit};
+use crate::genetic::{self, Settings};
+use crate::simulator::course::Course;
+
+/// Generations of all runs of the genetic algorithm together.
+pub const GENERATIONS: usize = RESTARTS * EXPLORING.max_generations + REFINING.max_generations;
+
+const RESTARTS: usize = 2;
+const EXPLORING: Settings = Settings {
+    population: 1000,
+    tournament: 5,
+    crossover_chance: 0.8,
+    sbx_index: 15.0,
+    mutation: Mutation { chance: 0.1, unit: Unit::Gene, deviation: 0.2 },
+    elite: 20,
+    window: None,
+    max_generations: 120,
+};
+const EXPLORING_RUNS: usize = 4;
+const REFINING: Settings = Settings {
+    population: 100,
+    mutation: Mutation { deviation: 0.05, ..EXPLORING.mutation },
+    elite: 5,
+    max_generations: 60,
+    ..EXPLORING
+};
+const REFINING_RUNS: usize = 20;
+/// So many of the last population come into the final choice, each with so many fresh runs.
+const CANDIDATES: usize = 100;
+const CHOOSING_RUNS: usize = 200;
+/// Set the choosing and the judging runs apart from all others.
+const CHOOSING: u64 = 2;
+const JUDGING: u64 = 1;
+
+/// What a controller is evolved for.
+pub struct Quest<'a> {
+    /// Where it has to do well.
+    pub course: &'a Course<'a>,
+    /// Where it has to stop, cm.
+    pub target_cm: DVec2,
+    /// What its genes stand for.
+    pub coding: Coding,
+    /// Which random numbers individuals meet.
+    pub numbers: Numbers,
+    /// Fixes every draw.
+    pub seed: u64,
+}
+
+/// Evolves a controller. `watch` is told the generations so far of all [`GENERATIONS`], and the best fitness of the run
+/// that is under way.
+pub fn evolve(quest: &Quest, mut watch: impl FnMut(usize, f64)) -> Evolved {
+    let mut ways = Vec::new();
+    for restart in 0..RESTARTS {
+        let seed = derive(quest.seed, &[restart as u64]);
+        let task = quest.task(EXPLORING_RUNS, seed);
+        let before = restart * EXPLORING.max_generations;
+        let explored = genetic::run(&EXPLORING, &task, seed, |generation, best| watch(before + generation, best));
+        ways.extend(explored.population.into_iter().take(REFINING.population / RESTARTS));
+    }
+    let task = quest.task(REFINING_RUNS, quest.seed);
+    let before = RESTARTS * EXPLORING.max_generations;
+    let refined =
+        genetic::run_from(ways, &REFINING, &task, quest.seed, |generation, best| watch(before + generation, best));
+    choose(&task, &refined.population)
+}
+
+/// The individual that reaches the target most often in fresh runs, and of equals the fitter.
+fn choose(task: &Task, population: &[Vec<f32>]) -> Evolved {
+    let judged: Vec<(f64, f64, Controller)> = population
+        .par_iter()
+        .take(CANDIDATES)
+        .map(|genes| {
+            let controller = task.coding.controller(genes);
+            let outcomes = task.outcomes(&controller, CHOOSING_RUNS, CHOOSING);
+            let (rate, fitness) = (task.success_of(&outcomes).rate, task.fitness_of(&outcomes));
+            (rate, fitness * task.runs as f64 / CHOOSING_RUNS as f64, controller)
+        })
+        .collect();
+    let better = |a: &(f64, f64, Controller), b: &(f64, f64, Controller)| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1));
+    let (_, fitness, controller) = judged.into_iter().max_by(better).expect("a population is never empty");
+    Evolved { controller, fitness, generations: GENERATIONS }
+}
+
+impl<'a> Quest<'a> {
+    /// How a controller does in so many fresh runs, which played no part in its evolution.
+    pub fn success(&self, controller: &Controller, runs: usize) -> Success {
+        self.task(REFINING_RUNS, self.seed).success(controller, runs, JUDGING)
+    }
+
+    fn task(&self, runs: usize, seed: u64) -> Task<'a> {
+        Task {
+            course: self.course,
+            target_cm: self.target_cm,
+            coding: self.coding,
+            runs,
+            // Once there, nearer is no better: what counts is to arrive often.
+            floor_cm: REACHED_CM,
+            numbers: self.numbers,
+            seed,
+        }
+    }
+}

@@ -1,0 +1,87 @@
+//! What has to be said about logs before they are diagnosed: whether they are of the simulator's robot, and what they
+//! cannot tell.
+
+use super::baseline::Baseline;
+use super::evidence::Evidence;
+use crate::logs::{Logs, Robot, Run};
+use crate::problem::{Problem, Result};
+
+/// Measurements of one robot agree to this share.
+const SAME: f64 = 0.02;
+/// A step that leads the robot farther than this many times the way at full speed is a jump of the tracker.
+const JUMP: f64 = 2.0;
+
+/// Checks that logs are of the robot that the simulator was learned from.
+///
+/// # Errors
+/// Names the first measurement that differs.
+pub fn same_robot(simulator: &Robot, logs: &Robot) -> Result<()> {
+    let measures = |r: &Robot| {
+        [
+            ("step_ms", r.step_ms),
+            ("wheel_diameter_cm", r.wheel_diameter_cm),
+            ("track_cm", r.track_cm),
+            ("full_speed_cm_s", r.full_speed_cm_s),
+            ("ultrasonic.x_cm", r.ultrasonic.x_cm),
+            ("ultrasonic.y_cm", r.ultrasonic.y_cm),
+            ("ultrasonic.yaw_deg", r.ultrasonic.yaw_deg),
+        ]
+    };
+    let pairs = measures(simulator).into_iter().zip(measures(logs));
+    match pairs.into_iter().find(|((_, a), (_, b))| (a - b).abs() > SAME * a.abs().max(1.0)) {
+        Some(((name, a), (_, b))) => Err(Problem::new(format!(
+            "these are logs of another robot than the simulator's: {name} is {b} in the logs' robot.toml and {a} in the simulator"
+        ))),
+        None => Ok(()),
+    }
+}
+
+/// Takes out of a baseline what the logs say nothing about, and tells it, with what else limits a diagnosis.
+///
+/// # Errors
+/// When the logs say nothing that the baseline could be compared with.
+pub fn admit(baseline: &mut Baseline, evidence: &Evidence, logs: &Logs) -> Result<Vec<String>> {
+    let mut notes = Vec::new();
+    let steps = evidence.rows.iter().filter(|row| row.motion.is_some()).count();
+    let driven = evidence.rows.iter().any(|row| row.moment.commands[0].iter().any(|c| c.abs() >= 1.0));
+    if baseline.motion.is_none() {
+        notes.push("The simulator has no motion networks: only the sonar is compared.".into());
+    } else if steps == 0 {
+        notes.push("No step has a pose at both ends: motion cannot be compared.".into());
+        baseline.motion = None;
+    } else if !driven {
+        notes.push("The motors stand still: motion is not excited.".into());
+        baseline.motion = None;
+    }
+    let echoes = evidence.rows.iter().filter(|row| row.echo_cm.is_some()).count();
+    if baseline.sonar.is_none() {
+        notes.push("The simulator knows nothing of the sonar: only motion is compared.".into());
+    } else if echoes == 0 {
+        notes.push("There is no reading at all: the sonar is not compared.".into());
+        baseline.sonar = None;
+    }
+    if baseline.motion.is_none() && baseline.sonar.is_none() {
+        return Err(Problem::new(format!("nothing can be compared. {}", notes.join(" "))));
+    }
+    if logs.runs.len() == 1 {
+        notes.push("One run only: its parts stand for runs, and what holds for other runs cannot be told.".into());
+    }
+    if logs.runs.len() > 1 && logs.runs.windows(2).all(|pair| same_commands(&pair[0], &pair[1])) {
+        notes.push("All runs have the same commands: what other commands would show is not excited.".into());
+    }
+    let reach_cm = JUMP * logs.robot.full_speed_cm_s * logs.robot.step_ms / 1000.0;
+    let jumps = evidence
+        .rows
+        .iter()
+        .filter_map(|row| row.motion)
+        .filter(|m| libm::hypot(m.forward_cm, m.lateral_cm) > reach_cm);
+    match jumps.count() {
+        0 => {}
+        count => notes.push(format!("The tracker jumps {count} time(s), farther than the robot can drive.")),
+    }
+    Ok(notes)
+}
+
+fn same_commands(a: &Run, b: &Run) -> bool {
+    a.rows.iter().zip(&b.rows).all(|(a, b)| a.command() == b.command())
+}

@@ -1,0 +1,91 @@
+//! The simulator as the diagnosis sees it: networks, what is known of their misfit, and the scatter of a good day.
+
+use super::effect::Motion;
+use crate::logs::Robot;
+use crate::problem::{Problem, Result};
+use crate::simulator::Simulator;
+use crate::simulator::motion::MotionNetworks;
+use crate::simulator::reference::{MotionReference, SonarReference};
+
+/// What a step does, and what the sensor says, as long as nothing is different.
+pub struct Baseline<'s> {
+    /// The motion, if the simulator knows it.
+    pub motion: Option<Drive<'s>>,
+    /// The sensor, if the simulator knows it.
+    pub sonar: Option<SonarReference>,
+}
+
+/// How commands become motion.
+pub enum Drive<'s> {
+    /// As learned from logs.
+    Learned {
+        /// The networks.
+        networks: MotionNetworks<'s>,
+        /// What they leave over.
+        reference: &'s MotionReference,
+        /// Least and largest command that they know.
+        commands: [f64; 2],
+    },
+    /// The textbook's differential drive.
+    Kinematic {
+        /// The robot.
+        robot: Robot,
+        /// Standard deviations of forward (cm), lateral (cm) and turn (rad).
+        scatter: [f64; 3],
+    },
+}
+
+impl<'s> Baseline<'s> {
+    /// A trained simulator.
+    ///
+    /// # Errors
+    /// When the simulator was written without the reference that a diagnosis needs.
+    pub fn learned(simulator: &'s Simulator) -> Result<Self> {
+        let reference = simulator.reference.as_ref().ok_or_else(|| {
+            Problem::new("the simulator file does not say how its training logs scattered: train it again")
+        })?;
+        let drive = simulator.motion_networks().zip(reference.motion.as_ref());
+        let motion = drive.map(|(networks, reference)| Drive::Learned {
+            networks,
+            reference,
+            commands: simulator.commands.map(f64::from),
+        });
+        Ok(Baseline { motion, sonar: reference.sonar.clone() })
+    }
+}
+
+impl Drive<'_> {
+    /// What a step does for the commands now and before.
+    pub fn step(&self, now: [f64; 2], before: [f64; 2]) -> Motion {
+        match self {
+            Drive::Learned { networks, reference, commands } => {
+                let speeds = [now[0], now[1], before[0], before[1]].map(|c| c.clamp(commands[0], commands[1]));
+                let learned = networks.step(speeds.map(|c| c as f32));
+                let more = reference.correction(&speeds);
+                Motion {
+                    forward_cm: f64::from(learned.forward_cm) + more[0],
+                    lateral_cm: f64::from(learned.lateral_cm) + more[1],
+                    turn_rad: f64::from(learned.turn_rad) + more[2],
+                }
+            }
+            Drive::Kinematic { robot, .. } => {
+                let way_cm = now.map(|c| c / 100.0 * robot.full_speed_cm_s * robot.step_ms / 1000.0);
+                let turn_rad = (way_cm[1] - way_cm[0]) / robot.track_cm;
+                let arc_cm = 0.5 * (way_cm[0] + way_cm[1]);
+                // The chord of an arc.
+                let half = 0.5 * turn_rad;
+                let chord_cm = if half.abs() < 1e-9 { arc_cm } else { arc_cm * libm::sin(half) / half };
+                let (forward_cm, lateral_cm) = (chord_cm * libm::cos(half), chord_cm * libm::sin(half));
+                Motion { forward_cm, lateral_cm, turn_rad }
+            }
+        }
+    }
+
+    /// Standard deviations of forward (cm), lateral (cm) and turn (rad) where nothing is different.
+    pub fn scatter(&self) -> [f64; 3] {
+        match self {
+            Drive::Learned { reference, .. } => reference.scatter,
+            Drive::Kinematic { scatter, .. } => *scatter,
+        }
+    }
+}

@@ -1,0 +1,275 @@
+//! Effects of the floor, of grip and of load.
+
+use std::f64::consts::PI;
+
+use glam::DVec2;
+
+use super::{degrees, magnitude_each, rounded, side_of};
+use crate::gap::effect::{Act, Form, Moment, Motion, Parameter, Reported, Window};
+use crate::geometry::direction;
+
+/// The forms of this family.
+pub const FORMS: &[Form] = &[
+    Form {
+        id: "payload",
+        name: "commands lose, more on one side",
+        parameters: LOAD,
+        starts: LOAD_STARTS,
+        acts: &[Act::Commands(loaded_commands)],
+        report: load,
+    },
+    Form {
+        id: "payload",
+        name: "ways shorten, more on one side",
+        parameters: LOAD,
+        starts: LOAD_STARTS,
+        acts: &[Act::Motion(loaded_ways)],
+        report: load,
+    },
+    Form {
+        id: "payload",
+        name: "ways shorten on one side, turns on both",
+        parameters: TURNING_LOAD,
+        starts: TURNING_LOAD_STARTS,
+        acts: &[Act::Motion(load_on_turns)],
+        report: load,
+    },
+    Form {
+        id: "slope",
+        name: "faster downhill, slower uphill",
+        parameters: DIRECTED,
+        starts: DIRECTED_STARTS,
+        acts: &[Act::Motion(slope_scale)],
+        report: directed,
+    },
+    Form {
+        id: "slope",
+        name: "a drift downhill while moving",
+        parameters: DIRECTED,
+        starts: DIRECTED_STARTS,
+        acts: &[Act::Motion(slope_drift)],
+        report: directed,
+    },
+    Form {
+        id: "slope",
+        name: "faster downhill, slower uphill, and sideways down",
+        parameters: DIRECTED,
+        starts: DIRECTED_STARTS,
+        acts: &[Act::Motion(slope_scale_and_slide)],
+        report: directed,
+    },
+    Form {
+        id: "slope",
+        name: "the same gain or loss at any speed",
+        parameters: DIRECTED,
+        starts: DIRECTED_STARTS,
+        acts: &[Act::Motion(slope_pull)],
+        report: directed,
+    },
+    Form {
+        id: "carpet_nap",
+        name: "the same loss at any speed, against the nap only",
+        parameters: DIRECTED,
+        starts: DIRECTED_STARTS,
+        acts: &[Act::Motion(nap_pull)],
+        report: directed,
+    },
+    Form {
+        id: "carpet_nap",
+        name: "most drag one way, none the other",
+        parameters: DIRECTED,
+        starts: DIRECTED_STARTS,
+        acts: &[Act::Motion(nap_one_way)],
+        report: directed,
+    },
+    Form {
+        id: "carpet_nap",
+        name: "drag along an axis",
+        parameters: AXIS,
+        starts: AXIS_STARTS,
+        acts: &[Act::Motion(nap_axis)],
+        report: directed,
+    },
+    Form {
+        id: "carpet_nap",
+        name: "drag against the nap only",
+        parameters: DIRECTED,
+        starts: DIRECTED_STARTS,
+        acts: &[Act::Motion(nap_against)],
+        report: directed,
+    },
+    Form {
+        id: "slip",
+        name: "large commands lose grip",
+        parameters: GRIP,
+        starts: GRIP_STARTS,
+        acts: &[Act::Commands(slip_when_fast)],
+        report: onset,
+    },
+    Form {
+        id: "slip",
+        name: "large changes lose grip",
+        parameters: GRIP,
+        starts: GRIP_STARTS,
+        acts: &[Act::Commands(slip_when_changing)],
+        report: onset,
+    },
+    Form {
+        id: "slip",
+        name: "large changes lose way",
+        parameters: GRIP,
+        starts: GRIP_STARTS,
+        acts: &[Act::Motion(slip_of_ways)],
+        report: onset,
+    },
+    Form {
+        id: "slip",
+        name: "large changes lose more than in proportion, and turns drift",
+        parameters: &[Parameter::new(15.0, 90.0, 60.0), Parameter::new(0.0, 1.5, 0.0), Parameter::new(-0.5, 0.5, 0.0)],
+        starts: &[&[30.0, 0.3, 0.05], &[60.0, 0.3, 0.05], &[30.0, 0.3, -0.05], &[60.0, 0.3, -0.05]],
+        acts: &[Act::Commands(slip_growing), Act::Motion(|v, _, motion| motion.turn_rad *= 1.0 + v[1] * v[2])],
+        report: onset,
+    },
+];
+
+/// Loss of the loaded side (negative: the right one), and the other side's share of it: with none it would be a weaker
+/// motor, with all of it a scale.
+const LOAD: &[Parameter] = &[Parameter::new(-0.6, 0.6, 0.0), Parameter::new(0.15, 0.8, 0.5)];
+const LOAD_STARTS: &[&[f64]] = &[&[0.06, 0.5], &[-0.06, 0.5]];
+/// The same with the loss of turns: a heavy robot is hard to turn on the spot.
+const TURNING_LOAD: &[Parameter] =
+    &[Parameter::new(-0.6, 0.6, 0.0), Parameter::new(0.0, 0.8, 0.5), Parameter::new(0.0, 0.5, 0.0)];
+const TURNING_LOAD_STARTS: &[&[f64]] = &[&[0.03, 0.5, 0.08], &[-0.03, 0.5, 0.08]];
+/// Direction in radians, and loss.
+const DIRECTED: &[Parameter] = &[Parameter::new(-2.0 * PI, 2.0 * PI, 0.0), Parameter::new(0.0, 0.6, 0.0)];
+const DIRECTED_STARTS: &[&[f64]] = &[&[0.0, 0.05], &[PI / 2.0, 0.05], &[PI, 0.05], &[-PI / 2.0, 0.05]];
+const AXIS: &[Parameter] = &[Parameter::new(-PI, PI, 0.0), Parameter::new(0.0, 0.6, 0.0)];
+const AXIS_STARTS: &[&[f64]] = &[&[0.0, 0.05], &[PI / 4.0, 0.05], &[PI / 2.0, 0.05], &[-PI / 4.0, 0.05]];
+/// Onset in commands, and the share that is lost of what lies beyond. Below some onset it would be a scale or a lag.
+const GRIP: &[Parameter] = &[Parameter::new(15.0, 120.0, 120.0), Parameter::new(0.0, 1.0, 0.0)];
+const GRIP_STARTS: &[&[f64]] = &[&[20.0, 0.2], &[40.0, 0.3], &[70.0, 0.4]];
+
+fn load_factors(v: &[f64]) -> [f64; 2] {
+    let (near, far) = (v[0].abs(), v[0].abs() * v[1]);
+    if v[0] > 0.0 { [1.0 - near, 1.0 - far] } else { [1.0 - far, 1.0 - near] }
+}
+
+fn loaded_commands(v: &[f64], _: &Moment, window: &mut Window) {
+    let factor = load_factors(v);
+    magnitude_each(window, |c, motor| c * factor[motor]);
+}
+
+fn loaded_ways(v: &[f64], moment: &Moment, motion: &mut Motion) {
+    let factor = load_factors(v);
+    let [left, right] = motion.wheels_cm(moment.track_cm);
+    motion.set_wheels([left * factor[0], right * factor[1]], moment.track_cm);
+}
+
+fn load_on_turns(v: &[f64], moment: &Moment, motion: &mut Motion) {
+    loaded_ways(v, moment, motion);
+    motion.turn_rad *= 1.0 - v[2];
+}
+
+/// Cosine between the direction of travel and `direction_rad`: reversing travels against the heading.
+fn along(direction_rad: f64, moment: &Moment, motion: &Motion) -> f64 {
+    libm::cos(moment.pose.heading_rad + 0.5 * motion.turn_rad - direction_rad) * motion.forward_cm.signum()
+}
+
+fn slope_scale(v: &[f64], moment: &Moment, motion: &mut Motion) {
+    motion.forward_cm *= 1.0 + v[1] * along(v[0], moment, motion);
+}
+
+/// Way downhill in a step, in shares of the way of both wheels.
+fn downhill(v: &[f64], moment: &Moment, motion: &Motion) -> DVec2 {
+    let [left, right] = motion.wheels_cm(moment.track_cm);
+    let way_cm = 0.5 * (left.abs() + right.abs());
+    direction(v[0] - moment.pose.heading_rad - 0.5 * motion.turn_rad) * (v[1] * way_cm)
+}
+
+fn slope_drift(v: &[f64], moment: &Moment, motion: &mut Motion) {
+    let drift = downhill(v, moment, motion);
+    motion.forward_cm += drift.x;
+    motion.lateral_cm += drift.y;
+}
+
+fn slope_scale_and_slide(v: &[f64], moment: &Moment, motion: &mut Motion) {
+    let drift = downhill(v, moment, motion);
+    slope_scale(v, moment, motion);
+    motion.lateral_cm += 0.5 * drift.y;
+}
+
+/// The way of a step at half of the largest command, about; a force costs a share of it at any speed.
+const HALF_SPEED_CM: f64 = 8.0;
+
+fn slope_pull(v: &[f64], moment: &Moment, motion: &mut Motion) {
+    let pull = v[1] * along(v[0], moment, motion) * HALF_SPEED_CM;
+    motion.forward_cm = pushed(motion.forward_cm, pull);
+}
+
+fn nap_pull(v: &[f64], moment: &Moment, motion: &mut Motion) {
+    let pull = v[1] * along(v[0], moment, motion).max(0.0) * HALF_SPEED_CM;
+    motion.forward_cm = pushed(motion.forward_cm, -pull);
+}
+
+/// A way made longer or shorter, not below nothing; a robot that stands stays.
+fn pushed(way_cm: f64, more_cm: f64) -> f64 {
+    let moving = (way_cm.abs() / 1.5).min(1.0);
+    (way_cm.abs() + moving * more_cm).max(0.0) * way_cm.signum()
+}
+
+fn nap_one_way(v: &[f64], moment: &Moment, motion: &mut Motion) {
+    drag(motion, v[1] * 0.5 * (1.0 + along(v[0], moment, motion)));
+}
+
+fn nap_axis(v: &[f64], moment: &Moment, motion: &mut Motion) {
+    drag(motion, v[1] * along(v[0], moment, motion).abs());
+}
+
+fn nap_against(v: &[f64], moment: &Moment, motion: &mut Motion) {
+    drag(motion, v[1] * along(v[0], moment, motion).max(0.0));
+}
+
+fn drag(motion: &mut Motion, loss: f64) {
+    motion.forward_cm *= 1.0 - loss;
+    motion.lateral_cm *= 1.0 - loss;
+}
+
+fn slip_when_fast(v: &[f64], _: &Moment, window: &mut Window) {
+    magnitude_each(window, |c, _| c - v[1] * (c - v[0]).max(0.0));
+}
+
+/// A wheel that slips in a step has caught up at its end.
+fn slip_when_changing(v: &[f64], _: &Moment, window: &mut Window) {
+    slipped(window, |beyond| v[1] * beyond, v[0]);
+}
+
+fn slip_growing(v: &[f64], _: &Moment, window: &mut Window) {
+    slipped(window, |beyond| v[1] * beyond * beyond / (40.0 + beyond), v[0]);
+}
+
+fn slipped(window: &mut Window, lost: impl Fn(f64) -> f64, onset: f64) {
+    let [now, before, ..] = window;
+    for (c, earlier) in now.iter_mut().zip(before) {
+        let change = *c - *earlier;
+        *c -= lost((change.abs() - onset).max(0.0)) * change.signum();
+    }
+}
+
+fn slip_of_ways(v: &[f64], moment: &Moment, motion: &mut Motion) {
+    let [now, before] = [moment.commands[0], moment.commands[1]];
+    let wheels = motion.wheels_cm(moment.track_cm);
+    let kept = [0, 1].map(|m| 1.0 - (v[1] * ((now[m] - before[m]).abs() - v[0]).max(0.0) / 100.0).min(1.0));
+    motion.set_wheels([wheels[0] * kept[0], wheels[1] * kept[1]], moment.track_cm);
+}
+
+fn load(v: &[f64], _: f64) -> Reported {
+    vec![("side", side_of(v[0])), ("loss", rounded(v[0].abs()))]
+}
+
+fn directed(v: &[f64], _: f64) -> Reported {
+    vec![("direction_deg", degrees(v[0])), ("loss", rounded(v[1]))]
+}
+
+fn onset(v: &[f64], _: f64) -> Reported {
+    vec![("onset", rounded(v[0])), ("loss", rounded(v[1]))]
+}

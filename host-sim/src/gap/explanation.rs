@@ -1,0 +1,164 @@
+//! From fits to an explanation: which effects together, what else could be in place of each, and what is left over.
+
+use rayon::prelude::*;
+
+use super::channel::Channel;
+use super::generic;
+use super::hypothesis::Terms;
+use super::search::{Fitted, Gain, Given, best_of_each, extend};
+use super::verdict::{RIVAL, weight};
+
+/// The effects that explain a gap best, if any does.
+pub struct Explanation {
+    /// The simulator as it is.
+    pub none: Fitted,
+    /// The effects together.
+    pub chosen: Fitted,
+    /// For each of the chosen effects the fits with another in its place, best first.
+    pub rivals: Vec<Vec<Fitted>>,
+    /// What anything could explain beyond no effect, by channel.
+    pub beyond_none: Vec<Leftover>,
+    /// What anything could explain beyond the chosen effects, by channel.
+    pub beyond_chosen: Vec<Leftover>,
+}
+
+/// What the generic learner explains in a channel.
+pub struct Leftover {
+    /// The channel.
+    pub channel: Channel,
+    /// The learner on top of the effects.
+    pub fitted: Fitted,
+    /// Its gain on each block, zero where it is not significant.
+    pub by_block: Vec<f64>,
+}
+
+impl Leftover {
+    /// Whether the learner explains anything.
+    pub fn counts(&self) -> bool {
+        self.by_block.iter().any(|g| *g != 0.0)
+    }
+}
+
+/// An effect has to gain this many nats on held-out runs,
+pub const LEAST_NATS: f64 = 12.0;
+/// more if many others could stand for it,
+const LEAST_NATS_IF_VAGUE: f64 = 25.0;
+/// and so many standard errors.
+const LEAST_Z: f64 = 2.8;
+/// A further effect on the same stage has to gain this share of what is explained already: less is within the reach of
+/// a form that is not quite right.
+const LEAST_SHARE: f64 = 0.08;
+/// and so many standard errors.
+const LEAST_Z_BESIDE: f64 = 3.5;
+/// A further effect that more than so many others could stand for is no more than a form that is not quite right.
+const MOST_RIVALS: usize = 3;
+/// A fit is better than another from here on, nats.
+const OF_NO_MATTER: f64 = 1.0;
+/// The most effects that are named together.
+const MOST_EFFECTS: usize = 3;
+/// The generic learner's gain counts from here on.
+const LEAST_LEFTOVER_NATS: f64 = 20.0;
+const LEAST_LEFTOVER_Z: f64 = 3.0;
+/// Scatter beyond the simulator's counts from this ratio on.
+const LEAST_SCATTER_RATIO: f64 = 1.12;
+
+impl Explanation {
+    /// Searches forward, and backward after each step.
+    pub fn find(logs: &Given) -> Self {
+        let none = Fitted::none(logs);
+        let alone = extend(&none, None, logs);
+        let singles = best_of_each(alone.clone());
+        let first = singles.first().filter(|f| is_significant(&f.gain_over(&none), LEAST_NATS, LEAST_Z));
+        let first = first.filter(|f| is_specific(f, &singles, &none)).cloned();
+        let mut chosen = first.unwrap_or_else(|| none.clone());
+        let mut rivals = vec![singles];
+        while !chosen.ids().is_empty() && chosen.ids().len() < MOST_EFFECTS {
+            let further = best_of_each(extend(&chosen, Some(&alone), logs));
+            let Some(next) = further.into_iter().find(|f| is_worth_adding(f, &chosen, &none)) else { break };
+            let settled = settled(next, &alone, logs);
+            if settled.1.iter().any(|r| rivals_in_reach(&settled.0, r) > MOST_RIVALS) {
+                break;
+            }
+            (chosen, rivals) = settled;
+        }
+        let beyond_none = leftovers(&none, logs);
+        let beyond_chosen = if chosen.ids().is_empty() { leftovers(&none, logs) } else { leftovers(&chosen, logs) };
+        Explanation { none, chosen, rivals, beyond_none, beyond_chosen }
+    }
+}
+
+/// Whether few enough others could stand for a fit that gains little: a misfit of the simulator is a bit like many.
+fn is_specific(fit: &Fitted, singles: &[Fitted], none: &Fitted) -> bool {
+    fit.gain_over(none).nats >= LEAST_NATS_IF_VAGUE || rivals_in_reach(fit, singles) <= MOST_RIVALS
+}
+
+fn is_worth_adding(fit: &Fitted, so_far: &Fitted, none: &Fitted) -> bool {
+    let gain = fit.gain_over(so_far);
+    if fit.shares_a_stage() {
+        let least = LEAST_NATS.max(LEAST_SHARE * so_far.gain_over(none).nats);
+        is_significant(&gain, least, LEAST_Z_BESIDE)
+    } else {
+        is_significant(&gain, LEAST_NATS, LEAST_Z)
+    }
+}
+
+/// How many effects do nearly as well in the place of one of the chosen.
+fn rivals_in_reach(chosen: &Fitted, rivals: &[Fitted]) -> usize {
+    rivals.iter().filter(|r| r.ids() != chosen.ids() && weight(chosen, r) >= RIVAL).count()
+}
+
+/// Each effect in turn gives way to what does better in its place. Returns what stands then, and for each of its
+/// effects the fits with others in its place.
+fn settled(mut chosen: Fitted, alone: &[Fitted], logs: &Given) -> (Fitted, Vec<Vec<Fitted>>) {
+    let instead = |chosen: &Fitted, place: usize| best_of_each(extend(&chosen.without(place, logs), Some(alone), logs));
+    for place in 0..chosen.ids().len() {
+        let better = instead(&chosen, place).into_iter().next().filter(|f| f.score() > chosen.score() + OF_NO_MATTER);
+        if let Some(better) = better {
+            chosen = better;
+            break;
+        }
+    }
+    let rivals = (0..chosen.ids().len()).map(|place| instead(&chosen, place)).collect();
+    (chosen, rivals)
+}
+
+fn is_significant(gain: &Gain, least_nats: f64, least_z: f64) -> bool {
+    gain.nats >= least_nats && gain.z() >= least_z
+}
+
+/// What follows circumstances in each channel on top of a fit, or scatters more than the simulator.
+fn leftovers(fit: &Fitted, logs: &Given) -> Vec<Leftover> {
+    Channel::ALL
+        .par_iter()
+        .map(|channel| {
+            let fitted = fit.with(generic::form(*channel), logs);
+            let gains = fitted.gains_over(fit);
+            let gain = Gain::of(&gains);
+            let counts = gain.nats >= LEAST_LEFTOVER_NATS && gain.z() >= LEAST_LEFTOVER_Z;
+            let mut by_block = if counts { gains } else { vec![0.0; gains.len()] };
+            for (sum, wider) in by_block.iter_mut().zip(wider_scatter(*channel, &fitted, logs)) {
+                *sum += wider;
+            }
+            Leftover { channel: *channel, fitted, by_block }
+        })
+        .collect()
+}
+
+/// By how much the logs of a motion channel are likelier with their own scatter than with the simulator's.
+fn wider_scatter(channel: Channel, fit: &Fitted, logs: &Given) -> Vec<f64> {
+    let nothing = vec![0.0; logs.evidence.blocks];
+    let (Some(axis), Some(drive)) = (channel.motion_axis(), &logs.baseline.motion) else { return nothing };
+    let own = fit.hypothesis.scatter(logs.baseline, logs.evidence, &fit.values);
+    if own[axis] < LEAST_SCATTER_RATIO * drive.scatter()[axis] {
+        return nothing;
+    }
+    let mut narrow = own;
+    narrow[axis] = drive.scatter()[axis];
+    let likelihood = |scatter: [f64; 3]| {
+        let motion = fit.hypothesis.motion_terms(logs.baseline, &logs.evidence.rows, &fit.values, scatter);
+        let terms = Terms { motion, sonar: Vec::new() };
+        logs.evidence.by_block(&terms.channel(channel))
+    };
+    let gains: Vec<f64> = likelihood(own).iter().zip(likelihood(narrow)).map(|(a, b)| a - b).collect();
+    if Gain::of(&gains).nats >= LEAST_LEFTOVER_NATS { gains } else { nothing }
+}

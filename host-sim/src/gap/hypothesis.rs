@@ -1,0 +1,216 @@
+//! Effects at work together, and how likely they make the logs.
+
+use std::f64::consts::PI;
+use std::ops::Range;
+
+use super::baseline::{Baseline, Drive};
+use super::channel::Channel;
+use super::effect::{Act, Form, Motion, Sensor, Window};
+use super::evidence::{Evidence, Row};
+use crate::ascent::Bounds;
+use crate::geometry::wrap_rad;
+use crate::simulator::reference::sonar::Change;
+
+/// Effects that are supposed to be there, in the order in which they are applied; none is the simulator as it is.
+#[derive(Clone)]
+pub struct Hypothesis {
+    /// One form of each effect.
+    pub forms: Vec<&'static Form>,
+}
+
+/// Log-likelihoods by row and channel.
+#[derive(Clone, Debug)]
+pub struct Terms {
+    /// Forward, lateral, turn.
+    pub motion: Vec<[f64; 3]>,
+    /// Echo rate, echo value.
+    pub sonar: Vec<[f64; 2]>,
+}
+
+impl Terms {
+    /// All channels of each row together.
+    pub fn total(&self) -> Vec<f64> {
+        let both = |(m, s): (&[f64; 3], &[f64; 2])| m.iter().sum::<f64>() + s.iter().sum::<f64>();
+        self.motion.iter().zip(&self.sonar).map(both).collect()
+    }
+
+    /// One channel of each row.
+    pub fn channel(&self, channel: Channel) -> Vec<f64> {
+        match channel {
+            Channel::Forward => self.motion.iter().map(|m| m[0]).collect(),
+            Channel::Lateral => self.motion.iter().map(|m| m[1]).collect(),
+            Channel::Turn => self.motion.iter().map(|m| m[2]).collect(),
+            Channel::EchoRate => self.sonar.iter().map(|s| s[0]).collect(),
+            Channel::EchoValue => self.sonar.iter().map(|s| s[1]).collect(),
+        }
+    }
+}
+
+/// A step that is so much wider than usual counts as a jump of the tracker.
+const JUMP: f64 = 8.0;
+/// How often the tracker jumps, at most.
+const JUMPS: f64 = 0.01;
+
+impl Hypothesis {
+    /// The simulator as it is.
+    pub fn none() -> Self {
+        Hypothesis { forms: Vec::new() }
+    }
+
+    /// This and one more.
+    pub fn with(&self, form: &'static Form) -> Self {
+        let forms = self.forms.iter().copied().chain([form]).collect();
+        Hypothesis { forms }
+    }
+
+    /// Bounds of all parameters.
+    pub fn bounds(&self) -> Vec<Bounds> {
+        self.forms.iter().flat_map(|f| f.parameters.iter().map(|p| p.bounds)).collect()
+    }
+
+    /// The log-likelihood of every row at `values`; what the hypothesis does not touch is taken from `untouched`.
+    pub fn terms(&self, baseline: &Baseline, evidence: &Evidence, values: &[f64], untouched: Option<&Terms>) -> Terms {
+        let kept = |touched: bool| untouched.filter(|_| !touched);
+        let motion = || {
+            let scatter = self.scatter(baseline, evidence, values);
+            self.motion_terms(baseline, &evidence.rows, values, scatter)
+        };
+        let sonar = || self.sonar_terms(baseline, evidence, 0..evidence.rows.len(), values);
+        Terms {
+            motion: kept(self.moves()).map_or_else(motion, |t| t.motion.clone()),
+            sonar: kept(self.senses()).map_or_else(sonar, |t| t.sonar.clone()),
+        }
+    }
+
+    /// The log-likelihood of one block, with the scatter of all.
+    pub fn of_block(
+        &self,
+        baseline: &Baseline,
+        evidence: &Evidence,
+        block: usize,
+        values: &[f64],
+        scatter: [f64; 3],
+        untouched: &Terms,
+    ) -> f64 {
+        let range = evidence.of_block(block);
+        let motion: f64 = if self.moves() {
+            self.motion_terms(baseline, &evidence.rows[range.clone()], values, scatter).as_flattened().iter().sum()
+        } else {
+            untouched.motion[range.clone()].as_flattened().iter().sum()
+        };
+        let sonar: f64 = if self.senses() {
+            self.sonar_terms(baseline, evidence, range, values).as_flattened().iter().sum()
+        } else {
+            untouched.sonar[range].as_flattened().iter().sum()
+        };
+        motion + sonar
+    }
+
+    /// A nuisance of every hypothesis: the scatter may be larger than the simulator's, never smaller.
+    pub fn scatter(&self, baseline: &Baseline, evidence: &Evidence, values: &[f64]) -> [f64; 3] {
+        baseline
+            .motion
+            .as_ref()
+            .map_or([1.0; 3], |drive| refitted(&self.residuals(drive, &evidence.rows, values), drive.scatter()))
+    }
+
+    fn moves(&self) -> bool {
+        self.forms.iter().any(|f| f.moves())
+    }
+
+    fn senses(&self) -> bool {
+        self.forms.iter().any(|f| f.senses())
+    }
+
+    /// What a step does.
+    pub fn motion(&self, drive: &Drive, row: &Row, values: &[f64]) -> Motion {
+        let mut commands: Window = row.moment.commands;
+        self.each(values, |act, v| {
+            if let Act::Commands(change) = act {
+                change(v, &row.moment, &mut commands);
+            }
+        });
+        let mut motion = drive.step(commands[0], commands[1]);
+        self.each(values, |act, v| {
+            if let Act::Motion(change) = act {
+                change(v, &row.moment, &mut motion);
+            }
+        });
+        motion
+    }
+
+    /// What the sensor is like at a row.
+    pub fn sensor(&self, row: &Row, values: &[f64]) -> Sensor {
+        let mut sensor = Sensor { robot: row.moment.pose, yaw_rad: 0.0, width: 1.0, change: Change::NONE };
+        self.each(values, |act, v| {
+            if let Act::Sensor(change) = act {
+                change(v, &row.moment, &mut sensor);
+            }
+        });
+        sensor
+    }
+
+    /// Logged minus predicted: forward (cm), lateral (cm), turn (rad).
+    pub fn residuals(&self, drive: &Drive, rows: &[Row], values: &[f64]) -> Vec<Option<[f64; 3]>> {
+        let residual = |row: &Row| {
+            let logged = row.motion?;
+            let predicted = self.motion(drive, row, values);
+            Some([
+                logged.forward_cm - predicted.forward_cm,
+                logged.lateral_cm - predicted.lateral_cm,
+                wrap_rad(logged.turn_rad - predicted.turn_rad),
+            ])
+        };
+        rows.iter().map(residual).collect()
+    }
+
+    /// The log-likelihoods of the motion channels with a given scatter.
+    pub fn motion_terms(&self, baseline: &Baseline, rows: &[Row], values: &[f64], scatter: [f64; 3]) -> Vec<[f64; 3]> {
+        let Some(drive) = &baseline.motion else { return vec![[0.0; 3]; rows.len()] };
+        let residuals = self.residuals(drive, rows, values);
+        let densities = |r: [f64; 3]| [0, 1, 2].map(|c| log_density(r[c], scatter[c]));
+        residuals.into_iter().map(|r| r.map_or([0.0; 3], densities)).collect()
+    }
+
+    fn sonar_terms(
+        &self,
+        baseline: &Baseline,
+        evidence: &Evidence,
+        rows: Range<usize>,
+        values: &[f64],
+    ) -> Vec<[f64; 2]> {
+        let Some(sonar) = &baseline.sonar else { return vec![[0.0; 2]; rows.len()] };
+        let term = |row: &Row| {
+            let sensor = self.sensor(row, values);
+            let moved = sensor.robot != row.moment.pose || sensor.yaw_rad != 0.0 || sensor.width != 1.0;
+            let fan = if moved { evidence.fan(&sensor.robot, sensor.yaw_rad, sensor.width) } else { row.fan };
+            let [all, rate] = sonar.log_likelihood(&fan, &sensor.change, row.echo_cm, row.previous_echo_cm);
+            [rate, all - rate]
+        };
+        evidence.rows[rows].iter().map(term).collect()
+    }
+
+    fn each(&self, values: &[f64], mut visit: impl FnMut(&Act, &[f64])) {
+        let mut rest = values;
+        for form in &self.forms {
+            let (own, others) = rest.split_at(form.parameters.len());
+            form.acts.iter().for_each(|act| visit(act, own));
+            rest = others;
+        }
+    }
+}
+
+fn refitted(residuals: &[Option<[f64; 3]>], least: [f64; 3]) -> [f64; 3] {
+    [0, 1, 2].map(|c| {
+        let bound = 4.0 * least[c];
+        let squares = residuals.iter().flatten().map(|r| r[c].clamp(-bound, bound)).map(|r| r * r);
+        let (sum, n) = squares.fold((0.0, 0.0), |(sum, n), s| (sum + s, n + 1.0));
+        if n > 0.0 { f64::max(least[c], f64::sqrt(sum / n)) } else { least[c] }
+    })
+}
+
+fn log_density(residual: f64, scatter: f64) -> f64 {
+    let t = residual / scatter;
+    let normal = |t: f64| libm::exp(-0.5 * t * t) / (2.0 * PI).sqrt();
+    libm::log((1.0 - JUMPS) * normal(t) + JUMPS * normal(t / JUMP) / JUMP) - libm::log(scatter)
+}

@@ -1,0 +1,48 @@
+//! The textbook as a baseline: the differential drive and an ideal ray sonar from robot.toml alone, their scatter
+//! estimated from the logs.
+
+use super::baseline::{Baseline, Drive};
+use crate::logs::{Logs, samples};
+use crate::simulator::reference::sonar::{STRENGTHS, SonarReference};
+
+/// The least scatter of forward (cm), lateral (cm) and turn (rad): that of a good tracker. The logs' own is refitted
+/// upwards from here.
+const LEAST_SCATTER: [f64; 3] = [0.1, 0.1, 0.005];
+/// An ideal ray is so much narrower than a real beam.
+const RAY_WIDTH: f64 = 0.05;
+/// Log-odds that a ray comes back: it does.
+const CERTAIN: f64 = 6.0;
+/// Bounds of the estimated scatter of readings, cm.
+const READING_SCATTER_CM: [f64; 2] = [0.5, 4.0];
+
+/// The baseline of a robot that nobody has logged before.
+pub fn baseline(logs: &Logs) -> Baseline<'static> {
+    Baseline { motion: Some(Drive::Kinematic { robot: logs.robot, scatter: LEAST_SCATTER }), sonar: sonar(logs) }
+}
+
+fn sonar(logs: &Logs) -> Option<SonarReference> {
+    let seen = samples::sonar(logs);
+    let mount = &logs.robot.ultrasonic;
+    let mut errors_cm: Vec<f64> = seen.iter().filter_map(|s| Some((s.echo_cm? - s.distance_cm).abs())).collect();
+    if errors_cm.is_empty() {
+        return None;
+    }
+    errors_cm.sort_by(f64::total_cmp);
+    // The nearer half of a normal scatter ends at 0.674 standard deviations.
+    let scatter_cm = errors_cm[errors_cm.len() / 2] / 0.674;
+    let [least, most] = READING_SCATTER_CM;
+    let within = seen.iter().filter(|s| s.distance_cm < mount.max_cm);
+    let (echoes, all) = within.fold((0.0, 0.0), |(e, n), s| (e + f64::from(u8::from(s.echo_cm.is_some())), n + 1.0));
+    let mut strength = [0.0; STRENGTHS];
+    strength[0] = CERTAIN;
+    Some(SonarReference {
+        strength,
+        bias: [0.0; 3],
+        log_scatter: [libm::log(scatter_cm.clamp(least, most)), 0.0, 0.0],
+        constant: [0.0, mount.min_cm],
+        short: 0.0,
+        lost: 1.0 - echoes / f64::max(all, 1.0),
+        fan_width: RAY_WIDTH,
+        range_cm: [mount.min_cm, mount.max_cm],
+    })
+}

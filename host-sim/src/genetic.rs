@@ -1,0 +1,195 @@
+//! The genetic algorithm (GA) of the paper, section VII: it trains networks and evolves controllers alike.
+//!
+//! A population is replaced whole each generation. Parents win a [`tournament`], cross over by [`sbx`] and mutate by
+//! [`mutation`]; [`stopping`] ends the run. What the paper leaves open is a field of [`Settings`].
+
+pub mod mutation;
+pub mod sbx;
+pub mod stopping;
+pub mod tournament;
+
+use rand::RngExt;
+
+use crate::chance::{Generator, generator};
+use mutation::Mutation;
+use stopping::Window;
+
+/// How the algorithm runs. The default is the paper's, and where the paper is silent the standard choice.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Settings {
+    /// Individuals (paper: 100).
+    pub population: usize,
+    /// Individuals in a tournament, drawn without replacement (paper: 33).
+    pub tournament: usize,
+    /// Chance that two parents cross over (paper: 0.8).
+    pub crossover_chance: f64,
+    /// Distribution index of the simulated binary crossover (open; 15 is common).
+    pub sbx_index: f32,
+    /// How children mutate (paper: 5 %, normal).
+    pub mutation: Mutation,
+    /// So many of the best go on unchanged (open; the paper replaces the population whole).
+    pub elite: usize,
+    /// When to stop for lack of improvement (paper: under 0.1 % over 300 generations), if ever.
+    pub window: Option<Window>,
+    /// Generations at most (paper: 1000 for a controller, no bound for a network).
+    pub max_generations: usize,
+}
+
+/// What a run of the algorithm came to.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Outcome {
+    /// The fittest individual that was met.
+    pub best: Vec<f32>,
+    /// Its fitness.
+    pub fitness: f64,
+    /// Generations that were run.
+    pub generations: usize,
+    /// The last population, fittest first.
+    pub population: Vec<Vec<f32>>,
+}
+
+/// What a problem gives the algorithm.
+pub trait Problem {
+    /// A new individual.
+    fn random(&self, rng: &mut Generator) -> Vec<f32>;
+    /// Brings a child back to what an individual can be, gene by gene.
+    fn repair(&self, genes: &mut [f32]);
+    /// The fitness of each individual, larger being better; NaN counts as the worst.
+    fn fitness(&self, generation: usize, population: &[Vec<f32>]) -> Vec<f64>;
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Settings {
+            population: 100,
+            tournament: 33,
+            crossover_chance: 0.8,
+            sbx_index: 15.0,
+            mutation: Mutation::default(),
+            elite: 0,
+            window: Some(Window::default()),
+            max_generations: usize::MAX,
+        }
+    }
+}
+
+/// Runs the algorithm from a random population. `seed` fixes every draw; `watch` is told the generation and the best
+/// fitness so far.
+pub fn run(settings: &Settings, problem: &impl Problem, seed: u64, watch: impl FnMut(usize, f64)) -> Outcome {
+    let mut rng = generator(seed, &[0]);
+    let population = (0..settings.population).map(|_| problem.random(&mut rng)).collect();
+    run_from(population, settings, problem, seed, watch)
+}
+
+/// Runs the algorithm from a population that is there already, whose size it keeps.
+pub fn run_from(
+    mut population: Vec<Vec<f32>>,
+    settings: &Settings,
+    problem: &impl Problem,
+    seed: u64,
+    mut watch: impl FnMut(usize, f64),
+) -> Outcome {
+    let mut best: Option<(Vec<f32>, f64)> = None;
+    let mut history = Vec::new();
+    loop {
+        let generation = history.len();
+        let fitness = problem.fitness(generation, &population);
+        let ranking = tournament::ranking(&fitness);
+        let leader = ranking[0];
+        if best.as_ref().is_none_or(|(_, f)| fitness[leader] > *f) {
+            best = Some((population[leader].clone(), fitness[leader]));
+        }
+        let best_fitness = best.as_ref().map_or(f64::NAN, |b| b.1);
+        history.push(best_fitness);
+        watch(generation, best_fitness);
+        let stalled = settings.window.is_some_and(|w| w.has_stalled(&history));
+        if stalled || history.len() >= settings.max_generations {
+            let population = ranking.iter().map(|i| std::mem::take(&mut population[*i])).collect();
+            let (best, fitness) = best.unwrap_or_default();
+            return Outcome { best, fitness, generations: history.len(), population };
+        }
+        let mut rng = generator(seed, &[1, generation as u64]);
+        population = offspring(settings, problem, &population, &ranking, &mut rng);
+    }
+}
+
+fn offspring(
+    settings: &Settings,
+    problem: &impl Problem,
+    parents: &[Vec<f32>],
+    ranking: &[usize],
+    rng: &mut Generator,
+) -> Vec<Vec<f32>> {
+    let mut children: Vec<Vec<f32>> = ranking.iter().take(settings.elite).map(|i| parents[*i].clone()).collect();
+    let mut arena = tournament::Tournament::new(ranking);
+    while children.len() < parents.len() {
+        let mother = &parents[arena.winner(settings.tournament, rng)];
+        let father = &parents[arena.winner(settings.tournament, rng)];
+        let (mut daughter, mut son) = (mother.clone(), father.clone());
+        if rng.random_bool(settings.crossover_chance) {
+            sbx::cross(&mut daughter, &mut son, settings.sbx_index, rng);
+        }
+        for mut child in [daughter, son] {
+            if children.len() < parents.len() {
+                settings.mutation.apply(&mut child, rng);
+                problem.repair(&mut child);
+                children.push(child);
+            }
+        }
+    }
+    children
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The sphere: fitness is highest at the origin.
+    struct Sphere;
+
+    impl Problem for Sphere {
+        fn random(&self, rng: &mut Generator) -> Vec<f32> {
+            (0..8).map(|_| rng.random_range(-1.0..1.0)).collect()
+        }
+
+        fn repair(&self, _: &mut [f32]) {}
+
+        fn fitness(&self, _: usize, population: &[Vec<f32>]) -> Vec<f64> {
+            population.iter().map(|g| -g.iter().map(|x| f64::from(x * x)).sum::<f64>()).collect()
+        }
+    }
+
+    fn settings() -> Settings {
+        Settings { max_generations: 150, window: None, ..Settings::default() }
+    }
+
+    #[test]
+    fn finds_the_top_of_a_sphere() {
+        let outcome = run(&settings(), &Sphere, 1, |_, _| {});
+        assert!(outcome.fitness > -0.05, "{}", outcome.fitness);
+        assert_eq!(outcome.generations, 150);
+    }
+
+    #[test]
+    fn the_same_seed_gives_the_same_run_and_another_seed_another() {
+        let again = |seed| run(&settings(), &Sphere, seed, |_, _| {});
+        assert_eq!(again(5), again(5));
+        assert_ne!(again(5).best, again(6).best);
+    }
+
+    #[test]
+    fn an_elite_never_loses_its_best() {
+        let mut last = f64::NEG_INFINITY;
+        let outcome = run(&Settings { elite: 1, ..settings() }, &Sphere, 2, |_, best| {
+            assert!(best >= last);
+            last = best;
+        });
+        assert_eq!(Sphere.fitness(0, &outcome.population)[0], outcome.fitness, "the elite is still there");
+    }
+
+    #[test]
+    fn one_individual_still_runs() {
+        let outcome = run(&Settings { population: 1, max_generations: 3, ..settings() }, &Sphere, 3, |_, _| {});
+        assert_eq!(outcome.population.len(), 1);
+    }
+}

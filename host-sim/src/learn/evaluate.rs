@@ -1,0 +1,144 @@
+//! How well a simulator's networks do on logs: the paper's figure 2 in numbers, and what a probability asks beyond.
+
+use serde::Serialize;
+
+use super::dataset::{Dataset, Datasets};
+use super::statistics::{self, ReliabilityBin, TrendLine};
+use crate::logs::Logs;
+use crate::problem::{Problem, Result};
+use crate::simulator::{Learned, Simulator};
+
+/// What `mindgap evaluate --json` writes.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Evaluation {
+    /// Version of this form.
+    pub schema: u32,
+    /// The networks that both the simulator and the logs have.
+    pub networks: Networks,
+}
+
+/// Accuracy of each network.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Networks {
+    /// Turn, degrees.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub turn: Option<Value>,
+    /// Way forward, cm.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub forward: Option<Value>,
+    /// Way to the left, cm.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub lateral: Option<Value>,
+    /// Whether there is an echo.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub echo_probability: Option<Probability>,
+    /// The reading, cm.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub echo_value: Option<Value>,
+}
+
+/// Accuracy of a network that predicts a value.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Value {
+    /// Coefficient of determination; null when all logged values are equal.
+    pub r2: Option<f64>,
+    /// Mean squared error, in the square of the value's unit.
+    pub mse: f64,
+    /// Mean absolute error of the reading.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub mae_cm: Option<f64>,
+    /// Predicted over expected.
+    pub trend: Option<TrendLine>,
+    /// Samples.
+    pub n: usize,
+    /// Expected and predicted, sample by sample.
+    #[serde(skip)]
+    pub points: Vec<[f64; 2]>,
+}
+
+/// Accuracy of a network that predicts a probability.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Probability {
+    /// Coefficient of determination against 0 and 1; null when all outcomes are equal.
+    pub r2: Option<f64>,
+    /// Brier score: the mean squared error.
+    pub brier: f64,
+    /// Mean negative log likelihood, probabilities held within 0.001..0.999.
+    pub log_loss: f64,
+    /// Area under the ROC curve; null when all outcomes are equal.
+    pub auc: Option<f64>,
+    /// Predicted over expected.
+    pub trend: Option<TrendLine>,
+    /// Samples.
+    pub n: usize,
+    /// Predicted against observed.
+    pub reliability: Vec<ReliabilityBin>,
+    /// Expected and predicted, sample by sample.
+    #[serde(skip)]
+    pub points: Vec<[f64; 2]>,
+}
+
+/// Judges a simulator on logs, best on such as it was not trained on.
+///
+/// # Errors
+/// When the simulator and the logs have no network in common.
+pub fn evaluate(simulator: &Simulator, logs: &Logs) -> Result<Evaluation> {
+    let data = Datasets::from_logs(logs);
+    let mut echo_value = predict(&simulator.echo_value, &data.echo_value).map(Value::of);
+    if let Some(value) = &mut echo_value {
+        let [expected, predicted] = columns(&value.points);
+        value.mae_cm = Some(statistics::mae(&expected, &predicted));
+    }
+    let networks = Networks {
+        turn: predict(&simulator.turn, &data.turn).map(Value::of),
+        forward: predict(&simulator.forward, &data.forward).map(Value::of),
+        lateral: predict(&simulator.lateral, &data.lateral).map(Value::of),
+        echo_probability: predict(&simulator.echo_probability, &data.echo_probability).map(Probability::of),
+        echo_value,
+    };
+    if networks == Networks::default() {
+        return Err(Problem::new("these logs hold no sample for any network of this simulator"));
+    }
+    Ok(Evaluation { schema: 1, networks })
+}
+
+impl Value {
+    fn of(points: Vec<[f64; 2]>) -> Self {
+        let [expected, predicted] = columns(&points);
+        Value {
+            r2: statistics::r2(&expected, &predicted),
+            mse: statistics::mse(&expected, &predicted),
+            mae_cm: None,
+            trend: statistics::trend_line(&expected, &predicted),
+            n: points.len(),
+            points,
+        }
+    }
+}
+
+impl Probability {
+    fn of(points: Vec<[f64; 2]>) -> Self {
+        let [outcomes, predicted] = columns(&points);
+        Probability {
+            r2: statistics::r2(&outcomes, &predicted),
+            brier: statistics::mse(&outcomes, &predicted),
+            log_loss: statistics::log_loss(&outcomes, &predicted),
+            auc: statistics::auc(&outcomes, &predicted),
+            trend: statistics::trend_line(&outcomes, &predicted),
+            n: points.len(),
+            reliability: statistics::reliability(&outcomes, &predicted),
+            points,
+        }
+    }
+}
+
+/// Expected and predicted for each sample, when there is both a network and a sample.
+fn predict<const N: usize>(learned: &Option<Learned<N>>, data: &Dataset<N>) -> Option<Vec<[f64; 2]>> {
+    let network = &learned.as_ref()?.network;
+    let points = data.inputs.iter().zip(&data.targets).map(|(x, t)| [f64::from(*t), f64::from(network.evaluate(*x))]);
+    (!data.is_empty()).then(|| points.collect())
+}
+
+fn columns(points: &[[f64; 2]]) -> [Vec<f64>; 2] {
+    [0, 1].map(|i| points.iter().map(|p| p[i]).collect())
+}

@@ -1,0 +1,114 @@
+//! A network as the genes of an individual: "each individual in the GA encoded potential weight values directly"
+//! (paper, section VII).
+
+use mindgap_core::network::{Activation, MAX_HALF, Network, ProductForm, ProductUnit, Scaling, SummationUnit};
+
+/// How many units of each kind the hidden layer has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Shape {
+    /// Summation units, at most [`MAX_HALF`].
+    pub summation: usize,
+    /// Product units, at most [`MAX_HALF`].
+    pub product: usize,
+}
+
+/// Everything about a network but its weights.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Frame<const N: usize> {
+    /// Units of the hidden layer.
+    pub shape: Shape,
+    /// How inputs are scaled.
+    pub inputs: [Scaling<f32>; N],
+    /// What product units do with signs.
+    pub product_form: ProductForm,
+    /// What the output unit does.
+    pub activation: Activation,
+}
+
+impl Shape {
+    /// A hidden layer of so many neurons, half of each kind, as in Table I.
+    pub const fn halves(hidden: usize) -> Self {
+        assert!(hidden.is_multiple_of(2) && hidden / 2 <= MAX_HALF, "a hidden layer has two halves that fit");
+        Shape { summation: hidden / 2, product: hidden / 2 }
+    }
+}
+
+impl<const N: usize> Frame<N> {
+    /// The number of genes.
+    pub fn genes(&self) -> usize {
+        self.shape.summation * (N + 2) + self.shape.product * (N + 1) + 1
+    }
+
+    /// The places of the exponents among the genes.
+    pub fn exponents(&self) -> impl Iterator<Item = usize> + use<N> {
+        let first = self.shape.summation * (N + 2);
+        (0..self.shape.product).flat_map(move |unit| (0..N).map(move |i| first + unit * (N + 1) + i))
+    }
+
+    /// The network that genes stand for: summation units (weights, bias, output), product units (exponents, output),
+    /// bias of the output.
+    pub fn network(&self, genes: &[f32]) -> Network<f32, N> {
+        let (summation, rest) = genes.split_at(self.shape.summation * (N + 2));
+        let (product, bias) = rest.split_at(self.shape.product * (N + 1));
+        Network {
+            inputs: self.inputs,
+            product_form: self.product_form,
+            activation: self.activation,
+            bias: bias[0],
+            summation: summation
+                .chunks_exact(N + 2)
+                .map(|g| SummationUnit { weights: std::array::from_fn(|i| g[i]), bias: g[N], output: g[N + 1] })
+                .collect(),
+            product: product
+                .chunks_exact(N + 1)
+                .map(|g| ProductUnit { exponents: std::array::from_fn(|i| g[i]), output: g[N] })
+                .collect(),
+        }
+    }
+}
+
+/// Turns a network whose output `z` stands for `low + (z - 1)(high - low)` into one that says so itself.
+pub fn unscale_output<const N: usize>(network: &mut Network<f32, N>, low: f32, high: f32) {
+    let gain = high - low;
+    network.bias = low + (network.bias - 1.0) * gain;
+    network.summation.iter_mut().for_each(|u| u.output *= gain);
+    network.product.iter_mut().for_each(|u| u.output *= gain);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn frame() -> Frame<2> {
+        Frame {
+            shape: Shape::halves(4),
+            inputs: [Scaling::onto_one_to_two(0.0, 1.0); 2],
+            product_form: ProductForm::Positive,
+            activation: Activation::Linear,
+        }
+    }
+
+    #[test]
+    fn every_gene_has_its_place() {
+        let genes: Vec<f32> = (0..frame().genes()).map(|i| i as f32).collect();
+        let network = frame().network(&genes);
+        assert_eq!(network.parameters(), genes.len());
+        assert_eq!(network.summation[1], SummationUnit { weights: [4.0, 5.0], bias: 6.0, output: 7.0 });
+        assert_eq!(network.product[1], ProductUnit { exponents: [11.0, 12.0], output: 13.0 });
+        assert_eq!(network.bias, 14.0);
+        assert_eq!(frame().exponents().collect::<Vec<_>>(), [8, 9, 11, 12]);
+    }
+
+    #[test]
+    fn unscaling_moves_the_output_alone() {
+        let genes: Vec<f32> = (0..frame().genes()).map(|i| 0.1 * i as f32 - 0.7).collect();
+        let scaled = frame().network(&genes);
+        let mut plain = scaled.clone();
+        unscale_output(&mut plain, -20.0, 30.0);
+        for inputs in [[0.0f32, 0.0], [0.3, 0.9]] {
+            let z: f32 = scaled.evaluate(inputs);
+            let y: f32 = plain.evaluate(inputs);
+            assert!((y - (-20.0 + (z - 1.0) * 50.0)).abs() < 1e-3);
+        }
+    }
+}

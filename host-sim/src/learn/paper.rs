@@ -1,0 +1,94 @@
+//! The paper's trainer: the genetic algorithm on all weights, its fitness the inverse of the mean squared error
+//! (section VII).
+
+use mindgap_core::network::{Activation, Network, ProductForm, Scaling};
+use rand::RngExt;
+use rayon::prelude::*;
+
+use super::dataset::Dataset;
+use super::genome::{Frame, Shape, unscale_output};
+use super::kernel::Samples;
+use crate::chance::Generator;
+use crate::genetic::{self, Settings};
+
+/// What the trainer can be told. The default is the paper's, and where the paper is silent the standard choice.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Options {
+    /// The genetic algorithm.
+    pub genetic: Settings,
+    /// What product units do with signs (open; inputs scaled to [1, 2]).
+    pub product_form: ProductForm,
+    /// Weights and exponents start uniformly in ± this (open; 1).
+    pub start: f32,
+    /// Exponents stay in ± this (open; 5).
+    pub exponent_bound: f32,
+}
+
+/// A trained network and how it came about.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Trained<const N: usize> {
+    /// The network, in the units of its data set.
+    pub network: Network<f32, N>,
+    /// Generations that were run.
+    pub generations: usize,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Options { genetic: Settings::default(), product_form: ProductForm::Positive, start: 1.0, exponent_bound: 5.0 }
+    }
+}
+
+/// Trains one network. The data set must hold samples, and inputs and targets that vary.
+pub fn train<const N: usize>(
+    data: &Dataset<N>,
+    shape: Shape,
+    activation: Activation,
+    options: &Options,
+    seed: u64,
+    watch: impl FnMut(usize, f64),
+) -> Trained<N> {
+    let scale = match options.product_form {
+        ProductForm::Positive => Scaling::onto_one_to_two,
+        ProductForm::Signed => Scaling::onto_minus_one_to_one,
+    };
+    let inputs = data.ranges().map(|range| scale(*range.start(), *range.end()));
+    let frame = Frame { shape, inputs, product_form: options.product_form, activation };
+    // A probability is learned as it is; anything else is brought to [1, 2], where weights about one can reach it.
+    let (low, high) = match activation {
+        Activation::Ramp => (1.0, 2.0),
+        Activation::Linear => data.target_range().into_inner(),
+    };
+    let samples = Samples::new(data, &inputs, |target| 1.0 + (target - low) / (high - low));
+    let problem = Weights { frame, samples, options };
+    let outcome = genetic::run(&options.genetic, &problem, seed, watch);
+    let mut network = frame.network(&outcome.best);
+    unscale_output(&mut network, low, high);
+    Trained { network, generations: outcome.generations }
+}
+
+/// The genes are the weights.
+struct Weights<'a, const N: usize> {
+    frame: Frame<N>,
+    samples: Samples<N>,
+    options: &'a Options,
+}
+
+impl<const N: usize> genetic::Problem for Weights<'_, N> {
+    fn random(&self, rng: &mut Generator) -> Vec<f32> {
+        let start = self.options.start;
+        (0..self.frame.genes()).map(|_| rng.random_range(-start..=start)).collect()
+    }
+
+    fn repair(&self, genes: &mut [f32]) {
+        let bound = self.options.exponent_bound;
+        for place in self.frame.exponents() {
+            genes[place] = genes[place].clamp(-bound, bound);
+        }
+    }
+
+    fn fitness(&self, _: usize, population: &[Vec<f32>]) -> Vec<f64> {
+        let error = |genes: &Vec<f32>| self.samples.mean_squared_error(&self.frame.network(genes));
+        population.par_iter().map(|genes| 1.0 / error(genes)).collect()
+    }
+}

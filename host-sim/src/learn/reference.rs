@@ -1,0 +1,134 @@
+//! Learns what is normal beyond the networks: the yardstick of the gap.
+
+use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
+
+use crate::ascent::{Bounds, climb};
+use crate::geometry::{Pose, cast};
+use crate::learn::scatter;
+use crate::logs::{Logs, samples};
+use crate::simulator::Simulator;
+use crate::simulator::reference::Reference;
+use crate::simulator::reference::motion::{MotionReference, features};
+use crate::simulator::reference::sonar::{Change, STRENGTHS, SonarReference, fan_at};
+
+/// Pulls the weights of the motion's correction towards zero, in squared features.
+const RIDGE: f64 = 0.3;
+/// Fewer samples than this tell nothing.
+const FEWEST: usize = 100;
+
+/// The reference of a simulator whose networks are trained, from its training logs.
+pub fn learn(simulator: &Simulator, logs: &Logs) -> Reference {
+    Reference { motion: motion(simulator, logs), sonar: sonar(simulator, logs) }
+}
+
+fn motion(simulator: &Simulator, logs: &Logs) -> Option<MotionReference> {
+    let networks = simulator.motion_networks()?;
+    let steps = samples::motion(logs);
+    if steps.len() < FEWEST {
+        return None;
+    }
+    let rows: Vec<Vec<f64>> = steps.iter().map(|s| features(&s.speeds)).collect();
+    let width = rows[0].len();
+    let mut normal = DMatrix::from_diagonal_element(width, width, RIDGE);
+    for row in &rows {
+        for a in 0..width {
+            for b in 0..width {
+                normal[(a, b)] += row[a] * row[b];
+            }
+        }
+    }
+    let normal = normal.cholesky()?;
+    let residuals: Vec<[f64; 3]> = steps
+        .iter()
+        .map(|s| {
+            let m = networks.step(s.speeds.map(|v| v as f32));
+            let predicted = [m.forward_cm, m.lateral_cm, m.turn_rad].map(f64::from);
+            [s.forward_cm - predicted[0], s.lateral_cm - predicted[1], s.turn_rad - predicted[2]]
+        })
+        .collect();
+    let mut reference = MotionReference { weights: [const { Vec::new() }; 3], scatter: [0.0; 3] };
+    for c in 0..3 {
+        let mut pull = DVector::zeros(width);
+        for (row, r) in rows.iter().zip(&residuals) {
+            row.iter().enumerate().for_each(|(i, f)| pull[i] += f * r[c]);
+        }
+        reference.weights[c] = normal.solve(&pull).iter().copied().collect();
+        let left: f64 =
+            steps.iter().zip(&residuals).map(|(s, r)| r[c] - reference.correction(&s.speeds)[c]).map(|r| r * r).sum();
+        reference.scatter[c] = (left / (steps.len() - width).max(1) as f64).sqrt();
+    }
+    Some(reference)
+}
+
+/// Bounds of the sonar's numbers: strengths, bias, scatter, three chances, and the width of the beam.
+const SONAR_BOUNDS: [Bounds; STRENGTHS + 10] = {
+    let mut bounds = [Bounds { low: -60.0, high: 60.0 }; STRENGTHS + 10];
+    bounds[STRENGTHS] = Bounds { low: -20.0, high: 20.0 };
+    bounds[STRENGTHS + 1] = Bounds { low: -0.3, high: 0.3 };
+    bounds[STRENGTHS + 2] = Bounds { low: -10.0, high: 10.0 };
+    bounds[STRENGTHS + 3] = Bounds { low: -1.5, high: 3.0 };
+    bounds[STRENGTHS + 4] = Bounds { low: -1.0, high: 1.5 };
+    bounds[STRENGTHS + 5] = Bounds { low: -1.0, high: 1.5 };
+    bounds[STRENGTHS + 6] = Bounds { low: 0.0, high: 0.3 };
+    bounds[STRENGTHS + 7] = Bounds { low: 0.0, high: 0.3 };
+    bounds[STRENGTHS + 8] = Bounds { low: 0.0, high: 0.3 };
+    bounds[STRENGTHS + 9] = Bounds { low: 0.2, high: 2.5 };
+    bounds
+};
+/// Where the search begins: a beam that sees what is near and faces it.
+const SONAR_START: [f64; STRENGTHS + 10] = [
+    3.0, -2.0, 0.0, -1.0, 0.0, 0.0, 0.0, 0.0, -1.0, -1.0, // strengths
+    0.0, 0.0, 0.0, // bias
+    0.5, 0.1, 0.1, // scatter
+    0.01, 0.01, 0.01, // constant, short, lost
+    1.0,  // width
+];
+const SONAR_ROUNDS: usize = 40;
+const SONAR_ENOUGH: f64 = 0.5;
+
+fn sonar(simulator: &Simulator, logs: &Logs) -> Option<SonarReference> {
+    let sides = logs.scene.sides();
+    let mount = &logs.robot.ultrasonic;
+    let mut seen: Vec<(Pose, Option<f64>)> = Vec::new();
+    let (mut echoes, mut distances) = (Vec::new(), Vec::new());
+    for row in logs.runs.iter().flat_map(|run| &run.rows) {
+        let Some(pose) = row.pose else { continue };
+        let sensor = mount.pose_on(&pose);
+        seen.push((sensor, row.echo_cm));
+        if let (Some(echo), Some(hit)) = (row.echo_cm, cast(&sides, sensor.position_cm, sensor.direction())) {
+            echoes.push(echo as f32);
+            distances.push(hit.distance_cm as f32);
+        }
+    }
+    if echoes.len() < FEWEST {
+        return None;
+    }
+    let constant = simulator.constant_reading.or_else(|| scatter::constant_reading(&echoes, &distances));
+    let value_cm = constant.map_or(mount.min_cm, |c| f64::from(c.value_cm));
+    let range_cm = [mount.min_cm, mount.max_cm];
+    let terms = |at: &[f64]| {
+        let reference = sonar_from(at, value_cm, range_cm);
+        let term = |(sensor, echo): &(Pose, Option<f64>)| {
+            let fan = fan_at(&sides, sensor, reference.fan_width);
+            reference.log_likelihood(&fan, &Change::NONE, *echo, None)[0]
+        };
+        seen.par_iter().map(term).collect()
+    };
+    let best = climb(&SONAR_BOUNDS, &SONAR_START, SONAR_ROUNDS, SONAR_ENOUGH, terms);
+    Some(sonar_from(&best.at, value_cm, range_cm))
+}
+
+fn sonar_from(at: &[f64], value_cm: f64, range_cm: [f64; 2]) -> SonarReference {
+    let rest = &at[STRENGTHS..];
+    SonarReference {
+        strength: std::array::from_fn(|i| at[i]),
+        bias: [rest[0], rest[1], rest[2]],
+        log_scatter: [rest[3], rest[4], rest[5]],
+        constant: [rest[6], value_cm],
+        short: rest[7],
+        lost: rest[8],
+        fan_width: rest[9],
+        range_cm,
+    }
+}

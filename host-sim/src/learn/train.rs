@@ -1,0 +1,217 @@
+//! From a folder of logs to a simulator: which networks the logs support, their training, and their scatter.
+
+use mindgap_core::network::{Activation, Network};
+
+use super::dataset::{Dataset, Datasets};
+use super::fast::{self, Loss};
+use super::genome::Shape;
+use super::paper;
+use super::reference;
+use super::scatter;
+use crate::logs::Logs;
+use crate::problem::{Problem, Result};
+use crate::simulator::scatter::{ConstantReading, motion_context};
+use crate::simulator::{Learned, Missing, Origin, SCHEMA, Simulator};
+
+/// Hidden neurons of the five networks (paper, Table I).
+pub const TABLE_ONE: Shapes = Shapes {
+    turn: Shape::halves(4),
+    forward: Shape::halves(20),
+    lateral: Shape::halves(20),
+    echo_probability: Shape::halves(10),
+    echo_value: Shape::halves(40),
+};
+
+/// How many networks there are.
+const NETWORKS: usize = 5;
+/// Every so many runs one is kept from training, for the scatter of the residuals.
+const HELD_OUT: usize = 5;
+/// Fewer samples than this train nothing.
+const FEWEST_SAMPLES: usize = 30;
+
+/// Hidden layers of the five networks.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Shapes {
+    /// Of the turn.
+    pub turn: Shape,
+    /// Of the way forward.
+    pub forward: Shape,
+    /// Of the way to the left.
+    pub lateral: Shape,
+    /// Of the chance of an echo.
+    pub echo_probability: Shape,
+    /// Of its value.
+    pub echo_value: Shape,
+}
+
+/// How networks are trained.
+#[derive(Clone, Copy, Debug)]
+pub enum Trainer {
+    /// The paper's genetic algorithm on all weights.
+    Paper(paper::Options),
+    /// Least squares, with a search for the exponents alone.
+    Fast,
+}
+
+/// One of the five networks, as progress is told of it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Progress {
+    /// The network.
+    pub network: &'static str,
+    /// Generations so far, for the paper's trainer.
+    pub generation: usize,
+}
+
+/// Trains the networks that `logs` support, one after the other.
+///
+/// # Errors
+/// When the logs support none; the reasons are named.
+pub fn train(logs: &Logs, trainer: &Trainer, seed: u64, watch: impl Fn(Progress)) -> Result<Simulator> {
+    let data = Datasets::from_logs(logs);
+    let mut school = School { trainer, seed, runs: logs.runs.len(), watch, missing: Vec::new() };
+    let motion = Scattering { context: motion_context, moves: true };
+    // D and α are the sonar's context themselves.
+    let sonar = Scattering { context: |inputs: &[f32; 2]| *inputs, moves: false };
+    let value = Kind { activation: Activation::Linear, loss: Loss::Squares };
+    let probability = Kind { activation: Activation::Ramp, loss: Loss::Logistic };
+    let reading = Kind { activation: Activation::Linear, loss: Loss::Mixture };
+    let turn = school.learn("turn", &data.turn, TABLE_ONE.turn, value, motion);
+    let forward = school.learn("forward", &data.forward, TABLE_ONE.forward, value, motion);
+    let lateral = school.learn("lateral", &data.lateral, TABLE_ONE.lateral, value, motion);
+    let echo_probability =
+        school.learn("echo_probability", &data.echo_probability, TABLE_ONE.echo_probability, probability, sonar);
+    let mut echo_value = school.learn("echo_value", &data.echo_value, TABLE_ONE.echo_value, reading, sonar);
+    let constant_reading = echo_value.as_mut().and_then(|value| split_constant_reading(value, &data.echo_value));
+    if school.missing.len() == NETWORKS {
+        let reasons: Vec<String> = school.missing.iter().map(|m| format!("{}: {}", m.network, m.reason)).collect();
+        return Err(Problem::new(format!("no network can be trained on these logs ({})", reasons.join("; "))));
+    }
+    let commands = logs.runs.iter().flat_map(|run| run.rows.iter().flat_map(|row| row.command()));
+    let (low, high) = commands.fold((0.0, 0.0), |(l, h): (f64, f64), c| (l.min(c), h.max(c)));
+    let mut simulator = Simulator {
+        schema: SCHEMA,
+        origin: Origin {
+            version: env!("CARGO_PKG_VERSION").into(),
+            trainer: trainer.name().into(),
+            seed,
+            runs: logs.runs.len(),
+        },
+        robot: logs.robot,
+        commands: [low as f32, high as f32],
+        turn,
+        forward,
+        lateral,
+        echo_probability,
+        echo_value,
+        constant_reading,
+        reference: None,
+        missing: school.missing,
+    };
+    simulator.reference = Some(reference::learn(&simulator, logs));
+    Ok(simulator)
+}
+
+/// Whether a run is kept from training, so that residuals on it are honest; none is when there are too few.
+pub fn is_held_out(run: usize, runs: usize) -> bool {
+    runs >= HELD_OUT && run % HELD_OUT == HELD_OUT - 1
+}
+
+impl Trainer {
+    /// As the command line calls it.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Trainer::Paper(_) => "paper",
+            Trainer::Fast => "fast",
+        }
+    }
+}
+
+/// What all networks of a simulator have in common while they are trained.
+struct School<'a, W> {
+    trainer: &'a Trainer,
+    seed: u64,
+    runs: usize,
+    watch: W,
+    missing: Vec<Missing>,
+}
+
+/// What a network predicts.
+#[derive(Clone, Copy)]
+struct Kind {
+    activation: Activation,
+    /// How the fast trainer counts its errors; the paper's squares them all.
+    loss: Loss,
+}
+
+impl<W: Fn(Progress)> School<'_, W> {
+    fn learn<const N: usize>(
+        &mut self,
+        network: &'static str,
+        data: &Dataset<N>,
+        shape: Shape,
+        kind: Kind,
+        Scattering { context, moves }: Scattering<N>,
+    ) -> Option<Learned<N>> {
+        let fitted = data.of_runs(|run| !is_held_out(run, self.runs));
+        if let Some(reason) = unsupported(&fitted) {
+            self.missing.push(Missing { network: network.into(), reason });
+            return None;
+        }
+        let held_out = data.of_runs(|run| is_held_out(run, self.runs));
+        let judged = if held_out.is_empty() { &fitted } else { &held_out };
+        let watch = |generation| (self.watch)(Progress { network, generation });
+        watch(0);
+        let network = match self.trainer {
+            Trainer::Paper(options) => {
+                let watch = |generation, _| watch(generation);
+                paper::train(&fitted, shape, kind.activation, options, self.seed, watch).network
+            }
+            Trainer::Fast => fast::train(&fitted, judged, shape, kind.activation, kind.loss, self.seed).network,
+        };
+        let contexts: Vec<[f32; 2]> = judged.inputs.iter().map(context).collect();
+        let residuals = residuals(&network, judged);
+        let mut spread = scatter::spread(&contexts, &residuals);
+        if moves {
+            spread.own_share = scatter::own_share(&spread, &contexts, &residuals, &judged.runs);
+        }
+        Some(Learned { network, spread })
+    }
+}
+
+/// What the scatter about a network depends on.
+#[derive(Clone, Copy)]
+struct Scattering<const N: usize> {
+    /// The two context variables.
+    context: fn(&[f32; N]) -> [f32; 2],
+    /// Whether the network predicts a difference of tracked poses.
+    moves: bool,
+}
+
+/// Why a data set trains nothing, if so.
+fn unsupported<const N: usize>(data: &Dataset<N>) -> Option<String> {
+    if data.len() < FEWEST_SAMPLES {
+        return Some(format!("the logs hold {} samples for it, fewer than {FEWEST_SAMPLES}", data.len()));
+    }
+    let flat = |range: &std::ops::RangeInclusive<f32>| range.start() >= range.end();
+    if data.ranges().iter().any(flat) {
+        return Some("one of its inputs is the same in all samples (such as all commands equal)".into());
+    }
+    let targets = data.target_range();
+    flat(&targets).then(|| format!("what it should predict is {} in every sample", targets.start()))
+}
+
+/// Takes a constant wrong reading out of the spread of the readings, which then is that of the others.
+fn split_constant_reading(value: &mut Learned<2>, data: &Dataset<2>) -> Option<ConstantReading> {
+    let predicted: Vec<f32> = data.inputs.iter().map(|x| value.network.evaluate(*x)).collect();
+    let constant = scatter::constant_reading(&data.targets, &predicted)?;
+    let right = |i: &usize| !scatter::is_constant(&constant, data.targets[*i], predicted[*i]);
+    let others: Vec<usize> = (0..data.len()).filter(right).collect();
+    let contexts: Vec<[f32; 2]> = others.iter().map(|i| data.inputs[*i]).collect();
+    let residuals: Vec<f32> = others.iter().map(|i| data.targets[*i] - predicted[*i]).collect();
+    value.spread = scatter::spread(&contexts, &residuals);
+    Some(constant)
+}
+
+fn residuals<const N: usize>(network: &Network<f32, N>, data: &Dataset<N>) -> Vec<f32> {
+    data.inputs.iter().zip(&data.targets).map(|(x, target)| target - network.evaluate(*x)).collect()
+}

@@ -1,0 +1,21 @@
+//! Pictures for people: the figures of the paper, drawn from plain data.
+//!
+//! A module a figure; each returns a [`Figure`], which is written as SVG and as the PNG of that very SVG. Nothing here
+//! knows how its data were made. The same data give the same bytes.
+
+pub mod expected_against_predicted;
+pub mod figure;
+pub mod paths;
+pub mod sonar_surfaces;
+
+mod chart;
+mod glyph;
+mod legend;
+mod projection;
+mod style;
+mod trend;
+
+pub use expected_against_predicted::expected_against_predicted;
+pub use figure::Figure;
+pub use paths::paths;
+pub use sonar_surfaces::sonar_surfaces;

@@ -1,0 +1,109 @@
+//! Probabilities: how often an event came true, bin by bin of its predicted probability.
+
+use glam::DVec2;
+use plotters::style::text_anchor::{HPos, VPos};
+
+use super::{heading, lines};
+use crate::report::chart::{Axis, chart, no_data};
+use crate::report::figure::{Canvas, Drawn};
+use crate::report::glyph::{Place, dot, solid_line};
+use crate::report::style::{BLUE, GREY, line, px, text};
+use crate::report::trend::Trend;
+
+const BINS: usize = 10;
+/// Room under probability 0 for the counts.
+const FLOOR: f64 = -0.14;
+const CEILING: f64 = 1.04;
+const COUNT_PX: f64 = 8.5;
+const INTERVAL_PX: f64 = 1.0;
+const DOT_PX: f64 = 3.0;
+/// Quantile of the normal distribution for a 95 % interval.
+const Z95: f64 = 1.96;
+
+/// The samples whose predicted probability lies in one tenth.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Bin {
+    samples: usize,
+    events: usize,
+    predicted_sum: f64,
+}
+
+/// Draws bins and, over the single samples, their trend; its R² is that of yes-or-no outcomes, which stays low even
+/// for the true probabilities.
+pub fn draw(cell: &Canvas, title: &str, events: &[(f64, bool)]) -> Drawn {
+    let sound: Vec<(f64, bool)> = events.iter().copied().filter(|(p, _)| (0.0..=1.0).contains(p)).collect();
+    let points: Vec<DVec2> = sound.iter().map(|(p, came)| DVec2::new(*p, f64::from(u8::from(*came)))).collect();
+    let trend = Trend::of(&points);
+    let mut counts = format!("n = {}", sound.len());
+    if sound.len() < events.len() {
+        counts += &format!(", {} not in 0..1", events.len() - sound.len());
+    }
+    let body = heading(cell, title, trend, counts)?;
+    let mut y = Axis::new("observed share", 0.0..1.0, 5);
+    y.range = FLOOR..CEILING;
+    let chart = chart(&body, &Axis::new("predicted probability", 0.0..1.0, 5), &y)?;
+    if sound.is_empty() {
+        return no_data(&chart.canvas);
+    }
+    lines(&chart, 0.0, 1.0, trend)?;
+    for (place, bin) in bins(&sound).iter().enumerate().filter(|(_, bin)| bin.samples > 0) {
+        let x = bin.predicted_sum / bin.samples as f64;
+        let (low, high) = bin.interval();
+        solid_line(&chart.canvas, &[chart.place(x, low), chart.place(x, high)], line(BLUE, INTERVAL_PX))?;
+        dot(&chart.canvas, chart.place(x, bin.share()), DOT_PX, BLUE)?;
+        let below = chart.place((place as f64 + 0.5) / BINS as f64, FLOOR / 2.0);
+        chart.canvas.draw_text(&bin.samples.to_string(), &text(COUNT_PX, GREY, HPos::Center, VPos::Center), below)?;
+    }
+    Ok(())
+}
+
+/// A bin's mark for the legend.
+pub fn mark(canvas: &Canvas, at: Place) -> Drawn {
+    solid_line(canvas, &[(at.0, at.1 - px(8.0)), (at.0, at.1 + px(8.0))], line(BLUE, INTERVAL_PX))?;
+    dot(canvas, at, DOT_PX, BLUE)
+}
+
+fn bins(events: &[(f64, bool)]) -> [Bin; BINS] {
+    let mut bins = [Bin::default(); BINS];
+    for (predicted, came) in events {
+        let bin = &mut bins[((predicted * BINS as f64) as usize).min(BINS - 1)];
+        bin.samples += 1;
+        bin.events += usize::from(*came);
+        bin.predicted_sum += predicted;
+    }
+    bins
+}
+
+impl Bin {
+    fn share(&self) -> f64 {
+        self.events as f64 / self.samples as f64
+    }
+
+    /// Wilson's 95 % interval for the share.
+    fn interval(&self) -> (f64, f64) {
+        let (n, share, z2) = (self.samples as f64, self.share(), Z95 * Z95);
+        let middle = (share + z2 / (2.0 * n)) / (1.0 + z2 / n);
+        let half = Z95 / (1.0 + z2 / n) * (share * (1.0 - share) / n + z2 / (4.0 * n * n)).sqrt();
+        (middle - half, middle + half)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_sample_falls_into_its_tenth() {
+        let bins = bins(&[(0.0, false), (0.05, true), (0.1, false), (0.999, true), (1.0, true)]);
+        let counts = bins.map(|b| (b.samples, b.events));
+        assert_eq!((counts[0], counts[1], counts[9]), ((2, 1), (1, 0), (2, 2)));
+        assert_eq!(counts.iter().map(|c| c.0).sum::<usize>(), 5);
+    }
+
+    #[test]
+    fn the_interval_is_wilsons() {
+        // R: prop.test(8, 10, correct = FALSE) gives 0.4901625, 0.9433178.
+        let (low, high) = Bin { samples: 10, events: 8, predicted_sum: 8.0 }.interval();
+        assert!((low - 0.49016).abs() < 1e-4 && (high - 0.94332).abs() < 1e-4, "{low} {high}");
+    }
+}

@@ -1,0 +1,82 @@
+//! A finished drawing, and how it becomes files.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use plotters::coord::Shift;
+use plotters::drawing::{DrawingArea, DrawingAreaErrorKind, IntoDrawingArea};
+use plotters::prelude::SVGBackend;
+use plotters::style::WHITE;
+use resvg::tiny_skia::{Pixmap, Transform};
+use resvg::usvg::fontdb::Database;
+use resvg::usvg::{Options, Tree};
+
+use super::style::UNIT;
+use crate::files;
+use crate::problem::Result;
+
+/// Pixels of the PNG per pixel of the SVG, so that it stays sharp in print and on dense screens.
+const PNG_SCALE: u32 = 2;
+
+/// Where figures draw: [`UNIT`] canvas units make one pixel of the SVG.
+pub(super) type Canvas<'a> = DrawingArea<SVGBackend<'a>, Shift>;
+
+/// What drawing returns. The canvas is a string in memory, so a failure is a defect: see [`Figure::draw`].
+pub(super) type Drawn<T = ()> = std::result::Result<T, DrawingAreaErrorKind<std::io::Error>>;
+
+/// A picture.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Figure {
+    svg: String,
+    width_px: u32,
+    height_px: u32,
+}
+
+impl Figure {
+    /// A white sheet of a size, drawn upon.
+    pub(super) fn draw(width_px: u32, height_px: u32, drawing: impl FnOnce(&Canvas) -> Drawn) -> Self {
+        let (width, height) = (width_px * UNIT, height_px * UNIT);
+        let mut inner = String::new();
+        let canvas = SVGBackend::with_string(&mut inner, (width, height)).into_drawing_area();
+        canvas
+            .fill(&WHITE)
+            .and_then(|()| drawing(&canvas))
+            .and_then(|()| canvas.present())
+            .expect("drawing into memory cannot fail");
+        drop(canvas);
+        let svg = format!(
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width_px}\" height=\"{height_px}\" \
+             viewBox=\"0 0 {width} {height}\">\n{inner}</svg>\n"
+        );
+        Figure { svg, width_px, height_px }
+    }
+
+    /// The picture as an SVG document. Its text asks for Noto Sans and does with any sans-serif.
+    pub fn svg(&self) -> &str {
+        &self.svg
+    }
+
+    /// The SVG as a PNG of twice its size, with the font that comes with the program.
+    pub fn png(&self) -> Vec<u8> {
+        let mut fonts = Database::new();
+        fonts.load_font_data(ttf_noto_sans::REGULAR.to_vec());
+        fonts.load_font_data(ttf_noto_sans::BOLD.to_vec());
+        let options = Options { fontdb: Arc::new(fonts), ..Options::default() };
+        let tree = Tree::from_str(&self.svg, &options).expect("the figure is well-formed SVG");
+        let mut pixels =
+            Pixmap::new(self.width_px * PNG_SCALE, self.height_px * PNG_SCALE).expect("a figure has a size");
+        let scale = PNG_SCALE as f32;
+        resvg::render(&tree, Transform::from_scale(scale, scale), &mut pixels.as_mut());
+        pixels.encode_png().expect("encoding into memory cannot fail")
+    }
+
+    /// Writes `name.svg` and `name.png` into a folder; each is whole or not there.
+    ///
+    /// # Errors
+    /// When the folder is missing or not writable.
+    pub fn write(&self, folder: &Path, name: &str) -> Result<()> {
+        let png = self.png();
+        files::write(&folder.join(format!("{name}.svg")), &self.svg)?;
+        files::write(&folder.join(format!("{name}.png")), png)
+    }
+}

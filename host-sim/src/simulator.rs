@@ -1,0 +1,166 @@
+//! The learned simulator: five networks, how reality scatters about them, and the robot that they stand for.
+
+mod batch;
+pub mod course;
+pub mod draws;
+pub mod motion;
+pub mod reference;
+pub mod rehearsal;
+pub mod room;
+pub mod scatter;
+
+use std::path::Path;
+
+use mindgap_core::network::Network;
+use serde::{Deserialize, Serialize};
+
+use crate::files;
+use crate::logs::Robot;
+use crate::problem::{Problem, Result};
+use motion::MotionNetworks;
+use reference::Reference;
+use scatter::{ConstantReading, Spread};
+
+/// The version of the simulator file that is written and read.
+pub const SCHEMA: u32 = 1;
+
+/// A simulator as `mindgap train` writes it, in JSON.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Simulator {
+    /// [`SCHEMA`].
+    pub schema: u32,
+    /// How it was made.
+    pub origin: Origin,
+    /// The robot whose logs it was learned from.
+    pub robot: Robot,
+    /// Least and largest motor command in those logs; networks say nothing of commands outside.
+    pub commands: [f32; 2],
+    /// Turn to the left in a step, degrees.
+    pub turn: Option<Learned<4>>,
+    /// Way forward in a step, cm.
+    pub forward: Option<Learned<4>>,
+    /// Way to the left in a step, cm.
+    pub lateral: Option<Learned<4>>,
+    /// Probability that the sensor produces a value.
+    pub echo_probability: Option<Learned<2>>,
+    /// The value it then produces, cm.
+    pub echo_value: Option<Learned<2>>,
+    /// A constant wrong reading that comes now and then, if there is one.
+    pub constant_reading: Option<ConstantReading>,
+    /// What the training logs say beyond the networks: the yardstick of the gap.
+    #[serde(default)]
+    pub reference: Option<Reference>,
+    /// The networks that the logs could not support.
+    pub missing: Vec<Missing>,
+}
+
+/// What scatters in a simulated run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Noise {
+    /// Everything that the simulator learned: echoes that fail, residuals, constant readings.
+    Learned,
+    /// Echoes that fail, as in the paper, and nothing else.
+    Paper,
+}
+
+/// Where a simulator comes from.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Origin {
+    /// Version of the program.
+    pub version: String,
+    /// Which trainer.
+    pub trainer: String,
+    /// Its seed.
+    pub seed: u64,
+    /// Runs that it was learned from.
+    pub runs: usize,
+}
+
+/// A network, and how what was logged scatters about it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Learned<const N: usize> {
+    /// The network.
+    pub network: Network<f32, N>,
+    /// Logged minus predicted, in logs that the network was not trained on.
+    pub spread: Spread,
+}
+
+/// A network that the logs could not support.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Missing {
+    /// Its name.
+    pub network: String,
+    /// Why not.
+    pub reason: String,
+}
+
+impl Simulator {
+    /// Reads a simulator file.
+    ///
+    /// # Errors
+    /// When the file is missing, is no simulator, is of another version, or holds a network that cannot be evaluated.
+    pub fn read(path: &Path) -> Result<Self> {
+        let text = files::read_text(path)?;
+        let version: SchemaOnly =
+            serde_json::from_str(&text).map_err(|e| broken(path, &e, "is no simulator file of mindgap"))?;
+        if version.schema != SCHEMA {
+            let what =
+                format!("is a simulator file of version {}; this program reads version {SCHEMA}", version.schema);
+            return Err(Problem::in_file(path, what));
+        }
+        let simulator: Self =
+            serde_json::from_str(&text).map_err(|e| broken(path, &e, "is a broken simulator file"))?;
+        simulator.check(path)?;
+        Ok(simulator)
+    }
+
+    /// Writes a simulator file.
+    ///
+    /// # Errors
+    /// When it cannot be written.
+    pub fn write(&self, path: &Path) -> Result<()> {
+        files::write_json(path, self)
+    }
+
+    /// A network that something needs.
+    ///
+    /// # Errors
+    /// Names the network and why it is missing.
+    pub fn need<'s, const N: usize>(&'s self, learned: &'s Option<Learned<N>>, name: &str) -> Result<&'s Learned<N>> {
+        learned.as_ref().ok_or_else(|| {
+            let reason = self.missing.iter().find(|m| m.network == name).map_or("it is not there", |m| &m.reason);
+            Problem::new(format!("the simulator has no {name} network: {reason}"))
+        })
+    }
+
+    /// The three motion networks, if all are there.
+    pub fn motion_networks(&self) -> Option<MotionNetworks<'_>> {
+        MotionNetworks::of(self).ok()
+    }
+
+    fn check(&self, path: &Path) -> Result<()> {
+        let motion = [("turn", &self.turn), ("forward", &self.forward), ("lateral", &self.lateral)];
+        let sonar = [("echo_probability", &self.echo_probability), ("echo_value", &self.echo_value)];
+        let motion = motion.map(|(name, l)| (name, l.as_ref().is_none_or(Learned::is_sound)));
+        let sonar = sonar.map(|(name, l)| (name, l.as_ref().is_none_or(Learned::is_sound)));
+        match motion.iter().chain(&sonar).find(|(_, sound)| !sound) {
+            Some((name, _)) => Err(Problem::in_file(path, format!("the {name} network holds numbers that cannot be"))),
+            None => Ok(()),
+        }
+    }
+}
+
+impl<const N: usize> Learned<N> {
+    fn is_sound(&self) -> bool {
+        self.network.check().is_ok() && self.spread.is_sound()
+    }
+}
+
+#[derive(Deserialize)]
+struct SchemaOnly {
+    schema: u32,
+}
+
+fn broken(path: &Path, e: &serde_json::Error, what: &str) -> Problem {
+    Problem::at_line(path, e.line() as u64, format!("{what}: {e}"))
+}

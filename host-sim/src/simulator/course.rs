@@ -1,0 +1,127 @@
+//! A simulator, a scene and a start, ready for runs of controllers.
+
+use glam::DVec2;
+use mindgap_core::controller::Controller;
+use pulp::Arch;
+
+use super::batch::Batch;
+use super::motion::{MotionNetworks, MotionTable};
+use super::room::Room;
+use super::scatter::{ConstantReading, Spread};
+use super::{Noise, Simulator};
+use crate::folded::Folded;
+use crate::geometry::Pose;
+use crate::logs::{Robot, Scene};
+use crate::problem::{Problem, Result};
+
+/// Where and how runs are simulated.
+pub struct Course<'s> {
+    pub(super) robot: Robot,
+    pub(super) start: Pose,
+    /// Unit vector along the sensor's axis on the robot.
+    pub(super) yaw_direction: [f32; 2],
+    pub(super) room: Room,
+    pub(super) motion: MotionNetworks<'s>,
+    pub(super) echo_probability: Folded<2>,
+    pub(super) echo_value: Folded<2>,
+    pub(super) echo_spread: &'s Spread,
+    pub(super) constant_reading: Option<ConstantReading>,
+    pub(super) noise: Noise,
+}
+
+/// One run to be simulated.
+#[derive(Clone, Copy)]
+pub struct Job<'c> {
+    /// The controller.
+    pub controller: &'c Controller,
+    /// Its motions on this course.
+    pub motions: &'c MotionTable,
+    /// Fixes every draw of the run.
+    pub seed: u64,
+}
+
+/// How a run ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ending {
+    /// The sixth tuple's test held.
+    Finished,
+    /// The step limit was reached.
+    TimedOut,
+    /// The body touched a wall or an obstacle.
+    Crashed,
+}
+
+/// What a run came to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Outcome {
+    /// How it ended.
+    pub ending: Ending,
+    /// Where it ended; after a crash, the place of the first touch.
+    pub end_cm: DVec2,
+    /// Steps that were taken.
+    pub steps: u16,
+}
+
+/// One moment of a run that is watched.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Moment {
+    /// The pose after the step.
+    pub pose: Pose,
+    /// The reading after it.
+    pub echo_cm: Option<f32>,
+    /// The tuple that is held from then on; six once finished.
+    pub tuple: usize,
+}
+
+impl<'s> Course<'s> {
+    /// A course for runs from `start`.
+    ///
+    /// # Errors
+    /// When the simulator lacks a network or the robot does not fit at the start.
+    pub fn new(simulator: &'s Simulator, scene: &Scene, start: Pose, noise: Noise) -> Result<Self> {
+        let robot = simulator.robot;
+        if !scene.has_room_for(start.position_cm, robot.body_radius_cm) {
+            return Err(Problem::new(format!(
+                "the start at ({}, {}) leaves no room for a robot of radius {} cm",
+                start.position_cm.x, start.position_cm.y, robot.body_radius_cm
+            )));
+        }
+        let echo_probability = simulator.need(&simulator.echo_probability, "echo_probability")?;
+        let echo_value = simulator.need(&simulator.echo_value, "echo_value")?;
+        let yaw_rad = robot.ultrasonic.yaw_deg.to_radians();
+        Ok(Course {
+            robot,
+            start,
+            yaw_direction: [libm::cos(yaw_rad) as f32, libm::sin(yaw_rad) as f32],
+            room: Room::new(scene),
+            motion: MotionNetworks::of(simulator)?,
+            echo_probability: Folded::new(&echo_probability.network),
+            echo_value: Folded::new(&echo_value.network),
+            echo_spread: &echo_value.spread,
+            constant_reading: simulator.constant_reading,
+            noise,
+        })
+    }
+
+    /// The motions of a controller on this course.
+    pub fn motions(&self, controller: &Controller) -> MotionTable {
+        self.motion.table(controller)
+    }
+
+    /// Simulates runs side by side; the outcomes are in the order of the jobs.
+    pub fn run(&self, jobs: &[Job]) -> Vec<Outcome> {
+        let mut outcomes = vec![None; jobs.len()];
+        let finish = |job: usize, outcome| outcomes[job] = Some(outcome);
+        Arch::new().dispatch(Batch { course: self, jobs, watch: |_| {}, finish });
+        outcomes.into_iter().flatten().collect()
+    }
+
+    /// Simulates one run and keeps every moment of it.
+    pub fn trace(&self, job: Job) -> (Outcome, Vec<Moment>) {
+        let (mut moments, mut outcome) = (Vec::new(), None);
+        let watch = |moment| moments.push(moment);
+        let finish = |_, ended| outcome = Some(ended);
+        Arch::new().dispatch(Batch { course: self, jobs: &[job], watch, finish });
+        (outcome.expect("every run ends"), moments)
+    }
+}

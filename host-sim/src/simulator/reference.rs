@@ -1,0 +1,21 @@
+//! What a simulator's training logs were like: the yardstick of the gap.
+//!
+//! Networks trained on (D, α) and commands leave a misfit behind where nothing is wrong. The reference is what the
+//! same logs say beyond the networks, with the scatter that then remains: only what exceeds it is a gap.
+
+pub mod motion;
+pub mod sonar;
+
+use serde::{Deserialize, Serialize};
+
+pub use motion::MotionReference;
+pub use sonar::SonarReference;
+
+/// What is normal, as far as the training logs show it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Reference {
+    /// Of the motion, if the logs had poses.
+    pub motion: Option<MotionReference>,
+    /// Of the sonar, if the logs had echoes.
+    pub sonar: Option<SonarReference>,
+}

@@ -1,0 +1,206 @@
+//! The sensor as its logs show it: a fan of rays, of which the first that comes back gives the reading.
+//!
+//! The networks know the axis alone (D, α). A real beam is wide: beside an edge it reads the nearer thing, and at an
+//! oblique wall the part that faces it. Each ray of the fan comes back with a chance that depends on its own distance
+//! and incidence and on how far it is off the axis.
+
+use serde::{Deserialize, Serialize};
+
+use crate::geometry::{Pose, Wall, cast, direction};
+
+/// Offsets of the rays from the axis, degrees.
+pub const FAN_DEG: [f64; 9] = [-20.0, -15.0, -10.0, -5.0, 0.0, 5.0, 10.0, 15.0, 20.0];
+/// How many numbers describe a ray's strength.
+pub const STRENGTHS: usize = 10;
+/// Beyond this nothing changes any more, cm.
+const FAR_CM: f64 = 300.0;
+/// The chance of a reading from nowhere: no model is certain.
+const STRAY: f64 = 0.003;
+/// A constant reading scatters by about this, cm.
+const CONSTANT_SCATTER_CM: f64 = 0.8;
+
+/// What is normal for the sensor.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SonarReference {
+    /// Weights of [`ray_features`]: the log-odds that a ray comes back.
+    pub strength: [f64; STRENGTHS],
+    /// Reading minus distance: a constant, a share of the distance, and per 45 degrees of incidence; cm.
+    pub bias: [f64; 3],
+    /// Logarithm of the scatter in cm: a constant, per metre, per 45 degrees.
+    pub log_scatter: [f64; 3],
+    /// Chance of the constant reading, and its value in cm.
+    pub constant: [f64; 2],
+    /// Chance of a random short reading.
+    pub short: f64,
+    /// Chance that a value is lost whatever came back.
+    pub lost: f64,
+    /// The beam against [`FAN_DEG`].
+    pub fan_width: f64,
+    /// What the sensor can report, cm.
+    pub range_cm: [f64; 2],
+}
+
+/// What one ray meets.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ray {
+    /// Distance, cm; infinite where there is nothing.
+    pub distance_cm: f64,
+    /// Incidence angle, degrees, 0..=90.
+    pub alpha_deg: f64,
+}
+
+/// A fan's rays, in the order of [`FAN_DEG`].
+pub type Fan = [Ray; FAN_DEG.len()];
+
+/// What a sensor at `sensor` sees whose beam is `width` times as wide as [`FAN_DEG`].
+pub fn fan_at(sides: &[Wall], sensor: &Pose, width: f64) -> Fan {
+    FAN_DEG.map(|offset| {
+        let way = direction(sensor.heading_rad + (offset * width).to_radians());
+        cast(sides, sensor.position_cm, way).map_or(Ray { distance_cm: f64::INFINITY, alpha_deg: 90.0 }, |hit| Ray {
+            distance_cm: hit.distance_cm,
+            alpha_deg: hit.incidence_rad.abs().to_degrees(),
+        })
+    })
+}
+
+/// How a sensor differs from the reference; [`Change::NONE`] changes nothing.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Change {
+    /// Taken off every ray's log-odds.
+    pub damping: f64,
+    /// The same per metre of distance.
+    pub damping_per_m: f64,
+    /// The same per 45 degrees of incidence.
+    pub damping_per_incidence: f64,
+    /// Readings are multiplied by this,
+    pub gain: f64,
+    /// and this is added, cm.
+    pub offset_cm: f64,
+    /// Further scatter of readings, cm.
+    pub scatter_cm: f64,
+    /// Chance that an echo is lost.
+    pub lost: f64,
+    /// Chance of a constant reading in place of an echo,
+    pub ghost_for_echo: f64,
+    /// in place of none,
+    pub ghost_for_none: f64,
+    /// and its value, cm.
+    pub ghost_cm: f64,
+    /// Chance of a random short reading.
+    pub short: f64,
+    /// Chance of a random reading from beyond what the axis meets.
+    pub long: f64,
+    /// Chance that the reading is the one before.
+    pub stale: f64,
+}
+
+impl Change {
+    /// The sensor as it was.
+    pub const NONE: Change = Change {
+        damping: 0.0,
+        damping_per_m: 0.0,
+        damping_per_incidence: 0.0,
+        gain: 1.0,
+        offset_cm: 0.0,
+        scatter_cm: 0.0,
+        lost: 0.0,
+        ghost_for_echo: 0.0,
+        ghost_for_none: 0.0,
+        ghost_cm: 20.0,
+        short: 0.0,
+        long: 0.0,
+        stale: 0.0,
+    };
+}
+
+impl SonarReference {
+    /// The log-likelihood of what was logged at a row, and the part of it that is about echo or none. `previous_cm` is
+    /// the reading of the row before.
+    pub fn log_likelihood(
+        &self,
+        fan: &Fan,
+        change: &Change,
+        echo_cm: Option<f64>,
+        previous_cm: Option<f64>,
+    ) -> [f64; 2] {
+        let [any, density] = self.first_echo(fan, change, echo_cm);
+        let echo = (any * (1.0 - change.lost) * (1.0 - self.lost)).clamp(STRAY, 1.0 - STRAY);
+        let kept = (1.0 - change.short) * (1.0 - self.short);
+        let ghost = 1.0 - echo * (1.0 - change.ghost_for_echo) - (1.0 - echo) * (1.0 - change.ghost_for_none);
+        let value = 1.0 - kept * (1.0 - echo) * (1.0 - change.ghost_for_none);
+        let value = value.clamp(STRAY, 1.0 - STRAY);
+        let Some(z) = echo_cm else {
+            let none = libm::log(1.0 - value);
+            return [none, none];
+        };
+        let [low, high] = self.range_cm;
+        // A random short reading lies anywhere before what the axis meets.
+        let reach = fan[FAN_DEG.len() / 2].distance_cm.clamp(low + 10.0, high);
+        let before = if z >= low && z <= reach { 1.0 / (reach - low) } else { 0.0 };
+        let true_echo = if any > 0.0 { echo * density / any } else { 0.0 };
+        let fresh = true_echo * (1.0 - change.ghost_for_echo) * (1.0 - self.constant[0])
+            + echo * (1.0 - change.ghost_for_echo) * self.constant[0] * near(z, self.constant[1]);
+        let mut reading = kept * (fresh + ghost * near(z, change.ghost_cm)) + (1.0 - kept) * before;
+        if change.long > 0.0 && z > reach {
+            reading += change.long * value * (1.0 / (high - reach).max(1.0) - reading / value);
+        } else {
+            reading *= 1.0 - change.long;
+        }
+        if let Some(previous_cm) = previous_cm {
+            reading = (1.0 - change.stale) * reading + change.stale * value * near(z, previous_cm);
+        }
+        let reading = (1.0 - STRAY) * reading + STRAY * value / (high - low);
+        [libm::log(reading.max(1e-9)), libm::log(value)]
+    }
+
+    /// The chance that any ray comes back, and the density of the reading and of that.
+    fn first_echo(&self, fan: &Fan, change: &Change, echo_cm: Option<f64>) -> [f64; 2] {
+        let mut order = [0, 1, 2, 3, 4, 5, 6, 7, 8];
+        order.sort_by(|a: &usize, b| fan[*a].distance_cm.total_cmp(&fan[*b].distance_cm));
+        let (mut none_yet, mut density) = (1.0, 0.0);
+        for i in order {
+            let ray = &fan[i];
+            if ray.distance_cm.is_infinite() {
+                break;
+            }
+            let (metres, incidence) = (ray.distance_cm.min(FAR_CM) / 100.0, ray.alpha_deg / 45.0);
+            let damping = change.damping + change.damping_per_m * metres + change.damping_per_incidence * incidence;
+            let strength: f64 = ray_features(ray, FAN_DEG[i]).iter().zip(&self.strength).map(|(f, w)| f * w).sum();
+            let back = logistic(strength - damping);
+            if let Some(z) = echo_cm {
+                let bias = self.bias[0] + self.bias[1] * ray.distance_cm + self.bias[2] * incidence;
+                let [low, high] = self.range_cm;
+                let middle = ((ray.distance_cm + bias) * change.gain + change.offset_cm).clamp(low, high);
+                let own =
+                    libm::exp(self.log_scatter[0] + self.log_scatter[1] * metres + self.log_scatter[2] * incidence);
+                let scatter = (own * own + change.scatter_cm * change.scatter_cm).sqrt();
+                density += none_yet * back * student(z - middle, scatter);
+            }
+            none_yet *= 1.0 - back;
+        }
+        [1.0 - none_yet, density]
+    }
+}
+
+/// What a ray's strength is made of.
+pub fn ray_features(ray: &Ray, offset_deg: f64) -> [f64; STRENGTHS] {
+    let x = ray.distance_cm.min(FAR_CM) / 100.0;
+    let a = ray.alpha_deg / 45.0;
+    let off = offset_deg / 15.0;
+    [1.0, x, x * x, a, a * a, a * a * a, a * x, a * a * x, off * off, off.abs()]
+}
+
+fn logistic(x: f64) -> f64 {
+    1.0 / (1.0 + libm::exp(-x))
+}
+
+/// Density of Student's law with five degrees of freedom.
+fn student(x: f64, scale: f64) -> f64 {
+    let t = x / scale;
+    let base = 1.0 + t * t / 5.0;
+    0.379_606_689_822_494_4 / (scale * base * base * base)
+}
+
+fn near(z_cm: f64, constant_cm: f64) -> f64 {
+    student(z_cm - constant_cm, CONSTANT_SCATTER_CM)
+}

@@ -1,0 +1,59 @@
+//! How reality scatters about a network: what the paper's simulators leave out beyond the firing of the sensor.
+
+use serde::{Deserialize, Serialize};
+
+/// Cells along each of the two context variables.
+pub const CELLS: usize = 4;
+/// Equally likely residuals that stand for a cell.
+pub const LEVELS: usize = 32;
+
+/// Residuals of a network by context: turning and driving command for motion, D and α for the sonar.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Spread {
+    /// Inner borders of the cells along the two context variables, ascending.
+    pub edges: [[f32; CELLS - 1]; 2],
+    /// [`LEVELS`] residuals a cell, ascending; cell (i, j) is entry i · [`CELLS`] + j.
+    pub residuals: Vec<Vec<f32>>,
+    /// For each cell, how much of a residual's size is the robot's own, 0 to 1; the rest is the tracker's, which a
+    /// simulated robot has none of.
+    pub own_share: Vec<f32>,
+}
+
+/// A wrong reading that the sensor produces now and then wherever it looks ("roughly 20cm", paper, section VIII).
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ConstantReading {
+    /// The reading, cm.
+    pub value_cm: f32,
+    /// The chance that a reading is this one.
+    pub probability: f32,
+}
+
+impl Spread {
+    /// One of the [`LEVELS`] equally likely residuals of a context.
+    pub fn residual(&self, context: [f32; 2], level: usize) -> f32 {
+        self.residuals[self.cell(context)][level]
+    }
+
+    /// The cell of a context.
+    pub fn cell(&self, context: [f32; 2]) -> usize {
+        let place = |i: usize| self.edges[i].iter().filter(|edge| context[i] >= **edge).count();
+        place(0) * CELLS + place(1)
+    }
+
+    /// Whether a file could have held this.
+    pub fn is_sound(&self) -> bool {
+        let finite = |values: &[f32]| values.iter().all(|v| v.is_finite());
+        self.edges.iter().all(|e| finite(e))
+            && self.own_share.len() == CELLS * CELLS
+            && self.own_share.iter().all(|share| (0.0..=1.0).contains(share))
+            && self.residuals.len() == CELLS * CELLS
+            && self.residuals.iter().all(|r| r.len() == LEVELS && finite(r))
+    }
+}
+
+/// The context of a motion network: how much the commands turn the robot, and how much they drive it on. Tyres slip
+/// more in a turn than on the straight.
+pub fn motion_context(speeds: &[f32; 4]) -> [f32; 2] {
+    let [left, right, ..] = *speeds;
+    [0.5 * (right - left).abs(), 0.5 * (right + left).abs()]
+}

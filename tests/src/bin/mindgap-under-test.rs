@@ -1,0 +1,7 @@
+//! The command `mindgap` for the tests of this package: cargo builds no binary of another one for them.
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    mindgap_host_sim::cli::run()
+}

@@ -1,0 +1,42 @@
+//! A small room and a simulator for it, quick to make.
+
+use std::sync::LazyLock;
+
+use crate::command::Workshop;
+
+/// A room with one obstacle, a target and two starts.
+pub const SCENE: &str = "\
+[arena]
+width_cm = 200
+height_cm = 150
+
+[[obstacle]]
+x_cm = 90
+y_cm = 70
+width_cm = 20
+height_cm = 20
+
+[target]
+x_cm = 160
+y_cm = 40
+
+[[start]]
+x_cm = 40
+y_cm = 40
+heading_deg = 0
+
+[[start]]
+x_cm = 100
+y_cm = 30
+heading_deg = 90
+";
+
+/// A folder with small logs in `logs` and a simulator that was trained on them in `sim.json`.
+pub fn trained() -> Workshop {
+    static TRAINED: LazyLock<Workshop> = LazyLock::new(|| {
+        let workshop = Workshop::with_logs();
+        workshop.done("train logs --out sim.json");
+        workshop
+    });
+    TRAINED.copy()
+}

@@ -1,0 +1,303 @@
+//! Bad input is refused by one line that names file and line, with exit code 1 and nothing left behind.
+
+use std::fs;
+
+use mindgap_tests::command::Workshop;
+use mindgap_tests::rooms::{SCENE, trained};
+
+/// Changes one file of small logs and expects that training on them is refused.
+fn refused_after(file: &str, change: impl FnOnce(String) -> String) -> String {
+    let workshop = Workshop::with_logs();
+    workshop.edit(&format!("logs/{file}"), change);
+    workshop.refused("train logs --out sim.json")
+}
+
+/// Changes the cells of row `line` (from 1, the header being 1) of a run's text.
+fn with_row(text: &str, line: usize, change: impl Fn(&mut Vec<String>)) -> String {
+    let mut lines: Vec<String> = text.lines().map(str::to_owned).collect();
+    let mut cells: Vec<String> = lines[line - 1].split(',').map(str::to_owned).collect();
+    change(&mut cells);
+    lines[line - 1] = cells.join(",");
+    lines.join("\n") + "\n"
+}
+
+/// Changes the cells of every row below the header.
+fn with_rows(text: &str, change: impl Fn(&mut Vec<String>)) -> String {
+    (2..=text.lines().count()).fold(text.to_owned(), |text, line| with_row(&text, line, &change))
+}
+
+fn begins(problem: &str, start: &str) {
+    assert!(problem.starts_with(start), "{problem}\nshould begin with\n{start}");
+}
+
+#[test]
+fn files_that_are_missing() {
+    let workshop = Workshop::new();
+    begins(&workshop.refused("train logs --out sim.json"), "logs/robot.toml: cannot be read: ");
+    begins(&workshop.refused("evaluate sim.json logs"), "sim.json: cannot be read: ");
+    begins(&workshop.refused("export c.toml --format nxc --out c.nxc"), "c.toml: cannot be read: ");
+    begins(&workshop.refused("record --out logs --scene room.toml"), "room.toml: cannot be read: ");
+    let workshop = trained();
+    begins(&workshop.refused("evolve sim.json --scene room.toml --out c.toml"), "room.toml: cannot be read: ");
+    for (file, problem) in [("scene.toml", "logs/scene.toml: cannot be read: "), ("robot.toml", "logs/robot.toml: ")] {
+        let workshop = Workshop::with_logs();
+        fs::remove_file(workshop.path().join("logs").join(file)).unwrap();
+        begins(&workshop.refused("train logs --out sim.json"), problem);
+    }
+}
+
+#[test]
+fn a_folder_without_runs() {
+    let workshop = Workshop::with_logs();
+    for run in 0..6 {
+        fs::remove_file(workshop.path().join(format!("logs/run-00{run}.csv"))).unwrap();
+    }
+    assert_eq!(workshop.refused("train logs --out sim.json"), "logs: has no run-*.csv");
+}
+
+#[test]
+fn a_wrong_column() {
+    let problem = refused_after("run-002.csv", |text| text.replacen("heading_deg", "heading", 1));
+    begins(&problem, "logs/run-002.csv:1: column heading_deg is missing");
+    let problem = refused_after("run-002.csv", |text| text.replacen("right", "left", 1));
+    begins(&problem, "logs/run-002.csv:1: column left stands twice");
+}
+
+#[test]
+fn numbers_that_are_none() {
+    for (cell, word) in [("NaN", "NaN"), ("inf", "inf"), ("1e300", "1e300"), ("ten", "\"ten\"")] {
+        for (column, name) in [(0, "t_ms"), (1, "left"), (3, "x_cm"), (6, "echo_cm")] {
+            let problem = refused_after("run-001.csv", |text| with_row(&text, 7, |cells| cells[column] = cell.into()));
+            begins(&problem, &format!("logs/run-001.csv:7: {name} = {word} is no number"));
+        }
+    }
+}
+
+#[test]
+fn numbers_that_cannot_be() {
+    let problem = refused_after("run-001.csv", |text| with_row(&text, 4, |cells| cells[2] = "101".into()));
+    assert_eq!(problem, "logs/run-001.csv:4: right = 101 lies outside -100..100");
+    let problem = refused_after("run-001.csv", |text| with_row(&text, 4, |cells| cells[6] = "-1".into()));
+    assert_eq!(problem, "logs/run-001.csv:4: echo_cm = -1 is below zero");
+    let problem = refused_after("run-001.csv", |text| with_row(&text, 4, |cells| cells[0] = "0".into()));
+    assert_eq!(problem, "logs/run-001.csv:4: t_ms = 0 does not come after the row before");
+    let problem = refused_after("run-001.csv", |text| with_row(&text, 4, |cells| cells[3].clear()));
+    begins(&problem, "logs/run-001.csv:4: x_cm, y_cm and heading_deg must be there together");
+}
+
+#[test]
+fn a_log_that_is_empty_or_too_short() {
+    begins(&refused_after("run-003.csv", |_| String::new()), "logs/run-003.csv:1: ");
+    let lines =
+        |text: String, count: usize| text.lines().take(count).map(|line| format!("{line}\n")).collect::<String>();
+    let problem = refused_after("run-003.csv", |text| lines(text, 1));
+    assert_eq!(problem, "logs/run-003.csv: has 0 row(s); a run needs at least two");
+    let problem = refused_after("run-003.csv", |text| lines(text, 2));
+    assert_eq!(problem, "logs/run-003.csv: has 1 row(s); a run needs at least two");
+}
+
+#[test]
+fn a_torn_last_line() {
+    let problem = refused_after("run-000.csv", |text| text[..text.trim_end().rfind(',').unwrap()].to_owned());
+    begins(&problem, "logs/run-000.csv:27: has 9 cells where the header has 10");
+}
+
+#[test]
+fn a_last_line_without_its_end_is_told_and_used() {
+    let workshop = Workshop::with_logs();
+    workshop.edit("logs/run-000.csv", |text| text.trim_end().to_owned());
+    let done = workshop.call("train logs --out sim.json");
+    assert_eq!(done.code, 0);
+    begins(&done.err, "mindgap: warning: logs/run-000.csv: the last line has no line end");
+}
+
+#[test]
+fn an_unknown_column_is_told_and_left_out() {
+    let workshop = Workshop::with_logs();
+    workshop.edit("logs/run-000.csv", |text| text.replacen("battery_mv", "mood", 1));
+    let done = workshop.call("train logs --out sim.json");
+    assert_eq!(done.code, 0);
+    assert_eq!(done.err, "mindgap: warning: logs/run-000.csv:1: column \"mood\" is not known and left out\n");
+}
+
+#[test]
+fn a_step_that_is_not_the_robots() {
+    let problem = refused_after("robot.toml", |text| text.replace("step_ms = 400", "step_ms = 200"));
+    begins(&problem, "logs: rows are ");
+    assert!(problem.ends_with("robot.toml has step_ms = 200"), "{problem}");
+}
+
+#[test]
+fn robots_and_scenes_that_cannot_be() {
+    begins(
+        &refused_after("robot.toml", |text| text.replace("track_cm = 11.5", "track_cm = -1")),
+        "logs/robot.toml: track_cm = -1",
+    );
+    begins(
+        &refused_after("robot.toml", |text| text.replace("track_cm = 11.5", "track_cm = nan")),
+        "logs/robot.toml: track_cm = NaN",
+    );
+    begins(&refused_after("robot.toml", |text| text.replace("track_cm = 11.5\n", "")), "logs/robot.toml");
+    begins(
+        &refused_after("scene.toml", |_| "[arena]\nwidth_cm = 0\nheight_cm = 5\n".into()),
+        "logs/scene.toml:1: the arena's width",
+    );
+    begins(&refused_after("scene.toml", |_| "[arena]\nwidth_cm = ten\n".into()), "logs/scene.toml:2: ");
+    begins(&refused_after("scene.toml", |_| "\n".into()), "logs/scene.toml: has no arena, obstacle or wall");
+}
+
+#[test]
+fn all_equal_commands_train_no_motion() {
+    let workshop = Workshop::with_logs();
+    for run in 0..6 {
+        let equal = |text: String| with_rows(&text, |cells| cells[1..3].fill("50".into()));
+        workshop.edit(&format!("logs/run-00{run}.csv"), equal);
+    }
+    let done = workshop.call("train logs --out sim.json");
+    assert_eq!(done.code, 0, "the two sonar networks are there: {}", done.err);
+    let told: Vec<&str> = done.err.lines().collect();
+    assert_eq!(told.len(), 3, "{told:?}");
+    for (line, network) in told.iter().zip(["turn", "forward", "lateral"]) {
+        begins(line, &format!("mindgap: warning: no {network} network: "));
+        assert!(line.contains("commands"), "{line}");
+    }
+    workshop.write("scene.toml", SCENE);
+    let problem = workshop.refused("evolve sim.json --scene scene.toml --out c.toml");
+    assert!(problem.contains("the simulator has no forward network"), "{problem}");
+}
+
+#[test]
+fn logs_without_an_echo_train_no_sonar() {
+    let workshop = Workshop::with_logs();
+    for run in 0..6 {
+        workshop.edit(&format!("logs/run-00{run}.csv"), |text| with_rows(&text, |cells| cells[6].clear()));
+    }
+    let done = workshop.call("train logs --out sim.json");
+    assert_eq!(done.code, 0, "the three motion networks are there: {}", done.err);
+    let told: Vec<&str> = done.err.lines().collect();
+    assert_eq!(told.len(), 2, "{told:?}");
+    begins(told[0], "mindgap: warning: no echo_probability network: ");
+    begins(told[1], "mindgap: warning: no echo_value network: ");
+    workshop.write("scene.toml", SCENE);
+    let problem = workshop.refused("evolve sim.json --scene scene.toml --out c.toml");
+    assert!(problem.contains("the simulator has no echo_probability network"), "{problem}");
+}
+
+#[test]
+fn logs_that_support_no_network() {
+    let workshop = Workshop::with_logs();
+    for run in 0..6 {
+        let lost = |text: String| with_rows(&text, |cells| cells[3..6].fill(String::new()));
+        workshop.edit(&format!("logs/run-00{run}.csv"), lost);
+    }
+    begins(&workshop.refused("train logs --out sim.json"), "no network can be trained on these logs (turn: ");
+}
+
+#[test]
+fn a_room_without_room() {
+    let workshop = trained();
+    let small = "[arena]\nwidth_cm = 15\nheight_cm = 15\n\n[target]\nx_cm = 8\ny_cm = 8\n\n[[start]]\nx_cm = 7\ny_cm = 7\nheading_deg = 0\n";
+    workshop.write("small.toml", small);
+    begins(&workshop.refused("record --out more --scene small.toml --runs 2"), "small.toml: ");
+    begins(
+        &workshop.refused("evolve sim.json --scene small.toml --out c.toml"),
+        "small.toml: start 1 leaves no room for a robot of radius 10 cm",
+    );
+}
+
+#[test]
+fn starts_and_targets_that_cannot_be() {
+    let workshop = trained();
+    workshop.write("c.toml", CONTROLLER);
+    let change = |from: &str, to: &str| {
+        assert!(SCENE.contains(from));
+        workshop.write("scene.toml", SCENE.replacen(from, to, 1));
+    };
+    let calls = [
+        "evolve sim.json --scene scene.toml --out d.toml",
+        "simulate sim.json c.toml --scene scene.toml --json r.json",
+    ];
+    for call in calls {
+        change("x_cm = 40\ny_cm = 40", "x_cm = 95\ny_cm = 75");
+        begins(&workshop.refused(call), "scene.toml:15: the start lies outside the arena or inside an obstacle");
+        change("x_cm = 160", "x_cm = 260");
+        begins(&workshop.refused(call), "scene.toml:11: the target lies outside the arena");
+        workshop.write("scene.toml", SCENE);
+        begins(
+            &workshop.refused(&format!("{call} --start 3")),
+            "scene.toml: has 2 [[start]] table(s); there is no start 3",
+        );
+        begins(
+            &workshop.refused(&format!("{call} --start 0")),
+            "scene.toml: has 2 [[start]] table(s); there is no start 0",
+        );
+    }
+    workshop.write(
+        "scene.toml",
+        "[arena]\nwidth_cm = 200\nheight_cm = 150\n\n[[start]]\nx_cm = 40\ny_cm = 40\nheading_deg = 0\n",
+    );
+    assert_eq!(workshop.refused(calls[0]), "scene.toml: has no [target]");
+}
+
+const CONTROLLER: &str = "\
+step_ms = 400
+max_steps = 10
+tuple = [
+  { left = 55, right = 48, when = \"larger\", threshold_cm = 42 },
+  { left = 55, right = 48, when = \"larger\", threshold_cm = 42 },
+  { left = 55, right = 48, when = \"larger\", threshold_cm = 42 },
+  { left = 55, right = 48, when = \"larger\", threshold_cm = 42 },
+  { left = 55, right = 48, when = \"larger\", threshold_cm = 42 },
+  { left = 55, right = 48, when = \"larger\", threshold_cm = 42 },
+]
+";
+
+#[test]
+fn controllers_that_cannot_be() {
+    let workshop = trained();
+    workshop.write("scene.toml", SCENE);
+    let calls = ["export c.toml --format nxc --out c.nxc", "simulate sim.json c.toml --scene scene.toml --json r.json"];
+    let line = "  { left = 55, right = 48, when = \"larger\", threshold_cm = 42 },\n";
+    for call in calls {
+        let refused = |controller: String| {
+            assert_ne!(controller, CONTROLLER);
+            workshop.write("c.toml", controller);
+            workshop.refused(call)
+        };
+        assert_eq!(refused(CONTROLLER.replacen(line, "", 1)), "c.toml: has 5 tuples; a controller has exactly 6");
+        assert_eq!(
+            refused(CONTROLLER.replacen(line, &line.repeat(2), 1)),
+            "c.toml: has 7 tuples; a controller has exactly 6"
+        );
+        assert_eq!(refused(CONTROLLER.replacen("55", "101", 1)), "c.toml:4: a speed lies outside -100..100");
+        assert_eq!(refused(CONTROLLER.replacen("42", "300", 1)), "c.toml:4: the threshold lies outside 0..255 cm");
+        begins(&refused(CONTROLLER.replacen("larger", "wider", 1)), "c.toml:4: ");
+        begins(&refused(CONTROLLER.replacen("55", "1e9", 1)), "c.toml:4: ");
+        begins(&refused(CONTROLLER.replacen("max_steps = 10", "max_steps = 0", 1)), "c.toml: max_steps");
+        begins(&refused("not a controller".into()), "c.toml:1: ");
+    }
+}
+
+#[test]
+fn simulators_that_cannot_be() {
+    let workshop = trained();
+    let refused = |change: &dyn Fn(String) -> String| {
+        let copy = workshop.copy();
+        copy.edit("sim.json", change);
+        copy.refused("evaluate sim.json logs --json figures.json")
+    };
+    begins(
+        &refused(&|text| text.replacen("\"schema\": 1", "\"schema\": 99", 1)),
+        "sim.json: is a simulator file of version 99",
+    );
+    begins(&refused(&|text| text[..text.len() / 2].to_owned()), "sim.json:");
+    begins(&refused(&|_| "[arena]\n".into()), "sim.json:1: is no simulator file of mindgap");
+}
+
+#[test]
+fn what_is_not_ours_is_left_alone() {
+    let workshop = Workshop::with_logs();
+    workshop.write("logs/diary.txt", "dear diary");
+    begins(&workshop.refused("record --out logs --runs 2"), "logs: holds \"diary.txt\"");
+    begins(&workshop.refused("train logs --out nowhere/sim.json"), "nowhere/sim.json: cannot be written");
+}

@@ -1,0 +1,298 @@
+//! The brick in software runs what the real compiler makes, and does what was seen in the real firmware.
+
+use mindgap_controller_export::brick::{
+    self, Drive, End, Fault, LoadError, Program, Report, Script, Setup, Sonar, What,
+};
+use mindgap_tests::nbc::{compile, compile_for};
+use proptest::prelude::*;
+use proptest::test_runner::TestRunner;
+
+fn run(source: &str, world: &mut Script) -> Report {
+    brick::run(&Program::load(&compile(source)).unwrap(), world, &Setup::default())
+}
+
+/// What a task with this body shows on the display.
+fn shown(body: &str) -> Vec<String> {
+    let report = run(&format!("task main() {{ {body} }}"), &mut Script::default());
+    assert_eq!(report.end, End::Finished);
+    texts(&report)
+}
+
+fn texts(report: &Report) -> Vec<String> {
+    let text = |what: &What| match what {
+        What::Text { text, .. } => Some(text.clone()),
+        _ => None,
+    };
+    report.events.iter().filter_map(|event| text(&event.what)).collect()
+}
+
+fn show(expressions: &[&str]) -> String {
+    expressions.iter().map(|e| format!("NumOut(0, LCD_LINE1, {e});")).collect()
+}
+
+#[test]
+fn integers_wrap_truncate_and_divide_by_zero() {
+    let variables = "long big = 46341; int most = 32767; long seven = 7; long minus = -7; long zero = 0; byte b = 44;
+        char c = 200; int i = 300; unsigned int u = 65535; long wide; most++; b = i; wide = u;";
+    let expressions = ["big * big", "most", "minus / 2", "minus % 4", "seven / zero", "seven % zero", "b", "c", "wide"];
+    let expected = ["-2147479015", "-32768", "-3", "-3", "0", "7", "44", "-56", "65535"];
+    assert_eq!(shown(&format!("{variables} {}", show(&expressions))), expected);
+}
+
+#[test]
+fn shifts_by_constants_round_toward_zero() {
+    assert_eq!(shown(&format!("long x = -300; {}", show(&["x >> 3", "x << 2"]))), ["-37", "-1200"]);
+}
+
+#[test]
+fn floats_print_two_decimals() {
+    let variables = "float x = 3.14159; float half = 0.5; long n;  n = x * 100;";
+    let expected = ["3.14", "0.5", "9", "314"];
+    assert_eq!(shown(&format!("{variables} {}", show(&["x", "half", "sqrt(81.0)", "n"]))), expected);
+}
+
+#[test]
+fn arrays_strings_and_structs() {
+    let source = r#"
+        struct Pair { int left; string name; };
+        int squares[];
+        string names[];
+        int Sum(int values[]) { int sum = 0; for (int i = 0; i < ArrayLen(values); i++) sum += values[i]; return sum; }
+        task main() {
+          ArrayInit(squares, 0, 10);
+          for (int i = 0; i < 10; i++) squares[i] = i * i;
+          NumOut(0, LCD_LINE1, Sum(squares));
+          int part[];
+          ArraySubset(part, squares, 2, 3);
+          NumOut(0, LCD_LINE1, Sum(part));
+          int all[];
+          ArrayBuild(all, part, 1, squares);
+          NumOut(0, LCD_LINE1, ArrayLen(all));
+          string whole = StrCat("one", "two");
+          string middle = SubStr(whole, 2, 3);
+          ArrayBuild(names, whole, middle);
+          TextOut(0, LCD_LINE1, names[1]);
+          Pair p, q;
+          p.left = -5; p.name = "pair";
+          q = p;
+          TextOut(0, LCD_LINE1, q.name);
+          NumOut(0, LCD_LINE1, q.left);
+          NumOut(0, LCD_LINE1, StrToNum("-17 cm"));
+          int sums[]; int more[] = {1, 2, 3};
+          asm { add sums, more, more }
+          NumOut(0, LCD_LINE1, sums[2]);
+          NumOut(0, LCD_LINE1, whole == "onetwo");
+          NumOut(0, LCD_LINE1, StrLen(FlattenVar(squares)));
+        }"#;
+    let report = run(source, &mut Script::default());
+    assert_eq!(report.end, End::Finished);
+    assert_eq!(texts(&report), ["285", "29", "14", "etw", "pair", "-5", "-17", "6", "1", "20"]);
+}
+
+#[test]
+fn tasks_take_turns_and_wait_for_a_mutex() {
+    let source = r#"
+        mutex lock;
+        int shared = 0;
+        task a() { for (int i = 0; i < 50; i++) { Acquire(lock); int s = shared; Wait(1); shared = s + 1; Release(lock); } }
+        task b() { for (int i = 0; i < 50; i++) { Acquire(lock); int s = shared; Wait(1); shared = s + 1; Release(lock); } }
+        task after() { NumOut(0, LCD_LINE1, shared); }
+        task main() { Precedes(a, b); }"#;
+    let report = run(
+        &source.replace(
+            "task main() { Precedes(a, b); }",
+            "task main() { StartTask(a); StartTask(b); Wait(500); NumOut(0, LCD_LINE1, shared); }",
+        ),
+        &mut Script::default(),
+    );
+    assert_eq!((report.end, texts(&report)), (End::Finished, vec!["100".to_owned()]));
+}
+
+#[test]
+fn motors_change_with_their_flags_and_keep_going_when_the_firmware_gives_up() {
+    let source = "task main() { OnFwd(OUT_B, 50); OnRev(OUT_C, 20); Off(OUT_B); Coast(OUT_C); OnFwd(OUT_A, -30);
+        int a[] = {1}; int i = 5; NumOut(0, LCD_LINE1, a[i]); }";
+    let report = run(source, &mut Script::default());
+    let drives: Vec<_> = report.events.iter().map(|event| event.what.clone()).collect();
+    let motor = |port, drive| What::Motor { port, drive };
+    assert_eq!(
+        drives,
+        [
+            motor(1, Drive::Power(50)),
+            motor(2, Drive::Power(-20)),
+            motor(1, Drive::Brake),
+            motor(2, Drive::Coast),
+            motor(0, Drive::Power(-30)),
+        ]
+    );
+    assert_eq!(report.end, End::Failed(Fault::Argument));
+    assert_eq!(report.motors, [Drive::Power(-30), Drive::Brake, Drive::Coast]);
+}
+
+#[test]
+fn the_dark_button_ends_any_program_and_lets_go_of_the_motors() {
+    let mut world = Script { exit_pressed_ms: Some(777), ..Script::default() };
+    let report = run("task main() { OnFwd(OUT_BC, 50); Wait(5000); }", &mut world);
+    assert_eq!((report.end, report.ended_ms, report.motors), (End::Aborted, 777, [Drive::Coast; 3]));
+}
+
+#[test]
+fn buttons_battery_tones_and_ticks() {
+    let source = "task main() { until (ButtonPressed(BTNCENTER, false)); NumOut(0, LCD_LINE1, CurrentTick() - FirstTick());
+        Wait(100); NumOut(0, LCD_LINE1, ButtonCount(BTNCENTER, true)); NumOut(0, LCD_LINE1, ButtonCount(BTNCENTER, true));
+        NumOut(0, LCD_LINE1, BatteryLevel()); PlayTone(440, 250); }";
+    let mut world = Script { center_pressed_ms: vec![(300, 350)], battery_mv: 7321, ..Script::default() };
+    let report = run(source, &mut world);
+    assert_eq!(texts(&report), ["300", "1", "0", "7321"]);
+    assert_eq!(report.events.last().unwrap().what, What::Tone { hz: 440, ms: 250 });
+}
+
+#[test]
+fn files_reserve_fill_up_and_are_cut_to_what_was_written() {
+    let source = r#"
+        task main() {
+          byte h; int n; unsigned int size = 10;
+          NumOut(0, LCD_LINE1, CreateFile("sixteen-letters-.csv", 10, h));
+          NumOut(0, LCD_LINE1, CreateFile("huge.csv", 200000, h));
+          NumOut(0, LCD_LINE1, CreateFile("LOG.csv", 10, h));
+          NumOut(0, LCD_LINE1, WriteLnString(h, "12345", n));
+          NumOut(0, LCD_LINE1, WriteLnString(h, "12345", n));
+          CloseFile(h);
+          NumOut(0, LCD_LINE1, CreateFile("log.CSV", 10, h));
+          NumOut(0, LCD_LINE1, OpenFileRead("log.csv", size, h));
+          NumOut(0, LCD_LINE1, size);
+          string line;
+          ReadLnString(h, line);
+          TextOut(0, LCD_LINE1, line);
+          CloseFile(h);
+          NumOut(0, LCD_LINE1, DeleteFile("none.csv"));
+          CreateFile("open.csv", 5000, h);
+          WriteLnString(h, "a", n);
+        }"#;
+    let report = run(source, &mut Script::default());
+    let [bad_name, no_space, full, exists, missing] =
+        [0x9200, 0x8200, 0x8400, 0x8F00, 0x8700].map(|e: u32| e.to_string());
+    let expected = [&*bad_name, &no_space, "0", "0", &full, &exists, "0", "10", "12345", &missing];
+    assert_eq!(texts(&report), expected);
+    let files: Vec<_> = report.files.into_iter().collect();
+    let content = |text: &str| text.as_bytes().to_vec();
+    assert_eq!(files, [("LOG.csv".into(), content("12345\r\n123")), ("open.csv".into(), content("a\r\n"))]);
+}
+
+/// The library's own call takes 30 ms and hides a dead sensor behind the last good value.
+#[test]
+fn the_library_call_for_the_sonar_behaves_as_seen_in_the_firmware() {
+    let source = "task main() { SetSensorLowspeed(IN_4); for (int i = 0; i < 5; i++) { long t = CurrentTick();
+        NumOut(0, LCD_LINE1, SensorUS(IN_4)); NumOut(0, LCD_LINE2, CurrentTick() - t); } }";
+    let sonar = [Sonar::Echo(77), Sonar::Echo(255), Sonar::Silent, Sonar::Hangs, Sonar::Silent];
+    let report = run(source, &mut Script::sonar(sonar));
+    let shown: Vec<i32> = texts(&report).iter().map(|text| text.parse().unwrap()).collect();
+    let readings: Vec<i32> = shown.iter().step_by(2).copied().collect();
+    assert_eq!(readings, [77, 255, 255, 255, 255]);
+    assert!((29..=33).contains(&shown[1]) && (29..=33).contains(&shown[3]), "{shown:?}");
+}
+
+/// nbc's code for old firmware runs the last wait a second time.
+#[test]
+fn the_compilers_defect_for_old_firmware_shows() {
+    let source = "task main() { SetSensorLowspeed(IN_4); NumOut(0, LCD_LINE1, SensorUS(IN_4)); Wait(1000);
+        long t = CurrentTick(); int r = SensorUS(IN_4); NumOut(0, LCD_LINE2, CurrentTick() - t); }";
+    let took_ms = |firmware| {
+        let program = Program::load(&compile_for(source, firmware)).unwrap();
+        let report = brick::run(&program, &mut Script::sonar([Sonar::Echo(9); 2]), &Setup::default());
+        texts(&report)[1].parse::<i32>().unwrap()
+    };
+    assert!((29..=33).contains(&took_ms("-v=128")), "{}", took_ms("-v=128"));
+    assert!((1020..=1050).contains(&took_ms("-v=105")), "{}", took_ms("-v=105"));
+}
+
+#[test]
+fn arrays_beyond_the_memory_end_the_program() {
+    let body = |count| {
+        format!(
+            "task main() {{ long a[]; ArrayInit(a, 7, {count}); int last = {count} - 1; NumOut(0, LCD_LINE1, a[last]); }}"
+        )
+    };
+    assert_eq!(texts(&run(&body(7000), &mut Script::default())), ["7"]);
+    assert_eq!(run(&body(8000), &mut Script::default()).end, End::Failed(Fault::Memory));
+}
+
+#[test]
+fn memory_is_packed_when_it_is_in_pieces() {
+    let source = "task main() { string a = \"\"; string b = \"\";
+        for (int i = 0; i < 400; i++) { a = StrCat(a, \"0123456789\"); b = StrCat(a, \"!\"); }
+        NumOut(0, LCD_LINE1, StrLen(b)); }";
+    assert_eq!(texts(&run(source, &mut Script::default())), ["4001"]);
+}
+
+#[test]
+fn a_program_that_never_ends_runs_out_of_time() {
+    let report = run("task main() { while (true) Wait(7); }", &mut Script::default());
+    assert_eq!((report.end, report.ended_ms), (End::OutOfTime, Setup::default().run_ms));
+    let busy = Setup { run_ms: 1000, ..Setup::default() };
+    let program = Program::load(&compile("task main() { int i; while (true) i++; }")).unwrap();
+    let report = brick::run(&program, &mut Script::default(), &busy);
+    assert_eq!((report.end, report.instructions), (End::OutOfTime, 100_000));
+}
+
+/// A program that uses most of what there is.
+fn a_program() -> Vec<u8> {
+    compile(
+        r#"
+        struct Pair { int left; string name; };
+        string names[];
+        sub Say(string text) { TextOut(0, LCD_LINE1, text); }
+        task other() { for (int i = 0; i < 3; i++) Wait(10); }
+        task main() {
+          StartTask(other);
+          SetSensorLowspeed(IN_4);
+          byte h; int n; Pair p; Pair many[]; int a[] = {1, 2, 3};
+          CreateFile("a.csv", 100, h);
+          for (int i = 0; i < 5; i++) {
+            a[i % 3] += SensorUS(IN_4);
+            p.name = StrCat(NumToStr(a[0]), "!");
+            string number = NumToStr(i);
+            ArrayBuild(names, p.name, number);
+            ArrayInit(many, p, i);
+            string name = names[0];
+            WriteLnString(h, name, n);
+            OnFwd(OUT_BC, a[1] / 3);
+            Say(FlattenVar(a));
+          }
+          Off(OUT_BC);
+        }"#,
+    )
+}
+
+#[test]
+fn a_whole_program_is_loaded_and_a_cut_one_is_not() {
+    let rxe = a_program();
+    assert!(Program::load(&rxe).is_ok());
+    for length in 0..rxe.len() {
+        let refused: Result<_, LoadError> = Program::load(&rxe[..length]);
+        assert!(refused.is_err(), "accepted {length} of {} bytes", rxe.len());
+    }
+}
+
+/// Whatever a broken file does, it does inside the machine.
+#[test]
+fn broken_files_neither_panic_nor_hang() {
+    let intact = a_program();
+    let setup = Setup { run_ms: 300, ..Setup::default() };
+    let sonar = prop_oneof![any::<u8>().prop_map(Sonar::Echo), Just(Sonar::Silent), Just(Sonar::Hangs)];
+    let changes = prop::collection::vec((0..intact.len(), any::<u8>()), 1..12);
+    let config = ProptestConfig { cases: 3000, failure_persistence: None, ..ProptestConfig::default() };
+    let outcome = TestRunner::new(config).run(&(changes, prop::collection::vec(sonar, 5)), |(changes, sonar)| {
+        let mut rxe = intact.clone();
+        for (at, value) in changes {
+            rxe[at] = value;
+        }
+        if let Ok(program) = Program::load(&rxe) {
+            let report = brick::run(&program, &mut Script::sonar(sonar), &setup);
+            prop_assert!(report.ended_ms <= setup.run_ms);
+            prop_assert!(report.instructions <= u64::from(setup.run_ms) * u64::from(setup.instructions_per_ms));
+        }
+        Ok(())
+    });
+    outcome.unwrap();
+}

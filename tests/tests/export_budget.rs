@@ -1,0 +1,97 @@
+//! Budgets against what the compiler makes, and what the programs then take.
+
+use mindgap_controller_export::brick::{self, Program, Report, Script, Setup, Sonar};
+use mindgap_controller_export::budget::Budget;
+use mindgap_controller_export::collect::{self, CollectOptions};
+use mindgap_controller_export::names::BrickName;
+use mindgap_controller_export::nxc::{self, NxcOptions};
+use mindgap_controller_export::wiring::Wiring;
+use mindgap_controller_export::{ExportError, Origin, rxe};
+use mindgap_core::controller::Controller;
+use mindgap_tests::controllers::at_its_limits;
+use mindgap_tests::nbc::compile;
+
+/// A budget may promise so much more than is taken.
+const SLACK: f64 = 1.25;
+/// The slowest brick.
+const INSTRUCTIONS_PER_MS: u32 = 80;
+
+fn nxc_options(log: bool, display: bool) -> NxcOptions {
+    let program = BrickName::program("run").unwrap();
+    let log = log.then(|| "exactly-fifteen.csv".parse().unwrap());
+    NxcOptions { program, wiring: Wiring::default(), log, display }
+}
+
+fn collect_options() -> CollectOptions {
+    let program = BrickName::program("collect").unwrap();
+    CollectOptions { program, wiring: Wiring::default(), step_ms: 400, steps: 150, near_cm: 40, seed: u32::MAX }
+}
+
+/// Every kind of program with its budget.
+fn programs() -> Vec<(Vec<u8>, Budget)> {
+    let nxc = [(false, false), (true, false), (false, true), (true, true)].map(|(log, display)| {
+        let options = nxc_options(log, display);
+        let source = nxc::program(&at_its_limits(), &Origin::default(), &options).unwrap();
+        (compile(&source), nxc::budget(&at_its_limits(), &options))
+    });
+    let rxe = (rxe::program(&at_its_limits(), &Wiring::default()).unwrap(), rxe::budget(&at_its_limits()));
+    let collect = (compile(&collect::program(&collect_options()).unwrap()), collect::budget(&collect_options()));
+    nxc.into_iter().chain([rxe, collect]).collect()
+}
+
+fn run(program: &Program, sonar: &[Sonar]) -> Report {
+    let setup = Setup { instructions_per_ms: INSTRUCTIONS_PER_MS, start_tick_ms: 4_000_000_000, ..Setup::default() };
+    brick::run(program, &mut Script::sonar(sonar), &setup)
+}
+
+fn assert_close(what: &str, promised: u32, taken: usize) {
+    assert!(taken <= promised as usize, "{what}: {taken} taken of {promised}");
+    assert!(f64::from(promised) <= SLACK * taken as f64, "{what}: only {taken} taken of {promised}");
+}
+
+#[test]
+fn programs_take_what_their_budgets_say_and_hardly_less() {
+    let long: Vec<_> = (0..160u32).map(|k| Sonar::Echo((k * 37 % 256) as u8)).collect();
+    for (file, budget) in programs() {
+        let program = Program::load(&file).unwrap();
+        assert_close("program", budget.program_bytes, file.len());
+        assert_close("memory", budget.memory_bytes, run(&program, &long).pool_bytes);
+        let log_bytes: usize = run(&program, &[Sonar::Echo(100); 160]).files.values().map(Vec::len).sum();
+        assert!(log_bytes <= budget.log_bytes as usize, "{log_bytes} of {}", budget.log_bytes);
+    }
+}
+
+/// A step is over before the next one begins, be the sensor as slow as it can be.
+#[test]
+fn the_shortest_step_is_kept_by_the_slowest_brick() {
+    for (_, budget) in programs() {
+        assert!(budget.worst_step_ms <= 130, "{budget}");
+    }
+    let options = nxc_options(true, true);
+    let shortest = |step_ms| Controller { step_ms, ..at_its_limits() };
+    let Err(ExportError::StepTooShort { shortest_ms, .. }) = nxc::program(&shortest(1), &Origin::default(), &options)
+    else {
+        panic!("accepted")
+    };
+    let source = nxc::program(&shortest(shortest_ms), &Origin::default(), &options).unwrap();
+    let program = Program::load(&compile(&source)).unwrap();
+    let sonar: Vec<_> = (0..150).map(|k| if k % 2 == 0 { Sonar::Hangs } else { Sonar::Echo(255) }).collect();
+    let report = run(&program, &sonar);
+    let log = String::from_utf8(report.files["exactly-fifteen.csv"].clone()).unwrap();
+    let times: Vec<u32> = log.lines().skip(1).map(|row| row.split(',').next().unwrap().parse().unwrap()).collect();
+    assert_eq!(times.len(), 151, "a hanging answer is in the way of the next request");
+    for (step, t_ms) in (0..).zip(times) {
+        let late_ms = t_ms - step * u32::from(shortest_ms);
+        assert!(late_ms < u32::from(shortest_ms), "step {step} is {late_ms} ms late");
+    }
+}
+
+#[test]
+fn a_budget_prints_what_is_taken_of_what_there_is() {
+    let lines = nxc::budget(&at_its_limits(), &nxc_options(true, false)).to_string();
+    let expected = "program     4700 of 121124 bytes of flash\n\
+                    log         7328 of 116424 bytes of flash\n\
+                    memory      4500 of 32768 bytes\n\
+                    step         115 of 400 ms at worst";
+    assert_eq!(lines, expected);
+}

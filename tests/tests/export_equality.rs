@@ -1,0 +1,212 @@
+//! Onboard programs do what the core's stepping machine does: same tuples, same commands, same end, at the same times.
+
+use mindgap_controller_export::brick::{self, Drive, End, Event, Program, Report, Script, Setup, Sonar, What};
+use mindgap_controller_export::names::BrickName;
+use mindgap_controller_export::nxc::{self, NxcOptions};
+use mindgap_controller_export::onboard::{FAILED_STEPS_TO_STOP, NO_ECHO_CM, SONAR_TIMEOUT_MS};
+use mindgap_controller_export::wiring::{MotorPort, SensorPort, Wiring};
+use mindgap_controller_export::{Origin, rxe};
+use mindgap_core::controller::{Controller, Machine, Motors, Status, Tuple, When};
+use mindgap_tests::nbc::compile;
+use proptest::prelude::*;
+use proptest::strategy::ValueTree;
+use proptest::test_runner::{RngAlgorithm, TestRng, TestRunner};
+
+/// Runs of the .rxe writer's programs, each of a controller of its own.
+const RUNS: u32 = 10_000;
+/// Controllers that go through the real compiler, and runs of each.
+const COMPILED: usize = 24;
+const RUNS_OF_COMPILED: u32 = 100;
+/// The shortest step that every kind of program keeps.
+const SHORTEST_STEP_MS: u16 = 120;
+/// Time from a step's tick to its motor commands when the sensor answers.
+const LATENCY_MS: u32 = 15;
+/// How far two programs' times may lie apart.
+const JITTER_MS: u32 = 5;
+
+/// Motor commands, and the step at which they are given; both are zero at the end.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Change {
+    step: u32,
+    motors: Motors,
+}
+
+/// Any distance, and often ones that meet each other.
+fn distances_cm() -> impl Strategy<Value = u8> {
+    prop_oneof![any::<u8>(), 100..=102u8]
+}
+
+fn tuples() -> impl Strategy<Value = Tuple> {
+    let when = prop_oneof![Just(When::Larger), Just(When::Smaller)];
+    (-100..=100i8, -100..=100i8, when, 0..=255i16).prop_map(|(left, right, when, threshold_cm)| Tuple {
+        left,
+        right,
+        when,
+        threshold_cm,
+    })
+}
+
+fn controllers() -> impl Strategy<Value = Controller> {
+    (SHORTEST_STEP_MS..1000, 1..50u16, prop::array::uniform6(tuples()))
+        .prop_map(|(step_ms, max_steps, tuples)| Controller { step_ms, max_steps, tuples })
+}
+
+fn readings() -> impl Strategy<Value = Vec<Sonar>> {
+    let answer = prop_oneof![
+        30 => distances_cm().prop_map(Sonar::Echo),
+        8 => Just(Sonar::Echo(NO_ECHO_CM)),
+        2 => Just(Sonar::Silent),
+        1 => Just(Sonar::Hangs),
+    ];
+    prop::collection::vec(answer, 50)
+}
+
+fn runner(cases: u32, rng: TestRng) -> TestRunner {
+    TestRunner::new_with_rng(ProptestConfig { cases, failure_persistence: None, ..ProptestConfig::default() }, rng)
+}
+
+fn rng() -> TestRng {
+    TestRng::deterministic_rng(RngAlgorithm::XorShift)
+}
+
+/// What the core's machine does, and the rule that ends a run whose sensor is dead.
+fn expected(controller: &Controller, sonar: &[Sonar]) -> (Vec<Change>, Status) {
+    let mut machine = Machine::start();
+    let mut changes = vec![Change { step: 0, motors: machine.motors(controller) }];
+    let mut failed_steps = 0;
+    for (step, answer) in (1..).zip(sonar) {
+        let tuple = machine.tuple();
+        let reading_cm = match answer {
+            Sonar::Echo(NO_ECHO_CM) | Sonar::Silent | Sonar::Hangs => None,
+            Sonar::Echo(echo_cm) => Some(i16::from(*echo_cm)),
+        };
+        failed_steps = if matches!(answer, Sonar::Echo(_)) { 0 } else { failed_steps + 1 };
+        let status = machine.step(controller, reading_cm);
+        let is_over = status != Status::Running || failed_steps == FAILED_STEPS_TO_STOP;
+        if is_over {
+            changes.push(Change { step, motors: Motors { left: 0, right: 0 } });
+            return (changes, status);
+        }
+        if machine.tuple() != tuple {
+            changes.push(Change { step, motors: machine.motors(controller) });
+        }
+    }
+    panic!("the script is longer than any run");
+}
+
+fn run(program: &Program, wiring: &Wiring, sonar: &[Sonar]) -> Report {
+    let mut world = Script { sonar_port: wiring.sonar as usize, ..Script::sonar(sonar) };
+    brick::run(program, &mut world, &Setup::default())
+}
+
+/// The motor commands of a run, left and right together, with their times.
+fn commands(report: &Report, wiring: &Wiring) -> Vec<(u32, Drive, Drive)> {
+    let drives = report.events.iter().filter_map(|Event { t_ms, what }| match what {
+        What::Motor { port, drive } => Some((*t_ms, *port, *drive)),
+        _ => None,
+    });
+    let drives: Vec<_> = drives.collect();
+    let (pairs, rest) = drives.as_chunks::<2>();
+    assert!(rest.is_empty(), "a command for one motor only: {drives:?}");
+    let pair = |[(t_ms, left, left_drive), (_, right, right_drive)]: &[(u32, usize, Drive); 2]| {
+        assert_eq!([*left, *right], [wiring.left as usize, wiring.right as usize]);
+        (*t_ms, *left_drive, *right_drive)
+    };
+    pairs.iter().map(pair).collect()
+}
+
+fn drive(command: i8) -> Drive {
+    if command == 0 { Drive::Brake } else { Drive::Power(command) }
+}
+
+/// Checks a run against the core's machine, and its times against its steps.
+fn check(controller: &Controller, wiring: &Wiring, sonar: &[Sonar], report: &Report) {
+    let (changes, status) = expected(controller, sonar);
+    assert_eq!(report.end, End::Finished);
+    let commands = commands(report, wiring);
+    let drives: Vec<_> = commands.iter().map(|(_, left, right)| (*left, *right)).collect();
+    let expected: Vec<_> = changes.iter().map(|c| (drive(c.motors.left), drive(c.motors.right))).collect();
+    assert_eq!(drives, expected);
+
+    let began_ms = commands[0].0;
+    for (change, (t_ms, ..)) in changes.iter().zip(&commands).skip(1) {
+        let tick_ms = began_ms + change.step * u32::from(controller.step_ms);
+        let dead = matches!(sonar[change.step as usize - 1], Sonar::Hangs);
+        let late_ms = if dead { u32::from(SONAR_TIMEOUT_MS) } else { 0 } + LATENCY_MS;
+        assert!((tick_ms..tick_ms + late_ms).contains(t_ms), "step {} at {t_ms}, tick {tick_ms}", change.step);
+    }
+
+    let tone_hz = report.events.iter().find_map(|event| match event.what {
+        What::Tone { hz, .. } => Some(hz),
+        _ => None,
+    });
+    assert_eq!(tone_hz, Some(if status == Status::Finished { 880 } else { 220 }));
+    assert_eq!(report.motors[wiring.left as usize], Drive::Brake);
+    assert_eq!(report.motors[wiring.right as usize], Drive::Brake);
+}
+
+#[test]
+fn bytecode_runs_as_the_core_does() {
+    let outcome = runner(RUNS, rng()).run(&(controllers(), readings()), |(controller, sonar)| {
+        let wiring = Wiring::default();
+        let program = Program::load(&rxe::program(&controller, &wiring).unwrap()).unwrap();
+        check(&controller, &wiring, &sonar, &run(&program, &wiring, &sonar));
+        Ok(())
+    });
+    outcome.unwrap();
+}
+
+#[test]
+fn compiled_nxc_runs_as_the_core_and_the_bytecode_do() {
+    let other = Wiring { left: MotorPort::A, right: MotorPort::B, sonar: SensorPort::Two };
+    let mut chance = runner(1, rng());
+    for number in 0..COMPILED {
+        let controller = controllers().new_tree(&mut chance).unwrap().current();
+        let wiring = if number % 2 == 0 { Wiring::default() } else { other };
+        let log = (number % 4 >= 2).then(|| "run.csv".parse().unwrap());
+        let options = NxcOptions { program: BrickName::program("run").unwrap(), wiring, display: log.is_some(), log };
+        let source = nxc::program(&controller, &Origin::default(), &options).unwrap();
+        let compiled = Program::load(&compile(&source)).unwrap();
+        let written = Program::load(&rxe::program(&controller, &wiring).unwrap()).unwrap();
+        let outcome = runner(RUNS_OF_COMPILED, chance.new_rng()).run(&readings(), |sonar| {
+            let of_compiled = run(&compiled, &wiring, &sonar);
+            check(&controller, &wiring, &sonar, &of_compiled);
+            if options.log.is_some() {
+                check_log(&controller, &sonar, &of_compiled);
+            }
+            let of_written = run(&written, &wiring, &sonar);
+            let times = |report| commands(report, &wiring).into_iter().map(|(t_ms, ..)| t_ms);
+            for (compiled_ms, written_ms) in times(&of_compiled).zip(times(&of_written)) {
+                assert!(compiled_ms.abs_diff(written_ms) <= JITTER_MS, "{compiled_ms} and {written_ms}");
+            }
+            Ok(())
+        });
+        outcome.unwrap();
+    }
+}
+
+/// The log holds one row a step: the commands from then on, and the reading that led to them.
+fn check_log(controller: &Controller, sonar: &[Sonar], report: &Report) {
+    let (changes, _) = expected(controller, sonar);
+    let log = String::from_utf8(report.files["run.csv"].clone()).unwrap();
+    let mut rows = log.split("\r\n");
+    assert_eq!(rows.next(), Some("t_ms,left,right,rot_left_deg,rot_right_deg,battery_mv,echo_cm"));
+    let steps = changes.last().unwrap().step;
+    let mut motors = changes[0].motors;
+    for step in 0..=steps {
+        if let Some(change) = changes.iter().find(|change| change.step == step) {
+            motors = change.motors;
+        }
+        let reading = match step.checked_sub(1).map(|asked| sonar[asked as usize]) {
+            None | Some(Sonar::Silent | Sonar::Hangs | Sonar::Echo(NO_ECHO_CM)) => String::new(),
+            Some(Sonar::Echo(echo_cm)) => echo_cm.to_string(),
+        };
+        let row = rows.next().unwrap();
+        let (t_ms, rest) = row.split_once(',').unwrap();
+        let tick_ms = step * u32::from(controller.step_ms);
+        let late_ms = t_ms.parse::<u32>().unwrap() - tick_ms;
+        assert!(late_ms < u32::from(SONAR_TIMEOUT_MS) + LATENCY_MS, "{row}");
+        assert_eq!(rest, format!("{},{},0,0,7800,{reading}", motors.left, motors.right));
+    }
+    assert_eq!((rows.next(), rows.next()), (Some(""), None), "rows after the last step");
+}

@@ -1,0 +1,114 @@
+//! NXC programs go through the real compiler, `nbc`.
+
+use mindgap_controller_export::collect::{self, CollectOptions};
+use mindgap_controller_export::names::BrickName;
+use mindgap_controller_export::nxc::{self, NxcOptions};
+use mindgap_controller_export::wiring::{MotorPort, SensorPort, Wiring};
+use mindgap_controller_export::{ExportError, Origin};
+use mindgap_core::controller::Controller;
+use mindgap_tests::controllers::at_its_limits;
+use mindgap_tests::nbc::compile;
+
+/// The file version that firmware 1.28 and later runs.
+const FILE_VERSION: u8 = 6;
+
+fn options() -> NxcOptions {
+    NxcOptions { program: BrickName::program("avoid").unwrap(), wiring: Wiring::default(), log: None, display: false }
+}
+
+fn full_options() -> NxcOptions {
+    NxcOptions { log: Some("avoid.csv".parse().unwrap()), display: true, ..options() }
+}
+
+#[test]
+fn nbc_accepts_every_kind_of_program() {
+    let other_ports = Wiring { left: MotorPort::C, right: MotorPort::A, sonar: SensorPort::One };
+    let sizes = [
+        options(),
+        NxcOptions { wiring: other_ports, ..options() },
+        NxcOptions { display: true, ..options() },
+        full_options(),
+    ]
+    .map(|options| {
+        let rxe = compile(&nxc::program(&at_its_limits(), &Origin::default(), &options).unwrap());
+        assert_eq!(&rxe[..14], b"MindstormsNXT\0");
+        assert_eq!(rxe[15], FILE_VERSION);
+        rxe.len()
+    });
+    assert_eq!(sizes[0], sizes[1], "ports change no size");
+    assert!(sizes[1] < sizes[2] && sizes[2] < sizes[3], "{sizes:?}");
+    assert!(sizes[3] < 6000, "{sizes:?}");
+}
+
+#[test]
+fn the_first_lines_say_where_the_controller_came_from() {
+    let origin = Origin {
+        simulator: Some("sim.mgap\nStopAllTasks();".to_owned()),
+        seed: Some(7),
+        generations: Some(1000),
+        fitness: Some(0.25),
+        ..Origin::default()
+    };
+    let source = nxc::program(&at_its_limits(), &origin, &options()).unwrap();
+    for line in ["// simulator: sim.mgap?StopAllTasks();", "// seed: 7", "// generations: 1000", "// fitness: 0.25"] {
+        assert!(source.lines().any(|l| l == line), "{line} is missing in\n{source}");
+    }
+    compile(&source);
+}
+
+#[test]
+fn no_statement_depends_on_the_firmware() {
+    let source = nxc::program(&at_its_limits(), &Origin::default(), &full_options()).unwrap();
+    let code: Vec<_> = source.lines().filter_map(|line| line.split("//").next()).collect();
+    assert!(code.iter().any(|line| line.contains("LowspeedWrite")));
+    for construct in ["<<", ">>", "float", "SensorUS", "OnFwdReg"] {
+        assert!(!code.iter().any(|line| line.contains(construct)), "{construct}");
+    }
+}
+
+/// nbc reads the wrong register for the first value of a local variable when the function before it ended so.
+#[test]
+fn no_local_variable_is_initialised_where_it_is_declared() {
+    let options = CollectOptions {
+        program: BrickName::program("collect").unwrap(),
+        wiring: Wiring::default(),
+        step_ms: 400,
+        steps: 150,
+        near_cm: 40,
+        seed: 7,
+    };
+    let run = nxc::program(&at_its_limits(), &Origin::default(), &full_options()).unwrap();
+    for line in run.lines().chain(collect::program(&options).unwrap().lines()) {
+        let mut words = line.split_whitespace().skip_while(|word| *word == "unsigned");
+        let declares = ["int", "long", "char", "bool", "byte", "string"].contains(&words.next().unwrap_or_default());
+        let is_local_number = line.starts_with(' ') && !line.contains('[');
+        assert!(!(declares && is_local_number && line.contains('=')), "{line}");
+    }
+}
+
+#[test]
+fn what_the_brick_cannot_run_is_refused_with_what_to_change() {
+    let program = |controller: &Controller, options: &NxcOptions| nxc::program(controller, &Origin::default(), options);
+    let mut wild = at_its_limits();
+    wild.tuples[2].left = -128;
+    assert_eq!(program(&wild, &options()).unwrap_err().to_string(), "tuple 3: a motor command is outside -100..100");
+
+    let hasty = program(&Controller { step_ms: 100, ..at_its_limits() }, &options()).unwrap_err();
+    let ExportError::StepTooShort { shortest_ms, .. } = hasty else { panic!("{hasty}") };
+    assert!(program(&Controller { step_ms: shortest_ms, ..at_its_limits() }, &options()).is_ok());
+
+    let wiring = Wiring { left: MotorPort::C, ..Wiring::default() };
+    assert_eq!(
+        program(&at_its_limits(), &NxcOptions { wiring, ..options() }),
+        Err(ExportError::OnePortForTwoMotors('C'))
+    );
+}
+
+#[test]
+fn a_log_too_large_names_the_step_limit_that_fits() {
+    let long =
+        |max_steps| nxc::program(&Controller { max_steps, ..at_its_limits() }, &Origin::default(), &full_options());
+    let Err(ExportError::LogTooLarge { steps, .. }) = long(u16::MAX) else { panic!("accepted") };
+    assert!(long(steps).is_ok());
+    assert!(matches!(long(steps + 1), Err(ExportError::LogTooLarge { .. })));
+}
