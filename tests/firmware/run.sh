@@ -26,6 +26,7 @@ main() {
   for target in thumbv6m-none-eabi thumbv7em-none-eabi armv4t-none-eabi thumbv4t-none-eabi; do
     check "$target"
   done
+  check_example
 }
 
 check() {
@@ -52,6 +53,16 @@ check() {
     fail "$target: links although a panic can be reached"
   fi
   grep -q a_panic_can_be_reached "$logs/panic.txt" || fail "$target: the image with a panic fails for another reason"
+}
+
+# The example of a project of one's own, as far as QEMU's board goes.
+check_example() {
+  local target=thumbv7em-none-eabi folder=../../core/examples/rtic
+  (cd "$folder" && build "$target") || fail "core/examples/rtic: does not build"
+  emulate "$target" "$folder/target/$target/release/mindgap-rtic-example" >"$logs/example.txt" ||
+    fail "core/examples/rtic: ended with $?"
+  [ "$(tail -1 "$logs/example.txt")" = Finished ] || fail "core/examples/rtic: the controller did not finish"
+  echo "core/examples/rtic: the controller finished"
 }
 
 # Builds with what there is: a ready-made core library, its source from rustup, or its source from Debian.

@@ -1,7 +1,13 @@
-//! The networks that the images run are those that their generator makes.
+//! The networks of firmware and example are those that their generator makes.
+
+use std::fs;
+use std::path::Path;
 
 #[test]
-fn the_source_is_what_the_generator_makes() {
-    let made = mindgap_tests::firmware_networks::rust_source();
-    assert!(made == include_str!("../firmware/src/networks.rs"), "run the binary firmware-networks");
+fn the_sources_are_what_the_generator_makes() {
+    let top = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    for (file, made) in mindgap_tests::firmware_networks::files() {
+        let there = fs::read_to_string(top.join(file)).unwrap();
+        assert!(there == made, "{file} is old: run the binary firmware-networks");
+    }
 }

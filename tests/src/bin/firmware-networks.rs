@@ -1,6 +1,14 @@
-//! Prints the networks of `tests/firmware` as Rust source:
-//! `cargo run -p mindgap-tests --bin firmware-networks > tests/firmware/src/networks.rs`.
+//! Writes the generated networks of firmware and example anew: `cargo run -p mindgap-tests --bin firmware-networks`.
 
-fn main() {
-    print!("{}", mindgap_tests::firmware_networks::rust_source());
+use std::path::Path;
+
+use mindgap_host_sim::files;
+use mindgap_host_sim::problem::Result;
+
+fn main() -> Result<()> {
+    let top = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    for (file, source) in mindgap_tests::firmware_networks::files() {
+        files::write(&top.join(file), &source)?;
+    }
+    Ok(())
 }
