@@ -107,19 +107,21 @@ fn rivals_in_reach(chosen: &Fitted, rivals: &[Fitted]) -> usize {
     rivals.iter().filter(|r| r.ids() != chosen.ids() && weight(chosen, r) >= RIVAL).count()
 }
 
-/// Each effect in turn gives way to what does better in its place. Returns what stands then, and for each of its
-/// effects the fits with others in its place.
-fn settled(mut chosen: Fitted, alone: &[Fitted], logs: &Given) -> (Fitted, Vec<Vec<Fitted>>) {
-    let instead = |chosen: &Fitted, place: usize| best_of_each(extend(&chosen.without(place, logs), Some(alone), logs));
-    for place in 0..chosen.ids().len() {
-        let better = instead(&chosen, place).into_iter().next().filter(|f| f.score() > chosen.score() + OF_NO_MATTER);
-        if let Some(better) = better {
-            chosen = better;
-            break;
-        }
+/// One effect gives way to what does better in its place, if there is such. Returns what stands then, and for each of
+/// its effects the fits with others in its place.
+fn settled(chosen: Fitted, alone: &[Fitted], logs: &Given) -> (Fitted, Vec<Vec<Fitted>>) {
+    let rivals = in_place_of_each(&chosen, alone, logs);
+    let better = rivals.iter().flatten().max_by(|a, b| a.score().total_cmp(&b.score()));
+    match better.filter(|f| f.score() > chosen.score() + OF_NO_MATTER && f.ids() != chosen.ids()) {
+        Some(better) => (better.clone(), in_place_of_each(better, alone, logs)),
+        None => (chosen, rivals),
     }
-    let rivals = (0..chosen.ids().len()).map(|place| instead(&chosen, place)).collect();
-    (chosen, rivals)
+}
+
+/// For each effect the fits with it or another in its place, best first.
+fn in_place_of_each(chosen: &Fitted, alone: &[Fitted], logs: &Given) -> Vec<Vec<Fitted>> {
+    let places = 0..chosen.ids().len();
+    places.map(|place| best_of_each(extend(&chosen.without(place, logs), Some(alone), logs))).collect()
 }
 
 fn is_significant(gain: &Gain, least_nats: f64, least_z: f64) -> bool {

@@ -1,0 +1,100 @@
+//! The diagnosis on logs of the built-in robot, from the logs alone.
+
+use std::sync::LazyLock;
+
+use mindgap_host_sim::built_in_robot::{ActiveEffect, default_robot, record, training_room};
+use mindgap_host_sim::gap::baseline::Baseline;
+use mindgap_host_sim::gap::verdict::Verdict;
+use mindgap_host_sim::gap::{Diagnosis, diagnose, kinematic};
+use mindgap_host_sim::learn::train::{Trainer, train};
+use mindgap_host_sim::logs::Logs;
+use mindgap_host_sim::simulator::Simulator;
+
+const STEPS: usize = 60;
+
+/// A simulator of the built-in robot as it is.
+static SIMULATOR: LazyLock<Simulator> =
+    LazyLock::new(|| train(&logs(60, &[], 1), &Trainer::Fast, 1, |_| {}).expect("the logs train every network"));
+
+fn logs(runs: usize, effects: &[&str], seed: u64) -> Logs {
+    let effects: Vec<ActiveEffect> = effects.iter().map(|e| e.parse().expect("an effect")).collect();
+    record(&default_robot(), &training_room(), runs, STEPS, &effects, seed).expect("the room has room")
+}
+
+fn diagnosed(logs: &Logs) -> Diagnosis {
+    let baseline = Baseline::learned(&SIMULATOR).expect("the simulator knows its scatter");
+    diagnose(baseline, logs).expect("there is something to compare")
+}
+
+fn ids(diagnosis: &Diagnosis) -> Vec<&str> {
+    diagnosis.effects.iter().map(|e| e.id.as_str()).collect()
+}
+
+#[test]
+fn a_robot_like_any_other_has_no_gap() {
+    for seed in [71, 72] {
+        let diagnosis = diagnosed(&logs(16, &[], seed));
+        assert_eq!(diagnosis.verdict, Verdict::NoGap, "{diagnosis:?}");
+        assert!(diagnosis.effects.is_empty() && diagnosis.shrink.is_none());
+    }
+}
+
+#[test]
+fn single_effects_are_named_and_close_the_gap() {
+    for effect in ["drive_scale", "deadband", "sonar_offset", "sonar_yaw", "tracker_rotation"] {
+        let diagnosis = diagnosed(&logs(16, &[effect], 73));
+        assert_eq!(ids(&diagnosis), [effect], "{diagnosis:?}");
+        let shrink = diagnosis.shrink.expect("a gap that shrinks");
+        assert!(shrink.reducible_closed > 0.8, "{effect}: {shrink:?}");
+        assert!(shrink.ci95[0] <= shrink.reducible_closed && shrink.reducible_closed <= shrink.ci95[1]);
+    }
+}
+
+#[test]
+fn the_strength_is_found_again() {
+    let diagnosis = diagnosed(&logs(16, &["sonar_offset=3", "drive_scale=0.94"], 74));
+    let parameter = |id: &str, name: &str| {
+        let found = diagnosis.effects.iter().find(|e| e.id == id).unwrap_or_else(|| panic!("{diagnosis:?}"));
+        found.parameters[name].as_f64().expect("a number")
+    };
+    assert!((parameter("sonar_offset", "cm") - 3.0).abs() < 0.5);
+    assert!((parameter("drive_scale", "factor") - 0.94).abs() < 0.02);
+}
+
+#[test]
+fn what_is_outside_the_table_is_unknown() {
+    let diagnosis = diagnosed(&logs(16, &["command_quantisation"], 75));
+    assert_eq!(diagnosis.verdict, Verdict::Unknown, "{diagnosis:?}");
+    assert!(diagnosis.effects.is_empty() && !diagnosis.r#where.is_empty());
+}
+
+#[test]
+fn without_poses_there_is_nothing_to_compare() {
+    let mut logs = logs(4, &[], 76);
+    logs.runs.iter_mut().flat_map(|run| &mut run.rows).for_each(|row| row.pose = None);
+    let baseline = Baseline::learned(&SIMULATOR).expect("the simulator knows its scatter");
+    assert!(diagnose(baseline, &logs).is_err());
+}
+
+#[test]
+fn without_readings_motion_is_still_diagnosed() {
+    let mut logs = logs(16, &["track_width"], 77);
+    logs.runs.iter_mut().flat_map(|run| &mut run.rows).for_each(|row| row.echo_cm = None);
+    let diagnosis = diagnosed(&logs);
+    let found = &diagnosis.effects[0];
+    assert!(found.id == "track_width" || found.ambiguous_with.iter().any(|id| id == "track_width"), "{diagnosis:?}");
+    assert!(diagnosis.untestable.iter().any(|id| id == "sonar_noise"));
+}
+
+#[test]
+fn the_textbook_serves_where_there_is_no_simulator() {
+    let logs = logs(16, &[], 78);
+    let diagnosis = diagnose(kinematic::baseline(&logs), &logs).expect("there is something to compare");
+    assert_ne!(diagnosis.verdict, Verdict::NoGap, "a real robot differs from the textbook");
+}
+
+#[test]
+fn one_run_is_said_to_be_little() {
+    let diagnosis = diagnosed(&logs(1, &["drive_scale"], 79));
+    assert!(diagnosis.notes.iter().any(|note| note.starts_with("One run only")), "{:?}", diagnosis.notes);
+}

@@ -1,0 +1,65 @@
+//! The diagnosis on labelled logs that another program wrote, of a robot with other physics.
+
+use std::fs;
+use std::path::Path;
+
+use mindgap_host_sim::gap::Diagnosis;
+use mindgap_host_sim::gap::diagnosis::EffectFound;
+use mindgap_tests::command::Workshop;
+use mindgap_tests::elsewhere::logs_from_elsewhere;
+use toml::Table;
+
+/// A rival counts as named while an effect has at most so many.
+const MOST_RIVALS: usize = 3;
+
+#[test]
+fn effects_of_another_robot_are_named() {
+    let test = "effects_of_another_robot_are_named";
+    let Some(data) = logs_from_elsewhere(test, "data") else { return };
+    let data = data.canonicalize().expect("the folder is there");
+    let workshop = Workshop::new();
+    workshop.done(&format!("train {} --out sim.json", data.join("nominal").display()));
+    let labels = fs::read_to_string(data.join("cases/labels.toml")).expect("labels");
+    let (mut singles, mut named, mut closed, mut wrong) = (0, 0, 0, Vec::new());
+    for (case, effects) in &labels.parse::<Table>().expect("TOML") {
+        let effects: Vec<&str> = effects.as_array().expect("a list").iter().filter_map(|e| e.as_str()).collect();
+        let diagnosis = diagnose(&workshop, &data.join("cases").join(case));
+        let is_named = |effect: &&str| diagnosis.effects.iter().any(|found| stands_for(found, effect));
+        match effects.as_slice() {
+            [] => assert!(diagnosis.effects.is_empty() && diagnosis.shrink.is_none(), "{case}: false alarm"),
+            [effect] => {
+                singles += 1;
+                if diagnosis.effects.first().is_some_and(|first| stands_for(first, effect)) {
+                    named += 1;
+                    let share = diagnosis.shrink.as_ref().map_or(0.0, |s| s.reducible_closed);
+                    closed += usize::from(share >= 0.8);
+                } else {
+                    wrong.push(format!("{case} {effect}"));
+                }
+            }
+            several => assert!(several.iter().all(is_named), "{case}: {several:?} gave {:?}", diagnosis.effects),
+        }
+    }
+    println!("{named} of {singles} single effects named, {closed} with at least 80 % of the reducible gap closed");
+    assert!(named >= 24, "not named: {wrong:?}");
+    assert!(closed >= 22, "only {closed} of {named} close 80 % of the reducible gap");
+}
+
+#[test]
+fn logs_of_another_robot_are_refused() {
+    let workshop = Workshop::with_logs();
+    workshop.done("train logs --out sim.json");
+    workshop.edit("logs/robot.toml", |robot| robot.replace("track_cm = 11.5", "track_cm = 17.5"));
+    let refusal = workshop.refused("diagnose sim.json logs");
+    assert!(refusal.contains("another robot") && refusal.contains("track_cm"), "{refusal}");
+}
+
+fn diagnose(workshop: &Workshop, logs: &Path) -> Diagnosis {
+    workshop.done(&format!("diagnose sim.json {} --json diagnosis.json", logs.display()));
+    serde_json::from_value(workshop.json("diagnosis.json")).expect("JSON as in the contracts")
+}
+
+fn stands_for(found: &EffectFound, effect: &str) -> bool {
+    let rivals = &found.ambiguous_with;
+    found.id == effect || (rivals.len() <= MOST_RIVALS && rivals.iter().any(|r| r == effect))
+}
