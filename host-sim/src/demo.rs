@@ -20,7 +20,7 @@ use crate::evolve::genome::Coding;
 use crate::evolve::robust::{self, Quest};
 use crate::files;
 use crate::learn::evaluate::{self, Evaluation};
-use crate::learn::train::{self, Trainer};
+use crate::learn::train::{self, TABLE_ONE, Trainer};
 use crate::logs::Scene;
 use crate::problem::{Problem, Result};
 use crate::simulator::course::Course;
@@ -104,7 +104,8 @@ pub fn run(out: &Path, seed: u64, watch: impl Fn(Stage)) -> Result<Summary> {
     let held_out = record(&scene, HELD_OUT_RUNS, Purpose::HeldOutLogs)?;
     held_out.write(&out.join("held-out-logs"))?;
     scene.write(&out.join("scene.toml"))?;
-    let simulator = train::train(&logs, &Trainer::Fast, of(Purpose::Training), |p| watch(Stage::Training(p)))?;
+    let simulator =
+        train::train(&logs, &Trainer::Fast, &TABLE_ONE, of(Purpose::Training), |p| watch(Stage::Training(p)))?;
     simulator.write(&out.join("simulator.json"))?;
     let evaluation = evaluate::evaluate(&simulator, &held_out)?;
     files::write_json(&out.join("evaluation.json"), &evaluation)?;

@@ -51,6 +51,9 @@ pub struct Simulator {
     /// What the training logs say beyond the networks: the yardstick of the gap.
     #[serde(default)]
     pub reference: Option<Reference>,
+    /// What the same logs give with the sizes of the paper's Table I, when these networks have others.
+    #[serde(default)]
+    pub table_one: Option<Box<Simulator>>,
     /// The networks that the logs could not support.
     pub missing: Vec<Missing>,
 }

@@ -63,6 +63,20 @@ fn every_trainer_gives_five_networks_that_evaluate_judges() {
     }
 }
 
+#[test]
+fn networks_of_other_sizes_are_shown_beside_those_of_the_paper() {
+    let workshop = Workshop::with_logs();
+    workshop.done("train logs --hidden turn=8 --out sim.json");
+    let shown = workshop.done("evaluate sim.json logs --json sizes.json");
+    assert_eq!(shown.matches("turn (deg)").count(), 2, "{shown}");
+    let sizes = workshop.json("sizes.json");
+    assert!(sizes["networks"]["turn"]["mse"].is_number() && sizes["table_one"]["turn"]["mse"].is_number());
+    assert_ne!(sizes["networks"]["turn"]["mse"], sizes["table_one"]["turn"]["mse"]);
+    for wrong in ["turn=7", "turn=0", "turn=80", "eye=4", "turn"] {
+        assert_eq!(workshop.call(&format!("train logs --hidden {wrong} --out other.json")).code, 2, "{wrong}");
+    }
+}
+
 /// For each row of each run in `logs`, whether the tracker saw the robot.
 fn tracked(workshop: &Workshop) -> Vec<Vec<bool>> {
     let run = |run: usize| workshop.text(&format!("logs/run-00{run}.csv"));

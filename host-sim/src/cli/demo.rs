@@ -60,5 +60,5 @@ fn told(summary: &Summary) -> String {
         })
         .collect();
     let header = ["controller for", "simulated: reached", "median (cm)", "robot: reached", "median (cm)"];
-    format!("{}\n{}", super::evaluate::accuracy(&summary.evaluation), table::text(header, &rows))
+    format!("{}\n{}", super::evaluate::accuracy(&summary.evaluation.networks), table::text(header, &rows))
 }

@@ -36,7 +36,10 @@ impl Evaluate {
 
 /// An evaluation as tables, with the reliability of the probability.
 fn told(evaluation: &Evaluation) -> String {
-    let mut text = accuracy(evaluation);
+    let mut text = accuracy(&evaluation.networks);
+    if let Some(table_one) = &evaluation.table_one {
+        text += &format!("\nWith the sizes of the paper's Table I:\n{}", accuracy(table_one));
+    }
     if let Some(p) = &evaluation.networks.echo_probability {
         let bins: Vec<[String; 3]> = p
             .reliability
@@ -49,8 +52,8 @@ fn told(evaluation: &Evaluation) -> String {
 }
 
 /// The accuracy of every network, as tables.
-pub fn accuracy(evaluation: &Evaluation) -> String {
-    let Networks { turn, forward, lateral, echo_probability, echo_value } = &evaluation.networks;
+pub fn accuracy(networks: &Networks) -> String {
+    let Networks { turn, forward, lateral, echo_probability, echo_value } = networks;
     let values =
         [("turn (deg)", turn), ("forward (cm)", forward), ("lateral (cm)", lateral), ("echo value (cm)", echo_value)];
     let rows: Vec<[String; 6]> = values

@@ -5,8 +5,10 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 
 use super::progress;
+use crate::learn::genome::Shape;
+use crate::learn::train::TABLE_ONE;
 use crate::learn::{paper, train};
-use crate::problem::Result;
+use crate::problem;
 
 /// Train the five networks of a simulator on a folder of logs.
 #[derive(Args)]
@@ -19,9 +21,22 @@ pub struct Train {
     /// How to train.
     #[arg(long, value_enum, default_value_t = Trainer::Fast)]
     trainer: Trainer,
+    /// Another number of hidden neurons than the paper's Table I has (turn=4, forward=20, lateral=20,
+    /// echo_probability=10, echo_value=40), half of them product units; `evaluate` then shows both.
+    #[arg(long, value_name = "NETWORK=N", value_parser = hidden_layer)]
+    hidden: Vec<(String, Shape)>,
     /// Fixes every draw.
     #[arg(long, default_value_t = 1)]
     seed: u64,
+}
+
+fn hidden_layer(text: &str) -> Result<(String, Shape), String> {
+    let (network, hidden) = text.split_once('=').ok_or("needs the form NETWORK=N")?;
+    if TABLE_ONE.clone().of(network).is_none() {
+        return Err(format!("there is no network {network}"));
+    }
+    let shape = hidden.parse().ok().and_then(Shape::checked_halves);
+    Ok((network.into(), shape.ok_or("the hidden layer has two equal halves of 1 to 32 neurons")?))
 }
 
 /// The trainers.
@@ -35,7 +50,7 @@ enum Trainer {
 
 impl Train {
     /// Trains and writes the simulator.
-    pub fn run(&self) -> Result<String> {
+    pub fn run(&self) -> problem::Result<String> {
         let logs = super::read_logs(&self.logs)?;
         let spinner = progress::spinner();
         let watch = |p: train::Progress| {
@@ -46,7 +61,14 @@ impl Train {
             Trainer::Paper => train::Trainer::Paper(paper::Options::default()),
             Trainer::Fast => train::Trainer::Fast,
         };
-        let simulator = train::train(&logs, &trainer, self.seed, watch)?;
+        let mut shapes = TABLE_ONE;
+        for (network, shape) in &self.hidden {
+            shapes.of(network).into_iter().for_each(|layer| *layer = *shape);
+        }
+        let mut simulator = train::train(&logs, &trainer, &shapes, self.seed, watch)?;
+        if shapes != TABLE_ONE {
+            simulator.table_one = Some(train::train(&logs, &trainer, &TABLE_ONE, self.seed, watch)?.into());
+        }
         spinner.finish_and_clear();
         for missing in &simulator.missing {
             eprintln!("mindgap: warning: no {} network: {}", missing.network, missing.reason);

@@ -15,6 +15,9 @@ pub struct Evaluation {
     pub schema: u32,
     /// The networks that both the simulator and the logs have.
     pub networks: Networks,
+    /// The same with the sizes of the paper's Table I, for a simulator of other sizes.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub table_one: Option<Networks>,
 }
 
 /// Accuracy of each network.
@@ -84,22 +87,27 @@ pub struct Probability {
 /// When the simulator and the logs have no network in common.
 pub fn evaluate(simulator: &Simulator, logs: &Logs) -> Result<Evaluation> {
     let data = Datasets::from_logs(logs);
+    let networks = judge(simulator, &data);
+    if networks == Networks::default() {
+        return Err(Problem::new("these logs hold no sample for any network of this simulator"));
+    }
+    let table_one = simulator.table_one.as_ref().map(|simulator| judge(simulator, &data));
+    Ok(Evaluation { schema: 1, networks, table_one })
+}
+
+fn judge(simulator: &Simulator, data: &Datasets) -> Networks {
     let mut echo_value = predict(&simulator.echo_value, &data.echo_value).map(Value::of);
     if let Some(value) = &mut echo_value {
         let [expected, predicted] = columns(&value.points);
         value.mae_cm = Some(statistics::mae(&expected, &predicted));
     }
-    let networks = Networks {
+    Networks {
         turn: predict(&simulator.turn, &data.turn).map(Value::of),
         forward: predict(&simulator.forward, &data.forward).map(Value::of),
         lateral: predict(&simulator.lateral, &data.lateral).map(Value::of),
         echo_probability: predict(&simulator.echo_probability, &data.echo_probability).map(Probability::of),
         echo_value,
-    };
-    if networks == Networks::default() {
-        return Err(Problem::new("these logs hold no sample for any network of this simulator"));
     }
-    Ok(Evaluation { schema: 1, networks })
 }
 
 impl Value {

@@ -37,9 +37,9 @@ pub struct Trained<const N: usize> {
 }
 
 /// Starts that are tried.
-const STARTS: u64 = 4;
+const STARTS: u64 = 6;
 /// Exponents start uniformly in ± this.
-const START_RANGE: f64 = 2.0;
+const START_RANGE: f64 = 4.0;
 /// Evaluations of one search at most, in units of the number of exponents plus one.
 const PATIENCE: usize = 3;
 /// Rounds of reweighting for a loss that is not least squares.

@@ -31,6 +31,11 @@ impl Shape {
         assert!(hidden.is_multiple_of(2) && hidden / 2 <= MAX_HALF, "a hidden layer has two halves that fit");
         Shape { summation: hidden / 2, product: hidden / 2 }
     }
+
+    /// The same, if there is such a hidden layer.
+    pub fn checked_halves(hidden: usize) -> Option<Self> {
+        (hidden > 0 && hidden.is_multiple_of(2) && hidden / 2 <= MAX_HALF).then(|| Self::halves(hidden))
+    }
 }
 
 impl<const N: usize> Frame<N> {

@@ -66,7 +66,13 @@ pub struct Progress {
 ///
 /// # Errors
 /// When the logs support none; the reasons are named.
-pub fn train(logs: &Logs, trainer: &Trainer, seed: u64, watch: impl Fn(Progress)) -> Result<Simulator> {
+pub fn train(
+    logs: &Logs,
+    trainer: &Trainer,
+    shapes: &Shapes,
+    seed: u64,
+    watch: impl Fn(Progress),
+) -> Result<Simulator> {
     let data = Datasets::from_logs(logs);
     let mut school = School { trainer, seed, runs: logs.runs.len(), watch, missing: Vec::new() };
     // D and α are the sonar's context themselves.
@@ -74,12 +80,12 @@ pub fn train(logs: &Logs, trainer: &Trainer, seed: u64, watch: impl Fn(Progress)
     let value = Kind { activation: Activation::Linear, loss: Loss::Squares };
     let probability = Kind { activation: Activation::Ramp, loss: Loss::Logistic };
     let reading = Kind { activation: Activation::Linear, loss: Loss::Mixture };
-    let turn = school.learn("turn", &data.turn, TABLE_ONE.turn, value, motion);
-    let forward = school.learn("forward", &data.forward, TABLE_ONE.forward, value, motion);
-    let lateral = school.learn("lateral", &data.lateral, TABLE_ONE.lateral, value, motion);
+    let turn = school.learn("turn", &data.turn, shapes.turn, value, motion);
+    let forward = school.learn("forward", &data.forward, shapes.forward, value, motion);
+    let lateral = school.learn("lateral", &data.lateral, shapes.lateral, value, motion);
     let echo_probability =
-        school.learn("echo_probability", &data.echo_probability, TABLE_ONE.echo_probability, probability, sonar);
-    let mut echo_value = school.learn("echo_value", &data.echo_value, TABLE_ONE.echo_value, reading, sonar);
+        school.learn("echo_probability", &data.echo_probability, shapes.echo_probability, probability, sonar);
+    let mut echo_value = school.learn("echo_value", &data.echo_value, shapes.echo_value, reading, sonar);
     let constant_reading = echo_value.as_mut().and_then(|value| split_constant_reading(value, &data.echo_value));
     if school.missing.len() == NETWORKS {
         let reasons: Vec<String> = school.missing.iter().map(|m| format!("{}: {}", m.network, m.reason)).collect();
@@ -104,6 +110,7 @@ pub fn train(logs: &Logs, trainer: &Trainer, seed: u64, watch: impl Fn(Progress)
         echo_value,
         constant_reading,
         reference: None,
+        table_one: None,
         missing: school.missing,
     };
     let reference = reference::learn(&simulator, logs);
@@ -124,6 +131,20 @@ fn spread_about(learned: &mut Option<Learned<4>>, data: &Dataset<4>, correction:
     let left: Vec<f32> = residuals(&learned.network, data).iter().zip(misfit).map(|(r, m)| r - m).collect();
     learned.spread = scatter::spread(&contexts, &left);
     learned.spread.shares = scatter::shares(&learned.spread, &contexts, &left, &data.inputs, &data.runs);
+}
+
+impl Shapes {
+    /// The hidden layer of a network, by its name.
+    pub fn of(&mut self, network: &str) -> Option<&mut Shape> {
+        match network {
+            "turn" => Some(&mut self.turn),
+            "forward" => Some(&mut self.forward),
+            "lateral" => Some(&mut self.lateral),
+            "echo_probability" => Some(&mut self.echo_probability),
+            "echo_value" => Some(&mut self.echo_value),
+            _ => None,
+        }
+    }
 }
 
 /// Whether a run is kept from training, so that residuals on it are honest; none is when there are too few.

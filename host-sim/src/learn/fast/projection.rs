@@ -10,10 +10,10 @@ use nalgebra::{Cholesky, DMatrix, DVector, Dyn, Owned};
 use crate::learn::dataset::Dataset;
 
 /// Holds linear weights back, per sample: power terms that are nearly alike would otherwise grow against each other.
-const RIDGE: f64 = 1e-4;
+const RIDGE: f64 = 1e-7;
 /// Holds exponents back, per sample and as a share of the targets' variance, so that power terms stay tame outside the
 /// data.
-const EXPONENT_RIDGE: f64 = 1e-5;
+const EXPONENT_RIDGE: f64 = 1e-7;
 
 /// A data set with exponents of `units` product units, as a least-squares problem in those exponents.
 ///
