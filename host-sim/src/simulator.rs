@@ -3,6 +3,7 @@
 mod batch;
 pub mod course;
 pub mod draws;
+pub mod fixed_point;
 pub mod motion;
 pub mod reference;
 pub mod rehearsal;
