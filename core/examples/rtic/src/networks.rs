@@ -1,4 +1,5 @@
-//! Networks of the sizes of Table I; made by `cargo run -p mindgap-tests --bin firmware-networks`.
+//! Networks trained on logs of the built-in robot; made by
+//! `cargo run --release -p mindgap-tests --bin firmware-networks`.
 
 use fixed::types::{I6F26, I38F26};
 use heapless::Vec;
@@ -6,51 +7,51 @@ use mindgap_core::fixed_network::{FixedNetwork, FixedScaling};
 use mindgap_core::folded::{Power, PowerSum, Sign};
 use mindgap_core::network::Activation;
 
-/// Forward movement in a step in cm.
+/// Way forward in a step, cm.
 pub static FORWARD: FixedNetwork<4, 10> = FixedNetwork {
     inputs: [
-            FixedScaling { gain: 1374389504, shift: 28, offset: I38F26::from_bits(100663296), low: I6F26::from_bits(67108864), high: I6F26::from_bits(134217728) },
-            FixedScaling { gain: 1374389504, shift: 28, offset: I38F26::from_bits(100663296), low: I6F26::from_bits(67108864), high: I6F26::from_bits(134217728) },
-            FixedScaling { gain: 1374389504, shift: 28, offset: I38F26::from_bits(100663296), low: I6F26::from_bits(67108864), high: I6F26::from_bits(134217728) },
-            FixedScaling { gain: 1374389504, shift: 28, offset: I38F26::from_bits(100663296), low: I6F26::from_bits(67108864), high: I6F26::from_bits(134217728) },
+            FixedScaling { gain: 1895709696, shift: 28, offset: I38F26::from_bits(94878048), low: I6F26::from_bits(67108864), high: I6F26::from_bits(134217728) },
+            FixedScaling { gain: 1895709696, shift: 28, offset: I38F26::from_bits(94878048), low: I6F26::from_bits(67108864), high: I6F26::from_bits(134217728) },
+            FixedScaling { gain: 1895709696, shift: 28, offset: I38F26::from_bits(94878048), low: I6F26::from_bits(67108864), high: I6F26::from_bits(134217728) },
+            FixedScaling { gain: 1895709696, shift: 28, offset: I38F26::from_bits(94878048), low: I6F26::from_bits(67108864), high: I6F26::from_bits(134217728) },
     ],
     sum: PowerSum {
-        bias: I6F26::from_bits(-50331648),
-        slopes: [I6F26::from_bits(13631488), I6F26::from_bits(13631488), I6F26::from_bits(3145728), I6F26::from_bits(3145728)],
+        bias: I6F26::from_bits(-39055132),
+        slopes: [I6F26::from_bits(-5542500), I6F26::from_bits(6595802), I6F26::from_bits(21481180), I6F26::from_bits(-9296995)],
         powers: Vec::from_array([
-            Power { exponents: [I6F26::from_bits(93587040), I6F26::from_bits(-122447712), I6F26::from_bits(-109389504), I6F26::from_bits(76295648)], log2_weight: I6F26::from_bits(-111128814), sign: Sign::Plus },
-            Power { exponents: [I6F26::from_bits(93693944), I6F26::from_bits(-122453848), I6F26::from_bits(-109455184), I6F26::from_bits(76426264)], log2_weight: I6F26::from_bits(-111128814), sign: Sign::Minus },
-            Power { exponents: [I6F26::from_bits(41274624), I6F26::from_bits(34758848), I6F26::from_bits(-30897408), I6F26::from_bits(129838816)], log2_weight: I6F26::from_bits(-117407600), sign: Sign::Plus },
-            Power { exponents: [I6F26::from_bits(41248164), I6F26::from_bits(34738412), I6F26::from_bits(-30793538), I6F26::from_bits(129971288)], log2_weight: I6F26::from_bits(-117407600), sign: Sign::Minus },
-            Power { exponents: [I6F26::from_bits(-27754624), I6F26::from_bits(-28896416), I6F26::from_bits(-10167648), I6F26::from_bits(-66497856)], log2_weight: I6F26::from_bits(-144277390), sign: Sign::Plus },
-            Power { exponents: [I6F26::from_bits(-27887164), I6F26::from_bits(-28925090), I6F26::from_bits(-10127152), I6F26::from_bits(-66557416)], log2_weight: I6F26::from_bits(-144277390), sign: Sign::Minus },
-            Power { exponents: [I6F26::from_bits(-5681440), I6F26::from_bits(98984416), I6F26::from_bits(4328576), I6F26::from_bits(69931456)], log2_weight: I6F26::from_bits(-88807865), sign: Sign::Plus },
-            Power { exponents: [I6F26::from_bits(-5725158), I6F26::from_bits(99006392), I6F26::from_bits(4219788), I6F26::from_bits(70005320)], log2_weight: I6F26::from_bits(-88807865), sign: Sign::Minus },
-            Power { exponents: [I6F26::from_bits(75095040), I6F26::from_bits(-36352800), I6F26::from_bits(-70332576), I6F26::from_bits(-11530464)], log2_weight: I6F26::from_bits(-123405228), sign: Sign::Plus },
-            Power { exponents: [I6F26::from_bits(75015328), I6F26::from_bits(-36355416), I6F26::from_bits(-70302392), I6F26::from_bits(-11614178)], log2_weight: I6F26::from_bits(-123405228), sign: Sign::Minus },
+            Power { exponents: [I6F26::from_bits(-21927802), I6F26::from_bits(-29346698), I6F26::from_bits(6156329), I6F26::from_bits(15909813)], log2_weight: I6F26::from_bits(-20890595), sign: Sign::Minus },
+            Power { exponents: [I6F26::from_bits(-119699616), I6F26::from_bits(-132045120), I6F26::from_bits(-30988506), I6F26::from_bits(-33175552)], log2_weight: I6F26::from_bits(59190058), sign: Sign::Minus },
+            Power { exponents: [I6F26::from_bits(-66615692), I6F26::from_bits(43534708), I6F26::from_bits(21754286), I6F26::from_bits(86295968)], log2_weight: I6F26::from_bits(-58254711), sign: Sign::Plus },
+            Power { exponents: [I6F26::from_bits(-23215084), I6F26::from_bits(-30792960), I6F26::from_bits(5818426), I6F26::from_bits(15554650)], log2_weight: I6F26::from_bits(-20069228), sign: Sign::Minus },
+            Power { exponents: [I6F26::from_bits(-21791504), I6F26::from_bits(-29198570), I6F26::from_bits(6228982), I6F26::from_bits(15926404)], log2_weight: I6F26::from_bits(-20976559), sign: Sign::Minus },
+            Power { exponents: [I6F26::from_bits(-22303894), I6F26::from_bits(-29588848), I6F26::from_bits(6070580), I6F26::from_bits(15834933)], log2_weight: I6F26::from_bits(-20713463), sign: Sign::Minus },
+            Power { exponents: [I6F26::from_bits(-22053858), I6F26::from_bits(-29653284), I6F26::from_bits(6208704), I6F26::from_bits(15771749)], log2_weight: I6F26::from_bits(-20762800), sign: Sign::Minus },
+            Power { exponents: [I6F26::from_bits(113941312), I6F26::from_bits(-55174096), I6F26::from_bits(17410502), I6F26::from_bits(38993808)], log2_weight: I6F26::from_bits(-22214735), sign: Sign::Plus },
+            Power { exponents: [I6F26::from_bits(-21968396), I6F26::from_bits(-29327092), I6F26::from_bits(6187128), I6F26::from_bits(15889575)], log2_weight: I6F26::from_bits(-20888167), sign: Sign::Minus },
+            Power { exponents: [I6F26::from_bits(75629536), I6F26::from_bits(116765080), I6F26::from_bits(3771122), I6F26::from_bits(33458)], log2_weight: I6F26::from_bits(-9499747), sign: Sign::Plus },
         ]),
     },
-    output_shift: 6,
+    output_shift: 1,
     activation: Activation::Linear,
 };
 
 /// Probability of an echo.
 pub static ECHO_PROBABILITY: FixedNetwork<2, 5> = FixedNetwork {
     inputs: [
-            FixedScaling { gain: 1077952640, shift: 28, offset: I38F26::from_bits(67108864), low: I6F26::from_bits(67108864), high: I6F26::from_bits(134217728) },
-            FixedScaling { gain: 1527099520, shift: 27, offset: I38F26::from_bits(67108864), low: I6F26::from_bits(67108864), high: I6F26::from_bits(134217728) },
+            FixedScaling { gain: 1980803584, shift: 29, offset: I38F26::from_bits(65913492), low: I6F26::from_bits(67108864), high: I6F26::from_bits(134217728) },
+            FixedScaling { gain: 1582486528, shift: 27, offset: I38F26::from_bits(67085684), low: I6F26::from_bits(67108864), high: I6F26::from_bits(134217728) },
     ],
     sum: PowerSum {
-        bias: I6F26::from_bits(36909876),
-        slopes: [I6F26::from_bits(-5033165), I6F26::from_bits(-13421773)],
+        bias: I6F26::from_bits(-275591488),
+        slopes: [I6F26::from_bits(46738304), I6F26::from_bits(80232584)],
         powers: Vec::from_array([
-            Power { exponents: [I6F26::from_bits(-103815744), I6F26::from_bits(11899168)], log2_weight: I6F26::from_bits(107485656), sign: Sign::Plus },
-            Power { exponents: [I6F26::from_bits(-103941240), I6F26::from_bits(11883731)], log2_weight: I6F26::from_bits(107485656), sign: Sign::Minus },
-            Power { exponents: [I6F26::from_bits(16319008), I6F26::from_bits(82187136)], log2_weight: I6F26::from_bits(70930196), sign: Sign::Plus },
-            Power { exponents: [I6F26::from_bits(16301689), I6F26::from_bits(82184016)], log2_weight: I6F26::from_bits(70930196), sign: Sign::Minus },
-            Power { exponents: [I6F26::from_bits(-23455936), I6F26::from_bits(2489152)], log2_weight: I6F26::from_bits(-580079372), sign: Sign::Plus },
+            Power { exponents: [I6F26::from_bits(-134294032), I6F26::from_bits(-114141792)], log2_weight: I6F26::from_bits(128236982), sign: Sign::Plus },
+            Power { exponents: [I6F26::from_bits(-134294032), I6F26::from_bits(-114141792)], log2_weight: I6F26::from_bits(128236982), sign: Sign::Plus },
+            Power { exponents: [I6F26::from_bits(-920584704), I6F26::from_bits(-598095808)], log2_weight: I6F26::from_bits(108281233), sign: Sign::Plus },
+            Power { exponents: [I6F26::from_bits(-360962144), I6F26::from_bits(-358607008)], log2_weight: I6F26::from_bits(117515761), sign: Sign::Minus },
+            Power { exponents: [I6F26::from_bits(-473089664), I6F26::from_bits(-255233264)], log2_weight: I6F26::from_bits(127599547), sign: Sign::Minus },
         ]),
     },
-    output_shift: 2,
+    output_shift: 0,
     activation: Activation::Ramp,
 };
