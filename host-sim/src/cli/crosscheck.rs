@@ -69,25 +69,27 @@ fn networks(networks: &Networks) -> String {
     let clamped = clamped.map(|(name, NetworkCheck { samples, .. })| {
         format!("{name}: {} of {} samples lie outside the trained range\n", samples.clamped, samples.n)
     });
-    table::text(header, &rows) + &clamped.collect::<String>()
+    let bound = "bound: the most that fixed point can be off; what float is off comes on top\n";
+    table::text(header, &rows) + bound + &clamped.collect::<String>()
 }
 
+/// What became of the runs.
 fn runs(runs: &Runs) -> String {
     let share = 100.0 * runs.same_share();
+    let apart = &runs.apart;
     let parted = match &runs.first_divergence {
-        None => "no run parts".into(),
+        None => "No run parts.\n".into(),
         Some(Divergence { run, step, float, fixed }) => format!(
-            "{} part, the first in run {run} at step {step}:\n  float {}\n  fixed {}",
+            "{} runs part, first run {run} at step {step}:\n  float {}\n  fixed {}\n",
             runs.parted,
             moment(float),
             moment(fixed)
         ),
     };
-    let apart = &runs.apart;
     format!(
-        "{} runs, {} steps: the controller decides the same in {share:.3} %; {parted}\n\
-         until then at most {:.4} cm and {:.4} degrees apart, readings {:.4} cm\n",
-        runs.n, runs.steps, apart.position_cm, apart.heading_deg, apart.echo_cm
+        "{} runs, {} steps: the controller decides the same in {share:.3} % of them.\n\
+         Until they part, runs are at most {:.4} cm and {:.4} degrees apart.\n{parted}",
+        runs.n, runs.steps, apart.position_cm, apart.heading_deg
     )
 }
 

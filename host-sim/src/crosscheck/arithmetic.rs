@@ -21,7 +21,7 @@ pub trait Arithmetic: Sync {
     /// previous right command.
     fn motion(&self, speeds: [i8; 4], generator: &mut Generator) -> [f64; 3];
 
-    /// The reading, if there is one, for D (cm) and α (degrees), drawn.
+    /// The reading, if there is one, for D (cm) and α (degrees), drawn and brought into the sensor's range.
     fn reading(&self, faced: [f64; 2], generator: &mut Generator) -> Option<Self::Reading>;
 }
 
@@ -32,22 +32,24 @@ pub struct Float<'s> {
     pub lateral: &'s Network<f32, 4>,
     pub echo_probability: &'s Network<f32, 2>,
     pub echo_value: &'s Network<f32, 2>,
-    deviations: Deviations,
+    scatter: Scatter,
 }
 
 /// The same in fixed point, as a board runs them.
 pub struct Fixed<'s> {
     networks: &'s FixedNetworks,
-    deviations: Deviations,
+    scatter: Scatter,
 }
 
-/// Standard deviations of what is logged about the networks.
+/// Standard deviations of what is logged about the networks, and the sensor's range.
 #[derive(Clone, Copy)]
-struct Deviations {
+struct Scatter {
     turn_deg: f64,
     forward_cm: f64,
     lateral_cm: f64,
     echo_cm: f64,
+    /// Least and largest reading.
+    range_cm: [f64; 2],
 }
 
 impl<'s> Float<'s> {
@@ -61,20 +63,21 @@ impl<'s> Float<'s> {
         let lateral = &simulator.need(&simulator.lateral, "lateral")?.network;
         let echo_probability = &simulator.need(&simulator.echo_probability, "echo_probability")?.network;
         let echo_value = &simulator.need(&simulator.echo_value, "echo_value")?.network;
-        let deviations = Deviations {
+        let scatter = Scatter {
             turn_deg: deviation(turn, &data.turn),
             forward_cm: deviation(forward, &data.forward),
             lateral_cm: deviation(lateral, &data.lateral),
             echo_cm: deviation(echo_value, &data.echo_value),
+            range_cm: [simulator.robot.ultrasonic.min_cm, simulator.robot.ultrasonic.max_cm],
         };
-        Ok(Float { turn, forward, lateral, echo_probability, echo_value, deviations })
+        Ok(Float { turn, forward, lateral, echo_probability, echo_value, scatter })
     }
 }
 
 impl<'s> Fixed<'s> {
     /// Quantised networks with the scatter of those that they were made from.
     pub fn new(networks: &'s FixedNetworks, float: &Float) -> Self {
-        Fixed { networks, deviations: float.deviations }
+        Fixed { networks, scatter: float.scatter }
     }
 }
 
@@ -83,7 +86,7 @@ impl Arithmetic for Float<'_> {
 
     fn motion(&self, speeds: [i8; 4], generator: &mut Generator) -> [f64; 3] {
         let speeds = speeds.map(f32::from);
-        let Deviations { turn_deg, forward_cm, lateral_cm, .. } = self.deviations;
+        let Scatter { turn_deg, forward_cm, lateral_cm, .. } = self.scatter;
         [(self.forward, forward_cm), (self.lateral, lateral_cm), (self.turn, turn_deg)]
             .map(|(network, deviation)| float_normal(network.evaluate(speeds), deviation, generator))
     }
@@ -92,7 +95,8 @@ impl Arithmetic for Float<'_> {
         let faced = faced.map(|x| x as f32);
         let probability: f32 = self.echo_probability.evaluate(faced);
         let echo = f64::from(generator.next_u32()) / TWO_TO_32 < f64::from(probability);
-        echo.then(|| float_normal(self.echo_value.evaluate(faced), self.deviations.echo_cm, generator))
+        let Scatter { echo_cm, range_cm: [min_cm, max_cm], .. } = self.scatter;
+        echo.then(|| float_normal(self.echo_value.evaluate(faced), echo_cm, generator).max(min_cm).min(max_cm))
     }
 }
 
@@ -102,7 +106,7 @@ impl Arithmetic for Fixed<'_> {
     fn motion(&self, speeds: [i8; 4], generator: &mut Generator) -> [f64; 3] {
         let speeds = speeds.map(I16F16::from);
         let FixedNetworks { forward, lateral, turn, .. } = self.networks;
-        let Deviations { turn_deg, forward_cm, lateral_cm, .. } = self.deviations;
+        let Scatter { turn_deg, forward_cm, lateral_cm, .. } = self.scatter;
         [(forward, forward_cm), (lateral, lateral_cm), (turn, turn_deg)].map(|(network, deviation)| {
             let mean = network.network.evaluate(speeds).value;
             normal(mean, I16F16::saturating_from_num(deviation), generator).into()
@@ -113,8 +117,9 @@ impl Arithmetic for Fixed<'_> {
         let faced = faced.map(I16F16::saturating_from_num);
         let FixedNetworks { echo_probability, echo_value, .. } = self.networks;
         let echo = happens(echo_probability.network.evaluate(faced).value, generator);
-        let deviation = I16F16::saturating_from_num(self.deviations.echo_cm);
-        echo.then(|| normal(echo_value.network.evaluate(faced).value, deviation, generator))
+        let deviation = I16F16::saturating_from_num(self.scatter.echo_cm);
+        let [min_cm, max_cm] = self.scatter.range_cm.map(I16F16::saturating_from_num);
+        echo.then(|| normal(echo_value.network.evaluate(faced).value, deviation, generator).max(min_cm).min(max_cm))
     }
 }
 

@@ -9,7 +9,7 @@ use serde::Serialize;
 /// How far a network in fixed point is from the same in float, in its output's unit.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct NetworkCheck {
-    /// The most that rounding can do at any input, worked out from the weights.
+    /// The most that rounding can do at any input whose output fits Q16.16, worked out from the weights.
     pub error_bound: f64,
     /// On the samples of the logs.
     pub samples: Differences,
