@@ -105,7 +105,7 @@ pub(super) fn side_by_side(
     let poses = logs.runs.iter().flat_map(|run| run.rows.iter().filter_map(|row| row.pose));
     let starts: Vec<Pose> = poses.filter(has_room).collect();
     if starts.is_empty() {
-        return Err(Problem::new("the logs hold no pose at which the simulator's robot has room to start"));
+        return Err(Problem::new("the robot has no room to start at any pose that the logs hold"));
     }
     let coding = Coding::new(simulator, MAX_STEPS);
     let pairs = (0..trials.runs).into_par_iter().map(|run| {
