@@ -13,7 +13,7 @@ pub const FAN_DEG: [f64; 9] = [-20.0, -15.0, -10.0, -5.0, 0.0, 5.0, 10.0, 15.0, 
 /// How many numbers describe a ray's strength.
 pub const STRENGTHS: usize = 10;
 /// Beyond this nothing changes any more, cm.
-const FAR_CM: f64 = 300.0;
+pub const FAR_CM: f64 = 300.0;
 /// The chance of a reading from nowhere: no model is certain.
 const STRAY: f64 = 0.003;
 /// A constant reading scatters by about this, cm.
