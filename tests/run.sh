@@ -1,25 +1,12 @@
 #!/usr/bin/env bash
-# All checks of the project: format, lints, documentation, tests. The firmware images have a script of their own,
-# tests/firmware/run.sh, which is not part of this one yet: its panic check fails for armv4t.
-# Runs as root or with sudo on Debian and
+# All checks of the project: format, lints, documentation, tests, firmware. Runs as root or with sudo on Debian and
 # Ubuntu with Rust from rustup; what else it needs it installs.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 exec </dev/null
+. tests/install.sh
 
 say() { printf '\n== %s\n' "$*"; }
-
-as_root() {
-    if [ "$(id -u)" -eq 0 ]; then "$@"; else sudo -n "$@"; fi
-}
-
-# need COMMAND PACKAGE: installs the package unless the command is there.
-need() {
-    command -v "$1" >/dev/null && return
-    say "installing $2"
-    as_root apt-get update -qq
-    as_root env DEBIAN_FRONTEND=noninteractive apt-get install -qq -y --no-install-recommends "$2"
-}
 
 # need_component CARGO-COMMAND COMPONENT: the same for parts of the Rust toolchain.
 need_component() {
@@ -43,3 +30,6 @@ say "documentation"
 RUSTDOCFLAGS="-D warnings" cargo doc --release --no-deps --workspace
 say "tests"
 cargo test --release --workspace
+
+say "firmware"
+tests/firmware/run.sh

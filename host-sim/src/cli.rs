@@ -3,6 +3,7 @@
 //! A command returns what it has to say, and says it only once everything is done: whoever reads just the first line
 //! of it, as `mindgap evaluate ... | head -1` does, stops nothing halfway.
 
+mod crosscheck;
 mod demo;
 mod diagnose;
 mod evaluate;
@@ -33,6 +34,7 @@ struct Cli {
 
 #[derive(Subcommand)]
 enum Command {
+    Crosscheck(crosscheck::Crosscheck),
     Demo(demo::Demo),
     Diagnose(diagnose::Diagnose),
     Record(record::Record),
@@ -47,6 +49,7 @@ enum Command {
 /// when the call is wrong.
 pub fn run() -> ExitCode {
     let done = match Cli::parse().command {
+        Command::Crosscheck(command) => command.run(),
         Command::Demo(command) => command.run(),
         Command::Diagnose(command) => command.run(),
         Command::Record(command) => command.run(),

@@ -5,6 +5,7 @@ pub mod ascent;
 pub mod built_in_robot;
 pub mod chance;
 pub mod cli;
+pub mod crosscheck;
 pub mod demo;
 pub mod evolve;
 pub mod files;

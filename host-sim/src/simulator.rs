@@ -4,6 +4,7 @@ mod batch;
 mod beam;
 pub mod course;
 pub mod draws;
+pub mod fixed_point;
 pub mod motion;
 pub mod reference;
 pub mod rehearsal;

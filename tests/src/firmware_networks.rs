@@ -1,31 +1,34 @@
 //! Generated Rust sources of networks: those that the images under `tests/firmware` run, and those of the example under
 //! `core/examples`.
 
-use mindgap_controller_export::rust_networks::{rust_network, rust_networks};
-use mindgap_core::fixed_network::FixedNetwork;
-use mindgap_core::network::Network;
+use mindgap_controller_export::rust_networks::rust_networks;
+use mindgap_host_sim::built_in_robot::{default_robot, record, training_room};
+use mindgap_host_sim::learn::train::{Trainer, train};
+use mindgap_host_sim::problem::Result;
+use mindgap_host_sim::simulator::fixed_point::FixedNetworks;
 
-use crate::plausible_networks::plausible_networks;
+/// The logs that the networks are trained on.
+const RUNS: usize = 40;
+const STEPS: usize = 60;
+const SEED: u64 = 1;
 
-/// Each file from the top of the project, and what it has to hold.
-pub fn files() -> [(&'static str, String); 2] {
-    let networks = plausible_networks(1);
-    let turn = source("TURN", "Turn of a step in degrees.", &networks.turn);
-    let forward = source("FORWARD", "Forward movement in a step in cm.", &networks.forward);
-    let lateral = source("LATERAL", "Movement to the left in a step in cm.", &networks.lateral);
-    let echo_probability = source("ECHO_PROBABILITY", "Probability of an echo.", &networks.echo_probability);
-    let echo_value = source("ECHO_VALUE", "Mean reading in cm.", &networks.echo_value);
-    let example = [forward.clone(), echo_probability.clone()];
-    let all = [turn, forward, lateral, echo_probability, echo_value];
-    [("tests/firmware/src/networks.rs", file(&all)), ("core/examples/rtic/src/networks.rs", file(&example))]
+/// Each file from the top of the project, and what it has to hold: networks trained on the built-in robot.
+///
+/// # Errors
+/// When a network cannot be trained or has no fixed-point form.
+pub fn files() -> Result<[(&'static str, String); 2]> {
+    let logs = record(&default_robot(), &training_room(), RUNS, STEPS, &[], SEED)?;
+    let simulator = train(&logs, &Trainer::Fast, SEED, |_| {})?;
+    let all = FixedNetworks::quantise(&simulator)?.rust_definitions();
+    let [_, forward, _, echo_probability, _] = all.clone();
+    Ok([
+        ("tests/firmware/src/networks.rs", file(&all)),
+        ("core/examples/rtic/src/networks.rs", file(&[forward, echo_probability])),
+    ])
 }
 
 fn file(networks: &[String]) -> String {
-    let head = "//! Networks of the sizes of Table I; made by `cargo run -p mindgap-tests --bin firmware-networks`.";
+    let head = "//! Networks trained on logs of the built-in robot; made by
+//! `cargo run --release -p mindgap-tests --bin firmware-networks`.";
     format!("{head}\n\n{}", rust_networks(networks))
-}
-
-fn source<const N: usize>(name: &str, documentation: &str, network: &Network<f32, N>) -> String {
-    let quantised = FixedNetwork::quantise(network).expect("the weights are small");
-    rust_network(name, documentation, &quantised.network)
 }

@@ -1,6 +1,7 @@
-//! Lets the linker find `memory.x`.
+//! Gives the linker the script of cortex-m-rt, and the memory that it asks for.
 
 fn main() {
     println!("cargo:rustc-link-search={}", env!("CARGO_MANIFEST_DIR"));
+    println!("cargo:rustc-link-arg-bins=-Tlink.x");
     println!("cargo:rerun-if-changed=memory.x");
 }

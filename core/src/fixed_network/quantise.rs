@@ -14,7 +14,8 @@ pub struct Quantised<const N: usize> {
     /// The network.
     pub network: FixedNetwork<N>,
     /// The most that its output can differ from the trained network's in exact arithmetic, at any Q16.16 input and in
-    /// the output's unit. Errors are taken to add up in the worst way; in practice a fraction of it is seen.
+    /// the output's unit. Errors are taken to add up in the worst way; in practice a fraction of it is seen. Outputs
+    /// beyond ±32768 are excepted: they saturate.
     pub error_bound: f64,
 }
 

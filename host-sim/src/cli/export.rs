@@ -5,18 +5,22 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 use mindgap_controller_export::names::BrickName;
 use mindgap_controller_export::nxc::{self, NxcOptions};
+use mindgap_controller_export::rust_networks::rust_networks;
 use mindgap_controller_export::wiring::{MotorPort, SensorPort, Wiring};
 use mindgap_controller_export::{ExportError, Origin, c, rust, rxe};
 
 use crate::evolve::controller_file::ControllerFile;
 use crate::files;
 use crate::problem::{Problem, Result};
+use crate::simulator::Simulator;
+use crate::simulator::fixed_point::FixedNetworks;
 
-/// Turn a controller into an onboard program.
+/// Turn a controller into an onboard program, or a simulator's networks into constants for a board.
 #[derive(Args)]
 pub struct Export {
-    /// The controller file.
-    controller: PathBuf,
+    /// The controller file; or a simulator file, whose networks have the format rust alone.
+    #[arg(value_name = "CONTROLLER")]
+    input: PathBuf,
     /// What to make of it.
     #[arg(long, value_enum)]
     format: Format,
@@ -54,10 +58,25 @@ enum Format {
 }
 
 impl Export {
-    /// Writes the program.
+    /// Writes the program or the networks.
     pub fn run(&self) -> Result<String> {
-        let file = ControllerFile::read(&self.controller)?;
-        let refused = |e: ExportError| Problem::in_file(&self.controller, e.to_string());
+        // Simulators are JSON; no TOML begins like that.
+        if files::read_text(&self.input)?.trim_start().starts_with('{') { self.networks() } else { self.controller() }
+    }
+
+    fn networks(&self) -> Result<String> {
+        let simulator = Simulator::read(&self.input)?;
+        if !matches!(self.format, Format::Rust) {
+            return Err(Problem::in_file(&self.input, "holds networks, which are exported with --format rust alone"));
+        }
+        let networks = FixedNetworks::quantise(&simulator).map_err(|problem| problem.or_in_file(&self.input))?;
+        files::write(&self.out, rust_networks(&networks.rust_definitions()))?;
+        Ok(format!("{} written\n", self.out.display()))
+    }
+
+    fn controller(&self) -> Result<String> {
+        let file = ControllerFile::read(&self.input)?;
+        let refused = |e: ExportError| Problem::in_file(&self.input, e.to_string());
         let (controller, origin) = (&file.controller, &Origin::from(&file));
         let wiring = Wiring { left: self.left, right: self.right, sonar: self.sonar };
         let stem = self.out.file_stem().unwrap_or_default().to_string_lossy();

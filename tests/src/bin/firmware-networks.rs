@@ -1,4 +1,5 @@
-//! Writes the generated networks of firmware and example anew: `cargo run -p mindgap-tests --bin firmware-networks`.
+//! Trains the networks of firmware and example and writes them as Rust source:
+//! `cargo run --release -p mindgap-tests --bin firmware-networks`.
 
 use std::path::Path;
 
@@ -7,7 +8,7 @@ use mindgap_host_sim::problem::Result;
 
 fn main() -> Result<()> {
     let top = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
-    for (file, source) in mindgap_tests::firmware_networks::files() {
+    for (file, source) in mindgap_tests::firmware_networks::files()? {
         files::write(&top.join(file), &source)?;
     }
     Ok(())

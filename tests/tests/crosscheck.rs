@@ -1,0 +1,167 @@
+//! `mindgap crosscheck` and the export of networks: what a board computes, against the PC.
+
+use std::sync::LazyLock;
+
+use mindgap_tests::command::Workshop;
+use serde_json::{Value, json};
+
+/// A folder with a simulator and logs that it was not trained on.
+fn workshop() -> Workshop {
+    static MADE: LazyLock<Workshop> = LazyLock::new(|| {
+        let workshop = Workshop::new();
+        workshop.done("record --out logs --runs 40 --steps 60 --seed 1");
+        workshop.done("record --out held-out --runs 5 --steps 30 --seed 2");
+        workshop.done("train logs --out sim.json");
+        workshop
+    });
+    MADE.copy()
+}
+
+/// The same with a changed simulator.
+fn workshop_with(change: impl FnOnce(&mut Value)) -> Workshop {
+    let workshop = workshop();
+    let mut simulator = workshop.json("sim.json");
+    change(&mut simulator);
+    workshop.write("sim.json", simulator.to_string());
+    workshop
+}
+
+const NETWORKS: [&str; 5] = ["turn", "forward", "lateral", "echo_probability", "echo_value"];
+
+#[test]
+fn a_board_computes_what_the_pc_does() {
+    let workshop = workshop();
+    let table = workshop.done("crosscheck sim.json held-out --json found.json");
+    assert!(table.lines().count() < 24 && table.lines().all(|line| line.len() <= 80), "{table}");
+    let found = workshop.json("found.json");
+    assert_eq!(found["schema"], 1);
+    // In degrees, cm, cm, 1 and cm.
+    for (network, limit) in NETWORKS.into_iter().zip([0.1, 0.05, 0.05, 0.002, 0.2]) {
+        let check = &found["networks"][network];
+        for over in ["samples", "grid"] {
+            let differences = &check[over];
+            let (worst, mean) = (differences["worst"].as_f64().unwrap(), differences["mean"].as_f64().unwrap());
+            assert!(worst <= limit, "{network} over {over}: {differences}");
+            assert!(0.0 < mean && mean < worst, "{network} over {over}: {differences}");
+        }
+        assert_eq!(check["grid"]["n"], 390_625);
+        assert_eq!(check["grid"]["clamped"], 0, "the grid lies within the trained range");
+    }
+    let runs = &found["runs"];
+    assert_eq!(runs["n"], 1000);
+    let (steps, same) = (runs["steps"].as_u64().unwrap(), runs["same_decisions"].as_u64().unwrap());
+    assert!(steps > 10_000 && same as f64 / steps as f64 >= 0.999, "{runs}");
+}
+
+#[test]
+fn every_sample_counts() {
+    let workshop = workshop();
+    workshop.done("crosscheck sim.json held-out --runs 1 --json found.json");
+    workshop.done("evaluate sim.json held-out --json figures.json");
+    let (found, figures) = (workshop.json("found.json"), workshop.json("figures.json"));
+    for network in ["turn", "forward", "lateral", "echo_probability"] {
+        assert_eq!(found["networks"][network]["samples"]["n"], figures["networks"][network]["n"], "{network}");
+    }
+}
+
+#[test]
+fn the_seed_alone_fixes_what_is_found() {
+    let workshop = workshop();
+    let found = |threads: usize, seed: u64| {
+        let call = format!("crosscheck sim.json held-out --runs 50 --seed {seed} --json found.json");
+        assert_eq!(workshop.call_on_threads(threads, &call).code, 0);
+        workshop.text("found.json")
+    };
+    assert_eq!(found(1, 1), found(2, 1));
+    assert_ne!(found(1, 1), found(1, 2));
+}
+
+#[test]
+fn runs_are_those_of_the_users_controller() {
+    let workshop = workshop();
+    let tuple = "[[tuple]]\nleft = 30\nright = 30\nwhen = \"larger\"\nthreshold_cm = 255\n";
+    workshop.write("c.toml", format!("step_ms = 400\nmax_steps = 2\n{}", tuple.repeat(6)));
+    workshop.done("crosscheck sim.json held-out --runs 100 --controller c.toml --json found.json");
+    let steps = workshop.json("found.json")["runs"]["steps"].as_u64().unwrap();
+    assert!((100..=200).contains(&steps), "{steps} steps of 100 runs of 2 at most");
+}
+
+#[test]
+fn arithmetics_that_differ_are_told_apart() {
+    // Two terms that cancel, so large that single precision leaves tenths of a centimetre of them.
+    let workshop = workshop_with(|simulator| {
+        let units = simulator["echo_value"]["network"]["product"].as_array_mut().unwrap();
+        units.extend([3e6, -3e6].map(|output| json!({ "exponents": [0.3, 0.2], "output": output })));
+    });
+    let table = workshop.done("crosscheck sim.json held-out --json found.json");
+    let found = workshop.json("found.json");
+    let worst = |network: &str| found["networks"][network]["grid"]["worst"].as_f64().unwrap();
+    assert!(worst("echo_value") > 0.1 && worst("forward") < 0.001, "{table}");
+    let runs = &found["runs"];
+    let divergence = &runs["first_divergence"];
+    assert!(
+        runs["parted"].as_u64().unwrap() > 0 && runs["same_decisions"].as_u64() < runs["steps"].as_u64(),
+        "{table}"
+    );
+    assert_ne!(divergence["float"]["tuple"], divergence["fixed"]["tuple"], "{divergence}");
+    assert!(table.contains(&format!("first run {} at step {}:", divergence["run"], divergence["step"])), "{table}");
+}
+
+#[test]
+fn inputs_outside_the_trained_range_are_counted() {
+    let workshop = workshop();
+    // Faster than any command that the simulator has seen.
+    edit_rows(&workshop, "held-out/run-000.csv", |cells| cells[1] = "100");
+    let table = workshop.done("crosscheck sim.json held-out --runs 1 --json found.json");
+    let clamped = &workshop.json("found.json")["networks"]["turn"]["samples"]["clamped"];
+    assert!(clamped.as_u64().unwrap() > 10, "{clamped}");
+    assert!(table.contains(&format!("turn (deg): {clamped} of ")), "{table}");
+}
+
+#[test]
+fn logs_without_a_place_to_start_are_refused() {
+    let workshop = workshop();
+    for run in 0..5 {
+        edit_rows(&workshop, &format!("held-out/run-00{run}.csv"), |cells| cells[3..6].fill(""));
+    }
+    let problem = "sim.json: the robot has no room to start at any pose that the logs hold";
+    assert_eq!(workshop.refused("crosscheck sim.json held-out --json found.json"), problem);
+}
+
+/// Changes the cells of every row of a run.
+fn edit_rows(workshop: &Workshop, run: &str, change: impl Fn(&mut [&str])) {
+    workshop.edit(run, |text| {
+        let (header, rows) = text.split_once('\n').expect("a header");
+        let changed = rows.lines().map(|row| {
+            let mut cells: Vec<&str> = row.split(',').collect();
+            change(&mut cells);
+            cells.join(",") + "\n"
+        });
+        format!("{header}\n{}", changed.collect::<String>())
+    });
+}
+
+#[test]
+fn a_network_that_cannot_be_represented_is_refused() {
+    let wild = workshop_with(|s| s["forward"]["network"]["product"][2]["exponents"][1] = json!(40.5));
+    let problem = "sim.json: the forward network cannot be represented in fixed point: \
+                   product unit 3: exponent of input 2 = 40.5 does not fit Q6.26 (-32..32)";
+    assert_eq!(wild.refused("crosscheck sim.json held-out --json found.json"), problem);
+    assert_eq!(wild.refused("export sim.json --format rust --out networks.rs"), problem);
+
+    let missing = workshop_with(|s| s["turn"] = Value::Null);
+    let problem = "sim.json: the simulator has no turn network: it is not there";
+    assert_eq!(missing.refused("crosscheck sim.json held-out --json found.json"), problem);
+}
+
+#[test]
+fn networks_are_exported_as_rust_alone() {
+    let workshop = workshop();
+    assert_eq!(workshop.done("export sim.json --format rust --out networks.rs"), "networks.rs written\n");
+    let source = workshop.text("networks.rs");
+    for definition in ["TURN: FixedNetwork<4, 2>", "ECHO_VALUE: FixedNetwork<2, "] {
+        assert!(source.contains(&format!("pub static {definition}")), "{source}");
+    }
+    let problem = "sim.json: holds networks, which are exported with --format rust alone";
+    assert_eq!(workshop.refused("export sim.json --format nxc --out networks.nxc"), problem);
+}
