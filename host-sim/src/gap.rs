@@ -7,6 +7,7 @@
 pub mod admission;
 pub mod baseline;
 pub mod channel;
+pub mod confirmation;
 pub mod contexts;
 pub mod diagnosis;
 pub mod effect;
@@ -17,6 +18,7 @@ pub mod explanation;
 pub mod generic;
 pub mod hypothesis;
 pub mod kinematic;
+pub mod paths;
 pub mod search;
 pub mod shrink;
 pub mod verdict;

@@ -6,12 +6,14 @@ use serde_json::{Map, Value};
 use super::admission;
 use super::baseline::Baseline;
 use super::channel::Channel;
+use super::confirmation;
 use super::contexts::{self, Part};
 use super::evidence::Evidence;
 use super::excitation::untestable;
 use super::explanation::Explanation;
+use super::paths::{self, PathGap};
 use super::search::Given;
-use super::shrink::{self, shrink};
+use super::shrink;
 use super::verdict::Verdict;
 use crate::logs::Logs;
 use crate::problem::Result;
@@ -80,6 +82,38 @@ pub struct Shrink {
     pub ci95: [f64; 2],
     /// What comes next.
     pub runner_up: Option<RunnerUp>,
+    /// The same channel by channel, where there is something to close.
+    pub channels: Vec<ChannelShrink>,
+    /// Paths that the simulator drives open-loop from a logged pose.
+    pub paths: Vec<PathShrink>,
+}
+
+/// How far the gap of a channel shrinks, nats a step.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ChannelShrink {
+    /// The channel.
+    pub channel: Channel,
+    /// The gap of the simulator as it is.
+    pub before: f64,
+    /// With the effects added.
+    pub after: f64,
+    /// The share of the reducible gap that is closed.
+    pub reducible_closed: f64,
+    /// 95 % interval of it.
+    pub ci95: [f64; 2],
+}
+
+/// Median distance between the ends of predicted and logged paths, cm.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct PathShrink {
+    /// Length of the paths.
+    pub steps: usize,
+    /// With the simulator as it is.
+    pub before_cm: f64,
+    /// With the effects added.
+    pub after_cm: f64,
+    /// What scatter alone makes of it.
+    pub floor_cm: f64,
 }
 
 /// The next best explanation.
@@ -97,22 +131,49 @@ pub struct RunnerUp {
 /// When the logs say nothing that the baseline could be compared with.
 pub fn diagnose(mut baseline: Baseline, logs: &Logs) -> Result<Diagnosis> {
     let fan_width = baseline.sonar.as_ref().map_or(1.0, |sonar| sonar.fan_width);
-    let evidence = Evidence::of(logs, fan_width);
+    let parts = confirmation::parts(logs);
+    let evidence = Evidence::of(&parts.found_on, fan_width);
     let notes = admission::admit(&mut baseline, &evidence, logs)?;
     let given = Given { baseline: &baseline, evidence: &evidence };
     let explanation = Explanation::find(&given);
     let verdict = explanation.verdict();
     let effects = if verdict == Verdict::Known { effects(&explanation, logs.robot.step_ms) } else { Vec::new() };
-    let shrink = if verdict == Verdict::NoGap { None } else { shrink(&explanation, evidence.rows.len()) };
+    let kept_back = parts.kept_back.map(|logs| Evidence::of(&logs, fan_width));
+    let shrink = if verdict == Verdict::NoGap { None } else { shrunk(&explanation, &given, kept_back.as_ref()) };
     Ok(Diagnosis {
         schema: 1,
         verdict,
         effects,
         r#where: contexts::parts(&explanation, &evidence).into_iter().map(Place::from).collect(),
-        shrink: shrink.map(Shrink::from),
+        shrink,
         next_experiment: None,
         untestable: untestable(&explanation.none, &given).into_iter().map(String::from).collect(),
         notes,
+    })
+}
+
+/// How far the gap shrinks on runs kept back, or on the others where none is.
+fn shrunk(explanation: &Explanation, found: &Given, kept_back: Option<&Evidence>) -> Option<Shrink> {
+    let confirming = kept_back.unwrap_or(found.evidence);
+    let shrink = shrink::shrink(explanation, found, confirming)?;
+    let paths = paths::open_loop(explanation, found, confirming);
+    let channel = |(channel, part): (Channel, shrink::Part)| ChannelShrink {
+        channel,
+        before: rounded(part.before),
+        after: rounded(part.after),
+        reducible_closed: rounded(part.closed),
+        ci95: part.ci95.map(rounded),
+    };
+    let runner_up = |(ids, closed): (Vec<&str>, f64)| RunnerUp { id: ids.join("+"), reducible_closed: rounded(closed) };
+    Some(Shrink {
+        before: rounded(shrink.whole.before),
+        after: rounded(shrink.whole.after),
+        floor: 0.0,
+        reducible_closed: rounded(shrink.whole.closed),
+        ci95: shrink.whole.ci95.map(rounded),
+        runner_up: shrink.runner_up.map(runner_up),
+        channels: shrink.channels.into_iter().map(channel).collect(),
+        paths: paths.into_iter().map(PathShrink::from).collect(),
     })
 }
 
@@ -139,18 +200,10 @@ impl From<Part> for Place {
     }
 }
 
-impl From<shrink::Shrink> for Shrink {
-    fn from(s: shrink::Shrink) -> Self {
-        Shrink {
-            before: rounded(s.before),
-            after: rounded(s.after),
-            floor: 0.0,
-            reducible_closed: rounded(s.closed),
-            ci95: s.ci95.map(rounded),
-            runner_up: s
-                .runner_up
-                .map(|(ids, closed)| RunnerUp { id: ids.join("+"), reducible_closed: rounded(closed) }),
-        }
+impl From<PathGap> for PathShrink {
+    fn from(p: PathGap) -> Self {
+        let [before_cm, after_cm, floor_cm] = [p.before_cm, p.after_cm, p.floor_cm].map(rounded);
+        PathShrink { steps: p.steps, before_cm, after_cm, floor_cm }
     }
 }
 

@@ -25,8 +25,14 @@ pub struct Evidence {
 
 /// A row at which the tracker saw the robot.
 pub struct Row {
+    /// Which run of the folder,
+    pub run: usize,
+    /// and which row of that.
+    pub at: usize,
     /// Which block.
     pub block: usize,
+    /// Length of the step that begins here, against the usual one.
+    pub stretch: f64,
     /// What effects may look at.
     pub moment: Moment,
     /// What the step did, where its end was seen too.
@@ -76,7 +82,19 @@ impl Evidence {
                 };
                 let previous_echo_cm = before(1).and_then(|r| r.echo_cm);
                 let block = run * parts + k * parts / logged.rows.len();
-                rows.push(Row { block, moment, motion, echo_cm: row.echo_cm, previous_echo_cm, fan });
+                let until_ms = logged.rows.get(k + 1).map_or(row.t_ms, |next| next.t_ms);
+                let stretch = (until_ms - row.t_ms) / logs.robot.step_ms;
+                rows.push(Row {
+                    run,
+                    at: k,
+                    block,
+                    stretch,
+                    moment,
+                    motion,
+                    echo_cm: row.echo_cm,
+                    previous_echo_cm,
+                    fan,
+                });
             }
         }
         Evidence { robot: logs.robot, sides, fan_width, blocks: logs.runs.len() * parts, rows }

@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use super::baseline::{Baseline, Drive};
 use super::channel::Channel;
-use super::effect::{Act, Form, Motion, Sensor, Window};
+use super::effect::{Act, Form, Moment, Motion, Sensor, Window};
 use super::evidence::{Evidence, Row};
 use crate::ascent::Bounds;
 use crate::geometry::wrap_rad;
@@ -82,6 +82,14 @@ impl Hypothesis {
         }
     }
 
+    /// The same of rows that the hypothesis was not fitted on, with the scatter of those that it was fitted on.
+    pub fn terms_of_others(&self, baseline: &Baseline, others: &Evidence, values: &[f64], scatter: [f64; 3]) -> Terms {
+        Terms {
+            motion: self.motion_terms(baseline, &others.rows, values, scatter),
+            sonar: self.sonar_terms(baseline, others, 0..others.rows.len(), values),
+        }
+    }
+
     /// The log-likelihood of one block, with the scatter of all.
     pub fn of_block(
         &self,
@@ -123,17 +131,17 @@ impl Hypothesis {
     }
 
     /// What a step does.
-    pub fn motion(&self, drive: &Drive, row: &Row, values: &[f64]) -> Motion {
-        let mut commands: Window = row.moment.commands;
+    pub fn motion(&self, drive: &Drive, moment: &Moment, values: &[f64]) -> Motion {
+        let mut commands: Window = moment.commands;
         self.each(values, |act, v| {
             if let Act::Commands(change) = act {
-                change(v, &row.moment, &mut commands);
+                change(v, moment, &mut commands);
             }
         });
         let mut motion = drive.step(commands[0], commands[1]);
         self.each(values, |act, v| {
             if let Act::Motion(change) = act {
-                change(v, &row.moment, &mut motion);
+                change(v, moment, &mut motion);
             }
         });
         motion
@@ -154,7 +162,7 @@ impl Hypothesis {
     pub fn residuals(&self, drive: &Drive, rows: &[Row], values: &[f64]) -> Vec<Option<[f64; 3]>> {
         let residual = |row: &Row| {
             let logged = row.motion?;
-            let predicted = self.motion(drive, row, values);
+            let predicted = self.motion(drive, &row.moment, values);
             Some([
                 logged.forward_cm - predicted.forward_cm,
                 logged.lateral_cm - predicted.lateral_cm,

@@ -113,6 +113,12 @@ impl Fitted {
         Fitted { hypothesis: Hypothesis { forms }, values, terms, held_out }
     }
 
+    /// The log-likelihood of rows that it was not fitted on; `logs` are those that it was.
+    pub fn judged_on(&self, others: &Evidence, logs: &Given) -> Terms {
+        let scatter = self.hypothesis.scatter(logs.baseline, logs.evidence, &self.values);
+        self.hypothesis.terms_of_others(logs.baseline, others, &self.values, scatter)
+    }
+
     /// Adds one form and fits everything anew, from these values and the form's starts.
     pub fn with(&self, form: &'static Form, logs: &Given) -> Fitted {
         let hypothesis = self.hypothesis.with(form);

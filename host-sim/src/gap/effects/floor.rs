@@ -28,10 +28,10 @@ pub const FORMS: &[Form] = &[
     },
     Form {
         id: "payload",
-        name: "ways shorten on one side, turns on both",
-        parameters: TURNING_LOAD,
-        starts: TURNING_LOAD_STARTS,
-        acts: &[Act::Motion(load_on_turns)],
+        name: "ways shorten on one side, and a heavy robot is slow to start and to turn",
+        parameters: HEAVY_LOAD,
+        starts: HEAVY_LOAD_STARTS,
+        acts: &[Act::Commands(slow_start), Act::Motion(load_on_turns)],
         report: load,
     },
     Form {
@@ -136,10 +136,15 @@ pub const FORMS: &[Form] = &[
 /// motor, with all of it a scale.
 const LOAD: &[Parameter] = &[Parameter::new(-0.6, 0.6, 0.0), Parameter::new(0.15, 0.8, 0.5)];
 const LOAD_STARTS: &[&[f64]] = &[&[0.06, 0.5], &[-0.06, 0.5]];
-/// The same with the loss of turns: a heavy robot is hard to turn on the spot.
-const TURNING_LOAD: &[Parameter] =
-    &[Parameter::new(-0.6, 0.6, 0.0), Parameter::new(0.0, 0.8, 0.5), Parameter::new(0.0, 0.5, 0.0)];
-const TURNING_LOAD_STARTS: &[&[f64]] = &[&[0.03, 0.5, 0.08], &[-0.03, 0.5, 0.08]];
+/// The same with the loss of turns and of changes of command, each so many times the side's loss: a load that costs
+/// much of these costs something on the straight too, or it would be another track or a slower motor.
+const HEAVY_LOAD: &[Parameter] = &[
+    Parameter::new(-0.6, 0.6, 0.0),
+    Parameter::new(0.0, 0.8, 0.5),
+    Parameter::new(0.0, 6.0, 0.0),
+    Parameter::new(0.0, 6.0, 0.0),
+];
+const HEAVY_LOAD_STARTS: &[&[f64]] = &[&[0.03, 0.5, 2.0, 1.0], &[-0.03, 0.5, 2.0, 1.0]];
 /// Direction in radians, and loss.
 const DIRECTED: &[Parameter] = &[Parameter::new(-2.0 * PI, 2.0 * PI, 0.0), Parameter::new(0.0, 0.6, 0.0)];
 const DIRECTED_STARTS: &[&[f64]] = &[&[0.0, 0.05], &[PI / 2.0, 0.05], &[PI, 0.05], &[-PI / 2.0, 0.05]];
@@ -167,7 +172,15 @@ fn loaded_ways(v: &[f64], moment: &Moment, motion: &mut Motion) {
 
 fn load_on_turns(v: &[f64], moment: &Moment, motion: &mut Motion) {
     loaded_ways(v, moment, motion);
-    motion.turn_rad *= 1.0 - v[2];
+    motion.turn_rad *= 1.0 - (v[2] * v[0].abs()).min(1.0);
+}
+
+/// Part of every change of command is not there yet.
+fn slow_start(v: &[f64], _: &Moment, window: &mut Window) {
+    let late = (v[3] * v[0].abs()).min(1.0);
+    for m in 0..2 {
+        window[0][m] += late * (window[1][m] - window[0][m]);
+    }
 }
 
 /// Cosine between the direction of travel and `direction_rad`: reversing travels against the heading.
