@@ -3,8 +3,10 @@
 //! A command returns what it has to say, and says it only once everything is done: whoever reads just the first line
 //! of it, as `mindgap evaluate ... | head -1` does, stops nothing halfway.
 
+mod challenge;
 mod demo;
 mod diagnose;
+mod diagnosis_text;
 mod evaluate;
 mod evolve;
 mod export;
@@ -33,6 +35,7 @@ struct Cli {
 
 #[derive(Subcommand)]
 enum Command {
+    Challenge(challenge::Challenge),
     Demo(demo::Demo),
     Diagnose(diagnose::Diagnose),
     Record(record::Record),
@@ -47,6 +50,7 @@ enum Command {
 /// when the call is wrong.
 pub fn run() -> ExitCode {
     let done = match Cli::parse().command {
+        Command::Challenge(command) => command.run(),
         Command::Demo(command) => command.run(),
         Command::Diagnose(command) => command.run(),
         Command::Record(command) => command.run(),

@@ -54,6 +54,15 @@ pub fn write(path: &Path, content: impl AsRef<[u8]>) -> Result<()> {
     attempt().map_err(|e| Problem::in_file(path, format!("cannot be written: {e}")))
 }
 
+/// Reads a JSON file.
+///
+/// # Errors
+/// When it is missing or not of the expected form.
+pub fn read_json<T: DeserializeOwned>(path: &Path) -> Result<T> {
+    let text = read_text(path)?;
+    serde_json::from_str(&text).map_err(|e| Problem::at_line(path, e.line() as u64, e.to_string()))
+}
+
 /// Writes a value as JSON.
 ///
 /// # Errors

@@ -10,9 +10,11 @@ use super::confirmation;
 use super::contexts::{self, Part};
 use super::evidence::Evidence;
 use super::excitation::untestable;
+use super::experiment::{self, Experiment};
 use super::explanation::Explanation;
 use super::paths::{self, PathGap};
 use super::search::Given;
+use super::shape::{self, Bin, Shape};
 use super::shrink;
 use super::verdict::Verdict;
 use crate::logs::Logs;
@@ -33,10 +35,38 @@ pub struct Diagnosis {
     pub shrink: Option<Shrink>,
     /// What to log next to tell more.
     pub next_experiment: Option<String>,
+    /// How the unexplained part follows circumstances, channel by channel.
+    pub unexplained: Vec<Unexplained>,
     /// Effects that these logs could not show: untestable, not absent.
     pub untestable: Vec<String>,
     /// What else limits this diagnosis.
     pub notes: Vec<String>,
+}
+
+/// How the unexplained part of a channel follows the circumstance on which it depends most.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Unexplained {
+    /// The channel.
+    pub channel: Channel,
+    /// The circumstance.
+    pub depends_on: String,
+    /// The unit of what is off.
+    pub unit: String,
+    /// A table from low to high.
+    pub shape: Vec<ShapeBin>,
+}
+
+/// A range of the circumstance.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ShapeBin {
+    /// Least value.
+    pub from: f64,
+    /// Largest value.
+    pub to: f64,
+    /// Logged minus predicted, mean.
+    pub off: f64,
+    /// Standard error of that.
+    pub error: f64,
 }
 
 /// An effect that explains the gap.
@@ -125,11 +155,27 @@ pub struct RunnerUp {
     pub reducible_closed: f64,
 }
 
+/// A diagnosis, and what came of it beside the words.
+pub struct Findings {
+    /// What is written and told.
+    pub diagnosis: Diagnosis,
+    /// What to drive next.
+    pub experiment: Option<Experiment>,
+}
+
 /// Diagnoses logs.
 ///
 /// # Errors
 /// When the logs say nothing that the baseline could be compared with.
-pub fn diagnose(mut baseline: Baseline, logs: &Logs) -> Result<Diagnosis> {
+pub fn diagnose(baseline: Baseline, logs: &Logs) -> Result<Diagnosis> {
+    Ok(findings(baseline, logs)?.diagnosis)
+}
+
+/// Diagnoses logs and proposes what to drive next.
+///
+/// # Errors
+/// When the logs say nothing that the baseline could be compared with.
+pub fn findings(mut baseline: Baseline, logs: &Logs) -> Result<Findings> {
     let fan_width = baseline.sonar.as_ref().map_or(1.0, |sonar| sonar.fan_width);
     let parts = confirmation::parts(logs);
     let evidence = Evidence::of(&parts.found_on, fan_width);
@@ -140,16 +186,34 @@ pub fn diagnose(mut baseline: Baseline, logs: &Logs) -> Result<Diagnosis> {
     let effects = if verdict == Verdict::Known { effects(&explanation, logs.robot.step_ms) } else { Vec::new() };
     let kept_back = parts.kept_back.map(|logs| Evidence::of(&logs, fan_width));
     let shrink = if verdict == Verdict::NoGap { None } else { shrunk(&explanation, &given, kept_back.as_ref()) };
-    Ok(Diagnosis {
+    let experiment = if verdict == Verdict::Known { experiment::next(&explanation, &given) } else { None };
+    let diagnosis = Diagnosis {
         schema: 1,
         verdict,
         effects,
         r#where: contexts::parts(&explanation, &evidence).into_iter().map(Place::from).collect(),
         shrink,
-        next_experiment: None,
+        next_experiment: experiment.as_ref().map(in_words),
+        unexplained: unexplained(&explanation, &given),
         untestable: untestable(&explanation.none, &given).into_iter().map(String::from).collect(),
         notes,
-    })
+    };
+    Ok(Findings { diagnosis, experiment })
+}
+
+fn in_words(experiment: &Experiment) -> String {
+    let [one, other] = experiment.between;
+    let Experiment { script, runs, nats_a_run, .. } = experiment;
+    format!("To tell {one} from {other}: log {runs} run(s) of {script} (about {nats_a_run:.1} nats a run).")
+}
+
+/// Only an unknown cause is described by its shape.
+fn unexplained(explanation: &Explanation, given: &Given) -> Vec<Unexplained> {
+    if explanation.verdict() != Verdict::Unknown {
+        return Vec::new();
+    }
+    let shapes = shape::shapes(explanation, given.baseline, given.evidence);
+    shapes.into_iter().map(Unexplained::from).collect()
 }
 
 /// How far the gap shrinks on runs kept back, or on the others where none is.
@@ -197,6 +261,17 @@ impl From<Part> for Place {
         let Part { channel, context, gap, ci95, share } = p;
         let context = context.into();
         Place { channel, context, gap: rounded(gap), ci95: ci95.map(rounded), share: rounded(share) }
+    }
+}
+
+impl From<Shape> for Unexplained {
+    fn from(s: Shape) -> Self {
+        let bin = |b: Bin| {
+            let [from, to, off, error] = [b.from, b.to, b.off, b.error].map(rounded);
+            ShapeBin { from, to, off, error }
+        };
+        let (depends_on, unit) = (s.depends_on.into(), s.unit.into());
+        Unexplained { channel: s.channel, depends_on, unit, shape: s.bins.into_iter().map(bin).collect() }
     }
 }
 

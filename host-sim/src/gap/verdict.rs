@@ -90,6 +90,20 @@ impl Explanation {
         others.max_by(|a, b| a.score().total_cmp(&b.score()))
     }
 
+    /// The fit with the effect that is confused most with one of the chosen, and the two effects; none when the answer
+    /// is plain.
+    pub fn closest_rival(&self) -> Option<(&Fitted, [&'static str; 2])> {
+        let ids = self.chosen.ids();
+        let confused = |place: usize| {
+            let rival = *self.rivals_of(place).first()?;
+            let other = rival.ids().into_iter().find(|id| !ids.contains(id))?;
+            let weight = weight(&self.chosen, rival);
+            (weight >= RIVAL).then_some((weight, rival, [ids[place], other]))
+        };
+        let closest = (0..ids.len()).filter_map(confused).max_by(|a, b| a.0.total_cmp(&b.0));
+        closest.map(|(_, rival, between)| (rival, between))
+    }
+
     /// Fits with another effect in place of one, best first.
     fn rivals_of(&self, place: usize) -> Vec<&Fitted> {
         let ids = self.chosen.ids();

@@ -101,7 +101,7 @@ pub const FORMS: &[Form] = &[
     Form {
         id: "slip",
         name: "large commands lose grip",
-        parameters: GRIP,
+        parameters: FAST_GRIP,
         starts: GRIP_STARTS,
         acts: &[Act::Commands(slip_when_fast)],
         report: onset,
@@ -152,6 +152,8 @@ const AXIS: &[Parameter] = &[Parameter::new(-PI, PI, 0.0), Parameter::new(0.0, 0
 const AXIS_STARTS: &[&[f64]] = &[&[0.0, 0.05], &[PI / 4.0, 0.05], &[PI / 2.0, 0.05], &[-PI / 4.0, 0.05]];
 /// Onset in commands, and the share that is lost of what lies beyond. Below some onset it would be a scale or a lag.
 const GRIP: &[Parameter] = &[Parameter::new(15.0, 120.0, 120.0), Parameter::new(0.0, 1.0, 0.0)];
+/// Large commands alone: what loses more than half is a limit.
+const FAST_GRIP: &[Parameter] = &[Parameter::new(15.0, 120.0, 120.0), Parameter::new(0.0, 0.5, 0.0)];
 const GRIP_STARTS: &[&[f64]] = &[&[20.0, 0.2], &[40.0, 0.3], &[70.0, 0.4]];
 
 fn load_factors(v: &[f64]) -> [f64; 2] {
