@@ -6,6 +6,7 @@
 mod challenge;
 mod demo;
 mod diagnose;
+mod diagnosis_page;
 mod diagnosis_text;
 mod evaluate;
 mod evolve;

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::diagnosis_text;
+use super::{diagnosis_page, diagnosis_text};
 use crate::files;
 use crate::gap::baseline::Baseline;
 use crate::gap::{admission, findings, kinematic};
@@ -21,6 +21,9 @@ pub struct Diagnose {
     /// Also write the diagnosis here.
     #[arg(long)]
     json: Option<PathBuf>,
+    /// Also write a page for a browser here.
+    #[arg(long, value_name = "FILE")]
+    html: Option<PathBuf>,
     /// Write the commands to log next here, as a run in CSV, where causes remain confused.
     #[arg(long, value_name = "FILE")]
     next_experiment: Option<PathBuf>,
@@ -43,6 +46,10 @@ impl Diagnose {
         let diagnosis = &found.diagnosis;
         if let Some(path) = &self.json {
             files::write_json(path, diagnosis)?;
+        }
+        if let Some(path) = &self.html {
+            let title = format!("{} against {}", self.logs.display(), self.sim.display());
+            files::write(path, diagnosis_page::page(diagnosis, &title))?;
         }
         if let (Some(path), Some(experiment)) = (&self.next_experiment, &found.experiment) {
             experiment.commands.write(path)?;

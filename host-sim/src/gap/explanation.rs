@@ -79,7 +79,7 @@ const OF_NO_MATTER: f64 = 1.0;
 const MOST_EFFECTS: usize = 3;
 /// The generic learner's gain counts from here on.
 const LEAST_LEFTOVER_NATS: f64 = 20.0;
-const LEAST_LEFTOVER_Z: f64 = 3.0;
+const LEAST_LEFTOVER_Z: f64 = 2.2;
 /// Scatter beyond the simulator's counts from this ratio on.
 const LEAST_SCATTER_RATIO: f64 = 1.12;
 

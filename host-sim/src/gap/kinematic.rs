@@ -40,6 +40,7 @@ fn sonar(logs: &Logs) -> Option<SonarReference> {
         bias: [0.0; 3],
         log_scatter: [libm::log(scatter_cm.clamp(least, most)), 0.0, 0.0],
         constant: [0.0, mount.min_cm],
+        constant_for_none: 0.0,
         short: 0.0,
         lost: 1.0 - echoes / f64::max(all, 1.0),
         fan_width: RAY_WIDTH,

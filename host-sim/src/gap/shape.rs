@@ -6,7 +6,6 @@ use super::circumstances as of;
 use super::evidence::{Evidence, Row};
 use super::explanation::Explanation;
 use super::search::Fitted;
-use crate::simulator::reference::sonar::FAN_DEG;
 
 /// How the unexplained part of a channel follows one circumstance.
 #[derive(Clone, Debug)]
@@ -107,7 +106,7 @@ fn off(channel: Channel, fit: &Fitted, baseline: &Baseline, evidence: &Evidence)
                     let [none, _] = sonar.log_likelihood(&fan, &sensor.change, None, None);
                     return Some(f64::from(u8::from(row.echo_cm.is_some())) - 1.0 + libm::exp(none));
                 }
-                let expected_cm = fan[FAN_DEG.len() / 2].distance_cm * sensor.change.gain + sensor.change.offset_cm;
+                let expected_cm = sonar.expected_cm(&fan, &sensor.change)?;
                 Some(row.echo_cm? - expected_cm).filter(|off| off.abs() < FAR_OFF_CM)
             };
             rows.iter().map(one).collect()

@@ -29,7 +29,7 @@ pub struct Named {
 }
 
 /// Of what could be explained the effects have to explain this share to be the cause.
-const ADEQUATE: f64 = 0.55;
+const ADEQUATE: f64 = 0.68;
 /// How sharply adequacy decides.
 const ADEQUACY_WIDTH: f64 = 0.06;
 /// Nats over which a gap turns from doubtful to certain.

@@ -28,8 +28,10 @@ pub struct SonarReference {
     pub bias: [f64; 3],
     /// Logarithm of the scatter in cm: a constant, per metre, per 45 degrees.
     pub log_scatter: [f64; 3],
-    /// Chance of the constant reading, and its value in cm.
+    /// Chance of the constant reading in place of an echo, and its value in cm.
     pub constant: [f64; 2],
+    /// Chance of the constant reading where no echo comes back.
+    pub constant_for_none: f64,
     /// Chance of a random short reading.
     pub short: f64,
     /// Chance that a value is lost whatever came back.
@@ -127,7 +129,8 @@ impl SonarReference {
         let echo = (any * (1.0 - change.lost) * (1.0 - self.lost)).clamp(STRAY, 1.0 - STRAY);
         let kept = (1.0 - change.short) * (1.0 - self.short);
         let ghost = 1.0 - echo * (1.0 - change.ghost_for_echo) - (1.0 - echo) * (1.0 - change.ghost_for_none);
-        let value = 1.0 - kept * (1.0 - echo) * (1.0 - change.ghost_for_none);
+        let none = (1.0 - echo) * (1.0 - change.ghost_for_none) * (1.0 - self.constant_for_none);
+        let value = 1.0 - kept * none;
         let value = value.clamp(STRAY, 1.0 - STRAY);
         let Some(z) = echo_cm else {
             let none = libm::log(1.0 - value);
@@ -139,7 +142,7 @@ impl SonarReference {
         let before = if z >= low && z <= reach { 1.0 / (reach - low) } else { 0.0 };
         let true_echo = if any > 0.0 { echo * density / any } else { 0.0 };
         let fresh = true_echo * (1.0 - change.ghost_for_echo) * (1.0 - self.constant[0])
-            + echo * (1.0 - change.ghost_for_echo) * self.constant[0] * near(z, self.constant[1]);
+            + self.constant_chance(echo, change) * near(z, self.constant[1]);
         let mut reading = kept * (fresh + ghost * near(z, change.ghost_cm)) + (1.0 - kept) * before;
         if change.long > 0.0 && z > reach {
             reading += change.long * value * (1.0 / (high - reach).max(1.0) - reading / value);
@@ -153,33 +156,67 @@ impl SonarReference {
         [libm::log(reading.max(1e-9)), libm::log(value)]
     }
 
+    /// The chance of the constant reading.
+    fn constant_chance(&self, echo: f64, change: &Change) -> f64 {
+        echo * (1.0 - change.ghost_for_echo) * self.constant[0]
+            + (1.0 - echo) * (1.0 - change.ghost_for_none) * self.constant_for_none
+    }
+
+    /// The reading to expect of an echo, cm; none where nothing is in reach.
+    pub fn expected_cm(&self, fan: &Fan, change: &Change) -> Option<f64> {
+        let (mut none_yet, mut sum) = (1.0, 0.0);
+        for i in nearest_first(fan) {
+            let (ray, back) = (&fan[i], self.back(&fan[i], FAN_DEG[i], change));
+            if ray.distance_cm.is_finite() {
+                sum += none_yet * back * self.middle_cm(ray, change);
+                none_yet *= 1.0 - back;
+            }
+        }
+        (none_yet < 1.0).then(|| sum / (1.0 - none_yet))
+    }
+
+    /// The chance that a ray comes back.
+    fn back(&self, ray: &Ray, offset_deg: f64, change: &Change) -> f64 {
+        let (metres, incidence) = (ray.distance_cm.min(FAR_CM) / 100.0, ray.alpha_deg / 45.0);
+        let damping = change.damping + change.damping_per_m * metres + change.damping_per_incidence * incidence;
+        let strength: f64 = ray_features(ray, offset_deg).iter().zip(&self.strength).map(|(f, w)| f * w).sum();
+        logistic(strength - damping)
+    }
+
+    /// The reading that a ray gives, before scatter.
+    fn middle_cm(&self, ray: &Ray, change: &Change) -> f64 {
+        let bias = self.bias[0] + self.bias[1] * ray.distance_cm + self.bias[2] * ray.alpha_deg / 45.0;
+        let [low, high] = self.range_cm;
+        ((ray.distance_cm + bias) * change.gain + change.offset_cm).clamp(low, high)
+    }
+
     /// The chance that any ray comes back, and the density of the reading and of that.
     fn first_echo(&self, fan: &Fan, change: &Change, echo_cm: Option<f64>) -> [f64; 2] {
-        let mut order = [0, 1, 2, 3, 4, 5, 6, 7, 8];
-        order.sort_by(|a: &usize, b| fan[*a].distance_cm.total_cmp(&fan[*b].distance_cm));
         let (mut none_yet, mut density) = (1.0, 0.0);
-        for i in order {
+        for i in nearest_first(fan) {
             let ray = &fan[i];
             if ray.distance_cm.is_infinite() {
                 break;
             }
-            let (metres, incidence) = (ray.distance_cm.min(FAR_CM) / 100.0, ray.alpha_deg / 45.0);
-            let damping = change.damping + change.damping_per_m * metres + change.damping_per_incidence * incidence;
-            let strength: f64 = ray_features(ray, FAN_DEG[i]).iter().zip(&self.strength).map(|(f, w)| f * w).sum();
-            let back = logistic(strength - damping);
+            let back = self.back(ray, FAN_DEG[i], change);
             if let Some(z) = echo_cm {
-                let bias = self.bias[0] + self.bias[1] * ray.distance_cm + self.bias[2] * incidence;
-                let [low, high] = self.range_cm;
-                let middle = ((ray.distance_cm + bias) * change.gain + change.offset_cm).clamp(low, high);
+                let (metres, incidence) = (ray.distance_cm.min(FAR_CM) / 100.0, ray.alpha_deg / 45.0);
                 let own =
                     libm::exp(self.log_scatter[0] + self.log_scatter[1] * metres + self.log_scatter[2] * incidence);
                 let scatter = (own * own + change.scatter_cm * change.scatter_cm).sqrt();
-                density += none_yet * back * student(z - middle, scatter);
+                density += none_yet * back * student(z - self.middle_cm(ray, change), scatter);
             }
             none_yet *= 1.0 - back;
         }
         [1.0 - none_yet, density]
     }
+}
+
+/// Places of a fan's rays in the order in which their echoes arrive.
+fn nearest_first(fan: &Fan) -> [usize; FAN_DEG.len()] {
+    let mut order = std::array::from_fn(|i| i);
+    order.sort_by(|a: &usize, b| fan[*a].distance_cm.total_cmp(&fan[*b].distance_cm));
+    order
 }
 
 /// What a ray's strength is made of.
