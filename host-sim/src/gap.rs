@@ -21,6 +21,7 @@ pub mod generic;
 pub mod hypothesis;
 pub mod kinematic;
 pub mod paths;
+pub mod prediction;
 pub mod scripts;
 pub mod search;
 pub mod shape;

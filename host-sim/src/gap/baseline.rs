@@ -3,6 +3,7 @@
 use super::effect::Motion;
 use crate::logs::Robot;
 use crate::problem::{Problem, Result};
+use crate::simulator::added::Added;
 use crate::simulator::motion::MotionNetworks;
 use crate::simulator::reference::{MotionReference, SonarReference};
 use crate::simulator::{Learned, Simulator};
@@ -13,6 +14,8 @@ pub struct Baseline<'s> {
     pub motion: Option<Drive<'s>>,
     /// The sensor, if the simulator knows it.
     pub sonar: Option<SonarReference>,
+    /// Effects that were added to the simulator before.
+    pub added: Vec<Added>,
 }
 
 /// How commands become motion.
@@ -53,7 +56,7 @@ impl<'s> Baseline<'s> {
             commands: simulator.commands.map(f64::from),
             own_share: [&simulator.forward, &simulator.lateral, &simulator.turn].map(own_share),
         });
-        Ok(Baseline { motion, sonar: reference.sonar.clone() })
+        Ok(Baseline { motion, sonar: reference.sonar.clone(), added: simulator.added.clone() })
     }
 }
 

@@ -19,6 +19,7 @@ use super::shrink;
 use super::verdict::Verdict;
 use crate::logs::Logs;
 use crate::problem::Result;
+use crate::simulator::added::Added;
 
 /// What `mindgap diagnose --json` writes.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -161,6 +162,8 @@ pub struct Findings {
     pub diagnosis: Diagnosis,
     /// What to drive next.
     pub experiment: Option<Experiment>,
+    /// The effects that explain the gap, as a simulator takes them; none unless the verdict is known.
+    pub added: Vec<Added>,
 }
 
 /// Diagnoses logs.
@@ -187,6 +190,7 @@ pub fn findings(mut baseline: Baseline, logs: &Logs) -> Result<Findings> {
     let kept_back = parts.kept_back.map(|logs| Evidence::of(&logs, fan_width));
     let shrink = if verdict == Verdict::NoGap { None } else { shrunk(&explanation, &given, kept_back.as_ref()) };
     let experiment = if verdict == Verdict::Known { experiment::next(&explanation, &given) } else { None };
+    let added = if verdict == Verdict::Known { explanation.chosen.added() } else { Vec::new() };
     let diagnosis = Diagnosis {
         schema: 1,
         verdict,
@@ -198,7 +202,7 @@ pub fn findings(mut baseline: Baseline, logs: &Logs) -> Result<Findings> {
         untestable: untestable(&explanation.none, &given).into_iter().map(String::from).collect(),
         notes,
     };
-    Ok(Findings { diagnosis, experiment })
+    Ok(Findings { diagnosis, experiment, added })
 }
 
 fn in_words(experiment: &Experiment) -> String {

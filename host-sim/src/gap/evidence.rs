@@ -2,9 +2,7 @@
 
 use std::ops::Range;
 
-use glam::DVec2;
-
-use super::effect::{Moment, Motion, WINDOW};
+use super::effect::{Moment, Motion, WINDOW, middle};
 use crate::geometry::{Pose, Wall, cast};
 use crate::logs::{Logs, Robot, Run, samples};
 use crate::simulator::reference::sonar::{Fan, fan_at};
@@ -124,11 +122,4 @@ impl Evidence {
 /// The commands of row `k` and of those before, the motors standing before the first.
 fn window(run: &Run, k: usize) -> [[f64; 2]; WINDOW] {
     std::array::from_fn(|back| k.checked_sub(back).map_or([0.0; 2], |i| run.rows[i].command()))
-}
-
-fn middle(sides: &[Wall]) -> DVec2 {
-    let ends = || sides.iter().flat_map(|s| [s.from_cm, s.to_cm]);
-    let low = ends().fold(DVec2::INFINITY, DVec2::min);
-    let high = ends().fold(DVec2::NEG_INFINITY, DVec2::max);
-    0.5 * (low + high)
 }

@@ -155,7 +155,7 @@ impl Bench<'_> {
     fn of_reading(&self, row: &Row) -> f64 {
         let Some(sonar) = &self.baseline.sonar else { return 0.0 };
         let likelihood = |fit: &Fitted| {
-            let sensor = fit.hypothesis.sensor(row, &fit.values);
+            let sensor = fit.hypothesis.sensor(&row.moment, &fit.values);
             let fan = self.logs.fan(&sensor.robot, sensor.yaw_rad, sensor.width);
             move |echo_cm: Option<f64>| sonar.log_likelihood(&fan, &sensor.change, echo_cm, None)[0]
         };

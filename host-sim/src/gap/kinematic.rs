@@ -17,7 +17,11 @@ const READING_SCATTER_CM: [f64; 2] = [0.5, 4.0];
 
 /// The baseline of a robot that nobody has logged before.
 pub fn baseline(logs: &Logs) -> Baseline<'static> {
-    Baseline { motion: Some(Drive::Kinematic { robot: logs.robot, scatter: LEAST_SCATTER }), sonar: sonar(logs) }
+    Baseline {
+        motion: Some(Drive::Kinematic { robot: logs.robot, scatter: LEAST_SCATTER }),
+        sonar: sonar(logs),
+        added: Vec::new(),
+    }
 }
 
 fn sonar(logs: &Logs) -> Option<SonarReference> {

@@ -100,7 +100,7 @@ fn off(channel: Channel, fit: &Fitted, baseline: &Baseline, evidence: &Evidence)
         }
         (None, _, Some(sonar)) => {
             let one = |row: &Row| {
-                let sensor = fit.hypothesis.sensor(row, &fit.values);
+                let sensor = fit.hypothesis.sensor(&row.moment, &fit.values);
                 let fan = evidence.fan(&sensor.robot, sensor.yaw_rad, sensor.width);
                 if channel == Channel::EchoRate {
                     let [none, _] = sonar.log_likelihood(&fan, &sensor.change, None, None);

@@ -105,6 +105,7 @@ pub fn train(logs: &Logs, trainer: &Trainer, seed: u64, watch: impl Fn(Progress)
         echo_value,
         constant_reading,
         reference: None,
+        added: Vec::new(),
         missing: school.missing,
     };
     simulator.reference = Some(reference::learn(&simulator, logs));

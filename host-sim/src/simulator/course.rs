@@ -8,6 +8,7 @@ use super::batch::Batch;
 use super::motion::{MotionNetworks, MotionTable};
 use super::room::Room;
 use super::scatter::{ConstantReading, Spread};
+use super::wrapped::Wrapped;
 use super::{Noise, Simulator};
 use crate::folded::Folded;
 use crate::geometry::Pose;
@@ -27,6 +28,8 @@ pub struct Course<'s> {
     pub(super) echo_spread: &'s Spread,
     pub(super) constant_reading: Option<ConstantReading>,
     pub(super) noise: Noise,
+    /// There when effects were added to the simulator.
+    pub(super) wrapped: Option<Wrapped<'s>>,
 }
 
 /// One run to be simulated.
@@ -100,6 +103,7 @@ impl<'s> Course<'s> {
             echo_spread: &echo_value.spread,
             constant_reading: simulator.constant_reading,
             noise,
+            wrapped: Wrapped::of(simulator, scene, noise)?,
         })
     }
 

@@ -96,6 +96,16 @@ pub struct Change {
     pub stale: f64,
 }
 
+/// What a drawn reading depends on beside the fan.
+pub struct Draw<'a> {
+    /// How the sensor differs.
+    pub change: &'a Change,
+    /// The reading before.
+    pub previous_cm: Option<f64>,
+    /// Whether readings scatter.
+    pub scatters: bool,
+}
+
 impl Change {
     /// The sensor as it was.
     pub const NONE: Change = Change {
@@ -162,6 +172,40 @@ impl SonarReference {
             + (1.0 - echo) * (1.0 - change.ghost_for_none) * self.constant_for_none
     }
 
+    /// One of the readings that [`SonarReference::log_likelihood`] tells of. `uniform` draws from 0 to 1.
+    pub fn draw(&self, fan: &Fan, draw: &Draw, mut uniform: impl FnMut() -> f64) -> Option<f64> {
+        let change = draw.change;
+        let [low, high] = self.range_cm;
+        let reach = fan[FAN_DEG.len() / 2].distance_cm.clamp(low + 10.0, high);
+        let arrives = |i: &usize, uniform: &mut dyn FnMut() -> f64| {
+            fan[*i].distance_cm.is_finite() && uniform() < self.back(&fan[*i], FAN_DEG[*i], change)
+        };
+        let first = nearest_first(fan).into_iter().find(|i| arrives(i, &mut uniform));
+        let first = first.filter(|_| uniform() < (1.0 - change.lost) * (1.0 - self.lost));
+        let (ghost, constant) = match first {
+            Some(_) => (change.ghost_for_echo, self.constant[0]),
+            None => (change.ghost_for_none, self.constant_for_none),
+        };
+        let mut reading = if uniform() < ghost {
+            Some(change.ghost_cm)
+        } else if uniform() < constant {
+            Some(self.constant[1])
+        } else {
+            first.map(|i| {
+                let scatter = if draw.scatters { self.scatter_cm(&fan[i], change) } else { 0.0 };
+                self.middle_cm(&fan[i], change) + scatter * quantile(uniform())
+            })
+        };
+        if uniform() < 1.0 - (1.0 - change.short) * (1.0 - self.short) {
+            reading = Some(low + (reach - low) * uniform());
+        }
+        if reading.is_some() && uniform() < change.long {
+            reading = Some(reach + (high - reach) * uniform());
+        }
+        let stale = draw.previous_cm.filter(|_| reading.is_some() && uniform() < change.stale);
+        stale.or(reading).map(|cm| cm.clamp(low, high))
+    }
+
     /// The reading to expect of an echo, cm; none where nothing is in reach.
     pub fn expected_cm(&self, fan: &Fan, change: &Change) -> Option<f64> {
         let (mut none_yet, mut sum) = (1.0, 0.0);
@@ -183,6 +227,13 @@ impl SonarReference {
         logistic(strength - damping)
     }
 
+    /// By how much the reading of a ray scatters, cm.
+    fn scatter_cm(&self, ray: &Ray, change: &Change) -> f64 {
+        let (metres, incidence) = (ray.distance_cm.min(FAR_CM) / 100.0, ray.alpha_deg / 45.0);
+        let own = libm::exp(self.log_scatter[0] + self.log_scatter[1] * metres + self.log_scatter[2] * incidence);
+        (own * own + change.scatter_cm * change.scatter_cm).sqrt()
+    }
+
     /// The reading that a ray gives, before scatter.
     fn middle_cm(&self, ray: &Ray, change: &Change) -> f64 {
         let bias = self.bias[0] + self.bias[1] * ray.distance_cm + self.bias[2] * ray.alpha_deg / 45.0;
@@ -200,11 +251,7 @@ impl SonarReference {
             }
             let back = self.back(ray, FAN_DEG[i], change);
             if let Some(z) = echo_cm {
-                let (metres, incidence) = (ray.distance_cm.min(FAR_CM) / 100.0, ray.alpha_deg / 45.0);
-                let own =
-                    libm::exp(self.log_scatter[0] + self.log_scatter[1] * metres + self.log_scatter[2] * incidence);
-                let scatter = (own * own + change.scatter_cm * change.scatter_cm).sqrt();
-                density += none_yet * back * student(z - self.middle_cm(ray, change), scatter);
+                density += none_yet * back * student(z - self.middle_cm(ray, change), self.scatter_cm(ray, change));
             }
             none_yet *= 1.0 - back;
         }
@@ -236,6 +283,22 @@ fn student(x: f64, scale: f64) -> f64 {
     let t = x / scale;
     let base = 1.0 + t * t / 5.0;
     0.379_606_689_822_494_4 / (scale * base * base * base)
+}
+
+/// The quantile of Student's law with five degrees of freedom by the expansion of Cornish and Fisher.
+fn quantile(uniform: f64) -> f64 {
+    let p = uniform.clamp(1e-4, 1.0 - 1e-4);
+    let z = normal_quantile(p);
+    let (z3, z5) = (z * z * z, z * z * z * z * z);
+    z + (z3 + z) / 20.0 + (5.0 * z5 + 16.0 * z3 + 3.0 * z) / 2400.0
+}
+
+/// The standard normal quantile (Hastings 1955, equation 26.2.23 in Abramowitz and Stegun), right to 0.0005.
+fn normal_quantile(p: f64) -> f64 {
+    let t = (-2.0 * libm::log(p.min(1.0 - p))).sqrt();
+    let above = 2.515_517 + t * (0.802_853 + t * 0.010_328);
+    let below = 1.0 + t * (1.432_788 + t * (0.189_269 + t * 0.001_308));
+    (t - above / below) * (p - 0.5).signum()
 }
 
 fn near(z_cm: f64, constant_cm: f64) -> f64 {
