@@ -130,7 +130,7 @@ impl<W: Fn(Stage)> Job<'_, W> {
     /// Evolves, writes, simulates and tries the controller of one start (from 0).
     fn start(&self, start: usize, [evolution, simulation, trial]: [u64; 3]) -> Result<Trial> {
         let pose = self.scene.starts[start];
-        let course = &Course::new(self.simulator, self.scene, pose, Noise::Learned)?;
+        let course = &Course::new(self.simulator, self.scene, pose, Noise::Learned)?.with_beam(self.simulator);
         let target_cm = self.scene.target_cm.ok_or_else(|| Problem::new("the scene has no target"))?;
         let coding = Coding::new(self.simulator, MAX_STEPS);
         let seed = derive(evolution, &[start as u64]);

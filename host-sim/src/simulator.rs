@@ -2,6 +2,7 @@
 
 pub mod added;
 mod batch;
+mod beam;
 pub mod course;
 pub mod draws;
 pub mod motion;
@@ -87,7 +88,8 @@ pub struct Origin {
 pub struct Learned<const N: usize> {
     /// The network.
     pub network: Network<f32, N>,
-    /// Logged minus predicted, in logs that the network was not trained on.
+    /// Logged minus predicted: for the sonar in logs that the network was not trained on, for motion after the misfit
+    /// that the reference knows of is put right.
     pub spread: Spread,
 }
 

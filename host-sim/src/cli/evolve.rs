@@ -61,7 +61,8 @@ impl Evolve {
         let start = start_of(&scene, self.start, &simulator.robot, &self.scene)?;
         let target_cm = scene.target_cm.ok_or_else(|| Problem::in_file(&self.scene, "has no [target]"))?;
         let noise = if self.paper || self.paper_noise { Noise::Paper } else { Noise::Learned };
-        let course = &Course::new(&simulator, &scene, start, noise)?;
+        let course = Course::new(&simulator, &scene, start, noise)?;
+        let course = &if noise == Noise::Learned { course.with_beam(&simulator) } else { course };
         let coding = Coding::new(&simulator, self.max_steps);
         let numbers = if self.common_numbers { Numbers::Common } else { Numbers::Fresh };
         let seed = self.seed;

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use super::genome::Coding;
 use crate::chance::{Generator, derive};
 use crate::genetic;
-use crate::simulator::course::{Course, Ending, Job, Outcome};
+use crate::simulator::course::{Course, Ending, Job, Outcome, Sensor};
 use crate::simulator::motion::MotionTable;
 
 /// A run succeeds when it ends within this of the target, without a crash.
@@ -66,12 +66,18 @@ pub fn reached(outcome: &Outcome, target_cm: DVec2) -> bool {
     outcome.ending != Ending::Crashed && outcome.end_cm.distance(target_cm) <= REACHED_CM
 }
 
+/// By turns the two networks and, where the course has it, the beam.
+fn sensor_of(run: usize) -> Sensor {
+    if run % 2 == 0 { Sensor::Networks } else { Sensor::Beam }
+}
+
 impl Task<'_> {
     /// Outcomes of so many runs of a controller, whose draws no other call with another `purpose` meets.
     pub fn outcomes(&self, controller: &Controller, runs: usize, purpose: u64) -> Vec<Outcome> {
         let motions = &self.course.motions(controller);
         let seed = |run: usize| derive(self.seed, &[purpose, run as u64]);
-        let jobs: Vec<Job> = (0..runs).map(|run| Job { controller, motions, seed: seed(run) }).collect();
+        let jobs: Vec<Job> =
+            (0..runs).map(|run| Job { controller, motions, sensor: sensor_of(run), seed: seed(run) }).collect();
         self.course.run(&jobs)
     }
 
@@ -83,7 +89,12 @@ impl Task<'_> {
         for (i, (controller, motions)) in controllers.iter().zip(&motions).enumerate() {
             let individual = if self.numbers == Numbers::Common { 0 } else { (first + i) as u64 };
             let place = |run: usize| [0, generation as u64, individual, run as u64];
-            jobs.extend((0..self.runs).map(|run| Job { controller, motions, seed: derive(self.seed, &place(run)) }));
+            jobs.extend((0..self.runs).map(|run| Job {
+                controller,
+                motions,
+                sensor: sensor_of(run),
+                seed: derive(self.seed, &place(run)),
+            }));
         }
         let outcomes = self.course.run(&jobs);
         outcomes.chunks(self.runs).map(|runs| self.fitness_of(runs)).collect()

@@ -1,5 +1,6 @@
 //! Evolution that does not stick, the default. A single run of the paper's procedure often ends in a poor controller,
-//! or in one that was lucky in its five runs. So here, always under the noise that was learned:
+//! or in one that was lucky in its five runs. So here, always under the noise that was learned, and with either of two
+//! sensors by turns, since what helps with one alone will hardly help on the floor:
 //!
 //! 1. large populations, gentler in selection and bolder in mutation, with few runs an individual: they find the ways
 //!    there are. Their elite is judged again in each generation;

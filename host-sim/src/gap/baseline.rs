@@ -105,7 +105,7 @@ impl Drive<'_> {
 }
 
 fn own_share(learned: &Option<Learned<4>>) -> f64 {
-    let shares = learned.iter().flat_map(|l| &l.spread.own_share).map(|s| f64::from(*s));
-    let (sum, n) = shares.fold((0.0, 0.0), |(sum, n), s| (sum + s * s, n + 1.0));
+    let shares = learned.iter().flat_map(|l| &l.spread.shares);
+    let (sum, n) = shares.fold((0.0, 0.0), |(sum, n), s| (sum + f64::from(s.step * s.step + s.held * s.held), n + 1.0));
     if n > 0.0 { f64::sqrt(sum / n) } else { 1.0 }
 }

@@ -13,7 +13,7 @@ use crate::simulator::reference::motion::{MotionReference, features};
 use crate::simulator::reference::sonar::{Change, STRENGTHS, SonarReference, fan_at};
 
 /// Pulls the weights of the motion's correction towards zero, in squared features.
-const RIDGE: f64 = 0.3;
+const RIDGE: f64 = 0.003;
 /// Fewer samples than this tell nothing.
 const FEWEST: usize = 100;
 

@@ -1,11 +1,11 @@
 //! Learns how logs scatter about networks, and whether the sensor has a constant wrong reading.
 
-use crate::simulator::scatter::{CELLS, ConstantReading, LEVELS, Spread};
+use crate::simulator::scatter::{CELLS, ConstantReading, LEVELS, Shares, Spread};
 
 /// A cell with fewer residuals borrows those of its whole row.
 const FEWEST: usize = LEVELS;
-/// A cell with fewer pairs of neighbours takes the share of all.
-const FEWEST_NEIGHBOURS: usize = 50;
+/// A mean of fewer products or squares says too little.
+const FEWEST_TO_AVERAGE: usize = 50;
 /// A reading this far off the network's may be a constant wrong one.
 const FAR_OFF_CM: f32 = 10.0;
 /// Half the width of the window that a constant reading scatters in.
@@ -19,7 +19,7 @@ pub fn spread(contexts: &[[f32; 2]], residuals: &[f32]) -> Spread {
         let values = sorted(contexts.iter().map(|c| c[axis]));
         std::array::from_fn(|i| values.get(values.len() * (i + 1) / CELLS).copied().unwrap_or(0.0))
     });
-    let mut spread = Spread { edges, residuals: Vec::new(), own_share: vec![1.0; CELLS * CELLS] };
+    let mut spread = Spread { edges, residuals: Vec::new(), shares: vec![Shares::STEP; CELLS * CELLS] };
     let mut cells = vec![Vec::new(); CELLS * CELLS];
     for (context, residual) in contexts.iter().zip(residuals) {
         cells[spread.cell(*context)].push(*residual);
@@ -39,46 +39,46 @@ pub fn spread(contexts: &[[f32; 2]], residuals: &[f32]) -> Spread {
     spread
 }
 
-/// For each cell of a motion network's spread, how much of the size of its residuals is the robot's own.
+/// What of a motion network's residuals a robot has, in each cell of their spread.
 ///
 /// A tracker's error at a row enters the step before and the step after with opposite signs, which shows as a negative
-/// correlation of neighbours; what the robot does itself in one step and the next is taken to be independent. `runs`
-/// tells which residuals follow each other. A cell with few neighbours takes the share of all.
-pub fn own_share(spread: &Spread, contexts: &[[f32; 2]], residuals: &[f32], runs: &[usize]) -> Vec<f32> {
-    let mut sums = vec![Neighbours::default(); CELLS * CELLS];
-    let mut all = Neighbours::default();
-    for i in 1..residuals.len() {
-        if runs[i - 1] == runs[i] {
-            let (before, after) = (f64::from(residuals[i - 1]), f64::from(residuals[i]));
-            all.add(before, after);
-            sums[spread.cell(contexts[i])].add(before, after);
-        }
-    }
-    let share = |sum: &Neighbours| if sum.count >= FEWEST_NEIGHBOURS { sum.share() } else { all.share() };
-    sums.iter().map(share).collect()
+/// covariance of neighbours; what lasts while a command is held (`commands` says which are) adds to that of neighbours
+/// under one command. What then is left of a cell's variance is drawn anew in each step. `runs` tells which residuals
+/// follow each other.
+pub fn shares(
+    spread: &Spread,
+    contexts: &[[f32; 2]],
+    residuals: &[f32],
+    commands: &[[f32; 4]],
+    runs: &[usize],
+) -> Vec<Shares> {
+    // Steady are the steps whose command is that of the step before.
+    let is_steady = |i: usize| commands[i][..2] == commands[i][2..];
+    let neighbours: Vec<usize> = (1..residuals.len()).filter(|i| runs[i - 1] == runs[*i]).collect();
+    let covariance = |of: &dyn Fn(usize) -> bool| {
+        let pairs = neighbours.iter().filter(|i| of(**i));
+        mean(pairs.map(|i| residuals[i - 1] * residuals[*i]))
+    };
+    let Some(changed) = covariance(&|i| !is_steady(i)) else { return vec![Shares::STEP; CELLS * CELLS] };
+    let tracker = (-changed).max(0.0);
+    let held = covariance(&|i| is_steady(i) && is_steady(i - 1)).map_or(0.0, |steady| (steady - changed).max(0.0));
+    (0..CELLS * CELLS)
+        .map(|cell| {
+            let here = contexts.iter().zip(residuals).filter(|(context, _)| spread.cell(**context) == cell);
+            let squares = |r: &f32| r * r;
+            let here = mean(here.map(|(_, r)| squares(r))).or_else(|| mean(residuals.iter().map(squares)));
+            let all = here.unwrap_or(0.0).max(f32::MIN_POSITIVE);
+            let held = (held / all).min(1.0);
+            let step = (1.0 - 2.0 * tracker / all - held).max(0.0);
+            Shares { step: step.sqrt(), held: held.sqrt() }
+        })
+        .collect()
 }
 
-/// Sums over residuals that follow each other.
-#[derive(Clone, Copy, Debug, Default)]
-struct Neighbours {
-    products: f64,
-    squares: f64,
-    count: usize,
-}
-
-impl Neighbours {
-    fn add(&mut self, before: f64, after: f64) {
-        self.products += before * after;
-        self.squares += after * after;
-        self.count += 1;
-    }
-
-    fn share(&self) -> f32 {
-        if self.squares <= 0.0 {
-            return 1.0;
-        }
-        (1.0 + 2.0 * self.products / self.squares).clamp(0.0, 1.0).sqrt() as f32
-    }
+/// The mean of numbers, if there are enough of them.
+fn mean(values: impl Iterator<Item = f32>) -> Option<f32> {
+    let (sum, count) = values.fold((0.0, 0), |(sum, count), v| (sum + f64::from(v), count + 1));
+    (count >= FEWEST_TO_AVERAGE).then(|| (sum / count as f64) as f32)
 }
 
 /// Finds a reading that comes too often among those far off what was predicted.
@@ -154,22 +154,28 @@ mod tests {
     fn the_trackers_part_of_residuals_is_told_from_the_robots() {
         let mut rng = generator(4, &[]);
         let mut error = || rng.random::<f32>() - 0.5;
-        // Twenty runs of a robot whose own scatter has half the variance of the whole.
-        let (mut residuals, mut runs) = (Vec::new(), Vec::new());
-        for run in 0..20 {
-            let mut before = error();
-            for _ in 0..200 {
-                let after = error();
-                residuals.push(std::f32::consts::SQRT_2 * error() + after - before);
+        // Sixty runs of commands held for four steps. Of six parts of the variance two are the tracker's, one lasts as
+        // long as a command, three are the step's own.
+        let (mut residuals, mut commands, mut runs) = (Vec::new(), Vec::new(), Vec::new());
+        for run in 0..60 {
+            let (mut before, mut lasting, mut command) = (error(), 0.0, [0.0; 2]);
+            for step in 0..200 {
+                let (after, command_before) = (error(), command);
+                if step % 4 == 0 {
+                    (lasting, command) = (error(), [error(), error()]);
+                }
+                commands.push([command[0], command[1], command_before[0], command_before[1]]);
+                residuals.push(3f32.sqrt() * error() + lasting + after - before);
                 runs.push(run);
                 before = after;
             }
         }
         let contexts = vec![[0.0; 2]; residuals.len()];
         let spread = spread(&contexts, &residuals);
-        let share = own_share(&spread, &contexts, &residuals, &runs)[spread.cell([0.0; 2])];
-        assert!((share - std::f32::consts::FRAC_1_SQRT_2).abs() < 0.05, "{share}");
-        assert_eq!(own_share(&spread, &[], &[], &[]), vec![1.0; CELLS * CELLS]);
+        let found = shares(&spread, &contexts, &residuals, &commands, &runs)[spread.cell([0.0; 2])];
+        assert!((found.step - 0.5f32.sqrt()).abs() < 0.03, "{found:?}");
+        assert!((found.held - (1f32 / 6.0).sqrt()).abs() < 0.03, "{found:?}");
+        assert_eq!(shares(&spread, &[], &[], &[], &[]), vec![Shares::STEP; CELLS * CELLS]);
     }
 
     #[test]

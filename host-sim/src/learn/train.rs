@@ -69,9 +69,8 @@ pub struct Progress {
 pub fn train(logs: &Logs, trainer: &Trainer, seed: u64, watch: impl Fn(Progress)) -> Result<Simulator> {
     let data = Datasets::from_logs(logs);
     let mut school = School { trainer, seed, runs: logs.runs.len(), watch, missing: Vec::new() };
-    let motion = Scattering { context: motion_context, moves: true };
     // D and α are the sonar's context themselves.
-    let sonar = Scattering { context: |inputs: &[f32; 2]| *inputs, moves: false };
+    let (motion, sonar) = (motion_context, |inputs: &[f32; 2]| *inputs);
     let value = Kind { activation: Activation::Linear, loss: Loss::Squares };
     let probability = Kind { activation: Activation::Ramp, loss: Loss::Logistic };
     let reading = Kind { activation: Activation::Linear, loss: Loss::Mixture };
@@ -108,8 +107,24 @@ pub fn train(logs: &Logs, trainer: &Trainer, seed: u64, watch: impl Fn(Progress)
         added: Vec::new(),
         missing: school.missing,
     };
-    simulator.reference = Some(reference::learn(&simulator, logs));
+    let reference = reference::learn(&simulator, logs);
+    if let Some(motion) = &reference.motion {
+        spread_about(&mut simulator.forward, &data.forward, |speeds| motion.correction(speeds)[0]);
+        spread_about(&mut simulator.lateral, &data.lateral, |speeds| motion.correction(speeds)[1]);
+        spread_about(&mut simulator.turn, &data.turn, |speeds| motion.correction(speeds)[2].to_degrees());
+    }
+    simulator.reference = Some(reference);
     Ok(simulator)
+}
+
+/// Sets the spread of a motion network to what is left about the network and its known misfit together.
+fn spread_about(learned: &mut Option<Learned<4>>, data: &Dataset<4>, correction: impl Fn(&[f64; 4]) -> f64) {
+    let Some(learned) = learned else { return };
+    let contexts: Vec<[f32; 2]> = data.inputs.iter().map(motion_context).collect();
+    let misfit = data.inputs.iter().map(|speeds| correction(&speeds.map(f64::from)) as f32);
+    let left: Vec<f32> = residuals(&learned.network, data).iter().zip(misfit).map(|(r, m)| r - m).collect();
+    learned.spread = scatter::spread(&contexts, &left);
+    learned.spread.shares = scatter::shares(&learned.spread, &contexts, &left, &data.inputs, &data.runs);
 }
 
 /// Whether a run is kept from training, so that residuals on it are honest; none is when there are too few.
@@ -151,7 +166,7 @@ impl<W: Fn(Progress)> School<'_, W> {
         data: &Dataset<N>,
         shape: Shape,
         kind: Kind,
-        Scattering { context, moves }: Scattering<N>,
+        context: impl Fn(&[f32; N]) -> [f32; 2],
     ) -> Option<Learned<N>> {
         let fitted = data.of_runs(|run| !is_held_out(run, self.runs));
         if let Some(reason) = unsupported(&fitted) {
@@ -171,21 +186,9 @@ impl<W: Fn(Progress)> School<'_, W> {
         };
         let contexts: Vec<[f32; 2]> = judged.inputs.iter().map(context).collect();
         let residuals = residuals(&network, judged);
-        let mut spread = scatter::spread(&contexts, &residuals);
-        if moves {
-            spread.own_share = scatter::own_share(&spread, &contexts, &residuals, &judged.runs);
-        }
+        let spread = scatter::spread(&contexts, &residuals);
         Some(Learned { network, spread })
     }
-}
-
-/// What the scatter about a network depends on.
-#[derive(Clone, Copy)]
-struct Scattering<const N: usize> {
-    /// The two context variables.
-    context: fn(&[f32; N]) -> [f32; 2],
-    /// Whether the network predicts a difference of tracked poses.
-    moves: bool,
 }
 
 /// Why a data set trains nothing, if so.

@@ -12,7 +12,8 @@ use mindgap_core::maths::Binary32;
 use pulp::{Simd, WithSimd};
 
 use super::Noise;
-use super::course::{Course, Ending, Job, Moment, Outcome};
+use super::beam::Beam;
+use super::course::{Course, Ending, Job, Moment, Outcome, Sensor};
 use super::draws::{Draws, Seeds};
 use super::room::Point;
 use super::scatter::LEVELS;
@@ -50,6 +51,8 @@ struct Run<'a> {
     held: Option<usize>,
     /// What added effects look back on.
     past: Past,
+    /// The residuals that last as long as it is held.
+    held_levels: [usize; 3],
 }
 
 /// The draws of one step.
@@ -58,8 +61,16 @@ struct StepDraws {
     echo: Row,
     /// The reading is the constant one where this is below its probability.
     constant: Row,
-    /// Raw bits that choose residuals.
+    /// Raw bits that choose residuals of the step.
     bits: [u32; WIDEST],
+    /// The same for residuals that last.
+    held_bits: [u32; WIDEST],
+}
+
+/// What came back to the sensors that are beams.
+struct Heard {
+    reading_cm: Row,
+    scatter_cm: Row,
 }
 
 /// What the sensors face, and what the networks say of it.
@@ -84,18 +95,20 @@ impl<W: FnMut(Moment), F: FnMut(usize, Outcome)> WithSimd for Batch<'_, W, F> {
             let from = (robots.x_cm, robots.y_cm);
             let may_touch = robots.advance(simd, &draws);
             let look = robots.look(simd);
+            let heard = robots.hear(simd);
             for (lane, may_touch) in may_touch.into_iter().enumerate().take(width) {
                 let Some(run) = &mut robots.runs[lane] else { continue };
                 let to_cm = point(&robots.x_cm, &robots.y_cm, lane);
                 let from_cm = point(&from.0, &from.1, lane);
                 let radius_cm = self.course.robot.body_radius_cm;
                 let touch = if may_touch > 0.0 { self.course.room.touch(from_cm, to_cm, radius_cm) } else { None };
-                let echo_cm = match self.course.wrapped.as_ref().filter(|w| w.senses()) {
-                    None => look.echo_cm(lane, &draws, self.course),
-                    Some(wrapped) => {
+                let echo_cm = match (&self.course.wrapped, &self.course.beam, run.job.sensor) {
+                    (Some(wrapped), ..) if wrapped.senses() => {
                         let pose = Pose::new(to_cm.x, to_cm.y, f64::from(robots.heading_rad[lane]));
                         wrapped.echo_cm(&mut run.past, pose, draws.echo[lane])
                     }
+                    (_, Some(beam), Sensor::Beam) => heard.echo_cm(lane, &draws, beam, self.course),
+                    _ => look.echo_cm(lane, &draws, self.course),
                 };
                 let outcome = run.close_step(from_cm, to_cm, touch, echo_cm);
                 let at = outcome.map_or(to_cm, |o| o.end_cm);
@@ -126,19 +139,27 @@ impl<'a> Robots<'a> {
         if let Some((_, job)) = next {
             self.seeds.set(lane, job.seed);
         }
-        self.runs[lane] =
-            next.map(|(number, job)| Run { number, job, machine: Machine::start(), held: None, past: Past::default() });
+        self.runs[lane] = next.map(|(number, job)| Run {
+            number,
+            job,
+            machine: Machine::start(),
+            held: None,
+            held_levels: [0; 3],
+            past: Past::default(),
+        });
     }
 
     #[inline(always)]
     fn draw<S: Simd>(&mut self, simd: S) -> StepDraws {
         let width = Lanes::<S>::WIDTH;
-        let mut draws = StepDraws { echo: [0.0; WIDEST], constant: [1.0; WIDEST], bits: [0; WIDEST] };
+        let mut draws =
+            StepDraws { echo: [0.0; WIDEST], constant: [1.0; WIDEST], bits: [0; WIDEST], held_bits: [0; WIDEST] };
         let mut generators = Draws::load(simd, &self.seeds);
         draws.echo = row(generators.uniform());
         if self.course.noise == Noise::Learned {
             draws.constant = row(generators.uniform());
             simd.partial_store_u32s(&mut draws.bits[..width], generators.bits());
+            simd.partial_store_u32s(&mut draws.held_bits[..width], generators.bits());
         }
         generators.store(&mut self.seeds);
         draws
@@ -153,8 +174,9 @@ impl<'a> Robots<'a> {
         for lane in 0..width {
             let Some(run) = &mut self.runs[lane] else { continue };
             let tuple = run.machine.tuple();
+            let first = run.held != Some(tuple);
             let mut motion = match &self.course.wrapped {
-                None => *run.job.motions.motion(tuple, run.held != Some(tuple)),
+                None => *run.job.motions.motion(tuple, first),
                 Some(wrapped) => {
                     let at = point(&self.x_cm, &self.y_cm, lane);
                     let pose = Pose::new(at.x, at.y, f64::from(self.heading_rad[lane]));
@@ -165,7 +187,10 @@ impl<'a> Robots<'a> {
             };
             run.held = Some(tuple);
             if self.course.noise == Noise::Learned {
-                motion = self.course.motion.scatter(&motion, [0, 1, 2].map(|i| draws.level(lane, i)));
+                if first {
+                    run.held_levels = [0, 1, 2].map(|i| level(draws.held_bits[lane], i));
+                }
+                motion = self.course.motion.scatter(&motion, [0, 1, 2].map(|i| draws.level(lane, i)), run.held_levels);
             }
             (forward[lane], lateral[lane], turn[lane]) = (motion.forward_cm, motion.lateral_cm, motion.turn_rad);
         }
@@ -181,9 +206,9 @@ impl<'a> Robots<'a> {
         row(touching.select(heading.constant(1.0), heading.constant(0.0)))
     }
 
-    /// Casts every sensor's axis into the room and asks the two sonar networks.
+    /// Where every sensor is, its axis as a unit vector, and its angle in degrees.
     #[inline(always)]
-    fn look<S: Simd>(&self, simd: S) -> Look {
+    fn sensors<S: Simd>(&self, simd: S) -> (Point<S>, Point<S>, Lanes<S>) {
         let course = self.course;
         let sonar = &course.robot.ultrasonic;
         let heading = load(simd, &self.heading_rad);
@@ -197,6 +222,27 @@ impl<'a> Robots<'a> {
         let (cos_yaw, sin_yaw) = (heading.constant(course.yaw_direction[0]), heading.constant(course.yaw_direction[1]));
         let axis = Point { x: c * cos_yaw - s * sin_yaw, y: s * cos_yaw + c * sin_yaw };
         let axis_deg = heading * heading.constant(180.0 / PI) + heading.constant(sonar.yaw_deg as f32);
+        (origin, axis, axis_deg)
+    }
+
+    /// Listens with every beam, on a course that has one.
+    #[inline(always)]
+    fn hear<S: Simd>(&mut self, simd: S) -> Heard {
+        let Some(beam) = &self.course.beam else {
+            return Heard { reading_cm: [f32::INFINITY; WIDEST], scatter_cm: [0.0; WIDEST] };
+        };
+        let (origin, axis, axis_deg) = self.sensors(simd);
+        let mut generators = Draws::load(simd, &self.seeds);
+        let heard = beam.hear(&self.course.room, origin, axis, axis_deg, &mut generators);
+        generators.store(&mut self.seeds);
+        Heard { reading_cm: row(heard.reading_cm), scatter_cm: row(heard.scatter_cm) }
+    }
+
+    /// Casts every sensor's axis into the room and asks the two sonar networks.
+    #[inline(always)]
+    fn look<S: Simd>(&self, simd: S) -> Look {
+        let course = self.course;
+        let (origin, axis, axis_deg) = self.sensors(simd);
         let faced = course.room.cast(origin, axis, axis_deg);
         let inputs = [faced.distance_cm, faced.alpha_deg];
         let (x, log2_x) = course.echo_probability.scale(inputs);
@@ -237,7 +283,22 @@ impl Run<'_> {
 impl StepDraws {
     /// One of the equally likely residuals: five bits for each of the four networks that scatter.
     fn level(&self, lane: usize, network: u32) -> usize {
-        (self.bits[lane] >> (5 * network)) as usize % LEVELS
+        level(self.bits[lane], network)
+    }
+}
+
+/// One of the equally likely residuals of a network.
+fn level(bits: u32, network: u32) -> usize {
+    (bits >> (5 * network)) as usize % LEVELS
+}
+
+impl Heard {
+    /// The reading of a lane's sensor, if it produces one.
+    fn echo_cm(&self, lane: usize, draws: &StepDraws, beam: &Beam, course: &Course) -> Option<f32> {
+        let sonar = &course.robot.ultrasonic;
+        let echo_cm =
+            beam.report(self.reading_cm[lane], self.scatter_cm[lane], draws.constant[lane], draws.level(lane, 3));
+        echo_cm.map(|echo_cm| echo_cm.clamp(sonar.min_cm as f32, sonar.max_cm as f32))
     }
 }
 

@@ -5,6 +5,7 @@ use mindgap_core::controller::Controller;
 use pulp::Arch;
 
 use super::batch::Batch;
+use super::beam::Beam;
 use super::motion::{MotionNetworks, MotionTable};
 use super::room::Room;
 use super::scatter::{ConstantReading, Spread};
@@ -30,6 +31,8 @@ pub struct Course<'s> {
     pub(super) noise: Noise,
     /// There when effects were added to the simulator.
     pub(super) wrapped: Option<Wrapped<'s>>,
+    /// There when some runs meet it.
+    pub(super) beam: Option<Beam>,
 }
 
 /// One run to be simulated.
@@ -39,8 +42,19 @@ pub struct Job<'c> {
     pub controller: &'c Controller,
     /// Its motions on this course.
     pub motions: &'c MotionTable,
+    /// Which sensor the robot has.
+    pub sensor: Sensor,
     /// Fixes every draw of the run.
     pub seed: u64,
+}
+
+/// What makes the readings of a run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Sensor {
+    /// The two sonar networks.
+    Networks,
+    /// The beam that the training logs show, on a course that has one; else the networks.
+    Beam,
 }
 
 /// How a run ended.
@@ -92,19 +106,28 @@ impl<'s> Course<'s> {
         let echo_probability = simulator.need(&simulator.echo_probability, "echo_probability")?;
         let echo_value = simulator.need(&simulator.echo_value, "echo_value")?;
         let yaw_rad = robot.ultrasonic.yaw_deg.to_radians();
+        let beyond = simulator.reference.as_ref().filter(|_| noise == Noise::Learned);
+        let motion = MotionNetworks::of(simulator)?.corrected(beyond.and_then(|r| r.motion.as_ref()));
         Ok(Course {
             robot,
             start,
             yaw_direction: [libm::cos(yaw_rad) as f32, libm::sin(yaw_rad) as f32],
             room: Room::new(scene),
-            motion: MotionNetworks::of(simulator)?,
+            motion,
             echo_probability: Folded::new(&echo_probability.network),
             echo_value: Folded::new(&echo_value.network),
             echo_spread: &echo_value.spread,
             constant_reading: simulator.constant_reading,
             noise,
             wrapped: Wrapped::of(simulator, scene, noise)?,
+            beam: None,
         })
+    }
+
+    /// The course with the beam that the training logs of its simulator show, for the runs that ask for it.
+    pub fn with_beam(self, simulator: &Simulator) -> Self {
+        let reference = simulator.reference.as_ref().and_then(|r| r.sonar.as_ref());
+        Course { beam: reference.map(Beam::new), ..self }
     }
 
     /// The motions of a controller on this course.

@@ -3,16 +3,18 @@
 
 use mindgap_core::controller::{Controller, TUPLES};
 
+use super::reference::MotionReference;
 use super::scatter::{Spread, motion_context};
 use super::{Learned, Simulator};
 use crate::problem::Result;
 
-/// The three motion networks of a simulator.
+/// The three motion networks of a simulator, as they are or with what the logs say beyond them.
 #[derive(Clone, Copy)]
 pub struct MotionNetworks<'s> {
     forward: &'s Learned<4>,
     lateral: &'s Learned<4>,
     turn: &'s Learned<4>,
+    reference: Option<&'s MotionReference>,
 }
 
 /// What one step does, in the robot's own frame, before scatter.
@@ -45,7 +47,14 @@ impl<'s> MotionNetworks<'s> {
             forward: simulator.need(&simulator.forward, "forward")?,
             lateral: simulator.need(&simulator.lateral, "lateral")?,
             turn: simulator.need(&simulator.turn, "turn")?,
+            reference: None,
         })
+    }
+
+    /// The networks with the misfit that `reference` knows of put right: a robot that turns two degrees less than its
+    /// network says does so in every step and every run, which no zero-mean scatter stands for.
+    pub fn corrected(self, reference: Option<&'s MotionReference>) -> Self {
+        MotionNetworks { reference, ..self }
     }
 
     /// What a step does for left, right, previous left and previous right command.
@@ -56,7 +65,13 @@ impl<'s> MotionNetworks<'s> {
         let (lateral_cm, lateral_cell) = ask(self.lateral);
         let (turn_deg, turn_cell) = ask(self.turn);
         let cells = [forward_cell, lateral_cell, turn_cell];
-        Motion { forward_cm, lateral_cm, turn_rad: turn_deg.to_radians(), cells }
+        let correction = self.reference.map_or([0.0; 3], |r| r.correction(&speeds.map(f64::from)));
+        Motion {
+            forward_cm: forward_cm + correction[0] as f32,
+            lateral_cm: lateral_cm + correction[1] as f32,
+            turn_rad: turn_deg.to_radians() + correction[2] as f32,
+            cells,
+        }
     }
 
     /// The motions of a controller that starts from rest.
@@ -69,11 +84,13 @@ impl<'s> MotionNetworks<'s> {
         }
     }
 
-    /// Adds to a motion one of the residuals of each network, as far as it is the robot's own.
-    pub fn scatter(&self, motion: &Motion, levels: [usize; 3]) -> Motion {
+    /// Adds to a motion what the robot itself adds: for each network one of the residuals drawn for this step, and one
+    /// drawn when the command began.
+    pub fn scatter(&self, motion: &Motion, step: [usize; 3], held: [usize; 3]) -> Motion {
         let residual = |spread: &Spread, i: usize| {
             let cell = motion.cells[i];
-            spread.own_share[cell] * spread.residuals[cell][levels[i]]
+            let (residuals, shares) = (&spread.residuals[cell], spread.shares[cell]);
+            shares.step * residuals[step[i]] + shares.held * residuals[held[i]]
         };
         Motion {
             forward_cm: motion.forward_cm + residual(&self.forward.spread, 0),

@@ -3,7 +3,7 @@
 use mindgap_core::controller::Controller;
 use serde::Serialize;
 
-use super::course::{Course, Ending, Job, Moment, Outcome};
+use super::course::{Course, Ending, Job, Moment, Outcome, Sensor};
 use crate::chance::derive;
 use crate::evolve::fitness::{REACHED_CM, reached};
 use crate::logs::Scene;
@@ -61,7 +61,8 @@ impl Rehearsal {
         let motions = &course.motions(controller);
         let runs: Vec<SimulatedRun> = (0..runs as u64)
             .map(|run| {
-                let (outcome, moments) = course.trace(Job { controller, motions, seed: derive(seed, &[run]) });
+                let (outcome, moments) =
+                    course.trace(Job { controller, motions, sensor: Sensor::Networks, seed: derive(seed, &[run]) });
                 SimulatedRun::new(&outcome, &moments, course, scene)
             })
             .collect();

@@ -14,9 +14,18 @@ pub struct Spread {
     pub edges: [[f32; CELLS - 1]; 2],
     /// [`LEVELS`] residuals a cell, ascending; cell (i, j) is entry i · [`CELLS`] + j.
     pub residuals: Vec<Vec<f32>>,
-    /// For each cell, how much of a residual's size is the robot's own, 0 to 1; the rest is the tracker's, which a
-    /// simulated robot has none of.
-    pub own_share: Vec<f32>,
+    /// What of a residual a simulated robot has, one entry a cell.
+    pub shares: Vec<Shares>,
+}
+
+/// What a residual's size is made of, as shares of it whose squares add up to one at most. What is missing is the
+/// tracker's error, which a simulated robot has none of.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Shares {
+    /// Drawn anew in each step.
+    pub step: f32,
+    /// Lasts as long as a command is held: a network's misfit there, or a matter of the place.
+    pub held: f32,
 }
 
 /// A wrong reading that the sensor produces now and then wherever it looks ("roughly 20cm", paper, section VIII).
@@ -26,6 +35,15 @@ pub struct ConstantReading {
     pub value_cm: f32,
     /// The chance that a reading is this one.
     pub probability: f32,
+}
+
+impl Shares {
+    /// All of a residual is drawn anew in each step.
+    pub const STEP: Shares = Shares { step: 1.0, held: 0.0 };
+
+    fn is_sound(&self) -> bool {
+        [self.step, self.held].iter().all(|share| (0.0..=1.0).contains(share))
+    }
 }
 
 impl Spread {
@@ -44,8 +62,8 @@ impl Spread {
     pub fn is_sound(&self) -> bool {
         let finite = |values: &[f32]| values.iter().all(|v| v.is_finite());
         self.edges.iter().all(|e| finite(e))
-            && self.own_share.len() == CELLS * CELLS
-            && self.own_share.iter().all(|share| (0.0..=1.0).contains(share))
+            && self.shares.len() == CELLS * CELLS
+            && self.shares.iter().all(Shares::is_sound)
             && self.residuals.len() == CELLS * CELLS
             && self.residuals.iter().all(|r| r.len() == LEVELS && finite(r))
     }

@@ -13,7 +13,7 @@ pub const FAN_DEG: [f64; 9] = [-20.0, -15.0, -10.0, -5.0, 0.0, 5.0, 10.0, 15.0, 
 /// How many numbers describe a ray's strength.
 pub const STRENGTHS: usize = 10;
 /// Beyond this nothing changes any more, cm.
-const FAR_CM: f64 = 300.0;
+pub const FAR_CM: f64 = 300.0;
 /// The chance of a reading from nowhere: no model is certain.
 const STRAY: f64 = 0.003;
 /// A constant reading scatters by about this, cm.
@@ -303,4 +303,47 @@ fn normal_quantile(p: f64) -> f64 {
 
 fn near(z_cm: f64, constant_cm: f64) -> f64 {
     student(z_cm - constant_cm, CONSTANT_SCATTER_CM)
+}
+
+#[cfg(test)]
+mod tests {
+    use rand::RngExt;
+
+    use super::*;
+    use crate::chance::generator;
+
+    const SENSOR: SonarReference = SonarReference {
+        strength: [2.0, -1.0, 0.0, -1.0, 0.0, 0.0, 0.0, 0.0, -0.5, 0.0],
+        bias: [1.0, 0.0, 0.0],
+        log_scatter: [0.5, 0.0, 0.0],
+        constant: [0.1, 20.0],
+        constant_for_none: 0.2,
+        short: 0.05,
+        lost: 0.1,
+        fan_width: 1.0,
+        range_cm: [4.0, 240.0],
+    };
+
+    /// Draws follow the law that logs are judged by: the share of missing readings and of each range is as likely.
+    #[test]
+    fn drawn_readings_are_as_likely_as_they_come() {
+        let ray = |i: usize| Ray { distance_cm: 90.0 + 8.0 * i as f64, alpha_deg: 10.0 * i as f64 };
+        let fan: Fan = std::array::from_fn(ray);
+        let change = Change { ghost_for_echo: 0.2, ghost_cm: 55.0, gain: 1.1, long: 0.05, ..Change::NONE };
+        let draw = Draw { change: &change, previous_cm: None, scatters: true };
+        let mut rng = generator(3, &[]);
+        const DRAWS: usize = 40_000;
+        let drawn: Vec<Option<f64>> = (0..DRAWS).map(|_| SENSOR.draw(&fan, &draw, || rng.random())).collect();
+        let share =
+            |holds: &dyn Fn(&Option<f64>) -> bool| drawn.iter().filter(|d| holds(d)).count() as f64 / DRAWS as f64;
+        let likely = |z: Option<f64>| libm::exp(SENSOR.log_likelihood(&fan, &change, z, None)[0]);
+        assert!((share(&|z| z.is_none()) - likely(None)).abs() < 0.01);
+        for (from, to) in [(15.0, 25.0), (50.0, 60.0), (60.0, 90.0), (95.0, 110.0), (110.0, 150.0), (150.0, 230.0)] {
+            let cells = 400;
+            let width = (to - from) / f64::from(cells);
+            let expected: f64 = (0..cells).map(|i| width * likely(Some(from + (f64::from(i) + 0.5) * width))).sum();
+            let there = share(&|z| z.is_some_and(|z| (from..to).contains(&z)));
+            assert!((there - expected).abs() < 0.015, "{from} to {to}: {there} drawn, {expected} likely");
+        }
+    }
 }
