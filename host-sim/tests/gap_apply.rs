@@ -68,8 +68,7 @@ fn an_effect_that_changes_nothing_changes_no_motion() {
 
 #[test]
 fn an_effect_changes_runs_and_the_same_seed_repeats_them() {
-    for (id, values) in [("slope", vec![1.0, 0.2]), ("sonar_offset", vec![15.0]), ("battery_sag", vec![0.6])]
-    {
+    for (id, values) in [("slope", vec![1.0, 0.2]), ("sonar_offset", vec![15.0]), ("battery_sag", vec![0.6])] {
         let form = effects::all().into_iter().find(|form| form.id == id).expect("the effect is in the bank");
         let changed = with(vec![Added::new(form, &values)]);
         assert_ne!(rehearsed(&changed), rehearsed(&SIMULATOR), "{id}");

@@ -3,7 +3,8 @@
 use std::fs;
 use std::path::Path;
 
-use super::{Folder, seal};
+use super::Folder;
+use super::seal::Published;
 use crate::files;
 use crate::gap::baseline::Baseline;
 use crate::gap::diagnose;
@@ -21,7 +22,7 @@ const SEED: u64 = 1;
 /// When the folder is no challenge, or when an answer cannot be written.
 pub fn answer(folder: &Path, mut watch: impl FnMut(usize)) -> Result<usize> {
     let folder = Folder(folder);
-    let cases = seal::published(&folder.cases())?;
+    let cases: Vec<Published> = files::read_csv(&folder.cases())?;
     let mut simulators: Vec<(String, Simulator)> = Vec::new();
     let answers = folder.answer("").parent().map(Path::to_path_buf).unwrap_or_default();
     fs::create_dir_all(&answers).map_err(|e| Problem::in_file(&answers, format!("cannot be made: {e}")))?;

@@ -6,7 +6,7 @@ use rand::seq::SliceRandom;
 use rand::{Rng, RngExt};
 use rayon::prelude::*;
 
-use super::seal::{self, Published, Sealed};
+use super::seal::{Published, Sealed};
 use super::{Folder, rooms};
 use crate::built_in_robot::{ActiveEffect, Effect, record};
 use crate::chance::{Generator, derive, generator};
@@ -70,7 +70,7 @@ fn fill(folder: &Folder, cases: usize, seed: u64) -> Result<()> {
         .collect::<Result<_>>()?;
     let (sealed, published): (Vec<Sealed>, Vec<Published>) = made.into_iter().unzip();
     files::write_json(&folder.sealed(), &sealed)?;
-    seal::publish(&folder.cases(), &published)
+    files::write_csv(&folder.cases(), &published)
 }
 
 /// What is different in each case, in no order; single effects come about equally often.

@@ -6,7 +6,7 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 
 use super::Folder;
-use super::seal::{self, Sealed};
+use super::seal::{Published, Sealed};
 use crate::built_in_robot::Effect;
 use crate::files;
 use crate::gap::Diagnosis;
@@ -92,7 +92,7 @@ struct Opened {
 /// When a case lacks an answer, or when a sealed entry is not what was committed to.
 pub fn score(folder: &Path) -> Result<Score> {
     let folder = Folder(folder);
-    let published = seal::published(&folder.cases())?;
+    let published: Vec<Published> = files::read_csv(&folder.cases())?;
     let sealed: Vec<Sealed> = files::read_json(&folder.sealed())?;
     let opened = published
         .iter()

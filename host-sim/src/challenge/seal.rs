@@ -1,14 +1,9 @@
 //! Sealed answers: what is different in a case, and the commitment that binds whoever made it.
 
 use std::fmt::Write;
-use std::path::Path;
 
-use csv::{Reader, Writer};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
-
-use crate::files;
-use crate::problem::{Problem, Result};
 
 /// What is different in a case.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -47,30 +42,6 @@ impl Sealed {
     pub fn ids(&self) -> Vec<&str> {
         self.effects.iter().map(|effect| effect.split('=').next().unwrap_or(effect)).collect()
     }
-}
-
-/// Writes the list of cases.
-///
-/// # Errors
-/// When it cannot be written.
-pub fn publish(path: &Path, cases: &[Published]) -> Result<()> {
-    let mut table = Writer::from_writer(Vec::new());
-    let text = cases.iter().try_for_each(|case| table.serialize(case)).map(|()| table.into_inner());
-    let broken = |e: &dyn std::error::Error| Problem::in_file(path, e.to_string());
-    files::write(path, text.map_err(|e| broken(&e))?.map_err(|e| broken(&e))?)
-}
-
-/// Reads the list of cases.
-///
-/// # Errors
-/// When it is missing or broken.
-pub fn published(path: &Path) -> Result<Vec<Published>> {
-    let text = files::read_text(path)?;
-    let line = |e: csv::Error| {
-        let line = e.position().map_or(0, csv::Position::line);
-        Problem::at_line(path, line, e.to_string())
-    };
-    Reader::from_reader(text.as_bytes()).deserialize().collect::<csv::Result<_>>().map_err(line)
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! `mindgap challenge`: the blind test of `mindgap diagnose`.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
 
@@ -9,7 +9,7 @@ use crate::challenge::answer::answer;
 use crate::challenge::make::make;
 use crate::challenge::score::{Score, Share, score};
 use crate::files;
-use crate::problem::{Problem, Result};
+use crate::problem::Result;
 
 /// The blind test of a diagnosis: make cases with withheld effects, answer them, score the answers.
 #[derive(Args)]
@@ -70,19 +70,12 @@ impl Challenge {
                     files::write_json(path, &score)?;
                 }
                 if let Some(path) = csv {
-                    files::write(path, table(&score, path)?)?;
+                    files::write_csv(path, &score.cases)?;
                 }
                 Ok(text(&score))
             }
         }
     }
-}
-
-fn table(score: &Score, path: &Path) -> Result<Vec<u8>> {
-    let mut table = csv::Writer::from_writer(Vec::new());
-    let broken = |e: String| Problem::in_file(path, e);
-    score.cases.iter().try_for_each(|case| table.serialize(case)).map_err(|e| broken(e.to_string()))?;
-    table.into_inner().map_err(|e| broken(e.to_string()))
 }
 
 fn text(score: &Score) -> String {

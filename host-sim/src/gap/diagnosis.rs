@@ -183,6 +183,7 @@ pub fn findings(mut baseline: Baseline, logs: &Logs) -> Result<Findings> {
     let parts = confirmation::parts(logs);
     let evidence = Evidence::of(&parts.found_on, fan_width);
     let notes = admission::admit(&mut baseline, &evidence, logs)?;
+    let evidence = evidence.expect(baseline.motion.as_ref());
     let given = Given { baseline: &baseline, evidence: &evidence };
     let explanation = Explanation::find(&given);
     let verdict = explanation.verdict();

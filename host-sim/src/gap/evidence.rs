@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use super::baseline::Drive;
 use super::effect::{Moment, Motion, WINDOW, middle};
 use crate::geometry::{Pose, Wall, cast};
 use crate::logs::{Logs, Robot, Run, samples};
@@ -35,6 +36,8 @@ pub struct Row {
     pub moment: Moment,
     /// What the step did, where its end was seen too.
     pub motion: Option<Motion>,
+    /// What the simulator expects of the commands as logged, once [`Evidence::expect`] has asked it.
+    pub expected: Option<Motion>,
     /// What the sensor said.
     pub echo_cm: Option<f64>,
     /// What it said the row before.
@@ -89,6 +92,7 @@ impl Evidence {
                     stretch,
                     moment,
                     motion,
+                    expected: None,
                     echo_cm: row.echo_cm,
                     previous_echo_cm,
                     fan,
@@ -96,6 +100,15 @@ impl Evidence {
             }
         }
         Evidence { robot: logs.robot, sides, fan_width, blocks: logs.runs.len() * parts, rows }
+    }
+
+    /// Asks the simulator once what it expects of every row: most hypotheses leave the commands as they are.
+    pub fn expect(mut self, drive: Option<&Drive>) -> Self {
+        for row in &mut self.rows {
+            let [now, before, ..] = row.moment.commands;
+            row.expected = drive.map(|drive| drive.step(now, before));
+        }
+        self
     }
 
     /// The rows of a block.

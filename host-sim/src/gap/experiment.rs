@@ -134,7 +134,18 @@ impl Bench<'_> {
             track_cm: self.logs.robot.track_cm,
         };
         let fan = fan_at(&self.logs.sides, &sensor, self.logs.fan_width);
-        Row { run: 0, at, block: 0, stretch: 1.0, moment, motion: None, echo_cm: None, previous_echo_cm: None, fan }
+        Row {
+            run: 0,
+            at,
+            block: 0,
+            stretch: 1.0,
+            moment,
+            motion: None,
+            expected: None,
+            echo_cm: None,
+            previous_echo_cm: None,
+            fan,
+        }
     }
 
     /// By how many nats the chosen effects are expected to be likelier than the rival where they are there.

@@ -185,7 +185,11 @@ impl Hypothesis {
     pub fn residuals(&self, drive: &Drive, rows: &[Row], values: &[f64]) -> Vec<Option<[f64; 3]>> {
         let residual = |row: &Row| {
             let logged = row.motion?;
-            let predicted = self.motion(drive, &row.moment, values);
+            let usual = [row.moment.commands[0], row.moment.commands[1]];
+            let predicted = self.wrap(&row.moment, values, |now, before| match row.expected {
+                Some(expected) if usual == [now, before] => expected,
+                _ => drive.step(now, before),
+            });
             Some([
                 logged.forward_cm - predicted.forward_cm,
                 logged.lateral_cm - predicted.lateral_cm,

@@ -166,8 +166,9 @@ fn load_on_turns(v: &[f64], moment: &Moment, motion: &mut Motion) {
 /// Part of every change of command is not there yet.
 fn slow_start(v: &[f64], _: &Moment, window: &mut Window) {
     let late = (v[3] * v[0].abs()).min(1.0);
-    for m in 0..2 {
-        window[0][m] += late * (window[1][m] - window[0][m]);
+    let [now, before, ..] = window;
+    for (c, earlier) in now.iter_mut().zip(before) {
+        *c += late * (*earlier - *c);
     }
 }
 
