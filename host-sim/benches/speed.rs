@@ -13,7 +13,7 @@ use mindgap_host_sim::genetic::Settings;
 use mindgap_host_sim::learn::dataset::Dataset;
 use mindgap_host_sim::learn::genome::Shape;
 use mindgap_host_sim::learn::{paper as paper_trainer, train};
-use mindgap_host_sim::simulator::course::{Course, Job};
+use mindgap_host_sim::simulator::course::{Course, Job, Sensor};
 use mindgap_host_sim::simulator::{Noise, Simulator};
 use rand::RngExt;
 
@@ -25,16 +25,17 @@ fn main() {
 }
 
 /// Simulated runs side by side on one thread, all their steps taken; the counter is robot-steps.
-#[divan::bench(args = [Noise::Paper, Noise::Learned])]
-fn robot_steps(bencher: Bencher, noise: Noise) {
+#[divan::bench(args = [(Noise::Paper, Sensor::Networks), (Noise::Learned, Sensor::Networks), (Noise::Learned, Sensor::Beam)])]
+fn robot_steps(bencher: Bencher, (noise, sensor): (Noise, Sensor)) {
     const RUNS: u64 = 1000;
     let (simulator, scene) = (simulator(), four_obstacles());
     let course = Course::new(&simulator, &scene, scene.starts[0], noise).expect("the robot has room");
+    let course = if sensor == Sensor::Beam { course.with_beam(&simulator) } else { course };
     // It turns on the spot, and no reading is below zero: every run goes on to its last step.
     let turning = Tuple { left: 30, right: -30, when: When::Smaller, threshold_cm: 0 };
     let controller = &Controller { step_ms: 400, max_steps: MAX_STEPS, tuples: [turning; 6] };
     let motions = &course.motions(controller);
-    let jobs: Vec<Job> = (0..RUNS).map(|seed| Job { controller, motions, seed }).collect();
+    let jobs: Vec<Job> = (0..RUNS).map(|seed| Job { controller, motions, sensor, seed }).collect();
     let steps: u64 = course.run(&jobs).iter().map(|outcome| u64::from(outcome.steps)).sum();
     bencher.counter(ItemsCount::new(steps)).bench(|| course.run(&jobs));
 }

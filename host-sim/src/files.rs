@@ -51,7 +51,12 @@ pub fn write(path: &Path, content: impl AsRef<[u8]>) -> Result<()> {
         file.persist(path)?;
         Ok(())
     };
-    attempt().map_err(|e| Problem::in_file(path, format!("cannot be written: {e}")))
+    attempt().map_err(|e| {
+        // The error's own text would name the temporary file.
+        let why =
+            if folder.is_dir() { e.kind().to_string() } else { format!("there is no folder {}", folder.display()) };
+        Problem::in_file(path, format!("cannot be written: {why}"))
+    })
 }
 
 /// Reads a JSON file.

@@ -68,7 +68,7 @@ pub fn reached(outcome: &Outcome, target_cm: DVec2) -> bool {
 
 /// By turns the two networks and, where the course has it, the beam.
 fn sensor_of(run: usize) -> Sensor {
-    if run % 2 == 0 { Sensor::Networks } else { Sensor::Beam }
+    if run.is_multiple_of(2) { Sensor::Networks } else { Sensor::Beam }
 }
 
 impl Task<'_> {

@@ -201,7 +201,7 @@ fn unsupported<const N: usize>(data: &Dataset<N>) -> Option<String> {
         return Some("one of its inputs is the same in all samples (such as all commands equal)".into());
     }
     let targets = data.target_range();
-    flat(&targets).then(|| format!("what it should predict is {} in every sample", targets.start()))
+    flat(&targets).then(|| format!("what was logged for it is {} in every sample", targets.start()))
 }
 
 /// Takes a constant wrong reading out of the spread of the readings, which then is that of the others.

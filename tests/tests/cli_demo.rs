@@ -1,0 +1,46 @@
+//! The whole job as somebody without a robot sees it first.
+
+use std::fs;
+
+use mindgap_tests::command::Workshop;
+
+#[test]
+fn evolved_controllers_reach_the_target_on_the_robot() {
+    let workshop = Workshop::new();
+    let done = workshop.call("demo --out out");
+    assert_eq!(done.code, 0, "{}", done.err);
+    assert_eq!(done.err, "", "a pipe shows no progress");
+
+    // controller for | simulated: reached | median | robot: reached | median
+    let rows = done.out.lines().filter(|line| line.starts_with("start "));
+    let on_the_robot: Vec<f64> = rows
+        .map(|row| {
+            let percents: Vec<&str> = row.split('%').collect();
+            percents[1]
+                .split_whitespace()
+                .next_back()
+                .and_then(|n| n.parse().ok())
+                .expect("a share of the robot's runs")
+        })
+        .collect();
+    // As in the paper: at least three of four starts, in at least two of three runs.
+    assert_eq!(on_the_robot.len(), 4, "{}", done.out);
+    assert!(on_the_robot.iter().filter(|percent| **percent > 60.0).count() >= 3, "{}", done.out);
+
+    let out = workshop.path().join("out");
+    for start in 1..=4 {
+        let program = fs::read_to_string(out.join(format!("start-{start}.nxc"))).expect("a program for each start");
+        assert!(program.contains("task main()") && program.contains("simulator: simulator.json"), "{program}");
+    }
+    for figure in
+        ["figure-2-expected-against-predicted", "figure-3-sonar-surfaces", "figure-4-simulated-and-real-paths"]
+    {
+        let png = fs::read(out.join(format!("{figure}.png"))).expect("a picture");
+        assert!(png.starts_with(b"\x89PNG") && png.len() > 10_000, "{figure}.png");
+        let svg = fs::read_to_string(out.join(format!("{figure}.svg"))).expect("a picture");
+        assert!(svg.contains("<svg") && svg.trim_end().ends_with("</svg>"), "{figure}.svg");
+    }
+    for file in ["simulator.json", "evaluation.json", "scene.toml", "logs/robot.toml", "held-out-logs/run-000.csv"] {
+        assert!(out.join(file).is_file(), "{file}");
+    }
+}
