@@ -48,6 +48,9 @@ impl Diagnose {
             }
         };
         let diagnosis = &found.diagnosis;
+        if let Some(path) = &self.apply {
+            with_effects(simulator, &found)?.write(path)?;
+        }
         if let Some(path) = &self.json {
             files::write_json(path, diagnosis)?;
         }
@@ -57,9 +60,6 @@ impl Diagnose {
         }
         if let (Some(path), Some(experiment)) = (&self.next_experiment, &found.experiment) {
             experiment.commands.write(path)?;
-        }
-        if let Some(path) = &self.apply {
-            with_effects(simulator, &found)?.write(path)?;
         }
         Ok(diagnosis_text::text(diagnosis))
     }
