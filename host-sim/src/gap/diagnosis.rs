@@ -185,10 +185,14 @@ pub fn findings(mut baseline: Baseline, logs: &Logs) -> Result<Findings> {
     let notes = admission::admit(&mut baseline, &evidence, logs)?;
     let evidence = evidence.expect(baseline.motion.as_ref());
     let given = Given { baseline: &baseline, evidence: &evidence };
+    let kept_back = parts.kept_back.map(|logs| Evidence::of(&logs, fan_width));
     let explanation = Explanation::find(&given);
+    let explanation = match &kept_back {
+        Some(kept_back) => explanation.confirmed(&given, kept_back),
+        None => explanation,
+    };
     let verdict = explanation.verdict();
     let effects = if verdict == Verdict::Known { effects(&explanation, logs.robot.step_ms) } else { Vec::new() };
-    let kept_back = parts.kept_back.map(|logs| Evidence::of(&logs, fan_width));
     let shrink = if verdict == Verdict::NoGap { None } else { shrunk(&explanation, &given, kept_back.as_ref()) };
     let experiment = if verdict == Verdict::Known { experiment::next(&explanation, &given) } else { None };
     let added = if verdict == Verdict::Known { explanation.chosen.added() } else { Vec::new() };

@@ -66,6 +66,8 @@ pub const LEAST_NATS: f64 = 12.0;
 const LEAST_NATS_IF_VAGUE: f64 = 25.0;
 /// and so many standard errors.
 const LEAST_Z: f64 = 2.8;
+/// On the runs kept back the effects have to gain this many nats.
+const LEAST_CONFIRMED_NATS: f64 = 3.0;
 /// A further effect on the same stage has to gain this share of what is explained already: less is within the reach of
 /// a form that is not quite right.
 const LEAST_SHARE: f64 = 0.08;
@@ -105,6 +107,18 @@ impl Explanation {
         let beyond_none = leftovers(&none, logs);
         let beyond_chosen = if chosen.ids().is_empty() { leftovers(&none, logs) } else { leftovers(&chosen, logs) };
         Explanation { none, chosen, rivals, beyond_none, beyond_chosen }
+    }
+}
+
+impl Explanation {
+    /// What holds on runs that nothing was sought on: effects that gain nothing there explain nothing.
+    pub fn confirmed(self, found: &Given, kept_back: &Evidence) -> Self {
+        let judged = |fit: &Fitted| fit.judged_on(kept_back, found).total().iter().sum::<f64>();
+        if self.chosen.ids().is_empty() || judged(&self.chosen) - judged(&self.none) >= LEAST_CONFIRMED_NATS {
+            return self;
+        }
+        let beyond_chosen = leftovers(&self.none, found);
+        Explanation { chosen: self.none.clone(), rivals: Vec::new(), beyond_chosen, ..self }
     }
 }
 
