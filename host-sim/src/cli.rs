@@ -3,9 +3,12 @@
 //! A command returns what it has to say, and says it only once everything is done: whoever reads just the first line
 //! of it, as `mindgap evaluate ... | head -1` does, stops nothing halfway.
 
+mod challenge;
 mod crosscheck;
 mod demo;
 mod diagnose;
+mod diagnosis_page;
+mod diagnosis_text;
 mod evaluate;
 mod evolve;
 mod export;
@@ -34,6 +37,7 @@ struct Cli {
 
 #[derive(Subcommand)]
 enum Command {
+    Challenge(challenge::Challenge),
     Crosscheck(crosscheck::Crosscheck),
     Demo(demo::Demo),
     Diagnose(diagnose::Diagnose),
@@ -49,6 +53,7 @@ enum Command {
 /// when the call is wrong.
 pub fn run() -> ExitCode {
     let done = match Cli::parse().command {
+        Command::Challenge(command) => command.run(),
         Command::Crosscheck(command) => command.run(),
         Command::Demo(command) => command.run(),
         Command::Diagnose(command) => command.run(),

@@ -59,6 +59,40 @@ pub fn write(path: &Path, content: impl AsRef<[u8]>) -> Result<()> {
     })
 }
 
+/// Reads a JSON file.
+///
+/// # Errors
+/// When it is missing or not of the expected form.
+pub fn read_json<T: DeserializeOwned>(path: &Path) -> Result<T> {
+    let text = read_text(path)?;
+    serde_json::from_str(&text).map_err(|e| Problem::at_line(path, e.line() as u64, e.to_string()))
+}
+
+/// Writes rows as CSV under their fields' names.
+///
+/// # Errors
+/// As [`write()`].
+pub fn write_csv(path: &Path, rows: &[impl Serialize]) -> Result<()> {
+    let mut table = csv::Writer::from_writer(Vec::new());
+    for row in rows {
+        table.serialize(row).map_err(|e| Problem::in_file(path, e.to_string()))?;
+    }
+    write(path, table.into_inner().map_err(|e| Problem::in_file(path, e.to_string()))?)
+}
+
+/// Reads what [`write_csv`] wrote.
+///
+/// # Errors
+/// When the file is missing or a row is not of the expected form.
+pub fn read_csv<T: DeserializeOwned>(path: &Path) -> Result<Vec<T>> {
+    let text = read_text(path)?;
+    let broken = |e: csv::Error| {
+        let line = e.position().map_or(0, csv::Position::line);
+        Problem::at_line(path, line, e.to_string())
+    };
+    csv::Reader::from_reader(text.as_bytes()).deserialize().collect::<csv::Result<_>>().map_err(broken)
+}
+
 /// Writes a value as JSON.
 ///
 /// # Errors

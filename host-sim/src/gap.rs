@@ -7,18 +7,25 @@
 pub mod admission;
 pub mod baseline;
 pub mod channel;
+pub mod circumstances;
+pub mod confirmation;
 pub mod contexts;
 pub mod diagnosis;
 pub mod effect;
 pub mod effects;
 pub mod evidence;
 pub mod excitation;
+pub mod experiment;
 pub mod explanation;
 pub mod generic;
 pub mod hypothesis;
 pub mod kinematic;
+pub mod paths;
+pub mod prediction;
+pub mod scripts;
 pub mod search;
+pub mod shape;
 pub mod shrink;
 pub mod verdict;
 
-pub use diagnosis::{Diagnosis, diagnose};
+pub use diagnosis::{Diagnosis, Findings, diagnose, findings};

@@ -3,6 +3,7 @@
 
 pub mod ascent;
 pub mod built_in_robot;
+pub mod challenge;
 pub mod chance;
 pub mod cli;
 pub mod crosscheck;

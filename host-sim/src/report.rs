@@ -1,8 +1,9 @@
-//! Pictures for people: the figures of the paper, drawn from plain data.
+//! Pictures for people: the figures of the paper and of a diagnosis, drawn from plain data.
 //!
 //! A module a figure; each returns a [`Figure`], which is written as SVG and as the PNG of that very SVG. Nothing here
 //! knows how its data were made. The same data give the same bytes.
 
+pub mod curves;
 pub mod expected_against_predicted;
 pub mod figure;
 pub mod paths;
@@ -15,6 +16,7 @@ mod projection;
 mod style;
 mod trend;
 
+pub use curves::curves;
 pub use expected_against_predicted::expected_against_predicted;
 pub use figure::Figure;
 pub use paths::paths;

@@ -1,5 +1,6 @@
 //! The learned simulator: five networks, how reality scatters about them, and the robot that they stand for.
 
+pub mod added;
 mod batch;
 mod beam;
 pub mod course;
@@ -10,6 +11,7 @@ pub mod reference;
 pub mod rehearsal;
 pub mod room;
 pub mod scatter;
+mod wrapped;
 
 use std::path::Path;
 
@@ -19,6 +21,7 @@ use serde::{Deserialize, Serialize};
 use crate::files;
 use crate::logs::Robot;
 use crate::problem::{Problem, Result};
+use added::Added;
 use motion::MotionNetworks;
 use reference::Reference;
 use scatter::{ConstantReading, Spread};
@@ -55,6 +58,9 @@ pub struct Simulator {
     /// What the same logs give with the sizes of the paper's Table I, when these networks have others.
     #[serde(default)]
     pub table_one: Option<Box<Simulator>>,
+    /// Effects that a diagnosis confirmed, in the order in which they act.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub added: Vec<Added>,
     /// The networks that the logs could not support.
     pub missing: Vec<Missing>,
 }
@@ -145,6 +151,10 @@ impl Simulator {
     }
 
     fn check(&self, path: &Path) -> Result<()> {
+        if let Some(added) = self.added.iter().find(|a| !a.is_sound()) {
+            let what = format!("the added effect {} ({}) is not known to this program", added.effect, added.form);
+            return Err(Problem::in_file(path, what));
+        }
         let motion = [("turn", &self.turn), ("forward", &self.forward), ("lateral", &self.lateral)];
         let sonar = [("echo_probability", &self.echo_probability), ("echo_value", &self.echo_value)];
         let motion = motion.map(|(name, l)| (name, l.as_ref().is_none_or(Learned::is_sound)));

@@ -6,15 +6,16 @@ use mindgap_host_sim::built_in_robot::{ActiveEffect, default_robot, record, trai
 use mindgap_host_sim::gap::baseline::Baseline;
 use mindgap_host_sim::gap::verdict::Verdict;
 use mindgap_host_sim::gap::{Diagnosis, diagnose, kinematic};
-use mindgap_host_sim::learn::train::{Trainer, train};
+use mindgap_host_sim::learn::train::{TABLE_ONE, Trainer, train};
 use mindgap_host_sim::logs::Logs;
 use mindgap_host_sim::simulator::Simulator;
 
 const STEPS: usize = 60;
 
 /// A simulator of the built-in robot as it is.
-static SIMULATOR: LazyLock<Simulator> =
-    LazyLock::new(|| train(&logs(60, &[], 1), &Trainer::Fast, 1, |_| {}).expect("the logs train every network"));
+static SIMULATOR: LazyLock<Simulator> = LazyLock::new(|| {
+    train(&logs(60, &[], 1), &Trainer::Fast, &TABLE_ONE, 1, |_| {}).expect("the logs train every network")
+});
 
 fn logs(runs: usize, effects: &[&str], seed: u64) -> Logs {
     let effects: Vec<ActiveEffect> = effects.iter().map(|e| e.parse().expect("an effect")).collect();

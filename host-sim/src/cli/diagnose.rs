@@ -4,11 +4,11 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use super::{diagnosis_page, diagnosis_text};
 use crate::files;
 use crate::gap::baseline::Baseline;
-use crate::gap::verdict::Verdict;
-use crate::gap::{Diagnosis, admission, diagnose, kinematic};
-use crate::problem::Result;
+use crate::gap::{Findings, admission, findings, kinematic};
+use crate::problem::{Problem, Result};
 use crate::simulator::Simulator;
 
 /// Find the gap between a simulator and logs: where it lies, what causes it, and how far it shrinks.
@@ -21,6 +21,15 @@ pub struct Diagnose {
     /// Also write the diagnosis here.
     #[arg(long)]
     json: Option<PathBuf>,
+    /// Also write a page for a browser here.
+    #[arg(long, value_name = "FILE")]
+    html: Option<PathBuf>,
+    /// Write a simulator with the effects added that explain the gap.
+    #[arg(long, value_name = "SIM_OUT")]
+    apply: Option<PathBuf>,
+    /// Write the commands to log next here, as a run in CSV, where causes remain confused.
+    #[arg(long, value_name = "FILE")]
+    next_experiment: Option<PathBuf>,
 }
 
 /// Stands for a simulator file: the textbook's.
@@ -30,58 +39,40 @@ impl Diagnose {
     /// Diagnoses; returns the findings.
     pub fn run(&self) -> Result<String> {
         let logs = super::read_logs(&self.logs)?;
-        let diagnosis = if self.sim.as_os_str() == KINEMATIC {
-            diagnose(kinematic::baseline(&logs), &logs)?
-        } else {
-            let simulator = Simulator::read(&self.sim)?;
-            admission::same_robot(&simulator.robot, &logs.robot)?;
-            diagnose(Baseline::learned(&simulator)?, &logs)?
+        let simulator = if self.sim.as_os_str() == KINEMATIC { None } else { Some(Simulator::read(&self.sim)?) };
+        let found = match &simulator {
+            None => findings(kinematic::baseline(&logs), &logs)?,
+            Some(simulator) => {
+                admission::same_robot(&simulator.robot, &logs.robot)?;
+                findings(Baseline::learned(simulator)?, &logs)?
+            }
         };
-        if let Some(path) = &self.json {
-            files::write_json(path, &diagnosis)?;
+        let diagnosis = &found.diagnosis;
+        if let Some(path) = &self.apply {
+            with_effects(simulator, &found)?.write(path)?;
         }
-        Ok(text(&diagnosis))
+        if let Some(path) = &self.json {
+            files::write_json(path, diagnosis)?;
+        }
+        if let Some(path) = &self.html {
+            let title = format!("{} against {}", self.logs.display(), self.sim.display());
+            files::write(path, diagnosis_page::page(diagnosis, &title))?;
+        }
+        if let (Some(path), Some(experiment)) = (&self.next_experiment, &found.experiment) {
+            experiment.commands.write(path)?;
+        }
+        Ok(diagnosis_text::text(diagnosis))
     }
 }
 
-/// A diagnosis on one screen.
-fn text(diagnosis: &Diagnosis) -> String {
-    let verdict = match diagnosis.verdict {
-        Verdict::NoGap => "No gap: the logs agree with the simulator within its own error.",
-        Verdict::Known => "There is a gap, and known effects explain it:",
-        Verdict::Unknown => "There is a gap, and no known effect explains it.",
+/// The simulator with the effects found.
+fn with_effects(simulator: Option<Simulator>, found: &Findings) -> Result<Simulator> {
+    let Some(mut simulator) = simulator else {
+        return Err(Problem::new("--apply needs a simulator file to add effects to"));
     };
-    let mut lines = vec![verdict.to_string()];
-    for effect in &diagnosis.effects {
-        let parameters: Vec<String> = effect.parameters.iter().map(|(name, value)| format!("{name} {value}")).collect();
-        lines.push(format!("  {:>3.0} %  {}: {}", 100.0 * effect.probability, effect.id, parameters.join(", ")));
-        if !effect.ambiguous_with.is_empty() {
-            lines.push(format!("         these logs cannot tell it from {}", effect.ambiguous_with.join(", ")));
-        }
+    if found.added.is_empty() {
+        return Err(Problem::new("--apply: no known effect explains a gap here, so there is nothing to add"));
     }
-    for place in &diagnosis.r#where {
-        lines.push(format!(
-            "  {:>3.0} % of the gap in {}: {}",
-            100.0 * place.share,
-            place.channel.name(),
-            place.context
-        ));
-    }
-    if let Some(shrink) = &diagnosis.shrink {
-        let [low, high] = shrink.ci95.map(|share| 100.0 * share);
-        let closed = 100.0 * shrink.reducible_closed;
-        lines.push(format!(
-            "Gap {:.3} -> {:.3} nats a step on runs not fitted on: {closed:.0} % of what is reducible ({low:.0} to {high:.0})",
-            shrink.before, shrink.after
-        ));
-        if let Some(next) = &shrink.runner_up {
-            lines.push(format!("Runner-up {}: {:.0} %", next.id, 100.0 * next.reducible_closed));
-        }
-    }
-    if !diagnosis.untestable.is_empty() {
-        let ids = diagnosis.untestable.join(", ");
-        lines.push(format!("Not excited by these logs, so neither there nor absent: {ids}"));
-    }
-    lines.extend(diagnosis.notes.iter().cloned());
-    lines.join("\n") + "\n"
+    simulator.added.extend(found.added.iter().cloned());
+    Ok(simulator)
 }

@@ -2,6 +2,7 @@
 //! cannot tell.
 
 use super::baseline::Baseline;
+use super::confirmation::FEWEST_RUNS;
 use super::evidence::Evidence;
 use crate::logs::{Logs, Robot, Run};
 use crate::problem::{Problem, Result};
@@ -65,6 +66,11 @@ pub fn admit(baseline: &mut Baseline, evidence: &Evidence, logs: &Logs) -> Resul
     }
     if logs.runs.len() == 1 {
         notes.push("One run only: its parts stand for runs, and what holds for other runs cannot be told.".into());
+    }
+    if (2..FEWEST_RUNS).contains(&logs.runs.len()) {
+        notes.push(format!(
+            "With fewer than {FEWEST_RUNS} runs none is kept back: the gap shrinks on runs that were fitted."
+        ));
     }
     if logs.runs.len() > 1 && logs.runs.windows(2).all(|pair| same_commands(&pair[0], &pair[1])) {
         notes.push("All runs have the same commands: what other commands would show is not excited.".into());

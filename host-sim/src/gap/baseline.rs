@@ -3,9 +3,10 @@
 use super::effect::Motion;
 use crate::logs::Robot;
 use crate::problem::{Problem, Result};
-use crate::simulator::Simulator;
+use crate::simulator::added::Added;
 use crate::simulator::motion::MotionNetworks;
 use crate::simulator::reference::{MotionReference, SonarReference};
+use crate::simulator::{Learned, Simulator};
 
 /// What a step does, and what the sensor says, as long as nothing is different.
 pub struct Baseline<'s> {
@@ -13,6 +14,8 @@ pub struct Baseline<'s> {
     pub motion: Option<Drive<'s>>,
     /// The sensor, if the simulator knows it.
     pub sonar: Option<SonarReference>,
+    /// Effects that were added to the simulator before.
+    pub added: Vec<Added>,
 }
 
 /// How commands become motion.
@@ -25,6 +28,8 @@ pub enum Drive<'s> {
         reference: &'s MotionReference,
         /// Least and largest command that they know.
         commands: [f64; 2],
+        /// How much of the scatter of forward, lateral and turn is the robot's own and not the tracker's, 0 to 1.
+        own_share: [f64; 3],
     },
     /// The textbook's differential drive.
     Kinematic {
@@ -49,8 +54,9 @@ impl<'s> Baseline<'s> {
             networks,
             reference,
             commands: simulator.commands.map(f64::from),
+            own_share: [&simulator.forward, &simulator.lateral, &simulator.turn].map(own_share),
         });
-        Ok(Baseline { motion, sonar: reference.sonar.clone() })
+        Ok(Baseline { motion, sonar: reference.sonar.clone(), added: simulator.added.clone() })
     }
 }
 
@@ -58,7 +64,7 @@ impl Drive<'_> {
     /// What a step does for the commands now and before.
     pub fn step(&self, now: [f64; 2], before: [f64; 2]) -> Motion {
         match self {
-            Drive::Learned { networks, reference, commands } => {
+            Drive::Learned { networks, reference, commands, .. } => {
                 let speeds = [now[0], now[1], before[0], before[1]].map(|c| c.clamp(commands[0], commands[1]));
                 let learned = networks.step(speeds.map(|c| c as f32));
                 let more = reference.correction(&speeds);
@@ -88,4 +94,18 @@ impl Drive<'_> {
             Drive::Kinematic { scatter, .. } => *scatter,
         }
     }
+
+    /// How much of that is the robot's own and not the tracker's, 0 to 1.
+    pub fn own_share(&self) -> [f64; 3] {
+        match self {
+            Drive::Learned { own_share, .. } => *own_share,
+            Drive::Kinematic { .. } => [1.0; 3],
+        }
+    }
+}
+
+fn own_share(learned: &Option<Learned<4>>) -> f64 {
+    let shares = learned.iter().flat_map(|l| &l.spread.shares);
+    let (sum, n) = shares.fold((0.0, 0.0), |(sum, n), s| (sum + f64::from(s.step * s.step + s.held * s.held), n + 1.0));
+    if n > 0.0 { f64::sqrt(sum / n) } else { 1.0 }
 }

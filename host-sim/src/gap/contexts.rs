@@ -3,10 +3,14 @@
 use rand::RngExt;
 
 use super::channel::Channel;
+use super::circumstances::{
+    change, distance_cm, edge_in_beam, heading_deg, incidence_deg, off_middle_cm, reverses, seconds, speed, turning,
+};
 use super::evidence::{Evidence, Row};
 use super::explanation::Explanation;
 use super::verdict::Verdict;
 use crate::chance::generator;
+use crate::geometry::wrap_rad;
 
 /// The part of a channel's gap that lies in one context.
 #[derive(Clone, Debug)]
@@ -151,50 +155,10 @@ fn interval(gaps: &[f64], counts: &[f64]) -> [f64; 2] {
     [at(0.025), at(0.975)]
 }
 
-fn seconds(row: &Row) -> f64 {
-    60.0 * row.moment.elapsed_min
-}
-
-fn speed(row: &Row) -> f64 {
-    let [left, right] = row.moment.commands[0];
-    0.5 * (left.abs() + right.abs())
-}
-
-fn change(row: &Row) -> f64 {
-    let [now, before, ..] = row.moment.commands;
-    (now[0] - before[0]).abs().max((now[1] - before[1]).abs())
-}
-
-fn reverses(row: &Row) -> bool {
-    let [now, before, ..] = row.moment.commands;
-    (0..2).any(|m| now[m] * before[m] < 0.0)
-}
-
-fn turning(row: &Row) -> f64 {
-    let [left, right] = row.moment.commands[0];
-    right - left
-}
-
 fn heading(row: &Row, deg: f64) -> bool {
-    crate::geometry::wrap_rad(row.moment.pose.heading_rad - deg.to_radians()).abs() <= 45f64.to_radians()
-}
-
-fn off_middle_cm(row: &Row) -> f64 {
-    row.moment.pose.position_cm.distance(row.moment.middle_cm)
+    wrap_rad((heading_deg(row) - deg).to_radians()).abs() <= 45f64.to_radians()
 }
 
 fn faces(row: &Row, from_cm: f64, to_cm: f64) -> bool {
-    row.moment.faced.is_some_and(|[distance_cm, _]| (from_cm..to_cm).contains(&distance_cm))
-}
-
-fn incidence_deg(row: &Row) -> f64 {
-    row.moment.faced.map_or(0.0, |[_, incidence_rad]| incidence_rad.to_degrees())
-}
-
-/// Whether the rays beside the axis meet something much nearer or farther.
-fn edge_in_beam(row: &Row) -> bool {
-    let middle = row.fan.len() / 2;
-    let [right, axis, left] = [middle - 1, middle, middle + 1].map(|i| row.fan[i].distance_cm);
-    let expected = 2.0 * right * left / (right + left);
-    (axis - expected).abs() > 0.15 * axis
+    row.moment.faced.is_some() && (from_cm..to_cm).contains(&distance_cm(row))
 }

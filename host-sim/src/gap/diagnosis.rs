@@ -6,15 +6,20 @@ use serde_json::{Map, Value};
 use super::admission;
 use super::baseline::Baseline;
 use super::channel::Channel;
+use super::confirmation;
 use super::contexts::{self, Part};
 use super::evidence::Evidence;
 use super::excitation::untestable;
+use super::experiment::{self, Experiment};
 use super::explanation::Explanation;
+use super::paths::{self, PathGap};
 use super::search::Given;
-use super::shrink::{self, shrink};
+use super::shape::{self, Bin, Shape};
+use super::shrink;
 use super::verdict::Verdict;
 use crate::logs::Logs;
 use crate::problem::Result;
+use crate::simulator::added::Added;
 
 /// What `mindgap diagnose --json` writes.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -31,10 +36,38 @@ pub struct Diagnosis {
     pub shrink: Option<Shrink>,
     /// What to log next to tell more.
     pub next_experiment: Option<String>,
+    /// How the unexplained part follows circumstances, channel by channel.
+    pub unexplained: Vec<Unexplained>,
     /// Effects that these logs could not show: untestable, not absent.
     pub untestable: Vec<String>,
     /// What else limits this diagnosis.
     pub notes: Vec<String>,
+}
+
+/// How the unexplained part of a channel follows the circumstance on which it depends most.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Unexplained {
+    /// The channel.
+    pub channel: Channel,
+    /// The circumstance.
+    pub depends_on: String,
+    /// The unit of what is off.
+    pub unit: String,
+    /// A table from low to high.
+    pub shape: Vec<ShapeBin>,
+}
+
+/// A range of the circumstance.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ShapeBin {
+    /// Least value.
+    pub from: f64,
+    /// Largest value.
+    pub to: f64,
+    /// Logged minus predicted, mean.
+    pub off: f64,
+    /// Standard error of that.
+    pub error: f64,
 }
 
 /// An effect that explains the gap.
@@ -80,6 +113,38 @@ pub struct Shrink {
     pub ci95: [f64; 2],
     /// What comes next.
     pub runner_up: Option<RunnerUp>,
+    /// The same channel by channel, where there is something to close.
+    pub channels: Vec<ChannelShrink>,
+    /// Paths that the simulator drives open-loop from a logged pose.
+    pub paths: Vec<PathShrink>,
+}
+
+/// How far the gap of a channel shrinks, nats a step.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ChannelShrink {
+    /// The channel.
+    pub channel: Channel,
+    /// The gap of the simulator as it is.
+    pub before: f64,
+    /// With the effects added.
+    pub after: f64,
+    /// The share of the reducible gap that is closed.
+    pub reducible_closed: f64,
+    /// 95 % interval of it.
+    pub ci95: [f64; 2],
+}
+
+/// Median distance between the ends of predicted and logged paths, cm.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct PathShrink {
+    /// Length of the paths.
+    pub steps: usize,
+    /// With the simulator as it is.
+    pub before_cm: f64,
+    /// With the effects added.
+    pub after_cm: f64,
+    /// What scatter alone makes of it.
+    pub floor_cm: f64,
 }
 
 /// The next best explanation.
@@ -91,28 +156,97 @@ pub struct RunnerUp {
     pub reducible_closed: f64,
 }
 
+/// A diagnosis, and what came of it beside the words.
+pub struct Findings {
+    /// What is written and told.
+    pub diagnosis: Diagnosis,
+    /// What to drive next.
+    pub experiment: Option<Experiment>,
+    /// The effects that explain the gap, as a simulator takes them; none unless the verdict is known.
+    pub added: Vec<Added>,
+}
+
 /// Diagnoses logs.
 ///
 /// # Errors
 /// When the logs say nothing that the baseline could be compared with.
-pub fn diagnose(mut baseline: Baseline, logs: &Logs) -> Result<Diagnosis> {
+pub fn diagnose(baseline: Baseline, logs: &Logs) -> Result<Diagnosis> {
+    Ok(findings(baseline, logs)?.diagnosis)
+}
+
+/// Diagnoses logs and proposes what to drive next.
+///
+/// # Errors
+/// When the logs say nothing that the baseline could be compared with.
+pub fn findings(mut baseline: Baseline, logs: &Logs) -> Result<Findings> {
     let fan_width = baseline.sonar.as_ref().map_or(1.0, |sonar| sonar.fan_width);
-    let evidence = Evidence::of(logs, fan_width);
+    let parts = confirmation::parts(logs);
+    let evidence = Evidence::of(&parts.found_on, fan_width);
     let notes = admission::admit(&mut baseline, &evidence, logs)?;
+    let evidence = evidence.expect(baseline.motion.as_ref());
     let given = Given { baseline: &baseline, evidence: &evidence };
+    let kept_back = parts.kept_back.map(|logs| Evidence::of(&logs, fan_width));
     let explanation = Explanation::find(&given);
+    let explanation = match &kept_back {
+        Some(kept_back) => explanation.confirmed(&given, kept_back),
+        None => explanation,
+    };
     let verdict = explanation.verdict();
     let effects = if verdict == Verdict::Known { effects(&explanation, logs.robot.step_ms) } else { Vec::new() };
-    let shrink = if verdict == Verdict::NoGap { None } else { shrink(&explanation, evidence.rows.len()) };
-    Ok(Diagnosis {
+    let shrink = if verdict == Verdict::NoGap { None } else { shrunk(&explanation, &given, kept_back.as_ref()) };
+    let experiment = if verdict == Verdict::Known { experiment::next(&explanation, &given) } else { None };
+    let added = if verdict == Verdict::Known { explanation.chosen.added() } else { Vec::new() };
+    let diagnosis = Diagnosis {
         schema: 1,
         verdict,
         effects,
         r#where: contexts::parts(&explanation, &evidence).into_iter().map(Place::from).collect(),
-        shrink: shrink.map(Shrink::from),
-        next_experiment: None,
+        shrink,
+        next_experiment: experiment.as_ref().map(in_words),
+        unexplained: unexplained(&explanation, &given),
         untestable: untestable(&explanation.none, &given).into_iter().map(String::from).collect(),
         notes,
+    };
+    Ok(Findings { diagnosis, experiment, added })
+}
+
+fn in_words(experiment: &Experiment) -> String {
+    let [one, other] = experiment.between;
+    let Experiment { script, runs, nats_a_run, .. } = experiment;
+    format!("To tell {one} from {other}: log {runs} run(s) of {script} (about {nats_a_run:.1} nats a run).")
+}
+
+/// Only an unknown cause is described by its shape.
+fn unexplained(explanation: &Explanation, given: &Given) -> Vec<Unexplained> {
+    if explanation.verdict() != Verdict::Unknown {
+        return Vec::new();
+    }
+    let shapes = shape::shapes(explanation, given.baseline, given.evidence);
+    shapes.into_iter().map(Unexplained::from).collect()
+}
+
+/// How far the gap shrinks on runs kept back, or on the others where none is.
+fn shrunk(explanation: &Explanation, found: &Given, kept_back: Option<&Evidence>) -> Option<Shrink> {
+    let confirming = kept_back.unwrap_or(found.evidence);
+    let shrink = shrink::shrink(explanation, found, confirming)?;
+    let paths = paths::open_loop(explanation, found, confirming);
+    let channel = |(channel, part): (Channel, shrink::Part)| ChannelShrink {
+        channel,
+        before: rounded(part.before),
+        after: rounded(part.after),
+        reducible_closed: rounded(part.closed),
+        ci95: part.ci95.map(rounded),
+    };
+    let runner_up = |(ids, closed): (Vec<&str>, f64)| RunnerUp { id: ids.join("+"), reducible_closed: rounded(closed) };
+    Some(Shrink {
+        before: rounded(shrink.whole.before),
+        after: rounded(shrink.whole.after),
+        floor: 0.0,
+        reducible_closed: rounded(shrink.whole.closed),
+        ci95: shrink.whole.ci95.map(rounded),
+        runner_up: shrink.runner_up.map(runner_up),
+        channels: shrink.channels.into_iter().map(channel).collect(),
+        paths: paths.into_iter().map(PathShrink::from).collect(),
     })
 }
 
@@ -139,18 +273,21 @@ impl From<Part> for Place {
     }
 }
 
-impl From<shrink::Shrink> for Shrink {
-    fn from(s: shrink::Shrink) -> Self {
-        Shrink {
-            before: rounded(s.before),
-            after: rounded(s.after),
-            floor: 0.0,
-            reducible_closed: rounded(s.closed),
-            ci95: s.ci95.map(rounded),
-            runner_up: s
-                .runner_up
-                .map(|(ids, closed)| RunnerUp { id: ids.join("+"), reducible_closed: rounded(closed) }),
-        }
+impl From<Shape> for Unexplained {
+    fn from(s: Shape) -> Self {
+        let bin = |b: Bin| {
+            let [from, to, off, error] = [b.from, b.to, b.off, b.error].map(rounded);
+            ShapeBin { from, to, off, error }
+        };
+        let (depends_on, unit) = (s.depends_on.into(), s.unit.into());
+        Unexplained { channel: s.channel, depends_on, unit, shape: s.bins.into_iter().map(bin).collect() }
+    }
+}
+
+impl From<PathGap> for PathShrink {
+    fn from(p: PathGap) -> Self {
+        let [before_cm, after_cm, floor_cm] = [p.before_cm, p.after_cm, p.floor_cm].map(rounded);
+        PathShrink { steps: p.steps, before_cm, after_cm, floor_cm }
     }
 }
 

@@ -7,7 +7,7 @@ use glam::DVec2;
 use serde_json::Value;
 
 use crate::ascent::Bounds;
-use crate::geometry::Pose;
+use crate::geometry::{Pose, Wall};
 use crate::simulator::reference::sonar::Change;
 
 /// So many commands are kept, the present one first: an effect may look back so far.
@@ -142,4 +142,12 @@ impl Motion {
         self.forward_cm = 0.5 * (left + right);
         self.turn_rad = (right - left) / track_cm;
     }
+}
+
+/// The middle of what walls enclose.
+pub fn middle(sides: &[Wall]) -> DVec2 {
+    let ends = || sides.iter().flat_map(|s| [s.from_cm, s.to_cm]);
+    let low = ends().fold(DVec2::INFINITY, DVec2::min);
+    let high = ends().fold(DVec2::NEG_INFINITY, DVec2::max);
+    0.5 * (low + high)
 }

@@ -2,9 +2,8 @@
 
 use std::ops::Range;
 
-use glam::DVec2;
-
-use super::effect::{Moment, Motion, WINDOW};
+use super::baseline::Drive;
+use super::effect::{Moment, Motion, WINDOW, middle};
 use crate::geometry::{Pose, Wall, cast};
 use crate::logs::{Logs, Robot, Run, samples};
 use crate::simulator::reference::sonar::{Fan, fan_at};
@@ -25,12 +24,20 @@ pub struct Evidence {
 
 /// A row at which the tracker saw the robot.
 pub struct Row {
+    /// Which run of the folder,
+    pub run: usize,
+    /// and which row of that.
+    pub at: usize,
     /// Which block.
     pub block: usize,
+    /// Length of the step that begins here, against the usual one.
+    pub stretch: f64,
     /// What effects may look at.
     pub moment: Moment,
     /// What the step did, where its end was seen too.
     pub motion: Option<Motion>,
+    /// What the simulator expects of the commands as logged, once [`Evidence::expect`] has asked it.
+    pub expected: Option<Motion>,
     /// What the sensor said.
     pub echo_cm: Option<f64>,
     /// What it said the row before.
@@ -76,10 +83,32 @@ impl Evidence {
                 };
                 let previous_echo_cm = before(1).and_then(|r| r.echo_cm);
                 let block = run * parts + k * parts / logged.rows.len();
-                rows.push(Row { block, moment, motion, echo_cm: row.echo_cm, previous_echo_cm, fan });
+                let until_ms = logged.rows.get(k + 1).map_or(row.t_ms, |next| next.t_ms);
+                let stretch = (until_ms - row.t_ms) / logs.robot.step_ms;
+                rows.push(Row {
+                    run,
+                    at: k,
+                    block,
+                    stretch,
+                    moment,
+                    motion,
+                    expected: None,
+                    echo_cm: row.echo_cm,
+                    previous_echo_cm,
+                    fan,
+                });
             }
         }
         Evidence { robot: logs.robot, sides, fan_width, blocks: logs.runs.len() * parts, rows }
+    }
+
+    /// Asks the simulator once what it expects of every row: most hypotheses leave the commands as they are.
+    pub fn expect(mut self, drive: Option<&Drive>) -> Self {
+        for row in &mut self.rows {
+            let [now, before, ..] = row.moment.commands;
+            row.expected = drive.map(|drive| drive.step(now, before));
+        }
+        self
     }
 
     /// The rows of a block.
@@ -106,11 +135,4 @@ impl Evidence {
 /// The commands of row `k` and of those before, the motors standing before the first.
 fn window(run: &Run, k: usize) -> [[f64; 2]; WINDOW] {
     std::array::from_fn(|back| k.checked_sub(back).map_or([0.0; 2], |i| run.rows[i].command()))
-}
-
-fn middle(sides: &[Wall]) -> DVec2 {
-    let ends = || sides.iter().flat_map(|s| [s.from_cm, s.to_cm]);
-    let low = ends().fold(DVec2::INFINITY, DVec2::min);
-    let high = ends().fold(DVec2::NEG_INFINITY, DVec2::max);
-    0.5 * (low + high)
 }

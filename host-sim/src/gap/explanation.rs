@@ -3,8 +3,8 @@
 use rayon::prelude::*;
 
 use super::channel::Channel;
+use super::evidence::Evidence;
 use super::generic;
-use super::hypothesis::Terms;
 use super::search::{Fitted, Gain, Given, best_of_each, extend};
 use super::verdict::{RIVAL, weight};
 
@@ -30,12 +30,33 @@ pub struct Leftover {
     pub fitted: Fitted,
     /// Its gain on each block, zero where it is not significant.
     pub by_block: Vec<f64>,
+    /// Whether the logs scatter more than the simulator in this channel.
+    scatters: bool,
 }
 
 impl Leftover {
     /// Whether the learner explains anything.
     pub fn counts(&self) -> bool {
         self.by_block.iter().any(|g| *g != 0.0)
+    }
+
+    /// By how much rows of a motion channel are likelier with the scatter of the logs than with the simulator's, by
+    /// block.
+    pub fn wider_scatter(&self, logs: &Given, rows: &Evidence) -> Vec<f64> {
+        let nothing = vec![0.0; rows.blocks];
+        let (Some(axis), Some(drive)) = (self.channel.motion_axis(), &logs.baseline.motion) else { return nothing };
+        let Fitted { hypothesis, values, .. } = &self.fitted;
+        let own = hypothesis.scatter(logs.baseline, logs.evidence, values);
+        if !self.scatters || own[axis] < LEAST_SCATTER_RATIO * drive.scatter()[axis] {
+            return nothing;
+        }
+        let mut narrow = own;
+        narrow[axis] = drive.scatter()[axis];
+        let likelihood = |scatter: [f64; 3]| {
+            let motion = hypothesis.motion_terms(logs.baseline, &rows.rows, values, scatter);
+            rows.by_block(&motion.iter().map(|m| m[axis]).collect::<Vec<f64>>())
+        };
+        likelihood(own).iter().zip(likelihood(narrow)).map(|(a, b)| a - b).collect()
     }
 }
 
@@ -45,6 +66,8 @@ pub const LEAST_NATS: f64 = 12.0;
 const LEAST_NATS_IF_VAGUE: f64 = 25.0;
 /// and so many standard errors.
 const LEAST_Z: f64 = 2.8;
+/// On the runs kept back the effects have to gain this many nats.
+const LEAST_CONFIRMED_NATS: f64 = 3.0;
 /// A further effect on the same stage has to gain this share of what is explained already: less is within the reach of
 /// a form that is not quite right.
 const LEAST_SHARE: f64 = 0.08;
@@ -58,7 +81,7 @@ const OF_NO_MATTER: f64 = 1.0;
 const MOST_EFFECTS: usize = 3;
 /// The generic learner's gain counts from here on.
 const LEAST_LEFTOVER_NATS: f64 = 20.0;
-const LEAST_LEFTOVER_Z: f64 = 3.0;
+const LEAST_LEFTOVER_Z: f64 = 2.2;
 /// Scatter beyond the simulator's counts from this ratio on.
 const LEAST_SCATTER_RATIO: f64 = 1.12;
 
@@ -84,6 +107,18 @@ impl Explanation {
         let beyond_none = leftovers(&none, logs);
         let beyond_chosen = if chosen.ids().is_empty() { leftovers(&none, logs) } else { leftovers(&chosen, logs) };
         Explanation { none, chosen, rivals, beyond_none, beyond_chosen }
+    }
+}
+
+impl Explanation {
+    /// What holds on runs that nothing was sought on: effects that gain nothing there explain nothing.
+    pub fn confirmed(self, found: &Given, kept_back: &Evidence) -> Self {
+        let judged = |fit: &Fitted| fit.judged_on(kept_back, found).total().iter().sum::<f64>();
+        if self.chosen.ids().is_empty() || judged(&self.chosen) - judged(&self.none) >= LEAST_CONFIRMED_NATS {
+            return self;
+        }
+        let beyond_chosen = leftovers(&self.none, found);
+        Explanation { chosen: self.none.clone(), rivals: Vec::new(), beyond_chosen, ..self }
     }
 }
 
@@ -137,30 +172,14 @@ fn leftovers(fit: &Fitted, logs: &Given) -> Vec<Leftover> {
             let gains = fitted.gains_over(fit);
             let gain = Gain::of(&gains);
             let counts = gain.nats >= LEAST_LEFTOVER_NATS && gain.z() >= LEAST_LEFTOVER_Z;
-            let mut by_block = if counts { gains } else { vec![0.0; gains.len()] };
-            for (sum, wider) in by_block.iter_mut().zip(wider_scatter(*channel, &fitted, logs)) {
-                *sum += wider;
+            let by_block = if counts { gains } else { vec![0.0; gains.len()] };
+            let mut leftover = Leftover { channel: *channel, fitted, by_block, scatters: true };
+            let wider = leftover.wider_scatter(logs, logs.evidence);
+            leftover.scatters = Gain::of(&wider).nats >= LEAST_LEFTOVER_NATS;
+            if leftover.scatters {
+                leftover.by_block.iter_mut().zip(wider).for_each(|(sum, wider)| *sum += wider);
             }
-            Leftover { channel: *channel, fitted, by_block }
+            leftover
         })
         .collect()
-}
-
-/// By how much the logs of a motion channel are likelier with their own scatter than with the simulator's.
-fn wider_scatter(channel: Channel, fit: &Fitted, logs: &Given) -> Vec<f64> {
-    let nothing = vec![0.0; logs.evidence.blocks];
-    let (Some(axis), Some(drive)) = (channel.motion_axis(), &logs.baseline.motion) else { return nothing };
-    let own = fit.hypothesis.scatter(logs.baseline, logs.evidence, &fit.values);
-    if own[axis] < LEAST_SCATTER_RATIO * drive.scatter()[axis] {
-        return nothing;
-    }
-    let mut narrow = own;
-    narrow[axis] = drive.scatter()[axis];
-    let likelihood = |scatter: [f64; 3]| {
-        let motion = fit.hypothesis.motion_terms(logs.baseline, &logs.evidence.rows, &fit.values, scatter);
-        let terms = Terms { motion, sonar: Vec::new() };
-        logs.evidence.by_block(&terms.channel(channel))
-    };
-    let gains: Vec<f64> = likelihood(own).iter().zip(likelihood(narrow)).map(|(a, b)| a - b).collect();
-    if Gain::of(&gains).nats >= LEAST_LEFTOVER_NATS { gains } else { nothing }
 }

@@ -63,8 +63,8 @@ const fn motion_form(acts: &'static [Act]) -> Form {
     }
 }
 
-const MOTION_FEATURES: usize = 24;
-const SONAR_FEATURES: usize = 13;
+const MOTION_FEATURES: usize = 28;
+const SONAR_FEATURES: usize = 17;
 
 fn motion_sum(weights: &[f64], moment: &Moment, motion: &Motion) -> f64 {
     motion_features(moment, motion).iter().zip(weights).map(|(f, w)| f * w).sum()
@@ -117,7 +117,18 @@ fn motion_features(moment: &Moment, motion: &Motion) -> [f64; MOTION_FEATURES] {
         change(1, 1),
         reversal(0),
         reversal(1),
+        way * place.length_squared(),
+        turn * place.length_squared(),
+        kick(moment),
+        kick(moment).abs() * way.signum(),
     ]
+}
+
+/// The turn before, where the robot as a whole goes the other way than before: what trails behind swings round.
+fn kick(moment: &Moment) -> f64 {
+    let [now, before] = [moment.commands[0], moment.commands[1]];
+    let reverses = (now[0] + now[1]) * (before[0] + before[1]) < 0.0;
+    if reverses { ((before[1] - before[0]) / 50.0).clamp(-1.0, 1.0) } else { 0.0 }
 }
 
 /// Circumstances of a reading, each of the order of one.
@@ -126,6 +137,9 @@ fn sonar_features(moment: &Moment) -> [f64; SONAR_FEATURES] {
     let (metres, incidence) = (distance_cm.min(300.0) / 100.0, incidence_rad / 0.8);
     let heading = moment.pose.heading_rad;
     let [left, right] = moment.commands[1].map(|c| c / 50.0);
+    // What is faced may be another thing in the middle of the room than at its rim.
+    let faced_cm = moment.pose.position_cm + moment.pose.direction() * distance_cm.min(300.0);
+    let rim = (faced_cm - moment.middle_cm) / 100.0;
     [
         1.0,
         metres,
@@ -140,5 +154,9 @@ fn sonar_features(moment: &Moment) -> [f64; SONAR_FEATURES] {
         moment.elapsed_min * 2.5,
         0.5 * (left + right),
         0.5 * (right - left),
+        metres * moment.elapsed_min * 2.5,
+        rim.length(),
+        rim.x,
+        rim.y,
     ]
 }

@@ -5,16 +5,19 @@ use std::ops::Range;
 
 use super::baseline::{Baseline, Drive};
 use super::channel::Channel;
-use super::effect::{Act, Form, Motion, Sensor, Window};
+use super::effect::{Act, Form, Moment, Motion, Sensor, Window};
 use super::evidence::{Evidence, Row};
 use crate::ascent::Bounds;
 use crate::geometry::wrap_rad;
+use crate::simulator::added::Added;
 use crate::simulator::reference::sonar::Change;
 
 /// Effects that are supposed to be there, in the order in which they are applied; none is the simulator as it is.
 #[derive(Clone)]
 pub struct Hypothesis {
-    /// One form of each effect.
+    /// What the simulator has already, with its parameters.
+    given: Vec<(&'static Form, Vec<f64>)>,
+    /// One form of each further effect.
     pub forms: Vec<&'static Form>,
 }
 
@@ -53,14 +56,29 @@ const JUMPS: f64 = 0.01;
 
 impl Hypothesis {
     /// The simulator as it is.
-    pub fn none() -> Self {
-        Hypothesis { forms: Vec::new() }
+    pub fn none(baseline: &Baseline) -> Self {
+        Self::given(&baseline.added)
+    }
+
+    /// What was added to a simulator; whatever cannot be is left out.
+    pub fn given(added: &[Added]) -> Self {
+        let given = added.iter().filter_map(|a| Some((a.form()?, a.values.clone()))).collect();
+        Hypothesis { given, forms: Vec::new() }
+    }
+
+    /// The same simulator with these effects.
+    pub fn of(&self, forms: Vec<&'static Form>) -> Self {
+        Hypothesis { given: self.given.clone(), forms }
+    }
+
+    /// Whether what the simulator has already changes the sensor.
+    pub fn given_senses(&self) -> bool {
+        self.given.iter().any(|(form, _)| form.senses())
     }
 
     /// This and one more.
     pub fn with(&self, form: &'static Form) -> Self {
-        let forms = self.forms.iter().copied().chain([form]).collect();
-        Hypothesis { forms }
+        self.of(self.forms.iter().copied().chain([form]).collect())
     }
 
     /// Bounds of all parameters.
@@ -79,6 +97,14 @@ impl Hypothesis {
         Terms {
             motion: kept(self.moves()).map_or_else(motion, |t| t.motion.clone()),
             sonar: kept(self.senses()).map_or_else(sonar, |t| t.sonar.clone()),
+        }
+    }
+
+    /// The same of rows that the hypothesis was not fitted on, with the scatter of those that it was fitted on.
+    pub fn terms_of_others(&self, baseline: &Baseline, others: &Evidence, values: &[f64], scatter: [f64; 3]) -> Terms {
+        Terms {
+            motion: self.motion_terms(baseline, &others.rows, values, scatter),
+            sonar: self.sonar_terms(baseline, others, 0..others.rows.len(), values),
         }
     }
 
@@ -123,28 +149,33 @@ impl Hypothesis {
     }
 
     /// What a step does.
-    pub fn motion(&self, drive: &Drive, row: &Row, values: &[f64]) -> Motion {
-        let mut commands: Window = row.moment.commands;
+    pub fn motion(&self, drive: &Drive, moment: &Moment, values: &[f64]) -> Motion {
+        self.wrap(moment, values, |now, before| drive.step(now, before))
+    }
+
+    /// What becomes of a step that follows the commands now and before.
+    pub fn wrap(&self, moment: &Moment, values: &[f64], step: impl FnOnce([f64; 2], [f64; 2]) -> Motion) -> Motion {
+        let mut commands: Window = moment.commands;
         self.each(values, |act, v| {
             if let Act::Commands(change) = act {
-                change(v, &row.moment, &mut commands);
+                change(v, moment, &mut commands);
             }
         });
-        let mut motion = drive.step(commands[0], commands[1]);
+        let mut motion = step(commands[0], commands[1]);
         self.each(values, |act, v| {
             if let Act::Motion(change) = act {
-                change(v, &row.moment, &mut motion);
+                change(v, moment, &mut motion);
             }
         });
         motion
     }
 
     /// What the sensor is like at a row.
-    pub fn sensor(&self, row: &Row, values: &[f64]) -> Sensor {
-        let mut sensor = Sensor { robot: row.moment.pose, yaw_rad: 0.0, width: 1.0, change: Change::NONE };
+    pub fn sensor(&self, moment: &Moment, values: &[f64]) -> Sensor {
+        let mut sensor = Sensor { robot: moment.pose, yaw_rad: 0.0, width: 1.0, change: Change::NONE };
         self.each(values, |act, v| {
             if let Act::Sensor(change) = act {
-                change(v, &row.moment, &mut sensor);
+                change(v, moment, &mut sensor);
             }
         });
         sensor
@@ -154,7 +185,11 @@ impl Hypothesis {
     pub fn residuals(&self, drive: &Drive, rows: &[Row], values: &[f64]) -> Vec<Option<[f64; 3]>> {
         let residual = |row: &Row| {
             let logged = row.motion?;
-            let predicted = self.motion(drive, row, values);
+            let usual = [row.moment.commands[0], row.moment.commands[1]];
+            let predicted = self.wrap(&row.moment, values, |now, before| match row.expected {
+                Some(expected) if usual == [now, before] => expected,
+                _ => drive.step(now, before),
+            });
             Some([
                 logged.forward_cm - predicted.forward_cm,
                 logged.lateral_cm - predicted.lateral_cm,
@@ -181,7 +216,7 @@ impl Hypothesis {
     ) -> Vec<[f64; 2]> {
         let Some(sonar) = &baseline.sonar else { return vec![[0.0; 2]; rows.len()] };
         let term = |row: &Row| {
-            let sensor = self.sensor(row, values);
+            let sensor = self.sensor(&row.moment, values);
             let moved = sensor.robot != row.moment.pose || sensor.yaw_rad != 0.0 || sensor.width != 1.0;
             let fan = if moved { evidence.fan(&sensor.robot, sensor.yaw_rad, sensor.width) } else { row.fan };
             let [all, rate] = sonar.log_likelihood(&fan, &sensor.change, row.echo_cm, row.previous_echo_cm);
@@ -191,6 +226,9 @@ impl Hypothesis {
     }
 
     fn each(&self, values: &[f64], mut visit: impl FnMut(&Act, &[f64])) {
+        for (form, own) in &self.given {
+            form.acts.iter().for_each(|act| visit(act, own));
+        }
         let mut rest = values;
         for form in &self.forms {
             let (own, others) = rest.split_at(form.parameters.len());

@@ -17,7 +17,11 @@ const READING_SCATTER_CM: [f64; 2] = [0.5, 4.0];
 
 /// The baseline of a robot that nobody has logged before.
 pub fn baseline(logs: &Logs) -> Baseline<'static> {
-    Baseline { motion: Some(Drive::Kinematic { robot: logs.robot, scatter: LEAST_SCATTER }), sonar: sonar(logs) }
+    Baseline {
+        motion: Some(Drive::Kinematic { robot: logs.robot, scatter: LEAST_SCATTER }),
+        sonar: sonar(logs),
+        added: Vec::new(),
+    }
 }
 
 fn sonar(logs: &Logs) -> Option<SonarReference> {
@@ -40,6 +44,7 @@ fn sonar(logs: &Logs) -> Option<SonarReference> {
         bias: [0.0; 3],
         log_scatter: [libm::log(scatter_cm.clamp(least, most)), 0.0, 0.0],
         constant: [0.0, mount.min_cm],
+        constant_for_none: 0.0,
         short: 0.0,
         lost: 1.0 - echoes / f64::max(all, 1.0),
         fan_width: RAY_WIDTH,

@@ -8,6 +8,7 @@ use super::effects;
 use super::evidence::Evidence;
 use super::hypothesis::{Hypothesis, Terms};
 use crate::ascent::{Maximum, climb};
+use crate::simulator::added::Added;
 
 /// A hypothesis, fitted.
 #[derive(Clone)]
@@ -50,7 +51,7 @@ const ENOUGH: f64 = 0.1;
 impl Fitted {
     /// No effect at all.
     pub fn none(logs: &Given) -> Self {
-        let hypothesis = Hypothesis::none();
+        let hypothesis = Hypothesis::none(logs.baseline);
         let terms = hypothesis.terms(logs.baseline, logs.evidence, &[], None);
         let held_out = logs.evidence.by_block(&terms.total());
         Fitted { hypothesis, values: Vec::new(), terms, held_out }
@@ -66,6 +67,12 @@ impl Fitted {
         let forms = &self.hypothesis.forms;
         let before: usize = forms[..place].iter().map(|f| f.parameters.len()).sum();
         &self.values[before..before + forms[place].parameters.len()]
+    }
+
+    /// Its effects as a simulator takes them.
+    pub fn added(&self) -> Vec<Added> {
+        let forms = self.hypothesis.forms.iter().enumerate();
+        forms.map(|(place, form)| Added::new(form, self.values_of(place))).collect()
     }
 
     /// By how much this beats `other` on each held-out block.
@@ -110,7 +117,13 @@ impl Fitted {
         let held_out = self.held_out.iter().zip(other.gains_over(&none)).map(|(s, g)| s + g).collect();
         let forms = self.hypothesis.forms.iter().chain(&other.hypothesis.forms).copied().collect();
         let values = self.values.iter().chain(&other.values).copied().collect();
-        Fitted { hypothesis: Hypothesis { forms }, values, terms, held_out }
+        Fitted { hypothesis: self.hypothesis.of(forms), values, terms, held_out }
+    }
+
+    /// The log-likelihood of rows that it was not fitted on; `logs` are those that it was.
+    pub fn judged_on(&self, others: &Evidence, logs: &Given) -> Terms {
+        let scatter = self.hypothesis.scatter(logs.baseline, logs.evidence, &self.values);
+        self.hypothesis.terms_of_others(logs.baseline, others, &self.values, scatter)
     }
 
     /// Adds one form and fits everything anew, from these values and the form's starts.
@@ -131,7 +144,7 @@ impl Fitted {
             return Fitted::none(logs);
         }
         let none = Fitted::none(logs);
-        fit(Hypothesis { forms }, vec![values], &none.terms, logs)
+        fit(self.hypothesis.of(forms), vec![values], &none.terms, logs)
     }
 }
 

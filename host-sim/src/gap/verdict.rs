@@ -29,7 +29,7 @@ pub struct Named {
 }
 
 /// Of what could be explained the effects have to explain this share to be the cause.
-const ADEQUATE: f64 = 0.55;
+const ADEQUATE: f64 = 0.68;
 /// How sharply adequacy decides.
 const ADEQUACY_WIDTH: f64 = 0.06;
 /// Nats over which a gap turns from doubtful to certain.
@@ -88,6 +88,20 @@ impl Explanation {
         let ids = self.chosen.ids();
         let others = self.rivals.iter().flatten().filter(|r| ids.iter().any(|id| !r.ids().contains(id)));
         others.max_by(|a, b| a.score().total_cmp(&b.score()))
+    }
+
+    /// The fit with the effect that is confused most with one of the chosen, and the two effects; none when the answer
+    /// is plain.
+    pub fn closest_rival(&self) -> Option<(&Fitted, [&'static str; 2])> {
+        let ids = self.chosen.ids();
+        let confused = |place: usize| {
+            let rival = *self.rivals_of(place).first()?;
+            let other = rival.ids().into_iter().find(|id| !ids.contains(id))?;
+            let weight = weight(&self.chosen, rival);
+            (weight >= RIVAL).then_some((weight, rival, [ids[place], other]))
+        };
+        let closest = (0..ids.len()).filter_map(confused).max_by(|a, b| a.0.total_cmp(&b.0));
+        closest.map(|(_, rival, between)| (rival, between))
     }
 
     /// Fits with another effect in place of one, best first.

@@ -1,9 +1,11 @@
 //! How well a simulator's networks do on logs: the paper's figure 2 in numbers, and what a probability asks beyond.
 
+use mindgap_core::network::Network;
 use serde::Serialize;
 
 use super::dataset::{Dataset, Datasets};
 use super::statistics::{self, ReliabilityBin, TrendLine};
+use crate::gap::prediction::{Predictions, predict};
 use crate::logs::Logs;
 use crate::problem::{Problem, Result};
 use crate::simulator::{Learned, Simulator};
@@ -81,33 +83,35 @@ pub struct Probability {
     pub points: Vec<[f64; 2]>,
 }
 
-/// Judges a simulator on logs, best on such as it was not trained on.
+/// Judges a simulator, with the effects that were added to it if there are any, on logs, best on such as it was not trained on.
 ///
 /// # Errors
 /// When the simulator and the logs have no network in common.
 pub fn evaluate(simulator: &Simulator, logs: &Logs) -> Result<Evaluation> {
-    let data = Datasets::from_logs(logs);
-    let networks = judge(simulator, &data);
+    let networks = judge(simulator, logs)?;
     if networks == Networks::default() {
         return Err(Problem::new("these logs hold no sample for any network of this simulator"));
     }
-    let table_one = simulator.table_one.as_ref().map(|simulator| judge(simulator, &data));
+    let table_one = simulator.table_one.as_ref().map(|simulator| judge(simulator, logs)).transpose()?;
     Ok(Evaluation { schema: 1, networks, table_one })
 }
 
-fn judge(simulator: &Simulator, data: &Datasets) -> Networks {
-    let mut echo_value = predict(&simulator.echo_value, &data.echo_value).map(Value::of);
+fn judge(simulator: &Simulator, logs: &Logs) -> Result<Networks> {
+    let samples = if simulator.added.is_empty() { of_networks(simulator, logs) } else { predict(simulator, logs)? };
+    let value = |points: Vec<[f64; 2]>| (!points.is_empty()).then(|| Value::of(points));
+    let mut echo_value = value(samples.echo_value);
     if let Some(value) = &mut echo_value {
         let [expected, predicted] = columns(&value.points);
         value.mae_cm = Some(statistics::mae(&expected, &predicted));
     }
-    Networks {
-        turn: predict(&simulator.turn, &data.turn).map(Value::of),
-        forward: predict(&simulator.forward, &data.forward).map(Value::of),
-        lateral: predict(&simulator.lateral, &data.lateral).map(Value::of),
-        echo_probability: predict(&simulator.echo_probability, &data.echo_probability).map(Probability::of),
+    let chances = samples.echo_probability;
+    Ok(Networks {
+        turn: value(samples.turn),
+        forward: value(samples.forward),
+        lateral: value(samples.lateral),
+        echo_probability: (!chances.is_empty()).then(|| Probability::of(chances)),
         echo_value,
-    }
+    })
 }
 
 impl Value {
@@ -140,11 +144,25 @@ impl Probability {
     }
 }
 
-/// Expected and predicted for each sample, when there is both a network and a sample.
-fn predict<const N: usize>(learned: &Option<Learned<N>>, data: &Dataset<N>) -> Option<Vec<[f64; 2]>> {
-    let network = &learned.as_ref()?.network;
-    let points = data.inputs.iter().zip(&data.targets).map(|(x, t)| [f64::from(*t), f64::from(network.evaluate(*x))]);
-    (!data.is_empty()).then(|| points.collect())
+/// What the networks alone predict of logs.
+fn of_networks(simulator: &Simulator, logs: &Logs) -> Predictions {
+    let data = Datasets::from_logs(logs);
+    Predictions {
+        forward: answers(&simulator.forward, &data.forward),
+        lateral: answers(&simulator.lateral, &data.lateral),
+        turn: answers(&simulator.turn, &data.turn),
+        echo_probability: answers(&simulator.echo_probability, &data.echo_probability),
+        echo_value: answers(&simulator.echo_value, &data.echo_value),
+    }
+}
+
+/// Expected and predicted for each sample; none without a network.
+fn answers<const N: usize>(learned: &Option<Learned<N>>, data: &Dataset<N>) -> Vec<[f64; 2]> {
+    let ask = |network: &Network<f32, N>| {
+        let samples = data.inputs.iter().zip(&data.targets);
+        samples.map(|(x, t)| [f64::from(*t), f64::from(network.evaluate(*x))]).collect()
+    };
+    learned.as_ref().map_or_else(Vec::new, |learned| ask(&learned.network))
 }
 
 fn columns(points: &[[f64; 2]]) -> [Vec<f64>; 2] {

@@ -61,9 +61,9 @@ fn motion(simulator: &Simulator, logs: &Logs) -> Option<MotionReference> {
     Some(reference)
 }
 
-/// Bounds of the sonar's numbers: strengths, bias, scatter, three chances, and the width of the beam.
-const SONAR_BOUNDS: [Bounds; STRENGTHS + 10] = {
-    let mut bounds = [Bounds { low: -60.0, high: 60.0 }; STRENGTHS + 10];
+/// Bounds of the sonar's numbers: strengths, bias, scatter, three chances, the width of the beam, and a fourth chance.
+const SONAR_BOUNDS: [Bounds; STRENGTHS + 11] = {
+    let mut bounds = [Bounds { low: -60.0, high: 60.0 }; STRENGTHS + 11];
     bounds[STRENGTHS] = Bounds { low: -20.0, high: 20.0 };
     bounds[STRENGTHS + 1] = Bounds { low: -0.3, high: 0.3 };
     bounds[STRENGTHS + 2] = Bounds { low: -10.0, high: 10.0 };
@@ -74,15 +74,17 @@ const SONAR_BOUNDS: [Bounds; STRENGTHS + 10] = {
     bounds[STRENGTHS + 7] = Bounds { low: 0.0, high: 0.3 };
     bounds[STRENGTHS + 8] = Bounds { low: 0.0, high: 0.3 };
     bounds[STRENGTHS + 9] = Bounds { low: 0.2, high: 2.5 };
+    bounds[STRENGTHS + 10] = Bounds { low: 0.0, high: 0.3 };
     bounds
 };
 /// Where the search begins: a beam that sees what is near and faces it.
-const SONAR_START: [f64; STRENGTHS + 10] = [
+const SONAR_START: [f64; STRENGTHS + 11] = [
     3.0, -2.0, 0.0, -1.0, 0.0, 0.0, 0.0, 0.0, -1.0, -1.0, // strengths
     0.0, 0.0, 0.0, // bias
     0.5, 0.1, 0.1, // scatter
     0.01, 0.01, 0.01, // constant, short, lost
     1.0,  // width
+    0.01, // constant where no echo comes back
 ];
 const SONAR_ROUNDS: usize = 40;
 const SONAR_ENOUGH: f64 = 0.5;
@@ -129,6 +131,7 @@ fn sonar_from(at: &[f64], value_cm: f64, range_cm: [f64; 2]) -> SonarReference {
         short: rest[7],
         lost: rest[8],
         fan_width: rest[9],
+        constant_for_none: rest[10],
         range_cm,
     }
 }

@@ -111,6 +111,7 @@ pub fn train(
         constant_reading,
         reference: None,
         table_one: None,
+        added: Vec::new(),
         missing: school.missing,
     };
     let reference = reference::learn(&simulator, logs);

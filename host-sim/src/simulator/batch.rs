@@ -17,6 +17,7 @@ use super::course::{Course, Ending, Job, Moment, Outcome, Sensor};
 use super::draws::{Draws, Seeds};
 use super::room::Point;
 use super::scatter::LEVELS;
+use super::wrapped::Past;
 use crate::geometry::Pose;
 use crate::lanes::{Lanes, WIDEST};
 
@@ -48,6 +49,8 @@ struct Run<'a> {
     machine: Machine,
     /// The tuple that was held in the step before, none before the first.
     held: Option<usize>,
+    /// What added effects look back on.
+    past: Past,
     /// The residuals that last as long as it is held.
     held_levels: [usize; 3],
 }
@@ -99,8 +102,12 @@ impl<W: FnMut(Moment), F: FnMut(usize, Outcome)> WithSimd for Batch<'_, W, F> {
                 let from_cm = point(&from.0, &from.1, lane);
                 let radius_cm = self.course.robot.body_radius_cm;
                 let touch = if may_touch > 0.0 { self.course.room.touch(from_cm, to_cm, radius_cm) } else { None };
-                let echo_cm = match (&self.course.beam, run.job.sensor) {
-                    (Some(beam), Sensor::Beam) => heard.echo_cm(lane, &draws, beam, self.course),
+                let echo_cm = match (&self.course.wrapped, &self.course.beam, run.job.sensor) {
+                    (Some(wrapped), ..) if wrapped.senses() => {
+                        let pose = Pose::new(to_cm.x, to_cm.y, f64::from(robots.heading_rad[lane]));
+                        wrapped.echo_cm(&mut run.past, pose, draws.echo[lane])
+                    }
+                    (_, Some(beam), Sensor::Beam) => heard.echo_cm(lane, &draws, beam, self.course),
                     _ => look.echo_cm(lane, &draws, self.course),
                 };
                 let outcome = run.close_step(from_cm, to_cm, touch, echo_cm);
@@ -132,8 +139,14 @@ impl<'a> Robots<'a> {
         if let Some((_, job)) = next {
             self.seeds.set(lane, job.seed);
         }
-        self.runs[lane] =
-            next.map(|(number, job)| Run { number, job, machine: Machine::start(), held: None, held_levels: [0; 3] });
+        self.runs[lane] = next.map(|(number, job)| Run {
+            number,
+            job,
+            machine: Machine::start(),
+            held: None,
+            held_levels: [0; 3],
+            past: Past::default(),
+        });
     }
 
     #[inline(always)]
@@ -162,7 +175,16 @@ impl<'a> Robots<'a> {
             let Some(run) = &mut self.runs[lane] else { continue };
             let tuple = run.machine.tuple();
             let first = run.held != Some(tuple);
-            let mut motion = *run.job.motions.motion(tuple, first);
+            let mut motion = match &self.course.wrapped {
+                None => *run.job.motions.motion(tuple, first),
+                Some(wrapped) => {
+                    let at = point(&self.x_cm, &self.y_cm, lane);
+                    let pose = Pose::new(at.x, at.y, f64::from(self.heading_rad[lane]));
+                    let command = run.job.controller.tuples[tuple];
+                    let command = [command.left, command.right].map(f32::from);
+                    wrapped.motion(&mut run.past, pose, command, &self.course.motion)
+                }
+            };
             run.held = Some(tuple);
             if self.course.noise == Noise::Learned {
                 if first {

@@ -155,6 +155,7 @@ mod tests {
         bias: [-0.3, 0.01, -0.3],
         log_scatter: [-0.5, 0.2, 0.8],
         constant: [0.0, 20.0],
+        constant_for_none: 0.0,
         short: 0.0,
         lost: 0.1,
         fan_width: 0.9,

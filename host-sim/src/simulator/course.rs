@@ -9,6 +9,7 @@ use super::beam::Beam;
 use super::motion::{MotionNetworks, MotionTable};
 use super::room::Room;
 use super::scatter::{ConstantReading, Spread};
+use super::wrapped::Wrapped;
 use super::{Noise, Simulator};
 use crate::folded::Folded;
 use crate::geometry::Pose;
@@ -28,6 +29,8 @@ pub struct Course<'s> {
     pub(super) echo_spread: &'s Spread,
     pub(super) constant_reading: Option<ConstantReading>,
     pub(super) noise: Noise,
+    /// There when effects were added to the simulator.
+    pub(super) wrapped: Option<Wrapped<'s>>,
     /// There when some runs meet it.
     pub(super) beam: Option<Beam>,
 }
@@ -116,6 +119,7 @@ impl<'s> Course<'s> {
             echo_spread: &echo_value.spread,
             constant_reading: simulator.constant_reading,
             noise,
+            wrapped: Wrapped::of(simulator, scene, noise)?,
             beam: None,
         })
     }

@@ -28,19 +28,11 @@ pub const FORMS: &[Form] = &[
     },
     Form {
         id: "payload",
-        name: "ways shorten on one side, turns on both",
-        parameters: TURNING_LOAD,
-        starts: TURNING_LOAD_STARTS,
-        acts: &[Act::Motion(load_on_turns)],
+        name: "ways shorten on one side, and a heavy robot is slow to start and to turn",
+        parameters: HEAVY_LOAD,
+        starts: HEAVY_LOAD_STARTS,
+        acts: &[Act::Commands(slow_start), Act::Motion(load_on_turns)],
         report: load,
-    },
-    Form {
-        id: "slope",
-        name: "faster downhill, slower uphill",
-        parameters: DIRECTED,
-        starts: DIRECTED_STARTS,
-        acts: &[Act::Motion(slope_scale)],
-        report: directed,
     },
     Form {
         id: "slope",
@@ -52,34 +44,18 @@ pub const FORMS: &[Form] = &[
     },
     Form {
         id: "slope",
-        name: "faster downhill, slower uphill, and sideways down",
-        parameters: DIRECTED,
-        starts: DIRECTED_STARTS,
-        acts: &[Act::Motion(slope_scale_and_slide)],
-        report: directed,
-    },
-    Form {
-        id: "slope",
-        name: "the same gain or loss at any speed",
-        parameters: DIRECTED,
-        starts: DIRECTED_STARTS,
-        acts: &[Act::Motion(slope_pull)],
+        name: "a gain or loss that grows with speed in part, and sideways down in part",
+        parameters: MIXED_SLOPE,
+        starts: MIXED_SLOPE_STARTS,
+        acts: &[Act::Motion(slope_mixed)],
         report: directed,
     },
     Form {
         id: "carpet_nap",
-        name: "the same loss at any speed, against the nap only",
-        parameters: DIRECTED,
-        starts: DIRECTED_STARTS,
-        acts: &[Act::Motion(nap_pull)],
-        report: directed,
-    },
-    Form {
-        id: "carpet_nap",
-        name: "most drag one way, none the other",
-        parameters: DIRECTED,
-        starts: DIRECTED_STARTS,
-        acts: &[Act::Motion(nap_one_way)],
+        name: "drag that grows with speed in part, and sets in softly in part",
+        parameters: MIXED_NAP,
+        starts: MIXED_NAP_STARTS,
+        acts: &[Act::Motion(nap_mixed)],
         report: directed,
     },
     Form {
@@ -91,17 +67,9 @@ pub const FORMS: &[Form] = &[
         report: directed,
     },
     Form {
-        id: "carpet_nap",
-        name: "drag against the nap only",
-        parameters: DIRECTED,
-        starts: DIRECTED_STARTS,
-        acts: &[Act::Motion(nap_against)],
-        report: directed,
-    },
-    Form {
         id: "slip",
         name: "large commands lose grip",
-        parameters: GRIP,
+        parameters: FAST_GRIP,
         starts: GRIP_STARTS,
         acts: &[Act::Commands(slip_when_fast)],
         report: onset,
@@ -136,17 +104,42 @@ pub const FORMS: &[Form] = &[
 /// motor, with all of it a scale.
 const LOAD: &[Parameter] = &[Parameter::new(-0.6, 0.6, 0.0), Parameter::new(0.15, 0.8, 0.5)];
 const LOAD_STARTS: &[&[f64]] = &[&[0.06, 0.5], &[-0.06, 0.5]];
-/// The same with the loss of turns: a heavy robot is hard to turn on the spot.
-const TURNING_LOAD: &[Parameter] =
-    &[Parameter::new(-0.6, 0.6, 0.0), Parameter::new(0.0, 0.8, 0.5), Parameter::new(0.0, 0.5, 0.0)];
-const TURNING_LOAD_STARTS: &[&[f64]] = &[&[0.03, 0.5, 0.08], &[-0.03, 0.5, 0.08]];
+/// The same with the loss of turns and of changes of command, each so many times the side's loss: a load that costs
+/// much of these costs something on the straight too, or it would be another track or a slower motor.
+const HEAVY_LOAD: &[Parameter] = &[
+    Parameter::new(-0.6, 0.6, 0.0),
+    Parameter::new(0.0, 0.8, 0.5),
+    Parameter::new(0.0, 6.0, 0.0),
+    Parameter::new(0.0, 6.0, 0.0),
+];
+const HEAVY_LOAD_STARTS: &[&[f64]] = &[&[0.03, 0.5, 2.0, 1.0], &[-0.03, 0.5, 2.0, 1.0]];
 /// Direction in radians, and loss.
 const DIRECTED: &[Parameter] = &[Parameter::new(-2.0 * PI, 2.0 * PI, 0.0), Parameter::new(0.0, 0.6, 0.0)];
 const DIRECTED_STARTS: &[&[f64]] = &[&[0.0, 0.05], &[PI / 2.0, 0.05], &[PI, 0.05], &[-PI / 2.0, 0.05]];
+/// Direction, loss, the share of it that grows with speed, and how much of it slides sideways.
+const MIXED_SLOPE: &[Parameter] = &[
+    Parameter::new(-2.0 * PI, 2.0 * PI, 0.0),
+    Parameter::new(0.0, 0.6, 0.0),
+    Parameter::new(0.0, 1.0, 0.5),
+    Parameter::new(0.0, 1.5, 0.0),
+];
+const MIXED_SLOPE_STARTS: &[&[f64]] =
+    &[&[0.0, 0.05, 0.5, 0.5], &[PI / 2.0, 0.05, 0.5, 0.5], &[PI, 0.05, 0.5, 0.5], &[-PI / 2.0, 0.05, 0.5, 0.5]];
+/// Direction, loss, the share of it that grows with speed, and the share of it that is there across the nap too.
+const MIXED_NAP: &[Parameter] = &[
+    Parameter::new(-2.0 * PI, 2.0 * PI, 0.0),
+    Parameter::new(0.0, 0.6, 0.0),
+    Parameter::new(0.0, 1.0, 0.5),
+    Parameter::new(0.0, 1.0, 0.5),
+];
+const MIXED_NAP_STARTS: &[&[f64]] =
+    &[&[0.0, 0.05, 0.5, 0.5], &[PI / 2.0, 0.05, 0.5, 0.5], &[PI, 0.05, 0.5, 0.5], &[-PI / 2.0, 0.05, 0.5, 0.5]];
 const AXIS: &[Parameter] = &[Parameter::new(-PI, PI, 0.0), Parameter::new(0.0, 0.6, 0.0)];
 const AXIS_STARTS: &[&[f64]] = &[&[0.0, 0.05], &[PI / 4.0, 0.05], &[PI / 2.0, 0.05], &[-PI / 4.0, 0.05]];
 /// Onset in commands, and the share that is lost of what lies beyond. Below some onset it would be a scale or a lag.
 const GRIP: &[Parameter] = &[Parameter::new(15.0, 120.0, 120.0), Parameter::new(0.0, 1.0, 0.0)];
+/// Large commands alone: what loses more than half is a limit.
+const FAST_GRIP: &[Parameter] = &[Parameter::new(15.0, 120.0, 120.0), Parameter::new(0.0, 0.5, 0.0)];
 const GRIP_STARTS: &[&[f64]] = &[&[20.0, 0.2], &[40.0, 0.3], &[70.0, 0.4]];
 
 fn load_factors(v: &[f64]) -> [f64; 2] {
@@ -167,16 +160,21 @@ fn loaded_ways(v: &[f64], moment: &Moment, motion: &mut Motion) {
 
 fn load_on_turns(v: &[f64], moment: &Moment, motion: &mut Motion) {
     loaded_ways(v, moment, motion);
-    motion.turn_rad *= 1.0 - v[2];
+    motion.turn_rad *= 1.0 - (v[2] * v[0].abs()).min(1.0);
+}
+
+/// Part of every change of command is not there yet.
+fn slow_start(v: &[f64], _: &Moment, window: &mut Window) {
+    let late = (v[3] * v[0].abs()).min(1.0);
+    let [now, before, ..] = window;
+    for (c, earlier) in now.iter_mut().zip(before) {
+        *c += late * (*earlier - *c);
+    }
 }
 
 /// Cosine between the direction of travel and `direction_rad`: reversing travels against the heading.
 fn along(direction_rad: f64, moment: &Moment, motion: &Motion) -> f64 {
     libm::cos(moment.pose.heading_rad + 0.5 * motion.turn_rad - direction_rad) * motion.forward_cm.signum()
-}
-
-fn slope_scale(v: &[f64], moment: &Moment, motion: &mut Motion) {
-    motion.forward_cm *= 1.0 + v[1] * along(v[0], moment, motion);
 }
 
 /// Way downhill in a step, in shares of the way of both wheels.
@@ -192,23 +190,27 @@ fn slope_drift(v: &[f64], moment: &Moment, motion: &mut Motion) {
     motion.lateral_cm += drift.y;
 }
 
-fn slope_scale_and_slide(v: &[f64], moment: &Moment, motion: &mut Motion) {
-    let drift = downhill(v, moment, motion);
-    slope_scale(v, moment, motion);
-    motion.lateral_cm += 0.5 * drift.y;
-}
-
 /// The way of a step at half of the largest command, about; a force costs a share of it at any speed.
 const HALF_SPEED_CM: f64 = 8.0;
 
-fn slope_pull(v: &[f64], moment: &Moment, motion: &mut Motion) {
-    let pull = v[1] * along(v[0], moment, motion) * HALF_SPEED_CM;
-    motion.forward_cm = pushed(motion.forward_cm, pull);
+/// What a force costs in a step of a way: a share of it that grows with speed, and the rest at any speed.
+fn cost_cm(with_speed: f64, way_cm: f64) -> f64 {
+    with_speed * way_cm.abs() + (1.0 - with_speed) * HALF_SPEED_CM
 }
 
-fn nap_pull(v: &[f64], moment: &Moment, motion: &mut Motion) {
-    let pull = v[1] * along(v[0], moment, motion).max(0.0) * HALF_SPEED_CM;
-    motion.forward_cm = pushed(motion.forward_cm, -pull);
+/// A wheel that is driven gives way downhill, one that stands holds.
+fn slope_mixed(v: &[f64], moment: &Moment, motion: &mut Motion) {
+    let driven_cm = motion.wheels_cm(moment.track_cm).into_iter().fold(0.0, |most: f64, w| most.max(w.abs()));
+    let pull_cm = (driven_cm / 1.5).min(1.0) * v[1] * cost_cm(v[2], motion.forward_cm);
+    let downhill = direction(v[0] - moment.pose.heading_rad - 0.5 * motion.turn_rad) * pull_cm;
+    motion.forward_cm += downhill.x;
+    motion.lateral_cm += v[3] * downhill.y;
+}
+
+fn nap_mixed(v: &[f64], moment: &Moment, motion: &mut Motion) {
+    let against = along(v[0], moment, motion);
+    let drag = v[3] * 0.5 * (1.0 + against) + (1.0 - v[3]) * against.max(0.0);
+    motion.forward_cm = pushed(motion.forward_cm, -v[1] * drag * cost_cm(v[2], motion.forward_cm));
 }
 
 /// A way made longer or shorter, not below nothing; a robot that stands stays.
@@ -217,16 +219,8 @@ fn pushed(way_cm: f64, more_cm: f64) -> f64 {
     (way_cm.abs() + moving * more_cm).max(0.0) * way_cm.signum()
 }
 
-fn nap_one_way(v: &[f64], moment: &Moment, motion: &mut Motion) {
-    drag(motion, v[1] * 0.5 * (1.0 + along(v[0], moment, motion)));
-}
-
 fn nap_axis(v: &[f64], moment: &Moment, motion: &mut Motion) {
     drag(motion, v[1] * along(v[0], moment, motion).abs());
-}
-
-fn nap_against(v: &[f64], moment: &Moment, motion: &mut Motion) {
-    drag(motion, v[1] * along(v[0], moment, motion).max(0.0));
 }
 
 fn drag(motion: &mut Motion, loss: f64) {

@@ -28,8 +28,10 @@ pub struct SonarReference {
     pub bias: [f64; 3],
     /// Logarithm of the scatter in cm: a constant, per metre, per 45 degrees.
     pub log_scatter: [f64; 3],
-    /// Chance of the constant reading, and its value in cm.
+    /// Chance of the constant reading in place of an echo, and its value in cm.
     pub constant: [f64; 2],
+    /// Chance of the constant reading where no echo comes back.
+    pub constant_for_none: f64,
     /// Chance of a random short reading.
     pub short: f64,
     /// Chance that a value is lost whatever came back.
@@ -94,6 +96,16 @@ pub struct Change {
     pub stale: f64,
 }
 
+/// What a drawn reading depends on beside the fan.
+pub struct Draw<'a> {
+    /// How the sensor differs.
+    pub change: &'a Change,
+    /// The reading before.
+    pub previous_cm: Option<f64>,
+    /// Whether readings scatter.
+    pub scatters: bool,
+}
+
 impl Change {
     /// The sensor as it was.
     pub const NONE: Change = Change {
@@ -127,7 +139,8 @@ impl SonarReference {
         let echo = (any * (1.0 - change.lost) * (1.0 - self.lost)).clamp(STRAY, 1.0 - STRAY);
         let kept = (1.0 - change.short) * (1.0 - self.short);
         let ghost = 1.0 - echo * (1.0 - change.ghost_for_echo) - (1.0 - echo) * (1.0 - change.ghost_for_none);
-        let value = 1.0 - kept * (1.0 - echo) * (1.0 - change.ghost_for_none);
+        let none = (1.0 - echo) * (1.0 - change.ghost_for_none) * (1.0 - self.constant_for_none);
+        let value = 1.0 - kept * none;
         let value = value.clamp(STRAY, 1.0 - STRAY);
         let Some(z) = echo_cm else {
             let none = libm::log(1.0 - value);
@@ -139,7 +152,7 @@ impl SonarReference {
         let before = if z >= low && z <= reach { 1.0 / (reach - low) } else { 0.0 };
         let true_echo = if any > 0.0 { echo * density / any } else { 0.0 };
         let fresh = true_echo * (1.0 - change.ghost_for_echo) * (1.0 - self.constant[0])
-            + echo * (1.0 - change.ghost_for_echo) * self.constant[0] * near(z, self.constant[1]);
+            + self.constant_chance(echo, change) * near(z, self.constant[1]);
         let mut reading = kept * (fresh + ghost * near(z, change.ghost_cm)) + (1.0 - kept) * before;
         if change.long > 0.0 && z > reach {
             reading += change.long * value * (1.0 / (high - reach).max(1.0) - reading / value);
@@ -153,33 +166,104 @@ impl SonarReference {
         [libm::log(reading.max(1e-9)), libm::log(value)]
     }
 
+    /// The chance of the constant reading.
+    fn constant_chance(&self, echo: f64, change: &Change) -> f64 {
+        echo * (1.0 - change.ghost_for_echo) * self.constant[0]
+            + (1.0 - echo) * (1.0 - change.ghost_for_none) * self.constant_for_none
+    }
+
+    /// One of the readings that [`SonarReference::log_likelihood`] tells of. `uniform` draws from 0 to 1.
+    pub fn draw(&self, fan: &Fan, draw: &Draw, mut uniform: impl FnMut() -> f64) -> Option<f64> {
+        let change = draw.change;
+        let [low, high] = self.range_cm;
+        let reach = fan[FAN_DEG.len() / 2].distance_cm.clamp(low + 10.0, high);
+        let arrives = |i: &usize, uniform: &mut dyn FnMut() -> f64| {
+            fan[*i].distance_cm.is_finite() && uniform() < self.back(&fan[*i], FAN_DEG[*i], change)
+        };
+        let first = nearest_first(fan).into_iter().find(|i| arrives(i, &mut uniform));
+        let first = first.filter(|_| uniform() < (1.0 - change.lost) * (1.0 - self.lost));
+        let (ghost, constant) = match first {
+            Some(_) => (change.ghost_for_echo, self.constant[0]),
+            None => (change.ghost_for_none, self.constant_for_none),
+        };
+        let mut reading = if uniform() < ghost {
+            Some(change.ghost_cm)
+        } else if uniform() < constant {
+            Some(self.constant[1])
+        } else {
+            first.map(|i| {
+                let scatter = if draw.scatters { self.scatter_cm(&fan[i], change) } else { 0.0 };
+                self.middle_cm(&fan[i], change) + scatter * quantile(uniform())
+            })
+        };
+        if uniform() < 1.0 - (1.0 - change.short) * (1.0 - self.short) {
+            reading = Some(low + (reach - low) * uniform());
+        }
+        if reading.is_some() && uniform() < change.long {
+            reading = Some(reach + (high - reach) * uniform());
+        }
+        let stale = draw.previous_cm.filter(|_| reading.is_some() && uniform() < change.stale);
+        stale.or(reading).map(|cm| cm.clamp(low, high))
+    }
+
+    /// The reading to expect of an echo, cm; none where nothing is in reach.
+    pub fn expected_cm(&self, fan: &Fan, change: &Change) -> Option<f64> {
+        let (mut none_yet, mut sum) = (1.0, 0.0);
+        for i in nearest_first(fan) {
+            let (ray, back) = (&fan[i], self.back(&fan[i], FAN_DEG[i], change));
+            if ray.distance_cm.is_finite() {
+                sum += none_yet * back * self.middle_cm(ray, change);
+                none_yet *= 1.0 - back;
+            }
+        }
+        (none_yet < 1.0).then(|| sum / (1.0 - none_yet))
+    }
+
+    /// The chance that a ray comes back.
+    fn back(&self, ray: &Ray, offset_deg: f64, change: &Change) -> f64 {
+        let (metres, incidence) = (ray.distance_cm.min(FAR_CM) / 100.0, ray.alpha_deg / 45.0);
+        let damping = change.damping + change.damping_per_m * metres + change.damping_per_incidence * incidence;
+        let strength: f64 = ray_features(ray, offset_deg).iter().zip(&self.strength).map(|(f, w)| f * w).sum();
+        logistic(strength - damping)
+    }
+
+    /// By how much the reading of a ray scatters, cm.
+    fn scatter_cm(&self, ray: &Ray, change: &Change) -> f64 {
+        let (metres, incidence) = (ray.distance_cm.min(FAR_CM) / 100.0, ray.alpha_deg / 45.0);
+        let own = libm::exp(self.log_scatter[0] + self.log_scatter[1] * metres + self.log_scatter[2] * incidence);
+        (own * own + change.scatter_cm * change.scatter_cm).sqrt()
+    }
+
+    /// The reading that a ray gives, before scatter.
+    fn middle_cm(&self, ray: &Ray, change: &Change) -> f64 {
+        let bias = self.bias[0] + self.bias[1] * ray.distance_cm + self.bias[2] * ray.alpha_deg / 45.0;
+        let [low, high] = self.range_cm;
+        ((ray.distance_cm + bias) * change.gain + change.offset_cm).clamp(low, high)
+    }
+
     /// The chance that any ray comes back, and the density of the reading and of that.
     fn first_echo(&self, fan: &Fan, change: &Change, echo_cm: Option<f64>) -> [f64; 2] {
-        let mut order = [0, 1, 2, 3, 4, 5, 6, 7, 8];
-        order.sort_by(|a: &usize, b| fan[*a].distance_cm.total_cmp(&fan[*b].distance_cm));
         let (mut none_yet, mut density) = (1.0, 0.0);
-        for i in order {
+        for i in nearest_first(fan) {
             let ray = &fan[i];
             if ray.distance_cm.is_infinite() {
                 break;
             }
-            let (metres, incidence) = (ray.distance_cm.min(FAR_CM) / 100.0, ray.alpha_deg / 45.0);
-            let damping = change.damping + change.damping_per_m * metres + change.damping_per_incidence * incidence;
-            let strength: f64 = ray_features(ray, FAN_DEG[i]).iter().zip(&self.strength).map(|(f, w)| f * w).sum();
-            let back = logistic(strength - damping);
+            let back = self.back(ray, FAN_DEG[i], change);
             if let Some(z) = echo_cm {
-                let bias = self.bias[0] + self.bias[1] * ray.distance_cm + self.bias[2] * incidence;
-                let [low, high] = self.range_cm;
-                let middle = ((ray.distance_cm + bias) * change.gain + change.offset_cm).clamp(low, high);
-                let own =
-                    libm::exp(self.log_scatter[0] + self.log_scatter[1] * metres + self.log_scatter[2] * incidence);
-                let scatter = (own * own + change.scatter_cm * change.scatter_cm).sqrt();
-                density += none_yet * back * student(z - middle, scatter);
+                density += none_yet * back * student(z - self.middle_cm(ray, change), self.scatter_cm(ray, change));
             }
             none_yet *= 1.0 - back;
         }
         [1.0 - none_yet, density]
     }
+}
+
+/// Places of a fan's rays in the order in which their echoes arrive.
+fn nearest_first(fan: &Fan) -> [usize; FAN_DEG.len()] {
+    let mut order = std::array::from_fn(|i| i);
+    order.sort_by(|a: &usize, b| fan[*a].distance_cm.total_cmp(&fan[*b].distance_cm));
+    order
 }
 
 /// What a ray's strength is made of.
@@ -201,6 +285,65 @@ fn student(x: f64, scale: f64) -> f64 {
     0.379_606_689_822_494_4 / (scale * base * base * base)
 }
 
+/// The quantile of Student's law with five degrees of freedom by the expansion of Cornish and Fisher.
+fn quantile(uniform: f64) -> f64 {
+    let p = uniform.clamp(1e-4, 1.0 - 1e-4);
+    let z = normal_quantile(p);
+    let (z3, z5) = (z * z * z, z * z * z * z * z);
+    z + (z3 + z) / 20.0 + (5.0 * z5 + 16.0 * z3 + 3.0 * z) / 2400.0
+}
+
+/// The standard normal quantile (Hastings 1955, equation 26.2.23 in Abramowitz and Stegun), right to 0.0005.
+fn normal_quantile(p: f64) -> f64 {
+    let t = (-2.0 * libm::log(p.min(1.0 - p))).sqrt();
+    let above = 2.515_517 + t * (0.802_853 + t * 0.010_328);
+    let below = 1.0 + t * (1.432_788 + t * (0.189_269 + t * 0.001_308));
+    (t - above / below) * (p - 0.5).signum()
+}
+
 fn near(z_cm: f64, constant_cm: f64) -> f64 {
     student(z_cm - constant_cm, CONSTANT_SCATTER_CM)
+}
+
+#[cfg(test)]
+mod tests {
+    use rand::RngExt;
+
+    use super::*;
+    use crate::chance::generator;
+
+    const SENSOR: SonarReference = SonarReference {
+        strength: [2.0, -1.0, 0.0, -1.0, 0.0, 0.0, 0.0, 0.0, -0.5, 0.0],
+        bias: [1.0, 0.0, 0.0],
+        log_scatter: [0.5, 0.0, 0.0],
+        constant: [0.1, 20.0],
+        constant_for_none: 0.2,
+        short: 0.05,
+        lost: 0.1,
+        fan_width: 1.0,
+        range_cm: [4.0, 240.0],
+    };
+
+    /// Draws follow the law that logs are judged by: the share of missing readings and of each range is as likely.
+    #[test]
+    fn drawn_readings_are_as_likely_as_they_come() {
+        let ray = |i: usize| Ray { distance_cm: 90.0 + 8.0 * i as f64, alpha_deg: 10.0 * i as f64 };
+        let fan: Fan = std::array::from_fn(ray);
+        let change = Change { ghost_for_echo: 0.2, ghost_cm: 55.0, gain: 1.1, long: 0.05, ..Change::NONE };
+        let draw = Draw { change: &change, previous_cm: None, scatters: true };
+        let mut rng = generator(3, &[]);
+        const DRAWS: usize = 40_000;
+        let drawn: Vec<Option<f64>> = (0..DRAWS).map(|_| SENSOR.draw(&fan, &draw, || rng.random())).collect();
+        let share =
+            |holds: &dyn Fn(&Option<f64>) -> bool| drawn.iter().filter(|d| holds(d)).count() as f64 / DRAWS as f64;
+        let likely = |z: Option<f64>| libm::exp(SENSOR.log_likelihood(&fan, &change, z, None)[0]);
+        assert!((share(&|z| z.is_none()) - likely(None)).abs() < 0.01);
+        for (from, to) in [(15.0, 25.0), (50.0, 60.0), (60.0, 90.0), (95.0, 110.0), (110.0, 150.0), (150.0, 230.0)] {
+            let cells = 400;
+            let width = (to - from) / f64::from(cells);
+            let expected: f64 = (0..cells).map(|i| width * likely(Some(from + (f64::from(i) + 0.5) * width))).sum();
+            let there = share(&|z| z.is_some_and(|z| (from..to).contains(&z)));
+            assert!((there - expected).abs() < 0.015, "{from} to {to}: {there} drawn, {expected} likely");
+        }
+    }
 }

@@ -1,0 +1,217 @@
+//! Scores a challenge's answers.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+
+use super::Folder;
+use super::seal::{Published, Sealed};
+use crate::built_in_robot::Effect;
+use crate::files;
+use crate::gap::Diagnosis;
+use crate::gap::verdict::Verdict;
+use crate::problem::{Problem, Result};
+
+/// A set of effects that holds more than these rivals beside the first says nothing.
+const MOST_RIVALS: usize = 3;
+/// An answer that is surer than this of what is wrong is confidently wrong.
+const SURE: f64 = 0.9;
+/// Borders of the bins in which probabilities are compared with how often they are right.
+const BINS: [f64; 6] = [0.0, 0.5, 0.7, 0.9, 0.98, 1.01];
+
+/// What happened in one case.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Scored {
+    /// The case.
+    pub case: String,
+    /// What was different, with strengths, separated by blanks.
+    pub truth: String,
+    /// What was answered.
+    pub verdict: Verdict,
+    /// The effects named, each with its rivals in brackets, separated by blanks.
+    pub named: String,
+    /// The probability of the first.
+    pub probability: f64,
+    /// The share of the reducible gap that it is said to close.
+    pub closed: Option<f64>,
+    /// Whether the answer is right: no gap, all effects (as first or in a set of a few), or unknown.
+    pub right: bool,
+}
+
+/// A share with what it is made of.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Share {
+    /// So many
+    pub count: usize,
+    /// of so many.
+    pub of: usize,
+}
+
+/// The score of a challenge.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Score {
+    /// Cases without any effect in which a gap was seen.
+    pub false_alarms: Share,
+    /// Cases with effects in which a gap was seen.
+    pub detected: Share,
+    /// Single effects that were named first.
+    pub top_1: Share,
+    /// Single effects that were named first or in a set of a few.
+    pub top_set: Share,
+    /// Known answers to single effects whose set holds the truth.
+    pub covered: Share,
+    /// Mean number of effects in these sets.
+    pub set_size: f64,
+    /// Pairs of which both were named.
+    pub pairs: Share,
+    /// Effects outside the table that were called unknown.
+    pub unknowns: Share,
+    /// Effects of the table that were called unknown.
+    pub false_unknowns: Share,
+    /// Answers with a probability above 0.9 for an effect that is not there.
+    pub confidently_wrong: Share,
+    /// For each bin of probability how many first effects are there.
+    pub calibration: Vec<(String, Share)>,
+    /// Effects that were answered wrongly: truth, answer, how often.
+    pub confusions: Vec<(String, String, usize)>,
+    /// Every case.
+    #[serde(skip)]
+    pub cases: Vec<Scored>,
+}
+
+/// A case with its answer.
+struct Opened {
+    sealed: Sealed,
+    answer: Diagnosis,
+}
+
+/// Opens the seal of a challenge and scores its answers.
+///
+/// # Errors
+/// When a case lacks an answer, or when a sealed entry is not what was committed to.
+pub fn score(folder: &Path) -> Result<Score> {
+    let folder = Folder(folder);
+    let published: Vec<Published> = files::read_csv(&folder.cases())?;
+    let sealed: Vec<Sealed> = files::read_json(&folder.sealed())?;
+    let opened = published
+        .iter()
+        .map(|case| {
+            let sealed = sealed.iter().find(|s| s.case == case.case && s.commitment() == case.commitment);
+            let broken =
+                || Problem::in_file(&folder.sealed(), format!("case {}: not what was committed to", case.case));
+            let sealed = sealed.cloned().ok_or_else(broken)?;
+            Ok(Opened { sealed, answer: files::read_json(&folder.answer(&case.case))? })
+        })
+        .collect::<Result<Vec<Opened>>>()?;
+    Ok(Score::of(&opened))
+}
+
+impl Opened {
+    fn truth(&self) -> Vec<&str> {
+        self.sealed.ids()
+    }
+
+    fn is_null(&self) -> bool {
+        self.sealed.effects.is_empty()
+    }
+
+    fn is_outside(&self) -> bool {
+        self.truth().iter().any(|id| id.parse::<Effect>().is_ok_and(|e| !e.in_table()))
+    }
+
+    fn is_single(&self) -> bool {
+        self.sealed.effects.len() == 1 && !self.is_outside()
+    }
+
+    fn is_pair(&self) -> bool {
+        self.sealed.effects.len() > 1 && !self.is_outside()
+    }
+
+    fn first(&self) -> Option<&str> {
+        self.answer.effects.first().map(|e| e.id.as_str())
+    }
+
+    fn probability(&self) -> f64 {
+        self.answer.effects.first().map_or(0.0, |e| e.probability)
+    }
+
+    fn first_is_there(&self) -> bool {
+        self.first().is_some_and(|id| self.truth().contains(&id))
+    }
+
+    /// Whether an effect is named, as itself or among a few rivals of another.
+    fn names(&self, id: &str, most_rivals: usize) -> bool {
+        let stands_for = |rivals: &[String]| rivals.len() <= most_rivals && rivals.iter().any(|r| r == id);
+        self.answer.effects.iter().any(|e| e.id == id || stands_for(&e.ambiguous_with))
+    }
+
+    fn is_right(&self) -> bool {
+        if self.is_null() {
+            self.answer.verdict == Verdict::NoGap
+        } else if self.is_outside() {
+            self.answer.verdict == Verdict::Unknown
+        } else {
+            self.truth().iter().all(|id| self.names(id, MOST_RIVALS))
+        }
+    }
+
+    fn scored(&self) -> Scored {
+        let named = self.answer.effects.iter().map(|e| match e.ambiguous_with.as_slice() {
+            [] => e.id.clone(),
+            rivals => format!("{}({})", e.id, rivals.join(",")),
+        });
+        Scored {
+            case: self.sealed.case.clone(),
+            truth: self.sealed.effects.join(" "),
+            verdict: self.answer.verdict,
+            named: named.collect::<Vec<String>>().join(" "),
+            probability: self.probability(),
+            closed: self.answer.shrink.as_ref().map(|s| s.reducible_closed),
+            right: self.is_right(),
+        }
+    }
+
+    fn answered(&self) -> String {
+        self.first().map_or_else(|| format!("({:?})", self.answer.verdict), String::from)
+    }
+}
+
+impl Score {
+    fn of(cases: &[Opened]) -> Self {
+        let share = |among: fn(&Opened) -> bool, holds: &dyn Fn(&Opened) -> bool| {
+            let among: Vec<&Opened> = cases.iter().filter(|c| among(c)).collect();
+            Share { count: among.iter().filter(|c| holds(c)).count(), of: among.len() }
+        };
+        let sees_gap = |c: &Opened| c.answer.verdict != Verdict::NoGap;
+        let named = |c: &Opened| c.is_single() && c.answer.verdict == Verdict::Known;
+        let sizes: Vec<usize> =
+            cases.iter().filter(|c| named(c)).map(|c| 1 + c.answer.effects[0].ambiguous_with.len()).collect();
+        let calibration = BINS.windows(2).map(|bin| {
+            let inside = |c: &&Opened| c.first().is_some() && (bin[0]..bin[1]).contains(&c.probability());
+            let inside: Vec<&Opened> = cases.iter().filter(inside).collect();
+            let there = Share { count: inside.iter().filter(|c| c.first_is_there()).count(), of: inside.len() };
+            (format!("{:.2} to {:.2}", bin[0], bin[1].min(1.0)), there)
+        });
+        let mut confusions: BTreeMap<(String, String), usize> = BTreeMap::new();
+        for case in cases.iter().filter(|c| !c.is_right()) {
+            *confusions.entry((case.truth().join("+"), case.answered())).or_default() += 1;
+        }
+        let confidently_wrong = |c: &Opened| c.probability() > SURE && !c.first_is_there();
+        Score {
+            false_alarms: share(Opened::is_null, &sees_gap),
+            detected: share(|c| !c.is_null(), &sees_gap),
+            top_1: share(Opened::is_single, &Opened::first_is_there),
+            top_set: share(Opened::is_single, &Opened::is_right),
+            covered: share(named, &|c| c.names(c.truth()[0], usize::MAX)),
+            set_size: sizes.iter().sum::<usize>() as f64 / sizes.len().max(1) as f64,
+            pairs: share(Opened::is_pair, &Opened::is_right),
+            unknowns: share(Opened::is_outside, &Opened::is_right),
+            false_unknowns: share(|c| c.is_single() || c.is_pair(), &|c| c.answer.verdict == Verdict::Unknown),
+            confidently_wrong: share(|_| true, &confidently_wrong),
+            calibration: calibration.collect(),
+            confusions: confusions.into_iter().map(|((truth, answer), n)| (truth, answer, n)).collect(),
+            cases: cases.iter().map(Opened::scored).collect(),
+        }
+    }
+}

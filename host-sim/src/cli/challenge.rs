@@ -1,0 +1,106 @@
+//! `mindgap challenge`: the blind test of `mindgap diagnose`.
+
+use std::path::PathBuf;
+
+use clap::{Args, Subcommand};
+
+use super::progress;
+use crate::challenge::answer::answer;
+use crate::challenge::make::make;
+use crate::challenge::score::{Score, Share, score};
+use crate::files;
+use crate::problem::Result;
+
+/// The blind test of a diagnosis: make cases with withheld effects, answer them, score the answers.
+#[derive(Args)]
+pub struct Challenge {
+    #[command(subcommand)]
+    part: Part,
+}
+
+#[derive(Subcommand)]
+enum Part {
+    /// Write cases of the built-in robot, and sealed what is different in each.
+    Make {
+        /// Number of cases.
+        #[arg(long, value_name = "N", default_value_t = 400, value_parser = clap::value_parser!(u32).range(1..=999))]
+        cases: u32,
+        /// Seed of all that is random.
+        #[arg(long, value_name = "S", default_value_t = 1)]
+        seed: u64,
+        /// Folder for the challenge.
+        #[arg(long, value_name = "DIR")]
+        out: PathBuf,
+    },
+    /// Diagnose every case.
+    Answer {
+        /// Folder of the challenge.
+        folder: PathBuf,
+    },
+    /// Open the seal and score the answers.
+    Score {
+        /// Folder of the challenge.
+        folder: PathBuf,
+        /// Also write the score here.
+        #[arg(long, value_name = "FILE")]
+        json: Option<PathBuf>,
+        /// Also write what happened in every case here.
+        #[arg(long, value_name = "FILE")]
+        csv: Option<PathBuf>,
+    },
+}
+
+impl Challenge {
+    /// Does the part; returns what there is to say.
+    pub fn run(&self) -> Result<String> {
+        match &self.part {
+            Part::Make { cases, seed, out } => {
+                make(out, *cases as usize, *seed)?;
+                Ok(format!("{}: {cases} cases; sealed.json says what is different in each\n", out.display()))
+            }
+            Part::Answer { folder } => {
+                let spinner = progress::spinner();
+                let count = answer(folder, |done| spinner.set_message(format!("{done} cases diagnosed")))?;
+                spinner.finish_and_clear();
+                Ok(format!("{}: {count} cases diagnosed\n", folder.display()))
+            }
+            Part::Score { folder, json, csv } => {
+                let score = score(folder)?;
+                if let Some(path) = json {
+                    files::write_json(path, &score)?;
+                }
+                if let Some(path) = csv {
+                    files::write_csv(path, &score.cases)?;
+                }
+                Ok(text(&score))
+            }
+        }
+    }
+}
+
+fn text(score: &Score) -> String {
+    let line = |what: &str, share: &Share| {
+        let percent = 100.0 * share.count as f64 / share.of.max(1) as f64;
+        format!("{what:<48} {percent:>5.1} %  {} of {}", share.count, share.of)
+    };
+    let mut lines = vec![
+        line("false alarms where nothing is different", &score.false_alarms),
+        line("gaps detected", &score.detected),
+        line("single effects: named first", &score.top_1),
+        line("single effects: first or among three rivals", &score.top_set),
+        line("known answers whose set holds the effect", &score.covered),
+        format!("{:<48} {:>5.2}", "effects in such a set", score.set_size),
+        line("pairs: both named", &score.pairs),
+        line("effects outside the table called unknown", &score.unknowns),
+        line("effects of the table called unknown", &score.false_unknowns),
+        line("wrong with a probability above 0.9", &score.confidently_wrong),
+    ];
+    lines.extend(
+        score.calibration.iter().map(|(bin, share)| line(&format!("right with a probability of {bin}"), share)),
+    );
+    lines.extend(score.confusions.iter().map(|(truth, answer, n)| {
+        let truth = if truth.is_empty() { "nothing" } else { truth };
+        format!("  {n} x {truth} was called {answer}")
+    }));
+    lines.join("\n") + "\n"
+}

@@ -1,0 +1,121 @@
+//! How far predicted paths end from logged ones when the simulator runs open-loop from a logged pose: with the
+//! simulator as it is, with the effects added, and what scatter alone makes of it.
+
+use glam::DVec2;
+use rand_distr::{Distribution, StandardNormal};
+
+use super::baseline::Drive;
+use super::effect::Moment;
+use super::evidence::{Evidence, Row};
+use super::explanation::Explanation;
+use super::search::{Fitted, Given};
+use crate::chance::{Generator, generator};
+use crate::geometry::{Pose, direction};
+
+/// The median distance between predicted and logged ends of paths.
+#[derive(Clone, Copy, Debug)]
+pub struct PathGap {
+    /// Length of a path in steps.
+    pub steps: usize,
+    /// With the simulator as it is, cm.
+    pub before_cm: f64,
+    /// With the effects added, cm.
+    pub after_cm: f64,
+    /// What the robot's own scatter and the tracker's would make of a perfect simulator, cm.
+    pub floor_cm: f64,
+}
+
+/// Lengths of paths.
+const LENGTHS: [usize; 5] = [1, 2, 5, 10, 25];
+/// Paths drawn for the floor from each start.
+const DRAWS: usize = 8;
+
+/// The gap over paths of each length that the runs are long enough for; none where motion is not compared.
+pub fn open_loop(explanation: &Explanation, found: &Given, kept_back: &Evidence) -> Vec<PathGap> {
+    let Some(drive) = &found.baseline.motion else { return Vec::new() };
+    let mut rng = generator(4, &[]);
+    LENGTHS.iter().filter_map(|steps| gap(*steps, explanation, drive, kept_back, &mut rng)).collect()
+}
+
+fn gap(
+    steps: usize,
+    explanation: &Explanation,
+    drive: &Drive,
+    kept_back: &Evidence,
+    rng: &mut Generator,
+) -> Option<PathGap> {
+    let starts = (0..kept_back.rows.len().saturating_sub(steps)).step_by(steps.div_ceil(2));
+    let pieces: Vec<&[Row]> = starts.map(|i| &kept_back.rows[i..=i + steps]).filter(|p| is_unbroken(p)).collect();
+    let ends =
+        |fit: &Fitted| -> Vec<DVec2> { pieces.iter().map(|piece| end(fit, drive, piece, || [0.0; 3])).collect() };
+    let logged = pieces.iter().map(|piece| piece[steps].moment.pose.position_cm);
+    let after = ends(&explanation.chosen);
+    let noise = Noise::of(drive);
+    let floor: Vec<f64> = pieces
+        .iter()
+        .zip(&after)
+        .flat_map(|(piece, end)| {
+            (0..DRAWS).map(|_| noise.drawn(explanation, drive, piece, rng).distance(*end)).collect::<Vec<_>>()
+        })
+        .collect();
+    Some(PathGap {
+        steps,
+        before_cm: median(ends(&explanation.none).iter().zip(logged.clone()).map(|(a, b)| a.distance(b)))?,
+        after_cm: median(after.iter().zip(logged).map(|(a, b)| a.distance(b)))?,
+        floor_cm: median(floor.into_iter())?,
+    })
+}
+
+/// Rows of one run without a gap between them.
+fn is_unbroken(piece: &[Row]) -> bool {
+    piece.windows(2).all(|pair| pair[0].run == pair[1].run && pair[0].at + 1 == pair[1].at && pair[0].motion.is_some())
+}
+
+/// Where the robot ends that starts as the piece does and is given its commands.
+fn end(fit: &Fitted, drive: &Drive, piece: &[Row], mut scatter: impl FnMut() -> [f64; 3]) -> DVec2 {
+    let mut pose = piece[0].moment.pose;
+    for row in &piece[..piece.len() - 1] {
+        let motion = fit.hypothesis.motion(drive, &Moment { pose, ..row.moment }, &fit.values);
+        let [forward, lateral, turn] = scatter();
+        let way = [motion.forward_cm + forward, motion.lateral_cm + lateral].map(|w| w * row.stretch);
+        pose = pose.compose(&Pose::new(way[0], way[1], (motion.turn_rad + turn) * row.stretch));
+    }
+    pose.position_cm
+}
+
+/// What scatters where nothing is wrong, as standard deviations: the robot's own adds up from step to step, the
+/// tracker's is there at a path's two ends alone.
+struct Noise {
+    robot: [f64; 3],
+    tracker_cm: [f64; 2],
+    tracker_rad: f64,
+}
+
+impl Noise {
+    fn of(drive: &Drive) -> Self {
+        let (all, own) = (drive.scatter(), drive.own_share());
+        let tracker = [0, 1, 2].map(|c| all[c] * (1.0 - own[c] * own[c]).max(0.0).sqrt());
+        let robot = [0, 1, 2].map(|c| all[c] * own[c]);
+        // A step's residual has the tracker's error at both its ends; the heading's matters at the begin alone.
+        Noise { robot, tracker_cm: [tracker[0], tracker[1]], tracker_rad: tracker[2] / 2f64.sqrt() }
+    }
+
+    /// The end of a path that the explained robot might have driven, as the tracker might have seen it.
+    fn drawn(&self, explanation: &Explanation, drive: &Drive, piece: &[Row], rng: &mut Generator) -> DVec2 {
+        let fit = &explanation.chosen;
+        let driven = end(fit, drive, piece, || self.robot.map(|s| s * normal(rng)));
+        let from = piece[0].moment.pose.position_cm;
+        let seen = DVec2::from(self.tracker_cm.map(|s| s * normal(rng)));
+        from + direction(self.tracker_rad * normal(rng)).rotate(driven - from) + seen
+    }
+}
+
+fn normal(rng: &mut Generator) -> f64 {
+    StandardNormal.sample(rng)
+}
+
+fn median(values: impl Iterator<Item = f64>) -> Option<f64> {
+    let mut values: Vec<f64> = values.collect();
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied()
+}
