@@ -14,7 +14,7 @@ use super::dataset::Dataset;
 use super::genome::Shape;
 use super::statistics;
 use crate::chance::generator;
-use projection::Projection;
+use projection::{Projection, Ridges};
 
 /// How errors count.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -36,10 +36,21 @@ pub struct Trained<const N: usize> {
     pub evaluations: usize,
 }
 
-/// Starts that are tried.
-const STARTS: u64 = 6;
-/// Exponents start uniformly in ± this.
-const START_RANGE: f64 = 4.0;
+/// Starts that are tried with each of the manners.
+const STARTS: u64 = 4;
+/// Few samples ask for a tight rein, many can do with a loose one; held-out runs choose.
+const MANNERS: [Manner; 2] = [
+    Manner { ridges: Ridges { weights: 1e-4, exponents: 1e-5 }, start_range: 2.0 },
+    Manner { ridges: Ridges { weights: 1e-7, exponents: 1e-7 }, start_range: 4.0 },
+];
+
+/// How freely exponents are searched.
+struct Manner {
+    ridges: Ridges,
+    /// They start uniformly in ± this.
+    start_range: f64,
+}
+
 /// Evaluations of one search at most, in units of the number of exponents plus one.
 const PATIENCE: usize = 3;
 /// Rounds of reweighting for a loss that is not least squares.
@@ -55,12 +66,16 @@ pub fn train<const N: usize>(
     seed: u64,
 ) -> Trained<N> {
     let inputs = fitted.ranges().map(|range| Scaling::onto_one_to_two(*range.start(), *range.end()));
-    let searched: Vec<(f64, Network<f32, N>, usize)> = (0..STARTS)
+    // For readings a loose rein buys nothing (R² 0.794 either way) and costs accuracy in fixed point.
+    let manners = if loss == Loss::Mixture { &MANNERS[..1] } else { &MANNERS };
+    let tries: Vec<(u64, &Manner)> = (0..STARTS * manners.len() as u64).zip(manners.iter().cycle()).collect();
+    let searched: Vec<(f64, Network<f32, N>, usize)> = tries
         .into_par_iter()
-        .map(|start| {
+        .map(|(start, manner)| {
             let mut rng = generator(seed, &[start]);
-            let exponents = DVector::from_fn(shape.product * N, |_, _| rng.random_range(-START_RANGE..=START_RANGE));
-            let mut problem = Projection::new(fitted, &inputs, exponents);
+            let range = -manner.start_range..=manner.start_range;
+            let exponents = DVector::from_fn(shape.product * N, |_, _| rng.random_range(range.clone()));
+            let mut problem = Projection::new(fitted, &inputs, manner.ridges, exponents);
             let mut evaluations = search(&mut problem);
             for _ in 0..if loss == Loss::Squares { 0 } else { REWEIGHTINGS } {
                 reweight(&mut problem, loss, &fitted.targets);

@@ -9,11 +9,15 @@ use nalgebra::{Cholesky, DMatrix, DVector, Dyn, Owned};
 
 use crate::learn::dataset::Dataset;
 
-/// Holds linear weights back, per sample: power terms that are nearly alike would otherwise grow against each other.
-const RIDGE: f64 = 1e-7;
-/// Holds exponents back, per sample and as a share of the targets' variance, so that power terms stay tame outside the
-/// data.
-const EXPONENT_RIDGE: f64 = 1e-7;
+/// How much weights are held back: power terms that are nearly alike would grow against each other, and run wild outside
+/// the data.
+#[derive(Clone, Copy, Debug)]
+pub struct Ridges {
+    /// Of the linear weights, per sample.
+    pub weights: f64,
+    /// Of the exponents, per sample and as a share of the targets' variance.
+    pub exponents: f64,
+}
 
 /// A data set with exponents of `units` product units, as a least-squares problem in those exponents.
 ///
@@ -26,7 +30,9 @@ pub struct Projection<const N: usize> {
     /// Square roots of the samples' weights.
     roots: DVector<f64>,
     exponents: DVector<f64>,
-    /// What an exponent of one adds to the residuals.
+    /// What a linear weight of one adds to the residuals.
+    weight_prior: f64,
+    /// The same for an exponent of one.
     exponent_prior: f64,
     fit: Fit,
 }
@@ -45,7 +51,7 @@ struct Fit {
 
 impl<const N: usize> Projection<N> {
     /// The problem for a data set whose inputs are scaled so.
-    pub fn new(data: &Dataset<N>, inputs: &[Scaling<f32>; N], exponents: DVector<f64>) -> Self {
+    pub fn new(data: &Dataset<N>, inputs: &[Scaling<f32>; N], ridges: Ridges, exponents: DVector<f64>) -> Self {
         let scaled = |x: &[f32; N]| std::array::from_fn(|i| f64::from(inputs[i].apply(x[i])));
         let x: Vec<[f64; N]> = data.inputs.iter().map(scaled).collect();
         let count = x.len();
@@ -59,7 +65,8 @@ impl<const N: usize> Projection<N> {
         let mut problem = Projection {
             log2_x: x.iter().map(|x| x.map(libm::log2)).collect(),
             x,
-            exponent_prior: (EXPONENT_RIDGE * count as f64 * targets.variance()).sqrt(),
+            weight_prior: (ridges.weights * count as f64).sqrt(),
+            exponent_prior: (ridges.exponents * count as f64 * targets.variance()).sqrt(),
             targets,
             roots: DVector::from_element(count, 1.0),
             exponents,
@@ -115,8 +122,7 @@ impl<const N: usize> Projection<N> {
                 features[(i, j)] = self.roots[i] * feature;
             }
         }
-        let ridge = (RIDGE * count as f64).sqrt();
-        (0..width).for_each(|j| features[(count + j, j)] = ridge);
+        (0..width).for_each(|j| features[(count + j, j)] = self.weight_prior);
         let mut targets = DVector::zeros(count + width);
         targets.rows_mut(0, count).copy_from(&self.targets.component_mul(&self.roots));
         let normal = Cholesky::new(features.tr_mul(&features));
