@@ -22,7 +22,7 @@ use crate::simulator::course::Course;
 /// Generations of all runs of the genetic algorithm together.
 pub const GENERATIONS: usize = RESTARTS * EXPLORING.max_generations + REFINING.max_generations;
 
-const RESTARTS: usize = 2;
+const RESTARTS: usize = 4;
 const EXPLORING: Settings = Settings {
     population: 1000,
     tournament: 5,
