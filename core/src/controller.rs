@@ -159,6 +159,17 @@ impl Machine {
         self.status
     }
 
+    /// Lets so many steps pass whose readings end no tuple, as [`step`](Machine::step) would one by one.
+    pub fn hold(&mut self, controller: &Controller, steps: u16) {
+        if self.status == Status::Running && steps > 0 {
+            let left = controller.max_steps.saturating_sub(self.steps).max(1);
+            self.steps = self.steps.saturating_add(steps.min(left));
+            if self.steps >= controller.max_steps {
+                self.status = Status::TimedOut;
+            }
+        }
+    }
+
     /// What the motors are told now; zero once stopped.
     pub fn motors(&self, controller: &Controller) -> Motors {
         match (self.status, controller.tuples.get(usize::from(self.tuple))) {
@@ -250,6 +261,22 @@ mod tests {
         let mut m = Machine::start();
         let last = [49i16, 51, 49, 51, 49, 51].map(|r| m.step(&c, Some(r)))[5];
         assert_eq!(last, Status::Finished);
+    }
+
+    #[test]
+    fn holding_is_stepping_without_a_reading() {
+        for max_steps in [1, 5, 100] {
+            let c = controller(max_steps);
+            for steps in 0..8 {
+                let (mut held, mut stepped) = (Machine::start(), Machine::start());
+                for machine in [&mut held, &mut stepped] {
+                    machine.step(&c, Some(49i16));
+                }
+                held.hold(&c, steps);
+                (0..steps).for_each(|_| _ = stepped.step(&c, None::<i16>));
+                assert_eq!(held, stepped, "{steps} of {max_steps} steps");
+            }
+        }
     }
 
     #[test]

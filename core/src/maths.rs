@@ -39,10 +39,19 @@ pub trait Binary32: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output 
 /// Two to the power of `x`.
 #[inline(always)]
 pub fn exp2<T: Binary32>(x: T) -> T {
-    let x = x.limit(-126.0, 126.0);
+    exp2_within(x.limit(-126.0, 126.0))
+}
+
+/// The same, bit for bit, for an `x` that is known to be in -126..=126; beyond, and for NaN, the result means nothing.
+#[inline(always)]
+pub fn exp2_within<T: Binary32>(x: T) -> T {
     let whole = round(x);
     let rest = x - whole;
-    let power = horner(rest, [0.001_330_060_5, 0.009_669_691, 0.055_505_585, 0.240_222_83, LN_2, 1.0]);
+    // A polynomial in three independent halves, which a processor works out side by side.
+    let square = rest * rest;
+    let high = horner(rest, [0.001_330_060_5, 0.009_669_691]);
+    let middle = horner(rest, [0.055_505_585, 0.240_222_83]);
+    let power = (high * square + middle) * square + horner(rest, [LN_2, 1.0]);
     power * whole.whole_power_of_two()
 }
 
@@ -50,6 +59,13 @@ pub fn exp2<T: Binary32>(x: T) -> T {
 #[inline(always)]
 pub fn log2<T: Binary32>(x: T) -> T {
     let x = x.limit(f32::MIN_POSITIVE, f32::MAX);
+    // A bit pattern forgets that it was NaN; zero times the number does not.
+    log2_normal(x) + x * x.constant(0.0)
+}
+
+/// The same, bit for bit, for an `x` that is known to be a normal positive number; for others the result means nothing.
+#[inline(always)]
+pub fn log2_normal<T: Binary32>(x: T) -> T {
     let (mantissa, exponent) = x.split_exponent();
     let t = mantissa - x.constant(1.0);
     let slope = horner(
@@ -66,8 +82,7 @@ pub fn log2<T: Binary32>(x: T) -> T {
             LOG2_E,
         ],
     );
-    // A bit pattern forgets that it was NaN; zero times the number does not.
-    exponent + t * slope + x * x.constant(0.0)
+    exponent + t * slope
 }
 
 /// sin(π `x`).

@@ -24,13 +24,35 @@ fn main() {
     divan::main();
 }
 
+/// What is worked out in a step, beside geometry, draws and the controller.
+#[derive(Clone, Copy, Debug)]
+enum Step {
+    /// All five networks.
+    FiveNetworks,
+    /// The two sonar networks; the motions come from the controller's table.
+    Tabulated,
+    /// The same under the learned noise.
+    TabulatedLearnedNoise,
+    /// The beam in place of the sonar networks.
+    TabulatedBeam,
+}
+
 /// Simulated runs side by side on one thread, all their steps taken; the counter is robot-steps.
-#[divan::bench(args = [(Noise::Paper, Sensor::Networks), (Noise::Learned, Sensor::Networks), (Noise::Learned, Sensor::Beam)])]
-fn robot_steps(bencher: Bencher, (noise, sensor): (Noise, Sensor)) {
+#[divan::bench(args = [Step::FiveNetworks, Step::Tabulated, Step::TabulatedLearnedNoise, Step::TabulatedBeam])]
+fn robot_steps(bencher: Bencher, step: Step) {
     const RUNS: u64 = 1000;
     let (simulator, scene) = (simulator(), four_obstacles());
+    let (noise, sensor) = match step {
+        Step::FiveNetworks | Step::Tabulated => (Noise::Paper, Sensor::Networks),
+        Step::TabulatedLearnedNoise => (Noise::Learned, Sensor::Networks),
+        Step::TabulatedBeam => (Noise::Learned, Sensor::Beam),
+    };
     let course = Course::new(&simulator, &scene, scene.starts[0], noise).expect("the robot has room");
-    let course = if sensor == Sensor::Beam { course.with_beam(&simulator) } else { course };
+    let course = match step {
+        Step::FiveNetworks => course.asking_every_step(),
+        Step::TabulatedBeam => course.with_beam(&simulator),
+        _ => course,
+    };
     // It turns on the spot, and no reading is below zero: every run goes on to its last step.
     let turning = Tuple { left: 30, right: -30, when: When::Smaller, threshold_cm: 0 };
     let controller = &Controller { step_ms: 400, max_steps: MAX_STEPS, tuples: [turning; 6] };

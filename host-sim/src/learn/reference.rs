@@ -9,7 +9,7 @@ use crate::learn::scatter;
 use crate::logs::{Logs, samples};
 use crate::simulator::Simulator;
 use crate::simulator::reference::Reference;
-use crate::simulator::reference::motion::{MotionReference, features};
+use crate::simulator::reference::motion::{FEATURES, MotionReference, features};
 use crate::simulator::reference::sonar::{Change, STRENGTHS, SonarReference, fan_at};
 
 /// Pulls the weights of the motion's correction towards zero, in squared features.
@@ -28,8 +28,8 @@ fn motion(simulator: &Simulator, logs: &Logs) -> Option<MotionReference> {
     if steps.len() < FEWEST {
         return None;
     }
-    let rows: Vec<Vec<f64>> = steps.iter().map(|s| features(&s.speeds)).collect();
-    let width = rows[0].len();
+    let rows: Vec<[f64; FEATURES]> = steps.iter().map(|s| features(s.speeds)).collect();
+    let width = FEATURES;
     let mut normal = DMatrix::from_diagonal_element(width, width, RIDGE);
     for row in &rows {
         for a in 0..width {

@@ -13,7 +13,7 @@ use super::draws::Draws;
 use super::reference::sonar::{FAN_DEG, FAR_CM, STRENGTHS, SonarReference};
 use super::room::{Point, Room};
 use super::scatter::LEVELS;
-use crate::lanes::Lanes;
+use crate::lanes::{Lanes, WIDEST};
 
 /// A sensor with a fan of rays.
 #[derive(Clone, Debug)]
@@ -95,7 +95,7 @@ impl Beam {
             let way = Point { x: axis.x * c - axis.y * s, y: axis.y * c + axis.x * s };
             let met = room.cast(origin, way, axis_deg + axis_deg.constant(ray.offset_deg));
             let a = met.alpha_deg * met.alpha_deg.constant(1.0 / 45.0);
-            let odds = maths::exp2(ray.log2_odds(met.distance_cm, a));
+            let odds = maths::exp2_within(ray.log2_odds(met.distance_cm, a));
             let draw = draws.uniform();
             // The chance is odds / (1 + odds).
             let back = (draw + draw * odds).less(odds) & met.distance_cm.less(nearest_cm);
@@ -110,21 +110,25 @@ impl Beam {
         }
     }
 
-    /// What a sensor reports for what it heard: `fate` is a uniform draw from [0, 1), `level` one below [`LEVELS`].
+    /// What sensors report for what they heard, NaN where they report nothing: `fate` is a uniform draw from [0, 1),
+    /// `levels` are below [`LEVELS`].
     #[inline(always)]
-    pub fn report(&self, reading_cm: f32, scatter_cm: f32, fate: f32, level: usize) -> Option<f32> {
-        let [chance, constant_cm] = self.constant;
-        if fate < self.short {
-            return Some(if reading_cm.is_finite() { reading_cm * level as f32 / LEVELS as f32 } else { constant_cm });
+    pub fn report<S: Simd>(&self, simd: S, heard: &Heard<S>, fate: Lanes<S>, levels: &[usize; WIDEST]) -> Lanes<S> {
+        let (mut shares, mut student) = ([0.0; WIDEST], [0.0; WIDEST]);
+        for lane in 0..Lanes::<S>::WIDTH {
+            shares[lane] = levels[lane] as f32 / LEVELS as f32;
+            student[lane] = STUDENT[levels[lane] % LEVELS];
         }
-        if !reading_cm.is_finite() || fate < self.short + self.lost {
-            return None;
-        }
-        Some(if fate < self.short + self.lost + chance {
-            constant_cm
-        } else {
-            reading_cm + scatter_cm * STUDENT[level]
-        })
+        let (shares, student) = (Lanes::load(simd, &shares), Lanes::load(simd, &student));
+        let [short, lost, constant] = [self.short, self.short + self.lost, self.short + self.lost + self.constant[0]]
+            .map(|chance| fate.constant(chance));
+        let (nothing, constant_cm) = (fate.constant(f32::NAN), fate.constant(self.constant[1]));
+        let middle_cm = heard.reading_cm;
+        let back = middle_cm.less(fate.constant(f32::INFINITY));
+        let usual_cm = fate.less(constant).select(constant_cm, middle_cm + heard.scatter_cm * student);
+        let whole_cm = (back & !fate.less(lost)).select(usual_cm, nothing);
+        let short_cm = back.select(middle_cm * shares, constant_cm);
+        fate.less(short).select(short_cm, whole_cm)
     }
 }
 
@@ -178,12 +182,9 @@ mod tests {
             let (mut echoes, mut nearest_cm) = (0, f32::INFINITY);
             for _ in 0..4000 {
                 let heard = beam.hear(&room, origin, axis, lane(deg), &mut draws);
-                let (mut reading, mut fate) = ([0.0], [0.0]);
-                heard.reading_cm.store(&mut reading);
-                draws.uniform().store(&mut fate);
-                let echo = beam.report(reading[0], 0.0, fate[0], 0);
-                echoes += u32::from(echo.is_some());
-                nearest_cm = nearest_cm.min(echo.unwrap_or(f32::INFINITY));
+                let echo = number(beam.report(simd, &heard, draws.uniform(), &[LEVELS / 2; WIDEST]));
+                echoes += u32::from(!echo.is_nan());
+                nearest_cm = nearest_cm.min(echo);
             }
             let fan = fan_at(&scene.sides(), &Pose::new(x, y, heading), REFERENCE.fan_width);
             let [none, _] = REFERENCE.log_likelihood(&fan, &Change::NONE, None, None);
@@ -197,10 +198,23 @@ mod tests {
     #[test]
     fn what_is_lost_constant_or_short_comes_with_its_chance() {
         let beam = Beam::new(&SonarReference { constant: [0.2, 20.0], short: 0.1, ..REFERENCE });
-        assert_eq!(beam.report(100.0, 0.0, 0.05, LEVELS / 2), Some(50.0));
-        assert_eq!(beam.report(100.0, 0.0, 0.15, 0), None);
-        assert_eq!(beam.report(100.0, 0.0, 0.3, 0), Some(20.0));
-        assert_eq!(beam.report(100.0, 2.0, 0.9, LEVELS - 1), Some(100.0 + 2.0 * STUDENT[LEVELS - 1]));
-        assert_eq!(beam.report(f32::INFINITY, 1.0, 0.9, 3), None);
+        let simd = One::new();
+        let report = |reading_cm, scatter_cm, fate, level| {
+            let lane = |value| Lanes::splat(simd, value);
+            let heard = Heard { reading_cm: lane(reading_cm), scatter_cm: lane(scatter_cm) };
+            number(beam.report(simd, &heard, lane(fate), &[level; WIDEST]))
+        };
+        assert_eq!(report(100.0, 0.0, 0.05, LEVELS / 2), 50.0);
+        assert_eq!(report(f32::INFINITY, 0.0, 0.05, 0), 20.0);
+        assert!(report(100.0, 0.0, 0.15, 0).is_nan());
+        assert_eq!(report(100.0, 0.0, 0.3, 0), 20.0);
+        assert_eq!(report(100.0, 2.0, 0.9, LEVELS - 1), 100.0 + 2.0 * STUDENT[LEVELS - 1]);
+        assert!(report(f32::INFINITY, 1.0, 0.9, 3).is_nan());
+    }
+
+    fn number(lane: Lanes<One>) -> f32 {
+        let mut number = [0.0];
+        lane.store(&mut number);
+        number[0]
     }
 }

@@ -8,7 +8,7 @@ use super::batch::Batch;
 use super::beam::Beam;
 use super::motion::{MotionNetworks, MotionTable};
 use super::room::Room;
-use super::scatter::{ConstantReading, Spread};
+use super::scatter::{ConstantReading, Scatter, Spread};
 use super::wrapped::Wrapped;
 use super::{Noise, Simulator};
 use crate::folded::Folded;
@@ -24,8 +24,12 @@ pub struct Course<'s> {
     pub(super) yaw_direction: [f32; 2],
     pub(super) room: Room,
     pub(super) motion: MotionNetworks<'s>,
-    pub(super) echo_probability: Folded<2>,
-    pub(super) echo_value: Folded<2>,
+    /// Whether they are asked in every step and not once for all that a controller does: the same bits, slower.
+    pub(super) asks_every_step: bool,
+    /// Of the forward, lateral and turn networks.
+    pub(super) motion_scatter: [Scatter; 3],
+    /// Probability and value of an echo.
+    pub(super) sonar: [Folded<2>; 2],
     pub(super) echo_spread: &'s Spread,
     pub(super) constant_reading: Option<ConstantReading>,
     pub(super) noise: Noise,
@@ -113,9 +117,10 @@ impl<'s> Course<'s> {
             start,
             yaw_direction: [libm::cos(yaw_rad) as f32, libm::sin(yaw_rad) as f32],
             room: Room::new(scene),
+            motion_scatter: motion.scatters(),
             motion,
-            echo_probability: Folded::new(&echo_probability.network),
-            echo_value: Folded::new(&echo_value.network),
+            asks_every_step: false,
+            sonar: [echo_probability, echo_value].map(|l| Folded::new(&l.network)),
             echo_spread: &echo_value.spread,
             constant_reading: simulator.constant_reading,
             noise,
@@ -130,6 +135,12 @@ impl<'s> Course<'s> {
         Course { beam: reference.map(Beam::new), ..self }
     }
 
+    /// The course with the motion networks asked in every step. Outcomes stay the same to the bit; it is there to show
+    /// that, and what it would cost.
+    pub fn asking_every_step(self) -> Self {
+        Course { asks_every_step: true, ..self }
+    }
+
     /// The motions of a controller on this course.
     pub fn motions(&self, controller: &Controller) -> MotionTable {
         self.motion.table(controller)
@@ -138,8 +149,12 @@ impl<'s> Course<'s> {
     /// Simulates runs side by side; the outcomes are in the order of the jobs.
     pub fn run(&self, jobs: &[Job]) -> Vec<Outcome> {
         let mut outcomes = vec![None; jobs.len()];
-        let finish = |job: usize, outcome| outcomes[job] = Some(outcome);
-        Arch::new().dispatch(Batch { course: self, jobs, watch: |_| {}, finish });
+        for sensor in [Sensor::Networks, Sensor::Beam] {
+            let jobs: Vec<(usize, Job)> =
+                jobs.iter().copied().enumerate().filter(|(_, job)| job.sensor == sensor).collect();
+            let finish = |job: usize, outcome| outcomes[job] = Some(outcome);
+            Arch::new().dispatch(Batch { course: self, sensor, jobs: &jobs, watch: |_| {}, finish });
+        }
         outcomes.into_iter().flatten().collect()
     }
 
@@ -148,7 +163,7 @@ impl<'s> Course<'s> {
         let (mut moments, mut outcome) = (Vec::new(), None);
         let watch = |moment| moments.push(moment);
         let finish = |_, ended| outcome = Some(ended);
-        Arch::new().dispatch(Batch { course: self, jobs: &[job], watch, finish });
+        Arch::new().dispatch(Batch { course: self, sensor: job.sensor, jobs: &[(0, job)], watch, finish });
         (outcome.expect("every run ends"), moments)
     }
 }

@@ -63,6 +63,15 @@ impl<S: Simd> Draws<S> {
         result
     }
 
+    /// The same as a row.
+    #[inline(always)]
+    pub fn bits_row(&mut self) -> [u32; WIDEST] {
+        let mut row = [0; WIDEST];
+        let bits = self.bits();
+        self.simd.partial_store_u32s(&mut row[..S::U32_LANES], bits);
+        row
+    }
+
     /// A uniform draw from [0, 1) for every lane: the top 23 of the next 32 bits.
     #[inline(always)]
     pub fn uniform(&mut self) -> Lanes<S> {

@@ -1,20 +1,27 @@
 //! Motions worked out ahead: a controller holds at most twelve different pairs of commands now and before, so the
-//! motion networks are asked twelve times a controller and not once a step.
+//! motion networks are asked twelve times a controller, side by side, and not once a step.
 
 use mindgap_core::controller::{Controller, TUPLES};
+use mindgap_core::maths::Binary32;
+use mindgap_core::scalar::Scalar;
+use pulp::{Arch, Simd, WithSimd};
 
 use super::reference::MotionReference;
-use super::scatter::{Spread, motion_context};
+use super::reference::motion::{FEATURES, features};
+use super::scatter::{Scatter, Spread, motion_context};
 use super::{Learned, Simulator};
+use crate::folded::{Folded, evaluate_all};
+use crate::lanes::Lanes;
 use crate::problem::Result;
 
 /// The three motion networks of a simulator, as they are or with what the logs say beyond them.
-#[derive(Clone, Copy)]
+#[derive(Clone)]
 pub struct MotionNetworks<'s> {
-    forward: &'s Learned<4>,
-    lateral: &'s Learned<4>,
-    turn: &'s Learned<4>,
-    reference: Option<&'s MotionReference>,
+    /// Forward, lateral, turn.
+    networks: Box<[Folded<4>; 3]>,
+    spreads: [&'s Spread; 3],
+    /// Weights of what is added, one a feature.
+    correction: Option<Box<[[f32; FEATURES]; 3]>>,
 }
 
 /// What one step does, in the robot's own frame, before scatter.
@@ -37,67 +44,85 @@ pub struct MotionTable {
     steady: [Motion; TUPLES],
 }
 
+/// Left, right, previous left and previous right command.
+pub type Speeds<S> = [S; 4];
+
+const RADIANS_PER_DEGREE: f32 = std::f32::consts::PI / 180.0;
+
 impl<'s> MotionNetworks<'s> {
     /// The networks of a simulator.
     ///
     /// # Errors
     /// Names the one that is missing.
     pub fn of(simulator: &'s Simulator) -> Result<Self> {
+        let learned: [&Learned<4>; 3] = [
+            simulator.need(&simulator.forward, "forward")?,
+            simulator.need(&simulator.lateral, "lateral")?,
+            simulator.need(&simulator.turn, "turn")?,
+        ];
         Ok(MotionNetworks {
-            forward: simulator.need(&simulator.forward, "forward")?,
-            lateral: simulator.need(&simulator.lateral, "lateral")?,
-            turn: simulator.need(&simulator.turn, "turn")?,
-            reference: None,
+            networks: Box::new(learned.map(|l| Folded::new(&l.network))),
+            spreads: learned.map(|l| &l.spread),
+            correction: None,
         })
     }
 
     /// The networks with the misfit that `reference` knows of put right: a robot that turns two degrees less than its
     /// network says does so in every step and every run, which no zero-mean scatter stands for.
-    pub fn corrected(self, reference: Option<&'s MotionReference>) -> Self {
-        MotionNetworks { reference, ..self }
+    pub fn corrected(self, reference: Option<&MotionReference>) -> Self {
+        let weight = |weights: &[f64], feature: usize| weights.get(feature).map_or(0.0, |w| *w as f32);
+        let weights = |r: &MotionReference| {
+            [0, 1, 2].map(|network| std::array::from_fn(|feature| weight(&r.weights[network], feature)))
+        };
+        MotionNetworks { correction: reference.map(|r| Box::new(weights(r))), ..self }
     }
 
-    /// What a step does for left, right, previous left and previous right command.
-    pub fn step(&self, speeds: [f32; 4]) -> Motion {
-        let context = motion_context(&speeds);
-        let ask = |learned: &Learned<4>| (learned.network.evaluate(speeds), learned.spread.cell(context));
-        let (forward_cm, forward_cell) = ask(self.forward);
-        let (lateral_cm, lateral_cell) = ask(self.lateral);
-        let (turn_deg, turn_cell) = ask(self.turn);
-        let cells = [forward_cell, lateral_cell, turn_cell];
-        let correction = self.reference.map_or([0.0; 3], |r| r.correction(&speeds.map(f64::from)));
-        Motion {
-            forward_cm: forward_cm + correction[0] as f32,
-            lateral_cm: lateral_cm + correction[1] as f32,
-            turn_rad: turn_deg.to_radians() + correction[2] as f32,
-            cells,
+    /// What chance adds to forward (cm), lateral (cm) and turn (rad).
+    pub fn scatters(&self) -> [Scatter; 3] {
+        let [forward, lateral, turn] = self.spreads.map(Scatter::new);
+        [forward, lateral, turn.times(RADIANS_PER_DEGREE)]
+    }
+
+    /// What a step does.
+    pub fn step(&self, speeds: Speeds<f32>) -> Motion {
+        let [forward_cm, lateral_cm, turn_rad] = self.evaluate(speeds);
+        Motion { forward_cm, lateral_cm, turn_rad, cells: self.cells(&speeds) }
+    }
+
+    /// Way forward and to the left in cm and turn to the left in radians.
+    #[inline(always)]
+    pub fn evaluate<S: Scalar<Weight = f32> + Binary32>(&self, speeds: Speeds<S>) -> [S; 3] {
+        let mut motion = evaluate_all(&self.networks, speeds);
+        motion[2] = motion[2] * motion[2].weight(RADIANS_PER_DEGREE);
+        if let Some(correction) = &self.correction {
+            let features = features(speeds);
+            for (sum, weights) in motion.iter_mut().zip(correction.iter()) {
+                *sum = *sum + S::weighted_sum(sum.zero(), &features, weights);
+            }
         }
+        motion
     }
 
     /// The motions of a controller that starts from rest.
     pub fn table(&self, controller: &Controller) -> MotionTable {
-        let command = |tuple: usize| [controller.tuples[tuple].left, controller.tuples[tuple].right].map(f32::from);
-        let step = |now: [f32; 2], before: [f32; 2]| self.step([now[0], now[1], before[0], before[1]]);
-        MotionTable {
-            first: std::array::from_fn(|t| step(command(t), if t == 0 { [0.0; 2] } else { command(t - 1) })),
-            steady: std::array::from_fn(|t| step(command(t), command(t))),
+        let mut steps = [[0.0; 4]; 2 * TUPLES];
+        for tuple in 0..TUPLES {
+            steps[tuple] = speeds(controller, tuple, true);
+            steps[TUPLES + tuple] = speeds(controller, tuple, false);
         }
+        let [forward_cm, lateral_cm, turn_rad] = Arch::new().dispatch(SideBySide { networks: self, steps: &steps });
+        let motion = |i: usize| Motion {
+            forward_cm: forward_cm[i],
+            lateral_cm: lateral_cm[i],
+            turn_rad: turn_rad[i],
+            cells: self.cells(&steps[i]),
+        };
+        MotionTable { first: std::array::from_fn(motion), steady: std::array::from_fn(|t| motion(TUPLES + t)) }
     }
 
-    /// Adds to a motion what the robot itself adds: for each network one of the residuals drawn for this step, and one
-    /// drawn when the command began.
-    pub fn scatter(&self, motion: &Motion, step: [usize; 3], held: [usize; 3]) -> Motion {
-        let residual = |spread: &Spread, i: usize| {
-            let cell = motion.cells[i];
-            let (residuals, shares) = (&spread.residuals[cell], spread.shares[cell]);
-            shares.step * residuals[step[i]] + shares.held * residuals[held[i]]
-        };
-        Motion {
-            forward_cm: motion.forward_cm + residual(&self.forward.spread, 0),
-            lateral_cm: motion.lateral_cm + residual(&self.lateral.spread, 1),
-            turn_rad: motion.turn_rad + residual(&self.turn.spread, 2).to_radians(),
-            cells: motion.cells,
-        }
+    fn cells(&self, speeds: &Speeds<f32>) -> [usize; 3] {
+        let context = motion_context(speeds);
+        self.spreads.map(|spread| spread.cell(context))
     }
 }
 
@@ -105,5 +130,49 @@ impl MotionTable {
     /// The motion of a step in which a tuple is held, its first step or a later one.
     pub fn motion(&self, tuple: usize, first: bool) -> &Motion {
         if first { &self.first[tuple] } else { &self.steady[tuple] }
+    }
+}
+
+/// The commands of a step in which a tuple is held, and of the step before it.
+pub fn speeds(controller: &Controller, tuple: usize, first: bool) -> Speeds<f32> {
+    let command = |tuple: usize| [controller.tuples[tuple].left, controller.tuples[tuple].right].map(f32::from);
+    let [left, right] = command(tuple);
+    let [left_before, right_before] = match (first, tuple) {
+        (true, 0) => [0.0; 2],
+        (true, _) => command(tuple - 1),
+        (false, _) => [left, right],
+    };
+    [left, right, left_before, right_before]
+}
+
+/// The steps of a controller, one a lane.
+struct SideBySide<'a, 's> {
+    networks: &'a MotionNetworks<'s>,
+    steps: &'a [Speeds<f32>; 2 * TUPLES],
+}
+
+impl WithSimd for SideBySide<'_, '_> {
+    type Output = [[f32; 2 * TUPLES]; 3];
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> Self::Output {
+        let mut columns = [[0.0; 2 * TUPLES]; 4];
+        for (i, speeds) in self.steps.iter().enumerate() {
+            for (column, speed) in columns.iter_mut().zip(speeds) {
+                column[i] = *speed;
+            }
+        }
+        let mut motions = [[0.0; 2 * TUPLES]; 3];
+        for from in (0..2 * TUPLES).step_by(Lanes::<S>::WIDTH) {
+            let mut speeds = [Lanes::splat(simd, 0.0); 4];
+            for (speed, column) in speeds.iter_mut().zip(&columns) {
+                *speed = Lanes::load(simd, &column[from..]);
+            }
+            let motion = self.networks.evaluate(speeds);
+            for (column, lanes) in motions.iter_mut().zip(motion) {
+                lanes.store(&mut column[from..]);
+            }
+        }
+        motions
     }
 }

@@ -28,6 +28,13 @@ pub struct Shares {
     pub held: f32,
 }
 
+/// A spread's residuals multiplied by their shares, so that a step looks them up and adds.
+#[derive(Clone, Debug)]
+pub struct Scatter {
+    step: [[f32; LEVELS]; CELLS * CELLS],
+    held: [[f32; LEVELS]; CELLS * CELLS],
+}
+
 /// A wrong reading that the sensor produces now and then wherever it looks ("roughly 20cm", paper, section VIII).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ConstantReading {
@@ -66,6 +73,28 @@ impl Spread {
             && self.shares.iter().all(Shares::is_sound)
             && self.residuals.len() == CELLS * CELLS
             && self.residuals.iter().all(|r| r.len() == LEVELS && finite(r))
+    }
+}
+
+impl Scatter {
+    /// Of a spread that is sound.
+    pub fn new(spread: &Spread) -> Self {
+        let times = |share: fn(&Shares) -> f32| -> [[f32; LEVELS]; CELLS * CELLS] {
+            std::array::from_fn(|cell| std::array::from_fn(|l| share(&spread.shares[cell]) * spread.residuals[cell][l]))
+        };
+        Scatter { step: times(|s| s.step), held: times(|s| s.held) }
+    }
+
+    /// The same in another unit.
+    pub fn times(mut self, factor: f32) -> Self {
+        self.step.iter_mut().chain(&mut self.held).flatten().for_each(|residual| *residual *= factor);
+        self
+    }
+
+    /// What a robot adds in a cell: one of the [`LEVELS`] drawn for this step, and one drawn when the command began.
+    #[inline(always)]
+    pub fn residual(&self, cell: usize, step: usize, held: usize) -> f32 {
+        self.step[cell][step] + self.held[cell][held]
     }
 }
 

@@ -1,5 +1,6 @@
 //! The motion networks' own misfit: what is added to their outputs, and how reality scatters about the sum.
 
+use mindgap_core::scalar::Scalar;
 use serde::{Deserialize, Serialize};
 
 /// Corrections and scatter of forward (cm), lateral (cm) and turn (rad).
@@ -12,43 +13,71 @@ pub struct MotionReference {
 }
 
 /// Magnitudes of commands at which a correction may bend: friction holds back what is small.
-const KNOTS: [f64; 3] = [0.1, 0.3, 0.6];
+const KNOTS: [f32; 3] = [0.1, 0.3, 0.6];
 /// The same for the difference of right and left command.
-const TURN_KNOTS: [f64; 5] = [0.03, 0.06, 0.12, 0.25, 0.5];
+const TURN_KNOTS: [f32; 5] = [0.03, 0.06, 0.12, 0.25, 0.5];
+/// Numbers that [`features`] makes of four commands.
+pub const FEATURES: usize = 1 + 4 + 10 + 20 + 4 * (1 + 2 * KNOTS.len()) + 2 * (1 + 2 * TURN_KNOTS.len());
 
 impl MotionReference {
     /// What is added to the networks' outputs for left, right, previous left and previous right command.
     pub fn correction(&self, speeds: &[f64; 4]) -> [f64; 3] {
-        let features = features(speeds);
+        let features = features(*speeds);
         [0, 1, 2].map(|c| self.weights[c].iter().zip(&features).map(|(w, f)| w * f).sum())
     }
 }
 
 /// All products of up to three commands, and bends where the magnitude of a command, or of the difference of right and
 /// left one, passes a knot.
-pub fn features(speeds: &[f64; 4]) -> Vec<f64> {
-    let u = speeds.map(|s| s / 100.0);
-    let mut features = Vec::with_capacity(85);
-    features.push(1.0);
+#[inline(always)]
+pub fn features<S: Scalar<Weight: From<f32>>>(speeds: [S; 4]) -> [S; FEATURES] {
+    let one = speeds[0].one();
+    let mut u = speeds;
+    for command in &mut u {
+        *command = *command * one.weight(0.01.into());
+    }
+    let mut features = Features { values: [one; FEATURES], count: 1 };
     for a in 0..4 {
         features.push(u[a]);
         for b in a..4 {
-            features.push(u[a] * u[b]);
-            for c in b..4 {
-                features.push(u[a] * u[b] * u[c]);
+            let square = u[a] * u[b];
+            features.push(square);
+            for command in &u[b..] {
+                features.push(square * *command);
             }
         }
     }
-    let [left, right, left_before, right_before] = u;
-    u.iter().for_each(|command| bend(&mut features, *command, &KNOTS));
-    [right - left, right_before - left_before].iter().for_each(|turn| bend(&mut features, *turn, &TURN_KNOTS));
-    features
+    for command in u {
+        features.bend(command, &KNOTS);
+    }
+    features.bend(u[1] - u[0], &TURN_KNOTS);
+    features.bend(u[3] - u[2], &TURN_KNOTS);
+    features.values
 }
 
-fn bend(features: &mut Vec<f64>, x: f64, knots: &[f64]) {
-    features.push(x.abs());
-    for knot in knots {
-        let beyond = (x.abs() - knot).max(0.0);
-        features.extend([beyond, beyond * x.signum()]);
+/// The features so far.
+struct Features<S> {
+    values: [S; FEATURES],
+    count: usize,
+}
+
+impl<S: Scalar<Weight: From<f32>>> Features<S> {
+    #[inline(always)]
+    fn push(&mut self, feature: S) {
+        self.values[self.count] = feature;
+        self.count += 1;
+    }
+
+    /// The magnitude of `x`, and for every knot what is beyond it on either side, as sum and as difference.
+    #[inline(always)]
+    fn bend(&mut self, x: S, knots: &[f32]) {
+        let (zero, most) = (x.zero(), x.weight(4.0.into()));
+        self.push(x.clamp(zero, most) + (zero - x).clamp(zero, most));
+        for knot in knots {
+            let knot = x.weight((*knot).into());
+            let (above, below) = ((x - knot).clamp(zero, most), (zero - x - knot).clamp(zero, most));
+            self.push(above + below);
+            self.push(above - below);
+        }
     }
 }

@@ -1,0 +1,115 @@
+//! What the sensors of a vector of robots read. NaN stands for no reading: it ends no tuple.
+
+use std::f32::consts::PI;
+
+use mindgap_core::maths::Binary32;
+use pulp::Simd;
+
+use super::robots::Robots;
+use super::{Row, StepDraws, level, load, row};
+use crate::folded::evaluate_all;
+use crate::lanes::{Lanes, WIDEST};
+use crate::simulator::Noise;
+use crate::simulator::beam::Beam;
+use crate::simulator::course::Sensor;
+use crate::simulator::draws::Draws;
+use crate::simulator::room::Point;
+
+/// Where every sensor is, its axis as a unit vector, and its angle in degrees.
+struct Sensors<S: Simd> {
+    origin: Point<S>,
+    axis: Point<S>,
+    axis_deg: Lanes<S>,
+}
+
+impl Robots<'_> {
+    /// The reading of every robot, cm.
+    #[inline(always)]
+    pub fn sense<S: Simd>(&mut self, simd: S, sensor: Sensor, draws: &StepDraws) -> Row {
+        let course = self.course;
+        if course.wrapped.as_ref().is_some_and(|wrapped| wrapped.senses()) {
+            return self.sense_wrapped(draws);
+        }
+        let sensors = self.sensors(simd);
+        let reading_cm = match (&course.beam, sensor) {
+            (Some(beam), Sensor::Beam) => self.hear(simd, beam, &sensors, draws),
+            _ => self.look(simd, &sensors, draws),
+        };
+        let sonar = &course.robot.ultrasonic;
+        row(reading_cm.limit(sonar.min_cm as f32, sonar.max_cm as f32))
+    }
+
+    /// The readings where added effects change the sensor.
+    fn sense_wrapped(&mut self, draws: &StepDraws) -> Row {
+        let mut echo_cm = [f32::NAN; WIDEST];
+        for (lane, echo_cm) in echo_cm.iter_mut().enumerate() {
+            let pose = self.pose(lane);
+            let (Some(wrapped), Some(run)) = (&self.course.wrapped, &mut self.runs[lane]) else { continue };
+            *echo_cm = wrapped.echo_cm(&mut run.past, pose, draws.echo[lane]).unwrap_or(f32::NAN);
+        }
+        echo_cm
+    }
+
+    #[inline(always)]
+    fn sensors<S: Simd>(&self, simd: S) -> Sensors<S> {
+        let course = self.course;
+        let sonar = &course.robot.ultrasonic;
+        let heading = load(simd, &self.heading_rad);
+        let (c, s) = (load(simd, &self.heading_cos), load(simd, &self.heading_sin));
+        let ahead = heading.constant(sonar.x_cm as f32);
+        let left = heading.constant(sonar.y_cm as f32);
+        let origin = Point {
+            x: load(simd, &self.x_cm) + (ahead * c - left * s),
+            y: load(simd, &self.y_cm) + (ahead * s + left * c),
+        };
+        let (cos_yaw, sin_yaw) = (heading.constant(course.yaw_direction[0]), heading.constant(course.yaw_direction[1]));
+        let axis = Point { x: c * cos_yaw - s * sin_yaw, y: s * cos_yaw + c * sin_yaw };
+        let axis_deg = heading * heading.constant(180.0 / PI) + heading.constant(sonar.yaw_deg as f32);
+        Sensors { origin, axis, axis_deg }
+    }
+
+    /// Listens with every beam.
+    #[inline(always)]
+    fn hear<S: Simd>(&mut self, simd: S, beam: &Beam, sensors: &Sensors<S>, draws: &StepDraws) -> Lanes<S> {
+        let mut generators = Draws::load(simd, &self.seeds);
+        let Sensors { origin, axis, axis_deg } = *sensors;
+        let heard = beam.hear(&self.course.room, origin, axis, axis_deg, &mut generators);
+        generators.store(&mut self.seeds);
+        let mut levels = [0; WIDEST];
+        for (level_of_lane, bits) in levels.iter_mut().zip(draws.bits) {
+            *level_of_lane = level(bits, 3);
+        }
+        beam.report(simd, &heard, load(simd, &draws.constant), &levels)
+    }
+
+    /// Casts every sensor's axis into the room and asks the two sonar networks; where it faces nothing it reads nothing.
+    #[inline(always)]
+    fn look<S: Simd>(&self, simd: S, sensors: &Sensors<S>, draws: &StepDraws) -> Lanes<S> {
+        let course = self.course;
+        let faced = course.room.cast(sensors.origin, sensors.axis, sensors.axis_deg);
+        let [probability, mut reading_cm] = evaluate_all(&course.sonar, [faced.distance_cm, faced.alpha_deg]);
+        let echo =
+            load(simd, &draws.echo).less(probability) & faced.distance_cm.less(probability.constant(f32::INFINITY));
+        if course.noise == Noise::Learned {
+            let mut readings_cm = row(reading_cm);
+            let contexts = [row(faced.distance_cm), row(faced.alpha_deg)];
+            self.scatter(&mut readings_cm[..Lanes::<S>::WIDTH], &contexts, draws);
+            reading_cm = load(simd, &readings_cm);
+        }
+        echo.select(reading_cm, reading_cm.constant(f32::NAN))
+    }
+
+    /// What chance makes of the readings.
+    #[inline(always)]
+    fn scatter(&self, readings_cm: &mut [f32], contexts: &[Row; 2], draws: &StepDraws) {
+        let course = self.course;
+        for (lane, reading_cm) in readings_cm.iter_mut().enumerate() {
+            let bits = draws.bits[lane];
+            *reading_cm += course.echo_spread.residual([contexts[0][lane], contexts[1][lane]], level(bits, 3));
+            if let Some(constant) = course.constant_reading.filter(|c| draws.constant[lane] < c.probability) {
+                // It scatters by a centimetre to either side.
+                *reading_cm = constant.value_cm + (bits >> 20) as f32 % 3.0 - 1.0;
+            }
+        }
+    }
+}

@@ -1,0 +1,138 @@
+use super::*;
+use crate::built_in_robot::{default_robot, four_obstacles, record, training_room};
+use crate::chance::generator;
+use crate::evolve::genome::Coding;
+use crate::learn::train::{self, TABLE_ONE, Trainer};
+use crate::simulator::course::Ending;
+use crate::simulator::motion::{MotionTable, speeds};
+use crate::simulator::{Noise, Simulator};
+use mindgap_core::controller::{Controller, Machine, Status, TUPLES};
+use sha2::{Digest, Sha256};
+use std::sync::LazyLock;
+
+const SEED: u64 = 3;
+const MAX_STEPS: u16 = 150;
+const RUNS: u64 = 100;
+
+/// Of all outcomes of [`outcomes`] on every kind of course, whatever the machine; made with [`SEED`].
+const CHECKSUM: &str = "1aa18a1c188408c766940ca807a04058f0acc484233be0f098a51f418b641832";
+
+static SIMULATOR: LazyLock<Simulator> = LazyLock::new(|| {
+    let logs = record(&default_robot(), &training_room(), 20, 40, &[], SEED).unwrap();
+    train::train(&logs, &Trainer::Fast, &TABLE_ONE, SEED, |_| {}).unwrap()
+});
+
+fn course(noise: Noise) -> Course<'static> {
+    let scene = four_obstacles();
+    Course::new(&SIMULATOR, &scene, scene.starts[0], noise).unwrap().with_beam(&SIMULATOR)
+}
+
+fn controllers() -> Vec<Controller> {
+    let coding = Coding::new(&SIMULATOR, MAX_STEPS);
+    (0..40).map(|i| coding.controller(&coding.random(&mut generator(SEED, &[i])))).collect()
+}
+
+/// So many runs of every controller, mixed.
+fn jobs<'a>(controllers: &'a [Controller], tables: &'a [MotionTable], sensor: Sensor) -> Vec<(usize, Job<'a>)> {
+    let of_seed =
+        |seed| controllers.iter().zip(tables).map(move |(c, m)| Job { controller: c, motions: m, sensor, seed });
+    (0..RUNS).flat_map(of_seed).enumerate().collect()
+}
+
+fn outcomes(course: &Course, sensor: Sensor, simd: impl Simd) -> Vec<Outcome> {
+    let controllers = controllers();
+    let tables: Vec<MotionTable> = controllers.iter().map(|c| course.motions(c)).collect();
+    let jobs = jobs(&controllers, &tables, sensor);
+    let mut outcomes = vec![None; jobs.len()];
+    let finish = |number: usize, outcome| outcomes[number] = Some(outcome);
+    simd.vectorize(Batch { course, sensor, jobs: &jobs, watch: |_| {}, finish });
+    outcomes.into_iter().map(|outcome| outcome.expect("every run ends")).collect()
+}
+
+/// One checksum over long runs on every kind of course.
+fn checksum(simd: impl Simd) -> String {
+    let mut digest = Sha256::new();
+    for noise in [Noise::Paper, Noise::Learned] {
+        for sensor in [Sensor::Networks, Sensor::Beam] {
+            for outcome in outcomes(&course(noise), sensor, simd) {
+                let end = outcome.end_cm;
+                digest.update(
+                    [end.x.to_bits(), end.y.to_bits(), u64::from(outcome.steps)].map(u64::to_le_bytes).concat(),
+                );
+            }
+        }
+    }
+    digest.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+#[test]
+fn every_instruction_set_gives_the_same_checksum() {
+    assert_eq!(checksum(pulp::Scalar::new()), CHECKSUM, "one by one");
+    #[cfg(target_arch = "x86_64")]
+    {
+        use pulp::x86::{V3, V4};
+        let report = |name, sum: Option<String>| match sum {
+            Some(sum) => assert_eq!(sum, CHECKSUM, "{name}"),
+            None => println!("not compared: this machine lacks {name}"),
+        };
+        report("AVX2", V3::try_new().map(checksum));
+        report("AVX-512", V4::try_new().map(checksum));
+    }
+}
+
+#[test]
+fn a_run_does_not_depend_on_those_beside_it() {
+    let course = course(Noise::Learned);
+    let controllers = controllers();
+    let tables: Vec<MotionTable> = controllers.iter().map(|c| course.motions(c)).collect();
+    let together = outcomes(&course, Sensor::Beam, pulp::Scalar::new());
+    for (number, job) in jobs(&controllers, &tables, Sensor::Beam).into_iter().step_by(97) {
+        assert_eq!(course.trace(job).0, together[number], "run {number}");
+    }
+}
+
+#[test]
+fn motions_worked_out_ahead_are_those_of_every_step() {
+    for noise in [Noise::Paper, Noise::Learned] {
+        let ahead = outcomes(&course(noise), Sensor::Networks, pulp::Scalar::new());
+        let every_step = outcomes(&course(noise).asking_every_step(), Sensor::Networks, pulp::Scalar::new());
+        assert_eq!(ahead, every_step);
+        for controller in controllers() {
+            let (course, table) = (course(noise), course(noise).motions(&controller));
+            for tuple in 0..TUPLES {
+                for first in [true, false] {
+                    assert_eq!(*table.motion(tuple, first), course.motion.step(speeds(&controller, tuple, first)));
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn every_run_steps_as_the_machine_of_the_core_does() {
+    let course = course(Noise::Learned);
+    let mut endings = [0; 3];
+    for controller in &controllers() {
+        let motions = &course.motions(controller);
+        for seed in 0..20 {
+            let (outcome, moments) = course.trace(Job { controller, motions, sensor: Sensor::Networks, seed });
+            let mut machine = Machine::start();
+            for (i, moment) in moments.iter().enumerate() {
+                let crashed = outcome.ending == Ending::Crashed && i + 1 == moments.len();
+                if !crashed {
+                    machine.step(controller, moment.echo_cm);
+                }
+                assert_eq!(moment.tuple, machine.tuple(), "step {i}");
+            }
+            assert_eq!(moments.len(), usize::from(outcome.steps));
+            let expected = match outcome.ending {
+                Ending::Finished => Status::Finished,
+                Ending::TimedOut => Status::TimedOut,
+                Ending::Crashed => Status::Running,
+            };
+            assert_eq!(machine.status(), expected);
+            endings[outcome.ending as usize] += 1;
+        }
+    }
+    assert!(endings.iter().all(|count| *count > 0), "{endings:?} ended in each way");
+}
