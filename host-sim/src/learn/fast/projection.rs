@@ -7,7 +7,7 @@ use levenberg_marquardt::LeastSquaresProblem;
 use mindgap_core::network::Scaling;
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn, Owned};
 
-use crate::learn::dataset::Dataset;
+use super::anchors::Anchored;
 
 /// How much weights are held back: power terms that are nearly alike would grow against each other, and run wild outside
 /// the data.
@@ -27,6 +27,8 @@ pub struct Projection<const N: usize> {
     x: Vec<[f64; N]>,
     log2_x: Vec<[f64; N]>,
     targets: DVector<f64>,
+    /// What each sample counts, whatever the loss.
+    base_weights: Vec<f64>,
     /// Square roots of the samples' weights.
     roots: DVector<f64>,
     exponents: DVector<f64>,
@@ -51,7 +53,8 @@ struct Fit {
 
 impl<const N: usize> Projection<N> {
     /// The problem for a data set whose inputs are scaled so.
-    pub fn new(data: &Dataset<N>, inputs: &[Scaling<f32>; N], ridges: Ridges, exponents: DVector<f64>) -> Self {
+    pub fn new(anchored: &Anchored<N>, inputs: &[Scaling<f32>; N], ridges: Ridges, exponents: DVector<f64>) -> Self {
+        let data = &anchored.data;
         let scaled = |x: &[f32; N]| std::array::from_fn(|i| f64::from(inputs[i].apply(x[i])));
         let x: Vec<[f64; N]> = data.inputs.iter().map(scaled).collect();
         let count = x.len();
@@ -68,7 +71,8 @@ impl<const N: usize> Projection<N> {
             weight_prior: (ridges.weights * count as f64).sqrt(),
             exponent_prior: (ridges.exponents * count as f64 * targets.variance()).sqrt(),
             targets,
-            roots: DVector::from_element(count, 1.0),
+            roots: DVector::from_iterator(count, anchored.weights.iter().map(|w| w.sqrt())),
+            base_weights: anchored.weights.clone(),
             exponents,
             fit: nothing,
         };
@@ -85,7 +89,8 @@ impl<const N: usize> Projection<N> {
     /// Gives samples other targets and weights.
     pub fn reweight(&mut self, targets: DVector<f64>, weights: &[f64]) {
         self.targets = targets;
-        self.roots = DVector::from_iterator(weights.len(), weights.iter().map(|w| w.sqrt()));
+        let weights = weights.iter().zip(&self.base_weights).map(|(w, base)| (w * base).sqrt());
+        self.roots = DVector::from_iterator(self.x.len(), weights);
         self.solve();
     }
 
