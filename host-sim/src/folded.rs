@@ -72,15 +72,38 @@ impl<const N: usize> Folded<N> {
                 sum = sum + tame_power(unit, log2_x) * sum.weight(unit.output);
             }
         } else {
-            for unit in &self.product {
-                let mut power = unit.magnitude(log2_x);
-                if self.product_form == ProductForm::Signed {
-                    power = power * unit.sign(x);
-                }
-                sum = sum + power * power.weight(unit.output);
-            }
+            sum = self.wild_sum(sum, x, log2_x);
         }
         self.activation.apply(sum)
+    }
+
+    /// The outputs for two inputs, the same bits as one after the other: they share what the polynomial needs.
+    #[inline(always)]
+    pub fn evaluate_two<S: Scalar<Weight = f32> + Binary32>(&self, x: &[[S; N]; 2], log2_x: &[[S; N]; 2]) -> [S; 2] {
+        if !self.tame {
+            return [self.evaluate(&x[0], &log2_x[0]), self.evaluate(&x[1], &log2_x[1])];
+        }
+        let bias = x[0][0].weight(self.bias);
+        let mut sums = [S::weighted_sum(bias, &x[0], &self.slope), S::weighted_sum(bias, &x[1], &self.slope)];
+        for unit in &self.product {
+            let powers = [tame_power(unit, &log2_x[0]), tame_power(unit, &log2_x[1])];
+            sums = [sums[0] + powers[0] * bias.weight(unit.output), sums[1] + powers[1] * bias.weight(unit.output)];
+        }
+        [self.activation.apply(sums[0]), self.activation.apply(sums[1])]
+    }
+
+    /// Adds the product units of a network whose inputs may have signs, or whose powers may overflow.
+    #[inline(always)]
+    fn wild_sum<S: Scalar<Weight = f32> + Binary32>(&self, start: S, x: &[S; N], log2_x: &[S; N]) -> S {
+        let mut sum = start;
+        for unit in &self.product {
+            let mut power = unit.magnitude(log2_x);
+            if self.product_form == ProductForm::Signed {
+                power = power * unit.sign(x);
+            }
+            sum = sum + power * power.weight(unit.output);
+        }
+        sum
     }
 
     /// The inputs scaled, and the logarithms of their magnitudes.

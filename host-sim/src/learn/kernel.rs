@@ -10,7 +10,10 @@ use super::dataset::Dataset;
 use crate::folded::Folded;
 use crate::lanes::{Lanes, WIDEST};
 
-/// Samples laid out for lanes: one row an input, filled up to whole blocks of [`WIDEST`] by samples without weight.
+/// Two of the widest vectors.
+const BLOCK: usize = 2 * WIDEST;
+
+/// Samples laid out for lanes: one row an input, filled up to whole blocks of [`BLOCK`] by samples without weight.
 #[derive(Clone, Debug)]
 pub struct Samples<const N: usize> {
     scaled: [Vec<f32>; N],
@@ -23,9 +26,9 @@ pub struct Samples<const N: usize> {
 impl<const N: usize> Samples<N> {
     /// Lays out a data set whose inputs are scaled so and whose targets are mapped by `target`.
     pub fn new(data: &Dataset<N>, inputs: &[Scaling<f32>; N], target: impl Fn(f32) -> f32) -> Self {
-        let blocks = data.len().div_ceil(WIDEST);
+        let blocks = data.len().div_ceil(BLOCK);
         let filled = |value: &dyn Fn(usize) -> f32, filling: f32| -> Vec<f32> {
-            (0..blocks * WIDEST).map(|i| if i < data.len() { value(i) } else { filling }).collect()
+            (0..blocks * BLOCK).map(|i| if i < data.len() { value(i) } else { filling }).collect()
         };
         let scaled: [Vec<f32>; N] =
             std::array::from_fn(|n| filled(&|i| inputs[n].apply(data.inputs[i][n]), inputs[n].high));
@@ -56,16 +59,23 @@ impl<const N: usize> WithSimd for SquaredError<'_, N> {
     fn with_simd<S: Simd>(self, simd: S) -> f64 {
         let samples = self.samples;
         let mut sums = [Lanes::splat(simd, 0.0); WIDEST];
-        let parts = WIDEST / Lanes::<S>::WIDTH;
-        for block in (0..samples.targets.len()).step_by(WIDEST) {
-            for (part, sum) in sums.iter_mut().take(parts).enumerate() {
-                let at = block + part * Lanes::<S>::WIDTH;
-                let x = rows(simd, &samples.scaled, at);
-                let log2_x = rows(simd, &samples.log2, at);
-                let target = Lanes::load(simd, &samples.targets[at..]);
-                let weight = Lanes::load(simd, &samples.weights[at..]);
-                let error = (self.network.evaluate(&x, &log2_x) - target) * weight;
-                *sum = *sum + error * error;
+        let width = Lanes::<S>::WIDTH;
+        let parts = WIDEST / width;
+        // Two vectors at a time, as far as there are two; each sum meets its samples in their order.
+        for block in (0..samples.targets.len()).step_by(BLOCK) {
+            for pair in 0..parts {
+                let first = block + 2 * pair * width;
+                let at = [first, first + width];
+                let x = [rows(simd, &samples.scaled, at[0]), rows(simd, &samples.scaled, at[1])];
+                let log2_x = [rows(simd, &samples.log2, at[0]), rows(simd, &samples.log2, at[1])];
+                let outputs = self.network.evaluate_two(&x, &log2_x);
+                for (i, output) in outputs.into_iter().enumerate() {
+                    let target = Lanes::load(simd, &samples.targets[at[i]..]);
+                    let weight = Lanes::load(simd, &samples.weights[at[i]..]);
+                    let error = (output - target) * weight;
+                    let sum = &mut sums[(2 * pair + i) % parts];
+                    *sum = *sum + error * error;
+                }
             }
         }
         let mut total = [0.0; WIDEST];
