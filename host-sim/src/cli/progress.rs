@@ -21,8 +21,8 @@ pub fn bar(steps: u64) -> ProgressBar {
 
 /// What training is at.
 pub fn training(progress: &Progress) -> String {
-    match progress.generation {
+    match progress.evaluations {
         0 => format!("training {}", progress.network),
-        generation => format!("training {}: generation {generation}", progress.network),
+        evaluations => format!("training {}: {evaluations} networks evaluated", progress.network),
     }
 }

@@ -1,5 +1,7 @@
 //! `mindgap train`
 
+use std::cell::RefCell;
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
@@ -53,7 +55,10 @@ impl Train {
     pub fn run(&self) -> problem::Result<String> {
         let logs = super::read_logs(&self.logs)?;
         let spinner = progress::spinner();
+        // The last that is told of each network.
+        let evaluations = RefCell::new(BTreeMap::new());
         let watch = |p: train::Progress| {
+            evaluations.borrow_mut().insert(p.network, p.evaluations);
             spinner.tick();
             spinner.set_message(progress::training(&p));
         };
@@ -74,6 +79,11 @@ impl Train {
             eprintln!("mindgap: warning: no {} network: {}", missing.network, missing.reason);
         }
         simulator.write(&self.out)?;
-        Ok(format!("simulator written to {}\n", self.out.display()))
+        let evaluations: Vec<String> = evaluations.take().iter().map(|(name, n)| format!("{name} {n}")).collect();
+        Ok(format!(
+            "networks evaluated over all samples: {}\nsimulator written to {}\n",
+            evaluations.join(", "),
+            self.out.display()
+        ))
     }
 }

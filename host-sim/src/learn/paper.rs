@@ -29,8 +29,8 @@ pub struct Options {
 pub struct Trained<const N: usize> {
     /// The network, in the units of its data set.
     pub network: Network<f32, N>,
-    /// Generations that were run.
-    pub generations: usize,
+    /// How often a network was evaluated over the data set: individuals times generations.
+    pub evaluations: usize,
 }
 
 impl Default for Options {
@@ -64,7 +64,7 @@ pub fn train<const N: usize>(
     let outcome = genetic::run(&options.genetic, &problem, seed, watch);
     let mut network = frame.network(&outcome.best);
     unscale_output(&mut network, low, high);
-    Trained { network, generations: outcome.generations }
+    Trained { network, evaluations: outcome.generations * options.genetic.population }
 }
 
 /// The genes are the weights.

@@ -58,8 +58,8 @@ pub enum Trainer {
 pub struct Progress {
     /// The network.
     pub network: &'static str,
-    /// Generations so far, for the paper's trainer.
-    pub generation: usize,
+    /// How often a network was evaluated over all samples so far; the fast trainer tells when it is done.
+    pub evaluations: usize,
 }
 
 /// Trains the networks that `logs` support, one after the other.
@@ -196,19 +196,23 @@ impl<W: Fn(Progress)> School<'_, W> {
         }
         let held_out = data.of_runs(|run| is_held_out(run, self.runs));
         let judged = if held_out.is_empty() { &fitted } else { &held_out };
-        let watch = |generation| (self.watch)(Progress { network, generation });
+        let watch = |evaluations| (self.watch)(Progress { network, evaluations });
         watch(0);
-        let network = match self.trainer {
+        let (trained, evaluations) = match self.trainer {
             Trainer::Paper(options) => {
-                let watch = |generation, _| watch(generation);
-                paper::train(&fitted, shape, kind.activation, options, self.seed, watch).network
+                let watch = |generation, _| watch(generation * options.genetic.population);
+                let done = paper::train(&fitted, shape, kind.activation, options, self.seed, watch);
+                (done.network, done.evaluations)
             }
-            Trainer::Fast => fast::train(&fitted, judged, shape, kind.activation, kind.loss, self.seed).network,
+            Trainer::Fast => {
+                let done = fast::train(&fitted, judged, shape, kind.activation, kind.loss, self.seed);
+                (done.network, done.evaluations)
+            }
         };
+        watch(evaluations);
         let contexts: Vec<[f32; 2]> = judged.inputs.iter().map(context).collect();
-        let residuals = residuals(&network, judged);
-        let spread = scatter::spread(&contexts, &residuals);
-        Some(Learned { network, spread })
+        let spread = scatter::spread(&contexts, &residuals(&trained, judged));
+        Some(Learned { network: trained, spread })
     }
 }
 
