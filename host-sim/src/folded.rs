@@ -143,3 +143,91 @@ fn tame_power<S: Scalar<Weight = f32> + Binary32, const N: usize>(unit: &Product
     }
     maths::exp2_within(log2)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::lanes::Lanes;
+    use mindgap_core::network::SummationUnit;
+    use proptest::prelude::*;
+
+    /// Numbers of every size, zero and denormal ones among them.
+    fn any_size() -> impl Strategy<Value = f32> {
+        prop_oneof![
+            Just(0.0f32),
+            Just(f32::MIN_POSITIVE / 8.0),
+            -3.0f32..3.0,
+            -1e4f32..1e4,
+            Just(1e30f32),
+            Just(-1e30f32),
+            Just(f32::INFINITY)
+        ]
+    }
+
+    fn network(genes: &[f32], product_form: ProductForm) -> Network<f32, 2> {
+        let scaling = match product_form {
+            ProductForm::Positive => Scaling::onto_one_to_two(0.0, 100.0),
+            ProductForm::Signed => Scaling::onto_minus_one_to_one(0.0, 100.0),
+        };
+        let mut network = Network::constant([scaling; 2], genes[0]);
+        network.product_form = product_form;
+        let unit = SummationUnit { weights: [genes[1], genes[2]], bias: genes[3], output: genes[4] };
+        network.summation.push(unit).unwrap();
+        for unit in genes[5..].chunks_exact(3) {
+            let unit = ProductUnit { exponents: [unit[0], unit[1]], output: unit[2] };
+            network.product.push(unit).unwrap();
+        }
+        network
+    }
+
+    fn number(lane: Lanes<pulp::Scalar>) -> f32 {
+        let mut number = [0.0];
+        lane.store(&mut number);
+        number[0]
+    }
+
+    fn same(a: f32, b: f32) -> bool {
+        a.to_bits() == b.to_bits() || (a.is_nan() && b.is_nan())
+    }
+
+    proptest! {
+        #[test]
+        fn lanes_two_at_a_time_and_one_by_one_give_the_same_bits(
+            genes in prop::collection::vec(any_size(), 14), inputs in prop::array::uniform2(any_size()), signed in any::<bool>(),
+        ) {
+            let form = if signed { ProductForm::Signed } else { ProductForm::Positive };
+            let folded = Folded::new(&network(&genes, form));
+            let (x, log2_x) = folded.scale(inputs);
+            let single = folded.evaluate(&x, &log2_x);
+            let two = folded.evaluate_two(&[x, x], &[log2_x, log2_x]);
+            let lanes = inputs.map(|input| Lanes::splat(pulp::Scalar::new(), input));
+            let (x, log2_x) = folded.scale(lanes);
+            let lane = number(folded.evaluate(&x, &log2_x));
+            prop_assert!(same(single, lane) && two.iter().all(|t| same(*t, single)), "{single} {lane} {two:?}");
+        }
+
+        #[test]
+        fn tame_powers_are_taken_like_wild_ones(
+            genes in prop::collection::vec(-20f32..20.0, 20), inputs in prop::array::uniform2(-20f32..120.0),
+        ) {
+            let folded = Folded::new(&network(&genes, ProductForm::Positive));
+            prop_assert!(folded.tame);
+            let wild = Folded { tame: false, ..folded.clone() };
+            let evaluate = |f: &Folded<2>| {
+                let (x, log2_x) = f.scale(inputs);
+                f.evaluate(&x, &log2_x)
+            };
+            prop_assert_eq!(evaluate(&folded).to_bits(), evaluate(&wild).to_bits());
+        }
+
+        #[test]
+        fn folding_changes_a_network_by_no_more_than_rounding(
+            genes in prop::collection::vec(-3f32..3.0, 20), inputs in prop::array::uniform2(-20f32..120.0),
+        ) {
+            let network = network(&genes, ProductForm::Positive);
+            let [folded] = evaluate_all(&[Folded::new(&network)], inputs);
+            let plain = network.evaluate(inputs);
+            prop_assert!((folded - plain).abs() <= 1e-4 * (1.0 + plain.abs()), "{folded} {plain}");
+        }
+    }
+}
