@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# How often evolved controllers reach the target: the default, the default with common random numbers, and the paper's
+# How often evolved controllers reach the target: the default, the default with
+# fresh random numbers for every individual, and the paper's
 # single run, for every start of a scene and so many seeds. Prints one line a controller (kind, start, seed, success in
 # 200 fresh runs under the learned noise), and then the table.
 #   host-sim/benches/success.sh SIM SCENE SEEDS >raw.csv
@@ -27,6 +28,6 @@ measure() {
 }
 
 echo kind,start,seed,success
-measure fresh
-measure common --common-numbers
+measure common
+measure fresh --fresh-numbers
 measure paper --paper

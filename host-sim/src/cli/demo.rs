@@ -60,5 +60,10 @@ fn told(summary: &Summary) -> String {
         })
         .collect();
     let header = ["controller for", "simulated: reached", "median (cm)", "robot: reached", "median (cm)"];
-    format!("{}\n{}", super::evaluate::accuracy(&summary.evaluation.networks), table::text(header, &rows))
+    format!(
+        "{}\n{}of {} controllers a start, that which did best in one trial on the robot\n",
+        super::evaluate::accuracy(&summary.evaluation.networks),
+        table::text(header, &rows),
+        robust::RESTARTS
+    )
 }

@@ -43,9 +43,9 @@ pub struct Evolve {
     /// Steps after which a controller gives up.
     #[arg(long, default_value_t = 60, value_parser = value_parser!(u16).range(1..))]
     max_steps: u16,
-    /// Let all individuals of a generation meet the same random numbers.
+    /// Let every individual of a generation meet its own random numbers, as with --paper, and not all the same ones.
     #[arg(long)]
-    common_numbers: bool,
+    fresh_numbers: bool,
 }
 
 /// Fresh runs that tell how well a controller does.
@@ -64,7 +64,7 @@ impl Evolve {
         let course = Course::new(&simulator, &scene, start, noise)?;
         let course = &if noise == Noise::Learned { course.with_beam(&simulator) } else { course };
         let coding = Coding::new(&simulator, self.max_steps);
-        let numbers = if self.common_numbers { Numbers::Common } else { Numbers::Fresh };
+        let numbers = if self.paper || self.fresh_numbers { Numbers::Fresh } else { Numbers::Common };
         let seed = self.seed;
         let (runs, floor_cm) = (paper::RUNS, paper::FLOOR_CM);
         let task = Task { course, target_cm, coding, runs, floor_cm, numbers, seed };

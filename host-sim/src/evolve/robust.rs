@@ -2,10 +2,12 @@
 //! or in one that was lucky in its five runs. So here, always under the noise that was learned, and with either of two
 //! sensors by turns, since what helps with one alone will hardly help on the floor:
 //!
-//! 1. large populations, gentler in selection and bolder in mutation, with few runs an individual: they find the ways
-//!    there are. Their elite is judged again in each generation;
-//! 2. one run that goes on from the best of them with small mutations and many runs an individual;
-//! 3. a choice among its last population by many fresh runs.
+//! 1. a large population, gentler in selection and bolder in mutation, with few runs an individual: it finds a way. Its
+//!    elite is judged again in each generation;
+//! 2. a run that goes on from the best of it with small mutations and many runs an individual;
+//! 3. a choice among the last population by many fresh runs;
+//!
+//! and all of that several times, for other ways.
 
 use glam::DVec2;
 use mindgap_core::controller::Controller;
@@ -20,9 +22,10 @@ use crate::genetic::{self, Settings};
 use crate::simulator::course::Course;
 
 /// Generations of all runs of the genetic algorithm together.
-pub const GENERATIONS: usize = RESTARTS * EXPLORING.max_generations + REFINING.max_generations;
+pub const GENERATIONS: usize = RESTARTS * (EXPLORING.max_generations + REFINING.max_generations);
+/// So many times all of it is done.
+pub const RESTARTS: usize = 3;
 
-const RESTARTS: usize = 4;
 const EXPLORING: Settings = Settings {
     population: 1000,
     tournament: 5,
@@ -63,26 +66,35 @@ pub struct Quest<'a> {
     pub seed: u64,
 }
 
-/// Evolves a controller. `watch` is told the generations so far of all [`GENERATIONS`], and the best fitness of the run
-/// that is under way.
-pub fn evolve(quest: &Quest, mut watch: impl FnMut(usize, f64)) -> Evolved {
-    let mut ways = Vec::new();
-    for restart in 0..RESTARTS {
-        let seed = derive(quest.seed, &[restart as u64]);
-        let task = quest.task(EXPLORING_RUNS, seed);
-        let before = restart * EXPLORING.max_generations;
-        let explored = genetic::run(&EXPLORING, &task, seed, |generation, best| watch(before + generation, best));
-        ways.extend(explored.population.into_iter().take(REFINING.population / RESTARTS));
-    }
-    let task = quest.task(REFINING_RUNS, quest.seed);
-    let before = RESTARTS * EXPLORING.max_generations;
-    let refined =
-        genetic::run_from(ways, &REFINING, &task, quest.seed, |generation, best| watch(before + generation, best));
-    choose(&task, &refined.population)
+/// Evolves a controller: of [`candidates`] the first. `watch` is told the generations so far of all [`GENERATIONS`], and
+/// the best fitness of the run that is under way.
+pub fn evolve(quest: &Quest, watch: impl FnMut(usize, f64)) -> Evolved {
+    candidates(quest, watch).swap_remove(0)
 }
 
-/// The individual that reaches the target most often in fresh runs, and of equals the fitter.
-fn choose(task: &Task, population: &[Vec<f32>]) -> Evolved {
+/// A controller of each restart, which are different ways to the target if there are several; that which reaches it most
+/// often in fresh runs comes first.
+pub fn candidates(quest: &Quest, mut watch: impl FnMut(usize, f64)) -> Vec<Evolved> {
+    let mut chosen: Vec<(f64, Evolved)> = (0..RESTARTS)
+        .map(|restart| {
+            let seed = derive(quest.seed, &[restart as u64]);
+            let before = restart * (EXPLORING.max_generations + REFINING.max_generations);
+            let mut tell = |generation, best| watch(before + generation, best);
+            let explored = genetic::run(&EXPLORING, &quest.task(EXPLORING_RUNS, seed), seed, &mut tell);
+            let ways = explored.population.into_iter().take(REFINING.population).collect();
+            let before = before + EXPLORING.max_generations;
+            let tell = |generation, best| watch(before + generation, best);
+            // All restarts are judged by the same runs.
+            let task = quest.task(REFINING_RUNS, quest.seed);
+            choose(&task, &genetic::run_from(ways, &REFINING, &task, seed, tell).population)
+        })
+        .collect();
+    chosen.sort_by(|a, b| b.0.total_cmp(&a.0));
+    chosen.into_iter().map(|(_, evolved)| evolved).collect()
+}
+
+/// The individual that reaches the target most often in fresh runs, and of equals the fitter; and how often it does.
+fn choose(task: &Task, population: &[Vec<f32>]) -> (f64, Evolved) {
     let judged: Vec<(f64, f64, Controller)> = population
         .par_iter()
         .take(CANDIDATES)
@@ -94,8 +106,8 @@ fn choose(task: &Task, population: &[Vec<f32>]) -> Evolved {
         })
         .collect();
     let better = |a: &(f64, f64, Controller), b: &(f64, f64, Controller)| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1));
-    let (_, fitness, controller) = judged.into_iter().max_by(better).expect("a population is never empty");
-    Evolved { controller, fitness, generations: GENERATIONS }
+    let (rate, fitness, controller) = judged.into_iter().max_by(better).expect("a population is never empty");
+    (rate, Evolved { controller, fitness, generations: GENERATIONS })
 }
 
 impl<'a> Quest<'a> {
