@@ -3,6 +3,7 @@
 //! A command returns what it has to say, and says it only once everything is done: whoever reads just the first line
 //! of it, as `mindgap evaluate ... | head -1` does, stops nothing halfway.
 
+mod brick;
 mod challenge;
 mod crosscheck;
 mod demo;
@@ -37,6 +38,7 @@ struct Cli {
 
 #[derive(Subcommand)]
 enum Command {
+    Brick(brick::Brick),
     Challenge(challenge::Challenge),
     Crosscheck(crosscheck::Crosscheck),
     Demo(demo::Demo),
@@ -53,6 +55,7 @@ enum Command {
 /// when the call is wrong.
 pub fn run() -> ExitCode {
     let done = match Cli::parse().command {
+        Command::Brick(command) => command.run(),
         Command::Challenge(command) => command.run(),
         Command::Crosscheck(command) => command.run(),
         Command::Demo(command) => command.run(),

@@ -3,6 +3,7 @@
 //! A folder holds [`Robot`] (`robot.toml`), [`Scene`] (`scene.toml`) and one [`Run`] a file (`run-*.csv`); what a
 //! network learns from are its [`samples`].
 
+pub mod readings;
 pub mod robot;
 pub mod run;
 pub mod samples;

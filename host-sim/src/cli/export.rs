@@ -1,13 +1,16 @@
 //! `mindgap export`
 
-use std::path::PathBuf;
+mod collect;
+
+use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
+use mindgap_controller_export::budget::Budget;
 use mindgap_controller_export::names::BrickName;
 use mindgap_controller_export::nxc::{self, NxcOptions};
 use mindgap_controller_export::rust_networks::rust_networks;
 use mindgap_controller_export::wiring::{MotorPort, SensorPort, Wiring};
-use mindgap_controller_export::{ExportError, Origin, c, rust, rxe};
+use mindgap_controller_export::{ExportError, Origin, c, collect as data_collection, rust, rxe};
 
 use crate::evolve::controller_file::ControllerFile;
 use crate::files;
@@ -15,12 +18,16 @@ use crate::problem::{Problem, Result};
 use crate::simulator::Simulator;
 use crate::simulator::fixed_point::FixedNetworks;
 
-/// Turn a controller into an onboard program, or a simulator's networks into constants for a board.
+/// Turn a controller into an onboard program, or a simulator's networks into constants for a board; or make the
+/// program that collects a robot's first logs.
 #[derive(Args)]
 pub struct Export {
-    /// The controller file; or a simulator file, whose networks have the format rust alone.
-    #[arg(value_name = "CONTROLLER")]
-    input: PathBuf,
+    /// The controller file; or a simulator file, whose networks have the format rust alone. None for nxc-collect.
+    #[arg(
+        value_name = "CONTROLLER",
+        required_if_eq_any = [("format", "nxc"), ("format", "rxe"), ("format", "rust"), ("format", "c")]
+    )]
+    input: Option<PathBuf>,
     /// What to make of it.
     #[arg(long, value_enum)]
     format: Format,
@@ -42,6 +49,8 @@ pub struct Export {
     /// Show tuple, reading and outcome on the brick's display.
     #[arg(long)]
     display: bool,
+    #[command(flatten)]
+    collect: collect::Collect,
 }
 
 /// What a controller can be turned into.
@@ -55,47 +64,72 @@ enum Format {
     Rust,
     /// A C99 header with the stepping machine.
     C,
+    /// NXC source of a program that drives at random and logs.
+    NxcCollect,
 }
 
 impl Export {
     /// Writes the program or the networks.
     pub fn run(&self) -> Result<String> {
-        // Simulators are JSON; no TOML begins like that.
-        if files::read_text(&self.input)?.trim_start().starts_with('{') { self.networks() } else { self.controller() }
-    }
-
-    fn networks(&self) -> Result<String> {
-        let simulator = Simulator::read(&self.input)?;
-        if !matches!(self.format, Format::Rust) {
-            return Err(Problem::in_file(&self.input, "holds networks, which are exported with --format rust alone"));
-        }
-        let networks = FixedNetworks::quantise(&simulator).map_err(|problem| problem.or_in_file(&self.input))?;
-        files::write(&self.out, rust_networks(&networks.rust_definitions()))?;
-        Ok(format!("{} written\n", self.out.display()))
-    }
-
-    fn controller(&self) -> Result<String> {
-        let file = ControllerFile::read(&self.input)?;
-        let refused = |e: ExportError| Problem::in_file(&self.input, e.to_string());
-        let (controller, origin) = (&file.controller, &Origin::from(&file));
-        let wiring = Wiring { left: self.left, right: self.right, sonar: self.sonar };
-        let stem = self.out.file_stem().unwrap_or_default().to_string_lossy();
-        let name = || BrickName::program(&stem).map_err(|e| Problem::in_file(&self.out, e.to_string()));
-        let (program, budget) = match self.format {
-            Format::Nxc => {
-                let options = NxcOptions { program: name()?, wiring, log: self.log.clone(), display: self.display };
-                let source = nxc::program(controller, origin, &options).map_err(refused)?;
-                (source.into_bytes(), Some(nxc::budget(controller, &options)))
-            }
-            Format::Rxe => {
-                name()?;
-                (rxe::program(controller, &wiring).map_err(refused)?, Some(rxe::budget(controller)))
-            }
-            Format::Rust => (rust::module(controller, origin).map_err(refused)?.into_bytes(), None),
-            Format::C => (c::header(controller, origin).map_err(refused)?.into_bytes(), None),
+        let (program, budget) = match &self.input {
+            None => self.collection()?,
+            // Simulators are JSON; no TOML begins like that.
+            Some(input) if files::read_text(input)?.trim_start().starts_with('{') => (self.networks(input)?, None),
+            Some(input) => self.controller(input)?,
         };
         files::write(&self.out, program)?;
         let budget = budget.map_or(String::new(), |budget| format!("{budget}\n"));
         Ok(format!("{} written\n{budget}", self.out.display()))
+    }
+
+    fn collection(&self) -> Result<(Vec<u8>, Option<Budget>)> {
+        let options = self.collect.options(self.program_name()?, self.wiring());
+        let source = data_collection::program(&options).map_err(|e| Problem::in_file(&self.out, e.to_string()))?;
+        Ok((source.into_bytes(), Some(data_collection::budget(&options))))
+    }
+
+    fn networks(&self, input: &Path) -> Result<Vec<u8>> {
+        let simulator = Simulator::read(input)?;
+        if !matches!(self.format, Format::Rust) {
+            return Err(Problem::in_file(input, "holds networks, which are exported with --format rust alone"));
+        }
+        let networks = FixedNetworks::quantise(&simulator).map_err(|problem| problem.or_in_file(input))?;
+        Ok(rust_networks(&networks.rust_definitions()).into_bytes())
+    }
+
+    fn controller(&self, input: &Path) -> Result<(Vec<u8>, Option<Budget>)> {
+        let file = ControllerFile::read(input)?;
+        let refused = |e: ExportError| Problem::in_file(input, e.to_string());
+        let (controller, origin) = (&file.controller, &Origin::from(&file));
+        Ok(match self.format {
+            Format::Rxe => {
+                self.program_name()?;
+                (rxe::program(controller, &self.wiring()).map_err(refused)?, Some(rxe::budget(controller)))
+            }
+            Format::NxcCollect => {
+                return Err(Problem::in_file(
+                    input,
+                    "is not needed: --format nxc-collect draws its commands by chance",
+                ));
+            }
+            Format::Rust => (rust::module(controller, origin).map_err(refused)?.into_bytes(), None),
+            Format::C => (c::header(controller, origin).map_err(refused)?.into_bytes(), None),
+            Format::Nxc => {
+                let (program, wiring) = (self.program_name()?, self.wiring());
+                let options = NxcOptions { program, wiring, log: self.log.clone(), display: self.display };
+                let source = nxc::program(controller, origin, &options).map_err(refused)?;
+                (source.into_bytes(), Some(nxc::budget(controller, &options)))
+            }
+        })
+    }
+
+    fn wiring(&self) -> Wiring {
+        Wiring { left: self.left, right: self.right, sonar: self.sonar }
+    }
+
+    /// The compiled program's name on the brick: that of the file that is written.
+    fn program_name(&self) -> Result<BrickName> {
+        let stem = self.out.file_stem().unwrap_or_default().to_string_lossy();
+        BrickName::program(&stem).map_err(|e| Problem::in_file(&self.out, e.to_string()))
     }
 }

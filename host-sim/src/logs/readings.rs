@@ -1,0 +1,83 @@
+//! What the ultrasonic sensor answers a program that runs without a brick: a list, or the column of a log.
+
+use std::path::Path;
+
+use csv::ReaderBuilder;
+use mindgap_controller_export::brick::Sonar;
+
+use crate::files;
+use crate::problem::{Problem, Result};
+
+/// What the sensor reports when no echo came back.
+const NO_ECHO: u8 = 255;
+const COLUMN: &str = "echo_cm";
+
+/// Readings from a list such as `120,80.5,none,silent`, or from the column `echo_cm` of the CSV file of that name.
+///
+/// A reading is a distance in cm, 0..=255, rounded to a whole one; `none`, `255` or an empty cell where no echo came
+/// back; `silent` where the sensor does not answer; `hangs` where its answer never ends.
+///
+/// # Errors
+/// When it is neither a list nor a file, or when a reading of the file cannot be.
+pub fn read(list_or_file: &str) -> Result<Vec<Sonar>> {
+    let path = Path::new(list_or_file);
+    if path.is_file() {
+        return read_column(path);
+    }
+    list_or_file.split(',').map(reading).collect::<std::result::Result<_, _>>().map_err(|what| {
+        Problem::new(format!("--readings {list_or_file:?} is no file, and as a list it has a reading that {what}"))
+    })
+}
+
+fn read_column(path: &Path) -> Result<Vec<Sonar>> {
+    let text = files::read_text(path)?;
+    let mut reader = ReaderBuilder::new().trim(csv::Trim::All).from_reader(text.as_bytes());
+    let broken = |e: csv::Error| {
+        let line = e.position().map_or(1, csv::Position::line);
+        Problem::at_line(path, line, e.to_string().replace('\n', " "))
+    };
+    let column = reader.headers().map_err(broken)?.iter().position(|name| name == COLUMN);
+    let column = column.ok_or_else(|| Problem::at_line(path, 1, format!("column {COLUMN} is missing")))?;
+    let mut readings = Vec::new();
+    for record in reader.records() {
+        let record = record.map_err(broken)?;
+        let line = record.position().map_or(0, csv::Position::line);
+        let cell = record.get(column).unwrap_or_default();
+        let answer = reading(cell).map_err(|what| Problem::at_line(path, line, format!("{COLUMN} {what}")))?;
+        readings.push(answer);
+    }
+    Ok(readings)
+}
+
+fn reading(word: &str) -> std::result::Result<Sonar, String> {
+    match word.trim() {
+        "" | "none" => Ok(Sonar::Echo(NO_ECHO)),
+        "silent" => Ok(Sonar::Silent),
+        "hangs" => Ok(Sonar::Hangs),
+        word => match word.parse::<f64>() {
+            Ok(cm) if (0.0..=f64::from(NO_ECHO)).contains(&cm) => Ok(Sonar::Echo(libm::round(cm) as u8)),
+            Ok(_) => Err(format!("is {word}, outside 0..255 cm")),
+            Err(_) => Err(format!("is {word:?}, neither a distance nor none, silent or hangs")),
+        },
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_list_says_what_the_sensor_answers() {
+        let answers =
+            [Sonar::Echo(120), Sonar::Echo(81), Sonar::Echo(255), Sonar::Silent, Sonar::Hangs, Sonar::Echo(0)];
+        assert_eq!(read("120, 80.6,none,silent,hangs,0").unwrap(), answers);
+    }
+
+    #[test]
+    fn what_is_no_reading_is_refused() {
+        for (list, what) in [("12,256", "outside"), ("-1", "outside"), ("NaN", "outside"), ("1,far", "neither")] {
+            let problem = read(list).unwrap_err().to_string();
+            assert!(problem.contains(what) && problem.contains(list), "{problem}");
+        }
+    }
+}
