@@ -89,9 +89,16 @@ pub fn train<const N: usize>(
         })
         .collect();
     let evaluations = searched.iter().map(|(_, _, evaluations)| evaluations).sum();
-    let best = searched.into_iter().min_by(|a, b| a.0.total_cmp(&b.0));
+    let best = searched.into_iter().min_by(|a, b| is_steep(&a.1).cmp(&is_steep(&b.1)).then(a.0.total_cmp(&b.0)));
     let (_, network, _) = best.expect("there is at least one start");
     Trained { network, evaluations }
+}
+
+/// Larger exponents have no place in fixed point, and samples show no surface so steep.
+const LARGEST_EXPONENT: f32 = 30.0;
+
+fn is_steep<const N: usize>(network: &Network<f32, N>) -> bool {
+    network.product.iter().flat_map(|unit| unit.exponents).any(|exponent| exponent.abs() > LARGEST_EXPONENT)
 }
 
 /// Moves the exponents to a minimum; returns the evaluations that it took.
