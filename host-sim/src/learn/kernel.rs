@@ -13,7 +13,7 @@ use crate::lanes::{Lanes, WIDEST};
 /// Two of the widest vectors.
 const BLOCK: usize = 2 * WIDEST;
 
-/// Samples laid out for lanes: one row an input, filled up to whole blocks of [`BLOCK`] by samples without weight.
+/// Samples laid out for lanes: one row an input, filled up to whole blocks by samples without weight.
 #[derive(Clone, Debug)]
 pub struct Samples<const N: usize> {
     scaled: [Vec<f32>; N],
