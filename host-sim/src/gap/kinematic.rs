@@ -21,11 +21,7 @@ const READING_SCATTER_CM: [f64; 2] = [0.5, 4.0];
 /// The baseline of a robot that nobody has logged before.
 pub fn baseline(logs: &Logs) -> Baseline<'static> {
     let scatter = if samples::motion(logs).is_empty() { LEAST_OWN_SCATTER } else { LEAST_SCATTER };
-    Baseline {
-        motion: Some(Drive::Kinematic { robot: logs.robot, scatter }),
-        sonar: sonar(logs),
-        added: Vec::new(),
-    }
+    Baseline { motion: Some(Drive::Kinematic { robot: logs.robot, scatter }), sonar: sonar(logs), added: Vec::new() }
 }
 
 fn sonar(logs: &Logs) -> Option<SonarReference> {
