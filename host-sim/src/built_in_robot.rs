@@ -5,12 +5,13 @@
 //! like any robot's.
 //!
 //! [`BuiltInRobot`] is the robot in its room, with what is different about it ([`effects`]); [`Body`] is a run of it;
-//! [`record`] makes random-command logs, [`run_controller`] tries a controller. Inside: `hardware` has every
+//! [`record`] makes random-command logs of a kind of [`Driving`], [`run_controller`] tries a controller. Inside: `hardware` has every
 //! part's numbers, `drivetrain` and `wheel` the motion, `sonar` the sensor, `tracker` camera and compass.
 
 mod body;
 mod controller_run;
 mod drivetrain;
+mod driving;
 pub mod effects;
 mod hardware;
 mod noise;
@@ -22,8 +23,9 @@ mod wheel;
 
 pub use body::Body;
 pub use controller_run::{Moment, Outcome, Track, run_controller};
+pub use driving::Driving;
 pub use effects::{ActiveEffect, Effect};
-pub use recording::record;
+pub use recording::{record, record_driving};
 pub use rooms::{default_robot, four_obstacles, training_room};
 
 use crate::chance::Generator;

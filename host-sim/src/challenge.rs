@@ -2,9 +2,12 @@
 //!
 //! [`make`] writes cases and a sealed file of what is different in each, with a commitment to every entry beside the
 //! cases; [`answer`] reads the cases alone; [`score`] opens the seal, checks the commitments and counts. The three share
-//! nothing but the folder.
+//! nothing but the folder. [`calibrate`] settles the diagnosis's thresholds on [`cases`] of other seeds.
 
 pub mod answer;
+pub mod calibrate;
+
+pub mod cases;
 pub mod make;
 pub mod rooms;
 pub mod score;
@@ -39,5 +42,15 @@ impl Folder<'_> {
     /// The diagnosis of a case.
     pub fn answer(&self, case: &str) -> PathBuf {
         self.0.join("answers").join(format!("{case}.json"))
+    }
+
+    /// The effects that the diagnosis of a case adds to the simulator, where it names any.
+    pub fn added(&self, case: &str) -> PathBuf {
+        self.0.join("answers").join(format!("{case}-added.json"))
+    }
+
+    /// The simulator of a robot, as learned for the answers.
+    pub fn simulator(&self, robot: &str) -> PathBuf {
+        self.0.join("answers").join(format!("simulator-{robot}.json"))
     }
 }

@@ -2,10 +2,12 @@
 //!
 //! [`diagnose`] answers with a [`Diagnosis`]. A hypothesis is one or more [`effects`], each a wrapper round a step of the
 //! [`baseline`]; [`search`] fits it and judges it on runs that it was not fitted on, [`explanation`] settles on the
-//! effects that hold, [`generic`] bounds what any effect could explain, and [`verdict`] weighs it all.
+//! effects that hold, [`generic`] bounds what any effect could explain, and [`verdict`] weighs it all by thresholds that
+//! [`calibration`] holds.
 
 pub mod admission;
 pub mod baseline;
+pub mod calibration;
 pub mod channel;
 pub mod circumstances;
 pub mod confirmation;
@@ -13,6 +15,7 @@ pub mod contexts;
 pub mod diagnosis;
 pub mod effect;
 pub mod effects;
+pub mod endings;
 pub mod evidence;
 pub mod excitation;
 pub mod experiment;
@@ -28,4 +31,4 @@ pub mod shape;
 pub mod shrink;
 pub mod verdict;
 
-pub use diagnosis::{Diagnosis, Findings, diagnose, findings};
+pub use diagnosis::{Diagnosis, Findings, closed, diagnose, findings};

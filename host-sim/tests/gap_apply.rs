@@ -3,13 +3,17 @@
 use std::sync::LazyLock;
 
 use mindgap_core::controller::{Controller, Tuple, When};
-use mindgap_host_sim::built_in_robot::{default_robot, four_obstacles, record, training_room};
+use mindgap_host_sim::built_in_robot::{
+    BuiltInRobot, default_robot, four_obstacles, record, run_controller, training_room,
+};
+use mindgap_host_sim::chance::generator;
 use mindgap_host_sim::gap::baseline::Baseline;
+use mindgap_host_sim::gap::endings::endings;
 use mindgap_host_sim::gap::verdict::Verdict;
 use mindgap_host_sim::gap::{diagnose, effects, findings};
 use mindgap_host_sim::learn::evaluate::evaluate;
 use mindgap_host_sim::learn::train::{TABLE_ONE, Trainer, train};
-use mindgap_host_sim::logs::Logs;
+use mindgap_host_sim::logs::{Logs, Row, Run};
 use mindgap_host_sim::simulator::added::Added;
 use mindgap_host_sim::simulator::course::Course;
 use mindgap_host_sim::simulator::rehearsal::Rehearsal;
@@ -88,4 +92,27 @@ fn what_no_effect_could_be_is_refused() {
     assert!(refusal.contains("sonar_offset"), "{refusal}");
     with(vec![neutral("sonar_offset")]).write(&path).expect("a file");
     assert_eq!(Simulator::read(&path).expect("a simulator").added.len(), 1);
+}
+
+#[test]
+fn a_controllers_ends_are_foretold_better_with_the_effect() {
+    let tuple = |left, right, threshold_cm| Tuple { left, right, when: When::Smaller, threshold_cm };
+    let tuples = [(60, 60, 60), (40, -40, 10), (60, 60, 60), (-30, -30, 10), (40, 40, 60), (40, -40, 10)];
+    let controller = Controller { step_ms: 400, max_steps: 20, tuples: tuples.map(|(l, r, t)| tuple(l, r, t)) };
+    let scene = four_obstacles();
+    let robot = BuiltInRobot::new(&default_robot(), &scene, &["drive_scale=1.15".parse().expect("an effect")]);
+    let mut rng = generator(9, &[]);
+    let mut drive = |run: usize| {
+        let start = scene.starts[run % scene.starts.len()];
+        run_controller(&robot, &controller, start, &mut rng).to_run(format!("run-{run:03}"))
+    };
+    let runs = (0..8).map(&mut drive).collect();
+    let logs = Logs { robot: default_robot(), scene: scene.clone(), runs };
+    let form = effects::all().into_iter().find(|form| form.id == "drive_scale").expect("the effect is in the bank");
+    let better = with(vec![Added::new(form, &[1.15])]);
+    let found = endings([&SIMULATOR, &better], &controller, &logs).expect("poses at both ends");
+    assert_eq!(found.runs, 8);
+    assert!(found.after_cm < 0.7 * found.before_cm && found.floor_cm > 0.0, "{found:?}");
+    let unseen = Logs { runs: vec![Run { name: "run-000".into(), rows: vec![Row::default(); 3] }], ..logs };
+    assert!(endings([&SIMULATOR, &better], &controller, &unseen).is_err());
 }

@@ -7,7 +7,7 @@ use glam::DVec2;
 use rand::RngExt;
 use rayon::prelude::*;
 
-use super::{ActiveEffect, Body, BuiltInRobot};
+use super::{ActiveEffect, Body, BuiltInRobot, Driving};
 use crate::chance::{Generator, generator};
 use crate::geometry::{Pose, cast, direction};
 use crate::logs::{Logs, Robot, Row, Run, Scene};
@@ -25,8 +25,6 @@ const COMMANDS_TRIED: usize = 40;
 const STEPS_TO_STAND: usize = 2;
 /// A run in which the robot hits something after all is driven again, so many times.
 const ATTEMPTS: u64 = 20;
-/// No command is larger than this.
-const FASTEST: f64 = 85.0;
 /// Places of generators: the purpose, and within it for each run one for what happens and one for what is feared.
 const RECORDING: u64 = u64::from_be_bytes(*b"record  ");
 const DRIVING: u64 = 0;
@@ -44,6 +42,22 @@ pub fn record(
     effects: &[ActiveEffect],
     seed: u64,
 ) -> Result<Logs> {
+    record_driving(&Driving::MIXED, spec, scene, [runs, steps], effects, seed)
+}
+
+/// The same with another kind of driving; `amount` is runs and steps of each.
+///
+/// # Errors
+/// When the room has no place for the robot, or when there is nothing to record.
+pub fn record_driving(
+    driving: &Driving,
+    spec: &Robot,
+    scene: &Scene,
+    amount: [usize; 2],
+    effects: &[ActiveEffect],
+    seed: u64,
+) -> Result<Logs> {
+    let [runs, steps] = amount;
     if runs == 0 || steps == 0 {
         return Err(Problem::new(format!("{runs} runs of {steps} steps: there must be at least one of each")));
     }
@@ -55,7 +69,8 @@ pub fn record(
                 let mut rng = generator(seed, &[RECORDING, run, attempt, DRIVING]);
                 let mut foresight = generator(seed, &[RECORDING, run, attempt, FORESIGHT]);
                 let start = free_place(spec, scene, &mut rng)?;
-                drive_about(&robot, start, spec.step_ms, steps, &mut rng, &mut foresight)
+                let about = About { robot: &robot, driving, step_ms: spec.step_ms, steps };
+                about.drive(start, &mut rng, &mut foresight)
             });
             Ok(Run { name: format!("run-{run:03}"), rows: rows.ok_or_else(|| no_room(spec))? })
         })
@@ -88,31 +103,42 @@ fn is_enclosed(scene: &Scene, at_cm: DVec2) -> bool {
     (0..8).all(|eighth| cast(&sides, at_cm, direction(f64::from(eighth) * FRAC_PI_4)).is_some())
 }
 
-/// One run's rows, one more than steps since a step lies between two; none when the robot hit something.
-fn drive_about(
-    robot: &BuiltInRobot,
-    start: Pose,
+/// Who drives about, how, and for how long.
+struct About<'a> {
+    robot: &'a BuiltInRobot,
+    driving: &'a Driving,
     step_ms: f64,
     steps: usize,
-    rng: &mut Generator,
-    foresight: &mut Generator,
-) -> Option<Vec<Row>> {
-    let mut body = robot.start(start, rng);
-    let mut rows = Vec::with_capacity(steps + 1);
-    let mut held = Held { command: [0.0, 0.0], steps: 0 };
-    while !body.crashed() {
-        if held.steps == 0 {
-            held = safe_command(&body, step_ms, rng, foresight);
+}
+
+impl About<'_> {
+    /// One run's rows, one more than steps since a step lies between two; none when the robot hit something.
+    fn drive(&self, start: Pose, rng: &mut Generator, foresight: &mut Generator) -> Option<Vec<Row>> {
+        let mut body = self.robot.start(start, rng);
+        let mut rows = Vec::with_capacity(self.steps + 1);
+        let mut held = Held { command: [0.0, 0.0], steps: 0 };
+        while !body.crashed() {
+            if held.steps == 0 {
+                held = self.safe_command(&body, rng, foresight);
+            }
+            held.steps -= 1;
+            let echo_cm = body.read_sonar(rng);
+            rows.push(body.row(held.command, echo_cm, rng));
+            if rows.len() > self.steps {
+                return Some(rows);
+            }
+            body.drive(held.command, self.robot.step_length_ms(self.step_ms, rng), rng);
         }
-        held.steps -= 1;
-        let echo_cm = body.read_sonar(rng);
-        rows.push(body.row(held.command, echo_cm, rng));
-        if rows.len() > steps {
-            return Some(rows);
-        }
-        body.drive(held.command, robot.step_length_ms(step_ms, rng), rng);
+        None
     }
-    None
+
+    /// A random command after which the robot can still be stopped clear of everything; stopping is always one.
+    fn safe_command(&self, body: &Body, rng: &mut Generator, foresight: &mut Generator) -> Held {
+        (0..COMMANDS_TRIED)
+            .map(|_| Held { command: self.driving.command(rng), steps: self.driving.steps(rng) })
+            .find(|held| stays_clear(body, held, self.step_ms, foresight))
+            .unwrap_or(Held { command: [0.0, 0.0], steps: 1 })
+    }
 }
 
 /// A command, and for how many steps it is held.
@@ -122,14 +148,6 @@ struct Held {
     steps: usize,
 }
 
-/// A random command after which the robot can still be stopped clear of everything; stopping is always one.
-fn safe_command(body: &Body, step_ms: f64, rng: &mut Generator, foresight: &mut Generator) -> Held {
-    (0..COMMANDS_TRIED)
-        .map(|_| Held { command: random_command(rng), steps: rng.random_range(1..=3) })
-        .find(|held| stays_clear(body, held, step_ms, foresight))
-        .unwrap_or(Held { command: [0.0, 0.0], steps: 1 })
-}
-
 fn stays_clear(body: &Body, held: &Held, step_ms: f64, foresight: &mut Generator) -> bool {
     let mut body = body.clone();
     let then_stopped = [[0.0, 0.0]; STEPS_TO_STAND];
@@ -137,22 +155,4 @@ fn stays_clear(body: &Body, held: &Held, step_ms: f64, foresight: &mut Generator
         body.drive(command, step_ms, foresight);
         !body.crashed() && body.clearance_cm() > KEPT_CLEAR_CM
     })
-}
-
-/// Whole-number commands: straight on and back or nearly so, arcs, spins and single wheels, slow and fast.
-fn random_command(rng: &mut Generator) -> [f64; 2] {
-    let pace = rng.random_range(15.0..=FASTEST);
-    // Controllers drive nearly straight much of the time, and there friction shows.
-    let nearly = |pace: f64, rng: &mut Generator| [pace, (pace + rng.random_range(-12.0..=12.0)).min(FASTEST)];
-    let command: [f64; 2] = match rng.random_range(0..20) {
-        0..3 => nearly(pace, rng),
-        3..11 => [pace * rng.random_range(0.2..=1.0), pace * rng.random_range(0.2..=1.0)],
-        11..15 => {
-            let turn = rng.random_range(10.0..=60.0);
-            if rng.random() { [turn, -turn] } else { [-turn, turn] }
-        }
-        15 => nearly(-0.7 * pace, rng),
-        _ => [rng.random_range(-60.0..=80.0), rng.random_range(-60.0..=80.0)],
-    };
-    command.map(|c| c.round())
 }

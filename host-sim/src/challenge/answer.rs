@@ -1,13 +1,17 @@
 //! Answers a challenge: learns each robot's simulator from its own logs and diagnoses every case.
 
+use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use rayon::prelude::*;
 
 use super::Folder;
 use super::seal::Published;
 use crate::files;
 use crate::gap::baseline::Baseline;
-use crate::gap::diagnose;
+use crate::gap::findings;
 use crate::learn::train::{TABLE_ONE, Trainer, train};
 use crate::logs::Logs;
 use crate::problem::{Problem, Result};
@@ -20,23 +24,35 @@ const SEED: u64 = 1;
 ///
 /// # Errors
 /// When the folder is no challenge, or when an answer cannot be written.
-pub fn answer(folder: &Path, mut watch: impl FnMut(usize)) -> Result<usize> {
+pub fn answer(folder: &Path, watch: impl Fn(usize) + Sync) -> Result<usize> {
     let folder = Folder(folder);
     let cases: Vec<Published> = files::read_csv(&folder.cases())?;
-    let mut simulators: Vec<(String, Simulator)> = Vec::new();
     let answers = folder.answer("").parent().map(Path::to_path_buf).unwrap_or_default();
     fs::create_dir_all(&answers).map_err(|e| Problem::in_file(&answers, format!("cannot be made: {e}")))?;
-    for (done, case) in cases.iter().enumerate() {
-        if !simulators.iter().any(|(robot, _)| *robot == case.robot) {
-            let logs = Logs::read(&folder.robot(&case.robot), |_| {})?;
-            simulators.push((case.robot.clone(), train(&logs, &Trainer::Fast, &TABLE_ONE, SEED, |_| {})?));
+    let mut simulators: BTreeMap<&str, Simulator> = BTreeMap::new();
+    for case in &cases {
+        if !simulators.contains_key(case.robot.as_str()) {
+            let simulator = learn(&Logs::read(&folder.robot(&case.robot), |_| {})?)?;
+            simulator.write(&folder.simulator(&case.robot))?;
+            simulators.insert(&case.robot, simulator);
         }
-        for (_, simulator) in simulators.iter().filter(|(robot, _)| *robot == case.robot) {
-            let logs = Logs::read(&folder.case(&case.case), |_| {})?;
-            let diagnosis = diagnose(Baseline::learned(simulator)?, &logs)?;
-            files::write_json(&folder.answer(&case.case), &diagnosis)?;
-        }
-        watch(done + 1);
     }
+    let done = AtomicUsize::new(0);
+    cases.par_iter().try_for_each(|case| {
+        let logs = Logs::read(&folder.case(&case.case), |_| {})?;
+        let found = findings(Baseline::learned(&simulators[case.robot.as_str()])?, &logs)?;
+        files::write_json(&folder.answer(&case.case), &found.diagnosis)?;
+        files::write_json(&folder.added(&case.case), &found.added)?;
+        watch(done.fetch_add(1, Ordering::Relaxed) + 1);
+        Ok(())
+    })?;
     Ok(cases.len())
+}
+
+/// Learns a robot's simulator from its own logs.
+///
+/// # Errors
+/// When the logs teach nothing.
+pub fn learn(logs: &Logs) -> Result<Simulator> {
+    train(logs, &Trainer::Fast, &TABLE_ONE, SEED, |_| {})
 }

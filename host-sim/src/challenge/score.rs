@@ -3,20 +3,26 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::Folder;
 use super::seal::{Published, Sealed};
-use crate::built_in_robot::Effect;
+use crate::built_in_robot::{ActiveEffect, Driving, Effect, record_driving};
 use crate::files;
-use crate::gap::Diagnosis;
 use crate::gap::verdict::Verdict;
+use crate::gap::{Diagnosis, closed};
+use crate::logs::Logs;
 use crate::problem::{Problem, Result};
+use crate::simulator::Simulator;
+use crate::simulator::added::Added;
 
 /// A set of effects that holds more than these rivals beside the first says nothing.
 const MOST_RIVALS: usize = 3;
 /// An answer that is surer than this of what is wrong is confidently wrong.
 const SURE: f64 = 0.9;
+/// Fresh runs of a case, and their steps.
+const FRESH: [usize; 2] = [48, 60];
 /// Borders of the bins in which probabilities are compared with how often they are right.
 const BINS: [f64; 6] = [0.0, 0.5, 0.7, 0.9, 0.98, 1.01];
 
@@ -35,6 +41,8 @@ pub struct Scored {
     pub probability: f64,
     /// The share of the reducible gap that it is said to close.
     pub closed: Option<f64>,
+    /// The share that these effects close on fresh runs of the case.
+    pub closed_on_fresh_runs: Option<f64>,
     /// Whether the answer is right: no gap, all effects (as first or in a set of a few), or unknown.
     pub right: bool,
 }
@@ -69,6 +77,9 @@ pub struct Score {
     pub unknowns: Share,
     /// Effects of the table that were called unknown.
     pub false_unknowns: Share,
+    /// Median difference between the share of the gap that the effects are said to close and the share that they close
+    /// on fresh runs; none where no answer says anything.
+    pub closed_error: Option<f64>,
     /// Answers with a probability above 0.9 for an effect that is not there.
     pub confidently_wrong: Share,
     /// For each bin of probability how many first effects are there.
@@ -84,6 +95,7 @@ pub struct Score {
 struct Opened {
     sealed: Sealed,
     answer: Diagnosis,
+    closed_on_fresh_runs: Option<f64>,
 }
 
 /// Opens the seal of a challenge and scores its answers.
@@ -95,16 +107,33 @@ pub fn score(folder: &Path) -> Result<Score> {
     let published: Vec<Published> = files::read_csv(&folder.cases())?;
     let sealed: Vec<Sealed> = files::read_json(&folder.sealed())?;
     let opened = published
-        .iter()
+        .par_iter()
         .map(|case| {
             let sealed = sealed.iter().find(|s| s.case == case.case && s.commitment() == case.commitment);
             let broken =
                 || Problem::in_file(&folder.sealed(), format!("case {}: not what was committed to", case.case));
             let sealed = sealed.cloned().ok_or_else(broken)?;
-            Ok(Opened { sealed, answer: files::read_json(&folder.answer(&case.case))? })
+            let answer = files::read_json(&folder.answer(&case.case))?;
+            Ok(Opened { closed_on_fresh_runs: closed_on_fresh_runs(&folder, case, &sealed)?, sealed, answer })
         })
         .collect::<Result<Vec<Opened>>>()?;
     Ok(Score::of(&opened))
+}
+
+/// What the effects that a case's answer adds to its robot's simulator close on runs that nobody has seen.
+fn closed_on_fresh_runs(folder: &Folder, case: &Published, sealed: &Sealed) -> Result<Option<f64>> {
+    let added: Vec<Added> = files::read_json(&folder.added(&case.case))?;
+    if added.is_empty() {
+        return Ok(None);
+    }
+    let seal = folder.sealed();
+    let unknown = |what: &str| Problem::in_file(&seal, format!("case {}: {what} is not known", case.case));
+    let effects = sealed.effects.iter().map(|e| e.parse::<ActiveEffect>().map_err(|_| unknown(e)));
+    let effects = effects.collect::<Result<Vec<_>>>()?;
+    let driving = Driving::named(&sealed.driving).ok_or_else(|| unknown(&sealed.driving))?;
+    let logs = Logs::read(&folder.case(&case.case), |_| {})?;
+    let fresh = record_driving(&driving, &logs.robot, &logs.scene, FRESH, &effects, sealed.fresh_seed)?;
+    closed(&Simulator::read(&folder.simulator(&case.robot))?, &added, &fresh)
 }
 
 impl Opened {
@@ -167,9 +196,14 @@ impl Opened {
             verdict: self.answer.verdict,
             named: named.collect::<Vec<String>>().join(" "),
             probability: self.probability(),
-            closed: self.answer.shrink.as_ref().map(|s| s.reducible_closed),
+            closed: self.closed(),
+            closed_on_fresh_runs: self.closed_on_fresh_runs,
             right: self.is_right(),
         }
+    }
+
+    fn closed(&self) -> Option<f64> {
+        self.answer.shrink.as_ref().map(|s| s.reducible_closed)
     }
 
     fn answered(&self) -> String {
@@ -197,6 +231,9 @@ impl Score {
         for case in cases.iter().filter(|c| !c.is_right()) {
             *confusions.entry((case.truth().join("+"), case.answered())).or_default() += 1;
         }
+        let closed_error = |c: &Opened| Some((c.closed()? - c.closed_on_fresh_runs?).abs());
+        let mut closed_errors: Vec<f64> = cases.iter().filter_map(closed_error).collect();
+        closed_errors.sort_by(f64::total_cmp);
         let confidently_wrong = |c: &Opened| c.probability() > SURE && !c.first_is_there();
         Score {
             false_alarms: share(Opened::is_null, &sees_gap),
@@ -208,6 +245,7 @@ impl Score {
             pairs: share(Opened::is_pair, &Opened::is_right),
             unknowns: share(Opened::is_outside, &Opened::is_right),
             false_unknowns: share(|c| c.is_single() || c.is_pair(), &|c| c.answer.verdict == Verdict::Unknown),
+            closed_error: closed_errors.get(closed_errors.len() / 2).copied(),
             confidently_wrong: share(|_| true, &confidently_wrong),
             calibration: calibration.collect(),
             confusions: confusions.into_iter().map(|((truth, answer), n)| (truth, answer, n)).collect(),

@@ -6,6 +6,7 @@ use clap::{Args, Subcommand};
 
 use super::progress;
 use crate::challenge::answer::answer;
+use crate::challenge::calibrate::calibrate;
 use crate::challenge::make::make;
 use crate::challenge::score::{Score, Share, score};
 use crate::files;
@@ -32,6 +33,21 @@ enum Part {
         #[arg(long, value_name = "DIR")]
         out: PathBuf,
     },
+    /// Settle the diagnosis's thresholds on cases of other seeds whose answers are known.
+    Calibrate {
+        /// Number of cases.
+        #[arg(long, value_name = "N", default_value_t = 200)]
+        cases: u32,
+        /// Seed of all that is random; none that a challenge has.
+        #[arg(long, value_name = "S", default_value_t = 1)]
+        seed: u64,
+        /// Write the thresholds here: diagnoses use those in host-sim/src/gap/calibration.toml when they are compiled.
+        #[arg(long, value_name = "FILE")]
+        out: PathBuf,
+        /// Also write what was measured in every case here.
+        #[arg(long, value_name = "FILE")]
+        csv: Option<PathBuf>,
+    },
     /// Diagnose every case.
     Answer {
         /// Folder of the challenge.
@@ -57,6 +73,19 @@ impl Challenge {
             Part::Make { cases, seed, out } => {
                 make(out, *cases as usize, *seed)?;
                 Ok(format!("{}: {cases} cases; sealed.json says what is different in each\n", out.display()))
+            }
+            Part::Calibrate { cases, seed, out, csv } => {
+                let spinner = progress::spinner();
+                let say = |done| spinner.set_message(format!("{done} cases measured"));
+                let (calibration, measured) = calibrate(*cases as usize, *seed, say)?;
+                spinner.finish_and_clear();
+                let command =
+                    format!("mindgap challenge calibrate --cases {cases} --seed {seed} --out {}", out.display());
+                files::write(out, calibration.to_text(&command))?;
+                if let Some(path) = csv {
+                    files::write_csv(path, &measured)?;
+                }
+                Ok(format!("{}: thresholds from {cases} cases\n", out.display()))
             }
             Part::Answer { folder } => {
                 let spinner = progress::spinner();
@@ -95,6 +124,9 @@ fn text(score: &Score) -> String {
         line("effects of the table called unknown", &score.false_unknowns),
         line("wrong with a probability above 0.9", &score.confidently_wrong),
     ];
+    lines.extend(
+        score.closed_error.map(|error| format!("{:<48} {:>5.3}", "median error of the share of the gap closed", error)),
+    );
     lines.extend(
         score.calibration.iter().map(|(bin, share)| line(&format!("right with a probability of {bin}"), share)),
     );

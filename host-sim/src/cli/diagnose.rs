@@ -1,15 +1,19 @@
 //! `mindgap diagnose`
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 
 use super::{diagnosis_page, diagnosis_text};
+use crate::evolve::controller_file::ControllerFile;
 use crate::files;
 use crate::gap::baseline::Baseline;
+use crate::gap::endings::{Endings, endings};
 use crate::gap::{Findings, admission, findings, kinematic};
+use crate::logs::Logs;
 use crate::problem::{Problem, Result};
 use crate::simulator::Simulator;
+use crate::simulator::added::Added;
 
 /// Find the gap between a simulator and logs: where it lies, what causes it, and how far it shrinks.
 #[derive(Args)]
@@ -18,6 +22,9 @@ pub struct Diagnose {
     sim: PathBuf,
     /// Folder of logs.
     logs: PathBuf,
+    /// The logs are of this controller's runs: also compare where they end.
+    #[arg(long, value_name = "CONTROLLER")]
+    controller: Option<PathBuf>,
     /// Also write the diagnosis here.
     #[arg(long)]
     json: Option<PathBuf>,
@@ -40,13 +47,16 @@ impl Diagnose {
     pub fn run(&self) -> Result<String> {
         let logs = super::read_logs(&self.logs)?;
         let simulator = if self.sim.as_os_str() == KINEMATIC { None } else { Some(Simulator::read(&self.sim)?) };
-        let found = match &simulator {
+        let mut found = match &simulator {
             None => findings(kinematic::baseline(&logs), &logs)?,
             Some(simulator) => {
                 admission::same_robot(&simulator.robot, &logs.robot)?;
                 findings(Baseline::learned(simulator)?, &logs)?
             }
         };
+        if let Some(path) = &self.controller {
+            found.diagnosis.endings = Some(ends(simulator.as_ref(), &found.added, path, &logs)?);
+        }
         let diagnosis = &found.diagnosis;
         if let Some(path) = &self.apply {
             with_effects(simulator, &found)?.write(path)?;
@@ -63,6 +73,15 @@ impl Diagnose {
         }
         Ok(diagnosis_text::text(diagnosis))
     }
+}
+
+/// Where the controller's runs end, with the simulator as it is and with the effects found.
+fn ends(simulator: Option<&Simulator>, added: &[Added], controller: &Path, logs: &Logs) -> Result<Endings> {
+    let simulator = simulator.ok_or_else(|| Problem::new("--controller needs a simulator file that can run it"))?;
+    let controller = ControllerFile::read(controller)?.controller;
+    let mut better = simulator.clone();
+    better.added.extend(added.iter().cloned());
+    endings([simulator, &better], &controller, logs)
 }
 
 /// The simulator with the effects found.

@@ -2,6 +2,7 @@
 
 use crate::gap::Diagnosis;
 use crate::gap::diagnosis::{EffectFound, Place, Shrink, Unexplained};
+use crate::gap::endings::Endings;
 use crate::gap::verdict::Verdict;
 
 /// The words.
@@ -17,6 +18,7 @@ pub fn text(diagnosis: &Diagnosis) -> String {
         lines.extend(diagnosis.unexplained.iter().map(unexplained));
     }
     lines.extend(diagnosis.shrink.iter().flat_map(shrink));
+    lines.extend(diagnosis.endings.iter().map(endings));
     lines.extend(diagnosis.next_experiment.clone());
     if !diagnosis.untestable.is_empty() {
         let ids = diagnosis.untestable.join(", ");
@@ -51,6 +53,14 @@ fn unexplained(part: &Unexplained) -> String {
     let bins = part.shape.iter().map(|b| format!("{:.0}..{:.0}: {:+.2}", b.from, b.to, b.off));
     let Unexplained { channel, depends_on, unit, .. } = part;
     format!("  {} ({unit}) by {depends_on}: {}", channel.name(), bins.collect::<Vec<_>>().join(" | "))
+}
+
+fn endings(of: &Endings) -> String {
+    let Endings { runs, before_cm, after_cm, floor_cm } = of;
+    format!(
+        "The controller's {runs} run(s) end {before_cm:.1} cm from where the simulator expects, {after_cm:.1} cm with the \
+         effects; scatter alone makes {floor_cm:.1} cm."
+    )
 }
 
 /// A table of before, after and floor.

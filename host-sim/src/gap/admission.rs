@@ -44,15 +44,19 @@ pub fn same_robot(simulator: &Robot, logs: &Robot) -> Result<()> {
 pub fn admit(baseline: &mut Baseline, evidence: &Evidence, logs: &Logs) -> Result<Vec<String>> {
     let mut notes = Vec::new();
     let steps = evidence.rows.iter().filter(|row| row.motion.is_some()).count();
-    let driven = evidence.rows.iter().any(|row| row.moment.commands[0].iter().any(|c| c.abs() >= 1.0));
+    let mut moments = evidence.rows.iter().flat_map(|row| std::iter::once(&row.moment).chain(&row.then));
+    let driven = moments.any(|moment| moment.commands[0].iter().any(|c| c.abs() >= 1.0));
     if baseline.motion.is_none() {
         notes.push("The simulator has no motion networks: only the sonar is compared.".into());
     } else if steps == 0 {
-        notes.push("No step has a pose at both ends: motion cannot be compared.".into());
+        notes.push("No run has two poses: motion cannot be compared.".into());
         baseline.motion = None;
     } else if !driven {
         notes.push("The motors stand still: motion is not excited.".into());
         baseline.motion = None;
+    }
+    if evidence.rows.iter().any(|row| !row.then.is_empty()) {
+        notes.push("No step has a pose at both ends: whole ways between poses are compared.".into());
     }
     let echoes = evidence.rows.iter().filter(|row| row.echo_cm.is_some()).count();
     if baseline.sonar.is_none() {
@@ -79,8 +83,8 @@ pub fn admit(baseline: &mut Baseline, evidence: &Evidence, logs: &Logs) -> Resul
     let jumps = evidence
         .rows
         .iter()
-        .filter_map(|row| row.motion)
-        .filter(|m| libm::hypot(m.forward_cm, m.lateral_cm) > reach_cm);
+        .filter_map(|row| Some((row.motion?, (1 + row.then.len()) as f64)))
+        .filter(|(m, steps)| libm::hypot(m.forward_cm, m.lateral_cm) > steps * reach_cm);
     match jumps.count() {
         0 => {}
         count => notes.push(format!("The tracker jumps {count} time(s), farther than the robot can drive.")),

@@ -5,20 +5,23 @@ use serde_json::{Map, Value};
 
 use super::admission;
 use super::baseline::Baseline;
+use super::calibration::Calibration;
 use super::channel::Channel;
 use super::confirmation;
 use super::contexts::{self, Part};
+use super::endings::Endings;
 use super::evidence::Evidence;
 use super::excitation::untestable;
 use super::experiment::{self, Experiment};
-use super::explanation::Explanation;
+use super::explanation::{self, Explanation};
 use super::paths::{self, PathGap};
-use super::search::Given;
+use super::search::{Gain, Given};
 use super::shape::{self, Bin, Shape};
 use super::shrink;
 use super::verdict::Verdict;
 use crate::logs::Logs;
 use crate::problem::Result;
+use crate::simulator::Simulator;
 use crate::simulator::added::Added;
 
 /// What `mindgap diagnose --json` writes.
@@ -34,6 +37,8 @@ pub struct Diagnosis {
     pub r#where: Vec<Place>,
     /// How far it shrinks; null where there is no gap to shrink.
     pub shrink: Option<Shrink>,
+    /// Where a controller's runs end; null unless the logs are said to be those of a controller.
+    pub endings: Option<Endings>,
     /// What to log next to tell more.
     pub next_experiment: Option<String>,
     /// How the unexplained part follows circumstances, channel by channel.
@@ -179,18 +184,9 @@ pub fn diagnose(baseline: Baseline, logs: &Logs) -> Result<Diagnosis> {
 /// # Errors
 /// When the logs say nothing that the baseline could be compared with.
 pub fn findings(mut baseline: Baseline, logs: &Logs) -> Result<Findings> {
-    let fan_width = baseline.sonar.as_ref().map_or(1.0, |sonar| sonar.fan_width);
-    let parts = confirmation::parts(logs);
-    let evidence = Evidence::of(&parts.found_on, fan_width);
-    let notes = admission::admit(&mut baseline, &evidence, logs)?;
-    let evidence = evidence.expect(baseline.motion.as_ref());
-    let given = Given { baseline: &baseline, evidence: &evidence };
-    let kept_back = parts.kept_back.map(|logs| Evidence::of(&logs, fan_width));
-    let explanation = Explanation::find(&given);
-    let explanation = match &kept_back {
-        Some(kept_back) => explanation.confirmed(&given, kept_back),
-        None => explanation,
-    };
+    let (evidence, kept_back, notes) = admitted(&mut baseline, logs)?;
+    let given = Given { baseline: &baseline, evidence: &evidence, calibration: Calibration::shipped() };
+    let explanation = explain(&given, kept_back.as_ref());
     let verdict = explanation.verdict();
     let effects = if verdict == Verdict::Known { effects(&explanation, logs.robot.step_ms) } else { Vec::new() };
     let shrink = if verdict == Verdict::NoGap { None } else { shrunk(&explanation, &given, kept_back.as_ref()) };
@@ -202,12 +198,62 @@ pub fn findings(mut baseline: Baseline, logs: &Logs) -> Result<Findings> {
         effects,
         r#where: contexts::parts(&explanation, &evidence).into_iter().map(Place::from).collect(),
         shrink,
+        endings: None,
         next_experiment: experiment.as_ref().map(in_words),
         unexplained: unexplained(&explanation, &given),
         untestable: untestable(&explanation.none, &given).into_iter().map(String::from).collect(),
         notes,
     };
     Ok(Findings { diagnosis, experiment, added })
+}
+
+/// The share of the reducible gap that effects close on logs, as they are, without a search; none where there is no gap.
+///
+/// # Errors
+/// When the logs say nothing that the simulator could be compared with.
+pub fn closed(simulator: &Simulator, added: &[Added], logs: &Logs) -> Result<Option<f64>> {
+    let mut baseline = Baseline::learned(simulator)?;
+    let (evidence, kept_back, _) = admitted(&mut baseline, logs)?;
+    let given = Given { baseline: &baseline, evidence: &evidence, calibration: Calibration::shipped() };
+    let shrink = shrink::shrink(&Explanation::by(added, &given), &given, kept_back.as_ref().unwrap_or(&evidence));
+    Ok(shrink.map(|shrink| shrink.whole.closed))
+}
+
+/// The first signs of a gap in logs: what the best effect gains, and the most that the generic learner gains.
+///
+/// # Errors
+/// When the logs say nothing that the baseline could be compared with.
+pub fn first_signs(mut baseline: Baseline, logs: &Logs) -> Result<[Gain; 2]> {
+    let (evidence, ..) = admitted(&mut baseline, logs)?;
+    Ok(explanation::signs(&Given { baseline: &baseline, evidence: &evidence, calibration: Calibration::shipped() }))
+}
+
+/// What explains logs by given thresholds.
+///
+/// # Errors
+/// When the logs say nothing that the baseline could be compared with.
+pub fn explained(mut baseline: Baseline, logs: &Logs, calibration: Calibration) -> Result<Explanation> {
+    let (evidence, kept_back, _) = admitted(&mut baseline, logs)?;
+    Ok(explain(&Given { baseline: &baseline, evidence: &evidence, calibration }, kept_back.as_ref()))
+}
+
+/// What explains the gap and holds on the runs kept back.
+fn explain(given: &Given, kept_back: Option<&Evidence>) -> Explanation {
+    let explanation = Explanation::find(given);
+    match kept_back {
+        Some(kept_back) => explanation.confirmed(given, kept_back),
+        None => explanation,
+    }
+}
+
+/// The evidence to seek effects on, that which is kept back, and what has to be said about it.
+fn admitted(baseline: &mut Baseline, logs: &Logs) -> Result<(Evidence, Option<Evidence>, Vec<String>)> {
+    let fan_width = baseline.sonar.as_ref().map_or(1.0, |sonar| sonar.fan_width);
+    let parts = confirmation::parts(logs);
+    let evidence = Evidence::of(&parts.found_on, fan_width);
+    let notes = admission::admit(baseline, &evidence, logs)?;
+    let kept_back = parts.kept_back.map(|logs| Evidence::of(&logs, fan_width));
+    Ok((evidence.expect(baseline.motion.as_ref()), kept_back, notes))
 }
 
 fn in_words(experiment: &Experiment) -> String {

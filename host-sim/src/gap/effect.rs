@@ -125,6 +125,17 @@ impl Form {
 }
 
 impl Motion {
+    /// The way from one pose to another, as seen from the first.
+    pub fn between(from: &Pose, to: &Pose) -> Self {
+        let Pose { position_cm, heading_rad } = from.relative(to);
+        Motion { forward_cm: position_cm.x, lateral_cm: position_cm.y, turn_rad: heading_rad }
+    }
+
+    /// Where it leads.
+    pub fn from(&self, pose: &Pose) -> Pose {
+        pose.compose(&Pose::new(self.forward_cm, self.lateral_cm, self.turn_rad))
+    }
+
     /// Turns the way, not the turn.
     pub fn rotate_way(&mut self, angle_rad: f64) {
         let way = crate::geometry::direction(angle_rad).rotate(DVec2::new(self.forward_cm, self.lateral_cm));

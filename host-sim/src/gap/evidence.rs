@@ -34,7 +34,10 @@ pub struct Row {
     pub stretch: f64,
     /// What effects may look at.
     pub moment: Moment,
-    /// What the step did, where its end was seen too.
+    /// What effects may look at in the steps until the tracker saw the robot again, where these are judged as one; their
+    /// poses are not known.
+    pub then: Vec<Moment>,
+    /// What the step did, or those that are judged as one, where their end was seen too.
     pub motion: Option<Motion>,
     /// What the simulator expects of the commands as logged, once [`Evidence::expect`] has asked it.
     pub expected: Option<Motion>,
@@ -55,6 +58,8 @@ impl Evidence {
         let sides = logs.scene.sides();
         let middle_cm = middle(&sides);
         let steps = samples::motion(logs);
+        // Where no step has a pose at both ends, whole ways between poses are judged.
+        let whole_ways = steps.is_empty();
         let mut steps = steps.iter().peekable();
         let mut rows = Vec::new();
         let parts = FEWEST_BLOCKS.div_ceil(logs.runs.len());
@@ -65,13 +70,18 @@ impl Evidence {
                 let step = steps.next_if(|s| (s.run, s.row) == (run, k));
                 let motion =
                     step.map(|s| Motion { forward_cm: s.forward_cm, lateral_cm: s.lateral_cm, turn_rad: s.turn_rad });
+                let until = (k + 1..logged.rows.len()).find(|i| logged.rows[*i].pose.is_some());
+                let way_until = until.filter(|_| whole_ways);
+                let motion = motion.or_else(|| Some(Motion::between(&pose, &logged.rows[way_until?].pose?)));
+                let unseen = way_until.map_or(k + 1..k + 1, |until| k + 1..until);
                 let sensor = logs.robot.ultrasonic.pose_on(&pose);
                 let hit = cast(&sides, sensor.position_cm, sensor.direction());
                 let faced = hit.map(|hit| [hit.distance_cm, hit.incidence_rad]);
                 let fan = fan_at(&sides, &sensor, fan_width);
                 let before = |back: usize| k.checked_sub(back).map(|i| &logged.rows[i]);
+                let elapsed_min = |i: usize| (logged.rows[i].t_ms - logged.rows[0].t_ms) / 60_000.0;
                 let moment = Moment {
-                    elapsed_min: (row.t_ms - logged.rows[0].t_ms) / 60_000.0,
+                    elapsed_min: elapsed_min(k),
                     commands: window(logged, k),
                     pose,
                     earlier: [1, 2].map(|back| before(back).and_then(|r| r.pose)),
@@ -81,6 +91,8 @@ impl Evidence {
                     middle_cm,
                     track_cm: logs.robot.track_cm,
                 };
+                let then =
+                    unseen.map(|i| Moment { elapsed_min: elapsed_min(i), commands: window(logged, i), ..moment });
                 let previous_echo_cm = before(1).and_then(|r| r.echo_cm);
                 let block = run * parts + k * parts / logged.rows.len();
                 let until_ms = logged.rows.get(k + 1).map_or(row.t_ms, |next| next.t_ms);
@@ -91,6 +103,7 @@ impl Evidence {
                     block,
                     stretch,
                     moment,
+                    then: then.collect(),
                     motion,
                     expected: None,
                     echo_cm: row.echo_cm,

@@ -140,6 +140,7 @@ impl Bench<'_> {
             block: 0,
             stretch: 1.0,
             moment,
+            then: Vec::new(),
             motion: None,
             expected: None,
             echo_cm: None,

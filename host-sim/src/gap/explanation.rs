@@ -2,11 +2,13 @@
 
 use rayon::prelude::*;
 
+use super::calibration::{Calibration, Gate};
 use super::channel::Channel;
 use super::evidence::Evidence;
 use super::generic;
 use super::search::{Fitted, Gain, Given, best_of_each, extend};
-use super::verdict::{RIVAL, weight};
+use super::verdict::weight;
+use crate::simulator::added::Added;
 
 /// The effects that explain a gap best, if any does.
 pub struct Explanation {
@@ -20,6 +22,8 @@ pub struct Explanation {
     pub beyond_none: Vec<Leftover>,
     /// What anything could explain beyond the chosen effects, by channel.
     pub beyond_chosen: Vec<Leftover>,
+    /// What counts.
+    pub calibration: Calibration,
 }
 
 /// What the generic learner explains in a channel.
@@ -60,12 +64,10 @@ impl Leftover {
     }
 }
 
-/// An effect has to gain this many nats on held-out runs,
-pub const LEAST_NATS: f64 = 12.0;
-/// more if many others could stand for it,
-const LEAST_NATS_IF_VAGUE: f64 = 25.0;
-/// and so many standard errors.
-const LEAST_Z: f64 = 2.8;
+/// Where many others could stand for an effect it has to gain so many times what it has to otherwise.
+const IF_VAGUE: f64 = 2.0;
+/// Another effect could stand for one when its weight is this: it lags by two standard errors.
+const IN_REACH: f64 = 0.12;
 /// On the runs kept back the effects have to gain this many nats.
 const LEAST_CONFIRMED_NATS: f64 = 3.0;
 /// A further effect on the same stage has to gain this share of what is explained already: less is within the reach of
@@ -79,9 +81,6 @@ const MOST_RIVALS: usize = 3;
 const OF_NO_MATTER: f64 = 1.0;
 /// The most effects that are named together.
 const MOST_EFFECTS: usize = 3;
-/// The generic learner's gain counts from here on.
-const LEAST_LEFTOVER_NATS: f64 = 20.0;
-const LEAST_LEFTOVER_Z: f64 = 2.2;
 /// Scatter beyond the simulator's counts from this ratio on.
 const LEAST_SCATTER_RATIO: f64 = 1.12;
 
@@ -91,13 +90,17 @@ impl Explanation {
         let none = Fitted::none(logs);
         let alone = extend(&none, None, logs);
         let singles = best_of_each(alone.clone());
-        let first = singles.first().filter(|f| is_significant(&f.gain_over(&none), LEAST_NATS, LEAST_Z));
-        let first = first.filter(|f| is_specific(f, &singles, &none)).cloned();
+        let first =
+            singles.first().filter(|f| gain_for_its_rivals(f, &singles, &none).passes(&logs.calibration.effect));
+        let first = first.cloned();
         let mut chosen = first.unwrap_or_else(|| none.clone());
         let mut rivals = vec![singles];
         while !chosen.ids().is_empty() && chosen.ids().len() < MOST_EFFECTS {
             let further = best_of_each(extend(&chosen, Some(&alone), logs));
-            let Some(next) = further.into_iter().find(|f| is_worth_adding(f, &chosen, &none)) else { break };
+            let Some(next) = further.into_iter().find(|f| is_worth_adding(f, &chosen, &none, &logs.calibration.effect))
+            else {
+                break;
+            };
             let settled = settled(next, &alone, logs);
             if settled.1.iter().any(|r| rivals_in_reach(&settled.0, r) > MOST_RIVALS) {
                 break;
@@ -106,11 +109,20 @@ impl Explanation {
         }
         let beyond_none = leftovers(&none, logs);
         let beyond_chosen = if chosen.ids().is_empty() { leftovers(&none, logs) } else { leftovers(&chosen, logs) };
-        Explanation { none, chosen, rivals, beyond_none, beyond_chosen }
+        Explanation { none, chosen, rivals, beyond_none, beyond_chosen, calibration: logs.calibration }
     }
 }
 
 impl Explanation {
+    /// Given effects, as they are.
+    pub fn by(added: &[Added], logs: &Given) -> Self {
+        let none = Fitted::none(logs);
+        let chosen = none.as_given(added, logs);
+        let beyond_chosen = leftovers(&chosen, logs);
+        let calibration = logs.calibration;
+        Explanation { none, chosen, rivals: Vec::new(), beyond_none: Vec::new(), beyond_chosen, calibration }
+    }
+
     /// What holds on runs that nothing was sought on: effects that gain nothing there explain nothing.
     pub fn confirmed(self, found: &Given, kept_back: &Evidence) -> Self {
         let judged = |fit: &Fitted| fit.judged_on(kept_back, found).total().iter().sum::<f64>();
@@ -122,24 +134,34 @@ impl Explanation {
     }
 }
 
-/// Whether few enough others could stand for a fit that gains little: a misfit of the simulator is a bit like many.
-fn is_specific(fit: &Fitted, singles: &[Fitted], none: &Fitted) -> bool {
-    fit.gain_over(none).nats >= LEAST_NATS_IF_VAGUE || rivals_in_reach(fit, singles) <= MOST_RIVALS
+/// The first signs of a gap, before any threshold: what the best effect gains, and the most that the generic learner
+/// gains in a channel.
+pub fn signs(logs: &Given) -> [Gain; 2] {
+    let none = Fitted::none(logs);
+    let singles = best_of_each(extend(&none, None, logs));
+    let effect = singles.first().map_or(Gain::NONE, |best| gain_for_its_rivals(best, &singles, &none));
+    let learners = Channel::ALL.par_iter().map(|channel| none.with(generic::form(*channel), logs).gain_over(&none));
+    let learner = learners.collect::<Vec<Gain>>().into_iter().max_by(|a, b| a.nats.total_cmp(&b.nats));
+    [effect, learner.unwrap_or(Gain::NONE)]
 }
 
-fn is_worth_adding(fit: &Fitted, so_far: &Fitted, none: &Fitted) -> bool {
+/// What a fit gains, less where many others could stand for it: a misfit of the simulator is a bit like many.
+fn gain_for_its_rivals(fit: &Fitted, singles: &[Fitted], none: &Fitted) -> Gain {
+    let Gain { nats, error } = fit.gain_over(none);
+    let divisor = if rivals_in_reach(fit, singles) <= MOST_RIVALS { 1.0 } else { IF_VAGUE };
+    Gain { nats: nats / divisor, error: error / divisor }
+}
+
+fn is_worth_adding(fit: &Fitted, so_far: &Fitted, none: &Fitted, gate: &Gate) -> bool {
     let gain = fit.gain_over(so_far);
-    if fit.shares_a_stage() {
-        let least = LEAST_NATS.max(LEAST_SHARE * so_far.gain_over(none).nats);
-        is_significant(&gain, least, LEAST_Z_BESIDE)
-    } else {
-        is_significant(&gain, LEAST_NATS, LEAST_Z)
-    }
+    let least = LEAST_SHARE * so_far.gain_over(none).nats;
+    let beside = Gate { nats: gate.nats.max(least), z: gate.z.max(LEAST_Z_BESIDE) };
+    gain.passes(if fit.shares_a_stage() { &beside } else { gate })
 }
 
 /// How many effects do nearly as well in the place of one of the chosen.
 fn rivals_in_reach(chosen: &Fitted, rivals: &[Fitted]) -> usize {
-    rivals.iter().filter(|r| r.ids() != chosen.ids() && weight(chosen, r) >= RIVAL).count()
+    rivals.iter().filter(|r| r.ids() != chosen.ids() && weight(chosen, r) >= IN_REACH).count()
 }
 
 /// One effect gives way to what does better in its place, if there is such. Returns what stands then, and for each of
@@ -159,10 +181,6 @@ fn in_place_of_each(chosen: &Fitted, alone: &[Fitted], logs: &Given) -> Vec<Vec<
     places.map(|place| best_of_each(extend(&chosen.without(place, logs), Some(alone), logs))).collect()
 }
 
-fn is_significant(gain: &Gain, least_nats: f64, least_z: f64) -> bool {
-    gain.nats >= least_nats && gain.z() >= least_z
-}
-
 /// What follows circumstances in each channel on top of a fit, or scatters more than the simulator.
 fn leftovers(fit: &Fitted, logs: &Given) -> Vec<Leftover> {
     Channel::ALL
@@ -170,12 +188,11 @@ fn leftovers(fit: &Fitted, logs: &Given) -> Vec<Leftover> {
         .map(|channel| {
             let fitted = fit.with(generic::form(*channel), logs);
             let gains = fitted.gains_over(fit);
-            let gain = Gain::of(&gains);
-            let counts = gain.nats >= LEAST_LEFTOVER_NATS && gain.z() >= LEAST_LEFTOVER_Z;
+            let counts = Gain::of(&gains).passes(&logs.calibration.leftover);
             let by_block = if counts { gains } else { vec![0.0; gains.len()] };
             let mut leftover = Leftover { channel: *channel, fitted, by_block, scatters: true };
             let wider = leftover.wider_scatter(logs, logs.evidence);
-            leftover.scatters = Gain::of(&wider).nats >= LEAST_LEFTOVER_NATS;
+            leftover.scatters = Gain::of(&wider).nats >= logs.calibration.leftover.nats;
             if leftover.scatters {
                 leftover.by_block.iter_mut().zip(wider).for_each(|(sum, wider)| *sum += wider);
             }

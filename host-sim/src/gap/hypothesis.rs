@@ -181,20 +181,36 @@ impl Hypothesis {
         sensor
     }
 
-    /// Logged minus predicted: forward (cm), lateral (cm), turn (rad).
+    /// What a row's step does, or those that are judged as one.
+    pub fn predicted(&self, drive: &Drive, row: &Row, values: &[f64]) -> Motion {
+        let usual = [row.moment.commands[0], row.moment.commands[1]];
+        let first = self.wrap(&row.moment, values, |now, before| match row.expected {
+            Some(expected) if usual == [now, before] => expected,
+            _ => drive.step(now, before),
+        });
+        if row.then.is_empty() {
+            return first;
+        }
+        let start = &row.moment.pose;
+        let end = row.then.iter().fold(first.from(start), |pose, moment| {
+            self.motion(drive, &Moment { pose, ..*moment }, values).from(&pose)
+        });
+        Motion::between(start, &end)
+    }
+
+    /// Logged minus predicted, a step: forward (cm), lateral (cm), turn (rad).
     pub fn residuals(&self, drive: &Drive, rows: &[Row], values: &[f64]) -> Vec<Option<[f64; 3]>> {
         let residual = |row: &Row| {
             let logged = row.motion?;
-            let usual = [row.moment.commands[0], row.moment.commands[1]];
-            let predicted = self.wrap(&row.moment, values, |now, before| match row.expected {
-                Some(expected) if usual == [now, before] => expected,
-                _ => drive.step(now, before),
-            });
-            Some([
+            let predicted = self.predicted(drive, row, values);
+            let off = [
                 logged.forward_cm - predicted.forward_cm,
                 logged.lateral_cm - predicted.lateral_cm,
                 wrap_rad(logged.turn_rad - predicted.turn_rad),
-            ])
+            ];
+            // What scatters adds up over steps that are judged as one.
+            let steps = (1 + row.then.len()) as f64;
+            Some(off.map(|off| off / steps.sqrt()))
         };
         rows.iter().map(residual).collect()
     }

@@ -8,6 +8,9 @@ use crate::simulator::reference::sonar::{STRENGTHS, SonarReference};
 /// The least scatter of forward (cm), lateral (cm) and turn (rad): that of a good tracker. The logs' own is refitted
 /// upwards from here.
 const LEAST_SCATTER: [f64; 3] = [0.1, 0.1, 0.005];
+/// The same where whole ways are compared: the tracker's error is there at both ends alone, the robot's own adds up from
+/// step to step.
+const LEAST_OWN_SCATTER: [f64; 3] = [0.1, 0.1, 0.001];
 /// An ideal ray is so much narrower than a real beam.
 const RAY_WIDTH: f64 = 0.05;
 /// Log-odds that a ray comes back: it does.
@@ -17,11 +20,8 @@ const READING_SCATTER_CM: [f64; 2] = [0.5, 4.0];
 
 /// The baseline of a robot that nobody has logged before.
 pub fn baseline(logs: &Logs) -> Baseline<'static> {
-    Baseline {
-        motion: Some(Drive::Kinematic { robot: logs.robot, scatter: LEAST_SCATTER }),
-        sonar: sonar(logs),
-        added: Vec::new(),
-    }
+    let scatter = if samples::motion(logs).is_empty() { LEAST_OWN_SCATTER } else { LEAST_SCATTER };
+    Baseline { motion: Some(Drive::Kinematic { robot: logs.robot, scatter }), sonar: sonar(logs), added: Vec::new() }
 }
 
 fn sonar(logs: &Logs) -> Option<SonarReference> {

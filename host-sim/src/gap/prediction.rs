@@ -33,7 +33,7 @@ pub fn predict(simulator: &Simulator, logs: &Logs) -> Result<Predictions> {
     let mut all = Predictions::default();
     for row in &evidence.rows {
         if let (Some(drive), Some(logged)) = (&baseline.motion, &row.motion) {
-            let predicted = effects.motion(drive, &row.moment, &[]);
+            let predicted = effects.predicted(drive, row, &[]);
             all.forward.push([logged.forward_cm, predicted.forward_cm]);
             all.lateral.push([logged.lateral_cm, predicted.lateral_cm]);
             all.turn.push([logged.turn_rad, predicted.turn_rad].map(f64::to_degrees));

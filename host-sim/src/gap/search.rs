@@ -3,6 +3,7 @@
 use rayon::prelude::*;
 
 use super::baseline::Baseline;
+use super::calibration::{Calibration, Gate};
 use super::effect::Form;
 use super::effects;
 use super::evidence::Evidence;
@@ -39,6 +40,8 @@ pub struct Given<'a> {
     pub baseline: &'a Baseline<'a>,
     /// The logs.
     pub evidence: &'a Evidence,
+    /// What counts.
+    pub calibration: Calibration,
 }
 
 /// What a parameter costs, nats.
@@ -55,6 +58,16 @@ impl Fitted {
         let terms = hypothesis.terms(logs.baseline, logs.evidence, &[], None);
         let held_out = logs.evidence.by_block(&terms.total());
         Fitted { hypothesis, values: Vec::new(), terms, held_out }
+    }
+
+    /// This with effects that are known, which need no fit.
+    pub fn as_given(&self, added: &[Added], logs: &Given) -> Self {
+        let known = || added.iter().filter_map(|a| Some((a.form()?, &a.values)));
+        let hypothesis = self.hypothesis.of(known().map(|(form, _)| form).collect());
+        let values: Vec<f64> = known().flat_map(|(_, values)| values).copied().collect();
+        let terms = hypothesis.terms(logs.baseline, logs.evidence, &values, None);
+        let held_out = logs.evidence.by_block(&terms.total());
+        Fitted { hypothesis, values, terms, held_out }
     }
 
     /// The names of its effects.
@@ -149,6 +162,9 @@ impl Fitted {
 }
 
 impl Gain {
+    /// Nothing.
+    pub const NONE: Gain = Gain { nats: 0.0, error: 0.0 };
+
     /// The gain of each block, together.
     pub fn of(by_block: &[f64]) -> Self {
         let n = by_block.len() as f64;
@@ -156,6 +172,11 @@ impl Gain {
         let middle = nats / n;
         let variance = by_block.iter().map(|d| (d - middle) * (d - middle)).sum::<f64>() / (n - 1.0).max(1.0);
         Gain { nats, error: (n * variance).sqrt() }
+    }
+
+    /// Whether it counts.
+    pub fn passes(&self, gate: &Gate) -> bool {
+        self.nats >= gate.nats && self.z() >= gate.z
     }
 
     /// Gain in standard errors.

@@ -2,7 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::explanation::{Explanation, LEAST_NATS, Leftover};
+use super::calibration::Calibration;
+use super::explanation::{Explanation, Leftover};
 use super::search::{Fitted, Gain};
 
 /// The answer in one word.
@@ -28,14 +29,8 @@ pub struct Named {
     pub ambiguous_with: Vec<&'static str>,
 }
 
-/// Of what could be explained the effects have to explain this share to be the cause.
-const ADEQUATE: f64 = 0.68;
-/// How sharply adequacy decides.
-const ADEQUACY_WIDTH: f64 = 0.06;
 /// Nats over which a gap turns from doubtful to certain.
 const GAP_WIDTH: f64 = 4.0;
-/// A rival with at least this share of the winner's weight is named beside it.
-pub const RIVAL: f64 = 0.12;
 /// An effect that more others than these could stand for is no cause that anybody could act on.
 const MOST_AMBIGUOUS: usize = 5;
 /// Differences below this are nothing, nats.
@@ -63,7 +58,7 @@ impl Explanation {
     pub fn verdict(&self) -> Verdict {
         let named = !self.chosen.ids().is_empty();
         let vague = self.named().iter().any(|n| n.ambiguous_with.len() > MOST_AMBIGUOUS);
-        if named && !vague && self.adequacy() >= ADEQUATE {
+        if named && !vague && self.adequacy() >= self.calibration.adequate {
             Verdict::Known
         } else if named || self.unexplained() > 0.0 {
             Verdict::Unknown
@@ -74,13 +69,29 @@ impl Explanation {
 
     /// The chosen effects, the most certain first.
     pub fn named(&self) -> Vec<Named> {
-        let known = logistic((self.adequacy() - ADEQUATE) / ADEQUACY_WIDTH);
-        let gap = logistic((self.explained() - LEAST_NATS) / GAP_WIDTH);
-        let ids = self.chosen.ids();
-        let mut named: Vec<Named> =
-            (0..ids.len()).map(|place| named(ids[place], &self.chosen, &self.rivals_of(place), known * gap)).collect();
+        let gap = logistic((self.explained() - self.calibration.effect.nats) / GAP_WIDTH);
+        let named = |place: usize| {
+            let weights = self.weights_in_place_of(place);
+            let rivals = weights.iter().filter(|(_, weight)| *weight >= self.calibration.rival);
+            let probability = gap * probability(self.adequacy(), weights.iter().map(|w| w.1), &self.calibration);
+            Named { id: self.chosen.ids()[place], probability, ambiguous_with: rivals.map(|(id, _)| *id).collect() }
+        };
+        let mut named: Vec<Named> = (0..self.chosen.ids().len()).map(named).collect();
         named.sort_by(|a, b| b.probability.total_cmp(&a.probability));
         named
+    }
+
+    /// The effects that could be in the place of one of the chosen, with their weights against its one, best first.
+    pub fn weights_in_place_of(&self, place: usize) -> Vec<(&'static str, f64)> {
+        let ids = self.chosen.ids();
+        let mut weights: Vec<(&'static str, f64)> = Vec::new();
+        for rival in self.rivals_of(place) {
+            let other = rival.ids().into_iter().find(|id| !ids.contains(id));
+            if let Some(other) = other.filter(|id| weights.iter().all(|(known, _)| known != id)) {
+                weights.push((other, weight(&self.chosen, rival)));
+            }
+        }
+        weights
     }
 
     /// The best fit in which the most certain effects give way to others.
@@ -98,7 +109,7 @@ impl Explanation {
             let rival = *self.rivals_of(place).first()?;
             let other = rival.ids().into_iter().find(|id| !ids.contains(id))?;
             let weight = weight(&self.chosen, rival);
-            (weight >= RIVAL).then_some((weight, rival, [ids[place], other]))
+            (weight >= self.calibration.rival).then_some((weight, rival, [ids[place], other]))
         };
         let closest = (0..ids.len()).filter_map(confused).max_by(|a, b| a.0.total_cmp(&b.0));
         closest.map(|(_, rival, between)| (rival, between))
@@ -113,22 +124,12 @@ impl Explanation {
     }
 }
 
-fn named(id: &'static str, chosen: &Fitted, rivals: &[&Fitted], certain: f64) -> Named {
-    let weights: Vec<(&'static str, f64)> = rivals
-        .iter()
-        .filter_map(|r| {
-            let other = r.ids().into_iter().find(|i| !chosen.ids().contains(i))?;
-            Some((other, weight(chosen, r)))
-        })
-        .collect();
-    let total: f64 = 1.0 + weights.iter().map(|w| w.1).sum::<f64>();
-    let mut ambiguous_with: Vec<&'static str> = Vec::new();
-    for (other, w) in &weights {
-        if *w >= RIVAL && !ambiguous_with.contains(other) {
-            ambiguous_with.push(other);
-        }
-    }
-    Named { id, probability: certain / total, ambiguous_with }
+/// How likely an answer is right whose effects explain the share `adequacy` of what could be explained, and whose
+/// rivals have these weights.
+pub fn probability(adequacy: f64, rivals: impl Iterator<Item = f64>, calibration: &Calibration) -> f64 {
+    let known = logistic((adequacy - calibration.adequate) / calibration.adequacy_width);
+    let doubt: f64 = rivals.map(|weight| libm::pow(weight, 1.0 / calibration.temperature)).sum();
+    calibration.trust * known / (1.0 + doubt)
 }
 
 /// The weight of a rival against the winner's of one: how likely so small a lead is chance.

@@ -35,6 +35,14 @@ pub const FORMS: &[Form] = &[
         report: load,
     },
     Form {
+        id: "payload",
+        name: "a wheel rolls hard at any speed, and a heavy robot is slow to start",
+        parameters: ROLLING_LOAD,
+        starts: ROLLING_LOAD_STARTS,
+        acts: &[Act::Commands(slow_start), Act::Motion(hard_rolling)],
+        report: load,
+    },
+    Form {
         id: "slope",
         name: "a drift downhill while moving",
         parameters: DIRECTED,
@@ -113,6 +121,15 @@ const HEAVY_LOAD: &[Parameter] = &[
     Parameter::new(0.0, 6.0, 0.0),
 ];
 const HEAVY_LOAD_STARTS: &[&[f64]] = &[&[0.03, 0.5, 2.0, 1.0], &[-0.03, 0.5, 2.0, 1.0]];
+/// Loss, the other side's share of it, the share of it that grows with speed (with all of it it would be a weaker
+/// motor), and the loss of changes of command, so many times the side's.
+const ROLLING_LOAD: &[Parameter] = &[
+    Parameter::new(-0.6, 0.6, 0.0),
+    Parameter::new(0.0, 0.8, 0.2),
+    Parameter::new(0.0, 0.6, 0.3),
+    Parameter::new(0.0, 6.0, 0.0),
+];
+const ROLLING_LOAD_STARTS: &[&[f64]] = &[&[0.05, 0.2, 0.3, 1.0], &[-0.05, 0.2, 0.3, 1.0]];
 /// Direction in radians, and loss.
 const DIRECTED: &[Parameter] = &[Parameter::new(-2.0 * PI, 2.0 * PI, 0.0), Parameter::new(0.0, 0.6, 0.0)];
 const DIRECTED_STARTS: &[&[f64]] = &[&[0.0, 0.05], &[PI / 2.0, 0.05], &[PI, 0.05], &[-PI / 2.0, 0.05]];
@@ -156,6 +173,13 @@ fn loaded_ways(v: &[f64], moment: &Moment, motion: &mut Motion) {
     let factor = load_factors(v);
     let [left, right] = motion.wheels_cm(moment.track_cm);
     motion.set_wheels([left * factor[0], right * factor[1]], moment.track_cm);
+}
+
+fn hard_rolling(v: &[f64], moment: &Moment, motion: &mut Motion) {
+    let [near, far] = [v[0].abs(), v[0].abs() * v[1]];
+    let losses = if v[0] > 0.0 { [near, far] } else { [far, near] };
+    let wheels = motion.wheels_cm(moment.track_cm);
+    motion.set_wheels([0, 1].map(|m| pushed(wheels[m], -losses[m] * cost_cm(v[2], wheels[m]))), moment.track_cm);
 }
 
 fn load_on_turns(v: &[f64], moment: &Moment, motion: &mut Motion) {

@@ -1,0 +1,148 @@
+//! From what was measured to thresholds: each by the criterion that it stands for.
+
+use super::Measured;
+use crate::gap::calibration::{Calibration, Gate};
+use crate::gap::verdict::probability;
+
+/// Of all cases without an effect so many gain as many nats as a threshold asks for, and so many as many standard errors.
+/// Both are asked for, and a gain on the runs kept back besides: two in a hundred or fewer pass it all.
+const FALSE_ALARMS: f64 = 0.05;
+/// The law of a tail is read off this share of all.
+const TAIL: f64 = 0.2;
+/// Of the answers that are right so many leave more over than counts as adequate,
+const FALSE_UNKNOWNS: f64 = 0.05;
+/// once what they leave over is so many times as much: no form fits other robots as well as the built-in one.
+const OTHER_ROBOTS: f64 = 3.0;
+/// So many of the doubtful answers whose effect is the first or beside it name it.
+const COVERED: f64 = 0.9;
+/// A rival with less weight than this raises no doubt,
+const DOUBT: f64 = 0.01;
+/// and one that lags by less than two standard errors is named whatever the built-in robot says.
+const TWO_ERRORS: f64 = 0.12;
+/// What is tried for the probabilities.
+const WIDTHS: [f64; 5] = [0.01, 0.02, 0.04, 0.06, 0.1];
+const TEMPERATURES: [f64; 6] = [1.0, 1.5, 2.0, 3.0, 4.0, 6.0];
+const TRUSTS: [f64; 6] = [0.85, 0.9, 0.93, 0.95, 0.97, 0.99];
+
+/// Thresholds against false alarms; everything that explains a gap is taken for its cause, and every rival is named.
+pub fn open(nulls: &[Measured]) -> Calibration {
+    Calibration {
+        adequate: 0.0,
+        adequacy_width: 1.0,
+        rival: 0.0,
+        temperature: 1.0,
+        trust: 1.0,
+        effect: gate(nulls, |m| [m.effect_nats, m.effect_z]),
+        leftover: gate(nulls, |m| [m.learner_nats, m.learner_z]),
+    }
+}
+
+/// The same with what tells a cause from something unknown, which rivals are named, and how sure an answer is.
+pub fn weighed(open: Calibration, others: &[Measured]) -> Calibration {
+    let answered: Vec<&Measured> = others.iter().filter(|m| !m.first.is_empty()).collect();
+    let right = answered.iter().filter(|m| m.first_is_there());
+    let adequate = 1.0 - OTHER_ROBOTS * (1.0 - quantile(right.map(|m| m.adequacy).collect(), FALSE_UNKNOWNS));
+    let doubtful = answered.iter().filter(|m| m.weight_of_truth >= DOUBT && m.rivals.iter().any(|w| *w >= DOUBT));
+    let rival = quantile(doubtful.map(|m| m.weight_of_truth).collect(), 1.0 - COVERED).min(TWO_ERRORS);
+    let settled = Calibration { adequate: rounded(adequate), rival: rounded(rival), ..open };
+    let known: Vec<&Measured> = answered.into_iter().filter(|m| m.adequacy >= settled.adequate).collect();
+    let tried = WIDTHS.iter().flat_map(|width| {
+        TEMPERATURES.iter().flat_map(move |temperature| TRUSTS.iter().map(move |trust| [*width, *temperature, *trust]))
+    });
+    let tried = tried.map(|[adequacy_width, temperature, trust]| {
+        let calibration = Calibration { adequacy_width, temperature, trust, ..settled };
+        (known.iter().map(|m| m.log_likelihood(&calibration)).sum::<f64>(), calibration)
+    });
+    tried.max_by(|a, b| a.0.total_cmp(&b.0)).map_or(settled, |(_, calibration)| calibration)
+}
+
+impl Measured {
+    fn first_is_there(&self) -> bool {
+        self.weight_of_truth == 1.0
+    }
+
+    /// Of what is true about the first effect under the probability that it is given.
+    fn log_likelihood(&self, calibration: &Calibration) -> f64 {
+        let there = probability(self.adequacy, self.rivals.iter().copied(), calibration);
+        libm::log(if self.first_is_there() { there } else { 1.0 - there })
+    }
+}
+
+fn gate(nulls: &[Measured], gain: fn(&Measured) -> [f64; 2]) -> Gate {
+    let [nats, z] = [0, 1].map(|i| rounded(tail(nulls.iter().map(|m| gain(m)[i]).collect())));
+    Gate { nats, z }
+}
+
+/// What the share [`FALSE_ALARMS`] exceeds, if the tail falls off exponentially.
+fn tail(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    let above = &values[((1.0 - TAIL) * values.len() as f64) as usize..];
+    let mean_excess = above.iter().map(|v| v - above[0]).sum::<f64>() / above.len() as f64;
+    above[0] + mean_excess * libm::log(TAIL / FALSE_ALARMS)
+}
+
+/// The value that the share `at` of all lies below; one where there is none.
+fn quantile(mut values: Vec<f64>, at: f64) -> f64 {
+    values.sort_by(f64::total_cmp);
+    values.get((at * values.len() as f64) as usize).copied().unwrap_or(1.0)
+}
+
+fn rounded(value: f64) -> f64 {
+    (value * 1e3).round() / 1e3
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn measured(truth_weight: f64, adequacy: f64, rival: f64) -> Measured {
+        Measured {
+            truth: "slope".into(),
+            in_table: true,
+            effect_nats: 100.0,
+            effect_z: 10.0,
+            learner_nats: 0.0,
+            learner_z: 0.0,
+            first: "slope".into(),
+            adequacy,
+            weight_of_truth: truth_weight,
+            rivals: vec![rival],
+        }
+    }
+
+    fn nulls() -> Vec<Measured> {
+        let exponential = |i: usize| -libm::log(1.0 - (i as f64 + 0.5) / 1000.0);
+        (0..1000)
+            .map(|i| Measured {
+                effect_nats: 4.0 * exponential(i),
+                effect_z: exponential(i),
+                ..measured(0.0, 0.0, 0.0)
+            })
+            .collect()
+    }
+
+    #[test]
+    fn gates_let_through_the_share_of_false_alarms() {
+        let gate = open(&nulls()).effect;
+        let exact = libm::log(1.0 / FALSE_ALARMS);
+        assert!((gate.z - exact).abs() < 0.1 && (gate.nats - 4.0 * exact).abs() < 0.4, "{gate:?}");
+    }
+
+    #[test]
+    fn what_is_often_wrong_is_trusted_less() {
+        let answers = |wrong: usize| -> Vec<Measured> {
+            (0..100).map(|i| measured(if i < wrong { 0.0 } else { 1.0 }, 1.0, 0.0)).collect()
+        };
+        let trust = |wrong: usize| weighed(open(&nulls()), &answers(wrong)).trust;
+        assert_eq!([trust(0), trust(5), trust(15)], [0.99, 0.95, 0.85]);
+    }
+
+    #[test]
+    fn a_rival_is_named_as_far_behind_as_truths_are_found() {
+        let answers = |behind: f64| -> Vec<Measured> {
+            (0..100).map(|i| measured(if i < 20 { behind } else { 1.0 }, 1.0, 0.5)).collect()
+        };
+        let rival = |behind: f64| weighed(open(&nulls()), &answers(behind)).rival;
+        assert_eq!([rival(0.05), rival(0.6)], [0.05, TWO_ERRORS]);
+    }
+}

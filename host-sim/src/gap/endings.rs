@@ -1,0 +1,87 @@
+//! Whole controllers: where the simulator expects a controller's runs to end, against where they were logged to end.
+
+use glam::DVec2;
+use mindgap_core::controller::Controller;
+use serde::{Deserialize, Serialize};
+
+use crate::geometry::Pose;
+use crate::logs::Logs;
+use crate::problem::{Problem, Result};
+use crate::simulator::course::Course;
+use crate::simulator::rehearsal::Rehearsal;
+use crate::simulator::{Noise, Simulator};
+
+/// How far the runs of a controller end from where they are expected to, as medians over the runs, cm.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Endings {
+    /// Runs with a pose at the first row and a later one.
+    pub runs: usize,
+    /// With the simulator as it is.
+    pub before_cm: f64,
+    /// With the effects added; the same where none is.
+    pub after_cm: f64,
+    /// How far simulated runs with the effects end from where they are expected to themselves.
+    pub floor_cm: f64,
+}
+
+/// Simulated runs from each logged start.
+const DRAWS: usize = 64;
+/// Seeds them.
+const SEED: u64 = 6;
+
+/// Compares logs of a controller's runs with the simulator as it is (first) and with effects added (second).
+///
+/// # Errors
+/// When no run has a pose at its first row and at a later one, or when the simulator cannot run a controller from there.
+pub fn endings(simulators: [&Simulator; 2], controller: &Controller, logs: &Logs) -> Result<Endings> {
+    let logged: Vec<(Pose, DVec2)> = logs
+        .runs
+        .iter()
+        .filter_map(|run| {
+            let end = run.rows[1..].iter().rev().find_map(|row| row.pose)?;
+            Some((run.rows[0].pose?, end.position_cm))
+        })
+        .collect();
+    if logged.is_empty() {
+        return Err(Problem::new(
+            "no run has a pose at its first row and at a later one: where a controller ends is not known",
+        ));
+    }
+    let [before, after] = simulators.map(|simulator| Ends::of(simulator, controller, logs, &logged));
+    let (before, after) = (before?, after?);
+    Ok(Endings {
+        runs: logged.len(),
+        before_cm: median(before.off_cm.into_iter()),
+        after_cm: median(after.off_cm.into_iter()),
+        floor_cm: median(after.scatter_cm.into_iter()),
+    })
+}
+
+/// Distances from where a simulator expects the runs to end.
+struct Ends {
+    /// Of the logged ends.
+    off_cm: Vec<f64>,
+    /// Of its own.
+    scatter_cm: Vec<f64>,
+}
+
+impl Ends {
+    fn of(simulator: &Simulator, controller: &Controller, logs: &Logs, logged: &[(Pose, DVec2)]) -> Result<Self> {
+        let mut ends = Ends { off_cm: Vec::new(), scatter_cm: Vec::new() };
+        for (run, (start, end)) in logged.iter().enumerate() {
+            let course = Course::new(simulator, &logs.scene, *start, Noise::Learned)?;
+            let drawn = Rehearsal::new(&course, &logs.scene, controller, DRAWS, SEED + run as u64);
+            let drawn: Vec<DVec2> = drawn.runs.iter().map(|run| DVec2::new(run.end_x_cm, run.end_y_cm)).collect();
+            let expected = DVec2::new(median(drawn.iter().map(|e| e.x)), median(drawn.iter().map(|e| e.y)));
+            ends.off_cm.push(expected.distance(*end));
+            ends.scatter_cm.extend(drawn.iter().map(|e| expected.distance(*e)));
+        }
+        Ok(ends)
+    }
+}
+
+fn median(values: impl Iterator<Item = f64>) -> f64 {
+    let mut values: Vec<f64> = values.collect();
+    values.sort_by(f64::total_cmp);
+    values[values.len() / 2]
+}

@@ -1,0 +1,118 @@
+//! What `mindgap diagnose` says of logs that tell little, or that are not the simulator's.
+
+use mindgap_tests::command::Workshop;
+use mindgap_tests::rooms::trained;
+use serde_json::Value;
+
+/// Runs of the workshop's logs.
+const RUNS: usize = 6;
+
+fn run(number: usize) -> String {
+    format!("logs/run-{number:03}.csv")
+}
+
+/// Rewrites every field of all runs: `change` is given the row from 0, the column's name, and the field.
+fn rewrite(workshop: &Workshop, change: impl Fn(usize, &str, &str) -> String) {
+    for number in 0..RUNS {
+        let text = workshop.text(&run(number));
+        let (header, rows) = text.split_once('\n').expect("a header");
+        let columns: Vec<&str> = header.split(',').collect();
+        let rows = rows.lines().enumerate().map(|(row, line)| {
+            let fields = columns.iter().zip(line.split(',')).map(|(column, field)| change(row, column, field));
+            fields.collect::<Vec<String>>().join(",")
+        });
+        let rows: Vec<String> = rows.collect();
+        workshop.write(&run(number), format!("{header}\n{}\n", rows.join("\n")));
+    }
+}
+
+fn without<'a>(columns: &'a [&str]) -> impl Fn(usize, &str, &str) -> String + 'a {
+    move |_, column, field| if columns.contains(&column) { String::new() } else { field.into() }
+}
+
+fn diagnosis(workshop: &Workshop) -> Value {
+    workshop.done("diagnose sim.json logs --json diagnosis.json");
+    workshop.json("diagnosis.json")
+}
+
+#[track_caller]
+fn assert_noted(workshop: &Workshop, what: &str) {
+    let diagnosis = diagnosis(workshop);
+    let notes = diagnosis["notes"].as_array().expect("a list");
+    assert!(notes.iter().any(|note| note.as_str().is_some_and(|n| n.contains(what))), "{notes:?}");
+}
+
+#[test]
+fn logs_of_another_robot_are_refused() {
+    let workshop = trained();
+    workshop.edit("logs/robot.toml", |robot| robot.replace("track_cm = 11.5", "track_cm = 17.5"));
+    let refusal = workshop.refused("diagnose sim.json logs");
+    assert!(refusal.contains("another robot") && refusal.contains("track_cm"), "{refusal}");
+}
+
+#[test]
+fn logs_of_another_step_are_refused() {
+    let workshop = trained();
+    workshop.edit("logs/robot.toml", |robot| robot.replace("step_ms = 400", "step_ms = 250"));
+    let refusal = workshop.refused("diagnose sim.json logs");
+    assert!(refusal.contains("rows are 400 ms apart"), "{refusal}");
+    rewrite(&workshop, |row, column, field| if column == "t_ms" { (250 * row).to_string() } else { field.into() });
+    let refusal = workshop.refused("diagnose sim.json logs");
+    assert!(refusal.contains("another robot") && refusal.contains("step_ms"), "{refusal}");
+}
+
+#[test]
+fn a_simulator_of_another_version_is_refused() {
+    let workshop = trained();
+    workshop.edit("sim.json", |sim| sim.replacen("\"schema\": 1", "\"schema\": 9", 1));
+    let refusal = workshop.refused("diagnose sim.json logs");
+    assert!(refusal.contains("version 9"), "{refusal}");
+}
+
+#[test]
+fn without_poses_nothing_can_be_compared() {
+    let workshop = trained();
+    rewrite(&workshop, without(&["x_cm", "y_cm", "heading_deg"]));
+    let refusal = workshop.refused("diagnose sim.json logs");
+    assert!(refusal.contains("nothing can be compared") && refusal.contains("pose"), "{refusal}");
+}
+
+#[test]
+fn without_readings_motion_alone_is_compared() {
+    let workshop = trained();
+    rewrite(&workshop, without(&["echo_cm"]));
+    assert_noted(&workshop, "no reading at all");
+}
+
+#[test]
+fn one_run_and_runs_alike_are_said_to_be_little() {
+    let workshop = trained();
+    let first = workshop.text(&run(0));
+    (1..RUNS).for_each(|number| workshop.write(&run(number), &first));
+    assert_noted(&workshop, "same commands");
+    (1..RUNS).for_each(|number| std::fs::remove_file(workshop.path().join(run(number))).expect("a file"));
+    assert_noted(&workshop, "One run only");
+}
+
+#[test]
+fn jumps_of_the_tracker_are_told_and_cause_nothing() {
+    let workshop = trained();
+    assert_eq!(diagnosis(&workshop)["verdict"], "no_gap", "the simulator's own logs");
+    rewrite(&workshop, |row, column, field| match (row, column, field.parse::<f64>()) {
+        (12, "x_cm", Ok(x_cm)) => (x_cm + 60.0).to_string(),
+        _ => field.into(),
+    });
+    assert_noted(&workshop, "tracker jumps");
+    assert_eq!(workshop.json("diagnosis.json")["effects"], Value::Array(Vec::new()));
+}
+
+#[test]
+fn a_controllers_ends_are_compared() {
+    let workshop = trained();
+    let tuple = "[[tuple]]\nleft = 30\nright = 30\nwhen = \"smaller\"\nthreshold_cm = 40\n";
+    workshop.write("controller.toml", format!("step_ms = 400\nmax_steps = 10\n{}", tuple.repeat(6)));
+    workshop.done("diagnose sim.json logs --controller controller.toml --json diagnosis.json");
+    assert_eq!(workshop.json("diagnosis.json")["endings"]["runs"], RUNS);
+    let refusal = workshop.refused("diagnose kinematic logs --controller controller.toml");
+    assert!(refusal.contains("needs a simulator file"), "{refusal}");
+}

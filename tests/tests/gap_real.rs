@@ -1,0 +1,129 @@
+//! The diagnosis on logs of real robots, against the textbook.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
+
+use mindgap_host_sim::geometry::Pose;
+use mindgap_host_sim::logs::{Logs, Robot, Row, Run, Scene, Ultrasonic};
+use mindgap_tests::command::Workshop;
+use mindgap_tests::elsewhere::logs_from_elsewhere;
+use serde::Deserialize;
+use serde_json::Value;
+
+/// The Neato's rows are made this long, ms.
+const STEP_MS: f64 = 400.0;
+/// Its speed at command 100, cm/s.
+const FULL_CM_S: f64 = 30.0;
+/// Nominal distance between its wheels, cm.
+const TRACK_CM: f64 = 23.5;
+
+/// Wheel speeds at a time of a run.
+#[derive(Deserialize)]
+struct Commanded {
+    run: usize,
+    t_s: f64,
+    vl_m_s: f64,
+    vr_m_s: f64,
+}
+
+/// Where a run begins and ends.
+#[derive(Deserialize)]
+struct Ends {
+    run: usize,
+    x0_m: f64,
+    y0_m: f64,
+    th0_rad: f64,
+    x1_m: f64,
+    y1_m: f64,
+    th1_rad: f64,
+}
+
+fn table<T: for<'a> Deserialize<'a>>(path: &Path) -> Vec<T> {
+    let mut reader = csv::Reader::from_path(path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
+    reader.deserialize().map(|row| row.unwrap_or_else(|e| panic!("{}: {e}", path.display()))).collect()
+}
+
+/// The runs of a Neato, of which only the poses at both ends are known.
+fn neato(folder: &Path) -> Logs {
+    let mut commands: BTreeMap<usize, Vec<Commanded>> = BTreeMap::new();
+    table(&folder.join("commanded.csv"))
+        .into_iter()
+        .for_each(|c: Commanded| commands.entry(c.run).or_default().push(c));
+    let ends: Vec<Ends> = table(&folder.join("poses.csv"));
+    let runs =
+        ends.iter().map(|ends| Run { name: format!("run-{:03}", ends.run), rows: rows(ends, &commands[&ends.run]) });
+    let ultrasonic = Ultrasonic { x_cm: 0.0, y_cm: 0.0, yaw_deg: 0.0, min_cm: 4.0, max_cm: 240.0 };
+    let robot = Robot {
+        wheel_diameter_cm: 7.6,
+        track_cm: TRACK_CM,
+        body_radius_cm: 17.0,
+        step_ms: STEP_MS,
+        full_speed_cm_s: FULL_CM_S,
+        ultrasonic,
+    };
+    let scene = Scene { arena_cm: Some(glam::DVec2::splat(400.0)), ..Scene::default() };
+    Logs { robot, scene, runs: runs.collect() }
+}
+
+/// Rows whose commands are the mean of what was commanded within their step.
+fn rows(ends: &Ends, commanded: &[Commanded]) -> Vec<Row> {
+    let steps = (commanded[commanded.len() - 1].t_s * 1000.0 / STEP_MS).ceil() as usize;
+    let way = |wheel: fn(&Commanded) -> f64, until_s: f64| {
+        let held = commanded.windows(2).map(|pair| (pair[1].t_s.min(until_s) - pair[0].t_s).max(0.0) * wheel(&pair[0]));
+        held.sum::<f64>()
+    };
+    let command = |wheel: fn(&Commanded) -> f64, step: usize| {
+        let [from_s, to_s] = [step, step + 1].map(|i| i as f64 * STEP_MS / 1000.0);
+        let speed_cm_s = 100.0 * (way(wheel, to_s) - way(wheel, from_s)) / (to_s - from_s);
+        100.0 * speed_cm_s / FULL_CM_S
+    };
+    let pose = |x_m: f64, y_m: f64, rad: f64| Some(Pose::new(100.0 * x_m + 100.0, 100.0 * y_m + 100.0, rad));
+    let row = |step: usize| Row {
+        t_ms: step as f64 * STEP_MS,
+        left: command(|c| c.vl_m_s, step),
+        right: command(|c| c.vr_m_s, step),
+        pose: match step {
+            0 => pose(ends.x0_m, ends.y0_m, ends.th0_rad),
+            _ if step == steps => pose(ends.x1_m, ends.y1_m, ends.th1_rad),
+            _ => None,
+        },
+        ..Row::default()
+    };
+    (0..=steps).map(row).collect()
+}
+
+fn diagnosed(workshop: &Workshop, logs: &str) -> Value {
+    println!("{}", workshop.done(&format!("diagnose kinematic {logs} --json diagnosis.json")));
+    workshop.json("diagnosis.json")
+}
+
+#[test]
+fn the_ends_of_a_neatos_runs_show_its_gap_to_the_textbook() {
+    let test = "the_ends_of_a_neatos_runs_show_its_gap_to_the_textbook";
+    let Some(folder) = logs_from_elsewhere(test, "real/neato") else { return };
+    let workshop = Workshop::new();
+    neato(&folder).write(&workshop.path().join("logs")).expect("a folder that can be written");
+    let diagnosis = diagnosed(&workshop, "logs");
+    assert_ne!(diagnosis["verdict"], "no_gap", "its owner measured one");
+    assert!(diagnosis["notes"].to_string().contains("whole ways between poses"), "{diagnosis}");
+    let before = diagnosis["shrink"]["before"].as_f64().expect("a gap");
+    let after = diagnosis["shrink"]["after"].as_f64().expect("a gap");
+    assert!(before > 1.0 && after < before, "{diagnosis}");
+}
+
+#[test]
+fn a_real_sonar_that_stands_still_is_compared_with_the_textbook() {
+    let test = "a_real_sonar_that_stands_still_is_compared_with_the_textbook";
+    let Some(folder) = logs_from_elsewhere(test, "real/nxt-sonar") else { return };
+    let folder = folder.canonicalize().expect("the folder is there");
+    let teams = fs::read_dir(&folder).expect("a folder").map(|entry| entry.expect("an entry").path());
+    for team in teams.filter(|path| path.is_dir()) {
+        let diagnosis = diagnosed(&Workshop::new(), &team.display().to_string());
+        let notes = diagnosis["notes"].to_string();
+        assert!(notes.contains("motion is not excited"), "{}: {notes}", team.display());
+        let places = diagnosis["where"].as_array().expect("a list");
+        let of_sonar = |place: &Value| place["channel"].as_str().is_some_and(|c| c.starts_with("echo"));
+        assert!(places.iter().all(of_sonar), "{}: {places:?}", team.display());
+    }
+}
