@@ -86,11 +86,20 @@ pub fn write_csv(path: &Path, rows: &[impl Serialize]) -> Result<()> {
 /// When the file is missing or a row is not of the expected form.
 pub fn read_csv<T: DeserializeOwned>(path: &Path) -> Result<Vec<T>> {
     let text = read_text(path)?;
-    let broken = |e: csv::Error| {
-        let line = e.position().map_or(0, csv::Position::line);
-        Problem::at_line(path, line, e.to_string())
+    let rows = csv::Reader::from_reader(text.as_bytes()).deserialize().collect::<csv::Result<_>>();
+    rows.map_err(|e| csv_problem(path, &e))
+}
+
+/// What is wrong with a CSV file, and in which line.
+pub fn csv_problem(path: &Path, e: &csv::Error) -> Problem {
+    let line = e.position().map_or(1, csv::Position::line);
+    let what = match e.kind() {
+        csv::ErrorKind::UnequalLengths { expected_len, len, .. } => {
+            format!("has {len} cells where the header has {expected_len}: torn or wrong line")
+        }
+        _ => e.to_string().replace('\n', " "),
     };
-    csv::Reader::from_reader(text.as_bytes()).deserialize().collect::<csv::Result<_>>().map_err(broken)
+    Problem::at_line(path, line, what)
 }
 
 /// Writes a value as JSON.

@@ -5,6 +5,7 @@ use mindgap_core::controller::Controller;
 use serde::{Deserialize, Serialize};
 
 use crate::geometry::Pose;
+use crate::learn::statistics::median;
 use crate::logs::Logs;
 use crate::problem::{Problem, Result};
 use crate::simulator::course::Course;
@@ -78,10 +79,4 @@ impl Ends {
         }
         Ok(ends)
     }
-}
-
-fn median(values: impl Iterator<Item = f64>) -> f64 {
-    let mut values: Vec<f64> = values.collect();
-    values.sort_by(f64::total_cmp);
-    values[values.len() / 2]
 }

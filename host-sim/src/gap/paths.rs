@@ -11,6 +11,7 @@ use super::explanation::Explanation;
 use super::search::{Fitted, Given};
 use crate::chance::{Generator, generator};
 use crate::geometry::{Pose, direction};
+use crate::learn::statistics::median;
 
 /// The median distance between predicted and logged ends of paths.
 #[derive(Clone, Copy, Debug)]
@@ -58,11 +59,11 @@ fn gap(
             (0..DRAWS).map(|_| noise.drawn(explanation, drive, piece, rng).distance(*end)).collect::<Vec<_>>()
         })
         .collect();
-    Some(PathGap {
+    (!pieces.is_empty()).then(|| PathGap {
         steps,
-        before_cm: median(ends(&explanation.none).iter().zip(logged.clone()).map(|(a, b)| a.distance(b)))?,
-        after_cm: median(after.iter().zip(logged).map(|(a, b)| a.distance(b)))?,
-        floor_cm: median(floor.into_iter())?,
+        before_cm: median(ends(&explanation.none).iter().zip(logged.clone()).map(|(a, b)| a.distance(b))),
+        after_cm: median(after.iter().zip(logged).map(|(a, b)| a.distance(b))),
+        floor_cm: median(floor.into_iter()),
     })
 }
 
@@ -112,10 +113,4 @@ impl Noise {
 
 fn normal(rng: &mut Generator) -> f64 {
     StandardNormal.sample(rng)
-}
-
-fn median(values: impl Iterator<Item = f64>) -> Option<f64> {
-    let mut values: Vec<f64> = values.collect();
-    values.sort_by(f64::total_cmp);
-    values.get(values.len() / 2).copied()
 }

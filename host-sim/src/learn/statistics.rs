@@ -97,6 +97,13 @@ pub fn mean(values: impl Iterator<Item = f64>) -> f64 {
     sum / n
 }
 
+/// The upper median; NaN of nothing.
+pub fn median(values: impl Iterator<Item = f64>) -> f64 {
+    let mut values: Vec<f64> = values.collect();
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied().unwrap_or(f64::NAN)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

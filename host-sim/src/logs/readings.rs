@@ -32,10 +32,7 @@ pub fn read(list_or_file: &str) -> Result<Vec<Sonar>> {
 fn read_column(path: &Path) -> Result<Vec<Sonar>> {
     let text = files::read_text(path)?;
     let mut reader = ReaderBuilder::new().trim(csv::Trim::All).from_reader(text.as_bytes());
-    let broken = |e: csv::Error| {
-        let line = e.position().map_or(1, csv::Position::line);
-        Problem::at_line(path, line, e.to_string().replace('\n', " "))
-    };
+    let broken = |e: csv::Error| files::csv_problem(path, &e);
     let column = reader.headers().map_err(broken)?.iter().position(|name| name == COLUMN);
     let column = column.ok_or_else(|| Problem::at_line(path, 1, format!("column {COLUMN} is missing")))?;
     let mut readings = Vec::new();
