@@ -13,6 +13,7 @@ mod diagnosis_text;
 mod evaluate;
 mod evolve;
 mod export;
+mod import;
 mod progress;
 mod record;
 mod simulate;
@@ -49,6 +50,7 @@ enum Command {
     Evolve(evolve::Evolve),
     Simulate(simulate::Simulate),
     Export(export::Export),
+    Import(import::Import),
 }
 
 /// Runs the command of this process's arguments. Exits with 0 when it did what was asked, 1 when it could not, and 2
@@ -66,6 +68,7 @@ pub fn run() -> ExitCode {
         Command::Evolve(command) => command.run(),
         Command::Simulate(command) => command.run(),
         Command::Export(command) => command.run(),
+        Command::Import(command) => command.run(),
     };
     match done.and_then(|text| say(&text)) {
         Ok(()) => ExitCode::SUCCESS,

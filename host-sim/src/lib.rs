@@ -14,6 +14,7 @@ pub mod folded;
 pub mod gap;
 pub mod genetic;
 pub mod geometry;
+pub mod import;
 pub mod lanes;
 pub mod learn;
 pub mod logs;

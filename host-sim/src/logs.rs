@@ -69,7 +69,11 @@ impl Logs {
         })
     }
 
-    fn check_step(&self, folder: &Path) -> Result<()> {
+    /// Whether rows are about `step_ms` apart; a problem is laid to `folder`.
+    ///
+    /// # Errors
+    /// When the middle of all step times is too far from the robot's.
+    pub fn check_step(&self, folder: &Path) -> Result<()> {
         let mut steps_ms: Vec<f64> =
             self.runs.iter().flat_map(|run| run.rows.windows(2).map(|w| w[1].t_ms - w[0].t_ms)).collect();
         steps_ms.sort_by(f64::total_cmp);

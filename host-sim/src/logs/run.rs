@@ -52,12 +52,27 @@ impl Run {
     /// When the file is missing, lacks a column, has fewer than two rows, or has a number that cannot be.
     pub fn read(path: &Path, mut warn: impl FnMut(String)) -> Result<Self> {
         let text = files::read_text(path)?;
+        let run = Run::parse(path, &text, &COLUMNS[..REQUIRED], &mut warn)?;
+        if !text.ends_with('\n') {
+            warn(format!(
+                "{}: the last line has no line end; if it is torn, its last number may be wrong",
+                path.display()
+            ));
+        }
+        Ok(run)
+    }
+
+    /// The run in a file's text, which has these columns at least.
+    ///
+    /// # Errors
+    /// As [`Run::read`].
+    pub fn parse(path: &Path, text: &str, required: &[&str], mut warn: impl FnMut(String)) -> Result<Self> {
         let mut reader = ReaderBuilder::new().trim(csv::Trim::All).from_reader(text.as_bytes());
-        let header = reader.headers().map_err(|e| broken(path, &e))?.clone();
-        let columns = Columns::find(path, &header, &mut warn)?;
+        let header = reader.headers().map_err(|e| files::csv_problem(path, &e))?.clone();
+        let columns = Columns::find(path, &header, required, &mut warn)?;
         let mut rows: Vec<Row> = Vec::new();
         for record in reader.records() {
-            let record = record.map_err(|e| broken(path, &e))?;
+            let record = record.map_err(|e| files::csv_problem(path, &e))?;
             let line = record.position().map_or(0, csv::Position::line);
             let row = columns.row(&record).map_err(|what| Problem::at_line(path, line, what))?;
             if rows.last().is_some_and(|before| row.t_ms <= before.t_ms) {
@@ -71,12 +86,6 @@ impl Run {
         }
         if rows.len() < 2 {
             return Err(Problem::in_file(path, format!("has {} row(s); a run needs at least two", rows.len())));
-        }
-        if !text.ends_with('\n') {
-            warn(format!(
-                "{}: the last line has no line end; if it is torn, its last number may be wrong",
-                path.display()
-            ));
         }
         let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         Ok(Run { name, rows })
@@ -132,7 +141,7 @@ impl Row {
 struct Columns([Option<usize>; COLUMNS.len()]);
 
 impl Columns {
-    fn find(path: &Path, header: &StringRecord, warn: &mut impl FnMut(String)) -> Result<Self> {
+    fn find(path: &Path, header: &StringRecord, required: &[&str], warn: &mut impl FnMut(String)) -> Result<Self> {
         let mut places = [None; COLUMNS.len()];
         let mut unknown = Vec::new();
         for (i, name) in header.iter().enumerate() {
@@ -144,8 +153,9 @@ impl Columns {
                 Some(c) => places[c] = Some(i),
             }
         }
-        if let Some(c) = (0..REQUIRED).find(|c| places[*c].is_none()) {
-            return Err(Problem::at_line(path, 1, format!("column {} is missing", COLUMNS[c])));
+        let is_there = |name: &&str| COLUMNS.iter().zip(places).any(|(c, place)| c == name && place.is_some());
+        if let Some(name) = required.iter().find(|name| !is_there(name)) {
+            return Err(Problem::at_line(path, 1, format!("column {name} is missing")));
         }
         for name in unknown {
             warn(format!("{}:1: column {name:?} is not known and left out", path.display()));
@@ -187,18 +197,6 @@ impl Columns {
             rot_right_deg,
             battery_mv,
         })
-    }
-}
-
-fn broken(path: &Path, e: &csv::Error) -> Problem {
-    let line = e.position().map_or(1, csv::Position::line);
-    match e.kind() {
-        csv::ErrorKind::UnequalLengths { expected_len, len, .. } => Problem::at_line(
-            path,
-            line,
-            format!("has {len} cells where the header has {expected_len}: torn or wrong line"),
-        ),
-        _ => Problem::at_line(path, line, e.to_string().replace('\n', " ")),
     }
 }
 

@@ -1,0 +1,99 @@
+//! `mindgap import`
+
+use std::path::PathBuf;
+
+use clap::Args;
+use serde_json::json;
+
+use super::table;
+use crate::files;
+use crate::import::track::{Angle, Length, Time, Units};
+use crate::import::{LogReport, Report, RunReport, TrackReport, import};
+use crate::logs::{Robot, Scene};
+use crate::problem::Result;
+
+/// Bring a brick's logs and a camera's tracks together as a folder of logs.
+#[derive(Args)]
+pub struct Import {
+    /// Logs of the brick and tracks of the camera, in any order; their first lines tell them apart. Tracks are CSV with
+    /// time, x, y and heading (time_s, x_m, y_m, yaw_rad and the like), or what Motive exports of a rigid body.
+    #[arg(value_name = "BRICK_LOG|CAMERA_TRACK", required = true)]
+    files: Vec<PathBuf>,
+    /// Where the robot drove.
+    #[arg(long, value_name = "FILE")]
+    scene: PathBuf,
+    /// What the builder measured of the robot.
+    #[arg(long, value_name = "FILE")]
+    robot: PathBuf,
+    /// Folder for the logs.
+    #[arg(long, value_name = "LOGS")]
+    out: PathBuf,
+    /// Unit of a track's time whose column names none.
+    #[arg(long, value_name = "UNIT")]
+    time_unit: Option<Time>,
+    /// Unit of a track's x and y whose columns name none.
+    #[arg(long, value_name = "UNIT")]
+    length_unit: Option<Length>,
+    /// Unit of a track's heading whose column names none.
+    #[arg(long, value_name = "UNIT")]
+    angle_unit: Option<Angle>,
+    /// Write what was imported and left out here.
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
+}
+
+impl Import {
+    /// Reads, aligns, writes; returns what there is to say.
+    pub fn run(&self) -> Result<String> {
+        let units = Units { time: self.time_unit, length: self.length_unit, angle: self.angle_unit };
+        let (robot, scene) = (Robot::read(&self.robot)?, Scene::read(&self.scene)?);
+        let warn = |warning| eprintln!("mindgap: warning: {warning}");
+        let (logs, report) = import(&self.files, &units, robot, scene, warn)?;
+        logs.write(&self.out)?;
+        if let Some(path) = &self.json {
+            files::write_json(path, &json!({"schema": 1, "tracks": report.tracks, "logs": report.logs}))?;
+        }
+        Ok(format!("{}{}: {} runs\n", told(&report), self.out.display(), logs.runs.len()))
+    }
+}
+
+fn told(report: &Report) -> String {
+    let tracks = report.tracks.iter().map(|TrackReport { file, frames, lost, jumps }| {
+        let left_out = match (lost, jumps) {
+            (0, 0) => String::new(),
+            _ => format!("; left out: {lost} without a pose, {jumps} that no robot can reach"),
+        };
+        format!("{}: {frames} frames{left_out}\n", file.display())
+    });
+    let mut text: String = tracks.collect();
+    let runs = report.logs.iter().filter_map(|log| Some((log, log.run.as_ref()?)));
+    let rows: Vec<[String; 7]> = runs.map(|(log, run)| row(log, run)).collect();
+    let header = ["log", "run", "offset (ms)", "drift (ppm)", "differs (%)", "rows", "without pose"];
+    text += &table::text(header, &rows);
+    for LogReport { file, torn, left_out, .. } in &report.logs {
+        if *torn {
+            text += &format!("{}: the last line has no end and is left out\n", file.display());
+        }
+        if let Some(why) = left_out {
+            text += &format!("{}: left out, {why}\n", file.display());
+        }
+    }
+    text
+}
+
+fn row(log: &LogReport, run: &RunReport) -> [String; 7] {
+    let RunReport { name, offset_ms, drift, unexplained, rows, outside, in_gaps, .. } = run;
+    let without = match (outside, in_gaps) {
+        (0, 0) => "0".into(),
+        _ => format!("{outside} outside the track, {in_gaps} in gaps"),
+    };
+    [
+        log.file.display().to_string(),
+        name.clone(),
+        format!("{offset_ms:.0}"),
+        format!("{:.0}", 1e6 * drift),
+        format!("{:.1}", 100.0 * unexplained),
+        rows.to_string(),
+        without,
+    ]
+}

@@ -1,0 +1,188 @@
+//! The way back from a robot: what a brick logged and what a camera saw, brought together as a folder of logs.
+//!
+//! The two have clocks of their own. [`clocks`] finds how they run by matching what the wheels turned with what the
+//! camera saw; the camera's poses are then taken at the times of the brick's rows. [`brick_log`] and [`track`] read the
+//! files. Whatever is left out, and why, stands in the [`Report`].
+
+pub mod brick_log;
+pub mod clocks;
+pub mod motion;
+pub mod track;
+
+use std::path::{Path, PathBuf};
+
+use serde::Serialize;
+
+use self::brick_log::BrickLog;
+use self::clocks::{Match, align};
+use self::track::{Seen, Track, Units};
+use crate::logs::{Logs, Robot, Row, Run, Scene};
+use crate::problem::{Problem, Result};
+
+/// What was imported, and what was left out.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Report {
+    /// The cameras' tracks.
+    pub tracks: Vec<TrackReport>,
+    /// The brick's logs.
+    pub logs: Vec<LogReport>,
+}
+
+/// What became of a camera's track.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct TrackReport {
+    /// Its file.
+    pub file: PathBuf,
+    /// Frames in it.
+    pub frames: usize,
+    /// Frames without a pose.
+    pub lost: usize,
+    /// Frames left out because no robot moves that fast.
+    pub jumps: usize,
+}
+
+/// What became of a brick's log.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct LogReport {
+    /// Its file.
+    pub file: PathBuf,
+    /// Its last line had no end and was left out.
+    pub torn: bool,
+    /// The run in the folder of logs; none where the whole log was left out.
+    pub run: Option<RunReport>,
+    /// Why the whole log was left out.
+    pub left_out: Option<String>,
+}
+
+/// A run that was imported.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct RunReport {
+    /// Its name in the folder of logs.
+    pub name: String,
+    /// File of the track that saw it.
+    pub track: PathBuf,
+    /// Camera time at brick time 0.
+    pub offset_ms: f64,
+    /// How much faster the camera's clock runs.
+    pub drift: f64,
+    /// Share of the motion's variance in which wheels and camera differ.
+    pub unexplained: f64,
+    /// Rows of the run.
+    pub rows: usize,
+    /// Rows without a pose because the track has not begun yet or has ended.
+    pub outside: usize,
+    /// Rows without a pose because the camera had lost the robot.
+    pub in_gaps: usize,
+}
+
+/// Wheels and camera differ in at most this share of the motion's variance; wheels that slip or a frame that is
+/// turned stay far below it.
+const MOST_UNEXPLAINED: f64 = 0.3;
+/// A match has to be better than any other by this factor.
+const CLEARLY: f64 = 0.5;
+/// Clocks that differ by more than 5 ms a second are not two clocks of one moment.
+const MOST_DRIFT: f64 = 5e-3;
+
+/// Brings brick logs and tracks together, which their headers tell apart. Oddities are told to `warn`.
+///
+/// # Errors
+/// When a file is broken, when either kind is missing, or when not a single log matches a track.
+pub fn import(
+    files: &[PathBuf],
+    units: &Units,
+    robot: Robot,
+    scene: Scene,
+    mut warn: impl FnMut(String),
+) -> Result<(Logs, Report)> {
+    let (mut logs, mut tracks) = (Vec::new(), Vec::new());
+    for file in files {
+        if brick_log::is_one(file)? {
+            logs.push(BrickLog::read(file, &mut warn)?);
+        } else {
+            tracks.push(Track::read(file, units, &robot)?);
+        }
+    }
+    if logs.is_empty() || tracks.is_empty() {
+        let what =
+            if logs.is_empty() { "log of a brick (columns t_ms, left, right, ...)" } else { "track of a camera" };
+        return Err(Problem::new(format!("among the files is no {what}")));
+    }
+    let mut runs = Vec::new();
+    let mut reports = Vec::new();
+    for log in logs {
+        let BrickLog { file, torn, .. } = &log;
+        let report = LogReport { file: file.clone(), torn: *torn, run: None, left_out: None };
+        reports.push(match matched(&log, &tracks, &robot) {
+            Ok((track, found)) => {
+                let (run, report_of_run) = merged(&log, track, &found, format!("run-{:03}", runs.len()));
+                runs.push(run);
+                LogReport { run: Some(report_of_run), ..report }
+            }
+            Err(why) => LogReport { left_out: Some(why), ..report },
+        });
+    }
+    if runs.is_empty() {
+        let first = &reports[0];
+        return Err(Problem::in_file(&first.file, first.left_out.clone().unwrap_or_default()));
+    }
+    let tracks = tracks.iter().map(|t| TrackReport { file: t.file.clone(), ..t.report() }).collect();
+    let logs = Logs { robot, scene, runs };
+    logs.check_step(&reports[0].file)?;
+    Ok((logs, Report { tracks, logs: reports }))
+}
+
+/// The track that saw a log's run, and how the clocks ran; or why there is none.
+fn matched<'a>(log: &BrickLog, tracks: &'a [Track], robot: &Robot) -> std::result::Result<(&'a Track, Match), String> {
+    let by_wheels = motion::by_wheels(&log.run.rows, robot);
+    let found = tracks.iter().filter_map(|track| Some((track, align(&by_wheels, &track.motion())?)));
+    let Some((track, found)) = found.min_by(|a, b| a.1.unexplained.total_cmp(&b.1.unexplained)) else {
+        return Err("no track overlaps it by half of its steps, or nothing moved".into());
+    };
+    let percent = |share: f64| format!("{:.0} %", 100.0 * share);
+    if found.unexplained > MOST_UNEXPLAINED {
+        return Err(format!(
+            "no track saw it: wheels and camera differ in {} of the motion at best",
+            percent(found.unexplained)
+        ));
+    }
+    if found.unexplained > CLEARLY * found.unexplained_elsewhere {
+        return Err(format!(
+            "it matches {} at more than one time: {} and {} of the motion differ",
+            track.file.display(),
+            percent(found.unexplained),
+            percent(found.unexplained_elsewhere)
+        ));
+    }
+    if found.clocks.drift.abs() > MOST_DRIFT {
+        return Err(format!(
+            "its clock and that of {} run apart by {:.1} ms a second",
+            track.file.display(),
+            1000.0 * found.clocks.drift
+        ));
+    }
+    Ok((track, found))
+}
+
+/// The log's rows with the poses that the camera saw at their times.
+fn merged(log: &BrickLog, track: &Track, found: &Match, name: String) -> (Run, RunReport) {
+    let clocks = &found.clocks;
+    let seen: Vec<Seen> = log.run.rows.iter().map(|row| track.at(clocks.camera_ms(row.t_ms))).collect();
+    let rows = log.run.rows.iter().zip(&seen).map(|(row, seen)| Row { pose: seen.pose(), ..*row });
+    let run = Run { name: name.clone(), rows: rows.collect() };
+    let report = RunReport {
+        name,
+        track: track.file.clone(),
+        offset_ms: clocks.offset_ms,
+        drift: clocks.drift,
+        unexplained: found.unexplained,
+        rows: seen.len(),
+        outside: seen.iter().filter(|s| **s == Seen::Outside).count(),
+        in_gaps: seen.iter().filter(|s| **s == Seen::Lost).count(),
+    };
+    (run, report)
+}
+
+/// The first line of a file.
+fn first_line(file: &Path) -> Result<String> {
+    Ok(crate::files::read_text(file)?.lines().next().unwrap_or_default().to_owned())
+}

@@ -1,0 +1,254 @@
+//! The clock of a brick against that of a camera, found by matching what the wheels turned with what the camera saw.
+//!
+//! Both sides give the same cumulative motions (turned, travelled). Between two rows of the brick's log the camera has
+//! to see, but for one factor a motion, what the wheels say; the camera has many frames a row, so rows far apart still
+//! tell the time well. Offsets are tried all along the track, then offset and drift are refined together.
+
+use super::motion::{MOTIONS, Moved};
+use super::track::GAP_MS;
+use crate::learn::statistics::median;
+
+/// How brick time becomes camera time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Clocks {
+    /// Camera time at brick time 0.
+    pub offset_ms: f64,
+    /// How much faster the camera's clock runs: 1e-4 is 0.1 ms a second.
+    pub drift: f64,
+}
+
+/// How well clocks match.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Match {
+    /// The clocks.
+    pub clocks: Clocks,
+    /// Share of the motion's variance that the match leaves unexplained, 0..=1.
+    pub unexplained: f64,
+    /// The same of the best match elsewhere; near `unexplained` where the motion repeats itself.
+    pub unexplained_elsewhere: f64,
+    /// Steps of the log that the track covers.
+    pub steps: usize,
+}
+
+/// Offsets tried are so far apart.
+const SEARCH_STEP_MS: f64 = 20.0;
+/// Matches nearer than this are the same match.
+const ELSEWHERE_MS: f64 = 600.0;
+/// A match needs this share of the log's steps.
+const LEAST_COVERED: f64 = 0.5;
+/// Two clocks usually drift apart by about so much; a Cauchy law of it keeps short logs from inventing more, and still
+/// lets clocks that run apart show.
+const USUAL_DRIFT: f64 = 3e-5;
+/// Of the law of what wheels and camera differ in; and less than this counts as this, radians or cm.
+const FREEDOM: f64 = 4.0;
+const EXACT: f64 = 1e-6;
+/// Drifts that are tried first.
+const FIRST_DRIFTS: [f64; 7] = [0.0, 1e-3, -1e-3, 3e-3, -3e-3, 1e-2, -1e-2];
+/// A refinement begins with these steps and halves them so often.
+const FIRST_STEP_MS: f64 = 16.0;
+const FIRST_DRIFT: f64 = 4e-4;
+const HALVINGS: usize = 10;
+
+impl Clocks {
+    /// Camera time of a brick time.
+    pub fn camera_ms(&self, brick_ms: f64) -> f64 {
+        self.offset_ms + (1.0 + self.drift) * brick_ms
+    }
+}
+
+/// The clocks that match best; `None` where no offset makes track and log overlap enough, or nothing moves.
+pub fn align(log: &[Moved], track: &[Moved]) -> Option<Match> {
+    let (first_ms, last_ms) = (track.first()?.t_ms, track.last()?.t_ms);
+    let (from_ms, to_ms) = (log.first()?.t_ms, log.last()?.t_ms);
+    let offsets = (last_ms - from_ms - (first_ms - to_ms)) / SEARCH_STEP_MS;
+    let tried: Vec<(f64, f64)> = (0..=offsets as usize)
+        .filter_map(|i| {
+            let offset_ms = first_ms - to_ms + SEARCH_STEP_MS * i as f64;
+            Some((offset_ms, Misfit::of(&Clocks { offset_ms, drift: 0.0 }, log, track)?.mean()))
+        })
+        .collect();
+    let best = tried.iter().min_by(|a, b| a.1.total_cmp(&b.1))?;
+    let elsewhere = tried.iter().filter(|(ms, _)| (ms - best.0).abs() > ELSEWHERE_MS).map(|(_, left)| *left);
+    let unexplained_elsewhere = elsewhere.fold(1.0, f64::min);
+    let clocks = refine(best.0, log, track);
+    let misfit = Misfit::of(&clocks, log, track)?;
+    Some(Match { clocks, unexplained: misfit.mean(), unexplained_elsewhere, steps: misfit.steps })
+}
+
+/// Offset and drift together, about the middle of the log, where they are independent. From several drifts the way is
+/// sought by squares, which show it from afar, and then by a law that bears slipping wheels; that law chooses.
+fn refine(offset_ms: f64, log: &[Moved], track: &[Moved]) -> Clocks {
+    let middle_ms = log[log.len() / 2].t_ms;
+    let about = |(at_middle_ms, drift): (f64, f64)| Clocks { offset_ms: at_middle_ms - drift * middle_ms, drift };
+    let unlikely = |point: (f64, f64), law: fn(&Misfit) -> f64| {
+        let usual = point.1 / USUAL_DRIFT;
+        Misfit::of(&about(point), log, track).map_or(f64::INFINITY, |misfit| law(&misfit)) + libm::log1p(usual * usual)
+    };
+    let found = FIRST_DRIFTS.iter().flat_map(|drift| {
+        let first = (offset_ms + drift * middle_ms, *drift);
+        let by_squares = descend(first, |point| unlikely(point, Misfit::nats_of_squares));
+        [first, by_squares].map(|point| descend(point, |point| unlikely(point, Misfit::nats)))
+    });
+    let best = found.min_by(|a, b| unlikely(*a, Misfit::nats).total_cmp(&unlikely(*b, Misfit::nats)));
+    about(best.unwrap_or((offset_ms, 0.0)))
+}
+
+/// The least value near a point, by steps that are halved.
+fn descend(from: (f64, f64), value: impl Fn((f64, f64)) -> f64) -> (f64, f64) {
+    let (mut best, mut least) = (from, value(from));
+    let (mut step_ms, mut step_drift) = (FIRST_STEP_MS, FIRST_DRIFT);
+    for _ in 0..HALVINGS {
+        loop {
+            let (ms, drift) = best;
+            let around =
+                [(ms + step_ms, drift), (ms - step_ms, drift), (ms, drift + step_drift), (ms, drift - step_drift)];
+            let next = around.map(|point| (value(point), point)).into_iter().min_by(|a, b| a.0.total_cmp(&b.0));
+            match next {
+                Some((value, point)) if value < least => (least, best) = (value, point),
+                _ => break,
+            }
+        }
+        step_ms /= 2.0;
+        step_drift /= 2.0;
+    }
+    best
+}
+
+/// How far wheels and camera differ under a pair of clocks.
+struct Misfit {
+    /// Of every motion that there was what the camera saw beyond what the wheels say, step by step,
+    left: Vec<Vec<f64>>,
+    /// and the share of its variance that this is.
+    unexplained: Vec<f64>,
+    /// Steps that this was measured on.
+    steps: usize,
+}
+
+impl Misfit {
+    /// `None` where too few steps are covered, or nothing moved.
+    fn of(clocks: &Clocks, log: &[Moved], track: &[Moved]) -> Option<Self> {
+        let seen: Vec<Option<[f64; MOTIONS]>> = log.iter().map(|row| at(track, clocks.camera_ms(row.t_ms))).collect();
+        let steps: Vec<(usize, [f64; MOTIONS], [f64; MOTIONS])> =
+            seen.windows(2).enumerate().filter_map(|(i, pair)| Some((i, pair[0]?, pair[1]?))).collect();
+        if (steps.len() as f64) < LEAST_COVERED * (log.len() - 1) as f64 {
+            return None;
+        }
+        let (mut left, mut unexplained) = (Vec::new(), Vec::new());
+        for motion in 0..MOTIONS {
+            let wheels = steps.iter().map(|(i, ..)| log[i + 1].by[motion] - log[*i].by[motion]);
+            let camera = steps.iter().map(|(_, before, after)| after[motion] - before[motion]);
+            let sum = |products: &mut dyn Iterator<Item = f64>| products.sum::<f64>();
+            let both = sum(&mut wheels.clone().zip(camera.clone()).map(|(w, c)| w * c)).max(0.0);
+            let (of_wheels, of_camera) =
+                (sum(&mut wheels.clone().map(|w| w * w)), sum(&mut camera.clone().map(|c| c * c)));
+            if of_wheels > 0.0 && of_camera > 0.0 {
+                left.push(wheels.zip(camera).map(|(w, c)| c - both / of_wheels * w).collect());
+                unexplained.push(1.0 - both * both / (of_wheels * of_camera));
+            }
+        }
+        (!left.is_empty()).then_some(Misfit { left, unexplained, steps: steps.len() })
+    }
+
+    fn mean(&self) -> f64 {
+        self.unexplained.iter().sum::<f64>() / self.unexplained.len() as f64
+    }
+
+    /// The negative log-likelihood of what is left under a normal law of unknown width, but for a constant.
+    fn nats_of_squares(&self) -> f64 {
+        let logs: f64 = self.unexplained.iter().map(|share| libm::log(share.max(EXACT))).sum();
+        0.5 * self.steps as f64 * logs
+    }
+
+    /// The same under Student's law with [`FREEDOM`], since wheels slip
+    /// now and then, about as wide as half of the steps say.
+    fn nats(&self) -> f64 {
+        let of_motion = |left: &Vec<f64>| {
+            let width = median(left.iter().map(|v| v.abs())).max(EXACT);
+            let law = |v: &f64| (FREEDOM + 1.0) / 2.0 * libm::log1p(v * v / (FREEDOM * width * width));
+            left.iter().map(|v| law(v) + libm::log(width)).sum::<f64>()
+        };
+        self.left.iter().map(of_motion).sum()
+    }
+}
+
+/// What had been moved at a time, between two frames; `None` outside the track and in its gaps.
+fn at(track: &[Moved], t_ms: f64) -> Option<[f64; MOTIONS]> {
+    let after = track.partition_point(|frame| frame.t_ms < t_ms);
+    let (before, after) = (track.get(after.checked_sub(1)?)?, track.get(after)?);
+    let span_ms = after.t_ms - before.t_ms;
+    if span_ms > GAP_MS {
+        return None;
+    }
+    let share = (t_ms - before.t_ms) / span_ms;
+    Some(std::array::from_fn(|motion| before.by[motion] + share * (after.by[motion] - before.by[motion])))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A number in -1..1 from a counter.
+    fn noise(n: u64) -> f64 {
+        let mut x = n.wrapping_mul(0x9E37_79B9_7F4A_7C15) ^ 0xD1B5_4A32_D192_ED03;
+        x = (x ^ (x >> 31)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        x ^= x >> 29;
+        (x >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+    }
+
+    /// Rates of motion held for 400 ms steps, integrated.
+    fn truth(seed: u64, t_ms: f64) -> [f64; MOTIONS] {
+        let t_s = t_ms.max(0.0) / 1000.0;
+        let whole = (t_s / 0.4) as u64;
+        let rate = |k: u64| [1.5 * noise(seed + 2 * k), 20.0 * noise(seed + 2 * k + 1)];
+        let mut sum = [0.0; MOTIONS];
+        for k in 0..=whole {
+            let share = if k == whole { t_s - 0.4 * whole as f64 } else { 0.4 };
+            sum.iter_mut().zip(rate(k)).for_each(|(sum, rate)| *sum += rate * share);
+        }
+        sum
+    }
+
+    #[test]
+    fn offset_and_drift_are_found_within_fifteen_milliseconds() {
+        for seed in 0..20u64 {
+            let salt = seed * 100_000;
+            let clocks =
+                Clocks { offset_ms: 3_000.0 + 50_000.0 * noise(salt + 7).abs(), drift: 3e-4 * noise(salt + 8) };
+            let log: Vec<Moved> = (0..=150u64)
+                .map(|k| {
+                    let t_ms = 400.0 * k as f64 + 15.0 * noise(salt + 9_000 + k).abs();
+                    let by = truth(salt, t_ms);
+                    Moved {
+                        t_ms,
+                        by: [1.07 * by[0] + 0.02 * noise(salt + k), 0.94 * by[1] + 0.2 * noise(salt + 1 + k)],
+                    }
+                })
+                .collect();
+            let track: Vec<Moved> = (0..4_500u64)
+                .filter(|k| !(900..1_000).contains(k) && k % 17 != 3)
+                .map(|k| {
+                    let t_ms = 33.0 * k as f64 + 4.0 * noise(salt + 20_000 + k);
+                    let by = truth(salt, ((t_ms - clocks.offset_ms) / (1.0 + clocks.drift)).clamp(0.0, 60_000.0));
+                    Moved {
+                        t_ms,
+                        by: [by[0] + 0.01 * noise(salt + 30_000 + k), by[1] + 0.3 * noise(salt + 40_000 + k)],
+                    }
+                })
+                .collect();
+            let found = align(&log, &track).unwrap();
+            for brick_ms in [0.0, 30_000.0, 60_000.0] {
+                let off_ms = found.clocks.camera_ms(brick_ms) - clocks.camera_ms(brick_ms);
+                assert!(off_ms.abs() < 15.0, "seed {seed}: off by {off_ms} ms at {brick_ms}: {found:?}");
+            }
+            assert!(found.unexplained < 0.2 * found.unexplained_elsewhere, "{found:?}");
+        }
+    }
+
+    #[test]
+    fn nothing_is_matched_without_overlap_or_motion() {
+        let still = |n: u64, ms: f64| (0..n).map(|k| Moved { t_ms: ms * k as f64, by: [0.0; 2] }).collect::<Vec<_>>();
+        assert_eq!(align(&still(150, 400.0), &still(2_000, 33.0)), None);
+        assert_eq!(align(&still(150, 400.0), &still(300, 33.0)), None);
+        assert_eq!(align(&still(150, 400.0), &[]), None);
+    }
+}

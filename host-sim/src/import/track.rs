@@ -1,0 +1,180 @@
+//! A camera's track: where the robot was seen, frame by frame, on the camera's own clock.
+
+mod columns;
+mod motive;
+
+use std::path::{Path, PathBuf};
+
+pub use columns::{Angle, Length, Time, Units};
+
+use super::TrackReport;
+use super::motion::{Moved, by_camera};
+use crate::geometry::{Pose, wrap_rad};
+use crate::logs::Robot;
+use crate::problem::{Problem, Result};
+
+/// A camera's track.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Track {
+    /// Where it was read.
+    pub file: PathBuf,
+    /// The frames in which the robot was seen, in order of time.
+    frames: Vec<Frame>,
+    lost: usize,
+    jumps: usize,
+}
+
+/// A frame in which the robot was seen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Frame {
+    /// Time on the camera's clock.
+    pub t_ms: f64,
+    /// The axle's middle, in the scene's frame.
+    pub pose: Pose,
+}
+
+/// What a track says of a moment.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Seen {
+    /// The robot was here.
+    At(Pose),
+    /// Nothing, since the robot was lost.
+    Lost,
+    /// Nothing, since it was before the first or after the last frame.
+    Outside,
+}
+
+/// Frames farther apart than this are a gap, across which nothing is known.
+pub const GAP_MS: f64 = 250.0;
+/// Wheels never turn faster than this times full speed, and trackers err by a few centimetres and degrees.
+const FASTEST: f64 = 1.5;
+const ERR_CM: f64 = 4.0;
+const ERR_RAD: f64 = 0.25;
+
+impl Track {
+    /// Reads a track, with columns that name their units or a rigid body that Motive exported.
+    ///
+    /// # Errors
+    /// When the file is missing or broken, when a column or its unit is not told, or with fewer than two seen frames.
+    pub fn read(file: &Path, units: &Units, robot: &Robot) -> Result<Self> {
+        let text = crate::files::read_text(file)?;
+        let frames =
+            if motive::is_one(&text) { motive::frames(file, &text) } else { columns::frames(file, &text, units) };
+        let frames = frames?;
+        let all = frames.len();
+        let seen: Vec<Frame> = frames.into_iter().flatten().collect();
+        let (lost, whole) = (all - seen.len(), seen.len());
+        if let Some(pair) = seen.windows(2).find(|pair| pair[1].t_ms <= pair[0].t_ms) {
+            let what = format!("time {} ms does not come after {} ms", pair[1].t_ms, pair[0].t_ms);
+            return Err(Problem::in_file(file, what));
+        }
+        let frames = without_jumps(seen, robot);
+        if frames.len() < 2 {
+            return Err(Problem::in_file(file, format!("has {} frame(s) in which the robot was seen", frames.len())));
+        }
+        Ok(Track { file: file.to_owned(), lost, jumps: whole - frames.len(), frames })
+    }
+
+    /// How many frames there were, and how many of them are not used.
+    pub fn report(&self) -> TrackReport {
+        let Track { file, frames, lost, jumps } = self;
+        TrackReport { file: file.clone(), frames: frames.len() + lost + jumps, lost: *lost, jumps: *jumps }
+    }
+
+    /// How the robot moved.
+    pub fn motion(&self) -> Vec<Moved> {
+        by_camera(&self.frames)
+    }
+
+    /// Where the robot was at a time, between two frames in proportion.
+    pub fn at(&self, t_ms: f64) -> Seen {
+        let after = self.frames.partition_point(|frame| frame.t_ms < t_ms);
+        let (Some(after), Some(before)) = (self.frames.get(after), after.checked_sub(1).map(|i| &self.frames[i]))
+        else {
+            return Seen::Outside;
+        };
+        let span_ms = after.t_ms - before.t_ms;
+        if span_ms > GAP_MS {
+            return Seen::Lost;
+        }
+        let share = (t_ms - before.t_ms) / span_ms;
+        let turn_rad = wrap_rad(after.pose.heading_rad - before.pose.heading_rad);
+        let at_cm = before.pose.position_cm.lerp(after.pose.position_cm, share);
+        Seen::At(Pose::new(at_cm.x, at_cm.y, before.pose.heading_rad + share * turn_rad))
+    }
+}
+
+impl Seen {
+    /// The pose, if there is one.
+    pub fn pose(&self) -> Option<Pose> {
+        match self {
+            Seen::At(pose) => Some(*pose),
+            Seen::Lost | Seen::Outside => None,
+        }
+    }
+}
+
+/// The frames that the robot can have reached from the last one that counts.
+fn without_jumps(frames: Vec<Frame>, robot: &Robot) -> Vec<Frame> {
+    let cm_ms = FASTEST * robot.full_speed_cm_s / 1000.0;
+    let rad_ms = 2.0 * cm_ms / robot.track_cm;
+    let mut kept: Vec<Frame> = Vec::with_capacity(frames.len());
+    for frame in frames {
+        let can_be = kept.last().is_none_or(|last| {
+            let (change, ms) = (last.pose.relative(&frame.pose), frame.t_ms - last.t_ms);
+            change.position_cm.length() <= ERR_CM + cm_ms * ms && change.heading_rad.abs() <= ERR_RAD + rad_ms * ms
+        });
+        if can_be {
+            kept.push(frame);
+        }
+    }
+    kept
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::built_in_robot::default_robot;
+
+    fn read(text: &str) -> Result<Track> {
+        let folder = tempfile::tempdir().expect("a folder");
+        let file = folder.path().join("track.csv");
+        crate::files::write(&file, text)?;
+        Track::read(&file, &Units::default(), &default_robot())
+    }
+
+    #[test]
+    fn poses_are_known_between_frames_and_nowhere_else() {
+        let text = "time_s,x_m,y_m,heading_rad\n10,0.1,0.2,3.1\n10.1,0.11,0.2,-3.1\n11,0.2,0.2,\n11.5,0.21,0.2,3.0\n";
+        let track = read(text).expect("a track");
+        assert_eq!((track.frames.len(), track.lost, track.jumps), (3, 1, 0));
+        let pose = track.at(10_050.0).pose().expect("seen");
+        assert!((pose.position_cm.x - 10.5).abs() < 1e-9 && pose.heading_rad.abs() > 3.1, "{pose:?}");
+        assert_eq!([9_999.0, 10_500.0, 11_501.0].map(|ms| track.at(ms)), [Seen::Outside, Seen::Lost, Seen::Outside]);
+    }
+
+    #[test]
+    fn a_jump_there_and_back_is_left_out() {
+        let frame = |i: usize| format!("{},{},50,0\n", 33 * i, if i == 7 { 140.0 } else { 20.0 + i as f64 });
+        let text = "t_ms,x_cm,y_cm,heading_deg\n".to_owned() + &(0..20).map(frame).collect::<String>();
+        let track = read(&text).expect("a track");
+        assert_eq!((track.frames.len(), track.jumps), (19, 1));
+    }
+
+    #[test]
+    fn what_is_no_track_is_refused() {
+        for (text, what) in [
+            ("", "no column"),
+            ("t_ms,x_cm,y_cm,heading_deg\n", "0 frame(s)"),
+            ("t_ms,x_cm,y_cm,heading_deg\n0,1,1,0\n0,1,1,0\n", "does not come after"),
+            ("t_ms,x_cm,y_cm,heading_deg\n0,1,far,0\n", ":2: y_cm = \"far\" is no number"),
+            ("t_ms,x_cm,y_cm,heading_deg\n0,1,inf,0\n", ":2: y_cm = \"inf\" is no number"),
+            ("t_ms,x_cm,y_cm\n0,1,1\n", ":1: no column for the heading"),
+            ("t,x,y,theta\n0,1,1,0\n", ":1: column t does not tell its unit"),
+            ("t_ms,x_cm,x_mm,y_cm,heading_deg\n0,1,1,1,0\n", ":1: more than one column for x"),
+        ] {
+            let problem = read(text).expect_err(text).to_string();
+            assert!(problem.contains(what), "{text:?} gave {problem}");
+        }
+    }
+}

@@ -1,0 +1,156 @@
+//! Tracks as plain CSV: columns whose names tell quantity and unit, such as `time_s`, `x_m`, `y_m`, `yaw_rad`.
+
+use std::path::Path;
+
+use clap::ValueEnum;
+use csv::{ReaderBuilder, StringRecord};
+
+use super::Frame;
+use crate::files::csv_problem;
+use crate::geometry::Pose;
+use crate::problem::{Problem, Result};
+
+/// Units of columns whose names tell none.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Units {
+    /// Of the time.
+    pub time: Option<Time>,
+    /// Of x and y.
+    pub length: Option<Length>,
+    /// Of the heading.
+    pub angle: Option<Angle>,
+}
+
+/// A unit of time.
+#[derive(Clone, Copy, Debug, PartialEq, ValueEnum)]
+pub enum Time {
+    /// Seconds
+    S,
+    /// Milliseconds
+    Ms,
+    /// Microseconds
+    Us,
+}
+
+/// A unit of length.
+#[derive(Clone, Copy, Debug, PartialEq, ValueEnum)]
+pub enum Length {
+    /// Metres
+    M,
+    /// Centimetres
+    Cm,
+    /// Millimetres
+    Mm,
+}
+
+/// A unit of angle.
+#[derive(Clone, Copy, Debug, PartialEq, ValueEnum)]
+pub enum Angle {
+    /// Degrees
+    Deg,
+    /// Radians
+    Rad,
+}
+
+/// What a column may be called before its unit.
+const TIME: [&str; 3] = ["t", "time", "timestamp"];
+const X: [&str; 1] = ["x"];
+const Y: [&str; 1] = ["y"];
+const HEADING: [&str; 3] = ["heading", "yaw", "theta"];
+
+/// The frames of a track; `None` where the robot was lost: a cell of the pose is empty or `nan`.
+pub(super) fn frames(file: &Path, text: &str, units: &Units) -> Result<Vec<Option<Frame>>> {
+    let mut reader = ReaderBuilder::new().trim(csv::Trim::All).from_reader(text.as_bytes());
+    let header = reader.headers().map_err(|e| csv_problem(file, &e))?.clone();
+    let find =
+        |what: &str, names: &[&str]| Column::find(&header, what, names).map_err(|e| Problem::at_line(file, 1, e));
+    let [time, x, y, heading] = [find("time", &TIME)?, find("x", &X)?, find("y", &Y)?, find("the heading", &HEADING)?];
+    let of_unit = |e| Problem::at_line(file, 1, e);
+    let ms = time.unit(units.time, "--time-unit").map_err(of_unit)?.ms();
+    let [x_unit, y_unit] = [&x, &y].map(|column| column.unit(units.length, "--length-unit"));
+    let (x_cm, y_cm) = (x_unit.map_err(of_unit)?.cm(), y_unit.map_err(of_unit)?.cm());
+    let rad = heading.unit(units.angle, "--angle-unit").map_err(of_unit)?.rad();
+    let mut frames = Vec::new();
+    for record in reader.records() {
+        let record = record.map_err(|e| csv_problem(file, &e))?;
+        let line = record.position().map_or(0, csv::Position::line);
+        let number = |column: &Column| column.number(&record).map_err(|what| Problem::at_line(file, line, what));
+        let t_ms = number(&time)?.ok_or_else(|| Problem::at_line(file, line, format!("{} is empty", time.name)))? * ms;
+        let pose = match (number(&x)?, number(&y)?, number(&heading)?) {
+            (Some(x), Some(y), Some(heading)) => Some(Pose::new(x * x_cm, y * y_cm, heading * rad)),
+            _ => None,
+        };
+        frames.push(pose.map(|pose| Frame { t_ms, pose }));
+    }
+    Ok(frames)
+}
+
+/// A column of the file.
+struct Column {
+    name: String,
+    place: usize,
+    /// What its name says after the quantity; empty when nothing.
+    unit: String,
+}
+
+impl Column {
+    fn find(header: &StringRecord, what: &str, names: &[&str]) -> std::result::Result<Self, String> {
+        let mut found = header.iter().enumerate().filter_map(|(place, name)| {
+            let lower = name.to_lowercase();
+            let (quantity, unit) = lower.split_once('_').unwrap_or((&lower, ""));
+            names.contains(&quantity).then(|| Column { name: name.into(), place, unit: unit.into() })
+        });
+        match (found.next(), found.next()) {
+            (Some(column), None) => Ok(column),
+            (None, _) => Err(format!("no column for {what}: it has to be called {}, with a unit", names.join(" or "))),
+            (Some(one), Some(other)) => {
+                Err(format!("more than one column for {what}: {} and {}", one.name, other.name))
+            }
+        }
+    }
+
+    fn unit<U: ValueEnum>(&self, unless_told: Option<U>, option: &str) -> std::result::Result<U, String> {
+        if self.unit.is_empty() {
+            return unless_told.ok_or_else(|| format!("column {} does not tell its unit: give {option}", self.name));
+        }
+        U::from_str(&self.unit, true).map_err(|_| format!("column {} has an unknown unit", self.name))
+    }
+
+    fn number(&self, record: &StringRecord) -> std::result::Result<Option<f64>, String> {
+        let cell = record.get(self.place).unwrap_or_default();
+        if cell.is_empty() || cell.eq_ignore_ascii_case("nan") {
+            return Ok(None);
+        }
+        let number = cell.parse::<f64>().ok().filter(|v| v.is_finite());
+        number.map(Some).ok_or_else(|| format!("{} = {cell:?} is no number", self.name))
+    }
+}
+
+impl Time {
+    fn ms(self) -> f64 {
+        match self {
+            Time::S => 1e3,
+            Time::Ms => 1.0,
+            Time::Us => 1e-3,
+        }
+    }
+}
+
+impl Length {
+    pub(super) fn cm(self) -> f64 {
+        match self {
+            Length::M => 100.0,
+            Length::Cm => 1.0,
+            Length::Mm => 0.1,
+        }
+    }
+}
+
+impl Angle {
+    fn rad(self) -> f64 {
+        match self {
+            Angle::Deg => std::f64::consts::PI / 180.0,
+            Angle::Rad => 1.0,
+        }
+    }
+}

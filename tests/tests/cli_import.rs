@@ -1,0 +1,162 @@
+//! `mindgap import` on drives of the built-in robot, split into what a brick logs and what a camera sees.
+
+use mindgap_host_sim::built_in_robot::{BuiltInRobot, default_robot};
+use mindgap_host_sim::chance::{Generator, generator};
+use mindgap_host_sim::geometry::Pose;
+use mindgap_host_sim::logs::{Logs, Scene};
+use mindgap_tests::command::Workshop;
+use rand::RngExt;
+
+/// Offsets have to be found this well.
+const ALIGNED_MS: f64 = 15.0;
+const STEPS: usize = 60;
+const STEP_MS: f64 = 400.0;
+/// A camera's frame comes after three or four of these.
+const SLICE_MS: f64 = 10.0;
+const SIDE_CM: f64 = 1000.0;
+const SCENE: &str = "[arena]\nwidth_cm = 1000\nheight_cm = 1000\n";
+const CALL: &str = "import run-000.csv track.csv --scene scene.toml --robot robot.toml --out logs --json report.json";
+
+/// The camera's clock against the brick's.
+#[derive(Clone, Copy)]
+struct Camera {
+    offset_ms: f64,
+    drift: f64,
+}
+
+impl Camera {
+    fn ms(&self, brick_ms: f64) -> f64 {
+        self.offset_ms + (1.0 + self.drift) * brick_ms
+    }
+}
+
+/// What is left of a drive.
+struct Drive {
+    brick_log: String,
+    /// The robot stands for three seconds before and after it drives; a second and a half is lost, and jumps are in it.
+    track: String,
+    /// Where the robot was at every row.
+    poses: Vec<Pose>,
+}
+
+fn drive(seed: u64, camera: Camera) -> Drive {
+    let rng = &mut generator(seed, &[1]);
+    let scene = Scene { arena_cm: Some(glam::DVec2::splat(SIDE_CM)), ..Scene::default() };
+    let robot = BuiltInRobot::new(&default_robot(), &scene, &[]);
+    let mut body = robot.start(Pose::new(SIDE_CM / 2.0, SIDE_CM / 2.0, 0.0), rng);
+    let mut brick_log = "t_ms,left,right,rot_left_deg,rot_right_deg,battery_mv,echo_cm\r\n".to_owned();
+    let mut track = "time_s,x_m,y_m,yaw_rad\n".to_owned();
+    let mut poses = Vec::new();
+    let mut frame = |brick_ms: f64, pose: Option<Pose>, rng: &mut Generator| {
+        let time_s = (camera.ms(brick_ms) + rng.random_range(-4.0..4.0)) / 1000.0;
+        let lost = (9_000.0..10_500.0).contains(&brick_ms) || rng.random_bool(0.05);
+        let jump_m = if rng.random_bool(0.01) { 0.8 } else { 0.0 };
+        let seen = pose.filter(|_| !lost).map(|p| (p.position_cm / 100.0, p.heading_rad));
+        track += &match seen {
+            Some((at_m, rad)) => format!("{time_s:.4},{:.4},{:.4},{rad:.4}\n", at_m.x + jump_m, at_m.y),
+            None => format!("{time_s:.4},,,\n"),
+        };
+    };
+    (1..90).rev().for_each(|i| frame(-35.0 * f64::from(i), body.track(rng), rng));
+    let mut command = [0.0; 2];
+    for step in 0..=STEPS {
+        if step % 2 == 0 {
+            command = [rng.random_range(-40..80), rng.random_range(-40..80)].map(f64::from);
+        }
+        let t_ms = STEP_MS * step as f64;
+        let row = body.row(command, body.clone().read_sonar(rng), rng);
+        let counters = [row.rot_left_deg, row.rot_right_deg].map(|deg| deg.map_or(0.0, f64::round));
+        let echo = row.echo_cm.map_or(String::new(), |cm| format!("{cm:.0}"));
+        let [left, right] = command;
+        brick_log += &format!("{t_ms},{left},{right},{},{},8000,{echo}\r\n", counters[0], counters[1]);
+        poses.push(body.true_pose());
+        for slice in 0..40 {
+            if slice % 7 == 0 || slice % 7 == 4 {
+                frame(t_ms + SLICE_MS * f64::from(slice), body.track(rng), rng);
+            }
+            let [left, right] = if step == STEPS { [0.0; 2] } else { command };
+            body.drive([left, right], SLICE_MS, rng);
+        }
+    }
+    let end_ms = STEP_MS * (STEPS + 1) as f64;
+    (0..90).for_each(|i| frame(end_ms + 35.0 * f64::from(i), body.track(rng), rng));
+    assert!(!body.crashed());
+    Drive { brick_log, track, poses }
+}
+
+/// A folder with robot, scene, and a drive's two files.
+fn workshop(drive: &Drive) -> Workshop {
+    let workshop = Workshop::new();
+    default_robot().write(&workshop.path().join("robot.toml")).expect("a folder that can be written");
+    workshop.write("scene.toml", SCENE);
+    workshop.write("run-000.csv", &drive.brick_log);
+    workshop.write("track.csv", &drive.track);
+    workshop
+}
+
+#[test]
+fn clocks_are_aligned_and_poses_are_those_of_the_rows() {
+    for seed in 0..12u64 {
+        let rng = &mut generator(seed, &[2]);
+        let camera = Camera { offset_ms: rng.random_range(-9e4..9e5), drift: rng.random_range(-2e-4..2e-4) };
+        let drive = drive(seed, camera);
+        let workshop = workshop(&drive);
+        workshop.done(CALL);
+        let run = workshop.json("report.json")["logs"][0]["run"].clone();
+        let number = |name: &str| run[name].as_f64().expect("a number");
+        for brick_ms in [0.0, STEP_MS * STEPS as f64] {
+            let off_ms = number("offset_ms") + (1.0 + number("drift")) * brick_ms - camera.ms(brick_ms);
+            assert!(off_ms.abs() < ALIGNED_MS, "seed {seed}: off by {off_ms} ms at {brick_ms} ms: {run}");
+        }
+        assert!((3.0..7.0).contains(&number("in_gaps")) && number("outside") == 0.0, "{run}");
+        let jumps = workshop.json("report.json")["tracks"][0]["jumps"].as_f64().expect("a number");
+        assert!((1.0..30.0).contains(&jumps), "{jumps}");
+        let logs = Logs::read(&workshop.path().join("logs"), |warning| panic!("{warning}")).expect("logs");
+        for (row, pose) in logs.runs[0].rows.iter().zip(&drive.poses) {
+            let off_cm = row.pose.map_or(0.0, |seen| seen.position_cm.distance(pose.position_cm));
+            assert!(off_cm < 2.5, "seed {seed}: {off_cm} cm off at {} ms", row.t_ms);
+        }
+    }
+}
+
+#[test]
+fn several_runs_find_their_tracks() {
+    let cameras = [3e4, -2e3, 7e5].map(|offset_ms| Camera { offset_ms, drift: 5e-5 });
+    let [first, second, third] = [21, 22, 23].map(|seed| drive(seed, cameras[seed as usize - 21]));
+    let workshop = workshop(&first);
+    workshop.write("tired.csv", &second.brick_log);
+    workshop.write("long.csv", second.track + third.track.split_once('\n').expect("a header").1);
+    workshop.write("other.csv", &third.brick_log);
+    workshop.write("torn.csv", &first.brick_log[..first.brick_log.len() - 9]);
+    let said = workshop.done(&CALL.replace("run-000.csv", "run-000.csv long.csv tired.csv other.csv torn.csv"));
+    assert!(said.contains("torn.csv: the last line has no end and is left out"), "{said}");
+    let report = workshop.json("report.json");
+    let of = |log: usize| report["logs"][log]["run"]["track"].as_str().map(str::to_owned);
+    let tracks = ["track.csv", "long.csv", "long.csv", "track.csv"].map(|name| Some(name.to_owned()));
+    assert_eq!([of(0), of(1), of(2), of(3)], tracks, "{said}");
+    workshop.done("diagnose kinematic logs");
+}
+
+#[test]
+fn what_does_not_belong_together_is_refused() {
+    let camera = Camera { offset_ms: 5e3, drift: 0.0 };
+    let drive_of = |seed| drive(seed, camera);
+    let workshop = workshop(&drive_of(31));
+    workshop.write("track.csv", drive_of(32).track);
+    let refusal = workshop.refused(CALL);
+    assert!(refusal.starts_with("run-000.csv: no track saw it"), "{refusal}");
+    let brief: String = drive_of(31).track.lines().take(40).map(|line| line.to_owned() + "\n").collect();
+    workshop.write("track.csv", brief);
+    let refusal = workshop.refused(CALL);
+    assert!(refusal.starts_with("run-000.csv: no track overlaps it"), "{refusal}");
+    workshop.write("track.csv", drive(31, Camera { drift: 0.01, ..camera }).track);
+    let refusal = workshop.refused(CALL);
+    assert!(refusal.contains("run apart by 10.") || refusal.contains("run apart by 9."), "{refusal}");
+    let refusal = workshop.refused(&CALL.replace("track.csv", ""));
+    assert!(refusal.contains("no track of a camera"), "{refusal}");
+    let refusal = workshop.refused(&CALL.replace("run-000.csv", ""));
+    assert!(refusal.contains("no log of a brick"), "{refusal}");
+    workshop.write("track.csv", "t,x,y,theta\n0,1,1,0\n33,1,1,0\n");
+    let refusal = workshop.refused(CALL);
+    assert!(refusal.starts_with("track.csv:1: column t does not tell its unit: give --time-unit"), "{refusal}");
+}
