@@ -34,6 +34,8 @@ pub struct Leftover {
     pub fitted: Fitted,
     /// Its gain on each block, zero where it is not significant.
     pub by_block: Vec<f64>,
+    /// Whether it follows circumstances in this channel.
+    follows: bool,
     /// Whether the logs scatter more than the simulator in this channel.
     scatters: bool,
 }
@@ -62,13 +64,24 @@ impl Leftover {
         };
         likelihood(own).iter().zip(likelihood(narrow)).map(|(a, b)| a - b).collect()
     }
+
+    /// This if it gains something over the fit `beneath` on runs that it was not fitted on, and nothing otherwise.
+    fn confirmed(self, beneath: &Fitted, found: &Given, kept_back: &Evidence) -> Self {
+        let followed =
+            if self.follows { judged(&self.fitted, found, kept_back) - judged(beneath, found, kept_back) } else { 0.0 };
+        let scattered: f64 = self.wider_scatter(found, kept_back).iter().sum();
+        if followed + scattered >= LEAST_CONFIRMED_NATS {
+            return self;
+        }
+        Leftover { by_block: vec![0.0; self.by_block.len()], follows: false, scatters: false, ..self }
+    }
 }
 
 /// Where many others could stand for an effect it has to gain so many times what it has to otherwise.
 const IF_VAGUE: f64 = 2.0;
 /// Another effect could stand for one when its weight is this: it lags by two standard errors.
 const IN_REACH: f64 = 0.12;
-/// On the runs kept back the effects have to gain this many nats.
+/// On the runs kept back the effects have to gain this many nats, and so has the learner.
 const LEAST_CONFIRMED_NATS: f64 = 3.0;
 /// A further effect on the same stage has to gain this share of what is explained already: less is within the reach of
 /// a form that is not quite right.
@@ -123,15 +136,27 @@ impl Explanation {
         Explanation { none, chosen, rivals: Vec::new(), beyond_none: Vec::new(), beyond_chosen, calibration }
     }
 
-    /// What holds on runs that nothing was sought on: effects that gain nothing there explain nothing.
-    pub fn confirmed(self, found: &Given, kept_back: &Evidence) -> Self {
-        let judged = |fit: &Fitted| fit.judged_on(kept_back, found).total().iter().sum::<f64>();
-        if self.chosen.ids().is_empty() || judged(&self.chosen) - judged(&self.none) >= LEAST_CONFIRMED_NATS {
-            return self;
+    /// What holds on runs that nothing was sought on: effects that gain nothing there explain nothing, and neither does
+    /// the learner.
+    pub fn confirmed(mut self, found: &Given, kept_back: &Evidence) -> Self {
+        let gained = judged(&self.chosen, found, kept_back) - judged(&self.none, found, kept_back);
+        if !self.chosen.ids().is_empty() && gained < LEAST_CONFIRMED_NATS {
+            self.chosen = self.none.clone();
+            self.rivals = Vec::new();
+            self.beyond_chosen = leftovers(&self.none, found);
         }
-        let beyond_chosen = leftovers(&self.none, found);
-        Explanation { chosen: self.none.clone(), rivals: Vec::new(), beyond_chosen, ..self }
+        let hold = |leftovers: Vec<Leftover>, beneath: &Fitted| {
+            leftovers.into_iter().map(|l| l.confirmed(beneath, found, kept_back)).collect()
+        };
+        self.beyond_none = hold(self.beyond_none, &self.none);
+        self.beyond_chosen = hold(self.beyond_chosen, &self.chosen);
+        self
     }
+}
+
+/// The log-likelihood of runs that a fit was not made on.
+fn judged(fit: &Fitted, found: &Given, kept_back: &Evidence) -> f64 {
+    fit.judged_on(kept_back, found).total().iter().sum()
 }
 
 /// The first signs of a gap, before any threshold: what the best effect gains, and the most that the generic learner
@@ -188,9 +213,9 @@ fn leftovers(fit: &Fitted, logs: &Given) -> Vec<Leftover> {
         .map(|channel| {
             let fitted = fit.with(generic::form(*channel), logs);
             let gains = fitted.gains_over(fit);
-            let counts = Gain::of(&gains).passes(&logs.calibration.leftover);
-            let by_block = if counts { gains } else { vec![0.0; gains.len()] };
-            let mut leftover = Leftover { channel: *channel, fitted, by_block, scatters: true };
+            let follows = Gain::of(&gains).passes(&logs.calibration.leftover);
+            let by_block = if follows { gains } else { vec![0.0; gains.len()] };
+            let mut leftover = Leftover { channel: *channel, fitted, by_block, follows, scatters: true };
             let wider = leftover.wider_scatter(logs, logs.evidence);
             leftover.scatters = Gain::of(&wider).nats >= logs.calibration.leftover.nats;
             if leftover.scatters {
