@@ -96,9 +96,9 @@ fn what_no_effect_could_be_is_refused() {
 
 #[test]
 fn a_controllers_ends_are_foretold_better_with_the_effect() {
-    let tuple = |left, right, threshold_cm| Tuple { left, right, when: When::Smaller, threshold_cm };
-    let tuples = [(60, 60, 60), (40, -40, 10), (60, 60, 60), (-30, -30, 10), (40, 40, 60), (40, -40, 10)];
-    let controller = Controller { step_ms: 400, max_steps: 20, tuples: tuples.map(|(l, r, t)| tuple(l, r, t)) };
+    // It drives an arc and waits for a reading that never comes: what chance adds to its end stays small.
+    let tuple = Tuple { left: 60, right: 52, when: When::Smaller, threshold_cm: 1 };
+    let controller = Controller { step_ms: 400, max_steps: 10, tuples: [tuple; 6] };
     let scene = four_obstacles();
     let robot = BuiltInRobot::new(&default_robot(), &scene, &["drive_scale=1.15".parse().expect("an effect")]);
     let mut rng = generator(9, &[]);

@@ -131,7 +131,7 @@ mod tests {
     #[test]
     fn what_is_often_wrong_is_trusted_less() {
         let answers = |wrong: usize| -> Vec<Measured> {
-            (0..100).map(|i| measured(if i < wrong { 0.0 } else { 1.0 }, 1.0, 0.0)).collect()
+            (0..100).map(|i| measured(if i < wrong { 0.0 } else { 1.0 }, 0.9, 0.0)).collect()
         };
         let trust = |wrong: usize| weighed(open(&nulls()), &answers(wrong)).trust;
         assert_eq!([trust(0), trust(5), trust(15)], [0.99, 0.95, 0.85]);
