@@ -8,7 +8,7 @@ use crate::nxc::source::{log_bytes, log_rows};
 use crate::onboard::FREE_FLASH_BYTES;
 
 /// Bytecode instructions in a millisecond, at least.
-const INSTRUCTIONS_PER_MS: u32 = 80;
+pub(crate) const INSTRUCTIONS_PER_MS: u32 = 80;
 /// How long a sensor that hangs keeps its port busy; the next exchange has to begin after that.
 const HANG_MS: u32 = 100;
 /// Writing a row: a page of flash now and then.

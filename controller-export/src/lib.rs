@@ -3,6 +3,7 @@
 //! * [`nxc`]: readable NXC source for the LEGO NXT's standard firmware.
 //! * [`rxe`]: the compiled program itself, a third of the size.
 //! * [`rust`], [`c`]: constants for the core, and a header for everything that speaks C.
+//! * [`nxc_networks`], [`rust_networks`]: a simulator's networks in fixed point, in NXC and Rust.
 //! * [`collect`]: a program that drives at random and logs, in NXC.
 //! * [`brick`]: a brick in software, which runs such programs and proves them equal.
 //! * [`wiring`], [`names`], [`onboard`], [`origin`]: what the formats share: ports, file names on the brick, what a
@@ -18,6 +19,7 @@ pub mod collect;
 pub mod error;
 pub mod names;
 pub mod nxc;
+pub mod nxc_networks;
 pub mod onboard;
 pub mod origin;
 pub mod rust;

@@ -3,6 +3,7 @@
 use std::sync::LazyLock;
 
 use mindgap_tests::command::Workshop;
+use mindgap_tests::nbc::compile;
 use serde_json::{Value, json};
 
 /// A folder with a simulator and logs that it was not trained on.
@@ -160,13 +161,16 @@ fn a_network_that_cannot_be_represented_is_refused() {
 }
 
 #[test]
-fn networks_are_exported_as_rust_alone() {
+fn networks_are_exported_as_rust_and_nxc_alone() {
     let workshop = workshop();
     assert_eq!(workshop.done("export sim.json --format rust --out networks.rs"), "networks.rs written\n");
     let source = workshop.text("networks.rs");
     for definition in ["TURN: FixedNetwork<4, 2>", "ECHO_VALUE: FixedNetwork<2, "] {
         assert!(source.contains(&format!("pub static {definition}")), "{source}");
     }
-    let problem = "sim.json: holds networks, which are exported with --format rust alone";
-    assert_eq!(workshop.refused("export sim.json --format nxc --out networks.nxc"), problem);
+    let said = workshop.done("export sim.json --format nxc --out networks.nxc");
+    assert!(said.starts_with("networks.nxc written\nprogram ") && said.contains("\nEchoValue "), "{said}");
+    compile(&format!("{} task main() {{ NumOut(0, LCD_LINE1, EchoValue(1, 2)); }}", workshop.text("networks.nxc")));
+    let problem = "sim.json: holds networks, which are exported with --format rust or nxc";
+    assert_eq!(workshop.refused("export sim.json --format rxe --out networks.rxe"), problem);
 }

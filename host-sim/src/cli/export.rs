@@ -5,9 +5,9 @@ mod collect;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
-use mindgap_controller_export::budget::Budget;
 use mindgap_controller_export::names::BrickName;
 use mindgap_controller_export::nxc::{self, NxcOptions};
+use mindgap_controller_export::nxc_networks::{self, nxc_networks};
 use mindgap_controller_export::rust_networks::rust_networks;
 use mindgap_controller_export::wiring::{MotorPort, SensorPort, Wiring};
 use mindgap_controller_export::{ExportError, Origin, c, collect as data_collection, rust, rxe};
@@ -22,7 +22,7 @@ use crate::simulator::fixed_point::FixedNetworks;
 /// program that collects a robot's first logs.
 #[derive(Args)]
 pub struct Export {
-    /// The controller file; or a simulator file, whose networks have the format rust alone. None for nxc-collect.
+    /// The controller file; or a simulator file, whose networks have the formats rust and nxc. None for nxc-collect.
     #[arg(
         value_name = "CONTROLLER",
         required_if_eq_any = [("format", "nxc"), ("format", "rxe"), ("format", "rust"), ("format", "c")]
@@ -74,7 +74,7 @@ impl Export {
         let (program, budget) = match &self.input {
             None => self.collection()?,
             // Simulators are JSON; no TOML begins like that.
-            Some(input) if files::read_text(input)?.trim_start().starts_with('{') => (self.networks(input)?, None),
+            Some(input) if files::read_text(input)?.trim_start().starts_with('{') => self.networks(input)?,
             Some(input) => self.controller(input)?,
         };
         files::write(&self.out, program)?;
@@ -82,29 +82,33 @@ impl Export {
         Ok(format!("{} written\n{budget}", self.out.display()))
     }
 
-    fn collection(&self) -> Result<(Vec<u8>, Option<Budget>)> {
+    fn collection(&self) -> Result<(Vec<u8>, Option<String>)> {
         let options = self.collect.options(self.program_name()?, self.wiring());
         let source = data_collection::program(&options).map_err(|e| Problem::in_file(&self.out, e.to_string()))?;
-        Ok((source.into_bytes(), Some(data_collection::budget(&options))))
+        Ok((source.into_bytes(), Some(data_collection::budget(&options).to_string())))
     }
 
-    fn networks(&self, input: &Path) -> Result<Vec<u8>> {
+    fn networks(&self, input: &Path) -> Result<(Vec<u8>, Option<String>)> {
         let simulator = Simulator::read(input)?;
-        if !matches!(self.format, Format::Rust) {
-            return Err(Problem::in_file(input, "holds networks, which are exported with --format rust alone"));
-        }
         let networks = FixedNetworks::quantise(&simulator).map_err(|problem| problem.or_in_file(input))?;
-        Ok(rust_networks(&networks.rust_definitions()).into_bytes())
+        match self.format {
+            Format::Rust => Ok((rust_networks(&networks.rust_definitions()).into_bytes(), None)),
+            Format::Nxc => {
+                let networks = networks.nxc_definitions();
+                Ok((nxc_networks(&networks).into_bytes(), Some(nxc_networks::budget(&networks).to_string())))
+            }
+            _ => Err(Problem::in_file(input, "holds networks, which are exported with --format rust or nxc")),
+        }
     }
 
-    fn controller(&self, input: &Path) -> Result<(Vec<u8>, Option<Budget>)> {
+    fn controller(&self, input: &Path) -> Result<(Vec<u8>, Option<String>)> {
         let file = ControllerFile::read(input)?;
         let refused = |e: ExportError| Problem::in_file(input, e.to_string());
         let (controller, origin) = (&file.controller, &Origin::from(&file));
         Ok(match self.format {
             Format::Rxe => {
                 self.program_name()?;
-                (rxe::program(controller, &self.wiring()).map_err(refused)?, Some(rxe::budget(controller)))
+                (rxe::program(controller, &self.wiring()).map_err(refused)?, Some(rxe::budget(controller).to_string()))
             }
             Format::NxcCollect => {
                 return Err(Problem::in_file(
@@ -118,7 +122,7 @@ impl Export {
                 let (program, wiring) = (self.program_name()?, self.wiring());
                 let options = NxcOptions { program, wiring, log: self.log.clone(), display: self.display };
                 let source = nxc::program(controller, origin, &options).map_err(refused)?;
-                (source.into_bytes(), Some(nxc::budget(controller, &options)))
+                (source.into_bytes(), Some(nxc::budget(controller, &options).to_string()))
             }
         })
     }

@@ -1,5 +1,6 @@
-//! A simulator's networks in fixed point, for a board: quantised, and as Rust source.
+//! A simulator's networks in fixed point, for a board or a brick: quantised, and as Rust or NXC source.
 
+use mindgap_controller_export::nxc_networks::NxcNetwork;
 use mindgap_controller_export::rust_networks::rust_network;
 use mindgap_core::fixed_network::{FixedNetwork, Quantised};
 
@@ -45,6 +46,20 @@ impl FixedNetworks {
             rust_network("LATERAL", "Way to the left in a step, cm.", &self.lateral.network),
             rust_network("ECHO_PROBABILITY", "Probability of an echo.", &self.echo_probability.network),
             rust_network("ECHO_VALUE", "Mean reading, cm.", &self.echo_value.network),
+        ]
+    }
+
+    /// The functions `Turn`, `Forward`, `Lateral`, `EchoProbability` and `EchoValue` in NXC, for
+    /// [`nxc_networks`](mindgap_controller_export::nxc_networks::nxc_networks).
+    pub fn nxc_definitions(&self) -> [NxcNetwork; 5] {
+        let commands = ["left", "right", "previous_left", "previous_right"];
+        let facing = ["distance_cm", "incidence_deg"];
+        [
+            NxcNetwork::new("Turn", "Turn to the left in a step, degrees.", commands, &self.turn.network),
+            NxcNetwork::new("Forward", "Way forward in a step, cm.", commands, &self.forward.network),
+            NxcNetwork::new("Lateral", "Way to the left in a step, cm.", commands, &self.lateral.network),
+            NxcNetwork::new("EchoProbability", "Probability of an echo.", facing, &self.echo_probability.network),
+            NxcNetwork::new("EchoValue", "Mean reading, cm.", facing, &self.echo_value.network),
         ]
     }
 }
