@@ -235,6 +235,39 @@ fn a_program_that_never_ends_runs_out_of_time() {
     assert_eq!((report.end, report.instructions), (End::OutOfTime, 100_000));
 }
 
+#[test]
+fn a_jump_outside_ends_the_program() {
+    const JUMP: [u8; 2] = 0x4025u16.to_le_bytes();
+    let intact = compile("task main() { int i; while (true) i++; }");
+    let place = intact.windows(2).rposition(|word| word == JUMP).expect("the loop jumps back") + 2;
+    for offset in [i16::MIN, -30_000, 1_000, i16::MAX] {
+        let mut rxe = intact.clone();
+        rxe[place..place + 2].copy_from_slice(&offset.to_le_bytes());
+        let report = brick::run(&Program::load(&rxe).unwrap(), &mut Script::default(), &Setup::default());
+        assert_eq!(report.end, End::Failed(Fault::Instruction), "{offset}");
+    }
+}
+
+/// The compiler refuses recursion, so calls are bent: among others every subroutine then calls itself.
+#[test]
+fn a_subroutine_that_calls_itself_does_not_hang_the_machine() {
+    let subs = "int n; sub Inner() { n++; } sub Outer() { Inner(); n++; Inner(); }";
+    let intact = compile(&format!("{subs} task main() {{ Outer(); Outer(); NumOut(0, LCD_LINE1, n); }}"));
+    let is_call = |place: &usize| intact[*place + 1] == 0x4b;
+    let calls: Vec<usize> = (0..intact.len() - 1).step_by(2).filter(is_call).collect();
+    assert!(calls.len() >= 4, "two calls of each");
+    let mut stuck = 0;
+    for (place, change) in calls.iter().flat_map(|place| (-3..=3).map(move |change: i8| (*place, change))) {
+        let mut rxe = intact.clone();
+        rxe[place] = rxe[place].wrapping_add_signed(change);
+        let Ok(program) = Program::load(&rxe) else { continue };
+        let report = brick::run(&program, &mut Script::default(), &Setup { run_ms: 500, ..Setup::default() });
+        assert!(report.ended_ms <= 500, "{report:?}");
+        stuck += usize::from(texts(&report) != ["6"]);
+    }
+    assert!(stuck > 0, "no call was bent into a circle");
+}
+
 /// A program that uses most of what there is.
 fn a_program() -> Vec<u8> {
     compile(
