@@ -167,9 +167,8 @@ impl Bench<'_> {
     fn of_reading(&self, row: &Row) -> f64 {
         let Some(sonar) = &self.baseline.sonar else { return 0.0 };
         let likelihood = |fit: &Fitted| {
-            let sensor = fit.hypothesis.sensor(&row.moment, &fit.values);
-            let fan = self.logs.fan(&sensor.robot, sensor.yaw_rad, sensor.width);
-            move |echo_cm: Option<f64>| sonar.log_likelihood(&fan, &sensor.change, echo_cm, None)[0]
+            let (fan, change) = fit.hypothesis.facing(self.logs, row, &fit.values);
+            move |echo_cm: Option<f64>| sonar.log_likelihood(&fan, &change, echo_cm, None)[0]
         };
         let (a, b) = (likelihood(self.chosen), likelihood(self.rival));
         let divergence = |echo_cm: Option<f64>, width: f64| {

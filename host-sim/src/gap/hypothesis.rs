@@ -10,7 +10,7 @@ use super::evidence::{Evidence, Row};
 use crate::ascent::Bounds;
 use crate::geometry::wrap_rad;
 use crate::simulator::added::Added;
-use crate::simulator::reference::sonar::Change;
+use crate::simulator::reference::sonar::{Change, Fan};
 
 /// Effects that are supposed to be there, in the order in which they are applied; none is the simulator as it is.
 #[derive(Clone)]
@@ -181,6 +181,13 @@ impl Hypothesis {
         sensor
     }
 
+    /// What the sensor faces at a row, and how its readings are changed.
+    pub fn facing(&self, evidence: &Evidence, row: &Row, values: &[f64]) -> (Fan, Change) {
+        let Sensor { robot, yaw_rad, width, change } = self.sensor(&row.moment, values);
+        let moved = robot != row.moment.pose || yaw_rad != 0.0 || width != 1.0;
+        (if moved { evidence.fan(&robot, yaw_rad, width) } else { row.fan }, change)
+    }
+
     /// What a row's step does, or those that are judged as one.
     pub fn predicted(&self, drive: &Drive, row: &Row, values: &[f64]) -> Motion {
         let usual = [row.moment.commands[0], row.moment.commands[1]];
@@ -232,10 +239,8 @@ impl Hypothesis {
     ) -> Vec<[f64; 2]> {
         let Some(sonar) = &baseline.sonar else { return vec![[0.0; 2]; rows.len()] };
         let term = |row: &Row| {
-            let sensor = self.sensor(&row.moment, values);
-            let moved = sensor.robot != row.moment.pose || sensor.yaw_rad != 0.0 || sensor.width != 1.0;
-            let fan = if moved { evidence.fan(&sensor.robot, sensor.yaw_rad, sensor.width) } else { row.fan };
-            let [all, rate] = sonar.log_likelihood(&fan, &sensor.change, row.echo_cm, row.previous_echo_cm);
+            let (fan, change) = self.facing(evidence, row, values);
+            let [all, rate] = sonar.log_likelihood(&fan, &change, row.echo_cm, row.previous_echo_cm);
             [rate, all - rate]
         };
         evidence.rows[rows].iter().map(term).collect()

@@ -39,11 +39,10 @@ pub fn predict(simulator: &Simulator, logs: &Logs) -> Result<Predictions> {
             all.turn.push([logged.turn_rad, predicted.turn_rad].map(f64::to_degrees));
         }
         if let (Some(sonar), Some(_)) = (&baseline.sonar, row.moment.faced) {
-            let sensor = effects.sensor(&row.moment, &[]);
-            let fan = evidence.fan(&sensor.robot, sensor.yaw_rad, sensor.width);
-            let [none, _] = sonar.log_likelihood(&fan, &sensor.change, None, None);
+            let (fan, change) = effects.facing(&evidence, row, &[]);
+            let [none, _] = sonar.log_likelihood(&fan, &change, None, None);
             all.echo_probability.push([f64::from(u8::from(row.echo_cm.is_some())), 1.0 - libm::exp(none)]);
-            if let (Some(echo_cm), Some(expected_cm)) = (row.echo_cm, sonar.expected_cm(&fan, &sensor.change)) {
+            if let (Some(echo_cm), Some(expected_cm)) = (row.echo_cm, sonar.expected_cm(&fan, &change)) {
                 all.echo_value.push([echo_cm, expected_cm]);
             }
         }

@@ -100,13 +100,12 @@ fn off(channel: Channel, fit: &Fitted, baseline: &Baseline, evidence: &Evidence)
         }
         (None, _, Some(sonar)) => {
             let one = |row: &Row| {
-                let sensor = fit.hypothesis.sensor(&row.moment, &fit.values);
-                let fan = evidence.fan(&sensor.robot, sensor.yaw_rad, sensor.width);
+                let (fan, change) = fit.hypothesis.facing(evidence, row, &fit.values);
                 if channel == Channel::EchoRate {
-                    let [none, _] = sonar.log_likelihood(&fan, &sensor.change, None, None);
+                    let [none, _] = sonar.log_likelihood(&fan, &change, None, None);
                     return Some(f64::from(u8::from(row.echo_cm.is_some())) - 1.0 + libm::exp(none));
                 }
-                let expected_cm = sonar.expected_cm(&fan, &sensor.change)?;
+                let expected_cm = sonar.expected_cm(&fan, &change)?;
                 Some(row.echo_cm? - expected_cm).filter(|off| off.abs() < FAR_OFF_CM)
             };
             rows.iter().map(one).collect()
