@@ -41,6 +41,14 @@ pub struct Leftover {
 }
 
 impl Leftover {
+    /// The learner on top of a fit, with what it gains by block: nothing of it counts yet.
+    fn before_any_gate(channel: Channel, fit: &Fitted, logs: &Given) -> (Self, Vec<f64>) {
+        let fitted = fit.with(generic::form(channel), logs);
+        let gains = fitted.gains_over(fit);
+        let by_block = vec![0.0; gains.len()];
+        (Leftover { channel, fitted, by_block, follows: true, scatters: true }, gains)
+    }
+
     /// Whether the learner explains anything.
     pub fn counts(&self) -> bool {
         self.by_block.iter().any(|g| *g != 0.0)
@@ -160,14 +168,18 @@ fn judged(fit: &Fitted, found: &Given, kept_back: &Evidence) -> f64 {
 }
 
 /// The first signs of a gap, before any threshold: what the best effect gains, and the most that the generic learner
-/// gains in a channel.
+/// gains in a channel, or a wider scatter on top of it.
 pub fn signs(logs: &Given) -> [Gain; 2] {
     let none = Fitted::none(logs);
     let singles = best_of_each(extend(&none, None, logs));
     let effect = singles.first().map_or(Gain::NONE, |best| gain_for_its_rivals(best, &singles, &none));
-    let learners = Channel::ALL.par_iter().map(|channel| none.with(generic::form(*channel), logs).gain_over(&none));
-    let learner = learners.collect::<Vec<Gain>>().into_iter().max_by(|a, b| a.nats.total_cmp(&b.nats));
-    [effect, learner.unwrap_or(Gain::NONE)]
+    let of_channel = |channel: &Channel| {
+        let (learner, gains) = Leftover::before_any_gate(*channel, &none, logs);
+        [Gain::of(&gains), Gain::of(&learner.wider_scatter(logs, logs.evidence))]
+    };
+    let gains: Vec<[Gain; 2]> = Channel::ALL.par_iter().map(of_channel).collect();
+    let most = gains.into_iter().flatten().max_by(|a, b| a.nats.total_cmp(&b.nats));
+    [effect, most.unwrap_or(Gain::NONE)]
 }
 
 /// What a fit gains, less where many others could stand for it: a misfit of the simulator is a bit like many.
@@ -208,20 +220,18 @@ fn in_place_of_each(chosen: &Fitted, alone: &[Fitted], logs: &Given) -> Vec<Vec<
 
 /// What follows circumstances in each channel on top of a fit, or scatters more than the simulator.
 fn leftovers(fit: &Fitted, logs: &Given) -> Vec<Leftover> {
-    Channel::ALL
-        .par_iter()
-        .map(|channel| {
-            let fitted = fit.with(generic::form(*channel), logs);
-            let gains = fitted.gains_over(fit);
-            let follows = Gain::of(&gains).passes(&logs.calibration.leftover);
-            let by_block = if follows { gains } else { vec![0.0; gains.len()] };
-            let mut leftover = Leftover { channel: *channel, fitted, by_block, follows, scatters: true };
-            let wider = leftover.wider_scatter(logs, logs.evidence);
-            leftover.scatters = Gain::of(&wider).nats >= logs.calibration.leftover.nats;
-            if leftover.scatters {
-                leftover.by_block.iter_mut().zip(wider).for_each(|(sum, wider)| *sum += wider);
+    let gate = &logs.calibration.leftover;
+    let of_channel = |channel: &Channel| {
+        let (mut leftover, gains) = Leftover::before_any_gate(*channel, fit, logs);
+        let wider = leftover.wider_scatter(logs, logs.evidence);
+        leftover.follows = Gain::of(&gains).passes(gate);
+        leftover.scatters = Gain::of(&wider).nats >= gate.nats;
+        for (counts, gains) in [(leftover.follows, gains), (leftover.scatters, wider)] {
+            if counts {
+                leftover.by_block.iter_mut().zip(gains).for_each(|(sum, gain)| *sum += gain);
             }
-            leftover
-        })
-        .collect()
+        }
+        leftover
+    };
+    Channel::ALL.par_iter().map(of_channel).collect()
 }
