@@ -253,6 +253,16 @@ tuple = [
 ";
 
 #[test]
+fn options_of_another_format_are_not_passed_over() {
+    let workshop = Workshop::new();
+    workshop.write("c.toml", CONTROLLER);
+    for options in ["--format rxe --log a.csv", "--format c --display"] {
+        let refusal = workshop.refused(&format!("export c.toml --out c.out {options}"));
+        assert_eq!(refusal, "--log and --display are for a controller with --format nxc");
+    }
+}
+
+#[test]
 fn controllers_that_cannot_be() {
     let workshop = trained();
     workshop.write("scene.toml", SCENE);

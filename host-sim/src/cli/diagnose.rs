@@ -68,10 +68,13 @@ impl Diagnose {
             let title = format!("{} against {}", self.logs.display(), self.sim.display());
             files::write(path, diagnosis_page::page(diagnosis, &title))?;
         }
-        if let (Some(path), Some(experiment)) = (&self.next_experiment, &found.experiment) {
-            experiment.commands.write(path)?;
+        let mut text = diagnosis_text::text(diagnosis);
+        match (&self.next_experiment, &found.experiment) {
+            (Some(path), Some(experiment)) => experiment.commands.write(path)?,
+            (Some(path), None) => text += &format!("No causes are confused: {} is not written.\n", path.display()),
+            (None, _) => (),
         }
-        Ok(diagnosis_text::text(diagnosis))
+        Ok(text)
     }
 }
 

@@ -71,6 +71,9 @@ enum Format {
 impl Export {
     /// Writes the program or the networks.
     pub fn run(&self) -> Result<String> {
+        if (self.log.is_some() || self.display) && !matches!(self.format, Format::Nxc) {
+            return Err(Problem::new("--log and --display are for a controller with --format nxc"));
+        }
         let (program, budget) = match &self.input {
             None => self.collection()?,
             // Simulators are JSON; no TOML begins like that.
