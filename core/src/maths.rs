@@ -30,8 +30,9 @@ pub trait Binary32: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output 
     fn limit(self, low: f32, high: f32) -> Self;
     /// The magnitude.
     fn magnitude(self) -> Self;
-    /// Two to the power of `self`, which is a whole number in -126..=127.
-    fn whole_power_of_two(self) -> Self;
+    /// `self` times two to the power n, where `shifted` is [`WHOLE`] + n: exact while `self` and the result are normal
+    /// numbers.
+    fn times_two_to(self, shifted: Self) -> Self;
     /// Mantissa in [√½, √2) and whole exponent of a normal positive number.
     fn split_exponent(self) -> (Self, Self);
 }
@@ -39,27 +40,29 @@ pub trait Binary32: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output 
 /// Two to the power of `x`.
 #[inline(always)]
 pub fn exp2<T: Binary32>(x: T) -> T {
-    exp2_within(x.limit(-126.0, 126.0))
+    let x = x.limit(-126.0, 126.0);
+    // A bit pattern forgets that it was NaN; zero times the number does not.
+    exp2_within(x) + x * x.constant(0.0)
 }
 
 /// The same, bit for bit, for an `x` that is known to be in -126..=126; beyond, and for NaN, the result means nothing.
 #[inline(always)]
 pub fn exp2_within<T: Binary32>(x: T) -> T {
-    let whole = round(x);
-    let rest = x - whole;
+    let shifted = x + x.constant(WHOLE);
+    let rest = x - (shifted - x.constant(WHOLE));
     // A polynomial in three independent halves, which a processor works out side by side.
     let square = rest * rest;
     let high = horner(rest, [0.001_330_060_5, 0.009_669_691]);
     let middle = horner(rest, [0.055_505_585, 0.240_222_83]);
     let power = (high * square + middle) * square + horner(rest, [LN_2, 1.0]);
-    power * whole.whole_power_of_two()
+    power.times_two_to(shifted)
 }
 
 /// The logarithm of `x` to base two.
 #[inline(always)]
 pub fn log2<T: Binary32>(x: T) -> T {
     let x = x.limit(f32::MIN_POSITIVE, f32::MAX);
-    // A bit pattern forgets that it was NaN; zero times the number does not.
+    // As above.
     log2_normal(x) + x * x.constant(0.0)
 }
 
@@ -164,9 +167,10 @@ impl Binary32 for f32 {
     }
 
     #[inline(always)]
-    fn whole_power_of_two(self) -> f32 {
-        // WHOLE + n holds n in its lowest bits; adding the bias there and shifting makes it an exponent.
-        f32::from_bits((self + WHOLE).to_bits().wrapping_add(127) << 23)
+    fn times_two_to(self, shifted: f32) -> f32 {
+        // WHOLE + n holds n in its lowest bits, and nothing else that the shift leaves there: what is added is n
+        // exponents.
+        f32::from_bits(self.to_bits().wrapping_add(shifted.to_bits() << 23))
     }
 
     #[inline(always)]

@@ -5,6 +5,8 @@ use mindgap_core::maths::{self, Binary32};
 use mindgap_core::network::{Activation, MAX_HALF, Network, ProductForm, ProductUnit, Scaling};
 use mindgap_core::scalar::{LEAST_MAGNITUDE, Scalar};
 
+use crate::lanes::twice::Twice;
+
 /// A network with `N` inputs as an affine map plus product units.
 #[derive(Clone, Debug)]
 pub struct Folded<const N: usize> {
@@ -61,15 +63,15 @@ impl<const N: usize> Folded<N> {
     pub fn evaluate<S: Scalar<Weight = f32> + Binary32>(&self, x: &[S; N], log2_x: &[S; N]) -> S {
         let mut sum = S::weighted_sum(x[0].weight(self.bias), x, &self.slope);
         if self.tame {
-            // Two at a time, so that they share what the polynomial needs.
+            // Two at a time, which keep a processor busy.
             let (pairs, last) = self.product.as_chunks::<2>();
             for [one, other] in pairs {
-                let powers = [tame_power(one, log2_x), tame_power(other, log2_x)];
-                sum = sum + powers[0] * sum.weight(one.output);
-                sum = sum + powers[1] * sum.weight(other.output);
+                let powers = maths::exp2_within(Twice(log2_power(one, log2_x), log2_power(other, log2_x)));
+                sum = sum + powers.0 * sum.weight(one.output);
+                sum = sum + powers.1 * sum.weight(other.output);
             }
             for unit in last {
-                sum = sum + tame_power(unit, log2_x) * sum.weight(unit.output);
+                sum = sum + maths::exp2_within(log2_power(unit, log2_x)) * sum.weight(unit.output);
             }
         } else {
             sum = self.wild_sum(sum, x, log2_x);
@@ -77,19 +79,22 @@ impl<const N: usize> Folded<N> {
         self.activation.apply(sum)
     }
 
-    /// The outputs for two inputs, the same bits as one after the other: they share what the polynomial needs.
+    /// The same for two inputs, which keep a processor busy with one unit after the other.
     #[inline(always)]
-    pub fn evaluate_two<S: Scalar<Weight = f32> + Binary32>(&self, x: &[[S; N]; 2], log2_x: &[[S; N]; 2]) -> [S; 2] {
-        if !self.tame {
-            return [self.evaluate(&x[0], &log2_x[0]), self.evaluate(&x[1], &log2_x[1])];
+    pub fn evaluate_twice<S: Scalar<Weight = f32> + Binary32>(
+        &self,
+        x: &[Twice<S>; N],
+        log2_x: &[Twice<S>; N],
+    ) -> Twice<S> {
+        let mut sum = Twice::weighted_sum(x[0].weight(self.bias), x, &self.slope);
+        if self.tame {
+            for unit in &self.product {
+                sum = sum + maths::exp2_within(log2_power(unit, log2_x)) * sum.weight(unit.output);
+            }
+        } else {
+            sum = self.wild_sum(sum, x, log2_x);
         }
-        let bias = x[0][0].weight(self.bias);
-        let mut sums = [S::weighted_sum(bias, &x[0], &self.slope), S::weighted_sum(bias, &x[1], &self.slope)];
-        for unit in &self.product {
-            let powers = [tame_power(unit, &log2_x[0]), tame_power(unit, &log2_x[1])];
-            sums = [sums[0] + powers[0] * bias.weight(unit.output), sums[1] + powers[1] * bias.weight(unit.output)];
-        }
-        [self.activation.apply(sums[0]), self.activation.apply(sums[1])]
+        self.activation.apply(sum)
     }
 
     /// Adds the product units of a network whose inputs may have signs, or whose powers may overflow.
@@ -134,20 +139,21 @@ fn is_tame<const N: usize>(network: &Network<f32, N>) -> bool {
 }
 
 #[inline(always)]
-fn tame_power<S: Scalar<Weight = f32> + Binary32, const N: usize>(unit: &ProductUnit<f32, N>, log2_x: &[S; N]) -> S {
+fn log2_power<S: Scalar<Weight = f32> + Binary32, const N: usize>(unit: &ProductUnit<f32, N>, log2_x: &[S; N]) -> S {
     let mut terms = log2_x.iter().zip(&unit.exponents);
-    let Some((x, exponent)) = terms.next() else { return log2_x[0].one() };
+    let Some((x, exponent)) = terms.next() else { return log2_x[0].zero() };
     let mut log2 = *x * x.weight(*exponent);
     for (x, exponent) in terms {
         log2 = log2 + *x * x.weight(*exponent);
     }
-    maths::exp2_within(log2)
+    log2
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::lanes::Lanes;
+    use crate::lanes::twice::Twice;
     use mindgap_core::network::SummationUnit;
     use proptest::prelude::*;
 
@@ -192,18 +198,19 @@ mod tests {
 
     proptest! {
         #[test]
-        fn lanes_two_at_a_time_and_one_by_one_give_the_same_bits(
+        fn lanes_twice_and_one_by_one_give_the_same_bits(
             genes in prop::collection::vec(any_size(), 14), inputs in prop::array::uniform2(any_size()), signed in any::<bool>(),
         ) {
             let form = if signed { ProductForm::Signed } else { ProductForm::Positive };
             let folded = Folded::new(&network(&genes, form));
             let (x, log2_x) = folded.scale(inputs);
             let single = folded.evaluate(&x, &log2_x);
-            let two = folded.evaluate_two(&[x, x], &[log2_x, log2_x]);
+            let (x, log2_x) = folded.scale(inputs.map(|input| Twice(input, input)));
+            let twice = folded.evaluate_twice(&x, &log2_x);
             let lanes = inputs.map(|input| Lanes::splat(pulp::Scalar::new(), input));
             let (x, log2_x) = folded.scale(lanes);
             let lane = number(folded.evaluate(&x, &log2_x));
-            prop_assert!(same(single, lane) && two.iter().all(|t| same(*t, single)), "{single} {lane} {two:?}");
+            prop_assert!(same(single, lane) && same(single, twice.0) && same(single, twice.1), "{single} {lane} {twice:?}");
         }
 
         #[test]

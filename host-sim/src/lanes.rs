@@ -3,6 +3,8 @@
 //! The instruction set is chosen when the program runs. Whichever it is, the bits are the same: no operation is fused
 //! or reordered, and [`mindgap_core::maths`] is the one source of powers, logarithms and sines.
 
+pub mod twice;
+
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
 use mindgap_core::maths::{self, Binary32};
@@ -117,11 +119,11 @@ impl<S: Simd> Binary32 for Lanes<S> {
     }
 
     #[inline(always)]
-    fn whole_power_of_two(self) -> Self {
+    fn times_two_to(self, shifted: Self) -> Self {
         let s = self.simd;
-        let bits = s.transmute_u32s_f32s((self + self.constant(maths::WHOLE)).values);
-        let exponent = s.add_u32s(bits, s.splat_u32s(127));
-        Lanes { simd: s, values: s.transmute_f32s_u32s(s.wrapping_dyn_shl_u32s(exponent, s.splat_u32s(23))) }
+        let exponents = s.wrapping_dyn_shl_u32s(s.transmute_u32s_f32s(shifted.values), s.splat_u32s(23));
+        let bits = s.add_u32s(s.transmute_u32s_f32s(self.values), exponents);
+        Lanes { simd: s, values: s.transmute_f32s_u32s(bits) }
     }
 
     #[inline(always)]

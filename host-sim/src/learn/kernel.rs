@@ -2,43 +2,52 @@
 //!
 //! What does not depend on the weights is worked out once a data set: scaled inputs and their logarithms.
 
+use std::array;
+
 use mindgap_core::network::{Network, Scaling};
 use mindgap_core::scalar::Scalar;
 use pulp::{Arch, Simd, WithSimd};
 
 use super::dataset::Dataset;
 use crate::folded::Folded;
+use crate::lanes::twice::Twice;
 use crate::lanes::{Lanes, WIDEST};
 
-/// Two of the widest vectors.
-const BLOCK: usize = 2 * WIDEST;
-
-/// Samples laid out for lanes: one row an input, filled up to whole blocks by samples without weight.
+/// Samples laid out for lanes.
 #[derive(Clone, Debug)]
 pub struct Samples<const N: usize> {
-    scaled: [Vec<f32>; N],
-    log2: [Vec<f32>; N],
-    targets: Vec<f32>,
-    weights: Vec<f32>,
+    blocks: Vec<Block<N>>,
     count: usize,
 }
+
+/// Two of the widest vectors of samples, filled up by samples without weight.
+#[derive(Clone, Debug)]
+struct Block<const N: usize> {
+    scaled: [[f32; BLOCK]; N],
+    log2: [[f32; BLOCK]; N],
+    targets: [f32; BLOCK],
+    weights: [f32; BLOCK],
+}
+
+const BLOCK: usize = 2 * WIDEST;
 
 impl<const N: usize> Samples<N> {
     /// Lays out a data set whose inputs are scaled so and whose targets are mapped by `target`.
     pub fn new(data: &Dataset<N>, inputs: &[Scaling<f32>; N], target: impl Fn(f32) -> f32) -> Self {
-        let blocks = data.len().div_ceil(BLOCK);
-        let filled = |value: &dyn Fn(usize) -> f32, filling: f32| -> Vec<f32> {
-            (0..blocks * BLOCK).map(|i| if i < data.len() { value(i) } else { filling }).collect()
+        let block = |first: usize| {
+            let there = |lane: usize| first + lane < data.len();
+            let scaled: [[f32; BLOCK]; N] = array::from_fn(|n| {
+                let scaled = |lane: usize| inputs[n].apply(data.inputs[first + lane][n]);
+                array::from_fn(|lane| if there(lane) { scaled(lane) } else { inputs[n].high })
+            });
+            Block {
+                log2: scaled.map(|row| row.map(|x| x.log2_magnitude())),
+                scaled,
+                targets: array::from_fn(|lane| if there(lane) { target(data.targets[first + lane]) } else { 0.0 }),
+                weights: array::from_fn(|lane| if there(lane) { 1.0 } else { 0.0 }),
+            }
         };
-        let scaled: [Vec<f32>; N] =
-            std::array::from_fn(|n| filled(&|i| inputs[n].apply(data.inputs[i][n]), inputs[n].high));
-        Samples {
-            log2: std::array::from_fn(|n| scaled[n].iter().map(|x| x.log2_magnitude()).collect()),
-            scaled,
-            targets: filled(&|i| target(data.targets[i]), 0.0),
-            weights: filled(&|_| 1.0, 0.0),
-            count: data.len(),
-        }
+        Samples { blocks: (0..data.len()).step_by(BLOCK).map(block).collect(), count: data.len() }
     }
 
     /// Mean squared error of a network over the samples, in the unit of the mapped targets; NaN without samples.
@@ -57,25 +66,20 @@ impl<const N: usize> WithSimd for SquaredError<'_, N> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> f64 {
-        let samples = self.samples;
         let mut sums = [Lanes::splat(simd, 0.0); WIDEST];
         let width = Lanes::<S>::WIDTH;
         let parts = WIDEST / width;
-        // Two vectors at a time, as far as there are two; each sum meets its samples in their order.
-        for block in (0..samples.targets.len()).step_by(BLOCK) {
-            for pair in 0..parts {
-                let first = block + 2 * pair * width;
-                let at = [first, first + width];
-                let x = [rows(simd, &samples.scaled, at[0]), rows(simd, &samples.scaled, at[1])];
-                let log2_x = [rows(simd, &samples.log2, at[0]), rows(simd, &samples.log2, at[1])];
-                let outputs = self.network.evaluate_two(&x, &log2_x);
-                for (i, output) in outputs.into_iter().enumerate() {
-                    let target = Lanes::load(simd, &samples.targets[at[i]..]);
-                    let weight = Lanes::load(simd, &samples.weights[at[i]..]);
-                    let error = (output - target) * weight;
-                    let sum = &mut sums[(2 * pair + i) % parts];
-                    *sum = *sum + error * error;
-                }
+        // Each sum meets its samples in their order.
+        for block in &self.samples.blocks {
+            for part in (0..2 * parts).step_by(2) {
+                let at = [part * width, (part + 1) * width];
+                let x = rows(simd, &block.scaled, at);
+                let log2_x = rows(simd, &block.log2, at);
+                let outputs = self.network.evaluate_twice(&x, &log2_x);
+                let errors = (outputs - row(simd, &block.targets, at)) * row(simd, &block.weights, at);
+                let squares = errors * errors;
+                sums[part % parts] = sums[part % parts] + squares.0;
+                sums[(part + 1) % parts] = sums[(part + 1) % parts] + squares.1;
             }
         }
         let mut total = [0.0; WIDEST];
@@ -86,14 +90,21 @@ impl<const N: usize> WithSimd for SquaredError<'_, N> {
     }
 }
 
-/// One vector of each input.
+/// Two vectors of each row.
 #[inline(always)]
-fn rows<S: Simd, const N: usize>(simd: S, inputs: &[Vec<f32>; N], at: usize) -> [Lanes<S>; N] {
-    let mut rows = [Lanes::splat(simd, 0.0); N];
-    for (row, input) in rows.iter_mut().zip(inputs) {
-        *row = Lanes::load(simd, &input[at..]);
+fn rows<S: Simd, const N: usize>(simd: S, rows: &[[f32; BLOCK]; N], at: [usize; 2]) -> [Twice<Lanes<S>>; N] {
+    let zero = Lanes::splat(simd, 0.0);
+    let mut vectors = [Twice(zero, zero); N];
+    for (vectors, row) in vectors.iter_mut().zip(rows) {
+        *vectors = self::row(simd, row, at);
     }
-    rows
+    vectors
+}
+
+/// Two vectors of a row.
+#[inline(always)]
+fn row<S: Simd>(simd: S, row: &[f32; BLOCK], at: [usize; 2]) -> Twice<Lanes<S>> {
+    Twice(Lanes::load(simd, &row[at[0]..]), Lanes::load(simd, &row[at[1]..]))
 }
 
 #[cfg(test)]
