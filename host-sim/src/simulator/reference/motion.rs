@@ -12,12 +12,11 @@ pub struct MotionReference {
     pub scatter: [f64; 3],
 }
 
-/// Magnitudes of commands at which a correction may bend: friction holds back what is small.
-const KNOTS: [f32; 3] = [0.1, 0.3, 0.6];
-/// The same for the difference of right and left command.
-const TURN_KNOTS: [f32; 5] = [0.03, 0.06, 0.12, 0.25, 0.5];
+/// Magnitudes of commands, and of the difference of right and left one, at which a correction may bend: friction holds
+/// back what is small.
+const KNOTS: [f32; 5] = [0.03, 0.06, 0.12, 0.25, 0.5];
 /// Numbers that [`features`] makes of four commands.
-pub const FEATURES: usize = 1 + 4 + 10 + 20 + 4 * (1 + 2 * KNOTS.len()) + 2 * (1 + 2 * TURN_KNOTS.len());
+pub const FEATURES: usize = 1 + 4 + 10 + 20 + 6 * (1 + 2 * KNOTS.len());
 
 impl MotionReference {
     /// What is added to the networks' outputs for left, right, previous left and previous right command.
@@ -48,10 +47,10 @@ pub fn features<S: Scalar<Weight: From<f32>>>(speeds: [S; 4]) -> [S; FEATURES] {
         }
     }
     for command in u {
-        features.bend(command, &KNOTS);
+        features.bend(command);
     }
-    features.bend(u[1] - u[0], &TURN_KNOTS);
-    features.bend(u[3] - u[2], &TURN_KNOTS);
+    features.bend(u[1] - u[0]);
+    features.bend(u[3] - u[2]);
     features.values
 }
 
@@ -70,11 +69,11 @@ impl<S: Scalar<Weight: From<f32>>> Features<S> {
 
     /// The magnitude of `x`, and for every knot what is beyond it on either side, as sum and as difference.
     #[inline(always)]
-    fn bend(&mut self, x: S, knots: &[f32]) {
+    fn bend(&mut self, x: S) {
         let (zero, most) = (x.zero(), x.weight(4.0.into()));
         self.push(x.clamp(zero, most) + (zero - x).clamp(zero, most));
-        for knot in knots {
-            let knot = x.weight((*knot).into());
+        for knot in KNOTS {
+            let knot = x.weight(knot.into());
             let (above, below) = ((x - knot).clamp(zero, most), (zero - x - knot).clamp(zero, most));
             self.push(above + below);
             self.push(above - below);
