@@ -15,6 +15,7 @@ use crate::built_in_robot::Effect;
 use crate::gap::baseline::Baseline;
 use crate::gap::calibration::Calibration;
 use crate::gap::diagnosis::{explained, first_signs};
+use crate::gap::explanation::Signs;
 use crate::gap::search::Gain;
 use crate::logs::Logs;
 use crate::problem::{Problem, Result};
@@ -27,6 +28,8 @@ pub struct Measured {
     pub truth: String,
     /// Whether all of it is in the table of effects.
     pub in_table: bool,
+    /// Rows that the gains are summed over.
+    pub rows: usize,
     /// What the best effect gains, or the effects together, nats,
     pub effect_nats: f64,
     /// and in standard errors.
@@ -90,14 +93,15 @@ impl Bench {
 
     fn without_effect(&self, number: usize) -> Result<Measured> {
         let (case, baseline) = self.case(number)?;
-        let [effect, learner] = first_signs(baseline, &case.logs)?;
-        Ok(Measured { learner_nats: learner.nats, learner_z: learner.z(), ..Measured::of(&case, effect) })
+        let Signs { effect, learner, rows } = first_signs(baseline, &case.logs)?;
+        Ok(Measured { learner_nats: learner.nats, learner_z: learner.z(), ..Measured::of(&case, rows, effect) })
     }
 
     fn with_effects(&self, number: usize, calibration: Calibration) -> Result<Measured> {
         let (case, baseline) = self.case(number)?;
         let explanation = explained(baseline, &case.logs, calibration)?;
-        let measured = Measured::of(&case, explanation.chosen.gain_over(&explanation.none));
+        let rows = explanation.none.terms.total().len();
+        let measured = Measured::of(&case, rows, explanation.chosen.gain_over(&explanation.none));
         let Some(first) = explanation.named().into_iter().next() else { return Ok(measured) };
         let place = explanation.chosen.ids().iter().position(|id| *id == first.id).unwrap_or(0);
         let rivals = explanation.weights_in_place_of(place);
@@ -114,11 +118,12 @@ impl Bench {
 }
 
 impl Measured {
-    fn of(case: &Case, effect: Gain) -> Self {
+    fn of(case: &Case, rows: usize, effect: Gain) -> Self {
         let names: Vec<&str> = case.effects.iter().map(|active| active.effect.id()).collect();
         Measured {
             truth: names.join(" "),
             in_table: case.effects.iter().all(|active| active.effect.in_table()),
+            rows,
             effect_nats: effect.nats,
             effect_z: effect.z(),
             learner_nats: 0.0,

@@ -11,6 +11,8 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Calibration {
+    /// Rows of evidence that the gates are set for.
+    pub rows: f64,
     /// Of what could be explained the effects have to explain this share to be the cause.
     pub adequate: f64,
     /// How sharply adequacy decides: the width of a logistic curve.
@@ -50,6 +52,19 @@ impl Calibration {
         *CALIBRATION
     }
 
+    /// The same for evidence of so many rows: what the simulator's own misfit feigns grows with them, and so do the
+    /// nats that are asked for.
+    pub fn for_rows(self, rows: usize) -> Self {
+        let growth = self.growth(rows);
+        let grown = |gate: Gate| Gate { nats: gate.nats * growth, ..gate };
+        Calibration { effect: grown(self.effect), leftover: grown(self.leftover), ..self }
+    }
+
+    /// How much more is asked for with so many rows; never less, since what chance feigns does not shrink.
+    pub fn growth(&self, rows: usize) -> f64 {
+        (rows as f64 / self.rows).max(1.0)
+    }
+
     /// The text of a calibration file, with the command that made it.
     pub fn to_text(&self, command: &str) -> String {
         let figures = toml::to_string(self).expect("numbers can be written");
@@ -70,10 +85,19 @@ mod tests {
 
     #[test]
     fn thresholds_are_possible() {
-        let Calibration { effect, leftover, adequate, adequacy_width, rival, temperature, trust } =
+        let Calibration { rows, effect, leftover, adequate, adequacy_width, rival, temperature, trust } =
             Calibration::shipped();
         assert!([effect, leftover].iter().all(|gate| gate.nats > 0.0 && gate.z > 0.0));
         assert!([adequate, rival, trust].iter().all(|share| (0.0..=1.0).contains(share)));
-        assert!(adequacy_width > 0.0 && temperature >= 1.0);
+        assert!(rows > 0.0 && adequacy_width > 0.0 && temperature >= 1.0);
+    }
+
+    #[test]
+    fn twice_the_rows_ask_for_twice_the_nats_and_few_for_no_fewer() {
+        let shipped = Calibration { rows: 1000.0, ..Calibration::shipped() };
+        assert_eq!(shipped.for_rows(10), shipped);
+        let twice = shipped.for_rows(2000);
+        assert_eq!(twice.effect, Gate { nats: 2.0 * shipped.effect.nats, ..shipped.effect });
+        assert_eq!(twice.leftover, Gate { nats: 2.0 * shipped.leftover.nats, ..shipped.leftover });
     }
 }

@@ -13,9 +13,9 @@ use super::endings::Endings;
 use super::evidence::Evidence;
 use super::excitation::untestable;
 use super::experiment::{self, Experiment};
-use super::explanation::{self, Explanation};
+use super::explanation::{Explanation, Signs};
 use super::paths::{self, PathGap};
-use super::search::{Gain, Given};
+use super::search::Given;
 use super::shape::{self, Bin, Shape};
 use super::shrink;
 use super::verdict::Verdict;
@@ -185,7 +185,7 @@ pub fn diagnose(baseline: Baseline, logs: &Logs) -> Result<Diagnosis> {
 /// When the logs say nothing that the baseline could be compared with.
 pub fn findings(mut baseline: Baseline, logs: &Logs) -> Result<Findings> {
     let (evidence, kept_back, notes) = admitted(&mut baseline, logs)?;
-    let given = Given { baseline: &baseline, evidence: &evidence, calibration: Calibration::shipped() };
+    let given = Given::new(&baseline, &evidence, Calibration::shipped());
     let explanation = explain(&given, kept_back.as_ref());
     let verdict = explanation.verdict();
     let effects = if verdict == Verdict::Known { effects(&explanation, logs.robot.step_ms) } else { Vec::new() };
@@ -214,18 +214,18 @@ pub fn findings(mut baseline: Baseline, logs: &Logs) -> Result<Findings> {
 pub fn closed(simulator: &Simulator, added: &[Added], logs: &Logs) -> Result<Option<f64>> {
     let mut baseline = Baseline::learned(simulator)?;
     let (evidence, kept_back, _) = admitted(&mut baseline, logs)?;
-    let given = Given { baseline: &baseline, evidence: &evidence, calibration: Calibration::shipped() };
+    let given = Given::new(&baseline, &evidence, Calibration::shipped());
     let shrink = shrink::shrink(&Explanation::by(added, &given), &given, kept_back.as_ref().unwrap_or(&evidence));
     Ok(shrink.map(|shrink| shrink.whole.closed))
 }
 
-/// The first signs of a gap in logs: what the best effect gains, and the most that the generic learner gains.
+/// The first signs of a gap in logs.
 ///
 /// # Errors
 /// When the logs say nothing that the baseline could be compared with.
-pub fn first_signs(mut baseline: Baseline, logs: &Logs) -> Result<[Gain; 2]> {
+pub fn first_signs(mut baseline: Baseline, logs: &Logs) -> Result<Signs> {
     let (evidence, ..) = admitted(&mut baseline, logs)?;
-    Ok(explanation::signs(&Given { baseline: &baseline, evidence: &evidence, calibration: Calibration::shipped() }))
+    Ok(Signs::of(&Given::new(&baseline, &evidence, Calibration::shipped())))
 }
 
 /// What explains logs by given thresholds.
@@ -234,7 +234,7 @@ pub fn first_signs(mut baseline: Baseline, logs: &Logs) -> Result<[Gain; 2]> {
 /// When the logs say nothing that the baseline could be compared with.
 pub fn explained(mut baseline: Baseline, logs: &Logs, calibration: Calibration) -> Result<Explanation> {
     let (evidence, kept_back, _) = admitted(&mut baseline, logs)?;
-    Ok(explain(&Given { baseline: &baseline, evidence: &evidence, calibration }, kept_back.as_ref()))
+    Ok(explain(&Given::new(&baseline, &evidence, calibration), kept_back.as_ref()))
 }
 
 /// What explains the gap and holds on the runs kept back.

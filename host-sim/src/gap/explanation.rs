@@ -26,6 +26,16 @@ pub struct Explanation {
     pub calibration: Calibration,
 }
 
+/// The first signs of a gap, before any threshold.
+pub struct Signs {
+    /// What the best effect gains.
+    pub effect: Gain,
+    /// The most that the generic learner gains in a channel, or a wider scatter on top of it.
+    pub learner: Gain,
+    /// The rows that gain it.
+    pub rows: usize,
+}
+
 /// What the generic learner explains in a channel.
 pub struct Leftover {
     /// The channel.
@@ -162,24 +172,25 @@ impl Explanation {
     }
 }
 
+impl Signs {
+    /// The signs in logs.
+    pub fn of(logs: &Given) -> Self {
+        let none = Fitted::none(logs);
+        let singles = best_of_each(extend(&none, None, logs));
+        let effect = singles.first().map_or(Gain::NONE, |best| gain_for_its_rivals(best, &singles, &none));
+        let of_channel = |channel: &Channel| {
+            let (learner, gains) = Leftover::before_any_gate(*channel, &none, logs);
+            [Gain::of(&gains), Gain::of(&learner.wider_scatter(logs, logs.evidence))]
+        };
+        let gains: Vec<[Gain; 2]> = Channel::ALL.par_iter().map(of_channel).collect();
+        let most = gains.into_iter().flatten().max_by(|a, b| a.nats.total_cmp(&b.nats));
+        Signs { effect, learner: most.unwrap_or(Gain::NONE), rows: logs.evidence.rows.len() }
+    }
+}
+
 /// The log-likelihood of runs that a fit was not made on.
 fn judged(fit: &Fitted, found: &Given, kept_back: &Evidence) -> f64 {
     fit.judged_on(kept_back, found).total().iter().sum()
-}
-
-/// The first signs of a gap, before any threshold: what the best effect gains, and the most that the generic learner
-/// gains in a channel, or a wider scatter on top of it.
-pub fn signs(logs: &Given) -> [Gain; 2] {
-    let none = Fitted::none(logs);
-    let singles = best_of_each(extend(&none, None, logs));
-    let effect = singles.first().map_or(Gain::NONE, |best| gain_for_its_rivals(best, &singles, &none));
-    let of_channel = |channel: &Channel| {
-        let (learner, gains) = Leftover::before_any_gate(*channel, &none, logs);
-        [Gain::of(&gains), Gain::of(&learner.wider_scatter(logs, logs.evidence))]
-    };
-    let gains: Vec<[Gain; 2]> = Channel::ALL.par_iter().map(of_channel).collect();
-    let most = gains.into_iter().flatten().max_by(|a, b| a.nats.total_cmp(&b.nats));
-    [effect, most.unwrap_or(Gain::NONE)]
 }
 
 /// What a fit gains, less where many others could stand for it: a misfit of the simulator is a bit like many.

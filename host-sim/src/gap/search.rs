@@ -44,6 +44,13 @@ pub struct Given<'a> {
     pub calibration: Calibration,
 }
 
+impl<'a> Given<'a> {
+    /// Evidence against a simulator, by thresholds that become its size.
+    pub fn new(baseline: &'a Baseline<'a>, evidence: &'a Evidence, calibration: Calibration) -> Self {
+        Given { baseline, evidence, calibration: calibration.for_rows(evidence.rows.len()) }
+    }
+}
+
 /// What a parameter costs, nats.
 const OCCAM: f64 = 1.0;
 /// Rounds of a fit.

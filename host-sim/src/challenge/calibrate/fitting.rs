@@ -4,9 +4,11 @@ use super::Measured;
 use crate::gap::calibration::{Calibration, Gate};
 use crate::gap::verdict::probability;
 
-/// Of all cases without an effect so many gain as many nats as a threshold asks for, and so many as many standard errors.
-/// Both are asked for, and a gain on the runs kept back besides: two in a hundred or fewer pass it all.
-const FALSE_ALARMS: f64 = 0.05;
+/// Of all cases without an effect so many gain as many nats as the gate for an effect asks for, and so many as many
+/// standard errors. Both are asked for, and a gain on the runs kept back besides: two in a hundred or fewer pass it all.
+const FALSE_EFFECTS: f64 = 0.05;
+/// The same for what no effect explains, where a simulator's own misfit is often found on the runs kept back again.
+const FALSE_LEFTOVERS: f64 = 0.02;
 /// The law of a tail is read off this share of all.
 const TAIL: f64 = 0.2;
 /// Of the answers that are right so many leave more over than counts as adequate,
@@ -26,14 +28,26 @@ const TRUSTS: [f64; 6] = [0.85, 0.9, 0.93, 0.95, 0.97, 0.99];
 
 /// Thresholds against false alarms; everything that explains a gap is taken for its cause, and every rival is named.
 pub fn open(nulls: &[Measured]) -> Calibration {
-    Calibration {
+    let rows = nulls.iter().map(|m| m.rows as f64).sum::<f64>() / nulls.len() as f64;
+    let ungated = Calibration {
+        rows: rows.round(),
         adequate: 0.0,
         adequacy_width: 1.0,
         rival: 0.0,
         temperature: 1.0,
         trust: 1.0,
-        effect: gate(nulls, |m| [m.effect_nats, m.effect_z]),
-        leftover: gate(nulls, |m| [m.learner_nats, m.learner_z]),
+        effect: Gate { nats: 0.0, z: 0.0 },
+        leftover: Gate { nats: 0.0, z: 0.0 },
+    };
+    let gate = |share: f64, gain: fn(&Measured) -> [f64; 2]| {
+        let nats = nulls.iter().map(|m| gain(m)[0] / ungated.growth(m.rows)).collect();
+        let z = nulls.iter().map(|m| gain(m)[1]).collect();
+        Gate { nats: rounded(tail(nats, share)), z: rounded(tail(z, share)) }
+    };
+    Calibration {
+        effect: gate(FALSE_EFFECTS, |m| [m.effect_nats, m.effect_z]),
+        leftover: gate(FALSE_LEFTOVERS, |m| [m.learner_nats, m.learner_z]),
+        ..ungated
     }
 }
 
@@ -68,17 +82,12 @@ impl Measured {
     }
 }
 
-fn gate(nulls: &[Measured], gain: fn(&Measured) -> [f64; 2]) -> Gate {
-    let [nats, z] = [0, 1].map(|i| rounded(tail(nulls.iter().map(|m| gain(m)[i]).collect())));
-    Gate { nats, z }
-}
-
-/// What the share [`FALSE_ALARMS`] exceeds, if the tail falls off exponentially.
-fn tail(mut values: Vec<f64>) -> f64 {
+/// What that share exceeds, if the tail falls off exponentially.
+fn tail(mut values: Vec<f64>, share: f64) -> f64 {
     values.sort_by(f64::total_cmp);
     let above = &values[((1.0 - TAIL) * values.len() as f64) as usize..];
     let mean_excess = above.iter().map(|v| v - above[0]).sum::<f64>() / above.len() as f64;
-    above[0] + mean_excess * libm::log(TAIL / FALSE_ALARMS)
+    above[0] + mean_excess * libm::log(TAIL / share)
 }
 
 /// The value that the share `at` of all lies below; one where there is none.
@@ -99,6 +108,7 @@ mod tests {
         Measured {
             truth: "slope".into(),
             in_table: true,
+            rows: 100,
             effect_nats: 100.0,
             effect_z: 10.0,
             learner_nats: 0.0,
@@ -124,7 +134,7 @@ mod tests {
     #[test]
     fn gates_let_through_the_share_of_false_alarms() {
         let gate = open(&nulls()).effect;
-        let exact = libm::log(1.0 / FALSE_ALARMS);
+        let exact = libm::log(1.0 / FALSE_EFFECTS);
         assert!((gate.z - exact).abs() < 0.1 && (gate.nats - 4.0 * exact).abs() < 0.4, "{gate:?}");
     }
 
