@@ -1,5 +1,6 @@
 //! What `mindgap diagnose` says of logs that tell little, or that are not the simulator's.
 
+use mindgap_host_sim::logs::Run;
 use mindgap_tests::command::Workshop;
 use mindgap_tests::rooms::trained;
 use serde_json::Value;
@@ -115,4 +116,18 @@ fn a_controllers_ends_are_compared() {
     assert_eq!(workshop.json("diagnosis.json")["endings"]["runs"], RUNS);
     let refusal = workshop.refused("diagnose kinematic logs --controller controller.toml");
     assert!(refusal.contains("needs a simulator file"), "{refusal}");
+}
+
+#[test]
+fn the_experiment_that_tells_confused_causes_apart_is_a_run() {
+    let workshop = Workshop::new();
+    workshop.done("record --out logs --runs 40 --seed 1");
+    workshop.done("train logs --out sim.json");
+    workshop.done("record --out laden --runs 10 --seed 5 --effect payload");
+    let said = workshop.done("diagnose sim.json laden --next-experiment next.csv");
+    assert!(said.contains("cannot tell it from") && said.contains("To tell "), "{said}");
+    let rows = Run::read(&workshop.path().join("next.csv"), |warning| panic!("{warning}")).expect("a run").rows;
+    assert!(rows.len() > 5 && rows.iter().any(|row| row.command() != [0.0, 0.0]), "{rows:?}");
+    let said = workshop.done("diagnose sim.json logs --next-experiment none.csv");
+    assert!(said.contains("none.csv is not written") && !workshop.path().join("none.csv").exists(), "{said}");
 }
