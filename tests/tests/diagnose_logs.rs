@@ -118,6 +118,17 @@ fn a_controllers_ends_are_compared() {
     assert!(refusal.contains("needs a simulator file"), "{refusal}");
 }
 
+/// What the simulator's own misfit feigns grows with the logs.
+#[test]
+fn ever_so_many_runs_of_the_same_robot_are_no_gap() {
+    let workshop = Workshop::new();
+    workshop.done("record --out logs --runs 40 --seed 1");
+    workshop.done("train logs --out sim.json");
+    workshop.done("record --out many --runs 120 --seed 21");
+    let said = workshop.done("diagnose sim.json many");
+    assert!(said.starts_with("No gap"), "{said}");
+}
+
 #[test]
 fn the_experiment_that_tells_confused_causes_apart_is_a_run() {
     let workshop = Workshop::new();
