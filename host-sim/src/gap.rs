@@ -7,6 +7,7 @@
 
 pub mod admission;
 pub mod baseline;
+mod bootstrap;
 pub mod calibration;
 pub mod channel;
 pub mod circumstances;

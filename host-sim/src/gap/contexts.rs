@@ -1,7 +1,5 @@
 //! Where the gap lies: the circumstances that carry it, channel by channel.
-
-use rand::RngExt;
-
+use super::bootstrap;
 use super::channel::Channel;
 use super::circumstances::{
     change, distance_cm, edge_in_beam, heading_deg, incidence_deg, off_middle_cm, reverses, seconds, speed, turning,
@@ -9,7 +7,6 @@ use super::circumstances::{
 use super::evidence::{Evidence, Row};
 use super::explanation::Explanation;
 use super::verdict::Verdict;
-use crate::chance::generator;
 use crate::geometry::wrap_rad;
 
 /// The part of a channel's gap that lies in one context.
@@ -72,8 +69,6 @@ const SONAR: &[Context] = &[
 const TOLD: usize = 1;
 /// A context is told when it carries so much more than its share of the steps.
 const LIFT: f64 = 1.15;
-/// Resamples of a bootstrap.
-const RESAMPLES: usize = 400;
 /// A channel's gap below this is none, nats.
 const LEAST_NATS: f64 = 8.0;
 
@@ -131,28 +126,15 @@ fn part(
         counts[row.block] += 1.0;
     }
     let (gap, count): (f64, f64) = (gaps.iter().sum(), counts.iter().sum());
-    let share = gap / all;
+    // Where others fit better than before, one place can carry more than is left of all.
+    let share = (gap / all).min(1.0);
     let of_steps = count / evidence.rows.len() as f64;
-    let ci95 = interval(&gaps, &counts);
+    let ci95 = bootstrap::interval(&gaps, &counts, |gap, count| (count > 0.0).then(|| gap / count));
     let everywhere = of_steps > 0.97;
     let carries = everywhere || (share > LIFT * of_steps && share > 0.2 && ci95[0] > 0.0);
     // What is rare and heavy, and what is nearly all, both say less than what is in between.
-    let rank = (share - of_steps) * share.min(1.0);
+    let rank = (share - of_steps) * share;
     (carries && count > 0.0).then(|| (rank, Part { channel, context, gap: gap / count, ci95, share }))
-}
-
-fn interval(gaps: &[f64], counts: &[f64]) -> [f64; 2] {
-    let mut rng = generator(2, &[]);
-    let mut means: Vec<f64> = (0..RESAMPLES)
-        .filter_map(|_| {
-            let drawn = (0..gaps.len()).map(|_| rng.random_range(0..gaps.len()));
-            let (gap, count) = drawn.fold((0.0, 0.0), |(g, c), i| (g + gaps[i], c + counts[i]));
-            (count > 0.0).then(|| gap / count)
-        })
-        .collect();
-    means.sort_by(f64::total_cmp);
-    let at = |share: f64| means.get((share * means.len() as f64) as usize).copied().unwrap_or(0.0);
-    [at(0.025), at(0.975)]
 }
 
 fn heading(row: &Row, deg: f64) -> bool {

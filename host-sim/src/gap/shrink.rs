@@ -1,12 +1,11 @@
 //! How far the gap shrinks with the named effects, channel by channel, on runs that nothing was sought on.
 
+use super::bootstrap;
 use super::channel::Channel;
 use super::evidence::Evidence;
 use super::explanation::Explanation;
 use super::hypothesis::Terms;
 use super::search::{Fitted, Given};
-use crate::chance::generator;
-use rand::RngExt;
 
 /// A gap in nats a step: how much likelier the logs could be.
 #[derive(Clone, Debug)]
@@ -38,8 +37,6 @@ struct Tally {
     remaining: Vec<f64>,
 }
 
-/// Resamples of a bootstrap.
-const RESAMPLES: usize = 2000;
 /// A channel in which less than this can be gained is not told, nats.
 const LEAST_NATS: f64 = 5.0;
 
@@ -94,19 +91,10 @@ impl Tally {
     }
 
     fn interval(&self) -> [f64; 2] {
-        let blocks = self.gained.len();
-        let mut rng = generator(1, &[]);
-        let mut shares: Vec<f64> = (0..RESAMPLES)
-            .filter_map(|_| {
-                let drawn = (0..blocks).map(|_| rng.random_range(0..blocks));
-                let sums = drawn.fold((0.0, 0.0), |(g, r), i| (g + self.gained[i], r + self.remaining[i]));
-                let reducible: f64 = sums.0 + f64::max(sums.1, 0.0);
-                (reducible > 0.0).then_some(sums.0 / reducible)
-            })
-            .collect();
-        shares.sort_by(f64::total_cmp);
-        let at = |share: f64| shares.get((share * shares.len() as f64) as usize).copied().unwrap_or(0.0);
-        [at(0.025), at(0.975)]
+        bootstrap::interval(&self.gained, &self.remaining, |gained, remaining| {
+            let reducible = gained + remaining.max(0.0);
+            (reducible > 0.0).then(|| gained / reducible)
+        })
     }
 }
 
