@@ -1,4 +1,5 @@
 //! Where the gap lies: the circumstances that carry it, channel by channel.
+
 use super::bootstrap;
 use super::channel::Channel;
 use super::circumstances::{
