@@ -1,5 +1,7 @@
 //! How fast the harness is: `cargo bench -p mindgap-host-sim`.
 
+use std::process::Command;
+
 use divan::Bencher;
 use divan::counter::ItemsCount;
 use mindgap_core::controller::{Controller, Tuple, When};
@@ -95,6 +97,25 @@ fn evolving_generations(bencher: Bencher) {
     let settings = paper::settings();
     let evolve = || paper::evolve(&task, &settings, |_, _| {});
     bencher.counter(ItemsCount::new(settings.max_generations)).bench(evolve);
+}
+
+/// Whole commands, from files to a file, on all processors: 100 runs of 60 steps, and the first start among four boxes.
+#[divan::bench(args = ["train", "evolve", "evolve --paper"], sample_size = 1, sample_count = 3)]
+fn command(bencher: Bencher, call: &str) {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mindgap = |call: &str| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_mindgap"));
+        let done = command.args(call.split(' ')).current_dir(&folder).output().expect("the command starts");
+        assert!(done.status.success(), "{call}: {}", String::from_utf8_lossy(&done.stderr));
+    };
+    four_obstacles().write(&folder.path().join("scene.toml")).expect("a folder takes files");
+    mindgap("record --out logs");
+    mindgap("train logs --out sim.json");
+    let call = match call.split_once("evolve") {
+        Some((_, options)) => format!("evolve sim.json --scene scene.toml --out controller.toml{options}"),
+        None => format!("{call} logs --out again.json"),
+    };
+    bencher.bench_local(|| mindgap(&call));
 }
 
 /// A simulator with networks of the paper's sizes, learned from few logs.
