@@ -1,9 +1,13 @@
-//! An NXC program that makes the data a simulator is learned from: random commands, each held for a few steps, with the
-//! ultrasonic sensor's readings, wheel rotations and battery voltage logged on the brick (paper, section VI).
+//! NXC programs that make the data a simulator is learned from, or a gap diagnosed by: random commands, each held for a
+//! few steps (paper, section VI), or a script, with the ultrasonic sensor's readings, wheel rotations and battery
+//! voltage logged on the brick.
 //!
-//! Every start of the program adds a run, `run-000.csv` and so on, with commands of its own. The robot turns away from
-//! what it sees near, backs up only over ground that it has just left, and stops when the sensor is dead or somebody
-//! holds the orange button; still, somebody should stand by. The camera's poses are added on the host.
+//! Every start of the program adds a run, `run-000.csv` and so on; random ones have commands of their own. At random the
+//! robot turns away from what it sees near, and backs up only over ground that it has just left; a script is driven
+//! whatever is near. Both stop when the sensor is dead or somebody holds the orange button; still, somebody should stand
+//! by. The camera's poses are added on the host.
+
+use mindgap_core::controller::FULL_SPEED;
 
 use crate::budget::{Budget, Cost};
 use crate::error::ExportError;
@@ -12,10 +16,17 @@ use crate::nxc::source::{Constants, LOG, MOTORS, SONAR, TIME};
 use crate::wiring::Wiring;
 
 const DRIVE: &str = include_str!("collect/drive.nxc");
+const SCRIPT: &str = include_str!("collect/script.nxc");
 const MAIN: &str = include_str!("collect/main.nxc");
 
 /// What nbc makes of the program.
 const COST: Cost = Cost { program_bytes: 6_900, memory_bytes: 5_200, step_instructions: 1_250 };
+/// And of one whose commands are a script,
+const SCRIPT_COST: Cost = Cost { program_bytes: 5_700, memory_bytes: 4_700, step_instructions: 900 };
+/// with so many bytes more for each step, on flash and in memory.
+const SCRIPT_STEP_BYTES: u32 = 4;
+/// Steps of a script at most: memory for a thousand is there.
+const MOST_SCRIPT_STEPS: usize = 1_000;
 /// Steps in a row without an echo after which the robot looks for one.
 const MOST_UNSEEN_STEPS: u16 = 2;
 /// How much farther the way ahead has to be free after a turn.
@@ -34,12 +45,24 @@ pub struct CollectOptions {
     pub wiring: Wiring,
     /// Time between two rows of the log; it has to be the controllers' step.
     pub step_ms: u16,
-    /// Steps of a run.
-    pub steps: u16,
-    /// Something nearer than this, 1..=254 cm, makes the robot turn away.
-    pub near_cm: u8,
-    /// Where the random commands start from.
-    pub seed: u32,
+    /// Where the commands come from.
+    pub commands: Commands,
+}
+
+/// Where commands come from.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Commands {
+    /// From chance.
+    Random {
+        /// Steps of a run.
+        steps: u16,
+        /// Something nearer than this, 1..=254 cm, makes the robot turn away.
+        near_cm: u8,
+        /// Where chance starts from.
+        seed: u32,
+    },
+    /// From a script: left and right power, step by step.
+    Script(Vec<[i8; 2]>),
 }
 
 /// The program as NXC.
@@ -47,40 +70,86 @@ pub struct CollectOptions {
 /// # Errors
 /// What the brick cannot run or store: see [`ExportError`].
 pub fn program(options: &CollectOptions) -> Result<String, ExportError> {
-    let CollectOptions { program, wiring, step_ms, steps, near_cm, seed } = options;
-    let out_of_range = |name, value, range| Err(ExportError::OutOfRange { name, value, range });
-    if *steps == 0 {
-        return out_of_range("steps", 0, "1..65535");
-    }
-    if !(1..=254).contains(near_cm) {
-        return out_of_range("near_cm", u32::from(*near_cm), "1..254");
-    }
+    let CollectOptions { program, wiring, step_ms, commands } = options;
+    check(commands)?;
     wiring.check()?;
     let budget = budget(options);
     budget.check()?;
-    let stem = program.stem();
+    let (stem, steps) = (program.stem(), steps(commands));
+    let what = match commands {
+        Commands::Random { .. } => "Random commands for the LEGO NXT with standard firmware, to learn a simulator from",
+        Commands::Script(_) => {
+            "A script of commands for the LEGO NXT with standard firmware, to tell causes of a gap apart"
+        }
+    };
     let head = format!(
-        "// Random commands for the LEGO NXT with standard firmware, to learn a simulator from. Compile and load it with\n\
+        "// {what}. Compile\n\
+         // and load it with\n\
          //   nbc -v=128 -O={program} {stem}.nxc\n\
          //   nbc -S=usb -b -d {program}\n\
          //\n\
          // Every start of the program adds a run of {steps} steps of {step_ms} ms, run-000.csv and so on. Hold the orange button\n\
          // to end a run early.\n"
     );
-    let constants = Constants::shared(wiring)
-        .with("STEP_MS", step_ms, "")
-        .with("STEPS", steps, "")
-        .with("NEAR_CM", near_cm, "nearer things make it turn away")
-        .with("MOST_UNSEEN_STEPS", MOST_UNSEEN_STEPS, "then it looks for an echo")
-        .with("PAST_CORNER_CM", PAST_CORNER_CM, "more has to be free after a turn")
-        .with("PAST_CORNER_POWER", PAST_CORNER_POWER, "of the turn's last step")
-        .with("SEED", seed % SEEDS + 1, "of the commands")
-        .with("LOG_BYTES", budget.log_bytes, "of one run");
-    let parts = [&head, &constants.into_text(), TIME, SONAR, MOTORS, LOG, DRIVE, MAIN];
+    let constants = Constants::shared(wiring).with("STEP_MS", step_ms, "").with("STEPS", steps, "").with(
+        "LOG_BYTES",
+        budget.log_bytes,
+        "of one run",
+    );
+    let (constants, drive) = match commands {
+        Commands::Random { near_cm, seed, .. } => {
+            let constants = constants
+                .with("NEAR_CM", near_cm, "nearer things make it turn away")
+                .with("MOST_UNSEEN_STEPS", MOST_UNSEEN_STEPS, "then it looks for an echo")
+                .with("PAST_CORNER_CM", PAST_CORNER_CM, "more has to be free after a turn")
+                .with("PAST_CORNER_POWER", PAST_CORNER_POWER, "of the turn's last step")
+                .with("SEED", seed % SEEDS + 1, "of the commands");
+            (constants, DRIVE.to_owned())
+        }
+        Commands::Script(powers) => (constants, tables(powers) + SCRIPT),
+    };
+    let parts = [&head, &constants.into_text(), TIME, SONAR, MOTORS, LOG, &drive, MAIN];
     Ok(parts.join("\n"))
 }
 
 /// What the program and one run's log take of the brick once it is compiled.
 pub fn budget(options: &CollectOptions) -> Budget {
-    Budget::new(COST, options.step_ms, Some(options.steps))
+    let cost = match &options.commands {
+        Commands::Random { .. } => COST,
+        Commands::Script(powers) => {
+            let tables_bytes = powers.len() as u32 * SCRIPT_STEP_BYTES;
+            SCRIPT_COST.plus(Cost { program_bytes: tables_bytes, memory_bytes: tables_bytes, step_instructions: 0 })
+        }
+    };
+    Budget::new(cost, options.step_ms, Some(steps(&options.commands)))
+}
+
+fn check(commands: &Commands) -> Result<(), ExportError> {
+    let out_of_range = |name, value, range| Err(ExportError::OutOfRange { name, value, range });
+    match commands {
+        Commands::Random { steps: 0, .. } => out_of_range("steps", 0, "1..65535"),
+        Commands::Random { near_cm: near_cm @ (0 | 255), .. } => out_of_range("near_cm", u32::from(*near_cm), "1..254"),
+        Commands::Script(powers) if powers.is_empty() || powers.len() > MOST_SCRIPT_STEPS => {
+            out_of_range("steps", powers.len() as u32, "1..1000")
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Steps of a run; those of a script that is too long do not matter.
+fn steps(commands: &Commands) -> u16 {
+    match commands {
+        Commands::Random { steps, .. } => *steps,
+        Commands::Script(powers) => u16::try_from(powers.len()).unwrap_or(u16::MAX),
+    }
+}
+
+fn tables(powers: &[[i8; 2]]) -> String {
+    let table = |name: &str, side: usize| {
+        let cells: Vec<String> =
+            powers.iter().map(|pair| pair[side].clamp(-FULL_SPEED, FULL_SPEED).to_string()).collect();
+        let lines: Vec<String> = cells.chunks(16).map(|line| line.join(", ")).collect();
+        format!("int {name}[] = {{\n  {}\n}};\n", lines.join(",\n  "))
+    };
+    ["// The script, a command a step.\n".to_owned(), table("script_left", 0), table("script_right", 1)].concat()
 }

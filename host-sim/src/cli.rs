@@ -92,5 +92,10 @@ fn say(text: &str) -> Result<()> {
 
 /// Reads a folder of logs and tells its oddities on standard error.
 fn read_logs(folder: &Path) -> Result<Logs> {
-    Logs::read(folder, |warning| eprintln!("mindgap: warning: {warning}"))
+    Logs::read(folder, warn)
+}
+
+/// Tells what does not keep a command from being done.
+fn warn(warning: String) {
+    eprintln!("mindgap: warning: {warning}");
 }

@@ -263,6 +263,20 @@ fn options_of_another_format_are_not_passed_over() {
 }
 
 #[test]
+fn scripts_that_cannot_be_driven() {
+    let workshop = Workshop::new();
+    let header = "t_ms,left,right,x_cm,y_cm,heading_deg,echo_cm\n";
+    workshop.write("s.csv", format!("{header}0,10,10,,,,\n400,10,10,,,,\n900,10,10,,,,\n"));
+    let refusal = workshop.refused("export s.csv --format nxc-collect --out s.nxc");
+    assert_eq!(refusal, "s.csv: is no script: its rows are not equally many whole milliseconds apart");
+    workshop.write("s.csv", format!("{header}0,10,10,,,,\n50,10,10,,,,\n"));
+    let refusal = workshop.refused("export s.csv --format nxc-collect --out s.nxc");
+    assert!(refusal.starts_with("s.csv: ") && refusal.contains("50"), "{refusal}");
+    let wrong = workshop.call("export s.csv --format nxc-collect --out s.nxc --steps 10");
+    assert!(wrong.code == 2 && wrong.err.contains("cannot be used with"), "{}", wrong.err);
+}
+
+#[test]
 fn controllers_that_cannot_be() {
     let workshop = trained();
     workshop.write("scene.toml", SCENE);

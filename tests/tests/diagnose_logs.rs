@@ -139,6 +139,8 @@ fn the_experiment_that_tells_confused_causes_apart_is_a_run() {
     assert!(said.contains("cannot tell it from") && said.contains("To tell "), "{said}");
     let rows = Run::read(&workshop.path().join("next.csv"), |warning| panic!("{warning}")).expect("a run").rows;
     assert!(rows.len() > 5 && rows.iter().any(|row| row.command() != [0.0, 0.0]), "{rows:?}");
+    let budget = workshop.done("export next.csv --format nxc-collect --out next.nxc");
+    assert!(budget.contains("next.nxc written") && budget.contains(" of 400 ms at worst"), "{budget}");
     let said = workshop.done("diagnose sim.json logs --next-experiment none.csv");
     assert!(said.contains("none.csv is not written") && !workshop.path().join("none.csv").exists(), "{said}");
 }

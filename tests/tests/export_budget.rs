@@ -2,7 +2,7 @@
 
 use mindgap_controller_export::brick::{self, Program, Report, Script, Setup, Sonar};
 use mindgap_controller_export::budget::Budget;
-use mindgap_controller_export::collect::{self, CollectOptions};
+use mindgap_controller_export::collect::{self, CollectOptions, Commands};
 use mindgap_controller_export::names::BrickName;
 use mindgap_controller_export::nxc::{self, NxcOptions};
 use mindgap_controller_export::wiring::Wiring;
@@ -22,9 +22,12 @@ fn nxc_options(log: bool, display: bool) -> NxcOptions {
     NxcOptions { program, wiring: Wiring::default(), log, display }
 }
 
-fn collect_options() -> CollectOptions {
-    let program = BrickName::program("collect").unwrap();
-    CollectOptions { program, wiring: Wiring::default(), step_ms: 400, steps: 150, near_cm: 40, seed: u32::MAX }
+fn collect_options() -> [CollectOptions; 3] {
+    let random = Commands::Random { steps: 150, near_cm: 40, seed: u32::MAX };
+    [random, Commands::Script(vec![[-100, 100]; 40]), Commands::Script(vec![[-100, 100]; 500])].map(|commands| {
+        let program = BrickName::program("collect").unwrap();
+        CollectOptions { program, wiring: Wiring::default(), step_ms: 400, commands }
+    })
 }
 
 /// Every kind of program with its budget.
@@ -35,8 +38,9 @@ fn programs() -> Vec<(Vec<u8>, Budget)> {
         (compile(&source), nxc::budget(&at_its_limits(), &options))
     });
     let rxe = (rxe::program(&at_its_limits(), &Wiring::default()).unwrap(), rxe::budget(&at_its_limits()));
-    let collect = (compile(&collect::program(&collect_options()).unwrap()), collect::budget(&collect_options()));
-    nxc.into_iter().chain([rxe, collect]).collect()
+    let collect =
+        collect_options().map(|options| (compile(&collect::program(&options).unwrap()), collect::budget(&options)));
+    nxc.into_iter().chain([rxe]).chain(collect).collect()
 }
 
 fn run(program: &Program, sonar: &[Sonar]) -> Report {

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use mindgap_controller_export::ExportError;
 use mindgap_controller_export::brick::{self, Drive, End, Program, Report, Script, Setup, Sonar, What, World};
-use mindgap_controller_export::collect::{self, CollectOptions};
+use mindgap_controller_export::collect::{self, CollectOptions, Commands};
 use mindgap_controller_export::names::BrickName;
 use mindgap_controller_export::wiring::Wiring;
 use mindgap_host_sim::built_in_robot::{BuiltInRobot, default_robot, training_room};
@@ -18,8 +18,8 @@ const NEAR_CM: u8 = 40;
 
 fn options(seed: u32) -> CollectOptions {
     let program = BrickName::program("collect").unwrap();
-    let (step_ms, steps) = (400, STEPS as u16);
-    CollectOptions { program, wiring: Wiring::default(), step_ms, steps, near_cm: NEAR_CM, seed }
+    let commands = Commands::Random { steps: STEPS as u16, near_cm: NEAR_CM, seed };
+    CollectOptions { program, wiring: Wiring::default(), step_ms: 400, commands }
 }
 
 fn program(seed: u32) -> Program {
@@ -161,16 +161,35 @@ fn nothing_moves_when_the_flash_is_full() {
     assert!(!report.events.iter().any(|event| matches!(event.what, What::Motor { .. })));
 }
 
+fn script_options(powers: Vec<[i8; 2]>) -> CollectOptions {
+    CollectOptions { commands: Commands::Script(powers), ..options(0) }
+}
+
+#[test]
+fn a_script_is_driven_as_it_is_whatever_is_near() {
+    let powers: Vec<[i8; 2]> = (0..50i8).map(|k| [2 * k - 50, 100 - 4 * k]).collect();
+    let program = Program::load(&compile(&collect::program(&script_options(powers.clone())).unwrap())).unwrap();
+    let rows = rows_of(&program, Script::sonar([Sonar::Echo(NEAR_CM / 2); STEPS]));
+    let expected = powers.iter().map(|pair| pair.map(i32::from)).chain([[0, 0]]);
+    assert!(commands(&rows).into_iter().eq(expected), "{rows:?}");
+    assert!((0..).zip(&rows).all(|(k, row)| (400 * k..400 * k + 20).contains(&row.t_ms)));
+}
+
 #[test]
 fn what_cannot_be_collected_is_refused() {
     let refused = |options: CollectOptions| collect::program(&options).unwrap_err();
-    let zero = refused(CollectOptions { steps: 0, ..options(0) });
+    let random =
+        |steps, near_cm| CollectOptions { commands: Commands::Random { steps, near_cm, seed: 0 }, ..options(0) };
+    let zero = refused(random(0, NEAR_CM));
     assert_eq!(zero.to_string(), "steps is 0; it has to lie in 1..65535");
-    assert!(matches!(refused(CollectOptions { near_cm: 255, ..options(0) }), ExportError::OutOfRange { .. }));
+    assert!(matches!(refused(random(150, 255)), ExportError::OutOfRange { .. }));
     assert!(matches!(refused(CollectOptions { step_ms: 100, ..options(0) }), ExportError::StepTooShort { .. }));
-    let ExportError::LogTooLarge { steps, .. } = refused(CollectOptions { steps: u16::MAX, ..options(0) }) else {
+    let ExportError::LogTooLarge { steps, .. } = refused(random(u16::MAX, NEAR_CM)) else {
         panic!("refused for another reason")
     };
-    assert!(collect::program(&CollectOptions { steps, ..options(0) }).is_ok());
-    assert!(collect::program(&CollectOptions { steps: steps + 1, ..options(0) }).is_err());
+    assert!(collect::program(&random(steps, NEAR_CM)).is_ok());
+    assert!(collect::program(&random(steps + 1, NEAR_CM)).is_err());
+    assert!(matches!(refused(script_options(Vec::new())), ExportError::OutOfRange { .. }));
+    assert!(matches!(refused(script_options(vec![[0, 0]; 1001])), ExportError::OutOfRange { .. }));
+    assert!(collect::program(&script_options(vec![[0, 0]; 1000])).is_ok());
 }

@@ -1,6 +1,6 @@
 //! NXC programs go through the real compiler, `nbc`.
 
-use mindgap_controller_export::collect::{self, CollectOptions};
+use mindgap_controller_export::collect::{self, CollectOptions, Commands};
 use mindgap_controller_export::names::BrickName;
 use mindgap_controller_export::nxc::{self, NxcOptions};
 use mindgap_controller_export::wiring::{MotorPort, SensorPort, Wiring};
@@ -73,9 +73,7 @@ fn no_local_variable_is_initialised_where_it_is_declared() {
         program: BrickName::program("collect").unwrap(),
         wiring: Wiring::default(),
         step_ms: 400,
-        steps: 150,
-        near_cm: 40,
-        seed: 7,
+        commands: Commands::Random { steps: 150, near_cm: 40, seed: 7 },
     };
     let run = nxc::program(&at_its_limits(), &Origin::default(), &full_options()).unwrap();
     for line in run.lines().chain(collect::program(&options).unwrap().lines()) {

@@ -5,6 +5,7 @@ mod collect;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
+use mindgap_controller_export::collect::CollectOptions;
 use mindgap_controller_export::names::BrickName;
 use mindgap_controller_export::nxc::{self, NxcOptions};
 use mindgap_controller_export::nxc_networks::{self, nxc_networks};
@@ -22,7 +23,8 @@ use crate::simulator::fixed_point::FixedNetworks;
 /// program that collects a robot's first logs.
 #[derive(Args)]
 pub struct Export {
-    /// The controller file; or a simulator file, whose networks have the formats rust and nxc. None for nxc-collect.
+    /// The controller file; or a simulator file, whose networks have the formats rust and nxc. For nxc-collect none, or
+    /// a run whose commands are a script.
     #[arg(
         value_name = "CONTROLLER",
         required_if_eq_any = [("format", "nxc"), ("format", "rxe"), ("format", "rust"), ("format", "c")]
@@ -64,7 +66,7 @@ enum Format {
     Rust,
     /// A C99 header with the stepping machine.
     C,
-    /// NXC source of a program that drives at random and logs.
+    /// NXC source of a program that drives, at random or by a script, and logs.
     NxcCollect,
 }
 
@@ -75,20 +77,20 @@ impl Export {
             return Err(Problem::new("--log and --display are for a controller with --format nxc"));
         }
         let (program, budget) = match &self.input {
-            None => self.collection()?,
+            None => self.collection(&self.collect.options(self.program_name()?, self.wiring()))?,
             // Simulators are JSON; no TOML begins like that.
             Some(input) if files::read_text(input)?.trim_start().starts_with('{') => self.networks(input)?,
-            Some(input) => self.controller(input)?,
+            Some(input) => self.onboard(input)?,
         };
         files::write(&self.out, program)?;
         let budget = budget.map_or(String::new(), |budget| format!("{budget}\n"));
         Ok(format!("{} written\n{budget}", self.out.display()))
     }
 
-    fn collection(&self) -> Result<(Vec<u8>, Option<String>)> {
-        let options = self.collect.options(self.program_name()?, self.wiring());
-        let source = data_collection::program(&options).map_err(|e| Problem::in_file(&self.out, e.to_string()))?;
-        Ok((source.into_bytes(), Some(data_collection::budget(&options).to_string())))
+    fn collection(&self, options: &CollectOptions) -> Result<(Vec<u8>, Option<String>)> {
+        let named = self.input.as_ref().unwrap_or(&self.out);
+        let source = data_collection::program(options).map_err(|e| Problem::in_file(named, e.to_string()))?;
+        Ok((source.into_bytes(), Some(data_collection::budget(options).to_string())))
     }
 
     fn networks(&self, input: &Path) -> Result<(Vec<u8>, Option<String>)> {
@@ -104,28 +106,36 @@ impl Export {
         }
     }
 
-    fn controller(&self, input: &Path) -> Result<(Vec<u8>, Option<String>)> {
-        let file = ControllerFile::read(input)?;
+    fn onboard(&self, input: &Path) -> Result<(Vec<u8>, Option<String>)> {
+        let read = || {
+            let file = ControllerFile::read(input)?;
+            let origin = Origin::from(&file);
+            Ok((file.controller, origin))
+        };
         let refused = |e: ExportError| Problem::in_file(input, e.to_string());
-        let (controller, origin) = (&file.controller, &Origin::from(&file));
         Ok(match self.format {
             Format::Rxe => {
                 self.program_name()?;
-                (rxe::program(controller, &self.wiring()).map_err(refused)?, Some(rxe::budget(controller).to_string()))
+                let (controller, _) = read()?;
+                (
+                    rxe::program(&controller, &self.wiring()).map_err(refused)?,
+                    Some(rxe::budget(&controller).to_string()),
+                )
             }
-            Format::NxcCollect => {
-                return Err(Problem::in_file(
-                    input,
-                    "is not needed: --format nxc-collect draws its commands by chance",
-                ));
+            Format::NxcCollect => self.collection(&collect::script(input, self.program_name()?, self.wiring())?)?,
+            Format::Rust => {
+                let (controller, origin) = read()?;
+                (rust::module(&controller, &origin).map_err(refused)?.into_bytes(), None)
             }
-            Format::Rust => (rust::module(controller, origin).map_err(refused)?.into_bytes(), None),
-            Format::C => (c::header(controller, origin).map_err(refused)?.into_bytes(), None),
+            Format::C => {
+                let (controller, origin) = read()?;
+                (c::header(&controller, &origin).map_err(refused)?.into_bytes(), None)
+            }
             Format::Nxc => {
-                let (program, wiring) = (self.program_name()?, self.wiring());
+                let ((controller, origin), program, wiring) = (read()?, self.program_name()?, self.wiring());
                 let options = NxcOptions { program, wiring, log: self.log.clone(), display: self.display };
-                let source = nxc::program(controller, origin, &options).map_err(refused)?;
-                (source.into_bytes(), Some(nxc::budget(controller, &options).to_string()))
+                let source = nxc::program(&controller, &origin, &options).map_err(refused)?;
+                (source.into_bytes(), Some(nxc::budget(&controller, &options).to_string()))
             }
         })
     }

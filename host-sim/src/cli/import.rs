@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use serde_json::json;
 
-use super::table;
+use super::{table, warn};
 use crate::files;
 use crate::import::track::{Angle, Length, Time, Units};
 use crate::import::{LogReport, Report, RunReport, TrackReport, import};
@@ -47,7 +47,6 @@ impl Import {
     pub fn run(&self) -> Result<String> {
         let units = Units { time: self.time_unit, length: self.length_unit, angle: self.angle_unit };
         let (robot, scene) = (Robot::read(&self.robot)?, Scene::read(&self.scene)?);
-        let warn = |warning| eprintln!("mindgap: warning: {warning}");
         let (logs, report) = import(&self.files, &units, robot, scene, warn)?;
         logs.write(&self.out)?;
         if let Some(path) = &self.json {

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
-use super::progress;
+use super::{progress, warn};
 use crate::learn::genome::Shape;
 use crate::learn::train::TABLE_ONE;
 use crate::learn::{paper, train};
@@ -76,7 +76,7 @@ impl Train {
         }
         spinner.finish_and_clear();
         for missing in &simulator.missing {
-            eprintln!("mindgap: warning: no {} network: {}", missing.network, missing.reason);
+            warn(format!("no {} network: {}", missing.network, missing.reason));
         }
         simulator.write(&self.out)?;
         let evaluations: Vec<String> = evaluations.take().iter().map(|(name, n)| format!("{name} {n}")).collect();

@@ -15,25 +15,25 @@ pub fn ranking(fitness: &[f64]) -> Vec<usize> {
 /// Holds tournaments among a population.
 pub struct Tournament<'a> {
     ranking: &'a [usize],
-    places: Vec<usize>,
+    places: Vec<u32>,
 }
 
 impl<'a> Tournament<'a> {
     /// Tournaments among the individuals of a [`ranking`].
     pub fn new(ranking: &'a [usize]) -> Self {
-        Tournament { ranking, places: (0..ranking.len()).collect() }
+        Tournament { ranking, places: (0..ranking.len() as u32).collect() }
     }
 
     /// The fittest of `size` different individuals (at least one, at most all).
     pub fn winner(&mut self, size: usize, rng: &mut Generator) -> usize {
-        let total = self.places.len();
+        let total = self.places.len() as u32;
         let mut best = total - 1;
-        for drawn in 0..size.clamp(1, total) {
+        for drawn in 0..size.clamp(1, self.places.len()) as u32 {
             let other = rng.random_range(drawn..total);
-            self.places.swap(drawn, other);
-            best = best.min(self.places[drawn]);
+            self.places.swap(drawn as usize, other as usize);
+            best = best.min(self.places[drawn as usize]);
         }
-        self.ranking[best]
+        self.ranking[best as usize]
     }
 }
 

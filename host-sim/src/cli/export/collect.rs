@@ -1,32 +1,53 @@
 //! What `mindgap export --format nxc-collect` takes.
 
+use std::path::Path;
+
 use clap::Args;
-use mindgap_controller_export::collect::CollectOptions;
+use mindgap_controller_export::collect::{CollectOptions, Commands};
 use mindgap_controller_export::names::BrickName;
 use mindgap_controller_export::wiring::Wiring;
 
-/// Options of the format nxc-collect alone.
+use crate::cli::warn;
+use crate::logs::Run;
+use crate::problem::{Problem, Result};
+
+/// Options of the format nxc-collect alone; a script says itself what they would.
 #[derive(Args)]
-#[command(next_help_heading = "Options of nxc-collect")]
+#[command(next_help_heading = "Options of nxc-collect without a script")]
 pub struct Collect {
     /// Time between two rows of the log, milliseconds; the controllers' step.
-    #[arg(long, default_value_t = 400)]
+    #[arg(long, default_value_t = 400, conflicts_with = "input")]
     step_ms: u16,
     /// Steps of a run.
-    #[arg(long, default_value_t = 150)]
+    #[arg(long, default_value_t = 150, conflicts_with = "input")]
     steps: u16,
     /// Something nearer than this makes the robot turn away.
-    #[arg(long, default_value_t = 40)]
+    #[arg(long, default_value_t = 40, conflicts_with = "input")]
     near_cm: u8,
     /// Where the random commands start from.
-    #[arg(long, default_value_t = 1)]
+    #[arg(long, default_value_t = 1, conflicts_with = "input")]
     seed: u32,
 }
 
 impl Collect {
-    /// The program that is asked for.
+    /// The program that drives at random.
     pub fn options(&self, program: BrickName, wiring: Wiring) -> CollectOptions {
         let Collect { step_ms, steps, near_cm, seed } = *self;
-        CollectOptions { program, wiring, step_ms, steps, near_cm, seed }
+        CollectOptions { program, wiring, step_ms, commands: Commands::Random { steps, near_cm, seed } }
     }
+}
+
+/// The program that drives the commands of a run, such as `diagnose --next-experiment` writes it.
+///
+/// # Errors
+/// When the file holds no run, or its steps are not of one length of whole milliseconds.
+pub fn script(path: &Path, program: BrickName, wiring: Wiring) -> Result<CollectOptions> {
+    let rows = Run::read(path, warn)?.rows;
+    let step_ms = rows[1].t_ms - rows[0].t_ms;
+    let is_even = rows.windows(2).all(|pair| pair[1].t_ms - pair[0].t_ms == step_ms);
+    if !is_even || step_ms.fract() != 0.0 || step_ms > f64::from(u16::MAX) {
+        return Err(Problem::in_file(path, "is no script: its rows are not equally many whole milliseconds apart"));
+    }
+    let powers = rows.iter().map(|row| [row.left, row.right].map(|power| power.round() as i8)).collect();
+    Ok(CollectOptions { program, wiring, step_ms: step_ms as u16, commands: Commands::Script(powers) })
 }
