@@ -83,8 +83,8 @@ pub fn program(options: &CollectOptions) -> Result<String, ExportError> {
         }
     };
     let head = format!(
-        "// {what}. Compile\n\
-         // and load it with\n\
+        "// {what}.\n\
+         // Compile and load it with\n\
          //   nbc -v=128 -O={program} {stem}.nxc\n\
          //   nbc -S=usb -b -d {program}\n\
          //\n\
