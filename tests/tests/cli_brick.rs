@@ -128,9 +128,7 @@ fn a_collecting_program_that_cannot_be_is_refused() {
     assert!(refused("--format nxc-collect --near-cm 0").starts_with("c.nxc: near_cm is 0"));
     assert!(refused("--format nxc-collect --step-ms 50").starts_with("c.nxc: "));
     assert!(refused("--format nxc-collect --steps 60000").starts_with("c.nxc: "));
-    assert_eq!(
-        refused("controller.toml --format nxc-collect"),
-        "controller.toml: is not needed: --format nxc-collect draws its commands by chance"
-    );
+    let no_script = refused("controller.toml --format nxc-collect");
+    assert_eq!(no_script, "controller.toml:1: column t_ms is missing");
     assert_eq!(workshop.call("export --format nxc --out c.nxc").code, 2);
 }
