@@ -1,5 +1,7 @@
 //! What `mindgap diagnose` says of logs that tell little, or that are not the simulator's.
 
+use std::sync::LazyLock;
+
 use mindgap_host_sim::logs::Run;
 use mindgap_tests::command::Workshop;
 use mindgap_tests::rooms::trained;
@@ -118,12 +120,21 @@ fn a_controllers_ends_are_compared() {
     assert!(refusal.contains("needs a simulator file"), "{refusal}");
 }
 
+/// A folder with forty runs in `logs` and a simulator that was trained on them in `sim.json`.
+fn with_forty_runs() -> Workshop {
+    static FORTY_RUNS: LazyLock<Workshop> = LazyLock::new(|| {
+        let workshop = Workshop::new();
+        workshop.done("record --out logs --runs 40 --seed 1");
+        workshop.done("train logs --out sim.json");
+        workshop
+    });
+    FORTY_RUNS.copy()
+}
+
 /// What the simulator's own misfit feigns grows with the logs.
 #[test]
 fn ever_so_many_runs_of_the_same_robot_are_no_gap() {
-    let workshop = Workshop::new();
-    workshop.done("record --out logs --runs 40 --seed 1");
-    workshop.done("train logs --out sim.json");
+    let workshop = with_forty_runs();
     workshop.done("record --out many --runs 120 --seed 21");
     let said = workshop.done("diagnose sim.json many");
     assert!(said.starts_with("No gap"), "{said}");
@@ -131,9 +142,7 @@ fn ever_so_many_runs_of_the_same_robot_are_no_gap() {
 
 #[test]
 fn the_experiment_that_tells_confused_causes_apart_is_a_run() {
-    let workshop = Workshop::new();
-    workshop.done("record --out logs --runs 40 --seed 1");
-    workshop.done("train logs --out sim.json");
+    let workshop = with_forty_runs();
     workshop.done("record --out laden --runs 10 --seed 5 --effect payload");
     let said = workshop.done("diagnose sim.json laden --next-experiment next.csv");
     assert!(said.contains("cannot tell it from") && said.contains("To tell "), "{said}");

@@ -84,29 +84,20 @@ impl<T: Scalar> Scalar for Twice<T> {
     }
 }
 
-impl<T: Add<Output = T>> Add for Twice<T> {
-    type Output = Self;
+/// Implements an operator of [`Twice`] by that of its numbers.
+macro_rules! operator {
+    ($operator:ident, $method:ident) => {
+        impl<T: $operator<Output = T>> $operator for Twice<T> {
+            type Output = Self;
 
-    #[inline(always)]
-    fn add(self, other: Self) -> Self {
-        Twice(self.0 + other.0, self.1 + other.1)
-    }
+            #[inline(always)]
+            fn $method(self, other: Self) -> Self {
+                Twice(self.0.$method(other.0), self.1.$method(other.1))
+            }
+        }
+    };
 }
 
-impl<T: Sub<Output = T>> Sub for Twice<T> {
-    type Output = Self;
-
-    #[inline(always)]
-    fn sub(self, other: Self) -> Self {
-        Twice(self.0 - other.0, self.1 - other.1)
-    }
-}
-
-impl<T: Mul<Output = T>> Mul for Twice<T> {
-    type Output = Self;
-
-    #[inline(always)]
-    fn mul(self, other: Self) -> Self {
-        Twice(self.0 * other.0, self.1 * other.1)
-    }
-}
+operator!(Add, add);
+operator!(Sub, sub);
+operator!(Mul, mul);
