@@ -3,6 +3,7 @@
 //! starts. The start that does best on held-out runs is kept.
 
 mod anchors;
+mod gram;
 mod projection;
 
 use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt};
@@ -122,7 +123,7 @@ fn reweight<const N: usize>(problem: &mut Projection<N>, loss: Loss, targets: &[
             pairs.map(|(p, t)| (t, narrow.share(t - p))).unzip()
         }
     };
-    problem.reweight(DVector::from_vec(targets), &weights);
+    problem.reweight(targets, &weights);
 }
 
 /// Target and weight of a sample for the logarithm of the likelihood of a ramp: the inverse variance of what happens,
@@ -175,7 +176,8 @@ fn network<const N: usize>(
     shape: Shape,
     activation: Activation,
 ) -> Network<f32, N> {
-    let (affine, outputs) = problem.weights().split_at(1 + N);
+    let linear = problem.weights();
+    let (affine, outputs) = linear.split_at(1 + N);
     let weights: [f32; N] = std::array::from_fn(|i| affine[1 + i] as f32);
     let idle = SummationUnit { weights: [0.0; N], bias: 0.0, output: 0.0 };
     let mut summation: heapless::Vec<_, MAX_HALF> = (0..shape.summation).map(|_| idle).collect();

@@ -1,5 +1,8 @@
 //! Variable projection: the residuals that the best linear weights leave for given exponents, and how they change with
 //! the exponents.
+//!
+//! Neither least squares nor Levenberg–Marquardt sees anything of the samples but the inner products of their columns,
+//! so these are summed once for each set of exponents, and a problem of a few rows stands for that of all samples.
 
 use std::f64::consts::LN_2;
 
@@ -8,6 +11,7 @@ use mindgap_core::network::Scaling;
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn, Owned};
 
 use super::anchors::Anchored;
+use super::gram::inner_products;
 
 /// How much weights are held back: power terms that are nearly alike would grow against each other, and run wild outside
 /// the data.
@@ -19,36 +23,33 @@ pub struct Ridges {
     pub exponents: f64,
 }
 
-/// A data set with exponents of `units` product units, as a least-squares problem in those exponents.
-///
-/// Residuals come in three groups: one a sample, one a linear weight (the ridge), one an exponent (the other ridge).
+/// A data set with exponents of some product units, as a least-squares problem in those exponents.
 #[derive(Clone)]
 pub struct Projection<const N: usize> {
     x: Vec<[f64; N]>,
     log2_x: Vec<[f64; N]>,
-    targets: DVector<f64>,
+    targets: Vec<f64>,
     /// What each sample counts, whatever the loss.
     base_weights: Vec<f64>,
-    /// Square roots of the samples' weights.
-    roots: DVector<f64>,
+    /// What each sample counts now.
+    sample_weights: Vec<f64>,
     exponents: DVector<f64>,
-    /// What a linear weight of one adds to the residuals.
+    /// What the square of a linear weight adds to the squares of the residuals.
     weight_prior: f64,
-    /// The same for an exponent of one.
+    /// The same for an exponent.
     exponent_prior: f64,
-    fit: Fit,
+    fit: Option<Fit>,
 }
 
 /// What the linear least-squares problem gives for the exponents.
 #[derive(Clone)]
 struct Fit {
-    /// Weighted samples and ridge rows by columns: one, inputs, product units.
-    features: DMatrix<f64>,
-    /// Of the features' normal matrix.
-    normal: Option<Cholesky<f64, Dyn>>,
     /// Linear weights: bias, slopes, outputs of the product units.
     weights: DVector<f64>,
+    /// Rows with the length and the inner products of the residuals of samples and ridges.
     residuals: DVector<f64>,
+    /// The same of their changes with the exponents.
+    jacobian: DMatrix<f64>,
 }
 
 impl<const N: usize> Projection<N> {
@@ -57,24 +58,18 @@ impl<const N: usize> Projection<N> {
         let data = &anchored.data;
         let scaled = |x: &[f32; N]| std::array::from_fn(|i| f64::from(inputs[i].apply(x[i])));
         let x: Vec<[f64; N]> = data.inputs.iter().map(scaled).collect();
-        let count = x.len();
-        let nothing = Fit {
-            features: DMatrix::zeros(0, 0),
-            normal: None,
-            weights: DVector::zeros(0),
-            residuals: DVector::zeros(0),
-        };
-        let targets = DVector::from_iterator(count, data.targets.iter().map(|t| f64::from(*t)));
+        let count = x.len() as f64;
+        let targets = DVector::from_iterator(x.len(), data.targets.iter().map(|t| f64::from(*t)));
         let mut problem = Projection {
             log2_x: x.iter().map(|x| x.map(libm::log2)).collect(),
             x,
-            weight_prior: (ridges.weights * count as f64).sqrt(),
-            exponent_prior: (ridges.exponents * count as f64 * targets.variance()).sqrt(),
-            targets,
-            roots: DVector::from_iterator(count, anchored.weights.iter().map(|w| w.sqrt())),
+            weight_prior: ridges.weights * count,
+            exponent_prior: ridges.exponents * count * targets.variance(),
+            targets: targets.as_slice().to_vec(),
+            sample_weights: anchored.weights.clone(),
             base_weights: anchored.weights.clone(),
             exponents,
-            fit: nothing,
+            fit: None,
         };
         problem.solve();
         problem
@@ -82,21 +77,25 @@ impl<const N: usize> Projection<N> {
 
     /// What the network says for each sample.
     pub fn predictions(&self) -> Vec<f64> {
-        let count = self.x.len();
-        (0..count).map(|i| self.features_at(i).iter().zip(self.fit.weights.iter()).map(|(f, w)| f * w).sum()).collect()
+        let weights = self.weights();
+        let mut features = vec![0.0; weights.len()];
+        let mut at = |sample| {
+            self.features_at(sample, &mut features);
+            features.iter().zip(&weights).map(|(f, w)| f * w).sum()
+        };
+        (0..self.x.len()).map(&mut at).collect()
     }
 
     /// Gives samples other targets and weights.
-    pub fn reweight(&mut self, targets: DVector<f64>, weights: &[f64]) {
+    pub fn reweight(&mut self, targets: Vec<f64>, weights: &[f64]) {
         self.targets = targets;
-        let weights = weights.iter().zip(&self.base_weights).map(|(w, base)| (w * base).sqrt());
-        self.roots = DVector::from_iterator(self.x.len(), weights);
+        self.sample_weights = weights.iter().zip(&self.base_weights).map(|(w, base)| w * base).collect();
         self.solve();
     }
 
-    /// Bias, slopes and outputs of the product units.
-    pub fn weights(&self) -> &[f64] {
-        self.fit.weights.as_slice()
+    /// Bias, slopes and outputs of the product units; zeros where exponents leave nothing to solve for.
+    pub fn weights(&self) -> Vec<f64> {
+        self.fit.as_ref().map_or(vec![0.0; self.width()], |fit| fit.weights.as_slice().to_vec())
     }
 
     /// The exponents, unit by unit.
@@ -104,37 +103,62 @@ impl<const N: usize> Projection<N> {
         self.exponents.as_slice()
     }
 
-    fn units(&self) -> usize {
-        self.exponents.len() / N
+    /// Number of linear weights.
+    fn width(&self) -> usize {
+        1 + N + self.exponents.len() / N
     }
 
-    fn features_at(&self, sample: usize) -> Vec<f64> {
-        let mut row = Vec::with_capacity(1 + N + self.units());
-        row.push(1.0);
-        row.extend(self.x[sample]);
-        for unit in self.exponents.as_slice().chunks_exact(N) {
+    /// Writes what linear weights are given to at a sample: one, inputs, product units.
+    fn features_at(&self, sample: usize, features: &mut [f64]) {
+        let (affine, powers) = features.split_at_mut(1 + N);
+        affine[0] = 1.0;
+        affine[1..].copy_from_slice(&self.x[sample]);
+        for (power, unit) in powers.iter_mut().zip(self.exponents.as_slice().chunks_exact(N)) {
             let sum: f64 = unit.iter().zip(&self.log2_x[sample]).map(|(w, l)| w * l).sum();
-            row.push(libm::exp2(sum));
+            *power = libm::exp2(sum);
         }
-        row
     }
 
     fn solve(&mut self) {
-        let (count, width) = (self.x.len(), 1 + N + self.units());
-        let mut features = DMatrix::zeros(count + width, width);
-        for i in 0..count {
-            for (j, feature) in self.features_at(i).into_iter().enumerate() {
-                features[(i, j)] = self.roots[i] * feature;
-            }
-        }
-        (0..width).for_each(|j| features[(count + j, j)] = self.weight_prior);
-        let mut targets = DVector::zeros(count + width);
-        targets.rows_mut(0, count).copy_from(&self.targets.component_mul(&self.roots));
-        let normal = Cholesky::new(features.tr_mul(&features));
-        let moments = features.tr_mul(&targets);
-        let weights = normal.as_ref().map_or(DVector::zeros(width), |n| n.solve(&moments));
-        let residuals = &targets - &features * &weights;
-        self.fit = Fit { features, normal, weights, residuals };
+        self.fit = self.fitted();
+    }
+
+    fn fitted(&self) -> Option<Fit> {
+        let (width, parameters) = (self.width(), self.exponents.len());
+        // Columns: features, each product unit times the logarithm of each of its inputs, target.
+        let products = inner_products(width + parameters + 1, &self.sample_weights, |sample, row| {
+            let (features, others) = row.split_at_mut(width);
+            self.features_at(sample, features);
+            let logarithms = features[1 + N..].iter().flat_map(|p| self.log2_x[sample].iter().map(move |l| p * l));
+            others.iter_mut().zip(logarithms.chain([self.targets[sample]])).for_each(|(place, x)| *place = x);
+        });
+        let target = width + parameters;
+        let normal =
+            products.view((0, 0), (width, width)) + DMatrix::from_diagonal_element(width, width, self.weight_prior);
+        let normal = Cholesky::new(normal)?;
+        let moments = products.view((0, target), (width, 1)).column(0).into_owned();
+        let weights = normal.solve(&moments);
+        let squares = products[(target, target)] - moments.dot(&weights);
+
+        // Kaufman's form: the change of the features, less what the linear weights would take up of it.
+        let slopes = DVector::from_fn(parameters, |p, _| -LN_2 * weights[1 + N + p / N]);
+        let scale = DMatrix::from_diagonal(&slopes);
+        let onto_features = products.view((0, width), (width, parameters)) * &scale;
+        let taken_up = onto_features.tr_mul(&normal.solve(&onto_features));
+        let of_changes = &scale * products.view((width, width), (parameters, parameters)) * &scale - taken_up
+            + DMatrix::from_diagonal_element(parameters, parameters, self.exponent_prior);
+        let with_residuals = &scale * products.view((width, target), (parameters, 1)).column(0)
+            - onto_features.tr_mul(&weights)
+            + &self.exponents * self.exponent_prior;
+        let squares = squares + self.exponent_prior * self.exponents.norm_squared();
+
+        // A triangle has the same inner products as the samples' rows; a last row holds what no exponent changes.
+        let triangle = Cholesky::new(of_changes)?;
+        let along = triangle.l_dirty().solve_lower_triangular(&with_residuals)?;
+        let rest = (squares - along.norm_squared()).max(0.0).sqrt();
+        let residuals = along.push(rest);
+        let jacobian = triangle.l().transpose().insert_row(parameters, 0.0);
+        Some(Fit { weights, residuals, jacobian })
     }
 }
 
@@ -153,29 +177,10 @@ impl<const N: usize> LeastSquaresProblem<f64, Dyn, Dyn> for Projection<N> {
     }
 
     fn residuals(&self) -> Option<DVector<f64>> {
-        self.fit.normal.as_ref()?;
-        let prior = self.exponent_prior;
-        let fitted = self.fit.residuals.iter().copied();
-        let all = fitted.chain(self.exponents.iter().map(|e| prior * e));
-        Some(DVector::from_iterator(self.fit.residuals.len() + self.exponents.len(), all))
+        Some(self.fit.as_ref()?.residuals.clone())
     }
 
-    /// Kaufman's form: the change of the features, less what the linear weights would take up of it.
     fn jacobian(&self) -> Option<DMatrix<f64>> {
-        let normal = self.fit.normal.as_ref()?;
-        let (rows, count, parameters) = (self.fit.features.nrows(), self.x.len(), self.exponents.len());
-        let mut change = DMatrix::zeros(rows, parameters);
-        for parameter in 0..parameters {
-            let (unit, input) = (parameter / N, parameter % N);
-            let (column, slope) = (1 + N + unit, LN_2 * self.fit.weights[1 + N + unit]);
-            for i in 0..count {
-                change[(i, parameter)] = -slope * self.log2_x[i][input] * self.fit.features[(i, column)];
-            }
-        }
-        let taken_up = normal.solve(&self.fit.features.tr_mul(&change));
-        let mut jacobian = DMatrix::zeros(rows + parameters, parameters);
-        jacobian.rows_mut(0, rows).copy_from(&(change - &self.fit.features * taken_up));
-        (0..parameters).for_each(|p| jacobian[(rows + p, p)] = self.exponent_prior);
-        Some(jacobian)
+        Some(self.fit.as_ref()?.jacobian.clone())
     }
 }
