@@ -112,6 +112,8 @@ const MOST_RIVALS: usize = 3;
 const OF_NO_MATTER: f64 = 1.0;
 /// The most effects that are named together.
 const MOST_EFFECTS: usize = 3;
+/// The effect that no reading follows.
+const SCATTER: &str = "sonar_noise";
 /// Scatter beyond the simulator's counts from this ratio on.
 const LEAST_SCATTER_RATIO: f64 = 1.12;
 
@@ -137,6 +139,10 @@ impl Explanation {
                 break;
             }
             (chosen, rivals) = settled;
+        }
+        if let Some(others) = without_feigned_scatter(&chosen, logs) {
+            rivals = in_place_of_each(&others, &alone, logs);
+            chosen = others;
         }
         let beyond_none = leftovers(&none, logs);
         let beyond_chosen = if chosen.ids().is_empty() { leftovers(&none, logs) } else { leftovers(&chosen, logs) };
@@ -221,6 +227,13 @@ fn settled(chosen: Fitted, alone: &[Fitted], logs: &Given) -> (Fitted, Vec<Vec<F
         Some(better) => (better.clone(), in_place_of_each(better, alone, logs)),
         None => (chosen, rivals),
     }
+}
+
+/// The other effects, where readings scatter more for no other reason than that something moves them.
+fn without_feigned_scatter(chosen: &Fitted, logs: &Given) -> Option<Fitted> {
+    let others = chosen.without(chosen.ids().iter().position(|id| *id == SCATTER)?, logs);
+    let moved = others.with(&generic::MOVED_READINGS, logs);
+    (moved.score() > chosen.score()).then_some(others)
 }
 
 /// For each effect the fits with it or another in its place, best first.

@@ -15,6 +15,16 @@ pub fn form(channel: Channel) -> &'static Form {
     }
 }
 
+/// The form that moves readings as circumstances have it, and leaves their scatter as it is.
+pub static MOVED_READINGS: Form = Form {
+    id: "anything",
+    name: "where readings lie",
+    parameters: const { &[Parameter::new(-20.0, 20.0, 0.0); SONAR_FEATURES] },
+    starts: &[&[0.0; SONAR_FEATURES]],
+    acts: &[Act::Sensor(|v, moment, sensor| sensor.change.offset_cm += sonar_sum(v, moment))],
+    report: |_, _| Vec::new(),
+};
+
 static FORWARD: Form = motion_form(&[Act::Motion(|v, moment, m| m.forward_cm += motion_sum(v, moment, m))]);
 static LATERAL: Form = motion_form(&[Act::Motion(|v, moment, m| m.lateral_cm += motion_sum(v, moment, m))]);
 static TURN: Form = motion_form(&[Act::Motion(|v, moment, m| m.turn_rad += 0.1 * motion_sum(v, moment, m))]);

@@ -56,11 +56,12 @@ impl Explanation {
 
     /// The answer.
     pub fn verdict(&self) -> Verdict {
-        let named = !self.chosen.ids().is_empty();
-        let vague = self.named().iter().any(|n| n.ambiguous_with.len() > MOST_AMBIGUOUS);
-        if named && !vague && self.adequacy() >= self.calibration.adequate {
+        let named = self.named();
+        let vague = named.iter().any(|n| n.ambiguous_with.len() > MOST_AMBIGUOUS);
+        let likeliest = named.first().is_some_and(|first| first.probability >= self.probability_of_unknown());
+        if likeliest && !vague && self.adequacy() >= self.calibration.adequate {
             Verdict::Known
-        } else if named || self.unexplained() > 0.0 {
+        } else if !named.is_empty() || self.unexplained() > 0.0 {
             Verdict::Unknown
         } else {
             Verdict::NoGap
@@ -69,16 +70,26 @@ impl Explanation {
 
     /// The chosen effects, the most certain first.
     pub fn named(&self) -> Vec<Named> {
-        let gap = logistic((self.explained() - self.calibration.effect.nats) / GAP_WIDTH);
         let named = |place: usize| {
             let weights = self.weights_in_place_of(place);
             let rivals = weights.iter().filter(|(_, weight)| *weight >= self.calibration.rival);
-            let probability = gap * probability(self.adequacy(), weights.iter().map(|w| w.1), &self.calibration);
+            let probability = self.probability_of_gap()
+                * probability(self.adequacy(), weights.iter().map(|w| w.1), &self.calibration);
             Named { id: self.chosen.ids()[place], probability, ambiguous_with: rivals.map(|(id, _)| *id).collect() }
         };
         let mut named: Vec<Named> = (0..self.chosen.ids().len()).map(named).collect();
         named.sort_by(|a, b| b.probability.total_cmp(&a.probability));
         named
+    }
+
+    /// How likely there is a gap that is none of chance.
+    fn probability_of_gap(&self) -> f64 {
+        logistic((self.explained() - self.calibration.effect.nats) / GAP_WIDTH)
+    }
+
+    /// How likely there is one, and its cause none that is known.
+    fn probability_of_unknown(&self) -> f64 {
+        self.probability_of_gap() * (1.0 - probability(self.adequacy(), std::iter::empty(), &self.calibration))
     }
 
     /// The effects that could be in the place of one of the chosen, with their weights against its one, best first.

@@ -100,10 +100,10 @@ pub const FORMS: &[Form] = &[
     },
     Form {
         id: "slip",
-        name: "large changes lose more than in proportion, and turns drift",
-        parameters: &[Parameter::new(15.0, 90.0, 60.0), Parameter::new(0.0, 1.5, 0.0), Parameter::new(-0.5, 0.5, 0.0)],
-        starts: &[&[30.0, 0.3, 0.05], &[60.0, 0.3, 0.05], &[30.0, 0.3, -0.05], &[60.0, 0.3, -0.05]],
-        acts: &[Act::Commands(slip_growing), Act::Motion(|v, _, motion| motion.turn_rad *= 1.0 + v[1] * v[2])],
+        name: "large changes lose more than in proportion, and turns drag",
+        parameters: DRAGGING_GRIP,
+        starts: DRAGGING_GRIP_STARTS,
+        acts: &[Act::Commands(slip_growing), Act::Motion(dragging_turn)],
         report: onset,
     },
 ];
@@ -157,6 +157,15 @@ const AXIS_STARTS: &[&[f64]] = &[&[0.0, 0.05], &[PI / 4.0, 0.05], &[PI / 2.0, 0.
 const GRIP: &[Parameter] = &[Parameter::new(15.0, 120.0, 120.0), Parameter::new(0.0, 1.0, 0.0)];
 /// Large commands alone: what loses more than half is a limit.
 const FAST_GRIP: &[Parameter] = &[Parameter::new(15.0, 120.0, 120.0), Parameter::new(0.0, 0.5, 0.0)];
+/// Onset, loss, and so many times that many radians that a step's turn loses: a tyre of little grip creeps where it is
+/// held back.
+const DRAGGING_GRIP: &[Parameter] =
+    &[Parameter::new(15.0, 90.0, 60.0), Parameter::new(0.0, 1.5, 0.0), Parameter::new(0.0, 0.1, 0.0)];
+const DRAGGING_GRIP_STARTS: &[&[f64]] = &[&[30.0, 0.3, 0.0], &[60.0, 0.3, 0.0], &[30.0, 0.8, 0.05], &[60.0, 0.8, 0.05]];
+/// Turns of a step below this do not pull the tyres to their grip, rad.
+const LITTLE_TURN_RAD: f64 = 0.04;
+/// A change of so many onsets is not caught up with at the end of its step.
+const NOT_CAUGHT_UP: f64 = 2.5;
 const GRIP_STARTS: &[&[f64]] = &[&[20.0, 0.2], &[40.0, 0.3], &[70.0, 0.4]];
 
 fn load_factors(v: &[f64]) -> [f64; 2] {
@@ -258,18 +267,24 @@ fn slip_when_fast(v: &[f64], _: &Moment, window: &mut Window) {
 
 /// A wheel that slips in a step has caught up at its end.
 fn slip_when_changing(v: &[f64], _: &Moment, window: &mut Window) {
-    slipped(window, |beyond| v[1] * beyond, v[0]);
+    slipped(window, 0, |beyond| v[1] * beyond, v[0]);
 }
 
 fn slip_growing(v: &[f64], _: &Moment, window: &mut Window) {
-    slipped(window, |beyond| v[1] * beyond * beyond / (40.0 + beyond), v[0]);
+    let lost = |beyond: f64| v[1] * beyond * beyond / (40.0 + beyond);
+    slipped(window, 0, lost, v[0]);
+    slipped(window, 1, lost, NOT_CAUGHT_UP * v[0]);
 }
 
-fn slipped(window: &mut Window, lost: impl Fn(f64) -> f64, onset: f64) {
-    let [now, before, ..] = window;
-    for (c, earlier) in now.iter_mut().zip(before) {
-        let change = *c - *earlier;
-        *c -= lost((change.abs() - onset).max(0.0)) * change.signum();
+fn dragging_turn(v: &[f64], _: &Moment, motion: &mut Motion) {
+    motion.turn_rad -= v[1] * v[2] * libm::tanh(motion.turn_rad / LITTLE_TURN_RAD);
+}
+
+/// Takes from the command of a step what the change of command so many steps ago loses beyond an onset.
+fn slipped(window: &mut Window, ago: usize, lost: impl Fn(f64) -> f64, onset: f64) {
+    for motor in 0..2 {
+        let change = window[ago][motor] - window[ago + 1][motor];
+        window[0][motor] -= lost((change.abs() - onset).max(0.0)) * change.signum();
     }
 }
 
