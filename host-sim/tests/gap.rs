@@ -69,6 +69,26 @@ fn what_is_outside_the_table_is_unknown() {
     assert!(diagnosis.effects.is_empty() && !diagnosis.r#where.is_empty());
 }
 
+/// What moves readings one way early in a run and another way late is no scatter, although it looks like it on the
+/// whole.
+#[test]
+fn scatter_that_follows_circumstances_is_no_cause() {
+    let diagnosis = diagnosed(&logs(16, &["sonar_drift=0.4"], 78));
+    assert_eq!(diagnosis.verdict, Verdict::Unknown, "{diagnosis:?}");
+    let mut unexplained = diagnosis.unexplained.iter();
+    assert!(unexplained.any(|u| u.depends_on.starts_with("elapsed time")), "{diagnosis:?}");
+    assert_eq!(ids(&diagnosed(&logs(16, &["sonar_noise"], 78))), ["sonar_noise"]);
+}
+
+/// Tyres without grip lose turns too, but not in proportion, as another track would have it.
+#[test]
+fn smaller_turns_are_not_taken_for_slip() {
+    for effect in ["track_width=1.2", "slip=35"] {
+        let diagnosis = diagnosed(&logs(16, &[effect], 79));
+        assert!(effect.starts_with(ids(&diagnosis)[0]), "{diagnosis:?}");
+    }
+}
+
 #[test]
 fn without_poses_there_is_nothing_to_compare() {
     let mut logs = logs(4, &[], 76);
