@@ -60,7 +60,7 @@ impl<W: FnMut(Moment), F: FnMut(usize, Outcome)> WithSimd for Batch<'_, W, F> {
             let echo_cm = robots.sense(simd, self.sensor, &draws);
             let happens = robots.happens(simd, &echo_cm, may_touch);
             for (lane, happens) in happens.iter().enumerate().take(width) {
-                let ended = if *happens > 0.0 { robots.close(lane, &from, &echo_cm) } else { None };
+                let ended = if *happens > 0.0 { robots.close(lane, *happens, &from, &echo_cm) } else { None };
                 if let Some(moment) = robots.moment(lane, &echo_cm, &ended) {
                     (self.watch)(moment);
                 }

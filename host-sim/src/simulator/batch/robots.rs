@@ -16,6 +16,9 @@ use crate::simulator::motion::{Motion, speeds};
 use crate::simulator::room::Point;
 use crate::simulator::wrapped::Past;
 
+/// What happens to a robot that may have touched something.
+const MAY_TOUCH: f32 = 2.0;
+
 /// The robots of a vector.
 pub struct Robots<'a> {
     pub course: &'a Course<'a>,
@@ -155,8 +158,8 @@ impl<'a> Robots<'a> {
         self.course.room.may_touch(from, to, self.course.robot.body_radius_cm as f32)
     }
 
-    /// Where a robot has to be looked at: its tuple or its run ends, it may have touched something, or its next step
-    /// moves otherwise. One there, else zero.
+    /// Where a robot has to be looked at: [`MAY_TOUCH`] where it may have touched something, one where its tuple or its
+    /// run ends or its next step moves otherwise, else zero.
     #[inline(always)]
     pub fn happens<S: Simd>(&mut self, simd: S, echo_cm: &Row, may_touch: Mask<S>) -> Row {
         let echo_cm = load(simd, echo_cm);
@@ -164,20 +167,21 @@ impl<'a> Robots<'a> {
         let left = load(simd, &self.steps_left) - one;
         self.steps_left = row(left);
         let ends = load(simd, &self.above_cm).less(echo_cm) | echo_cm.less(load(simd, &self.below_cm));
-        let happens = ends | may_touch | left.less(half) | half.less(load(simd, &self.first));
-        row(happens.select(one, echo_cm.constant(0.0)))
+        let happens = ends | left.less(half) | half.less(load(simd, &self.first));
+        row(may_touch.select(one.constant(MAY_TOUCH), happens.select(one, one.constant(0.0))))
     }
 
-    /// Ends a step of a robot: a crash, or the reading and what the controller makes of it. Returns how the run ended,
-    /// and which it was, if it did.
-    pub fn close(&mut self, lane: usize, from: &(Row, Row), echo_cm: &Row) -> Option<(usize, Outcome)> {
+    /// Ends a step in which something `happens` to a robot: a crash, or the reading and what the controller makes of it.
+    /// Returns how the run ended, and which it was, if it did.
+    pub fn close(&mut self, lane: usize, happens: f32, from: &(Row, Row), echo_cm: &Row) -> Option<(usize, Outcome)> {
         let (to_cm, from_cm) = (self.position_cm(lane), point(&from.0, &from.1, lane));
         let steps_left = self.steps_left[lane];
         let run = self.runs[lane].as_mut()?;
         let controller = run.job.controller;
         let steps = (f32::from(controller.max_steps) - steps_left) as u16;
         run.machine.hold(controller, steps - 1 - run.machine.steps());
-        if let Some(share) = self.course.room.touch(from_cm, to_cm, self.course.robot.body_radius_cm) {
+        let touch = || self.course.room.touch(from_cm, to_cm, self.course.robot.body_radius_cm);
+        if let Some(share) = (happens == MAY_TOUCH).then(touch).flatten() {
             return Some((run.number, Outcome { ending: Ending::Crashed, end_cm: from_cm.lerp(to_cm, share), steps }));
         }
         let tuple = run.machine.tuple();
