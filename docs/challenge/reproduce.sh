@@ -5,6 +5,6 @@ set -eu
 here=$(dirname "$0")
 blind=$(mktemp -d)
 trap 'rm -r "$blind"' EXIT
-mindgap challenge make --cases 400 --seed 27182 --out "$blind/challenge"
+mindgap challenge make --cases 400 --seed 31415 --out "$blind/challenge"
 mindgap challenge answer "$blind/challenge"
 mindgap challenge score "$blind/challenge" --csv "$here/cases.csv" --json "$here/score.json"

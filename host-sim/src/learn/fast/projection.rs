@@ -184,3 +184,59 @@ impl<const N: usize> LeastSquaresProblem<f64, Dyn, Dyn> for Projection<N> {
         Some(self.fit.as_ref()?.jacobian.clone())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::chance::generator;
+    use crate::learn::dataset::Dataset;
+    use rand::RngExt;
+
+    const RIDGES: Ridges = Ridges { weights: 1e-3, exponents: 1e-3 };
+
+    /// Forty samples of a curved surface and two product units somewhere, a third of the samples counting double.
+    fn problem(seed: u64) -> Projection<2> {
+        let mut rng = generator(seed, &[]);
+        let mut data = Dataset::default();
+        for run in 0..40 {
+            let x: [f32; 2] = std::array::from_fn(|_| rng.random_range(1.0..2.0));
+            data.push(x, x[0] * x[0] / x[1] + rng.random_range(-0.1..0.1), run);
+        }
+        let weights = (0..40).map(|i| if i % 3 == 0 { 2.0 } else { 1.0 }).collect();
+        let exponents = DVector::from_fn(4, |_, _| rng.random_range(-2.0..2.0));
+        let inputs = [Scaling::onto_one_to_two(1.0, 2.0); 2];
+        Projection::new(&Anchored { data, weights }, &inputs, RIDGES, exponents)
+    }
+
+    /// What the few rows stand for, from every sample and every ridge.
+    fn sum_of_squares(problem: &Projection<2>) -> f64 {
+        let errors = problem.predictions().into_iter().zip(&problem.targets).map(|(p, t)| (t - p) * (t - p));
+        let samples: f64 = errors.zip(&problem.sample_weights).map(|(e, w)| e * w).sum();
+        let squares = |numbers: &[f64]| numbers.iter().map(|x| x * x).sum::<f64>();
+        samples
+            + problem.weight_prior * squares(&problem.weights())
+            + problem.exponent_prior * squares(problem.exponents())
+    }
+
+    #[test]
+    fn few_rows_have_the_length_and_the_slope_of_all() {
+        for seed in 0..20 {
+            let problem = problem(seed);
+            let residuals = problem.residuals().unwrap();
+            let whole = sum_of_squares(&problem);
+            assert!((residuals.norm_squared() - whole).abs() < 1e-9 * whole, "seed {seed}");
+            let slope = 2.0 * problem.jacobian().unwrap().tr_mul(&residuals);
+            for (parameter, slope) in slope.iter().enumerate() {
+                let at = |step: f64| {
+                    let mut moved = problem.clone();
+                    let mut exponents = problem.params();
+                    exponents[parameter] += step;
+                    moved.set_params(&exponents);
+                    sum_of_squares(&moved)
+                };
+                let seen = (at(1e-5) - at(-1e-5)) / 2e-5;
+                assert!((seen - slope).abs() < 1e-5 * (1.0 + seen.abs()), "seed {seed}: {seen} {slope}");
+            }
+        }
+    }
+}
