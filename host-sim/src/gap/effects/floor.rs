@@ -282,9 +282,10 @@ fn dragging_turn(v: &[f64], _: &Moment, motion: &mut Motion) {
 
 /// Takes from the command of a step what the change of command so many steps ago loses beyond an onset.
 fn slipped(window: &mut Window, ago: usize, lost: impl Fn(f64) -> f64, onset: f64) {
-    for motor in 0..2 {
-        let change = window[ago][motor] - window[ago + 1][motor];
-        window[0][motor] -= lost((change.abs() - onset).max(0.0)) * change.signum();
+    let (to, from) = (window[ago], window[ago + 1]);
+    for ((command, to), from) in window[0].iter_mut().zip(to).zip(from) {
+        let change = to - from;
+        *command -= lost((change.abs() - onset).max(0.0)) * change.signum();
     }
 }
 

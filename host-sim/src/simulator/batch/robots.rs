@@ -202,9 +202,9 @@ impl<'a> Robots<'a> {
     /// The moment after a step of a lane that has a run.
     pub fn moment(&self, lane: usize, echo_cm: &Row, ended: &Option<(usize, Outcome)>) -> Option<Moment> {
         let run = self.runs[lane].as_ref()?;
-        let at_cm = ended.map_or(self.position_cm(lane), |(_, outcome)| outcome.end_cm);
-        let pose = Pose { position_cm: at_cm, heading_rad: f64::from(self.heading_rad[lane]) };
-        Some(Moment { pose, echo_cm: reading(echo_cm[lane]), tuple: run.machine.tuple() })
+        let here = self.pose(lane);
+        let position_cm = ended.map_or(here.position_cm, |(_, outcome)| outcome.end_cm);
+        Some(Moment { pose: Pose { position_cm, ..here }, echo_cm: reading(echo_cm[lane]), tuple: run.machine.tuple() })
     }
 
     /// Where the robot of a lane is.
