@@ -47,7 +47,9 @@ pub fn admit(baseline: &mut Baseline, evidence: &Evidence, logs: &Logs) -> Resul
     let mut moments = evidence.rows.iter().flat_map(|row| std::iter::once(&row.moment).chain(&row.then));
     let driven = moments.any(|moment| moment.commands[0].iter().any(|c| c.abs() >= 1.0));
     if baseline.motion.is_none() {
-        notes.push("The simulator has no motion networks: only the sonar is compared.".into());
+        notes.push(
+            "From too few logs, or none with poses, the simulator does not know motion: it is not compared.".into(),
+        );
     } else if steps == 0 {
         notes.push("No run has two poses: motion cannot be compared.".into());
         baseline.motion = None;
@@ -60,7 +62,7 @@ pub fn admit(baseline: &mut Baseline, evidence: &Evidence, logs: &Logs) -> Resul
     }
     let echoes = evidence.rows.iter().filter(|row| row.echo_cm.is_some()).count();
     if baseline.sonar.is_none() {
-        notes.push("The simulator knows nothing of the sonar: only motion is compared.".into());
+        notes.push("From too few readings, or none, the simulator does not know the sonar: it is not compared.".into());
     } else if echoes == 0 {
         notes.push("There is no reading at all: the sonar is not compared.".into());
         baseline.sonar = None;
