@@ -145,7 +145,7 @@ impl Explanation {
             chosen = others;
         }
         let beyond_none = leftovers(&none, logs);
-        let beyond_chosen = if chosen.ids().is_empty() { leftovers(&none, logs) } else { leftovers(&chosen, logs) };
+        let beyond_chosen = leftovers(&chosen, logs);
         Explanation { none, chosen, rivals, beyond_none, beyond_chosen, calibration: logs.calibration }
     }
 }

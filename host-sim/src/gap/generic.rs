@@ -21,7 +21,7 @@ pub static MOVED_READINGS: Form = Form {
     name: "where readings lie",
     parameters: const { &[Parameter::new(-20.0, 20.0, 0.0); SONAR_FEATURES] },
     starts: &[&[0.0; SONAR_FEATURES]],
-    acts: &[Act::Sensor(|v, moment, sensor| sensor.change.offset_cm += sonar_sum(v, moment))],
+    acts: &[Act::Sensor(moved_readings)],
     report: |_, _| Vec::new(),
 };
 
@@ -84,8 +84,12 @@ fn sonar_sum(weights: &[f64], moment: &Moment) -> f64 {
     sonar_features(moment).iter().zip(weights).map(|(f, w)| f * w).sum()
 }
 
+fn moved_readings(v: &[f64], moment: &Moment, sensor: &mut Sensor) {
+    sensor.change.offset_cm += sonar_sum(v, moment);
+}
+
 fn other_readings(v: &[f64], moment: &Moment, sensor: &mut Sensor) {
-    sensor.change.offset_cm += sonar_sum(&v[..SONAR_FEATURES], moment);
+    moved_readings(&v[..SONAR_FEATURES], moment, sensor);
     sensor.change.scatter_cm += v[SONAR_FEATURES];
     sensor.change.short = 1.0 - (1.0 - sensor.change.short) * (1.0 - v[SONAR_FEATURES + 1]);
     sensor.change.long += v[SONAR_FEATURES + 2];

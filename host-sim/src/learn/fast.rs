@@ -6,7 +6,7 @@ mod anchors;
 mod gram;
 mod projection;
 
-use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt};
+use levenberg_marquardt::LevenbergMarquardt;
 use mindgap_core::network::{Activation, MAX_HALF, Network, ProductForm, ProductUnit, Scaling, SummationUnit};
 use nalgebra::DVector;
 use rand::RngExt;
@@ -79,11 +79,12 @@ pub fn train<const N: usize>(
             let mut rng = generator(seed, &[start]);
             let range = -manner.start_range..=manner.start_range;
             let exponents = DVector::from_fn(shape.product * N, |_, _| rng.random_range(range.clone()));
-            let mut problem = Projection::new(&anchored, &inputs, manner.ridges, exponents);
-            let mut evaluations = search(&mut problem);
+            let problem = Projection::new(&anchored, &inputs, manner.ridges, exponents);
+            let (mut problem, mut evaluations) = search(problem);
             for _ in 0..if loss == Loss::Squares { 0 } else { REWEIGHTINGS } {
                 reweight(&mut problem, loss, &anchored.data.targets);
-                evaluations += search(&mut problem);
+                let (found, more) = search(problem);
+                (problem, evaluations) = (found, evaluations + more);
             }
             let network = network(&problem, &inputs, shape, activation);
             (cost(&network, judged, loss), network, evaluations)
@@ -102,13 +103,11 @@ fn is_steep<const N: usize>(network: &Network<f32, N>) -> bool {
     network.product.iter().flat_map(|unit| unit.exponents).any(|exponent| exponent.abs() > LARGEST_EXPONENT)
 }
 
-/// Moves the exponents to a minimum; returns the evaluations that it took.
-fn search<const N: usize>(problem: &mut Projection<N>) -> usize {
+/// The problem with its exponents at a minimum, and the evaluations that it took.
+fn search<const N: usize>(problem: Projection<N>) -> (Projection<N>, usize) {
     let method = LevenbergMarquardt::new().with_patience(PATIENCE).with_ftol(1e-6).with_xtol(1e-4);
-    let (found, report) = method.minimize(problem.clone());
-    let at = found.params();
-    problem.set_params(&at);
-    report.number_of_evaluations
+    let (found, report) = method.minimize(problem);
+    (found, report.number_of_evaluations)
 }
 
 /// Sets targets and weights so that least squares takes a step towards the least loss.

@@ -157,6 +157,7 @@ const AXIS_STARTS: &[&[f64]] = &[&[0.0, 0.05], &[PI / 4.0, 0.05], &[PI / 2.0, 0.
 const GRIP: &[Parameter] = &[Parameter::new(15.0, 120.0, 120.0), Parameter::new(0.0, 1.0, 0.0)];
 /// Large commands alone: what loses more than half is a limit.
 const FAST_GRIP: &[Parameter] = &[Parameter::new(15.0, 120.0, 120.0), Parameter::new(0.0, 0.5, 0.0)];
+const GRIP_STARTS: &[&[f64]] = &[&[20.0, 0.2], &[40.0, 0.3], &[70.0, 0.4]];
 /// Onset, loss, and so many times that many radians that a step's turn loses: a tyre of little grip creeps where it is
 /// held back.
 const DRAGGING_GRIP: &[Parameter] =
@@ -166,7 +167,6 @@ const DRAGGING_GRIP_STARTS: &[&[f64]] = &[&[30.0, 0.3, 0.0], &[60.0, 0.3, 0.0], 
 const LITTLE_TURN_RAD: f64 = 0.04;
 /// A change of so many onsets is not caught up with at the end of its step.
 const NOT_CAUGHT_UP: f64 = 2.5;
-const GRIP_STARTS: &[&[f64]] = &[&[20.0, 0.2], &[40.0, 0.3], &[70.0, 0.4]];
 
 fn load_factors(v: &[f64]) -> [f64; 2] {
     let (near, far) = (v[0].abs(), v[0].abs() * v[1]);

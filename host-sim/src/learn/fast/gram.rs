@@ -3,10 +3,12 @@
 use nalgebra::DMatrix;
 use pulp::{Arch, Simd, WithSimd};
 
+use crate::lanes;
+
 /// Rows that are added to the sums at once, so that sums are read and written less often.
 const BLOCK: usize = 4;
-/// Numbers of the widest vector; rows are filled up to a multiple of it.
-const WIDEST: usize = 8;
+/// Numbers of the widest vector, half as many as of f32; rows are filled up to a multiple of it.
+const WIDEST: usize = lanes::WIDEST / 2;
 
 /// The inner products of the `width` columns of a table with one row a weight, each row counted by its weight.
 ///
@@ -16,12 +18,13 @@ pub fn inner_products(width: usize, weights: &[f64], fill: impl Fn(usize, &mut [
     let stride = width.next_multiple_of(WIDEST);
     let mut sums = vec![0.0; width * stride];
     let mut rows = vec![0.0; BLOCK * stride];
+    let arch = Arch::new();
     for (block, weights) in weights.chunks(BLOCK).enumerate() {
         for (place, row) in rows.chunks_exact_mut(stride).enumerate().take(weights.len()) {
             fill(block * BLOCK + place, &mut row[..width]);
         }
         let weights = std::array::from_fn(|place| weights.get(place).copied().unwrap_or(0.0));
-        Arch::new().dispatch(Add { sums: &mut sums, rows: &rows, weights, stride });
+        arch.dispatch(Add { sums: &mut sums, rows: &rows, weights, stride });
     }
     DMatrix::from_fn(width, width, |i, j| sums[i.min(j) * stride + i.max(j)])
 }

@@ -79,11 +79,11 @@ impl<const N: usize> Projection<N> {
     pub fn predictions(&self) -> Vec<f64> {
         let weights = self.weights();
         let mut features = vec![0.0; weights.len()];
-        let mut at = |sample| {
+        let at = |sample| {
             self.features_at(sample, &mut features);
             features.iter().zip(&weights).map(|(f, w)| f * w).sum()
         };
-        (0..self.x.len()).map(&mut at).collect()
+        (0..self.x.len()).map(at).collect()
     }
 
     /// Gives samples other targets and weights.
