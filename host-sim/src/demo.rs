@@ -14,12 +14,12 @@ use mindgap_core::controller::Controller;
 
 use crate::built_in_robot::{self, BuiltInRobot, Track};
 use crate::chance::{derive, generator};
+use crate::evaluation::accuracy::{self, Evaluation};
 use crate::evolve::controller_file::{self, ControllerFile};
 use crate::evolve::fitness::{Numbers, Success};
 use crate::evolve::genome::Coding;
 use crate::evolve::robust::{self, Quest};
 use crate::files;
-use crate::learn::evaluate::{self, Evaluation};
 use crate::learn::train::{self, TABLE_ONE, Trainer};
 use crate::logs::Scene;
 use crate::problem::{Problem, Result};
@@ -107,7 +107,7 @@ pub fn run(out: &Path, seed: u64, watch: impl Fn(Stage)) -> Result<Summary> {
     let simulator =
         train::train(&logs, &Trainer::Fast, &TABLE_ONE, of(Purpose::Training), |p| watch(Stage::Training(p)))?;
     simulator.write(&out.join("simulator.json"))?;
-    let evaluation = evaluate::evaluate(&simulator, &held_out)?;
+    let evaluation = accuracy::evaluate(&simulator, &held_out)?;
     files::write_json(&out.join("evaluation.json"), &evaluation)?;
     let job = Job { out, simulator: &simulator, scene: &scene, watch: &watch };
     let trials = (0..scene.starts.len())

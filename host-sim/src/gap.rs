@@ -6,26 +6,17 @@
 //! [`calibration`] holds.
 
 pub mod admission;
-pub mod baseline;
-mod bootstrap;
 pub mod calibration;
 pub mod channel;
 pub mod circumstances;
 pub mod confirmation;
 pub mod contexts;
 pub mod diagnosis;
-pub mod effect;
-pub mod effects;
-pub mod endings;
-pub mod evidence;
 pub mod excitation;
 pub mod experiment;
 pub mod explanation;
 pub mod generic;
 pub mod hypothesis;
-pub mod kinematic;
-pub mod paths;
-pub mod prediction;
 pub mod scripts;
 pub mod search;
 pub mod shape;

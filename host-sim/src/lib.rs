@@ -1,13 +1,14 @@
 //! The host harness: learns a robot's simulator neural networks from its logs, evolves controllers in them, and
 //! measures both.
 
-pub mod ascent;
 pub mod built_in_robot;
 pub mod challenge;
 pub mod chance;
 pub mod cli;
 pub mod crosscheck;
 pub mod demo;
+pub mod effects;
+pub mod evaluation;
 pub mod evolve;
 pub mod files;
 pub mod folded;
@@ -21,3 +22,5 @@ pub mod logs;
 pub mod problem;
 pub mod report;
 pub mod simulator;
+pub mod sonar;
+pub mod statistics;

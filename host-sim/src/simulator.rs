@@ -1,13 +1,14 @@
 //! The learned simulator: five networks, how reality scatters about them, and the robot that they stand for.
 
-pub mod added;
+pub mod baseline;
 mod batch;
 mod beam;
 pub mod course;
 pub mod draws;
 pub mod fixed_point;
+pub mod kinematic;
 pub mod motion;
-pub mod reference;
+pub mod nominal;
 pub mod rehearsal;
 pub mod room;
 pub mod scatter;
@@ -18,12 +19,12 @@ use std::path::Path;
 use mindgap_core::network::Network;
 use serde::{Deserialize, Serialize};
 
+use crate::effects::applied::AppliedEffect;
 use crate::files;
 use crate::logs::Robot;
 use crate::problem::{Problem, Result};
-use added::Added;
 use motion::MotionNetworks;
-use reference::Reference;
+use nominal::NominalModel;
 use scatter::{ConstantReading, Spread};
 
 /// The version of the simulator file that is written and read.
@@ -54,13 +55,13 @@ pub struct Simulator {
     pub constant_reading: Option<ConstantReading>,
     /// What the training logs say beyond the networks: the yardstick of the gap.
     #[serde(default)]
-    pub reference: Option<Reference>,
+    pub reference: Option<NominalModel>,
     /// What the same logs give with the sizes of the paper's Table I, when these networks have others.
     #[serde(default)]
     pub table_one: Option<Box<Simulator>>,
     /// Effects that a diagnosis confirmed, in the order in which they act.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub added: Vec<Added>,
+    pub added: Vec<AppliedEffect>,
     /// The networks that the logs could not support.
     pub missing: Vec<Missing>,
 }

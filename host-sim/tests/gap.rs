@@ -3,12 +3,13 @@
 use std::sync::LazyLock;
 
 use mindgap_host_sim::built_in_robot::{ActiveEffect, default_robot, record, training_room};
-use mindgap_host_sim::gap::baseline::Baseline;
 use mindgap_host_sim::gap::verdict::Verdict;
-use mindgap_host_sim::gap::{Diagnosis, diagnose, kinematic};
+use mindgap_host_sim::gap::{Diagnosis, diagnose};
 use mindgap_host_sim::learn::train::{TABLE_ONE, Trainer, train};
 use mindgap_host_sim::logs::Logs;
 use mindgap_host_sim::simulator::Simulator;
+use mindgap_host_sim::simulator::baseline::Baseline;
+use mindgap_host_sim::simulator::kinematic;
 
 const STEPS: usize = 60;
 

@@ -7,7 +7,6 @@ use mindgap_host_sim::built_in_robot::{
     BuiltInRobot, default_robot, four_obstacles, record, run_controller, training_room,
 };
 use mindgap_host_sim::chance::generator;
-use mindgap_host_sim::gap::baseline::Baseline;
 use mindgap_host_sim::gap::endings::endings;
 use mindgap_host_sim::gap::verdict::Verdict;
 use mindgap_host_sim::gap::{diagnose, effects, findings};
@@ -15,6 +14,7 @@ use mindgap_host_sim::learn::evaluate::evaluate;
 use mindgap_host_sim::learn::train::{TABLE_ONE, Trainer, train};
 use mindgap_host_sim::logs::{Logs, Row, Run};
 use mindgap_host_sim::simulator::added::Added;
+use mindgap_host_sim::simulator::baseline::Baseline;
 use mindgap_host_sim::simulator::course::Course;
 use mindgap_host_sim::simulator::rehearsal::Rehearsal;
 use mindgap_host_sim::simulator::{Noise, Simulator};

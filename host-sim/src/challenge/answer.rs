@@ -10,12 +10,12 @@ use rayon::prelude::*;
 use super::Folder;
 use super::seal::Published;
 use crate::files;
-use crate::gap::baseline::Baseline;
 use crate::gap::findings;
 use crate::learn::train::{TABLE_ONE, Trainer, train};
 use crate::logs::Logs;
 use crate::problem::{Problem, Result};
 use crate::simulator::Simulator;
+use crate::simulator::baseline::Baseline;
 
 /// Seeds the training.
 const SEED: u64 = 1;

@@ -12,7 +12,6 @@ use serde::Serialize;
 use super::answer::learn;
 use super::cases::{self, Case};
 use crate::built_in_robot::Effect;
-use crate::gap::baseline::Baseline;
 use crate::gap::calibration::Calibration;
 use crate::gap::diagnosis::{explained, first_signs};
 use crate::gap::explanation::Signs;
@@ -20,6 +19,7 @@ use crate::gap::search::Gain;
 use crate::logs::Logs;
 use crate::problem::{Problem, Result};
 use crate::simulator::Simulator;
+use crate::simulator::baseline::Baseline;
 
 /// What is measured in one case.
 #[derive(Clone, Debug, PartialEq, Serialize)]

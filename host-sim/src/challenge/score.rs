@@ -9,13 +9,13 @@ use serde::{Deserialize, Serialize};
 use super::Folder;
 use super::seal::{Published, Sealed};
 use crate::built_in_robot::{ActiveEffect, Driving, Effect, record_driving};
+use crate::effects::applied::AppliedEffect;
 use crate::files;
 use crate::gap::verdict::Verdict;
 use crate::gap::{Diagnosis, closed};
 use crate::logs::Logs;
 use crate::problem::{Problem, Result};
 use crate::simulator::Simulator;
-use crate::simulator::added::Added;
 
 /// A set of effects that holds more than these rivals beside the first says nothing.
 const MOST_RIVALS: usize = 3;
@@ -122,7 +122,7 @@ pub fn score(folder: &Path) -> Result<Score> {
 
 /// What the effects that a case's answer adds to its robot's simulator close on runs that nobody has seen.
 fn closed_on_fresh_runs(folder: &Folder, case: &Published, sealed: &Sealed) -> Result<Option<f64>> {
-    let added: Vec<Added> = files::read_json(&folder.added(&case.case))?;
+    let added: Vec<AppliedEffect> = files::read_json(&folder.added(&case.case))?;
     if added.is_empty() {
         return Ok(None);
     }

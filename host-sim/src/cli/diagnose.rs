@@ -5,15 +5,16 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use super::{diagnosis_page, diagnosis_text};
+use crate::effects::applied::AppliedEffect;
+use crate::evaluation::final_position::{FinalPositions, endings};
 use crate::evolve::controller_file::ControllerFile;
 use crate::files;
-use crate::gap::baseline::Baseline;
-use crate::gap::endings::{Endings, endings};
-use crate::gap::{Findings, admission, findings, kinematic};
+use crate::gap::{Findings, admission, findings};
 use crate::logs::Logs;
 use crate::problem::{Problem, Result};
 use crate::simulator::Simulator;
-use crate::simulator::added::Added;
+use crate::simulator::baseline::Baseline;
+use crate::simulator::kinematic;
 
 /// Find the gap between a simulator and logs: where it lies, what causes it, and how far it shrinks.
 #[derive(Args)]
@@ -79,7 +80,12 @@ impl Diagnose {
 }
 
 /// Where the controller's runs end, with the simulator as it is and with the effects found.
-fn ends(simulator: Option<&Simulator>, added: &[Added], controller: &Path, logs: &Logs) -> Result<Endings> {
+fn ends(
+    simulator: Option<&Simulator>,
+    added: &[AppliedEffect],
+    controller: &Path,
+    logs: &Logs,
+) -> Result<FinalPositions> {
     let simulator = simulator.ok_or_else(|| Problem::new("--controller needs a simulator file that can run it"))?;
     let controller = ControllerFile::read(controller)?.controller;
     let mut better = simulator.clone();

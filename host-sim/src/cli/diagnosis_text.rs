@@ -1,8 +1,8 @@
 //! A diagnosis in words, on one screen.
 
+use crate::evaluation::final_position::FinalPositions;
 use crate::gap::Diagnosis;
 use crate::gap::diagnosis::{EffectFound, Place, Shrink, Unexplained};
-use crate::gap::endings::Endings;
 use crate::gap::verdict::Verdict;
 
 /// The words.
@@ -55,8 +55,8 @@ fn unexplained(part: &Unexplained) -> String {
     format!("  {} ({unit}) by {depends_on}: {}", channel.name(), bins.collect::<Vec<_>>().join(" | "))
 }
 
-fn endings(of: &Endings) -> String {
-    let Endings { runs, before_cm, after_cm, floor_cm } = of;
+fn endings(of: &FinalPositions) -> String {
+    let FinalPositions { runs, before_cm, after_cm, floor_cm } = of;
     format!(
         "The controller's {runs} run(s) end {before_cm:.1} cm from where the simulator expects, {after_cm:.1} cm with the \
          effects; scatter alone makes {floor_cm:.1} cm."

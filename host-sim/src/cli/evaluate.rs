@@ -5,8 +5,8 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::table::{self, number};
+use crate::evaluation::accuracy::{self, Evaluation, Networks};
 use crate::files;
-use crate::learn::evaluate::{self, Evaluation, Networks};
 use crate::problem::Result;
 use crate::simulator::Simulator;
 
@@ -26,7 +26,7 @@ impl Evaluate {
     /// Tells the figures.
     pub fn run(&self) -> Result<String> {
         let simulator = Simulator::read(&self.sim)?;
-        let evaluation = evaluate::evaluate(&simulator, &super::read_logs(&self.logs)?)?;
+        let evaluation = accuracy::evaluate(&simulator, &super::read_logs(&self.logs)?)?;
         if let Some(path) = &self.json {
             files::write_json(path, &evaluation)?;
         }

@@ -5,9 +5,8 @@ use std::path::Path;
 use glam::{DVec2, DVec3};
 
 use super::Trial;
-use crate::evolve::fitness::REACHED_CM;
+use crate::evaluation::accuracy::Evaluation;
 use crate::learn::dataset::{Dataset, Datasets};
-use crate::learn::evaluate::Evaluation;
 use crate::logs::{Logs, Scene};
 use crate::problem::Result;
 use crate::report;
@@ -15,6 +14,7 @@ use crate::report::expected_against_predicted::{Panel, Samples};
 use crate::report::paths::{PathPanel, Trace};
 use crate::report::sonar_surfaces::Surface;
 use crate::simulator::Simulator;
+use crate::simulator::course::REACHED_CM;
 
 /// Figure 3 shows test samples this far apart in the data set, so that single ones can be seen.
 const EVERY: usize = 4;

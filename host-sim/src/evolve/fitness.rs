@@ -7,11 +7,8 @@ use rayon::prelude::*;
 use super::genome::Coding;
 use crate::chance::{Generator, derive};
 use crate::genetic;
-use crate::simulator::course::{Course, Ending, Job, Outcome, Sensor};
+use crate::simulator::course::{Course, Ending, Job, Outcome, REACHED_CM, Sensor};
 use crate::simulator::motion::MotionTable;
-
-/// A run succeeds when it ends within this of the target, without a crash.
-pub const REACHED_CM: f64 = 15.0;
 
 /// Individuals that share the lanes of one batch.
 const TOGETHER: usize = 25;
@@ -59,11 +56,6 @@ pub struct Success {
 pub fn fitness(outcome: &Outcome, target_cm: DVec2, floor_cm: f64) -> f64 {
     let distance_cm = outcome.end_cm.distance(target_cm).max(floor_cm);
     if outcome.ending == Ending::Crashed { 0.5 / distance_cm } else { 1.0 / distance_cm }
-}
-
-/// Whether a run reached the target.
-pub fn reached(outcome: &Outcome, target_cm: DVec2) -> bool {
-    outcome.ending != Ending::Crashed && outcome.end_cm.distance(target_cm) <= REACHED_CM
 }
 
 /// By turns the two networks and, where the course has it, the beam.

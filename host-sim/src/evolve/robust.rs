@@ -13,13 +13,14 @@ use glam::DVec2;
 use mindgap_core::controller::Controller;
 use rayon::prelude::*;
 
-use super::fitness::{Numbers, REACHED_CM, Success, Task};
+use super::fitness::{Numbers, Success, Task};
 use super::genome::Coding;
 use super::paper::Evolved;
 use crate::chance::derive;
 use crate::genetic::mutation::{Mutation, Unit};
 use crate::genetic::{self, Settings};
 use crate::simulator::course::Course;
+use crate::simulator::course::REACHED_CM;
 
 /// Generations of all runs of the genetic algorithm together.
 pub const GENERATIONS: usize = RESTARTS * (EXPLORING.max_generations + REFINING.max_generations);

@@ -1,11 +1,11 @@
 //! What has to be said about logs before they are diagnosed: whether they are of the simulator's robot, and what they
 //! cannot tell.
 
-use super::baseline::Baseline;
 use super::confirmation::FEWEST_RUNS;
-use super::evidence::Evidence;
+use crate::evaluation::observations::Observations;
 use crate::logs::{Logs, Robot, Run};
 use crate::problem::{Problem, Result};
+use crate::simulator::baseline::Baseline;
 
 /// Measurements of one robot agree to this share.
 const SAME: f64 = 0.02;
@@ -41,10 +41,10 @@ pub fn same_robot(simulator: &Robot, logs: &Robot) -> Result<()> {
 ///
 /// # Errors
 /// When the logs say nothing that the baseline could be compared with.
-pub fn admit(baseline: &mut Baseline, evidence: &Evidence, logs: &Logs) -> Result<Vec<String>> {
+pub fn admit(baseline: &mut Baseline, evidence: &Observations, logs: &Logs) -> Result<Vec<String>> {
     let mut notes = Vec::new();
     let steps = evidence.rows.iter().filter(|row| row.motion.is_some()).count();
-    let mut moments = evidence.rows.iter().flat_map(|row| std::iter::once(&row.moment).chain(&row.then));
+    let mut moments = evidence.rows.iter().flat_map(|row| std::iter::once(&row.context).chain(&row.then));
     let driven = moments.any(|moment| moment.commands[0].iter().any(|c| c.abs() >= 1.0));
     if baseline.motion.is_none() {
         notes.push(

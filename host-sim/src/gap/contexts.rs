@@ -1,14 +1,14 @@
 //! Where the gap lies: the circumstances that carry it, channel by channel.
 
-use super::bootstrap;
 use super::channel::Channel;
 use super::circumstances::{
     change, distance_cm, edge_in_beam, heading_deg, incidence_deg, off_middle_cm, reverses, seconds, speed, turning,
 };
-use super::evidence::{Evidence, Row};
 use super::explanation::Explanation;
 use super::verdict::Verdict;
+use crate::evaluation::observations::{Observation, Observations};
 use crate::geometry::wrap_rad;
+use crate::statistics::bootstrap;
 
 /// The part of a channel's gap that lies in one context.
 #[derive(Clone, Debug)]
@@ -26,7 +26,7 @@ pub struct Part {
 }
 
 /// A circumstance and its name.
-type Context = (&'static str, fn(&Row) -> bool);
+type Context = (&'static str, fn(&Observation) -> bool);
 
 const MOTION: &[Context] = &[
     ("elapsed time under 8 s", |r| seconds(r) < 8.0),
@@ -60,9 +60,9 @@ const SONAR: &[Context] = &[
     ("walls that lean to the left", |r| incidence_deg(r) > 10.0),
     ("walls that lean to the right", |r| incidence_deg(r) < -10.0),
     ("an edge within the beam", edge_in_beam),
-    ("just after a missing reading", |r| r.moment.echo_before == Some(false)),
-    ("just after a reading", |r| r.moment.echo_before == Some(true)),
-    ("just after moving fast", |r| r.moment.commands[1].iter().map(|c| c.abs()).sum::<f64>() > 80.0),
+    ("just after a missing reading", |r| r.context.echo_before == Some(false)),
+    ("just after a reading", |r| r.context.echo_before == Some(true)),
+    ("just after moving fast", |r| r.context.commands[1].iter().map(|c| c.abs()).sum::<f64>() > 80.0),
     ("elapsed time over 12 s", |r| seconds(r) >= 12.0),
 ];
 
@@ -74,7 +74,7 @@ const LIFT: f64 = 1.15;
 const LEAST_NATS: f64 = 8.0;
 
 /// The contexts that carry the gap, the largest gap first; none when there is no gap.
-pub fn parts(explanation: &Explanation, evidence: &Evidence) -> Vec<Part> {
+pub fn parts(explanation: &Explanation, evidence: &Observations) -> Vec<Part> {
     let mut parts: Vec<(f64, Part)> = Vec::new();
     if explanation.verdict() == Verdict::NoGap {
         return Vec::new();
@@ -118,9 +118,10 @@ fn part(
     (context, holds): &Context,
     excess: &[f64],
     all: f64,
-    evidence: &Evidence,
+    evidence: &Observations,
 ) -> Option<(f64, Part)> {
-    let inside = |(row, _): &(&Row, &f64)| holds(row) && (channel.motion_axis().is_none() || row.motion.is_some());
+    let inside =
+        |(row, _): &(&Observation, &f64)| holds(row) && (channel.motion_axis().is_none() || row.motion.is_some());
     let (mut gaps, mut counts) = (vec![0.0; evidence.blocks], vec![0.0; evidence.blocks]);
     for (row, e) in evidence.rows.iter().zip(excess).filter(inside) {
         gaps[row.block] += e;
@@ -138,10 +139,10 @@ fn part(
     (carries && count > 0.0).then(|| (rank, Part { channel, context, gap: gap / count, ci95, share }))
 }
 
-fn heading(row: &Row, deg: f64) -> bool {
+fn heading(row: &Observation, deg: f64) -> bool {
     wrap_rad((heading_deg(row) - deg).to_radians()).abs() <= 45f64.to_radians()
 }
 
-fn faces(row: &Row, from_cm: f64, to_cm: f64) -> bool {
-    row.moment.faced.is_some() && (from_cm..to_cm).contains(&distance_cm(row))
+fn faces(row: &Observation, from_cm: f64, to_cm: f64) -> bool {
+    row.context.faced.is_some() && (from_cm..to_cm).contains(&distance_cm(row))
 }

@@ -4,25 +4,25 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
 use super::admission;
-use super::baseline::Baseline;
 use super::calibration::Calibration;
 use super::channel::Channel;
 use super::confirmation;
 use super::contexts::{self, Part};
-use super::endings::Endings;
-use super::evidence::Evidence;
 use super::excitation::untestable;
 use super::experiment::{self, Experiment};
 use super::explanation::{Explanation, Signs};
-use super::paths::{self, PathGap};
-use super::search::Given;
+use super::search::{Fitted, Given};
 use super::shape::{self, Bin, Shape};
 use super::shrink;
 use super::verdict::Verdict;
+use crate::effects::applied::AppliedEffect;
+use crate::evaluation::final_position::FinalPositions;
+use crate::evaluation::observations::Observations;
+use crate::evaluation::paths::{self, PathGap};
 use crate::logs::Logs;
 use crate::problem::Result;
 use crate::simulator::Simulator;
-use crate::simulator::added::Added;
+use crate::simulator::baseline::Baseline;
 
 /// What `mindgap diagnose --json` writes.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -38,7 +38,7 @@ pub struct Diagnosis {
     /// How far it shrinks; null where there is no gap to shrink.
     pub shrink: Option<Shrink>,
     /// Where a controller's runs end; null unless the logs are said to be those of a controller.
-    pub endings: Option<Endings>,
+    pub endings: Option<FinalPositions>,
     /// What to log next to tell more.
     pub next_experiment: Option<String>,
     /// How the unexplained part follows circumstances, channel by channel.
@@ -168,7 +168,7 @@ pub struct Findings {
     /// What to drive next.
     pub experiment: Option<Experiment>,
     /// The effects that explain the gap, as a simulator takes them; none unless the verdict is known.
-    pub added: Vec<Added>,
+    pub added: Vec<AppliedEffect>,
 }
 
 /// Diagnoses logs.
@@ -211,7 +211,7 @@ pub fn findings(mut baseline: Baseline, logs: &Logs) -> Result<Findings> {
 ///
 /// # Errors
 /// When the logs say nothing that the simulator could be compared with.
-pub fn closed(simulator: &Simulator, added: &[Added], logs: &Logs) -> Result<Option<f64>> {
+pub fn closed(simulator: &Simulator, added: &[AppliedEffect], logs: &Logs) -> Result<Option<f64>> {
     let mut baseline = Baseline::learned(simulator)?;
     let (evidence, kept_back, _) = admitted(&mut baseline, logs)?;
     let given = Given::new(&baseline, &evidence, Calibration::shipped());
@@ -238,7 +238,7 @@ pub fn explained(mut baseline: Baseline, logs: &Logs, calibration: Calibration) 
 }
 
 /// What explains the gap and holds on the runs kept back.
-fn explain(given: &Given, kept_back: Option<&Evidence>) -> Explanation {
+fn explain(given: &Given, kept_back: Option<&Observations>) -> Explanation {
     let explanation = Explanation::find(given);
     match kept_back {
         Some(kept_back) => explanation.confirmed(given, kept_back),
@@ -247,12 +247,12 @@ fn explain(given: &Given, kept_back: Option<&Evidence>) -> Explanation {
 }
 
 /// The evidence to seek effects on, that which is kept back, and what has to be said about it.
-fn admitted(baseline: &mut Baseline, logs: &Logs) -> Result<(Evidence, Option<Evidence>, Vec<String>)> {
+fn admitted(baseline: &mut Baseline, logs: &Logs) -> Result<(Observations, Option<Observations>, Vec<String>)> {
     let fan_width = baseline.sonar.as_ref().map_or(1.0, |sonar| sonar.fan_width);
     let parts = confirmation::parts(logs);
-    let evidence = Evidence::of(&parts.found_on, fan_width);
+    let evidence = Observations::of(&parts.found_on, fan_width);
     let notes = admission::admit(baseline, &evidence, logs)?;
-    let kept_back = parts.kept_back.map(|logs| Evidence::of(&logs, fan_width));
+    let kept_back = parts.kept_back.map(|logs| Observations::of(&logs, fan_width));
     Ok((evidence.expect(baseline.motion.as_ref()), kept_back, notes))
 }
 
@@ -272,10 +272,12 @@ fn unexplained(explanation: &Explanation, given: &Given) -> Vec<Unexplained> {
 }
 
 /// How far the gap shrinks on runs kept back, or on the others where none is.
-fn shrunk(explanation: &Explanation, found: &Given, kept_back: Option<&Evidence>) -> Option<Shrink> {
+fn shrunk(explanation: &Explanation, found: &Given, kept_back: Option<&Observations>) -> Option<Shrink> {
     let confirming = kept_back.unwrap_or(found.evidence);
     let shrink = shrink::shrink(explanation, found, confirming)?;
-    let paths = paths::open_loop(explanation, found, confirming);
+    let [before, after] = [&explanation.none, &explanation.chosen].map(Fitted::effects);
+    let paths =
+        found.baseline.motion.as_ref().map_or_else(Vec::new, |d| paths::open_loop(&before, &after, d, confirming));
     let channel = |(channel, part): (Channel, shrink::Part)| ChannelShrink {
         channel,
         before: rounded(part.before),

@@ -2,8 +2,8 @@
 
 use rayon::prelude::*;
 
-use super::effects;
 use super::search::{Fitted, Given};
+use crate::effects;
 
 /// An effect from which fewer nats are to be expected at a plain strength cannot be tested.
 const LEAST_NATS: f64 = 3.0;

@@ -3,15 +3,16 @@
 use glam::DVec2;
 use rayon::prelude::*;
 
-use super::baseline::Baseline;
-use super::effect::{Moment, WINDOW};
-use super::evidence::{Evidence, Row};
 use super::explanation::Explanation;
 use super::scripts::{self, Script};
 use super::search::{Fitted, Given};
+use crate::effects::effect::{HISTORY, StepContext};
+use crate::evaluation::observations::{Observation, Observations};
+use crate::evaluation::predictions;
 use crate::geometry::{Pose, cast};
 use crate::logs::{self, Run};
-use crate::simulator::reference::sonar::fan_at;
+use crate::simulator::baseline::Baseline;
+use crate::sonar::fan_at;
 
 /// A script worth driving.
 #[derive(Clone, Debug)]
@@ -47,7 +48,7 @@ pub fn next(explanation: &Explanation, given: &Given) -> Option<Experiment> {
     let bench = Bench { baseline: given.baseline, logs: given.evidence, chosen, rival };
     let scatter = chosen.hypothesis.scatter(given.baseline, given.evidence, &chosen.values);
     let scripts = scripts::all();
-    let tried: Vec<(f64, &Script, Vec<Row>)> = scripts
+    let tried: Vec<(f64, &Script, Vec<Observation>)> = scripts
         .par_iter()
         .filter_map(|script| {
             let rows = bench.rows(script)?;
@@ -68,14 +69,14 @@ pub fn next(explanation: &Explanation, given: &Given) -> Option<Experiment> {
 /// Where scripts are tried.
 struct Bench<'a> {
     baseline: &'a Baseline<'a>,
-    logs: &'a Evidence,
+    logs: &'a Observations,
     chosen: &'a Fitted,
     rival: &'a Fitted,
 }
 
 impl Bench<'_> {
     /// What a script is expected to do, from the first place where it leads the robot nowhere against a wall.
-    fn rows(&self, script: &Script) -> Option<Vec<Row>> {
+    fn rows(&self, script: &Script) -> Option<Vec<Observation>> {
         self.starts().into_iter().find_map(|start| self.drive(script, start))
     }
 
@@ -98,17 +99,18 @@ impl Bench<'_> {
     }
 
     /// The rows of a script from a pose; none when the robot would touch something.
-    fn drive(&self, script: &Script, start: Pose) -> Option<Vec<Row>> {
+    fn drive(&self, script: &Script, start: Pose) -> Option<Vec<Observation>> {
         let least_cm = self.logs.robot.body_radius_cm + CLEAR_CM;
-        let mut rows: Vec<Row> = Vec::with_capacity(script.commands.len());
+        let mut rows: Vec<Observation> = Vec::with_capacity(script.commands.len());
         let mut pose = start;
+        let effects = self.chosen.effects();
         for at in 0..script.commands.len() {
             if self.clearance_cm(pose.position_cm) < least_cm {
                 return None;
             }
             let row = self.row(script, at, pose, &rows);
             if let Some(drive) = &self.baseline.motion {
-                let motion = self.chosen.hypothesis.motion(drive, &row.moment, &self.chosen.values);
+                let motion = predictions::step(&effects, drive, &row.context);
                 pose = pose.compose(&Pose::new(motion.forward_cm, motion.lateral_cm, motion.turn_rad));
             }
             rows.push(row);
@@ -116,30 +118,30 @@ impl Bench<'_> {
         Some(rows)
     }
 
-    fn row(&self, script: &Script, at: usize, pose: Pose, before: &[Row]) -> Row {
+    fn row(&self, script: &Script, at: usize, pose: Pose, before: &[Observation]) -> Observation {
         let sensor = self.logs.robot.ultrasonic.pose_on(&pose);
         let hit = cast(&self.logs.sides, sensor.position_cm, sensor.direction());
-        let earlier = |back: usize| before.get(at.wrapping_sub(back)).map(|row| row.moment.pose);
-        let moment = Moment {
+        let earlier = |back: usize| before.get(at.wrapping_sub(back)).map(|row| row.context.pose);
+        let context = StepContext {
             elapsed_min: at as f64 * self.logs.robot.step_ms / 60_000.0,
-            commands: std::array::from_fn::<_, WINDOW, _>(|back| {
+            commands: std::array::from_fn::<_, HISTORY, _>(|back| {
                 at.checked_sub(back).map_or([0.0; 2], |i| script.commands[i])
             }),
             pose,
             earlier: [earlier(1), earlier(2)],
             faced: hit.map(|hit| [hit.distance_cm, hit.incidence_rad]),
-            faced_before: before.last().and_then(|row| row.moment.faced),
+            faced_before: before.last().and_then(|row| row.context.faced),
             echo_before: Some(true),
-            middle_cm: self.logs.rows[0].moment.middle_cm,
+            middle_cm: self.logs.rows[0].context.middle_cm,
             track_cm: self.logs.robot.track_cm,
         };
         let fan = fan_at(&self.logs.sides, &sensor, self.logs.fan_width);
-        Row {
+        Observation {
             run: 0,
             at,
             block: 0,
             stretch: 1.0,
-            moment,
+            context,
             then: Vec::new(),
             motion: None,
             expected: None,
@@ -150,24 +152,24 @@ impl Bench<'_> {
     }
 
     /// By how many nats the chosen effects are expected to be likelier than the rival where they are there.
-    fn evidence(&self, rows: &[Row], scatter: [f64; 3]) -> f64 {
+    fn evidence(&self, rows: &[Observation], scatter: [f64; 3]) -> f64 {
         rows.iter().map(|row| self.of_motion(row, scatter) + self.of_reading(row)).sum()
     }
 
-    fn of_motion(&self, row: &Row, scatter: [f64; 3]) -> f64 {
+    fn of_motion(&self, row: &Observation, scatter: [f64; 3]) -> f64 {
         let Some(drive) = &self.baseline.motion else { return 0.0 };
         let [a, b] = [self.chosen, self.rival].map(|fit| {
-            let m = fit.hypothesis.motion(drive, &row.moment, &fit.values);
+            let m = predictions::step(&fit.effects(), drive, &row.context);
             [m.forward_cm, m.lateral_cm, m.turn_rad]
         });
         (0..3).map(|c| 0.5 * ((a[c] - b[c]) / scatter[c]) * ((a[c] - b[c]) / scatter[c])).sum()
     }
 
     /// The divergence between the readings that either expects.
-    fn of_reading(&self, row: &Row) -> f64 {
+    fn of_reading(&self, row: &Observation) -> f64 {
         let Some(sonar) = &self.baseline.sonar else { return 0.0 };
         let likelihood = |fit: &Fitted| {
-            let (fan, change) = fit.hypothesis.facing(self.logs, row, &fit.values);
+            let (fan, change) = predictions::facing(&fit.effects(), self.logs, row);
             move |echo_cm: Option<f64>| sonar.log_likelihood(&fan, &change, echo_cm, None)[0]
         };
         let (a, b) = (likelihood(self.chosen), likelihood(self.rival));
@@ -183,8 +185,8 @@ impl Bench<'_> {
 }
 
 /// A row of the proposal as a row of a log.
-fn logged(row: &Row, given: &Given) -> logs::Row {
-    let [left, right] = row.moment.commands[0];
+fn logged(row: &Observation, given: &Given) -> logs::Row {
+    let [left, right] = row.context.commands[0];
     let t_ms = row.at as f64 * given.evidence.robot.step_ms;
-    logs::Row { t_ms, left, right, pose: Some(row.moment.pose), ..logs::Row::default() }
+    logs::Row { t_ms, left, right, pose: Some(row.context.pose), ..logs::Row::default() }
 }

@@ -4,11 +4,11 @@ use rayon::prelude::*;
 
 use super::calibration::{Calibration, Gate};
 use super::channel::Channel;
-use super::evidence::Evidence;
 use super::generic;
 use super::search::{Fitted, Gain, Given, best_of_each, extend};
 use super::verdict::weight;
-use crate::simulator::added::Added;
+use crate::effects::applied::AppliedEffect;
+use crate::evaluation::observations::Observations;
 
 /// The effects that explain a gap best, if any does.
 pub struct Explanation {
@@ -66,7 +66,7 @@ impl Leftover {
 
     /// By how much rows of a motion channel are likelier with the scatter of the logs than with the simulator's, by
     /// block.
-    pub fn wider_scatter(&self, logs: &Given, rows: &Evidence) -> Vec<f64> {
+    pub fn wider_scatter(&self, logs: &Given, rows: &Observations) -> Vec<f64> {
         let nothing = vec![0.0; rows.blocks];
         let (Some(axis), Some(drive)) = (self.channel.motion_axis(), &logs.baseline.motion) else { return nothing };
         let Fitted { hypothesis, values, .. } = &self.fitted;
@@ -84,7 +84,7 @@ impl Leftover {
     }
 
     /// This if it gains something over the fit `beneath` on runs that it was not fitted on, and nothing otherwise.
-    fn confirmed(self, beneath: &Fitted, found: &Given, kept_back: &Evidence) -> Self {
+    fn confirmed(self, beneath: &Fitted, found: &Given, kept_back: &Observations) -> Self {
         let followed =
             if self.follows { judged(&self.fitted, found, kept_back) - judged(beneath, found, kept_back) } else { 0.0 };
         let scattered: f64 = self.wider_scatter(found, kept_back).iter().sum();
@@ -152,7 +152,7 @@ impl Explanation {
 
 impl Explanation {
     /// Given effects, as they are.
-    pub fn by(added: &[Added], logs: &Given) -> Self {
+    pub fn by(added: &[AppliedEffect], logs: &Given) -> Self {
         let none = Fitted::none(logs);
         let chosen = none.as_given(added, logs);
         let beyond_chosen = leftovers(&chosen, logs);
@@ -162,7 +162,7 @@ impl Explanation {
 
     /// What holds on runs that nothing was sought on: effects that gain nothing there explain nothing, and neither does
     /// the learner.
-    pub fn confirmed(mut self, found: &Given, kept_back: &Evidence) -> Self {
+    pub fn confirmed(mut self, found: &Given, kept_back: &Observations) -> Self {
         let gained = judged(&self.chosen, found, kept_back) - judged(&self.none, found, kept_back);
         if !self.chosen.ids().is_empty() && gained < LEAST_CONFIRMED_NATS {
             self.chosen = self.none.clone();
@@ -195,7 +195,7 @@ impl Signs {
 }
 
 /// The log-likelihood of runs that a fit was not made on.
-fn judged(fit: &Fitted, found: &Given, kept_back: &Evidence) -> f64 {
+fn judged(fit: &Fitted, found: &Given, kept_back: &Observations) -> f64 {
     fit.judged_on(kept_back, found).total().iter().sum()
 }
 

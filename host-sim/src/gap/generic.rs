@@ -2,10 +2,10 @@
 //! effects is what no named effect explains.
 
 use super::channel::Channel;
-use super::effect::{Act, Form, Moment, Motion, Parameter, Sensor};
+use crate::effects::effect::{Hook, Parameter, PoseIncrement, Sensor, StepContext, Variant};
 
 /// The form that explains whatever depends on circumstances in a channel.
-pub fn form(channel: Channel) -> &'static Form {
+pub fn form(channel: Channel) -> &'static Variant {
     match channel {
         Channel::Forward => &FORWARD,
         Channel::Lateral => &LATERAL,
@@ -16,34 +16,34 @@ pub fn form(channel: Channel) -> &'static Form {
 }
 
 /// The form that moves readings as circumstances have it, and leaves their scatter as it is.
-pub static MOVED_READINGS: Form = Form {
+pub static MOVED_READINGS: Variant = Variant {
     id: "anything",
     name: "where readings lie",
     parameters: const { &[Parameter::new(-20.0, 20.0, 0.0); SONAR_FEATURES] },
     starts: &[&[0.0; SONAR_FEATURES]],
-    acts: &[Act::Sensor(moved_readings)],
+    acts: &[Hook::Sensor(moved_readings)],
     report: |_, _| Vec::new(),
 };
 
-static FORWARD: Form = motion_form(&[Act::Motion(|v, moment, m| m.forward_cm += motion_sum(v, moment, m))]);
-static LATERAL: Form = motion_form(&[Act::Motion(|v, moment, m| m.lateral_cm += motion_sum(v, moment, m))]);
-static TURN: Form = motion_form(&[Act::Motion(|v, moment, m| m.turn_rad += 0.1 * motion_sum(v, moment, m))]);
+static FORWARD: Variant = motion_form(&[Hook::Motion(|v, moment, m| m.forward_cm += motion_sum(v, moment, m))]);
+static LATERAL: Variant = motion_form(&[Hook::Motion(|v, moment, m| m.lateral_cm += motion_sum(v, moment, m))]);
+static TURN: Variant = motion_form(&[Hook::Motion(|v, moment, m| m.turn_rad += 0.1 * motion_sum(v, moment, m))]);
 
-static ECHO_RATE: Form = Form {
+static ECHO_RATE: Variant = Variant {
     id: "anything",
     name: "echo rate",
     parameters: const { &[Parameter::new(-4.0, 4.0, 0.0); SONAR_FEATURES] },
     starts: &[&[0.0; SONAR_FEATURES]],
-    acts: &[Act::Sensor(|v, moment, sensor| sensor.change.damping += sonar_sum(v, moment))],
+    acts: &[Hook::Sensor(|v, moment, sensor| sensor.change.damping += sonar_sum(v, moment))],
     report: |_, _| Vec::new(),
 };
 
-static ECHO_VALUE: Form = Form {
+static ECHO_VALUE: Variant = Variant {
     id: "anything",
     name: "echo value",
     parameters: &ECHO_VALUE_PARAMETERS,
     starts: &[&ECHO_VALUE_START],
-    acts: &[Act::Sensor(other_readings)],
+    acts: &[Hook::Sensor(other_readings)],
     report: |_, _| Vec::new(),
 };
 
@@ -62,8 +62,8 @@ const ECHO_VALUE_START: [f64; SONAR_FEATURES + 3] = {
     start
 };
 
-const fn motion_form(acts: &'static [Act]) -> Form {
-    Form {
+const fn motion_form(acts: &'static [Hook]) -> Variant {
+    Variant {
         id: "anything",
         name: "motion",
         parameters: const { &[Parameter::new(-3.0, 3.0, 0.0); MOTION_FEATURES] },
@@ -76,19 +76,19 @@ const fn motion_form(acts: &'static [Act]) -> Form {
 const MOTION_FEATURES: usize = 28;
 const SONAR_FEATURES: usize = 17;
 
-fn motion_sum(weights: &[f64], moment: &Moment, motion: &Motion) -> f64 {
+fn motion_sum(weights: &[f64], moment: &StepContext, motion: &PoseIncrement) -> f64 {
     motion_features(moment, motion).iter().zip(weights).map(|(f, w)| f * w).sum()
 }
 
-fn sonar_sum(weights: &[f64], moment: &Moment) -> f64 {
+fn sonar_sum(weights: &[f64], moment: &StepContext) -> f64 {
     sonar_features(moment).iter().zip(weights).map(|(f, w)| f * w).sum()
 }
 
-fn moved_readings(v: &[f64], moment: &Moment, sensor: &mut Sensor) {
+fn moved_readings(v: &[f64], moment: &StepContext, sensor: &mut Sensor) {
     sensor.change.offset_cm += sonar_sum(v, moment);
 }
 
-fn other_readings(v: &[f64], moment: &Moment, sensor: &mut Sensor) {
+fn other_readings(v: &[f64], moment: &StepContext, sensor: &mut Sensor) {
     moved_readings(&v[..SONAR_FEATURES], moment, sensor);
     sensor.change.scatter_cm += v[SONAR_FEATURES];
     sensor.change.short = 1.0 - (1.0 - sensor.change.short) * (1.0 - v[SONAR_FEATURES + 1]);
@@ -96,7 +96,7 @@ fn other_readings(v: &[f64], moment: &Moment, sensor: &mut Sensor) {
 }
 
 /// Circumstances of a step, each of the order of one.
-fn motion_features(moment: &Moment, motion: &Motion) -> [f64; MOTION_FEATURES] {
+fn motion_features(moment: &StepContext, motion: &PoseIncrement) -> [f64; MOTION_FEATURES] {
     let (way, turn) = (motion.forward_cm / 8.0, motion.turn_rad / 0.4);
     let heading = moment.pose.heading_rad;
     let (sin, cos) = (libm::sin(heading), libm::cos(heading));
@@ -139,14 +139,14 @@ fn motion_features(moment: &Moment, motion: &Motion) -> [f64; MOTION_FEATURES] {
 }
 
 /// The turn before, where the robot as a whole goes the other way than before: what trails behind swings round.
-fn kick(moment: &Moment) -> f64 {
+fn kick(moment: &StepContext) -> f64 {
     let [now, before] = [moment.commands[0], moment.commands[1]];
     let reverses = (now[0] + now[1]) * (before[0] + before[1]) < 0.0;
     if reverses { ((before[1] - before[0]) / 50.0).clamp(-1.0, 1.0) } else { 0.0 }
 }
 
 /// Circumstances of a reading, each of the order of one.
-fn sonar_features(moment: &Moment) -> [f64; SONAR_FEATURES] {
+fn sonar_features(moment: &StepContext) -> [f64; SONAR_FEATURES] {
     let [distance_cm, incidence_rad] = moment.faced.unwrap_or([300.0, 0.0]);
     let (metres, incidence) = (distance_cm.min(300.0) / 100.0, incidence_rad / 0.8);
     let heading = moment.pose.heading_rad;

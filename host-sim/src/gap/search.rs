@@ -2,14 +2,14 @@
 
 use rayon::prelude::*;
 
-use super::baseline::Baseline;
 use super::calibration::{Calibration, Gate};
-use super::effect::Form;
-use super::effects;
-use super::evidence::Evidence;
 use super::hypothesis::{Hypothesis, Terms};
-use crate::ascent::{Maximum, climb};
-use crate::simulator::added::Added;
+use crate::effects::applied::AppliedEffect;
+use crate::effects::effect::Variant;
+use crate::effects::{self, chain::EffectChain};
+use crate::evaluation::observations::Observations;
+use crate::simulator::baseline::Baseline;
+use crate::statistics::maximise::{Maximum, climb};
 
 /// A hypothesis, fitted.
 #[derive(Clone)]
@@ -39,14 +39,14 @@ pub struct Given<'a> {
     /// The simulator.
     pub baseline: &'a Baseline<'a>,
     /// The logs.
-    pub evidence: &'a Evidence,
+    pub evidence: &'a Observations,
     /// What counts.
     pub calibration: Calibration,
 }
 
 impl<'a> Given<'a> {
-    /// Evidence against a simulator, by thresholds that become its size.
-    pub fn new(baseline: &'a Baseline<'a>, evidence: &'a Evidence, calibration: Calibration) -> Self {
+    /// Observations against a simulator, by thresholds that become its size.
+    pub fn new(baseline: &'a Baseline<'a>, evidence: &'a Observations, calibration: Calibration) -> Self {
         Given { baseline, evidence, calibration: calibration.for_rows(evidence.rows.len()) }
     }
 }
@@ -68,13 +68,18 @@ impl Fitted {
     }
 
     /// This with effects that are known, which need no fit.
-    pub fn as_given(&self, added: &[Added], logs: &Given) -> Self {
-        let known = || added.iter().filter_map(|a| Some((a.form()?, &a.values)));
+    pub fn as_given(&self, added: &[AppliedEffect], logs: &Given) -> Self {
+        let known = || added.iter().filter_map(|a| Some((a.variant()?, &a.values)));
         let hypothesis = self.hypothesis.of(known().map(|(form, _)| form).collect());
         let values: Vec<f64> = known().flat_map(|(_, values)| values).copied().collect();
         let terms = hypothesis.terms(logs.baseline, logs.evidence, &values, None);
         let held_out = logs.evidence.by_block(&terms.total());
         Fitted { hypothesis, values, terms, held_out }
+    }
+
+    /// Its effects at the fitted parameters.
+    pub fn effects(&self) -> EffectChain {
+        self.hypothesis.at(&self.values)
     }
 
     /// The names of its effects.
@@ -90,9 +95,9 @@ impl Fitted {
     }
 
     /// Its effects as a simulator takes them.
-    pub fn added(&self) -> Vec<Added> {
+    pub fn added(&self) -> Vec<AppliedEffect> {
         let forms = self.hypothesis.forms.iter().enumerate();
-        forms.map(|(place, form)| Added::new(form, self.values_of(place))).collect()
+        forms.map(|(place, form)| AppliedEffect::new(form, self.values_of(place))).collect()
     }
 
     /// By how much this beats `other` on each held-out block.
@@ -141,13 +146,13 @@ impl Fitted {
     }
 
     /// The log-likelihood of rows that it was not fitted on; `logs` are those that it was.
-    pub fn judged_on(&self, others: &Evidence, logs: &Given) -> Terms {
+    pub fn judged_on(&self, others: &Observations, logs: &Given) -> Terms {
         let scatter = self.hypothesis.scatter(logs.baseline, logs.evidence, &self.values);
         self.hypothesis.terms_of_others(logs.baseline, others, &self.values, scatter)
     }
 
     /// Adds one form and fits everything anew, from these values and the form's starts.
-    pub fn with(&self, form: &'static Form, logs: &Given) -> Fitted {
+    pub fn with(&self, form: &'static Variant, logs: &Given) -> Fitted {
         let hypothesis = self.hypothesis.with(form);
         let start = |own: &&'static [f64]| self.values.iter().chain(own.iter()).copied().collect::<Vec<f64>>();
         fit(hypothesis, form.starts.iter().map(start).collect(), &self.terms, logs)
@@ -196,7 +201,7 @@ impl Gain {
 /// fitted on nothing, where they are known: what touches other stages than those before need not be fitted again.
 pub fn extend(so_far: &Fitted, alone: Option<&[Fitted]>, logs: &Given) -> Vec<Fitted> {
     let fresh: Vec<_> = effects::all().into_iter().filter(|form| !so_far.ids().contains(&form.id)).collect();
-    let one = |form: &&'static Form| {
+    let one = |form: &&'static Variant| {
         let known = alone.into_iter().flatten().find(|f| std::ptr::eq(f.hypothesis.forms[0], *form));
         match known.filter(|f| so_far.is_apart_from(f)) {
             Some(known) => so_far.beside(known, logs),

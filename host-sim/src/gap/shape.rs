@@ -1,11 +1,12 @@
 //! What the unexplained part of a gap depends on, and how: a small table a channel.
 
-use super::baseline::Baseline;
 use super::channel::Channel;
 use super::circumstances as of;
-use super::evidence::{Evidence, Row};
 use super::explanation::Explanation;
 use super::search::Fitted;
+use crate::evaluation::observations::{Observation, Observations};
+use crate::evaluation::predictions::{facing, residual};
+use crate::simulator::baseline::Baseline;
 
 /// How the unexplained part of a channel follows one circumstance.
 #[derive(Clone, Debug)]
@@ -34,7 +35,7 @@ pub struct Bin {
 }
 
 /// A circumstance and its name.
-type Variable = (&'static str, fn(&Row) -> f64);
+type Variable = (&'static str, fn(&Observation) -> f64);
 
 const MOTION: &[Variable] = &[
     ("mean command", of::driving),
@@ -64,15 +65,16 @@ const FEWEST: usize = 50;
 const FAR_OFF_CM: f64 = 25.0;
 
 /// A table for each channel in which something is unexplained.
-pub fn shapes(explanation: &Explanation, baseline: &Baseline, evidence: &Evidence) -> Vec<Shape> {
+pub fn shapes(explanation: &Explanation, baseline: &Baseline, evidence: &Observations) -> Vec<Shape> {
     let left = explanation.beyond_chosen.iter().filter(|l| l.counts());
     left.filter_map(|l| shape(l.channel, &explanation.chosen, baseline, evidence)).collect()
 }
 
-fn shape(channel: Channel, fit: &Fitted, baseline: &Baseline, evidence: &Evidence) -> Option<Shape> {
+fn shape(channel: Channel, fit: &Fitted, baseline: &Baseline, evidence: &Observations) -> Option<Shape> {
     let off = off(channel, fit, baseline, evidence);
     let variables = if channel.motion_axis().is_some() { MOTION } else { SONAR };
-    let known: Vec<(&Row, f64)> = evidence.rows.iter().zip(off).filter_map(|(row, off)| Some((row, off?))).collect();
+    let known: Vec<(&Observation, f64)> =
+        evidence.rows.iter().zip(off).filter_map(|(row, off)| Some((row, off?))).collect();
     if known.len() < FEWEST {
         return None;
     }
@@ -90,17 +92,18 @@ fn shape(channel: Channel, fit: &Fitted, baseline: &Baseline, evidence: &Evidenc
 }
 
 /// Logged minus predicted for every row that says something.
-fn off(channel: Channel, fit: &Fitted, baseline: &Baseline, evidence: &Evidence) -> Vec<Option<f64>> {
+fn off(channel: Channel, fit: &Fitted, baseline: &Baseline, evidence: &Observations) -> Vec<Option<f64>> {
     let rows = &evidence.rows;
     match (channel.motion_axis(), &baseline.motion, &baseline.sonar) {
         (Some(axis), Some(drive), _) => {
-            let residuals = fit.hypothesis.residuals(drive, rows, &fit.values);
+            let effects = fit.effects();
+            let residuals: Vec<_> = rows.iter().map(|row| residual(&effects, drive, row)).collect();
             let scale = if channel == Channel::Turn { 180.0 / std::f64::consts::PI } else { 1.0 };
             residuals.into_iter().map(|r| r.map(|r| scale * r[axis])).collect()
         }
         (None, _, Some(sonar)) => {
-            let one = |row: &Row| {
-                let (fan, change) = fit.hypothesis.facing(evidence, row, &fit.values);
+            let one = |row: &Observation| {
+                let (fan, change) = facing(&fit.effects(), evidence, row);
                 if channel == Channel::EchoRate {
                     let [none, _] = sonar.log_likelihood(&fan, &change, None, None);
                     return Some(f64::from(u8::from(row.echo_cm.is_some())) - 1.0 + libm::exp(none));

@@ -1,11 +1,11 @@
 //! How far the gap shrinks with the named effects, channel by channel, on runs that nothing was sought on.
 
-use super::bootstrap;
 use super::channel::Channel;
-use super::evidence::Evidence;
 use super::explanation::Explanation;
 use super::hypothesis::Terms;
 use super::search::{Fitted, Given};
+use crate::evaluation::observations::Observations;
+use crate::statistics::bootstrap;
 
 /// A gap in nats a step: how much likelier the logs could be.
 #[derive(Clone, Debug)]
@@ -41,7 +41,7 @@ struct Tally {
 const LEAST_NATS: f64 = 5.0;
 
 /// None where the runs kept back show no reducible gap.
-pub fn shrink(explanation: &Explanation, found: &Given, kept_back: &Evidence) -> Option<Shrink> {
+pub fn shrink(explanation: &Explanation, found: &Given, kept_back: &Observations) -> Option<Shrink> {
     let judged = |fit: &Fitted| fit.judged_on(kept_back, found);
     let none = judged(&explanation.none);
     let chosen = judged(&explanation.chosen);
@@ -99,7 +99,7 @@ impl Tally {
 }
 
 /// By how much channels are likelier under `a` than under `b`, by block.
-fn difference(a: &Terms, b: &Terms, evidence: &Evidence, channels: &[Channel]) -> Vec<f64> {
+fn difference(a: &Terms, b: &Terms, evidence: &Observations, channels: &[Channel]) -> Vec<f64> {
     let mut sums = vec![0.0; evidence.blocks];
     for channel in channels {
         let gains: Vec<f64> = a.channel(*channel).iter().zip(b.channel(*channel)).map(|(a, b)| a - b).collect();

@@ -6,7 +6,7 @@
 
 use super::motion::{MOTIONS, Moved};
 use super::track::GAP_MS;
-use crate::learn::statistics::median;
+use crate::statistics::summary::median;
 
 /// How brick time becomes camera time.
 #[derive(Clone, Copy, Debug, PartialEq)]

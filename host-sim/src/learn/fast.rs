@@ -14,8 +14,8 @@ use rayon::prelude::*;
 
 use super::dataset::Dataset;
 use super::genome::Shape;
-use super::statistics;
 use crate::chance::generator;
+use crate::statistics::agreement as statistics;
 use anchors::Anchored;
 use projection::{Projection, Ridges};
 

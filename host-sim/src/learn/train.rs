@@ -5,8 +5,8 @@ use mindgap_core::network::{Activation, Network};
 use super::dataset::{Dataset, Datasets};
 use super::fast::{self, Loss};
 use super::genome::Shape;
+use super::nominal;
 use super::paper;
-use super::reference;
 use super::scatter;
 use crate::logs::Logs;
 use crate::problem::{Problem, Result};
@@ -114,7 +114,7 @@ pub fn train(
         added: Vec::new(),
         missing: school.missing,
     };
-    let reference = reference::learn(&simulator, logs);
+    let reference = nominal::learn(&simulator, logs);
     if let Some(motion) = &reference.motion {
         spread_about(&mut simulator.forward, &data.forward, |speeds| motion.correction(speeds)[0]);
         spread_about(&mut simulator.lateral, &data.lateral, |speeds| motion.correction(speeds)[1]);

@@ -1,5 +1,5 @@
 //! The sensor as its logs show it beyond the networks, for lanes of robots: a fan of rays, each of which comes back or
-//! does not; the nearest that does gives the reading (see [`SonarReference`]).
+//! does not; the nearest that does gives the reading (see [`SonarModel`]).
 //!
 //! The networks know the axis alone, so what a real beam meets beside it is chance to them, drawn anew at each step.
 //! Here it is a matter of where the robot stands. A controller that has to do well with both relies on neither's
@@ -10,10 +10,10 @@ use mindgap_core::scalar::Scalar;
 use pulp::Simd;
 
 use super::draws::Draws;
-use super::reference::sonar::{FAN_DEG, FAR_CM, STRENGTHS, SonarReference};
 use super::room::{Point, Room};
 use super::scatter::LEVELS;
 use crate::lanes::{Lanes, WIDEST};
+use crate::sonar::{FAN_DEG, FAR_CM, STRENGTHS, SonarModel};
 
 /// A sensor with a fan of rays.
 #[derive(Clone, Debug)]
@@ -55,7 +55,7 @@ const STUDENT: [f32; LEVELS] = [
 
 impl Beam {
     /// The sensor that a reference describes.
-    pub fn new(reference: &SonarReference) -> Self {
+    pub fn new(reference: &SonarModel) -> Self {
         let log2_e = std::f64::consts::LOG2_E;
         let [level, x, xx, a, aa, aaa, ax, aax, square, size] = reference.strength.map(|w| w * log2_e);
         let ray = |deg: f64| {
@@ -150,11 +150,11 @@ mod tests {
     use crate::geometry::{Pose, Rectangle};
     use crate::logs::Scene;
     use crate::simulator::draws::Seeds;
-    use crate::simulator::reference::sonar::{Change, fan_at};
+    use crate::sonar::{Perturbation, fan_at};
     use glam::DVec2;
     use pulp::Scalar as One;
 
-    const REFERENCE: SonarReference = SonarReference {
+    const REFERENCE: SonarModel = SonarModel {
         strength: [1.0, 2.0, -2.0, 1.0, -1.0, -0.5, -1.0, -0.5, -1.0, -0.5],
         bias: [-0.3, 0.01, -0.3],
         log_scatter: [-0.5, 0.2, 0.8],
@@ -187,7 +187,7 @@ mod tests {
                 nearest_cm = nearest_cm.min(echo);
             }
             let fan = fan_at(&scene.sides(), &Pose::new(x, y, heading), REFERENCE.fan_width);
-            let [none, _] = REFERENCE.log_likelihood(&fan, &Change::NONE, None, None);
+            let [none, _] = REFERENCE.log_likelihood(&fan, &Perturbation::NONE, None, None);
             let (found, expected) = (f64::from(echoes) / 4000.0, 1.0 - libm::exp(none));
             assert!((found - expected).abs() < 0.03, "at {x} {y} {deg}: {found} {expected}");
             let nearest_ray_cm = fan.iter().map(|ray| ray.distance_cm).fold(f64::INFINITY, f64::min);
@@ -197,7 +197,7 @@ mod tests {
 
     #[test]
     fn what_is_lost_constant_or_short_comes_with_its_chance() {
-        let beam = Beam::new(&SonarReference { constant: [0.2, 20.0], short: 0.1, ..REFERENCE });
+        let beam = Beam::new(&SonarModel { constant: [0.2, 20.0], short: 0.1, ..REFERENCE });
         let simd = One::new();
         let report = |reading_cm, scatter_cm, fate, level| {
             let lane = |value| Lanes::splat(simd, value);

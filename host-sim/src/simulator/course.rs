@@ -83,6 +83,16 @@ pub struct Outcome {
     pub steps: u16,
 }
 
+/// A run reaches the target when it ends within this of it, without a crash.
+pub const REACHED_CM: f64 = 15.0;
+
+impl Outcome {
+    /// Whether the run reached the target.
+    pub fn reached(&self, target_cm: DVec2) -> bool {
+        self.ending != Ending::Crashed && self.end_cm.distance(target_cm) <= REACHED_CM
+    }
+}
+
 /// One moment of a run that is watched.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Moment {

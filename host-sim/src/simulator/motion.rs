@@ -6,8 +6,8 @@ use mindgap_core::maths::Binary32;
 use mindgap_core::scalar::Scalar;
 use pulp::{Arch, Simd, WithSimd};
 
-use super::reference::MotionReference;
-use super::reference::motion::{FEATURES, features};
+use super::nominal::MotionBias;
+use super::nominal::motion_bias::{FEATURES, features};
 use super::scatter::{Scatter, Spread, motion_context};
 use super::{Learned, Simulator};
 use crate::folded::{Folded, evaluate_all};
@@ -69,9 +69,9 @@ impl<'s> MotionNetworks<'s> {
 
     /// The networks with the misfit that `reference` knows of put right: a robot that turns two degrees less than its
     /// network says does so in every step and every run, which no zero-mean scatter stands for.
-    pub fn corrected(self, reference: Option<&MotionReference>) -> Self {
+    pub fn corrected(self, reference: Option<&MotionBias>) -> Self {
         let weight = |weights: &[f64], feature: usize| weights.get(feature).map_or(0.0, |w| *w as f32);
-        let weights = |r: &MotionReference| {
+        let weights = |r: &MotionBias| {
             [0, 1, 2].map(|network| std::array::from_fn(|feature| weight(&r.weights[network], feature)))
         };
         MotionNetworks { correction: reference.map(|r| Box::new(weights(r))), ..self }

@@ -3,9 +3,8 @@
 use mindgap_core::controller::Controller;
 use serde::Serialize;
 
-use super::course::{Course, Ending, Job, Moment, Outcome, Sensor};
+use super::course::{Course, Ending, Job, Moment, Outcome, REACHED_CM, Sensor};
 use crate::chance::derive;
-use crate::evolve::fitness::{REACHED_CM, reached};
 use crate::logs::Scene;
 
 /// What `mindgap simulate --json` writes.
@@ -92,7 +91,7 @@ impl SimulatedRun {
             end_x_cm: outcome.end_cm.x,
             end_y_cm: outcome.end_cm.y,
             distance_cm: scene.target_cm.map(|target_cm| outcome.end_cm.distance(target_cm)),
-            reached: scene.target_cm.map(|target_cm| reached(outcome, target_cm)),
+            reached: scene.target_cm.map(|target_cm| outcome.reached(target_cm)),
             path: [&start].into_iter().chain(moments).map(point).collect(),
         }
     }

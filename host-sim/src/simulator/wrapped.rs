@@ -5,32 +5,32 @@ use glam::DVec2;
 use rand::RngExt;
 
 use super::motion::{Motion, MotionNetworks};
-use super::reference::SonarReference;
-use super::reference::sonar::{Draw, fan_at};
 use super::{Noise, Simulator};
 use crate::chance::generator;
-use crate::gap::effect::{self, Window};
-use crate::gap::hypothesis::Hypothesis;
+use crate::effects::chain::EffectChain;
+use crate::effects::effect::{self, CommandHistory};
 use crate::geometry::{Pose, Wall, cast};
 use crate::logs::{Robot, Scene};
 use crate::problem::{Problem, Result};
+use crate::sonar::SonarModel;
+use crate::sonar::{Draw, fan_at};
 
-/// Added effects in a room.
+/// AppliedEffect effects in a room.
 pub(super) struct Wrapped<'s> {
-    effects: Hypothesis,
+    effects: EffectChain,
     robot: Robot,
     commands: [f64; 2],
     sides: Vec<Wall>,
     middle_cm: DVec2,
     /// There when an effect changes the sensor.
-    sonar: Option<&'s SonarReference>,
+    sonar: Option<&'s SonarModel>,
     noise: Noise,
 }
 
 /// What a run has behind it.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Past {
-    commands: Window,
+    commands: CommandHistory,
     /// The poses before the present one, the latest first.
     poses: [Option<Pose>; 2],
     faced: Option<[f64; 2]>,
@@ -48,16 +48,16 @@ impl<'s> Wrapped<'s> {
         if simulator.added.is_empty() {
             return Ok(None);
         }
-        let effects = Hypothesis::given(&simulator.added);
+        let effects = EffectChain::of(&simulator.added);
         let reference = simulator.reference.as_ref().and_then(|r| r.sonar.as_ref());
-        if effects.given_senses() && reference.is_none() {
+        if effects.senses() && reference.is_none() {
             return Err(Problem::new(
                 "an added effect changes the sonar, and the simulator does not know its usual beam",
             ));
         }
         let sides = scene.sides();
         Ok(Some(Wrapped {
-            sonar: reference.filter(|_| effects.given_senses()),
+            sonar: reference.filter(|_| effects.senses()),
             effects,
             robot: simulator.robot,
             commands: simulator.commands.map(f64::from),
@@ -79,9 +79,9 @@ impl<'s> Wrapped<'s> {
             cells = learned.cells;
             let [forward_cm, lateral_cm, turn_rad] =
                 [learned.forward_cm, learned.lateral_cm, learned.turn_rad].map(f64::from);
-            effect::Motion { forward_cm, lateral_cm, turn_rad }
+            effect::PoseIncrement { forward_cm, lateral_cm, turn_rad }
         };
-        let motion = self.effects.wrap(&moment, &[], step);
+        let motion = self.effects.wrap(&moment, step);
         past.poses = [Some(pose), past.poses[0]];
         past.steps += 1;
         Motion {
@@ -101,7 +101,7 @@ impl<'s> Wrapped<'s> {
     pub fn echo_cm(&self, past: &mut Past, pose: Pose, draw: f32) -> Option<f32> {
         let sonar = self.sonar?;
         let moment = self.moment(past, pose);
-        let changed = self.effects.sensor(&moment, &[]);
+        let changed = self.effects.sensor(&moment);
         let mut axis = self.robot.ultrasonic.pose_on(&changed.robot);
         axis.heading_rad += changed.yaw_rad;
         let fan = fan_at(&self.sides, &axis, sonar.fan_width * changed.width);
@@ -114,10 +114,10 @@ impl<'s> Wrapped<'s> {
         echo_cm.map(|cm| cm as f32)
     }
 
-    fn moment(&self, past: &Past, pose: Pose) -> effect::Moment {
+    fn moment(&self, past: &Past, pose: Pose) -> effect::StepContext {
         let sensor = self.robot.ultrasonic.pose_on(&pose);
         let hit = cast(&self.sides, sensor.position_cm, sensor.direction());
-        effect::Moment {
+        effect::StepContext {
             elapsed_min: past.steps as f64 * self.robot.step_ms / 60_000.0,
             commands: past.commands,
             pose,

@@ -3,19 +3,18 @@
 //! Networks trained on (D, α) and commands leave a misfit behind where nothing is wrong. The reference is what the
 //! same logs say beyond the networks, with the scatter that then remains: only what exceeds it is a gap.
 
-pub mod motion;
-pub mod sonar;
+pub mod motion_bias;
 
 use serde::{Deserialize, Serialize};
 
-pub use motion::MotionReference;
-pub use sonar::SonarReference;
+use crate::sonar::SonarModel;
+pub use motion_bias::MotionBias;
 
 /// What is normal, as far as the training logs show it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Reference {
+pub struct NominalModel {
     /// Of the motion, if the logs had poses.
-    pub motion: Option<MotionReference>,
+    pub motion: Option<MotionBias>,
     /// Of the sonar, if the logs had echoes.
-    pub sonar: Option<SonarReference>,
+    pub sonar: Option<SonarModel>,
 }

@@ -4,14 +4,14 @@
 use glam::DVec2;
 use rand_distr::{Distribution, StandardNormal};
 
-use super::baseline::Drive;
-use super::effect::Moment;
-use super::evidence::{Evidence, Row};
-use super::explanation::Explanation;
-use super::search::{Fitted, Given};
+use super::observations::{Observation, Observations};
+use super::predictions;
 use crate::chance::{Generator, generator};
+use crate::effects::chain::EffectChain;
+use crate::effects::effect::StepContext;
 use crate::geometry::{Pose, direction};
-use crate::learn::statistics::median;
+use crate::simulator::baseline::Drive;
+use crate::statistics::summary::median;
 
 /// The median distance between predicted and logged ends of paths.
 #[derive(Clone, Copy, Debug)]
@@ -31,52 +31,54 @@ const LENGTHS: [usize; 5] = [1, 2, 5, 10, 25];
 /// Paths drawn for the floor from each start.
 const DRAWS: usize = 8;
 
-/// The gap over paths of each length that the runs are long enough for; none where motion is not compared.
-pub fn open_loop(explanation: &Explanation, found: &Given, kept_back: &Evidence) -> Vec<PathGap> {
-    let Some(drive) = &found.baseline.motion else { return Vec::new() };
+/// The gap over paths of each length that the runs are long enough for, with the effects that the simulator has
+/// (`before`) and with those that were found (`after`).
+pub fn open_loop(before: &EffectChain, after: &EffectChain, drive: &Drive, logs: &Observations) -> Vec<PathGap> {
     let mut rng = generator(4, &[]);
-    LENGTHS.iter().filter_map(|steps| gap(*steps, explanation, drive, kept_back, &mut rng)).collect()
+    LENGTHS.iter().filter_map(|steps| gap(*steps, before, after, drive, logs, &mut rng)).collect()
 }
 
 fn gap(
     steps: usize,
-    explanation: &Explanation,
+    before: &EffectChain,
+    after: &EffectChain,
     drive: &Drive,
-    kept_back: &Evidence,
+    logs: &Observations,
     rng: &mut Generator,
 ) -> Option<PathGap> {
-    let starts = (0..kept_back.rows.len().saturating_sub(steps)).step_by(steps.div_ceil(2));
-    let pieces: Vec<&[Row]> = starts.map(|i| &kept_back.rows[i..=i + steps]).filter(|p| is_unbroken(p)).collect();
-    let ends =
-        |fit: &Fitted| -> Vec<DVec2> { pieces.iter().map(|piece| end(fit, drive, piece, || [0.0; 3])).collect() };
-    let logged = pieces.iter().map(|piece| piece[steps].moment.pose.position_cm);
-    let after = ends(&explanation.chosen);
+    let starts = (0..logs.rows.len().saturating_sub(steps)).step_by(steps.div_ceil(2));
+    let pieces: Vec<&[Observation]> = starts.map(|i| &logs.rows[i..=i + steps]).filter(|p| is_unbroken(p)).collect();
+    let ends = |effects: &EffectChain| -> Vec<DVec2> {
+        pieces.iter().map(|piece| end(effects, drive, piece, || [0.0; 3])).collect()
+    };
+    let logged = pieces.iter().map(|piece| piece[steps].context.pose.position_cm);
+    let predicted = ends(after);
     let noise = Noise::of(drive);
     let floor: Vec<f64> = pieces
         .iter()
-        .zip(&after)
+        .zip(&predicted)
         .flat_map(|(piece, end)| {
-            (0..DRAWS).map(|_| noise.drawn(explanation, drive, piece, rng).distance(*end)).collect::<Vec<_>>()
+            (0..DRAWS).map(|_| noise.drawn(after, drive, piece, rng).distance(*end)).collect::<Vec<_>>()
         })
         .collect();
     (!pieces.is_empty()).then(|| PathGap {
         steps,
-        before_cm: median(ends(&explanation.none).iter().zip(logged.clone()).map(|(a, b)| a.distance(b))),
-        after_cm: median(after.iter().zip(logged).map(|(a, b)| a.distance(b))),
+        before_cm: median(ends(before).iter().zip(logged.clone()).map(|(a, b)| a.distance(b))),
+        after_cm: median(predicted.iter().zip(logged).map(|(a, b)| a.distance(b))),
         floor_cm: median(floor.into_iter()),
     })
 }
 
 /// Rows of one run without a gap between them.
-fn is_unbroken(piece: &[Row]) -> bool {
+fn is_unbroken(piece: &[Observation]) -> bool {
     piece.windows(2).all(|pair| pair[0].run == pair[1].run && pair[0].at + 1 == pair[1].at && pair[0].motion.is_some())
 }
 
 /// Where the robot ends that starts as the piece does and is given its commands.
-fn end(fit: &Fitted, drive: &Drive, piece: &[Row], mut scatter: impl FnMut() -> [f64; 3]) -> DVec2 {
-    let mut pose = piece[0].moment.pose;
+fn end(effects: &EffectChain, drive: &Drive, piece: &[Observation], mut scatter: impl FnMut() -> [f64; 3]) -> DVec2 {
+    let mut pose = piece[0].context.pose;
     for row in &piece[..piece.len() - 1] {
-        let motion = fit.hypothesis.motion(drive, &Moment { pose, ..row.moment }, &fit.values);
+        let motion = predictions::step(effects, drive, &StepContext { pose, ..row.context });
         let [forward, lateral, turn] = scatter();
         let way = [motion.forward_cm + forward, motion.lateral_cm + lateral].map(|w| w * row.stretch);
         pose = pose.compose(&Pose::new(way[0], way[1], (motion.turn_rad + turn) * row.stretch));
@@ -102,10 +104,9 @@ impl Noise {
     }
 
     /// The end of a path that the explained robot might have driven, as the tracker might have seen it.
-    fn drawn(&self, explanation: &Explanation, drive: &Drive, piece: &[Row], rng: &mut Generator) -> DVec2 {
-        let fit = &explanation.chosen;
-        let driven = end(fit, drive, piece, || self.robot.map(|s| s * normal(rng)));
-        let from = piece[0].moment.pose.position_cm;
+    fn drawn(&self, effects: &EffectChain, drive: &Drive, piece: &[Observation], rng: &mut Generator) -> DVec2 {
+        let driven = end(effects, drive, piece, || self.robot.map(|s| s * normal(rng)));
+        let from = piece[0].context.pose.position_cm;
         let seen = DVec2::from(self.tracker_cm.map(|s| s * normal(rng)));
         from + direction(self.tracker_rad * normal(rng)).rotate(driven - from) + seen
     }

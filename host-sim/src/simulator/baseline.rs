@@ -1,21 +1,22 @@
 //! The simulator as the diagnosis sees it: networks, what is known of their misfit, and the scatter of a good day.
 
-use super::effect::Motion;
+use crate::effects::applied::AppliedEffect;
+use crate::effects::effect::PoseIncrement;
 use crate::logs::Robot;
 use crate::problem::{Problem, Result};
-use crate::simulator::added::Added;
 use crate::simulator::motion::MotionNetworks;
-use crate::simulator::reference::{MotionReference, SonarReference};
+use crate::simulator::nominal::MotionBias;
 use crate::simulator::{Learned, Simulator};
+use crate::sonar::SonarModel;
 
 /// What a step does, and what the sensor says, as long as nothing is different.
 pub struct Baseline<'s> {
     /// The motion, if the simulator knows it.
     pub motion: Option<Drive<'s>>,
     /// The sensor, if the simulator knows it.
-    pub sonar: Option<SonarReference>,
+    pub sonar: Option<SonarModel>,
     /// Effects that were added to the simulator before.
-    pub added: Vec<Added>,
+    pub applied: Vec<AppliedEffect>,
 }
 
 /// How commands become motion.
@@ -25,7 +26,7 @@ pub enum Drive<'s> {
         /// The networks.
         networks: MotionNetworks<'s>,
         /// What they leave over.
-        reference: &'s MotionReference,
+        reference: &'s MotionBias,
         /// Least and largest command that they know.
         commands: [f64; 2],
         /// How much of the scatter of forward, lateral and turn is the robot's own and not the tracker's, 0 to 1.
@@ -56,19 +57,19 @@ impl<'s> Baseline<'s> {
             commands: simulator.commands.map(f64::from),
             own_share: [&simulator.forward, &simulator.lateral, &simulator.turn].map(own_share),
         });
-        Ok(Baseline { motion, sonar: reference.sonar.clone(), added: simulator.added.clone() })
+        Ok(Baseline { motion, sonar: reference.sonar.clone(), applied: simulator.added.clone() })
     }
 }
 
 impl Drive<'_> {
     /// What a step does for the commands now and before.
-    pub fn step(&self, now: [f64; 2], before: [f64; 2]) -> Motion {
+    pub fn step(&self, now: [f64; 2], before: [f64; 2]) -> PoseIncrement {
         match self {
             Drive::Learned { networks, reference, commands, .. } => {
                 let speeds = [now[0], now[1], before[0], before[1]].map(|c| c.clamp(commands[0], commands[1]));
                 let learned = networks.step(speeds.map(|c| c as f32));
                 let more = reference.correction(&speeds);
-                Motion {
+                PoseIncrement {
                     forward_cm: f64::from(learned.forward_cm) + more[0],
                     lateral_cm: f64::from(learned.lateral_cm) + more[1],
                     turn_rad: f64::from(learned.turn_rad) + more[2],
@@ -82,7 +83,7 @@ impl Drive<'_> {
                 let half = 0.5 * turn_rad;
                 let chord_cm = if half.abs() < 1e-9 { arc_cm } else { arc_cm * libm::sin(half) / half };
                 let (forward_cm, lateral_cm) = (chord_cm * libm::cos(half), chord_cm * libm::sin(half));
-                Motion { forward_cm, lateral_cm, turn_rad }
+                PoseIncrement { forward_cm, lateral_cm, turn_rad }
             }
         }
     }

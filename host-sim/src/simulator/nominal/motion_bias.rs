@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 /// Corrections and scatter of forward (cm), lateral (cm) and turn (rad).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct MotionReference {
+pub struct MotionBias {
     /// One weight a feature (see [`features`]), for each of the three outputs.
     pub weights: [Vec<f64>; 3],
     /// Standard deviations about the corrected outputs.
@@ -18,7 +18,7 @@ const KNOTS: [f32; 5] = [0.03, 0.06, 0.12, 0.25, 0.5];
 /// Numbers that [`features`] makes of four commands.
 pub const FEATURES: usize = 1 + 4 + 10 + 20 + 6 * (1 + 2 * KNOTS.len());
 
-impl MotionReference {
+impl MotionBias {
     /// What is added to the networks' outputs for left, right, previous left and previous right command.
     pub fn correction(&self, speeds: &[f64; 4]) -> [f64; 3] {
         let features = features(*speeds);

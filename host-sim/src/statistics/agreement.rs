@@ -2,6 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::summary::mean;
+
 /// A straight line through (expected, predicted), as in the paper's figure 2.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TrendLine {
@@ -89,19 +91,6 @@ pub fn reliability(outcomes: &[f64], probabilities: &[f64]) -> Vec<ReliabilityBi
     }
     let filled = sums.into_iter().filter(|bin| bin.2 > 0);
     filled.map(|(p, o, n)| ReliabilityBin { predicted: p / n as f64, observed: o / n as f64, n }).collect()
-}
-
-/// The mean; NaN of nothing.
-pub fn mean(values: impl Iterator<Item = f64>) -> f64 {
-    let (sum, n) = values.fold((0.0, 0.0), |(sum, n), v| (sum + v, n + 1.0));
-    sum / n
-}
-
-/// The upper median; NaN of nothing.
-pub fn median(values: impl Iterator<Item = f64>) -> f64 {
-    let mut values: Vec<f64> = values.collect();
-    values.sort_by(f64::total_cmp);
-    values.get(values.len() / 2).copied().unwrap_or(f64::NAN)
 }
 
 #[cfg(test)]

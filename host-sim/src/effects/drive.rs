@@ -1,64 +1,64 @@
 //! Effects of the drive as a whole and of its halves: weaker motors, other wheels, another track.
 
+use super::effect::{CommandHistory, Hook, Parameter, PoseIncrement, Reported, StepContext, Variant};
 use super::{magnitude, rounded, side_of};
-use crate::gap::effect::{Act, Form, Moment, Motion, Parameter, Reported, Window};
 
 /// The forms of this family.
-pub const FORMS: &[Form] = &[
-    Form {
+pub const VARIANTS: &[Variant] = &[
+    Variant {
         id: "battery_sag",
         name: "commands weaken",
         parameters: SAG,
         starts: SAG_STARTS,
-        acts: &[Act::Commands(sagging_commands)],
+        acts: &[Hook::Commands(sagging_commands)],
         report: |v, _| vec![("loss_per_min", rounded(v[0]))],
     },
-    Form {
+    Variant {
         id: "battery_sag",
         name: "ways shorten",
         parameters: SAG,
         starts: SAG_STARTS,
-        acts: &[Act::Motion(shortening_ways)],
+        acts: &[Hook::Motion(shortening_ways)],
         report: |v, _| vec![("loss_per_min", rounded(v[0]))],
     },
-    Form {
+    Variant {
         id: "motor_asymmetry",
         name: "a weaker command",
         parameters: ASYMMETRY,
         starts: ASYMMETRY_STARTS,
-        acts: &[Act::Commands(one_weaker_command)],
+        acts: &[Hook::Commands(one_weaker_command)],
         report: asymmetry,
     },
-    Form {
+    Variant {
         id: "motor_asymmetry",
         name: "a shorter way",
         parameters: ASYMMETRY,
         starts: ASYMMETRY_STARTS,
-        acts: &[Act::Motion(one_shorter_way)],
+        acts: &[Hook::Motion(one_shorter_way)],
         report: asymmetry,
     },
-    Form {
+    Variant {
         id: "drive_scale",
         name: "longer ways",
         parameters: FACTOR,
         starts: FACTOR_STARTS,
-        acts: &[Act::Motion(scaled_ways)],
+        acts: &[Hook::Motion(scaled_ways)],
         report: factor,
     },
-    Form {
+    Variant {
         id: "drive_scale",
         name: "stronger commands",
         parameters: FACTOR,
         starts: FACTOR_STARTS,
-        acts: &[Act::Commands(scaled_commands)],
+        acts: &[Hook::Commands(scaled_commands)],
         report: factor,
     },
-    Form {
+    Variant {
         id: "track_width",
         name: "smaller turns",
         parameters: FACTOR,
         starts: FACTOR_STARTS,
-        acts: &[Act::Motion(scaled_turn)],
+        acts: &[Hook::Motion(scaled_turn)],
         report: factor,
     },
 ];
@@ -70,38 +70,38 @@ const ASYMMETRY_STARTS: &[&[f64]] = &[&[0.05], &[-0.05]];
 const FACTOR: &[Parameter] = &[Parameter::new(0.6, 1.5, 1.0)];
 const FACTOR_STARTS: &[&[f64]] = &[&[1.03], &[0.97]];
 
-fn sagging_commands(v: &[f64], moment: &Moment, window: &mut Window) {
+fn sagging_commands(v: &[f64], moment: &StepContext, window: &mut CommandHistory) {
     let left = (1.0 - v[0] * moment.elapsed_min).max(0.0);
     magnitude(window, |c| c * left);
 }
 
-fn shortening_ways(v: &[f64], moment: &Moment, motion: &mut Motion) {
+fn shortening_ways(v: &[f64], moment: &StepContext, motion: &mut PoseIncrement) {
     scaled_ways(&[(1.0 - v[0] * moment.elapsed_min).max(0.0)], moment, motion);
 }
 
 /// Positive: the left motor is the weaker one by this share; negative: the right one.
-fn one_weaker_command(v: &[f64], _: &Moment, window: &mut Window) {
+fn one_weaker_command(v: &[f64], _: &StepContext, window: &mut CommandHistory) {
     let factor = [1.0 - v[0].max(0.0), 1.0 + v[0].min(0.0)];
     window.iter_mut().for_each(|c| *c = [c[0] * factor[0], c[1] * factor[1]]);
 }
 
-fn one_shorter_way(v: &[f64], moment: &Moment, motion: &mut Motion) {
+fn one_shorter_way(v: &[f64], moment: &StepContext, motion: &mut PoseIncrement) {
     let factor = [1.0 - v[0].max(0.0), 1.0 + v[0].min(0.0)];
     let [left, right] = motion.wheels_cm(moment.track_cm);
     motion.set_wheels([left * factor[0], right * factor[1]], moment.track_cm);
 }
 
-fn scaled_ways(v: &[f64], _: &Moment, motion: &mut Motion) {
+fn scaled_ways(v: &[f64], _: &StepContext, motion: &mut PoseIncrement) {
     motion.forward_cm *= v[0];
     motion.lateral_cm *= v[0];
     motion.turn_rad *= v[0];
 }
 
-fn scaled_commands(v: &[f64], _: &Moment, window: &mut Window) {
+fn scaled_commands(v: &[f64], _: &StepContext, window: &mut CommandHistory) {
     magnitude(window, |c| c * v[0]);
 }
 
-fn scaled_turn(v: &[f64], _: &Moment, motion: &mut Motion) {
+fn scaled_turn(v: &[f64], _: &StepContext, motion: &mut PoseIncrement) {
     motion.turn_rad *= v[0];
 }
 

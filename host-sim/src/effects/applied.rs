@@ -2,12 +2,12 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::gap::effect::Form;
-use crate::gap::effects;
+use super::effect::Variant;
+use crate::effects;
 
 /// One effect with its parameters, as a simulator file holds it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Added {
+pub struct AppliedEffect {
     /// Its name in the table of effects.
     pub effect: String,
     /// Which of its forms.
@@ -16,14 +16,14 @@ pub struct Added {
     pub values: Vec<f64>,
 }
 
-impl Added {
+impl AppliedEffect {
     /// A form with its parameters.
-    pub fn new(form: &Form, values: &[f64]) -> Self {
-        Added { effect: form.id.into(), form: form.name.into(), values: values.to_vec() }
+    pub fn new(form: &Variant, values: &[f64]) -> Self {
+        AppliedEffect { effect: form.id.into(), form: form.name.into(), values: values.to_vec() }
     }
 
     /// The form, if this program knows it and its parameters are possible.
-    pub fn form(&self) -> Option<&'static Form> {
+    pub fn variant(&self) -> Option<&'static Variant> {
         let form = effects::all().into_iter().find(|f| f.id == self.effect && f.name == self.form)?;
         let possible = form.parameters.len() == self.values.len()
             && form.parameters.iter().zip(&self.values).all(|(p, v)| (p.bounds.low..=p.bounds.high).contains(v));
@@ -32,6 +32,6 @@ impl Added {
 
     /// Whether a file could have held this.
     pub fn is_sound(&self) -> bool {
-        self.form().is_some()
+        self.variant().is_some()
     }
 }

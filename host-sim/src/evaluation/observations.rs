@@ -2,14 +2,14 @@
 
 use std::ops::Range;
 
-use super::baseline::Drive;
-use super::effect::{Moment, Motion, WINDOW, middle};
+use crate::effects::effect::{HISTORY, PoseIncrement, StepContext, middle};
 use crate::geometry::{Pose, Wall, cast};
 use crate::logs::{Logs, Robot, Run, samples};
-use crate::simulator::reference::sonar::{Fan, fan_at};
+use crate::simulator::baseline::Drive;
+use crate::sonar::{Fan, fan_at};
 
 /// A folder of logs, ready to be judged.
-pub struct Evidence {
+pub struct Observations {
     /// The robot.
     pub robot: Robot,
     /// Everything that a ray can meet.
@@ -19,11 +19,11 @@ pub struct Evidence {
     /// How many blocks of rows are judged together: the runs, or parts of them where there are few.
     pub blocks: usize,
     /// All rows with a pose.
-    pub rows: Vec<Row>,
+    pub rows: Vec<Observation>,
 }
 
 /// A row at which the tracker saw the robot.
-pub struct Row {
+pub struct Observation {
     /// Which run of the folder,
     pub run: usize,
     /// and which row of that.
@@ -33,14 +33,14 @@ pub struct Row {
     /// Length of the step that begins here, against the usual one.
     pub stretch: f64,
     /// What effects may look at.
-    pub moment: Moment,
+    pub context: StepContext,
     /// What effects may look at in the steps until the tracker saw the robot again, where these are judged as one; their
     /// poses are not known.
-    pub then: Vec<Moment>,
+    pub then: Vec<StepContext>,
     /// What the step did, or those that are judged as one, where their end was seen too.
-    pub motion: Option<Motion>,
-    /// What the simulator expects of the commands as logged, once [`Evidence::expect`] has asked it.
-    pub expected: Option<Motion>,
+    pub motion: Option<PoseIncrement>,
+    /// What the simulator expects of the commands as logged, once [`Observations::expect`] has asked it.
+    pub expected: Option<PoseIncrement>,
     /// What the sensor said.
     pub echo_cm: Option<f64>,
     /// What it said the row before.
@@ -52,7 +52,7 @@ pub struct Row {
 /// With fewer runs than this each is cut into parts, so that there is a scatter between blocks.
 const FEWEST_BLOCKS: usize = 8;
 
-impl Evidence {
+impl Observations {
     /// Takes all that counts out of logs, for a sensor whose beam is `fan_width` times as wide as the usual fan.
     pub fn of(logs: &Logs, fan_width: f64) -> Self {
         let sides = logs.scene.sides();
@@ -68,11 +68,14 @@ impl Evidence {
             for (k, row) in logged.rows.iter().enumerate() {
                 let Some(pose) = row.pose else { continue };
                 let step = steps.next_if(|s| (s.run, s.row) == (run, k));
-                let motion =
-                    step.map(|s| Motion { forward_cm: s.forward_cm, lateral_cm: s.lateral_cm, turn_rad: s.turn_rad });
+                let motion = step.map(|s| PoseIncrement {
+                    forward_cm: s.forward_cm,
+                    lateral_cm: s.lateral_cm,
+                    turn_rad: s.turn_rad,
+                });
                 let until = (k + 1..logged.rows.len()).find(|i| logged.rows[*i].pose.is_some());
                 let way_until = until.filter(|_| whole_ways);
-                let motion = motion.or_else(|| Some(Motion::between(&pose, &logged.rows[way_until?].pose?)));
+                let motion = motion.or_else(|| Some(PoseIncrement::between(&pose, &logged.rows[way_until?].pose?)));
                 let unseen = way_until.map_or(k + 1..k + 1, |until| k + 1..until);
                 let sensor = logs.robot.ultrasonic.pose_on(&pose);
                 let hit = cast(&sides, sensor.position_cm, sensor.direction());
@@ -80,7 +83,7 @@ impl Evidence {
                 let fan = fan_at(&sides, &sensor, fan_width);
                 let before = |back: usize| k.checked_sub(back).map(|i| &logged.rows[i]);
                 let elapsed_min = |i: usize| (logged.rows[i].t_ms - logged.rows[0].t_ms) / 60_000.0;
-                let moment = Moment {
+                let context = StepContext {
                     elapsed_min: elapsed_min(k),
                     commands: window(logged, k),
                     pose,
@@ -92,17 +95,17 @@ impl Evidence {
                     track_cm: logs.robot.track_cm,
                 };
                 let then =
-                    unseen.map(|i| Moment { elapsed_min: elapsed_min(i), commands: window(logged, i), ..moment });
+                    unseen.map(|i| StepContext { elapsed_min: elapsed_min(i), commands: window(logged, i), ..context });
                 let previous_echo_cm = before(1).and_then(|r| r.echo_cm);
                 let block = run * parts + k * parts / logged.rows.len();
                 let until_ms = logged.rows.get(k + 1).map_or(row.t_ms, |next| next.t_ms);
                 let stretch = (until_ms - row.t_ms) / logs.robot.step_ms;
-                rows.push(Row {
+                rows.push(Observation {
                     run,
                     at: k,
                     block,
                     stretch,
-                    moment,
+                    context,
                     then: then.collect(),
                     motion,
                     expected: None,
@@ -112,13 +115,13 @@ impl Evidence {
                 });
             }
         }
-        Evidence { robot: logs.robot, sides, fan_width, blocks: logs.runs.len() * parts, rows }
+        Observations { robot: logs.robot, sides, fan_width, blocks: logs.runs.len() * parts, rows }
     }
 
     /// Asks the simulator once what it expects of every row: most hypotheses leave the commands as they are.
     pub fn expect(mut self, drive: Option<&Drive>) -> Self {
         for row in &mut self.rows {
-            let [now, before, ..] = row.moment.commands;
+            let [now, before, ..] = row.context.commands;
             row.expected = drive.map(|drive| drive.step(now, before));
         }
         self
@@ -146,6 +149,6 @@ impl Evidence {
 }
 
 /// The commands of row `k` and of those before, the motors standing before the first.
-fn window(run: &Run, k: usize) -> [[f64; 2]; WINDOW] {
+fn window(run: &Run, k: usize) -> [[f64; 2]; HISTORY] {
     std::array::from_fn(|back| k.checked_sub(back).map_or([0.0; 2], |i| run.rows[i].command()))
 }

@@ -5,16 +5,16 @@ use mindgap_core::controller::Controller;
 use serde::{Deserialize, Serialize};
 
 use crate::geometry::Pose;
-use crate::learn::statistics::median;
 use crate::logs::Logs;
 use crate::problem::{Problem, Result};
 use crate::simulator::course::Course;
 use crate::simulator::rehearsal::Rehearsal;
 use crate::simulator::{Noise, Simulator};
+use crate::statistics::summary::median;
 
 /// How far the runs of a controller end from where they are expected to, as medians over the runs, cm.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Endings {
+pub struct FinalPositions {
     /// Runs with a pose at the first row and a later one.
     pub runs: usize,
     /// With the simulator as it is.
@@ -34,7 +34,7 @@ const SEED: u64 = 6;
 ///
 /// # Errors
 /// When no run has a pose at its first row and at a later one, or when the simulator cannot run a controller from there.
-pub fn endings(simulators: [&Simulator; 2], controller: &Controller, logs: &Logs) -> Result<Endings> {
+pub fn endings(simulators: [&Simulator; 2], controller: &Controller, logs: &Logs) -> Result<FinalPositions> {
     let logged: Vec<(Pose, DVec2)> = logs
         .runs
         .iter()
@@ -50,7 +50,7 @@ pub fn endings(simulators: [&Simulator; 2], controller: &Controller, logs: &Logs
     }
     let [before, after] = simulators.map(|simulator| Ends::of(simulator, controller, logs, &logged));
     let (before, after) = (before?, after?);
-    Ok(Endings {
+    Ok(FinalPositions {
         runs: logged.len(),
         before_cm: median(before.off_cm.into_iter()),
         after_cm: median(after.off_cm.into_iter()),

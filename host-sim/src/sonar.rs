@@ -21,7 +21,7 @@ const CONSTANT_SCATTER_CM: f64 = 0.8;
 
 /// What is normal for the sensor.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct SonarReference {
+pub struct SonarModel {
     /// Weights of [`ray_features`]: the log-odds that a ray comes back.
     pub strength: [f64; STRENGTHS],
     /// Reading minus distance: a constant, a share of the distance, and per 45 degrees of incidence; cm.
@@ -65,9 +65,9 @@ pub fn fan_at(sides: &[Wall], sensor: &Pose, width: f64) -> Fan {
     })
 }
 
-/// How a sensor differs from the reference; [`Change::NONE`] changes nothing.
+/// How a sensor differs from the reference; [`Perturbation::NONE`] changes nothing.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Change {
+pub struct Perturbation {
     /// Taken off every ray's log-odds.
     pub damping: f64,
     /// The same per metre of distance.
@@ -99,16 +99,16 @@ pub struct Change {
 /// What a drawn reading depends on beside the fan.
 pub struct Draw<'a> {
     /// How the sensor differs.
-    pub change: &'a Change,
+    pub change: &'a Perturbation,
     /// The reading before.
     pub previous_cm: Option<f64>,
     /// Whether readings scatter.
     pub scatters: bool,
 }
 
-impl Change {
+impl Perturbation {
     /// The sensor as it was.
-    pub const NONE: Change = Change {
+    pub const NONE: Perturbation = Perturbation {
         damping: 0.0,
         damping_per_m: 0.0,
         damping_per_incidence: 0.0,
@@ -125,13 +125,13 @@ impl Change {
     };
 }
 
-impl SonarReference {
+impl SonarModel {
     /// The log-likelihood of what was logged at a row, and the part of it that is about echo or none. `previous_cm` is
     /// the reading of the row before.
     pub fn log_likelihood(
         &self,
         fan: &Fan,
-        change: &Change,
+        change: &Perturbation,
         echo_cm: Option<f64>,
         previous_cm: Option<f64>,
     ) -> [f64; 2] {
@@ -167,12 +167,12 @@ impl SonarReference {
     }
 
     /// The chance of the constant reading.
-    fn constant_chance(&self, echo: f64, change: &Change) -> f64 {
+    fn constant_chance(&self, echo: f64, change: &Perturbation) -> f64 {
         echo * (1.0 - change.ghost_for_echo) * self.constant[0]
             + (1.0 - echo) * (1.0 - change.ghost_for_none) * self.constant_for_none
     }
 
-    /// One of the readings that [`SonarReference::log_likelihood`] tells of. `uniform` draws from 0 to 1.
+    /// One of the readings that [`SonarModel::log_likelihood`] tells of. `uniform` draws from 0 to 1.
     pub fn draw(&self, fan: &Fan, draw: &Draw, mut uniform: impl FnMut() -> f64) -> Option<f64> {
         let change = draw.change;
         let [low, high] = self.range_cm;
@@ -207,7 +207,7 @@ impl SonarReference {
     }
 
     /// The reading to expect of an echo, cm; none where nothing is in reach.
-    pub fn expected_cm(&self, fan: &Fan, change: &Change) -> Option<f64> {
+    pub fn expected_cm(&self, fan: &Fan, change: &Perturbation) -> Option<f64> {
         let (mut none_yet, mut sum) = (1.0, 0.0);
         for i in nearest_first(fan) {
             let (ray, back) = (&fan[i], self.back(&fan[i], FAN_DEG[i], change));
@@ -220,7 +220,7 @@ impl SonarReference {
     }
 
     /// The chance that a ray comes back.
-    fn back(&self, ray: &Ray, offset_deg: f64, change: &Change) -> f64 {
+    fn back(&self, ray: &Ray, offset_deg: f64, change: &Perturbation) -> f64 {
         let (metres, incidence) = (ray.distance_cm.min(FAR_CM) / 100.0, ray.alpha_deg / 45.0);
         let damping = change.damping + change.damping_per_m * metres + change.damping_per_incidence * incidence;
         let strength: f64 = ray_features(ray, offset_deg).iter().zip(&self.strength).map(|(f, w)| f * w).sum();
@@ -228,21 +228,21 @@ impl SonarReference {
     }
 
     /// By how much the reading of a ray scatters, cm.
-    fn scatter_cm(&self, ray: &Ray, change: &Change) -> f64 {
+    fn scatter_cm(&self, ray: &Ray, change: &Perturbation) -> f64 {
         let (metres, incidence) = (ray.distance_cm.min(FAR_CM) / 100.0, ray.alpha_deg / 45.0);
         let own = libm::exp(self.log_scatter[0] + self.log_scatter[1] * metres + self.log_scatter[2] * incidence);
         (own * own + change.scatter_cm * change.scatter_cm).sqrt()
     }
 
     /// The reading that a ray gives, before scatter.
-    fn middle_cm(&self, ray: &Ray, change: &Change) -> f64 {
+    fn middle_cm(&self, ray: &Ray, change: &Perturbation) -> f64 {
         let bias = self.bias[0] + self.bias[1] * ray.distance_cm + self.bias[2] * ray.alpha_deg / 45.0;
         let [low, high] = self.range_cm;
         ((ray.distance_cm + bias) * change.gain + change.offset_cm).clamp(low, high)
     }
 
     /// The chance that any ray comes back, and the density of the reading and of that.
-    fn first_echo(&self, fan: &Fan, change: &Change, echo_cm: Option<f64>) -> [f64; 2] {
+    fn first_echo(&self, fan: &Fan, change: &Perturbation, echo_cm: Option<f64>) -> [f64; 2] {
         let (mut none_yet, mut density) = (1.0, 0.0);
         for i in nearest_first(fan) {
             let ray = &fan[i];
@@ -312,7 +312,7 @@ mod tests {
     use super::*;
     use crate::chance::generator;
 
-    const SENSOR: SonarReference = SonarReference {
+    const SENSOR: SonarModel = SonarModel {
         strength: [2.0, -1.0, 0.0, -1.0, 0.0, 0.0, 0.0, 0.0, -0.5, 0.0],
         bias: [1.0, 0.0, 0.0],
         log_scatter: [0.5, 0.0, 0.0],
@@ -329,7 +329,7 @@ mod tests {
     fn drawn_readings_are_as_likely_as_they_come() {
         let ray = |i: usize| Ray { distance_cm: 90.0 + 8.0 * i as f64, alpha_deg: 10.0 * i as f64 };
         let fan: Fan = std::array::from_fn(ray);
-        let change = Change { ghost_for_echo: 0.2, ghost_cm: 55.0, gain: 1.1, long: 0.05, ..Change::NONE };
+        let change = Perturbation { ghost_for_echo: 0.2, ghost_cm: 55.0, gain: 1.1, long: 0.05, ..Perturbation::NONE };
         let draw = Draw { change: &change, previous_cm: None, scatters: true };
         let mut rng = generator(3, &[]);
         const DRAWS: usize = 40_000;

@@ -3,12 +3,12 @@
 use mindgap_core::network::Network;
 use serde::Serialize;
 
-use super::dataset::{Dataset, Datasets};
-use super::statistics::{self, ReliabilityBin, TrendLine};
-use crate::gap::prediction::{Predictions, predict};
+use super::predictions::{Predictions, predict};
+use crate::learn::dataset::{Dataset, Datasets};
 use crate::logs::Logs;
 use crate::problem::{Problem, Result};
 use crate::simulator::{Learned, Simulator};
+use crate::statistics::agreement::{self as statistics, ReliabilityBin, TrendLine};
 
 /// What `mindgap evaluate --json` writes.
 #[derive(Clone, Debug, PartialEq, Serialize)]

@@ -4,106 +4,106 @@ use std::f64::consts::PI;
 
 use glam::DVec2;
 
+use super::effect::{CommandHistory, Hook, Parameter, PoseIncrement, Reported, StepContext, Variant};
 use super::{degrees, magnitude_each, rounded, side_of};
-use crate::gap::effect::{Act, Form, Moment, Motion, Parameter, Reported, Window};
 use crate::geometry::direction;
 
 /// The forms of this family.
-pub const FORMS: &[Form] = &[
-    Form {
+pub const VARIANTS: &[Variant] = &[
+    Variant {
         id: "payload",
         name: "commands lose, more on one side",
         parameters: LOAD,
         starts: LOAD_STARTS,
-        acts: &[Act::Commands(loaded_commands)],
+        acts: &[Hook::Commands(loaded_commands)],
         report: load,
     },
-    Form {
+    Variant {
         id: "payload",
         name: "ways shorten, more on one side",
         parameters: LOAD,
         starts: LOAD_STARTS,
-        acts: &[Act::Motion(loaded_ways)],
+        acts: &[Hook::Motion(loaded_ways)],
         report: load,
     },
-    Form {
+    Variant {
         id: "payload",
         name: "ways shorten on one side, and a heavy robot is slow to start and to turn",
         parameters: HEAVY_LOAD,
         starts: HEAVY_LOAD_STARTS,
-        acts: &[Act::Commands(slow_start), Act::Motion(load_on_turns)],
+        acts: &[Hook::Commands(slow_start), Hook::Motion(load_on_turns)],
         report: load,
     },
-    Form {
+    Variant {
         id: "payload",
         name: "a wheel rolls hard at any speed, and a heavy robot is slow to start",
         parameters: ROLLING_LOAD,
         starts: ROLLING_LOAD_STARTS,
-        acts: &[Act::Commands(slow_start), Act::Motion(hard_rolling)],
+        acts: &[Hook::Commands(slow_start), Hook::Motion(hard_rolling)],
         report: load,
     },
-    Form {
+    Variant {
         id: "slope",
         name: "a drift downhill while moving",
         parameters: DIRECTED,
         starts: DIRECTED_STARTS,
-        acts: &[Act::Motion(slope_drift)],
+        acts: &[Hook::Motion(slope_drift)],
         report: directed,
     },
-    Form {
+    Variant {
         id: "slope",
         name: "a gain or loss that grows with speed in part, and sideways down in part",
         parameters: MIXED_SLOPE,
         starts: MIXED_SLOPE_STARTS,
-        acts: &[Act::Motion(slope_mixed)],
+        acts: &[Hook::Motion(slope_mixed)],
         report: directed,
     },
-    Form {
+    Variant {
         id: "carpet_nap",
         name: "drag that grows with speed in part, and sets in softly in part",
         parameters: MIXED_NAP,
         starts: MIXED_NAP_STARTS,
-        acts: &[Act::Motion(nap_mixed)],
+        acts: &[Hook::Motion(nap_mixed)],
         report: directed,
     },
-    Form {
+    Variant {
         id: "carpet_nap",
         name: "drag along an axis",
         parameters: AXIS,
         starts: AXIS_STARTS,
-        acts: &[Act::Motion(nap_axis)],
+        acts: &[Hook::Motion(nap_axis)],
         report: directed,
     },
-    Form {
+    Variant {
         id: "slip",
         name: "large commands lose grip",
         parameters: FAST_GRIP,
         starts: GRIP_STARTS,
-        acts: &[Act::Commands(slip_when_fast)],
+        acts: &[Hook::Commands(slip_when_fast)],
         report: onset,
     },
-    Form {
+    Variant {
         id: "slip",
         name: "large changes lose grip",
         parameters: GRIP,
         starts: GRIP_STARTS,
-        acts: &[Act::Commands(slip_when_changing)],
+        acts: &[Hook::Commands(slip_when_changing)],
         report: onset,
     },
-    Form {
+    Variant {
         id: "slip",
         name: "large changes lose way",
         parameters: GRIP,
         starts: GRIP_STARTS,
-        acts: &[Act::Motion(slip_of_ways)],
+        acts: &[Hook::Motion(slip_of_ways)],
         report: onset,
     },
-    Form {
+    Variant {
         id: "slip",
         name: "large changes lose more than in proportion, and turns drag",
         parameters: DRAGGING_GRIP,
         starts: DRAGGING_GRIP_STARTS,
-        acts: &[Act::Commands(slip_growing), Act::Motion(dragging_turn)],
+        acts: &[Hook::Commands(slip_growing), Hook::Motion(dragging_turn)],
         report: onset,
     },
 ];
@@ -173,31 +173,31 @@ fn load_factors(v: &[f64]) -> [f64; 2] {
     if v[0] > 0.0 { [1.0 - near, 1.0 - far] } else { [1.0 - far, 1.0 - near] }
 }
 
-fn loaded_commands(v: &[f64], _: &Moment, window: &mut Window) {
+fn loaded_commands(v: &[f64], _: &StepContext, window: &mut CommandHistory) {
     let factor = load_factors(v);
     magnitude_each(window, |c, motor| c * factor[motor]);
 }
 
-fn loaded_ways(v: &[f64], moment: &Moment, motion: &mut Motion) {
+fn loaded_ways(v: &[f64], moment: &StepContext, motion: &mut PoseIncrement) {
     let factor = load_factors(v);
     let [left, right] = motion.wheels_cm(moment.track_cm);
     motion.set_wheels([left * factor[0], right * factor[1]], moment.track_cm);
 }
 
-fn hard_rolling(v: &[f64], moment: &Moment, motion: &mut Motion) {
+fn hard_rolling(v: &[f64], moment: &StepContext, motion: &mut PoseIncrement) {
     let [near, far] = [v[0].abs(), v[0].abs() * v[1]];
     let losses = if v[0] > 0.0 { [near, far] } else { [far, near] };
     let wheels = motion.wheels_cm(moment.track_cm);
     motion.set_wheels([0, 1].map(|m| pushed(wheels[m], -losses[m] * cost_cm(v[2], wheels[m]))), moment.track_cm);
 }
 
-fn load_on_turns(v: &[f64], moment: &Moment, motion: &mut Motion) {
+fn load_on_turns(v: &[f64], moment: &StepContext, motion: &mut PoseIncrement) {
     loaded_ways(v, moment, motion);
     motion.turn_rad *= 1.0 - (v[2] * v[0].abs()).min(1.0);
 }
 
 /// Part of every change of command is not there yet.
-fn slow_start(v: &[f64], _: &Moment, window: &mut Window) {
+fn slow_start(v: &[f64], _: &StepContext, window: &mut CommandHistory) {
     let late = (v[3] * v[0].abs()).min(1.0);
     let [now, before, ..] = window;
     for (c, earlier) in now.iter_mut().zip(before) {
@@ -206,18 +206,18 @@ fn slow_start(v: &[f64], _: &Moment, window: &mut Window) {
 }
 
 /// Cosine between the direction of travel and `direction_rad`: reversing travels against the heading.
-fn along(direction_rad: f64, moment: &Moment, motion: &Motion) -> f64 {
+fn along(direction_rad: f64, moment: &StepContext, motion: &PoseIncrement) -> f64 {
     libm::cos(moment.pose.heading_rad + 0.5 * motion.turn_rad - direction_rad) * motion.forward_cm.signum()
 }
 
 /// Way downhill in a step, in shares of the way of both wheels.
-fn downhill(v: &[f64], moment: &Moment, motion: &Motion) -> DVec2 {
+fn downhill(v: &[f64], moment: &StepContext, motion: &PoseIncrement) -> DVec2 {
     let [left, right] = motion.wheels_cm(moment.track_cm);
     let way_cm = 0.5 * (left.abs() + right.abs());
     direction(v[0] - moment.pose.heading_rad - 0.5 * motion.turn_rad) * (v[1] * way_cm)
 }
 
-fn slope_drift(v: &[f64], moment: &Moment, motion: &mut Motion) {
+fn slope_drift(v: &[f64], moment: &StepContext, motion: &mut PoseIncrement) {
     let drift = downhill(v, moment, motion);
     motion.forward_cm += drift.x;
     motion.lateral_cm += drift.y;
@@ -232,7 +232,7 @@ fn cost_cm(with_speed: f64, way_cm: f64) -> f64 {
 }
 
 /// A wheel that is driven gives way downhill, one that stands holds.
-fn slope_mixed(v: &[f64], moment: &Moment, motion: &mut Motion) {
+fn slope_mixed(v: &[f64], moment: &StepContext, motion: &mut PoseIncrement) {
     let driven_cm = motion.wheels_cm(moment.track_cm).into_iter().fold(0.0, |most: f64, w| most.max(w.abs()));
     let pull_cm = (driven_cm / 1.5).min(1.0) * v[1] * cost_cm(v[2], motion.forward_cm);
     let downhill = direction(v[0] - moment.pose.heading_rad - 0.5 * motion.turn_rad) * pull_cm;
@@ -240,7 +240,7 @@ fn slope_mixed(v: &[f64], moment: &Moment, motion: &mut Motion) {
     motion.lateral_cm += v[3] * downhill.y;
 }
 
-fn nap_mixed(v: &[f64], moment: &Moment, motion: &mut Motion) {
+fn nap_mixed(v: &[f64], moment: &StepContext, motion: &mut PoseIncrement) {
     let against = along(v[0], moment, motion);
     let drag = v[3] * 0.5 * (1.0 + against) + (1.0 - v[3]) * against.max(0.0);
     motion.forward_cm = pushed(motion.forward_cm, -v[1] * drag * cost_cm(v[2], motion.forward_cm));
@@ -252,36 +252,36 @@ fn pushed(way_cm: f64, more_cm: f64) -> f64 {
     (way_cm.abs() + moving * more_cm).max(0.0) * way_cm.signum()
 }
 
-fn nap_axis(v: &[f64], moment: &Moment, motion: &mut Motion) {
+fn nap_axis(v: &[f64], moment: &StepContext, motion: &mut PoseIncrement) {
     drag(motion, v[1] * along(v[0], moment, motion).abs());
 }
 
-fn drag(motion: &mut Motion, loss: f64) {
+fn drag(motion: &mut PoseIncrement, loss: f64) {
     motion.forward_cm *= 1.0 - loss;
     motion.lateral_cm *= 1.0 - loss;
 }
 
-fn slip_when_fast(v: &[f64], _: &Moment, window: &mut Window) {
+fn slip_when_fast(v: &[f64], _: &StepContext, window: &mut CommandHistory) {
     magnitude_each(window, |c, _| c - v[1] * (c - v[0]).max(0.0));
 }
 
 /// A wheel that slips in a step has caught up at its end.
-fn slip_when_changing(v: &[f64], _: &Moment, window: &mut Window) {
+fn slip_when_changing(v: &[f64], _: &StepContext, window: &mut CommandHistory) {
     slipped(window, 0, |beyond| v[1] * beyond, v[0]);
 }
 
-fn slip_growing(v: &[f64], _: &Moment, window: &mut Window) {
+fn slip_growing(v: &[f64], _: &StepContext, window: &mut CommandHistory) {
     let lost = |beyond: f64| v[1] * beyond * beyond / (40.0 + beyond);
     slipped(window, 0, lost, v[0]);
     slipped(window, 1, lost, NOT_CAUGHT_UP * v[0]);
 }
 
-fn dragging_turn(v: &[f64], _: &Moment, motion: &mut Motion) {
+fn dragging_turn(v: &[f64], _: &StepContext, motion: &mut PoseIncrement) {
     motion.turn_rad -= v[1] * v[2] * libm::tanh(motion.turn_rad / LITTLE_TURN_RAD);
 }
 
 /// Takes from the command of a step what the change of command so many steps ago loses beyond an onset.
-fn slipped(window: &mut Window, ago: usize, lost: impl Fn(f64) -> f64, onset: f64) {
+fn slipped(window: &mut CommandHistory, ago: usize, lost: impl Fn(f64) -> f64, onset: f64) {
     let (to, from) = (window[ago], window[ago + 1]);
     for ((command, to), from) in window[0].iter_mut().zip(to).zip(from) {
         let change = to - from;
@@ -289,7 +289,7 @@ fn slipped(window: &mut Window, ago: usize, lost: impl Fn(f64) -> f64, onset: f6
     }
 }
 
-fn slip_of_ways(v: &[f64], moment: &Moment, motion: &mut Motion) {
+fn slip_of_ways(v: &[f64], moment: &StepContext, motion: &mut PoseIncrement) {
     let [now, before] = [moment.commands[0], moment.commands[1]];
     let wheels = motion.wheels_cm(moment.track_cm);
     let kept = [0, 1].map(|m| 1.0 - (v[1] * ((now[m] - before[m]).abs() - v[0]).max(0.0) / 100.0).min(1.0));

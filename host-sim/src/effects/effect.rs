@@ -6,17 +6,17 @@
 use glam::DVec2;
 use serde_json::Value;
 
-use crate::ascent::Bounds;
 use crate::geometry::{Pose, Wall};
-use crate::simulator::reference::sonar::Change;
+use crate::sonar::Perturbation;
+use crate::statistics::maximise::Bounds;
 
 /// So many commands are kept, the present one first: an effect may look back so far.
-pub const WINDOW: usize = 7;
+pub const HISTORY: usize = 7;
 /// Left and right command, the present one first.
-pub type Window = [[f64; 2]; WINDOW];
+pub type CommandHistory = [[f64; 2]; HISTORY];
 
 /// One functional form of an effect.
-pub struct Form {
+pub struct Variant {
     /// The effect's name in the table of effects.
     pub id: &'static str,
     /// What tells this form from its siblings.
@@ -26,7 +26,7 @@ pub struct Form {
     /// Values to start the fit from.
     pub starts: &'static [&'static [f64]],
     /// What it does.
-    pub acts: &'static [Act],
+    pub acts: &'static [Hook],
     /// The parameters as the table names them, from their values and the step in ms.
     pub report: fn(&[f64], f64) -> Reported,
 }
@@ -44,18 +44,18 @@ pub struct Parameter {
 }
 
 /// A change to one stage of a step.
-pub enum Act {
+pub enum Hook {
     /// To the commands that reach the motors, at each place of the window.
-    Commands(fn(&[f64], &Moment, &mut Window)),
+    Commands(fn(&[f64], &StepContext, &mut CommandHistory)),
     /// To the motion that the tracker sees.
-    Motion(fn(&[f64], &Moment, &mut Motion)),
+    Motion(fn(&[f64], &StepContext, &mut PoseIncrement)),
     /// To the sensor.
-    Sensor(fn(&[f64], &Moment, &mut Sensor)),
+    Sensor(fn(&[f64], &StepContext, &mut Sensor)),
 }
 
 /// What a step does as seen from the robot.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Motion {
+pub struct PoseIncrement {
     /// Way forward, cm.
     pub forward_cm: f64,
     /// Way to the left, cm.
@@ -74,16 +74,16 @@ pub struct Sensor {
     /// The beam is so many times as wide.
     pub width: f64,
     /// What becomes of the echoes.
-    pub change: Change,
+    pub change: Perturbation,
 }
 
 /// Where an effect finds itself.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Moment {
+pub struct StepContext {
     /// Time since the run began, minutes.
     pub elapsed_min: f64,
     /// Commands as logged.
-    pub commands: Window,
+    pub commands: CommandHistory,
     /// Logged pose at the step's begin.
     pub pose: Pose,
     /// The same one and two rows earlier, where it is known.
@@ -107,7 +107,7 @@ impl Parameter {
     }
 }
 
-impl Form {
+impl Variant {
     /// The values with which it changes nothing.
     pub fn neutral(&self) -> Vec<f64> {
         self.parameters.iter().map(|p| p.neutral).collect()
@@ -115,20 +115,20 @@ impl Form {
 
     /// Whether it changes what the robot does or how that is seen.
     pub fn moves(&self) -> bool {
-        self.acts.iter().any(|act| matches!(act, Act::Commands(_) | Act::Motion(_)))
+        self.acts.iter().any(|act| matches!(act, Hook::Commands(_) | Hook::Motion(_)))
     }
 
     /// Whether it changes what the sensor says.
     pub fn senses(&self) -> bool {
-        self.acts.iter().any(|act| matches!(act, Act::Sensor(_)))
+        self.acts.iter().any(|act| matches!(act, Hook::Sensor(_)))
     }
 }
 
-impl Motion {
+impl PoseIncrement {
     /// The way from one pose to another, as seen from the first.
     pub fn between(from: &Pose, to: &Pose) -> Self {
         let Pose { position_cm, heading_rad } = from.relative(to);
-        Motion { forward_cm: position_cm.x, lateral_cm: position_cm.y, turn_rad: heading_rad }
+        PoseIncrement { forward_cm: position_cm.x, lateral_cm: position_cm.y, turn_rad: heading_rad }
     }
 
     /// Where it leads.

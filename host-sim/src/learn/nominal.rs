@@ -3,14 +3,14 @@
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
-use crate::ascent::{Bounds, climb};
 use crate::geometry::{Pose, cast};
 use crate::learn::scatter;
 use crate::logs::{Logs, samples};
 use crate::simulator::Simulator;
-use crate::simulator::reference::Reference;
-use crate::simulator::reference::motion::{FEATURES, MotionReference, features};
-use crate::simulator::reference::sonar::{Change, STRENGTHS, SonarReference, fan_at};
+use crate::simulator::nominal::NominalModel;
+use crate::simulator::nominal::motion_bias::{FEATURES, MotionBias, features};
+use crate::sonar::{Perturbation, STRENGTHS, SonarModel, fan_at};
+use crate::statistics::maximise::{Bounds, climb};
 
 /// Pulls the weights of the motion's correction towards zero, in squared features.
 const RIDGE: f64 = 0.003;
@@ -18,11 +18,11 @@ const RIDGE: f64 = 0.003;
 const FEWEST: usize = 100;
 
 /// The reference of a simulator whose networks are trained, from its training logs.
-pub fn learn(simulator: &Simulator, logs: &Logs) -> Reference {
-    Reference { motion: motion(simulator, logs), sonar: sonar(simulator, logs) }
+pub fn learn(simulator: &Simulator, logs: &Logs) -> NominalModel {
+    NominalModel { motion: motion(simulator, logs), sonar: sonar(simulator, logs) }
 }
 
-fn motion(simulator: &Simulator, logs: &Logs) -> Option<MotionReference> {
+fn motion(simulator: &Simulator, logs: &Logs) -> Option<MotionBias> {
     let networks = simulator.motion_networks()?;
     let steps = samples::motion(logs);
     if steps.len() < FEWEST {
@@ -47,7 +47,7 @@ fn motion(simulator: &Simulator, logs: &Logs) -> Option<MotionReference> {
             [s.forward_cm - predicted[0], s.lateral_cm - predicted[1], s.turn_rad - predicted[2]]
         })
         .collect();
-    let mut reference = MotionReference { weights: [const { Vec::new() }; 3], scatter: [0.0; 3] };
+    let mut reference = MotionBias { weights: [const { Vec::new() }; 3], scatter: [0.0; 3] };
     for c in 0..3 {
         let mut pull = DVector::zeros(width);
         for (row, r) in rows.iter().zip(&residuals) {
@@ -89,7 +89,7 @@ const SONAR_START: [f64; STRENGTHS + 11] = [
 const SONAR_ROUNDS: usize = 40;
 const SONAR_ENOUGH: f64 = 0.5;
 
-fn sonar(simulator: &Simulator, logs: &Logs) -> Option<SonarReference> {
+fn sonar(simulator: &Simulator, logs: &Logs) -> Option<SonarModel> {
     let sides = logs.scene.sides();
     let mount = &logs.robot.ultrasonic;
     let mut seen: Vec<(Pose, Option<f64>)> = Vec::new();
@@ -113,7 +113,7 @@ fn sonar(simulator: &Simulator, logs: &Logs) -> Option<SonarReference> {
         let reference = sonar_from(at, value_cm, range_cm);
         let term = |(sensor, echo): &(Pose, Option<f64>)| {
             let fan = fan_at(&sides, sensor, reference.fan_width);
-            reference.log_likelihood(&fan, &Change::NONE, *echo, None)[0]
+            reference.log_likelihood(&fan, &Perturbation::NONE, *echo, None)[0]
         };
         seen.par_iter().map(term).collect()
     };
@@ -121,9 +121,9 @@ fn sonar(simulator: &Simulator, logs: &Logs) -> Option<SonarReference> {
     Some(sonar_from(&best.at, value_cm, range_cm))
 }
 
-fn sonar_from(at: &[f64], value_cm: f64, range_cm: [f64; 2]) -> SonarReference {
+fn sonar_from(at: &[f64], value_cm: f64, range_cm: [f64; 2]) -> SonarModel {
     let rest = &at[STRENGTHS..];
-    SonarReference {
+    SonarModel {
         strength: std::array::from_fn(|i| at[i]),
         bias: [rest[0], rest[1], rest[2]],
         log_scatter: [rest[3], rest[4], rest[5]],

@@ -1,6 +1,9 @@
 //! The effects that a diagnosis knows, one file a family, each effect in every functional form that it may take.
 
+pub mod applied;
+pub mod chain;
 pub mod drive;
+pub mod effect;
 pub mod floor;
 pub mod frame;
 pub mod motor;
@@ -8,21 +11,24 @@ pub mod sonar;
 
 use serde_json::{Value, json};
 
-use super::effect::{Form, Window};
 use crate::geometry::wrap_rad;
+use effect::{CommandHistory, Variant};
 
 /// All forms of all effects.
-pub fn all() -> Vec<&'static Form> {
-    [drive::FORMS, motor::FORMS, floor::FORMS, sonar::FORMS, frame::FORMS].into_iter().flatten().collect()
+pub fn all() -> Vec<&'static Variant> {
+    [drive::VARIANTS, motor::VARIANTS, floor::VARIANTS, sonar::VARIANTS, frame::VARIANTS]
+        .into_iter()
+        .flatten()
+        .collect()
 }
 
 /// Changes the magnitude of every command and keeps its sign.
-fn magnitude(window: &mut Window, change: impl Fn(f64) -> f64) {
+fn magnitude(window: &mut CommandHistory, change: impl Fn(f64) -> f64) {
     magnitude_each(window, |c, _| change(c));
 }
 
 /// The same with the motor: 0 left, 1 right.
-fn magnitude_each(window: &mut Window, change: impl Fn(f64, usize) -> f64) {
+fn magnitude_each(window: &mut CommandHistory, change: impl Fn(f64, usize) -> f64) {
     for commands in window {
         for (motor, c) in commands.iter_mut().enumerate() {
             *c = change(c.abs(), motor) * c.signum();
@@ -50,34 +56,34 @@ mod tests {
     use glam::DVec2;
     use proptest::prelude::*;
 
+    use super::effect::{Hook, Parameter, PoseIncrement, Sensor, StepContext};
     use super::*;
-    use crate::gap::effect::{Act, Moment, Motion, Parameter, Sensor};
     use crate::geometry::Pose;
-    use crate::simulator::reference::sonar::Change;
+    use crate::sonar::Perturbation;
 
     /// The 26 effects of the contracts' table.
     const TABLE: usize = 26;
 
     /// What comes of a moment: commands, motion, sensor.
-    fn applied(form: &Form, values: &[f64], moment: &Moment) -> (Window, Motion, Sensor) {
+    fn applied(form: &Variant, values: &[f64], moment: &StepContext) -> (CommandHistory, PoseIncrement, Sensor) {
         let mut window = moment.commands;
-        let mut motion = Motion { forward_cm: 7.0, lateral_cm: -0.4, turn_rad: 0.3 };
-        let mut sensor = Sensor { robot: moment.pose, yaw_rad: 0.0, width: 1.0, change: Change::NONE };
+        let mut motion = PoseIncrement { forward_cm: 7.0, lateral_cm: -0.4, turn_rad: 0.3 };
+        let mut sensor = Sensor { robot: moment.pose, yaw_rad: 0.0, width: 1.0, change: Perturbation::NONE };
         for act in form.acts {
             match act {
-                Act::Commands(change) => change(values, moment, &mut window),
-                Act::Motion(change) => change(values, moment, &mut motion),
-                Act::Sensor(change) => change(values, moment, &mut sensor),
+                Hook::Commands(change) => change(values, moment, &mut window),
+                Hook::Motion(change) => change(values, moment, &mut motion),
+                Hook::Sensor(change) => change(values, moment, &mut sensor),
             }
         }
         (window, motion, sensor)
     }
 
-    fn moment() -> impl Strategy<Value = Moment> {
+    fn moment() -> impl Strategy<Value = StepContext> {
         let commands = prop::array::uniform7(prop::array::uniform2(-100.0..100.0));
         let pose = || (10.0..290.0, 10.0..210.0, -3.0..3.0).prop_map(|(x, y, h)| Pose::new(x, y, h));
         (commands, pose(), pose(), 0.0..2.0, any::<bool>()).prop_map(|(commands, pose, earlier, elapsed_min, echo)| {
-            Moment {
+            StepContext {
                 elapsed_min,
                 commands,
                 pose,
@@ -113,7 +119,7 @@ mod tests {
     proptest! {
         #[test]
         fn a_neutral_effect_changes_nothing(moment in moment()) {
-            let untouched = Form { acts: &[], ..*all()[0] };
+            let untouched = Variant { acts: &[], ..*all()[0] };
             let (window, motion, sensor) = applied(&untouched, &[], &moment);
             for form in all() {
                 let (w, m, s) = applied(form, &form.neutral(), &moment);
@@ -126,7 +132,7 @@ mod tests {
                     && near(wrap_rad(s.robot.heading_rad - sensor.robot.heading_rad), 0.0)
                     && near(s.yaw_rad, 0.0)
                     && near(s.width, 1.0)
-                    && Change { ghost_cm: sensor.change.ghost_cm, ..s.change } == sensor.change;
+                    && Perturbation { ghost_cm: sensor.change.ghost_cm, ..s.change } == sensor.change;
                 prop_assert!(same, "{}: {}", form.id, form.name);
             }
         }

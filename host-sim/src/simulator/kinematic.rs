@@ -1,9 +1,9 @@
 //! The textbook as a baseline: the differential drive and an ideal ray sonar from robot.toml alone, their scatter
 //! estimated from the logs.
 
-use super::baseline::{Baseline, Drive};
 use crate::logs::{Logs, samples};
-use crate::simulator::reference::sonar::{STRENGTHS, SonarReference};
+use crate::simulator::baseline::{Baseline, Drive};
+use crate::sonar::{STRENGTHS, SonarModel};
 
 /// The least scatter of forward (cm), lateral (cm) and turn (rad): that of a good tracker. The logs' own is refitted
 /// upwards from here.
@@ -21,10 +21,10 @@ const READING_SCATTER_CM: [f64; 2] = [0.5, 4.0];
 /// The baseline of a robot that nobody has logged before.
 pub fn baseline(logs: &Logs) -> Baseline<'static> {
     let scatter = if samples::motion(logs).is_empty() { LEAST_OWN_SCATTER } else { LEAST_SCATTER };
-    Baseline { motion: Some(Drive::Kinematic { robot: logs.robot, scatter }), sonar: sonar(logs), added: Vec::new() }
+    Baseline { motion: Some(Drive::Kinematic { robot: logs.robot, scatter }), sonar: sonar(logs), applied: Vec::new() }
 }
 
-fn sonar(logs: &Logs) -> Option<SonarReference> {
+fn sonar(logs: &Logs) -> Option<SonarModel> {
     let seen = samples::sonar(logs);
     let mount = &logs.robot.ultrasonic;
     let mut errors_cm: Vec<f64> = seen.iter().filter_map(|s| Some((s.echo_cm? - s.distance_cm).abs())).collect();
@@ -39,7 +39,7 @@ fn sonar(logs: &Logs) -> Option<SonarReference> {
     let (echoes, all) = within.fold((0.0, 0.0), |(e, n), s| (e + f64::from(u8::from(s.echo_cm.is_some())), n + 1.0));
     let mut strength = [0.0; STRENGTHS];
     strength[0] = CERTAIN;
-    Some(SonarReference {
+    Some(SonarModel {
         strength,
         bias: [0.0; 3],
         log_scatter: [libm::log(scatter_cm.clamp(least, most)), 0.0, 0.0],

@@ -1,0 +1,69 @@
+//! Effects with their parameters, at work one after the other round a simulator's step.
+
+use super::applied::AppliedEffect;
+use super::effect::{CommandHistory, Hook, PoseIncrement, Sensor, StepContext, Variant};
+use crate::sonar::Perturbation;
+
+/// Effects that act together, in their order; an empty chain changes nothing.
+#[derive(Clone, Default)]
+pub struct EffectChain {
+    links: Vec<(&'static Variant, Vec<f64>)>,
+}
+
+impl EffectChain {
+    /// The effects of a simulator file; what this program does not know is left out.
+    pub fn of(applied: &[AppliedEffect]) -> Self {
+        EffectChain { links: applied.iter().filter_map(|a| Some((a.variant()?, a.values.clone()))).collect() }
+    }
+
+    /// This chain with further variants behind it, whose parameters follow one another in `values`.
+    pub fn with(&self, variants: &[&'static Variant], values: &[f64]) -> Self {
+        let mut links = self.links.clone();
+        let mut rest = values;
+        for variant in variants {
+            let (own, others) = rest.split_at(variant.parameters.len());
+            links.push((variant, own.to_vec()));
+            rest = others;
+        }
+        EffectChain { links }
+    }
+
+    /// Whether any of them changes the sensor.
+    pub fn senses(&self) -> bool {
+        self.links.iter().any(|(variant, _)| variant.senses())
+    }
+
+    /// The increment of a step with these effects; `step` gives that of the simulator for the commands now and before.
+    pub fn wrap(&self, context: &StepContext, step: impl FnOnce([f64; 2], [f64; 2]) -> PoseIncrement) -> PoseIncrement {
+        let mut commands: CommandHistory = context.commands;
+        self.each(|hook, values| {
+            if let Hook::Commands(change) = hook {
+                change(values, context, &mut commands);
+            }
+        });
+        let mut increment = step(commands[0], commands[1]);
+        self.each(|hook, values| {
+            if let Hook::Motion(change) = hook {
+                change(values, context, &mut increment);
+            }
+        });
+        increment
+    }
+
+    /// The sensor at a row with these effects.
+    pub fn sensor(&self, context: &StepContext) -> Sensor {
+        let mut sensor = Sensor { robot: context.pose, yaw_rad: 0.0, width: 1.0, change: Perturbation::NONE };
+        self.each(|hook, values| {
+            if let Hook::Sensor(change) = hook {
+                change(values, context, &mut sensor);
+            }
+        });
+        sensor
+    }
+
+    fn each(&self, mut visit: impl FnMut(&Hook, &[f64])) {
+        for (variant, values) in &self.links {
+            variant.acts.iter().for_each(|hook| visit(hook, values));
+        }
+    }
+}

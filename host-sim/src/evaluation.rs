@@ -1,0 +1,8 @@
+//! How far a simulator's predictions are off on logs: step by step, over open-loop paths, and at the end of a
+//! controller's runs.
+
+pub mod accuracy;
+pub mod final_position;
+pub mod observations;
+pub mod paths;
+pub mod predictions;

@@ -1,0 +1,98 @@
+//! What a simulator with effects predicts of logs, beside what was logged.
+
+use super::observations::{Observation, Observations};
+use crate::effects::chain::EffectChain;
+use crate::effects::effect::{PoseIncrement, Sensor, StepContext};
+use crate::geometry::wrap_rad;
+use crate::logs::Logs;
+use crate::problem::Result;
+use crate::simulator::Simulator;
+use crate::simulator::baseline::{Baseline, Drive};
+use crate::sonar::{Fan, Perturbation};
+
+/// Logged and predicted, sample by sample.
+#[derive(Clone, Debug, Default)]
+pub struct Predictions {
+    /// Way forward, cm.
+    pub forward: Vec<[f64; 2]>,
+    /// Way to the left, cm.
+    pub lateral: Vec<[f64; 2]>,
+    /// Turn, degrees.
+    pub turn: Vec<[f64; 2]>,
+    /// One for an echo and zero for none, and the probability of one.
+    pub echo_probability: Vec<[f64; 2]>,
+    /// The reading, cm.
+    pub echo_value: Vec<[f64; 2]>,
+}
+
+/// Predicts every row of logs by a simulator with the effects that were applied to it.
+///
+/// # Errors
+/// When the simulator does not know how its training logs scattered.
+pub fn predict(simulator: &Simulator, logs: &Logs) -> Result<Predictions> {
+    let baseline = Baseline::learned(simulator)?;
+    let observations = Observations::of(logs, baseline.sonar.as_ref().map_or(1.0, |sonar| sonar.fan_width));
+    let effects = EffectChain::of(&baseline.applied);
+    let mut all = Predictions::default();
+    for row in &observations.rows {
+        if let (Some(drive), Some(logged)) = (&baseline.motion, &row.motion) {
+            let predicted = increment(&effects, drive, row);
+            all.forward.push([logged.forward_cm, predicted.forward_cm]);
+            all.lateral.push([logged.lateral_cm, predicted.lateral_cm]);
+            all.turn.push([logged.turn_rad, predicted.turn_rad].map(f64::to_degrees));
+        }
+        if let (Some(sonar), Some(_)) = (&baseline.sonar, row.context.faced) {
+            let (fan, change) = facing(&effects, &observations, row);
+            let [none, _] = sonar.log_likelihood(&fan, &change, None, None);
+            all.echo_probability.push([f64::from(u8::from(row.echo_cm.is_some())), 1.0 - libm::exp(none)]);
+            if let (Some(echo_cm), Some(expected_cm)) = (row.echo_cm, sonar.expected_cm(&fan, &change)) {
+                all.echo_value.push([echo_cm, expected_cm]);
+            }
+        }
+    }
+    Ok(all)
+}
+
+/// The predicted increment of one step.
+pub fn step(effects: &EffectChain, drive: &Drive, context: &StepContext) -> PoseIncrement {
+    effects.wrap(context, |now, before| drive.step(now, before))
+}
+
+/// The predicted increment of a row's step, or of the steps that are judged as one.
+pub fn increment(effects: &EffectChain, drive: &Drive, row: &Observation) -> PoseIncrement {
+    let usual = [row.context.commands[0], row.context.commands[1]];
+    let first = effects.wrap(&row.context, |now, before| match row.expected {
+        Some(expected) if usual == [now, before] => expected,
+        _ => drive.step(now, before),
+    });
+    if row.then.is_empty() {
+        return first;
+    }
+    let start = &row.context.pose;
+    let end = row
+        .then
+        .iter()
+        .fold(first.from(start), |pose, context| step(effects, drive, &StepContext { pose, ..*context }).from(&pose));
+    PoseIncrement::between(start, &end)
+}
+
+/// Logged minus predicted of a row, a step: forward (cm), lateral (cm), turn (rad).
+pub fn residual(effects: &EffectChain, drive: &Drive, row: &Observation) -> Option<[f64; 3]> {
+    let logged = row.motion?;
+    let predicted = increment(effects, drive, row);
+    let off = [
+        logged.forward_cm - predicted.forward_cm,
+        logged.lateral_cm - predicted.lateral_cm,
+        wrap_rad(logged.turn_rad - predicted.turn_rad),
+    ];
+    // Independent noise adds up over steps that are judged as one.
+    let steps = (1 + row.then.len()) as f64;
+    Some(off.map(|off| off / steps.sqrt()))
+}
+
+/// What the sensor faces at a row, and how its readings are perturbed.
+pub fn facing(effects: &EffectChain, observations: &Observations, row: &Observation) -> (Fan, Perturbation) {
+    let Sensor { robot, yaw_rad, width, change } = effects.sensor(&row.context);
+    let moved = robot != row.context.pose || yaw_rad != 0.0 || width != 1.0;
+    (if moved { observations.fan(&robot, yaw_rad, width) } else { row.fan }, change)
+}

@@ -1,0 +1,6 @@
+//! Statistics without a robot in them.
+
+pub mod agreement;
+pub mod bootstrap;
+pub mod maximise;
+pub mod summary;
