@@ -7,13 +7,14 @@ use mindgap_host_sim::built_in_robot::{
     BuiltInRobot, default_robot, four_obstacles, record, run_controller, training_room,
 };
 use mindgap_host_sim::chance::generator;
-use mindgap_host_sim::gap::endings::endings;
+use mindgap_host_sim::effects;
+use mindgap_host_sim::effects::applied::AppliedEffect;
+use mindgap_host_sim::evaluation::accuracy::evaluate;
+use mindgap_host_sim::evaluation::final_position::endings;
 use mindgap_host_sim::gap::verdict::Verdict;
-use mindgap_host_sim::gap::{diagnose, effects, findings};
-use mindgap_host_sim::learn::evaluate::evaluate;
+use mindgap_host_sim::gap::{diagnose, findings};
 use mindgap_host_sim::learn::train::{TABLE_ONE, Trainer, train};
 use mindgap_host_sim::logs::{Logs, Row, Run};
-use mindgap_host_sim::simulator::added::Added;
 use mindgap_host_sim::simulator::baseline::Baseline;
 use mindgap_host_sim::simulator::course::Course;
 use mindgap_host_sim::simulator::rehearsal::Rehearsal;
@@ -29,14 +30,14 @@ fn logs(runs: usize, effects: &[&str], seed: u64) -> Logs {
     record(&default_robot(), &training_room(), runs, 60, &effects, seed).expect("the room has room")
 }
 
-fn with(added: Vec<Added>) -> Simulator {
+fn with(added: Vec<AppliedEffect>) -> Simulator {
     Simulator { added, ..SIMULATOR.clone() }
 }
 
 /// The form of an effect at the values that change nothing.
-fn neutral(id: &str) -> Added {
+fn neutral(id: &str) -> AppliedEffect {
     let form = effects::all().into_iter().find(|form| form.id == id).expect("the effect is in the bank");
-    Added::new(form, &form.neutral())
+    AppliedEffect::new(form, &form.neutral())
 }
 
 fn rehearsed(simulator: &Simulator) -> Rehearsal {
@@ -75,7 +76,7 @@ fn an_effect_that_changes_nothing_changes_no_motion() {
 fn an_effect_changes_runs_and_the_same_seed_repeats_them() {
     for (id, values) in [("slope", vec![1.0, 0.2]), ("sonar_offset", vec![15.0]), ("battery_sag", vec![0.6])] {
         let form = effects::all().into_iter().find(|form| form.id == id).expect("the effect is in the bank");
-        let changed = with(vec![Added::new(form, &values)]);
+        let changed = with(vec![AppliedEffect::new(form, &values)]);
         assert_ne!(rehearsed(&changed), rehearsed(&SIMULATOR), "{id}");
         assert_eq!(rehearsed(&changed), rehearsed(&changed), "{id}");
     }
@@ -109,7 +110,7 @@ fn a_controllers_ends_are_foretold_better_with_the_effect() {
     let runs = (0..8).map(&mut drive).collect();
     let logs = Logs { robot: default_robot(), scene: scene.clone(), runs };
     let form = effects::all().into_iter().find(|form| form.id == "drive_scale").expect("the effect is in the bank");
-    let better = with(vec![Added::new(form, &[1.15])]);
+    let better = with(vec![AppliedEffect::new(form, &[1.15])]);
     let found = endings([&SIMULATOR, &better], &controller, &logs).expect("poses at both ends");
     assert_eq!(found.runs, 8);
     assert!(found.after_cm < 0.7 * found.before_cm && found.floor_cm > 0.0, "{found:?}");
