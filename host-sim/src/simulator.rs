@@ -20,6 +20,7 @@ use mindgap_core::network::Network;
 use serde::{Deserialize, Serialize};
 
 use crate::effects::applied::AppliedEffect;
+use crate::effects::legacy;
 use crate::files;
 use crate::logs::Robot;
 use crate::problem::{Problem, Result};
@@ -121,8 +122,11 @@ impl Simulator {
                 format!("is a simulator file of version {}; this program reads version {SCHEMA}", version.schema);
             return Err(Problem::in_file(path, what));
         }
-        let simulator: Self =
-            serde_json::from_str(&text).map_err(|e| broken(path, &e, "is a broken simulator file"))?;
+        let simulator: serde_json::Result<Self> = match legacy::upgraded(&text) {
+            Some(upgraded) => serde_json::from_value(upgraded),
+            None => serde_json::from_str(&text),
+        };
+        let simulator = simulator.map_err(|e| broken(path, &e, "is a broken simulator file"))?;
         simulator.check(path)?;
         Ok(simulator)
     }
@@ -152,8 +156,8 @@ impl Simulator {
     }
 
     fn check(&self, path: &Path) -> Result<()> {
-        if let Some(added) = self.added.iter().find(|a| !a.is_sound()) {
-            let what = format!("the added effect {} ({}) is not known to this program", added.effect, added.form);
+        if let Some(added) = self.added.iter().find(|a| a.resolve().is_none()) {
+            let what = format!("the added effect {} ({}) is not known to this program", added.effect, added.variant);
             return Err(Problem::in_file(path, what));
         }
         let motion = [("turn", &self.turn), ("forward", &self.forward), ("lateral", &self.lateral)];

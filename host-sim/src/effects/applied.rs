@@ -1,37 +1,70 @@
-//! Effects that were added to a simulator: what a diagnosis confirmed and its networks do not know.
+//! Effects that were applied to a simulator: what a diagnosis confirmed and its networks do not know.
+
+use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use super::effect::Variant;
-use crate::effects;
+use super::catalogue::Candidate;
 
-/// One effect with its parameters, as a simulator file holds it.
+/// One effect as files hold it: by the ids of the effect and its variant, and the names of its parameters.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct AppliedEffect {
-    /// Its name in the table of effects.
+    /// Its id in the table of docs/formats.md.
     pub effect: String,
-    /// Which of its forms.
-    pub form: String,
-    /// The form's parameters.
-    pub values: Vec<f64>,
+    /// Id of the variant.
+    pub variant: String,
+    /// Its parameters, each in its own unit.
+    pub parameters: BTreeMap<String, f64>,
 }
 
 impl AppliedEffect {
-    /// A form with its parameters.
-    pub fn new(form: &Variant, values: &[f64]) -> Self {
-        AppliedEffect { effect: form.id.into(), form: form.name.into(), values: values.to_vec() }
+    /// A variant with values in the order of its parameters.
+    pub fn new(candidate: &Candidate, values: &[f64]) -> Self {
+        let parameters = candidate.variant.parameters.iter().zip(values);
+        AppliedEffect {
+            effect: candidate.effect.into(),
+            variant: candidate.variant.id.into(),
+            parameters: parameters.map(|(p, value)| (p.name.into(), *value)).collect(),
+        }
     }
 
-    /// The form, if this program knows it and its parameters are possible.
-    pub fn variant(&self) -> Option<&'static Variant> {
-        let form = effects::all().into_iter().find(|f| f.id == self.effect && f.name == self.form)?;
-        let possible = form.parameters.len() == self.values.len()
-            && form.parameters.iter().zip(&self.values).all(|(p, v)| (p.bounds.low..=p.bounds.high).contains(v));
-        possible.then_some(form)
+    /// The variant and its values, if this program knows it and each of its parameters is there and possible.
+    pub fn resolve(&self) -> Option<(Candidate, Vec<f64>)> {
+        let candidate = Candidate::named(&self.effect, &self.variant)?;
+        let parameters = candidate.variant.parameters;
+        let value = |p: &super::Parameter| self.parameters.get(p.name).copied().filter(|value| p.allows(*value));
+        let values = parameters.iter().map(value).collect::<Option<Vec<f64>>>()?;
+        (parameters.len() == self.parameters.len()).then_some((candidate, values))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::effects::CATALOGUE;
+
+    #[test]
+    fn every_variant_comes_back_from_a_file() {
+        for candidate in Candidate::all(CATALOGUE) {
+            let values = candidate.variant.nominal();
+            let text = serde_json::to_string(&AppliedEffect::new(&candidate, &values)).unwrap();
+            let read: AppliedEffect = serde_json::from_str(&text).unwrap();
+            assert!(read.resolve().is_some_and(|(c, v)| c == candidate && v == values), "{text}");
+        }
     }
 
-    /// Whether a file could have held this.
-    pub fn is_sound(&self) -> bool {
-        self.variant().is_some()
+    #[test]
+    fn what_cannot_be_is_not_resolved() {
+        let latency = |parameters: &[(&str, f64)]| AppliedEffect {
+            effect: "latency".into(),
+            variant: "delay".into(),
+            parameters: parameters.iter().map(|(name, value)| (String::from(*name), *value)).collect(),
+        };
+        assert!(latency(&[("ms", 100.0)]).resolve().is_some());
+        assert!(latency(&[("ms", -1.0)]).resolve().is_none());
+        assert!(latency(&[("ms", f64::NAN)]).resolve().is_none());
+        assert!(latency(&[]).resolve().is_none());
+        assert!(latency(&[("ms", 100.0), ("s", 0.1)]).resolve().is_none());
     }
 }

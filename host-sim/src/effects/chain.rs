@@ -1,8 +1,9 @@
 //! Effects with their parameters, at work one after the other round a simulator's step.
 
 use super::applied::AppliedEffect;
-use super::effect::{CommandHistory, Hook, PoseIncrement, Sensor, StepContext, Variant};
-use crate::sonar::Perturbation;
+use super::context::StepContext;
+use super::pose_increment::PoseIncrement;
+use super::variant::{Hook, SensorState, Variant};
 
 /// Effects that act together, in their order; an empty chain changes nothing.
 #[derive(Clone, Default)]
@@ -11,9 +12,10 @@ pub struct EffectChain {
 }
 
 impl EffectChain {
-    /// The effects of a simulator file; what this program does not know is left out.
+    /// The effects of a simulator file; one that this program does not know is left out.
     pub fn of(applied: &[AppliedEffect]) -> Self {
-        EffectChain { links: applied.iter().filter_map(|a| Some((a.variant()?, a.values.clone()))).collect() }
+        let links = applied.iter().filter_map(AppliedEffect::resolve);
+        EffectChain { links: links.map(|(candidate, values)| (candidate.variant, values)).collect() }
     }
 
     /// This chain with further variants behind it, whose parameters follow one another in `values`.
@@ -35,7 +37,7 @@ impl EffectChain {
 
     /// The increment of a step with these effects; `step` gives that of the simulator for the commands now and before.
     pub fn wrap(&self, context: &StepContext, step: impl FnOnce([f64; 2], [f64; 2]) -> PoseIncrement) -> PoseIncrement {
-        let mut commands: CommandHistory = context.commands;
+        let mut commands = context.commands;
         self.each(|hook, values| {
             if let Hook::Commands(change) = hook {
                 change(values, context, &mut commands);
@@ -51,8 +53,8 @@ impl EffectChain {
     }
 
     /// The sensor at a row with these effects.
-    pub fn sensor(&self, context: &StepContext) -> Sensor {
-        let mut sensor = Sensor { robot: context.pose, yaw_rad: 0.0, width: 1.0, change: Perturbation::NONE };
+    pub fn sensor(&self, context: &StepContext) -> SensorState {
+        let mut sensor = SensorState::nominal(context.pose);
         self.each(|hook, values| {
             if let Hook::Sensor(change) = hook {
                 change(values, context, &mut sensor);
@@ -63,7 +65,7 @@ impl EffectChain {
 
     fn each(&self, mut visit: impl FnMut(&Hook, &[f64])) {
         for (variant, values) in &self.links {
-            variant.acts.iter().for_each(|hook| visit(hook, values));
+            variant.hooks.iter().for_each(|hook| visit(hook, values));
         }
     }
 }

@@ -1,19 +1,18 @@
-//! What logs say, row by row, in the form that hypotheses are judged on.
+//! What logs say, row by row, in the form that predictions are compared with.
 
 use std::ops::Range;
 
-use crate::effects::effect::{HISTORY, PoseIncrement, StepContext, middle};
-use crate::geometry::{Pose, Wall, cast};
-use crate::logs::{Logs, Robot, Run, samples};
+use crate::effects::context::{RunHistory, Surroundings};
+use crate::effects::{PoseIncrement, StepContext};
+use crate::geometry::Pose;
+use crate::logs::{Logs, Run, samples};
 use crate::simulator::baseline::Drive;
-use crate::sonar::{Fan, fan_at};
+use crate::sonar::Fan;
 
 /// A folder of logs, ready to be judged.
 pub struct Observations {
-    /// The robot.
-    pub robot: Robot,
-    /// Everything that a ray can meet.
-    pub sides: Vec<Wall>,
+    /// The robot, and the walls round it.
+    pub surroundings: Surroundings,
     /// The beam against the usual fan.
     pub fan_width: f64,
     /// How many blocks of rows are judged together: the runs, or parts of them where there are few.
@@ -55,8 +54,7 @@ const FEWEST_BLOCKS: usize = 8;
 impl Observations {
     /// Takes all that counts out of logs, for a sensor whose beam is `fan_width` times as wide as the usual fan.
     pub fn of(logs: &Logs, fan_width: f64) -> Self {
-        let sides = logs.scene.sides();
-        let middle_cm = middle(&sides);
+        let surroundings = Surroundings::new(&logs.robot, &logs.scene);
         let steps = samples::motion(logs);
         // Where no step has a pose at both ends, whole ways between poses are judged.
         let whole_ways = steps.is_empty();
@@ -64,9 +62,9 @@ impl Observations {
         let mut rows = Vec::new();
         let parts = FEWEST_BLOCKS.div_ceil(logs.runs.len());
         for (run, logged) in logs.runs.iter().enumerate() {
-            let mut faced_before = None;
-            for (k, row) in logged.rows.iter().enumerate() {
-                let Some(pose) = row.pose else { continue };
+            let contexts = contexts(logged, &surroundings);
+            for (k, (row, (context, previous_echo_cm))) in logged.rows.iter().zip(&contexts).enumerate() {
+                let (Some(pose), Some(context)) = (row.pose, context) else { continue };
                 let step = steps.next_if(|s| (s.run, s.row) == (run, k));
                 let motion = step.map(|s| PoseIncrement {
                     forward_cm: s.forward_cm,
@@ -76,46 +74,23 @@ impl Observations {
                 let until = (k + 1..logged.rows.len()).find(|i| logged.rows[*i].pose.is_some());
                 let way_until = until.filter(|_| whole_ways);
                 let motion = motion.or_else(|| Some(PoseIncrement::between(&pose, &logged.rows[way_until?].pose?)));
-                let unseen = way_until.map_or(k + 1..k + 1, |until| k + 1..until);
-                let sensor = logs.robot.ultrasonic.pose_on(&pose);
-                let hit = cast(&sides, sensor.position_cm, sensor.direction());
-                let faced = hit.map(|hit| [hit.distance_cm, hit.incidence_rad]);
-                let fan = fan_at(&sides, &sensor, fan_width);
-                let before = |back: usize| k.checked_sub(back).map(|i| &logged.rows[i]);
-                let elapsed_min = |i: usize| (logged.rows[i].t_ms - logged.rows[0].t_ms) / 60_000.0;
-                let context = StepContext {
-                    elapsed_min: elapsed_min(k),
-                    commands: window(logged, k),
-                    pose,
-                    earlier: [1, 2].map(|back| before(back).and_then(|r| r.pose)),
-                    faced,
-                    faced_before: std::mem::replace(&mut faced_before, faced),
-                    echo_before: before(1).map(|r| r.echo_cm.is_some()),
-                    middle_cm,
-                    track_cm: logs.robot.track_cm,
-                };
-                let then =
-                    unseen.map(|i| StepContext { elapsed_min: elapsed_min(i), commands: window(logged, i), ..context });
-                let previous_echo_cm = before(1).and_then(|r| r.echo_cm);
-                let block = run * parts + k * parts / logged.rows.len();
                 let until_ms = logged.rows.get(k + 1).map_or(row.t_ms, |next| next.t_ms);
-                let stretch = (until_ms - row.t_ms) / logs.robot.step_ms;
                 rows.push(Observation {
                     run,
                     at: k,
-                    block,
-                    stretch,
-                    context,
-                    then: then.collect(),
+                    block: run * parts + k * parts / logged.rows.len(),
+                    stretch: (until_ms - row.t_ms) / logs.robot.step_ms,
+                    context: *context,
+                    then: way_until.map_or_else(Vec::new, |until| unseen(logged, k + 1..until, context)),
                     motion,
                     expected: None,
                     echo_cm: row.echo_cm,
-                    previous_echo_cm,
-                    fan,
+                    previous_echo_cm: *previous_echo_cm,
+                    fan: surroundings.fan(&pose, 0.0, fan_width),
                 });
             }
         }
-        Observations { robot: logs.robot, sides, fan_width, blocks: logs.runs.len() * parts, rows }
+        Observations { surroundings, fan_width, blocks: logs.runs.len() * parts, rows }
     }
 
     /// Asks the simulator once what it expects of every row: most hypotheses leave the commands as they are.
@@ -142,13 +117,38 @@ impl Observations {
 
     /// What the sensor of a robot at `robot` sees, its axis turned and its beam widened.
     pub fn fan(&self, robot: &Pose, yaw_rad: f64, width: f64) -> Fan {
-        let mut sensor = self.robot.ultrasonic.pose_on(robot);
-        sensor.heading_rad += yaw_rad;
-        fan_at(&self.sides, &sensor, self.fan_width * width)
+        self.surroundings.fan(robot, yaw_rad, self.fan_width * width)
+    }
+
+    /// The largest wheel speed that is commanded, cm/s.
+    pub fn top_speed_cm_s(&self) -> f64 {
+        let speeds = self.rows.iter().flat_map(|row| row.context.commands[0].map(|c| row.context.wheel_speed_cm_s(c).abs()));
+        speeds.fold(0.0, f64::max)
     }
 }
 
-/// The commands of row `k` and of those before, the motors standing before the first.
-fn window(run: &Run, k: usize) -> [[f64; 2]; HISTORY] {
-    std::array::from_fn(|back| k.checked_sub(back).map_or([0.0; 2], |i| run.rows[i].command()))
+/// The context of every row at which the robot was seen, and the reading before each.
+fn contexts(run: &Run, surroundings: &Surroundings) -> Vec<(Option<StepContext>, Option<f64>)> {
+    let mut history = RunHistory::default();
+    let begin_ms = run.rows[0].t_ms;
+    let context = |row: &crate::logs::Row| {
+        history.command(row.command());
+        let context = row.pose.map(|pose| surroundings.context(&history, row.t_ms - begin_ms, pose));
+        let previous_echo_cm = history.echo_before_cm();
+        history.leave(context.as_ref(), row.echo_cm);
+        (context, previous_echo_cm)
+    };
+    run.rows.iter().map(context).collect()
+}
+
+/// The contexts of rows at which the robot was not seen, as if it had stayed where it was seen last.
+fn unseen(run: &Run, rows: Range<usize>, seen: &StepContext) -> Vec<StepContext> {
+    let mut commands = seen.commands;
+    let context = |i: usize| {
+        commands.rotate_right(1);
+        commands[0] = run.rows[i].command();
+        let elapsed_min = (run.rows[i].t_ms - run.rows[0].t_ms) / 60_000.0;
+        StepContext { elapsed_min, commands, ..*seen }
+    };
+    rows.map(context).collect()
 }

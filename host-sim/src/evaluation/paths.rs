@@ -8,7 +8,7 @@ use super::observations::{Observation, Observations};
 use super::predictions;
 use crate::chance::{Generator, generator};
 use crate::effects::chain::EffectChain;
-use crate::effects::effect::StepContext;
+use crate::effects::StepContext;
 use crate::geometry::{Pose, direction};
 use crate::simulator::baseline::Drive;
 use crate::statistics::summary::median;

@@ -2,7 +2,7 @@
 
 use super::observations::{Observation, Observations};
 use crate::effects::chain::EffectChain;
-use crate::effects::effect::{PoseIncrement, Sensor, StepContext};
+use crate::effects::{PoseIncrement, SensorState, StepContext};
 use crate::geometry::wrap_rad;
 use crate::logs::Logs;
 use crate::problem::Result;
@@ -92,7 +92,7 @@ pub fn residual(effects: &EffectChain, drive: &Drive, row: &Observation) -> Opti
 
 /// What the sensor faces at a row, and how its readings are perturbed.
 pub fn facing(effects: &EffectChain, observations: &Observations, row: &Observation) -> (Fan, Perturbation) {
-    let Sensor { robot, yaw_rad, width, change } = effects.sensor(&row.context);
+    let SensorState { robot, yaw_rad, width, perturbation } = effects.sensor(&row.context);
     let moved = robot != row.context.pose || yaw_rad != 0.0 || width != 1.0;
-    (if moved { observations.fan(&robot, yaw_rad, width) } else { row.fan }, change)
+    (if moved { observations.fan(&robot, yaw_rad, width) } else { row.fan }, perturbation)
 }

@@ -63,18 +63,18 @@ fn motion(simulator: &Simulator, logs: &Logs) -> Option<MotionBias> {
 
 /// Bounds of the sonar's numbers: strengths, bias, scatter, three chances, the width of the beam, and a fourth chance.
 const SONAR_BOUNDS: [Bounds; STRENGTHS + 11] = {
-    let mut bounds = [Bounds { low: -60.0, high: 60.0 }; STRENGTHS + 11];
-    bounds[STRENGTHS] = Bounds { low: -20.0, high: 20.0 };
-    bounds[STRENGTHS + 1] = Bounds { low: -0.3, high: 0.3 };
-    bounds[STRENGTHS + 2] = Bounds { low: -10.0, high: 10.0 };
-    bounds[STRENGTHS + 3] = Bounds { low: -1.5, high: 3.0 };
-    bounds[STRENGTHS + 4] = Bounds { low: -1.0, high: 1.5 };
-    bounds[STRENGTHS + 5] = Bounds { low: -1.0, high: 1.5 };
-    bounds[STRENGTHS + 6] = Bounds { low: 0.0, high: 0.3 };
-    bounds[STRENGTHS + 7] = Bounds { low: 0.0, high: 0.3 };
-    bounds[STRENGTHS + 8] = Bounds { low: 0.0, high: 0.3 };
-    bounds[STRENGTHS + 9] = Bounds { low: 0.2, high: 2.5 };
-    bounds[STRENGTHS + 10] = Bounds { low: 0.0, high: 0.3 };
+    let mut bounds = [Bounds::new(-60.0, 60.0); STRENGTHS + 11];
+    bounds[STRENGTHS] = Bounds::new(-20.0, 20.0);
+    bounds[STRENGTHS + 1] = Bounds::new(-0.3, 0.3);
+    bounds[STRENGTHS + 2] = Bounds::new(-10.0, 10.0);
+    bounds[STRENGTHS + 3] = Bounds::new(-1.5, 3.0);
+    bounds[STRENGTHS + 4] = Bounds::new(-1.0, 1.5);
+    bounds[STRENGTHS + 5] = Bounds::new(-1.0, 1.5);
+    bounds[STRENGTHS + 6] = Bounds::new(0.0, 0.3);
+    bounds[STRENGTHS + 7] = Bounds::new(0.0, 0.3);
+    bounds[STRENGTHS + 8] = Bounds::new(0.0, 0.3);
+    bounds[STRENGTHS + 9] = Bounds::new(0.2, 2.5);
+    bounds[STRENGTHS + 10] = Bounds::new(0.0, 0.3);
     bounds
 };
 /// Where the search begins: a beam that sees what is near and faces it.

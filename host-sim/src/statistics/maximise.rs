@@ -3,13 +3,22 @@
 
 use nalgebra::{DMatrix, DVector};
 
-/// A number to be fitted, within what is physically possible.
+/// A number to be fitted, within what is possible.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bounds {
     /// Least value.
     pub low: f64,
     /// Largest value.
     pub high: f64,
+    /// A change that would be large: derivatives are taken over a share of it.
+    pub scale: f64,
+}
+
+impl Bounds {
+    /// Bounds whose distance is a large change.
+    pub const fn new(low: f64, high: f64) -> Self {
+        Bounds { low, high, scale: high - low }
+    }
 }
 
 /// A maximum, and what is known of its surroundings.
@@ -19,11 +28,11 @@ pub struct Maximum {
     pub at: Vec<f64>,
     /// The log-likelihood of each term there.
     pub terms: Vec<f64>,
-    /// The score of each term there, by parameter, per unit of the bounds' width.
+    /// The score of each term there, by parameter, per unit of the bounds' scale.
     pub scores: Vec<Vec<f64>>,
 }
 
-/// Derivatives are taken over this share of the bounds' width.
+/// Derivatives are taken over this share of the bounds' scale: small against what is plausible, large against rounding.
 const DIFFERENCE: f64 = 0.004;
 /// Keeps the curvature invertible, in squared scores.
 const RIDGE: f64 = 1.0;
@@ -151,10 +160,9 @@ fn curvature(scores: &[Vec<f64>], kept: impl Fn(usize) -> bool) -> DMatrix<f64> 
 fn score(bounds: &[Bounds], at: &[f64], here: &[f64], terms: &impl Fn(&[f64]) -> Vec<f64>) -> Vec<Vec<f64>> {
     let mut scores = vec![vec![0.0; at.len()]; here.len()];
     for (i, b) in bounds.iter().enumerate() {
-        let width = b.high - b.low;
-        let h = if at[i] + DIFFERENCE * width <= b.high { DIFFERENCE } else { -DIFFERENCE };
+        let h = if at[i] + DIFFERENCE * b.scale <= b.high { DIFFERENCE } else { -DIFFERENCE };
         let mut beside = at.to_vec();
-        beside[i] += h * width;
+        beside[i] += h * b.scale;
         let there = terms(&beside);
         for (s, (a, b)) in scores.iter_mut().zip(there.iter().zip(here)) {
             s[i] = (a - b) / h;
@@ -164,7 +172,7 @@ fn score(bounds: &[Bounds], at: &[f64], here: &[f64], terms: &impl Fn(&[f64]) ->
 }
 
 fn moved(bounds: &[Bounds], at: &[f64], step: &[f64]) -> Vec<f64> {
-    let one = |((a, s), b): ((&f64, &f64), &Bounds)| (a + s * (b.high - b.low)).clamp(b.low, b.high);
+    let one = |((a, s), b): ((&f64, &f64), &Bounds)| (a + s * b.scale).clamp(b.low, b.high);
     at.iter().zip(step).zip(bounds).map(one).collect()
 }
 
@@ -176,7 +184,7 @@ fn sum(terms: &[f64]) -> f64 {
 mod tests {
     use super::*;
 
-    const WIDE: Bounds = Bounds { low: -10.0, high: 10.0 };
+    const WIDE: Bounds = Bounds::new(-10.0, 10.0);
 
     /// Log-likelihood of values under a normal law of unknown mean and of deviation one.
     fn normal(values: &[f64]) -> impl Fn(&[f64]) -> Vec<f64> {
@@ -192,7 +200,7 @@ mod tests {
 
     #[test]
     fn a_bound_holds() {
-        let bounds = [Bounds { low: -10.0, high: 1.0 }];
+        let bounds = [Bounds::new(-10.0, 1.0)];
         let found = climb(&bounds, &[0.0], 50, 1e-9, normal(&[2.0, 3.0, 4.0]));
         assert_eq!(found.at, [1.0]);
     }

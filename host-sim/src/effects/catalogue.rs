@@ -1,0 +1,225 @@
+//! The effects that a diagnosis knows: one file each, and one line here.
+//!
+//! What several of them share stands below: how commands, distances and forces change.
+
+use super::context::{CommandHistory, StepContext};
+use super::parameter::parameters;
+use super::{Effect, Variant};
+
+/// Declares the modules and lists them, so that an effect cannot be in one place and not in the other.
+macro_rules! catalogue {
+    ($($effect:ident)*) => {
+        $(mod $effect;)*
+
+        /// All effects, in the order of the table in docs/formats.md.
+        pub static CATALOGUE: &[&Effect] = &[$(&$effect::EFFECT),*];
+    };
+}
+
+catalogue! {
+    battery_sag
+    motor_asymmetry
+    drive_scale
+    track_width
+    deadband
+    saturation
+    latency
+    inertia
+    payload
+    slope
+    slip
+    carpet_nap
+    sonar_scale
+    sonar_offset
+    sonar_yaw
+    sonar_beam
+    sonar_ghost
+    sonar_dropout
+    sonar_lag
+    sonar_absorption
+    sonar_crosstalk
+    sonar_noise
+    tracker_rotation
+    tracker_scale
+    lens_distortion
+    compass_disturbance
+}
+
+/// A variant with the id of its effect.
+#[derive(Clone, Copy)]
+pub struct Candidate {
+    /// Id of the effect.
+    pub effect: &'static str,
+    /// One of its variants.
+    pub variant: &'static Variant,
+}
+
+impl Candidate {
+    /// All variants of all effects of a catalogue.
+    pub fn all(catalogue: &[&'static Effect]) -> Vec<Candidate> {
+        let of = |effect: &&'static Effect| {
+            let effect: &'static Effect = effect;
+            effect.variants.iter().map(|variant| Candidate { effect: effect.id, variant })
+        };
+        catalogue.iter().flat_map(of).collect()
+    }
+
+    /// The variant of an effect, by their ids.
+    pub fn named(effect: &str, variant: &str) -> Option<Candidate> {
+        Candidate::all(CATALOGUE).into_iter().find(|c| c.effect == effect && c.variant.id == variant)
+    }
+}
+
+impl PartialEq for Candidate {
+    fn eq(&self, other: &Self) -> bool {
+        self.effect == other.effect && self.variant.id == other.variant.id
+    }
+}
+
+/// Where fits of a direction start: the four quarters.
+const DIRECTIONS_DEG: [f64; 4] = [0.0, 90.0, 180.0, -90.0];
+/// The speed to which losses by a force refer: half of an NXT robot's full speed.
+const LOADED_SPEED_CM_S: f64 = 20.0;
+/// Below this speed a force moves or holds back less and less: a robot that stands stays.
+const CREEPING_CM_S: f64 = 3.75;
+
+/// Changes the magnitude of every command and keeps its sign; `change` is given the magnitude and the motor, 0 for the
+/// left one.
+fn each_command(commands: &mut CommandHistory, change: impl Fn(f64, usize) -> f64) {
+    for pair in commands {
+        for (motor, command) in pair.iter_mut().enumerate() {
+            *command = change(command.abs(), motor) * command.signum();
+        }
+    }
+}
+
+/// The distance that a force of strength one costs in a step: a share of it grows with the distance covered, the rest is
+/// that of [`LOADED_SPEED_CM_S`] at any speed.
+fn distance_lost_cm(with_speed: f64, covered_cm: f64, context: &StepContext) -> f64 {
+    with_speed * covered_cm.abs() + (1.0 - with_speed) * LOADED_SPEED_CM_S * context.step_s()
+}
+
+/// How much a step counts as motion, 0 to 1.
+fn moving(covered_cm: f64, context: &StepContext) -> f64 {
+    (covered_cm.abs() / (CREEPING_CM_S * context.step_s())).min(1.0)
+}
+
+/// A distance made longer or shorter, not below nothing; a robot that stands stays.
+fn pushed_cm(covered_cm: f64, more_cm: f64, context: &StepContext) -> f64 {
+    (covered_cm.abs() + moving(covered_cm, context) * more_cm).max(0.0) * covered_cm.signum()
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::effects::chain::EffectChain;
+    use crate::effects::context::{RunHistory, Surroundings};
+    use crate::effects::{PoseIncrement, SensorState};
+    use crate::geometry::{Pose, wrap_rad};
+    use crate::logs::Scene;
+    use crate::sonar::Perturbation;
+
+    /// The effects of the table in docs/formats.md.
+    const TABLE: usize = 26;
+    /// Fastest command of an NXT robot.
+    const TOP_SPEED_CM_S: f64 = 41.0;
+
+    /// What comes of a step: commands, increment, sensor.
+    fn applied(variant: &'static Variant, values: &[f64], context: &StepContext) -> (CommandHistory, PoseIncrement, SensorState) {
+        let effects = EffectChain::default().with(&[variant], values);
+        let mut commands = [[0.0; 2]; 7];
+        let increment = effects.wrap(context, |now, before| {
+            commands[0] = now;
+            commands[1] = before;
+            PoseIncrement { forward_cm: 7.0, lateral_cm: -0.4, turn_rad: 0.3 }
+        });
+        (commands, increment, effects.sensor(context))
+    }
+
+    fn context() -> impl Strategy<Value = StepContext> {
+        let commands = prop::array::uniform7(prop::array::uniform2(-100.0..100.0));
+        let pose = || (10.0..290.0, 10.0..210.0, -3.0..3.0).prop_map(|(x, y, h)| Pose::new(x, y, h));
+        (commands, pose(), pose(), 0.0..2.0, any::<bool>()).prop_map(|(commands, pose, earlier, elapsed_min, echo)| {
+            let robot = crate::logs::tests::robot();
+            let scene = Scene { arena_cm: Some(glam::DVec2::new(300.0, 220.0)), ..Scene::default() };
+            StepContext {
+                commands,
+                earlier: [Some(earlier), None],
+                faced: Some([80.0, 0.2]),
+                faced_before: Some([60.0, 0.1]),
+                echo_before: Some(echo),
+                ..Surroundings::new(&robot, &scene).context(&RunHistory::default(), elapsed_min * 60_000.0, pose)
+            }
+        })
+    }
+
+    #[test]
+    fn the_catalogue_is_the_table() {
+        let mut ids: Vec<&str> = CATALOGUE.iter().map(|effect| effect.id).collect();
+        ids.sort_unstable();
+        ids.dedup();
+        assert_eq!((ids.len(), CATALOGUE.len()), (TABLE, TABLE), "{ids:?}");
+    }
+
+    #[test]
+    fn ids_of_variants_and_names_of_parameters_are_unique() {
+        let unique = |mut names: Vec<&str>| {
+            let all = names.len();
+            names.sort_unstable();
+            names.dedup();
+            names.len() == all
+        };
+        for effect in CATALOGUE {
+            assert!(unique(effect.variants.iter().map(|v| v.id).collect()), "{}", effect.id);
+            for variant in effect.variants {
+                assert!(unique(variant.parameters.iter().map(|p| p.name).collect()), "{} {}", effect.id, variant.id);
+            }
+        }
+    }
+
+    #[test]
+    fn fits_start_within_the_bounds_and_not_where_nothing_changes() {
+        for Candidate { effect, variant } in Candidate::all(CATALOGUE) {
+            for start in variant.initial_guesses(TOP_SPEED_CM_S) {
+                assert!(start.iter().zip(variant.parameters).all(|(v, p)| p.allows(*v)), "{effect} {}", variant.id);
+                assert_ne!(start, variant.nominal(), "{effect} {}", variant.id);
+            }
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn a_nominal_effect_changes_nothing(context in context()) {
+            let increment = PoseIncrement { forward_cm: 7.0, lateral_cm: -0.4, turn_rad: 0.3 };
+            for Candidate { effect, variant } in Candidate::all(CATALOGUE) {
+                let (c, m, s) = applied(variant, &variant.nominal(), &context);
+                let near = |a: f64, b: f64| (a - b).abs() < 1e-9;
+                let same = c[..2].as_flattened().iter().zip(context.commands.as_flattened()).all(|(a, b)| near(*a, *b))
+                    && near(m.forward_cm, increment.forward_cm)
+                    && near(m.lateral_cm, increment.lateral_cm)
+                    && near(m.turn_rad, increment.turn_rad)
+                    && near(s.robot.position_cm.distance(context.pose.position_cm), 0.0)
+                    && near(wrap_rad(s.robot.heading_rad - context.pose.heading_rad), 0.0)
+                    && near(s.yaw_rad, 0.0)
+                    && near(s.width, 1.0)
+                    && Perturbation { ghost_cm: Perturbation::NONE.ghost_cm, ..s.perturbation } == Perturbation::NONE;
+                prop_assert!(same, "{effect} {}", variant.id);
+            }
+        }
+
+        #[test]
+        fn at_its_bounds_an_effect_stays_finite(context in context(), corner in any::<[bool; 4]>()) {
+            for Candidate { effect, variant } in Candidate::all(CATALOGUE) {
+                let bound = |(p, high): (&super::super::Parameter, &bool)| p.bounds[usize::from(*high)];
+                let values: Vec<f64> = variant.parameters.iter().zip(&corner).map(bound).collect();
+                let (c, m, s) = applied(variant, &values, &context);
+                let finite = c.as_flattened().iter().all(|c| c.is_finite() && c.abs() <= 200.0)
+                    && [m.forward_cm, m.lateral_cm, m.turn_rad, s.yaw_rad, s.width].iter().all(|v| v.is_finite())
+                    && s.robot.position_cm.is_finite();
+                prop_assert!(finite, "{effect} {}", variant.id);
+            }
+        }
+    }
+}

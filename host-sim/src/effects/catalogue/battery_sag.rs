@@ -1,0 +1,39 @@
+//! The drive gets weaker as the run goes on.
+
+use super::{each_command, parameters};
+use crate::effects::parameter::Guesses;
+use crate::effects::{Effect, Hook, Parameter, PoseIncrement, StepContext, Variant};
+
+pub const EFFECT: Effect = Effect {
+    id: "battery_sag",
+    variants: &[
+        Variant {
+            id: "command",
+            parameters: Sag::PARAMETERS,
+            hooks: &[Hook::Commands(&|v, context, commands| {
+                let left = Sag::read(v).left(context);
+                each_command(commands, |command, _| command * left);
+            })],
+        },
+        Variant {
+            id: "distance",
+            parameters: Sag::PARAMETERS,
+            hooks: &[Hook::Motion(&|v, context, increment| increment.scale(Sag::read(v).left(context)))],
+        },
+    ],
+};
+
+parameters! {
+    Sag {
+        /// Share of speed lost per minute. A pack of six AA cells goes from 9 V to 7.2 V over its whole discharge, and
+        /// speed is proportional to voltage; 0.9 is a pack that is empty after little more than a minute.
+        loss_per_min: Parameter::new("1/min", 0.0, [0.0, 0.9]).prior_sd(0.4).from(Guesses::At(&[0.05, 0.25, 0.6])),
+    }
+}
+
+impl Sag {
+    /// The share of speed that is left.
+    fn left(&self, context: &StepContext) -> f64 {
+        (1.0 - self.loss_per_min * context.elapsed_min).max(0.0)
+    }
+}

@@ -1,0 +1,55 @@
+//! Friction in the drive: small commands move little or nothing.
+
+use super::{each_command, parameters};
+use crate::effects::parameter::{Guesses, Report};
+use crate::effects::{Effect, Hook, Parameter, Variant};
+
+pub const EFFECT: Effect = Effect {
+    id: "deadband",
+    variants: &[
+        Variant {
+            id: "cut",
+            parameters: Deadband::PARAMETERS,
+            hooks: &[Hook::Commands(&|v, context, commands| {
+                let edge = context.command_for(Deadband::read(v).break_away_cm_s);
+                let softness = context.command_for(SOFTNESS_CM_S);
+                if edge > 0.0 {
+                    each_command(commands, |c, _| c * ((c - edge) / softness + 0.5).clamp(0.0, 1.0));
+                }
+            })],
+        },
+        Variant {
+            id: "subtracted",
+            parameters: Deadband::PARAMETERS,
+            hooks: &[Hook::Commands(&|v, context, commands| {
+                let edge = context.command_for(Deadband::read(v).break_away_cm_s);
+                each_command(commands, |c, _| (c - edge).max(0.0));
+            })],
+        },
+        Variant {
+            id: "stretched",
+            parameters: Deadband::PARAMETERS,
+            hooks: &[Hook::Commands(&|v, context, commands| {
+                // A command for full speed still gives full speed.
+                let edge = context.command_for(Deadband::read(v).break_away_cm_s).min(MOST_OF_FULL);
+                each_command(commands, |c, _| (c - edge).max(0.0) * 100.0 / (100.0 - edge));
+            })],
+        },
+    ],
+};
+
+parameters! {
+    Deadband {
+        /// Wheel speed below whose command nothing moves. Real NXT motors on the ground break away at 12 to 16 % of full
+        /// power, about 6 cm/s; 20 cm/s is half of their full speed.
+        break_away_cm_s: Parameter::new("cm/s", 0.0, [0.0, 20.0])
+            .prior_sd(8.0)
+            .from(Guesses::OfTopSpeed(&[0.04, 0.08, 0.14, 0.22, 0.3]))
+            .report(Report::Command),
+    }
+}
+
+/// Commands above which nothing may be lost leave something to stretch over.
+const MOST_OF_FULL: f64 = 90.0;
+/// A cut is no sharper than this, so that the likelihood has a slope where it lies.
+const SOFTNESS_CM_S: f64 = 0.8;

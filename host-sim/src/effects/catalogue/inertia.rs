@@ -1,0 +1,41 @@
+//! The drive takes longer to reach its speed.
+
+use super::parameters;
+use crate::effects::context::HISTORY;
+use crate::effects::parameter::{Guesses, Report};
+use crate::effects::{Effect, Hook, Parameter, Variant};
+
+pub const EFFECT: Effect = Effect {
+    id: "inertia",
+    variants: &[Variant {
+        id: "first_order_lag",
+        parameters: Inertia::PARAMETERS,
+        hooks: &[Hook::Commands(&|v, context, commands| {
+            let Inertia { ms, remaining } = Inertia::read(v);
+            if ms == 0.0 {
+                return;
+            }
+            // The speed at the step's begin has come within `remaining` of the command before.
+            let mut speed = commands[HISTORY - 1];
+            for command in commands[1..].iter().rev() {
+                speed = [0, 1].map(|m| command[m] + remaining * (speed[m] - command[m]));
+            }
+            let share = (ms / context.robot.step_ms).min(1.0);
+            commands[0] = [0, 1].map(|m| commands[0][m] + share * (speed[m] - commands[0][m]));
+            commands[1] = speed;
+        })],
+    }],
+};
+
+parameters! {
+    Inertia {
+        /// Time that is added to the drive's time constant. An NXT motor takes about 50 ms; more than 300 ms would need
+        /// many times its rotor's inertia.
+        ms: Parameter::new("ms", 0.0, [0.0, 320.0]).prior_sd(120.0).from(Guesses::At(&[40.0, 120.0, 200.0])),
+        /// Share of a change of speed that is still missing a step later: never none, or it would be a delay.
+        remaining: Parameter::new("", 0.2, [0.03, 0.8])
+            .prior_sd(0.3)
+            .from(Guesses::At(&[0.15, 0.4]))
+            .report(Report::Hidden),
+    }
+}

@@ -1,0 +1,30 @@
+//! Commands take effect late.
+
+use super::parameters;
+use crate::effects::context::HISTORY;
+use crate::effects::parameter::Guesses;
+use crate::effects::{Effect, Hook, Parameter, Variant};
+
+pub const EFFECT: Effect = Effect {
+    id: "latency",
+    variants: &[Variant {
+        id: "delay",
+        parameters: Latency::PARAMETERS,
+        hooks: &[Hook::Commands(&|v, context, commands| {
+            // The command before holds for the first part of the step; what it did to the wheels is over by then.
+            let steps = (Latency::read(v).ms / context.robot.step_ms).min((HISTORY - 2) as f64);
+            let (whole, part) = (steps as usize, steps % 1.0);
+            commands.rotate_left(whole);
+            let [now, before, ..] = commands;
+            *now = [0, 1].map(|m| (1.0 - part) * now[m] + part * before[m]);
+        })],
+    }],
+};
+
+parameters! {
+    Latency {
+        /// Delay between a command and the wheels. A Bluetooth link to a brick takes 28 to 77 ms there and back, a camera's
+        /// frames as much again; nobody steers a robot that is most of a second behind.
+        ms: Parameter::new("ms", 0.0, [0.0, 800.0]).prior_sd(200.0).from(Guesses::At(&[40.0, 160.0, 360.0])),
+    }
+}

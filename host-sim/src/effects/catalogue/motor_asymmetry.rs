@@ -1,0 +1,45 @@
+//! One motor is weaker than it was.
+
+use super::parameters;
+use crate::effects::parameter::{Guesses, Report};
+use crate::effects::{Effect, Hook, Parameter, Variant};
+
+pub const EFFECT: Effect = Effect {
+    id: "motor_asymmetry",
+    variants: &[
+        Variant {
+            id: "command",
+            parameters: Asymmetry::PARAMETERS,
+            hooks: &[Hook::Commands(&|v, _, commands| {
+                let factors = Asymmetry::read(v).factors();
+                commands.iter_mut().for_each(|c| *c = [c[0] * factors[0], c[1] * factors[1]]);
+            })],
+        },
+        Variant {
+            id: "distance",
+            parameters: Asymmetry::PARAMETERS,
+            hooks: &[Hook::Motion(&|v, context, increment| {
+                let factors = Asymmetry::read(v).factors();
+                let [left, right] = increment.wheels_cm(context.robot.track_cm);
+                increment.set_wheels([left * factors[0], right * factors[1]], context.robot.track_cm);
+            })],
+        },
+    ],
+};
+
+parameters! {
+    Asymmetry {
+        /// Share of speed that the left motor lacks; negative: the right one. NXT motors differ by a few per cent when
+        /// new; one that has lost half of its speed is about to stall.
+        loss: Parameter::new("", 0.0, [-0.5, 0.5])
+            .prior_sd(0.15)
+            .from(Guesses::At(&[0.05, -0.05]))
+            .report(Report::SideAndFactor),
+    }
+}
+
+impl Asymmetry {
+    fn factors(&self) -> [f64; 2] {
+        [1.0 - self.loss.max(0.0), 1.0 + self.loss.min(0.0)]
+    }
+}

@@ -1,0 +1,129 @@
+//! A load, off the middle.
+
+use super::{LOADED_SPEED_CM_S, distance_lost_cm, each_command, parameters, pushed_cm};
+use crate::effects::context::CommandHistory;
+use crate::effects::parameter::{Guesses, Report};
+use crate::effects::{Effect, Hook, Parameter, PoseIncrement, StepContext, Variant};
+
+pub const EFFECT: Effect = Effect {
+    id: "payload",
+    variants: &[
+        Variant {
+            id: "command",
+            parameters: Load::PARAMETERS,
+            hooks: &[Hook::Commands(&|v, _, commands| {
+                let Load { loss, other_side } = Load::read(v);
+                let factors = by_side(loss, other_side).map(|lost| 1.0 - lost);
+                each_command(commands, |c, motor| c * factors[motor]);
+            })],
+        },
+        Variant {
+            id: "distance",
+            parameters: Load::PARAMETERS,
+            hooks: &[Hook::Motion(&|v, context, increment| {
+                let Load { loss, other_side } = Load::read(v);
+                shorten(by_side(loss, other_side), context, increment);
+            })],
+        },
+        Variant {
+            id: "heavy",
+            parameters: HeavyLoad::PARAMETERS,
+            hooks: &[
+                Hook::Commands(&|v, _, commands| {
+                    let HeavyLoad { loss, start_loss, .. } = HeavyLoad::read(v);
+                    start_slowly(start_loss * loss.abs(), commands);
+                }),
+                Hook::Motion(&|v, context, increment| {
+                    let HeavyLoad { loss, other_side, turn_loss, .. } = HeavyLoad::read(v);
+                    shorten(by_side(loss, other_side), context, increment);
+                    increment.turn_rad *= 1.0 - (turn_loss * loss.abs()).min(1.0);
+                }),
+            ],
+        },
+        Variant {
+            id: "rolling_resistance",
+            parameters: RollingLoad::PARAMETERS,
+            hooks: &[
+                Hook::Commands(&|v, _, commands| {
+                    let RollingLoad { loss, start_loss, .. } = RollingLoad::read(v);
+                    start_slowly(start_loss * loss.abs(), commands);
+                }),
+                Hook::Motion(&|v, context, increment| {
+                    let RollingLoad { loss, other_side, with_speed, .. } = RollingLoad::read(v);
+                    let losses = by_side(loss, other_side);
+                    let wheels = increment.wheels_cm(context.robot.track_cm);
+                    let wheels = [0, 1].map(|m| {
+                        let lost_cm = losses[m] * distance_lost_cm(with_speed, wheels[m], context);
+                        pushed_cm(wheels[m], -lost_cm, context)
+                    });
+                    increment.set_wheels(wheels, context.robot.track_cm);
+                }),
+            ],
+        },
+    ],
+};
+
+/// Share of speed that the loaded left wheel loses; negative: the right one. 0.6 is a load that all but stops it.
+const LOSS: Parameter = Parameter::new("", 0.0, [-0.6, 0.6])
+    .prior_sd(0.2)
+    .from(Guesses::At(&[0.05, -0.05]))
+    .report(Report::SideAndLoss);
+/// Loss of a change of speed as a multiple of the loss on the straight: a load that costs much at starts costs something
+/// on the straight too, or it would be a slower motor.
+const START_LOSS: Parameter =
+    Parameter::new("", 0.0, [0.0, 6.0]).prior_sd(2.0).from(Guesses::At(&[1.0])).report(Report::Hidden);
+
+parameters! {
+    Load {
+        /// See [`LOSS`].
+        loss: LOSS,
+        /// The other wheel's loss as a share of it: with none it would be a weaker motor, with all of it a scale.
+        other_side: Parameter::new("", 0.5, [0.15, 0.8]).prior_sd(0.3).report(Report::Hidden),
+    }
+}
+
+parameters! {
+    HeavyLoad {
+        /// See [`LOSS`].
+        loss: LOSS,
+        /// The other wheel's loss as a share of it.
+        other_side: Parameter::new("", 0.5, [0.0, 0.8]).prior_sd(0.3).report(Report::Hidden),
+        /// Loss of turns as a multiple of it: a load far from the axle resists being swung round.
+        turn_loss: Parameter::new("", 0.0, [0.0, 6.0]).prior_sd(2.0).from(Guesses::At(&[2.0])).report(Report::Hidden),
+        /// See [`START_LOSS`].
+        start_loss: START_LOSS,
+    }
+}
+
+parameters! {
+    RollingLoad {
+        /// Share of speed lost at [`LOADED_SPEED_CM_S`]; see [`LOSS`].
+        loss: LOSS,
+        /// The other wheel's loss as a share of it.
+        other_side: Parameter::new("", 0.5, [0.0, 0.8]).prior_sd(0.3).from(Guesses::At(&[0.2])).report(Report::Hidden),
+        /// Share of the loss that grows with speed: with all of it it would be a weaker motor.
+        with_speed: Parameter::new("", 0.3, [0.0, 0.6]).prior_sd(0.3).report(Report::Hidden),
+        /// See [`START_LOSS`].
+        start_loss: START_LOSS,
+    }
+}
+
+/// Losses of the left and the right wheel.
+fn by_side(loss: f64, other_side: f64) -> [f64; 2] {
+    let (near, far) = (loss.abs(), loss.abs() * other_side);
+    if loss > 0.0 { [near, far] } else { [far, near] }
+}
+
+fn shorten(losses: [f64; 2], context: &StepContext, increment: &mut PoseIncrement) {
+    let wheels = increment.wheels_cm(context.robot.track_cm);
+    increment.set_wheels([0, 1].map(|m| wheels[m] * (1.0 - losses[m])), context.robot.track_cm);
+}
+
+/// The share `late` of every change of command is not there yet.
+fn start_slowly(late: f64, commands: &mut CommandHistory) {
+    let late = late.min(1.0);
+    let [now, before, ..] = commands;
+    for (command, earlier) in now.iter_mut().zip(before) {
+        *command += late * (*earlier - *command);
+    }
+}

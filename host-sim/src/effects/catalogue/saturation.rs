@@ -1,0 +1,51 @@
+//! Commands above some value add nothing.
+
+use super::{each_command, parameters};
+use crate::effects::parameter::{Guesses, Report};
+use crate::effects::{Effect, Hook, Parameter, Variant};
+
+pub const EFFECT: Effect = Effect {
+    id: "saturation",
+    variants: &[
+        Variant {
+            id: "hard",
+            parameters: Saturation::PARAMETERS,
+            hooks: &[Hook::Commands(&|v, context, commands| {
+                let limit = context.command_for(Saturation::read(v).limit_cm_s);
+                each_command(commands, |c, _| c.min(limit));
+            })],
+        },
+        Variant {
+            id: "soft",
+            parameters: Saturation::PARAMETERS,
+            hooks: &[Hook::Commands(&|v, context, commands| {
+                let Saturation { limit_cm_s } = Saturation::read(v);
+                let limit = context.command_for(limit_cm_s);
+                if limit_cm_s < NO_LIMIT_CM_S {
+                    each_command(commands, |c, _| softly_limited(c, limit));
+                }
+            })],
+        },
+    ],
+};
+
+/// No wheel of an indoor robot turns as fast.
+const NO_LIMIT_CM_S: f64 = 100.0;
+
+parameters! {
+    Saturation {
+        /// Wheel speed above which nothing is added. Below 8 cm/s a robot could hardly drive: a regulated NXT motor under
+        /// load is flat from half of its full 41 cm/s at the earliest.
+        limit_cm_s: Parameter::new("cm/s", NO_LIMIT_CM_S, [8.0, NO_LIMIT_CM_S])
+            .scale(33.0)
+            .from(Guesses::OfTopSpeed(&[0.35, 0.5, 0.65, 0.8]))
+            .report(Report::Command),
+    }
+}
+
+/// Half of what lies between three and five quarters of the limit is lost, and all beyond.
+fn softly_limited(command: f64, limit: f64) -> f64 {
+    let (begin, end) = (0.75 * limit, 1.25 * limit);
+    let into = ((command - begin) / (end - begin)).clamp(0.0, 1.0);
+    if command <= begin { command } else { begin + (end - begin) * (into - 0.5 * into * into) }
+}

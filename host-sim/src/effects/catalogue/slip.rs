@@ -1,0 +1,125 @@
+//! The tyres lose grip when pushed.
+
+use super::{each_command, parameters};
+use crate::effects::context::CommandHistory;
+use crate::effects::parameter::{Guesses, Report};
+use crate::effects::{Effect, Hook, Parameter, StepContext, Variant};
+
+pub const EFFECT: Effect = Effect {
+    id: "slip",
+    variants: &[
+        Variant {
+            id: "fast",
+            parameters: FastSlip::PARAMETERS,
+            hooks: &[Hook::Commands(&|v, context, commands| {
+                let FastSlip { onset_cm_s, loss } = FastSlip::read(v);
+                let onset = context.command_for(onset_cm_s);
+                each_command(commands, |c, _| c - loss * (c - onset).max(0.0));
+            })],
+        },
+        Variant {
+            id: "change",
+            parameters: Slip::PARAMETERS,
+            hooks: &[Hook::Commands(&|v, context, commands| {
+                let Slip { onset_cm_s, loss } = Slip::read(v);
+                // A wheel that slips in a step has caught up at its end.
+                lose_change(commands, 0, context.command_for(onset_cm_s), |beyond| loss * beyond);
+            })],
+        },
+        Variant {
+            id: "distance",
+            parameters: Slip::PARAMETERS,
+            hooks: &[Hook::Motion(&|v, context, increment| {
+                let Slip { onset_cm_s, loss } = Slip::read(v);
+                let [now, before, ..] = context.commands;
+                let wheels = increment.wheels_cm(context.robot.track_cm);
+                let kept = [0, 1].map(|m| {
+                    let change_cm_s = context.wheel_speed_cm_s((now[m] - before[m]).abs());
+                    let beyond = (change_cm_s - onset_cm_s).max(0.0) / WHOLE_CHANGE_CM_S;
+                    1.0 - (loss * beyond).min(1.0)
+                });
+                increment.set_wheels([0, 1].map(|m| wheels[m] * kept[m]), context.robot.track_cm);
+            })],
+        },
+        Variant {
+            id: "growing",
+            parameters: DraggingSlip::PARAMETERS,
+            hooks: &[
+                Hook::Commands(&|v, context, commands| {
+                    let DraggingSlip { onset_cm_s, loss, .. } = DraggingSlip::read(v);
+                    let lost = growing(loss, context);
+                    lose_change(commands, 0, context.command_for(onset_cm_s), &lost);
+                    lose_change(commands, 1, NOT_CAUGHT_UP * context.command_for(onset_cm_s), &lost);
+                }),
+                Hook::Motion(&|v, _, increment| {
+                    let DraggingSlip { loss, turn_drag_rad, .. } = DraggingSlip::read(v);
+                    increment.turn_rad -= loss * turn_drag_rad * libm::tanh(increment.turn_rad / LITTLE_TURN_RAD);
+                }),
+            ],
+        },
+    ],
+};
+
+/// Change of wheel speed from which the tyres slide. Rubber on a floor holds about half a robot's weight, which a motor
+/// reaches within 6 cm/s at the least: below that it would be a scale or a lag. Above 50 cm/s nothing slides.
+const ONSET: Parameter =
+    Parameter::new("cm/s", 50.0, [6.0, 50.0]).scale(43.0).from(Guesses::At(&[8.0, 16.0, 28.0])).report(Report::Onset);
+
+parameters! {
+    FastSlip {
+        /// Wheel speed from which the tyres slide; see [`ONSET`].
+        onset_cm_s: ONSET,
+        /// Share lost of what lies beyond: what loses more than half is a limit.
+        loss: Parameter::new("", 0.0, [0.0, 0.5]).prior_sd(0.3).from(Guesses::At(&[0.3])),
+    }
+}
+
+parameters! {
+    Slip {
+        /// See [`ONSET`].
+        onset_cm_s: ONSET,
+        /// Share lost of what lies beyond: all of it at the most.
+        loss: Parameter::new("", 0.0, [0.0, 1.0]).prior_sd(0.5).from(Guesses::At(&[0.2, 0.4])),
+    }
+}
+
+parameters! {
+    DraggingSlip {
+        /// See [`ONSET`].
+        onset_cm_s: Parameter::new("cm/s", 25.0, [6.0, 37.0])
+            .prior_sd(20.0)
+            .from(Guesses::At(&[12.0, 25.0]))
+            .report(Report::Onset),
+        /// Share lost of what lies far beyond; more than all of it where wheels spin on.
+        loss: Parameter::new("", 0.0, [0.0, 1.5]).prior_sd(0.7).from(Guesses::At(&[0.3, 0.8])),
+        /// Turn that a step loses for a loss of one: a tyre of little grip creeps where it is held back.
+        turn_drag_rad: Parameter::new("rad", 0.0, [0.0, 0.1])
+            .prior_sd(0.05)
+            .from(Guesses::At(&[0.0, 0.05]))
+            .report(Report::Hidden),
+    }
+}
+
+/// The change of wheel speed to which the loss of distance refers: from rest to an NXT's full speed.
+const WHOLE_CHANGE_CM_S: f64 = 41.0;
+/// The loss of a growing slip has reached half of its share so far beyond the onset.
+const HALF_LOST_CM_S: f64 = 16.0;
+/// Turns of a step below this do not pull the tyres to their grip.
+const LITTLE_TURN_RAD: f64 = 0.04;
+/// A change of this many onsets is not caught up with at the end of its step.
+const NOT_CAUGHT_UP: f64 = 2.5;
+
+/// What is lost of a change of command that lies so far beyond the onset: little at first, then in proportion.
+fn growing(loss: f64, context: &StepContext) -> impl Fn(f64) -> f64 + use<> {
+    let half = context.command_for(HALF_LOST_CM_S);
+    move |beyond| loss * beyond * beyond / (half + beyond)
+}
+
+/// Takes from the present command what the change of command `ago` steps ago loses beyond the onset.
+fn lose_change(commands: &mut CommandHistory, ago: usize, onset: f64, lost: impl Fn(f64) -> f64) {
+    let (to, from) = (commands[ago], commands[ago + 1]);
+    for ((command, to), from) in commands[0].iter_mut().zip(to).zip(from) {
+        let change = to - from;
+        *command -= lost((change.abs() - onset).max(0.0)) * change.signum();
+    }
+}

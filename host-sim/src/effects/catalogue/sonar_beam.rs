@@ -1,0 +1,56 @@
+//! The beam is wider or narrower.
+
+use super::parameters;
+use crate::effects::parameter::{Guesses, Report};
+use crate::effects::{Effect, Hook, Parameter, Variant};
+
+pub const EFFECT: Effect = Effect {
+    id: "sonar_beam",
+    variants: &[
+        Variant {
+            id: "width",
+            parameters: Width::PARAMETERS,
+            hooks: &[Hook::Sensor(&|v, _, sensor| sensor.width *= Width::read(v).factor)],
+        },
+        Variant {
+            id: "width_and_strength",
+            parameters: WidthAndStrength::PARAMETERS,
+            hooks: &[Hook::Sensor(&|v, _, sensor| {
+                let WidthAndStrength { factor, log_odds_loss } = WidthAndStrength::read(v);
+                sensor.width *= factor;
+                sensor.perturbation.damping += log_odds_loss;
+            })],
+        },
+        Variant {
+            id: "beam_for_ray",
+            parameters: BeamForRay::PARAMETERS,
+            hooks: &[Hook::Sensor(&|v, _, sensor| sensor.width *= BeamForRay::read(v).factor)],
+        },
+    ],
+};
+
+/// Factor on the beam's angle. Reported beams of one and the same sensor reach from 10 to 90 degrees.
+const FACTOR: Parameter = Parameter::new("", 1.0, [0.2, 4.0]).prior_sd(0.8).from(Guesses::At(&[0.7, 1.3, 2.0]));
+
+parameters! {
+    Width {
+        /// See [`FACTOR`].
+        factor: FACTOR,
+    }
+}
+
+parameters! {
+    WidthAndStrength {
+        /// See [`FACTOR`].
+        factor: FACTOR,
+        /// What a beam of another width lacks in strength; four is a factor of 55 on the odds of an echo.
+        log_odds_loss: Parameter::new("", 0.0, [-4.0, 4.0]).prior_sd(1.5).report(Report::Hidden),
+    }
+}
+
+parameters! {
+    BeamForRay {
+        /// Factor on the angle of the textbook's narrow ray, which is a twentieth of a usual beam.
+        factor: Parameter::new("", 1.0, [1.0, 30.0]).from(Guesses::At(&[6.0, 12.0, 20.0])),
+    }
+}

@@ -1,0 +1,26 @@
+//! Now and then a random short reading.
+
+use super::parameters;
+use crate::effects::parameter::Guesses;
+use crate::effects::{Effect, Hook, Parameter, Variant};
+
+pub const EFFECT: Effect = Effect {
+    id: "sonar_crosstalk",
+    variants: &[
+        Variant {
+            id: "short",
+            parameters: Crosstalk::PARAMETERS,
+            hooks: &[Hook::Sensor(&|v, _, sensor| {
+                let Crosstalk { probability } = Crosstalk::read(v);
+                sensor.perturbation.short = 1.0 - (1.0 - sensor.perturbation.short) * (1.0 - probability);
+            })],
+        },
+    ],
+};
+
+parameters! {
+    Crosstalk {
+        /// Chance of it in a reading: another sensor that is heard more often drowns this one.
+        probability: Parameter::new("", 0.0, [0.0, 0.6]).prior_sd(0.2).from(Guesses::At(&[0.03, 0.15])),
+    }
+}

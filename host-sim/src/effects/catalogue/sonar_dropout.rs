@@ -1,0 +1,27 @@
+//! Missing readings come in bursts.
+
+use super::parameters;
+use crate::effects::parameter::Guesses;
+use crate::effects::{Effect, Hook, Parameter, Variant};
+
+pub const EFFECT: Effect = Effect {
+    id: "sonar_dropout",
+    variants: &[Variant {
+        id: "two_states",
+        parameters: Dropout::PARAMETERS,
+        hooks: &[Hook::Sensor(&|v, context, sensor| {
+            let Dropout { goes_on, probability } = Dropout::read(v);
+            let lost = if context.echo_before == Some(false) { goes_on } else { probability };
+            sensor.perturbation.lost = 1.0 - (1.0 - sensor.perturbation.lost) * (1.0 - lost);
+        })],
+    }],
+};
+
+parameters! {
+    Dropout {
+        /// Chance that a missing reading is followed by another, as a two-state chain has it: anything from none to all.
+        goes_on: Parameter::new("", 0.0, [0.0, 1.0]).from(Guesses::At(&[0.3, 0.6])),
+        /// Chance that a burst begins. A sensor that loses every second reading is broken.
+        probability: Parameter::new("", 0.0, [0.0, 0.5]).prior_sd(0.2).from(Guesses::At(&[0.05, 0.1])),
+    }
+}

@@ -1,0 +1,26 @@
+//! Readings scatter more.
+
+use super::parameters;
+use crate::effects::parameter::Guesses;
+use crate::effects::{Effect, Hook, Parameter, Variant};
+
+pub const EFFECT: Effect = Effect {
+    id: "sonar_noise",
+    variants: &[
+        Variant {
+            id: "normal",
+            parameters: Noise::PARAMETERS,
+            hooks: &[Hook::Sensor(&|v, _, sensor| {
+                let (own_cm, more_cm) = (sensor.perturbation.scatter_cm, Noise::read(v).cm);
+                sensor.perturbation.scatter_cm = (own_cm * own_cm + more_cm * more_cm).sqrt();
+            })],
+        },
+    ],
+};
+
+parameters! {
+    Noise {
+        /// Further scatter of readings, standard deviation. NXT sensors are within 3 cm when new.
+        cm: Parameter::new("cm", 0.0, [0.0, 15.0]).prior_sd(4.0).from(Guesses::At(&[1.0, 3.0])),
+    }
+}

@@ -1,0 +1,23 @@
+//! The sensor is mounted turned.
+
+use super::parameters;
+use crate::effects::parameter::Guesses;
+use crate::effects::{Effect, Hook, Parameter, Variant};
+
+pub const EFFECT: Effect = Effect {
+    id: "sonar_yaw",
+    variants: &[
+        Variant {
+            id: "axis",
+            parameters: Yaw::PARAMETERS,
+            hooks: &[Hook::Sensor(&|v, _, sensor| sensor.yaw_rad += Yaw::read(v).deg.to_radians())],
+        },
+    ],
+};
+
+parameters! {
+    Yaw {
+        /// Rotation counter-clockwise. A mount by a single pin slips by 10 degrees; beyond 30 it would be seen.
+        deg: Parameter::new("deg", 0.0, [-30.0, 30.0]).prior_sd(10.0).from(Guesses::At(&[3.5, -3.5, 11.5, -11.5])),
+    }
+}

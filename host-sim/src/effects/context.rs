@@ -1,0 +1,150 @@
+//! What an effect sees of a step: built here for logs, for simulated runs and for runs that are planned.
+
+use glam::DVec2;
+
+use crate::geometry::{Pose, Wall, cast};
+use crate::logs::{Robot, Scene};
+use crate::sonar::{Fan, fan_at};
+
+/// Number of commands visible to an effect, newest first.
+pub const HISTORY: usize = 7;
+/// Left and right command of the present step and of those before it, newest first; zero before the run began.
+pub type CommandHistory = [[f64; 2]; HISTORY];
+
+/// The circumstances of a step, or of the reading at its begin.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StepContext {
+    /// Time since the run began, minutes.
+    pub elapsed_min: f64,
+    /// Commands as they were sent.
+    pub commands: CommandHistory,
+    /// Tracked pose at the step's begin.
+    pub pose: Pose,
+    /// The same one and two rows earlier, where it is known.
+    pub earlier: [Option<Pose>; 2],
+    /// Distance in cm and signed incidence in radians at which the sensor's axis meets a wall.
+    pub faced: Option<[f64; 2]>,
+    /// The same at the row before.
+    pub faced_before: Option<[f64; 2]>,
+    /// Whether the row before had a reading.
+    pub echo_before: Option<bool>,
+    /// Middle of the scene, above which a camera hangs, cm.
+    pub middle_cm: DVec2,
+    /// The robot's measures.
+    pub robot: Robot,
+}
+
+/// What stays the same from step to step: the robot and the walls round it.
+#[derive(Clone, Debug)]
+pub struct Surroundings {
+    /// The robot's measures.
+    pub robot: Robot,
+    /// Everything that a ray can meet.
+    pub walls: Vec<Wall>,
+    middle_cm: DVec2,
+}
+
+/// What lies behind a step of a run.
+#[derive(Clone, Debug, Default)]
+pub struct RunHistory {
+    commands: CommandHistory,
+    poses: [Option<Pose>; 2],
+    faced: Option<[f64; 2]>,
+    echo_cm: Option<Option<f64>>,
+}
+
+impl StepContext {
+    /// Speed of a wheel's rim at a command, cm/s.
+    pub fn wheel_speed_cm_s(&self, command: f64) -> f64 {
+        command / 100.0 * self.robot.full_speed_cm_s
+    }
+
+    /// The command that asks for a wheel speed.
+    pub fn command_for(&self, wheel_speed_cm_s: f64) -> f64 {
+        100.0 * wheel_speed_cm_s / self.robot.full_speed_cm_s
+    }
+
+    /// Usual duration of a step, s.
+    pub fn step_s(&self) -> f64 {
+        self.robot.step_ms / 1000.0
+    }
+}
+
+impl Surroundings {
+    /// Of a robot in a scene.
+    pub fn new(robot: &Robot, scene: &Scene) -> Self {
+        let walls = scene.sides();
+        Surroundings { robot: *robot, middle_cm: middle(&walls), walls }
+    }
+
+    /// The context of a step that begins at `pose`, `elapsed_ms` after the run did.
+    pub fn context(&self, history: &RunHistory, elapsed_ms: f64, pose: Pose) -> StepContext {
+        let sensor = self.robot.ultrasonic.pose_on(&pose);
+        let hit = cast(&self.walls, sensor.position_cm, sensor.direction());
+        StepContext {
+            elapsed_min: elapsed_ms / 60_000.0,
+            commands: history.commands,
+            pose,
+            earlier: history.poses,
+            faced: hit.map(|hit| [hit.distance_cm, hit.incidence_rad]),
+            faced_before: history.faced,
+            echo_before: history.echo_cm.map(|echo| echo.is_some()),
+            middle_cm: self.middle_cm,
+            robot: self.robot,
+        }
+    }
+
+    /// What the sensor of a robot at `robot` sees, its axis turned by `yaw_rad`; `width` is the beam's against the usual
+    /// fan.
+    pub fn fan(&self, robot: &Pose, yaw_rad: f64, width: f64) -> Fan {
+        let mut sensor = self.robot.ultrasonic.pose_on(robot);
+        sensor.heading_rad += yaw_rad;
+        fan_at(&self.walls, &sensor, width)
+    }
+}
+
+impl RunHistory {
+    /// A step begins with these commands.
+    pub fn command(&mut self, command: [f64; 2]) {
+        self.commands.rotate_right(1);
+        self.commands[0] = command;
+    }
+
+    /// The row at which a step began lies behind: where the robot was, if it was seen, and what its sensor said.
+    pub fn leave(&mut self, context: Option<&StepContext>, echo_cm: Option<f64>) {
+        match context {
+            Some(context) => {
+                self.seen(context.pose);
+                self.sensed(context, echo_cm);
+            }
+            None => {
+                self.poses = [None, self.poses[0]];
+                self.echo_cm = Some(echo_cm);
+            }
+        }
+    }
+
+    /// Where the robot was at the begin of a step that lies behind.
+    pub fn seen(&mut self, pose: Pose) {
+        self.poses = [Some(pose), self.poses[0]];
+    }
+
+    /// What its sensor faced and said at a row that lies behind.
+    pub fn sensed(&mut self, context: &StepContext, echo_cm: Option<f64>) {
+        self.faced = context.faced;
+        self.echo_cm = Some(echo_cm);
+    }
+
+    /// The reading of the row before, if there was one.
+    pub fn echo_before_cm(&self) -> Option<f64> {
+        self.echo_cm.flatten()
+    }
+}
+
+/// The middle of what walls enclose; the origin where there are none.
+fn middle(walls: &[Wall]) -> DVec2 {
+    let ends = || walls.iter().flat_map(|s| [s.from_cm, s.to_cm]);
+    let low = ends().fold(DVec2::INFINITY, DVec2::min);
+    let high = ends().fold(DVec2::NEG_INFINITY, DVec2::max);
+    if walls.is_empty() { DVec2::ZERO } else { 0.5 * (low + high) }
+}

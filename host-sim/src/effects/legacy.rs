@@ -1,0 +1,154 @@
+//! Applied effects of simulator files that were written before variants had ids: they name a variant by a sentence and
+//! its parameters by their order, some in other units.
+
+use serde::Deserialize;
+use serde_json::Value;
+
+use super::applied::AppliedEffect;
+use super::catalogue::Candidate;
+use crate::logs::Robot;
+
+/// The text of a simulator file with its applied effects by today's ids and units; none where they have them already, or
+/// where one was never possible.
+pub fn upgraded(text: &str) -> Option<Value> {
+    let File { robot, added } = serde_json::from_str(text).ok()?;
+    let added = added.iter().map(|effect| effect.upgrade(&robot)).collect::<Option<Vec<AppliedEffect>>>()?;
+    let mut file: Value = serde_json::from_str(text).ok()?;
+    file["added"] = serde_json::to_value(added).ok().filter(|added| added != &Value::Array(Vec::new()))?;
+    Some(file)
+}
+
+/// What is needed of such a file.
+#[derive(Deserialize)]
+struct File {
+    robot: Robot,
+    added: Vec<LegacyEffect>,
+}
+
+/// An entry of such a file.
+#[derive(Deserialize)]
+struct LegacyEffect {
+    effect: String,
+    form: String,
+    values: Vec<f64>,
+}
+
+/// The unit in which a parameter was written.
+#[derive(Clone, Copy)]
+enum Unit {
+    /// Today's.
+    Same,
+    /// Radians for what is in degrees today.
+    Radians,
+    /// Steps for what is in milliseconds today.
+    Steps,
+    /// Commands for what is a wheel speed today.
+    Command,
+}
+
+impl LegacyEffect {
+    /// The same by today's ids and units; none where it was never possible.
+    fn upgrade(&self, robot: &Robot) -> Option<AppliedEffect> {
+        let (effect, _, variant, units) = TABLE.iter().find(|row| row.0 == self.effect && row.1 == self.form)?;
+        let candidate = Candidate::named(effect, variant)?;
+        let today = |(value, unit): (&f64, &Unit)| match unit {
+            Unit::Same => *value,
+            Unit::Radians => value.to_degrees(),
+            Unit::Steps => value * robot.step_ms,
+            Unit::Command => value / 100.0 * robot.full_speed_cm_s,
+        };
+        let values = self.values.iter().zip(*units).map(today);
+        // What was a bound of commands may lie beyond today's bound of speeds, where nothing changes any more.
+        let values: Vec<f64> =
+            values.zip(candidate.variant.parameters).map(|(v, p)| v.clamp(p.bounds[0], p.bounds[1])).collect();
+        let whole = self.values.len() == units.len() && values.iter().all(|v| v.is_finite());
+        whole.then(|| AppliedEffect::new(&candidate, &values))
+    }
+}
+
+/// Effect, sentence, id of the variant, and the units of its parameters.
+type Row = (&'static str, &'static str, &'static str, &'static [Unit]);
+
+use Unit::{Command, Radians, Same, Steps};
+
+const TABLE: &[Row] = &[
+    ("battery_sag", "commands weaken", "command", &[Same]),
+    ("battery_sag", "ways shorten", "distance", &[Same]),
+    ("motor_asymmetry", "a weaker command", "command", &[Same]),
+    ("motor_asymmetry", "a shorter way", "distance", &[Same]),
+    ("drive_scale", "longer ways", "distance", &[Same]),
+    ("drive_scale", "stronger commands", "command", &[Same]),
+    ("track_width", "smaller turns", "turn", &[Same]),
+    ("deadband", "small commands do nothing", "cut", &[Command]),
+    ("deadband", "friction eats its part of every command", "subtracted", &[Command]),
+    ("deadband", "full commands are as before", "stretched", &[Command]),
+    ("saturation", "a limit", "hard", &[Command]),
+    ("saturation", "a soft limit", "soft", &[Command]),
+    ("latency", "part of the step still has the command before", "delay", &[Steps]),
+    ("inertia", "the step lags, and what lags dies away", "first_order_lag", &[Steps, Same]),
+    ("payload", "commands lose, more on one side", "command", &[Same, Same]),
+    ("payload", "ways shorten, more on one side", "distance", &[Same, Same]),
+    ("payload", "ways shorten on one side, and a heavy robot is slow to start and to turn", "heavy", &[Same, Same, Same, Same]),
+    ("payload", "a wheel rolls hard at any speed, and a heavy robot is slow to start", "rolling_resistance", &[Same, Same, Same, Same]),
+    ("slope", "a drift downhill while moving", "drift", &[Radians, Same]),
+    ("slope", "a gain or loss that grows with speed in part, and sideways down in part", "gain_and_slide", &[Radians, Same, Same, Same]),
+    ("carpet_nap", "drag that grows with speed in part, and sets in softly in part", "against_the_nap", &[Radians, Same, Same, Same]),
+    ("carpet_nap", "drag along an axis", "along_an_axis", &[Radians, Same]),
+    ("slip", "large commands lose grip", "fast", &[Command, Same]),
+    ("slip", "large changes lose grip", "change", &[Command, Same]),
+    ("slip", "large changes lose way", "distance", &[Command, Same]),
+    ("slip", "large changes lose more than in proportion, and turns drag", "growing", &[Command, Same, Same]),
+    ("sonar_scale", "a factor", "gain", &[Same]),
+    ("sonar_offset", "a length", "length", &[Same]),
+    ("sonar_yaw", "a turned axis", "axis", &[Radians]),
+    ("sonar_beam", "another width", "width", &[Same]),
+    ("sonar_beam", "another width, and another strength with it", "width_and_strength", &[Same, Same]),
+    ("sonar_beam", "a beam where a ray was thought", "beam_for_ray", &[Same]),
+    ("sonar_ghost", "in place of an echo", "for_an_echo", &[Same, Same]),
+    ("sonar_ghost", "whether there is an echo or not", "always", &[Same, Same]),
+    ("sonar_dropout", "a missing reading is followed by another", "two_states", &[Same, Same]),
+    ("sonar_lag", "where the robot was", "earlier_pose", &[Steps]),
+    ("sonar_lag", "the reading before", "earlier_reading", &[Same]),
+    ("sonar_absorption", "less comes back", "everywhere", &[Same]),
+    ("sonar_absorption", "less comes back from afar", "with_distance", &[Same]),
+    ("sonar_absorption", "less comes back from aslant", "with_incidence", &[Same]),
+    ("sonar_crosstalk", "a random short reading", "short", &[Same]),
+    ("sonar_noise", "more scatter", "normal", &[Same]),
+    ("tracker_rotation", "about the scene's middle", "about_the_middle", &[Radians]),
+    ("tracker_rotation", "about the origin", "about_the_origin", &[Radians]),
+    ("tracker_rotation", "positions right, headings off", "heading", &[Radians]),
+    ("tracker_scale", "about the scene's middle", "about_the_middle", &[Same]),
+    ("tracker_scale", "about the origin", "about_the_origin", &[Same]),
+    ("lens_distortion", "grows with the square of the distance", "quadratic", &[Same]),
+    ("compass_disturbance", "one wave a turn", "hard_iron", &[Radians, Radians]),
+    ("compass_disturbance", "two waves a turn", "soft_iron", &[Radians, Radians]),
+];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::effects::CATALOGUE;
+
+    #[test]
+    fn every_row_leads_to_a_variant_with_as_many_parameters() {
+        for (effect, _, variant, units) in TABLE {
+            let candidate = Candidate::named(effect, variant).expect(variant);
+            assert_eq!(candidate.variant.parameters.len(), units.len(), "{effect} {variant}");
+        }
+        assert!(TABLE.len() <= Candidate::all(CATALOGUE).len());
+    }
+
+    #[test]
+    fn units_are_converted() {
+        let robot = crate::built_in_robot::default_robot();
+        let legacy = |effect: &str, form: &str, value| {
+            let old = LegacyEffect { effect: effect.into(), form: form.into(), values: vec![value] };
+            old.upgrade(&robot).and_then(|new| new.resolve()).map(|(_, values)| values[0])
+        };
+        let part = "part of the step still has the command before";
+        assert_eq!(legacy("latency", part, 0.5), Some(0.5 * robot.step_ms));
+        assert_eq!(legacy("saturation", "a limit", 50.0), Some(0.5 * robot.full_speed_cm_s));
+        assert_eq!(legacy("sonar_yaw", "a turned axis", 0.1), Some(0.1f64.to_degrees()));
+        assert_eq!(legacy("latency", "another sentence", 0.5), None);
+    }
+}

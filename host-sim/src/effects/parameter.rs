@@ -1,0 +1,178 @@
+//! The parameters of effects: named, with a unit, physical bounds and a prior.
+
+use serde_json::{Value, json};
+
+use crate::geometry::wrap_rad;
+use crate::logs::Robot;
+use crate::statistics::maximise::Bounds;
+
+/// A number that is fitted.
+#[derive(Clone, Copy, Debug)]
+pub struct Parameter {
+    /// Its name in files and programs.
+    pub name: &'static str,
+    /// Its unit; empty for a share, a factor or a probability.
+    pub unit: &'static str,
+    /// With this value the parameter changes nothing, or has no say once the others change nothing.
+    pub nominal: f64,
+    /// Least and largest value that is physically possible, in the parameter's unit.
+    pub bounds: [f64; 2],
+    /// Standard deviation of the normal prior about the nominal value; infinite where every value is as likely.
+    pub prior_sd: f64,
+    /// A change that would be large.
+    pub scale: f64,
+    /// Where fits start.
+    pub guesses: Guesses,
+    /// How it is reported.
+    pub report: Report,
+}
+
+/// Where fits of a parameter start.
+#[derive(Clone, Copy, Debug)]
+pub enum Guesses {
+    /// At these values.
+    At(&'static [f64]),
+    /// At these shares of the largest wheel speed that the logs command.
+    OfTopSpeed(&'static [f64]),
+    /// At every so many units between the bounds: for a parameter whose likelihood has many maxima.
+    Every(f64),
+}
+
+/// How a parameter is reported, by the names of the table in docs/formats.md.
+#[derive(Clone, Copy, Debug)]
+pub enum Report {
+    /// Not at all: it describes the form, not the effect.
+    Hidden,
+    /// As it is, by its own name.
+    Value,
+    /// An angle within (-180, 180], by its own name.
+    Direction,
+    /// The side that its sign means (positive: left), and its magnitude as `loss`.
+    SideAndLoss,
+    /// The side that its sign means (positive: left), and one minus its magnitude as `factor`.
+    SideAndFactor,
+    /// A wheel speed, as the command that asks for it.
+    Command,
+    /// A change of wheel speed, as `onset` in commands.
+    Onset,
+    /// A time, as `steps`.
+    Steps,
+    /// A loss of log-odds, as the `factor` on the odds.
+    OddsFactor,
+}
+
+impl Parameter {
+    /// A parameter without a prior that is fitted from its nominal value and reported as it is.
+    pub const fn new(unit: &'static str, nominal: f64, bounds: [f64; 2]) -> Self {
+        Parameter {
+            name: "",
+            unit,
+            nominal,
+            bounds,
+            prior_sd: f64::INFINITY,
+            scale: bounds[1] - bounds[0],
+            guesses: Guesses::At(&[]),
+            report: Report::Value,
+        }
+    }
+
+    /// The same with a normal prior about the nominal value, within five standard deviations of which everything
+    /// plausible lies.
+    pub const fn prior_sd(self, prior_sd: f64) -> Self {
+        Parameter { prior_sd, ..self.scale(5.0 * prior_sd) }
+    }
+
+    /// The same with another large change, where that is less than from bound to bound.
+    pub const fn scale(self, scale: f64) -> Self {
+        Parameter { scale: if scale < self.scale { scale } else { self.scale }, ..self }
+    }
+
+    /// The same with starts for its fit.
+    pub const fn from(self, guesses: Guesses) -> Self {
+        Parameter { guesses, ..self }
+    }
+
+    /// The same with another way to report it.
+    pub const fn report(self, report: Report) -> Self {
+        Parameter { report, ..self }
+    }
+
+    /// Bounds for a fit.
+    pub fn fit_bounds(&self) -> Bounds {
+        let [low, high] = self.bounds;
+        Bounds { low, high, scale: self.scale }
+    }
+
+    /// Whether a value is possible.
+    pub fn allows(&self, value: f64) -> bool {
+        (self.bounds[0]..=self.bounds[1]).contains(&value)
+    }
+
+    /// Logarithm of the prior's density relative to its maximum.
+    pub fn log_prior(&self, value: f64) -> f64 {
+        let z = (value - self.nominal) / self.prior_sd;
+        -0.5 * z * z
+    }
+
+    pub(super) fn guesses(&self, top_speed_cm_s: f64) -> Vec<f64> {
+        let [low, high] = self.bounds;
+        let guesses: Vec<f64> = match self.guesses {
+            Guesses::At(values) => values.to_vec(),
+            Guesses::OfTopSpeed(shares) => shares.iter().map(|share| share * top_speed_cm_s).collect(),
+            Guesses::Every(step) => (0..=((high - low) / step) as usize).map(|i| low + i as f64 * step).collect(),
+        };
+        if guesses.is_empty() { vec![self.nominal] } else { guesses.iter().map(|g| g.clamp(low, high)).collect() }
+    }
+
+    pub(super) fn reported(&self, value: f64, robot: &Robot) -> Vec<(String, Value)> {
+        let side = || json!(if value > 0.0 { "left" } else { "right" });
+        let command = 100.0 * value / robot.full_speed_cm_s;
+        let reported = match self.report {
+            Report::Hidden => vec![],
+            Report::Value => vec![(self.name, three_digits(value))],
+            Report::Direction => vec![(self.name, json!((wrap_rad(value.to_radians()).to_degrees() * 10.0).round() / 10.0))],
+            Report::SideAndLoss => vec![("side", side()), ("loss", three_digits(value.abs()))],
+            Report::SideAndFactor => vec![("side", side()), ("factor", three_digits(1.0 - value.abs()))],
+            Report::Command => vec![("command", three_digits(command))],
+            Report::Onset => vec![("onset", three_digits(command))],
+            Report::Steps => vec![("steps", three_digits(value / robot.step_ms))],
+            Report::OddsFactor => vec![("factor", three_digits(libm::exp(-value)))],
+        };
+        reported.into_iter().map(|(name, value)| (name.into(), value)).collect()
+    }
+}
+
+fn three_digits(value: f64) -> Value {
+    json!(format!("{value:.2e}").parse::<f64>().unwrap_or(value))
+}
+
+/// Declares the parameters of a variant once: as a struct whose fields a hook reads by name, and as data.
+///
+/// ```text
+/// parameters! {
+///     Fading {
+///         /// Share of speed lost per minute. Bound: …
+///         loss_per_min: Parameter::new("1/min", 0.0, [0.0, 0.9]),
+///     }
+/// }
+/// ```
+/// makes `Fading::PARAMETERS` and `Fading::read(values)`.
+macro_rules! parameters {
+    ($(#[$about:meta])* $name:ident { $($(#[$meaning:meta])* $field:ident: $parameter:expr,)* }) => {
+        $(#[$about])*
+        struct $name {
+            $($(#[$meaning])* $field: f64,)*
+        }
+
+        impl $name {
+            const PARAMETERS: &'static [$crate::effects::Parameter] =
+                &[$($crate::effects::Parameter { name: stringify!($field), ..$parameter },)*];
+
+            fn read(values: &[f64]) -> Self {
+                let [$($field),*] = values else { unreachable!("one value for each parameter") };
+                $name { $($field: *$field),* }
+            }
+        }
+    };
+}
+pub(super) use parameters;

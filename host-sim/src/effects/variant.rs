@@ -1,0 +1,89 @@
+//! An effect as data: its id, its variants, their parameters and hooks.
+
+use serde_json::{Map, Value};
+
+use super::context::{CommandHistory, StepContext};
+use super::parameter::Parameter;
+use super::pose_increment::PoseIncrement;
+use crate::geometry::Pose;
+use crate::logs::Robot;
+use crate::sonar::Perturbation;
+
+/// Something that is there in reality and not in the simulator.
+pub struct Effect {
+    /// Its id in the table of docs/formats.md.
+    pub id: &'static str,
+    /// The functional forms in which it may show.
+    pub variants: &'static [Variant],
+}
+
+/// One functional form of an effect.
+pub struct Variant {
+    /// Unique among the variants of its effect, and stable: users' files hold it.
+    pub id: &'static str,
+    /// What is fitted.
+    pub parameters: &'static [Parameter],
+    /// What it changes.
+    pub hooks: &'static [Hook],
+}
+
+/// A change to one stage of a step; parameters come in the order of [`Variant::parameters`].
+pub enum Hook {
+    /// To the commands that reach the motors, for every step of the history.
+    Commands(&'static (dyn Fn(&[f64], &StepContext, &mut CommandHistory) + Sync)),
+    /// To the increment of the pose that the tracker sees.
+    Motion(&'static (dyn Fn(&[f64], &StepContext, &mut PoseIncrement) + Sync)),
+    /// To the sensor.
+    Sensor(&'static (dyn Fn(&[f64], &StepContext, &mut SensorState) + Sync)),
+}
+
+/// The sensor at a row, as effects leave it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SensorState {
+    /// Where the robot is when the reading is made.
+    pub robot: Pose,
+    /// Rotation of the sensor's axis to the left of where it is mounted.
+    pub yaw_rad: f64,
+    /// Factor on the width of the beam.
+    pub width: f64,
+    /// What becomes of the echoes.
+    pub perturbation: Perturbation,
+}
+
+impl Variant {
+    /// The parameters with which it changes nothing.
+    pub fn nominal(&self) -> Vec<f64> {
+        self.parameters.iter().map(|p| p.nominal).collect()
+    }
+
+    /// Where fits start: all combinations of the parameters' guesses. `top_speed_cm_s` is the largest wheel speed that
+    /// the logs command.
+    pub fn initial_guesses(&self, top_speed_cm_s: f64) -> Vec<Vec<f64>> {
+        self.parameters.iter().fold(vec![Vec::new()], |so_far, parameter| {
+            let guesses = parameter.guesses(top_speed_cm_s);
+            so_far.iter().flat_map(|start| guesses.iter().map(move |g| [start.as_slice(), &[*g]].concat())).collect()
+        })
+    }
+
+    /// The parameters as the table of docs/formats.md names them.
+    pub fn reported(&self, values: &[f64], robot: &Robot) -> Map<String, Value> {
+        self.parameters.iter().zip(values).flat_map(|(p, value)| p.reported(*value, robot)).collect()
+    }
+
+    /// Whether it changes what the robot does or how that is seen.
+    pub fn moves(&self) -> bool {
+        self.hooks.iter().any(|hook| matches!(hook, Hook::Commands(_) | Hook::Motion(_)))
+    }
+
+    /// Whether it changes what the sensor says.
+    pub fn senses(&self) -> bool {
+        self.hooks.iter().any(|hook| matches!(hook, Hook::Sensor(_)))
+    }
+}
+
+impl SensorState {
+    /// The sensor of a robot at `robot` that no effect changes.
+    pub fn nominal(robot: Pose) -> Self {
+        SensorState { robot, yaw_rad: 0.0, width: 1.0, perturbation: Perturbation::NONE }
+    }
+}
