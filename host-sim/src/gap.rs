@@ -1,26 +1,26 @@
 //! The gap between a simulator and logs: where it lies, which effect causes it, and how far it shrinks.
 //!
-//! [`diagnose`] answers with a [`Diagnosis`]. A hypothesis is one or more [`effects`], each a wrapper round a step of the
-//! [`baseline`]; [`search`] fits it and judges it on runs that it was not fitted on, [`explanation`] settles on the
-//! effects that hold, [`generic`] bounds what any effect could explain, and [`verdict`] weighs it all by thresholds that
-//! [`calibration`] holds.
+//! [`diagnose`] is the method, stage by stage: validate, condition, fit, compare, confirm, account, explain, propose.
+//! Each stage has a file of that name. A [hypothesis] is one or more [effects](crate::effects) round a step of the
+//! [baseline](crate::simulator::baseline); the [omnibus] residual model bounds what any effect could explain; the
+//! thresholds are those of the [calibration].
 
-pub mod admission;
+pub mod account;
 pub mod calibration;
 pub mod channel;
-pub mod circumstances;
-pub mod confirmation;
-pub mod contexts;
+pub mod compare;
+pub mod condition;
+pub mod confirm;
+pub mod diagnose;
 pub mod diagnosis;
 pub mod excitation;
-pub mod experiment;
-pub mod explanation;
-pub mod generic;
+pub mod explain;
+pub mod fit;
 pub mod hypothesis;
-pub mod scripts;
-pub mod search;
-pub mod shape;
-pub mod shrink;
-pub mod verdict;
+pub mod omnibus;
+pub mod propose;
+pub mod remainder;
+pub mod validate;
 
-pub use diagnosis::{Diagnosis, Findings, closed, diagnose, findings};
+pub use diagnose::{Findings, Method, diagnose, findings};
+pub use diagnosis::Diagnosis;

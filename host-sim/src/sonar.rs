@@ -15,7 +15,7 @@ pub const STRENGTHS: usize = 10;
 /// Beyond this nothing changes any more, cm.
 pub const FAR_CM: f64 = 300.0;
 /// The chance of a reading from nowhere: no model is certain.
-const STRAY: f64 = 0.003;
+pub const STRAY: f64 = 0.003;
 /// A constant reading scatters by about this, cm.
 const CONSTANT_SCATTER_CM: f64 = 0.8;
 

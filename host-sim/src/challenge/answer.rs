@@ -10,7 +10,7 @@ use rayon::prelude::*;
 use super::Folder;
 use super::seal::Published;
 use crate::files;
-use crate::gap::findings;
+use crate::gap::{Method, findings};
 use crate::learn::train::{TABLE_ONE, Trainer, train};
 use crate::logs::Logs;
 use crate::problem::{Problem, Result};
@@ -40,9 +40,9 @@ pub fn answer(folder: &Path, watch: impl Fn(usize) + Sync) -> Result<usize> {
     let done = AtomicUsize::new(0);
     cases.par_iter().try_for_each(|case| {
         let logs = Logs::read(&folder.case(&case.case), |_| {})?;
-        let found = findings(Baseline::learned(&simulators[case.robot.as_str()])?, &logs)?;
+        let found = findings(Baseline::learned(&simulators[case.robot.as_str()])?, &logs, Method::default())?;
         files::write_json(&folder.answer(&case.case), &found.diagnosis)?;
-        files::write_json(&folder.added(&case.case), &found.added)?;
+        files::write_json(&folder.added(&case.case), &found.applied)?;
         watch(done.fetch_add(1, Ordering::Relaxed) + 1);
         Ok(())
     })?;

@@ -12,10 +12,11 @@ use serde::Serialize;
 use super::answer::learn;
 use super::cases::{self, Case};
 use crate::built_in_robot::Effect;
+use crate::gap::Method;
 use crate::gap::calibration::Calibration;
-use crate::gap::diagnosis::{explained, first_signs};
-use crate::gap::explanation::Signs;
-use crate::gap::search::Gain;
+use crate::gap::diagnose::{confirmed, statistics};
+use crate::gap::explain::explained_fraction;
+use crate::gap::fit::Gain;
 use crate::logs::Logs;
 use crate::problem::{Problem, Result};
 use crate::simulator::Simulator;
@@ -34,17 +35,17 @@ pub struct Measured {
     pub effect_nats: f64,
     /// and in standard errors.
     pub effect_z: f64,
-    /// The most that the generic learner gains in a channel; nothing where effects are sought.
-    pub learner_nats: f64,
+    /// The most that the omnibus residual model gains in a channel; nothing where effects are sought.
+    pub remainder_nats: f64,
     /// The same in standard errors.
-    pub learner_z: f64,
+    pub remainder_z: f64,
     /// The effect that was named first; empty when none was.
     pub first: String,
     /// The share of what could be explained that the effects explain.
-    pub adequacy: f64,
-    /// The weight of an effect that is there: one when it is the first, zero when it is none of the rivals.
-    pub weight_of_truth: f64,
-    /// Weights of the effects that could be in the first one's place.
+    pub explained_fraction: f64,
+    /// Relative likelihood of an effect that is there: one when it is the first, zero when it is none of the rivals.
+    pub likelihood_of_truth: f64,
+    /// Relative likelihoods of the effects that could be in the first one's place.
     #[serde(skip)]
     pub rivals: Vec<f64>,
 }
@@ -93,25 +94,34 @@ impl Bench {
 
     fn without_effect(&self, number: usize) -> Result<Measured> {
         let (case, baseline) = self.case(number)?;
-        let Signs { effect, learner, rows } = first_signs(baseline, &case.logs)?;
-        Ok(Measured { learner_nats: learner.nats, learner_z: learner.z(), ..Measured::of(&case, rows, effect) })
+        let statistics = statistics(baseline, &case.logs, Method::default())?;
+        let remainder = statistics.remainder;
+        Ok(Measured {
+            remainder_nats: remainder.nats,
+            remainder_z: remainder.z(),
+            ..Measured::of(&case, statistics.rows, statistics.effect)
+        })
     }
 
     fn with_effects(&self, number: usize, calibration: Calibration) -> Result<Measured> {
         let (case, baseline) = self.case(number)?;
-        let explanation = explained(baseline, &case.logs, calibration)?;
-        let rows = explanation.none.terms.total().len();
-        let measured = Measured::of(&case, rows, explanation.chosen.gain_over(&explanation.none));
-        let Some(first) = explanation.named().into_iter().next() else { return Ok(measured) };
-        let place = explanation.chosen.ids().iter().position(|id| *id == first.id).unwrap_or(0);
-        let rivals = explanation.weights_in_place_of(place);
+        let method = Method { calibration, ..Method::default() };
+        let found = confirmed(baseline, &case.logs, method)?;
+        let measured = Measured::of(&case, found.none.log_likelihood.motion.len(), found.chosen.gain_over(&found.none));
+        let ids = found.chosen.ids();
+        // The effect with the least doubt is the one that is named first.
+        let rivals = (0..ids.len()).map(|place| (place, found.likelihoods_in_place_of(place, &calibration)));
+        let doubt = |rivals: &[(&str, f64)]| rivals.iter().map(|(_, likelihood)| likelihood).sum::<f64>();
+        let Some((place, rivals)) = rivals.min_by(|a, b| doubt(&a.1).total_cmp(&doubt(&b.1))) else {
+            return Ok(measured);
+        };
         let is_there = |id: &str| case.effects.iter().any(|active| active.effect.id() == id);
-        let among_rivals = rivals.iter().find(|(id, _)| is_there(id)).map_or(0.0, |(_, weight)| *weight);
+        let among_rivals = rivals.iter().find(|(id, _)| is_there(id)).map_or(0.0, |(_, likelihood)| *likelihood);
         Ok(Measured {
-            first: first.id.into(),
-            adequacy: explanation.adequacy(),
-            weight_of_truth: if is_there(first.id) { 1.0 } else { among_rivals },
-            rivals: rivals.iter().map(|(_, weight)| *weight).collect(),
+            first: ids[place].into(),
+            explained_fraction: explained_fraction(&found),
+            likelihood_of_truth: if is_there(ids[place]) { 1.0 } else { among_rivals },
+            rivals: rivals.iter().map(|(_, likelihood)| *likelihood).collect(),
             ..measured
         })
     }
@@ -126,11 +136,11 @@ impl Measured {
             rows,
             effect_nats: effect.nats,
             effect_z: effect.z(),
-            learner_nats: 0.0,
-            learner_z: 0.0,
+            remainder_nats: 0.0,
+            remainder_z: 0.0,
             first: String::new(),
-            adequacy: 0.0,
-            weight_of_truth: 0.0,
+            explained_fraction: 0.0,
+            likelihood_of_truth: 0.0,
             rivals: Vec::new(),
         }
     }

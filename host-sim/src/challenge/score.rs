@@ -11,8 +11,8 @@ use super::seal::{Published, Sealed};
 use crate::built_in_robot::{ActiveEffect, Driving, Effect, record_driving};
 use crate::effects::applied::AppliedEffect;
 use crate::files;
-use crate::gap::verdict::Verdict;
-use crate::gap::{Diagnosis, closed};
+use crate::gap::diagnose::closed;
+use crate::gap::diagnosis::Verdict;
 use crate::logs::Logs;
 use crate::problem::{Problem, Result};
 use crate::simulator::Simulator;
@@ -94,8 +94,28 @@ pub struct Score {
 /// A case with its answer.
 struct Opened {
     sealed: Sealed,
-    answer: Diagnosis,
+    answer: Answered,
     closed_on_fresh_runs: Option<f64>,
+}
+
+/// What is scored of a diagnosis as it was written.
+#[derive(Deserialize)]
+struct Answered {
+    verdict: Verdict,
+    effects: Vec<AnsweredEffect>,
+    shrink: Option<AnsweredReduction>,
+}
+
+#[derive(Deserialize)]
+struct AnsweredEffect {
+    id: String,
+    probability: f64,
+    ambiguous_with: Vec<String>,
+}
+
+#[derive(Deserialize)]
+struct AnsweredReduction {
+    reducible_closed: f64,
 }
 
 /// Opens the seal of a challenge and scores its answers.

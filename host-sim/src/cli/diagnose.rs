@@ -9,7 +9,7 @@ use crate::effects::applied::AppliedEffect;
 use crate::evaluation::final_position::{FinalPositions, endings};
 use crate::evolve::controller_file::ControllerFile;
 use crate::files;
-use crate::gap::{Findings, admission, findings};
+use crate::gap::{Findings, Method, findings, validate};
 use crate::logs::Logs;
 use crate::problem::{Problem, Result};
 use crate::simulator::Simulator;
@@ -49,14 +49,14 @@ impl Diagnose {
         let logs = super::read_logs(&self.logs)?;
         let simulator = if self.sim.as_os_str() == KINEMATIC { None } else { Some(Simulator::read(&self.sim)?) };
         let mut found = match &simulator {
-            None => findings(kinematic::baseline(&logs), &logs)?,
+            None => findings(kinematic::baseline(&logs), &logs, Method::default())?,
             Some(simulator) => {
-                admission::same_robot(&simulator.robot, &logs.robot)?;
-                findings(Baseline::learned(simulator)?, &logs)?
+                validate::same_robot(&simulator.robot, &logs.robot)?;
+                findings(Baseline::learned(simulator)?, &logs, Method::default())?
             }
         };
         if let Some(path) = &self.controller {
-            found.diagnosis.endings = Some(ends(simulator.as_ref(), &found.added, path, &logs)?);
+            found.diagnosis.final_positions = Some(ends(simulator.as_ref(), &found.applied, path, &logs)?);
         }
         let diagnosis = &found.diagnosis;
         if let Some(path) = &self.apply {
@@ -70,7 +70,7 @@ impl Diagnose {
             files::write(path, diagnosis_page::page(diagnosis, &title))?;
         }
         let mut text = diagnosis_text::text(diagnosis);
-        match (&self.next_experiment, &found.experiment) {
+        match (&self.next_experiment, found.diagnosis.experiment()) {
             (Some(path), Some(experiment)) => experiment.commands.write(path)?,
             (Some(path), None) => text += &format!("No causes are confused: {} is not written.\n", path.display()),
             (None, _) => (),
@@ -82,14 +82,14 @@ impl Diagnose {
 /// Where the controller's runs end, with the simulator as it is and with the effects found.
 fn ends(
     simulator: Option<&Simulator>,
-    added: &[AppliedEffect],
+    applied: &[AppliedEffect],
     controller: &Path,
     logs: &Logs,
 ) -> Result<FinalPositions> {
     let simulator = simulator.ok_or_else(|| Problem::new("--controller needs a simulator file that can run it"))?;
     let controller = ControllerFile::read(controller)?.controller;
     let mut better = simulator.clone();
-    better.added.extend(added.iter().cloned());
+    better.added.extend(applied.iter().cloned());
     endings([simulator, &better], &controller, logs)
 }
 
@@ -98,9 +98,9 @@ fn with_effects(simulator: Option<Simulator>, found: &Findings) -> Result<Simula
     let Some(mut simulator) = simulator else {
         return Err(Problem::new("--apply needs a simulator file to add effects to"));
     };
-    if found.added.is_empty() {
+    if found.applied.is_empty() {
         return Err(Problem::new("--apply: no known effect explains a gap here, so there is nothing to add"));
     }
-    simulator.added.extend(found.added.iter().cloned());
+    simulator.added.extend(found.applied.iter().cloned());
     Ok(simulator)
 }

@@ -127,7 +127,11 @@ mod tests {
     const TOP_SPEED_CM_S: f64 = 41.0;
 
     /// What comes of a step: commands, increment, sensor.
-    fn applied(variant: &'static Variant, values: &[f64], context: &StepContext) -> (CommandHistory, PoseIncrement, SensorState) {
+    fn applied(
+        variant: &'static Variant,
+        values: &[f64],
+        context: &StepContext,
+    ) -> (CommandHistory, PoseIncrement, SensorState) {
         let effects = EffectChain::default().with(&[variant], values);
         let mut commands = [[0.0; 2]; 7];
         let increment = effects.wrap(context, |now, before| {

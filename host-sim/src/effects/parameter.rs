@@ -130,7 +130,9 @@ impl Parameter {
         let reported = match self.report {
             Report::Hidden => vec![],
             Report::Value => vec![(self.name, three_digits(value))],
-            Report::Direction => vec![(self.name, json!((wrap_rad(value.to_radians()).to_degrees() * 10.0).round() / 10.0))],
+            Report::Direction => {
+                vec![(self.name, json!((wrap_rad(value.to_radians()).to_degrees() * 10.0).round() / 10.0))]
+            }
             Report::SideAndLoss => vec![("side", side()), ("loss", three_digits(value.abs()))],
             Report::SideAndFactor => vec![("side", side()), ("factor", three_digits(1.0 - value.abs()))],
             Report::Command => vec![("command", three_digits(command))],

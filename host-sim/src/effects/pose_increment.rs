@@ -27,6 +27,13 @@ impl PoseIncrement {
         pose.compose(&Pose::new(self.forward_cm, self.lateral_cm, self.turn_rad))
     }
 
+    /// Scales translation and turn alike.
+    pub fn scale(&mut self, factor: f64) {
+        self.forward_cm *= factor;
+        self.lateral_cm *= factor;
+        self.turn_rad *= factor;
+    }
+
     /// Rotates the translation and leaves the turn.
     pub fn rotate_translation(&mut self, angle_rad: f64) {
         let translation = direction(angle_rad).rotate(DVec2::new(self.forward_cm, self.lateral_cm));

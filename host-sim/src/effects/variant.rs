@@ -75,6 +75,19 @@ impl Variant {
         self.hooks.iter().any(|hook| matches!(hook, Hook::Commands(_) | Hook::Motion(_)))
     }
 
+    /// Whether at these parameters all that it does at a step is to scatter readings more.
+    pub fn only_widens_scatter(&self, values: &[f64], step: &StepContext) -> bool {
+        let mut state = SensorState::nominal(step.pose);
+        for hook in self.hooks {
+            if let Hook::Sensor(change) = hook {
+                change(values, step, &mut state);
+            }
+        }
+        let widened = state.perturbation.scatter_cm > 0.0;
+        state.perturbation.scatter_cm = 0.0;
+        widened && state == SensorState::nominal(step.pose) && !self.moves()
+    }
+
     /// Whether it changes what the sensor says.
     pub fn senses(&self) -> bool {
         self.hooks.iter().any(|hook| matches!(hook, Hook::Sensor(_)))

@@ -49,7 +49,7 @@ pub struct Observation {
 }
 
 /// With fewer runs than this each is cut into parts, so that there is a scatter between blocks.
-const FEWEST_BLOCKS: usize = 8;
+pub const FEWEST_BLOCKS: usize = 8;
 
 impl Observations {
     /// Takes all that counts out of logs, for a sensor whose beam is `fan_width` times as wide as the usual fan.
@@ -122,7 +122,8 @@ impl Observations {
 
     /// The largest wheel speed that is commanded, cm/s.
     pub fn top_speed_cm_s(&self) -> f64 {
-        let speeds = self.rows.iter().flat_map(|row| row.context.commands[0].map(|c| row.context.wheel_speed_cm_s(c).abs()));
+        let speeds =
+            self.rows.iter().flat_map(|row| row.context.commands[0].map(|c| row.context.wheel_speed_cm_s(c).abs()));
         speeds.fold(0.0, f64::max)
     }
 }

@@ -3,26 +3,31 @@
 
 use glam::DVec2;
 use rand_distr::{Distribution, StandardNormal};
+use serde::Serialize;
 
 use super::observations::{Observation, Observations};
 use super::predictions;
 use crate::chance::{Generator, generator};
-use crate::effects::chain::EffectChain;
 use crate::effects::StepContext;
+use crate::effects::chain::EffectChain;
 use crate::geometry::{Pose, direction};
 use crate::simulator::baseline::Drive;
+use crate::statistics::rounding;
 use crate::statistics::summary::median;
 
 /// The median distance between predicted and logged ends of paths.
-#[derive(Clone, Copy, Debug)]
-pub struct PathGap {
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct PathError {
     /// Length of a path in steps.
     pub steps: usize,
     /// With the simulator as it is, cm.
+    #[serde(serialize_with = "rounding::number")]
     pub before_cm: f64,
     /// With the effects added, cm.
+    #[serde(serialize_with = "rounding::number")]
     pub after_cm: f64,
     /// What the robot's own scatter and the tracker's would make of a perfect simulator, cm.
+    #[serde(serialize_with = "rounding::number")]
     pub floor_cm: f64,
 }
 
@@ -33,7 +38,7 @@ const DRAWS: usize = 8;
 
 /// The gap over paths of each length that the runs are long enough for, with the effects that the simulator has
 /// (`before`) and with those that were found (`after`).
-pub fn open_loop(before: &EffectChain, after: &EffectChain, drive: &Drive, logs: &Observations) -> Vec<PathGap> {
+pub fn open_loop(before: &EffectChain, after: &EffectChain, drive: &Drive, logs: &Observations) -> Vec<PathError> {
     let mut rng = generator(4, &[]);
     LENGTHS.iter().filter_map(|steps| gap(*steps, before, after, drive, logs, &mut rng)).collect()
 }
@@ -45,7 +50,7 @@ fn gap(
     drive: &Drive,
     logs: &Observations,
     rng: &mut Generator,
-) -> Option<PathGap> {
+) -> Option<PathError> {
     let starts = (0..logs.rows.len().saturating_sub(steps)).step_by(steps.div_ceil(2));
     let pieces: Vec<&[Observation]> = starts.map(|i| &logs.rows[i..=i + steps]).filter(|p| is_unbroken(p)).collect();
     let ends = |effects: &EffectChain| -> Vec<DVec2> {
@@ -61,7 +66,7 @@ fn gap(
             (0..DRAWS).map(|_| noise.drawn(after, drive, piece, rng).distance(*end)).collect::<Vec<_>>()
         })
         .collect();
-    (!pieces.is_empty()).then(|| PathGap {
+    (!pieces.is_empty()).then(|| PathError {
         steps,
         before_cm: median(ends(before).iter().zip(logged.clone()).map(|(a, b)| a.distance(b))),
         after_cm: median(predicted.iter().zip(logged).map(|(a, b)| a.distance(b))),

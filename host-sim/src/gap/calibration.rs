@@ -1,42 +1,72 @@
-//! The thresholds of a diagnosis, as `mindgap challenge calibrate` settled them on cases with known answers.
-//!
-//! Whatever is decided by how often a diagnosis may be wrong is here; what follows from the shape of the problem is a
-//! constant beside the code that uses it.
+//! The thresholds of a diagnosis: those that `mindgap challenge calibrate` settled on cases with known answers, and those
+//! that follow from a convention or a judgement, whose sensitivity `mindgap challenge sensitivity` measures.
 
 use std::sync::LazyLock;
 
 use serde::{Deserialize, Serialize};
 
-/// Thresholds and probabilities.
+/// Everything that decides between one answer and another.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Calibration {
-    /// Rows of evidence that the gates are set for.
+    /// Number of rows that the gates are set for.
     pub rows: f64,
-    /// Of what could be explained the effects have to explain this share to be the cause.
+    /// Share of what could be explained that effects have to explain to be the cause.
     pub adequate: f64,
-    /// How sharply adequacy decides: the width of a logistic curve.
+    /// Width of the logistic curve by which that share decides.
     pub adequacy_width: f64,
-    /// A rival with at least this share of the winner's weight is named beside it.
+    /// A rival with at least this relative likelihood is named beside the winner.
     pub rival: f64,
-    /// Weights of rivals are raised to one over this: above one, doubt weighs more than its nats say.
+    /// Relative likelihoods of rivals are raised to one over this: above one, doubt weighs more than its nats say.
     pub temperature: f64,
-    /// How often the plainest answer is right.
-    pub trust: f64,
-    /// An effect counts from here on.
+    /// How often the plainest answer is right: no answer is surer.
+    pub accuracy_cap: f64,
+    /// When an effect counts.
     pub effect: Gate,
-    /// What the generic learner explains in a channel counts from here on.
-    pub leftover: Gate,
+    /// When what the omnibus residual model explains in a channel counts.
+    pub remainder: Gate,
+    /// What calibration does not touch.
+    pub judgement: Judgement,
 }
 
-/// From where on a gain on held-out runs counts.
+/// When a gain on held-out runs counts.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Gate {
-    /// So many nats,
+    /// Least gain in nats.
     pub nats: f64,
-    /// and so many standard errors.
+    /// Least gain in standard errors.
     pub z: f64,
+}
+
+/// Thresholds by convention or judgement; docs/measurements.md has their sensitivity.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Judgement {
+    /// Price of a fitted parameter, and the least difference between fits, nats: Akaike's (1974).
+    pub parameter_nats: f64,
+    /// Strong evidence, nats: odds of 20 to 1 (Kass and Raftery 1995). Held-out runs have to confirm with it, smaller leads
+    /// over a rival or gaps of a channel are not told, and an effect that promises less is untestable.
+    pub strong_nats: f64,
+    /// Another effect can stand for one that it lags by no more than this many standard errors.
+    pub rival_z: f64,
+    /// An effect for which more others can stand has to gain `vague_factor` times as much: the misfit of a simulator is a
+    /// bit like many effects.
+    pub most_rivals: usize,
+    /// See `most_rivals`.
+    pub vague_factor: f64,
+    /// An effect for which more others can stand is no cause that anybody could act on: the gap stays unknown.
+    pub most_ambiguous: usize,
+    /// A further effect on the same stage has to gain this share of what is explained already: less is within reach of a
+    /// variant whose form is not quite right.
+    pub further_share: f64,
+    /// The same in standard errors.
+    pub further_z: f64,
+    /// Most effects that are named together.
+    pub most_effects: usize,
+    /// Scatter counts from this multiple of the simulator's on: five standard errors of a standard deviation that is
+    /// estimated from a thousand rows.
+    pub scatter_ratio: f64,
 }
 
 /// The file that `mindgap challenge calibrate` wrote.
@@ -52,15 +82,15 @@ impl Calibration {
         *CALIBRATION
     }
 
-    /// The same for evidence of so many rows: what the simulator's own misfit feigns grows with them, and so do the
-    /// nats that are asked for.
+    /// The same for this many rows: what the simulator's own misfit feigns grows with them, and so do the nats that are
+    /// asked for.
     pub fn for_rows(self, rows: usize) -> Self {
         let growth = self.growth(rows);
         let grown = |gate: Gate| Gate { nats: gate.nats * growth, ..gate };
-        Calibration { effect: grown(self.effect), leftover: grown(self.leftover), ..self }
+        Calibration { effect: grown(self.effect), remainder: grown(self.remainder), ..self }
     }
 
-    /// How much more is asked for with so many rows; never less, since what chance feigns does not shrink.
+    /// How much more is asked for with this many rows; never less, since what chance feigns does not shrink.
     pub fn growth(&self, rows: usize) -> f64 {
         (rows as f64 / self.rows).max(1.0)
     }
@@ -69,6 +99,27 @@ impl Calibration {
     pub fn to_text(&self, command: &str) -> String {
         let figures = toml::to_string(self).expect("numbers can be written");
         format!("# Made by: {command}\n{figures}")
+    }
+}
+
+impl Judgement {
+    /// What diagnoses are calibrated with.
+    pub const USUAL: Judgement = Judgement {
+        parameter_nats: 1.0,
+        strong_nats: 3.0,
+        rival_z: 2.0,
+        most_rivals: 3,
+        vague_factor: 2.0,
+        most_ambiguous: 5,
+        further_share: 0.08,
+        further_z: 3.5,
+        most_effects: 3,
+        scatter_ratio: 1.12,
+    };
+
+    /// Relative likelihood of a rival that lags by `rival_z` standard errors.
+    pub fn rival_likelihood(&self) -> f64 {
+        libm::exp(-0.5 * self.rival_z * self.rival_z)
     }
 }
 
@@ -81,15 +132,16 @@ mod tests {
         let command = SHIPPED.lines().next().and_then(|line| line.strip_prefix("# Made by: ")).expect("a first line");
         assert!(command.starts_with("mindgap challenge calibrate --cases "), "{command}");
         assert_eq!(Calibration::shipped().to_text(command), SHIPPED);
+        assert_eq!(Calibration::shipped().judgement, Judgement::USUAL);
     }
 
     #[test]
     fn thresholds_are_possible() {
-        let Calibration { rows, effect, leftover, adequate, adequacy_width, rival, temperature, trust } =
+        let Calibration { rows, effect, remainder, adequate, adequacy_width, rival, temperature, accuracy_cap, .. } =
             Calibration::shipped();
-        assert!([effect, leftover].iter().all(|gate| gate.nats > 0.0 && gate.z > 0.0));
-        assert!([adequate, rival, trust].iter().all(|share| (0.0..=1.0).contains(share)));
-        assert!(rows > 0.0 && adequacy_width > 0.0 && temperature >= 1.0);
+        assert!([effect, remainder].iter().all(|gate| gate.nats > 0.0 && gate.z > 0.0));
+        assert!([adequate, rival, accuracy_cap].iter().all(|share| (0.0..=1.0).contains(share)));
+        assert!(rows > 0.0 && adequacy_width > 0.0 && temperature > 0.0);
     }
 
     #[test]
@@ -98,6 +150,6 @@ mod tests {
         assert_eq!(shipped.for_rows(10), shipped);
         let twice = shipped.for_rows(2000);
         assert_eq!(twice.effect, Gate { nats: 2.0 * shipped.effect.nats, ..shipped.effect });
-        assert_eq!(twice.leftover, Gate { nats: 2.0 * shipped.leftover.nats, ..shipped.leftover });
+        assert_eq!(twice.remainder, Gate { nats: 2.0 * shipped.remainder.nats, ..shipped.remainder });
     }
 }

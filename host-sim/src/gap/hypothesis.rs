@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use super::channel::Channel;
 use crate::effects::chain::EffectChain;
-use crate::effects::effect::Variant;
+use crate::effects::{Candidate, Parameter};
 use crate::evaluation::observations::{Observation, Observations};
 use crate::evaluation::predictions::{facing, residual};
 use crate::simulator::baseline::Baseline;
@@ -17,19 +17,19 @@ pub struct Hypothesis {
     /// What the simulator has already, with its parameters.
     given: EffectChain,
     /// One variant of each further effect.
-    pub forms: Vec<&'static Variant>,
+    pub candidates: Vec<Candidate>,
 }
 
-/// Log-likelihoods by row and channel.
+/// Log-likelihood of every row, by channel.
 #[derive(Clone, Debug)]
-pub struct Terms {
+pub struct LogLikelihood {
     /// Forward, lateral, turn.
     pub motion: Vec<[f64; 3]>,
     /// Echo rate, echo value.
     pub sonar: Vec<[f64; 2]>,
 }
 
-impl Terms {
+impl LogLikelihood {
     /// All channels of each row together.
     pub fn total(&self) -> Vec<f64> {
         let both = |(m, s): (&[f64; 3], &[f64; 2])| m.iter().sum::<f64>() + s.iter().sum::<f64>();
@@ -48,68 +48,80 @@ impl Terms {
     }
 }
 
-/// A step that is so much wider than usual counts as a jump of the tracker.
+/// Scatter of a jump of the tracker against that of a step: a jump of some tens of centimetres.
 const JUMP: f64 = 8.0;
-/// How often the tracker jumps, at most.
+/// Share of steps in which the tracker jumps, at most.
 const JUMPS: f64 = 0.01;
+/// A residual beyond this multiple of the usual scatter counts as that: jumps are no scatter.
+const FARTHEST: f64 = 4.0;
 
 impl Hypothesis {
     /// The simulator as it is.
     pub fn none(baseline: &Baseline) -> Self {
-        Hypothesis { given: EffectChain::of(&baseline.applied), forms: Vec::new() }
+        Hypothesis { given: EffectChain::of(&baseline.applied), candidates: Vec::new() }
     }
 
     /// The same simulator with these effects.
-    pub fn of(&self, forms: Vec<&'static Variant>) -> Self {
-        Hypothesis { given: self.given.clone(), forms }
+    pub fn of(&self, candidates: Vec<Candidate>) -> Self {
+        Hypothesis { given: self.given.clone(), candidates }
     }
 
     /// This and one more.
-    pub fn with(&self, form: &'static Variant) -> Self {
-        self.of(self.forms.iter().copied().chain([form]).collect())
+    pub fn with(&self, candidate: Candidate) -> Self {
+        self.of(self.candidates.iter().copied().chain([candidate]).collect())
     }
 
     /// The effects at given parameters.
     pub fn at(&self, values: &[f64]) -> EffectChain {
-        self.given.with(&self.forms, values)
+        let variants: Vec<_> = self.candidates.iter().map(|c| c.variant).collect();
+        self.given.with(&variants, values)
     }
 
     /// Bounds of all parameters.
     pub fn bounds(&self) -> Vec<Bounds> {
-        self.forms.iter().flat_map(|f| f.parameters.iter().map(|p| p.bounds)).collect()
+        self.parameters().map(Parameter::fit_bounds).collect()
+    }
+
+    /// Logarithm of the prior density of parameters, relative to its maximum.
+    pub fn log_prior(&self, values: &[f64]) -> f64 {
+        self.parameters().zip(values).map(|(parameter, value)| parameter.log_prior(*value)).sum()
+    }
+
+    fn parameters(&self) -> impl Iterator<Item = &'static Parameter> {
+        self.candidates.iter().flat_map(|c| c.variant.parameters)
     }
 
     /// The log-likelihood of every row at `values`; what the hypothesis does not touch is taken from `untouched`.
-    pub fn terms(
+    pub fn log_likelihood(
         &self,
         baseline: &Baseline,
-        evidence: &Observations,
+        observations: &Observations,
         values: &[f64],
-        untouched: Option<&Terms>,
-    ) -> Terms {
+        untouched: Option<&LogLikelihood>,
+    ) -> LogLikelihood {
         let kept = |touched: bool| untouched.filter(|_| !touched);
         let motion = || {
-            let scatter = self.scatter(baseline, evidence, values);
-            self.motion_terms(baseline, &evidence.rows, values, scatter)
+            let scatter = self.scatter(baseline, observations, values);
+            self.motion(baseline, &observations.rows, values, scatter)
         };
-        let sonar = || self.sonar_terms(baseline, evidence, 0..evidence.rows.len(), values);
-        Terms {
+        let sonar = || self.sonar(baseline, observations, 0..observations.rows.len(), values);
+        LogLikelihood {
             motion: kept(self.moves()).map_or_else(motion, |t| t.motion.clone()),
             sonar: kept(self.senses()).map_or_else(sonar, |t| t.sonar.clone()),
         }
     }
 
-    /// The same of rows that the hypothesis was not fitted on, with the scatter of those that it was fitted on.
-    pub fn terms_of_others(
+    /// The same with a given scatter: that of the rows on which the hypothesis was fitted.
+    pub fn log_likelihood_with(
         &self,
+        scatter: [f64; 3],
         baseline: &Baseline,
         others: &Observations,
         values: &[f64],
-        scatter: [f64; 3],
-    ) -> Terms {
-        Terms {
-            motion: self.motion_terms(baseline, &others.rows, values, scatter),
-            sonar: self.sonar_terms(baseline, others, 0..others.rows.len(), values),
+    ) -> LogLikelihood {
+        LogLikelihood {
+            motion: self.motion(baseline, &others.rows, values, scatter),
+            sonar: self.sonar(baseline, others, 0..others.rows.len(), values),
         }
     }
 
@@ -117,20 +129,20 @@ impl Hypothesis {
     pub fn of_block(
         &self,
         baseline: &Baseline,
-        evidence: &Observations,
+        observations: &Observations,
         block: usize,
         values: &[f64],
         scatter: [f64; 3],
-        untouched: &Terms,
+        untouched: &LogLikelihood,
     ) -> f64 {
-        let range = evidence.of_block(block);
+        let range = observations.of_block(block);
         let motion: f64 = if self.moves() {
-            self.motion_terms(baseline, &evidence.rows[range.clone()], values, scatter).as_flattened().iter().sum()
+            self.motion(baseline, &observations.rows[range.clone()], values, scatter).as_flattened().iter().sum()
         } else {
             untouched.motion[range.clone()].as_flattened().iter().sum()
         };
         let sonar: f64 = if self.senses() {
-            self.sonar_terms(baseline, evidence, range, values).as_flattened().iter().sum()
+            self.sonar(baseline, observations, range, values).as_flattened().iter().sum()
         } else {
             untouched.sonar[range].as_flattened().iter().sum()
         };
@@ -138,63 +150,61 @@ impl Hypothesis {
     }
 
     /// A nuisance of every hypothesis: the scatter may be larger than the simulator's, never smaller.
-    pub fn scatter(&self, baseline: &Baseline, evidence: &Observations, values: &[f64]) -> [f64; 3] {
+    pub fn scatter(&self, baseline: &Baseline, observations: &Observations, values: &[f64]) -> [f64; 3] {
         let Some(drive) = &baseline.motion else { return [1.0; 3] };
         let effects = self.at(values);
-        let residuals: Vec<_> = evidence.rows.iter().map(|row| residual(&effects, drive, row)).collect();
-        refitted(&residuals, drive.scatter())
+        let residuals: Vec<[f64; 3]> =
+            observations.rows.iter().filter_map(|row| residual(&effects, drive, row)).collect();
+        let least = drive.scatter();
+        [0, 1, 2].map(|axis| refitted(residuals.iter().map(|r| r[axis]), least[axis]))
     }
 
-    fn moves(&self) -> bool {
-        self.forms.iter().any(|f| f.moves())
+    /// Whether a further effect changes the motion.
+    pub fn moves(&self) -> bool {
+        self.candidates.iter().any(|c| c.variant.moves())
     }
 
-    fn senses(&self) -> bool {
-        self.forms.iter().any(|f| f.senses())
+    /// Whether a further effect changes the sensor.
+    pub fn senses(&self) -> bool {
+        self.candidates.iter().any(|c| c.variant.senses())
     }
 
     /// The log-likelihoods of the motion channels with a given scatter.
-    pub fn motion_terms(
-        &self,
-        baseline: &Baseline,
-        rows: &[Observation],
-        values: &[f64],
-        scatter: [f64; 3],
-    ) -> Vec<[f64; 3]> {
+    fn motion(&self, baseline: &Baseline, rows: &[Observation], values: &[f64], scatter: [f64; 3]) -> Vec<[f64; 3]> {
         let Some(drive) = &baseline.motion else { return vec![[0.0; 3]; rows.len()] };
         let effects = self.at(values);
         let densities = |r: [f64; 3]| [0, 1, 2].map(|c| log_density(r[c], scatter[c]));
         rows.iter().map(|row| residual(&effects, drive, row).map_or([0.0; 3], densities)).collect()
     }
 
-    fn sonar_terms(
+    fn sonar(
         &self,
         baseline: &Baseline,
-        evidence: &Observations,
+        observations: &Observations,
         rows: Range<usize>,
         values: &[f64],
     ) -> Vec<[f64; 2]> {
         let Some(sonar) = &baseline.sonar else { return vec![[0.0; 2]; rows.len()] };
         let effects = self.at(values);
         let term = |row: &Observation| {
-            let (fan, change) = facing(&effects, evidence, row);
+            let (fan, change) = facing(&effects, observations, row);
             let [all, rate] = sonar.log_likelihood(&fan, &change, row.echo_cm, row.previous_echo_cm);
             [rate, all - rate]
         };
-        evidence.rows[rows].iter().map(term).collect()
+        observations.rows[rows].iter().map(term).collect()
     }
 }
 
-fn refitted(residuals: &[Option<[f64; 3]>], least: [f64; 3]) -> [f64; 3] {
-    [0, 1, 2].map(|c| {
-        let bound = 4.0 * least[c];
-        let squares = residuals.iter().flatten().map(|r| r[c].clamp(-bound, bound)).map(|r| r * r);
-        let (sum, n) = squares.fold((0.0, 0.0), |(sum, n), s| (sum + s, n + 1.0));
-        if n > 0.0 { f64::max(least[c], f64::sqrt(sum / n)) } else { least[c] }
-    })
+/// The standard deviation of residuals, those far off counted as less far; never less than `least`.
+pub fn refitted(residuals: impl Iterator<Item = f64>, least: f64) -> f64 {
+    let bound = FARTHEST * least;
+    let squares = residuals.map(|r| r.clamp(-bound, bound)).map(|r| r * r);
+    let (sum, n) = squares.fold((0.0, 0.0), |(sum, n), s| (sum + s, n + 1.0));
+    if n > 0.0 { f64::max(least, f64::sqrt(sum / n)) } else { least }
 }
 
-fn log_density(residual: f64, scatter: f64) -> f64 {
+/// The logarithm of a residual's density: normal, and now and then a jump of the tracker.
+pub fn log_density(residual: f64, scatter: f64) -> f64 {
     let t = residual / scatter;
     let normal = |t: f64| libm::exp(-0.5 * t * t) / (2.0 * PI).sqrt();
     libm::log((1.0 - JUMPS) * normal(t) + JUMPS * normal(t / JUMP) / JUMP) - libm::log(scatter)

@@ -1,7 +1,7 @@
 //! The simulator as the diagnosis sees it: networks, what is known of their misfit, and the scatter of a good day.
 
-use crate::effects::applied::AppliedEffect;
 use crate::effects::PoseIncrement;
+use crate::effects::applied::AppliedEffect;
 use crate::logs::Robot;
 use crate::problem::{Problem, Result};
 use crate::simulator::motion::MotionNetworks;

@@ -1,30 +1,28 @@
 //! From what was measured to thresholds: each by the criterion that it stands for.
 
 use super::Measured;
-use crate::gap::calibration::{Calibration, Gate};
-use crate::gap::verdict::probability;
+use crate::gap::calibration::{Calibration, Gate, Judgement};
+use crate::gap::explain::probability;
 
-/// Of all cases without an effect so many gain as many nats as the gate for an effect asks for, and so many as many
-/// standard errors. Both are asked for, and a gain on the runs kept back besides: two in a hundred or fewer pass it all.
+/// Share of all cases without an effect whose gain passes the gate for an effect, in nats and again in standard errors.
+/// Both are asked for, and a gain on the runs held out besides: two in a hundred or fewer pass it all.
 const FALSE_EFFECTS: f64 = 0.05;
-/// The same for what no effect explains, where a simulator's own misfit is often found on the runs kept back again.
-const FALSE_LEFTOVERS: f64 = 0.02;
+/// The same for what no effect explains, where a simulator's own misfit is often found on the runs held out again.
+const FALSE_REMAINDERS: f64 = 0.02;
 /// The law of a tail is read off this share of all.
 const TAIL: f64 = 0.2;
-/// Of the answers that are right so many leave more over than counts as adequate,
+/// Share of the right answers that leave more over than counts as adequate,
 const FALSE_UNKNOWNS: f64 = 0.05;
-/// once what they leave over is so many times as much: no form fits other robots as well as the built-in one.
+/// once what they leave over is multiplied by this: no variant fits other robots as well as the built-in one.
 const OTHER_ROBOTS: f64 = 3.0;
-/// So many of the doubtful answers whose effect is the first or beside it name it.
+/// Share of the doubtful answers that name their effect, as the first or beside it.
 const COVERED: f64 = 0.9;
-/// A rival with less weight than this raises no doubt,
+/// A rival of less relative likelihood raises no doubt.
 const DOUBT: f64 = 0.01;
-/// and one that lags by less than two standard errors is named whatever the built-in robot says.
-const TWO_ERRORS: f64 = 0.12;
-/// What is tried for the probabilities.
-const WIDTHS: [f64; 5] = [0.01, 0.02, 0.04, 0.06, 0.1];
-const TEMPERATURES: [f64; 6] = [1.0, 1.5, 2.0, 3.0, 4.0, 6.0];
-const TRUSTS: [f64; 6] = [0.85, 0.9, 0.93, 0.95, 0.97, 0.99];
+/// What is tried for the probabilities; a test asks that the best lies between the first and the last.
+const WIDTHS: [f64; 7] = [0.005, 0.01, 0.02, 0.04, 0.06, 0.1, 0.2];
+const TEMPERATURES: [f64; 9] = [0.25, 0.5, 0.7, 1.0, 1.5, 2.0, 3.0, 4.0, 6.0];
+const ACCURACY_CAPS: [f64; 8] = [0.8, 0.85, 0.9, 0.93, 0.95, 0.97, 0.99, 0.995];
 
 /// Thresholds against false alarms; everything that explains a gap is taken for its cause, and every rival is named.
 pub fn open(nulls: &[Measured]) -> Calibration {
@@ -35,9 +33,10 @@ pub fn open(nulls: &[Measured]) -> Calibration {
         adequacy_width: 1.0,
         rival: 0.0,
         temperature: 1.0,
-        trust: 1.0,
+        accuracy_cap: 1.0,
         effect: Gate { nats: 0.0, z: 0.0 },
-        leftover: Gate { nats: 0.0, z: 0.0 },
+        remainder: Gate { nats: 0.0, z: 0.0 },
+        judgement: Judgement::USUAL,
     };
     let gate = |share: f64, gain: fn(&Measured) -> [f64; 2]| {
         let nats = nulls.iter().map(|m| gain(m)[0] / ungated.growth(m.rows)).collect();
@@ -46,7 +45,7 @@ pub fn open(nulls: &[Measured]) -> Calibration {
     };
     Calibration {
         effect: gate(FALSE_EFFECTS, |m| [m.effect_nats, m.effect_z]),
-        leftover: gate(FALSE_LEFTOVERS, |m| [m.learner_nats, m.learner_z]),
+        remainder: gate(FALSE_REMAINDERS, |m| [m.remainder_nats, m.remainder_z]),
         ..ungated
     }
 }
@@ -55,16 +54,18 @@ pub fn open(nulls: &[Measured]) -> Calibration {
 pub fn weighed(open: Calibration, others: &[Measured]) -> Calibration {
     let answered: Vec<&Measured> = others.iter().filter(|m| !m.first.is_empty()).collect();
     let right = answered.iter().filter(|m| m.first_is_there());
-    let adequate = 1.0 - OTHER_ROBOTS * (1.0 - quantile(right.map(|m| m.adequacy).collect(), FALSE_UNKNOWNS));
-    let doubtful = answered.iter().filter(|m| m.weight_of_truth >= DOUBT && m.rivals.iter().any(|w| *w >= DOUBT));
-    let rival = quantile(doubtful.map(|m| m.weight_of_truth).collect(), 1.0 - COVERED).min(TWO_ERRORS);
+    let adequate = 1.0 - OTHER_ROBOTS * (1.0 - quantile(right.map(|m| m.explained_fraction).collect(), FALSE_UNKNOWNS));
+    let doubtful = answered.iter().filter(|m| m.likelihood_of_truth >= DOUBT && m.rivals.iter().any(|w| *w >= DOUBT));
+    let rival = quantile(doubtful.map(|m| m.likelihood_of_truth).collect(), 1.0 - COVERED);
     let settled = Calibration { adequate: rounded(adequate), rival: rounded(rival), ..open };
-    let known: Vec<&Measured> = answered.into_iter().filter(|m| m.adequacy >= settled.adequate).collect();
+    let known: Vec<&Measured> = answered.into_iter().filter(|m| m.explained_fraction >= settled.adequate).collect();
     let tried = WIDTHS.iter().flat_map(|width| {
-        TEMPERATURES.iter().flat_map(move |temperature| TRUSTS.iter().map(move |trust| [*width, *temperature, *trust]))
+        TEMPERATURES
+            .iter()
+            .flat_map(move |temperature| ACCURACY_CAPS.iter().map(move |cap| [*width, *temperature, *cap]))
     });
-    let tried = tried.map(|[adequacy_width, temperature, trust]| {
-        let calibration = Calibration { adequacy_width, temperature, trust, ..settled };
+    let tried = tried.map(|[adequacy_width, temperature, accuracy_cap]| {
+        let calibration = Calibration { adequacy_width, temperature, accuracy_cap, ..settled };
         (known.iter().map(|m| m.log_likelihood(&calibration)).sum::<f64>(), calibration)
     });
     tried.max_by(|a, b| a.0.total_cmp(&b.0)).map_or(settled, |(_, calibration)| calibration)
@@ -72,12 +73,12 @@ pub fn weighed(open: Calibration, others: &[Measured]) -> Calibration {
 
 impl Measured {
     fn first_is_there(&self) -> bool {
-        self.weight_of_truth == 1.0
+        self.likelihood_of_truth == 1.0
     }
 
     /// Of what is true about the first effect under the probability that it is given.
     fn log_likelihood(&self, calibration: &Calibration) -> f64 {
-        let there = probability(self.adequacy, self.rivals.iter().copied(), calibration);
+        let there = probability(self.explained_fraction, self.rivals.iter().copied(), calibration);
         libm::log(if self.first_is_there() { there } else { 1.0 - there })
     }
 }
@@ -111,11 +112,11 @@ mod tests {
             rows: 100,
             effect_nats: 100.0,
             effect_z: 10.0,
-            learner_nats: 0.0,
-            learner_z: 0.0,
+            remainder_nats: 0.0,
+            remainder_z: 0.0,
             first: "slope".into(),
-            adequacy,
-            weight_of_truth: truth_weight,
+            explained_fraction: adequacy,
+            likelihood_of_truth: truth_weight,
             rivals: vec![rival],
         }
     }
@@ -143,8 +144,8 @@ mod tests {
         let answers = |wrong: usize| -> Vec<Measured> {
             (0..100).map(|i| measured(if i < wrong { 0.0 } else { 1.0 }, 0.9, 0.0)).collect()
         };
-        let trust = |wrong: usize| weighed(open(&nulls()), &answers(wrong)).trust;
-        assert_eq!([trust(0), trust(5), trust(15)], [0.99, 0.95, 0.85]);
+        let cap = |wrong: usize| weighed(open(&nulls()), &answers(wrong)).accuracy_cap;
+        assert_eq!([cap(0), cap(5), cap(15)], [0.995, 0.95, 0.85]);
     }
 
     #[test]
@@ -153,6 +154,6 @@ mod tests {
             (0..100).map(|i| measured(if i < 20 { behind } else { 1.0 }, 1.0, 0.5)).collect()
         };
         let rival = |behind: f64| weighed(open(&nulls()), &answers(behind)).rival;
-        assert_eq!([rival(0.05), rival(0.6)], [0.05, TWO_ERRORS]);
+        assert_eq!([rival(0.05), rival(0.6)], [0.05, 0.6]);
     }
 }

@@ -2,7 +2,7 @@
 
 use super::{each_command, parameters};
 use crate::effects::parameter::Guesses;
-use crate::effects::{Effect, Hook, Parameter, PoseIncrement, Variant};
+use crate::effects::{Effect, Hook, Parameter, Variant};
 
 pub const EFFECT: Effect = Effect {
     id: "drive_scale",

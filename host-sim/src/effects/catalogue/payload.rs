@@ -1,6 +1,6 @@
 //! A load, off the middle.
 
-use super::{LOADED_SPEED_CM_S, distance_lost_cm, each_command, parameters, pushed_cm};
+use super::{distance_lost_cm, each_command, parameters, pushed_cm};
 use crate::effects::context::CommandHistory;
 use crate::effects::parameter::{Guesses, Report};
 use crate::effects::{Effect, Hook, Parameter, PoseIncrement, StepContext, Variant};
@@ -64,10 +64,8 @@ pub const EFFECT: Effect = Effect {
 };
 
 /// Share of speed that the loaded left wheel loses; negative: the right one. 0.6 is a load that all but stops it.
-const LOSS: Parameter = Parameter::new("", 0.0, [-0.6, 0.6])
-    .prior_sd(0.2)
-    .from(Guesses::At(&[0.05, -0.05]))
-    .report(Report::SideAndLoss);
+const LOSS: Parameter =
+    Parameter::new("", 0.0, [-0.6, 0.6]).prior_sd(0.2).from(Guesses::At(&[0.05, -0.05])).report(Report::SideAndLoss);
 /// Loss of a change of speed as a multiple of the loss on the straight: a load that costs much at starts costs something
 /// on the straight too, or it would be a slower motor.
 const START_LOSS: Parameter =
@@ -97,7 +95,7 @@ parameters! {
 
 parameters! {
     RollingLoad {
-        /// Share of speed lost at [`LOADED_SPEED_CM_S`]; see [`LOSS`].
+        /// Share of speed lost at [the loaded speed](super::LOADED_SPEED_CM_S); see [`LOSS`].
         loss: LOSS,
         /// The other wheel's loss as a share of it.
         other_side: Parameter::new("", 0.5, [0.0, 0.8]).prior_sd(0.3).from(Guesses::At(&[0.2])).report(Report::Hidden),

@@ -20,7 +20,9 @@ pub const EFFECT: Effect = Effect {
         Variant {
             id: "with_incidence",
             parameters: Absorption::PARAMETERS,
-            hooks: &[Hook::Sensor(&|v, _, s| s.perturbation.damping_per_incidence += Absorption::read(v).log_odds_loss)],
+            hooks: &[Hook::Sensor(&|v, _, s| {
+                s.perturbation.damping_per_incidence += Absorption::read(v).log_odds_loss
+            })],
         },
     ],
 };

@@ -6,16 +6,14 @@ use crate::effects::{Effect, Hook, Parameter, Variant};
 
 pub const EFFECT: Effect = Effect {
     id: "sonar_crosstalk",
-    variants: &[
-        Variant {
-            id: "short",
-            parameters: Crosstalk::PARAMETERS,
-            hooks: &[Hook::Sensor(&|v, _, sensor| {
-                let Crosstalk { probability } = Crosstalk::read(v);
-                sensor.perturbation.short = 1.0 - (1.0 - sensor.perturbation.short) * (1.0 - probability);
-            })],
-        },
-    ],
+    variants: &[Variant {
+        id: "short",
+        parameters: Crosstalk::PARAMETERS,
+        hooks: &[Hook::Sensor(&|v, _, sensor| {
+            let Crosstalk { probability } = Crosstalk::read(v);
+            sensor.perturbation.short = 1.0 - (1.0 - sensor.perturbation.short) * (1.0 - probability);
+        })],
+    }],
 };
 
 parameters! {

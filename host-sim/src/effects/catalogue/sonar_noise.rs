@@ -6,16 +6,14 @@ use crate::effects::{Effect, Hook, Parameter, Variant};
 
 pub const EFFECT: Effect = Effect {
     id: "sonar_noise",
-    variants: &[
-        Variant {
-            id: "normal",
-            parameters: Noise::PARAMETERS,
-            hooks: &[Hook::Sensor(&|v, _, sensor| {
-                let (own_cm, more_cm) = (sensor.perturbation.scatter_cm, Noise::read(v).cm);
-                sensor.perturbation.scatter_cm = (own_cm * own_cm + more_cm * more_cm).sqrt();
-            })],
-        },
-    ],
+    variants: &[Variant {
+        id: "normal",
+        parameters: Noise::PARAMETERS,
+        hooks: &[Hook::Sensor(&|v, _, sensor| {
+            let (own_cm, more_cm) = (sensor.perturbation.scatter_cm, Noise::read(v).cm);
+            sensor.perturbation.scatter_cm = (own_cm * own_cm + more_cm * more_cm).sqrt();
+        })],
+    }],
 };
 
 parameters! {

@@ -6,13 +6,11 @@ use crate::effects::{Effect, Hook, Parameter, Variant};
 
 pub const EFFECT: Effect = Effect {
     id: "sonar_offset",
-    variants: &[
-        Variant {
-            id: "length",
-            parameters: Offset::PARAMETERS,
-            hooks: &[Hook::Sensor(&|v, _, sensor| sensor.perturbation.offset_cm += Offset::read(v).cm)],
-        },
-    ],
+    variants: &[Variant {
+        id: "length",
+        parameters: Offset::PARAMETERS,
+        hooks: &[Hook::Sensor(&|v, _, sensor| sensor.perturbation.offset_cm += Offset::read(v).cm)],
+    }],
 };
 
 parameters! {

@@ -6,13 +6,11 @@ use crate::effects::{Effect, Hook, Parameter, Variant};
 
 pub const EFFECT: Effect = Effect {
     id: "sonar_scale",
-    variants: &[
-        Variant {
-            id: "gain",
-            parameters: Scale::PARAMETERS,
-            hooks: &[Hook::Sensor(&|v, _, sensor| sensor.perturbation.gain *= Scale::read(v).factor)],
-        },
-    ],
+    variants: &[Variant {
+        id: "gain",
+        parameters: Scale::PARAMETERS,
+        hooks: &[Hook::Sensor(&|v, _, sensor| sensor.perturbation.gain *= Scale::read(v).factor)],
+    }],
 };
 
 parameters! {

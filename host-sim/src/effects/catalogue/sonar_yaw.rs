@@ -6,13 +6,11 @@ use crate::effects::{Effect, Hook, Parameter, Variant};
 
 pub const EFFECT: Effect = Effect {
     id: "sonar_yaw",
-    variants: &[
-        Variant {
-            id: "axis",
-            parameters: Yaw::PARAMETERS,
-            hooks: &[Hook::Sensor(&|v, _, sensor| sensor.yaw_rad += Yaw::read(v).deg.to_radians())],
-        },
-    ],
+    variants: &[Variant {
+        id: "axis",
+        parameters: Yaw::PARAMETERS,
+        hooks: &[Hook::Sensor(&|v, _, sensor| sensor.yaw_rad += Yaw::read(v).deg.to_radians())],
+    }],
 };
 
 parameters! {

@@ -38,8 +38,7 @@ pub const EFFECT: Effect = Effect {
     ],
 };
 
-const ROTATED: Hook =
-    Hook::Motion(&|v, _, increment| increment.rotate_translation(Rotation::read(v).deg.to_radians()));
+const ROTATED: Hook = Hook::Motion(&|v, _, increment| increment.rotate_translation(Rotation::read(v).deg.to_radians()));
 
 parameters! {
     Rotation {

@@ -1,40 +1,48 @@
-//! What the unexplained part of a gap depends on, and how: a small table a channel.
+//! What the unexplained part of a gap depends on, and how: a small table for each channel.
 
-use super::channel::Channel;
-use super::circumstances as of;
-use super::explanation::Explanation;
-use super::search::Fitted;
+use serde::Serialize;
+
+use super::covariates as of;
 use crate::evaluation::observations::{Observation, Observations};
 use crate::evaluation::predictions::{facing, residual};
+use crate::gap::channel::Channel;
+use crate::gap::compare::Comparison;
+use crate::gap::fit::{FitContext, Fitted};
 use crate::simulator::baseline::Baseline;
+use crate::statistics::rounding;
 
-/// How the unexplained part of a channel follows one circumstance.
-#[derive(Clone, Debug)]
-pub struct Shape {
+/// How the unexplained part of a channel follows one covariate.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ResidualProfile {
     /// The channel.
     pub channel: Channel,
-    /// The circumstance on which it depends most.
+    /// The covariate on which it depends most.
     pub depends_on: &'static str,
     /// The unit of [`Bin::off`].
     pub unit: &'static str,
     /// From low to high.
+    #[serde(rename = "shape")]
     pub bins: Vec<Bin>,
 }
 
-/// A range of the circumstance.
-#[derive(Clone, Copy, Debug)]
+/// A range of the covariate.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Bin {
     /// Least value.
+    #[serde(serialize_with = "rounding::number")]
     pub from: f64,
     /// Largest value.
+    #[serde(serialize_with = "rounding::number")]
     pub to: f64,
     /// Logged minus predicted, mean.
+    #[serde(serialize_with = "rounding::number")]
     pub off: f64,
     /// Standard error of that.
+    #[serde(serialize_with = "rounding::number")]
     pub error: f64,
 }
 
-/// A circumstance and its name.
+/// A covariate and its name.
 type Variable = (&'static str, fn(&Observation) -> f64);
 
 const MOTION: &[Variable] = &[
@@ -57,24 +65,29 @@ const SONAR: &[Variable] = &[
     ("y (cm)", of::y_cm),
     ("mean command", of::driving),
 ];
-/// Bins of a table.
+/// Bins of a table: enough for a bend and a wave.
 const BINS: usize = 5;
-/// Fewer rows make no table.
-const FEWEST: usize = 50;
-/// What is off by more counts as off by this: a wrong reading says nothing about readings, cm.
+/// Fewer rows make no table: ten a bin.
+const FEWEST: usize = 10 * BINS;
+/// A reading that is farther off is of something else, and says nothing about readings.
 const FAR_OFF_CM: f64 = 25.0;
 
 /// A table for each channel in which something is unexplained.
-pub fn shapes(explanation: &Explanation, baseline: &Baseline, evidence: &Observations) -> Vec<Shape> {
-    let left = explanation.beyond_chosen.iter().filter(|l| l.counts());
-    left.filter_map(|l| shape(l.channel, &explanation.chosen, baseline, evidence)).collect()
+pub fn profiles(found: &Comparison, context: &FitContext) -> Vec<ResidualProfile> {
+    let left = found.beyond_chosen.iter().filter(|r| r.counts());
+    left.filter_map(|r| profile(r.channel(), &found.chosen, context.baseline, context.observations)).collect()
 }
 
-fn shape(channel: Channel, fit: &Fitted, baseline: &Baseline, evidence: &Observations) -> Option<Shape> {
-    let off = off(channel, fit, baseline, evidence);
+fn profile(
+    channel: Channel,
+    fit: &Fitted,
+    baseline: &Baseline,
+    observations: &Observations,
+) -> Option<ResidualProfile> {
+    let off = off(channel, fit, baseline, observations);
     let variables = if channel.motion_axis().is_some() { MOTION } else { SONAR };
     let known: Vec<(&Observation, f64)> =
-        evidence.rows.iter().zip(off).filter_map(|(row, off)| Some((row, off?))).collect();
+        observations.rows.iter().zip(off).filter_map(|(row, off)| Some((row, off?))).collect();
     if known.len() < FEWEST {
         return None;
     }
@@ -88,12 +101,12 @@ fn shape(channel: Channel, fit: &Fitted, baseline: &Baseline, evidence: &Observa
         Channel::Turn => "deg",
         Channel::EchoRate => "share of rows with a reading",
     };
-    Some(Shape { channel, depends_on, unit, bins })
+    Some(ResidualProfile { channel, depends_on, unit, bins })
 }
 
 /// Logged minus predicted for every row that says something.
-fn off(channel: Channel, fit: &Fitted, baseline: &Baseline, evidence: &Observations) -> Vec<Option<f64>> {
-    let rows = &evidence.rows;
+fn off(channel: Channel, fit: &Fitted, baseline: &Baseline, observations: &Observations) -> Vec<Option<f64>> {
+    let rows = &observations.rows;
     match (channel.motion_axis(), &baseline.motion, &baseline.sonar) {
         (Some(axis), Some(drive), _) => {
             let effects = fit.effects();
@@ -103,7 +116,7 @@ fn off(channel: Channel, fit: &Fitted, baseline: &Baseline, evidence: &Observati
         }
         (None, _, Some(sonar)) => {
             let one = |row: &Observation| {
-                let (fan, change) = facing(&fit.effects(), evidence, row);
+                let (fan, change) = facing(&fit.effects(), observations, row);
                 if channel == Channel::EchoRate {
                     let [none, _] = sonar.log_likelihood(&fan, &change, None, None);
                     return Some(f64::from(u8::from(row.echo_cm.is_some())) - 1.0 + libm::exp(none));

@@ -1,4 +1,4 @@
-//! What a gap may depend on, as numbers of a row.
+//! The covariates of a row on which a gap may depend.
 
 use crate::evaluation::observations::Observation;
 

@@ -1,15 +1,14 @@
-//! What has to be said about logs before they are diagnosed: whether they are of the simulator's robot, and what they
-//! cannot tell.
+//! Validation: whether logs are of the simulator's robot, and what they cannot say.
 
-use super::confirmation::FEWEST_RUNS;
+use super::condition::FEWEST_RUNS;
 use crate::evaluation::observations::Observations;
 use crate::logs::{Logs, Robot, Run};
 use crate::problem::{Problem, Result};
 use crate::simulator::baseline::Baseline;
 
-/// Measurements of one robot agree to this share.
+/// Two people who measure one robot agree to this share.
 const SAME: f64 = 0.02;
-/// A step that leads the robot farther than this many times the way at full speed is a jump of the tracker.
+/// A step longer than this multiple of the distance at full speed is a jump of the tracker: a fresh battery adds a third.
 const JUMP: f64 = 2.0;
 
 /// Checks that logs are of the robot that the simulator was learned from.
@@ -41,11 +40,11 @@ pub fn same_robot(simulator: &Robot, logs: &Robot) -> Result<()> {
 ///
 /// # Errors
 /// When the logs say nothing that the baseline could be compared with.
-pub fn admit(baseline: &mut Baseline, evidence: &Observations, logs: &Logs) -> Result<Vec<String>> {
+pub fn validate(baseline: &mut Baseline, observations: &Observations, logs: &Logs) -> Result<Vec<String>> {
     let mut notes = Vec::new();
-    let steps = evidence.rows.iter().filter(|row| row.motion.is_some()).count();
-    let mut moments = evidence.rows.iter().flat_map(|row| std::iter::once(&row.context).chain(&row.then));
-    let driven = moments.any(|moment| moment.commands[0].iter().any(|c| c.abs() >= 1.0));
+    let steps = observations.rows.iter().filter(|row| row.motion.is_some()).count();
+    let mut steps_of = observations.rows.iter().flat_map(|row| std::iter::once(&row.context).chain(&row.then));
+    let driven = steps_of.any(|step| step.commands[0].iter().any(|c| c.abs() >= 1.0));
     if baseline.motion.is_none() {
         notes.push(
             "From too few logs, or none with poses, the simulator does not know motion: it is not compared.".into(),
@@ -57,10 +56,10 @@ pub fn admit(baseline: &mut Baseline, evidence: &Observations, logs: &Logs) -> R
         notes.push("The motors stand still: motion is not excited.".into());
         baseline.motion = None;
     }
-    if evidence.rows.iter().any(|row| !row.then.is_empty()) {
+    if observations.rows.iter().any(|row| !row.then.is_empty()) {
         notes.push("No step has a pose at both ends: whole ways between poses are compared.".into());
     }
-    let echoes = evidence.rows.iter().filter(|row| row.echo_cm.is_some()).count();
+    let echoes = observations.rows.iter().filter(|row| row.echo_cm.is_some()).count();
     if baseline.sonar.is_none() {
         notes.push("From too few readings, or none, the simulator does not know the sonar: it is not compared.".into());
     } else if echoes == 0 {
@@ -82,7 +81,7 @@ pub fn admit(baseline: &mut Baseline, evidence: &Observations, logs: &Logs) -> R
         notes.push("All runs have the same commands: what other commands would show is not excited.".into());
     }
     let reach_cm = JUMP * logs.robot.full_speed_cm_s * logs.robot.step_ms / 1000.0;
-    let jumps = evidence
+    let jumps = observations
         .rows
         .iter()
         .filter_map(|row| Some((row.motion?, (1 + row.then.len()) as f64)))

@@ -1,0 +1,144 @@
+//! Accounting: how far the gap shrinks with the named effects, channel by channel, on runs that nothing was sought on.
+
+use serde::Serialize;
+
+use super::channel::Channel;
+use super::compare::Comparison;
+use super::fit::{FitContext, Fitted};
+use super::hypothesis::LogLikelihood;
+use crate::evaluation::observations::Observations;
+use crate::evaluation::paths::{self, PathError};
+use crate::statistics::{bootstrap, rounding};
+
+/// A gap in nats a step: how much likelier the logs could be.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct GapReduction {
+    /// All channels together.
+    #[serde(flatten)]
+    pub whole: Reduction,
+    /// Gaps are measured from what cannot be reduced by anything that follows circumstances, so that this is zero.
+    pub floor: f64,
+    /// The next best explanation.
+    pub runner_up: Option<RunnerUp>,
+    /// The same channel by channel, where there is something to close.
+    pub channels: Vec<ChannelReduction>,
+    /// Paths that the simulator drives open-loop from a logged pose.
+    pub paths: Vec<PathError>,
+}
+
+/// How far a gap shrinks, nats a step.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Reduction {
+    /// The gap of the simulator as it is.
+    #[serde(serialize_with = "rounding::number")]
+    pub before: f64,
+    /// With the effects.
+    #[serde(serialize_with = "rounding::number")]
+    pub after: f64,
+    /// The share of the reducible gap that is closed.
+    #[serde(serialize_with = "rounding::number")]
+    pub reducible_closed: f64,
+    /// 95 % interval of that share, by bootstrap over blocks of runs.
+    #[serde(serialize_with = "rounding::interval")]
+    pub ci95: [f64; 2],
+}
+
+/// How far the gap of a channel shrinks.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct ChannelReduction {
+    /// The channel.
+    pub channel: Channel,
+    /// Its gap.
+    #[serde(flatten)]
+    pub reduction: Reduction,
+}
+
+/// The next best explanation.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct RunnerUp {
+    /// Its effect, or effects joined by `+`.
+    pub id: String,
+    /// The share of the reducible gap that it closes.
+    #[serde(serialize_with = "rounding::number")]
+    pub reducible_closed: f64,
+}
+
+/// Nats by block: what the effects gained, and what remains that a learner of anything can gain beyond them.
+struct Tally {
+    gained: Vec<f64>,
+    remaining: Vec<f64>,
+}
+
+/// None where these logs show no reducible gap.
+pub fn reduction(found: &Comparison, context: &FitContext, logs: &Observations) -> Option<GapReduction> {
+    let judged = |fit: &Fitted| fit.judged_on(logs, context);
+    let (none, chosen) = (judged(&found.none), judged(&found.chosen));
+    let remaining: Vec<(Channel, Vec<f64>)> = found
+        .beyond_chosen
+        .iter()
+        .map(|remainder| {
+            let channel = remainder.channel();
+            let gains = remainder.model.judged_on(logs, context).into_iter().zip(chosen.channel(channel));
+            let follows = logs.by_block(&gains.map(|(a, b)| a - b).collect::<Vec<f64>>());
+            let scatters = remainder.wider_scatter(context, logs);
+            (channel, follows.iter().zip(scatters).map(|(f, s)| f + s).collect())
+        })
+        .collect();
+    let tally = |channels: &[Channel]| {
+        let mut sum = vec![0.0; logs.blocks];
+        for (_, by_block) in remaining.iter().filter(|(channel, _)| channels.contains(channel)) {
+            sum.iter_mut().zip(by_block).for_each(|(s, r)| *s += r);
+        }
+        Tally { gained: difference(&chosen, &none, logs, channels), remaining: sum }
+    };
+    let steps = logs.rows.len() as f64;
+    let all = tally(&Channel::ALL);
+    let whole = all.reduction(steps)?;
+    let channel = |channel: Channel| {
+        let tally = tally(&[channel]);
+        let told = tally.reducible() >= context.calibration.judgement.strong_nats;
+        Some(ChannelReduction { channel, reduction: tally.reduction(steps).filter(|_| told)? })
+    };
+    let runner_up = found.runner_up(&context.calibration).map(|fit| {
+        let gained: f64 = difference(&judged(fit), &none, logs, &Channel::ALL).iter().sum();
+        RunnerUp { id: fit.ids().join("+"), reducible_closed: gained / all.reducible() }
+    });
+    let drive = context.baseline.motion.as_ref();
+    let paths =
+        drive.map_or_else(Vec::new, |d| paths::open_loop(&found.none.effects(), &found.chosen.effects(), d, logs));
+    let channels = Channel::ALL.into_iter().filter_map(channel).collect();
+    Some(GapReduction { whole, floor: 0.0, runner_up, channels, paths })
+}
+
+impl Tally {
+    fn reducible(&self) -> f64 {
+        self.gained.iter().sum::<f64>() + self.remaining.iter().sum::<f64>().max(0.0)
+    }
+
+    fn reduction(&self, steps: f64) -> Option<Reduction> {
+        let (gained, reducible) = (self.gained.iter().sum::<f64>(), self.reducible());
+        (reducible > 0.0).then(|| Reduction {
+            before: reducible / steps,
+            after: (reducible - gained) / steps,
+            reducible_closed: gained / reducible,
+            ci95: self.interval(),
+        })
+    }
+
+    fn interval(&self) -> [f64; 2] {
+        bootstrap::interval(&self.gained, &self.remaining, |gained, remaining| {
+            let reducible = gained + remaining.max(0.0);
+            (reducible > 0.0).then(|| gained / reducible)
+        })
+    }
+}
+
+/// By how much channels are likelier under `a` than under `b`, by block.
+fn difference(a: &LogLikelihood, b: &LogLikelihood, logs: &Observations, channels: &[Channel]) -> Vec<f64> {
+    let mut sums = vec![0.0; logs.blocks];
+    for channel in channels {
+        let gains: Vec<f64> = a.channel(*channel).iter().zip(b.channel(*channel)).map(|(a, b)| a - b).collect();
+        sums.iter_mut().zip(logs.by_block(&gains)).for_each(|(s, g)| *s += g);
+    }
+    sums
+}

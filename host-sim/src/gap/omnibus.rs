@@ -1,0 +1,160 @@
+//! The omnibus residual model: how much of what a fit leaves over follows any circumstance at all.
+//!
+//! Every channel has the same neutral basis ([`basis`]) in all covariates of a row, fitted by ridge regression
+//! ([`ridge`]) whose strength cross-validation over runs chooses. Nothing in it stands for a particular effect. What it
+//! gains on runs that it was not fitted on bounds what any effect could explain.
+
+pub mod basis;
+mod motion;
+pub mod ridge;
+mod sonar;
+
+use super::channel::Channel;
+use super::fit::{FitContext, Fitted};
+use crate::effects::chain::EffectChain;
+use crate::evaluation::observations::{FEWEST_BLOCKS, Observations};
+use basis::Basis;
+
+/// What the rest of a channel follows beyond a fit.
+pub struct ResidualFit {
+    /// The channel.
+    pub channel: Channel,
+    /// The log-likelihood of each row that it was fitted on, by the fit to other runs.
+    pub held_out: Vec<f64>,
+    surface: Surface,
+    predictions: Vec<f64>,
+    law: Law,
+    /// The effects of the fit beneath.
+    effects: EffectChain,
+}
+
+/// How likely a prediction makes a row.
+enum Law {
+    Motion(motion::Law),
+    EchoRate,
+    EchoValue(sonar::Spread),
+}
+
+/// A fitted response surface.
+struct Surface {
+    basis: Basis,
+    weights: Vec<f64>,
+    /// What a prediction of one means in the channel's unit.
+    unit: f64,
+}
+
+/// The covariates of a row, step by step: several where the ways of several steps are judged as one.
+type Steps = Vec<Vec<f64>>;
+
+/// As many folds as there are blocks of rows at least, so that none is empty.
+const FOLDS: usize = FEWEST_BLOCKS;
+
+impl ResidualFit {
+    /// What the rest of a channel follows beyond the fit `beneath`.
+    pub fn of(channel: Channel, beneath: &Fitted, context: &FitContext) -> Self {
+        match channel.motion_axis() {
+            Some(axis) => motion::fit(channel, axis, beneath, context),
+            None if channel == Channel::EchoRate => sonar::rate(beneath, context),
+            None => sonar::value(beneath, context),
+        }
+    }
+
+    /// Where readings lie; their scatter is left as it is.
+    pub fn moved_readings(beneath: &Fitted, context: &FitContext) -> Self {
+        sonar::moved(beneath, context)
+    }
+
+    /// The gain on each block over the fit beneath, by fits to other blocks.
+    pub fn gains_over(&self, beneath: &Fitted, context: &FitContext) -> Vec<f64> {
+        let without = beneath.log_likelihood.channel(self.channel);
+        let gains: Vec<f64> = self.held_out.iter().zip(without).map(|(a, b)| a - b).collect();
+        context.observations.by_block(&gains)
+    }
+
+    /// The log-likelihood of each row in the channel, never by a fit to its own run.
+    pub fn judged_on(&self, rows: &Observations, context: &FitContext) -> Vec<f64> {
+        if is_own(rows, context) {
+            self.held_out.clone()
+        } else {
+            self.terms(rows, context, &self.predictions(rows, context))
+        }
+    }
+
+    /// How many times as wide as the simulator's the scatter of the logs is; one of a sonar channel.
+    pub fn scatter_ratio(&self, context: &FitContext) -> f64 {
+        match &self.law {
+            Law::Motion(law) => law.scatter / law.least(context.baseline),
+            Law::EchoRate | Law::EchoValue(_) => 1.0,
+        }
+    }
+
+    /// By how much rows of a motion channel are likelier with the scatter of the logs than with the simulator's, by
+    /// block; zeros of a sonar channel.
+    pub fn wider_scatter(&self, context: &FitContext, rows: &Observations) -> Vec<f64> {
+        let Law::Motion(law) = &self.law else { return vec![0.0; rows.blocks] };
+        let narrow = motion::Law { scatter: law.least(context.baseline), ..*law };
+        let predictions = self.predictions(rows, context);
+        let residuals = law.residuals(&self.effects, context.baseline, rows);
+        let [own, narrow] = [law, &narrow].map(|law| law.terms(&residuals, &predictions));
+        rows.by_block(&own.iter().zip(narrow).map(|(a, b)| a - b).collect::<Vec<f64>>())
+    }
+
+    fn terms(&self, rows: &Observations, context: &FitContext, predictions: &[f64]) -> Vec<f64> {
+        match &self.law {
+            Law::Motion(law) => law.terms(&law.residuals(&self.effects, context.baseline, rows), predictions),
+            Law::EchoRate => sonar::Heard::of(&self.effects, context.baseline, rows).rates(predictions),
+            Law::EchoValue(spread) => {
+                sonar::Heard::of(&self.effects, context.baseline, rows).values(predictions, spread)
+            }
+        }
+    }
+
+    fn predictions(&self, rows: &Observations, context: &FitContext) -> Vec<f64> {
+        if is_own(rows, context) {
+            return self.predictions.clone();
+        }
+        let steps = match &self.law {
+            Law::Motion(_) => motion::covariates(&self.effects, context.baseline, rows),
+            Law::EchoRate | Law::EchoValue(_) => sonar::covariates(rows),
+        };
+        steps.iter().map(|steps| self.surface.at(steps)).collect()
+    }
+}
+
+impl Surface {
+    /// Fits `response(row, prediction)`, in units of `unit`, of the rows that have any; with the predictions of all rows
+    /// from the other folds.
+    fn fit(
+        covariates: &[Steps],
+        has_any: impl Fn(usize) -> bool,
+        observations: &Observations,
+        unit: f64,
+        response: impl Fn(usize, f64) -> f64,
+    ) -> (Self, Vec<f64>) {
+        let used: Vec<usize> = (0..covariates.len()).filter(|i| has_any(*i)).collect();
+        let first_steps: Vec<Vec<f64>> = used.iter().filter_map(|i| covariates[*i].first().cloned()).collect();
+        let basis = Basis::of(&first_steps);
+        let rows: Vec<Vec<f64>> = used.iter().map(|i| together(&basis, &covariates[*i])).collect();
+        let folds: Vec<usize> = used.iter().map(|i| observations.rows[*i].block % FOLDS).collect();
+        let fitted = ridge::fit(&rows, &folds, |place, prediction| response(used[place], prediction));
+        let mut predictions = vec![0.0; covariates.len()];
+        used.iter().zip(fitted.held_out).for_each(|(i, held_out)| predictions[*i] = unit * held_out);
+        (Surface { basis, weights: fitted.weights, unit }, predictions)
+    }
+
+    fn at(&self, steps: &Steps) -> f64 {
+        self.unit * ridge::predicted(&together(&self.basis, steps), &self.weights)
+    }
+}
+
+/// What is off adds up over steps that are judged as one, and is given a step as their scatter is.
+fn together(basis: &Basis, steps: &Steps) -> Vec<f64> {
+    let terms = steps.iter().map(|covariates| basis.at(covariates));
+    let sum = terms.reduce(|sum, terms| sum.iter().zip(&terms).map(|(a, b)| a + b).collect()).unwrap_or_default();
+    let share = 1.0 / (steps.len() as f64).sqrt();
+    sum.into_iter().map(|term| share * term).collect()
+}
+
+fn is_own(rows: &Observations, context: &FitContext) -> bool {
+    std::ptr::eq(rows, context.observations)
+}

@@ -1,0 +1,199 @@
+//! What the rest of the two sonar channels follows.
+
+use super::{Law, ResidualFit, Steps, Surface};
+use crate::effects::StepContext;
+use crate::effects::chain::EffectChain;
+use crate::evaluation::observations::{Observation, Observations};
+use crate::evaluation::predictions::facing;
+use crate::gap::channel::Channel;
+use crate::gap::fit::{FitContext, Fitted, MOST_ITERATIONS, TOLERANCE_NATS};
+use crate::simulator::baseline::Baseline;
+use crate::sonar::SonarModel;
+use crate::sonar::{FAR_CM, Fan, Perturbation, STRAY};
+use crate::statistics::maximise::{Bounds, climb};
+use crate::statistics::summary::logistic;
+
+/// How readings spread about where they are predicted, beyond the simulator.
+#[derive(Clone, Copy, Debug)]
+pub struct Spread {
+    /// Further scatter, cm.
+    scatter_cm: f64,
+    /// Chance of a random short reading.
+    short: f64,
+    /// Chance of a random reading from beyond what the axis meets.
+    long: f64,
+}
+
+/// What the sensor said at each row, and what it should have.
+pub struct Heard<'a> {
+    sonar: Option<&'a SonarModel>,
+    rows: Vec<Reading>,
+}
+
+struct Reading {
+    fan: Fan,
+    change: Perturbation,
+    echo_cm: Option<f64>,
+    previous_echo_cm: Option<f64>,
+}
+
+/// Bounds and start of scatter, short and long: the widest that a beam and a room leave any sense to, and near none.
+const BOUNDS: [Bounds; 3] = [Bounds::new(0.0, 10.0), Bounds::new(0.0, 0.5), Bounds::new(0.0, 0.5)];
+const START: [f64; 3] = [0.3, 0.002, 0.002];
+/// A reading that lies farther from its prediction pulls no more than this, in standard deviations: a wrong reading
+/// says nothing about readings.
+const FARTHEST: f64 = 4.0;
+/// The scatter of what is given in whole centimetres is never less: √(1/12) cm.
+const LEAST_SCATTER_CM: f64 = 0.29;
+/// Half a normal law's values lie within so many standard deviations.
+const QUARTILE: f64 = 0.674;
+/// Log-odds for which the information of a yes or no is at most one.
+const LOG_ODDS: f64 = 2.0;
+
+/// Whether there is an echo.
+pub fn rate(beneath: &Fitted, context: &FitContext) -> ResidualFit {
+    let heard = Heard::of(&beneath.effects(), context.baseline, context.observations);
+    let odds: Vec<f64> = heard.rows.iter().map(|reading| heard.log_odds(reading)).collect();
+    let response = |i: usize, prediction: f64| {
+        let echo = f64::from(u8::from(heard.rows[i].echo_cm.is_some()));
+        prediction + LOG_ODDS * (echo - logistic(odds[i] + LOG_ODDS * prediction))
+    };
+    let known = |_| heard.sonar.is_some();
+    let (surface, predictions) =
+        Surface::fit(&covariates(context.observations), known, context.observations, LOG_ODDS, response);
+    let held_out = heard.rates(&predictions);
+    fitted(Channel::EchoRate, beneath, held_out, surface, predictions, Law::EchoRate)
+}
+
+/// What is read, and how it spreads.
+pub fn value(beneath: &Fitted, context: &FitContext) -> ResidualFit {
+    let heard = Heard::of(&beneath.effects(), context.baseline, context.observations);
+    let (surface, predictions) = heard.offsets(context.observations);
+    let found =
+        climb(&BOUNDS, &START, MOST_ITERATIONS, TOLERANCE_NATS, |at| heard.values(&predictions, &Spread::from(at)));
+    let held_out = (0..context.observations.blocks).flat_map(|block| {
+        let rows = context.observations.of_block(block);
+        let spread = Spread::from(&found.without(&BOUNDS, |row| rows.contains(&row)));
+        let value = |i: usize| heard.value(&heard.rows[i], predictions[i], &spread);
+        rows.map(value).collect::<Vec<f64>>()
+    });
+    let held_out = held_out.collect();
+    fitted(Channel::EchoValue, beneath, held_out, surface, predictions, Law::EchoValue(Spread::from(&found.at)))
+}
+
+/// What is read, and no spread beyond the fit beneath.
+pub fn moved(beneath: &Fitted, context: &FitContext) -> ResidualFit {
+    let heard = Heard::of(&beneath.effects(), context.baseline, context.observations);
+    let (surface, predictions) = heard.offsets(context.observations);
+    let held_out = heard.values(&predictions, &Spread::NONE);
+    fitted(Channel::EchoValue, beneath, held_out, surface, predictions, Law::EchoValue(Spread::NONE))
+}
+
+fn fitted(
+    channel: Channel,
+    beneath: &Fitted,
+    held_out: Vec<f64>,
+    surface: Surface,
+    predictions: Vec<f64>,
+    law: Law,
+) -> ResidualFit {
+    ResidualFit { channel, held_out, surface, predictions, law, effects: beneath.effects() }
+}
+
+/// The covariates of every reading.
+pub fn covariates(rows: &Observations) -> Vec<Steps> {
+    rows.rows.iter().map(|row| vec![of_reading(&row.context)]).collect()
+}
+
+/// Distance and incidence; the commands until the reading; whether there was one before; heading; time; and the places
+/// of the robot and of what it faces.
+fn of_reading(step: &StepContext) -> Vec<f64> {
+    let [distance_cm, incidence_rad] = step.faced.unwrap_or([FAR_CM, 0.0]);
+    let distance_cm = distance_cm.min(FAR_CM);
+    let [_, [left, right], ..] = step.commands;
+    let echo_before = step.echo_before.map_or(0.0, |echo| if echo { 1.0 } else { -1.0 });
+    let (position_cm, direction) = (step.pose.position_cm, step.pose.direction());
+    let faced_cm = position_cm + direction * distance_cm;
+    vec![
+        distance_cm,
+        incidence_rad,
+        left,
+        right,
+        echo_before,
+        direction.x,
+        direction.y,
+        step.elapsed_min,
+        position_cm.x,
+        position_cm.y,
+        faced_cm.x,
+        faced_cm.y,
+    ]
+}
+
+impl<'a> Heard<'a> {
+    /// With effects.
+    pub fn of(effects: &EffectChain, baseline: &'a Baseline, observations: &Observations) -> Self {
+        let reading = |row: &Observation| {
+            let (fan, change) = facing(effects, observations, row);
+            Reading { fan, change, echo_cm: row.echo_cm, previous_echo_cm: row.previous_echo_cm }
+        };
+        Heard { sonar: baseline.sonar.as_ref(), rows: observations.rows.iter().map(reading).collect() }
+    }
+
+    /// The log-likelihood of an echo or none at each row, the log-odds moved by the predictions.
+    pub fn rates(&self, predictions: &[f64]) -> Vec<f64> {
+        if self.sonar.is_none() {
+            return vec![0.0; self.rows.len()];
+        }
+        let rate = |(reading, prediction): (&Reading, &f64)| {
+            let echo = logistic(self.log_odds(reading) + prediction).clamp(STRAY, 1.0 - STRAY);
+            libm::log(if reading.echo_cm.is_some() { echo } else { 1.0 - echo })
+        };
+        self.rows.iter().zip(predictions).map(rate).collect()
+    }
+
+    /// The log-likelihood of each reading that there is, moved by the predictions and spread.
+    pub fn values(&self, predictions: &[f64], spread: &Spread) -> Vec<f64> {
+        self.rows.iter().zip(predictions).map(|(reading, cm)| self.value(reading, *cm, spread)).collect()
+    }
+
+    fn value(&self, reading: &Reading, prediction_cm: f64, spread: &Spread) -> f64 {
+        let (Some(sonar), Some(_)) = (self.sonar, reading.echo_cm) else { return 0.0 };
+        let mut change = reading.change;
+        change.offset_cm += prediction_cm;
+        change.scatter_cm += spread.scatter_cm;
+        change.short = 1.0 - (1.0 - change.short) * (1.0 - spread.short);
+        change.long += spread.long;
+        let [all, rate] = sonar.log_likelihood(&reading.fan, &change, reading.echo_cm, reading.previous_echo_cm);
+        all - rate
+    }
+
+    fn log_odds(&self, reading: &Reading) -> f64 {
+        self.sonar.map_or(0.0, |sonar| {
+            let [none, _] = sonar.log_likelihood(&reading.fan, &reading.change, None, None);
+            libm::log(1.0 - libm::exp(none)) - none
+        })
+    }
+
+    /// By how much readings are off, cm.
+    fn offsets(&self, observations: &Observations) -> (Surface, Vec<f64>) {
+        let off = |reading: &Reading| Some(reading.echo_cm? - self.sonar?.expected_cm(&reading.fan, &reading.change)?);
+        let off: Vec<Option<f64>> = self.rows.iter().map(off).collect();
+        let mut sizes: Vec<f64> = off.iter().flatten().map(|off_cm| off_cm.abs()).collect();
+        sizes.sort_by(f64::total_cmp);
+        let median = sizes.get(sizes.len() / 2).copied().unwrap_or(0.0);
+        let scatter_cm = (median / QUARTILE).max(LEAST_SCATTER_CM);
+        let response = |i: usize, prediction: f64| {
+            prediction + (off[i].unwrap_or(0.0) / scatter_cm - prediction).clamp(-FARTHEST, FARTHEST)
+        };
+        Surface::fit(&covariates(observations), |i| off[i].is_some(), observations, scatter_cm, response)
+    }
+}
+
+impl Spread {
+    const NONE: Spread = Spread { scatter_cm: 0.0, short: 0.0, long: 0.0 };
+
+    fn from(values: &[f64]) -> Self {
+        Spread { scatter_cm: values[0], short: values[1], long: values[2] }
+    }
+}

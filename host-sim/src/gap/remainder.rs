@@ -1,0 +1,87 @@
+//! What a fit leaves over in a channel: what follows circumstances, and scatter beyond the simulator's.
+
+use rayon::prelude::*;
+
+use super::channel::Channel;
+use super::fit::{FitContext, Fitted, Gain};
+use super::omnibus::ResidualFit;
+use crate::evaluation::observations::Observations;
+
+/// What the omnibus residual model explains in a channel beyond a fit.
+pub struct Remainder {
+    /// The model.
+    pub model: ResidualFit,
+    /// Its gain on each block, zero where it does not count.
+    pub by_block: Vec<f64>,
+    follows: bool,
+    scatters: bool,
+}
+
+/// The remainder of each channel beyond a fit.
+pub fn remainders(fit: &Fitted, context: &FitContext) -> Vec<Remainder> {
+    Channel::ALL.par_iter().map(|channel| Remainder::of(*channel, fit, context)).collect()
+}
+
+/// The most that the model gains in a channel beyond a fit, or wider scatter on top of it, before any gate.
+pub fn most(fit: &Fitted, context: &FitContext) -> Gain {
+    let of_channel = |channel: &Channel| {
+        let model = ResidualFit::of(*channel, fit, context);
+        [model.gains_over(fit, context), wider_scatter(&model, context, context.observations)].map(|g| Gain::of(&g))
+    };
+    let gains: Vec<[Gain; 2]> = Channel::ALL.par_iter().map(of_channel).collect();
+    gains.into_iter().flatten().max_by(|a, b| a.nats.total_cmp(&b.nats)).unwrap_or(Gain::NONE)
+}
+
+impl Remainder {
+    fn of(channel: Channel, fit: &Fitted, context: &FitContext) -> Self {
+        let gate = &context.calibration.remainder;
+        let model = ResidualFit::of(channel, fit, context);
+        let (gains, wider) = (model.gains_over(fit, context), wider_scatter(&model, context, context.observations));
+        let (follows, scatters) = (Gain::of(&gains).passes(gate), Gain::of(&wider).nats >= gate.nats);
+        let mut by_block = vec![0.0; gains.len()];
+        for (counts, gains) in [(follows, gains), (scatters, wider)] {
+            if counts {
+                by_block.iter_mut().zip(gains).for_each(|(sum, gain)| *sum += gain);
+            }
+        }
+        Remainder { model, by_block, follows, scatters }
+    }
+
+    /// The channel.
+    pub fn channel(&self) -> Channel {
+        self.model.channel
+    }
+
+    /// Whether the model explains anything.
+    pub fn counts(&self) -> bool {
+        self.by_block.iter().any(|g| *g != 0.0)
+    }
+
+    /// By how much the rows of each block are likelier with the scatter of the logs than with the simulator's; zeros where
+    /// that does not count.
+    pub fn wider_scatter(&self, context: &FitContext, rows: &Observations) -> Vec<f64> {
+        if self.scatters { wider_scatter(&self.model, context, rows) } else { vec![0.0; rows.blocks] }
+    }
+
+    /// This if it gains something over the fit `beneath` on runs held out, and nothing otherwise.
+    pub fn confirmed(self, beneath: &Fitted, context: &FitContext, hold_out: &Observations) -> Self {
+        let followed = || -> f64 {
+            let without = beneath.judged_on(hold_out, context).channel(self.channel());
+            self.model.judged_on(hold_out, context).iter().zip(without).map(|(a, b)| a - b).sum()
+        };
+        let followed = if self.follows { followed() } else { 0.0 };
+        let scattered: f64 = self.wider_scatter(context, hold_out).iter().sum();
+        if followed + scattered >= context.calibration.judgement.strong_nats {
+            return self;
+        }
+        Remainder { by_block: vec![0.0; self.by_block.len()], follows: false, scatters: false, ..self }
+    }
+}
+
+/// What a wider scatter gains, where it is wider than chance makes it.
+fn wider_scatter(model: &ResidualFit, context: &FitContext, rows: &Observations) -> Vec<f64> {
+    if model.scatter_ratio(context) < context.calibration.judgement.scatter_ratio {
+        return vec![0.0; rows.blocks];
+    }
+    model.wider_scatter(context, rows)
+}
