@@ -73,12 +73,20 @@ mod tests {
     }
 
     #[test]
-    fn nothing_overflows() {
+    fn what_does_not_fit_saturates() {
         let mut generator = Generator::seed_from_u64(3);
-        for _ in 0..1000 {
-            normal(I16F16::MAX, I16F16::MAX, &mut generator);
-            normal(I16F16::MIN, I16F16::MIN, &mut generator);
+        let mut at =
+            |mean, deviation| -> Vec<I16F16> { (0..1000).map(|_| normal(mean, deviation, &mut generator)).collect() };
+        // A draw above the mean ends at the largest number, one below it anywhere in between; a negative deviation only
+        // mirrors. Half of a thousand draws are on either side, within four standard deviations of 16.
+        for (mean, deviation) in [(I16F16::MAX, I16F16::MAX), (I16F16::MIN, I16F16::MIN)] {
+            let draws = at(mean, deviation);
+            let saturated = draws.iter().filter(|draw| **draw == mean).count();
+            assert!((436..=564).contains(&saturated), "{saturated} of 1000 draws about {mean}");
         }
+        // Six deviations are the most: no draw goes round.
+        assert!(at(I16F16::MAX, I16F16::ONE).iter().all(|draw| *draw >= I16F16::MAX - I16F16::from_num(7)));
+        assert!(at(I16F16::MIN, I16F16::ONE).iter().all(|draw| *draw <= I16F16::MIN + I16F16::from_num(7)));
     }
 
     proptest! {

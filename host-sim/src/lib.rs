@@ -10,7 +10,6 @@ pub mod crosscheck;
 pub mod demo;
 pub mod evolve;
 pub mod files;
-pub mod folded;
 pub mod gap;
 pub mod genetic;
 pub mod geometry;

@@ -1,10 +1,11 @@
 //! One network in both arithmetics.
 
 use fixed::types::I16F16;
-use mindgap_core::fixed_network::Quantised;
 use mindgap_core::network::{Network, Scaling};
 use rayon::prelude::*;
 use serde::Serialize;
+
+use crate::simulator::fixed_point::Quantised;
 
 /// How far a network in fixed point is from the same in float, in its output's unit.
 #[derive(Clone, Debug, PartialEq, Serialize)]
