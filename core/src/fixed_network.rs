@@ -1,8 +1,8 @@
 //! Networks in fixed point, for processors without a floating-point unit.
 //!
 //! Inputs and outputs are Q16.16. Between them everything is Q6.26: scaled inputs lie in [1, 2], their logarithms in
-//! [0, 1], exponents and weights below 32. A network whose terms are larger (they may be, and cancel) is trained output
-//! over a power of two, chosen so that all its terms together stay below 32. The host works out that power, and how far
+//! [0, 1], exponents and weights below 32. The terms of a network may be larger, and cancel: they are then stored divided
+//! by a power of two, chosen so that all of them together stay below 32. The host works out that power, and how far
 //! rounding can take the output, when it quantises a trained network. Q16.16 throughout would not do: half an ulp in the
 //! logarithm of a term of 1000 cm is 0.005 cm, and a value network sums twenty of them.
 
