@@ -1,6 +1,8 @@
 //! What every onboard program does beyond the controller: how long it waits for the ultrasonic sensor, when it takes
 //! the sensor for dead, and how it ends.
 
+pub use mindgap_core::limits::FREE_FLASH_BYTES;
+
 /// The sensor's word for "no echo came back". It is no reading: the tuple is held.
 pub const NO_ECHO_CM: u8 = 255;
 
@@ -28,6 +30,3 @@ pub const GAVE_UP_HZ: u16 = 220;
 
 /// Volume of the tones, of 4.
 pub const TONE_VOLUME: u8 = 4;
-
-/// User flash of a brick with standard firmware 1.29 and an empty file system.
-pub const FREE_FLASH_BYTES: u32 = 121_124;

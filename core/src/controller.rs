@@ -45,13 +45,13 @@ pub struct Tuple {
     pub left: i8,
     /// Command of the right motor, -100..=100 (mot2).
     pub right: i8,
-    /// On which side of the threshold a reading ends the tuple (bigorsmall).
+    /// The side of the threshold on which a reading ends the tuple (bigorsmall).
     pub when: When,
     /// The threshold, 0..=255 cm (ultval).
     pub threshold_cm: i16,
 }
 
-/// On which side of the threshold a reading ends a tuple; both strictly.
+/// The side of the threshold on which a reading ends a tuple; both comparisons are strict.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -62,7 +62,7 @@ pub enum When {
     Smaller,
 }
 
-/// What the motors are told.
+/// Motor commands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Motors {
@@ -72,7 +72,7 @@ pub struct Motors {
     pub right: i8,
 }
 
-/// Where a controller's run stands.
+/// The status of a controller's run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Status {
@@ -98,7 +98,7 @@ pub enum InvalidController {
     StepLimit,
 }
 
-/// The state of a controller's run: which tuple is held, and for how many steps it has run.
+/// The state of a controller's run: the current tuple and the number of steps taken.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Machine {
     tuple: u8,
@@ -137,7 +137,7 @@ impl Machine {
         Machine { tuple: 0, steps: 0, status: Status::Running }
     }
 
-    /// Takes the one reading of a step, `None` when the sensor produced no value. A NaN ends no tuple.
+    /// Takes a step with its one reading, `None` when the sensor produced no value. A NaN ends no tuple.
     /// Once stopped, a run stays stopped.
     pub fn step<R: PartialOrd + From<i16>>(&mut self, controller: &Controller, reading_cm: Option<R>) -> Status {
         if self.status != Status::Running {
@@ -159,7 +159,7 @@ impl Machine {
         self.status
     }
 
-    /// Lets so many steps pass whose readings end no tuple, as [`step`](Machine::step) would one by one.
+    /// Takes `steps` steps at once whose readings end no tuple, as [`step`](Machine::step) would one by one.
     pub fn hold(&mut self, controller: &Controller, steps: u16) {
         if self.status == Status::Running && steps > 0 {
             let left = controller.max_steps.saturating_sub(self.steps).max(1);
@@ -170,7 +170,7 @@ impl Machine {
         }
     }
 
-    /// What the motors are told now; zero once stopped.
+    /// The current motor commands; zero once stopped.
     pub fn motors(&self, controller: &Controller) -> Motors {
         match (self.status, controller.tuples.get(usize::from(self.tuple))) {
             (Status::Running, Some(tuple)) => Motors {
@@ -181,17 +181,17 @@ impl Machine {
         }
     }
 
-    /// The tuple that is held, from 0; six once finished.
+    /// Index of the current tuple, from 0; six once finished.
     pub fn tuple(&self) -> usize {
         usize::from(self.tuple)
     }
 
-    /// Steps taken so far.
+    /// Number of steps taken so far.
     pub fn steps(&self) -> u16 {
         self.steps
     }
 
-    /// Where the run stands.
+    /// The status of the run.
     pub fn status(&self) -> Status {
         self.status
     }

@@ -1,24 +1,19 @@
 //! Networks in fixed point, for processors without a floating-point unit.
 //!
 //! Inputs and outputs are Q16.16. Between them everything is Q6.26: scaled inputs lie in [1, 2], their logarithms in
-//! [0, 1], exponents and weights below 32. A network whose terms are larger (they may be, and cancel) is trained output
-//! over a power of two, chosen so that all its terms together stay below 32; [`quantise`](FixedNetwork::quantise) works
-//! out that power and how far rounding can take the output. Q16.16 throughout would not do: half an ulp in the
+//! [0, 1], exponents and weights below 32. The terms of a network may be larger, and cancel: they are then stored divided
+//! by a power of two, chosen so that all of them together stay below 32. The host works out that power, and how far
+//! rounding can take the output, when it quantises a trained network. Q16.16 throughout would not do: half an ulp in the
 //! logarithm of a term of 1000 cm is 0.005 cm, and a value network sums twenty of them.
-
-mod quantise;
 
 use core::array;
 
 use fixed::types::{I6F26, I16F16, I38F26};
 use fixed::{FixedI32, Saturating};
 
-pub use quantise::{Quantised, Unrepresentable, Weight};
-
-use crate::fixed_point::{Q6_26, Q16_16, product, saturate};
-use crate::folded::PowerSum;
+use crate::fixed_point::{Q6_26, Q16_16, exp2_of_sum, log2, product, saturate};
+use crate::folded::{Power, PowerSum, Sign, Term};
 use crate::network::{Activation, MAX_HALF};
-use crate::scalar::Scalar;
 
 /// A folded network in fixed point: `N` inputs, room for `POWERS` product units.
 #[derive(Clone, Debug, PartialEq)]
@@ -38,7 +33,7 @@ pub struct FixedNetwork<const N: usize, const POWERS: usize = MAX_HALF> {
 pub struct FixedScaling {
     /// Factor, as large as 32 bits allow.
     pub gain: i32,
-    /// By how many bits the product of a Q16.16 input's bits and `gain` is above Q6.26; at most 63.
+    /// Fractional bits that the product of a Q16.16 input and `gain` has beyond the 26 of Q6.26; at most 63.
     pub shift: u8,
     /// Summand; large where the range is narrow and far from zero.
     pub offset: I38F26,
@@ -68,6 +63,9 @@ pub struct Output {
 /// The largest [`FixedNetwork::output_shift`]; the terms then reach 2^31.
 pub const MAX_OUTPUT_SHIFT: u8 = 26;
 
+/// A scaled input below 2^-10 counts as 2^-10, so that sums of logarithms have room; trained ones are at least 1.
+const LEAST_SCALED: I6F26 = I6F26::from_bits(1 << 16);
+
 /// How far, in scaled units, an input may be outside the trained range before it is said to be clamped, so that
 /// rounding at the very end of the range is not.
 const CLAMP_TOLERANCE: i64 = 1 << 10;
@@ -86,7 +84,7 @@ impl<const N: usize, const POWERS: usize> FixedNetwork<N, POWERS> {
             clamped |= outside;
             x
         });
-        ScaledInputs { x, log2_x: x.map(Q6_26::log2_magnitude), clamped }
+        ScaledInputs { x, log2_x: x.map(|x| Saturating(log2(x.0.max(LEAST_SCALED)))), clamped }
     }
 
     /// The output for a sample that was scaled by this network, or by another with equal `inputs`.
@@ -101,6 +99,30 @@ impl<const N: usize, const POWERS: usize> FixedNetwork<N, POWERS> {
         let wide = i64::from(sum.0.to_bits()) << self.output_shift.min(MAX_OUTPUT_SHIFT);
         Saturating(I16F16::from_bits(saturate((wide + (1 << (FEWER_BITS - 1))) >> FEWER_BITS)))
     }
+}
+
+impl<const N: usize> Term<Q6_26, N> for Power<I6F26, N> {
+    #[inline(always)]
+    fn add_to(&self, sum: Q6_26, log2_x: &[Q6_26; N]) -> Q6_26 {
+        let term = product_of_powers(self.log2_weight, log2_x, &self.exponents);
+        match self.sign {
+            Sign::Plus => sum + term,
+            Sign::Minus => sum - term,
+        }
+    }
+}
+
+/// Two to the power of `start` + Σ `logarithms` · `exponents`; the sum is exact. Not to be inlined: in a loop over
+/// product units the compiler would widen the logarithms once, ahead of the loop, and then multiply 64 bits by 64.
+#[inline(never)]
+fn product_of_powers<const N: usize>(start: I6F26, logarithms: &[Q6_26; N], exponents: &[I6F26; N]) -> Q6_26 {
+    // A logarithm is between -10 and 5, so a product has at most 61 bits.
+    const { assert!(N <= 4, "more products might not fit 64 bits") };
+    let mut sum = i64::from(start.to_bits()) << I6F26::FRAC_NBITS;
+    for (logarithm, exponent) in logarithms.iter().zip(exponents) {
+        sum = sum.wrapping_add(product(logarithm.0.to_bits(), exponent.to_bits()));
+    }
+    Saturating(exp2_of_sum(sum))
 }
 
 impl FixedScaling {

@@ -21,7 +21,7 @@ use fixed::types::extra::{IsLessOrEqual, LeEqU32, True, U16, U26, U30};
 use fixed::{FixedI32, Saturating};
 
 pub use cosine::cos_pi;
-use powers::exp2_of_sum;
+pub(crate) use powers::exp2_of_sum;
 pub use powers::{exp2, log2};
 pub(crate) use product::product;
 
@@ -40,46 +40,17 @@ impl Format for U26 {}
 
 impl<F: Format> Scalar for Saturating<FixedI32<F>> {
     type Weight = FixedI32<F>;
+    const ZERO: FixedI32<F> = FixedI32::ZERO;
+    const ONE: FixedI32<F> = FixedI32::ONE;
 
     #[inline(always)]
-    fn weight(self, weight: FixedI32<F>) -> Self {
-        Saturating(weight)
+    fn constant(self, value: FixedI32<F>) -> Self {
+        Saturating(value)
     }
 
     #[inline(always)]
     fn clamp(self, low: Self, high: Self) -> Self {
         self.max(low).min(high)
-    }
-
-    #[inline(always)]
-    fn zero(self) -> Self {
-        Self::ZERO
-    }
-
-    #[inline(always)]
-    fn one(self) -> Self {
-        Saturating(FixedI32::ONE)
-    }
-
-    #[inline(always)]
-    fn exp2(self) -> Self {
-        Saturating(exp2(self.0))
-    }
-
-    #[inline(always)]
-    fn log2_magnitude(self) -> Self {
-        let least = FixedI32::from_bits(FixedI32::<F>::ONE.to_bits() >> 10);
-        Saturating(log2(self.0.saturating_abs().max(least)))
-    }
-
-    #[inline(always)]
-    fn negative(self) -> Self {
-        if self < Self::ZERO { self.one() } else { Self::ZERO }
-    }
-
-    #[inline(always)]
-    fn cos_pi(self) -> Self {
-        Saturating(cos_pi(self.0))
     }
 
     /// Each product is rounded towards minus infinity; the sum is exact and saturates once, at the end.
@@ -91,19 +62,6 @@ impl<F: Format> Scalar for Saturating<FixedI32<F>> {
             sum += product(term.0.to_bits(), weight.to_bits()) >> F::U32;
         }
         Saturating(FixedI32::from_bits(saturate(sum)))
-    }
-
-    /// The sum is exact. Not to be inlined: in a loop over product units the compiler would widen the logarithms once,
-    /// ahead of the loop, and then multiply 64 bits by 64.
-    #[inline(never)]
-    fn product_of_powers<const N: usize>(start: Self, logarithms: &[Self; N], exponents: &[FixedI32<F>; N]) -> Self {
-        // A logarithm is between -10 and 15, so a product has at most 61 bits.
-        const { assert!(N <= 4, "more products might not fit 64 bits") };
-        let mut sum = i64::from(start.0.to_bits()) << F::U32;
-        for (logarithm, exponent) in logarithms.iter().zip(exponents) {
-            sum = sum.wrapping_add(product(logarithm.0.to_bits(), exponent.to_bits()));
-        }
-        Saturating(exp2_of_sum(sum))
     }
 }
 
@@ -123,23 +81,7 @@ pub(crate) fn saturate(wide: i64) -> i32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::network::{Network, ProductForm, ProductUnit, Scaling};
     use fixed::types::I16F16;
-
-    #[test]
-    fn a_network_of_either_form_runs_in_q16_16() {
-        let number = I16F16::from_num::<f32>;
-        // 0.5 + 3 x^2 of x = input / 128, in the signed form on either side of zero.
-        let scaling = Scaling { gain: number(1.0 / 128.0), offset: number(0.0), low: number(-2.0), high: number(2.0) };
-        let mut network = Network::constant([scaling], number(0.5));
-        network.product.push(ProductUnit { exponents: [number(2.0)], output: number(3.0) }).unwrap();
-        network.product_form = ProductForm::Signed;
-        let at = |network: &Network<I16F16, 1>, input: f32| network.evaluate([Saturating(number(input))]).0;
-        assert_eq!([-128.0, -64.0, 128.0, 1e4].map(|x| at(&network, x)), [3.5, 1.25, 3.5, 12.5].map(number));
-        // An odd power keeps the sign.
-        network.product[0].exponents = [number(3.0)];
-        assert_eq!([-128.0, 64.0].map(|x| at(&network, x)), [-2.5, 0.875].map(number));
-    }
 
     #[test]
     fn a_weighted_sum_saturates_once_at_its_end() {

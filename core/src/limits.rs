@@ -1,8 +1,8 @@
 //! What an NXT-class brick has room for, checked whenever this crate is compiled.
 //!
 //! The brick's AT91SAM7S256 has 64 KB of RAM and 256 KB of flash, and the firmware keeps most of it: a program gets a
-//! pool of 32 KB for its data, and shares the rest of the flash with other files (from 104 to 121 KB when empty, by
-//! version of the firmware). A program on the bare processor has all of it.
+//! pool of 32 KB for its data, and shares the rest of the flash with other files. A program on the bare processor has all
+//! of it.
 
 use core::mem::size_of;
 
@@ -16,8 +16,8 @@ pub const RAM_BYTES: usize = 64 * 1024;
 pub const FLASH_BYTES: usize = 256 * 1024;
 /// What the firmware leaves a program for its data.
 pub const POOL_BYTES: usize = 32 * 1024;
-/// The least flash that an empty brick has for programs and logs, over the versions of the firmware.
-pub const FILE_BYTES: usize = 104_104;
+/// User flash of a brick with standard firmware 1.29 and an empty file system.
+pub const FREE_FLASH_BYTES: u32 = 121_124;
 
 /// The most that one network may take in flash.
 pub const NETWORK_BYTES: usize = 1024;
@@ -39,6 +39,6 @@ const _: () = {
     let motion = size_of::<FixedNetwork<4, 2>>() + 2 * size_of::<FixedNetwork<4, 10>>();
     let sonar = size_of::<FixedNetwork<2, 5>>() + size_of::<FixedNetwork<2, 20>>();
     assert!(motion + sonar + size_of::<Controller>() <= PROGRAM_BYTES / 4, "networks leave too little for their code");
-    assert!(STATE_BYTES + STACK_BYTES <= POOL_BYTES && PROGRAM_BYTES <= FILE_BYTES);
-    assert!(POOL_BYTES <= RAM_BYTES && FILE_BYTES <= FLASH_BYTES);
+    assert!(STATE_BYTES + STACK_BYTES <= POOL_BYTES && PROGRAM_BYTES <= FREE_FLASH_BYTES as usize);
+    assert!(POOL_BYTES <= RAM_BYTES && FREE_FLASH_BYTES as usize <= FLASH_BYTES);
 };

@@ -11,7 +11,8 @@
 //! | [`sin`], [`cos`] | ±1000 rad | 2^-22 + 2^-23 times the angle, absolute |
 
 use core::f32::consts::{FRAC_1_PI, LN_2, LOG2_E, PI};
-use core::ops::{Add, Mul, Sub};
+
+use crate::scalar::Scalar;
 
 /// 1.5·2^23: an f32 near it has no room for a fraction, and holds a small whole summand in its lowest bits.
 pub const WHOLE: f32 = 12_582_912.0;
@@ -20,27 +21,23 @@ pub const SQRT_HALF_BITS: u32 = 0x3f35_04f3;
 /// Bit pattern of 1.
 pub const ONE_BITS: u32 = 0x3f80_0000;
 
-/// The few operations that the functions of this module are put together from.
+/// An f32 or several, with the operations on bit patterns that the functions of this module are put together from.
 ///
 /// An implementation over a lane applies each to every member; the scalar and the lane have to agree to the bit.
-pub trait Binary32: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> {
-    /// `value` as a number beside `self`: a lane takes its width from `self`.
-    fn constant(self, value: f32) -> Self;
-    /// `low` where `self` is below it, `high` where `self` is above it, else `self`; NaN stays NaN.
-    fn limit(self, low: f32, high: f32) -> Self;
-    /// The magnitude.
-    fn magnitude(self) -> Self;
+pub trait Binary32: Scalar<Weight = f32> {
+    /// The absolute value.
+    fn abs(self) -> Self;
     /// `self` times two to the power n, where `shifted` is [`WHOLE`] + n: exact while `self` and the result are normal
     /// numbers.
-    fn times_two_to(self, shifted: Self) -> Self;
+    fn ldexp(self, shifted: Self) -> Self;
     /// Mantissa in [√½, √2) and whole exponent of a normal positive number.
-    fn split_exponent(self) -> (Self, Self);
+    fn frexp(self) -> (Self, Self);
 }
 
 /// Two to the power of `x`.
 #[inline(always)]
 pub fn exp2<T: Binary32>(x: T) -> T {
-    let x = x.limit(-126.0, 126.0);
+    let x = x.clamp(x.constant(-126.0), x.constant(126.0));
     // A bit pattern forgets that it was NaN; zero times the number does not.
     exp2_within(x) + x * x.constant(0.0)
 }
@@ -55,13 +52,13 @@ pub fn exp2_within<T: Binary32>(x: T) -> T {
     let high = horner(rest, [0.001_330_060_5, 0.009_669_691]);
     let middle = horner(rest, [0.055_505_585, 0.240_222_83]);
     let power = (high * square + middle) * square + horner(rest, [LN_2, 1.0]);
-    power.times_two_to(shifted)
+    power.ldexp(shifted)
 }
 
 /// The logarithm of `x` to base two.
 #[inline(always)]
 pub fn log2<T: Binary32>(x: T) -> T {
-    let x = x.limit(f32::MIN_POSITIVE, f32::MAX);
+    let x = x.clamp(x.constant(f32::MIN_POSITIVE), x.constant(f32::MAX));
     // As above.
     log2_normal(x) + x * x.constant(0.0)
 }
@@ -69,7 +66,7 @@ pub fn log2<T: Binary32>(x: T) -> T {
 /// The same, bit for bit, for an `x` that is known to be a normal positive number; for others the result means nothing.
 #[inline(always)]
 pub fn log2_normal<T: Binary32>(x: T) -> T {
-    let (mantissa, exponent) = x.split_exponent();
+    let (mantissa, exponent) = x.frexp();
     let t = mantissa - x.constant(1.0);
     let slope = horner(
         t,
@@ -100,7 +97,7 @@ pub fn sin_pi<T: Binary32>(x: T) -> T {
 pub fn cos_pi<T: Binary32>(x: T) -> T {
     // cos(π r) = sin(π(½ - |r|)), where the difference is exact.
     let half_turns = round(x);
-    let rest = (x - half_turns).magnitude();
+    let rest = (x - half_turns).abs();
     alternating_sign(half_turns) * sin_pi_near_zero(x.constant(0.5) - rest)
 }
 
@@ -133,7 +130,7 @@ fn sin_pi_near_zero<T: Binary32>(x: T) -> T {
 #[inline(always)]
 fn alternating_sign<T: Binary32>(whole: T) -> T {
     let half = whole * whole.constant(0.5);
-    whole.constant(1.0) - (half - round(half)).magnitude() * whole.constant(4.0)
+    whole.constant(1.0) - (half - round(half)).abs() * whole.constant(4.0)
 }
 
 /// A polynomial by Horner's rule, highest power first.
@@ -151,30 +148,19 @@ fn horner<T: Binary32, const N: usize>(x: T, coefficients: [f32; N]) -> T {
 
 impl Binary32 for f32 {
     #[inline(always)]
-    fn constant(self, value: f32) -> f32 {
-        value
-    }
-
-    #[inline(always)]
-    fn limit(self, low: f32, high: f32) -> f32 {
-        let raised = if self < low { low } else { self };
-        if raised > high { high } else { raised }
-    }
-
-    #[inline(always)]
-    fn magnitude(self) -> f32 {
+    fn abs(self) -> f32 {
         f32::from_bits(self.to_bits() & 0x7fff_ffff)
     }
 
     #[inline(always)]
-    fn times_two_to(self, shifted: f32) -> f32 {
+    fn ldexp(self, shifted: f32) -> f32 {
         // WHOLE + n holds n in its lowest bits, and nothing else that the shift leaves there: what is added is n
         // exponents.
         f32::from_bits(self.to_bits().wrapping_add(shifted.to_bits() << 23))
     }
 
     #[inline(always)]
-    fn split_exponent(self) -> (f32, f32) {
+    fn frexp(self) -> (f32, f32) {
         // Counting from √½ puts the mantissa into [√½, √2).
         let above = self.to_bits().wrapping_sub(SQRT_HALF_BITS);
         let exponent = (above as i32) >> 23;

@@ -14,7 +14,7 @@ use crate::simulator::Simulator;
 use crate::simulator::fixed_point::FixedNetworks;
 use arithmetic::{Fixed, Float};
 pub use differences::{Differences, NetworkCheck};
-pub use runs::{Apart, Divergence, Moment, Runs, Trials};
+pub use runs::{Apart, Divergence, RunState, Runs, Trials};
 
 /// What `mindgap crosscheck --json` writes.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -36,7 +36,7 @@ pub struct Networks {
     pub forward: NetworkCheck,
     /// Way to the left, cm.
     pub lateral: NetworkCheck,
-    /// Chance of an echo.
+    /// Probability of an echo.
     pub echo_probability: NetworkCheck,
     /// The reading, cm.
     pub echo_value: NetworkCheck,
@@ -62,11 +62,11 @@ pub fn crosscheck(
     Ok(Crosscheck {
         schema: 1,
         networks: Networks {
-            turn: NetworkCheck::new(float.turn, &quantised.turn, commands),
-            forward: NetworkCheck::new(float.forward, &quantised.forward, commands),
-            lateral: NetworkCheck::new(float.lateral, &quantised.lateral, commands),
-            echo_probability: NetworkCheck::new(float.echo_probability, &quantised.echo_probability, faced),
-            echo_value: NetworkCheck::new(float.echo_value, &quantised.echo_value, faced),
+            turn: NetworkCheck::new(&float.turn, &quantised.turn, commands),
+            forward: NetworkCheck::new(&float.forward, &quantised.forward, commands),
+            lateral: NetworkCheck::new(&float.lateral, &quantised.lateral, commands),
+            echo_probability: NetworkCheck::new(&float.echo_probability, &quantised.echo_probability, faced),
+            echo_value: NetworkCheck::new(&float.echo_value, &quantised.echo_value, faced),
         },
         runs: runs::side_by_side(&float, &fixed, simulator, logs, controller, trials)?,
     })

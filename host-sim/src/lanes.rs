@@ -3,12 +3,13 @@
 //! The instruction set is chosen when the program runs. Whichever it is, the bits are the same: no operation is fused
 //! or reordered, and [`mindgap_core::maths`] is the one source of powers, logarithms and sines.
 
-pub mod twice;
+#[cfg(test)]
+mod tests;
 
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
 use mindgap_core::maths::{self, Binary32};
-use mindgap_core::scalar::{LEAST_MAGNITUDE, Scalar};
+use mindgap_core::scalar::Scalar;
 use pulp::Simd;
 
 /// The widest vector of any instruction set, in f32 numbers. Sums over samples are kept in so many parts whatever the
@@ -102,24 +103,31 @@ impl<S: Simd> Mask<S> {
     }
 }
 
-impl<S: Simd> Binary32 for Lanes<S> {
+impl<S: Simd> Scalar for Lanes<S> {
+    type Weight = f32;
+    const ZERO: f32 = 0.0;
+    const ONE: f32 = 1.0;
+
     #[inline(always)]
     fn constant(self, value: f32) -> Self {
         Lanes::splat(self.simd, value)
     }
 
     #[inline(always)]
-    fn limit(self, low: f32, high: f32) -> Self {
-        self.clamp(self.constant(low), self.constant(high))
+    fn clamp(self, low: Self, high: Self) -> Self {
+        let raised = self.less(low).select(low, self);
+        high.less(raised).select(high, raised)
     }
+}
 
+impl<S: Simd> Binary32 for Lanes<S> {
     #[inline(always)]
-    fn magnitude(self) -> Self {
+    fn abs(self) -> Self {
         Lanes { simd: self.simd, values: self.simd.abs_f32s(self.values) }
     }
 
     #[inline(always)]
-    fn times_two_to(self, shifted: Self) -> Self {
+    fn ldexp(self, shifted: Self) -> Self {
         let s = self.simd;
         let exponents = s.wrapping_dyn_shl_u32s(s.transmute_u32s_f32s(shifted.values), s.splat_u32s(23));
         let bits = s.add_u32s(s.transmute_u32s_f32s(self.values), exponents);
@@ -127,7 +135,7 @@ impl<S: Simd> Binary32 for Lanes<S> {
     }
 
     #[inline(always)]
-    fn split_exponent(self) -> (Self, Self) {
+    fn frexp(self) -> (Self, Self) {
         let s = self.simd;
         let bits = s.transmute_u32s_f32s(self.values);
         // As for f32, with the exponent kept biased, since vectors have no cheap way from integers to f32: in the low
@@ -139,51 +147,6 @@ impl<S: Simd> Binary32 for Lanes<S> {
         let scale = s.wrapping_dyn_shl_u32s(biased, s.splat_u32s(23));
         let mantissa = s.sub_u32s(s.add_u32s(bits, s.splat_u32s(maths::ONE_BITS)), scale);
         (Lanes { simd: s, values: s.transmute_f32s_u32s(mantissa) }, exponent)
-    }
-}
-
-impl<S: Simd> Scalar for Lanes<S> {
-    type Weight = f32;
-
-    #[inline(always)]
-    fn weight(self, weight: f32) -> Self {
-        self.constant(weight)
-    }
-
-    #[inline(always)]
-    fn clamp(self, low: Self, high: Self) -> Self {
-        let raised = self.less(low).select(low, self);
-        high.less(raised).select(high, raised)
-    }
-
-    #[inline(always)]
-    fn zero(self) -> Self {
-        self.constant(0.0)
-    }
-
-    #[inline(always)]
-    fn one(self) -> Self {
-        self.constant(1.0)
-    }
-
-    #[inline(always)]
-    fn exp2(self) -> Self {
-        maths::exp2(self)
-    }
-
-    #[inline(always)]
-    fn log2_magnitude(self) -> Self {
-        maths::log2(self.magnitude().limit(LEAST_MAGNITUDE, f32::MAX))
-    }
-
-    #[inline(always)]
-    fn negative(self) -> Self {
-        self.less(self.zero()).select(self.one(), self.zero())
-    }
-
-    #[inline(always)]
-    fn cos_pi(self) -> Self {
-        maths::cos_pi(self)
     }
 }
 

@@ -11,7 +11,6 @@ pub mod effects;
 pub mod evaluation;
 pub mod evolve;
 pub mod files;
-pub mod folded;
 pub mod gap;
 pub mod genetic;
 pub mod geometry;

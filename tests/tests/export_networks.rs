@@ -6,6 +6,7 @@ use mindgap_controller_export::nxc_networks::{NxcNetwork, budget, nxc_networks};
 use mindgap_core::fixed_network::FixedNetwork;
 use mindgap_core::network::Network;
 use mindgap_host_sim::chance::generator;
+use mindgap_host_sim::simulator::fixed_point::Quantised;
 use mindgap_tests::nbc::compile;
 use mindgap_tests::plausible_networks::{PlausibleNetworks, plausible_networks};
 use rand::RngExt;
@@ -16,7 +17,7 @@ const SAMPLES: usize = 40;
 const SEEDS: u64 = 4;
 
 fn quantised<const N: usize>(network: &Network<f32, N>) -> FixedNetwork<N> {
-    FixedNetwork::quantise(network).expect("a network of plausible weights").network
+    Quantised::new(network).expect("a network of plausible weights").network
 }
 
 fn number(text: &str) -> i32 {

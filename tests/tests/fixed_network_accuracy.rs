@@ -1,9 +1,9 @@
 //! Fixed-point networks of the sizes of Table I against the same networks in f32.
 
 use fixed::types::I16F16;
-use mindgap_core::fixed_network::{FixedNetwork, Quantised};
 use mindgap_core::network::Network;
 use mindgap_host_sim::chance::generator;
+use mindgap_host_sim::simulator::fixed_point::Quantised;
 use mindgap_tests::plausible_networks::plausible_networks;
 use rand::RngExt;
 
@@ -11,7 +11,7 @@ const SAMPLES: usize = 20_000;
 
 /// The largest difference over samples drawn evenly from `ranges`, and the bound on the rounding error.
 fn largest_difference<const N: usize>(network: &Network<f32, N>, ranges: [(f32, f32); N]) -> (f64, f64) {
-    let Quantised { network: fixed, error_bound } = FixedNetwork::quantise(network).unwrap();
+    let Quantised { network: fixed, error_bound } = Quantised::new(network).unwrap();
     let mut generator = generator(1, &[]);
     let differences = (0..SAMPLES).map(|_| {
         let inputs = ranges.map(|(from, to)| I16F16::from_num(generator.random_range(from..to)));

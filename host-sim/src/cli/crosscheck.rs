@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::{Args, value_parser};
 
 use super::table;
-use crate::crosscheck::{self, Divergence, Moment, NetworkCheck, Networks, Runs, Trials};
+use crate::crosscheck::{self, Divergence, NetworkCheck, Networks, RunState, Runs, Trials};
 use crate::evolve::controller_file::ControllerFile;
 use crate::files;
 use crate::problem::Result;
@@ -82,8 +82,8 @@ fn runs(runs: &Runs) -> String {
         Some(Divergence { run, step, float, fixed }) => format!(
             "{} runs part, first run {run} at step {step}:\n  float {}\n  fixed {}\n",
             runs.parted,
-            moment(float),
-            moment(fixed)
+            state(float),
+            state(fixed)
         ),
     };
     format!(
@@ -93,11 +93,11 @@ fn runs(runs: &Runs) -> String {
     )
 }
 
-fn moment(moment: &Moment) -> String {
-    let reading = moment.echo_cm.map_or("no reading".into(), |cm| format!("reading {cm:.3} cm"));
-    let end = if moment.crashed { ", crashed" } else { "" };
+fn state(state: &RunState) -> String {
+    let reading = state.echo_cm.map_or("no reading".into(), |cm| format!("reading {cm:.3} cm"));
+    let end = if state.crashed { ", crashed" } else { "" };
     format!(
         "({:.3}, {:.3}) cm, {:.3} degrees, {reading}, tuple {}{end}",
-        moment.x_cm, moment.y_cm, moment.heading_deg, moment.tuple
+        state.x_cm, state.y_cm, state.heading_deg, state.tuple
     )
 }

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use fixed::types::I16F16;
 use mindgap_core::chance::{Generator, happens, normal};
-use mindgap_core::network::Network;
+use mindgap_core::folded::FoldedNetwork;
 use rand::Rng;
 
 use crate::learn::dataset::{Dataset, Datasets};
@@ -26,12 +26,12 @@ pub trait Arithmetic: Sync {
 }
 
 /// The networks in single precision, as the PC runs them.
-pub struct Float<'s> {
-    pub turn: &'s Network<f32, 4>,
-    pub forward: &'s Network<f32, 4>,
-    pub lateral: &'s Network<f32, 4>,
-    pub echo_probability: &'s Network<f32, 2>,
-    pub echo_value: &'s Network<f32, 2>,
+pub struct Float {
+    pub turn: FoldedNetwork<f32, 4>,
+    pub forward: FoldedNetwork<f32, 4>,
+    pub lateral: FoldedNetwork<f32, 4>,
+    pub echo_probability: FoldedNetwork<f32, 2>,
+    pub echo_value: FoldedNetwork<f32, 2>,
     scatter: Scatter,
 }
 
@@ -52,22 +52,23 @@ struct Scatter {
     range_cm: [f64; 2],
 }
 
-impl<'s> Float<'s> {
+impl Float {
     /// The networks of a simulator, scattered as these logs are about them.
     ///
     /// # Errors
     /// Names a network that is missing.
-    pub fn new(simulator: &'s Simulator, data: &Datasets) -> Result<Self> {
-        let turn = &simulator.need(&simulator.turn, "turn")?.network;
-        let forward = &simulator.need(&simulator.forward, "forward")?.network;
-        let lateral = &simulator.need(&simulator.lateral, "lateral")?.network;
-        let echo_probability = &simulator.need(&simulator.echo_probability, "echo_probability")?.network;
-        let echo_value = &simulator.need(&simulator.echo_value, "echo_value")?.network;
+    pub fn new(simulator: &Simulator, data: &Datasets) -> Result<Self> {
+        let turn = FoldedNetwork::fold(&simulator.need(&simulator.turn, "turn")?.network);
+        let forward = FoldedNetwork::fold(&simulator.need(&simulator.forward, "forward")?.network);
+        let lateral = FoldedNetwork::fold(&simulator.need(&simulator.lateral, "lateral")?.network);
+        let echo_probability =
+            FoldedNetwork::fold(&simulator.need(&simulator.echo_probability, "echo_probability")?.network);
+        let echo_value = FoldedNetwork::fold(&simulator.need(&simulator.echo_value, "echo_value")?.network);
         let scatter = Scatter {
-            turn_deg: deviation(turn, &data.turn),
-            forward_cm: deviation(forward, &data.forward),
-            lateral_cm: deviation(lateral, &data.lateral),
-            echo_cm: deviation(echo_value, &data.echo_value),
+            turn_deg: deviation(&turn, &data.turn),
+            forward_cm: deviation(&forward, &data.forward),
+            lateral_cm: deviation(&lateral, &data.lateral),
+            echo_cm: deviation(&echo_value, &data.echo_value),
             range_cm: [simulator.robot.ultrasonic.min_cm, simulator.robot.ultrasonic.max_cm],
         };
         Ok(Float { turn, forward, lateral, echo_probability, echo_value, scatter })
@@ -81,13 +82,13 @@ impl<'s> Fixed<'s> {
     }
 }
 
-impl Arithmetic for Float<'_> {
+impl Arithmetic for Float {
     type Reading = f64;
 
     fn motion(&self, speeds: [i8; 4], generator: &mut Generator) -> [f64; 3] {
         let speeds = speeds.map(f32::from);
         let Scatter { turn_deg, forward_cm, lateral_cm, .. } = self.scatter;
-        [(self.forward, forward_cm), (self.lateral, lateral_cm), (self.turn, turn_deg)]
+        [(&self.forward, forward_cm), (&self.lateral, lateral_cm), (&self.turn, turn_deg)]
             .map(|(network, deviation)| float_normal(network.evaluate(speeds), deviation, generator))
     }
 
@@ -125,7 +126,7 @@ impl Arithmetic for Fixed<'_> {
 
 /// The standard deviation of what is logged about a network, by the median of its magnitude, which a few wrong readings
 /// do not move.
-fn deviation<const N: usize>(network: &Network<f32, N>, data: &Dataset<N>) -> f64 {
+fn deviation<const N: usize>(network: &FoldedNetwork<f32, N>, data: &Dataset<N>) -> f64 {
     /// For a normal distribution.
     const DEVIATION_PER_MEDIAN: f64 = 1.4826;
     let residual = |(x, target): (&[f32; N], &f32)| f64::from((target - network.evaluate(*x)).abs());

@@ -1,10 +1,12 @@
 //! One network in both arithmetics.
 
 use fixed::types::I16F16;
-use mindgap_core::fixed_network::Quantised;
-use mindgap_core::network::{Network, Scaling};
+use mindgap_core::folded::FoldedNetwork;
+use mindgap_core::network::Scaling;
 use rayon::prelude::*;
 use serde::Serialize;
+
+use crate::simulator::fixed_point::Quantised;
 
 /// How far a network in fixed point is from the same in float, in its output's unit.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -20,24 +22,24 @@ pub struct NetworkCheck {
 /// Differences at many inputs.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Differences {
-    /// How many inputs.
+    /// Number of inputs.
     pub n: usize,
-    /// The largest magnitude of a difference.
+    /// The largest absolute difference.
     pub worst: f64,
     /// The input at which it is the largest.
     pub worst_at: Vec<f32>,
-    /// The mean magnitude.
+    /// The mean absolute difference.
     pub mean: f64,
     /// Inputs outside the trained range, where both take the range's end.
     pub clamped: usize,
 }
 
-/// Points of a grid at most: 25 along each of four inputs, 625 along each of two.
+/// Largest number of points of a grid: 25 along each of four inputs, 625 along each of two.
 const GRID_POINTS: usize = 390_625;
 
 impl NetworkCheck {
     pub(super) fn new<const N: usize>(
-        float: &Network<f32, N>,
+        float: &FoldedNetwork<f32, N>,
         fixed: &Quantised<N>,
         samples: &[[f32; N]],
     ) -> NetworkCheck {
@@ -60,7 +62,7 @@ impl NetworkCheck {
 }
 
 impl Differences {
-    fn at<const N: usize>(float: &Network<f32, N>, fixed: &Quantised<N>, inputs: &[f32; N]) -> Self {
+    fn at<const N: usize>(float: &FoldedNetwork<f32, N>, fixed: &Quantised<N>, inputs: &[f32; N]) -> Self {
         let expected = f64::from(float.evaluate(*inputs));
         let output = fixed.network.evaluate(inputs.map(I16F16::saturating_from_num));
         let difference = (output.value.to_num::<f64>() - expected).abs();
@@ -94,7 +96,7 @@ fn trained_range(scaling: Scaling<f32>) -> [f64; 2] {
     [low, high].map(|end| ((f64::from(end) - f64::from(offset)) / f64::from(gain)).clamp(-limit, limit))
 }
 
-/// A point of a grid with so many points a side, the last input's number changing fastest.
+/// A point of a grid of `side` points along each input, numbered with the last input changing fastest.
 fn grid_point<const N: usize>(number: usize, side: usize, ranges: &[[f64; 2]; N]) -> [f32; N] {
     std::array::from_fn(|input| {
         let place = number / side.pow((N - 1 - input) as u32) % side;

@@ -50,14 +50,14 @@ pub struct Divergence {
     /// The step, from 1.
     pub step: usize,
     /// The run in float after it.
-    pub float: Moment,
+    pub float: RunState,
     /// The run in fixed point after it.
-    pub fixed: Moment,
+    pub fixed: RunState,
 }
 
-/// A run after a step.
+/// The state of a run after a step.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Moment {
+pub struct RunState {
     /// Position along x.
     pub x_cm: f64,
     /// Position along y.
@@ -136,15 +136,15 @@ fn pair(
         let mut generator = Generator::seed_from_u64(derive(seed, &[STEP, steps as u64]));
         float.step(world, controller, &mut generator.clone());
         fixed.step(world, controller, &mut generator);
-        let moments = [float.moment(), fixed.moment()];
-        let decisions = moments.map(|m| (m.tuple, m.crashed, m.stopped));
+        let states = [float.state(), fixed.state()];
+        let decisions = states.map(|s| (s.tuple, s.crashed, s.stopped));
         if decisions[0] == decisions[1] {
             same_decisions += 1;
         } else if first_divergence.is_none() {
-            first_divergence = Some(Divergence { run, step: steps, float: moments[0], fixed: moments[1] });
+            first_divergence = Some(Divergence { run, step: steps, float: states[0], fixed: states[1] });
         }
         if first_divergence.is_none() {
-            apart = apart.or_more(&moments[0].apart(&moments[1]));
+            apart = apart.or_more(&states[0].apart(&states[1]));
         }
     }
     Runs { n: 1, steps, same_decisions, parted: usize::from(first_divergence.is_some()), first_divergence, apart }
@@ -199,8 +199,8 @@ impl<'a, A: Arithmetic> Walker<'a, A> {
         self.machine.step(controller, self.echo_cm);
     }
 
-    fn moment(&self) -> Moment {
-        Moment {
+    fn state(&self) -> RunState {
+        RunState {
             x_cm: self.pose.position_cm.x,
             y_cm: self.pose.position_cm.y,
             heading_deg: self.pose.heading_rad.to_degrees(),
@@ -212,7 +212,7 @@ impl<'a, A: Arithmetic> Walker<'a, A> {
     }
 }
 
-impl Moment {
+impl RunState {
     fn apart(&self, other: &Self) -> Apart {
         let echo_cm = self.echo_cm.zip(other.echo_cm).map_or(0.0, |(a, b)| (a - b).abs());
         Apart {

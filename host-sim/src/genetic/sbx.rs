@@ -1,7 +1,8 @@
 //! Simulated binary crossover (SBX; Deb and Agrawal 1995): children lie about their parents as one-point crossover of
 //! bit strings would put them.
 
-use mindgap_core::maths::{self, Binary32};
+use mindgap_core::maths;
+use mindgap_core::scalar::Scalar;
 use pulp::{Arch, Simd, WithSimd};
 use rand::RngExt;
 

@@ -19,8 +19,6 @@ pub struct Frame<const N: usize> {
     pub shape: Shape,
     /// How inputs are scaled.
     pub inputs: [Scaling<f32>; N],
-    /// What product units do with signs.
-    pub product_form: ProductForm,
     /// What the output unit does.
     pub activation: Activation,
 }
@@ -57,7 +55,7 @@ impl<const N: usize> Frame<N> {
         let (product, bias) = rest.split_at(self.shape.product * (N + 1));
         Network {
             inputs: self.inputs,
-            product_form: self.product_form,
+            product_form: ProductForm::Positive,
             activation: self.activation,
             bias: bias[0],
             summation: summation
@@ -88,7 +86,6 @@ mod tests {
         Frame {
             shape: Shape::halves(4),
             inputs: [Scaling::onto_one_to_two(0.0, 1.0); 2],
-            product_form: ProductForm::Positive,
             activation: Activation::Linear,
         }
     }

@@ -1,7 +1,7 @@
 //! The paper's trainer: the genetic algorithm on all weights, its fitness the inverse of the mean squared error
 //! (section VII).
 
-use mindgap_core::network::{Activation, Network, ProductForm, Scaling};
+use mindgap_core::network::{Activation, Network, Scaling};
 use rand::RngExt;
 use rayon::prelude::*;
 
@@ -16,8 +16,6 @@ use crate::genetic::{self, Settings};
 pub struct Options {
     /// The genetic algorithm.
     pub genetic: Settings,
-    /// What product units do with signs (open; inputs scaled to [1, 2]).
-    pub product_form: ProductForm,
     /// Weights and exponents start uniformly in ± this (open; 1).
     pub start: f32,
     /// Exponents stay in ± this (open; 5).
@@ -35,7 +33,7 @@ pub struct Trained<const N: usize> {
 
 impl Default for Options {
     fn default() -> Self {
-        Options { genetic: Settings::default(), product_form: ProductForm::Positive, start: 1.0, exponent_bound: 5.0 }
+        Options { genetic: Settings::default(), start: 1.0, exponent_bound: 5.0 }
     }
 }
 
@@ -48,12 +46,9 @@ pub fn train<const N: usize>(
     seed: u64,
     watch: impl FnMut(usize, f64),
 ) -> Trained<N> {
-    let scale = match options.product_form {
-        ProductForm::Positive => Scaling::onto_one_to_two,
-        ProductForm::Signed => Scaling::onto_minus_one_to_one,
-    };
-    let inputs = data.ranges().map(|range| scale(*range.start(), *range.end()));
-    let frame = Frame { shape, inputs, product_form: options.product_form, activation };
+    // The paper is silent on how inputs are scaled; on [1, 2] every power is real.
+    let inputs = data.ranges().map(|range| Scaling::onto_one_to_two(*range.start(), *range.end()));
+    let frame = Frame { shape, inputs, activation };
     // A probability is learned as it is; anything else is brought to [1, 2], where weights about one can reach it.
     let (low, high) = match activation {
         Activation::Ramp => (1.0, 2.0),

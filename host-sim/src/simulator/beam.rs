@@ -5,7 +5,7 @@
 //! Here it is a matter of where the robot stands. A controller that has to do well with both relies on neither's
 //! weakness.
 
-use mindgap_core::maths::{self, Binary32};
+use mindgap_core::maths;
 use mindgap_core::scalar::Scalar;
 use pulp::Simd;
 
@@ -140,7 +140,7 @@ impl Ray {
         let of_distance = middle + x * (by_x + x * by_xx);
         let of_incidence = a * (by_a + x * by_ax + a * (by_aa + x * by_aax + a * by_aaa));
         let odds = of_distance + of_incidence;
-        odds.limit(-100.0, 100.0)
+        odds.clamp(odds.constant(-100.0), odds.constant(100.0))
     }
 }
 

@@ -2,6 +2,7 @@
 
 use glam::DVec2;
 use mindgap_core::controller::Controller;
+use mindgap_core::folded::FoldedNetwork;
 use pulp::Arch;
 
 use super::batch::Batch;
@@ -11,7 +12,6 @@ use super::room::Room;
 use super::scatter::{ConstantReading, Scatter, Spread};
 use super::wrapped::Wrapped;
 use super::{Noise, Simulator};
-use crate::folded::Folded;
 use crate::geometry::Pose;
 use crate::logs::{Robot, Scene};
 use crate::problem::{Problem, Result};
@@ -29,7 +29,7 @@ pub struct Course<'s> {
     /// Of the forward, lateral and turn networks.
     pub(super) motion_scatter: [Scatter; 3],
     /// Probability and value of an echo.
-    pub(super) sonar: [Folded<2>; 2],
+    pub(super) sonar: [FoldedNetwork<f32, 2>; 2],
     pub(super) echo_spread: &'s Spread,
     pub(super) constant_reading: Option<ConstantReading>,
     pub(super) noise: Noise,
@@ -130,7 +130,7 @@ impl<'s> Course<'s> {
             motion_scatter: motion.scatters(),
             motion,
             asks_every_step: false,
-            sonar: [echo_probability, echo_value].map(|l| Folded::new(&l.network)),
+            sonar: [echo_probability, echo_value].map(|l| FoldedNetwork::fold(&l.network)),
             echo_spread: &echo_value.spread,
             constant_reading: simulator.constant_reading,
             noise,

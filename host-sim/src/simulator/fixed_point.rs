@@ -1,8 +1,11 @@
 //! A simulator's networks in fixed point, for a board or a brick: quantised, and as Rust or NXC source.
 
+mod quantise;
+
 use mindgap_controller_export::nxc_networks::NxcNetwork;
 use mindgap_controller_export::rust_networks::rust_network;
-use mindgap_core::fixed_network::{FixedNetwork, Quantised};
+
+pub use quantise::{Quantised, Unrepresentable, Weight};
 
 use super::{Learned, Simulator};
 use crate::problem::{Problem, Result};
@@ -65,6 +68,6 @@ impl FixedNetworks {
 }
 
 fn quantise<const N: usize>(simulator: &Simulator, learned: &Option<Learned<N>>, name: &str) -> Result<Quantised<N>> {
-    FixedNetwork::quantise(&simulator.need(learned, name)?.network)
+    Quantised::new(&simulator.need(learned, name)?.network)
         .map_err(|e| Problem::new(format!("the {name} network cannot be represented in fixed point: {e}")))
 }

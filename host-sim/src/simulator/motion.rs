@@ -2,15 +2,14 @@
 //! motion networks are asked twelve times a controller, side by side, and not once a step.
 
 use mindgap_core::controller::{Controller, TUPLES};
+use mindgap_core::folded::{FoldedNetwork, evaluate_all};
 use mindgap_core::maths::Binary32;
-use mindgap_core::scalar::Scalar;
 use pulp::{Arch, Simd, WithSimd};
 
 use super::nominal::MotionBias;
 use super::nominal::motion_bias::{FEATURES, features};
 use super::scatter::{Scatter, Spread, motion_context};
 use super::{Learned, Simulator};
-use crate::folded::{Folded, evaluate_all};
 use crate::lanes::Lanes;
 use crate::problem::Result;
 
@@ -18,7 +17,7 @@ use crate::problem::Result;
 #[derive(Clone)]
 pub struct MotionNetworks<'s> {
     /// Forward, lateral, turn.
-    networks: Box<[Folded<4>; 3]>,
+    networks: Box<[FoldedNetwork<f32, 4>; 3]>,
     spreads: [&'s Spread; 3],
     /// Weights of what is added, one a feature.
     correction: Option<Box<[[f32; FEATURES]; 3]>>,
@@ -61,7 +60,7 @@ impl<'s> MotionNetworks<'s> {
             simulator.need(&simulator.turn, "turn")?,
         ];
         Ok(MotionNetworks {
-            networks: Box::new(learned.map(|l| Folded::new(&l.network))),
+            networks: Box::new(learned.map(|l| FoldedNetwork::fold(&l.network))),
             spreads: learned.map(|l| &l.spread),
             correction: None,
         })
@@ -91,9 +90,9 @@ impl<'s> MotionNetworks<'s> {
 
     /// Way forward and to the left in cm and turn to the left in radians.
     #[inline(always)]
-    pub fn evaluate<S: Scalar<Weight = f32> + Binary32>(&self, speeds: Speeds<S>) -> [S; 3] {
+    pub fn evaluate<S: Binary32>(&self, speeds: Speeds<S>) -> [S; 3] {
         let mut motion = evaluate_all(&self.networks, speeds);
-        motion[2] = motion[2] * motion[2].weight(RADIANS_PER_DEGREE);
+        motion[2] = motion[2] * motion[2].constant(RADIANS_PER_DEGREE);
         if let Some(correction) = &self.correction {
             let features = features(speeds);
             for (sum, weights) in motion.iter_mut().zip(correction.iter()) {

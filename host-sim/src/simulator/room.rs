@@ -2,6 +2,7 @@
 
 use glam::DVec2;
 use mindgap_core::maths::{Binary32, round};
+use mindgap_core::scalar::Scalar;
 use pulp::Simd;
 
 use crate::geometry::{Rectangle, Wall};
@@ -112,7 +113,7 @@ impl Room {
         }
         // The angle between two undirected lines: what is left of their difference beyond whole half turns.
         let half_turns = (angle_deg - nearest.normal_deg) * zero.constant(1.0 / 180.0);
-        let alpha_deg = (half_turns - round(half_turns)).magnitude() * zero.constant(180.0);
+        let alpha_deg = (half_turns - round(half_turns)).abs() * zero.constant(180.0);
         Faced { distance_cm: nearest.distance_cm, alpha_deg }
     }
 
@@ -123,7 +124,7 @@ impl Room {
         let (half, zero) = (from.x.constant(0.5), from.x.constant(0.0));
         let (middle_x, middle_y) = ((from.x + to.x) * half, (from.y + to.y) * half);
         let (half_x, half_y) = ((to.x - from.x) * half, (to.y - from.y) * half);
-        let (reach_x, reach_y) = (half_x.magnitude(), half_y.magnitude());
+        let (reach_x, reach_y) = (half_x.abs(), half_y.abs());
         let mut touching = zero.less(zero);
         if let Some([width, height]) = self.arena_cm {
             let low = zero.constant(radius_cm);
@@ -140,9 +141,9 @@ impl Room {
             let extent_y = zero.constant(0.5 * (high[1] - low[1]) + radius_cm);
             let offset_x = middle_x - zero.constant(0.5 * (low[0] + high[0]));
             let offset_y = middle_y - zero.constant(0.5 * (low[1] + high[1]));
-            let across = (half_x * offset_y - half_y * offset_x).magnitude();
-            let apart = (extent_x + reach_x).less(offset_x.magnitude())
-                | (extent_y + reach_y).less(offset_y.magnitude())
+            let across = (half_x * offset_y - half_y * offset_x).abs();
+            let apart = (extent_x + reach_x).less(offset_x.abs())
+                | (extent_y + reach_y).less(offset_y.abs())
                 | (extent_x * reach_y + extent_y * reach_x).less(across);
             touching = touching | !apart;
         }
@@ -191,7 +192,7 @@ impl<S: Simd> Nearest<S> {
 #[inline(always)]
 fn away_from_zero<S: Simd>(component: Lanes<S>) -> Lanes<S> {
     let least = component.constant(LEAST_DIRECTION);
-    component.magnitude().less(least).select(least, component)
+    component.abs().less(least).select(least, component)
 }
 
 #[inline(always)]

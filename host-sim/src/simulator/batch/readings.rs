@@ -2,12 +2,12 @@
 
 use std::f32::consts::PI;
 
-use mindgap_core::maths::Binary32;
+use mindgap_core::folded::evaluate_all;
+use mindgap_core::scalar::Scalar;
 use pulp::Simd;
 
 use super::robots::Robots;
 use super::{Row, StepDraws, level, load, row};
-use crate::folded::evaluate_all;
 use crate::lanes::{Lanes, WIDEST};
 use crate::simulator::Noise;
 use crate::simulator::beam::Beam;
@@ -36,7 +36,7 @@ impl Robots<'_> {
             _ => self.look(simd, &sensors, draws),
         };
         let sonar = &course.robot.ultrasonic;
-        row(reading_cm.limit(sonar.min_cm as f32, sonar.max_cm as f32))
+        row(reading_cm.clamp(reading_cm.constant(sonar.min_cm as f32), reading_cm.constant(sonar.max_cm as f32)))
     }
 
     /// The readings where added effects change the sensor.

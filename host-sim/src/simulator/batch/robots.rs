@@ -3,7 +3,7 @@
 use glam::DVec2;
 use mindgap_core::controller::{Machine, Status, When};
 use mindgap_core::maths;
-use mindgap_core::maths::Binary32;
+use mindgap_core::scalar::Scalar;
 use pulp::Simd;
 
 use super::{Row, StepDraws, level, load, row};

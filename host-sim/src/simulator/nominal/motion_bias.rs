@@ -33,7 +33,7 @@ pub fn features<S: Scalar<Weight: From<f32>>>(speeds: [S; 4]) -> [S; FEATURES] {
     let one = speeds[0].one();
     let mut u = speeds;
     for command in &mut u {
-        *command = *command * one.weight(0.01.into());
+        *command = *command * one.constant(0.01.into());
     }
     let mut features = Features { values: [one; FEATURES], count: 1 };
     for a in 0..4 {
@@ -70,10 +70,10 @@ impl<S: Scalar<Weight: From<f32>>> Features<S> {
     /// The magnitude of `x`, and for every knot what is beyond it on either side, as sum and as difference.
     #[inline(always)]
     fn bend(&mut self, x: S) {
-        let (zero, most) = (x.zero(), x.weight(4.0.into()));
+        let (zero, most) = (x.zero(), x.constant(4.0.into()));
         self.push(x.clamp(zero, most) + (zero - x).clamp(zero, most));
         for knot in KNOTS {
-            let knot = x.weight(knot.into());
+            let knot = x.constant(knot.into());
             let (above, below) = ((x - knot).clamp(zero, most), (zero - x - knot).clamp(zero, most));
             self.push(above + below);
             self.push(above - below);

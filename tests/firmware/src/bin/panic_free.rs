@@ -8,13 +8,15 @@ fn main() {}
 mod on_target {
     use core::hint::black_box;
 
-    use mindgap_core::binary::Binary;
-    use mindgap_core::controller::{Controller, Machine};
+    use mindgap_core::controller::{Controller, Machine, Tuple};
     use mindgap_core::fixed_network::FixedNetwork;
-    use mindgap_core::folded::FoldedNetwork;
+    use mindgap_core::folded::{FoldedNetwork, evaluate_all};
     use mindgap_core::maths;
-    use mindgap_core::network::Network;
+    use mindgap_core::network::{Network, ProductUnit, Scaling, SummationUnit};
+    use mindgap_core::pair::Pair;
+    use mindgap_firmware::controller::CONTROLLER;
     use mindgap_firmware::job;
+    use mindgap_firmware::networks::{ECHO_VALUE, TURN};
 
     #[cfg(cortex_m)]
     use cortex_m_rt as _;
@@ -23,38 +25,45 @@ mod on_target {
 
     #[unsafe(no_mangle)]
     extern "C" fn main() -> ! {
-        let mut buffer = black_box([0; 1024]);
-        controller(&mut buffer);
-        network::<2>(&mut buffer);
-        network::<4>(&mut buffer);
+        controller();
+        network::<2>();
+        network::<4>();
+        fixed_network(&ECHO_VALUE);
+        fixed_network(&TURN);
         functions(black_box(0.5));
         #[cfg(feature = "reachable-panic")]
-        assert!(black_box(buffer[0]) == 0);
+        assert!(black_box(0) == 0);
         semihosting::process::exit(0)
     }
 
-    fn controller(buffer: &mut [u8]) {
-        let Ok(controller) = Controller::from_bytes(black_box(buffer)) else { return };
+    fn controller() {
+        let tuple = Tuple { left: black_box(0), threshold_cm: black_box(0), ..CONTROLLER.tuples[0] };
+        let controller = Controller { step_ms: black_box(0), max_steps: black_box(0), tuples: black_box([tuple; 6]) };
         let mut machine = Machine::start();
         while black_box(machine.step(&controller, Some(black_box(1.0f32)))) != black_box(machine.status()) {}
-        black_box((machine.motors(&controller), machine.steps(), machine.tuple()));
-        black_box((controller.check().is_ok(), controller.to_bytes(buffer).is_ok()));
+        machine.hold(&controller, black_box(1));
+        black_box((machine.motors(&controller), machine.steps(), machine.tuple(), controller.check().is_ok()));
     }
 
-    fn network<const N: usize>(buffer: &mut [u8])
-    where
-        Network<f32, N>: Binary,
-    {
-        let Ok(network) = Network::<f32, N>::from_bytes(black_box(buffer)) else { return };
+    fn network<const N: usize>() {
+        let number = || black_box(1.0f32);
+        let mut network = Network::constant(black_box([Scaling::onto_one_to_two(number(), number()); N]), number());
+        while black_box(true) {
+            let weights = black_box([1.0; N]);
+            let _ = network.summation.push(SummationUnit { weights, bias: number(), output: number() });
+            let _ = network.product.push(ProductUnit { exponents: weights, output: number() });
+        }
         let inputs = black_box([1.0f32; N]);
         black_box((network.evaluate(inputs), network.check().is_ok(), network.parameters()));
-        black_box(network.to_bytes(buffer).is_ok());
-        if let Some(folded) = FoldedNetwork::fold(&network) {
-            black_box(folded.evaluate(inputs.map(f64::from)));
-        }
-        if let Ok(quantised) = FixedNetwork::quantise(&network) {
-            black_box((quantised.network.evaluate(black_box([job::HALF; N])), quantised.error_bound));
-        }
+        let folded = black_box(FoldedNetwork::<f32, N>::fold(&network));
+        black_box((folded.evaluate(inputs), evaluate_all(&[folded.clone()], inputs)));
+        let (x, log2_x) = folded.scale(inputs.map(|input| Pair(input, input)));
+        let pair = folded.evaluate_scaled_pair(&x, &log2_x);
+        black_box((pair.0, pair.1, FoldedNetwork::<f64, N>::fold(&network)));
+    }
+
+    fn fixed_network<const N: usize, const POWERS: usize>(network: &FixedNetwork<N, POWERS>) {
+        black_box(black_box(network.clone()).evaluate(black_box([job::HALF; N])));
     }
 
     fn functions(x: f32) {

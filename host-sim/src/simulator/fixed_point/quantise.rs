@@ -1,12 +1,12 @@
 //! From a trained network to fixed point, with a bound on what rounding can do.
 
-use core::fmt;
+use std::f64::consts::LOG2_E;
+use std::fmt;
 
 use fixed::types::{I6F26, I38F26};
-
-use super::{FixedNetwork, FixedScaling, MAX_OUTPUT_SHIFT};
-use crate::folded::{FoldedNetwork, Power, PowerSum};
-use crate::network::{InvalidNetwork, MAX_HALF, Network, Scaling};
+use mindgap_core::fixed_network::{FixedNetwork, FixedScaling, MAX_OUTPUT_SHIFT};
+use mindgap_core::folded::{FoldedNetwork, Power, PowerSum, Sign};
+use mindgap_core::network::{InvalidNetwork, Network, ProductUnit, Scaling};
 
 /// A network in fixed point and what is known of its rounding.
 #[derive(Clone, Debug, PartialEq)]
@@ -24,9 +24,6 @@ pub struct Quantised<const N: usize> {
 pub enum Unrepresentable {
     /// The network itself is broken.
     Invalid(InvalidNetwork),
-    /// Its product units are of the signed form, whose output jumps where an input changes its sign, so that no bound
-    /// on the rounding error exists.
-    SignedForm,
     /// A number has no place in its format.
     Weight(Weight, f64),
     /// The largest magnitudes of all terms add up to this, beyond 2^31.
@@ -65,38 +62,35 @@ const OUTPUT_ULP: f64 = 1.0 / (1u32 << 16) as f64;
 /// How far a scaled input can be off: its product is cut off, its offset and the ends of its range are rounded.
 const X_ERROR: f64 = 1.5 * ULP;
 
-impl<const N: usize> FixedNetwork<N> {
+impl<const N: usize> Quantised<N> {
     /// Folds a trained network and rounds it to fixed point.
     ///
     /// # Errors
     /// [`Unrepresentable`] names the first weight without a place.
-    pub fn quantise(network: &Network<f32, N>) -> Result<Quantised<N>, Unrepresentable> {
+    pub fn new(network: &Network<f32, N>) -> Result<Self, Unrepresentable> {
         network.check().map_err(Unrepresentable::Invalid)?;
-        let folded = FoldedNetwork::fold(network).ok_or(Unrepresentable::SignedForm)?;
-        let mut inputs = [FixedScaling::CONSTANT; N];
-        for (i, (to, from)) in inputs.iter_mut().zip(&folded.inputs).enumerate() {
-            *to = FixedScaling::quantise(i, from)?;
+        let FoldedNetwork { inputs: scalings, sum: exact, activation, .. } = FoldedNetwork::<f64, N>::fold(network);
+        let mut inputs = [CONSTANT; N];
+        for (i, (to, from)) in inputs.iter_mut().zip(&scalings).enumerate() {
+            *to = quantise_scaling(i, from)?;
         }
-        let mut exponents = heapless::Vec::<[I6F26; N], MAX_HALF>::new();
-        for (unit, power) in folded.sum.powers.iter().enumerate() {
-            // There is room for as many as there are product units.
-            let _ = exponents.push(quantise_exponents(unit, &power.exponents)?);
-        }
+        let exponents = exact.powers.iter().enumerate().map(|(unit, power)| quantise_exponents(unit, &power.exponents));
+        let exponents = exponents.collect::<Result<Vec<_>, _>>()?;
 
-        let range = folded.inputs.map(|s| (s.low, s.high));
-        let output_shift = output_shift(largest_sum(&folded.sum, &range))?;
+        let range = scalings.map(|s| (s.low, s.high));
+        let output_shift = output_shift(largest_sum(&exact, &range))?;
         let scale = power_of_two(output_shift);
         let mut error_bound = scale * ULP / 2.0 + OUTPUT_ULP / 2.0;
         let mut sum = PowerSum {
-            bias: fit(Weight::Bias, folded.sum.bias / scale)?,
+            bias: fit(Weight::Bias, exact.bias / scale)?,
             slopes: [I6F26::ZERO; N],
             powers: heapless::Vec::new(),
         };
-        for (i, (to, slope)) in sum.slopes.iter_mut().zip(folded.sum.slopes).enumerate() {
+        for (i, (to, slope)) in sum.slopes.iter_mut().zip(exact.slopes).enumerate() {
             *to = fit(Weight::Slope(i), slope / scale)?;
             error_bound += libm::fabs(slope) * X_ERROR + scale * ULP * (range[i].1 / 2.0 + 1.0);
         }
-        for (unit, (power, exponents)) in folded.sum.powers.iter().zip(exponents).enumerate() {
+        for (unit, (power, exponents)) in exact.powers.iter().zip(exponents).enumerate() {
             let largest = largest_power(power, &range);
             if largest < scale * ULP / 2.0 {
                 // It would always be rounded to zero.
@@ -104,39 +98,36 @@ impl<const N: usize> FixedNetwork<N> {
                 continue;
             }
             error_bound += largest * (libm::exp2(exponent_error(power, &range)) - 1.0) + scale * ULP;
-            let log2_weight = fit(Weight::OutputWeight(unit), power.log2_weight - f64::from(output_shift))?;
-            let _ = sum.powers.push(Power { exponents, log2_weight, sign: power.sign });
+            let log2_weight = fit(Weight::OutputWeight(unit), log2_weight(power) - f64::from(output_shift))?;
+            let sign = if power.output < 0.0 { Sign::Minus } else { Sign::Plus };
+            sum.powers.extend([Power { exponents, log2_weight, sign }]);
         }
-        Ok(Quantised {
-            network: FixedNetwork { inputs, sum, output_shift, activation: folded.activation },
-            error_bound,
-        })
+        Ok(Quantised { network: FixedNetwork { inputs, sum, output_shift, activation }, error_bound })
     }
 }
 
-impl FixedScaling {
-    const CONSTANT: Self =
-        FixedScaling { gain: 0, shift: 0, offset: I38F26::ZERO, low: I6F26::ZERO, high: I6F26::ZERO };
+/// The scaling to a constant zero.
+const CONSTANT: FixedScaling =
+    FixedScaling { gain: 0, shift: 0, offset: I38F26::ZERO, low: I6F26::ZERO, high: I6F26::ZERO };
 
-    fn quantise(input: usize, scaling: &Scaling<f64>) -> Result<Self, Unrepresentable> {
-        // gain = mantissa · 2^exponent with a mantissa in [½, 1) of 24 bits, so 31 bits hold it whole. The product of
-        // 16 + 31 fractional bits, less the exponent, goes down to 26.
-        let (mantissa, exponent) = libm::frexp(scaling.gain);
-        let (gain, shift) = match u8::try_from(16 + 31 - 26 - exponent) {
-            Ok(shift @ 0..=63) => ((mantissa * power_of_two(31)) as i32, shift),
-            // Too small to reach the last place with any input.
-            _ if exponent < 0 => (0, 0),
-            _ => return Err(Unrepresentable::Weight(Weight::Gain(input), scaling.gain)),
-        };
-        Ok(FixedScaling {
-            gain,
-            shift,
-            offset: I38F26::checked_from_num(scaling.offset)
-                .ok_or(Unrepresentable::Weight(Weight::Offset(input), scaling.offset))?,
-            low: fit(Weight::Low(input), scaling.low)?,
-            high: fit(Weight::High(input), scaling.high)?,
-        })
-    }
+fn quantise_scaling(input: usize, scaling: &Scaling<f64>) -> Result<FixedScaling, Unrepresentable> {
+    // gain = mantissa · 2^exponent with a mantissa in [½, 1) of 24 bits, so 31 bits hold it whole. The product of
+    // 16 + 31 fractional bits, less the exponent, goes down to 26.
+    let (mantissa, exponent) = libm::frexp(scaling.gain);
+    let (gain, shift) = match u8::try_from(16 + 31 - 26 - exponent) {
+        Ok(shift @ 0..=63) => ((mantissa * power_of_two(31)) as i32, shift),
+        // Too small to reach the last place with any input.
+        _ if exponent < 0 => (0, 0),
+        _ => return Err(Unrepresentable::Weight(Weight::Gain(input), scaling.gain)),
+    };
+    Ok(FixedScaling {
+        gain,
+        shift,
+        offset: I38F26::checked_from_num(scaling.offset)
+            .ok_or(Unrepresentable::Weight(Weight::Offset(input), scaling.offset))?,
+        low: fit(Weight::Low(input), scaling.low)?,
+        high: fit(Weight::High(input), scaling.high)?,
+    })
 }
 
 fn quantise_exponents<const N: usize>(unit: usize, exponents: &[f64; N]) -> Result<[I6F26; N], Unrepresentable> {
@@ -145,6 +136,11 @@ fn quantise_exponents<const N: usize>(unit: usize, exponents: &[f64; N]) -> Resu
         *to = fit(Weight::Exponent { unit, input }, *exponent)?;
     }
     Ok(quantised)
+}
+
+/// Of a weight of zero, minus infinity.
+fn log2_weight<const N: usize>(power: &ProductUnit<f64, N>) -> f64 {
+    libm::log2(libm::fabs(power.output))
 }
 
 /// The least division of the output by a power of two after which all terms together stay below 32.
@@ -157,15 +153,18 @@ fn output_shift(largest_sum: f64) -> Result<u8, Unrepresentable> {
 }
 
 /// The magnitudes of all terms together, each at its largest.
-fn largest_sum<const N: usize>(sum: &PowerSum<f64, N>, range: &[(f64, f64); N]) -> f64 {
+fn largest_sum<const N: usize, const POWERS: usize>(
+    sum: &PowerSum<f64, N, POWERS, ProductUnit<f64, N>>,
+    range: &[(f64, f64); N],
+) -> f64 {
     let affine = sum.slopes.iter().zip(range).map(|(slope, (_, high))| libm::fabs(*slope) * high.max(1.0));
     let powers = sum.powers.iter().map(|power| largest_power(power, range));
     affine.chain(powers).fold(libm::fabs(sum.bias), |a, b| a + b)
 }
 
 /// The largest magnitude of one term.
-fn largest_power<const N: usize>(power: &Power<f64, N>, range: &[(f64, f64); N]) -> f64 {
-    let mut log2 = power.log2_weight;
+fn largest_power<const N: usize>(power: &ProductUnit<f64, N>, range: &[(f64, f64); N]) -> f64 {
+    let mut log2 = log2_weight(power);
     for (exponent, (low, high)) in power.exponents.iter().zip(range) {
         log2 += (exponent * libm::log2(*low)).max(exponent * libm::log2(*high));
     }
@@ -173,9 +172,9 @@ fn largest_power<const N: usize>(power: &Power<f64, N>, range: &[(f64, f64); N])
 }
 
 /// How far the exponent of two of one term can be off.
-fn exponent_error<const N: usize>(power: &Power<f64, N>, range: &[(f64, f64); N]) -> f64 {
+fn exponent_error<const N: usize>(power: &ProductUnit<f64, N>, range: &[(f64, f64); N]) -> f64 {
     let each = power.exponents.iter().zip(range).map(|(exponent, (low, high))| {
-        let log2_error = ULP + X_ERROR * core::f64::consts::LOG2_E / low;
+        let log2_error = ULP + X_ERROR * LOG2_E / low;
         let log2_largest = libm::fabs(libm::log2(*low)).max(libm::fabs(libm::log2(*high)));
         libm::fabs(*exponent) * log2_error + ULP * (log2_largest / 2.0 + 1.0)
     });
@@ -194,7 +193,6 @@ impl fmt::Display for Unrepresentable {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Unrepresentable::Invalid(reason) => write!(f, "{reason}"),
-            Unrepresentable::SignedForm => write!(f, "product units of the signed form have no fixed-point form"),
             Unrepresentable::Weight(weight, value) => write!(f, "{weight} = {value} does not fit Q6.26 (-32..32)"),
             Unrepresentable::Terms(sum) => write!(f, "the largest terms add up to {sum:e}, beyond 2^31"),
         }
@@ -217,4 +215,7 @@ impl fmt::Display for Weight {
     }
 }
 
-impl core::error::Error for Unrepresentable {}
+impl std::error::Error for Unrepresentable {}
+
+#[cfg(test)]
+mod tests;
