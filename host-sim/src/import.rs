@@ -6,74 +6,22 @@
 
 pub mod brick_log;
 pub mod clocks;
+pub mod frame;
 pub mod motion;
+mod report;
 pub mod track;
+pub mod units;
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
-use serde::Serialize;
+pub use self::report::{LogReport, Report, RunReport, TrackReport};
 
 use self::brick_log::BrickLog;
 use self::clocks::{Match, align};
-use self::track::{Seen, Track, Units};
+use self::track::{Seen, Track};
+use self::units::Units;
 use crate::logs::{Logs, Robot, Row, Run, Scene};
 use crate::problem::{Problem, Result};
-
-/// What was imported, and what was left out.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Report {
-    /// The cameras' tracks.
-    pub tracks: Vec<TrackReport>,
-    /// The brick's logs.
-    pub logs: Vec<LogReport>,
-}
-
-/// What became of a camera's track.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct TrackReport {
-    /// Its file.
-    pub file: PathBuf,
-    /// Frames in it.
-    pub frames: usize,
-    /// Frames without a pose.
-    pub lost: usize,
-    /// Frames left out because no robot moves that fast.
-    pub jumps: usize,
-}
-
-/// What became of a brick's log.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct LogReport {
-    /// Its file.
-    pub file: PathBuf,
-    /// Its last line had no end and was left out.
-    pub torn: bool,
-    /// The run in the folder of logs; none where the whole log was left out.
-    pub run: Option<RunReport>,
-    /// Why the whole log was left out.
-    pub left_out: Option<String>,
-}
-
-/// A run that was imported.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct RunReport {
-    /// Its name in the folder of logs.
-    pub name: String,
-    /// File of the track that saw it.
-    pub track: PathBuf,
-    /// Camera time at brick time 0.
-    pub offset_ms: f64,
-    /// How much faster the camera's clock runs.
-    pub drift: f64,
-    /// Share of the motion's variance in which wheels and camera differ.
-    pub unexplained: f64,
-    /// Rows of the run.
-    pub rows: usize,
-    /// Rows without a pose because the track has not begun yet or has ended.
-    pub outside: usize,
-    /// Rows without a pose because the camera had lost the robot.
-    pub in_gaps: usize,
-}
 
 /// Wheels and camera differ in at most this share of the motion's variance; wheels that slip or a frame that is
 /// turned stay far below it.
@@ -180,9 +128,4 @@ fn merged(log: &BrickLog, track: &Track, found: &Match, name: String) -> (Run, R
         in_gaps: seen.iter().filter(|s| **s == Seen::Lost).count(),
     };
     (run, report)
-}
-
-/// The first line of a file.
-fn first_line(file: &Path) -> Result<String> {
-    Ok(crate::files::read_text(file)?.lines().next().unwrap_or_default().to_owned())
 }

@@ -2,7 +2,6 @@
 
 use std::path::{Path, PathBuf};
 
-use super::first_line;
 use crate::files;
 use crate::logs::Run;
 use crate::problem::Result;
@@ -42,6 +41,11 @@ impl BrickLog {
         let run = Run::parse(file, whole, &REQUIRED, warn)?;
         Ok(BrickLog { file: file.to_owned(), run, torn: whole.len() < text.len() })
     }
+}
+
+/// The first line of a file; empty for an empty file.
+fn first_line(file: &Path) -> Result<String> {
+    Ok(files::read_text(file)?.lines().next().unwrap_or_default().to_owned())
 }
 
 #[cfg(test)]

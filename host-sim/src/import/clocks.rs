@@ -4,8 +4,8 @@
 //! to see, but for one factor a motion, what the wheels say; the camera has many frames a row, so rows far apart still
 //! tell the time well. Offsets are tried all along the track, then offset and drift are refined together.
 
+use super::frame::GAP_MS;
 use super::motion::{MOTIONS, Moved};
-use super::track::GAP_MS;
 use crate::learn::statistics::median;
 
 /// How brick time becomes camera time.

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use super::track::{Frame, GAP_MS};
+use super::frame::{Frame, GAP_MS};
 use crate::logs::{Robot, Row};
 
 /// Kinds of motion: turned in radians, travelled forward in cm.

@@ -5,10 +5,10 @@ mod motive;
 
 use std::path::{Path, PathBuf};
 
-pub use columns::{Angle, Length, Time, Units};
-
-use super::TrackReport;
+use super::frame::{Frame, GAP_MS};
 use super::motion::{Moved, by_camera};
+use super::report::TrackReport;
+use super::units::Units;
 use crate::geometry::{Pose, wrap_rad};
 use crate::logs::Robot;
 use crate::problem::{Problem, Result};
@@ -24,15 +24,6 @@ pub struct Track {
     jumps: usize,
 }
 
-/// A frame in which the robot was seen.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Frame {
-    /// Time on the camera's clock.
-    pub t_ms: f64,
-    /// The axle's middle, in the scene's frame.
-    pub pose: Pose,
-}
-
 /// What a track says of a moment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Seen {
@@ -44,8 +35,6 @@ pub enum Seen {
     Outside,
 }
 
-/// Frames farther apart than this are a gap, across which nothing is known.
-pub const GAP_MS: f64 = 250.0;
 /// Wheels never turn faster than this times full speed, and trackers err by a few centimetres and degrees.
 const FASTEST: f64 = 1.5;
 const ERR_CM: f64 = 4.0;

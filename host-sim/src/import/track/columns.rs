@@ -5,52 +5,11 @@ use std::path::Path;
 use clap::ValueEnum;
 use csv::{ReaderBuilder, StringRecord};
 
-use super::Frame;
 use crate::files::csv_problem;
 use crate::geometry::Pose;
+use crate::import::frame::Frame;
+use crate::import::units::Units;
 use crate::problem::{Problem, Result};
-
-/// Units of columns whose names tell none.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Units {
-    /// Of the time.
-    pub time: Option<Time>,
-    /// Of x and y.
-    pub length: Option<Length>,
-    /// Of the heading.
-    pub angle: Option<Angle>,
-}
-
-/// A unit of time.
-#[derive(Clone, Copy, Debug, PartialEq, ValueEnum)]
-pub enum Time {
-    /// Seconds
-    S,
-    /// Milliseconds
-    Ms,
-    /// Microseconds
-    Us,
-}
-
-/// A unit of length.
-#[derive(Clone, Copy, Debug, PartialEq, ValueEnum)]
-pub enum Length {
-    /// Metres
-    M,
-    /// Centimetres
-    Cm,
-    /// Millimetres
-    Mm,
-}
-
-/// A unit of angle.
-#[derive(Clone, Copy, Debug, PartialEq, ValueEnum)]
-pub enum Angle {
-    /// Degrees
-    Deg,
-    /// Radians
-    Rad,
-}
 
 /// What a column may be called before its unit.
 const TIME: [&str; 3] = ["t", "time", "timestamp"];
@@ -123,34 +82,5 @@ impl Column {
         }
         let number = cell.parse::<f64>().ok().filter(|v| v.is_finite());
         number.map(Some).ok_or_else(|| format!("{} = {cell:?} is no number", self.name))
-    }
-}
-
-impl Time {
-    fn ms(self) -> f64 {
-        match self {
-            Time::S => 1e3,
-            Time::Ms => 1.0,
-            Time::Us => 1e-3,
-        }
-    }
-}
-
-impl Length {
-    pub(super) fn cm(self) -> f64 {
-        match self {
-            Length::M => 100.0,
-            Length::Cm => 1.0,
-            Length::Mm => 0.1,
-        }
-    }
-}
-
-impl Angle {
-    fn rad(self) -> f64 {
-        match self {
-            Angle::Deg => std::f64::consts::PI / 180.0,
-            Angle::Rad => 1.0,
-        }
     }
 }

@@ -5,9 +5,10 @@ use std::path::Path;
 use csv::ReaderBuilder;
 use glam::{DQuat, DVec3};
 
-use super::{Frame, Length};
 use crate::files::csv_problem;
 use crate::geometry::Pose;
+use crate::import::frame::Frame;
+use crate::import::units::Length;
 use crate::problem::{Problem, Result};
 
 /// Such a file begins like this.
