@@ -2,13 +2,13 @@
 //!
 //! * [`Program`]: an .rxe file, checked. Any file that nbc makes for standard firmware (file versions 0.5 and 0.6).
 //! * [`run`]: runs it until it ends, on a clock of its own, and reports every [`Event`].
-//! * [`World`]: what the brick senses and moves; [`Script`] is one that gives what it was told.
+//! * [`World`]: what the brick senses and moves; [`ScriptedWorld`] is one that gives what it was told.
 //!
 //! Left out: Bluetooth, mailboxes, pictures, colour sensors and motor regulation. A program that asks for one of the
 //! first four ends with [`Fault::Instruction`]; a motor does what its power says.
 //!
 //! ```
-//! use mindgap_controller_export::brick::{self, End, Program, Script, Setup};
+//! use mindgap_controller_export::brick::{self, Termination, Program, ScriptedWorld, RunConfig};
 //!
 //! // An empty task, as nbc compiles it: one clump that stops.
 //! # let mut file = b"MindstormsNXT\0\0\x06".to_vec();
@@ -18,8 +18,8 @@
 //! # for word in [2u16, 10, 1, 0xFFFF, 0xFFFF] { file.extend(word.to_le_bytes()); }
 //! # file.extend([0, 0, 0, 0, 0x29, 0x40, 0xFF, 0xFF]);
 //! let program = Program::load(&file)?;
-//! let report = brick::run(&program, &mut Script::default(), &Setup::default());
-//! assert_eq!(report.end, End::Finished);
+//! let report = brick::run(&program, &mut ScriptedWorld::default(), &RunConfig::default());
+//! assert_eq!(report.end, Termination::Finished);
 //! # Ok::<(), brick::LoadError>(())
 //! ```
 
@@ -40,7 +40,7 @@ use std::collections::BTreeMap;
 
 pub use motors::Drive;
 pub use program::{LoadError, Program};
-pub use world::{Button, Script, Sonar, World};
+pub use world::{Button, ScriptedWorld, Sonar, World};
 
 use bus::Port;
 use flash::Flash;
@@ -56,7 +56,7 @@ const TURN: u32 = 20;
 
 /// The brick before a run: what it has, how fast it is, and when the run is given up.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Setup {
+pub struct RunConfig {
     /// Time after which the run is given up.
     pub run_ms: u32,
     /// Bytecode instructions in a millisecond; a brick manages 80 to 160.
@@ -75,7 +75,7 @@ pub struct Report {
     /// What could be seen and heard, in its order.
     pub events: Vec<Event>,
     /// How the program ended.
-    pub end: End,
+    pub end: Termination,
     /// When it ended, in milliseconds since its start.
     pub ended_ms: u32,
     /// Instructions that it ran.
@@ -94,12 +94,12 @@ pub struct Event {
     /// Milliseconds since the program started.
     pub t_ms: u32,
     /// What it was.
-    pub what: What,
+    pub kind: EventKind,
 }
 
 /// What could be seen or heard.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum What {
+pub enum EventKind {
     /// A motor was told something, be it what it did already; `port` counts from 0.
     Motor {
         /// The motor's port.
@@ -129,14 +129,14 @@ pub enum What {
 
 /// How a program ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum End {
+pub enum Termination {
     /// It came to its end or stopped itself.
     Finished,
     /// The dark button was pressed: the motors coast.
     Aborted,
     /// The firmware gave up on it: the motors go on until somebody presses a button.
     Failed(Fault),
-    /// It was still running after [`Setup::run_ms`].
+    /// It was still running after [`RunConfig::run_ms`].
     OutOfTime,
 }
 
@@ -171,10 +171,10 @@ struct Brick<'p, 'w> {
     instructions: u64,
 }
 
-impl Default for Setup {
+impl Default for RunConfig {
     /// Ten minutes, 100 instructions a millisecond, switched on for five seconds, an empty file system.
     fn default() -> Self {
-        Setup {
+        RunConfig {
             run_ms: 600_000,
             instructions_per_ms: 100,
             start_tick_ms: 5_000,
@@ -185,11 +185,11 @@ impl Default for Setup {
 }
 
 /// Runs a program until it ends.
-pub fn run(program: &Program, world: &mut dyn World, setup: &Setup) -> Report {
+pub fn run(program: &Program, world: &mut dyn World, setup: &RunConfig) -> Report {
     let clump_bytes = program.pool_bytes() - program.data.len();
     let (memory, started) = match Memory::new(program) {
         Ok(memory) => (memory, None),
-        Err(memory) => (memory, Some(End::Failed(Fault::Memory))),
+        Err(memory) => (memory, Some(Termination::Failed(Fault::Memory))),
     };
     let mut brick = Brick {
         program,
@@ -208,7 +208,7 @@ pub fn run(program: &Program, world: &mut dyn World, setup: &Setup) -> Report {
     };
     let end = started.unwrap_or_else(|| brick.run(setup));
     let motors = match end {
-        End::Aborted => Default::default(),
+        Termination::Aborted => Default::default(),
         _ => brick.motors.each_ref().map(Motor::drive),
     };
     Report {
@@ -224,19 +224,19 @@ pub fn run(program: &Program, world: &mut dyn World, setup: &Setup) -> Report {
 
 impl Brick<'_, '_> {
     /// Passes of the firmware's scheduler, one a millisecond; those in which every clump sleeps are skipped.
-    fn run(&mut self, setup: &Setup) -> End {
+    fn run(&mut self, setup: &RunConfig) -> Termination {
         loop {
             if self.world.exit_pressed_ms().is_some_and(|exit_ms| self.t_ms >= exit_ms) {
-                return End::Aborted;
+                return Termination::Aborted;
             }
             if self.t_ms >= setup.run_ms {
-                return End::OutOfTime;
+                return Termination::OutOfTime;
             }
             self.schedule.wake(self.t_ms);
             match self.pass(setup.instructions_per_ms) {
                 Ok(None) => {}
                 Ok(Some(end)) => return end,
-                Err(fault) => return End::Failed(fault),
+                Err(fault) => return Termination::Failed(fault),
             }
             let last_ms = self.world.exit_pressed_ms().unwrap_or(u32::MAX).min(setup.run_ms);
             self.t_ms = match self.schedule.next_wake_ms() {
@@ -247,7 +247,7 @@ impl Brick<'_, '_> {
     }
 
     /// One millisecond: clumps run in turn.
-    fn pass(&mut self, instructions: u32) -> Result<Option<End>, Fault> {
+    fn pass(&mut self, instructions: u32) -> Result<Option<Termination>, Fault> {
         let mut left = instructions.max(1);
         while let Some(clump) = self.schedule.running() {
             if left == 0 {
@@ -258,10 +258,10 @@ impl Brick<'_, '_> {
             match self.turn(clump, turn, &mut left)? {
                 Turn::Over => self.schedule.rotate(),
                 Turn::Left => {}
-                Turn::Stop => return Ok(Some(End::Finished)),
+                Turn::Stop => return Ok(Some(Termination::Finished)),
             }
         }
-        Ok(self.schedule.is_empty().then_some(End::Finished))
+        Ok(self.schedule.is_empty().then_some(Termination::Finished))
     }
 
     /// Up to `turn` instructions of one clump.
@@ -307,8 +307,8 @@ impl Brick<'_, '_> {
         self.start_tick_ms.wrapping_add(self.t_ms)
     }
 
-    fn emit(&mut self, what: What) {
-        self.events.push(Event { t_ms: self.t_ms, what });
+    fn emit(&mut self, kind: EventKind) {
+        self.events.push(Event { t_ms: self.t_ms, kind });
     }
 }
 

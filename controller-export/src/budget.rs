@@ -2,15 +2,14 @@
 
 use std::fmt;
 
-use crate::bytecode::POOL_BYTES;
+use mindgap_core::limits::POOL_BYTES;
+
 use crate::error::ExportError;
 use crate::nxc::source::{log_bytes, log_rows};
-use crate::onboard::FREE_FLASH_BYTES;
+use crate::onboard::{FREE_FLASH_BYTES, SONAR_HANG_MS};
 
-/// Bytecode instructions in a millisecond, at least.
-pub(crate) const INSTRUCTIONS_PER_MS: u32 = 80;
-/// How long a sensor that hangs keeps its port busy; the next exchange has to begin after that.
-const HANG_MS: u32 = 100;
+/// Bytecode instructions that the slowest brick executes in a millisecond.
+pub const INSTRUCTIONS_PER_MS: u32 = 80;
 /// Writing a row: a page of flash now and then.
 const LOG_ROW_MS: u32 = 5;
 
@@ -57,7 +56,8 @@ impl Budget {
             memory_bytes: cost.memory_bytes,
             log_bytes: logged_steps.map_or(0, |steps| log_bytes(u32::from(steps) + 1)),
             step_ms,
-            worst_step_ms: (HANG_MS + cost.step_instructions.div_ceil(INSTRUCTIONS_PER_MS) + log_ms) as u16,
+            // The next exchange can begin only when a sensor that hangs has released its port.
+            worst_step_ms: (SONAR_HANG_MS + cost.step_instructions.div_ceil(INSTRUCTIONS_PER_MS) + log_ms) as u16,
         }
     }
 

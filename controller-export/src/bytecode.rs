@@ -10,8 +10,6 @@ pub(crate) const HEADER_BYTES: usize = 38;
 pub(crate) const NONE: u16 = 0xFFFF;
 /// Bytes of a dope vector: five 16-bit fields.
 pub(crate) const DOPE_VECTOR_BYTES: usize = 10;
-/// Memory for clump records, data and arrays.
-pub(crate) const POOL_BYTES: usize = 32_768;
 /// Memory of one clump record on the brick.
 pub(crate) const CLUMP_RECORD_BYTES: usize = 28;
 /// The flag of a dataspace entry whose value is zero and is not stored.

@@ -8,10 +8,10 @@ use std::fmt::{self, Write};
 
 use mindgap_core::fixed_network::{FixedNetwork, FixedScaling};
 use mindgap_core::folded::Sign;
+use mindgap_core::limits::POOL_BYTES;
 use mindgap_core::network::Activation;
 
 use crate::budget::INSTRUCTIONS_PER_MS;
-use crate::bytecode::POOL_BYTES;
 use crate::onboard::FREE_FLASH_BYTES;
 
 const WIDE: &str = include_str!("nxc_networks/wide.nxc");

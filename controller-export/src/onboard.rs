@@ -7,6 +7,9 @@ pub const NO_ECHO_CM: u8 = 255;
 /// How long one exchange with the sensor may take. The firmware's own driver gives up after three polls 15 ms apart.
 pub const SONAR_TIMEOUT_MS: u16 = 45;
 
+/// How long a sensor that begins an answer and never ends it keeps its port busy in the firmware.
+pub const SONAR_HANG_MS: u32 = 100;
+
 /// Time between two looks at whether the sensor has answered.
 pub const SONAR_POLL_MS: u16 = 3;
 

@@ -22,7 +22,7 @@ mod tracker;
 mod wheel;
 
 pub use body::Body;
-pub use controller_run::{Moment, Outcome, Track, run_controller};
+pub use controller_run::{Termination, Trajectory, TrajectoryPoint, run_controller};
 pub use driving::Driving;
 pub use effects::{ActiveEffect, Effect};
 pub use recording::{record, record_driving};

@@ -12,7 +12,7 @@ use rand::RngExt;
 
 use crate::chance::{Generator, generator};
 use mutation::Mutation;
-use stopping::Window;
+use stopping::StagnationCriterion;
 
 /// How the algorithm runs. The default is the paper's, and where the paper is silent the standard choice.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,14 +30,14 @@ pub struct Settings {
     /// So many of the best go on unchanged (open; the paper replaces the population whole).
     pub elite: usize,
     /// When to stop for lack of improvement (paper: under 0.1 % over 300 generations), if ever.
-    pub window: Option<Window>,
+    pub stagnation: Option<StagnationCriterion>,
     /// Generations at most (paper: 1000 for a controller, no bound for a network).
     pub max_generations: usize,
 }
 
 /// What a run of the algorithm came to.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Outcome {
+pub struct RunResult {
     /// The fittest individual that was met.
     pub best: Vec<f32>,
     /// Its fitness.
@@ -67,7 +67,7 @@ impl Default for Settings {
             sbx_index: 15.0,
             mutation: Mutation::default(),
             elite: 0,
-            window: Some(Window::default()),
+            stagnation: Some(StagnationCriterion::default()),
             max_generations: usize::MAX,
         }
     }
@@ -75,7 +75,7 @@ impl Default for Settings {
 
 /// Runs the algorithm from a random population. `seed` fixes every draw; `watch` is told the generation and the best
 /// fitness so far.
-pub fn run(settings: &Settings, problem: &impl Problem, seed: u64, watch: impl FnMut(usize, f64)) -> Outcome {
+pub fn run(settings: &Settings, problem: &impl Problem, seed: u64, watch: impl FnMut(usize, f64)) -> RunResult {
     let mut rng = generator(seed, &[0]);
     let population = (0..settings.population).map(|_| problem.random(&mut rng)).collect();
     run_from(population, settings, problem, seed, watch)
@@ -88,7 +88,7 @@ pub fn run_from(
     problem: &impl Problem,
     seed: u64,
     mut watch: impl FnMut(usize, f64),
-) -> Outcome {
+) -> RunResult {
     let mut best: Option<(Vec<f32>, f64)> = None;
     let mut history = Vec::new();
     loop {
@@ -102,11 +102,11 @@ pub fn run_from(
         let best_fitness = best.as_ref().map_or(f64::NAN, |b| b.1);
         history.push(best_fitness);
         watch(generation, best_fitness);
-        let stalled = settings.window.is_some_and(|w| w.has_stalled(&history));
+        let stalled = settings.stagnation.is_some_and(|w| w.has_stalled(&history));
         if stalled || history.len() >= settings.max_generations {
             let population = ranking.iter().map(|i| std::mem::take(&mut population[*i])).collect();
             let (best, fitness) = best.unwrap_or_default();
-            return Outcome { best, fitness, generations: history.len(), population };
+            return RunResult { best, fitness, generations: history.len(), population };
         }
         let mut rng = generator(seed, &[1, generation as u64]);
         population = offspring(settings, problem, &population, &ranking, &mut rng);
@@ -160,7 +160,7 @@ mod tests {
     }
 
     fn settings() -> Settings {
-        Settings { max_generations: 150, window: None, ..Settings::default() }
+        Settings { max_generations: 150, stagnation: None, ..Settings::default() }
     }
 
     #[test]

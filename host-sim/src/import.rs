@@ -17,8 +17,8 @@ use std::path::PathBuf;
 pub use self::report::{LogReport, Report, RunReport, TrackReport};
 
 use self::brick_log::BrickLog;
-use self::clocks::{Match, align};
-use self::track::{Seen, Track};
+use self::clocks::{Alignment, align};
+use self::track::{Sighting, Track};
 use self::units::Units;
 use crate::logs::{Logs, Robot, Row, Run, Scene};
 use crate::problem::{Problem, Result};
@@ -80,7 +80,11 @@ pub fn import(
 }
 
 /// The track that saw a log's run, and how the clocks ran; or why there is none.
-fn matched<'a>(log: &BrickLog, tracks: &'a [Track], robot: &Robot) -> std::result::Result<(&'a Track, Match), String> {
+fn matched<'a>(
+    log: &BrickLog,
+    tracks: &'a [Track],
+    robot: &Robot,
+) -> std::result::Result<(&'a Track, Alignment), String> {
     let by_wheels = motion::by_wheels(&log.run.rows, robot);
     let found = tracks.iter().filter_map(|track| Some((track, align(&by_wheels, &track.motion())?)));
     let Some((track, found)) = found.min_by(|a, b| a.1.unexplained.total_cmp(&b.1.unexplained)) else {
@@ -112,9 +116,9 @@ fn matched<'a>(log: &BrickLog, tracks: &'a [Track], robot: &Robot) -> std::resul
 }
 
 /// The log's rows with the poses that the camera saw at their times.
-fn merged(log: &BrickLog, track: &Track, found: &Match, name: String) -> (Run, RunReport) {
+fn merged(log: &BrickLog, track: &Track, found: &Alignment, name: String) -> (Run, RunReport) {
     let clocks = &found.clocks;
-    let seen: Vec<Seen> = log.run.rows.iter().map(|row| track.at(clocks.camera_ms(row.t_ms))).collect();
+    let seen: Vec<Sighting> = log.run.rows.iter().map(|row| track.at(clocks.camera_ms(row.t_ms))).collect();
     let rows = log.run.rows.iter().zip(&seen).map(|(row, seen)| Row { pose: seen.pose(), ..*row });
     let run = Run { name: name.clone(), rows: rows.collect() };
     let report = RunReport {
@@ -124,8 +128,8 @@ fn merged(log: &BrickLog, track: &Track, found: &Match, name: String) -> (Run, R
         drift: clocks.drift,
         unexplained: found.unexplained,
         rows: seen.len(),
-        outside: seen.iter().filter(|s| **s == Seen::Outside).count(),
-        in_gaps: seen.iter().filter(|s| **s == Seen::Lost).count(),
+        outside: seen.iter().filter(|s| **s == Sighting::Outside).count(),
+        in_gaps: seen.iter().filter(|s| **s == Sighting::Lost).count(),
     };
     (run, report)
 }

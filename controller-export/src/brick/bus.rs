@@ -7,6 +7,7 @@ use std::collections::VecDeque;
 use super::Fault;
 use super::world::{Sonar, World};
 use crate::bytecode::{InputField, SENSOR_LOW_SPEED, SENSOR_LOW_SPEED_9V, SONAR_ADDRESS, SONAR_FIRST_ECHO, comm};
+use crate::onboard::{NO_ECHO_CM, SONAR_HANG_MS};
 
 /// Sensor ports of a brick.
 pub(super) const PORTS: usize = 4;
@@ -17,11 +18,10 @@ const SETTLE_MS: u32 = 20;
 const ANSWER_MS: u32 = 6;
 /// Four calls without an acknowledgement.
 const SILENCE_MS: u32 = 6;
-const HANG_MS: u32 = 100;
 /// Size of the buffer in and out.
 const BUFFER_BYTES: usize = 16;
-const FACTORY_ZERO: u8 = 0;
-const NO_FURTHER_ECHO: u8 = 255;
+/// The value of every register that holds no echo: programs read the echoes only.
+const OTHER_REGISTER: u8 = 0;
 
 /// A sensor port.
 #[derive(Clone, Debug, Default)]
@@ -148,13 +148,13 @@ fn exchange(request: &[u8], answer_bytes: usize, t_ms: u32, sonar: impl FnOnce()
     let echo = match sonar() {
         Sonar::Echo(echo_cm) => echo_cm,
         Sonar::Silent => return silence,
-        Sonar::Hangs => return State::Busy(t_ms.saturating_add(HANG_MS), None),
+        Sonar::Hangs => return State::Busy(t_ms.saturating_add(SONAR_HANG_MS), None),
     };
     let registers = usize::from(*register)..usize::from(*register) + answer_bytes;
     let answer = registers.map(|register| match register.checked_sub(usize::from(SONAR_FIRST_ECHO)) {
         Some(0) => echo,
-        Some(1..8) => NO_FURTHER_ECHO,
-        _ => FACTORY_ZERO,
+        Some(1..8) => NO_ECHO_CM,
+        _ => OTHER_REGISTER,
     });
     State::Busy(t_ms.saturating_add(ANSWER_MS), Some(answer.collect()))
 }

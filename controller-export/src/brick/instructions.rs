@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::arithmetic::{Operation, order};
 use super::memory::Place;
-use super::{Brick, Fault, What, polymorphic, text};
+use super::{Brick, EventKind, Fault, polymorphic, text};
 use crate::bytecode::{Comparison, NONE, Op, SHORT_FORM, Type, VARIABLE_SIZE};
 
 /// What happens to the clump after an instruction; words of code count from its first.
@@ -405,7 +405,7 @@ impl<'p> Brick<'p, '_> {
             }
             if let Some(drive) = motor.apply(self.world.rotation_deg(port, self.t_ms)) {
                 self.world.motor(port, drive, self.t_ms);
-                self.emit(What::Motor { port, drive });
+                self.emit(EventKind::Motor { port, drive });
             }
         }
         Ok(())

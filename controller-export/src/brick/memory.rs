@@ -2,9 +2,11 @@
 //!
 //! Source: the memory manager of the firmware, `cCmdDVArrayAlloc` and its neighbours in `c_cmd.c`.
 
+use mindgap_core::limits::POOL_BYTES;
+
 use super::Fault;
 use super::program::{DopeVector, Entry, Program};
-use crate::bytecode::{CLUMP_RECORD_BYTES, POOL_BYTES, Type};
+use crate::bytecode::{CLUMP_RECORD_BYTES, Type};
 
 /// Dope vectors that are added at once when none is free.
 const DOPE_VECTORS_ADDED: usize = 25;

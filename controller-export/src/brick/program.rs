@@ -2,9 +2,9 @@
 
 use std::ops::Range;
 
-use crate::bytecode::{
-    CLUMP_RECORD_BYTES, DEFAULT_ZERO, DOPE_VECTOR_BYTES, HEADER_BYTES, MAGIC, NONE, POOL_BYTES, Type,
-};
+use mindgap_core::limits::POOL_BYTES;
+
+use crate::bytecode::{CLUMP_RECORD_BYTES, DEFAULT_ZERO, DOPE_VECTOR_BYTES, HEADER_BYTES, MAGIC, NONE, Type};
 
 /// The firmware refuses no nesting; the deepest that nbc makes of a sensible program is four.
 const DEEPEST_NESTING: u16 = 6;

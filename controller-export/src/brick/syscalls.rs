@@ -2,7 +2,7 @@
 
 use super::flash::status;
 use super::memory::Place;
-use super::{Brick, Fault, What};
+use super::{Brick, EventKind, Fault};
 use crate::bytecode::{NONE, Syscall, Type, comm};
 
 const MOST_ARGUMENTS: usize = 16;
@@ -80,12 +80,12 @@ impl Brick<'_, '_> {
             }
             Syscall::SoundPlayFile => {
                 let name = self.name(argument[1])?;
-                self.emit(What::Sound(name));
+                self.emit(EventKind::Sound(name));
                 self.memory.set_id(result, 0)
             }
             Syscall::SoundPlayTone => {
                 let (hz, ms) = (self.memory.get_id(argument[1])? as u16, self.memory.get_id(argument[2])? as u16);
-                self.emit(What::Tone { hz, ms });
+                self.emit(EventKind::Tone { hz, ms });
                 self.memory.set_id(result, 0)
             }
             // Every sound has faded when the program asks.
@@ -101,7 +101,7 @@ impl Brick<'_, '_> {
                 let [x, y, ..] = self.arguments(argument[1])?;
                 let (x, y) = (self.memory.get_id(x)? as i16, self.memory.get_id(y)? as i16);
                 let text = self.name(argument[2])?;
-                self.emit(What::Text { x, y, text });
+                self.emit(EventKind::Text { x, y, text });
                 self.memory.set_id(result, 0)
             }
             Syscall::DrawPoint

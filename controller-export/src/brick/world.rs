@@ -58,7 +58,7 @@ pub struct Button {
 
 /// A world that gives what it was told, one answer of the sensor a request; after the last one the sensor is silent.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Script {
+pub struct ScriptedWorld {
     /// What the ultrasonic sensor does, request by request.
     pub sonar: Vec<Sonar>,
     /// The port that it is plugged into, from 0.
@@ -73,14 +73,14 @@ pub struct Script {
     pub asked: usize,
 }
 
-impl Script {
+impl ScriptedWorld {
     /// A sensor on port 4 that answers so, a charged battery, and no button pressed.
     pub fn sonar(answers: impl Into<Vec<Sonar>>) -> Self {
-        Script { sonar: answers.into(), sonar_port: 3, battery_mv: 7800, ..Script::default() }
+        ScriptedWorld { sonar: answers.into(), sonar_port: 3, battery_mv: 7800, ..ScriptedWorld::default() }
     }
 }
 
-impl World for Script {
+impl World for ScriptedWorld {
     fn sonar(&mut self, port: usize, _: u32) -> Sonar {
         if port != self.sonar_port {
             return Sonar::Silent;

@@ -9,16 +9,16 @@ use crate::logs::{Row, Run};
 
 /// A controller's run, moment by moment.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Track {
+pub struct Trajectory {
     /// One a step, the first before any; the last one step after the motors stopped, when the robot stands.
-    pub moments: Vec<Moment>,
+    pub points: Vec<TrajectoryPoint>,
     /// How it ended.
-    pub outcome: Outcome,
+    pub termination: Termination,
 }
 
 /// One moment of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Moment {
+pub struct TrajectoryPoint {
     /// Where the robot was.
     pub true_pose: Pose,
     /// What was logged: the commands from here on, the tracked pose, the reading that led to them.
@@ -27,7 +27,7 @@ pub struct Moment {
 
 /// How a controller's run on the robot ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Outcome {
+pub enum Termination {
     /// The sixth tuple's test held.
     Finished,
     /// The step limit was reached.
@@ -37,14 +37,14 @@ pub enum Outcome {
 }
 
 /// Runs a controller from `start` until it stops the motors or the robot crashes.
-pub fn run_controller(robot: &BuiltInRobot, controller: &Controller, start: Pose, rng: &mut Generator) -> Track {
+pub fn run_controller(robot: &BuiltInRobot, controller: &Controller, start: Pose, rng: &mut Generator) -> Trajectory {
     let mut body = robot.start(start, rng);
     let mut machine = Machine::start();
-    let mut moments = Vec::new();
+    let mut points = Vec::new();
     let mut echo_cm = None;
     loop {
         let command = speeds(machine.motors(controller));
-        moments.push(Moment { true_pose: body.true_pose(), row: body.row(command, echo_cm, rng) });
+        points.push(TrajectoryPoint { true_pose: body.true_pose(), row: body.row(command, echo_cm, rng) });
         body.drive(command, robot.step_length_ms(f64::from(controller.step_ms), rng), rng);
         if body.crashed() || machine.status() != Status::Running {
             break;
@@ -52,24 +52,24 @@ pub fn run_controller(robot: &BuiltInRobot, controller: &Controller, start: Pose
         echo_cm = body.read_sonar(rng);
         machine.step(controller, echo_cm);
     }
-    moments.push(Moment { true_pose: body.true_pose(), row: body.row([0.0, 0.0], None, rng) });
-    let outcome = match machine.status() {
-        _ if body.crashed() => Outcome::Crashed,
-        Status::Finished => Outcome::Finished,
-        Status::Running | Status::TimedOut => Outcome::TimedOut,
+    points.push(TrajectoryPoint { true_pose: body.true_pose(), row: body.row([0.0, 0.0], None, rng) });
+    let termination = match machine.status() {
+        _ if body.crashed() => Termination::Crashed,
+        Status::Finished => Termination::Finished,
+        Status::Running | Status::TimedOut => Termination::TimedOut,
     };
-    Track { moments, outcome }
+    Trajectory { points, termination }
 }
 
-impl Track {
+impl Trajectory {
     /// Where the robot came to rest.
     pub fn end(&self) -> Pose {
-        self.moments[self.moments.len() - 1].true_pose
+        self.points[self.points.len() - 1].true_pose
     }
 
     /// The run as a log.
     pub fn to_run(&self, name: impl Into<String>) -> Run {
-        Run { name: name.into(), rows: self.moments.iter().map(|moment| moment.row).collect() }
+        Run { name: name.into(), rows: self.points.iter().map(|point| point.row).collect() }
     }
 }
 

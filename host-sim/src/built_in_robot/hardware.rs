@@ -351,8 +351,5 @@ impl Tracker {
 
 /// The middle of everything in a scene: the camera hangs above it.
 fn middle_cm(scene: &Scene) -> DVec2 {
-    let ends = || scene.sides().into_iter().flat_map(|side| [side.from_cm, side.to_cm]);
-    let low = ends().fold(DVec2::INFINITY, DVec2::min);
-    let high = ends().fold(DVec2::NEG_INFINITY, DVec2::max);
-    (low + high) / 2.0
+    scene.bounding_box().map_or(DVec2::ZERO, |all| (all.low_cm + all.high_cm) / 2.0)
 }

@@ -9,7 +9,7 @@ use rayon::prelude::*;
 
 use super::{ActiveEffect, Body, BuiltInRobot, Driving};
 use crate::chance::{Generator, generator};
-use crate::geometry::{Pose, cast, direction};
+use crate::geometry::{Pose, Rectangle, cast, direction};
 use crate::logs::{Logs, Robot, Row, Run, Scene};
 use crate::problem::{Problem, Result};
 
@@ -87,12 +87,10 @@ fn no_room(spec: &Robot) -> Problem {
 
 /// A random pose at which the robot has room to move.
 fn free_place(spec: &Robot, scene: &Scene, rng: &mut Generator) -> Option<Pose> {
-    let ends = || scene.sides().into_iter().flat_map(|side| [side.from_cm, side.to_cm]);
-    let low = ends().fold(DVec2::INFINITY, DVec2::min);
-    let high = ends().fold(DVec2::NEG_INFINITY, DVec2::max);
+    let Rectangle { low_cm, high_cm } = scene.bounding_box()?;
     let heading_rad = rng.random_range(-PI..PI);
     (0..PLACES_TRIED)
-        .map(|_| low + (high - low) * DVec2::new(rng.random(), rng.random()))
+        .map(|_| low_cm + (high_cm - low_cm) * DVec2::new(rng.random(), rng.random()))
         .find(|at_cm| is_enclosed(scene, *at_cm) && scene.has_room_for(*at_cm, spec.body_radius_cm + START_ROOM_CM))
         .map(|at_cm| Pose::new(at_cm.x, at_cm.y, heading_rad))
 }

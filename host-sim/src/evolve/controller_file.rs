@@ -44,7 +44,7 @@ impl ControllerFile {
     /// When the file is missing or broken, has not exactly six tuples, or holds a number out of range.
     pub fn read(path: &Path) -> Result<Self> {
         let text = files::read_text(path)?;
-        let file: Form<Spanned<Tuple>> = files::read_toml(path)?;
+        let file: ControllerTable<Spanned<Tuple>> = files::read_toml(path)?;
         let line = |tuple: usize| files::line_at(&text, file.tuple[tuple].span().start);
         let count = file.tuple.len();
         let Ok(tuples) = <[Tuple; TUPLES]>::try_from(file.tuple.iter().map(|t| *t.get_ref()).collect::<Vec<_>>())
@@ -70,7 +70,7 @@ impl ControllerFile {
     /// When the file cannot be written.
     pub fn write(&self, path: &Path) -> Result<()> {
         let Controller { step_ms, max_steps, tuples } = self.controller.clone();
-        let form = Form { step_ms, max_steps, tuple: tuples.to_vec(), origin: self.origin.clone() };
+        let form = ControllerTable { step_ms, max_steps, tuple: tuples.to_vec(), origin: self.origin.clone() };
         files::write(path, toml::to_string(&form).expect("numbers and text have a TOML form"))
     }
 }
@@ -91,7 +91,7 @@ impl From<&ControllerFile> for mindgap_controller_export::Origin {
 }
 
 #[derive(Serialize, Deserialize)]
-struct Form<T> {
+struct ControllerTable<T> {
     step_ms: u16,
     max_steps: u16,
     tuple: Vec<T>,

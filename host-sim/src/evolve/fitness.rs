@@ -4,7 +4,7 @@ use glam::DVec2;
 use mindgap_core::controller::Controller;
 use rayon::prelude::*;
 
-use super::genome::Coding;
+use super::genome::GenotypeDecoder;
 use crate::chance::{Generator, derive};
 use crate::genetic;
 use crate::simulator::course::{Course, Ending, Job, Outcome, Sensor};
@@ -18,27 +18,27 @@ const TOGETHER: usize = 25;
 
 /// Which random numbers the individuals of a generation meet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Numbers {
+pub enum RandomNumbers {
     /// Every individual its own.
-    Fresh,
+    Independent,
     /// All the same ones, new in each generation.
     Common,
 }
 
 /// A controller's task, as a problem for the genetic algorithm.
-pub struct Task<'a> {
+pub struct FitnessEvaluator<'a> {
     /// Where it runs.
     pub course: &'a Course<'a>,
     /// Where it has to stop.
     pub target_cm: DVec2,
     /// What its genes stand for.
-    pub coding: Coding,
+    pub decoder: GenotypeDecoder,
     /// Runs whose fitness is summed (paper: five).
     pub runs: usize,
     /// Distances below this count as this.
     pub floor_cm: f64,
     /// Which random numbers the individuals meet.
-    pub numbers: Numbers,
+    pub random_numbers: RandomNumbers,
     /// Fixes every draw of the runs.
     pub seed: u64,
 }
@@ -71,7 +71,7 @@ fn sensor_of(run: usize) -> Sensor {
     if run.is_multiple_of(2) { Sensor::Networks } else { Sensor::Beam }
 }
 
-impl Task<'_> {
+impl FitnessEvaluator<'_> {
     /// Outcomes of so many runs of a controller, whose draws no other call with another `purpose` meets.
     pub fn outcomes(&self, controller: &Controller, runs: usize, purpose: u64) -> Vec<Outcome> {
         let motions = &self.course.motions(controller);
@@ -83,11 +83,11 @@ impl Task<'_> {
 
     /// Summed fitness of individuals, the first of which has the number `first` in its generation.
     fn summed(&self, generation: usize, first: usize, individuals: &[Vec<f32>]) -> Vec<f64> {
-        let controllers: Vec<Controller> = individuals.iter().map(|genes| self.coding.controller(genes)).collect();
+        let controllers: Vec<Controller> = individuals.iter().map(|genes| self.decoder.controller(genes)).collect();
         let motions: Vec<MotionTable> = controllers.iter().map(|c| self.course.motions(c)).collect();
         let mut jobs = Vec::with_capacity(individuals.len() * self.runs);
         for (i, (controller, motions)) in controllers.iter().zip(&motions).enumerate() {
-            let individual = if self.numbers == Numbers::Common { 0 } else { (first + i) as u64 };
+            let individual = if self.random_numbers == RandomNumbers::Common { 0 } else { (first + i) as u64 };
             let place = |run: usize| [0, generation as u64, individual, run as u64];
             jobs.extend((0..self.runs).map(|run| Job {
                 controller,
@@ -138,13 +138,13 @@ impl Success {
     }
 }
 
-impl genetic::Problem for Task<'_> {
+impl genetic::Problem for FitnessEvaluator<'_> {
     fn random(&self, rng: &mut Generator) -> Vec<f32> {
-        self.coding.random(rng)
+        self.decoder.random(rng)
     }
 
     fn repair(&self, genes: &mut [f32]) {
-        self.coding.repair(genes);
+        self.decoder.repair(genes);
     }
 
     fn fitness(&self, generation: usize, population: &[Vec<f32>]) -> Vec<f64> {

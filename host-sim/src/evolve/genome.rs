@@ -11,7 +11,7 @@ const GENES_PER_TUPLE: usize = 4;
 
 /// What genes can stand for. Every gene runs from 0 to 1 over its range, so that mutation means the same to all.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Coding {
+pub struct GenotypeDecoder {
     /// Least and largest motor command: those that the simulator was trained on.
     pub commands: [f32; 2],
     /// Least and largest threshold: what the sensor can report.
@@ -22,14 +22,14 @@ pub struct Coding {
     pub max_steps: u16,
 }
 
-impl Coding {
+impl GenotypeDecoder {
     /// Genes of a controller.
     pub const GENES: usize = TUPLES * GENES_PER_TUPLE;
 
     /// The coding for a simulator's robot.
     pub fn new(simulator: &Simulator, max_steps: u16) -> Self {
         let sonar = &simulator.robot.ultrasonic;
-        Coding {
+        GenotypeDecoder {
             commands: simulator.commands,
             thresholds_cm: [sonar.min_cm as f32, (sonar.max_cm as f32).min(f32::from(MAX_THRESHOLD_CM))],
             step_ms: simulator.robot.step_ms.round() as u16,
@@ -66,14 +66,14 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    const CODING: Coding =
-        Coding { commands: [-70.0, 80.0], thresholds_cm: [4.0, 240.0], step_ms: 400, max_steps: 150 };
+    const DECODER: GenotypeDecoder =
+        GenotypeDecoder { commands: [-70.0, 80.0], thresholds_cm: [4.0, 240.0], step_ms: 400, max_steps: 150 };
 
     proptest! {
         #[test]
-        fn any_genes_make_a_controller_within_the_ranges(mut genes in prop::collection::vec(-2f32..3.0, Coding::GENES)) {
-            CODING.repair(&mut genes);
-            let controller = CODING.controller(&genes);
+        fn any_genes_make_a_controller_within_the_ranges(mut genes in prop::collection::vec(-2f32..3.0, GenotypeDecoder::GENES)) {
+            DECODER.repair(&mut genes);
+            let controller = DECODER.controller(&genes);
             prop_assert_eq!(controller.check(), Ok(()));
             for t in controller.tuples {
                 prop_assert!((-70..=80).contains(&t.left) && (-70..=80).contains(&t.right));
@@ -84,9 +84,9 @@ mod tests {
 
     #[test]
     fn genes_are_read_in_the_papers_order() {
-        let mut genes = vec![0.0; Coding::GENES];
+        let mut genes = vec![0.0; GenotypeDecoder::GENES];
         genes[4..8].copy_from_slice(&[1.0, 0.0, 0.7, 0.5]);
         let expected = Tuple { left: 80, right: -70, when: When::Larger, threshold_cm: 122 };
-        assert_eq!(CODING.controller(&genes).tuples[1], expected);
+        assert_eq!(DECODER.controller(&genes).tuples[1], expected);
     }
 }

@@ -3,7 +3,7 @@
 
 use mindgap_core::controller::Controller;
 
-use super::fitness::Task;
+use super::fitness::FitnessEvaluator;
 use crate::genetic::{self, Settings};
 
 /// An evolved controller.
@@ -19,7 +19,7 @@ pub struct Evolved {
 
 /// The paper's genetic algorithm as section IX uses it: that of section VII, ended after 1000 generations.
 pub fn settings() -> Settings {
-    Settings { window: None, max_generations: 1000, ..Settings::default() }
+    Settings { stagnation: None, max_generations: 1000, ..Settings::default() }
 }
 
 /// Runs whose fitness is summed, since echoes fail at random.
@@ -28,8 +28,8 @@ pub const RUNS: usize = 5;
 pub const FLOOR_CM: f64 = 1.0;
 
 /// Evolves a controller as the paper does.
-pub fn evolve(task: &Task, settings: &Settings, watch: impl FnMut(usize, f64)) -> Evolved {
-    let outcome = genetic::run(settings, task, task.seed, watch);
-    let controller = task.coding.controller(&outcome.best);
+pub fn evolve(evaluator: &FitnessEvaluator, settings: &Settings, watch: impl FnMut(usize, f64)) -> Evolved {
+    let outcome = genetic::run(settings, evaluator, evaluator.seed, watch);
+    let controller = evaluator.decoder.controller(&outcome.best);
     Evolved { controller, fitness: outcome.fitness, generations: outcome.generations }
 }

@@ -13,8 +13,8 @@ use glam::DVec2;
 use mindgap_core::controller::Controller;
 use rayon::prelude::*;
 
-use super::fitness::{Numbers, REACHED_CM, Success, Task};
-use super::genome::Coding;
+use super::fitness::{FitnessEvaluator, REACHED_CM, RandomNumbers, Success};
+use super::genome::GenotypeDecoder;
 use super::paper::Evolved;
 use crate::chance::derive;
 use crate::genetic::mutation::{Mutation, Unit};
@@ -33,7 +33,7 @@ const EXPLORING: Settings = Settings {
     sbx_index: 15.0,
     mutation: Mutation { chance: 0.1, unit: Unit::Gene, deviation: 0.2 },
     elite: 20,
-    window: None,
+    stagnation: None,
     max_generations: 120,
 };
 const EXPLORING_RUNS: usize = 4;
@@ -53,40 +53,40 @@ const CHOOSING: u64 = 2;
 const JUDGING: u64 = 1;
 
 /// What a controller is evolved for.
-pub struct Quest<'a> {
+pub struct EvolutionTask<'a> {
     /// Where it has to do well.
     pub course: &'a Course<'a>,
     /// Where it has to stop, cm.
     pub target_cm: DVec2,
     /// What its genes stand for.
-    pub coding: Coding,
+    pub decoder: GenotypeDecoder,
     /// Which random numbers individuals meet.
-    pub numbers: Numbers,
+    pub random_numbers: RandomNumbers,
     /// Fixes every draw.
     pub seed: u64,
 }
 
 /// Evolves a controller: of [`candidates`] the first. `watch` is told the generations so far of all [`GENERATIONS`], and
 /// the best fitness of the run that is under way.
-pub fn evolve(quest: &Quest, watch: impl FnMut(usize, f64)) -> Evolved {
-    candidates(quest, watch).swap_remove(0)
+pub fn evolve(task: &EvolutionTask, watch: impl FnMut(usize, f64)) -> Evolved {
+    candidates(task, watch).swap_remove(0)
 }
 
 /// A controller of each restart, which are different ways to the target if there are several; that which reaches it most
 /// often in fresh runs comes first.
-pub fn candidates(quest: &Quest, mut watch: impl FnMut(usize, f64)) -> Vec<Evolved> {
+pub fn candidates(task: &EvolutionTask, mut watch: impl FnMut(usize, f64)) -> Vec<Evolved> {
     let mut chosen: Vec<(f64, Evolved)> = (0..RESTARTS)
         .map(|restart| {
-            let seed = derive(quest.seed, &[restart as u64]);
+            let seed = derive(task.seed, &[restart as u64]);
             let before = restart * (EXPLORING.max_generations + REFINING.max_generations);
             let mut tell = |generation, best| watch(before + generation, best);
-            let explored = genetic::run(&EXPLORING, &quest.task(EXPLORING_RUNS, seed), seed, &mut tell);
+            let explored = genetic::run(&EXPLORING, &task.evaluator(EXPLORING_RUNS, seed), seed, &mut tell);
             let ways = explored.population.into_iter().take(REFINING.population).collect();
             let before = before + EXPLORING.max_generations;
             let tell = |generation, best| watch(before + generation, best);
             // All restarts are judged by the same runs.
-            let task = quest.task(REFINING_RUNS, quest.seed);
-            choose(&task, &genetic::run_from(ways, &REFINING, &task, seed, tell).population)
+            let evaluator = task.evaluator(REFINING_RUNS, task.seed);
+            choose(&evaluator, &genetic::run_from(ways, &REFINING, &evaluator, seed, tell).population)
         })
         .collect();
     chosen.sort_by(|a, b| b.0.total_cmp(&a.0));
@@ -94,15 +94,15 @@ pub fn candidates(quest: &Quest, mut watch: impl FnMut(usize, f64)) -> Vec<Evolv
 }
 
 /// The individual that reaches the target most often in fresh runs, and of equals the fitter; and how often it does.
-fn choose(task: &Task, population: &[Vec<f32>]) -> (f64, Evolved) {
+fn choose(evaluator: &FitnessEvaluator, population: &[Vec<f32>]) -> (f64, Evolved) {
     let judged: Vec<(f64, f64, Controller)> = population
         .par_iter()
         .take(CANDIDATES)
         .map(|genes| {
-            let controller = task.coding.controller(genes);
-            let outcomes = task.outcomes(&controller, CHOOSING_RUNS, CHOOSING);
-            let (rate, fitness) = (task.success_of(&outcomes).rate, task.fitness_of(&outcomes));
-            (rate, fitness * task.runs as f64 / CHOOSING_RUNS as f64, controller)
+            let controller = evaluator.decoder.controller(genes);
+            let outcomes = evaluator.outcomes(&controller, CHOOSING_RUNS, CHOOSING);
+            let (rate, fitness) = (evaluator.success_of(&outcomes).rate, evaluator.fitness_of(&outcomes));
+            (rate, fitness * evaluator.runs as f64 / CHOOSING_RUNS as f64, controller)
         })
         .collect();
     let better = |a: &(f64, f64, Controller), b: &(f64, f64, Controller)| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1));
@@ -110,21 +110,21 @@ fn choose(task: &Task, population: &[Vec<f32>]) -> (f64, Evolved) {
     (rate, Evolved { controller, fitness, generations: GENERATIONS })
 }
 
-impl<'a> Quest<'a> {
+impl<'a> EvolutionTask<'a> {
     /// How a controller does in so many fresh runs, which played no part in its evolution.
     pub fn success(&self, controller: &Controller, runs: usize) -> Success {
-        self.task(REFINING_RUNS, self.seed).success(controller, runs, JUDGING)
+        self.evaluator(REFINING_RUNS, self.seed).success(controller, runs, JUDGING)
     }
 
-    fn task(&self, runs: usize, seed: u64) -> Task<'a> {
-        Task {
+    fn evaluator(&self, runs: usize, seed: u64) -> FitnessEvaluator<'a> {
+        FitnessEvaluator {
             course: self.course,
             target_cm: self.target_cm,
-            coding: self.coding,
+            decoder: self.decoder,
             runs,
             // Once there, nearer is no better: what counts is to arrive often.
             floor_cm: REACHED_CM,
-            numbers: self.numbers,
+            random_numbers: self.random_numbers,
             seed,
         }
     }

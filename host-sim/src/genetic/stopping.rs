@@ -2,20 +2,20 @@
 
 /// Stops when the best fitness has grown too little over a number of generations.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Window {
+pub struct StagnationCriterion {
     /// Over how many generations (paper: 300).
     pub generations: usize,
     /// Least growth of the best fitness over them, as a share (paper: 0.001).
     pub improvement: f64,
 }
 
-impl Default for Window {
+impl Default for StagnationCriterion {
     fn default() -> Self {
-        Window { generations: 300, improvement: 0.001 }
+        StagnationCriterion { generations: 300, improvement: 0.001 }
     }
 }
 
-impl Window {
+impl StagnationCriterion {
     /// Whether a history of the best fitness so far, one entry a generation, has stopped growing. Fitness is positive,
     /// as an inverse error is; an infinite one cannot grow.
     pub fn has_stalled(&self, best: &[f64]) -> bool {
@@ -30,7 +30,7 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    const SHORT: Window = Window { generations: 3, improvement: 0.001 };
+    const SHORT: StagnationCriterion = StagnationCriterion { generations: 3, improvement: 0.001 };
 
     #[test]
     fn waits_for_a_whole_window() {

@@ -5,7 +5,7 @@
 //! tell the time well. Offsets are tried all along the track, then offset and drift are refined together.
 
 use super::frame::GAP_MS;
-use super::motion::{MOTIONS, Moved};
+use super::motion::{CumulativeMotion, MOTIONS};
 use crate::learn::statistics::median;
 
 /// How brick time becomes camera time.
@@ -19,7 +19,7 @@ pub struct Clocks {
 
 /// How well clocks match.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Match {
+pub struct Alignment {
     /// The clocks.
     pub clocks: Clocks,
     /// Share of the motion's variance that the match leaves unexplained, 0..=1.
@@ -40,7 +40,7 @@ const LEAST_COVERED: f64 = 0.5;
 /// lets clocks that run apart show.
 const USUAL_DRIFT: f64 = 3e-5;
 /// Of the law of what wheels and camera differ in; and less than this counts as this, radians or cm.
-const FREEDOM: f64 = 4.0;
+const DEGREES_OF_FREEDOM: f64 = 4.0;
 const EXACT: f64 = 1e-6;
 /// Drifts that are tried first.
 const FIRST_DRIFTS: [f64; 7] = [0.0, 1e-3, -1e-3, 3e-3, -3e-3, 1e-2, -1e-2];
@@ -57,7 +57,7 @@ impl Clocks {
 }
 
 /// The clocks that match best; `None` where no offset makes track and log overlap enough, or nothing moves.
-pub fn align(log: &[Moved], track: &[Moved]) -> Option<Match> {
+pub fn align(log: &[CumulativeMotion], track: &[CumulativeMotion]) -> Option<Alignment> {
     let (first_ms, last_ms) = (track.first()?.t_ms, track.last()?.t_ms);
     let (from_ms, to_ms) = (log.first()?.t_ms, log.last()?.t_ms);
     let offsets = (last_ms - from_ms - (first_ms - to_ms)) / SEARCH_STEP_MS;
@@ -72,12 +72,12 @@ pub fn align(log: &[Moved], track: &[Moved]) -> Option<Match> {
     let unexplained_elsewhere = elsewhere.fold(1.0, f64::min);
     let clocks = refine(best.0, log, track);
     let misfit = Misfit::of(&clocks, log, track)?;
-    Some(Match { clocks, unexplained: misfit.mean(), unexplained_elsewhere, steps: misfit.steps })
+    Some(Alignment { clocks, unexplained: misfit.mean(), unexplained_elsewhere, steps: misfit.steps })
 }
 
 /// Offset and drift together, about the middle of the log, where they are independent. From several drifts the way is
 /// sought by squares, which show it from afar, and then by a law that bears slipping wheels; that law chooses.
-fn refine(offset_ms: f64, log: &[Moved], track: &[Moved]) -> Clocks {
+fn refine(offset_ms: f64, log: &[CumulativeMotion], track: &[CumulativeMotion]) -> Clocks {
     let middle_ms = log[log.len() / 2].t_ms;
     let about = |(at_middle_ms, drift): (f64, f64)| Clocks { offset_ms: at_middle_ms - drift * middle_ms, drift };
     let unlikely = |point: (f64, f64), law: fn(&Misfit) -> f64| {
@@ -86,10 +86,14 @@ fn refine(offset_ms: f64, log: &[Moved], track: &[Moved]) -> Clocks {
     };
     let found = FIRST_DRIFTS.iter().flat_map(|drift| {
         let first = (offset_ms + drift * middle_ms, *drift);
-        let by_squares = descend(first, |point| unlikely(point, Misfit::nats_of_squares));
-        [first, by_squares].map(|point| descend(point, |point| unlikely(point, Misfit::nats)))
+        let by_squares = descend(first, |point| unlikely(point, Misfit::normal_negative_log_likelihood));
+        [first, by_squares]
+            .map(|point| descend(point, |point| unlikely(point, Misfit::student_negative_log_likelihood)))
     });
-    let best = found.min_by(|a, b| unlikely(*a, Misfit::nats).total_cmp(&unlikely(*b, Misfit::nats)));
+    let best = found.min_by(|a, b| {
+        unlikely(*a, Misfit::student_negative_log_likelihood)
+            .total_cmp(&unlikely(*b, Misfit::student_negative_log_likelihood))
+    });
     about(best.unwrap_or((offset_ms, 0.0)))
 }
 
@@ -126,7 +130,7 @@ struct Misfit {
 
 impl Misfit {
     /// `None` where too few steps are covered, or nothing moved.
-    fn of(clocks: &Clocks, log: &[Moved], track: &[Moved]) -> Option<Self> {
+    fn of(clocks: &Clocks, log: &[CumulativeMotion], track: &[CumulativeMotion]) -> Option<Self> {
         let seen: Vec<Option<[f64; MOTIONS]>> = log.iter().map(|row| at(track, clocks.camera_ms(row.t_ms))).collect();
         let steps: Vec<(usize, [f64; MOTIONS], [f64; MOTIONS])> =
             seen.windows(2).enumerate().filter_map(|(i, pair)| Some((i, pair[0]?, pair[1]?))).collect();
@@ -154,17 +158,18 @@ impl Misfit {
     }
 
     /// The negative log-likelihood of what is left under a normal law of unknown width, but for a constant.
-    fn nats_of_squares(&self) -> f64 {
+    fn normal_negative_log_likelihood(&self) -> f64 {
         let logs: f64 = self.unexplained.iter().map(|share| libm::log(share.max(EXACT))).sum();
         0.5 * self.steps as f64 * logs
     }
 
-    /// The same under Student's law with [`FREEDOM`], since wheels slip
+    /// The same under Student's law with [`DEGREES_OF_FREEDOM`], since wheels slip
     /// now and then, about as wide as half of the steps say.
-    fn nats(&self) -> f64 {
+    fn student_negative_log_likelihood(&self) -> f64 {
         let of_motion = |left: &Vec<f64>| {
             let width = median(left.iter().map(|v| v.abs())).max(EXACT);
-            let law = |v: &f64| (FREEDOM + 1.0) / 2.0 * libm::log1p(v * v / (FREEDOM * width * width));
+            let law =
+                |v: &f64| (DEGREES_OF_FREEDOM + 1.0) / 2.0 * libm::log1p(v * v / (DEGREES_OF_FREEDOM * width * width));
             left.iter().map(|v| law(v) + libm::log(width)).sum::<f64>()
         };
         self.left.iter().map(of_motion).sum()
@@ -172,7 +177,7 @@ impl Misfit {
 }
 
 /// What had been moved at a time, between two frames; `None` outside the track and in its gaps.
-fn at(track: &[Moved], t_ms: f64) -> Option<[f64; MOTIONS]> {
+fn at(track: &[CumulativeMotion], t_ms: f64) -> Option<[f64; MOTIONS]> {
     let after = track.partition_point(|frame| frame.t_ms < t_ms);
     let (before, after) = (track.get(after.checked_sub(1)?)?, track.get(after)?);
     let span_ms = after.t_ms - before.t_ms;
@@ -214,22 +219,22 @@ mod tests {
             let salt = seed * 100_000;
             let clocks =
                 Clocks { offset_ms: 3_000.0 + 50_000.0 * noise(salt + 7).abs(), drift: 3e-4 * noise(salt + 8) };
-            let log: Vec<Moved> = (0..=150u64)
+            let log: Vec<CumulativeMotion> = (0..=150u64)
                 .map(|k| {
                     let t_ms = 400.0 * k as f64 + 15.0 * noise(salt + 9_000 + k).abs();
                     let by = truth(salt, t_ms);
-                    Moved {
+                    CumulativeMotion {
                         t_ms,
                         by: [1.07 * by[0] + 0.02 * noise(salt + k), 0.94 * by[1] + 0.2 * noise(salt + 1 + k)],
                     }
                 })
                 .collect();
-            let track: Vec<Moved> = (0..4_500u64)
+            let track: Vec<CumulativeMotion> = (0..4_500u64)
                 .filter(|k| !(900..1_000).contains(k) && k % 17 != 3)
                 .map(|k| {
                     let t_ms = 33.0 * k as f64 + 4.0 * noise(salt + 20_000 + k);
                     let by = truth(salt, ((t_ms - clocks.offset_ms) / (1.0 + clocks.drift)).clamp(0.0, 60_000.0));
-                    Moved {
+                    CumulativeMotion {
                         t_ms,
                         by: [by[0] + 0.01 * noise(salt + 30_000 + k), by[1] + 0.3 * noise(salt + 40_000 + k)],
                     }
@@ -246,7 +251,9 @@ mod tests {
 
     #[test]
     fn nothing_is_matched_without_overlap_or_motion() {
-        let still = |n: u64, ms: f64| (0..n).map(|k| Moved { t_ms: ms * k as f64, by: [0.0; 2] }).collect::<Vec<_>>();
+        let still = |n: u64, ms: f64| {
+            (0..n).map(|k| CumulativeMotion { t_ms: ms * k as f64, by: [0.0; 2] }).collect::<Vec<_>>()
+        };
         assert_eq!(align(&still(150, 400.0), &still(2_000, 33.0)), None);
         assert_eq!(align(&still(150, 400.0), &still(300, 33.0)), None);
         assert_eq!(align(&still(150, 400.0), &[]), None);

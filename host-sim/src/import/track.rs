@@ -6,7 +6,7 @@ mod motive;
 use std::path::{Path, PathBuf};
 
 use super::frame::{Frame, GAP_MS};
-use super::motion::{Moved, by_camera};
+use super::motion::{CumulativeMotion, by_camera};
 use super::report::TrackReport;
 use super::units::Units;
 use crate::geometry::{Pose, wrap_rad};
@@ -26,7 +26,7 @@ pub struct Track {
 
 /// What a track says of a moment.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Seen {
+pub enum Sighting {
     /// The robot was here.
     At(Pose),
     /// Nothing, since the robot was lost.
@@ -71,34 +71,34 @@ impl Track {
     }
 
     /// How the robot moved.
-    pub fn motion(&self) -> Vec<Moved> {
+    pub fn motion(&self) -> Vec<CumulativeMotion> {
         by_camera(&self.frames)
     }
 
     /// Where the robot was at a time, between two frames in proportion.
-    pub fn at(&self, t_ms: f64) -> Seen {
+    pub fn at(&self, t_ms: f64) -> Sighting {
         let after = self.frames.partition_point(|frame| frame.t_ms < t_ms);
         let (Some(after), Some(before)) = (self.frames.get(after), after.checked_sub(1).map(|i| &self.frames[i]))
         else {
-            return Seen::Outside;
+            return Sighting::Outside;
         };
         let span_ms = after.t_ms - before.t_ms;
         if span_ms > GAP_MS {
-            return Seen::Lost;
+            return Sighting::Lost;
         }
         let share = (t_ms - before.t_ms) / span_ms;
         let turn_rad = wrap_rad(after.pose.heading_rad - before.pose.heading_rad);
         let at_cm = before.pose.position_cm.lerp(after.pose.position_cm, share);
-        Seen::At(Pose::new(at_cm.x, at_cm.y, before.pose.heading_rad + share * turn_rad))
+        Sighting::At(Pose::new(at_cm.x, at_cm.y, before.pose.heading_rad + share * turn_rad))
     }
 }
 
-impl Seen {
+impl Sighting {
     /// The pose, if there is one.
     pub fn pose(&self) -> Option<Pose> {
         match self {
-            Seen::At(pose) => Some(*pose),
-            Seen::Lost | Seen::Outside => None,
+            Sighting::At(pose) => Some(*pose),
+            Sighting::Lost | Sighting::Outside => None,
         }
     }
 }
@@ -139,7 +139,10 @@ mod tests {
         assert_eq!((track.frames.len(), track.lost, track.jumps), (3, 1, 0));
         let pose = track.at(10_050.0).pose().expect("seen");
         assert!((pose.position_cm.x - 10.5).abs() < 1e-9 && pose.heading_rad.abs() > 3.1, "{pose:?}");
-        assert_eq!([9_999.0, 10_500.0, 11_501.0].map(|ms| track.at(ms)), [Seen::Outside, Seen::Lost, Seen::Outside]);
+        assert_eq!(
+            [9_999.0, 10_500.0, 11_501.0].map(|ms| track.at(ms)),
+            [Sighting::Outside, Sighting::Lost, Sighting::Outside]
+        );
     }
 
     #[test]

@@ -42,13 +42,13 @@ pub struct Trained<const N: usize> {
 /// Starts that are tried with each of the manners.
 const STARTS: u64 = 4;
 /// Few samples ask for a tight rein, many can do with a loose one; held-out runs choose.
-const MANNERS: [Manner; 2] = [
-    Manner { ridges: Ridges { weights: 1e-4, exponents: 1e-5 }, start_range: 2.0 },
-    Manner { ridges: Ridges { weights: 1e-7, exponents: 1e-7 }, start_range: 4.0 },
+const SEARCH_CONFIGS: [SearchConfig; 2] = [
+    SearchConfig { ridges: Ridges { weights: 1e-4, exponents: 1e-5 }, start_range: 2.0 },
+    SearchConfig { ridges: Ridges { weights: 1e-7, exponents: 1e-7 }, start_range: 4.0 },
 ];
 
 /// How freely exponents are searched.
-struct Manner {
+struct SearchConfig {
     ridges: Ridges,
     /// They start uniformly in ± this.
     start_range: f64,
@@ -71,15 +71,15 @@ pub fn train<const N: usize>(
     let inputs = fitted.ranges().map(|range| Scaling::onto_one_to_two(*range.start(), *range.end()));
     let anchored = Anchored::new(fitted, &inputs);
     // For readings a loose rein buys nothing (R² 0.794 either way) and costs accuracy in fixed point.
-    let manners = if loss == Loss::Mixture { &MANNERS[..1] } else { &MANNERS };
-    let tries: Vec<(u64, &Manner)> = (0..STARTS * manners.len() as u64).zip(manners.iter().cycle()).collect();
+    let configs = if loss == Loss::Mixture { &SEARCH_CONFIGS[..1] } else { &SEARCH_CONFIGS };
+    let tries: Vec<(u64, &SearchConfig)> = (0..STARTS * configs.len() as u64).zip(configs.iter().cycle()).collect();
     let searched: Vec<(f64, Network<f32, N>, usize)> = tries
         .into_par_iter()
-        .map(|(start, manner)| {
+        .map(|(start, config)| {
             let mut rng = generator(seed, &[start]);
-            let range = -manner.start_range..=manner.start_range;
+            let range = -config.start_range..=config.start_range;
             let exponents = DVector::from_fn(shape.product * N, |_, _| rng.random_range(range.clone()));
-            let problem = Projection::new(&anchored, &inputs, manner.ridges, exponents);
+            let problem = Projection::new(&anchored, &inputs, config.ridges, exponents);
             let (mut problem, mut evaluations) = search(problem);
             for _ in 0..if loss == Loss::Squares { 0 } else { REWEIGHTINGS } {
                 reweight(&mut problem, loss, &anchored.data.targets);
@@ -118,8 +118,8 @@ fn reweight<const N: usize>(problem: &mut Projection<N>, loss: Loss, targets: &[
         Loss::Squares => pairs.map(|(_, t)| (t, 1.0)).unzip(),
         Loss::Logistic => pairs.map(logistic_step).unzip(),
         Loss::Mixture => {
-            let narrow = Narrow::of(pairs.clone().map(|(p, t)| t - p).collect());
-            pairs.map(|(p, t)| (t, narrow.share(t - p))).unzip()
+            let residual_law = ContaminatedNormal::of(pairs.clone().map(|(p, t)| t - p).collect());
+            pairs.map(|(p, t)| (t, residual_law.inlier_probability(t - p))).unzip()
         }
     };
     problem.reweight(targets, &weights);
@@ -137,22 +137,22 @@ fn logistic_step((predicted, happened): (f64, f64)) -> (f64, f64) {
 const LEAST_PROBABILITY: f64 = 0.02;
 
 /// A narrow error with a wide tail.
-struct Narrow {
+struct ContaminatedNormal {
     deviation: f64,
 }
 
-impl Narrow {
+impl ContaminatedNormal {
     /// Fits the narrow part to residuals.
     fn of(mut residuals: Vec<f64>) -> Self {
         residuals.iter_mut().for_each(|r| *r = r.abs());
         residuals.sort_by(f64::total_cmp);
         let median = residuals.get(residuals.len() / 2).copied().unwrap_or(1.0);
         // Of a normal distribution half lies within 0.6745 deviations.
-        Narrow { deviation: ORDINARY * (median / 0.6745).max(LEAST_DEVIATION) }
+        ContaminatedNormal { deviation: ORDINARY * (median / 0.6745).max(LEAST_DEVIATION) }
     }
 
     /// The share of a residual that belongs to the narrow part.
-    fn share(&self, residual: f64) -> f64 {
+    fn inlier_probability(&self, residual: f64) -> f64 {
         let z = residual / self.deviation;
         let narrow = libm::exp(-0.5 * z * z);
         narrow / (narrow + TAIL)

@@ -14,7 +14,7 @@ pub struct Shape {
 
 /// Everything about a network but its weights.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Frame<const N: usize> {
+pub struct NetworkTemplate<const N: usize> {
     /// Units of the hidden layer.
     pub shape: Shape,
     /// How inputs are scaled.
@@ -38,7 +38,7 @@ impl Shape {
     }
 }
 
-impl<const N: usize> Frame<N> {
+impl<const N: usize> NetworkTemplate<N> {
     /// The number of genes.
     pub fn genes(&self) -> usize {
         self.shape.summation * (N + 2) + self.shape.product * (N + 1) + 1
@@ -84,8 +84,8 @@ pub fn unscale_output<const N: usize>(network: &mut Network<f32, N>, low: f32, h
 mod tests {
     use super::*;
 
-    fn frame() -> Frame<2> {
-        Frame {
+    fn template() -> NetworkTemplate<2> {
+        NetworkTemplate {
             shape: Shape::halves(4),
             inputs: [Scaling::onto_one_to_two(0.0, 1.0); 2],
             product_form: ProductForm::Positive,
@@ -95,19 +95,19 @@ mod tests {
 
     #[test]
     fn every_gene_has_its_place() {
-        let genes: Vec<f32> = (0..frame().genes()).map(|i| i as f32).collect();
-        let network = frame().network(&genes);
+        let genes: Vec<f32> = (0..template().genes()).map(|i| i as f32).collect();
+        let network = template().network(&genes);
         assert_eq!(network.parameters(), genes.len());
         assert_eq!(network.summation[1], SummationUnit { weights: [4.0, 5.0], bias: 6.0, output: 7.0 });
         assert_eq!(network.product[1], ProductUnit { exponents: [11.0, 12.0], output: 13.0 });
         assert_eq!(network.bias, 14.0);
-        assert_eq!(frame().exponents().collect::<Vec<_>>(), [8, 9, 11, 12]);
+        assert_eq!(template().exponents().collect::<Vec<_>>(), [8, 9, 11, 12]);
     }
 
     #[test]
     fn unscaling_moves_the_output_alone() {
-        let genes: Vec<f32> = (0..frame().genes()).map(|i| 0.1 * i as f32 - 0.7).collect();
-        let scaled = frame().network(&genes);
+        let genes: Vec<f32> = (0..template().genes()).map(|i| 0.1 * i as f32 - 0.7).collect();
+        let scaled = template().network(&genes);
         let mut plain = scaled.clone();
         unscale_output(&mut plain, -20.0, 30.0);
         for inputs in [[0.0f32, 0.0], [0.3, 0.9]] {

@@ -111,7 +111,7 @@ fn row<S: Simd>(simd: S, row: &[f32; BLOCK], at: [usize; 2]) -> Twice<Lanes<S>> 
 mod tests {
     use super::*;
     use crate::chance::generator;
-    use crate::learn::genome::{Frame, Shape};
+    use crate::learn::genome::{NetworkTemplate, Shape};
     use mindgap_core::network::{Activation, ProductForm};
     use proptest::prelude::*;
     use rand::RngExt;
@@ -125,14 +125,14 @@ mod tests {
         data
     }
 
-    fn frame(signed: bool) -> Frame<2> {
+    fn template(signed: bool) -> NetworkTemplate<2> {
         let (scale, product_form): (fn(f32, f32) -> Scaling<f32>, _) = if signed {
             (Scaling::onto_minus_one_to_one, ProductForm::Signed)
         } else {
             (Scaling::onto_one_to_two, ProductForm::Positive)
         };
         let inputs = [scale(0.0, 100.0), scale(0.0, 90.0)];
-        Frame { shape: Shape::halves(6), inputs, product_form, activation: Activation::Linear }
+        NetworkTemplate { shape: Shape::halves(6), inputs, product_form, activation: Activation::Linear }
     }
 
     proptest! {
@@ -140,21 +140,21 @@ mod tests {
         fn the_kernel_agrees_with_the_network(
             genes in prop::collection::vec(-1.5f32..1.5, 22), count in 1usize..70, signed in any::<bool>(),
         ) {
-            let (frame, data) = (frame(signed), data(count));
-            let network = frame.network(&genes);
+            let (template, data) = (template(signed), data(count));
+            let network = template.network(&genes);
             let one_by_one: f64 = data.inputs.iter().zip(&data.targets).map(|(x, t)| {
                 let error = f64::from(network.evaluate(*x) - t);
                 error * error
             }).sum::<f64>() / count as f64;
-            let mse = Samples::new(&data, &frame.inputs, |t| t).mean_squared_error(&network);
+            let mse = Samples::new(&data, &template.inputs, |t| t).mean_squared_error(&network);
             prop_assert!((mse - one_by_one).abs() <= 1e-3 * (1e-3 + one_by_one), "{mse} {one_by_one}");
         }
 
         #[test]
         fn every_instruction_set_gives_the_same_bits(genes in prop::collection::vec(-3f32..3.0, 22), signed in any::<bool>()) {
-            let frame = frame(signed);
-            let samples = &Samples::new(&data(100), &frame.inputs, |t| t);
-            let network = frame.network(&genes);
+            let template = template(signed);
+            let samples = &Samples::new(&data(100), &template.inputs, |t| t);
+            let network = template.network(&genes);
             let network = &Folded::new(&network);
             let scalar = pulp::Scalar::new().vectorize(SquaredError { samples, network });
             let widest = Arch::new().dispatch(SquaredError { samples, network });

@@ -6,7 +6,7 @@ use rand::RngExt;
 use rayon::prelude::*;
 
 use super::dataset::Dataset;
-use super::genome::{Frame, Shape, unscale_output};
+use super::genome::{NetworkTemplate, Shape, unscale_output};
 use super::kernel::Samples;
 use crate::chance::Generator;
 use crate::genetic::{self, Settings};
@@ -53,23 +53,23 @@ pub fn train<const N: usize>(
         ProductForm::Signed => Scaling::onto_minus_one_to_one,
     };
     let inputs = data.ranges().map(|range| scale(*range.start(), *range.end()));
-    let frame = Frame { shape, inputs, product_form: options.product_form, activation };
+    let template = NetworkTemplate { shape, inputs, product_form: options.product_form, activation };
     // A probability is learned as it is; anything else is brought to [1, 2], where weights about one can reach it.
     let (low, high) = match activation {
         Activation::Ramp => (1.0, 2.0),
         Activation::Linear => data.target_range().into_inner(),
     };
     let samples = Samples::new(data, &inputs, |target| 1.0 + (target - low) / (high - low));
-    let problem = Weights { frame, samples, options };
+    let problem = Weights { template, samples, options };
     let outcome = genetic::run(&options.genetic, &problem, seed, watch);
-    let mut network = frame.network(&outcome.best);
+    let mut network = template.network(&outcome.best);
     unscale_output(&mut network, low, high);
     Trained { network, evaluations: outcome.generations * options.genetic.population }
 }
 
 /// The genes are the weights.
 struct Weights<'a, const N: usize> {
-    frame: Frame<N>,
+    template: NetworkTemplate<N>,
     samples: Samples<N>,
     options: &'a Options,
 }
@@ -77,18 +77,18 @@ struct Weights<'a, const N: usize> {
 impl<const N: usize> genetic::Problem for Weights<'_, N> {
     fn random(&self, rng: &mut Generator) -> Vec<f32> {
         let start = self.options.start;
-        (0..self.frame.genes()).map(|_| rng.random_range(-start..=start)).collect()
+        (0..self.template.genes()).map(|_| rng.random_range(-start..=start)).collect()
     }
 
     fn repair(&self, genes: &mut [f32]) {
         let bound = self.options.exponent_bound;
-        for place in self.frame.exponents() {
+        for place in self.template.exponents() {
             genes[place] = genes[place].clamp(-bound, bound);
         }
     }
 
     fn fitness(&self, _: usize, population: &[Vec<f32>]) -> Vec<f64> {
-        let error = |genes: &Vec<f32>| self.samples.mean_squared_error(&self.frame.network(genes));
+        let error = |genes: &Vec<f32>| self.samples.mean_squared_error(&self.template.network(genes));
         population.par_iter().map(|genes| 1.0 / error(genes)).collect()
     }
 }

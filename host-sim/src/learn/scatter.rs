@@ -14,7 +14,7 @@ const WINDOW_CM: f32 = 1.5;
 const STANDS_OUT: f64 = 6.0;
 
 /// Residuals (logged minus predicted) by context. Cell borders put equally many samples on each side.
-pub fn spread(contexts: &[[f32; 2]], residuals: &[f32]) -> Spread {
+pub fn residual_quantiles(contexts: &[[f32; 2]], residuals: &[f32]) -> Spread {
     let edges = [0, 1].map(|axis| {
         let values = sorted(contexts.iter().map(|c| c[axis]));
         std::array::from_fn(|i| values.get(values.len() * (i + 1) / CELLS).copied().unwrap_or(0.0))
@@ -45,7 +45,7 @@ pub fn spread(contexts: &[[f32; 2]], residuals: &[f32]) -> Spread {
 /// covariance of neighbours; what lasts while a command is held (`commands` says which are) adds to that of neighbours
 /// under one command. What then is left of a cell's variance is drawn anew in each step. `runs` tells which residuals
 /// follow each other.
-pub fn shares(
+pub fn variance_components(
     spread: &Spread,
     contexts: &[[f32; 2]],
     residuals: &[f32],
@@ -135,7 +135,7 @@ mod tests {
         let contexts: Vec<[f32; 2]> =
             (0..8000).map(|_| [rng.random_range(0.0..100.0), rng.random_range(0.0..90.0)]).collect();
         let residuals: Vec<f32> = contexts.iter().map(|c| (rng.random::<f32>() - 0.5) * c[1]).collect();
-        let spread = spread(&contexts, &residuals);
+        let spread = residual_quantiles(&contexts, &residuals);
         assert!(spread.is_sound());
         let width = |alpha: f32| spread.residual([50.0, alpha], LEVELS - 1) - spread.residual([50.0, alpha], 0);
         assert!((8.0..20.0).contains(&width(5.0)), "{}", width(5.0));
@@ -144,7 +144,7 @@ mod tests {
 
     #[test]
     fn few_residuals_stand_for_every_cell() {
-        let spread = spread(&[[1.0, 1.0], [2.0, 2.0]], &[-1.0, 1.0]);
+        let spread = residual_quantiles(&[[1.0, 1.0], [2.0, 2.0]], &[-1.0, 1.0]);
         assert!(spread.is_sound());
         assert_eq!(spread.residual([0.0, 9.0], 1), -1.0);
         assert_eq!(spread.residual([9.0, 0.0], LEVELS - 2), 1.0);
@@ -171,11 +171,11 @@ mod tests {
             }
         }
         let contexts = vec![[0.0; 2]; residuals.len()];
-        let spread = spread(&contexts, &residuals);
-        let found = shares(&spread, &contexts, &residuals, &commands, &runs)[spread.cell([0.0; 2])];
+        let spread = residual_quantiles(&contexts, &residuals);
+        let found = variance_components(&spread, &contexts, &residuals, &commands, &runs)[spread.cell([0.0; 2])];
         assert!((found.step - 0.5f32.sqrt()).abs() < 0.03, "{found:?}");
         assert!((found.held - (1f32 / 6.0).sqrt()).abs() < 0.03, "{found:?}");
-        assert_eq!(shares(&spread, &[], &[], &[], &[]), vec![Shares::STEP; CELLS * CELLS]);
+        assert_eq!(variance_components(&spread, &[], &[], &[], &[]), vec![Shares::STEP; CELLS * CELLS]);
     }
 
     #[test]

@@ -74,21 +74,22 @@ pub fn train(
     watch: impl Fn(Progress),
 ) -> Result<Simulator> {
     let data = Datasets::from_logs(logs);
-    let mut school = School { trainer, seed, runs: logs.runs.len(), watch, missing: Vec::new() };
+    let mut network_trainer = NetworkTrainer { trainer, seed, runs: logs.runs.len(), watch, missing: Vec::new() };
     // D and α are the sonar's context themselves.
     let (motion, sonar) = (motion_context, |inputs: &[f32; 2]| *inputs);
     let value = Kind { activation: Activation::Linear, loss: Loss::Squares };
     let probability = Kind { activation: Activation::Ramp, loss: Loss::Logistic };
     let reading = Kind { activation: Activation::Linear, loss: Loss::Mixture };
-    let turn = school.learn("turn", &data.turn, shapes.turn, value, motion);
-    let forward = school.learn("forward", &data.forward, shapes.forward, value, motion);
-    let lateral = school.learn("lateral", &data.lateral, shapes.lateral, value, motion);
+    let turn = network_trainer.train("turn", &data.turn, shapes.turn, value, motion);
+    let forward = network_trainer.train("forward", &data.forward, shapes.forward, value, motion);
+    let lateral = network_trainer.train("lateral", &data.lateral, shapes.lateral, value, motion);
     let echo_probability =
-        school.learn("echo_probability", &data.echo_probability, shapes.echo_probability, probability, sonar);
-    let mut echo_value = school.learn("echo_value", &data.echo_value, shapes.echo_value, reading, sonar);
+        network_trainer.train("echo_probability", &data.echo_probability, shapes.echo_probability, probability, sonar);
+    let mut echo_value = network_trainer.train("echo_value", &data.echo_value, shapes.echo_value, reading, sonar);
     let constant_reading = echo_value.as_mut().and_then(|value| split_constant_reading(value, &data.echo_value));
-    if school.missing.len() == NETWORKS {
-        let reasons: Vec<String> = school.missing.iter().map(|m| format!("{}: {}", m.network, m.reason)).collect();
+    if network_trainer.missing.len() == NETWORKS {
+        let reasons: Vec<String> =
+            network_trainer.missing.iter().map(|m| format!("{}: {}", m.network, m.reason)).collect();
         return Err(Problem::new(format!("no network can be trained on these logs ({})", reasons.join("; "))));
     }
     let commands = logs.runs.iter().flat_map(|run| run.rows.iter().flat_map(|row| row.command()));
@@ -112,26 +113,26 @@ pub fn train(
         reference: None,
         table_one: None,
         added: Vec::new(),
-        missing: school.missing,
+        missing: network_trainer.missing,
     };
     let reference = reference::learn(&simulator, logs);
     if let Some(motion) = &reference.motion {
-        spread_about(&mut simulator.forward, &data.forward, |speeds| motion.correction(speeds)[0]);
-        spread_about(&mut simulator.lateral, &data.lateral, |speeds| motion.correction(speeds)[1]);
-        spread_about(&mut simulator.turn, &data.turn, |speeds| motion.correction(speeds)[2].to_degrees());
+        set_residual_quantiles(&mut simulator.forward, &data.forward, |speeds| motion.correction(speeds)[0]);
+        set_residual_quantiles(&mut simulator.lateral, &data.lateral, |speeds| motion.correction(speeds)[1]);
+        set_residual_quantiles(&mut simulator.turn, &data.turn, |speeds| motion.correction(speeds)[2].to_degrees());
     }
     simulator.reference = Some(reference);
     Ok(simulator)
 }
 
 /// Sets the spread of a motion network to what is left about the network and its known misfit together.
-fn spread_about(learned: &mut Option<Learned<4>>, data: &Dataset<4>, correction: impl Fn(&[f64; 4]) -> f64) {
+fn set_residual_quantiles(learned: &mut Option<Learned<4>>, data: &Dataset<4>, correction: impl Fn(&[f64; 4]) -> f64) {
     let Some(learned) = learned else { return };
     let contexts: Vec<[f32; 2]> = data.inputs.iter().map(motion_context).collect();
     let misfit = data.inputs.iter().map(|speeds| correction(&speeds.map(f64::from)) as f32);
     let left: Vec<f32> = residuals(&learned.network, data).iter().zip(misfit).map(|(r, m)| r - m).collect();
-    learned.spread = scatter::spread(&contexts, &left);
-    learned.spread.shares = scatter::shares(&learned.spread, &contexts, &left, &data.inputs, &data.runs);
+    learned.spread = scatter::residual_quantiles(&contexts, &left);
+    learned.spread.shares = scatter::variance_components(&learned.spread, &contexts, &left, &data.inputs, &data.runs);
 }
 
 impl Shapes {
@@ -164,7 +165,7 @@ impl Trainer {
 }
 
 /// What all networks of a simulator have in common while they are trained.
-struct School<'a, W> {
+struct NetworkTrainer<'a, W> {
     trainer: &'a Trainer,
     seed: u64,
     runs: usize,
@@ -180,8 +181,8 @@ struct Kind {
     loss: Loss,
 }
 
-impl<W: Fn(Progress)> School<'_, W> {
-    fn learn<const N: usize>(
+impl<W: Fn(Progress)> NetworkTrainer<'_, W> {
+    fn train<const N: usize>(
         &mut self,
         network: &'static str,
         data: &Dataset<N>,
@@ -211,7 +212,7 @@ impl<W: Fn(Progress)> School<'_, W> {
         };
         watch(evaluations);
         let contexts: Vec<[f32; 2]> = judged.inputs.iter().map(context).collect();
-        let spread = scatter::spread(&contexts, &residuals(&trained, judged));
+        let spread = scatter::residual_quantiles(&contexts, &residuals(&trained, judged));
         Some(Learned { network: trained, spread })
     }
 }
@@ -237,7 +238,7 @@ fn split_constant_reading(value: &mut Learned<2>, data: &Dataset<2>) -> Option<C
     let others: Vec<usize> = (0..data.len()).filter(right).collect();
     let contexts: Vec<[f32; 2]> = others.iter().map(|i| data.inputs[*i]).collect();
     let residuals: Vec<f32> = others.iter().map(|i| data.targets[*i] - predicted[*i]).collect();
-    value.spread = scatter::spread(&contexts, &residuals);
+    value.spread = scatter::residual_quantiles(&contexts, &residuals);
     Some(constant)
 }
 

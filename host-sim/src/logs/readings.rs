@@ -4,12 +4,11 @@ use std::path::Path;
 
 use csv::ReaderBuilder;
 use mindgap_controller_export::brick::Sonar;
+use mindgap_controller_export::onboard::NO_ECHO_CM;
 
 use crate::files;
 use crate::problem::{Problem, Result};
 
-/// What the sensor reports when no echo came back.
-const NO_ECHO: u8 = 255;
 const COLUMN: &str = "echo_cm";
 
 /// Readings from a list such as `120,80.5,none,silent`, or from the column `echo_cm` of the CSV file of that name.
@@ -48,11 +47,11 @@ fn read_column(path: &Path) -> Result<Vec<Sonar>> {
 
 fn reading(word: &str) -> std::result::Result<Sonar, String> {
     match word.trim() {
-        "" | "none" => Ok(Sonar::Echo(NO_ECHO)),
+        "" | "none" => Ok(Sonar::Echo(NO_ECHO_CM)),
         "silent" => Ok(Sonar::Silent),
         "hangs" => Ok(Sonar::Hangs),
         word => match word.parse::<f64>() {
-            Ok(cm) if (0.0..=f64::from(NO_ECHO)).contains(&cm) => Ok(Sonar::Echo(libm::round(cm) as u8)),
+            Ok(cm) if (0.0..=f64::from(NO_ECHO_CM)).contains(&cm) => Ok(Sonar::Echo(libm::round(cm) as u8)),
             Ok(_) => Err(format!("is {word}, outside 0..255 cm")),
             Err(_) => Err(format!("is {word:?}, neither a distance nor none, silent or hangs")),
         },

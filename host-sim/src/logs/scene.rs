@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use toml::Spanned;
 
 use crate::files;
-use crate::geometry::{Pose, Rectangle, Wall};
+use crate::geometry::{Pose, Rectangle, Wall, bounding_box};
 use crate::problem::{Problem, Result};
 
 /// Where a robot drives.
@@ -102,6 +102,11 @@ impl Scene {
     pub fn sides(&self) -> Vec<Wall> {
         let arena = self.arena_cm.map(|high_cm| Rectangle { low_cm: DVec2::ZERO, high_cm });
         arena.iter().chain(&self.obstacles).flat_map(Rectangle::edges).chain(self.walls.iter().copied()).collect()
+    }
+
+    /// The smallest axis-parallel rectangle that contains all sides; `None` for an empty scene.
+    pub fn bounding_box(&self) -> Option<Rectangle> {
+        bounding_box(&self.sides())
     }
 
     /// Whether a point lies in the open: within the arena and in no obstacle.
