@@ -1,8 +1,8 @@
-//! The way back from a robot: what a brick logged and what a camera saw, brought together as a folder of logs.
+//! Imports recordings of a real robot: merges a brick's logs and a camera's tracks into a folder of logs.
 //!
-//! The two have clocks of their own. [`clocks`] finds how they run by matching what the wheels turned with what the
-//! camera saw; the camera's poses are then taken at the times of the brick's rows. [`brick_log`] and [`track`] read the
-//! files. Whatever is left out, and why, stands in the [`Report`].
+//! Brick and camera have clocks of their own. [`clocks`] aligns them by matching the motion of the wheels with the motion
+//! that the camera saw; the camera's poses are then interpolated at the times of the brick's rows. [`brick_log`] and
+//! [`track`] read the files, [`motion`] reduces both to cumulative motion. The [`Report`] names everything left out.
 
 pub mod brick_log;
 pub mod clocks;
@@ -23,18 +23,18 @@ use self::units::Units;
 use crate::logs::{Logs, Robot, Row, Run, Scene};
 use crate::problem::{Problem, Result};
 
-/// Wheels and camera differ in at most this share of the motion's variance; wheels that slip or a frame that is
-/// turned stay far below it.
+/// Largest share of the motion's variance that an alignment may leave unexplained; slipping wheels or a rotated camera
+/// frame stay far below it.
 const MOST_UNEXPLAINED: f64 = 0.3;
-/// A match has to be better than any other by this factor.
+/// The unexplained share must be at most this fraction of that of any other alignment.
 const CLEARLY: f64 = 0.5;
-/// Clocks that differ by more than 5 ms a second are not two clocks of one moment.
+/// Largest drift between two working clocks: 5 ms a second.
 const MOST_DRIFT: f64 = 5e-3;
 
-/// Brings brick logs and tracks together, which their headers tell apart. Oddities are told to `warn`.
+/// Merges brick logs and tracks, which are distinguished by their headers. `warn` receives one line for each oddity.
 ///
 /// # Errors
-/// When a file is broken, when either kind is missing, or when not a single log matches a track.
+/// When a file cannot be read or parsed, when there is no log or no track, or when no log matches a track.
 pub fn import(
     files: &[PathBuf],
     units: &Units,
@@ -53,7 +53,7 @@ pub fn import(
     if logs.is_empty() || tracks.is_empty() {
         let what =
             if logs.is_empty() { "log of a brick (columns t_ms, left, right, ...)" } else { "track of a camera" };
-        return Err(Problem::new(format!("among the files is no {what}")));
+        return Err(Problem::new(format!("none of the files is a {what}")));
     }
     let mut runs = Vec::new();
     let mut reports = Vec::new();
@@ -79,7 +79,7 @@ pub fn import(
     Ok((logs, Report { tracks, logs: reports }))
 }
 
-/// The track that saw a log's run, and how the clocks ran; or why there is none.
+/// The track that matches a log best and their alignment, or the reason why none does.
 fn matched<'a>(
     log: &BrickLog,
     tracks: &'a [Track],
@@ -115,7 +115,7 @@ fn matched<'a>(
     Ok((track, found))
 }
 
-/// The log's rows with the poses that the camera saw at their times.
+/// The log's rows with the camera's poses at their times.
 fn merged(log: &BrickLog, track: &Track, found: &Alignment, name: String) -> (Run, RunReport) {
     let clocks = &found.clocks;
     let seen: Vec<Sighting> = log.run.rows.iter().map(|row| track.at(clocks.camera_ms(row.t_ms))).collect();

@@ -1,13 +1,11 @@
-//! Evolution that does not stick, the default. A single run of the paper's procedure often ends in a poor controller,
-//! or in one that was lucky in its five runs. So here, always under the noise that was learned, and with either of two
-//! sensors by turns, since what helps with one alone will hardly help on the floor:
+//! Evolution with restarts, the default. A single run of the paper's procedure often stagnates at a poor controller, or
+//! selects one that was lucky in its five runs. Here every run has the learned noise and alternates between two sensor
+//! models, since a behaviour that exploits one of them rarely transfers to the robot. Each restart has three stages:
 //!
-//! 1. a large population, gentler in selection and bolder in mutation, with few runs an individual: it finds a way. Its
-//!    elite is judged again in each generation;
-//! 2. a run that goes on from the best of it with small mutations and many runs an individual;
-//! 3. a choice among the last population by many fresh runs;
-//!
-//! and all of that several times, for other ways.
+//! 1. exploration: a large population with weak selection, strong mutation and few runs an individual, whose elite is
+//!    evaluated anew in each generation;
+//! 2. refinement: a run from the best individuals of the first stage, with small mutations and many runs an individual;
+//! 3. selection: the individual of the last population that succeeds most often in many fresh runs.
 
 use glam::DVec2;
 use mindgap_core::controller::Controller;
@@ -21,9 +19,9 @@ use crate::genetic::mutation::{Mutation, Unit};
 use crate::genetic::{self, Settings};
 use crate::simulator::course::Course;
 
-/// Generations of all runs of the genetic algorithm together.
+/// Total number of generations of all restarts.
 pub const GENERATIONS: usize = RESTARTS * (EXPLORING.max_generations + REFINING.max_generations);
-/// So many times all of it is done.
+/// Number of independent restarts.
 pub const RESTARTS: usize = 3;
 
 const EXPLORING: Settings = Settings {
@@ -45,55 +43,55 @@ const REFINING: Settings = Settings {
     ..EXPLORING
 };
 const REFINING_RUNS: usize = 20;
-/// So many of the last population come into the final choice, each with so many fresh runs.
+/// Number of individuals of the last population in the final selection.
 const CANDIDATES: usize = 100;
+/// Number of fresh runs of each.
 const CHOOSING_RUNS: usize = 200;
-/// Set the choosing and the judging runs apart from all others.
+/// Stream keys of the runs that select a controller and of those that measure its success.
 const CHOOSING: u64 = 2;
 const JUDGING: u64 = 1;
 
-/// What a controller is evolved for.
+/// The task that a controller is evolved for.
 pub struct EvolutionTask<'a> {
-    /// Where it has to do well.
+    /// Where it runs.
     pub course: &'a Course<'a>,
     /// Where it has to stop, cm.
     pub target_cm: DVec2,
-    /// What its genes stand for.
+    /// Decodes genotypes into controllers.
     pub decoder: GenotypeDecoder,
-    /// Which random numbers individuals meet.
+    /// Which random numbers individuals are evaluated with.
     pub random_numbers: RandomNumbers,
-    /// Fixes every draw.
+    /// Seed of all draws.
     pub seed: u64,
 }
 
-/// Evolves a controller: of [`candidates`] the first. `watch` is told the generations so far of all [`GENERATIONS`], and
-/// the best fitness of the run that is under way.
+/// Evolves a controller: the first of [`candidates`]. `watch` receives the number of generations completed, of
+/// [`GENERATIONS`], and the best fitness of the current run.
 pub fn evolve(task: &EvolutionTask, watch: impl FnMut(usize, f64)) -> Evolved {
     candidates(task, watch).swap_remove(0)
 }
 
-/// A controller of each restart, which are different ways to the target if there are several; that which reaches it most
-/// often in fresh runs comes first.
+/// The controller of each restart, by falling success rate in fresh runs. They may take different routes to the target.
 pub fn candidates(task: &EvolutionTask, mut watch: impl FnMut(usize, f64)) -> Vec<Evolved> {
     let mut chosen: Vec<(f64, Evolved)> = (0..RESTARTS)
         .map(|restart| {
             let seed = derive(task.seed, &[restart as u64]);
             let before = restart * (EXPLORING.max_generations + REFINING.max_generations);
-            let mut tell = |generation, best| watch(before + generation, best);
-            let explored = genetic::run(&EXPLORING, &task.evaluator(EXPLORING_RUNS, seed), seed, &mut tell);
-            let ways = explored.population.into_iter().take(REFINING.population).collect();
+            let mut report = |generation, best| watch(before + generation, best);
+            let explored = genetic::run(&EXPLORING, &task.evaluator(EXPLORING_RUNS, seed), seed, &mut report);
+            let best = explored.population.into_iter().take(REFINING.population).collect();
             let before = before + EXPLORING.max_generations;
-            let tell = |generation, best| watch(before + generation, best);
-            // All restarts are judged by the same runs.
+            let report = |generation, best| watch(before + generation, best);
+            // All restarts are compared on the same runs.
             let evaluator = task.evaluator(REFINING_RUNS, task.seed);
-            choose(&evaluator, &genetic::run_from(ways, &REFINING, &evaluator, seed, tell).population)
+            choose(&evaluator, &genetic::run_from(best, &REFINING, &evaluator, seed, report).population)
         })
         .collect();
     chosen.sort_by(|a, b| b.0.total_cmp(&a.0));
     chosen.into_iter().map(|(_, evolved)| evolved).collect()
 }
 
-/// The individual that reaches the target most often in fresh runs, and of equals the fitter; and how often it does.
+/// The individual with the highest success rate in fresh runs, ties broken by fitness; with that rate.
 fn choose(evaluator: &FitnessEvaluator, population: &[Vec<f32>]) -> (f64, Evolved) {
     let judged: Vec<(f64, f64, Controller)> = population
         .par_iter()
@@ -111,7 +109,7 @@ fn choose(evaluator: &FitnessEvaluator, population: &[Vec<f32>]) -> (f64, Evolve
 }
 
 impl<'a> EvolutionTask<'a> {
-    /// How a controller does in so many fresh runs, which played no part in its evolution.
+    /// Success of a controller in a number of runs that played no part in its evolution.
     pub fn success(&self, controller: &Controller, runs: usize) -> Success {
         self.evaluator(REFINING_RUNS, self.seed).success(controller, runs, JUDGING)
     }
@@ -122,7 +120,7 @@ impl<'a> EvolutionTask<'a> {
             target_cm: self.target_cm,
             decoder: self.decoder,
             runs,
-            // Once there, nearer is no better: what counts is to arrive often.
+            // Within the target radius nearer is no better: the success rate counts.
             floor_cm: REACHED_CM,
             random_numbers: self.random_numbers,
             seed,

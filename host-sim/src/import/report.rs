@@ -1,41 +1,41 @@
-//! What an import brought together and what it left out, for people and as JSON.
+//! What an import merged and what it left out.
 
 use std::path::PathBuf;
 
 use serde::Serialize;
 
-/// What was imported, and what was left out.
+/// Summary of an import; its JSON form is described in docs/formats.md.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Report {
-    /// The cameras' tracks.
+    /// The tracks of the cameras.
     pub tracks: Vec<TrackReport>,
-    /// The brick's logs.
+    /// The logs of the brick.
     pub logs: Vec<LogReport>,
 }
 
-/// What became of a camera's track.
+/// Summary of a camera's track.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct TrackReport {
     /// Its file.
     pub file: PathBuf,
-    /// Frames in it.
+    /// Total number of frames.
     pub frames: usize,
-    /// Frames without a pose.
+    /// Number of frames without a pose.
     pub lost: usize,
-    /// Frames left out because no robot moves that fast.
+    /// Number of frames left out because the robot cannot move that fast.
     pub jumps: usize,
 }
 
-/// What became of a brick's log.
+/// Summary of a brick's log.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct LogReport {
     /// Its file.
     pub file: PathBuf,
-    /// Its last line had no end and was left out.
+    /// Whether its last line was incomplete and left out.
     pub torn: bool,
-    /// The run in the folder of logs; none where the whole log was left out.
+    /// The run in the folder of logs; `None` if the whole log was left out.
     pub run: Option<RunReport>,
-    /// Why the whole log was left out.
+    /// Why the whole log was left out, if so.
     pub left_out: Option<String>,
 }
 
@@ -44,18 +44,18 @@ pub struct LogReport {
 pub struct RunReport {
     /// Its name in the folder of logs.
     pub name: String,
-    /// File of the track that saw it.
+    /// File of the matching track.
     pub track: PathBuf,
-    /// Camera time at brick time 0.
+    /// Camera time at brick time 0, ms.
     pub offset_ms: f64,
-    /// How much faster the camera's clock runs.
+    /// Relative drift of the camera's clock: 1e-4 is 0.1 ms a second faster than the brick's.
     pub drift: f64,
-    /// Share of the motion's variance in which wheels and camera differ.
+    /// Share of the motion's variance that the alignment leaves unexplained, 0..=1.
     pub unexplained: f64,
-    /// Rows of the run.
+    /// Number of rows.
     pub rows: usize,
-    /// Rows without a pose because the track has not begun yet or has ended.
+    /// Number of rows without a pose because they lie before or after the track.
     pub outside: usize,
-    /// Rows without a pose because the camera had lost the robot.
+    /// Number of rows without a pose because the camera had lost the robot.
     pub in_gaps: usize,
 }

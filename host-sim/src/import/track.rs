@@ -1,4 +1,4 @@
-//! A camera's track: where the robot was seen, frame by frame, on the camera's own clock.
+//! A camera's track: the robot's pose frame by frame, on the camera's own clock.
 
 mod columns;
 mod motive;
@@ -16,7 +16,7 @@ use crate::problem::{Problem, Result};
 /// A camera's track.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Track {
-    /// Where it was read.
+    /// Its file.
     pub file: PathBuf,
     /// The frames in which the robot was seen, in order of time.
     frames: Vec<Frame>,
@@ -24,27 +24,29 @@ pub struct Track {
     jumps: usize,
 }
 
-/// What a track says of a moment.
+/// What a track says about a time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Sighting {
-    /// The robot was here.
+    /// The robot's pose.
     At(Pose),
-    /// Nothing, since the robot was lost.
+    /// No pose, since the camera had lost the robot.
     Lost,
-    /// Nothing, since it was before the first or after the last frame.
+    /// No pose, since the time lies before the first or after the last frame.
     Outside,
 }
 
-/// Wheels never turn faster than this times full speed, and trackers err by a few centimetres and degrees.
+/// Fastest motion of a robot as a multiple of its nominal full speed.
 const FASTEST: f64 = 1.5;
+/// Tracking errors allowed on top of it.
 const ERR_CM: f64 = 4.0;
 const ERR_RAD: f64 = 0.25;
 
 impl Track {
-    /// Reads a track, with columns that name their units or a rigid body that Motive exported.
+    /// Reads a track: CSV whose columns name their units, or a rigid body exported by Motive.
     ///
     /// # Errors
-    /// When the file is missing or broken, when a column or its unit is not told, or with fewer than two seen frames.
+    /// When the file cannot be read or parsed, when a column or its unit is missing, or when the robot was seen in fewer
+    /// than two frames.
     pub fn read(file: &Path, units: &Units, robot: &Robot) -> Result<Self> {
         let text = crate::files::read_text(file)?;
         let frames =
@@ -64,18 +66,18 @@ impl Track {
         Ok(Track { file: file.to_owned(), lost, jumps: whole - frames.len(), frames })
     }
 
-    /// How many frames there were, and how many of them are not used.
+    /// Number of frames and of those left out.
     pub fn report(&self) -> TrackReport {
         let Track { file, frames, lost, jumps } = self;
         TrackReport { file: file.clone(), frames: frames.len() + lost + jumps, lost: *lost, jumps: *jumps }
     }
 
-    /// How the robot moved.
+    /// The robot's cumulative motion.
     pub fn motion(&self) -> Vec<CumulativeMotion> {
         by_camera(&self.frames)
     }
 
-    /// Where the robot was at a time, between two frames in proportion.
+    /// The robot's pose at a time on the camera's clock, interpolated between two frames.
     pub fn at(&self, t_ms: f64) -> Sighting {
         let after = self.frames.partition_point(|frame| frame.t_ms < t_ms);
         let (Some(after), Some(before)) = (self.frames.get(after), after.checked_sub(1).map(|i| &self.frames[i]))
@@ -103,7 +105,7 @@ impl Sighting {
     }
 }
 
-/// The frames that the robot can have reached from the last one that counts.
+/// The frames that the robot can have reached from the last frame kept.
 fn without_jumps(frames: Vec<Frame>, robot: &Robot) -> Vec<Frame> {
     let cm_ms = FASTEST * robot.full_speed_cm_s / 1000.0;
     let rad_ms = 2.0 * cm_ms / robot.track_cm;

@@ -1,6 +1,6 @@
-//! The training kernel: the error of one network over all samples, in lanes.
+//! The training kernel: the mean squared error of one network over all samples, vectorised.
 //!
-//! What does not depend on the weights is worked out once a data set: scaled inputs and their logarithms.
+//! Scaled inputs and their logarithms do not depend on the weights and are computed once for each data set.
 
 use std::array;
 
@@ -13,14 +13,14 @@ use crate::folded::Folded;
 use crate::lanes::twice::Twice;
 use crate::lanes::{Lanes, WIDEST};
 
-/// Samples laid out for lanes.
+/// Samples laid out for vector lanes.
 #[derive(Clone, Debug)]
 pub struct Samples<const N: usize> {
     blocks: Vec<Block<N>>,
     count: usize,
 }
 
-/// Two of the widest vectors of samples, filled up by samples without weight.
+/// Two of the widest vectors of samples, padded by samples of weight zero.
 #[derive(Clone, Debug)]
 struct Block<const N: usize> {
     scaled: [[f32; BLOCK]; N],
@@ -32,19 +32,19 @@ struct Block<const N: usize> {
 const BLOCK: usize = 2 * WIDEST;
 
 impl<const N: usize> Samples<N> {
-    /// Lays out a data set whose inputs are scaled so and whose targets are mapped by `target`.
+    /// Lays out a data set whose inputs are scaled by `inputs` and whose targets are mapped by `target`.
     pub fn new(data: &Dataset<N>, inputs: &[Scaling<f32>; N], target: impl Fn(f32) -> f32) -> Self {
         let block = |first: usize| {
-            let there = |lane: usize| first + lane < data.len();
+            let exists = |lane: usize| first + lane < data.len();
             let scaled: [[f32; BLOCK]; N] = array::from_fn(|n| {
                 let scaled = |lane: usize| inputs[n].apply(data.inputs[first + lane][n]);
-                array::from_fn(|lane| if there(lane) { scaled(lane) } else { inputs[n].high })
+                array::from_fn(|lane| if exists(lane) { scaled(lane) } else { inputs[n].high })
             });
             Block {
                 log2: scaled.map(|row| row.map(|x| x.log2_magnitude())),
                 scaled,
-                targets: array::from_fn(|lane| if there(lane) { target(data.targets[first + lane]) } else { 0.0 }),
-                weights: array::from_fn(|lane| if there(lane) { 1.0 } else { 0.0 }),
+                targets: array::from_fn(|lane| if exists(lane) { target(data.targets[first + lane]) } else { 0.0 }),
+                weights: array::from_fn(|lane| if exists(lane) { 1.0 } else { 0.0 }),
             }
         };
         Samples { blocks: (0..data.len()).step_by(BLOCK).map(block).collect(), count: data.len() }
@@ -69,7 +69,7 @@ impl<const N: usize> WithSimd for SquaredError<'_, N> {
         let mut sums = [Lanes::splat(simd, 0.0); WIDEST];
         let width = Lanes::<S>::WIDTH;
         let parts = WIDEST / width;
-        // Each sum meets its samples in their order.
+        // Each sum adds its samples in their order, whatever the width of the vectors.
         for block in &self.samples.blocks {
             for part in (0..2 * parts).step_by(2) {
                 let at = [part * width, (part + 1) * width];

@@ -1,5 +1,5 @@
-//! The paper's trainer: the genetic algorithm on all weights, its fitness the inverse of the mean squared error
-//! (section VII).
+//! The trainer of the paper, section VII: the genetic algorithm on all weights, with the inverse of the mean squared
+//! error as fitness.
 
 use mindgap_core::network::{Activation, Network, ProductForm, Scaling};
 use rand::RngExt;
@@ -11,12 +11,13 @@ use super::kernel::Samples;
 use crate::chance::Generator;
 use crate::genetic::{self, Settings};
 
-/// What the trainer can be told. The default is the paper's, and where the paper is silent the standard choice.
+/// Parameters of the trainer. The defaults are those of the paper; where it gives none (marked "open"), they are common
+/// choices.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Options {
     /// The genetic algorithm.
     pub genetic: Settings,
-    /// What product units do with signs (open; inputs scaled to [1, 2]).
+    /// How product units treat the signs of their inputs (open; inputs scaled to [1, 2]).
     pub product_form: ProductForm,
     /// Weights and exponents start uniformly in ± this (open; 1).
     pub start: f32,
@@ -24,12 +25,12 @@ pub struct Options {
     pub exponent_bound: f32,
 }
 
-/// A trained network and how it came about.
+/// A trained network and its cost.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Trained<const N: usize> {
     /// The network, in the units of its data set.
     pub network: Network<f32, N>,
-    /// How often a network was evaluated over the data set: individuals times generations.
+    /// Number of evaluations of a network over the data set: individuals times generations.
     pub evaluations: usize,
 }
 
@@ -39,7 +40,8 @@ impl Default for Options {
     }
 }
 
-/// Trains one network. The data set must hold samples, and inputs and targets that vary.
+/// Trains one network. The data set must have samples whose inputs and targets vary. `watch` receives the generation and
+/// the best fitness up to it.
 pub fn train<const N: usize>(
     data: &Dataset<N>,
     shape: Shape,
@@ -54,7 +56,7 @@ pub fn train<const N: usize>(
     };
     let inputs = data.ranges().map(|range| scale(*range.start(), *range.end()));
     let template = NetworkTemplate { shape, inputs, product_form: options.product_form, activation };
-    // A probability is learned as it is; anything else is brought to [1, 2], where weights about one can reach it.
+    // A probability is learned as it is; other targets are scaled to [1, 2], which weights of about one can reach.
     let (low, high) = match activation {
         Activation::Ramp => (1.0, 2.0),
         Activation::Linear => data.target_range().into_inner(),
@@ -67,7 +69,7 @@ pub fn train<const N: usize>(
     Trained { network, evaluations: outcome.generations * options.genetic.population }
 }
 
-/// The genes are the weights.
+/// The search for weights as an optimisation problem: the genes are the weights.
 struct Weights<'a, const N: usize> {
     template: NetworkTemplate<N>,
     samples: Samples<N>,

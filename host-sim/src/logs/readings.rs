@@ -1,4 +1,4 @@
-//! What the ultrasonic sensor answers a program that runs without a brick: a list, or the column of a log.
+//! Scripted answers of the ultrasonic sensor for a program that runs in the emulated brick: a list, or a column of a log.
 
 use std::path::Path;
 
@@ -11,13 +11,13 @@ use crate::problem::{Problem, Result};
 
 const COLUMN: &str = "echo_cm";
 
-/// Readings from a list such as `120,80.5,none,silent`, or from the column `echo_cm` of the CSV file of that name.
+/// Parses readings from a list such as `120,80.5,none,silent`, or from the column `echo_cm` of the CSV file of that name.
 ///
-/// A reading is a distance in cm, 0..=255, rounded to a whole one; `none`, `255` or an empty cell where no echo came
-/// back; `silent` where the sensor does not answer; `hangs` where its answer never ends.
+/// A reading is a distance in cm, 0..=255, which is rounded; `none`, `255` or an empty cell if no echo returned; `silent`
+/// if the sensor does not answer; `hangs` if its answer never ends.
 ///
 /// # Errors
-/// When it is neither a list nor a file, or when a reading of the file cannot be.
+/// When the text is neither a list nor a file, or when a reading is invalid.
 pub fn read(list_or_file: &str) -> Result<Vec<Sonar>> {
     let path = Path::new(list_or_file);
     if path.is_file() {

@@ -1,4 +1,4 @@
-//! Tracks as plain CSV: columns whose names tell quantity and unit, such as `time_s`, `x_m`, `y_m`, `yaw_rad`.
+//! Tracks as plain CSV, with columns named after quantity and unit such as `time_s`, `x_m`, `y_m`, `yaw_rad`.
 
 use std::path::Path;
 
@@ -11,13 +11,13 @@ use crate::import::frame::Frame;
 use crate::import::units::Units;
 use crate::problem::{Problem, Result};
 
-/// What a column may be called before its unit.
+/// Accepted names of the quantities, before the unit.
 const TIME: [&str; 3] = ["t", "time", "timestamp"];
 const X: [&str; 1] = ["x"];
 const Y: [&str; 1] = ["y"];
 const HEADING: [&str; 3] = ["heading", "yaw", "theta"];
 
-/// The frames of a track; `None` where the robot was lost: a cell of the pose is empty or `nan`.
+/// The frames of a track; `None` where the robot was lost (a cell of the pose is empty or `nan`).
 pub(super) fn frames(file: &Path, text: &str, units: &Units) -> Result<Vec<Option<Frame>>> {
     let mut reader = ReaderBuilder::new().trim(csv::Trim::All).from_reader(text.as_bytes());
     let header = reader.headers().map_err(|e| csv_problem(file, &e))?.clone();
@@ -48,7 +48,7 @@ pub(super) fn frames(file: &Path, text: &str, units: &Units) -> Result<Vec<Optio
 struct Column {
     name: String,
     place: usize,
-    /// What its name says after the quantity; empty when nothing.
+    /// The unit in its name; empty if there is none.
     unit: String,
 }
 
@@ -68,9 +68,9 @@ impl Column {
         }
     }
 
-    fn unit<U: ValueEnum>(&self, unless_told: Option<U>, option: &str) -> std::result::Result<U, String> {
+    fn unit<U: ValueEnum>(&self, default: Option<U>, option: &str) -> std::result::Result<U, String> {
         if self.unit.is_empty() {
-            return unless_told.ok_or_else(|| format!("column {} does not tell its unit: give {option}", self.name));
+            return default.ok_or_else(|| format!("column {} does not tell its unit: give {option}", self.name));
         }
         U::from_str(&self.unit, true).map_err(|_| format!("column {} has an unknown unit", self.name))
     }
