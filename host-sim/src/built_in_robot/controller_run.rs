@@ -1,4 +1,4 @@
-//! A controller on the built-in robot: what "the real world" says of it.
+//! Runs a controller on the built-in robot.
 
 use mindgap_core::controller::{Controller, Machine, Motors, Status};
 
@@ -7,21 +7,21 @@ use crate::chance::Generator;
 use crate::geometry::Pose;
 use crate::logs::{Row, Run};
 
-/// A controller's run, moment by moment.
+/// The trajectory of a controller's run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Trajectory {
-    /// One a step, the first before any; the last one step after the motors stopped, when the robot stands.
+    /// One point a step, beginning at the start; the last one step after the motors stopped, when the robot is at rest.
     pub points: Vec<TrajectoryPoint>,
-    /// How it ended.
+    /// How the run ended.
     pub termination: Termination,
 }
 
-/// One moment of a run.
+/// One point of a trajectory.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TrajectoryPoint {
-    /// Where the robot was.
+    /// The true pose.
     pub true_pose: Pose,
-    /// What was logged: the commands from here on, the tracked pose, the reading that led to them.
+    /// The row of the log: the commands from here on, the tracked pose, and the reading that led to them.
     pub row: Row,
 }
 
@@ -36,7 +36,7 @@ pub enum Termination {
     Crashed,
 }
 
-/// Runs a controller from `start` until it stops the motors or the robot crashes.
+/// Runs a controller from the pose `start` until it stops the motors or the robot crashes.
 pub fn run_controller(robot: &BuiltInRobot, controller: &Controller, start: Pose, rng: &mut Generator) -> Trajectory {
     let mut body = robot.start(start, rng);
     let mut machine = Machine::start();
@@ -62,7 +62,7 @@ pub fn run_controller(robot: &BuiltInRobot, controller: &Controller, start: Pose
 }
 
 impl Trajectory {
-    /// Where the robot came to rest.
+    /// The true pose at which the robot came to rest.
     pub fn end(&self) -> Pose {
         self.points[self.points.len() - 1].true_pose
     }
