@@ -31,12 +31,12 @@ const TRAINING_RUNS: usize = 100;
 const HELD_OUT_RUNS: usize = 30;
 const STEPS: usize = 60;
 const MAX_STEPS: u16 = 60;
-/// Runs of each controller on the robot, and as many simulated ones beside them (paper, figure 4).
+/// Number of runs of each controller on the robot, and of simulated ones (paper, figure 4).
 const TRIALS: usize = 3;
-/// Fresh simulated runs that a success rate is taken from.
+/// Number of fresh simulated runs for a success rate.
 const JUDGED_RUNS: usize = 200;
 
-/// What each part of the job draws from.
+/// Stream keys of the parts of the job.
 #[derive(Clone, Copy)]
 enum Purpose {
     TrainingLogs,
@@ -47,25 +47,25 @@ enum Purpose {
     Trial,
 }
 
-/// What is being done, for a progress display.
+/// Stage of the job, for a progress display.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Stage {
-    /// Logs are recorded.
+    /// Recording of logs.
     Recording,
-    /// A network is trained.
+    /// Training of a network.
     Training(train::Progress),
-    /// A controller is evolved.
+    /// Evolution of a controller.
     Evolving {
-        /// For this start, from 1.
+        /// Its start, from 1.
         start: usize,
-        /// Generations so far.
+        /// Number of generations completed.
         generation: usize,
     },
-    /// Controllers drive, and pictures are drawn.
+    /// Drawing of the figures.
     Drawing,
 }
 
-/// What came out.
+/// Results.
 pub struct Summary {
     /// Accuracy of the networks on held-out logs.
     pub evaluation: Evaluation,
@@ -73,9 +73,9 @@ pub struct Summary {
     pub starts: Vec<StartSummary>,
 }
 
-/// How one start's controller does in simulation and in reality.
+/// Success of one start's controller in simulation and in reality.
 pub struct StartSummary {
-    /// In many fresh simulated runs.
+    /// In fresh simulated runs.
     pub simulated: Success,
     /// On the built-in robot.
     pub real: Success,
@@ -119,7 +119,7 @@ pub fn run(out: &Path, seed: u64, watch: impl Fn(Stage)) -> Result<Summary> {
     Ok(Summary { evaluation, starts: trials.into_iter().map(|trial| trial.summary).collect() })
 }
 
-/// What every start has in common.
+/// Inputs common to all starts.
 struct DemoRun<'a, W> {
     out: &'a Path,
     simulator: &'a Simulator,
@@ -128,7 +128,7 @@ struct DemoRun<'a, W> {
 }
 
 impl<W: Fn(Stage)> DemoRun<'_, W> {
-    /// Evolves controllers for one start (from 0), keeps that which does best in a trial on the robot, and writes,
+    /// Evolves controllers for one start (from 0), keeps the one that is best in a trial on the robot, then writes,
     /// simulates and drives it.
     fn start(&self, start: usize, [evolution, simulation, trial]: [u64; 3]) -> Result<Trial> {
         let pose = self.scene.starts[start];
@@ -137,13 +137,13 @@ impl<W: Fn(Stage)> DemoRun<'_, W> {
         let decoder = GenotypeDecoder::new(self.simulator, MAX_STEPS);
         let seed = derive(evolution, &[start as u64]);
         let task = EvolutionTask { course, target_cm, decoder, random_numbers: RandomNumbers::Common, seed };
-        let tell = |generation, _| (self.watch)(Stage::Evolving { start: start + 1, generation });
+        let report = |generation, _| (self.watch)(Stage::Evolving { start: start + 1, generation });
         let robot = &BuiltInRobot::new(&self.simulator.robot, self.scene, &[]);
         let drive = |controller: &Controller, place: &[u64]| {
             built_in_robot::run_controller(robot, controller, pose, &mut generator(trial, place))
         };
-        // Real runs nearly coincide: a single one shows whether a way holds on this floor.
-        let candidates = robust::candidates(&task, tell);
+        // Real runs of one controller nearly coincide, so a single one shows whether it transfers.
+        let candidates = robust::candidates(&task, report);
         let errors = candidates.iter().map(|c| error_cm(&drive(&c.controller, &[start as u64]), target_cm));
         let best = errors.enumerate().min_by(|a, b| a.1.total_cmp(&b.1)).map_or(0, |(i, _)| i);
         let evolved = &candidates[best];
@@ -178,7 +178,7 @@ impl<W: Fn(Stage)> DemoRun<'_, W> {
     }
 }
 
-/// How far from the target a run ended; a crash is worst.
+/// Final distance to the target, cm; infinite after a crash.
 fn error_cm(trajectory: &Trajectory, target_cm: DVec2) -> f64 {
     if trajectory.termination == built_in_robot::Termination::Crashed {
         return f64::INFINITY;

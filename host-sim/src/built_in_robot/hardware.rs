@@ -156,7 +156,7 @@ pub(super) struct Sonar {
     /// of all sides.
     pub obstacle_db: f64,
     pub arena_sides: usize,
-    /// Standard deviation of the inclination of a wall's facets.
+    /// Incidence angle at which the amplitude of the echo from a wall's facets falls to 1/e.
     pub facet_rad: f64,
     /// Share of the sound that a wall scatters diffusely.
     pub diffuse: f64,

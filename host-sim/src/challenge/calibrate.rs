@@ -1,8 +1,8 @@
-//! Settles the thresholds of a diagnosis on cases whose answers are known.
+//! Fits the thresholds of the diagnosis on cases whose truth is known.
 //!
-//! Cases without any effect show how large a gain chance and the simulator's own misfit feign; the others, diagnosed
-//! with the thresholds that follow from that, show how much of a gap its cause explains, how far wrong effects lag, and
-//! how often an answer is right.
+//! Cases without effects give the distribution of gains under the null hypothesis (chance and the simulator's own misfit)
+//! and so the gates. The others, diagnosed with these gates, show how much of a gap its true cause explains, how far wrong
+//! effects lag behind, and how often an answer is right.
 
 mod fitting;
 
@@ -21,38 +21,38 @@ use crate::logs::Logs;
 use crate::problem::{Problem, Result};
 use crate::simulator::Simulator;
 
-/// What is measured in one case.
+/// Measurements of one case.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Measured {
-    /// What was different, separated by blanks.
+    /// Ids of its effects, separated by blanks.
     pub truth: String,
-    /// Whether all of it is in the table of effects.
+    /// Whether all of them are in the table of effects.
     pub in_table: bool,
-    /// Rows that the gains are summed over.
+    /// Number of rows that gains are summed over.
     pub rows: usize,
-    /// What the best effect gains, or the effects together, nats,
+    /// Gain of the best effect, or of the effects together, nats.
     pub effect_nats: f64,
-    /// and in standard errors.
+    /// The same in standard errors.
     pub effect_z: f64,
-    /// The most that the generic learner gains in a channel; nothing where effects are sought.
+    /// Largest gain of the generic learner in a channel, nats; zero for cases with effects.
     pub learner_nats: f64,
     /// The same in standard errors.
     pub learner_z: f64,
-    /// The effect that was named first; empty when none was.
+    /// Id of the effect named first; empty if none was.
     pub first: String,
-    /// The share of what could be explained that the effects explain.
+    /// Share of the explicable gap that the effects explain.
     pub adequacy: f64,
-    /// The weight of an effect that is there: one when it is the first, zero when it is none of the rivals.
+    /// Relative likelihood of the true effect: one if it is named first, zero if it is not among the rivals.
     pub weight_of_truth: f64,
-    /// Weights of the effects that could be in the first one's place.
+    /// Relative likelihoods of the rivals of the first effect.
     #[serde(skip)]
     pub rivals: Vec<f64>,
 }
 
-/// Fewer cases settle nothing.
+/// Least number of cases for a calibration.
 const FEWEST: usize = 40;
 
-/// The thresholds that `count` cases call for, and what was measured in each; `watch` is told how many are done.
+/// The thresholds fitted to `count` cases, and the measurements of each; `watch` receives the number completed.
 ///
 /// # Errors
 /// When there are too few cases.
@@ -70,7 +70,7 @@ pub fn calibrate(count: usize, seed: u64, watch: impl Fn(usize)) -> Result<(Cali
     Ok((fitting::weighed(open, &others), nulls.into_iter().chain(others).collect()))
 }
 
-/// The cases, and the simulators of their robots.
+/// The cases and the simulators of their robots.
 struct Bench {
     seed: u64,
     robots: Vec<Logs>,

@@ -1,4 +1,4 @@
-//! The demo's pictures: the paper's figures 2, 3 and 4.
+//! The figures of the demo: 2, 3 and 4 of the paper.
 
 use std::path::Path;
 
@@ -16,7 +16,7 @@ use crate::report::paths::{PathPanel, Trace};
 use crate::report::sonar_surfaces::Surface;
 use crate::simulator::Simulator;
 
-/// Figure 3 shows test samples this far apart in the data set, so that single ones can be seen.
+/// Figure 3 shows one test sample in this many, so that single ones are visible.
 const EVERY: usize = 4;
 
 /// Figure 2, expected against predicted, and figure 3, the sonar surfaces.

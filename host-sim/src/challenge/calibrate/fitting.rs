@@ -1,32 +1,32 @@
-//! From what was measured to thresholds: each by the criterion that it stands for.
+//! Fits each threshold to the measurements by a criterion of its own.
 
 use super::Measured;
 use crate::gap::calibration::{Calibration, Gate};
 use crate::gap::verdict::probability;
 
-/// Of all cases without an effect so many gain as many nats as the gate for an effect asks for, and so many as many
-/// standard errors. Both are asked for, and a gain on the runs kept back besides: two in a hundred or fewer pass it all.
+/// Share of cases without effects whose gain passes the gate for an effect in nats, and share that passes it in standard
+/// errors. A case has to pass both, and gain on the held-out runs as well: at most two in a hundred pass all three.
 const FALSE_EFFECTS: f64 = 0.05;
-/// The same for what no effect explains, where a simulator's own misfit is often found on the runs kept back again.
+/// The same for the remainder that no effect explains, where a simulator's own misfit often recurs on held-out runs.
 const FALSE_LEFTOVERS: f64 = 0.02;
-/// The law of a tail is read off this share of all.
+/// Share of the values that an exponential tail is fitted to.
 const TAIL: f64 = 0.2;
-/// Of the answers that are right so many leave more over than counts as adequate,
+/// Share of right answers that leave more unexplained than counts as adequate.
 const FALSE_UNKNOWNS: f64 = 0.05;
-/// once what they leave over is so many times as much: no form fits other robots as well as the built-in one.
+/// Factor on the unexplained share, since no effect fits other robots as well as the built-in one.
 const OTHER_ROBOTS: f64 = 3.0;
-/// So many of the doubtful answers whose effect is the first or beside it name it.
+/// Share of the doubtful answers whose set of effects has to contain the true one.
 const COVERED: f64 = 0.9;
-/// A rival with less weight than this raises no doubt,
+/// Relative likelihood below which a rival raises no doubt.
 const DOUBT: f64 = 0.01;
-/// and one that lags by less than two standard errors is named whatever the built-in robot says.
+/// Relative likelihood above which a rival is always named, about two standard errors behind the first.
 const TWO_ERRORS: f64 = 0.12;
-/// What is tried for the probabilities.
+/// Grid of values tried for the parameters of the probabilities.
 const WIDTHS: [f64; 5] = [0.01, 0.02, 0.04, 0.06, 0.1];
 const TEMPERATURES: [f64; 6] = [1.0, 1.5, 2.0, 3.0, 4.0, 6.0];
 const TRUSTS: [f64; 6] = [0.85, 0.9, 0.93, 0.95, 0.97, 0.99];
 
-/// Thresholds against false alarms; everything that explains a gap is taken for its cause, and every rival is named.
+/// Calibration with fitted gates only: every explanation counts as adequate, and every rival is named.
 pub fn open(nulls: &[Measured]) -> Calibration {
     let rows = nulls.iter().map(|m| m.rows as f64).sum::<f64>() / nulls.len() as f64;
     let ungated = Calibration {
@@ -51,7 +51,7 @@ pub fn open(nulls: &[Measured]) -> Calibration {
     }
 }
 
-/// The same with what tells a cause from something unknown, which rivals are named, and how sure an answer is.
+/// Completes a calibration by the thresholds on adequacy and rivals and the parameters of the probabilities.
 pub fn weighed(open: Calibration, others: &[Measured]) -> Calibration {
     let answered: Vec<&Measured> = others.iter().filter(|m| !m.first.is_empty()).collect();
     let right = answered.iter().filter(|m| m.first_is_there());
@@ -75,14 +75,14 @@ impl Measured {
         self.weight_of_truth == 1.0
     }
 
-    /// Of what is true about the first effect under the probability that it is given.
+    /// Log-likelihood of whether the first effect is true, under the probability that the diagnosis gives it.
     fn log_likelihood(&self, calibration: &Calibration) -> f64 {
         let there = probability(self.adequacy, self.rivals.iter().copied(), calibration);
         libm::log(if self.first_is_there() { there } else { 1.0 - there })
     }
 }
 
-/// What that share exceeds, if the tail falls off exponentially.
+/// The value that a share of all exceeds, by an exponential fit to the tail.
 fn tail(mut values: Vec<f64>, share: f64) -> f64 {
     values.sort_by(f64::total_cmp);
     let above = &values[((1.0 - TAIL) * values.len() as f64) as usize..];
@@ -90,7 +90,7 @@ fn tail(mut values: Vec<f64>, share: f64) -> f64 {
     above[0] + mean_excess * libm::log(TAIL / share)
 }
 
-/// The value that the share `at` of all lies below; one where there is none.
+/// The quantile `at` of values; one if there is none.
 fn quantile(mut values: Vec<f64>, at: f64) -> f64 {
     values.sort_by(f64::total_cmp);
     values.get((at * values.len() as f64) as usize).copied().unwrap_or(1.0)
