@@ -164,7 +164,7 @@ mod tests {
             ("t_ms,x_cm,y_cm,heading_deg\n0,1,far,0\n", ":2: y_cm = \"far\" is no number"),
             ("t_ms,x_cm,y_cm,heading_deg\n0,1,inf,0\n", ":2: y_cm = \"inf\" is no number"),
             ("t_ms,x_cm,y_cm\n0,1,1\n", ":1: no column for the heading"),
-            ("t,x,y,theta\n0,1,1,0\n", ":1: column t does not tell its unit"),
+            ("t,x,y,theta\n0,1,1,0\n", ":1: column t has no unit"),
             ("t_ms,x_cm,x_mm,y_cm,heading_deg\n0,1,1,1,0\n", ":1: more than one column for x"),
         ] {
             let problem = read(text).expect_err(text).to_string();

@@ -70,7 +70,7 @@ impl Column {
 
     fn unit<U: ValueEnum>(&self, default: Option<U>, option: &str) -> std::result::Result<U, String> {
         if self.unit.is_empty() {
-            return default.ok_or_else(|| format!("column {} does not tell its unit: give {option}", self.name));
+            return default.ok_or_else(|| format!("column {} has no unit: give {option}", self.name));
         }
         U::from_str(&self.unit, true).map_err(|_| format!("column {} has an unknown unit", self.name))
     }
