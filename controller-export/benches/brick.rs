@@ -2,7 +2,7 @@
 
 use divan::Bencher;
 use divan::counter::ItemsCount;
-use mindgap_controller_export::brick::{self, End, Program, Script, Setup, Sonar};
+use mindgap_controller_export::brick::{self, Program, RunConfig, ScriptedWorld, Sonar, Termination};
 use mindgap_controller_export::rxe;
 use mindgap_controller_export::wiring::Wiring;
 use mindgap_core::controller::{Controller, Tuple, When};
@@ -15,11 +15,11 @@ fn main() {
 #[divan::bench]
 fn busy_loop(bencher: Bencher) {
     let program = Program::load(&loop_program()).expect("a sound program");
-    let setup = Setup { run_ms: 1_000, instructions_per_ms: 1_000, ..Setup::default() };
-    let instructions = brick::run(&program, &mut Script::default(), &setup).instructions;
+    let setup = RunConfig { run_ms: 1_000, instructions_per_ms: 1_000, ..RunConfig::default() };
+    let instructions = brick::run(&program, &mut ScriptedWorld::default(), &setup).instructions;
     bencher.counter(ItemsCount::new(instructions)).bench(|| {
-        let report = brick::run(&program, &mut Script::default(), &setup);
-        assert_eq!((report.end, report.instructions), (End::OutOfTime, instructions));
+        let report = brick::run(&program, &mut ScriptedWorld::default(), &setup);
+        assert_eq!((report.end, report.instructions), (Termination::OutOfTime, instructions));
     });
 }
 
@@ -31,9 +31,9 @@ fn controller_run(bencher: Bencher) {
     let file = rxe::program(&controller, &Wiring::default()).expect("a sound controller");
     let program = Program::load(&file).expect("a sound program");
     bencher.counter(ItemsCount::new(1u32)).bench(|| {
-        let mut world = Script::sonar([Sonar::Echo(100); 150]);
-        let report = brick::run(&program, &mut world, &Setup::default());
-        assert_eq!((report.end, world.asked), (End::Finished, 150));
+        let mut world = ScriptedWorld::sonar([Sonar::Echo(100); 150]);
+        let report = brick::run(&program, &mut world, &RunConfig::default());
+        assert_eq!((report.end, world.asked), (Termination::Finished, 150));
     });
 }
 

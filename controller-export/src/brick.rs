@@ -1,14 +1,14 @@
-//! A brick in software: runs .rxe programs as the standard firmware does, in a world that is told what to sense.
+//! An emulator of the brick: runs .rxe programs as the standard firmware does, with simulated sensors.
 //!
-//! * [`Program`]: an .rxe file, checked. Any file that nbc makes for standard firmware (file versions 0.5 and 0.6).
-//! * [`run`]: runs it until it ends, on a clock of its own, and reports every [`Event`].
-//! * [`World`]: what the brick senses and moves; [`Script`] is one that gives what it was told.
+//! * [`Program`]: a checked .rxe file, as nbc makes it for standard firmware (file versions 0.5 and 0.6).
+//! * [`run`]: runs it to its end on an emulated clock and reports every [`Event`].
+//! * [`World`]: sensors, buttons and motors around the brick; [`ScriptedWorld`] returns values given in advance.
 //!
-//! Left out: Bluetooth, mailboxes, pictures, colour sensors and motor regulation. A program that asks for one of the
-//! first four ends with [`Fault::Instruction`]; a motor does what its power says.
+//! Not emulated: Bluetooth, mailboxes, pictures, colour sensors and motor regulation. A program that uses one of the
+//! first four ends with [`Fault::Instruction`]; a motor runs at the power that is set.
 //!
 //! ```
-//! use mindgap_controller_export::brick::{self, End, Program, Script, Setup};
+//! use mindgap_controller_export::brick::{self, Termination, Program, ScriptedWorld, RunConfig};
 //!
 //! // An empty task, as nbc compiles it: one clump that stops.
 //! # let mut file = b"MindstormsNXT\0\0\x06".to_vec();
@@ -18,8 +18,8 @@
 //! # for word in [2u16, 10, 1, 0xFFFF, 0xFFFF] { file.extend(word.to_le_bytes()); }
 //! # file.extend([0, 0, 0, 0, 0x29, 0x40, 0xFF, 0xFF]);
 //! let program = Program::load(&file)?;
-//! let report = brick::run(&program, &mut Script::default(), &Setup::default());
-//! assert_eq!(report.end, End::Finished);
+//! let report = brick::run(&program, &mut ScriptedWorld::default(), &RunConfig::default());
+//! assert_eq!(report.end, Termination::Finished);
 //! # Ok::<(), brick::LoadError>(())
 //! ```
 
@@ -40,7 +40,7 @@ use std::collections::BTreeMap;
 
 pub use motors::Drive;
 pub use program::{LoadError, Program};
-pub use world::{Button, Script, Sonar, World};
+pub use world::{Button, ScriptedWorld, Sonar, World};
 
 use bus::Port;
 use flash::Flash;
@@ -51,67 +51,67 @@ use schedule::Schedule;
 
 use crate::onboard::FREE_FLASH_BYTES;
 
-/// Instructions that a clump runs before the next one has its turn.
+/// Number of instructions that a clump executes before the next one is scheduled.
 const TURN: u32 = 20;
 
-/// The brick before a run: what it has, how fast it is, and when the run is given up.
+/// Configuration of a run: the state and speed of the brick, and a time limit.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Setup {
-    /// Time after which the run is given up.
+pub struct RunConfig {
+    /// Time limit of the run.
     pub run_ms: u32,
-    /// Bytecode instructions in a millisecond; a brick manages 80 to 160.
+    /// Bytecode instructions executed in a millisecond; a brick manages 80 to 160.
     pub instructions_per_ms: u32,
-    /// The clock when the program starts: the brick counts from when it was switched on.
+    /// System clock when the program starts; a brick counts from when it was switched on.
     pub start_tick_ms: u32,
-    /// Flash for files.
+    /// Flash available for files.
     pub flash_bytes: u32,
-    /// Files that are there already.
+    /// Files present at the start, by name.
     pub files: BTreeMap<String, Vec<u8>>,
 }
 
-/// What a program did.
+/// What a program did in a run.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Report {
-    /// What could be seen and heard, in its order.
+    /// Observable events in order of time.
     pub events: Vec<Event>,
     /// How the program ended.
-    pub end: End,
-    /// When it ended, in milliseconds since its start.
+    pub end: Termination,
+    /// Time of its end, ms since its start.
     pub ended_ms: u32,
-    /// Instructions that it ran.
+    /// Number of instructions executed.
     pub instructions: u64,
-    /// What each motor did when it ended.
+    /// Drive of each motor at the end, ports A to C.
     pub motors: [Drive; motors::PORTS],
-    /// The files that it left, cut to what was written.
+    /// Files at the end by name, truncated to the bytes written.
     pub files: BTreeMap<String, Vec<u8>>,
-    /// The most memory that clump records, values and arrays took, in bytes.
+    /// Peak memory of clump records, values and arrays, in bytes.
     pub pool_bytes: usize,
 }
 
-/// Something that could be seen or heard.
+/// An observable event.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Event {
-    /// Milliseconds since the program started.
+    /// Time since the program started, ms.
     pub t_ms: u32,
-    /// What it was.
-    pub what: What,
+    /// Kind of event.
+    pub kind: EventKind,
 }
 
-/// What could be seen or heard.
+/// Kind of an observable event.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum What {
-    /// A motor was told something, be it what it did already; `port` counts from 0.
+pub enum EventKind {
+    /// A motor was set, possibly to the drive that it had already.
     Motor {
-        /// The motor's port.
+        /// The motor's port, from 0.
         port: usize,
-        /// What it does from now on.
+        /// Its drive from now on.
         drive: Drive,
     },
     /// A tone was started.
     Tone {
-        /// Its frequency.
+        /// Its frequency, Hz.
         hz: u16,
-        /// Its length.
+        /// Its duration, ms.
         ms: u16,
     },
     /// A sound file was started.
@@ -129,27 +129,27 @@ pub enum What {
 
 /// How a program ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum End {
-    /// It came to its end or stopped itself.
+pub enum Termination {
+    /// It reached its end or stopped itself.
     Finished,
     /// The dark button was pressed: the motors coast.
     Aborted,
-    /// The firmware gave up on it: the motors go on until somebody presses a button.
+    /// The firmware aborted it: the motors run on until somebody presses a button.
     Failed(Fault),
-    /// It was still running after [`Setup::run_ms`].
+    /// It was still running at [`RunConfig::run_ms`].
     OutOfTime,
 }
 
-/// Why the firmware gives up on a program.
+/// Why the firmware aborts a program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fault {
-    /// An instruction or call that there is not, or code that runs past its end.
+    /// An unknown instruction or call, or execution past the end of the code.
     Instruction,
     /// An operand of the wrong type, or an index outside its array.
     Argument,
     /// Data outside the dataspace.
     Pointer,
-    /// No memory left.
+    /// Out of memory.
     Memory,
 }
 
@@ -162,7 +162,7 @@ struct Brick<'p, 'w> {
     motors: [Motor; motors::PORTS],
     ports: [Port; bus::PORTS],
     flash: Flash,
-    /// Releases of each button that the program does not count any more.
+    /// Releases of each button before the program last reset its counter.
     forgotten_releases: [u8; 4],
     chance: u32,
     start_tick_ms: u32,
@@ -171,10 +171,10 @@ struct Brick<'p, 'w> {
     instructions: u64,
 }
 
-impl Default for Setup {
-    /// Ten minutes, 100 instructions a millisecond, switched on for five seconds, an empty file system.
+impl Default for RunConfig {
+    /// Ten minutes, 100 instructions a millisecond, switched on five seconds ago, an empty file system.
     fn default() -> Self {
-        Setup {
+        RunConfig {
             run_ms: 600_000,
             instructions_per_ms: 100,
             start_tick_ms: 5_000,
@@ -185,11 +185,11 @@ impl Default for Setup {
 }
 
 /// Runs a program until it ends.
-pub fn run(program: &Program, world: &mut dyn World, setup: &Setup) -> Report {
+pub fn run(program: &Program, world: &mut dyn World, config: &RunConfig) -> Report {
     let clump_bytes = program.pool_bytes() - program.data.len();
     let (memory, started) = match Memory::new(program) {
         Ok(memory) => (memory, None),
-        Err(memory) => (memory, Some(End::Failed(Fault::Memory))),
+        Err(memory) => (memory, Some(Termination::Failed(Fault::Memory))),
     };
     let mut brick = Brick {
         program,
@@ -198,17 +198,17 @@ pub fn run(program: &Program, world: &mut dyn World, setup: &Setup) -> Report {
         schedule: Schedule::new(program),
         motors: Default::default(),
         ports: Default::default(),
-        flash: Flash::new(setup.flash_bytes, &setup.files),
+        flash: Flash::new(config.flash_bytes, &config.files),
         forgotten_releases: [0; 4],
         chance: 1,
-        start_tick_ms: setup.start_tick_ms,
+        start_tick_ms: config.start_tick_ms,
         t_ms: 0,
         events: Vec::new(),
         instructions: 0,
     };
-    let end = started.unwrap_or_else(|| brick.run(setup));
+    let end = started.unwrap_or_else(|| brick.run(config));
     let motors = match end {
-        End::Aborted => Default::default(),
+        Termination::Aborted => Default::default(),
         _ => brick.motors.each_ref().map(Motor::drive),
     };
     Report {
@@ -223,22 +223,22 @@ pub fn run(program: &Program, world: &mut dyn World, setup: &Setup) -> Report {
 }
 
 impl Brick<'_, '_> {
-    /// Passes of the firmware's scheduler, one a millisecond; those in which every clump sleeps are skipped.
-    fn run(&mut self, setup: &Setup) -> End {
+    /// Runs the firmware's scheduler once a millisecond, skipping those in which every clump sleeps.
+    fn run(&mut self, config: &RunConfig) -> Termination {
         loop {
             if self.world.exit_pressed_ms().is_some_and(|exit_ms| self.t_ms >= exit_ms) {
-                return End::Aborted;
+                return Termination::Aborted;
             }
-            if self.t_ms >= setup.run_ms {
-                return End::OutOfTime;
+            if self.t_ms >= config.run_ms {
+                return Termination::OutOfTime;
             }
             self.schedule.wake(self.t_ms);
-            match self.pass(setup.instructions_per_ms) {
+            match self.pass(config.instructions_per_ms) {
                 Ok(None) => {}
                 Ok(Some(end)) => return end,
-                Err(fault) => return End::Failed(fault),
+                Err(fault) => return Termination::Failed(fault),
             }
-            let last_ms = self.world.exit_pressed_ms().unwrap_or(u32::MAX).min(setup.run_ms);
+            let last_ms = self.world.exit_pressed_ms().unwrap_or(u32::MAX).min(config.run_ms);
             self.t_ms = match self.schedule.next_wake_ms() {
                 Some(wake_ms) => wake_ms.min(last_ms).max(self.t_ms + 1),
                 None => self.t_ms + 1,
@@ -247,7 +247,7 @@ impl Brick<'_, '_> {
     }
 
     /// One millisecond: clumps run in turn.
-    fn pass(&mut self, instructions: u32) -> Result<Option<End>, Fault> {
+    fn pass(&mut self, instructions: u32) -> Result<Option<Termination>, Fault> {
         let mut left = instructions.max(1);
         while let Some(clump) = self.schedule.running() {
             if left == 0 {
@@ -258,10 +258,10 @@ impl Brick<'_, '_> {
             match self.turn(clump, turn, &mut left)? {
                 Turn::Over => self.schedule.rotate(),
                 Turn::Left => {}
-                Turn::Stop => return Ok(Some(End::Finished)),
+                Turn::Stop => return Ok(Some(Termination::Finished)),
             }
         }
-        Ok(self.schedule.is_empty().then_some(End::Finished))
+        Ok(self.schedule.is_empty().then_some(Termination::Finished))
     }
 
     /// Up to `turn` instructions of one clump.
@@ -274,7 +274,7 @@ impl Brick<'_, '_> {
             *left -= 1;
             self.instructions += 1;
             let flow = match self.execute(pc) {
-                // Memory in pieces: pack it and try once more.
+                // The memory may be fragmented: compact it and try once more.
                 Err(Fault::Memory) => {
                     self.memory.compact();
                     self.execute(pc)
@@ -307,16 +307,16 @@ impl Brick<'_, '_> {
         self.start_tick_ms.wrapping_add(self.t_ms)
     }
 
-    fn emit(&mut self, what: What) {
-        self.events.push(Event { t_ms: self.t_ms, what });
+    fn emit(&mut self, kind: EventKind) {
+        self.events.push(Event { t_ms: self.t_ms, kind });
     }
 }
 
 /// How a clump's turn ended.
 enum Turn {
-    /// It may go on after the others.
+    /// It may continue after the others.
     Over,
-    /// It waits, or is done.
+    /// It waits or has ended.
     Left,
     /// The program stops.
     Stop,

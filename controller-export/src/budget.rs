@@ -1,40 +1,39 @@
-//! What a program takes of the brick, against what there is.
+//! Resources that a program takes, and those of the brick.
 
 use std::fmt;
 
-use crate::bytecode::POOL_BYTES;
+use mindgap_core::limits::POOL_BYTES;
+
 use crate::error::ExportError;
 use crate::nxc::source::{log_bytes, log_rows};
-use crate::onboard::FREE_FLASH_BYTES;
+use crate::onboard::{FREE_FLASH_BYTES, SONAR_HANG_MS};
 
-/// Bytecode instructions in a millisecond, at least.
-pub(crate) const INSTRUCTIONS_PER_MS: u32 = 80;
-/// How long a sensor that hangs keeps its port busy; the next exchange has to begin after that.
-const HANG_MS: u32 = 100;
-/// Writing a row: a page of flash now and then.
+/// Bytecode instructions that the slowest brick executes in a millisecond.
+pub const INSTRUCTIONS_PER_MS: u32 = 80;
+/// Time to write a row of the log, which writes a page of flash now and then.
 const LOG_ROW_MS: u32 = 5;
 
-/// What a program takes of the brick.
+/// Resources that a program takes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Budget {
-    /// Size of the .rxe file at most, in flash.
+    /// Upper bound on the size of the .rxe file in flash.
     pub program_bytes: u32,
-    /// Memory for clumps, values and arrays at most.
+    /// Upper bound on the memory for clumps, values and arrays.
     pub memory_bytes: u32,
-    /// Flash that is reserved for the log.
+    /// Flash reserved for the log.
     pub log_bytes: u32,
     /// Time between two steps.
     pub step_ms: u16,
-    /// Time that a step takes at worst, when the sensor hangs.
+    /// Worst-case duration of a step, when the sensor hangs.
     pub worst_step_ms: u16,
 }
 
-/// What a kind of program takes, whatever its numbers.
+/// Resources of a kind of program, whatever its controller.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Cost {
     pub(crate) program_bytes: u32,
     pub(crate) memory_bytes: u32,
-    /// Bytecode instructions of one step at worst.
+    /// Worst-case number of bytecode instructions in a step.
     pub(crate) step_instructions: u32,
 }
 
@@ -49,7 +48,7 @@ impl Cost {
 }
 
 impl Budget {
-    /// The budget of a program that takes `cost`, and logs its start and `logged_steps` steps if at all.
+    /// The budget of a program of this cost that logs its start and `logged_steps` steps, or nothing.
     pub(crate) fn new(cost: Cost, step_ms: u16, logged_steps: Option<u16>) -> Self {
         let log_ms = if logged_steps.is_some() { LOG_ROW_MS } else { 0 };
         Budget {
@@ -57,11 +56,12 @@ impl Budget {
             memory_bytes: cost.memory_bytes,
             log_bytes: logged_steps.map_or(0, |steps| log_bytes(u32::from(steps) + 1)),
             step_ms,
-            worst_step_ms: (HANG_MS + cost.step_instructions.div_ceil(INSTRUCTIONS_PER_MS) + log_ms) as u16,
+            // The next exchange can begin only when a sensor that hangs has released its port.
+            worst_step_ms: (SONAR_HANG_MS + cost.step_instructions.div_ceil(INSTRUCTIONS_PER_MS) + log_ms) as u16,
         }
     }
 
-    /// Whether the brick can hold and run the program.
+    /// Checks that the brick can store and run the program.
     pub(crate) fn check(&self) -> Result<(), ExportError> {
         let Budget { log_bytes, step_ms, worst_step_ms, .. } = *self;
         if step_ms < worst_step_ms {
@@ -76,7 +76,7 @@ impl Budget {
     }
 }
 
-/// One line an item: what is taken of what there is.
+/// One line a resource: taken and available.
 impl fmt::Display for Budget {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let Budget { program_bytes, memory_bytes, log_bytes, step_ms, worst_step_ms } = self;

@@ -1,4 +1,4 @@
-//! The standard firmware's bytecode: what both the writer of programs and the machine that runs them know of it.
+//! The bytecode of the standard firmware, shared by the assembler and the emulator.
 //!
 //! Source: `c_cmd_bytecodes.h` and `c_cmd.h` of the LEGO firmware 1.29 and programs of the compiler nbc.
 
@@ -10,8 +10,6 @@ pub(crate) const HEADER_BYTES: usize = 38;
 pub(crate) const NONE: u16 = 0xFFFF;
 /// Bytes of a dope vector: five 16-bit fields.
 pub(crate) const DOPE_VECTOR_BYTES: usize = 10;
-/// Memory for clump records, data and arrays.
-pub(crate) const POOL_BYTES: usize = 32_768;
 /// Memory of one clump record on the brick.
 pub(crate) const CLUMP_RECORD_BYTES: usize = 28;
 /// The flag of a dataspace entry whose value is zero and is not stored.
@@ -21,7 +19,7 @@ pub(crate) const VARIABLE_SIZE: u16 = 0xE;
 /// The bit of an instruction's first word that marks the short forms.
 pub(crate) const SHORT_FORM: u16 = 1 << 11;
 
-/// Declares an enum whose variants stand for numbers, and the way back from a number.
+/// Declares an enum with numbered variants and its conversion from a number.
 macro_rules! numbered {
     ($(#[$doc:meta])* $name:ident: $number:ty { $($(#[$variant_doc:meta])* $variant:ident = $value:expr,)* }) => {
         $(#[$doc])*
@@ -123,7 +121,7 @@ numbered! {
 }
 
 numbered! {
-    /// A call of the firmware.
+    /// A system call of the firmware.
     Syscall: u16 {
         FileOpenRead = 0,
         FileOpenWrite = 1,
@@ -192,7 +190,7 @@ numbered! {
     }
 }
 
-/// Bits of [`OutputField::Flags`]: which of an output's fields the firmware takes over.
+/// Bits of [`OutputField::Flags`]: which fields of an output the firmware applies.
 pub(crate) mod update {
     pub(crate) const MODE: u8 = 0x01;
     pub(crate) const SPEED: u8 = 0x02;
@@ -207,14 +205,14 @@ pub(crate) mod mode {
     pub(crate) const BRAKE: u8 = 0x02;
 }
 
-/// The value of [`OutputField::RunState`] at which power reaches the motor.
+/// The value of [`OutputField::RunState`] for a motor that runs.
 pub(crate) const RUN_STATE_RUNNING: u8 = 0x20;
 /// The value of [`InputField::Type`] for a digital sensor with 9 V supply.
 pub(crate) const SENSOR_LOW_SPEED_9V: u8 = 11;
 /// The same without supply.
 pub(crate) const SENSOR_LOW_SPEED: u8 = 10;
 
-/// Answers of the calls about digital sensors.
+/// Status codes of the calls for digital sensors.
 pub(crate) mod comm {
     pub(crate) const OK: i8 = 0;
     pub(crate) const PENDING: i8 = 32;
@@ -224,13 +222,13 @@ pub(crate) mod comm {
     pub(crate) const INVALID_SIZE: i8 = -19;
 }
 
-/// The ultrasonic sensor's address on its bus, and the register of its nearest echo.
+/// The ultrasonic sensor's address on its bus.
 pub(crate) const SONAR_ADDRESS: u8 = 0x02;
 /// The register that holds the distance of the nearest echo in cm.
 pub(crate) const SONAR_FIRST_ECHO: u8 = 0x42;
 
 impl Type {
-    /// Bytes of a value; an array's is the number of its dope vector.
+    /// Size of a value in bytes; that of an array is the index of its dope vector.
     pub(crate) fn bytes(self) -> usize {
         match self {
             Type::Void | Type::Cluster => 0,
@@ -254,7 +252,7 @@ impl Type {
 }
 
 impl Op {
-    /// Bytes of the instruction, or `None` where they vary.
+    /// Size of the instruction in bytes; `None` if it varies.
     pub(crate) fn bytes(self) -> Option<u16> {
         use Op::*;
         match self {

@@ -1,7 +1,7 @@
 //! The controller as a C99 header: its tuples as a table, and the machine that steps through them.
 //!
-//! It allocates nothing and needs `stdbool.h` and `stdint.h` alone. Reading the sensor, setting the motors and keeping
-//! time is left to the program that includes it.
+//! It does not allocate and needs `stdbool.h` and `stdint.h` only. The program that includes it reads the sensor, sets the
+//! motors and keeps time.
 
 use mindgap_core::controller::{Controller, FULL_SPEED, TUPLES, When};
 

@@ -1,11 +1,11 @@
-//! NXC programs that make the data a simulator is learned from, or a gap diagnosed by: random commands, each held for a
-//! few steps (paper, section VI), or a script, with the ultrasonic sensor's readings, wheel rotations and battery
-//! voltage logged on the brick.
+//! NXC programs that collect data to learn a simulator from or to diagnose a gap with: random commands, each held for a few
+//! steps (paper, section VI), or a script. They log the ultrasonic sensor's readings, wheel rotations and battery voltage
+//! on the brick.
 //!
-//! Every start of the program adds a run, `run-000.csv` and so on; random ones have commands of their own. At random the
-//! robot turns away from what it sees near, and backs up only over ground that it has just left; a script is driven
-//! whatever is near. Both stop when the sensor is dead or somebody holds the orange button; still, somebody should stand
-//! by. The camera's poses are added on the host.
+//! Every start of the program adds a run, `run-000.csv` and so on; random runs differ in their commands. When driving at
+//! random the robot turns away from near objects and reverses only over ground that it has just crossed; a script is driven
+//! regardless of obstacles. Both stop when the sensor is dead or somebody holds the orange button; the robot still needs
+//! supervision. The camera's poses are added on the host.
 
 use mindgap_core::controller::FULL_SPEED;
 
@@ -19,56 +19,56 @@ const DRIVE: &str = include_str!("collect/drive.nxc");
 const SCRIPT: &str = include_str!("collect/script.nxc");
 const MAIN: &str = include_str!("collect/main.nxc");
 
-/// What nbc makes of the program.
+/// Measured cost of the random program as compiled by nbc.
 const COST: Cost = Cost { program_bytes: 6_900, memory_bytes: 5_200, step_instructions: 1_250 };
-/// And of one whose commands are a script,
+/// Measured cost of the scripted program.
 const SCRIPT_COST: Cost = Cost { program_bytes: 5_700, memory_bytes: 4_700, step_instructions: 900 };
-/// with so many bytes more for each step, on flash and in memory.
+/// Additional bytes for each step of a script, in flash and in memory.
 const SCRIPT_STEP_BYTES: u32 = 4;
-/// Steps of a script at most: memory for a thousand is there.
+/// Maximum number of steps of a script, for which there is memory.
 const MOST_SCRIPT_STEPS: usize = 1_000;
-/// Steps in a row without an echo after which the robot looks for one.
+/// Number of consecutive steps without an echo after which the robot looks for one.
 const MOST_UNSEEN_STEPS: u16 = 2;
-/// How much farther the way ahead has to be free after a turn.
+/// Additional free distance ahead required after a turn.
 const PAST_CORNER_CM: u16 = 20;
-/// Power of the last step of a turn away from something.
+/// Power in the last step of a turn away from an object.
 const PAST_CORNER_POWER: u16 = 15;
-/// Seeds that leave room for a thousand runs within the generator's 31 bits.
+/// Number of seeds, which leaves room for a thousand runs within the generator's 31 bits.
 const SEEDS: u32 = 1_000_000_000;
 
-/// What a run of collecting data is like.
+/// Options of a program that collects data.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct CollectOptions {
     /// The compiled program's name on the brick.
     pub program: BrickName,
-    /// What is plugged in where.
+    /// Ports of motors and sensor.
     pub wiring: Wiring,
-    /// Time between two rows of the log; it has to be the controllers' step.
+    /// Time between two rows of the log, ms; it has to equal the step of the controllers.
     pub step_ms: u16,
-    /// Where the commands come from.
+    /// Source of the commands.
     pub commands: Commands,
 }
 
-/// Where commands come from.
+/// Source of commands.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Commands {
-    /// From chance.
+    /// Random commands.
     Random {
-        /// Steps of a run.
+        /// Number of steps of a run.
         steps: u16,
-        /// Something nearer than this, 1..=254 cm, makes the robot turn away.
+        /// Distance below which the robot turns away, 1..=254 cm.
         near_cm: u8,
-        /// Where chance starts from.
+        /// Seed of the commands.
         seed: u32,
     },
-    /// From a script: left and right power, step by step.
+    /// A script: left and right power, one pair a step.
     Script(Vec<[i8; 2]>),
 }
 
-/// The program as NXC.
+/// The program as NXC source.
 ///
 /// # Errors
-/// What the brick cannot run or store: see [`ExportError`].
+/// When the brick cannot run or store the program: see [`ExportError`].
 pub fn program(options: &CollectOptions) -> Result<String, ExportError> {
     let CollectOptions { program, wiring, step_ms, commands } = options;
     check(commands)?;
@@ -112,7 +112,7 @@ pub fn program(options: &CollectOptions) -> Result<String, ExportError> {
     Ok(parts.join("\n"))
 }
 
-/// What the program and one run's log take of the brick once it is compiled.
+/// Resources of the compiled program and the log of one run.
 pub fn budget(options: &CollectOptions) -> Budget {
     let cost = match &options.commands {
         Commands::Random { .. } => COST,
@@ -136,7 +136,7 @@ fn check(commands: &Commands) -> Result<(), ExportError> {
     }
 }
 
-/// Steps of a run; those of a script that is too long do not matter.
+/// Number of steps of a run, saturated for a script that is too long.
 fn steps(commands: &Commands) -> u16 {
     match commands {
         Commands::Random { steps, .. } => *steps,

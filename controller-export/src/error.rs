@@ -1,8 +1,8 @@
-//! Why a controller cannot become an onboard program.
+//! Why a controller cannot be exported as an onboard program.
 
 use mindgap_core::controller::InvalidController;
 
-/// Why a controller cannot become an onboard program: one line that says what to change.
+/// Why a controller cannot be exported as an onboard program: one line that says what to change.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ExportError {
     /// A number of the controller is out of its range.
@@ -13,7 +13,7 @@ pub enum ExportError {
     StepTooShort {
         /// Time between two steps.
         step_ms: u16,
-        /// The shortest that there can be.
+        /// The shortest possible.
         shortest_ms: u16,
     },
     /// A file name that the brick refuses.
@@ -29,9 +29,9 @@ pub enum ExportError {
     NoSuchPort {
         /// The port as given.
         port: String,
-        /// What would be plugged in.
+        /// Kind of device: motor or sensor.
         kind: &'static str,
-        /// The ports that there are.
+        /// The existing ports.
         has: &'static str,
     },
     /// Both motors on one port.
@@ -42,19 +42,19 @@ pub enum ExportError {
     LogTooLarge {
         /// The size of the log.
         log_bytes: u32,
-        /// What the program leaves of an empty flash.
+        /// Flash available beside the program.
         flash_bytes: u32,
-        /// The most steps whose log fits.
+        /// Largest number of steps whose log fits.
         steps: u16,
     },
-    /// A number of a program that collects data is out of its range.
+    /// A parameter of a program that collects data is out of range.
     #[error("{name} is {value}; it has to lie in {range}")]
     OutOfRange {
         /// The number's name.
         name: &'static str,
         /// The number.
         value: u32,
-        /// What it may be.
+        /// Its valid range.
         range: &'static str,
     },
 }

@@ -1,13 +1,16 @@
 //! Turns a six-tuple controller into an onboard program.
 //!
+//! The controller is that of C. J. Pretorius, M. C. du Plessis and C. B. Cilliers (2013), "A Neural
+//! Network Ultrasonic Sensor Simulator for Evolutionary Robotics", called "the paper" in this crate.
+//!
 //! * [`nxc`]: readable NXC source for the LEGO NXT's standard firmware.
-//! * [`rxe`]: the compiled program itself, a third of the size.
-//! * [`rust`], [`c`]: constants for the core, and a header for everything that speaks C.
+//! * [`rxe`]: the executable itself, a third of the size.
+//! * [`rust`], [`c`]: a constant for programs that use the core, and a C99 header.
 //! * [`nxc_networks`], [`rust_networks`]: a simulator's networks in fixed point, in NXC and Rust.
-//! * [`collect`]: a program that drives at random and logs, in NXC.
-//! * [`brick`]: a brick in software, which runs such programs and proves them equal.
-//! * [`wiring`], [`names`], [`onboard`], [`origin`]: what the formats share: ports, file names on the brick, what a
-//!   program does beyond the controller, and where the controller came from.
+//! * [`collect`]: a program that drives at random or by a script and logs, in NXC.
+//! * [`brick`]: an emulator of the brick, with which tests show that all formats behave alike.
+//! * [`wiring`], [`names`], [`onboard`], [`origin`], [`budget`]: what the formats share: ports, file names on the brick,
+//!   behaviour beyond the controller, the controller's origin, and the resources that a program takes.
 //!
 //! Every program runs the same stepping machine as [`mindgap_core::controller::Machine`].
 

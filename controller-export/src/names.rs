@@ -1,4 +1,4 @@
-//! File names that an NXT accepts: at most 15 characters, a dot, and at most 3.
+//! File names that an NXT accepts: at most 15 characters, a dot, and at most 3 more.
 
 use std::fmt;
 use std::str::FromStr;

@@ -1,9 +1,9 @@
 //! Readable NXC source for the LEGO NXT's standard firmware (`nbc -v=128`).
 //!
-//! The parts that never change stand as NXC in the folder beside this file. Only whole numbers, no shifts and no product
-//! wider than 32 bits: what the compiler makes of those depends on the firmware. And no local variable gets its first value
-//! where it is declared: there nbc 1.2.1 takes a signed result for an unsigned one, or the reverse, when the function
-//! before ended with the other kind.
+//! The constant parts are NXC files in the folder beside this file. They use integers only, no shifts and no product wider
+//! than 32 bits, which the compiler translates differently for each firmware. No local variable is initialised in its
+//! declaration: there nbc 1.2.1 mistakes a signed result for an unsigned one, or the reverse, if the preceding function
+//! ended with the other kind.
 
 pub(crate) mod source;
 
@@ -17,31 +17,31 @@ use crate::wiring::Wiring;
 
 use source::{Constants, DISPLAY, LOG, MOTORS, SONAR, TIME};
 
-/// Lines that only a log or only the display needs start with `@log ` or `@display `.
+/// The main loop; lines needed only for a log or only for the display start with `@log ` or `@display `.
 const RUN: &str = include_str!("nxc/run.nxc");
 
-/// What nbc makes of the program, and of what can be added to it.
+/// Measured cost of the program as compiled by nbc, and of its optional parts.
 const PLAIN: Cost = Cost { program_bytes: 2_700, memory_bytes: 1_900, step_instructions: 430 };
 const WITH_LOG: Cost = Cost { program_bytes: 2_000, memory_bytes: 2_600, step_instructions: 330 };
 const WITH_DISPLAY: Cost = Cost { program_bytes: 1_000, memory_bytes: 1_000, step_instructions: 210 };
 
-/// What an NXC program does beside running the controller.
+/// Options of an NXC program.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct NxcOptions {
     /// The compiled program's name on the brick.
     pub program: BrickName,
-    /// What is plugged in where.
+    /// Ports of motors and sensor.
     pub wiring: Wiring,
-    /// Where to log every step on the brick; a file of that name is replaced.
+    /// File on the brick that every step is logged to; an existing file is replaced.
     pub log: Option<BrickName>,
-    /// Whether to show tuple, reading and outcome on the brick's display.
+    /// Whether the brick's display shows tuple, reading and outcome.
     pub display: bool,
 }
 
-/// The controller as an NXC program, origin and compiler call in its first lines.
+/// The controller as an NXC program, with its origin and the compiler call in the first lines.
 ///
 /// # Errors
-/// What the brick cannot run or store: see [`ExportError`].
+/// When the brick cannot run or store the program: see [`ExportError`].
 pub fn program(controller: &Controller, origin: &Origin, options: &NxcOptions) -> Result<String, ExportError> {
     controller.check()?;
     options.wiring.check()?;
@@ -60,7 +60,7 @@ pub fn program(controller: &Controller, origin: &Origin, options: &NxcOptions) -
     Ok(parts.into_iter().flatten().collect::<Vec<_>>().join("\n"))
 }
 
-/// What the program takes of the brick once it is compiled.
+/// Resources of the compiled program.
 pub fn budget(controller: &Controller, options: &NxcOptions) -> Budget {
     let mut cost = PLAIN;
     if options.log.is_some() {

@@ -1,35 +1,34 @@
-//! Fixed-point networks as NXC functions for the LEGO NXT's standard firmware, the same bits as the core's.
+//! Fixed-point networks as NXC functions for the LEGO NXT's standard firmware, equal to the core's to the bit.
 //!
-//! The brick has neither floating point that could be trusted nor products of 64 bits, so products are made of pieces
-//! of 16 bits; nothing of the accuracy is lost by that, only time. The parts that never change stand as NXC in the folder
-//! beside this file.
+//! The brick has neither reliable floating point nor 64-bit products, so products are computed in limbs of 16 bits, which
+//! costs time but no accuracy. The constant parts are NXC files in the folder beside this file.
 
 use std::fmt::{self, Write};
 
 use mindgap_core::fixed_network::{FixedNetwork, FixedScaling};
 use mindgap_core::folded::Sign;
+use mindgap_core::limits::POOL_BYTES;
 use mindgap_core::network::Activation;
 
 use crate::budget::INSTRUCTIONS_PER_MS;
-use crate::bytecode::POOL_BYTES;
 use crate::onboard::FREE_FLASH_BYTES;
 
 const WIDE: &str = include_str!("nxc_networks/wide.nxc");
 const POWERS: &str = include_str!("nxc_networks/powers.nxc");
 const NETWORK: &str = include_str!("nxc_networks/network.nxc");
 
-/// What nbc makes of the parts that never change, in flash and memory, and of each weight.
+/// Measured size of the constant parts as compiled by nbc, in flash and in memory, and of each weight.
 const PROGRAM_BYTES: usize = 8_600;
 const MEMORY_BYTES: usize = 2_700;
 const WEIGHT_BYTES: usize = 4;
-/// Bytecode instructions of an answer at worst: always, for each input, for each product unit, and for each of its
-/// exponents.
+/// Worst-case number of bytecode instructions of an evaluation: constant, for each input, for each product unit, and for
+/// each of its exponents.
 const INSTRUCTIONS: [usize; 4] = [800, 1_500, 650, 80];
 
-/// Weights on a line of the table.
+/// Number of weights on a line of the table.
 const A_LINE: usize = 8;
 
-/// One network as a function of NXC.
+/// One network as an NXC function.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct NxcNetwork {
     name: &'static str,
@@ -39,7 +38,7 @@ pub struct NxcNetwork {
 }
 
 impl NxcNetwork {
-    /// The function `name` of arguments of these names.
+    /// The function `name` with arguments named `inputs`.
     pub fn new<const N: usize>(
         name: &'static str,
         documentation: &'static str,
@@ -50,7 +49,7 @@ impl NxcNetwork {
     }
 }
 
-/// NXC source that defines these networks; a program includes it.
+/// NXC source that defines these networks, for a program to include.
 pub fn nxc_networks(networks: &[NxcNetwork]) -> String {
     let mut table = String::new();
     let mut functions = String::new();
@@ -73,18 +72,18 @@ pub fn nxc_networks(networks: &[NxcNetwork]) -> String {
     [head, WIDE, POWERS, &table, NETWORK, &functions].join("\n")
 }
 
-/// What networks take of the brick, a line each.
+/// Resources that networks take; displayed one a line.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct NetworksBudget {
-    /// Size in flash of a program that calls all of them and does nothing else, at most.
+    /// Upper bound on the size in flash of a program that calls all of them and does nothing else.
     pub program_bytes: usize,
-    /// Memory of that.
+    /// Upper bound on its memory.
     pub memory_bytes: usize,
-    /// How long each takes to answer at worst, ms.
+    /// Worst-case evaluation time of each network, ms.
     pub answer_ms: Vec<(&'static str, usize)>,
 }
 
-/// What these networks take of the brick.
+/// Resources that these networks take.
 pub fn budget(networks: &[NxcNetwork]) -> NetworksBudget {
     let weights: usize = networks.iter().map(|network| network.weights.len()).sum();
     NetworksBudget {
@@ -112,7 +111,7 @@ impl fmt::Display for NetworksBudget {
     }
 }
 
-/// In the order in which `Network` in network.nxc reads them.
+/// The weights in the order in which `Network` in network.nxc reads them.
 fn weights<const N: usize>(network: &FixedNetwork<N>) -> Vec<i32> {
     let FixedNetwork { inputs, sum, output_shift, activation } = network;
     let is_ramp = i32::from(*activation == Activation::Ramp);
@@ -127,7 +126,7 @@ fn weights<const N: usize>(network: &FixedNetwork<N>) -> Vec<i32> {
     weights
 }
 
-/// Gain, shift, the four pieces of the offset, and the range.
+/// Gain, shift, the four limbs of the offset, and the range.
 fn scaling(scaling: &FixedScaling) -> [i32; 8] {
     let FixedScaling { gain, shift, offset, low, high } = scaling;
     let offset = offset.to_bits();

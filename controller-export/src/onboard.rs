@@ -1,15 +1,18 @@
-//! What every onboard program does beyond the controller: how long it waits for the ultrasonic sensor, when it takes
-//! the sensor for dead, and how it ends.
+//! Behaviour of every onboard program beyond the controller: how long it waits for the ultrasonic sensor, when it considers
+//! the sensor dead, and how it ends.
 
 pub use mindgap_core::limits::FREE_FLASH_BYTES;
 
-/// The sensor's word for "no echo came back". It is no reading: the tuple is held.
+/// The sensor's code for "no echo". It does not count as a reading: the tuple is held.
 pub const NO_ECHO_CM: u8 = 255;
 
-/// How long one exchange with the sensor may take. The firmware's own driver gives up after three polls 15 ms apart.
+/// Timeout of one exchange with the sensor. The firmware's own driver gives up after three polls 15 ms apart.
 pub const SONAR_TIMEOUT_MS: u16 = 45;
 
-/// Time between two looks at whether the sensor has answered.
+/// How long a sensor that begins an answer and never ends it keeps its port busy in the firmware.
+pub const SONAR_HANG_MS: u32 = 100;
+
+/// Time between two polls for the sensor's answer.
 pub const SONAR_POLL_MS: u16 = 3;
 
 /// Steps in a row without an answer after which the sensor counts as dead and the robot is stopped. One missed answer
@@ -19,13 +22,13 @@ pub const FAILED_STEPS_TO_STOP: u8 = 2;
 /// Time between switching the sensor on and the start of the run.
 pub const SONAR_WARM_UP_MS: u16 = 250;
 
-/// How long the motors brake before the program ends, which lets go of them.
+/// How long the motors brake before the program ends, after which they coast.
 pub const BRAKE_MS: u16 = 250;
 
-/// The tone of a run whose sixth test held, for as long as the motors brake.
+/// Frequency of the tone after a run whose sixth test held; it lasts while the motors brake.
 pub const FINISHED_HZ: u16 = 880;
 
-/// The tone of a run that ran out of steps or lost its sensor.
+/// Frequency of the tone after a run that reached its step limit or lost its sensor.
 pub const GAVE_UP_HZ: u16 = 220;
 
 /// Volume of the tones, of 4.

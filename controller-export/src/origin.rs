@@ -1,24 +1,24 @@
-//! Where a controller came from.
+//! Origin of a controller.
 
-/// Where a controller came from, for the comments of an onboard program. What is not known is left out.
+/// Origin of a controller for the comments of an onboard program. Unknown facts are omitted.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Origin {
-    /// The simulator that the controller was evolved in, usually its file's name.
+    /// The simulator that the controller was evolved in, usually a file name.
     pub simulator: Option<String>,
-    /// The scene that it was evolved for, usually its file's name.
+    /// The scene that it was evolved for, usually a file name.
     pub scene: Option<String>,
-    /// The start of that scene, from 1.
+    /// The start within that scene, from 1.
     pub start: Option<usize>,
     /// The seed of the evolution.
     pub seed: Option<u64>,
-    /// Generations that the evolution ran.
+    /// Total number of generations.
     pub generations: Option<u32>,
     /// Fitness in simulation.
     pub fitness: Option<f64>,
 }
 
 impl Origin {
-    /// One line of printable ASCII a known fact, fit for a comment in any C-like language.
+    /// One line of printable ASCII for each known fact, safe in a comment of any C-like language.
     pub fn lines(&self) -> Vec<String> {
         let facts = [
             ("simulator", self.simulator.clone()),

@@ -1,4 +1,4 @@
-//! The controller as a constant for programs that run [`mindgap_core`]'s own machine.
+//! The controller as a Rust constant for programs that use [`mindgap_core`].
 
 use mindgap_core::controller::{Controller, Tuple, When};
 

@@ -1,5 +1,5 @@
-//! Fixed-point networks as Rust source: constants that stay in flash, for a program that depends on `mindgap-core`,
-//! `fixed` and `heapless`.
+//! Fixed-point networks as Rust source: statics that stay in flash, for a program that depends on `mindgap-core`, `fixed`
+//! and `heapless`.
 
 use std::fmt::Write;
 
@@ -7,7 +7,7 @@ use mindgap_core::fixed_network::FixedNetwork;
 use mindgap_core::folded::Sign;
 use mindgap_core::network::Activation;
 
-/// Rust source that holds these networks, each made by [`rust_network`].
+/// Rust source of these networks, each made by [`rust_network`].
 pub fn rust_networks(networks: &[String]) -> String {
     let head = "use fixed::types::{I6F26, I38F26};
 use heapless::Vec;
@@ -18,8 +18,8 @@ use mindgap_core::network::Activation;
     networks.iter().fold(head.to_owned(), |text, network| text + "\n" + network)
 }
 
-/// The definition of one network as a static of this name, which is a Rust identifier, with this line of documentation.
-/// It reserves no room beyond its product units.
+/// The definition of one network as a static. `name` must be a Rust identifier and `documentation` one line. Its capacity
+/// is that of its product units.
 pub fn rust_network<const N: usize>(name: &str, documentation: &str, network: &FixedNetwork<N>) -> String {
     let activation = match network.activation {
         Activation::Linear => "Linear",

@@ -1,9 +1,8 @@
 //! The controller as an .rxe program, without a compiler: one clump of bytecode for standard firmware 1.28 and later.
 //!
-//! `rxe/layout.rs` lays out the dataspace with its arrays, `rxe/assembler.rs` writes the instructions, and this module
-//! says which.
+//! `rxe/layout.rs` lays out the dataspace, `rxe/assembler.rs` encodes instructions, and this module generates them.
 //!
-//! It does what the [NXC program](crate::nxc) does without log and display, in a third of its size.
+//! The program behaves like the [NXC program](crate::nxc) without log and display, in a third of its size.
 
 mod assembler;
 mod layout;
@@ -22,19 +21,19 @@ use crate::error::ExportError;
 use crate::onboard;
 use crate::wiring::Wiring;
 
-/// What is [written](program), whatever the controller.
+/// Measured cost of the program, the same for every controller.
 const COST: Cost = Cost { program_bytes: 950, memory_bytes: 360, step_instructions: 90 };
 
 /// The controller as the bytes of an .rxe file.
 ///
 /// # Errors
-/// What the brick cannot run: see [`ExportError`].
+/// When the brick cannot run the program: see [`ExportError`].
 pub fn program(controller: &Controller, wiring: &Wiring) -> Result<Vec<u8>, ExportError> {
     controller.check()?;
     wiring.check()?;
     budget(controller).check()?;
     let mut asm = Assembler::default();
-    // Large values first, so that few bytes are lost between them.
+    // Large values first, which minimises padding.
     let next_ms = asm.number(Type::U32, 0);
     let now_ms = asm.number(Type::U32, 0);
     let step_ms = asm.number(Type::U16, controller.step_ms.into());
@@ -104,7 +103,7 @@ pub fn program(controller: &Controller, wiring: &Wiring) -> Result<Vec<u8>, Expo
     Ok(asm.into_file())
 }
 
-/// What the program takes of the brick.
+/// Resources of the program.
 pub fn budget(controller: &Controller) -> Budget {
     Budget::new(COST, controller.step_ms, None)
 }
@@ -176,7 +175,7 @@ struct Sonar {
     write: Write,
     status: Status,
     read: Read,
-    /// Spare bytes: a field's value, the newest answer's index.
+    /// Scratch byte: the value of a field, the index of the newest answer.
     value: Number,
 }
 
@@ -189,7 +188,7 @@ struct Write {
     answer_bytes: Number,
 }
 
-/// Arguments of the call that tells how the exchange stands.
+/// Arguments of the call that queries the status of the exchange.
 struct Status {
     call: Cluster,
     result: Number,
@@ -197,7 +196,7 @@ struct Status {
     ready: Number,
 }
 
-/// Arguments of the call that takes the answer.
+/// Arguments of the call that reads the answer.
 struct Read {
     call: Cluster,
     result: Number,
@@ -241,7 +240,7 @@ impl Sonar {
     }
 
     fn switch_on(&self, asm: &mut Assembler) {
-        // The calls' constants are set by code, as nbc does it: its decompiler loses the defaults of a cluster.
+        // Constants of the calls are set by code, as nbc does, whose decompiler loses the defaults of a cluster.
         for port in [self.write.port, self.status.port, self.read.port] {
             asm.mov(port, self.port);
         }
@@ -260,7 +259,7 @@ impl Sonar {
         asm.wait(self.warm_up_ms);
     }
 
-    /// One exchange: the newest byte goes to the reading; without an answer in time, on to `failed`.
+    /// One exchange: stores the newest byte as the reading; jumps to `failed` without an answer in time.
     fn read(&self, asm: &mut Assembler, now_ms: Number, one: Number, failed: Label) {
         let Sonar { write, status, read, .. } = self;
         let answered = asm.label();
@@ -286,7 +285,7 @@ impl Sonar {
     }
 }
 
-/// The tone that tells how the run ended.
+/// The tone that signals how the run ended.
 struct Tone {
     call: Cluster,
     frequency_hz: Number,
@@ -297,7 +296,7 @@ struct Tone {
 impl Tone {
     fn declare(asm: &mut Assembler) -> Self {
         let call = asm.cluster(5);
-        // The call's own answer, which is always the same.
+        // The call's result, which is always the same.
         asm.number(Type::I8, 0);
         let (frequency_hz, duration_ms) = (asm.number(Type::U16, 0), asm.number(Type::U16, 0));
         // Whether it repeats.

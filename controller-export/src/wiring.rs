@@ -1,4 +1,4 @@
-//! What is plugged in where.
+//! Assignment of motors and sensor to the ports of the brick.
 
 use std::fmt;
 use std::str::FromStr;

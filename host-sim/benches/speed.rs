@@ -8,8 +8,8 @@ use mindgap_core::controller::{Controller, Tuple, When};
 use mindgap_core::network::Activation;
 use mindgap_host_sim::built_in_robot::{default_robot, four_obstacles, record, training_room};
 use mindgap_host_sim::chance::generator;
-use mindgap_host_sim::evolve::fitness::{Numbers, Task};
-use mindgap_host_sim::evolve::genome::Coding;
+use mindgap_host_sim::evolve::fitness::{FitnessEvaluator, RandomNumbers};
+use mindgap_host_sim::evolve::genome::GenotypeDecoder;
 use mindgap_host_sim::evolve::paper;
 use mindgap_host_sim::genetic::Settings;
 use mindgap_host_sim::learn::dataset::Dataset;
@@ -74,7 +74,7 @@ fn training_generations(bencher: Bencher) {
         let (distance_cm, alpha_deg) = (rng.random_range(4.0..240.0), rng.random_range(0.0..90.0));
         data.push([distance_cm, alpha_deg], distance_cm + 0.1 * alpha_deg, run);
     }
-    let genetic = Settings { window: None, max_generations: GENERATIONS, ..Settings::default() };
+    let genetic = Settings { stagnation: None, max_generations: GENERATIONS, ..Settings::default() };
     let options = paper_trainer::Options { genetic, ..paper_trainer::Options::default() };
     let train = || paper_trainer::train(&data, Shape::halves(10), Activation::Linear, &options, SEED, |_, _| {});
     bencher.counter(ItemsCount::new(GENERATIONS)).bench(train);
@@ -85,17 +85,17 @@ fn training_generations(bencher: Bencher) {
 fn evolving_generations(bencher: Bencher) {
     let (simulator, scene) = (simulator(), four_obstacles());
     let course = &Course::new(&simulator, &scene, scene.starts[0], Noise::Paper).expect("the robot has room");
-    let task = Task {
+    let evaluator = FitnessEvaluator {
         course,
         target_cm: scene.target_cm.expect("the scene has a target"),
-        coding: Coding::new(&simulator, MAX_STEPS),
+        decoder: GenotypeDecoder::new(&simulator, MAX_STEPS),
         runs: paper::RUNS,
         floor_cm: paper::FLOOR_CM,
-        numbers: Numbers::Fresh,
+        random_numbers: RandomNumbers::Independent,
         seed: SEED,
     };
     let settings = paper::settings();
-    let evolve = || paper::evolve(&task, &settings, |_, _| {});
+    let evolve = || paper::evolve(&evaluator, &settings, |_, _| {});
     bencher.counter(ItemsCount::new(settings.max_generations)).bench(evolve);
 }
 

@@ -1,12 +1,13 @@
-//! The built-in robot: a stand-in for reality, so that the whole job can be done without a robot.
+//! The built-in robot: a physical model that stands in for reality, so that the whole job can be done without a robot.
 //!
-//! It works from forces, voltages, torques, echo strengths and camera optics at small ticks of time, and shares no
-//! formula with the simulator that is learnt from its logs or with the effects that a diagnosis tries. Its logs are
-//! like any robot's.
+//! It integrates forces, voltages, torques, echo strengths and camera optics in small time steps, and shares no formula
+//! with the simulator that is learned from its logs or with the effects that a diagnosis tries. Its logs have the format
+//! of any robot's.
 //!
-//! [`BuiltInRobot`] is the robot in its room, with what is different about it ([`effects`]); [`Body`] is a run of it;
-//! [`record`] makes random-command logs of a kind of [`Driving`], [`run_controller`] tries a controller. Inside: `hardware` has every
-//! part's numbers, `drivetrain` and `wheel` the motion, `sonar` the sensor, `tracker` camera and compass.
+//! [`BuiltInRobot`] is the robot in its room with its active [`effects`]; [`Body`] is its state during a run; [`record`]
+//! makes logs of random commands for a kind of [`Driving`]; [`run_controller`] runs a controller. Internally `hardware`
+//! holds the parameters of all parts, `drivetrain` and `wheel` the dynamics, `sonar` the sensor, `tracker` camera and
+//! compass.
 
 mod body;
 mod controller_run;
@@ -22,7 +23,7 @@ mod tracker;
 mod wheel;
 
 pub use body::Body;
-pub use controller_run::{Moment, Outcome, Track, run_controller};
+pub use controller_run::{Termination, Trajectory, TrajectoryPoint, run_controller};
 pub use driving::Driving;
 pub use effects::{ActiveEffect, Effect};
 pub use recording::{record, record_driving};
@@ -44,24 +45,24 @@ pub struct BuiltInRobot {
 }
 
 impl BuiltInRobot {
-    /// The robot that fits `spec`, in `scene`, with these effects switched on.
+    /// The robot that matches `spec` in `scene`, with these effects active.
     pub fn new(spec: &Robot, scene: &Scene, effects: &[ActiveEffect]) -> Self {
         let mut hardware = Hardware::new(spec, scene);
         effects.iter().for_each(|active| fitting::fit(&mut hardware, active));
         BuiltInRobot { body_radius_cm: spec.body_radius_cm, hardware, sides: scene.sides() }
     }
 
-    /// Puts the robot down at rest with a fresh battery: a run begins.
+    /// Starts a run: the robot is at rest at this pose with a fresh battery.
     pub fn start(&self, at: Pose, rng: &mut Generator) -> Body<'_> {
         Body::at_rest(self, at, rng)
     }
 
-    /// How long a step of nominally `step_ms` takes this time, in whole milliseconds.
+    /// Random duration of a step of nominally `step_ms`, in whole milliseconds.
     fn step_length_ms(&self, step_ms: f64, rng: &mut Generator) -> f64 {
         (step_ms + self.hardware.link.step_jitter_ms * normal(rng)).round().max(1.0)
     }
 
-    /// How far the robot's body at `pose` is from the nearest wall or obstacle, cm.
+    /// Distance between the robot's body at `pose` and the nearest wall or obstacle, cm; negative inside one.
     fn clearance_cm(&self, pose: &Pose) -> f64 {
         let at_cm = pose.position_cm;
         let nearest = self.sides.iter().map(|side| side.nearest(at_cm).distance(at_cm)).fold(f64::INFINITY, f64::min);

@@ -1,12 +1,11 @@
-//! The blind test of a diagnosis: cases whose effects are withheld, answers, and the score.
+//! Blind test of the diagnosis: cases whose effects are withheld, the diagnoses, and their score.
 //!
-//! [`make`] writes cases and a sealed file of what is different in each, with a commitment to every entry beside the
-//! cases; [`answer`] reads the cases alone; [`score`] opens the seal, checks the commitments and counts. The three share
-//! nothing but the folder. [`calibrate`] settles the diagnosis's thresholds on [`cases`] of other seeds.
+//! [`make`] writes the cases, a sealed file with the effects of each, and a commitment to every entry of it; [`answer`]
+//! reads the cases only; [`score`] opens the seal, checks the commitments and scores the diagnoses. The three share
+//! nothing but the folder. [`calibrate`] fits the thresholds of the diagnosis on [`cases`] of other seeds.
 
 pub mod answer;
 pub mod calibrate;
-
 pub mod cases;
 pub mod make;
 pub mod rooms;
@@ -15,16 +14,16 @@ pub mod seal;
 
 use std::path::{Path, PathBuf};
 
-/// Where things lie in a challenge's folder.
+/// Paths within the folder of a challenge (docs/formats.md, "A challenge").
 pub struct Folder<'a>(pub &'a Path);
 
 impl Folder<'_> {
-    /// Which robot each case is of, and the commitment to what is different in it.
+    /// The list of cases, with the robot of each and the commitment to its effects.
     pub fn cases(&self) -> PathBuf {
         self.0.join("cases.csv")
     }
 
-    /// What is different in each case.
+    /// The effects of each case.
     pub fn sealed(&self) -> PathBuf {
         self.0.join("sealed.json")
     }
@@ -34,7 +33,7 @@ impl Folder<'_> {
         self.0.join("cases").join(case)
     }
 
-    /// The logs of a robot as its simulator should know it.
+    /// The logs that a robot's simulator is learned from.
     pub fn robot(&self, robot: &str) -> PathBuf {
         self.0.join("robots").join(robot)
     }
@@ -44,7 +43,7 @@ impl Folder<'_> {
         self.0.join("answers").join(format!("{case}.json"))
     }
 
-    /// The effects that the diagnosis of a case adds to the simulator, where it names any.
+    /// The effects that the diagnosis of a case adds to the simulator.
     pub fn added(&self, case: &str) -> PathBuf {
         self.0.join("answers").join(format!("{case}-added.json"))
     }

@@ -12,13 +12,13 @@ use mindgap_controller_export::nxc::{self, NxcOptions};
 use mindgap_controller_export::wiring::Wiring;
 use mindgap_core::controller::Controller;
 
-use crate::built_in_robot::{self, BuiltInRobot, Track};
+use crate::built_in_robot::{self, BuiltInRobot, Trajectory};
 use crate::chance::{derive, generator};
 use crate::evaluation::accuracy::{self, Evaluation};
 use crate::evolve::controller_file::{self, ControllerFile};
-use crate::evolve::fitness::{Numbers, Success};
-use crate::evolve::genome::Coding;
-use crate::evolve::robust::{self, Quest};
+use crate::evolve::fitness::{RandomNumbers, Success};
+use crate::evolve::genome::GenotypeDecoder;
+use crate::evolve::robust::{self, EvolutionTask};
 use crate::files;
 use crate::learn::train::{self, TABLE_ONE, Trainer};
 use crate::logs::Scene;
@@ -31,12 +31,12 @@ const TRAINING_RUNS: usize = 100;
 const HELD_OUT_RUNS: usize = 30;
 const STEPS: usize = 60;
 const MAX_STEPS: u16 = 60;
-/// Runs of each controller on the robot, and as many simulated ones beside them (paper, figure 4).
+/// Number of runs of each controller on the robot, and of simulated ones (paper, figure 4).
 const TRIALS: usize = 3;
-/// Fresh simulated runs that a success rate is taken from.
+/// Number of fresh simulated runs for a success rate.
 const JUDGED_RUNS: usize = 200;
 
-/// What each part of the job draws from.
+/// Stream keys of the parts of the job.
 #[derive(Clone, Copy)]
 enum Purpose {
     TrainingLogs,
@@ -47,25 +47,25 @@ enum Purpose {
     Trial,
 }
 
-/// What is being done, for a progress display.
+/// Stage of the job, for a progress display.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Stage {
-    /// Logs are recorded.
+    /// Recording of logs.
     Recording,
-    /// A network is trained.
+    /// Training of a network.
     Training(train::Progress),
-    /// A controller is evolved.
+    /// Evolution of a controller.
     Evolving {
-        /// For this start, from 1.
+        /// Its start, from 1.
         start: usize,
-        /// Generations so far.
+        /// Number of generations completed.
         generation: usize,
     },
-    /// Controllers drive, and pictures are drawn.
+    /// Drawing of the figures.
     Drawing,
 }
 
-/// What came out.
+/// Results.
 pub struct Summary {
     /// Accuracy of the networks on held-out logs.
     pub evaluation: Evaluation,
@@ -73,9 +73,9 @@ pub struct Summary {
     pub starts: Vec<StartSummary>,
 }
 
-/// How one start's controller does in simulation and in reality.
+/// Success of one start's controller in simulation and in reality.
 pub struct StartSummary {
-    /// In many fresh simulated runs.
+    /// In fresh simulated runs.
     pub simulated: Success,
     /// On the built-in robot.
     pub real: Success,
@@ -84,7 +84,7 @@ pub struct StartSummary {
 /// A start's controller and its runs.
 struct Trial {
     rehearsal: Rehearsal,
-    tracks: Vec<Track>,
+    trajectories: Vec<Trajectory>,
     summary: StartSummary,
 }
 
@@ -109,9 +109,9 @@ pub fn run(out: &Path, seed: u64, watch: impl Fn(Stage)) -> Result<Summary> {
     simulator.write(&out.join("simulator.json"))?;
     let evaluation = accuracy::evaluate(&simulator, &held_out)?;
     files::write_json(&out.join("evaluation.json"), &evaluation)?;
-    let job = Job { out, simulator: &simulator, scene: &scene, watch: &watch };
+    let demo = DemoRun { out, simulator: &simulator, scene: &scene, watch: &watch };
     let trials = (0..scene.starts.len())
-        .map(|start| job.start(start, [Purpose::Evolution, Purpose::Simulation, Purpose::Trial].map(of)))
+        .map(|start| demo.start(start, [Purpose::Evolution, Purpose::Simulation, Purpose::Trial].map(of)))
         .collect::<Result<Vec<_>>>()?;
     watch(Stage::Drawing);
     pictures::networks(out, &simulator, &evaluation, &held_out)?;
@@ -119,36 +119,36 @@ pub fn run(out: &Path, seed: u64, watch: impl Fn(Stage)) -> Result<Summary> {
     Ok(Summary { evaluation, starts: trials.into_iter().map(|trial| trial.summary).collect() })
 }
 
-/// What every start has in common.
-struct Job<'a, W> {
+/// Inputs common to all starts.
+struct DemoRun<'a, W> {
     out: &'a Path,
     simulator: &'a Simulator,
     scene: &'a Scene,
     watch: &'a W,
 }
 
-impl<W: Fn(Stage)> Job<'_, W> {
-    /// Evolves controllers for one start (from 0), keeps that which does best in a trial on the robot, and writes,
+impl<W: Fn(Stage)> DemoRun<'_, W> {
+    /// Evolves controllers for one start (from 0), keeps the one that is best in a trial on the robot, then writes,
     /// simulates and drives it.
     fn start(&self, start: usize, [evolution, simulation, trial]: [u64; 3]) -> Result<Trial> {
         let pose = self.scene.starts[start];
         let course = &Course::new(self.simulator, self.scene, pose, Noise::Learned)?.with_beam(self.simulator);
         let target_cm = self.scene.target_cm.ok_or_else(|| Problem::new("the scene has no target"))?;
-        let coding = Coding::new(self.simulator, MAX_STEPS);
+        let decoder = GenotypeDecoder::new(self.simulator, MAX_STEPS);
         let seed = derive(evolution, &[start as u64]);
-        let quest = Quest { course, target_cm, coding, numbers: Numbers::Common, seed };
-        let tell = |generation, _| (self.watch)(Stage::Evolving { start: start + 1, generation });
+        let task = EvolutionTask { course, target_cm, decoder, random_numbers: RandomNumbers::Common, seed };
+        let report = |generation, _| (self.watch)(Stage::Evolving { start: start + 1, generation });
         let robot = &BuiltInRobot::new(&self.simulator.robot, self.scene, &[]);
         let drive = |controller: &Controller, place: &[u64]| {
             built_in_robot::run_controller(robot, controller, pose, &mut generator(trial, place))
         };
-        // Real runs nearly coincide: a single one shows whether a way holds on this floor.
-        let candidates = robust::candidates(&quest, tell);
+        // Real runs of one controller nearly coincide, so a single one shows whether it transfers.
+        let candidates = robust::candidates(&task, report);
         let errors = candidates.iter().map(|c| error_cm(&drive(&c.controller, &[start as u64]), target_cm));
         let best = errors.enumerate().min_by(|a, b| a.1.total_cmp(&b.1)).map_or(0, |(i, _)| i);
         let evolved = &candidates[best];
         let controller = evolved.controller.clone();
-        let simulated = quest.success(&controller, JUDGED_RUNS);
+        let simulated = task.success(&controller, JUDGED_RUNS);
         let origin = controller_file::Origin {
             simulator: "simulator.json".into(),
             scene: "scene.toml".into(),
@@ -160,9 +160,10 @@ impl<W: Fn(Stage)> Job<'_, W> {
         };
         self.write(start + 1, &controller, origin)?;
         let rehearsal = Rehearsal::new(course, self.scene, &controller, TRIALS, derive(simulation, &[start as u64]));
-        let tracks: Vec<Track> = (0..TRIALS as u64).map(|run| drive(&controller, &[start as u64, run])).collect();
-        let real = real_success(&tracks, target_cm);
-        Ok(Trial { rehearsal, tracks, summary: StartSummary { simulated, real } })
+        let trajectories: Vec<Trajectory> =
+            (0..TRIALS as u64).map(|run| drive(&controller, &[start as u64, run])).collect();
+        let real = real_success(&trajectories, target_cm);
+        Ok(Trial { rehearsal, trajectories, summary: StartSummary { simulated, real } })
     }
 
     fn write(&self, number: usize, controller: &Controller, origin: controller_file::Origin) -> Result<()> {
@@ -177,16 +178,17 @@ impl<W: Fn(Stage)> Job<'_, W> {
     }
 }
 
-/// How far from the target a run ended; a crash is worst.
-fn error_cm(track: &Track, target_cm: DVec2) -> f64 {
-    if track.outcome == built_in_robot::Outcome::Crashed {
+/// Final distance to the target, cm; infinite after a crash.
+fn error_cm(trajectory: &Trajectory, target_cm: DVec2) -> f64 {
+    if trajectory.termination == built_in_robot::Termination::Crashed {
         return f64::INFINITY;
     }
-    track.end().position_cm.distance(target_cm)
+    trajectory.end().position_cm.distance(target_cm)
 }
 
-fn real_success(tracks: &[Track], target_cm: DVec2) -> Success {
-    let crashed = |track: &Track| track.outcome == built_in_robot::Outcome::Crashed;
-    let distances = tracks.iter().map(|track| (track.end().position_cm.distance(target_cm), crashed(track)));
+fn real_success(trajectories: &[Trajectory], target_cm: DVec2) -> Success {
+    let crashed = |trajectory: &Trajectory| trajectory.termination == built_in_robot::Termination::Crashed;
+    let distances =
+        trajectories.iter().map(|trajectory| (trajectory.end().position_cm.distance(target_cm), crashed(trajectory)));
     Success::of_ends(distances)
 }

@@ -1,4 +1,4 @@
-//! Controllers evolved in a simulator (paper, section IX).
+//! Evolution of controllers in a simulator (paper, section IX).
 
 pub mod controller_file;
 pub mod fitness;

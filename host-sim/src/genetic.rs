@@ -1,7 +1,7 @@
-//! The genetic algorithm (GA) of the paper, section VII: it trains networks and evolves controllers alike.
+//! The generational genetic algorithm (GA) that trains networks and evolves controllers (paper, section VII).
 //!
-//! A population is replaced whole each generation. Parents win a [`tournament`], cross over by [`sbx`] and mutate by
-//! [`mutation`]; [`stopping`] ends the run. What the paper leaves open is a field of [`Settings`].
+//! Each generation replaces the whole population. Parents are selected by [`tournament`], recombined by [`sbx`] and
+//! mutated by [`mutation`]; [`stopping`] ends the run. What the paper leaves open is a field of [`Settings`].
 
 pub mod mutation;
 pub mod sbx;
@@ -12,49 +12,50 @@ use rand::RngExt;
 
 use crate::chance::{Generator, generator};
 use mutation::Mutation;
-use stopping::Window;
+use stopping::StagnationCriterion;
 
-/// How the algorithm runs. The default is the paper's, and where the paper is silent the standard choice.
+/// Parameters of the algorithm. The defaults are those of the paper, section VII; where the paper gives none (marked
+/// "open"), they are common in the literature.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
-    /// Individuals (paper: 100).
+    /// Number of individuals (paper: 100).
     pub population: usize,
-    /// Individuals in a tournament, drawn without replacement (paper: 33).
+    /// Number of individuals in a tournament, drawn without replacement (paper: 33).
     pub tournament: usize,
-    /// Chance that two parents cross over (paper: 0.8).
+    /// Probability that two parents cross over (paper: 0.8).
     pub crossover_chance: f64,
     /// Distribution index of the simulated binary crossover (open; 15 is common).
     pub sbx_index: f32,
     /// How children mutate (paper: 5 %, normal).
     pub mutation: Mutation,
-    /// So many of the best go on unchanged (open; the paper replaces the population whole).
+    /// Number of best individuals that survive unchanged (open; 0).
     pub elite: usize,
-    /// When to stop for lack of improvement (paper: under 0.1 % over 300 generations), if ever.
-    pub window: Option<Window>,
-    /// Generations at most (paper: 1000 for a controller, no bound for a network).
+    /// When to stop for lack of improvement (paper: under 0.1 % over 300 generations); `None` for never.
+    pub stagnation: Option<StagnationCriterion>,
+    /// Maximum number of generations (paper: 1000 for a controller, no bound for a network).
     pub max_generations: usize,
 }
 
-/// What a run of the algorithm came to.
+/// Result of a run of the algorithm.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Outcome {
-    /// The fittest individual that was met.
+pub struct RunResult {
+    /// The fittest individual of all generations.
     pub best: Vec<f32>,
     /// Its fitness.
     pub fitness: f64,
-    /// Generations that were run.
+    /// Number of generations run.
     pub generations: usize,
     /// The last population, fittest first.
     pub population: Vec<Vec<f32>>,
 }
 
-/// What a problem gives the algorithm.
+/// An optimisation problem: how genotypes are made, repaired and evaluated.
 pub trait Problem {
-    /// A new individual.
+    /// A random genotype for the first generation.
     fn random(&self, rng: &mut Generator) -> Vec<f32>;
-    /// Brings a child back to what an individual can be, gene by gene.
+    /// Brings the genes of a child back into their bounds.
     fn repair(&self, genes: &mut [f32]);
-    /// The fitness of each individual, larger being better; NaN counts as the worst.
+    /// The fitness of each individual of a generation, one entry an individual; larger is better, and NaN is worst.
     fn fitness(&self, generation: usize, population: &[Vec<f32>]) -> Vec<f64>;
 }
 
@@ -67,28 +68,28 @@ impl Default for Settings {
             sbx_index: 15.0,
             mutation: Mutation::default(),
             elite: 0,
-            window: Some(Window::default()),
+            stagnation: Some(StagnationCriterion::default()),
             max_generations: usize::MAX,
         }
     }
 }
 
-/// Runs the algorithm from a random population. `seed` fixes every draw; `watch` is told the generation and the best
-/// fitness so far.
-pub fn run(settings: &Settings, problem: &impl Problem, seed: u64, watch: impl FnMut(usize, f64)) -> Outcome {
+/// Runs the algorithm from a random population. `seed` fixes every draw; `watch` receives the generation and the best
+/// fitness up to it.
+pub fn run(settings: &Settings, problem: &impl Problem, seed: u64, watch: impl FnMut(usize, f64)) -> RunResult {
     let mut rng = generator(seed, &[0]);
     let population = (0..settings.population).map(|_| problem.random(&mut rng)).collect();
     run_from(population, settings, problem, seed, watch)
 }
 
-/// Runs the algorithm from a population that is there already, whose size it keeps.
+/// Runs the algorithm from a given population, whose size it keeps; otherwise as [`run`].
 pub fn run_from(
     mut population: Vec<Vec<f32>>,
     settings: &Settings,
     problem: &impl Problem,
     seed: u64,
     mut watch: impl FnMut(usize, f64),
-) -> Outcome {
+) -> RunResult {
     let mut best: Option<(Vec<f32>, f64)> = None;
     let mut history = Vec::new();
     loop {
@@ -102,11 +103,11 @@ pub fn run_from(
         let best_fitness = best.as_ref().map_or(f64::NAN, |b| b.1);
         history.push(best_fitness);
         watch(generation, best_fitness);
-        let stalled = settings.window.is_some_and(|w| w.has_stalled(&history));
+        let stalled = settings.stagnation.is_some_and(|w| w.has_stalled(&history));
         if stalled || history.len() >= settings.max_generations {
             let population = ranking.iter().map(|i| std::mem::take(&mut population[*i])).collect();
             let (best, fitness) = best.unwrap_or_default();
-            return Outcome { best, fitness, generations: history.len(), population };
+            return RunResult { best, fitness, generations: history.len(), population };
         }
         let mut rng = generator(seed, &[1, generation as u64]);
         population = offspring(settings, problem, &population, &ranking, &mut rng);
@@ -144,7 +145,7 @@ fn offspring(
 mod tests {
     use super::*;
 
-    /// The sphere: fitness is highest at the origin.
+    /// The sphere function: fitness is highest at the origin.
     struct Sphere;
 
     impl Problem for Sphere {
@@ -160,7 +161,7 @@ mod tests {
     }
 
     fn settings() -> Settings {
-        Settings { max_generations: 150, window: None, ..Settings::default() }
+        Settings { max_generations: 150, stagnation: None, ..Settings::default() }
     }
 
     #[test]

@@ -84,6 +84,14 @@ impl Rectangle {
     }
 }
 
+/// The smallest axis-parallel rectangle that contains all walls; `None` without walls.
+pub fn bounding_box(walls: &[Wall]) -> Option<Rectangle> {
+    let ends = || walls.iter().flat_map(|wall| [wall.from_cm, wall.to_cm]);
+    let low_cm = ends().reduce(DVec2::min)?;
+    let high_cm = ends().reduce(DVec2::max)?;
+    Some(Rectangle { low_cm, high_cm })
+}
+
 impl Wall {
     /// The distance along a ray to this wall with the signed incidence angle, if the ray meets it.
     fn meet(&self, origin_cm: DVec2, direction: DVec2) -> Option<(f64, f64)> {

@@ -1,92 +1,40 @@
-//! The way back from a robot: what a brick logged and what a camera saw, brought together as a folder of logs.
+//! Imports recordings of a real robot: merges a brick's logs and a camera's tracks into a folder of logs.
 //!
-//! The two have clocks of their own. [`clocks`] finds how they run by matching what the wheels turned with what the
-//! camera saw; the camera's poses are then taken at the times of the brick's rows. [`brick_log`] and [`track`] read the
-//! files. Whatever is left out, and why, stands in the [`Report`].
+//! Brick and camera have clocks of their own. [`clocks`] aligns them by matching the motion of the wheels with the motion
+//! that the camera saw; the camera's poses are then interpolated at the times of the brick's rows. [`brick_log`] and
+//! [`track`] read the files, [`motion`] reduces both to cumulative motion. The [`Report`] names everything left out.
 
 pub mod brick_log;
 pub mod clocks;
+pub mod frame;
 pub mod motion;
+mod report;
 pub mod track;
+pub mod units;
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
-use serde::Serialize;
+pub use self::report::{LogReport, Report, RunReport, TrackReport};
 
 use self::brick_log::BrickLog;
-use self::clocks::{Match, align};
-use self::track::{Seen, Track, Units};
+use self::clocks::{Alignment, align};
+use self::track::{Sighting, Track};
+use self::units::Units;
 use crate::logs::{Logs, Robot, Row, Run, Scene};
 use crate::problem::{Problem, Result};
 
-/// What was imported, and what was left out.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Report {
-    /// The cameras' tracks.
-    pub tracks: Vec<TrackReport>,
-    /// The brick's logs.
-    pub logs: Vec<LogReport>,
-}
-
-/// What became of a camera's track.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct TrackReport {
-    /// Its file.
-    pub file: PathBuf,
-    /// Frames in it.
-    pub frames: usize,
-    /// Frames without a pose.
-    pub lost: usize,
-    /// Frames left out because no robot moves that fast.
-    pub jumps: usize,
-}
-
-/// What became of a brick's log.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct LogReport {
-    /// Its file.
-    pub file: PathBuf,
-    /// Its last line had no end and was left out.
-    pub torn: bool,
-    /// The run in the folder of logs; none where the whole log was left out.
-    pub run: Option<RunReport>,
-    /// Why the whole log was left out.
-    pub left_out: Option<String>,
-}
-
-/// A run that was imported.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct RunReport {
-    /// Its name in the folder of logs.
-    pub name: String,
-    /// File of the track that saw it.
-    pub track: PathBuf,
-    /// Camera time at brick time 0.
-    pub offset_ms: f64,
-    /// How much faster the camera's clock runs.
-    pub drift: f64,
-    /// Share of the motion's variance in which wheels and camera differ.
-    pub unexplained: f64,
-    /// Rows of the run.
-    pub rows: usize,
-    /// Rows without a pose because the track has not begun yet or has ended.
-    pub outside: usize,
-    /// Rows without a pose because the camera had lost the robot.
-    pub in_gaps: usize,
-}
-
-/// Wheels and camera differ in at most this share of the motion's variance; wheels that slip or a frame that is
-/// turned stay far below it.
+/// Largest share of the motion's variance that an alignment may leave unexplained; slipping wheels or a rotated camera
+/// frame stay far below it.
 const MOST_UNEXPLAINED: f64 = 0.3;
-/// A match has to be better than any other by this factor.
+/// The unexplained share must be at most this fraction of that of any other alignment.
 const CLEARLY: f64 = 0.5;
-/// Clocks that differ by more than 5 ms a second are not two clocks of one moment.
+/// Largest drift between two working clocks: 5 ms a second.
 const MOST_DRIFT: f64 = 5e-3;
 
-/// Brings brick logs and tracks together, which their headers tell apart. Oddities are told to `warn`.
+/// Merges brick logs and tracks, which are distinguished by their headers. `warn` receives one line for each oddity.
 ///
 /// # Errors
-/// When a file is broken, when either kind is missing, or when not a single log matches a track.
+/// When a file cannot be read or parsed, when there is no log or no track, or when no log matches a track.
 pub fn import(
     files: &[PathBuf],
     units: &Units,
@@ -105,7 +53,7 @@ pub fn import(
     if logs.is_empty() || tracks.is_empty() {
         let what =
             if logs.is_empty() { "log of a brick (columns t_ms, left, right, ...)" } else { "track of a camera" };
-        return Err(Problem::new(format!("among the files is no {what}")));
+        return Err(Problem::new(format!("none of the files is a {what}")));
     }
     let mut runs = Vec::new();
     let mut reports = Vec::new();
@@ -131,8 +79,12 @@ pub fn import(
     Ok((logs, Report { tracks, logs: reports }))
 }
 
-/// The track that saw a log's run, and how the clocks ran; or why there is none.
-fn matched<'a>(log: &BrickLog, tracks: &'a [Track], robot: &Robot) -> std::result::Result<(&'a Track, Match), String> {
+/// The track that matches a log best and their alignment, or the reason why none does.
+fn matched<'a>(
+    log: &BrickLog,
+    tracks: &'a [Track],
+    robot: &Robot,
+) -> std::result::Result<(&'a Track, Alignment), String> {
     let by_wheels = motion::by_wheels(&log.run.rows, robot);
     let found = tracks.iter().filter_map(|track| Some((track, align(&by_wheels, &track.motion())?)));
     let Some((track, found)) = found.min_by(|a, b| a.1.unexplained.total_cmp(&b.1.unexplained)) else {
@@ -163,10 +115,10 @@ fn matched<'a>(log: &BrickLog, tracks: &'a [Track], robot: &Robot) -> std::resul
     Ok((track, found))
 }
 
-/// The log's rows with the poses that the camera saw at their times.
-fn merged(log: &BrickLog, track: &Track, found: &Match, name: String) -> (Run, RunReport) {
+/// The log's rows with the camera's poses at their times.
+fn merged(log: &BrickLog, track: &Track, found: &Alignment, name: String) -> (Run, RunReport) {
     let clocks = &found.clocks;
-    let seen: Vec<Seen> = log.run.rows.iter().map(|row| track.at(clocks.camera_ms(row.t_ms))).collect();
+    let seen: Vec<Sighting> = log.run.rows.iter().map(|row| track.at(clocks.camera_ms(row.t_ms))).collect();
     let rows = log.run.rows.iter().zip(&seen).map(|(row, seen)| Row { pose: seen.pose(), ..*row });
     let run = Run { name: name.clone(), rows: rows.collect() };
     let report = RunReport {
@@ -176,13 +128,8 @@ fn merged(log: &BrickLog, track: &Track, found: &Match, name: String) -> (Run, R
         drift: clocks.drift,
         unexplained: found.unexplained,
         rows: seen.len(),
-        outside: seen.iter().filter(|s| **s == Seen::Outside).count(),
-        in_gaps: seen.iter().filter(|s| **s == Seen::Lost).count(),
+        outside: seen.iter().filter(|s| **s == Sighting::Outside).count(),
+        in_gaps: seen.iter().filter(|s| **s == Sighting::Lost).count(),
     };
     (run, report)
-}
-
-/// The first line of a file.
-fn first_line(file: &Path) -> Result<String> {
-    Ok(crate::files::read_text(file)?.lines().next().unwrap_or_default().to_owned())
 }

@@ -1,4 +1,4 @@
-//! Learning a simulator from logs: data sets, the trainers, and how well the networks do on logs they never saw.
+//! Learns a simulator from logs: data sets, trainers, and evaluation on held-out logs.
 
 pub mod dataset;
 pub mod fast;

@@ -1,5 +1,8 @@
 //! The host harness: learns a robot's simulator neural networks from its logs, evolves controllers in them, and
-//! measures both.
+//! evaluates both.
+//!
+//! It follows and extends C. J. Pretorius, M. C. du Plessis and C. B. Cilliers (2013), "A Neural Network Ultrasonic Sensor
+//! Simulator for Evolutionary Robotics", called "the paper" in this crate.
 
 pub mod built_in_robot;
 pub mod challenge;

@@ -1,7 +1,7 @@
-//! Robot logs: the only road between reality and simulator (contracts: a folder of logs).
+//! Robot logs: the only interface between reality and simulator (docs/formats.md, "A folder of logs").
 //!
-//! A folder holds [`Robot`] (`robot.toml`), [`Scene`] (`scene.toml`) and one [`Run`] a file (`run-*.csv`); what a
-//! network learns from are its [`samples`].
+//! A folder holds a [`Robot`] (`robot.toml`), a [`Scene`] (`scene.toml`) and one [`Run`] a file (`run-*.csv`). Networks
+//! learn from the [`samples`] extracted from it.
 
 pub mod readings;
 pub mod robot;
@@ -19,13 +19,13 @@ pub use scene::Scene;
 use crate::files;
 use crate::problem::{Problem, Result};
 
-/// How far the middle of a folder's step times may be from `step_ms`.
+/// Largest relative deviation of the median step time from `step_ms`.
 const STEP_TOLERANCE: f64 = 0.2;
 
-/// A robot, the scene it drove in, and what it logged.
+/// A robot, the scene it drove in, and its runs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Logs {
-    /// The builder's own measurements of the robot.
+    /// The robot as measured by its builder.
     pub robot: Robot,
     /// Where the runs took place.
     pub scene: Scene,
@@ -34,10 +34,10 @@ pub struct Logs {
 }
 
 impl Logs {
-    /// Reads a folder. Anything odd that does not stop the reading is told to `warn`, one line each.
+    /// Reads a folder. `warn` receives one line for each oddity that does not prevent reading.
     ///
     /// # Errors
-    /// When a file is missing or broken, when there is no run, or when the runs' step is not the robot's.
+    /// When a file cannot be read or parsed, when there is no run, or as [`check_step`](Self::check_step).
     pub fn read(folder: &Path, mut warn: impl FnMut(String)) -> Result<Self> {
         let robot = Robot::read(&folder.join("robot.toml"))?;
         let scene = Scene::read(&folder.join("scene.toml"))?;
@@ -56,10 +56,10 @@ impl Logs {
         Ok(logs)
     }
 
-    /// Writes a folder, whole or not at all; an older folder of logs there is replaced.
+    /// Writes a folder atomically; an existing folder of logs is replaced.
     ///
     /// # Errors
-    /// When the folder cannot be written or holds files that are no logs.
+    /// When the folder cannot be written or holds other files.
     pub fn write(&self, folder: &Path) -> Result<()> {
         let ours = |name: &str| is_run_file(name) || name == "robot.toml" || name == "scene.toml";
         files::write_folder(folder, ours, |fresh| {
@@ -69,10 +69,10 @@ impl Logs {
         })
     }
 
-    /// Whether rows are about `step_ms` apart; a problem is laid to `folder`.
+    /// Checks that rows are about `step_ms` apart; an error names `folder`.
     ///
     /// # Errors
-    /// When the middle of all step times is too far from the robot's.
+    /// When the median step time deviates from `step_ms` by more than a fifth.
     pub fn check_step(&self, folder: &Path) -> Result<()> {
         let mut steps_ms: Vec<f64> =
             self.runs.iter().flat_map(|run| run.rows.windows(2).map(|w| w[1].t_ms - w[0].t_ms)).collect();

@@ -1,7 +1,7 @@
-//! Pictures for people: the figures of the paper and of a diagnosis, drawn from plain data.
+//! Figures of the paper and of a diagnosis, drawn from plain data.
 //!
-//! A module a figure; each returns a [`Figure`], which is written as SVG and as the PNG of that very SVG. Nothing here
-//! knows how its data were made. The same data give the same bytes.
+//! There is one module a figure. Each returns a [`Figure`], which is written as SVG and as a PNG rendered from that SVG.
+//! Nothing here depends on how the data were made, and the same data give the same bytes.
 
 pub mod curves;
 pub mod expected_against_predicted;

@@ -5,7 +5,8 @@ use std::sync::LazyLock;
 use glam::DVec2;
 use mindgap_core::controller::{Controller, Tuple, When};
 use mindgap_host_sim::built_in_robot::{
-    ActiveEffect, BuiltInRobot, Effect, Outcome, default_robot, four_obstacles, record, run_controller, training_room,
+    ActiveEffect, BuiltInRobot, Effect, Termination, default_robot, four_obstacles, record, run_controller,
+    training_room,
 };
 use mindgap_host_sim::chance::generator;
 use mindgap_host_sim::geometry::{Pose, Rectangle};
@@ -211,12 +212,12 @@ fn a_controller_stops_for_the_wall_or_crashes_into_it_or_runs_out_of_steps() {
         run_controller(&robot, &controller, start, &mut generator(9, &[]))
     };
     let finished = run(25, 200, 100);
-    assert_eq!(finished.outcome, Outcome::Finished);
-    assert!(finished.moments.len() >= 8 && finished.end().position_cm.x > 45.0);
+    assert_eq!(finished.termination, Termination::Finished);
+    assert!(finished.points.len() >= 8 && finished.end().position_cm.x > 45.0);
     let log = finished.to_run("run-000");
     assert_eq!((log.rows[0].left, log.rows[0].echo_cm), (25.0, None));
     assert_eq!(log.rows[log.rows.len() - 1].left, 0.0);
-    assert_eq!(run(60, 0, 100).outcome, Outcome::Crashed);
+    assert_eq!(run(60, 0, 100).termination, Termination::Crashed);
     let timed_out = run(10, 0, 4);
-    assert_eq!((timed_out.outcome, timed_out.moments.len()), (Outcome::TimedOut, 6));
+    assert_eq!((timed_out.termination, timed_out.points.len()), (Termination::TimedOut, 6));
 }

@@ -1,12 +1,10 @@
 //! The built-in robot with a brick on it that runs a real onboard program.
 
 use mindgap_controller_export::brick::{Drive, Sonar, World};
+use mindgap_controller_export::onboard::NO_ECHO_CM;
 use mindgap_controller_export::wiring::Wiring;
 use mindgap_host_sim::built_in_robot::Body;
 use mindgap_host_sim::chance::Generator;
-
-/// The sensor's word for "no echo came back".
-const NO_ECHO: u8 = 255;
 
 /// A robot in its room, as the brick's program sees and moves it.
 pub struct OnBoard<'r> {
@@ -40,7 +38,7 @@ impl World for OnBoard<'_> {
         }
         self.advance(t_ms);
         let echo_cm = self.body.read_sonar(&mut self.rng);
-        Sonar::Echo(echo_cm.map_or(NO_ECHO, |echo_cm| echo_cm.round() as u8))
+        Sonar::Echo(echo_cm.map_or(NO_ECHO_CM, |echo_cm| echo_cm.round() as u8))
     }
 
     fn motor(&mut self, port: usize, drive: Drive, t_ms: u32) {

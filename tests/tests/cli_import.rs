@@ -158,5 +158,5 @@ fn what_does_not_belong_together_is_refused() {
     assert!(refusal.contains("no log of a brick"), "{refusal}");
     workshop.write("track.csv", "t,x,y,theta\n0,1,1,0\n33,1,1,0\n");
     let refusal = workshop.refused(CALL);
-    assert!(refusal.starts_with("track.csv:1: column t does not tell its unit: give --time-unit"), "{refusal}");
+    assert!(refusal.starts_with("track.csv:1: column t has no unit: give --time-unit"), "{refusal}");
 }

@@ -1,29 +1,29 @@
 //! The brick in software runs what the real compiler makes, and does what was seen in the real firmware.
 
 use mindgap_controller_export::brick::{
-    self, Drive, End, Fault, LoadError, Program, Report, Script, Setup, Sonar, What,
+    self, Drive, EventKind, Fault, LoadError, Program, Report, RunConfig, ScriptedWorld, Sonar, Termination,
 };
 use mindgap_tests::nbc::{compile, compile_for};
 use proptest::prelude::*;
 use proptest::test_runner::TestRunner;
 
-fn run(source: &str, world: &mut Script) -> Report {
-    brick::run(&Program::load(&compile(source)).unwrap(), world, &Setup::default())
+fn run(source: &str, world: &mut ScriptedWorld) -> Report {
+    brick::run(&Program::load(&compile(source)).unwrap(), world, &RunConfig::default())
 }
 
 /// What a task with this body shows on the display.
 fn shown(body: &str) -> Vec<String> {
-    let report = run(&format!("task main() {{ {body} }}"), &mut Script::default());
-    assert_eq!(report.end, End::Finished);
+    let report = run(&format!("task main() {{ {body} }}"), &mut ScriptedWorld::default());
+    assert_eq!(report.end, Termination::Finished);
     texts(&report)
 }
 
 fn texts(report: &Report) -> Vec<String> {
-    let text = |what: &What| match what {
-        What::Text { text, .. } => Some(text.clone()),
+    let text = |kind: &EventKind| match kind {
+        EventKind::Text { text, .. } => Some(text.clone()),
         _ => None,
     };
-    report.events.iter().filter_map(|event| text(&event.what)).collect()
+    report.events.iter().filter_map(|event| text(&event.kind)).collect()
 }
 
 fn show(expressions: &[&str]) -> String {
@@ -84,8 +84,8 @@ fn arrays_strings_and_structs() {
           NumOut(0, LCD_LINE1, whole == "onetwo");
           NumOut(0, LCD_LINE1, StrLen(FlattenVar(squares)));
         }"#;
-    let report = run(source, &mut Script::default());
-    assert_eq!(report.end, End::Finished);
+    let report = run(source, &mut ScriptedWorld::default());
+    assert_eq!(report.end, Termination::Finished);
     assert_eq!(texts(&report), ["285", "29", "14", "etw", "pair", "-5", "-17", "6", "1", "20"]);
 }
 
@@ -103,18 +103,18 @@ fn tasks_take_turns_and_wait_for_a_mutex() {
             "task main() { Precedes(a, b); }",
             "task main() { StartTask(a); StartTask(b); Wait(500); NumOut(0, LCD_LINE1, shared); }",
         ),
-        &mut Script::default(),
+        &mut ScriptedWorld::default(),
     );
-    assert_eq!((report.end, texts(&report)), (End::Finished, vec!["100".to_owned()]));
+    assert_eq!((report.end, texts(&report)), (Termination::Finished, vec!["100".to_owned()]));
 }
 
 #[test]
 fn motors_change_with_their_flags_and_keep_going_when_the_firmware_gives_up() {
     let source = "task main() { OnFwd(OUT_B, 50); OnRev(OUT_C, 20); Off(OUT_B); Coast(OUT_C); OnFwd(OUT_A, -30);
         int a[] = {1}; int i = 5; NumOut(0, LCD_LINE1, a[i]); }";
-    let report = run(source, &mut Script::default());
-    let drives: Vec<_> = report.events.iter().map(|event| event.what.clone()).collect();
-    let motor = |port, drive| What::Motor { port, drive };
+    let report = run(source, &mut ScriptedWorld::default());
+    let drives: Vec<_> = report.events.iter().map(|event| event.kind.clone()).collect();
+    let motor = |port, drive| EventKind::Motor { port, drive };
     assert_eq!(
         drives,
         [
@@ -125,15 +125,15 @@ fn motors_change_with_their_flags_and_keep_going_when_the_firmware_gives_up() {
             motor(0, Drive::Power(-30)),
         ]
     );
-    assert_eq!(report.end, End::Failed(Fault::Argument));
+    assert_eq!(report.end, Termination::Failed(Fault::Argument));
     assert_eq!(report.motors, [Drive::Power(-30), Drive::Brake, Drive::Coast]);
 }
 
 #[test]
 fn the_dark_button_ends_any_program_and_lets_go_of_the_motors() {
-    let mut world = Script { exit_pressed_ms: Some(777), ..Script::default() };
+    let mut world = ScriptedWorld { exit_pressed_ms: Some(777), ..ScriptedWorld::default() };
     let report = run("task main() { OnFwd(OUT_BC, 50); Wait(5000); }", &mut world);
-    assert_eq!((report.end, report.ended_ms, report.motors), (End::Aborted, 777, [Drive::Coast; 3]));
+    assert_eq!((report.end, report.ended_ms, report.motors), (Termination::Aborted, 777, [Drive::Coast; 3]));
 }
 
 #[test]
@@ -141,10 +141,10 @@ fn buttons_battery_tones_and_ticks() {
     let source = "task main() { until (ButtonPressed(BTNCENTER, false)); NumOut(0, LCD_LINE1, CurrentTick() - FirstTick());
         Wait(100); NumOut(0, LCD_LINE1, ButtonCount(BTNCENTER, true)); NumOut(0, LCD_LINE1, ButtonCount(BTNCENTER, true));
         NumOut(0, LCD_LINE1, BatteryLevel()); PlayTone(440, 250); }";
-    let mut world = Script { center_pressed_ms: vec![(300, 350)], battery_mv: 7321, ..Script::default() };
+    let mut world = ScriptedWorld { center_pressed_ms: vec![(300, 350)], battery_mv: 7321, ..ScriptedWorld::default() };
     let report = run(source, &mut world);
     assert_eq!(texts(&report), ["300", "1", "0", "7321"]);
-    assert_eq!(report.events.last().unwrap().what, What::Tone { hz: 440, ms: 250 });
+    assert_eq!(report.events.last().unwrap().kind, EventKind::Tone { hz: 440, ms: 250 });
 }
 
 #[test]
@@ -169,7 +169,7 @@ fn files_reserve_fill_up_and_are_cut_to_what_was_written() {
           CreateFile("open.csv", 5000, h);
           WriteLnString(h, "a", n);
         }"#;
-    let report = run(source, &mut Script::default());
+    let report = run(source, &mut ScriptedWorld::default());
     let [bad_name, no_space, full, exists, missing] =
         [0x9200, 0x8200, 0x8400, 0x8F00, 0x8700].map(|e: u32| e.to_string());
     let expected = [&*bad_name, &no_space, "0", "0", &full, &exists, "0", "10", "12345", &missing];
@@ -185,7 +185,7 @@ fn the_library_call_for_the_sonar_behaves_as_seen_in_the_firmware() {
     let source = "task main() { SetSensorLowspeed(IN_4); for (int i = 0; i < 5; i++) { long t = CurrentTick();
         NumOut(0, LCD_LINE1, SensorUS(IN_4)); NumOut(0, LCD_LINE2, CurrentTick() - t); } }";
     let sonar = [Sonar::Echo(77), Sonar::Echo(255), Sonar::Silent, Sonar::Hangs, Sonar::Silent];
-    let report = run(source, &mut Script::sonar(sonar));
+    let report = run(source, &mut ScriptedWorld::sonar(sonar));
     let shown: Vec<i32> = texts(&report).iter().map(|text| text.parse().unwrap()).collect();
     let readings: Vec<i32> = shown.iter().step_by(2).copied().collect();
     assert_eq!(readings, [77, 255, 255, 255, 255]);
@@ -199,7 +199,7 @@ fn the_compilers_defect_for_old_firmware_shows() {
         long t = CurrentTick(); int r = SensorUS(IN_4); NumOut(0, LCD_LINE2, CurrentTick() - t); }";
     let took_ms = |firmware| {
         let program = Program::load(&compile_for(source, firmware)).unwrap();
-        let report = brick::run(&program, &mut Script::sonar([Sonar::Echo(9); 2]), &Setup::default());
+        let report = brick::run(&program, &mut ScriptedWorld::sonar([Sonar::Echo(9); 2]), &RunConfig::default());
         texts(&report)[1].parse::<i32>().unwrap()
     };
     assert!((29..=33).contains(&took_ms("-v=128")), "{}", took_ms("-v=128"));
@@ -213,8 +213,8 @@ fn arrays_beyond_the_memory_end_the_program() {
             "task main() {{ long a[]; ArrayInit(a, 7, {count}); int last = {count} - 1; NumOut(0, LCD_LINE1, a[last]); }}"
         )
     };
-    assert_eq!(texts(&run(&body(7000), &mut Script::default())), ["7"]);
-    assert_eq!(run(&body(8000), &mut Script::default()).end, End::Failed(Fault::Memory));
+    assert_eq!(texts(&run(&body(7000), &mut ScriptedWorld::default())), ["7"]);
+    assert_eq!(run(&body(8000), &mut ScriptedWorld::default()).end, Termination::Failed(Fault::Memory));
 }
 
 #[test]
@@ -222,17 +222,17 @@ fn memory_is_packed_when_it_is_in_pieces() {
     let source = "task main() { string a = \"\"; string b = \"\";
         for (int i = 0; i < 400; i++) { a = StrCat(a, \"0123456789\"); b = StrCat(a, \"!\"); }
         NumOut(0, LCD_LINE1, StrLen(b)); }";
-    assert_eq!(texts(&run(source, &mut Script::default())), ["4001"]);
+    assert_eq!(texts(&run(source, &mut ScriptedWorld::default())), ["4001"]);
 }
 
 #[test]
 fn a_program_that_never_ends_runs_out_of_time() {
-    let report = run("task main() { while (true) Wait(7); }", &mut Script::default());
-    assert_eq!((report.end, report.ended_ms), (End::OutOfTime, Setup::default().run_ms));
-    let busy = Setup { run_ms: 1000, ..Setup::default() };
+    let report = run("task main() { while (true) Wait(7); }", &mut ScriptedWorld::default());
+    assert_eq!((report.end, report.ended_ms), (Termination::OutOfTime, RunConfig::default().run_ms));
+    let busy = RunConfig { run_ms: 1000, ..RunConfig::default() };
     let program = Program::load(&compile("task main() { int i; while (true) i++; }")).unwrap();
-    let report = brick::run(&program, &mut Script::default(), &busy);
-    assert_eq!((report.end, report.instructions), (End::OutOfTime, 100_000));
+    let report = brick::run(&program, &mut ScriptedWorld::default(), &busy);
+    assert_eq!((report.end, report.instructions), (Termination::OutOfTime, 100_000));
 }
 
 #[test]
@@ -243,8 +243,8 @@ fn a_jump_outside_ends_the_program() {
     for offset in [i16::MIN, -30_000, 1_000, i16::MAX] {
         let mut rxe = intact.clone();
         rxe[place..place + 2].copy_from_slice(&offset.to_le_bytes());
-        let report = brick::run(&Program::load(&rxe).unwrap(), &mut Script::default(), &Setup::default());
-        assert_eq!(report.end, End::Failed(Fault::Instruction), "{offset}");
+        let report = brick::run(&Program::load(&rxe).unwrap(), &mut ScriptedWorld::default(), &RunConfig::default());
+        assert_eq!(report.end, Termination::Failed(Fault::Instruction), "{offset}");
     }
 }
 
@@ -261,7 +261,8 @@ fn a_subroutine_that_calls_itself_does_not_hang_the_machine() {
         let mut rxe = intact.clone();
         rxe[place] = rxe[place].wrapping_add_signed(change);
         let Ok(program) = Program::load(&rxe) else { continue };
-        let report = brick::run(&program, &mut Script::default(), &Setup { run_ms: 500, ..Setup::default() });
+        let report =
+            brick::run(&program, &mut ScriptedWorld::default(), &RunConfig { run_ms: 500, ..RunConfig::default() });
         assert!(report.ended_ms <= 500, "{report:?}");
         stuck += usize::from(texts(&report) != ["6"]);
     }
@@ -311,7 +312,7 @@ fn a_whole_program_is_loaded_and_a_cut_one_is_not() {
 #[test]
 fn broken_files_neither_panic_nor_hang() {
     let intact = a_program();
-    let setup = Setup { run_ms: 300, ..Setup::default() };
+    let setup = RunConfig { run_ms: 300, ..RunConfig::default() };
     let sonar = prop_oneof![any::<u8>().prop_map(Sonar::Echo), Just(Sonar::Silent), Just(Sonar::Hangs)];
     let changes = prop::collection::vec((0..intact.len(), any::<u8>()), 1..12);
     let config = ProptestConfig { cases: 3000, failure_persistence: None, ..ProptestConfig::default() };
@@ -321,7 +322,7 @@ fn broken_files_neither_panic_nor_hang() {
             rxe[at] = value;
         }
         if let Ok(program) = Program::load(&rxe) {
-            let report = brick::run(&program, &mut Script::sonar(sonar), &setup);
+            let report = brick::run(&program, &mut ScriptedWorld::sonar(sonar), &setup);
             prop_assert!(report.ended_ms <= setup.run_ms);
             prop_assert!(report.instructions <= u64::from(setup.run_ms) * u64::from(setup.instructions_per_ms));
         }

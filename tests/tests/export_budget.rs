@@ -1,7 +1,7 @@
 //! Budgets against what the compiler makes, and what the programs then take.
 
-use mindgap_controller_export::brick::{self, Program, Report, Script, Setup, Sonar};
-use mindgap_controller_export::budget::Budget;
+use mindgap_controller_export::brick::{self, Program, Report, RunConfig, ScriptedWorld, Sonar};
+use mindgap_controller_export::budget::{Budget, INSTRUCTIONS_PER_MS};
 use mindgap_controller_export::collect::{self, CollectOptions, Commands};
 use mindgap_controller_export::names::BrickName;
 use mindgap_controller_export::nxc::{self, NxcOptions};
@@ -13,8 +13,6 @@ use mindgap_tests::nbc::compile;
 
 /// A budget may promise so much more than is taken.
 const SLACK: f64 = 1.25;
-/// The slowest brick.
-const INSTRUCTIONS_PER_MS: u32 = 80;
 
 fn nxc_options(log: bool, display: bool) -> NxcOptions {
     let program = BrickName::program("run").unwrap();
@@ -44,8 +42,9 @@ fn programs() -> Vec<(Vec<u8>, Budget)> {
 }
 
 fn run(program: &Program, sonar: &[Sonar]) -> Report {
-    let setup = Setup { instructions_per_ms: INSTRUCTIONS_PER_MS, start_tick_ms: 4_000_000_000, ..Setup::default() };
-    brick::run(program, &mut Script::sonar(sonar), &setup)
+    let setup =
+        RunConfig { instructions_per_ms: INSTRUCTIONS_PER_MS, start_tick_ms: 4_000_000_000, ..RunConfig::default() };
+    brick::run(program, &mut ScriptedWorld::sonar(sonar), &setup)
 }
 
 fn assert_close(what: &str, promised: u32, taken: usize) {

@@ -3,7 +3,9 @@
 use std::collections::BTreeMap;
 
 use mindgap_controller_export::ExportError;
-use mindgap_controller_export::brick::{self, Drive, End, Program, Report, Script, Setup, Sonar, What, World};
+use mindgap_controller_export::brick::{
+    self, Drive, EventKind, Program, Report, RunConfig, ScriptedWorld, Sonar, Termination, World,
+};
 use mindgap_controller_export::collect::{self, CollectOptions, Commands};
 use mindgap_controller_export::names::BrickName;
 use mindgap_controller_export::wiring::Wiring;
@@ -27,7 +29,7 @@ fn program(seed: u32) -> Program {
 }
 
 fn run(program: &Program, world: &mut dyn World) -> Report {
-    brick::run(program, world, &Setup::default())
+    brick::run(program, world, &RunConfig::default())
 }
 
 /// A row of the log.
@@ -62,8 +64,8 @@ fn turns(command: [i32; 2]) -> bool {
 }
 
 /// Readings of a sensor that sees far.
-fn clear() -> Script {
-    Script::sonar([Sonar::Echo(200); STEPS + 1])
+fn clear() -> ScriptedWorld {
+    ScriptedWorld::sonar([Sonar::Echo(200); STEPS + 1])
 }
 
 #[test]
@@ -79,7 +81,7 @@ fn it_drives_about_a_crowded_room_and_logs_every_step() {
             let body = robot.start(Pose::new(x_cm, y_cm, 0.7), &mut rng);
             let mut world = OnBoard::new(body, Wiring::default(), rng);
             let report = run(&program, &mut world);
-            assert_eq!(report.end, End::Finished);
+            assert_eq!(report.end, Termination::Finished);
             crashes += usize::from(world.body.crashed());
             let rows = rows(&report, "run-000.csv");
             assert_eq!(rows.len(), STEPS + 1);
@@ -112,16 +114,16 @@ fn it_drives_about_a_crowded_room_and_logs_every_step() {
 fn near_things_make_it_turn_until_the_way_is_free() {
     let program = program(7);
     let sonar: Vec<_> = (0..=STEPS).map(|k| Sonar::Echo(if k % 10 < 5 { 200 } else { NEAR_CM - 1 })).collect();
-    let rows = rows(&run(&program, &mut Script::sonar(sonar)), "run-000.csv");
+    let rows = rows(&run(&program, &mut ScriptedWorld::sonar(sonar)), "run-000.csv");
     for row in &rows[..STEPS] {
         let is_near = row.echo_cm.unwrap() < i32::from(NEAR_CM);
         assert!(!is_near || turns(row.command), "{row:?}");
     }
-    let unseen = rows_of(&program, Script::sonar([Sonar::Echo(255); STEPS + 1]));
+    let unseen = rows_of(&program, ScriptedWorld::sonar([Sonar::Echo(255); STEPS + 1]));
     assert!(unseen[2..STEPS].iter().all(|row| turns(row.command)), "it drives on without an echo");
 }
 
-fn rows_of(program: &Program, mut world: Script) -> Vec<Row> {
+fn rows_of(program: &Program, mut world: ScriptedWorld) -> Vec<Row> {
     rows(&run(program, &mut world), "run-000.csv")
 }
 
@@ -133,7 +135,7 @@ fn commands_depend_on_seed_and_run_alone() {
     assert_ne!(driven, commands(&rows_of(&other, clear())));
 
     let files = BTreeMap::from([("RUN-000.csv".to_owned(), b"kept".to_vec()), ("run-001.csv".to_owned(), Vec::new())]);
-    let report = brick::run(&first, &mut clear(), &Setup { files, ..Setup::default() });
+    let report = brick::run(&first, &mut clear(), &RunConfig { files, ..RunConfig::default() });
     assert_eq!(report.files.keys().collect::<Vec<_>>(), ["RUN-000.csv", "run-001.csv", "run-002.csv"]);
     assert_eq!(report.files["RUN-000.csv"], b"kept");
     assert_ne!(driven, commands(&rows(&report, "run-002.csv")));
@@ -143,12 +145,12 @@ fn commands_depend_on_seed_and_run_alone() {
 fn it_stops_for_a_dead_sensor_and_for_the_orange_button() {
     let program = program(7);
     let sonar = [&[Sonar::Echo(200); 4][..], &[Sonar::Silent; 2]].concat();
-    let report = run(&program, &mut Script::sonar(sonar));
-    assert_eq!((report.end, report.motors), (End::Finished, [Drive::Coast, Drive::Brake, Drive::Brake]));
+    let report = run(&program, &mut ScriptedWorld::sonar(sonar));
+    assert_eq!((report.end, report.motors), (Termination::Finished, [Drive::Coast, Drive::Brake, Drive::Brake]));
     let rows = rows(&report, "run-000.csv");
     assert_eq!((rows.len(), rows[5].command, rows[5].echo_cm), (6, [0, 0], None));
 
-    let mut world = Script { center_pressed_ms: vec![(2_000, 2_500)], ..clear() };
+    let mut world = ScriptedWorld { center_pressed_ms: vec![(2_000, 2_500)], ..clear() };
     let rows = rows_of(&program, world.clone());
     assert!(rows.len() < 8, "{} rows", rows.len());
     assert_eq!(run(&program, &mut world).motors, [Drive::Coast, Drive::Brake, Drive::Brake]);
@@ -156,9 +158,9 @@ fn it_stops_for_a_dead_sensor_and_for_the_orange_button() {
 
 #[test]
 fn nothing_moves_when_the_flash_is_full() {
-    let report = brick::run(&program(7), &mut clear(), &Setup { flash_bytes: 4_096, ..Setup::default() });
-    assert_eq!((report.end, report.files.len()), (End::Finished, 0));
-    assert!(!report.events.iter().any(|event| matches!(event.what, What::Motor { .. })));
+    let report = brick::run(&program(7), &mut clear(), &RunConfig { flash_bytes: 4_096, ..RunConfig::default() });
+    assert_eq!((report.end, report.files.len()), (Termination::Finished, 0));
+    assert!(!report.events.iter().any(|event| matches!(event.kind, EventKind::Motor { .. })));
 }
 
 fn script_options(powers: Vec<[i8; 2]>) -> CollectOptions {
@@ -169,7 +171,7 @@ fn script_options(powers: Vec<[i8; 2]>) -> CollectOptions {
 fn a_script_is_driven_as_it_is_whatever_is_near() {
     let powers: Vec<[i8; 2]> = (0..50i8).map(|k| [2 * k - 50, 100 - 4 * k]).collect();
     let program = Program::load(&compile(&collect::program(&script_options(powers.clone())).unwrap())).unwrap();
-    let rows = rows_of(&program, Script::sonar([Sonar::Echo(NEAR_CM / 2); STEPS]));
+    let rows = rows_of(&program, ScriptedWorld::sonar([Sonar::Echo(NEAR_CM / 2); STEPS]));
     let expected = powers.iter().map(|pair| pair.map(i32::from)).chain([[0, 0]]);
     assert!(commands(&rows).into_iter().eq(expected), "{rows:?}");
     assert!((0..).zip(&rows).all(|(k, row)| (400 * k..400 * k + 20).contains(&row.t_ms)));

@@ -1,6 +1,8 @@
 //! Onboard programs do what the core's stepping machine does: same tuples, same commands, same end, at the same times.
 
-use mindgap_controller_export::brick::{self, Drive, End, Event, Program, Report, Script, Setup, Sonar, What};
+use mindgap_controller_export::brick::{
+    self, Drive, Event, EventKind, Program, Report, RunConfig, ScriptedWorld, Sonar, Termination,
+};
 use mindgap_controller_export::names::BrickName;
 use mindgap_controller_export::nxc::{self, NxcOptions};
 use mindgap_controller_export::onboard::{FAILED_STEPS_TO_STOP, NO_ECHO_CM, SONAR_TIMEOUT_MS};
@@ -95,14 +97,14 @@ fn expected(controller: &Controller, sonar: &[Sonar]) -> (Vec<Change>, Status) {
 }
 
 fn run(program: &Program, wiring: &Wiring, sonar: &[Sonar]) -> Report {
-    let mut world = Script { sonar_port: wiring.sonar as usize, ..Script::sonar(sonar) };
-    brick::run(program, &mut world, &Setup::default())
+    let mut world = ScriptedWorld { sonar_port: wiring.sonar as usize, ..ScriptedWorld::sonar(sonar) };
+    brick::run(program, &mut world, &RunConfig::default())
 }
 
 /// The motor commands of a run, left and right together, with their times.
 fn commands(report: &Report, wiring: &Wiring) -> Vec<(u32, Drive, Drive)> {
-    let drives = report.events.iter().filter_map(|Event { t_ms, what }| match what {
-        What::Motor { port, drive } => Some((*t_ms, *port, *drive)),
+    let drives = report.events.iter().filter_map(|Event { t_ms, kind }| match kind {
+        EventKind::Motor { port, drive } => Some((*t_ms, *port, *drive)),
         _ => None,
     });
     let drives: Vec<_> = drives.collect();
@@ -122,7 +124,7 @@ fn drive(command: i8) -> Drive {
 /// Checks a run against the core's machine, and its times against its steps.
 fn check(controller: &Controller, wiring: &Wiring, sonar: &[Sonar], report: &Report) {
     let (changes, status) = expected(controller, sonar);
-    assert_eq!(report.end, End::Finished);
+    assert_eq!(report.end, Termination::Finished);
     let commands = commands(report, wiring);
     let drives: Vec<_> = commands.iter().map(|(_, left, right)| (*left, *right)).collect();
     let expected: Vec<_> = changes.iter().map(|c| (drive(c.motors.left), drive(c.motors.right))).collect();
@@ -136,8 +138,8 @@ fn check(controller: &Controller, wiring: &Wiring, sonar: &[Sonar], report: &Rep
         assert!((tick_ms..tick_ms + late_ms).contains(t_ms), "step {} at {t_ms}, tick {tick_ms}", change.step);
     }
 
-    let tone_hz = report.events.iter().find_map(|event| match event.what {
-        What::Tone { hz, .. } => Some(hz),
+    let tone_hz = report.events.iter().find_map(|event| match event.kind {
+        EventKind::Tone { hz, .. } => Some(hz),
         _ => None,
     });
     assert_eq!(tone_hz, Some(if status == Status::Finished { 880 } else { 220 }));

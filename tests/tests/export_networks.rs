@@ -1,7 +1,7 @@
 //! Networks as NXC: compiled by the real compiler and run on the brick in software they answer the core's bits.
 
 use fixed::types::I16F16;
-use mindgap_controller_export::brick::{self, Event, Program, Report, Script, Setup, What};
+use mindgap_controller_export::brick::{self, Event, EventKind, Program, Report, RunConfig, ScriptedWorld};
 use mindgap_controller_export::nxc_networks::{NxcNetwork, budget, nxc_networks};
 use mindgap_core::fixed_network::FixedNetwork;
 use mindgap_core::network::Network;
@@ -26,11 +26,11 @@ fn number(text: &str) -> i32 {
 
 /// What a program shows, number by number, and what it took.
 fn shown(source: &str) -> (Vec<i32>, Report) {
-    let setup = Setup { run_ms: 600_000, ..Setup::default() };
+    let setup = RunConfig { run_ms: 600_000, ..RunConfig::default() };
     let program = Program::load(&compile(source)).expect("what the compiler made");
-    let report = brick::run(&program, &mut Script::default(), &setup);
-    let text = |Event { what, .. }: &Event| match what {
-        What::Text { text, .. } => Some(number(text)),
+    let report = brick::run(&program, &mut ScriptedWorld::default(), &setup);
+    let text = |Event { kind, .. }: &Event| match kind {
+        EventKind::Text { text, .. } => Some(number(text)),
         _ => None,
     };
     (report.events.iter().filter_map(text).collect(), report)
@@ -108,7 +108,8 @@ fn a_program_with_all_networks_keeps_its_budget() {
     let body = "NumOut(0, LCD_LINE1, Turn(1, 2, 3, 4)); NumOut(0, LCD_LINE1, EchoValue(1, 2));";
     let program = compile(&format!("{source} task main() {{ {body} }}"));
     assert!(program.len() <= budget.program_bytes, "{} bytes, planned {}", program.len(), budget.program_bytes);
-    let report = brick::run(&Program::load(&program).expect("a program"), &mut Script::default(), &Setup::default());
+    let report =
+        brick::run(&Program::load(&program).expect("a program"), &mut ScriptedWorld::default(), &RunConfig::default());
     assert!(report.pool_bytes as usize <= budget.memory_bytes, "{} of {}", report.pool_bytes, budget.memory_bytes);
     for (name, arguments) in [("Turn", "1, 2, 3, 4"), ("EchoValue", "6553600, 1966080")] {
         let (_, report) = shown(&format!("{source} task main() {{ NumOut(0, LCD_LINE1, {name}({arguments})); }}"));

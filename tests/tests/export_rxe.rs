@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::process::Command;
 
-use mindgap_controller_export::brick::{self, End, Program, Report, Script, Setup, Sonar};
+use mindgap_controller_export::brick::{self, Program, Report, RunConfig, ScriptedWorld, Sonar, Termination};
 use mindgap_controller_export::wiring::{MotorPort, Wiring};
 use mindgap_controller_export::{ExportError, rxe};
 use mindgap_core::controller::Controller;
@@ -14,7 +14,7 @@ const MOST_POOL_BYTES: usize = 1_024;
 const MOST_INSTRUCTIONS_PER_STEP: u64 = 200;
 
 fn run(file: &[u8], sonar: &[Sonar]) -> Report {
-    brick::run(&Program::load(file).unwrap(), &mut Script::sonar(sonar), &Setup::default())
+    brick::run(&Program::load(file).unwrap(), &mut ScriptedWorld::sonar(sonar), &RunConfig::default())
 }
 
 fn nbc(arguments: &[&str], folder: &Path) -> String {
@@ -69,7 +69,7 @@ fn a_dead_sensor_stops_the_motors_within_two_steps() {
     for dead in [Sonar::Silent, Sonar::Hangs] {
         let report = run(&file, &[Sonar::Echo(60), dead, dead]);
         let stopped_ms = report.events.last().unwrap().t_ms - report.events[0].t_ms;
-        assert_eq!(report.end, End::Finished);
+        assert_eq!(report.end, Termination::Finished);
         assert!((1200..1260).contains(&stopped_ms), "{stopped_ms}");
     }
     // Unplugged from the start; and one lost answer is no reason to stop.

@@ -1,11 +1,11 @@
-//! What the firmware makes of one or two numbers. Integers are 32 bits wide and wrap; x/0 is 0 and x%0 is x.
+//! Arithmetic of the firmware. Integers are 32 bits wide and wrap; x/0 is 0 and x%0 is x.
 
 use std::cmp::Ordering;
 
 use super::Fault;
 use crate::bytecode::{Comparison, Op, Type};
 
-/// An instruction on numbers, taken apart.
+/// A decoded instruction on numbers.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Operation {
     pub(super) op: Op,
@@ -26,7 +26,7 @@ impl Operation {
             Op::Not => u32::from(x == 0),
             Op::Tst => u32::from(self.comparison.holds(Some(order(x, 0, kind, kind)))),
             Op::Abs => (x as i32).unsigned_abs(),
-            // The firmware has no root of an integer.
+            // The firmware does not implement the square root of an integer.
             Op::Sqrt => 0,
             _ => return Err(Fault::Instruction),
         })

@@ -1,4 +1,4 @@
-//! The four sensor ports: their types, and the slow digital bus that the ultrasonic sensor speaks on.
+//! The four sensor ports: their types, and the digital bus (I²C) of the ultrasonic sensor.
 //!
 //! Source: `c_lowspeed.c`, `c_input.c` and `cCmdLS…` in `c_cmd.c` of the firmware.
 
@@ -7,6 +7,7 @@ use std::collections::VecDeque;
 use super::Fault;
 use super::world::{Sonar, World};
 use crate::bytecode::{InputField, SENSOR_LOW_SPEED, SENSOR_LOW_SPEED_9V, SONAR_ADDRESS, SONAR_FIRST_ECHO, comm};
+use crate::onboard::{NO_ECHO_CM, SONAR_HANG_MS};
 
 /// Sensor ports of a brick.
 pub(super) const PORTS: usize = 4;
@@ -15,13 +16,12 @@ pub(super) const PORTS: usize = 4;
 const SETTLE_MS: u32 = 20;
 /// Two bytes out, the address again and one byte in, at 9600 bit/s.
 const ANSWER_MS: u32 = 6;
-/// Four calls without an acknowledgement.
+/// Four attempts without an acknowledgement.
 const SILENCE_MS: u32 = 6;
-const HANG_MS: u32 = 100;
-/// Size of the buffer in and out.
+/// Size of the input and of the output buffer.
 const BUFFER_BYTES: usize = 16;
-const FACTORY_ZERO: u8 = 0;
-const NO_FURTHER_ECHO: u8 = 255;
+/// The value of every register that holds no echo: programs read the echoes only.
+const OTHER_REGISTER: u8 = 0;
 
 /// A sensor port.
 #[derive(Clone, Debug, Default)]
@@ -91,7 +91,7 @@ impl Port {
         comm::OK
     }
 
-    /// How the exchange stands, and how many bytes wait to be read.
+    /// Status of the exchange and number of bytes ready to be read.
     pub(super) fn status(&mut self, t_ms: u32) -> (i8, u8) {
         self.settle(t_ms);
         let status = match self.state {
@@ -103,7 +103,7 @@ impl Port {
         (status, self.received.len() as u8)
     }
 
-    /// Takes bytes that were received; fewer when fewer are there.
+    /// Removes and returns at most `most` received bytes, with the status.
     pub(super) fn read(&mut self, most: u8, t_ms: u32) -> (i8, Vec<u8>) {
         let (status, _) = self.status(t_ms);
         if status < 0 {
@@ -125,7 +125,7 @@ impl Port {
         match &mut self.state {
             State::Busy(until, answer) if t_ms >= *until => match answer.take() {
                 Some(answer) => {
-                    // Like the firmware's ring buffer, which forgets what was not read in time.
+                    // Like the firmware's ring buffer, which loses what was not read in time.
                     self.received.extend(answer);
                     if self.received.len() >= BUFFER_BYTES {
                         self.received.clear();
@@ -148,13 +148,13 @@ fn exchange(request: &[u8], answer_bytes: usize, t_ms: u32, sonar: impl FnOnce()
     let echo = match sonar() {
         Sonar::Echo(echo_cm) => echo_cm,
         Sonar::Silent => return silence,
-        Sonar::Hangs => return State::Busy(t_ms.saturating_add(HANG_MS), None),
+        Sonar::Hangs => return State::Busy(t_ms.saturating_add(SONAR_HANG_MS), None),
     };
     let registers = usize::from(*register)..usize::from(*register) + answer_bytes;
     let answer = registers.map(|register| match register.checked_sub(usize::from(SONAR_FIRST_ECHO)) {
         Some(0) => echo,
-        Some(1..8) => NO_FURTHER_ECHO,
-        _ => FACTORY_ZERO,
+        Some(1..8) => NO_ECHO_CM,
+        _ => OTHER_REGISTER,
     });
     State::Busy(t_ms.saturating_add(ANSWER_MS), Some(answer.collect()))
 }

@@ -1,10 +1,10 @@
-//! The brick's files. Names are compared without regard to case, and a file's size is reserved when it is made.
+//! The brick's file system. Names are case-insensitive, and a file's size is reserved when it is created.
 //!
 //! Source: `d_loader.c` of the firmware.
 
 use std::collections::BTreeMap;
 
-/// Answers of the calls about files.
+/// Status codes of the file calls.
 pub(super) mod status {
     pub(in crate::brick) const OK: u16 = 0;
     pub(in crate::brick) const NO_MORE_HANDLES: u16 = 0x8100;
@@ -43,12 +43,12 @@ struct File {
 #[derive(Clone, Debug)]
 struct Handle {
     file: String,
-    /// Where reading goes on; `None` for a file that is written.
+    /// Position of the next read; `None` for a file opened for writing.
     read_at: Option<usize>,
 }
 
 impl Flash {
-    /// A flash of so many bytes that holds these files.
+    /// A flash of `bytes` bytes that holds these files.
     pub(super) fn new(bytes: u32, files: &BTreeMap<String, Vec<u8>>) -> Self {
         let file = |(name, content): (&String, &Vec<u8>)| {
             let file = File { name: name.clone(), content: content.clone(), reserved: content.len() as u32 };
@@ -76,7 +76,7 @@ impl Flash {
         Ok(handle)
     }
 
-    /// Opens a file at its end; the bytes that it may still grow come with the handle.
+    /// Opens a file at its end; returns the handle and the number of bytes still reserved.
     pub(super) fn append(&mut self, name: &str) -> Result<(u8, u32), u16> {
         let key = self.find(name)?;
         let file = &self.files[&key];
@@ -84,14 +84,14 @@ impl Flash {
         Ok((self.open(Handle { file: key, read_at: None })?, left))
     }
 
-    /// Opens a file at its start; its length comes with the handle.
+    /// Opens a file at its start; returns the handle and its length.
     pub(super) fn open_read(&mut self, name: &str) -> Result<(u8, u32), u16> {
         let key = self.find(name)?;
         let length = self.files[&key].content.len() as u32;
         Ok((self.open(Handle { file: key, read_at: Some(0) })?, length))
     }
 
-    /// Writes what fits; the bytes that were written come with the answer.
+    /// Writes as much as fits; returns the status and the number of bytes written.
     pub(super) fn write(&mut self, handle: u8, bytes: &[u8]) -> (u16, u32) {
         let slot = self.handles.get(usize::from(handle)).and_then(Option::as_ref);
         let Some(Handle { file, read_at: None }) = slot else { return (status::CLOSED_HANDLE, 0) };
@@ -121,7 +121,7 @@ impl Flash {
         }
     }
 
-    /// The handle under which a file is open, and whether it is written.
+    /// The handle of an open file and whether it is open for writing.
     pub(super) fn resolve(&self, name: &str) -> Option<(u8, bool)> {
         let key = name.to_ascii_lowercase();
         let mut open = self.handles.iter().enumerate().filter_map(|(i, handle)| Some((i, handle.as_ref()?)));
@@ -150,12 +150,12 @@ impl Flash {
         }
     }
 
-    /// All files with what was written to them.
+    /// All files by name, with the bytes written.
     pub(super) fn into_files(self) -> BTreeMap<String, Vec<u8>> {
         self.files.into_values().map(|file| (file.name, file.content)).collect()
     }
 
-    /// A file that is there and not open.
+    /// The key of an existing file that is not open.
     fn find(&self, name: &str) -> Result<String, u16> {
         let key = name.to_ascii_lowercase();
         if !self.files.contains_key(&key) {

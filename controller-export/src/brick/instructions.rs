@@ -1,19 +1,19 @@
-//! One instruction of the bytecode.
+//! Executes one instruction of the bytecode.
 
 use std::ops::Range;
 
 use super::arithmetic::{Operation, order};
 use super::memory::Place;
-use super::{Brick, Fault, What, polymorphic, text};
+use super::{Brick, EventKind, Fault, polymorphic, text};
 use crate::bytecode::{Comparison, NONE, Op, SHORT_FORM, Type, VARIABLE_SIZE};
 
-/// What happens to the clump after an instruction; words of code count from its first.
+/// Control flow after an instruction; offsets are words of code from its first.
 pub(super) enum Flow {
     Next(usize),
     Branch(i16),
-    /// It waits, and goes on after so many words.
+    /// The clump waits, and resumes at this offset.
     Suspend(usize),
-    /// The others come first.
+    /// The clump yields to the others, and resumes at this offset.
     Yield(usize),
     ClumpEnds,
     Stop,
@@ -48,7 +48,7 @@ impl<'p> Brick<'p, '_> {
             }
             Op::Add | Op::Sub | Op::Mul | Op::Div | Op::Mod | Op::And | Op::Or | Op::Xor => {
                 let (to, left, right) = (operand(1)?, operand(2)?, operand(3)?);
-                // Their comparison bits mean nothing.
+                // Their comparison bits are ignored.
                 let operation = Operation { op, comparison: Comparison::Equal };
                 polymorphic::binary(&mut self.memory, operation, Place::of(to), Place::of(left), Place::of(right))?;
             }
@@ -218,7 +218,7 @@ impl<'p> Brick<'p, '_> {
         Ok(Flow::Next(next))
     }
 
-    /// The short forms: a signed byte in the first word saves an operand.
+    /// The short forms, whose first word holds one operand as a signed byte.
     fn execute_short(&mut self, word: u16, pc: usize) -> Result<Flow, Fault> {
         let byte = word as i8;
         match word >> 8 & 7 {
@@ -280,7 +280,7 @@ impl<'p> Brick<'p, '_> {
         Ok(Flow::Suspend(next))
     }
 
-    /// A copy of an array with one or more elements changed; an index outside changes nothing.
+    /// Copies an array with one or more elements replaced; an index out of range changes nothing.
     fn replace(&mut self, [to, from, index, value]: [u16; 4]) -> Result<(), Fault> {
         if to != from {
             self.mov(to, from)?;
@@ -315,7 +315,7 @@ impl<'p> Brick<'p, '_> {
         Ok(())
     }
 
-    /// An array of the sources: elements, or whole arrays of such.
+    /// Builds an array from elements or arrays of elements.
     fn array_build(&mut self, to: u16, sources: Range<usize>) -> Result<(), Fault> {
         let sources = self.sources(to, sources)?;
         let mut count = 0;
@@ -351,8 +351,8 @@ impl<'p> Brick<'p, '_> {
         self.set_string(to, &text)
     }
 
-    /// The operands that an array is put together from. The firmware resizes it first, so if it is one of them, what
-    /// lies behind it is overwritten.
+    /// The operands that an array is built from. The firmware resizes the array first, so that if it is itself an operand,
+    /// its contents are overwritten.
     fn sources(&self, to: u16, sources: Range<usize>) -> Result<&'p [u16], Fault> {
         let sources = self.program.code.get(sources).ok_or(Fault::Instruction)?;
         if sources.contains(&to) { Err(Fault::Argument) } else { Ok(sources) }
@@ -398,20 +398,20 @@ impl<'p> Brick<'p, '_> {
             vec![self.memory.get_id(ports)? as usize]
         };
         for port in ports {
-            // A port that the brick does not have is passed over.
+            // A port that does not exist is ignored.
             let Some(motor) = self.motors.get_mut(port) else { continue };
             for pair in fields.chunks_exact(2) {
                 motor.set(pair[0], self.memory.get_id(pair[1])?)?;
             }
             if let Some(drive) = motor.apply(self.world.rotation_deg(port, self.t_ms)) {
                 self.world.motor(port, drive, self.t_ms);
-                self.emit(What::Motor { port, drive });
+                self.emit(EventKind::Motor { port, drive });
             }
         }
         Ok(())
     }
 
-    /// A string without the NUL at its end.
+    /// A string without its terminating NUL.
     pub(super) fn string(&self, id: u16) -> Result<&[u8], Fault> {
         let bytes = self.memory.array(Place::of(id))?;
         Ok(bytes.split_last().map_or(&[], |(_, text)| text))
@@ -421,7 +421,7 @@ impl<'p> Brick<'p, '_> {
         self.memory.set_array(Place::of(id), &[text, &[0]].concat())
     }
 
-    /// A number, or `default` where the operand is left out.
+    /// A number, or `default` if the operand is omitted.
     fn number_or(&self, id: u16, default: usize) -> Result<usize, Fault> {
         if id == NONE { Ok(default) } else { Ok(self.memory.get_id(id)? as usize) }
     }

@@ -1,12 +1,14 @@
-//! The dataspace: typed values at fixed places, and arrays that grow, move and are packed together again.
+//! The dataspace: typed values at fixed offsets, and arrays that grow, move and are compacted.
 //!
 //! Source: the memory manager of the firmware, `cCmdDVArrayAlloc` and its neighbours in `c_cmd.c`.
 
+use mindgap_core::limits::POOL_BYTES;
+
 use super::Fault;
 use super::program::{DopeVector, Entry, Program};
-use crate::bytecode::{CLUMP_RECORD_BYTES, POOL_BYTES, Type};
+use crate::bytecode::{CLUMP_RECORD_BYTES, Type};
 
-/// Dope vectors that are added at once when none is free.
+/// Number of dope vectors added at once when none is free.
 const DOPE_VECTORS_ADDED: usize = 25;
 const MOST_SPARE_DOPE_VECTORS: usize = 200;
 /// The dope vector that stands for the table of dope vectors itself.
@@ -18,12 +20,12 @@ pub(super) struct Memory<'p> {
     static_bytes: usize,
     dope: Vec<DopeVector>,
     free: Vec<u16>,
-    /// Bytes of the pool that are left for the dataspace.
+    /// Bytes of the pool available to the dataspace.
     limit: usize,
     most_bytes: usize,
 }
 
-/// A value: an entry, and the place of the array element that it is part of (0 for one of its own).
+/// A value: its entry, and the offset of the array element that contains it (0 outside arrays).
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Place {
     pub(super) id: u16,
@@ -37,7 +39,7 @@ impl Place {
 }
 
 impl<'p> Memory<'p> {
-    /// The dataspace at a program's start, or as it was when there was no memory for it.
+    /// The dataspace at a program's start; as an error if the pool is too small for it.
     pub(super) fn new(program: &'p Program) -> Result<Memory<'p>, Memory<'p>> {
         let limit = POOL_BYTES - (program.clumps.len() * CLUMP_RECORD_BYTES).next_multiple_of(4);
         let mut memory = Memory {
@@ -142,7 +144,7 @@ impl<'p> Memory<'p> {
         self.bytes.get(offset..offset + vector.element_bytes * vector.count).ok_or(Fault::Pointer)
     }
 
-    /// Gives an array these bytes.
+    /// Replaces the contents of an array by bytes.
     pub(super) fn set_array(&mut self, array: Place, bytes: &[u8]) -> Result<(), Fault> {
         let vector = self.vector(array)?;
         let element_bytes = self.dope[vector].element_bytes.max(1);
@@ -153,7 +155,7 @@ impl<'p> Memory<'p> {
         Ok(())
     }
 
-    /// Gives an array so many elements. [`Fault::Memory`] leaves everything as it was: [`compact`](Self::compact) and
+    /// Resizes an array to `count` elements. [`Fault::Memory`] leaves everything unchanged: [`compact`](Self::compact) and
     /// try again.
     pub(super) fn resize(&mut self, array: Place, count: usize) -> Result<(), Fault> {
         let vector = self.vector(array)?;
@@ -179,7 +181,7 @@ impl<'p> Memory<'p> {
         Ok(())
     }
 
-    /// Moves all arrays together, in the order in which they lie.
+    /// Moves all arrays together, in the order of their offsets.
     pub(super) fn compact(&mut self) {
         let mut order: Vec<usize> = (0..self.dope.len()).filter(|i| self.dope[*i].offset.is_some()).collect();
         order.sort_by_key(|i| self.dope[*i].offset);
@@ -201,7 +203,7 @@ impl<'p> Memory<'p> {
         self.bytes.truncate(end);
     }
 
-    /// The most bytes that the dataspace took.
+    /// Peak size of the dataspace, in bytes.
     pub(super) fn most_bytes(&self) -> usize {
         self.most_bytes
     }
@@ -229,7 +231,7 @@ impl<'p> Memory<'p> {
         }
     }
 
-    /// A value's bytes, parts in their order and without gaps.
+    /// Appends the bytes of a value, its parts in order and without padding.
     pub(super) fn flatten(&self, place: Place, bytes: &mut Vec<u8>) -> Result<(), Fault> {
         let entry = self.entry(place.id)?;
         match entry.kind {
@@ -254,7 +256,7 @@ impl<'p> Memory<'p> {
         Ok(())
     }
 
-    /// The reverse of [`flatten`](Self::flatten); arrays have their lengths already.
+    /// The inverse of [`flatten`](Self::flatten); arrays must have their lengths already.
     pub(super) fn unflatten(&mut self, place: Place, bytes: &mut &[u8]) -> Result<(), Fault> {
         let entry = self.entry(place.id)?;
         match entry.kind {

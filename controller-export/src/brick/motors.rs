@@ -1,4 +1,4 @@
-//! The outputs: fields that a program writes, and what the motors make of them.
+//! The outputs: the fields that a program writes and their effect on the motors.
 //!
 //! Source: `c_output.c` of the firmware.
 
@@ -8,10 +8,10 @@ use crate::bytecode::{OutputField, RUN_STATE_RUNNING, mode, update};
 /// Motor ports of a brick.
 pub(super) const PORTS: usize = 3;
 
-/// What a motor does.
+/// Drive of a motor.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Drive {
-    /// It runs with this power: negative is backward, and -100..=100 is what the hardware knows.
+    /// It runs at this power, -100..=100; negative is backward.
     Power(i8),
     /// It holds.
     Brake,
@@ -20,7 +20,7 @@ pub enum Drive {
     Coast,
 }
 
-/// An output: its fields, and the motor behind it.
+/// An output: its fields and its motor.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Motor {
     flags: u8,
@@ -91,8 +91,8 @@ impl Motor {
         })
     }
 
-    /// Takes over what the flags name, as the firmware does at its next millisecond. Says what the motor does from now
-    /// on when the flags touch that.
+    /// Applies the fields that the flags name, as the firmware does in its next millisecond. Returns the new drive if the
+    /// flags affect it.
     pub(super) fn apply(&mut self, rotation_deg: i32) -> Option<Drive> {
         let flags = std::mem::take(&mut self.flags);
         if flags & update::RESET_ROTATION_COUNT != 0 {

@@ -1,14 +1,14 @@
-//! Instructions on numbers, carried out on whole arrays and clusters, part by part.
+//! Applies scalar instructions to arrays and clusters, part by part.
 
 use super::Fault;
 use super::arithmetic::{Operation, order};
 use super::memory::{Memory, Place};
 use crate::bytecode::{Comparison, Op, Type};
 
-/// How a value's parts are walked.
+/// Iteration over the parts of a value.
 #[derive(Clone, Copy)]
 enum Parts {
-    /// A number: the same for every part of the other side.
+    /// A number, which is repeated for every part of the other operand.
     One(Place),
     Elements {
         array: Place,
@@ -24,7 +24,7 @@ pub(super) fn copy(memory: &mut Memory, to: Place, from: Place) -> Result<(), Fa
     unary(memory, Operation { op: Op::Mov, comparison: Comparison::Equal }, to, from)
 }
 
-/// Carries out an operation with one operand.
+/// Applies an operation with one operand.
 pub(super) fn unary(memory: &mut Memory, operation: Operation, to: Place, from: Place) -> Result<(), Fault> {
     let (to_type, from_type) = (memory.kind(to.id)?, memory.kind(from.id)?);
     if !from_type.is_aggregate() {
@@ -62,7 +62,7 @@ pub(super) fn unary(memory: &mut Memory, operation: Operation, to: Place, from: 
     Ok(())
 }
 
-/// Carries out an operation with two operands.
+/// Applies an operation with two operands.
 pub(super) fn binary(
     memory: &mut Memory,
     operation: Operation,
@@ -103,7 +103,7 @@ pub(super) fn binary(
     Ok(())
 }
 
-/// Whether two arrays or clusters compare so: by their first parts that differ, then by their lengths.
+/// Compares two arrays or clusters by their first parts that differ, then by their lengths.
 pub(super) fn compare(memory: &Memory, comparison: Comparison, left: Place, right: Place) -> Result<bool, Fault> {
     let order = match (memory.kind(left.id)?, memory.kind(right.id)?) {
         (Type::Float, _) | (_, Type::Float) => memory.get_float(left)?.partial_cmp(&memory.get_float(right)?),
@@ -154,7 +154,7 @@ fn parts(memory: &Memory, place: Place) -> Result<Parts, Fault> {
 }
 
 impl Parts {
-    /// The part that is next, `index` counting from 0.
+    /// The next part; `index` counts from 0.
     fn part(&mut self, memory: &Memory, index: usize) -> Result<Place, Fault> {
         match self {
             Parts::One(place) => Ok(*place),

@@ -1,16 +1,16 @@
-//! An .rxe file, read and checked: after this, every number that leads from one part of the file to another is sound.
+//! Reads and validates an .rxe file: afterwards every reference between parts of the file is valid.
 
 use std::ops::Range;
 
-use crate::bytecode::{
-    CLUMP_RECORD_BYTES, DEFAULT_ZERO, DOPE_VECTOR_BYTES, HEADER_BYTES, MAGIC, NONE, POOL_BYTES, Type,
-};
+use mindgap_core::limits::POOL_BYTES;
 
-/// The firmware refuses no nesting; the deepest that nbc makes of a sensible program is four.
+use crate::bytecode::{CLUMP_RECORD_BYTES, DEFAULT_ZERO, DOPE_VECTOR_BYTES, HEADER_BYTES, MAGIC, NONE, Type};
+
+/// Deepest nesting of data accepted. The firmware has no limit; nbc makes at most four levels of a sensible program.
 const DEEPEST_NESTING: u16 = 6;
 const OLDEST_MINOR_VERSION: u8 = 4;
 const NEWEST_MAJOR_VERSION: u8 = 1;
-/// One clump number is kept to say "none".
+/// One clump number is reserved for "none".
 const MOST_CLUMPS: u16 = 254;
 
 /// A program for the standard firmware, ready to run.
@@ -35,39 +35,39 @@ pub struct LoadError(&'static str);
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Entry {
     pub(super) kind: Type,
-    /// Where it lies: in the dataspace, or within its array's element. A cluster has none.
+    /// Its offset in the dataspace, or within its array's element; 0 for a cluster.
     offset: u16,
     /// Members of a cluster.
     pub(super) members: u16,
     /// The entry after this one and all its parts.
     pub(super) next: u16,
-    /// Whether its first value stands in the file; zero otherwise.
+    /// Whether its initial value is stored in the file; otherwise it is zero.
     stored: bool,
 }
 
 /// A piece of code that is scheduled as a whole: a task or a subroutine.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Clump {
-    /// Other clumps that have to finish first.
+    /// Number of clumps that have to finish first.
     pub(super) fire_count: u8,
     pub(super) dependents: Vec<u8>,
-    /// Its instructions in the program's code.
+    /// Range of its instructions in the program's code.
     pub(super) code: Range<usize>,
 }
 
-/// Where an array lies.
+/// Location and size of an array.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct DopeVector {
-    /// In the dataspace; `None` until the array has its first element.
+    /// Offset in the dataspace; `None` until the array has its first element.
     pub(super) offset: Option<usize>,
     pub(super) element_bytes: usize,
     pub(super) count: usize,
-    /// Bytes that the array may grow to where it lies.
+    /// Bytes that the array may grow to without moving.
     pub(super) capacity: usize,
 }
 
 impl Program {
-    /// Reads an .rxe file with every check that the firmware makes, and those that it leaves out.
+    /// Reads an .rxe file with all checks of the firmware, and those that it omits.
     ///
     /// # Errors
     /// [`LoadError`] names the first check that fails.
@@ -98,7 +98,7 @@ impl Program {
         self.file_bytes
     }
 
-    /// Memory that the program takes when it starts: clump records, values and arrays; the brick has 32,768 bytes.
+    /// Memory at the start: clump records, values and arrays, in bytes, of the brick's [`POOL_BYTES`].
     pub fn pool_bytes(&self) -> usize {
         (self.clumps.len() * CLUMP_RECORD_BYTES).next_multiple_of(4) + self.data.len()
     }
@@ -110,7 +110,7 @@ impl Program {
 }
 
 impl Entry {
-    /// Its place in the dataspace, given that of the array element that it is part of.
+    /// Its offset in the dataspace, given that of the array element that contains it.
     pub(super) fn at(&self, base: usize) -> usize {
         usize::from(self.offset) + base
     }
@@ -217,7 +217,7 @@ fn read_clumps(rest: &mut Reader, header: &Header) -> Result<Vec<Clump>, LoadErr
     Ok(clumps)
 }
 
-/// Lays the stored defaults out as the dataspace.
+/// Expands the stored defaults into the initial dataspace.
 fn inflate(entries: &[Entry], defaults: &[u8], header: &Header) -> Result<Vec<u8>, LoadError> {
     const TOO_SMALL: LoadError = LoadError("data outside the dataspace");
     let (static_bytes, dynamic_at) = (usize::from(header.static_bytes), usize::from(header.dynamic_offset));
@@ -314,7 +314,7 @@ impl<'b> Reader<'b> {
         Ok(taken)
     }
 
-    /// The firmware reads words at even places only.
+    /// Skips to an even offset, since the firmware reads words there only.
     fn align(&mut self) {
         self.at += self.at % 2;
     }

@@ -1,4 +1,4 @@
-//! Which clump runs: the queue of those that can, those that sleep, and those that wait for a mutex.
+//! The scheduler: clumps that are ready, asleep, or waiting for a mutex.
 //!
 //! Source: the scheduler in the firmware's `c_cmd.c`.
 
@@ -11,7 +11,7 @@ pub(super) struct Schedule {
     clumps: Vec<State>,
     queue: VecDeque<u8>,
     asleep: Vec<(u8, u32)>,
-    /// For every entry of the dataspace that is a mutex: its owner, then the clumps that wait for it.
+    /// For each entry of the dataspace that is a mutex, its owner followed by the clumps that wait for it.
     mutexes: Vec<VecDeque<u8>>,
 }
 
@@ -39,12 +39,12 @@ impl Schedule {
         }
     }
 
-    /// The clump whose turn it is.
+    /// The running clump.
     pub(super) fn running(&self) -> Option<u8> {
         self.queue.front().copied()
     }
 
-    /// Whether no clump runs or sleeps; those that wait for a mutex would wait for ever.
+    /// Whether no clump runs or sleeps; clumps that wait for a mutex would wait for ever.
     pub(super) fn is_empty(&self) -> bool {
         self.queue.is_empty() && self.asleep.is_empty()
     }
@@ -81,7 +81,7 @@ impl Schedule {
         });
     }
 
-    /// When the next clump wakes, if none runs before.
+    /// When the next clump wakes; `None` if one is ready, or none sleeps.
     pub(super) fn next_wake_ms(&self) -> Option<u32> {
         if !self.queue.is_empty() {
             return None;
@@ -97,7 +97,7 @@ impl Schedule {
         Ok(())
     }
 
-    /// Ends the running subroutine and goes on with its caller.
+    /// Ends the running subroutine and resumes its caller.
     pub(super) fn return_to(&mut self, caller: u8) -> Result<(), Fault> {
         self.known(caller)?;
         self.end_running();
@@ -105,7 +105,7 @@ impl Schedule {
         Ok(())
     }
 
-    /// Ends the running clump; these of its dependents start when they wait for no other.
+    /// Ends the running clump and starts those of its dependents that wait for no other.
     pub(super) fn finish(&mut self, dependents: &[u8]) -> Result<(), Fault> {
         self.end_running();
         for dependent in dependents {
@@ -119,7 +119,7 @@ impl Schedule {
         Ok(())
     }
 
-    /// Whether the running clump owns the mutex now; it waits otherwise.
+    /// Acquires a mutex for the running clump; if it is taken, the clump waits and the result is `false`.
     pub(super) fn acquire(&mut self, mutex: u16) -> Result<bool, Fault> {
         let running = self.running().ok_or(Fault::Instruction)?;
         let waiting = self.mutexes.get_mut(usize::from(mutex)).ok_or(Fault::Argument)?;

@@ -1,8 +1,8 @@
-//! Calls of the firmware: files, sound, display, buttons, the digital bus, the clock.
+//! System calls of the firmware: files, sound, display, buttons, the digital bus, the clock.
 
 use super::flash::status;
 use super::memory::Place;
-use super::{Brick, Fault, What};
+use super::{Brick, EventKind, Fault};
 use crate::bytecode::{NONE, Syscall, Type, comm};
 
 const MOST_ARGUMENTS: usize = 16;
@@ -10,7 +10,7 @@ const BUTTONS: usize = 4;
 const EXIT_BUTTON: u32 = 0;
 const BAD_PORT: i8 = -16;
 const BAD_FIELD: i8 = -17;
-/// The module of the user interface, and where its map holds the battery's millivolts.
+/// The user interface module, and the offset of the battery voltage (mV) in its I/O map.
 const UI_MODULE: &[u8] = b"Ui.mod";
 const UI_BATTERY_MV: usize = 4;
 
@@ -39,7 +39,7 @@ impl Brick<'_, '_> {
             }
             Syscall::FileRead => {
                 let (handle, most) = (self.memory.get_id(argument[1])? as u8, self.memory.get_id(argument[3])?);
-                // The firmware makes room for all that was asked for before it reads.
+                // The firmware allocates the requested size before it reads.
                 let room = vec![0; usize::from(most as u16) + 1];
                 self.memory.set_array(Place::of(argument[2]), &room)?;
                 let (status, mut bytes) = self.flash.read(handle, u32::from(most as u16));
@@ -51,7 +51,7 @@ impl Brick<'_, '_> {
             Syscall::FileWrite => {
                 let (handle, length) = (self.memory.get_id(argument[1])? as u8, self.memory.get_id(argument[3])?);
                 let buffer = self.memory.array(Place::of(argument[2]))?;
-                // Writing past the buffer would write whatever lies behind it.
+                // The firmware would write whatever lies behind the buffer.
                 let bytes = buffer.get(..length as usize).ok_or(Fault::Pointer)?;
                 let (status, written) = self.flash.write(handle, bytes);
                 self.memory.set_id(argument[3], written)?;
@@ -80,15 +80,15 @@ impl Brick<'_, '_> {
             }
             Syscall::SoundPlayFile => {
                 let name = self.name(argument[1])?;
-                self.emit(What::Sound(name));
+                self.emit(EventKind::Sound(name));
                 self.memory.set_id(result, 0)
             }
             Syscall::SoundPlayTone => {
                 let (hz, ms) = (self.memory.get_id(argument[1])? as u16, self.memory.get_id(argument[2])? as u16);
-                self.emit(What::Tone { hz, ms });
+                self.emit(EventKind::Tone { hz, ms });
                 self.memory.set_id(result, 0)
             }
-            // Every sound has faded when the program asks.
+            // Sounds have always ended when the program asks.
             Syscall::SoundGetState => {
                 self.memory.set_id(argument[0], 0)?;
                 self.memory.set_id(argument[1], 0)
@@ -101,7 +101,7 @@ impl Brick<'_, '_> {
                 let [x, y, ..] = self.arguments(argument[1])?;
                 let (x, y) = (self.memory.get_id(x)? as i16, self.memory.get_id(y)? as i16);
                 let text = self.name(argument[2])?;
-                self.emit(What::Text { x, y, text });
+                self.emit(EventKind::Text { x, y, text });
                 self.memory.set_id(result, 0)
             }
             Syscall::DrawPoint
@@ -141,7 +141,7 @@ impl Brick<'_, '_> {
                 self.memory.set_id(result, status as u32)
             }
             Syscall::RandomNumber => {
-                // The generator of the C standard's example.
+                // The generator of the example in the C standard.
                 self.chance = self.chance.wrapping_mul(1_103_515_245).wrapping_add(12_345);
                 self.memory.set_id(result, self.chance >> 16)
             }
@@ -150,7 +150,7 @@ impl Brick<'_, '_> {
         }
     }
 
-    /// The parts of a call's cluster; those that it does not have are no entries.
+    /// The members of a call's argument cluster; missing ones are [`NONE`].
     fn arguments(&self, cluster: u16) -> Result<[u16; MOST_ARGUMENTS], Fault> {
         let entry = self.memory.entry(cluster)?;
         if entry.kind != Type::Cluster || usize::from(entry.members) > MOST_ARGUMENTS {
@@ -192,7 +192,7 @@ impl Brick<'_, '_> {
         self.memory.set_id(argument[0], status as u32)
     }
 
-    /// Only the battery's voltage can be read.
+    /// Reads the I/O map of a module; only the battery voltage is available.
     fn read_module_map(&mut self, argument: [u16; MOST_ARGUMENTS]) -> Result<(), Fault> {
         let (offset, count) = (self.memory.get_id(argument[2])? as usize, self.memory.get_id(argument[3])? as usize);
         let voltage = self.world.battery_mv(self.t_ms).to_le_bytes();

@@ -1,6 +1,6 @@
-//! Numbers to text and back, as the firmware's C library does it.
+//! Conversion between numbers and text, as in the firmware's C library.
 
-/// A float as at most two decimals, or six digits and an exponent where it would not fit the display.
+/// A float with at most two decimals, or with six digits and an exponent if it would not fit the display.
 pub(super) fn of_float(x: f32) -> String {
     const FITS: std::ops::RangeInclusive<f32> = -1e12..=1e13;
     if x.is_nan() {
@@ -53,7 +53,7 @@ pub(super) fn to_float(text: &[u8]) -> Option<f32> {
     std::str::from_utf8(&text[..end]).ok()?.parse().ok()
 }
 
-/// Where the number in a text ends: its digits with at most one point.
+/// End of the first number in a text from `from`: digits with at most one point.
 pub(super) fn end_of_number(text: &[u8], from: usize) -> usize {
     let is_digit = |at: usize| text.get(at).is_some_and(u8::is_ascii_digit);
     let mut at = from;

@@ -1,30 +1,30 @@
-//! What a brick senses, and what it moves.
+//! The surroundings of a brick: what it senses and moves.
 
 use super::motors::Drive;
 
-/// What is around the brick: sensors, motors, buttons, battery. Times are milliseconds since the program started.
+/// Sensors, motors, buttons and battery around a brick. Times are milliseconds since the program started.
 pub trait World {
-    /// What the ultrasonic sensor does with a request for its nearest echo; `port` counts from 0.
+    /// The ultrasonic sensor's response to a request for its nearest echo; `port` counts from 0.
     fn sonar(&mut self, port: usize, t_ms: u32) -> Sonar;
 
-    /// A motor does this from now on; `port` counts from 0.
+    /// Sets the drive of a motor from now on; `port` counts from 0.
     fn motor(&mut self, port: usize, drive: Drive, t_ms: u32) {
         let _ = (port, drive, t_ms);
     }
 
-    /// Rotation of a motor's shaft; `port` counts from 0.
+    /// Rotation of a motor's shaft, degrees; `port` counts from 0.
     fn rotation_deg(&mut self, port: usize, t_ms: u32) -> i32 {
         let _ = (port, t_ms);
         0
     }
 
-    /// How far the right (1), left (2) or orange (3) button has been used.
+    /// State of the right (1), left (2) or orange (3) button.
     fn button(&mut self, button: u8, t_ms: u32) -> Button {
         let _ = (button, t_ms);
         Button::default()
     }
 
-    /// When the dark button under them is pressed, which ends any program.
+    /// When the dark button below them is pressed, which ends any program.
     fn exit_pressed_ms(&self) -> Option<u32> {
         None
     }
@@ -36,14 +36,14 @@ pub trait World {
     }
 }
 
-/// What the ultrasonic sensor does with a request.
+/// Response of the ultrasonic sensor to a request.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Sonar {
-    /// It answers with a distance in cm; 255 means that no echo came back.
+    /// A distance in cm; 255 if no echo returned.
     Echo(u8),
-    /// Nobody answers: unplugged, or without power.
+    /// No answer: unplugged or without power.
     Silent,
-    /// It begins an answer and never ends it.
+    /// An answer that begins and never ends.
     Hangs,
 }
 
@@ -52,14 +52,14 @@ pub enum Sonar {
 pub struct Button {
     /// Whether it is down.
     pub pressed: bool,
-    /// How often it has been let go.
+    /// How often it has been released.
     pub released: u8,
 }
 
-/// A world that gives what it was told, one answer of the sensor a request; after the last one the sensor is silent.
+/// A world with scripted answers of the sensor, one a request; after the last one the sensor is silent.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Script {
-    /// What the ultrasonic sensor does, request by request.
+pub struct ScriptedWorld {
+    /// Answers of the ultrasonic sensor, one a request.
     pub sonar: Vec<Sonar>,
     /// The port that it is plugged into, from 0.
     pub sonar_port: usize,
@@ -69,18 +69,18 @@ pub struct Script {
     pub battery_mv: u16,
     /// Times at which the orange button goes down and up again.
     pub center_pressed_ms: Vec<(u32, u32)>,
-    /// How many requests the sensor has had.
+    /// Number of requests so far.
     pub asked: usize,
 }
 
-impl Script {
-    /// A sensor on port 4 that answers so, a charged battery, and no button pressed.
+impl ScriptedWorld {
+    /// A sensor on port 4 with these answers, a charged battery, and no button pressed.
     pub fn sonar(answers: impl Into<Vec<Sonar>>) -> Self {
-        Script { sonar: answers.into(), sonar_port: 3, battery_mv: 7800, ..Script::default() }
+        ScriptedWorld { sonar: answers.into(), sonar_port: 3, battery_mv: 7800, ..ScriptedWorld::default() }
     }
 }
 
-impl World for Script {
+impl World for ScriptedWorld {
     fn sonar(&mut self, port: usize, _: u32) -> Sonar {
         if port != self.sonar_port {
             return Sonar::Silent;

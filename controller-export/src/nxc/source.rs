@@ -1,4 +1,4 @@
-//! What all NXC programs are made of: constants at the top, then parts that never change.
+//! Common parts of all NXC programs: named constants, then constant parts.
 
 use crate::onboard;
 use crate::wiring::Wiring;
@@ -15,7 +15,7 @@ pub(crate) const LOG: &str = include_str!("log.nxc");
 pub(crate) const DISPLAY: &str = include_str!("display.nxc");
 
 const LOG_HEADER_BYTES: u32 = 80;
-/// The longest row of a log, line end included: a time of ten digits, two commands, two wheel rotations of seven,
+/// Longest row of a log, line end included: a time of ten digits, two commands, two wheel rotations of seven digits,
 /// millivolts, and a reading.
 const LOG_ROW_BYTES: u32 = 10 + 4 + 4 + 7 + 7 + 5 + 3 + 6 + 2;
 
@@ -24,7 +24,7 @@ const LOG_ROW_BYTES: u32 = 10 + 4 + 4 + 7 + 7 + 5 + 3 + 6 + 2;
 pub(crate) struct Constants(String);
 
 impl Constants {
-    /// What the parts need to know: ports, and how the sensor is read.
+    /// The constants of the common parts: ports, and timing of the sensor.
     pub(crate) fn shared(wiring: &Wiring) -> Self {
         let Wiring { left, right, sonar } = wiring;
         Constants::default()
@@ -42,7 +42,7 @@ impl Constants {
             .with("GAVE_UP_HZ", onboard::GAVE_UP_HZ, "")
     }
 
-    /// One more.
+    /// Adds a constant.
     pub(crate) fn with(mut self, name: &str, value: impl ToString, comment: &str) -> Self {
         let line = format!("#define {name:<20} {}", value.to_string());
         self.0 += &if comment.is_empty() { line + "\n" } else { format!("{line:<34} // {comment}\n") };
@@ -55,12 +55,12 @@ impl Constants {
     }
 }
 
-/// Flash for a log of so many rows.
+/// Size of a log of `rows` rows in flash.
 pub(crate) fn log_bytes(rows: u32) -> u32 {
     LOG_HEADER_BYTES + rows * LOG_ROW_BYTES
 }
 
-/// Rows of a log that fit into so many bytes.
+/// Number of rows of a log that fit into `bytes`.
 pub(crate) fn log_rows(bytes: u32) -> u32 {
     bytes.saturating_sub(LOG_HEADER_BYTES) / LOG_ROW_BYTES
 }

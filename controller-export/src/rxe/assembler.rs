@@ -1,4 +1,4 @@
-//! A small assembler for the standard firmware: one clump, one method an instruction.
+//! A small assembler for the standard firmware: a single clump, one method an instruction.
 
 use super::layout::{Array, Cluster, Dataspace, Number};
 use crate::bytecode::{
@@ -8,7 +8,7 @@ use crate::bytecode::{
 /// The file version of firmware 1.28 and later.
 const FILE_VERSION: [u8; 2] = [0, 6];
 
-/// A program as it grows. Data is declared as it is needed; code runs in the order in which it is written.
+/// A program under construction. Data are declared as needed; instructions are appended in order.
 #[derive(Debug, Default)]
 pub(super) struct Assembler {
     data: Dataspace,
@@ -17,13 +17,13 @@ pub(super) struct Assembler {
     branches: Vec<Branch>,
 }
 
-/// A place in the code, to be [bound](Assembler::bind) once.
+/// A position in the code, to be [bound](Assembler::bind) once.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Label(usize);
 
 #[derive(Debug)]
 struct Branch {
-    /// The first word of its instruction, from which it counts.
+    /// Offset of its instruction, to which the branch is relative.
     at: usize,
     to: Label,
 }
@@ -37,7 +37,7 @@ impl Assembler {
         self.data.array(kind, values)
     }
 
-    /// A cluster; its members are the next numbers and arrays to be declared.
+    /// A cluster whose members are the next numbers and arrays to be declared.
     pub(super) fn cluster(&mut self, members: u16) -> Cluster {
         self.data.cluster(members)
     }
@@ -47,12 +47,12 @@ impl Assembler {
         Label(self.labels.len() - 1)
     }
 
-    /// Says that a label stands here.
+    /// Binds a label to the current position.
     pub(super) fn bind(&mut self, label: Label) {
         self.labels[label.0] = Some(self.code.len());
     }
 
-    /// A label that stands here.
+    /// A label bound to the current position.
     pub(super) fn here(&mut self) -> Label {
         let label = self.label();
         self.bind(label);
@@ -88,13 +88,13 @@ impl Assembler {
         self.instruction(Op::Jmp, None, &[0]);
     }
 
-    /// Goes to a label if two numbers compare so.
+    /// Branches if the comparison of two numbers holds.
     pub(super) fn branch_if(&mut self, left: Number, comparison: Comparison, right: Number, to: Label) {
         self.branch(to);
         self.instruction(Op::BrCmp, Some(comparison), &[0, left.0, right.0]);
     }
 
-    /// Goes to a label if a number compares so with zero.
+    /// Branches if the comparison of a number with zero holds.
     pub(super) fn branch_if_zero(&mut self, value: Number, comparison: Comparison, to: Label) {
         self.branch(to);
         self.instruction(Op::BrTst, Some(comparison), &[0, value.0]);
@@ -131,7 +131,7 @@ impl Assembler {
         self.instruction(Op::Stop, None, &[NONE]);
     }
 
-    /// The program as an .rxe file; every label that is used has to be bound.
+    /// The program as an .rxe file; every label that is used must be bound.
     pub(super) fn into_file(mut self) -> Vec<u8> {
         for Branch { at, to } in &self.branches {
             let target = self.labels[to.0].expect("a label is bound where it is used");

@@ -1,5 +1,5 @@
-//! The dataspace of an .rxe file: its table, its default values, and its arrays with the list that the firmware's
-//! memory manager keeps of them, laid out as nbc does.
+//! The dataspace of an .rxe file as nbc lays it out: its table, its default values, and its arrays with the linked list
+//! of the firmware's memory manager.
 
 use crate::bytecode::{DEFAULT_ZERO, DOPE_VECTOR_BYTES, NONE, Type};
 
@@ -15,7 +15,7 @@ pub(super) struct Array(pub(super) u16);
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Cluster(pub(super) u16);
 
-/// The dataspace as it grows.
+/// A dataspace under construction.
 #[derive(Debug, Default)]
 pub(super) struct Dataspace {
     table: Vec<u8>,
@@ -24,17 +24,17 @@ pub(super) struct Dataspace {
     arrays: Vec<Stored>,
 }
 
-/// The dataspace as it goes into the file.
+/// The sections of a dataspace in the file.
 #[derive(Debug)]
 pub(super) struct Sections {
     /// Four bytes an entry: type, flags, offset.
     pub(super) table: Vec<u8>,
-    /// Values that are not zero, then what [`dynamic`](Self::dynamic) names.
+    /// Values that are not zero, then [`dynamic_bytes`](Self::dynamic_bytes) of arrays.
     pub(super) defaults: Vec<u8>,
     pub(super) static_bytes: usize,
     /// Contents of arrays and their dope vectors: the last bytes of the defaults.
     pub(super) dynamic_bytes: usize,
-    /// Where the dope vectors lie in the dataspace.
+    /// Offset of the dope vectors in the dataspace.
     pub(super) dope_offset: usize,
     /// First and last dope vector of the memory manager's list.
     pub(super) head: u16,
@@ -88,7 +88,7 @@ impl Dataspace {
         pad(&mut dynamic);
         let dope_offset = static_bytes + dynamic.len();
 
-        // The list runs by offset: arrays with content, the table of dope vectors, arrays without.
+        // The list is ordered by offset: arrays with content, the table of dope vectors, arrays without content.
         let numbers = |filled: bool| (1..).zip(&offsets).filter(move |(_, o)| o.is_some() == filled).map(|(i, _)| i);
         let list: Vec<u16> = numbers(true).chain([0]).chain(numbers(false)).collect();
         let link = |vector: u16| {
@@ -96,7 +96,7 @@ impl Dataspace {
             after.copied().unwrap_or(NONE)
         };
         let count = self.arrays.len() + 1;
-        // The fourth field once was a way back to the array; the firmware fills it in itself.
+        // The fourth field once referred back to the array; the firmware sets it itself.
         let table = [dope_offset as u16, DOPE_VECTOR_BYTES as u16, count as u16, NONE, link(0)];
         dynamic.extend(table.iter().flat_map(|field| field.to_le_bytes()));
         for ((vector, array), offset) in (1..).zip(&self.arrays).zip(&offsets) {
@@ -124,7 +124,7 @@ impl Dataspace {
         id
     }
 
-    /// Room for a value; the brick's processor reads each from a place that its size divides.
+    /// Reserves an aligned offset for a value: the processor needs natural alignment.
     fn reserve(&mut self, bytes: usize) -> usize {
         self.reserve_aligned(bytes);
         self.static_bytes += bytes;

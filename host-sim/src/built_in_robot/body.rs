@@ -1,4 +1,4 @@
-//! A run of the built-in robot, from rest.
+//! The state of the built-in robot during a run.
 
 use std::collections::VecDeque;
 
@@ -11,22 +11,23 @@ use crate::chance::Generator;
 use crate::geometry::Pose;
 use crate::logs::Row;
 
-/// Length of a tick of the physics; short against how fast tyres take hold.
+/// Time step of the physics; short compared with the relaxation of the tyres.
 const TICK_MS: f64 = 2.0;
 
-/// The built-in robot somewhere in a run.
+/// The built-in robot during a run.
 #[derive(Clone, Debug)]
 pub struct Body<'a> {
     robot: &'a BuiltInRobot,
     drivetrain: Drivetrain,
     receiver: Receiver,
-    /// Where the robot was, back to when the sensor sent the ping that it now tells of.
+    /// Past poses with their times, back to when the sensor sent the ping whose echo it reports now.
     trail: VecDeque<(f64, Pose)>,
     t_ms: f64,
-    /// What the motor driver holds, and what is still on its way to it with the time of its arrival.
+    /// The command in effect at the motor driver.
     command: [f64; 2],
+    /// Delayed commands with the times of their arrival.
     on_the_way: VecDeque<(f64, [f64; 2])>,
-    /// So far the robot can go before it could touch anything.
+    /// Lower bound on the distance that the robot can travel without touching anything, cm.
     clear_cm: f64,
     crashed: bool,
 }
@@ -47,7 +48,7 @@ impl<'a> Body<'a> {
         }
     }
 
-    /// Gives the motors these commands, -100..=100, and lets time pass. A robot that touches something stays there.
+    /// Applies left and right command, -100..=100, for a duration. A robot that touches something stays there.
     pub fn drive(&mut self, command: [f64; 2], duration_ms: f64, rng: &mut Generator) {
         let link = &self.robot.hardware.link;
         let due_ms = self.t_ms + link.delay_ms + link.delay_jitter_ms * rng.random::<f64>();
@@ -69,33 +70,33 @@ impl<'a> Body<'a> {
         self.t_ms = end_ms;
     }
 
-    /// Where the robot is.
+    /// The true pose.
     pub fn true_pose(&self) -> Pose {
         self.drivetrain.pose()
     }
 
-    /// Whether it has touched a wall or an obstacle.
+    /// Whether the body has touched a wall or an obstacle.
     pub fn crashed(&self) -> bool {
         self.crashed
     }
 
-    /// How far its body is from the nearest wall or obstacle, cm.
+    /// Distance between the body and the nearest wall or obstacle, cm.
     pub fn clearance_cm(&self) -> f64 {
         self.robot.clearance_cm(&self.true_pose())
     }
 
-    /// One reading of the ultrasonic sensor, cm.
+    /// One reading of the ultrasonic sensor, cm; `None` if it produced no value.
     pub fn read_sonar(&mut self, rng: &mut Generator) -> Option<f64> {
         let (_, pose) = self.trail[0];
         self.receiver.read(&self.robot.hardware.sonar, &self.robot.sides, &pose, self.t_ms, rng)
     }
 
-    /// Where the tracker sees the robot.
+    /// The pose that the tracker measures; `None` for a lost frame.
     pub fn track(&self, rng: &mut Generator) -> Option<Pose> {
         self.robot.hardware.tracker.see(&self.true_pose(), rng)
     }
 
-    /// The row of a log for this moment, at which the motors are given `command` and the sensor read `echo_cm`.
+    /// The current row of a log, with the command from here on and the reading that led to it.
     pub fn row(&self, command: [f64; 2], echo_cm: Option<f64>, rng: &mut Generator) -> Row {
         let [rot_left_deg, rot_right_deg] = self.drivetrain.counters_deg();
         Row {

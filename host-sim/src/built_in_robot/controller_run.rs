@@ -1,4 +1,4 @@
-//! A controller on the built-in robot: what "the real world" says of it.
+//! Runs a controller on the built-in robot.
 
 use mindgap_core::controller::{Controller, Machine, Motors, Status};
 
@@ -7,27 +7,27 @@ use crate::chance::Generator;
 use crate::geometry::Pose;
 use crate::logs::{Row, Run};
 
-/// A controller's run, moment by moment.
+/// The trajectory of a controller's run.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Track {
-    /// One a step, the first before any; the last one step after the motors stopped, when the robot stands.
-    pub moments: Vec<Moment>,
-    /// How it ended.
-    pub outcome: Outcome,
+pub struct Trajectory {
+    /// One point a step, beginning at the start; the last one step after the motors stopped, when the robot is at rest.
+    pub points: Vec<TrajectoryPoint>,
+    /// How the run ended.
+    pub termination: Termination,
 }
 
-/// One moment of a run.
+/// One point of a trajectory.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Moment {
-    /// Where the robot was.
+pub struct TrajectoryPoint {
+    /// The true pose.
     pub true_pose: Pose,
-    /// What was logged: the commands from here on, the tracked pose, the reading that led to them.
+    /// The row of the log: the commands from here on, the tracked pose, and the reading that led to them.
     pub row: Row,
 }
 
 /// How a controller's run on the robot ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Outcome {
+pub enum Termination {
     /// The sixth tuple's test held.
     Finished,
     /// The step limit was reached.
@@ -36,15 +36,15 @@ pub enum Outcome {
     Crashed,
 }
 
-/// Runs a controller from `start` until it stops the motors or the robot crashes.
-pub fn run_controller(robot: &BuiltInRobot, controller: &Controller, start: Pose, rng: &mut Generator) -> Track {
+/// Runs a controller from the pose `start` until it stops the motors or the robot crashes.
+pub fn run_controller(robot: &BuiltInRobot, controller: &Controller, start: Pose, rng: &mut Generator) -> Trajectory {
     let mut body = robot.start(start, rng);
     let mut machine = Machine::start();
-    let mut moments = Vec::new();
+    let mut points = Vec::new();
     let mut echo_cm = None;
     loop {
         let command = speeds(machine.motors(controller));
-        moments.push(Moment { true_pose: body.true_pose(), row: body.row(command, echo_cm, rng) });
+        points.push(TrajectoryPoint { true_pose: body.true_pose(), row: body.row(command, echo_cm, rng) });
         body.drive(command, robot.step_length_ms(f64::from(controller.step_ms), rng), rng);
         if body.crashed() || machine.status() != Status::Running {
             break;
@@ -52,24 +52,24 @@ pub fn run_controller(robot: &BuiltInRobot, controller: &Controller, start: Pose
         echo_cm = body.read_sonar(rng);
         machine.step(controller, echo_cm);
     }
-    moments.push(Moment { true_pose: body.true_pose(), row: body.row([0.0, 0.0], None, rng) });
-    let outcome = match machine.status() {
-        _ if body.crashed() => Outcome::Crashed,
-        Status::Finished => Outcome::Finished,
-        Status::Running | Status::TimedOut => Outcome::TimedOut,
+    points.push(TrajectoryPoint { true_pose: body.true_pose(), row: body.row([0.0, 0.0], None, rng) });
+    let termination = match machine.status() {
+        _ if body.crashed() => Termination::Crashed,
+        Status::Finished => Termination::Finished,
+        Status::Running | Status::TimedOut => Termination::TimedOut,
     };
-    Track { moments, outcome }
+    Trajectory { points, termination }
 }
 
-impl Track {
-    /// Where the robot came to rest.
+impl Trajectory {
+    /// The true pose at which the robot came to rest.
     pub fn end(&self) -> Pose {
-        self.moments[self.moments.len() - 1].true_pose
+        self.points[self.points.len() - 1].true_pose
     }
 
     /// The run as a log.
     pub fn to_run(&self, name: impl Into<String>) -> Run {
-        Run { name: name.into(), rows: self.moments.iter().map(|moment| moment.row).collect() }
+        Run { name: name.into(), rows: self.points.iter().map(|point| point.row).collect() }
     }
 }
 

@@ -1,4 +1,4 @@
-//! The robot as a body on the floor: battery, two driven wheels, a castor, and what the floor does to them.
+//! Rigid-body dynamics of the robot on the floor: battery, two driven wheels, a castor, and floor drag.
 
 use std::f64::consts::TAU;
 
@@ -11,12 +11,12 @@ use super::wheel::{Tick, Wheel, dragged};
 use crate::chance::Generator;
 use crate::geometry::{Pose, direction, wrap_rad};
 
-/// The floor under the wheels is another one after this.
+/// Time after which the floor under the wheels has changed.
 const PATCH_MS: f64 = 40.0;
-/// Below this speed the castor has no direction to turn to, m/s.
+/// Least speed at which the castor aligns with the motion, m/s.
 const STANDSTILL_M_S: f64 = 1e-4;
 
-/// Where the robot is and how its parts move.
+/// Pose, velocities and electrical state.
 #[derive(Clone, Debug)]
 pub(super) struct Drivetrain {
     pose: Pose,
@@ -28,14 +28,14 @@ pub(super) struct Drivetrain {
     wheels: [Wheel; 2],
     /// A unit vector along which the castor rolls, in the robot's own frame.
     castor: DVec2,
-    /// Drawn from the battery: now, and since the run began.
+    /// Battery current now, and charge drawn since the run began.
     current_a: f64,
     drawn_c: f64,
     patch: Patch,
     patch_left_ms: f64,
 }
 
-/// What the floor does under the wheels just now, each in its own deviations.
+/// Random properties of the floor under the wheels, in standard deviations.
 #[derive(Clone, Debug)]
 struct Patch {
     roll: [Wander; 2],
@@ -75,13 +75,13 @@ impl Drivetrain {
         [self.wheels[LEFT].counter_deg(), self.wheels[RIGHT].counter_deg()]
     }
 
-    /// Voltage at the battery's poles.
+    /// Terminal voltage of the battery.
     pub fn battery_v(&self, hardware: &Hardware) -> f64 {
         let battery = &hardware.battery;
         (battery.fresh_v - battery.fade_v_per_c * self.drawn_c - battery.inner_ohm * self.current_a).max(0.0)
     }
 
-    /// Moves on by one tick under these commands, -100..=100; the way driven, cm.
+    /// Advances by one time step under left and right command, -100..=100; returns the distance travelled, cm.
     pub fn tick(&mut self, hardware: &Hardware, command: [f64; 2], tick_ms: f64, rng: &mut Generator) -> f64 {
         self.patch_left_ms -= tick_ms;
         if self.patch_left_ms <= 0.0 {
@@ -122,7 +122,7 @@ impl Drivetrain {
         (force_n, torque_nm)
     }
 
-    /// The castor turns to where it is dragged; until it has, it pushes across its own wheel.
+    /// Force and torque of the castor, which swivels into the direction of motion and pushes sideways until it has.
     fn castor_push(&mut self, hardware: &Hardware, seconds: f64) -> (DVec2, f64) {
         let castor = &hardware.castor;
         let dragged_m_s = DVec2::new(self.speed_m_s.x, self.speed_m_s.y - self.turning_rad_s * castor.behind_m);
@@ -137,7 +137,7 @@ impl Drivetrain {
         (force_n, -castor.behind_m * force_n.y)
     }
 
-    /// Gravity along the tilt.
+    /// Component of gravity along the tilted floor, N.
     fn weight_push(&self, hardware: &Hardware) -> DVec2 {
         let floor = &hardware.floor;
         let weight_n = floor.downhill * (hardware.chassis.mass_kg * GRAVITY);
@@ -161,7 +161,7 @@ impl Drivetrain {
         );
     }
 
-    /// Fibres that lean hold back most when driven against them, and not at all the other way; a rough patch always.
+    /// Drag of the floor, N: leaning fibres resist motion against them only, a rough patch resists any motion.
     fn floor_drag_n(&self, hardware: &Hardware) -> f64 {
         let floor = &hardware.floor;
         let way = self.facing * self.speed_m_s.x.signum();

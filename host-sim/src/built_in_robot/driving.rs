@@ -1,37 +1,37 @@
-//! Kinds of random driving: which commands are drawn, and for how long each is held.
+//! Kinds of random driving: the distribution of commands and of how long each is held.
 
 use rand::RngExt;
 
 use crate::chance::Generator;
 
-/// A kind of random driving. Logs of another kind than a simulator was learned from excite other effects.
+/// A kind of random driving. Logs of a kind other than that of the training logs excite other effects.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Driving {
     /// Its name.
     pub name: &'static str,
     /// Slowest and fastest command of the faster wheel.
     pace: [f64; 2],
-    /// A command is held for so many steps, at least and at most.
+    /// Least and largest number of steps for which a command is held.
     held: [usize; 2],
-    /// How often, in turn: nearly straight, an arc, a spin, nearly straight back, any two commands.
+    /// Relative frequencies of: nearly straight, an arc, a spin, nearly straight back, any two commands.
     weights: [u32; 5],
 }
 
-/// Spins, slowest and fastest.
+/// Slowest and fastest command of a spin.
 const SPIN: [f64; 2] = [10.0, 60.0];
-/// Any two commands lie between these.
+/// Range of two independent commands.
 const ANY: [f64; 2] = [-60.0, 80.0];
-/// What is nearly straight differs from wheel to wheel by at most this.
+/// Largest difference between the wheels when driving nearly straight.
 const NEARLY: f64 = 12.0;
-/// Driving back is slower by this factor.
+/// Speed backwards relative to forwards.
 const BACK: f64 = 0.7;
 
 impl Driving {
-    /// As the paper's robot was driven: straight on and back or nearly so, arcs, spins and single wheels, slow and fast.
-    /// Controllers drive nearly straight much of the time, and there friction shows.
+    /// The mixture of the training logs (paper, section VI): straight and nearly straight, back, arcs, spins and single
+    /// wheels, slow and fast. Controllers drive nearly straight much of the time, where friction matters most.
     pub const MIXED: Driving = Driving { name: "mixed", pace: [15.0, 85.0], held: [1, 3], weights: [3, 8, 4, 1, 4] };
 
-    /// Every kind.
+    /// All kinds.
     pub const ALL: [Driving; 5] = [
         Driving::MIXED,
         Driving { name: "slow", pace: [15.0, 50.0], held: [2, 4], weights: [3, 8, 4, 1, 2] },
@@ -40,17 +40,17 @@ impl Driving {
         Driving { name: "back and forth", pace: [15.0, 85.0], held: [1, 3], weights: [5, 2, 4, 7, 2] },
     ];
 
-    /// The kind of that name.
+    /// The kind of a name; `None` for an unknown name.
     pub fn named(name: &str) -> Option<Driving> {
         Driving::ALL.into_iter().find(|kind| kind.name == name)
     }
 
-    /// For how many steps a command is held.
+    /// Random number of steps for which a command is held.
     pub(super) fn steps(&self, rng: &mut Generator) -> usize {
         rng.random_range(self.held[0]..=self.held[1])
     }
 
-    /// A random command in whole numbers.
+    /// Random left and right command, integers.
     pub(super) fn command(&self, rng: &mut Generator) -> [f64; 2] {
         let fastest = self.pace[1];
         let pace = rng.random_range(self.pace[0]..=fastest);
@@ -68,7 +68,7 @@ impl Driving {
         command.map(|c| c.round())
     }
 
-    /// The place of one of the weights, as often as it says.
+    /// A random index, distributed by the weights.
     fn drawn(&self, rng: &mut Generator) -> usize {
         let drawn = rng.random_range(0..self.weights.iter().sum::<u32>());
         let until = self.weights.iter().scan(0, |sum, weight| {

@@ -1,6 +1,6 @@
-//! Effects: what can be made different in the built-in robot, each by its name in the contracts' table or beside it.
+//! Effects: deviations of the built-in robot from its healthy state, each with an id.
 //!
-//! An effect is another part or another floor (`fitting`), never a change to a simulator's step.
+//! An effect changes a part or the floor (`fitting`), never a step of a simulator.
 
 mod catalogue;
 pub(super) mod fitting;
@@ -14,25 +14,25 @@ pub use scale::Scale;
 
 use crate::chance::Generator;
 
-/// An effect that is switched on: `ID`, `ID=STRENGTH` or `ID=STRENGTH@DETAIL` as text.
+/// An active effect; its text form is `ID`, `ID=STRENGTH` or `ID=STRENGTH@DETAIL`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ActiveEffect {
-    /// Which one.
+    /// The effect.
     pub effect: Effect,
-    /// How strong, in the unit of [`Effect::strength_range`].
+    /// Strength, in the unit of [`Effect::strength_range`].
     pub strength: f64,
-    /// Its second number in the unit of [`Effect::detail_range`]; zero for an effect that has none.
+    /// Second parameter, in the unit of [`Effect::detail_range`]; zero for an effect without one.
     pub detail: f64,
 }
 
 impl ActiveEffect {
-    /// The effect at its default strength, which logs show clearly.
+    /// The effect at its default strength, which is clearly visible in logs.
     pub fn new(effect: Effect) -> Self {
         let detail = effect.detail_range().map_or(0.0, |range| range.default);
         ActiveEffect { effect, strength: effect.strength_range().default, detail }
     }
 
-    /// The effect at a random strength that is neither none nor beyond its range.
+    /// The effect at a random strength within its range and away from neutral.
     pub fn random(effect: Effect, rng: &mut Generator) -> Self {
         let strength = effect.strength_range().draw(rng);
         let detail = effect.detail_range().map_or(0.0, |range| range.draw(rng));
@@ -87,7 +87,7 @@ mod tests {
     }
 
     #[test]
-    fn a_wrong_name_or_number_is_told() {
+    fn a_wrong_name_or_number_is_refused() {
         let wrong = |text: &str| text.parse::<ActiveEffect>().unwrap_err();
         let unknown = wrong("battery_sagg");
         assert!(Effect::all().all(|effect| unknown.contains(effect.id())), "{unknown}");

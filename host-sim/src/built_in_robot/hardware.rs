@@ -1,15 +1,15 @@
-//! What the built-in robot is made of, in SI units: a LEGO NXT differential drive as its parts are measured, before
-//! any effect. Effects are other parts, so every number that one of them changes stands here, at its healthy value.
+//! Parameters of the built-in robot in SI units: a LEGO NXT differential drive as its parts are measured, without
+//! effects. Every parameter that an effect changes has its healthy value here.
 
 use glam::DVec2;
 
 use crate::logs::{Robot, Scene};
 
-/// m/s².
+/// Gravitational acceleration, m/s².
 pub(super) const GRAVITY: f64 = 9.81;
-/// One side of the robot in arrays of two.
+/// Index of the left side in arrays of two.
 pub(super) const LEFT: usize = 0;
-/// The other.
+/// Index of the right side.
 pub(super) const RIGHT: usize = 1;
 
 /// All parts, and the floor that they stand on.
@@ -30,16 +30,16 @@ pub(super) struct Hardware {
     pub tracker: Tracker,
 }
 
-/// The way of a command to the motor driver.
+/// The link that carries commands to the motor driver.
 #[derive(Clone, Debug)]
 pub(super) struct Link {
-    /// From the logged time to the driver.
+    /// Delay between the logged time and the driver.
     pub delay_ms: f64,
-    /// At most so much more, another time for each command.
+    /// Largest random delay on top of it, drawn for each command.
     pub delay_jitter_ms: f64,
-    /// The driver knows multiples of this command alone; zero for all.
+    /// Quantisation step of commands at the driver; zero for none.
     pub grain: f64,
-    /// Standard deviation of a step's length.
+    /// Standard deviation of the duration of a step.
     pub step_jitter_ms: f64,
 }
 
@@ -47,7 +47,7 @@ pub(super) struct Link {
 pub(super) struct Battery {
     pub fresh_v: f64,
     pub inner_ohm: f64,
-    /// What the brick itself draws.
+    /// Current drawn by the brick itself.
     pub idle_a: f64,
     /// Voltage lost for each coulomb drawn since the run began.
     pub fade_v_per_c: f64,
@@ -68,30 +68,30 @@ pub(super) struct Motor {
     pub viscous_nm_s: f64,
     /// Share of the commanded voltage that its bridge lets through.
     pub bridge: f64,
-    /// Share of the speed forwards that it reaches backwards.
+    /// Speed backwards relative to forwards.
     pub backwards: f64,
-    /// The bridge gives no more than this.
+    /// Largest voltage of the bridge.
     pub limit_v: f64,
-    /// Play between shaft and wheel.
+    /// Backlash between shaft and wheel.
     pub play_rad: f64,
 }
 
 #[derive(Clone, Debug)]
 pub(super) struct Tyre {
     pub radius_m: f64,
-    /// Distance of its hub from its middle, as a share of the radius.
+    /// Eccentricity of the hub, as a share of the radius.
     pub eccentricity: f64,
-    /// Largest push, as a share of the load on it.
+    /// Coefficient of static friction: largest force as a share of the load.
     pub grip: f64,
-    /// What is left of the grip when it slides.
+    /// Sliding friction relative to static friction.
     pub sliding: f64,
-    /// Slip at which the push comes near its largest.
+    /// Slip velocity at which the force approaches its largest.
     pub creep_m_s: f64,
-    /// Load that it carries.
+    /// Load on the tyre.
     pub load_n: f64,
     /// Rolling resistance as a share of the load: the dry part.
     pub rolling: f64,
-    /// And the part that grows with speed, as the tyre flexes.
+    /// The part that grows with speed, as the tyre flexes.
     pub flexing_s_per_m: f64,
 }
 
@@ -99,18 +99,18 @@ pub(super) struct Tyre {
 pub(super) struct Chassis {
     pub mass_kg: f64,
     pub yaw_inertia_kg_m2: f64,
-    /// From the middle of the axle to where the tyres touch the floor.
+    /// Distance from the middle of the axle to the contact points of the tyres.
     pub half_track_m: f64,
 }
 
 /// The rear support, a wheel that swivels behind its pivot.
 #[derive(Clone, Debug)]
 pub(super) struct Castor {
-    /// How far behind the axle it stands.
+    /// Distance behind the axle.
     pub behind_m: f64,
-    /// From its pivot to where it touches the floor.
+    /// Distance from its pivot to its contact point.
     pub trail_m: f64,
-    /// Sideways push while it is being turned round.
+    /// Sideways force while it swivels.
     pub scrub_n: f64,
     /// Rolling drag.
     pub drag_n: f64,
@@ -120,51 +120,52 @@ pub(super) struct Castor {
 pub(super) struct Floor {
     /// Sine of its tilt along the world's axes, pointing downhill.
     pub downhill: DVec2,
-    /// Drag of leaning fibres when driven against them; the vector points the way of most drag.
+    /// Drag of leaning fibres against motion; the vector points in the direction of most drag.
     pub nap_n: DVec2,
     /// Drag on a round patch in the middle of the room.
     pub patch_n: f64,
     pub patch_middle_cm: DVec2,
     pub patch_radius_cm: f64,
-    /// Torque against turning on the spot, from tyres as wide as these.
+    /// Scrub torque of the wide tyres against turning on the spot.
     pub scrub_nm: f64,
-    /// Standard deviations of what changes from place to place: rolled way (share), where the tyre touches, toe angle,
-    /// scrub (share).
+    /// Standard deviations of what varies from place to place: rolling radius (share), contact point, toe angle, scrub
+    /// (share).
     pub roughness: f64,
     pub contact_wander_m: f64,
     pub toe_wander_rad: f64,
     pub scrub_wander: f64,
 }
 
-/// The ultrasonic sensor, and what sound meets in this room. Levels are dB above what triggers it.
+/// The ultrasonic sensor and the acoustics of the room. Levels are dB above the threshold of the sensor.
 #[derive(Clone, Debug)]
 pub(super) struct Sonar {
-    /// Ahead of the axle's middle and to its left, cm; the axis, counter-clockwise.
+    /// Position ahead of the axle's middle and to its left, cm; direction of the axis, counter-clockwise.
     pub place_cm: DVec2,
     pub yaw_rad: f64,
     pub min_cm: f64,
     pub max_cm: f64,
     pub half_angle_rad: f64,
-    /// Level at the beam's edge against its middle.
+    /// Level at the beam's edge relative to its middle.
     pub edge_db: f64,
-    /// Extra level at the left edge, taken from the right one.
+    /// Level added at the left edge and subtracted at the right one.
     pub lean_db: f64,
-    /// Level of an echo from a wall one metre ahead, met squarely.
+    /// Level of an echo from a wall one metre ahead at normal incidence.
     pub level_db: f64,
     pub absorption_db_per_m: f64,
-    /// Level of an echo from anything but the arena's own sides, which are the first so many of all.
+    /// Level added to echoes from anything but the arena's own sides, and the number of these, which come first in the list
+    /// of all sides.
     pub obstacle_db: f64,
     pub arena_sides: usize,
-    /// How far a wall's facets lean from its normal.
+    /// Incidence angle at which the amplitude of the echo from a wall's facets falls to 1/e.
     pub facet_rad: f64,
-    /// Share of the sound that a wall scatters every way.
+    /// Share of the sound that a wall scatters diffusely.
     pub diffuse: f64,
-    /// What one mirroring at a wall costs.
+    /// Loss of a specular reflection.
     pub mirror_db: f64,
     /// Standard deviations of the level: from ping to ping, and between directions within one.
     pub ping_db: f64,
     pub speckle_db: f64,
-    /// Standard deviation of a reading from a square echo, and what a grazing one adds.
+    /// Standard deviation of a reading at normal incidence, and the addition at grazing incidence.
     pub scatter_cm: f64,
     pub grazing_cm: f64,
     /// Clock rate and delay of its timer.
@@ -172,42 +173,42 @@ pub(super) struct Sonar {
     pub delay_cm: f64,
     /// Change of its clock rate in a minute, as it warms.
     pub warming_per_min: f64,
-    /// Chance that the transducer's own ringing triggers it, and at what distance.
+    /// Probability that the transducer's own ringing triggers it, and the distance then.
     pub ringing: f64,
     pub ringing_cm: f64,
-    /// Chance of an echo from something that is always there, such as the floor or a cable, and its distance.
+    /// Probability of an echo from a fixed object such as the floor or a cable, and its distance.
     pub ghost: f64,
     pub ghost_cm: f64,
-    /// Chance of hearing another's ping.
+    /// Probability of receiving the ping of another sensor.
     pub crosstalk: f64,
-    /// Share of the time that its plug has no contact.
+    /// Share of the time in which its plug has no contact.
     pub loose: f64,
-    /// A reading is of a ping sent so long ago.
+    /// Age of the ping that a reading comes from.
     pub age_ms: f64,
 }
 
 /// The camera at the ceiling and the compass on the robot.
 #[derive(Clone, Debug)]
 pub(super) struct Tracker {
-    /// What the picture's middle shows, cm.
+    /// Point of the floor at the middle of the picture, cm.
     pub middle_cm: DVec2,
     pub scale: f64,
     pub turn_rad: f64,
     /// Radial distortion of the lens.
     pub distortion_per_m2: f64,
-    /// Where the marker sits on the robot, ahead of the axle's middle and to its left.
+    /// Position of the marker ahead of the axle's middle and to its left.
     pub marker_cm: DVec2,
-    /// Field of iron on the robot against the earth's, in the robot's frame.
+    /// Field of the iron on the robot relative to the earth's, in the robot's frame.
     pub iron: DVec2,
     pub position_noise_cm: f64,
     pub marker_noise_rad: f64,
     pub compass_noise_rad: f64,
-    /// Chance of a lost frame.
+    /// Probability of a lost frame.
     pub lost: f64,
 }
 
 impl Hardware {
-    /// The healthy robot, with a battery that takes it to the spec's full speed on the spec's wheels.
+    /// The healthy robot, with the battery voltage that gives the specified full speed on the specified wheels.
     pub fn new(spec: &Robot, scene: &Scene) -> Self {
         let motor = Motor {
             torque_nm_per_a: 0.317,
@@ -349,10 +350,7 @@ impl Tracker {
     }
 }
 
-/// The middle of everything in a scene: the camera hangs above it.
+/// The middle of a scene, above which the camera hangs, cm.
 fn middle_cm(scene: &Scene) -> DVec2 {
-    let ends = || scene.sides().into_iter().flat_map(|side| [side.from_cm, side.to_cm]);
-    let low = ends().fold(DVec2::INFINITY, DVec2::min);
-    let high = ends().fold(DVec2::NEG_INFINITY, DVec2::max);
-    (low + high) / 2.0
+    scene.bounding_box().map_or(DVec2::ZERO, |all| (all.low_cm + all.high_cm) / 2.0)
 }

@@ -1,11 +1,11 @@
-//! The built-in robot's dice.
+//! Random variables of the built-in robot.
 
 use rand::RngExt;
 
 use crate::chance::Generator;
 
-/// A normally distributed number of mean 0 and deviation 1, by Marsaglia's polar method with libm's logarithm, since
-/// the bits of a log must not depend on the platform's.
+/// A standard normal variable, by Marsaglia's polar method with libm's logarithm: a platform's own would make logs differ
+/// between machines.
 pub(super) fn normal(rng: &mut Generator) -> f64 {
     loop {
         let (x, y) = (rng.random_range(-1.0..1.0f64), rng.random_range(-1.0..1.0f64));
@@ -16,20 +16,20 @@ pub(super) fn normal(rng: &mut Generator) -> f64 {
     }
 }
 
-/// Whether something of this probability happens.
+/// A Bernoulli variable of this probability.
 pub(super) fn happens(probability: f64, rng: &mut Generator) -> bool {
     rng.random::<f64>() < probability
 }
 
-/// A number that wanders about zero with deviation 1, as a floor does under a wheel.
+/// A stationary first-order autoregressive process of mean 0 and standard deviation 1, such as the floor under a wheel.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Wander(f64);
 
 impl Wander {
-    /// What is left of the number after one [`Wander::step`].
+    /// Autocorrelation over one [`Wander::step`].
     const KEPT: f64 = 0.85;
 
-    /// A place that nothing is known of.
+    /// A value from the stationary distribution.
     pub fn anywhere(rng: &mut Generator) -> Self {
         Wander(normal(rng))
     }

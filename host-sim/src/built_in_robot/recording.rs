@@ -1,5 +1,5 @@
-//! Random-command logs, as the paper's robot made them (section VI): random commands, each held for a few steps, with
-//! somebody standing by who lets the robot hit nothing.
+//! Records logs of random commands, each held for a few steps (paper, section VI), as if somebody stood by who prevents
+//! collisions.
 
 use std::f64::consts::{FRAC_PI_4, PI};
 
@@ -9,23 +9,24 @@ use rayon::prelude::*;
 
 use super::{ActiveEffect, Body, BuiltInRobot, Driving};
 use crate::chance::{Generator, generator};
-use crate::geometry::{Pose, cast, direction};
+use crate::geometry::{Pose, Rectangle, cast, direction};
 use crate::logs::{Logs, Robot, Row, Run, Scene};
 use crate::problem::{Problem, Result};
 
-/// Nothing comes nearer to the robot's body than this, cm.
+/// Least clearance of the robot's body, cm.
 const KEPT_CLEAR_CM: f64 = 2.0;
-/// A run starts with at least this room round the body, cm.
+/// Least clearance of the body at the start of a run, cm.
 const START_ROOM_CM: f64 = 5.0;
-/// So many random places are tried before a room counts as too small.
+/// Number of random places tried before a room counts as too small.
 const PLACES_TRIED: usize = 10_000;
-/// So many random commands are tried before the robot is stopped.
+/// Number of random commands tried before the robot is stopped.
 const COMMANDS_TRIED: usize = 40;
-/// A robot that is told to stop stands after so many steps.
+/// Number of steps in which the robot comes to rest.
 const STEPS_TO_STAND: usize = 2;
-/// A run in which the robot hits something after all is driven again, so many times.
+/// Number of attempts at a run without a collision.
 const ATTEMPTS: u64 = 20;
-/// Places of generators: the purpose, and within it for each run one for what happens and one for what is feared.
+/// Stream keys of the generators: the purpose, and within it for each run one for the drive and one for the predictions
+/// that keep it safe.
 const RECORDING: u64 = u64::from_be_bytes(*b"record  ");
 const DRIVING: u64 = 0;
 const FORESIGHT: u64 = 1;
@@ -33,7 +34,7 @@ const FORESIGHT: u64 = 1;
 /// Logs of `runs` runs of `steps` steps each, the same for the same seed on any number of threads.
 ///
 /// # Errors
-/// When the room has no place for the robot, or when there is nothing to record.
+/// When the scene has no room for the robot, or when `runs` or `steps` is 0.
 pub fn record(
     spec: &Robot,
     scene: &Scene,
@@ -45,10 +46,10 @@ pub fn record(
     record_driving(&Driving::MIXED, spec, scene, [runs, steps], effects, seed)
 }
 
-/// The same with another kind of driving; `amount` is runs and steps of each.
+/// As [`record`], with any kind of driving; `amount` is the number of runs and of steps in each.
 ///
 /// # Errors
-/// When the room has no place for the robot, or when there is nothing to record.
+/// As [`record`].
 pub fn record_driving(
     driving: &Driving,
     spec: &Robot,
@@ -69,7 +70,7 @@ pub fn record_driving(
                 let mut rng = generator(seed, &[RECORDING, run, attempt, DRIVING]);
                 let mut foresight = generator(seed, &[RECORDING, run, attempt, FORESIGHT]);
                 let start = free_place(spec, scene, &mut rng)?;
-                let about = About { robot: &robot, driving, step_ms: spec.step_ms, steps };
+                let about = Recorder { robot: &robot, driving, step_ms: spec.step_ms, steps };
                 about.drive(start, &mut rng, &mut foresight)
             });
             Ok(Run { name: format!("run-{run:03}"), rows: rows.ok_or_else(|| no_room(spec))? })
@@ -85,34 +86,32 @@ fn no_room(spec: &Robot) -> Problem {
     ))
 }
 
-/// A random pose at which the robot has room to move.
+/// A random start pose with enough clearance.
 fn free_place(spec: &Robot, scene: &Scene, rng: &mut Generator) -> Option<Pose> {
-    let ends = || scene.sides().into_iter().flat_map(|side| [side.from_cm, side.to_cm]);
-    let low = ends().fold(DVec2::INFINITY, DVec2::min);
-    let high = ends().fold(DVec2::NEG_INFINITY, DVec2::max);
+    let Rectangle { low_cm, high_cm } = scene.bounding_box()?;
     let heading_rad = rng.random_range(-PI..PI);
     (0..PLACES_TRIED)
-        .map(|_| low + (high - low) * DVec2::new(rng.random(), rng.random()))
+        .map(|_| low_cm + (high_cm - low_cm) * DVec2::new(rng.random(), rng.random()))
         .find(|at_cm| is_enclosed(scene, *at_cm) && scene.has_room_for(*at_cm, spec.body_radius_cm + START_ROOM_CM))
         .map(|at_cm| Pose::new(at_cm.x, at_cm.y, heading_rad))
 }
 
-/// Whether there is something in every direction: the robot cannot drive away from here.
+/// Whether there is a wall or obstacle in all of eight directions, so that the robot cannot leave.
 fn is_enclosed(scene: &Scene, at_cm: DVec2) -> bool {
     let sides = scene.sides();
     (0..8).all(|eighth| cast(&sides, at_cm, direction(f64::from(eighth) * FRAC_PI_4)).is_some())
 }
 
-/// Who drives about, how, and for how long.
-struct About<'a> {
+/// Records the runs of one robot.
+struct Recorder<'a> {
     robot: &'a BuiltInRobot,
     driving: &'a Driving,
     step_ms: f64,
     steps: usize,
 }
 
-impl About<'_> {
-    /// One run's rows, one more than steps since a step lies between two; none when the robot hit something.
+impl Recorder<'_> {
+    /// The rows of one run, one more than steps; `None` if the robot hit something.
     fn drive(&self, start: Pose, rng: &mut Generator, foresight: &mut Generator) -> Option<Vec<Row>> {
         let mut body = self.robot.start(start, rng);
         let mut rows = Vec::with_capacity(self.steps + 1);
@@ -132,7 +131,7 @@ impl About<'_> {
         None
     }
 
-    /// A random command after which the robot can still be stopped clear of everything; stopping is always one.
+    /// A random command after which the robot can still be stopped without a collision; else the command to stop.
     fn safe_command(&self, body: &Body, rng: &mut Generator, foresight: &mut Generator) -> Held {
         (0..COMMANDS_TRIED)
             .map(|_| Held { command: self.driving.command(rng), steps: self.driving.steps(rng) })
@@ -141,7 +140,7 @@ impl About<'_> {
     }
 }
 
-/// A command, and for how many steps it is held.
+/// A command and the number of steps for which it is held.
 #[derive(Clone, Copy)]
 struct Held {
     command: [f64; 2],

@@ -1,11 +1,11 @@
-//! The rooms that come with the built-in robot, and the robot's own measurements.
+//! The default robot and the default rooms.
 
 use glam::DVec2;
 
 use crate::geometry::{Pose, Rectangle};
 use crate::logs::{Robot, Scene, Ultrasonic};
 
-/// The robot as its builder measured it: a LEGO NXT differential drive.
+/// The default `robot.toml`: a LEGO NXT differential drive as its builder measured it.
 pub fn default_robot() -> Robot {
     Robot {
         wheel_diameter_cm: 5.6,
@@ -17,7 +17,7 @@ pub fn default_robot() -> Robot {
     }
 }
 
-/// A room to drive about in at random: four rectangles.
+/// A room with four obstacles for random driving.
 pub fn training_room() -> Scene {
     Scene {
         arena_cm: Some(DVec2::new(300.0, 220.0)),
@@ -31,7 +31,7 @@ pub fn training_room() -> Scene {
     }
 }
 
-/// Four obstacles, a target, and four starts (paper, figure 4, which gives no numbers).
+/// A room with four obstacles, a target and four starts, after figure 4 of the paper, which gives no dimensions.
 pub fn four_obstacles() -> Scene {
     Scene {
         arena_cm: Some(DVec2::new(300.0, 220.0)),

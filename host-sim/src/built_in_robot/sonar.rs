@@ -1,4 +1,4 @@
-//! The ultrasonic sensor: when the beam's first echo triggers it, and what its electronics make of that.
+//! The ultrasonic sensor: when the first echo triggers it, and what its electronics report.
 
 mod beam;
 
@@ -9,14 +9,14 @@ use super::noise::{happens, normal};
 use crate::chance::Generator;
 use crate::geometry::{Pose, Wall};
 
-/// Spread of the distance at which the transducer's own ringing, or a fixed thing, triggers the sensor.
+/// Standard deviation of the distance at which the transducer's own ringing, or a fixed object, triggers the sensor.
 const TRIGGER_SPREAD_CM: f64 = 0.8;
-/// How long a plug without contact stays so.
+/// Mean duration of a loss of contact at the plug.
 const LOOSE_FOR_MS: f64 = 1600.0;
-/// How much later an echo triggers the sensor that just reaches its threshold.
+/// Excess distance of an echo that just reaches the threshold, which triggers the sensor late.
 const FAINT_CM: f64 = 1.5;
 
-/// What the sensor remembers from reading to reading.
+/// State of the sensor between readings.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Receiver {
     /// Whether the plug had no contact at the last reading, and when that was.
@@ -25,7 +25,7 @@ pub(super) struct Receiver {
 }
 
 impl Receiver {
-    /// One reading, `t_ms` into the run, of a ping sent with the robot at `pose`: whole centimetres, or none.
+    /// One reading `t_ms` into the run, of a ping sent with the robot at `pose`: whole centimetres, or `None`.
     pub fn read(&mut self, sonar: &Sonar, sides: &[Wall], pose: &Pose, t_ms: f64, rng: &mut Generator) -> Option<f64> {
         let echo_cm = beam::first_echo(sonar, sides, pose, rng).map(|echo| {
             let late_cm = FAINT_CM * libm::pow(10.0, -echo.level_db / 20.0);
@@ -40,7 +40,7 @@ impl Receiver {
         (!loose && (sonar.min_cm..=sonar.max_cm).contains(&reading_cm)).then_some(reading_cm)
     }
 
-    /// A plug that comes loose and back at random times, seen at the times of the readings.
+    /// Whether the plug has no contact: a two-state Markov process, sampled at the times of the readings.
     fn loses_contact(&mut self, sonar: &Sonar, t_ms: f64, rng: &mut Generator) -> bool {
         if sonar.loose > 0.0 {
             let memory = libm::exp(-(t_ms - self.last_ms) / (LOOSE_FOR_MS * (1.0 - sonar.loose)));
@@ -52,18 +52,18 @@ impl Receiver {
     }
 }
 
-/// The distance at which something that is no wall triggers the sensor, now and then.
+/// The distance at which something other than a wall triggers the sensor, with this probability.
 fn trigger(probability: f64, distance_cm: f64, rng: &mut Generator) -> Option<f64> {
     happens(probability, rng).then(|| distance_cm + TRIGGER_SPREAD_CM * normal(rng))
 }
 
-/// Another sensor's ping comes at any time before the own echo would, or before listening is half over.
+/// A ping of another sensor arrives at a uniform time before the own echo, or within half of the listening time.
 fn foreign(sonar: &Sonar, echo_cm: Option<f64>, rng: &mut Generator) -> Option<f64> {
     let latest_cm = echo_cm.unwrap_or(f64::INFINITY).min(sonar.max_cm / 2.0).max(sonar.min_cm);
     Some(rng.random_range(sonar.min_cm..=latest_cm))
 }
 
-/// What triggers the sensor first.
+/// The nearer of two possible distances.
 fn earlier(a_cm: Option<f64>, b_cm: Option<f64>) -> Option<f64> {
     match (a_cm, b_cm) {
         (Some(a), Some(b)) => Some(a.min(b)),

@@ -1,4 +1,4 @@
-//! The camera at the ceiling, averaged with the compass on the robot.
+//! The tracker: a camera at the ceiling whose heading is averaged with that of the compass on the robot.
 
 use std::f64::consts::TAU;
 
@@ -10,8 +10,8 @@ use crate::chance::Generator;
 use crate::geometry::{Pose, direction, wrap_rad};
 
 impl Tracker {
-    /// Where the robot at `pose` is seen, to two decimals, unless the frame is lost. The camera's angle was set by
-    /// the compass when both were fitted, so their mean points along the compass's frame.
+    /// The tracked pose of a robot at `pose`, to two decimals; `None` for a lost frame. The camera was aligned with the
+    /// compass when both were mounted, so the mean of their headings is in the compass's frame.
     pub fn see(&self, pose: &Pose, rng: &mut Generator) -> Option<Pose> {
         if happens(self.lost, rng) {
             return None;
@@ -26,14 +26,14 @@ impl Tracker {
         Some(Pose::new(two_decimals(seen_cm.x), two_decimals(seen_cm.y), heading_deg.to_radians()))
     }
 
-    /// A point of the floor as the picture's coordinates have it.
+    /// A point of the floor in the coordinates of the distorted picture.
     fn through_lens(&self, point_cm: DVec2) -> DVec2 {
         let from_middle = point_cm - self.middle_cm;
         let bend = 1.0 + self.distortion_per_m2 * from_middle.length_squared() / 1e4;
         self.middle_cm + direction(self.turn_rad).rotate(from_middle) * (self.scale * bend)
     }
 
-    /// The compass points along the earth's field and that of the iron on the robot together.
+    /// Heading from the sum of the earth's field and that of the iron on the robot.
     fn compass(&self, heading_rad: f64) -> f64 {
         let field = direction(-heading_rad) + self.iron;
         (-libm::atan2(field.y, field.x)).rem_euclid(TAU)

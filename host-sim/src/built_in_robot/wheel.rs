@@ -1,43 +1,43 @@
-//! One motor, its gear, and the tyre that it turns: from a voltage to a push on the floor.
+//! One motor, its gear and its tyre: from a voltage to a force on the floor.
 
 use glam::DVec2;
 
 use super::hardware::{Motor, Tyre};
 
-/// What a wheel's parts are doing.
+/// State of a motor, gear and wheel.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Wheel {
-    /// Turning speed of the motor's shaft at the axle.
+    /// Angular velocity of the motor's shaft at the axle.
     turning_rad_s: f64,
-    /// How far the shaft has turned since the run began.
+    /// Angle of the shaft since the run began.
     turned_rad: f64,
-    /// Where the shaft stands within the gear's play, from 0 (pulling back) to `play_rad` (pushing on).
+    /// Angle of the shaft within the gear's backlash, from 0 (engaged backwards) to `play_rad` (engaged forwards).
     in_play_rad: f64,
-    /// Where on its rim the wheel stood when the run began.
+    /// Angle of the wheel when the run began.
     rim_rad: f64,
 }
 
-/// What happens at a wheel during one tick.
+/// Inputs of a wheel in one time step.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Tick {
     /// Voltage at the bridge.
     pub supply_v: f64,
-    /// Share of it that is commanded, -1..=1.
+    /// Duty cycle, -1..=1.
     pub duty: f64,
-    /// How the floor passes under the hub: forward and to the left, m/s.
+    /// Velocity of the hub over the floor: forward and to the left, m/s.
     pub ground_m_s: DVec2,
-    /// Rolled way against turned angle, about 1.
+    /// Factor on the rolling radius, about 1.
     pub roll: f64,
-    /// Length of the tick.
+    /// Duration of the step.
     pub seconds: f64,
 }
 
-/// What comes of it.
+/// Force and current of a wheel in one time step.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Outcome {
-    /// Push on the robot: forward and to the left.
+pub(super) struct WheelOutput {
+    /// Force on the robot: forward and to the left.
     pub push_n: DVec2,
-    /// Current from the battery.
+    /// Current drawn from the battery.
     pub current_a: f64,
 }
 
@@ -52,7 +52,7 @@ impl Wheel {
         self.turned_rad.to_degrees().round()
     }
 
-    pub fn tick(&mut self, motor: &Motor, tyre: &Tyre, tick: &Tick) -> Outcome {
+    pub fn tick(&mut self, motor: &Motor, tyre: &Tyre, tick: &Tick) -> WheelOutput {
         let way = if tick.duty < 0.0 { motor.backwards } else { 1.0 };
         let volts = (tick.duty * tick.supply_v * motor.bridge * way).clamp(-motor.limit_v, motor.limit_v);
         let current_a = (volts - motor.back_emf_v_s * self.turning_rad_s) / motor.winding_ohm;
@@ -74,23 +74,23 @@ impl Wheel {
             motor.breakaway,
         );
         self.turned_rad += self.turning_rad_s * tick.seconds;
-        Outcome { push_n, current_a: current_a * tick.duty.abs() }
+        WheelOutput { push_n, current_a: current_a * tick.duty.abs() }
     }
 
-    /// The hub's height over the floor against the tyre's radius.
+    /// Height of the hub over the floor relative to the tyre's radius.
     fn hub(&self, tyre: &Tyre) -> f64 {
         if tyre.eccentricity == 0.0 { 1.0 } else { 1.0 + tyre.eccentricity * libm::sin(self.turned_rad + self.rim_rad) }
     }
 
-    /// Whether the gear's play is taken up on the side that the shaft now presses.
+    /// Whether the backlash is taken up on the side that the shaft presses.
     fn takes_up(&self, motor: &Motor, ahead_m_s: f64) -> bool {
         if ahead_m_s >= 0.0 { self.in_play_rad >= motor.play_rad } else { self.in_play_rad <= 0.0 }
     }
 }
 
 impl Tyre {
-    /// Push on the robot at this slip of the rim over the floor: nearly in proportion at first, then limited by grip,
-    /// less once it slides.
+    /// Force on the robot for a slip velocity of the rim over the floor: nearly proportional for small slip, then limited
+    /// by grip, and smaller once the tyre slides.
     fn push_n(&self, slip_m_s: DVec2) -> DVec2 {
         let slide2 = slip_m_s.length_squared();
         let sliding = slide2 / (slide2 + 25.0 * self.creep_m_s * self.creep_m_s);
@@ -99,7 +99,8 @@ impl Tyre {
     }
 }
 
-/// A speed after a free change and a dry friction that can take away at most `dry`, or `breakaway` times that from rest.
+/// A speed after an unresisted change and Coulomb friction, which removes at most `dry`, or `breakaway` times that from
+/// rest.
 pub(super) fn dragged(speed: f64, free_change: f64, dry: f64, breakaway: f64) -> f64 {
     if speed == 0.0 && free_change.abs() <= breakaway * dry {
         return 0.0;
@@ -120,7 +121,7 @@ mod tests {
         (hardware.motors[LEFT].clone(), hardware.tyres[LEFT].clone())
     }
 
-    /// Runs a wheel lifted off the floor for a second; the speed of its shaft.
+    /// Shaft speed of a wheel lifted off the floor after one second.
     fn spun_rad_s(duty: f64, motor: &Motor) -> f64 {
         let tyre = Tyre { load_n: 0.0, ..parts().1 };
         let mut wheel = Wheel::at_rest(motor, 0.0);

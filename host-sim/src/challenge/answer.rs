@@ -17,13 +17,13 @@ use crate::problem::{Problem, Result};
 use crate::simulator::Simulator;
 use crate::simulator::baseline::Baseline;
 
-/// Seeds the training.
+/// Seed of the training.
 const SEED: u64 = 1;
 
-/// Diagnoses all cases; `watch` is told how many are done.
+/// Diagnoses all cases and returns their number; `watch` receives the number completed.
 ///
 /// # Errors
-/// When the folder is no challenge, or when an answer cannot be written.
+/// When the folder is not a challenge, or when a diagnosis cannot be written.
 pub fn answer(folder: &Path, watch: impl Fn(usize) + Sync) -> Result<usize> {
     let folder = Folder(folder);
     let cases: Vec<Published> = files::read_csv(&folder.cases())?;
@@ -52,7 +52,7 @@ pub fn answer(folder: &Path, watch: impl Fn(usize) + Sync) -> Result<usize> {
 /// Learns a robot's simulator from its own logs.
 ///
 /// # Errors
-/// When the logs teach nothing.
+/// When the logs support no network.
 pub fn learn(logs: &Logs) -> Result<Simulator> {
     train(logs, &Trainer::Fast, &TABLE_ONE, SEED, |_| {})
 }

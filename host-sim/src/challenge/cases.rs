@@ -1,4 +1,4 @@
-//! The cases of a challenge: which robots, which effects, in which room, driven in which way.
+//! The random cases of a challenge: robot, effects, room and kind of driving.
 
 use rand::seq::{IndexedRandom, SliceRandom};
 use rand::{Rng, RngExt};
@@ -9,44 +9,46 @@ use crate::chance::{Generator, generator};
 use crate::logs::Logs;
 use crate::problem::Result;
 
-/// Robots in a challenge.
+/// Number of robots in a challenge.
 pub const ROBOTS: usize = 4;
-/// Steps of a run.
+/// Number of steps of a run.
 pub const STEPS: usize = 60;
-/// A robot's own logs.
+/// Number of runs that a robot's simulator is learned from.
 const NOMINAL_RUNS: usize = 80;
-/// Runs of a case.
+/// Least and largest number of runs of a case.
 const RUNS: [usize; 2] = [16, 28];
-/// Every other case is driven as the robot's own logs are.
+/// Probability that a case is driven like the logs that its simulator is learned from.
 const DRIVEN_ALIKE: f64 = 0.5;
-/// Of ten cases so many have no effect, one that no diagnosis knows, and two that it knows; the others have one.
+/// Of ten cases, this many have no effect.
 const WITHOUT: usize = 2;
+/// Of ten cases, this many have an effect outside the table of the diagnosis.
 const OUTSIDE: usize = 1;
+/// Of ten cases, this many have two effects of the table; the others have one.
 const PAIRS: usize = 1;
-/// A strong effect can make a robot that hits something in every small room: so many are tried.
+/// Number of rooms tried, since with a strong effect a robot may hit something in every small room.
 const ROOMS_TRIED: usize = 20;
-/// Places of generators.
+/// Stream keys of the generators.
 const ROBOT: u64 = 0;
 const CASE: u64 = 1;
 
 /// A case before it is written.
 pub struct Case {
-    /// Which of the robots.
+    /// Index of the robot.
     pub robot: usize,
-    /// What is different.
+    /// Its effects.
     pub effects: Vec<ActiveEffect>,
-    /// How it was driven.
+    /// The kind of driving.
     pub driving: Driving,
-    /// What was logged.
+    /// Its logs.
     pub logs: Logs,
-    /// Draws what else is random about the case.
+    /// Generator for everything else that is random about the case.
     pub rng: Generator,
 }
 
-/// The logs of each robot as its simulator should know it.
+/// The logs that the simulator of each robot is learned from.
 ///
 /// # Errors
-/// When a robot has no room to drive in.
+/// When a room has no space for its robot.
 pub fn robots(seed: u64) -> Result<Vec<Logs>> {
     let robot = |robot: u64| {
         let mut rng = generator(seed, &[ROBOT, robot]);
@@ -56,10 +58,10 @@ pub fn robots(seed: u64) -> Result<Vec<Logs>> {
     (0..ROBOTS as u64).map(robot).collect()
 }
 
-/// Drives a case.
+/// Records the logs of a case.
 ///
 /// # Errors
-/// When the robot hits something in every room.
+/// When the robot hits something in every room tried.
 pub fn case(number: usize, effects: &[Effect], robots: &[Logs], seed: u64) -> Result<Case> {
     let mut rng = generator(seed, &[CASE, number as u64]);
     let mut tried = 0;
@@ -80,7 +82,7 @@ pub fn case(number: usize, effects: &[Effect], robots: &[Logs], seed: u64) -> Re
     }
 }
 
-/// What is different in each of so many cases, in no order; single effects come about equally often.
+/// The effects of each of `cases` cases in random order; all effects occur about equally often.
 pub fn effects(cases: usize, seed: u64) -> Vec<Vec<Effect>> {
     let rng = &mut generator(seed, &[CASE]);
     let known: Vec<Effect> = Effect::all().filter(|e| e.in_table()).collect();
@@ -107,7 +109,7 @@ pub fn effects(cases: usize, seed: u64) -> Vec<Vec<Effect>> {
     effects
 }
 
-/// Draws each in turn before any comes again.
+/// Draws effects in random order, each once before any repeats.
 struct Deck {
     cards: Vec<Effect>,
     drawn: usize,

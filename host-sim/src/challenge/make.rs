@@ -1,4 +1,4 @@
-//! Makes a challenge: robots that a simulator may be learned from, and cases in which something may be different.
+//! Generates a challenge: robots with logs to learn a simulator from, and cases that may have effects.
 
 use std::path::Path;
 
@@ -10,10 +10,10 @@ use super::{Folder, cases};
 use crate::files;
 use crate::problem::Result;
 
-/// Writes `count` cases to a folder.
+/// Writes a challenge of `count` cases to a folder.
 ///
 /// # Errors
-/// When the folder cannot be written.
+/// When the folder cannot be written or a case cannot be recorded.
 pub fn make(folder: &Path, count: usize, seed: u64) -> Result<()> {
     let ours = |name: &str| ["robots", "cases", "cases.csv", "sealed.json", "answers"].contains(&name);
     files::write_folder(folder, ours, |fresh| fill(&Folder(fresh), count, seed))

@@ -1,4 +1,4 @@
-//! Robots and rooms that nobody has seen before.
+//! Random robots and rooms.
 
 use glam::DVec2;
 use rand::RngExt;
@@ -8,12 +8,12 @@ use crate::chance::Generator;
 use crate::geometry::Rectangle;
 use crate::logs::{Robot, Scene, Ultrasonic};
 
-/// Between two obstacles, and between one and a wall, a robot can pass, cm.
+/// Least width of the passage between two obstacles, or an obstacle and a wall, cm: a robot can pass.
 const PASSAGE_CM: f64 = 38.0;
-/// So many places are tried for an obstacle.
+/// Number of places tried for obstacles.
 const TRIED: usize = 60;
 
-/// Another robot of the built-in one's kind.
+/// A random variation of the default robot.
 pub fn robot(rng: &mut Generator) -> Robot {
     let usual = default_robot();
     let mut about = |value: f64, share: f64| {
@@ -30,7 +30,7 @@ pub fn robot(rng: &mut Generator) -> Robot {
     }
 }
 
-/// A room with a few obstacles between which a robot can pass.
+/// A random room with a few obstacles between which a robot can pass.
 pub fn room(rng: &mut Generator) -> Scene {
     let mut whole = |from: f64, to: f64| rng.random_range(from..=to).round();
     let arena_cm = DVec2::new(whole(240.0, 360.0), whole(190.0, 280.0));

@@ -1,4 +1,4 @@
-//! Scores a challenge's answers.
+//! Scores the diagnoses of a challenge.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -17,57 +17,57 @@ use crate::logs::Logs;
 use crate::problem::{Problem, Result};
 use crate::simulator::Simulator;
 
-/// A set of effects that holds more than these rivals beside the first says nothing.
+/// Largest number of rivals beside the first effect in a set that still counts as an answer.
 const MOST_RIVALS: usize = 3;
-/// An answer that is surer than this of what is wrong is confidently wrong.
+/// Probability above which a wrong answer counts as confidently wrong.
 const SURE: f64 = 0.9;
-/// Fresh runs of a case, and their steps.
+/// Number of fresh runs of a case, and of steps in each.
 const FRESH: [usize; 2] = [48, 60];
-/// Borders of the bins in which probabilities are compared with how often they are right.
+/// Borders of the bins of the reliability table.
 const BINS: [f64; 6] = [0.0, 0.5, 0.7, 0.9, 0.98, 1.01];
 
-/// What happened in one case.
+/// The score of one case.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Scored {
-    /// The case.
+    /// Name of the case.
     pub case: String,
-    /// What was different, with strengths, separated by blanks.
+    /// Its effects with strengths, separated by blanks.
     pub truth: String,
-    /// What was answered.
+    /// Verdict of the diagnosis.
     pub verdict: Verdict,
     /// The effects named, each with its rivals in brackets, separated by blanks.
     pub named: String,
-    /// The probability of the first.
+    /// Probability of the first.
     pub probability: f64,
-    /// The share of the reducible gap that it is said to close.
+    /// Share of the reducible gap that the diagnosis claims to close.
     pub closed: Option<f64>,
-    /// The share that these effects close on fresh runs of the case.
+    /// Share that these effects close on fresh runs of the case.
     pub closed_on_fresh_runs: Option<f64>,
     /// Whether the answer is right: no gap, all effects (as first or in a set of a few), or unknown.
     pub right: bool,
 }
 
-/// A share with what it is made of.
+/// A share as a fraction.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Share {
-    /// So many
+    /// Numerator.
     pub count: usize,
-    /// of so many.
+    /// Denominator.
     pub of: usize,
 }
 
 /// The score of a challenge.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Score {
-    /// Cases without any effect in which a gap was seen.
+    /// Cases without effects in which a gap was detected.
     pub false_alarms: Share,
-    /// Cases with effects in which a gap was seen.
+    /// Cases with effects in which a gap was detected.
     pub detected: Share,
     /// Single effects that were named first.
     pub top_1: Share,
     /// Single effects that were named first or in a set of a few.
     pub top_set: Share,
-    /// Known answers to single effects whose set holds the truth.
+    /// Known answers to single effects whose set contains the truth.
     pub covered: Share,
     /// Mean number of effects in these sets.
     pub set_size: f64,
@@ -77,16 +77,15 @@ pub struct Score {
     pub unknowns: Share,
     /// Effects of the table that were called unknown.
     pub false_unknowns: Share,
-    /// Median difference between the share of the gap that the effects are said to close and the share that they close
-    /// on fresh runs; none where no answer says anything.
+    /// Median absolute difference between the claimed gap reduction and that on fresh runs; `None` without any claim.
     pub closed_error: Option<f64>,
     /// Answers with a probability above 0.9 for an effect that is not there.
     pub confidently_wrong: Share,
-    /// For each bin of probability how many first effects are there.
+    /// Reliability: for each bin of probability, how many first effects are true.
     pub calibration: Vec<(String, Share)>,
-    /// Effects that were answered wrongly: truth, answer, how often.
+    /// Confusions: truth, answer, number of cases.
     pub confusions: Vec<(String, String, usize)>,
-    /// Every case.
+    /// All cases.
     #[serde(skip)]
     pub cases: Vec<Scored>,
 }
@@ -121,7 +120,7 @@ struct AnsweredReduction {
 /// Opens the seal of a challenge and scores its answers.
 ///
 /// # Errors
-/// When a case lacks an answer, or when a sealed entry is not what was committed to.
+/// When a case has no diagnosis, or when a sealed entry does not match its commitment.
 pub fn score(folder: &Path) -> Result<Score> {
     let folder = Folder(folder);
     let published: Vec<Published> = files::read_csv(&folder.cases())?;
@@ -140,7 +139,7 @@ pub fn score(folder: &Path) -> Result<Score> {
     Ok(Score::of(&opened))
 }
 
-/// What the effects that a case's answer adds to its robot's simulator close on runs that nobody has seen.
+/// Gap reduction, on fresh runs, of the effects that a case's diagnosis adds to its robot's simulator.
 fn closed_on_fresh_runs(folder: &Folder, case: &Published, sealed: &Sealed) -> Result<Option<f64>> {
     let added: Vec<AppliedEffect> = files::read_json(&folder.added(&case.case))?;
     if added.is_empty() {

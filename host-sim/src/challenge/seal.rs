@@ -1,31 +1,31 @@
-//! Sealed answers: what is different in a case, and the commitment that binds whoever made it.
+//! The sealed truth of a case and the commitment to it.
 
 use std::fmt::Write;
 
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
-/// What is different in a case.
+/// The truth about a case.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Sealed {
-    /// The case.
+    /// Name of the case.
     pub case: String,
     /// The effects with their strengths, as `mindgap record --effect` takes them; none in a case without a gap.
     pub effects: Vec<String>,
-    /// How it was driven.
+    /// Name of the kind of driving.
     pub driving: String,
-    /// Draws further runs of the case, on which nobody has sought anything.
+    /// Seed of further runs of the case, which no diagnosis has seen.
     pub fresh_seed: u64,
-    /// Keeps anybody from finding the effects by trying them all on the commitment.
+    /// Random salt, so that the effects cannot be found from the commitment by trying them all.
     pub salt: String,
 }
 
-/// What is published of a case.
+/// The public part of a case.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Published {
-    /// The case.
+    /// Name of the case.
     pub case: String,
-    /// The robot that drove.
+    /// Name of the robot.
     pub robot: String,
     /// [`Sealed::commitment`].
     pub commitment: String,
@@ -49,7 +49,7 @@ impl Sealed {
         })
     }
 
-    /// The names of its effects.
+    /// Ids of its effects.
     pub fn ids(&self) -> Vec<&str> {
         self.effects.iter().map(|effect| effect.split('=').next().unwrap_or(effect)).collect()
     }

@@ -5,7 +5,9 @@ use std::fs;
 use std::path::PathBuf;
 
 use clap::Args;
-use mindgap_controller_export::brick::{self, Drive, End, Event, Fault, Program, Report, Script, Setup, What};
+use mindgap_controller_export::brick::{
+    self, Drive, Event, EventKind, Fault, Program, Report, RunConfig, ScriptedWorld, Termination,
+};
 use mindgap_controller_export::wiring::SensorPort;
 use serde_json::{Value, json};
 
@@ -48,13 +50,13 @@ impl Brick {
             fs::read(&self.program).map_err(|e| Problem::in_file(&self.program, format!("cannot be read: {e}")))?;
         let program = Program::load(&file)
             .map_err(|e| Problem::in_file(&self.program, format!("is no program that a brick runs: {e}")))?;
-        let mut world = Script {
+        let mut world = ScriptedWorld {
             sonar_port: self.sonar as usize,
             battery_mv: self.battery_mv,
             exit_pressed_ms: self.exit_ms,
-            ..Script::sonar(readings::read(&self.readings)?)
+            ..ScriptedWorld::sonar(readings::read(&self.readings)?)
         };
-        let report = brick::run(&program, &mut world, &Setup { run_ms: self.limit_ms, ..Setup::default() });
+        let report = brick::run(&program, &mut world, &RunConfig { run_ms: self.limit_ms, ..RunConfig::default() });
         if let Some(path) = &self.json {
             files::write_json(path, &facts(&report))?;
         }
@@ -65,14 +67,14 @@ impl Brick {
 
 fn told(report: &Report) -> String {
     let mut text = String::new();
-    for Event { t_ms, what } in &report.events {
-        let _ = match what {
-            What::Motor { port, drive } => {
+    for Event { t_ms, kind } in &report.events {
+        let _ = match kind {
+            EventKind::Motor { port, drive } => {
                 writeln!(text, "{t_ms:>7} ms  motor {}  {}", MOTORS[*port], drive_word(*drive))
             }
-            What::Tone { hz, ms } => writeln!(text, "{t_ms:>7} ms  tone     {hz} Hz for {ms} ms"),
-            What::Sound(name) => writeln!(text, "{t_ms:>7} ms  sound    {name:?}"),
-            What::Text { x, y, text: drawn } => writeln!(text, "{t_ms:>7} ms  text     {drawn:?} at {x}, {y}"),
+            EventKind::Tone { hz, ms } => writeln!(text, "{t_ms:>7} ms  tone     {hz} Hz for {ms} ms"),
+            EventKind::Sound(name) => writeln!(text, "{t_ms:>7} ms  sound    {name:?}"),
+            EventKind::Text { x, y, text: drawn } => writeln!(text, "{t_ms:>7} ms  text     {drawn:?} at {x}, {y}"),
         };
     }
     for (name, content) in &report.files {
@@ -94,14 +96,14 @@ fn told(report: &Report) -> String {
 }
 
 fn facts(report: &Report) -> Value {
-    let event = |Event { t_ms, what }: &Event| match what {
-        What::Motor { port, drive: Drive::Power(power) } => {
+    let event = |Event { t_ms, kind }: &Event| match kind {
+        EventKind::Motor { port, drive: Drive::Power(power) } => {
             json!({"t_ms": t_ms, "motor": MOTORS[*port], "power": power})
         }
-        What::Motor { port, drive } => json!({"t_ms": t_ms, "motor": MOTORS[*port], "drive": drive_word(*drive)}),
-        What::Tone { hz, ms } => json!({"t_ms": t_ms, "tone_hz": hz, "tone_ms": ms}),
-        What::Sound(name) => json!({"t_ms": t_ms, "sound": name}),
-        What::Text { x, y, text } => json!({"t_ms": t_ms, "text": text, "x": x, "y": y}),
+        EventKind::Motor { port, drive } => json!({"t_ms": t_ms, "motor": MOTORS[*port], "drive": drive_word(*drive)}),
+        EventKind::Tone { hz, ms } => json!({"t_ms": t_ms, "tone_hz": hz, "tone_ms": ms}),
+        EventKind::Sound(name) => json!({"t_ms": t_ms, "sound": name}),
+        EventKind::Text { x, y, text } => json!({"t_ms": t_ms, "text": text, "x": x, "y": y}),
     };
     let files: serde_json::Map<_, _> = report
         .files
@@ -128,14 +130,14 @@ fn drive_word(drive: Drive) -> String {
     }
 }
 
-fn end_words(end: End) -> &'static str {
+fn end_words(end: Termination) -> &'static str {
     match end {
-        End::Finished => "finished",
-        End::Aborted => "aborted by the dark button",
-        End::OutOfTime => "still running, given up",
-        End::Failed(Fault::Instruction) => "failed: an instruction that there is not",
-        End::Failed(Fault::Argument) => "failed: a wrong operand or index",
-        End::Failed(Fault::Pointer) => "failed: data outside the dataspace",
-        End::Failed(Fault::Memory) => "failed: no memory left",
+        Termination::Finished => "finished",
+        Termination::Aborted => "aborted by the dark button",
+        Termination::OutOfTime => "still running, given up",
+        Termination::Failed(Fault::Instruction) => "failed: an instruction that there is not",
+        Termination::Failed(Fault::Argument) => "failed: a wrong operand or index",
+        Termination::Failed(Fault::Pointer) => "failed: data outside the dataspace",
+        Termination::Failed(Fault::Memory) => "failed: no memory left",
     }
 }

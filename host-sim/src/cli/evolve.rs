@@ -6,10 +6,10 @@ use clap::{Args, value_parser};
 
 use super::progress;
 use crate::evolve::controller_file::{ControllerFile, Origin};
-use crate::evolve::fitness::{Numbers, Task};
-use crate::evolve::genome::Coding;
+use crate::evolve::fitness::{FitnessEvaluator, RandomNumbers};
+use crate::evolve::genome::GenotypeDecoder;
 use crate::evolve::paper;
-use crate::evolve::robust::{self, Quest};
+use crate::evolve::robust::{self, EvolutionTask};
 use crate::geometry::Pose;
 use crate::logs::{Robot, Scene};
 use crate::problem::{Problem, Result};
@@ -63,11 +63,12 @@ impl Evolve {
         let noise = if self.paper || self.paper_noise { Noise::Paper } else { Noise::Learned };
         let course = Course::new(&simulator, &scene, start, noise)?;
         let course = &if noise == Noise::Learned { course.with_beam(&simulator) } else { course };
-        let coding = Coding::new(&simulator, self.max_steps);
-        let numbers = if self.paper || self.fresh_numbers { Numbers::Fresh } else { Numbers::Common };
+        let decoder = GenotypeDecoder::new(&simulator, self.max_steps);
+        let random_numbers =
+            if self.paper || self.fresh_numbers { RandomNumbers::Independent } else { RandomNumbers::Common };
         let seed = self.seed;
         let (runs, floor_cm) = (paper::RUNS, paper::FLOOR_CM);
-        let task = Task { course, target_cm, coding, runs, floor_cm, numbers, seed };
+        let evaluator = FitnessEvaluator { course, target_cm, decoder, runs, floor_cm, random_numbers, seed };
         let settings = paper::settings();
         let bar = progress::bar(if self.paper { settings.max_generations } else { robust::GENERATIONS } as u64);
         let watch = |generation: usize, fitness: f64| {
@@ -75,12 +76,12 @@ impl Evolve {
             bar.set_message(format!("fitness {fitness:.3}"));
         };
         let evolved = if self.paper {
-            paper::evolve(&task, &settings, watch)
+            paper::evolve(&evaluator, &settings, watch)
         } else {
-            robust::evolve(&Quest { course, target_cm, coding, numbers, seed }, watch)
+            robust::evolve(&EvolutionTask { course, target_cm, decoder, random_numbers, seed }, watch)
         };
         bar.finish_and_clear();
-        let success = task.success(&evolved.controller, JUDGED_RUNS, JUDGING);
+        let success = evaluator.success(&evolved.controller, JUDGED_RUNS, JUDGING);
         let origin = Origin {
             simulator: name(&self.sim),
             scene: name(&self.scene),

@@ -7,7 +7,7 @@ use serde_json::json;
 
 use super::{table, warn};
 use crate::files;
-use crate::import::track::{Angle, Length, Time, Units};
+use crate::import::units::{Angle, Length, Time, Units};
 use crate::import::{LogReport, Report, RunReport, TrackReport, import};
 use crate::logs::{Robot, Scene};
 use crate::problem::Result;

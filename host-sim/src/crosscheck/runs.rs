@@ -9,7 +9,7 @@ use serde::Serialize;
 
 use super::arithmetic::{Arithmetic, Fixed, Float};
 use crate::chance::{derive, generator};
-use crate::evolve::genome::Coding;
+use crate::evolve::genome::GenotypeDecoder;
 use crate::geometry::{Pose, Wall, cast, wrap_rad};
 use crate::logs::{Logs, Robot};
 use crate::problem::{Problem, Result};
@@ -107,12 +107,12 @@ pub(super) fn side_by_side(
     if starts.is_empty() {
         return Err(Problem::new("the robot has no room to start at any pose that the logs hold"));
     }
-    let coding = Coding::new(simulator, MAX_STEPS);
+    let decoder = GenotypeDecoder::new(simulator, MAX_STEPS);
     let pairs = (0..trials.runs).into_par_iter().map(|run| {
         let seed = derive(trials.seed, &[run as u64]);
         let mut generator = generator(seed, &[PAIR]);
         let start = starts[generator.random_range(0..starts.len())];
-        let random = coding.controller(&coding.random(&mut generator));
+        let random = decoder.controller(&decoder.random(&mut generator));
         let controller = controller.unwrap_or(&random);
         pair(&world, controller, Walker::new(float, start), Walker::new(fixed, start), run + 1, seed)
     });

@@ -1,4 +1,4 @@
-//! The demo's pictures: the paper's figures 2, 3 and 4.
+//! The figures of the demo: 2, 3 and 4 of the paper.
 
 use std::path::Path;
 
@@ -16,7 +16,7 @@ use crate::report::sonar_surfaces::Surface;
 use crate::simulator::Simulator;
 use crate::simulator::course::REACHED_CM;
 
-/// Figure 3 shows test samples this far apart in the data set, so that single ones can be seen.
+/// Figure 3 shows one test sample in this many, so that single ones are visible.
 const EVERY: usize = 4;
 
 /// Figure 2, expected against predicted, and figure 3, the sonar surfaces.
@@ -83,7 +83,7 @@ pub fn paths(out: &Path, scene: &Scene, trials: &[Trial]) -> Result<()> {
             start: *start,
             target_radius_cm: REACHED_CM,
             simulated: trial.rehearsal.runs.iter().map(simulated).collect(),
-            real: trial.tracks.iter().map(real).collect(),
+            real: trial.trajectories.iter().map(real).collect(),
         })
         .collect();
     report::paths(&panels).write(out, "figure-4-simulated-and-real-paths")
@@ -94,9 +94,9 @@ fn simulated(run: &crate::simulator::rehearsal::SimulatedRun) -> Trace {
     Trace { points_cm, crashed: run.ending == "crashed" }
 }
 
-fn real(track: &crate::built_in_robot::Track) -> Trace {
-    let points_cm = track.moments.iter().map(|m| m.true_pose.position_cm).collect();
-    Trace { points_cm, crashed: track.outcome == crate::built_in_robot::Outcome::Crashed }
+fn real(trajectory: &crate::built_in_robot::Trajectory) -> Trace {
+    let points_cm = trajectory.points.iter().map(|m| m.true_pose.position_cm).collect();
+    Trace { points_cm, crashed: trajectory.termination == crate::built_in_robot::Termination::Crashed }
 }
 
 fn test_points(data: &Dataset<2>) -> Vec<DVec3> {

@@ -146,7 +146,7 @@ mod tests {
         let commands = prop::array::uniform7(prop::array::uniform2(-100.0..100.0));
         let pose = || (10.0..290.0, 10.0..210.0, -3.0..3.0).prop_map(|(x, y, h)| Pose::new(x, y, h));
         (commands, pose(), pose(), 0.0..2.0, any::<bool>()).prop_map(|(commands, pose, earlier, elapsed_min, echo)| {
-            let robot = crate::logs::tests::robot();
+            let robot = crate::built_in_robot::default_robot();
             let scene = Scene { arena_cm: Some(glam::DVec2::new(300.0, 220.0)), ..Scene::default() };
             StepContext {
                 commands,

@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use crate::geometry::{Pose, Wall, cast};
+use crate::geometry::{Pose, Wall, bounding_box, cast};
 use crate::logs::{Robot, Scene};
 use crate::sonar::{Fan, fan_at};
 
@@ -143,8 +143,5 @@ impl RunHistory {
 
 /// The middle of what walls enclose; the origin where there are none.
 fn middle(walls: &[Wall]) -> DVec2 {
-    let ends = || walls.iter().flat_map(|s| [s.from_cm, s.to_cm]);
-    let low = ends().fold(DVec2::INFINITY, DVec2::min);
-    let high = ends().fold(DVec2::NEG_INFINITY, DVec2::max);
-    if walls.is_empty() { DVec2::ZERO } else { 0.5 * (low + high) }
+    bounding_box(walls).map_or(DVec2::ZERO, |enclosed| 0.5 * (enclosed.low_cm + enclosed.high_cm))
 }

@@ -1,4 +1,4 @@
-//! `controller.toml`: a controller, and where it came from.
+//! `controller.toml`: a controller and its origin (docs/formats.md).
 
 use std::path::Path;
 
@@ -9,12 +9,12 @@ use toml::Spanned;
 use crate::files;
 use crate::problem::{Problem, Result};
 
-/// A controller with its origin, as a file holds it.
+/// The contents of `controller.toml`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ControllerFile {
     /// The controller.
     pub controller: Controller,
-    /// Where it came from, when the file says so.
+    /// How it was evolved, if the file states it.
     pub origin: Option<Origin>,
 }
 
@@ -25,15 +25,15 @@ pub struct Origin {
     pub simulator: String,
     /// The scene file.
     pub scene: String,
-    /// Its start, from 1.
+    /// The start within the scene, from 1.
     pub start: usize,
-    /// The seed.
+    /// Seed of the evolution.
     pub seed: u64,
-    /// Generations in all.
+    /// Total number of generations.
     pub generations: usize,
-    /// Equation (3), summed over its runs, when the controller was chosen.
+    /// Fitness when the controller was selected: equation (3) of the paper, summed over its runs.
     pub fitness: f64,
-    /// Share of fresh simulated runs that reached the target.
+    /// Success rate in simulated runs that played no part in the evolution, 0..=1.
     pub success: f64,
 }
 
@@ -41,10 +41,10 @@ impl ControllerFile {
     /// Reads a controller.
     ///
     /// # Errors
-    /// When the file is missing or broken, has not exactly six tuples, or holds a number out of range.
+    /// When the file cannot be read or parsed, does not have exactly six tuples, or holds a number out of range.
     pub fn read(path: &Path) -> Result<Self> {
         let text = files::read_text(path)?;
-        let file: Form<Spanned<Tuple>> = files::read_toml(path)?;
+        let file: ControllerTable<Spanned<Tuple>> = files::read_toml(path)?;
         let line = |tuple: usize| files::line_at(&text, file.tuple[tuple].span().start);
         let count = file.tuple.len();
         let Ok(tuples) = <[Tuple; TUPLES]>::try_from(file.tuple.iter().map(|t| *t.get_ref()).collect::<Vec<_>>())
@@ -70,12 +70,12 @@ impl ControllerFile {
     /// When the file cannot be written.
     pub fn write(&self, path: &Path) -> Result<()> {
         let Controller { step_ms, max_steps, tuples } = self.controller.clone();
-        let form = Form { step_ms, max_steps, tuple: tuples.to_vec(), origin: self.origin.clone() };
-        files::write(path, toml::to_string(&form).expect("numbers and text have a TOML form"))
+        let table = ControllerTable { step_ms, max_steps, tuple: tuples.to_vec(), origin: self.origin.clone() };
+        files::write(path, toml::to_string(&table).expect("numbers and text have a TOML form"))
     }
 }
 
-/// What an exporter prints of it.
+/// The part of the origin that exporters print.
 impl From<&ControllerFile> for mindgap_controller_export::Origin {
     fn from(file: &ControllerFile) -> Self {
         let Some(origin) = file.origin.clone() else { return Self::default() };
@@ -91,7 +91,7 @@ impl From<&ControllerFile> for mindgap_controller_export::Origin {
 }
 
 #[derive(Serialize, Deserialize)]
-struct Form<T> {
+struct ControllerTable<T> {
     step_ms: u16,
     max_steps: u16,
     tuple: Vec<T>,

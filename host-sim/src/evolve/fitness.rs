@@ -1,70 +1,70 @@
-//! Fitness of a controller: equation (3) of the paper, summed over several runs.
+//! Fitness of a controller: equation (3) of the paper, summed over several runs, and its success rate.
 
 use glam::DVec2;
 use mindgap_core::controller::Controller;
 use rayon::prelude::*;
 
-use super::genome::Coding;
+use super::genome::GenotypeDecoder;
 use crate::chance::{Generator, derive};
 use crate::genetic;
 use crate::simulator::course::{Course, Ending, Job, Outcome, REACHED_CM, Sensor};
 use crate::simulator::motion::MotionTable;
 
-/// Individuals that share the lanes of one batch.
+/// Number of individuals simulated in one batch.
 const TOGETHER: usize = 25;
 
-/// Which random numbers the individuals of a generation meet.
+/// Which random numbers the individuals of a generation are evaluated with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Numbers {
-    /// Every individual its own.
-    Fresh,
-    /// All the same ones, new in each generation.
+pub enum RandomNumbers {
+    /// Each individual has its own.
+    Independent,
+    /// All individuals share the same ones, new in each generation (common random numbers).
     Common,
 }
 
-/// A controller's task, as a problem for the genetic algorithm.
-pub struct Task<'a> {
-    /// Where it runs.
+/// Evaluates the fitness of controllers, as an optimisation problem for the genetic algorithm.
+pub struct FitnessEvaluator<'a> {
+    /// Where controllers run.
     pub course: &'a Course<'a>,
-    /// Where it has to stop.
+    /// Where they have to stop, cm.
     pub target_cm: DVec2,
-    /// What its genes stand for.
-    pub coding: Coding,
-    /// Runs whose fitness is summed (paper: five).
+    /// Decodes genotypes into controllers.
+    pub decoder: GenotypeDecoder,
+    /// Number of runs whose fitness is summed (paper: five).
     pub runs: usize,
-    /// Distances below this count as this.
+    /// Smaller distances to the target are raised to this one, cm.
     pub floor_cm: f64,
-    /// Which random numbers the individuals meet.
-    pub numbers: Numbers,
-    /// Fixes every draw of the runs.
+    /// Which random numbers individuals are evaluated with.
+    pub random_numbers: RandomNumbers,
+    /// Seed of all runs.
     pub seed: u64,
 }
 
-/// How many of many runs succeeded, and how far from the target they ended.
+/// Success of a number of runs.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Success {
-    /// Share of runs that ended within [`REACHED_CM`] of the target without a crash.
+    /// Share of runs that ended within [`REACHED_CM`] of the target without a crash, 0..=1.
     pub rate: f64,
-    /// Share of runs that crashed.
+    /// Share of runs that crashed, 0..=1.
     pub crashed: f64,
-    /// Median distance to the target at the end.
+    /// Median final distance to the target, cm; NaN without runs.
     pub median_cm: f64,
 }
 
-/// Equation (3): 0.5 / distance after a crash, else 1 / distance. Distances below `floor_cm` count as that, since 1/d
-/// has no ceiling.
+/// Fitness of one run (paper, equation 3), 1/cm: 0.5 / distance after a crash, else 1 / distance. Distances below
+/// `floor_cm` are raised to it, since 1 / distance is unbounded.
 pub fn fitness(outcome: &Outcome, target_cm: DVec2, floor_cm: f64) -> f64 {
     let distance_cm = outcome.end_cm.distance(target_cm).max(floor_cm);
     if outcome.ending == Ending::Crashed { 0.5 / distance_cm } else { 1.0 / distance_cm }
 }
 
-/// By turns the two networks and, where the course has it, the beam.
+/// Runs alternate between the sonar networks and, where the course has one, the beam model.
 fn sensor_of(run: usize) -> Sensor {
     if run.is_multiple_of(2) { Sensor::Networks } else { Sensor::Beam }
 }
 
-impl Task<'_> {
-    /// Outcomes of so many runs of a controller, whose draws no other call with another `purpose` meets.
+impl FitnessEvaluator<'_> {
+    /// Outcomes of a number of runs of a controller; another `purpose` gives independent random numbers.
     pub fn outcomes(&self, controller: &Controller, runs: usize, purpose: u64) -> Vec<Outcome> {
         let motions = &self.course.motions(controller);
         let seed = |run: usize| derive(self.seed, &[purpose, run as u64]);
@@ -73,13 +73,13 @@ impl Task<'_> {
         self.course.run(&jobs)
     }
 
-    /// Summed fitness of individuals, the first of which has the number `first` in its generation.
+    /// Summed fitness of individuals, the first of which has the index `first` in its generation.
     fn summed(&self, generation: usize, first: usize, individuals: &[Vec<f32>]) -> Vec<f64> {
-        let controllers: Vec<Controller> = individuals.iter().map(|genes| self.coding.controller(genes)).collect();
+        let controllers: Vec<Controller> = individuals.iter().map(|genes| self.decoder.controller(genes)).collect();
         let motions: Vec<MotionTable> = controllers.iter().map(|c| self.course.motions(c)).collect();
         let mut jobs = Vec::with_capacity(individuals.len() * self.runs);
         for (i, (controller, motions)) in controllers.iter().zip(&motions).enumerate() {
-            let individual = if self.numbers == Numbers::Common { 0 } else { (first + i) as u64 };
+            let individual = if self.random_numbers == RandomNumbers::Common { 0 } else { (first + i) as u64 };
             let place = |run: usize| [0, generation as u64, individual, run as u64];
             jobs.extend((0..self.runs).map(|run| Job {
                 controller,
@@ -92,30 +92,30 @@ impl Task<'_> {
         outcomes.chunks(self.runs).map(|runs| self.fitness_of(runs)).collect()
     }
 
-    /// How a controller does in so many fresh runs.
+    /// Success of a controller in a number of runs; random numbers as for [`outcomes`](Self::outcomes).
     pub fn success(&self, controller: &Controller, runs: usize, purpose: u64) -> Success {
         self.success_of(&self.outcomes(controller, runs, purpose))
     }
 
-    /// How outcomes did.
+    /// Success of outcomes.
     pub fn success_of(&self, outcomes: &[Outcome]) -> Success {
         Success::of(outcomes, self.target_cm)
     }
 
-    /// Summed fitness of outcomes.
+    /// Fitness summed over outcomes.
     pub fn fitness_of(&self, outcomes: &[Outcome]) -> f64 {
         outcomes.iter().map(|o| fitness(o, self.target_cm, self.floor_cm)).sum()
     }
 }
 
 impl Success {
-    /// The success of outcomes.
+    /// Success of outcomes for a target, cm.
     pub fn of(outcomes: &[Outcome], target_cm: DVec2) -> Self {
         let end = |o: &Outcome| (o.end_cm.distance(target_cm), o.ending == Ending::Crashed);
         Self::of_ends(outcomes.iter().map(end))
     }
 
-    /// The success of runs of which only the distance to the target at the end is known, and whether they crashed.
+    /// Success of runs given as their final distance to the target, cm, and whether they crashed.
     pub fn of_ends(ends: impl Iterator<Item = (f64, bool)>) -> Self {
         let (mut distances, mut reached, mut crashed) = (Vec::new(), 0, 0);
         for (distance_cm, has_crashed) in ends {
@@ -130,13 +130,13 @@ impl Success {
     }
 }
 
-impl genetic::Problem for Task<'_> {
+impl genetic::Problem for FitnessEvaluator<'_> {
     fn random(&self, rng: &mut Generator) -> Vec<f32> {
-        self.coding.random(rng)
+        self.decoder.random(rng)
     }
 
     fn repair(&self, genes: &mut [f32]) {
-        self.coding.repair(genes);
+        self.decoder.repair(genes);
     }
 
     fn fitness(&self, generation: usize, population: &[Vec<f32>]) -> Vec<f64> {

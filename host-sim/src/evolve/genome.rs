@@ -1,4 +1,4 @@
-//! A controller as genes: "the different tuples of the controllers were directly encoded" (paper, section IX).
+//! Direct encoding of controllers: "the different tuples of the controllers were directly encoded" (paper, section IX).
 
 use mindgap_core::controller::{Controller, MAX_THRESHOLD_CM, TUPLES, Tuple, When};
 use rand::RngExt;
@@ -6,30 +6,30 @@ use rand::RngExt;
 use crate::chance::Generator;
 use crate::simulator::Simulator;
 
-/// Genes of a tuple: left, right, larger or smaller, threshold.
+/// Number of genes a tuple: left, right, larger or smaller, threshold.
 const GENES_PER_TUPLE: usize = 4;
 
-/// What genes can stand for. Every gene runs from 0 to 1 over its range, so that mutation means the same to all.
+/// Decodes genotypes into controllers. Every gene runs from 0 to 1 over its range, so that one mutation step suits all.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Coding {
-    /// Least and largest motor command: those that the simulator was trained on.
+pub struct GenotypeDecoder {
+    /// Least and largest motor command, those of the training logs.
     pub commands: [f32; 2],
-    /// Least and largest threshold: what the sensor can report.
+    /// Least and largest threshold, cm: the range of the sensor.
     pub thresholds_cm: [f32; 2],
-    /// Time of a step.
+    /// Duration of a step, ms.
     pub step_ms: u16,
-    /// Steps at most, since a threshold may never be met.
+    /// Maximum number of steps of a run, since a threshold may never be met.
     pub max_steps: u16,
 }
 
-impl Coding {
-    /// Genes of a controller.
+impl GenotypeDecoder {
+    /// Number of genes of a controller.
     pub const GENES: usize = TUPLES * GENES_PER_TUPLE;
 
-    /// The coding for a simulator's robot.
+    /// The decoder for a simulator's robot.
     pub fn new(simulator: &Simulator, max_steps: u16) -> Self {
         let sonar = &simulator.robot.ultrasonic;
-        Coding {
+        GenotypeDecoder {
             commands: simulator.commands,
             thresholds_cm: [sonar.min_cm as f32, (sonar.max_cm as f32).min(f32::from(MAX_THRESHOLD_CM))],
             step_ms: simulator.robot.step_ms.round() as u16,
@@ -37,17 +37,17 @@ impl Coding {
         }
     }
 
-    /// A random individual.
+    /// A random genotype: [`Self::GENES`] uniform genes.
     pub fn random(&self, rng: &mut Generator) -> Vec<f32> {
         (0..Self::GENES).map(|_| rng.random()).collect()
     }
 
-    /// Brings genes back to 0..=1.
+    /// Clamps genes to 0..=1.
     pub fn repair(&self, genes: &mut [f32]) {
         genes.iter_mut().for_each(|gene| *gene = gene.clamp(0.0, 1.0));
     }
 
-    /// The controller that genes stand for; commands and thresholds are whole, as a brick takes them.
+    /// The controller that a genotype encodes; commands and thresholds are rounded to integers, as a brick takes them.
     pub fn controller(&self, genes: &[f32]) -> Controller {
         let within = |[low, high]: [f32; 2], gene: f32| (low + gene * (high - low)).round();
         let tuple = |g: &[f32]| Tuple {
@@ -66,14 +66,14 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    const CODING: Coding =
-        Coding { commands: [-70.0, 80.0], thresholds_cm: [4.0, 240.0], step_ms: 400, max_steps: 150 };
+    const DECODER: GenotypeDecoder =
+        GenotypeDecoder { commands: [-70.0, 80.0], thresholds_cm: [4.0, 240.0], step_ms: 400, max_steps: 150 };
 
     proptest! {
         #[test]
-        fn any_genes_make_a_controller_within_the_ranges(mut genes in prop::collection::vec(-2f32..3.0, Coding::GENES)) {
-            CODING.repair(&mut genes);
-            let controller = CODING.controller(&genes);
+        fn any_genotype_decodes_to_a_controller_within_the_ranges(mut genes in prop::collection::vec(-2f32..3.0, GenotypeDecoder::GENES)) {
+            DECODER.repair(&mut genes);
+            let controller = DECODER.controller(&genes);
             prop_assert_eq!(controller.check(), Ok(()));
             for t in controller.tuples {
                 prop_assert!((-70..=80).contains(&t.left) && (-70..=80).contains(&t.right));
@@ -84,9 +84,9 @@ mod tests {
 
     #[test]
     fn genes_are_read_in_the_papers_order() {
-        let mut genes = vec![0.0; Coding::GENES];
+        let mut genes = vec![0.0; GenotypeDecoder::GENES];
         genes[4..8].copy_from_slice(&[1.0, 0.0, 0.7, 0.5]);
         let expected = Tuple { left: 80, right: -70, when: When::Larger, threshold_cm: 122 };
-        assert_eq!(CODING.controller(&genes).tuples[1], expected);
+        assert_eq!(DECODER.controller(&genes).tuples[1], expected);
     }
 }

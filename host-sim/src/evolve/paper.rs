@@ -1,9 +1,9 @@
-//! The paper's exact procedure (section IX): one run of the genetic algorithm for 1000 generations, and its fittest
-//! individual is the controller.
+//! The procedure of the paper, section IX: one run of the genetic algorithm for 1000 generations, whose fittest individual
+//! is the controller.
 
 use mindgap_core::controller::Controller;
 
-use super::fitness::Task;
+use super::fitness::FitnessEvaluator;
 use crate::genetic::{self, Settings};
 
 /// An evolved controller.
@@ -11,25 +11,25 @@ use crate::genetic::{self, Settings};
 pub struct Evolved {
     /// The controller.
     pub controller: Controller,
-    /// Its fitness when it was chosen: equation (3) summed over the task's runs.
+    /// Fitness when it was selected: equation (3) of the paper, summed over the evaluator's runs.
     pub fitness: f64,
-    /// Generations that were run in all.
+    /// Total number of generations run.
     pub generations: usize,
 }
 
-/// The paper's genetic algorithm as section IX uses it: that of section VII, ended after 1000 generations.
+/// Parameters of the paper, section IX: those of section VII, ended after 1000 generations.
 pub fn settings() -> Settings {
-    Settings { window: None, max_generations: 1000, ..Settings::default() }
+    Settings { stagnation: None, max_generations: 1000, ..Settings::default() }
 }
 
-/// Runs whose fitness is summed, since echoes fail at random.
+/// Number of runs whose fitness is summed, since echoes fail at random (paper, section IX).
 pub const RUNS: usize = 5;
-/// Distances below this count as this (the paper is silent; 1/d has no ceiling).
+/// Smaller distances to the target are raised to this one; the paper gives no bound, and 1 / distance has none.
 pub const FLOOR_CM: f64 = 1.0;
 
-/// Evolves a controller as the paper does.
-pub fn evolve(task: &Task, settings: &Settings, watch: impl FnMut(usize, f64)) -> Evolved {
-    let outcome = genetic::run(settings, task, task.seed, watch);
-    let controller = task.coding.controller(&outcome.best);
+/// Evolves a controller as in the paper, section IX. `watch` receives the generation and the best fitness up to it.
+pub fn evolve(evaluator: &FitnessEvaluator, settings: &Settings, watch: impl FnMut(usize, f64)) -> Evolved {
+    let outcome = genetic::run(settings, evaluator, evaluator.seed, watch);
+    let controller = evaluator.decoder.controller(&outcome.best);
     Evolved { controller, fitness: outcome.fitness, generations: outcome.generations }
 }

@@ -1,20 +1,18 @@
-//! Evolution that does not stick, the default. A single run of the paper's procedure often ends in a poor controller,
-//! or in one that was lucky in its five runs. So here, always under the noise that was learned, and with either of two
-//! sensors by turns, since what helps with one alone will hardly help on the floor:
+//! Evolution with restarts, the default. A single run of the paper's procedure often stagnates at a poor controller, or
+//! selects one that was lucky in its five runs. Here every run has the learned noise and alternates between two sensor
+//! models, since a behaviour that exploits one of them rarely transfers to the robot. Each restart has three stages:
 //!
-//! 1. a large population, gentler in selection and bolder in mutation, with few runs an individual: it finds a way. Its
-//!    elite is judged again in each generation;
-//! 2. a run that goes on from the best of it with small mutations and many runs an individual;
-//! 3. a choice among the last population by many fresh runs;
-//!
-//! and all of that several times, for other ways.
+//! 1. exploration: a large population with weak selection, strong mutation and few runs an individual, whose elite is
+//!    evaluated anew in each generation;
+//! 2. refinement: a run from the best individuals of the first stage, with small mutations and many runs an individual;
+//! 3. selection: the individual of the last population that succeeds most often in many fresh runs.
 
 use glam::DVec2;
 use mindgap_core::controller::Controller;
 use rayon::prelude::*;
 
-use super::fitness::{Numbers, Success, Task};
-use super::genome::Coding;
+use super::fitness::{FitnessEvaluator, RandomNumbers, Success};
+use super::genome::GenotypeDecoder;
 use super::paper::Evolved;
 use crate::chance::derive;
 use crate::genetic::mutation::{Mutation, Unit};
@@ -22,9 +20,9 @@ use crate::genetic::{self, Settings};
 use crate::simulator::course::Course;
 use crate::simulator::course::REACHED_CM;
 
-/// Generations of all runs of the genetic algorithm together.
+/// Total number of generations of all restarts.
 pub const GENERATIONS: usize = RESTARTS * (EXPLORING.max_generations + REFINING.max_generations);
-/// So many times all of it is done.
+/// Number of independent restarts.
 pub const RESTARTS: usize = 3;
 
 const EXPLORING: Settings = Settings {
@@ -34,7 +32,7 @@ const EXPLORING: Settings = Settings {
     sbx_index: 15.0,
     mutation: Mutation { chance: 0.1, unit: Unit::Gene, deviation: 0.2 },
     elite: 20,
-    window: None,
+    stagnation: None,
     max_generations: 120,
 };
 const EXPLORING_RUNS: usize = 4;
@@ -46,64 +44,64 @@ const REFINING: Settings = Settings {
     ..EXPLORING
 };
 const REFINING_RUNS: usize = 20;
-/// So many of the last population come into the final choice, each with so many fresh runs.
+/// Number of individuals of the last population in the final selection.
 const CANDIDATES: usize = 100;
+/// Number of fresh runs of each.
 const CHOOSING_RUNS: usize = 200;
-/// Set the choosing and the judging runs apart from all others.
+/// Stream keys of the runs that select a controller and of those that measure its success.
 const CHOOSING: u64 = 2;
 const JUDGING: u64 = 1;
 
-/// What a controller is evolved for.
-pub struct Quest<'a> {
-    /// Where it has to do well.
+/// The task that a controller is evolved for.
+pub struct EvolutionTask<'a> {
+    /// Where it runs.
     pub course: &'a Course<'a>,
     /// Where it has to stop, cm.
     pub target_cm: DVec2,
-    /// What its genes stand for.
-    pub coding: Coding,
-    /// Which random numbers individuals meet.
-    pub numbers: Numbers,
-    /// Fixes every draw.
+    /// Decodes genotypes into controllers.
+    pub decoder: GenotypeDecoder,
+    /// Which random numbers individuals are evaluated with.
+    pub random_numbers: RandomNumbers,
+    /// Seed of all draws.
     pub seed: u64,
 }
 
-/// Evolves a controller: of [`candidates`] the first. `watch` is told the generations so far of all [`GENERATIONS`], and
-/// the best fitness of the run that is under way.
-pub fn evolve(quest: &Quest, watch: impl FnMut(usize, f64)) -> Evolved {
-    candidates(quest, watch).swap_remove(0)
+/// Evolves a controller: the first of [`candidates`]. `watch` receives the number of generations completed, of
+/// [`GENERATIONS`], and the best fitness of the current run.
+pub fn evolve(task: &EvolutionTask, watch: impl FnMut(usize, f64)) -> Evolved {
+    candidates(task, watch).swap_remove(0)
 }
 
-/// A controller of each restart, which are different ways to the target if there are several; that which reaches it most
-/// often in fresh runs comes first.
-pub fn candidates(quest: &Quest, mut watch: impl FnMut(usize, f64)) -> Vec<Evolved> {
+/// The controller of each restart, by falling success rate in fresh runs. They may take different routes to the target.
+pub fn candidates(task: &EvolutionTask, mut watch: impl FnMut(usize, f64)) -> Vec<Evolved> {
     let mut chosen: Vec<(f64, Evolved)> = (0..RESTARTS)
         .map(|restart| {
-            let seed = derive(quest.seed, &[restart as u64]);
+            let seed = derive(task.seed, &[restart as u64]);
             let before = restart * (EXPLORING.max_generations + REFINING.max_generations);
-            let mut tell = |generation, best| watch(before + generation, best);
-            let explored = genetic::run(&EXPLORING, &quest.task(EXPLORING_RUNS, seed), seed, &mut tell);
-            let ways = explored.population.into_iter().take(REFINING.population).collect();
+            let mut report = |generation, best| watch(before + generation, best);
+            let explored = genetic::run(&EXPLORING, &task.evaluator(EXPLORING_RUNS, seed), seed, &mut report);
+            let best = explored.population.into_iter().take(REFINING.population).collect();
             let before = before + EXPLORING.max_generations;
-            let tell = |generation, best| watch(before + generation, best);
-            // All restarts are judged by the same runs.
-            let task = quest.task(REFINING_RUNS, quest.seed);
-            choose(&task, &genetic::run_from(ways, &REFINING, &task, seed, tell).population)
+            let report = |generation, best| watch(before + generation, best);
+            // All restarts are compared on the same runs.
+            let evaluator = task.evaluator(REFINING_RUNS, task.seed);
+            choose(&evaluator, &genetic::run_from(best, &REFINING, &evaluator, seed, report).population)
         })
         .collect();
     chosen.sort_by(|a, b| b.0.total_cmp(&a.0));
     chosen.into_iter().map(|(_, evolved)| evolved).collect()
 }
 
-/// The individual that reaches the target most often in fresh runs, and of equals the fitter; and how often it does.
-fn choose(task: &Task, population: &[Vec<f32>]) -> (f64, Evolved) {
+/// The individual with the highest success rate in fresh runs, ties broken by fitness; with that rate.
+fn choose(evaluator: &FitnessEvaluator, population: &[Vec<f32>]) -> (f64, Evolved) {
     let judged: Vec<(f64, f64, Controller)> = population
         .par_iter()
         .take(CANDIDATES)
         .map(|genes| {
-            let controller = task.coding.controller(genes);
-            let outcomes = task.outcomes(&controller, CHOOSING_RUNS, CHOOSING);
-            let (rate, fitness) = (task.success_of(&outcomes).rate, task.fitness_of(&outcomes));
-            (rate, fitness * task.runs as f64 / CHOOSING_RUNS as f64, controller)
+            let controller = evaluator.decoder.controller(genes);
+            let outcomes = evaluator.outcomes(&controller, CHOOSING_RUNS, CHOOSING);
+            let (rate, fitness) = (evaluator.success_of(&outcomes).rate, evaluator.fitness_of(&outcomes));
+            (rate, fitness * evaluator.runs as f64 / CHOOSING_RUNS as f64, controller)
         })
         .collect();
     let better = |a: &(f64, f64, Controller), b: &(f64, f64, Controller)| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1));
@@ -111,21 +109,21 @@ fn choose(task: &Task, population: &[Vec<f32>]) -> (f64, Evolved) {
     (rate, Evolved { controller, fitness, generations: GENERATIONS })
 }
 
-impl<'a> Quest<'a> {
-    /// How a controller does in so many fresh runs, which played no part in its evolution.
+impl<'a> EvolutionTask<'a> {
+    /// Success of a controller in a number of runs that played no part in its evolution.
     pub fn success(&self, controller: &Controller, runs: usize) -> Success {
-        self.task(REFINING_RUNS, self.seed).success(controller, runs, JUDGING)
+        self.evaluator(REFINING_RUNS, self.seed).success(controller, runs, JUDGING)
     }
 
-    fn task(&self, runs: usize, seed: u64) -> Task<'a> {
-        Task {
+    fn evaluator(&self, runs: usize, seed: u64) -> FitnessEvaluator<'a> {
+        FitnessEvaluator {
             course: self.course,
             target_cm: self.target_cm,
-            coding: self.coding,
+            decoder: self.decoder,
             runs,
-            // Once there, nearer is no better: what counts is to arrive often.
+            // Within the target radius nearer is no better: the success rate counts.
             floor_cm: REACHED_CM,
-            numbers: self.numbers,
+            random_numbers: self.random_numbers,
             seed,
         }
     }

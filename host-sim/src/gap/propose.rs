@@ -11,7 +11,7 @@ use crate::effects::StepContext;
 use crate::effects::chain::EffectChain;
 use crate::effects::context::RunHistory;
 use crate::evaluation::predictions;
-use crate::geometry::Pose;
+use crate::geometry::{Pose, Rectangle, bounding_box};
 use crate::logs::{self, Run};
 use crate::sonar::{Fan, Perturbation};
 use scripts::Script;
@@ -109,9 +109,11 @@ impl Bench<'_> {
 
     /// Where the robot stands free, the freest place first.
     fn starts(&self) -> Vec<Pose> {
-        let ends = || self.context.observations.surroundings.walls.iter().flat_map(|s| [s.from_cm, s.to_cm]);
-        let low = ends().fold(DVec2::INFINITY, DVec2::min);
-        let high = ends().fold(DVec2::NEG_INFINITY, DVec2::max);
+        let Some(Rectangle { low_cm: low, high_cm: high }) =
+            bounding_box(&self.context.observations.surroundings.walls)
+        else {
+            return Vec::new();
+        };
         let share = |i: usize| (i as f64 + 0.5) / PLACES as f64;
         let places =
             (0..PLACES * PLACES).map(|i| low + (high - low) * DVec2::new(share(i % PLACES), share(i / PLACES)));

@@ -1,27 +1,27 @@
-//! Normal mutation: "normally distributed random values were added to each component" (paper, section VII).
+//! Gaussian mutation: "normally distributed random values were added to each component" (paper, section VII).
 
 use rand::RngExt;
 use rand_distr::{Distribution, StandardNormal};
 
 use crate::chance::Generator;
 
-/// How children mutate.
+/// Parameters of Gaussian mutation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mutation {
-    /// Chance of a mutation (paper: 0.05).
+    /// Probability of a mutation (paper: 0.05).
     pub chance: f64,
-    /// What the chance is meant for.
+    /// What mutates with that probability.
     pub unit: Unit,
-    /// Standard deviation of what is added, in units of a gene's starting range (open; 0.1).
+    /// Standard deviation of the added noise, in units of the gene (open; 0.1).
     pub deviation: f32,
 }
 
-/// The paper's sentence reads two ways.
+/// What a mutation probability applies to; the paper, section VII, leaves it open.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Unit {
-    /// Each gene mutates with the chance, on its own.
+    /// Each gene mutates independently.
     Gene,
-    /// An individual mutates with the chance, and then every gene.
+    /// An individual mutates as a whole, every gene of it.
     Individual,
 }
 
@@ -52,7 +52,7 @@ mod tests {
     const CHILDREN: usize = 2000;
     const GENES: usize = 20;
 
-    /// The steps that a mutation takes, child by child.
+    /// Mutations of zero genes, child by child.
     fn steps(unit: Unit) -> Vec<Vec<f32>> {
         let mut rng = generator(4, &[]);
         let mutation = Mutation { unit, ..Mutation::default() };

@@ -1,5 +1,5 @@
-//! Simulated binary crossover (SBX; Deb and Agrawal 1995): children lie about their parents as one-point crossover of
-//! bit strings would put them.
+//! Simulated binary crossover (SBX; Deb and Agrawal 1995): children are distributed about their parents as by one-point
+//! crossover of bit strings.
 
 use mindgap_core::maths;
 use mindgap_core::scalar::Scalar;
@@ -9,7 +9,8 @@ use rand::RngExt;
 use crate::chance::Generator;
 use crate::lanes::{Lanes, WIDEST};
 
-/// Crosses two parents in place, every gene with its own spread and without bounds, as in the original.
+/// Crosses two parents in place, each gene with its own spread factor and without bounds, as in the original.
+/// `index` is the distribution index η.
 pub fn cross(a: &mut [f32], b: &mut [f32], index: f32, rng: &mut Generator) {
     for (a, b) in a.chunks_mut(WIDEST).zip(b.chunks_mut(WIDEST)) {
         let mut draws = [0.0; WIDEST];
@@ -42,7 +43,7 @@ impl WithSimd for Cross<'_> {
     }
 }
 
-/// The spread factor for a uniform draw in [0, 1): below one the children lie between their parents, above one
+/// The spread factor β for a uniform draw in [0, 1): below one the children lie between their parents, above one
 /// outside. A larger index keeps them nearer to the parents.
 #[inline(always)]
 fn spread<S: Simd>(draw: Lanes<S>, index: f32) -> Lanes<S> {

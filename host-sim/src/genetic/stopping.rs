@@ -1,23 +1,23 @@
-//! The stopping test of the paper, section VII: under 0.1 % improvement of the fittest over 300 generations.
+//! The stagnation criterion: under 0.1 % improvement of the fittest over 300 generations (paper, section VII).
 
-/// Stops when the best fitness has grown too little over a number of generations.
+/// Ends a run when the best fitness has grown too little over a number of generations.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Window {
-    /// Over how many generations (paper: 300).
+pub struct StagnationCriterion {
+    /// Number of generations over which growth is measured (paper: 300).
     pub generations: usize,
-    /// Least growth of the best fitness over them, as a share (paper: 0.001).
+    /// Least relative growth of the best fitness over them (paper: 0.001).
     pub improvement: f64,
 }
 
-impl Default for Window {
+impl Default for StagnationCriterion {
     fn default() -> Self {
-        Window { generations: 300, improvement: 0.001 }
+        StagnationCriterion { generations: 300, improvement: 0.001 }
     }
 }
 
-impl Window {
-    /// Whether a history of the best fitness so far, one entry a generation, has stopped growing. Fitness is positive,
-    /// as an inverse error is; an infinite one cannot grow.
+impl StagnationCriterion {
+    /// Whether the best fitness, one entry a generation, has stopped growing. Fitness must be positive, as an inverse
+    /// error is; an infinite fitness cannot grow.
     pub fn has_stalled(&self, best: &[f64]) -> bool {
         let Some(now) = best.last() else { return false };
         let Some(then) = best.len().checked_sub(self.generations + 1).map(|i| best[i]) else { return false };
@@ -30,10 +30,10 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    const SHORT: Window = Window { generations: 3, improvement: 0.001 };
+    const SHORT: StagnationCriterion = StagnationCriterion { generations: 3, improvement: 0.001 };
 
     #[test]
-    fn waits_for_a_whole_window() {
+    fn waits_for_the_whole_period() {
         assert!(!SHORT.has_stalled(&[]));
         assert!(!SHORT.has_stalled(&[1.0; 3]));
         assert!(SHORT.has_stalled(&[1.0; 4]));

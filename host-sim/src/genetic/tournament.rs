@@ -1,10 +1,10 @@
-//! Tournament selection: of some individuals drawn without replacement the fittest wins.
+//! Tournament selection: the fittest of several individuals drawn without replacement wins.
 
 use rand::RngExt;
 
 use crate::chance::Generator;
 
-/// The order of individuals from the fittest to the least fit; NaN comes last, and of equals the earlier first.
+/// Indices of individuals from the fittest to the least fit; NaN comes last, and ties keep their order.
 pub fn ranking(fitness: &[f64]) -> Vec<usize> {
     let mut order: Vec<usize> = (0..fitness.len()).collect();
     let key = |i: &usize| if fitness[*i].is_nan() { f64::NEG_INFINITY } else { fitness[*i] };
@@ -12,7 +12,7 @@ pub fn ranking(fitness: &[f64]) -> Vec<usize> {
     order
 }
 
-/// Holds tournaments among a population.
+/// Tournaments within a population.
 pub struct Tournament<'a> {
     ranking: &'a [usize],
     places: Vec<u32>,
@@ -24,7 +24,7 @@ impl<'a> Tournament<'a> {
         Tournament { ranking, places: (0..ranking.len() as u32).collect() }
     }
 
-    /// The fittest of `size` different individuals (at least one, at most all).
+    /// Index of the fittest of `size` different individuals; `size` is clamped to one and the population.
     pub fn winner(&mut self, size: usize, rng: &mut Generator) -> usize {
         let total = self.places.len() as u32;
         let mut best = total - 1;

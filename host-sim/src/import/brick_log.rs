@@ -1,8 +1,7 @@
-//! What a brick logged: rows of a run without poses.
+//! Reads the log of a brick: the rows of a run without poses.
 
 use std::path::{Path, PathBuf};
 
-use super::first_line;
 use crate::files;
 use crate::logs::Run;
 use crate::problem::Result;
@@ -10,18 +9,18 @@ use crate::problem::Result;
 /// A brick's log.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BrickLog {
-    /// Where it was read.
+    /// Its file.
     pub file: PathBuf,
-    /// Its rows.
+    /// Its rows, without poses.
     pub run: Run,
-    /// Its last line had no end and was left out: the brick lost power, or the log its room, while it was written.
+    /// Its last line was incomplete and left out: power or flash ran out while it was written.
     pub torn: bool,
 }
 
-/// A brick's log has these columns at least; the rotation counters tell its clock.
+/// Required columns; the rotation counters are needed to align its clock.
 const REQUIRED: [&str; 5] = ["t_ms", "left", "right", "rot_left_deg", "rot_right_deg"];
 
-/// Whether a file is a brick's log, going by its first line.
+/// Whether a file is a brick's log, judged by its first line.
 ///
 /// # Errors
 /// When it cannot be read.
@@ -32,16 +31,21 @@ pub fn is_one(file: &Path) -> Result<bool> {
 }
 
 impl BrickLog {
-    /// Reads a log. A last line without its end is left out.
+    /// Reads a log; a last line without its line end is left out.
     ///
     /// # Errors
-    /// When a column is missing, fewer than two rows are whole, or a number cannot be.
+    /// When a column is missing, fewer than two rows are complete, or a number is invalid.
     pub fn read(file: &Path, warn: impl FnMut(String)) -> Result<Self> {
         let text = files::read_text(file)?;
         let whole = text.rfind('\n').map_or("", |end| &text[..=end]);
         let run = Run::parse(file, whole, &REQUIRED, warn)?;
         Ok(BrickLog { file: file.to_owned(), run, torn: whole.len() < text.len() })
     }
+}
+
+/// The first line of a file; empty for an empty file.
+fn first_line(file: &Path) -> Result<String> {
+    Ok(files::read_text(file)?.lines().next().unwrap_or_default().to_owned())
 }
 
 #[cfg(test)]
@@ -68,7 +72,7 @@ mod tests {
     }
 
     #[test]
-    fn without_rotation_counters_no_clock_can_be_told() {
+    fn without_rotation_counters_the_clock_cannot_be_aligned() {
         let problem = read("t_ms,left,right,echo_cm\n0,1,1,\n400,1,1,\n").expect_err("no counters");
         assert!(problem.to_string().contains(":1: column rot_left_deg is missing"), "{problem}");
     }

@@ -1,63 +1,66 @@
-//! The clock of a brick against that of a camera, found by matching what the wheels turned with what the camera saw.
+//! Aligns the clock of a brick with that of a camera by matching wheel odometry with the motion that the camera saw.
 //!
-//! Both sides give the same cumulative motions (turned, travelled). Between two rows of the brick's log the camera has
-//! to see, but for one factor a motion, what the wheels say; the camera has many frames a row, so rows far apart still
-//! tell the time well. Offsets are tried all along the track, then offset and drift are refined together.
+//! Both give the same cumulative motions (rotation, travel). Between two rows of the brick's log they have to agree up to
+//! one scale factor for each motion. An exhaustive search over offsets is followed by a joint refinement of offset and
+//! drift, which maximises a posterior with a Student likelihood and a Cauchy prior on the drift.
 
-use super::motion::{MOTIONS, Moved};
-use super::track::GAP_MS;
+use super::frame::GAP_MS;
+use super::motion::{CumulativeMotion, MOTIONS};
 use crate::statistics::summary::median;
 
-/// How brick time becomes camera time.
+/// The affine map from brick time to camera time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Clocks {
-    /// Camera time at brick time 0.
+    /// Camera time at brick time 0, ms.
     pub offset_ms: f64,
-    /// How much faster the camera's clock runs: 1e-4 is 0.1 ms a second.
+    /// Relative drift of the camera's clock: 1e-4 is 0.1 ms a second faster than the brick's.
     pub drift: f64,
 }
 
-/// How well clocks match.
+/// The best alignment of two clocks and its quality.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Match {
+pub struct Alignment {
     /// The clocks.
     pub clocks: Clocks,
-    /// Share of the motion's variance that the match leaves unexplained, 0..=1.
+    /// Share of the motion's variance that the alignment leaves unexplained, 0..=1.
     pub unexplained: f64,
-    /// The same of the best match elsewhere; near `unexplained` where the motion repeats itself.
+    /// The same of the best alignment elsewhere; close to `unexplained` if the motion repeats itself.
     pub unexplained_elsewhere: f64,
-    /// Steps of the log that the track covers.
+    /// Number of steps of the log that the track covers.
     pub steps: usize,
 }
 
-/// Offsets tried are so far apart.
+/// Spacing of the offsets in the exhaustive search.
 const SEARCH_STEP_MS: f64 = 20.0;
-/// Matches nearer than this are the same match.
+/// Offsets closer than this belong to the same alignment.
 const ELSEWHERE_MS: f64 = 600.0;
-/// A match needs this share of the log's steps.
+/// Least share of the log's steps that the track has to cover.
 const LEAST_COVERED: f64 = 0.5;
-/// Two clocks usually drift apart by about so much; a Cauchy law of it keeps short logs from inventing more, and still
-/// lets clocks that run apart show.
+/// Scale of the Cauchy prior on the drift, that of ordinary quartz clocks: short logs cannot overfit it, and its heavy
+/// tails still admit clocks that drift more.
 const USUAL_DRIFT: f64 = 3e-5;
-/// Of the law of what wheels and camera differ in; and less than this counts as this, radians or cm.
-const FREEDOM: f64 = 4.0;
+/// Degrees of freedom of the Student likelihood, whose heavy tails admit slipping wheels.
+const DEGREES_OF_FREEDOM: f64 = 4.0;
+/// Lower bound on the scale of residuals (rad or cm) and on the unexplained share, which keeps logarithms finite.
 const EXACT: f64 = 1e-6;
-/// Drifts that are tried first.
+/// Initial drifts of the refinement.
 const FIRST_DRIFTS: [f64; 7] = [0.0, 1e-3, -1e-3, 3e-3, -3e-3, 1e-2, -1e-2];
-/// A refinement begins with these steps and halves them so often.
+/// Initial step sizes of the refinement.
 const FIRST_STEP_MS: f64 = 16.0;
 const FIRST_DRIFT: f64 = 4e-4;
+/// Number of times that the step sizes are halved.
 const HALVINGS: usize = 10;
 
 impl Clocks {
-    /// Camera time of a brick time.
+    /// Camera time of a brick time, ms.
     pub fn camera_ms(&self, brick_ms: f64) -> f64 {
         self.offset_ms + (1.0 + self.drift) * brick_ms
     }
 }
 
-/// The clocks that match best; `None` where no offset makes track and log overlap enough, or nothing moves.
-pub fn align(log: &[Moved], track: &[Moved]) -> Option<Match> {
+/// The alignment with the least unexplained motion; `None` if no offset makes track and log overlap enough, or nothing
+/// moves.
+pub fn align(log: &[CumulativeMotion], track: &[CumulativeMotion]) -> Option<Alignment> {
     let (first_ms, last_ms) = (track.first()?.t_ms, track.last()?.t_ms);
     let (from_ms, to_ms) = (log.first()?.t_ms, log.last()?.t_ms);
     let offsets = (last_ms - from_ms - (first_ms - to_ms)) / SEARCH_STEP_MS;
@@ -72,28 +75,33 @@ pub fn align(log: &[Moved], track: &[Moved]) -> Option<Match> {
     let unexplained_elsewhere = elsewhere.fold(1.0, f64::min);
     let clocks = refine(best.0, log, track);
     let misfit = Misfit::of(&clocks, log, track)?;
-    Some(Match { clocks, unexplained: misfit.mean(), unexplained_elsewhere, steps: misfit.steps })
+    Some(Alignment { clocks, unexplained: misfit.mean(), unexplained_elsewhere, steps: misfit.steps })
 }
 
-/// Offset and drift together, about the middle of the log, where they are independent. From several drifts the way is
-/// sought by squares, which show it from afar, and then by a law that bears slipping wheels; that law chooses.
-fn refine(offset_ms: f64, log: &[Moved], track: &[Moved]) -> Clocks {
+/// Refines offset and drift jointly about the middle of the log, where they are uncorrelated. From each initial drift the
+/// search descends first the normal likelihood, whose basin is wide, and then the robust Student likelihood, by which the
+/// best result is selected.
+fn refine(offset_ms: f64, log: &[CumulativeMotion], track: &[CumulativeMotion]) -> Clocks {
     let middle_ms = log[log.len() / 2].t_ms;
     let about = |(at_middle_ms, drift): (f64, f64)| Clocks { offset_ms: at_middle_ms - drift * middle_ms, drift };
-    let unlikely = |point: (f64, f64), law: fn(&Misfit) -> f64| {
+    let negative_log_posterior = |point: (f64, f64), law: fn(&Misfit) -> f64| {
         let usual = point.1 / USUAL_DRIFT;
         Misfit::of(&about(point), log, track).map_or(f64::INFINITY, |misfit| law(&misfit)) + libm::log1p(usual * usual)
     };
     let found = FIRST_DRIFTS.iter().flat_map(|drift| {
         let first = (offset_ms + drift * middle_ms, *drift);
-        let by_squares = descend(first, |point| unlikely(point, Misfit::nats_of_squares));
-        [first, by_squares].map(|point| descend(point, |point| unlikely(point, Misfit::nats)))
+        let by_squares = descend(first, |point| negative_log_posterior(point, Misfit::normal_negative_log_likelihood));
+        [first, by_squares]
+            .map(|point| descend(point, |point| negative_log_posterior(point, Misfit::student_negative_log_likelihood)))
     });
-    let best = found.min_by(|a, b| unlikely(*a, Misfit::nats).total_cmp(&unlikely(*b, Misfit::nats)));
+    let best = found.min_by(|a, b| {
+        negative_log_posterior(*a, Misfit::student_negative_log_likelihood)
+            .total_cmp(&negative_log_posterior(*b, Misfit::student_negative_log_likelihood))
+    });
     about(best.unwrap_or((offset_ms, 0.0)))
 }
 
-/// The least value near a point, by steps that are halved.
+/// A local minimum by pattern search with halved steps.
 fn descend(from: (f64, f64), value: impl Fn((f64, f64)) -> f64) -> (f64, f64) {
     let (mut best, mut least) = (from, value(from));
     let (mut step_ms, mut step_drift) = (FIRST_STEP_MS, FIRST_DRIFT);
@@ -114,19 +122,19 @@ fn descend(from: (f64, f64), value: impl Fn((f64, f64)) -> f64) -> (f64, f64) {
     best
 }
 
-/// How far wheels and camera differ under a pair of clocks.
+/// Disagreement of wheels and camera under given clocks.
 struct Misfit {
-    /// Of every motion that there was what the camera saw beyond what the wheels say, step by step,
+    /// Residuals of each motion that occurred, one a step: the camera's motion minus the scaled motion of the wheels.
     left: Vec<Vec<f64>>,
-    /// and the share of its variance that this is.
+    /// Unexplained share of the variance of each of these motions.
     unexplained: Vec<f64>,
-    /// Steps that this was measured on.
+    /// Number of steps compared.
     steps: usize,
 }
 
 impl Misfit {
-    /// `None` where too few steps are covered, or nothing moved.
-    fn of(clocks: &Clocks, log: &[Moved], track: &[Moved]) -> Option<Self> {
+    /// `None` if too few steps are covered, or nothing moved.
+    fn of(clocks: &Clocks, log: &[CumulativeMotion], track: &[CumulativeMotion]) -> Option<Self> {
         let seen: Vec<Option<[f64; MOTIONS]>> = log.iter().map(|row| at(track, clocks.camera_ms(row.t_ms))).collect();
         let steps: Vec<(usize, [f64; MOTIONS], [f64; MOTIONS])> =
             seen.windows(2).enumerate().filter_map(|(i, pair)| Some((i, pair[0]?, pair[1]?))).collect();
@@ -153,26 +161,26 @@ impl Misfit {
         self.unexplained.iter().sum::<f64>() / self.unexplained.len() as f64
     }
 
-    /// The negative log-likelihood of what is left under a normal law of unknown width, but for a constant.
-    fn nats_of_squares(&self) -> f64 {
+    /// Negative log-likelihood of the residuals under a normal law of unknown scale, up to a constant.
+    fn normal_negative_log_likelihood(&self) -> f64 {
         let logs: f64 = self.unexplained.iter().map(|share| libm::log(share.max(EXACT))).sum();
         0.5 * self.steps as f64 * logs
     }
 
-    /// The same under Student's law with [`FREEDOM`], since wheels slip
-    /// now and then, about as wide as half of the steps say.
-    fn nats(&self) -> f64 {
+    /// Negative log-likelihood of the residuals under a Student law scaled by their median, since wheels slip now and then.
+    fn student_negative_log_likelihood(&self) -> f64 {
         let of_motion = |left: &Vec<f64>| {
             let width = median(left.iter().map(|v| v.abs())).max(EXACT);
-            let law = |v: &f64| (FREEDOM + 1.0) / 2.0 * libm::log1p(v * v / (FREEDOM * width * width));
+            let law =
+                |v: &f64| (DEGREES_OF_FREEDOM + 1.0) / 2.0 * libm::log1p(v * v / (DEGREES_OF_FREEDOM * width * width));
             left.iter().map(|v| law(v) + libm::log(width)).sum::<f64>()
         };
         self.left.iter().map(of_motion).sum()
     }
 }
 
-/// What had been moved at a time, between two frames; `None` outside the track and in its gaps.
-fn at(track: &[Moved], t_ms: f64) -> Option<[f64; MOTIONS]> {
+/// Cumulative motion interpolated between two frames; `None` outside the track and in its gaps.
+fn at(track: &[CumulativeMotion], t_ms: f64) -> Option<[f64; MOTIONS]> {
     let after = track.partition_point(|frame| frame.t_ms < t_ms);
     let (before, after) = (track.get(after.checked_sub(1)?)?, track.get(after)?);
     let span_ms = after.t_ms - before.t_ms;
@@ -214,22 +222,22 @@ mod tests {
             let salt = seed * 100_000;
             let clocks =
                 Clocks { offset_ms: 3_000.0 + 50_000.0 * noise(salt + 7).abs(), drift: 3e-4 * noise(salt + 8) };
-            let log: Vec<Moved> = (0..=150u64)
+            let log: Vec<CumulativeMotion> = (0..=150u64)
                 .map(|k| {
                     let t_ms = 400.0 * k as f64 + 15.0 * noise(salt + 9_000 + k).abs();
                     let by = truth(salt, t_ms);
-                    Moved {
+                    CumulativeMotion {
                         t_ms,
                         by: [1.07 * by[0] + 0.02 * noise(salt + k), 0.94 * by[1] + 0.2 * noise(salt + 1 + k)],
                     }
                 })
                 .collect();
-            let track: Vec<Moved> = (0..4_500u64)
+            let track: Vec<CumulativeMotion> = (0..4_500u64)
                 .filter(|k| !(900..1_000).contains(k) && k % 17 != 3)
                 .map(|k| {
                     let t_ms = 33.0 * k as f64 + 4.0 * noise(salt + 20_000 + k);
                     let by = truth(salt, ((t_ms - clocks.offset_ms) / (1.0 + clocks.drift)).clamp(0.0, 60_000.0));
-                    Moved {
+                    CumulativeMotion {
                         t_ms,
                         by: [by[0] + 0.01 * noise(salt + 30_000 + k), by[1] + 0.3 * noise(salt + 40_000 + k)],
                     }
@@ -245,8 +253,10 @@ mod tests {
     }
 
     #[test]
-    fn nothing_is_matched_without_overlap_or_motion() {
-        let still = |n: u64, ms: f64| (0..n).map(|k| Moved { t_ms: ms * k as f64, by: [0.0; 2] }).collect::<Vec<_>>();
+    fn nothing_is_aligned_without_overlap_or_motion() {
+        let still = |n: u64, ms: f64| {
+            (0..n).map(|k| CumulativeMotion { t_ms: ms * k as f64, by: [0.0; 2] }).collect::<Vec<_>>()
+        };
         assert_eq!(align(&still(150, 400.0), &still(2_000, 33.0)), None);
         assert_eq!(align(&still(150, 400.0), &still(300, 33.0)), None);
         assert_eq!(align(&still(150, 400.0), &[]), None);

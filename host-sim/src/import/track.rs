@@ -1,14 +1,14 @@
-//! A camera's track: where the robot was seen, frame by frame, on the camera's own clock.
+//! A camera's track: the robot's pose frame by frame, on the camera's own clock.
 
 mod columns;
 mod motive;
 
 use std::path::{Path, PathBuf};
 
-pub use columns::{Angle, Length, Time, Units};
-
-use super::TrackReport;
-use super::motion::{Moved, by_camera};
+use super::frame::{Frame, GAP_MS};
+use super::motion::{CumulativeMotion, by_camera};
+use super::report::TrackReport;
+use super::units::Units;
 use crate::geometry::{Pose, wrap_rad};
 use crate::logs::Robot;
 use crate::problem::{Problem, Result};
@@ -16,7 +16,7 @@ use crate::problem::{Problem, Result};
 /// A camera's track.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Track {
-    /// Where it was read.
+    /// Its file.
     pub file: PathBuf,
     /// The frames in which the robot was seen, in order of time.
     frames: Vec<Frame>,
@@ -24,38 +24,29 @@ pub struct Track {
     jumps: usize,
 }
 
-/// A frame in which the robot was seen.
+/// What a track says about a time.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Frame {
-    /// Time on the camera's clock.
-    pub t_ms: f64,
-    /// The axle's middle, in the scene's frame.
-    pub pose: Pose,
-}
-
-/// What a track says of a moment.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Seen {
-    /// The robot was here.
+pub enum Sighting {
+    /// The robot's pose.
     At(Pose),
-    /// Nothing, since the robot was lost.
+    /// No pose, since the camera had lost the robot.
     Lost,
-    /// Nothing, since it was before the first or after the last frame.
+    /// No pose, since the time lies before the first or after the last frame.
     Outside,
 }
 
-/// Frames farther apart than this are a gap, across which nothing is known.
-pub const GAP_MS: f64 = 250.0;
-/// Wheels never turn faster than this times full speed, and trackers err by a few centimetres and degrees.
+/// Fastest motion of a robot as a multiple of its nominal full speed.
 const FASTEST: f64 = 1.5;
+/// Tracking errors allowed on top of it.
 const ERR_CM: f64 = 4.0;
 const ERR_RAD: f64 = 0.25;
 
 impl Track {
-    /// Reads a track, with columns that name their units or a rigid body that Motive exported.
+    /// Reads a track: CSV whose columns name their units, or a rigid body exported by Motive.
     ///
     /// # Errors
-    /// When the file is missing or broken, when a column or its unit is not told, or with fewer than two seen frames.
+    /// When the file cannot be read or parsed, when a column or its unit is missing, or when the robot was seen in fewer
+    /// than two frames.
     pub fn read(file: &Path, units: &Units, robot: &Robot) -> Result<Self> {
         let text = crate::files::read_text(file)?;
         let frames =
@@ -75,46 +66,46 @@ impl Track {
         Ok(Track { file: file.to_owned(), lost, jumps: whole - frames.len(), frames })
     }
 
-    /// How many frames there were, and how many of them are not used.
+    /// Number of frames and of those left out.
     pub fn report(&self) -> TrackReport {
         let Track { file, frames, lost, jumps } = self;
         TrackReport { file: file.clone(), frames: frames.len() + lost + jumps, lost: *lost, jumps: *jumps }
     }
 
-    /// How the robot moved.
-    pub fn motion(&self) -> Vec<Moved> {
+    /// The robot's cumulative motion.
+    pub fn motion(&self) -> Vec<CumulativeMotion> {
         by_camera(&self.frames)
     }
 
-    /// Where the robot was at a time, between two frames in proportion.
-    pub fn at(&self, t_ms: f64) -> Seen {
+    /// The robot's pose at a time on the camera's clock, interpolated between two frames.
+    pub fn at(&self, t_ms: f64) -> Sighting {
         let after = self.frames.partition_point(|frame| frame.t_ms < t_ms);
         let (Some(after), Some(before)) = (self.frames.get(after), after.checked_sub(1).map(|i| &self.frames[i]))
         else {
-            return Seen::Outside;
+            return Sighting::Outside;
         };
         let span_ms = after.t_ms - before.t_ms;
         if span_ms > GAP_MS {
-            return Seen::Lost;
+            return Sighting::Lost;
         }
         let share = (t_ms - before.t_ms) / span_ms;
         let turn_rad = wrap_rad(after.pose.heading_rad - before.pose.heading_rad);
         let at_cm = before.pose.position_cm.lerp(after.pose.position_cm, share);
-        Seen::At(Pose::new(at_cm.x, at_cm.y, before.pose.heading_rad + share * turn_rad))
+        Sighting::At(Pose::new(at_cm.x, at_cm.y, before.pose.heading_rad + share * turn_rad))
     }
 }
 
-impl Seen {
+impl Sighting {
     /// The pose, if there is one.
     pub fn pose(&self) -> Option<Pose> {
         match self {
-            Seen::At(pose) => Some(*pose),
-            Seen::Lost | Seen::Outside => None,
+            Sighting::At(pose) => Some(*pose),
+            Sighting::Lost | Sighting::Outside => None,
         }
     }
 }
 
-/// The frames that the robot can have reached from the last one that counts.
+/// The frames that the robot can have reached from the last frame kept.
 fn without_jumps(frames: Vec<Frame>, robot: &Robot) -> Vec<Frame> {
     let cm_ms = FASTEST * robot.full_speed_cm_s / 1000.0;
     let rad_ms = 2.0 * cm_ms / robot.track_cm;
@@ -150,7 +141,10 @@ mod tests {
         assert_eq!((track.frames.len(), track.lost, track.jumps), (3, 1, 0));
         let pose = track.at(10_050.0).pose().expect("seen");
         assert!((pose.position_cm.x - 10.5).abs() < 1e-9 && pose.heading_rad.abs() > 3.1, "{pose:?}");
-        assert_eq!([9_999.0, 10_500.0, 11_501.0].map(|ms| track.at(ms)), [Seen::Outside, Seen::Lost, Seen::Outside]);
+        assert_eq!(
+            [9_999.0, 10_500.0, 11_501.0].map(|ms| track.at(ms)),
+            [Sighting::Outside, Sighting::Lost, Sighting::Outside]
+        );
     }
 
     #[test]
@@ -170,7 +164,7 @@ mod tests {
             ("t_ms,x_cm,y_cm,heading_deg\n0,1,far,0\n", ":2: y_cm = \"far\" is no number"),
             ("t_ms,x_cm,y_cm,heading_deg\n0,1,inf,0\n", ":2: y_cm = \"inf\" is no number"),
             ("t_ms,x_cm,y_cm\n0,1,1\n", ":1: no column for the heading"),
-            ("t,x,y,theta\n0,1,1,0\n", ":1: column t does not tell its unit"),
+            ("t,x,y,theta\n0,1,1,0\n", ":1: column t has no unit"),
             ("t_ms,x_cm,x_mm,y_cm,heading_deg\n0,1,1,1,0\n", ":1: more than one column for x"),
         ] {
             let problem = read(text).expect_err(text).to_string();

@@ -1,4 +1,4 @@
-//! What each of the five networks is trained and judged on (paper, section VI).
+//! Training and evaluation data of the five networks (paper, section VI).
 
 use std::ops::RangeInclusive;
 
@@ -9,29 +9,29 @@ use crate::logs::{Logs, samples};
 pub struct Dataset<const N: usize> {
     /// The inputs, in the units of the logs.
     pub inputs: Vec<[f32; N]>,
-    /// What the network has to say.
+    /// The desired outputs, one a sample.
     pub targets: Vec<f32>,
-    /// Which run each sample comes from.
+    /// The index of the run that each sample comes from.
     pub runs: Vec<usize>,
 }
 
 /// The data sets of the five networks.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Datasets {
-    /// Left, right, previous left and previous right command to the turn, degrees.
+    /// Left, right, previous left and previous right command to the turn in a step, degrees.
     pub turn: Dataset<4>,
-    /// The same to the way forward, cm.
+    /// The same to the displacement forward, cm.
     pub forward: Dataset<4>,
-    /// The same to the way to the left, cm.
+    /// The same to the displacement to the left, cm.
     pub lateral: Dataset<4>,
     /// D (cm) and α (degrees) to 1 where the sensor produced a value, else 0.
     pub echo_probability: Dataset<2>,
-    /// D and α to the reading (cm), where there was one.
+    /// D and α to the reading, cm, of those samples that have one.
     pub echo_value: Dataset<2>,
 }
 
 impl Datasets {
-    /// Takes the samples out of logs.
+    /// Extracts the samples from logs.
     pub fn from_logs(logs: &Logs) -> Self {
         let motion = samples::motion(logs);
         let sonar = samples::sonar(logs);
@@ -77,7 +77,7 @@ impl<const N: usize> Dataset<N> {
         self.runs.push(run);
     }
 
-    /// The samples for which `keep` holds, by run.
+    /// The samples of the runs whose index satisfies `keep`.
     pub fn of_runs(&self, keep: impl Fn(usize) -> bool) -> Self {
         let mut kept = Dataset::default();
         for ((inputs, target), run) in self.inputs.iter().zip(&self.targets).zip(&self.runs) {

@@ -1,6 +1,6 @@
-//! The fast trainer: once the exponents are fixed, all other weights of a network are a linear least-squares problem, so
-//! only the exponents are searched (variable projection; Golub and Pereyra 1973), by Levenberg–Marquardt from several
-//! starts. The start that does best on held-out runs is kept.
+//! The fast trainer. For fixed exponents all other weights of a network solve a linear least-squares problem, so only the
+//! exponents are searched (variable projection; Golub and Pereyra 1973), by Levenberg–Marquardt from several random
+//! starts. The start with the least loss on held-out runs is kept.
 
 mod anchors;
 mod gram;
@@ -19,47 +19,47 @@ use crate::statistics::agreement as statistics;
 use anchors::Anchored;
 use projection::{Projection, Ridges};
 
-/// How errors count.
+/// Loss function of a network.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Loss {
-    /// By their squares.
+    /// Squared error.
     Squares,
-    /// As a probability's: by log likelihood of what happened.
+    /// Negative log-likelihood of a Bernoulli outcome whose probability the network predicts.
     Logistic,
-    /// By the likelihood of a narrow error, or now and then of any reading at all.
+    /// Negative log-likelihood of a contaminated normal: a normal error, or an outlier.
     Mixture,
 }
 
-/// A trained network and what it took.
+/// A trained network and its cost.
 #[derive(Clone, Debug)]
 pub struct Trained<const N: usize> {
     /// The network, in the units of its data set.
     pub network: Network<f32, N>,
-    /// How often a network was evaluated over the data set.
+    /// Number of evaluations of a network over the data set.
     pub evaluations: usize,
 }
 
-/// Starts that are tried with each of the manners.
+/// Number of random starts with each search configuration.
 const STARTS: u64 = 4;
-/// Few samples ask for a tight rein, many can do with a loose one; held-out runs choose.
-const MANNERS: [Manner; 2] = [
-    Manner { ridges: Ridges { weights: 1e-4, exponents: 1e-5 }, start_range: 2.0 },
-    Manner { ridges: Ridges { weights: 1e-7, exponents: 1e-7 }, start_range: 4.0 },
+/// Few samples need strong regularisation, many do with a weak one; held-out runs decide.
+const SEARCH_CONFIGS: [SearchConfig; 2] = [
+    SearchConfig { ridges: Ridges { weights: 1e-4, exponents: 1e-5 }, start_range: 2.0 },
+    SearchConfig { ridges: Ridges { weights: 1e-7, exponents: 1e-7 }, start_range: 4.0 },
 ];
 
-/// How freely exponents are searched.
-struct Manner {
+/// How exponents are searched.
+struct SearchConfig {
     ridges: Ridges,
-    /// They start uniformly in ± this.
+    /// Exponents start uniformly in ± this.
     start_range: f64,
 }
 
-/// Evaluations of one search at most, in units of the number of exponents plus one.
+/// Maximum number of evaluations of one search, in units of the number of exponents plus one.
 const PATIENCE: usize = 3;
-/// Rounds of reweighting for a loss that is not least squares.
+/// Iterations of reweighting (iteratively reweighted least squares) for losses other than squared error.
 const REWEIGHTINGS: usize = 4;
 
-/// Trains one network on `fitted` and chooses among starts by `judged`, in which the data sets must have samples.
+/// Trains one network on `fitted` and selects among starts by the loss on `judged`; both data sets must have samples.
 pub fn train<const N: usize>(
     fitted: &Dataset<N>,
     judged: &Dataset<N>,
@@ -70,16 +70,16 @@ pub fn train<const N: usize>(
 ) -> Trained<N> {
     let inputs = fitted.ranges().map(|range| Scaling::onto_one_to_two(*range.start(), *range.end()));
     let anchored = Anchored::new(fitted, &inputs);
-    // For readings a loose rein buys nothing (R² 0.794 either way) and costs accuracy in fixed point.
-    let manners = if loss == Loss::Mixture { &MANNERS[..1] } else { &MANNERS };
-    let tries: Vec<(u64, &Manner)> = (0..STARTS * manners.len() as u64).zip(manners.iter().cycle()).collect();
+    // For readings weak regularisation gains nothing (R² 0.794 either way) and costs accuracy in fixed point.
+    let configs = if loss == Loss::Mixture { &SEARCH_CONFIGS[..1] } else { &SEARCH_CONFIGS };
+    let tries: Vec<(u64, &SearchConfig)> = (0..STARTS * configs.len() as u64).zip(configs.iter().cycle()).collect();
     let searched: Vec<(f64, Network<f32, N>, usize)> = tries
         .into_par_iter()
-        .map(|(start, manner)| {
+        .map(|(start, config)| {
             let mut rng = generator(seed, &[start]);
-            let range = -manner.start_range..=manner.start_range;
+            let range = -config.start_range..=config.start_range;
             let exponents = DVector::from_fn(shape.product * N, |_, _| rng.random_range(range.clone()));
-            let problem = Projection::new(&anchored, &inputs, manner.ridges, exponents);
+            let problem = Projection::new(&anchored, &inputs, config.ridges, exponents);
             let (mut problem, mut evaluations) = search(problem);
             for _ in 0..if loss == Loss::Squares { 0 } else { REWEIGHTINGS } {
                 reweight(&mut problem, loss, &anchored.data.targets);
@@ -96,21 +96,21 @@ pub fn train<const N: usize>(
     Trained { network, evaluations }
 }
 
-/// Larger exponents have no place in fixed point, and samples show no surface so steep.
+/// Larger exponents overflow in fixed point, and no data set seen needs a surface that steep.
 const LARGEST_EXPONENT: f32 = 30.0;
 
 fn is_steep<const N: usize>(network: &Network<f32, N>) -> bool {
     network.product.iter().flat_map(|unit| unit.exponents).any(|exponent| exponent.abs() > LARGEST_EXPONENT)
 }
 
-/// The problem with its exponents at a minimum, and the evaluations that it took.
+/// The problem with its exponents at a local minimum, and the number of evaluations.
 fn search<const N: usize>(problem: Projection<N>) -> (Projection<N>, usize) {
     let method = LevenbergMarquardt::new().with_patience(PATIENCE).with_ftol(1e-6).with_xtol(1e-4);
     let (found, report) = method.minimize(problem);
     (found, report.number_of_evaluations)
 }
 
-/// Sets targets and weights so that least squares takes a step towards the least loss.
+/// Sets targets and weights for the next iteration of reweighted least squares.
 fn reweight<const N: usize>(problem: &mut Projection<N>, loss: Loss, targets: &[f32]) {
     let predictions = problem.predictions();
     let pairs = predictions.iter().zip(targets).map(|(p, t)| (*p, f64::from(*t)));
@@ -118,57 +118,58 @@ fn reweight<const N: usize>(problem: &mut Projection<N>, loss: Loss, targets: &[
         Loss::Squares => pairs.map(|(_, t)| (t, 1.0)).unzip(),
         Loss::Logistic => pairs.map(logistic_step).unzip(),
         Loss::Mixture => {
-            let narrow = Narrow::of(pairs.clone().map(|(p, t)| t - p).collect());
-            pairs.map(|(p, t)| (t, narrow.share(t - p))).unzip()
+            let residual_law = ContaminatedNormal::of(pairs.clone().map(|(p, t)| t - p).collect());
+            pairs.map(|(p, t)| (t, residual_law.inlier_probability(t - p))).unzip()
         }
     };
     problem.reweight(targets, &weights);
 }
 
-/// Target and weight of a sample for the logarithm of the likelihood of a ramp: the inverse variance of what happens,
-/// and no pull at all where the ramp already says for sure what did happen.
+/// Target and weight of a sample for the log-likelihood of a ramp output. The weight is the inverse variance of the
+/// outcome; where the ramp saturates at the outcome, the target is the prediction itself, which exerts no pull.
 fn logistic_step((predicted, happened): (f64, f64)) -> (f64, f64) {
     let ramp = predicted.clamp(LEAST_PROBABILITY, 1.0 - LEAST_PROBABILITY);
-    let sure = (predicted <= 0.0 && happened < 0.5) || (predicted >= 1.0 && happened > 0.5);
-    (if sure { predicted } else { happened }, 1.0 / (ramp * (1.0 - ramp)))
+    let saturated = (predicted <= 0.0 && happened < 0.5) || (predicted >= 1.0 && happened > 0.5);
+    (if saturated { predicted } else { happened }, 1.0 / (ramp * (1.0 - ramp)))
 }
 
-/// Probabilities nearer to 0 or 1 weigh as this.
+/// Probabilities nearer to 0 or 1 are weighted as this one, which bounds the weights.
 const LEAST_PROBABILITY: f64 = 0.02;
 
-/// A narrow error with a wide tail.
-struct Narrow {
+/// A contaminated normal: normal residuals with a constant density of outliers.
+struct ContaminatedNormal {
     deviation: f64,
 }
 
-impl Narrow {
-    /// Fits the narrow part to residuals.
+impl ContaminatedNormal {
+    /// Fits the standard deviation to residuals by their median absolute value.
     fn of(mut residuals: Vec<f64>) -> Self {
         residuals.iter_mut().for_each(|r| *r = r.abs());
         residuals.sort_by(f64::total_cmp);
         let median = residuals.get(residuals.len() / 2).copied().unwrap_or(1.0);
-        // Of a normal distribution half lies within 0.6745 deviations.
-        Narrow { deviation: ORDINARY * (median / 0.6745).max(LEAST_DEVIATION) }
+        // Half of a normal distribution lies within 0.6745 standard deviations.
+        ContaminatedNormal { deviation: ORDINARY * (median / 0.6745).max(LEAST_DEVIATION) }
     }
 
-    /// The share of a residual that belongs to the narrow part.
-    fn share(&self, residual: f64) -> f64 {
+    /// Probability that a residual belongs to the normal component.
+    fn inlier_probability(&self, residual: f64) -> f64 {
         let z = residual / self.deviation;
-        let narrow = libm::exp(-0.5 * z * z);
-        narrow / (narrow + TAIL)
+        let inlier = libm::exp(-0.5 * z * z);
+        inlier / (inlier + TAIL)
     }
 }
 
-/// Readings are whole centimetres, so no deviation can be seen below this.
+/// Least standard deviation, cm: readings are whole centimetres.
 const LEAST_DEVIATION: f64 = 0.5;
-/// So many times the deviation of the better half is still ordinary: a beam that meets an edge beside its axis reads
-/// short by that much, and the network has to follow it. On held-out logs 1 leaves R² at 0.75, 10 reaches 0.79.
+/// Residuals up to this multiple of the standard deviation of the better half count as inliers: a beam that meets an edge
+/// beside its axis reads short by that much, and the network has to follow it. On held-out logs 1 leaves R² at 0.75, 10
+/// reaches 0.79.
 const ORDINARY: f64 = 10.0;
-/// Density of the wide tail against the narrow part's at its middle.
+/// Density of outliers relative to the normal component at its mode.
 const TAIL: f64 = 0.02;
 
-/// The network that exponents and linear weights stand for. Its summation units are linear, so one of them carries the
-/// whole affine map.
+/// The network with the exponents and linear weights of a problem. Summation units are linear, so one of them carries
+/// the whole affine map.
 fn network<const N: usize>(
     problem: &Projection<N>,
     inputs: &[Scaling<f32>; N],
@@ -204,7 +205,8 @@ fn cost<const N: usize>(network: &Network<f32, N>, data: &Dataset<N>, loss: Loss
     match loss {
         Loss::Squares => statistics::mse(&expected, &predicted),
         Loss::Logistic => statistics::log_loss(&expected, &predicted),
-        // Sure to notice a surface that runs away somewhere, which the mixture would take for wrong readings.
+        // Unlike the mixture, the mean absolute error penalises a surface that diverges, whose residuals would count as
+        // outliers.
         Loss::Mixture => statistics::mae(&expected, &predicted),
     }
 }

@@ -1,9 +1,9 @@
-//! A network as the genes of an individual: "each individual in the GA encoded potential weight values directly"
+//! Direct encoding of networks: "each individual in the GA encoded potential weight values directly"
 //! (paper, section VII).
 
 use mindgap_core::network::{Activation, MAX_HALF, Network, ProductForm, ProductUnit, Scaling, SummationUnit};
 
-/// How many units of each kind the hidden layer has.
+/// Number of hidden units of each kind.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Shape {
     /// Summation units, at most [`MAX_HALF`].
@@ -12,44 +12,47 @@ pub struct Shape {
     pub product: usize,
 }
 
-/// Everything about a network but its weights.
+/// A network without its weights.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Frame<const N: usize> {
-    /// Units of the hidden layer.
+pub struct NetworkTemplate<const N: usize> {
+    /// Number of hidden units.
     pub shape: Shape,
-    /// How inputs are scaled.
+    /// Scaling of the inputs.
     pub inputs: [Scaling<f32>; N],
-    /// What the output unit does.
+    /// Activation of the output unit.
     pub activation: Activation,
 }
 
 impl Shape {
-    /// A hidden layer of so many neurons, half of each kind, as in Table I.
+    /// A hidden layer of `hidden` neurons, half of each kind (paper, Table I).
+    ///
+    /// # Panics
+    /// When `hidden` is odd or a half exceeds [`MAX_HALF`].
     pub const fn halves(hidden: usize) -> Self {
         assert!(hidden.is_multiple_of(2) && hidden / 2 <= MAX_HALF, "a hidden layer has two halves that fit");
         Shape { summation: hidden / 2, product: hidden / 2 }
     }
 
-    /// The same, if there is such a hidden layer.
+    /// As [`halves`](Self::halves), `None` where that would panic or `hidden` is 0.
     pub fn checked_halves(hidden: usize) -> Option<Self> {
         (hidden > 0 && hidden.is_multiple_of(2) && hidden / 2 <= MAX_HALF).then(|| Self::halves(hidden))
     }
 }
 
-impl<const N: usize> Frame<N> {
+impl<const N: usize> NetworkTemplate<N> {
     /// The number of genes.
     pub fn genes(&self) -> usize {
         self.shape.summation * (N + 2) + self.shape.product * (N + 1) + 1
     }
 
-    /// The places of the exponents among the genes.
+    /// Indices of the exponents among the genes.
     pub fn exponents(&self) -> impl Iterator<Item = usize> + use<N> {
         let first = self.shape.summation * (N + 2);
         (0..self.shape.product).flat_map(move |unit| (0..N).map(move |i| first + unit * (N + 1) + i))
     }
 
-    /// The network that genes stand for: summation units (weights, bias, output), product units (exponents, output),
-    /// bias of the output.
+    /// Decodes [`genes`](Self::genes) numbers: summation units (weights, bias, output), product units (exponents,
+    /// output), bias of the output.
     pub fn network(&self, genes: &[f32]) -> Network<f32, N> {
         let (summation, rest) = genes.split_at(self.shape.summation * (N + 2));
         let (product, bias) = rest.split_at(self.shape.product * (N + 1));
@@ -70,7 +73,7 @@ impl<const N: usize> Frame<N> {
     }
 }
 
-/// Turns a network whose output `z` stands for `low + (z - 1)(high - low)` into one that says so itself.
+/// Rescales a network whose output `z` means `low + (z - 1)(high - low)` so that it returns that value itself.
 pub fn unscale_output<const N: usize>(network: &mut Network<f32, N>, low: f32, high: f32) {
     let gain = high - low;
     network.bias = low + (network.bias - 1.0) * gain;
@@ -82,8 +85,8 @@ pub fn unscale_output<const N: usize>(network: &mut Network<f32, N>, low: f32, h
 mod tests {
     use super::*;
 
-    fn frame() -> Frame<2> {
-        Frame {
+    fn template() -> NetworkTemplate<2> {
+        NetworkTemplate {
             shape: Shape::halves(4),
             inputs: [Scaling::onto_one_to_two(0.0, 1.0); 2],
             activation: Activation::Linear,
@@ -92,19 +95,19 @@ mod tests {
 
     #[test]
     fn every_gene_has_its_place() {
-        let genes: Vec<f32> = (0..frame().genes()).map(|i| i as f32).collect();
-        let network = frame().network(&genes);
+        let genes: Vec<f32> = (0..template().genes()).map(|i| i as f32).collect();
+        let network = template().network(&genes);
         assert_eq!(network.parameters(), genes.len());
         assert_eq!(network.summation[1], SummationUnit { weights: [4.0, 5.0], bias: 6.0, output: 7.0 });
         assert_eq!(network.product[1], ProductUnit { exponents: [11.0, 12.0], output: 13.0 });
         assert_eq!(network.bias, 14.0);
-        assert_eq!(frame().exponents().collect::<Vec<_>>(), [8, 9, 11, 12]);
+        assert_eq!(template().exponents().collect::<Vec<_>>(), [8, 9, 11, 12]);
     }
 
     #[test]
     fn unscaling_moves_the_output_alone() {
-        let genes: Vec<f32> = (0..frame().genes()).map(|i| 0.1 * i as f32 - 0.7).collect();
-        let scaled = frame().network(&genes);
+        let genes: Vec<f32> = (0..template().genes()).map(|i| 0.1 * i as f32 - 0.7).collect();
+        let scaled = template().network(&genes);
         let mut plain = scaled.clone();
         unscale_output(&mut plain, -20.0, 30.0);
         for inputs in [[0.0f32, 0.0], [0.3, 0.9]] {

@@ -1,6 +1,6 @@
-//! The training kernel: the error of one network over all samples, in lanes.
+//! The training kernel: the mean squared error of one network over all samples, vectorised.
 //!
-//! What does not depend on the weights is worked out once a data set: scaled inputs and their logarithms.
+//! Scaled inputs and their logarithms do not depend on the weights and are computed once for each data set.
 
 use std::array;
 
@@ -13,14 +13,14 @@ use pulp::{Arch, Simd, WithSimd};
 use super::dataset::Dataset;
 use crate::lanes::{Lanes, WIDEST};
 
-/// Samples laid out for lanes.
+/// Samples laid out for vector lanes.
 #[derive(Clone, Debug)]
 pub struct Samples<const N: usize> {
     blocks: Vec<Block<N>>,
     count: usize,
 }
 
-/// Two of the widest vectors of samples, filled up by samples without weight.
+/// Two of the widest vectors of samples, padded by samples of weight zero.
 #[derive(Clone, Debug)]
 struct Block<const N: usize> {
     scaled: [[f32; BLOCK]; N],
@@ -32,19 +32,19 @@ struct Block<const N: usize> {
 const BLOCK: usize = 2 * WIDEST;
 
 impl<const N: usize> Samples<N> {
-    /// Lays out a data set whose inputs are scaled so and whose targets are mapped by `target`.
+    /// Lays out a data set whose inputs are scaled by `inputs` and whose targets are mapped by `target`.
     pub fn new(data: &Dataset<N>, inputs: &[Scaling<f32>; N], target: impl Fn(f32) -> f32) -> Self {
         let block = |first: usize| {
-            let there = |lane: usize| first + lane < data.len();
+            let exists = |lane: usize| first + lane < data.len();
             let scaled: [[f32; BLOCK]; N] = array::from_fn(|n| {
                 let scaled = |lane: usize| inputs[n].apply(data.inputs[first + lane][n]);
-                array::from_fn(|lane| if there(lane) { scaled(lane) } else { inputs[n].high })
+                array::from_fn(|lane| if exists(lane) { scaled(lane) } else { inputs[n].high })
             });
             Block {
                 log2: scaled.map(|row| row.map(|x| maths::log2(x))),
                 scaled,
-                targets: array::from_fn(|lane| if there(lane) { target(data.targets[first + lane]) } else { 0.0 }),
-                weights: array::from_fn(|lane| if there(lane) { 1.0 } else { 0.0 }),
+                targets: array::from_fn(|lane| if exists(lane) { target(data.targets[first + lane]) } else { 0.0 }),
+                weights: array::from_fn(|lane| if exists(lane) { 1.0 } else { 0.0 }),
             }
         };
         Samples { blocks: (0..data.len()).step_by(BLOCK).map(block).collect(), count: data.len() }
@@ -69,7 +69,7 @@ impl<const N: usize> WithSimd for SquaredError<'_, N> {
         let mut sums = [Lanes::splat(simd, 0.0); WIDEST];
         let width = Lanes::<S>::WIDTH;
         let parts = WIDEST / width;
-        // Each sum meets its samples in their order.
+        // Each sum adds its samples in their order, whatever the width of the vectors.
         for block in &self.samples.blocks {
             for part in (0..2 * parts).step_by(2) {
                 let at = [part * width, (part + 1) * width];
@@ -111,7 +111,7 @@ fn row<S: Simd>(simd: S, row: &[f32; BLOCK], at: [usize; 2]) -> Pair<Lanes<S>> {
 mod tests {
     use super::*;
     use crate::chance::generator;
-    use crate::learn::genome::{Frame, Shape};
+    use crate::learn::genome::{NetworkTemplate, Shape};
     use mindgap_core::network::Activation;
     use proptest::prelude::*;
     use rand::RngExt;
@@ -125,9 +125,9 @@ mod tests {
         data
     }
 
-    fn frame() -> Frame<2> {
+    fn template() -> NetworkTemplate<2> {
         let inputs = [Scaling::onto_one_to_two(0.0, 100.0), Scaling::onto_one_to_two(0.0, 90.0)];
-        Frame { shape: Shape::halves(6), inputs, activation: Activation::Linear }
+        NetworkTemplate { shape: Shape::halves(6), inputs, activation: Activation::Linear }
     }
 
     proptest! {
@@ -135,21 +135,21 @@ mod tests {
         fn the_kernel_agrees_with_the_network(
             genes in prop::collection::vec(-1.5f32..1.5, 22), count in 1usize..70,
         ) {
-            let (frame, data) = (frame(), data(count));
-            let network = frame.network(&genes);
+            let (template, data) = (template(), data(count));
+            let network = template.network(&genes);
             let one_by_one: f64 = data.inputs.iter().zip(&data.targets).map(|(x, t)| {
                 let error = f64::from(network.evaluate(*x) - t);
                 error * error
             }).sum::<f64>() / count as f64;
-            let mse = Samples::new(&data, &frame.inputs, |t| t).mean_squared_error(&network);
+            let mse = Samples::new(&data, &template.inputs, |t| t).mean_squared_error(&network);
             prop_assert!((mse - one_by_one).abs() <= 1e-3 * (1e-3 + one_by_one), "{mse} {one_by_one}");
         }
 
         #[test]
         fn every_instruction_set_gives_the_same_bits(genes in prop::collection::vec(-3f32..3.0, 22)) {
-            let frame = frame();
-            let samples = &Samples::new(&data(100), &frame.inputs, |t| t);
-            let network = frame.network(&genes);
+            let template = template();
+            let samples = &Samples::new(&data(100), &template.inputs, |t| t);
+            let network = template.network(&genes);
             let network = &FoldedNetwork::fold(&network);
             let scalar = pulp::Scalar::new().vectorize(SquaredError { samples, network });
             let widest = Arch::new().dispatch(SquaredError { samples, network });

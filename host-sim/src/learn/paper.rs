@@ -1,17 +1,18 @@
-//! The paper's trainer: the genetic algorithm on all weights, its fitness the inverse of the mean squared error
-//! (section VII).
+//! The trainer of the paper, section VII: the genetic algorithm on all weights, with the inverse of the mean squared
+//! error as fitness.
 
 use mindgap_core::network::{Activation, Network, Scaling};
 use rand::RngExt;
 use rayon::prelude::*;
 
 use super::dataset::Dataset;
-use super::genome::{Frame, Shape, unscale_output};
+use super::genome::{NetworkTemplate, Shape, unscale_output};
 use super::kernel::Samples;
 use crate::chance::Generator;
 use crate::genetic::{self, Settings};
 
-/// What the trainer can be told. The default is the paper's, and where the paper is silent the standard choice.
+/// Parameters of the trainer. The defaults are those of the paper; where it gives none (marked "open"), they are common
+/// choices.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Options {
     /// The genetic algorithm.
@@ -22,12 +23,12 @@ pub struct Options {
     pub exponent_bound: f32,
 }
 
-/// A trained network and how it came about.
+/// A trained network and its cost.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Trained<const N: usize> {
     /// The network, in the units of its data set.
     pub network: Network<f32, N>,
-    /// How often a network was evaluated over the data set: individuals times generations.
+    /// Number of evaluations of a network over the data set: individuals times generations.
     pub evaluations: usize,
 }
 
@@ -37,7 +38,8 @@ impl Default for Options {
     }
 }
 
-/// Trains one network. The data set must hold samples, and inputs and targets that vary.
+/// Trains one network. The data set must have samples whose inputs and targets vary. `watch` receives the generation and
+/// the best fitness up to it.
 pub fn train<const N: usize>(
     data: &Dataset<N>,
     shape: Shape,
@@ -48,23 +50,23 @@ pub fn train<const N: usize>(
 ) -> Trained<N> {
     // The paper is silent on how inputs are scaled; on [1, 2] every power is real.
     let inputs = data.ranges().map(|range| Scaling::onto_one_to_two(*range.start(), *range.end()));
-    let frame = Frame { shape, inputs, activation };
-    // A probability is learned as it is; anything else is brought to [1, 2], where weights about one can reach it.
+    let template = NetworkTemplate { shape, inputs, activation };
+    // A probability is learned as it is; other targets are scaled to [1, 2], which weights of about one can reach.
     let (low, high) = match activation {
         Activation::Ramp => (1.0, 2.0),
         Activation::Linear => data.target_range().into_inner(),
     };
     let samples = Samples::new(data, &inputs, |target| 1.0 + (target - low) / (high - low));
-    let problem = Weights { frame, samples, options };
+    let problem = Weights { template, samples, options };
     let outcome = genetic::run(&options.genetic, &problem, seed, watch);
-    let mut network = frame.network(&outcome.best);
+    let mut network = template.network(&outcome.best);
     unscale_output(&mut network, low, high);
     Trained { network, evaluations: outcome.generations * options.genetic.population }
 }
 
-/// The genes are the weights.
+/// The search for weights as an optimisation problem: the genes are the weights.
 struct Weights<'a, const N: usize> {
-    frame: Frame<N>,
+    template: NetworkTemplate<N>,
     samples: Samples<N>,
     options: &'a Options,
 }
@@ -72,18 +74,18 @@ struct Weights<'a, const N: usize> {
 impl<const N: usize> genetic::Problem for Weights<'_, N> {
     fn random(&self, rng: &mut Generator) -> Vec<f32> {
         let start = self.options.start;
-        (0..self.frame.genes()).map(|_| rng.random_range(-start..=start)).collect()
+        (0..self.template.genes()).map(|_| rng.random_range(-start..=start)).collect()
     }
 
     fn repair(&self, genes: &mut [f32]) {
         let bound = self.options.exponent_bound;
-        for place in self.frame.exponents() {
+        for place in self.template.exponents() {
             genes[place] = genes[place].clamp(-bound, bound);
         }
     }
 
     fn fitness(&self, _: usize, population: &[Vec<f32>]) -> Vec<f64> {
-        let error = |genes: &Vec<f32>| self.samples.mean_squared_error(&self.frame.network(genes));
+        let error = |genes: &Vec<f32>| self.samples.mean_squared_error(&self.template.network(genes));
         population.par_iter().map(|genes| 1.0 / error(genes)).collect()
     }
 }

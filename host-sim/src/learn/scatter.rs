@@ -1,20 +1,20 @@
-//! Learns how logs scatter about networks, and whether the sensor has a constant wrong reading.
+//! Estimates the noise of logs about networks: residual quantiles, variance components, and a constant wrong reading.
 
 use crate::simulator::scatter::{CELLS, ConstantReading, LEVELS, Shares, Spread};
 
-/// A cell with fewer residuals borrows those of its whole row.
+/// A cell with fewer residuals uses those of its whole row.
 const FEWEST: usize = LEVELS;
-/// A mean of fewer products or squares says too little.
+/// Least number of products or squares for a mean.
 const FEWEST_TO_AVERAGE: usize = 50;
-/// A reading this far off the network's may be a constant wrong one.
+/// A reading at least this far from the prediction may be a constant wrong one.
 const FAR_OFF_CM: f32 = 10.0;
-/// Half the width of the window that a constant reading scatters in.
+/// Half width of the window about a constant reading.
 const WINDOW_CM: f32 = 1.5;
-/// A peak of wrong readings must stand out of its neighbourhood by so many standard deviations.
+/// Number of standard deviations by which a peak of wrong readings must exceed its neighbourhood.
 const STANDS_OUT: f64 = 6.0;
 
-/// Residuals (logged minus predicted) by context. Cell borders put equally many samples on each side.
-pub fn spread(contexts: &[[f32; 2]], residuals: &[f32]) -> Spread {
+/// Quantiles of residuals (logged minus predicted) by context. Cell borders are quantiles of the contexts along each axis.
+pub fn residual_quantiles(contexts: &[[f32; 2]], residuals: &[f32]) -> Spread {
     let edges = [0, 1].map(|axis| {
         let values = sorted(contexts.iter().map(|c| c[axis]));
         std::array::from_fn(|i| values.get(values.len() * (i + 1) / CELLS).copied().unwrap_or(0.0))
@@ -39,20 +39,21 @@ pub fn spread(contexts: &[[f32; 2]], residuals: &[f32]) -> Spread {
     spread
 }
 
-/// What of a motion network's residuals a robot has, in each cell of their spread.
+/// Variance components of a motion network's residuals in each cell: the robot's own process noise, as opposed to the
+/// tracker's measurement noise.
 ///
-/// A tracker's error at a row enters the step before and the step after with opposite signs, which shows as a negative
-/// covariance of neighbours; what lasts while a command is held (`commands` says which are) adds to that of neighbours
-/// under one command. What then is left of a cell's variance is drawn anew in each step. `runs` tells which residuals
-/// follow each other.
-pub fn shares(
+/// The tracker's error at a row enters the steps before and after it with opposite signs, which gives neighbouring
+/// residuals a negative covariance. Noise that lasts while a command is held adds to the covariance of neighbours under
+/// one command. The rest of a cell's variance is independent in each step. All slices have one entry a residual:
+/// `commands` are the inputs of the network, and `runs` the run that the residual comes from.
+pub fn variance_components(
     spread: &Spread,
     contexts: &[[f32; 2]],
     residuals: &[f32],
     commands: &[[f32; 4]],
     runs: &[usize],
 ) -> Vec<Shares> {
-    // Steady are the steps whose command is that of the step before.
+    // A step is steady if its command is that of the step before.
     let is_steady = |i: usize| commands[i][..2] == commands[i][2..];
     let neighbours: Vec<usize> = (1..residuals.len()).filter(|i| runs[i - 1] == runs[*i]).collect();
     let covariance = |of: &dyn Fn(usize) -> bool| {
@@ -75,13 +76,13 @@ pub fn shares(
         .collect()
 }
 
-/// The mean of numbers, if there are enough of them.
+/// The mean of at least [`FEWEST_TO_AVERAGE`] numbers.
 fn mean(values: impl Iterator<Item = f32>) -> Option<f32> {
     let (sum, count) = values.fold((0.0, 0), |(sum, count), v| (sum + f64::from(v), count + 1));
     (count >= FEWEST_TO_AVERAGE).then(|| (sum / count as f64) as f32)
 }
 
-/// Finds a reading that comes too often among those far off what was predicted.
+/// Finds a value that is too frequent among the readings far from their predictions.
 pub fn constant_reading(echoes_cm: &[f32], predicted_cm: &[f32]) -> Option<ConstantReading> {
     let wrong: Vec<f32> = echoes_cm
         .iter()
@@ -95,7 +96,7 @@ pub fn constant_reading(echoes_cm: &[f32], predicted_cm: &[f32]) -> Option<Const
         .map(|chunk| {
             let value = chunk[0];
             let at = near(value, WINDOW_CM);
-            // The neighbourhood on both sides, brought to the window's width.
+            // The count in the neighbourhood on both sides, scaled to the width of the window.
             let around = (near(value, 5.0 * WINDOW_CM) - at) / 4.0;
             (value, at, around)
         })
@@ -105,12 +106,12 @@ pub fn constant_reading(echoes_cm: &[f32], predicted_cm: &[f32]) -> Option<Const
     outstanding.then(|| ConstantReading { value_cm, probability: (excess / echoes_cm.len() as f64) as f32 })
 }
 
-/// Whether a reading is rather the constant one than what was predicted.
+/// Whether a reading is closer to the constant one than to its prediction.
 pub fn is_constant(constant: &ConstantReading, echo_cm: f32, predicted_cm: f32) -> bool {
     (echo_cm - constant.value_cm).abs() <= WINDOW_CM && (echo_cm - predicted_cm).abs() > FAR_OFF_CM
 }
 
-/// Equally likely stand-ins for values: the middles of equal shares of them.
+/// Equally likely representatives of values: the quantiles at the middles of equal shares.
 fn levels(values: &[f32]) -> Vec<f32> {
     let values = sorted(values.iter().copied());
     let at = |share: f64| values.get((share * values.len() as f64) as usize).copied().unwrap_or(0.0);
@@ -130,12 +131,12 @@ mod tests {
     use rand::RngExt;
 
     #[test]
-    fn a_spread_that_widens_with_the_context_is_found_again() {
+    fn quantiles_that_widen_with_the_context_are_recovered() {
         let mut rng = generator(1, &[]);
         let contexts: Vec<[f32; 2]> =
             (0..8000).map(|_| [rng.random_range(0.0..100.0), rng.random_range(0.0..90.0)]).collect();
         let residuals: Vec<f32> = contexts.iter().map(|c| (rng.random::<f32>() - 0.5) * c[1]).collect();
-        let spread = spread(&contexts, &residuals);
+        let spread = residual_quantiles(&contexts, &residuals);
         assert!(spread.is_sound());
         let width = |alpha: f32| spread.residual([50.0, alpha], LEVELS - 1) - spread.residual([50.0, alpha], 0);
         assert!((8.0..20.0).contains(&width(5.0)), "{}", width(5.0));
@@ -143,19 +144,19 @@ mod tests {
     }
 
     #[test]
-    fn few_residuals_stand_for_every_cell() {
-        let spread = spread(&[[1.0, 1.0], [2.0, 2.0]], &[-1.0, 1.0]);
+    fn few_residuals_serve_every_cell() {
+        let spread = residual_quantiles(&[[1.0, 1.0], [2.0, 2.0]], &[-1.0, 1.0]);
         assert!(spread.is_sound());
         assert_eq!(spread.residual([0.0, 9.0], 1), -1.0);
         assert_eq!(spread.residual([9.0, 0.0], LEVELS - 2), 1.0);
     }
 
     #[test]
-    fn the_trackers_part_of_residuals_is_told_from_the_robots() {
+    fn measurement_noise_is_separated_from_process_noise() {
         let mut rng = generator(4, &[]);
         let mut error = || rng.random::<f32>() - 0.5;
-        // Sixty runs of commands held for four steps. Of six parts of the variance two are the tracker's, one lasts as
-        // long as a command, three are the step's own.
+        // Sixty runs of commands held for four steps. Of six parts of the variance two are the tracker's, one is held with
+        // the command, and three are independent.
         let (mut residuals, mut commands, mut runs) = (Vec::new(), Vec::new(), Vec::new());
         for run in 0..60 {
             let (mut before, mut lasting, mut command) = (error(), 0.0, [0.0; 2]);
@@ -171,11 +172,11 @@ mod tests {
             }
         }
         let contexts = vec![[0.0; 2]; residuals.len()];
-        let spread = spread(&contexts, &residuals);
-        let found = shares(&spread, &contexts, &residuals, &commands, &runs)[spread.cell([0.0; 2])];
+        let spread = residual_quantiles(&contexts, &residuals);
+        let found = variance_components(&spread, &contexts, &residuals, &commands, &runs)[spread.cell([0.0; 2])];
         assert!((found.step - 0.5f32.sqrt()).abs() < 0.03, "{found:?}");
         assert!((found.held - (1f32 / 6.0).sqrt()).abs() < 0.03, "{found:?}");
-        assert_eq!(shares(&spread, &[], &[], &[], &[]), vec![Shares::STEP; CELLS * CELLS]);
+        assert_eq!(variance_components(&spread, &[], &[], &[], &[]), vec![Shares::STEP; CELLS * CELLS]);
     }
 
     #[test]

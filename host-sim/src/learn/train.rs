@@ -1,4 +1,4 @@
-//! From a folder of logs to a simulator: which networks the logs support, their training, and their scatter.
+//! Trains a simulator from logs: which networks the logs support, their training, and their noise.
 
 use mindgap_core::network::{Activation, Network};
 
@@ -13,7 +13,7 @@ use crate::problem::{Problem, Result};
 use crate::simulator::scatter::{ConstantReading, motion_context};
 use crate::simulator::{Learned, Missing, Origin, SCHEMA, Simulator};
 
-/// Hidden neurons of the five networks (paper, Table I).
+/// Hidden layers of the five networks (paper, Table I).
 pub const TABLE_ONE: Shapes = Shapes {
     turn: Shape::halves(4),
     forward: Shape::halves(20),
@@ -22,50 +22,50 @@ pub const TABLE_ONE: Shapes = Shapes {
     echo_value: Shape::halves(40),
 };
 
-/// How many networks there are.
+/// Number of networks.
 const NETWORKS: usize = 5;
-/// Every so many runs one is kept from training, for the scatter of the residuals.
+/// One run in this many is held out of training to estimate the residuals.
 const HELD_OUT: usize = 5;
-/// Fewer samples than this train nothing.
+/// Least number of samples to train a network.
 const FEWEST_SAMPLES: usize = 30;
 
 /// Hidden layers of the five networks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Shapes {
-    /// Of the turn.
+    /// Hidden layer for the turn.
     pub turn: Shape,
-    /// Of the way forward.
+    /// Hidden layer for the displacement forward.
     pub forward: Shape,
-    /// Of the way to the left.
+    /// Hidden layer for the displacement to the left.
     pub lateral: Shape,
-    /// Of the chance of an echo.
+    /// Hidden layer for the probability of an echo.
     pub echo_probability: Shape,
-    /// Of its value.
+    /// Hidden layer for the reading.
     pub echo_value: Shape,
 }
 
-/// How networks are trained.
+/// The algorithm that trains networks.
 #[derive(Clone, Copy, Debug)]
 pub enum Trainer {
-    /// The paper's genetic algorithm on all weights.
+    /// The genetic algorithm on all weights (paper, section VII).
     Paper(paper::Options),
-    /// Least squares, with a search for the exponents alone.
+    /// Variable projection: a search for the exponents, with least squares for the other weights.
     Fast,
 }
 
-/// One of the five networks, as progress is told of it.
+/// Progress of the training of one network.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Progress {
-    /// The network.
+    /// Name of the network.
     pub network: &'static str,
-    /// How often a network was evaluated over all samples so far; the fast trainer tells when it is done.
+    /// Number of evaluations over all samples so far; the fast trainer reports it at the end only.
     pub evaluations: usize,
 }
 
 /// Trains the networks that `logs` support, one after the other.
 ///
 /// # Errors
-/// When the logs support none; the reasons are named.
+/// When the logs support none; the message gives the reason for each.
 pub fn train(
     logs: &Logs,
     trainer: &Trainer,
@@ -74,21 +74,22 @@ pub fn train(
     watch: impl Fn(Progress),
 ) -> Result<Simulator> {
     let data = Datasets::from_logs(logs);
-    let mut school = School { trainer, seed, runs: logs.runs.len(), watch, missing: Vec::new() };
-    // D and α are the sonar's context themselves.
+    let mut network_trainer = NetworkTrainer { trainer, seed, runs: logs.runs.len(), watch, missing: Vec::new() };
+    // D and α themselves are the context of the sonar networks.
     let (motion, sonar) = (motion_context, |inputs: &[f32; 2]| *inputs);
     let value = Kind { activation: Activation::Linear, loss: Loss::Squares };
     let probability = Kind { activation: Activation::Ramp, loss: Loss::Logistic };
     let reading = Kind { activation: Activation::Linear, loss: Loss::Mixture };
-    let turn = school.learn("turn", &data.turn, shapes.turn, value, motion);
-    let forward = school.learn("forward", &data.forward, shapes.forward, value, motion);
-    let lateral = school.learn("lateral", &data.lateral, shapes.lateral, value, motion);
+    let turn = network_trainer.train("turn", &data.turn, shapes.turn, value, motion);
+    let forward = network_trainer.train("forward", &data.forward, shapes.forward, value, motion);
+    let lateral = network_trainer.train("lateral", &data.lateral, shapes.lateral, value, motion);
     let echo_probability =
-        school.learn("echo_probability", &data.echo_probability, shapes.echo_probability, probability, sonar);
-    let mut echo_value = school.learn("echo_value", &data.echo_value, shapes.echo_value, reading, sonar);
+        network_trainer.train("echo_probability", &data.echo_probability, shapes.echo_probability, probability, sonar);
+    let mut echo_value = network_trainer.train("echo_value", &data.echo_value, shapes.echo_value, reading, sonar);
     let constant_reading = echo_value.as_mut().and_then(|value| split_constant_reading(value, &data.echo_value));
-    if school.missing.len() == NETWORKS {
-        let reasons: Vec<String> = school.missing.iter().map(|m| format!("{}: {}", m.network, m.reason)).collect();
+    if network_trainer.missing.len() == NETWORKS {
+        let reasons: Vec<String> =
+            network_trainer.missing.iter().map(|m| format!("{}: {}", m.network, m.reason)).collect();
         return Err(Problem::new(format!("no network can be trained on these logs ({})", reasons.join("; "))));
     }
     let commands = logs.runs.iter().flat_map(|run| run.rows.iter().flat_map(|row| row.command()));
@@ -112,30 +113,30 @@ pub fn train(
         reference: None,
         table_one: None,
         added: Vec::new(),
-        missing: school.missing,
+        missing: network_trainer.missing,
     };
     let reference = nominal::learn(&simulator, logs);
     if let Some(motion) = &reference.motion {
-        spread_about(&mut simulator.forward, &data.forward, |speeds| motion.correction(speeds)[0]);
-        spread_about(&mut simulator.lateral, &data.lateral, |speeds| motion.correction(speeds)[1]);
-        spread_about(&mut simulator.turn, &data.turn, |speeds| motion.correction(speeds)[2].to_degrees());
+        set_residual_quantiles(&mut simulator.forward, &data.forward, |speeds| motion.correction(speeds)[0]);
+        set_residual_quantiles(&mut simulator.lateral, &data.lateral, |speeds| motion.correction(speeds)[1]);
+        set_residual_quantiles(&mut simulator.turn, &data.turn, |speeds| motion.correction(speeds)[2].to_degrees());
     }
     simulator.reference = Some(reference);
     Ok(simulator)
 }
 
-/// Sets the spread of a motion network to what is left about the network and its known misfit together.
-fn spread_about(learned: &mut Option<Learned<4>>, data: &Dataset<4>, correction: impl Fn(&[f64; 4]) -> f64) {
+/// Estimates the noise of a motion network about its bias-corrected predictions.
+fn set_residual_quantiles(learned: &mut Option<Learned<4>>, data: &Dataset<4>, correction: impl Fn(&[f64; 4]) -> f64) {
     let Some(learned) = learned else { return };
     let contexts: Vec<[f32; 2]> = data.inputs.iter().map(motion_context).collect();
     let misfit = data.inputs.iter().map(|speeds| correction(&speeds.map(f64::from)) as f32);
     let left: Vec<f32> = residuals(&learned.network, data).iter().zip(misfit).map(|(r, m)| r - m).collect();
-    learned.spread = scatter::spread(&contexts, &left);
-    learned.spread.shares = scatter::shares(&learned.spread, &contexts, &left, &data.inputs, &data.runs);
+    learned.spread = scatter::residual_quantiles(&contexts, &left);
+    learned.spread.shares = scatter::variance_components(&learned.spread, &contexts, &left, &data.inputs, &data.runs);
 }
 
 impl Shapes {
-    /// The hidden layer of a network, by its name.
+    /// The hidden layer of the network of this name.
     pub fn of(&mut self, network: &str) -> Option<&mut Shape> {
         match network {
             "turn" => Some(&mut self.turn),
@@ -148,13 +149,13 @@ impl Shapes {
     }
 }
 
-/// Whether a run is kept from training, so that residuals on it are honest; none is when there are too few.
+/// Whether a run is held out of training, so that its residuals are unbiased; none is when there are too few runs.
 pub fn is_held_out(run: usize, runs: usize) -> bool {
     runs >= HELD_OUT && run % HELD_OUT == HELD_OUT - 1
 }
 
 impl Trainer {
-    /// As the command line calls it.
+    /// Its name on the command line.
     pub fn name(&self) -> &'static str {
         match self {
             Trainer::Paper(_) => "paper",
@@ -163,8 +164,8 @@ impl Trainer {
     }
 }
 
-/// What all networks of a simulator have in common while they are trained.
-struct School<'a, W> {
+/// Trains the networks of a simulator one by one and notes those that the logs do not support.
+struct NetworkTrainer<'a, W> {
     trainer: &'a Trainer,
     seed: u64,
     runs: usize,
@@ -172,16 +173,16 @@ struct School<'a, W> {
     missing: Vec<Missing>,
 }
 
-/// What a network predicts.
+/// Kind of quantity that a network predicts.
 #[derive(Clone, Copy)]
 struct Kind {
     activation: Activation,
-    /// How the fast trainer counts its errors; the paper's squares them all.
+    /// Loss function of the fast trainer; that of the paper is always the squared error.
     loss: Loss,
 }
 
-impl<W: Fn(Progress)> School<'_, W> {
-    fn learn<const N: usize>(
+impl<W: Fn(Progress)> NetworkTrainer<'_, W> {
+    fn train<const N: usize>(
         &mut self,
         network: &'static str,
         data: &Dataset<N>,
@@ -211,25 +212,25 @@ impl<W: Fn(Progress)> School<'_, W> {
         };
         watch(evaluations);
         let contexts: Vec<[f32; 2]> = judged.inputs.iter().map(context).collect();
-        let spread = scatter::spread(&contexts, &residuals(&trained, judged));
+        let spread = scatter::residual_quantiles(&contexts, &residuals(&trained, judged));
         Some(Learned { network: trained, spread })
     }
 }
 
-/// Why a data set trains nothing, if so.
+/// Why a data set cannot train a network; `None` if it can.
 fn unsupported<const N: usize>(data: &Dataset<N>) -> Option<String> {
     if data.len() < FEWEST_SAMPLES {
         return Some(format!("the logs hold {} samples for it, fewer than {FEWEST_SAMPLES}", data.len()));
     }
     let flat = |range: &std::ops::RangeInclusive<f32>| range.start() >= range.end();
     if data.ranges().iter().any(flat) {
-        return Some("one of its inputs is the same in all samples (such as all commands equal)".into());
+        return Some("one of its inputs is constant over all samples (all commands equal, for example)".into());
     }
     let targets = data.target_range();
-    flat(&targets).then(|| format!("what was logged for it is {} in every sample", targets.start()))
+    flat(&targets).then(|| format!("its target is {} in every sample", targets.start()))
 }
 
-/// Takes a constant wrong reading out of the spread of the readings, which then is that of the others.
+/// Separates a constant wrong reading from the others and estimates the noise of those anew.
 fn split_constant_reading(value: &mut Learned<2>, data: &Dataset<2>) -> Option<ConstantReading> {
     let predicted: Vec<f32> = data.inputs.iter().map(|x| value.network.evaluate(*x)).collect();
     let constant = scatter::constant_reading(&data.targets, &predicted)?;
@@ -237,7 +238,7 @@ fn split_constant_reading(value: &mut Learned<2>, data: &Dataset<2>) -> Option<C
     let others: Vec<usize> = (0..data.len()).filter(right).collect();
     let contexts: Vec<[f32; 2]> = others.iter().map(|i| data.inputs[*i]).collect();
     let residuals: Vec<f32> = others.iter().map(|i| data.targets[*i] - predicted[*i]).collect();
-    value.spread = scatter::spread(&contexts, &residuals);
+    value.spread = scatter::residual_quantiles(&contexts, &residuals);
     Some(constant)
 }
 

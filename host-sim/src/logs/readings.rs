@@ -1,24 +1,23 @@
-//! What the ultrasonic sensor answers a program that runs without a brick: a list, or the column of a log.
+//! Scripted answers of the ultrasonic sensor for a program that runs in the emulated brick: a list, or a column of a log.
 
 use std::path::Path;
 
 use csv::ReaderBuilder;
 use mindgap_controller_export::brick::Sonar;
+use mindgap_controller_export::onboard::NO_ECHO_CM;
 
 use crate::files;
 use crate::problem::{Problem, Result};
 
-/// What the sensor reports when no echo came back.
-const NO_ECHO: u8 = 255;
 const COLUMN: &str = "echo_cm";
 
-/// Readings from a list such as `120,80.5,none,silent`, or from the column `echo_cm` of the CSV file of that name.
+/// Parses readings from a list such as `120,80.5,none,silent`, or from the column `echo_cm` of the CSV file of that name.
 ///
-/// A reading is a distance in cm, 0..=255, rounded to a whole one; `none`, `255` or an empty cell where no echo came
-/// back; `silent` where the sensor does not answer; `hangs` where its answer never ends.
+/// A reading is a distance in cm, 0..=255, which is rounded; `none`, `255` or an empty cell if no echo returned; `silent`
+/// if the sensor does not answer; `hangs` if its answer never ends.
 ///
 /// # Errors
-/// When it is neither a list nor a file, or when a reading of the file cannot be.
+/// When the text is neither a list nor a file, or when a reading is invalid.
 pub fn read(list_or_file: &str) -> Result<Vec<Sonar>> {
     let path = Path::new(list_or_file);
     if path.is_file() {
@@ -48,11 +47,11 @@ fn read_column(path: &Path) -> Result<Vec<Sonar>> {
 
 fn reading(word: &str) -> std::result::Result<Sonar, String> {
     match word.trim() {
-        "" | "none" => Ok(Sonar::Echo(NO_ECHO)),
+        "" | "none" => Ok(Sonar::Echo(NO_ECHO_CM)),
         "silent" => Ok(Sonar::Silent),
         "hangs" => Ok(Sonar::Hangs),
         word => match word.parse::<f64>() {
-            Ok(cm) if (0.0..=f64::from(NO_ECHO)).contains(&cm) => Ok(Sonar::Echo(libm::round(cm) as u8)),
+            Ok(cm) if (0.0..=f64::from(NO_ECHO_CM)).contains(&cm) => Ok(Sonar::Echo(libm::round(cm) as u8)),
             Ok(_) => Err(format!("is {word}, outside 0..255 cm")),
             Err(_) => Err(format!("is {word:?}, neither a distance nor none, silent or hangs")),
         },

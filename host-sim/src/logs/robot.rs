@@ -1,4 +1,4 @@
-//! `robot.toml`: what the builder measured of the robot.
+//! `robot.toml`: the robot as measured by its builder (docs/formats.md).
 
 use std::path::Path;
 
@@ -12,32 +12,32 @@ use crate::problem::{Problem, Result};
 /// A differential-drive robot with one ultrasonic sensor.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Robot {
-    /// Diameter of the driven wheels.
+    /// Diameter of the driven wheels, cm.
     pub wheel_diameter_cm: f64,
-    /// Distance between the wheels' middles.
+    /// Distance between the middles of the wheels, cm.
     pub track_cm: f64,
-    /// The robot crashes when a disc of this radius round the axle's middle touches a wall or an obstacle.
+    /// Radius of the disc round the axle's middle that must not touch a wall or an obstacle, cm.
     pub body_radius_cm: f64,
-    /// Time between two rows of a log.
+    /// Nominal time between two rows of a log, ms.
     pub step_ms: f64,
-    /// Speed of a wheel's rim at command 100 with a fresh battery.
+    /// Speed of a wheel's rim at command 100 with a fresh battery, cm/s.
     pub full_speed_cm_s: f64,
-    /// The sensor.
+    /// The ultrasonic sensor.
     pub ultrasonic: Ultrasonic,
 }
 
-/// Where the sensor sits on the robot, and what it can report.
+/// Mounting and range of the ultrasonic sensor.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Ultrasonic {
-    /// Ahead of the axle's middle.
+    /// Distance ahead of the axle's middle, cm.
     pub x_cm: f64,
-    /// To its left.
+    /// Distance to the left of the axle's middle, cm.
     pub y_cm: f64,
-    /// Axis of the sensor, counter-clockwise from straight ahead.
+    /// Direction of its axis, degrees counter-clockwise from straight ahead.
     pub yaw_deg: f64,
-    /// Least reading.
+    /// Least reading, cm.
     pub min_cm: f64,
-    /// Largest reading.
+    /// Largest reading, cm.
     pub max_cm: f64,
 }
 
@@ -45,7 +45,7 @@ impl Robot {
     /// Reads `robot.toml`.
     ///
     /// # Errors
-    /// When the file is missing, broken, or holds a length, speed or time that cannot be.
+    /// When the file cannot be read or parsed, or holds an impossible length, speed or time.
     pub fn read(path: &Path) -> Result<Self> {
         let robot: Robot = files::read_toml(path)?;
         let sonar = &robot.ultrasonic;
@@ -78,7 +78,7 @@ impl Robot {
 }
 
 impl Ultrasonic {
-    /// Where the sensor is, and which way its axis points, on a robot at `robot`.
+    /// The pose of the sensor on a robot at `robot`; its heading is that of the axis.
     pub fn pose_on(&self, robot: &Pose) -> Pose {
         robot.compose(&Pose { position_cm: DVec2::new(self.x_cm, self.y_cm), heading_rad: self.yaw_deg.to_radians() })
     }

@@ -1,4 +1,4 @@
-//! `run-*.csv`: one run of a robot.
+//! `run-*.csv`: one run of a robot (docs/formats.md).
 
 use std::path::Path;
 
@@ -8,27 +8,27 @@ use crate::files;
 use crate::geometry::Pose;
 use crate::problem::{Problem, Result};
 
-/// One run of a robot: at least two rows, in order of time.
+/// One run of a robot: at least two rows in order of time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Run {
     /// File name without its ending.
     pub name: String,
-    /// What was logged.
+    /// The rows.
     pub rows: Vec<Row>,
 }
 
-/// One moment of a run.
+/// One row of a run.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Row {
-    /// Time since the run began.
+    /// Time since the run began, ms.
     pub t_ms: f64,
     /// Command of the left motor, set at this row and held until the next, -100..=100.
     pub left: f64,
-    /// Command of the right motor.
+    /// Command of the right motor, likewise.
     pub right: f64,
-    /// Tracked pose of the axle's middle, unless the tracker lost the robot.
+    /// Tracked pose of the axle's middle; `None` if the tracker lost the robot.
     pub pose: Option<Pose>,
-    /// Ultrasonic reading, unless the sensor produced no value.
+    /// Ultrasonic reading, cm; `None` if the sensor produced no value.
     pub echo_cm: Option<f64>,
     /// Rotation counter of the left motor, degrees.
     pub rot_left_deg: Option<f64>,
@@ -40,16 +40,16 @@ pub struct Row {
 
 const COLUMNS: [&str; 10] =
     ["t_ms", "left", "right", "x_cm", "y_cm", "heading_deg", "echo_cm", "rot_left_deg", "rot_right_deg", "battery_mv"];
-/// So many of [`COLUMNS`] every run has.
+/// Number of leading [`COLUMNS`] that every run must have.
 const REQUIRED: usize = 7;
-/// No number of a log can be larger.
+/// Largest magnitude of a number in a log.
 const HUGE: f64 = 1e7;
 
 impl Run {
-    /// Reads a run; unknown columns and a missing line end are told to `warn`.
+    /// Reads a run. `warn` receives a line for each unknown column and for a missing line end.
     ///
     /// # Errors
-    /// When the file is missing, lacks a column, has fewer than two rows, or has a number that cannot be.
+    /// When the file cannot be read, lacks a column, has fewer than two rows, or has an invalid number.
     pub fn read(path: &Path, mut warn: impl FnMut(String)) -> Result<Self> {
         let text = files::read_text(path)?;
         let run = Run::parse(path, &text, &COLUMNS[..REQUIRED], &mut warn)?;
@@ -62,7 +62,7 @@ impl Run {
         Ok(run)
     }
 
-    /// The run in a file's text, which has these columns at least.
+    /// Parses the text of a file that must have the `required` columns; `path` is for messages and the run's name.
     ///
     /// # Errors
     /// As [`Run::read`].
@@ -91,7 +91,7 @@ impl Run {
         Ok(Run { name, rows })
     }
 
-    /// Writes a run; an optional column is written when any row has it.
+    /// Writes a run; an optional column is written if any row has a value.
     ///
     /// # Errors
     /// When the file cannot be written.
@@ -109,7 +109,7 @@ impl Run {
         files::write(path, bytes)
     }
 
-    /// The command before row `k`: zero at the first row, since motors start from rest.
+    /// Left and right command of the row before `k`; zeros at the first row, since motors start from rest.
     pub fn previous_command(&self, k: usize) -> [f64; 2] {
         if k == 0 { [0.0, 0.0] } else { self.rows[k - 1].command() }
     }
@@ -200,7 +200,7 @@ impl Columns {
     }
 }
 
-/// Logs keep two decimals, as trackers and readings do, without trailing zeros.
+/// Numbers are written with at most two decimals, the precision of trackers and readings.
 fn two_decimals(value: f64) -> String {
     let text = format!("{value:.2}");
     let text = text.trim_end_matches('0').trim_end_matches('.');

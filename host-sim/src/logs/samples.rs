@@ -1,40 +1,42 @@
-//! What networks learn from: motion samples and sonar samples taken from logs (paper, section VI).
+//! Training samples extracted from logs: motion and sonar (paper, section VI).
 
 use crate::geometry::cast;
 use crate::logs::Logs;
 
-/// A step so much longer than `step_ms` has rows missing inside and is left out.
+/// A step longer than this multiple of `step_ms` spans missing rows and is left out.
 const LONGEST_STEP: f64 = 1.5;
 
-/// One step of a run: the commands, and what they did in the robot's own frame.
+/// One step of a run: commands and pose increment in the robot's own frame.
+///
+/// The increment is scaled from the actual duration of the step to `step_ms`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MotionSample {
-    /// Which run.
+    /// Index of the run.
     pub run: usize,
-    /// Which row of it the step begins at.
+    /// Index of the row at which the step begins.
     pub row: usize,
     /// Left, right, previous left and previous right command.
     pub speeds: [f64; 4],
-    /// Way forward, cm. This and the next two are brought from the step's real length to `step_ms` in proportion.
+    /// Displacement forward, cm.
     pub forward_cm: f64,
-    /// Way to the left, cm.
+    /// Displacement to the left, cm.
     pub lateral_cm: f64,
-    /// Turn to the left, in (-π, π].
+    /// Turn to the left, rad.
     pub turn_rad: f64,
 }
 
-/// One reading of the sensor: what it faced, and what it said.
+/// One reading of the sensor and the geometry that it faced.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SonarSample {
-    /// Which run.
+    /// Index of the run.
     pub run: usize,
-    /// Which row of it.
+    /// Index of the row.
     pub row: usize,
-    /// D: along the sensor's axis to the first wall or edge.
+    /// D: distance along the sensor's axis to the first wall or edge, cm.
     pub distance_cm: f64,
-    /// Angle between axis and normal in (-π/2, π/2); its magnitude is α.
+    /// Signed angle between axis and normal in (-π/2, π/2), rad; its magnitude is α.
     pub incidence_rad: f64,
-    /// The reading, if there was one.
+    /// The reading, cm; `None` if the sensor produced no value.
     pub echo_cm: Option<f64>,
 }
 
@@ -45,7 +47,7 @@ impl SonarSample {
     }
 }
 
-/// All steps at both of whose rows the tracker saw the robot.
+/// All steps between two rows with a tracked pose.
 pub fn motion(logs: &Logs) -> Vec<MotionSample> {
     let mut samples = Vec::new();
     for (run, r) in logs.runs.iter().enumerate() {
@@ -70,7 +72,7 @@ pub fn motion(logs: &Logs) -> Vec<MotionSample> {
     samples
 }
 
-/// All rows at which the tracker saw the robot and its sensor faced something.
+/// All rows with a tracked pose at which the sensor faced a wall or an edge.
 pub fn sonar(logs: &Logs) -> Vec<SonarSample> {
     let sides = logs.scene.sides();
     let mut samples = Vec::new();

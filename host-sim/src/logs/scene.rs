@@ -1,4 +1,4 @@
-//! `scene.toml`: walls, obstacles, and for a controller its target and starts.
+//! `scene.toml`: walls, obstacles, and the target and starts of controllers (docs/formats.md).
 
 use std::path::Path;
 
@@ -7,13 +7,13 @@ use serde::{Deserialize, Serialize};
 use toml::Spanned;
 
 use crate::files;
-use crate::geometry::{Pose, Rectangle, Wall};
+use crate::geometry::{Pose, Rectangle, Wall, bounding_box};
 use crate::problem::{Problem, Result};
 
-/// Where a robot drives.
+/// The surroundings of a robot.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Scene {
-    /// Upper-right corner of a rectangle from (0, 0) whose four sides are walls, cm.
+    /// Upper-right corner of the arena, a rectangle from (0, 0) whose four sides are walls, cm.
     pub arena_cm: Option<DVec2>,
     /// Axis-parallel obstacles.
     pub obstacles: Vec<Rectangle>,
@@ -21,7 +21,7 @@ pub struct Scene {
     pub walls: Vec<Wall>,
     /// Where a controller has to stop, cm.
     pub target_cm: Option<DVec2>,
-    /// Where controllers start.
+    /// Start poses of controllers.
     pub starts: Vec<Pose>,
 }
 
@@ -29,7 +29,7 @@ impl Scene {
     /// Reads `scene.toml`.
     ///
     /// # Errors
-    /// When the file is missing or broken, has a size that cannot be, or has nothing that a sensor could see.
+    /// When the file cannot be read or parsed, holds an impossible size or place, or has nothing that a sensor could see.
     pub fn read(path: &Path) -> Result<Self> {
         let text = files::read_text(path)?;
         let file: SceneFile = files::read_toml(path)?;
@@ -98,19 +98,24 @@ impl Scene {
         files::write(path, toml::to_string(&file).expect("numbers have a TOML form"))
     }
 
-    /// Everything that a ray or a body can meet: the arena's sides, obstacles' edges, bare walls.
+    /// All surfaces: the sides of the arena, the edges of obstacles, bare walls, in this order.
     pub fn sides(&self) -> Vec<Wall> {
         let arena = self.arena_cm.map(|high_cm| Rectangle { low_cm: DVec2::ZERO, high_cm });
         arena.iter().chain(&self.obstacles).flat_map(Rectangle::edges).chain(self.walls.iter().copied()).collect()
     }
 
-    /// Whether a point lies in the open: within the arena and in no obstacle.
+    /// The smallest axis-parallel rectangle that contains all sides; `None` for an empty scene.
+    pub fn bounding_box(&self) -> Option<Rectangle> {
+        bounding_box(&self.sides())
+    }
+
+    /// Whether a point lies within the arena and in no obstacle.
     pub fn holds(&self, point_cm: DVec2) -> bool {
         let inside = self.arena_cm.is_none_or(|high_cm| Rectangle { low_cm: DVec2::ZERO, high_cm }.contains(point_cm));
         inside && !self.obstacles.iter().any(|o| o.contains(point_cm))
     }
 
-    /// Whether a disc of `radius_cm` touches nothing.
+    /// Whether a disc of `radius_cm` about a point touches nothing.
     pub fn has_room_for(&self, point_cm: DVec2, radius_cm: f64) -> bool {
         self.holds(point_cm) && self.sides().iter().all(|w| w.nearest(point_cm).distance(point_cm) > radius_cm)
     }

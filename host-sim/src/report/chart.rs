@@ -20,38 +20,38 @@ pub const LEFT_PX: f64 = 50.0;
 /// Room below a chart for the numbers and the name of its axis, px.
 pub const BELOW_PX: f64 = 40.0;
 
-/// What lies farther from zero than this counts as no number: axes could not show it beside anything else.
+/// Values of larger magnitude count as not drawable: an axis could not show them beside anything else.
 const BOUND: f64 = 1e9;
-/// The least span of an axis, as a share of the numbers on it.
+/// Least span of an axis relative to the magnitude of its values.
 const LEAST_SPAN: f64 = 1e-6;
 
 const TITLE_ROW_PX: f64 = 18.0;
 const NOTE_ROW_PX: f64 = 14.0;
 
-/// A plane whose coordinates are data.
+/// A plane in data coordinates.
 pub struct Chart<'a> {
     /// The part of the canvas between the axes.
     pub canvas: Canvas<'a>,
     plane: DrawingArea<SVGBackend<'a>, Cartesian2d<Axis, Axis>>,
 }
 
-/// What one axis shows.
+/// Label, range and ticks of an axis.
 #[derive(Clone, Debug)]
 pub struct Axis {
     /// Quantity and unit.
     pub name: String,
     /// From its start to its end; [`is_range`] holds.
     pub range: Range<f64>,
-    /// Where numbers stand.
+    /// Positions of the ticks.
     pub ticks: Ticks,
 }
 
 /// Round numbers along an axis.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ticks {
-    /// The numbers, rising.
+    /// Values of the ticks, rising.
     pub at: Vec<f64>,
-    /// How many decimals tell them apart.
+    /// Number of decimals of the labels.
     pub decimals: usize,
 }
 
@@ -66,13 +66,13 @@ pub fn is_range(range: &Range<f64>) -> bool {
     is_drawable(ends) && range.end - range.start > LEAST_SPAN * (1.0 + ends.abs().max_element())
 }
 
-/// Where a value lies in a range: 0 at its start, 1 at its end.
+/// Position of a value in a range: 0 at its start, 1 at its end.
 pub fn share(range: &Range<f64>, value: f64) -> f64 {
     (value - range.start) / (range.end - range.start)
 }
 
 impl Axis {
-    /// An axis with at most about `most` numbers.
+    /// An axis with at most about `most` ticks.
     pub fn new(name: impl Into<String>, range: Range<f64>, most: usize) -> Self {
         let ticks = Ticks::in_range(&range, most);
         Axis { name: name.into(), range, ticks }
@@ -103,7 +103,7 @@ impl ValueFormatter<f64> for Axis {
 }
 
 impl Ticks {
-    /// The multiples of 1, 2 or 5 times a power of ten that lie in a range, with steps no finer than `most` allow.
+    /// Multiples of 1, 2 or 5 times a power of ten within a range, at most `most` + 1 of them.
     pub fn in_range(range: &Range<f64>, most: usize) -> Self {
         let finest = (range.end - range.start) / most as f64;
         let exponent = libm::floor(libm::log10(finest));
@@ -118,13 +118,13 @@ impl Ticks {
         Ticks { at, decimals: (-exponent).max(0.0) as usize }
     }
 
-    /// A tick's number as text.
+    /// Label of a tick.
     pub fn label(&self, value: f64) -> String {
         number(value, self.decimals)
     }
 }
 
-/// Draws axes and a faint grid so that they fill a canvas, with [`LEFT_PX`] and [`BELOW_PX`] for their labels.
+/// Draws axes and a grid that fill a canvas, with margins of [`LEFT_PX`] and [`BELOW_PX`] for their labels.
 pub fn chart<'a>(canvas: &Canvas<'a>, x: &Axis, y: &Axis) -> Drawn<Chart<'a>> {
     let mut chart = ChartBuilder::on(canvas)
         .y_label_area_size(px(LEFT_PX))
@@ -148,14 +148,14 @@ pub fn chart<'a>(canvas: &Canvas<'a>, x: &Axis, y: &Axis) -> Drawn<Chart<'a>> {
 }
 
 impl Chart<'_> {
-    /// Where finite coordinates lie on [`Chart::canvas`].
+    /// Position of finite coordinates on [`Chart::canvas`].
     pub fn place(&self, x: f64, y: f64) -> Place {
         let (place, base) = (self.plane.map_coordinate(&(x, y)), self.plane.get_base_pixel());
         (place.0 - base.0, place.1 - base.1)
     }
 }
 
-/// Writes a panel's title and notes, and leaves the canvas below them.
+/// Draws a panel's title and notes and returns the canvas below them.
 pub fn headed<'a>(cell: &Canvas<'a>, title: &str, notes: &[String]) -> Drawn<Canvas<'a>> {
     cell.draw_text(title, &style::title(), (0, 0))?;
     for (row, note) in notes.iter().enumerate() {
@@ -165,12 +165,12 @@ pub fn headed<'a>(cell: &Canvas<'a>, title: &str, notes: &[String]) -> Drawn<Can
     Ok(cell.split_vertically(px(heading_px(notes.len()))).1)
 }
 
-/// The height of a heading with so many notes, px.
+/// Height of a heading with this number of notes, px.
 pub fn heading_px(notes: usize) -> f64 {
     TITLE_ROW_PX + notes as f64 * NOTE_ROW_PX + 6.0
 }
 
-/// Says in the middle of a canvas that there is nothing to show.
+/// Draws "no data" in the middle of a canvas.
 pub fn no_data(canvas: &Canvas) -> Drawn {
     let (width, height) = canvas.dim_in_pixel();
     let middle = (width as i32 / 2, height as i32 / 2);

@@ -1,4 +1,4 @@
-//! Curves of a few points: how something grows, or what it depends on.
+//! Curves of a few points with intervals.
 
 use std::ops::Range;
 
@@ -13,23 +13,23 @@ use super::style::{BLUE, GREEN, GREY, VERMILION, line, px};
 
 const PLOT_PX: [f64; 2] = [360.0, 200.0];
 const MARGIN_PX: f64 = 14.0;
-/// Curves beyond these start with the first colour again.
+/// Colours of the curves, repeated if there are more.
 const COLOURS: [RGBColor; 3] = [VERMILION, BLUE, GREEN];
-/// Room beyond the outermost points, as a share of their span.
+/// Margin beyond the outermost points, as a share of their span.
 const ROOM: f64 = 0.06;
 
 /// One curve.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Curve {
-    /// What it stands for.
+    /// Its name in the legend.
     pub name: String,
     /// Its points from left to right.
     pub points: Vec<DVec2>,
-    /// For each point how far its interval reaches to either side; empty where there is none.
+    /// Half width of each point's interval; empty without intervals.
     pub reach: Vec<f64>,
 }
 
-/// Draws curves into one chart with the zero line. Points that are no numbers are left out.
+/// Draws curves into one chart with the zero line. Points that are not finite are left out.
 pub fn curves(title: &str, x_name: &str, y_name: &str, curves: &[Curve]) -> Figure {
     let entries: Vec<Entry> = curves
         .iter()

@@ -1,4 +1,4 @@
-//! Figure 2 of the paper: what held-out samples say against what the networks predict.
+//! Figure 2 of the paper: held-out samples against predictions of the networks.
 
 mod reliability;
 mod scatter;
@@ -24,26 +24,26 @@ const PANELS_A_ROW: usize = 3;
 pub struct Panel {
     /// The network's name.
     pub title: String,
-    /// What was expected and predicted.
+    /// Expected and predicted values.
     pub samples: Samples,
 }
 
-/// What a network was asked and answered.
+/// Expected and predicted values of a network.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Samples {
-    /// Quantities: `x` expected, `y` predicted. They share a unit.
+    /// Quantities.
     Values {
-        /// Unit of both.
+        /// Common unit.
         unit: String,
-        /// A sample each.
+        /// One sample each: `x` expected, `y` predicted.
         pairs: Vec<DVec2>,
     },
-    /// Probabilities of an event: predicted, and whether it happened. Drawn as a reliability diagram.
+    /// Events: predicted probability, and whether it happened. Drawn as a reliability diagram.
     Events(Vec<(f64, bool)>),
 }
 
-/// Draws a panel for every network. Values that are no numbers, or beyond all
-/// scales, are left out and counted under the title.
+/// Draws a panel for every network. Values that are not finite, or beyond all scales, are left out and counted under the
+/// title.
 pub fn expected_against_predicted(panels: &[Panel]) -> Figure {
     let columns = panels.len().clamp(1, PANELS_A_ROW);
     let rows = panels.len().div_ceil(columns).max(1);

@@ -1,4 +1,4 @@
-//! A finished drawing, and how it becomes files.
+//! A finished drawing and its files.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -18,10 +18,10 @@ use crate::problem::Result;
 /// Pixels of the PNG per pixel of the SVG, so that it stays sharp in print and on dense screens.
 const PNG_SCALE: u32 = 2;
 
-/// Where figures draw: [`UNIT`] canvas units make one pixel of the SVG.
+/// The canvas of a figure; [`UNIT`] canvas units are one pixel of the SVG.
 pub(super) type Canvas<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 
-/// What drawing returns. The canvas is a string in memory, so a failure is a defect: see [`Figure::draw`].
+/// Result of drawing. The canvas is a string in memory, so a failure is a defect: see [`Figure::draw`].
 pub(super) type Drawn<T = ()> = std::result::Result<T, DrawingAreaErrorKind<std::io::Error>>;
 
 /// A picture.
@@ -33,7 +33,7 @@ pub struct Figure {
 }
 
 impl Figure {
-    /// A white sheet of a size, drawn upon.
+    /// Draws upon a white sheet of this size, px.
     pub(super) fn draw(width_px: u32, height_px: u32, drawing: impl FnOnce(&Canvas) -> Drawn) -> Self {
         let (width, height) = (width_px * UNIT, height_px * UNIT);
         let mut inner = String::new();
@@ -51,7 +51,7 @@ impl Figure {
         Figure { svg, width_px, height_px }
     }
 
-    /// The picture as an SVG document. Its text asks for Noto Sans and does with any sans-serif.
+    /// The picture as an SVG document. Its text prefers Noto Sans and falls back to any sans-serif.
     pub fn svg(&self) -> &str {
         &self.svg
     }
@@ -70,7 +70,7 @@ impl Figure {
         pixels.encode_png().expect("encoding into memory cannot fail")
     }
 
-    /// Writes `name.svg` and `name.png` into a folder; each is whole or not there.
+    /// Writes `name.svg` and `name.png` into a folder, each atomically.
     ///
     /// # Errors
     /// When the folder is missing or not writable.

@@ -1,4 +1,4 @@
-//! Small marks of a fixed size, drawn alike in charts and legends. Places are canvas units.
+//! Small marks of a fixed size, the same in charts and legends. Positions are in canvas units.
 
 use glam::DVec2;
 use plotters::element::{Circle, DashedPathElement, PathElement, Polygon};
@@ -7,7 +7,7 @@ use plotters::style::{Color, ShapeStyle, WHITE};
 use super::figure::{Canvas, Drawn};
 use super::style::{INK, line, px};
 
-/// A place on the canvas, right and down.
+/// A position on the canvas, right and down.
 pub type Place = (i32, i32);
 
 /// A filled disc.
@@ -21,13 +21,13 @@ pub fn rimmed_dot(canvas: &Canvas, at: Place, radius_px: f64, fill: impl Color, 
     canvas.draw(&Circle::new(at, px(radius_px), line(rim, 0.75)))
 }
 
-/// A small disc that shows on any colour: dark rim, white halo.
+/// A small disc with a dark rim and a white halo, visible on any colour.
 pub fn bead(canvas: &Canvas, at: Place, fill: impl Color) -> Drawn {
     dot(canvas, at, 3.25, WHITE.mix(0.75))?;
     rimmed_dot(canvas, at, 2.25, fill, INK)
 }
 
-/// An oblique cross on a white ground, so that it shows on any line.
+/// An oblique cross on a white ground, visible on any line.
 pub fn cross(canvas: &Canvas, at: Place, colour: impl Color) -> Drawn {
     let arm = px(4.0);
     for style in [line(WHITE, 4.5), line(colour, 2.0)] {

@@ -1,4 +1,4 @@
-//! What the marks of a figure mean: a strip of its own, so that it never covers data.
+//! The legend of a figure, in a strip of its own so that it never covers data.
 
 use plotters::style::text_anchor::{HPos, VPos};
 
@@ -19,7 +19,7 @@ type Mark<'a> = Box<dyn Fn(&Canvas, Place) -> Drawn + 'a>;
 pub struct Entry<'a> {
     /// Draws the mark about a place.
     pub mark: Mark<'a>,
-    /// What it stands for.
+    /// Its meaning.
     pub meaning: String,
 }
 
@@ -39,7 +39,7 @@ pub fn stroke(at: Place) -> [Place; 2] {
     [(at.0 - px(KEY_PX / 2.0), at.1), (at.0 + px(KEY_PX / 2.0), at.1)]
 }
 
-/// How high a legend comes out at a width.
+/// Height of a legend for a width, px.
 pub fn height_px(entries: &[Entry], width_px: f64) -> u32 {
     (rows(entries, width_px).len() as f64 * ROW_PX) as u32
 }

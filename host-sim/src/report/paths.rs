@@ -19,7 +19,7 @@ const PLOT_PX: f64 = 380.0;
 const RIGHT_PX: f64 = 24.0;
 const MARGIN_PX: f64 = 14.0;
 const PANELS_A_ROW: usize = 2;
-/// White around what a panel shows, as a share of its longer side.
+/// Margin of a panel, as a share of its longer side.
 const EDGE: f64 = 0.03;
 
 const SIMULATED: RGBColor = BLUE;
@@ -28,26 +28,26 @@ const REAL: RGBColor = VERMILION;
 /// The runs of one controller from one start.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PathPanel {
-    /// Above the panel.
+    /// Title of the panel.
     pub title: String,
-    /// Where the runs took place; its target and walls are drawn, its starts are not.
+    /// The scene; its target and walls are drawn, its starts are not.
     pub scene: Scene,
-    /// Where the runs began.
+    /// Start pose of the runs.
     pub start: Pose,
-    /// How near the target counts as there, cm.
+    /// Radius of the target, cm.
     pub target_radius_cm: f64,
-    /// Runs in the simulator.
+    /// Simulated runs.
     pub simulated: Vec<Trace>,
-    /// Runs of the robot.
+    /// Runs on the robot.
     pub real: Vec<Trace>,
 }
 
-/// Where a robot went.
+/// Path of one run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Trace {
-    /// Its positions in turn, cm. The line is broken where one is not finite: the tracker had lost the robot.
+    /// Positions in order of time, cm. The line is broken where one is not finite because the tracker lost the robot.
     pub points_cm: Vec<DVec2>,
-    /// Whether it ended by hitting something.
+    /// Whether it ended in a collision.
     pub crashed: bool,
 }
 
@@ -166,7 +166,7 @@ fn plus(canvas: &Canvas, at: Place) -> Drawn {
     solid_line(canvas, &[(at.0, at.1 - arm), (at.0, at.1 + arm)], line(GREEN, 1.0))
 }
 
-/// The stretches of a trace between the points that cannot be drawn.
+/// The contiguous drawable parts of a trace.
 fn pieces(chart: &Chart, trace: &Trace) -> Vec<Vec<Place>> {
     let stretches = trace.points_cm.split(|p| !is_drawable(*p)).filter(|piece| piece.len() > 1);
     stretches.map(|piece| piece.iter().map(|p| place(chart, *p)).collect()).collect()
@@ -182,7 +182,7 @@ fn plot_size_px(panel: &PathPanel) -> DVec2 {
     size_cm * (PLOT_PX / size_cm.max_element())
 }
 
-/// The corners of what a panel shows: the scene and every path; nothing when both are empty.
+/// The bounding box of the scene and all paths; `None` if both are empty.
 fn bounds_cm(panel: &PathPanel) -> Option<(DVec2, DVec2)> {
     let sides = panel.scene.sides();
     let traces = panel.real.iter().chain(&panel.simulated).flat_map(|t| t.points_cm.iter().copied());

@@ -1,4 +1,4 @@
-//! Where points of a box in space fall on a sheet, seen from afar.
+//! Parallel projection of a box in space.
 
 use glam::{DVec2, DVec3};
 
@@ -33,13 +33,13 @@ impl Projection {
         Projection { scale, shift: (low + high) / 2.0 - (least + most) / 2.0 * scale, ..plain }
     }
 
-    /// Where a point of the unit box falls: right and down.
+    /// Image of a point of the unit box: right and down.
     pub fn place(&self, point: DVec3) -> DVec2 {
         let p = point * self.edges;
         DVec2::new(self.across.dot(p), -self.up.dot(p)) * self.scale + self.shift
     }
 
-    /// How near the viewer a point of the unit box is; larger is nearer.
+    /// Depth of a point of the unit box; larger is nearer to the viewer.
     pub fn nearness(&self, point: DVec3) -> f64 {
         self.toward.dot(point * self.edges)
     }

@@ -1,7 +1,7 @@
-//! Figure 3 of the paper: what a sonar network answers over distance and incidence angle, with test data.
+//! Figure 3 of the paper: the response of a sonar network over distance and incidence angle, with test data.
 //!
-//! Where the paper shows two views of each surface, this shows one view in space and one from straight above, where
-//! no point hides another and a point that agrees with the surface takes its colour.
+//! The paper shows two views of each surface in space. This shows one in space and one from above, in which no point
+//! hides another and a point that agrees with the surface has its colour.
 
 mod from_above;
 mod in_space;
@@ -24,19 +24,19 @@ const ROW_PX: f64 = 300.0;
 const MARGIN_PX: f64 = 14.0;
 const MOST_TICKS: usize = 6;
 
-/// One network's answers and its test data.
+/// The response surface of a network and its test data.
 pub struct Surface<'a> {
     /// The network's name.
     pub title: String,
     /// Quantity and unit of the value.
     pub value_name: String,
-    /// The answer at a distance D (cm) and an incidence angle α (degrees).
+    /// The response at a distance D (cm) and an incidence angle α (degrees).
     pub at: &'a dyn Fn(f64, f64) -> f64,
     /// Distances shown, cm.
     pub distance_cm: Range<f64>,
     /// Incidence angles shown, degrees.
     pub incidence_deg: Range<f64>,
-    /// Values shown; what lies beyond is drawn at the end of the scale.
+    /// Values shown; those beyond are drawn at the end of the scale.
     pub value: Range<f64>,
     /// Test data: `x` distance in cm, `y` incidence angle in degrees, `z` value.
     pub test: Vec<DVec3>,
@@ -83,7 +83,7 @@ impl Surface<'_> {
         (self.at)(along(&self.distance_cm, distance), along(&self.incidence_deg, incidence))
     }
 
-    /// A value as a share of the scale, drawn at its ends when beyond; none when it is no number.
+    /// A value as a share of the scale, clamped to it; `None` if it is not finite.
     fn share_of_value(&self, value: f64) -> Option<f64> {
         let share = share(&self.value, value.clamp(self.value.start, self.value.end));
         (!share.is_nan()).then_some(share)

@@ -1,20 +1,20 @@
-//! The one look of all figures: lengths, colours, lines and letters.
+//! The common style of all figures: lengths, colours, lines and fonts.
 
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use plotters::style::{Color, FontStyle, IntoFont, RGBColor, ShapeStyle, TextStyle};
 
-/// Canvas units in one pixel of the SVG. The canvas knows whole units only; quarters of a pixel keep lines smooth.
+/// Canvas units in one pixel of the SVG. The canvas has integer coordinates only; quarters of a pixel keep lines smooth.
 pub const UNIT: u32 = 4;
 
 /// Text and frames.
 pub const INK: RGBColor = RGBColor(38, 38, 38);
-/// Second-rank text, axes.
+/// Secondary text, axes.
 pub const GREY: RGBColor = RGBColor(110, 110, 110);
 /// Lines of a grid.
 pub const FAINT: RGBColor = RGBColor(228, 228, 228);
 /// Filled bodies, such as obstacles.
 pub const SOLID: RGBColor = RGBColor(205, 205, 205);
-/// The first of two kinds of data. Colours are Okabe and Ito's, told apart by colour-blind readers too.
+/// The first of two kinds of data. The colours are those of Okabe and Ito, which colour-blind readers distinguish.
 pub const BLUE: RGBColor = RGBColor(0, 114, 178);
 /// The second kind of data.
 pub const VERMILION: RGBColor = RGBColor(213, 94, 0);
@@ -31,7 +31,7 @@ pub const SMALL_PX: f64 = 10.0;
 const FONTS: &str = "Noto Sans, Helvetica, Arial, sans-serif";
 /// The SVG backend divides every font size by this.
 const FONT_SIZE_DIVISOR: f64 = 1.24;
-/// Mean width of a letter of the font, as a share of its size.
+/// Mean width of a character, as a share of the font size.
 const LETTER_WIDTH: f64 = 0.55;
 
 /// A length in canvas units.
@@ -44,7 +44,7 @@ pub fn line(colour: impl Color, width_px: f64) -> ShapeStyle {
     ShapeStyle { color: colour.to_rgba(), filled: false, stroke_width: px(width_px).unsigned_abs() }
 }
 
-/// Letters of a size; `across` and `down` say which point of the text its place is.
+/// A text style of this size; `across` and `down` define the anchor of the text.
 pub fn text(size_px: f64, colour: RGBColor, across: HPos, down: VPos) -> TextStyle<'static> {
     let font = (FONTS, size_px * f64::from(UNIT) * FONT_SIZE_DIVISOR).into_font();
     font.color(&colour).pos(Pos::new(across, down))
@@ -56,7 +56,7 @@ pub fn title() -> TextStyle<'static> {
     font.color(&INK).pos(Pos::new(HPos::Left, VPos::Top))
 }
 
-/// About how wide a text comes out, px.
+/// Approximate width of a text, px.
 pub fn text_width_px(text: &str, size_px: f64) -> f64 {
     text.chars().count() as f64 * size_px * LETTER_WIDTH
 }

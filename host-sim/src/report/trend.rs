@@ -1,20 +1,20 @@
-//! The straight line that fits points best.
+//! Linear regression.
 
 use glam::DVec2;
 
 /// A line `y = slope * x + intercept` by least squares.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Trend {
-    /// Rise per unit of x.
+    /// Slope.
     pub slope: f64,
-    /// Height at x = 0.
+    /// Value at x = 0.
     pub intercept: f64,
-    /// Share of the variance of y that the line explains; 0 when y does not vary.
+    /// Coefficient of determination; 0 if y does not vary.
     pub r2: f64,
 }
 
 impl Trend {
-    /// The trend of finite points; none when their x are all the same.
+    /// The trend of finite points; `None` if their x are all equal.
     pub fn of(points: &[DVec2]) -> Option<Self> {
         let mean = points.iter().sum::<DVec2>() / points.len() as f64;
         let (mut xx, mut xy, mut yy) = (0.0, 0.0, 0.0);
@@ -30,7 +30,7 @@ impl Trend {
         Some(Trend { slope, intercept: mean.y - slope * mean.x, r2 })
     }
 
-    /// The height of the line at `x`.
+    /// The value of the line at `x`.
     pub fn at(&self, x: f64) -> f64 {
         self.slope * x + self.intercept
     }

@@ -1,11 +1,11 @@
-//! The names, meanings and scales of all effects: one line each.
+//! Catalogue of all effects: id, description and scales.
 
 use std::fmt;
 use std::str::FromStr;
 
 use super::Scale;
 
-/// What the catalogue knows of an effect.
+/// An entry of the catalogue.
 struct Entry {
     id: &'static str,
     about: &'static str,
@@ -14,10 +14,10 @@ struct Entry {
     detail: Option<Scale>,
 }
 
-/// Makes the enum and its entries from one list, so that they cannot differ.
+/// Defines the enum and its entries from one list, so that they cannot differ.
 macro_rules! catalogue {
     ($($table:ident $effect:ident $id:literal $about:literal $strength:expr, $detail:expr;)*) => {
-        /// What can be made different in the built-in robot.
+        /// A deviation of the built-in robot from its healthy state.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
         pub enum Effect {
             $(#[doc = $about] $effect,)*
@@ -128,32 +128,32 @@ catalogue! {
 }
 
 impl Effect {
-    /// Every effect, in the order of the contracts' table, then those beside it.
+    /// All effects: first those that a diagnosis can name, then those outside its table.
     pub fn all() -> impl Iterator<Item = Effect> {
         ALL.iter().copied()
     }
 
-    /// Its name on the command line and in a diagnosis.
+    /// Its id on the command line and in a diagnosis.
     pub fn id(self) -> &'static str {
         self.entry().id
     }
 
-    /// One sentence on what is different.
+    /// One sentence that describes it.
     pub fn about(self) -> &'static str {
         self.entry().about
     }
 
-    /// Whether the contracts' table of effects names it, so that a diagnosis can.
+    /// Whether it is in the table of effects that a diagnosis can name.
     pub fn in_table(self) -> bool {
         self.entry().in_table
     }
 
-    /// Which strengths there are.
+    /// Scale of its strength.
     pub fn strength_range(self) -> Scale {
         self.entry().strength
     }
 
-    /// Which second numbers there are, for an effect that has one.
+    /// Scale of its second parameter, if it has one.
     pub fn detail_range(self) -> Option<Scale> {
         self.entry().detail
     }

@@ -1,16 +1,16 @@
-//! Which part an effect changes. Two effects at once change both of their parts.
+//! Applies effects to the hardware. Several effects at once change all of their parts.
 
 use super::{ActiveEffect, Effect};
 use crate::built_in_robot::hardware::{GRAVITY, Hardware, LEFT, RIGHT};
 use crate::geometry::direction;
 
-/// Battery current in random driving, by which a fade per minute becomes one per coulomb.
+/// Mean battery current in random driving, which converts a fade per minute into one per coulomb.
 const USUAL_CURRENT_A: f64 = 0.137;
 
-/// Push that a tyre needs, as a share of its load, when the command jumps from 0 to 100.
+/// Force that a tyre transmits, as a share of its load, when the command jumps from 0 to 100.
 const STEP_PUSH: f64 = 0.8;
 
-/// Fits the robot with an effect; one of neutral strength changes nothing.
+/// Applies an effect to the hardware; neutral strength changes nothing.
 pub(in crate::built_in_robot) fn fit(hardware: &mut Hardware, active: &ActiveEffect) {
     let (strength, detail) = (active.strength, active.detail);
     if strength == active.effect.strength_range().neutral {
@@ -94,12 +94,12 @@ pub(in crate::built_in_robot) fn fit(hardware: &mut Hardware, active: &ActiveEff
     }
 }
 
-/// Force on the body at which both wheels together lose this share of half their full speed.
+/// Force on the body, N, at which both wheels together lose this share of half their full speed.
 fn force_for_loss_n(hardware: &Hardware, share: f64) -> f64 {
     share * hardware.full_speed_m_s / hardware.yielding_m_s_per_n()
 }
 
-/// Puts so much mass over one wheel that its rolling resistance takes this share of half its full speed.
+/// Adds the mass over one wheel whose rolling resistance costs this share of half its full speed.
 fn load(hardware: &mut Hardware, side: usize, share: f64) {
     let half_speed_m_s = hardware.full_speed_m_s / 2.0;
     let drag_n = share * half_speed_m_s / hardware.yielding_m_s_per_n();

@@ -1,53 +1,53 @@
-//! The scale of an effect's number: its unit, where it does nothing, and how far it goes.
+//! The scale of an effect's parameter: unit, neutral value and bounds.
 
 use rand::RngExt;
 
 use crate::chance::Generator;
 
-/// Which numbers an effect takes.
+/// The scale of a parameter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scale {
-    /// What the number means.
+    /// Meaning and unit, for people.
     pub unit: &'static str,
-    /// The number at which nothing is changed.
+    /// The value that changes nothing.
     pub neutral: f64,
-    /// The least number allowed.
+    /// Lower bound.
     pub lowest: f64,
-    /// The largest number allowed.
+    /// Upper bound.
     pub highest: f64,
-    /// A random number is at least so far from the neutral one.
+    /// Least distance of a random value from the neutral one.
     pub least: f64,
-    /// The number when none is given.
+    /// Default value.
     pub default: f64,
 }
 
 impl Scale {
-    /// A number that does nothing at zero and more the larger it is.
+    /// A scale whose effect grows from zero.
     pub(super) const fn rising(unit: &'static str, least: f64, default: f64, highest: f64) -> Self {
         Scale { unit, neutral: 0.0, lowest: 0.0, highest, least, default }
     }
 
-    /// A number that works either way from zero.
+    /// A scale symmetric about zero.
     pub(super) const fn signed(unit: &'static str, least: f64, default: f64, highest: f64) -> Self {
         Scale { unit, neutral: 0.0, lowest: -highest, highest, least, default }
     }
 
-    /// A factor that does nothing at one.
+    /// A factor, neutral at one.
     pub(super) const fn factor(unit: &'static str, lowest: f64, default: f64, highest: f64, least: f64) -> Self {
         Scale { unit, neutral: 1.0, lowest, highest, least, default }
     }
 
-    /// A number that does nothing at `highest` and more the smaller it is.
+    /// A scale whose effect grows as the value falls from `highest`.
     pub(super) const fn falling(unit: &'static str, lowest: f64, default: f64, highest: f64, least: f64) -> Self {
         Scale { unit, neutral: highest, lowest, highest, least, default }
     }
 
-    /// A number of which one is as good as another.
+    /// A scale without a neutral value, such as a direction.
     pub(super) const fn free(unit: &'static str, lowest: f64, default: f64, highest: f64) -> Self {
         Scale { unit, neutral: lowest, lowest, highest, least: 0.0, default }
     }
 
-    /// A random number that the scale allows and that is not next to neutral, each alike.
+    /// A uniform random value within the bounds and away from neutral.
     pub fn draw(&self, rng: &mut Generator) -> f64 {
         let below = (self.neutral - self.least - self.lowest).max(0.0);
         let above = (self.highest - self.neutral - self.least).max(0.0);
@@ -55,7 +55,7 @@ impl Scale {
         if at < below { self.lowest + at } else { self.neutral + self.least + at - below }
     }
 
-    /// The number that a text gives.
+    /// Parses a value within the bounds.
     pub(super) fn parse(&self, text: &str) -> Result<f64, String> {
         let number: f64 = text.parse().map_err(|_| format!("{text:?} is no number"))?;
         if !(self.lowest..=self.highest).contains(&number) {

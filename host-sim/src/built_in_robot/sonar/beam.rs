@@ -1,5 +1,4 @@
-//! The beam: rays over its cone, each losing strength with angle, way and surface, and the first echo that is loud
-//! enough.
+//! The beam: rays over its cone, attenuated by angle, distance and surface, and the first echo above the threshold.
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -11,17 +10,17 @@ use crate::chance::Generator;
 use crate::geometry::{Hit, Pose, Wall, cast, direction};
 
 const RAYS: u32 = 15;
-/// Sound that has been mirrored starts a little off the wall, so that it does not meet it again.
+/// Reflected rays start this far off the wall, so that they do not meet it again.
 const OFF_WALL_CM: f64 = 1e-6;
 
 /// An echo that triggers the sensor.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Echo {
-    /// Half of the way that the sound went.
+    /// Half of the path length of the sound.
     pub distance_cm: f64,
-    /// Above what triggers the sensor.
+    /// Level above the threshold of the sensor.
     pub level_db: f64,
-    /// 0 for sound that met its wall squarely, 1 along it.
+    /// 0 for normal incidence on the wall, 1 for grazing incidence.
     pub grazing: f64,
 }
 
@@ -50,7 +49,7 @@ pub(super) fn first_echo(sonar: &Sonar, sides: &[Wall], robot: &Pose, rng: &mut 
     first
 }
 
-/// What a wall sends back, against a square echo from one metre: its facets scatter, so that the sound spreads on the
+/// The direct echo of a wall, relative to normal incidence at one metre. Its facets scatter, so the sound spreads on the
 /// way there and again on the way back.
 fn returned(sonar: &Sonar, hit: &Hit) -> Echo {
     let spread_db = 2.0 * spread_db(hit.distance_cm);
@@ -58,8 +57,8 @@ fn returned(sonar: &Sonar, hit: &Hit) -> Echo {
     Echo { distance_cm: hit.distance_cm, level_db, grazing: grazing(hit) }
 }
 
-/// Sound that a wall mirrors to a second one, and that comes back the same way: the reading is too long. A mirror does
-/// not spread sound any further.
+/// The echo of sound that a wall reflects specularly to a second one and that returns the same way, which makes the
+/// reading too long. Specular reflection adds no spreading.
 fn mirrored(sonar: &Sonar, sides: &[Wall], from_cm: DVec2, way: DVec2, hit: &Hit) -> Option<Echo> {
     let normal = direction(libm::atan2(-way.y, -way.x) + hit.incidence_rad);
     let away = way - normal * (2.0 * way.dot(normal));
@@ -71,8 +70,7 @@ fn mirrored(sonar: &Sonar, sides: &[Wall], from_cm: DVec2, way: DVec2, hit: &Hit
     Some(Echo { distance_cm, level_db, grazing: grazing(&second) })
 }
 
-/// What a wall sends back where it came from, against a square echo from a hard one: most by facets that happen to face
-/// the sensor.
+/// Backscatter of a wall relative to normal incidence on a hard one, dB; most of it from facets that face the sensor.
 fn scattered_db(sonar: &Sonar, hit: &Hit) -> f64 {
     let lean = hit.incidence_rad / sonar.facet_rad;
     let facing = libm::cos(hit.incidence_rad);
@@ -81,17 +79,17 @@ fn scattered_db(sonar: &Sonar, hit: &Hit) -> f64 {
     20.0 * libm::log10(share) + surface_db
 }
 
-/// 0 for sound that meets a wall squarely, 1 along it.
+/// 0 for normal incidence, 1 for grazing incidence.
 fn grazing(hit: &Hit) -> f64 {
     hit.incidence_rad.abs() / FRAC_PI_2
 }
 
-/// What is lost by spreading over a way, against one metre.
+/// Spreading loss over a path, dB relative to one metre.
 fn spread_db(way_cm: f64) -> f64 {
     20.0 * libm::log10(way_cm.max(1.0) / 100.0)
 }
 
-/// What air takes, against one metre.
+/// Absorption in air over a path, dB relative to one metre.
 fn absorbed_db(sonar: &Sonar, way_cm: f64) -> f64 {
     sonar.absorption_db_per_m * (way_cm / 100.0 - 1.0)
 }
@@ -104,7 +102,7 @@ mod tests {
     use crate::chance::generator;
     use crate::geometry::Rectangle;
 
-    /// A sensor at the axle's middle without chance in it.
+    /// A noise-free sensor at the middle of the axle.
     fn steady() -> Sonar {
         let sonar = Hardware::new(&default_robot(), &training_room()).sonar;
         Sonar { place_cm: DVec2::ZERO, ping_db: 0.0, speckle_db: 0.0, ..sonar }

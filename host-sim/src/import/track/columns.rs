@@ -1,64 +1,23 @@
-//! Tracks as plain CSV: columns whose names tell quantity and unit, such as `time_s`, `x_m`, `y_m`, `yaw_rad`.
+//! Tracks as plain CSV, with columns named after quantity and unit such as `time_s`, `x_m`, `y_m`, `yaw_rad`.
 
 use std::path::Path;
 
 use clap::ValueEnum;
 use csv::{ReaderBuilder, StringRecord};
 
-use super::Frame;
 use crate::files::csv_problem;
 use crate::geometry::Pose;
+use crate::import::frame::Frame;
+use crate::import::units::Units;
 use crate::problem::{Problem, Result};
 
-/// Units of columns whose names tell none.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Units {
-    /// Of the time.
-    pub time: Option<Time>,
-    /// Of x and y.
-    pub length: Option<Length>,
-    /// Of the heading.
-    pub angle: Option<Angle>,
-}
-
-/// A unit of time.
-#[derive(Clone, Copy, Debug, PartialEq, ValueEnum)]
-pub enum Time {
-    /// Seconds
-    S,
-    /// Milliseconds
-    Ms,
-    /// Microseconds
-    Us,
-}
-
-/// A unit of length.
-#[derive(Clone, Copy, Debug, PartialEq, ValueEnum)]
-pub enum Length {
-    /// Metres
-    M,
-    /// Centimetres
-    Cm,
-    /// Millimetres
-    Mm,
-}
-
-/// A unit of angle.
-#[derive(Clone, Copy, Debug, PartialEq, ValueEnum)]
-pub enum Angle {
-    /// Degrees
-    Deg,
-    /// Radians
-    Rad,
-}
-
-/// What a column may be called before its unit.
+/// Accepted names of the quantities, before the unit.
 const TIME: [&str; 3] = ["t", "time", "timestamp"];
 const X: [&str; 1] = ["x"];
 const Y: [&str; 1] = ["y"];
 const HEADING: [&str; 3] = ["heading", "yaw", "theta"];
 
-/// The frames of a track; `None` where the robot was lost: a cell of the pose is empty or `nan`.
+/// The frames of a track; `None` where the robot was lost (a cell of the pose is empty or `nan`).
 pub(super) fn frames(file: &Path, text: &str, units: &Units) -> Result<Vec<Option<Frame>>> {
     let mut reader = ReaderBuilder::new().trim(csv::Trim::All).from_reader(text.as_bytes());
     let header = reader.headers().map_err(|e| csv_problem(file, &e))?.clone();
@@ -89,7 +48,7 @@ pub(super) fn frames(file: &Path, text: &str, units: &Units) -> Result<Vec<Optio
 struct Column {
     name: String,
     place: usize,
-    /// What its name says after the quantity; empty when nothing.
+    /// The unit in its name; empty if there is none.
     unit: String,
 }
 
@@ -109,9 +68,9 @@ impl Column {
         }
     }
 
-    fn unit<U: ValueEnum>(&self, unless_told: Option<U>, option: &str) -> std::result::Result<U, String> {
+    fn unit<U: ValueEnum>(&self, default: Option<U>, option: &str) -> std::result::Result<U, String> {
         if self.unit.is_empty() {
-            return unless_told.ok_or_else(|| format!("column {} does not tell its unit: give {option}", self.name));
+            return default.ok_or_else(|| format!("column {} has no unit: give {option}", self.name));
         }
         U::from_str(&self.unit, true).map_err(|_| format!("column {} has an unknown unit", self.name))
     }
@@ -123,34 +82,5 @@ impl Column {
         }
         let number = cell.parse::<f64>().ok().filter(|v| v.is_finite());
         number.map(Some).ok_or_else(|| format!("{} = {cell:?} is no number", self.name))
-    }
-}
-
-impl Time {
-    fn ms(self) -> f64 {
-        match self {
-            Time::S => 1e3,
-            Time::Ms => 1.0,
-            Time::Us => 1e-3,
-        }
-    }
-}
-
-impl Length {
-    pub(super) fn cm(self) -> f64 {
-        match self {
-            Length::M => 100.0,
-            Length::Cm => 1.0,
-            Length::Mm => 0.1,
-        }
-    }
-}
-
-impl Angle {
-    fn rad(self) -> f64 {
-        match self {
-            Angle::Deg => std::f64::consts::PI / 180.0,
-            Angle::Rad => 1.0,
-        }
     }
 }

@@ -5,21 +5,22 @@ use std::path::Path;
 use csv::ReaderBuilder;
 use glam::{DQuat, DVec3};
 
-use super::{Frame, Length};
 use crate::files::csv_problem;
 use crate::geometry::Pose;
+use crate::import::frame::Frame;
+use crate::import::units::Length;
 use crate::problem::{Problem, Result};
 
-/// Such a file begins like this.
+/// The beginning of such a file.
 const BEGINNING: &str = "Format Version";
-/// Its header: frame, time, then for the first rigid body the rotation and the position.
+/// Its header: frame, time, then rotation and position of the first rigid body.
 const HEADER: [&str; 9] = ["Frame", "Time (Seconds)", "X", "Y", "Z", "W", "X", "Y", "Z"];
 
 pub(super) fn is_one(text: &str) -> bool {
     text.trim_start_matches('\u{feff}').starts_with(BEGINNING)
 }
 
-/// The frames of the first rigid body; `None` where it was lost. On the floor x is Motive's X and y its -Z.
+/// The frames of the first rigid body; `None` where it was lost. The scene's x is Motive's X, and its y is Motive's -Z.
 pub(super) fn frames(file: &Path, text: &str) -> Result<Vec<Option<Frame>>> {
     let mut reader = ReaderBuilder::new().has_headers(false).flexible(true).from_reader(text.as_bytes());
     let mut unit = None;
@@ -30,8 +31,8 @@ pub(super) fn frames(file: &Path, text: &str) -> Result<Vec<Option<Frame>>> {
         let line = record.position().map_or(0, csv::Position::line);
         let cell = |at: usize| record.get(at).map_or("", str::trim);
         if !is_body {
-            let told = record.iter().position(|cell| cell.trim() == "Length Units").map(|at| cell(at + 1));
-            unit = told.map(str::to_lowercase).or(unit);
+            let stated = record.iter().position(|cell| cell.trim() == "Length Units").map(|at| cell(at + 1));
+            unit = stated.map(str::to_lowercase).or(unit);
             is_body = (0..HEADER.len()).all(|at| cell(at) == HEADER[at]);
             continue;
         }

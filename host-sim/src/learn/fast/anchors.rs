@@ -1,28 +1,28 @@
-//! What holds a network where no sample is: no log has every pair of commands, and no echo comes back from a wall that
-//! is far and slanting.
+//! Anchors constrain a network where there are no samples: no log has every pair of commands, and no echo returns from
+//! a wall that is far and oblique.
 
 use mindgap_core::network::Scaling;
 
 use crate::learn::dataset::Dataset;
 
-/// Samples as far as they go and anchors beyond, with their weights.
+/// A data set extended by anchors, with weights.
 pub struct Anchored<const N: usize> {
     /// First the samples, then the anchors.
     pub data: Dataset<N>,
-    /// One a sample or anchor.
+    /// One weight a sample or anchor.
     pub weights: Vec<f64>,
 }
 
-/// Points of the grid of anchors, along all inputs together.
+/// Number of points of the grid of anchors over all inputs.
 const POINTS: f64 = 256.0;
-/// What an anchor weighs, as a share of the samples that a point of the grid has on average.
+/// Weight of an anchor, as a share of the average number of samples at a point of the grid.
 const SHARE: f64 = 0.05;
-/// An anchor's target is the mean of so many samples, those that are nearest.
+/// Number of nearest samples whose mean is an anchor's target.
 const NEAREST: usize = 20;
 
 impl<const N: usize> Anchored<N> {
-    /// Puts an anchor on every point of a grid over the whole range of the inputs that has no sample within a step of
-    /// the grid. It pulls to the mean target of the nearest samples.
+    /// Adds an anchor at every point of a grid over the whole range of the inputs that has no sample within one grid
+    /// step. Its target is the mean target of the nearest samples.
     pub fn new(samples: &Dataset<N>, inputs: &[Scaling<f32>; N]) -> Self {
         let scaled = |x: &[f32; N]| -> [f32; N] { std::array::from_fn(|i| inputs[i].apply(x[i])) };
         let places: Vec<[f32; N]> = samples.inputs.iter().map(scaled).collect();

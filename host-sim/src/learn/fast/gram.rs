@@ -1,19 +1,19 @@
-//! The inner products of a table's columns: all that least squares asks of samples, however many they are.
+//! The Gram matrix of a table's columns: all that least squares needs of the samples, whatever their number.
 
 use nalgebra::DMatrix;
 use pulp::{Arch, Simd, WithSimd};
 
 use crate::lanes;
 
-/// Rows that are added to the sums at once, so that sums are read and written less often.
+/// Number of rows that are added to the sums at once, so that sums are read and written less often.
 const BLOCK: usize = 4;
-/// Numbers of the widest vector, half as many as of f32; rows are filled up to a multiple of it.
+/// Number of f64 lanes of the widest vector; rows are padded to a multiple of it.
 const WIDEST: usize = lanes::WIDEST / 2;
 
-/// The inner products of the `width` columns of a table with one row a weight, each row counted by its weight.
+/// The weighted Gram matrix, `width` by `width`, of a table that has one row for each weight.
 ///
-/// `fill` writes the row of a number into a slice of `width` zeros or former rows. Each sum meets the rows in their
-/// order, so that it is the same bits whatever the instruction set.
+/// `fill` writes the row of an index into a slice of `width` numbers. Each sum adds the rows in their order, so that the
+/// result is the same to the bit whatever the instruction set.
 pub fn inner_products(width: usize, weights: &[f64], fill: impl Fn(usize, &mut [f64])) -> DMatrix<f64> {
     let stride = width.next_multiple_of(WIDEST);
     let mut sums = vec![0.0; width * stride];

@@ -1,8 +1,8 @@
-//! Variable projection: the residuals that the best linear weights leave for given exponents, and how they change with
-//! the exponents.
+//! Variable projection (Golub and Pereyra 1973): the residuals that the best linear weights leave for given exponents,
+//! and their Jacobian in Kaufman's (1975) approximation.
 //!
-//! Neither least squares nor Levenberg–Marquardt sees anything of the samples but the inner products of their columns,
-//! so these are summed once for each set of exponents, and a problem of a few rows stands for that of all samples.
+//! Least squares and Levenberg–Marquardt need the samples only through the inner products of their columns, so these are
+//! summed once for each set of exponents, and a problem of a few rows replaces that of all samples.
 
 use std::f64::consts::LN_2;
 
@@ -13,47 +13,47 @@ use nalgebra::{Cholesky, DMatrix, DVector, Dyn, Owned};
 use super::anchors::Anchored;
 use super::gram::inner_products;
 
-/// How much weights are held back: power terms that are nearly alike would grow against each other, and run wild outside
-/// the data.
+/// Ridge penalties: nearly collinear power terms would otherwise take large opposite weights and diverge outside the
+/// data.
 #[derive(Clone, Copy, Debug)]
 pub struct Ridges {
-    /// Of the linear weights, per sample.
+    /// Penalty on the linear weights, per sample.
     pub weights: f64,
-    /// Of the exponents, per sample and as a share of the targets' variance.
+    /// Penalty on the exponents, per sample and relative to the variance of the targets.
     pub exponents: f64,
 }
 
-/// A data set with exponents of some product units, as a least-squares problem in those exponents.
+/// A data set and the exponents of a number of product units, as a least-squares problem in those exponents.
 #[derive(Clone)]
 pub struct Projection<const N: usize> {
     x: Vec<[f64; N]>,
     log2_x: Vec<[f64; N]>,
     targets: Vec<f64>,
-    /// What each sample counts, whatever the loss.
+    /// Weight of each sample, whatever the loss.
     base_weights: Vec<f64>,
-    /// What each sample counts now.
+    /// Weight of each sample in the current iteration.
     sample_weights: Vec<f64>,
     exponents: DVector<f64>,
-    /// What the square of a linear weight adds to the squares of the residuals.
+    /// Penalty on the square of a linear weight, in units of squared residuals.
     weight_prior: f64,
     /// The same for an exponent.
     exponent_prior: f64,
     fit: Option<Fit>,
 }
 
-/// What the linear least-squares problem gives for the exponents.
+/// Solution of the linear least-squares problem for the current exponents.
 #[derive(Clone)]
 struct Fit {
     /// Linear weights: bias, slopes, outputs of the product units.
     weights: DVector<f64>,
-    /// Rows with the length and the inner products of the residuals of samples and ridges.
+    /// Reduced residuals: same norm and inner products as the residuals of all samples and ridges.
     residuals: DVector<f64>,
-    /// The same of their changes with the exponents.
+    /// The Jacobian of the residuals by the exponents, reduced alike.
     jacobian: DMatrix<f64>,
 }
 
 impl<const N: usize> Projection<N> {
-    /// The problem for a data set whose inputs are scaled so.
+    /// The problem for a data set whose inputs are scaled by `inputs`; `exponents` are those of each unit in turn.
     pub fn new(anchored: &Anchored<N>, inputs: &[Scaling<f32>; N], ridges: Ridges, exponents: DVector<f64>) -> Self {
         let data = &anchored.data;
         let scaled = |x: &[f32; N]| std::array::from_fn(|i| f64::from(inputs[i].apply(x[i])));
@@ -75,7 +75,7 @@ impl<const N: usize> Projection<N> {
         problem
     }
 
-    /// What the network says for each sample.
+    /// The predictions, one a sample.
     pub fn predictions(&self) -> Vec<f64> {
         let weights = self.weights();
         let mut features = vec![0.0; weights.len()];
@@ -86,14 +86,14 @@ impl<const N: usize> Projection<N> {
         (0..self.x.len()).map(at).collect()
     }
 
-    /// Gives samples other targets and weights.
+    /// Replaces the targets and weights of the samples.
     pub fn reweight(&mut self, targets: Vec<f64>, weights: &[f64]) {
         self.targets = targets;
         self.sample_weights = weights.iter().zip(&self.base_weights).map(|(w, base)| w * base).collect();
         self.solve();
     }
 
-    /// Bias, slopes and outputs of the product units; zeros where exponents leave nothing to solve for.
+    /// Bias, slopes and output weights of the product units; zeros where the normal equations are singular.
     pub fn weights(&self) -> Vec<f64> {
         self.fit.as_ref().map_or(vec![0.0; self.width()], |fit| fit.weights.as_slice().to_vec())
     }
@@ -103,12 +103,12 @@ impl<const N: usize> Projection<N> {
         self.exponents.as_slice()
     }
 
-    /// Number of linear weights.
+    /// Number of linear weights: bias, slopes, product units.
     fn width(&self) -> usize {
         1 + N + self.exponents.len() / N
     }
 
-    /// Writes what linear weights are given to at a sample: one, inputs, product units.
+    /// Writes the regressors of a sample: one, inputs, product units.
     fn features_at(&self, sample: usize, features: &mut [f64]) {
         let (affine, powers) = features.split_at_mut(1 + N);
         affine[0] = 1.0;
@@ -140,7 +140,7 @@ impl<const N: usize> Projection<N> {
         let weights = normal.solve(&moments);
         let squares = products[(target, target)] - moments.dot(&weights);
 
-        // Kaufman's form: the change of the features, less what the linear weights would take up of it.
+        // Kaufman: the derivative of the features, less its projection onto the features.
         let slopes = DVector::from_fn(parameters, |p, _| -LN_2 * weights[1 + N + p / N]);
         let scale = DMatrix::from_diagonal(&slopes);
         let onto_features = products.view((0, width), (width, parameters)) * &scale;
@@ -152,7 +152,7 @@ impl<const N: usize> Projection<N> {
             + &self.exponents * self.exponent_prior;
         let squares = squares + self.exponent_prior * self.exponents.norm_squared();
 
-        // A triangle has the same inner products as the samples' rows; a last row holds what no exponent changes.
+        // A triangular factor has the same inner products as the rows of all samples; a last row holds the rest.
         let triangle = Cholesky::new(of_changes)?;
         let along = triangle.l_dirty().solve_lower_triangular(&with_residuals)?;
         let rest = (squares - along.norm_squared()).max(0.0).sqrt();
@@ -208,7 +208,7 @@ mod tests {
         Projection::new(&Anchored { data, weights }, &inputs, RIDGES, exponents)
     }
 
-    /// What the few rows stand for, from every sample and every ridge.
+    /// The penalised sum of squares, from every sample and every ridge.
     fn sum_of_squares(problem: &Projection<2>) -> f64 {
         let errors = problem.predictions().into_iter().zip(&problem.targets).map(|(p, t)| (t - p) * (t - p));
         let samples: f64 = errors.zip(&problem.sample_weights).map(|(e, w)| e * w).sum();
@@ -219,7 +219,7 @@ mod tests {
     }
 
     #[test]
-    fn few_rows_have_the_length_and_the_slope_of_all() {
+    fn the_reduced_problem_has_the_norm_and_the_gradient_of_all_samples() {
         for seed in 0..20 {
             let problem = problem(seed);
             let residuals = problem.residuals().unwrap();

@@ -1,4 +1,4 @@
-//! Probabilities: how often an event came true, bin by bin of its predicted probability.
+//! Reliability diagram: the observed frequency of an event in bins of its predicted probability.
 
 use glam::DVec2;
 use plotters::style::text_anchor::{HPos, VPos};
@@ -11,7 +11,7 @@ use crate::report::style::{BLUE, GREY, line, px, text};
 use crate::report::trend::Trend;
 
 const BINS: usize = 10;
-/// Room under probability 0 for the counts.
+/// Margin below probability 0 for the counts.
 const FLOOR: f64 = -0.14;
 const CEILING: f64 = 1.04;
 const COUNT_PX: f64 = 8.5;
@@ -20,7 +20,7 @@ const DOT_PX: f64 = 3.0;
 /// Quantile of the normal distribution for a 95 % interval.
 const Z95: f64 = 1.96;
 
-/// The samples whose predicted probability lies in one tenth.
+/// The samples of one bin.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Bin {
     samples: usize,
@@ -28,8 +28,8 @@ struct Bin {
     predicted_sum: f64,
 }
 
-/// Draws bins and, over the single samples, their trend; its R² is that of yes-or-no outcomes, which stays low even
-/// for the true probabilities.
+/// Draws the bins, and the trend over the single samples. Its R² is that of binary outcomes, which is low even for the
+/// true probabilities.
 pub fn draw(cell: &Canvas, title: &str, events: &[(f64, bool)]) -> Drawn {
     let sound: Vec<(f64, bool)> = events.iter().copied().filter(|(p, _)| (0.0..=1.0).contains(p)).collect();
     let points: Vec<DVec2> = sound.iter().map(|(p, came)| DVec2::new(*p, f64::from(u8::from(*came)))).collect();

@@ -1,4 +1,4 @@
-//! Quantities: a point a sample.
+//! Scatter diagram of quantities, one point a sample.
 
 use glam::DVec2;
 use plotters::style::Color;
@@ -16,7 +16,7 @@ const REACH: f64 = 0.5;
 const EDGE: f64 = 0.04;
 const DOT_PX: f64 = 1.75;
 const ARROW_PX: f64 = 7.0;
-/// More points than this are drawn fainter.
+/// Number of points above which they are drawn fainter.
 const CROWD: usize = 600;
 
 /// Draws the samples, their trend and the diagonal; a trend counts every finite sample, beyond the frame too.
@@ -52,7 +52,7 @@ pub fn draw(cell: &Canvas, title: &str, unit: &str, pairs: &[DVec2]) -> Drawn {
     lines(&chart, low, high, trend)
 }
 
-/// What both axes show: all that was expected, and the predictions not wildly beyond.
+/// Common range of both axes: all expected values, and the predictions not far beyond them.
 fn frame(points: &[DVec2]) -> Option<(f64, f64)> {
     let expected = points.iter().map(|p| p.x);
     let (least, most) = (expected.clone().reduce(f64::min)?, expected.reduce(f64::max)?);

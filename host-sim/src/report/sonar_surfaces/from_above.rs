@@ -12,7 +12,7 @@ use crate::report::style::{GREY, INK, SMALL_PX, TEXT_PX, line, px, text};
 
 const COLUMNS: usize = 60;
 const ROWS: usize = 45;
-/// Room for the scale of colours right of the map, px.
+/// Margin for the colour scale right of the map, px.
 const SCALE_PX: f64 = 88.0;
 const BAR_PX: f64 = 12.0;
 const BAR_STEPS: i32 = 64;

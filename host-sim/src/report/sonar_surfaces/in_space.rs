@@ -16,17 +16,17 @@ const CELLS: usize = 24;
 const ELEVATION_DEG: f64 = 26.0;
 /// Lengths of the edges along distance, angle and value.
 const EDGES: DVec3 = DVec3::new(1.15, 1.0, 0.72);
-/// Room around the box for its labels: left, above, right, below, px.
+/// Margins around the box for its labels: left, above, right, below, px.
 const ROOM_PX: [f64; 4] = [56.0, 6.0, 30.0, 34.0];
-/// How far from the box numbers stand and names stand, px.
+/// Distances of tick labels and axis names from the box, px.
 const NUMBER_PX: f64 = 12.0;
 const NAME_PX: f64 = 27.0;
 const UPRIGHT_NAME_PX: f64 = 36.0;
 
-/// How much nearer than it is a sample is taken to be: one that lies in the surface shows whole.
+/// Depth bias of samples, so that one that lies in the surface is fully visible.
 const LIFT: f64 = 0.04;
 
-/// What is drawn from far to near.
+/// A piece that is drawn in order of depth.
 enum Piece {
     Cell([DVec3; 4]),
     Sample(DVec3),

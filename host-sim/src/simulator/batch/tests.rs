@@ -1,7 +1,7 @@
 use super::*;
 use crate::built_in_robot::{default_robot, four_obstacles, record, training_room};
 use crate::chance::generator;
-use crate::evolve::genome::Coding;
+use crate::evolve::genome::GenotypeDecoder;
 use crate::learn::train::{self, TABLE_ONE, Trainer};
 use crate::simulator::course::Ending;
 use crate::simulator::motion::{MotionTable, speeds};
@@ -28,8 +28,8 @@ fn course(noise: Noise) -> Course<'static> {
 }
 
 fn controllers() -> Vec<Controller> {
-    let coding = Coding::new(&SIMULATOR, MAX_STEPS);
-    (0..40).map(|i| coding.controller(&coding.random(&mut generator(SEED, &[i])))).collect()
+    let decoder = GenotypeDecoder::new(&SIMULATOR, MAX_STEPS);
+    (0..40).map(|i| decoder.controller(&decoder.random(&mut generator(SEED, &[i])))).collect()
 }
 
 /// So many runs of every controller, mixed.
