@@ -3,4 +3,5 @@
 pub mod agreement;
 pub mod bootstrap;
 pub mod maximise;
+pub mod student;
 pub mod summary;

@@ -12,8 +12,7 @@ use crate::effects::effect::{self, CommandHistory};
 use crate::geometry::{Pose, Wall, cast};
 use crate::logs::{Robot, Scene};
 use crate::problem::{Problem, Result};
-use crate::sonar::SonarModel;
-use crate::sonar::{Draw, fan_at};
+use crate::sonar::{SonarModel, fan_at};
 
 /// AppliedEffect effects in a room.
 pub(super) struct Wrapped<'s> {
@@ -106,9 +105,8 @@ impl<'s> Wrapped<'s> {
         axis.heading_rad += changed.yaw_rad;
         let fan = fan_at(&self.sides, &axis, sonar.fan_width * changed.width);
         let mut rng = generator(u64::from(draw.to_bits()), &[past.steps as u64]);
-        let previous_cm = past.echo.flatten();
-        let draws = Draw { change: &changed.change, previous_cm, scatters: self.noise == Noise::Learned };
-        let echo_cm = sonar.draw(&fan, &draws, || rng.random::<f64>());
+        let outcomes = sonar.outcomes(&fan, &changed.change, past.echo.flatten());
+        let echo_cm = outcomes.draw(self.noise == Noise::Learned, || rng.random());
         past.faced = moment.faced;
         past.echo = Some(echo_cm);
         echo_cm.map(|cm| cm as f32)
