@@ -99,7 +99,7 @@ pub const VARIANTS: &[Variant] = &[
         name: "less comes back",
         parameters: DAMPING,
         starts: DAMPING_STARTS,
-        acts: &[Hook::Sensor(|v, _, s| s.change.damping += v[0])],
+        acts: &[Hook::Sensor(|v, _, s| s.change.attenuation += v[0])],
         report: absorbed,
     },
     Variant {
@@ -107,7 +107,7 @@ pub const VARIANTS: &[Variant] = &[
         name: "less comes back from afar",
         parameters: DAMPING,
         starts: DAMPING_STARTS,
-        acts: &[Hook::Sensor(|v, _, s| s.change.damping_per_m += v[0])],
+        acts: &[Hook::Sensor(|v, _, s| s.change.attenuation_per_m += v[0])],
         report: absorbed,
     },
     Variant {
@@ -115,7 +115,7 @@ pub const VARIANTS: &[Variant] = &[
         name: "less comes back from aslant",
         parameters: DAMPING,
         starts: DAMPING_STARTS,
-        acts: &[Hook::Sensor(|v, _, s| s.change.damping_per_incidence += v[0])],
+        acts: &[Hook::Sensor(|v, _, s| s.change.attenuation_per_incidence += v[0])],
         report: absorbed,
     },
     Variant {
@@ -123,7 +123,7 @@ pub const VARIANTS: &[Variant] = &[
         name: "a random short reading",
         parameters: &[Parameter::new(0.0, 0.6, 0.0)],
         starts: &[&[0.03], &[0.15]],
-        acts: &[Hook::Sensor(|v, _, s| s.change.short = 1.0 - (1.0 - s.change.short) * (1.0 - v[0]))],
+        acts: &[Hook::Sensor(|v, _, s| s.change.p_short = 1.0 - (1.0 - s.change.p_short) * (1.0 - v[0]))],
         report: |v, _| vec![("probability", rounded(v[0]))],
     },
     Variant {
@@ -176,22 +176,22 @@ const DAMPING_STARTS: &[&[f64]] = &[&[0.3], &[-0.3], &[1.5]];
 
 fn wider_and_stronger(v: &[f64], _: &StepContext, sensor: &mut Sensor) {
     sensor.width *= v[0];
-    sensor.change.damping += v[1];
+    sensor.change.attenuation += v[1];
 }
 
 fn ghost_for_echo(v: &[f64], _: &StepContext, sensor: &mut Sensor) {
-    sensor.change.ghost_for_echo = v[0];
+    sensor.change.p_ghost_given_echo = v[0];
     sensor.change.ghost_cm = v[1];
 }
 
 fn ghost_for_any(v: &[f64], moment: &StepContext, sensor: &mut Sensor) {
     ghost_for_echo(v, moment, sensor);
-    sensor.change.ghost_for_none = v[0];
+    sensor.change.p_ghost_given_none = v[0];
 }
 
 fn dropout(v: &[f64], moment: &StepContext, sensor: &mut Sensor) {
     let lost = if moment.echo_before == Some(false) { v[0] } else { v[1] };
-    sensor.change.lost = 1.0 - (1.0 - sensor.change.lost) * (1.0 - lost);
+    sensor.change.p_dropout = 1.0 - (1.0 - sensor.change.p_dropout) * (1.0 - lost);
 }
 
 /// A reading is old where it is the one before although something else is faced now; where the same is faced, readings
@@ -199,7 +199,7 @@ fn dropout(v: &[f64], moment: &StepContext, sensor: &mut Sensor) {
 fn old_reading(v: &[f64], moment: &StepContext, sensor: &mut Sensor) {
     let (Some([now_cm, _]), Some([before_cm, _])) = (moment.faced, moment.faced_before) else { return };
     if (now_cm - before_cm).abs() > OTHER_CM {
-        sensor.change.stale = v[0];
+        sensor.change.p_stale = v[0];
     }
 }
 

@@ -170,7 +170,8 @@ impl Bench<'_> {
         let Some(sonar) = &self.baseline.sonar else { return 0.0 };
         let likelihood = |fit: &Fitted| {
             let (fan, change) = predictions::facing(&fit.effects(), self.logs, row);
-            move |echo_cm: Option<f64>| sonar.log_likelihood(&fan, &change, echo_cm, None)[0]
+            let outcomes = sonar.outcomes(&fan, &change, None);
+            move |echo_cm: Option<f64>| outcomes.log_likelihood(echo_cm)
         };
         let (a, b) = (likelihood(self.chosen), likelihood(self.rival));
         let divergence = |echo_cm: Option<f64>, width: f64| {

@@ -34,7 +34,7 @@ static ECHO_RATE: Variant = Variant {
     name: "echo rate",
     parameters: const { &[Parameter::new(-4.0, 4.0, 0.0); SONAR_FEATURES] },
     starts: &[&[0.0; SONAR_FEATURES]],
-    acts: &[Hook::Sensor(|v, moment, sensor| sensor.change.damping += sonar_sum(v, moment))],
+    acts: &[Hook::Sensor(|v, moment, sensor| sensor.change.attenuation += sonar_sum(v, moment))],
     report: |_, _| Vec::new(),
 };
 
@@ -91,8 +91,8 @@ fn moved_readings(v: &[f64], moment: &StepContext, sensor: &mut Sensor) {
 fn other_readings(v: &[f64], moment: &StepContext, sensor: &mut Sensor) {
     moved_readings(&v[..SONAR_FEATURES], moment, sensor);
     sensor.change.scatter_cm += v[SONAR_FEATURES];
-    sensor.change.short = 1.0 - (1.0 - sensor.change.short) * (1.0 - v[SONAR_FEATURES + 1]);
-    sensor.change.long += v[SONAR_FEATURES + 2];
+    sensor.change.p_short = 1.0 - (1.0 - sensor.change.p_short) * (1.0 - v[SONAR_FEATURES + 1]);
+    sensor.change.p_long += v[SONAR_FEATURES + 2];
 }
 
 /// Circumstances of a step, each of the order of one.

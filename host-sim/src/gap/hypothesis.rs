@@ -178,8 +178,9 @@ impl Hypothesis {
         let effects = self.at(values);
         let term = |row: &Observation| {
             let (fan, change) = facing(&effects, evidence, row);
-            let [all, rate] = sonar.log_likelihood(&fan, &change, row.echo_cm, row.previous_echo_cm);
-            [rate, all - rate]
+            let outcomes = sonar.outcomes(&fan, &change, row.previous_echo_cm);
+            let rate = outcomes.log_detection(row.echo_cm);
+            [rate, outcomes.log_likelihood(row.echo_cm) - rate]
         };
         evidence.rows[rows].iter().map(term).collect()
     }
