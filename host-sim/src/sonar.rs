@@ -27,8 +27,9 @@
 //! largest, random ones over the whole range.
 //!
 //! [`MixingWeights`] is the table's one implementation and [`Outcomes`] the whole mixture: logs are judged by
-//! [`Outcomes::log_likelihood`], and readings are drawn by [`Outcomes::draw`]. The vectorised simulator draws by the
-//! same weights. Another law of the first echo changes [`first_echo`] alone.
+//! [`Outcomes::log_likelihood`], and readings are drawn by [`Outcomes::draw`]. The vectorised simulator draws the first
+//! echo ray by ray and the rest by the same weights. Another law of the first echo would change [`first_echo`] and that
+//! loop alone.
 
 mod draw;
 pub mod fan;

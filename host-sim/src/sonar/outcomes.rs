@@ -160,7 +160,7 @@ impl Outcomes {
 
     /// The mean reading of the hits, cm; none where no echo can come back.
     pub fn mean_hit_cm(&self) -> Option<f64> {
-        let hits = self.components[..RAYS].iter().filter(|hit| hit.probability > 0.0);
+        let hits = self.components.iter().filter(|c| c.source == Source::Hit && c.probability > 0.0);
         let (sum, probability) = hits.fold((0.0, 0.0), |(sum, probability), hit| {
             (sum + hit.probability * hit.distribution.mean_cm(), probability + hit.probability)
         });
