@@ -4,4 +4,5 @@ pub mod agreement;
 pub mod bootstrap;
 pub mod maximise;
 pub mod rounding;
+pub mod student;
 pub mod summary;

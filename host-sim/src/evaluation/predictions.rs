@@ -43,9 +43,9 @@ pub fn predict(simulator: &Simulator, logs: &Logs) -> Result<Predictions> {
         }
         if let (Some(sonar), Some(_)) = (&baseline.sonar, row.context.faced) {
             let (fan, change) = facing(&effects, &observations, row);
-            let [none, _] = sonar.log_likelihood(&fan, &change, None, None);
-            all.echo_probability.push([f64::from(u8::from(row.echo_cm.is_some())), 1.0 - libm::exp(none)]);
-            if let (Some(echo_cm), Some(expected_cm)) = (row.echo_cm, sonar.expected_cm(&fan, &change)) {
+            let outcomes = sonar.outcomes(&fan, &change, None);
+            all.echo_probability.push([f64::from(u8::from(row.echo_cm.is_some())), 1.0 - outcomes.none]);
+            if let (Some(echo_cm), Some(expected_cm)) = (row.echo_cm, outcomes.mean_hit_cm()) {
                 all.echo_value.push([echo_cm, expected_cm]);
             }
         }

@@ -187,9 +187,10 @@ impl Hypothesis {
         let Some(sonar) = &baseline.sonar else { return vec![[0.0; 2]; rows.len()] };
         let effects = self.at(values);
         let term = |row: &Observation| {
-            let (fan, change) = facing(&effects, observations, row);
-            let [all, rate] = sonar.log_likelihood(&fan, &change, row.echo_cm, row.previous_echo_cm);
-            [rate, all - rate]
+            let (fan, perturbation) = facing(&effects, observations, row);
+            let outcomes = sonar.outcomes(&fan, &perturbation, row.previous_echo_cm);
+            let rate = outcomes.log_detection(row.echo_cm);
+            [rate, outcomes.log_likelihood(row.echo_cm) - rate]
         };
         observations.rows[rows].iter().map(term).collect()
     }

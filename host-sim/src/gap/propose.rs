@@ -169,7 +169,8 @@ impl Bench<'_> {
         let Some(sonar) = &self.context.baseline.sonar else { return 0.0 };
         let likelihood = |effects: &EffectChain| {
             let (fan, perturbation) = self.facing(effects, step);
-            move |echo_cm: Option<f64>| sonar.log_likelihood(&fan, &perturbation, echo_cm, None)[0]
+            let outcomes = sonar.outcomes(&fan, &perturbation, None);
+            move |echo_cm: Option<f64>| outcomes.log_likelihood(echo_cm)
         };
         let (a, b) = (likelihood(&self.chosen), likelihood(&self.rival));
         let divergence = |echo_cm: Option<f64>, width: f64| {

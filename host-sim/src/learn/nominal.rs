@@ -9,7 +9,8 @@ use crate::logs::{Logs, samples};
 use crate::simulator::Simulator;
 use crate::simulator::nominal::NominalModel;
 use crate::simulator::nominal::motion_bias::{FEATURES, MotionBias, features};
-use crate::sonar::{Perturbation, STRENGTHS, SonarModel, fan_at};
+use crate::sonar::model::STRENGTHS;
+use crate::sonar::{Perturbation, SonarModel, fan_at};
 use crate::statistics::maximise::{Bounds, climb};
 
 /// Pulls the weights of the motion's correction towards zero, in squared features.
@@ -113,7 +114,7 @@ fn sonar(simulator: &Simulator, logs: &Logs) -> Option<SonarModel> {
         let reference = sonar_from(at, value_cm, range_cm);
         let term = |(sensor, echo): &(Pose, Option<f64>)| {
             let fan = fan_at(&sides, sensor, reference.fan_width);
-            reference.log_likelihood(&fan, &Perturbation::NONE, *echo, None)[0]
+            reference.outcomes(&fan, &Perturbation::NONE, None).log_likelihood(*echo)
         };
         seen.par_iter().map(term).collect()
     };
@@ -128,10 +129,10 @@ fn sonar_from(at: &[f64], value_cm: f64, range_cm: [f64; 2]) -> SonarModel {
         bias: [rest[0], rest[1], rest[2]],
         log_scatter: [rest[3], rest[4], rest[5]],
         constant: [rest[6], value_cm],
-        short: rest[7],
-        lost: rest[8],
+        p_short: rest[7],
+        p_dropout: rest[8],
         fan_width: rest[9],
-        constant_for_none: rest[10],
+        p_constant_given_none: rest[10],
         range_cm,
     }
 }

@@ -32,9 +32,11 @@ type Row = [f32; WIDEST];
 
 /// The draws of one step.
 struct StepDraws {
-    /// An echo comes back where this is below its probability.
+    /// For the networks, an echo comes back where this is below its probability; for the beam, the place within an
+    /// interval of readings.
     echo: Row,
-    /// The reading is the constant one where this is below its probability.
+    /// For the networks, the reading is the constant one where this is below its probability; for the beam, what chooses
+    /// the outcome.
     constant: Row,
     /// Raw bits that choose residuals of the step.
     bits: [u32; WIDEST],

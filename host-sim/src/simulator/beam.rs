@@ -4,6 +4,9 @@
 //! The networks know the axis alone, so what a real beam meets beside it is chance to them, drawn anew at each step.
 //! Here it is a matter of where the robot stands. A controller that has to do well with both relies on neither's
 //! weakness.
+//!
+//! The probabilities are those of [`Outcomes`](crate::sonar::Outcomes). A lane does not work out all candidates: it
+//! draws whether each ray comes back and keeps the nearest, then one draw falls to an outcome by the [`MixingWeights`].
 
 use mindgap_core::maths;
 use mindgap_core::scalar::Scalar;
@@ -13,18 +16,34 @@ use super::draws::Draws;
 use super::room::{Point, Room};
 use super::scatter::LEVELS;
 use crate::lanes::{Lanes, WIDEST};
-use crate::sonar::{FAN_DEG, FAR_CM, STRENGTHS, SonarModel};
+use crate::sonar::fan::{AXIS, FAN_DEG, RAYS};
+use crate::sonar::model::{CONSTANT_SCATTER_CM, FAR_CM, STRENGTHS};
+use crate::sonar::{MixingWeights, Perturbation, SonarModel};
+use crate::statistics::student;
 
 /// A sensor with a fan of rays.
 #[derive(Clone, Debug)]
 pub struct Beam {
-    rays: [Ray; FAN_DEG.len()],
+    rays: [Ray; RAYS],
     bias: [f32; 3],
     /// Base-two logarithm of the scatter in cm: a constant, per metre, per 45 degrees.
     log2_scatter: [f32; 3],
-    lost: f32,
-    constant: [f32; 2],
+    /// Where an echo arrives, and where none does.
+    thresholds: [Thresholds; 2],
+    constant_cm: f32,
+    range_cm: [f32; 2],
+    reach_bounds_cm: [f32; 2],
+    /// Equally likely draws from Student's distribution.
+    student: [f32; LEVELS],
+}
+
+/// Upper ends of the outcomes on one uniform draw, in this order; above them there is no reading.
+#[derive(Clone, Copy, Debug)]
+struct Thresholds {
     short: f32,
+    stray: f32,
+    constant: f32,
+    hit: f32,
 }
 
 /// A ray of the fan.
@@ -40,18 +59,23 @@ struct Ray {
 
 /// What came back to lanes of sensors.
 pub struct Heard<S: Simd> {
-    /// Of the reading's middle, cm; infinite where nothing came back.
+    /// Middle of the first echo's reading, cm; infinite where nothing came back.
     pub reading_cm: Lanes<S>,
-    /// Its scatter, cm.
+    /// Its scale, cm.
     pub scatter_cm: Lanes<S>,
+    /// Distance along the axis, cm; infinite where there is nothing.
+    pub axis_cm: Lanes<S>,
 }
 
-/// Equally likely draws from Student's law with five degrees of freedom.
-const STUDENT: [f32; LEVELS] = [
-    -2.9674, -2.0657, -1.6677, -1.4059, -1.2075, -1.0453, -0.9065, -0.7836, -0.6722, -0.5693, -0.4728, -0.3812,
-    -0.2931, -0.2076, -0.1239, -0.0412, 0.0412, 0.1239, 0.2076, 0.2931, 0.3812, 0.4728, 0.5693, 0.6722, 0.7836, 0.9065,
-    1.0453, 1.2075, 1.4059, 1.6677, 2.0657, 2.9674,
-];
+/// What decides about the reports of lanes of sensors, beside what they heard.
+pub struct Fate<S: Simd> {
+    /// Chooses the outcome: a uniform draw from [0, 1).
+    pub outcome: Lanes<S>,
+    /// The place within an interval: a uniform draw from [0, 1).
+    pub place: Lanes<S>,
+    /// Scatter about a value, in scales: a draw of [`Beam::scatter`].
+    pub student: Lanes<S>,
+}
 
 impl Beam {
     /// The sensor that a reference describes.
@@ -72,9 +96,11 @@ impl Beam {
             rays: FAN_DEG.map(ray),
             bias: reference.bias.map(|b| b as f32),
             log2_scatter: reference.log_scatter.map(|w| (w * log2_e) as f32),
-            lost: reference.lost as f32,
-            constant: reference.constant.map(|c| c as f32),
-            short: reference.short as f32,
+            thresholds: [true, false].map(|arrives| Thresholds::new(reference, arrives)),
+            constant_cm: reference.constant[1] as f32,
+            range_cm: reference.range_cm.map(|cm| cm as f32),
+            reach_bounds_cm: reference.reach_bounds_cm().map(|cm| cm as f32),
+            student: std::array::from_fn(|level| student::quantile((level as f64 + 0.5) / LEVELS as f64) as f32),
         }
     }
 
@@ -89,11 +115,14 @@ impl Beam {
         draws: &mut Draws<S>,
     ) -> Heard<S> {
         let infinite = axis_deg.constant(f32::INFINITY);
-        let (mut nearest_cm, mut incidence) = (infinite, axis_deg.zero());
-        for ray in &self.rays {
+        let (mut nearest_cm, mut incidence, mut axis_cm) = (infinite, axis_deg.zero(), infinite);
+        for (place, ray) in self.rays.iter().enumerate() {
             let (c, s) = (axis_deg.constant(ray.cos), axis_deg.constant(ray.sin));
             let way = Point { x: axis.x * c - axis.y * s, y: axis.y * c + axis.x * s };
             let met = room.cast(origin, way, axis_deg + axis_deg.constant(ray.offset_deg));
+            if place == AXIS {
+                axis_cm = met.distance_cm;
+            }
             let a = met.alpha_deg * met.alpha_deg.constant(1.0 / 45.0);
             let odds = maths::exp2_within(ray.log2_odds(met.distance_cm, a));
             let draw = draws.uniform();
@@ -107,28 +136,48 @@ impl Beam {
         Heard {
             reading_cm: nearest_cm + affine(self.bias, nearest_cm),
             scatter_cm: maths::exp2(affine(self.log2_scatter, metres)),
+            axis_cm,
         }
     }
 
-    /// What sensors report for what they heard, NaN where they report nothing: `fate` is a uniform draw from [0, 1),
-    /// `levels` are below [`LEVELS`].
+    /// Scatter of sensors in scales, for levels below [`LEVELS`].
     #[inline(always)]
-    pub fn report<S: Simd>(&self, simd: S, heard: &Heard<S>, fate: Lanes<S>, levels: &[usize; WIDEST]) -> Lanes<S> {
-        let (mut shares, mut student) = ([0.0; WIDEST], [0.0; WIDEST]);
-        for lane in 0..Lanes::<S>::WIDTH {
-            shares[lane] = levels[lane] as f32 / LEVELS as f32;
-            student[lane] = STUDENT[levels[lane] % LEVELS];
-        }
-        let (shares, student) = (Lanes::load(simd, &shares), Lanes::load(simd, &student));
-        let [short, lost, constant] = [self.short, self.short + self.lost, self.short + self.lost + self.constant[0]]
-            .map(|chance| fate.constant(chance));
-        let (nothing, constant_cm) = (fate.constant(f32::NAN), fate.constant(self.constant[1]));
-        let middle_cm = heard.reading_cm;
-        let back = middle_cm.less(fate.constant(f32::INFINITY));
-        let usual_cm = fate.less(constant).select(constant_cm, middle_cm + heard.scatter_cm * student);
-        let whole_cm = (back & !fate.less(lost)).select(usual_cm, nothing);
-        let short_cm = back.select(middle_cm * shares, constant_cm);
-        fate.less(short).select(short_cm, whole_cm)
+    pub fn scatter<S: Simd>(&self, simd: S, levels: &[usize; WIDEST]) -> Lanes<S> {
+        Lanes::load(simd, &levels.map(|level| self.student[level % LEVELS]))
+    }
+
+    /// What sensors report for what they heard, NaN where they report nothing; beyond their range too, where a scatter
+    /// leads there.
+    #[inline(always)]
+    pub fn report<S: Simd>(&self, heard: &Heard<S>, fate: &Fate<S>) -> Lanes<S> {
+        let lane = |value| fate.outcome.constant(value);
+        let arrives = heard.reading_cm.less(lane(f32::INFINITY));
+        let below = |threshold: fn(&Thresholds) -> f32| {
+            let [heard, silent] = &self.thresholds;
+            fate.outcome.less(arrives.select(lane(threshold(heard)), lane(threshold(silent))))
+        };
+        let [low, high] = self.range_cm;
+        let within = |high_cm: Lanes<S>| lane(low) + (high_cm - lane(low)) * fate.place;
+        let [least, most] = self.reach_bounds_cm;
+        let short_cm = within(heard.axis_cm.clamp(lane(least), lane(most)));
+        let constant_cm = lane(self.constant_cm) + lane(CONSTANT_SCATTER_CM as f32) * fate.student;
+        let hit_cm = heard.reading_cm.clamp(lane(low), lane(high)) + heard.scatter_cm * fate.student;
+        let echo_cm = below(|t| t.hit).select(hit_cm, lane(f32::NAN));
+        let echo_cm = below(|t| t.constant).select(constant_cm, echo_cm);
+        let echo_cm = below(|t| t.stray).select(within(lane(high)), echo_cm);
+        below(|t| t.short).select(short_cm, echo_cm)
+    }
+}
+
+impl Thresholds {
+    /// Of a sensor without perturbation: there are no ghosts, no long and no stale readings.
+    fn new(reference: &SonarModel, arrives: bool) -> Self {
+        let weights = MixingWeights::new(reference, &Perturbation::NONE, arrives, false);
+        let short = weights.short;
+        let stray = short + weights.stray;
+        let constant = stray + weights.constant;
+        let hit = constant + weights.hit;
+        Thresholds { short: short as f32, stray: stray as f32, constant: constant as f32, hit: hit as f32 }
     }
 }
 
@@ -145,76 +194,4 @@ impl Ray {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::geometry::{Pose, Rectangle};
-    use crate::logs::Scene;
-    use crate::simulator::draws::Seeds;
-    use crate::sonar::{Perturbation, fan_at};
-    use glam::DVec2;
-    use pulp::Scalar as One;
-
-    const REFERENCE: SonarModel = SonarModel {
-        strength: [1.0, 2.0, -2.0, 1.0, -1.0, -0.5, -1.0, -0.5, -1.0, -0.5],
-        bias: [-0.3, 0.01, -0.3],
-        log_scatter: [-0.5, 0.2, 0.8],
-        constant: [0.0, 20.0],
-        constant_for_none: 0.0,
-        short: 0.0,
-        lost: 0.1,
-        fan_width: 0.9,
-        range_cm: [4.0, 240.0],
-    };
-
-    #[test]
-    fn echoes_come_as_often_as_the_reference_says() {
-        let obstacles = vec![Rectangle { low_cm: DVec2::new(110.0, 60.0), high_cm: DVec2::new(140.0, 90.0) }];
-        let scene = Scene { arena_cm: Some(DVec2::new(300.0, 220.0)), obstacles, ..Scene::default() };
-        let (room, beam, simd) = (Room::new(&scene), Beam::new(&REFERENCE), One::new());
-        let mut seeds = Seeds::default();
-        seeds.set(0, 9);
-        let mut draws = Draws::load(simd, &seeds);
-        let lane = |value: f64| Lanes::splat(simd, value as f32);
-        for (x, y, deg) in [(40.0, 70.0, 0.0), (40.0, 70.0, 14.0), (200.0, 100.0, 70.0), (100.0, 100.0, -150.0)] {
-            let heading = f64::to_radians(deg);
-            let (origin, axis) =
-                (Point { x: lane(x), y: lane(y) }, Point { x: lane(libm::cos(heading)), y: lane(libm::sin(heading)) });
-            let (mut echoes, mut nearest_cm) = (0, f32::INFINITY);
-            for _ in 0..4000 {
-                let heard = beam.hear(&room, origin, axis, lane(deg), &mut draws);
-                let echo = number(beam.report(simd, &heard, draws.uniform(), &[LEVELS / 2; WIDEST]));
-                echoes += u32::from(!echo.is_nan());
-                nearest_cm = nearest_cm.min(echo);
-            }
-            let fan = fan_at(&scene.sides(), &Pose::new(x, y, heading), REFERENCE.fan_width);
-            let [none, _] = REFERENCE.log_likelihood(&fan, &Perturbation::NONE, None, None);
-            let (found, expected) = (f64::from(echoes) / 4000.0, 1.0 - libm::exp(none));
-            assert!((found - expected).abs() < 0.03, "at {x} {y} {deg}: {found} {expected}");
-            let nearest_ray_cm = fan.iter().map(|ray| ray.distance_cm).fold(f64::INFINITY, f64::min);
-            assert!(f64::from(nearest_cm) > nearest_ray_cm - 2.0, "at {x} {y} {deg}: {nearest_cm}");
-        }
-    }
-
-    #[test]
-    fn what_is_lost_constant_or_short_comes_with_its_chance() {
-        let beam = Beam::new(&SonarModel { constant: [0.2, 20.0], short: 0.1, ..REFERENCE });
-        let simd = One::new();
-        let report = |reading_cm, scatter_cm, fate, level| {
-            let lane = |value| Lanes::splat(simd, value);
-            let heard = Heard { reading_cm: lane(reading_cm), scatter_cm: lane(scatter_cm) };
-            number(beam.report(simd, &heard, lane(fate), &[level; WIDEST]))
-        };
-        assert_eq!(report(100.0, 0.0, 0.05, LEVELS / 2), 50.0);
-        assert_eq!(report(f32::INFINITY, 0.0, 0.05, 0), 20.0);
-        assert!(report(100.0, 0.0, 0.15, 0).is_nan());
-        assert_eq!(report(100.0, 0.0, 0.3, 0), 20.0);
-        assert_eq!(report(100.0, 2.0, 0.9, LEVELS - 1), 100.0 + 2.0 * STUDENT[LEVELS - 1]);
-        assert!(report(f32::INFINITY, 1.0, 0.9, 3).is_nan());
-    }
-
-    fn number(lane: Lanes<One>) -> f32 {
-        let mut number = [0.0];
-        lane.store(&mut number);
-        number[0]
-    }
-}
+mod tests;

@@ -3,7 +3,8 @@
 
 use crate::logs::{Logs, samples};
 use crate::simulator::baseline::{Baseline, Drive};
-use crate::sonar::{STRENGTHS, SonarModel};
+use crate::sonar::SonarModel;
+use crate::sonar::model::STRENGTHS;
 
 /// The least scatter of forward (cm), lateral (cm) and turn (rad): that of a good tracker. The logs' own is refitted
 /// upwards from here.
@@ -44,9 +45,9 @@ fn sonar(logs: &Logs) -> Option<SonarModel> {
         bias: [0.0; 3],
         log_scatter: [libm::log(scatter_cm.clamp(least, most)), 0.0, 0.0],
         constant: [0.0, mount.min_cm],
-        constant_for_none: 0.0,
-        short: 0.0,
-        lost: 1.0 - echoes / f64::max(all, 1.0),
+        p_constant_given_none: 0.0,
+        p_short: 0.0,
+        p_dropout: 1.0 - echoes / f64::max(all, 1.0),
         fan_width: RAY_WIDTH,
         range_cm: [mount.min_cm, mount.max_cm],
     })

@@ -12,7 +12,7 @@ use crate::effects::{PoseIncrement, StepContext};
 use crate::geometry::Pose;
 use crate::logs::Scene;
 use crate::problem::{Problem, Result};
-use crate::sonar::{Draw, SonarModel};
+use crate::sonar::SonarModel;
 
 /// Applied effects in a room.
 pub(super) struct Wrapped<'s> {
@@ -93,9 +93,8 @@ impl<'s> Wrapped<'s> {
         let state = self.effects.sensor(&context);
         let fan = self.surroundings.fan(&state.robot, state.yaw_rad, sonar.fan_width * state.width);
         let mut rng = generator(u64::from(draw.to_bits()), &[past.steps as u64]);
-        let previous_cm = past.history.echo_before_cm();
-        let draws = Draw { change: &state.perturbation, previous_cm, scatters: self.noise == Noise::Learned };
-        let echo_cm = sonar.draw(&fan, &draws, || rng.random::<f64>());
+        let outcomes = sonar.outcomes(&fan, &state.perturbation, past.history.echo_before_cm());
+        let echo_cm = outcomes.draw(self.noise == Noise::Learned, || rng.random());
         past.history.sensed(&context, echo_cm);
         echo_cm.map(|cm| cm as f32)
     }

@@ -10,18 +10,18 @@ pub const EFFECT: Effect = Effect {
         Variant {
             id: "everywhere",
             parameters: Absorption::PARAMETERS,
-            hooks: &[Hook::Sensor(&|v, _, s| s.perturbation.damping += Absorption::read(v).log_odds_loss)],
+            hooks: &[Hook::Sensor(&|v, _, s| s.perturbation.attenuation += Absorption::read(v).log_odds_loss)],
         },
         Variant {
             id: "with_distance",
             parameters: Absorption::PARAMETERS,
-            hooks: &[Hook::Sensor(&|v, _, s| s.perturbation.damping_per_m += Absorption::read(v).log_odds_loss)],
+            hooks: &[Hook::Sensor(&|v, _, s| s.perturbation.attenuation_per_m += Absorption::read(v).log_odds_loss)],
         },
         Variant {
             id: "with_incidence",
             parameters: Absorption::PARAMETERS,
             hooks: &[Hook::Sensor(&|v, _, s| {
-                s.perturbation.damping_per_incidence += Absorption::read(v).log_odds_loss
+                s.perturbation.attenuation_per_incidence += Absorption::read(v).log_odds_loss
             })],
         },
     ],

@@ -18,7 +18,7 @@ pub const EFFECT: Effect = Effect {
             hooks: &[Hook::Sensor(&|v, _, sensor| {
                 let WidthAndStrength { factor, log_odds_loss } = WidthAndStrength::read(v);
                 sensor.width *= factor;
-                sensor.perturbation.damping += log_odds_loss;
+                sensor.perturbation.attenuation += log_odds_loss;
             })],
         },
         Variant {

@@ -11,7 +11,7 @@ pub const EFFECT: Effect = Effect {
         parameters: Crosstalk::PARAMETERS,
         hooks: &[Hook::Sensor(&|v, _, sensor| {
             let Crosstalk { probability } = Crosstalk::read(v);
-            sensor.perturbation.short = 1.0 - (1.0 - sensor.perturbation.short) * (1.0 - probability);
+            sensor.perturbation.p_short = 1.0 - (1.0 - sensor.perturbation.p_short) * (1.0 - probability);
         })],
     }],
 };

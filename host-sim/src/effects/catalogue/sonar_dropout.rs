@@ -12,7 +12,7 @@ pub const EFFECT: Effect = Effect {
         hooks: &[Hook::Sensor(&|v, context, sensor| {
             let Dropout { goes_on, probability } = Dropout::read(v);
             let lost = if context.echo_before == Some(false) { goes_on } else { probability };
-            sensor.perturbation.lost = 1.0 - (1.0 - sensor.perturbation.lost) * (1.0 - lost);
+            sensor.perturbation.p_dropout = 1.0 - (1.0 - sensor.perturbation.p_dropout) * (1.0 - lost);
         })],
     }],
 };

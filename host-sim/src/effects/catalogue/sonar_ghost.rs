@@ -12,7 +12,7 @@ pub const EFFECT: Effect = Effect {
             parameters: Ghost::PARAMETERS,
             hooks: &[Hook::Sensor(&|v, _, sensor| {
                 let Ghost { probability, cm } = Ghost::read(v);
-                sensor.perturbation.ghost_for_echo = probability;
+                sensor.perturbation.p_ghost_given_echo = probability;
                 sensor.perturbation.ghost_cm = cm;
             })],
         },
@@ -21,8 +21,8 @@ pub const EFFECT: Effect = Effect {
             parameters: Ghost::PARAMETERS,
             hooks: &[Hook::Sensor(&|v, _, sensor| {
                 let Ghost { probability, cm } = Ghost::read(v);
-                sensor.perturbation.ghost_for_echo = probability;
-                sensor.perturbation.ghost_for_none = probability;
+                sensor.perturbation.p_ghost_given_echo = probability;
+                sensor.perturbation.p_ghost_given_none = probability;
                 sensor.perturbation.ghost_cm = cm;
             })],
         },

@@ -26,7 +26,7 @@ pub const EFFECT: Effect = Effect {
                 // Where the same is faced as before, readings repeat anyway.
                 let (Some([now_cm, _]), Some([before_cm, _])) = (context.faced, context.faced_before) else { return };
                 if (now_cm - before_cm).abs() > OTHER_CM {
-                    sensor.perturbation.stale = Stale::read(v).steps;
+                    sensor.perturbation.p_stale = Stale::read(v).steps;
                 }
             })],
         },

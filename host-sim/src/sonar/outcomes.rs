@@ -1,0 +1,190 @@
+//! The mixture over everything that the sensor may report.
+
+use super::fan::{AXIS, Fan, RAYS};
+use super::first_echo::first_echoes;
+use super::model::{CONSTANT_SCATTER_CM, P_RAND, SonarModel};
+use super::perturbation::Perturbation;
+
+/// Probabilities of all outcomes of a reading. They add up to one.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Outcomes {
+    /// Probability of no reading.
+    pub none: f64,
+    /// The components that give a reading: the hits, nearest first, then the others.
+    pub components: [Component; RAYS + OTHERS],
+    /// Readings beyond it are reported as its ends, cm.
+    pub(super) range_cm: [f64; 2],
+}
+
+/// Number of components beside the hits.
+const OTHERS: usize = 6;
+
+/// One component of the mixture.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Component {
+    /// Where its readings come from.
+    pub source: Source,
+    /// Its probability.
+    pub probability: f64,
+    /// How its readings are distributed.
+    pub distribution: Distribution,
+}
+
+/// Where a reading comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Source {
+    /// The first echo.
+    Hit,
+    /// The ghost of a perturbation.
+    Ghost,
+    /// The constant reading of the sensor.
+    Constant,
+    /// From before what the axis meets.
+    Short,
+    /// From beyond what the axis meets.
+    Long,
+    /// The reading before.
+    Stale,
+    /// From anywhere.
+    Stray,
+}
+
+/// The distribution of a component's readings, before they are limited to the sensor's range.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Distribution {
+    /// Student's t with five degrees of freedom.
+    Student {
+        /// Its middle.
+        middle_cm: f64,
+        /// Its scale.
+        scale_cm: f64,
+    },
+    /// Uniform on an interval.
+    Uniform {
+        /// Where it begins.
+        low_cm: f64,
+        /// Where it ends.
+        high_cm: f64,
+    },
+}
+
+/// The weights of the mixture where an echo arrives at the sensor, or where none does: the hit's is that of whichever
+/// echo arrives first. They add up to one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MixingWeights {
+    /// Of the first echo.
+    pub hit: f64,
+    /// Of the ghost.
+    pub ghost: f64,
+    /// Of the constant reading.
+    pub constant: f64,
+    /// Of a short reading.
+    pub short: f64,
+    /// Of a long reading.
+    pub long: f64,
+    /// Of the reading before.
+    pub stale: f64,
+    /// Of a reading from anywhere.
+    pub stray: f64,
+    /// Of no reading.
+    pub none: f64,
+}
+
+impl MixingWeights {
+    /// The weights of a sensor where an echo `arrives`, or none; `has_previous` is whether there is a reading that could
+    /// come again.
+    pub fn new(model: &SonarModel, perturbation: &Perturbation, arrives: bool, has_previous: bool) -> Self {
+        let Perturbation { p_ghost_given_echo, p_ghost_given_none, p_long, .. } = *perturbation;
+        let detected = if arrives { neither(model.p_dropout, perturbation.p_dropout) } else { 0.0 };
+        let missed = 1.0 - detected;
+        let no_ghost = [detected * (1.0 - p_ghost_given_echo), missed * (1.0 - p_ghost_given_none)];
+        let ghost = detected * p_ghost_given_echo + missed * p_ghost_given_none;
+        let constant = no_ghost[0] * model.constant[0] + no_ghost[1] * model.p_constant_given_none;
+        let hit = no_ghost[0] * (1.0 - model.constant[0]);
+        let none = no_ghost[1] * (1.0 - model.p_constant_given_none);
+
+        let not_short = neither(model.p_short, perturbation.p_short);
+        let none = not_short * none;
+        let reading = 1.0 - none;
+        let p_stale = if has_previous { perturbation.p_stale } else { 0.0 };
+        let fresh = neither(p_long, p_stale);
+        let known = 1.0 - P_RAND;
+        MixingWeights {
+            hit: known * fresh * not_short * hit,
+            ghost: known * fresh * not_short * ghost,
+            constant: known * fresh * not_short * constant,
+            short: known * fresh * (1.0 - not_short),
+            long: known * reading * p_long * (1.0 - p_stale),
+            stale: known * reading * p_stale,
+            stray: 0.5 * P_RAND,
+            none: known * none + 0.5 * P_RAND,
+        }
+    }
+}
+
+impl Outcomes {
+    /// The outcomes of a reading of `fan`; `previous_cm` is the reading before, if there was one.
+    pub fn new(model: &SonarModel, fan: &Fan, perturbation: &Perturbation, previous_cm: Option<f64>) -> Self {
+        let echoes = first_echoes(model, fan, perturbation);
+        let arrives: f64 = echoes.iter().map(|echo| echo.probability).sum();
+        let [heard, silent] =
+            [true, false].map(|arrives| MixingWeights::new(model, perturbation, arrives, previous_cm.is_some()));
+        let total = |weight: fn(&MixingWeights) -> f64| arrives * weight(&heard) + (1.0 - arrives) * weight(&silent);
+
+        let [low, high] = model.range_cm;
+        let [least, most] = model.reach_bounds_cm();
+        let reach = fan[AXIS].distance_cm.clamp(least, most);
+        let about = |middle_cm| Distribution::Student { middle_cm, scale_cm: CONSTANT_SCATTER_CM };
+        let between = |low_cm, high_cm| Distribution::Uniform { low_cm, high_cm };
+        let others = [
+            (Source::Ghost, total(|w| w.ghost), about(perturbation.ghost_cm)),
+            (Source::Constant, total(|w| w.constant), about(model.constant[1])),
+            (Source::Short, total(|w| w.short), between(low, reach)),
+            (Source::Long, total(|w| w.long), between(reach, high)),
+            (Source::Stale, total(|w| w.stale), about(previous_cm.unwrap_or(low))),
+            (Source::Stray, total(|w| w.stray), between(low, high)),
+        ];
+        let components = std::array::from_fn(|i| match echoes.get(i) {
+            Some(echo) => Component {
+                source: Source::Hit,
+                probability: echo.probability * heard.hit,
+                distribution: Distribution::Student { middle_cm: echo.middle_cm, scale_cm: echo.scale_cm },
+            },
+            None => {
+                let (source, probability, distribution) = others[i - RAYS];
+                Component { source, probability, distribution }
+            }
+        });
+        Outcomes { none: total(|w| w.none), components, range_cm: model.range_cm }
+    }
+
+    /// The mean reading of the hits, cm; none where no echo can come back.
+    pub fn mean_hit_cm(&self) -> Option<f64> {
+        let hits = self.components.iter().filter(|c| c.source == Source::Hit && c.probability > 0.0);
+        let (sum, probability) = hits.fold((0.0, 0.0), |(sum, probability), hit| {
+            (sum + hit.probability * hit.distribution.mean_cm(), probability + hit.probability)
+        });
+        (probability > 0.0).then(|| sum / probability)
+    }
+}
+
+impl Distribution {
+    fn mean_cm(&self) -> f64 {
+        match *self {
+            Distribution::Student { middle_cm, .. } => middle_cm,
+            Distribution::Uniform { low_cm, high_cm } => 0.5 * (low_cm + high_cm),
+        }
+    }
+}
+
+impl SonarModel {
+    /// The outcomes of a reading; see [`Outcomes::new`].
+    pub fn outcomes(&self, fan: &Fan, perturbation: &Perturbation, previous_cm: Option<f64>) -> Outcomes {
+        Outcomes::new(self, fan, perturbation, previous_cm)
+    }
+}
+
+/// The probability of neither of two independent events.
+fn neither(p: f64, q: f64) -> f64 {
+    (1.0 - p) * (1.0 - q)
+}

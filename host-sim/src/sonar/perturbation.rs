@@ -1,0 +1,51 @@
+//! How a sensor differs from its model.
+
+/// Changes to a sensor; [`Perturbation::NONE`] changes nothing.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Perturbation {
+    /// Subtracted from every ray's log-odds.
+    pub attenuation: f64,
+    /// Subtracted from a ray's log-odds per metre of its distance.
+    pub attenuation_per_m: f64,
+    /// Subtracted from a ray's log-odds per 45 degrees of its incidence.
+    pub attenuation_per_incidence: f64,
+    /// Factor on the readings of echoes.
+    pub gain: f64,
+    /// Added to the readings of echoes after the factor, cm.
+    pub offset_cm: f64,
+    /// Further scatter of the readings of echoes, cm, independent of the model's.
+    pub scatter_cm: f64,
+    /// Probability that an echo is dropped.
+    pub p_dropout: f64,
+    /// Probability of the ghost in place of an echo.
+    pub p_ghost_given_echo: f64,
+    /// Probability of the ghost in place of none.
+    pub p_ghost_given_none: f64,
+    /// The ghost's reading, cm.
+    pub ghost_cm: f64,
+    /// Probability of a random short reading.
+    pub p_short: f64,
+    /// Probability of a random reading from beyond what the axis meets, in place of a reading.
+    pub p_long: f64,
+    /// Probability of the reading before, in place of a reading.
+    pub p_stale: f64,
+}
+
+impl Perturbation {
+    /// The sensor as its model has it.
+    pub const NONE: Perturbation = Perturbation {
+        attenuation: 0.0,
+        attenuation_per_m: 0.0,
+        attenuation_per_incidence: 0.0,
+        gain: 1.0,
+        offset_cm: 0.0,
+        scatter_cm: 0.0,
+        p_dropout: 0.0,
+        p_ghost_given_echo: 0.0,
+        p_ghost_given_none: 0.0,
+        ghost_cm: 20.0,
+        p_short: 0.0,
+        p_long: 0.0,
+        p_stale: 0.0,
+    };
+}
