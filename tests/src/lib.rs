@@ -1,12 +1,12 @@
-//! What the tests share: the built command, the folders of logs that a public clone does not have, golden files, bricks
+//! What the tests share: the built command, golden files, which modules know which, bricks
 //! on board the built-in robot, error bounds of fixed point, and the compiler for NXT programs.
 
 pub mod command;
 pub mod controllers;
-pub mod elsewhere;
 pub mod firmware_networks;
 pub mod fixed_point_error;
 pub mod golden;
+pub mod modules;
 pub mod nbc;
 pub mod on_board;
 pub mod plausible_networks;

@@ -1,33 +1,24 @@
 //! Effects added to a simulator: it explains the logs, and runs like any other.
 
-use std::sync::LazyLock;
+use std::ops::Range;
 
+use glam::DVec2;
 use mindgap_core::controller::{Controller, Tuple, When};
-use mindgap_host_sim::built_in_robot::{
-    BuiltInRobot, default_robot, four_obstacles, record, run_controller, training_room,
-};
+use mindgap_host_sim::built_in_robot::{BuiltInRobot, default_robot, four_obstacles, run_controller};
 use mindgap_host_sim::chance::generator;
 use mindgap_host_sim::gap::baseline::Baseline;
 use mindgap_host_sim::gap::endings::endings;
 use mindgap_host_sim::gap::verdict::Verdict;
 use mindgap_host_sim::gap::{diagnose, effects, findings};
+use mindgap_host_sim::geometry::direction;
 use mindgap_host_sim::learn::evaluate::evaluate;
-use mindgap_host_sim::learn::train::{TABLE_ONE, Trainer, train};
 use mindgap_host_sim::logs::{Logs, Row, Run};
 use mindgap_host_sim::simulator::added::Added;
 use mindgap_host_sim::simulator::course::Course;
-use mindgap_host_sim::simulator::rehearsal::Rehearsal;
+use mindgap_host_sim::simulator::rehearsal::{PathPoint, Rehearsal};
 use mindgap_host_sim::simulator::{Noise, Simulator};
 
-/// A simulator of the built-in robot as it is.
-static SIMULATOR: LazyLock<Simulator> = LazyLock::new(|| {
-    train(&logs(60, &[], 1), &Trainer::Fast, &TABLE_ONE, 1, |_| {}).expect("the logs train every network")
-});
-
-fn logs(runs: usize, effects: &[&str], seed: u64) -> Logs {
-    let effects: Vec<_> = effects.iter().map(|e| e.parse().expect("an effect")).collect();
-    record(&default_robot(), &training_room(), runs, 60, &effects, seed).expect("the room has room")
-}
+use crate::{SIMULATOR, logs};
 
 fn with(added: Vec<Added>) -> Simulator {
     Simulator { added, ..SIMULATOR.clone() }
@@ -39,13 +30,40 @@ fn neutral(id: &str) -> Added {
     Added::new(form, &form.neutral())
 }
 
-fn rehearsed(simulator: &Simulator) -> Rehearsal {
-    let turn = |left, right, threshold_cm| Tuple { left, right, when: When::Smaller, threshold_cm };
-    let tuples = [(60, 55, 40), (40, -40, 20), (50, 60, 35), (-30, -30, 15), (60, 60, 30), (20, 50, 25)];
-    let controller = Controller { step_ms: 400, max_steps: 60, tuples: tuples.map(|(l, r, t)| turn(l, r, t)) };
+/// Forty runs round a small circle, which no reading ends.
+fn circling(simulator: &Simulator) -> Rehearsal {
+    let tuple = Tuple { left: 60, right: 20, when: When::Smaller, threshold_cm: 0 };
+    let controller = Controller { step_ms: 400, max_steps: 20, tuples: [tuple; 6] };
     let scene = four_obstacles();
-    let course = Course::new(simulator, &scene, scene.starts[0], Noise::Learned).expect("the robot fits");
+    let course = Course::new(simulator, &scene, scene.starts[2], Noise::Learned).expect("the robot fits");
     Rehearsal::new(&course, &scene, &controller, 40, 5)
+}
+
+/// What two rehearsals come to at the same steps of the same runs.
+fn side_by_side<'r>(one: &'r Rehearsal, other: &'r Rehearsal) -> impl Iterator<Item = (&'r PathPoint, &'r PathPoint)> {
+    one.runs.iter().zip(&other.runs).flat_map(|(one, other)| {
+        assert_eq!(one.path.len(), other.path.len());
+        one.path.iter().zip(&other.path)
+    })
+}
+
+fn distance_cm(one: &PathPoint, other: &PathPoint) -> f64 {
+    DVec2::new(one.x_cm, one.y_cm).distance(DVec2::new(other.x_cm, other.y_cm))
+}
+
+/// Median of the second readings minus the first, where there are both.
+fn reads_farther_cm(one: &Rehearsal, other: &Rehearsal) -> f64 {
+    let readings = side_by_side(one, other).filter_map(|(one, other)| Some(other.echo_cm? - one.echo_cm?));
+    let mut differences: Vec<f32> = readings.collect();
+    assert!(differences.len() > 100, "{} readings", differences.len());
+    differences.sort_by(f32::total_cmp);
+    f64::from(differences[differences.len() / 2])
+}
+
+/// Mean way of a step, of steps from and to.
+fn way_cm(rehearsal: &Rehearsal, steps: Range<usize>) -> f64 {
+    let ways = rehearsal.runs.iter().flat_map(|run| run.path.windows(2).skip(steps.start).take(steps.len()));
+    ways.map(|pair| distance_cm(&pair[0], &pair[1])).sum::<f64>() / (rehearsal.runs.len() * steps.len()) as f64
 }
 
 #[test]
@@ -66,19 +84,49 @@ fn a_simulator_with_the_effects_found_has_no_gap_on_fresh_logs() {
 }
 
 #[test]
-fn an_effect_that_changes_nothing_changes_no_motion() {
-    let ends = |simulator: &Simulator| rehearsed(simulator).runs;
-    assert_eq!(ends(&with(vec![neutral("drive_scale")])), ends(&SIMULATOR));
+fn an_effect_that_changes_nothing_changes_no_motion_and_no_reading() {
+    let before = circling(&SIMULATOR);
+    for form in effects::all() {
+        let name = format!("{}: {}", form.id, form.name);
+        let after = circling(&with(vec![Added::new(form, &form.neutral())]));
+        let farthest_cm = side_by_side(&before, &after).map(|(a, b)| distance_cm(a, b)).fold(0.0, f64::max);
+        assert!(farthest_cm < 1e-6, "{name}: {farthest_cm} cm");
+        let farther_cm = reads_farther_cm(&before, &after);
+        assert!(farther_cm.abs() < 0.5, "{name}: reads {farther_cm} cm farther");
+    }
 }
 
 #[test]
-fn an_effect_changes_runs_and_the_same_seed_repeats_them() {
-    for (id, values) in [("slope", vec![1.0, 0.2]), ("sonar_offset", vec![15.0]), ("battery_sag", vec![0.6])] {
+fn an_effect_changes_runs_as_it_says_and_the_same_seed_repeats_them() {
+    let before = circling(&SIMULATOR);
+    let after = |id: &str, values: &[f64]| {
         let form = effects::all().into_iter().find(|form| form.id == id).expect("the effect is in the bank");
-        let changed = with(vec![Added::new(form, &values)]);
-        assert_ne!(rehearsed(&changed), rehearsed(&SIMULATOR), "{id}");
-        assert_eq!(rehearsed(&changed), rehearsed(&changed), "{id}");
-    }
+        let changed = with(vec![Added::new(form, values)]);
+        let after = circling(&changed);
+        assert_eq!(after, circling(&changed), "{id}");
+        after
+    };
+    let down_rad: f64 = 1.0;
+    let slope = after("slope", &[down_rad, 0.2]);
+    let drift_cm: DVec2 = before
+        .runs
+        .iter()
+        .zip(&slope.runs)
+        .map(|(flat, sloping)| DVec2::new(sloping.end_x_cm - flat.end_x_cm, sloping.end_y_cm - flat.end_y_cm))
+        .sum::<DVec2>()
+        / before.runs.len() as f64;
+    assert!(drift_cm.length() > 1.0 && drift_cm.normalize().dot(direction(down_rad)) > 0.95, "{drift_cm}");
+
+    let offset = after("sonar_offset", &[15.0]);
+    assert!(side_by_side(&before, &offset).all(|(a, b)| distance_cm(a, b) == 0.0), "the sensor moves nothing");
+    let farther_cm = reads_farther_cm(&before, &offset);
+    assert!((farther_cm - 15.0).abs() < 0.5, "{farther_cm}");
+
+    // A step is 400 ms: at its middle the second has lost 0.6 % and the nineteenth 7.4 %.
+    let sag = after("battery_sag", &[0.6]);
+    let left = |steps: Range<usize>| way_cm(&sag, steps.clone()) / way_cm(&before, steps);
+    let (early, late) = (left(1..2), left(18..19));
+    assert!((0.98..1.0).contains(&early) && (0.90..0.95).contains(&late), "{early} {late}");
 }
 
 #[test]

@@ -7,7 +7,6 @@ use std::path::Path;
 use mindgap_host_sim::geometry::Pose;
 use mindgap_host_sim::logs::{Logs, Robot, Row, Run, Scene, Ultrasonic};
 use mindgap_tests::command::Workshop;
-use mindgap_tests::elsewhere::logs_from_elsewhere;
 use serde::Deserialize;
 use serde_json::Value;
 
@@ -98,12 +97,9 @@ fn diagnosed(workshop: &Workshop, logs: &str) -> Value {
     workshop.json("diagnosis.json")
 }
 
-#[test]
-fn the_ends_of_a_neatos_runs_show_its_gap_to_the_textbook() {
-    let test = "the_ends_of_a_neatos_runs_show_its_gap_to_the_textbook";
-    let Some(folder) = logs_from_elsewhere(test, "real/neato") else { return };
+pub fn the_ends_of_a_neatos_runs_show_its_gap_to_the_textbook(folder: &Path) {
     let workshop = Workshop::new();
-    neato(&folder).write(&workshop.path().join("logs")).expect("a folder that can be written");
+    neato(folder).write(&workshop.path().join("logs")).expect("a folder that can be written");
     let diagnosis = diagnosed(&workshop, "logs");
     assert_ne!(diagnosis["verdict"], "no_gap", "its owner measured one");
     assert!(diagnosis["notes"].to_string().contains("whole ways between poses"), "{diagnosis}");
@@ -112,12 +108,8 @@ fn the_ends_of_a_neatos_runs_show_its_gap_to_the_textbook() {
     assert!(before > 1.0 && after < before, "{diagnosis}");
 }
 
-#[test]
-fn a_real_sonar_that_stands_still_is_compared_with_the_textbook() {
-    let test = "a_real_sonar_that_stands_still_is_compared_with_the_textbook";
-    let Some(folder) = logs_from_elsewhere(test, "real/nxt-sonar") else { return };
-    let folder = folder.canonicalize().expect("the folder is there");
-    let teams = fs::read_dir(&folder).expect("a folder").map(|entry| entry.expect("an entry").path());
+pub fn a_real_sonar_that_stands_still_is_compared_with_the_textbook(folder: &Path) {
+    let teams = fs::read_dir(folder).expect("a folder").map(|entry| entry.expect("an entry").path());
     for team in teams.filter(|path| path.is_dir()) {
         let diagnosis = diagnosed(&Workshop::new(), &team.display().to_string());
         let notes = diagnosis["notes"].to_string();
