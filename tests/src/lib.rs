@@ -1,5 +1,5 @@
-//! What the tests share: the built command, golden files, which modules know which, bricks
-//! on board the built-in robot, error bounds of fixed point, and the compiler for NXT programs.
+//! What the tests share: the built command, golden files, bricks on board the built-in robot, error bounds of fixed
+//! point, the compiler for NXT programs, and which modules of a crate know which.
 
 pub mod command;
 pub mod controllers;

@@ -1,6 +1,7 @@
 //! The diagnosis on logs of the built-in robot, from the logs alone.
 
 use mindgap_host_sim::gap::baseline::Baseline;
+use mindgap_host_sim::gap::channel::Channel;
 use mindgap_host_sim::gap::verdict::Verdict;
 use mindgap_host_sim::gap::{Diagnosis, diagnose, kinematic};
 use mindgap_host_sim::logs::Logs;
@@ -96,7 +97,13 @@ fn the_textbook_serves_where_there_is_no_simulator() {
     let logs = logs(16, &[], 78);
     let diagnosis = diagnose(kinematic::baseline(&logs), &logs).expect("there is something to compare");
     assert_ne!(diagnosis.verdict, Verdict::NoGap, "a real robot differs from the textbook");
-    println!("{}", serde_json::to_string(&diagnosis).unwrap());
+    // Its motors have no memory: it is off most where a command is new.
+    let worst = diagnosis.r#where.iter().max_by(|a, b| a.gap.total_cmp(&b.gap)).expect("a place");
+    assert!(matches!(worst.channel, Channel::Forward | Channel::Turn), "{worst:?}");
+    assert!(worst.context.contains("new command"), "{worst:?}");
+    let shrink = diagnosis.shrink.expect("a gap that shrinks");
+    assert!(shrink.reducible_closed > 0.4, "{shrink:?}");
+    assert!(shrink.paths.iter().all(|path| path.after_cm < 0.7 * path.before_cm), "{:?}", shrink.paths);
 }
 
 #[test]
