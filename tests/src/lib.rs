@@ -6,6 +6,7 @@ pub mod controllers;
 pub mod firmware_networks;
 pub mod fixed_point_error;
 pub mod golden;
+pub mod module_order;
 pub mod modules;
 pub mod nbc;
 pub mod on_board;

@@ -122,12 +122,6 @@ impl Modules {
     }
 }
 
-/// The edges to a child that does not come before the importing one in the order.
-pub fn out_of_order(edges: &[Edge], order: &[String]) -> Vec<Edge> {
-    let place = |name: &str| order.iter().position(|listed| listed == name);
-    edges.iter().filter(|edge| place(&edge.to) >= place(&edge.from)).cloned().collect()
-}
-
 /// The edges from whose end a way leads back to their beginning.
 pub fn in_circles(edges: &[Edge]) -> Vec<Edge> {
     edges.iter().filter(|edge| leads(edges, &edge.to, &edge.from)).cloned().collect()
@@ -296,10 +290,6 @@ mod tests {
         modules(sources).edges(&path(parent)).iter().map(|edge| format!("{}>{}", edge.from, edge.to)).collect()
     }
 
-    fn order(text: &str) -> Vec<String> {
-        text.split(' ').map(str::to_owned).collect()
-    }
-
     #[test]
     fn every_way_to_name_a_module_counts() {
         for source in [
@@ -332,18 +322,6 @@ mod tests {
         let test_in_its_file =
             [("top", "#[cfg(test)]\nmod tests;"), ("top::tests", "use crate::low::Thing;"), ("low", "")];
         assert_eq!(edges("", &test_in_its_file), [""; 0]);
-    }
-
-    #[test]
-    fn an_upward_import_is_found() {
-        let sources =
-            [("low", "use crate::high::Thing;"), ("middle", "use crate::low::X;"), ("high", "use crate::low::X;")];
-        let edges = modules(&sources).edges(&[]);
-        let found = out_of_order(&edges, &order("low middle high"));
-        assert_eq!(found.len(), 1, "{found:?}");
-        assert_eq!(found[0].witness, "low -> high");
-        let downward: Vec<Edge> = edges.into_iter().filter(|edge| edge.to == "low").collect();
-        assert_eq!(out_of_order(&downward, &order("low middle high")), []);
     }
 
     #[test]
