@@ -46,5 +46,5 @@ part firmware tests/firmware/run.sh
 say "time"
 printf '%s\n' "${times[@]}"
 say "skipped tests"
-sed -n 's/^test \(.*\) \.\.\. ignored.*/\1/p' "$log" | grep . || echo none
+sed -n 's/^test \(.*[^ ]\) *\.\.\. ignored.*/\1/p' "$log" | grep . || echo none
 say "all checks passed"
