@@ -90,7 +90,7 @@ impl Modules {
 
     /// The module that defines what `named` means in the module `path`; none for other crates.
     fn definer(&self, path: &[String], named: &[String]) -> Option<ModulePath> {
-        let mut named = self.from_root(path, named)?;
+        let mut named = self.absolute(path, named)?;
         // Each round follows one re-export; a circle of them does not compile.
         loop {
             let depth = (0..=named.len()).rev().find(|depth| self.0.contains_key(&named[..*depth]))?;
@@ -100,7 +100,7 @@ impl Modules {
                 imports.iter().find(|(_, known_as)| known_as == name).map(|(path, _)| path)
             });
             // What comes from another crate is no module's own, but the module that imports it passes it on.
-            match imported.and_then(|path| self.from_root(module, path)) {
+            match imported.and_then(|path| self.absolute(module, path)) {
                 Some(path) if path != named => named = path.into_iter().chain(rest[1..].iter().cloned()).collect(),
                 _ => return Some(module.to_vec()),
             }
@@ -108,7 +108,7 @@ impl Modules {
     }
 
     /// A path as written in the module `path`, from the crate's root.
-    fn from_root(&self, path: &[String], named: &[String]) -> Option<ModulePath> {
+    fn absolute(&self, path: &[String], named: &[String]) -> Option<ModulePath> {
         let supers = named.iter().take_while(|name| *name == "super").count();
         let (base, rest) = match named.first()?.as_str() {
             "crate" => (&path[..0], &named[1..]),
