@@ -6,7 +6,20 @@ cd "$(dirname "$0")/.."
 exec </dev/null
 . tests/install.sh
 
+log=$(mktemp)
+trap 'rm -f "$log"' EXIT
+times=()
+
 say() { printf '\n== %s\n' "$*"; }
+
+# part NAME COMMAND...: runs a part of the checks and takes its time.
+part() {
+    local name=$1 began=$SECONDS
+    shift
+    say "$name"
+    "$@"
+    times+=("$(printf '%-13s %5d s' "$name" $((SECONDS - began)))")
+}
 
 # need_component CARGO-COMMAND COMPONENT: the same for parts of the Rust toolchain.
 need_component() {
@@ -21,15 +34,17 @@ need nbc nbc
 need_component fmt rustfmt
 need_component clippy clippy
 
-say "format"
-cargo fmt --all --check
-# One profile for everything, so that nothing is compiled twice.
-say "lints"
-cargo clippy --release --workspace --all-targets -- -D warnings
-say "documentation"
-RUSTDOCFLAGS="-D warnings" cargo doc --release --no-deps --workspace
-say "tests"
-cargo test --release --workspace
+# Nothing is compiled twice: lints and documentation check types alone, and all tests share one build.
+part format cargo fmt --all --check
+part lints cargo clippy --workspace --all-targets -- -D warnings
+part documentation env RUSTDOCFLAGS="-D warnings" cargo doc --no-deps --workspace
+part compilation cargo test --workspace --no-run
+run_tests() { cargo test --workspace 2>&1 | tee "$log"; }
+part tests run_tests
+part firmware tests/firmware/run.sh
 
-say "firmware"
-tests/firmware/run.sh
+say "time"
+printf '%s\n' "${times[@]}"
+say "skipped tests"
+sed -n 's/^test \(.*[^ ]\) *\.\.\. ignored.*/\1/p' "$log" | grep . || echo none
+say "all checks passed"

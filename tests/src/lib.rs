@@ -1,12 +1,13 @@
-//! What the tests share: the built command, the folders of logs that a public clone does not have, golden files, bricks
-//! on board the built-in robot, error bounds of fixed point, and the compiler for NXT programs.
+//! What the tests share: the built command, golden files, bricks on board the built-in robot, error bounds of fixed
+//! point, the compiler for NXT programs, and which modules of a crate know which.
 
 pub mod command;
 pub mod controllers;
-pub mod elsewhere;
 pub mod firmware_networks;
 pub mod fixed_point_error;
 pub mod golden;
+pub mod module_order;
+pub mod modules;
 pub mod nbc;
 pub mod on_board;
 pub mod plausible_networks;

@@ -4,7 +4,6 @@ use std::path::Path;
 
 use mindgap_host_sim::logs::{Logs, Scene, samples};
 use mindgap_tests::command::Workshop;
-use mindgap_tests::elsewhere::logs_from_elsewhere;
 
 /// Rows of each nominal run.
 const ROWS: usize = 60;
@@ -13,12 +12,9 @@ fn read(folder: &Path) -> Logs {
     Logs::read(folder, |warning| panic!("{warning}")).unwrap_or_else(|problem| panic!("{problem}"))
 }
 
-#[test]
-fn nominal_logs_are_read_without_a_warning() {
-    let test = "nominal_logs_are_read_without_a_warning";
-    for (folder, runs) in [("data/nominal", 100), ("data/nominal-holdout", 30)] {
-        let Some(folder) = logs_from_elsewhere(test, folder) else { return };
-        let logs = read(&folder);
+pub fn nominal_logs_are_read_without_a_warning(data: &Path) {
+    for (folder, runs) in [("nominal", 100), ("nominal-holdout", 30)] {
+        let logs = read(&data.join(folder));
         assert_eq!(logs.runs.len(), runs);
         assert!(logs.runs.iter().all(|run| run.rows.len() == ROWS));
         let lost = |run: &mindgap_host_sim::logs::Run| run.rows.iter().filter(|row| row.pose.is_none()).count();
@@ -30,11 +26,7 @@ fn nominal_logs_are_read_without_a_warning() {
     }
 }
 
-#[test]
-fn a_real_sonar_that_stands_still_trains_the_two_sonar_networks() {
-    let test = "a_real_sonar_that_stands_still_trains_the_two_sonar_networks";
-    let Some(logs) = logs_from_elsewhere(test, "real/nxt-sonar/kentheo") else { return };
-    let logs = logs.canonicalize().expect("the folder is there");
+pub fn a_real_sonar_that_stands_still_trains_the_two_sonar_networks(logs: &Path) {
     let (workshop, logs) = (Workshop::new(), logs.display());
     let done = workshop.call(&format!("train {logs} --out sim.json"));
     assert_eq!(done.code, 0, "{}", done.err);
@@ -48,11 +40,8 @@ fn a_real_sonar_that_stands_still_trains_the_two_sonar_networks() {
     assert_eq!(judged, ["echo_probability", "echo_value"]);
 }
 
-#[test]
-fn the_scene_with_four_obstacles_is_read() {
-    let test = "the_scene_with_four_obstacles_is_read";
-    let Some(path) = logs_from_elsewhere(test, "data/scenes/four-obstacles.toml") else { return };
-    let scene = Scene::read(&path).unwrap_or_else(|problem| panic!("{problem}"));
+pub fn the_scene_with_four_obstacles_is_read(path: &Path) {
+    let scene = Scene::read(path).unwrap_or_else(|problem| panic!("{problem}"));
     assert_eq!((scene.obstacles.len(), scene.starts.len()), (4, 4));
     assert_eq!(scene.target_cm.map(|at| at.to_array()), Some([265.0, 115.0]));
     assert!(scene.starts.iter().all(|start| scene.has_room_for(start.position_cm, 10.0)));

@@ -3,20 +3,32 @@
 use std::fs;
 use std::path::Path;
 
-use mindgap_host_sim::gap::Diagnosis;
-use mindgap_host_sim::gap::diagnosis::EffectFound;
 use mindgap_tests::command::Workshop;
-use mindgap_tests::elsewhere::logs_from_elsewhere;
+use serde::Deserialize;
 use toml::Table;
 
-/// A rival counts as named while an effect has at most so many.
+/// What is asked of a diagnosis as docs/formats.md has it.
+#[derive(Deserialize)]
+struct Diagnosis {
+    effects: Vec<NamedEffect>,
+    shrink: Option<Reduction>,
+}
+
+#[derive(Debug, Deserialize)]
+struct NamedEffect {
+    id: String,
+    ambiguous_with: Vec<String>,
+}
+
+#[derive(Deserialize)]
+struct Reduction {
+    reducible_closed: f64,
+}
+
+/// A rival counts as named while an effect has no more than this many.
 const MOST_RIVALS: usize = 3;
 
-#[test]
-fn effects_of_another_robot_are_named() {
-    let test = "effects_of_another_robot_are_named";
-    let Some(data) = logs_from_elsewhere(test, "data") else { return };
-    let data = data.canonicalize().expect("the folder is there");
+pub fn effects_of_another_robot_are_named(data: &Path) {
     let workshop = Workshop::new();
     workshop.done(&format!("train {} --out sim.json", data.join("nominal").display()));
     let labels = fs::read_to_string(data.join("cases/labels.toml")).expect("labels");
@@ -47,10 +59,10 @@ fn effects_of_another_robot_are_named() {
 
 fn diagnose(workshop: &Workshop, logs: &Path) -> Diagnosis {
     workshop.done(&format!("diagnose sim.json {} --json diagnosis.json", logs.display()));
-    serde_json::from_value(workshop.json("diagnosis.json")).expect("JSON as in the contracts")
+    serde_json::from_value(workshop.json("diagnosis.json")).expect("JSON as in docs/formats.md")
 }
 
-fn stands_for(found: &EffectFound, effect: &str) -> bool {
+fn stands_for(found: &NamedEffect, effect: &str) -> bool {
     let rivals = &found.ambiguous_with;
     found.id == effect || (rivals.len() <= MOST_RIVALS && rivals.iter().any(|r| r == effect))
 }

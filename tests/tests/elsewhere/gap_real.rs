@@ -2,12 +2,11 @@
 
 use std::collections::BTreeMap;
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use mindgap_host_sim::geometry::Pose;
 use mindgap_host_sim::logs::{Logs, Robot, Row, Run, Scene, Ultrasonic};
 use mindgap_tests::command::Workshop;
-use mindgap_tests::elsewhere::logs_from_elsewhere;
 use serde::Deserialize;
 use serde_json::Value;
 
@@ -98,32 +97,40 @@ fn diagnosed(workshop: &Workshop, logs: &str) -> Value {
     workshop.json("diagnosis.json")
 }
 
-#[test]
-fn the_ends_of_a_neatos_runs_show_its_gap_to_the_textbook() {
-    let test = "the_ends_of_a_neatos_runs_show_its_gap_to_the_textbook";
-    let Some(folder) = logs_from_elsewhere(test, "real/neato") else { return };
+pub fn the_ends_of_a_neatos_runs_show_its_gap_to_the_textbook(folder: &Path) {
     let workshop = Workshop::new();
-    neato(&folder).write(&workshop.path().join("logs")).expect("a folder that can be written");
+    neato(folder).write(&workshop.path().join("logs")).expect("a folder that can be written");
     let diagnosis = diagnosed(&workshop, "logs");
     assert_ne!(diagnosis["verdict"], "no_gap", "its owner measured one");
     assert!(diagnosis["notes"].to_string().contains("whole ways between poses"), "{diagnosis}");
-    let before = diagnosis["shrink"]["before"].as_f64().expect("a gap");
-    let after = diagnosis["shrink"]["after"].as_f64().expect("a gap");
-    assert!(before > 1.0 && after < before, "{diagnosis}");
+    let shrink = &diagnosis["shrink"];
+    let number = |value: &Value| value.as_f64().expect("a number");
+    assert!(number(&shrink["before"]) > 1.0 && number(&shrink["reducible_closed"]) > 0.8, "{shrink}");
+    // It was measured in ways and turns of a robot without a sonar.
+    let channels = shrink["channels"].as_array().expect("a list").iter();
+    let of_wheels: f64 = channels
+        .filter(|part| part["channel"] == "forward" || part["channel"] == "turn")
+        .map(|part| number(&part["before"]))
+        .sum();
+    assert!(of_wheels > 0.7 * number(&shrink["before"]), "{shrink}");
+    let effects = diagnosis["effects"].as_array().expect("a list");
+    let of_sonar = |effect: &Value| effect["id"].as_str().is_some_and(|id| id.starts_with("sonar"));
+    assert!(!effects.is_empty() && !effects.iter().any(of_sonar), "{effects:?}");
 }
 
-#[test]
-fn a_real_sonar_that_stands_still_is_compared_with_the_textbook() {
-    let test = "a_real_sonar_that_stands_still_is_compared_with_the_textbook";
-    let Some(folder) = logs_from_elsewhere(test, "real/nxt-sonar") else { return };
-    let folder = folder.canonicalize().expect("the folder is there");
-    let teams = fs::read_dir(&folder).expect("a folder").map(|entry| entry.expect("an entry").path());
-    for team in teams.filter(|path| path.is_dir()) {
+pub fn a_real_sonar_that_stands_still_is_compared_with_the_textbook(folder: &Path) {
+    let entries = fs::read_dir(folder).expect("a folder").map(|entry| entry.expect("an entry").path());
+    let teams: Vec<PathBuf> = entries.filter(|path| path.is_dir()).collect();
+    let mut with_gap = 0;
+    for team in &teams {
         let diagnosis = diagnosed(&Workshop::new(), &team.display().to_string());
         let notes = diagnosis["notes"].to_string();
         assert!(notes.contains("motion is not excited"), "{}: {notes}", team.display());
+        // Where there is a gap, it lies in the readings and never in how often there is one.
         let places = diagnosis["where"].as_array().expect("a list");
-        let of_sonar = |place: &Value| place["channel"].as_str().is_some_and(|c| c.starts_with("echo"));
-        assert!(places.iter().all(of_sonar), "{}: {places:?}", team.display());
+        assert!(places.iter().all(|place| place["channel"] == "echo_value"), "{}: {places:?}", team.display());
+        assert_eq!(diagnosis["verdict"] == "no_gap", places.is_empty(), "{}: {places:?}", team.display());
+        with_gap += usize::from(!places.is_empty());
     }
+    assert!(teams.len() >= 5 && (1..teams.len()).contains(&with_gap), "{with_gap} of {} teams", teams.len());
 }

@@ -1,6 +1,5 @@
 //! The figures as files: well-formed, complete, the same every time, and calm about data that are missing or broken.
 
-#[path = "report/synthetic.rs"]
 mod synthetic;
 
 use glam::{DVec2, DVec3};

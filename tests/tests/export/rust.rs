@@ -4,7 +4,7 @@ use mindgap_controller_export::{ExportError, Origin, rust};
 use mindgap_core::controller::InvalidController;
 use mindgap_tests::controllers::at_its_limits;
 
-#[path = "golden/controller.rs"]
+#[path = "../golden/controller.rs"]
 mod golden;
 
 #[test]
@@ -17,7 +17,7 @@ fn the_module_is_the_golden_file_and_holds_the_controller() {
         generations: Some(1000),
         fitness: Some(0.25),
     };
-    let golden_text = include_str!("golden/controller.rs");
+    let golden_text = include_str!("../golden/controller.rs");
     assert_eq!(rust::module(&at_its_limits(), &origin).unwrap(), golden_text);
     assert_eq!(golden::CONTROLLER, at_its_limits());
 }

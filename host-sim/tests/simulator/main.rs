@@ -1,0 +1,27 @@
+//! A simulator trained on logs of the built-in robot, and what it is good for.
+
+mod extrapolation;
+mod gap;
+mod gap_apply;
+
+use std::sync::LazyLock;
+
+use mindgap_host_sim::built_in_robot::{ActiveEffect, default_robot, record, training_room};
+use mindgap_host_sim::learn::train::{TABLE_ONE, Trainer, train};
+use mindgap_host_sim::logs::Logs;
+use mindgap_host_sim::simulator::Simulator;
+
+/// Rows of each run.
+const STEPS: usize = 60;
+
+/// What the simulator is trained on.
+static HEALTHY: LazyLock<Logs> = LazyLock::new(|| logs(60, &[], 1));
+
+/// A simulator of the built-in robot as it is.
+static SIMULATOR: LazyLock<Simulator> =
+    LazyLock::new(|| train(&HEALTHY, &Trainer::Fast, &TABLE_ONE, 1, |_| {}).expect("the logs train every network"));
+
+fn logs(runs: usize, effects: &[&str], seed: u64) -> Logs {
+    let effects: Vec<ActiveEffect> = effects.iter().map(|e| e.parse().expect("an effect")).collect();
+    record(&default_robot(), &training_room(), runs, STEPS, &effects, seed).expect("the room has room")
+}

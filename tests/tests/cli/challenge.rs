@@ -1,0 +1,60 @@
+//! The blind test of the diagnosis from end to end.
+
+use mindgap_tests::command::Workshop;
+use serde_json::{Value, json};
+
+#[test]
+fn a_challenge_is_made_answered_and_scored() {
+    let workshop = Workshop::new();
+    workshop.done("challenge make --cases 3 --seed 5 --out blind");
+    let refusal = workshop.refused("challenge score blind");
+    assert!(refusal.contains("answers"), "nothing is answered yet: {refusal}");
+    workshop.done("challenge answer blind");
+    workshop.done("challenge score blind --json score.json --csv cases.csv");
+    // What was sealed is what is scored, and each verdict is that of the case's answer.
+    let (sealed, score) = (workshop.json("blind/sealed.json"), workshop.json("score.json"));
+    let sealed = sealed.as_array().expect("a list");
+    let truths = sealed.iter().map(|case| case["effects"].as_array().expect("a list"));
+    let nothing: Vec<bool> = truths.map(Vec::is_empty).collect();
+    let cases = nothing.len();
+    assert!(cases == 3 && nothing.contains(&true) && nothing.contains(&false), "{sealed:?}");
+    let alarms: Vec<bool> = sealed
+        .iter()
+        .map(|case| {
+            let answer = format!("blind/answers/{}.json", case["case"].as_str().expect("a name"));
+            workshop.json(&answer)["verdict"] != "no_gap"
+        })
+        .collect();
+    let alarms_where = |is: bool| nothing.iter().zip(&alarms).filter(|(n, alarm)| **n == is && **alarm).count();
+    let of = |is: bool| nothing.iter().filter(|n| **n == is).count();
+    assert_eq!(score["false_alarms"], json!({"count": alarms_where(true), "of": of(true)}), "{score}");
+    assert_eq!(score["detected"], json!({"count": alarms_where(false), "of": of(false)}), "{score}");
+
+    // Who answers that nothing is different is right where that is so, and nowhere else.
+    for case in sealed {
+        let answer = format!("blind/answers/{}", case["case"].as_str().expect("a name"));
+        let mut silent = workshop.json(&format!("{answer}.json"));
+        (silent["verdict"], silent["effects"], silent["shrink"]) = (json!("no_gap"), json!([]), Value::Null);
+        workshop.write(&format!("{answer}.json"), silent.to_string());
+        workshop.write(&format!("{answer}-added.json"), "[]");
+    }
+    workshop.done("challenge score blind --json silent.json --csv silent.csv");
+    let silent = workshop.json("silent.json");
+    assert_eq!((&silent["false_alarms"]["count"], &silent["detected"]["count"]), (&json!(0), &json!(0)), "{silent}");
+    let right: Vec<bool> = workshop.text("silent.csv").lines().skip(1).map(|line| line.ends_with(",true")).collect();
+    assert_eq!(right, nothing, "{}", workshop.text("silent.csv"));
+
+    workshop.edit("blind/sealed.json", |sealed| sealed.replacen("\"salt\": \"", "\"salt\": \"0", 1));
+    let refusal = workshop.refused("challenge score blind");
+    assert!(refusal.contains("not what was committed to"), "{refusal}");
+}
+
+#[test]
+fn effects_are_added_only_to_a_simulator_and_only_if_there_are_any() {
+    let workshop = Workshop::with_logs();
+    let refusal = workshop.refused("diagnose kinematic logs --apply better.json");
+    assert!(refusal.contains("needs a simulator file"), "{refusal}");
+    workshop.done("train logs --out sim.json");
+    let refusal = workshop.refused("diagnose sim.json logs --apply better.json");
+    assert!(refusal.contains("nothing to add"), "{refusal}");
+}

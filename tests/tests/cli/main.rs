@@ -1,0 +1,14 @@
+//! The command `mindgap` as a black box.
+//!
+//! One program for all of them: it is linked once, and its tests share the processors.
+
+mod bad_input;
+mod brick;
+mod challenge;
+mod commands;
+mod crosscheck;
+mod demo;
+mod determinism;
+mod diagnose_logs;
+mod golden_files;
+mod import;

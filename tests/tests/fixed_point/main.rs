@@ -1,0 +1,5 @@
+//! Fixed point against the truth, function by function and network by network.
+
+mod firmware_networks;
+mod function_error;
+mod network_accuracy;
