@@ -41,7 +41,7 @@ impl<const N: usize> Samples<N> {
                 array::from_fn(|lane| if exists(lane) { scaled(lane) } else { inputs[n].high })
             });
             Block {
-                log2: scaled.map(|row| row.map(|x| maths::log2(x))),
+                log2: scaled.map(|row| row.map(maths::log2)),
                 scaled,
                 targets: array::from_fn(|lane| if exists(lane) { target(data.targets[first + lane]) } else { 0.0 }),
                 weights: array::from_fn(|lane| if exists(lane) { 1.0 } else { 0.0 }),
