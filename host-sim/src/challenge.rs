@@ -5,12 +5,14 @@
 //! nothing but the folder. [`calibrate`] fits the thresholds of the diagnosis on [`cases`] of other seeds.
 
 pub mod answer;
+mod bench;
 pub mod calibrate;
 pub mod cases;
 pub mod make;
 pub mod rooms;
 pub mod score;
 pub mod seal;
+pub mod sensitivity;
 
 use std::path::{Path, PathBuf};
 

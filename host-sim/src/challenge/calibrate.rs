@@ -9,18 +9,14 @@ mod fitting;
 use rayon::prelude::*;
 use serde::Serialize;
 
-use super::answer::learn;
-use super::cases::{self, Case};
-use crate::built_in_robot::Effect;
+use super::bench::Bench;
+use super::cases::Case;
 use crate::gap::Method;
 use crate::gap::calibration::Calibration;
 use crate::gap::diagnose::{confirmed, statistics};
 use crate::gap::explain::explained_fraction;
 use crate::gap::fit::Gain;
-use crate::logs::Logs;
 use crate::problem::{Problem, Result};
-use crate::simulator::Simulator;
-use crate::simulator::baseline::Baseline;
 
 /// What is measured in one case.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -63,68 +59,46 @@ pub fn calibrate(count: usize, seed: u64, watch: impl Fn(usize)) -> Result<(Cali
     }
     let bench = Bench::new(count, seed)?;
     let (nulls, others): (Vec<usize>, Vec<usize>) = (0..count).partition(|case| bench.effects[*case].is_empty());
-    let nulls = nulls.par_iter().map(|case| bench.without_effect(*case)).collect::<Result<Vec<Measured>>>()?;
+    let nulls = nulls.par_iter().map(|case| without_effect(&bench, *case)).collect::<Result<Vec<Measured>>>()?;
     watch(nulls.len());
     let open = fitting::open(&nulls);
-    let others = others.par_iter().map(|case| bench.with_effects(*case, open)).collect::<Result<Vec<Measured>>>()?;
+    let others = others.par_iter().map(|case| with_effects(&bench, *case, open)).collect::<Result<Vec<Measured>>>()?;
     watch(count);
     Ok((fitting::weighed(open, &others), nulls.into_iter().chain(others).collect()))
 }
 
-/// The cases, and the simulators of their robots.
-struct Bench {
-    seed: u64,
-    robots: Vec<Logs>,
-    simulators: Vec<Simulator>,
-    effects: Vec<Vec<Effect>>,
+fn without_effect(bench: &Bench, number: usize) -> Result<Measured> {
+    let (case, baseline) = bench.case(number)?;
+    let statistics = statistics(baseline, &case.logs, Method::default())?;
+    let remainder = statistics.remainder;
+    Ok(Measured {
+        remainder_nats: remainder.nats,
+        remainder_z: remainder.z(),
+        ..Measured::of(&case, statistics.rows, statistics.effect)
+    })
 }
 
-impl Bench {
-    fn new(count: usize, seed: u64) -> Result<Self> {
-        let robots = cases::robots(seed)?;
-        let simulators = robots.iter().map(learn).collect::<Result<_>>()?;
-        Ok(Bench { seed, robots, simulators, effects: cases::effects(count, seed) })
-    }
-
-    fn case(&self, number: usize) -> Result<(Case, Baseline<'_>)> {
-        let case = cases::case(number, &self.effects[number], &self.robots, self.seed)?;
-        let baseline = Baseline::learned(&self.simulators[case.robot])?;
-        Ok((case, baseline))
-    }
-
-    fn without_effect(&self, number: usize) -> Result<Measured> {
-        let (case, baseline) = self.case(number)?;
-        let statistics = statistics(baseline, &case.logs, Method::default())?;
-        let remainder = statistics.remainder;
-        Ok(Measured {
-            remainder_nats: remainder.nats,
-            remainder_z: remainder.z(),
-            ..Measured::of(&case, statistics.rows, statistics.effect)
-        })
-    }
-
-    fn with_effects(&self, number: usize, calibration: Calibration) -> Result<Measured> {
-        let (case, baseline) = self.case(number)?;
-        let method = Method { calibration, ..Method::default() };
-        let found = confirmed(baseline, &case.logs, method)?;
-        let measured = Measured::of(&case, found.none.log_likelihood.motion.len(), found.chosen.gain_over(&found.none));
-        let ids = found.chosen.ids();
-        // The effect with the least doubt is the one that is named first.
-        let rivals = (0..ids.len()).map(|place| (place, found.likelihoods_in_place_of(place, &calibration)));
-        let doubt = |rivals: &[(&str, f64)]| rivals.iter().map(|(_, likelihood)| likelihood).sum::<f64>();
-        let Some((place, rivals)) = rivals.min_by(|a, b| doubt(&a.1).total_cmp(&doubt(&b.1))) else {
-            return Ok(measured);
-        };
-        let is_there = |id: &str| case.effects.iter().any(|active| active.effect.id() == id);
-        let among_rivals = rivals.iter().find(|(id, _)| is_there(id)).map_or(0.0, |(_, likelihood)| *likelihood);
-        Ok(Measured {
-            first: ids[place].into(),
-            explained_fraction: explained_fraction(&found),
-            likelihood_of_truth: if is_there(ids[place]) { 1.0 } else { among_rivals },
-            rivals: rivals.iter().map(|(_, likelihood)| *likelihood).collect(),
-            ..measured
-        })
-    }
+fn with_effects(bench: &Bench, number: usize, calibration: Calibration) -> Result<Measured> {
+    let (case, baseline) = bench.case(number)?;
+    let method = Method { calibration, ..Method::default() };
+    let found = confirmed(baseline, &case.logs, method)?;
+    let measured = Measured::of(&case, found.none.log_likelihood.motion.len(), found.chosen.gain_over(&found.none));
+    let ids = found.chosen.ids();
+    // The effect with the least doubt is the one that is named first.
+    let rivals = (0..ids.len()).map(|place| (place, found.likelihoods_in_place_of(place, &calibration)));
+    let doubt = |rivals: &[(&str, f64)]| rivals.iter().map(|(_, likelihood)| likelihood).sum::<f64>();
+    let Some((place, rivals)) = rivals.min_by(|a, b| doubt(&a.1).total_cmp(&doubt(&b.1))) else {
+        return Ok(measured);
+    };
+    let is_there = |id: &str| case.effects.iter().any(|active| active.effect.id() == id);
+    let among_rivals = rivals.iter().find(|(id, _)| is_there(id)).map_or(0.0, |(_, likelihood)| *likelihood);
+    Ok(Measured {
+        first: ids[place].into(),
+        explained_fraction: explained_fraction(&found),
+        likelihood_of_truth: if is_there(ids[place]) { 1.0 } else { among_rivals },
+        rivals: rivals.iter().map(|(_, likelihood)| *likelihood).collect(),
+        ..measured
+    })
 }
 
 impl Measured {

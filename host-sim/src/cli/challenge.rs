@@ -9,6 +9,7 @@ use crate::challenge::answer::answer;
 use crate::challenge::calibrate::calibrate;
 use crate::challenge::make::make;
 use crate::challenge::score::{Score, Share, score};
+use crate::challenge::sensitivity::{Row, sensitivity};
 use crate::files;
 use crate::problem::Result;
 
@@ -45,6 +46,18 @@ enum Part {
         #[arg(long, value_name = "FILE")]
         out: PathBuf,
         /// Also write what was measured in every case here.
+        #[arg(long, value_name = "FILE")]
+        csv: Option<PathBuf>,
+    },
+    /// Print how much each threshold decides: halved and doubled, on cases whose answers are known.
+    Sensitivity {
+        /// Number of cases.
+        #[arg(long, value_name = "N", default_value_t = 60)]
+        cases: u32,
+        /// Seed of all that is random; none that a challenge has.
+        #[arg(long, value_name = "S", default_value_t = 1)]
+        seed: u64,
+        /// Also write the table here.
         #[arg(long, value_name = "FILE")]
         csv: Option<PathBuf>,
     },
@@ -87,6 +100,16 @@ impl Challenge {
                 }
                 Ok(format!("{}: thresholds from {cases} cases\n", out.display()))
             }
+            Part::Sensitivity { cases, seed, csv } => {
+                let spinner = progress::spinner();
+                let say = |done, of| spinner.set_message(format!("{done} of {of} rows"));
+                let rows = sensitivity(*cases as usize, *seed, say)?;
+                spinner.finish_and_clear();
+                if let Some(path) = csv {
+                    files::write_csv(path, &rows)?;
+                }
+                Ok(table(&rows))
+            }
             Part::Answer { folder } => {
                 let spinner = progress::spinner();
                 let count = answer(folder, |done| spinner.set_message(format!("{done} cases diagnosed")))?;
@@ -105,6 +128,26 @@ impl Challenge {
             }
         }
     }
+}
+
+/// The table of sensitivity, the calibration as it is first.
+fn table(rows: &[Row]) -> String {
+    let head = ["threshold", "value", "false alarms", "named", "called unknown", "unknowns", "wrong"];
+    let line = |cells: [String; 7]| {
+        let [name, others @ ..] = cells;
+        others.iter().fold(format!("{name:<28}"), |line, cell| line + &format!("{cell:>15}"))
+    };
+    let row = |row: &Row| {
+        let Row { threshold, value, false_alarms, named, false_unknowns, unknowns, wrong } = row;
+        let (name, value) = match threshold.as_str() {
+            "" => ("as it is".to_string(), String::new()),
+            name => (name.to_string(), format!("{value:.3}")),
+        };
+        let counts = [false_alarms, named, false_unknowns, unknowns, wrong].map(|count| count.to_string());
+        let [alarms, named, called, unknowns, wrong] = counts;
+        line([name, value, alarms, named, called, unknowns, wrong])
+    };
+    std::iter::once(line(head.map(String::from))).chain(rows.iter().map(row)).collect::<Vec<String>>().join("\n") + "\n"
 }
 
 fn text(score: &Score) -> String {

@@ -108,6 +108,12 @@ impl Parameter {
         (self.bounds[0]..=self.bounds[1]).contains(&value)
     }
 
+    /// Whether a value lies at a bound at which something is changed, of a parameter that is reported.
+    pub fn is_at_a_bound(&self, value: f64) -> bool {
+        let reported = !matches!(self.report, Report::Hidden | Report::Direction);
+        reported && value != self.nominal && self.bounds.contains(&value)
+    }
+
     /// Logarithm of the prior's density relative to its maximum.
     pub fn log_prior(&self, value: f64) -> f64 {
         let z = (value - self.nominal) / self.prior_sd;

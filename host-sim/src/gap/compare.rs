@@ -102,7 +102,11 @@ pub fn first_gain(singles: &[Fitted], none: &Fitted, calibration: &Calibration) 
     Gain { nats: nats / divisor, error: error / divisor }
 }
 
+/// A fit at a bound is no finding: the likelihood would rise beyond what is physically possible.
 fn is_worth_adding(fit: &Fitted, so_far: &Fitted, none: &Fitted, calibration: &Calibration) -> bool {
+    if fit.last_is_at_a_bound() {
+        return false;
+    }
     let (gate, judgement) = (&calibration.effect, &calibration.judgement);
     let least = judgement.further_share * so_far.gain_over(none).nats;
     let beside = Gate { nats: gate.nats.max(least), z: gate.z.max(judgement.further_z) };

@@ -135,6 +135,13 @@ impl Fitted {
         others.iter().any(|c| c.variant.moves() && last.moves() || c.variant.senses() && last.senses())
     }
 
+    /// Whether a reported parameter of the effect that was added last lies at a bound.
+    pub fn last_is_at_a_bound(&self) -> bool {
+        let Some(last) = self.hypothesis.candidates.last() else { return false };
+        let values = self.values_of(self.hypothesis.candidates.len() - 1);
+        last.variant.parameters.iter().zip(values).any(|(parameter, value)| parameter.is_at_a_bound(*value))
+    }
+
     /// The log-likelihood of rows that it was not fitted on.
     pub fn judged_on(&self, others: &Observations, context: &FitContext) -> LogLikelihood {
         let scatter = self.hypothesis.scatter(context.baseline, context.observations, &self.values);

@@ -13,9 +13,10 @@ use crate::sonar::model::STRENGTHS;
 use crate::sonar::{Perturbation, SonarModel, fan_at};
 use crate::statistics::maximise::{Bounds, climb};
 
-/// Pulls the weights of the motion's correction towards zero, in squared features.
+/// Pulls the weights of the motion's correction towards zero, in squared features: commands are in hundreds, so that a
+/// thousand samples of a product of three half-power commands weigh five thousand times as much.
 const RIDGE: f64 = 0.003;
-/// Fewer samples than this tell nothing.
+/// Fewer samples than this, about as many as there are features, tell nothing.
 const FEWEST: usize = 100;
 
 /// The reference of a simulator whose networks are trained, from its training logs.
@@ -62,7 +63,9 @@ fn motion(simulator: &Simulator, logs: &Logs) -> Option<MotionBias> {
     Some(reference)
 }
 
-/// Bounds of the sonar's numbers: strengths, bias, scatter, three chances, the width of the beam, and a fourth chance.
+/// Bounds of the sonar's numbers: strengths (log-odds, far beyond the ten that make a certainty), bias (20 cm, 30 %), the
+/// logarithm of the scatter (0.2 to 20 cm), three probabilities (a sensor that errs more often is broken), the width of the
+/// beam (4 to 50 degrees to either side), and a fourth probability.
 const SONAR_BOUNDS: [Bounds; STRENGTHS + 11] = {
     let mut bounds = [Bounds::new(-60.0, 60.0); STRENGTHS + 11];
     bounds[STRENGTHS] = Bounds::new(-20.0, 20.0);
@@ -87,6 +90,7 @@ const SONAR_START: [f64; STRENGTHS + 11] = [
     1.0,  // width
     0.01, // constant where no echo comes back
 ];
+/// The search ends after this many iterations, or when one gains less than half a nat, a sixth of what is strong evidence.
 const SONAR_ROUNDS: usize = 40;
 const SONAR_ENOUGH: f64 = 0.5;
 

@@ -34,9 +34,11 @@ pub struct Maximum {
 
 /// Derivatives are taken over this share of the bounds' scale: small against what is plausible, large against rounding.
 const DIFFERENCE: f64 = 0.004;
-/// Keeps the curvature invertible, in squared scores.
+/// Keeps the curvature invertible: a weak prior of one scale's standard deviation about the present point, in squared
+/// scores.
 const RIDGE: f64 = 1.0;
-/// So often a step that does not climb is shortened, or one that does is lengthened.
+/// A step that does not climb is shortened, and one that does is lengthened, up to this many times: to a five-hundredth
+/// or to the two-hundred-fold, beyond which the quadratic model says nothing.
 const LENGTHS: usize = 6;
 const SHORTER: f64 = 0.35;
 const LONGER: f64 = 2.5;

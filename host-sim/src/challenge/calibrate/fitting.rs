@@ -148,6 +148,15 @@ mod tests {
         assert_eq!([cap(0), cap(5), cap(15)], [0.995, 0.95, 0.85]);
     }
 
+    /// A value at the edge of its grid is not calibrated: a better one may lie beyond.
+    #[test]
+    fn the_shipped_values_lie_within_their_grids() {
+        let Calibration { adequacy_width, temperature, accuracy_cap, .. } = Calibration::shipped();
+        let within = |value: f64, grid: &[f64]| grid[0] < value && value < grid[grid.len() - 1];
+        assert!(within(adequacy_width, &WIDTHS) && within(temperature, &TEMPERATURES));
+        assert!(within(accuracy_cap, &ACCURACY_CAPS));
+    }
+
     #[test]
     fn a_rival_is_named_as_far_behind_as_truths_are_found() {
         let answers = |behind: f64| -> Vec<Measured> {

@@ -1,0 +1,40 @@
+//! Cases with known answers, driven as they are asked for: what thresholds are set and tried on.
+
+use super::answer::learn;
+use super::cases::{self, Case};
+use crate::built_in_robot::Effect;
+use crate::logs::Logs;
+use crate::problem::Result;
+use crate::simulator::Simulator;
+use crate::simulator::baseline::Baseline;
+
+/// The cases, and the simulators of their robots.
+pub struct Bench {
+    seed: u64,
+    robots: Vec<Logs>,
+    simulators: Vec<Simulator>,
+    /// What is different in each case.
+    pub effects: Vec<Vec<Effect>>,
+}
+
+impl Bench {
+    /// The robots of a seed, each with the simulator that is learned from its logs.
+    ///
+    /// # Errors
+    /// When a robot has no room to drive in, or its logs teach nothing.
+    pub fn new(count: usize, seed: u64) -> Result<Self> {
+        let robots = cases::robots(seed)?;
+        let simulators = robots.iter().map(learn).collect::<Result<_>>()?;
+        Ok(Bench { seed, robots, simulators, effects: cases::effects(count, seed) })
+    }
+
+    /// A case with the baseline of its robot.
+    ///
+    /// # Errors
+    /// When the robot hits something in every room.
+    pub fn case(&self, number: usize) -> Result<(Case, Baseline<'_>)> {
+        let case = cases::case(number, &self.effects[number], &self.robots, self.seed)?;
+        let baseline = Baseline::learned(&self.simulators[case.robot])?;
+        Ok((case, baseline))
+    }
+}

@@ -1,0 +1,158 @@
+//! How much the thresholds of a diagnosis decide: each halved and doubled, on cases whose answers are known.
+
+use rayon::prelude::*;
+use serde::Serialize;
+use toml::{Table, Value};
+
+use super::bench::Bench;
+use crate::gap::Method;
+use crate::gap::calibration::Calibration;
+use crate::gap::diagnose::confirmed;
+use crate::gap::explain::Judged;
+use crate::problem::{Problem, Result};
+
+/// What comes of all cases with one threshold changed.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Row {
+    /// The threshold, by its name in calibration.toml; empty for the calibration as it is.
+    pub threshold: String,
+    /// Its value.
+    pub value: f64,
+    /// Cases without an effect in which a gap is seen.
+    pub false_alarms: usize,
+    /// Cases with effects of the table of which the most probable one named is there.
+    pub named: usize,
+    /// Cases with effects of the table that are called unknown.
+    pub false_unknowns: usize,
+    /// Cases with effects outside the table that are called unknown.
+    pub unknowns: usize,
+    /// Cases in which the most probable effect named is not there.
+    pub wrong: usize,
+}
+
+/// What a threshold is multiplied by.
+const FACTORS: [f64; 2] = [0.5, 2.0];
+
+/// The table of sensitivity on this many cases; `watch` is told how many rows are done, and of how many.
+///
+/// # Errors
+/// When a case cannot be driven.
+pub fn sensitivity(cases: usize, seed: u64, watch: impl Fn(usize, usize)) -> Result<Vec<Row>> {
+    let bench = Bench::new(cases, seed)?;
+    let shipped = Calibration::shipped();
+    let thresholds = names(&table(&shipped)?, "");
+    let mut changed = vec![(String::new(), 0.0, shipped)];
+    for name in &thresholds {
+        for factor in FACTORS {
+            changed
+                .extend(with(&shipped, name, factor)?.map(|(value, calibration)| (name.clone(), value, calibration)));
+        }
+    }
+    let mut rows = Vec::new();
+    for (name, value, calibration) in &changed {
+        watch(rows.len(), changed.len());
+        rows.push(Row { threshold: name.clone(), value: *value, ..of(&bench, cases, calibration)? });
+    }
+    Ok(rows)
+}
+
+/// What comes of all cases with a calibration.
+fn of(bench: &Bench, cases: usize, calibration: &Calibration) -> Result<Row> {
+    let nothing = Row {
+        threshold: String::new(),
+        value: 0.0,
+        false_alarms: 0,
+        named: 0,
+        false_unknowns: 0,
+        unknowns: 0,
+        wrong: 0,
+    };
+    let one = |number: usize| -> Result<Row> {
+        let (case, baseline) = bench.case(number)?;
+        let method = Method { calibration: *calibration, ..Method::default() };
+        let found = confirmed(baseline, &case.logs, method)?;
+        let rows = found.none.log_likelihood.motion.len();
+        let judged = Judged::of(&found, &case.logs.robot, &calibration.for_rows(rows));
+        let in_table = case.effects.iter().all(|active| active.effect.in_table());
+        let (is_null, is_unknown) = (case.effects.is_empty(), matches!(judged, Judged::Unknown));
+        let first = match &judged {
+            Judged::Known { effects } => effects.first().map(|effect| effect.id),
+            Judged::NoGap | Judged::Unknown => None,
+        };
+        let is_there = first.is_some_and(|id| case.effects.iter().any(|active| active.effect.id() == id));
+        let count = usize::from;
+        Ok(Row {
+            false_alarms: count(is_null && !matches!(judged, Judged::NoGap)),
+            named: count(in_table && is_there),
+            false_unknowns: count(!is_null && in_table && is_unknown),
+            unknowns: count(!in_table && is_unknown),
+            wrong: count(first.is_some() && !is_there),
+            ..nothing.clone()
+        })
+    };
+    let all = (0..cases).into_par_iter().map(one).collect::<Result<Vec<Row>>>()?;
+    Ok(all.iter().fold(nothing.clone(), |sum, row| Row {
+        false_alarms: sum.false_alarms + row.false_alarms,
+        named: sum.named + row.named,
+        false_unknowns: sum.false_unknowns + row.false_unknowns,
+        unknowns: sum.unknowns + row.unknowns,
+        wrong: sum.wrong + row.wrong,
+        ..sum
+    }))
+}
+
+fn table(calibration: &Calibration) -> Result<Table> {
+    Table::try_from(calibration).map_err(|e| Problem::new(format!("a calibration that cannot be written: {e}")))
+}
+
+/// Names of all numbers, with dots where tables lie within tables.
+fn names(table: &Table, within: &str) -> Vec<String> {
+    let of = |(key, value): (&String, &Value)| match value {
+        Value::Table(inner) => names(inner, &format!("{within}{key}.")),
+        _ => vec![format!("{within}{key}")],
+    };
+    table.iter().flat_map(of).collect()
+}
+
+/// The calibration with one threshold multiplied, and its value; none where that makes no difference or no calibration.
+fn with(shipped: &Calibration, name: &str, factor: f64) -> Result<Option<(f64, Calibration)>> {
+    let mut changed = table(shipped)?;
+    let (path, key) = name.rsplit_once('.').map_or((None, name), |(path, key)| (Some(path), key));
+    let holder = match path {
+        Some(path) => changed.get_mut(path).and_then(Value::as_table_mut),
+        None => Some(&mut changed),
+    };
+    let Some(value) = holder.and_then(|holder| holder.get_mut(key)) else { return Ok(None) };
+    let number = match value {
+        Value::Integer(count) => {
+            let other = (*count as f64 * factor).round();
+            *count = other as i64;
+            other
+        }
+        Value::Float(number) => {
+            *number *= factor;
+            *number
+        }
+        _ => return Ok(None),
+    };
+    Ok(changed.try_into().ok().filter(|calibration| calibration != shipped).map(|calibration| (number, calibration)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_number_of_the_calibration_has_a_name_and_can_be_changed() {
+        let shipped = Calibration::shipped();
+        let names = names(&table(&shipped).unwrap(), "");
+        assert!(
+            names.iter().any(|n| n == "effect.nats") && names.iter().any(|n| n == "judgement.rival_z"),
+            "{names:?}"
+        );
+        for name in &names {
+            let (value, changed) = with(&shipped, name, 2.0).unwrap().expect(name);
+            assert!(value > 0.0 && changed != shipped, "{name}");
+        }
+    }
+}
