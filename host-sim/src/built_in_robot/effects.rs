@@ -4,12 +4,14 @@
 
 mod catalogue;
 pub(super) mod fitting;
+mod held_out;
 mod scale;
 
 use std::fmt;
 use std::str::FromStr;
 
 pub use catalogue::Effect;
+pub use held_out::HeldOut;
 pub use scale::Scale;
 
 use crate::chance::Generator;

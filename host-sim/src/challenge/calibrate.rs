@@ -10,7 +10,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use super::answer::learn;
-use super::cases::{self, Case};
+use super::cases::{self, Case, Outside};
 use crate::built_in_robot::Effect;
 use crate::gap::Method;
 use crate::gap::calibration::Calibration;
@@ -83,7 +83,7 @@ impl Bench {
     fn new(count: usize, seed: u64) -> Result<Self> {
         let robots = cases::robots(seed)?;
         let simulators = robots.iter().map(learn).collect::<Result<_>>()?;
-        Ok(Bench { seed, robots, simulators, effects: cases::effects(count, seed) })
+        Ok(Bench { seed, robots, simulators, effects: effects(count, seed) })
     }
 
     fn case(&self, number: usize) -> Result<(Case, Baseline<'_>)> {
@@ -127,6 +127,11 @@ impl Bench {
     }
 }
 
+/// The effects of the cases; the held-out ones stay unseen.
+fn effects(count: usize, seed: u64) -> Vec<Vec<Effect>> {
+    cases::effects(count, seed, Outside::Usual)
+}
+
 impl Measured {
     fn of(case: &Case, rows: usize, effect: Gain) -> Self {
         let names: Vec<&str> = case.effects.iter().map(|active| active.effect.id()).collect();
@@ -143,5 +148,17 @@ impl Measured {
             likelihood_of_truth: 0.0,
             rivals: Vec::new(),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_case_has_a_held_out_effect() {
+        let drawn: Vec<Effect> = (0..1000).flat_map(|seed| effects(200, seed)).flatten().collect();
+        assert!(drawn.contains(&Effect::SonarDrift), "effects outside the table are drawn");
+        assert!(!drawn.iter().any(|effect| matches!(effect, Effect::HeldOut(_))));
     }
 }

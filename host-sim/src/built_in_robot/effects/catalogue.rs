@@ -3,15 +3,15 @@
 use std::fmt;
 use std::str::FromStr;
 
-use super::Scale;
+use super::{HeldOut, Scale};
 
 /// An entry of the catalogue.
-struct Entry {
-    id: &'static str,
-    about: &'static str,
-    in_table: bool,
-    strength: Scale,
-    detail: Option<Scale>,
+pub(super) struct Entry {
+    pub id: &'static str,
+    pub about: &'static str,
+    pub in_table: bool,
+    pub strength: Scale,
+    pub detail: Option<Scale>,
 }
 
 /// Defines the enum and its entries from one list, so that they cannot differ.
@@ -21,9 +21,11 @@ macro_rules! catalogue {
         #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
         pub enum Effect {
             $(#[doc = $about] $effect,)*
+            /// An effect that was held out.
+            HeldOut(HeldOut),
         }
 
-        const ALL: &[Effect] = &[$(Effect::$effect),*];
+        const LISTED: &[Effect] = &[$(Effect::$effect),*];
 
         impl Effect {
             fn entry(self) -> Entry {
@@ -35,6 +37,7 @@ macro_rules! catalogue {
                         strength: $strength,
                         detail: $detail,
                     },)*
+                    Effect::HeldOut(effect) => effect.entry(),
                 }
             }
         }
@@ -128,9 +131,9 @@ catalogue! {
 }
 
 impl Effect {
-    /// All effects: first those that a diagnosis can name, then those outside its table.
+    /// All effects: first those that a diagnosis can name, then those outside its table, the held-out ones last.
     pub fn all() -> impl Iterator<Item = Effect> {
-        ALL.iter().copied()
+        LISTED.iter().copied().chain(HeldOut::all().map(Effect::HeldOut))
     }
 
     /// Its id on the command line and in a diagnosis.

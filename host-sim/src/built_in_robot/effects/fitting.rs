@@ -91,11 +91,12 @@ pub(in crate::built_in_robot) fn fit(hardware: &mut Hardware, active: &ActiveEff
         Effect::SonarOneSided => hardware.sonar.lean_db += strength,
         Effect::MarkerOffset => hardware.tracker.marker_cm.x += strength,
         Effect::Unchanged => {}
+        Effect::HeldOut(effect) => effect.fit(hardware, strength),
     }
 }
 
 /// Force on the body, N, at which both wheels together lose this share of half their full speed.
-fn force_for_loss_n(hardware: &Hardware, share: f64) -> f64 {
+pub(super) fn force_for_loss_n(hardware: &Hardware, share: f64) -> f64 {
     share * hardware.full_speed_m_s / hardware.yielding_m_s_per_n()
 }
 
