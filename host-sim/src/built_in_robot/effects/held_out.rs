@@ -5,7 +5,7 @@
 //! never draws them, and `challenge make` only with `--outside held-out`. Once a diagnosis is changed on account of one of
 //! them, it belongs in the catalogue with the others outside the table, and a new one here.
 //!
-//! Four change the motion, one the compass, one the camera and two the sonar.
+//! Four change the motion, one the compass, one the camera, and two the sonar.
 
 use super::Scale;
 use super::catalogue::Entry;
@@ -93,7 +93,7 @@ impl HeldOut {
             HeldOut::SmoothWalls => (
                 "smooth_walls",
                 "Walls so smooth that sound glances off them to a second wall and back.",
-                Scale::rising("decibels less lost at a glance, and more in scattering", 4.0, 9.0, 16.0),
+                Scale::rising("decibels less lost at a glance, and more in scattering", 9.0, 14.0, 18.0),
             ),
         };
         Entry { id, about, in_table: false, strength, detail: None }
