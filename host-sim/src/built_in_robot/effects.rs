@@ -3,6 +3,7 @@
 //! An effect changes a part or the floor (`fitting`), never a step of a simulator.
 
 mod catalogue;
+mod entry;
 pub(super) mod fitting;
 mod held_out;
 mod scale;

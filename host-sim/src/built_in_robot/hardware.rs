@@ -291,6 +291,11 @@ impl Hardware {
         let (motor, radius_m) = (&self.motors[LEFT], self.tyres[LEFT].radius_m);
         radius_m * radius_m / (motor.damping_nm_s() + motor.viscous_nm_s)
     }
+
+    /// Force on the body at which both wheels together lose this share of half their full speed.
+    pub fn force_for_loss_n(&self, share: f64) -> f64 {
+        share * self.full_speed_m_s / self.yielding_m_s_per_n()
+    }
 }
 
 impl Link {

@@ -3,16 +3,8 @@
 use std::fmt;
 use std::str::FromStr;
 
+use super::entry::Entry;
 use super::{HeldOut, Scale};
-
-/// An entry of the catalogue.
-pub(super) struct Entry {
-    pub id: &'static str,
-    pub about: &'static str,
-    pub in_table: bool,
-    pub strength: Scale,
-    pub detail: Option<Scale>,
-}
 
 /// Defines the enum and its entries from one list, so that they cannot differ.
 macro_rules! catalogue {

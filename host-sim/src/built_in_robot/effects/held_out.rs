@@ -8,8 +8,7 @@
 //! Four change the motion, one the compass, one the camera, and two the sonar.
 
 use super::Scale;
-use super::catalogue::Entry;
-use super::fitting::force_for_loss_n;
+use super::entry::Entry;
 use crate::built_in_robot::hardware::Hardware;
 
 /// A held-out effect.
@@ -103,7 +102,7 @@ impl HeldOut {
     pub(super) fn fit(self, hardware: &mut Hardware, strength: f64) {
         match self {
             HeldOut::TyreRub => {
-                let each_n = force_for_loss_n(hardware, strength) / 2.0;
+                let each_n = hardware.force_for_loss_n(strength) / 2.0;
                 hardware.chassis.rubbing_n_s += each_n / BRISK_TURN_RAD_S;
             }
             HeldOut::ColdGrease => {
@@ -112,7 +111,7 @@ impl HeldOut {
                     motor.cold_nm_s += warm_nm_s * strength / (1.0 - strength);
                 }
             }
-            HeldOut::FloorWaves => hardware.floor.waves_n += force_for_loss_n(hardware, strength),
+            HeldOut::FloorWaves => hardware.floor.waves_n += hardware.force_for_loss_n(strength),
             HeldOut::SoftStart => hardware.motors.iter_mut().for_each(|motor| motor.rise_ms += strength),
             HeldOut::CompassDamping => hardware.tracker.needle_ms += strength,
             HeldOut::EdgeBlur => hardware.tracker.blur_cm_per_m2 += strength,
