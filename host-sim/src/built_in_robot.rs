@@ -25,7 +25,7 @@ mod wheel;
 pub use body::Body;
 pub use controller_run::{Termination, Trajectory, TrajectoryPoint, run_controller};
 pub use driving::Driving;
-pub use effects::{ActiveEffect, Effect};
+pub use effects::{ActiveEffect, Effect, HeldOut};
 pub use recording::{record, record_driving};
 pub use rooms::{default_robot, four_obstacles, training_room};
 

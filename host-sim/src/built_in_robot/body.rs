@@ -6,7 +6,7 @@ use rand::RngExt;
 
 use super::BuiltInRobot;
 use super::drivetrain::Drivetrain;
-use super::sonar::Receiver;
+use super::sonar::{Ping, Receiver};
 use crate::chance::Generator;
 use crate::geometry::Pose;
 use crate::logs::Row;
@@ -20,6 +20,8 @@ pub struct Body<'a> {
     robot: &'a BuiltInRobot,
     drivetrain: Drivetrain,
     receiver: Receiver,
+    /// Heading that the compass's needle shows.
+    needle_rad: f64,
     /// Past poses with their times, back to when the sensor sent the ping whose echo it reports now.
     trail: VecDeque<(f64, Pose)>,
     t_ms: f64,
@@ -39,6 +41,7 @@ impl<'a> Body<'a> {
             robot,
             drivetrain: Drivetrain::at_rest(&robot.hardware, at, rng),
             receiver: Receiver::default(),
+            needle_rad: at.heading_rad,
             trail: VecDeque::from([(0.0, at)]),
             t_ms: 0.0,
             command: [0.0, 0.0],
@@ -61,6 +64,7 @@ impl<'a> Body<'a> {
             let tick_ms = TICK_MS.min(end_ms - self.t_ms);
             self.clear_cm -= self.drivetrain.tick(&self.robot.hardware, self.command, tick_ms, rng);
             self.t_ms += tick_ms;
+            self.needle_rad = self.robot.hardware.tracker.swung(self.needle_rad, self.true_pose().heading_rad, tick_ms);
             self.leave_trail();
             if self.clear_cm <= 0.0 {
                 self.clear_cm = self.robot.clearance_cm(&self.true_pose());
@@ -87,13 +91,15 @@ impl<'a> Body<'a> {
 
     /// One reading of the ultrasonic sensor, cm; `None` if it produced no value.
     pub fn read_sonar(&mut self, rng: &mut Generator) -> Option<f64> {
-        let (_, pose) = self.trail[0];
-        self.receiver.read(&self.robot.hardware.sonar, &self.robot.sides, &pose, self.t_ms, rng)
+        let hardware = &self.robot.hardware;
+        let (_, from) = self.trail[0];
+        let ping = Ping { from, t_ms: self.t_ms, wheel_speed: self.drivetrain.wheel_speed(hardware) };
+        self.receiver.read(&hardware.sonar, &self.robot.sides, &ping, rng)
     }
 
     /// The pose that the tracker measures; `None` for a lost frame.
     pub fn track(&self, rng: &mut Generator) -> Option<Pose> {
-        self.robot.hardware.tracker.see(&self.true_pose(), rng)
+        self.robot.hardware.tracker.see(&self.true_pose(), self.needle_rad, rng)
     }
 
     /// The current row of a log, with the command from here on and the reading that led to it.

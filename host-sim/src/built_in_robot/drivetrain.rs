@@ -13,6 +13,8 @@ use crate::geometry::{Pose, direction, wrap_rad};
 
 /// Time after which the floor under the wheels has changed.
 const PATCH_MS: f64 = 40.0;
+/// Distance between the crests of a wavy floor.
+const WAVE_CM: f64 = 30.0;
 /// Least speed at which the castor aligns with the motion, m/s.
 const STANDSTILL_M_S: f64 = 1e-4;
 
@@ -75,6 +77,12 @@ impl Drivetrain {
         [self.wheels[LEFT].counter_deg(), self.wheels[RIGHT].counter_deg()]
     }
 
+    /// Mean speed of the wheels' rims, forwards or backwards, relative to full speed.
+    pub fn wheel_speed(&self, hardware: &Hardware) -> f64 {
+        let [left, right] = [LEFT, RIGHT].map(|side| self.wheels[side].rim_m_s(&hardware.tyres[side]).abs());
+        (left + right) / (2.0 * hardware.full_speed_m_s)
+    }
+
     /// Terminal voltage of the battery.
     pub fn battery_v(&self, hardware: &Hardware) -> f64 {
         let battery = &hardware.battery;
@@ -111,6 +119,7 @@ impl Drivetrain {
                 duty: command[side] / 100.0,
                 ground_m_s: DVec2::new(self.speed_m_s.x + self.turning_rad_s * arm_m, side_slip),
                 roll: 1.0 + floor.roughness * self.patch.roll[side].value(),
+                rubbing_n: hardware.chassis.rubbing_n_s * self.turning_rad_s.abs(),
                 seconds,
             };
             let outcome = self.wheels[side].tick(&hardware.motors[side], &hardware.tyres[side], &tick);
@@ -140,7 +149,8 @@ impl Drivetrain {
     /// Component of gravity along the tilted floor, N.
     fn weight_push(&self, hardware: &Hardware) -> DVec2 {
         let floor = &hardware.floor;
-        let weight_n = floor.downhill * (hardware.chassis.mass_kg * GRAVITY);
+        let wave_n = floor.waves_n * libm::sin(TAU * self.pose.position_cm.x / WAVE_CM);
+        let weight_n = floor.downhill * (hardware.chassis.mass_kg * GRAVITY) + DVec2::new(wave_n, 0.0);
         DVec2::new(weight_n.dot(self.facing), weight_n.dot(self.facing.perp()))
     }
 

@@ -3,13 +3,16 @@
 //! An effect changes a part or the floor (`fitting`), never a step of a simulator.
 
 mod catalogue;
+mod entry;
 pub(super) mod fitting;
+mod held_out;
 mod scale;
 
 use std::fmt;
 use std::str::FromStr;
 
 pub use catalogue::Effect;
+pub use held_out::HeldOut;
 pub use scale::Scale;
 
 use crate::chance::Generator;

@@ -66,12 +66,16 @@ pub(super) struct Motor {
     pub breakaway: f64,
     /// Viscous friction of the gear.
     pub viscous_nm_s: f64,
+    /// Viscous friction of cold grease in addition, when a run begins.
+    pub cold_nm_s: f64,
     /// Share of the commanded voltage that its bridge lets through.
     pub bridge: f64,
     /// Speed backwards relative to forwards.
     pub backwards: f64,
     /// Largest voltage of the bridge.
     pub limit_v: f64,
+    /// Time in which the bridge raises its duty cycle from 0 to 1; it lowers it at once.
+    pub rise_ms: f64,
     /// Backlash between shaft and wheel.
     pub play_rad: f64,
 }
@@ -101,6 +105,8 @@ pub(super) struct Chassis {
     pub yaw_inertia_kg_m2: f64,
     /// Distance from the middle of the axle to the contact points of the tyres.
     pub half_track_m: f64,
+    /// Force with which the frame holds back the rim of each wheel, for each rad/s that the robot turns.
+    pub rubbing_n_s: f64,
 }
 
 /// The rear support, a wheel that swivels behind its pivot.
@@ -126,6 +132,8 @@ pub(super) struct Floor {
     pub patch_n: f64,
     pub patch_middle_cm: DVec2,
     pub patch_radius_cm: f64,
+    /// Component of the weight along the floor where waves across the x axis are steepest.
+    pub waves_n: f64,
     /// Scrub torque of the wide tyres against turning on the spot.
     pub scrub_nm: f64,
     /// Standard deviations of what varies from place to place: rolling radius (share), contact point, toe angle, scrub
@@ -165,6 +173,8 @@ pub(super) struct Sonar {
     /// Standard deviations of the level: from ping to ping, and between directions within one.
     pub ping_db: f64,
     pub speckle_db: f64,
+    /// Level lost to the motors' noise when both run at full speed.
+    pub whine_db: f64,
     /// Standard deviation of a reading at normal incidence, and the addition at grazing incidence.
     pub scatter_cm: f64,
     pub grazing_cm: f64,
@@ -200,7 +210,11 @@ pub(super) struct Tracker {
     pub marker_cm: DVec2,
     /// Field of the iron on the robot relative to the earth's, in the robot's frame.
     pub iron: DVec2,
+    /// Time constant of the compass's needle.
+    pub needle_ms: f64,
     pub position_noise_cm: f64,
+    /// Addition to it one metre from the middle of the picture; it grows with the square of that distance.
+    pub blur_cm_per_m2: f64,
     pub marker_noise_rad: f64,
     pub compass_noise_rad: f64,
     /// Probability of a lost frame.
@@ -218,12 +232,15 @@ impl Hardware {
             friction_nm: 0.010,
             breakaway: 1.4,
             viscous_nm_s: 0.0011,
+            cold_nm_s: 0.0,
             bridge: 1.0,
             backwards: 1.0,
             limit_v: f64::INFINITY,
+            rise_ms: 0.0,
             play_rad: 0.0,
         };
-        let chassis = Chassis { mass_kg: 0.75, yaw_inertia_kg_m2: 3.5e-3, half_track_m: spec.track_cm / 200.0 };
+        let chassis =
+            Chassis { mass_kg: 0.75, yaw_inertia_kg_m2: 3.5e-3, half_track_m: spec.track_cm / 200.0, rubbing_n_s: 0.0 };
         let tyre = Tyre {
             radius_m: spec.wheel_diameter_cm / 200.0,
             eccentricity: 0.0,
@@ -257,6 +274,7 @@ impl Hardware {
                 patch_n: 0.0,
                 patch_middle_cm: middle_cm(scene),
                 patch_radius_cm: 70.0,
+                waves_n: 0.0,
                 scrub_nm: 0.02,
                 roughness: 0.006,
                 contact_wander_m: 0.001,
@@ -272,6 +290,11 @@ impl Hardware {
     pub fn yielding_m_s_per_n(&self) -> f64 {
         let (motor, radius_m) = (&self.motors[LEFT], self.tyres[LEFT].radius_m);
         radius_m * radius_m / (motor.damping_nm_s() + motor.viscous_nm_s)
+    }
+
+    /// Force on the body at which both wheels together lose this share of half their full speed.
+    pub fn force_for_loss_n(&self, share: f64) -> f64 {
+        share * self.full_speed_m_s / self.yielding_m_s_per_n()
     }
 }
 
@@ -317,6 +340,7 @@ impl Sonar {
             mirror_db: 18.0,
             ping_db: 5.0,
             speckle_db: 2.0,
+            whine_db: 0.0,
             scatter_cm: 0.7,
             grazing_cm: 2.5,
             timer: 1.0,
@@ -342,7 +366,9 @@ impl Tracker {
             distortion_per_m2: 0.0,
             marker_cm: DVec2::ZERO,
             iron: DVec2::ZERO,
+            needle_ms: 0.0,
             position_noise_cm: 0.22,
+            blur_cm_per_m2: 0.0,
             marker_noise_rad: 0.017,
             compass_noise_rad: 0.019,
             lost: 0.003,

@@ -16,6 +16,17 @@ const LOOSE_FOR_MS: f64 = 1600.0;
 /// Excess distance of an echo that just reaches the threshold, which triggers the sensor late.
 const FAINT_CM: f64 = 1.5;
 
+/// What a reading depends on beside the sensor and the walls.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Ping {
+    /// Pose of the robot when the ping was sent.
+    pub from: Pose,
+    /// Time into the run.
+    pub t_ms: f64,
+    /// Mean speed of the wheels relative to full speed.
+    pub wheel_speed: f64,
+}
+
 /// State of the sensor between readings.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Receiver {
@@ -25,17 +36,17 @@ pub(super) struct Receiver {
 }
 
 impl Receiver {
-    /// One reading `t_ms` into the run, of a ping sent with the robot at `pose`: whole centimetres, or `None`.
-    pub fn read(&mut self, sonar: &Sonar, sides: &[Wall], pose: &Pose, t_ms: f64, rng: &mut Generator) -> Option<f64> {
-        let echo_cm = beam::first_echo(sonar, sides, pose, rng).map(|echo| {
+    /// One reading: whole centimetres, or `None`.
+    pub fn read(&mut self, sonar: &Sonar, sides: &[Wall], ping: &Ping, rng: &mut Generator) -> Option<f64> {
+        let echo_cm = beam::first_echo(sonar, sides, ping, rng).map(|echo| {
             let late_cm = FAINT_CM * libm::pow(10.0, -echo.level_db / 20.0);
             echo.distance_cm + late_cm + (sonar.scatter_cm + sonar.grazing_cm * echo.grazing) * normal(rng)
         });
         let heard_cm = earlier(echo_cm, trigger(sonar.ringing, sonar.ringing_cm, rng));
         let heard_cm = earlier(heard_cm, trigger(sonar.ghost, sonar.ghost_cm, rng));
         let heard_cm = if happens(sonar.crosstalk, rng) { foreign(sonar, heard_cm, rng) } else { heard_cm };
-        let warmed = 1.0 + sonar.warming_per_min * t_ms / 60_000.0;
-        let loose = self.loses_contact(sonar, t_ms, rng);
+        let warmed = 1.0 + sonar.warming_per_min * ping.t_ms / 60_000.0;
+        let loose = self.loses_contact(sonar, ping.t_ms, rng);
         let reading_cm = ((heard_cm? + sonar.delay_cm) * sonar.timer * warmed).round();
         (!loose && (sonar.min_cm..=sonar.max_cm).contains(&reading_cm)).then_some(reading_cm)
     }

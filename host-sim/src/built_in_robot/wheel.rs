@@ -4,6 +4,9 @@ use glam::DVec2;
 
 use super::hardware::{Motor, Tyre};
 
+/// Time in which running gears warm their grease to 1/e of its additional stiffness.
+const WARMING_S: f64 = 8.0;
+
 /// State of a motor, gear and wheel.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Wheel {
@@ -15,6 +18,10 @@ pub(super) struct Wheel {
     in_play_rad: f64,
     /// Angle of the wheel when the run began.
     rim_rad: f64,
+    /// Duty cycle of the bridge, -1..=1.
+    duty: f64,
+    /// Time since the run began.
+    age_s: f64,
 }
 
 /// Inputs of a wheel in one time step.
@@ -22,12 +29,14 @@ pub(super) struct Wheel {
 pub(super) struct Tick {
     /// Voltage at the bridge.
     pub supply_v: f64,
-    /// Duty cycle, -1..=1.
+    /// Commanded duty cycle, -1..=1.
     pub duty: f64,
     /// Velocity of the hub over the floor: forward and to the left, m/s.
     pub ground_m_s: DVec2,
     /// Factor on the rolling radius, about 1.
     pub roll: f64,
+    /// Friction of the frame at the rim.
+    pub rubbing_n: f64,
     /// Duration of the step.
     pub seconds: f64,
 }
@@ -52,9 +61,15 @@ impl Wheel {
         self.turned_rad.to_degrees().round()
     }
 
+    /// Speed of the rim, forwards above zero.
+    pub fn rim_m_s(&self, tyre: &Tyre) -> f64 {
+        self.turning_rad_s * tyre.radius_m
+    }
+
     pub fn tick(&mut self, motor: &Motor, tyre: &Tyre, tick: &Tick) -> WheelOutput {
-        let way = if tick.duty < 0.0 { motor.backwards } else { 1.0 };
-        let volts = (tick.duty * tick.supply_v * motor.bridge * way).clamp(-motor.limit_v, motor.limit_v);
+        self.duty = motor.ramped(self.duty, tick.duty, tick.seconds);
+        let way = if self.duty < 0.0 { motor.backwards } else { 1.0 };
+        let volts = (self.duty * tick.supply_v * motor.bridge * way).clamp(-motor.limit_v, motor.limit_v);
         let current_a = (volts - motor.back_emf_v_s * self.turning_rad_s) / motor.winding_ohm;
         let radius_m = tyre.radius_m * self.hub(tyre) * tick.roll;
         let slip = DVec2::new(self.turning_rad_s * radius_m, 0.0) - tick.ground_m_s;
@@ -64,9 +79,9 @@ impl Wheel {
             self.in_play_rad = (self.in_play_rad + slip.x / radius_m * tick.seconds).clamp(0.0, motor.play_rad);
         }
         let free_nm = motor.torque_nm_per_a * current_a
-            - motor.viscous_nm_s * self.turning_rad_s
+            - self.viscous_nm_s(motor) * self.turning_rad_s
             - (push_n.x + tyre.load_n * tyre.flexing_s_per_m * self.turning_rad_s * radius_m) * radius_m;
-        let dry_nm = motor.friction_nm + tyre.load_n * tyre.rolling * radius_m;
+        let dry_nm = motor.friction_nm + (tyre.load_n * tyre.rolling + tick.rubbing_n) * radius_m;
         self.turning_rad_s = dragged(
             self.turning_rad_s,
             free_nm * tick.seconds / motor.inertia_kg_m2,
@@ -74,7 +89,14 @@ impl Wheel {
             motor.breakaway,
         );
         self.turned_rad += self.turning_rad_s * tick.seconds;
-        WheelOutput { push_n, current_a: current_a * tick.duty.abs() }
+        self.age_s += tick.seconds;
+        WheelOutput { push_n, current_a: current_a * self.duty.abs() }
+    }
+
+    /// Viscous friction of the gear with its grease as warm as it is by now.
+    fn viscous_nm_s(&self, motor: &Motor) -> f64 {
+        let cold = if motor.cold_nm_s == 0.0 { 0.0 } else { libm::exp(-self.age_s / WARMING_S) };
+        motor.viscous_nm_s + motor.cold_nm_s * cold
     }
 
     /// Height of the hub over the floor relative to the tyre's radius.
@@ -85,6 +107,18 @@ impl Wheel {
     /// Whether the backlash is taken up on the side that the shaft presses.
     fn takes_up(&self, motor: &Motor, ahead_m_s: f64) -> bool {
         if ahead_m_s >= 0.0 { self.in_play_rad >= motor.play_rad } else { self.in_play_rad <= 0.0 }
+    }
+}
+
+impl Motor {
+    /// The bridge's next duty cycle on its way from one to another: its magnitude rises no faster than the bridge raises
+    /// it, from zero when the sign changes.
+    fn ramped(&self, from: f64, to: f64, seconds: f64) -> f64 {
+        if self.rise_ms == 0.0 {
+            return to;
+        }
+        let kept = if from * to > 0.0 { from.abs() } else { 0.0 };
+        to.abs().min(kept + seconds * 1000.0 / self.rise_ms).copysign(to)
     }
 }
 
@@ -126,7 +160,7 @@ mod tests {
         let tyre = Tyre { load_n: 0.0, ..parts().1 };
         let mut wheel = Wheel::at_rest(motor, 0.0);
         for _ in 0..500 {
-            let tick = Tick { supply_v: 7.5, duty, ground_m_s: DVec2::ZERO, roll: 1.0, seconds: 0.002 };
+            let tick = Tick { supply_v: 7.5, duty, ground_m_s: DVec2::ZERO, roll: 1.0, rubbing_n: 0.0, seconds: 0.002 };
             wheel.tick(motor, &tyre, &tick);
         }
         wheel.turning_rad_s

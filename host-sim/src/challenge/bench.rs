@@ -1,7 +1,7 @@
 //! Cases with known answers, driven as they are asked for: what thresholds are set and tried on.
 
 use super::answer::learn;
-use super::cases::{self, Case};
+use super::cases::{self, Case, Outside};
 use crate::built_in_robot::Effect;
 use crate::logs::Logs;
 use crate::problem::Result;
@@ -25,7 +25,7 @@ impl Bench {
     pub fn new(count: usize, seed: u64) -> Result<Self> {
         let robots = cases::robots(seed)?;
         let simulators = robots.iter().map(learn).collect::<Result<_>>()?;
-        Ok(Bench { seed, robots, simulators, effects: cases::effects(count, seed) })
+        Ok(Bench { seed, robots, simulators, effects: effects(count, seed) })
     }
 
     /// A case with the baseline of its robot.
@@ -36,5 +36,22 @@ impl Bench {
         let case = cases::case(number, &self.effects[number], &self.robots, self.seed)?;
         let baseline = Baseline::learned(&self.simulators[case.robot])?;
         Ok((case, baseline))
+    }
+}
+
+/// The effects of the cases; the held-out ones stay unseen.
+fn effects(count: usize, seed: u64) -> Vec<Vec<Effect>> {
+    cases::effects(count, seed, Outside::Usual)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_case_has_a_held_out_effect() {
+        let drawn: Vec<Effect> = (0..1000).flat_map(|seed| effects(200, seed)).flatten().collect();
+        assert!(drawn.contains(&Effect::SonarDrift), "effects outside the table are drawn");
+        assert!(!drawn.iter().any(|effect| matches!(effect, Effect::HeldOut(_))));
     }
 }

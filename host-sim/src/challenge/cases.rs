@@ -1,10 +1,11 @@
 //! The random cases of a challenge: robot, effects, room and kind of driving.
 
+use clap::ValueEnum;
 use rand::seq::{IndexedRandom, SliceRandom};
 use rand::{Rng, RngExt};
 
 use super::rooms;
-use crate::built_in_robot::{ActiveEffect, Driving, Effect, record, record_driving};
+use crate::built_in_robot::{ActiveEffect, Driving, Effect, HeldOut, record, record_driving};
 use crate::chance::{Generator, generator};
 use crate::logs::Logs;
 use crate::problem::Result;
@@ -30,6 +31,15 @@ const ROOMS_TRIED: usize = 20;
 /// Stream keys of the generators.
 const ROBOT: u64 = 0;
 const CASE: u64 = 1;
+
+/// The effects outside the table of the diagnosis that cases are drawn from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Outside {
+    /// Those that the thresholds of the diagnosis were fitted on as well, on cases of other seeds
+    Usual,
+    /// Those that no part of the diagnosis was made or fitted on
+    HeldOut,
+}
 
 /// A case before it is written.
 pub struct Case {
@@ -82,12 +92,11 @@ pub fn case(number: usize, effects: &[Effect], robots: &[Logs], seed: u64) -> Re
     }
 }
 
-/// The effects of each of `cases` cases in random order; all effects occur about equally often.
-pub fn effects(cases: usize, seed: u64) -> Vec<Vec<Effect>> {
+/// The effects of each of `cases` cases in random order; all effects of a kind occur about equally often.
+pub fn effects(cases: usize, seed: u64, outside: Outside) -> Vec<Vec<Effect>> {
     let rng = &mut generator(seed, &[CASE]);
     let known: Vec<Effect> = Effect::all().filter(|e| e.in_table()).collect();
-    let outside: Vec<Effect> = Effect::all().filter(|e| !e.in_table() && *e != Effect::Unchanged).collect();
-    let (mut known, mut outside) = (Deck::new(known), Deck::new(outside));
+    let (mut known, mut outside) = (Deck::new(known), Deck::new(outside.effects()));
     let mut effects: Vec<Vec<Effect>> = (0..cases)
         .map(|case| match case % 10 {
             c if c < WITHOUT => Vec::new(),
@@ -109,6 +118,18 @@ pub fn effects(cases: usize, seed: u64) -> Vec<Vec<Effect>> {
     effects
 }
 
+impl Outside {
+    fn effects(self) -> Vec<Effect> {
+        let usual = |effect: &Effect| {
+            !effect.in_table() && *effect != Effect::Unchanged && !matches!(effect, Effect::HeldOut(_))
+        };
+        match self {
+            Outside::Usual => Effect::all().filter(usual).collect(),
+            Outside::HeldOut => HeldOut::all().map(Effect::HeldOut).collect(),
+        }
+    }
+}
+
 /// Draws effects in random order, each once before any repeats.
 struct Deck {
     cards: Vec<Effect>,
@@ -127,5 +148,24 @@ impl Deck {
         }
         self.drawn += 1;
         self.cards[place]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn held_out_effects_take_the_place_of_the_usual_ones_outside_the_table() {
+        let drawn = |outside| -> Vec<Effect> {
+            let effects = effects(400, 1, outside).into_iter().flatten();
+            let mut outside: Vec<Effect> = effects.filter(|effect| !effect.in_table()).collect();
+            assert_eq!(outside.len(), 40);
+            outside.sort();
+            outside.dedup();
+            outside
+        };
+        assert_eq!(drawn(Outside::HeldOut), HeldOut::all().map(Effect::HeldOut).collect::<Vec<_>>());
+        assert_eq!(drawn(Outside::Usual), Outside::Usual.effects());
     }
 }

@@ -5,26 +5,27 @@ use std::path::Path;
 use rand::Rng;
 use rayon::prelude::*;
 
+use super::Folder;
+use super::cases::{self, Outside};
 use super::seal::{Published, Sealed};
-use super::{Folder, cases};
 use crate::files;
 use crate::problem::Result;
 
-/// Writes a challenge of `count` cases to a folder.
+/// Writes a challenge of `count` cases to a folder; `outside` is what its effects outside the table are drawn from.
 ///
 /// # Errors
 /// When the folder cannot be written or a case cannot be recorded.
-pub fn make(folder: &Path, count: usize, seed: u64) -> Result<()> {
+pub fn make(folder: &Path, count: usize, seed: u64, outside: Outside) -> Result<()> {
     let ours = |name: &str| ["robots", "cases", "cases.csv", "sealed.json", "answers"].contains(&name);
-    files::write_folder(folder, ours, |fresh| fill(&Folder(fresh), count, seed))
+    files::write_folder(folder, ours, |fresh| fill(&Folder(fresh), count, seed, outside))
 }
 
-fn fill(folder: &Folder, count: usize, seed: u64) -> Result<()> {
+fn fill(folder: &Folder, count: usize, seed: u64, outside: Outside) -> Result<()> {
     let robots = cases::robots(seed)?;
     for (robot, logs) in robots.iter().enumerate() {
         logs.write(&folder.robot(&robot.to_string()))?;
     }
-    let made: Vec<(Sealed, Published)> = cases::effects(count, seed)
+    let made: Vec<(Sealed, Published)> = cases::effects(count, seed, outside)
         .par_iter()
         .enumerate()
         .map(|(number, effects)| {

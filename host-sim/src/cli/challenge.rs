@@ -7,6 +7,7 @@ use clap::{Args, Subcommand};
 use super::progress;
 use crate::challenge::answer::answer;
 use crate::challenge::calibrate::calibrate;
+use crate::challenge::cases::Outside;
 use crate::challenge::make::make;
 use crate::challenge::score::{Score, Share, score};
 use crate::challenge::sensitivity::{Row, sensitivity};
@@ -30,6 +31,9 @@ enum Part {
         /// Seed of all that is random.
         #[arg(long, value_name = "S", default_value_t = 1)]
         seed: u64,
+        /// What the effects that no diagnosis knows are drawn from.
+        #[arg(long, value_enum, default_value_t = Outside::Usual)]
+        outside: Outside,
         /// Folder for the challenge.
         #[arg(long, value_name = "DIR")]
         out: PathBuf,
@@ -83,8 +87,8 @@ impl Challenge {
     /// Does the part; returns what there is to say.
     pub fn run(&self) -> Result<String> {
         match &self.part {
-            Part::Make { cases, seed, out } => {
-                make(out, *cases as usize, *seed)?;
+            Part::Make { cases, seed, outside, out } => {
+                make(out, *cases as usize, *seed, *outside)?;
                 Ok(format!("{}: {cases} cases; sealed.json says what is different in each\n", out.display()))
             }
             Part::Calibrate { cases, seed, out, csv } => {

@@ -3,16 +3,8 @@
 use std::fmt;
 use std::str::FromStr;
 
-use super::Scale;
-
-/// An entry of the catalogue.
-struct Entry {
-    id: &'static str,
-    about: &'static str,
-    in_table: bool,
-    strength: Scale,
-    detail: Option<Scale>,
-}
+use super::entry::Entry;
+use super::{HeldOut, Scale};
 
 /// Defines the enum and its entries from one list, so that they cannot differ.
 macro_rules! catalogue {
@@ -21,9 +13,11 @@ macro_rules! catalogue {
         #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
         pub enum Effect {
             $(#[doc = $about] $effect,)*
+            /// An effect that was held out.
+            HeldOut(HeldOut),
         }
 
-        const ALL: &[Effect] = &[$(Effect::$effect),*];
+        const LISTED: &[Effect] = &[$(Effect::$effect),*];
 
         impl Effect {
             fn entry(self) -> Entry {
@@ -35,6 +29,7 @@ macro_rules! catalogue {
                         strength: $strength,
                         detail: $detail,
                     },)*
+                    Effect::HeldOut(effect) => effect.entry(),
                 }
             }
         }
@@ -128,9 +123,9 @@ catalogue! {
 }
 
 impl Effect {
-    /// All effects: first those that a diagnosis can name, then those outside its table.
+    /// All effects: first those that a diagnosis can name, then those outside its table, the held-out ones last.
     pub fn all() -> impl Iterator<Item = Effect> {
-        ALL.iter().copied()
+        LISTED.iter().copied().chain(HeldOut::all().map(Effect::HeldOut))
     }
 
     /// Its id on the command line and in a diagnosis.

@@ -50,7 +50,7 @@ pub(in crate::built_in_robot) fn fit(hardware: &mut Hardware, active: &ActiveEff
         Effect::Slope => {
             let weight_n = hardware.chassis.mass_kg * GRAVITY;
             hardware.floor.downhill +=
-                direction(detail.to_radians()) * (force_for_loss_n(hardware, strength) / weight_n);
+                direction(detail.to_radians()) * (hardware.force_for_loss_n(strength) / weight_n);
         }
         Effect::Slip => {
             for tyre in &mut hardware.tyres {
@@ -59,7 +59,7 @@ pub(in crate::built_in_robot) fn fit(hardware: &mut Hardware, active: &ActiveEff
             }
         }
         Effect::CarpetNap => {
-            hardware.floor.nap_n += direction(detail.to_radians()) * force_for_loss_n(hardware, strength);
+            hardware.floor.nap_n += direction(detail.to_radians()) * hardware.force_for_loss_n(strength);
         }
         Effect::SonarScale => hardware.sonar.timer *= strength,
         Effect::SonarOffset => hardware.sonar.delay_cm += strength,
@@ -83,7 +83,7 @@ pub(in crate::built_in_robot) fn fit(hardware: &mut Hardware, active: &ActiveEff
         Effect::Backlash => hardware.motors.iter_mut().for_each(|motor| motor.play_rad += strength.to_radians()),
         Effect::CastorKick => hardware.castor.scrub_n += strength,
         Effect::BrushAdvance => hardware.motors.iter_mut().for_each(|motor| motor.backwards *= 1.0 - strength),
-        Effect::StickyPatch => hardware.floor.patch_n += force_for_loss_n(hardware, strength),
+        Effect::StickyPatch => hardware.floor.patch_n += hardware.force_for_loss_n(strength),
         Effect::CommandQuantisation => hardware.link.grain = hardware.link.grain.max(strength),
         Effect::LinkJitter => hardware.link.delay_jitter_ms += strength,
         Effect::SoftObstacles => hardware.sonar.obstacle_db -= strength,
@@ -91,12 +91,8 @@ pub(in crate::built_in_robot) fn fit(hardware: &mut Hardware, active: &ActiveEff
         Effect::SonarOneSided => hardware.sonar.lean_db += strength,
         Effect::MarkerOffset => hardware.tracker.marker_cm.x += strength,
         Effect::Unchanged => {}
+        Effect::HeldOut(effect) => effect.fit(hardware, strength),
     }
-}
-
-/// Force on the body, N, at which both wheels together lose this share of half their full speed.
-fn force_for_loss_n(hardware: &Hardware, share: f64) -> f64 {
-    share * hardware.full_speed_m_s / hardware.yielding_m_s_per_n()
 }
 
 /// Adds the mass over one wheel whose rolling resistance costs this share of half its full speed.

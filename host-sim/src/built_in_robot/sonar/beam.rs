@@ -6,6 +6,7 @@ use glam::DVec2;
 
 use crate::built_in_robot::hardware::Sonar;
 use crate::built_in_robot::noise::normal;
+use crate::built_in_robot::sonar::Ping;
 use crate::chance::Generator;
 use crate::geometry::{Hit, Pose, Wall, cast, direction};
 
@@ -24,10 +25,10 @@ pub(super) struct Echo {
     pub grazing: f64,
 }
 
-/// The nearest echo that triggers the sensor on a robot at `robot`.
-pub(super) fn first_echo(sonar: &Sonar, sides: &[Wall], robot: &Pose, rng: &mut Generator) -> Option<Echo> {
-    let sensor = robot.compose(&Pose { position_cm: sonar.place_cm, heading_rad: sonar.yaw_rad });
-    let ping_db = sonar.ping_db * normal(rng);
+/// The nearest echo of a ping that triggers the sensor.
+pub(super) fn first_echo(sonar: &Sonar, sides: &[Wall], ping: &Ping, rng: &mut Generator) -> Option<Echo> {
+    let sensor = ping.from.compose(&Pose { position_cm: sonar.place_cm, heading_rad: sonar.yaw_rad });
+    let ping_db = sonar.ping_db * normal(rng) - sonar.whine_db * ping.wheel_speed;
     let mut first: Option<Echo> = None;
     for ray in 0..RAYS {
         // -1 at the right edge of the beam, 1 at the left one.
@@ -113,7 +114,8 @@ mod tests {
     }
 
     fn echo(sonar: &Sonar, x_cm: f64, heading_deg: f64) -> Option<Echo> {
-        first_echo(sonar, &room(), &Pose::new(x_cm, 50.0, heading_deg.to_radians()), &mut generator(1, &[]))
+        let from = Pose::new(x_cm, 50.0, heading_deg.to_radians());
+        first_echo(sonar, &room(), &Ping { from, t_ms: 0.0, wheel_speed: 0.0 }, &mut generator(1, &[]))
     }
 
     #[test]

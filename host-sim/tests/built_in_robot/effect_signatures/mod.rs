@@ -4,6 +4,7 @@
 
 mod beside;
 mod drive;
+mod held_out;
 mod measures;
 mod sonar;
 mod tracker;
