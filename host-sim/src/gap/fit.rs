@@ -265,3 +265,6 @@ fn held_out(found: &Maximum, hypothesis: &Hypothesis, untouched: &LogLikelihood,
         })
         .collect()
 }
+
+#[cfg(test)]
+mod tests;
