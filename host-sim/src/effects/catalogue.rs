@@ -193,7 +193,8 @@ mod tests {
         }
     }
 
-    /// What the table in docs/formats.md asks each effect to report.
+    /// What the table in docs/formats.md asks each effect to report, and what slip and dropouts tell besides: the loss, and
+    /// the probability that a dropout goes on.
     const REPORTED: [(&str, &[&str]); TABLE] = [
         ("battery_sag", &["loss_per_min"]),
         ("motor_asymmetry", &["side", "factor"]),
@@ -205,14 +206,14 @@ mod tests {
         ("inertia", &["ms"]),
         ("payload", &["side", "loss"]),
         ("slope", &["direction_deg", "loss"]),
-        ("slip", &["onset"]),
+        ("slip", &["onset", "loss"]),
         ("carpet_nap", &["direction_deg", "loss"]),
         ("sonar_scale", &["factor"]),
         ("sonar_offset", &["cm"]),
         ("sonar_yaw", &["deg"]),
         ("sonar_beam", &["factor"]),
         ("sonar_ghost", &["probability", "cm"]),
-        ("sonar_dropout", &["probability"]),
+        ("sonar_dropout", &["probability", "goes_on"]),
         ("sonar_lag", &["steps"]),
         ("sonar_absorption", &["factor"]),
         ("sonar_crosstalk", &["probability"]),
@@ -224,7 +225,7 @@ mod tests {
     ];
 
     #[test]
-    fn every_variant_reports_what_the_table_asks_for() {
+    fn every_variant_reports_by_the_names_of_the_table() {
         let robot = crate::built_in_robot::default_robot();
         for Candidate { effect, variant } in Candidate::all(CATALOGUE) {
             let asked = REPORTED.iter().find(|(id, _)| *id == effect).expect(effect).1;

@@ -141,8 +141,8 @@ pub fn alternating(at: usize) -> f64 {
     if at % 2 == 0 { 1.0 } else { -1.0 }
 }
 
+/// A length without a prior, fitted from a millimetre; derivatives are taken over a fifth of one.
 const fn length(name: &'static str) -> Parameter {
-    // Guesses at one length; derivatives are taken over a fifth of a millimetre.
     Parameter { name, ..Parameter::new("cm", 0.0, [-9.0, 9.0]).scale(5.0).from(Guesses::At(&[0.1])) }
 }
 
