@@ -20,6 +20,8 @@ pub mod hypothesis;
 pub mod omnibus;
 pub mod propose;
 pub mod remainder;
+#[cfg(test)]
+mod test_support;
 pub mod validate;
 
 pub use diagnose::{Findings, Method, diagnose, findings};

@@ -118,7 +118,7 @@ mod tests {
     use crate::effects::context::{RunHistory, Surroundings};
     use crate::effects::{PoseIncrement, SensorState};
     use crate::geometry::{Pose, wrap_rad};
-    use crate::logs::Scene;
+    use crate::logs::{Robot, Scene};
     use crate::sonar::Perturbation;
 
     /// The effects of the table in docs/formats.md.
@@ -189,6 +189,86 @@ mod tests {
             for start in variant.initial_guesses(TOP_SPEED_CM_S) {
                 assert!(start.iter().zip(variant.parameters).all(|(v, p)| p.allows(*v)), "{effect} {}", variant.id);
                 assert_ne!(start, variant.nominal(), "{effect} {}", variant.id);
+            }
+        }
+    }
+
+    /// What the table in docs/formats.md asks each effect to report, and what slip and dropouts tell besides: the loss, and
+    /// the probability that a dropout goes on.
+    const REPORTED: [(&str, &[&str]); TABLE] = [
+        ("battery_sag", &["loss_per_min"]),
+        ("motor_asymmetry", &["side", "factor"]),
+        ("drive_scale", &["factor"]),
+        ("track_width", &["factor"]),
+        ("deadband", &["command"]),
+        ("saturation", &["command"]),
+        ("latency", &["ms"]),
+        ("inertia", &["ms"]),
+        ("payload", &["side", "loss"]),
+        ("slope", &["direction_deg", "loss"]),
+        ("slip", &["onset", "loss"]),
+        ("carpet_nap", &["direction_deg", "loss"]),
+        ("sonar_scale", &["factor"]),
+        ("sonar_offset", &["cm"]),
+        ("sonar_yaw", &["deg"]),
+        ("sonar_beam", &["factor"]),
+        ("sonar_ghost", &["probability", "cm"]),
+        ("sonar_dropout", &["probability", "goes_on"]),
+        ("sonar_lag", &["steps"]),
+        ("sonar_absorption", &["factor"]),
+        ("sonar_crosstalk", &["probability"]),
+        ("sonar_noise", &["cm"]),
+        ("tracker_rotation", &["deg"]),
+        ("tracker_scale", &["factor"]),
+        ("lens_distortion", &["per_m2"]),
+        ("compass_disturbance", &["deg"]),
+    ];
+
+    #[test]
+    fn every_variant_reports_by_the_names_of_the_table() {
+        let robot = crate::built_in_robot::default_robot();
+        for Candidate { effect, variant } in Candidate::all(CATALOGUE) {
+            let asked = REPORTED.iter().find(|(id, _)| *id == effect).expect(effect).1;
+            let reported = variant.reported(&variant.initial_guesses(TOP_SPEED_CM_S)[0], &robot);
+            let mut names: Vec<&str> = reported.keys().map(String::as_str).collect();
+            let mut asked = asked.to_vec();
+            names.sort_unstable();
+            asked.sort_unstable();
+            assert_eq!(names, asked, "{effect} {}", variant.id);
+        }
+    }
+
+    /// Wheel speeds, not commands, are what effects depend on: a robot of five times the full speed that is sent a fifth of
+    /// the commands is the same robot.
+    #[test]
+    fn the_unit_of_commands_does_not_matter() {
+        const TIMES: f64 = 5.0;
+        let robot = crate::built_in_robot::default_robot();
+        let scene = Scene { arena_cm: Some(glam::DVec2::new(300.0, 220.0)), ..Scene::default() };
+        let usual = StepContext {
+            commands: [[90.0, -35.0], [20.0, 60.0], [-45.0, 5.0], [0.0, 80.0], [70.0, 70.0], [10.0, -10.0], [0.0, 0.0]],
+            ..Surroundings::new(&robot, &scene).context(&RunHistory::default(), 60_000.0, Pose::new(120.0, 90.0, 0.7))
+        };
+        let scaled = StepContext {
+            commands: usual.commands.map(|pair| pair.map(|command| command / TIMES)),
+            robot: Robot { full_speed_cm_s: TIMES * robot.full_speed_cm_s, ..robot },
+            ..usual
+        };
+        // A command of 100 is full speed whatever that is, and there this variant changes nothing.
+        let refers_to_full_speed = |c: &Candidate| c.effect == "deadband" && c.variant.id == "stretched";
+        for candidate in Candidate::all(CATALOGUE).into_iter().filter(|c| !refers_to_full_speed(c)) {
+            let Candidate { effect, variant } = candidate;
+            for values in variant.initial_guesses(TOP_SPEED_CM_S) {
+                let (c, m, s) = applied(variant, &values, &usual);
+                let (other_c, other_m, other_s) = applied(variant, &values, &scaled);
+                let commands = c[..2].as_flattened().iter().zip(other_c[..2].as_flattened());
+                let near = |a: f64, b: f64| (a - b).abs() < 1e-9;
+                let same = commands.into_iter().all(|(a, b)| near(*a, TIMES * b))
+                    && near(m.forward_cm, other_m.forward_cm)
+                    && near(m.lateral_cm, other_m.lateral_cm)
+                    && near(m.turn_rad, other_m.turn_rad)
+                    && s == other_s;
+                assert!(same, "{effect} {} {values:?}", variant.id);
             }
         }
     }

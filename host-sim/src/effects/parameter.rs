@@ -184,3 +184,48 @@ macro_rules! parameters {
     };
 }
 pub(super) use parameters;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const LENGTH: Parameter = Parameter { name: "cm", ..Parameter::new("cm", 1.0, [-5.0, 5.0]) };
+
+    #[test]
+    fn the_prior_is_normal_about_the_nominal_value() {
+        assert_eq!(LENGTH.log_prior(4.0), 0.0, "without a prior every value is as likely");
+        assert_eq!(LENGTH.prior_sd(1.5).log_prior(4.0), -2.0);
+        // A large change is five deviations, but never more than from bound to bound.
+        assert_eq!([0.5, 1.5, 3.0].map(|sd| LENGTH.prior_sd(sd).scale), [2.5, 7.5, 10.0]);
+        let Bounds { low, high, scale } = LENGTH.prior_sd(0.5).fit_bounds();
+        assert_eq!([low, high, scale], [-5.0, 5.0, 2.5]);
+    }
+
+    #[test]
+    fn fits_start_at_the_guesses_within_the_bounds() {
+        let starts = |guesses| LENGTH.from(guesses).guesses(8.0);
+        assert_eq!(LENGTH.guesses(8.0), [1.0], "from the nominal value where nothing is guessed");
+        assert_eq!(starts(Guesses::At(&[2.0, -9.0])), [2.0, -5.0]);
+        assert_eq!(starts(Guesses::OfTopSpeed(&[0.25, 0.5, 1.0])), [2.0, 4.0, 5.0]);
+        assert_eq!(starts(Guesses::Every(4.0)), [-5.0, -1.0, 3.0]);
+    }
+
+    #[test]
+    fn values_are_reported_as_their_effect_is_told() {
+        // 0.4 s a step, and 50 cm/s at a command of 100.
+        let robot = Robot { step_ms: 400.0, full_speed_cm_s: 50.0, ..crate::built_in_robot::default_robot() };
+        let told = |report, value| -> Vec<(String, Value)> { LENGTH.report(report).reported(value, &robot) };
+        let one = |name: &str, value: f64| vec![(String::from(name), json!(value))];
+        let side = |side: &str, name: &str, value: f64| vec![("side".into(), json!(side)), (name.into(), json!(value))];
+        assert_eq!(told(Report::Hidden, 3.0), []);
+        assert_eq!(told(Report::Value, 2.7459), one("cm", 2.75));
+        assert_eq!(told(Report::Direction, 270.04), one("cm", -90.0));
+        assert_eq!(told(Report::SideAndLoss, 0.25), side("left", "loss", 0.25));
+        assert_eq!(told(Report::SideAndLoss, -0.25), side("right", "loss", 0.25));
+        assert_eq!(told(Report::SideAndFactor, -0.25), side("right", "factor", 0.75));
+        assert_eq!(told(Report::Command, 10.0), one("command", 20.0));
+        assert_eq!(told(Report::Onset, 10.0), one("onset", 20.0));
+        assert_eq!(told(Report::Steps, 600.0), one("steps", 1.5));
+        assert_eq!(told(Report::OddsFactor, libm::log(2.0)), one("factor", 0.5));
+    }
+}

@@ -152,3 +152,6 @@ fn in_place_of_each(chosen: &Fitted, alone: &[Fitted], context: &FitContext) -> 
     let in_place = |place: usize| chosen.without(place, context).with_each(Some(alone), context);
     places.map(|place| best_of_each(in_place(place), &context.calibration)).collect()
 }
+
+#[cfg(test)]
+mod tests;

@@ -43,3 +43,52 @@ fn runs(logs: &Logs, held_out: bool) -> Logs {
     let runs = logs.runs.iter().enumerate().filter(|(i, _)| (i % EVERY == EVERY - 1) == held_out);
     Logs { robot: logs.robot, scene: logs.scene.clone(), runs: runs.map(|(_, run)| run.clone()).collect() }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gap::test_support::{baseline, driven};
+
+    /// The runs of the two parts, told apart by their left commands.
+    fn parts(runs: usize) -> (Vec<usize>, Option<Vec<usize>>) {
+        let mut logs = driven(runs, 4, |_, _| [50.0; 2]);
+        for (run, logged) in logs.runs.iter_mut().enumerate() {
+            logged.rows.iter_mut().for_each(|row| row.left = run as f64);
+        }
+        let conditioned = Conditioned::of(&logs, &baseline());
+        let runs = |part: &Observations| {
+            let mut runs: Vec<usize> = part.rows.iter().map(|row| row.context.commands[0][0] as usize).collect();
+            runs.dedup();
+            runs
+        };
+        (runs(&conditioned.identification), conditioned.hold_out.as_ref().map(runs))
+    }
+
+    #[test]
+    fn every_fourth_run_is_held_out() {
+        assert_eq!(parts(9), (vec![0, 1, 2, 4, 5, 6, 8], Some(vec![3, 7])));
+        assert_eq!(parts(8).1, Some(vec![3, 7]));
+    }
+
+    #[test]
+    fn of_few_runs_none_is_held_out() {
+        assert_eq!(parts(7), ((0..7).collect(), None));
+    }
+
+    #[test]
+    fn what_confirms_is_what_is_held_out_or_else_all() {
+        let count = |runs| {
+            let conditioned = Conditioned::of(&driven(runs, 4, |_, _| [50.0; 2]), &baseline());
+            (conditioned.identification.rows.len(), conditioned.confirming().rows.len())
+        };
+        assert_eq!((count(8), count(2)), ((24, 8), (8, 8)));
+    }
+
+    #[test]
+    fn what_the_baseline_expects_is_asked_once() {
+        let logs = driven(2, 4, |_, _| [50.0; 2]);
+        let rows = Conditioned::of(&logs, &baseline()).expecting(&baseline()).identification.rows;
+        let drive = baseline().motion.expect("a drive");
+        assert!(rows.iter().all(|row| row.expected == Some(drive.step([50.0; 2], [0.0; 2]))));
+    }
+}

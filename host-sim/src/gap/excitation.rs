@@ -26,3 +26,41 @@ pub fn untestable(none: &Fitted, context: &FitContext) -> Vec<&'static str> {
     let ids = context.catalogue.iter().map(|effect| effect.id);
     ids.filter(|id| reach(id) < context.calibration.judgement.strong_nats).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::evaluation::observations::Observations;
+    use crate::gap::hypothesis::log_density;
+    use crate::gap::test_support::*;
+
+    fn untestable_on(rows: &Observations) -> Vec<&'static str> {
+        let baseline = baseline_with_sonar();
+        let context = FitContext::new(&baseline, rows, METHOD);
+        untestable(&Fitted::none(&context), &context)
+    }
+
+    /// Steps that are two standard deviations off: a guess of 0.1 cm changes each by what the density says.
+    #[test]
+    fn an_effect_is_testable_once_its_rows_promise_strong_evidence() {
+        let change = log_density(1.9, 2.0) - log_density(2.0, 2.0);
+        let enough = (3.0 / (0.5 * change * change)).ceil() as usize;
+        let straight = |rows| {
+            observations(1, rows, |_, at| Made {
+                off: [2.0 * alternating(at), 0.0, 0.0],
+                echo_off_cm: None,
+                ..Made::default()
+            })
+        };
+        // Nothing turns left, and no reading is there to be longer.
+        let never = ["longer_to_the_left", "farther"];
+        assert_eq!(untestable_on(&straight(2 * enough)), never);
+        assert_eq!(untestable_on(&straight(enough / 2)), ["longer", never[0], never[1]]);
+    }
+
+    #[test]
+    fn readings_show_what_changes_them() {
+        let rows = observations(1, 2000, |_, at| Made { echo_off_cm: Some(alternating(at)), ..Made::default() });
+        assert!(!untestable_on(&rows).contains(&"farther"));
+    }
+}

@@ -109,3 +109,6 @@ fn gap(found: &Comparison, calibration: &Calibration) -> f64 {
 fn unknown(found: &Comparison, calibration: &Calibration) -> f64 {
     gap(found, calibration) * (1.0 - probability(explained_fraction(found), std::iter::empty(), calibration))
 }
+
+#[cfg(test)]
+mod tests;

@@ -272,3 +272,6 @@ fn held_out(found: &Maximum, hypothesis: &Hypothesis, untouched: &LogLikelihood,
         })
         .collect()
 }
+
+#[cfg(test)]
+mod tests;

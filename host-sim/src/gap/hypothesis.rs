@@ -210,3 +210,6 @@ pub fn log_density(residual: f64, scatter: f64) -> f64 {
     let normal = |t: f64| libm::exp(-0.5 * t * t) / (2.0 * PI).sqrt();
     libm::log((1.0 - JUMPS) * normal(t) + JUMPS * normal(t / JUMP) / JUMP) - libm::log(scatter)
 }
+
+#[cfg(test)]
+mod tests;

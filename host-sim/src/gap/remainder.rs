@@ -85,3 +85,68 @@ fn wider_scatter(model: &ResidualFit, context: &FitContext, rows: &Observations)
     }
     model.wider_scatter(context, rows)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gap::hypothesis::log_density;
+    use crate::gap::test_support::*;
+
+    /// Eight blocks of twelve rows with forward residuals.
+    fn rows(off_cm: fn(usize) -> f64) -> Observations {
+        observations(8, 12, move |_, at| {
+            let command = if at % 2 == 0 { [40.0, 60.0] } else { [60.0, 40.0] };
+            Made { commands: [command; 2], off: [off_cm(at), 0.0, 0.0], ..Made::default() }
+        })
+    }
+
+    /// The remainders beyond no effect, as two runs held out confirm them.
+    fn confirmed(off_cm: fn(usize) -> f64, held_out_cm: fn(usize) -> f64) -> Vec<Remainder> {
+        let (baseline, rows) = (baseline(), rows(off_cm));
+        let context = FitContext::new(&baseline, &rows, METHOD);
+        let none = Fitted::none(&context);
+        let hold_out = self::rows(held_out_cm);
+        remainders(&none, &context).into_iter().map(|r| r.confirmed(&none, &context, &hold_out)).collect()
+    }
+
+    fn counting(remainders: &[Remainder]) -> Vec<Channel> {
+        remainders.iter().filter(|r| r.counts()).map(Remainder::channel).collect()
+    }
+
+    const AS_EXPECTED: fn(usize) -> f64 = |at| 0.9 * alternating(at / 2);
+    const LONGER_TO_ONE_SIDE: fn(usize) -> f64 = |at| 0.9 * alternating(at / 2) + alternating(at);
+    const SCATTERED: fn(usize) -> f64 = |at| 2.0 * alternating(at / 2);
+
+    #[test]
+    fn what_is_as_expected_leaves_nothing_over() {
+        assert!(counting(&confirmed(AS_EXPECTED, AS_EXPECTED)).is_empty());
+    }
+
+    #[test]
+    fn what_follows_the_commands_is_left_over_where_runs_held_out_show_it_too() {
+        assert_eq!(counting(&confirmed(LONGER_TO_ONE_SIDE, LONGER_TO_ONE_SIDE)), [Channel::Forward]);
+        assert!(counting(&confirmed(LONGER_TO_ONE_SIDE, AS_EXPECTED)).is_empty());
+    }
+
+    /// Residuals of two standard deviations that follow nothing: each row gains what twice the scatter makes it likelier.
+    #[test]
+    fn wider_scatter_is_left_over() {
+        let found = confirmed(SCATTERED, SCATTERED);
+        assert_eq!(counting(&found), [Channel::Forward]);
+        let expected = 12.0 * (log_density(2.0, 2.0) - log_density(2.0, 1.0));
+        for nats in &found[0].by_block {
+            assert!((nats - expected).abs() < 0.02 * expected, "{nats} {expected}");
+        }
+        assert!(counting(&confirmed(SCATTERED, AS_EXPECTED)).is_empty());
+    }
+
+    /// The most that is gained is that of the channel that has most to gain.
+    #[test]
+    fn the_most_is_that_of_one_channel() {
+        let (baseline, rows) = (baseline(), rows(SCATTERED));
+        let context = FitContext::new(&baseline, &rows, METHOD);
+        let expected = 96.0 * (log_density(2.0, 2.0) - log_density(2.0, 1.0));
+        let most = most(&Fitted::none(&context), &context).nats;
+        assert!((most - expected).abs() < 0.02 * expected, "{most} {expected}");
+    }
+}

@@ -96,3 +96,93 @@ pub fn validate(baseline: &mut Baseline, observations: &Observations, logs: &Log
 fn same_commands(a: &Run, b: &Run) -> bool {
     a.rows.iter().zip(&b.rows).all(|(a, b)| a.command() == b.command())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gap::test_support::{baseline, baseline_with_sonar, driven, robot};
+
+    /// Commands that differ from run to run.
+    fn mixed(run: usize, at: usize) -> [f64; 2] {
+        [10.0 * run as f64 + 5.0, 20.0 + at as f64]
+    }
+
+    fn notes_of(logs: &Logs) -> (Vec<String>, Baseline<'static>) {
+        let mut baseline = baseline_with_sonar();
+        let notes = validate(&mut baseline, &Observations::of(logs, 1.0), logs).expect("something to compare");
+        (notes, baseline)
+    }
+
+    /// Whether there is one note, which begins so.
+    fn only(notes: &[String], begin: &str) -> bool {
+        matches!(notes, [note] if note.starts_with(begin))
+    }
+
+    #[test]
+    fn logs_that_say_everything_need_no_note() {
+        let (notes, baseline) = notes_of(&driven(8, 4, mixed));
+        assert!(notes.is_empty(), "{notes:?}");
+        assert!(baseline.motion.is_some() && baseline.sonar.is_some());
+    }
+
+    #[test]
+    fn what_the_logs_do_not_say_is_taken_out_of_the_baseline() {
+        let mut silent = driven(8, 4, mixed);
+        silent.runs.iter_mut().flat_map(|run| &mut run.rows).for_each(|row| row.echo_cm = None);
+        let (notes, baseline) = notes_of(&silent);
+        assert!(only(&notes, "There is no reading at all") && baseline.sonar.is_none(), "{notes:?}");
+
+        let mut unseen = driven(8, 4, mixed);
+        unseen.runs.iter_mut().flat_map(|run| &mut run.rows[1..]).for_each(|row| row.pose = None);
+        let (notes, baseline) = notes_of(&unseen);
+        assert!(only(&notes, "No run has two poses") && baseline.motion.is_none(), "{notes:?}");
+
+        let (notes, baseline) = notes_of(&driven(8, 4, |run, _| if run == 0 { [0.4; 2] } else { [0.0; 2] }));
+        assert!(only(&notes, "The motors stand still") && baseline.motion.is_none(), "{notes:?}");
+    }
+
+    #[test]
+    fn what_the_baseline_does_not_know_is_said() {
+        let logs = driven(8, 4, mixed);
+        let rows = Observations::of(&logs, 1.0);
+        let notes = validate(&mut baseline(), &rows, &logs).expect("motion");
+        assert!(only(&notes, "From too few readings"), "{notes:?}");
+        let mut without_motion = Baseline { motion: None, ..baseline_with_sonar() };
+        let notes = validate(&mut without_motion, &rows, &logs).expect("a sensor");
+        assert!(only(&notes, "From too few logs"), "{notes:?}");
+        assert!(validate(&mut Baseline { motion: None, ..baseline() }, &rows, &logs).is_err());
+    }
+
+    #[test]
+    fn few_runs_and_equal_runs_are_said() {
+        assert!(only(&notes_of(&driven(1, 16, mixed)).0, "One run only"));
+        assert!(only(&notes_of(&driven(7, 4, mixed)).0, "With fewer than 8 runs"));
+        assert!(only(&notes_of(&driven(8, 4, |_, at| mixed(0, at))).0, "All runs have the same commands"));
+    }
+
+    /// At full speed a step is 10 cm, so that 20 cm are a jump; the row after it is one back.
+    #[test]
+    fn jumps_of_the_tracker_are_counted() {
+        let mut logs = driven(8, 4, mixed);
+        let pose = logs.runs[2].rows[1].pose.as_mut().expect("a pose");
+        pose.position_cm.y += 30.0;
+        let (notes, _) = notes_of(&logs);
+        assert!(only(&notes, "The tracker jumps 2 time(s)"), "{notes:?}");
+    }
+
+    #[test]
+    fn where_no_step_has_both_ends_whole_ways_are_compared() {
+        let mut logs = driven(8, 5, mixed);
+        logs.runs.iter_mut().flat_map(|run| run.rows.iter_mut().skip(1).step_by(2)).for_each(|row| row.pose = None);
+        let (notes, baseline) = notes_of(&logs);
+        assert!(only(&notes, "No step has a pose at both ends") && baseline.motion.is_some(), "{notes:?}");
+    }
+
+    #[test]
+    fn a_robot_is_the_same_within_two_per_cent() {
+        let logged = |track_cm: f64| same_robot(&robot(), &Robot { track_cm, ..robot() });
+        assert!(logged(10.19).is_ok());
+        let refusal = logged(10.3).expect_err("another robot").to_string();
+        assert!(refusal.contains("track_cm is 10.3 in the logs' robot.toml and 10 in the simulator"), "{refusal}");
+    }
+}

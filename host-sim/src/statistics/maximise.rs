@@ -207,6 +207,72 @@ mod tests {
         assert_eq!(found.at, [1.0]);
     }
 
+    /// Points of a plane whose coordinates deviate by one about (2, −3), and hang together not at all.
+    fn points() -> Vec<[f64; 2]> {
+        [[3.0, -2.0], [3.0, -4.0], [1.0, -2.0], [1.0, -4.0]].repeat(10)
+    }
+
+    #[test]
+    fn two_numbers_are_fitted_together_from_any_start() {
+        let points = points();
+        // Sum and difference of the two are what the terms depend on: a ridge across both.
+        let terms = |at: &[f64]| -> Vec<f64> {
+            let off = |p: &[f64; 2]| [at[0] + at[1] - p[0], at[0] - at[1] - p[1]];
+            points.iter().map(off).map(|[a, b]| -0.5 * (a * a + b * b)).collect()
+        };
+        for start in [[0.0, 0.0], [-10.0, 10.0], [9.0, -9.0]] {
+            let found = climb(&[WIDE; 2], &start, 50, 1e-9, terms);
+            // One-sided differences are off by half of what they reach over.
+            let off = [found.at[0] + 0.5, found.at[1] - 2.5].map(f64::abs);
+            assert!(off.iter().all(|off| *off < 0.05), "{:?}", found.at);
+        }
+    }
+
+    #[test]
+    fn scores_and_value_are_those_of_the_maximum() {
+        let found = climb(&[WIDE], &[2.0], 1, f64::INFINITY, normal(&[1.0, 3.0]));
+        assert!((found.value() + 1.0).abs() < 0.01, "{}", found.value());
+        // The slopes are −1 and 1, per the bounds' scale of 20.
+        for (score, slope) in found.scores.iter().zip([-20.0, 20.0]) {
+            assert!((score[0] - slope).abs() < 2.0, "{:?}", found.scores);
+        }
+    }
+
+    #[test]
+    fn it_ends_where_a_round_gains_less_than_asked_for() {
+        let values: Vec<f64> = (0..50).map(|i| 2.0 + 0.05 * (f64::from(i) - 24.5)).collect();
+        let calls = |rounds, enough| {
+            let calls = std::cell::Cell::new(0);
+            let counted = |at: &[f64]| {
+                calls.set(calls.get() + 1);
+                normal(&values)(at)
+            };
+            climb(&[WIDE], &[-5.0], rounds, enough, counted);
+            calls.get()
+        };
+        assert!(calls(50, 1e6) < calls(50, 1e-9));
+        assert_eq!(calls(1, 1e-9), calls(50, 1e6), "one round");
+        assert_eq!(calls(0, 1e-9), 2, "here, and beside here for the scores");
+    }
+
+    #[test]
+    fn a_number_at_its_bound_does_not_hold_up_the_others() {
+        let points = points();
+        let terms = |at: &[f64]| -> Vec<f64> {
+            let off = |p: &[f64; 2]| [at[0] - p[0], at[1] - p[1]];
+            points.iter().map(off).map(|[a, b]| -0.5 * (a * a + b * b)).collect()
+        };
+        let found = climb(&[Bounds::new(-10.0, 0.0), WIDE], &[0.0, 8.0], 50, 1e-9, terms);
+        assert_eq!(found.at[0], 0.0);
+        assert!((found.at[1] + 3.0).abs() < 0.05, "{:?}", found.at);
+    }
+
+    #[test]
+    fn leaving_nothing_out_leaves_the_maximum_where_it_is() {
+        let found = climb(&[WIDE], &[0.0], 50, 1e-9, normal(&[1.0, 3.0]));
+        assert_eq!(found.without(&[WIDE], |_| false), found.at);
+    }
+
     #[test]
     fn leaving_terms_out_moves_the_maximum_away_from_them() {
         // Of variance one about their mean of 2, as the law has it, so that a step to first order is exact.

@@ -1,8 +1,10 @@
 //! A simulator trained on logs of the built-in robot, and what it is good for.
 
+mod added_effect;
 mod extrapolation;
 mod gap;
 mod gap_apply;
+mod turning_loss;
 
 use std::sync::LazyLock;
 

@@ -148,3 +148,6 @@ fn heading(row: &Observation, deg: f64) -> bool {
 fn faces(row: &Observation, from_cm: f64, to_cm: f64) -> bool {
     row.context.faced.is_some() && (from_cm..to_cm).contains(&distance_cm(row))
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,147 @@
+use super::*;
+use crate::effects::Effect;
+use crate::evaluation::observations::Observations;
+use crate::gap::test_support::*;
+
+/// Eight blocks of twelve rows that turn left and right in turn: left turns go `left_cm` too far, right ones
+/// `right_cm`, and readings are `echo_cm` too long.
+fn rows([left_cm, right_cm]: [f64; 2], echo_cm: f64) -> Observations {
+    observations(8, 12, move |_, at| {
+        let (command, off_cm) = if at % 2 == 0 { ([40.0, 60.0], left_cm) } else { ([60.0, 40.0], right_cm) };
+        let off = [off_cm + 0.9 * alternating(at / 2), 0.0, 0.0];
+        let echo_off_cm = Some(echo_cm + alternating(at / 2));
+        Made { commands: [command; 2], off, echo_off_cm, ..Made::default() }
+    })
+}
+
+fn searched(rows: &Observations) -> Vec<&'static str> {
+    let baseline = baseline_with_sonar();
+    let context = FitContext::new(&baseline, rows, METHOD);
+    let none = Fitted::none(&context);
+    let alone = none.with_each(None, &context);
+    Comparison::search(none, alone, &context).chosen.ids()
+}
+
+#[test]
+fn nothing_is_found_where_nothing_is() {
+    assert!(searched(&rows([0.0, 0.0], 0.0)).is_empty());
+}
+
+#[test]
+fn the_effect_that_is_there_is_found() {
+    assert_eq!(searched(&rows([1.0, 1.0], 0.0)), ["longer"]);
+    assert_eq!(searched(&rows([1.5, 0.0], 0.0)), ["longer_to_the_left"]);
+}
+
+#[test]
+fn a_second_effect_is_added_on_another_stage_and_on_the_same() {
+    let mut both = searched(&rows([1.0, 1.0], 3.0));
+    both.sort_unstable();
+    assert_eq!(both, ["farther", "longer"]);
+    let mut both = searched(&rows([3.0, 1.2], 0.0));
+    both.sort_unstable();
+    assert_eq!(both, ["longer", "longer_to_the_left"]);
+}
+
+#[test]
+fn a_worse_effect_is_exchanged_for_a_better_one() {
+    let (baseline, rows) = (baseline_with_sonar(), rows([1.0, 1.0], 0.0));
+    let context = FitContext::new(&baseline, &rows, METHOD);
+    let alone = Fitted::none(&context).with_each(None, &context);
+    let fit_of = |id: &str| alone.iter().find(|f| f.ids() == [id]).expect(id).clone();
+    let (settled_on, in_place) = settled(fit_of("longer_to_the_left"), &alone, &context);
+    assert_eq!(settled_on.ids(), ["longer"]);
+    assert_eq!(in_place.len(), 1);
+    assert_eq!(in_place[0].iter().map(|f| f.ids()[0]).collect::<Vec<_>>(), ["longer", "longer_to_the_left", "farther"]);
+    assert_eq!(settled(settled_on, &alone, &context).0.ids(), ["longer"], "the best one stays");
+}
+
+/// Calls `check` with the context of two rows in two blocks.
+fn with_context(check: impl Fn(&FitContext)) {
+    let (baseline, rows) = (baseline(), observations(2, 1, |_, _| Made::default()));
+    check(&FitContext::new(&baseline, &rows, METHOD));
+}
+
+/// A lead of z times √(error² + 3²) nats has the relative likelihood exp(−z²/2).
+#[test]
+fn relative_likelihood_falls_with_the_lead_in_standard_errors() {
+    with_context(|context| {
+        let fit = |effect: &'static Effect, held_out: [f64; 2]| made_up(&[effect], &[0.0], &held_out, context);
+        let winner = fit(&LONGER, [10.0, 10.0]);
+        let against = |held_out| relative_likelihood(&winner, &fit(&FARTHER, held_out), &CALIBRATION);
+        assert_eq!(against([10.0, 10.0]), 1.0);
+        assert_eq!(against([12.0, 12.0]), 1.0, "a rival is never likelier than the winner");
+        assert!((against([8.5, 8.5]) - libm::exp(-0.5)).abs() < 1e-12);
+        assert!((against([7.0, 7.0]) - libm::exp(-2.0)).abs() < 1e-12);
+        // Leads of 7 and −1 differ from their mean by 4: an error of 8 nats beside the 3 of strong evidence.
+        let z_squared = 6.0 * 6.0 / (8.0 * 8.0 + 3.0 * 3.0);
+        assert!((against([3.0, 11.0]) - libm::exp(-0.5 * z_squared)).abs() < 1e-12);
+        // The price of a further parameter counts.
+        let more = made_up(&[&LONGER, &FARTHER], &[0.0; 2], &[10.0, 10.0], context);
+        let z = 1.0 / 3.0;
+        assert!((relative_likelihood(&winner, &more, &CALIBRATION) - libm::exp(-0.5 * z * z)).abs() < 1e-12);
+    });
+}
+
+/// In reach is what lags by two standard errors at most: six nats where all blocks agree.
+#[test]
+fn rivals_in_reach_are_counted() {
+    with_context(|context| {
+        let fit = |effect: &'static Effect, each: f64| made_up(&[effect], &[0.0], &[each; 2], context);
+        let chosen = fit(&LONGER, 10.0);
+        let count = |rivals: &[Fitted]| rivals_in_reach(&chosen, rivals, &CALIBRATION);
+        assert_eq!(count(&[]), 0);
+        assert_eq!(count(&[fit(&LONGER, 10.0)]), 0, "the effect itself is no rival");
+        assert_eq!(count(&[fit(&FARTHER, 7.1), fit(&LONGER_TO_THE_LEFT, 6.9)]), 1);
+    });
+}
+
+/// With more than three others in reach an effect has to gain twice as much.
+#[test]
+fn an_effect_for_which_many_can_stand_counts_half() {
+    with_context(|context| {
+        let fit = |effect: &'static Effect, each: f64| made_up(&[effect], &[0.0], &[each; 2], context);
+        let none = made_up(&[], &[], &[0.0; 2], context);
+        let nats = |singles: &[Fitted]| first_gain(singles, &none, &CALIBRATION).nats;
+        let first = || fit(&LONGER, 10.0);
+        assert_eq!(nats(&[]), 0.0);
+        let other = || fit(&FARTHER, 9.0);
+        assert_eq!(nats(&[first(), other(), other(), other()]), 20.0);
+        assert_eq!(nats(&[first(), other(), other(), other(), other()]), 10.0);
+        assert_eq!(nats(&[first(), other(), other(), other(), fit(&FARTHER, 1.0)]), 20.0);
+    });
+}
+
+/// A further effect on the same stage has to gain 8 % of what is explained already; on another the gate is enough.
+#[test]
+fn a_further_effect_on_the_same_stage_has_to_gain_more() {
+    with_context(|context| {
+        let none = made_up(&[], &[], &[0.0; 2], context);
+        let so_far = made_up(&[&LONGER], &[0.0], &[50.0; 2], context);
+        let worth = |effect: &'static Effect, more: f64| {
+            let fit = made_up(&[&LONGER, effect], &[0.0; 2], &[50.0 + 0.5 * more; 2], context);
+            is_worth_adding(&fit, &so_far, &none, &CALIBRATION)
+        };
+        assert!(worth(&FARTHER, 5.1) && !worth(&FARTHER, 4.9));
+        assert!(worth(&LONGER_TO_THE_LEFT, 8.1) && !worth(&LONGER_TO_THE_LEFT, 7.9));
+    });
+}
+
+#[test]
+fn rivals_are_what_stands_in_the_place_of_an_effect() {
+    with_context(|context| {
+        let fit = |effects: &[&'static Effect], each: f64| made_up(effects, &[0.0; 2], &[each; 2], context);
+        let rivals = vec![
+            vec![fit(&[&FARTHER, &LONGER], 20.0), fit(&[&FARTHER, &LONGER_TO_THE_LEFT], 17.0)],
+            vec![fit(&[&LONGER, &FARTHER], 20.0), fit(&[&LONGER, &LONGER_TO_THE_LEFT], 12.0)],
+        ];
+        let chosen = fit(&[&LONGER, &FARTHER], 20.0);
+        let found = Comparison { chosen, rivals, ..comparison(&[], &[0.0; 2], context) };
+        let in_place = |place| found.likelihoods_in_place_of(place, &CALIBRATION);
+        assert_eq!(in_place(0), [("longer_to_the_left", libm::exp(-2.0))]);
+        let z = 16.0 / 3.0;
+        assert_eq!(in_place(1), [("longer_to_the_left", libm::exp(-0.5 * z * z))]);
+        let runner_up = found.runner_up(&CALIBRATION).expect("another fit");
+        assert_eq!(runner_up.ids(), ["farther", "longer_to_the_left"]);
+    });
+}

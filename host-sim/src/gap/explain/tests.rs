@@ -1,0 +1,131 @@
+use super::*;
+use crate::effects::Effect;
+use crate::gap::fit::{FitContext, Fitted};
+use crate::gap::remainder::remainders;
+use crate::gap::test_support::*;
+
+/// Calls `check` with the context of two rows in two blocks.
+fn with_context(check: impl Fn(&FitContext)) {
+    let (baseline, rows) = (baseline(), observations(2, 1, |_, _| Made::default()));
+    check(&FitContext::new(&baseline, &rows, METHOD));
+}
+
+/// A remainder of this many nats, half of them in each of two blocks.
+fn remainder(nats: f64, context: &FitContext) -> Remainder {
+    let mut remainder = remainders(&Fitted::none(context), context).swap_remove(0);
+    remainder.by_block = vec![0.5 * nats; 2];
+    remainder
+}
+
+fn judged(found: &Comparison) -> Judged {
+    Judged::of(found, &robot(), &CALIBRATION)
+}
+
+#[test]
+fn the_explained_fraction_is_that_of_what_could_be_explained() {
+    with_context(|context| {
+        let fraction = |gained: f64, left: f64| {
+            let beyond_chosen = vec![remainder(left, context)];
+            explained_fraction(&Comparison { beyond_chosen, ..comparison(&[&LONGER], &[0.5 * gained; 2], context) })
+        };
+        assert_eq!(fraction(30.0, 10.0), 0.75);
+        assert_eq!(fraction(30.0, 0.0), 1.0);
+        assert_eq!(fraction(30.0, -10.0), 1.0, "less than nothing cannot be left");
+        assert_eq!(fraction(-5.0, 10.0), 0.0);
+        assert_eq!(fraction(0.0, 0.0), 1.0, "nothing is wholly explained");
+    });
+}
+
+/// Where just enough is explained the odds are even, one width beyond e to one; and equally likely rivals share.
+#[test]
+fn the_probability_of_an_answer() {
+    let probability = |fraction, rivals: &[f64]| probability(fraction, rivals.iter().copied(), &CALIBRATION);
+    let e = std::f64::consts::E;
+    assert!((probability(0.8, &[]) - 0.5 * 0.9).abs() < 1e-12);
+    assert!((probability(0.85, &[]) - e / (1.0 + e) * 0.9).abs() < 1e-12);
+    assert!((probability(0.8, &[1.0]) - 0.25 * 0.9).abs() < 1e-12);
+    assert!((probability(0.8, &[0.5, 0.5]) - 0.25 * 0.9).abs() < 1e-12);
+    let doubtful = Calibration { temperature: 2.0, ..CALIBRATION };
+    assert!((super::probability(0.8, [0.25].into_iter(), &doubtful) - 0.9 / 3.0).abs() < 1e-12);
+}
+
+#[test]
+fn where_nothing_gains_there_is_no_gap() {
+    with_context(|context| assert!(matches!(judged(&comparison(&[], &[0.0; 2], context)), Judged::NoGap)));
+}
+
+#[test]
+fn an_effect_that_leaves_nothing_over_is_known() {
+    with_context(|context| {
+        // Fifteen nats beyond the gate of five: five times strong evidence.
+        let Judged::Known { effects } = judged(&comparison(&[&LONGER], &[10.0; 2], context)) else {
+            panic!("the effect explains all")
+        };
+        let [effect] = effects.as_slice() else { panic!("{effects:?}") };
+        assert_eq!((effect.id, effect.parameters["cm"].as_f64()), ("longer", Some(0.5)));
+        let expected = logistic(5.0) * 0.9 * logistic((1.0 - 0.8) / 0.05);
+        assert!((effect.probability - expected).abs() < 1e-12, "{} {expected}", effect.probability);
+        assert!(effect.ambiguous_with.is_empty());
+    });
+}
+
+#[test]
+fn what_could_stand_for_an_effect_is_named_beside_it_and_lowers_its_probability() {
+    with_context(|context| {
+        let fit = |effect: &'static Effect, each: f64| made_up(&[effect], &[0.5], &[each; 2], context);
+        // A lead of three nats, of three nats' error: a relative likelihood of exp(−1/2). One of 18 is out of reach.
+        let rivals = vec![vec![fit(&LONGER, 10.0), fit(&LONGER_TO_THE_LEFT, 8.5), fit(&FARTHER, 1.0)]];
+        let found = Comparison { rivals, ..comparison(&[&LONGER], &[10.0; 2], context) };
+        let Judged::Known { effects } = judged(&found) else { panic!("the effect explains all") };
+        assert_eq!(effects[0].ambiguous_with, ["longer_to_the_left"]);
+        let doubt = libm::exp(-0.5) + libm::exp(-18.0);
+        let expected = logistic(5.0) * 0.9 * logistic(4.0) / (1.0 + doubt);
+        assert!((effects[0].probability - expected).abs() < 1e-12, "{} {expected}", effects[0].probability);
+    });
+}
+
+#[test]
+fn the_more_probable_effect_is_named_first() {
+    with_context(|context| {
+        let fit = |effects: &[&'static Effect], each: f64| made_up(effects, &[0.5; 2], &[each; 2], context);
+        let rivals = vec![vec![fit(&[&FARTHER, &LONGER_TO_THE_LEFT], 9.0)], Vec::new()];
+        let found = Comparison { rivals, ..comparison(&[&LONGER, &FARTHER], &[10.0; 2], context) };
+        let Judged::Known { effects } = judged(&found) else { panic!("the effects explain all") };
+        assert_eq!(effects.iter().map(|e| e.id).collect::<Vec<_>>(), ["farther", "longer"]);
+        assert!(effects[0].probability > 1.5 * effects[1].probability);
+    });
+}
+
+#[test]
+fn a_gap_that_no_effect_explains_is_unknown() {
+    with_context(|context| {
+        let left = |effects: &[&'static Effect], gained: f64, left: f64| {
+            let beyond_chosen = vec![remainder(left, context)];
+            judged(&Comparison { beyond_chosen, ..comparison(effects, &[0.5 * gained; 2], context) })
+        };
+        assert!(matches!(left(&[], 0.0, 10.0), Judged::Unknown));
+        // 79 % are less than the 80 % that are asked for, 90 % are enough.
+        assert!(matches!(left(&[&LONGER], 79.0, 21.0), Judged::Unknown));
+        assert!(matches!(left(&[&LONGER], 90.0, 10.0), Judged::Known { .. }));
+    });
+}
+
+#[test]
+fn an_effect_for_which_too_many_could_stand_is_no_answer() {
+    with_context(|context| {
+        const IDS: [&str; 6] = ["a", "b", "c", "d", "e", "f"];
+        let rival = |id: &&'static str| {
+            let mut fit = made_up(&[&LONGER], &[0.5], &[6.5; 2], context);
+            fit.hypothesis.candidates[0].effect = id;
+            fit
+        };
+        // Seven nats behind: each is named, and the doubt of six is that of one that is 0.4 as likely.
+        let with = |count: usize| {
+            let rivals = vec![IDS[..count].iter().map(rival).collect()];
+            let calibration = Calibration { rival: 0.05, ..CALIBRATION };
+            Judged::of(&Comparison { rivals, ..comparison(&[&LONGER], &[10.0; 2], context) }, &robot(), &calibration)
+        };
+        assert!(matches!(with(5), Judged::Known { .. }));
+        assert!(matches!(with(6), Judged::Unknown));
+    });
+}
