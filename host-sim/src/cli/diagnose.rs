@@ -6,7 +6,7 @@ use clap::Args;
 
 use super::{diagnosis_page, diagnosis_text};
 use crate::effects::applied::AppliedEffect;
-use crate::evaluation::final_position::{FinalPositions, endings};
+use crate::evaluation::final_position::{FinalPositionErrors, final_position_errors};
 use crate::evolve::controller_file::ControllerFile;
 use crate::files;
 use crate::gap::{Findings, Method, findings, validate};
@@ -85,12 +85,12 @@ fn ends(
     applied: &[AppliedEffect],
     controller: &Path,
     logs: &Logs,
-) -> Result<FinalPositions> {
+) -> Result<FinalPositionErrors> {
     let simulator = simulator.ok_or_else(|| Problem::new("--controller needs a simulator file that can run it"))?;
     let controller = ControllerFile::read(controller)?.controller;
     let mut better = simulator.clone();
     better.added.extend(applied.iter().cloned());
-    endings([simulator, &better], &controller, logs)
+    final_position_errors([simulator, &better], &controller, logs)
 }
 
 /// The simulator with the effects found.

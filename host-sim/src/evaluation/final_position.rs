@@ -7,14 +7,14 @@ use serde::{Deserialize, Serialize};
 use crate::geometry::Pose;
 use crate::logs::Logs;
 use crate::problem::{Problem, Result};
-use crate::simulator::course::Course;
-use crate::simulator::rehearsal::Rehearsal;
+use crate::simulator::environment::Environment;
+use crate::simulator::rollout_report::RolloutReport;
 use crate::simulator::{Noise, Simulator};
 use crate::statistics::summary::median;
 
 /// How far the runs of a controller end from where they are expected to, as medians over the runs, cm.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct FinalPositions {
+pub struct FinalPositionErrors {
     /// Runs with a pose at the first row and a later one.
     pub runs: usize,
     /// With the simulator as it is.
@@ -34,7 +34,11 @@ const SEED: u64 = 6;
 ///
 /// # Errors
 /// When no run has a pose at its first row and at a later one, or when the simulator cannot run a controller from there.
-pub fn endings(simulators: [&Simulator; 2], controller: &Controller, logs: &Logs) -> Result<FinalPositions> {
+pub fn final_position_errors(
+    simulators: [&Simulator; 2],
+    controller: &Controller,
+    logs: &Logs,
+) -> Result<FinalPositionErrors> {
     let logged: Vec<(Pose, DVec2)> = logs
         .runs
         .iter()
@@ -50,7 +54,7 @@ pub fn endings(simulators: [&Simulator; 2], controller: &Controller, logs: &Logs
     }
     let [before, after] = simulators.map(|simulator| Ends::of(simulator, controller, logs, &logged));
     let (before, after) = (before?, after?);
-    Ok(FinalPositions {
+    Ok(FinalPositionErrors {
         runs: logged.len(),
         before_cm: median(before.off_cm.into_iter()),
         after_cm: median(after.off_cm.into_iter()),
@@ -70,8 +74,8 @@ impl Ends {
     fn of(simulator: &Simulator, controller: &Controller, logs: &Logs, logged: &[(Pose, DVec2)]) -> Result<Self> {
         let mut ends = Ends { off_cm: Vec::new(), scatter_cm: Vec::new() };
         for (run, (start, end)) in logged.iter().enumerate() {
-            let course = Course::new(simulator, &logs.scene, *start, Noise::Learned)?;
-            let drawn = Rehearsal::new(&course, &logs.scene, controller, DRAWS, SEED + run as u64);
+            let environment = Environment::new(simulator, &logs.scene, *start, Noise::Learned)?;
+            let drawn = RolloutReport::new(&environment, &logs.scene, controller, DRAWS, SEED + run as u64);
             let drawn: Vec<DVec2> = drawn.runs.iter().map(|run| DVec2::new(run.end_x_cm, run.end_y_cm)).collect();
             let expected = DVec2::new(median(drawn.iter().map(|e| e.x)), median(drawn.iter().map(|e| e.y)));
             ends.off_cm.push(expected.distance(*end));
