@@ -1,5 +1,5 @@
-//! How far predicted paths end from logged ones when the simulator runs open-loop from a logged pose: with the
-//! simulator as it is, with the effects added, and what scatter alone makes of it.
+//! Multi-step prediction error: the distance between the ends of open-loop predicted and logged paths, for the simulator
+//! as it is, with the effects added, and from noise alone.
 
 use glam::DVec2;
 use rand_distr::{Distribution, StandardNormal};
@@ -26,7 +26,7 @@ pub struct PathError {
     /// With the effects added, cm.
     #[serde(serialize_with = "rounding::number")]
     pub after_cm: f64,
-    /// What the robot's own scatter and the tracker's would make of a perfect simulator, cm.
+    /// From process and tracker noise alone, as for a perfect simulator, cm.
     #[serde(serialize_with = "rounding::number")]
     pub floor_cm: f64,
 }
@@ -35,23 +35,19 @@ pub struct PathError {
 const LENGTHS: [usize; 5] = [1, 2, 5, 10, 25];
 /// Paths drawn for the floor from each start.
 const DRAWS: usize = 8;
+/// Added to the seed, so that these draws are not those of the bootstrap.
+const STREAM: u64 = 3;
 
-/// The gap over paths of each length that the runs are long enough for, with the effects that the simulator has
-/// (`before`) and with those that were found (`after`).
-pub fn open_loop(
-    before: &EffectChain,
-    after: &EffectChain,
-    drive: &MotionModel,
-    logs: &Observations,
-) -> Vec<PathError> {
-    let mut rng = generator(4, &[]);
-    LENGTHS.iter().filter_map(|steps| gap(*steps, before, after, drive, logs, &mut rng)).collect()
+/// The error for each length of which the runs have paths: with the effects that the simulator has (first) and with
+/// those that were found (second). The noise follows from `seed`.
+pub fn open_loop(effects: [&EffectChain; 2], drive: &MotionModel, logs: &Observations, seed: u64) -> Vec<PathError> {
+    let mut rng = generator(seed.wrapping_add(STREAM), &[]);
+    LENGTHS.iter().filter_map(|steps| error(*steps, effects, drive, logs, &mut rng)).collect()
 }
 
-fn gap(
+fn error(
     steps: usize,
-    before: &EffectChain,
-    after: &EffectChain,
+    [before, after]: [&EffectChain; 2],
     drive: &MotionModel,
     logs: &Observations,
     rng: &mut Generator,

@@ -165,9 +165,9 @@ fn a_controllers_ends_are_foretold_better_with_the_effect() {
     let runs = (0..8).map(&mut drive).collect();
     let logs = Logs { robot: default_robot(), scene: scene.clone(), runs };
     let better = with(vec![AppliedEffect::new(&variant("drive_scale"), &[1.15])]);
-    let found = final_position_errors([&SIMULATOR, &better], &controller, &logs).expect("poses at both ends");
+    let found = final_position_errors([&SIMULATOR, &better], &controller, &logs, 1).expect("poses at both ends");
     assert_eq!(found.runs, 8);
     assert!(found.after_cm < 0.7 * found.before_cm && found.floor_cm > 0.0, "{found:?}");
     let unseen = Logs { runs: vec![Run { name: "run-000".into(), rows: vec![Row::default(); 3] }], ..logs };
-    assert!(final_position_errors([&SIMULATOR, &better], &controller, &unseen).is_err());
+    assert!(final_position_errors([&SIMULATOR, &better], &controller, &unseen, 1).is_err());
 }
