@@ -15,7 +15,8 @@ use mindgap_host_sim::genetic::Settings;
 use mindgap_host_sim::learn::dataset::Dataset;
 use mindgap_host_sim::learn::genome::Shape;
 use mindgap_host_sim::learn::{paper as paper_trainer, train};
-use mindgap_host_sim::simulator::course::{Course, Job, Sensor};
+use mindgap_host_sim::simulator::environment::Environment;
+use mindgap_host_sim::simulator::rollout::{RolloutRequest, SensorModel};
 use mindgap_host_sim::simulator::{Noise, Simulator};
 use rand::RngExt;
 
@@ -45,23 +46,24 @@ fn robot_steps(bencher: Bencher, step: Step) {
     const RUNS: u64 = 1000;
     let (simulator, scene) = (simulator(), four_obstacles());
     let (noise, sensor) = match step {
-        Step::FiveNetworks | Step::Tabulated => (Noise::Paper, Sensor::Networks),
-        Step::TabulatedLearnedNoise => (Noise::Learned, Sensor::Networks),
-        Step::TabulatedBeam => (Noise::Learned, Sensor::Beam),
+        Step::FiveNetworks | Step::Tabulated => (Noise::Paper, SensorModel::Networks),
+        Step::TabulatedLearnedNoise => (Noise::Learned, SensorModel::Networks),
+        Step::TabulatedBeam => (Noise::Learned, SensorModel::Beam),
     };
-    let course = Course::new(&simulator, &scene, scene.starts[0], noise).expect("the robot has room");
-    let course = match step {
-        Step::FiveNetworks => course.asking_every_step(),
-        Step::TabulatedBeam => course.with_beam(&simulator),
-        _ => course,
+    let environment = Environment::new(&simulator, &scene, scene.starts[0], noise).expect("the robot has room");
+    let environment = match step {
+        Step::FiveNetworks => environment.asking_every_step(),
+        Step::TabulatedBeam => environment.with_beam(&simulator),
+        _ => environment,
     };
     // It turns on the spot, and no reading is below zero: every run goes on to its last step.
     let turning = Tuple { left: 30, right: -30, when: When::Smaller, threshold_cm: 0 };
     let controller = &Controller { step_ms: 400, max_steps: MAX_STEPS, tuples: [turning; 6] };
-    let motions = &course.motions(controller);
-    let jobs: Vec<Job> = (0..RUNS).map(|seed| Job { controller, motions, sensor, seed }).collect();
-    let steps: u64 = course.run(&jobs).iter().map(|outcome| u64::from(outcome.steps)).sum();
-    bencher.counter(ItemsCount::new(steps)).bench(|| course.run(&jobs));
+    let motions = &environment.motions(controller);
+    let requests: Vec<RolloutRequest> =
+        (0..RUNS).map(|seed| RolloutRequest { controller, motions, sensor, seed }).collect();
+    let steps: u64 = environment.run(&requests).iter().map(|outcome| u64::from(outcome.steps)).sum();
+    bencher.counter(ItemsCount::new(steps)).bench(|| environment.run(&requests));
 }
 
 /// The paper's genetic algorithm on the weights of a 2-10-1 network, with 1000 samples; the counter is generations.
@@ -84,9 +86,9 @@ fn training_generations(bencher: Bencher) {
 #[divan::bench(sample_size = 1, sample_count = 3)]
 fn evolving_generations(bencher: Bencher) {
     let (simulator, scene) = (simulator(), four_obstacles());
-    let course = &Course::new(&simulator, &scene, scene.starts[0], Noise::Paper).expect("the robot has room");
+    let environment = &Environment::new(&simulator, &scene, scene.starts[0], Noise::Paper).expect("the robot has room");
     let evaluator = FitnessEvaluator {
-        course,
+        environment,
         target_cm: scene.target_cm.expect("the scene has a target"),
         decoder: GenotypeDecoder::new(&simulator, MAX_STEPS),
         runs: paper::RUNS,

@@ -1,4 +1,4 @@
-//! The whole job on the built-in robot: record, train, evaluate, evolve, simulate, try on the robot, export, draw.
+//! The whole request on the built-in robot: record, train, evaluate, evolve, simulate, try on the robot, export, draw.
 
 mod pictures;
 
@@ -23,8 +23,8 @@ use crate::files;
 use crate::learn::train::{self, TABLE_ONE, Trainer};
 use crate::logs::Scene;
 use crate::problem::{Problem, Result};
-use crate::simulator::course::Course;
-use crate::simulator::rehearsal::Rehearsal;
+use crate::simulator::environment::Environment;
+use crate::simulator::rollout_report::RolloutReport;
 use crate::simulator::{Noise, Simulator};
 
 const TRAINING_RUNS: usize = 100;
@@ -36,7 +36,7 @@ const TRIALS: usize = 3;
 /// Number of fresh simulated runs for a success rate.
 const JUDGED_RUNS: usize = 200;
 
-/// Stream keys of the parts of the job.
+/// Stream keys of the parts of the request.
 #[derive(Clone, Copy)]
 enum Purpose {
     TrainingLogs,
@@ -47,7 +47,7 @@ enum Purpose {
     Trial,
 }
 
-/// Stage of the job, for a progress display.
+/// Stage of the request, for a progress display.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Stage {
     /// Recording of logs.
@@ -83,12 +83,12 @@ pub struct StartSummary {
 
 /// A start's controller and its runs.
 struct Trial {
-    rehearsal: Rehearsal,
+    rollouts: RolloutReport,
     trajectories: Vec<Trajectory>,
     summary: StartSummary,
 }
 
-/// Does the job and leaves everything in the folder `out`.
+/// Does the request and leaves everything in the folder `out`.
 ///
 /// # Errors
 /// When `out` cannot be written.
@@ -132,11 +132,12 @@ impl<W: Fn(Stage)> DemoRun<'_, W> {
     /// simulates and drives it.
     fn start(&self, start: usize, [evolution, simulation, trial]: [u64; 3]) -> Result<Trial> {
         let pose = self.scene.starts[start];
-        let course = &Course::new(self.simulator, self.scene, pose, Noise::Learned)?.with_beam(self.simulator);
+        let environment =
+            &Environment::new(self.simulator, self.scene, pose, Noise::Learned)?.with_beam(self.simulator);
         let target_cm = self.scene.target_cm.ok_or_else(|| Problem::new("the scene has no target"))?;
         let decoder = GenotypeDecoder::new(self.simulator, MAX_STEPS);
         let seed = derive(evolution, &[start as u64]);
-        let task = EvolutionTask { course, target_cm, decoder, random_numbers: RandomNumbers::Common, seed };
+        let task = EvolutionTask { environment, target_cm, decoder, random_numbers: RandomNumbers::Common, seed };
         let report = |generation, _| (self.watch)(Stage::Evolving { start: start + 1, generation });
         let robot = &BuiltInRobot::new(&self.simulator.robot, self.scene, &[]);
         let drive = |controller: &Controller, place: &[u64]| {
@@ -159,11 +160,12 @@ impl<W: Fn(Stage)> DemoRun<'_, W> {
             success: simulated.rate,
         };
         self.write(start + 1, &controller, origin)?;
-        let rehearsal = Rehearsal::new(course, self.scene, &controller, TRIALS, derive(simulation, &[start as u64]));
+        let rollouts =
+            RolloutReport::new(environment, self.scene, &controller, TRIALS, derive(simulation, &[start as u64]));
         let trajectories: Vec<Trajectory> =
             (0..TRIALS as u64).map(|run| drive(&controller, &[start as u64, run])).collect();
         let real = real_success(&trajectories, target_cm);
-        Ok(Trial { rehearsal, trajectories, summary: StartSummary { simulated, real } })
+        Ok(Trial { rollouts, trajectories, summary: StartSummary { simulated, real } })
     }
 
     fn write(&self, number: usize, controller: &Controller, origin: controller_file::Origin) -> Result<()> {

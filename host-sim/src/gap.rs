@@ -17,6 +17,7 @@ pub mod excitation;
 pub mod explain;
 pub mod fit;
 pub mod hypothesis;
+pub mod method;
 pub mod omnibus;
 pub mod propose;
 pub mod remainder;
@@ -24,5 +25,6 @@ pub mod remainder;
 mod test_support;
 pub mod validate;
 
-pub use diagnose::{Findings, Method, diagnose, findings};
+pub use diagnose::{Findings, diagnose, findings};
 pub use diagnosis::Diagnosis;
+pub use method::Method;

@@ -3,16 +3,17 @@
 pub mod baseline;
 mod batch;
 mod beam;
-pub mod course;
 pub mod draws;
+mod effect_layer;
+pub mod environment;
 pub mod fixed_point;
 pub mod kinematic;
 pub mod motion;
 pub mod nominal;
-pub mod rehearsal;
+pub mod residuals;
+pub mod rollout;
+pub mod rollout_report;
 pub mod room;
-pub mod scatter;
-mod wrapped;
 
 use std::path::Path;
 
@@ -26,7 +27,7 @@ use crate::logs::Robot;
 use crate::problem::{Problem, Result};
 use motion::MotionNetworks;
 use nominal::NominalModel;
-use scatter::{ConstantReading, Spread};
+use residuals::{ConstantReading, ResidualQuantiles};
 
 /// The version of the simulator file that is written and read.
 pub const SCHEMA: u32 = 1;
@@ -96,7 +97,8 @@ pub struct Learned<const N: usize> {
     pub network: Network<f32, N>,
     /// Logged minus predicted: for the sonar in logs that the network was not trained on, for motion after the misfit
     /// that the reference knows of is put right.
-    pub spread: Spread,
+    #[serde(rename = "spread")]
+    pub residuals: ResidualQuantiles,
 }
 
 /// A network that the logs could not support.
@@ -173,7 +175,7 @@ impl Simulator {
 
 impl<const N: usize> Learned<N> {
     fn is_sound(&self) -> bool {
-        self.network.check().is_ok() && self.spread.is_sound()
+        self.network.check().is_ok() && self.residuals.is_sound()
     }
 }
 

@@ -6,7 +6,7 @@ use clap::Args;
 
 use super::{diagnosis_page, diagnosis_text};
 use crate::effects::applied::AppliedEffect;
-use crate::evaluation::final_position::{FinalPositions, endings};
+use crate::evaluation::final_position::{FinalPositionErrors, final_position_errors};
 use crate::evolve::controller_file::ControllerFile;
 use crate::files;
 use crate::gap::{Findings, Method, findings, validate};
@@ -26,6 +26,9 @@ pub struct Diagnose {
     /// The logs are of this controller's runs: also compare where they end.
     #[arg(long, value_name = "CONTROLLER")]
     controller: Option<PathBuf>,
+    /// Fixes every draw: bootstrap intervals and simulated noise.
+    #[arg(long, default_value_t = Method::SEED)]
+    seed: u64,
     /// Also write the diagnosis here.
     #[arg(long)]
     json: Option<PathBuf>,
@@ -48,15 +51,16 @@ impl Diagnose {
     pub fn run(&self) -> Result<String> {
         let logs = super::read_logs(&self.logs)?;
         let simulator = if self.sim.as_os_str() == KINEMATIC { None } else { Some(Simulator::read(&self.sim)?) };
+        let method = Method { seed: self.seed, ..Method::default() };
         let mut found = match &simulator {
-            None => findings(kinematic::baseline(&logs), &logs, Method::default())?,
+            None => findings(kinematic::baseline(&logs), &logs, method)?,
             Some(simulator) => {
                 validate::same_robot(&simulator.robot, &logs.robot)?;
-                findings(Baseline::learned(simulator)?, &logs, Method::default())?
+                findings(Baseline::learned(simulator)?, &logs, method)?
             }
         };
         if let Some(path) = &self.controller {
-            found.diagnosis.final_positions = Some(ends(simulator.as_ref(), &found.applied, path, &logs)?);
+            found.diagnosis.final_positions = Some(ends(simulator.as_ref(), &found.applied, path, &logs, self.seed)?);
         }
         let diagnosis = &found.diagnosis;
         if let Some(path) = &self.apply {
@@ -85,12 +89,13 @@ fn ends(
     applied: &[AppliedEffect],
     controller: &Path,
     logs: &Logs,
-) -> Result<FinalPositions> {
+    seed: u64,
+) -> Result<FinalPositionErrors> {
     let simulator = simulator.ok_or_else(|| Problem::new("--controller needs a simulator file that can run it"))?;
     let controller = ControllerFile::read(controller)?.controller;
     let mut better = simulator.clone();
     better.added.extend(applied.iter().cloned());
-    endings([simulator, &better], &controller, logs)
+    final_position_errors([simulator, &better], &controller, logs, seed)
 }
 
 /// The simulator with the effects found.

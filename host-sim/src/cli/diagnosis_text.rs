@@ -1,6 +1,6 @@
 //! A diagnosis in words, on one screen.
 
-use crate::evaluation::final_position::FinalPositions;
+use crate::evaluation::final_position::FinalPositionErrors;
 use crate::gap::Diagnosis;
 use crate::gap::account::GapReduction;
 use crate::gap::diagnosis::Answer;
@@ -59,8 +59,8 @@ fn profile(profile: &ResidualProfile) -> String {
     format!("  {} ({unit}) by {depends_on}: {}", channel.name(), bins.collect::<Vec<_>>().join(" | "))
 }
 
-fn final_positions(of: &FinalPositions) -> String {
-    let FinalPositions { runs, before_cm, after_cm, floor_cm } = of;
+fn final_positions(of: &FinalPositionErrors) -> String {
+    let FinalPositionErrors { runs, before_cm, after_cm, floor_cm } = of;
     format!(
         "The controller's {runs} run(s) end {before_cm:.1} cm from where the simulator expects, {after_cm:.1} cm with the \
          effects; scatter alone makes {floor_cm:.1} cm."

@@ -13,7 +13,7 @@ use crate::evolve::robust::{self, EvolutionTask};
 use crate::geometry::Pose;
 use crate::logs::{Robot, Scene};
 use crate::problem::{Problem, Result};
-use crate::simulator::course::Course;
+use crate::simulator::environment::Environment;
 use crate::simulator::{Noise, Simulator};
 
 /// Evolve one controller in a simulator.
@@ -61,14 +61,14 @@ impl Evolve {
         let start = start_of(&scene, self.start, &simulator.robot, &self.scene)?;
         let target_cm = scene.target_cm.ok_or_else(|| Problem::in_file(&self.scene, "has no [target]"))?;
         let noise = if self.paper || self.paper_noise { Noise::Paper } else { Noise::Learned };
-        let course = Course::new(&simulator, &scene, start, noise)?;
-        let course = &if noise == Noise::Learned { course.with_beam(&simulator) } else { course };
+        let environment = Environment::new(&simulator, &scene, start, noise)?;
+        let environment = &if noise == Noise::Learned { environment.with_beam(&simulator) } else { environment };
         let decoder = GenotypeDecoder::new(&simulator, self.max_steps);
         let random_numbers =
             if self.paper || self.fresh_numbers { RandomNumbers::Independent } else { RandomNumbers::Common };
         let seed = self.seed;
         let (runs, floor_cm) = (paper::RUNS, paper::FLOOR_CM);
-        let evaluator = FitnessEvaluator { course, target_cm, decoder, runs, floor_cm, random_numbers, seed };
+        let evaluator = FitnessEvaluator { environment, target_cm, decoder, runs, floor_cm, random_numbers, seed };
         let settings = paper::settings();
         let bar = progress::bar(if self.paper { settings.max_generations } else { robust::GENERATIONS } as u64);
         let watch = |generation: usize, fitness: f64| {
@@ -78,7 +78,7 @@ impl Evolve {
         let evolved = if self.paper {
             paper::evolve(&evaluator, &settings, watch)
         } else {
-            robust::evolve(&EvolutionTask { course, target_cm, decoder, random_numbers, seed }, watch)
+            robust::evolve(&EvolutionTask { environment, target_cm, decoder, random_numbers, seed }, watch)
         };
         bar.finish_and_clear();
         let success = evaluator.success(&evolved.controller, JUDGED_RUNS, JUDGING);

@@ -10,8 +10,8 @@ use crate::evolve::controller_file::ControllerFile;
 use crate::files;
 use crate::logs::Scene;
 use crate::problem::Result;
-use crate::simulator::course::Course;
-use crate::simulator::rehearsal::Rehearsal;
+use crate::simulator::environment::Environment;
+use crate::simulator::rollout_report::RolloutReport;
 use crate::simulator::{Noise, Simulator};
 
 /// Run a controller in a simulator.
@@ -52,17 +52,17 @@ impl Simulate {
         let scene = Scene::read(&self.scene)?;
         let start = start_of(&scene, self.start, &simulator.robot, &self.scene)?;
         let noise = if self.paper_noise { Noise::Paper } else { Noise::Learned };
-        let course = Course::new(&simulator, &scene, start, noise)?;
-        let rehearsal = Rehearsal::new(&course, &scene, &controller, self.runs as usize, self.seed);
+        let environment = Environment::new(&simulator, &scene, start, noise)?;
+        let rollouts = RolloutReport::new(&environment, &scene, &controller, self.runs as usize, self.seed);
         if let Some(path) = &self.json {
-            files::write_json(path, &rehearsal)?;
+            files::write_json(path, &rollouts)?;
         }
-        Ok(told(&rehearsal))
+        Ok(told(&rollouts))
     }
 }
 
-fn told(rehearsal: &Rehearsal) -> String {
-    let rows: Vec<[String; 6]> = rehearsal
+fn told(rollouts: &RolloutReport) -> String {
+    let rows: Vec<[String; 6]> = rollouts
         .runs
         .iter()
         .take(ROWS)
@@ -70,20 +70,20 @@ fn told(rehearsal: &Rehearsal) -> String {
         .map(|(i, run)| {
             let end = [number(Some(run.end_x_cm), 1), number(Some(run.end_y_cm), 1)];
             let [x, y] = end;
-            [(i + 1).to_string(), run.ending.into(), run.steps.to_string(), x, y, number(run.distance_cm, 1)]
+            [(i + 1).to_string(), run.termination.into(), run.steps.to_string(), x, y, number(run.distance_cm, 1)]
         })
         .collect();
     let mut text = table::text(["run", "ending", "steps", "x (cm)", "y (cm)", "to target (cm)"], &rows);
-    if rehearsal.runs.len() > ROWS {
-        text += &format!("... and {} more\n", rehearsal.runs.len() - ROWS);
+    if rollouts.runs.len() > ROWS {
+        text += &format!("... and {} more\n", rollouts.runs.len() - ROWS);
     }
-    let crashed = rehearsal.runs.iter().filter(|run| run.ending == "crashed").count();
-    let crashes = format!("{crashed} of {} crashed", rehearsal.runs.len());
-    text + &match rehearsal.success {
+    let crashed = rollouts.runs.iter().filter(|run| run.termination == "crashed").count();
+    let crashes = format!("{crashed} of {} crashed", rollouts.runs.len());
+    text + &match rollouts.success {
         Some(success) => format!(
             "{:.1} % of the runs reached the target (within {} cm, no crash); {crashes}\n",
             100.0 * success,
-            rehearsal.reached_within_cm
+            rollouts.reached_within_cm
         ),
         None => format!("{crashes}; the scene has no target\n"),
     }

@@ -14,7 +14,7 @@ use crate::report::expected_against_predicted::{Panel, Samples};
 use crate::report::paths::{PathPanel, Trace};
 use crate::report::sonar_surfaces::Surface;
 use crate::simulator::Simulator;
-use crate::simulator::course::REACHED_CM;
+use crate::simulator::rollout::REACHED_CM;
 
 /// Figure 3 shows one test sample in this many, so that single ones are visible.
 const EVERY: usize = 4;
@@ -82,16 +82,16 @@ pub fn paths(out: &Path, scene: &Scene, trials: &[Trial]) -> Result<()> {
             scene: scene.clone(),
             start: *start,
             target_radius_cm: REACHED_CM,
-            simulated: trial.rehearsal.runs.iter().map(simulated).collect(),
+            simulated: trial.rollouts.runs.iter().map(simulated).collect(),
             real: trial.trajectories.iter().map(real).collect(),
         })
         .collect();
     report::paths(&panels).write(out, "figure-4-simulated-and-real-paths")
 }
 
-fn simulated(run: &crate::simulator::rehearsal::SimulatedRun) -> Trace {
+fn simulated(run: &crate::simulator::rollout_report::Rollout) -> Trace {
     let points_cm = run.path.iter().map(|p| DVec2::new(p.x_cm, p.y_cm)).collect();
-    Trace { points_cm, crashed: run.ending == "crashed" }
+    Trace { points_cm, crashed: run.termination == "crashed" }
 }
 
 fn real(trajectory: &crate::built_in_robot::Trajectory) -> Trace {

@@ -6,7 +6,7 @@ use crate::effects::context::{RunHistory, Surroundings};
 use crate::effects::{PoseIncrement, StepContext};
 use crate::geometry::Pose;
 use crate::logs::{Logs, Run, samples};
-use crate::simulator::baseline::Drive;
+use crate::simulator::baseline::MotionModel;
 use crate::sonar::Fan;
 
 /// A folder of logs, ready to be judged.
@@ -94,7 +94,7 @@ impl Observations {
     }
 
     /// Asks the simulator once what it expects of every row: most hypotheses leave the commands as they are.
-    pub fn expect(mut self, drive: Option<&Drive>) -> Self {
+    pub fn expect(mut self, drive: Option<&MotionModel>) -> Self {
         for row in &mut self.rows {
             let [now, before, ..] = row.context.commands;
             row.expected = drive.map(|drive| drive.step(now, before));

@@ -1,5 +1,5 @@
-//! How far predicted paths end from logged ones when the simulator runs open-loop from a logged pose: with the
-//! simulator as it is, with the effects added, and what scatter alone makes of it.
+//! Multi-step prediction error: the distance between the ends of open-loop predicted and logged paths, for the simulator
+//! as it is, with the effects added, and from noise alone.
 
 use glam::DVec2;
 use rand_distr::{Distribution, StandardNormal};
@@ -11,7 +11,7 @@ use crate::chance::{Generator, generator};
 use crate::effects::StepContext;
 use crate::effects::chain::EffectChain;
 use crate::geometry::{Pose, direction};
-use crate::simulator::baseline::Drive;
+use crate::simulator::baseline::MotionModel;
 use crate::statistics::rounding;
 use crate::statistics::summary::median;
 
@@ -26,7 +26,7 @@ pub struct PathError {
     /// With the effects added, cm.
     #[serde(serialize_with = "rounding::number")]
     pub after_cm: f64,
-    /// What the robot's own scatter and the tracker's would make of a perfect simulator, cm.
+    /// From process and tracker noise alone, as for a perfect simulator, cm.
     #[serde(serialize_with = "rounding::number")]
     pub floor_cm: f64,
 }
@@ -35,19 +35,20 @@ pub struct PathError {
 const LENGTHS: [usize; 5] = [1, 2, 5, 10, 25];
 /// Paths drawn for the floor from each start.
 const DRAWS: usize = 8;
+/// Added to the seed, so that these draws are not those of the bootstrap.
+const STREAM: u64 = 3;
 
-/// The gap over paths of each length that the runs are long enough for, with the effects that the simulator has
-/// (`before`) and with those that were found (`after`).
-pub fn open_loop(before: &EffectChain, after: &EffectChain, drive: &Drive, logs: &Observations) -> Vec<PathError> {
-    let mut rng = generator(4, &[]);
-    LENGTHS.iter().filter_map(|steps| gap(*steps, before, after, drive, logs, &mut rng)).collect()
+/// The error for each length of which the runs have paths: with the effects that the simulator has (first) and with
+/// those that were found (second). The noise follows from `seed`.
+pub fn open_loop(effects: [&EffectChain; 2], drive: &MotionModel, logs: &Observations, seed: u64) -> Vec<PathError> {
+    let mut rng = generator(seed.wrapping_add(STREAM), &[]);
+    LENGTHS.iter().filter_map(|steps| error(*steps, effects, drive, logs, &mut rng)).collect()
 }
 
-fn gap(
+fn error(
     steps: usize,
-    before: &EffectChain,
-    after: &EffectChain,
-    drive: &Drive,
+    [before, after]: [&EffectChain; 2],
+    drive: &MotionModel,
     logs: &Observations,
     rng: &mut Generator,
 ) -> Option<PathError> {
@@ -80,7 +81,12 @@ fn is_unbroken(piece: &[Observation]) -> bool {
 }
 
 /// Where the robot ends that starts as the piece does and is given its commands.
-fn end(effects: &EffectChain, drive: &Drive, piece: &[Observation], mut scatter: impl FnMut() -> [f64; 3]) -> DVec2 {
+fn end(
+    effects: &EffectChain,
+    drive: &MotionModel,
+    piece: &[Observation],
+    mut scatter: impl FnMut() -> [f64; 3],
+) -> DVec2 {
     let mut pose = piece[0].context.pose;
     for row in &piece[..piece.len() - 1] {
         let motion = predictions::step(effects, drive, &StepContext { pose, ..row.context });
@@ -100,8 +106,8 @@ struct Noise {
 }
 
 impl Noise {
-    fn of(drive: &Drive) -> Self {
-        let (all, own) = (drive.scatter(), drive.own_share());
+    fn of(drive: &MotionModel) -> Self {
+        let (all, own) = (drive.scatter(), drive.process_noise_fraction());
         let tracker = [0, 1, 2].map(|c| all[c] * (1.0 - own[c] * own[c]).max(0.0).sqrt());
         let robot = [0, 1, 2].map(|c| all[c] * own[c]);
         // A step's residual has the tracker's error at both its ends; the heading's matters at the begin alone.
@@ -109,7 +115,7 @@ impl Noise {
     }
 
     /// The end of a path that the explained robot might have driven, as the tracker might have seen it.
-    fn drawn(&self, effects: &EffectChain, drive: &Drive, piece: &[Observation], rng: &mut Generator) -> DVec2 {
+    fn drawn(&self, effects: &EffectChain, drive: &MotionModel, piece: &[Observation], rng: &mut Generator) -> DVec2 {
         let driven = end(effects, drive, piece, || self.robot.map(|s| s * normal(rng)));
         let from = piece[0].context.pose.position_cm;
         let seen = DVec2::from(self.tracker_cm.map(|s| s * normal(rng)));

@@ -7,7 +7,7 @@ use crate::geometry::wrap_rad;
 use crate::logs::Logs;
 use crate::problem::Result;
 use crate::simulator::Simulator;
-use crate::simulator::baseline::{Baseline, Drive};
+use crate::simulator::baseline::{Baseline, MotionModel};
 use crate::sonar::{Fan, Perturbation};
 
 /// Logged and predicted, sample by sample.
@@ -54,12 +54,12 @@ pub fn predict(simulator: &Simulator, logs: &Logs) -> Result<Predictions> {
 }
 
 /// The predicted increment of one step.
-pub fn step(effects: &EffectChain, drive: &Drive, context: &StepContext) -> PoseIncrement {
+pub fn step(effects: &EffectChain, drive: &MotionModel, context: &StepContext) -> PoseIncrement {
     effects.wrap(context, |now, before| drive.step(now, before))
 }
 
 /// The predicted increment of a row's step, or of the steps that are judged as one.
-pub fn increment(effects: &EffectChain, drive: &Drive, row: &Observation) -> PoseIncrement {
+pub fn increment(effects: &EffectChain, drive: &MotionModel, row: &Observation) -> PoseIncrement {
     let usual = [row.context.commands[0], row.context.commands[1]];
     let first = effects.wrap(&row.context, |now, before| match row.expected {
         Some(expected) if usual == [now, before] => expected,
@@ -77,7 +77,7 @@ pub fn increment(effects: &EffectChain, drive: &Drive, row: &Observation) -> Pos
 }
 
 /// Logged minus predicted of a row, a step: forward (cm), lateral (cm), turn (rad).
-pub fn residual(effects: &EffectChain, drive: &Drive, row: &Observation) -> Option<[f64; 3]> {
+pub fn residual(effects: &EffectChain, drive: &MotionModel, row: &Observation) -> Option<[f64; 3]> {
     let logged = row.motion?;
     let predicted = increment(effects, drive, row);
     let off = [

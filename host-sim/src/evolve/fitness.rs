@@ -7,8 +7,9 @@ use rayon::prelude::*;
 use super::genome::GenotypeDecoder;
 use crate::chance::{Generator, derive};
 use crate::genetic;
-use crate::simulator::course::{Course, Ending, Job, Outcome, REACHED_CM, Sensor};
+use crate::simulator::environment::Environment;
 use crate::simulator::motion::MotionTable;
+use crate::simulator::rollout::{REACHED_CM, RolloutOutcome, RolloutRequest, SensorModel, Termination};
 
 /// Number of individuals simulated in one batch.
 const TOGETHER: usize = 25;
@@ -25,7 +26,7 @@ pub enum RandomNumbers {
 /// Evaluates the fitness of controllers, as an optimisation problem for the genetic algorithm.
 pub struct FitnessEvaluator<'a> {
     /// Where controllers run.
-    pub course: &'a Course<'a>,
+    pub environment: &'a Environment<'a>,
     /// Where they have to stop, cm.
     pub target_cm: DVec2,
     /// Decodes genotypes into controllers.
@@ -53,42 +54,43 @@ pub struct Success {
 
 /// Fitness of one run (paper, equation 3), 1/cm: 0.5 / distance after a crash, else 1 / distance. Distances below
 /// `floor_cm` are raised to it, since 1 / distance is unbounded.
-pub fn fitness(outcome: &Outcome, target_cm: DVec2, floor_cm: f64) -> f64 {
+pub fn fitness(outcome: &RolloutOutcome, target_cm: DVec2, floor_cm: f64) -> f64 {
     let distance_cm = outcome.end_cm.distance(target_cm).max(floor_cm);
-    if outcome.ending == Ending::Crashed { 0.5 / distance_cm } else { 1.0 / distance_cm }
+    if outcome.termination == Termination::Crashed { 0.5 / distance_cm } else { 1.0 / distance_cm }
 }
 
-/// Runs alternate between the sonar networks and, where the course has one, the beam model.
-fn sensor_of(run: usize) -> Sensor {
-    if run.is_multiple_of(2) { Sensor::Networks } else { Sensor::Beam }
+/// Runs alternate between the sonar networks and, where the environment has one, the beam model.
+fn sensor_of(run: usize) -> SensorModel {
+    if run.is_multiple_of(2) { SensorModel::Networks } else { SensorModel::Beam }
 }
 
 impl FitnessEvaluator<'_> {
     /// Outcomes of a number of runs of a controller; another `purpose` gives independent random numbers.
-    pub fn outcomes(&self, controller: &Controller, runs: usize, purpose: u64) -> Vec<Outcome> {
-        let motions = &self.course.motions(controller);
+    pub fn outcomes(&self, controller: &Controller, runs: usize, purpose: u64) -> Vec<RolloutOutcome> {
+        let motions = &self.environment.motions(controller);
         let seed = |run: usize| derive(self.seed, &[purpose, run as u64]);
-        let jobs: Vec<Job> =
-            (0..runs).map(|run| Job { controller, motions, sensor: sensor_of(run), seed: seed(run) }).collect();
-        self.course.run(&jobs)
+        let requests: Vec<RolloutRequest> = (0..runs)
+            .map(|run| RolloutRequest { controller, motions, sensor: sensor_of(run), seed: seed(run) })
+            .collect();
+        self.environment.run(&requests)
     }
 
     /// Summed fitness of individuals, the first of which has the index `first` in its generation.
     fn summed(&self, generation: usize, first: usize, individuals: &[Vec<f32>]) -> Vec<f64> {
         let controllers: Vec<Controller> = individuals.iter().map(|genes| self.decoder.controller(genes)).collect();
-        let motions: Vec<MotionTable> = controllers.iter().map(|c| self.course.motions(c)).collect();
-        let mut jobs = Vec::with_capacity(individuals.len() * self.runs);
+        let motions: Vec<MotionTable> = controllers.iter().map(|c| self.environment.motions(c)).collect();
+        let mut requests = Vec::with_capacity(individuals.len() * self.runs);
         for (i, (controller, motions)) in controllers.iter().zip(&motions).enumerate() {
             let individual = if self.random_numbers == RandomNumbers::Common { 0 } else { (first + i) as u64 };
             let place = |run: usize| [0, generation as u64, individual, run as u64];
-            jobs.extend((0..self.runs).map(|run| Job {
+            requests.extend((0..self.runs).map(|run| RolloutRequest {
                 controller,
                 motions,
                 sensor: sensor_of(run),
                 seed: derive(self.seed, &place(run)),
             }));
         }
-        let outcomes = self.course.run(&jobs);
+        let outcomes = self.environment.run(&requests);
         outcomes.chunks(self.runs).map(|runs| self.fitness_of(runs)).collect()
     }
 
@@ -98,20 +100,20 @@ impl FitnessEvaluator<'_> {
     }
 
     /// Success of outcomes.
-    pub fn success_of(&self, outcomes: &[Outcome]) -> Success {
+    pub fn success_of(&self, outcomes: &[RolloutOutcome]) -> Success {
         Success::of(outcomes, self.target_cm)
     }
 
     /// Fitness summed over outcomes.
-    pub fn fitness_of(&self, outcomes: &[Outcome]) -> f64 {
+    pub fn fitness_of(&self, outcomes: &[RolloutOutcome]) -> f64 {
         outcomes.iter().map(|o| fitness(o, self.target_cm, self.floor_cm)).sum()
     }
 }
 
 impl Success {
     /// Success of outcomes for a target, cm.
-    pub fn of(outcomes: &[Outcome], target_cm: DVec2) -> Self {
-        let end = |o: &Outcome| (o.end_cm.distance(target_cm), o.ending == Ending::Crashed);
+    pub fn of(outcomes: &[RolloutOutcome], target_cm: DVec2) -> Self {
+        let end = |o: &RolloutOutcome| (o.end_cm.distance(target_cm), o.termination == Termination::Crashed);
         Self::of_ends(outcomes.iter().map(end))
     }
 

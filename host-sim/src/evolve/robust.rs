@@ -17,8 +17,8 @@ use super::paper::Evolved;
 use crate::chance::derive;
 use crate::genetic::mutation::{Mutation, Unit};
 use crate::genetic::{self, Settings};
-use crate::simulator::course::Course;
-use crate::simulator::course::REACHED_CM;
+use crate::simulator::environment::Environment;
+use crate::simulator::rollout::REACHED_CM;
 
 /// Total number of generations of all restarts.
 pub const GENERATIONS: usize = RESTARTS * (EXPLORING.max_generations + REFINING.max_generations);
@@ -55,7 +55,7 @@ const JUDGING: u64 = 1;
 /// The task that a controller is evolved for.
 pub struct EvolutionTask<'a> {
     /// Where it runs.
-    pub course: &'a Course<'a>,
+    pub environment: &'a Environment<'a>,
     /// Where it has to stop, cm.
     pub target_cm: DVec2,
     /// Decodes genotypes into controllers.
@@ -117,7 +117,7 @@ impl<'a> EvolutionTask<'a> {
 
     fn evaluator(&self, runs: usize, seed: u64) -> FitnessEvaluator<'a> {
         FitnessEvaluator {
-            course: self.course,
+            environment: self.environment,
             target_cm: self.target_cm,
             decoder: self.decoder,
             runs,

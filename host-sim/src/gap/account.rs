@@ -84,6 +84,7 @@ pub fn reduction(found: &Comparison, context: &FitContext, logs: &Observations) 
             (channel, follows.iter().zip(scatters).map(|(f, s)| f + s).collect())
         })
         .collect();
+    let seed = context.seed;
     let tally = |channels: &[Channel]| {
         let mut sum = vec![0.0; logs.blocks];
         for (_, by_block) in remaining.iter().filter(|(channel, _)| channels.contains(channel)) {
@@ -93,19 +94,19 @@ pub fn reduction(found: &Comparison, context: &FitContext, logs: &Observations) 
     };
     let steps = logs.rows.len() as f64;
     let all = tally(&Channel::ALL);
-    let whole = all.reduction(steps)?;
+    let whole = all.reduction(steps, seed)?;
     let channel = |channel: Channel| {
         let tally = tally(&[channel]);
         let told = tally.reducible() >= context.calibration.judgement.strong_nats;
-        Some(ChannelReduction { channel, reduction: tally.reduction(steps).filter(|_| told)? })
+        Some(ChannelReduction { channel, reduction: tally.reduction(steps, seed).filter(|_| told)? })
     };
     let runner_up = found.runner_up(&context.calibration).map(|fit| {
         let gained: f64 = difference(&judged(fit), &none, logs, &Channel::ALL).iter().sum();
         RunnerUp { id: fit.ids().join("+"), reducible_closed: gained / all.reducible() }
     });
     let drive = context.baseline.motion.as_ref();
-    let paths =
-        drive.map_or_else(Vec::new, |d| paths::open_loop(&found.none.effects(), &found.chosen.effects(), d, logs));
+    let effects = [&found.none, &found.chosen].map(Fitted::effects);
+    let paths = drive.map_or_else(Vec::new, |drive| paths::open_loop([&effects[0], &effects[1]], drive, logs, seed));
     let channels = Channel::ALL.into_iter().filter_map(channel).collect();
     Some(GapReduction { whole, floor: 0.0, runner_up, channels, paths })
 }
@@ -115,18 +116,18 @@ impl Tally {
         self.gained.iter().sum::<f64>() + self.remaining.iter().sum::<f64>().max(0.0)
     }
 
-    fn reduction(&self, steps: f64) -> Option<Reduction> {
+    fn reduction(&self, steps: f64, seed: u64) -> Option<Reduction> {
         let (gained, reducible) = (self.gained.iter().sum::<f64>(), self.reducible());
         (reducible > 0.0).then(|| Reduction {
             before: reducible / steps,
             after: (reducible - gained) / steps,
             reducible_closed: gained / reducible,
-            ci95: self.interval(),
+            ci95: self.interval(seed),
         })
     }
 
-    fn interval(&self) -> [f64; 2] {
-        bootstrap::interval(&self.gained, &self.remaining, |gained, remaining| {
+    fn interval(&self, seed: u64) -> [f64; 2] {
+        bootstrap::interval(&self.gained, &self.remaining, seed, |gained, remaining| {
             let reducible = gained + remaining.max(0.0);
             (reducible > 0.0).then(|| gained / reducible)
         })
@@ -156,20 +157,20 @@ mod tests {
     /// Every block gains six nats of eight: the share is three quarters however blocks are drawn.
     #[test]
     fn the_closed_share_is_what_is_gained_of_what_could_be() {
-        let found = tally(&[6.0; 4], &[2.0; 4]).reduction(16.0).expect("a gap");
+        let found = tally(&[6.0; 4], &[2.0; 4]).reduction(16.0, 1).expect("a gap");
         assert_eq!(found, Reduction { before: 2.0, after: 0.5, reducible_closed: 0.75, ci95: [0.75; 2] });
     }
 
     #[test]
     fn nothing_remains_where_less_than_nothing_does() {
-        let found = tally(&[6.0; 4], &[-2.0; 4]).reduction(24.0).expect("a gap");
+        let found = tally(&[6.0; 4], &[-2.0; 4]).reduction(24.0, 1).expect("a gap");
         assert_eq!((found.before, found.after, found.reducible_closed), (1.0, 0.0, 1.0));
     }
 
     #[test]
     fn without_anything_to_reduce_there_is_no_share() {
-        assert_eq!(tally(&[0.0; 4], &[0.0; 4]).reduction(10.0), None);
-        assert_eq!(tally(&[-3.0; 4], &[2.0; 4]).reduction(10.0), None);
+        assert_eq!(tally(&[0.0; 4], &[0.0; 4]).reduction(10.0, 1), None);
+        assert_eq!(tally(&[-3.0; 4], &[2.0; 4]).reduction(10.0, 1), None);
     }
 
     /// Blocks gain two or six nats of eight: over a hundred of them the mean share of a half has a standard error of
@@ -178,7 +179,7 @@ mod tests {
     fn the_interval_is_that_of_resampled_blocks() {
         let gained: Vec<f64> = (0..100).map(|block| 4.0 + 2.0 * alternating(block)).collect();
         let remaining: Vec<f64> = gained.iter().map(|g| 8.0 - g).collect();
-        let found = tally(&gained, &remaining).reduction(100.0).expect("a gap");
+        let found = tally(&gained, &remaining).reduction(100.0, 1).expect("a gap");
         assert_eq!(found.reducible_closed, 0.5);
         let [low, high] = found.ci95;
         assert!((low - 0.451).abs() < 0.008 && (high - 0.549).abs() < 0.008, "{low} {high}");

@@ -1,28 +1,18 @@
 //! The method, from logs to an answer.
 
 use super::account::GapReduction;
-use super::calibration::Calibration;
 use super::compare::{Comparison, first_gain};
 use super::condition::Conditioned;
 use super::diagnosis::{Answer, Diagnosis};
 use super::explain::{self, Judged};
 use super::fit::{FitContext, Fitted, Gain, best_of_each};
+use super::method::Method;
 use super::{account, confirm, excitation, propose, remainder, validate};
 use crate::effects::applied::AppliedEffect;
-use crate::effects::{CATALOGUE, Effect};
 use crate::logs::Logs;
 use crate::problem::Result;
 use crate::simulator::Simulator;
 use crate::simulator::baseline::Baseline;
-
-/// What a diagnosis looks for, and when it believes it.
-#[derive(Clone, Copy)]
-pub struct Method {
-    /// The effects that compete.
-    pub catalogue: &'static [&'static Effect],
-    /// When a gain counts.
-    pub calibration: Calibration,
-}
 
 /// A diagnosis, and what came of it beside the words.
 pub struct Findings {
@@ -30,12 +20,6 @@ pub struct Findings {
     pub diagnosis: Diagnosis,
     /// The effects that explain the gap, as a simulator takes them; none unless they are known.
     pub applied: Vec<AppliedEffect>,
-}
-
-impl Default for Method {
-    fn default() -> Self {
-        Method { catalogue: CATALOGUE, calibration: Calibration::shipped() }
-    }
 }
 
 /// Diagnoses logs by the usual method.

@@ -8,7 +8,7 @@ use super::explain::NamedEffect;
 use super::explain::profile::ResidualProfile;
 use super::explain::strata::Stratum;
 use super::propose::Experiment;
-use crate::evaluation::final_position::FinalPositions;
+use crate::evaluation::final_position::FinalPositionErrors;
 
 /// What `mindgap diagnose` finds; docs/formats.md has the JSON.
 #[derive(Clone, Debug)]
@@ -18,7 +18,7 @@ pub struct Diagnosis {
     /// Where the gap lies.
     pub strata: Vec<Stratum>,
     /// Where a controller's runs end, if the logs are said to be those of a controller.
-    pub final_positions: Option<FinalPositions>,
+    pub final_positions: Option<FinalPositionErrors>,
     /// Effects that these logs could not show: untestable, not absent.
     pub untestable: Vec<&'static str>,
     /// What else limits this diagnosis.

@@ -3,8 +3,8 @@
 use rayon::prelude::*;
 
 use super::calibration::{Calibration, Gate};
-use super::diagnose::Method;
 use super::hypothesis::{Hypothesis, LogLikelihood};
+use super::method::Method;
 use crate::effects::applied::AppliedEffect;
 use crate::effects::chain::EffectChain;
 use crate::effects::{Candidate, Effect};
@@ -22,6 +22,8 @@ pub struct FitContext<'a> {
     pub catalogue: &'static [&'static Effect],
     /// Thresholds for this many observations.
     pub calibration: Calibration,
+    /// Seed of what is drawn.
+    pub seed: u64,
     top_speed_cm_s: f64,
 }
 
@@ -60,6 +62,7 @@ impl<'a> FitContext<'a> {
             observations,
             catalogue: method.catalogue,
             calibration: method.calibration.for_rows(observations.rows.len()),
+            seed: method.seed,
             top_speed_cm_s: observations.top_speed_cm_s(),
         }
     }

@@ -4,7 +4,7 @@ use glam::DVec2;
 
 use super::calibration::{Calibration, Gate, Judgement};
 use super::compare::Comparison;
-use super::diagnose::Method;
+use super::method::Method;
 use super::fit::{FitContext, Fitted};
 use super::hypothesis::{Hypothesis, LogLikelihood};
 use crate::effects::context::{CommandHistory, HISTORY, Surroundings};
@@ -13,7 +13,7 @@ use crate::effects::{Candidate, Effect, Hook, Parameter, StepContext, Variant};
 use crate::evaluation::observations::{Observation, Observations};
 use crate::geometry::Pose;
 use crate::logs::{Logs, Robot, Row, Run, Scene, Ultrasonic};
-use crate::simulator::baseline::{Baseline, Drive};
+use crate::simulator::baseline::{Baseline, MotionModel};
 use crate::sonar::SonarModel;
 use crate::sonar::model::STRENGTHS;
 
@@ -64,7 +64,7 @@ pub fn room() -> Scene {
 
 /// The textbook's drive, without a sensor.
 pub fn baseline() -> Baseline<'static> {
-    Baseline { motion: Some(Drive::Kinematic { robot: robot(), scatter: SCATTER }), sonar: None, applied: Vec::new() }
+    Baseline { motion: Some(MotionModel::Kinematic { robot: robot(), scatter: SCATTER }), sonar: None, applied: Vec::new() }
 }
 
 /// The same with a ray that comes back for certain and scatters by a centimetre.
@@ -213,7 +213,7 @@ pub const CALIBRATION: Calibration = Calibration {
 };
 
 /// Diagnoses with [`CATALOGUE`] and [`CALIBRATION`].
-pub const METHOD: Method = Method { catalogue: CATALOGUE, calibration: CALIBRATION };
+pub const METHOD: Method = Method { catalogue: CATALOGUE, calibration: CALIBRATION, seed: 1 };
 
 /// The first variant of an effect.
 pub fn candidate(effect: &'static Effect) -> Candidate {

@@ -1,6 +1,6 @@
 //! Estimates the noise of logs about networks: residual quantiles, variance components, and a constant wrong reading.
 
-use crate::simulator::scatter::{CELLS, ConstantReading, LEVELS, Shares, Spread};
+use crate::simulator::residuals::{CELLS, ConstantReading, LEVELS, ResidualQuantiles, VarianceComponents};
 
 /// A cell with fewer residuals uses those of its whole row.
 const FEWEST: usize = LEVELS;
@@ -14,17 +14,18 @@ const WINDOW_CM: f32 = 1.5;
 const STANDS_OUT: f64 = 6.0;
 
 /// Quantiles of residuals (logged minus predicted) by context. Cell borders are quantiles of the contexts along each axis.
-pub fn residual_quantiles(contexts: &[[f32; 2]], residuals: &[f32]) -> Spread {
+pub fn residual_quantiles(contexts: &[[f32; 2]], residuals: &[f32]) -> ResidualQuantiles {
     let edges = [0, 1].map(|axis| {
         let values = sorted(contexts.iter().map(|c| c[axis]));
         std::array::from_fn(|i| values.get(values.len() * (i + 1) / CELLS).copied().unwrap_or(0.0))
     });
-    let mut spread = Spread { edges, residuals: Vec::new(), shares: vec![Shares::STEP; CELLS * CELLS] };
+    let mut quantiles =
+        ResidualQuantiles { edges, quantiles: Vec::new(), components: vec![VarianceComponents::STEP; CELLS * CELLS] };
     let mut cells = vec![Vec::new(); CELLS * CELLS];
     for (context, residual) in contexts.iter().zip(residuals) {
-        cells[spread.cell(*context)].push(*residual);
+        cells[quantiles.cell(*context)].push(*residual);
     }
-    spread.residuals = (0..CELLS * CELLS)
+    quantiles.quantiles = (0..CELLS * CELLS)
         .map(|cell| {
             let row = &cells[cell / CELLS * CELLS..][..CELLS];
             if cells[cell].len() >= FEWEST {
@@ -36,7 +37,7 @@ pub fn residual_quantiles(contexts: &[[f32; 2]], residuals: &[f32]) -> Spread {
             }
         })
         .collect();
-    spread
+    quantiles
 }
 
 /// Variance components of a motion network's residuals in each cell: the robot's own process noise, as opposed to the
@@ -47,12 +48,12 @@ pub fn residual_quantiles(contexts: &[[f32; 2]], residuals: &[f32]) -> Spread {
 /// one command. The rest of a cell's variance is independent in each step. All slices have one entry a residual:
 /// `commands` are the inputs of the network, and `runs` the run that the residual comes from.
 pub fn variance_components(
-    spread: &Spread,
+    quantiles: &ResidualQuantiles,
     contexts: &[[f32; 2]],
     residuals: &[f32],
     commands: &[[f32; 4]],
     runs: &[usize],
-) -> Vec<Shares> {
+) -> Vec<VarianceComponents> {
     // A step is steady if its command is that of the step before.
     let is_steady = |i: usize| commands[i][..2] == commands[i][2..];
     let neighbours: Vec<usize> = (1..residuals.len()).filter(|i| runs[i - 1] == runs[*i]).collect();
@@ -60,18 +61,18 @@ pub fn variance_components(
         let pairs = neighbours.iter().filter(|i| of(**i));
         mean(pairs.map(|i| residuals[i - 1] * residuals[*i]))
     };
-    let Some(changed) = covariance(&|i| !is_steady(i)) else { return vec![Shares::STEP; CELLS * CELLS] };
+    let Some(changed) = covariance(&|i| !is_steady(i)) else { return vec![VarianceComponents::STEP; CELLS * CELLS] };
     let tracker = (-changed).max(0.0);
     let held = covariance(&|i| is_steady(i) && is_steady(i - 1)).map_or(0.0, |steady| (steady - changed).max(0.0));
     (0..CELLS * CELLS)
         .map(|cell| {
-            let here = contexts.iter().zip(residuals).filter(|(context, _)| spread.cell(**context) == cell);
+            let here = contexts.iter().zip(residuals).filter(|(context, _)| quantiles.cell(**context) == cell);
             let squares = |r: &f32| r * r;
             let here = mean(here.map(|(_, r)| squares(r))).or_else(|| mean(residuals.iter().map(squares)));
             let all = here.unwrap_or(0.0).max(f32::MIN_POSITIVE);
             let held = (held / all).min(1.0);
             let step = (1.0 - 2.0 * tracker / all - held).max(0.0);
-            Shares { step: step.sqrt(), held: held.sqrt() }
+            VarianceComponents { step: step.sqrt(), held: held.sqrt() }
         })
         .collect()
 }
@@ -136,19 +137,19 @@ mod tests {
         let contexts: Vec<[f32; 2]> =
             (0..8000).map(|_| [rng.random_range(0.0..100.0), rng.random_range(0.0..90.0)]).collect();
         let residuals: Vec<f32> = contexts.iter().map(|c| (rng.random::<f32>() - 0.5) * c[1]).collect();
-        let spread = residual_quantiles(&contexts, &residuals);
-        assert!(spread.is_sound());
-        let width = |alpha: f32| spread.residual([50.0, alpha], LEVELS - 1) - spread.residual([50.0, alpha], 0);
+        let quantiles = residual_quantiles(&contexts, &residuals);
+        assert!(quantiles.is_sound());
+        let width = |alpha: f32| quantiles.residual([50.0, alpha], LEVELS - 1) - quantiles.residual([50.0, alpha], 0);
         assert!((8.0..20.0).contains(&width(5.0)), "{}", width(5.0));
         assert!((65.0..85.0).contains(&width(85.0)), "{}", width(85.0));
     }
 
     #[test]
     fn few_residuals_serve_every_cell() {
-        let spread = residual_quantiles(&[[1.0, 1.0], [2.0, 2.0]], &[-1.0, 1.0]);
-        assert!(spread.is_sound());
-        assert_eq!(spread.residual([0.0, 9.0], 1), -1.0);
-        assert_eq!(spread.residual([9.0, 0.0], LEVELS - 2), 1.0);
+        let quantiles = residual_quantiles(&[[1.0, 1.0], [2.0, 2.0]], &[-1.0, 1.0]);
+        assert!(quantiles.is_sound());
+        assert_eq!(quantiles.residual([0.0, 9.0], 1), -1.0);
+        assert_eq!(quantiles.residual([9.0, 0.0], LEVELS - 2), 1.0);
     }
 
     #[test]
@@ -172,11 +173,11 @@ mod tests {
             }
         }
         let contexts = vec![[0.0; 2]; residuals.len()];
-        let spread = residual_quantiles(&contexts, &residuals);
-        let found = variance_components(&spread, &contexts, &residuals, &commands, &runs)[spread.cell([0.0; 2])];
+        let quantiles = residual_quantiles(&contexts, &residuals);
+        let found = variance_components(&quantiles, &contexts, &residuals, &commands, &runs)[quantiles.cell([0.0; 2])];
         assert!((found.step - 0.5f32.sqrt()).abs() < 0.03, "{found:?}");
         assert!((found.held - (1f32 / 6.0).sqrt()).abs() < 0.03, "{found:?}");
-        assert_eq!(variance_components(&spread, &[], &[], &[], &[]), vec![Shares::STEP; CELLS * CELLS]);
+        assert_eq!(variance_components(&quantiles, &[], &[], &[], &[]), vec![VarianceComponents::STEP; CELLS * CELLS]);
     }
 
     #[test]

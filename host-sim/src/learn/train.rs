@@ -10,7 +10,7 @@ use super::paper;
 use super::scatter;
 use crate::logs::Logs;
 use crate::problem::{Problem, Result};
-use crate::simulator::scatter::{ConstantReading, motion_context};
+use crate::simulator::residuals::{ConstantReading, motion_context};
 use crate::simulator::{Learned, Missing, Origin, SCHEMA, Simulator};
 
 /// Hidden layers of the five networks (paper, Table I).
@@ -131,8 +131,9 @@ fn set_residual_quantiles(learned: &mut Option<Learned<4>>, data: &Dataset<4>, c
     let contexts: Vec<[f32; 2]> = data.inputs.iter().map(motion_context).collect();
     let misfit = data.inputs.iter().map(|speeds| correction(&speeds.map(f64::from)) as f32);
     let left: Vec<f32> = residuals(&learned.network, data).iter().zip(misfit).map(|(r, m)| r - m).collect();
-    learned.spread = scatter::residual_quantiles(&contexts, &left);
-    learned.spread.shares = scatter::variance_components(&learned.spread, &contexts, &left, &data.inputs, &data.runs);
+    learned.residuals = scatter::residual_quantiles(&contexts, &left);
+    learned.residuals.components =
+        scatter::variance_components(&learned.residuals, &contexts, &left, &data.inputs, &data.runs);
 }
 
 impl Shapes {
@@ -212,8 +213,8 @@ impl<W: Fn(Progress)> NetworkTrainer<'_, W> {
         };
         watch(evaluations);
         let contexts: Vec<[f32; 2]> = judged.inputs.iter().map(context).collect();
-        let spread = scatter::residual_quantiles(&contexts, &residuals(&trained, judged));
-        Some(Learned { network: trained, spread })
+        let residuals = scatter::residual_quantiles(&contexts, &residuals(&trained, judged));
+        Some(Learned { network: trained, residuals })
     }
 }
 
@@ -238,7 +239,7 @@ fn split_constant_reading(value: &mut Learned<2>, data: &Dataset<2>) -> Option<C
     let others: Vec<usize> = (0..data.len()).filter(right).collect();
     let contexts: Vec<[f32; 2]> = others.iter().map(|i| data.inputs[*i]).collect();
     let residuals: Vec<f32> = others.iter().map(|i| data.targets[*i] - predicted[*i]).collect();
-    value.spread = scatter::residual_quantiles(&contexts, &residuals);
+    value.residuals = scatter::residual_quantiles(&contexts, &residuals);
     Some(constant)
 }
 

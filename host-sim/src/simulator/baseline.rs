@@ -1,4 +1,4 @@
-//! The simulator as the diagnosis sees it: networks, what is known of their misfit, and the scatter of a good day.
+//! The simulator as the diagnosis sees it: networks, their known bias, and the noise that is normal.
 
 use crate::effects::PoseIncrement;
 use crate::effects::applied::AppliedEffect;
@@ -9,28 +9,28 @@ use crate::simulator::nominal::MotionBias;
 use crate::simulator::{Learned, Simulator};
 use crate::sonar::SonarModel;
 
-/// What a step does, and what the sensor says, as long as nothing is different.
+/// The models of motion and sonar without any gap.
 pub struct Baseline<'s> {
     /// The motion, if the simulator knows it.
-    pub motion: Option<Drive<'s>>,
+    pub motion: Option<MotionModel<'s>>,
     /// The sensor, if the simulator knows it.
     pub sonar: Option<SonarModel>,
     /// Effects that were added to the simulator before.
     pub applied: Vec<AppliedEffect>,
 }
 
-/// How commands become motion.
-pub enum Drive<'s> {
+/// How commands become motion, and its noise.
+pub enum MotionModel<'s> {
     /// As learned from logs.
     Learned {
         /// The networks.
         networks: MotionNetworks<'s>,
-        /// What they leave over.
+        /// Their bias and noise.
         reference: &'s MotionBias,
         /// Least and largest command that they know.
         commands: [f64; 2],
-        /// How much of the scatter of forward, lateral and turn is the robot's own and not the tracker's, 0 to 1.
-        own_share: [f64; 3],
+        /// Fraction of the noise of forward, lateral and turn that is the robot's own and not the tracker's, 0 to 1.
+        process_noise_fraction: [f64; 3],
     },
     /// The textbook's differential drive.
     Kinematic {
@@ -51,21 +51,22 @@ impl<'s> Baseline<'s> {
             Problem::new("the simulator file does not say how its training logs scattered: train it again")
         })?;
         let drive = simulator.motion_networks().zip(reference.motion.as_ref());
-        let motion = drive.map(|(networks, reference)| Drive::Learned {
+        let motion = drive.map(|(networks, reference)| MotionModel::Learned {
             networks,
             reference,
             commands: simulator.commands.map(f64::from),
-            own_share: [&simulator.forward, &simulator.lateral, &simulator.turn].map(own_share),
+            process_noise_fraction: [&simulator.forward, &simulator.lateral, &simulator.turn]
+                .map(process_noise_fraction),
         });
         Ok(Baseline { motion, sonar: reference.sonar.clone(), applied: simulator.added.clone() })
     }
 }
 
-impl Drive<'_> {
+impl MotionModel<'_> {
     /// What a step does for the commands now and before.
     pub fn step(&self, now: [f64; 2], before: [f64; 2]) -> PoseIncrement {
         match self {
-            Drive::Learned { networks, reference, commands, .. } => {
+            MotionModel::Learned { networks, reference, commands, .. } => {
                 let speeds = [now[0], now[1], before[0], before[1]].map(|c| c.clamp(commands[0], commands[1]));
                 let learned = networks.step(speeds.map(|c| c as f32));
                 let more = reference.correction(&speeds);
@@ -75,7 +76,7 @@ impl Drive<'_> {
                     turn_rad: f64::from(learned.turn_rad) + more[2],
                 }
             }
-            Drive::Kinematic { robot, .. } => {
+            MotionModel::Kinematic { robot, .. } => {
                 let way_cm = now.map(|c| c / 100.0 * robot.full_speed_cm_s * robot.step_ms / 1000.0);
                 let turn_rad = (way_cm[1] - way_cm[0]) / robot.track_cm;
                 let arc_cm = 0.5 * (way_cm[0] + way_cm[1]);
@@ -91,22 +92,23 @@ impl Drive<'_> {
     /// Standard deviations of forward (cm), lateral (cm) and turn (rad) where nothing is different.
     pub fn scatter(&self) -> [f64; 3] {
         match self {
-            Drive::Learned { reference, .. } => reference.scatter,
-            Drive::Kinematic { scatter, .. } => *scatter,
+            MotionModel::Learned { reference, .. } => reference.scatter,
+            MotionModel::Kinematic { scatter, .. } => *scatter,
         }
     }
 
-    /// How much of that is the robot's own and not the tracker's, 0 to 1.
-    pub fn own_share(&self) -> [f64; 3] {
+    /// Fraction of that noise which is the robot's own and not the tracker's, 0 to 1.
+    pub fn process_noise_fraction(&self) -> [f64; 3] {
         match self {
-            Drive::Learned { own_share, .. } => *own_share,
-            Drive::Kinematic { .. } => [1.0; 3],
+            MotionModel::Learned { process_noise_fraction, .. } => *process_noise_fraction,
+            MotionModel::Kinematic { .. } => [1.0; 3],
         }
     }
 }
 
-fn own_share(learned: &Option<Learned<4>>) -> f64 {
-    let shares = learned.iter().flat_map(|l| &l.spread.shares);
-    let (sum, n) = shares.fold((0.0, 0.0), |(sum, n), s| (sum + f64::from(s.step * s.step + s.held * s.held), n + 1.0));
+fn process_noise_fraction(learned: &Option<Learned<4>>) -> f64 {
+    let components = learned.iter().flat_map(|l| &l.residuals.components);
+    let (sum, n) =
+        components.fold((0.0, 0.0), |(sum, n), s| (sum + f64::from(s.step * s.step + s.held * s.held), n + 1.0));
     if n > 0.0 { f64::sqrt(sum / n) } else { 1.0 }
 }

@@ -11,18 +11,48 @@ mod robots;
 #[cfg(test)]
 mod tests;
 
-use pulp::{Simd, WithSimd};
+use pulp::{Arch, Simd, WithSimd};
 
-use super::course::{Course, Job, Moment, Outcome, Sensor};
+use super::environment::Environment;
+use super::rollout::{RolloutOutcome, RolloutRequest, SensorModel, TrajectoryPoint};
 use crate::lanes::{Lanes, WIDEST};
 use robots::Robots;
 
-/// Runs `jobs`, which all have `sensor`; `finish` is told the outcome of each by its number, `watch` every moment of
-/// all.
-pub(super) struct Batch<'a, W, F> {
-    pub course: &'a Course<'a>,
-    pub sensor: Sensor,
-    pub jobs: &'a [(usize, Job<'a>)],
+impl Environment<'_> {
+    /// Simulates runs side by side; the outcomes are in the order of the requests.
+    pub fn run(&self, requests: &[RolloutRequest]) -> Vec<RolloutOutcome> {
+        let mut outcomes = vec![None; requests.len()];
+        for sensor in [SensorModel::Networks, SensorModel::Beam] {
+            let requests: Vec<(usize, RolloutRequest)> =
+                requests.iter().copied().enumerate().filter(|(_, request)| request.sensor == sensor).collect();
+            let finish = |request: usize, outcome| outcomes[request] = Some(outcome);
+            Arch::new().dispatch(Batch { environment: self, sensor, requests: &requests, watch: |_| {}, finish });
+        }
+        outcomes.into_iter().flatten().collect()
+    }
+
+    /// Simulates one run and keeps its trajectory.
+    pub fn trace(&self, request: RolloutRequest) -> (RolloutOutcome, Vec<TrajectoryPoint>) {
+        let (mut trajectory, mut outcome) = (Vec::new(), None);
+        let watch = |point| trajectory.push(point);
+        let finish = |_, ended| outcome = Some(ended);
+        Arch::new().dispatch(Batch {
+            environment: self,
+            sensor: request.sensor,
+            requests: &[(0, request)],
+            watch,
+            finish,
+        });
+        (outcome.expect("every run ends"), trajectory)
+    }
+}
+
+/// Runs `requests`, which all have `sensor`; `finish` is told the outcome of each by its number, `watch` every
+/// trajectory point of all.
+struct Batch<'a, W, F> {
+    pub environment: &'a Environment<'a>,
+    pub sensor: SensorModel,
+    pub requests: &'a [(usize, RolloutRequest<'a>)],
     pub watch: W,
     pub finish: F,
 }
@@ -44,14 +74,14 @@ struct StepDraws {
     held_bits: [u32; WIDEST],
 }
 
-impl<W: FnMut(Moment), F: FnMut(usize, Outcome)> WithSimd for Batch<'_, W, F> {
+impl<W: FnMut(TrajectoryPoint), F: FnMut(usize, RolloutOutcome)> WithSimd for Batch<'_, W, F> {
     type Output = ();
 
     #[inline(always)]
     fn with_simd<S: Simd>(mut self, simd: S) {
         let width = Lanes::<S>::WIDTH;
-        let mut waiting = self.jobs.iter().copied();
-        let mut robots = Robots::new(self.course);
+        let mut waiting = self.requests.iter().copied();
+        let mut robots = Robots::new(self.environment);
         for lane in 0..width {
             robots.begin(lane, waiting.next());
         }
@@ -63,8 +93,8 @@ impl<W: FnMut(Moment), F: FnMut(usize, Outcome)> WithSimd for Batch<'_, W, F> {
             let happens = robots.happens(simd, &echo_cm, may_touch);
             for (lane, happens) in happens.iter().enumerate().take(width) {
                 let ended = if *happens > 0.0 { robots.close(lane, *happens, &from, &echo_cm) } else { None };
-                if let Some(moment) = robots.moment(lane, &echo_cm, &ended) {
-                    (self.watch)(moment);
+                if let Some(point) = robots.trajectory_point(lane, &echo_cm, &ended) {
+                    (self.watch)(point);
                 }
                 if let Some((number, outcome)) = ended {
                     (self.finish)(number, outcome);
@@ -78,7 +108,7 @@ impl<W: FnMut(Moment), F: FnMut(usize, Outcome)> WithSimd for Batch<'_, W, F> {
 /// One of the equally likely residuals, five bits each: networks 0 to 2 of motion, 3 of the sonar.
 #[inline(always)]
 fn level(bits: u32, network: u32) -> usize {
-    (bits >> (5 * network)) as usize % super::scatter::LEVELS
+    (bits >> (5 * network)) as usize % super::residuals::LEVELS
 }
 
 #[inline(always)]

@@ -13,8 +13,8 @@ use mindgap_core::scalar::Scalar;
 use pulp::Simd;
 
 use super::draws::Draws;
+use super::residuals::LEVELS;
 use super::room::{Point, Room};
-use super::scatter::LEVELS;
 use crate::lanes::{Lanes, WIDEST};
 use crate::sonar::fan::{AXIS, FAN_DEG, RAYS};
 use crate::sonar::model::{CONSTANT_SCATTER_CM, FAR_CM, STRENGTHS};

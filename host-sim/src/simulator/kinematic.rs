@@ -2,7 +2,7 @@
 //! estimated from the logs.
 
 use crate::logs::{Logs, samples};
-use crate::simulator::baseline::{Baseline, Drive};
+use crate::simulator::baseline::{Baseline, MotionModel};
 use crate::sonar::SonarModel;
 use crate::sonar::model::STRENGTHS;
 
@@ -22,7 +22,11 @@ const READING_SCATTER_CM: [f64; 2] = [0.5, 4.0];
 /// The baseline of a robot that nobody has logged before.
 pub fn baseline(logs: &Logs) -> Baseline<'static> {
     let scatter = if samples::motion(logs).is_empty() { LEAST_OWN_SCATTER } else { LEAST_SCATTER };
-    Baseline { motion: Some(Drive::Kinematic { robot: logs.robot, scatter }), sonar: sonar(logs), applied: Vec::new() }
+    Baseline {
+        motion: Some(MotionModel::Kinematic { robot: logs.robot, scatter }),
+        sonar: sonar(logs),
+        applied: Vec::new(),
+    }
 }
 
 fn sonar(logs: &Logs) -> Option<SonarModel> {

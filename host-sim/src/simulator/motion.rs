@@ -8,7 +8,7 @@ use pulp::{Arch, Simd, WithSimd};
 
 use super::nominal::MotionBias;
 use super::nominal::motion_bias::{FEATURES, features};
-use super::scatter::{Scatter, Spread, motion_context};
+use super::residuals::{ResidualNoise, ResidualQuantiles, motion_context};
 use super::{Learned, Simulator};
 use crate::lanes::Lanes;
 use crate::problem::Result;
@@ -18,7 +18,7 @@ use crate::problem::Result;
 pub struct MotionNetworks<'s> {
     /// Forward, lateral, turn.
     networks: Box<[FoldedNetwork<f32, 4>; 3]>,
-    spreads: [&'s Spread; 3],
+    residuals: [&'s ResidualQuantiles; 3],
     /// Weights of what is added, one a feature.
     correction: Option<Box<[[f32; FEATURES]; 3]>>,
 }
@@ -32,7 +32,7 @@ pub struct Motion {
     pub lateral_cm: f32,
     /// Turn to the left.
     pub turn_rad: f32,
-    /// Cells of the forward, lateral and turn networks' spreads.
+    /// Cells of the forward, lateral and turn networks' residuals.
     pub cells: [usize; 3],
 }
 
@@ -61,7 +61,7 @@ impl<'s> MotionNetworks<'s> {
         ];
         Ok(MotionNetworks {
             networks: Box::new(learned.map(|l| FoldedNetwork::fold(&l.network))),
-            spreads: learned.map(|l| &l.spread),
+            residuals: learned.map(|l| &l.residuals),
             correction: None,
         })
     }
@@ -77,8 +77,8 @@ impl<'s> MotionNetworks<'s> {
     }
 
     /// What chance adds to forward (cm), lateral (cm) and turn (rad).
-    pub fn scatters(&self) -> [Scatter; 3] {
-        let [forward, lateral, turn] = self.spreads.map(Scatter::new);
+    pub fn residual_noise(&self) -> [ResidualNoise; 3] {
+        let [forward, lateral, turn] = self.residuals.map(ResidualNoise::new);
         [forward, lateral, turn.times(RADIANS_PER_DEGREE)]
     }
 
@@ -121,7 +121,7 @@ impl<'s> MotionNetworks<'s> {
 
     fn cells(&self, speeds: &Speeds<f32>) -> [usize; 3] {
         let context = motion_context(speeds);
-        self.spreads.map(|spread| spread.cell(context))
+        self.residuals.map(|residuals| residuals.cell(context))
     }
 }
 

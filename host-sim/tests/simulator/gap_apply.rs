@@ -9,14 +9,14 @@ use mindgap_host_sim::chance::generator;
 use mindgap_host_sim::effects::applied::AppliedEffect;
 use mindgap_host_sim::effects::{CATALOGUE, Candidate};
 use mindgap_host_sim::evaluation::accuracy::evaluate;
-use mindgap_host_sim::evaluation::final_position::endings;
+use mindgap_host_sim::evaluation::final_position::final_position_errors;
 use mindgap_host_sim::gap::diagnosis::Verdict;
 use mindgap_host_sim::gap::{Method, diagnose, findings};
 use mindgap_host_sim::geometry::direction;
 use mindgap_host_sim::logs::{Logs, Row, Run};
 use mindgap_host_sim::simulator::baseline::Baseline;
-use mindgap_host_sim::simulator::course::Course;
-use mindgap_host_sim::simulator::rehearsal::{PathPoint, Rehearsal};
+use mindgap_host_sim::simulator::environment::Environment;
+use mindgap_host_sim::simulator::rollout_report::{PathPoint, RolloutReport};
 use mindgap_host_sim::simulator::{Noise, Simulator};
 
 use crate::{SIMULATOR, logs};
@@ -37,16 +37,19 @@ fn nominal(id: &str) -> AppliedEffect {
 }
 
 /// Forty runs round a small circle, which no reading ends.
-fn circling(simulator: &Simulator) -> Rehearsal {
+fn circling(simulator: &Simulator) -> RolloutReport {
     let tuple = Tuple { left: 60, right: 20, when: When::Smaller, threshold_cm: 0 };
     let controller = Controller { step_ms: 400, max_steps: 20, tuples: [tuple; 6] };
     let scene = four_obstacles();
-    let course = Course::new(simulator, &scene, scene.starts[2], Noise::Learned).expect("the robot fits");
-    Rehearsal::new(&course, &scene, &controller, 40, 5)
+    let environment = Environment::new(simulator, &scene, scene.starts[2], Noise::Learned).expect("the robot fits");
+    RolloutReport::new(&environment, &scene, &controller, 40, 5)
 }
 
 /// What two rehearsals come to at the same steps of the same runs.
-fn side_by_side<'r>(one: &'r Rehearsal, other: &'r Rehearsal) -> impl Iterator<Item = (&'r PathPoint, &'r PathPoint)> {
+fn side_by_side<'r>(
+    one: &'r RolloutReport,
+    other: &'r RolloutReport,
+) -> impl Iterator<Item = (&'r PathPoint, &'r PathPoint)> {
     one.runs.iter().zip(&other.runs).flat_map(|(one, other)| {
         assert_eq!(one.path.len(), other.path.len());
         one.path.iter().zip(&other.path)
@@ -58,7 +61,7 @@ fn distance_cm(one: &PathPoint, other: &PathPoint) -> f64 {
 }
 
 /// Median of the second readings minus the first, where there are both.
-fn reads_farther_cm(one: &Rehearsal, other: &Rehearsal) -> f64 {
+fn reads_farther_cm(one: &RolloutReport, other: &RolloutReport) -> f64 {
     let readings = side_by_side(one, other).filter_map(|(one, other)| Some(other.echo_cm? - one.echo_cm?));
     let mut differences: Vec<f32> = readings.collect();
     assert!(differences.len() > 100, "{} readings", differences.len());
@@ -67,9 +70,9 @@ fn reads_farther_cm(one: &Rehearsal, other: &Rehearsal) -> f64 {
 }
 
 /// Mean way of a step, of steps from and to.
-fn way_cm(rehearsal: &Rehearsal, steps: Range<usize>) -> f64 {
-    let ways = rehearsal.runs.iter().flat_map(|run| run.path.windows(2).skip(steps.start).take(steps.len()));
-    ways.map(|pair| distance_cm(&pair[0], &pair[1])).sum::<f64>() / (rehearsal.runs.len() * steps.len()) as f64
+fn way_cm(rollouts: &RolloutReport, steps: Range<usize>) -> f64 {
+    let ways = rollouts.runs.iter().flat_map(|run| run.path.windows(2).skip(steps.start).take(steps.len()));
+    ways.map(|pair| distance_cm(&pair[0], &pair[1])).sum::<f64>() / (rollouts.runs.len() * steps.len()) as f64
 }
 
 #[test]
@@ -162,9 +165,9 @@ fn a_controllers_ends_are_foretold_better_with_the_effect() {
     let runs = (0..8).map(&mut drive).collect();
     let logs = Logs { robot: default_robot(), scene: scene.clone(), runs };
     let better = with(vec![AppliedEffect::new(&variant("drive_scale"), &[1.15])]);
-    let found = endings([&SIMULATOR, &better], &controller, &logs).expect("poses at both ends");
+    let found = final_position_errors([&SIMULATOR, &better], &controller, &logs, 1).expect("poses at both ends");
     assert_eq!(found.runs, 8);
     assert!(found.after_cm < 0.7 * found.before_cm && found.floor_cm > 0.0, "{found:?}");
     let unseen = Logs { runs: vec![Run { name: "run-000".into(), rows: vec![Row::default(); 3] }], ..logs };
-    assert!(endings([&SIMULATOR, &better], &controller, &unseen).is_err());
+    assert!(final_position_errors([&SIMULATOR, &better], &controller, &unseen, 1).is_err());
 }

@@ -1,6 +1,7 @@
 //! A simulator trained on logs of the built-in robot, and what it is good for.
 
 mod added_effect;
+mod effect_table;
 mod extrapolation;
 mod gap;
 mod gap_apply;

@@ -6,7 +6,7 @@ use super::Judged;
 use super::covariates::{
     change, distance_cm, edge_in_beam, heading_deg, incidence_deg, off_middle_cm, reverses, seconds, speed, turning,
 };
-use crate::evaluation::observations::{Observation, Observations};
+use crate::evaluation::observations::Observation;
 use crate::gap::channel::Channel;
 use crate::gap::compare::Comparison;
 use crate::gap::fit::FitContext;
@@ -99,9 +99,9 @@ fn of_channel(channel: Channel, found: &Comparison, known: bool, context: &FitCo
         return None;
     }
     let contexts = if channel.motion_axis().is_some() { MOTION } else { SONAR };
-    let candidates = contexts.iter().filter_map(|c| stratum(channel, c, &excess, all, context.observations));
+    let candidates = contexts.iter().filter_map(|c| stratum(channel, c, &excess, all, context));
     let best = candidates.max_by(|a, b| a.0.total_cmp(&b.0));
-    let everywhere = || stratum(channel, &("all steps", |_| true), &excess, all, context.observations);
+    let everywhere = || stratum(channel, &("all steps", |_| true), &excess, all, context);
     best.or_else(everywhere).map(|(_, stratum)| (all, stratum))
 }
 
@@ -121,8 +121,9 @@ fn stratum(
     (context, holds): &Context,
     excess: &[f64],
     all: f64,
-    observations: &Observations,
+    fit: &FitContext,
 ) -> Option<(f64, Stratum)> {
+    let observations = fit.observations;
     let inside =
         |(row, _): &(&Observation, &f64)| holds(row) && (channel.motion_axis().is_none() || row.motion.is_some());
     let (mut gaps, mut counts) = (vec![0.0; observations.blocks], vec![0.0; observations.blocks]);
@@ -134,7 +135,7 @@ fn stratum(
     // Where others fit better than before, one stratum can carry more than is left of all.
     let share = (gap / all).min(1.0);
     let of_rows = count / observations.rows.len() as f64;
-    let ci95 = bootstrap::interval(&gaps, &counts, |gap, count| (count > 0.0).then(|| gap / count));
+    let ci95 = bootstrap::interval(&gaps, &counts, fit.seed, |gap, count| (count > 0.0).then(|| gap / count));
     let carries = of_rows > EVERYWHERE || (share > LIFT * of_rows && share > LEAST_SHARE && ci95[0] > 0.0);
     // What is rare and heavy, and what is nearly all, both say less than what is in between.
     let rank = (share - of_rows) * share;

@@ -8,7 +8,7 @@ use crate::evaluation::predictions::{increment, residual};
 use crate::gap::channel::Channel;
 use crate::gap::fit::{FitContext, Fitted};
 use crate::gap::hypothesis::{log_density, refitted};
-use crate::simulator::baseline::{Baseline, Drive};
+use crate::simulator::baseline::{Baseline, MotionModel};
 
 /// The density of a residual.
 #[derive(Clone, Copy)]
@@ -53,7 +53,7 @@ pub fn covariates(effects: &EffectChain, baseline: &Baseline, rows: &Observation
     rows.rows.iter().map(|row| of_row(effects, drive, row)).collect()
 }
 
-fn of_row(effects: &EffectChain, drive: &Drive, row: &Observation) -> Steps {
+fn of_row(effects: &EffectChain, drive: &MotionModel, row: &Observation) -> Steps {
     let predicted = increment(effects, drive, row);
     let share = 1.0 / (1 + row.then.len()) as f64;
     std::iter::once(&row.context).chain(&row.then).map(|step| of_step(step, &predicted, share)).collect()

@@ -11,8 +11,8 @@ use super::{Row, StepDraws, level, load, row};
 use crate::lanes::{Lanes, WIDEST};
 use crate::simulator::Noise;
 use crate::simulator::beam::{Beam, Fate};
-use crate::simulator::course::Sensor;
 use crate::simulator::draws::Draws;
+use crate::simulator::rollout::SensorModel;
 use crate::simulator::room::Point;
 
 /// Where every sensor is, its axis as a unit vector, and its angle in degrees.
@@ -25,35 +25,37 @@ struct Sensors<S: Simd> {
 impl Robots<'_> {
     /// The reading of every robot, cm.
     #[inline(always)]
-    pub fn sense<S: Simd>(&mut self, simd: S, sensor: Sensor, draws: &StepDraws) -> Row {
-        let course = self.course;
-        if course.wrapped.as_ref().is_some_and(|wrapped| wrapped.senses()) {
-            return self.sense_wrapped(draws);
+    pub fn sense<S: Simd>(&mut self, simd: S, sensor: SensorModel, draws: &StepDraws) -> Row {
+        let environment = self.environment;
+        if environment.effect_layer.as_ref().is_some_and(|effect_layer| effect_layer.senses()) {
+            return self.sense_through_effects(draws);
         }
         let sensors = self.sensors(simd);
-        let reading_cm = match (&course.beam, sensor) {
-            (Some(beam), Sensor::Beam) => self.hear(simd, beam, &sensors, draws),
+        let reading_cm = match (&environment.beam, sensor) {
+            (Some(beam), SensorModel::Beam) => self.hear(simd, beam, &sensors, draws),
             _ => self.look(simd, &sensors, draws),
         };
-        let sonar = &course.robot.ultrasonic;
+        let sonar = &environment.robot.ultrasonic;
         row(reading_cm.clamp(reading_cm.constant(sonar.min_cm as f32), reading_cm.constant(sonar.max_cm as f32)))
     }
 
     /// The readings where added effects change the sensor.
-    fn sense_wrapped(&mut self, draws: &StepDraws) -> Row {
+    fn sense_through_effects(&mut self, draws: &StepDraws) -> Row {
         let mut echo_cm = [f32::NAN; WIDEST];
         for (lane, echo_cm) in echo_cm.iter_mut().enumerate() {
             let pose = self.pose(lane);
-            let (Some(wrapped), Some(run)) = (&self.course.wrapped, &mut self.runs[lane]) else { continue };
-            *echo_cm = wrapped.echo_cm(&mut run.past, pose, draws.echo[lane]).unwrap_or(f32::NAN);
+            let (Some(effect_layer), Some(run)) = (&self.environment.effect_layer, &mut self.runs[lane]) else {
+                continue;
+            };
+            *echo_cm = effect_layer.echo_cm(&mut run.memory, pose, draws.echo[lane]).unwrap_or(f32::NAN);
         }
         echo_cm
     }
 
     #[inline(always)]
     fn sensors<S: Simd>(&self, simd: S) -> Sensors<S> {
-        let course = self.course;
-        let sonar = &course.robot.ultrasonic;
+        let environment = self.environment;
+        let sonar = &environment.robot.ultrasonic;
         let heading = load(simd, &self.heading_rad);
         let (c, s) = (load(simd, &self.heading_cos), load(simd, &self.heading_sin));
         let ahead = heading.constant(sonar.x_cm as f32);
@@ -62,7 +64,8 @@ impl Robots<'_> {
             x: load(simd, &self.x_cm) + (ahead * c - left * s),
             y: load(simd, &self.y_cm) + (ahead * s + left * c),
         };
-        let (cos_yaw, sin_yaw) = (heading.constant(course.yaw_direction[0]), heading.constant(course.yaw_direction[1]));
+        let (cos_yaw, sin_yaw) =
+            (heading.constant(environment.yaw_direction[0]), heading.constant(environment.yaw_direction[1]));
         let axis = Point { x: c * cos_yaw - s * sin_yaw, y: s * cos_yaw + c * sin_yaw };
         let axis_deg = heading * heading.constant(180.0 / PI) + heading.constant(sonar.yaw_deg as f32);
         Sensors { origin, axis, axis_deg }
@@ -73,7 +76,7 @@ impl Robots<'_> {
     fn hear<S: Simd>(&mut self, simd: S, beam: &Beam, sensors: &Sensors<S>, draws: &StepDraws) -> Lanes<S> {
         let mut generators = Draws::load(simd, &self.seeds);
         let Sensors { origin, axis, axis_deg } = *sensors;
-        let heard = beam.hear(&self.course.room, origin, axis, axis_deg, &mut generators);
+        let heard = beam.hear(&self.environment.room, origin, axis, axis_deg, &mut generators);
         generators.store(&mut self.seeds);
         let mut levels = [0; WIDEST];
         for (level_of_lane, bits) in levels.iter_mut().zip(draws.bits) {
@@ -90,12 +93,12 @@ impl Robots<'_> {
     /// Casts every sensor's axis into the room and asks the two sonar networks; where it faces nothing it reads nothing.
     #[inline(always)]
     fn look<S: Simd>(&self, simd: S, sensors: &Sensors<S>, draws: &StepDraws) -> Lanes<S> {
-        let course = self.course;
-        let faced = course.room.cast(sensors.origin, sensors.axis, sensors.axis_deg);
-        let [probability, mut reading_cm] = evaluate_all(&course.sonar, [faced.distance_cm, faced.alpha_deg]);
+        let environment = self.environment;
+        let faced = environment.room.cast(sensors.origin, sensors.axis, sensors.axis_deg);
+        let [probability, mut reading_cm] = evaluate_all(&environment.sonar, [faced.distance_cm, faced.alpha_deg]);
         let echo =
             load(simd, &draws.echo).less(probability) & faced.distance_cm.less(probability.constant(f32::INFINITY));
-        if course.noise == Noise::Learned {
+        if environment.noise == Noise::Learned {
             let mut readings_cm = row(reading_cm);
             let contexts = [row(faced.distance_cm), row(faced.alpha_deg)];
             self.scatter(&mut readings_cm[..Lanes::<S>::WIDTH], &contexts, draws);
@@ -107,11 +110,11 @@ impl Robots<'_> {
     /// What chance makes of the readings.
     #[inline(always)]
     fn scatter(&self, readings_cm: &mut [f32], contexts: &[Row; 2], draws: &StepDraws) {
-        let course = self.course;
+        let environment = self.environment;
         for (lane, reading_cm) in readings_cm.iter_mut().enumerate() {
             let bits = draws.bits[lane];
-            *reading_cm += course.echo_spread.residual([contexts[0][lane], contexts[1][lane]], level(bits, 3));
-            if let Some(constant) = course.constant_reading.filter(|c| draws.constant[lane] < c.probability) {
+            *reading_cm += environment.echo_residuals.residual([contexts[0][lane], contexts[1][lane]], level(bits, 3));
+            if let Some(constant) = environment.constant_reading.filter(|c| draws.constant[lane] < c.probability) {
                 // It scatters by a centimetre to either side.
                 *reading_cm = constant.value_cm + (bits >> 20) as f32 % 3.0 - 1.0;
             }

@@ -10,18 +10,19 @@ use super::{Row, StepDraws, level, load, row};
 use crate::geometry::Pose;
 use crate::lanes::{Lanes, Mask, WIDEST};
 use crate::simulator::Noise;
-use crate::simulator::course::{Course, Ending, Job, Moment, Outcome};
 use crate::simulator::draws::{Draws, Seeds};
+use crate::simulator::effect_layer::EffectMemory;
+use crate::simulator::environment::Environment;
 use crate::simulator::motion::{Motion, speeds};
+use crate::simulator::rollout::{RolloutOutcome, RolloutRequest, Termination, TrajectoryPoint};
 use crate::simulator::room::Point;
-use crate::simulator::wrapped::Past;
 
 /// What happens to a robot that may have touched something.
 const MAY_TOUCH: f32 = 2.0;
 
 /// The robots of a vector.
 pub struct Robots<'a> {
-    pub course: &'a Course<'a>,
+    pub environment: &'a Environment<'a>,
     pub runs: [Option<Run<'a>>; WIDEST],
     /// Lanes that have a run.
     pub running: usize,
@@ -47,11 +48,11 @@ pub struct Robots<'a> {
 /// A run on its lane.
 pub struct Run<'a> {
     number: usize,
-    job: Job<'a>,
+    request: RolloutRequest<'a>,
     machine: Machine,
     /// What added effects look back on.
-    pub past: Past,
-    /// Cells of the spreads of the motion that is held.
+    pub memory: EffectMemory,
+    /// Residual cells of the motion that is held.
     cells: [usize; 3],
     /// The residuals that last as long as it is held.
     held_levels: [usize; 3],
@@ -59,10 +60,10 @@ pub struct Run<'a> {
 
 impl<'a> Robots<'a> {
     /// Lanes without runs: nothing ever happens to them.
-    pub fn new(course: &'a Course<'a>) -> Self {
+    pub fn new(environment: &'a Environment<'a>) -> Self {
         let row = [0.0; WIDEST];
         Robots {
-            course,
+            environment,
             runs: std::array::from_fn(|_| None),
             running: 0,
             x_cm: row,
@@ -81,8 +82,8 @@ impl<'a> Robots<'a> {
     }
 
     /// Puts a run, or none, on a lane.
-    pub fn begin(&mut self, lane: usize, next: Option<(usize, Job<'a>)>) {
-        let start = self.course.start;
+    pub fn begin(&mut self, lane: usize, next: Option<(usize, RolloutRequest<'a>)>) {
+        let start = self.environment.start;
         self.x_cm[lane] = start.position_cm.x as f32;
         self.y_cm[lane] = start.position_cm.y as f32;
         self.heading_rad[lane] = start.heading_rad as f32;
@@ -90,10 +91,17 @@ impl<'a> Robots<'a> {
         self.heading_sin[lane] = maths::sin(self.heading_rad[lane]);
         self.running -= usize::from(self.runs[lane].is_some());
         self.running += usize::from(next.is_some());
-        self.runs[lane] = next.map(|(number, job)| {
-            self.seeds.set(lane, job.seed);
-            self.steps_left[lane] = f32::from(job.controller.max_steps);
-            Run { number, job, machine: Machine::start(), past: Past::default(), cells: [0; 3], held_levels: [0; 3] }
+        self.runs[lane] = next.map(|(number, request)| {
+            self.seeds.set(lane, request.seed);
+            self.steps_left[lane] = f32::from(request.controller.max_steps);
+            Run {
+                number,
+                request,
+                machine: Machine::start(),
+                memory: EffectMemory::default(),
+                cells: [0; 3],
+                held_levels: [0; 3],
+            }
         });
         if self.runs[lane].is_some() {
             self.hold(lane, true);
@@ -111,7 +119,7 @@ impl<'a> Robots<'a> {
             StepDraws { echo: [0.0; WIDEST], constant: [1.0; WIDEST], bits: [0; WIDEST], held_bits: [0; WIDEST] };
         let mut generators = Draws::load(simd, &self.seeds);
         draws.echo = row(generators.uniform());
-        if self.course.noise == Noise::Learned {
+        if self.environment.noise == Noise::Learned {
             draws.constant = row(generators.uniform());
             draws.bits = generators.bits_row();
             draws.held_bits = generators.bits_row();
@@ -130,16 +138,16 @@ impl<'a> Robots<'a> {
     /// have been touched on the way.
     #[inline(always)]
     pub fn advance<S: Simd>(&mut self, simd: S, draws: &StepDraws) -> Mask<S> {
-        self.wrap();
+        self.apply_effects();
         let mut motion = [load(simd, &self.motion[0]), load(simd, &self.motion[1]), load(simd, &self.motion[2])];
-        if self.course.asks_every_step {
+        if self.environment.asks_every_step {
             let mut speeds = [motion[0]; 4];
             for (speed, row) in speeds.iter_mut().zip(&self.speeds) {
                 *speed = load(simd, row);
             }
-            motion = self.course.motion.evaluate(speeds);
+            motion = self.environment.motion.evaluate(speeds);
         }
-        if self.course.noise == Noise::Learned {
+        if self.environment.noise == Noise::Learned {
             let residuals = self.residuals(Lanes::<S>::WIDTH, draws);
             for (sum, residual) in motion.iter_mut().zip(&residuals) {
                 *sum = *sum + load(simd, residual);
@@ -155,7 +163,7 @@ impl<'a> Robots<'a> {
         self.heading_rad = row(heading);
         self.heading_cos = row(maths::cos(heading));
         self.heading_sin = row(maths::sin(heading));
-        self.course.room.may_touch(from, to, self.course.robot.body_radius_cm as f32)
+        self.environment.room.may_touch(from, to, self.environment.robot.body_radius_cm as f32)
     }
 
     /// Where a robot has to be looked at: [`MAY_TOUCH`] where it may have touched something, one where its tuple or its
@@ -173,19 +181,28 @@ impl<'a> Robots<'a> {
 
     /// Ends a step in which something `happens` to a robot: a crash, or the reading and what the controller makes of it.
     /// Returns how the run ended, and which it was, if it did.
-    pub fn close(&mut self, lane: usize, happens: f32, from: &(Row, Row), echo_cm: &Row) -> Option<(usize, Outcome)> {
+    pub fn close(
+        &mut self,
+        lane: usize,
+        happens: f32,
+        from: &(Row, Row),
+        echo_cm: &Row,
+    ) -> Option<(usize, RolloutOutcome)> {
         let (to_cm, from_cm) = (self.position_cm(lane), point(&from.0, &from.1, lane));
         let steps_left = self.steps_left[lane];
         let run = self.runs[lane].as_mut()?;
-        let controller = run.job.controller;
+        let controller = run.request.controller;
         let steps = (f32::from(controller.max_steps) - steps_left) as u16;
         run.machine.hold(controller, steps - 1 - run.machine.steps());
-        let touch = || self.course.room.touch(from_cm, to_cm, self.course.robot.body_radius_cm);
+        let touch = || self.environment.room.touch(from_cm, to_cm, self.environment.robot.body_radius_cm);
         if let Some(share) = (happens == MAY_TOUCH).then(touch).flatten() {
-            return Some((run.number, Outcome { ending: Ending::Crashed, end_cm: from_cm.lerp(to_cm, share), steps }));
+            return Some((
+                run.number,
+                RolloutOutcome { termination: Termination::Crashed, end_cm: from_cm.lerp(to_cm, share), steps },
+            ));
         }
         let tuple = run.machine.tuple();
-        let ending = match run.machine.step(controller, reading(echo_cm[lane])) {
+        let termination = match run.machine.step(controller, reading(echo_cm[lane])) {
             Status::Running => {
                 let next = run.machine.tuple();
                 if next != tuple || self.first[lane] > 0.0 {
@@ -193,18 +210,27 @@ impl<'a> Robots<'a> {
                 }
                 return None;
             }
-            Status::Finished => Ending::Finished,
-            Status::TimedOut => Ending::TimedOut,
+            Status::Finished => Termination::Finished,
+            Status::TimedOut => Termination::TimedOut,
         };
-        Some((run.number, Outcome { ending, end_cm: to_cm, steps }))
+        Some((run.number, RolloutOutcome { termination, end_cm: to_cm, steps }))
     }
 
-    /// The moment after a step of a lane that has a run.
-    pub fn moment(&self, lane: usize, echo_cm: &Row, ended: &Option<(usize, Outcome)>) -> Option<Moment> {
+    /// The trajectory point after a step of a lane that has a run.
+    pub fn trajectory_point(
+        &self,
+        lane: usize,
+        echo_cm: &Row,
+        ended: &Option<(usize, RolloutOutcome)>,
+    ) -> Option<TrajectoryPoint> {
         let run = self.runs[lane].as_ref()?;
         let here = self.pose(lane);
         let position_cm = ended.map_or(here.position_cm, |(_, outcome)| outcome.end_cm);
-        Some(Moment { pose: Pose { position_cm, ..here }, echo_cm: reading(echo_cm[lane]), tuple: run.machine.tuple() })
+        Some(TrajectoryPoint {
+            pose: Pose { position_cm, ..here },
+            echo_cm: reading(echo_cm[lane]),
+            tuple: run.machine.tuple(),
+        })
     }
 
     /// Where the robot of a lane is.
@@ -220,17 +246,17 @@ impl<'a> Robots<'a> {
     fn hold(&mut self, lane: usize, first: bool) {
         let Some(run) = &mut self.runs[lane] else { return };
         let place = run.machine.tuple();
-        let tuple = &run.job.controller.tuples[place];
+        let tuple = &run.request.controller.tuples[place];
         let threshold_cm = f32::from(tuple.threshold_cm);
         (self.above_cm[lane], self.below_cm[lane]) = match tuple.when {
             When::Larger => (threshold_cm, f32::NEG_INFINITY),
             When::Smaller => (f32::INFINITY, threshold_cm),
         };
         self.first[lane] = if first { 1.0 } else { 0.0 };
-        for (row, speed) in self.speeds.iter_mut().zip(speeds(run.job.controller, place, first)) {
+        for (row, speed) in self.speeds.iter_mut().zip(speeds(run.request.controller, place, first)) {
             row[lane] = speed;
         }
-        let motion = run.job.motions.motion(place, first);
+        let motion = run.request.motions.motion(place, first);
         run.cells = motion.cells;
         self.set_motion(lane, motion);
     }
@@ -242,14 +268,14 @@ impl<'a> Robots<'a> {
     }
 
     /// Asks the added effects, where there are any, for the motion of every robot.
-    fn wrap(&mut self) {
-        let Some(wrapped) = &self.course.wrapped else { return };
+    fn apply_effects(&mut self) {
+        let Some(effect_layer) = &self.environment.effect_layer else { return };
         for lane in 0..WIDEST {
             let pose = self.pose(lane);
             let Some(run) = &mut self.runs[lane] else { continue };
-            let command = run.job.controller.tuples[run.machine.tuple()];
+            let command = run.request.controller.tuples[run.machine.tuple()];
             let command = [command.left, command.right].map(f32::from);
-            let motion = wrapped.motion(&mut run.past, pose, command, &self.course.motion);
+            let motion = effect_layer.motion(&mut run.memory, pose, command, &self.environment.motion);
             run.cells = motion.cells;
             self.set_motion(lane, &motion);
         }
@@ -265,7 +291,7 @@ impl<'a> Robots<'a> {
             if self.first[lane] > 0.0 {
                 run.held_levels = [level(held_bits, 0), level(held_bits, 1), level(held_bits, 2)];
             }
-            for (network, scatter) in self.course.motion_scatter.iter().enumerate() {
+            for (network, scatter) in self.environment.motion_noise.iter().enumerate() {
                 let (cell, held) = (run.cells[network], run.held_levels[network]);
                 residuals[network][lane] = scatter.residual(cell, level(bits, network as u32), held);
             }

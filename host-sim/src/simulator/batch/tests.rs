@@ -3,8 +3,8 @@ use crate::built_in_robot::{default_robot, four_obstacles, record, training_room
 use crate::chance::generator;
 use crate::evolve::genome::GenotypeDecoder;
 use crate::learn::train::{self, TABLE_ONE, Trainer};
-use crate::simulator::course::Ending;
 use crate::simulator::motion::{MotionTable, speeds};
+use crate::simulator::rollout::Termination;
 use crate::simulator::{Noise, Simulator};
 use mindgap_core::controller::{Controller, Machine, Status, TUPLES};
 use sha2::{Digest, Sha256};
@@ -22,9 +22,9 @@ static SIMULATOR: LazyLock<Simulator> = LazyLock::new(|| {
     train::train(&logs, &Trainer::Fast, &TABLE_ONE, SEED, |_| {}).unwrap()
 });
 
-fn course(noise: Noise) -> Course<'static> {
+fn environment(noise: Noise) -> Environment<'static> {
     let scene = four_obstacles();
-    Course::new(&SIMULATOR, &scene, scene.starts[0], noise).unwrap().with_beam(&SIMULATOR)
+    Environment::new(&SIMULATOR, &scene, scene.starts[0], noise).unwrap().with_beam(&SIMULATOR)
 }
 
 fn controllers() -> Vec<Controller> {
@@ -33,19 +33,24 @@ fn controllers() -> Vec<Controller> {
 }
 
 /// So many runs of every controller, mixed.
-fn jobs<'a>(controllers: &'a [Controller], tables: &'a [MotionTable], sensor: Sensor) -> Vec<(usize, Job<'a>)> {
-    let of_seed =
-        |seed| controllers.iter().zip(tables).map(move |(c, m)| Job { controller: c, motions: m, sensor, seed });
+fn requests<'a>(
+    controllers: &'a [Controller],
+    tables: &'a [MotionTable],
+    sensor: SensorModel,
+) -> Vec<(usize, RolloutRequest<'a>)> {
+    let of_seed = |seed| {
+        controllers.iter().zip(tables).map(move |(c, m)| RolloutRequest { controller: c, motions: m, sensor, seed })
+    };
     (0..RUNS).flat_map(of_seed).enumerate().collect()
 }
 
-fn outcomes(course: &Course, sensor: Sensor, simd: impl Simd) -> Vec<Outcome> {
+fn outcomes(environment: &Environment, sensor: SensorModel, simd: impl Simd) -> Vec<RolloutOutcome> {
     let controllers = controllers();
-    let tables: Vec<MotionTable> = controllers.iter().map(|c| course.motions(c)).collect();
-    let jobs = jobs(&controllers, &tables, sensor);
-    let mut outcomes = vec![None; jobs.len()];
+    let tables: Vec<MotionTable> = controllers.iter().map(|c| environment.motions(c)).collect();
+    let requests = requests(&controllers, &tables, sensor);
+    let mut outcomes = vec![None; requests.len()];
     let finish = |number: usize, outcome| outcomes[number] = Some(outcome);
-    simd.vectorize(Batch { course, sensor, jobs: &jobs, watch: |_| {}, finish });
+    simd.vectorize(Batch { environment, sensor, requests: &requests, watch: |_| {}, finish });
     outcomes.into_iter().map(|outcome| outcome.expect("every run ends")).collect()
 }
 
@@ -53,8 +58,8 @@ fn outcomes(course: &Course, sensor: Sensor, simd: impl Simd) -> Vec<Outcome> {
 fn checksum(simd: impl Simd) -> String {
     let mut digest = Sha256::new();
     for noise in [Noise::Paper, Noise::Learned] {
-        for sensor in [Sensor::Networks, Sensor::Beam] {
-            for outcome in outcomes(&course(noise), sensor, simd) {
+        for sensor in [SensorModel::Networks, SensorModel::Beam] {
+            for outcome in outcomes(&environment(noise), sensor, simd) {
                 let end = outcome.end_cm;
                 digest.update(
                     [end.x.to_bits(), end.y.to_bits(), u64::from(outcome.steps)].map(u64::to_le_bytes).concat(),
@@ -82,26 +87,26 @@ fn every_instruction_set_gives_the_same_checksum() {
 
 #[test]
 fn a_run_does_not_depend_on_those_beside_it() {
-    let course = course(Noise::Learned);
+    let environment = environment(Noise::Learned);
     let controllers = controllers();
-    let tables: Vec<MotionTable> = controllers.iter().map(|c| course.motions(c)).collect();
-    let together = outcomes(&course, Sensor::Beam, pulp::Scalar::new());
-    for (number, job) in jobs(&controllers, &tables, Sensor::Beam).into_iter().step_by(97) {
-        assert_eq!(course.trace(job).0, together[number], "run {number}");
+    let tables: Vec<MotionTable> = controllers.iter().map(|c| environment.motions(c)).collect();
+    let together = outcomes(&environment, SensorModel::Beam, pulp::Scalar::new());
+    for (number, request) in requests(&controllers, &tables, SensorModel::Beam).into_iter().step_by(97) {
+        assert_eq!(environment.trace(request).0, together[number], "run {number}");
     }
 }
 
 #[test]
 fn motions_worked_out_ahead_are_those_of_every_step() {
     for noise in [Noise::Paper, Noise::Learned] {
-        let ahead = outcomes(&course(noise), Sensor::Networks, pulp::Scalar::new());
-        let every_step = outcomes(&course(noise).asking_every_step(), Sensor::Networks, pulp::Scalar::new());
+        let ahead = outcomes(&environment(noise), SensorModel::Networks, pulp::Scalar::new());
+        let every_step = outcomes(&environment(noise).asking_every_step(), SensorModel::Networks, pulp::Scalar::new());
         assert_eq!(ahead, every_step);
         for controller in controllers() {
-            let (course, table) = (course(noise), course(noise).motions(&controller));
+            let (environment, table) = (environment(noise), environment(noise).motions(&controller));
             for tuple in 0..TUPLES {
                 for first in [true, false] {
-                    assert_eq!(*table.motion(tuple, first), course.motion.step(speeds(&controller, tuple, first)));
+                    assert_eq!(*table.motion(tuple, first), environment.motion.step(speeds(&controller, tuple, first)));
                 }
             }
         }
@@ -110,28 +115,29 @@ fn motions_worked_out_ahead_are_those_of_every_step() {
 
 #[test]
 fn every_run_steps_as_the_machine_of_the_core_does() {
-    let course = course(Noise::Learned);
+    let environment = environment(Noise::Learned);
     let mut endings = [0; 3];
     for controller in &controllers() {
-        let motions = &course.motions(controller);
+        let motions = &environment.motions(controller);
         for seed in 0..20 {
-            let (outcome, moments) = course.trace(Job { controller, motions, sensor: Sensor::Networks, seed });
+            let (outcome, moments) =
+                environment.trace(RolloutRequest { controller, motions, sensor: SensorModel::Networks, seed });
             let mut machine = Machine::start();
             for (i, moment) in moments.iter().enumerate() {
-                let crashed = outcome.ending == Ending::Crashed && i + 1 == moments.len();
+                let crashed = outcome.termination == Termination::Crashed && i + 1 == moments.len();
                 if !crashed {
                     machine.step(controller, moment.echo_cm);
                 }
                 assert_eq!(moment.tuple, machine.tuple(), "step {i}");
             }
             assert_eq!(moments.len(), usize::from(outcome.steps));
-            let expected = match outcome.ending {
-                Ending::Finished => Status::Finished,
-                Ending::TimedOut => Status::TimedOut,
-                Ending::Crashed => Status::Running,
+            let expected = match outcome.termination {
+                Termination::Finished => Status::Finished,
+                Termination::TimedOut => Status::TimedOut,
+                Termination::Crashed => Status::Running,
             };
             assert_eq!(machine.status(), expected);
-            endings[outcome.ending as usize] += 1;
+            endings[outcome.termination as usize] += 1;
         }
     }
     assert!(endings.iter().all(|count| *count > 0), "{endings:?} ended in each way");

@@ -1,4 +1,4 @@
-//! Effects beside the contracts' table: a diagnosis should call them unknown.
+//! Effects outside the table of docs/formats.md: a diagnosis should call them unknown.
 
 use mindgap_host_sim::built_in_robot::Effect;
 use mindgap_host_sim::geometry::cast;

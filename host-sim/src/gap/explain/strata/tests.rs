@@ -1,4 +1,5 @@
 use super::*;
+use crate::evaluation::observations::Observations;
 use crate::gap::fit::Fitted;
 use crate::gap::test_support::*;
 

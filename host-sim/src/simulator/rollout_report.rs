@@ -3,35 +3,37 @@
 use mindgap_core::controller::Controller;
 use serde::Serialize;
 
-use super::course::{Course, Ending, Job, Moment, Outcome, REACHED_CM, Sensor};
+use super::environment::Environment;
+use super::rollout::{REACHED_CM, RolloutOutcome, RolloutRequest, SensorModel, Termination, TrajectoryPoint};
 use crate::chance::derive;
 use crate::logs::Scene;
 
 /// What `mindgap simulate --json` writes.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Rehearsal {
-    /// Version of this form.
+pub struct RolloutReport {
+    /// Version of this format.
     pub schema: u32,
     /// Runs that end within this of the target, without a crash, reach it.
     pub reached_within_cm: f64,
     /// Share of the runs that reached the target; null in a scene without one.
     pub success: Option<f64>,
     /// The runs.
-    pub runs: Vec<SimulatedRun>,
+    pub runs: Vec<Rollout>,
 }
 
 /// One run.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct SimulatedRun {
+pub struct Rollout {
     /// `finished`, `timed_out` or `crashed`.
-    pub ending: &'static str,
-    /// Steps that were taken.
+    #[serde(rename = "ending")]
+    pub termination: &'static str,
+    /// Number of steps taken.
     pub steps: u16,
-    /// Where it ended.
+    /// Final position along x.
     pub end_x_cm: f64,
-    /// Where it ended.
+    /// Final position along y.
     pub end_y_cm: f64,
-    /// From there to the target; null in a scene without one.
+    /// Distance from there to the target; null in a scene without one.
     pub distance_cm: Option<f64>,
     /// Whether it reached the target.
     pub reached: Option<bool>,
@@ -39,7 +41,7 @@ pub struct SimulatedRun {
     pub path: Vec<PathPoint>,
 }
 
-/// One moment of a run.
+/// One point of a run's path.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct PathPoint {
     /// Position along x.
@@ -50,49 +52,53 @@ pub struct PathPoint {
     pub heading_deg: f64,
     /// The reading; null when the sensor produced none.
     pub echo_cm: Option<f32>,
-    /// The tuple that is held from here on, from 1; 7 once finished.
+    /// Number of the tuple held from here on, from 1; 7 once finished.
     pub tuple: usize,
 }
 
-impl Rehearsal {
-    /// Simulates so many runs.
-    pub fn new(course: &Course, scene: &Scene, controller: &Controller, runs: usize, seed: u64) -> Self {
-        let motions = &course.motions(controller);
-        let runs: Vec<SimulatedRun> = (0..runs as u64)
+impl RolloutReport {
+    /// Simulates `runs` runs of a controller.
+    pub fn new(environment: &Environment, scene: &Scene, controller: &Controller, runs: usize, seed: u64) -> Self {
+        let motions = &environment.motions(controller);
+        let runs: Vec<Rollout> = (0..runs as u64)
             .map(|run| {
-                let (outcome, moments) =
-                    course.trace(Job { controller, motions, sensor: Sensor::Networks, seed: derive(seed, &[run]) });
-                SimulatedRun::new(&outcome, &moments, course, scene)
+                let (outcome, trajectory) = environment.trace(RolloutRequest {
+                    controller,
+                    motions,
+                    sensor: SensorModel::Networks,
+                    seed: derive(seed, &[run]),
+                });
+                Rollout::new(&outcome, &trajectory, environment, scene)
             })
             .collect();
         let successes = runs.iter().filter(|run| run.reached == Some(true)).count();
         let success = scene.target_cm.map(|_| successes as f64 / runs.len() as f64);
-        Rehearsal { schema: 1, reached_within_cm: REACHED_CM, success, runs }
+        RolloutReport { schema: 1, reached_within_cm: REACHED_CM, success, runs }
     }
 }
 
-impl SimulatedRun {
-    fn new(outcome: &Outcome, moments: &[Moment], course: &Course, scene: &Scene) -> Self {
-        let start = Moment { pose: course.start, echo_cm: None, tuple: 0 };
-        let point = |m: &Moment| PathPoint {
+impl Rollout {
+    fn new(outcome: &RolloutOutcome, trajectory: &[TrajectoryPoint], environment: &Environment, scene: &Scene) -> Self {
+        let start = TrajectoryPoint { pose: environment.start, echo_cm: None, tuple: 0 };
+        let point = |m: &TrajectoryPoint| PathPoint {
             x_cm: m.pose.position_cm.x,
             y_cm: m.pose.position_cm.y,
             heading_deg: m.pose.heading_rad.to_degrees(),
             echo_cm: m.echo_cm,
             tuple: m.tuple + 1,
         };
-        SimulatedRun {
-            ending: match outcome.ending {
-                Ending::Finished => "finished",
-                Ending::TimedOut => "timed_out",
-                Ending::Crashed => "crashed",
+        Rollout {
+            termination: match outcome.termination {
+                Termination::Finished => "finished",
+                Termination::TimedOut => "timed_out",
+                Termination::Crashed => "crashed",
             },
             steps: outcome.steps,
             end_x_cm: outcome.end_cm.x,
             end_y_cm: outcome.end_cm.y,
             distance_cm: scene.target_cm.map(|target_cm| outcome.end_cm.distance(target_cm)),
             reached: scene.target_cm.map(|target_cm| outcome.reached(target_cm)),
-            path: [&start].into_iter().chain(moments).map(point).collect(),
+            path: [&start].into_iter().chain(trajectory).map(point).collect(),
         }
     }
 }

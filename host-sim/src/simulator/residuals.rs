@@ -1,4 +1,4 @@
-//! How reality scatters about a network: what the paper's simulators leave out beyond the firing of the sensor.
+//! Residual noise about a network: the paper's simulators leave all of it out but the failing echoes.
 
 use serde::{Deserialize, Serialize};
 
@@ -9,28 +9,30 @@ pub const LEVELS: usize = 32;
 
 /// Residuals of a network by context: turning and driving command for motion, D and α for the sonar.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Spread {
+pub struct ResidualQuantiles {
     /// Inner borders of the cells along the two context variables, ascending.
     pub edges: [[f32; CELLS - 1]; 2],
     /// [`LEVELS`] residuals a cell, ascending; cell (i, j) is entry i · [`CELLS`] + j.
-    pub residuals: Vec<Vec<f32>>,
+    #[serde(rename = "residuals")]
+    pub quantiles: Vec<Vec<f32>>,
     /// What of a residual a simulated robot has, one entry a cell.
-    pub shares: Vec<Shares>,
+    #[serde(rename = "shares")]
+    pub components: Vec<VarianceComponents>,
 }
 
-/// What a residual's size is made of, as shares of it whose squares add up to one at most. What is missing is the
-/// tracker's error, which a simulated robot has none of.
+/// Components of a residual, as fractions of its standard deviation: their squares add up to one at most. The rest is
+/// the tracker's error, which a simulated robot does not have.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Shares {
+pub struct VarianceComponents {
     /// Drawn anew in each step.
     pub step: f32,
     /// Lasts as long as a command is held: a network's misfit there, or a matter of the place.
     pub held: f32,
 }
 
-/// A spread's residuals multiplied by their shares, so that a step looks them up and adds.
+/// Residuals multiplied by their components' fractions, so that a step looks them up and adds.
 #[derive(Clone, Debug)]
-pub struct Scatter {
+pub struct ResidualNoise {
     step: [[f32; LEVELS]; CELLS * CELLS],
     held: [[f32; LEVELS]; CELLS * CELLS],
 }
@@ -44,19 +46,19 @@ pub struct ConstantReading {
     pub probability: f32,
 }
 
-impl Shares {
+impl VarianceComponents {
     /// All of a residual is drawn anew in each step.
-    pub const STEP: Shares = Shares { step: 1.0, held: 0.0 };
+    pub const STEP: VarianceComponents = VarianceComponents { step: 1.0, held: 0.0 };
 
     fn is_sound(&self) -> bool {
         [self.step, self.held].iter().all(|share| (0.0..=1.0).contains(share))
     }
 }
 
-impl Spread {
+impl ResidualQuantiles {
     /// One of the [`LEVELS`] equally likely residuals of a context.
     pub fn residual(&self, context: [f32; 2], level: usize) -> f32 {
-        self.residuals[self.cell(context)][level]
+        self.quantiles[self.cell(context)][level]
     }
 
     /// The cell of a context.
@@ -69,20 +71,22 @@ impl Spread {
     pub fn is_sound(&self) -> bool {
         let finite = |values: &[f32]| values.iter().all(|v| v.is_finite());
         self.edges.iter().all(|e| finite(e))
-            && self.shares.len() == CELLS * CELLS
-            && self.shares.iter().all(Shares::is_sound)
-            && self.residuals.len() == CELLS * CELLS
-            && self.residuals.iter().all(|r| r.len() == LEVELS && finite(r))
+            && self.components.len() == CELLS * CELLS
+            && self.components.iter().all(VarianceComponents::is_sound)
+            && self.quantiles.len() == CELLS * CELLS
+            && self.quantiles.iter().all(|r| r.len() == LEVELS && finite(r))
     }
 }
 
-impl Scatter {
-    /// Of a spread that is sound.
-    pub fn new(spread: &Spread) -> Self {
-        let times = |share: fn(&Shares) -> f32| -> [[f32; LEVELS]; CELLS * CELLS] {
-            std::array::from_fn(|cell| std::array::from_fn(|l| share(&spread.shares[cell]) * spread.residuals[cell][l]))
+impl ResidualNoise {
+    /// Of residuals that are sound.
+    pub fn new(residuals: &ResidualQuantiles) -> Self {
+        let times = |share: fn(&VarianceComponents) -> f32| -> [[f32; LEVELS]; CELLS * CELLS] {
+            std::array::from_fn(|cell| {
+                std::array::from_fn(|l| share(&residuals.components[cell]) * residuals.quantiles[cell][l])
+            })
         };
-        Scatter { step: times(|s| s.step), held: times(|s| s.held) }
+        ResidualNoise { step: times(|s| s.step), held: times(|s| s.held) }
     }
 
     /// The same in another unit.

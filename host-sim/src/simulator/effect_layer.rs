@@ -1,5 +1,5 @@
-//! The simulator's step with applied effects round it: what they change follows the run's past, so nothing of it can be
-//! worked out ahead.
+//! The chain of applied effects around each simulated step. An effect may depend on the run's history, so the motion
+//! of a controller cannot be computed in advance.
 
 use rand::RngExt;
 
@@ -14,8 +14,8 @@ use crate::logs::Scene;
 use crate::problem::{Problem, Result};
 use crate::sonar::SonarModel;
 
-/// Applied effects in a room.
-pub(super) struct Wrapped<'s> {
+/// Applied effects in an environment.
+pub(super) struct EffectLayer<'s> {
     effects: EffectChain,
     surroundings: Surroundings,
     /// Least and largest command that the networks know.
@@ -25,14 +25,14 @@ pub(super) struct Wrapped<'s> {
     noise: Noise,
 }
 
-/// A run so far.
+/// What effects depend on: a run's history so far.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Past {
+pub(super) struct EffectMemory {
     history: RunHistory,
     steps: usize,
 }
 
-impl<'s> Wrapped<'s> {
+impl<'s> EffectLayer<'s> {
     /// The effects applied to a simulator, if there are any.
     ///
     /// # Errors
@@ -48,7 +48,7 @@ impl<'s> Wrapped<'s> {
                 "an added effect changes the sonar, and the simulator does not know its usual beam",
             ));
         }
-        Ok(Some(Wrapped {
+        Ok(Some(EffectLayer {
             sonar: model.filter(|_| effects.senses()),
             effects,
             surroundings: Surroundings::new(&simulator.robot, scene),
@@ -57,10 +57,16 @@ impl<'s> Wrapped<'s> {
         }))
     }
 
-    /// What a step does with a robot at `pose` under `command`, before scatter.
-    pub fn motion(&self, past: &mut Past, pose: Pose, command: [f32; 2], networks: &MotionNetworks) -> Motion {
-        past.history.command(command.map(f64::from));
-        let context = self.context(past, pose);
+    /// Motion in a step of a robot at `pose` under `command`, before noise.
+    pub fn motion(
+        &self,
+        memory: &mut EffectMemory,
+        pose: Pose,
+        command: [f32; 2],
+        networks: &MotionNetworks,
+    ) -> Motion {
+        memory.history.command(command.map(f64::from));
+        let context = self.context(memory, pose);
         let mut cells = [0; 3];
         let step = |now: [f64; 2], before: [f64; 2]| {
             let [low, high] = self.commands;
@@ -71,8 +77,8 @@ impl<'s> Wrapped<'s> {
             PoseIncrement { forward_cm, lateral_cm, turn_rad }
         };
         let increment = self.effects.wrap(&context, step);
-        past.history.seen(pose);
-        past.steps += 1;
+        memory.history.seen(pose);
+        memory.steps += 1;
         Motion {
             forward_cm: increment.forward_cm as f32,
             lateral_cm: increment.lateral_cm as f32,
@@ -81,25 +87,25 @@ impl<'s> Wrapped<'s> {
         }
     }
 
-    /// Whether readings are made here.
+    /// Whether readings are generated here.
     pub fn senses(&self) -> bool {
         self.sonar.is_some()
     }
 
     /// The reading at `pose`, where the effects change the sensor; `draw` fixes what chance adds.
-    pub fn echo_cm(&self, past: &mut Past, pose: Pose, draw: f32) -> Option<f32> {
+    pub fn echo_cm(&self, memory: &mut EffectMemory, pose: Pose, draw: f32) -> Option<f32> {
         let sonar = self.sonar?;
-        let context = self.context(past, pose);
+        let context = self.context(memory, pose);
         let state = self.effects.sensor(&context);
         let fan = self.surroundings.fan(&state.robot, state.yaw_rad, sonar.fan_width * state.width);
-        let mut rng = generator(u64::from(draw.to_bits()), &[past.steps as u64]);
-        let outcomes = sonar.outcomes(&fan, &state.perturbation, past.history.echo_before_cm());
+        let mut rng = generator(u64::from(draw.to_bits()), &[memory.steps as u64]);
+        let outcomes = sonar.outcomes(&fan, &state.perturbation, memory.history.echo_before_cm());
         let echo_cm = outcomes.draw(self.noise == Noise::Learned, || rng.random());
-        past.history.sensed(&context, echo_cm);
+        memory.history.sensed(&context, echo_cm);
         echo_cm.map(|cm| cm as f32)
     }
 
-    fn context(&self, past: &Past, pose: Pose) -> StepContext {
-        self.surroundings.context(&past.history, past.steps as f64 * self.surroundings.robot.step_ms, pose)
+    fn context(&self, memory: &EffectMemory, pose: Pose) -> StepContext {
+        self.surroundings.context(&memory.history, memory.steps as f64 * self.surroundings.robot.step_ms, pose)
     }
 }

@@ -1,0 +1,26 @@
+//! The settings of a diagnosis.
+
+use super::calibration::Calibration;
+use crate::effects::{CATALOGUE, Effect};
+
+/// What a diagnosis looks for, when a gain counts, and what its draws follow from.
+#[derive(Clone, Copy)]
+pub struct Method {
+    /// The effects that compete.
+    pub catalogue: &'static [&'static Effect],
+    /// When a gain counts.
+    pub calibration: Calibration,
+    /// Seed of bootstrap intervals and of simulated noise; the verdict does not depend on it.
+    pub seed: u64,
+}
+
+impl Method {
+    /// The seed unless another is given.
+    pub const SEED: u64 = 1;
+}
+
+impl Default for Method {
+    fn default() -> Self {
+        Method { catalogue: CATALOGUE, calibration: Calibration::shipped(), seed: Method::SEED }
+    }
+}

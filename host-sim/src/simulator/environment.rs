@@ -1,0 +1,90 @@
+//! A simulator, a scene and a start, ready for rollouts of controllers.
+
+use mindgap_core::controller::Controller;
+use mindgap_core::folded::FoldedNetwork;
+
+use super::beam::Beam;
+use super::effect_layer::EffectLayer;
+use super::motion::{MotionNetworks, MotionTable};
+use super::residuals::{ConstantReading, ResidualNoise, ResidualQuantiles};
+use super::room::Room;
+use super::{Noise, Simulator};
+use crate::geometry::Pose;
+use crate::logs::{Robot, Scene};
+use crate::problem::{Problem, Result};
+
+/// Where and how controllers are rolled out.
+pub struct Environment<'s> {
+    pub(super) robot: Robot,
+    pub(super) start: Pose,
+    /// Unit vector along the sensor's axis on the robot.
+    pub(super) yaw_direction: [f32; 2],
+    pub(super) room: Room,
+    pub(super) motion: MotionNetworks<'s>,
+    /// Whether they are asked in every step and not once for all that a controller does: the same bits, slower.
+    pub(super) asks_every_step: bool,
+    /// Of the forward, lateral and turn networks.
+    pub(super) motion_noise: [ResidualNoise; 3],
+    /// Probability and value of an echo.
+    pub(super) sonar: [FoldedNetwork<f32, 2>; 2],
+    pub(super) echo_residuals: &'s ResidualQuantiles,
+    pub(super) constant_reading: Option<ConstantReading>,
+    pub(super) noise: Noise,
+    /// There when effects were added to the simulator.
+    pub(super) effect_layer: Option<EffectLayer<'s>>,
+    /// There when some runs meet it.
+    pub(super) beam: Option<Beam>,
+}
+
+impl<'s> Environment<'s> {
+    /// The environment for rollouts from `start`.
+    ///
+    /// # Errors
+    /// When the simulator lacks a network or the robot does not fit at the start.
+    pub fn new(simulator: &'s Simulator, scene: &Scene, start: Pose, noise: Noise) -> Result<Self> {
+        let robot = simulator.robot;
+        if !scene.has_room_for(start.position_cm, robot.body_radius_cm) {
+            return Err(Problem::new(format!(
+                "the start at ({}, {}) leaves no room for a robot of radius {} cm",
+                start.position_cm.x, start.position_cm.y, robot.body_radius_cm
+            )));
+        }
+        let echo_probability = simulator.need(&simulator.echo_probability, "echo_probability")?;
+        let echo_value = simulator.need(&simulator.echo_value, "echo_value")?;
+        let yaw_rad = robot.ultrasonic.yaw_deg.to_radians();
+        let beyond = simulator.reference.as_ref().filter(|_| noise == Noise::Learned);
+        let motion = MotionNetworks::of(simulator)?.corrected(beyond.and_then(|r| r.motion.as_ref()));
+        Ok(Environment {
+            robot,
+            start,
+            yaw_direction: [libm::cos(yaw_rad) as f32, libm::sin(yaw_rad) as f32],
+            room: Room::new(scene),
+            motion_noise: motion.residual_noise(),
+            motion,
+            asks_every_step: false,
+            sonar: [echo_probability, echo_value].map(|l| FoldedNetwork::fold(&l.network)),
+            echo_residuals: &echo_value.residuals,
+            constant_reading: simulator.constant_reading,
+            noise,
+            effect_layer: EffectLayer::of(simulator, scene, noise)?,
+            beam: None,
+        })
+    }
+
+    /// The environment with the beam that the training logs of its simulator show, for the runs that ask for it.
+    pub fn with_beam(self, simulator: &Simulator) -> Self {
+        let reference = simulator.reference.as_ref().and_then(|r| r.sonar.as_ref());
+        Environment { beam: reference.map(Beam::new), ..self }
+    }
+
+    /// The environment with the motion networks evaluated in every step. Outcomes stay the same to the bit; it is there
+    /// to show that, and to measure the cost.
+    pub fn asking_every_step(self) -> Self {
+        Environment { asks_every_step: true, ..self }
+    }
+
+    /// The motions of a controller on this environment.
+    pub fn motions(&self, controller: &Controller) -> MotionTable {
+        self.motion.table(controller)
+    }
+}
