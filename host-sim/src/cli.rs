@@ -26,8 +26,8 @@ use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 
+use crate::error::{Error, Result};
 use crate::logs::Logs;
-use crate::problem::{Problem, Result};
 
 /// Learns a robot's simulator from its logs, evolves controllers in it, and finds what reality has that it lacks.
 #[derive(Parser)]
@@ -72,19 +72,19 @@ pub fn run() -> ExitCode {
     };
     match done.and_then(|text| say(&text)) {
         Ok(()) => ExitCode::SUCCESS,
-        Err(problem) => {
-            eprintln!("mindgap: {problem}");
+        Err(error) => {
+            eprintln!("mindgap: {error}");
             ExitCode::FAILURE
         }
     }
 }
 
-/// Writes to standard output. That nobody reads on is no problem.
+/// Writes to standard output. That nobody reads on is no error.
 fn say(text: &str) -> Result<()> {
     let mut out = io::stdout().lock();
     match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
         Err(e) if e.kind() != ErrorKind::BrokenPipe => {
-            Err(Problem::new(format!("standard output cannot be written: {e}")))
+            Err(Error::new(format!("standard output cannot be written: {e}")))
         }
         _ => Ok(()),
     }

@@ -7,9 +7,9 @@ mod runs;
 use mindgap_core::controller::Controller;
 use serde::Serialize;
 
+use crate::error::Result;
 use crate::learn::dataset::Datasets;
 use crate::logs::Logs;
-use crate::problem::Result;
 use crate::simulator::Simulator;
 use crate::simulator::fixed_point::FixedNetworks;
 use arithmetic::{Fixed, Float};

@@ -14,6 +14,7 @@ use mindgap_core::controller::Controller;
 
 use crate::built_in_robot::{self, BuiltInRobot, Trajectory};
 use crate::chance::{derive, generator};
+use crate::error::{Error, Result};
 use crate::evaluation::accuracy::{self, Evaluation};
 use crate::evolve::controller_file::{self, ControllerFile};
 use crate::evolve::fitness::{RandomNumbers, Success};
@@ -22,7 +23,6 @@ use crate::evolve::robust::{self, EvolutionTask};
 use crate::files;
 use crate::learn::train::{self, TABLE_ONE, Trainer};
 use crate::logs::Scene;
-use crate::problem::{Problem, Result};
 use crate::simulator::environment::Environment;
 use crate::simulator::rollout_report::RolloutReport;
 use crate::simulator::{Noise, Simulator};
@@ -93,7 +93,7 @@ struct Trial {
 /// # Errors
 /// When `out` cannot be written.
 pub fn run(out: &Path, seed: u64, watch: impl Fn(Stage)) -> Result<Summary> {
-    fs::create_dir_all(out).map_err(|e| Problem::in_file(out, format!("cannot be made: {e}")))?;
+    fs::create_dir_all(out).map_err(|e| Error::in_file(out, format!("cannot be made: {e}")))?;
     let of = |purpose: Purpose| derive(seed, &[purpose as u64]);
     watch(Stage::Recording);
     let robot = built_in_robot::default_robot();
@@ -134,7 +134,7 @@ impl<W: Fn(Stage)> DemoRun<'_, W> {
         let pose = self.scene.starts[start];
         let environment =
             &Environment::new(self.simulator, self.scene, pose, Noise::Learned)?.with_beam(self.simulator);
-        let target_cm = self.scene.target_cm.ok_or_else(|| Problem::new("the scene has no target"))?;
+        let target_cm = self.scene.target_cm.ok_or_else(|| Error::new("the scene has no target"))?;
         let decoder = GenotypeDecoder::new(self.simulator, MAX_STEPS);
         let seed = derive(evolution, &[start as u64]);
         let task = EvolutionTask { environment, target_cm, decoder, random_numbers: RandomNumbers::Common, seed };
@@ -170,7 +170,7 @@ impl<W: Fn(Stage)> DemoRun<'_, W> {
 
     fn write(&self, number: usize, controller: &Controller, origin: controller_file::Origin) -> Result<()> {
         let name = format!("start-{number}");
-        let in_file = |e: mindgap_controller_export::ExportError| Problem::new(e.to_string());
+        let in_file = |e: mindgap_controller_export::ExportError| Error::new(e.to_string());
         let program = BrickName::program(&name).map_err(in_file)?;
         let options = NxcOptions { program, wiring: Wiring::default(), log: None, display: true };
         let file = ControllerFile { controller: controller.clone(), origin: Some(origin) };

@@ -8,14 +8,14 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 use tempfile::NamedTempFile;
 
-use crate::problem::{Problem, Result};
+use crate::error::{Error, Result};
 
 /// The text of a file.
 ///
 /// # Errors
 /// When the file is missing, unreadable or no UTF-8.
 pub fn read_text(path: &Path) -> Result<String> {
-    fs::read_to_string(path).map_err(|e| Problem::in_file(path, format!("cannot be read: {e}")))
+    fs::read_to_string(path).map_err(|e| Error::in_file(path, format!("cannot be read: {e}")))
 }
 
 /// A TOML file as a `T`; a problem names the line.
@@ -27,8 +27,8 @@ pub fn read_toml<T: DeserializeOwned>(path: &Path) -> Result<T> {
     toml::from_str(&text).map_err(|e| {
         let what = e.message().replace('\n', "; ");
         match e.span() {
-            Some(span) => Problem::at_line(path, line_at(&text, span.start), what),
-            None => Problem::in_file(path, what),
+            Some(span) => Error::at_line(path, line_at(&text, span.start), what),
+            None => Error::in_file(path, what),
         }
     })
 }
@@ -55,7 +55,7 @@ pub fn write(path: &Path, content: impl AsRef<[u8]>) -> Result<()> {
         // The error's own text would name the temporary file.
         let why =
             if folder.is_dir() { e.kind().to_string() } else { format!("there is no folder {}", folder.display()) };
-        Problem::in_file(path, format!("cannot be written: {why}"))
+        Error::in_file(path, format!("cannot be written: {why}"))
     })
 }
 
@@ -65,7 +65,7 @@ pub fn write(path: &Path, content: impl AsRef<[u8]>) -> Result<()> {
 /// When it is missing or not of the expected form.
 pub fn read_json<T: DeserializeOwned>(path: &Path) -> Result<T> {
     let text = read_text(path)?;
-    serde_json::from_str(&text).map_err(|e| Problem::at_line(path, e.line() as u64, e.to_string()))
+    serde_json::from_str(&text).map_err(|e| Error::at_line(path, e.line() as u64, e.to_string()))
 }
 
 /// Writes rows as CSV under their fields' names.
@@ -75,9 +75,9 @@ pub fn read_json<T: DeserializeOwned>(path: &Path) -> Result<T> {
 pub fn write_csv(path: &Path, rows: &[impl Serialize]) -> Result<()> {
     let mut table = csv::Writer::from_writer(Vec::new());
     for row in rows {
-        table.serialize(row).map_err(|e| Problem::in_file(path, e.to_string()))?;
+        table.serialize(row).map_err(|e| Error::in_file(path, e.to_string()))?;
     }
-    write(path, table.into_inner().map_err(|e| Problem::in_file(path, e.to_string()))?)
+    write(path, table.into_inner().map_err(|e| Error::in_file(path, e.to_string()))?)
 }
 
 /// Reads what [`write_csv`] wrote.
@@ -87,11 +87,11 @@ pub fn write_csv(path: &Path, rows: &[impl Serialize]) -> Result<()> {
 pub fn read_csv<T: DeserializeOwned>(path: &Path) -> Result<Vec<T>> {
     let text = read_text(path)?;
     let rows = csv::Reader::from_reader(text.as_bytes()).deserialize().collect::<csv::Result<_>>();
-    rows.map_err(|e| csv_problem(path, &e))
+    rows.map_err(|e| csv_error(path, &e))
 }
 
 /// What is wrong with a CSV file, and in which line.
-pub fn csv_problem(path: &Path, e: &csv::Error) -> Problem {
+pub fn csv_error(path: &Path, e: &csv::Error) -> Error {
     let line = e.position().map_or(1, csv::Position::line);
     let what = match e.kind() {
         csv::ErrorKind::UnequalLengths { expected_len, len, .. } => {
@@ -99,7 +99,7 @@ pub fn csv_problem(path: &Path, e: &csv::Error) -> Problem {
         }
         _ => e.to_string().replace('\n', " "),
     };
-    Problem::at_line(path, line, what)
+    Error::at_line(path, line, what)
 }
 
 /// Writes a value as JSON.
@@ -107,7 +107,7 @@ pub fn csv_problem(path: &Path, e: &csv::Error) -> Problem {
 /// # Errors
 /// As [`write()`].
 pub fn write_json(path: &Path, value: &impl Serialize) -> Result<()> {
-    let text = serde_json::to_string_pretty(value).map_err(|e| Problem::in_file(path, e.to_string()))?;
+    let text = serde_json::to_string_pretty(value).map_err(|e| Error::in_file(path, e.to_string()))?;
     write(path, text + "\n")
 }
 
@@ -117,13 +117,13 @@ pub fn write_json(path: &Path, value: &impl Serialize) -> Result<()> {
 /// # Errors
 /// What `fill` returns, when the folder holds something else, or when it cannot be written.
 pub fn write_folder(path: &Path, ours: impl Fn(&str) -> bool, fill: impl FnOnce(&Path) -> Result<()>) -> Result<()> {
-    let failed = |e: std::io::Error| Problem::in_file(path, format!("cannot be written: {e}"));
+    let failed = |e: std::io::Error| Error::in_file(path, format!("cannot be written: {e}"));
     if path.exists() {
         for entry in fs::read_dir(path).map_err(failed)? {
             let name = entry.map_err(failed)?.file_name();
             if !name.to_str().is_some_and(&ours) {
                 let what = format!("holds {name:?}, which this command did not write: give an empty or new folder");
-                return Err(Problem::in_file(path, what));
+                return Err(Error::in_file(path, what));
             }
         }
     }

@@ -20,8 +20,8 @@ use self::brick_log::BrickLog;
 use self::clocks::{Alignment, align};
 use self::track::{Sighting, Track};
 use self::units::Units;
+use crate::error::{Error, Result};
 use crate::logs::{Logs, Robot, Row, Run, Scene};
-use crate::problem::{Problem, Result};
 
 /// Largest share of the motion's variance that an alignment may leave unexplained; slipping wheels or a rotated camera
 /// frame stay far below it.
@@ -53,7 +53,7 @@ pub fn import(
     if logs.is_empty() || tracks.is_empty() {
         let what =
             if logs.is_empty() { "log of a brick (columns t_ms, left, right, ...)" } else { "track of a camera" };
-        return Err(Problem::new(format!("none of the files is a {what}")));
+        return Err(Error::new(format!("none of the files is a {what}")));
     }
     let mut runs = Vec::new();
     let mut reports = Vec::new();
@@ -71,7 +71,7 @@ pub fn import(
     }
     if runs.is_empty() {
         let first = &reports[0];
-        return Err(Problem::in_file(&first.file, first.left_out.clone().unwrap_or_default()));
+        return Err(Error::in_file(&first.file, first.left_out.clone().unwrap_or_default()));
     }
     let tracks = tracks.iter().map(|t| TrackReport { file: t.file.clone(), ..t.report() }).collect();
     let logs = Logs { robot, scene, runs };

@@ -16,8 +16,8 @@ pub use robot::{Robot, Ultrasonic};
 pub use run::{Row, Run};
 pub use scene::Scene;
 
+use crate::error::{Error, Result};
 use crate::files;
-use crate::problem::{Problem, Result};
 
 /// Largest relative deviation of the median step time from `step_ms`.
 const STEP_TOLERANCE: f64 = 0.2;
@@ -41,14 +41,14 @@ impl Logs {
     pub fn read(folder: &Path, mut warn: impl FnMut(String)) -> Result<Self> {
         let robot = Robot::read(&folder.join("robot.toml"))?;
         let scene = Scene::read(&folder.join("scene.toml"))?;
-        let listing = fs::read_dir(folder).map_err(|e| Problem::in_file(folder, format!("cannot be read: {e}")))?;
+        let listing = fs::read_dir(folder).map_err(|e| Error::in_file(folder, format!("cannot be read: {e}")))?;
         let mut names: Vec<String> = listing
             .filter_map(|entry| entry.ok()?.file_name().into_string().ok())
             .filter(|name| is_run_file(name))
             .collect();
         names.sort();
         if names.is_empty() {
-            return Err(Problem::in_file(folder, "has no run-*.csv"));
+            return Err(Error::in_file(folder, "has no run-*.csv"));
         }
         let runs = names.iter().map(|name| Run::read(&folder.join(name), &mut warn)).collect::<Result<Vec<_>>>()?;
         let logs = Logs { robot, scene, runs };
@@ -80,7 +80,7 @@ impl Logs {
         let middle_ms = steps_ms[steps_ms.len() / 2];
         if (middle_ms / self.robot.step_ms - 1.0).abs() > STEP_TOLERANCE {
             let what = format!("rows are {middle_ms} ms apart, but robot.toml has step_ms = {}", self.robot.step_ms);
-            return Err(Problem::in_file(folder, what));
+            return Err(Error::in_file(folder, what));
         }
         Ok(())
     }

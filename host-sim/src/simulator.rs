@@ -22,9 +22,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::effects::applied::AppliedEffect;
 use crate::effects::legacy;
+use crate::error::{Error, Result};
 use crate::files;
 use crate::logs::Robot;
-use crate::problem::{Problem, Result};
 use motion::MotionNetworks;
 use nominal::NominalModel;
 use residuals::{ConstantReading, ResidualQuantiles};
@@ -122,7 +122,7 @@ impl Simulator {
         if version.schema != SCHEMA {
             let what =
                 format!("is a simulator file of version {}; this program reads version {SCHEMA}", version.schema);
-            return Err(Problem::in_file(path, what));
+            return Err(Error::in_file(path, what));
         }
         let simulator: serde_json::Result<Self> = match legacy::upgraded(&text) {
             Some(upgraded) => serde_json::from_value(upgraded),
@@ -148,7 +148,7 @@ impl Simulator {
     pub fn need<'s, const N: usize>(&'s self, learned: &'s Option<Learned<N>>, name: &str) -> Result<&'s Learned<N>> {
         learned.as_ref().ok_or_else(|| {
             let reason = self.missing.iter().find(|m| m.network == name).map_or("it is not there", |m| &m.reason);
-            Problem::new(format!("the simulator has no {name} network: {reason}"))
+            Error::new(format!("the simulator has no {name} network: {reason}"))
         })
     }
 
@@ -160,14 +160,14 @@ impl Simulator {
     fn check(&self, path: &Path) -> Result<()> {
         if let Some(added) = self.added.iter().find(|a| a.resolve().is_none()) {
             let what = format!("the added effect {} ({}) is not known to this program", added.effect, added.variant);
-            return Err(Problem::in_file(path, what));
+            return Err(Error::in_file(path, what));
         }
         let motion = [("turn", &self.turn), ("forward", &self.forward), ("lateral", &self.lateral)];
         let sonar = [("echo_probability", &self.echo_probability), ("echo_value", &self.echo_value)];
         let motion = motion.map(|(name, l)| (name, l.as_ref().is_none_or(Learned::is_sound)));
         let sonar = sonar.map(|(name, l)| (name, l.as_ref().is_none_or(Learned::is_sound)));
         match motion.iter().chain(&sonar).find(|(_, sound)| !sound) {
-            Some((name, _)) => Err(Problem::in_file(path, format!("the {name} network holds numbers that cannot be"))),
+            Some((name, _)) => Err(Error::in_file(path, format!("the {name} network holds numbers that cannot be"))),
             None => Ok(()),
         }
     }
@@ -184,6 +184,6 @@ struct SchemaOnly {
     schema: u32,
 }
 
-fn broken(path: &Path, e: &serde_json::Error, what: &str) -> Problem {
-    Problem::at_line(path, e.line() as u64, format!("{what}: {e}"))
+fn broken(path: &Path, e: &serde_json::Error, what: &str) -> Error {
+    Error::at_line(path, e.line() as u64, format!("{what}: {e}"))
 }

@@ -3,8 +3,8 @@
 
 use mindgap_controller_export::rust_networks::rust_networks;
 use mindgap_host_sim::built_in_robot::{default_robot, record, training_room};
+use mindgap_host_sim::error::Result;
 use mindgap_host_sim::learn::train::{TABLE_ONE, Trainer, train};
-use mindgap_host_sim::problem::Result;
 use mindgap_host_sim::simulator::fixed_point::FixedNetworks;
 
 /// The logs that the networks are trained on.

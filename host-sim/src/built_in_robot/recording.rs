@@ -9,9 +9,9 @@ use rayon::prelude::*;
 
 use super::{ActiveEffect, Body, BuiltInRobot, Driving};
 use crate::chance::{Generator, generator};
+use crate::error::{Error, Result};
 use crate::geometry::{Pose, Rectangle, cast, direction};
 use crate::logs::{Logs, Robot, Row, Run, Scene};
-use crate::problem::{Problem, Result};
 
 /// Least clearance of the robot's body, cm.
 const KEPT_CLEAR_CM: f64 = 2.0;
@@ -60,7 +60,7 @@ pub fn record_driving(
 ) -> Result<Logs> {
     let [runs, steps] = amount;
     if runs == 0 || steps == 0 {
-        return Err(Problem::new(format!("{runs} runs of {steps} steps: there must be at least one of each")));
+        return Err(Error::new(format!("{runs} runs of {steps} steps: there must be at least one of each")));
     }
     let robot = BuiltInRobot::new(spec, scene, effects);
     let runs = (0..runs as u64)
@@ -79,9 +79,9 @@ pub fn record_driving(
     Ok(Logs { robot: *spec, scene: scene.clone(), runs })
 }
 
-fn no_room(spec: &Robot) -> Problem {
+fn no_room(spec: &Robot) -> Error {
     let radius_cm = spec.body_radius_cm;
-    Problem::new(format!(
+    Error::new(format!(
         "the scene has no room between its walls for the robot to drive in, a disc of radius {radius_cm} cm"
     ))
 }

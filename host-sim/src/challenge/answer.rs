@@ -9,11 +9,11 @@ use rayon::prelude::*;
 
 use super::Folder;
 use super::seal::Published;
+use crate::error::{Error, Result};
 use crate::files;
 use crate::gap::{Method, findings};
 use crate::learn::train::{TABLE_ONE, Trainer, train};
 use crate::logs::Logs;
-use crate::problem::{Problem, Result};
 use crate::simulator::Simulator;
 use crate::simulator::baseline::Baseline;
 
@@ -28,7 +28,7 @@ pub fn answer(folder: &Path, watch: impl Fn(usize) + Sync) -> Result<usize> {
     let folder = Folder(folder);
     let cases: Vec<Published> = files::read_csv(&folder.cases())?;
     let answers = folder.answer("").parent().map(Path::to_path_buf).unwrap_or_default();
-    fs::create_dir_all(&answers).map_err(|e| Problem::in_file(&answers, format!("cannot be made: {e}")))?;
+    fs::create_dir_all(&answers).map_err(|e| Error::in_file(&answers, format!("cannot be made: {e}")))?;
     let mut simulators: BTreeMap<&str, Simulator> = BTreeMap::new();
     for case in &cases {
         if !simulators.contains_key(case.robot.as_str()) {

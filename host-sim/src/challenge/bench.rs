@@ -3,8 +3,8 @@
 use super::answer::learn;
 use super::cases::{self, Case, Outside};
 use crate::built_in_robot::Effect;
+use crate::error::Result;
 use crate::logs::Logs;
-use crate::problem::Result;
 use crate::simulator::Simulator;
 use crate::simulator::baseline::Baseline;
 

@@ -11,12 +11,12 @@ use serde::Serialize;
 
 use super::bench::Bench;
 use super::cases::Case;
+use crate::error::{Error, Result};
 use crate::gap::Method;
 use crate::gap::calibration::Calibration;
 use crate::gap::diagnose::{confirmed, statistics};
 use crate::gap::explain::explained_fraction;
 use crate::gap::fit::Gain;
-use crate::problem::{Problem, Result};
 
 /// What is measured in one case.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -55,7 +55,7 @@ const FEWEST: usize = 40;
 /// When there are too few cases.
 pub fn calibrate(count: usize, seed: u64, watch: impl Fn(usize)) -> Result<(Calibration, Vec<Measured>)> {
     if count < FEWEST {
-        return Err(Problem::new(format!("{count} cases settle nothing: give at least {FEWEST}")));
+        return Err(Error::new(format!("{count} cases settle nothing: give at least {FEWEST}")));
     }
     let bench = Bench::new(count, seed)?;
     let (nulls, others): (Vec<usize>, Vec<usize>) = (0..count).partition(|case| bench.effects[*case].is_empty());

@@ -7,8 +7,8 @@ use rand::{Rng, RngExt};
 use super::rooms;
 use crate::built_in_robot::{ActiveEffect, Driving, Effect, HeldOut, record, record_driving};
 use crate::chance::{Generator, generator};
+use crate::error::Result;
 use crate::logs::Logs;
-use crate::problem::Result;
 
 /// Number of robots in a challenge.
 pub const ROBOTS: usize = 4;
@@ -86,7 +86,7 @@ pub fn case(number: usize, effects: &[Effect], robots: &[Logs], seed: u64) -> Re
         tried += 1;
         match record_driving(&driving, spec, &scene, [runs, STEPS], &effects, rng.next_u64()) {
             Ok(logs) => return Ok(Case { robot, effects, driving, logs, rng }),
-            Err(problem) if tried == ROOMS_TRIED => return Err(problem),
+            Err(error) if tried == ROOMS_TRIED => return Err(error),
             Err(_) => {}
         }
     }

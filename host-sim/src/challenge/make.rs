@@ -8,8 +8,8 @@ use rayon::prelude::*;
 use super::Folder;
 use super::cases::{self, Outside};
 use super::seal::{Published, Sealed};
+use crate::error::Result;
 use crate::files;
-use crate::problem::Result;
 
 /// Writes a challenge of `count` cases to a folder; `outside` is what its effects outside the table are drawn from.
 ///

@@ -10,11 +10,11 @@ use super::Folder;
 use super::seal::{Published, Sealed};
 use crate::built_in_robot::{ActiveEffect, Driving, Effect, record_driving};
 use crate::effects::applied::AppliedEffect;
+use crate::error::{Error, Result};
 use crate::files;
 use crate::gap::diagnose::closed;
 use crate::gap::diagnosis::Verdict;
 use crate::logs::Logs;
-use crate::problem::{Problem, Result};
 use crate::simulator::Simulator;
 
 /// Largest number of rivals beside the first effect in a set that still counts as an answer.
@@ -129,8 +129,7 @@ pub fn score(folder: &Path) -> Result<Score> {
         .par_iter()
         .map(|case| {
             let sealed = sealed.iter().find(|s| s.case == case.case && s.commitment() == case.commitment);
-            let broken =
-                || Problem::in_file(&folder.sealed(), format!("case {}: not what was committed to", case.case));
+            let broken = || Error::in_file(&folder.sealed(), format!("case {}: not what was committed to", case.case));
             let sealed = sealed.cloned().ok_or_else(broken)?;
             let answer = files::read_json(&folder.answer(&case.case))?;
             Ok(Opened { closed_on_fresh_runs: closed_on_fresh_runs(&folder, case, &sealed)?, sealed, answer })
@@ -146,7 +145,7 @@ fn closed_on_fresh_runs(folder: &Folder, case: &Published, sealed: &Sealed) -> R
         return Ok(None);
     }
     let seal = folder.sealed();
-    let unknown = |what: &str| Problem::in_file(&seal, format!("case {}: {what} is not known", case.case));
+    let unknown = |what: &str| Error::in_file(&seal, format!("case {}: {what} is not known", case.case));
     let effects = sealed.effects.iter().map(|e| e.parse::<ActiveEffect>().map_err(|_| unknown(e)));
     let effects = effects.collect::<Result<Vec<_>>>()?;
     let driving = Driving::named(&sealed.driving).ok_or_else(|| unknown(&sealed.driving))?;

@@ -5,11 +5,11 @@ use serde::Serialize;
 use toml::{Table, Value};
 
 use super::bench::Bench;
+use crate::error::{Error, Result};
 use crate::gap::Method;
 use crate::gap::calibration::Calibration;
 use crate::gap::diagnose::confirmed;
 use crate::gap::explain::Judged;
-use crate::problem::{Problem, Result};
 
 /// What comes of all cases with one threshold changed.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -102,7 +102,7 @@ fn of(bench: &Bench, cases: usize, calibration: &Calibration) -> Result<Row> {
 }
 
 fn table(calibration: &Calibration) -> Result<Table> {
-    Table::try_from(calibration).map_err(|e| Problem::new(format!("a calibration that cannot be written: {e}")))
+    Table::try_from(calibration).map_err(|e| Error::new(format!("a calibration that cannot be written: {e}")))
 }
 
 /// Names of all numbers, with dots where tables lie within tables.

@@ -11,9 +11,9 @@ use mindgap_controller_export::brick::{
 use mindgap_controller_export::wiring::SensorPort;
 use serde_json::{Value, json};
 
+use crate::error::{Error, Result};
 use crate::files;
 use crate::logs::readings;
-use crate::problem::{Problem, Result};
 
 const MOTORS: [char; 3] = ['A', 'B', 'C'];
 
@@ -47,9 +47,9 @@ impl Brick {
     /// Runs the program.
     pub fn run(&self) -> Result<String> {
         let file =
-            fs::read(&self.program).map_err(|e| Problem::in_file(&self.program, format!("cannot be read: {e}")))?;
+            fs::read(&self.program).map_err(|e| Error::in_file(&self.program, format!("cannot be read: {e}")))?;
         let program = Program::load(&file)
-            .map_err(|e| Problem::in_file(&self.program, format!("is no program that a brick runs: {e}")))?;
+            .map_err(|e| Error::in_file(&self.program, format!("is no program that a brick runs: {e}")))?;
         let mut world = ScriptedWorld {
             sonar_port: self.sonar as usize,
             battery_mv: self.battery_mv,

@@ -11,8 +11,8 @@ use crate::challenge::cases::Outside;
 use crate::challenge::make::make;
 use crate::challenge::score::{Score, Share, score};
 use crate::challenge::sensitivity::{Row, sensitivity};
+use crate::error::Result;
 use crate::files;
-use crate::problem::Result;
 
 /// The blind test of a diagnosis: make cases with withheld effects, answer them, score the answers.
 #[derive(Args)]

@@ -6,9 +6,9 @@ use clap::{Args, value_parser};
 
 use super::table;
 use crate::crosscheck::{self, Divergence, NetworkCheck, Networks, RunState, Runs, Trials};
+use crate::error::Result;
 use crate::evolve::controller_file::ControllerFile;
 use crate::files;
-use crate::problem::Result;
 use crate::simulator::Simulator;
 
 /// Check that a board without floating point computes what the PC does: fixed point against float.
@@ -40,7 +40,7 @@ impl Crosscheck {
         let controller = self.controller.as_deref().map(ControllerFile::read).transpose()?.map(|file| file.controller);
         let trials = Trials { runs: self.runs as usize, seed: self.seed };
         let found = crosscheck::crosscheck(&simulator, &logs, controller.as_ref(), trials)
-            .map_err(|problem| problem.or_in_file(&self.sim))?;
+            .map_err(|error| error.or_in_file(&self.sim))?;
         if let Some(path) = &self.json {
             files::write_json(path, &found)?;
         }

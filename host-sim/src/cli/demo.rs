@@ -7,8 +7,8 @@ use clap::Args;
 use super::progress;
 use super::table::{self, number};
 use crate::demo::{self, Stage, Summary};
+use crate::error::Result;
 use crate::evolve::robust;
-use crate::problem::Result;
 
 /// Do the whole job on the built-in robot: record, train, evolve, try, export, draw.
 #[derive(Args)]

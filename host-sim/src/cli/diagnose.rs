@@ -6,12 +6,12 @@ use clap::Args;
 
 use super::{diagnosis_page, diagnosis_text};
 use crate::effects::applied::AppliedEffect;
+use crate::error::{Error, Result};
 use crate::evaluation::final_position::{FinalPositionErrors, final_position_errors};
 use crate::evolve::controller_file::ControllerFile;
 use crate::files;
 use crate::gap::{Findings, Method, findings, validate};
 use crate::logs::Logs;
-use crate::problem::{Problem, Result};
 use crate::simulator::Simulator;
 use crate::simulator::baseline::Baseline;
 use crate::simulator::kinematic;
@@ -91,7 +91,7 @@ fn ends(
     logs: &Logs,
     seed: u64,
 ) -> Result<FinalPositionErrors> {
-    let simulator = simulator.ok_or_else(|| Problem::new("--controller needs a simulator file that can run it"))?;
+    let simulator = simulator.ok_or_else(|| Error::new("--controller needs a simulator file that can run it"))?;
     let controller = ControllerFile::read(controller)?.controller;
     let mut better = simulator.clone();
     better.added.extend(applied.iter().cloned());
@@ -101,10 +101,10 @@ fn ends(
 /// The simulator with the effects found.
 fn with_effects(simulator: Option<Simulator>, found: &Findings) -> Result<Simulator> {
     let Some(mut simulator) = simulator else {
-        return Err(Problem::new("--apply needs a simulator file to add effects to"));
+        return Err(Error::new("--apply needs a simulator file to add effects to"));
     };
     if found.applied.is_empty() {
-        return Err(Problem::new("--apply: no known effect explains a gap here, so there is nothing to add"));
+        return Err(Error::new("--apply: no known effect explains a gap here, so there is nothing to add"));
     }
     simulator.added.extend(found.applied.iter().cloned());
     Ok(simulator)

@@ -5,9 +5,9 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::table::{self, number};
+use crate::error::Result;
 use crate::evaluation::accuracy::{self, Evaluation, Networks};
 use crate::files;
-use crate::problem::Result;
 use crate::simulator::Simulator;
 
 /// Judge a simulator's networks on logs that they were not trained on.

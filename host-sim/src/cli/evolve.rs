@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::{Args, value_parser};
 
 use super::progress;
+use crate::error::{Error, Result};
 use crate::evolve::controller_file::{ControllerFile, Origin};
 use crate::evolve::fitness::{FitnessEvaluator, RandomNumbers};
 use crate::evolve::genome::GenotypeDecoder;
@@ -12,7 +13,6 @@ use crate::evolve::paper;
 use crate::evolve::robust::{self, EvolutionTask};
 use crate::geometry::Pose;
 use crate::logs::{Robot, Scene};
-use crate::problem::{Problem, Result};
 use crate::simulator::environment::Environment;
 use crate::simulator::{Noise, Simulator};
 
@@ -59,7 +59,7 @@ impl Evolve {
         let simulator = Simulator::read(&self.sim)?;
         let scene = Scene::read(&self.scene)?;
         let start = start_of(&scene, self.start, &simulator.robot, &self.scene)?;
-        let target_cm = scene.target_cm.ok_or_else(|| Problem::in_file(&self.scene, "has no [target]"))?;
+        let target_cm = scene.target_cm.ok_or_else(|| Error::in_file(&self.scene, "has no [target]"))?;
         let noise = if self.paper || self.paper_noise { Noise::Paper } else { Noise::Learned };
         let environment = Environment::new(&simulator, &scene, start, noise)?;
         let environment = &if noise == Noise::Learned { environment.with_beam(&simulator) } else { environment };
@@ -109,11 +109,11 @@ pub fn start_of(scene: &Scene, number: usize, robot: &Robot, path: &Path) -> Res
     let count = scene.starts.len();
     let start = number.checked_sub(1).and_then(|i| scene.starts.get(i)).copied();
     let start = start
-        .ok_or_else(|| Problem::in_file(path, format!("has {count} [[start]] table(s); there is no start {number}")))?;
+        .ok_or_else(|| Error::in_file(path, format!("has {count} [[start]] table(s); there is no start {number}")))?;
     let radius_cm = robot.body_radius_cm;
     if !scene.has_room_for(start.position_cm, radius_cm) {
         let what = format!("start {number} leaves no room for a robot of radius {radius_cm} cm");
-        return Err(Problem::in_file(path, what));
+        return Err(Error::in_file(path, what));
     }
     Ok(start)
 }

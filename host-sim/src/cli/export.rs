@@ -13,9 +13,9 @@ use mindgap_controller_export::rust_networks::rust_networks;
 use mindgap_controller_export::wiring::{MotorPort, SensorPort, Wiring};
 use mindgap_controller_export::{ExportError, Origin, c, collect as data_collection, rust, rxe};
 
+use crate::error::{Error, Result};
 use crate::evolve::controller_file::ControllerFile;
 use crate::files;
-use crate::problem::{Problem, Result};
 use crate::simulator::Simulator;
 use crate::simulator::fixed_point::FixedNetworks;
 
@@ -74,7 +74,7 @@ impl Export {
     /// Writes the program or the networks.
     pub fn run(&self) -> Result<String> {
         if (self.log.is_some() || self.display) && !matches!(self.format, Format::Nxc) {
-            return Err(Problem::new("--log and --display are for a controller with --format nxc"));
+            return Err(Error::new("--log and --display are for a controller with --format nxc"));
         }
         let (program, budget) = match &self.input {
             None => self.collection(&self.collect.options(self.program_name()?, self.wiring()))?,
@@ -89,20 +89,20 @@ impl Export {
 
     fn collection(&self, options: &CollectOptions) -> Result<(Vec<u8>, Option<String>)> {
         let named = self.input.as_ref().unwrap_or(&self.out);
-        let source = data_collection::program(options).map_err(|e| Problem::in_file(named, e.to_string()))?;
+        let source = data_collection::program(options).map_err(|e| Error::in_file(named, e.to_string()))?;
         Ok((source.into_bytes(), Some(data_collection::budget(options).to_string())))
     }
 
     fn networks(&self, input: &Path) -> Result<(Vec<u8>, Option<String>)> {
         let simulator = Simulator::read(input)?;
-        let networks = FixedNetworks::quantise(&simulator).map_err(|problem| problem.or_in_file(input))?;
+        let networks = FixedNetworks::quantise(&simulator).map_err(|error| error.or_in_file(input))?;
         match self.format {
             Format::Rust => Ok((rust_networks(&networks.rust_definitions()).into_bytes(), None)),
             Format::Nxc => {
                 let networks = networks.nxc_definitions();
                 Ok((nxc_networks(&networks).into_bytes(), Some(nxc_networks::budget(&networks).to_string())))
             }
-            _ => Err(Problem::in_file(input, "holds networks, which are exported with --format rust or nxc")),
+            _ => Err(Error::in_file(input, "holds networks, which are exported with --format rust or nxc")),
         }
     }
 
@@ -112,7 +112,7 @@ impl Export {
             let origin = Origin::from(&file);
             Ok((file.controller, origin))
         };
-        let refused = |e: ExportError| Problem::in_file(input, e.to_string());
+        let refused = |e: ExportError| Error::in_file(input, e.to_string());
         Ok(match self.format {
             Format::Rxe => {
                 self.program_name()?;
@@ -147,6 +147,6 @@ impl Export {
     /// The compiled program's name on the brick: that of the file that is written.
     fn program_name(&self) -> Result<BrickName> {
         let stem = self.out.file_stem().unwrap_or_default().to_string_lossy();
-        BrickName::program(&stem).map_err(|e| Problem::in_file(&self.out, e.to_string()))
+        BrickName::program(&stem).map_err(|e| Error::in_file(&self.out, e.to_string()))
     }
 }

@@ -6,11 +6,11 @@ use clap::Args;
 use serde_json::json;
 
 use super::{table, warn};
+use crate::error::Result;
 use crate::files;
 use crate::import::units::{Angle, Length, Time, Units};
 use crate::import::{LogReport, Report, RunReport, TrackReport, import};
 use crate::logs::{Robot, Scene};
-use crate::problem::Result;
 
 /// Bring a brick's logs and a camera's tracks together as a folder of logs.
 #[derive(Args)]

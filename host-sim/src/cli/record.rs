@@ -5,8 +5,8 @@ use std::path::PathBuf;
 use clap::Args;
 
 use crate::built_in_robot::{ActiveEffect, Effect, default_robot, record, training_room};
+use crate::error::Result;
 use crate::logs::Scene;
-use crate::problem::Result;
 
 /// Records random-command logs of the built-in robot.
 #[derive(Args, Debug)]
@@ -44,7 +44,7 @@ impl Record {
         };
         let (runs, steps) = (self.runs as usize, self.steps as usize);
         let logs = record(&default_robot(), &scene, runs, steps, &self.effects, self.seed)
-            .map_err(|problem| self.scene.iter().fold(problem, |p, scene| p.or_in_file(scene)))?;
+            .map_err(|error| self.scene.iter().fold(error, |p, scene| p.or_in_file(scene)))?;
         logs.write(&self.out)?;
         Ok(format!("{}: {} runs of {} steps\n", self.out.display(), self.runs, self.steps))
     }

@@ -6,10 +6,10 @@ use clap::{Args, value_parser};
 
 use super::evolve::start_of;
 use super::table::{self, number};
+use crate::error::Result;
 use crate::evolve::controller_file::ControllerFile;
 use crate::files;
 use crate::logs::Scene;
-use crate::problem::Result;
 use crate::simulator::environment::Environment;
 use crate::simulator::rollout_report::RolloutReport;
 use crate::simulator::{Noise, Simulator};

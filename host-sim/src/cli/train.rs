@@ -7,10 +7,10 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 
 use super::{progress, warn};
+use crate::error;
 use crate::learn::genome::Shape;
 use crate::learn::train::TABLE_ONE;
 use crate::learn::{paper, train};
-use crate::problem;
 
 /// Train the five networks of a simulator on a folder of logs.
 #[derive(Args)]
@@ -52,7 +52,7 @@ enum Trainer {
 
 impl Train {
     /// Trains and writes the simulator.
-    pub fn run(&self) -> problem::Result<String> {
+    pub fn run(&self) -> error::Result<String> {
         let logs = super::read_logs(&self.logs)?;
         let spinner = progress::spinner();
         // The last that is told of each network.

@@ -7,8 +7,8 @@ use mindgap_core::chance::{Generator, happens, normal};
 use mindgap_core::folded::FoldedNetwork;
 use rand::Rng;
 
+use crate::error::Result;
 use crate::learn::dataset::{Dataset, Datasets};
-use crate::problem::Result;
 use crate::simulator::Simulator;
 use crate::simulator::fixed_point::FixedNetworks;
 

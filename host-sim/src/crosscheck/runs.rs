@@ -9,10 +9,10 @@ use serde::Serialize;
 
 use super::arithmetic::{Arithmetic, Fixed, Float};
 use crate::chance::{derive, generator};
+use crate::error::{Error, Result};
 use crate::evolve::genome::GenotypeDecoder;
 use crate::geometry::{Pose, Wall, cast, wrap_rad};
 use crate::logs::{Logs, Robot};
-use crate::problem::{Problem, Result};
 use crate::simulator::Simulator;
 use crate::simulator::room::Room;
 
@@ -105,7 +105,7 @@ pub(super) fn side_by_side(
     let poses = logs.runs.iter().flat_map(|run| run.rows.iter().filter_map(|row| row.pose));
     let starts: Vec<Pose> = poses.filter(has_room).collect();
     if starts.is_empty() {
-        return Err(Problem::new("the robot has no room to start at any pose that the logs hold"));
+        return Err(Error::new("the robot has no room to start at any pose that the logs hold"));
     }
     let decoder = GenotypeDecoder::new(simulator, MAX_STEPS);
     let pairs = (0..trials.runs).into_par_iter().map(|run| {

@@ -5,10 +5,10 @@ use std::path::Path;
 use glam::{DVec2, DVec3};
 
 use super::Trial;
+use crate::error::Result;
 use crate::evaluation::accuracy::Evaluation;
 use crate::learn::dataset::{Dataset, Datasets};
 use crate::logs::{Logs, Scene};
-use crate::problem::Result;
 use crate::report;
 use crate::report::expected_against_predicted::{Panel, Samples};
 use crate::report::paths::{PathPanel, Trace};

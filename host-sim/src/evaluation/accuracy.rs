@@ -4,9 +4,9 @@ use mindgap_core::network::Network;
 use serde::Serialize;
 
 use super::predictions::{Predictions, predict};
+use crate::error::{Error, Result};
 use crate::learn::dataset::{Dataset, Datasets};
 use crate::logs::Logs;
-use crate::problem::{Problem, Result};
 use crate::simulator::{Learned, Simulator};
 use crate::statistics::agreement::{self as statistics, ReliabilityBin, TrendLine};
 
@@ -90,7 +90,7 @@ pub struct Probability {
 pub fn evaluate(simulator: &Simulator, logs: &Logs) -> Result<Evaluation> {
     let networks = judge(simulator, logs)?;
     if networks == Networks::default() {
-        return Err(Problem::new("these logs hold no sample for any network of this simulator"));
+        return Err(Error::new("these logs hold no sample for any network of this simulator"));
     }
     let table_one = simulator.table_one.as_ref().map(|simulator| judge(simulator, logs)).transpose()?;
     Ok(Evaluation { schema: 1, networks, table_one })

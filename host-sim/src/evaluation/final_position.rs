@@ -4,9 +4,9 @@ use glam::DVec2;
 use mindgap_core::controller::Controller;
 use serde::{Deserialize, Serialize};
 
+use crate::error::{Error, Result};
 use crate::geometry::Pose;
 use crate::logs::Logs;
-use crate::problem::{Problem, Result};
 use crate::simulator::environment::Environment;
 use crate::simulator::rollout_report::RolloutReport;
 use crate::simulator::{Noise, Simulator};
@@ -50,7 +50,7 @@ pub fn final_position_errors(
         })
         .collect();
     if logged.is_empty() {
-        return Err(Problem::new(
+        return Err(Error::new(
             "no run has a pose at its first row and at a later one: where a controller ends is not known",
         ));
     }

@@ -3,9 +3,9 @@
 use super::observations::{Observation, Observations};
 use crate::effects::chain::EffectChain;
 use crate::effects::{PoseIncrement, SensorState, StepContext};
+use crate::error::Result;
 use crate::geometry::wrap_rad;
 use crate::logs::Logs;
-use crate::problem::Result;
 use crate::simulator::Simulator;
 use crate::simulator::baseline::{Baseline, MotionModel};
 use crate::sonar::{Fan, Perturbation};

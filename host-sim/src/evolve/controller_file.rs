@@ -6,8 +6,8 @@ use mindgap_core::controller::{Controller, InvalidController, TUPLES, Tuple};
 use serde::{Deserialize, Serialize};
 use toml::Spanned;
 
+use crate::error::{Error, Result};
 use crate::files;
-use crate::problem::{Problem, Result};
 
 /// The contents of `controller.toml`.
 #[derive(Clone, Debug, PartialEq)]
@@ -49,19 +49,19 @@ impl ControllerFile {
         let count = file.tuple.len();
         let Ok(tuples) = <[Tuple; TUPLES]>::try_from(file.tuple.iter().map(|t| *t.get_ref()).collect::<Vec<_>>())
         else {
-            return Err(Problem::in_file(path, format!("has {count} tuples; a controller has exactly {TUPLES}")));
+            return Err(Error::in_file(path, format!("has {count} tuples; a controller has exactly {TUPLES}")));
         };
         let controller = Controller { step_ms: file.step_ms, max_steps: file.max_steps, tuples };
-        let problem = match controller.check() {
+        let error = match controller.check() {
             Ok(()) => return Ok(ControllerFile { controller, origin: file.origin }),
-            Err(InvalidController::Speed(t)) => Problem::at_line(path, line(t), "a speed lies outside -100..100"),
+            Err(InvalidController::Speed(t)) => Error::at_line(path, line(t), "a speed lies outside -100..100"),
             Err(InvalidController::Threshold(t)) => {
-                Problem::at_line(path, line(t), "the threshold lies outside 0..255 cm")
+                Error::at_line(path, line(t), "the threshold lies outside 0..255 cm")
             }
-            Err(InvalidController::StepTime) => Problem::in_file(path, "step_ms must be at least 1"),
-            Err(InvalidController::StepLimit) => Problem::in_file(path, "max_steps must be at least 1"),
+            Err(InvalidController::StepTime) => Error::in_file(path, "step_ms must be at least 1"),
+            Err(InvalidController::StepLimit) => Error::in_file(path, "max_steps must be at least 1"),
         };
-        Err(problem)
+        Err(error)
     }
 
     /// Writes a controller.

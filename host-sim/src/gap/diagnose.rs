@@ -9,8 +9,8 @@ use super::fit::{FitContext, Fitted, Gain, best_of_each};
 use super::method::Method;
 use super::{account, confirm, excitation, propose, remainder, validate};
 use crate::effects::applied::AppliedEffect;
+use crate::error::Result;
 use crate::logs::Logs;
-use crate::problem::Result;
 use crate::simulator::Simulator;
 use crate::simulator::baseline::Baseline;
 

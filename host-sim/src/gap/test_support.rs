@@ -4,9 +4,9 @@ use glam::DVec2;
 
 use super::calibration::{Calibration, Gate, Judgement};
 use super::compare::Comparison;
-use super::method::Method;
 use super::fit::{FitContext, Fitted};
 use super::hypothesis::{Hypothesis, LogLikelihood};
+use super::method::Method;
 use crate::effects::context::{CommandHistory, HISTORY, Surroundings};
 use crate::effects::parameter::Guesses;
 use crate::effects::{Candidate, Effect, Hook, Parameter, StepContext, Variant};
@@ -64,7 +64,11 @@ pub fn room() -> Scene {
 
 /// The textbook's drive, without a sensor.
 pub fn baseline() -> Baseline<'static> {
-    Baseline { motion: Some(MotionModel::Kinematic { robot: robot(), scatter: SCATTER }), sonar: None, applied: Vec::new() }
+    Baseline {
+        motion: Some(MotionModel::Kinematic { robot: robot(), scatter: SCATTER }),
+        sonar: None,
+        applied: Vec::new(),
+    }
 }
 
 /// The same with a ray that comes back for certain and scatters by a centimetre.

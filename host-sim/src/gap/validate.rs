@@ -1,9 +1,9 @@
 //! Validation: whether logs are of the simulator's robot, and what they cannot say.
 
 use super::condition::FEWEST_RUNS;
+use crate::error::{Error, Result};
 use crate::evaluation::observations::Observations;
 use crate::logs::{Logs, Robot, Run};
-use crate::problem::{Problem, Result};
 use crate::simulator::baseline::Baseline;
 
 /// Two people who measure one robot agree to this share.
@@ -29,7 +29,7 @@ pub fn same_robot(simulator: &Robot, logs: &Robot) -> Result<()> {
     };
     let pairs = measures(simulator).into_iter().zip(measures(logs));
     match pairs.into_iter().find(|((_, a), (_, b))| (a - b).abs() > SAME * a.abs().max(1.0)) {
-        Some(((name, a), (_, b))) => Err(Problem::new(format!(
+        Some(((name, a), (_, b))) => Err(Error::new(format!(
             "these are logs of another robot than the simulator's: {name} is {b} in the logs' robot.toml and {a} in the simulator"
         ))),
         None => Ok(()),
@@ -67,7 +67,7 @@ pub fn validate(baseline: &mut Baseline, observations: &Observations, logs: &Log
         baseline.sonar = None;
     }
     if baseline.motion.is_none() && baseline.sonar.is_none() {
-        return Err(Problem::new(format!("nothing can be compared. {}", notes.join(" "))));
+        return Err(Error::new(format!("nothing can be compared. {}", notes.join(" "))));
     }
     if logs.runs.len() == 1 {
         notes.push("One run only: its parts stand for runs, and what holds for other runs cannot be told.".into());

@@ -2,9 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::error::Result;
 use crate::files;
 use crate::logs::Run;
-use crate::problem::Result;
 
 /// A brick's log.
 #[derive(Clone, Debug, PartialEq)]
@@ -73,7 +73,7 @@ mod tests {
 
     #[test]
     fn without_rotation_counters_the_clock_cannot_be_aligned() {
-        let problem = read("t_ms,left,right,echo_cm\n0,1,1,\n400,1,1,\n").expect_err("no counters");
-        assert!(problem.to_string().contains(":1: column rot_left_deg is missing"), "{problem}");
+        let error = read("t_ms,left,right,echo_cm\n0,1,1,\n400,1,1,\n").expect_err("no counters");
+        assert!(error.to_string().contains(":1: column rot_left_deg is missing"), "{error}");
     }
 }

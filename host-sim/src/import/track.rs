@@ -9,9 +9,9 @@ use super::frame::{Frame, GAP_MS};
 use super::motion::{CumulativeMotion, by_camera};
 use super::report::TrackReport;
 use super::units::Units;
+use crate::error::{Error, Result};
 use crate::geometry::{Pose, wrap_rad};
 use crate::logs::Robot;
-use crate::problem::{Problem, Result};
 
 /// A camera's track.
 #[derive(Clone, Debug, PartialEq)]
@@ -57,11 +57,11 @@ impl Track {
         let (lost, whole) = (all - seen.len(), seen.len());
         if let Some(pair) = seen.windows(2).find(|pair| pair[1].t_ms <= pair[0].t_ms) {
             let what = format!("time {} ms does not come after {} ms", pair[1].t_ms, pair[0].t_ms);
-            return Err(Problem::in_file(file, what));
+            return Err(Error::in_file(file, what));
         }
         let frames = without_jumps(seen, robot);
         if frames.len() < 2 {
-            return Err(Problem::in_file(file, format!("has {} frame(s) in which the robot was seen", frames.len())));
+            return Err(Error::in_file(file, format!("has {} frame(s) in which the robot was seen", frames.len())));
         }
         Ok(Track { file: file.to_owned(), lost, jumps: whole - frames.len(), frames })
     }
@@ -167,8 +167,8 @@ mod tests {
             ("t,x,y,theta\n0,1,1,0\n", ":1: column t has no unit"),
             ("t_ms,x_cm,x_mm,y_cm,heading_deg\n0,1,1,1,0\n", ":1: more than one column for x"),
         ] {
-            let problem = read(text).expect_err(text).to_string();
-            assert!(problem.contains(what), "{text:?} gave {problem}");
+            let error = read(text).expect_err(text).to_string();
+            assert!(error.contains(what), "{text:?} gave {error}");
         }
     }
 }

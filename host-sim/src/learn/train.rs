@@ -8,8 +8,8 @@ use super::genome::Shape;
 use super::nominal;
 use super::paper;
 use super::scatter;
+use crate::error::{Error, Result};
 use crate::logs::Logs;
-use crate::problem::{Problem, Result};
 use crate::simulator::residuals::{ConstantReading, motion_context};
 use crate::simulator::{Learned, Missing, Origin, SCHEMA, Simulator};
 
@@ -90,7 +90,7 @@ pub fn train(
     if network_trainer.missing.len() == NETWORKS {
         let reasons: Vec<String> =
             network_trainer.missing.iter().map(|m| format!("{}: {}", m.network, m.reason)).collect();
-        return Err(Problem::new(format!("no network can be trained on these logs ({})", reasons.join("; "))));
+        return Err(Error::new(format!("no network can be trained on these logs ({})", reasons.join("; "))));
     }
     let commands = logs.runs.iter().flat_map(|run| run.rows.iter().flat_map(|row| row.command()));
     let (low, high) = commands.fold((0.0, 0.0), |(l, h): (f64, f64), c| (l.min(c), h.max(c)));

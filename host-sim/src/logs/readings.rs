@@ -6,8 +6,8 @@ use csv::ReaderBuilder;
 use mindgap_controller_export::brick::Sonar;
 use mindgap_controller_export::onboard::NO_ECHO_CM;
 
+use crate::error::{Error, Result};
 use crate::files;
-use crate::problem::{Problem, Result};
 
 const COLUMN: &str = "echo_cm";
 
@@ -24,22 +24,22 @@ pub fn read(list_or_file: &str) -> Result<Vec<Sonar>> {
         return read_column(path);
     }
     list_or_file.split(',').map(reading).collect::<std::result::Result<_, _>>().map_err(|what| {
-        Problem::new(format!("--readings {list_or_file:?} is no file, and as a list it has a reading that {what}"))
+        Error::new(format!("--readings {list_or_file:?} is no file, and as a list it has a reading that {what}"))
     })
 }
 
 fn read_column(path: &Path) -> Result<Vec<Sonar>> {
     let text = files::read_text(path)?;
     let mut reader = ReaderBuilder::new().trim(csv::Trim::All).from_reader(text.as_bytes());
-    let broken = |e: csv::Error| files::csv_problem(path, &e);
+    let broken = |e: csv::Error| files::csv_error(path, &e);
     let column = reader.headers().map_err(broken)?.iter().position(|name| name == COLUMN);
-    let column = column.ok_or_else(|| Problem::at_line(path, 1, format!("column {COLUMN} is missing")))?;
+    let column = column.ok_or_else(|| Error::at_line(path, 1, format!("column {COLUMN} is missing")))?;
     let mut readings = Vec::new();
     for record in reader.records() {
         let record = record.map_err(broken)?;
         let line = record.position().map_or(0, csv::Position::line);
         let cell = record.get(column).unwrap_or_default();
-        let answer = reading(cell).map_err(|what| Problem::at_line(path, line, format!("{COLUMN} {what}")))?;
+        let answer = reading(cell).map_err(|what| Error::at_line(path, line, format!("{COLUMN} {what}")))?;
         readings.push(answer);
     }
     Ok(readings)
@@ -72,8 +72,8 @@ mod tests {
     #[test]
     fn what_is_no_reading_is_refused() {
         for (list, what) in [("12,256", "outside"), ("-1", "outside"), ("NaN", "outside"), ("1,far", "neither")] {
-            let problem = read(list).unwrap_err().to_string();
-            assert!(problem.contains(what) && problem.contains(list), "{problem}");
+            let error = read(list).unwrap_err().to_string();
+            assert!(error.contains(what) && error.contains(list), "{error}");
         }
     }
 }

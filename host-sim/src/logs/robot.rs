@@ -5,9 +5,9 @@ use std::path::Path;
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
+use crate::error::{Error, Result};
 use crate::files;
 use crate::geometry::Pose;
-use crate::problem::{Problem, Result};
 
 /// A differential-drive robot with one ultrasonic sensor.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -58,11 +58,11 @@ impl Robot {
             ("ultrasonic.max_cm", sonar.max_cm),
         ];
         if let Some((name, value)) = positive.iter().find(|(_, v)| !(*v > 0.0 && *v < 1e5)) {
-            return Err(Problem::in_file(path, format!("{name} = {value} must lie between 0 and 100000")));
+            return Err(Error::in_file(path, format!("{name} = {value} must lie between 0 and 100000")));
         }
         let finite = [sonar.x_cm, sonar.y_cm, sonar.yaw_deg].iter().all(|v| v.abs() < 1e5);
         if !finite || !(0.0..sonar.max_cm).contains(&sonar.min_cm) {
-            return Err(Problem::in_file(path, "[ultrasonic] needs finite numbers and 0 <= min_cm < max_cm"));
+            return Err(Error::in_file(path, "[ultrasonic] needs finite numbers and 0 <= min_cm < max_cm"));
         }
         Ok(robot)
     }

@@ -4,9 +4,9 @@ use std::path::Path;
 
 use csv::{ReaderBuilder, StringRecord, Writer};
 
+use crate::error::{Error, Result};
 use crate::files;
 use crate::geometry::Pose;
-use crate::problem::{Problem, Result};
 
 /// One run of a robot: at least two rows in order of time.
 #[derive(Clone, Debug, PartialEq)]
@@ -68,15 +68,15 @@ impl Run {
     /// As [`Run::read`].
     pub fn parse(path: &Path, text: &str, required: &[&str], mut warn: impl FnMut(String)) -> Result<Self> {
         let mut reader = ReaderBuilder::new().trim(csv::Trim::All).from_reader(text.as_bytes());
-        let header = reader.headers().map_err(|e| files::csv_problem(path, &e))?.clone();
+        let header = reader.headers().map_err(|e| files::csv_error(path, &e))?.clone();
         let columns = Columns::find(path, &header, required, &mut warn)?;
         let mut rows: Vec<Row> = Vec::new();
         for record in reader.records() {
-            let record = record.map_err(|e| files::csv_problem(path, &e))?;
+            let record = record.map_err(|e| files::csv_error(path, &e))?;
             let line = record.position().map_or(0, csv::Position::line);
-            let row = columns.row(&record).map_err(|what| Problem::at_line(path, line, what))?;
+            let row = columns.row(&record).map_err(|what| Error::at_line(path, line, what))?;
             if rows.last().is_some_and(|before| row.t_ms <= before.t_ms) {
-                return Err(Problem::at_line(
+                return Err(Error::at_line(
                     path,
                     line,
                     format!("t_ms = {} does not come after the row before", row.t_ms),
@@ -85,7 +85,7 @@ impl Run {
             rows.push(row);
         }
         if rows.len() < 2 {
-            return Err(Problem::in_file(path, format!("has {} row(s); a run needs at least two", rows.len())));
+            return Err(Error::in_file(path, format!("has {} row(s); a run needs at least two", rows.len())));
         }
         let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         Ok(Run { name, rows })
@@ -100,12 +100,12 @@ impl Run {
         let written: Vec<usize> =
             (0..COLUMNS.len()).filter(|c| *c < REQUIRED || cells.iter().any(|row| row[*c].is_some())).collect();
         let mut writer = Writer::from_writer(Vec::new());
-        let failed = |e: csv::Error| Problem::in_file(path, e.to_string());
+        let failed = |e: csv::Error| Error::in_file(path, e.to_string());
         writer.write_record(written.iter().map(|c| COLUMNS[*c])).map_err(failed)?;
         for row in &cells {
             writer.write_record(written.iter().map(|c| row[*c].map_or(String::new(), two_decimals))).map_err(failed)?;
         }
-        let bytes = writer.into_inner().map_err(|e| Problem::in_file(path, e.to_string()))?;
+        let bytes = writer.into_inner().map_err(|e| Error::in_file(path, e.to_string()))?;
         files::write(path, bytes)
     }
 
@@ -148,14 +148,14 @@ impl Columns {
             match COLUMNS.iter().position(|c| *c == name) {
                 None => unknown.push(name),
                 Some(c) if places[c].is_some() => {
-                    return Err(Problem::at_line(path, 1, format!("column {name} stands twice")));
+                    return Err(Error::at_line(path, 1, format!("column {name} stands twice")));
                 }
                 Some(c) => places[c] = Some(i),
             }
         }
         let is_there = |name: &&str| COLUMNS.iter().zip(places).any(|(c, place)| c == name && place.is_some());
         if let Some(name) = required.iter().find(|name| !is_there(name)) {
-            return Err(Problem::at_line(path, 1, format!("column {name} is missing")));
+            return Err(Error::at_line(path, 1, format!("column {name} is missing")));
         }
         for name in unknown {
             warn(format!("{}:1: column {name:?} is not known and left out", path.display()));

@@ -6,9 +6,9 @@ use glam::DVec2;
 use serde::{Deserialize, Serialize};
 use toml::Spanned;
 
+use crate::error::{Error, Result};
 use crate::files;
 use crate::geometry::{Pose, Rectangle, Wall, bounding_box};
-use crate::problem::{Problem, Result};
 
 /// The surroundings of a robot.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -33,7 +33,7 @@ impl Scene {
     pub fn read(path: &Path) -> Result<Self> {
         let text = files::read_text(path)?;
         let file: SceneFile = files::read_toml(path)?;
-        let at = |byte: usize, what: &str| Problem::at_line(path, files::line_at(&text, byte), what);
+        let at = |byte: usize, what: &str| Error::at_line(path, files::line_at(&text, byte), what);
         let mut scene = Scene::default();
         if let Some(arena) = file.arena {
             let (start, arena) = (arena.span().start, arena.into_inner());
@@ -78,7 +78,7 @@ impl Scene {
             scene.starts.push(Pose::new(s.x_cm, s.y_cm, s.heading_deg.to_radians()));
         }
         if scene.sides().is_empty() {
-            return Err(Problem::in_file(path, "has no arena, obstacle or wall"));
+            return Err(Error::in_file(path, "has no arena, obstacle or wall"));
         }
         Ok(scene)
     }

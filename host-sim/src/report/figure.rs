@@ -12,8 +12,8 @@ use resvg::usvg::fontdb::Database;
 use resvg::usvg::{Options, Tree};
 
 use super::style::UNIT;
+use crate::error::Result;
 use crate::files;
-use crate::problem::Result;
 
 /// Pixels of the PNG per pixel of the SVG, so that it stays sharp in print and on dense screens.
 const PNG_SCALE: u32 = 2;

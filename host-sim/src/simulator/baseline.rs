@@ -2,8 +2,8 @@
 
 use crate::effects::PoseIncrement;
 use crate::effects::applied::AppliedEffect;
+use crate::error::{Error, Result};
 use crate::logs::Robot;
-use crate::problem::{Problem, Result};
 use crate::simulator::motion::MotionNetworks;
 use crate::simulator::nominal::MotionBias;
 use crate::simulator::{Learned, Simulator};
@@ -48,7 +48,7 @@ impl<'s> Baseline<'s> {
     /// When the simulator was written without the reference that a diagnosis needs.
     pub fn learned(simulator: &'s Simulator) -> Result<Self> {
         let reference = simulator.reference.as_ref().ok_or_else(|| {
-            Problem::new("the simulator file does not say how its training logs scattered: train it again")
+            Error::new("the simulator file does not say how its training logs scattered: train it again")
         })?;
         let drive = simulator.motion_networks().zip(reference.motion.as_ref());
         let motion = drive.map(|(networks, reference)| MotionModel::Learned {

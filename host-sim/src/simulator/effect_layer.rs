@@ -9,9 +9,9 @@ use crate::chance::generator;
 use crate::effects::chain::EffectChain;
 use crate::effects::context::{RunHistory, Surroundings};
 use crate::effects::{PoseIncrement, StepContext};
+use crate::error::{Error, Result};
 use crate::geometry::Pose;
 use crate::logs::Scene;
-use crate::problem::{Problem, Result};
 use crate::sonar::SonarModel;
 
 /// Applied effects in an environment.
@@ -44,7 +44,7 @@ impl<'s> EffectLayer<'s> {
         let effects = EffectChain::of(&simulator.added);
         let model = simulator.reference.as_ref().and_then(|r| r.sonar.as_ref());
         if effects.senses() && model.is_none() {
-            return Err(Problem::new(
+            return Err(Error::new(
                 "an added effect changes the sonar, and the simulator does not know its usual beam",
             ));
         }

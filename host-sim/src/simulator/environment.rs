@@ -9,9 +9,9 @@ use super::motion::{MotionNetworks, MotionTable};
 use super::residuals::{ConstantReading, ResidualNoise, ResidualQuantiles};
 use super::room::Room;
 use super::{Noise, Simulator};
+use crate::error::{Error, Result};
 use crate::geometry::Pose;
 use crate::logs::{Robot, Scene};
-use crate::problem::{Problem, Result};
 
 /// Where and how controllers are rolled out.
 pub struct Environment<'s> {
@@ -44,7 +44,7 @@ impl<'s> Environment<'s> {
     pub fn new(simulator: &'s Simulator, scene: &Scene, start: Pose, noise: Noise) -> Result<Self> {
         let robot = simulator.robot;
         if !scene.has_room_for(start.position_cm, robot.body_radius_cm) {
-            return Err(Problem::new(format!(
+            return Err(Error::new(format!(
                 "the start at ({}, {}) leaves no room for a robot of radius {} cm",
                 start.position_cm.x, start.position_cm.y, robot.body_radius_cm
             )));

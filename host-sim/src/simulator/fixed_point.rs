@@ -8,7 +8,7 @@ use mindgap_controller_export::rust_networks::rust_network;
 pub use quantise::{Quantised, Unrepresentable, Weight};
 
 use super::{Learned, Simulator};
-use crate::problem::{Problem, Result};
+use crate::error::{Error, Result};
 
 /// The five networks, quantised.
 #[derive(Clone, Debug, PartialEq)]
@@ -69,5 +69,5 @@ impl FixedNetworks {
 
 fn quantise<const N: usize>(simulator: &Simulator, learned: &Option<Learned<N>>, name: &str) -> Result<Quantised<N>> {
     Quantised::new(&simulator.need(learned, name)?.network)
-        .map_err(|e| Problem::new(format!("the {name} network cannot be represented in fixed point: {e}")))
+        .map_err(|e| Error::new(format!("the {name} network cannot be represented in fixed point: {e}")))
 }

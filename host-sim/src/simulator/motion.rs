@@ -10,8 +10,8 @@ use super::nominal::MotionBias;
 use super::nominal::motion_bias::{FEATURES, features};
 use super::residuals::{ResidualNoise, ResidualQuantiles, motion_context};
 use super::{Learned, Simulator};
+use crate::error::Result;
 use crate::lanes::Lanes;
-use crate::problem::Result;
 
 /// The three motion networks of a simulator, as they are or with what the logs say beyond them.
 #[derive(Clone)]

@@ -8,8 +8,8 @@ use mindgap_controller_export::names::BrickName;
 use mindgap_controller_export::wiring::Wiring;
 
 use crate::cli::warn;
+use crate::error::{Error, Result};
 use crate::logs::Run;
-use crate::problem::{Problem, Result};
 
 /// Options of the format nxc-collect alone; a script says itself what they would.
 #[derive(Args)]
@@ -46,7 +46,7 @@ pub fn script(path: &Path, program: BrickName, wiring: Wiring) -> Result<Collect
     let step_ms = rows[1].t_ms - rows[0].t_ms;
     let is_even = rows.windows(2).all(|pair| pair[1].t_ms - pair[0].t_ms == step_ms);
     if !is_even || step_ms.fract() != 0.0 || step_ms > f64::from(u16::MAX) {
-        return Err(Problem::in_file(path, "is no script: its rows are not equally many whole milliseconds apart"));
+        return Err(Error::in_file(path, "is no script: its rows are not equally many whole milliseconds apart"));
     }
     let powers = rows.iter().map(|row| [row.left, row.right].map(|power| power.round() as i8)).collect();
     Ok(CollectOptions { program, wiring, step_ms: step_ms as u16, commands: Commands::Script(powers) })

@@ -5,11 +5,11 @@ use std::path::Path;
 use csv::ReaderBuilder;
 use glam::{DQuat, DVec3};
 
-use crate::files::csv_problem;
+use crate::error::{Error, Result};
+use crate::files::csv_error;
 use crate::geometry::Pose;
 use crate::import::frame::Frame;
 use crate::import::units::Length;
-use crate::problem::{Problem, Result};
 
 /// The beginning of such a file.
 const BEGINNING: &str = "Format Version";
@@ -27,7 +27,7 @@ pub(super) fn frames(file: &Path, text: &str) -> Result<Vec<Option<Frame>>> {
     let mut is_body = false;
     let mut frames = Vec::new();
     for record in reader.records() {
-        let record = record.map_err(|e| csv_problem(file, &e))?;
+        let record = record.map_err(|e| csv_error(file, &e))?;
         let line = record.position().map_or(0, csv::Position::line);
         let cell = |at: usize| record.get(at).map_or("", str::trim);
         if !is_body {
@@ -40,17 +40,17 @@ pub(super) fn frames(file: &Path, text: &str) -> Result<Vec<Option<Frame>>> {
             Some("meters") => Length::M,
             Some("centimeters") => Length::Cm,
             Some("millimeters") => Length::Mm,
-            _ => return Err(Problem::at_line(file, 1, "Length Units are not meters, centimeters or millimeters")),
+            _ => return Err(Error::at_line(file, 1, "Length Units are not meters, centimeters or millimeters")),
         }
         .cm();
         let number = |at: usize| match cell(at) {
             "" => Ok(None),
             text => match text.parse::<f64>().ok().filter(|v| v.is_finite()) {
                 Some(value) => Ok(Some(value)),
-                None => Err(Problem::at_line(file, line, format!("{} = {text:?} is no number", HEADER[at]))),
+                None => Err(Error::at_line(file, line, format!("{} = {text:?} is no number", HEADER[at]))),
             },
         };
-        let time = number(1)?.ok_or_else(|| Problem::at_line(file, line, "Time is empty"))?;
+        let time = number(1)?.ok_or_else(|| Error::at_line(file, line, "Time is empty"))?;
         let values = (2..HEADER.len()).map(number).collect::<Result<Option<Vec<f64>>>>()?;
         frames.push(values.map(|v| {
             let forward = DQuat::from_xyzw(v[0], v[1], v[2], v[3]).normalize() * DVec3::X;
@@ -60,7 +60,7 @@ pub(super) fn frames(file: &Path, text: &str) -> Result<Vec<Option<Frame>>> {
     }
     if !is_body {
         let what = format!("has no line {}, so no rigid body with quaternions comes first", HEADER.join(","));
-        return Err(Problem::in_file(file, what));
+        return Err(Error::in_file(file, what));
     }
     Ok(frames)
 }

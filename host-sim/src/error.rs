@@ -5,34 +5,34 @@ use std::path::{Path, PathBuf};
 /// Why a command could not do what was asked.
 #[derive(Debug, thiserror::Error)]
 #[error("{}{what}", self.place())]
-pub struct Problem {
+pub struct Error {
     file: Option<PathBuf>,
     line: Option<u64>,
     what: String,
 }
 
 /// The result of anything that reads what a user gave.
-pub type Result<T> = std::result::Result<T, Problem>;
+pub type Result<T> = std::result::Result<T, Error>;
 
-impl Problem {
-    /// A problem that lies in no one file.
+impl Error {
+    /// An error that lies in no one file.
     pub fn new(what: impl Into<String>) -> Self {
-        Problem { file: None, line: None, what: what.into() }
+        Error { file: None, line: None, what: what.into() }
     }
 
-    /// A problem with a whole file or folder.
+    /// An error of a whole file or folder.
     pub fn in_file(file: &Path, what: impl Into<String>) -> Self {
-        Problem { file: Some(file.to_owned()), line: None, what: what.into() }
+        Error { file: Some(file.to_owned()), line: None, what: what.into() }
     }
 
-    /// A problem at a line, counted from 1.
+    /// An error at a line, counted from 1.
     pub fn at_line(file: &Path, line: u64, what: impl Into<String>) -> Self {
-        Problem { file: Some(file.to_owned()), line: Some(line), what: what.into() }
+        Error { file: Some(file.to_owned()), line: Some(line), what: what.into() }
     }
 
-    /// The same problem, laid to `file` unless it has a file already.
+    /// The same error, attributed to `file` unless it has a file already.
     pub fn or_in_file(self, file: &Path) -> Self {
-        Problem { file: self.file.or_else(|| Some(file.to_owned())), ..self }
+        Error { file: self.file.or_else(|| Some(file.to_owned())), ..self }
     }
 
     fn place(&self) -> String {
