@@ -6,6 +6,7 @@ use serde_json::Value;
 
 use super::applied::AppliedEffect;
 use super::catalogue::Candidate;
+use super::parameter::Parameter;
 use crate::logs::Robot;
 
 /// The text of a simulator file with its applied effects by today's ids and units; none where they have them already, or
@@ -44,6 +45,8 @@ enum Unit {
     Steps,
     /// Commands for what is a wheel speed today.
     Command,
+    /// It was not written, and always this.
+    Constant(f64),
 }
 
 impl LegacyEffect {
@@ -51,17 +54,19 @@ impl LegacyEffect {
     fn upgrade(&self, robot: &Robot) -> Option<AppliedEffect> {
         let (effect, _, variant, units) = TABLE.iter().find(|row| row.0 == self.effect && row.1 == self.form)?;
         let candidate = Candidate::named(effect, variant)?;
-        let today = |(value, unit): (&f64, &Unit)| match unit {
-            Unit::Same => *value,
-            Unit::Radians => value.to_degrees(),
-            Unit::Steps => value * robot.step_ms,
-            Unit::Command => value / 100.0 * robot.full_speed_cm_s,
+        let mut written = self.values.iter().copied();
+        let today = |unit: &Unit| match unit {
+            Unit::Same => written.next(),
+            Unit::Radians => written.next().map(f64::to_degrees),
+            Unit::Steps => written.next().map(|steps| steps * robot.step_ms),
+            Unit::Command => written.next().map(|command| command / 100.0 * robot.full_speed_cm_s),
+            Unit::Constant(value) => Some(*value),
         };
-        let values = self.values.iter().zip(*units).map(today);
+        let values = units.iter().map(today).collect::<Option<Vec<f64>>>()?;
+        let whole = written.next().is_none() && values.iter().all(|v| v.is_finite());
         // What was a bound of commands may lie beyond today's bound of speeds, where nothing changes any more.
-        let values: Vec<f64> =
-            values.zip(candidate.variant.parameters).map(|(v, p)| v.clamp(p.bounds[0], p.bounds[1])).collect();
-        let whole = self.values.len() == units.len() && values.iter().all(|v| v.is_finite());
+        let within = |(v, p): (f64, &Parameter)| v.clamp(p.bounds[0], p.bounds[1]);
+        let values: Vec<f64> = values.into_iter().zip(candidate.variant.parameters).map(within).collect();
         whole.then(|| AppliedEffect::new(&candidate, &values))
     }
 }
@@ -69,7 +74,7 @@ impl LegacyEffect {
 /// Effect, sentence, id of the variant, and the units of its parameters.
 type Row = (&'static str, &'static str, &'static str, &'static [Unit]);
 
-use Unit::{Command, Radians, Same, Steps};
+use Unit::{Command, Constant, Radians, Same, Steps};
 
 const TABLE: &[Row] = &[
     ("battery_sag", "commands weaken", "command", &[Same]),
@@ -92,7 +97,7 @@ const TABLE: &[Row] = &[
         "payload",
         "ways shorten on one side, and a heavy robot is slow to start and to turn",
         "heavy",
-        &[Same, Same, Same, Same],
+        &[Same, Same, Same, Constant(1.0), Same],
     ),
     (
         "payload",

@@ -142,7 +142,7 @@ pub fn driven(runs: usize, rows: usize, command: impl Fn(usize, usize) -> [f64; 
 
 /// What alternates between plus and minus one.
 pub fn alternating(at: usize) -> f64 {
-    if at % 2 == 0 { 1.0 } else { -1.0 }
+    if at.is_multiple_of(2) { 1.0 } else { -1.0 }
 }
 
 /// A length without a prior, fitted from a millimetre; derivatives are taken over a fifth of one.

@@ -34,9 +34,9 @@ pub const EFFECT: Effect = Effect {
                     start_slowly(start_loss * loss.abs(), commands);
                 }),
                 Hook::Motion(&|v, context, increment| {
-                    let HeavyLoad { loss, other_side, turn_loss, .. } = HeavyLoad::read(v);
+                    let HeavyLoad { loss, other_side, turn_loss, with_rate, .. } = HeavyLoad::read(v);
                     shorten(by_side(loss, other_side), context, increment);
-                    increment.turn_rad *= 1.0 - (turn_loss * loss.abs()).min(1.0);
+                    increment.turn_rad = scrubbed_rad(increment.turn_rad, turn_loss * loss.abs(), with_rate, context);
                 }),
             ],
         },
@@ -86,8 +86,10 @@ parameters! {
         loss: LOSS,
         /// The other wheel's loss as a share of it.
         other_side: Parameter::new("", 0.5, [0.0, 0.8]).prior_sd(0.3).report(Report::Hidden),
-        /// Loss of turns as a multiple of it: a load far from the axle resists being swung round.
+        /// Loss of a turn of [`SCRUBBED_RAD_S`] as a multiple of it: tyres and castor that are pressed down scrub in turns.
         turn_loss: Parameter::new("", 0.0, [0.0, 6.0]).prior_sd(2.0).from(Guesses::At(&[2.0])).report(Report::Hidden),
+        /// Share of that which grows with the rate of turn; dry friction costs the rest at any rate.
+        with_rate: Parameter::new("", 0.5, [0.0, 1.0]).prior_sd(0.5).report(Report::Hidden),
         /// See [`START_LOSS`].
         start_loss: START_LOSS,
     }
@@ -104,6 +106,19 @@ parameters! {
         /// See [`START_LOSS`].
         start_loss: START_LOSS,
     }
+}
+
+/// The turn to which the loss of turns refers: half of what an NXT robot's wheels can do.
+const SCRUBBED_RAD_S: f64 = 3.5;
+/// Turns slower than this scrub less and less.
+const CREEPING_RAD_S: f64 = 0.1;
+
+/// A turn that loses the share `lost` to scrubbing: of itself in part, and of the reference turn for the rest.
+fn scrubbed_rad(turn_rad: f64, lost: f64, with_rate: f64, context: &StepContext) -> f64 {
+    let [reference_rad, creeping_rad] = [SCRUBBED_RAD_S, CREEPING_RAD_S].map(|rate| rate * context.step_s());
+    let of_rad = with_rate * turn_rad.abs() + (1.0 - with_rate) * reference_rad;
+    let lost_rad = lost * of_rad * libm::tanh(turn_rad / creeping_rad);
+    if lost_rad.abs() < turn_rad.abs() { turn_rad - lost_rad } else { 0.0 }
 }
 
 /// Losses of the left and the right wheel.

@@ -75,7 +75,7 @@ fn without_a_gap_or_with_less_than_strong_evidence_nothing_is_told() {
 #[test]
 fn an_unknown_gap_is_that_of_the_residual_model() {
     let baseline = baseline();
-    let made = |at: usize| if at % 3 == 0 { 2.0 } else { 0.0 } + 0.9 * alternating(at / 3);
+    let made = |at: usize| if at.is_multiple_of(3) { 2.0 } else { 0.0 } + 0.9 * alternating(at / 3);
     let mut rows = rows();
     let per_block = rows.rows.len() / rows.blocks;
     for row in &mut rows.rows {
