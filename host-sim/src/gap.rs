@@ -1,6 +1,6 @@
 //! The gap between a simulator and logs: where it lies, which effect causes it, and how far it shrinks.
 //!
-//! [`diagnose`] is the method, stage by stage: validate, condition, fit, compare, confirm, account, explain, propose.
+//! [`mod@diagnose`] is the method, stage by stage: validate, condition, fit, compare, confirm, account, explain, propose.
 //! Each stage has a file of that name. A [hypothesis] is one or more [effects](crate::effects) round a step of the
 //! [baseline](crate::simulator::baseline); the [omnibus] residual model bounds what any effect could explain; the
 //! thresholds are those of the [calibration].
