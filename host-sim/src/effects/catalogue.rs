@@ -294,7 +294,7 @@ mod tests {
         }
 
         #[test]
-        fn at_its_bounds_an_effect_stays_finite(context in context(), corner in any::<[bool; 4]>()) {
+        fn at_its_bounds_an_effect_stays_finite(context in context(), corner in any::<[bool; 5]>()) {
             for Candidate { effect, variant } in Candidate::all(CATALOGUE) {
                 let bound = |(p, high): (&super::super::Parameter, &bool)| p.bounds[usize::from(*high)];
                 let values: Vec<f64> = variant.parameters.iter().zip(&corner).map(bound).collect();

@@ -15,8 +15,6 @@ pub struct Calibration {
     pub adequate: f64,
     /// Width of the logistic curve by which that share decides.
     pub adequacy_width: f64,
-    /// A rival with at least this relative likelihood is named beside the winner.
-    pub rival: f64,
     /// Relative likelihoods of rivals are raised to one over this: above one, doubt weighs more than its nats say.
     pub temperature: f64,
     /// How often the plainest answer is right: no answer is surer.
@@ -48,7 +46,7 @@ pub struct Judgement {
     /// Strong evidence, nats: odds of 20 to 1 (Kass and Raftery 1995). Held-out runs have to confirm with it, smaller leads
     /// over a rival or gaps of a channel are not told, and an effect that promises less is untestable.
     pub strong_nats: f64,
-    /// Another effect can stand for one that it lags by no more than this many standard errors.
+    /// Another effect can stand for one that it lags by no more than this many standard errors, and is named beside it.
     pub rival_z: f64,
     /// An effect for which more others can stand has to gain `vague_factor` times as much: the misfit of a simulator is a
     /// bit like many effects.
@@ -137,10 +135,10 @@ mod tests {
 
     #[test]
     fn thresholds_are_possible() {
-        let Calibration { rows, effect, remainder, adequate, adequacy_width, rival, temperature, accuracy_cap, .. } =
+        let Calibration { rows, effect, remainder, adequate, adequacy_width, temperature, accuracy_cap, .. } =
             Calibration::shipped();
         assert!([effect, remainder].iter().all(|gate| gate.nats > 0.0 && gate.z > 0.0));
-        assert!([adequate, rival, accuracy_cap].iter().all(|share| (0.0..=1.0).contains(share)));
+        assert!([adequate, accuracy_cap].iter().all(|share| (0.0..=1.0).contains(share)));
         assert!(rows > 0.0 && adequacy_width > 0.0 && temperature > 0.0);
     }
 

@@ -76,7 +76,7 @@ fn named(found: &Comparison, robot: &Robot, calibration: &Calibration) -> Vec<Na
     let (gap, fraction) = (gap(found, calibration), explained_fraction(found));
     let one = |(place, candidate): (usize, &crate::effects::Candidate)| {
         let rivals = found.likelihoods_in_place_of(place, calibration);
-        let ambiguous = rivals.iter().filter(|(_, likelihood)| *likelihood >= calibration.rival);
+        let ambiguous = rivals.iter().filter(|(_, likelihood)| *likelihood >= calibration.judgement.rival_likelihood());
         NamedEffect {
             id: candidate.effect,
             probability: gap * probability(fraction, rivals.iter().map(|r| r.1), calibration),

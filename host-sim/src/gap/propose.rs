@@ -88,7 +88,7 @@ fn closest_rival<'f>(found: &'f Comparison, context: &FitContext) -> Option<(&'f
         let rival = *found.rivals_of(place).first()?;
         let other = rival.ids().into_iter().find(|id| !ids.contains(id))?;
         let likelihood = relative_likelihood(&found.chosen, rival, calibration);
-        (likelihood >= calibration.rival).then_some((likelihood, rival, [ids[place], other]))
+        (likelihood >= calibration.judgement.rival_likelihood()).then_some((likelihood, rival, [ids[place], other]))
     };
     let closest = (0..ids.len()).filter_map(confused).max_by(|a, b| a.0.total_cmp(&b.0));
     closest.map(|(_, rival, between)| (rival, between))

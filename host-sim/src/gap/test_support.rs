@@ -208,7 +208,6 @@ pub const CALIBRATION: Calibration = Calibration {
     rows: 1e9,
     adequate: 0.8,
     adequacy_width: 0.05,
-    rival: 0.1,
     temperature: 1.0,
     accuracy_cap: 0.9,
     effect: Gate { nats: 5.0, z: 2.0 },

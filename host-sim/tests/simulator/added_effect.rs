@@ -19,14 +19,17 @@ fn catalogue() -> &'static [&'static Effect] {
 fn with_turning_loss(mut logs: Logs) -> Logs {
     let step_s = logs.robot.step_ms / 1000.0;
     for run in &mut logs.runs {
-        let logged: Vec<_> =
-            run.rows.iter().map(|row| row.pose.expect("the built-in robot's tracker sees it")).collect();
-        let mut pose = logged[0];
-        for (row, step) in run.rows[1..].iter_mut().zip(logged.windows(2)) {
-            let mut increment = PoseIncrement::between(&step[0], &step[1]);
-            increment.forward_cm *= 1.0 - LOSS_PER_RAD_S * (increment.turn_rad / step_s).abs();
-            pose = increment.from(&pose);
-            row.pose = Some(pose);
+        // Where the tracker lost the robot, the steps to its next sight count as one.
+        let mut last = None;
+        for row in &mut run.rows {
+            let Some(logged) = row.pose else { continue };
+            let altered = last.map_or(logged, |(logged_before, altered_before)| {
+                let mut increment = PoseIncrement::between(&logged_before, &logged);
+                increment.forward_cm *= 1.0 - LOSS_PER_RAD_S * (increment.turn_rad / step_s).abs();
+                increment.from(&altered_before)
+            });
+            last = Some((logged, altered));
+            row.pose = Some(altered);
         }
         run.rows.iter_mut().for_each(|row| row.echo_cm = None);
     }

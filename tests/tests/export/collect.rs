@@ -169,7 +169,7 @@ fn script_options(powers: Vec<[i8; 2]>) -> CollectOptions {
 
 #[test]
 fn a_script_is_driven_as_it_is_whatever_is_near() {
-    let powers: Vec<[i8; 2]> = (0..50i8).map(|k| [2 * k - 50, 100 - 4 * k]).collect();
+    let powers: Vec<[i8; 2]> = (0..50i8).map(|k| [2 * k - 50, 4 * (25 - k)]).collect();
     let program = Program::load(&compile(&collect::program(&script_options(powers.clone())).unwrap())).unwrap();
     let rows = rows_of(&program, ScriptedWorld::sonar([Sonar::Echo(NEAR_CM / 2); STEPS]));
     let expected = powers.iter().map(|pair| pair.map(i32::from)).chain([[0, 0]]);

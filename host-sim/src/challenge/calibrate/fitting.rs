@@ -5,8 +5,8 @@ use crate::gap::calibration::{Calibration, Gate, Judgement};
 use crate::gap::explain::probability;
 
 /// Share of all cases without an effect whose gain passes the gate for an effect, in nats and again in standard errors.
-/// Both are asked for, and a gain on the runs held out besides: two in a hundred or fewer pass it all.
-const FALSE_EFFECTS: f64 = 0.05;
+/// Both are asked for, and a gain on the runs held out besides: one in a hundred or fewer passes it all.
+const FALSE_EFFECTS: f64 = 0.02;
 /// The same for what no effect explains, where a simulator's own misfit is often found on the runs held out again.
 const FALSE_REMAINDERS: f64 = 0.02;
 /// The law of a tail is read off this share of all.
@@ -15,10 +15,6 @@ const TAIL: f64 = 0.2;
 const FALSE_UNKNOWNS: f64 = 0.05;
 /// once what they leave over is multiplied by this: no variant fits other robots as well as the built-in one.
 const OTHER_ROBOTS: f64 = 3.0;
-/// Share of the doubtful answers that name their effect, as the first or beside it.
-const COVERED: f64 = 0.9;
-/// A rival of less relative likelihood raises no doubt.
-const DOUBT: f64 = 0.01;
 /// What is tried for the probabilities. A test asks that the best lies between the first and the last, but for the cap: some
 /// two hundred right answers cannot show that more than 199 in 200 are right.
 const WIDTHS: [f64; 7] = [0.005, 0.01, 0.02, 0.04, 0.06, 0.1, 0.2];
@@ -32,7 +28,6 @@ pub fn open(nulls: &[Measured]) -> Calibration {
         rows: rows.round(),
         adequate: 0.0,
         adequacy_width: 1.0,
-        rival: 0.0,
         temperature: 1.0,
         accuracy_cap: 1.0,
         effect: Gate { nats: 0.0, z: 0.0 },
@@ -51,14 +46,12 @@ pub fn open(nulls: &[Measured]) -> Calibration {
     }
 }
 
-/// The same with what tells a cause from something unknown, which rivals are named, and how sure an answer is.
+/// The same with what tells a cause from something unknown, and how sure an answer is.
 pub fn weighed(open: Calibration, others: &[Measured]) -> Calibration {
     let answered: Vec<&Measured> = others.iter().filter(|m| !m.first.is_empty()).collect();
     let right = answered.iter().filter(|m| m.first_is_there());
     let adequate = 1.0 - OTHER_ROBOTS * (1.0 - quantile(right.map(|m| m.explained_fraction).collect(), FALSE_UNKNOWNS));
-    let doubtful = answered.iter().filter(|m| m.likelihood_of_truth >= DOUBT && m.rivals.iter().any(|w| *w >= DOUBT));
-    let rival = quantile(doubtful.map(|m| m.likelihood_of_truth).collect(), 1.0 - COVERED);
-    let settled = Calibration { adequate: rounded(adequate), rival: rounded(rival), ..open };
+    let settled = Calibration { adequate: rounded(adequate), ..open };
     let known: Vec<&Measured> = answered.into_iter().filter(|m| m.explained_fraction >= settled.adequate).collect();
     let tried = WIDTHS.iter().flat_map(|width| {
         TEMPERATURES
@@ -156,14 +149,5 @@ mod tests {
         let within = |value: f64, grid: &[f64]| grid[0] < value && value < grid[grid.len() - 1];
         assert!(within(adequacy_width, &WIDTHS) && within(temperature, &TEMPERATURES));
         assert!(accuracy_cap > ACCURACY_CAPS[0]);
-    }
-
-    #[test]
-    fn a_rival_is_named_as_far_behind_as_truths_are_found() {
-        let answers = |behind: f64| -> Vec<Measured> {
-            (0..100).map(|i| measured(if i < 20 { behind } else { 1.0 }, 1.0, 0.5)).collect()
-        };
-        let rival = |behind: f64| weighed(open(&nulls()), &answers(behind)).rival;
-        assert_eq!([rival(0.05), rival(0.6)], [0.05, 0.6]);
     }
 }

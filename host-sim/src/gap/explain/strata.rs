@@ -107,10 +107,10 @@ fn of_channel(channel: Channel, found: &Comparison, known: bool, context: &FitCo
 
 /// By how much each row of a channel would be likelier with the effects, or with anything where no effect explains it.
 fn excess(found: &Comparison, known: bool, channel: Channel) -> Vec<f64> {
-    let (fit, remainders) =
-        if known { (&found.chosen, &found.beyond_chosen) } else { (&found.none, &found.beyond_none) };
+    let remainders = if known { &found.beyond_chosen } else { &found.beyond_none };
     let remainder = remainders.iter().find(|r| r.channel() == channel && r.counts());
-    let best = remainder.map_or_else(|| fit.log_likelihood.channel(channel), |r| r.model.held_out.clone());
+    // Effects that explain too little to be named still show where the gap lies.
+    let best = remainder.map_or_else(|| found.chosen.log_likelihood.channel(channel), |r| r.model.held_out.clone());
     let none = found.none.log_likelihood.channel(channel);
     best.iter().zip(none).map(|(best, none)| best - none).collect()
 }

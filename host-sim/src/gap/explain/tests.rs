@@ -1,5 +1,7 @@
 use super::*;
 use crate::effects::Effect;
+use crate::gap::calibration::Judgement;
+use crate::gap::calibration::Judgement;
 use crate::gap::fit::{FitContext, Fitted};
 use crate::gap::remainder::remainders;
 use crate::gap::test_support::*;
@@ -122,7 +124,8 @@ fn an_effect_for_which_too_many_could_stand_is_no_answer() {
         // Seven nats behind: each is named, and the doubt of six is that of one that is 0.4 as likely.
         let with = |count: usize| {
             let rivals = vec![IDS[..count].iter().map(rival).collect()];
-            let calibration = Calibration { rival: 0.05, ..CALIBRATION };
+            let judgement = Judgement { rival_z: 2.45, ..CALIBRATION.judgement };
+            let calibration = Calibration { judgement, ..CALIBRATION };
             Judged::of(&Comparison { rivals, ..comparison(&[&LONGER], &[10.0; 2], context) }, &robot(), &calibration)
         };
         assert!(matches!(with(5), Judged::Known { .. }));
