@@ -1,7 +1,6 @@
 use super::*;
 use crate::effects::Effect;
 use crate::gap::calibration::Judgement;
-use crate::gap::calibration::Judgement;
 use crate::gap::fit::{FitContext, Fitted};
 use crate::gap::remainder::remainders;
 use crate::gap::test_support::*;
