@@ -99,10 +99,10 @@ fn of_channel(channel: Channel, found: &Comparison, known: bool, context: &FitCo
         return None;
     }
     let contexts = if channel.motion_axis().is_some() { MOTION } else { SONAR };
-    let candidates = contexts.iter().filter_map(|c| stratum(channel, c, &excess, all, context));
-    let best = candidates.max_by(|a, b| a.0.total_cmp(&b.0));
-    let everywhere = || stratum(channel, &("all steps", |_| true), &excess, all, context);
-    best.or_else(everywhere).map(|(_, stratum)| (all, stratum))
+    let ranked = |c: &Context| ranked(channel, c, &excess, all, context);
+    let carrying = contexts.iter().filter_map(ranked).filter(|r| r.carries);
+    let best = carrying.max_by(|a, b| a.rank.total_cmp(&b.rank));
+    best.or_else(|| ranked(&("all steps", |_| true))).map(|r| (all, r.stratum))
 }
 
 /// By how much each row of a channel would be likelier with the effects, or with anything where no effect explains it.
@@ -115,14 +115,16 @@ fn excess(found: &Comparison, known: bool, channel: Channel) -> Vec<f64> {
     best.iter().zip(none).map(|(best, none)| best - none).collect()
 }
 
-/// A stratum with its rank, if it carries more than its share.
-fn stratum(
-    channel: Channel,
-    (context, holds): &Context,
-    excess: &[f64],
-    all: f64,
-    fit: &FitContext,
-) -> Option<(f64, Stratum)> {
+/// A stratum among others.
+struct Ranked {
+    rank: f64,
+    /// Whether it carries more than its share.
+    carries: bool,
+    stratum: Stratum,
+}
+
+/// None where a stratum has no rows.
+fn ranked(channel: Channel, (context, holds): &Context, excess: &[f64], all: f64, fit: &FitContext) -> Option<Ranked> {
     let observations = fit.observations;
     let inside =
         |(row, _): &(&Observation, &f64)| holds(row) && (channel.motion_axis().is_none() || row.motion.is_some());
@@ -139,7 +141,8 @@ fn stratum(
     let carries = of_rows > EVERYWHERE || (share > LIFT * of_rows && share > LEAST_SHARE && ci95[0] > 0.0);
     // What is rare and heavy, and what is nearly all, both say less than what is in between.
     let rank = (share - of_rows) * share;
-    (carries && count > 0.0).then(|| (rank, Stratum { channel, context, gap: gap / count, ci95, share }))
+    let stratum = Stratum { channel, context, gap: gap / count, ci95, share };
+    (count > 0.0).then_some(Ranked { rank, carries, stratum })
 }
 
 fn heading(row: &Observation, deg: f64) -> bool {
