@@ -80,7 +80,7 @@ pub fn reduction(found: &Comparison, context: &FitContext, logs: &Observations) 
             let channel = remainder.channel();
             let gains = remainder.model.judged_on(logs, context).into_iter().zip(chosen.channel(channel));
             let follows = logs.by_block(&gains.map(|(a, b)| a - b).collect::<Vec<f64>>());
-            let scatters = remainder.wider_scatter(context, logs);
+            let scatters = logs.by_block(&remainder.wider_scatter(context, logs));
             (channel, follows.iter().zip(scatters).map(|(f, s)| f + s).collect())
         })
         .collect();

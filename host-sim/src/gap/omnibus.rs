@@ -88,15 +88,15 @@ impl ResidualFit {
         }
     }
 
-    /// By how much rows of a motion channel are likelier with the scatter of the logs than with the simulator's, by
-    /// block; zeros of a sonar channel.
+    /// By how much each row of a motion channel is likelier with the scatter of the logs than with the simulator's; zeros
+    /// of a sonar channel.
     pub fn wider_scatter(&self, context: &FitContext, rows: &Observations) -> Vec<f64> {
-        let Law::Motion(law) = &self.law else { return vec![0.0; rows.blocks] };
+        let Law::Motion(law) = &self.law else { return vec![0.0; rows.rows.len()] };
         let narrow = motion::Law { scatter: law.least(context.baseline), ..*law };
         let predictions = self.predictions(rows, context);
         let residuals = law.residuals(&self.effects, context.baseline, rows);
         let [own, narrow] = [law, &narrow].map(|law| law.terms(&residuals, &predictions));
-        rows.by_block(&own.iter().zip(narrow).map(|(a, b)| a - b).collect::<Vec<f64>>())
+        own.iter().zip(narrow).map(|(a, b)| a - b).collect()
     }
 
     fn terms(&self, rows: &Observations, context: &FitContext, predictions: &[f64]) -> Vec<f64> {

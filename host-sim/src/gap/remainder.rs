@@ -26,7 +26,8 @@ pub fn remainders(fit: &Fitted, context: &FitContext) -> Vec<Remainder> {
 pub fn most(fit: &Fitted, context: &FitContext) -> Gain {
     let of_channel = |channel: &Channel| {
         let model = ResidualFit::of(*channel, fit, context);
-        [model.gains_over(fit, context), wider_scatter(&model, context, context.observations)].map(|g| Gain::of(&g))
+        let wider = context.observations.by_block(&wider_scatter(&model, context, context.observations));
+        [model.gains_over(fit, context), wider].map(|gains| Gain::of(&gains))
     };
     let gains: Vec<[Gain; 2]> = Channel::ALL.par_iter().map(of_channel).collect();
     gains.into_iter().flatten().max_by(|a, b| a.nats.total_cmp(&b.nats)).unwrap_or(Gain::NONE)
@@ -36,7 +37,8 @@ impl Remainder {
     fn of(channel: Channel, fit: &Fitted, context: &FitContext) -> Self {
         let gate = &context.calibration.remainder;
         let model = ResidualFit::of(channel, fit, context);
-        let (gains, wider) = (model.gains_over(fit, context), wider_scatter(&model, context, context.observations));
+        let gains = model.gains_over(fit, context);
+        let wider = context.observations.by_block(&wider_scatter(&model, context, context.observations));
         let (follows, scatters) = (Gain::of(&gains).passes(gate), Gain::of(&wider).nats >= gate.nats);
         let mut by_block = vec![0.0; gains.len()];
         for (counts, gains) in [(follows, gains), (scatters, wider)] {
@@ -57,10 +59,10 @@ impl Remainder {
         self.by_block.iter().any(|g| *g != 0.0)
     }
 
-    /// By how much the rows of each block are likelier with the scatter of the logs than with the simulator's; zeros where
+    /// By how much each row is likelier with the scatter of the logs than with the simulator's; zeros where
     /// that does not count.
     pub fn wider_scatter(&self, context: &FitContext, rows: &Observations) -> Vec<f64> {
-        if self.scatters { wider_scatter(&self.model, context, rows) } else { vec![0.0; rows.blocks] }
+        if self.scatters { wider_scatter(&self.model, context, rows) } else { vec![0.0; rows.rows.len()] }
     }
 
     /// This if it gains something over the fit `beneath` on runs held out, and nothing otherwise.
@@ -81,7 +83,7 @@ impl Remainder {
 /// What a wider scatter gains, where it is wider than chance makes it.
 fn wider_scatter(model: &ResidualFit, context: &FitContext, rows: &Observations) -> Vec<f64> {
     if model.scatter_ratio(context) < context.calibration.judgement.scatter_ratio {
-        return vec![0.0; rows.blocks];
+        return vec![0.0; rows.rows.len()];
     }
     model.wider_scatter(context, rows)
 }

@@ -93,7 +93,7 @@ pub fn strata(found: &Comparison, judged: &Judged, context: &FitContext) -> Vec<
 
 /// The stratum that says most of a channel, with the channel's gap in nats.
 fn of_channel(channel: Channel, found: &Comparison, known: bool, context: &FitContext) -> Option<(f64, Stratum)> {
-    let excess = excess(found, known, channel);
+    let excess = excess(found, known, channel, context);
     let all: f64 = excess.iter().sum();
     if all < context.calibration.judgement.strong_nats {
         return None;
@@ -105,14 +105,17 @@ fn of_channel(channel: Channel, found: &Comparison, known: bool, context: &FitCo
     best.or_else(|| ranked(&("all steps", |_| true))).map(|r| (all, r.stratum))
 }
 
-/// By how much each row of a channel would be likelier with the effects, or with anything where no effect explains it.
-fn excess(found: &Comparison, known: bool, channel: Channel) -> Vec<f64> {
+/// By how much each row of a channel would be likelier with the effects, or with anything where no effect explains it,
+/// wider scatter included.
+fn excess(found: &Comparison, known: bool, channel: Channel, context: &FitContext) -> Vec<f64> {
     let remainders = if known { &found.beyond_chosen } else { &found.beyond_none };
     let remainder = remainders.iter().find(|r| r.channel() == channel && r.counts());
-    // Effects that explain too little to be named still show where the gap lies.
-    let best = remainder.map_or_else(|| found.chosen.log_likelihood.channel(channel), |r| r.model.held_out.clone());
     let none = found.none.log_likelihood.channel(channel);
-    best.iter().zip(none).map(|(best, none)| best - none).collect()
+    let gains = |best: &[f64]| -> Vec<f64> { best.iter().zip(&none).map(|(best, none)| best - none).collect() };
+    // Effects that explain too little to be named still show where the gap lies.
+    let Some(remainder) = remainder else { return gains(&found.chosen.log_likelihood.channel(channel)) };
+    let scattered = remainder.wider_scatter(context, context.observations);
+    gains(&remainder.model.held_out).iter().zip(scattered).map(|(follows, scatters)| follows + scatters).collect()
 }
 
 /// A stratum among others.
