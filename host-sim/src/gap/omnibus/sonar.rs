@@ -12,6 +12,7 @@ use crate::sonar::SonarModel;
 use crate::sonar::model::FAR_CM;
 use crate::sonar::{Fan, Perturbation};
 use crate::statistics::maximise::{Bounds, climb};
+use crate::statistics::summary::median;
 
 /// How readings spread about where they are predicted, beyond the simulator.
 #[derive(Clone, Copy, Debug)]
@@ -188,10 +189,7 @@ impl<'a> Heard<'a> {
             Some(reading.echo_cm? - self.sonar?.outcomes(&reading.fan, &reading.change, None).mean_hit_cm()?)
         };
         let off: Vec<Option<f64>> = self.rows.iter().map(off).collect();
-        let mut sizes: Vec<f64> = off.iter().flatten().map(|off_cm| off_cm.abs()).collect();
-        sizes.sort_by(f64::total_cmp);
-        let median = sizes.get(sizes.len() / 2).copied().unwrap_or(0.0);
-        let scatter_cm = (median / QUARTILE).max(LEAST_SCATTER_CM);
+        let scatter_cm = (median(off.iter().flatten().map(|off_cm| off_cm.abs())) / QUARTILE).max(LEAST_SCATTER_CM);
         let response = |i: usize, prediction: f64| {
             prediction + (off[i].unwrap_or(0.0) / scatter_cm - prediction).clamp(-FARTHEST, FARTHEST)
         };
