@@ -9,6 +9,7 @@
 //! holds the parameters of all parts, `drivetrain` and `wheel` the dynamics, `sonar` the sensor, `tracker` camera and
 //! compass.
 
+mod acoustics;
 mod body;
 mod controller_run;
 mod drivetrain;

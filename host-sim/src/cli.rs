@@ -4,7 +4,9 @@
 //! of it, as `mindgap evaluate ... | head -1` does, stops nothing halfway.
 
 mod brick;
+mod budget_text;
 mod challenge;
+mod check;
 mod crosscheck;
 mod demo;
 mod diagnose;
@@ -25,8 +27,11 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
+use serde::Serialize;
 
 use crate::error::{Error, Result};
+use crate::files;
+use crate::inspection::Inspection;
 use crate::logs::Logs;
 
 /// Learns a robot's simulator from its logs, evolves controllers in it, and finds what reality has that it lacks.
@@ -41,6 +46,7 @@ struct Cli {
 enum Command {
     Brick(brick::Brick),
     Challenge(challenge::Challenge),
+    Check(check::Check),
     Crosscheck(crosscheck::Crosscheck),
     Demo(demo::Demo),
     Diagnose(diagnose::Diagnose),
@@ -59,6 +65,7 @@ pub fn run() -> ExitCode {
     let done = match Cli::parse().command {
         Command::Brick(command) => command.run(),
         Command::Challenge(command) => command.run(),
+        Command::Check(command) => command.run(),
         Command::Crosscheck(command) => command.run(),
         Command::Demo(command) => command.run(),
         Command::Diagnose(command) => command.run(),
@@ -93,6 +100,29 @@ fn say(text: &str) -> Result<()> {
 /// Reads a folder of logs and tells its oddities on standard error.
 fn read_logs(folder: &Path) -> Result<Logs> {
     Logs::read(folder, warn)
+}
+
+/// Reads a folder of logs from which something is learned or judged: what could be put right in them is told and used.
+///
+/// # Errors
+/// When they cannot be read, or when something in them is wrong that could not be put right.
+fn read_sound_logs(folder: &Path) -> Result<Logs> {
+    let inspected = Inspection::of(read_logs(folder)?);
+    if let Some(why) = inspected.refusal() {
+        return Err(Error::in_file(folder, why));
+    }
+    inspected.findings.iter().for_each(|found| warn(format!("{}: {}", folder.display(), found.line())));
+    Ok(inspected.logs)
+}
+
+/// Tells what a command found: as `text`, which stands beside the JSON in a file, or as the JSON itself where that goes to
+/// standard output, as `-` says.
+fn reported(json: Option<&Path>, facts: &impl Serialize, text: String) -> Result<String> {
+    match json {
+        Some(path) if path.as_os_str() == "-" => files::json(path, facts),
+        Some(path) => files::write_json(path, facts).map(|()| text),
+        None => Ok(text),
+    }
 }
 
 /// Tells what does not keep a command from being done.

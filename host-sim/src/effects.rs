@@ -5,13 +5,14 @@
 //! or the sensor; at its nominal parameters it changes nothing. The same variant is a hypothesis while a gap is
 //! diagnosed and a part of the simulator once it is [`applied`].
 //!
-//! A further effect is a file in `effects/catalogue/` and a line in `effects/catalogue.rs`.
+//! A further effect is a file in `effects/catalogue/` and a line in `effects/catalogue.rs`; users state [`own`] ones.
 
 pub mod applied;
 pub mod catalogue;
 pub mod chain;
 pub mod context;
 pub mod legacy;
+pub mod own;
 pub mod parameter;
 pub mod pose_increment;
 pub mod variant;

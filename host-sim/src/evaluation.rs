@@ -6,3 +6,4 @@ pub mod final_position;
 pub mod observations;
 pub mod paths;
 pub mod predictions;
+pub mod repeats;

@@ -23,11 +23,18 @@ pub fn read_text(path: &Path) -> Result<String> {
 /// # Errors
 /// When the file cannot be read, is no TOML, or lacks what `T` needs.
 pub fn read_toml<T: DeserializeOwned>(path: &Path) -> Result<T> {
-    let text = read_text(path)?;
-    toml::from_str(&text).map_err(|e| {
+    from_toml(path, &read_text(path)?)
+}
+
+/// The text of a TOML file as a `T`; a problem names the line.
+///
+/// # Errors
+/// When it is no TOML, or lacks what `T` needs.
+pub fn from_toml<T: DeserializeOwned>(path: &Path, text: &str) -> Result<T> {
+    toml::from_str(text).map_err(|e| {
         let what = e.message().replace('\n', "; ");
         match e.span() {
-            Some(span) => Error::at_line(path, line_at(&text, span.start), what),
+            Some(span) => Error::at_line(path, line_at(text, span.start), what),
             None => Error::in_file(path, what),
         }
     })
@@ -107,8 +114,16 @@ pub fn csv_error(path: &Path, e: &csv::Error) -> Error {
 /// # Errors
 /// As [`write()`].
 pub fn write_json(path: &Path, value: &impl Serialize) -> Result<()> {
+    write(path, json(path, value)?)
+}
+
+/// A value as the text of a JSON file.
+///
+/// # Errors
+/// When it has no form in JSON; the message names `path`.
+pub fn json(path: &Path, value: &impl Serialize) -> Result<String> {
     let text = serde_json::to_string_pretty(value).map_err(|e| Error::in_file(path, e.to_string()))?;
-    write(path, text + "\n")
+    Ok(text + "\n")
 }
 
 /// Fills a folder under a temporary name beside `path`, then renames it. A folder that is there already is replaced

@@ -3,9 +3,11 @@
 //! [`mod@diagnose`] is the method, stage by stage: validate, condition, fit, compare, confirm, account, explain, propose.
 //! Each stage has a file of that name. A [hypothesis] is one or more [effects](crate::effects) round a step of the
 //! [baseline](crate::simulator::baseline); the [omnibus] residual model bounds what any effect could explain; the
-//! thresholds are those of the [calibration].
+//! thresholds are those of the [calibration]. What is left
+//! may follow a [formula].
 
 pub mod account;
+pub mod budget;
 pub mod calibration;
 pub mod channel;
 pub mod compare;
@@ -16,13 +18,18 @@ pub mod diagnosis;
 pub mod excitation;
 pub mod explain;
 pub mod fit;
+pub mod formula;
 pub mod hypothesis;
+mod ledger;
 pub mod method;
 pub mod omnibus;
 pub mod propose;
 pub mod remainder;
+pub mod residual_law;
+pub mod scatter;
+pub mod scope;
 #[cfg(test)]
-mod test_support;
+pub(crate) mod test_support;
 pub mod validate;
 
 pub use diagnose::{Findings, diagnose, findings};

@@ -6,5 +6,6 @@ pub mod genome;
 pub mod kernel;
 pub mod nominal;
 pub mod paper;
+pub mod place_bound;
 pub mod scatter;
 pub mod train;

@@ -4,6 +4,7 @@
 //! learn from the [`samples`] extracted from it.
 
 pub mod readings;
+mod resample;
 pub mod robot;
 pub mod run;
 pub mod samples;
@@ -79,7 +80,11 @@ impl Logs {
         steps_ms.sort_by(f64::total_cmp);
         let middle_ms = steps_ms[steps_ms.len() / 2];
         if (middle_ms / self.robot.step_ms - 1.0).abs() > STEP_TOLERANCE {
-            let what = format!("rows are {middle_ms} ms apart, but robot.toml has step_ms = {}", self.robot.step_ms);
+            let mut what =
+                format!("rows are {middle_ms} ms apart, but robot.toml has step_ms = {}", self.robot.step_ms);
+            if (1000.0 * middle_ms / self.robot.step_ms - 1.0).abs() <= STEP_TOLERANCE {
+                what += ": t_ms seems to be in seconds; write milliseconds";
+            }
             return Err(Error::in_file(folder, what));
         }
         Ok(())

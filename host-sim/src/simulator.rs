@@ -14,6 +14,7 @@ pub mod residuals;
 pub mod rollout;
 pub mod rollout_report;
 pub mod room;
+pub mod textbook;
 
 use std::path::Path;
 
@@ -21,7 +22,7 @@ use mindgap_core::network::Network;
 use serde::{Deserialize, Serialize};
 
 use crate::effects::applied::AppliedEffect;
-use crate::effects::legacy;
+use crate::effects::{legacy, own};
 use crate::error::{Error, Result};
 use crate::files;
 use crate::logs::Robot;
@@ -159,7 +160,9 @@ impl Simulator {
 
     fn check(&self, path: &Path) -> Result<()> {
         if let Some(added) = self.added.iter().find(|a| a.resolve().is_none()) {
-            let what = format!("the added effect {} ({}) is not known to this program", added.effect, added.variant);
+            let why = added.definition.as_ref().and_then(|definition| own::effect(definition).err());
+            let why = why.unwrap_or_else(|| "it is not known to this program".into());
+            let what = format!("the added effect {} ({}) is not possible: {why}", added.effect, added.variant);
             return Err(Error::in_file(path, what));
         }
         let motion = [("turn", &self.turn), ("forward", &self.forward), ("lateral", &self.lateral)];

@@ -40,6 +40,7 @@ pub mod outcomes;
 #[cfg(test)]
 pub(crate) mod partition;
 pub mod perturbation;
+pub mod place;
 #[cfg(test)]
 mod tests;
 

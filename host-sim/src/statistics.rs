@@ -2,6 +2,7 @@
 
 pub mod agreement;
 pub mod bootstrap;
+pub mod intraclass;
 pub mod maximise;
 pub mod rounding;
 pub mod student;

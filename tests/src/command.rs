@@ -114,6 +114,19 @@ impl Workshop {
         fs::write(self.path().join(name), content).unwrap_or_else(|e| panic!("{name}: {e}"));
     }
 
+    /// Changes the cells of every row below the header of a CSV file.
+    pub fn edit_cells(&self, path: &str, change: impl Fn(&mut [&str])) {
+        self.edit(path, |text| {
+            let (header, rows) = text.split_once('\n').expect("a header");
+            let changed = rows.lines().map(|row| {
+                let mut cells: Vec<&str> = row.split(',').collect();
+                change(&mut cells);
+                cells.join(",") + "\n"
+            });
+            format!("{header}\n{}", changed.collect::<String>())
+        });
+    }
+
     /// Rewrites a text file.
     #[track_caller]
     pub fn edit(&self, name: &str, change: impl FnOnce(String) -> String) {

@@ -3,6 +3,7 @@
 
 pub mod command;
 pub mod controllers;
+pub mod faults;
 pub mod firmware_networks;
 pub mod fixed_point_error;
 pub mod golden;

@@ -6,6 +6,7 @@ use rand::RngExt;
 
 use super::BuiltInRobot;
 use super::drivetrain::Drivetrain;
+use super::noise::happens;
 use super::sonar::{Ping, Receiver};
 use crate::chance::Generator;
 use crate::geometry::Pose;
@@ -55,7 +56,9 @@ impl<'a> Body<'a> {
     pub fn drive(&mut self, command: [f64; 2], duration_ms: f64, rng: &mut Generator) {
         let link = &self.robot.hardware.link;
         let due_ms = self.t_ms + link.delay_ms + link.delay_jitter_ms * rng.random::<f64>();
-        self.on_the_way.push_back((due_ms, command.map(|c| link.passes(c))));
+        if link.lost == 0.0 || !happens(link.lost, rng) {
+            self.on_the_way.push_back((due_ms, command.map(|c| link.passes(c))));
+        }
         let end_ms = self.t_ms + duration_ms;
         while self.t_ms < end_ms && !self.crashed {
             while self.on_the_way.front().is_some_and(|(due_ms, _)| *due_ms <= self.t_ms) {

@@ -6,13 +6,15 @@ use glam::DVec2;
 use rand::RngExt;
 
 use super::hardware::{GRAVITY, Hardware, LEFT, RIGHT};
-use super::noise::{Wander, normal};
+use super::noise::{Wander, happens, normal};
 use super::wheel::{Tick, Wheel, dragged};
 use crate::chance::Generator;
 use crate::geometry::{Pose, direction, wrap_rad};
 
 /// Time after which the floor under the wheels has changed.
 const PATCH_MS: f64 = 40.0;
+/// Probability of a grain under a wheel, where there is grit at all.
+const GRAINS: f64 = 0.3;
 /// Distance between the crests of a wavy floor.
 const WAVE_CM: f64 = 30.0;
 /// Least speed at which the castor aligns with the motion, m/s.
@@ -37,9 +39,10 @@ pub(super) struct Drivetrain {
     patch_left_ms: f64,
 }
 
-/// Random properties of the floor under the wheels, in standard deviations.
+/// Random properties of the floor under the wheels, in standard deviations; the grit as a share of the ground.
 #[derive(Clone, Debug)]
 struct Patch {
+    grit: [f64; 2],
     roll: [Wander; 2],
     contact: Wander,
     toe: Wander,
@@ -59,6 +62,7 @@ impl Drivetrain {
             current_a: 0.0,
             drawn_c: 0.0,
             patch: Patch {
+                grit: [0.0; 2],
                 roll: [Wander::anywhere(rng), Wander::anywhere(rng)],
                 contact: Wander::anywhere(rng),
                 toe: Wander::anywhere(rng),
@@ -94,7 +98,7 @@ impl Drivetrain {
         self.patch_left_ms -= tick_ms;
         if self.patch_left_ms <= 0.0 {
             self.patch_left_ms += PATCH_MS;
-            self.patch.step(rng);
+            self.patch.step(hardware.floor.grit, rng);
         }
         let seconds = tick_ms / 1000.0;
         let (mut force_n, mut torque_nm) = self.wheels_push(hardware, command, seconds);
@@ -118,8 +122,7 @@ impl Drivetrain {
                 supply_v,
                 duty: command[side] / 100.0,
                 ground_m_s: DVec2::new(self.speed_m_s.x + self.turning_rad_s * arm_m, side_slip),
-                roll: 1.0 + floor.roughness * self.patch.roll[side].value(),
-                rubbing_n: hardware.chassis.rubbing_n_s * self.turning_rad_s.abs(),
+                roll: 1.0 + floor.roughness * self.patch.roll[side].value() + self.patch.grit[side],
                 seconds,
             };
             let outcome = self.wheels[side].tick(&hardware.motors[side], &hardware.tyres[side], &tick);
@@ -158,7 +161,10 @@ impl Drivetrain {
         let (chassis, floor) = (&hardware.chassis, &hardware.floor);
         let turned_away = -self.turning_rad_s * self.speed_m_s.perp();
         let free_m_s = (force_n / chassis.mass_kg + turned_away) * seconds;
-        let drag_n = hardware.castor.drag_n + self.floor_drag_n(hardware);
+        let castor = &hardware.castor;
+        let turning_n = (castor.turning_drag_n_s * self.turning_rad_s.abs()).min(castor.most_turning_drag_n);
+        let castor_n = castor.drag_n + turning_n;
+        let drag_n = castor_n + self.floor_drag_n(hardware);
         self.speed_m_s.x = dragged(self.speed_m_s.x, free_m_s.x, drag_n * seconds / chassis.mass_kg, 1.0);
         self.speed_m_s.y += free_m_s.y;
         let scrub_nm = floor.scrub_nm * (1.0 + floor.scrub_wander * self.patch.scrub.value()).max(0.0);
@@ -192,10 +198,13 @@ impl Drivetrain {
 }
 
 impl Patch {
-    fn step(&mut self, rng: &mut Generator) {
+    fn step(&mut self, grit: f64, rng: &mut Generator) {
         let [left, right] = &mut self.roll;
         for wander in [left, right, &mut self.contact, &mut self.toe, &mut self.scrub] {
             wander.step(rng);
+        }
+        if grit > 0.0 {
+            self.grit = [LEFT, RIGHT].map(|_| if happens(GRAINS, rng) { rng.random_range(-grit..=grit) } else { 0.0 });
         }
     }
 }

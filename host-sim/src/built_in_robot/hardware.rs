@@ -3,6 +3,7 @@
 
 use glam::DVec2;
 
+use super::acoustics::Acoustics;
 use crate::logs::{Robot, Scene};
 
 /// Gravitational acceleration, m/s².
@@ -37,6 +38,8 @@ pub(super) struct Link {
     pub delay_ms: f64,
     /// Largest random delay on top of it, drawn for each command.
     pub delay_jitter_ms: f64,
+    /// Probability that a command is lost on its way.
+    pub lost: f64,
     /// Quantisation step of commands at the driver; zero for none.
     pub grain: f64,
     /// Standard deviation of the duration of a step.
@@ -105,8 +108,6 @@ pub(super) struct Chassis {
     pub yaw_inertia_kg_m2: f64,
     /// Distance from the middle of the axle to the contact points of the tyres.
     pub half_track_m: f64,
-    /// Force with which the frame holds back the rim of each wheel, for each rad/s that the robot turns.
-    pub rubbing_n_s: f64,
 }
 
 /// The rear support, a wheel that swivels behind its pivot.
@@ -118,8 +119,11 @@ pub(super) struct Castor {
     pub trail_m: f64,
     /// Sideways force while it swivels.
     pub scrub_n: f64,
-    /// Rolling drag.
+    /// Rolling drag, and the addition to it for each rad/s that the robot turns.
     pub drag_n: f64,
+    pub turning_drag_n_s: f64,
+    /// The most of that: a castor that is jammed rubs with what rests on it, and half as much again where it digs in.
+    pub most_turning_drag_n: f64,
 }
 
 #[derive(Clone, Debug)]
@@ -136,6 +140,8 @@ pub(super) struct Floor {
     pub waves_n: f64,
     /// Scrub torque of the wide tyres against turning on the spot.
     pub scrub_nm: f64,
+    /// Largest share of the ground that a wheel loses or wins on a grain of grit.
+    pub grit: f64,
     /// Standard deviations of what varies from place to place: rolling radius (share), contact point, toe angle, scrub
     /// (share).
     pub roughness: f64,
@@ -173,6 +179,9 @@ pub(super) struct Sonar {
     /// Standard deviations of the level: from ping to ping, and between directions within one.
     pub ping_db: f64,
     pub speckle_db: f64,
+    /// Standard deviation of the level from place to place, and how it is spread over the room.
+    pub place_db: f64,
+    pub acoustics: Acoustics,
     /// Level lost to the motors' noise when both run at full speed.
     pub whine_db: f64,
     /// Standard deviation of a reading at normal incidence, and the addition at grazing incidence.
@@ -239,8 +248,7 @@ impl Hardware {
             rise_ms: 0.0,
             play_rad: 0.0,
         };
-        let chassis =
-            Chassis { mass_kg: 0.75, yaw_inertia_kg_m2: 3.5e-3, half_track_m: spec.track_cm / 200.0, rubbing_n_s: 0.0 };
+        let chassis = Chassis { mass_kg: 0.75, yaw_inertia_kg_m2: 3.5e-3, half_track_m: spec.track_cm / 200.0 };
         let tyre = Tyre {
             radius_m: spec.wheel_diameter_cm / 200.0,
             eccentricity: 0.0,
@@ -252,7 +260,14 @@ impl Hardware {
             flexing_s_per_m: 0.3,
         };
         let full_speed_m_s = spec.full_speed_cm_s / 100.0;
-        let castor = Castor { behind_m: 0.07, trail_m: 0.015, scrub_n: 0.0, drag_n: 0.05 };
+        let castor = Castor {
+            behind_m: 0.07,
+            trail_m: 0.015,
+            scrub_n: 0.0,
+            drag_n: 0.05,
+            turning_drag_n_s: 0.0,
+            most_turning_drag_n: 1.5 * (chassis.mass_kg * GRAVITY - 2.0 * tyre.load_n),
+        };
         let battery = Battery {
             fresh_v: voltage_for(&motor, &tyre, &castor, full_speed_m_s),
             inner_ohm: 0.3,
@@ -262,7 +277,7 @@ impl Hardware {
         Hardware {
             step_ms: spec.step_ms,
             full_speed_m_s,
-            link: Link { delay_ms: 0.0, delay_jitter_ms: 0.0, grain: 0.0, step_jitter_ms: 4.0 },
+            link: Link { delay_ms: 0.0, delay_jitter_ms: 0.0, lost: 0.0, grain: 0.0, step_jitter_ms: 4.0 },
             battery,
             motors: [motor.clone(), motor],
             tyres: [tyre.clone(), tyre],
@@ -276,6 +291,7 @@ impl Hardware {
                 patch_radius_cm: 70.0,
                 waves_n: 0.0,
                 scrub_nm: 0.02,
+                grit: 0.0,
                 roughness: 0.006,
                 contact_wander_m: 0.001,
                 toe_wander_rad: 0.006,
@@ -340,6 +356,8 @@ impl Sonar {
             mirror_db: 18.0,
             ping_db: 5.0,
             speckle_db: 2.0,
+            place_db: 0.0,
+            acoustics: Acoustics::default(),
             whine_db: 0.0,
             scatter_cm: 0.7,
             grazing_cm: 2.5,

@@ -35,8 +35,6 @@ pub(super) struct Tick {
     pub ground_m_s: DVec2,
     /// Factor on the rolling radius, about 1.
     pub roll: f64,
-    /// Friction of the frame at the rim.
-    pub rubbing_n: f64,
     /// Duration of the step.
     pub seconds: f64,
 }
@@ -81,7 +79,7 @@ impl Wheel {
         let free_nm = motor.torque_nm_per_a * current_a
             - self.viscous_nm_s(motor) * self.turning_rad_s
             - (push_n.x + tyre.load_n * tyre.flexing_s_per_m * self.turning_rad_s * radius_m) * radius_m;
-        let dry_nm = motor.friction_nm + (tyre.load_n * tyre.rolling + tick.rubbing_n) * radius_m;
+        let dry_nm = motor.friction_nm + tyre.load_n * tyre.rolling * radius_m;
         self.turning_rad_s = dragged(
             self.turning_rad_s,
             free_nm * tick.seconds / motor.inertia_kg_m2,
@@ -160,7 +158,7 @@ mod tests {
         let tyre = Tyre { load_n: 0.0, ..parts().1 };
         let mut wheel = Wheel::at_rest(motor, 0.0);
         for _ in 0..500 {
-            let tick = Tick { supply_v: 7.5, duty, ground_m_s: DVec2::ZERO, roll: 1.0, rubbing_n: 0.0, seconds: 0.002 };
+            let tick = Tick { supply_v: 7.5, duty, ground_m_s: DVec2::ZERO, roll: 1.0, seconds: 0.002 };
             wheel.tick(motor, &tyre, &tick);
         }
         wheel.turning_rad_s

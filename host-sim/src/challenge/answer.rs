@@ -12,6 +12,7 @@ use super::seal::Published;
 use crate::error::{Error, Result};
 use crate::files;
 use crate::gap::{Method, findings};
+use crate::inspection::Inspection;
 use crate::learn::train::{TABLE_ONE, Trainer, train};
 use crate::logs::Logs;
 use crate::simulator::Simulator;
@@ -40,7 +41,8 @@ pub fn answer(folder: &Path, watch: impl Fn(usize) + Sync) -> Result<usize> {
     let done = AtomicUsize::new(0);
     cases.par_iter().try_for_each(|case| {
         let logs = Logs::read(&folder.case(&case.case), |_| {})?;
-        let found = findings(Baseline::learned(&simulators[case.robot.as_str()])?, &logs, Method::default())?;
+        let baseline = Baseline::learned(&simulators[case.robot.as_str()])?;
+        let found = findings(baseline, &Inspection::of(logs), Method::default())?;
         files::write_json(&folder.answer(&case.case), &found.diagnosis)?;
         files::write_json(&folder.added(&case.case), &found.applied)?;
         watch(done.fetch_add(1, Ordering::Relaxed) + 1);

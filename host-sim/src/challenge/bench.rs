@@ -1,7 +1,7 @@
 //! Cases with known answers, driven as they are asked for: what thresholds are set and tried on.
 
 use super::answer::learn;
-use super::cases::{self, Case, Outside};
+use super::cases::{self, Case, Echoes, Outside};
 use crate::built_in_robot::Effect;
 use crate::error::Result;
 use crate::logs::Logs;
@@ -23,7 +23,7 @@ impl Bench {
     /// # Errors
     /// When a robot has no room to drive in, or its logs teach nothing.
     pub fn new(count: usize, seed: u64) -> Result<Self> {
-        let robots = cases::robots(seed)?;
+        let robots = cases::robots(seed, Echoes::Fresh)?;
         let simulators = robots.iter().map(learn).collect::<Result<_>>()?;
         Ok(Bench { seed, robots, simulators, effects: effects(count, seed) })
     }
@@ -33,7 +33,7 @@ impl Bench {
     /// # Errors
     /// When the robot hits something in every room.
     pub fn case(&self, number: usize) -> Result<(Case, Baseline<'_>)> {
-        let case = cases::case(number, &self.effects[number], &self.robots, self.seed)?;
+        let case = cases::case(number, &self.effects[number], &self.robots, Echoes::Fresh, self.seed)?;
         let baseline = Baseline::learned(&self.simulators[case.robot])?;
         Ok((case, baseline))
     }

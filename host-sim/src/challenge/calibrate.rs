@@ -27,14 +27,10 @@ pub struct Measured {
     pub in_table: bool,
     /// Rows that the gains are summed over.
     pub rows: usize,
-    /// What the best effect gains, or the effects together, nats,
+    /// What the best effect gains, or the effects together, without the blocks that gain most, nats.
     pub effect_nats: f64,
-    /// and in standard errors.
-    pub effect_z: f64,
-    /// The most that the omnibus residual model gains in a channel; nothing where effects are sought.
+    /// The most that the omnibus residual model gains in a channel, likewise; nothing where effects are sought.
     pub remainder_nats: f64,
-    /// The same in standard errors.
-    pub remainder_z: f64,
     /// The effect that was named first; empty when none was.
     pub first: String,
     /// The share of what could be explained that the effects explain.
@@ -70,10 +66,8 @@ pub fn calibrate(count: usize, seed: u64, watch: impl Fn(usize)) -> Result<(Cali
 fn without_effect(bench: &Bench, number: usize) -> Result<Measured> {
     let (case, baseline) = bench.case(number)?;
     let statistics = statistics(baseline, &case.logs, Method::default())?;
-    let remainder = statistics.remainder;
     Ok(Measured {
-        remainder_nats: remainder.nats,
-        remainder_z: remainder.z(),
+        remainder_nats: statistics.remainder.broad_nats,
         ..Measured::of(&case, statistics.rows, statistics.effect)
     })
 }
@@ -108,10 +102,8 @@ impl Measured {
             truth: names.join(" "),
             in_table: case.effects.iter().all(|active| active.effect.in_table()),
             rows,
-            effect_nats: effect.nats,
-            effect_z: effect.z(),
+            effect_nats: effect.broad_nats,
             remainder_nats: 0.0,
-            remainder_z: 0.0,
             first: String::new(),
             explained_fraction: 0.0,
             likelihood_of_truth: 0.0,

@@ -41,11 +41,31 @@ pub enum Outside {
     HeldOut,
 }
 
+/// What the chance in echoes belongs to, in the logs of robots and cases alike.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Echoes {
+    /// To every reading anew.
+    Fresh,
+    /// To the place mostly, so that rows tell less than their number; every case has a room of its own.
+    PlaceBound,
+}
+
+impl Echoes {
+    /// The sensor of a robot in another room.
+    fn sensor(self, rng: &mut Generator) -> Option<ActiveEffect> {
+        (self == Echoes::PlaceBound).then(|| {
+            let range = Effect::PlaceBound.detail_range();
+            let detail = range.map_or(0.0, |range| range.draw(rng));
+            ActiveEffect { detail, ..ActiveEffect::new(Effect::PlaceBound) }
+        })
+    }
+}
+
 /// A case before it is written.
 pub struct Case {
     /// Index of the robot.
     pub robot: usize,
-    /// Its effects.
+    /// Its effects, and the sensor that it shares with its robot where that is none of the usual.
     pub effects: Vec<ActiveEffect>,
     /// The kind of driving.
     pub driving: Driving,
@@ -59,11 +79,13 @@ pub struct Case {
 ///
 /// # Errors
 /// When a room has no space for its robot.
-pub fn robots(seed: u64) -> Result<Vec<Logs>> {
+pub fn robots(seed: u64, echoes: Echoes) -> Result<Vec<Logs>> {
     let robot = |robot: u64| {
         let mut rng = generator(seed, &[ROBOT, robot]);
         let spec = rooms::robot(&mut rng);
-        record(&spec, &rooms::room(&mut rng), NOMINAL_RUNS, STEPS, &[], rng.next_u64())
+        let room = rooms::room(&mut rng);
+        let sensor = Vec::from_iter(echoes.sensor(&mut rng));
+        record(&spec, &room, NOMINAL_RUNS, STEPS, &sensor, rng.next_u64())
     };
     (0..ROBOTS as u64).map(robot).collect()
 }
@@ -72,13 +94,14 @@ pub fn robots(seed: u64) -> Result<Vec<Logs>> {
 ///
 /// # Errors
 /// When the robot hits something in every room tried.
-pub fn case(number: usize, effects: &[Effect], robots: &[Logs], seed: u64) -> Result<Case> {
+pub fn case(number: usize, effects: &[Effect], robots: &[Logs], echoes: Echoes, seed: u64) -> Result<Case> {
     let mut rng = generator(seed, &[CASE, number as u64]);
     let mut tried = 0;
     loop {
         let robot = rng.random_range(0..robots.len());
         let runs = rng.random_range(RUNS[0]..=RUNS[1]);
-        let effects: Vec<ActiveEffect> = effects.iter().map(|e| ActiveEffect::random(*e, &mut rng)).collect();
+        let mut effects: Vec<ActiveEffect> = effects.iter().map(|e| ActiveEffect::random(*e, &mut rng)).collect();
+        effects.extend(echoes.sensor(&mut rng));
         let alike = rng.random_bool(DRIVEN_ALIKE);
         let kind = Driving::ALL[1..].choose(&mut rng).filter(|_| !alike);
         let driving = *kind.unwrap_or(&Driving::MIXED);
@@ -120,9 +143,9 @@ pub fn effects(cases: usize, seed: u64, outside: Outside) -> Vec<Vec<Effect>> {
 
 impl Outside {
     fn effects(self) -> Vec<Effect> {
-        let usual = |effect: &Effect| {
-            !effect.in_table() && *effect != Effect::Unchanged && !matches!(effect, Effect::HeldOut(_))
-        };
+        let none = [Effect::PlaceBound, Effect::Unchanged];
+        let usual =
+            |effect: &Effect| !effect.in_table() && !none.contains(effect) && !matches!(effect, Effect::HeldOut(_));
         match self {
             Outside::Usual => Effect::all().filter(usual).collect(),
             Outside::HeldOut => HeldOut::all().map(Effect::HeldOut).collect(),

@@ -6,22 +6,23 @@ use rand::Rng;
 use rayon::prelude::*;
 
 use super::Folder;
-use super::cases::{self, Outside};
+use super::cases::{self, Echoes, Outside};
 use super::seal::{Published, Sealed};
 use crate::error::Result;
 use crate::files;
 
-/// Writes a challenge of `count` cases to a folder; `outside` is what its effects outside the table are drawn from.
+/// Writes a challenge of `count` cases to a folder; `outside` is what its effects outside the table are drawn from, and
+/// `echoes` what the chance in their echoes belongs to.
 ///
 /// # Errors
 /// When the folder cannot be written or a case cannot be recorded.
-pub fn make(folder: &Path, count: usize, seed: u64, outside: Outside) -> Result<()> {
+pub fn make(folder: &Path, count: usize, seed: u64, outside: Outside, echoes: Echoes) -> Result<()> {
     let ours = |name: &str| ["robots", "cases", "cases.csv", "sealed.json", "answers"].contains(&name);
-    files::write_folder(folder, ours, |fresh| fill(&Folder(fresh), count, seed, outside))
+    files::write_folder(folder, ours, |fresh| fill(&Folder(fresh), count, seed, outside, echoes))
 }
 
-fn fill(folder: &Folder, count: usize, seed: u64, outside: Outside) -> Result<()> {
-    let robots = cases::robots(seed)?;
+fn fill(folder: &Folder, count: usize, seed: u64, outside: Outside, echoes: Echoes) -> Result<()> {
+    let robots = cases::robots(seed, echoes)?;
     for (robot, logs) in robots.iter().enumerate() {
         logs.write(&folder.robot(&robot.to_string()))?;
     }
@@ -29,7 +30,7 @@ fn fill(folder: &Folder, count: usize, seed: u64, outside: Outside) -> Result<()
         .par_iter()
         .enumerate()
         .map(|(number, effects)| {
-            let mut made = cases::case(number, effects, &robots, seed)?;
+            let mut made = cases::case(number, effects, &robots, echoes, seed)?;
             let case = format!("{number:03}");
             made.logs.write(&folder.case(&case))?;
             let sealed = Sealed {

@@ -160,7 +160,7 @@ impl Opened {
     }
 
     fn is_null(&self) -> bool {
-        self.sealed.effects.is_empty()
+        self.truth().is_empty()
     }
 
     fn is_outside(&self) -> bool {
@@ -168,11 +168,11 @@ impl Opened {
     }
 
     fn is_single(&self) -> bool {
-        self.sealed.effects.len() == 1 && !self.is_outside()
+        self.truth().len() == 1 && !self.is_outside()
     }
 
     fn is_pair(&self) -> bool {
-        self.sealed.effects.len() > 1 && !self.is_outside()
+        self.truth().len() > 1 && !self.is_outside()
     }
 
     fn first(&self) -> Option<&str> {
@@ -236,7 +236,7 @@ impl Score {
             Share { count: among.iter().filter(|c| holds(c)).count(), of: among.len() }
         };
         let sees_gap = |c: &Opened| c.answer.verdict != Verdict::NoGap;
-        let named = |c: &Opened| c.is_single() && c.answer.verdict == Verdict::Known;
+        let named = |c: &Opened| c.is_single() && !c.answer.effects.is_empty();
         let sizes: Vec<usize> =
             cases.iter().filter(|c| named(c)).map(|c| 1 + c.answer.effects[0].ambiguous_with.len()).collect();
         let calibration = BINS.windows(2).map(|bin| {

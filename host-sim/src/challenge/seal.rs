@@ -5,6 +5,8 @@ use std::fmt::Write;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
+use crate::built_in_robot::Effect;
+
 /// The truth about a case.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Sealed {
@@ -49,9 +51,10 @@ impl Sealed {
         })
     }
 
-    /// Ids of its effects.
+    /// Ids of its effects; a sensor that its robot has as well is none.
     pub fn ids(&self) -> Vec<&str> {
-        self.effects.iter().map(|effect| effect.split('=').next().unwrap_or(effect)).collect()
+        let ids = self.effects.iter().map(|effect| effect.split('=').next().unwrap_or(effect));
+        ids.filter(|id| *id != Effect::PlaceBound.id()).collect()
     }
 }
 
@@ -80,5 +83,7 @@ mod tests {
             assert_ne!(other.commitment(), sealed.commitment());
         }
         assert_eq!(sealed.ids(), ["slope"]);
+        let effects = ["slope=0.1@30", "place_bound=0.95@7"].map(String::from).into();
+        assert_eq!(Sealed { effects, ..sealed }.ids(), ["slope"]);
     }
 }

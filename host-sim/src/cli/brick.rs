@@ -12,7 +12,6 @@ use mindgap_controller_export::wiring::SensorPort;
 use serde_json::{Value, json};
 
 use crate::error::{Error, Result};
-use crate::files;
 use crate::logs::readings;
 
 const MOTORS: [char; 3] = ['A', 'B', 'C'];
@@ -57,11 +56,9 @@ impl Brick {
             ..ScriptedWorld::sonar(readings::read(&self.readings)?)
         };
         let report = brick::run(&program, &mut world, &RunConfig { run_ms: self.limit_ms, ..RunConfig::default() });
-        if let Some(path) = &self.json {
-            files::write_json(path, &facts(&report))?;
-        }
         let used = world.asked.min(world.sonar.len());
-        Ok(format!("{}{used} of {} readings were asked for\n", told(&report), world.sonar.len()))
+        let text = format!("{}{used} of {} readings were asked for\n", told(&report), world.sonar.len());
+        super::reported(self.json.as_deref(), &facts(&report), text)
     }
 }
 

@@ -7,7 +7,7 @@ use clap::{Args, Subcommand};
 use super::progress;
 use crate::challenge::answer::answer;
 use crate::challenge::calibrate::calibrate;
-use crate::challenge::cases::Outside;
+use crate::challenge::cases::{Echoes, Outside};
 use crate::challenge::make::make;
 use crate::challenge::score::{Score, Share, score};
 use crate::challenge::sensitivity::{Row, sensitivity};
@@ -34,6 +34,9 @@ enum Part {
         /// What the effects that no diagnosis knows are drawn from.
         #[arg(long, value_enum, default_value_t = Outside::Usual)]
         outside: Outside,
+        /// Give all robots sensors whose echoes are decided by the place more than by chance, other in every room.
+        #[arg(long)]
+        place_bound: bool,
         /// Folder for the challenge.
         #[arg(long, value_name = "DIR")]
         out: PathBuf,
@@ -87,8 +90,9 @@ impl Challenge {
     /// Does the part; returns what there is to say.
     pub fn run(&self) -> Result<String> {
         match &self.part {
-            Part::Make { cases, seed, outside, out } => {
-                make(out, *cases as usize, *seed, *outside)?;
+            Part::Make { cases, seed, outside, place_bound, out } => {
+                let echoes = if *place_bound { Echoes::PlaceBound } else { Echoes::Fresh };
+                make(out, *cases as usize, *seed, *outside, echoes)?;
                 Ok(format!("{}: {cases} cases; sealed.json says what is different in each\n", out.display()))
             }
             Part::Calibrate { cases, seed, out, csv } => {
@@ -122,13 +126,10 @@ impl Challenge {
             }
             Part::Score { folder, json, csv } => {
                 let score = score(folder)?;
-                if let Some(path) = json {
-                    files::write_json(path, &score)?;
-                }
                 if let Some(path) = csv {
                     files::write_csv(path, &score.cases)?;
                 }
-                Ok(text(&score))
+                super::reported(json.as_deref(), &score, text(&score))
             }
         }
     }

@@ -8,7 +8,6 @@ use super::table;
 use crate::crosscheck::{self, Divergence, NetworkCheck, Networks, RunState, Runs, Trials};
 use crate::error::Result;
 use crate::evolve::controller_file::ControllerFile;
-use crate::files;
 use crate::simulator::Simulator;
 
 /// Check that a board without floating point computes what the PC does: fixed point against float.
@@ -27,7 +26,7 @@ pub struct Crosscheck {
     /// Fixes every draw.
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// Also write the figures here.
+    /// Also write the figures here; `-` is standard output, in place of the tables.
     #[arg(long)]
     json: Option<PathBuf>,
 }
@@ -36,15 +35,12 @@ impl Crosscheck {
     /// Compares and tells the differences.
     pub fn run(&self) -> Result<String> {
         let simulator = Simulator::read(&self.sim)?;
-        let logs = super::read_logs(&self.logs)?;
+        let logs = super::read_sound_logs(&self.logs)?;
         let controller = self.controller.as_deref().map(ControllerFile::read).transpose()?.map(|file| file.controller);
         let trials = Trials { runs: self.runs as usize, seed: self.seed };
         let found = crosscheck::crosscheck(&simulator, &logs, controller.as_ref(), trials)
             .map_err(|error| error.or_in_file(&self.sim))?;
-        if let Some(path) = &self.json {
-            files::write_json(path, &found)?;
-        }
-        Ok(networks(&found.networks) + "\n" + &runs(&found.runs))
+        super::reported(self.json.as_deref(), &found, networks(&found.networks) + "\n" + &runs(&found.runs))
     }
 }
 

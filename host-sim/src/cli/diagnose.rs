@@ -6,15 +6,16 @@ use clap::Args;
 
 use super::{diagnosis_page, diagnosis_text};
 use crate::effects::applied::AppliedEffect;
+use crate::effects::{CATALOGUE, Effect, own};
 use crate::error::{Error, Result};
 use crate::evaluation::final_position::{FinalPositionErrors, final_position_errors};
 use crate::evolve::controller_file::ControllerFile;
 use crate::files;
-use crate::gap::{Findings, Method, findings, validate};
+use crate::gap::{Findings, Method, condition, findings, validate};
+use crate::inspection::Inspection;
 use crate::logs::Logs;
-use crate::simulator::Simulator;
 use crate::simulator::baseline::Baseline;
-use crate::simulator::kinematic;
+use crate::simulator::{Simulator, kinematic, textbook};
 
 /// Find the gap between a simulator and logs: where it lies, what causes it, and how far it shrinks.
 #[derive(Args)]
@@ -26,18 +27,28 @@ pub struct Diagnose {
     /// The logs are of this controller's runs: also compare where they end.
     #[arg(long, value_name = "CONTROLLER")]
     controller: Option<PathBuf>,
+    /// Effects of your own that compete with the built-in ones; may be given several times.
+    #[arg(long, value_name = "FILE")]
+    effects: Vec<PathBuf>,
     /// Fixes every draw: bootstrap intervals and simulated noise.
     #[arg(long, default_value_t = Method::SEED)]
     seed: u64,
+    /// Length of the steps in which rows are compared; by default the simulator's, and of rows that come faster than
+    /// that, a length that motion shows in.
+    #[arg(long, value_name = "MS", value_parser = positive)]
+    step_ms: Option<f64>,
     /// Also write the diagnosis here.
     #[arg(long)]
     json: Option<PathBuf>,
     /// Also write a page for a browser here.
     #[arg(long, value_name = "FILE")]
     html: Option<PathBuf>,
-    /// Write a simulator with the effects added that explain the gap.
+    /// Write a simulator with the effects added that explain the gap, and the formula of what they leave.
     #[arg(long, value_name = "SIM_OUT")]
     apply: Option<PathBuf>,
+    /// Write the formula of what no effect explains here, as a file of own effects.
+    #[arg(long, value_name = "FILE")]
+    formula: Option<PathBuf>,
     /// Write the commands to log next here, as a run in CSV, where causes remain confused.
     #[arg(long, value_name = "FILE")]
     next_experiment: Option<PathBuf>,
@@ -49,25 +60,26 @@ const KINEMATIC: &str = "kinematic";
 impl Diagnose {
     /// Diagnoses; returns the findings.
     pub fn run(&self) -> Result<String> {
-        let logs = super::read_logs(&self.logs)?;
         let simulator = if self.sim.as_os_str() == KINEMATIC { None } else { Some(Simulator::read(&self.sim)?) };
-        let method = Method { seed: self.seed, ..Method::default() };
+        // What is wrong with rows shows in the rows as they came.
+        let mut inspected = Inspection::of(super::read_logs(&self.logs)?);
+        inspected.logs = in_steps(inspected.logs, simulator.as_ref(), self.step_ms)?;
+        let logs = &inspected.logs;
+        let method = Method { catalogue: self.catalogue()?, seed: self.seed, ..Method::default() };
         let mut found = match &simulator {
-            None => findings(kinematic::baseline(&logs), &logs, method)?,
+            None => findings(kinematic::baseline(logs), &inspected, method)?,
             Some(simulator) => {
                 validate::same_robot(&simulator.robot, &logs.robot)?;
-                findings(Baseline::learned(simulator)?, &logs, method)?
+                findings(Baseline::learned(simulator)?, &inspected, method)?
             }
         };
         if let Some(path) = &self.controller {
-            found.diagnosis.final_positions = Some(ends(simulator.as_ref(), &found.applied, path, &logs, self.seed)?);
+            found.diagnosis.final_positions =
+                Some(ends(simulator.as_ref(), found.with_formula(), path, logs, self.seed)?);
         }
         let diagnosis = &found.diagnosis;
         if let Some(path) = &self.apply {
-            with_effects(simulator, &found)?.write(path)?;
-        }
-        if let Some(path) = &self.json {
-            files::write_json(path, diagnosis)?;
+            with_effects(simulator, logs, &found)?.write(path)?;
         }
         if let Some(path) = &self.html {
             let title = format!("{} against {}", self.logs.display(), self.sim.display());
@@ -79,14 +91,62 @@ impl Diagnose {
             (Some(path), None) => text += &format!("No causes are confused: {} is not written.\n", path.display()),
             (None, _) => (),
         }
-        Ok(text)
+        match (&self.formula, &found.formula) {
+            (Some(path), Some(formula)) => files::write(path, own::to_text(&formula.definition))?,
+            (Some(path), None) => text += &format!("No formula holds: {} is not written.\n", path.display()),
+            (None, _) => (),
+        }
+        super::reported(self.json.as_deref(), &found.diagnosis, text)
     }
+
+    /// The built-in effects and those of the user, whose ids have to differ.
+    fn catalogue(&self) -> Result<&'static [&'static Effect]> {
+        let mut catalogue = CATALOGUE.to_vec();
+        for path in &self.effects {
+            for effect in own::read(path)? {
+                if catalogue.iter().any(|other| other.id == effect.id) {
+                    return Err(Error::in_file(path, format!("effect {} is in another file too", effect.id)));
+                }
+                catalogue.push(effect);
+            }
+        }
+        Ok(catalogue.leak())
+    }
+}
+
+/// The logs in the steps of the simulator, or in those that are asked for.
+fn in_steps(logs: Logs, simulator: Option<&Simulator>, asked_ms: Option<f64>) -> Result<Logs> {
+    let own_ms = logs.robot.step_ms;
+    let step_ms = match (asked_ms, simulator) {
+        (Some(asked_ms), Some(simulator)) if asked_ms != simulator.robot.step_ms => {
+            let what = format!("--step-ms {asked_ms}: the simulator's steps are {} ms", simulator.robot.step_ms);
+            return Err(Error::new(what));
+        }
+        (Some(asked_ms), None) => asked_ms,
+        (_, Some(simulator)) => simulator.robot.step_ms,
+        (None, None) => condition::step_ms(own_ms),
+    };
+    if step_ms < own_ms {
+        return Err(Error::new(format!("steps of {step_ms} ms cannot be compared: rows are {own_ms} ms apart")));
+    }
+    let logs = if step_ms > own_ms { logs.in_steps_of(step_ms) } else { logs };
+    if logs.runs.is_empty() {
+        Err(Error::new(format!("no run is as long as a step of {step_ms} ms")))
+    } else {
+        Ok(logs)
+    }
+}
+
+/// A length of time.
+fn positive(text: &str) -> std::result::Result<f64, String> {
+    let ms: f64 = text.parse().map_err(|_| String::from("is no number"))?;
+    if ms.is_finite() && ms > 0.0 { Ok(ms) } else { Err("is not above zero".into()) }
 }
 
 /// Where the controller's runs end, with the simulator as it is and with the effects found.
 fn ends(
     simulator: Option<&Simulator>,
-    applied: &[AppliedEffect],
+    effects: Vec<AppliedEffect>,
     controller: &Path,
     logs: &Logs,
     seed: u64,
@@ -94,18 +154,22 @@ fn ends(
     let simulator = simulator.ok_or_else(|| Error::new("--controller needs a simulator file that can run it"))?;
     let controller = ControllerFile::read(controller)?.controller;
     let mut better = simulator.clone();
-    better.added.extend(applied.iter().cloned());
+    better.added.extend(effects);
     final_position_errors([simulator, &better], &controller, logs, seed)
 }
 
-/// The simulator with the effects found.
-fn with_effects(simulator: Option<Simulator>, found: &Findings) -> Result<Simulator> {
-    let Some(mut simulator) = simulator else {
-        return Err(Error::new("--apply needs a simulator file to add effects to"));
-    };
-    if found.applied.is_empty() {
-        return Err(Error::new("--apply: no known effect explains a gap here, so there is nothing to add"));
+/// The simulator with the effects found; the textbook becomes one that can be run.
+fn with_effects(simulator: Option<Simulator>, logs: &Logs, found: &Findings) -> Result<Simulator> {
+    let effects = found.with_formula();
+    if effects.is_empty() {
+        return Err(Error::new(
+            "--apply: neither a known effect nor a formula explains a gap here, so there is nothing to add",
+        ));
     }
-    simulator.added.extend(found.applied.iter().cloned());
+    let mut simulator = match simulator {
+        Some(simulator) => simulator,
+        None => textbook::simulator(&kinematic::baseline(logs), found.scatter)?,
+    };
+    simulator.added.extend(effects);
     Ok(simulator)
 }

@@ -1,18 +1,30 @@
 //! A diagnosis in words, on one screen.
 
+use super::budget_text;
 use crate::evaluation::final_position::FinalPositionErrors;
 use crate::gap::Diagnosis;
 use crate::gap::account::GapReduction;
+use crate::gap::channel::Channel;
 use crate::gap::diagnosis::Answer;
 use crate::gap::explain::NamedEffect;
 use crate::gap::explain::profile::ResidualProfile;
 use crate::gap::explain::strata::Stratum;
+use crate::gap::formula::Statement;
 use crate::gap::propose::Experiment;
 
 /// The words.
 pub fn text(diagnosis: &Diagnosis) -> String {
-    let mut lines = vec![verdict(&diagnosis.answer).to_string()];
-    lines.extend(diagnosis.effects().iter().flat_map(effect));
+    let mut lines = Vec::new();
+    if !diagnosis.data.is_empty() {
+        lines.push("Data:".into());
+        lines.extend(diagnosis.data.iter().map(|found| format!("  {}", found.line())));
+    }
+    lines.push(verdict(&diagnosis.answer).to_string());
+    lines.extend(budget_text::lines(diagnosis));
+    if !diagnosis.effects().is_empty() {
+        lines.push("The effects (probability, effect, strength with 95 % interval):".into());
+        lines.extend(diagnosis.effects().iter().flat_map(effect));
+    }
     if !diagnosis.strata.is_empty() {
         lines.push("Where it lies:".into());
         lines.extend(diagnosis.strata.iter().map(stratum));
@@ -21,6 +33,7 @@ pub fn text(diagnosis: &Diagnosis) -> String {
         lines.push("What is unexplained (logged minus predicted) follows:".into());
         lines.extend(diagnosis.profiles().iter().map(profile));
     }
+    lines.extend(diagnosis.formula.iter().map(formula));
     lines.extend(diagnosis.reduction().into_iter().flat_map(reduction));
     lines.extend(diagnosis.final_positions.iter().map(final_positions));
     lines.extend(diagnosis.experiment().map(Experiment::sentence));
@@ -35,14 +48,17 @@ pub fn text(diagnosis: &Diagnosis) -> String {
 fn verdict(answer: &Answer) -> &'static str {
     match answer {
         Answer::NoGap => "No gap: the logs agree with the simulator within its own error.",
-        Answer::Known { .. } => "There is a gap, and known effects explain it (probability, effect, strength):",
-        Answer::Unknown { .. } => "There is a gap, and no known effect explains it.",
+        Answer::Known { .. } => "There is a gap, and known effects explain it. What it is made of:",
+        Answer::PartlyKnown { .. } => {
+            "There is a gap. Known effects explain a part of it, and something is left. What it is made of:"
+        }
+        Answer::Unknown { .. } => "There is a gap, and no known effect explains it. What it is made of:",
     }
 }
 
 fn effect(effect: &NamedEffect) -> Vec<String> {
-    let parameters: Vec<String> = effect.parameters.iter().map(|(name, value)| format!("{name} {value}")).collect();
-    let mut lines = vec![format!("  {:>3.0} %  {}: {}", 100.0 * effect.probability, effect.id, parameters.join(", "))];
+    let parameters = budget_text::parameters(effect);
+    let mut lines = vec![format!("  {:>3.0} %  {}: {parameters}", 100.0 * effect.probability, effect.id)];
     if !effect.ambiguous_with.is_empty() {
         lines.push(format!("         these logs cannot tell it from {}", effect.ambiguous_with.join(", ")));
     }
@@ -57,6 +73,18 @@ fn profile(profile: &ResidualProfile) -> String {
     let bins = profile.bins.iter().map(|b| format!("{:.0}..{:.0}: {:+.2}", b.from, b.to, b.off));
     let ResidualProfile { channel, depends_on, unit, .. } = profile;
     format!("  {} ({unit}) by {depends_on}: {}", channel.name(), bins.collect::<Vec<_>>().join(" | "))
+}
+
+fn formula(of: &Statement) -> String {
+    let Statement { channel, text, share, ci95: [low, high] } = of;
+    let unit = if *channel == Channel::Turn { "rad a step" } else { "cm" };
+    format!(
+        "What no effect explains of {} follows {text} ({unit}): {:.0} % of the gap ({:.0} to {:.0}).",
+        channel.name(),
+        100.0 * share,
+        100.0 * low,
+        100.0 * high
+    )
 }
 
 fn final_positions(of: &FinalPositionErrors) -> String {

@@ -7,7 +7,6 @@ use clap::Args;
 use super::table::{self, number};
 use crate::error::Result;
 use crate::evaluation::accuracy::{self, Evaluation, Networks};
-use crate::files;
 use crate::simulator::Simulator;
 
 /// Judge a simulator's networks on logs that they were not trained on.
@@ -17,7 +16,7 @@ pub struct Evaluate {
     sim: PathBuf,
     /// Folder of logs to judge on.
     logs: PathBuf,
-    /// Also write the figures here.
+    /// Also write the figures here; `-` is standard output, in place of the tables.
     #[arg(long)]
     json: Option<PathBuf>,
 }
@@ -26,11 +25,8 @@ impl Evaluate {
     /// Tells the figures.
     pub fn run(&self) -> Result<String> {
         let simulator = Simulator::read(&self.sim)?;
-        let evaluation = accuracy::evaluate(&simulator, &super::read_logs(&self.logs)?)?;
-        if let Some(path) = &self.json {
-            files::write_json(path, &evaluation)?;
-        }
-        Ok(told(&evaluation))
+        let evaluation = accuracy::evaluate(&simulator, &super::read_sound_logs(&self.logs)?)?;
+        super::reported(self.json.as_deref(), &evaluation, told(&evaluation))
     }
 }
 

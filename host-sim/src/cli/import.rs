@@ -7,7 +7,6 @@ use serde_json::json;
 
 use super::{table, warn};
 use crate::error::Result;
-use crate::files;
 use crate::import::units::{Angle, Length, Time, Units};
 use crate::import::{LogReport, Report, RunReport, TrackReport, import};
 use crate::logs::{Robot, Scene};
@@ -49,10 +48,9 @@ impl Import {
         let (robot, scene) = (Robot::read(&self.robot)?, Scene::read(&self.scene)?);
         let (logs, report) = import(&self.files, &units, robot, scene, warn)?;
         logs.write(&self.out)?;
-        if let Some(path) = &self.json {
-            files::write_json(path, &json!({"schema": 1, "tracks": report.tracks, "logs": report.logs}))?;
-        }
-        Ok(format!("{}{}: {} runs\n", told(&report), self.out.display(), logs.runs.len()))
+        let text = format!("{}{}: {} runs\n", told(&report), self.out.display(), logs.runs.len());
+        let facts = json!({"schema": 1, "tracks": report.tracks, "logs": report.logs});
+        super::reported(self.json.as_deref(), &facts, text)
     }
 }
 

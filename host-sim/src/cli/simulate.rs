@@ -8,7 +8,6 @@ use super::evolve::start_of;
 use super::table::{self, number};
 use crate::error::Result;
 use crate::evolve::controller_file::ControllerFile;
-use crate::files;
 use crate::logs::Scene;
 use crate::simulator::environment::Environment;
 use crate::simulator::rollout_report::RolloutReport;
@@ -54,10 +53,7 @@ impl Simulate {
         let noise = if self.paper_noise { Noise::Paper } else { Noise::Learned };
         let environment = Environment::new(&simulator, &scene, start, noise)?;
         let rollouts = RolloutReport::new(&environment, &scene, &controller, self.runs as usize, self.seed);
-        if let Some(path) = &self.json {
-            files::write_json(path, &rollouts)?;
-        }
-        Ok(told(&rollouts))
+        super::reported(self.json.as_deref(), &rollouts, told(&rollouts))
     }
 }
 

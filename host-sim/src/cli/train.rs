@@ -53,7 +53,7 @@ enum Trainer {
 impl Train {
     /// Trains and writes the simulator.
     pub fn run(&self) -> error::Result<String> {
-        let logs = super::read_logs(&self.logs)?;
+        let logs = super::read_sound_logs(&self.logs)?;
         let spinner = progress::spinner();
         // The last that is told of each network.
         let evaluations = RefCell::new(BTreeMap::new());

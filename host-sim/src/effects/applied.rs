@@ -5,6 +5,8 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use super::catalogue::Candidate;
+use super::own;
+use super::own::definition::Definition;
 
 /// One effect as files hold it: by the ids of the effect and its variant, and the names of its parameters.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -16,6 +18,9 @@ pub struct AppliedEffect {
     pub variant: String,
     /// Its parameters, each in its own unit.
     pub parameters: BTreeMap<String, f64>,
+    /// What it is, if it is an own effect of a user.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub definition: Option<Definition>,
 }
 
 impl AppliedEffect {
@@ -26,12 +31,19 @@ impl AppliedEffect {
             effect: candidate.effect.into(),
             variant: candidate.variant.id.into(),
             parameters: parameters.map(|(p, value)| (p.name.into(), *value)).collect(),
+            definition: own::definition_of(candidate.variant),
         }
     }
 
     /// The variant and its values, if this program knows it and each of its parameters is there and possible.
     pub fn resolve(&self) -> Option<(Candidate, Vec<f64>)> {
-        let candidate = Candidate::named(&self.effect, &self.variant)?;
+        let candidate = match &self.definition {
+            None => Candidate::named(&self.effect, &self.variant)?,
+            Some(definition) => {
+                let own = Candidate::all(&[own::effect(definition).ok()?]);
+                own.into_iter().find(|c| c.effect == self.effect && c.variant.id == self.variant)?
+            }
+        };
         let parameters = candidate.variant.parameters;
         let value = |p: &super::Parameter| self.parameters.get(p.name).copied().filter(|value| p.allows(*value));
         let values = parameters.iter().map(value).collect::<Option<Vec<f64>>>()?;
@@ -60,6 +72,7 @@ mod tests {
             effect: "latency".into(),
             variant: "delay".into(),
             parameters: parameters.iter().map(|(name, value)| (String::from(*name), *value)).collect(),
+            definition: None,
         };
         assert!(latency(&[("ms", 100.0)]).resolve().is_some());
         assert!(latency(&[("ms", -1.0)]).resolve().is_none());

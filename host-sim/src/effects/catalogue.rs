@@ -28,6 +28,7 @@ catalogue! {
     payload
     slope
     slip
+    turn_loss
     carpet_nap
     sonar_scale
     sonar_offset
@@ -38,10 +39,12 @@ catalogue! {
     sonar_lag
     sonar_absorption
     sonar_crosstalk
+    sonar_multipath
     sonar_noise
     tracker_rotation
     tracker_scale
     lens_distortion
+    marker_offset
     compass_disturbance
 }
 
@@ -122,7 +125,7 @@ mod tests {
     use crate::sonar::Perturbation;
 
     /// The effects of the table in docs/formats.md.
-    const TABLE: usize = 26;
+    const TABLE: usize = 29;
     /// Fastest command of an NXT robot.
     const TOP_SPEED_CM_S: f64 = 41.0;
 
@@ -150,9 +153,8 @@ mod tests {
             let scene = Scene { arena_cm: Some(glam::DVec2::new(300.0, 220.0)), ..Scene::default() };
             StepContext {
                 commands,
-                earlier: [Some(earlier), None],
+                earlier: std::array::from_fn(|i| (i == 0).then_some(earlier)),
                 faced: Some([80.0, 0.2]),
-                faced_before: Some([60.0, 0.1]),
                 echo_before: Some(echo),
                 ..Surroundings::new(&robot, &scene).context(&RunHistory::default(), elapsed_min * 60_000.0, pose)
             }
@@ -207,6 +209,7 @@ mod tests {
         ("payload", &["side", "loss"]),
         ("slope", &["direction_deg", "loss"]),
         ("slip", &["onset", "loss"]),
+        ("turn_loss", &["cm_per_rad"]),
         ("carpet_nap", &["direction_deg", "loss"]),
         ("sonar_scale", &["factor"]),
         ("sonar_offset", &["cm"]),
@@ -217,10 +220,12 @@ mod tests {
         ("sonar_lag", &["steps"]),
         ("sonar_absorption", &["factor"]),
         ("sonar_crosstalk", &["probability"]),
+        ("sonar_multipath", &["probability"]),
         ("sonar_noise", &["cm"]),
         ("tracker_rotation", &["deg"]),
         ("tracker_scale", &["factor"]),
         ("lens_distortion", &["per_m2"]),
+        ("marker_offset", &["ahead_cm", "left_cm"]),
         ("compass_disturbance", &["deg"]),
     ];
 

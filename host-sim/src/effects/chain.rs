@@ -1,7 +1,7 @@
 //! Effects with their parameters, at work one after the other round a simulator's step.
 
 use super::applied::AppliedEffect;
-use super::context::StepContext;
+use super::context::{CommandHistory, StepContext};
 use super::pose_increment::PoseIncrement;
 use super::variant::{Hook, SensorState, Variant};
 
@@ -36,14 +36,14 @@ impl EffectChain {
     }
 
     /// The increment of a step with these effects; `step` gives that of the simulator for the commands now and before.
-    pub fn wrap(&self, context: &StepContext, step: impl FnOnce([f64; 2], [f64; 2]) -> PoseIncrement) -> PoseIncrement {
-        let mut commands = context.commands;
-        self.each(|hook, values| {
-            if let Hook::Commands(change) = hook {
-                change(values, context, &mut commands);
-            }
+    pub fn wrap(&self, context: &StepContext, step: impl FnMut([f64; 2], [f64; 2]) -> PoseIncrement) -> PoseIncrement {
+        let (mut commands, mut late_steps) = (context.commands, 0.0);
+        self.each(|hook, values| match hook {
+            Hook::Commands(change) => change(values, context, &mut commands),
+            Hook::Delay(delay) => late_steps += delay(values, context),
+            Hook::Motion(_) | Hook::Sensor(_) => {}
         });
-        let mut increment = step(commands[0], commands[1]);
+        let mut increment = delayed(&commands, late_steps, step);
         self.each(|hook, values| {
             if let Hook::Motion(change) = hook {
                 change(values, context, &mut increment);
@@ -67,5 +67,29 @@ impl EffectChain {
         for (variant, values) in &self.links {
             variant.hooks.iter().for_each(|hook| visit(hook, values));
         }
+    }
+}
+
+/// The motion of so many steps ago: between that of two steps where it is no whole number.
+fn delayed(
+    commands: &CommandHistory,
+    late_steps: f64,
+    mut step: impl FnMut([f64; 2], [f64; 2]) -> PoseIncrement,
+) -> PoseIncrement {
+    let (whole, part) = (late_steps as usize, late_steps % 1.0);
+    let mut ago = |steps: usize| {
+        let command = |steps: usize| commands.get(steps).copied().unwrap_or([0.0; 2]);
+        step(command(steps), command(steps + 1))
+    };
+    let later = ago(whole);
+    if part == 0.0 {
+        return later;
+    }
+    let earlier = ago(whole + 1);
+    let between = |later: f64, earlier: f64| later + part * (earlier - later);
+    PoseIncrement {
+        forward_cm: between(later.forward_cm, earlier.forward_cm),
+        lateral_cm: between(later.lateral_cm, earlier.lateral_cm),
+        turn_rad: between(later.turn_rad, earlier.turn_rad),
     }
 }

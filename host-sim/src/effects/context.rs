@@ -11,6 +11,9 @@ pub const HISTORY: usize = 7;
 /// Left and right command of the present step and of those before it, newest first; zero before the run began.
 pub type CommandHistory = [[f64; 2]; HISTORY];
 
+/// Number of earlier poses visible to an effect: the oldest reading that is thought of, 0.8 s, at 10 steps a second.
+pub const EARLIER: usize = 8;
+
 /// The circumstances of a step, or of the reading at its begin.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StepContext {
@@ -20,12 +23,10 @@ pub struct StepContext {
     pub commands: CommandHistory,
     /// Tracked pose at the step's begin.
     pub pose: Pose,
-    /// The same one and two rows earlier, where it is known.
-    pub earlier: [Option<Pose>; 2],
+    /// The same one row earlier, two rows earlier and so on, where it is known.
+    pub earlier: [Option<Pose>; EARLIER],
     /// Distance in cm and signed incidence in radians at which the sensor's axis meets a wall.
     pub faced: Option<[f64; 2]>,
-    /// The same at the row before.
-    pub faced_before: Option<[f64; 2]>,
     /// Whether the row before had a reading.
     pub echo_before: Option<bool>,
     /// Middle of the scene, above which a camera hangs, cm.
@@ -48,8 +49,7 @@ pub struct Surroundings {
 #[derive(Clone, Debug, Default)]
 pub struct RunHistory {
     commands: CommandHistory,
-    poses: [Option<Pose>; 2],
-    faced: Option<[f64; 2]>,
+    poses: [Option<Pose>; EARLIER],
     echo_cm: Option<Option<f64>>,
 }
 
@@ -87,7 +87,6 @@ impl Surroundings {
             pose,
             earlier: history.poses,
             faced: hit.map(|hit| [hit.distance_cm, hit.incidence_rad]),
-            faced_before: history.faced,
             echo_before: history.echo_cm.map(|echo| echo.is_some()),
             middle_cm: self.middle_cm,
             robot: self.robot,
@@ -112,26 +111,18 @@ impl RunHistory {
 
     /// The row at which a step began lies behind: where the robot was, if it was seen, and what its sensor said.
     pub fn leave(&mut self, context: Option<&StepContext>, echo_cm: Option<f64>) {
-        match context {
-            Some(context) => {
-                self.seen(context.pose);
-                self.sensed(context, echo_cm);
-            }
-            None => {
-                self.poses = [None, self.poses[0]];
-                self.echo_cm = Some(echo_cm);
-            }
-        }
+        self.was_at(context.map(|context| context.pose));
+        self.sensed(echo_cm);
     }
 
-    /// Where the robot was at the begin of a step that lies behind.
-    pub fn seen(&mut self, pose: Pose) {
-        self.poses = [Some(pose), self.poses[0]];
+    /// Where the robot was at the begin of a step that lies behind, if it was seen.
+    pub fn was_at(&mut self, pose: Option<Pose>) {
+        self.poses.rotate_right(1);
+        self.poses[0] = pose;
     }
 
-    /// What its sensor faced and said at a row that lies behind.
-    pub fn sensed(&mut self, context: &StepContext, echo_cm: Option<f64>) {
-        self.faced = context.faced;
+    /// What its sensor said at a row that lies behind.
+    pub fn sensed(&mut self, echo_cm: Option<f64>) {
         self.echo_cm = Some(echo_cm);
     }
 

@@ -1,5 +1,5 @@
-//! Applied effects of simulator files that were written before variants had ids: they name a variant by a sentence and
-//! its parameters by their order, some in other units.
+//! Applied effects of older simulator files: those from before variants had ids, which name a variant by a sentence and
+//! its parameters by their order, some in other units; and variants that are no longer there.
 
 use serde::Deserialize;
 use serde_json::Value;
@@ -13,20 +13,28 @@ use crate::logs::Robot;
 /// where one was never possible.
 pub fn upgraded(text: &str) -> Option<Value> {
     let File { robot, added } = serde_json::from_str(text).ok()?;
-    let added = added.iter().map(|effect| effect.upgrade(&robot)).collect::<Option<Vec<AppliedEffect>>>()?;
+    let added = added.into_iter().map(|entry| entry.upgrade(&robot)).collect::<Option<Vec<AppliedEffect>>>()?;
     let mut file: Value = serde_json::from_str(text).ok()?;
-    file["added"] = serde_json::to_value(added).ok().filter(|added| added != &Value::Array(Vec::new()))?;
-    Some(file)
+    let before = std::mem::replace(&mut file["added"], serde_json::to_value(added).ok()?);
+    (file["added"] != before).then_some(file)
 }
 
 /// What is needed of such a file.
 #[derive(Deserialize)]
 struct File {
     robot: Robot,
-    added: Vec<LegacyEffect>,
+    added: Vec<Entry>,
 }
 
 /// An entry of such a file.
+#[derive(Deserialize)]
+#[serde(untagged)]
+enum Entry {
+    Named(Box<AppliedEffect>),
+    Sentence(LegacyEffect),
+}
+
+/// An entry from before variants had ids.
 #[derive(Deserialize)]
 struct LegacyEffect {
     effect: String,
@@ -48,6 +56,24 @@ enum Unit {
     /// It was not written, and always this.
     Constant(f64),
 }
+
+impl Entry {
+    /// The same by today's ids and units; none where it was never possible.
+    fn upgrade(self, robot: &Robot) -> Option<AppliedEffect> {
+        match self {
+            Entry::Sentence(effect) => effect.upgrade(robot),
+            Entry::Named(effect) if effect.variant == EARLIER_READING => {
+                let values = vec![*effect.parameters.get("steps")?];
+                let form = "the reading before".into();
+                LegacyEffect { effect: effect.effect, form, values }.upgrade(robot)
+            }
+            Entry::Named(effect) => Some(*effect),
+        }
+    }
+}
+
+/// A variant that repeated a share of the readings before, which no sensor does. That share was their mean age in steps.
+const EARLIER_READING: &str = "earlier_reading";
 
 impl LegacyEffect {
     /// The same by today's ids and units; none where it was never possible.
@@ -133,7 +159,7 @@ const TABLE: &[Row] = &[
     ("sonar_ghost", "whether there is an echo or not", "always", &[Same, Same]),
     ("sonar_dropout", "a missing reading is followed by another", "two_states", &[Same, Same]),
     ("sonar_lag", "where the robot was", "earlier_pose", &[Steps]),
-    ("sonar_lag", "the reading before", "earlier_reading", &[Same]),
+    ("sonar_lag", "the reading before", "earlier_pose", &[Steps]),
     ("sonar_absorption", "less comes back", "everywhere", &[Same]),
     ("sonar_absorption", "less comes back from afar", "with_distance", &[Same]),
     ("sonar_absorption", "less comes back from aslant", "with_incidence", &[Same]),
@@ -161,6 +187,22 @@ mod tests {
             assert_eq!(candidate.variant.parameters.len(), units.len(), "{effect} {variant}");
         }
         assert!(TABLE.len() <= Candidate::all(CATALOGUE).len());
+    }
+
+    #[test]
+    fn the_reading_before_is_a_pose_earlier_by_its_mean_age() {
+        let robot = crate::built_in_robot::default_robot();
+        let file = |added: Value| serde_json::json!({ "robot": robot, "added": [added] }).to_string();
+        let lag_ms = |added: Value| {
+            let file = upgraded(&file(added))?;
+            let effect: AppliedEffect = serde_json::from_value(file["added"][0].clone()).ok()?;
+            effect.resolve().map(|(_, values)| values[0])
+        };
+        let entry = |variant: &str, name: &str, value: f64| serde_json::json!({ "effect": "sonar_lag", "variant": variant, "parameters": { name: value } });
+        assert_eq!(lag_ms(entry("earlier_reading", "steps", 0.5)), Some(0.5 * robot.step_ms));
+        let sentence = serde_json::json!({ "effect": "sonar_lag", "form": "the reading before", "values": [0.5] });
+        assert_eq!(lag_ms(sentence), Some(0.5 * robot.step_ms));
+        assert_eq!(lag_ms(entry("earlier_pose", "lag_ms", 80.0)), None, "as it is today");
     }
 
     #[test]

@@ -5,6 +5,7 @@ use serde_json::{Value, json};
 use crate::geometry::wrap_rad;
 use crate::logs::Robot;
 use crate::statistics::maximise::Bounds;
+use crate::statistics::rounding::three_digits;
 
 /// A number that is fitted.
 #[derive(Clone, Copy, Debug)]
@@ -120,6 +121,18 @@ impl Parameter {
         -0.5 * z * z
     }
 
+    /// Logarithm of the prior's density where it is largest, per unit of the parameter: of the normal law within the bounds,
+    /// or of the uniform law between them.
+    pub fn log_prior_peak(&self) -> f64 {
+        let [low, high] = self.bounds;
+        if self.prior_sd.is_infinite() {
+            return -libm::log(high - low);
+        }
+        let below = |bound: f64| libm::erf((bound - self.nominal) / (self.prior_sd * std::f64::consts::SQRT_2));
+        let within = 0.5 * (below(high) - below(low));
+        -libm::log(self.prior_sd * std::f64::consts::TAU.sqrt() * within)
+    }
+
     pub(super) fn guesses(&self, top_speed_cm_s: f64) -> Vec<f64> {
         let [low, high] = self.bounds;
         let guesses: Vec<f64> = match self.guesses {
@@ -133,25 +146,22 @@ impl Parameter {
     pub(super) fn reported(&self, value: f64, robot: &Robot) -> Vec<(String, Value)> {
         let side = || json!(if value > 0.0 { "left" } else { "right" });
         let command = 100.0 * value / robot.full_speed_cm_s;
+        let told = |value: f64| json!(three_digits(value));
         let reported = match self.report {
             Report::Hidden => vec![],
-            Report::Value => vec![(self.name, three_digits(value))],
+            Report::Value => vec![(self.name, told(value))],
             Report::Direction => {
                 vec![(self.name, json!((wrap_rad(value.to_radians()).to_degrees() * 10.0).round() / 10.0))]
             }
-            Report::SideAndLoss => vec![("side", side()), ("loss", three_digits(value.abs()))],
-            Report::SideAndFactor => vec![("side", side()), ("factor", three_digits(1.0 - value.abs()))],
-            Report::Command => vec![("command", three_digits(command))],
-            Report::Onset => vec![("onset", three_digits(command))],
-            Report::Steps => vec![("steps", three_digits(value / robot.step_ms))],
-            Report::OddsFactor => vec![("factor", three_digits(libm::exp(-value)))],
+            Report::SideAndLoss => vec![("side", side()), ("loss", told(value.abs()))],
+            Report::SideAndFactor => vec![("side", side()), ("factor", told(1.0 - value.abs()))],
+            Report::Command => vec![("command", told(command))],
+            Report::Onset => vec![("onset", told(command))],
+            Report::Steps => vec![("steps", told(value / robot.step_ms))],
+            Report::OddsFactor => vec![("factor", told(libm::exp(-value)))],
         };
         reported.into_iter().map(|(name, value)| (name.into(), value)).collect()
     }
-}
-
-fn three_digits(value: f64) -> Value {
-    json!(format!("{value:.2e}").parse::<f64>().unwrap_or(value))
 }
 
 /// Declares the parameters of a variant once: as a struct whose fields a hook reads by name, and as data.
@@ -199,6 +209,15 @@ mod tests {
         assert_eq!([0.5, 1.5, 3.0].map(|sd| LENGTH.prior_sd(sd).scale), [2.5, 7.5, 10.0]);
         let Bounds { low, high, scale } = LENGTH.prior_sd(0.5).fit_bounds();
         assert_eq!([low, high, scale], [-5.0, 5.0, 2.5]);
+    }
+
+    #[test]
+    fn the_prior_integrates_to_one_between_the_bounds() {
+        for parameter in [LENGTH, LENGTH.prior_sd(1.5), LENGTH.prior_sd(8.0)] {
+            let density = |cm: f64| libm::exp(parameter.log_prior_peak() + parameter.log_prior(cm));
+            let sum: f64 = (0..10_000).map(|i| density(-5.0 + (f64::from(i) + 0.5) * 1e-3)).sum();
+            assert!((1e-3 * sum - 1.0).abs() < 1e-6, "{:?}: {}", parameter.prior_sd, 1e-3 * sum);
+        }
     }
 
     #[test]

@@ -31,6 +31,8 @@ pub struct Variant {
 pub enum Hook {
     /// To the commands that reach the motors, for every step of the history.
     Commands(&'static (dyn Fn(&[f64], &StepContext, &mut CommandHistory) + Sync)),
+    /// By so many steps the motion comes late, 0 and more.
+    Delay(&'static (dyn Fn(&[f64], &StepContext) -> f64 + Sync)),
     /// To the increment of the pose that the tracker sees.
     Motion(&'static (dyn Fn(&[f64], &StepContext, &mut PoseIncrement) + Sync)),
     /// To the sensor.
@@ -72,7 +74,7 @@ impl Variant {
 
     /// Whether it changes what the robot does or how that is seen.
     pub fn moves(&self) -> bool {
-        self.hooks.iter().any(|hook| matches!(hook, Hook::Commands(_) | Hook::Motion(_)))
+        self.hooks.iter().any(|hook| matches!(hook, Hook::Commands(_) | Hook::Delay(_) | Hook::Motion(_)))
     }
 
     /// Whether at these parameters all that it does at a step is to scatter readings more.

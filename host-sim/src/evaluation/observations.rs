@@ -1,5 +1,6 @@
 //! What logs say, row by row, in the form that predictions are compared with.
 
+use std::collections::BTreeMap;
 use std::ops::Range;
 
 use crate::effects::context::{RunHistory, Surroundings};
@@ -8,6 +9,7 @@ use crate::geometry::Pose;
 use crate::logs::{Logs, Run, samples};
 use crate::simulator::baseline::MotionModel;
 use crate::sonar::Fan;
+use crate::sonar::place::{Place, place_of};
 
 /// A folder of logs, ready to be judged.
 pub struct Observations {
@@ -17,6 +19,8 @@ pub struct Observations {
     pub fan_width: f64,
     /// How many blocks of rows are judged together: the runs, or parts of them where there are few.
     pub blocks: usize,
+    /// How many places its sensor was at.
+    pub places: usize,
     /// All rows with a pose.
     pub rows: Vec<Observation>,
 }
@@ -29,6 +33,10 @@ pub struct Observation {
     pub at: usize,
     /// Which block.
     pub block: usize,
+    /// Which place of the sensor: nearby poses, at which it hears much the same.
+    pub place: usize,
+    /// How much its echo or none, and its reading, count among others that repeat it.
+    pub echo_weight: [f64; 2],
     /// Length of the step that begins here, against the usual one.
     pub stretch: f64,
     /// What effects may look at.
@@ -50,6 +58,8 @@ pub struct Observation {
 
 /// With fewer runs than this each is cut into parts, so that there is a scatter between blocks.
 pub const FEWEST_BLOCKS: usize = 8;
+/// Parts of long runs have about this many rows: a minute of steps of 400 ms.
+const LONGEST_BLOCK: usize = 150;
 
 impl Observations {
     /// Takes all that counts out of logs, for a sensor whose beam is `fan_width` times as wide as the usual fan.
@@ -60,7 +70,7 @@ impl Observations {
         let whole_ways = steps.is_empty();
         let mut steps = steps.iter().peekable();
         let mut rows = Vec::new();
-        let parts = FEWEST_BLOCKS.div_ceil(logs.runs.len());
+        let parts = parts_of_a_run(logs);
         for (run, logged) in logs.runs.iter().enumerate() {
             let contexts = contexts(logged, &surroundings);
             for (k, (row, (context, previous_echo_cm))) in logged.rows.iter().zip(&contexts).enumerate() {
@@ -79,6 +89,8 @@ impl Observations {
                     run,
                     at: k,
                     block: run * parts + k * parts / logged.rows.len(),
+                    place: 0,
+                    echo_weight: [1.0; 2],
                     stretch: (until_ms - row.t_ms) / logs.robot.step_ms,
                     context: *context,
                     then: way_until.map_or_else(Vec::new, |until| unseen(logged, k + 1..until, context)),
@@ -90,7 +102,35 @@ impl Observations {
                 });
             }
         }
-        Observations { surroundings, fan_width, blocks: logs.runs.len() * parts, rows }
+        let places = number_places(&mut rows);
+        Observations { surroundings, fan_width, blocks: logs.runs.len() * parts, places, rows }
+    }
+
+    /// Two parts of these: the blocks whose role is false, and those whose role is true; a block without a role is dropped.
+    pub fn split(self, roles: &[Option<bool>]) -> [Self; 2] {
+        let Observations { surroundings, fan_width, places, rows, .. } = self;
+        let mut parts = [false, true].map(|role| Observations {
+            surroundings: surroundings.clone(),
+            fan_width,
+            places,
+            blocks: roles.iter().filter(|r| **r == Some(role)).count(),
+            rows: Vec::new(),
+        });
+        let mut counts = [0; 2];
+        let numbers: Vec<Option<(usize, usize)>> = roles
+            .iter()
+            .map(|role| {
+                let part = usize::from((*role)?);
+                counts[part] += 1;
+                Some((part, counts[part] - 1))
+            })
+            .collect();
+        for row in rows {
+            if let Some((part, block)) = numbers[row.block] {
+                parts[part].rows.push(Observation { block, ..row });
+            }
+        }
+        parts
     }
 
     /// Asks the simulator once what it expects of every row: most hypotheses leave the commands as they are.
@@ -115,6 +155,13 @@ impl Observations {
         sums
     }
 
+    /// Sums a number of each row by place.
+    pub fn by_place(&self, terms: &[f64]) -> Vec<f64> {
+        let mut sums = vec![0.0; self.places];
+        self.rows.iter().zip(terms).for_each(|(row, t)| sums[row.place] += t);
+        sums
+    }
+
     /// What the sensor of a robot at `robot` sees, its axis turned and its beam widened.
     pub fn fan(&self, robot: &Pose, yaw_rad: f64, width: f64) -> Fan {
         self.surroundings.fan(robot, yaw_rad, self.fan_width * width)
@@ -126,6 +173,24 @@ impl Observations {
             self.rows.iter().flat_map(|row| row.context.commands[0].map(|c| row.context.wheel_speed_cm_s(c).abs()));
         speeds.fold(0.0, f64::max)
     }
+}
+
+/// Into how many blocks a run is cut: one where there are enough runs.
+fn parts_of_a_run(logs: &Logs) -> usize {
+    let runs = logs.runs.len();
+    let rows: usize = logs.runs.iter().map(|run| run.rows.len()).sum();
+    if runs >= FEWEST_BLOCKS { 1 } else { FEWEST_BLOCKS.div_ceil(runs).max(rows / runs / LONGEST_BLOCK) }
+}
+
+/// Numbers the places of rows in the order in which they are visited, and returns how many there are.
+pub fn number_places(rows: &mut [Observation]) -> usize {
+    let mut known: BTreeMap<Place, usize> = BTreeMap::new();
+    for row in rows.iter_mut() {
+        let StepContext { robot, pose, .. } = row.context;
+        let next = known.len();
+        row.place = *known.entry(place_of(&robot.ultrasonic.pose_on(&pose))).or_insert(next);
+    }
+    known.len()
 }
 
 /// The context of every row at which the robot was seen, and the reading before each.

@@ -2,13 +2,25 @@
 
 use serde::Serialize;
 
+use super::budget::{Part, budget};
 use super::channel::Channel;
 use super::compare::Comparison;
 use super::fit::{FitContext, Fitted};
-use super::hypothesis::LogLikelihood;
+use super::ledger::Ledger;
 use crate::evaluation::observations::Observations;
 use crate::evaluation::paths::{self, PathError};
 use crate::statistics::{bootstrap, rounding};
+
+/// What a gap is made of, and how far it shrinks.
+#[derive(Clone, Debug)]
+pub struct Account {
+    /// How far it shrinks; none where the confirming runs show none that could be reduced.
+    pub reduction: Option<GapReduction>,
+    /// Its parts.
+    pub budget: Vec<Part>,
+    /// What could be reduced, nats by block.
+    pub reducible: Vec<f64>,
+}
 
 /// A gap in nats a step: how much likelier the logs could be.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -69,29 +81,18 @@ struct Tally {
     remaining: Vec<f64>,
 }
 
+/// The account of a gap on some logs, among the effects that are named.
+pub fn account(found: &Comparison, named: &[&'static str], context: &FitContext, logs: &Observations) -> Account {
+    let ledger = Ledger::of(found, context, logs);
+    let budget = budget(named, &ledger, context.seed);
+    Account { reduction: reduction(found, &ledger, context, logs), budget, reducible: ledger.reducible() }
+}
+
 /// None where these logs show no reducible gap.
-pub fn reduction(found: &Comparison, context: &FitContext, logs: &Observations) -> Option<GapReduction> {
-    let judged = |fit: &Fitted| fit.judged_on(logs, context);
-    let (none, chosen) = (judged(&found.none), judged(&found.chosen));
-    let remaining: Vec<(Channel, Vec<f64>)> = found
-        .beyond_chosen
-        .iter()
-        .map(|remainder| {
-            let channel = remainder.channel();
-            let gains = remainder.model.judged_on(logs, context).into_iter().zip(chosen.channel(channel));
-            let follows = logs.by_block(&gains.map(|(a, b)| a - b).collect::<Vec<f64>>());
-            let scatters = logs.by_block(&remainder.wider_scatter(context, logs));
-            (channel, follows.iter().zip(scatters).map(|(f, s)| f + s).collect())
-        })
-        .collect();
+fn reduction(found: &Comparison, ledger: &Ledger, context: &FitContext, logs: &Observations) -> Option<GapReduction> {
     let seed = context.seed;
-    let tally = |channels: &[Channel]| {
-        let mut sum = vec![0.0; logs.blocks];
-        for (_, by_block) in remaining.iter().filter(|(channel, _)| channels.contains(channel)) {
-            sum.iter_mut().zip(by_block).for_each(|(s, r)| *s += r);
-        }
-        Tally { gained: difference(&chosen, &none, logs, channels), remaining: sum }
-    };
+    let tally =
+        |channels: &[Channel]| Tally { gained: ledger.gained(channels), remaining: ledger.unexplained.of(channels) };
     let steps = logs.rows.len() as f64;
     let all = tally(&Channel::ALL);
     let whole = all.reduction(steps, seed)?;
@@ -100,8 +101,8 @@ pub fn reduction(found: &Comparison, context: &FitContext, logs: &Observations) 
         let told = tally.reducible() >= context.calibration.judgement.strong_nats;
         Some(ChannelReduction { channel, reduction: tally.reduction(steps, seed).filter(|_| told)? })
     };
-    let runner_up = found.runner_up(&context.calibration).map(|fit| {
-        let gained: f64 = difference(&judged(fit), &none, logs, &Channel::ALL).iter().sum();
+    let runner_up = found.runner_up().map(|fit| {
+        let gained: f64 = ledger.gained_by(fit, found, context, logs).of(&Channel::ALL).iter().sum();
         RunnerUp { id: fit.ids().join("+"), reducible_closed: gained / all.reducible() }
     });
     let drive = context.baseline.motion.as_ref();
@@ -134,20 +135,10 @@ impl Tally {
     }
 }
 
-/// By how much channels are likelier under `a` than under `b`, by block.
-fn difference(a: &LogLikelihood, b: &LogLikelihood, logs: &Observations, channels: &[Channel]) -> Vec<f64> {
-    let mut sums = vec![0.0; logs.blocks];
-    for channel in channels {
-        let gains: Vec<f64> = a.channel(*channel).iter().zip(b.channel(*channel)).map(|(a, b)| a - b).collect();
-        sums.iter_mut().zip(logs.by_block(&gains)).for_each(|(s, g)| *s += g);
-    }
-    sums
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::gap::hypothesis::log_density;
+    use crate::gap::residual_law::log_density;
     use crate::gap::test_support::*;
 
     fn tally(gained: &[f64], remaining: &[f64]) -> Tally {
@@ -194,8 +185,9 @@ mod tests {
         let mut found = comparison(&[&LONGER], &[10.0; 8], &context);
         found.chosen.values = vec![0.9];
         found.none = Fitted::none(&context);
-        let reduction = reduction(&found, &context, &confirming).expect("a gap");
-        let nats = log_density(0.0, 1.0) - log_density(0.9, 1.0);
+        let ledger = Ledger::of(&found, &context, &confirming);
+        let reduction = reduction(&found, &ledger, &context, &confirming).expect("a gap");
+        let nats = log_density(0, 0.0, 1.0) - log_density(0, 0.9, 1.0);
         let Reduction { before, after, reducible_closed, .. } = reduction.whole;
         assert!((before - nats).abs() < 1e-9 && after.abs() < 1e-9 && (reducible_closed - 1.0).abs() < 1e-9);
         let channels: Vec<Channel> = reduction.channels.iter().map(|c| c.channel).collect();

@@ -19,30 +19,18 @@ pub struct Calibration {
     pub temperature: f64,
     /// How often the plainest answer is right: no answer is surer.
     pub accuracy_cap: f64,
-    /// When an effect counts.
-    pub effect: Gate,
-    /// When what the omnibus residual model explains in a channel counts.
-    pub remainder: Gate,
+    /// When an effect counts: least gain on held-out runs, nats, without the blocks that gain most.
+    pub effect_nats: f64,
+    /// The same for what the omnibus residual model explains in a channel, and for a wider scatter.
+    pub remainder_nats: f64,
     /// What calibration does not touch.
     pub judgement: Judgement,
-}
-
-/// When a gain on held-out runs counts.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Gate {
-    /// Least gain in nats.
-    pub nats: f64,
-    /// Least gain in standard errors.
-    pub z: f64,
 }
 
 /// Thresholds by convention or judgement; docs/measurements.md has their sensitivity.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Judgement {
-    /// Price of a fitted parameter, and the least difference between fits, nats: Akaike's (1974).
-    pub parameter_nats: f64,
     /// Strong evidence, nats: odds of 20 to 1 (Kass and Raftery 1995). Held-out runs have to confirm with it, smaller leads
     /// over a rival or gaps of a channel are not told, and an effect that promises less is untestable.
     pub strong_nats: f64,
@@ -58,9 +46,7 @@ pub struct Judgement {
     /// A further effect on the same stage has to gain this share of what is explained already: less is within reach of a
     /// variant whose form is not quite right.
     pub further_share: f64,
-    /// The same in standard errors.
-    pub further_z: f64,
-    /// Most effects that are named together.
+    /// Most effects that are named together: real robots differ in several ways at once.
     pub most_effects: usize,
     /// Scatter counts from this multiple of the simulator's on: five standard errors of a standard deviation that is
     /// estimated from a thousand rows.
@@ -84,8 +70,17 @@ impl Calibration {
     /// asked for.
     pub fn for_rows(self, rows: usize) -> Self {
         let growth = self.growth(rows);
-        let grown = |gate: Gate| Gate { nats: gate.nats * growth, ..gate };
-        Calibration { effect: grown(self.effect), remainder: grown(self.remainder), ..self }
+        let (effect_nats, remainder_nats) = (growth * self.effect_nats, growth * self.remainder_nats);
+        Calibration { effect_nats, remainder_nats, ..self }
+    }
+
+    /// The same where so many effects and channels compete: of a hundred hypotheses one looks a hundred times as good by
+    /// chance, so that beside what chance was seen to feign strong evidence is asked for of whichever it is.
+    pub fn among(self, effects: usize, channels: usize) -> Self {
+        let least = |competitors: usize| self.judgement.strong_nats + libm::log(competitors.max(1) as f64);
+        let effect_nats = self.effect_nats.max(least(effects));
+        let remainder_nats = self.remainder_nats.max(least(channels));
+        Calibration { effect_nats, remainder_nats, ..self }
     }
 
     /// How much more is asked for with this many rows; never less, since what chance feigns does not shrink.
@@ -103,15 +98,13 @@ impl Calibration {
 impl Judgement {
     /// What diagnoses are calibrated with.
     pub const USUAL: Judgement = Judgement {
-        parameter_nats: 1.0,
         strong_nats: 3.0,
         rival_z: 2.0,
         most_rivals: 3,
         vague_factor: 2.0,
         most_ambiguous: 5,
         further_share: 0.08,
-        further_z: 3.5,
-        most_effects: 3,
+        most_effects: 4,
         scatter_ratio: 1.12,
     };
 
@@ -135,11 +128,21 @@ mod tests {
 
     #[test]
     fn thresholds_are_possible() {
-        let Calibration { rows, effect, remainder, adequate, adequacy_width, temperature, accuracy_cap, .. } =
-            Calibration::shipped();
-        assert!([effect, remainder].iter().all(|gate| gate.nats > 0.0 && gate.z > 0.0));
+        let Calibration {
+            rows, effect_nats, remainder_nats, adequate, adequacy_width, temperature, accuracy_cap, ..
+        } = Calibration::shipped();
+        assert!(effect_nats > 0.0 && remainder_nats > 0.0);
         assert!([adequate, accuracy_cap].iter().all(|share| (0.0..=1.0).contains(share)));
         assert!(rows > 0.0 && adequacy_width > 0.0 && temperature > 0.0);
+    }
+
+    #[test]
+    fn the_more_compete_the_more_is_asked_for() {
+        let judgement = Judgement { strong_nats: 3.0, ..Judgement::USUAL };
+        let lenient = Calibration { effect_nats: 2.0, remainder_nats: 9.0, judgement, ..Calibration::shipped() };
+        let among = lenient.among(29, 5);
+        assert!((among.effect_nats - (3.0 + libm::log(29.0))).abs() < 1e-12);
+        assert_eq!(among.remainder_nats, 9.0, "what was measured stays where it is more");
     }
 
     #[test]
@@ -147,7 +150,7 @@ mod tests {
         let shipped = Calibration { rows: 1000.0, ..Calibration::shipped() };
         assert_eq!(shipped.for_rows(10), shipped);
         let twice = shipped.for_rows(2000);
-        assert_eq!(twice.effect, Gate { nats: 2.0 * shipped.effect.nats, ..shipped.effect });
-        assert_eq!(twice.remainder, Gate { nats: 2.0 * shipped.remainder.nats, ..shipped.remainder });
+        assert_eq!(twice.effect_nats, 2.0 * shipped.effect_nats);
+        assert_eq!(twice.remainder_nats, 2.0 * shipped.remainder_nats);
     }
 }

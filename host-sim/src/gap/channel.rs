@@ -23,6 +23,11 @@ impl Channel {
     pub const ALL: [Channel; 5] =
         [Channel::Forward, Channel::Lateral, Channel::Turn, Channel::EchoRate, Channel::EchoValue];
 
+    /// Its place among all.
+    pub fn index(self) -> usize {
+        self as usize
+    }
+
     /// Its place among forward, lateral and turn.
     pub fn motion_axis(self) -> Option<usize> {
         [Channel::Forward, Channel::Lateral, Channel::Turn].iter().position(|c| *c == self)

@@ -1,9 +1,10 @@
 //! Comparison: which effects together explain the gap best, and what could stand in place of each.
 
-use super::calibration::{Calibration, Gate};
+use super::calibration::Calibration;
 use super::fit::{FitContext, Fitted, Gain, best_of_each};
 use super::omnibus::ResidualFit;
 use super::remainder::{Remainder, remainders};
+use super::scatter::WiderScatter;
 use crate::effects::applied::AppliedEffect;
 
 /// The effects that explain a gap best, if any does.
@@ -14,31 +15,44 @@ pub struct Comparison {
     pub chosen: Fitted,
     /// For each of the chosen effects the fits with it or another in its place, best first.
     pub rivals: Vec<Vec<Fitted>>,
+    /// What each of the chosen effects gains beside the others, nats.
+    pub own_nats: Vec<f64>,
     /// What anything could explain beyond no effect, by channel.
     pub beyond_none: Vec<Remainder>,
     /// What anything could explain beyond the chosen effects, by channel.
     pub beyond_chosen: Vec<Remainder>,
+    /// The motion channels that scatter more than the simulator assumes, once confirmed.
+    pub scatter: Vec<WiderScatter>,
 }
 
 impl Comparison {
-    /// Searches forward, and exchanges after each step. `alone` is every variant of every effect on its own.
+    /// Searches by adding one effect at a time; after each step effects are exchanged, and those that the others have made
+    /// needless are dropped. `alone` is every variant of every effect on its own.
     pub fn search(none: Fitted, alone: Vec<Fitted>, context: &FitContext) -> Self {
         let calibration = &context.calibration;
-        let judgement = &calibration.judgement;
-        let singles = best_of_each(alone.clone(), calibration);
-        let first = singles.first().filter(|_| first_gain(&singles, &none, calibration).passes(&calibration.effect));
-        let mut chosen = first.unwrap_or(&none).clone();
-        let mut rivals = vec![singles];
-        while !chosen.ids().is_empty() && chosen.ids().len() < judgement.most_effects {
-            let further = best_of_each(chosen.with_each(Some(&alone), context), calibration);
+        let singles = best_of_each(alone.clone());
+        let counts =
+            |single: &&Fitted| gain_alone(single, &singles, &none, calibration).passes(calibration.effect_nats);
+        let mut chosen = singles.iter().find(counts).unwrap_or(&none).clone();
+        let mut rivals = vec![singles.clone()];
+        while !chosen.ids().is_empty() && chosen.ids().len() < calibration.judgement.most_effects {
+            let further = best_of_each(chosen.with_each(Some(&alone), context));
             let Some(next) = further.into_iter().find(|f| is_worth_adding(f, &chosen, &none, calibration)) else {
                 break;
             };
             let (settled, in_place) = settled(next, &alone, context);
-            if in_place.iter().any(|others| rivals_in_reach(&settled, others, calibration) > judgement.most_rivals) {
+            if in_place
+                .iter()
+                .any(|others| rivals_in_reach(&settled, others, calibration) > calibration.judgement.most_rivals)
+            {
                 break;
             }
-            (chosen, rivals) = (settled, in_place);
+            let before = chosen.log_evidence();
+            (chosen, rivals) = without_needless(settled, in_place, &alone, context);
+            // An exchange that led to what was dropped again would lead round in a circle.
+            if chosen.log_evidence() <= before {
+                break;
+            }
         }
         if let Some(others) = without_feigned_scatter(&chosen, context) {
             rivals = in_place_of_each(&others, &alone, context);
@@ -46,14 +60,24 @@ impl Comparison {
         }
         let beyond_none = remainders(&none, context);
         let beyond_chosen = remainders(&chosen, context);
-        Comparison { none, chosen, rivals, beyond_none, beyond_chosen }
+        let own = |place: usize| chosen.gain_over(&chosen.without(place, context)).nats;
+        let own_nats = (0..chosen.ids().len()).map(own).collect();
+        Comparison { none, chosen, rivals, own_nats, beyond_none, beyond_chosen, scatter: Vec::new() }
     }
 
     /// Given effects, without a search.
     pub fn given(applied: &[AppliedEffect], context: &FitContext) -> Self {
         let chosen = Fitted::given(applied, context);
         let beyond_chosen = remainders(&chosen, context);
-        Comparison { none: Fitted::none(context), chosen, rivals: Vec::new(), beyond_none: Vec::new(), beyond_chosen }
+        Comparison {
+            none: Fitted::none(context),
+            chosen,
+            rivals: Vec::new(),
+            own_nats: Vec::new(),
+            beyond_none: Vec::new(),
+            beyond_chosen,
+            scatter: Vec::new(),
+        }
     }
 
     /// Fits with another effect in place of the one at `place`, best first.
@@ -76,41 +100,58 @@ impl Comparison {
         found
     }
 
+    /// How probable it is that an effect is there beside the others, and does not just mend what is not quite right with their
+    /// forms: its odds are those of what it gains to what it has to gain to be added at all.
+    pub fn probability_beside_others(&self, place: usize, calibration: &Calibration) -> f64 {
+        let Some(own) = self.own_nats.get(place).filter(|_| self.own_nats.len() > 1) else { return 1.0 };
+        let candidates = &self.chosen.hypothesis.candidates;
+        let this = candidates[place].variant;
+        let mut others = candidates.iter().enumerate().filter(|(other, _)| *other != place).map(|(_, c)| c.variant);
+        let share = calibration.judgement.further_share * self.chosen.gain_over(&self.none).nats;
+        let shared = others.any(|other| other.moves() && this.moves() || other.senses() && this.senses());
+        let least = if shared { calibration.effect_nats.max(share) } else { calibration.effect_nats };
+        own.max(0.0) / (own.max(0.0) + least)
+    }
+
     /// The best fit in which one of the chosen effects is missing.
-    pub fn runner_up(&self, calibration: &Calibration) -> Option<&Fitted> {
+    pub fn runner_up(&self) -> Option<&Fitted> {
         let ids = self.chosen.ids();
         let others = self.rivals.iter().flatten().filter(|r| ids.iter().any(|id| !r.ids().contains(id)));
-        others.max_by(|a, b| a.score(calibration).total_cmp(&b.score(calibration)))
+        others.max_by(|a, b| a.log_evidence().total_cmp(&b.log_evidence()))
     }
 }
 
 /// The relative likelihood of a rival against the winner: how likely so small a lead is chance.
 pub fn relative_likelihood(winner: &Fitted, rival: &Fitted, calibration: &Calibration) -> f64 {
-    let lead = winner.score(calibration) - rival.score(calibration);
+    let lead = winner.log_evidence() - rival.log_evidence();
     let error = Gain::of(&winner.gains_over(rival)).error;
     let z = lead.max(0.0) / libm::hypot(error, calibration.judgement.strong_nats);
     libm::exp(-0.5 * z * z)
 }
 
-/// What the best single effect gains; less where many others can stand for it.
-pub fn first_gain(singles: &[Fitted], none: &Fitted, calibration: &Calibration) -> Gain {
-    let Some(first) = singles.first() else { return Gain::NONE };
-    let Gain { nats, error } = first.gain_over(none);
+/// What the single effect gains that gains most, if it is to count alone.
+pub fn most_alone(singles: &[Fitted], none: &Fitted, calibration: &Calibration) -> Gain {
+    let gains = singles.iter().map(|single| gain_alone(single, singles, none, calibration));
+    gains.max_by(|a, b| a.broad_nats.total_cmp(&b.broad_nats)).unwrap_or(Gain::NONE)
+}
+
+/// What a single effect gains; less where many others can stand for it.
+fn gain_alone(single: &Fitted, singles: &[Fitted], none: &Fitted, calibration: &Calibration) -> Gain {
+    let gain = single.gain_over(none);
     let judgement = &calibration.judgement;
-    let vague = rivals_in_reach(first, singles, calibration) > judgement.most_rivals;
+    let vague = rivals_in_reach(single, singles, calibration) > judgement.most_rivals;
     let divisor = if vague { judgement.vague_factor } else { 1.0 };
-    Gain { nats: nats / divisor, error: error / divisor }
+    Gain { nats: gain.nats / divisor, broad_nats: gain.broad_nats / divisor, error: gain.error / divisor }
 }
 
 /// A fit at a bound is no finding: the likelihood would rise beyond what is physically possible.
 fn is_worth_adding(fit: &Fitted, so_far: &Fitted, none: &Fitted, calibration: &Calibration) -> bool {
-    if fit.last_is_at_a_bound() {
+    if !fit.at_bound(fit.ids().len() - 1).is_empty() {
         return false;
     }
-    let (gate, judgement) = (&calibration.effect, &calibration.judgement);
-    let least = judgement.further_share * so_far.gain_over(none).nats;
-    let beside = Gate { nats: gate.nats.max(least), z: gate.z.max(judgement.further_z) };
-    fit.gain_over(so_far).passes(if fit.shares_a_stage() { &beside } else { gate })
+    let least = calibration.judgement.further_share * so_far.gain_over(none).nats;
+    let beside = calibration.effect_nats.max(least);
+    fit.gain_over(so_far).passes(if fit.shares_a_stage() { beside } else { calibration.effect_nats })
 }
 
 /// How many effects do nearly as well in the place of one of the chosen.
@@ -123,13 +164,28 @@ fn rivals_in_reach(chosen: &Fitted, rivals: &[Fitted], calibration: &Calibration
 /// Exchanges one effect for what does better in its place, if there is such. Returns what stands then, and for each of its
 /// effects the fits with others in its place.
 fn settled(chosen: Fitted, alone: &[Fitted], context: &FitContext) -> (Fitted, Vec<Vec<Fitted>>) {
-    let calibration = &context.calibration;
-    let score = |f: &Fitted| f.score(calibration);
     let rivals = in_place_of_each(&chosen, alone, context);
-    let better = rivals.iter().flatten().max_by(|a, b| score(a).total_cmp(&score(b)));
-    let least = score(&chosen) + calibration.judgement.parameter_nats;
-    match better.filter(|f| score(f) > least && f.ids() != chosen.ids()) {
+    let better = rivals.iter().flatten().max_by(|a, b| a.log_evidence().total_cmp(&b.log_evidence()));
+    match better.filter(|f| f.log_evidence() > chosen.log_evidence() && f.ids() != chosen.ids()) {
         Some(better) => (better.clone(), in_place_of_each(better, alone, context)),
+        None => (chosen, rivals),
+    }
+}
+
+/// Drops effects that no longer count beside the others.
+fn without_needless(
+    chosen: Fitted,
+    rivals: Vec<Vec<Fitted>>,
+    alone: &[Fitted],
+    context: &FitContext,
+) -> (Fitted, Vec<Vec<Fitted>>) {
+    let others = (0..chosen.ids().len()).map(|place| chosen.without(place, context));
+    let needless = others.filter(|others| !chosen.gain_over(others).passes(context.calibration.effect_nats));
+    match needless.max_by(|a, b| a.log_evidence().total_cmp(&b.log_evidence())) {
+        Some(fewer) => {
+            let rivals = in_place_of_each(&fewer, alone, context);
+            without_needless(fewer, rivals, alone, context)
+        }
         None => (chosen, rivals),
     }
 }
@@ -143,14 +199,14 @@ fn without_feigned_scatter(chosen: &Fitted, context: &FitContext) -> Option<Fitt
     });
     let others = chosen.without(widens?, context);
     let moved: f64 = ResidualFit::moved_readings(&others, context).gains_over(&others, context).iter().sum();
-    (others.score(&context.calibration) + moved > chosen.score(&context.calibration)).then_some(others)
+    (others.log_evidence() + moved > chosen.log_evidence()).then_some(others)
 }
 
 /// For each effect the fits with it or another in its place, best first.
 fn in_place_of_each(chosen: &Fitted, alone: &[Fitted], context: &FitContext) -> Vec<Vec<Fitted>> {
     let places = 0..chosen.ids().len();
     let in_place = |place: usize| chosen.without(place, context).with_each(Some(alone), context);
-    places.map(|place| best_of_each(in_place(place), &context.calibration)).collect()
+    places.map(|place| best_of_each(in_place(place))).collect()
 }
 
 #[cfg(test)]

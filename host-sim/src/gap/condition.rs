@@ -1,31 +1,61 @@
-//! Conditioning: logs become observations, split into runs on which effects are identified and runs held out.
+//! Conditioning: logs become observations, split into blocks on which effects are identified and blocks held out.
 
+use crate::effects::context::HISTORY;
 use crate::evaluation::observations::Observations;
+use crate::evaluation::repeats::weighed;
 use crate::logs::Logs;
 use crate::simulator::baseline::Baseline;
 
-/// One run in this many is held out: a quarter confirms within twice the error of the rest.
+/// One block in this many is held out: a quarter confirms within twice the error of the rest.
 const EVERY: usize = 4;
-/// With fewer runs than this none is held out: two confirm nothing that one does not.
+/// With fewer runs than this none is held out, unless they are long: two confirm nothing that one does not.
 pub const FEWEST_RUNS: usize = 8;
+/// Parts of fewer runs stand for runs where they have this many rows: as many as a run that one drives in a minute.
+const AS_A_RUN: usize = 100;
+/// Effects are identified on this many rows at most. Strong evidence is a few nats, and an effect that a tenth of this does
+/// not show moves no controller; what is beyond confirms.
+const MOST_IDENTIFYING: usize = 3000;
+/// And no more than this many rows confirm: a share is known to a hundredth then.
+const MOST_CONFIRMING: usize = 6000;
+
+/// Nobody steers a robot whose commands act later than this.
+const LATEST_MS: f64 = 800.0;
 
 /// Logs in two parts.
 pub struct Conditioned {
-    /// Runs on which effects are sought and fitted.
+    /// Blocks on which effects are sought and fitted.
     pub identification: Observations,
-    /// Runs that nothing is sought on; none of few.
+    /// Blocks that nothing is sought on; none of few.
     pub hold_out: Option<Observations>,
 }
 
 impl Conditioned {
-    /// Holds every fourth run out.
+    /// Holds every fourth block out, and more of what is plentiful.
     pub fn of(logs: &Logs, baseline: &Baseline) -> Self {
         let fan_width = baseline.sonar.as_ref().map_or(1.0, |sonar| sonar.fan_width);
-        let part = |held_out: bool| Observations::of(&runs(logs, held_out), fan_width);
-        if logs.runs.len() < FEWEST_RUNS {
-            return Conditioned { identification: Observations::of(logs, fan_width), hold_out: None };
+        let all = Observations::of(logs, fan_width);
+        let (rows, blocks) = (all.rows.len(), all.blocks);
+        if logs.runs.len() < FEWEST_RUNS && rows < AS_A_RUN * blocks {
+            return Conditioned { identification: weighed(all, baseline.place_bound), hold_out: None };
         }
-        Conditioned { identification: part(false), hold_out: Some(part(true)) }
+        let identifying = MOST_IDENTIFYING as f64 / rows as f64;
+        let confirming = MOST_CONFIRMING as f64 / rows as f64;
+        let usual = (EVERY - 1) as f64 / EVERY as f64;
+        // Of what does not identify, as large a share as may confirm.
+        let (confirming, mut others) = (confirming / (1.0 - identifying).max(0.0), 0);
+        let role = |block| {
+            if identifying >= usual {
+                return Some(block % EVERY == EVERY - 1);
+            }
+            if is_among(block, identifying) {
+                return Some(false);
+            }
+            others += 1;
+            is_among(others - 1, confirming).then_some(true)
+        };
+        let roles: Vec<Option<bool>> = (0..blocks).map(role).collect();
+        let [identification, hold_out] = all.split(&roles).map(|part| weighed(part, baseline.place_bound));
+        Conditioned { identification, hold_out: Some(hold_out) }
     }
 
     /// Asks the baseline once what it expects of every row on which effects are identified.
@@ -33,15 +63,23 @@ impl Conditioned {
         Conditioned { identification: self.identification.expect(baseline.motion.as_ref()), ..self }
     }
 
-    /// The runs that confirm: those held out, or the others where none is.
+    /// The blocks that confirm: those held out, or the others where none is.
     pub fn confirming(&self) -> &Observations {
         self.hold_out.as_ref().unwrap_or(&self.identification)
     }
 }
 
-fn runs(logs: &Logs, held_out: bool) -> Logs {
-    let runs = logs.runs.iter().enumerate().filter(|(i, _)| (i % EVERY == EVERY - 1) == held_out);
-    Logs { robot: logs.robot, scene: logs.scene.clone(), runs: runs.map(|(_, run)| run.clone()).collect() }
+/// The step in which rows are compared that come every `own_ms`, where no simulator sets it: the least multiple over which
+/// the history of commands reaches as far back as the latest command can act.
+pub fn step_ms(own_ms: f64) -> f64 {
+    let least_ms = LATEST_MS / (HISTORY - 2) as f64;
+    own_ms * (least_ms / own_ms).ceil().max(1.0)
+}
+
+/// Whether a number is among an even share of all numbers.
+fn is_among(number: usize, share: f64) -> bool {
+    let share = share.min(1.0);
+    (((number + 1) as f64) * share).floor() > ((number as f64) * share).floor()
 }
 
 #[cfg(test)]
@@ -73,6 +111,25 @@ mod tests {
     #[test]
     fn of_few_runs_none_is_held_out() {
         assert_eq!(parts(7), ((0..7).collect(), None));
+    }
+
+    #[test]
+    fn long_runs_are_split_into_parts() {
+        let conditioned = Conditioned::of(&driven(1, 1601, |_, _| [50.0; 2]), &baseline());
+        let hold_out = conditioned.hold_out.as_ref().expect("a long run");
+        assert_eq!(conditioned.identification.blocks + hold_out.blocks, 10);
+        let first = |rows: &Observations| rows.rows.iter().map(|row| row.at).min();
+        assert_eq!((first(&conditioned.identification), first(hold_out)), (Some(0), Some(481)));
+    }
+
+    /// Of 400 runs of 31 rows, 12,400 in all, 3,000 rows identify and 6,000 confirm.
+    #[test]
+    fn of_many_runs_a_part_identifies_and_a_part_confirms() {
+        let conditioned = Conditioned::of(&driven(400, 31, |_, _| [50.0; 2]), &baseline());
+        let hold_out = conditioned.hold_out.as_ref().expect("many runs");
+        let rows = [conditioned.identification.rows.len(), hold_out.rows.len()];
+        assert!((2900..=3000).contains(&rows[0]) && (5800..=6100).contains(&rows[1]), "{rows:?}");
+        assert!(hold_out.rows.iter().all(|row| row.block < hold_out.blocks));
     }
 
     #[test]

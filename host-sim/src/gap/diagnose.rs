@@ -1,15 +1,17 @@
 //! The method, from logs to an answer.
 
-use super::account::GapReduction;
-use super::compare::{Comparison, first_gain};
+use super::compare::{Comparison, most_alone};
 use super::condition::Conditioned;
 use super::diagnosis::{Answer, Diagnosis};
 use super::explain::{self, Judged};
 use super::fit::{FitContext, Fitted, Gain, best_of_each};
+use super::formula::Formula;
 use super::method::Method;
-use super::{account, confirm, excitation, propose, remainder, validate};
+use super::validate::Validated;
+use super::{account, confirm, excitation, formula, propose, remainder, validate};
 use crate::effects::applied::AppliedEffect;
 use crate::error::Result;
+use crate::inspection::Inspection;
 use crate::logs::Logs;
 use crate::simulator::Simulator;
 use crate::simulator::baseline::Baseline;
@@ -20,6 +22,17 @@ pub struct Findings {
     pub diagnosis: Diagnosis,
     /// The effects that explain the gap, as a simulator takes them; none unless they are known.
     pub applied: Vec<AppliedEffect>,
+    /// How the steps scatter that these effects leave: forward (cm), lateral (cm), turn (rad).
+    pub scatter: [f64; 3],
+    /// The formula of what no effect explains, where one holds.
+    pub formula: Option<Formula>,
+}
+
+impl Findings {
+    /// All that shrinks the gap, as a simulator takes it: the effects with the formula of what they leave, fitted together.
+    pub fn with_formula(&self) -> Vec<AppliedEffect> {
+        self.formula.as_ref().map_or_else(|| self.applied.clone(), |formula| formula.fitted.applied())
+    }
 }
 
 /// Diagnoses logs by the usual method.
@@ -27,47 +40,101 @@ pub struct Findings {
 /// # Errors
 /// When the logs say nothing that the baseline could be compared with.
 pub fn diagnose(baseline: Baseline, logs: &Logs) -> Result<Diagnosis> {
-    Ok(findings(baseline, logs, Method::default())?.diagnosis)
+    Ok(findings(baseline, &Inspection::of(logs.clone()), Method::default())?.diagnosis)
 }
 
-/// Diagnoses logs.
+/// Diagnoses inspected logs.
 ///
 /// # Errors
 /// When the logs say nothing that the baseline could be compared with.
-pub fn findings(mut baseline: Baseline, logs: &Logs, method: Method) -> Result<Findings> {
+pub fn findings(mut baseline: Baseline, inspected: &Inspection, method: Method) -> Result<Findings> {
     // Validate and condition: what the logs cannot say, and what they say row by row.
-    let (conditioned, notes) = conditioned(&mut baseline, logs)?;
+    let logs = &inspected.logs;
+    let (conditioned, Validated { notes, scope, moved_uncommanded }) = conditioned(&mut baseline, inspected)?;
     let context = FitContext::new(&baseline, &conditioned.identification, method);
 
     // Fit every variant of every effect alone; compare them and their combinations; confirm on runs held out.
     let compared = compared(&context);
     let confirmed = confirm::confirm(compared, &context, conditioned.hold_out.as_ref());
 
-    // Account for the gap, explain it, propose what to drive next.
-    let judged = Judged::of(&confirmed, &logs.robot, &context.calibration);
-    let reduction = || account::reduction(&confirmed, &context, conditioned.confirming());
+    // Account for the gap, explain it, put what is left into a formula, propose what to drive next.
+    let judged = match Judged::of(&confirmed, &logs.robot, &context.calibration) {
+        // What is compared agrees, and does not say what moves the robot.
+        Judged::NoGap if moved_uncommanded => Judged::Unknown,
+        judged => judged,
+    };
     let strata = explain::strata::strata(&confirmed, &judged, &context);
     let untestable = excitation::untestable(&confirmed.none, &context);
-    let (answer, applied) = match judged {
-        Judged::NoGap => (Answer::NoGap, Vec::new()),
+    let formula = match judged {
+        Judged::NoGap => None,
+        _ => formula::search(&confirmed, &context, conditioned.hold_out.as_ref()),
+    };
+    let account = |named: &[&'static str]| account::account(&confirmed, named, &context, conditioned.confirming());
+    let ids = confirmed.chosen.ids();
+    let answer = match judged {
+        Judged::NoGap => Answer::NoGap,
         Judged::Known { effects } => {
-            let experiment = propose::next(&confirmed, &context);
-            (Answer::Known { effects, reduction: reduction(), experiment }, confirmed.chosen.applied())
+            let (account, experiment) = (account(&ids), propose::next(&confirmed, &context));
+            Answer::Known { effects: explain::with_shares(effects, &account.budget), account, experiment }
+        }
+        Judged::PartlyKnown { effects } => {
+            let (account, experiment) = (account(&ids), propose::next(&confirmed, &context));
+            let profiles = explain::profile::profiles(&confirmed, &context);
+            Answer::PartlyKnown {
+                effects: explain::with_shares(effects, &account.budget),
+                account,
+                experiment,
+                profiles,
+            }
         }
         Judged::Unknown => {
-            let profiles = explain::profile::profiles(&confirmed, &context);
-            (Answer::Unknown { reduction: reduction(), profiles }, Vec::new())
+            Answer::Unknown { account: account(&[]), profiles: explain::profile::profiles(&confirmed, &context) }
         }
     };
-    let diagnosis = Diagnosis { answer, strata, final_positions: None, untestable, notes };
-    Ok(Findings { diagnosis, applied })
+    let applied = match answer {
+        Answer::Known { .. } | Answer::PartlyKnown { .. } => confirmed.chosen.applied(),
+        Answer::NoGap | Answer::Unknown { .. } => Vec::new(),
+    };
+    let stated = formula.as_ref().zip(answer.account());
+    let stated = stated.map(|(formula, account)| formula.stated(&account.reducible, context.seed));
+    let diagnosis = Diagnosis {
+        data: inspected.findings.clone(),
+        scope,
+        answer,
+        formula: stated,
+        strata,
+        final_positions: None,
+        untestable,
+        notes,
+    };
+    let chosen = &confirmed.chosen;
+    let scatter = chosen.hypothesis.scatter(context.baseline, context.observations, &chosen.values);
+    Ok(Findings { diagnosis, applied, scatter, formula })
+}
+
+/// The effects that logs could not show, and what else limits a diagnosis of them.
+pub struct Excitation {
+    /// Ids of effects, in the order of the catalogue.
+    pub untestable: Vec<&'static str>,
+    /// One sentence each.
+    pub notes: Vec<String>,
+}
+
+/// What inspected logs could show, without a search.
+///
+/// # Errors
+/// When the logs say nothing that the baseline could be compared with.
+pub fn excitation(mut baseline: Baseline, inspected: &Inspection) -> Result<Excitation> {
+    let (conditioned, Validated { notes, .. }) = conditioned(&mut baseline, inspected)?;
+    let context = FitContext::new(&baseline, &conditioned.identification, Method::default());
+    Ok(Excitation { untestable: excitation::untestable(&Fitted::none(&context), &context), notes })
 }
 
 /// What the logs gain at most, before any threshold.
 pub struct GapStatistics {
     /// By the best effect.
     pub effect: Gain,
-    /// By the omnibus residual model in a channel, or by a wider scatter on top of it.
+    /// By the omnibus residual model in a channel.
     pub remainder: Gain,
     /// Number of rows that gain it.
     pub rows: usize,
@@ -78,12 +145,12 @@ pub struct GapStatistics {
 /// # Errors
 /// When the logs say nothing that the baseline could be compared with.
 pub fn statistics(mut baseline: Baseline, logs: &Logs, method: Method) -> Result<GapStatistics> {
-    let (conditioned, _) = conditioned(&mut baseline, logs)?;
+    let (conditioned, _) = conditioned(&mut baseline, &Inspection::of(logs.clone()))?;
     let context = FitContext::new(&baseline, &conditioned.identification, method);
     let none = Fitted::none(&context);
-    let singles = best_of_each(none.with_each(None, &context), &context.calibration);
+    let singles = best_of_each(none.with_each(None, &context));
     Ok(GapStatistics {
-        effect: first_gain(&singles, &none, &context.calibration),
+        effect: most_alone(&singles, &none, &context.calibration),
         remainder: remainder::most(&none, &context),
         rows: context.observations.rows.len(),
     })
@@ -94,7 +161,7 @@ pub fn statistics(mut baseline: Baseline, logs: &Logs, method: Method) -> Result
 /// # Errors
 /// When the logs say nothing that the baseline could be compared with.
 pub fn confirmed(mut baseline: Baseline, logs: &Logs, method: Method) -> Result<Comparison> {
-    let (conditioned, _) = conditioned(&mut baseline, logs)?;
+    let (conditioned, _) = conditioned(&mut baseline, &Inspection::of(logs.clone()))?;
     let context = FitContext::new(&baseline, &conditioned.identification, method);
     Ok(confirm::confirm(compared(&context), &context, conditioned.hold_out.as_ref()))
 }
@@ -105,18 +172,18 @@ pub fn confirmed(mut baseline: Baseline, logs: &Logs, method: Method) -> Result<
 /// When the logs say nothing that the simulator could be compared with.
 pub fn closed(simulator: &Simulator, applied: &[AppliedEffect], logs: &Logs) -> Result<Option<f64>> {
     let mut baseline = Baseline::learned(simulator)?;
-    let (conditioned, _) = conditioned(&mut baseline, logs)?;
+    let (conditioned, _) = conditioned(&mut baseline, &Inspection::of(logs.clone()))?;
     let context = FitContext::new(&baseline, &conditioned.identification, Method::default());
     let given = Comparison::given(applied, &context);
-    let reduction: Option<GapReduction> = account::reduction(&given, &context, conditioned.confirming());
+    let reduction = account::account(&given, &[], &context, conditioned.confirming()).reduction;
     Ok(reduction.map(|reduction| reduction.whole.reducible_closed))
 }
 
 /// Observations of what the baseline knows, and what has to be said about them.
-fn conditioned(baseline: &mut Baseline, logs: &Logs) -> Result<(Conditioned, Vec<String>)> {
-    let conditioned = Conditioned::of(logs, baseline);
-    let notes = validate::validate(baseline, &conditioned.identification, logs)?;
-    Ok((conditioned.expecting(baseline), notes))
+fn conditioned(baseline: &mut Baseline, inspected: &Inspection) -> Result<(Conditioned, Validated)> {
+    let conditioned = Conditioned::of(&inspected.logs, baseline);
+    let validated = validate::validate(baseline, &conditioned.identification, inspected)?;
+    Ok((conditioned.expecting(baseline), validated))
 }
 
 fn compared(context: &FitContext) -> Comparison {

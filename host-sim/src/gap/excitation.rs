@@ -31,7 +31,7 @@ pub fn untestable(none: &Fitted, context: &FitContext) -> Vec<&'static str> {
 mod tests {
     use super::*;
     use crate::evaluation::observations::Observations;
-    use crate::gap::hypothesis::log_density;
+    use crate::gap::residual_law::log_density;
     use crate::gap::test_support::*;
 
     fn untestable_on(rows: &Observations) -> Vec<&'static str> {
@@ -43,7 +43,7 @@ mod tests {
     /// Steps that are two standard deviations off: a guess of 0.1 cm changes each by what the density says.
     #[test]
     fn an_effect_is_testable_once_its_rows_promise_strong_evidence() {
-        let change = log_density(1.9, 2.0) - log_density(2.0, 2.0);
+        let change = log_density(0, 1.9, 2.0) - log_density(0, 2.0, 2.0);
         let enough = (3.0 / (0.5 * change * change)).ceil() as usize;
         let straight = |rows| {
             observations(1, rows, |_, at| Made {

@@ -7,14 +7,17 @@ pub mod strata;
 use serde::Serialize;
 use serde_json::{Map, Value};
 
+use super::budget::{Part, SCATTER};
 use super::calibration::Calibration;
+use super::channel::Channel;
 use super::compare::Comparison;
+use super::fit::Fitted;
 use super::remainder::Remainder;
 use crate::logs::Robot;
 use crate::statistics::rounding;
 use crate::statistics::summary::logistic;
 
-/// An effect that explains the gap.
+/// An effect that explains the gap, or a part of it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct NamedEffect {
     /// Its id.
@@ -26,6 +29,13 @@ pub struct NamedEffect {
     pub parameters: Map<String, Value>,
     /// Effects that these logs cannot tell from it.
     pub ambiguous_with: Vec<&'static str>,
+    /// Its share of the gap, where there is a budget.
+    #[serde(serialize_with = "rounding::optional")]
+    pub share: Option<f64>,
+    /// 95 % intervals of those parameters that are numbers, by the jackknife over blocks of runs.
+    pub intervals: Map<String, Value>,
+    /// Parameters that lie at the end of what is physically possible.
+    pub at_bound: Vec<&'static str>,
 }
 
 /// What was found, worked out once.
@@ -37,25 +47,65 @@ pub enum Judged {
         /// The effects.
         effects: Vec<NamedEffect>,
     },
+    /// Effects explain a part of the gap, and something is left that they do not explain.
+    PartlyKnown {
+        /// The effects.
+        effects: Vec<NamedEffect>,
+    },
     /// There is a gap and no effect explains it.
     Unknown,
 }
+
+/// Probabilities that differ by less are as good as equal: hundreds of calibrating cases tell no finer.
+const AS_PROBABLE: f64 = 0.05;
+
+/// A parameter at its bound has no likeliest value: its effect is as likely wrong as right.
+const AT_BOUND: f64 = 0.5;
 
 impl Judged {
     /// Judges what was confirmed.
     pub fn of(found: &Comparison, robot: &Robot, calibration: &Calibration) -> Self {
         let unexplained = unexplained_nats(found);
-        let effects = named(found, robot, calibration);
-        let vague = effects.iter().any(|e| e.ambiguous_with.len() > calibration.judgement.most_ambiguous);
-        let likeliest = effects.first().is_some_and(|first| first.probability >= unknown(found, calibration));
-        if likeliest && !vague && explained_fraction(found) >= calibration.adequate {
-            Judged::Known { effects }
-        } else if !effects.is_empty() || unexplained > 0.0 {
-            Judged::Unknown
-        } else {
-            Judged::NoGap
+        let whole = explained_fraction(found);
+        let is_vague = |effects: &[NamedEffect]| {
+            effects.iter().any(|e| e.ambiguous_with.len() > calibration.judgement.most_ambiguous)
+        };
+        let effects = named(found, whole, robot, calibration);
+        let doubt = gap(found, calibration) * (1.0 - probability(whole, std::iter::empty(), calibration));
+        let likeliest = effects.first().is_some_and(|first| first.probability >= doubt);
+        if likeliest && !is_vague(&effects) && whole >= calibration.adequate {
+            return Judged::Known { effects };
+        }
+        // A wrong effect leaves something over wherever it explains something; a right one beside which there is another
+        // cause explains the channels that the other one does not touch.
+        let best_channel = Channel::ALL.map(|channel| explained_fraction_of(channel, found, calibration));
+        let best_channel = best_channel.into_iter().fold(0.0, f64::max);
+        let effects = named(found, best_channel, robot, calibration);
+        if !effects.is_empty() && !is_vague(&effects) && best_channel >= calibration.adequate {
+            return Judged::PartlyKnown { effects };
+        }
+        if !effects.is_empty() || unexplained > 0.0 || found.scatter.iter().any(|s| !s.is_even) {
+            return Judged::Unknown;
+        }
+        match scattered(found, calibration) {
+            Some(scatter) => Judged::Known { effects: vec![scatter] },
+            None => Judged::NoGap,
         }
     }
+}
+
+/// The same effects with their shares of a budget, the most probable first, and of those that are as probable the one that
+/// takes most of the gap.
+pub fn with_shares(effects: Vec<NamedEffect>, budget: &[Part]) -> Vec<NamedEffect> {
+    let share = |id: &str| budget.iter().find(|part| part.id == id).map(|part| part.share);
+    let with_share = |effect: NamedEffect| NamedEffect { share: share(effect.id), ..effect };
+    let mut effects: Vec<NamedEffect> = effects.into_iter().map(with_share).collect();
+    let key = |effect: &NamedEffect| ((effect.probability / AS_PROBABLE).round(), effect.share.unwrap_or(0.0));
+    effects.sort_by(|a, b| {
+        let ((p, s), (q, t)) = (key(a), key(b));
+        q.total_cmp(&p).then(t.total_cmp(&s))
+    });
+    effects
 }
 
 /// The share of what could be explained that the chosen effects explain.
@@ -72,21 +122,78 @@ pub fn probability(explained_fraction: f64, rivals: impl Iterator<Item = f64>, c
     calibration.accuracy_cap * known / (1.0 + doubt)
 }
 
-fn named(found: &Comparison, robot: &Robot, calibration: &Calibration) -> Vec<NamedEffect> {
-    let (gap, fraction) = (gap(found, calibration), explained_fraction(found));
+fn named(found: &Comparison, fraction: f64, robot: &Robot, calibration: &Calibration) -> Vec<NamedEffect> {
+    let gap = gap(found, calibration);
     let one = |(place, candidate): (usize, &crate::effects::Candidate)| {
         let rivals = found.likelihoods_in_place_of(place, calibration);
         let ambiguous = rivals.iter().filter(|(_, likelihood)| *likelihood >= calibration.judgement.rival_likelihood());
+        let at_bound = found.chosen.at_bound(place);
+        let beside = found.probability_beside_others(place, calibration);
+        let most = if at_bound.is_empty() { 1.0 } else { AT_BOUND };
         NamedEffect {
             id: candidate.effect,
-            probability: gap * probability(fraction, rivals.iter().map(|r| r.1), calibration),
+            probability: (gap * beside * probability(fraction, rivals.iter().map(|r| r.1), calibration)).min(most),
             parameters: candidate.variant.reported(found.chosen.values_of(place), robot),
             ambiguous_with: ambiguous.map(|(id, _)| *id).collect(),
+            share: None,
+            intervals: intervals(found, place, robot),
+            at_bound,
         }
     };
     let mut named: Vec<NamedEffect> = found.chosen.hypothesis.candidates.iter().enumerate().map(one).collect();
     named.sort_by(|a, b| b.probability.total_cmp(&a.probability));
     named
+}
+
+/// The reported numbers at both ends of the parameters' intervals.
+fn intervals(found: &Comparison, place: usize, robot: &Robot) -> Map<String, Value> {
+    let variant = found.chosen.hypothesis.candidates[place].variant;
+    let ends: Vec<[f64; 2]> = found.chosen.parameters_of(place).map(|i| found.chosen.interval(i)).collect();
+    let [low, high] = [0, 1].map(|end| variant.reported(&ends.iter().map(|e| e[end]).collect::<Vec<f64>>(), robot));
+    let both = |(name, low): (String, Value)| {
+        let (low, high) = (low.as_f64()?, high.get(&name)?.as_f64()?);
+        Some((name, serde_json::json!([low.min(high), low.max(high)])))
+    };
+    low.into_iter().filter_map(both).collect()
+}
+
+/// Scatter as the one thing that differs; none where steps scatter as the simulator assumes.
+fn scattered(found: &Comparison, calibration: &Calibration) -> Option<NamedEffect> {
+    if found.scatter.is_empty() {
+        return None;
+    }
+    let told = |s: &super::scatter::WiderScatter| match s.axis {
+        0 => ("forward_cm", s.own),
+        1 => ("lateral_cm", s.own),
+        _ => ("turn_deg", s.own.to_degrees()),
+    };
+    let parameters = found
+        .scatter
+        .iter()
+        .map(told)
+        .map(|(name, value)| (name.into(), rounding::three_digits(value).into()))
+        .collect();
+    Some(NamedEffect {
+        id: SCATTER,
+        probability: calibration.accuracy_cap,
+        parameters,
+        ambiguous_with: Vec::new(),
+        share: None,
+        intervals: Map::new(),
+        at_bound: Vec::new(),
+    })
+}
+
+/// The share of what could be explained in a channel that the chosen effects explain; nothing where they explain no more
+/// there than chance does.
+fn explained_fraction_of(channel: Channel, found: &Comparison, calibration: &Calibration) -> f64 {
+    let sum = |fit: &Fitted| fit.log_likelihood.channel(channel).iter().sum::<f64>();
+    let explained = sum(&found.chosen) - sum(&found.none);
+    if explained < calibration.effect_nats {
+        return 0.0;
+    }
+    let left = found.beyond_chosen.iter().filter(|r| r.channel() == channel);
+    explained / (explained + left.map(|r| r.by_block.iter().sum::<f64>()).sum::<f64>().max(0.0))
 }
 
 fn explained_nats(found: &Comparison) -> f64 {
@@ -101,13 +208,8 @@ fn unexplained_nats(found: &Comparison) -> f64 {
 /// How probable a gap is that is none of chance: half where the effects gain just what the gate asks for, and nearly
 /// certain from strong evidence beyond it on.
 fn gap(found: &Comparison, calibration: &Calibration) -> f64 {
-    let beyond = explained_nats(found) - calibration.effect.nats;
+    let beyond = explained_nats(found) - calibration.effect_nats;
     logistic(beyond / calibration.judgement.strong_nats)
-}
-
-/// How probable a gap is whose cause is none that is known.
-fn unknown(found: &Comparison, calibration: &Calibration) -> f64 {
-    gap(found, calibration) * (1.0 - probability(explained_fraction(found), std::iter::empty(), calibration))
 }
 
 #[cfg(test)]

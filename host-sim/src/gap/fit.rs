@@ -1,8 +1,10 @@
 //! Fitting: the parameters of a hypothesis by maximum a posteriori, judged on runs that they were not fitted on.
 
+use std::ops::Range;
+
 use rayon::prelude::*;
 
-use super::calibration::{Calibration, Gate};
+use super::calibration::Calibration;
 use super::hypothesis::{Hypothesis, LogLikelihood};
 use super::method::Method;
 use crate::effects::applied::AppliedEffect;
@@ -10,7 +12,7 @@ use crate::effects::chain::EffectChain;
 use crate::effects::{Candidate, Effect};
 use crate::evaluation::observations::Observations;
 use crate::simulator::baseline::Baseline;
-use crate::statistics::maximise::{Maximum, climb};
+use crate::statistics::maximise::{Bounds, Maximum, climb, climb_on};
 
 /// What is fitted, to what, and what counts.
 pub struct FitContext<'a> {
@@ -38,21 +40,40 @@ pub struct Fitted {
     pub log_likelihood: LogLikelihood,
     /// The log-likelihood of each block with the parameters fitted on the others.
     pub held_out: Vec<f64>,
+    /// Standard errors of the parameters, by the jackknife over blocks.
+    pub errors: Vec<f64>,
+    /// What the evidence exceeds the held-out log-likelihood by, nats: less than nothing, the price of freedom.
+    pub occam: f64,
 }
 
 /// How much better one hypothesis does than another on runs that it was not fitted on.
 #[derive(Clone, Copy, Debug)]
 pub struct Gain {
-    /// Nats over all blocks.
+    /// Nats over all blocks, less the price of the parameters.
     pub nats: f64,
+    /// The same without the blocks that gain most: what only an eighth of them shows is no property of the robot.
+    pub broad_nats: f64,
     /// Standard error over blocks.
     pub error: f64,
 }
 
+/// One block in this many, and one at least, is left out of a broad gain. An effect that one place in ten shows still counts,
+/// and so does none that a single run shows.
+const LEFT_OUT: usize = 8;
+
 /// A fit ends after this many iterations: ridges of two parameters take twenty.
 pub const MOST_ITERATIONS: usize = 30;
+/// Iterations after which it shows whether a fit is promising.
+const SKETCH_ITERATIONS: usize = 3;
+/// So many starts are tried, where they lag behind the best by less than what a few iterations gain at the least.
+const STARTS: usize = 3;
+const NEARLY_AS_GOOD_NATS: f64 = 5.0;
+/// So many fits are then carried on: with more rivals in reach than `most_ambiguous` an effect is no answer anyway.
+const PROMISING: usize = 10;
 /// An iteration that gains less ends the fit, nats: a tenth of what a parameter costs.
 pub const TOLERANCE_NATS: f64 = 0.1;
+/// 95 % of a normal law lie within so many standard errors.
+const NORMAL_95: f64 = 1.96;
 
 impl<'a> FitContext<'a> {
     /// Observations against a simulator.
@@ -61,7 +82,7 @@ impl<'a> FitContext<'a> {
             baseline,
             observations,
             catalogue: method.catalogue,
-            calibration: method.calibration.for_rows(observations.rows.len()),
+            calibration: method.calibration_for(observations.rows.len()),
             seed: method.seed,
             top_speed_cm_s: observations.top_speed_cm_s(),
         }
@@ -89,7 +110,8 @@ impl Fitted {
     fn at(hypothesis: Hypothesis, values: Vec<f64>, context: &FitContext) -> Self {
         let log_likelihood = hypothesis.log_likelihood(context.baseline, context.observations, &values, None);
         let held_out = context.observations.by_block(&log_likelihood.total());
-        Fitted { hypothesis, values, log_likelihood, held_out }
+        let errors = vec![0.0; values.len()];
+        Fitted { hypothesis, values, log_likelihood, held_out, errors, occam: 0.0 }
     }
 
     /// Its effects at the fitted parameters.
@@ -104,9 +126,14 @@ impl Fitted {
 
     /// The parameters of one of its effects.
     pub fn values_of(&self, place: usize) -> &[f64] {
+        &self.values[self.parameters_of(place)]
+    }
+
+    /// Where the parameters of one of its effects are among all.
+    pub fn parameters_of(&self, place: usize) -> Range<usize> {
         let candidates = &self.hypothesis.candidates;
         let before: usize = candidates[..place].iter().map(|c| c.variant.parameters.len()).sum();
-        &self.values[before..before + candidates[place].variant.parameters.len()]
+        before..before + candidates[place].variant.parameters.len()
     }
 
     /// Its effects as a simulator takes them.
@@ -120,15 +147,25 @@ impl Fitted {
         self.held_out.iter().zip(&other.held_out).map(|(a, b)| a - b).collect()
     }
 
-    /// The same over all blocks.
+    /// The same over all blocks, by the evidence.
     pub fn gain_over(&self, other: &Fitted) -> Gain {
-        Gain::of(&self.gains_over(other))
+        Gain::of(&self.gains_over(other)).less(other.occam - self.occam)
     }
 
-    /// What ranks hypotheses: the held-out log-likelihood less the price of the parameters, so that of two that explain the
-    /// same the simpler one is first.
-    pub fn score(&self, calibration: &Calibration) -> f64 {
-        self.held_out.iter().sum::<f64>() - calibration.judgement.parameter_nats * self.values.len() as f64
+    /// Logarithm of the marginal likelihood, by which hypotheses are compared: that of the logs under all values that the
+    /// priors allow, by Laplace's method (Kass and Raftery 1995, section 4.1). Whole runs are its unit: in place of the
+    /// likelihood at its maximum it takes that of each block at the parameters of the others, which is less by one nat a
+    /// parameter where rows are independent, and by more where they come in clumps.
+    pub fn log_evidence(&self) -> f64 {
+        self.held_out.iter().sum::<f64>() + self.occam
+    }
+
+    /// The values between which a parameter lies with 95 %, within its bounds.
+    pub fn interval(&self, parameter: usize) -> [f64; 2] {
+        let reach = NORMAL_95 * self.errors[parameter];
+        let [low, high] =
+            self.hypothesis.parameters().nth(parameter).map_or([f64::NEG_INFINITY, f64::INFINITY], |p| p.bounds);
+        [(self.values[parameter] - reach).max(low), (self.values[parameter] + reach).min(high)]
     }
 
     /// Whether the effect that was added last touches a stage that others touch.
@@ -138,11 +175,10 @@ impl Fitted {
         others.iter().any(|c| c.variant.moves() && last.moves() || c.variant.senses() && last.senses())
     }
 
-    /// Whether a reported parameter of the effect that was added last lies at a bound.
-    pub fn last_is_at_a_bound(&self) -> bool {
-        let Some(last) = self.hypothesis.candidates.last() else { return false };
-        let values = self.values_of(self.hypothesis.candidates.len() - 1);
-        last.variant.parameters.iter().zip(values).any(|(parameter, value)| parameter.is_at_a_bound(*value))
+    /// The reported parameters of one of its effects that lie at a bound.
+    pub fn at_bound(&self, place: usize) -> Vec<&'static str> {
+        let parameters = self.hypothesis.candidates[place].variant.parameters.iter().zip(self.values_of(place));
+        parameters.filter(|(parameter, value)| parameter.is_at_a_bound(**value)).map(|(p, _)| p.name).collect()
     }
 
     /// The log-likelihood of rows that it was not fitted on.
@@ -153,25 +189,43 @@ impl Fitted {
 
     /// Adds one effect and fits everything anew, from these values and the variant's guesses.
     pub fn with(&self, candidate: Candidate, context: &FitContext) -> Fitted {
-        let hypothesis = self.hypothesis.with(candidate);
-        let starts = context.initial_guesses(&candidate).into_iter();
-        let starts = starts.map(|own| [self.values.as_slice(), own.as_slice()].concat()).collect();
-        fit(hypothesis, starts, &self.log_likelihood, context)
+        let (problem, sketch) = self.sketched_with(candidate, context);
+        problem.settle(sketch)
     }
 
-    /// Adds each variant of each effect that is not there yet. `alone` are the same variants fitted on nothing, where they
-    /// are known: what touches other stages than these effects need not be fitted again.
+    /// Adds each variant of each effect that is not there yet. `alone` are the same variants fitted on nothing: what touches
+    /// other stages than these effects need not be fitted again, and of the others only the most promising are fitted to the
+    /// end.
     pub fn with_each(&self, alone: Option<&[Fitted]>, context: &FitContext) -> Vec<Fitted> {
         let mut fresh = Candidate::all(context.catalogue);
         fresh.retain(|candidate| !self.ids().contains(&candidate.effect));
-        let one = |candidate: &Candidate| {
-            let known = alone.into_iter().flatten().find(|f| f.hypothesis.candidates[0] == *candidate);
-            match known.filter(|f| self.is_apart_from(f)) {
-                Some(known) => self.combined_with(known, context),
-                None => self.with(*candidate, context),
-            }
+        let Some(alone) = alone else {
+            return fresh.par_iter().map(|candidate| self.with(*candidate, context)).collect();
         };
-        fresh.par_iter().map(one).collect()
+        let apart = |candidate: &Candidate| {
+            alone.iter().find(|f| f.hypothesis.candidates[0] == *candidate).filter(|f| self.is_apart_from(f))
+        };
+        let combined = fresh.par_iter().filter_map(|c| Some((*c, self.combined_with(apart(c)?, context))));
+        let sketches = fresh.par_iter().filter(|c| apart(c).is_none()).map(|c| (*c, self.sketched_with(*c, context)));
+        let mut fits: Vec<(Candidate, Fitted)> = combined.collect();
+        let mut sketches: Vec<_> = sketches.collect();
+        sketches.sort_by(|a, b| b.1.1.value().total_cmp(&a.1.1.value()));
+        sketches.truncate(PROMISING);
+        fits.par_extend(sketches.into_par_iter().map(|(c, (problem, sketch))| (c, problem.settle(sketch))));
+        // In the order of the catalogue, whichever way they came about.
+        let place = |candidate: &Candidate| fresh.iter().position(|c| c == candidate);
+        fits.sort_by_key(|(candidate, _)| place(candidate));
+        fits.into_iter().map(|(_, fit)| fit).collect()
+    }
+
+    /// A few iterations of the fit with one more effect.
+    fn sketched_with<'a>(&'a self, candidate: Candidate, context: &'a FitContext<'a>) -> (Problem<'a>, Maximum) {
+        let hypothesis = self.hypothesis.with(candidate);
+        let starts = context.initial_guesses(&candidate).into_iter();
+        let starts = starts.map(|own| [self.values.as_slice(), own.as_slice()].concat()).collect();
+        let problem = Problem { hypothesis, untouched: &self.log_likelihood, context };
+        let sketch = problem.sketch(starts);
+        (problem, sketch)
     }
 
     /// Leaves the effect at `place` out and fits the others anew.
@@ -184,7 +238,9 @@ impl Fitted {
         }
         let others = (0..=candidates.len()).filter(|i| *i != place);
         let values = others.flat_map(|i| self.values_of(i)).copied().collect();
-        fit(self.hypothesis.of(candidates), vec![values], &none.log_likelihood, context)
+        let problem = Problem { hypothesis: self.hypothesis.of(candidates), untouched: &none.log_likelihood, context };
+        let sketch = problem.sketch(vec![values]);
+        problem.settle(sketch)
     }
 
     /// Whether no stage is touched by both.
@@ -204,13 +260,15 @@ impl Fitted {
         let held_out = self.held_out.iter().zip(gains).map(|(s, g)| s + g).collect();
         let candidates = [self.hypothesis.candidates.as_slice(), &other.hypothesis.candidates].concat();
         let values = [self.values.as_slice(), &other.values].concat();
-        Fitted { hypothesis: self.hypothesis.of(candidates), values, log_likelihood, held_out }
+        let errors = [self.errors.as_slice(), &other.errors].concat();
+        let occam = self.occam + other.occam;
+        Fitted { hypothesis: self.hypothesis.of(candidates), values, log_likelihood, held_out, errors, occam }
     }
 }
 
 impl Gain {
     /// Nothing.
-    pub const NONE: Gain = Gain { nats: 0.0, error: 0.0 };
+    pub const NONE: Gain = Gain { nats: 0.0, broad_nats: 0.0, error: 0.0 };
 
     /// The gain of each block, together.
     pub fn of(by_block: &[f64]) -> Self {
@@ -218,23 +276,26 @@ impl Gain {
         let nats: f64 = by_block.iter().sum();
         let mean = nats / n;
         let variance = by_block.iter().map(|d| (d - mean) * (d - mean)).sum::<f64>() / (n - 1.0).max(1.0);
-        Gain { nats, error: (n * variance).sqrt() }
+        let mut ascending = by_block.to_vec();
+        ascending.sort_by(f64::total_cmp);
+        let kept = by_block.len() - by_block.len().div_ceil(LEFT_OUT);
+        Gain { nats, broad_nats: ascending[..kept].iter().sum(), error: (n * variance).sqrt() }
     }
 
-    /// Whether it counts.
-    pub fn passes(&self, gate: &Gate) -> bool {
-        self.nats >= gate.nats && self.z() >= gate.z
+    /// The same at a price.
+    pub fn less(self, nats: f64) -> Self {
+        Gain { nats: self.nats - nats, broad_nats: self.broad_nats - nats, ..self }
     }
 
-    /// Gain in standard errors.
-    pub fn z(&self) -> f64 {
-        self.nats / self.error.max(1e-9)
+    /// Whether it counts: it is large enough without the blocks that gain most.
+    pub fn passes(&self, gate_nats: f64) -> bool {
+        self.broad_nats >= gate_nats
     }
 }
 
 /// The best fit of each effect that was added last, best first.
-pub fn best_of_each(mut fits: Vec<Fitted>, calibration: &Calibration) -> Vec<Fitted> {
-    fits.sort_by(|a, b| b.score(calibration).total_cmp(&a.score(calibration)));
+pub fn best_of_each(mut fits: Vec<Fitted>) -> Vec<Fitted> {
+    fits.sort_by(|a, b| b.log_evidence().total_cmp(&a.log_evidence()));
     let mut seen = Vec::new();
     fits.retain(|fit| {
         let id = fit.ids().last().copied();
@@ -245,35 +306,94 @@ pub fn best_of_each(mut fits: Vec<Fitted>, calibration: &Calibration) -> Vec<Fit
     fits
 }
 
-fn fit(hypothesis: Hypothesis, starts: Vec<Vec<f64>>, untouched: &LogLikelihood, context: &FitContext) -> Fitted {
-    let bounds = hypothesis.bounds();
-    // The prior stands behind the rows as one more term, which belongs to no block.
-    let terms = |at: &[f64]| {
-        let rows = hypothesis.log_likelihood(context.baseline, context.observations, at, Some(untouched));
-        let mut terms = rows.total();
-        terms.push(hypothesis.log_prior(at));
-        terms
-    };
-    let value = |at: &[f64]| terms(at).iter().sum::<f64>();
-    let best = starts.iter().map(|s| (value(s), s)).max_by(|a, b| a.0.total_cmp(&b.0));
-    let start = best.map(|(_, s)| s.clone()).unwrap_or_default();
-    let found = climb(&bounds, &start, MOST_ITERATIONS, TOLERANCE_NATS, terms);
-    let held_out = held_out(&found, &hypothesis, untouched, context);
-    let log_likelihood = hypothesis.log_likelihood(context.baseline, context.observations, &found.at, Some(untouched));
-    Fitted { hypothesis, values: found.at, log_likelihood, held_out }
+/// A hypothesis whose parameters are sought.
+struct Problem<'a> {
+    hypothesis: Hypothesis,
+    /// The log-likelihood of what it does not touch.
+    untouched: &'a LogLikelihood,
+    context: &'a FitContext<'a>,
 }
 
-/// The log-likelihood of each block with the parameters that the others alone would have, by the one-step jackknife.
-fn held_out(found: &Maximum, hypothesis: &Hypothesis, untouched: &LogLikelihood, context: &FitContext) -> Vec<f64> {
-    let bounds = hypothesis.bounds();
+impl Problem<'_> {
+    /// The log-likelihood of each row. The prior stands behind them as one more term, which belongs to no block.
+    fn terms(&self, at: &[f64]) -> Vec<f64> {
+        let FitContext { baseline, observations, .. } = self.context;
+        let mut terms = self.hypothesis.log_likelihood(baseline, observations, at, Some(self.untouched)).total();
+        terms.push(self.hypothesis.log_prior(at));
+        terms
+    }
+
+    /// A few iterations from the best starts: likelihoods with several maxima have more than one that is promising.
+    fn sketch(&self, starts: Vec<Vec<f64>>) -> Maximum {
+        let mut starts: Vec<(f64, Vec<f64>)> =
+            starts.into_iter().map(|start| (self.terms(&start).iter().sum(), start)).collect();
+        starts.sort_by(|a, b| b.0.total_cmp(&a.0));
+        let bounds = self.hypothesis.bounds();
+        let best = starts.first().map_or(0.0, |start| start.0);
+        let promising = starts.iter().take(STARTS).take_while(|start| best - start.0 < NEARLY_AS_GOOD_NATS);
+        let climbs =
+            promising.map(|(_, start)| climb(&bounds, start, SKETCH_ITERATIONS, TOLERANCE_NATS, |at| self.terms(at)));
+        let best = climbs.max_by(|a, b| a.value().total_cmp(&b.value()));
+        best.unwrap_or_else(|| climb(&bounds, &vec![0.0; bounds.len()], 0, TOLERANCE_NATS, |at| self.terms(at)))
+    }
+
+    /// The fit to the end.
+    fn settle(self, sketch: Maximum) -> Fitted {
+        let bounds = self.hypothesis.bounds();
+        let found = climb_on(&bounds, sketch, MOST_ITERATIONS, TOLERANCE_NATS, |at| self.terms(at));
+        let Problem { hypothesis, untouched, context } = self;
+        let without = without_each_block(&found, &bounds, context);
+        let held_out = held_out(&without, &found, &hypothesis, untouched, context);
+        let errors = jackknife_errors(&found.at, &without);
+        let log_likelihood =
+            hypothesis.log_likelihood(context.baseline, context.observations, &found.at, Some(untouched));
+        let occam = occam(&found, &hypothesis, &bounds);
+        Fitted { hypothesis, values: found.at, log_likelihood, held_out, errors, occam }
+    }
+}
+
+/// The parameters that the blocks would have without each in turn, by the one-step jackknife.
+fn without_each_block(found: &Maximum, bounds: &[Bounds], context: &FitContext) -> Vec<Vec<f64>> {
+    let without = |block: usize| {
+        let left_out = context.observations.of_block(block);
+        found.without(bounds, |row| left_out.contains(&row))
+    };
+    (0..context.observations.blocks).map(without).collect()
+}
+
+/// The log-likelihood of each block with the parameters that the others alone would have.
+fn held_out(
+    without: &[Vec<f64>],
+    found: &Maximum,
+    hypothesis: &Hypothesis,
+    untouched: &LogLikelihood,
+    context: &FitContext,
+) -> Vec<f64> {
     let scatter = hypothesis.scatter(context.baseline, context.observations, &found.at);
-    (0..context.observations.blocks)
-        .map(|block| {
-            let left_out = context.observations.of_block(block);
-            let values = found.without(&bounds, |row| left_out.contains(&row));
-            hypothesis.of_block(context.baseline, context.observations, block, &values, scatter, untouched)
-        })
-        .collect()
+    let of_block = |(block, values): (usize, &Vec<f64>)| {
+        hypothesis.of_block(context.baseline, context.observations, block, values, scatter, untouched)
+    };
+    without.iter().enumerate().map(of_block).collect()
+}
+
+/// Standard errors by the jackknife (Efron and Tibshirani 1993, equation 11.5).
+fn jackknife_errors(values: &[f64], without: &[Vec<f64>]) -> Vec<f64> {
+    let n = without.len() as f64;
+    let error = |i: usize| {
+        let mean = without.iter().map(|w| w[i]).sum::<f64>() / n;
+        ((n - 1.0) / n * without.iter().map(|w| (w[i] - mean) * (w[i] - mean)).sum::<f64>()).sqrt()
+    };
+    (0..values.len()).map(error).collect()
+}
+
+/// By how much the evidence exceeds the held-out log-likelihood: the prior at the maximum times the volume about it, less
+/// what held-out rows lose where they are independent, which is one nat a parameter. A gain from freedom alone is none.
+fn occam(found: &Maximum, hypothesis: &Hypothesis, bounds: &[Bounds]) -> f64 {
+    // The prior is the last of the terms.
+    let rows = found.scores.len() - 1;
+    let volume = found.log_volume(bounds, &hypothesis.prior_precisions(), |term| term < rows);
+    let prior = hypothesis.log_prior_peak() + hypothesis.log_prior(&found.at);
+    bounds.len() as f64 + (prior + volume).min(0.0)
 }
 
 #[cfg(test)]

@@ -1,9 +1,9 @@
 //! Effects that are supposed to be at work together, with free parameters, and how likely they make the logs.
 
-use std::f64::consts::PI;
 use std::ops::Range;
 
 use super::channel::Channel;
+use super::residual_law::{fitted_scatter, log_density};
 use crate::effects::chain::EffectChain;
 use crate::effects::{Candidate, Parameter};
 use crate::evaluation::observations::{Observation, Observations};
@@ -48,13 +48,6 @@ impl LogLikelihood {
     }
 }
 
-/// Scatter of a jump of the tracker against that of a step: a jump of some tens of centimetres.
-const JUMP: f64 = 8.0;
-/// Share of steps in which the tracker jumps, at most.
-const JUMPS: f64 = 0.01;
-/// A residual beyond this multiple of the usual scatter counts as that: jumps are no scatter.
-const FARTHEST: f64 = 4.0;
-
 impl Hypothesis {
     /// The simulator as it is.
     pub fn none(baseline: &Baseline) -> Self {
@@ -87,7 +80,18 @@ impl Hypothesis {
         self.parameters().zip(values).map(|(parameter, value)| parameter.log_prior(*value)).sum()
     }
 
-    fn parameters(&self) -> impl Iterator<Item = &'static Parameter> {
+    /// Logarithm of the prior density of parameters where it is largest, per unit of each.
+    pub fn log_prior_peak(&self) -> f64 {
+        self.parameters().map(Parameter::log_prior_peak).sum()
+    }
+
+    /// Precisions of the priors, one a parameter, in squared inverse units; zero where every value is as likely.
+    pub fn prior_precisions(&self) -> Vec<f64> {
+        self.parameters().map(|p| 1.0 / (p.prior_sd * p.prior_sd)).collect()
+    }
+
+    /// The free parameters, effect after effect.
+    pub fn parameters(&self) -> impl Iterator<Item = &'static Parameter> {
         self.candidates.iter().flat_map(|c| c.variant.parameters)
     }
 
@@ -101,8 +105,8 @@ impl Hypothesis {
     ) -> LogLikelihood {
         let kept = |touched: bool| untouched.filter(|_| !touched);
         let motion = || {
-            let scatter = self.scatter(baseline, observations, values);
-            self.motion(baseline, &observations.rows, values, scatter)
+            let residuals = self.residuals(baseline, &observations.rows, values);
+            densities(&residuals, fitted(&residuals, baseline))
         };
         let sonar = || self.sonar(baseline, observations, 0..observations.rows.len(), values);
         LogLikelihood {
@@ -151,12 +155,7 @@ impl Hypothesis {
 
     /// A nuisance of every hypothesis: the scatter may be larger than the simulator's, never smaller.
     pub fn scatter(&self, baseline: &Baseline, observations: &Observations, values: &[f64]) -> [f64; 3] {
-        let Some(drive) = &baseline.motion else { return [1.0; 3] };
-        let effects = self.at(values);
-        let residuals: Vec<[f64; 3]> =
-            observations.rows.iter().filter_map(|row| residual(&effects, drive, row)).collect();
-        let least = drive.scatter();
-        [0, 1, 2].map(|axis| refitted(residuals.iter().map(|r| r[axis]), least[axis]))
+        fitted(&self.residuals(baseline, &observations.rows, values), baseline)
     }
 
     /// Whether a further effect changes the motion.
@@ -171,10 +170,14 @@ impl Hypothesis {
 
     /// The log-likelihoods of the motion channels with a given scatter.
     fn motion(&self, baseline: &Baseline, rows: &[Observation], values: &[f64], scatter: [f64; 3]) -> Vec<[f64; 3]> {
-        let Some(drive) = &baseline.motion else { return vec![[0.0; 3]; rows.len()] };
+        densities(&self.residuals(baseline, rows, values), scatter)
+    }
+
+    /// Logged minus predicted of every row.
+    fn residuals(&self, baseline: &Baseline, rows: &[Observation], values: &[f64]) -> Vec<Option<[f64; 3]>> {
+        let Some(drive) = &baseline.motion else { return vec![None; rows.len()] };
         let effects = self.at(values);
-        let densities = |r: [f64; 3]| [0, 1, 2].map(|c| log_density(r[c], scatter[c]));
-        rows.iter().map(|row| residual(&effects, drive, row).map_or([0.0; 3], densities)).collect()
+        rows.iter().map(|row| residual(&effects, drive, row)).collect()
     }
 
     fn sonar(
@@ -190,25 +193,26 @@ impl Hypothesis {
             let (fan, perturbation) = facing(&effects, observations, row);
             let outcomes = sonar.outcomes(&fan, &perturbation, row.previous_echo_cm);
             let rate = outcomes.log_detection(row.echo_cm);
-            [rate, outcomes.log_likelihood(row.echo_cm) - rate]
+            let [rate_weight, value_weight] = row.echo_weight;
+            [rate_weight * rate, value_weight * (outcomes.log_likelihood(row.echo_cm) - rate)]
         };
         observations.rows[rows].iter().map(term).collect()
     }
 }
 
-/// The standard deviation of residuals, those far off counted as less far; never less than `least`.
-pub fn refitted(residuals: impl Iterator<Item = f64>, least: f64) -> f64 {
-    let bound = FARTHEST * least;
-    let squares = residuals.map(|r| r.clamp(-bound, bound)).map(|r| r * r);
-    let (sum, n) = squares.fold((0.0, 0.0), |(sum, n), s| (sum + s, n + 1.0));
-    if n > 0.0 { f64::max(least, f64::sqrt(sum / n)) } else { least }
+/// The log-density of each channel, zero where nothing was logged.
+fn densities(residuals: &[Option<[f64; 3]>], scatter: [f64; 3]) -> Vec<[f64; 3]> {
+    let of = |r: [f64; 3]| [0, 1, 2].map(|axis| log_density(axis, r[axis], scatter[axis]));
+    residuals.iter().map(|r| r.map_or([0.0; 3], of)).collect()
 }
 
-/// The logarithm of a residual's density: normal, and now and then a jump of the tracker.
-pub fn log_density(residual: f64, scatter: f64) -> f64 {
-    let t = residual / scatter;
-    let normal = |t: f64| libm::exp(-0.5 * t * t) / (2.0 * PI).sqrt();
-    libm::log((1.0 - JUMPS) * normal(t) + JUMPS * normal(t / JUMP) / JUMP) - libm::log(scatter)
+fn fitted(residuals: &[Option<[f64; 3]>], baseline: &Baseline) -> [f64; 3] {
+    let Some(drive) = &baseline.motion else { return [1.0; 3] };
+    let least = drive.scatter();
+    [0, 1, 2].map(|axis| {
+        let of_axis: Vec<f64> = residuals.iter().flatten().map(|r| r[axis]).collect();
+        fitted_scatter(axis, &of_axis, least[axis])
+    })
 }
 
 #[cfg(test)]

@@ -1,6 +1,7 @@
 //! The settings of a diagnosis.
 
 use super::calibration::Calibration;
+use super::channel::Channel;
 use crate::effects::{CATALOGUE, Effect};
 
 /// What a diagnosis looks for, when a gain counts, and what its draws follow from.
@@ -17,6 +18,11 @@ pub struct Method {
 impl Method {
     /// The seed unless another is given.
     pub const SEED: u64 = 1;
+
+    /// The thresholds for so many rows, among all that competes.
+    pub fn calibration_for(&self, rows: usize) -> Calibration {
+        self.calibration.among(self.catalogue.len(), Channel::ALL.len()).for_rows(rows)
+    }
 }
 
 impl Default for Method {

@@ -10,7 +10,7 @@ pub mod ridge;
 mod sonar;
 
 use super::channel::Channel;
-use super::fit::{FitContext, Fitted};
+use super::fit::{FitContext, Fitted, Gain};
 use crate::effects::chain::EffectChain;
 use crate::evaluation::observations::{FEWEST_BLOCKS, Observations};
 use basis::Basis;
@@ -71,6 +71,17 @@ impl ResidualFit {
         context.observations.by_block(&gains)
     }
 
+    /// What it gains over the fit beneath, and how much that differs between runs, or for echoes between places: what
+    /// belongs to a place does not tell of others.
+    pub fn gain_over(&self, beneath: &Fitted, context: &FitContext) -> Gain {
+        let without = beneath.log_likelihood.channel(self.channel);
+        let gains: Vec<f64> = self.held_out.iter().zip(without).map(|(a, b)| a - b).collect();
+        match &self.law {
+            Law::Motion(_) => Gain::of(&context.observations.by_block(&gains)),
+            Law::EchoRate | Law::EchoValue(_) => Gain::of(&context.observations.by_place(&gains)),
+        }
+    }
+
     /// The log-likelihood of each row in the channel, never by a fit to its own run.
     pub fn judged_on(&self, rows: &Observations, context: &FitContext) -> Vec<f64> {
         if is_own(rows, context) {
@@ -80,23 +91,35 @@ impl ResidualFit {
         }
     }
 
-    /// How many times as wide as the simulator's the scatter of the logs is; one of a sonar channel.
-    pub fn scatter_ratio(&self, context: &FitContext) -> f64 {
-        match &self.law {
-            Law::Motion(law) => law.scatter / law.least(context.baseline),
-            Law::EchoRate | Law::EchoValue(_) => 1.0,
+    /// The same of a motion channel with this scatter in place of the model's own.
+    pub fn judged_with(&self, scatter: Option<f64>, rows: &Observations, context: &FitContext) -> Vec<f64> {
+        match (&self.law, scatter) {
+            (Law::Motion(law), Some(scatter)) => {
+                let residuals = law.residuals(&self.effects, context.baseline, rows);
+                motion::Law { scatter, ..*law }.terms(&residuals, &self.predictions(rows, context))
+            }
+            _ => self.judged_on(rows, context),
         }
     }
 
-    /// By how much each row of a motion channel is likelier with the scatter of the logs than with the simulator's; zeros
-    /// of a sonar channel.
-    pub fn wider_scatter(&self, context: &FitContext, rows: &Observations) -> Vec<f64> {
-        let Law::Motion(law) = &self.law else { return vec![0.0; rows.rows.len()] };
-        let narrow = motion::Law { scatter: law.least(context.baseline), ..*law };
-        let predictions = self.predictions(rows, context);
+    /// The scatter of a motion channel that the model leaves, cm or rad.
+    pub fn scatter(&self) -> Option<f64> {
+        match &self.law {
+            Law::Motion(law) => Some(law.scatter),
+            Law::EchoRate | Law::EchoValue(_) => None,
+        }
+    }
+
+    /// What is left of each row of a motion channel: with the model's prediction taken away, or with the effects alone.
+    pub fn rest(&self, with_model: bool, rows: &Observations, context: &FitContext) -> Option<Vec<Option<f64>>> {
+        let Law::Motion(law) = &self.law else { return None };
         let residuals = law.residuals(&self.effects, context.baseline, rows);
-        let [own, narrow] = [law, &narrow].map(|law| law.terms(&residuals, &predictions));
-        own.iter().zip(narrow).map(|(a, b)| a - b).collect()
+        if !with_model {
+            return Some(residuals);
+        }
+        let rest =
+            residuals.iter().zip(self.predictions(rows, context)).map(|(r, prediction)| Some((*r)? - prediction));
+        Some(rest.collect())
     }
 
     fn terms(&self, rows: &Observations, context: &FitContext, predictions: &[f64]) -> Vec<f64> {
@@ -127,7 +150,7 @@ impl Surface {
     fn fit(
         covariates: &[Steps],
         has_any: impl Fn(usize) -> bool,
-        observations: &Observations,
+        block: impl Fn(usize) -> usize,
         unit: f64,
         response: impl Fn(usize, f64) -> f64,
     ) -> (Self, Vec<f64>) {
@@ -135,7 +158,7 @@ impl Surface {
         let first_steps: Vec<Vec<f64>> = used.iter().filter_map(|i| covariates[*i].first().cloned()).collect();
         let basis = Basis::of(&first_steps);
         let rows: Vec<Vec<f64>> = used.iter().map(|i| together(&basis, &covariates[*i])).collect();
-        let folds: Vec<usize> = used.iter().map(|i| observations.rows[*i].block % FOLDS).collect();
+        let folds: Vec<usize> = used.iter().map(|i| block(*i) % FOLDS).collect();
         let fitted = ridge::fit(&rows, &folds, |place, prediction| response(used[place], prediction));
         let mut predictions = vec![0.0; covariates.len()];
         used.iter().zip(fitted.held_out).for_each(|(i, held_out)| predictions[*i] = unit * held_out);

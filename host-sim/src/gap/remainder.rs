@@ -1,4 +1,4 @@
-//! What a fit leaves over in a channel: what follows circumstances, and scatter beyond the simulator's.
+//! What a fit leaves over in a channel that follows circumstances.
 
 use rayon::prelude::*;
 
@@ -13,8 +13,6 @@ pub struct Remainder {
     pub model: ResidualFit,
     /// Its gain on each block, zero where it does not count.
     pub by_block: Vec<f64>,
-    follows: bool,
-    scatters: bool,
 }
 
 /// The remainder of each channel beyond a fit.
@@ -22,31 +20,20 @@ pub fn remainders(fit: &Fitted, context: &FitContext) -> Vec<Remainder> {
     Channel::ALL.par_iter().map(|channel| Remainder::of(*channel, fit, context)).collect()
 }
 
-/// The most that the model gains in a channel beyond a fit, or wider scatter on top of it, before any gate.
+/// The most that the model gains in a channel beyond a fit, before any gate.
 pub fn most(fit: &Fitted, context: &FitContext) -> Gain {
-    let of_channel = |channel: &Channel| {
-        let model = ResidualFit::of(*channel, fit, context);
-        let wider = context.observations.by_block(&wider_scatter(&model, context, context.observations));
-        [model.gains_over(fit, context), wider].map(|gains| Gain::of(&gains))
-    };
-    let gains: Vec<[Gain; 2]> = Channel::ALL.par_iter().map(of_channel).collect();
-    gains.into_iter().flatten().max_by(|a, b| a.nats.total_cmp(&b.nats)).unwrap_or(Gain::NONE)
+    let of_channel = |channel: &Channel| ResidualFit::of(*channel, fit, context).gain_over(fit, context);
+    let gains: Vec<Gain> = Channel::ALL.par_iter().map(of_channel).collect();
+    gains.into_iter().max_by(|a, b| a.broad_nats.total_cmp(&b.broad_nats)).unwrap_or(Gain::NONE)
 }
 
 impl Remainder {
     fn of(channel: Channel, fit: &Fitted, context: &FitContext) -> Self {
-        let gate = &context.calibration.remainder;
         let model = ResidualFit::of(channel, fit, context);
+        let counts = model.gain_over(fit, context).passes(context.calibration.remainder_nats);
         let gains = model.gains_over(fit, context);
-        let wider = context.observations.by_block(&wider_scatter(&model, context, context.observations));
-        let (follows, scatters) = (Gain::of(&gains).passes(gate), Gain::of(&wider).nats >= gate.nats);
-        let mut by_block = vec![0.0; gains.len()];
-        for (counts, gains) in [(follows, gains), (scatters, wider)] {
-            if counts {
-                by_block.iter_mut().zip(gains).for_each(|(sum, gain)| *sum += gain);
-            }
-        }
-        Remainder { model, by_block, follows, scatters }
+        let by_block = if counts { gains } else { vec![0.0; gains.len()] };
+        Remainder { model, by_block }
     }
 
     /// The channel.
@@ -59,39 +46,27 @@ impl Remainder {
         self.by_block.iter().any(|g| *g != 0.0)
     }
 
-    /// By how much each row is likelier with the scatter of the logs than with the simulator's; zeros where
-    /// that does not count.
-    pub fn wider_scatter(&self, context: &FitContext, rows: &Observations) -> Vec<f64> {
-        if self.scatters { wider_scatter(&self.model, context, rows) } else { vec![0.0; rows.rows.len()] }
+    /// What is left of each row of a motion channel once all is explained that counts; none of a sonar channel.
+    pub fn rest(&self, rows: &Observations, context: &FitContext) -> Option<Vec<Option<f64>>> {
+        self.model.rest(self.counts(), rows, context)
     }
 
     /// This if it gains something over the fit `beneath` on runs held out, and nothing otherwise.
     pub fn confirmed(self, beneath: &Fitted, context: &FitContext, hold_out: &Observations) -> Self {
-        let followed = || -> f64 {
+        let gained = || -> f64 {
             let without = beneath.judged_on(hold_out, context).channel(self.channel());
             self.model.judged_on(hold_out, context).iter().zip(without).map(|(a, b)| a - b).sum()
         };
-        let followed = if self.follows { followed() } else { 0.0 };
-        let scattered: f64 = self.wider_scatter(context, hold_out).iter().sum();
-        if followed + scattered >= context.calibration.judgement.strong_nats {
+        if self.counts() && gained() >= context.calibration.judgement.strong_nats {
             return self;
         }
-        Remainder { by_block: vec![0.0; self.by_block.len()], follows: false, scatters: false, ..self }
+        Remainder { by_block: vec![0.0; self.by_block.len()], ..self }
     }
-}
-
-/// What a wider scatter gains, where it is wider than chance makes it.
-fn wider_scatter(model: &ResidualFit, context: &FitContext, rows: &Observations) -> Vec<f64> {
-    if model.scatter_ratio(context) < context.calibration.judgement.scatter_ratio {
-        return vec![0.0; rows.rows.len()];
-    }
-    model.wider_scatter(context, rows)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::gap::hypothesis::log_density;
     use crate::gap::test_support::*;
 
     /// Eight blocks of twelve rows with forward residuals.
@@ -117,7 +92,6 @@ mod tests {
 
     const AS_EXPECTED: fn(usize) -> f64 = |at| 0.9 * alternating(at / 2);
     const LONGER_TO_ONE_SIDE: fn(usize) -> f64 = |at| 0.9 * alternating(at / 2) + alternating(at);
-    const SCATTERED: fn(usize) -> f64 = |at| 2.0 * alternating(at / 2);
 
     #[test]
     fn what_is_as_expected_leaves_nothing_over() {
@@ -130,25 +104,10 @@ mod tests {
         assert!(counting(&confirmed(LONGER_TO_ONE_SIDE, AS_EXPECTED)).is_empty());
     }
 
-    /// Residuals of two standard deviations that follow nothing: each row gains what twice the scatter makes it likelier.
+    /// What scatters more follows nothing.
     #[test]
-    fn wider_scatter_is_left_over() {
-        let found = confirmed(SCATTERED, SCATTERED);
-        assert_eq!(counting(&found), [Channel::Forward]);
-        let expected = 12.0 * (log_density(2.0, 2.0) - log_density(2.0, 1.0));
-        for nats in &found[0].by_block {
-            assert!((nats - expected).abs() < 0.02 * expected, "{nats} {expected}");
-        }
-        assert!(counting(&confirmed(SCATTERED, AS_EXPECTED)).is_empty());
-    }
-
-    /// The most that is gained is that of the channel that has most to gain.
-    #[test]
-    fn the_most_is_that_of_one_channel() {
-        let (baseline, rows) = (baseline(), rows(SCATTERED));
-        let context = FitContext::new(&baseline, &rows, METHOD);
-        let expected = 96.0 * (log_density(2.0, 2.0) - log_density(2.0, 1.0));
-        let most = most(&Fitted::none(&context), &context).nats;
-        assert!((most - expected).abs() < 0.02 * expected, "{most} {expected}");
+    fn wider_scatter_is_no_remainder() {
+        let scattered = |at| 2.0 * alternating(at / 2);
+        assert!(counting(&confirmed(scattered, scattered)).is_empty());
     }
 }

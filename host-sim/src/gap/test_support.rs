@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use super::calibration::{Calibration, Gate, Judgement};
+use super::calibration::{Calibration, Judgement};
 use super::compare::Comparison;
 use super::fit::{FitContext, Fitted};
 use super::hypothesis::{Hypothesis, LogLikelihood};
@@ -10,7 +10,7 @@ use super::method::Method;
 use crate::effects::context::{CommandHistory, HISTORY, Surroundings};
 use crate::effects::parameter::Guesses;
 use crate::effects::{Candidate, Effect, Hook, Parameter, StepContext, Variant};
-use crate::evaluation::observations::{Observation, Observations};
+use crate::evaluation::observations::{Observation, Observations, number_places};
 use crate::geometry::Pose;
 use crate::logs::{Logs, Robot, Row, Run, Scene, Ultrasonic};
 use crate::simulator::baseline::{Baseline, MotionModel};
@@ -67,6 +67,7 @@ pub fn baseline() -> Baseline<'static> {
     Baseline {
         motion: Some(MotionModel::Kinematic { robot: robot(), scatter: SCATTER }),
         sonar: None,
+        place_bound: [0.0; 2],
         applied: Vec::new(),
     }
 }
@@ -107,6 +108,8 @@ pub fn observations(blocks: usize, rows: usize, made: impl Fn(usize, usize) -> M
             run: block,
             at,
             block,
+            place: 0,
+            echo_weight: [1.0; 2],
             stretch: 1.0,
             context,
             then: Vec::new(),
@@ -118,7 +121,9 @@ pub fn observations(blocks: usize, rows: usize, made: impl Fn(usize, usize) -> M
         }
     };
     let rows = (0..blocks).flat_map(|block| (0..rows).map(move |at| (block, at))).map(|(block, at)| row(block, at));
-    Observations { rows: rows.collect(), surroundings, fan_width: FAN_WIDTH, blocks }
+    let mut rows: Vec<Observation> = rows.collect();
+    let places = number_places(&mut rows);
+    Observations { rows, surroundings, fan_width: FAN_WIDTH, blocks, places }
 }
 
 /// Logs of runs that do what the textbook says of their commands, with readings that are the distance.
@@ -210,8 +215,8 @@ pub const CALIBRATION: Calibration = Calibration {
     adequacy_width: 0.05,
     temperature: 1.0,
     accuracy_cap: 0.9,
-    effect: Gate { nats: 5.0, z: 2.0 },
-    remainder: Gate { nats: 5.0, z: 2.0 },
+    effect_nats: 5.0,
+    remainder_nats: 5.0,
     judgement: Judgement::USUAL,
 };
 
@@ -233,6 +238,8 @@ pub fn made_up(effects: &[&'static Effect], values: &[f64], held_out: &[f64], co
         values: values.to_vec(),
         log_likelihood: LogLikelihood { motion: vec![[0.0; 3]; rows], sonar: vec![[0.0; 2]; rows] },
         held_out: held_out.to_vec(),
+        errors: vec![0.0; values.len()],
+        occam: 0.0,
     }
 }
 
@@ -240,5 +247,13 @@ pub fn made_up(effects: &[&'static Effect], values: &[f64], held_out: &[f64], co
 pub fn comparison(effects: &[&'static Effect], gains: &[f64], context: &FitContext) -> Comparison {
     let none = made_up(&[], &[], &vec![0.0; gains.len()], context);
     let chosen = made_up(effects, &vec![0.5; effects.len()], gains, context);
-    Comparison { none, chosen, rivals: Vec::new(), beyond_none: Vec::new(), beyond_chosen: Vec::new() }
+    Comparison {
+        none,
+        chosen,
+        rivals: Vec::new(),
+        own_nats: Vec::new(),
+        beyond_none: Vec::new(),
+        beyond_chosen: Vec::new(),
+        scatter: Vec::new(),
+    }
 }

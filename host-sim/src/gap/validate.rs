@@ -1,15 +1,25 @@
 //! Validation: whether logs are of the simulator's robot, and what they cannot say.
 
+use glam::DVec2;
+
 use super::condition::FEWEST_RUNS;
+use super::scope::Scope;
 use crate::error::{Error, Result};
-use crate::evaluation::observations::Observations;
-use crate::logs::{Logs, Robot, Run};
+use crate::evaluation::observations::{Observation, Observations};
+use crate::geometry::wrap_rad;
+use crate::inspection::{Inspection, Part};
+use crate::logs::{Robot, Run};
 use crate::simulator::baseline::Baseline;
+use crate::statistics::summary::median;
 
 /// Two people who measure one robot agree to this share.
 const SAME: f64 = 0.02;
-/// A step longer than this multiple of the distance at full speed is a jump of the tracker: a fresh battery adds a third.
-const JUMP: f64 = 2.0;
+/// The track of a robot that stands scatters by less: a camera's marker by a centimetre or two,
+const STANDING_CM: f64 = 4.0;
+/// and a compass by a few degrees (here 15).
+const STANDING_RAD: f64 = 0.26;
+/// A robot moved where at least this share of a run's poses lies beyond: a few jumps of the tracker are fewer.
+const MOVED: f64 = 0.1;
 
 /// Checks that logs are of the robot that the simulator was learned from.
 ///
@@ -36,38 +46,49 @@ pub fn same_robot(simulator: &Robot, logs: &Robot) -> Result<()> {
     }
 }
 
-/// Takes out of a baseline what the logs say nothing about, and tells it, with what else limits a diagnosis.
+/// What a diagnosis can speak of.
+pub struct Validated {
+    /// What limits it.
+    pub notes: Vec<String>,
+    /// What it compares.
+    pub scope: Scope,
+    /// Whether the robot moved though no command asked for it: a gap, whatever else agrees.
+    pub moved_uncommanded: bool,
+}
+
+/// Takes out of a baseline what the logs say nothing about or must not be asked for, and tells it, with what else limits a
+/// diagnosis.
 ///
 /// # Errors
 /// When the logs say nothing that the baseline could be compared with.
-pub fn validate(baseline: &mut Baseline, observations: &Observations, logs: &Logs) -> Result<Vec<String>> {
+pub fn validate(baseline: &mut Baseline, observations: &Observations, inspected: &Inspection) -> Result<Validated> {
+    let knows_motion = baseline.motion.is_some();
+    let logs = &inspected.logs;
     let mut notes = Vec::new();
-    let steps = observations.rows.iter().filter(|row| row.motion.is_some()).count();
-    let mut steps_of = observations.rows.iter().flat_map(|row| std::iter::once(&row.context).chain(&row.then));
-    let driven = steps_of.any(|step| step.commands[0].iter().any(|c| c.abs() >= 1.0));
-    if baseline.motion.is_none() {
-        notes.push(
-            "From too few logs, or none with poses, the simulator does not know motion: it is not compared.".into(),
-        );
-    } else if steps == 0 {
-        notes.push("No run has two poses: motion cannot be compared.".into());
+    let mut reasons = Vec::new();
+    if let Some(why) = inspected.withheld(Part::Motion) {
+        reasons.push((Part::Motion, why.to_owned()));
         baseline.motion = None;
-    } else if !driven {
-        notes.push("The motors stand still: motion is not excited.".into());
+    } else if let Some(why) = without_motion(baseline, observations) {
+        notes.push(why.to_owned());
+        reasons.push((Part::Motion, why.to_owned()));
         baseline.motion = None;
     }
     if observations.rows.iter().any(|row| !row.then.is_empty()) {
         notes.push("No step has a pose at both ends: whole ways between poses are compared.".into());
     }
-    let echoes = observations.rows.iter().filter(|row| row.echo_cm.is_some()).count();
-    if baseline.sonar.is_none() {
-        notes.push("From too few readings, or none, the simulator does not know the sonar: it is not compared.".into());
-    } else if echoes == 0 {
-        notes.push("There is no reading at all: the sonar is not compared.".into());
+    if let Some(why) = inspected.withheld(Part::Sonar) {
+        reasons.push((Part::Sonar, why.to_owned()));
+        baseline.sonar = None;
+    } else if let Some(why) = without_sonar(baseline, observations) {
+        notes.push(why.to_owned());
+        reasons.push((Part::Sonar, why.to_owned()));
         baseline.sonar = None;
     }
     if baseline.motion.is_none() && baseline.sonar.is_none() {
-        return Err(Error::new(format!("nothing can be compared. {}", notes.join(" "))));
+        let mut reasons: Vec<String> = reasons.into_iter().map(|(_, why)| why).collect();
+        reasons.dedup();
+        return Err(Error::new(format!("nothing can be compared. {}", reasons.join(" "))));
     }
     if logs.runs.len() == 1 {
         notes.push("One run only: its parts stand for runs, and what holds for other runs cannot be told.".into());
@@ -80,17 +101,60 @@ pub fn validate(baseline: &mut Baseline, observations: &Observations, logs: &Log
     if logs.runs.len() > 1 && logs.runs.windows(2).all(|pair| same_commands(&pair[0], &pair[1])) {
         notes.push("All runs have the same commands: what other commands would show is not excited.".into());
     }
-    let reach_cm = JUMP * logs.robot.full_speed_cm_s * logs.robot.step_ms / 1000.0;
-    let jumps = observations
-        .rows
-        .iter()
-        .filter_map(|row| Some((row.motion?, (1 + row.then.len()) as f64)))
-        .filter(|(m, steps)| libm::hypot(m.forward_cm, m.lateral_cm) > steps * reach_cm);
-    match jumps.count() {
-        0 => {}
-        count => notes.push(format!("The tracker jumps {count} time(s), farther than the robot can drive.")),
+    let moved_uncommanded = knows_motion && !is_commanded(observations) && moves(observations);
+    Ok(Validated { notes, scope: Scope::without(&reasons), moved_uncommanded })
+}
+
+/// Why motion cannot be compared.
+fn without_motion(baseline: &Baseline, observations: &Observations) -> Option<&'static str> {
+    if baseline.motion.is_none() {
+        Some("From too few logs, or none with poses, the simulator does not know motion: it is not compared.")
+    } else if observations.rows.iter().all(|row| row.motion.is_none()) {
+        Some("No run has two poses: motion cannot be compared.")
+    } else if is_commanded(observations) {
+        None
+    } else if moves(observations) {
+        Some(
+            "No command drives the motors, but the robot moves: motion is not excited, and what causes it is not logged.",
+        )
+    } else {
+        Some("The motors stand still: motion is not excited.")
     }
-    Ok(notes)
+}
+
+/// Whether any command drives a motor.
+fn is_commanded(observations: &Observations) -> bool {
+    let mut steps = observations.rows.iter().flat_map(|row| std::iter::once(&row.context).chain(&row.then));
+    steps.any(|step| step.commands[0].iter().any(|c| c.abs() >= 1.0))
+}
+
+/// Whether the robot is elsewhere, in a part of some run, than where it mostly is.
+fn moves(observations: &Observations) -> bool {
+    observations.rows.chunk_by(|a, b| a.run == b.run).any(|rows| {
+        let first = rows[0].context.pose;
+        let turned = |row: &Observation| wrap_rad(row.context.pose.heading_rad - first.heading_rad);
+        let of = |number: &dyn Fn(&Observation) -> f64| median(rows.iter().map(number));
+        let x_cm = of(&|row| row.context.pose.position_cm.x);
+        let y_cm = of(&|row| row.context.pose.position_cm.y);
+        let turn_rad = of(&turned);
+        let is_away = |row: &&Observation| {
+            row.context.pose.position_cm.distance(DVec2::new(x_cm, y_cm)) > STANDING_CM
+                || wrap_rad(turned(row) - turn_rad).abs() > STANDING_RAD
+        };
+        rows.iter().filter(is_away).count() as f64 >= MOVED * rows.len() as f64
+    })
+}
+
+/// Why the sensor cannot be compared.
+fn without_sonar(baseline: &Baseline, observations: &Observations) -> Option<&'static str> {
+    // The textbook's sensor is made from the readings themselves.
+    if observations.rows.iter().all(|row| row.echo_cm.is_none()) {
+        Some("There is no reading at all: the sonar is not compared.")
+    } else if baseline.sonar.is_none() {
+        Some("From too few readings, or none, the simulator does not know the sonar: it is not compared.")
+    } else {
+        None
+    }
 }
 
 fn same_commands(a: &Run, b: &Run) -> bool {
@@ -100,7 +164,10 @@ fn same_commands(a: &Run, b: &Run) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::gap::test_support::{baseline, baseline_with_sonar, driven, robot};
+    use crate::gap::channel::Channel;
+    use crate::gap::test_support::{alternating, baseline, baseline_with_sonar, driven, robot};
+    use crate::geometry::Pose;
+    use crate::logs::Logs;
 
     /// Commands that differ from run to run.
     fn mixed(run: usize, at: usize) -> [f64; 2] {
@@ -109,8 +176,10 @@ mod tests {
 
     fn notes_of(logs: &Logs) -> (Vec<String>, Baseline<'static>) {
         let mut baseline = baseline_with_sonar();
-        let notes = validate(&mut baseline, &Observations::of(logs, 1.0), logs).expect("something to compare");
-        (notes, baseline)
+        let inspected = Inspection::of(logs.clone());
+        let rows = Observations::of(&inspected.logs, 1.0);
+        let validated = validate(&mut baseline, &rows, &inspected).expect("something to compare");
+        (validated.notes, baseline)
     }
 
     /// Whether there is one note, which begins so.
@@ -137,37 +206,79 @@ mod tests {
         let (notes, baseline) = notes_of(&unseen);
         assert!(only(&notes, "No run has two poses") && baseline.motion.is_none(), "{notes:?}");
 
-        let (notes, baseline) = notes_of(&driven(8, 4, |run, _| if run == 0 { [0.4; 2] } else { [0.0; 2] }));
-        assert!(only(&notes, "The motors stand still") && baseline.motion.is_none(), "{notes:?}");
+        let (notes, baseline) = notes_of(&driven(8, 4, |_, _| [0.0; 2]));
+        assert!(notes[0].starts_with("The motors stand still") && baseline.motion.is_none(), "{notes:?}");
+    }
+
+    /// Runs of twenty rows whose commands are zero and whose poses are changed.
+    fn uncommanded(change: impl Fn(usize, &mut Pose)) -> bool {
+        let mut logs = driven(8, 20, |_, _| [0.0; 2]);
+        for run in &mut logs.runs {
+            run.rows.iter_mut().enumerate().for_each(|(at, row)| change(at, row.pose.as_mut().expect("a pose")));
+        }
+        let rows = Observations::of(&logs, 1.0);
+        let inspected = Inspection { logs, findings: Vec::new() };
+        let validated = validate(&mut baseline_with_sonar(), &rows, &inspected).expect("a sensor");
+        let reason = &validated.scope.not_compared[0].reason;
+        assert_eq!(reason.contains("the robot moves"), validated.moved_uncommanded, "{reason}");
+        validated.moved_uncommanded
+    }
+
+    #[test]
+    fn motion_without_commands_is_told_from_the_noise_and_jumps_of_a_tracker() {
+        assert!(!uncommanded(|_, _| ()));
+        assert!(!uncommanded(|at, pose| pose.position_cm.x += 1.5 * alternating(at)));
+        assert!(!uncommanded(|at, pose| pose.position_cm.x += if at == 7 { 60.0 } else { 0.0 }));
+        assert!(uncommanded(|at, pose| pose.position_cm.y += at as f64));
+        assert!(uncommanded(|at, pose| pose.heading_rad = wrap_rad(pose.heading_rad + 0.1 * at as f64)));
     }
 
     #[test]
     fn what_the_baseline_does_not_know_is_said() {
         let logs = driven(8, 4, mixed);
         let rows = Observations::of(&logs, 1.0);
-        let notes = validate(&mut baseline(), &rows, &logs).expect("motion");
+        let inspected = Inspection::of(logs);
+        let Validated { notes, scope, .. } = validate(&mut baseline(), &rows, &inspected).expect("motion");
         assert!(only(&notes, "From too few readings"), "{notes:?}");
+        assert_eq!(scope.compared, [Channel::Forward, Channel::Lateral, Channel::Turn]);
         let mut without_motion = Baseline { motion: None, ..baseline_with_sonar() };
-        let notes = validate(&mut without_motion, &rows, &logs).expect("a sensor");
+        let Validated { notes, scope, .. } = validate(&mut without_motion, &rows, &inspected).expect("a sensor");
         assert!(only(&notes, "From too few logs"), "{notes:?}");
-        assert!(validate(&mut Baseline { motion: None, ..baseline() }, &rows, &logs).is_err());
+        assert_eq!(scope.compared, [Channel::EchoRate, Channel::EchoValue]);
+        assert!(scope.not_compared.iter().all(|channel| channel.reason == notes[0]));
+        assert!(validate(&mut Baseline { motion: None, ..baseline() }, &rows, &inspected).is_err());
     }
 
     #[test]
     fn few_runs_and_equal_runs_are_said() {
         assert!(only(&notes_of(&driven(1, 16, mixed)).0, "One run only"));
         assert!(only(&notes_of(&driven(7, 4, mixed)).0, "With fewer than 8 runs"));
-        assert!(only(&notes_of(&driven(8, 4, |_, at| mixed(0, at))).0, "All runs have the same commands"));
+        let mut equal = driven(8, 4, |_, at| mixed(0, at));
+        // Runs that agree in every number are copies.
+        for (number, run) in equal.runs.iter_mut().enumerate() {
+            run.rows
+                .iter_mut()
+                .filter_map(|row| row.pose.as_mut())
+                .for_each(|pose| pose.position_cm.y += number as f64);
+        }
+        assert!(only(&notes_of(&equal).0, "All runs have the same commands"));
     }
 
-    /// At full speed a step is 10 cm, so that 20 cm are a jump; the row after it is one back.
     #[test]
-    fn jumps_of_the_tracker_are_counted() {
-        let mut logs = driven(8, 4, mixed);
-        let pose = logs.runs[2].rows[1].pose.as_mut().expect("a pose");
-        pose.position_cm.y += 30.0;
-        let (notes, _) = notes_of(&logs);
-        assert!(only(&notes, "The tracker jumps 2 time(s)"), "{notes:?}");
+    fn what_an_inspection_withholds_is_not_compared() {
+        let mut exchanged = driven(8, 31, |run, at| {
+            [((run * 7 + at * 13) % 9) as f64 * 20.0 - 80.0, ((run * 5 + at * 11) % 7) as f64 * 25.0 - 75.0]
+        });
+        exchanged.runs.iter_mut().flat_map(|run| &mut run.rows).for_each(|row| {
+            (row.left, row.right) = (row.right, row.left);
+        });
+        let inspected = Inspection::of(exchanged);
+        let rows = Observations::of(&inspected.logs, 1.0);
+        let mut baseline = baseline_with_sonar();
+        let scope = validate(&mut baseline, &rows, &inspected).expect("a sensor").scope;
+        assert!(baseline.motion.is_none() && baseline.sonar.is_some());
+        assert_eq!(scope.not_compared.len(), 3);
+        assert!(scope.not_compared.iter().all(|channel| channel.reason.contains("left and right seem exchanged")));
     }
 
     #[test]

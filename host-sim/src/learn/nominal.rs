@@ -4,7 +4,7 @@ use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
 use crate::geometry::{Pose, cast};
-use crate::learn::scatter;
+use crate::learn::{place_bound, scatter};
 use crate::logs::{Logs, samples};
 use crate::simulator::Simulator;
 use crate::simulator::nominal::NominalModel;
@@ -21,7 +21,9 @@ const FEWEST: usize = 100;
 
 /// The reference of a simulator whose networks are trained, from its training logs.
 pub fn learn(simulator: &Simulator, logs: &Logs) -> NominalModel {
-    NominalModel { motion: motion(simulator, logs), sonar: sonar(simulator, logs) }
+    let sonar = sonar(simulator, logs);
+    let place_bound = sonar.as_ref().map_or([0.0; 2], |sonar| place_bound::learn(sonar, logs));
+    NominalModel { motion: motion(simulator, logs), sonar, place_bound }
 }
 
 fn motion(simulator: &Simulator, logs: &Logs) -> Option<MotionBias> {

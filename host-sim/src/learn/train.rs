@@ -125,6 +125,21 @@ pub fn train(
     Ok(simulator)
 }
 
+/// The networks that logs do not support, and why.
+pub fn unsupported(logs: &Logs) -> Vec<Missing> {
+    let (data, runs) = (Datasets::from_logs(logs), logs.runs.len());
+    let reasons = [
+        ("turn", reason_against(&fitted_runs(&data.turn, runs))),
+        ("forward", reason_against(&fitted_runs(&data.forward, runs))),
+        ("lateral", reason_against(&fitted_runs(&data.lateral, runs))),
+        ("echo_probability", reason_against(&fitted_runs(&data.echo_probability, runs))),
+        ("echo_value", reason_against(&fitted_runs(&data.echo_value, runs))),
+    ];
+    let missing =
+        |(network, reason): (&str, Option<String>)| Some(Missing { network: network.into(), reason: reason? });
+    reasons.into_iter().filter_map(missing).collect()
+}
+
 /// Estimates the noise of a motion network about its bias-corrected predictions.
 fn set_residual_quantiles(learned: &mut Option<Learned<4>>, data: &Dataset<4>, correction: impl Fn(&[f64; 4]) -> f64) {
     let Some(learned) = learned else { return };
@@ -191,8 +206,8 @@ impl<W: Fn(Progress)> NetworkTrainer<'_, W> {
         kind: Kind,
         context: impl Fn(&[f32; N]) -> [f32; 2],
     ) -> Option<Learned<N>> {
-        let fitted = data.of_runs(|run| !is_held_out(run, self.runs));
-        if let Some(reason) = unsupported(&fitted) {
+        let fitted = fitted_runs(data, self.runs);
+        if let Some(reason) = reason_against(&fitted) {
             self.missing.push(Missing { network: network.into(), reason });
             return None;
         }
@@ -218,8 +233,13 @@ impl<W: Fn(Progress)> NetworkTrainer<'_, W> {
     }
 }
 
+/// The samples of the runs that are not held out.
+fn fitted_runs<const N: usize>(data: &Dataset<N>, runs: usize) -> Dataset<N> {
+    data.of_runs(|run| !is_held_out(run, runs))
+}
+
 /// Why a data set cannot train a network; `None` if it can.
-fn unsupported<const N: usize>(data: &Dataset<N>) -> Option<String> {
+fn reason_against<const N: usize>(data: &Dataset<N>) -> Option<String> {
     if data.len() < FEWEST_SAMPLES {
         return Some(format!("the logs hold {} samples for it, fewer than {FEWEST_SAMPLES}", data.len()));
     }

@@ -39,9 +39,11 @@ pub struct Row {
 }
 
 const COLUMNS: [&str; 10] =
-    ["t_ms", "left", "right", "x_cm", "y_cm", "heading_deg", "echo_cm", "rot_left_deg", "rot_right_deg", "battery_mv"];
+    ["t_ms", "left", "right", "x_cm", "y_cm", "heading_deg", ECHO, "rot_left_deg", "rot_right_deg", "battery_mv"];
 /// Number of leading [`COLUMNS`] that every run must have.
 const REQUIRED: usize = 7;
+/// The one whose cells may hold `inf` or `nan`.
+const ECHO: &str = "echo_cm";
 /// Largest magnitude of a number in a log.
 const HUGE: f64 = 1e7;
 
@@ -168,6 +170,8 @@ impl Columns {
         for (c, name) in COLUMNS.iter().enumerate() {
             let Some(cell) = self.0[c].and_then(|i| record.get(i)).filter(|cell| !cell.is_empty()) else { continue };
             let number: f64 = cell.parse().map_err(|_| format!("{name} = {cell:?} is no number"))?;
+            // Drivers say so that there was no echo: an inspection finds it, and no number that counts is not finite.
+            let number = if *name == ECHO && !number.is_finite() { HUGE } else { number };
             if !number.is_finite() || number.abs() > HUGE {
                 return Err(format!("{name} = {cell} is no number that a robot could log"));
             }
@@ -185,7 +189,7 @@ impl Columns {
             _ => return Err("x_cm, y_cm and heading_deg must be there together or empty together".into()),
         };
         if let Some(echo_cm) = echo_cm.filter(|e| *e < 0.0) {
-            return Err(format!("echo_cm = {echo_cm} is below zero"));
+            return Err(format!("echo_cm = {echo_cm} is below zero; leave the cell empty where there was no echo"));
         }
         Ok(Row {
             t_ms: needed(t_ms, "t_ms")?,

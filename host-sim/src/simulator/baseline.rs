@@ -15,6 +15,8 @@ pub struct Baseline<'s> {
     pub motion: Option<MotionModel<'s>>,
     /// The sensor, if the simulator knows it.
     pub sonar: Option<SonarModel>,
+    /// Share of the chance in its echo rate and in its readings that belongs to the place, as far as it is known.
+    pub place_bound: [f64; 2],
     /// Effects that were added to the simulator before.
     pub applied: Vec<AppliedEffect>,
 }
@@ -58,7 +60,12 @@ impl<'s> Baseline<'s> {
             process_noise_fraction: [&simulator.forward, &simulator.lateral, &simulator.turn]
                 .map(process_noise_fraction),
         });
-        Ok(Baseline { motion, sonar: reference.sonar.clone(), applied: simulator.added.clone() })
+        Ok(Baseline {
+            motion,
+            sonar: reference.sonar.clone(),
+            place_bound: reference.place_bound,
+            applied: simulator.added.clone(),
+        })
     }
 }
 

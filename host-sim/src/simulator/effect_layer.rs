@@ -77,7 +77,7 @@ impl<'s> EffectLayer<'s> {
             PoseIncrement { forward_cm, lateral_cm, turn_rad }
         };
         let increment = self.effects.wrap(&context, step);
-        memory.history.seen(pose);
+        memory.history.was_at(Some(pose));
         memory.steps += 1;
         Motion {
             forward_cm: increment.forward_cm as f32,
@@ -101,7 +101,7 @@ impl<'s> EffectLayer<'s> {
         let mut rng = generator(u64::from(draw.to_bits()), &[memory.steps as u64]);
         let outcomes = sonar.outcomes(&fan, &state.perturbation, memory.history.echo_before_cm());
         let echo_cm = outcomes.draw(self.noise == Noise::Learned, || rng.random());
-        memory.history.sensed(&context, echo_cm);
+        memory.history.sensed(echo_cm);
         echo_cm.map(|cm| cm as f32)
     }
 

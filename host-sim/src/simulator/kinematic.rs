@@ -25,6 +25,7 @@ pub fn baseline(logs: &Logs) -> Baseline<'static> {
     Baseline {
         motion: Some(MotionModel::Kinematic { robot: logs.robot, scatter }),
         sonar: sonar(logs),
+        place_bound: [0.0; 2],
         applied: Vec::new(),
     }
 }

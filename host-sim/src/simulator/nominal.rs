@@ -17,4 +17,7 @@ pub struct NominalModel {
     pub motion: Option<MotionBias>,
     /// Of the sonar, if the logs had echoes.
     pub sonar: Option<SonarModel>,
+    /// Share of the chance in its echo rate and in its readings that belongs to the place.
+    #[serde(default)]
+    pub place_bound: [f64; 2],
 }

@@ -55,9 +55,21 @@ pub fn climb(
     enough: f64,
     terms: impl Fn(&[f64]) -> Vec<f64>,
 ) -> Maximum {
-    let mut at = start.to_vec();
-    let mut here = terms(&at);
-    let mut scores = score(bounds, &at, &here, &terms);
+    let at = start.to_vec();
+    let here = terms(&at);
+    let scores = score(bounds, &at, &here, &terms);
+    climb_on(bounds, Maximum { at, terms: here, scores }, rounds, enough, terms)
+}
+
+/// Climbs on from where another climb ended.
+pub fn climb_on(
+    bounds: &[Bounds],
+    from: Maximum,
+    rounds: usize,
+    enough: f64,
+    terms: impl Fn(&[f64]) -> Vec<f64>,
+) -> Maximum {
+    let Maximum { mut at, terms: mut here, mut scores } = from;
     for _ in 0..rounds {
         let before = sum(&here);
         let direction = solve(&scores, &at, bounds);
@@ -85,6 +97,20 @@ impl Maximum {
     /// The value of the sum.
     pub fn value(&self) -> f64 {
         sum(&self.terms)
+    }
+
+    /// Logarithm of the integral over all points of the exponential of the sum, relative to its maximum, by Laplace's method:
+    /// the sum falls off as its scores say, and as a prior of these precisions (one a parameter, in squared inverse units).
+    /// A share of the terms, `is_term`, makes up the scores: a prior that is among the terms is given by its precision.
+    pub fn log_volume(&self, bounds: &[Bounds], precisions: &[f64], is_term: impl Fn(usize) -> bool) -> f64 {
+        let mut curvature = curvature(&self.scores, is_term);
+        for (i, (b, precision)) in bounds.iter().zip(precisions).enumerate() {
+            curvature[(i, i)] += precision * b.scale * b.scale;
+        }
+        let scales: f64 = bounds.iter().map(|b| libm::log(b.scale)).sum();
+        let log_determinant =
+            curvature.cholesky().map_or(0.0, |c| c.l_dirty().diagonal().iter().map(|d| 2.0 * libm::log(*d)).sum());
+        0.5 * (bounds.len() as f64 * libm::log(std::f64::consts::TAU) - log_determinant) + scales
     }
 
     /// Where the maximum would lie without the terms for which `left_out` holds, to first order.

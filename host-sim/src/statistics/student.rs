@@ -4,7 +4,7 @@ use std::f64::consts::{PI, TAU};
 
 /// Degrees of freedom. With an odd number the distribution function is closed; [`density`] and [`cumulative`] are
 /// written for five.
-const DEGREES: f64 = 5.0;
+pub const DEGREES: f64 = 5.0;
 /// 8 / (3 π √5): the density at the middle for scale one.
 const PEAK: f64 = 0.379_606_689_822_494_4;
 /// [`quantile`] looks within this many scales of the middle, beyond which lies less than 2e-9 of the distribution.

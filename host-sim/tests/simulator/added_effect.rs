@@ -2,13 +2,14 @@
 
 use mindgap_host_sim::effects::{CATALOGUE, Effect, PoseIncrement};
 use mindgap_host_sim::gap::{Method, findings};
+use mindgap_host_sim::inspection::Inspection;
 use mindgap_host_sim::logs::Logs;
 use mindgap_host_sim::simulator::baseline::Baseline;
 
 use crate::{SIMULATOR, logs, turning_loss};
 
 /// What the altered logs lose of forward speed per rad/s.
-const LOSS_PER_RAD_S: f64 = 0.12;
+pub const LOSS_PER_RAD_S: f64 = 0.12;
 
 /// The built-in effects and one more: this is the line.
 fn catalogue() -> &'static [&'static Effect] {
@@ -16,7 +17,7 @@ fn catalogue() -> &'static [&'static Effect] {
 }
 
 /// Logs as they would be with the loss; without readings, which would be those of other places.
-fn with_turning_loss(mut logs: Logs) -> Logs {
+pub fn with_turning_loss(mut logs: Logs) -> Logs {
     let step_s = logs.robot.step_ms / 1000.0;
     for run in &mut logs.runs {
         // Where the tracker lost the robot, the steps to its next sight count as one.
@@ -38,9 +39,9 @@ fn with_turning_loss(mut logs: Logs) -> Logs {
 
 #[test]
 fn an_effect_that_is_added_is_found_with_its_strength_and_written() {
-    let logs = with_turning_loss(logs(16, &[], 91));
+    let inspected = Inspection::of(with_turning_loss(logs(16, &[], 91)));
     let method = Method { catalogue: catalogue(), ..Method::default() };
-    let found = findings(Baseline::learned(&SIMULATOR).expect("a reference"), &logs, method).expect("poses");
+    let found = findings(Baseline::learned(&SIMULATOR).expect("a reference"), &inspected, method).expect("poses");
     let written = serde_json::to_value(&found.diagnosis).expect("JSON");
     assert_eq!(written["verdict"], "known", "{written}");
     let [effect] = written["effects"].as_array().expect("effects").as_slice() else { panic!("{written}") };
@@ -54,8 +55,8 @@ fn an_effect_that_is_added_is_found_with_its_strength_and_written() {
 /// What is there to be found decides, not what is in the catalogue.
 #[test]
 fn an_effect_that_is_added_is_not_found_where_it_is_not() {
-    let logs = logs(16, &["track_width"], 92);
+    let inspected = Inspection::of(logs(16, &["track_width"], 92));
     let method = Method { catalogue: catalogue(), ..Method::default() };
-    let found = findings(Baseline::learned(&SIMULATOR).expect("a reference"), &logs, method).expect("poses");
+    let found = findings(Baseline::learned(&SIMULATOR).expect("a reference"), &inspected, method).expect("poses");
     assert_eq!(found.diagnosis.effects().iter().map(|e| e.id).collect::<Vec<_>>(), ["track_width"]);
 }

@@ -13,6 +13,7 @@ use mindgap_host_sim::evaluation::final_position::final_position_errors;
 use mindgap_host_sim::gap::diagnosis::Verdict;
 use mindgap_host_sim::gap::{Method, diagnose, findings};
 use mindgap_host_sim::geometry::direction;
+use mindgap_host_sim::inspection::Inspection;
 use mindgap_host_sim::logs::{Logs, Row, Run};
 use mindgap_host_sim::simulator::baseline::Baseline;
 use mindgap_host_sim::simulator::environment::Environment;
@@ -78,8 +79,8 @@ fn way_cm(rollouts: &RolloutReport, steps: Range<usize>) -> f64 {
 #[test]
 fn a_simulator_with_the_effects_found_has_no_gap_on_fresh_logs() {
     let effects = ["drive_scale=1.1", "sonar_offset=5"];
-    let found =
-        findings(Baseline::learned(&SIMULATOR).expect("a reference"), &logs(16, &effects, 21), Method::default());
+    let inspected = Inspection::of(logs(16, &effects, 21));
+    let found = findings(Baseline::learned(&SIMULATOR).expect("a reference"), &inspected, Method::default());
     let applied = with(found.expect("a gap").applied);
     assert_eq!(applied.added.len(), 2, "{:?}", applied.added);
     let fresh = logs(16, &effects, 22);

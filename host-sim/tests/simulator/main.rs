@@ -5,6 +5,8 @@ mod effect_table;
 mod extrapolation;
 mod gap;
 mod gap_apply;
+mod metamorphic;
+mod own_effect;
 mod turning_loss;
 
 use std::sync::LazyLock;

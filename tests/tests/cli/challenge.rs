@@ -50,10 +50,8 @@ fn a_challenge_is_made_answered_and_scored() {
 }
 
 #[test]
-fn effects_are_added_only_to_a_simulator_and_only_if_there_are_any() {
+fn effects_are_added_only_if_there_are_any() {
     let workshop = Workshop::with_logs();
-    let refusal = workshop.refused("diagnose kinematic logs --apply better.json");
-    assert!(refusal.contains("needs a simulator file"), "{refusal}");
     workshop.done("train logs --out sim.json");
     let refusal = workshop.refused("diagnose sim.json logs --apply better.json");
     assert!(refusal.contains("nothing to add"), "{refusal}");

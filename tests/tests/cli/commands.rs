@@ -32,6 +32,19 @@ fn record_drives_in_a_room_of_the_users_and_with_effects() {
     assert_ne!(workshop.bytes("plain/run-000.csv"), workshop.bytes("weak/run-000.csv"));
 }
 
+/// `-` is standard output, on which nothing else stands then.
+#[test]
+fn json_goes_to_standard_output_too() {
+    let workshop = trained();
+    workshop.write("room.toml", SCENE);
+    for call in ["evaluate sim.json logs", "crosscheck sim.json logs", "diagnose sim.json logs"] {
+        workshop.done(&format!("{call} --json file.json"));
+        let told = workshop.done(&format!("{call} --json -"));
+        assert_eq!(serde_json::from_str::<Value>(&told).expect("JSON and nothing else"), workshop.json("file.json"));
+    }
+    assert!(!workshop.path().join("-").exists());
+}
+
 #[test]
 fn every_trainer_gives_five_networks_that_evaluate_judges() {
     for trainer in ["", "--trainer paper"] {

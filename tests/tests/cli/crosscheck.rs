@@ -117,7 +117,7 @@ fn arithmetics_that_differ_are_told_apart() {
 fn inputs_outside_the_trained_range_are_counted() {
     let workshop = workshop();
     // Faster than any command that the simulator has seen.
-    edit_rows(&workshop, "held-out/run-000.csv", |cells| cells[1] = "100");
+    workshop.edit_cells("held-out/run-000.csv", |cells| cells[1] = "100");
     let table = workshop.done("crosscheck sim.json held-out --runs 1 --json found.json");
     let clamped = &workshop.json("found.json")["networks"]["turn"]["samples"]["clamped"];
     assert!(clamped.as_u64().unwrap() > 10, "{clamped}");
@@ -128,23 +128,10 @@ fn inputs_outside_the_trained_range_are_counted() {
 fn logs_without_a_place_to_start_are_refused() {
     let workshop = workshop();
     for run in 0..5 {
-        edit_rows(&workshop, &format!("held-out/run-00{run}.csv"), |cells| cells[3..6].fill(""));
+        workshop.edit_cells(&format!("held-out/run-00{run}.csv"), |cells| cells[3..6].fill(""));
     }
     let problem = "sim.json: the robot has no room to start at any pose that the logs hold";
     assert_eq!(workshop.refused("crosscheck sim.json held-out --json found.json"), problem);
-}
-
-/// Changes the cells of every row of a run.
-fn edit_rows(workshop: &Workshop, run: &str, change: impl Fn(&mut [&str])) {
-    workshop.edit(run, |text| {
-        let (header, rows) = text.split_once('\n').expect("a header");
-        let changed = rows.lines().map(|row| {
-            let mut cells: Vec<&str> = row.split(',').collect();
-            change(&mut cells);
-            cells.join(",") + "\n"
-        });
-        format!("{header}\n{}", changed.collect::<String>())
-    });
 }
 
 #[test]

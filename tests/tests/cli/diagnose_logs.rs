@@ -54,14 +54,51 @@ fn logs_of_another_robot_are_refused() {
 }
 
 #[test]
-fn logs_of_another_step_are_refused() {
+fn logs_in_longer_steps_are_refused() {
     let workshop = trained();
-    workshop.edit("logs/robot.toml", |robot| robot.replace("step_ms = 400", "step_ms = 250"));
+    workshop.edit("logs/robot.toml", |robot| robot.replace("step_ms = 400", "step_ms = 600"));
     let refusal = workshop.refused("diagnose sim.json logs");
     assert!(refusal.contains("rows are 400 ms apart"), "{refusal}");
-    rewrite(&workshop, |row, column, field| if column == "t_ms" { (250 * row).to_string() } else { field.into() });
+    rewrite(&workshop, |row, column, field| if column == "t_ms" { (600 * row).to_string() } else { field.into() });
     let refusal = workshop.refused("diagnose sim.json logs");
-    assert!(refusal.contains("another robot") && refusal.contains("step_ms"), "{refusal}");
+    assert!(refusal.contains("steps of 400 ms cannot be compared: rows are 600 ms apart"), "{refusal}");
+}
+
+/// Rows that come four times as fast as the simulator's steps are compared in its steps.
+#[test]
+fn logs_in_shorter_steps_are_compared_in_the_simulators() {
+    let workshop = trained();
+    for number in 0..RUNS {
+        let text = workshop.text(&run(number));
+        let (header, rows) = text.split_once('\n').expect("a header");
+        let rows: Vec<Vec<&str>> = rows.lines().map(|line| line.split(',').collect()).collect();
+        let number_of = |field: &str| field.parse::<f64>().ok();
+        let between = |a: &str, b: &str, share: f64| {
+            number_of(a).zip(number_of(b)).map_or(String::new(), |(a, b)| (a + share * (b - a)).to_string())
+        };
+        let quarters = rows.windows(2).flat_map(|pair| {
+            (0..4).map(move |quarter| {
+                let share = 0.25 * f64::from(quarter);
+                let mut row: Vec<String> = pair[0].iter().map(|field| (*field).into()).collect();
+                [0, 3, 4].iter().for_each(|column| row[*column] = between(pair[0][*column], pair[1][*column], share));
+                // Headings that pass through half a turn stay where they are for the step.
+                let passes =
+                    number_of(pair[0][5]).zip(number_of(pair[1][5])).is_some_and(|(a, b)| (a - b).abs() > 180.0);
+                row[5] = if passes { pair[0][5].into() } else { between(pair[0][5], pair[1][5], share) };
+                row.join(",")
+            })
+        });
+        let quarters: Vec<String> = quarters.collect();
+        workshop.write(&run(number), format!("{header}\n{}\n", quarters.join("\n")));
+    }
+    workshop.edit("logs/robot.toml", |robot| robot.replace("step_ms = 400", "step_ms = 100"));
+    // Readings come up to a quarter of a step earlier than the poses that they are compared at.
+    let diagnosis = diagnosis(&workshop);
+    let effects = diagnosis["effects"].as_array().expect("a list");
+    let of_motion = |effect: &&Value| !effect["id"].as_str().is_some_and(|id| id.starts_with("sonar"));
+    assert_eq!(effects.iter().filter(of_motion).count(), 0, "{diagnosis}");
+    let refusal = workshop.refused("diagnose sim.json logs --step-ms 200");
+    assert!(refusal.contains("the simulator's steps are 400 ms"), "{refusal}");
 }
 
 #[test]
@@ -87,12 +124,26 @@ fn without_readings_motion_alone_is_compared() {
     assert_noted(&workshop, "no reading at all");
 }
 
+/// Somebody carries the robot about: its readings agree, and what moves it is nowhere.
+#[test]
+fn motion_that_no_command_asks_for_is_no_agreement() {
+    let workshop = trained();
+    rewrite(&workshop, |_, column, field| if ["left", "right"].contains(&column) { "0".into() } else { field.into() });
+    let diagnosis = diagnosis(&workshop);
+    assert_eq!(diagnosis["verdict"], "unknown", "{diagnosis}");
+    assert_eq!(diagnosis["compared"], serde_json::json!(["echo_rate", "echo_value"]));
+    assert!(diagnosis["not_compared"].to_string().contains("the robot moves"), "{diagnosis}");
+    assert_noted(&workshop, "the robot moves");
+}
+
 #[test]
 fn one_run_and_runs_alike_are_said_to_be_little() {
     let workshop = trained();
     let first = workshop.text(&run(0));
     (1..RUNS).for_each(|number| workshop.write(&run(number), &first));
-    assert_noted(&workshop, "same commands");
+    let diagnosis = diagnosis(&workshop);
+    assert_eq!(diagnosis["data"][0]["finding"], "run_copied", "{diagnosis}");
+    assert_noted(&workshop, "One run only");
     (1..RUNS).for_each(|number| std::fs::remove_file(workshop.path().join(run(number))).expect("a file"));
     assert_noted(&workshop, "One run only");
 }
@@ -105,8 +156,9 @@ fn jumps_of_the_tracker_are_told_and_cause_nothing() {
         (12, "x_cm", Ok(x_cm)) => (x_cm + 60.0).to_string(),
         _ => field.into(),
     });
-    assert_noted(&workshop, "tracker jumps");
-    assert_eq!(workshop.json("diagnosis.json")["effects"], Value::Array(Vec::new()));
+    let diagnosis = diagnosis(&workshop);
+    assert_eq!(diagnosis["data"][0]["finding"], "tracker_jump", "{diagnosis}");
+    assert_eq!(diagnosis["effects"], Value::Array(Vec::new()));
 }
 
 #[test]
@@ -143,7 +195,7 @@ fn ever_so_many_runs_of_the_same_robot_are_no_gap() {
 #[test]
 fn the_experiment_that_tells_confused_causes_apart_is_a_run() {
     let workshop = with_forty_runs();
-    workshop.done("record --out laden --runs 10 --seed 5 --effect payload");
+    workshop.done("record --out laden --runs 6 --seed 5 --effect payload");
     let said = workshop.done("diagnose sim.json laden --next-experiment next.csv");
     assert!(said.contains("cannot tell it from") && said.contains("To tell "), "{said}");
     let rows = Run::read(&workshop.path().join("next.csv"), |warning| panic!("{warning}")).expect("a run").rows;

@@ -5,6 +5,7 @@
 mod bad_input;
 mod brick;
 mod challenge;
+mod check;
 mod commands;
 mod crosscheck;
 mod demo;

@@ -4,8 +4,14 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use mindgap_host_sim::effects::chain::EffectChain;
+use mindgap_host_sim::effects::context::{RunHistory, Surroundings};
+use mindgap_host_sim::effects::{CATALOGUE, Effect, PoseIncrement};
+use mindgap_host_sim::gap::{Method, findings};
 use mindgap_host_sim::geometry::Pose;
+use mindgap_host_sim::inspection::Inspection;
 use mindgap_host_sim::logs::{Logs, Robot, Row, Run, Scene, Ultrasonic};
+use mindgap_host_sim::simulator::kinematic;
 use mindgap_tests::command::Workshop;
 use serde::Deserialize;
 use serde_json::Value;
@@ -126,12 +132,41 @@ pub fn a_real_sonar_that_stands_still_is_compared_with_the_textbook(folder: &Pat
         let diagnosis = diagnosed(&Workshop::new(), &team.display().to_string());
         let notes = diagnosis["notes"].to_string();
         assert!(notes.contains("motion is not excited"), "{}: {notes}", team.display());
-        // Where there is a gap, it lies in the readings and never in how often there is one.
+        // The sensor turns though no command turns it, so that agreement is never said; where there is a gap besides, it is
+        // the sensor's.
         let places = diagnosis["where"].as_array().expect("a list");
-        assert!(places.iter().all(|place| place["channel"] == "echo_value"), "{}: {places:?}", team.display());
-        assert_eq!(diagnosis["verdict"] == "no_gap", places.is_empty(), "{}: {places:?}", team.display());
+        assert!(
+            places.iter().all(|place| place["channel"] == "echo_value" || place["channel"] == "echo_rate"),
+            "{}: {places:?}",
+            team.display()
+        );
+        assert_ne!(diagnosis["verdict"], "no_gap", "{}: {places:?}", team.display());
         with_gap += usize::from(!places.is_empty());
     }
     // No real sonar is the ideal ray of the textbook, and five scans are enough to show it for most.
     assert!(teams.len() >= 5 && 2 * with_gap > teams.len(), "{with_gap} of {} teams", teams.len());
+}
+
+/// A loss of forward speed in turns that its owner measured as 6.9 cm a radian of turn, sought where nothing but latency is
+/// known: it is what latency leaves.
+pub fn the_loss_in_turns_of_a_real_robot_is_found_as_a_formula(folder: &Path) {
+    let logs = Logs::read(folder, |_| ()).expect("logs");
+    let latency: Vec<&'static Effect> = CATALOGUE.iter().copied().filter(|effect| effect.id == "latency").collect();
+    let method = Method { catalogue: latency.leak(), ..Method::default() };
+    let found = findings(kinematic::baseline(&logs), &Inspection::of(logs.clone()), method).expect("poses");
+    let formula = found.diagnosis.formula.clone().expect("a formula");
+    let applied = found.with_formula();
+    println!("{formula:?} {applied:?}");
+    assert_eq!(formula.channel.name(), "forward", "{formula:?}");
+    assert!(formula.text.contains("abs(turn_rad)"), "{formula:?}");
+    let [effects @ .., formula] = applied.as_slice() else { panic!("something is applied") };
+    assert!(effects.iter().all(|effect| effect.effect == "latency"), "{effects:?}");
+    // What is lost in a step of 400 ms at 9 cm/s that turns by 0.16 rad.
+    let (candidate, values) = formula.resolve().expect("an effect");
+    let robot = Surroundings::new(&logs.robot, &logs.scene);
+    let step = robot.context(&RunHistory::default(), 30_000.0, Pose::new(500.0, 500.0, 0.0));
+    let predicted = PoseIncrement { forward_cm: 3.5, lateral_cm: 0.0, turn_rad: 0.16 };
+    let after = EffectChain::default().with(&[candidate.variant], &values).wrap(&step, |_, _| predicted);
+    let loss_cm_per_rad = (predicted.forward_cm - after.forward_cm) / 0.16;
+    assert!((5.5..9.0).contains(&loss_cm_per_rad), "{loss_cm_per_rad} cm a radian");
 }

@@ -3,6 +3,8 @@
 
 mod gap_cases;
 mod gap_real;
+mod injections;
+mod inspection;
 mod reading;
 
 use std::path::{Path, PathBuf};
@@ -22,7 +24,14 @@ fn main() -> ExitCode {
     let trials = vec![
         trial!(gap_cases::effects_of_another_robot_are_named, "data"),
         trial!(gap_real::the_ends_of_a_neatos_runs_show_its_gap_to_the_textbook, "real/neato"),
+        trial!(gap_real::the_loss_in_turns_of_a_real_robot_is_found_as_a_formula, "real/create"),
         trial!(gap_real::a_real_sonar_that_stands_still_is_compared_with_the_textbook, "real/nxt-sonar"),
+        trial!(injections::changes_of_a_real_drive_are_named, "real/create"),
+        trial!(inspection::made_up_logs_stay_as_they_are, "data"),
+        trial!(inspection::scans_at_rest_stay_as_they_are, "real/nxt-sonar"),
+        trial!(inspection::a_drive_cut_into_runs_starts_moving, "real/create"),
+        trial!(inspection::faults_of_another_robots_logs_are_found, "data/nominal-holdout"),
+        trial!(inspection::faults_of_a_real_drives_logs_are_found, "real/create"),
         trial!(reading::nominal_logs_are_read_without_a_warning, "data"),
         trial!(reading::a_real_sonar_that_stands_still_trains_the_two_sonar_networks, "real/nxt-sonar/kentheo"),
         trial!(reading::the_scene_with_four_obstacles_is_read, "data/scenes/four-obstacles.toml"),

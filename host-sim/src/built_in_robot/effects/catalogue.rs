@@ -67,6 +67,8 @@ catalogue! {
     table CarpetNap "carpet_nap" "Fibres that lean, and hold back what is driven against them."
         Scale::rising("share of speed lost against them at half power", 0.03, 0.1, 0.25),
         Some(Scale::free("direction of most drag in degrees", -180.0, -60.0, 180.0));
+    table TurnLoss "turn_loss" "A castor that drags in turns."
+        Scale::rising("cm lost for each radian of turn", 1.0, 4.0, 8.0), None;
     table SonarScale "sonar_scale" "The sensor's timer runs fast or slow."
         Scale::factor("factor on readings", 0.85, 1.08, 1.15, 0.02), None;
     table SonarOffset "sonar_offset" "The sensor's electronics answer late or early."
@@ -85,6 +87,8 @@ catalogue! {
         Scale::falling("factor on the sound that comes back", 0.1, 0.35, 1.0, 0.25), None;
     table SonarCrosstalk "sonar_crosstalk" "Somebody else's sensor is heard."
         Scale::rising("chance per reading", 0.03, 0.12, 0.3), None;
+    table SonarMultipath "sonar_multipath" "Walls so smooth that sound glances off them to a second wall and back."
+        Scale::rising("decibels less lost at a glance, and more in scattering", 9.0, 14.0, 18.0), None;
     table SonarNoise "sonar_noise" "The sensor's timer is triggered unsteadily."
         Scale::rising("cm", 1.0, 4.0, 10.0), None;
     table TrackerRotation "tracker_rotation" "The camera hangs turned against the compass."
@@ -93,6 +97,8 @@ catalogue! {
         Scale::factor("factor on tracked lengths", 0.88, 1.06, 1.12, 0.02), None;
     table LensDistortion "lens_distortion" "The camera's lens magnifies the edge of the picture differently."
         Scale::signed("share per square metre", 0.01, 0.04, 0.07), None;
+    table MarkerOffset "marker_offset" "The tracker's marker sits ahead of the axle's middle; below zero: behind it."
+        Scale::signed("cm", 1.5, 4.0, 8.0), Some(Scale::free("cm to the left", -8.0, 0.0, 8.0));
     table CompassDisturbance "compass_disturbance" "Iron on the robot."
         Scale::rising("largest error of the heading in degrees", 2.0, 7.0, 15.0),
         Some(Scale::free("direction of the iron in degrees", -180.0, 70.0, 180.0));
@@ -116,8 +122,10 @@ catalogue! {
         Scale::signed("share per minute", 0.08, 0.25, 0.5), None;
     other SonarOneSided "sonar_one_sided" "The beam is louder on the left; below zero: on the right."
         Scale::signed("decibels from the middle to an edge", 8.0, 20.0, 35.0), None;
-    other MarkerOffset "marker_offset" "The tracker's marker sits ahead of the axle; below zero: behind it."
-        Scale::signed("cm", 1.0, 4.0, 8.0), None;
+    other MotionNoise "motion_noise" "Grit on the floor, over which a wheel skids or jumps now and then."
+        Scale::rising("share of the ground that is lost or won at most", 0.4, 0.6, 0.9), None;
+    other PlaceBound "place_bound" "Echoes whose loudness belongs to the place, the same at every visit and another in every room."
+        Scale::rising("share of their chance", 0.5, 0.95, 1.0), Some(Scale::free("number of the room", 0.0, 1.0, 1e6));
     other Unchanged "unchanged" "Nothing at all: a robot like any other."
         Scale::rising("nothing", 0.0, 0.0, 0.0), None;
 }

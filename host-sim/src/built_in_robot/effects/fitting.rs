@@ -1,6 +1,9 @@
 //! Applies effects to the hardware. Several effects at once change all of their parts.
 
+use glam::DVec2;
+
 use super::{ActiveEffect, Effect};
+use crate::built_in_robot::acoustics::Acoustics;
 use crate::built_in_robot::hardware::{GRAVITY, Hardware, LEFT, RIGHT};
 use crate::geometry::direction;
 
@@ -61,6 +64,10 @@ pub(in crate::built_in_robot) fn fit(hardware: &mut Hardware, active: &ActiveEff
         Effect::CarpetNap => {
             hardware.floor.nap_n += direction(detail.to_radians()) * hardware.force_for_loss_n(strength);
         }
+        Effect::TurnLoss => {
+            let lost_m_per_rad = strength / 100.0;
+            hardware.castor.turning_drag_n_s += 2.0 * lost_m_per_rad / hardware.yielding_m_s_per_n();
+        }
         Effect::SonarScale => hardware.sonar.timer *= strength,
         Effect::SonarOffset => hardware.sonar.delay_cm += strength,
         Effect::SonarGhost => (hardware.sonar.ghost, hardware.sonar.ghost_cm) = (strength, detail),
@@ -70,10 +77,15 @@ pub(in crate::built_in_robot) fn fit(hardware: &mut Hardware, active: &ActiveEff
         Effect::SonarLag => hardware.sonar.age_ms += strength * hardware.step_ms,
         Effect::SonarAbsorption => hardware.sonar.level_db += 20.0 * libm::log10(strength),
         Effect::SonarCrosstalk => hardware.sonar.crosstalk = strength,
+        Effect::SonarMultipath => {
+            hardware.sonar.mirror_db -= strength;
+            hardware.sonar.diffuse *= libm::pow(10.0, -strength / 20.0);
+        }
         Effect::SonarNoise => hardware.sonar.scatter_cm = libm::hypot(hardware.sonar.scatter_cm, strength),
         Effect::TrackerRotation => hardware.tracker.turn_rad += strength.to_radians(),
         Effect::TrackerScale => hardware.tracker.scale *= strength,
         Effect::LensDistortion => hardware.tracker.distortion_per_m2 += strength,
+        Effect::MarkerOffset => hardware.tracker.marker_cm += DVec2::new(strength, detail),
         Effect::CompassDisturbance => {
             // Half of the compass's error is left after averaging with the camera.
             let field = libm::sin(2.0 * strength.to_radians());
@@ -89,7 +101,15 @@ pub(in crate::built_in_robot) fn fit(hardware: &mut Hardware, active: &ActiveEff
         Effect::SoftObstacles => hardware.sonar.obstacle_db -= strength,
         Effect::SonarDrift => hardware.sonar.warming_per_min += strength,
         Effect::SonarOneSided => hardware.sonar.lean_db += strength,
-        Effect::MarkerOffset => hardware.tracker.marker_cm.x += strength,
+        Effect::MotionNoise => hardware.floor.grit += strength,
+        Effect::PlaceBound => {
+            let sonar = &mut hardware.sonar;
+            let chance_db = libm::hypot(sonar.ping_db, sonar.speckle_db);
+            sonar.place_db = strength.sqrt() * chance_db;
+            sonar.ping_db *= (1.0 - strength).sqrt();
+            sonar.speckle_db *= (1.0 - strength).sqrt();
+            sonar.acoustics = Acoustics::of_room(detail);
+        }
         Effect::Unchanged => {}
         Effect::HeldOut(effect) => effect.fit(hardware, strength),
     }

@@ -28,7 +28,8 @@ pub(super) struct Echo {
 /// The nearest echo of a ping that triggers the sensor.
 pub(super) fn first_echo(sonar: &Sonar, sides: &[Wall], ping: &Ping, rng: &mut Generator) -> Option<Echo> {
     let sensor = ping.from.compose(&Pose { position_cm: sonar.place_cm, heading_rad: sonar.yaw_rad });
-    let ping_db = sonar.ping_db * normal(rng) - sonar.whine_db * ping.wheel_speed;
+    let here_db = sonar.place_db * sonar.acoustics.at(&sensor);
+    let ping_db = sonar.ping_db * normal(rng) + here_db - sonar.whine_db * ping.wheel_speed;
     let mut first: Option<Echo> = None;
     for ray in 0..RAYS {
         // -1 at the right edge of the beam, 1 at the left one.

@@ -3,23 +3,30 @@
 use super::parameters;
 use crate::effects::context::HISTORY;
 use crate::effects::parameter::Guesses;
-use crate::effects::{Effect, Hook, Parameter, Variant};
+use crate::effects::{Effect, Hook, Parameter, StepContext, Variant};
 
 pub const EFFECT: Effect = Effect {
     id: "latency",
-    variants: &[Variant {
-        id: "delay",
-        parameters: Latency::PARAMETERS,
-        hooks: &[Hook::Commands(&|v, context, commands| {
-            // The command before holds for the first part of the step; what it did to the wheels is over by then.
-            let steps = (Latency::read(v).ms / context.robot.step_ms).min((HISTORY - 2) as f64);
-            let (whole, part) = (steps as usize, steps % 1.0);
-            commands.rotate_left(whole);
-            let [now, before, ..] = commands;
-            *now = [0, 1].map(|m| (1.0 - part) * now[m] + part * before[m]);
-        })],
-    }],
+    variants: &[
+        Variant {
+            id: "delay",
+            parameters: Latency::PARAMETERS,
+            hooks: &[Hook::Commands(&|v, context, commands| {
+                // The command before holds for the first part of the step; what it did to the wheels is over by then.
+                let steps = late_steps(v, context);
+                let (whole, part) = (steps as usize, steps % 1.0);
+                commands.rotate_left(whole);
+                let [now, before, ..] = commands;
+                *now = [0, 1].map(|m| (1.0 - part) * now[m] + part * before[m]);
+            })],
+        },
+        Variant { id: "of_motion", parameters: Latency::PARAMETERS, hooks: &[Hook::Delay(&late_steps)] },
+    ],
 };
+
+fn late_steps(values: &[f64], context: &StepContext) -> f64 {
+    (Latency::read(values).ms / context.robot.step_ms).min((HISTORY - 2) as f64)
+}
 
 parameters! {
     Latency {

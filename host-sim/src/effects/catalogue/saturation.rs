@@ -16,6 +16,18 @@ pub const EFFECT: Effect = Effect {
             })],
         },
         Variant {
+            id: "wheel",
+            parameters: Saturation::PARAMETERS,
+            hooks: &[Hook::Motion(&|v, context, increment| {
+                let most_cm = Saturation::read(v).limit_cm_s * context.step_s();
+                let wheels = increment.wheels_cm(context.robot.track_cm);
+                let within = wheels.map(|covered_cm| covered_cm.clamp(-most_cm, most_cm));
+                if within != wheels {
+                    increment.set_wheels(within, context.robot.track_cm);
+                }
+            })],
+        },
+        Variant {
             id: "soft",
             parameters: Saturation::PARAMETERS,
             hooks: &[Hook::Commands(&|v, context, commands| {

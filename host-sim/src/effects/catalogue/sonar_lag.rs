@@ -1,36 +1,17 @@
-//! Readings are old.
+//! Readings are old: they are of where the robot was.
 
 use super::parameters;
 use crate::effects::parameter::{Guesses, Report};
-use crate::effects::{Effect, Hook, Parameter, Variant};
+use crate::effects::{Effect, Hook, Parameter, StepContext, Variant};
 use crate::geometry::{Pose, wrap_rad};
 
 pub const EFFECT: Effect = Effect {
     id: "sonar_lag",
-    variants: &[
-        Variant {
-            id: "earlier_pose",
-            parameters: Lag::PARAMETERS,
-            hooks: &[Hook::Sensor(&|v, context, sensor| {
-                let steps = Lag::read(v).lag_ms / context.robot.step_ms;
-                let known = [Some(context.pose), context.earlier[0], context.earlier[1]];
-                let whole = (steps as usize).min(1);
-                let (Some(newer), Some(older)) = (known[whole], known[whole + 1]) else { return };
-                sensor.robot = between(&newer, &older, (steps - whole as f64).min(1.0));
-            })],
-        },
-        Variant {
-            id: "earlier_reading",
-            parameters: Stale::PARAMETERS,
-            hooks: &[Hook::Sensor(&|v, context, sensor| {
-                // Where the same is faced as before, readings repeat anyway.
-                let (Some([now_cm, _]), Some([before_cm, _])) = (context.faced, context.faced_before) else { return };
-                if (now_cm - before_cm).abs() > OTHER_CM {
-                    sensor.perturbation.p_stale = Stale::read(v).steps;
-                }
-            })],
-        },
-    ],
+    variants: &[Variant {
+        id: "earlier_pose",
+        parameters: Lag::PARAMETERS,
+        hooks: &[Hook::Sensor(&|v, context, sensor| sensor.robot = earlier(Lag::read(v).lag_ms, context))],
+    }],
 };
 
 parameters! {
@@ -43,15 +24,21 @@ parameters! {
     }
 }
 
-parameters! {
-    Stale {
-        /// Share of readings that are the one before: their mean age in steps.
-        steps: Parameter::new("steps", 0.0, [0.0, 1.0]).prior_sd(0.5).from(Guesses::At(&[0.1, 0.5])),
+/// Where the robot was so long ago, on a straight way between the two known poses next to that; the oldest known pose where
+/// none is as old.
+fn earlier(lag_ms: f64, context: &StepContext) -> Pose {
+    let steps = lag_ms / context.robot.step_ms;
+    let (mut newer, mut newer_steps) = (context.pose, 0.0);
+    for (i, known) in context.earlier.iter().enumerate() {
+        let Some(pose) = known else { continue };
+        let age_steps = (i + 1) as f64;
+        if steps <= age_steps {
+            return between(&newer, pose, (steps - newer_steps) / (age_steps - newer_steps));
+        }
+        (newer, newer_steps) = (*pose, age_steps);
     }
+    newer
 }
-
-/// Distances that differ by more than a reading scatters are of something else.
-const OTHER_CM: f64 = 4.0;
 
 /// The pose at a share of the way from `newer` back to `older`.
 fn between(newer: &Pose, older: &Pose, share: f64) -> Pose {
@@ -59,5 +46,28 @@ fn between(newer: &Pose, older: &Pose, share: f64) -> Pose {
     Pose {
         position_cm: newer.position_cm.lerp(older.position_cm, share),
         heading_rad: wrap_rad(newer.heading_rad + share * turn_rad),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::effects::context::{RunHistory, Surroundings};
+
+    /// At 400 ms a step: at x = 100 now, 90 and 60 one and three steps ago, and not seen in between.
+    fn x_cm(lag_ms: f64) -> f64 {
+        let robot = crate::built_in_robot::default_robot();
+        let surroundings = Surroundings::new(&robot, &crate::built_in_robot::training_room());
+        let at = |x_cm: f64| Pose::new(x_cm, 50.0, 0.0);
+        let mut context = surroundings.context(&RunHistory::default(), 0.0, at(100.0));
+        context.earlier[0] = Some(at(90.0));
+        context.earlier[2] = Some(at(60.0));
+        earlier(lag_ms, &context).position_cm.x
+    }
+
+    #[test]
+    fn a_reading_is_of_where_the_robot_was() {
+        assert_eq!([0.0, 200.0, 400.0, 800.0, 1200.0].map(x_cm), [100.0, 95.0, 90.0, 75.0, 60.0]);
+        assert_eq!(x_cm(2000.0), 60.0, "beyond what is known");
     }
 }

@@ -76,8 +76,8 @@ fn relative_likelihood_falls_with_the_lead_in_standard_errors() {
         // Leads of 7 and −1 differ from their mean by 4: an error of 8 nats beside the 3 of strong evidence.
         let z_squared = 6.0 * 6.0 / (8.0 * 8.0 + 3.0 * 3.0);
         assert!((against([3.0, 11.0]) - libm::exp(-0.5 * z_squared)).abs() < 1e-12);
-        // The price of a further parameter counts.
-        let more = made_up(&[&LONGER, &FARTHER], &[0.0; 2], &[10.0, 10.0], context);
+        // The price of freedom counts.
+        let more = Fitted { occam: -1.0, ..fit(&FARTHER, [10.0, 10.0]) };
         let z = 1.0 / 3.0;
         assert!((relative_likelihood(&winner, &more, &CALIBRATION) - libm::exp(-0.5 * z * z)).abs() < 1e-12);
     });
@@ -102,17 +102,25 @@ fn an_effect_for_which_many_can_stand_counts_half() {
     with_context(|context| {
         let fit = |effect: &'static Effect, each: f64| made_up(&[effect], &[0.0], &[each; 2], context);
         let none = made_up(&[], &[], &[0.0; 2], context);
-        let nats = |singles: &[Fitted]| first_gain(singles, &none, &CALIBRATION).nats;
-        let first = || fit(&LONGER, 10.0);
+        let nats = |singles: &[Fitted]| most_alone(singles, &none, &CALIBRATION).nats;
         assert_eq!(nats(&[]), 0.0);
-        let other = || fit(&FARTHER, 9.0);
-        assert_eq!(nats(&[first(), other(), other(), other()]), 20.0);
-        assert_eq!(nats(&[first(), other(), other(), other(), other()]), 10.0);
-        assert_eq!(nats(&[first(), other(), other(), other(), fit(&FARTHER, 1.0)]), 20.0);
+        let others = |count: usize, each: f64| {
+            let other = |id: &&'static str| {
+                let mut other = fit(&FARTHER, each);
+                other.hypothesis.candidates[0].effect = id;
+                other
+            };
+            let first = [fit(&LONGER, 10.0)].into_iter();
+            first.chain(["a", "b", "c", "d"][..count].iter().map(other)).collect::<Vec<Fitted>>()
+        };
+        assert_eq!(nats(&others(3, 9.0)), 20.0);
+        assert_eq!(nats(&others(4, 9.0)), 10.0);
+        assert_eq!(nats(&others(4, 1.0)), 20.0);
     });
 }
 
-/// A further effect on the same stage has to gain 8 % of what is explained already; on another the gate is enough.
+/// A further effect on the same stage has to gain 8 % of what is explained already; on another the gate is enough. Of two
+/// blocks the one that gains less has to show it.
 #[test]
 fn a_further_effect_on_the_same_stage_has_to_gain_more() {
     with_context(|context| {
@@ -122,8 +130,8 @@ fn a_further_effect_on_the_same_stage_has_to_gain_more() {
             let fit = made_up(&[&LONGER, effect], &[0.0; 2], &[50.0 + 0.5 * more; 2], context);
             is_worth_adding(&fit, &so_far, &none, &CALIBRATION)
         };
-        assert!(worth(&FARTHER, 5.1) && !worth(&FARTHER, 4.9));
-        assert!(worth(&LONGER_TO_THE_LEFT, 8.1) && !worth(&LONGER_TO_THE_LEFT, 7.9));
+        assert!(worth(&FARTHER, 10.2) && !worth(&FARTHER, 9.8));
+        assert!(worth(&LONGER_TO_THE_LEFT, 16.2) && !worth(&LONGER_TO_THE_LEFT, 15.8));
     });
 }
 
@@ -141,7 +149,23 @@ fn rivals_are_what_stands_in_the_place_of_an_effect() {
         assert_eq!(in_place(0), [("longer_to_the_left", libm::exp(-2.0))]);
         let z = 16.0 / 3.0;
         assert_eq!(in_place(1), [("longer_to_the_left", libm::exp(-0.5 * z * z))]);
-        let runner_up = found.runner_up(&CALIBRATION).expect("another fit");
+        let runner_up = found.runner_up().expect("another fit");
         assert_eq!(runner_up.ids(), ["farther", "longer_to_the_left"]);
+    });
+}
+
+/// A hundred nats are explained: beside another effect of the same stage eight of them have to be an effect's own, and on a
+/// stage of its own the five of the gate.
+#[test]
+fn an_effect_beside_others_is_as_probable_as_what_it_gains_of_its_own() {
+    with_context(|context| {
+        let beside = |second: &'static Effect, own: f64| {
+            let found = comparison(&[&LONGER, second], &[50.0; 2], context);
+            Comparison { own_nats: vec![90.0, own], ..found }.probability_beside_others(1, &CALIBRATION)
+        };
+        assert_eq!((beside(&LONGER_TO_THE_LEFT, 8.0), beside(&LONGER_TO_THE_LEFT, 24.0)), (0.5, 0.75));
+        assert_eq!((beside(&FARTHER, 5.0), beside(&FARTHER, -3.0)), (0.5, 0.0));
+        let alone = Comparison { own_nats: vec![9.0], ..comparison(&[&LONGER], &[5.0; 2], context) };
+        assert_eq!(alone.probability_beside_others(0, &CALIBRATION), 1.0);
     });
 }

@@ -84,7 +84,7 @@ pub fn strata(found: &Comparison, judged: &Judged, context: &FitContext) -> Vec<
     if matches!(judged, Judged::NoGap) {
         return Vec::new();
     }
-    let known = matches!(judged, Judged::Known { .. });
+    let known = matches!(judged, Judged::Known { .. } | Judged::PartlyKnown { .. });
     let mut told: Vec<(f64, Stratum)> =
         Channel::ALL.into_iter().filter_map(|channel| of_channel(channel, found, known, context)).collect();
     told.sort_by(|a, b| b.0.total_cmp(&a.0));
@@ -111,11 +111,15 @@ fn excess(found: &Comparison, known: bool, channel: Channel, context: &FitContex
     let remainders = if known { &found.beyond_chosen } else { &found.beyond_none };
     let remainder = remainders.iter().find(|r| r.channel() == channel && r.counts());
     let none = found.none.log_likelihood.channel(channel);
-    let gains = |best: &[f64]| -> Vec<f64> { best.iter().zip(&none).map(|(best, none)| best - none).collect() };
     // Effects that explain too little to be named still show where the gap lies.
-    let Some(remainder) = remainder else { return gains(&found.chosen.log_likelihood.channel(channel)) };
-    let scattered = remainder.wider_scatter(context, context.observations);
-    gains(&remainder.model.held_out).iter().zip(scattered).map(|(follows, scatters)| follows + scatters).collect()
+    let best = remainder.map_or_else(|| found.chosen.log_likelihood.channel(channel), |r| r.model.held_out.clone());
+    let mut excess: Vec<f64> = best.iter().zip(&none).map(|(best, none)| best - none).collect();
+    let scatter = found.scatter.iter().find(|wider| channel.motion_axis() == Some(wider.axis));
+    let rest = found.beyond_chosen.iter().find(|r| r.channel() == channel);
+    if let (Some(wider), Some(rest)) = (scatter, rest.and_then(|r| r.rest(context.observations, context))) {
+        excess.iter_mut().zip(wider.gains(&rest)).for_each(|(e, gain)| *e += gain);
+    }
+    excess
 }
 
 /// A stratum among others.

@@ -131,3 +131,22 @@ fn an_effect_for_which_too_many_could_stand_is_no_answer() {
         assert!(matches!(with(6), Judged::Unknown));
     });
 }
+
+#[test]
+fn effects_that_are_as_probable_come_by_their_shares() {
+    let effect = |id: &'static str, probability: f64| NamedEffect {
+        id,
+        probability,
+        parameters: serde_json::Map::new(),
+        ambiguous_with: Vec::new(),
+        share: None,
+        intervals: serde_json::Map::new(),
+        at_bound: Vec::new(),
+    };
+    let part = |id: &str, share: f64| Part { id: id.into(), share, ci95: [share; 2] };
+    let budget = [part("slope", 0.1), part("latency", 0.2), part("slip", 0.7)];
+    let effects = vec![effect("slope", 0.9), effect("latency", 0.901), effect("slip", 0.5)];
+    let told = with_shares(effects, &budget);
+    assert_eq!(told.iter().map(|e| e.id).collect::<Vec<_>>(), ["latency", "slope", "slip"]);
+    assert_eq!(told[0].share, Some(0.2));
+}

@@ -2,16 +2,7 @@ use super::*;
 use crate::effects::applied::AppliedEffect;
 use crate::gap::test_support::*;
 
-#[test]
-fn scatter_is_the_root_of_the_mean_square_and_never_less_than_the_simulators() {
-    let refitted = |residuals: &[f64], least| refitted(residuals.iter().copied(), least);
-    assert_eq!(refitted(&[3.0, -4.0, 3.0, -4.0], 1.5), 12.5f64.sqrt());
-    assert_eq!(refitted(&[0.1, -0.1], 1.0), 1.0);
-    assert_eq!(refitted(&[], 0.7), 0.7);
-    // A jump of the tracker counts as four standard deviations.
-    assert_eq!(refitted(&[1000.0, 0.0, 0.0, 0.0], 1.0), 2.0);
-}
-
+/// An effect that explains all leaves the simulator's own scatter.
 #[test]
 fn the_scatter_of_a_hypothesis_is_that_of_what_it_leaves_over() {
     let (baseline, rows) = (
@@ -20,33 +11,14 @@ fn the_scatter_of_a_hypothesis_is_that_of_what_it_leaves_over() {
     );
     let none = Hypothesis::none(&baseline);
     let [forward, lateral, turn] = none.scatter(&baseline, &rows, &[]);
-    assert!(
-        (forward - (0.5 * (3.5f64 * 3.5 + 0.5 * 0.5)).sqrt()).abs() < 1e-9 && lateral == 1.0,
-        "{forward} {lateral}"
-    );
-    assert!((turn - 0.3).abs() < 1e-9, "{turn}");
-    assert!((none.with(candidate(&LONGER)).scatter(&baseline, &rows, &[1.5])[0] - 2.0).abs() < 1e-9);
+    let of = |axis, residuals: &[f64]| fitted_scatter(axis, residuals, SCATTER[axis]);
+    assert_eq!((forward, lateral, turn), (of(0, &[-0.5, 3.5].repeat(4)), SCATTER[1], of(2, &[0.3; 8])));
+    assert_eq!(none.with(candidate(&LONGER)).scatter(&baseline, &rows, &[1.5])[0], of(0, &[-2.0, 2.0].repeat(4)));
 }
 
-#[test]
-fn the_density_of_a_residual_integrates_to_one() {
-    for scatter in [0.01, 1.0, 30.0] {
-        let width = 0.01 * scatter;
-        let sum: f64 = (-10_000..=10_000).map(|i| libm::exp(log_density(f64::from(i) * width, scatter))).sum();
-        assert!((sum * width - 1.0).abs() < 1e-9, "{scatter}: {}", sum * width);
-    }
-}
-
-/// The density near zero is the normal law's, ten deviations off that of a jump of eight deviations, which happens in
-/// one step of a hundred.
-#[test]
-fn a_jump_of_the_tracker_does_not_cost_what_the_normal_law_says() {
-    let normal = |residual: f64, scatter: f64| {
-        -0.5 * (residual / scatter) * (residual / scatter) - 0.5 * libm::log(2.0 * PI) - libm::log(scatter)
-    };
-    assert!((log_density(0.0, 2.0) - normal(0.0, 2.0)).abs() < 0.01);
-    assert!((log_density(20.0, 2.0) - libm::log(0.01) - normal(20.0, 16.0)).abs() < 1e-9);
-    assert!(log_density(20.0, 2.0) > normal(20.0, 2.0) + 40.0);
+/// The log-density of a row that is as expected.
+fn expected() -> [f64; 3] {
+    [0, 1, 2].map(|axis| log_density(axis, 0.0, SCATTER[axis]))
 }
 
 #[test]
@@ -69,7 +41,7 @@ fn what_a_hypothesis_does_not_touch_is_taken_over() {
     };
     let (longer, farther) = (with(&LONGER), with(&FARTHER));
     assert_eq!((longer.sonar, farther.motion), (untouched.sonar.clone(), untouched.motion.clone()));
-    assert_eq!(longer.motion, vec![SCATTER.map(|s| log_density(0.0, s)); 4]);
+    assert_eq!(longer.motion, vec![expected(); 4]);
     assert!(farther.sonar.iter().flatten().all(|term| *term < 1.0));
 }
 
@@ -110,7 +82,7 @@ fn effects_that_the_simulator_has_already_act_beneath_every_hypothesis() {
     let rows = observations(1, 4, |_, _| Made { off: [0.5, 0.0, 0.0], ..Made::default() });
     let none = Hypothesis::none(&with_scale);
     assert!(none.candidates.is_empty() && !none.moves());
-    let exact = SCATTER.map(|s| log_density(0.0, s));
+    let exact = expected();
     let terms = none.log_likelihood(&with_scale, &rows, &[], None).motion;
     assert!(terms.iter().flatten().zip(exact.iter().cycle()).all(|(a, b)| (a - b).abs() < 1e-9), "{terms:?}");
 }

@@ -7,7 +7,7 @@ use crate::evaluation::observations::{Observation, Observations};
 use crate::evaluation::predictions::{increment, residual};
 use crate::gap::channel::Channel;
 use crate::gap::fit::{FitContext, Fitted};
-use crate::gap::hypothesis::{log_density, refitted};
+use crate::gap::residual_law::{fitted_scatter, log_density};
 use crate::simulator::baseline::{Baseline, MotionModel};
 
 /// The density of a residual.
@@ -34,9 +34,11 @@ pub fn fit(channel: Channel, axis: usize, beneath: &Fitted, context: &FitContext
     let response = |i: usize, prediction: f64| {
         prediction + (residuals[i].unwrap_or(0.0) / scatter - prediction).clamp(-FARTHEST, FARTHEST)
     };
-    let (surface, predictions) = Surface::fit(&covariates, known, context.observations, scatter, response);
+    let run = |i: usize| context.observations.rows[i].block;
+    let (surface, predictions) = Surface::fit(&covariates, known, run, scatter, response);
     let rest = residuals.iter().zip(&predictions).filter_map(|(r, prediction)| Some((*r)? - prediction));
-    let law = Law { scatter: refitted(rest, law.least(context.baseline)), ..law };
+    let rest: Vec<f64> = rest.collect();
+    let law = Law { scatter: fitted_scatter(axis, &rest, law.least(context.baseline)), ..law };
     ResidualFit {
         channel,
         held_out: law.terms(&residuals, &predictions),
@@ -96,7 +98,9 @@ impl Law {
 
     /// The log-likelihood of each row where these predictions are right.
     pub fn terms(&self, residuals: &[Option<f64>], predictions: &[f64]) -> Vec<f64> {
-        let term = |(r, prediction): (&Option<f64>, &f64)| r.map_or(0.0, |r| log_density(r - prediction, self.scatter));
+        let term = |(r, prediction): (&Option<f64>, &f64)| {
+            r.map_or(0.0, |r| log_density(self.axis, r - prediction, self.scatter))
+        };
         residuals.iter().zip(predictions).map(term).collect()
     }
 }

@@ -36,6 +36,7 @@ struct Reading {
     change: Perturbation,
     echo_cm: Option<f64>,
     previous_echo_cm: Option<f64>,
+    weight: [f64; 2],
 }
 
 /// Bounds and start of scatter, short and long: the widest that a beam and a room leave any sense to, and near none.
@@ -60,7 +61,7 @@ pub fn rate(beneath: &Fitted, context: &FitContext) -> ResidualFit {
     let response = |i: usize, prediction: f64| prediction + heard.score(&heard.rows[i], prediction);
     let known = |_| heard.sonar.is_some();
     let (surface, predictions) =
-        Surface::fit(&covariates(context.observations), known, context.observations, LOG_ODDS, response);
+        Surface::fit(&covariates(context.observations), known, place(context.observations), LOG_ODDS, response);
     let held_out = heard.rates(&predictions);
     fitted(Channel::EchoRate, beneath, held_out, surface, predictions, Law::EchoRate)
 }
@@ -100,18 +101,23 @@ fn fitted(
     ResidualFit { channel, held_out, surface, predictions, law, effects: beneath.effects() }
 }
 
+/// The place of a row: what belongs to a place is judged by others.
+fn place(rows: &Observations) -> impl Fn(usize) -> usize {
+    |i| rows.rows[i].place
+}
+
 /// The covariates of every reading.
 pub fn covariates(rows: &Observations) -> Vec<Steps> {
     rows.rows.iter().map(|row| vec![of_reading(&row.context)]).collect()
 }
 
-/// Distance and incidence; the commands until the reading; whether there was one before; heading; time; and the places
-/// of the robot and of what it faces.
+/// Distance and incidence; the commands until the reading; heading; time; and the places of the robot and of what it
+/// faces. Whether there was a reading before is no circumstance: what belongs to the place repeats a row later, when the
+/// robot is still about there.
 fn of_reading(step: &StepContext) -> Vec<f64> {
     let [distance_cm, incidence_rad] = step.faced.unwrap_or([FAR_CM, 0.0]);
     let distance_cm = distance_cm.min(FAR_CM);
     let [_, [left, right], ..] = step.commands;
-    let echo_before = step.echo_before.map_or(0.0, |echo| if echo { 1.0 } else { -1.0 });
     let (position_cm, direction) = (step.pose.position_cm, step.pose.direction());
     let faced_cm = position_cm + direction * distance_cm;
     vec![
@@ -119,7 +125,6 @@ fn of_reading(step: &StepContext) -> Vec<f64> {
         incidence_rad,
         left,
         right,
-        echo_before,
         direction.x,
         direction.y,
         step.elapsed_min,
@@ -135,7 +140,8 @@ impl<'a> Heard<'a> {
     pub fn of(effects: &EffectChain, baseline: &'a Baseline, observations: &Observations) -> Self {
         let reading = |row: &Observation| {
             let (fan, change) = facing(effects, observations, row);
-            Reading { fan, change, echo_cm: row.echo_cm, previous_echo_cm: row.previous_echo_cm }
+            let Observation { echo_cm, previous_echo_cm, echo_weight: weight, .. } = *row;
+            Reading { fan, change, echo_cm, previous_echo_cm, weight }
         };
         Heard { sonar: baseline.sonar.as_ref(), rows: observations.rows.iter().map(reading).collect() }
     }
@@ -144,7 +150,7 @@ impl<'a> Heard<'a> {
     pub fn rates(&self, predictions: &[f64]) -> Vec<f64> {
         let rate = |(reading, prediction): (&Reading, &f64)| {
             let none = self.none(reading, *prediction);
-            libm::log(if reading.echo_cm.is_some() { 1.0 - none } else { none })
+            reading.weight[0] * libm::log(if reading.echo_cm.is_some() { 1.0 - none } else { none })
         };
         match self.sonar {
             Some(_) => self.rows.iter().zip(predictions).map(rate).collect(),
@@ -180,7 +186,7 @@ impl<'a> Heard<'a> {
         change.p_short = 1.0 - (1.0 - change.p_short) * (1.0 - spread.short);
         change.p_long += spread.long;
         let outcomes = sonar.outcomes(&reading.fan, &change, reading.previous_echo_cm);
-        outcomes.log_likelihood(reading.echo_cm) - outcomes.log_detection(reading.echo_cm)
+        reading.weight[1] * (outcomes.log_likelihood(reading.echo_cm) - outcomes.log_detection(reading.echo_cm))
     }
 
     /// By how much readings are off, cm.
@@ -193,7 +199,7 @@ impl<'a> Heard<'a> {
         let response = |i: usize, prediction: f64| {
             prediction + (off[i].unwrap_or(0.0) / scatter_cm - prediction).clamp(-FARTHEST, FARTHEST)
         };
-        Surface::fit(&covariates(observations), |i| off[i].is_some(), observations, scatter_cm, response)
+        Surface::fit(&covariates(observations), |i| off[i].is_some(), place(observations), scatter_cm, response)
     }
 }
 

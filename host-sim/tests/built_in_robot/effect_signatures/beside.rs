@@ -15,9 +15,9 @@ fn turn_surplus_deg(s: &MotionSample) -> f64 {
 }
 
 #[test]
-fn the_table_has_26_effects_and_more_stand_beside_it() {
+fn the_table_has_29_effects_and_more_stand_beside_it() {
     let (inside, beside): (Vec<Effect>, Vec<Effect>) = Effect::all().partition(|effect| effect.in_table());
-    assert_eq!(inside.len(), 26);
+    assert_eq!(inside.len(), 29);
     assert!(beside.len() >= 7 && beside.contains(&Effect::Unchanged));
 }
 
@@ -172,13 +172,14 @@ fn sonar_one_sided_makes_echoes_depend_on_the_side() {
 }
 
 #[test]
-fn marker_offset_moves_the_tracked_point_aside_as_the_robot_turns() {
+fn motion_noise_scatters_ways_and_leaves_their_mean() {
     for driving in drivings() {
-        let aside = |m: &Measured| {
-            let spins = m.motion.iter().filter(|s| (s.speeds[0] + s.speeds[1]).abs() < 1.0);
-            slope(spins.map(|s| (libm::sin(s.turn_rad), s.lateral_cm)))
+        let ways = |m: &Measured| {
+            let ahead = || m.motion.iter().filter(|s| is_steady(s) && asked_motion(s).0 > 4.0);
+            let share = mean(ahead().map(|s| s.forward_cm / asked_motion(s).0));
+            (share, scatter(ahead().map(|s| s.forward_cm - share * asked_motion(s).0)))
         };
-        let (without, with) = driving.without_and_with("marker_offset=4", aside);
-        assert!(without.abs() < 0.3 && (3.5..4.5).contains(&with), "{without} {with}");
+        let (without, with) = driving.without_and_with("motion_noise", ways);
+        assert!((with.0 / without.0 - 1.0).abs() < 0.05 && with.1 > 1.1 * without.1, "{without:?} {with:?}");
     }
 }

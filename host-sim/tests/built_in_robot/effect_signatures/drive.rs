@@ -160,6 +160,22 @@ fn slip_loses_way_when_the_command_jumps() {
 }
 
 #[test]
+fn turn_loss_takes_way_from_turns_and_leaves_spins() {
+    for driving in drivings() {
+        let marks = |m: &Measured| {
+            let ahead = |s: &&MotionSample| is_steady(s) && asked_motion(s).0 > 5.0;
+            let lost = |s: &MotionSample| (s.turn_rad.abs(), -surplus_cm(s));
+            let spins = m.motion.iter().filter(|s| (s.speeds[0] + s.speeds[1]).abs() < 1.0);
+            (slope(m.motion.iter().filter(ahead).map(lost)), slope(spins.map(|s| (asked_motion(s).1, s.turn_rad))))
+        };
+        let (without, with) = driving.without_and_with("turn_loss=4", marks);
+        // A castor drags more in the tighter turns.
+        assert!((2.5..6.5).contains(&(with.0 - without.0)), "{without:?} {with:?}");
+        assert!((with.1 / without.1 - 1.0).abs() < 0.05, "{without:?} {with:?}");
+    }
+}
+
+#[test]
 fn carpet_nap_holds_back_in_one_direction() {
     for driving in drivings() {
         let (without, with) = driving.without_and_with("carpet_nap=0.15@-60", |m| {

@@ -7,7 +7,7 @@ use mindgap_host_sim::geometry::Pose;
 use mindgap_host_sim::logs::samples::{MotionSample, SonarSample};
 
 use super::measures::{
-    Measured, asked_motion, covered_cm, drivings, mean, scatter, share, slope, surplus_cm, two_slopes,
+    Measured, asked_motion, covered_cm, drivings, jump, mean, scatter, share, slope, surplus_cm, two_slopes,
 };
 
 /// Covered way forward against asked one over chosen steps.
@@ -29,15 +29,17 @@ fn the_held_out_effects_are_in_no_table_and_end_the_list() {
 }
 
 #[test]
-fn tyre_rub_loses_speed_in_turns() {
+fn lost_commands_leave_the_one_before_at_work() {
     for driving in drivings() {
-        let in_turns = |m: &Measured| {
-            let ahead = |s: &MotionSample| asked_motion(s).0.abs() > 3.0;
-            let turn_rad = |s: &MotionSample| asked_motion(s).1.abs();
-            forward(m, |s| ahead(s) && turn_rad(s) > 0.4) / forward(m, |s| ahead(s) && turn_rad(s) < 0.1)
+        let late = |m: &Measured| {
+            two_slopes(m.motion.iter().filter(|s| jump(s).abs() > 25.0).map(|s| {
+                let [left, right, last_left, last_right] = s.speeds;
+                (left + right, last_left + last_right, s.forward_cm)
+            }))
         };
-        let (without, with) = driving.without_and_with("tyre_rub", in_turns);
-        assert!(without > 0.92 && with < without - 0.05, "{without} {with}");
+        let (without, with) = driving.without_and_with("lost_commands=0.4", late);
+        let share = |(now, before): (f64, f64)| before / (now + before);
+        assert!(share(without) < 0.25 && (0.3..0.65).contains(&share(with)), "{without:?} {with:?}");
     }
 }
 
@@ -142,13 +144,15 @@ fn motor_whine_drowns_echoes_at_high_wheel_speeds() {
 }
 
 #[test]
-fn smooth_walls_give_long_readings_at_oblique_incidence() {
+fn a_blind_zone_takes_near_echoes_and_leaves_others() {
     for driving in drivings() {
-        let long = |m: &Measured| {
-            let oblique = m.sonar.iter().filter(|s| s.distance_cm > 20.0 && s.alpha_deg() > 50.0);
-            share(oblique.filter_map(|s| Some(s.echo_cm? > s.distance_cm + 15.0)))
+        let rates = |m: &Measured| {
+            [(10.0, 22.0), (45.0, 70.0)].map(|(near_cm, far_cm)| {
+                let ahead = m.sonar.iter().filter(|s| s.alpha_deg() < 25.0);
+                share(ahead.filter(|s| (near_cm..far_cm).contains(&s.distance_cm)).map(|s| s.echo_cm.is_some()))
+            })
         };
-        let (without, with) = driving.without_and_with("smooth_walls=16", long);
-        assert!(without < 0.12 && with > without + 0.08, "{without} {with}");
+        let (without, with) = driving.without_and_with("blind_zone=30", rates);
+        assert!(without[0] > 0.9 && with[0] < 0.3 && (with[1] - without[1]).abs() < 0.1, "{without:?} {with:?}");
     }
 }

@@ -150,6 +150,18 @@ fn sonar_crosstalk_gives_short_readings_at_random() {
 }
 
 #[test]
+fn sonar_multipath_gives_long_readings_at_oblique_incidence() {
+    for driving in drivings() {
+        let long = |m: &Measured| {
+            let oblique = m.sonar.iter().filter(|s| s.distance_cm > 20.0 && s.alpha_deg() > 50.0);
+            share(oblique.filter_map(|s| Some(s.echo_cm? > s.distance_cm + 15.0)))
+        };
+        let (without, with) = driving.without_and_with("sonar_multipath=16", long);
+        assert!(without < 0.12 && with > without + 0.08, "{without} {with}");
+    }
+}
+
+#[test]
 fn sonar_noise_scatters_readings() {
     for driving in drivings() {
         let (without, with) = driving.without_and_with("sonar_noise=4", |m| {

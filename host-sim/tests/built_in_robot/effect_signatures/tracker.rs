@@ -64,3 +64,17 @@ fn compass_disturbance_makes_headings_wrong_by_heading() {
         assert!(without < 1.5 && (5.0..11.0).contains(&with), "{without} {with}");
     }
 }
+
+#[test]
+fn marker_offset_carries_the_tracked_point_round_the_axle() {
+    for driving in drivings() {
+        let carried = |m: &Measured| {
+            let spins = || m.motion.iter().filter(|s| (s.speeds[0] + s.speeds[1]).abs() < 1.0);
+            let aside = slope(spins().map(|s| (libm::sin(s.turn_rad), s.lateral_cm)));
+            (aside, slope(spins().map(|s| (-libm::sin(s.turn_rad), s.forward_cm))))
+        };
+        let (without, with) = driving.without_and_with("marker_offset=4@-3", carried);
+        assert!(without.0.abs() < 0.3 && (3.5..4.5).contains(&with.0), "{without:?} {with:?}");
+        assert!(without.1.abs() < 0.3 && (-3.5..-2.5).contains(&with.1), "{without:?} {with:?}");
+    }
+}

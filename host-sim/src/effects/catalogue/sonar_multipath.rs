@@ -1,0 +1,57 @@
+//! Now and then a reading longer than what the axis meets: sound that a surface mirrors away and that comes back by way of
+//! another.
+
+use super::parameters;
+use crate::effects::parameter::{Guesses, Report};
+use crate::effects::{Effect, Hook, Parameter, SensorState, StepContext, Variant};
+
+pub const EFFECT: Effect = Effect {
+    id: "sonar_multipath",
+    variants: &[
+        Variant {
+            id: "oblique",
+            parameters: Multipath::PARAMETERS,
+            hooks: &[Hook::Sensor(&|v, context, sensor| {
+                let Multipath { probability } = Multipath::read(v);
+                lengthen(probability, context, sensor);
+            })],
+        },
+        Variant {
+            id: "oblique_and_strength",
+            parameters: MirroringSurfaces::PARAMETERS,
+            hooks: &[Hook::Sensor(&|v, context, sensor| {
+                let MirroringSurfaces { probability, log_odds_loss } = MirroringSurfaces::read(v);
+                lengthen(probability, context, sensor);
+                sensor.perturbation.attenuation_per_incidence += log_odds_loss;
+            })],
+        },
+    ],
+};
+
+/// Chance of it in a reading of a surface at 45 degrees; it is twice that at grazing incidence, and almost sure at most.
+const PROBABILITY: Parameter = Parameter::new("", 0.0, [0.0, 0.45]).prior_sd(0.2).from(Guesses::At(&[0.05, 0.2]));
+
+parameters! {
+    Multipath {
+        /// See [`PROBABILITY`].
+        probability: PROBABILITY,
+    }
+}
+
+parameters! {
+    MirroringSurfaces {
+        /// See [`PROBABILITY`].
+        probability: PROBABILITY,
+        /// Log-odds of an echo that are lost per 45 degrees: less comes back directly, and more by way of another surface.
+        log_odds_loss: Parameter::new("", 0.0, [-4.0, 4.0]).prior_sd(1.5).report(Report::Hidden),
+    }
+}
+
+/// The square of the incidence's sine is the share of sound that a surface sends on rather than back, in the simplest
+/// law: none at normal incidence, half at 45 degrees and all at grazing.
+fn lengthen(probability: f64, context: &StepContext, sensor: &mut SensorState) {
+    let Some([_, incidence_rad]) = context.faced else { return };
+    let sine = libm::sin(incidence_rad);
+    let p_long = 2.0 * probability * sine * sine;
+    sensor.perturbation.p_long = 1.0 - (1.0 - sensor.perturbation.p_long) * (1.0 - p_long);
+}

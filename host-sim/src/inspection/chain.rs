@@ -1,0 +1,106 @@
+//! The cheapest reading of a sequence of which some members are wrong: which to keep, in which state, and where it breaks.
+
+/// What it costs to leave a member out.
+const LEAVE_OUT: f64 = 2.0;
+/// What it costs to go on from a member that the next one cannot follow: two members left out are likelier than that, and
+/// a jump that stays is likelier than three.
+const BREAK: f64 = 5.0;
+/// What it costs to change state: there and back is just likelier than a member left out.
+const SWITCH: f64 = 0.9;
+/// Members left out one after the other; more than two cost more than a break.
+const MOST_LEFT_OUT: usize = 4;
+
+/// A member that is kept.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Kept {
+    /// Its state.
+    pub state: usize,
+    /// It cannot follow the one before.
+    pub breaks: bool,
+}
+
+/// The cost so far of the cheapest reading up to a member in a state, the member and state before, and whether it breaks.
+type Cheapest = (f64, Option<[usize; 2]>, bool);
+
+/// The cheapest reading of `members` members with `S` states each; none for a member left out.
+///
+/// `cost` is that of a member in a state, and `follows` says whether a member in a state can follow an earlier one, all
+/// between them left out.
+pub fn cheapest<const S: usize>(
+    members: usize,
+    cost: impl Fn(usize, usize) -> f64,
+    follows: impl Fn([usize; 2], [usize; 2]) -> bool,
+) -> Vec<Option<Kept>> {
+    let mut table: Vec<[Cheapest; S]> = Vec::with_capacity(members);
+    for at in 0..members {
+        let mut here = [(LEAVE_OUT * at as f64, None, false); S];
+        for (state, best) in here.iter_mut().enumerate() {
+            for (before, states) in table.iter().enumerate().skip(at.saturating_sub(MOST_LEFT_OUT + 1)) {
+                for (from, (so_far, ..)) in states.iter().enumerate() {
+                    let breaks = !follows([before, from], [at, state]);
+                    if breaks && before + 1 < at {
+                        continue;
+                    }
+                    let price = so_far
+                        + LEAVE_OUT * (at - before - 1) as f64
+                        + if breaks { BREAK } else { 0.0 }
+                        + if from == state { 0.0 } else { SWITCH };
+                    if price < best.0 {
+                        *best = (price, Some([before, from]), breaks);
+                    }
+                }
+            }
+            best.0 += cost(at, state);
+        }
+        table.push(here);
+    }
+    let mut kept = vec![None; members];
+    let ends = (0..members).flat_map(|at| (0..S).map(move |state| [at, state]));
+    let price = |[at, state]: &[usize; 2]| table[*at][*state].0 + LEAVE_OUT * (members - 1 - at) as f64;
+    let mut next = ends.min_by(|a, b| price(a).total_cmp(&price(b)));
+    while let Some([at, state]) = next {
+        let (_, before, breaks) = table[at][state];
+        kept[at] = Some(Kept { state, breaks });
+        next = before;
+    }
+    kept
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Numbers that follow each other within one; in the other state they are ten less.
+    fn read(numbers: &[f64]) -> Vec<Option<Kept>> {
+        let value = |[at, state]: [usize; 2]| numbers[at] - 10.0 * state as f64;
+        cheapest::<2>(
+            numbers.len(),
+            |_, state| 0.1 * state as f64,
+            |a, b| (value(a) - value(b)).abs() <= (b[0] - a[0]) as f64,
+        )
+    }
+
+    fn states(numbers: &[f64]) -> Vec<Option<usize>> {
+        read(numbers).iter().map(|kept| kept.map(|kept| kept.state)).collect()
+    }
+
+    #[test]
+    fn what_is_right_stays() {
+        assert!(read(&[0.0, 1.0, 1.5, 1.0, 0.0]).iter().all(|kept| *kept == Some(Kept { state: 0, breaks: false })));
+        assert!(read(&[]).is_empty());
+    }
+
+    #[test]
+    fn what_stands_alone_is_left_out_and_what_is_shifted_changes_state() {
+        assert_eq!(states(&[0.0, 1.0, 40.0, 1.0, 0.0]), [Some(0), Some(0), None, Some(0), Some(0)]);
+        assert_eq!(states(&[0.0, 1.0, 11.0, 1.0, 0.0]), [Some(0), Some(0), Some(1), Some(0), Some(0)]);
+        assert_eq!(states(&[40.0, 1.0, 2.0, 1.0]), [None, Some(0), Some(0), Some(0)]);
+    }
+
+    #[test]
+    fn what_jumps_and_stays_breaks_once() {
+        let kept = read(&[0.0, 0.0, 0.0, 0.0, 40.0, 40.0, 40.0, 40.0]);
+        let breaks: Vec<bool> = kept.iter().map(|kept| kept.is_some_and(|kept| kept.breaks)).collect();
+        assert_eq!(breaks, [false, false, false, false, true, false, false, false]);
+    }
+}

@@ -1,0 +1,86 @@
+//! Learns how much of the chance in echoes belongs to the place: whether a grazing wall answers may be drawn anew for every
+//! reading, or be decided by where the sensor is. In the second case readings tell less of a sensor than their number.
+
+use rayon::prelude::*;
+
+use crate::logs::{Logs, Row};
+use crate::sonar::place::{Place, place_of};
+use crate::sonar::{Perturbation, SonarModel, fan_at};
+use crate::statistics::intraclass::{self, Deviation};
+use crate::statistics::summary::median;
+
+/// A reading that is farther off counts as this many standard deviations: wrong readings say nothing of readings.
+const FARTHEST: f64 = 3.0;
+/// Half a normal law's values lie within so many standard deviations.
+const QUARTILE: f64 = 0.674;
+
+/// A row at which the robot was seen.
+struct Seen {
+    place: Place,
+    run: usize,
+    /// Probability of no reading.
+    none: f64,
+    heard: bool,
+    /// Reading minus what was expected, if there is one.
+    off_cm: Option<f64>,
+}
+
+/// The shares of the echo rate and of the readings, from the sensor's training logs.
+pub fn learn(sonar: &SonarModel, logs: &Logs) -> [f64; 2] {
+    let sides = logs.scene.sides();
+    let rows: Vec<(usize, &Row)> =
+        logs.runs.iter().enumerate().flat_map(|(run, logged)| logged.rows.iter().map(move |row| (run, row))).collect();
+    let seen = |(run, row): &(usize, &Row)| {
+        let sensor = logs.robot.ultrasonic.pose_on(&row.pose?);
+        let outcomes = sonar.outcomes(&fan_at(&sides, &sensor, sonar.fan_width), &Perturbation::NONE, None);
+        let off_cm = row.echo_cm.zip(outcomes.mean_hit_cm()).map(|(echo_cm, expected_cm)| echo_cm - expected_cm);
+        let (place, heard) = (place_of(&sensor), row.echo_cm.is_some());
+        Some(Seen { place, run: *run, none: outcomes.none, heard, off_cm })
+    };
+    let seen: Vec<Seen> = rows.par_iter().filter_map(seen).collect();
+    [rate(&seen), value(&seen)]
+}
+
+fn rate(seen: &[Seen]) -> f64 {
+    let deviation = |Seen { place, run, none, heard, .. }: &Seen| {
+        let off = if *heard { *none } else { none - 1.0 };
+        Deviation { group: *place, run: *run, off, scatter: (none * (1.0 - none)).sqrt() }
+    };
+    intraclass::share(&seen.iter().map(deviation).collect::<Vec<_>>())
+}
+
+fn value(seen: &[Seen]) -> f64 {
+    let scatter_cm = median(seen.iter().filter_map(|row| row.off_cm).map(f64::abs)) / QUARTILE;
+    if scatter_cm.is_nan() || scatter_cm == 0.0 {
+        return 0.0;
+    }
+    let within = |off_cm: f64| (off_cm / scatter_cm).clamp(-FARTHEST, FARTHEST);
+    let off: Vec<(Place, usize, f64)> =
+        seen.iter().filter_map(|row| Some((row.place, row.run, within(row.off_cm?)))).collect();
+    let count = off.len() as f64;
+    let mean = off.iter().map(|(.., off)| off).sum::<f64>() / count;
+    let scatter = (off.iter().map(|(.., off)| (off - mean) * (off - mean)).sum::<f64>() / count).sqrt();
+    let deviation =
+        |(place, run, off): &(Place, usize, f64)| Deviation { group: *place, run: *run, off: off - mean, scatter };
+    intraclass::share(&off.iter().map(deviation).collect::<Vec<_>>())
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::built_in_robot::{default_robot, record, training_room};
+    use crate::learn::train::{TABLE_ONE, Trainer, train};
+
+    /// The share of the echo rate that a simulator learns of the built-in robot's sensor.
+    fn learned(sensor: &str) -> f64 {
+        let effects: Vec<_> = sensor.split_whitespace().map(|text| text.parse().expect("an effect")).collect();
+        let logs = record(&default_robot(), &training_room(), 40, 60, &effects, 3).expect("room to drive");
+        let simulator = train(&logs, &Trainer::Fast, &TABLE_ONE, 1, |_| {}).expect("networks");
+        simulator.reference.expect("a reference").place_bound[0]
+    }
+
+    #[test]
+    fn chance_that_belongs_to_the_place_is_told_from_chance_that_does_not() {
+        let (free, bound) = (learned(""), learned("place_bound=0.95@7"));
+        assert!(free < 0.06 && bound > 0.12, "{free} {bound}");
+    }
+}

@@ -1,0 +1,130 @@
+//! Logs in longer steps: rows that come faster than motion shows above the tracker's noise say little one by one.
+
+use super::{Logs, Row, Run};
+use crate::geometry::{Pose, wrap_rad};
+
+impl Logs {
+    /// The same logs with rows every `step_ms`, which is at least the step that they have. A command is the mean of those
+    /// held within the step, a pose lies between its neighbours in time, and a reading is the last one of at most a present
+    /// step's age. Runs that are shorter than two such steps are left out.
+    pub fn in_steps_of(&self, step_ms: f64) -> Logs {
+        let mut logs = Logs { robot: self.robot, scene: self.scene.clone(), runs: Vec::new() };
+        logs.robot.step_ms = step_ms;
+        logs.runs.extend(
+            self.runs.iter().map(|run| resampled(run, step_ms, self.robot.step_ms)).filter(|run| run.rows.len() > 1),
+        );
+        logs
+    }
+}
+
+/// Two rows that are farther apart than this multiple of their usual distance have something missing between them.
+const GAP: f64 = 2.5;
+
+fn resampled(run: &Run, step_ms: f64, usual_ms: f64) -> Run {
+    let (first, last) = (run.rows[0].t_ms, run.rows[run.rows.len() - 1].t_ms);
+    // A step is there that ends a rounding error after the last row.
+    let steps = ((last - first) / step_ms + 1e-6) as usize;
+    let row = |step: usize| {
+        let t_ms = first + step as f64 * step_ms;
+        let at = run.rows.partition_point(|row| row.t_ms <= t_ms + 1e-6) - 1;
+        let (before, after) = (&run.rows[at], run.rows.get(at + 1));
+        let [left, right] = mean_command(run, t_ms, t_ms + step_ms);
+        let is_fresh = t_ms - before.t_ms < usual_ms;
+        Row {
+            t_ms,
+            left,
+            right,
+            pose: pose(before, after, t_ms, usual_ms),
+            echo_cm: before.echo_cm.filter(|_| is_fresh),
+            ..*before
+        }
+    };
+    Run { name: run.name.clone(), rows: (0..=steps).map(row).collect() }
+}
+
+/// The mean of the commands that are held between two times.
+fn mean_command(run: &Run, from_ms: f64, to_ms: f64) -> [f64; 2] {
+    let mut sum = [0.0; 2];
+    let begin = run.rows.partition_point(|row| row.t_ms <= from_ms).saturating_sub(1);
+    for (i, row) in run.rows.iter().enumerate().skip(begin).take_while(|(_, row)| row.t_ms < to_ms) {
+        let until_ms = run.rows.get(i + 1).map_or(to_ms, |next| next.t_ms.min(to_ms));
+        let held_ms = until_ms - row.t_ms.max(from_ms);
+        sum = [sum[0] + held_ms * row.left, sum[1] + held_ms * row.right];
+    }
+    sum.map(|s| s / (to_ms - from_ms))
+}
+
+/// The pose at a time from those before and after it; none where either is missing or too far away.
+fn pose(before: &Row, after: Option<&Row>, t_ms: f64, usual_ms: f64) -> Option<Pose> {
+    let from = before.pose?;
+    let Some(after) = after else { return Some(from) };
+    let share = (t_ms - before.t_ms) / (after.t_ms - before.t_ms);
+    if share < 1e-6 {
+        return Some(from);
+    }
+    let to = after.pose.filter(|_| after.t_ms - before.t_ms < GAP * usual_ms)?;
+    Some(Pose {
+        position_cm: from.position_cm.lerp(to.position_cm, share),
+        heading_rad: wrap_rad(from.heading_rad + share * wrap_rad(to.heading_rad - from.heading_rad)),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::logs::Scene;
+
+    /// A robot that drives on at 1 cm in 20 ms and turns from 170 to -170 degrees, its commands rising by one a row.
+    fn logs() -> Logs {
+        let row = |i: u32| {
+            let i = f64::from(i);
+            let pose = Some(Pose::new(i, 0.0, wrap_rad((170.0 + i).to_radians())));
+            Row { t_ms: 20.0 * i, left: i, right: 2.0 * i, pose, echo_cm: Some(100.0 - i), ..Row::default() }
+        };
+        let mut robot = crate::built_in_robot::default_robot();
+        robot.step_ms = 20.0;
+        Logs {
+            robot,
+            scene: Scene::default(),
+            runs: vec![Run { name: "run-000".into(), rows: (0..=20).map(row).collect() }],
+        }
+    }
+
+    #[test]
+    fn steps_are_as_long_as_asked_for() {
+        let resampled = logs().in_steps_of(110.0);
+        assert_eq!(resampled.robot.step_ms, 110.0);
+        let times: Vec<f64> = resampled.runs[0].rows.iter().map(|row| row.t_ms).collect();
+        assert_eq!(times, [0.0, 110.0, 220.0, 330.0]);
+    }
+
+    #[test]
+    fn a_command_is_the_mean_of_those_held() {
+        // Five and a half rows: 0 to 4 held for 20 ms each and 5 for 10 ms.
+        let rows = &logs().in_steps_of(110.0).runs[0].rows;
+        assert!((rows[0].left - (0.0 + 1.0 + 2.0 + 3.0 + 4.0 + 2.5) / 5.5).abs() < 1e-12, "{}", rows[0].left);
+        assert!((rows[1].right - 2.0 * (2.5 + 6.0 + 7.0 + 8.0 + 9.0 + 10.0) / 5.5).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_pose_lies_between_its_neighbours_across_the_seam_of_headings() {
+        let rows = &logs().in_steps_of(210.0).runs[0].rows;
+        let pose = rows[1].pose.expect("a pose");
+        assert!((pose.position_cm.x - 10.5).abs() < 1e-9);
+        assert!((pose.heading_rad.to_degrees() + 179.5).abs() < 1e-9, "{}", pose.heading_rad.to_degrees());
+        assert_eq!(rows[1].echo_cm, Some(90.0));
+    }
+
+    #[test]
+    fn where_the_tracker_lost_the_robot_there_is_no_pose() {
+        let mut lost = logs();
+        lost.runs[0].rows[11].pose = None;
+        assert!(lost.in_steps_of(210.0).runs[0].rows[1].pose.is_none());
+        assert!(lost.in_steps_of(200.0).runs[0].rows[1].pose.is_some());
+    }
+
+    #[test]
+    fn the_same_step_changes_nothing() {
+        assert_eq!(logs().in_steps_of(20.0), logs());
+    }
+}

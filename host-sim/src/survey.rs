@@ -1,0 +1,84 @@
+//! A survey of logs before anything is made of them: what they hold, what is wrong with them, what they suffice for, and
+//! what to drive more.
+//!
+//! It decides nothing by itself: faults are those of [`inspection`](crate::inspection), networks are judged by the limits
+//! of their training, and effects by what a diagnosis against the textbook could see of them.
+
+mod advice;
+mod holdings;
+
+use serde::Serialize;
+
+pub use holdings::{Holdings, Range};
+
+use crate::effects::CATALOGUE;
+use crate::error::{Error, Result};
+use crate::gap::condition;
+use crate::gap::diagnose::{Excitation, excitation};
+use crate::inspection::{Finding, Inspection};
+use crate::learn::train;
+use crate::logs::Logs;
+use crate::simulator::{Missing, kinematic};
+
+/// What there is to say about logs; docs/formats.md has the JSON.
+#[derive(Clone, Debug, Serialize)]
+pub struct Survey {
+    schema: u32,
+    /// What they hold, once what can be put right is put right.
+    pub holds: Holdings,
+    /// What is wrong with them.
+    pub findings: Vec<Finding>,
+    /// Why nothing is learned from them as they are, where that is so.
+    pub refused: Option<String>,
+    /// The networks that could not be trained on them.
+    pub missing_networks: Vec<Missing>,
+    /// The effects that they could not show against the textbook.
+    pub untestable: Vec<&'static str>,
+    /// What is missing, a sentence each.
+    pub drive_more: Vec<String>,
+}
+
+/// Version of the JSON.
+const SCHEMA: u32 = 1;
+
+impl Survey {
+    /// Surveys logs.
+    pub fn of(logs: Logs) -> Self {
+        let mut inspected = Inspection::of(logs);
+        let refused = inspected.refusal().map(str::to_owned);
+        let missing_networks = train::unsupported(&inspected.logs);
+        let coarse = in_steps_that_motion_shows_in(&inspected.logs);
+        let holds = Holdings::of(&inspected.logs, &coarse);
+        let mut drive_more = advice::advice(&inspected.logs, &holds);
+        inspected.logs = coarse;
+        let untestable = match shown(&inspected) {
+            Ok(Excitation { untestable, notes }) => {
+                drive_more.extend(notes);
+                untestable
+            }
+            Err(why) => {
+                drive_more.push(format!("No effect can be told: {why}"));
+                CATALOGUE.iter().map(|effect| effect.id).collect()
+            }
+        };
+        let findings = inspected.findings;
+        Survey { schema: SCHEMA, holds, findings, refused, missing_networks, untestable, drive_more }
+    }
+}
+
+/// What a diagnosis against the textbook could show.
+fn shown(inspected: &Inspection) -> Result<Excitation> {
+    if inspected.logs.runs.is_empty() {
+        return Err(Error::new(format!("no run is as long as a step of {} ms.", inspected.logs.robot.step_ms)));
+    }
+    excitation(kinematic::baseline(&inspected.logs), inspected)
+}
+
+/// Logs in the steps that a diagnosis compares.
+fn in_steps_that_motion_shows_in(logs: &Logs) -> Logs {
+    let step_ms = condition::step_ms(logs.robot.step_ms);
+    if step_ms > logs.robot.step_ms { logs.in_steps_of(step_ms) } else { logs.clone() }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,160 @@
+//! What logs hold, in numbers.
+
+use std::collections::BTreeSet;
+
+use serde::Serialize;
+
+use crate::logs::{Logs, samples};
+use crate::statistics::rounding;
+use crate::statistics::summary::median;
+
+/// Amount, rates, ranges and coverage of logs. Ranges are none where there is nothing.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Holdings {
+    /// Runs.
+    pub runs: usize,
+    /// Rows of all runs.
+    pub rows: usize,
+    /// Steps with a pose at both ends.
+    pub steps: usize,
+    /// Duration of all runs, s.
+    #[serde(serialize_with = "rounding::number")]
+    pub duration_s: f64,
+    /// Median time between rows, ms.
+    #[serde(serialize_with = "rounding::number")]
+    pub step_ms: f64,
+    /// Of a hundred rows 95 come this near to that, ms.
+    #[serde(serialize_with = "rounding::number")]
+    pub jitter_ms: f64,
+    /// Share of rows with a pose.
+    #[serde(serialize_with = "rounding::number")]
+    pub with_pose: f64,
+    /// Share of rows with a reading.
+    #[serde(serialize_with = "rounding::number")]
+    pub with_reading: f64,
+    /// Commands of the left motor.
+    pub left: Option<Range>,
+    /// Commands of the right motor.
+    pub right: Option<Range>,
+    /// Speed ahead, cm/s.
+    pub forward_cm_s: Option<Range>,
+    /// Turning speed to the left, degrees/s.
+    pub turn_deg_s: Option<Range>,
+    /// Readings, cm.
+    pub reading_cm: Option<Range>,
+    /// D where a pose is known and a wall is ahead, cm.
+    pub distance_cm: Option<Range>,
+    /// α there, degrees.
+    pub alpha_deg: Option<Range>,
+    /// Share of the pairs of commands, in cells of 20 by 20, that occur.
+    #[serde(serialize_with = "rounding::number")]
+    pub command_coverage: f64,
+    /// Share of what the sensor can face, in tenths of its range by 15°, that occurs.
+    #[serde(serialize_with = "rounding::number")]
+    pub sensor_coverage: f64,
+    /// The median number of steps for which a pair of commands is held.
+    pub held_steps: f64,
+    /// The largest such number.
+    pub longest_held_steps: usize,
+}
+
+/// Least and largest of some numbers.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Range {
+    /// Least.
+    #[serde(serialize_with = "rounding::number")]
+    pub low: f64,
+    /// Largest.
+    #[serde(serialize_with = "rounding::number")]
+    pub high: f64,
+}
+
+/// Cells along each command: 20 wide, half of what is called small and large.
+const COMMAND_CELLS: usize = 10;
+/// Cells along D: tenths of the range,
+const DISTANCE_CELLS: usize = 10;
+/// and along α: 15°, within which an echo changes little.
+const ALPHA_CELLS: usize = 6;
+/// Share of rows whose deviation is called jitter: beyond lie rows that are missing.
+const USUAL: f64 = 0.95;
+
+impl Holdings {
+    /// Counts logs; `coarse` are the same in steps long enough for speeds.
+    pub fn of(logs: &Logs, coarse: &Logs) -> Self {
+        let rows = || logs.runs.iter().flat_map(|run| &run.rows);
+        let count = rows().count();
+        let share = |n: usize| if count > 0 { n as f64 / count as f64 } else { 0.0 };
+        let times = || logs.runs.iter().flat_map(|run| run.rows.windows(2)).map(|pair| pair[1].t_ms - pair[0].t_ms);
+        let step_ms = median(times());
+        let duration_ms = logs.runs.iter().filter_map(|run| Some(run.rows.last()?.t_ms - run.rows.first()?.t_ms));
+        let (motion, sonar) = (samples::motion(coarse), samples::sonar(logs));
+        let per_s = 1000.0 / coarse.robot.step_ms;
+        let held = held_steps(logs);
+        let max_cm = logs.robot.ultrasonic.max_cm;
+        let facing = sonar.iter().filter(|s| s.distance_cm <= max_cm);
+        Holdings {
+            runs: logs.runs.len(),
+            rows: count,
+            steps: samples::motion(logs).len(),
+            duration_s: duration_ms.sum::<f64>() / 1000.0,
+            step_ms,
+            jitter_ms: usual(times().map(|ms| (ms - step_ms).abs()).collect()),
+            with_pose: share(rows().filter(|row| row.pose.is_some()).count()),
+            with_reading: share(rows().filter(|row| row.echo_cm.is_some()).count()),
+            left: Range::of(commands(logs).map(|[left, _]| left)),
+            right: Range::of(commands(logs).map(|[_, right]| right)),
+            forward_cm_s: Range::of(motion.iter().map(|step| step.forward_cm * per_s)),
+            turn_deg_s: Range::of(motion.iter().map(|step| step.turn_rad.to_degrees() * per_s)),
+            reading_cm: Range::of(rows().filter_map(|row| row.echo_cm)),
+            distance_cm: Range::of(sonar.iter().map(|s| s.distance_cm)),
+            alpha_deg: Range::of(sonar.iter().map(|s| s.alpha_deg())),
+            command_coverage: covered(
+                commands(logs).map(|pair| pair.map(|c| (c + 100.0) / 200.0)),
+                [COMMAND_CELLS, COMMAND_CELLS],
+            ),
+            sensor_coverage: covered(
+                facing.map(|s| [s.distance_cm / max_cm, s.alpha_deg() / 90.0]),
+                [DISTANCE_CELLS, ALPHA_CELLS],
+            ),
+            held_steps: median(held.iter().map(|n| *n as f64)),
+            longest_held_steps: held.into_iter().max().unwrap_or(0),
+        }
+    }
+}
+
+impl Range {
+    fn of(numbers: impl Iterator<Item = f64>) -> Option<Self> {
+        numbers.fold(None, |range: Option<Range>, number| {
+            let Range { low, high } = range.unwrap_or(Range { low: number, high: number });
+            Some(Range { low: low.min(number), high: high.max(number) })
+        })
+    }
+}
+
+/// The commands of all steps: that of a run's last row is never observed.
+pub fn commands(logs: &Logs) -> impl Iterator<Item = [f64; 2]> {
+    logs.runs.iter().flat_map(|run| run.rows.split_last().map_or(&[][..], |(_, steps)| steps)).map(|row| row.command())
+}
+
+/// For how many steps each pair of commands is held, run by run.
+fn held_steps(logs: &Logs) -> Vec<usize> {
+    let of_run = |run: &crate::logs::Run| {
+        let steps = run.rows.split_last().map_or(&[][..], |(_, steps)| steps);
+        steps.chunk_by(|a, b| a.command() == b.command()).map(<[_]>::len).collect::<Vec<_>>()
+    };
+    logs.runs.iter().flat_map(of_run).collect()
+}
+
+/// The share of cells of the unit square in which there is something.
+fn covered(places: impl Iterator<Item = [f64; 2]>, cells: [usize; 2]) -> f64 {
+    let cell = |share: f64, n: usize| ((share * n as f64).max(0.0) as usize).min(n - 1);
+    let found: BTreeSet<[usize; 2]> = places.map(|[x, y]| [cell(x, cells[0]), cell(y, cells[1])]).collect();
+    found.len() as f64 / (cells[0] * cells[1]) as f64
+}
+
+/// What all but a few of some deviations stay within; NaN of none.
+fn usual(mut deviations: Vec<f64>) -> f64 {
+    deviations.sort_by(f64::total_cmp);
+    let place = (USUAL * deviations.len() as f64) as usize;
+    deviations.get(place.min(deviations.len().saturating_sub(1))).copied().unwrap_or(f64::NAN)
+}

@@ -1,0 +1,55 @@
+//! Prints the budgets of real robots against the textbook as a table in Markdown, for docs/diagnosis.md:
+//! `cargo run --release -p mindgap-tests --bin real-budgets -- FOLDER…`, one folder of logs each.
+
+use std::path::Path;
+
+use mindgap_host_sim::gap::budget::Part;
+use mindgap_host_sim::gap::explain::NamedEffect;
+use mindgap_host_sim::gap::{Diagnosis, diagnose};
+use mindgap_host_sim::logs::Logs;
+use mindgap_host_sim::simulator::kinematic;
+use serde_json::Value;
+
+fn main() -> std::process::ExitCode {
+    println!("| logs | verdict | what the gap is made of, share (95 %) | closed of what can be (95 %) |");
+    println!("| --- | --- | --- | --- |");
+    for folder in std::env::args().skip(1) {
+        let row = Logs::read(Path::new(&folder), |_| ())
+            .and_then(|logs| diagnose(kinematic::baseline(&logs), &logs))
+            .map(|diagnosis| row(Path::new(&folder), &diagnosis));
+        match row {
+            Ok(row) => println!("{row}"),
+            Err(error) => {
+                eprintln!("{folder}: {error}");
+                return std::process::ExitCode::FAILURE;
+            }
+        }
+    }
+    std::process::ExitCode::SUCCESS
+}
+
+fn row(folder: &Path, diagnosis: &Diagnosis) -> String {
+    let name = folder.file_name().unwrap_or_default().to_string_lossy();
+    let verdict = serde_json::to_value(diagnosis.verdict()).unwrap_or_default();
+    let parts: Vec<String> = diagnosis.budget().iter().map(|part| told(part, diagnosis.effects())).collect();
+    let closed = diagnosis.reduction().map_or(String::new(), |reduction| {
+        let [low, high] = reduction.whole.ci95.map(|share| 100.0 * share);
+        format!("{:.0} % ({low:.0} to {high:.0})", 100.0 * reduction.whole.reducible_closed)
+    });
+    format!("| {name} | {} | {} | {closed} |", verdict.as_str().unwrap_or_default(), parts.join("; "))
+}
+
+fn told(part: &Part, effects: &[NamedEffect]) -> String {
+    let [low, high] = part.ci95.map(|share| 100.0 * share);
+    let share = format!("{:.0} % ({low:.0} to {high:.0})", 100.0 * part.share);
+    let strength = effects.iter().find(|effect| effect.id == part.id).map_or(String::new(), strength);
+    format!("`{}`{strength} {share}", part.id)
+}
+
+fn strength(effect: &NamedEffect) -> String {
+    let number = |(name, value): (&String, &Value)| {
+        let between = effect.intervals.get(name).map_or(String::new(), |ends| format!(" {ends}"));
+        format!("{name} {value}{between}")
+    };
+    format!(" ({})", effect.parameters.iter().map(number).collect::<Vec<String>>().join(", "))
+}

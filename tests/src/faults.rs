@@ -1,0 +1,197 @@
+//! Faults of logs as they happen to people, to be put into good logs.
+
+use std::f64::consts::{FRAC_PI_2, PI};
+
+use glam::DVec2;
+use mindgap_host_sim::geometry::{Pose, wrap_rad};
+use mindgap_host_sim::inspection::{Finding, Handling, Inspection};
+use mindgap_host_sim::logs::{Logs, Row};
+
+/// A fault and what an inspection has to make of it.
+pub struct Fault {
+    /// What it is, for people.
+    pub what: &'static str,
+    /// What the finding is called.
+    pub id: &'static str,
+    /// What is done about it.
+    pub handling: Handling,
+    /// Puts it in.
+    pub put: fn(&mut Logs),
+}
+
+const fn fault(what: &'static str, id: &'static str, handling: Handling, put: fn(&mut Logs)) -> Fault {
+    Fault { what, id, handling, put }
+}
+
+/// The run into which faults of single rows are put.
+pub const RUN: usize = 4;
+
+/// Faults of motion: in commands, poses and clocks.
+pub const MOTION: [Fault; 20] = [
+    fault("commands in -1..1", "command_fraction", Handling::PutRight, |logs| {
+        rows(logs).for_each(|row| (row.left, row.right) = (row.left / 100.0, row.right / 100.0));
+    }),
+    fault("radians", "heading_radians", Handling::PutRight, |logs| poses(logs, |p| p.heading_rad *= PI / 180.0)),
+    fault("metres", "length_metres", Handling::PutRight, |logs| poses(logs, |p| p.position_cm *= 0.01)),
+    fault("millimetres", "length_millimetres", Handling::PutRight, |logs| poses(logs, |p| p.position_cm *= 10.0)),
+    fault("y counted downwards", "y_downwards", Handling::Told, |logs| {
+        let high_cm = room(logs).y;
+        poses(logs, |p| p.position_cm.y = high_cm - p.position_cm.y);
+    }),
+    fault("left and right exchanged", "left_right_exchanged", Handling::Told, |logs| {
+        rows(logs).for_each(|row| (row.left, row.right) = (row.right, row.left));
+    }),
+    fault("x and y exchanged", "xy_exchanged", Handling::Told, |logs| {
+        poses(logs, |p| p.position_cm = DVec2::new(p.position_cm.y, p.position_cm.x));
+    }),
+    fault("headings clockwise", "heading_clockwise", Handling::Told, |logs| {
+        poses(logs, |p| p.heading_rad = wrap_rad(-p.heading_rad));
+    }),
+    fault("headings of a compass", "heading_clockwise", Handling::Told, |logs| {
+        poses(logs, |p| p.heading_rad = wrap_rad(FRAC_PI_2 - p.heading_rad));
+    }),
+    fault("headings a quarter of a turn on", "frame_turned", Handling::Told, |logs| {
+        poses(logs, |p| p.heading_rad = wrap_rad(p.heading_rad + FRAC_PI_2));
+    }),
+    fault("front taken for back", "frame_turned", Handling::Told, |logs| {
+        poses(logs, |p| p.heading_rad = wrap_rad(p.heading_rad + PI));
+    }),
+    fault("both motors reversed", "commands_reversed", Handling::Told, |logs| {
+        rows(logs).for_each(|row| (row.left, row.right) = (-row.left, -row.right));
+    }),
+    fault("every tenth heading flipped", "heading_flipped", Handling::PutRight, |logs| {
+        rows(logs).skip(5).step_by(10).filter_map(|row| row.pose.as_mut()).for_each(flip);
+    }),
+    fault("a stretch of headings flipped", "heading_flipped", Handling::PutRight, |logs| {
+        logs.runs[RUN].rows[12..26].iter_mut().filter_map(|row| row.pose.as_mut()).for_each(flip);
+    }),
+    fault("five headings off by 88°", "heading_jump", Handling::LeftOut, |logs| {
+        let rows = logs.runs[RUN].rows.iter_mut().skip(6).step_by(9).take(5);
+        rows.filter_map(|row| row.pose.as_mut())
+            .for_each(|p| p.heading_rad = wrap_rad(p.heading_rad + 88f64.to_radians()));
+    }),
+    fault("five positions off by 31 cm", "tracker_jump", Handling::LeftOut, |logs| {
+        let rows = logs.runs[RUN].rows.iter_mut().skip(6).step_by(9).take(5);
+        rows.filter_map(|row| row.pose.as_mut()).for_each(|p| p.position_cm += DVec2::new(18.6, -24.8));
+    }),
+    fault("a frozen tracker", "tracker_frozen", Handling::LeftOut, |logs| {
+        let rows = &mut logs.runs[RUN].rows;
+        let stands = rows[20].pose;
+        rows[21..25].iter_mut().for_each(|row| row.pose = stands);
+    }),
+    fault("a run in seconds", "clock_seconds", Handling::PutRight, |logs| {
+        logs.runs[RUN].rows.iter_mut().for_each(|row| row.t_ms /= 1000.0);
+    }),
+    fault("a run's commands 1.6 s late", "clock_shifted", Handling::LeftOut, |logs| shift(&mut logs.runs[RUN].rows, 4)),
+    fault("a run copied", "run_copied", Handling::LeftOut, |logs| {
+        let mut copy = logs.runs[RUN].clone();
+        copy.name = "run-999".into();
+        logs.runs.push(copy);
+    }),
+];
+
+/// Faults that show only where a sensor reads walls.
+pub const SONAR: [Fault; 8] = [
+    fault("readings in millimetres", "echo_unit", Handling::PutRight, |logs| readings(logs, |cm| cm * 10.0)),
+    fault("readings in metres", "echo_unit", Handling::PutRight, |logs| readings(logs, |cm| cm / 100.0)),
+    fault("readings in inches", "echo_unit", Handling::PutRight, |logs| readings(logs, |cm| cm / 2.54)),
+    fault("255 for none", "echo_none_number", Handling::PutRight, |logs| none(logs, 255.0)),
+    fault("0 for none", "echo_none_number", Handling::PutRight, |logs| none(logs, 0.0)),
+    fault("inf for none", "echo_none_number", Handling::PutRight, |logs| none(logs, 1e7)),
+    fault("poses turned in the room", "frame_turned", Handling::Told, |logs| {
+        let size_cm = room(logs);
+        poses(logs, |p| *p = Pose::new(size_cm.x - p.position_cm.x, size_cm.y - p.position_cm.y, p.heading_rad + PI));
+    }),
+    fault("poses mirrored in the room", "frame_mirrored", Handling::Told, |logs| {
+        let size_cm = room(logs);
+        poses(logs, |p| *p = Pose::new(p.position_cm.x, size_cm.y - p.position_cm.y, -p.heading_rad));
+    }),
+];
+
+/// Puts a fault into good logs and checks what an inspection makes of it: nothing beyond what it says of the good ones but
+/// the fault, in its rows, and logs that are as the good ones in what counts.
+///
+/// # Panics
+/// When it is not so.
+pub fn assert_found(good: &Logs, fault: &Fault) {
+    let what = fault.what;
+    let mut faulty = good.clone();
+    (fault.put)(&mut faulty);
+    let (before, after) = (Inspection::of(good.clone()), Inspection::of(faulty.clone()));
+    let is_new = |found: &&Finding| !before.findings.iter().any(|known| known.id == found.id);
+    let new: Vec<&Finding> = after.findings.iter().filter(is_new).collect();
+    let [found] = new.as_slice() else { panic!("{what}: {new:?}") };
+    assert_eq!((found.id, found.handling), (fault.id, fault.handling), "{what}");
+    // What is only told must not be compared.
+    assert_eq!(found.handling == Handling::Told, !found.withholds.is_empty(), "{what}");
+    if !found.withholds.is_empty() || fault.id == "run_copied" {
+        return;
+    }
+    let put_in = good.runs.iter().zip(&faulty.runs).flat_map(|(a, b)| {
+        let rows = a.rows.iter().zip(&b.rows).enumerate().filter(|(_, (a, b))| a != b);
+        rows.map(|(row, _)| (a.name.clone(), row)).collect::<Vec<_>>()
+    });
+    let put_in: Vec<(String, usize)> = put_in.collect();
+    let places = found.places.iter().flat_map(|place| place.rows.iter().map(|row| (place.run.clone(), *row)));
+    let found_rows: Vec<(String, usize)> = places.collect();
+    assert!(put_in.iter().all(|row| found_rows.contains(row)), "{what}: {put_in:?} but {found_rows:?}");
+    // A zero is the same in all units.
+    let is_whole = ["command", "clock"].iter().any(|kind| fault.id.starts_with(kind));
+    assert!(is_whole || found_rows.len() == put_in.len(), "{what}: {put_in:?} but {found_rows:?}");
+    for run in &after.logs.runs {
+        let as_it_was = before.logs.runs.iter().find(|other| other.name == run.name).expect("a run of the good logs");
+        for (k, (row, was)) in run.rows.iter().zip(&as_it_was.rows).enumerate() {
+            let is_left_out = fault.handling == Handling::LeftOut && found_rows.contains(&(run.name.clone(), k));
+            assert!(is_left_out && row.pose.is_none() || are_equal(row, was), "{what}: {row:?} was {was:?}");
+        }
+    }
+}
+
+/// Whether two rows are equal within rounding.
+fn are_equal(a: &Row, b: &Row) -> bool {
+    const ROUNDING: f64 = 1e-9;
+    let near = |a: f64, b: f64| (a - b).abs() <= ROUNDING;
+    let poses = match (a.pose, b.pose) {
+        (Some(a), Some(b)) => {
+            a.position_cm.distance(b.position_cm) <= ROUNDING && near(wrap_rad(a.heading_rad - b.heading_rad), 0.0)
+        }
+        (a, b) => a.is_none() && b.is_none(),
+    };
+    let echoes = match (a.echo_cm, b.echo_cm) {
+        (Some(a), Some(b)) => near(a, b),
+        (a, b) => a.is_none() && b.is_none(),
+    };
+    poses && echoes && near(a.t_ms, b.t_ms) && near(a.left, b.left) && near(a.right, b.right)
+}
+
+fn rows(logs: &mut Logs) -> impl Iterator<Item = &mut Row> {
+    logs.runs.iter_mut().flat_map(|run| &mut run.rows)
+}
+
+fn poses(logs: &mut Logs, change: impl Fn(&mut Pose)) {
+    rows(logs).filter_map(|row| row.pose.as_mut()).for_each(change);
+}
+
+fn readings(logs: &mut Logs, change: impl Fn(f64) -> f64) {
+    rows(logs).for_each(|row| row.echo_cm = row.echo_cm.map(&change));
+}
+
+fn none(logs: &mut Logs, number: f64) {
+    rows(logs).for_each(|row| row.echo_cm = row.echo_cm.or(Some(number)));
+}
+
+fn flip(pose: &mut Pose) {
+    pose.heading_rad = wrap_rad(pose.heading_rad + PI);
+}
+
+/// Commands as they would stand if they were logged so many rows late.
+fn shift(rows: &mut [Row], late: usize) {
+    let commands: Vec<[f64; 2]> = rows.iter().map(Row::command).collect();
+    for (k, row) in rows.iter_mut().enumerate() {
+        [row.left, row.right] = if k < late { [0.0; 2] } else { commands[k - late] };
+    }
+}
+
+fn room(logs: &Logs) -> DVec2 {
+    logs.scene.bounding_box().expect("a room").high_cm
+}

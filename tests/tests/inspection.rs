@@ -1,0 +1,96 @@
+//! Faults that are put into the built-in robot's logs are found, and what it does by itself is none.
+
+use mindgap_host_sim::built_in_robot::{ActiveEffect, Effect, default_robot, record, training_room};
+use mindgap_host_sim::geometry::Pose;
+use mindgap_host_sim::inspection::{Inspection, Part};
+use mindgap_host_sim::logs::{Logs, Row};
+use mindgap_tests::faults::{MOTION, RUN, SONAR, assert_found};
+
+fn logs(runs: usize, effects: &[ActiveEffect]) -> Logs {
+    record(&default_robot(), &training_room(), runs, 60, effects, 5).expect("room to drive")
+}
+
+#[test]
+fn faults_are_found_and_put_right_or_left_out() {
+    let good = logs(24, &[]);
+    assert!(Inspection::of(good.clone()).findings.is_empty());
+    MOTION.iter().chain(&SONAR).for_each(|fault| assert_found(&good, fault));
+}
+
+/// What is changed in a robot is no fault of its logs.
+#[test]
+fn no_effect_is_taken_for_a_fault() {
+    for effect in Effect::all() {
+        let logs = logs(12, &[ActiveEffect::new(effect)]);
+        let inspected = Inspection::of(logs.clone());
+        assert!(inspected.findings.is_empty(), "{effect}: {:?}", inspected.findings);
+        assert!(inspected.logs == logs, "{effect}");
+    }
+}
+
+#[test]
+fn a_shifted_clock_of_all_runs_withholds_motion() {
+    let mut logs = logs(12, &[]);
+    for run in &mut logs.runs {
+        let commands: Vec<[f64; 2]> = run.rows.iter().map(Row::command).collect();
+        for (k, row) in run.rows.iter_mut().enumerate() {
+            [row.left, row.right] = if k < 2 { [0.0; 2] } else { commands[k - 2] };
+        }
+    }
+    let inspected = Inspection::of(logs);
+    let [found] = inspected.findings.as_slice() else { panic!("{:?}", inspected.findings) };
+    assert_eq!(found.id, "clock_shifted");
+    assert!(found.sentence.contains("ms behind the motion"), "{}", found.sentence);
+    assert!(inspected.withheld(Part::Motion).is_some() && inspected.withheld(Part::Sonar).is_none());
+}
+
+/// Somebody carries the robot on while its motors stand still.
+#[test]
+fn motion_at_zero_commands_is_left_out() {
+    let mut logs = logs(12, &[]);
+    let rows = &mut logs.runs[RUN].rows;
+    rows.truncate(40);
+    let (carried, stood) = (26..32, rows[20].pose.expect("a pose"));
+    for (k, row) in rows.iter_mut().enumerate().skip(20) {
+        (row.left, row.right) = (0.0, 0.0);
+        let carried_cm = 5.0 * k.clamp(carried.start, carried.end) as f64 - 5.0 * carried.start as f64;
+        let noise_cm = 0.05 * (k % 3) as f64;
+        row.pose = Some(Pose::new(stood.position_cm.x + carried_cm, stood.position_cm.y + noise_cm, stood.heading_rad));
+    }
+    let inspected = Inspection::of(logs.clone());
+    let found: Vec<&str> = inspected.findings.iter().map(|found| found.id).collect();
+    assert_eq!(found, ["moves_at_zero_command"]);
+    let place = &inspected.findings[0].places[0];
+    assert_eq!((&place.run, place.rows.first(), place.rows.last()), (&logs.runs[RUN].name, Some(&27), Some(&31)));
+}
+
+/// A brick that acts a third of a second late, cut out of the middle of its drive.
+#[test]
+fn a_drive_that_is_cut_starts_moving() {
+    let late: ActiveEffect = "latency=140".parse().expect("an effect");
+    let mut logs = logs(12, &[late]);
+    assert!(Inspection::of(logs.clone()).findings.is_empty());
+    for run in &mut logs.runs {
+        run.rows.drain(..7);
+        let begin_ms = run.rows[0].t_ms;
+        run.rows.iter_mut().for_each(|row| row.t_ms -= begin_ms);
+    }
+    let found: Vec<&str> = Inspection::of(logs).findings.iter().map(|found| found.id).collect();
+    assert_eq!(found, ["starts_moving"]);
+}
+
+#[test]
+fn logs_that_say_little_pass() {
+    let mut still = logs(6, &[]);
+    still.runs.iter_mut().flat_map(|run| &mut run.rows).for_each(|row| (row.left, row.right) = (0.0, 0.0));
+    let mut unseen = logs(6, &[]);
+    unseen.runs.iter_mut().flat_map(|run| &mut run.rows).for_each(|row| row.pose = None);
+    let mut silent = logs(1, &[]);
+    silent.runs.iter_mut().flat_map(|run| &mut run.rows).for_each(|row| row.echo_cm = None);
+    let mut sparse = logs(6, &[]);
+    sparse.runs.iter_mut().flat_map(|run| run.rows.iter_mut().skip(1).step_by(2)).for_each(|row| row.pose = None);
+    for logs in [still, unseen, silent, sparse] {
+        let inspected = Inspection::of(logs.clone());
+        assert!(inspected.findings.is_empty() && inspected.logs == logs, "{:?}", inspected.findings);
+    }
+}
