@@ -24,12 +24,12 @@ type Cheapest = (f64, Option<[usize; 2]>, bool);
 
 /// The cheapest reading of `members` members with `S` states each; none for a member left out.
 ///
-/// `cost` is that of a member in a state, and `follows` says whether a member in a state can follow an earlier one, all
-/// between them left out.
+/// `cost` is that of a member in a state, and `follows` that of a member in a state after an earlier one, all between them
+/// left out; none where it cannot follow.
 pub fn cheapest<const S: usize>(
     members: usize,
     cost: impl Fn(usize, usize) -> f64,
-    follows: impl Fn([usize; 2], [usize; 2]) -> bool,
+    follows: impl Fn([usize; 2], [usize; 2]) -> Option<f64>,
 ) -> Vec<Option<Kept>> {
     let mut table: Vec<[Cheapest; S]> = Vec::with_capacity(members);
     for at in 0..members {
@@ -37,13 +37,14 @@ pub fn cheapest<const S: usize>(
         for (state, best) in here.iter_mut().enumerate() {
             for (before, states) in table.iter().enumerate().skip(at.saturating_sub(MOST_LEFT_OUT + 1)) {
                 for (from, (so_far, ..)) in states.iter().enumerate() {
-                    let breaks = !follows([before, from], [at, state]);
+                    let following = follows([before, from], [at, state]);
+                    let breaks = following.is_none();
                     if breaks && before + 1 < at {
                         continue;
                     }
                     let price = so_far
                         + LEAVE_OUT * (at - before - 1) as f64
-                        + if breaks { BREAK } else { 0.0 }
+                        + following.unwrap_or(BREAK)
                         + if from == state { 0.0 } else { SWITCH };
                     if price < best.0 {
                         *best = (price, Some([before, from]), breaks);
@@ -76,7 +77,7 @@ mod tests {
         cheapest::<2>(
             numbers.len(),
             |_, state| 0.1 * state as f64,
-            |a, b| (value(a) - value(b)).abs() <= (b[0] - a[0]) as f64,
+            |a, b| ((value(a) - value(b)).abs() <= (b[0] - a[0]) as f64).then_some(0.0),
         )
     }
 

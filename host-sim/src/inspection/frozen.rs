@@ -49,9 +49,7 @@ fn is_frozen(logs: &Logs, tolerance: &Tolerance, run: &Run, from: usize, to: usi
         });
         return driven >= AT_THE_END && !is_near;
     };
-    let (Some(after), Some(all)) =
-        (next.pose, tolerance.expected_between(logs, run, from, to + 1).map(|all| all.drive))
-    else {
+    let (Some(after), Some(all)) = (next.pose, tolerance.expected_between(logs, run, from, to + 1)) else {
         return driven >= AT_THE_END;
     };
     let change = stood.relative(&after);

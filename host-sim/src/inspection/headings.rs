@@ -11,6 +11,9 @@ use crate::logs::{Logs, Run};
 
 /// What a flipped heading costs beside one that is not, so that equal fits count as not flipped.
 const FLIPPED: f64 = 0.1;
+/// What a turn costs that the robot can make but was not asked for, as after a lost command: two of them more than a member
+/// left out or a flip there and back, which explain them too unless the heading stays where it went.
+const UNASKED: f64 = 1.2;
 /// What it costs to go against the heading: less than a flip there and back, since one step may slip.
 const AGAINST: f64 = 0.6;
 
@@ -24,8 +27,13 @@ pub fn check(logs: &mut Logs) -> Vec<Finding> {
             |[at, state]: [usize; 2]| r.rows[posed[at]].pose.map_or(0.0, |pose| pose.heading_rad) + PI * state as f64;
         let follows = |from: [usize; 2], to: [usize; 2]| {
             let (begin, end) = (posed[from[0]], posed[to[0]]);
-            let expected = tolerance.expected_between(logs, r, begin, end);
-            expected.is_none_or(|drive| tolerance.admits_turn(heading_rad(to) - heading_rad(from), &drive))
+            let turn_rad = heading_rad(to) - heading_rad(from);
+            match tolerance.expected_between(logs, r, begin, end) {
+                Some(expected) if !tolerance.admits_turn(turn_rad, &expected) => {
+                    (end == begin + 1 && tolerance.is_within_reach(turn_rad)).then_some(UNASKED)
+                }
+                _ => Some(0.0),
+            }
         };
         let goes_against: Vec<Option<bool>> = posed.iter().map(|k| goes_against(logs, &tolerance, r, *k)).collect();
         let cost = |at: usize, state: usize| {

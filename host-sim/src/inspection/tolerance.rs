@@ -34,15 +34,6 @@ pub struct Tolerance {
     pub fastest: Drive,
 }
 
-/// What steps come to together, and the least and most that they may.
-#[derive(Clone, Copy, Default)]
-pub struct Expected {
-    /// By all commands that act in them.
-    pub drive: Drive,
-    least: Drive,
-    most: Drive,
-}
-
 impl Tolerance {
     /// Learned from logs, of which nearly half may be wrong; none where too little was driven to tell.
     pub fn of(logs: &Logs) -> Option<Self> {
@@ -92,43 +83,32 @@ impl Tolerance {
 
     /// What the steps between two rows come to together; none where rows or poses are missing between them, over which no
     /// step is compared.
-    pub fn expected_between(&self, logs: &Logs, run: &Run, from: usize, to: usize) -> Option<Expected> {
-        let mut all = Expected::default();
+    pub fn expected_between(&self, logs: &Logs, run: &Run, from: usize, to: usize) -> Option<Drive> {
+        let mut all = Drive::default();
         for k in from..to {
             let is_unseen = k > from && run.rows[k].pose.is_none();
             if is_unseen || is_broken(&logs.robot, run.rows[k].t_ms, run.rows[k + 1].t_ms) {
                 return None;
             }
-            let [drive, least, most] = self.range(logs, run, k);
-            all = Expected { drive: all.drive.and(&drive), least: all.least.and(&least), most: all.most.and(&most) };
+            all = all.and(&self.expected(logs, run, k));
         }
         Some(all)
     }
 
-    /// What the step from row `k` comes to, and the least and most that it may: a robot may be held, and a command may be lost
-    /// so that one before it acts in its place.
-    fn range(&self, logs: &Logs, run: &Run, k: usize) -> [Drive; 3] {
-        let drive = self.expected(logs, run, k);
-        let [forward, turn] = [self.forward, self.turn].map(|gains| gains.iter().sum::<f64>());
-        let alone = of_ages(logs, run, k)
-            .map(|asked| Drive { forward_cm: forward * asked.forward_cm, turn_rad: turn * asked.turn_rad });
-        let all = || alone.iter().chain([&drive]);
-        let reach = |end: fn(f64, f64) -> f64| Drive {
-            forward_cm: all().map(|drive| drive.forward_cm).fold(0.0, end),
-            turn_rad: all().map(|drive| drive.turn_rad).fold(0.0, end),
-        };
-        [drive, reach(f64::min), reach(f64::max)]
+    /// Whether a turn is no jump where so much is expected.
+    pub fn admits_turn(&self, turn_rad: f64, expected: &Drive) -> bool {
+        let turns = [-TAU, 0.0, TAU].map(|whole| wrap_rad(turn_rad) + whole);
+        turns.into_iter().any(|turn_rad| excess(turn_rad, expected.turn_rad) <= self.turn_rad)
     }
 
-    /// Whether a turn is no jump where so much is expected.
-    pub fn admits_turn(&self, turn_rad: f64, Expected { least, most, .. }: &Expected) -> bool {
-        let turns = [-TAU, 0.0, TAU].map(|whole| wrap_rad(turn_rad) + whole);
-        turns.into_iter().any(|turn_rad| excess(turn_rad, [least.turn_rad, most.turn_rad]) <= self.turn_rad)
+    /// Whether the robot can turn so far in a step, whatever it is asked for.
+    pub fn is_within_reach(&self, turn_rad: f64) -> bool {
+        wrap_rad(turn_rad).abs() <= self.fastest.turn_rad + self.turn_rad
     }
 
     /// Whether a way is no jump where so much is expected: forward and to the left of the heading halfway, cm.
-    pub fn admits_way(&self, [forward_cm, left_cm]: [f64; 2], Expected { least, most, .. }: &Expected) -> bool {
-        libm::hypot(excess(forward_cm, [least.forward_cm, most.forward_cm]), left_cm) <= self.length_cm
+    pub fn admits_way(&self, [forward_cm, left_cm]: [f64; 2], expected: &Drive) -> bool {
+        libm::hypot(excess(forward_cm, expected.forward_cm), left_cm) <= self.length_cm
     }
 
     /// Whether a drive is large enough that a robot cannot fail to make it without being held.
@@ -138,9 +118,9 @@ impl Tolerance {
     }
 }
 
-/// How far a number lies outside a range.
-fn excess(value: f64, [least, most]: [f64; 2]) -> f64 {
-    (least - value).max(value - most).max(0.0)
+/// How far a number lies beyond everything from zero, as a robot may be held, to what is expected.
+fn excess(value: f64, expected: f64) -> f64 {
+    (expected.min(0.0) - value).max(value - expected.max(0.0)).max(0.0)
 }
 
 /// What the commands of [`AGES_MS`] ask for in the step from row `k`.

@@ -14,7 +14,7 @@ pub fn check(logs: &mut Logs) -> Vec<Finding> {
         let posed: Vec<(usize, Pose)> = r.rows.iter().enumerate().filter_map(|(k, row)| Some((k, row.pose?))).collect();
         let follows = |[from, _]: [usize; 2], [to, _]: [usize; 2]| {
             let ((begin, a), (end, b)) = (posed[from], posed[to]);
-            let Some(expected) = tolerance.expected_between(logs, r, begin, end) else { return true };
+            let Some(expected) = tolerance.expected_between(logs, r, begin, end) else { return Some(0.0) };
             let change_cm = b.position_cm - a.position_cm;
             let halfway_rad = a.heading_rad + wrap_rad(b.heading_rad - a.heading_rad) / 2.0;
             let local_cm = direction(-halfway_rad).rotate(change_cm);
@@ -22,9 +22,9 @@ pub fn check(logs: &mut Logs) -> Vec<Finding> {
             let along_cm = if end == begin + 1 {
                 local_cm.to_array()
             } else {
-                [change_cm.length() * expected.drive.forward_cm.signum(), 0.0]
+                [change_cm.length() * expected.forward_cm.signum(), 0.0]
             };
-            tolerance.admits_way(along_cm, &expected)
+            tolerance.admits_way(along_cm, &expected).then_some(0.0)
         };
         let read = cheapest::<1>(posed.len(), |_, _| 0.0, follows);
         jumped.extend(
