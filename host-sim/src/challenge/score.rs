@@ -73,7 +73,7 @@ pub struct Score {
     pub set_size: f64,
     /// Pairs of which both were named.
     pub pairs: Share,
-    /// Effects outside the table that were called unknown.
+    /// Effects outside the table beside which a remainder was told: unknown, or known in part.
     pub unknowns: Share,
     /// Effects of the table that were called unknown.
     pub false_unknowns: Share,
@@ -197,7 +197,7 @@ impl Opened {
         if self.is_null() {
             self.answer.verdict == Verdict::NoGap
         } else if self.is_outside() {
-            self.answer.verdict == Verdict::Unknown
+            matches!(self.answer.verdict, Verdict::Unknown | Verdict::PartlyKnown)
         } else {
             self.truth().iter().all(|id| self.names(id, MOST_RIVALS))
         }

@@ -66,6 +66,8 @@ impl Judged {
     /// Judges what was confirmed.
     pub fn of(found: &Comparison, robot: &Robot, calibration: &Calibration) -> Self {
         let unexplained = unexplained_nats(found);
+        // Scatter that grows with speed or comes back follows a cause that is not named.
+        let scatters_unevenly = found.scatter.iter().any(|s| !s.is_even);
         let whole = explained_fraction(found);
         let is_vague = |effects: &[NamedEffect]| {
             effects.iter().any(|e| e.ambiguous_with.len() > calibration.judgement.most_ambiguous)
@@ -73,7 +75,7 @@ impl Judged {
         let effects = named(found, whole, robot, calibration);
         let doubt = gap(found, calibration) * (1.0 - probability(whole, std::iter::empty(), calibration));
         let likeliest = effects.first().is_some_and(|first| first.probability >= doubt);
-        if likeliest && !is_vague(&effects) && whole >= calibration.adequate {
+        if likeliest && !is_vague(&effects) && whole >= calibration.adequate && !scatters_unevenly {
             return Judged::Known { effects };
         }
         // A wrong effect leaves something over wherever it explains something; a right one beside which there is another
@@ -84,7 +86,7 @@ impl Judged {
         if !effects.is_empty() && !is_vague(&effects) && best_channel >= calibration.adequate {
             return Judged::PartlyKnown { effects };
         }
-        if !effects.is_empty() || unexplained > 0.0 || found.scatter.iter().any(|s| !s.is_even) {
+        if !effects.is_empty() || unexplained > 0.0 || scatters_unevenly {
             return Judged::Unknown;
         }
         match scattered(found, calibration) {

@@ -11,8 +11,8 @@ use crate::logs::{Logs, Run};
 
 /// What a flipped heading costs beside one that is not, so that equal fits count as not flipped.
 const FLIPPED: f64 = 0.1;
-/// What a turn costs that the robot can make but was not asked for, as after a lost command: two of them more than a member
-/// left out or a flip there and back, which explain them too unless the heading stays where it went.
+/// What a turn costs that stays and that the robot can make but was not asked for, as after a lost command or where a wheel is
+/// held: more than a flip, and less than a row left out.
 const UNASKED: f64 = 1.2;
 /// What it costs to go against the heading: less than a flip there and back, since one step may slip.
 const AGAINST: f64 = 0.6;
@@ -25,15 +25,21 @@ pub fn check(logs: &mut Logs) -> Vec<Finding> {
         let posed: Vec<usize> = (0..r.rows.len()).filter(|k| r.rows[*k].pose.is_some()).collect();
         let heading_rad =
             |[at, state]: [usize; 2]| r.rows[posed[at]].pose.map_or(0.0, |pose| pose.heading_rad) + PI * state as f64;
+        let turn = |begin: usize, end: usize| tolerance.expected_between(logs, r, begin, end);
         let follows = |from: [usize; 2], to: [usize; 2]| {
             let (begin, end) = (posed[from[0]], posed[to[0]]);
             let turn_rad = heading_rad(to) - heading_rad(from);
-            match tolerance.expected_between(logs, r, begin, end) {
-                Some(expected) if !tolerance.admits_turn(turn_rad, &expected) => {
-                    (end == begin + 1 && tolerance.is_within_reach(turn_rad)).then_some(UNASKED)
-                }
-                _ => Some(0.0),
+            if turn(begin, end).is_none_or(|expected| tolerance.admits_turn(turn_rad, &expected)) {
+                return Some(0.0);
             }
+            // A heading that is off comes back with the next row; a turn stays.
+            let admits = |[a, b]: [usize; 2]| {
+                let turn_rad = heading_rad([b, to[1]]) - heading_rad([a, from[1]]);
+                turn(posed[a], posed[b]).is_some_and(|expected| tolerance.admits_turn(turn_rad, &expected))
+            };
+            let comes_back =
+                from[0] > 0 && admits([from[0] - 1, to[0]]) || to[0] + 1 < posed.len() && admits([from[0], to[0] + 1]);
+            (end == begin + 1 && !comes_back && tolerance.is_within_reach(turn_rad)).then_some(UNASKED)
         };
         let goes_against: Vec<Option<bool>> = posed.iter().map(|k| goes_against(logs, &tolerance, r, *k)).collect();
         let cost = |at: usize, state: usize| {
