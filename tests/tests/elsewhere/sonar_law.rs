@@ -23,9 +23,9 @@ fn held_out_nats(folder: &Path) -> f64 {
     sum / rows
 }
 
-/// A team's ideal ray stays below −3.5 nats a reading, and small networks of (D, α) near −3.
+/// It was −2.00 when this was written; an ideal ray has −3.95 (`docs/sonar.md`).
 pub fn a_scan_elsewhere_is_likely_by_the_first_echo_law(folder: &Path) {
     let nats = held_out_nats(folder);
     println!("{nats:.3} nats a reading");
-    assert!(nats > -2.4, "{nats}");
+    assert!(nats > -2.2, "{nats}");
 }
