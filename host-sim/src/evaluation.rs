@@ -7,3 +7,4 @@ pub mod observations;
 pub mod paths;
 pub mod predictions;
 pub mod repeats;
+pub mod sensor_models;

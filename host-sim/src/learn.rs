@@ -1,11 +1,13 @@
 //! Learns a simulator from logs: data sets, trainers, and evaluation on held-out logs.
 
 pub mod dataset;
+pub mod echo_law;
 pub mod fast;
 pub mod genome;
 pub mod kernel;
 pub mod nominal;
 pub mod paper;
 pub mod place_bound;
+pub mod scans;
 pub mod scatter;
 pub mod train;

@@ -6,6 +6,7 @@ mod beam;
 pub mod draws;
 mod effect_layer;
 pub mod environment;
+mod first_echo;
 pub mod fixed_point;
 pub mod kinematic;
 pub mod motion;
@@ -26,6 +27,7 @@ use crate::effects::{legacy, own};
 use crate::error::{Error, Result};
 use crate::files;
 use crate::logs::Robot;
+use crate::sonar::FirstEchoLaw;
 use motion::MotionNetworks;
 use nominal::NominalModel;
 use residuals::{ConstantReading, ResidualQuantiles};
@@ -54,6 +56,9 @@ pub struct Simulator {
     pub echo_probability: Option<Learned<2>>,
     /// The value it then produces, cm.
     pub echo_value: Option<Learned<2>>,
+    /// The first-echo law of the sensor: its third model, beside the two networks and the reference's beam.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub first_echo: Option<FirstEchoLaw>,
     /// A constant wrong reading that comes now and then, if there is one.
     pub constant_reading: Option<ConstantReading>,
     /// What the training logs say beyond the networks: the yardstick of the gap.
@@ -169,6 +174,9 @@ impl Simulator {
         let sonar = [("echo_probability", &self.echo_probability), ("echo_value", &self.echo_value)];
         let motion = motion.map(|(name, l)| (name, l.as_ref().is_none_or(Learned::is_sound)));
         let sonar = sonar.map(|(name, l)| (name, l.as_ref().is_none_or(Learned::is_sound)));
+        if self.first_echo.as_ref().is_some_and(|law| !law.is_sound()) {
+            return Err(Error::in_file(path, "the first-echo law holds numbers that cannot be"));
+        }
         match motion.iter().chain(&sonar).find(|(_, sound)| !sound) {
             Some((name, _)) => Err(Error::in_file(path, format!("the {name} network holds numbers that cannot be"))),
             None => Ok(()),

@@ -32,6 +32,7 @@
 //! loop alone.
 
 mod draw;
+pub mod echo_law;
 pub mod fan;
 pub mod first_echo;
 mod likelihood;
@@ -44,6 +45,7 @@ pub mod place;
 #[cfg(test)]
 mod tests;
 
+pub use echo_law::FirstEchoLaw;
 pub use fan::{Fan, Ray, fan_at};
 pub use model::SonarModel;
 pub use outcomes::{MixingWeights, Outcomes};

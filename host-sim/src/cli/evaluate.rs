@@ -7,6 +7,7 @@ use clap::Args;
 use super::table::{self, number};
 use crate::error::Result;
 use crate::evaluation::accuracy::{self, Evaluation, Networks};
+use crate::evaluation::sensor_models::SensorModels;
 use crate::simulator::Simulator;
 
 /// Judge a simulator's networks on logs that they were not trained on.
@@ -44,7 +45,24 @@ fn told(evaluation: &Evaluation) -> String {
             .collect();
         text += &format!("\n{}", table::text(["predicted", "observed", "n"], &bins));
     }
+    if let Some(models) = &evaluation.sensor_models {
+        text += &format!("\n{}", sensor_models(models));
+    }
     text
+}
+
+/// How likely every model of the sensor makes the readings, as a table.
+fn sensor_models(models: &SensorModels) -> String {
+    let SensorModels { n, networks, beam, first_echo, ideal_ray } = models;
+    let models = [("networks", networks), ("beam", beam), ("first echo", first_echo), ("ideal ray", ideal_ray)];
+    let rows: Vec<[String; 4]> = models
+        .into_iter()
+        .filter_map(|(name, nats)| Some((name, nats.as_ref()?)))
+        .map(|(name, nats)| {
+            [name.into(), number(Some(nats.as_logged), 3), number(nats.poses_refitted, 3), n.to_string()]
+        })
+        .collect();
+    table::text(["sensor model", "nats a reading", "scans' poses refitted", "n"], &rows)
 }
 
 /// The accuracy of every network, as tables.

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use clap::{Args, value_parser};
+use clap::{Args, ValueEnum, value_parser};
 
 use super::progress;
 use crate::error::{Error, Result};
@@ -40,12 +40,26 @@ pub struct Evolve {
     /// Echoes that fail are the only noise.
     #[arg(long)]
     paper_noise: bool,
+    /// What makes the readings: the networks (and the beam that the training logs show, in turn with them), or the
+    /// first-echo law, which is slower.
+    #[arg(long, value_enum, default_value_t = Sonar::Networks, conflicts_with_all = ["paper", "paper_noise"])]
+    sonar: Sonar,
     /// Steps after which a controller gives up.
     #[arg(long, default_value_t = 60, value_parser = value_parser!(u16).range(1..))]
     max_steps: u16,
     /// Let every individual of a generation meet its own random numbers, as with --paper, and not all the same ones.
     #[arg(long)]
     fresh_numbers: bool,
+}
+
+/// Which model of the sensor makes the readings of simulated runs.
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Sonar {
+    /// The two sonar networks.
+    Networks,
+    /// The first-echo law.
+    #[value(name = "first_echo")]
+    FirstEcho,
 }
 
 /// Fresh runs that tell how well a controller does.
@@ -62,7 +76,11 @@ impl Evolve {
         let target_cm = scene.target_cm.ok_or_else(|| Error::in_file(&self.scene, "has no [target]"))?;
         let noise = if self.paper || self.paper_noise { Noise::Paper } else { Noise::Learned };
         let environment = Environment::new(&simulator, &scene, start, noise)?;
-        let environment = &if noise == Noise::Learned { environment.with_beam(&simulator) } else { environment };
+        let environment = &match (self.sonar, noise) {
+            (Sonar::FirstEcho, _) => environment.with_first_echo(&simulator, &scene)?,
+            (Sonar::Networks, Noise::Learned) => environment.with_beam(&simulator),
+            (Sonar::Networks, Noise::Paper) => environment,
+        };
         let decoder = GenotypeDecoder::new(&simulator, self.max_steps);
         let random_numbers =
             if self.paper || self.fresh_numbers { RandomNumbers::Independent } else { RandomNumbers::Common };

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, value_parser};
 
-use super::evolve::start_of;
+use super::evolve::{Sonar, start_of};
 use super::table::{self, number};
 use crate::error::Result;
 use crate::evolve::controller_file::ControllerFile;
@@ -35,6 +35,9 @@ pub struct Simulate {
     /// Echoes that fail are the only noise.
     #[arg(long)]
     paper_noise: bool,
+    /// What makes the readings: the two networks, or the first-echo law.
+    #[arg(long, value_enum, default_value_t = Sonar::Networks, conflicts_with = "paper_noise")]
+    sonar: Sonar,
     /// Also write paths and outcomes here.
     #[arg(long)]
     json: Option<PathBuf>,
@@ -52,6 +55,10 @@ impl Simulate {
         let start = start_of(&scene, self.start, &simulator.robot, &self.scene)?;
         let noise = if self.paper_noise { Noise::Paper } else { Noise::Learned };
         let environment = Environment::new(&simulator, &scene, start, noise)?;
+        let environment = match self.sonar {
+            Sonar::Networks => environment,
+            Sonar::FirstEcho => environment.with_first_echo(&simulator, &scene)?,
+        };
         let rollouts = RolloutReport::new(&environment, &scene, &controller, self.runs as usize, self.seed);
         super::reported(self.json.as_deref(), &rollouts, told(&rollouts))
     }

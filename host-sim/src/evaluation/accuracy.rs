@@ -4,6 +4,7 @@ use mindgap_core::network::Network;
 use serde::Serialize;
 
 use super::predictions::{Predictions, predict};
+use super::sensor_models::{SensorModels, sensor_models};
 use crate::error::{Error, Result};
 use crate::learn::dataset::{Dataset, Datasets};
 use crate::logs::Logs;
@@ -20,6 +21,9 @@ pub struct Evaluation {
     /// The same with the sizes of the paper's Table I, for a simulator of other sizes.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub table_one: Option<Networks>,
+    /// The models of the sensor, where the logs have readings.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sensor_models: Option<SensorModels>,
 }
 
 /// Accuracy of each network.
@@ -93,7 +97,7 @@ pub fn evaluate(simulator: &Simulator, logs: &Logs) -> Result<Evaluation> {
         return Err(Error::new("these logs hold no sample for any network of this simulator"));
     }
     let table_one = simulator.table_one.as_ref().map(|simulator| judge(simulator, logs)).transpose()?;
-    Ok(Evaluation { schema: 1, networks, table_one })
+    Ok(Evaluation { schema: 1, networks, table_one, sensor_models: sensor_models(simulator, logs) })
 }
 
 fn judge(simulator: &Simulator, logs: &Logs) -> Result<Networks> {

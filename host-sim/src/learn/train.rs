@@ -3,6 +3,7 @@
 use mindgap_core::network::{Activation, Network};
 
 use super::dataset::{Dataset, Datasets};
+use super::echo_law;
 use super::fast::{self, Loss};
 use super::genome::Shape;
 use super::nominal;
@@ -109,6 +110,7 @@ pub fn train(
         lateral,
         echo_probability,
         echo_value,
+        first_echo: echo_law::learn(logs, seed),
         constant_reading,
         reference: None,
         table_one: None,

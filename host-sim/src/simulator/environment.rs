@@ -5,6 +5,7 @@ use mindgap_core::folded::FoldedNetwork;
 
 use super::beam::Beam;
 use super::effect_layer::EffectLayer;
+use super::first_echo::FirstEchoSensor;
 use super::motion::{MotionNetworks, MotionTable};
 use super::residuals::{ConstantReading, ResidualNoise, ResidualQuantiles};
 use super::room::Room;
@@ -34,6 +35,8 @@ pub struct Environment<'s> {
     pub(super) effect_layer: Option<EffectLayer<'s>>,
     /// There when some runs meet it.
     pub(super) beam: Option<Beam>,
+    /// There when all runs hear by the first-echo law.
+    pub(super) first_echo: Option<FirstEchoSensor<'s>>,
 }
 
 impl<'s> Environment<'s> {
@@ -68,6 +71,7 @@ impl<'s> Environment<'s> {
             noise,
             effect_layer: EffectLayer::of(simulator, scene, noise)?,
             beam: None,
+            first_echo: None,
         })
     }
 
@@ -75,6 +79,15 @@ impl<'s> Environment<'s> {
     pub fn with_beam(self, simulator: &Simulator) -> Self {
         let reference = simulator.reference.as_ref().and_then(|r| r.sonar.as_ref());
         Environment { beam: reference.map(Beam::new), ..self }
+    }
+
+    /// The environment with readings by the first-echo law in every run.
+    ///
+    /// # Errors
+    /// When the simulator does not know the law of its sensor, or was given effects that change another model of it.
+    pub fn with_first_echo(self, simulator: &'s Simulator, scene: &Scene) -> Result<Self> {
+        let is_changed = self.effect_layer.as_ref().is_some_and(EffectLayer::senses);
+        Ok(Environment { first_echo: Some(FirstEchoSensor::of(simulator, scene, is_changed)?), ..self })
     }
 
     /// The environment with the motion networks evaluated in every step. Outcomes stay the same to the bit; it is there

@@ -56,6 +56,7 @@ pub fn simulator(baseline: &Baseline, scatter: [f64; 3]) -> Result<Simulator> {
         lateral: learned(&lateral_cm, 1)?,
         echo_probability: Some(Learned { network: within(far_cm), residuals: residuals(0.0, far_cm) }),
         echo_value: Some(Learned { network: distance(near_cm, far_cm), residuals: residuals(0.0, far_cm) }),
+        first_echo: None,
         constant_reading: None,
         reference: Some(NominalModel {
             motion: Some(MotionBias {

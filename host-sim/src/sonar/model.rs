@@ -45,8 +45,12 @@ pub struct SonarModel {
 impl SonarModel {
     /// Bounds of the distance that parts short readings from long ones, cm.
     pub fn reach_bounds_cm(&self) -> [f64; 2] {
-        let [low, high] = self.range_cm;
-        let least = LEAST_INTERVAL_CM.min(0.5 * (high - low));
-        [low + least, high - least]
+        reach_bounds_cm(self.range_cm)
     }
+}
+
+/// Bounds of the distance that parts short readings from long ones within a range of readings, cm.
+pub fn reach_bounds_cm([low, high]: [f64; 2]) -> [f64; 2] {
+    let least = LEAST_INTERVAL_CM.min(0.5 * (high - low));
+    [low + least, high - least]
 }

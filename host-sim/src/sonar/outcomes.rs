@@ -1,6 +1,6 @@
 //! The mixture over everything that the sensor may report.
 
-use super::fan::{AXIS, Fan, RAYS};
+use super::fan::{AXIS, Fan};
 use super::first_echo::first_echoes;
 use super::model::{CONSTANT_SCATTER_CM, P_RAND, SonarModel};
 use super::perturbation::Perturbation;
@@ -11,13 +11,10 @@ pub struct Outcomes {
     /// Probability of no reading.
     pub none: f64,
     /// The components that give a reading: the hits, nearest first, then the others.
-    pub components: [Component; RAYS + OTHERS],
+    pub components: Vec<Component>,
     /// Readings beyond it are reported as its ends, cm.
-    pub(super) range_cm: [f64; 2],
+    pub range_cm: [f64; 2],
 }
-
-/// Number of components beside the hits.
-const OTHERS: usize = 6;
 
 /// One component of the mixture.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -144,17 +141,13 @@ impl Outcomes {
             (Source::Stale, total(|w| w.stale), about(previous_cm.unwrap_or(low))),
             (Source::Stray, total(|w| w.stray), between(low, high)),
         ];
-        let components = std::array::from_fn(|i| match echoes.get(i) {
-            Some(echo) => Component {
-                source: Source::Hit,
-                probability: echo.probability * heard.hit,
-                distribution: Distribution::Student { middle_cm: echo.middle_cm, scale_cm: echo.scale_cm },
-            },
-            None => {
-                let (source, probability, distribution) = others[i - RAYS];
-                Component { source, probability, distribution }
-            }
+        let hits = echoes.iter().map(|echo| Component {
+            source: Source::Hit,
+            probability: echo.probability * heard.hit,
+            distribution: Distribution::Student { middle_cm: echo.middle_cm, scale_cm: echo.scale_cm },
         });
+        let others = others.map(|(source, probability, distribution)| Component { source, probability, distribution });
+        let components = hits.chain(others).collect();
         Outcomes { none: total(|w| w.none), components, range_cm: model.range_cm }
     }
 

@@ -3,7 +3,7 @@
 use std::io::Read;
 use std::process::Stdio;
 
-use mindgap_tests::command::Workshop;
+use mindgap_tests::command::{Workshop, workspace};
 use mindgap_tests::rooms::{SCENE, trained};
 use serde_json::Value;
 
@@ -171,4 +171,28 @@ fn a_wrong_call_exits_with_two_and_help_with_zero() {
         assert!(!done.out.is_empty());
     }
     assert!(workshop.listing().is_empty());
+}
+
+#[test]
+fn a_simulator_knows_the_first_echo_law_of_its_sonar() {
+    let workshop = trained();
+    workshop.write("room.toml", SCENE);
+    workshop.done("evaluate sim.json logs --json figures.json");
+    let models = &workshop.json("figures.json")["sensor_models"];
+    let nats = |model: &str| models[model]["as_logged"].as_f64().unwrap_or_else(|| panic!("{model}: {models}"));
+    assert!(["networks", "beam", "first_echo"].into_iter().all(|model| nats(model) > nats("ideal_ray")), "{models}");
+    assert!(models["first_echo"]["poses_refitted"].is_null(), "a driven robot's poses are tracked: {models}");
+
+    let controller = workspace().join("tests/tests/golden/controller.toml");
+    workshop.write("go.toml", std::fs::read(controller).expect("a fixed controller"));
+    let call = "simulate sim.json go.toml --scene room.toml --runs 20";
+    let by_law = workshop.done(&format!("{call} --sonar first_echo"));
+    assert_eq!(by_law, workshop.done(&format!("{call} --sonar first_echo")));
+    assert_ne!(by_law, workshop.done(call));
+    let mut older = workshop.json("sim.json");
+    older.as_object_mut().expect("a table").remove("first_echo");
+    workshop.write("sim.json", &older.to_string());
+    workshop.done(call);
+    let refused = workshop.refused(&format!("{call} --sonar first_echo"));
+    assert!(refused.contains("no first-echo law"), "{refused}");
 }

@@ -6,6 +6,7 @@ mod gap_real;
 mod injections;
 mod inspection;
 mod reading;
+mod sonar_law;
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -34,6 +35,7 @@ fn main() -> ExitCode {
         trial!(inspection::faults_of_a_real_drives_logs_are_found, "real/create"),
         trial!(reading::nominal_logs_are_read_without_a_warning, "data"),
         trial!(reading::a_real_sonar_that_stands_still_trains_the_two_sonar_networks, "real/nxt-sonar/kentheo"),
+        trial!(sonar_law::a_scan_elsewhere_is_likely_by_the_first_echo_law, "real/nxt-sonar/chunnx"),
         trial!(reading::the_scene_with_four_obstacles_is_read, "data/scenes/four-obstacles.toml"),
     ];
     libtest_mimic::run(&Arguments::from_args(), trials).exit_code()

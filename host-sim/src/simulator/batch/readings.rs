@@ -12,6 +12,7 @@ use crate::lanes::{Lanes, WIDEST};
 use crate::simulator::Noise;
 use crate::simulator::beam::{Beam, Fate};
 use crate::simulator::draws::Draws;
+use crate::simulator::first_echo::FirstEchoSensor;
 use crate::simulator::rollout::SensorModel;
 use crate::simulator::room::Point;
 
@@ -29,6 +30,9 @@ impl Robots<'_> {
         let environment = self.environment;
         if environment.effect_layer.as_ref().is_some_and(|effect_layer| effect_layer.senses()) {
             return self.sense_through_effects(draws);
+        }
+        if let Some(sensor) = &environment.first_echo {
+            return self.listen(sensor, draws);
         }
         let sensors = self.sensors(simd);
         let reading_cm = match (&environment.beam, sensor) {
@@ -50,6 +54,15 @@ impl Robots<'_> {
             *echo_cm = effect_layer.echo_cm(&mut run.memory, pose, draws.echo[lane]).unwrap_or(f32::NAN);
         }
         echo_cm
+    }
+
+    /// The readings by the first-echo law.
+    fn listen(&self, sensor: &FirstEchoSensor, draws: &StepDraws) -> Row {
+        std::array::from_fn(|lane| {
+            let draws_of_lane = [draws.echo[lane], draws.constant[lane]];
+            let is_running = self.runs[lane].is_some();
+            is_running.then(|| sensor.echo_cm(&self.pose(lane), draws_of_lane)).flatten().unwrap_or(f32::NAN)
+        })
     }
 
     #[inline(always)]

@@ -1,0 +1,281 @@
+//! Fits the first-echo law to logs: the most probable parameters for what is known of such sensors.
+
+use rand::RngExt;
+use rayon::prelude::*;
+
+use super::scans::{Heard, Offset, Scans, UNCHANGED};
+use crate::chance::generator;
+use crate::logs::Logs;
+use crate::sonar::FirstEchoLaw;
+use crate::sonar::echo_law::{Surfaces, Target, reach_cm, targets_at};
+use crate::statistics::maximise::{Bounds, Maximum, climb, climb_on};
+
+/// What is known of a parameter before any log is seen.
+struct Prior {
+    middle: f64,
+    deviation: f64,
+    low: f64,
+    high: f64,
+}
+
+const fn prior(middle: f64, deviation: f64, low: f64, high: f64) -> Prior {
+    Prior { middle, deviation, low, high }
+}
+
+/// Number of parameters.
+const PARAMETERS: usize = 20;
+/// In the order of [`FirstEchoLaw`]'s fields: medians over eleven LEGO NXT sensors, and wider than they spread, so that the
+/// sensor's own logs decide; bounds are what is physically possible. Narrow priors on the first six, which share the unit of
+/// the threshold's noise, would blur the beam.
+const PRIORS: [Prior; PARAMETERS] = [
+    prior(2.7, 2.0, -6.0, 20.0),
+    prior(3.65, 1.3, 0.0, 12.0),
+    prior(8.7, 3.0, 1.0, 40.0),
+    prior(1.33, 0.4, 0.5, 4.0),
+    prior(15.0, 4.0, 3.0, 60.0),
+    prior(10.7, 3.0, 0.5, 40.0),
+    prior(-0.9, 1.0, -12.0, 3.0),
+    prior(-6.7, 1.5, -15.0, 3.0),
+    prior(-1.4, 2.0, -15.0, 15.0),
+    prior(1.0, 0.01, 0.8, 1.2),
+    prior(0.17, 0.12, -0.5, 1.5),
+    prior(0.57, 0.3, 0.3, 10.0),
+    prior(0.3, 0.3, -1.0, 2.0),
+    prior(0.2, 0.2, -0.5, 1.5),
+    prior(0.007, 0.02, 0.0, 0.5),
+    prior(0.25, 0.25, 0.0, 0.98),
+    prior(0.6, 0.25, 0.02, 0.98),
+    prior(0.0, 0.05, 0.0, 0.5),
+    prior(21.5, 2.0, 5.0, 60.0),
+    prior(0.02, 0.02, 0.004, 0.2),
+];
+/// Where the first search begins: the medians, with a little of each wrong reading.
+const GHOST_AT_START: f64 = 0.01;
+const GHOST: usize = 17;
+
+/// Searches begin here: at the medians, and at points drawn from the priors.
+const STARTS: usize = 5;
+/// Rounds of each search, then of the best one after each new fit of poses.
+const FIRST_ROUNDS: usize = 12;
+const LATER_ROUNDS: usize = 12;
+/// How often the poses of scans and parameters are fitted in turn.
+const TURNS: usize = 3;
+/// Searches end when a round gains less than this, in nats.
+const ENOUGH: f64 = 0.2;
+/// More rows than this are sampled: they would tell the beam no better than the rest.
+const MOST_ROWS: usize = 1500;
+/// Fewer readings than this, the least for a network too, tell nothing beyond the priors.
+const FEWEST: usize = 30;
+
+/// The law of the sensor that made these logs; none where they hold too few readings.
+pub fn learn(logs: &Logs, seed: u64) -> Option<FirstEchoLaw> {
+    let scans = Scans::of(logs);
+    if scans.rows().filter(|row| row.echo_cm.is_some()).count() < FEWEST {
+        return None;
+    }
+    let fit = Fit {
+        surfaces: Surfaces::new(logs.scene.sides()),
+        weight: scans.weight(),
+        scans: scans.sampled(MOST_ROWS, seed),
+        range_cm: [logs.robot.ultrasonic.min_cm, logs.robot.ultrasonic.max_cm],
+    };
+    Some(fit.most_probable(seed))
+}
+
+struct Fit {
+    surfaces: Surfaces,
+    scans: Scans,
+    weight: f64,
+    range_cm: [f64; 2],
+}
+
+/// What a sensor faced at a row, and what it said.
+struct Faced {
+    targets: Vec<Target>,
+    reach_cm: f64,
+    echo_cm: Option<f64>,
+}
+
+impl Fit {
+    fn most_probable(&self, seed: u64) -> FirstEchoLaw {
+        let as_logged = self.faced(&vec![UNCHANGED; self.scans.runs.len()]);
+        let mut best: Option<Maximum> = None;
+        for start in starts(seed) {
+            let found = climb(&bounds(), &start, FIRST_ROUNDS, ENOUGH, |at| self.terms(at, &as_logged));
+            if best.as_ref().is_none_or(|best| found.value() > best.value()) {
+                best = Some(found);
+            }
+        }
+        let best = best.expect("there are several starts");
+        if !(0..self.scans.runs.len()).any(|run| self.scans.is_scan(run)) {
+            let found = climb_on(&bounds(), best, TURNS * LATER_ROUNDS, ENOUGH, |at| self.terms(at, &as_logged));
+            return law(&found.at, self.range_cm);
+        }
+        let mut at = best.at;
+        for _ in 0..TURNS {
+            let now = law(&at, self.range_cm);
+            let log_likelihood = |sensor: &_, echo_cm| now.outcomes_at(&self.surfaces, sensor).log_likelihood(echo_cm);
+            let faced = self.faced(&self.scans.offsets(log_likelihood));
+            at = climb(&bounds(), &at, LATER_ROUNDS, ENOUGH, |at| self.terms(at, &faced)).at;
+        }
+        law(&at, self.range_cm)
+    }
+
+    /// What was faced at every row, with an offset to the poses of each run.
+    fn faced(&self, offsets: &[Offset]) -> Vec<Faced> {
+        let faced = |(row, offset): &(&Heard, &Offset)| {
+            let sensor = self.scans.sensor(&row.robot, offset);
+            let targets = targets_at(&self.surfaces, &sensor);
+            Faced { targets, reach_cm: reach_cm(&self.surfaces, &sensor), echo_cm: row.echo_cm }
+        };
+        self.scans.rows_with(offsets).par_iter().map(faced).collect()
+    }
+
+    /// Log-likelihoods of all rows, weighted, and of the parameters before any row.
+    fn terms(&self, at: &[f64], faced: &[Faced]) -> Vec<f64> {
+        let law = law(at, self.range_cm);
+        let term = |row: &Faced| self.weight * law.outcomes(&row.targets, row.reach_cm).log_likelihood(row.echo_cm);
+        let mut terms: Vec<f64> = faced.par_iter().map(term).collect();
+        terms.extend(PRIORS.iter().zip(at).map(|(prior, value)| {
+            let off = (value - prior.middle) / prior.deviation;
+            -0.5 * off * off
+        }));
+        terms
+    }
+}
+
+/// A step of one prior's standard deviation is a large one.
+fn bounds() -> [Bounds; PARAMETERS] {
+    PRIORS.map(|Prior { low, high, deviation, .. }| Bounds { low, high, scale: deviation })
+}
+
+fn starts(seed: u64) -> Vec<[f64; PARAMETERS]> {
+    let start = |number: usize| {
+        let mut rng = generator(seed, &[number as u64]);
+        let mut start = PRIORS.map(|prior| {
+            let off = if number == 0 { 0.0 } else { 2.0 * rng.random::<f64>() - 1.0 };
+            (prior.middle + off * prior.deviation).clamp(prior.low, prior.high)
+        });
+        start[GHOST] = start[GHOST].max(GHOST_AT_START);
+        start
+    };
+    (0..STARTS).map(start).collect()
+}
+
+fn law(at: &[f64], range_cm: [f64; 2]) -> FirstEchoLaw {
+    FirstEchoLaw {
+        gain: at[0],
+        spreading: at[1],
+        beam_deg: at[2],
+        beam_power: at[3],
+        specular_deg: at[4],
+        oblique_loss: at[5],
+        corner: at[6],
+        edge: at[7],
+        offset_cm: at[8],
+        scale: at[9],
+        off_axis_cm: at[10],
+        scatter_cm: at[11],
+        scatter_per_m: at[12],
+        scatter_off_axis: at[13],
+        p_dropout: at[14],
+        p_other: at[15],
+        p_long_given_other: at[16],
+        p_ghost: at[GHOST],
+        ghost_cm: at[18],
+        p_stray: at[19],
+        range_cm,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::built_in_robot::{default_robot, training_room};
+    use crate::geometry::Pose;
+    use crate::logs::{Row, Run};
+
+    /// A sensor unlike the prior's middle.
+    fn made_up() -> FirstEchoLaw {
+        let mut at = PRIORS.map(|prior| prior.middle);
+        at[0] = 4.0;
+        at[2] = 11.0;
+        at[8] = 1.5;
+        at[GHOST] = 0.08;
+        at[18] = 23.0;
+        law(&at, [4.0, 240.0])
+    }
+
+    /// Scans of a sensor that turns by 5 degrees a row at places of a room, with headings off by these.
+    fn scans(seed: u64, off_deg: [f64; 12]) -> Logs {
+        let scene = training_room();
+        let surfaces = Surfaces::new(scene.sides());
+        let robot = crate::logs::Robot {
+            ultrasonic: crate::logs::Ultrasonic { x_cm: 0.0, ..default_robot().ultrasonic },
+            ..default_robot()
+        };
+        let (sensor, mut rng) = (made_up(), generator(seed, &[]));
+        let runs = off_deg.iter().enumerate().map(|(run, off_deg)| {
+            let mut place = Pose::new(0.0, 0.0, 0.0);
+            while !scene.has_room_for(place.position_cm, 10.0) {
+                place = Pose::new(300.0 * rng.random::<f64>(), 220.0 * rng.random::<f64>(), 0.0);
+            }
+            let rows = (0..72).map(|at| {
+                let heading = |deg: f64| Pose { heading_rad: (5.0 * f64::from(at) + deg).to_radians(), ..place };
+                let outcomes = sensor.outcomes_at(&surfaces, &heading(*off_deg));
+                let echo_cm = outcomes.draw(true, || rng.random()).map(f64::round);
+                Row { t_ms: 400.0 * f64::from(at), pose: Some(heading(0.0)), echo_cm, ..Row::default() }
+            });
+            Run { name: format!("run-{run:03}"), rows: rows.collect() }
+        });
+        Logs { runs: runs.collect(), robot, scene: scene.clone() }
+    }
+
+    #[test]
+    fn a_made_up_sensor_is_found_again() {
+        let off_deg = [0.0, 3.0, -4.0, 6.0, -2.0, 1.0, 0.0, -5.0, 4.0, 2.0, -3.0, 0.0];
+        let logs = scans(1, off_deg);
+        let found = learn(&logs, 1).expect("readings");
+        let truth = made_up();
+        let near = |name: &str, found: f64, truth: f64, within: f64| {
+            assert!((found - truth).abs() < within, "{name}: {found}, and {truth} in truth");
+        };
+        near("gain", found.gain, truth.gain, 1.0);
+        near("spreading", found.spreading, truth.spreading, 1.0);
+        near("beam_deg", found.beam_deg, truth.beam_deg, 2.5);
+        near("offset_cm", found.offset_cm, truth.offset_cm, 0.7);
+        near("p_ghost", found.p_ghost, truth.p_ghost, 0.04);
+        near("ghost_cm", found.ghost_cm, truth.ghost_cm, 0.7);
+        near("p_other", found.p_other, truth.p_other, 0.08);
+
+        // Headings are found again, and readings of other scans are as likely as to the sensor itself.
+        let (surfaces, others) = (Surfaces::new(logs.scene.sides()), scans(2, [0.0; 12]));
+        let likely = |law: &FirstEchoLaw| {
+            let scans = Scans::of(&others);
+            let rows: Vec<f64> = scans
+                .rows()
+                .map(|row| {
+                    law.outcomes_at(&surfaces, &scans.sensor(&row.robot, &UNCHANGED)).log_likelihood(row.echo_cm)
+                })
+                .collect();
+            rows.iter().sum::<f64>() / rows.len() as f64
+        };
+        near("nats a reading", likely(&found), likely(&truth), 0.1);
+        let offsets =
+            Scans::of(&logs).offsets(|sensor, echo_cm| found.outcomes_at(&surfaces, sensor).log_likelihood(echo_cm));
+        for ([x_cm, y_cm, deg], off_deg) in offsets.iter().zip(off_deg) {
+            near("x_cm", *x_cm, 0.0, 2.0);
+            near("y_cm", *y_cm, 0.0, 2.0);
+            // Rows are 5 degrees apart, and the prior pulls towards none.
+            near("heading", *deg, off_deg, 3.5);
+        }
+    }
+
+    #[test]
+    fn few_readings_tell_nothing() {
+        let mut logs = scans(1, [0.0; 12]);
+        logs.runs.truncate(1);
+        logs.runs[0].rows.truncate(20);
+        assert!(learn(&logs, 1).is_none());
+    }
+}

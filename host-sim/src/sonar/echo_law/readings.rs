@@ -1,0 +1,100 @@
+//! The outcomes of a reading by the first-echo law.
+
+use super::targets::{SPACING_DEG, Target, TargetKind};
+use super::{FirstEchoLaw, Surfaces, targets_at};
+use crate::geometry::{Pose, cast};
+use crate::sonar::model::{CONSTANT_SCATTER_CM, reach_bounds_cm};
+use crate::sonar::outcomes::{Component, Distribution, Outcomes, Source};
+use crate::statistics::summary::logistic;
+
+/// Beyond this incidence a wall's part between two rays is as long as the range, degrees.
+const GRAZING_DEG: f64 = 80.0;
+
+impl FirstEchoLaw {
+    /// The outcomes of a reading of a sensor at a pose.
+    pub fn outcomes_at(&self, surfaces: &Surfaces, sensor: &Pose) -> Outcomes {
+        self.outcomes(&targets_at(surfaces, sensor), reach_cm(surfaces, sensor))
+    }
+
+    /// The outcomes of a reading of targets, nearest first, where the axis reaches as far as `reach_cm`.
+    pub fn outcomes(&self, targets: &[Target], reach_cm: f64) -> Outcomes {
+        let known = 1.0 - self.p_stray;
+        let mut components = Vec::with_capacity(targets.len() + 4);
+        let (mut loudest, mut heard_before, mut not_ghost, mut before_ghost) = (f64::NEG_INFINITY, 0.0, 1.0, None);
+        for target in targets {
+            let strength = self.strength(target);
+            if strength <= loudest {
+                continue;
+            }
+            loudest = strength;
+            let heard = (1.0 - self.p_dropout) * logistic(loudest);
+            let middle_cm = self.middle_cm(target);
+            if middle_cm >= self.ghost_cm && before_ghost.is_none() {
+                before_ghost = Some(heard_before);
+                not_ghost = 1.0 - self.p_ghost;
+            }
+            components.push(Component {
+                source: Source::Hit,
+                probability: known * not_ghost * (heard - heard_before),
+                distribution: Distribution::Student { middle_cm, scale_cm: self.scale_cm(target) },
+            });
+            heard_before = heard;
+        }
+        let ghost = self.p_ghost * (1.0 - before_ghost.unwrap_or(heard_before));
+        let silent = (1.0 - self.p_ghost) * (1.0 - heard_before);
+        let other = silent * self.p_other;
+        let [low_cm, high_cm] = self.range_cm;
+        let [least_cm, most_cm] = reach_bounds_cm(self.range_cm);
+        let reach_cm = reach_cm.clamp(least_cm, most_cm);
+        let between = |low_cm, high_cm| Distribution::Uniform { low_cm, high_cm };
+        let about_ghost = Distribution::Student { middle_cm: self.ghost_cm, scale_cm: CONSTANT_SCATTER_CM };
+        let others = [
+            (Source::Ghost, known * ghost, about_ghost),
+            (Source::Long, known * other * self.p_long_given_other, between(reach_cm, high_cm)),
+            (Source::Short, known * other * (1.0 - self.p_long_given_other), between(low_cm, reach_cm)),
+            (Source::Stray, 0.5 * self.p_stray, between(low_cm, high_cm)),
+        ];
+        let others = others.map(|(source, probability, distribution)| Component { source, probability, distribution });
+        components.extend(others);
+        Outcomes { none: known * (silent - other) + 0.5 * self.p_stray, components, range_cm: self.range_cm }
+    }
+
+    /// The strength of a target's echo, in units of the threshold's noise.
+    pub fn strength(&self, target: &Target) -> f64 {
+        let kind = match target.kind {
+            TargetKind::Ray { incidence_deg } => -self.loss_by_incidence(incidence_deg),
+            TargetKind::Foot => 0.0,
+            TargetKind::Corner => self.corner,
+            TargetKind::Edge => self.edge,
+        };
+        let beam = libm::pow(target.off_axis_deg / self.beam_deg, self.beam_power);
+        self.gain - self.spreading * libm::log(target.distance_cm / 100.0) - beam + kind
+    }
+
+    /// What a wall loses by its incidence.
+    fn loss_by_incidence(&self, incidence_deg: f64) -> f64 {
+        let turned = incidence_deg / self.specular_deg;
+        self.oblique_loss * (1.0 - libm::exp(-turned * turned / self.oblique_loss))
+    }
+
+    fn middle_cm(&self, target: &Target) -> f64 {
+        let off = target.off_axis_deg / 10.0;
+        let [low, high] = self.range_cm;
+        (self.offset_cm + self.scale * target.distance_cm + self.off_axis_cm * off * off).clamp(low, high)
+    }
+
+    fn scale_cm(&self, target: &Target) -> f64 {
+        let growth =
+            self.scatter_per_m * target.distance_cm / 100.0 + self.scatter_off_axis * target.off_axis_deg / 10.0;
+        let own = self.scatter_cm * libm::exp(growth);
+        let incidence_rad = target.incidence_deg().unwrap_or(0.0).min(GRAZING_DEG).to_radians();
+        // A uniform distribution has a standard deviation of its width over the root of twelve.
+        let between = target.distance_cm * libm::tan(incidence_rad) * SPACING_DEG.to_radians() / 12f64.sqrt();
+        (own * own + between * between).sqrt()
+    }
+}
+
+/// How far the axis reaches, cm; infinite where it meets nothing.
+pub fn reach_cm(surfaces: &Surfaces, sensor: &Pose) -> f64 {
+    cast(&surfaces.walls, sensor.position_cm, sensor.direction()).map_or(f64::INFINITY, |hit| hit.distance_cm)
+}

@@ -1,0 +1,122 @@
+//! What can return an echo to a sensor at a pose.
+
+use super::surfaces::{Side, Surfaces};
+use crate::geometry::{Pose, cast, direction, wrap_rad};
+
+/// Something that can return an echo.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Target {
+    /// Distance from the sensor, cm.
+    pub distance_cm: f64,
+    /// Angle off the axis, degrees, 0 to 180.
+    pub off_axis_deg: f64,
+    /// What it is.
+    pub kind: TargetKind,
+}
+
+/// What returns an echo.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum TargetKind {
+    /// A wall where a ray meets it.
+    Ray {
+        /// The angle between the ray and the wall's normal, degrees, 0 to 90.
+        incidence_deg: f64,
+    },
+    /// A wall where its normal points to the sensor.
+    Foot,
+    /// A concave corner.
+    Corner,
+    /// A convex edge, or the free end of a wall.
+    Edge,
+}
+
+/// Angle between two rays, degrees.
+pub(super) const SPACING_DEG: f64 = 3.0;
+/// Rays to either side of the axis: out to 60 degrees, where a wall a hand's breadth away is no longer heard.
+const RAYS: i32 = 20;
+/// Nothing is nearer to the sensor than its own membrane, cm.
+const NEAREST_CM: f64 = 1.0;
+/// A foot within this of its wall's end may be that end itself, cm.
+const END_CM: f64 = 1e-6;
+
+/// The targets of a sensor, nearest first, without such as cannot be the first echo whatever the sensor's parameters:
+/// a wall behind another part of a wall that is nearer to the axis and faces the sensor more.
+pub fn targets_at(surfaces: &Surfaces, sensor: &Pose) -> Vec<Target> {
+    let mut targets: Vec<Target> = rays(surfaces, sensor).collect();
+    targets.extend(feet(surfaces, sensor));
+    targets.extend(corners(surfaces, sensor));
+    targets.sort_by(|a, b| a.distance_cm.total_cmp(&b.distance_cm));
+    let mut heard: Vec<Target> = Vec::with_capacity(targets.len());
+    for target in targets {
+        if !heard.iter().any(|nearer| nearer.masks(&target)) {
+            heard.push(target);
+        }
+    }
+    heard
+}
+
+impl Target {
+    /// The incidence of a wall, degrees.
+    pub fn incidence_deg(&self) -> Option<f64> {
+        match self.kind {
+            TargetKind::Ray { incidence_deg } => Some(incidence_deg),
+            TargetKind::Foot => Some(0.0),
+            TargetKind::Corner | TargetKind::Edge => None,
+        }
+    }
+
+    /// Whether this, which is nearer, is stronger for certain.
+    fn masks(&self, farther: &Target) -> bool {
+        let faces_more = match (self.incidence_deg(), farther.incidence_deg()) {
+            (Some(own), Some(other)) => own <= other,
+            (None, None) => self.kind == farther.kind,
+            _ => false,
+        };
+        faces_more && self.off_axis_deg <= farther.off_axis_deg
+    }
+}
+
+fn rays(surfaces: &Surfaces, sensor: &Pose) -> impl Iterator<Item = Target> {
+    (-RAYS..=RAYS).filter_map(|ray| {
+        let off_axis_deg = SPACING_DEG * f64::from(ray);
+        let way = direction(sensor.heading_rad + off_axis_deg.to_radians());
+        let hit = cast(&surfaces.walls, sensor.position_cm, way)?;
+        Some(Target {
+            distance_cm: hit.distance_cm.max(NEAREST_CM),
+            off_axis_deg: off_axis_deg.abs(),
+            kind: TargetKind::Ray { incidence_deg: hit.incidence_rad.abs().to_degrees() },
+        })
+    })
+}
+
+/// The feet of the perpendiculars that lie on their walls. The nearest point of a wall to which no perpendicular leads is
+/// its end, and that is no mirror.
+fn feet(surfaces: &Surfaces, sensor: &Pose) -> impl Iterator<Item = Target> {
+    surfaces.walls.iter().filter_map(|wall| {
+        let foot_cm = wall.nearest(sensor.position_cm);
+        let is_inside = [wall.from_cm, wall.to_cm].iter().all(|end| end.distance(foot_cm) > END_CM);
+        is_inside.then(|| point(surfaces, sensor, foot_cm, TargetKind::Foot))?
+    })
+}
+
+fn corners(surfaces: &Surfaces, sensor: &Pose) -> impl Iterator<Item = Target> {
+    surfaces.corners.iter().filter_map(|corner| {
+        let kind = match corner.side(sensor.position_cm) {
+            Side::Concave => TargetKind::Corner,
+            Side::Convex => TargetKind::Edge,
+            Side::Flat => return None,
+        };
+        point(surfaces, sensor, corner.at_cm, kind)
+    })
+}
+
+/// A point as a target, if it is within the beam and in sight.
+fn point(surfaces: &Surfaces, sensor: &Pose, at_cm: glam::DVec2, kind: TargetKind) -> Option<Target> {
+    let way = at_cm - sensor.position_cm;
+    let distance_cm = way.length();
+    let off_axis_deg = wrap_rad(libm::atan2(way.y, way.x) - sensor.heading_rad).abs().to_degrees();
+    let is_heard = distance_cm > 0.0
+        && off_axis_deg <= SPACING_DEG * f64::from(RAYS)
+        && surfaces.is_visible(sensor.position_cm, at_cm);
+    is_heard.then(|| Target { distance_cm: distance_cm.max(NEAREST_CM), off_axis_deg, kind })
+}
