@@ -63,7 +63,7 @@ const TURNS: usize = 3;
 /// Searches end when a round gains less than this, in nats.
 const ENOUGH: f64 = 0.2;
 /// More rows than this are sampled: they would tell the beam no better than the rest.
-const MOST_ROWS: usize = 1500;
+const MOST_ROWS: usize = 1000;
 /// Fewer readings than this, the least for a network too, tell nothing beyond the priors.
 const FEWEST: usize = 30;
 
