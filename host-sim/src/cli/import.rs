@@ -45,7 +45,7 @@ pub struct Import {
 impl Run for Import {
     fn places(&self) -> Places {
         let inputs = self.files.iter().chain([&self.scene, &self.robot]);
-        Places::default().reading(inputs).filling(&self.out).writing(&self.json, kinds::IMPORT)
+        Places::default().reading(inputs).filling(&self.out).writing(&self.json, kinds::REPORT)
     }
 
     fn run(&self) -> Result<String> {
