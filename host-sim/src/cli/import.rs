@@ -5,8 +5,9 @@ use std::path::PathBuf;
 use clap::Args;
 use serde_json::json;
 
-use super::{table, warn};
+use super::{Run, kinds, table, warn};
 use crate::error::Result;
+use crate::files::places::Places;
 use crate::import::units::{Angle, Length, Time, Units};
 use crate::import::{LogReport, Report, RunReport, TrackReport, import};
 use crate::logs::{Robot, Scene};
@@ -41,9 +42,13 @@ pub struct Import {
     json: Option<PathBuf>,
 }
 
-impl Import {
-    /// Reads, aligns, writes; returns what there is to say.
-    pub fn run(&self) -> Result<String> {
+impl Run for Import {
+    fn places(&self) -> Places {
+        let inputs = self.files.iter().chain([&self.scene, &self.robot]);
+        Places::default().reading(inputs).filling(&self.out).writing(&self.json, kinds::REPORT)
+    }
+
+    fn run(&self) -> Result<String> {
         let units = Units { time: self.time_unit, length: self.length_unit, angle: self.angle_unit };
         let (robot, scene) = (Robot::read(&self.robot)?, Scene::read(&self.scene)?);
         let (logs, report) = import(&self.files, &units, robot, scene, warn)?;
