@@ -16,6 +16,7 @@ mod evaluate;
 mod evolve;
 mod export;
 mod import;
+mod new;
 mod progress;
 mod record;
 mod simulate;
@@ -57,6 +58,7 @@ enum Command {
     Simulate(simulate::Simulate),
     Export(export::Export),
     Import(import::Import),
+    New(new::New),
 }
 
 /// Runs the command of this process's arguments. Exits with 0 when it did what was asked, 1 when it could not, and 2
@@ -76,6 +78,7 @@ pub fn run() -> ExitCode {
         Command::Simulate(command) => command.run(),
         Command::Export(command) => command.run(),
         Command::Import(command) => command.run(),
+        Command::New(command) => command.run(),
     };
     match done.and_then(|text| say(&text)) {
         Ok(()) => ExitCode::SUCCESS,
@@ -113,6 +116,16 @@ fn read_sound_logs(folder: &Path) -> Result<Logs> {
     }
     inspected.findings.iter().for_each(|found| warn(format!("{}: {}", folder.display(), found.line())));
     Ok(inspected.logs)
+}
+
+/// Refuses a folder with something in it, unless it may be replaced.
+fn check_free(folder: &Path, may_replace: bool) -> Result<()> {
+    let holds_something = std::fs::read_dir(folder).is_ok_and(|mut entries| entries.next().is_some());
+    if (holds_something || folder.is_file()) && !may_replace {
+        let what = "is there already: give an empty or new folder, or --force to replace logs in it";
+        return Err(Error::in_file(folder, what));
+    }
+    Ok(())
 }
 
 /// Tells what a command found: as `text`, which stands beside the JSON in a file, or as the JSON itself where that goes to

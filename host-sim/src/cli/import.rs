@@ -1,19 +1,38 @@
 //! `mindgap import`
 
+mod recordings;
+
 use std::path::PathBuf;
 
-use clap::Args;
+use clap::{Args, Subcommand};
 use serde_json::json;
 
 use super::{table, warn};
 use crate::error::Result;
 use crate::import::units::{Angle, Length, Time, Units};
-use crate::import::{LogReport, Report, RunReport, TrackReport, import};
+use crate::import::brick::import;
+use crate::import::report::{LogReport, Report, RunReport, TrackReport};
 use crate::logs::{Robot, Scene};
 
-/// Bring a brick's logs and a camera's tracks together as a folder of logs.
+/// Make a folder of logs of what a robot recorded: a brick's logs and a camera's tracks, streams as CSV, or ROS 2 bags.
 #[derive(Args)]
+#[command(args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
 pub struct Import {
+    #[command(subcommand)]
+    way: Option<Way>,
+    #[command(flatten)]
+    brick: Option<Brick>,
+}
+
+#[derive(Subcommand)]
+enum Way {
+    Streams(recordings::Streams),
+    Bag(recordings::Bag),
+}
+
+/// Bring a brick's logs and a camera's tracks together.
+#[derive(Args)]
+struct Brick {
     /// Logs of the brick and tracks of the camera, in any order; their first lines tell them apart. Tracks are CSV with
     /// time, x, y and heading (time_s, x_m, y_m, yaw_rad and the like), or what Motive exports of a rigid body.
     #[arg(value_name = "BRICK_LOG|CAMERA_TRACK", required = true)]
@@ -44,6 +63,17 @@ pub struct Import {
 impl Import {
     /// Reads, aligns, writes; returns what there is to say.
     pub fn run(&self) -> Result<String> {
+        match (&self.way, &self.brick) {
+            (Some(Way::Streams(streams)), _) => streams.run(),
+            (Some(Way::Bag(bag)), _) => bag.run(),
+            (None, Some(brick)) => brick.run(),
+            (None, None) => Ok(String::new()),
+        }
+    }
+}
+
+impl Brick {
+    fn run(&self) -> Result<String> {
         let units = Units { time: self.time_unit, length: self.length_unit, angle: self.angle_unit };
         let (robot, scene) = (Robot::read(&self.robot)?, Scene::read(&self.scene)?);
         let (logs, report) = import(&self.files, &units, robot, scene, warn)?;

@@ -1,0 +1,1 @@
+//! Bags written by the `mcap` crate, with messages in CDR.
