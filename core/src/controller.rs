@@ -39,6 +39,7 @@ pub struct Controller {
 
 /// Motor commands, held until the sensor produces a value on the stated side of the threshold.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Tuple {
     /// Command of the left motor, -100..=100 (mot1).

@@ -40,18 +40,23 @@ impl Folder<'_> {
         self.0.join("robots").join(robot)
     }
 
+    /// The diagnoses, and what belongs to them.
+    pub fn answers(&self) -> PathBuf {
+        self.0.join("answers")
+    }
+
     /// The diagnosis of a case.
     pub fn answer(&self, case: &str) -> PathBuf {
-        self.0.join("answers").join(format!("{case}.json"))
+        self.answers().join(format!("{case}.json"))
     }
 
     /// The effects that the diagnosis of a case adds to the simulator.
     pub fn added(&self, case: &str) -> PathBuf {
-        self.0.join("answers").join(format!("{case}-added.json"))
+        self.answers().join(format!("{case}-added.json"))
     }
 
     /// The simulator of a robot, as learned for the answers.
     pub fn simulator(&self, robot: &str) -> PathBuf {
-        self.0.join("answers").join(format!("simulator-{robot}.json"))
+        self.answers().join(format!("simulator-{robot}.json"))
     }
 }

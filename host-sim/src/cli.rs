@@ -16,6 +16,7 @@ mod evaluate;
 mod evolve;
 mod export;
 mod import;
+mod kinds;
 mod new;
 mod progress;
 mod record;
@@ -23,7 +24,7 @@ mod simulate;
 mod table;
 mod train;
 
-use std::io::{self, ErrorKind, Write};
+use std::io::{self, Write};
 use std::path::Path;
 use std::process::ExitCode;
 
@@ -32,13 +33,19 @@ use serde::Serialize;
 
 use crate::error::{Error, Result};
 use crate::files;
+use crate::files::places::Places;
+use crate::gap::validate::same_robot;
 use crate::inspection::Inspection;
 use crate::logs::Logs;
+use crate::simulator::Simulator;
 
 /// Learns a robot's simulator from its logs, evolves controllers in it, and finds what reality has that it lacks.
 #[derive(Parser)]
 #[command(name = "mindgap", version)]
 struct Cli {
+    /// Replace what is at the place of an output, whatever it is; what else lies in a folder stays.
+    #[arg(long, global = true)]
+    force: bool,
     #[command(subcommand)]
     command: Command,
 }
@@ -61,43 +68,70 @@ enum Command {
     New(new::New),
 }
 
+/// A command.
+trait Run {
+    /// What it reads and writes, which is checked before it begins.
+    fn places(&self) -> Places;
+
+    /// Does it; returns what there is to say.
+    fn run(&self) -> Result<String>;
+}
+
+impl Command {
+    fn which(&self) -> &dyn Run {
+        match self {
+            Command::Brick(command) => command,
+            Command::Challenge(command) => command,
+            Command::Check(command) => command,
+            Command::Crosscheck(command) => command,
+            Command::Demo(command) => command,
+            Command::Diagnose(command) => command,
+            Command::Record(command) => command,
+            Command::Train(command) => command,
+            Command::Evaluate(command) => command,
+            Command::Evolve(command) => command,
+            Command::Simulate(command) => command,
+            Command::Export(command) => command,
+            Command::Import(command) => command,
+            Command::New(command) => command,
+        }
+    }
+}
+
 /// Runs the command of this process's arguments. Exits with 0 when it did what was asked, 1 when it could not, and 2
 /// when the call is wrong.
 pub fn run() -> ExitCode {
-    let done = match Cli::parse().command {
-        Command::Brick(command) => command.run(),
-        Command::Challenge(command) => command.run(),
-        Command::Check(command) => command.run(),
-        Command::Crosscheck(command) => command.run(),
-        Command::Demo(command) => command.run(),
-        Command::Diagnose(command) => command.run(),
-        Command::Record(command) => command.run(),
-        Command::Train(command) => command.run(),
-        Command::Evaluate(command) => command.run(),
-        Command::Evolve(command) => command.run(),
-        Command::Simulate(command) => command.run(),
-        Command::Export(command) => command.run(),
-        Command::Import(command) => command.run(),
-        Command::New(command) => command.run(),
-    };
-    match done.and_then(|text| say(&text)) {
+    let Cli { force, command } = Cli::parse();
+    let command = command.which();
+    let places = command.places();
+    let done = places.check(force).and_then(|()| command.run());
+    // What goes to standard output as a file stands alone there.
+    match done.and_then(|text| if places.take_standard_output() { Ok(()) } else { say(&text) }) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            eprintln!("mindgap: {error}");
+            complain(&error.to_string());
             ExitCode::FAILURE
         }
     }
 }
 
-/// Writes to standard output. That nobody reads on is no error.
+/// Writes to standard output.
 fn say(text: &str) -> Result<()> {
-    let mut out = io::stdout().lock();
-    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
-        Err(e) if e.kind() != ErrorKind::BrokenPipe => {
-            Err(Error::new(format!("standard output cannot be written: {e}")))
-        }
-        _ => Ok(()),
-    }
+    let lines: Vec<String> = text.lines().map(printable).collect();
+    let end = if text.ends_with('\n') { "\n" } else { "" };
+    let written = files::to_standard_output((lines.join("\n") + end).as_bytes());
+    written.map_err(|e| Error::new(format!("standard output cannot be written: {e}")))
+}
+
+/// Writes a line to standard error. That nobody can read it ends nothing.
+fn complain(line: &str) {
+    let _ = writeln!(io::stderr(), "mindgap: {}", printable(line));
+}
+
+/// A line without what moves a terminal's cursor: file names may hold anything.
+fn printable(line: &str) -> String {
+    let shown = |c: char| if c.is_control() { c.escape_default().to_string() } else { c.to_string() };
+    line.chars().map(shown).collect()
 }
 
 /// Reads a folder of logs and tells its oddities on standard error.
@@ -118,27 +152,23 @@ fn read_sound_logs(folder: &Path) -> Result<Logs> {
     Ok(inspected.logs)
 }
 
-/// Refuses a folder with something in it, unless it may be replaced.
-fn check_free(folder: &Path, may_replace: bool) -> Result<()> {
-    let holds_something = std::fs::read_dir(folder).is_ok_and(|mut entries| entries.next().is_some());
-    if (holds_something || folder.is_file()) && !may_replace {
-        let what = "is there already: give an empty or new folder, or --force to replace logs in it";
-        return Err(Error::in_file(folder, what));
-    }
-    Ok(())
+/// The same of logs that have to be of a simulator's robot.
+///
+/// # Errors
+/// As [`read_sound_logs`], or when they are another robot's.
+fn read_logs_of(simulator: &Simulator, folder: &Path) -> Result<Logs> {
+    let logs = read_sound_logs(folder)?;
+    same_robot(&simulator.robot, &logs.robot)?;
+    Ok(logs)
 }
 
-/// Tells what a command found: as `text`, which stands beside the JSON in a file, or as the JSON itself where that goes to
-/// standard output, as `-` says.
+/// Writes what a command found as JSON where that is asked for; returns the `text` that tells it.
 fn reported(json: Option<&Path>, facts: &impl Serialize, text: String) -> Result<String> {
-    match json {
-        Some(path) if path.as_os_str() == "-" => files::json(path, facts),
-        Some(path) => files::write_json(path, facts).map(|()| text),
-        None => Ok(text),
-    }
+    json.map_or(Ok(()), |path| files::write_json(path, facts))?;
+    Ok(text)
 }
 
 /// Tells what does not keep a command from being done.
 fn warn(warning: String) {
-    eprintln!("mindgap: warning: {warning}");
+    complain(&format!("warning: {warning}"));
 }

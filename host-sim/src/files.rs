@@ -1,22 +1,19 @@
 //! Whole files in and out: reading with a clear problem, and writing so that nothing is ever left half-written.
 
-use std::fs;
-use std::io::Write;
+pub mod places;
+mod text;
+mod words;
+mod write;
+
 use std::path::Path;
 
 use serde::Serialize;
 use serde::de::DeserializeOwned;
-use tempfile::NamedTempFile;
+
+pub use text::{NO_UTF8, TextFile, line_at, read_text};
+pub use write::{to_standard_output, write, write_folder};
 
 use crate::error::{Error, Result};
-
-/// The text of a file.
-///
-/// # Errors
-/// When the file is missing, unreadable or no UTF-8.
-pub fn read_text(path: &Path) -> Result<String> {
-    fs::read_to_string(path).map_err(|e| Error::in_file(path, format!("cannot be read: {e}")))
-}
 
 /// A TOML file as a `T`; a problem names the line.
 ///
@@ -32,37 +29,11 @@ pub fn read_toml<T: DeserializeOwned>(path: &Path) -> Result<T> {
 /// When it is no TOML, or lacks what `T` needs.
 pub fn from_toml<T: DeserializeOwned>(path: &Path, text: &str) -> Result<T> {
     toml::from_str(text).map_err(|e| {
-        let what = e.message().replace('\n', "; ");
+        let what = words::of_toml(e.message());
         match e.span() {
             Some(span) => Error::at_line(path, line_at(text, span.start), what),
             None => Error::in_file(path, what),
         }
-    })
-}
-
-/// The line, from 1, of a byte in a text.
-pub fn line_at(text: &str, byte: usize) -> u64 {
-    1 + text.bytes().take(byte).filter(|b| *b == b'\n').count() as u64
-}
-
-/// Writes a file under a temporary name beside `path`, then renames it.
-///
-/// # Errors
-/// When the folder is missing or not writable; `path` is then as it was.
-pub fn write(path: &Path, content: impl AsRef<[u8]>) -> Result<()> {
-    let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let attempt = || -> std::io::Result<()> {
-        let mut file = NamedTempFile::new_in(folder)?;
-        file.write_all(content.as_ref())?;
-        make_readable(file.as_file())?;
-        file.persist(path)?;
-        Ok(())
-    };
-    attempt().map_err(|e| {
-        // The error's own text would name the temporary file.
-        let why =
-            if folder.is_dir() { e.kind().to_string() } else { format!("there is no folder {}", folder.display()) };
-        Error::in_file(path, format!("cannot be written: {why}"))
     })
 }
 
@@ -102,8 +73,10 @@ pub fn csv_error(path: &Path, e: &csv::Error) -> Error {
     let line = e.position().map_or(1, csv::Position::line);
     let what = match e.kind() {
         csv::ErrorKind::UnequalLengths { expected_len, len, .. } => {
-            format!("has {len} cells where the header has {expected_len}: torn or wrong line")
+            let comma = if len > expected_len { " (numbers have a decimal point)" } else { "" };
+            format!("has {len} cells where the header has {expected_len}: torn or wrong line{comma}")
         }
+        csv::ErrorKind::Utf8 { .. } => NO_UTF8.into(),
         _ => e.to_string().replace('\n', " "),
     };
     Error::at_line(path, line, what)
@@ -124,43 +97,4 @@ pub fn write_json(path: &Path, value: &impl Serialize) -> Result<()> {
 pub fn json(path: &Path, value: &impl Serialize) -> Result<String> {
     let text = serde_json::to_string_pretty(value).map_err(|e| Error::in_file(path, e.to_string()))?;
     Ok(text + "\n")
-}
-
-/// Fills a folder under a temporary name beside `path`, then renames it. A folder that is there already is replaced
-/// when `ours` holds for every file name in it, and left alone otherwise.
-///
-/// # Errors
-/// What `fill` returns, when the folder holds something else, or when it cannot be written.
-pub fn write_folder(path: &Path, ours: impl Fn(&str) -> bool, fill: impl FnOnce(&Path) -> Result<()>) -> Result<()> {
-    let failed = |e: std::io::Error| Error::in_file(path, format!("cannot be written: {e}"));
-    if path.exists() {
-        for entry in fs::read_dir(path).map_err(failed)? {
-            let name = entry.map_err(failed)?.file_name();
-            if !name.to_str().is_some_and(&ours) {
-                let what = format!("holds {name:?}, which this command did not write: give an empty or new folder");
-                return Err(Error::in_file(path, what));
-            }
-        }
-    }
-    let parent = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    fs::create_dir_all(parent).map_err(failed)?;
-    let workshop = tempfile::tempdir_in(parent).map_err(failed)?;
-    let fresh = workshop.path().join("new");
-    fs::create_dir(&fresh).map_err(failed)?;
-    fill(&fresh)?;
-    if path.exists() {
-        fs::rename(path, workshop.path().join("old")).map_err(failed)?;
-    }
-    fs::rename(&fresh, path).map_err(failed)
-}
-
-/// Temporary files are private to their owner; what is written here is as readable as any new file.
-fn make_readable(file: &fs::File) -> std::io::Result<()> {
-    #[cfg(unix)]
-    {
-        use std::os::unix::fs::PermissionsExt;
-        file.set_permissions(fs::Permissions::from_mode(0o644))?;
-    }
-    let _ = file;
-    Ok(())
 }

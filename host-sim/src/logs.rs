@@ -3,6 +3,7 @@
 //! A folder holds a [`Robot`] (`robot.toml`), a [`Scene`] (`scene.toml`) and one [`Run`] a file (`run-*.csv`). Networks
 //! learn from the [`samples`] extracted from it.
 
+mod columns;
 pub mod readings;
 mod resample;
 pub mod robot;
@@ -17,6 +18,7 @@ pub use robot::{Robot, Ultrasonic};
 pub use run::{Row, Run};
 pub use scene::Scene;
 
+use self::columns::{COLUMNS, REQUIRED, REQUIRED_WITHOUT_SENSOR};
 use crate::error::{Error, Result};
 use crate::files;
 
@@ -51,16 +53,31 @@ impl Logs {
         if names.is_empty() {
             return Err(Error::in_file(folder, "has no run-*.csv"));
         }
-        let runs = names.iter().map(|name| Run::read(&folder.join(name), &mut warn)).collect::<Result<Vec<_>>>()?;
+        let has_sensor = !robot.ultrasonic.is_none();
+        let required = &COLUMNS[..if has_sensor { REQUIRED } else { REQUIRED_WITHOUT_SENSOR }];
+        let mut oddities = Oddities::default();
+        let read = |name: &String| {
+            let path = folder.join(name);
+            Run::read_with(&path, required, |oddity| oddities.add(&path, &oddity))
+        };
+        let mut runs = names.iter().map(read).collect::<Result<Vec<_>>>()?;
+        oddities.tell(&mut warn);
+        let readings =
+            runs.iter_mut().flat_map(|run| &mut run.rows).filter_map(|row| row.echo_cm.take_if(|_| !has_sensor));
+        let count = readings.count();
+        if count > 0 {
+            let robot = folder.join("robot.toml");
+            warn(format!("{}: has no [ultrasonic]: {count} readings are left out", robot.display()));
+        }
         let logs = Logs { robot, scene, runs };
         logs.check_step(folder)?;
         Ok(logs)
     }
 
-    /// Writes a folder atomically; an existing folder of logs is replaced.
+    /// Writes a folder; logs that are in it already are replaced, and other files stay.
     ///
     /// # Errors
-    /// When the folder cannot be written or holds other files.
+    /// When the folder cannot be written.
     pub fn write(&self, folder: &Path) -> Result<()> {
         let ours = |name: &str| is_run_file(name) || name == "robot.toml" || name == "scene.toml";
         files::write_folder(folder, ours, |fresh| {
@@ -88,6 +105,27 @@ impl Logs {
             return Err(Error::in_file(folder, what));
         }
         Ok(())
+    }
+}
+
+/// What is odd in files, each told once with the first file that has it.
+#[derive(Default)]
+struct Oddities(Vec<(String, String, usize)>);
+
+impl Oddities {
+    fn add(&mut self, path: &Path, oddity: &str) {
+        // What is left of it is the same in all files.
+        let same = oddity.strip_prefix(&path.display().to_string()).unwrap_or(oddity);
+        match self.0.iter_mut().find(|(known, ..)| known == same) {
+            Some((.., files)) => *files += 1,
+            None => self.0.push((same.to_owned(), oddity.to_owned(), 1)),
+        }
+    }
+
+    fn tell(self, warn: &mut impl FnMut(String)) {
+        for (_, first, files) in self.0 {
+            warn(if files == 1 { first } else { format!("{first} (and so in {files} files)") });
+        }
     }
 }
 

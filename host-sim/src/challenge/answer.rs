@@ -28,7 +28,7 @@ const SEED: u64 = 1;
 pub fn answer(folder: &Path, watch: impl Fn(usize) + Sync) -> Result<usize> {
     let folder = Folder(folder);
     let cases: Vec<Published> = files::read_csv(&folder.cases())?;
-    let answers = folder.answer("").parent().map(Path::to_path_buf).unwrap_or_default();
+    let answers = folder.answers();
     fs::create_dir_all(&answers).map_err(|e| Error::in_file(&answers, format!("cannot be made: {e}")))?;
     let mut simulators: BTreeMap<&str, Simulator> = BTreeMap::new();
     for case in &cases {

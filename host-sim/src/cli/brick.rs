@@ -11,7 +11,9 @@ use mindgap_controller_export::brick::{
 use mindgap_controller_export::wiring::SensorPort;
 use serde_json::{Value, json};
 
+use super::{Run, kinds};
 use crate::error::{Error, Result};
+use crate::files::places::Places;
 use crate::logs::readings;
 
 const MOTORS: [char; 3] = ['A', 'B', 'C'];
@@ -42,9 +44,14 @@ pub struct Brick {
     json: Option<PathBuf>,
 }
 
-impl Brick {
-    /// Runs the program.
-    pub fn run(&self) -> Result<String> {
+impl Run for Brick {
+    fn places(&self) -> Places {
+        // Readings may be a list.
+        let readings = PathBuf::from(&self.readings);
+        Places::default().reading([&self.program, &readings]).writing(&self.json, kinds::BRICK)
+    }
+
+    fn run(&self) -> Result<String> {
         let file =
             fs::read(&self.program).map_err(|e| Error::in_file(&self.program, format!("cannot be read: {e}")))?;
         let program = Program::load(&file)

@@ -4,7 +4,8 @@ use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
 
-use super::progress;
+use super::{Run, kinds, progress};
+use crate::challenge::Folder;
 use crate::challenge::answer::answer;
 use crate::challenge::calibrate::calibrate;
 use crate::challenge::cases::{Echoes, Outside};
@@ -13,6 +14,7 @@ use crate::challenge::score::{Score, Share, score};
 use crate::challenge::sensitivity::{Row, sensitivity};
 use crate::error::Result;
 use crate::files;
+use crate::files::places::Places;
 
 /// The blind test of a diagnosis: make cases with withheld effects, answer them, score the answers.
 #[derive(Args)]
@@ -86,9 +88,21 @@ enum Part {
     },
 }
 
-impl Challenge {
-    /// Does the part; returns what there is to say.
-    pub fn run(&self) -> Result<String> {
+impl Run for Challenge {
+    fn places(&self) -> Places {
+        let places = Places::default();
+        match &self.part {
+            Part::Make { out, .. } => places.filling(out),
+            Part::Calibrate { out, csv, .. } => places.writing([out], kinds::CALIBRATION).writing(csv, kinds::UNSIGNED),
+            Part::Sensitivity { csv, .. } => places.writing(csv, kinds::UNSIGNED),
+            Part::Answer { folder } => places.reading([folder]).filling(Folder(folder).answers()),
+            Part::Score { folder, json, csv } => {
+                places.reading([folder]).writing(json, kinds::SCORE).writing(csv, kinds::UNSIGNED)
+            }
+        }
+    }
+
+    fn run(&self) -> Result<String> {
         match &self.part {
             Part::Make { cases, seed, outside, place_bound, out } => {
                 let echoes = if *place_bound { Echoes::PlaceBound } else { Echoes::Fresh };

@@ -4,7 +4,9 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use super::{Run, kinds};
 use crate::error::Result;
+use crate::files::places::Places;
 use crate::survey::{Holdings, Range, Survey};
 
 /// Say what logs hold, what is wrong with them, what they suffice for, and what to drive more.
@@ -17,9 +19,12 @@ pub struct Check {
     json: Option<PathBuf>,
 }
 
-impl Check {
-    /// Surveys logs and tells it.
-    pub fn run(&self) -> Result<String> {
+impl Run for Check {
+    fn places(&self) -> Places {
+        Places::default().reading([&self.logs]).writing(&self.json, kinds::SURVEY)
+    }
+
+    fn run(&self) -> Result<String> {
         let survey = Survey::of(super::read_logs(&self.logs)?);
         super::reported(self.json.as_deref(), &survey, text(&survey))
     }
@@ -76,14 +81,21 @@ fn holdings(holds: &Holdings) -> Vec<String> {
             holds.longest_held_steps
         ),
         format!("  speeds    ahead {} cm/s, turning {} deg/s", range(holds.forward_cm_s), range(holds.turn_deg_s)),
-        format!(
-            "  sensor    reads {} cm; faces D {} cm, alpha {} deg; {} of what it could face",
-            range(holds.reading_cm),
-            range(holds.distance_cm),
-            range(holds.alpha_deg),
-            percent(holds.sensor_coverage)
-        ),
+        sensor(holds),
     ]
+}
+
+fn sensor(holds: &Holdings) -> String {
+    if holds.reading_cm.is_none() && holds.distance_cm.is_none() {
+        return "  sensor    no reading, and no wall that it could face".into();
+    }
+    format!(
+        "  sensor    reads {} cm; faces D {} cm, alpha {} deg; {:.0} % of what it could face",
+        range(holds.reading_cm),
+        range(holds.distance_cm),
+        range(holds.alpha_deg),
+        100.0 * holds.sensor_coverage
+    )
 }
 
 fn range(range: Option<Range>) -> String {

@@ -4,10 +4,11 @@ use std::path::PathBuf;
 
 use clap::{Args, value_parser};
 
-use super::table;
+use super::{Run, kinds, table};
 use crate::crosscheck::{self, Divergence, NetworkCheck, Networks, RunState, Runs, Trials};
 use crate::error::Result;
 use crate::evolve::controller_file::ControllerFile;
+use crate::files::places::Places;
 use crate::simulator::Simulator;
 
 /// Check that a board without floating point computes what the PC does: fixed point against float.
@@ -31,12 +32,17 @@ pub struct Crosscheck {
     json: Option<PathBuf>,
 }
 
-impl Crosscheck {
-    /// Compares and tells the differences.
-    pub fn run(&self) -> Result<String> {
+impl Run for Crosscheck {
+    fn places(&self) -> Places {
+        let inputs = [&self.sim, &self.logs].into_iter().chain(&self.controller);
+        Places::default().reading(inputs).writing(&self.json, kinds::CROSSCHECK)
+    }
+
+    fn run(&self) -> Result<String> {
         let simulator = Simulator::read(&self.sim)?;
-        let logs = super::read_sound_logs(&self.logs)?;
-        let controller = self.controller.as_deref().map(ControllerFile::read).transpose()?.map(|file| file.controller);
+        let read = |path: &PathBuf| ControllerFile::read_for(path, &simulator.robot);
+        let controller = self.controller.as_ref().map(read).transpose()?.map(|file| file.controller);
+        let logs = super::read_logs_of(&simulator, &self.logs)?;
         let trials = Trials { runs: self.runs as usize, seed: self.seed };
         let found = crosscheck::crosscheck(&simulator, &logs, controller.as_ref(), trials)
             .map_err(|error| error.or_in_file(&self.sim))?;

@@ -4,11 +4,12 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::progress;
 use super::table::{self, number};
+use super::{Run, progress};
 use crate::demo::{self, Stage, Summary};
 use crate::error::Result;
 use crate::evolve::robust;
+use crate::files::places::Places;
 
 /// Do the whole job on the built-in robot: record, train, evolve, try, export, draw.
 #[derive(Args)]
@@ -21,9 +22,12 @@ pub struct Demo {
     seed: u64,
 }
 
-impl Demo {
-    /// Does the job and tells how it went as tables.
-    pub fn run(&self) -> Result<String> {
+impl Run for Demo {
+    fn places(&self) -> Places {
+        Places::default().filling(&self.out)
+    }
+
+    fn run(&self) -> Result<String> {
         let line = progress::spinner();
         let watch = |stage: Stage| {
             line.set_message(match stage {

@@ -1,16 +1,18 @@
 //! `mindgap diagnose`
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::Args;
+use mindgap_core::controller::Controller;
 
-use super::{diagnosis_page, diagnosis_text};
+use super::{Run, diagnosis_page, diagnosis_text, kinds};
 use crate::effects::applied::AppliedEffect;
 use crate::effects::{CATALOGUE, Effect, own};
 use crate::error::{Error, Result};
 use crate::evaluation::final_position::{FinalPositionErrors, final_position_errors};
 use crate::evolve::controller_file::ControllerFile;
 use crate::files;
+use crate::files::places::Places;
 use crate::gap::{Findings, Method, condition, findings, validate};
 use crate::inspection::Inspection;
 use crate::logs::Logs;
@@ -57,15 +59,22 @@ pub struct Diagnose {
 /// Stands for a simulator file: the textbook's.
 const KINEMATIC: &str = "kinematic";
 
-impl Diagnose {
-    /// Diagnoses; returns the findings.
-    pub fn run(&self) -> Result<String> {
-        let simulator = if self.sim.as_os_str() == KINEMATIC { None } else { Some(Simulator::read(&self.sim)?) };
+impl Run for Diagnose {
+    fn places(&self) -> Places {
+        let inputs = self.simulator_file().into_iter().chain([&self.logs]).chain(&self.controller).chain(&self.effects);
+        let places = Places::default().reading(inputs).writing(&self.json, kinds::DIAGNOSIS);
+        let places = places.writing(&self.html, kinds::PAGE).writing(&self.apply, kinds::SIMULATOR);
+        places.writing(&self.formula, kinds::FORMULA).writing(&self.next_experiment, kinds::UNSIGNED)
+    }
+
+    fn run(&self) -> Result<String> {
+        let simulator = self.simulator_file().map(|path| Simulator::read(path)).transpose()?;
+        let controller = self.controller_of(simulator.as_ref())?;
+        let method = Method { catalogue: self.catalogue()?, seed: self.seed, ..Method::default() };
         // What is wrong with rows shows in the rows as they came.
         let mut inspected = Inspection::of(super::read_logs(&self.logs)?);
         inspected.logs = in_steps(inspected.logs, simulator.as_ref(), self.step_ms)?;
         let logs = &inspected.logs;
-        let method = Method { catalogue: self.catalogue()?, seed: self.seed, ..Method::default() };
         let mut found = match &simulator {
             None => findings(kinematic::baseline(logs), &inspected, method)?,
             Some(simulator) => {
@@ -73,9 +82,9 @@ impl Diagnose {
                 findings(Baseline::learned(simulator)?, &inspected, method)?
             }
         };
-        if let Some(path) = &self.controller {
+        if let Some((simulator, controller)) = simulator.as_ref().zip(controller) {
             found.diagnosis.final_positions =
-                Some(ends(simulator.as_ref(), found.with_formula(), path, logs, self.seed)?);
+                Some(ends(simulator, found.with_formula(), &controller, logs, self.seed)?);
         }
         let diagnosis = &found.diagnosis;
         if let Some(path) = &self.apply {
@@ -83,7 +92,7 @@ impl Diagnose {
         }
         if let Some(path) = &self.html {
             let title = format!("{} against {}", self.logs.display(), self.sim.display());
-            files::write(path, diagnosis_page::page(diagnosis, &title))?;
+            files::write(path, diagnosis_page::page(diagnosis, &title) + kinds::PAGE_SIGN)?;
         }
         let mut text = diagnosis_text::text(diagnosis);
         match (&self.next_experiment, found.diagnosis.experiment()) {
@@ -92,11 +101,27 @@ impl Diagnose {
             (None, _) => (),
         }
         match (&self.formula, &found.formula) {
-            (Some(path), Some(formula)) => files::write(path, own::to_text(&formula.definition))?,
+            (Some(path), Some(formula)) => {
+                files::write(path, kinds::FORMULA_SIGN.to_owned() + &own::to_text(&formula.definition))?;
+            }
             (Some(path), None) => text += &format!("No formula holds: {} is not written.\n", path.display()),
             (None, _) => (),
         }
         super::reported(self.json.as_deref(), &found.diagnosis, text)
+    }
+}
+
+impl Diagnose {
+    /// None where the textbook stands for a simulator.
+    fn simulator_file(&self) -> Option<&PathBuf> {
+        Some(&self.sim).filter(|sim| sim.as_os_str() != KINEMATIC)
+    }
+
+    /// The controller whose runs the logs are, where that is said.
+    fn controller_of(&self, simulator: Option<&Simulator>) -> Result<Option<Controller>> {
+        let Some(path) = &self.controller else { return Ok(None) };
+        let simulator = simulator.ok_or_else(|| Error::new("--controller needs a simulator file that can run it"))?;
+        Ok(Some(ControllerFile::read_for(path, &simulator.robot)?.controller))
     }
 
     /// The built-in effects and those of the user, whose ids have to differ.
@@ -145,17 +170,15 @@ fn positive(text: &str) -> std::result::Result<f64, String> {
 
 /// Where the controller's runs end, with the simulator as it is and with the effects found.
 fn ends(
-    simulator: Option<&Simulator>,
+    simulator: &Simulator,
     effects: Vec<AppliedEffect>,
-    controller: &Path,
+    controller: &Controller,
     logs: &Logs,
     seed: u64,
 ) -> Result<FinalPositionErrors> {
-    let simulator = simulator.ok_or_else(|| Error::new("--controller needs a simulator file that can run it"))?;
-    let controller = ControllerFile::read(controller)?.controller;
     let mut better = simulator.clone();
     better.added.extend(effects);
-    final_position_errors([simulator, &better], &controller, logs, seed)
+    final_position_errors([simulator, &better], controller, logs, seed)
 }
 
 /// The simulator with the effects found; the textbook becomes one that can be run.

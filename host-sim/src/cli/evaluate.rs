@@ -5,8 +5,10 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::table::{self, number};
+use super::{Run, kinds};
 use crate::error::Result;
 use crate::evaluation::accuracy::{self, Evaluation, Networks};
+use crate::files::places::Places;
 use crate::simulator::Simulator;
 
 /// Judge a simulator's networks on logs that they were not trained on.
@@ -21,11 +23,14 @@ pub struct Evaluate {
     json: Option<PathBuf>,
 }
 
-impl Evaluate {
-    /// Tells the figures.
-    pub fn run(&self) -> Result<String> {
+impl Run for Evaluate {
+    fn places(&self) -> Places {
+        Places::default().reading([&self.sim, &self.logs]).writing(&self.json, kinds::EVALUATION)
+    }
+
+    fn run(&self) -> Result<String> {
         let simulator = Simulator::read(&self.sim)?;
-        let evaluation = accuracy::evaluate(&simulator, &super::read_sound_logs(&self.logs)?)?;
+        let evaluation = accuracy::evaluate(&simulator, &super::read_logs_of(&simulator, &self.logs)?)?;
         super::reported(self.json.as_deref(), &evaluation, told(&evaluation))
     }
 }

@@ -4,13 +4,14 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, value_parser};
 
-use super::progress;
+use super::{Run, kinds, progress};
 use crate::error::{Error, Result};
 use crate::evolve::controller_file::{ControllerFile, Origin};
 use crate::evolve::fitness::{FitnessEvaluator, RandomNumbers};
 use crate::evolve::genome::GenotypeDecoder;
 use crate::evolve::paper;
 use crate::evolve::robust::{self, EvolutionTask};
+use crate::files::places::Places;
 use crate::geometry::Pose;
 use crate::logs::{Robot, Scene};
 use crate::simulator::environment::Environment;
@@ -53,9 +54,12 @@ const JUDGED_RUNS: usize = 200;
 /// Sets the judging runs apart from all others.
 const JUDGING: u64 = 1;
 
-impl Evolve {
-    /// Evolves and writes the controller.
-    pub fn run(&self) -> Result<String> {
+impl Run for Evolve {
+    fn places(&self) -> Places {
+        Places::default().reading([&self.sim, &self.scene]).writing([&self.out], kinds::CONTROLLER)
+    }
+
+    fn run(&self) -> Result<String> {
         let simulator = Simulator::read(&self.sim)?;
         let scene = Scene::read(&self.scene)?;
         let start = start_of(&scene, self.start, &simulator.robot, &self.scene)?;

@@ -13,9 +13,11 @@ use mindgap_controller_export::rust_networks::rust_networks;
 use mindgap_controller_export::wiring::{MotorPort, SensorPort, Wiring};
 use mindgap_controller_export::{ExportError, Origin, c, collect as data_collection, rust, rxe};
 
+use super::{Run, kinds};
 use crate::error::{Error, Result};
 use crate::evolve::controller_file::ControllerFile;
 use crate::files;
+use crate::files::places::Places;
 use crate::simulator::Simulator;
 use crate::simulator::fixed_point::FixedNetworks;
 
@@ -70,9 +72,12 @@ enum Format {
     NxcCollect,
 }
 
-impl Export {
-    /// Writes the program or the networks.
-    pub fn run(&self) -> Result<String> {
+impl Run for Export {
+    fn places(&self) -> Places {
+        Places::default().reading(&self.input).writing([&self.out], kinds::PROGRAM)
+    }
+
+    fn run(&self) -> Result<String> {
         if (self.log.is_some() || self.display) && !matches!(self.format, Format::Nxc) {
             return Err(Error::new("--log and --display are for a controller with --format nxc"));
         }
@@ -86,7 +91,9 @@ impl Export {
         let budget = budget.map_or(String::new(), |budget| format!("{budget}\n"));
         Ok(format!("{} written\n{budget}", self.out.display()))
     }
+}
 
+impl Export {
     fn collection(&self, options: &CollectOptions) -> Result<(Vec<u8>, Option<String>)> {
         let named = self.input.as_ref().unwrap_or(&self.out);
         let source = data_collection::program(options).map_err(|e| Error::in_file(named, e.to_string()))?;

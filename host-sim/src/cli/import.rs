@@ -7,11 +7,12 @@ use std::path::PathBuf;
 use clap::{Args, Subcommand};
 use serde_json::json;
 
-use super::{table, warn};
+use super::{Run, kinds, table, warn};
 use crate::error::Result;
-use crate::import::units::{Angle, Length, Time, Units};
+use crate::files::places::Places;
 use crate::import::brick::import;
 use crate::import::report::{LogReport, Report, RunReport, TrackReport};
+use crate::import::units::{Angle, Length, Time, Units};
 use crate::logs::{Robot, Scene};
 
 /// Make a folder of logs of what a robot recorded: a brick's logs and a camera's tracks, streams as CSV, or ROS 2 bags.
@@ -61,18 +62,32 @@ struct Brick {
 }
 
 impl Import {
-    /// Reads, aligns, writes; returns what there is to say.
-    pub fn run(&self) -> Result<String> {
-        match (&self.way, &self.brick) {
-            (Some(Way::Streams(streams)), _) => streams.run(),
-            (Some(Way::Bag(bag)), _) => bag.run(),
-            (None, Some(brick)) => brick.run(),
-            (None, None) => Ok(String::new()),
+    /// The way that was called: clap leaves none out.
+    fn way(&self) -> Option<&dyn Run> {
+        match &self.way {
+            Some(Way::Streams(streams)) => Some(streams),
+            Some(Way::Bag(bag)) => Some(bag),
+            None => self.brick.as_ref().map(|brick| brick as &dyn Run),
         }
     }
 }
 
-impl Brick {
+impl Run for Import {
+    fn places(&self) -> Places {
+        self.way().map(Run::places).unwrap_or_default()
+    }
+
+    fn run(&self) -> Result<String> {
+        self.way().map_or(Ok(String::new()), Run::run)
+    }
+}
+
+impl Run for Brick {
+    fn places(&self) -> Places {
+        let inputs = self.files.iter().chain([&self.scene, &self.robot]);
+        Places::default().reading(inputs).filling(&self.out).writing(&self.json, kinds::IMPORT)
+    }
+
     fn run(&self) -> Result<String> {
         let units = Units { time: self.time_unit, length: self.length_unit, angle: self.angle_unit };
         let (robot, scene) = (Robot::read(&self.robot)?, Scene::read(&self.scene)?);

@@ -5,9 +5,10 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::check_free;
+use super::Run;
 use crate::error::{Error, Result};
 use crate::files;
+use crate::files::places::Places;
 use crate::import::draft::{RobotDraft, SCENE};
 
 /// Make a folder for a robot of your own: robot.toml and scene.toml to fill in, and a place for recordings.
@@ -20,22 +21,28 @@ pub struct New {
 
 /// Where recordings go.
 const RECORDINGS: &str = "recordings";
+/// The files of the folder.
+const FILES: [&str; 3] = ["robot.toml", "scene.toml", "README.md"];
 
-impl New {
-    /// Makes the folder and says what comes next.
-    pub fn run(&self) -> Result<String> {
-        check_free(&self.folder, false)?;
-        let next = next(&self.folder);
-        files::write_folder(&self.folder, |_| false, |fresh| {
-            files::write(&fresh.join("robot.toml"), RobotDraft::blank().text())?;
-            files::write(&fresh.join("scene.toml"), SCENE)?;
-            files::write(&fresh.join("README.md"), readme(&self.folder))?;
-            fs::create_dir(fresh.join(RECORDINGS))
-                .map_err(|e| Error::in_file(&self.folder, format!("cannot be written: {e}")))
-        })?;
+impl Run for New {
+    fn places(&self) -> Places {
+        Places::default().filling(&self.folder)
+    }
+
+    fn run(&self) -> Result<String> {
+        let contents = [RobotDraft::blank().text(), SCENE.to_owned(), readme(&self.folder)];
+        files::write_folder(
+            &self.folder,
+            |name| FILES.contains(&name),
+            |fresh| FILES.iter().zip(contents).try_for_each(|(name, content)| files::write(&fresh.join(name), content)),
+        )?;
+        let recordings = self.folder.join(RECORDINGS);
+        fs::create_dir_all(&recordings)
+            .map_err(|e| Error::in_file(&recordings, format!("cannot be written: {e}")))?;
         Ok(format!(
-            "{}: fill in robot.toml (and scene.toml, if there are walls), put what the robot recorded into {RECORDINGS}, then:\n{next}",
-            self.folder.display()
+            "{}: fill in robot.toml (and scene.toml, if there are walls), put what the robot recorded into {RECORDINGS}, then:\n{}",
+            self.folder.display(),
+            next(&self.folder)
         ))
     }
 }

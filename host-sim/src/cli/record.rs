@@ -4,8 +4,10 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use super::Run;
 use crate::built_in_robot::{ActiveEffect, Effect, default_robot, record, training_room};
 use crate::error::Result;
+use crate::files::places::Places;
 use crate::logs::Scene;
 
 /// Records random-command logs of the built-in robot.
@@ -32,12 +34,12 @@ pub struct Record {
     seed: u64,
 }
 
-impl Record {
-    /// Records and writes.
-    ///
-    /// # Errors
-    /// When the scene cannot be read or has no room for the robot, or when the logs cannot be written.
-    pub fn run(&self) -> Result<String> {
+impl Run for Record {
+    fn places(&self) -> Places {
+        Places::default().reading(&self.scene).filling(&self.out)
+    }
+
+    fn run(&self) -> Result<String> {
         let scene = match &self.scene {
             Some(path) => Scene::read(path)?,
             None => training_room(),

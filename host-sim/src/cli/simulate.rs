@@ -6,8 +6,10 @@ use clap::{Args, value_parser};
 
 use super::evolve::start_of;
 use super::table::{self, number};
+use super::{Run, kinds};
 use crate::error::Result;
 use crate::evolve::controller_file::ControllerFile;
+use crate::files::places::Places;
 use crate::logs::Scene;
 use crate::simulator::environment::Environment;
 use crate::simulator::rollout_report::RolloutReport;
@@ -43,11 +45,15 @@ pub struct Simulate {
 /// Rows of the table at most.
 const ROWS: usize = 20;
 
-impl Simulate {
-    /// Simulates and tells how the runs ended.
-    pub fn run(&self) -> Result<String> {
+impl Run for Simulate {
+    fn places(&self) -> Places {
+        let inputs = [&self.sim, &self.controller, &self.scene];
+        Places::default().reading(inputs).writing(&self.json, kinds::ROLLOUTS)
+    }
+
+    fn run(&self) -> Result<String> {
         let simulator = Simulator::read(&self.sim)?;
-        let controller = ControllerFile::read(&self.controller)?.controller;
+        let controller = ControllerFile::read_for(&self.controller, &simulator.robot)?.controller;
         let scene = Scene::read(&self.scene)?;
         let start = start_of(&scene, self.start, &simulator.robot, &self.scene)?;
         let noise = if self.paper_noise { Noise::Paper } else { Noise::Learned };

@@ -6,8 +6,9 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
-use super::{progress, warn};
+use super::{Run, kinds, progress, warn};
 use crate::error;
+use crate::files::places::Places;
 use crate::learn::genome::Shape;
 use crate::learn::train::TABLE_ONE;
 use crate::learn::{paper, train};
@@ -50,9 +51,12 @@ enum Trainer {
     Fast,
 }
 
-impl Train {
-    /// Trains and writes the simulator.
-    pub fn run(&self) -> error::Result<String> {
+impl Run for Train {
+    fn places(&self) -> Places {
+        Places::default().reading([&self.logs]).writing([&self.out], kinds::SIMULATOR)
+    }
+
+    fn run(&self) -> error::Result<String> {
         let logs = super::read_sound_logs(&self.logs)?;
         let spinner = progress::spinner();
         // The last that is told of each network.

@@ -8,6 +8,7 @@ use toml::Spanned;
 
 use crate::error::{Error, Result};
 use crate::files;
+use crate::logs::Robot;
 
 /// The contents of `controller.toml`.
 #[derive(Clone, Debug, PartialEq)]
@@ -44,7 +45,7 @@ impl ControllerFile {
     /// When the file cannot be read or parsed, does not have exactly six tuples, or holds a number out of range.
     pub fn read(path: &Path) -> Result<Self> {
         let text = files::read_text(path)?;
-        let file: ControllerTable<Spanned<Tuple>> = files::read_toml(path)?;
+        let file: ControllerTable<Spanned<Tuple>> = files::from_toml(path, &text)?;
         let line = |tuple: usize| files::line_at(&text, file.tuple[tuple].span().start);
         let count = file.tuple.len();
         let Ok(tuples) = <[Tuple; TUPLES]>::try_from(file.tuple.iter().map(|t| *t.get_ref()).collect::<Vec<_>>())
@@ -62,6 +63,22 @@ impl ControllerFile {
             Err(InvalidController::StepLimit) => Error::in_file(path, "max_steps must be at least 1"),
         };
         Err(error)
+    }
+
+    /// Reads a controller that is to run on a robot.
+    ///
+    /// # Errors
+    /// As [`ControllerFile::read`], or when its steps are not those of the robot.
+    pub fn read_for(path: &Path, robot: &Robot) -> Result<Self> {
+        let file = ControllerFile::read(path)?;
+        let (its, robots) = (file.controller.step_ms, robot.step_ms.round());
+        if f64::from(its) == robots {
+            return Ok(file);
+        }
+        let what = format!(
+            "has step_ms = {its}, but the simulator's steps are {robots} ms: write step_ms = {robots}, or evolve it anew"
+        );
+        Err(Error::in_file(path, what))
     }
 
     /// Writes a controller.
@@ -91,6 +108,7 @@ impl From<&ControllerFile> for mindgap_controller_export::Origin {
 }
 
 #[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 struct ControllerTable<T> {
     step_ms: u16,
     max_steps: u16,

@@ -9,7 +9,7 @@ use super::nominal;
 use super::paper;
 use super::scatter;
 use crate::error::{Error, Result};
-use crate::logs::Logs;
+use crate::logs::{Logs, Robot};
 use crate::simulator::residuals::{ConstantReading, motion_context};
 use crate::simulator::{Learned, Missing, Origin, SCHEMA, Simulator};
 
@@ -87,9 +87,9 @@ pub fn train(
         network_trainer.train("echo_probability", &data.echo_probability, shapes.echo_probability, probability, sonar);
     let mut echo_value = network_trainer.train("echo_value", &data.echo_value, shapes.echo_value, reading, sonar);
     let constant_reading = echo_value.as_mut().and_then(|value| split_constant_reading(value, &data.echo_value));
-    if network_trainer.missing.len() == NETWORKS {
-        let reasons: Vec<String> =
-            network_trainer.missing.iter().map(|m| format!("{}: {}", m.network, m.reason)).collect();
+    let missing = for_want_of_a_sensor(network_trainer.missing, &logs.robot);
+    if missing.len() == NETWORKS {
+        let reasons: Vec<String> = missing.iter().map(|m| format!("{}: {}", m.network, m.reason)).collect();
         return Err(Error::new(format!("no network can be trained on these logs ({})", reasons.join("; "))));
     }
     let commands = logs.runs.iter().flat_map(|run| run.rows.iter().flat_map(|row| row.command()));
@@ -113,7 +113,7 @@ pub fn train(
         reference: None,
         table_one: None,
         added: Vec::new(),
-        missing: network_trainer.missing,
+        missing,
     };
     let reference = nominal::learn(&simulator, logs);
     if let Some(motion) = &reference.motion {
@@ -137,7 +137,19 @@ pub fn unsupported(logs: &Logs) -> Vec<Missing> {
     ];
     let missing =
         |(network, reason): (&str, Option<String>)| Some(Missing { network: network.into(), reason: reason? });
-    reasons.into_iter().filter_map(missing).collect()
+    let missing = reasons.into_iter().filter_map(missing).collect();
+    for_want_of_a_sensor(missing, &logs.robot)
+}
+
+/// Where the robot has no range sensor, that is why what it would report is not learned.
+fn for_want_of_a_sensor(mut missing: Vec<Missing>, robot: &Robot) -> Vec<Missing> {
+    if robot.ultrasonic.is_none() {
+        let of_sensor = missing.iter_mut().filter(|missing| missing.network.starts_with("echo"));
+        of_sensor.for_each(|missing| {
+            missing.reason = "the robot has no range sensor: robot.toml has no [ultrasonic]".into()
+        });
+    }
+    missing
 }
 
 /// Estimates the noise of a motion network about its bias-corrected predictions.

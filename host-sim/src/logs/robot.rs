@@ -9,8 +9,9 @@ use crate::error::{Error, Result};
 use crate::files;
 use crate::geometry::Pose;
 
-/// A differential-drive robot with one ultrasonic sensor.
+/// A differential-drive robot with one ultrasonic sensor or none.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Robot {
     /// Diameter of the driven wheels, cm.
     pub wheel_diameter_cm: f64,
@@ -22,12 +23,14 @@ pub struct Robot {
     pub step_ms: f64,
     /// Speed of a wheel's rim at command 100 with a fresh battery, cm/s.
     pub full_speed_cm_s: f64,
-    /// The ultrasonic sensor.
+    /// The ultrasonic sensor; [`Ultrasonic::NONE`] where there is none.
+    #[serde(default = "Ultrasonic::none", skip_serializing_if = "Ultrasonic::is_none")]
     pub ultrasonic: Ultrasonic,
 }
 
 /// Mounting and range of the ultrasonic sensor.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Ultrasonic {
     /// Distance ahead of the axle's middle, cm.
     pub x_cm: f64,
@@ -55,14 +58,13 @@ impl Robot {
             ("body_radius_cm", robot.body_radius_cm),
             ("step_ms", robot.step_ms),
             ("full_speed_cm_s", robot.full_speed_cm_s),
-            ("ultrasonic.max_cm", sonar.max_cm),
         ];
         if let Some((name, value)) = positive.iter().find(|(_, v)| !(*v > 0.0 && *v < 1e5)) {
             return Err(Error::in_file(path, format!("{name} = {value} must lie between 0 and 100000")));
         }
-        let finite = [sonar.x_cm, sonar.y_cm, sonar.yaw_deg].iter().all(|v| v.abs() < 1e5);
-        if !finite || !(0.0..sonar.max_cm).contains(&sonar.min_cm) {
-            return Err(Error::in_file(path, "[ultrasonic] needs finite numbers and 0 <= min_cm < max_cm"));
+        let is_within = [sonar.x_cm, sonar.y_cm, sonar.yaw_deg, sonar.max_cm].iter().all(|v| v.abs() < 1e5);
+        if !sonar.is_none() && !(is_within && (0.0..sonar.max_cm).contains(&sonar.min_cm)) {
+            return Err(Error::in_file(path, "[ultrasonic] needs numbers within 100000 and 0 <= min_cm < max_cm"));
         }
         Ok(robot)
     }
@@ -78,6 +80,18 @@ impl Robot {
 }
 
 impl Ultrasonic {
+    /// What a robot without such a sensor has: one that reaches nowhere.
+    pub const NONE: Ultrasonic = Ultrasonic { x_cm: 0.0, y_cm: 0.0, yaw_deg: 0.0, min_cm: 0.0, max_cm: 0.0 };
+
+    /// Whether there is no sensor.
+    pub fn is_none(&self) -> bool {
+        *self == Ultrasonic::NONE
+    }
+
+    fn none() -> Self {
+        Ultrasonic::NONE
+    }
+
     /// The pose of the sensor on a robot at `robot`; its heading is that of the axis.
     pub fn pose_on(&self, robot: &Pose) -> Pose {
         robot.compose(&Pose { position_cm: DVec2::new(self.x_cm, self.y_cm), heading_rad: self.yaw_deg.to_radians() })

@@ -1,11 +1,13 @@
 //! `run-*.csv`: one run of a robot (docs/formats.md).
 
+use std::io::Read;
 use std::path::Path;
 
 use csv::{ReaderBuilder, StringRecord, Writer};
 
+use super::columns::{COLUMNS, Columns, REQUIRED};
 use crate::error::{Error, Result};
-use crate::files;
+use crate::files::{self, TextFile};
 use crate::geometry::Pose;
 
 /// One run of a robot: at least two rows in order of time.
@@ -38,30 +40,32 @@ pub struct Row {
     pub battery_mv: Option<f64>,
 }
 
-const COLUMNS: [&str; 10] =
-    ["t_ms", "left", "right", "x_cm", "y_cm", "heading_deg", ECHO, "rot_left_deg", "rot_right_deg", "battery_mv"];
-/// Number of leading [`COLUMNS`] that every run must have.
-const REQUIRED: usize = 7;
-/// The one whose cells may hold `inf` or `nan`.
-const ECHO: &str = "echo_cm";
-/// Largest magnitude of a number in a log.
-const HUGE: f64 = 1e7;
-
 impl Run {
-    /// Reads a run. `warn` receives a line for each unknown column and for a missing line end.
+    /// Reads a run. `warn` receives a line for each unknown column and other oddity.
     ///
     /// # Errors
     /// When the file cannot be read, lacks a column, has fewer than two rows, or has an invalid number.
-    pub fn read(path: &Path, mut warn: impl FnMut(String)) -> Result<Self> {
-        let text = files::read_text(path)?;
-        let run = Run::parse(path, &text, &COLUMNS[..REQUIRED], &mut warn)?;
-        if !text.ends_with('\n') {
+    pub fn read(path: &Path, warn: impl FnMut(String)) -> Result<Self> {
+        Run::read_with(path, &COLUMNS[..REQUIRED], warn)
+    }
+
+    /// Reads a run that must have the `required` columns.
+    ///
+    /// # Errors
+    /// As [`Run::read`].
+    pub fn read_with(path: &Path, required: &[&str], mut warn: impl FnMut(String)) -> Result<Self> {
+        let mut text = TextFile::open(path)?;
+        if text.had_mark {
+            warn(format!("{}: begins with a byte order mark, which is passed over: save it without", path.display()));
+        }
+        let rows = rows(path, &mut text, required, &mut warn)?;
+        if text.last != Some(b'\n') {
             warn(format!(
                 "{}: the last line has no line end; if it is torn, its last number may be wrong",
                 path.display()
             ));
         }
-        Ok(run)
+        Ok(Run { name: name_of(path), rows })
     }
 
     /// Parses the text of a file that must have the `required` columns; `path` is for messages and the run's name.
@@ -69,28 +73,7 @@ impl Run {
     /// # Errors
     /// As [`Run::read`].
     pub fn parse(path: &Path, text: &str, required: &[&str], mut warn: impl FnMut(String)) -> Result<Self> {
-        let mut reader = ReaderBuilder::new().trim(csv::Trim::All).from_reader(text.as_bytes());
-        let header = reader.headers().map_err(|e| files::csv_error(path, &e))?.clone();
-        let columns = Columns::find(path, &header, required, &mut warn)?;
-        let mut rows: Vec<Row> = Vec::new();
-        for record in reader.records() {
-            let record = record.map_err(|e| files::csv_error(path, &e))?;
-            let line = record.position().map_or(0, csv::Position::line);
-            let row = columns.row(&record).map_err(|what| Error::at_line(path, line, what))?;
-            if rows.last().is_some_and(|before| row.t_ms <= before.t_ms) {
-                return Err(Error::at_line(
-                    path,
-                    line,
-                    format!("t_ms = {} does not come after the row before", row.t_ms),
-                ));
-            }
-            rows.push(row);
-        }
-        if rows.len() < 2 {
-            return Err(Error::in_file(path, format!("has {} row(s); a run needs at least two", rows.len())));
-        }
-        let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-        Ok(Run { name, rows })
+        Ok(Run { name: name_of(path), rows: rows(path, text.as_bytes(), required, &mut warn)? })
     }
 
     /// Writes a run; an optional column is written if any row has a value.
@@ -139,69 +122,38 @@ impl Row {
     }
 }
 
-/// Where each of [`COLUMNS`] stands in a file.
-struct Columns([Option<usize>; COLUMNS.len()]);
-
-impl Columns {
-    fn find(path: &Path, header: &StringRecord, required: &[&str], warn: &mut impl FnMut(String)) -> Result<Self> {
-        let mut places = [None; COLUMNS.len()];
-        let mut unknown = Vec::new();
-        for (i, name) in header.iter().enumerate() {
-            match COLUMNS.iter().position(|c| *c == name) {
-                None => unknown.push(name),
-                Some(c) if places[c].is_some() => {
-                    return Err(Error::at_line(path, 1, format!("column {name} stands twice")));
-                }
-                Some(c) => places[c] = Some(i),
-            }
+/// Reads rows one by one: the text of a long run is never there as a whole.
+fn rows(path: &Path, text: impl Read, required: &[&str], warn: &mut impl FnMut(String)) -> Result<Vec<Row>> {
+    let mut reader = ReaderBuilder::new().trim(csv::Trim::All).from_reader(text);
+    let header = reader.headers().map_err(|e| files::csv_error(path, &e))?.clone();
+    let columns = Columns::find(path, &header, required, warn)?;
+    let mut rows: Vec<Row> = Vec::new();
+    let mut record = StringRecord::new();
+    while reader.read_record(&mut record).map_err(|e| files::csv_error(path, &e))? {
+        let line = record.position().map_or(0, csv::Position::line);
+        let row = columns.row(&record).map_err(|what| Error::at_line(path, line, what))?;
+        if let Some(before) = rows.last().filter(|before| row.t_ms <= before.t_ms) {
+            let what = if row.t_ms == before.t_ms {
+                format!("t_ms = {} stands twice: write every row once", row.t_ms)
+            } else {
+                let (t_ms, before_ms) = (row.t_ms, before.t_ms);
+                format!(
+                    "t_ms = {t_ms} does not come after the row before ({before_ms}): give every run a file of its own"
+                )
+            };
+            return Err(Error::at_line(path, line, what));
         }
-        let is_there = |name: &&str| COLUMNS.iter().zip(places).any(|(c, place)| c == name && place.is_some());
-        if let Some(name) = required.iter().find(|name| !is_there(name)) {
-            return Err(Error::at_line(path, 1, format!("column {name} is missing")));
-        }
-        for name in unknown {
-            warn(format!("{}:1: column {name:?} is not known and left out", path.display()));
-        }
-        Ok(Columns(places))
+        rows.push(row);
     }
-
-    fn row(&self, record: &StringRecord) -> std::result::Result<Row, String> {
-        let mut v = [None; COLUMNS.len()];
-        for (c, name) in COLUMNS.iter().enumerate() {
-            let Some(cell) = self.0[c].and_then(|i| record.get(i)).filter(|cell| !cell.is_empty()) else { continue };
-            let number: f64 = cell.parse().map_err(|_| format!("{name} = {cell:?} is no number"))?;
-            // Drivers say so that there was no echo: an inspection finds it, and no number that counts is not finite.
-            let number = if *name == ECHO && !number.is_finite() { HUGE } else { number };
-            if !number.is_finite() || number.abs() > HUGE {
-                return Err(format!("{name} = {cell} is no number that a robot could log"));
-            }
-            v[c] = Some(number);
-        }
-        let [t_ms, left, right, x_cm, y_cm, heading_deg, echo_cm, rot_left_deg, rot_right_deg, battery_mv] = v;
-        let needed = |value: Option<f64>, name: &str| value.ok_or(format!("{name} is empty"));
-        let command = |value: Option<f64>, name: &str| match needed(value, name)? {
-            v if v.abs() <= 100.0 => Ok(v),
-            v => Err(format!("{name} = {v} lies outside -100..100")),
-        };
-        let pose = match (x_cm, y_cm, heading_deg) {
-            (Some(x), Some(y), Some(heading)) => Some(Pose::new(x, y, heading.to_radians())),
-            (None, None, None) => None,
-            _ => return Err("x_cm, y_cm and heading_deg must be there together or empty together".into()),
-        };
-        if let Some(echo_cm) = echo_cm.filter(|e| *e < 0.0) {
-            return Err(format!("echo_cm = {echo_cm} is below zero; leave the cell empty where there was no echo"));
-        }
-        Ok(Row {
-            t_ms: needed(t_ms, "t_ms")?,
-            left: command(left, "left")?,
-            right: command(right, "right")?,
-            pose,
-            echo_cm,
-            rot_left_deg,
-            rot_right_deg,
-            battery_mv,
-        })
+    if rows.len() < 2 {
+        return Err(Error::in_file(path, format!("has {} row(s); a run needs at least two", rows.len())));
     }
+    rows.shrink_to_fit();
+    Ok(rows)
+}
+
+fn name_of(path: &Path) -> String {
+    path.file_stem().unwrap_or_default().to_string_lossy().into_owned()
 }
 
 /// Numbers are written with at most two decimals, the precision of trackers and readings.

@@ -72,8 +72,11 @@ pub fn motion(logs: &Logs) -> Vec<MotionSample> {
     samples
 }
 
-/// All rows with a tracked pose at which the sensor faced a wall or an edge.
+/// All rows with a tracked pose at which the sensor, if there is one, faced a wall or an edge.
 pub fn sonar(logs: &Logs) -> Vec<SonarSample> {
+    if logs.robot.ultrasonic.is_none() {
+        return Vec::new();
+    }
     let sides = logs.scene.sides();
     let mut samples = Vec::new();
     for (run, r) in logs.runs.iter().enumerate() {

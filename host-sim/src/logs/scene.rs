@@ -29,10 +29,10 @@ impl Scene {
     /// Reads `scene.toml`.
     ///
     /// # Errors
-    /// When the file cannot be read or parsed, holds an impossible size or place, or has nothing that a sensor could see.
+    /// When the file cannot be read or parsed, holds an impossible size or place.
     pub fn read(path: &Path) -> Result<Self> {
         let text = files::read_text(path)?;
-        let file: SceneFile = files::read_toml(path)?;
+        let file: SceneFile = files::from_toml(path, &text)?;
         let at = |byte: usize, what: &str| Error::at_line(path, files::line_at(&text, byte), what);
         let mut scene = Scene::default();
         if let Some(arena) = file.arena {
@@ -76,9 +76,6 @@ impl Scene {
                 return Err(at(start, "the start lies outside the arena or inside an obstacle"));
             }
             scene.starts.push(Pose::new(s.x_cm, s.y_cm, s.heading_deg.to_radians()));
-        }
-        if scene.sides().is_empty() {
-            return Err(Error::in_file(path, "has no arena, obstacle or wall"));
         }
         Ok(scene)
     }
@@ -135,6 +132,7 @@ fn is_point(v: DVec2) -> bool {
 }
 
 #[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 struct SceneFile {
     #[serde(skip_serializing_if = "Option::is_none")]
     arena: Option<Spanned<ArenaTable>>,
@@ -149,12 +147,14 @@ struct SceneFile {
 }
 
 #[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 struct ArenaTable {
     width_cm: f64,
     height_cm: f64,
 }
 
 #[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 struct RectangleTable {
     x_cm: f64,
     y_cm: f64,
@@ -163,6 +163,7 @@ struct RectangleTable {
 }
 
 #[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 struct WallTable {
     x0_cm: f64,
     y0_cm: f64,
@@ -171,12 +172,14 @@ struct WallTable {
 }
 
 #[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 struct PointTable {
     x_cm: f64,
     y_cm: f64,
 }
 
 #[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 struct StartTable {
     x_cm: f64,
     y_cm: f64,

@@ -45,6 +45,7 @@ pub fn simulator(baseline: &Baseline, scatter: [f64; 3]) -> Result<Simulator> {
     let learned = |polynomial, axis: usize| -> Result<_> {
         Ok(Some(Learned { network: network(polynomial)?, residuals: residuals(scatters[axis], FULL) }))
     };
+    let has_sensor = !robot.ultrasonic.is_none();
     let [near_cm, far_cm] = [robot.ultrasonic.min_cm, robot.ultrasonic.max_cm].map(|cm| cm as f32);
     Ok(Simulator {
         schema: SCHEMA,
@@ -54,8 +55,9 @@ pub fn simulator(baseline: &Baseline, scatter: [f64; 3]) -> Result<Simulator> {
         turn: learned(&turn_deg, 2)?,
         forward: learned(&forward_cm, 0)?,
         lateral: learned(&lateral_cm, 1)?,
-        echo_probability: Some(Learned { network: within(far_cm), residuals: residuals(0.0, far_cm) }),
-        echo_value: Some(Learned { network: distance(near_cm, far_cm), residuals: residuals(0.0, far_cm) }),
+        echo_probability: has_sensor.then(|| Learned { network: within(far_cm), residuals: residuals(0.0, far_cm) }),
+        echo_value: has_sensor
+            .then(|| Learned { network: distance(near_cm, far_cm), residuals: residuals(0.0, far_cm) }),
         constant_reading: None,
         reference: Some(NominalModel {
             motion: Some(MotionBias {

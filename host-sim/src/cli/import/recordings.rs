@@ -5,9 +5,10 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use serde_json::json;
 
-use crate::cli::{check_free, reported, table};
+use crate::cli::{Run, kinds, reported, table};
 use crate::error::Result;
 use crate::files;
+use crate::files::places::Places;
 use crate::import::assemble::{Assembled, assemble};
 use crate::import::bag::{Choice, recording};
 use crate::import::draft::{RobotDraft, SCENE, to_fill_in};
@@ -78,17 +79,17 @@ struct Target {
     /// Folder for the logs.
     #[arg(long, value_name = "LOGS")]
     out: PathBuf,
-    /// Replace logs that are in the folder already.
-    #[arg(long)]
-    force: bool,
     /// Write what was read, guessed, changed and left out here.
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
 }
 
-impl Streams {
-    /// Reads, aligns, writes; returns what there is to say.
-    pub fn run(&self) -> Result<String> {
+impl Run for Streams {
+    fn places(&self) -> Places {
+        self.target.places().reading(&self.files).reading(&self.map)
+    }
+
+    fn run(&self) -> Result<String> {
         let given = self.target.read()?;
         let mapping = self.map.as_deref().map_or(Ok(Mapping::default()), Mapping::read)?;
         let units = Units { time: self.time_unit, length: self.length_unit, angle: self.angle_unit };
@@ -96,9 +97,12 @@ impl Streams {
     }
 }
 
-impl Bag {
-    /// Reads, joins, writes; returns what there is to say.
-    pub fn run(&self) -> Result<String> {
+impl Run for Bag {
+    fn places(&self) -> Places {
+        self.target.places().reading(&self.bags)
+    }
+
+    fn run(&self) -> Result<String> {
         let given = self.target.read()?;
         let choice =
             Choice { commands: self.commands.clone(), poses: self.poses.clone(), ranges: self.ranges.clone() };
@@ -117,9 +121,13 @@ struct Given {
 }
 
 impl Target {
-    /// Reads what is given, once it is clear that there is a place for the logs.
+    fn places(&self) -> Places {
+        let given = self.robot.iter().chain(&self.scene);
+        Places::default().reading(given).filling(&self.out).writing(&self.json, kinds::RECORDINGS)
+    }
+
+    /// Reads what is given of robot and scene.
     fn read(&self) -> Result<Given> {
-        check_free(&self.out, self.force)?;
         let robot_text = self.robot.as_deref().map(files::read_text).transpose()?;
         let robot = self.robot.as_deref().map(Robot::read).transpose()?;
         let (scene, scene_text) = match &self.scene {
