@@ -37,8 +37,7 @@ impl Run for New {
             |fresh| FILES.iter().zip(contents).try_for_each(|(name, content)| files::write(&fresh.join(name), content)),
         )?;
         let recordings = self.folder.join(RECORDINGS);
-        fs::create_dir_all(&recordings)
-            .map_err(|e| Error::in_file(&recordings, format!("cannot be written: {e}")))?;
+        fs::create_dir_all(&recordings).map_err(|e| Error::in_file(&recordings, format!("cannot be written: {e}")))?;
         Ok(format!(
             "{}: fill in robot.toml (and scene.toml, if there are walls), put what the robot recorded into {RECORDINGS}, then:\n{}",
             self.folder.display(),

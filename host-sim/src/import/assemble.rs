@@ -5,6 +5,8 @@ mod clock;
 mod frame;
 mod rows;
 
+use std::ops::Range;
+
 use self::frame::put_right;
 use self::rows::{Prepared, spacing_ms};
 use super::clocks::Clocks;
@@ -15,6 +17,9 @@ use super::sides::Sides;
 use crate::error::{Error, Result};
 use crate::inspection::Inspection;
 use crate::logs::{Logs, Robot, Run, Scene};
+
+/// What robots that fit on a floor measure, cm or cm/s.
+const FITTED_CM: Range<f64> = 1.5..500.0;
 
 /// The logs, and what is to be told about them.
 pub struct Assembled {
@@ -87,7 +92,8 @@ fn fitted(recordings: &[Recording], offset_ms: Option<f64>) -> Result<RobotDraft
     let robot = draft.robot()?;
     let all_of = |kind| recordings.iter().all(|recording| recording.commands.kind == kind);
     if all_of(Kind::Twist) {
-        let how = "between the middles of the driven wheels; of commands that are speed and turn rate it changes nothing";
+        let how =
+            "between the middles of the driven wheels; of commands that are speed and turn rate it changes nothing";
         draft.track_cm.how = how.into();
     } else {
         let mut runs = Vec::new();
@@ -95,15 +101,21 @@ fn fitted(recordings: &[Recording], offset_ms: Option<f64>) -> Result<RobotDraft
             runs.extend(runs_of(recording, &robot, offset_ms, runs.len())?.0);
         }
         let sides = Sides::of_commands(&runs, &robot);
-        let fit = |value: f64| {
-            Measure::open(value.clamp(0.1, 1000.0), "fitted to these logs, so that no gap in it can show: measure it")
+        let fit = |value: f64, what: &str| {
+            if !FITTED_CM.contains(&value) {
+                let why = format!(
+                    "{what} would have to be {value:.3} to explain the track: its unit seems to be another one"
+                );
+                return Err(Error::in_file(&recordings[0].track, why));
+            }
+            Ok(Measure::open(value, "fitted to these logs, so that no gap in it can show: measure it"))
         };
         let length = if all_of(Kind::Motors) { sides.of_travel } else { Some(1.0) };
         if let Some(length) = length.filter(|_| all_of(Kind::Motors)) {
-            draft.full_speed_cm_s = fit(length * robot.full_speed_cm_s);
+            draft.full_speed_cm_s = fit(length * robot.full_speed_cm_s, "full_speed_cm_s")?;
         }
         if let Some((turn, length)) = sides.of_rotation.zip(length).filter(|(turn, _)| *turn != 0.0) {
-            draft.track_cm = fit(robot.track_cm * length / turn.abs());
+            draft.track_cm = fit(robot.track_cm * length / turn.abs(), "track_cm")?;
         }
     }
     if !all_of(Kind::Motors) {
@@ -147,3 +159,6 @@ fn runs_of(
     };
     Ok((runs, report))
 }
+
+#[cfg(test)]
+mod tests;

@@ -57,7 +57,8 @@ pub fn recording(file: &Path, choice: &Choice, sonar_yaw_rad: f64) -> Result<Rec
                     let name = format!("{}{}", item.topic, frame);
                     messages += 1;
                     if messages > MOST_MESSAGES || (streams.len() >= MOST_TOPICS && !streams.contains_key(&name)) {
-                        let what = format!("holds more than {MOST_TOPICS} topics or {MOST_MESSAGES} messages of interest");
+                        let what =
+                            format!("holds more than {MOST_TOPICS} topics or {MOST_MESSAGES} messages of interest");
                         return Err(Error::in_file(file, what));
                     }
                     let stream = streams.entry(name).or_default();
@@ -136,7 +137,10 @@ fn timed(file: &Path, name: &str, samples: &[Sample], uses_stamps: bool) -> Resu
     timed.dedup_by(|later, before| later.0 == before.0);
     if timed.len() < 2 {
         let what = format!("{name} has {} message(s) at times of their own: the bag has no time", timed.len());
-        return Err(Error::in_file(file, if samples.len() < 2 { format!("{name} has a single message") } else { what }));
+        return Err(Error::in_file(
+            file,
+            if samples.len() < 2 { format!("{name} has a single message") } else { what },
+        ));
     }
     Ok(timed)
 }

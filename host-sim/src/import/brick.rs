@@ -98,58 +98,6 @@ fn matched<'a>(
             1000.0 * found.clocks.drift
         )),
     }
-=> {
-                let (run, report_of_run) = merged(&log, track, &found, format!("run-{:03}", runs.len()));
-                runs.push(run);
-                LogReport { run: Some(report_of_run), ..report }
-            }
-            Err(why) => LogReport { left_out: Some(why), ..report },
-        });
-    }
-    if runs.is_empty() {
-        let first = &reports[0];
-        return Err(Error::in_file(&first.file, first.left_out.clone().unwrap_or_default()));
-    }
-    let tracks = tracks.iter().map(|t| TrackReport { file: t.file.clone(), ..t.report() }).collect();
-    let logs = Logs { robot, scene, runs };
-    logs.check_step(&reports[0].file)?;
-    Ok((logs, Report { tracks, logs: reports }))
-}
-
-/// The track that matches a log best and their alignment, or the reason why none does.
-fn matched<'a>(
-    log: &BrickLog,
-    tracks: &'a [Track],
-    robot: &Robot,
-) -> std::result::Result<(&'a Track, Alignment), String> {
-    let by_wheels = motion::by_wheels(&log.run.rows, robot);
-    let found = tracks.iter().filter_map(|track| Some((track, align(&by_wheels, &track.motion())?)));
-    let Some((track, found)) = found.min_by(|a, b| a.1.unexplained.total_cmp(&b.1.unexplained)) else {
-        return Err("no track overlaps it by half of its steps, or nothing moved".into());
-    };
-    let percent = |share: f64| format!("{:.0} %", 100.0 * share);
-    if found.unexplained > MOST_UNEXPLAINED {
-        return Err(format!(
-            "no track saw it: wheels and camera differ in {} of the motion at best",
-            percent(found.unexplained)
-        ));
-    }
-    if found.unexplained > CLEARLY * found.unexplained_elsewhere {
-        return Err(format!(
-            "it matches {} at more than one time: {} and {} of the motion differ",
-            track.file.display(),
-            percent(found.unexplained),
-            percent(found.unexplained_elsewhere)
-        ));
-    }
-    if found.clocks.drift.abs() > MOST_DRIFT {
-        return Err(format!(
-            "its clock and that of {} run apart by {:.1} ms a second",
-            track.file.display(),
-            1000.0 * found.clocks.drift
-        ));
-    }
-    Ok((track, found))
 }
 
 /// The log's rows with the camera's poses at their times.

@@ -32,8 +32,7 @@ pub struct OfCommands {
     guessed: Option<String>,
 }
 
-const POSES: [Quantity; 6] =
-    [Quantity::X, Quantity::Y, Quantity::Heading, Quantity::Qz, Quantity::Qw, Quantity::Qx];
+const POSES: [Quantity; 6] = [Quantity::X, Quantity::Y, Quantity::Heading, Quantity::Qz, Quantity::Qw, Quantity::Qx];
 const TWIST: [Quantity; 2] = [Quantity::Forward, Quantity::Turn];
 const WHEELS: [Quantity; 2] = [Quantity::Left, Quantity::Right];
 
@@ -125,8 +124,10 @@ impl Columns {
             return Ok((numbers, None));
         }
         let (one, unit) = guessed(&numbers).ok_or_else(|| {
-            let what =
-                format!("the unit of {} cannot be told: name it {0}_s, {0}_ms and the like, or give --time-unit", column.name);
+            let what = format!(
+                "the unit of {} cannot be told: name it {0}_s, {0}_ms and the like, or give --time-unit",
+                column.name
+            );
             Error::at_line(&table.file, 1, what)
         })?;
         let told = format!("{} is in {unit}, by its size and spacing", column.name);
@@ -180,7 +181,9 @@ impl Columns {
             let angle = units.angle.map(|angle| angle.rad());
             let (of_option, option) = match column.quantity.dimensions() {
                 [Dimension::Time] => (stated(units.time.map(|time| time.ms()), Dimension::Time), None),
-                [Dimension::Length] => (stated(length, Dimension::Length), Some("_m, _cm or _mm, or give --length-unit")),
+                [Dimension::Length] => {
+                    (stated(length, Dimension::Length), Some("_m, _cm or _mm, or give --length-unit"))
+                }
                 [Dimension::Angle] => (stated(angle, Dimension::Angle), Some("_rad or _deg, or give --angle-unit")),
                 [Dimension::Speed] => {
                     (stated(length, Dimension::Speed), Some("_m_s, _cm_s or _mm_s, or give --length-unit"))

@@ -59,7 +59,10 @@ impl RobotDraft {
         RobotDraft {
             wheel_diameter_cm: Measure::open(6.0, "diameter of the driven wheels"),
             track_cm: Measure::open(15.0, "between the middles of the two driven wheels"),
-            full_speed_cm_s: Measure::open(40.0, "speed of a wheel's rim at command 100; for commands in cm/s the fastest that it can do"),
+            full_speed_cm_s: Measure::open(
+                40.0,
+                "speed of a wheel's rim at command 100; for commands in cm/s the fastest that it can do",
+            ),
             step_ms: Measure::known(400.0, "time between two rows of the logs; recordings are resampled to it"),
             has_sensor: None,
         }
@@ -161,7 +164,8 @@ mod tests {
 
     #[test]
     fn every_line_of_the_scene_is_ready_to_be_used() {
-        let uncommented: String = SCENE.lines().skip(2).map(|line| line.strip_prefix("# ").unwrap_or(line).to_owned() + "\n").collect();
+        let uncommented: String =
+            SCENE.lines().skip(2).map(|line| line.strip_prefix("# ").unwrap_or(line).to_owned() + "\n").collect();
         let folder = tempfile::tempdir().expect("a folder");
         let file = folder.path().join("scene.toml");
         files::write(&file, uncommented).expect("written");

@@ -79,7 +79,9 @@ impl Mapping {
     pub fn check(&self, read: &[PathBuf]) -> Result<()> {
         let is_read = |name: &str| read.iter().any(|file| file.file_name().is_some_and(|file| file == name));
         match self.files.keys().find(|name| !is_read(name)) {
-            Some(name) => Err(Error::in_file(&self.path, format!("has a table for {name:?}, which is not among the files"))),
+            Some(name) => {
+                Err(Error::in_file(&self.path, format!("has a table for {name:?}, which is not among the files")))
+            }
             None => Ok(()),
         }
     }
@@ -118,7 +120,8 @@ mod tests {
 
     #[test]
     fn columns_are_named_with_unit_and_sign() {
-        let mapping = read("[\"a.csv\"]\ntime = \"T\"\nturn = { column = \"w\", unit = \"deg/s\", negate = true }\n").expect("fine");
+        let mapping = read("[\"a.csv\"]\ntime = \"T\"\nturn = { column = \"w\", unit = \"deg/s\", negate = true }\n")
+            .expect("fine");
         let columns = mapping.of(Path::new("folder/a.csv")).expect("named");
         assert_eq!((columns[0].quantity, columns[0].column.as_str()), (Quantity::Time, "T"));
         assert!(columns[1].negate && columns[1].unit == Unit::of_name("deg/s"));

@@ -81,9 +81,40 @@ const UNITS: [(&str, Dimension, f64); 40] = [
 
 /// Words that say nothing about what a column holds.
 const NOISE: [&str; 34] = [
-    "pose", "position", "pos", "translation", "transform", "robot", "base", "header", "msg", "data", "field", "tracked",
-    "true", "ground", "truth", "gt", "mocap", "cmd", "command", "commanded", "twist", "set", "target", "desired", "ref",
-    "motor", "wheel", "value", "reading", "sensor", "point", "in", "tracker", "camera",
+    "pose",
+    "position",
+    "pos",
+    "translation",
+    "transform",
+    "robot",
+    "base",
+    "header",
+    "msg",
+    "data",
+    "field",
+    "tracked",
+    "true",
+    "ground",
+    "truth",
+    "gt",
+    "mocap",
+    "cmd",
+    "command",
+    "commanded",
+    "twist",
+    "set",
+    "target",
+    "desired",
+    "ref",
+    "motor",
+    "wheel",
+    "value",
+    "reading",
+    "sensor",
+    "point",
+    "in",
+    "tracker",
+    "camera",
 ];
 /// Words that say that a column holds what was asked for rather than what was measured.
 const COMMANDED: [&str; 7] = ["cmd", "command", "commanded", "set", "target", "desired", "ref"];
@@ -95,7 +126,21 @@ const OF_MOTORS: [&str; 11] =
 const NAMES: [(Quantity, &[&str]); 9] = [
     (
         Quantity::Time,
-        &["t", "time", "timestamp", "stamp", "time_stamp", "date", "datetime", "date_time", "utc", "unix", "unix_time", "epoch", "elapsed"],
+        &[
+            "t",
+            "time",
+            "timestamp",
+            "stamp",
+            "time_stamp",
+            "date",
+            "datetime",
+            "date_time",
+            "utc",
+            "unix",
+            "unix_time",
+            "epoch",
+            "elapsed",
+        ],
     ),
     (Quantity::X, &["x", "px"]),
     (Quantity::Y, &["y", "py"]),
@@ -104,9 +149,13 @@ const NAMES: [(Quantity, &[&str]); 9] = [
     (Quantity::Qy, &["qy", "q_y", "quat_y", "quaternion_y", "orientation_y", "rotation_y"]),
     (Quantity::Qz, &["qz", "q_z", "quat_z", "quaternion_z", "orientation_z", "rotation_z"]),
     (Quantity::Qw, &["qw", "q_w", "quat_w", "quaternion_w", "orientation_w", "rotation_w"]),
-    (Quantity::Turn, &["w", "wz", "omega", "omega_z", "yaw_rate", "yawrate", "turn", "turn_rate", "ang", "ang_vel", "ang_z"]),
+    (
+        Quantity::Turn,
+        &["w", "wz", "omega", "omega_z", "yaw_rate", "yawrate", "turn", "turn_rate", "ang", "ang_vel", "ang_z"],
+    ),
 ];
-const FORWARD: [&str; 10] = ["v", "vx", "v_x", "speed", "velocity", "vel", "forward", "forward_speed", "lin", "lin_vel"];
+const FORWARD: [&str; 10] =
+    ["v", "vx", "v_x", "speed", "velocity", "vel", "forward", "forward_speed", "lin", "lin_vel"];
 const RANGE: [&str; 8] = ["range", "distance", "dist", "echo", "sonar", "ultrasonic", "ultrasound", "front"];
 
 /// What a name says.
@@ -162,7 +211,10 @@ impl Unit {
             return Some(Unit { dimension: Dimension::Command, one: 100.0 / full });
         }
         let plain = if name.trim() == "%" { "percent".into() } else { words(name).join("_") };
-        UNITS.iter().find(|(unit, ..)| *unit == plain).map(|(_, dimension, one)| Unit { dimension: *dimension, one: *one })
+        UNITS
+            .iter()
+            .find(|(unit, ..)| *unit == plain)
+            .map(|(_, dimension, one)| Unit { dimension: *dimension, one: *one })
     }
 }
 
@@ -208,7 +260,8 @@ fn without_unit(name: &str) -> (Vec<String>, Option<Unit>) {
     let all = words(name);
     let of_last = |n: usize| {
         let (bare, unit) = all.split_at(all.len().checked_sub(n).filter(|left| *left > 0)?);
-        let unit = Unit::of_name(&unit.join("_")).filter(|unit| unit.dimension != Dimension::Command || unit.one == 1.0)?;
+        let unit =
+            Unit::of_name(&unit.join("_")).filter(|unit| unit.dimension != Dimension::Command || unit.one == 1.0)?;
         // A number at the end, as in `range_1`, is no unit.
         Some((bare.to_vec(), Some(unit))).filter(|_| !all[all.len() - 1].starts_with(|c: char| c.is_ascii_digit()))
     };

@@ -60,7 +60,8 @@ impl Sides {
             travels.push((tracked_cm, cm.abs()));
             rotations.push((change.heading_rad, rad));
         }
-        let fitted = |pairs: Vec<(f64, f64)>| (pairs.len() >= FEWEST).then(|| robust_slope(pairs.into_iter())).flatten();
+        let fitted =
+            |pairs: Vec<(f64, f64)>| (pairs.len() >= FEWEST).then(|| robust_slope(pairs.into_iter())).flatten();
         Sides { of_travel: fitted(travels), of_rotation: fitted(rotations), ..sides }
     }
 
@@ -145,7 +146,10 @@ mod tests {
     fn other_units_are_named_with_both_sides() {
         assert_eq!(sides(0.9, 1.2).refusal("the wheels", "the track"), None);
         let metres = sides(0.01, 1.0).refusal("the wheels", "the track").expect("refused");
-        assert!(metres.contains("80.0 cm where the track shows 0.8 cm") && metres.contains("--length-unit m "), "{metres}");
+        assert!(
+            metres.contains("80.0 cm where the track shows 0.8 cm") && metres.contains("--length-unit m "),
+            "{metres}"
+        );
         let degrees = sides(1.0, PI / 180.0).refusal("the wheels", "the track").expect("refused");
         assert!(degrees.contains("--angle-unit rad"), "{degrees}");
     }

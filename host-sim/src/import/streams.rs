@@ -57,7 +57,8 @@ pub fn recordings(files: &[PathBuf], mapping: &Mapping, units: &Units) -> Result
         )));
     }
     let mut readings = readings.into_iter();
-    let parted = commands.into_iter().zip(poses).map(|(commands, poses)| [Some(commands), Some(poses), readings.next()]);
+    let parted =
+        commands.into_iter().zip(poses).map(|(commands, poses)| [Some(commands), Some(poses), readings.next()]);
     let whole = whole.into_iter().map(|streams| [Some(streams), None, None]);
     Ok(whole.chain(parted).map(joined).collect())
 }
@@ -107,8 +108,7 @@ impl FileStreams {
                     value(Quantity::Heading)?
                 } else {
                     let part = |quantity| Ok(if columns.has(quantity) { value(quantity)? } else { Some(0.0) });
-                    let parts =
-                        [part(Quantity::Qx)?, part(Quantity::Qy)?, part(Quantity::Qz)?, part(Quantity::Qw)?];
+                    let parts = [part(Quantity::Qx)?, part(Quantity::Qy)?, part(Quantity::Qz)?, part(Quantity::Qw)?];
                     if let [Some(x), Some(y), Some(z), Some(w)] = parts { heading_rad(x, y, z, w) } else { None }
                 };
                 let pose = (value(Quantity::X)?, value(Quantity::Y)?, heading);
@@ -125,9 +125,13 @@ impl FileStreams {
         let kept = in_order(&stamps_ms).map_err(|(at, what)| Error::at_line(file, lines[at], what))?;
         let disordered = kept.iter().filter(|kept| !**kept).count();
         if stamps_ms.len() < 2 || stamps_ms.len() == disordered + 1 {
-            return Err(Error::in_file(file, format!("has {} row(s) at times of their own", stamps_ms.len() - disordered)));
+            return Err(Error::in_file(
+                file,
+                format!("has {} row(s) at times of their own", stamps_ms.len() - disordered),
+            ));
         }
-        let times = || stamps_ms.iter().zip(&kept).enumerate().filter(|(_, (_, kept))| **kept).map(|(i, (ms, _))| (i, *ms));
+        let times =
+            || stamps_ms.iter().zip(&kept).enumerate().filter(|(_, (_, kept))| **kept).map(|(i, (ms, _))| (i, *ms));
         let of_commands = columns.kind(&table, commands.iter().flatten())?;
         let lost = poses.iter().filter(|pose| pose.is_none()).count();
         let source = Source::of_file(file, &times().map(|(_, ms)| ms).collect::<Vec<_>>())
@@ -144,8 +148,8 @@ impl FileStreams {
         {
             return Err(Error::in_file(file, "has a command that no robot could follow"));
         }
-        let poses = (!poses.is_empty())
-            .then(|| times().map(|(i, t_ms)| poses[i].map(|pose| Frame { t_ms, pose })).collect());
+        let poses =
+            (!poses.is_empty()).then(|| times().map(|(i, t_ms)| poses[i].map(|pose| Frame { t_ms, pose })).collect());
         let readings = (!readings.is_empty()).then(|| times().map(|(i, ms)| (ms, readings[i])).collect());
         Ok(FileStreams { file: file.into(), commands, poses, readings, source })
     }

@@ -40,7 +40,6 @@ impl Table {
     /// When the file cannot be read, or no line names columns.
     pub fn read(file: &Path) -> Result<Self> {
         let text = files::read_text(file)?;
-        let text = text.trim_start_matches('\u{feff}');
         let mut lines = text.split_inclusive('\n').enumerate();
         let (mut header, mut begin, mut at) = (None, 0, 0);
         let first = lines.find_map(|(i, line)| {
@@ -61,13 +60,16 @@ impl Table {
                 ((i, comment.trim_start_matches(COMMENT)), begin)
             }
             _ => {
-                let what = "has numbers and no header: name the columns in a first line, such as t_s,x_m,y_m,heading_rad";
+                let what =
+                    "has numbers and no header: name the columns in a first line, such as t_s,x_m,y_m,heading_rad";
                 return Err(Error::at_line(file, first.0 as u64 + 1, what));
             }
         };
         let separator = separator(header);
         let body = match separator {
-            b' ' => text[begin..].lines().map(|line| line.split_whitespace().collect::<Vec<_>>().join(" ") + "\n").collect(),
+            b' ' => {
+                text[begin..].lines().map(|line| line.split_whitespace().collect::<Vec<_>>().join(" ") + "\n").collect()
+            }
             _ => text[begin..].to_owned(),
         };
         Ok(Table { file: file.into(), names: cells(header, separator), body, header_line: line as u64 + 1, separator })
@@ -81,11 +83,8 @@ impl Table {
             let record = record.map_err(|e| files::csv_error(&self.file, &e))?;
             let number = self.header_line + record.position().map_or(0, csv::Position::line);
             if record.len() < self.names.len() {
-                let what = format!(
-                    "has {} cells where the header has {}: torn or wrong line",
-                    record.len(),
-                    self.names.len()
-                );
+                let what =
+                    format!("has {} cells where the header has {}: torn or wrong line", record.len(), self.names.len());
                 return Err(Error::at_line(&self.file, number, what));
             }
             Ok(Line { table: self, number, record })
@@ -109,9 +108,9 @@ impl Line<'_> {
             return Ok(None);
         }
         let is_comma_decimal = self.table.separator != b',';
-        number(cell, is_comma_decimal).map(Some).ok_or_else(|| {
-            self.error(format!("{} = {cell:?} is no number", self.table.names[column]))
-        })
+        number(cell, is_comma_decimal)
+            .map(Some)
+            .ok_or_else(|| self.error(format!("{} = {cell:?} is no number", self.table.names[column])))
     }
 
     /// What is wrong with this line.
@@ -158,7 +157,8 @@ mod tests {
 
     #[test]
     fn every_separator_and_header_is_read() {
-        let expected = (vec!["t".to_owned(), "x m".to_owned()], vec![vec![Some(0.0), Some(1.5)], vec![Some(1.0), None]]);
+        let expected =
+            (vec!["t".to_owned(), "x m".to_owned()], vec![vec![Some(0.0), Some(1.5)], vec![Some(1.0), None]]);
         for text in [
             "t,x m\n0,1.5\n1,\n",
             "\u{feff}t;x m\r\n0;1,5\r\n1;\r\n",

@@ -13,3 +13,5 @@ mod determinism;
 mod diagnose_logs;
 mod golden_files;
 mod import;
+mod import_recordings;
+mod new;

@@ -104,8 +104,7 @@ impl Run for Bag {
 
     fn run(&self) -> Result<String> {
         let given = self.target.read()?;
-        let choice =
-            Choice { commands: self.commands.clone(), poses: self.poses.clone(), ranges: self.ranges.clone() };
+        let choice = Choice { commands: self.commands.clone(), poses: self.poses.clone(), ranges: self.ranges.clone() };
         let yaw_rad = given.robot.map_or(0.0, |robot| robot.ultrasonic.yaw_deg.to_radians());
         let recordings = self.bags.iter().map(|bag| recording(bag, &choice, yaw_rad)).collect::<Result<_>>()?;
         self.target.make(given, recordings, None)
@@ -199,7 +198,8 @@ fn of_recording(recording: &RecordingReport, step_ms: f64) -> String {
 
 fn of_source(source: &Source) -> String {
     let Source { name, samples, lasts_s, rate_hz, taken, guessed, left_out } = source;
-    let mut text = format!("{name}: {samples} samples in {lasts_s:.1} s, {rate_hz:.1} a second; {}\n", taken.join(", "));
+    let mut text =
+        format!("{name}: {samples} samples in {lasts_s:.1} s, {rate_hz:.1} a second; {}\n", taken.join(", "));
     for (what, lines) in [("guessed", guessed), ("left out", left_out)] {
         lines.iter().for_each(|line| text += &format!("  {what}: {line}\n"));
     }
@@ -208,7 +208,8 @@ fn of_source(source: &Source) -> String {
 
 fn of_clocks(clocks: &ClocksReport) -> String {
     let ClocksReport { one, offset_ms, drift, lag_ms, unexplained } = clocks;
-    let differs = unexplained.map_or("nothing moves".into(), |share| format!("{:.0} % of the motion differ", 100.0 * share));
+    let differs =
+        unexplained.map_or("nothing moves".into(), |share| format!("{:.0} % of the motion differ", 100.0 * share));
     match (one, lag_ms) {
         (true, Some(lag_ms)) => format!("one clock: motion follows the commands by {lag_ms:.0} ms ({differs})"),
         (true, None) => format!("one clock, as stated ({differs})"),

@@ -27,7 +27,8 @@ pub fn put_right(recordings: &mut [Recording], logs: &Logs) -> Option<String> {
                 let DVec2 { x, y } = direction(quarter_rad).rotate(DVec2::new(pose.position_cm.x, -pose.position_cm.y));
                 Pose { position_cm: DVec2::new(x, y), heading_rad: pose.heading_rad }
             },
-            "positions are mirrored against headings and motion, as where y counts downwards, and were mirrored back".into(),
+            "positions are mirrored against headings and motion, as where y counts downwards, and were mirrored back"
+                .into(),
         ),
         _ => return None,
     };

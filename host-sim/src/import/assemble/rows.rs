@@ -79,9 +79,8 @@ impl Prepared {
         let t_ms = begin_ms + since_ms;
         let [left, right] = self.commands.mean(t_ms, t_ms + robot.step_ms);
         let camera_ms = clocks.camera_ms(t_ms);
-        let reading = |readings: &Readings| {
-            readings.at(if readings.on_clock_of_poses { camera_ms } else { t_ms }, robot.step_ms)
-        };
+        let reading =
+            |readings: &Readings| readings.at(if readings.on_clock_of_poses { camera_ms } else { t_ms }, robot.step_ms);
         let echo_cm = self.readings.as_ref().and_then(reading);
         Row { t_ms: since_ms, left, right, pose: self.track.at(camera_ms).pose(), echo_cm, ..Row::default() }
     }
@@ -94,7 +93,8 @@ fn check_span(file: &Path, mut times_ms: impl Iterator<Item = f64>) -> Result<()
     if span_ms <= LONGEST_MS {
         return Ok(());
     }
-    let what = format!("lasts {:.0} hours: the unit of its time seems to be another one; give --time-unit", span_ms / 3.6e6);
+    let what =
+        format!("lasts {:.0} hours: the unit of its time seems to be another one; give --time-unit", span_ms / 3.6e6);
     Err(Error::in_file(file, what))
 }
 
@@ -129,4 +129,3 @@ fn between(from: &Frame, to: &Frame, share: f64) -> Frame {
 pub fn spacing_ms(frames: &[Frame]) -> f64 {
     median(frames.windows(2).map(|pair| pair[1].t_ms - pair[0].t_ms))
 }
-

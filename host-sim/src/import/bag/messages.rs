@@ -153,9 +153,7 @@ pub fn decode(schema: &str, data: &[u8], sonar_yaw_rad: f64) -> Message {
             Message::Of(message.transforms.into_iter().map(TransformStamped::decoded).collect())
         }),
         "sensor_msgs/msg/Range" => one(cdr::<Range>(data).map(|m| (m.header.ms(), m.decoded()))),
-        "sensor_msgs/msg/LaserScan" => {
-            one(cdr::<LaserScan>(data).map(|m| (m.header.ms(), m.decoded(sonar_yaw_rad))))
-        }
+        "sensor_msgs/msg/LaserScan" => one(cdr::<LaserScan>(data).map(|m| (m.header.ms(), m.decoded(sonar_yaw_rad)))),
         _ => Message::OfNoInterest,
     }
 }
@@ -201,7 +199,8 @@ impl TransformStamped {
 
 impl Range {
     fn decoded(&self) -> Decoded {
-        let is_echo = self.range.is_finite() && self.range > 0.0 && (self.min_range..=self.max_range).contains(&self.range);
+        let is_echo =
+            self.range.is_finite() && self.range > 0.0 && (self.min_range..=self.max_range).contains(&self.range);
         Decoded::Range(is_echo.then(|| 100.0 * f64::from(self.range)))
     }
 }

@@ -68,12 +68,14 @@ pub fn read(path: &Path, mut take: impl FnMut(Item) -> Result<()>) -> Result<End
                 reader.notify_read(written);
             }
             Ok(LinearReadEvent::Record { opcode: op::CHUNK, data }) => {
-                let Record::Chunk { header, data } = parse_record(op::CHUNK, data).map_err(|e| corrupt(path, &e))? else {
+                let Record::Chunk { header, data } = parse_record(op::CHUNK, data).map_err(|e| corrupt(path, &e))?
+                else {
                     continue;
                 };
                 expanded += header.uncompressed_size;
                 if header.uncompressed_size > LARGEST as u64 || expanded > most {
-                    let what = format!("a chunk claims to hold {} bytes: no recorder writes that", header.uncompressed_size);
+                    let what =
+                        format!("a chunk claims to hold {} bytes: no recorder writes that", header.uncompressed_size);
                     return Err(Error::in_file(path, what));
                 }
                 in_chunk(path, &header, &data, &mut |opcode, data| known.take(path, opcode, data, &mut take))?;
@@ -91,7 +93,9 @@ pub fn read(path: &Path, mut take: impl FnMut(Item) -> Result<()>) -> Result<End
 
 fn corrupt(path: &Path, e: &McapError) -> Error {
     let what = match e {
-        McapError::BadMagic => "is no MCAP file (or its end is damaged): convert other bags by `ros2 bag convert`".into(),
+        McapError::BadMagic => {
+            "is no MCAP file (or its end is damaged): convert other bags by `ros2 bag convert`".into()
+        }
         e => format!("is corrupt: {}", e.to_string().replace('\n', " ")),
     };
     Error::in_file(path, what)
@@ -162,13 +166,7 @@ fn first_record(data: &[u8]) -> Option<(u8, &[u8], &[u8])> {
 }
 
 impl Known {
-    fn take(
-        &mut self,
-        path: &Path,
-        opcode: u8,
-        data: &[u8],
-        take: &mut impl FnMut(Item) -> Result<()>,
-    ) -> Result<()> {
+    fn take(&mut self, path: &Path, opcode: u8, data: &[u8], take: &mut impl FnMut(Item) -> Result<()>) -> Result<()> {
         if ![op::SCHEMA, op::CHANNEL, op::MESSAGE].contains(&opcode) {
             return Ok(());
         }

@@ -62,7 +62,12 @@ impl Topics {
             Ok(one.map(|(name, _)| name))
         };
         let missing = |role: Role| {
-            format!("has no {}: its topics of interest are {}; {} says which", role.name(), list(streams, |_| true), role.option())
+            format!(
+                "has no {}: its topics of interest are {}; {} says which",
+                role.name(),
+                list(streams, |_| true),
+                role.option()
+            )
         };
         let commands = choose(Role::Commands, &choice.commands, "")?.ok_or_else(|| missing(Role::Commands))?;
         let poses = choose(Role::Poses, &choice.poses, &commands)?.ok_or_else(|| missing(Role::Poses))?;
@@ -159,12 +164,7 @@ fn guess(streams: &HashMap<String, Stream>, role: Role, beside: &str) -> Result<
     let of_robot: Vec<&str> = likeliest.iter().copied().filter(|name| robot(name) == robot(beside)).collect();
     match (likeliest.as_slice(), of_robot.as_slice()) {
         ([one], _) | (_, [one]) => Ok(Some(((*one).to_owned(), ranked.len() - 1))),
-        _ => Err(format!(
-            "{} could be several: {}; {} says which",
-            role.name(),
-            shortened(&likeliest),
-            role.option()
-        )),
+        _ => Err(format!("{} could be several: {}; {} says which", role.name(), shortened(&likeliest), role.option())),
     }
 }
 
