@@ -46,6 +46,9 @@ pub fn assemble(
         Some(robot) => robot,
         None => first_guess(&recordings)?.robot()?,
     };
+    if robot.is_some_and(|robot| robot.ultrasonic.is_none()) {
+        recordings.iter_mut().for_each(Recording::leave_readings_out);
+    }
     let as_stated = Clocks { offset_ms: offset_ms.unwrap_or(0.0), drift: 0.0 };
     let mut runs = Vec::new();
     for recording in &recordings {

@@ -72,6 +72,15 @@ impl Kind {
     }
 }
 
+impl Recording {
+    /// Leaves its readings out, since the robot is said to have no range sensor.
+    pub fn leave_readings_out(&mut self) {
+        if let (Some(_), Some(source)) = (self.readings.take(), self.sources.last_mut()) {
+            source.left_out.push("all readings, since robot.toml has no [ultrasonic]".into());
+        }
+    }
+}
+
 impl Commands {
     /// The same as commands of the motors, -100 to 100, and how many were beyond what the robot can do.
     ///

@@ -103,6 +103,9 @@ impl Track {
     /// The robot's pose at a time on the camera's clock, interpolated between two frames.
     pub fn at(&self, t_ms: f64) -> Sighting {
         let after = self.frames.partition_point(|frame| frame.t_ms < t_ms);
+        if let Some(exact) = self.frames.get(after).filter(|frame| frame.t_ms == t_ms) {
+            return Sighting::At(exact.pose);
+        }
         let (Some(after), Some(before)) = (self.frames.get(after), after.checked_sub(1).map(|i| &self.frames[i]))
         else {
             return Sighting::Outside;

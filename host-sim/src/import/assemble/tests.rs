@@ -6,6 +6,7 @@ use super::*;
 use crate::geometry::Pose;
 use crate::import::frame::Frame;
 use crate::import::recording::{Commands, Readings};
+use crate::import::report::Source;
 
 /// Commands change every 600 ms.
 const HELD_MS: f64 = 600.0;
@@ -154,6 +155,16 @@ fn without_a_robot_its_measures_are_fitted_and_marked() {
     let twist = assemble(vec![recording(|frame| frame)], None, Scene::default(), None).expect("logs");
     assert!([20.0, 25.0, 30.0].contains(&twist.logs.robot.full_speed_cm_s), "{}", twist.logs.robot.full_speed_cm_s);
     assert!(twist.draft.expect("a draft").text().contains("\n# [ultrasonic]"));
+}
+
+#[test]
+fn a_robot_without_a_range_sensor_has_no_readings() {
+    let mut read = recording(|frame| frame);
+    read.readings = Some(Readings { samples: vec![(0.0, Some(50.0))], on_clock_of_poses: false });
+    read.sources = vec![Source::named("readings".into(), &[0.0, 1.0])];
+    let Assembled { logs, report, .. } = assembled(read).expect("logs");
+    assert!(logs.runs[0].rows.iter().all(|row| row.echo_cm.is_none()));
+    assert!(report.recordings[0].sources[0].left_out[0].contains("no [ultrasonic]"), "{report:?}");
 }
 
 #[test]
