@@ -92,7 +92,8 @@ impl Columns {
         let mut sum: Option<Stamp> = None;
         for column in self.columns.iter().filter(|column| column.quantity == Quantity::Time) {
             let cell = line.text(column.place);
-            let stamp = Stamp::read(cell).ok_or_else(|| {
+            let number = || Some(Stamp::Number(line.number(column.place).ok()??)).filter(|_| !cell.is_empty());
+            let stamp = Stamp::read(cell).or_else(number).ok_or_else(|| {
                 line.error(format!("{} = {cell:?} is no time: write a number or 2024-06-01T12:00:00.000Z", column.name))
             })?;
             let one = column.unit.map_or(1.0, |unit| unit.one);

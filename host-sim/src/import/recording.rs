@@ -150,7 +150,7 @@ mod tests {
         assert_eq!(of_motors(Kind::Twist, [30.0, 1.0]).expect("slow"), [40.0, 80.0]);
         assert_eq!(of_motors(Kind::WheelSpeeds, [10.0, -20.0]).expect("slow"), [20.0, -40.0]);
         assert_eq!(of_motors(Kind::WheelRates, [2.0, -4.0]).expect("slow"), [20.0, -40.0]);
-        assert_eq!(of_motors(Kind::Motors, [7.0, -8.0]).expect("slow"), [7.0, -8.0]);
+        assert_eq!(of_motors(Kind::Motors, [50.0, -100.0]).expect("slow"), [50.0, -100.0]);
     }
 
     #[test]

@@ -143,7 +143,9 @@ fn cells(line: &str, separator: u8) -> Vec<String> {
 mod tests {
     use super::*;
 
-    fn read(text: &str) -> Result<(Vec<String>, Vec<Vec<Option<f64>>>)> {
+    type Rows = Vec<Vec<Option<f64>>>;
+
+    fn read(text: &str) -> Result<(Vec<String>, Rows)> {
         let folder = tempfile::tempdir().expect("a folder");
         let file = folder.path().join("t.csv");
         files::write(&file, text)?;

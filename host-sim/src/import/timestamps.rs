@@ -27,7 +27,7 @@ impl Stamp {
         }
         let moment = cell.parse::<Timestamp>().ok();
         let moment = moment.or_else(|| TimeZone::UTC.to_timestamp(cell.parse::<DateTime>().ok()?).ok())?;
-        Some(Stamp::Moment(moment.as_nanosecond() as f64 / 1e6))
+        Some(Stamp::Moment(moment.as_microsecond() as f64 / 1e3))
     }
 }
 

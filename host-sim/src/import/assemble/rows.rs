@@ -62,23 +62,28 @@ impl Prepared {
         let (begin_ms, end_ms) = (samples[0].0, samples[samples.len() - 1].0 + AFTER_MS.max(robot.step_ms));
         let own_ms = |camera_ms: f64| (camera_ms - clocks.offset_ms) / (1.0 + clocks.drift);
         let mut runs: Vec<Run> = Vec::new();
-        for [from_ms, to_ms] in self.track.stretches(PAUSE_MS) {
-            let (from_ms, to_ms) = (own_ms(from_ms).max(begin_ms), own_ms(to_ms).min(end_ms));
+        for stretch in self.track.stretches(PAUSE_MS) {
+            let (from_ms, to_ms) = (own_ms(stretch[0]).max(begin_ms), own_ms(stretch[1]).min(end_ms));
             let steps = ((to_ms - from_ms) / robot.step_ms).floor();
             if steps < FEWEST_STEPS {
                 continue;
             }
-            let rows = (0..=steps as usize).map(|step| self.row(clocks, robot, from_ms, step as f64 * robot.step_ms));
+            let row = |step: usize| {
+                let since_ms = step as f64 * robot.step_ms;
+                // A rounding error does not lead out of the stretch.
+                let camera_ms = clocks.camera_ms(from_ms + since_ms).clamp(stretch[0], stretch[1]);
+                self.row(robot, from_ms, since_ms, camera_ms)
+            };
+            let rows = (0..=steps as usize).map(row);
             runs.push(Run { name: format!("run-{:03}", first + runs.len()), rows: rows.collect() });
         }
         runs
     }
 
-    /// The row at a time since the run began.
-    fn row(&self, clocks: &Clocks, robot: &Robot, begin_ms: f64, since_ms: f64) -> Row {
+    /// The row at a time since the run began, which is a time of the poses' clock.
+    fn row(&self, robot: &Robot, begin_ms: f64, since_ms: f64, camera_ms: f64) -> Row {
         let t_ms = begin_ms + since_ms;
         let [left, right] = self.commands.mean(t_ms, t_ms + robot.step_ms);
-        let camera_ms = clocks.camera_ms(t_ms);
         let reading =
             |readings: &Readings| readings.at(if readings.on_clock_of_poses { camera_ms } else { t_ms }, robot.step_ms);
         let echo_cm = self.readings.as_ref().and_then(reading);

@@ -98,7 +98,8 @@ fn what_cannot_be_read_is_refused_in_a_line() {
     assert!(refusal(b"").contains("ends before its first message"));
     assert!(refusal(b"SQLite format 3\0 and so on").contains("is no MCAP file"));
     let mut corrupt = drive(Some(Compression::Zstd));
-    corrupt[600..620].fill(0x55);
+    let name = corrupt.windows(4).position(|bytes| bytes == b"zstd").expect("a compressed chunk");
+    corrupt[name + 40..name + 60].fill(0x55);
     assert!(refusal(&corrupt).contains("is corrupt"), "{}", refusal(&corrupt));
     let nothing = bag(None, &[("/chatter", "std_msgs/msg/String", 1.0, cdr(&"hello"))]);
     assert!(refusal(&nothing).contains("has no commands") && refusal(&nothing).contains("of interest are none"));
