@@ -7,4 +7,4 @@ blind=$(mktemp -d)
 trap 'rm -r "$blind"' EXIT
 mindgap challenge make --cases 400 --seed 31415 --out "$blind/challenge"
 mindgap challenge answer "$blind/challenge"
-mindgap challenge score "$blind/challenge" --csv "$here/cases.csv" --json "$here/score.json"
+mindgap challenge score "$blind/challenge" --csv "$here/cases.csv" --json "$here/score.json" --force

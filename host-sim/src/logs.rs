@@ -7,6 +7,7 @@ mod columns;
 pub mod readings;
 mod resample;
 pub mod robot;
+mod row;
 pub mod run;
 pub mod samples;
 pub mod scene;
@@ -15,7 +16,8 @@ use std::fs;
 use std::path::Path;
 
 pub use robot::{Robot, Ultrasonic};
-pub use run::{Row, Run};
+pub use row::Row;
+pub use run::Run;
 pub use scene::Scene;
 
 use self::columns::{COLUMNS, REQUIRED, REQUIRED_WITHOUT_SENSOR};

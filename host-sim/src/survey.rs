@@ -48,9 +48,9 @@ impl Survey {
         let refused = inspected.refusal().map(str::to_owned);
         let missing_networks = train::unsupported(&inspected.logs);
         let coarse = in_steps_that_motion_shows_in(&inspected.logs);
-        let holds = Holdings::of(&inspected.logs, &coarse);
+        let holds = Holdings::of(&inspected.logs, coarse.as_ref().unwrap_or(&inspected.logs));
         let mut drive_more = advice::advice(&inspected.logs, &holds);
-        inspected.logs = coarse;
+        inspected.logs = enough_of(coarse.unwrap_or(inspected.logs));
         let untestable = match shown(&inspected) {
             Ok(Excitation { untestable, notes }) => {
                 drive_more.extend(notes);
@@ -66,6 +66,25 @@ impl Survey {
     }
 }
 
+/// What so many rows of random driving do not excite, more of them hardly would; each takes most of a kilobyte to judge.
+const ENOUGH_ROWS: usize = 100_000;
+/// So many runs are not made fewer.
+const ENOUGH_RUNS: usize = 100;
+
+/// Of large logs every so many runs, and of long ones the beginning.
+fn enough_of(mut logs: Logs) -> Logs {
+    let rows: usize = logs.runs.iter().map(|run| run.rows.len()).sum();
+    if rows <= ENOUGH_ROWS {
+        return logs;
+    }
+    let every = rows.div_ceil(ENOUGH_ROWS).min(logs.runs.len() / ENOUGH_RUNS).max(1);
+    let mut index = 0..;
+    logs.runs.retain(|_| index.next().is_some_and(|index: usize| index.is_multiple_of(every)));
+    let most = ENOUGH_ROWS / logs.runs.len().max(1);
+    logs.runs.iter_mut().for_each(|run| run.rows.truncate(most.max(2)));
+    logs
+}
+
 /// What a diagnosis against the textbook could show.
 fn shown(inspected: &Inspection) -> Result<Excitation> {
     if inspected.logs.runs.is_empty() {
@@ -74,10 +93,10 @@ fn shown(inspected: &Inspection) -> Result<Excitation> {
     excitation(kinematic::baseline(&inspected.logs), inspected)
 }
 
-/// Logs in the steps that a diagnosis compares.
-fn in_steps_that_motion_shows_in(logs: &Logs) -> Logs {
+/// Logs in the steps that a diagnosis compares, where those are longer.
+fn in_steps_that_motion_shows_in(logs: &Logs) -> Option<Logs> {
     let step_ms = condition::step_ms(logs.robot.step_ms);
-    if step_ms > logs.robot.step_ms { logs.in_steps_of(step_ms) } else { logs.clone() }
+    (step_ms > logs.robot.step_ms).then(|| logs.in_steps_of(step_ms))
 }
 
 #[cfg(test)]

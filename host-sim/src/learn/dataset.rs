@@ -33,29 +33,23 @@ pub struct Datasets {
 impl Datasets {
     /// Extracts the samples from logs.
     pub fn from_logs(logs: &Logs) -> Self {
-        let motion = samples::motion(logs);
-        let sonar = samples::sonar(logs);
-        let steps = |target: fn(&samples::MotionSample) -> f64| Dataset {
-            inputs: motion.iter().map(|s| s.speeds.map(|v| v as f32)).collect(),
-            targets: motion.iter().map(|s| target(s) as f32).collect(),
-            runs: motion.iter().map(|s| s.run).collect(),
-        };
+        let [mut turn, mut forward, mut lateral] = std::array::from_fn(|_| Dataset::default());
+        for step in samples::steps(logs) {
+            let inputs = step.speeds.map(|v| v as f32);
+            turn.push(inputs, step.turn_rad.to_degrees() as f32, step.run);
+            forward.push(inputs, step.forward_cm as f32, step.run);
+            lateral.push(inputs, step.lateral_cm as f32, step.run);
+        }
         let mut echo_probability = Dataset::default();
         let mut echo_value = Dataset::default();
-        for sample in &sonar {
+        for sample in samples::readings(logs) {
             let inputs = [sample.distance_cm as f32, sample.alpha_deg() as f32];
             echo_probability.push(inputs, f32::from(u8::from(sample.echo_cm.is_some())), sample.run);
             if let Some(echo_cm) = sample.echo_cm {
                 echo_value.push(inputs, echo_cm as f32, sample.run);
             }
         }
-        Datasets {
-            turn: steps(|s| s.turn_rad.to_degrees()),
-            forward: steps(|s| s.forward_cm),
-            lateral: steps(|s| s.lateral_cm),
-            echo_probability,
-            echo_value,
-        }
+        Datasets { turn, forward, lateral, echo_probability, echo_value }
     }
 }
 

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use csv::StringRecord;
 
-use super::Row;
+use super::row::Row;
 use crate::error::{Error, Result};
 use crate::geometry::Pose;
 
@@ -93,6 +93,22 @@ impl Columns {
             battery_mv,
         })
     }
+}
+
+/// The cells of a row, in the order of [`COLUMNS`].
+pub fn cells(row: &Row) -> [Option<f64>; COLUMNS.len()] {
+    [
+        Some(row.t_ms),
+        Some(row.left),
+        Some(row.right),
+        row.pose.map(|p| p.position_cm.x),
+        row.pose.map(|p| p.position_cm.y),
+        row.pose.map(|p| p.heading_rad.to_degrees()),
+        row.echo_cm,
+        row.rot_left_deg,
+        row.rot_right_deg,
+        row.battery_mv,
+    ]
 }
 
 /// Why columns are not found, as far as the header tells it.

@@ -5,10 +5,10 @@ use std::path::Path;
 
 use csv::{ReaderBuilder, StringRecord, Writer};
 
-use super::columns::{COLUMNS, Columns, REQUIRED};
+use super::columns::{COLUMNS, Columns, REQUIRED, cells};
+use super::row::Row;
 use crate::error::{Error, Result};
 use crate::files::{self, TextFile};
-use crate::geometry::Pose;
 
 /// One run of a robot: at least two rows in order of time.
 #[derive(Clone, Debug, PartialEq)]
@@ -17,27 +17,6 @@ pub struct Run {
     pub name: String,
     /// The rows.
     pub rows: Vec<Row>,
-}
-
-/// One row of a run.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Row {
-    /// Time since the run began, ms.
-    pub t_ms: f64,
-    /// Command of the left motor, set at this row and held until the next, -100..=100.
-    pub left: f64,
-    /// Command of the right motor, likewise.
-    pub right: f64,
-    /// Tracked pose of the axle's middle; `None` if the tracker lost the robot.
-    pub pose: Option<Pose>,
-    /// Ultrasonic reading, cm; `None` if the sensor produced no value.
-    pub echo_cm: Option<f64>,
-    /// Rotation counter of the left motor, degrees.
-    pub rot_left_deg: Option<f64>,
-    /// Rotation counter of the right motor, degrees.
-    pub rot_right_deg: Option<f64>,
-    /// Battery voltage, millivolts.
-    pub battery_mv: Option<f64>,
 }
 
 impl Run {
@@ -81,7 +60,7 @@ impl Run {
     /// # Errors
     /// When the file cannot be written.
     pub fn write(&self, path: &Path) -> Result<()> {
-        let cells: Vec<[Option<f64>; COLUMNS.len()]> = self.rows.iter().map(Row::cells).collect();
+        let cells: Vec<[Option<f64>; COLUMNS.len()]> = self.rows.iter().map(cells).collect();
         let written: Vec<usize> =
             (0..COLUMNS.len()).filter(|c| *c < REQUIRED || cells.iter().any(|row| row[*c].is_some())).collect();
         let mut writer = Writer::from_writer(Vec::new());
@@ -97,28 +76,6 @@ impl Run {
     /// Left and right command of the row before `k`; zeros at the first row, since motors start from rest.
     pub fn previous_command(&self, k: usize) -> [f64; 2] {
         if k == 0 { [0.0, 0.0] } else { self.rows[k - 1].command() }
-    }
-}
-
-impl Row {
-    /// Left and right command.
-    pub fn command(&self) -> [f64; 2] {
-        [self.left, self.right]
-    }
-
-    fn cells(&self) -> [Option<f64>; COLUMNS.len()] {
-        [
-            Some(self.t_ms),
-            Some(self.left),
-            Some(self.right),
-            self.pose.map(|p| p.position_cm.x),
-            self.pose.map(|p| p.position_cm.y),
-            self.pose.map(|p| p.heading_rad.to_degrees()),
-            self.echo_cm,
-            self.rot_left_deg,
-            self.rot_right_deg,
-            self.battery_mv,
-        ]
     }
 }
 

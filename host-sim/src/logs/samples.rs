@@ -1,7 +1,7 @@
 //! Training samples extracted from logs: motion and sonar (paper, section VI).
 
 use crate::geometry::cast;
-use crate::logs::Logs;
+use crate::logs::{Logs, Run};
 
 /// A step longer than this multiple of `step_ms` spans missing rows and is left out.
 const LONGEST_STEP: f64 = 1.5;
@@ -49,50 +49,51 @@ impl SonarSample {
 
 /// All steps between two rows with a tracked pose.
 pub fn motion(logs: &Logs) -> Vec<MotionSample> {
-    let mut samples = Vec::new();
-    for (run, r) in logs.runs.iter().enumerate() {
-        for (row, pair) in r.rows.windows(2).enumerate() {
-            let stretch = (pair[1].t_ms - pair[0].t_ms) / logs.robot.step_ms;
-            let (Some(from), Some(to)) = (pair[0].pose, pair[1].pose) else { continue };
-            if stretch > LONGEST_STEP {
-                continue;
-            }
-            let change = from.relative(&to);
-            let ([left, right], [previous_left, previous_right]) = (pair[0].command(), r.previous_command(row));
-            samples.push(MotionSample {
-                run,
-                row,
-                speeds: [left, right, previous_left, previous_right],
-                forward_cm: change.position_cm.x / stretch,
-                lateral_cm: change.position_cm.y / stretch,
-                turn_rad: change.heading_rad / stretch,
-            });
-        }
+    steps(logs).collect()
+}
+
+/// The same one by one, for logs that are large.
+pub fn steps(logs: &Logs) -> impl Iterator<Item = MotionSample> {
+    let step_ms = logs.robot.step_ms;
+    let rows = logs.runs.iter().enumerate().flat_map(|(run, r)| (1..r.rows.len()).map(move |end| (run, r, end - 1)));
+    rows.filter_map(move |(run, r, row)| step(step_ms, run, r, row))
+}
+
+/// The step from a row of a run.
+fn step(step_ms: f64, run: usize, r: &Run, row: usize) -> Option<MotionSample> {
+    let (begin, end) = (&r.rows[row], &r.rows[row + 1]);
+    let stretch = (end.t_ms - begin.t_ms) / step_ms;
+    let (from, to) = (begin.pose?, end.pose?);
+    if stretch > LONGEST_STEP {
+        return None;
     }
-    samples
+    let change = from.relative(&to);
+    let ([left, right], [previous_left, previous_right]) = (begin.command(), r.previous_command(row));
+    Some(MotionSample {
+        run,
+        row,
+        speeds: [left, right, previous_left, previous_right],
+        forward_cm: change.position_cm.x / stretch,
+        lateral_cm: change.position_cm.y / stretch,
+        turn_rad: change.heading_rad / stretch,
+    })
 }
 
 /// All rows with a tracked pose at which the sensor, if there is one, faced a wall or an edge.
 pub fn sonar(logs: &Logs) -> Vec<SonarSample> {
-    if logs.robot.ultrasonic.is_none() {
-        return Vec::new();
-    }
+    readings(logs).collect()
+}
+
+/// The same one by one, for logs that are large.
+pub fn readings(logs: &Logs) -> impl Iterator<Item = SonarSample> {
     let sides = logs.scene.sides();
-    let mut samples = Vec::new();
-    for (run, r) in logs.runs.iter().enumerate() {
-        for (row, logged) in r.rows.iter().enumerate() {
-            let Some(pose) = logged.pose else { continue };
-            let sensor = logs.robot.ultrasonic.pose_on(&pose);
-            if let Some(hit) = cast(&sides, sensor.position_cm, sensor.direction()) {
-                samples.push(SonarSample {
-                    run,
-                    row,
-                    distance_cm: hit.distance_cm,
-                    incidence_rad: hit.incidence_rad,
-                    echo_cm: logged.echo_cm,
-                });
-            }
-        }
-    }
-    samples
+    let sensor = Some(logs.robot.ultrasonic).filter(|sensor| !sensor.is_none());
+    let rows =
+        logs.runs.iter().enumerate().flat_map(|(run, r)| r.rows.iter().enumerate().map(move |(k, row)| (run, k, row)));
+    rows.filter_map(move |(run, row, logged)| {
+        let sensor = sensor?.pose_on(&logged.pose?);
+        let hit = cast(&sides, sensor.position_cm, sensor.direction())?;
+        let (distance_cm, incidence_rad) = (hit.distance_cm, hit.incidence_rad);
+        Some(SonarSample { run, row, distance_cm, incidence_rad, echo_cm: logged.echo_cm })
+    })
 }

@@ -87,15 +87,16 @@ impl Holdings {
         let times = || logs.runs.iter().flat_map(|run| run.rows.windows(2)).map(|pair| pair[1].t_ms - pair[0].t_ms);
         let step_ms = median(times());
         let duration_ms = logs.runs.iter().filter_map(|run| Some(run.rows.last()?.t_ms - run.rows.first()?.t_ms));
-        let (motion, sonar) = (samples::motion(coarse), samples::sonar(logs));
+        let motion = || samples::steps(coarse);
+        let faced: Vec<[f64; 2]> = samples::readings(logs).map(|s| [s.distance_cm, s.alpha_deg()]).collect();
         let per_s = 1000.0 / coarse.robot.step_ms;
         let held = held_steps(logs);
         let max_cm = logs.robot.ultrasonic.max_cm;
-        let facing = sonar.iter().filter(|s| s.distance_cm <= max_cm);
+        let facing = faced.iter().filter(|[distance_cm, _]| *distance_cm <= max_cm);
         Holdings {
             runs: logs.runs.len(),
             rows: count,
-            steps: samples::motion(logs).len(),
+            steps: samples::steps(logs).count(),
             duration_s: duration_ms.sum::<f64>() / 1000.0,
             step_ms,
             jitter_ms: usual(times().map(|ms| (ms - step_ms).abs()).collect()),
@@ -103,17 +104,17 @@ impl Holdings {
             with_reading: share(rows().filter(|row| row.echo_cm.is_some()).count()),
             left: Range::of(commands(logs).map(|[left, _]| left)),
             right: Range::of(commands(logs).map(|[_, right]| right)),
-            forward_cm_s: Range::of(motion.iter().map(|step| step.forward_cm * per_s)),
-            turn_deg_s: Range::of(motion.iter().map(|step| step.turn_rad.to_degrees() * per_s)),
+            forward_cm_s: Range::of(motion().map(|step| step.forward_cm * per_s)),
+            turn_deg_s: Range::of(motion().map(|step| step.turn_rad.to_degrees() * per_s)),
             reading_cm: Range::of(rows().filter_map(|row| row.echo_cm)),
-            distance_cm: Range::of(sonar.iter().map(|s| s.distance_cm)),
-            alpha_deg: Range::of(sonar.iter().map(|s| s.alpha_deg())),
+            distance_cm: Range::of(faced.iter().map(|[distance_cm, _]| *distance_cm)),
+            alpha_deg: Range::of(faced.iter().map(|[_, alpha_deg]| *alpha_deg)),
             command_coverage: covered(
                 commands(logs).map(|pair| pair.map(|c| (c + 100.0) / 200.0)),
                 [COMMAND_CELLS, COMMAND_CELLS],
             ),
             sensor_coverage: covered(
-                facing.map(|s| [s.distance_cm / max_cm, s.alpha_deg() / 90.0]),
+                facing.map(|[distance_cm, alpha_deg]| [distance_cm / max_cm, alpha_deg / 90.0]),
                 [DISTANCE_CELLS, ALPHA_CELLS],
             ),
             held_steps: median(held.iter().map(|n| *n as f64)),

@@ -1,0 +1,145 @@
+//! Faults of files as spreadsheets, loggers and people make them: `check` names each, and no diagnosis is made of them.
+//!
+//! Faults of what the numbers mean (units, frames, clocks) are in `tests/inspection.rs`.
+
+use mindgap_tests::command::Workshop;
+
+/// A fault of a run's file, and what has to be said of it.
+struct Fault {
+    what: &'static str,
+    told: &'static str,
+    put: fn(&str) -> Vec<u8>,
+}
+
+const fn fault(what: &'static str, told: &'static str, put: fn(&str) -> Vec<u8>) -> Fault {
+    Fault { what, told, put }
+}
+
+/// Those that keep the file from being read.
+const REFUSED: [Fault; 22] = [
+    fault("semicolons", ":1: the columns are parted by semicolons", |text| text.replace(',', ";").into()),
+    fault("tabs", ":1: the columns are parted by tabs", |text| text.replace(',', "\t").into()),
+    fault("blanks", ":1: the columns are parted by blanks", |text| text.replace(',', " ").into()),
+    fault("decimal commas", "write numbers with a decimal point", |text| {
+        text.replace(',', ";").replace('.', ",").into()
+    }),
+    fault("quoted decimal commas", ":2: x_cm = \"1,5\" is no number; write a decimal point", |text| {
+        with_cells(text, |_, cells| cells[3] = "\"1,5\"".into())
+    }),
+    fault("UTF-16 with a mark", ": is UTF-16", |text| {
+        [0xFEFF].into_iter().chain(text.encode_utf16()).flat_map(u16::to_le_bytes).collect()
+    }),
+    fault("UTF-16 without", ": is UTF-16", |text| text.encode_utf16().flat_map(u16::to_be_bytes).collect()),
+    fault("Latin-1", ":1: is no UTF-8: save it as UTF-8", |text| {
+        let (header, rows) = text.split_once("battery_mv").expect("a column");
+        [header.as_bytes(), b"ger\xE4usch", rows.as_bytes()].concat()
+    }),
+    fault("capitals", ":1: column t_ms is written in capitals", |text| {
+        let (header, rows) = text.split_once('\n').expect("a header");
+        format!("{}\n{rows}", header.to_uppercase()).into()
+    }),
+    fault("a commented header", ":1: the header begins with #", |text| format!("# {text}").into()),
+    fault("no header", ":1: there is no header: write t_ms,left,right,", |text| {
+        text.split_once('\n').expect("a header").1.into()
+    }),
+    fault("other names", ":1: columns left, right are missing; not known are l, r", |text| {
+        text.replacen("left,right", "l,r", 1).into()
+    }),
+    fault("Unix time in ms", "counts from 1970 in ms: write milliseconds since the run began", |text| {
+        with_cells(text, |t_ms, cells| cells[0] = format!("{}", 1_731_337_261_000 + t_ms))
+    }),
+    fault("Unix time in seconds", "counts from 1970 in s: write milliseconds since the run began", |text| {
+        with_cells(text, |t_ms, cells| cells[0] = format!("{}", 1_731_337_261.0 + t_ms as f64 / 1000.0))
+    }),
+    fault("dates", "it is a date; write milliseconds since the run began", |text| {
+        with_cells(text, |t_ms, cells| cells[0] = format!("2024-11-11T15:01:{:02}Z", t_ms / 1000))
+    }),
+    fault("two runs in one file", "does not come after the row before (10", |text| {
+        let rows = text.split_once('\n').expect("a header").1;
+        format!("{text}{rows}").into()
+    }),
+    fault("two files in one", "the header stands here again; give every run a file of its own", |text| {
+        format!("{text}{text}").into()
+    }),
+    fault("rows doubled", ":3: t_ms = 0 stands twice: write every row once", |text| {
+        let mut lines = text.lines();
+        let header = lines.next().expect("a header");
+        format!("{header}\n{}", lines.map(|line| format!("{line}\n{line}\n")).collect::<String>()).into()
+    }),
+    fault("a line torn", "cells where the header has 10: torn or wrong line", |text| {
+        let end = text.trim_end().rfind(',').expect("cells");
+        text[..end].into()
+    }),
+    fault("power of 0..255", "lies outside -100..100", |text| {
+        with_cells(text, |_, cells| {
+            let power: f64 = cells[1].parse().expect("a command");
+            cells[1] = (2.55 * power + 90.0 * power.signum()).to_string();
+        })
+    }),
+    fault("NaN where the tracker lost it", "leave the cell empty where there is none", |text| {
+        with_cells(text, |_, cells| cells[3..6].fill("NaN".into()))
+    }),
+    fault("words for nothing", "x_cm = \"NA\" is no number; leave the cell empty where there is none", |text| {
+        with_cells(text, |_, cells| cells[3..6].fill("NA".into()))
+    }),
+];
+
+/// Those of all runs together, after which they are not of their robot.
+const OF_ALL: [Fault; 2] = [
+    fault("every second row missing", "apart, but robot.toml has step_ms = 400", |text| {
+        let mut line = 0;
+        let is_kept = |_: &&str| {
+            line += 1;
+            line == 1 || line % 2 == 0
+        };
+        text.lines().filter(is_kept).map(|line| format!("{line}\n")).collect::<String>().into()
+    }),
+    fault("seconds", "t_ms seems to be in seconds; write milliseconds", |text| {
+        with_cells(text, |t_ms, cells| cells[0] = format!("{}", t_ms as f64 / 1000.0))
+    }),
+];
+
+/// Changes the cells of every row below the header; `change` is handed the row's time as well.
+fn with_cells(text: &str, change: impl Fn(u64, &mut [String])) -> Vec<u8> {
+    let (header, rows) = text.split_once('\n').expect("a header");
+    let changed = rows.lines().map(|row| {
+        let mut cells: Vec<String> = row.split(',').map(str::to_owned).collect();
+        change(cells[0].parse().expect("a time"), &mut cells);
+        cells.join(",") + "\n"
+    });
+    format!("{header}\n{}", changed.collect::<String>()).into()
+}
+
+fn assert_refused(good: &Workshop, fault: &Fault, runs: &[usize]) {
+    let workshop = good.copy();
+    for run in runs {
+        let file = format!("logs/run-{run:03}.csv");
+        workshop.write(&file, (fault.put)(&workshop.text(&file)));
+    }
+    for call in ["check logs", "diagnose kinematic logs --json diagnosis.json"] {
+        let refusal = workshop.refused(call);
+        assert!(refusal.contains(fault.told), "{}: {call}: {refusal}", fault.what);
+    }
+}
+
+#[test]
+fn what_cannot_be_read_is_named_and_not_diagnosed() {
+    let good = Workshop::with_logs();
+    REFUSED.iter().for_each(|fault| assert_refused(&good, fault, &[3]));
+    OF_ALL.iter().for_each(|fault| assert_refused(&good, fault, &[0, 1, 2, 3, 4, 5]));
+}
+
+/// Some editors write a mark that is no part of the text.
+#[test]
+fn a_byte_order_mark_is_told_and_harms_nothing() {
+    let workshop = Workshop::with_logs();
+    let good = workshop.done("check logs --json -");
+    for file in ["run-002.csv", "robot.toml", "scene.toml"].map(|name| format!("logs/{name}")) {
+        workshop.edit(&file, |text| format!("\u{FEFF}{text}"));
+    }
+    let done = workshop.call("check logs --json -");
+    assert_eq!((done.code, done.out), (0, good));
+    let told =
+        "mindgap: warning: logs/run-002.csv: begins with a byte order mark, which is passed over: save it without\n";
+    assert_eq!(done.err, told);
+}

@@ -1,0 +1,87 @@
+//! Messages that mend: what was found and what to write instead.
+
+use std::fs;
+
+use mindgap_tests::command::Workshop;
+use mindgap_tests::rooms::{SCENE, trained};
+
+#[test]
+fn keys_and_types_are_told_in_words_of_the_file() {
+    let workshop = Workshop::with_logs();
+    let refused = |file: &str, from: &str, to: &str| {
+        let before = workshop.text(file);
+        workshop.edit(file, |text| text.replacen(from, to, 1));
+        let refusal = workshop.refused("check logs");
+        workshop.write(file, before);
+        refusal
+    };
+    let refusal = refused("logs/scene.toml", "[[obstacle]]", "[[obstacles]]");
+    assert!(refusal.contains("the key `obstacles` is not known; known are `arena`, `obstacle`"), "{refusal}");
+    let refusal = refused("logs/robot.toml", "track_cm", "track_width_cm");
+    assert!(refusal.starts_with("logs/robot.toml:2: the key `track_width_cm` is not known"), "{refusal}");
+    let refusal = refused("logs/robot.toml", "track_cm = 11.5", "track_cm = \"11,5\"");
+    assert_eq!(refusal, "logs/robot.toml:2: found the text \"11,5\", expected a number");
+}
+
+const TUPLE: &str = "  { left = 55, right = 48, when = \"larger\", threshold_cm = 42 },\n";
+
+fn controller(step_ms: u32) -> String {
+    format!("step_ms = {step_ms}\nmax_steps = 10\ntuple = [\n{}]\n", TUPLE.repeat(6))
+}
+
+#[test]
+fn controllers_are_told_what_to_write() {
+    let workshop = trained();
+    workshop.write("scene.toml", SCENE);
+    workshop.write("c.toml", controller(400).replacen("left = 55", "left = \"fast\"", 1));
+    let refusal = workshop.refused("export c.toml --format nxc --out c.nxc");
+    assert_eq!(refusal, "c.toml:4: found the text \"fast\", expected a whole number from -128 to 127");
+    workshop.write("c.toml", controller(200));
+    let calls = [
+        "simulate sim.json c.toml --scene scene.toml",
+        "crosscheck sim.json logs --controller c.toml",
+        "diagnose sim.json logs --controller c.toml",
+    ];
+    for call in calls {
+        let refusal = workshop.refused(call);
+        let told = "c.toml: has step_ms = 200, but the simulator's steps are 400 ms: write step_ms = 400";
+        assert!(refusal.starts_with(told), "{call}: {refusal}");
+    }
+}
+
+#[test]
+fn logs_of_another_robot_are_not_judged() {
+    let workshop = trained();
+    workshop.edit("logs/robot.toml", |text| text.replace("track_cm = 11.5", "track_cm = 15"));
+    for call in ["evaluate sim.json logs", "crosscheck sim.json logs"] {
+        let refusal = workshop.refused(call);
+        assert!(refusal.contains("track_cm is 15 in the logs' robot.toml and 11.5 in the simulator"), "{refusal}");
+    }
+}
+
+#[test]
+fn the_same_is_told_once() {
+    let workshop = Workshop::with_logs();
+    for run in 0..6 {
+        workshop.edit(&format!("logs/run-00{run}.csv"), |text| text.replacen("battery_mv", "mood", 1));
+    }
+    let told = "mindgap: warning: logs/run-000.csv:1: column \"mood\" is not known and left out (and so in 6 files)\n";
+    assert_eq!(workshop.call("check logs").err, told);
+}
+
+#[test]
+fn names_of_files_move_no_cursor() {
+    let workshop = Workshop::with_logs();
+    let name = "lo\u{1b}[2Jgs\n";
+    fs::rename(workshop.path().join("logs"), workshop.path().join(name)).unwrap();
+    let mut command = workshop.command("check");
+    let done = command.arg(name).output().unwrap();
+    assert!(done.status.success());
+    fs::remove_file(workshop.path().join(name).join("robot.toml")).unwrap();
+    let done = command.output().unwrap();
+    let told = String::from_utf8(done.stderr).unwrap();
+    assert!(
+        told.starts_with("mindgap: lo\\u{1b}[2Jgs\\n/robot.toml: cannot be read") && told.lines().count() == 1,
+        "{told}"
+    );
+}
