@@ -48,7 +48,7 @@ impl Run for Brick {
     fn places(&self) -> Places {
         // Readings may be a list.
         let readings = PathBuf::from(&self.readings);
-        Places::default().reading([&self.program, &readings]).writing(&self.json, kinds::BRICK)
+        Places::default().reading([&self.program, &readings]).writing(&self.json, kinds::REPORT)
     }
 
     fn run(&self) -> Result<String> {

@@ -97,7 +97,7 @@ impl Run for Challenge {
             Part::Sensitivity { csv, .. } => places.writing(csv, kinds::UNSIGNED),
             Part::Answer { folder } => places.reading([folder]).filling(Folder(folder).answers()),
             Part::Score { folder, json, csv } => {
-                places.reading([folder]).writing(json, kinds::SCORE).writing(csv, kinds::UNSIGNED)
+                places.reading([folder]).writing(json, kinds::REPORT).writing(csv, kinds::UNSIGNED)
             }
         }
     }

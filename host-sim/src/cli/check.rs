@@ -21,7 +21,7 @@ pub struct Check {
 
 impl Run for Check {
     fn places(&self) -> Places {
-        Places::default().reading([&self.logs]).writing(&self.json, kinds::SURVEY)
+        Places::default().reading([&self.logs]).writing(&self.json, kinds::REPORT)
     }
 
     fn run(&self) -> Result<String> {

@@ -35,7 +35,7 @@ pub struct Crosscheck {
 impl Run for Crosscheck {
     fn places(&self) -> Places {
         let inputs = [&self.sim, &self.logs].into_iter().chain(&self.controller);
-        Places::default().reading(inputs).writing(&self.json, kinds::CROSSCHECK)
+        Places::default().reading(inputs).writing(&self.json, kinds::REPORT)
     }
 
     fn run(&self) -> Result<String> {

@@ -62,7 +62,7 @@ const KINEMATIC: &str = "kinematic";
 impl Run for Diagnose {
     fn places(&self) -> Places {
         let inputs = self.simulator_file().into_iter().chain([&self.logs]).chain(&self.controller).chain(&self.effects);
-        let places = Places::default().reading(inputs).writing(&self.json, kinds::DIAGNOSIS);
+        let places = Places::default().reading(inputs).writing(&self.json, kinds::REPORT);
         let places = places.writing(&self.html, kinds::PAGE).writing(&self.apply, kinds::SIMULATOR);
         places.writing(&self.formula, kinds::FORMULA).writing(&self.next_experiment, kinds::UNSIGNED)
     }

@@ -25,7 +25,7 @@ pub struct Evaluate {
 
 impl Run for Evaluate {
     fn places(&self) -> Places {
-        Places::default().reading([&self.sim, &self.logs]).writing(&self.json, kinds::EVALUATION)
+        Places::default().reading([&self.sim, &self.logs]).writing(&self.json, kinds::REPORT)
     }
 
     fn run(&self) -> Result<String> {

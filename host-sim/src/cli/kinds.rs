@@ -9,30 +9,8 @@ use crate::files::places::Kind;
 /// A simulator.
 pub const SIMULATOR: Kind =
     Kind { name: "a simulator", is_one: |content| has_keys(content, &["schema", "origin", "robot"]) };
-/// What `evaluate` found.
-pub const EVALUATION: Kind =
-    Kind { name: "an evaluation", is_one: |content| has_keys(content, &["schema", "networks"]) };
-/// What `simulate` found.
-pub const ROLLOUTS: Kind =
-    Kind { name: "a report of simulate", is_one: |content| has_keys(content, &["schema", "reached_within_cm"]) };
-/// What `crosscheck` found.
-pub const CROSSCHECK: Kind =
-    Kind { name: "a report of crosscheck", is_one: |content| has_keys(content, &["schema", "networks", "runs"]) };
-/// What `check` found.
-pub const SURVEY: Kind = Kind { name: "a report of check", is_one: |content| has_keys(content, &["schema", "holds"]) };
-/// What `diagnose` found.
-pub const DIAGNOSIS: Kind = Kind { name: "a diagnosis", is_one: |content| has_keys(content, &["schema", "verdict"]) };
-/// What `import` did.
-pub const IMPORT: Kind =
-    Kind { name: "a report of import", is_one: |content| has_keys(content, &["schema", "tracks", "logs"]) };
-/// What `import streams` and `import bag` did.
-pub const RECORDINGS: Kind =
-    Kind { name: "a report of import", is_one: |content| has_keys(content, &["schema", "recordings", "sides"]) };
-/// What a brick did.
-pub const BRICK: Kind =
-    Kind { name: "a report of brick", is_one: |content| has_keys(content, &["schema", "events", "motors"]) };
-/// The score of a challenge.
-pub const SCORE: Kind = Kind { name: "a score", is_one: |content| has_keys(content, &["false_alarms", "detected"]) };
+/// What a command found, as `--json` has it.
+pub const REPORT: Kind = Kind { name: "a report", is_one: is_report };
 /// A controller that was evolved: one without an origin is somebody's own.
 pub const CONTROLLER: Kind = Kind {
     name: "an evolved controller",
@@ -69,6 +47,14 @@ const FIRST_LINES: usize = 4;
 fn is_program(content: &[u8]) -> bool {
     let mut first_lines = text(content).lines().take(FIRST_LINES);
     content.starts_with(EXECUTABLE) || first_lines.any(|line| PROGRAMS.iter().any(|sign| line.contains(sign)))
+}
+
+/// Keys of which every report has one, and no other JSON file of mindgap.
+const REPORTS: [&str; 8] =
+    ["networks", "reached_within_cm", "holds", "verdict", "tracks", "recordings", "events", "false_alarms"];
+
+fn is_report(content: &[u8]) -> bool {
+    REPORTS.iter().any(|key| has_keys(content, &[key])) && !(SIMULATOR.is_one)(content)
 }
 
 /// Whether content is a JSON object with these keys.

@@ -48,7 +48,7 @@ const ROWS: usize = 20;
 impl Run for Simulate {
     fn places(&self) -> Places {
         let inputs = [&self.sim, &self.controller, &self.scene];
-        Places::default().reading(inputs).writing(&self.json, kinds::ROLLOUTS)
+        Places::default().reading(inputs).writing(&self.json, kinds::REPORT)
     }
 
     fn run(&self) -> Result<String> {

@@ -115,7 +115,9 @@ pub fn cells(row: &Row) -> [Option<f64>; COLUMNS.len()] {
 fn without(missing: &[&str], header: &StringRecord, unknown: &[&str]) -> String {
     let first = header.get(0).unwrap_or_default();
     let other_separator = [(';', "semicolons"), ('\t', "tabs"), ('|', "bars"), (' ', "blanks")];
-    if let Some((_, name)) = other_separator.into_iter().find(|(c, _)| header.len() == 1 && first.contains(*c)) {
+    let is_known = |name: &str| COLUMNS.iter().any(|column| column.eq_ignore_ascii_case(name));
+    let parts = |(c, _): &(char, &str)| header.len() == 1 && first.contains(*c) && first.split(*c).any(is_known);
+    if let Some((_, name)) = other_separator.into_iter().find(parts) {
         return format!(
             "the columns are parted by {name}: part them by commas, and write numbers with a decimal point"
         );

@@ -63,7 +63,8 @@ impl Robot {
             return Err(Error::in_file(path, format!("{name} = {value} must lie between 0 and 100000")));
         }
         let is_within = [sonar.x_cm, sonar.y_cm, sonar.yaw_deg, sonar.max_cm].iter().all(|v| v.abs() < 1e5);
-        if !sonar.is_none() && !(is_within && (0.0..sonar.max_cm).contains(&sonar.min_cm)) {
+        let is_possible = is_within && (0.0..sonar.max_cm).contains(&sonar.min_cm);
+        if !(sonar.is_none() || is_possible) {
             return Err(Error::in_file(path, "[ultrasonic] needs numbers within 100000 and 0 <= min_cm < max_cm"));
         }
         Ok(robot)

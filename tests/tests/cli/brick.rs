@@ -129,6 +129,6 @@ fn a_collecting_program_that_cannot_be_is_refused() {
     assert!(refused("--format nxc-collect --step-ms 50").starts_with("c.nxc: "));
     assert!(refused("--format nxc-collect --steps 60000").starts_with("c.nxc: "));
     let no_script = refused("controller.toml --format nxc-collect");
-    assert_eq!(no_script, "controller.toml:1: column t_ms is missing");
+    assert!(no_script.starts_with("controller.toml:1: columns t_ms, left, right,"), "{no_script}");
     assert_eq!(workshop.call("export --format nxc --out c.nxc").code, 2);
 }

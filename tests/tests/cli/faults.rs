@@ -54,7 +54,7 @@ const REFUSED: [Fault; 22] = [
     fault("dates", "it is a date; write milliseconds since the run began", |text| {
         with_cells(text, |t_ms, cells| cells[0] = format!("2024-11-11T15:01:{:02}Z", t_ms / 1000))
     }),
-    fault("two runs in one file", "does not come after the row before (10", |text| {
+    fault("two runs in one file", "does not come after the row before (", |text| {
         let rows = text.split_once('\n').expect("a header").1;
         format!("{text}{rows}").into()
     }),

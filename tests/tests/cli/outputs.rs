@@ -54,7 +54,8 @@ fn a_file_is_replaced_by_its_own_kind_alone() {
         assert!(refusal.contains("is there already and is not a simulator that mindgap wrote"), "{refusal}");
     }
     only_with_force(&workshop, "train logs --out notes.txt", "is not a simulator");
-    only_with_force(&workshop, "check logs --json figures.json", "is not a report of check");
+    workshop.done("check logs --json figures.json");
+    only_with_force(&workshop, "check logs --json sim.json", "is not a report that mindgap wrote");
 }
 
 /// A controller that somebody wrote by hand says nothing of where it came from.
