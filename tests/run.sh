@@ -31,6 +31,8 @@ need_component() {
 command -v cargo >/dev/null || { echo "cargo is missing: install Rust from https://rustup.rs" >&2; exit 1; }
 need cc gcc
 need nbc nbc
+# With its venv, which Debian packs apart.
+python3 -c 'import ensurepip' 2>/dev/null || need python3-venv python3-venv
 need_component fmt rustfmt
 need_component clippy clippy
 

@@ -17,6 +17,7 @@ mod evolve;
 mod export;
 mod import;
 mod kinds;
+mod new;
 mod progress;
 mod record;
 mod simulate;
@@ -64,6 +65,7 @@ enum Command {
     Simulate(simulate::Simulate),
     Export(export::Export),
     Import(import::Import),
+    New(new::New),
 }
 
 /// A command.
@@ -91,6 +93,7 @@ impl Command {
             Command::Simulate(command) => command,
             Command::Export(command) => command,
             Command::Import(command) => command,
+            Command::New(command) => command,
         }
     }
 }

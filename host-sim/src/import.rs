@@ -1,135 +1,28 @@
-//! Imports recordings of a real robot: merges a brick's logs and a camera's tracks into a folder of logs.
+//! Imports recordings of a real robot as a folder of logs.
 //!
-//! Brick and camera have clocks of their own. [`clocks`] aligns them by matching the motion of the wheels with the motion
-//! that the camera saw; the camera's poses are then interpolated at the times of the brick's rows. [`brick_log`] and
-//! [`track`] read the files, [`motion`] reduces both to cumulative motion. The [`Report`] names everything left out.
+//! - [`brick`]: a brick's logs and a camera's tracks. [`brick_log`] and [`track`] read them, and [`clocks`] aligns theirs.
+//! - [`streams`] and [`bag`]: commands, poses and readings as CSV or as a ROS 2 bag. Both become [`recording`]s, which
+//!   [`assemble`] puts together; [`draft`] writes what is known of the robot, and marks the rest.
+//!
+//! Wherever two sources meet, [`sides`] holds their motion against each other in one unit. Reports name everything that was
+//! guessed, changed or left out.
 
+pub mod assemble;
+pub mod bag;
+pub mod brick;
 pub mod brick_log;
 pub mod clocks;
+mod columns;
+pub mod draft;
 pub mod frame;
+pub mod mapping;
 pub mod motion;
-mod report;
+mod quantities;
+pub mod recording;
+pub mod report;
+pub mod sides;
+pub mod streams;
+mod table;
+mod timestamps;
 pub mod track;
 pub mod units;
-
-use std::path::PathBuf;
-
-pub use self::report::{LogReport, Report, RunReport, TrackReport};
-
-use self::brick_log::BrickLog;
-use self::clocks::{Alignment, align};
-use self::track::{Sighting, Track};
-use self::units::Units;
-use crate::error::{Error, Result};
-use crate::logs::{Logs, Robot, Row, Run, Scene};
-
-/// Largest share of the motion's variance that an alignment may leave unexplained; slipping wheels or a rotated camera
-/// frame stay far below it.
-const MOST_UNEXPLAINED: f64 = 0.3;
-/// The unexplained share must be at most this fraction of that of any other alignment.
-const CLEARLY: f64 = 0.5;
-/// Largest drift between two working clocks: 5 ms a second.
-const MOST_DRIFT: f64 = 5e-3;
-
-/// Merges brick logs and tracks, which are distinguished by their headers. `warn` receives one line for each oddity.
-///
-/// # Errors
-/// When a file cannot be read or parsed, when there is no log or no track, or when no log matches a track.
-pub fn import(
-    files: &[PathBuf],
-    units: &Units,
-    robot: Robot,
-    scene: Scene,
-    mut warn: impl FnMut(String),
-) -> Result<(Logs, Report)> {
-    let (mut logs, mut tracks) = (Vec::new(), Vec::new());
-    for file in files {
-        if brick_log::is_one(file)? {
-            logs.push(BrickLog::read(file, &mut warn)?);
-        } else {
-            tracks.push(Track::read(file, units, &robot)?);
-        }
-    }
-    if logs.is_empty() || tracks.is_empty() {
-        let what =
-            if logs.is_empty() { "log of a brick (columns t_ms, left, right, ...)" } else { "track of a camera" };
-        return Err(Error::new(format!("none of the files is a {what}")));
-    }
-    let mut runs = Vec::new();
-    let mut reports = Vec::new();
-    for log in logs {
-        let BrickLog { file, torn, .. } = &log;
-        let report = LogReport { file: file.clone(), torn: *torn, run: None, left_out: None };
-        reports.push(match matched(&log, &tracks, &robot) {
-            Ok((track, found)) => {
-                let (run, report_of_run) = merged(&log, track, &found, format!("run-{:03}", runs.len()));
-                runs.push(run);
-                LogReport { run: Some(report_of_run), ..report }
-            }
-            Err(why) => LogReport { left_out: Some(why), ..report },
-        });
-    }
-    if runs.is_empty() {
-        let first = &reports[0];
-        return Err(Error::in_file(&first.file, first.left_out.clone().unwrap_or_default()));
-    }
-    let tracks = tracks.iter().map(|t| TrackReport { file: t.file.clone(), ..t.report() }).collect();
-    let logs = Logs { robot, scene, runs };
-    logs.check_step(&reports[0].file)?;
-    Ok((logs, Report { tracks, logs: reports }))
-}
-
-/// The track that matches a log best and their alignment, or the reason why none does.
-fn matched<'a>(
-    log: &BrickLog,
-    tracks: &'a [Track],
-    robot: &Robot,
-) -> std::result::Result<(&'a Track, Alignment), String> {
-    let by_wheels = motion::by_wheels(&log.run.rows, robot);
-    let found = tracks.iter().filter_map(|track| Some((track, align(&by_wheels, &track.motion())?)));
-    let Some((track, found)) = found.min_by(|a, b| a.1.unexplained.total_cmp(&b.1.unexplained)) else {
-        return Err("no track overlaps it by half of its steps, or nothing moved".into());
-    };
-    let percent = |share: f64| format!("{:.0} %", 100.0 * share);
-    if found.unexplained > MOST_UNEXPLAINED {
-        return Err(format!(
-            "no track saw it: wheels and camera differ in {} of the motion at best",
-            percent(found.unexplained)
-        ));
-    }
-    if found.unexplained > CLEARLY * found.unexplained_elsewhere {
-        return Err(format!(
-            "it matches {} at more than one time: {} and {} of the motion differ",
-            track.file.display(),
-            percent(found.unexplained),
-            percent(found.unexplained_elsewhere)
-        ));
-    }
-    if found.clocks.drift.abs() > MOST_DRIFT {
-        return Err(format!(
-            "its clock and that of {} run apart by {:.1} ms a second",
-            track.file.display(),
-            1000.0 * found.clocks.drift
-        ));
-    }
-    Ok((track, found))
-}
-
-/// The log's rows with the camera's poses at their times.
-fn merged(log: &BrickLog, track: &Track, found: &Alignment, name: String) -> (Run, RunReport) {
-    let clocks = &found.clocks;
-    let seen: Vec<Sighting> = log.run.rows.iter().map(|row| track.at(clocks.camera_ms(row.t_ms))).collect();
-    let rows = log.run.rows.iter().zip(&seen).map(|(row, seen)| Row { pose: seen.pose(), ..*row });
-    let run = Run { name: name.clone(), rows: rows.collect() };
-    let report = RunReport {
-        name,
-        track: track.file.clone(),
-        offset_ms: clocks.offset_ms,
-        drift: clocks.drift,
-        unexplained: found.unexplained,
-        rows: seen.len(),
-        outside: seen.iter().filter(|s| **s == Sighting::Outside).count(),
-        in_gaps: seen.iter().filter(|s| **s == Sighting::Lost).count(),
-    };
-    (run, report)
-}

@@ -23,6 +23,7 @@ mod units;
 mod ways;
 
 pub use finding::{Finding, Handling, Part, Place};
+pub use frames::Orientation;
 
 use crate::logs::Logs;
 

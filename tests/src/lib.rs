@@ -1,5 +1,5 @@
 //! What the tests share: the built command, golden files, bricks on board the built-in robot, error bounds of fixed
-//! point, the compiler for NXT programs, and which modules of a crate know which.
+//! point, the compiler for NXT programs, ROS 2 bags, and which modules of a crate know which.
 
 pub mod command;
 pub mod controllers;
@@ -13,3 +13,4 @@ pub mod nbc;
 pub mod on_board;
 pub mod plausible_networks;
 pub mod rooms;
+pub mod ros_bags;

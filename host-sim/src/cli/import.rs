@@ -1,20 +1,39 @@
 //! `mindgap import`
 
+mod recordings;
+
 use std::path::PathBuf;
 
-use clap::Args;
+use clap::{Args, Subcommand};
 use serde_json::json;
 
 use super::{Run, kinds, table, warn};
 use crate::error::Result;
 use crate::files::places::Places;
+use crate::import::brick::import;
+use crate::import::report::{LogReport, Report, RunReport, TrackReport};
 use crate::import::units::{Angle, Length, Time, Units};
-use crate::import::{LogReport, Report, RunReport, TrackReport, import};
 use crate::logs::{Robot, Scene};
 
-/// Bring a brick's logs and a camera's tracks together as a folder of logs.
+/// Make a folder of logs of what a robot recorded: a brick's logs and a camera's tracks, streams as CSV, or ROS 2 bags.
 #[derive(Args)]
+#[command(args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
 pub struct Import {
+    #[command(subcommand)]
+    way: Option<Way>,
+    #[command(flatten)]
+    brick: Option<Brick>,
+}
+
+#[derive(Subcommand)]
+enum Way {
+    Streams(recordings::Streams),
+    Bag(recordings::Bag),
+}
+
+/// Bring a brick's logs and a camera's tracks together.
+#[derive(Args)]
+struct Brick {
     /// Logs of the brick and tracks of the camera, in any order; their first lines tell them apart. Tracks are CSV with
     /// time, x, y and heading (time_s, x_m, y_m, yaw_rad and the like), or what Motive exports of a rigid body.
     #[arg(value_name = "BRICK_LOG|CAMERA_TRACK", required = true)]
@@ -42,7 +61,28 @@ pub struct Import {
     json: Option<PathBuf>,
 }
 
+impl Import {
+    /// The way that was called: clap leaves none out.
+    fn way(&self) -> Option<&dyn Run> {
+        match &self.way {
+            Some(Way::Streams(streams)) => Some(streams),
+            Some(Way::Bag(bag)) => Some(bag),
+            None => self.brick.as_ref().map(|brick| brick as &dyn Run),
+        }
+    }
+}
+
 impl Run for Import {
+    fn places(&self) -> Places {
+        self.way().map(Run::places).unwrap_or_default()
+    }
+
+    fn run(&self) -> Result<String> {
+        self.way().map_or(Ok(String::new()), Run::run)
+    }
+}
+
+impl Run for Brick {
     fn places(&self) -> Places {
         let inputs = self.files.iter().chain([&self.scene, &self.robot]);
         Places::default().reading(inputs).filling(&self.out).writing(&self.json, kinds::REPORT)

@@ -74,6 +74,6 @@ mod tests {
     #[test]
     fn without_rotation_counters_the_clock_cannot_be_aligned() {
         let error = read("t_ms,left,right,echo_cm\n0,1,1,\n400,1,1,\n").expect_err("no counters");
-        assert!(error.to_string().contains(":1: column rot_left_deg is missing"), "{error}");
+        assert!(error.to_string().contains(":1: columns rot_left_deg, rot_right_deg are missing"), "{error}");
     }
 }

@@ -30,8 +30,29 @@ pub struct Alignment {
     pub steps: usize,
 }
 
+/// Why an alignment is not to be trusted.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Doubt {
+    /// Even the best one leaves much of the motion unexplained.
+    Differs,
+    /// Another one is nearly as good.
+    Repeats,
+    /// The clocks would run apart faster than working clocks do.
+    Drifts,
+}
+
+/// Largest share of the motion's variance that an alignment may leave unexplained; slipping wheels or a rotated camera
+/// frame stay far below it.
+const MOST_UNEXPLAINED: f64 = 0.3;
+/// The unexplained share must be at most this fraction of that of any other alignment.
+const CLEARLY: f64 = 0.5;
+/// Largest drift between two working clocks: 5 ms a second.
+const MOST_DRIFT: f64 = 5e-3;
+
 /// Spacing of the offsets in the exhaustive search.
 const SEARCH_STEP_MS: f64 = 20.0;
+/// With more comparisons of steps the search takes minutes.
+const MOST_COMPARISONS: f64 = 1e8;
 /// Offsets closer than this belong to the same alignment.
 const ELSEWHERE_MS: f64 = 600.0;
 /// Least share of the log's steps that the track has to cover.
@@ -58,24 +79,53 @@ impl Clocks {
     }
 }
 
+impl Alignment {
+    /// Why it is not to be trusted; `None` if it is.
+    pub fn doubt(&self) -> Option<Doubt> {
+        if self.unexplained > MOST_UNEXPLAINED {
+            Some(Doubt::Differs)
+        } else if self.unexplained > CLEARLY * self.unexplained_elsewhere {
+            Some(Doubt::Repeats)
+        } else if self.clocks.drift.abs() > MOST_DRIFT {
+            Some(Doubt::Drifts)
+        } else {
+            None
+        }
+    }
+}
+
 /// The alignment with the least unexplained motion; `None` if no offset makes track and log overlap enough, or nothing
 /// moves.
 pub fn align(log: &[CumulativeMotion], track: &[CumulativeMotion]) -> Option<Alignment> {
     let (first_ms, last_ms) = (track.first()?.t_ms, track.last()?.t_ms);
     let (from_ms, to_ms) = (log.first()?.t_ms, log.last()?.t_ms);
-    let offsets = (last_ms - from_ms - (first_ms - to_ms)) / SEARCH_STEP_MS;
-    let tried: Vec<(f64, f64)> = (0..=offsets as usize)
-        .filter_map(|i| {
-            let offset_ms = first_ms - to_ms + SEARCH_STEP_MS * i as f64;
-            Some((offset_ms, Misfit::of(&Clocks { offset_ms, drift: 0.0 }, log, track)?.mean()))
-        })
-        .collect();
+    let span_ms = last_ms - from_ms - (first_ms - to_ms);
+    // Twice as long recordings are searched half as finely beyond what takes seconds: the refinement finds the rest.
+    let step_ms = SEARCH_STEP_MS.max(span_ms * log.len() as f64 / MOST_COMPARISONS);
+    let tried = tried(log, track, (0..=(span_ms / step_ms) as usize).map(|i| first_ms - to_ms + step_ms * i as f64));
     let best = tried.iter().min_by(|a, b| a.1.total_cmp(&b.1))?;
     let elsewhere = tried.iter().filter(|(ms, _)| (ms - best.0).abs() > ELSEWHERE_MS).map(|(_, left)| *left);
     let unexplained_elsewhere = elsewhere.fold(1.0, f64::min);
     let clocks = refine(best.0, log, track);
     let misfit = Misfit::of(&clocks, log, track)?;
     Some(Alignment { clocks, unexplained: misfit.mean(), unexplained_elsewhere, steps: misfit.steps })
+}
+
+/// The least unexplained share among clocks that are one but for a lag of at most `most_ms`, and that lag, ms.
+pub fn lag(log: &[CumulativeMotion], track: &[CumulativeMotion], most_ms: f64) -> Option<(f64, f64)> {
+    let steps = (most_ms / SEARCH_STEP_MS) as i32;
+    let tried = tried(log, track, (-steps..=steps).map(|i| SEARCH_STEP_MS * f64::from(i)));
+    tried.into_iter().min_by(|a, b| a.1.total_cmp(&b.1))
+}
+
+/// The unexplained share at each offset, ms, that makes track and log overlap enough.
+fn tried(
+    log: &[CumulativeMotion],
+    track: &[CumulativeMotion],
+    offsets_ms: impl Iterator<Item = f64>,
+) -> Vec<(f64, f64)> {
+    let unexplained = |offset_ms| Some(Misfit::of(&Clocks { offset_ms, drift: 0.0 }, log, track)?.mean());
+    offsets_ms.filter_map(|offset_ms| Some((offset_ms, unexplained(offset_ms)?))).collect()
 }
 
 /// Refines offset and drift jointly about the middle of the log, where they are uncorrelated. From each initial drift the

@@ -51,7 +51,14 @@ impl Track {
         let text = crate::files::read_text(file)?;
         let frames =
             if motive::is_one(&text) { motive::frames(file, &text) } else { columns::frames(file, &text, units) };
-        let frames = frames?;
+        Track::of(file, frames?, robot)
+    }
+
+    /// A track of frames, `None` where the robot was lost.
+    ///
+    /// # Errors
+    /// When a frame does not come after the one before, or when the robot was seen in fewer than two.
+    pub fn of(file: &Path, frames: Vec<Option<Frame>>, robot: &Robot) -> Result<Self> {
         let all = frames.len();
         let seen: Vec<Frame> = frames.into_iter().flatten().collect();
         let (lost, whole) = (all - seen.len(), seen.len());
@@ -64,6 +71,22 @@ impl Track {
             return Err(Error::in_file(file, format!("has {} frame(s) in which the robot was seen", frames.len())));
         }
         Ok(Track { file: file.to_owned(), lost, jumps: whole - frames.len(), frames })
+    }
+
+    /// A track of frames that are known to be in order and within reach.
+    pub fn without_check(file: &Path, frames: Vec<Frame>) -> Self {
+        Track { file: file.to_owned(), frames, lost: 0, jumps: 0 }
+    }
+
+    /// The frames in which the robot was seen.
+    pub fn frames(&self) -> &[Frame] {
+        &self.frames
+    }
+
+    /// When stretches begin and end in which frames are at most `pause_ms` apart.
+    pub fn stretches(&self, pause_ms: f64) -> Vec<[f64; 2]> {
+        let stretches = self.frames.chunk_by(|a, b| b.t_ms - a.t_ms <= pause_ms);
+        stretches.map(|stretch| [stretch[0].t_ms, stretch[stretch.len() - 1].t_ms]).collect()
     }
 
     /// Number of frames and of those left out.
@@ -80,6 +103,9 @@ impl Track {
     /// The robot's pose at a time on the camera's clock, interpolated between two frames.
     pub fn at(&self, t_ms: f64) -> Sighting {
         let after = self.frames.partition_point(|frame| frame.t_ms < t_ms);
+        if let Some(exact) = self.frames.get(after).filter(|frame| frame.t_ms == t_ms) {
+            return Sighting::At(exact.pose);
+        }
         let (Some(after), Some(before)) = (self.frames.get(after), after.checked_sub(1).map(|i| &self.frames[i]))
         else {
             return Sighting::Outside;

@@ -48,14 +48,30 @@ pub fn most_share(shares: &[f64; 8]) -> (usize, f64) {
     most
 }
 
+/// How the frame of a track lies against the way that its robot goes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Orientation {
+    /// In which of the [`directions`] it goes: 0 where it heads, or where that cannot be told.
+    pub going: usize,
+    /// Whether it turns against the commands.
+    pub is_reversed: bool,
+}
+
+impl Orientation {
+    /// That of logs.
+    pub fn of(logs: &Logs) -> Self {
+        let ways = ways(logs);
+        let going = directions(&ways, &logs.robot).map_or(0, |shares| match most_share(&shares) {
+            (best, share) if share >= DECISIVE && shares[0] <= LEFT => best,
+            _ => 0,
+        });
+        Orientation { going, is_reversed: turns_are_reversed(&ways) }
+    }
+}
+
 /// Tells frames that do not fit the motion, or do not fit the walls.
 pub fn check(logs: &Logs) -> Vec<Finding> {
-    let ways = ways(logs);
-    let going = directions(&ways, &logs.robot).map_or(0, |shares| match most_share(&shares) {
-        (best, share) if share >= DECISIVE && shares[0] <= LEFT => best,
-        _ => 0,
-    });
-    let is_reversed = turns_are_reversed(&ways);
+    let Orientation { going, is_reversed } = Orientation::of(logs);
     let (id, sentence): (_, &str) = match (going, is_reversed) {
         (0, false) => return against_walls(logs, &EVEN, "frame_turned").into_iter().collect(),
         (0, true) => {

@@ -4,6 +4,7 @@ use glam::DVec2;
 
 use crate::geometry::wrap_rad;
 use crate::logs::{Logs, Robot};
+use crate::statistics::summary::robust_slope;
 
 /// A way takes at least this long: within it even a slow robot covers more than a camera's centimetre of noise. Rows that
 /// are farther apart make a way each.
@@ -118,7 +119,7 @@ pub struct Gains {
 }
 
 impl Gains {
-    /// By least absolute deviations, which half of the ways may be wrong without moving.
+    /// By least absolute deviations.
     pub fn of(ways: &[Way], robot: &Robot) -> Self {
         let length = straight(ways, robot).into_iter().map(|way| (way.chord_cm.length(), way.asked.forward_cm.abs()));
         let turn = turning(ways).into_iter().map(|way| (way.turn_rad, way.asked.turn_rad));
@@ -126,18 +127,7 @@ impl Gains {
     }
 }
 
-/// The slope through the origin of least absolute deviations, of pairs (done, asked): the median of their ratios, weighted
-/// by what is asked.
+/// The slope of what is done over what is asked; none of few.
 fn slope(pairs: Vec<(f64, f64)>) -> Option<f64> {
-    if pairs.len() < FEWEST {
-        return None;
-    }
-    let mut ratios: Vec<(f64, f64)> = pairs.into_iter().map(|(done, asked)| (done / asked, asked.abs())).collect();
-    ratios.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let half = ratios.iter().map(|(_, weight)| weight).sum::<f64>() / 2.0;
-    let mut below = 0.0;
-    ratios.into_iter().find_map(|(ratio, weight)| {
-        below += weight;
-        (below >= half).then_some(ratio)
-    })
+    if pairs.len() < FEWEST { None } else { robust_slope(pairs.into_iter()) }
 }

@@ -16,6 +16,20 @@ pub fn median(values: impl Iterator<Item = f64>) -> f64 {
     *values.select_nth_unstable_by(middle, f64::total_cmp).1
 }
 
+/// The slope through the origin of least absolute deviations, of pairs (y, x): the median of their ratios, weighted by x.
+/// Half of the pairs may be wrong without moving it. `None` where every x is zero.
+pub fn robust_slope(pairs: impl Iterator<Item = (f64, f64)>) -> Option<f64> {
+    let pairs = pairs.filter(|(_, x)| *x != 0.0);
+    let mut ratios: Vec<(f64, f64)> = pairs.map(|(y, x)| (y / x, x.abs())).collect();
+    ratios.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let half = ratios.iter().map(|(_, weight)| weight).sum::<f64>() / 2.0;
+    let mut below = 0.0;
+    ratios.into_iter().find_map(|(ratio, weight)| {
+        below += weight;
+        (below >= half).then_some(ratio)
+    })
+}
+
 /// The logistic function: the probability whose log-odds are `x`.
 pub fn logistic(x: f64) -> f64 {
     1.0 / (1.0 + libm::exp(-x))

@@ -14,6 +14,8 @@ mod diagnose_logs;
 mod faults;
 mod golden_files;
 mod import;
+mod import_recordings;
 mod messages;
+mod new;
 mod no_sensor;
 mod outputs;

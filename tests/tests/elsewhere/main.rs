@@ -5,6 +5,7 @@ mod gap_cases;
 mod gap_real;
 mod injections;
 mod inspection;
+mod own_robot;
 mod reading;
 mod sonar_law;
 
@@ -33,6 +34,7 @@ fn main() -> ExitCode {
         trial!(inspection::a_drive_cut_into_runs_starts_moving, "real/create"),
         trial!(inspection::faults_of_another_robots_logs_are_found, "data/nominal-holdout"),
         trial!(inspection::faults_of_a_real_drives_logs_are_found, "real/create"),
+        trial!(own_robot::streams_lead_to_the_causes_in_three_commands, "real/create"),
         trial!(reading::nominal_logs_are_read_without_a_warning, "data"),
         trial!(reading::a_real_sonar_that_stands_still_trains_the_two_sonar_networks, "real/nxt-sonar/kentheo"),
         trial!(sonar_law::a_scan_elsewhere_is_likely_by_the_first_echo_law, "real/nxt-sonar/chunnx"),

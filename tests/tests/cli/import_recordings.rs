@@ -1,0 +1,226 @@
+//! `mindgap import streams` and `mindgap import bag` on a drive that is known exactly.
+
+use std::fmt::Write;
+
+use mindgap_host_sim::geometry::Pose;
+use mindgap_host_sim::logs::{Logs, Row};
+use mindgap_tests::command::Workshop;
+use mindgap_tests::ros_bags;
+
+const STREAMS: &str = "import streams command.csv track.csv --robot robot.toml --out logs --json report.json";
+const ROBOT: &str = "wheel_diameter_cm = 6\ntrack_cm = 20\nbody_radius_cm = 12\nstep_ms = 400\nfull_speed_cm_s = 50\n";
+const SENSOR: &str = "[ultrasonic]\nx_cm = 0\ny_cm = 0\nyaw_deg = 0\nmin_cm = 4\nmax_cm = 250\n";
+/// Commands change after so many samples.
+const HELD: usize = 12;
+const SAMPLES: usize = 1600;
+const SAMPLE_S: f64 = 0.05;
+/// When the drive begins, Unix time.
+const BEGIN_S: f64 = 1_717_243_200.0;
+
+/// What is known of a drive at a time.
+struct Sample {
+    s: f64,
+    /// m/s and rad/s.
+    twist: [f64; 2],
+    pose: Pose,
+    range_m: f64,
+}
+
+/// Sums of commands that never repeat, driven exactly.
+fn drive() -> Vec<Sample> {
+    let mut pose = Pose::new(100.0, 50.0, 0.4);
+    let samples = (0..SAMPLES).map(|i| {
+        let k = (i / HELD) as f64;
+        let twist = [0.14 + 0.06 * libm::sin(1.3 * k), 0.5 * libm::sin(2.1 * k) + 0.3 * libm::cos(0.37 * k)];
+        let here = Sample { s: SAMPLE_S * i as f64, twist, pose, range_m: 0.5 + 0.001 * i as f64 };
+        (0..5).for_each(|_| pose = pose.compose(&Pose::new(100.0 * twist[0] * 0.01, 0.0, twist[1] * 0.01)));
+        here
+    });
+    samples.collect()
+}
+
+fn table(header: &str, row: impl Fn(&Sample) -> String) -> String {
+    drive().iter().fold(header.to_owned() + "\n", |mut text, sample| {
+        writeln!(text, "{}", row(sample)).expect("memory");
+        text
+    })
+}
+
+fn commands() -> String {
+    table("t_s,v_m_s,w_rad_s", |s| format!("{:.3},{:.4},{:.4}", s.s, s.twist[0], s.twist[1]))
+}
+
+fn track() -> String {
+    table("t_s,x_m,y_m,yaw_rad", |s| format!("{:.3},{:.5},{:.5},{:.5}", s.s, x_m(s), y_m(s), s.pose.heading_rad))
+}
+
+fn x_m(sample: &Sample) -> f64 {
+    sample.pose.position_cm.x / 100.0
+}
+
+fn y_m(sample: &Sample) -> f64 {
+    sample.pose.position_cm.y / 100.0
+}
+
+fn workshop(commands: &str, track: &str) -> Workshop {
+    let workshop = Workshop::new();
+    workshop.write("robot.toml", ROBOT);
+    workshop.write("command.csv", commands);
+    workshop.write("track.csv", track);
+    workshop
+}
+
+fn rows(workshop: &Workshop) -> Vec<Row> {
+    let logs = Logs::read(&workshop.path().join("logs"), |warning| panic!("{warning}")).expect("logs");
+    logs.runs.into_iter().flat_map(|run| run.rows).collect()
+}
+
+/// Holds rows against the drive, `off_ms` after whose begin they begin.
+#[track_caller]
+fn assert_driven(rows: &[Row], off_ms: f64, within_cm: f64) {
+    let drive = drive();
+    assert!(rows.len() > 180, "{}", rows.len());
+    for row in rows {
+        let sample = &drive[((row.t_ms + off_ms) / 1e3 / SAMPLE_S).round() as usize];
+        let pose = row.pose.expect("a pose");
+        let off_cm = pose.position_cm.distance(sample.pose.position_cm);
+        assert!(off_cm < within_cm, "{off_cm} cm off at {} ms", row.t_ms);
+    }
+}
+
+#[test]
+fn streams_become_rows_whatever_their_form() {
+    let plain = workshop(&commands(), &track());
+    let said = plain.done(STREAMS);
+    assert!(
+        said.contains("forward = v_m_s") && said.contains("one clock: motion follows the commands by 0 ms"),
+        "{said}"
+    );
+    assert!(said.ends_with("logs: 1 runs\n"), "{said}");
+    let expected = rows(&plain);
+    assert_driven(&expected, 0.0, 1.0);
+    let twist = drive()[0].twist;
+    assert!((expected[0].left - 200.0 * (twist[0] - 0.1 * twist[1])).abs() < 0.02, "{:?}", expected[0]);
+
+    // Other separators, names, units and stamps say the same.
+    let wheels = table("Time (ms);VL [cm/s];VR [cm/s]", |s| {
+        let [v, w] = s.twist;
+        format!("{:.0};{:.4};{:.4}", 1000.0 * s.s, 100.0 * v - 10.0 * w, 100.0 * v + 10.0 * w).replace('.', ",")
+    });
+    let quaternions = table("# by hand\n# stamp\tpose.position.x_mm\tpose.position.y_mm\tqz\tqw", |s| {
+        let (sin, cos) = libm::sincos(s.pose.heading_rad / 2.0);
+        format!("{:.3}\t{:.2}\t{:.2}\t{sin:.6}\t{cos:.6}", s.s, 1000.0 * x_m(s), 1000.0 * y_m(s))
+    });
+    let other = workshop(&wheels, &quaternions);
+    other.done(STREAMS);
+    assert_alike(&rows(&other), &expected);
+}
+
+#[track_caller]
+fn assert_alike(found: &[Row], expected: &[Row]) {
+    assert_eq!(found.len(), expected.len());
+    for (a, b) in found.iter().zip(expected) {
+        assert!((a.left - b.left).abs() < 0.05 && (a.right - b.right).abs() < 0.05, "{a:?} {b:?}");
+        let off_cm = a.pose.zip(b.pose).map_or(9.0, |(a, b)| a.position_cm.distance(b.position_cm));
+        assert!(off_cm < 0.05, "{a:?} {b:?}");
+    }
+}
+
+#[test]
+fn clocks_of_their_own_are_aligned_by_the_motion() {
+    let iso = table("timestamp,x_m,y_m,yaw_deg", |s| {
+        let seconds = 5.0 + s.s;
+        let (minutes, seconds) = ((seconds / 60.0).floor(), seconds % 60.0);
+        let heading_deg = s.pose.heading_rad.to_degrees();
+        format!("2024-06-01T12:{minutes:02}:{seconds:06.3}Z,{:.5},{:.5},{heading_deg:.3}", x_m(s), y_m(s))
+    });
+    let workshop = workshop(&commands(), &iso);
+    let said = workshop.done(STREAMS);
+    assert!(said.contains("two clocks") && said.contains("a delay of the robot does not show"), "{said}");
+    let clocks = workshop.json("report.json")["recordings"][0]["clocks"].clone();
+    let off_ms = clocks["offset_ms"].as_f64().expect("a number") - 1e3 * (BEGIN_S + 5.0);
+    assert!(off_ms.abs() < 25.0, "{clocks}");
+    assert_driven(&rows(&workshop), 0.0, 1.5);
+    workshop.done(&format!("{STREAMS} --force --offset-ms {}", 1e3 * (BEGIN_S + 5.0)));
+    assert_driven(&rows(&workshop), 0.0, 1.0);
+}
+
+#[test]
+fn what_does_not_go_together_is_refused_with_both_sides() {
+    let metres_as_cm = track().replacen("x_m,y_m", "x_cm,y_cm", 1);
+    let refusal = workshop(&commands(), &metres_as_cm).refused(STREAMS);
+    assert!(refusal.starts_with("track.csv: the commands travel 1"), "{refusal}");
+    assert!(refusal.contains("the track seems to be in m and was read in cm"), "{refusal}");
+    let degrees_as_rad = table("t_s,x_m,y_m,yaw_rad", |s| {
+        format!("{:.3},{:.5},{:.5},{:.4}", s.s, x_m(s), y_m(s), s.pose.heading_rad.to_degrees())
+    });
+    workshop(&commands(), &degrees_as_rad).refused(STREAMS);
+    let later = table("t_s,x_m,y_m,yaw_rad", |s| format!("{:.3},1,1,0", 500.0 + s.s));
+    let refusal = workshop(&commands(), &later).refused(STREAMS);
+    assert!(refusal.contains("do not overlap or nothing moves"), "{refusal}");
+    let unknown = workshop(&commands().replacen("v_m_s", "speedy", 1), &track());
+    let refusal = unknown.refused(STREAMS);
+    assert!(refusal.starts_with("command.csv:1: no column for forward"), "{refusal}");
+    unknown.write(
+        "map.toml",
+        "[\"command.csv\"]\ntime = \"t_s\"\nforward = { column = \"speedy\", unit = \"m/s\" }\nturn = \"w_rad_s\"\n",
+    );
+    unknown.done(&format!("{STREAMS} --map map.toml"));
+    assert_driven(&rows(&unknown), 0.0, 1.0);
+}
+
+#[test]
+fn a_frame_with_y_downwards_is_put_right() {
+    let downwards =
+        table("t_s,x_m,y_m,yaw_rad", |s| format!("{:.3},{:.5},{:.5},{:.5}", s.s, x_m(s), -y_m(s), s.pose.heading_rad));
+    let workshop = workshop(&commands(), &downwards);
+    let said = workshop.done(STREAMS);
+    assert!(said.contains("frame: positions are mirrored"), "{said}");
+    assert_driven(&rows(&workshop), 0.0, 1.0);
+}
+
+#[test]
+fn without_a_robot_a_draft_says_what_to_fill_in() {
+    let workshop = workshop(&commands(), &track());
+    let call = "import streams command.csv track.csv --out logs";
+    let said = workshop.done(call);
+    assert!(said.contains("fill in: robot.toml: track_cm = 15"), "{said}");
+    assert!(workshop.text("logs/robot.toml").contains("# [ultrasonic]"), "{}", workshop.text("logs/robot.toml"));
+    assert_driven(&rows(&workshop), 0.0, 1.0);
+    workshop.done("check logs");
+    // What is there is the user's by now.
+    let refusal = workshop.refused(call);
+    assert!(refusal.starts_with("logs: holds") && refusal.contains("--force"), "{refusal}");
+    workshop.done(&format!("{call} --force"));
+}
+
+#[test]
+fn bags_become_the_same_rows_by_whatever_topics() {
+    let workshop = workshop(&commands(), &track());
+    workshop.write("robot.toml", format!("{ROBOT}{SENSOR}"));
+    let drive = table("t_s,v_m_s,w_rad_s,x_m,y_m,qz,qw,range_m", |s| {
+        let (sin, cos) = libm::sincos(s.pose.heading_rad / 2.0);
+        let [v, w] = s.twist;
+        format!("{:.3},{v},{w},{},{},{sin},{cos},{}", BEGIN_S + s.s, x_m(s), y_m(s), s.range_m)
+    });
+    workshop.write("drive.csv", drive);
+    ros_bags::write(&workshop.path().join("drive.csv"), workshop.path());
+    let import = |bag: &str| {
+        let said = workshop.done(&format!("import bag {bag} --robot robot.toml --out logs --json report.json --force"));
+        (said, rows(&workshop))
+    };
+    let (said, tracked) = import("tracker.mcap");
+    assert!(said.contains("/robot/pose") && said.contains("one clock"), "{said}");
+    assert_driven(&tracked, 0.0, 1.0);
+    // The last reading, which the clock's last digits may make the one before.
+    assert!((tracked[10].echo_cm.expect("a reading") - (50.0 + 0.1 * 80.0)).abs() < 0.11, "{:?}", tracked[10]);
+    let (said, by_odometry) = import("odometry.mcap");
+    assert!(said.contains("may be the robot's own reckoning"), "{said}");
+    assert_alike(&by_odometry, &tracked);
+    let (said, by_transforms) = import("transforms.mcap");
+    assert!(said.contains("/tf:map>base_link") && by_transforms[10].echo_cm.is_none(), "{said}");
+    assert_eq!(by_transforms.len(), tracked.len());
+    let refusal = workshop.refused("import bag tracker.mcap --poses /nowhere --out other");
+    assert!(refusal.starts_with("tracker.mcap: /nowhere is no topic of poses"), "{refusal}");
+    workshop.done("check logs");
+}
