@@ -9,6 +9,7 @@ pub mod robot;
 pub mod run;
 pub mod samples;
 pub mod scene;
+pub mod world_script;
 
 use std::fs;
 use std::path::Path;
