@@ -23,10 +23,10 @@ const RUN: &str = include_str!("nxc/run.nxc");
 
 /// Measured cost of the program as compiled by nbc, and of its optional parts.
 const PLAIN: Cost = Cost { program_bytes: 4_400, memory_bytes: 2_600, step_instructions: 430 };
-const WITH_LOG: Cost = Cost { program_bytes: 2_400, memory_bytes: 3_000, step_instructions: 330 };
-const WITH_DISPLAY: Cost = Cost { program_bytes: 600, memory_bytes: 750, step_instructions: 210 };
-const WITH_NEAR: Cost = Cost { program_bytes: 200, memory_bytes: 80, step_instructions: 10 };
-const WITH_STALL: Cost = Cost { program_bytes: 650, memory_bytes: 220, step_instructions: 80 };
+const WITH_LOG: Cost = Cost { program_bytes: 2_400, memory_bytes: 2_900, step_instructions: 330 };
+const WITH_DISPLAY: Cost = Cost { program_bytes: 600, memory_bytes: 650, step_instructions: 210 };
+const WITH_NEAR: Cost = Cost { program_bytes: 200, memory_bytes: 60, step_instructions: 10 };
+const WITH_STALL: Cost = Cost { program_bytes: 650, memory_bytes: 100, step_instructions: 80 };
 
 /// Options of an NXC program.
 #[derive(Clone, Debug, PartialEq, Eq)]

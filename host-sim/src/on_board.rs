@@ -20,8 +20,9 @@ pub enum Vehicle<'r> {
 
 /// A robot in its room, as the brick's program sees and moves it, with a log.
 ///
-/// The log begins when a motor first runs. A row has the commands and the reading that come soon after its time: a
-/// program reads the sensor at the beginning of a step, and sets its motors when it has the answer.
+/// The log begins when a motor first runs. A row has the commands and the reading that come soon after its time, or a
+/// reading just before it: a program reads the sensor at the beginning of a step, and sets its motors when it has the
+/// answer.
 pub struct OnBoard<'r> {
     vehicle: Vehicle<'r>,
     wiring: Wiring,
@@ -33,6 +34,8 @@ pub struct OnBoard<'r> {
     /// When a motor first ran.
     began_ms: Option<u32>,
     rows: Vec<Row>,
+    /// The last reading that stands in no row, with its time.
+    reading: Option<(u32, Option<f64>)>,
     /// Whether the last row is there: that of a crash.
     is_over: bool,
     rng: Generator,
@@ -56,6 +59,7 @@ impl<'r> OnBoard<'r> {
             row_ms: row_ms.max(1),
             began_ms: None,
             rows: Vec::new(),
+            reading: None,
             is_over: false,
             rng,
         }
@@ -105,7 +109,13 @@ impl<'r> OnBoard<'r> {
     }
 
     fn log(&mut self) {
-        let row = self.row();
+        let mut row = self.row();
+        // The program's clock began a little before its motors ran, so a reading may come just before the row's time.
+        if let Some((read_ms, echo_cm)) = self.reading.take()
+            && f64::from(self.t_ms - read_ms) <= self.soon_ms()
+        {
+            row.echo_cm = echo_cm;
+        }
         let is_later = self.rows.last().is_none_or(|last| last.t_ms < row.t_ms);
         if is_later && !self.is_over && self.rows.len() < MOST_ROWS {
             self.rows.push(row);
@@ -116,8 +126,12 @@ impl<'r> OnBoard<'r> {
     /// The last row, if this is soon after it.
     fn row_of_now(&mut self) -> Option<&mut Row> {
         let now_ms = f64::from(self.t_ms - self.began_ms?);
-        let soon_ms = SOON * f64::from(self.row_ms);
+        let soon_ms = self.soon_ms();
         self.rows.last_mut().filter(|row| now_ms - row.t_ms <= soon_ms)
+    }
+
+    fn soon_ms(&self) -> f64 {
+        SOON * f64::from(self.row_ms)
     }
 
     fn row(&mut self) -> Row {
@@ -155,8 +169,9 @@ impl World for OnBoard<'_> {
             Vehicle::BuiltIn(body) => body.read_sonar(&mut self.rng),
             Vehicle::Simulated(body) => body.read_sonar(&mut self.rng),
         };
-        if let Some(row) = self.row_of_now() {
-            row.echo_cm = echo_cm;
+        match self.row_of_now() {
+            Some(row) => row.echo_cm = echo_cm,
+            None => self.reading = Some((t_ms, echo_cm)),
         }
         Sonar::Echo(echo_cm.map_or(NO_ECHO_CM, |echo_cm| libm::round(echo_cm) as u8))
     }

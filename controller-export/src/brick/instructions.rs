@@ -21,7 +21,7 @@ pub(super) enum Flow {
 }
 
 impl<'p> Brick<'p, '_> {
-    #[inline]
+    #[inline(always)]
     pub(super) fn execute(&mut self, pc: usize) -> Result<Flow, Fault> {
         let Decoded { op, comparison, words, operands } = self.program.decoded[pc];
         let [first, second, third, fourth, fifth] = operands;

@@ -233,7 +233,9 @@ fn a_program_that_never_ends_runs_out_of_time() {
     let busy = RunConfig { run_ms: 1000, ..RunConfig::default() };
     let program = Program::load(&compile("task main() { int i; while (true) i++; }")).unwrap();
     let report = brick::run(&program, &mut ScriptedWorld::default(), &busy);
-    assert_eq!((report.end, report.instructions), (Termination::OutOfTime, 100_000));
+    // A hundred a millisecond, but for what operations on arrays take longer when the program starts.
+    assert_eq!(report.end, Termination::OutOfTime);
+    assert!((99_900..=100_000).contains(&report.instructions), "{}", report.instructions);
 }
 
 #[test]

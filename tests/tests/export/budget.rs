@@ -101,7 +101,7 @@ fn a_budget_prints_what_is_taken_of_what_there_is() {
     let lines = nxc::budget(&at_its_limits(), &nxc_options(true, false)).to_string();
     let expected = "program     6800 of 104104 bytes of flash\n\
                     log         7328 of 97304 bytes of flash without other files\n\
-                    memory      5600 of 32768 bytes\n\
+                    memory      5500 of 32768 bytes\n\
                     step         118 of 400 ms at worst";
     assert_eq!(lines, expected);
 }
