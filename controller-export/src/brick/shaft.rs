@@ -77,7 +77,7 @@ mod tests {
     #[test]
     fn it_does_not_matter_how_often_one_looks() {
         let mut shafts = [Shaft::default(), Shaft::default()];
-        shafts.each_mut().map(|shaft| shaft.set(Drive::Power(-30), 5));
+        shafts.iter_mut().for_each(|shaft| shaft.set(Drive::Power(-30), 5));
         (6..900).for_each(|t_ms| _ = shafts[0].angle_deg(t_ms));
         let [often, once] = shafts.each_mut().map(|shaft| shaft.angle_deg(900));
         assert_eq!(often, once);

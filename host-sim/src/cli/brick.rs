@@ -46,19 +46,19 @@ pub struct Brick {
     #[arg(long, value_name = "FILE")]
     scene: Option<PathBuf>,
     /// Which of the scene's starts, from 1.
-    #[arg(long, default_value_t = 1, requires = "scene")]
+    #[arg(long, default_value_t = 1, conflicts_with = "readings")]
     start: usize,
     /// The simulator that moves the robot; the built-in robot when left out.
-    #[arg(long, requires = "scene")]
+    #[arg(long, conflicts_with = "readings")]
     sim: Option<PathBuf>,
     /// Fixes every draw.
-    #[arg(long, default_value_t = 1, requires = "scene")]
+    #[arg(long, default_value_t = 1, conflicts_with = "readings")]
     seed: u64,
     /// Write the run as a log here.
-    #[arg(long, value_name = "RUN.csv", requires = "scene")]
+    #[arg(long, value_name = "RUN.csv", conflicts_with = "readings")]
     out: Option<PathBuf>,
     /// Draw its path here, .svg or .png.
-    #[arg(long, value_name = "FILE", requires = "scene")]
+    #[arg(long, value_name = "FILE", conflicts_with = "readings")]
     figure: Option<PathBuf>,
     /// Port of the left motor.
     #[arg(long, default_value = "B")]

@@ -116,6 +116,10 @@ impl<'e> SimulatedBody<'e> {
     }
 
     fn begin(&mut self, rng: &mut Generator) -> Step {
+        // A robot that stands goes on to stand: no log says so, since none is of a robot that is not driven.
+        if [self.command, self.before] == [[0.0; 2]; 2] {
+            return Step { from: self.pose, motion: [0.0; 3], passed_ms: 0.0 };
+        }
         let environment = self.environment;
         let command = self.command.map(|c| c as f32);
         let Motion { forward_cm, lateral_cm, turn_rad, cells } = match &environment.effect_layer {
