@@ -3,6 +3,7 @@
 use divan::Bencher;
 use divan::counter::ItemsCount;
 use mindgap_controller_export::brick::{self, Program, RunConfig, ScriptedWorld, Sonar, Termination};
+use mindgap_controller_export::onboard::Safety;
 use mindgap_controller_export::rxe;
 use mindgap_controller_export::wiring::Wiring;
 use mindgap_core::controller::{Controller, Tuple, When};
@@ -28,7 +29,7 @@ fn busy_loop(bencher: Bencher) {
 fn controller_run(bencher: Bencher) {
     let ahead = Tuple { left: 55, right: 48, when: When::Smaller, threshold_cm: 0 };
     let controller = Controller { step_ms: 400, max_steps: 150, tuples: [ahead; 6] };
-    let file = rxe::program(&controller, &Wiring::default()).expect("a sound controller");
+    let file = rxe::program(&controller, &Wiring::default(), Safety::default()).expect("a sound controller");
     let program = Program::load(&file).expect("a sound program");
     bencher.counter(ItemsCount::new(1u32)).bench(|| {
         let mut world = ScriptedWorld::sonar([Sonar::Echo(100); 150]);

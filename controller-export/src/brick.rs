@@ -4,8 +4,9 @@
 //! * [`run`]: runs it to its end on an emulated clock and reports every [`Event`].
 //! * [`World`]: sensors, buttons and motors around the brick; [`ScriptedWorld`] returns values given in advance.
 //!
-//! Not emulated: Bluetooth, mailboxes, pictures, colour sensors and motor regulation. A program that uses one of the
-//! first four ends with [`Fault::Instruction`]; a motor runs at the power that is set.
+//! All opcodes that nbc emits for standard firmware and all its system calls are there. Beyond the brick there is
+//! nothing: no other brick answers by Bluetooth, there is no colour sensor, and sounds from files take no time. Pictures
+//! are not drawn, and motors are not regulated: they run at the power that is set.
 //!
 //! ```
 //! use mindgap_controller_export::brick::{self, Termination, Program, ScriptedWorld, RunConfig};
@@ -25,13 +26,17 @@
 
 mod arithmetic;
 mod bus;
+mod decode;
 mod flash;
 mod instructions;
+mod io_map;
+mod mailboxes;
 mod memory;
 mod motors;
 mod polymorphic;
 mod program;
 mod schedule;
+mod shaft;
 mod syscalls;
 mod text;
 mod world;
@@ -40,19 +45,27 @@ use std::collections::BTreeMap;
 
 pub use motors::Drive;
 pub use program::{LoadError, Program};
-pub use world::{Button, ScriptedWorld, Sonar, World};
+pub use shaft::Shaft;
+pub use world::{Button, Level, Press, ScriptedWorld, Sonar, World};
 
 use bus::Port;
 use flash::Flash;
 use instructions::Flow;
+use io_map::IoMaps;
+use mailboxes::Mailboxes;
 use memory::Memory;
 use motors::Motor;
 use schedule::Schedule;
 
+use crate::bytecode::{Op, Syscall};
 use crate::onboard::FREE_FLASH_BYTES;
 
 /// Number of instructions that a clump executes before the next one is scheduled.
 const TURN: u32 = 20;
+/// Time without use after which the brick switches itself off, as it is delivered.
+const SLEEP_TIMEOUT_MIN: u32 = 10;
+/// Parts of arrays and clusters that take as long as an instruction. The firmware's own figure is not known.
+const PARTS_AN_INSTRUCTION: u32 = 8;
 
 /// Configuration of a run: the state and speed of the brick, and a time limit.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -67,15 +80,21 @@ pub struct RunConfig {
     pub flash_bytes: u32,
     /// Files present at the start, by name.
     pub files: BTreeMap<String, Vec<u8>>,
+    /// Events that are kept; later ones are only counted.
+    pub limit_events: usize,
 }
 
 /// What a program did in a run.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Report {
-    /// Observable events in order of time.
+    /// Observable events in order of time, at most [`RunConfig::limit_events`].
     pub events: Vec<Event>,
+    /// Number of events after those.
+    pub further_events: u64,
     /// How the program ended.
     pub end: Termination,
+    /// The instruction at which it failed.
+    pub failed_at: Option<CodePlace>,
     /// Time of its end, ms since its start.
     pub ended_ms: u32,
     /// Number of instructions executed.
@@ -127,6 +146,17 @@ pub enum EventKind {
     },
 }
 
+/// A place in a program's code.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct CodePlace {
+    /// The clump: a task or subroutine, numbered as in the listing of nbc.
+    pub clump: u8,
+    /// The word within the clump, from 0.
+    pub word: usize,
+    /// The instruction there, and the system call that it makes.
+    pub instruction: String,
+}
+
 /// How a program ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Termination {
@@ -151,6 +181,8 @@ pub enum Fault {
     Pointer,
     /// Out of memory.
     Memory,
+    /// An instruction on more parts than memory holds, in a file whose arrays lie within each other.
+    Endless,
 }
 
 /// The brick while a program runs.
@@ -162,17 +194,29 @@ struct Brick<'p, 'w> {
     motors: [Motor; motors::PORTS],
     ports: [Port; bus::PORTS],
     flash: Flash,
+    mailboxes: Mailboxes,
+    io_maps: IoMaps,
+    /// When the last tone ends.
+    tone_until_ms: u32,
+    sleep_timeout_min: u32,
+    /// Bits of which tasks agree who uses what.
+    semaphores: [u8; 2],
     /// Releases of each button before the program last reset its counter.
     forgotten_releases: [u8; 4],
     chance: u32,
     start_tick_ms: u32,
     t_ms: u32,
     events: Vec<Event>,
+    further_events: u64,
+    limit_events: usize,
     instructions: u64,
+    /// Instructions that long operations on arrays have taken ahead of time.
+    owed: u32,
+    failed_at: Option<CodePlace>,
 }
 
 impl Default for RunConfig {
-    /// Ten minutes, 100 instructions a millisecond, switched on five seconds ago, an empty file system.
+    /// Ten minutes, 100 instructions a millisecond, switched on five seconds ago, an empty file system, and 100,000 events.
     fn default() -> Self {
         RunConfig {
             run_ms: 600_000,
@@ -180,6 +224,7 @@ impl Default for RunConfig {
             start_tick_ms: 5_000,
             flash_bytes: FREE_FLASH_BYTES,
             files: BTreeMap::new(),
+            limit_events: 100_000,
         }
     }
 }
@@ -199,12 +244,21 @@ pub fn run(program: &Program, world: &mut dyn World, config: &RunConfig) -> Repo
         motors: Default::default(),
         ports: Default::default(),
         flash: Flash::new(config.flash_bytes, &config.files),
+        mailboxes: Mailboxes::default(),
+        io_maps: IoMaps::default(),
+        tone_until_ms: 0,
+        sleep_timeout_min: SLEEP_TIMEOUT_MIN,
+        semaphores: [0; 2],
         forgotten_releases: [0; 4],
         chance: 1,
         start_tick_ms: config.start_tick_ms,
         t_ms: 0,
         events: Vec::new(),
+        further_events: 0,
+        limit_events: config.limit_events,
         instructions: 0,
+        owed: 0,
+        failed_at: None,
     };
     let end = started.unwrap_or_else(|| brick.run(config));
     let motors = match end {
@@ -213,7 +267,9 @@ pub fn run(program: &Program, world: &mut dyn World, config: &RunConfig) -> Repo
     };
     Report {
         events: brick.events,
+        further_events: brick.further_events,
         end,
+        failed_at: brick.failed_at,
         ended_ms: brick.t_ms,
         instructions: brick.instructions,
         motors,
@@ -233,29 +289,52 @@ impl Brick<'_, '_> {
                 return Termination::OutOfTime;
             }
             self.schedule.wake(self.t_ms);
+            self.end_at_limits();
             match self.pass(config.instructions_per_ms) {
                 Ok(None) => {}
                 Ok(Some(end)) => return end,
                 Err(fault) => return Termination::Failed(fault),
             }
             let last_ms = self.world.exit_pressed_ms().unwrap_or(u32::MAX).min(config.run_ms);
-            self.t_ms = match self.schedule.next_wake_ms() {
-                Some(wake_ms) => wake_ms.min(last_ms).max(self.t_ms + 1),
-                None => self.t_ms + 1,
+            // A motor that runs until it has turned far enough is looked at in every millisecond.
+            let next_ms = match self.schedule.next_wake_ms() {
+                Some(wake_ms) if !self.motors.iter().any(Motor::has_limit) => wake_ms.min(last_ms).max(self.t_ms + 1),
+                _ => self.t_ms + 1,
             };
+            let idle_ms = next_ms - self.t_ms - 1;
+            self.owed = self.owed.saturating_sub(idle_ms.saturating_mul(config.instructions_per_ms));
+            self.t_ms = next_ms;
+        }
+    }
+
+    fn end_at_limits(&mut self) {
+        for port in 0..motors::PORTS {
+            if self.motors[port].has_limit() {
+                let rotation_deg = self.world.rotation_deg(port, self.t_ms);
+                if let Some(drive) = self.motors[port].end_at_limit(rotation_deg) {
+                    self.drive(port, drive);
+                }
+            }
         }
     }
 
     /// One millisecond: clumps run in turn.
     fn pass(&mut self, instructions: u32) -> Result<Option<Termination>, Fault> {
         let mut left = instructions.max(1);
+        let paid = self.owed.min(left);
+        (left, self.owed) = (left - paid, self.owed - paid);
         while let Some(clump) = self.schedule.running() {
             if left == 0 {
                 self.schedule.rotate();
                 return Ok(None);
             }
-            let turn = TURN.min(left);
-            match self.turn(clump, turn, &mut left)? {
+            let (executed, turn) = self.turn(clump, TURN.min(left));
+            self.instructions += u64::from(executed);
+            // Long operations may take more than what is left to this millisecond.
+            let cost = executed + self.memory.take_parts() / PARTS_AN_INSTRUCTION;
+            self.owed += cost.saturating_sub(left);
+            left = left.saturating_sub(cost);
+            match turn? {
                 Turn::Over => self.schedule.rotate(),
                 Turn::Left => {}
                 Turn::Stop => return Ok(Some(Termination::Finished)),
@@ -264,42 +343,71 @@ impl Brick<'_, '_> {
         Ok(self.schedule.is_empty().then_some(Termination::Finished))
     }
 
-    /// Up to `turn` instructions of one clump.
-    fn turn(&mut self, clump: u8, turn: u32, left: &mut u32) -> Result<Turn, Fault> {
+    /// At most `most` instructions of one clump; their number, and how the turn ended.
+    fn turn(&mut self, clump: u8, most: u32) -> (u32, Result<Turn, Fault>) {
         let (mut pc, end) = (self.schedule.pc(clump), self.program.clumps[usize::from(clump)].code.end);
-        for _ in 0..turn {
+        for executed in 1..=most {
             if pc >= end {
-                return Err(Fault::Instruction);
+                return (executed - 1, Err(self.failed(clump, pc, Fault::Instruction)));
             }
-            *left -= 1;
-            self.instructions += 1;
             let flow = match self.execute(pc) {
-                // The memory may be fragmented: compact it and try once more.
-                Err(Fault::Memory) => {
-                    self.memory.compact();
-                    self.execute(pc)
-                }
+                Err(Fault::Memory) => self.execute_packed(pc),
                 flow => flow,
             };
-            match flow? {
-                Flow::Next(words) => pc += words,
-                Flow::Branch(words) => {
-                    pc = pc.checked_add_signed(words.into()).ok_or(Fault::Instruction)?;
+            let turn = match flow {
+                Ok(Flow::Next(words)) => {
+                    pc += words;
+                    continue;
                 }
-                Flow::Suspend(words) => {
+                Ok(Flow::Branch(words)) => match pc.checked_add_signed(words.into()) {
+                    Some(to) => {
+                        pc = to;
+                        continue;
+                    }
+                    None => Err(self.failed(clump, pc, Fault::Instruction)),
+                },
+                Ok(Flow::Suspend(words)) => {
                     self.schedule.set_pc(clump, pc + words);
-                    return Ok(Turn::Left);
+                    Ok(Turn::Left)
                 }
-                Flow::Yield(words) => {
+                Ok(Flow::Yield(words)) => {
                     self.schedule.set_pc(clump, pc + words);
-                    return Ok(Turn::Over);
+                    Ok(Turn::Over)
                 }
-                Flow::ClumpEnds => return Ok(Turn::Left),
-                Flow::Stop => return Ok(Turn::Stop),
-            }
+                Ok(Flow::ClumpEnds) => Ok(Turn::Left),
+                Ok(Flow::Stop) => Ok(Turn::Stop),
+                Err(fault) => Err(self.failed(clump, pc, fault)),
+            };
+            return (executed, turn);
         }
         self.schedule.set_pc(clump, pc);
-        Ok(Turn::Over)
+        (most, Ok(Turn::Over))
+    }
+
+    /// The memory may be in pieces: packs it and tries an instruction once more.
+    #[cold]
+    fn execute_packed(&mut self, pc: usize) -> Result<Flow, Fault> {
+        self.memory.compact();
+        self.execute(pc)
+    }
+
+    /// Notes where a program failed, and returns why.
+    #[cold]
+    fn failed(&mut self, clump: u8, pc: usize, fault: Fault) -> Fault {
+        let code = &self.program.clumps[usize::from(clump)].code;
+        let instruction = match self.program.decoded.get(pc) {
+            Some(decoded) if pc < code.end => match (decoded.op, decoded.operands[0]) {
+                (Some(Op::Syscall), number) => match Syscall::from_number(number) {
+                    Some(call) => format!("syscall {number} ({call:?})"),
+                    None => format!("syscall {number}, which standard firmware does not have"),
+                },
+                (Some(op), _) => format!("{op:?}").to_lowercase(),
+                (None, _) => format!("{:#06x}, which is no instruction of standard firmware", self.program.code[pc]),
+            },
+            _ => "behind the end of the clump".to_owned(),
+        };
+        self.failed_at = Some(CodePlace { clump, word: pc.saturating_sub(code.start), instruction });
+        fault
     }
 
     /// The brick's clock.
@@ -308,7 +416,11 @@ impl Brick<'_, '_> {
     }
 
     fn emit(&mut self, kind: EventKind) {
-        self.events.push(Event { t_ms: self.t_ms, kind });
+        if self.events.len() < self.limit_events {
+            self.events.push(Event { t_ms: self.t_ms, kind });
+        } else {
+            self.further_events += 1;
+        }
     }
 }
 

@@ -149,8 +149,28 @@ numbered! {
         CommLsCheckStatus = 23,
         RandomNumber = 24,
         GetStartTick = 25,
+        MessageWrite = 26,
+        MessageRead = 27,
+        CommBtCheckStatus = 28,
+        CommBtWrite = 29,
+        CommBtRead = 30,
         KeepAlive = 31,
         IoMapRead = 32,
+        IoMapWrite = 33,
+        ColorSensorRead = 34,
+        CommBtOnOff = 35,
+        CommBtConnection = 36,
+        CommHsWrite = 37,
+        CommHsRead = 38,
+        CommHsCheckStatus = 39,
+        ReadSemData = 40,
+        WriteSemData = 41,
+        ComputeCalibValue = 42,
+        UpdateCalibCacheInfo = 43,
+        DatalogWrite = 44,
+        DatalogGetTimes = 45,
+        SetSleepTimeout = 46,
+        ListFiles = 47,
     }
 }
 
@@ -194,6 +214,7 @@ numbered! {
 pub(crate) mod update {
     pub(crate) const MODE: u8 = 0x01;
     pub(crate) const SPEED: u8 = 0x02;
+    pub(crate) const TACHO_LIMIT: u8 = 0x04;
     pub(crate) const RESET_COUNT: u8 = 0x08;
     pub(crate) const RESET_BLOCK_COUNT: u8 = 0x20;
     pub(crate) const RESET_ROTATION_COUNT: u8 = 0x40;
@@ -205,6 +226,8 @@ pub(crate) mod mode {
     pub(crate) const BRAKE: u8 = 0x02;
 }
 
+/// The value of [`OutputField::RunState`] for a motor that is idle.
+pub(crate) const RUN_STATE_IDLE: u8 = 0x00;
 /// The value of [`OutputField::RunState`] for a motor that runs.
 pub(crate) const RUN_STATE_RUNNING: u8 = 0x20;
 /// The value of [`InputField::Type`] for a digital sensor with 9 V supply.
@@ -212,7 +235,19 @@ pub(crate) const SENSOR_LOW_SPEED_9V: u8 = 11;
 /// The same without supply.
 pub(crate) const SENSOR_LOW_SPEED: u8 = 10;
 
-/// Status codes of the calls for digital sensors.
+/// The value of [`InputField::Type`] for a touch sensor.
+pub(crate) const SENSOR_SWITCH: u8 = 1;
+/// The orange button.
+pub(crate) const CENTER_BUTTON: u16 = 3;
+
+/// Bits of [`InputField::Mode`]: how a value is scaled.
+pub(crate) mod input_mode {
+    pub(crate) const MASK: u8 = 0xE0;
+    pub(crate) const RAW: u8 = 0x00;
+    pub(crate) const BOOLEAN: u8 = 0x20;
+}
+
+/// Status codes of the calls for digital sensors and for other bricks.
 pub(crate) mod comm {
     pub(crate) const OK: i8 = 0;
     pub(crate) const PENDING: i8 = 32;
@@ -220,10 +255,15 @@ pub(crate) mod comm {
     pub(crate) const INVALID_PORT: i8 = -33;
     pub(crate) const BUS_ERROR: i8 = -35;
     pub(crate) const INVALID_SIZE: i8 = -19;
+    pub(crate) const INVALID_CONNECTION: i8 = -16;
+    pub(crate) const INVALID_QUEUE: i8 = -18;
+    pub(crate) const EMPTY_MAILBOX: i8 = 64;
 }
 
 /// The ultrasonic sensor's address on its bus.
 pub(crate) const SONAR_ADDRESS: u8 = 0x02;
+/// The register where the sensor's kind stands, "Sonar".
+pub(crate) const SONAR_KIND: u8 = 0x10;
 /// The register that holds the distance of the nearest echo in cm.
 pub(crate) const SONAR_FIRST_ECHO: u8 = 0x42;
 

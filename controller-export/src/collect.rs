@@ -4,15 +4,17 @@
 //!
 //! Every start of the program adds a run, `run-000.csv` and so on; random runs differ in their commands. When driving at
 //! random the robot turns away from near objects and reverses only over ground that it has just crossed; a script is driven
-//! regardless of obstacles. Both stop when the sensor is dead or somebody holds the orange button; the robot still needs
+//! regardless of obstacles. Both stop when the sensor is dead or somebody presses the orange button; the robot still needs
 //! supervision. The camera's poses are added on the host.
 
 use mindgap_core::controller::FULL_SPEED;
 
 use crate::budget::{Budget, Cost};
 use crate::error::ExportError;
-use crate::names::BrickName;
-use crate::nxc::source::{Constants, LOG, MOTORS, SONAR, TIME};
+use crate::names::{BrickName, RunLogs};
+use crate::nxc::source::{Constants, ENDING, LOG, MOTORS, Parts, SONAR, STALL, TIME, wired_and_stopped};
+use crate::nxc::{log_constants, safety_cost};
+use crate::onboard::Safety;
 use crate::wiring::Wiring;
 
 const DRIVE: &str = include_str!("collect/drive.nxc");
@@ -20,9 +22,9 @@ const SCRIPT: &str = include_str!("collect/script.nxc");
 const MAIN: &str = include_str!("collect/main.nxc");
 
 /// Measured cost of the random program as compiled by nbc.
-const COST: Cost = Cost { program_bytes: 6_900, memory_bytes: 5_200, step_instructions: 1_250 };
+const COST: Cost = Cost { program_bytes: 8_200, memory_bytes: 6_100, step_instructions: 1_250 };
 /// Measured cost of the scripted program.
-const SCRIPT_COST: Cost = Cost { program_bytes: 5_700, memory_bytes: 4_700, step_instructions: 900 };
+const SCRIPT_COST: Cost = Cost { program_bytes: 6_100, memory_bytes: 5_900, step_instructions: 900 };
 /// Additional bytes for each step of a script, in flash and in memory.
 const SCRIPT_STEP_BYTES: u32 = 4;
 /// Maximum number of steps of a script, for which there is memory.
@@ -43,6 +45,8 @@ pub struct CollectOptions {
     pub program: BrickName,
     /// Ports of motors and sensor.
     pub wiring: Wiring,
+    /// What stops it beside its end.
+    pub safety: Safety,
     /// Time between two rows of the log, ms; it has to equal the step of the controllers.
     pub step_ms: u16,
     /// Source of the commands.
@@ -70,32 +74,33 @@ pub enum Commands {
 /// # Errors
 /// When the brick cannot run or store the program: see [`ExportError`].
 pub fn program(options: &CollectOptions) -> Result<String, ExportError> {
-    let CollectOptions { program, wiring, step_ms, commands } = options;
+    let CollectOptions { program, wiring, safety, step_ms, commands } = options;
     check(commands)?;
     wiring.check()?;
     let budget = budget(options);
     budget.check()?;
     let (stem, steps) = (program.stem(), steps(commands));
     let what = match commands {
-        Commands::Random { .. } => "Random commands for the LEGO NXT with standard firmware, to learn a simulator from",
-        Commands::Script(_) => {
-            "A script of commands for the LEGO NXT with standard firmware, to tell causes of a gap apart"
-        }
+        Commands::Random { near_cm, .. } => format!(
+            "// Random commands for the LEGO NXT with standard firmware, to learn a simulator from. The robot turns away from\n\
+             // what its sensor sees nearer than {near_cm} cm; it sees nothing beside or behind it."
+        ),
+        Commands::Script(_) => "// A script of commands for the LEGO NXT with standard firmware, to tell causes of a gap apart. The robot does not\n\
+             // look where it drives: keep the way free, and stay beside it."
+            .to_owned(),
     };
     let head = format!(
-        "// {what}.\n\
+        "{what}\n\
          // Compile and load it with\n\
          //   nbc -v=128 -O={program} {stem}.nxc\n\
          //   nbc -S=usb -b -d {program}\n\
          //\n\
-         // Every start of the program adds a run of {steps} steps of {step_ms} ms, run-000.csv and so on. Hold the orange button\n\
-         // to end a run early.\n"
+         // Every start of the program adds a run of {steps} steps of {step_ms} ms, run-000.csv and so on.\n{}",
+        wired_and_stopped(wiring, *safety)
     );
-    let constants = Constants::shared(wiring).with("STEP_MS", step_ms, "").with("STEPS", steps, "").with(
-        "LOG_BYTES",
-        budget.log_bytes,
-        "of one run",
-    );
+    let parts = Parts { log: true, display: false, safety: *safety };
+    let constants = Constants::shared(wiring, parts, *step_ms).with("STEP_MS", step_ms, "").with("STEPS", steps, "");
+    let constants = log_constants(constants, &RunLogs::of_collector(), budget.log_bytes);
     let (constants, drive) = match commands {
         Commands::Random { near_cm, seed, .. } => {
             let constants = constants
@@ -108,8 +113,9 @@ pub fn program(options: &CollectOptions) -> Result<String, ExportError> {
         }
         Commands::Script(powers) => (constants, tables(powers) + SCRIPT),
     };
-    let parts = [&head, &constants.into_text(), TIME, SONAR, MOTORS, LOG, &drive, MAIN];
-    Ok(parts.join("\n"))
+    let stall = if safety.stall { STALL } else { "" };
+    let parts = [&head, &constants.into_text(), TIME, SONAR, MOTORS, stall, LOG, ENDING, &drive, &parts.choose(MAIN)];
+    Ok(parts.into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join("\n"))
 }
 
 /// Resources of the compiled program and the log of one run.
@@ -121,7 +127,7 @@ pub fn budget(options: &CollectOptions) -> Budget {
             SCRIPT_COST.plus(Cost { program_bytes: tables_bytes, memory_bytes: tables_bytes, step_instructions: 0 })
         }
     };
-    Budget::new(cost, options.step_ms, Some(steps(&options.commands)))
+    Budget::new(cost.plus(safety_cost(options.safety)), options.step_ms, Some(steps(&options.commands)))
 }
 
 fn check(commands: &Commands) -> Result<(), ExportError> {

@@ -2,6 +2,8 @@
 
 use mindgap_core::controller::InvalidController;
 
+use crate::onboard::SONAR_HANG_MS;
+
 /// Why a controller cannot be exported as an onboard program: one line that says what to change.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ExportError {
@@ -9,7 +11,10 @@ pub enum ExportError {
     #[error("{}", describe(.0))]
     Controller(InvalidController),
     /// Two steps are closer together than a step takes.
-    #[error("step_ms is {step_ms}, but a step takes up to {shortest_ms} ms when the sensor hangs: raise it")]
+    #[error(
+        "step_ms is {step_ms}, but a step takes up to {shortest_ms} ms: a sensor that hangs keeps its port busy for \
+         {SONAR_HANG_MS} ms, and there is a margin: raise it"
+    )]
     StepTooShort {
         /// Time between two steps.
         step_ms: u16,

@@ -4,8 +4,9 @@
 //! Network Ultrasonic Sensor Simulator for Evolutionary Robotics", called "the paper" in this crate.
 //!
 //! * [`nxc`]: readable NXC source for the LEGO NXT's standard firmware.
-//! * [`rxe`]: the executable itself, a third of the size.
+//! * [`rxe`]: the executable itself, less than half the size.
 //! * [`rust`], [`c`]: a constant for programs that use the core, and a C99 header.
+//! * [`pybricks`]: a MicroPython program for hubs with pybricks firmware.
 //! * [`nxc_networks`], [`rust_networks`]: a simulator's networks in fixed point, in NXC and Rust.
 //! * [`collect`]: a program that drives at random or by a script and logs, in NXC.
 //! * [`brick`]: an emulator of the brick, with which tests show that all formats behave alike.
@@ -25,6 +26,7 @@ pub mod nxc;
 pub mod nxc_networks;
 pub mod onboard;
 pub mod origin;
+pub mod pybricks;
 pub mod rust;
 pub mod rust_networks;
 pub mod rxe;

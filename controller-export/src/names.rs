@@ -6,6 +6,8 @@ use std::str::FromStr;
 use crate::error::ExportError;
 
 const LONGEST_STEM: usize = 15;
+/// What the number of a run adds to a stem, as `_000`.
+const RUN_NUMBER: usize = 4;
 const LONGEST_EXTENSION: usize = 3;
 
 /// The name of a file on the brick.
@@ -24,6 +26,49 @@ impl BrickName {
     /// The part before the dot.
     pub fn stem(&self) -> &str {
         self.0.split_once('.').map_or(&self.0, |(stem, _)| stem)
+    }
+}
+
+/// The names of a program's logs, a new one each start: `avoid_000.csv`, `avoid_001.csv` and so on. Programs that collect
+/// data name theirs `run-000.csv`, and no other program names a file like either.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct RunLogs {
+    stem: String,
+    extension: String,
+}
+
+impl RunLogs {
+    /// The logs named after a file.
+    ///
+    /// # Errors
+    /// [`ExportError::Name`] when the number of the run does not fit behind it.
+    pub fn of(name: &BrickName) -> Result<Self, ExportError> {
+        let (stem, extension) = name.0.split_once('.').unwrap_or((&name.0, ""));
+        if stem.len() > LONGEST_STEM - RUN_NUMBER {
+            let why = "the number of the run comes behind it, so before the dot it needs 1 to 11 characters";
+            return Err(ExportError::Name { name: name.0.clone(), why });
+        }
+        Ok(RunLogs { stem: format!("{stem}_"), extension: extension.to_owned() })
+    }
+
+    /// The logs of programs that collect data.
+    pub fn of_collector() -> Self {
+        RunLogs { stem: "run-".to_owned(), extension: "csv".to_owned() }
+    }
+
+    /// What comes before the number of the run.
+    pub fn stem(&self) -> &str {
+        &self.stem
+    }
+
+    /// What comes after the dot.
+    pub fn extension(&self) -> &str {
+        &self.extension
+    }
+
+    /// The name of a run's log.
+    pub fn name(&self, run: u16) -> String {
+        format!("{}{run:03}.{}", self.stem, self.extension)
     }
 }
 
@@ -78,6 +123,14 @@ mod tests {
         ] {
             assert!(refused.parse::<BrickName>().is_err(), "{refused}");
         }
+    }
+
+    #[test]
+    fn logs_of_runs_have_a_number_behind_the_name() {
+        let logs = |name: &str| RunLogs::of(&name.parse().unwrap());
+        assert_eq!(logs("elevenchars.csv").map(|logs| logs.name(7)), Ok("elevenchars_007.csv".to_owned()));
+        assert!(logs("twelve-chars.csv").is_err());
+        assert!(logs("run-000.csv").unwrap().name(0) != RunLogs::of_collector().name(0));
     }
 
     #[test]

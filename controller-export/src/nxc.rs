@@ -11,19 +11,22 @@ use mindgap_core::controller::{Controller, FULL_SPEED, TUPLES, Tuple, When};
 
 use crate::budget::{Budget, Cost};
 use crate::error::ExportError;
-use crate::names::BrickName;
+use crate::names::{BrickName, RunLogs};
+use crate::onboard::Safety;
 use crate::origin::Origin;
 use crate::wiring::Wiring;
 
-use source::{Constants, DISPLAY, LOG, MOTORS, SONAR, TIME};
+use source::{Constants, DISPLAY, ENDING, LOG, MOTORS, Parts, SONAR, STALL, TIME, wired_and_stopped};
 
-/// The main loop; lines needed only for a log or only for the display start with `@log ` or `@display `.
+/// The main loop.
 const RUN: &str = include_str!("nxc/run.nxc");
 
 /// Measured cost of the program as compiled by nbc, and of its optional parts.
-const PLAIN: Cost = Cost { program_bytes: 2_700, memory_bytes: 1_900, step_instructions: 430 };
-const WITH_LOG: Cost = Cost { program_bytes: 2_000, memory_bytes: 2_600, step_instructions: 330 };
-const WITH_DISPLAY: Cost = Cost { program_bytes: 1_000, memory_bytes: 1_000, step_instructions: 210 };
+const PLAIN: Cost = Cost { program_bytes: 4_400, memory_bytes: 2_600, step_instructions: 430 };
+const WITH_LOG: Cost = Cost { program_bytes: 2_400, memory_bytes: 2_900, step_instructions: 330 };
+const WITH_DISPLAY: Cost = Cost { program_bytes: 600, memory_bytes: 650, step_instructions: 210 };
+const WITH_NEAR: Cost = Cost { program_bytes: 200, memory_bytes: 60, step_instructions: 10 };
+const WITH_STALL: Cost = Cost { program_bytes: 650, memory_bytes: 100, step_instructions: 80 };
 
 /// Options of an NXC program.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -32,10 +35,23 @@ pub struct NxcOptions {
     pub program: BrickName,
     /// Ports of motors and sensor.
     pub wiring: Wiring,
-    /// File on the brick that every step is logged to; an existing file is replaced.
-    pub log: Option<BrickName>,
+    /// What stops it beside the controller.
+    pub safety: Safety,
+    /// Files on the brick to which every step is logged, a new one each start.
+    pub log: Option<RunLogs>,
     /// Whether the brick's display shows tuple, reading and outcome.
     pub display: bool,
+}
+
+impl NxcOptions {
+    /// The program of this name as it is without options.
+    pub fn new(program: BrickName) -> Self {
+        NxcOptions { program, wiring: Wiring::default(), safety: Safety::default(), log: None, display: false }
+    }
+
+    fn parts(&self) -> Parts {
+        Parts { log: self.log.is_some(), display: self.display, safety: self.safety }
+    }
 }
 
 /// The controller as an NXC program, with its origin and the compiler call in the first lines.
@@ -47,32 +63,37 @@ pub fn program(controller: &Controller, origin: &Origin, options: &NxcOptions) -
     options.wiring.check()?;
     budget(controller, options).check()?;
     let parts = [
-        Some(head(controller, origin, &options.program)),
+        Some(head(controller, origin, options)),
         Some(constants(controller, options)),
-        Some(tables(controller)),
+        Some(table(controller)),
         Some(TIME.to_owned()),
         Some(SONAR.to_owned()),
         Some(MOTORS.to_owned()),
+        options.safety.stall.then(|| STALL.to_owned()),
         options.log.is_some().then(|| LOG.to_owned()),
         options.display.then(|| DISPLAY.to_owned()),
-        Some(run(options)),
+        Some(ENDING.to_owned()),
+        Some(options.parts().choose(RUN)),
     ];
     Ok(parts.into_iter().flatten().collect::<Vec<_>>().join("\n"))
 }
 
 /// Resources of the compiled program.
 pub fn budget(controller: &Controller, options: &NxcOptions) -> Budget {
-    let mut cost = PLAIN;
-    if options.log.is_some() {
-        cost = cost.plus(WITH_LOG);
-    }
-    if options.display {
-        cost = cost.plus(WITH_DISPLAY);
-    }
+    let parts = [(options.log.is_some(), WITH_LOG), (options.display, WITH_DISPLAY)];
+    let wanted = parts.iter().filter(|(wanted, _)| *wanted);
+    let cost = wanted.fold(PLAIN.plus(safety_cost(options.safety)), |sum, (_, cost)| sum.plus(*cost));
     Budget::new(cost, controller.step_ms, options.log.as_ref().map(|_| controller.max_steps))
 }
 
-fn head(controller: &Controller, origin: &Origin, program: &BrickName) -> String {
+/// What stopping for other reasons than the controller's adds to a program.
+pub(crate) fn safety_cost(safety: Safety) -> Cost {
+    let parts = [(safety.stop_cm.is_some(), WITH_NEAR), (safety.stall, WITH_STALL)];
+    parts.iter().filter(|(wanted, _)| *wanted).fold(Cost::default(), |sum, (_, cost)| sum.plus(*cost))
+}
+
+fn head(controller: &Controller, origin: &Origin, options: &NxcOptions) -> String {
+    let NxcOptions { program, wiring, safety, log, .. } = options;
     let stem = program.stem();
     let mut text = format!(
         "// A six-tuple controller for the LEGO NXT with standard firmware. Compile and load it with\n\
@@ -80,9 +101,18 @@ fn head(controller: &Controller, origin: &Origin, program: &BrickName) -> String
          //   nbc -S=usb -b -d {program}\n\
          //\n\
          // Every {} ms the ultrasonic sensor is read once; a reading on the stated side of a tuple's threshold starts the\n\
-         // next tuple. The robot stops after the sixth, after {} steps, or when the sensor is dead.\n",
-        controller.step_ms, controller.max_steps
+         // next tuple. The robot stops after the sixth, after {} steps, or when the sensor is dead.\n{}",
+        controller.step_ms,
+        controller.max_steps,
+        wired_and_stopped(wiring, *safety)
     );
+    if let Some(log) = log {
+        text += &format!(
+            "// Every start of the program writes a file of its own: {}, {} and so on.\n",
+            log.name(0),
+            log.name(1)
+        );
+    }
     for line in origin.lines() {
         text += &format!("// {line}\n");
     }
@@ -90,46 +120,47 @@ fn head(controller: &Controller, origin: &Origin, program: &BrickName) -> String
 }
 
 fn constants(controller: &Controller, options: &NxcOptions) -> String {
-    let mut constants = Constants::shared(&options.wiring)
+    let mut constants = Constants::shared(&options.wiring, options.parts(), controller.step_ms)
         .with("TUPLES", TUPLES, "")
         .with("STEP_MS", controller.step_ms, "")
         .with("MAX_STEPS", controller.max_steps, "");
     if let Some(log) = &options.log {
-        constants = constants.with("LOG_NAME", format!("\"{log}\""), "").with(
-            "LOG_BYTES",
-            budget(controller, options).log_bytes,
-            "for the longest run",
-        );
+        constants = log_constants(constants, log, budget(controller, options).log_bytes);
     }
     constants.into_text()
 }
 
-fn tables(controller: &Controller) -> String {
+/// Adds the constants of a log.
+pub(crate) fn log_constants(constants: Constants, log: &RunLogs, log_bytes: u32) -> Constants {
+    constants
+        .with("LOG_STEM", format!("\"{}\"", log.stem()), "")
+        .with("LOG_EXTENSION", format!("\".{}\"", log.extension()), "")
+        .with("LOG_BYTES", log_bytes, "for the longest run")
+}
+
+fn table(controller: &Controller) -> String {
     let speed = |speed: i8| speed.clamp(-FULL_SPEED, FULL_SPEED);
-    [
-        "// The tuples, one a column.\n".to_owned(),
-        table(controller, "int left_power[]", |tuple| speed(tuple.left)),
-        table(controller, "int right_power[]", |tuple| speed(tuple.right)),
-        table(controller, "bool when_larger[]", |tuple| tuple.when == When::Larger),
-        table(controller, "int threshold_cm[]", |tuple| tuple.threshold_cm),
-    ]
-    .concat()
-}
-
-fn table<C: ToString>(controller: &Controller, name: &str, cell: impl Fn(&Tuple) -> C) -> String {
-    let cells: Vec<_> = controller.tuples.iter().map(|tuple| format!("{:>5}", cell(tuple).to_string())).collect();
-    format!("{name:<18} = {{{}}};\n", cells.join(", "))
-}
-
-fn run(options: &NxcOptions) -> String {
-    let chosen = |line: &'static str| {
-        if let Some(line) = line.strip_prefix("@log ") {
-            options.log.is_some().then_some(line)
-        } else if let Some(line) = line.strip_prefix("@display ") {
-            options.display.then_some(line)
-        } else {
-            Some(line)
-        }
+    let row = |(number, tuple): (usize, &Tuple)| {
+        let when = match tuple.when {
+            When::Larger => "LARGER",
+            When::Smaller => "SMALLER",
+        };
+        let (left, right) = (speed(tuple.left), speed(tuple.right));
+        let comma = if number == TUPLES { " " } else { "," };
+        format!("{left:>6}, {right:>11}, {when:>7}, {:>12}{comma}  // {number}\n", tuple.threshold_cm)
     };
-    RUN.lines().filter_map(chosen).flat_map(|line| [line, "\n"]).collect()
+    let rows: String = (1..).zip(&controller.tuples).map(row).collect();
+    format!(
+        "// The tuples, one a row.\n\
+         #define LEFT_POWER           0\n\
+         #define RIGHT_POWER          1\n\
+         #define WHEN                 2\n\
+         #define THRESHOLD_CM         3\n\
+         #define COLUMNS              4\n\
+         #define SMALLER              0\n\
+         #define LARGER               1\n\
+         int tuples[] = {{\n\
+         //left, right power,    when, threshold_cm      tuple\n\
+         {rows}}};\n"
+    )
 }

@@ -9,7 +9,6 @@ use glam::DVec2;
 use mindgap_controller_export::Origin;
 use mindgap_controller_export::names::BrickName;
 use mindgap_controller_export::nxc::{self, NxcOptions};
-use mindgap_controller_export::wiring::Wiring;
 use mindgap_core::controller::Controller;
 
 use crate::built_in_robot::{self, BuiltInRobot, Trajectory};
@@ -172,7 +171,7 @@ impl<W: Fn(Stage)> DemoRun<'_, W> {
         let name = format!("start-{number}");
         let in_file = |e: mindgap_controller_export::ExportError| Error::new(e.to_string());
         let program = BrickName::program(&name).map_err(in_file)?;
-        let options = NxcOptions { program, wiring: Wiring::default(), log: None, display: true };
+        let options = NxcOptions { display: true, ..NxcOptions::new(program) };
         let file = ControllerFile { controller: controller.clone(), origin: Some(origin) };
         let source = nxc::program(controller, &Origin::from(&file), &options).map_err(in_file)?;
         files::write(&self.out.join(format!("{name}.nxc")), source)?;

@@ -23,6 +23,7 @@ pub mod inspection;
 pub mod lanes;
 pub mod learn;
 pub mod logs;
+pub mod on_board;
 pub mod report;
 pub mod simulator;
 pub mod sonar;

@@ -11,6 +11,7 @@ mod row;
 pub mod run;
 pub mod samples;
 pub mod scene;
+pub mod world_script;
 
 use std::fs;
 use std::path::Path;

@@ -3,6 +3,7 @@
 pub mod baseline;
 mod batch;
 mod beam;
+pub mod body;
 pub mod draws;
 mod effect_layer;
 pub mod environment;

@@ -1,5 +1,5 @@
-//! What the tests share: the built command, golden files, bricks on board the built-in robot, error bounds of fixed
-//! point, the compiler for NXT programs, ROS 2 bags, and which modules of a crate know which.
+//! What the tests share: the built command, golden files, error bounds of fixed point, the compiler for NXT programs,
+//! ROS 2 bags, and which modules of a crate know which.
 
 pub mod command;
 pub mod controllers;
@@ -10,7 +10,6 @@ pub mod golden;
 pub mod module_order;
 pub mod modules;
 pub mod nbc;
-pub mod on_board;
 pub mod plausible_networks;
 pub mod rooms;
 pub mod ros_bags;

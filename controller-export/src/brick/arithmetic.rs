@@ -44,6 +44,7 @@ impl Operation {
         })
     }
 
+    #[inline]
     pub(super) fn binary(self, left: u32, right: u32, left_type: Type, right_type: Type) -> Result<u32, Fault> {
         let signed = left_type.is_signed() && right_type.is_signed();
         Ok(match self.op {

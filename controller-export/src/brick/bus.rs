@@ -1,12 +1,13 @@
-//! The four sensor ports: their types, and the digital bus (I²C) of the ultrasonic sensor.
+//! The four sensor ports: their types, analogue sensors, and the digital bus (I²C) of the ultrasonic sensor.
 //!
 //! Source: `c_lowspeed.c`, `c_input.c` and `cCmdLS…` in `c_cmd.c` of the firmware.
 
 use std::collections::VecDeque;
 
-use super::Fault;
 use super::world::{Sonar, World};
-use crate::bytecode::{InputField, SENSOR_LOW_SPEED, SENSOR_LOW_SPEED_9V, SONAR_ADDRESS, SONAR_FIRST_ECHO, comm};
+use crate::bytecode::{
+    InputField, SENSOR_LOW_SPEED, SENSOR_LOW_SPEED_9V, SENSOR_SWITCH, SONAR_ADDRESS, SONAR_FIRST_ECHO, comm, input_mode,
+};
 use crate::onboard::{NO_ECHO_CM, SONAR_HANG_MS};
 
 /// Sensor ports of a brick.
@@ -20,8 +21,13 @@ const ANSWER_MS: u32 = 6;
 const SILENCE_MS: u32 = 6;
 /// Size of the input and of the output buffer.
 const BUFFER_BYTES: usize = 16;
-/// The value of every register that holds no echo: programs read the echoes only.
-const OTHER_REGISTER: u8 = 0;
+/// The registers before the echoes that hold text: version, maker and kind.
+const TEXTS: &[u8; 24] = b"V1.0\0\0\0\0LEGO\0\0\0\0Sonar\0\0\0";
+/// Registers that hold echoes.
+const ECHOES: usize = 8;
+/// Raw value of a port with nothing in it, and of a touch sensor that is pressed.
+const OPEN_RAW: u32 = 1023;
+const PRESSED_RAW: u32 = 183;
 
 /// A sensor port.
 #[derive(Clone, Debug, Default)]
@@ -43,26 +49,42 @@ enum State {
 }
 
 impl Port {
-    pub(super) fn set(&mut self, field: u16, value: u32, t_ms: u32) -> Result<(), Fault> {
-        match InputField::from_number(field).ok_or(Fault::Instruction)? {
+    pub(super) fn set(&mut self, field: InputField, value: u32, t_ms: u32) {
+        match field {
             InputField::Type => {
                 self.kind = value as u8;
                 self.invalid_until_ms = Some(t_ms.saturating_add(SETTLE_MS));
             }
             InputField::Mode => self.mode = value as u8,
             InputField::InvalidData => self.invalid_until_ms = (value != 0).then_some(t_ms.saturating_add(SETTLE_MS)),
+            // Overwritten by the firmware at its next millisecond.
             InputField::AdRaw | InputField::NormRaw | InputField::Scaled => {}
         }
-        Ok(())
     }
 
-    pub(super) fn get(&self, field: u16, t_ms: u32) -> Result<u32, Fault> {
-        Ok(match InputField::from_number(field).ok_or(Fault::Instruction)? {
+    /// The value of a field, given what an analogue sensor on this port senses.
+    pub(super) fn get(&self, field: InputField, percent: Option<u8>, t_ms: u32) -> u32 {
+        match field {
             InputField::Type => u32::from(self.kind),
             InputField::Mode => u32::from(self.mode),
             InputField::InvalidData => u32::from(!self.is_valid(t_ms)),
-            InputField::AdRaw | InputField::NormRaw | InputField::Scaled => 0,
-        })
+            InputField::AdRaw | InputField::NormRaw => self.raw(percent),
+            InputField::Scaled => match (self.mode & input_mode::MASK, self.kind, percent) {
+                (input_mode::RAW, ..) => self.raw(percent),
+                (input_mode::BOOLEAN, SENSOR_SWITCH, _) => u32::from(percent.is_some_and(|percent| percent > 0)),
+                (input_mode::BOOLEAN, ..) => u32::from(percent.is_some_and(|percent| percent > 50)),
+                // Other modes are a percentage; those that count edges are not emulated.
+                (_, _, percent) => percent.unwrap_or(0).into(),
+            },
+        }
+    }
+
+    fn raw(&self, percent: Option<u8>) -> u32 {
+        match (self.kind, percent) {
+            (_, None) | (SENSOR_SWITCH, Some(0)) => OPEN_RAW,
+            (SENSOR_SWITCH, Some(_)) => PRESSED_RAW,
+            (_, Some(percent)) => u32::from(percent.min(100)) * OPEN_RAW / 100,
+        }
     }
 
     /// Starts an exchange.
@@ -87,7 +109,7 @@ impl Port {
         if !ready {
             return comm::NOT_READY;
         }
-        self.state = exchange(request, answer_bytes, t_ms, || world.sonar(port, t_ms));
+        self.state = exchange(request, answer_bytes, port, t_ms, world);
         comm::OK
     }
 
@@ -139,22 +161,22 @@ impl Port {
     }
 }
 
-fn exchange(request: &[u8], answer_bytes: usize, t_ms: u32, sonar: impl FnOnce() -> Sonar) -> State {
+fn exchange(request: &[u8], answer_bytes: usize, port: usize, t_ms: u32, world: &mut dyn World) -> State {
     let silence = State::Busy(t_ms.saturating_add(SILENCE_MS), None);
     let [SONAR_ADDRESS, register, ..] = request else { return silence };
-    if answer_bytes == 0 {
-        return State::Busy(t_ms.saturating_add(ANSWER_MS), Some(Vec::new()));
-    }
-    let echo = match sonar() {
+    let registers = usize::from(*register)..usize::from(*register) + answer_bytes;
+    let first_echo = usize::from(SONAR_FIRST_ECHO);
+    let measures = registers.start < first_echo + ECHOES && registers.end > first_echo;
+    let answer = if measures { world.sonar(port, t_ms) } else { world.sonar_answers(port, t_ms) };
+    let echo_cm = match answer {
         Sonar::Echo(echo_cm) => echo_cm,
         Sonar::Silent => return silence,
         Sonar::Hangs => return State::Busy(t_ms.saturating_add(SONAR_HANG_MS), None),
     };
-    let registers = usize::from(*register)..usize::from(*register) + answer_bytes;
-    let answer = registers.map(|register| match register.checked_sub(usize::from(SONAR_FIRST_ECHO)) {
-        Some(0) => echo,
-        Some(1..8) => NO_ECHO_CM,
-        _ => OTHER_REGISTER,
+    let answer = registers.map(|register| match register.checked_sub(first_echo) {
+        Some(0) => echo_cm,
+        Some(1..ECHOES) => NO_ECHO_CM,
+        _ => TEXTS.get(register).copied().unwrap_or(0),
     });
     State::Busy(t_ms.saturating_add(ANSWER_MS), Some(answer.collect()))
 }

@@ -1,4 +1,5 @@
-//! The brick's file system. Names are case-insensitive, and a file's size is reserved when it is created.
+//! The brick's file system. Names are case-insensitive, and a file's size is reserved when it is created. The running
+//! program is an open file itself, and has the first handle.
 //!
 //! Source: `d_loader.c` of the firmware.
 
@@ -15,11 +16,15 @@ pub(super) mod status {
     pub(in crate::brick) const NOT_FOUND: u16 = 0x8700;
     pub(in crate::brick) const CLOSED_HANDLE: u16 = 0x8800;
     pub(in crate::brick) const BUSY: u16 = 0x8B00;
+    pub(in crate::brick) const NO_WRITE_BUFFERS: u16 = 0x8C00;
     pub(in crate::brick) const EXISTS: u16 = 0x8F00;
     pub(in crate::brick) const ILLEGAL_NAME: u16 = 0x9200;
 }
 
 const HANDLES: usize = 16;
+const PROGRAM_HANDLE: usize = 0;
+/// Files that can be open for writing at once.
+const WRITE_BUFFERS: usize = 4;
 const MOST_FILES: usize = 127;
 const LONGEST_NAME: usize = 19;
 const LONGEST_STEM: usize = 15;
@@ -43,6 +48,8 @@ struct File {
 #[derive(Clone, Debug)]
 struct Handle {
     file: String,
+    /// The name as the program wrote it.
+    opened_as: String,
     /// Position of the next read; `None` for a file opened for writing.
     read_at: Option<usize>,
 }
@@ -66,12 +73,10 @@ impl Flash {
         if self.files.len() >= MOST_FILES {
             return Err(status::NO_MORE_FILES);
         }
-        let pages = |bytes: u32| bytes.div_ceil(PAGE_BYTES);
-        let used: u32 = self.files.values().map(|file| pages(file.reserved)).sum();
-        if used.saturating_add(pages(reserved)) > self.bytes / PAGE_BYTES {
+        if pages(reserved) > self.free_pages() {
             return Err(status::NO_SPACE);
         }
-        let handle = self.open(Handle { file: key.clone(), read_at: None })?;
+        let handle = self.open(Handle { file: key.clone(), opened_as: name.to_owned(), read_at: None })?;
         self.files.insert(key, File { name: name.to_owned(), content: Vec::new(), reserved });
         Ok(handle)
     }
@@ -81,20 +86,20 @@ impl Flash {
         let key = self.find(name)?;
         let file = &self.files[&key];
         let left = file.reserved - file.content.len() as u32;
-        Ok((self.open(Handle { file: key, read_at: None })?, left))
+        Ok((self.open(Handle { file: key, opened_as: name.to_owned(), read_at: None })?, left))
     }
 
     /// Opens a file at its start; returns the handle and its length.
     pub(super) fn open_read(&mut self, name: &str) -> Result<(u8, u32), u16> {
         let key = self.find(name)?;
         let length = self.files[&key].content.len() as u32;
-        Ok((self.open(Handle { file: key, read_at: Some(0) })?, length))
+        Ok((self.open(Handle { file: key, opened_as: name.to_owned(), read_at: Some(0) })?, length))
     }
 
     /// Writes as much as fits; returns the status and the number of bytes written.
     pub(super) fn write(&mut self, handle: u8, bytes: &[u8]) -> (u16, u32) {
         let slot = self.handles.get(usize::from(handle)).and_then(Option::as_ref);
-        let Some(Handle { file, read_at: None }) = slot else { return (status::CLOSED_HANDLE, 0) };
+        let Some(Handle { file, read_at: None, .. }) = slot else { return (status::CLOSED_HANDLE, 0) };
         let Some(file) = self.files.get_mut(file) else { return (status::CLOSED_HANDLE, 0) };
         let room = (file.reserved as usize).saturating_sub(file.content.len());
         let fits = &bytes[..bytes.len().min(room)];
@@ -105,7 +110,7 @@ impl Flash {
 
     pub(super) fn read(&mut self, handle: u8, most: u32) -> (u16, Vec<u8>) {
         let slot = self.handles.get_mut(usize::from(handle)).and_then(Option::as_mut);
-        let Some(Handle { file, read_at: Some(at) }) = slot else { return (status::CLOSED_HANDLE, Vec::new()) };
+        let Some(Handle { file, read_at: Some(at), .. }) = slot else { return (status::CLOSED_HANDLE, Vec::new()) };
         let Some(file) = self.files.get(file) else { return (status::CLOSED_HANDLE, Vec::new()) };
         let rest = &file.content[(*at).min(file.content.len())..];
         let taken = &rest[..rest.len().min(most as usize)];
@@ -121,11 +126,32 @@ impl Flash {
         }
     }
 
-    /// The handle of an open file and whether it is open for writing.
+    /// The handle of a file that was opened by this very name, and whether it is open for writing.
     pub(super) fn resolve(&self, name: &str) -> Option<(u8, bool)> {
-        let key = name.to_ascii_lowercase();
         let mut open = self.handles.iter().enumerate().filter_map(|(i, handle)| Some((i, handle.as_ref()?)));
-        open.find(|(_, handle)| handle.file == key).map(|(i, handle)| (i as u8, handle.read_at.is_none()))
+        open.find(|(_, handle)| handle.opened_as == name).map(|(i, handle)| (i as u8, handle.read_at.is_none()))
+    }
+
+    /// Free flash in bytes, whole pages.
+    pub(super) fn free_bytes(&self) -> u32 {
+        self.free_pages() * PAGE_BYTES
+    }
+
+    /// The names that match a pattern, in which either part may be a star.
+    pub(super) fn list(&self, pattern: &str) -> Vec<&str> {
+        let parts = |name: &str| {
+            let name = name.to_ascii_lowercase();
+            let (stem, extension) = name.split_once('.').unwrap_or((&name, ""));
+            [stem.to_owned(), extension.to_owned()]
+        };
+        let wanted = parts(pattern);
+        let fits = |name: &str| parts(name).iter().zip(&wanted).all(|(part, wanted)| wanted == "*" || part == wanted);
+        self.files.values().map(|file| file.name.as_str()).filter(|name| fits(name)).collect()
+    }
+
+    fn free_pages(&self) -> u32 {
+        let used: u32 = self.files.values().map(|file| pages(file.reserved)).sum();
+        (self.bytes / PAGE_BYTES).saturating_sub(used)
     }
 
     pub(super) fn rename(&mut self, old: &str, new: &str) -> u16 {
@@ -161,17 +187,26 @@ impl Flash {
         if !self.files.contains_key(&key) {
             return Err(status::NOT_FOUND);
         }
-        if self.resolve(name).is_some() {
+        if self.handles.iter().flatten().any(|handle| handle.file == key) {
             return Err(status::BUSY);
         }
         Ok(key)
     }
 
     fn open(&mut self, handle: Handle) -> Result<u8, u16> {
-        let free = self.handles.iter().position(Option::is_none).ok_or(status::NO_MORE_HANDLES)?;
+        let writing = self.handles.iter().flatten().filter(|open| open.read_at.is_none()).count();
+        if handle.read_at.is_none() && writing >= WRITE_BUFFERS {
+            return Err(status::NO_WRITE_BUFFERS);
+        }
+        let is_free = |at: &usize| *at != PROGRAM_HANDLE && self.handles[*at].is_none();
+        let free = (0..HANDLES).find(is_free).ok_or(status::NO_MORE_HANDLES)?;
         self.handles[free] = Some(handle);
         Ok(free as u8)
     }
+}
+
+fn pages(bytes: u32) -> u32 {
+    bytes.div_ceil(PAGE_BYTES)
 }
 
 fn check_name(name: &str) -> Result<(), u16> {

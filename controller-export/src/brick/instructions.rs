@@ -3,9 +3,10 @@
 use std::ops::Range;
 
 use super::arithmetic::{Operation, order};
+use super::decode::Decoded;
 use super::memory::Place;
-use super::{Brick, EventKind, Fault, polymorphic, text};
-use crate::bytecode::{Comparison, NONE, Op, SHORT_FORM, Type, VARIABLE_SIZE};
+use super::{Brick, Drive, EventKind, Fault, polymorphic, text};
+use crate::bytecode::{Comparison, InputField, NONE, Op, OutputField, Type};
 
 /// Control flow after an instruction; offsets are words of code from its first.
 pub(super) enum Flow {
@@ -20,136 +21,88 @@ pub(super) enum Flow {
 }
 
 impl<'p> Brick<'p, '_> {
+    #[inline(always)]
     pub(super) fn execute(&mut self, pc: usize) -> Result<Flow, Fault> {
-        let word = self.word(pc)?;
-        if word & SHORT_FORM != 0 {
-            return self.execute_short(word, pc);
-        }
-        let op = Op::from_number(word as u8).ok_or(Fault::Instruction)?;
-        let comparison = Comparison::from_number((word >> 8) as u8 & 7);
-        let size = match word >> 12 {
-            VARIABLE_SIZE => self.word(pc + 1)?,
-            size => size,
-        };
-        if size < 4 || size % 2 != 0 || op.bytes().is_some_and(|fixed| fixed != size) {
-            return Err(Fault::Instruction);
-        }
-        let next = usize::from(size / 2);
-        let operand = |n: usize| self.word(pc + n);
-        let operation = || Ok(Operation { op, comparison: comparison.ok_or(Fault::Instruction)? });
+        let Decoded { op, comparison, words, operands } = self.program.decoded[pc];
+        let [first, second, third, fourth, fifth] = operands;
+        let op = op.ok_or(Fault::Instruction)?;
+        let next = usize::from(words);
+        let operation = Operation { op, comparison };
         match op {
-            Op::Mov => {
-                let (to, from) = (operand(1)?, operand(2)?);
-                self.mov(to, from)?;
-            }
-            Op::Set => {
-                let (to, value) = (operand(1)?, operand(2)?);
-                self.memory.set_id(to, value.into())?;
-            }
+            Op::Mov => self.mov(first, second)?,
+            Op::Set => self.memory.set_id(first, second.into())?,
             Op::Add | Op::Sub | Op::Mul | Op::Div | Op::Mod | Op::And | Op::Or | Op::Xor => {
-                let (to, left, right) = (operand(1)?, operand(2)?, operand(3)?);
-                // Their comparison bits are ignored.
-                let operation = Operation { op, comparison: Comparison::Equal };
-                polymorphic::binary(&mut self.memory, operation, Place::of(to), Place::of(left), Place::of(right))?;
+                self.calculate(operation, first, second, third)?;
             }
-            Op::Neg | Op::Not | Op::Sqrt | Op::Abs => {
-                let (to, from) = (operand(1)?, operand(2)?);
-                let operation = Operation { op, comparison: Comparison::Equal };
-                polymorphic::unary(&mut self.memory, operation, Place::of(to), Place::of(from))?;
+            Op::Neg | Op::Not | Op::Sqrt | Op::Abs | Op::Tst => {
+                polymorphic::unary(&mut self.memory, operation, Place::of(first), Place::of(second))?;
             }
-            Op::Tst => {
-                let (to, from, operation) = (operand(1)?, operand(2)?, operation()?);
-                polymorphic::unary(&mut self.memory, operation, Place::of(to), Place::of(from))?;
-            }
-            Op::Cmp => {
-                let (to, left, right, operation) = (operand(1)?, operand(2)?, operand(3)?, operation()?);
-                self.compare(operation, to, left, right)?;
-            }
+            Op::Cmp => self.compare(operation, first, second, third)?,
             Op::BrCmp => {
-                let (words, left, right, operation) = (operand(1)?, operand(2)?, operand(3)?, operation()?);
-                if self.holds(operation.comparison, left, right)? {
-                    return Ok(Flow::Branch(words as i16));
+                if self.holds(comparison, second, third)? {
+                    return Ok(Flow::Branch(first as i16));
                 }
             }
             Op::BrTst => {
-                let (words, value, operation) = (operand(1)?, operand(2)?, operation()?);
-                let value = if value == NONE { 0 } else { self.memory.get_id(value)? as i32 };
-                if operation.comparison.holds(Some(value.cmp(&0))) {
-                    return Ok(Flow::Branch(words as i16));
+                let value = if second == NONE { 0 } else { self.memory.get_id(second)? as i32 };
+                if comparison.holds(Some(value.cmp(&0))) {
+                    return Ok(Flow::Branch(first as i16));
                 }
             }
-            Op::Jmp => return Ok(Flow::Branch(operand(1)? as i16)),
-            Op::Index => {
-                let (to, array, index) = (operand(1)?, operand(2)?, operand(3)?);
-                let index = self.number_or(index, 0)?;
-                let element = self.memory.element(Place::of(array), index)?;
-                polymorphic::copy(&mut self.memory, Place::of(to), element)?;
-            }
-            Op::Replace => self.replace([operand(1)?, operand(2)?, operand(3)?, operand(4)?])?,
+            Op::Jmp => return Ok(Flow::Branch(first as i16)),
+            Op::Index => self.index(first, second, third)?,
+            Op::Replace => self.replace([first, second, third, fourth])?,
             Op::ArrSize => {
-                let (to, array) = (operand(1)?, operand(2)?);
-                let count = self.memory.count(Place::of(array))?;
-                self.memory.set_id(to, count as u32)?;
+                let count = self.memory.count(Place::of(second))?;
+                self.memory.set_id(first, count as u32)?;
             }
             Op::ArrInit => {
-                let (to, value, count) = (operand(1)?, operand(2)?, operand(3)?);
-                let count = usize::from(self.number_or(count, 0)? as u16);
-                self.memory.resize(Place::of(to), count)?;
+                let count = usize::from(self.number_or(third, 0)? as u16);
+                self.memory.resize(Place::of(first), count)?;
                 for index in 0..count {
-                    let element = self.memory.element(Place::of(to), index)?;
-                    polymorphic::copy(&mut self.memory, element, Place::of(value))?;
+                    let element = self.memory.element(Place::of(first), index)?;
+                    polymorphic::copy(&mut self.memory, element, Place::of(second))?;
                 }
             }
-            Op::ArrSubset => self.array_subset([operand(1)?, operand(2)?, operand(3)?, operand(4)?])?,
-            Op::ArrBuild => self.array_build(operand(2)?, pc + 3..pc + next)?,
-            Op::StrCat => self.concatenate(operand(2)?, pc + 3..pc + next)?,
-            Op::StrSubset => self.string_subset([operand(1)?, operand(2)?, operand(3)?, operand(4)?])?,
+            Op::ArrSubset => self.array_subset([first, second, third, fourth])?,
+            Op::ArrBuild => self.array_build(second, pc + 3..pc + next)?,
+            Op::StrCat => self.concatenate(second, pc + 3..pc + next)?,
+            Op::StrSubset => self.string_subset([first, second, third, fourth])?,
             Op::StrToByteArr => {
-                let (to, from) = (operand(1)?, operand(2)?);
-                if let Some((_, text)) = self.memory.array(Place::of(from))?.split_last() {
+                if let Some((_, text)) = self.memory.array(Place::of(second))?.split_last() {
                     let text = text.to_vec();
-                    self.memory.set_array(Place::of(to), &text)?;
+                    self.memory.set_array(Place::of(first), &text)?;
                 }
             }
             Op::ByteArrToStr => {
-                let (to, from) = (operand(1)?, operand(2)?);
-                let text = self.memory.array(Place::of(from))?.to_vec();
-                self.set_string(to, &text)?;
+                let text = self.memory.array(Place::of(second))?.to_vec();
+                self.set_string(first, &text)?;
             }
             Op::NumToString => {
-                let (to, from) = (operand(1)?, operand(2)?);
-                let text = match self.memory.kind(from)? {
-                    Type::Float => text::of_float(self.memory.get_float(Place::of(from))?),
-                    kind if kind.is_signed() => (self.memory.get_id(from)? as i32).to_string(),
-                    _ => self.memory.get_id(from)?.to_string(),
+                let text = match self.memory.kind(second)? {
+                    Type::Float => text::of_float(self.memory.get_float(Place::of(second))?),
+                    kind if kind.is_signed() => (self.memory.get_id(second)? as i32).to_string(),
+                    _ => self.memory.get_id(second)?.to_string(),
                 };
-                self.set_string(to, text.as_bytes())?;
+                self.set_string(first, text.as_bytes())?;
             }
-            Op::StringToNum => {
-                self.string_to_number([operand(1)?, operand(2)?, operand(3)?, operand(4)?, operand(5)?])?;
-            }
+            Op::StringToNum => self.string_to_number([first, second, third, fourth, fifth])?,
             Op::Flatten => {
-                let (to, from) = (operand(1)?, operand(2)?);
                 let mut bytes = Vec::new();
-                self.memory.flatten(Place::of(from), &mut bytes)?;
-                self.set_string(to, &bytes)?;
+                self.memory.flatten(Place::of(second), &mut bytes)?;
+                self.set_string(first, &bytes)?;
             }
-            Op::Unflatten => self.unflatten([operand(1)?, operand(2)?, operand(3)?, operand(4)?])?,
-            Op::Syscall => {
-                let (number, arguments) = (operand(1)?, operand(2)?);
-                self.syscall(number, arguments)?;
-            }
+            Op::Unflatten => self.unflatten([first, second, third, fourth])?,
+            Op::Syscall => self.syscall(first, second)?,
             Op::Stop => {
-                let condition = operand(1)?;
-                if condition == NONE || self.memory.get_id(condition)? > 0 {
+                if first == NONE || self.memory.get_id(first)? > 0 {
                     return Ok(Flow::Stop);
                 }
             }
             Op::FinClump => {
-                let (first, last) = (operand(1)? as i16, operand(2)? as i16);
                 let clump = self.schedule.running().ok_or(Fault::Instruction)?;
                 let all = &self.program.clumps[usize::from(clump)].dependents;
-                let chosen = match (usize::try_from(first), usize::try_from(last)) {
+                let chosen = match (usize::try_from(first as i16), usize::try_from(second as i16)) {
                     (Ok(first), Ok(last)) => all.get(first..=last).ok_or(Fault::Argument)?,
                     _ => &[],
                 };
@@ -157,52 +110,48 @@ impl<'p> Brick<'p, '_> {
                 return Ok(Flow::ClumpEnds);
             }
             Op::FinClumpImmed => {
-                let dependent = operand(1)? as u8;
-                self.schedule.finish(&[dependent])?;
+                self.schedule.finish(&[first as u8])?;
                 return Ok(Flow::ClumpEnds);
             }
-            Op::Acquire => {
-                let mutex = operand(1)?;
-                return self.acquire(mutex, next);
-            }
-            Op::Release => {
-                let mutex = operand(1)?;
-                self.schedule.release(mutex)?;
-            }
-            Op::SubCall => {
-                let (callee, slot) = (operand(1)?, operand(2)?);
-                return self.call(callee, slot, next);
-            }
+            Op::Acquire => return self.acquire(first, next),
+            Op::Release => self.schedule.release(first)?,
+            Op::SubCall => return self.call(first, second, next),
             Op::SubRet => {
-                let caller = self.memory.get_id(operand(1)?)? as u8;
+                let caller = self.memory.get_id(first)? as u8;
                 self.schedule.return_to(caller)?;
                 return Ok(Flow::ClumpEnds);
             }
+            // The firmware does not check the port, and reaches into other memory.
             Op::SetIn => {
-                let (value, port, field) = (operand(1)?, operand(2)?, operand(3)?);
-                let (value, port) = (self.memory.get_id(value)?, self.memory.get_id(port)?);
-                let t_ms = self.t_ms;
-                self.ports.get_mut(port as usize).ok_or(Fault::Argument)?.set(field, value, t_ms)?;
+                let (value, port) = (self.memory.get_id(first)?, self.memory.get_id(second)?);
+                let field = InputField::from_number(third).ok_or(Fault::Instruction)?;
+                if let Some(port) = self.ports.get_mut(port as usize) {
+                    port.set(field, value, self.t_ms);
+                }
             }
             Op::GetIn => {
-                let (to, port, field) = (operand(1)?, operand(2)?, operand(3)?);
-                let port = self.memory.get_id(port)?;
-                let value = self.ports.get(port as usize).ok_or(Fault::Argument)?.get(field, self.t_ms)?;
-                self.memory.set_id(to, value)?;
+                let port = self.memory.get_id(second)? as usize;
+                let field = InputField::from_number(third).ok_or(Fault::Instruction)?;
+                let value = match self.ports.get(port) {
+                    Some(on_port) => on_port.get(field, self.world.percent(port, self.t_ms), self.t_ms),
+                    None => 0,
+                };
+                self.memory.set_id(first, value)?;
             }
-            Op::SetOut => self.set_outputs(operand(2)?, pc + 3..pc + next)?,
+            Op::SetOut => self.set_outputs(second, pc + 3..pc + next)?,
             Op::GetOut => {
-                let (to, port, field) = (operand(1)?, operand(2)?, operand(3)?);
-                let port = self.memory.get_id(port)? as usize;
-                let motor = self.motors.get(port).ok_or(Fault::Argument)?;
-                let value = motor.get(field, self.world.rotation_deg(port, self.t_ms))?;
-                self.memory.set_id(to, value)?;
+                let port = self.memory.get_id(second)? as usize;
+                let field = OutputField::from_number(third).ok_or(Fault::Instruction)?;
+                let value = match self.motors.get(port) {
+                    Some(motor) => motor.get(field, self.world.rotation_deg(port, self.t_ms)),
+                    None => 0,
+                };
+                self.memory.set_id(first, value)?;
             }
             Op::Wait => {
-                let (result, ms) = (operand(1)?, operand(2)?);
-                let ms = self.number_or(ms, 0)? as u32;
-                if result != NONE {
-                    self.memory.set_id(result, self.tick_ms())?;
+                let ms = self.number_or(second, 0)? as u32;
+                if first != NONE {
+                    self.memory.set_id(first, self.tick_ms())?;
                 }
                 if ms == 0 {
                     return Ok(Flow::Yield(next));
@@ -210,43 +159,44 @@ impl<'p> Brick<'p, '_> {
                 self.schedule.sleep(self.t_ms.saturating_add(ms));
                 return Ok(Flow::Suspend(next));
             }
-            Op::GetTick => {
-                let to = operand(1)?;
-                self.memory.set_id(to, self.tick_ms())?;
-            }
+            Op::GetTick => self.memory.set_id(first, self.tick_ms())?,
         }
         Ok(Flow::Next(next))
     }
 
-    /// The short forms, whose first word holds one operand as a signed byte.
-    fn execute_short(&mut self, word: u16, pc: usize) -> Result<Flow, Fault> {
-        let byte = word as i8;
-        match word >> 8 & 7 {
-            0 => {
-                let from = self.word(pc + 1)?;
-                self.mov(from.wrapping_add_signed(byte.into()), from)?;
-                Ok(Flow::Next(2))
-            }
-            1 => self.acquire(byte as u16, 1),
-            2 => {
-                self.schedule.release(byte as u16)?;
-                Ok(Flow::Next(1))
-            }
-            3 => {
-                let slot = self.word(pc + 1)?;
-                self.call(slot.wrapping_add_signed(byte.into()), slot, 2)
-            }
-            _ => Err(Fault::Instruction),
-        }
-    }
-
+    #[inline]
     fn mov(&mut self, to: u16, from: u16) -> Result<(), Fault> {
-        let (to_type, from_type) = (self.memory.kind(to)?, self.memory.kind(from)?);
-        if to_type.is_integer() && from_type.is_integer() {
-            let value = self.memory.get_id(from)?;
-            return self.memory.set_id(to, value);
+        let (to_entry, from_entry) = (self.memory.entry(to)?, self.memory.entry(from)?);
+        if to_entry.kind.is_integer() && from_entry.kind.is_integer() {
+            let value = self.memory.value(from_entry, 0)?;
+            return self.memory.set_value(to_entry, 0, value);
         }
         polymorphic::copy(&mut self.memory, Place::of(to), Place::of(from))
+    }
+
+    #[inline]
+    fn calculate(&mut self, operation: Operation, to: u16, left: u16, right: u16) -> Result<(), Fault> {
+        let memory = &mut self.memory;
+        let (to_entry, left_entry, right_entry) = (memory.entry(to)?, memory.entry(left)?, memory.entry(right)?);
+        let kinds = [to_entry.kind, left_entry.kind, right_entry.kind];
+        if kinds.into_iter().all(Type::is_integer) {
+            let (left, right) = (memory.value(left_entry, 0)?, memory.value(right_entry, 0)?);
+            let value = operation.binary(left, right, left_entry.kind, right_entry.kind)?;
+            return memory.set_value(to_entry, 0, value);
+        }
+        polymorphic::binary(memory, operation, Place::of(to), Place::of(left), Place::of(right))
+    }
+
+    #[inline]
+    fn index(&mut self, to: u16, array: u16, index: u16) -> Result<(), Fault> {
+        let index = self.number_or(index, 0)?;
+        let element = self.memory.element(Place::of(array), index)?;
+        let (to_entry, from_entry) = (self.memory.entry(to)?, self.memory.entry(element.id)?);
+        if to_entry.kind.is_integer() && from_entry.kind.is_integer() {
+            let value = self.memory.value(from_entry, element.base)?;
+            return self.memory.set_value(to_entry, 0, value);
+        }
+        polymorphic::copy(&mut self.memory, Place::of(to), element)
     }
 
     fn compare(&mut self, operation: Operation, to: u16, left: u16, right: u16) -> Result<(), Fault> {
@@ -260,11 +210,12 @@ impl<'p> Brick<'p, '_> {
         polymorphic::binary(&mut self.memory, operation, Place::of(to), Place::of(left), Place::of(right))
     }
 
+    #[inline]
     fn holds(&self, comparison: Comparison, left: u16, right: u16) -> Result<bool, Fault> {
-        let (left_type, right_type) = (self.memory.kind(left)?, self.memory.kind(right)?);
-        if left_type.is_integer() && right_type.is_integer() {
-            let order = order(self.memory.get_id(left)?, self.memory.get_id(right)?, left_type, right_type);
-            return Ok(comparison.holds(Some(order)));
+        let (left_entry, right_entry) = (self.memory.entry(left)?, self.memory.entry(right)?);
+        if left_entry.kind.is_integer() && right_entry.kind.is_integer() {
+            let (left, right) = (self.memory.value(left_entry, 0)?, self.memory.value(right_entry, 0)?);
+            return Ok(comparison.holds(Some(order(left, right, left_entry.kind, right_entry.kind))));
         }
         polymorphic::compare(&self.memory, comparison, Place::of(left), Place::of(right))
     }
@@ -401,14 +352,25 @@ impl<'p> Brick<'p, '_> {
             // A port that does not exist is ignored.
             let Some(motor) = self.motors.get_mut(port) else { continue };
             for pair in fields.chunks_exact(2) {
-                motor.set(pair[0], self.memory.get_id(pair[1])?)?;
+                let field = OutputField::from_number(pair[0]).ok_or(Fault::Instruction)?;
+                motor.set(field, self.memory.get_id(pair[1])?);
             }
-            if let Some(drive) = motor.apply(self.world.rotation_deg(port, self.t_ms)) {
-                self.world.motor(port, drive, self.t_ms);
-                self.emit(EventKind::Motor { port, drive });
-            }
+            self.apply_output(port);
         }
         Ok(())
+    }
+
+    /// Makes an output do what its fields say.
+    pub(super) fn apply_output(&mut self, port: usize) {
+        let rotation_deg = self.world.rotation_deg(port, self.t_ms);
+        if let Some(drive) = self.motors[port].apply(rotation_deg) {
+            self.drive(port, drive);
+        }
+    }
+
+    pub(super) fn drive(&mut self, port: usize, drive: Drive) {
+        self.world.motor(port, drive, self.t_ms);
+        self.emit(EventKind::Motor { port, drive });
     }
 
     /// A string without its terminating NUL.
@@ -424,9 +386,5 @@ impl<'p> Brick<'p, '_> {
     /// A number, or `default` if the operand is omitted.
     fn number_or(&self, id: u16, default: usize) -> Result<usize, Fault> {
         if id == NONE { Ok(default) } else { Ok(self.memory.get_id(id)? as usize) }
-    }
-
-    fn word(&self, at: usize) -> Result<u16, Fault> {
-        self.program.code.get(at).copied().ok_or(Fault::Instruction)
     }
 }

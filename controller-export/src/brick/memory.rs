@@ -2,6 +2,8 @@
 //!
 //! Source: the memory manager of the firmware, `cCmdDVArrayAlloc` and its neighbours in `c_cmd.c`.
 
+use std::cell::Cell;
+
 use mindgap_core::limits::POOL_BYTES;
 
 use super::Fault;
@@ -11,6 +13,11 @@ use crate::bytecode::{CLUMP_RECORD_BYTES, Type};
 /// Number of dope vectors added at once when none is free.
 const DOPE_VECTORS_ADDED: usize = 25;
 const MOST_SPARE_DOPE_VECTORS: usize = 200;
+/// Parts of arrays and clusters that the instructions of one turn may touch: more than sound ones do in this memory, fewer
+/// than a broken file can pretend to hold.
+const MOST_PARTS: u32 = 1 << 22;
+/// Bytes of a whole copy that count as one part.
+const BYTES_A_PART: usize = 64;
 /// The dope vector that stands for the table of dope vectors itself.
 const TABLE: usize = 0;
 
@@ -23,6 +30,8 @@ pub(super) struct Memory<'p> {
     /// Bytes of the pool available to the dataspace.
     limit: usize,
     most_bytes: usize,
+    /// Parts touched since they were last taken.
+    parts: Cell<u32>,
 }
 
 /// A value: its entry, and the offset of the array element that contains it (0 outside arrays).
@@ -50,6 +59,7 @@ impl<'p> Memory<'p> {
             free: Vec::new(),
             limit,
             most_bytes: program.data.len(),
+            parts: Cell::new(0),
         };
         match memory.add_dope_vectors((program.dope.len() / 2).min(MOST_SPARE_DOPE_VECTORS)) {
             Ok(()) => Ok(memory),
@@ -67,10 +77,26 @@ impl<'p> Memory<'p> {
         Ok(self.entry(id)?.kind)
     }
 
+    /// Takes the number of parts touched since the last time.
+    pub(super) fn take_parts(&self) -> u32 {
+        self.parts.replace(0)
+    }
+
+    fn touch(&self, parts: usize) -> Result<(), Fault> {
+        let touched = self.parts.get().saturating_add(parts as u32);
+        self.parts.set(touched);
+        if touched > MOST_PARTS { Err(Fault::Endless) } else { Ok(()) }
+    }
+
     /// An integer as the firmware's 32-bit accumulator holds it; a float is rounded to the nearest, halves away from 0.
     pub(super) fn get(&self, place: Place) -> Result<u32, Fault> {
-        let entry = self.entry(place.id)?;
-        let at = entry.at(place.base);
+        self.value(self.entry(place.id)?, place.base)
+    }
+
+    /// The same of an entry that is known.
+    #[inline]
+    pub(super) fn value(&self, entry: Entry, base: usize) -> Result<u32, Fault> {
+        let at = entry.at(base);
         Ok(match entry.kind {
             Type::U8 => u32::from(self.read::<1>(at)?[0]),
             Type::I8 => self.read::<1>(at)?[0] as i8 as u32,
@@ -82,6 +108,7 @@ impl<'p> Memory<'p> {
         })
     }
 
+    #[inline]
     pub(super) fn get_id(&self, id: u16) -> Result<u32, Fault> {
         self.get(Place::of(id))
     }
@@ -97,8 +124,13 @@ impl<'p> Memory<'p> {
 
     /// Stores as many low bytes as the type has.
     pub(super) fn set(&mut self, place: Place, value: u32) -> Result<(), Fault> {
-        let entry = self.entry(place.id)?;
-        let at = entry.at(place.base);
+        self.set_value(self.entry(place.id)?, place.base, value)
+    }
+
+    /// The same for an entry that is known.
+    #[inline]
+    pub(super) fn set_value(&mut self, entry: Entry, base: usize, value: u32) -> Result<(), Fault> {
+        let at = entry.at(base);
         match entry.kind {
             Type::U8 | Type::I8 => self.write(at, [value as u8]),
             Type::U16 | Type::I16 => self.write(at, (value as u16).to_le_bytes()),
@@ -108,6 +140,7 @@ impl<'p> Memory<'p> {
         }
     }
 
+    #[inline]
     pub(super) fn set_id(&mut self, id: u16, value: u32) -> Result<(), Fault> {
         self.set(Place::of(id), value)
     }
@@ -127,7 +160,9 @@ impl<'p> Memory<'p> {
     }
 
     /// The place of an array's element.
+    #[inline]
     pub(super) fn element(&self, array: Place, index: usize) -> Result<Place, Fault> {
+        self.touch(1)?;
         let vector = self.dope[self.vector(array)?];
         match vector.offset {
             Some(offset) if index < vector.count => {
@@ -141,7 +176,9 @@ impl<'p> Memory<'p> {
     pub(super) fn array(&self, array: Place) -> Result<&[u8], Fault> {
         let vector = self.dope[self.vector(array)?];
         let offset = vector.offset.unwrap_or(0);
-        self.bytes.get(offset..offset + vector.element_bytes * vector.count).ok_or(Fault::Pointer)
+        let bytes = self.bytes.get(offset..offset + vector.element_bytes * vector.count).ok_or(Fault::Pointer)?;
+        self.touch(bytes.len() / BYTES_A_PART)?;
+        Ok(bytes)
     }
 
     /// Replaces the contents of an array by bytes.
@@ -183,6 +220,8 @@ impl<'p> Memory<'p> {
 
     /// Moves all arrays together, in the order of their offsets.
     pub(super) fn compact(&mut self) {
+        let parts = self.bytes.len() / BYTES_A_PART + self.dope.len();
+        self.parts.set(self.parts.get().saturating_add(parts as u32));
         let mut order: Vec<usize> = (0..self.dope.len()).filter(|i| self.dope[*i].offset.is_some()).collect();
         order.sort_by_key(|i| self.dope[*i].offset);
         let mut end = self.static_bytes;

@@ -1,9 +1,10 @@
 //! The outputs: the fields that a program writes and their effect on the motors.
 //!
+//! Regulation is not emulated: a motor runs at the power that is set, at once.
+//!
 //! Source: `c_output.c` of the firmware.
 
-use super::Fault;
-use crate::bytecode::{OutputField, RUN_STATE_RUNNING, mode, update};
+use crate::bytecode::{OutputField, RUN_STATE_IDLE, mode, update};
 
 /// Motor ports of a brick.
 pub(super) const PORTS: usize = 3;
@@ -40,11 +41,13 @@ pub(super) struct Motor {
     rotation_zero: i32,
     running_power: i8,
     brakes: bool,
+    /// Shaft rotation at which the run ends.
+    limit_deg: Option<i32>,
 }
 
 impl Motor {
-    pub(super) fn set(&mut self, field: u16, value: u32) -> Result<(), Fault> {
-        match OutputField::from_number(field).ok_or(Fault::Instruction)? {
+    pub(super) fn set(&mut self, field: OutputField, value: u32) {
+        match field {
             OutputField::Flags => self.flags = value as u8,
             OutputField::Mode => self.mode = value as u8,
             OutputField::Power => self.power = value as i8,
@@ -65,11 +68,10 @@ impl Motor {
             | OutputField::BlockTachoCount
             | OutputField::RotationCount => {}
         }
-        Ok(())
     }
 
-    pub(super) fn get(&self, field: u16, rotation_deg: i32) -> Result<u32, Fault> {
-        Ok(match OutputField::from_number(field).ok_or(Fault::Instruction)? {
+    pub(super) fn get(&self, field: OutputField, rotation_deg: i32) -> u32 {
+        match field {
             OutputField::Flags => u32::from(self.flags),
             OutputField::Mode => u32::from(self.mode),
             OutputField::Power => self.power as u32,
@@ -88,7 +90,7 @@ impl Motor {
             OutputField::Options => u32::from(self.options),
             OutputField::MaxSpeed => self.max_speed as u32,
             OutputField::MaxAcceleration => self.max_acceleration as u32,
-        })
+        }
     }
 
     /// Applies the fields that the flags name, as the firmware does in its next millisecond. Returns the new drive if the
@@ -106,7 +108,7 @@ impl Motor {
         }
         let is_on = self.mode & mode::MOTOR_ON != 0;
         if flags & update::SPEED != 0 && is_on {
-            self.running_power = if self.run_state == RUN_STATE_RUNNING { self.power } else { 0 };
+            self.running_power = if self.run_state == RUN_STATE_IDLE { 0 } else { self.power };
         }
         if flags & update::MODE != 0 {
             // A motor that is switched off fades and turns freely, whatever the other bits say.
@@ -115,7 +117,33 @@ impl Motor {
                 self.running_power = 0;
             }
         }
+        if flags & update::TACHO_LIMIT != 0 {
+            let way_deg = self.tacho_limit as i32;
+            self.limit_deg = match self.running_power {
+                _ if way_deg == 0 => None,
+                power if power < 0 => Some(rotation_deg.wrapping_sub(way_deg)),
+                _ => Some(rotation_deg.wrapping_add(way_deg)),
+            };
+        }
         (flags & (update::SPEED | update::MODE) != 0).then(|| self.drive())
+    }
+
+    /// Whether it runs until it has turned by a limit.
+    pub(super) fn has_limit(&self) -> bool {
+        self.limit_deg.is_some()
+    }
+
+    /// Ends a run that has reached its limit; returns the new drive.
+    pub(super) fn end_at_limit(&mut self, rotation_deg: i32) -> Option<Drive> {
+        let left_deg = self.limit_deg?.wrapping_sub(rotation_deg);
+        let goes_on = if self.running_power < 0 { left_deg < 0 } else { left_deg > 0 };
+        if goes_on && self.running_power != 0 {
+            return None;
+        }
+        self.limit_deg = None;
+        self.run_state = RUN_STATE_IDLE;
+        self.running_power = 0;
+        Some(self.drive())
     }
 
     pub(super) fn drive(&self) -> Drive {

@@ -28,6 +28,10 @@ pub(super) fn copy(memory: &mut Memory, to: Place, from: Place) -> Result<(), Fa
 pub(super) fn unary(memory: &mut Memory, operation: Operation, to: Place, from: Place) -> Result<(), Fault> {
     let (to_type, from_type) = (memory.kind(to.id)?, memory.kind(from.id)?);
     if !from_type.is_aggregate() {
+        // The firmware finds no way to store a number in an array, and goes on.
+        if to_type.is_aggregate() {
+            return Ok(());
+        }
         if to_type == Type::Float || from_type == Type::Float {
             let value = operation.unary_float(memory.get_float(from)?)?;
             return memory.set_float(to, value);
@@ -35,7 +39,8 @@ pub(super) fn unary(memory: &mut Memory, operation: Operation, to: Place, from: 
         let value = operation.unary(memory.get(from)?, from_type)?;
         return memory.set(to, value);
     }
-    if to_type == Type::Array && from_type == Type::Array && operation.op == Op::Mov {
+    // Whatever the operation: the firmware copies arrays of one integer type as they are.
+    if to_type == Type::Array && from_type == Type::Array {
         let (to_element, from_element) = (memory.kind(to.id + 1)?, memory.kind(from.id + 1)?);
         if to_element == from_element && to_element.is_integer() {
             let bytes = memory.array(from)?.to_vec();

@@ -4,10 +4,13 @@ use std::ops::Range;
 
 use mindgap_core::limits::POOL_BYTES;
 
+use super::decode::{Decoded, decode};
 use crate::bytecode::{CLUMP_RECORD_BYTES, DEFAULT_ZERO, DOPE_VECTOR_BYTES, HEADER_BYTES, MAGIC, NONE, Type};
 
 /// Deepest nesting of data accepted. The firmware has no limit; nbc makes at most four levels of a sensible program.
 const DEEPEST_NESTING: u16 = 6;
+/// The first bytes of a program for the processor itself, which only extended firmware runs.
+const NATIVE_MAGIC: &[u8] = b"NXTBINARY";
 const OLDEST_MINOR_VERSION: u8 = 4;
 const NEWEST_MAJOR_VERSION: u8 = 1;
 /// One clump number is reserved for "none".
@@ -19,6 +22,8 @@ pub struct Program {
     pub(super) entries: Vec<Entry>,
     pub(super) clumps: Vec<Clump>,
     pub(super) code: Vec<u16>,
+    /// What stands at each of its words.
+    pub(super) decoded: Vec<Decoded>,
     /// The dataspace as it is when the program starts: values, then arrays.
     pub(super) data: Vec<u8>,
     pub(super) static_bytes: usize,
@@ -86,7 +91,8 @@ impl Program {
         let data = inflate(&entries, defaults, &header)?;
         let dope = read_dope_vectors(&data, &header)?;
         let static_bytes = usize::from(header.static_bytes);
-        let program = Program { entries, clumps, code, data, static_bytes, dope, file_bytes: file.len() };
+        let decoded = decode(&code);
+        let program = Program { entries, clumps, code, decoded, data, static_bytes, dope, file_bytes: file.len() };
         if program.pool_bytes() > POOL_BYTES {
             return Err(LoadError("more data than the brick has memory for programs"));
         }
@@ -132,6 +138,9 @@ struct Header {
 
 impl Header {
     fn read(file: &[u8]) -> Result<Header, LoadError> {
+        if file.starts_with(NATIVE_MAGIC) {
+            return Err(LoadError("native code of the processor, not bytecode"));
+        }
         let header = file.get(..HEADER_BYTES).ok_or(LoadError("shorter than its header"))?;
         if header[..MAGIC.len()] != MAGIC {
             return Err(LoadError("it does not begin with MindstormsNXT"));

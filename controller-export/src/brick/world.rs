@@ -1,11 +1,21 @@
 //! The surroundings of a brick: what it senses and moves.
 
-use super::motors::Drive;
+use super::motors::{Drive, PORTS as MOTORS};
+use super::shaft::Shaft;
 
 /// Sensors, motors, buttons and battery around a brick. Times are milliseconds since the program started.
 pub trait World {
     /// The ultrasonic sensor's response to a request for its nearest echo; `port` counts from 0.
     fn sonar(&mut self, port: usize, t_ms: u32) -> Sonar;
+
+    /// Its response to any other request, such as for its kind: only whether it answers counts.
+    fn sonar_answers(&mut self, port: usize, t_ms: u32) -> Sonar;
+
+    /// What a touch, light or sound sensor senses, 0..=100 percent; `None` if none is plugged in there.
+    fn percent(&mut self, port: usize, t_ms: u32) -> Option<u8> {
+        let _ = (port, t_ms);
+        None
+    }
 
     /// Sets the drive of a motor from now on; `port` counts from 0.
     fn motor(&mut self, port: usize, drive: Drive, t_ms: u32) {
@@ -56,21 +66,60 @@ pub struct Button {
     pub released: u8,
 }
 
-/// A world with scripted answers of the sensor, one a request; after the last one the sensor is silent.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+/// A press of a button.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Press {
+    /// The right (1), left (2) or orange (3) button.
+    pub button: u8,
+    /// When it goes down.
+    pub down_ms: u32,
+    /// When it goes up again.
+    pub up_ms: u32,
+}
+
+impl Press {
+    /// A press of the orange button.
+    pub fn orange(down_ms: u32, up_ms: u32) -> Press {
+        Press { button: 3, down_ms, up_ms }
+    }
+}
+
+/// What a touch, light or sound sensor senses from a time on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Level {
+    /// The sensor's port, from 0.
+    pub port: usize,
+    /// From when.
+    pub t_ms: u32,
+    /// How much, 0..=100; a touch sensor is pressed at more than 0.
+    pub percent: u8,
+}
+
+/// A world by script: the ultrasonic sensor's answers, one a request, after which it is silent; the other sensors'
+/// levels and the buttons' presses by time. Its motors turn freely.
+///
+/// A script that holds no distance from the next answer on is that of a sensor that is not there or broken, and then
+/// requests for anything else get that answer too.
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct ScriptedWorld {
     /// Answers of the ultrasonic sensor, one a request.
     pub sonar: Vec<Sonar>,
     /// The port that it is plugged into, from 0.
     pub sonar_port: usize,
+    /// What the other sensors sense, in order of time.
+    pub levels: Vec<Level>,
+    /// Presses of buttons.
+    pub presses: Vec<Press>,
     /// When the dark button is pressed.
     pub exit_pressed_ms: Option<u32>,
     /// Battery voltage in millivolts.
     pub battery_mv: u16,
-    /// Times at which the orange button goes down and up again.
-    pub center_pressed_ms: Vec<(u32, u32)>,
+    /// Whether something holds the wheels.
+    pub wheels_blocked: bool,
     /// Number of requests so far.
     pub asked: usize,
+    /// The shafts of the motors.
+    pub shafts: [Shaft; MOTORS],
 }
 
 impl ScriptedWorld {
@@ -90,13 +139,35 @@ impl World for ScriptedWorld {
         answer
     }
 
-    fn button(&mut self, button: u8, t_ms: u32) -> Button {
-        const CENTER: u8 = 3;
-        if button != CENTER {
-            return Button::default();
+    fn sonar_answers(&mut self, port: usize, _: u32) -> Sonar {
+        let rest = self.sonar.get(self.asked..).unwrap_or_default();
+        match rest.first() {
+            Some(next) if port == self.sonar_port => {
+                rest.iter().find(|answer| matches!(answer, Sonar::Echo(_))).copied().unwrap_or(*next)
+            }
+            _ => Sonar::Silent,
         }
-        let pressed = self.center_pressed_ms.iter().any(|(down, up)| (*down..*up).contains(&t_ms));
-        let released = self.center_pressed_ms.iter().filter(|(_, up)| *up <= t_ms).count();
+    }
+
+    fn percent(&mut self, port: usize, t_ms: u32) -> Option<u8> {
+        let level = self.levels.iter().rfind(|level| level.port == port && level.t_ms <= t_ms);
+        level.map(|level| level.percent)
+    }
+
+    fn motor(&mut self, port: usize, drive: Drive, t_ms: u32) {
+        if !self.wheels_blocked {
+            self.shafts[port].set(drive, t_ms);
+        }
+    }
+
+    fn rotation_deg(&mut self, port: usize, t_ms: u32) -> i32 {
+        self.shafts[port].angle_deg(t_ms)
+    }
+
+    fn button(&mut self, button: u8, t_ms: u32) -> Button {
+        let of_button = || self.presses.iter().filter(|press| press.button == button);
+        let pressed = of_button().any(|press| (press.down_ms..press.up_ms).contains(&t_ms));
+        let released = of_button().filter(|press| press.up_ms <= t_ms).count();
         Button { pressed, released: released as u8 }
     }
 

@@ -37,6 +37,11 @@ impl Assembler {
         self.data.array(kind, values)
     }
 
+    /// A string: its bytes and a NUL.
+    pub(super) fn string(&mut self, text: &str) -> Array {
+        self.data.array(Type::U8, text.bytes().chain([0]).map(i32::from))
+    }
+
     /// A cluster whose members are the next numbers and arrays to be declared.
     pub(super) fn cluster(&mut self, members: u16) -> Cluster {
         self.data.cluster(members)
@@ -79,6 +84,10 @@ impl Assembler {
         self.instruction(Op::Sub, None, &[to.0, left.0, right.0]);
     }
 
+    pub(super) fn abs(&mut self, to: Number, from: Number) {
+        self.instruction(Op::Abs, None, &[to.0, from.0]);
+    }
+
     pub(super) fn index(&mut self, to: Number, array: Array, index: Number) {
         self.instruction(Op::Index, None, &[to.0, array.0, index.0]);
     }
@@ -118,6 +127,10 @@ impl Assembler {
 
     pub(super) fn get_input(&mut self, to: Number, port: Number, field: InputField) {
         self.instruction(Op::GetIn, None, &[to.0, port.0, field as u16]);
+    }
+
+    pub(super) fn get_output(&mut self, to: Number, port: Number, field: OutputField) {
+        self.instruction(Op::GetOut, None, &[to.0, port.0, field as u16]);
     }
 
     /// Sets fields of one output, in this order.

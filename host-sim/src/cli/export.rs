@@ -6,12 +6,13 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 use mindgap_controller_export::collect::CollectOptions;
-use mindgap_controller_export::names::BrickName;
+use mindgap_controller_export::names::{BrickName, RunLogs};
 use mindgap_controller_export::nxc::{self, NxcOptions};
 use mindgap_controller_export::nxc_networks::{self, nxc_networks};
+use mindgap_controller_export::onboard::Safety;
 use mindgap_controller_export::rust_networks::rust_networks;
 use mindgap_controller_export::wiring::{MotorPort, SensorPort, Wiring};
-use mindgap_controller_export::{ExportError, Origin, c, collect as data_collection, rust, rxe};
+use mindgap_controller_export::{ExportError, Origin, c, collect as data_collection, pybricks, rust, rxe};
 
 use super::{Run, kinds};
 use crate::error::{Error, Result};
@@ -29,7 +30,7 @@ pub struct Export {
     /// a run whose commands are a script.
     #[arg(
         value_name = "CONTROLLER",
-        required_if_eq_any = [("format", "nxc"), ("format", "rxe"), ("format", "rust"), ("format", "c")]
+        required_if_eq_any = [("format", "nxc"), ("format", "rxe"), ("format", "rust"), ("format", "c"), ("format", "pybricks")]
     )]
     input: Option<PathBuf>,
     /// What to make of it.
@@ -47,12 +48,19 @@ pub struct Export {
     /// Port of the ultrasonic sensor.
     #[arg(long, default_value = "4")]
     sonar: SensorPort,
-    /// Log every step to a file of this name on the brick.
-    #[arg(long, value_name = "NAME")]
-    log: Option<BrickName>,
+    /// Log every step on the brick: each start of the program writes a file of its own, as NAME_000.csv. They have the
+    /// program's name, or this one.
+    #[arg(long, value_name = "NAME.csv", num_args = 0..=1)]
+    log: Option<Option<BrickName>>,
     /// Show tuple, reading and outcome on the brick's display.
     #[arg(long)]
     display: bool,
+    /// Stop the robot where a reading is below this.
+    #[arg(long, value_name = "CM", value_parser = clap::value_parser!(u8).range(1..=254))]
+    stop_cm: Option<u8>,
+    /// Stop the robot when a driven wheel does not turn.
+    #[arg(long)]
+    stall: bool,
     #[command(flatten)]
     collect: collect::Collect,
 }
@@ -68,6 +76,8 @@ enum Format {
     Rust,
     /// A C99 header with the stepping machine.
     C,
+    /// A MicroPython program for hubs with pybricks firmware.
+    Pybricks,
     /// NXC source of a program that drives, at random or by a script, and logs.
     NxcCollect,
 }
@@ -81,8 +91,14 @@ impl Run for Export {
         if (self.log.is_some() || self.display) && !matches!(self.format, Format::Nxc) {
             return Err(Error::new("--log and --display are for a controller with --format nxc"));
         }
+        let runs_on_a_brick = matches!(self.format, Format::Nxc | Format::Rxe | Format::NxcCollect);
+        if self.safety() != Safety::default() && !runs_on_a_brick {
+            return Err(Error::new(
+                "--stop-cm and --stall are for programs of a brick: --format nxc, rxe or nxc-collect",
+            ));
+        }
         let (program, budget) = match &self.input {
-            None => self.collection(&self.collect.options(self.program_name()?, self.wiring()))?,
+            None => self.collection(self.collect.options(self.program_name()?, self.wiring()))?,
             // Simulators are JSON; no TOML begins like that.
             Some(input) if files::read_text(input)?.trim_start().starts_with('{') => self.networks(input)?,
             Some(input) => self.onboard(input)?,
@@ -94,10 +110,11 @@ impl Run for Export {
 }
 
 impl Export {
-    fn collection(&self, options: &CollectOptions) -> Result<(Vec<u8>, Option<String>)> {
+    fn collection(&self, options: CollectOptions) -> Result<(Vec<u8>, Option<String>)> {
         let named = self.input.as_ref().unwrap_or(&self.out);
-        let source = data_collection::program(options).map_err(|e| Error::in_file(named, e.to_string()))?;
-        Ok((source.into_bytes(), Some(data_collection::budget(options).to_string())))
+        let options = CollectOptions { safety: self.safety(), ..options };
+        let source = data_collection::program(&options).map_err(|e| Error::in_file(named, e.to_string()))?;
+        Ok((source.into_bytes(), Some(data_collection::budget(&options).to_string())))
     }
 
     fn networks(&self, input: &Path) -> Result<(Vec<u8>, Option<String>)> {
@@ -125,11 +142,11 @@ impl Export {
                 self.program_name()?;
                 let (controller, _) = read()?;
                 (
-                    rxe::program(&controller, &self.wiring()).map_err(refused)?,
-                    Some(rxe::budget(&controller).to_string()),
+                    rxe::program(&controller, &self.wiring(), self.safety()).map_err(refused)?,
+                    Some(rxe::budget(&controller, self.safety()).to_string()),
                 )
             }
-            Format::NxcCollect => self.collection(&collect::script(input, self.program_name()?, self.wiring())?)?,
+            Format::NxcCollect => self.collection(collect::script(input, self.program_name()?, self.wiring())?)?,
             Format::Rust => {
                 let (controller, origin) = read()?;
                 (rust::module(&controller, &origin).map_err(refused)?.into_bytes(), None)
@@ -138,9 +155,15 @@ impl Export {
                 let (controller, origin) = read()?;
                 (c::header(&controller, &origin).map_err(refused)?.into_bytes(), None)
             }
+            Format::Pybricks => {
+                let (controller, origin) = read()?;
+                (pybricks::program(&controller, &origin).map_err(refused)?.into_bytes(), None)
+            }
             Format::Nxc => {
-                let ((controller, origin), program, wiring) = (read()?, self.program_name()?, self.wiring());
-                let options = NxcOptions { program, wiring, log: self.log.clone(), display: self.display };
+                let ((controller, origin), program) = (read()?, self.program_name()?);
+                let (wiring, safety, display) = (self.wiring(), self.safety(), self.display);
+                let log = self.logs(&program).transpose().map_err(|e| Error::in_file(&self.out, e.to_string()))?;
+                let options = NxcOptions { program, wiring, safety, log, display };
                 let source = nxc::program(&controller, &origin, &options).map_err(refused)?;
                 (source.into_bytes(), Some(nxc::budget(&controller, &options).to_string()))
             }
@@ -149,6 +172,17 @@ impl Export {
 
     fn wiring(&self) -> Wiring {
         Wiring { left: self.left, right: self.right, sonar: self.sonar }
+    }
+
+    fn safety(&self) -> Safety {
+        Safety { stop_cm: self.stop_cm, stall: self.stall }
+    }
+
+    /// The names of the logs that are asked for.
+    fn logs(&self, program: &BrickName) -> Option<std::result::Result<RunLogs, ExportError>> {
+        let named = |name: &BrickName| RunLogs::of(name);
+        let by_program = || named(&format!("{}.csv", program.stem()).parse()?);
+        self.log.as_ref().map(|name| name.as_ref().map_or_else(by_program, named))
     }
 
     /// The compiled program's name on the brick: that of the file that is written.

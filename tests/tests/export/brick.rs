@@ -1,7 +1,7 @@
 //! The brick in software runs what the real compiler makes, and does what was seen in the real firmware.
 
 use mindgap_controller_export::brick::{
-    self, Drive, EventKind, Fault, LoadError, Program, Report, RunConfig, ScriptedWorld, Sonar, Termination,
+    self, Drive, EventKind, Fault, LoadError, Press, Program, Report, RunConfig, ScriptedWorld, Sonar, Termination,
 };
 use mindgap_tests::nbc::{compile, compile_for};
 use proptest::prelude::*;
@@ -141,7 +141,8 @@ fn buttons_battery_tones_and_ticks() {
     let source = "task main() { until (ButtonPressed(BTNCENTER, false)); NumOut(0, LCD_LINE1, CurrentTick() - FirstTick());
         Wait(100); NumOut(0, LCD_LINE1, ButtonCount(BTNCENTER, true)); NumOut(0, LCD_LINE1, ButtonCount(BTNCENTER, true));
         NumOut(0, LCD_LINE1, BatteryLevel()); PlayTone(440, 250); }";
-    let mut world = ScriptedWorld { center_pressed_ms: vec![(300, 350)], battery_mv: 7321, ..ScriptedWorld::default() };
+    let mut world =
+        ScriptedWorld { presses: vec![Press::orange(300, 350)], battery_mv: 7321, ..ScriptedWorld::default() };
     let report = run(source, &mut world);
     assert_eq!(texts(&report), ["300", "1", "0", "7321"]);
     assert_eq!(report.events.last().unwrap().kind, EventKind::Tone { hz: 440, ms: 250 });
@@ -232,7 +233,9 @@ fn a_program_that_never_ends_runs_out_of_time() {
     let busy = RunConfig { run_ms: 1000, ..RunConfig::default() };
     let program = Program::load(&compile("task main() { int i; while (true) i++; }")).unwrap();
     let report = brick::run(&program, &mut ScriptedWorld::default(), &busy);
-    assert_eq!((report.end, report.instructions), (Termination::OutOfTime, 100_000));
+    // A hundred a millisecond, but for what operations on arrays take longer when the program starts.
+    assert_eq!(report.end, Termination::OutOfTime);
+    assert!((99_900..=100_000).contains(&report.instructions), "{}", report.instructions);
 }
 
 #[test]

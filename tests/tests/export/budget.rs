@@ -3,8 +3,9 @@
 use mindgap_controller_export::brick::{self, Program, Report, RunConfig, ScriptedWorld, Sonar};
 use mindgap_controller_export::budget::{Budget, INSTRUCTIONS_PER_MS};
 use mindgap_controller_export::collect::{self, CollectOptions, Commands};
-use mindgap_controller_export::names::BrickName;
+use mindgap_controller_export::names::{BrickName, RunLogs};
 use mindgap_controller_export::nxc::{self, NxcOptions};
+use mindgap_controller_export::onboard::Safety;
 use mindgap_controller_export::wiring::Wiring;
 use mindgap_controller_export::{ExportError, Origin, rxe};
 use mindgap_core::controller::Controller;
@@ -15,16 +16,15 @@ use mindgap_tests::nbc::compile;
 const SLACK: f64 = 1.25;
 
 fn nxc_options(log: bool, display: bool) -> NxcOptions {
-    let program = BrickName::program("run").unwrap();
-    let log = log.then(|| "exactly-fifteen.csv".parse().unwrap());
-    NxcOptions { program, wiring: Wiring::default(), log, display }
+    let log = log.then(|| RunLogs::of(&"elevenchars.csv".parse().unwrap()).unwrap());
+    NxcOptions { log, display, ..NxcOptions::new(BrickName::program("run").unwrap()) }
 }
 
 fn collect_options() -> [CollectOptions; 3] {
     let random = Commands::Random { steps: 150, near_cm: 40, seed: u32::MAX };
     [random, Commands::Script(vec![[-100, 100]; 40]), Commands::Script(vec![[-100, 100]; 500])].map(|commands| {
         let program = BrickName::program("collect").unwrap();
-        CollectOptions { program, wiring: Wiring::default(), step_ms: 400, commands }
+        CollectOptions { program, wiring: Wiring::default(), safety: Safety::default(), step_ms: 400, commands }
     })
 }
 
@@ -35,10 +35,17 @@ fn programs() -> Vec<(Vec<u8>, Budget)> {
         let source = nxc::program(&at_its_limits(), &Origin::default(), &options).unwrap();
         (compile(&source), nxc::budget(&at_its_limits(), &options))
     });
-    let rxe = (rxe::program(&at_its_limits(), &Wiring::default()).unwrap(), rxe::budget(&at_its_limits()));
+    let careful = Safety { stop_cm: Some(15), stall: true };
+    let rxe = [Safety::default(), careful].map(|safety| {
+        let file = rxe::program(&at_its_limits(), &Wiring::default(), safety).unwrap();
+        (file, rxe::budget(&at_its_limits(), safety))
+    });
+    let options = NxcOptions { safety: careful, ..nxc_options(true, true) };
+    let source = nxc::program(&at_its_limits(), &Origin::default(), &options).unwrap();
+    let careful = (compile(&source), nxc::budget(&at_its_limits(), &options));
     let collect =
         collect_options().map(|options| (compile(&collect::program(&options).unwrap()), collect::budget(&options)));
-    nxc.into_iter().chain([rxe]).chain(collect).collect()
+    nxc.into_iter().chain([careful]).chain(rxe).chain(collect).collect()
 }
 
 fn run(program: &Program, sonar: &[Sonar]) -> Report {
@@ -80,7 +87,7 @@ fn the_shortest_step_is_kept_by_the_slowest_brick() {
     let program = Program::load(&compile(&source)).unwrap();
     let sonar: Vec<_> = (0..150).map(|k| if k % 2 == 0 { Sonar::Hangs } else { Sonar::Echo(255) }).collect();
     let report = run(&program, &sonar);
-    let log = String::from_utf8(report.files["exactly-fifteen.csv"].clone()).unwrap();
+    let log = String::from_utf8(report.files["elevenchars_000.csv"].clone()).unwrap();
     let times: Vec<u32> = log.lines().skip(1).map(|row| row.split(',').next().unwrap().parse().unwrap()).collect();
     assert_eq!(times.len(), 151, "a hanging answer is in the way of the next request");
     for (step, t_ms) in (0..).zip(times) {
@@ -92,9 +99,9 @@ fn the_shortest_step_is_kept_by_the_slowest_brick() {
 #[test]
 fn a_budget_prints_what_is_taken_of_what_there_is() {
     let lines = nxc::budget(&at_its_limits(), &nxc_options(true, false)).to_string();
-    let expected = "program     4700 of 121124 bytes of flash\n\
-                    log         7328 of 116424 bytes of flash\n\
-                    memory      4500 of 32768 bytes\n\
-                    step         115 of 400 ms at worst";
+    let expected = "program     6800 of 104104 bytes of flash\n\
+                    log         7328 of 97304 bytes of flash without other files\n\
+                    memory      5500 of 32768 bytes\n\
+                    step         118 of 400 ms at worst";
     assert_eq!(lines, expected);
 }

@@ -4,16 +4,17 @@ use std::collections::BTreeMap;
 
 use mindgap_controller_export::ExportError;
 use mindgap_controller_export::brick::{
-    self, Drive, EventKind, Program, Report, RunConfig, ScriptedWorld, Sonar, Termination, World,
+    self, Drive, EventKind, Press, Program, Report, RunConfig, ScriptedWorld, Sonar, Termination, World,
 };
 use mindgap_controller_export::collect::{self, CollectOptions, Commands};
 use mindgap_controller_export::names::BrickName;
+use mindgap_controller_export::onboard::Safety;
 use mindgap_controller_export::wiring::Wiring;
 use mindgap_host_sim::built_in_robot::{BuiltInRobot, default_robot, training_room};
 use mindgap_host_sim::chance::generator;
 use mindgap_host_sim::geometry::Pose;
+use mindgap_host_sim::on_board::{OnBoard, Vehicle};
 use mindgap_tests::nbc::compile;
-use mindgap_tests::on_board::OnBoard;
 
 const STEPS: usize = 150;
 const NEAR_CM: u8 = 40;
@@ -21,7 +22,7 @@ const NEAR_CM: u8 = 40;
 fn options(seed: u32) -> CollectOptions {
     let program = BrickName::program("collect").unwrap();
     let commands = Commands::Random { steps: STEPS as u16, near_cm: NEAR_CM, seed };
-    CollectOptions { program, wiring: Wiring::default(), step_ms: 400, commands }
+    CollectOptions { program, wiring: Wiring::default(), safety: Safety::default(), step_ms: 400, commands }
 }
 
 fn program(seed: u32) -> Program {
@@ -79,16 +80,16 @@ fn it_drives_about_a_crowded_room_and_logs_every_step() {
         for (number, (x_cm, y_cm)) in (0..).zip(starts) {
             let mut rng = generator(seed as u64, &[number]);
             let body = robot.start(Pose::new(x_cm, y_cm, 0.7), &mut rng);
-            let mut world = OnBoard::new(body, Wiring::default(), rng);
+            let mut world = OnBoard::new(Vehicle::BuiltIn(body), Wiring::default(), 400, rng);
             let report = run(&program, &mut world);
             assert_eq!(report.end, Termination::Finished);
-            crashes += usize::from(world.body.crashed());
+            crashes += usize::from(world.crashed());
             let rows = rows(&report, "run-000.csv");
             assert_eq!(rows.len(), STEPS + 1);
             for (k, row) in (0..).zip(&rows) {
                 assert!((400 * k..400 * k + 20).contains(&row.t_ms), "{row:?}");
             }
-            if !world.body.crashed() {
+            if !world.crashed() {
                 all.push(rows);
             }
         }
@@ -150,9 +151,11 @@ fn it_stops_for_a_dead_sensor_and_for_the_orange_button() {
     let rows = rows(&report, "run-000.csv");
     assert_eq!((rows.len(), rows[5].command, rows[5].echo_cm), (6, [0, 0], None));
 
-    let mut world = ScriptedWorld { center_pressed_ms: vec![(2_000, 2_500)], ..clear() };
+    let mut world = ScriptedWorld { presses: vec![Press::orange(2_000, 2_005)], ..clear() };
     let rows = rows_of(&program, world.clone());
-    assert!(rows.len() < 8, "{} rows", rows.len());
+    // A short press between two steps counts, and at once.
+    assert_eq!((rows.len(), rows[5].command), (6, [0, 0]));
+    assert!((1_700..1_770).contains(&rows[5].t_ms), "{:?}", rows[5]);
     assert_eq!(run(&program, &mut world).motors, [Drive::Coast, Drive::Brake, Drive::Brake]);
 }
 

@@ -3,9 +3,9 @@
 use mindgap_controller_export::brick::{
     self, Drive, Event, EventKind, Program, Report, RunConfig, ScriptedWorld, Sonar, Termination,
 };
-use mindgap_controller_export::names::BrickName;
+use mindgap_controller_export::names::{BrickName, RunLogs};
 use mindgap_controller_export::nxc::{self, NxcOptions};
-use mindgap_controller_export::onboard::{FAILED_STEPS_TO_STOP, NO_ECHO_CM, SONAR_TIMEOUT_MS};
+use mindgap_controller_export::onboard::{Ending, FAILED_STEPS_TO_STOP, NO_ECHO_CM, SONAR_TIMEOUT_MS, Safety};
 use mindgap_controller_export::wiring::{MotorPort, SensorPort, Wiring};
 use mindgap_controller_export::{Origin, rxe};
 use mindgap_core::controller::{Controller, Machine, Motors, Status, Tuple, When};
@@ -16,11 +16,11 @@ use proptest::test_runner::{RngAlgorithm, TestRng, TestRunner};
 
 /// Runs of the .rxe writer's programs, each of a controller of its own.
 const RUNS: u32 = 10_000;
-/// Controllers that go through the real compiler, and runs of each.
+/// Controllers that go through the real compiler, and runs of each; the environment's `MINDGAP_CONTROLLERS` states another
+/// number of controllers, each of which then runs a few times.
 const COMPILED: usize = 24;
 const RUNS_OF_COMPILED: u32 = 100;
-/// The shortest step that every kind of program keeps.
-const SHORTEST_STEP_MS: u16 = 120;
+const RUNS_OF_MANY: u32 = 3;
 /// Time from a step's tick to its motor commands when the sensor answers.
 const LATENCY_MS: u32 = 15;
 /// How far two programs' times may lie apart.
@@ -48,9 +48,26 @@ fn tuples() -> impl Strategy<Value = Tuple> {
     })
 }
 
+/// The shortest step that a program without log and display is exported with.
+fn least_step_ms() -> u16 {
+    let hasty = Controller { step_ms: 1, ..mindgap_tests::controllers::at_its_limits() };
+    let [rxe, nxc] = [rxe::budget(&hasty, Safety::default()), nxc::budget(&hasty, &options())].map(|b| b.worst_step_ms);
+    assert_eq!(rxe, nxc, "one rule for both formats");
+    rxe
+}
+
+fn options() -> NxcOptions {
+    NxcOptions::new(BrickName::program("run").unwrap())
+}
+
 fn controllers() -> impl Strategy<Value = Controller> {
-    (SHORTEST_STEP_MS..1000, 1..50u16, prop::array::uniform6(tuples()))
-        .prop_map(|(step_ms, max_steps, tuples)| Controller { step_ms, max_steps, tuples })
+    let least_ms = least_step_ms();
+    let step_ms = prop_oneof![1 => least_ms..least_ms + 3, 3 => least_ms..1000];
+    (step_ms, 1..50u16, prop::array::uniform6(tuples())).prop_map(|(step_ms, max_steps, tuples)| Controller {
+        step_ms,
+        max_steps,
+        tuples,
+    })
 }
 
 fn readings() -> impl Strategy<Value = Vec<Sonar>> {
@@ -72,7 +89,7 @@ fn rng() -> TestRng {
 }
 
 /// What the core's machine does, and the rule that ends a run whose sensor is dead.
-fn expected(controller: &Controller, sonar: &[Sonar]) -> (Vec<Change>, Status) {
+fn expected(controller: &Controller, sonar: &[Sonar]) -> (Vec<Change>, Ending) {
     let mut machine = Machine::start();
     let mut changes = vec![Change { step: 0, motors: machine.motors(controller) }];
     let mut failed_steps = 0;
@@ -87,7 +104,12 @@ fn expected(controller: &Controller, sonar: &[Sonar]) -> (Vec<Change>, Status) {
         let is_over = status != Status::Running || failed_steps == FAILED_STEPS_TO_STOP;
         if is_over {
             changes.push(Change { step, motors: Motors { left: 0, right: 0 } });
-            return (changes, status);
+            let ending = match status {
+                Status::Finished => Ending::Finished,
+                _ if failed_steps == FAILED_STEPS_TO_STOP => Ending::SonarDead,
+                _ => Ending::TimedOut,
+            };
+            return (changes, ending);
         }
         if machine.tuple() != tuple {
             changes.push(Change { step, motors: machine.motors(controller) });
@@ -123,7 +145,7 @@ fn drive(command: i8) -> Drive {
 
 /// Checks a run against the core's machine, and its times against its steps.
 fn check(controller: &Controller, wiring: &Wiring, sonar: &[Sonar], report: &Report) {
-    let (changes, status) = expected(controller, sonar);
+    let (changes, ending) = expected(controller, sonar);
     assert_eq!(report.end, Termination::Finished);
     let commands = commands(report, wiring);
     let drives: Vec<_> = commands.iter().map(|(_, left, right)| (*left, *right)).collect();
@@ -142,7 +164,11 @@ fn check(controller: &Controller, wiring: &Wiring, sonar: &[Sonar], report: &Rep
         EventKind::Tone { hz, .. } => Some(hz),
         _ => None,
     });
-    assert_eq!(tone_hz, Some(if status == Status::Finished { 880 } else { 220 }));
+    let text = report.events.iter().rev().find_map(|event| match &event.kind {
+        EventKind::Text { text, .. } => Some(text.as_str()),
+        _ => None,
+    });
+    assert_eq!((tone_hz, text), (Some(ending.hz()), Some(ending.text())));
     assert_eq!(report.motors[wiring.left as usize], Drive::Brake);
     assert_eq!(report.motors[wiring.right as usize], Drive::Brake);
 }
@@ -151,7 +177,7 @@ fn check(controller: &Controller, wiring: &Wiring, sonar: &[Sonar], report: &Rep
 fn bytecode_runs_as_the_core_does() {
     let outcome = runner(RUNS, rng()).run(&(controllers(), readings()), |(controller, sonar)| {
         let wiring = Wiring::default();
-        let program = Program::load(&rxe::program(&controller, &wiring).unwrap()).unwrap();
+        let program = Program::load(&rxe::program(&controller, &wiring, Safety::default()).unwrap()).unwrap();
         check(&controller, &wiring, &sonar, &run(&program, &wiring, &sonar));
         Ok(())
     });
@@ -162,15 +188,17 @@ fn bytecode_runs_as_the_core_does() {
 fn compiled_nxc_runs_as_the_core_and_the_bytecode_do() {
     let other = Wiring { left: MotorPort::A, right: MotorPort::B, sonar: SensorPort::Two };
     let mut chance = runner(1, rng());
-    for number in 0..COMPILED {
+    let many = std::env::var("MINDGAP_CONTROLLERS").ok().map(|number| number.parse().expect("a number of controllers"));
+    let runs = if many.is_some() { RUNS_OF_MANY } else { RUNS_OF_COMPILED };
+    for number in 0..many.unwrap_or(COMPILED) {
         let controller = controllers().new_tree(&mut chance).unwrap().current();
         let wiring = if number % 2 == 0 { Wiring::default() } else { other };
-        let log = (number % 4 >= 2).then(|| "run.csv".parse().unwrap());
-        let options = NxcOptions { program: BrickName::program("run").unwrap(), wiring, display: log.is_some(), log };
+        let log = (number % 4 >= 2).then(|| RunLogs::of(&"run.csv".parse().unwrap()).unwrap());
+        let options = NxcOptions { wiring, display: log.is_some(), log, ..options() };
         let source = nxc::program(&controller, &Origin::default(), &options).unwrap();
         let compiled = Program::load(&compile(&source)).unwrap();
-        let written = Program::load(&rxe::program(&controller, &wiring).unwrap()).unwrap();
-        let outcome = runner(RUNS_OF_COMPILED, chance.new_rng()).run(&readings(), |sonar| {
+        let written = Program::load(&rxe::program(&controller, &wiring, Safety::default()).unwrap()).unwrap();
+        let outcome = runner(runs, chance.new_rng()).run(&readings(), |sonar| {
             let of_compiled = run(&compiled, &wiring, &sonar);
             check(&controller, &wiring, &sonar, &of_compiled);
             if options.log.is_some() {
@@ -190,7 +218,7 @@ fn compiled_nxc_runs_as_the_core_and_the_bytecode_do() {
 /// The log holds one row a step: the commands from then on, and the reading that led to them.
 fn check_log(controller: &Controller, sonar: &[Sonar], report: &Report) {
     let (changes, _) = expected(controller, sonar);
-    let log = String::from_utf8(report.files["run.csv"].clone()).unwrap();
+    let log = String::from_utf8(report.files["run_000.csv"].clone()).unwrap();
     let mut rows = log.split("\r\n");
     assert_eq!(rows.next(), Some("t_ms,left,right,rot_left_deg,rot_right_deg,battery_mv,echo_cm"));
     let steps = changes.last().unwrap().step;
@@ -208,7 +236,10 @@ fn check_log(controller: &Controller, sonar: &[Sonar], report: &Report) {
         let tick_ms = step * u32::from(controller.step_ms);
         let late_ms = t_ms.parse::<u32>().unwrap() - tick_ms;
         assert!(late_ms < u32::from(SONAR_TIMEOUT_MS) + LATENCY_MS, "{row}");
-        assert_eq!(rest, format!("{},{},0,0,7800,{reading}", motors.left, motors.right));
+        let commands = format!("{},{},", motors.left, motors.right);
+        let rotations: Vec<&str> = rest.strip_prefix(&commands).expect(row).split(',').collect();
+        assert!(rotations.len() == 4 && rotations[..2].iter().all(|deg| deg.parse::<i32>().is_ok()), "{row}");
+        assert_eq!(rotations[2..], ["7800", &reading], "{row}");
     }
     assert_eq!((rows.next(), rows.next()), (Some(""), None), "rows after the last step");
 }

@@ -1,8 +1,9 @@
 //! NXC programs go through the real compiler, `nbc`.
 
 use mindgap_controller_export::collect::{self, CollectOptions, Commands};
-use mindgap_controller_export::names::BrickName;
+use mindgap_controller_export::names::{BrickName, RunLogs};
 use mindgap_controller_export::nxc::{self, NxcOptions};
+use mindgap_controller_export::onboard::Safety;
 use mindgap_controller_export::wiring::{MotorPort, SensorPort, Wiring};
 use mindgap_controller_export::{ExportError, Origin};
 use mindgap_core::controller::Controller;
@@ -13,11 +14,12 @@ use mindgap_tests::nbc::compile;
 const FILE_VERSION: u8 = 6;
 
 fn options() -> NxcOptions {
-    NxcOptions { program: BrickName::program("avoid").unwrap(), wiring: Wiring::default(), log: None, display: false }
+    NxcOptions::new(BrickName::program("avoid").unwrap())
 }
 
 fn full_options() -> NxcOptions {
-    NxcOptions { log: Some("avoid.csv".parse().unwrap()), display: true, ..options() }
+    let log = Some(RunLogs::of(&"avoid.csv".parse().unwrap()).unwrap());
+    NxcOptions { log, display: true, safety: Safety { stop_cm: Some(15), stall: true }, ..options() }
 }
 
 #[test]
@@ -37,7 +39,7 @@ fn nbc_accepts_every_kind_of_program() {
     });
     assert_eq!(sizes[0], sizes[1], "ports change no size");
     assert!(sizes[1] < sizes[2] && sizes[2] < sizes[3], "{sizes:?}");
-    assert!(sizes[3] < 6000, "{sizes:?}");
+    assert!(sizes[3] < 9000, "{sizes:?}");
 }
 
 #[test]
@@ -72,6 +74,7 @@ fn no_local_variable_is_initialised_where_it_is_declared() {
     let options = CollectOptions {
         program: BrickName::program("collect").unwrap(),
         wiring: Wiring::default(),
+        safety: Safety { stop_cm: Some(15), stall: true },
         step_ms: 400,
         commands: Commands::Random { steps: 150, near_cm: 40, seed: 7 },
     };

@@ -5,10 +5,12 @@ use std::path::Path;
 use clap::Args;
 use mindgap_controller_export::collect::{CollectOptions, Commands};
 use mindgap_controller_export::names::BrickName;
+use mindgap_controller_export::onboard::Safety;
 use mindgap_controller_export::wiring::Wiring;
 
 use crate::cli::warn;
 use crate::error::{Error, Result};
+use crate::files;
 use crate::logs::Run;
 
 /// Options of the format nxc-collect alone; a script says itself what they would.
@@ -33,21 +35,26 @@ impl Collect {
     /// The program that drives at random.
     pub fn options(&self, program: BrickName, wiring: Wiring) -> CollectOptions {
         let Collect { step_ms, steps, near_cm, seed } = *self;
-        CollectOptions { program, wiring, step_ms, commands: Commands::Random { steps, near_cm, seed } }
+        let commands = Commands::Random { steps, near_cm, seed };
+        CollectOptions { program, wiring, safety: Safety::default(), step_ms, commands }
     }
 }
 
-/// The program that drives the commands of a run, such as `diagnose --next-experiment` writes it.
+/// The columns that a script needs; those of a log may stand beside them.
+const COLUMNS: [&str; 3] = ["t_ms", "left", "right"];
+
+/// The program that drives the commands of a script, such as `diagnose --next-experiment` writes it, or of a run.
 ///
 /// # Errors
-/// When the file holds no run, or its steps are not of one length of whole milliseconds.
+/// When the file holds neither, or its steps are not of one length of whole milliseconds.
 pub fn script(path: &Path, program: BrickName, wiring: Wiring) -> Result<CollectOptions> {
-    let rows = Run::read(path, warn)?.rows;
+    let rows = Run::parse(path, &files::read_text(path)?, &COLUMNS, warn)?.rows;
     let step_ms = rows[1].t_ms - rows[0].t_ms;
     let is_even = rows.windows(2).all(|pair| pair[1].t_ms - pair[0].t_ms == step_ms);
     if !is_even || step_ms.fract() != 0.0 || step_ms > f64::from(u16::MAX) {
         return Err(Error::in_file(path, "is no script: its rows are not equally many whole milliseconds apart"));
     }
     let powers = rows.iter().map(|row| [row.left, row.right].map(|power| power.round() as i8)).collect();
-    Ok(CollectOptions { program, wiring, step_ms: step_ms as u16, commands: Commands::Script(powers) })
+    let commands = Commands::Script(powers);
+    Ok(CollectOptions { program, wiring, safety: Safety::default(), step_ms: step_ms as u16, commands })
 }

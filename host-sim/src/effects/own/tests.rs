@@ -152,7 +152,7 @@ fn what_is_wrong_is_told_with_its_place() {
     let first = ":2: effect caster: ";
     let key = ":2: effect caster: change.forward_cm: ";
     let parameter = ":2: effect caster: parameter cm_per_rad: ";
-    told("description", "describes", ":4: ", "unknown field `describes`");
+    told("description", "describes", ":4: ", "the key `describes` is not known");
     told("bounds = [0.0, 20.0]", "bounds = [0.0, 20.0", ":", "");
     told("abs(turn_rad)", "abs(turn)", key, "turn is not known here; known are left, right, ");
     told("abs(turn_rad)", "magnitude(turn_rad)", key, "magnitude() is no function");

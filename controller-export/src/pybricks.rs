@@ -1,0 +1,55 @@
+//! The controller as a MicroPython program for hubs with pybricks firmware: SPIKE, Technic, and EV3.
+//!
+//! Its class `Robot` is the driver, the only part that knows the hub's motors and sensor.
+
+use mindgap_core::controller::{Controller, FULL_SPEED, Tuple, When};
+
+use crate::error::ExportError;
+use crate::onboard::FAILED_STEPS_TO_STOP;
+use crate::origin::Origin;
+
+const DRIVER: &str = include_str!("pybricks/driver.py");
+const RUN: &str = include_str!("pybricks/run.py");
+
+/// The controller as a program.
+///
+/// # Errors
+/// [`ExportError::Controller`].
+pub fn program(controller: &Controller, origin: &Origin) -> Result<String, ExportError> {
+    controller.check()?;
+    let Controller { step_ms, max_steps, tuples } = controller;
+    let origin: String = origin.lines().iter().map(|line| format!("# {line}\n")).collect();
+    let rows: String = (1..).zip(tuples).map(row).collect();
+    let head = format!(
+        "# A six-tuple controller for a hub with pybricks firmware. Every {step_ms} ms the ultrasonic sensor is read once; a reading\n\
+         # on the stated side of a tuple's threshold starts the next tuple. The robot stops after the sixth, after {max_steps} steps,\n\
+         # or when the sensor is dead; nothing moves unless the sensor answers. The hub's button stops it at once.\n\
+         {origin}\n\
+         from pybricks.parameters import Direction, Port\n\
+         from pybricks.pupdevices import Motor, UltrasonicSensor  # on an EV3: pybricks.ev3devices\n\
+         from pybricks.tools import StopWatch, wait\n\
+         \n\
+         LEFT = Port.A\n\
+         RIGHT = Port.B\n\
+         SONAR = Port.C  # on an EV3: Port.S4\n\
+         NO_ECHO_MM = 2000  # the sensor's own code; on an EV3: 2550\n\
+         \n\
+         STEP_MS = {step_ms}\n\
+         MAX_STEPS = {max_steps}\n\
+         FAILED_STEPS_TO_STOP = {FAILED_STEPS_TO_STOP}  # in a row\n\
+         SMALLER = 0\n\
+         LARGER = 1\n\
+         # Left and right power, when the tuple ends, and its threshold in cm.\n\
+         TUPLES = (\n{rows})\n"
+    );
+    Ok([&head, DRIVER, RUN].join("\n\n"))
+}
+
+fn row((number, tuple): (usize, &Tuple)) -> String {
+    let [left, right] = [tuple.left, tuple.right].map(|speed| speed.clamp(-FULL_SPEED, FULL_SPEED));
+    let when = match tuple.when {
+        When::Larger => "LARGER",
+        When::Smaller => "SMALLER",
+    };
+    format!("    ({left}, {right}, {when}, {}),  # {number}\n", tuple.threshold_cm)
+}
