@@ -12,6 +12,16 @@ need() {
     fi
 }
 
+# need_axe: the accessibility checker that the tests of pages load into the browser, of one version.
+need_axe() {
+    if [ -e target/npm/node_modules/axe-core/axe.min.js ]; then return; fi
+    echo "installing axe-core" >&2
+    if ! npm install --silent --no-save --prefix target/npm axe-core@4.14.1 >/dev/null 2>&1; then
+        echo "axe-core is missing: npm install --prefix target/npm axe-core@4.14.1" >&2
+        exit 1
+    fi
+}
+
 as_root() {
     if [ "$(id -u)" -eq 0 ]; then
         env DEBIAN_FRONTEND=noninteractive "$@"

@@ -31,6 +31,9 @@ need_component() {
 command -v cargo >/dev/null || { echo "cargo is missing: install Rust from https://rustup.rs" >&2; exit 1; }
 need cc gcc
 need nbc nbc
+need chromium chromium
+need npm npm
+need_axe
 need_component fmt rustfmt
 need_component clippy clippy
 

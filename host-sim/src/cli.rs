@@ -10,12 +10,14 @@ mod check;
 mod crosscheck;
 mod demo;
 mod diagnose;
-mod diagnosis_page;
 mod diagnosis_text;
 mod evaluate;
 mod evolve;
 mod export;
+mod guide;
 mod import;
+mod info;
+mod manual;
 mod progress;
 mod record;
 mod simulate;
@@ -26,7 +28,7 @@ use std::io::{self, ErrorKind, Write};
 use std::path::Path;
 use std::process::ExitCode;
 
-use clap::{Parser, Subcommand};
+use clap::{FromArgMatches, Parser, Subcommand};
 use serde::Serialize;
 
 use crate::error::{Error, Result};
@@ -57,12 +59,16 @@ enum Command {
     Simulate(simulate::Simulate),
     Export(export::Export),
     Import(import::Import),
+    Info(info::Info),
+    Completions(manual::Completions),
+    Manual(manual::Manual),
 }
 
 /// Runs the command of this process's arguments. Exits with 0 when it did what was asked, 1 when it could not, and 2
 /// when the call is wrong.
 pub fn run() -> ExitCode {
-    let done = match Cli::parse().command {
+    let cli = Cli::from_arg_matches(&guide::command().get_matches()).unwrap_or_else(|error| error.exit());
+    let done = match cli.command {
         Command::Brick(command) => command.run(),
         Command::Challenge(command) => command.run(),
         Command::Check(command) => command.run(),
@@ -76,6 +82,9 @@ pub fn run() -> ExitCode {
         Command::Simulate(command) => command.run(),
         Command::Export(command) => command.run(),
         Command::Import(command) => command.run(),
+        Command::Info(command) => command.run(),
+        Command::Completions(command) => command.run(),
+        Command::Manual(command) => command.run(),
     };
     match done.and_then(|text| say(&text)) {
         Ok(()) => ExitCode::SUCCESS,

@@ -7,3 +7,5 @@ pub mod observations;
 pub mod paths;
 pub mod predictions;
 pub mod repeats;
+pub mod replay;
+pub mod support;

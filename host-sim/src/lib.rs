@@ -23,6 +23,8 @@ pub mod inspection;
 pub mod lanes;
 pub mod learn;
 pub mod logs;
+pub mod page;
+pub mod pictures;
 pub mod report;
 pub mod simulator;
 pub mod sonar;

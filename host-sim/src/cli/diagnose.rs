@@ -4,16 +4,19 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::{diagnosis_page, diagnosis_text};
+use super::{diagnosis_text, progress};
 use crate::effects::applied::AppliedEffect;
 use crate::effects::{CATALOGUE, Effect, own};
 use crate::error::{Error, Result};
 use crate::evaluation::final_position::{FinalPositionErrors, final_position_errors};
 use crate::evolve::controller_file::ControllerFile;
 use crate::files;
-use crate::gap::{Findings, Method, condition, findings, validate};
+use crate::gap::progress::Stage;
+use crate::gap::{Findings, Method, condition, findings_watched, validate};
 use crate::inspection::Inspection;
 use crate::logs::Logs;
+use crate::page::diagnosis::{Source, Subject, page};
+use crate::pictures;
 use crate::simulator::baseline::Baseline;
 use crate::simulator::{Simulator, kinematic, textbook};
 
@@ -43,6 +46,9 @@ pub struct Diagnose {
     /// Also write a page for a browser here.
     #[arg(long, value_name = "FILE")]
     html: Option<PathBuf>,
+    /// Also draw figures into this folder, as SVG, PNG and PDF.
+    #[arg(long, value_name = "DIR")]
+    figures: Option<PathBuf>,
     /// Write a simulator with the effects added that explain the gap, and the formula of what they leave.
     #[arg(long, value_name = "SIM_OUT")]
     apply: Option<PathBuf>,
@@ -66,26 +72,38 @@ impl Diagnose {
         inspected.logs = in_steps(inspected.logs, simulator.as_ref(), self.step_ms)?;
         let logs = &inspected.logs;
         let method = Method { catalogue: self.catalogue()?, seed: self.seed, ..Method::default() };
-        let mut found = match &simulator {
-            None => findings(kinematic::baseline(logs), &inspected, method)?,
-            Some(simulator) => {
-                validate::same_robot(&simulator.robot, &logs.robot)?;
-                findings(Baseline::learned(simulator)?, &inspected, method)?
-            }
+        if let Some(simulator) = &simulator {
+            validate::same_robot(&simulator.robot, &logs.robot)?;
+        }
+        let bar = progress::shares();
+        let watch = |stage: Stage| {
+            bar.set_position((100.0 * stage.share_before()) as u64);
+            bar.set_message(stage.words());
         };
+        let found = findings_watched(baseline(simulator.as_ref(), logs)?, &inspected, method, watch);
+        bar.finish_and_clear();
+        let mut found = found?;
         if let Some(path) = &self.controller {
             found.diagnosis.final_positions =
                 Some(ends(simulator.as_ref(), found.with_formula(), path, logs, self.seed)?);
         }
-        let diagnosis = &found.diagnosis;
+        if let Some(path) = &self.html {
+            let subject = Subject {
+                findings: &found,
+                logs,
+                baseline: &baseline(simulator.as_ref(), logs)?,
+                catalogue: method.catalogue,
+                source: self.source()?,
+            };
+            files::write(path, page(&subject)?)?;
+        }
+        if let Some(folder) = &self.figures {
+            pictures::diagnosis(folder, &found.diagnosis)?;
+        }
         if let Some(path) = &self.apply {
             with_effects(simulator, logs, &found)?.write(path)?;
         }
-        if let Some(path) = &self.html {
-            let title = format!("{} against {}", self.logs.display(), self.sim.display());
-            files::write(path, diagnosis_page::page(diagnosis, &title))?;
-        }
-        let mut text = diagnosis_text::text(diagnosis);
+        let mut text = diagnosis_text::text(&found.diagnosis);
         match (&self.next_experiment, found.diagnosis.experiment()) {
             (Some(path), Some(experiment)) => experiment.commands.write(path)?,
             (Some(path), None) => text += &format!("No causes are confused: {} is not written.\n", path.display()),
@@ -97,6 +115,18 @@ impl Diagnose {
             (None, _) => (),
         }
         super::reported(self.json.as_deref(), &found.diagnosis, text)
+    }
+
+    fn source(&self) -> Result<Source> {
+        Ok(Source {
+            simulator: match self.sim.as_os_str() == KINEMATIC {
+                true => "the textbook's differential drive and an ideal sonar, from robot.toml (kinematic)".into(),
+                false => self.sim.display().to_string(),
+            },
+            logs: self.logs.display().to_string(),
+            written: files::days_written(&self.logs)?,
+            seed: self.seed,
+        })
     }
 
     /// The built-in effects and those of the user, whose ids have to differ.
@@ -112,6 +142,10 @@ impl Diagnose {
         }
         Ok(catalogue.leak())
     }
+}
+
+fn baseline<'s>(simulator: Option<&'s Simulator>, logs: &Logs) -> Result<Baseline<'s>> {
+    simulator.map_or_else(|| Ok(kinematic::baseline(logs)), Baseline::learned)
 }
 
 /// The logs in the steps of the simulator, or in those that are asked for.

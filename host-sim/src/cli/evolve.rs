@@ -13,7 +13,9 @@ use crate::evolve::paper;
 use crate::evolve::robust::{self, EvolutionTask};
 use crate::geometry::Pose;
 use crate::logs::{Robot, Scene};
+use crate::pictures;
 use crate::simulator::environment::Environment;
+use crate::simulator::rollout_report::RolloutReport;
 use crate::simulator::{Noise, Simulator};
 
 /// Evolve one controller in a simulator.
@@ -46,12 +48,17 @@ pub struct Evolve {
     /// Let every individual of a generation meet its own random numbers, as with --paper, and not all the same ones.
     #[arg(long)]
     fresh_numbers: bool,
+    /// Also draw simulated runs of the controller into this folder, as SVG, PNG and PDF.
+    #[arg(long, value_name = "DIR")]
+    figures: Option<PathBuf>,
 }
 
 /// Fresh runs that tell how well a controller does.
 const JUDGED_RUNS: usize = 200;
 /// Sets the judging runs apart from all others.
 const JUDGING: u64 = 1;
+/// Runs that are drawn.
+const DRAWN_RUNS: usize = 10;
 
 impl Evolve {
     /// Evolves and writes the controller.
@@ -91,6 +98,11 @@ impl Evolve {
             fitness: evolved.fitness,
             success: success.rate,
         };
+        if let Some(folder) = &self.figures {
+            let rollouts = RolloutReport::new(environment, &scene, &evolved.controller, DRAWN_RUNS, self.seed);
+            let title = format!("Start {}", self.start);
+            pictures::paths(folder, &[pictures::simulated_paths(title, &scene, start, &rollouts)])?;
+        }
         ControllerFile { controller: evolved.controller, origin: Some(origin) }.write(&self.out)?;
         Ok(format!(
             "start {}: {:.0} % of {JUDGED_RUNS} fresh simulated runs reach the target, {:.0} % crash; median distance {:.1} cm\n\

@@ -8,7 +8,10 @@ use super::evolve::start_of;
 use super::table::{self, number};
 use crate::error::Result;
 use crate::evolve::controller_file::ControllerFile;
+use crate::files;
 use crate::logs::Scene;
+use crate::page::simulation::{Subject, page};
+use crate::pictures;
 use crate::simulator::environment::Environment;
 use crate::simulator::rollout_report::RolloutReport;
 use crate::simulator::{Noise, Simulator};
@@ -38,6 +41,12 @@ pub struct Simulate {
     /// Also write paths and outcomes here.
     #[arg(long)]
     json: Option<PathBuf>,
+    /// Also write a page for a browser here.
+    #[arg(long, value_name = "FILE")]
+    html: Option<PathBuf>,
+    /// Also draw figures into this folder, as SVG, PNG and PDF.
+    #[arg(long, value_name = "DIR")]
+    figures: Option<PathBuf>,
 }
 
 /// Rows of the table at most.
@@ -53,6 +62,23 @@ impl Simulate {
         let noise = if self.paper_noise { Noise::Paper } else { Noise::Learned };
         let environment = Environment::new(&simulator, &scene, start, noise)?;
         let rollouts = RolloutReport::new(&environment, &scene, &controller, self.runs as usize, self.seed);
+        if let Some(path) = &self.html {
+            let names = [&self.sim, &self.controller, &self.scene].map(|path| path.display().to_string());
+            let subject = Subject {
+                rollouts: &rollouts,
+                controller: &controller,
+                robot: &simulator.robot,
+                scene: &scene,
+                names: names.each_ref().map(String::as_str),
+                start: self.start,
+                seed: self.seed,
+            };
+            files::write(path, page(&subject)?)?;
+        }
+        if let Some(folder) = &self.figures {
+            let title = format!("Start {}", self.start);
+            pictures::paths(folder, &[pictures::simulated_paths(title, &scene, start, &rollouts)])?;
+        }
         super::reported(self.json.as_deref(), &rollouts, told(&rollouts))
     }
 }

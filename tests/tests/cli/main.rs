@@ -13,3 +13,4 @@ mod determinism;
 mod diagnose_logs;
 mod golden_files;
 mod import;
+mod information;
