@@ -12,12 +12,14 @@ need() {
     fi
 }
 
-# need_axe: the accessibility checker that the tests of pages load into the browser, of one version.
-need_axe() {
-    if [ -e target/npm/node_modules/axe-core/axe.min.js ]; then return; fi
-    echo "installing axe-core" >&2
-    if ! npm install --silent --no-save --prefix target/npm axe-core@4.14.1 >/dev/null 2>&1; then
-        echo "axe-core is missing: npm install --prefix target/npm axe-core@4.14.1" >&2
+# need_npm: what drives the browser in the tests of pages, and the accessibility checker, of versions that are known to work.
+need_npm() {
+    if [ -e target/npm/node_modules/axe-core ] && [ -e target/npm/node_modules/puppeteer-core ]; then return; fi
+    need npm npm
+    echo "installing puppeteer-core and axe-core" >&2
+    mkdir -p target/npm
+    if ! npm install --silent --no-save --prefix target/npm puppeteer-core@24.43.1 axe-core@4.14.1 >/dev/null 2>&1; then
+        echo "puppeteer-core and axe-core cannot be installed from the npm registry into target/npm" >&2
         exit 1
     fi
 }

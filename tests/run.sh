@@ -32,8 +32,7 @@ command -v cargo >/dev/null || { echo "cargo is missing: install Rust from https
 need cc gcc
 need nbc nbc
 need chromium chromium
-need npm npm
-need_axe
+need_npm
 need_component fmt rustfmt
 need_component clippy clippy
 

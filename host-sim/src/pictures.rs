@@ -51,7 +51,8 @@ pub fn networks(folder: &Path, simulator: &Simulator, evaluation: &Evaluation, h
         .collect();
     if let Some(probability) = &n.echo_probability {
         let events = probability.points.iter().map(|[happened, predicted]| (*predicted, *happened > 0.5)).collect();
-        panels.insert(panels.len().min(3), Panel { title: "Echo probability".into(), samples: Samples::Events(events) });
+        panels
+            .insert(panels.len().min(3), Panel { title: "Echo probability".into(), samples: Samples::Events(events) });
     }
     write(folder, &report::expected_against_predicted(&panels), "figure-2-expected-against-predicted")?;
     let data = Datasets::from_logs(held_out);

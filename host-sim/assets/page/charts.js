@@ -24,21 +24,40 @@ const percent = (share) => `${Math.round(100 * share)} %`;
 
 /** A map of the room: size, axes and scales for a width. */
 function mapOf(room, width) {
-  const [x0, y0, x1, y1] = room.bounds, scale = Math.min((width - 70) / (x1 - x0), 520 / (y1 - y0));
+  const [x0, y0, x1, y1] = room.bounds,
+    scale = Math.min((width - 70) / (x1 - x0), 520 / (y1 - y0));
   const ticks = (cm) => Math.max(2, Math.round((cm * scale) / 60));
   return {
-    width, height: Math.round((y1 - y0) * scale) + 66, marginLeft: 46, marginBottom: 40, aspectRatio: 1,
-    x: { domain: [x0, x1], label: "x (cm) →", ticks: ticks(x1 - x0) }, y: { domain: [y0, y1], label: "↑ y (cm)", ticks: ticks(y1 - y0) },
+    width,
+    height: Math.round((y1 - y0) * scale) + 66,
+    marginLeft: 46,
+    marginBottom: 40,
+    aspectRatio: 1,
+    x: { domain: [x0, x1], label: "x (cm) →", ticks: ticks(x1 - x0) },
+    y: { domain: [y0, y1], label: "↑ y (cm)", ticks: ticks(y1 - y0) },
   };
 }
 
 /** The walls and obstacles of the room as marks. */
 function roomMarks(room) {
   return [
-    Plot.rect(room.obstacles, { x1: (o) => o[0], y1: (o) => o[1], x2: (o) => o[2], y2: (o) => o[3],
-      fill: "var(--solid)", fillOpacity: 0.6, stroke: "var(--quiet)" }),
-    Plot.link(room.walls, { x1: (w) => w[0], y1: (w) => w[1], x2: (w) => w[2], y2: (w) => w[3],
-      stroke: "currentColor", strokeWidth: 1.5 }),
+    Plot.rect(room.obstacles, {
+      x1: (o) => o[0],
+      y1: (o) => o[1],
+      x2: (o) => o[2],
+      y2: (o) => o[3],
+      fill: "var(--solid)",
+      fillOpacity: 0.6,
+      stroke: "var(--quiet)",
+    }),
+    Plot.link(room.walls, {
+      x1: (w) => w[0],
+      y1: (w) => w[1],
+      x2: (w) => w[2],
+      y2: (w) => w[3],
+      stroke: "currentColor",
+      strokeWidth: 1.5,
+    }),
   ];
 }
 
@@ -53,7 +72,9 @@ function draw(place) {
 }
 
 // In the next frame: what is drawn changes heights, of which the observer must not hear in the same.
-const watcher = new ResizeObserver((entries) => requestAnimationFrame(() => entries.forEach((entry) => draw(entry.target))));
+const watcher = new ResizeObserver((entries) =>
+  requestAnimationFrame(() => entries.forEach((entry) => draw(entry.target))),
+);
 addEventListener("DOMContentLoaded", () => {
   document.querySelectorAll("[data-chart]").forEach((place) => watcher.observe(place));
 });

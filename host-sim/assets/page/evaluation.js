@@ -6,7 +6,11 @@ charts.scatter = (width, number) => {
   const [low, high] = d3.extent(points.flat());
   const size = Math.min(width, 460);
   return Plot.plot({
-    width: size, height: size, marginLeft: 52, marginBottom: 40, inset: 4,
+    width: size,
+    height: size,
+    marginLeft: 52,
+    marginBottom: 40,
+    inset: 4,
     x: { domain: [low, high], label: `logged ${name} (${unit}) →`, nice: true, ticks: 5 },
     y: { domain: [low, high], label: `↑ predicted (${unit})`, grid: true, nice: true, ticks: 5 },
     marks: [
@@ -19,13 +23,23 @@ charts.scatter = (width, number) => {
 charts.reliability = (width) => {
   const size = Math.min(width, 460);
   return Plot.plot({
-    width: size, height: size, marginLeft: 48, marginBottom: 40,
+    width: size,
+    height: size,
+    marginLeft: 48,
+    marginBottom: 40,
     x: { domain: [0, 1], label: "predicted probability of an echo →", ticks: 5 },
-    y: { domain: [0, 1], label: "↑ share with an echo", grid: true, ticks: 5 }, r: { range: [2, 12] },
+    y: { domain: [0, 1], label: "↑ share with an echo", grid: true, ticks: 5 },
+    r: { range: [2, 12] },
     marks: [
       Plot.link([0], { x1: 0, y1: 0, x2: 1, y2: 1, stroke: "currentColor", strokeOpacity: 0.6 }),
       Plot.line(page.reliability, { x: "predicted", y: "observed", stroke: "var(--simulator)" }),
-      Plot.dot(page.reliability, { x: "predicted", y: "observed", r: "n", fill: "var(--simulator)", title: (b) => `${b.n} samples` }),
+      Plot.dot(page.reliability, {
+        x: "predicted",
+        y: "observed",
+        r: "n",
+        fill: "var(--simulator)",
+        title: (b) => `${b.n} samples`,
+      }),
     ],
   });
 };
@@ -38,12 +52,22 @@ charts.surface = (width, number) => {
   const cell = { x1: "distance", y1: "alpha", x2: (c) => c.distance + size[0], y2: (c) => c.alpha + size[1] };
   const title = (c) => `${said(c.distance)} cm, ${said(c.alpha)}°: ${c.known ? said(c.value) : "no data"}`;
   const chart = Plot.plot({
-    width, height: Math.min(360, 0.6 * width + 60), marginLeft: 46, marginBottom: 40,
-    x: { label: "distance D (cm) →" }, y: { label: "↑ incidence angle α (°)" },
+    width,
+    height: Math.min(360, 0.6 * width + 60),
+    marginLeft: 46,
+    marginBottom: 40,
+    x: { label: "distance D (cm) →" },
+    y: { label: "↑ incidence angle α (°)" },
     color: { scheme: "viridis", domain: range, legend: true, label: name },
     marks: [
-      Plot.rect(cells.filter((c) => c.known), { ...cell, fill: "value", title }),
-      Plot.rect(cells.filter((c) => !c.known), { ...cell, fill: "url(#hatch)", title }),
+      Plot.rect(
+        cells.filter((c) => c.known),
+        { ...cell, fill: "value", title },
+      ),
+      Plot.rect(
+        cells.filter((c) => !c.known),
+        { ...cell, fill: "url(#hatch)", title },
+      ),
     ],
   });
   // All charts of a page may use the one pattern.
@@ -55,20 +79,38 @@ charts.surface = (width, number) => {
 
 /** The sheet in space, with holes where there were no data. */
 function sheet(place) {
-  const number = Number(place.dataset.surface), { name, unit, range, size, cells } = page.surfaces[number];
+  const number = Number(place.dataset.surface),
+    { name, unit, range, size, cells } = page.surfaces[number];
   const colour = (variable) => getComputedStyle(place).getPropertyValue(variable).trim();
-  const points = new vis.DataSet(cells.filter((c) => c.known)
-    .map((c) => ({ x: c.distance + size[0] / 2, y: c.alpha + size[1] / 2, z: c.value })));
+  const points = new vis.DataSet(
+    cells.filter((c) => c.known).map((c) => ({ x: c.distance + size[0] / 2, y: c.alpha + size[1] / 2, z: c.value })),
+  );
   const graph = new vis.Graph3d(place, points, {
-    width: "100%", height: "400px", style: "surface", keepAspectRatio: false, verticalRatio: 0.6, showPerspective: true,
-    xLabel: "D (cm)", yLabel: "α (°)", zLabel: unit || "probability", zMin: range[0], zMax: range[1], showLegend: false,
-    backgroundColor: colour("--paper"), axisColor: colour("--quiet"), gridColor: colour("--line"), axisFontSize: 20,
+    width: "100%",
+    height: `${place.clientHeight}px`,
+    style: "surface",
+    keepAspectRatio: false,
+    verticalRatio: 0.6,
+    showPerspective: true,
+    xLabel: "D (cm)",
+    yLabel: "α (°)",
+    zLabel: unit || "probability",
+    zMin: range[0],
+    zMax: range[1],
+    showLegend: false,
+    backgroundColor: colour("--paper"),
+    axisColor: colour("--quiet"),
+    gridColor: colour("--line"),
+    axisFontSize: 20,
     colormap: Array.from({ length: 12 }, (_, i) => d3.color(d3.interpolateViridis(i / 11)).formatHex()),
   });
   const [turn, tilt] = ["turn", "tilt"].map((way) => document.querySelector(`[data-${way}="${number}"]`));
-  const aim = () => graph.setCameraPosition({
-    horizontal: (turn.value * Math.PI) / 180, vertical: (tilt.value * Math.PI) / 180, distance: 2.6,
-  });
+  const aim = () =>
+    graph.setCameraPosition({
+      horizontal: (turn.value * Math.PI) / 180,
+      vertical: (tilt.value * Math.PI) / 180,
+      distance: 2.2,
+    });
   [turn, tilt].forEach((slider) => slider.addEventListener("input", aim));
   aim();
   addEventListener("resize", () => graph.redraw());

@@ -44,8 +44,8 @@ const WORK: &[Part] = &[
         &[
             (
                 "diagnose",
-                "mindgap diagnose simulator.json logs --html gap.html\n  mindgap diagnose kinematic logs    against the textbook's \
-                 differential drive and an ideal sonar, from robot.toml alone",
+                "mindgap diagnose simulator.json logs --html gap.html\n  mindgap diagnose kinematic logs    against \
+                 the textbook's differential drive and an ideal sonar, from robot.toml alone",
             ),
             ("challenge", "mindgap challenge --help"),
         ],

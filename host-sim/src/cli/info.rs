@@ -119,7 +119,13 @@ fn toml(path: &Path) -> Result<String> {
     if has("tuple") {
         let ControllerFile { controller, origin } = ControllerFile::read(path)?;
         let evolved = origin.map(|o| {
-            format!("; evolved in {} for start {} of {}, {:.0} % reach the target", o.simulator, o.start, o.scene, 100.0 * o.success)
+            format!(
+                "; evolved in {} for start {} of {}, {:.0} % reach the target",
+                o.simulator,
+                o.start,
+                o.scene,
+                100.0 * o.success
+            )
         });
         let steps = format!("a controller, a step every {} ms, {} at most", controller.step_ms, controller.max_steps);
         return Ok(steps + &evolved.unwrap_or_default());

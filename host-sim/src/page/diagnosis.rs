@@ -111,8 +111,7 @@ pub fn page(subject: &Subject) -> Result<String> {
     sections.push(next(diagnosis, catalogue));
     sections.push(compared::section(subject));
     sections.push(glossary::section());
-    let scripts: &[Script] =
-        if replay.is_some() { &[Script::Diagnosis, Script::Replay] } else { &[Script::Diagnosis] };
+    let scripts: &[Script] = if replay.is_some() { &[Script::Diagnosis, Script::Replay] } else { &[Script::Diagnosis] };
     Document {
         kind: "Diagnosis",
         headline: &headline(diagnosis, catalogue),
@@ -177,8 +176,8 @@ fn budget(diagnosis: &Diagnosis, catalogue: &[&'static Effect]) -> Markup {
         .collect();
     html! {
         (chart("budget", 0, &format!("Shares of the gap: {}", said.join(", ")), html! {
-            "How much of the gap each cause makes: mend the longest bar first. The dark lines are 95 % intervals. Scatter "
-            "is what no rule reduces; unexplained is what follows rules that no named effect describes."
+            "How much of the gap each cause makes: mend the longest bar first. The dark lines are 95 % intervals. "
+            "Scatter is what no rule reduces; unexplained is what follows rules that no named effect describes."
         }))
         (table("The same in numbers", ["part of the gap", "share (95 % interval)"], &rows))
     }
@@ -207,12 +206,12 @@ fn next(diagnosis: &Diagnosis, catalogue: &[&'static Effect]) -> Section {
                 }
             }
             @if matches!(diagnosis.answer, Answer::Unknown { .. }) {
-                li { "See on what the gap depends, watch the robot there, and state what you suspect as an effect of your "
-                    "own: " code { "--effects FILE" } " lets it compete with the built-in ones." }
+                li { "See on what the gap depends, watch the robot there, and state what you suspect as an effect of "
+                    "your own: " code { "--effects FILE" } " lets it compete with the built-in ones." }
             }
             @if matches!(diagnosis.answer, Answer::NoGap) {
-                li { "Nothing has to be mended for what these logs show. A controller that fails all the same drives where "
-                    "they do not: log it, and diagnose those runs." }
+                li { "Nothing has to be mended for what these logs show. A controller that fails all the same drives "
+                    "where they do not: log it, and diagnose those runs." }
             }
             @if !diagnosis.untestable.is_empty() {
                 li {

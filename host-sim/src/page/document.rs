@@ -183,7 +183,8 @@ pub fn open_table<const N: usize>(header: [&str; N], rows: &[[String; N]]) -> Ma
 
 /// JSON inside a page: what would end its element, or begin a comment in it, is written as an escape.
 fn embedded(data: &Value) -> PreEscaped<String> {
-    let escaped = data.to_string().replace('<', "\\u003c").replace('\u{2028}', "\\u2028").replace('\u{2029}', "\\u2029");
+    let escaped =
+        data.to_string().replace('<', "\\u003c").replace('\u{2028}', "\\u2028").replace('\u{2029}', "\\u2029");
     PreEscaped(escaped)
 }
 

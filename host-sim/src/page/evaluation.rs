@@ -124,7 +124,8 @@ fn headline(values: &[Judged]) -> String {
         ("roughly", among(USABLE, GOOD)),
         ("hardly", among(f64::NEG_INFINITY, USABLE)),
     ];
-    let told: Vec<String> = parts.iter().filter(|p| !p.1.is_empty()).map(|(how, what)| format!("{how} {what}")).collect();
+    let told: Vec<String> =
+        parts.iter().filter(|p| !p.1.is_empty()).map(|(how, what)| format!("{how} {what}")).collect();
     match told.as_slice() {
         [] => "The simulator predicts whether there is an echo, and nothing else.".into(),
         told => format!("The simulator predicts {}.", told.join("; ")),
@@ -147,16 +148,18 @@ fn scatters(values: &[Judged]) -> Markup {
         .collect();
     html! {
         p {
-            "Each dot is a sample of the logs. On the diagonal the prediction is right. R² is the share of what happened that "
-            "the simulator foretells: 1 is all, 0 is no more than the mean."
+            "Each dot is a sample of the logs. On the diagonal the prediction is right. R² is the share of what "
+            "happened that the simulator foretells: 1 is all, 0 is no more than the mean."
         }
         (open_table(["network", "R²", "typical error", "samples"], &rows))
         @for (i, (name, unit, v)) in values.iter().enumerate() {
             @let r2 = v.r2.map_or_else(|| "undefined".into(), |r2| number(r2, 3));
             (chart("scatter", i, &format!("Predicted against logged {name} in {unit}, R² {r2}"), html! {
                 (name) ": R² " (r2)
-                @if let Some(trend) = &v.trend { ", trend " (number(trend.slope, 3)) " × + " (number(trend.intercept, 2)) }
-                @if v.n > MOST_SAMPLES { "; " (v.n.div_ceil(v.n.div_ceil(MOST_SAMPLES))) " of " (v.n) " samples are drawn" }
+                @if let Some(trend) = &v.trend { ", trend " (number(trend.slope, 3)) " × + "
+                (number(trend.intercept, 2)) }
+                @if v.n > MOST_SAMPLES { "; " (v.n.div_ceil(v.n.div_ceil(MOST_SAMPLES))) " of " (v.n)
+                " samples are drawn" }
                 "."
             }))
         }
@@ -168,8 +171,8 @@ fn reliability(of: &Probability) -> Markup {
         of.reliability.iter().map(|b| [number(b.predicted, 3), number(b.observed, 3), b.n.to_string()]).collect();
     html! {
         (chart("reliability", 0, "How often there was an echo against how probable the simulator called it", html! {
-            "Where the simulator says 80 %, there should be an echo 80 times of 100: on the diagonal. Larger dots have more "
-            "samples. Brier score " (number(of.brier, 4)) ", log loss " (number(of.log_loss, 4))
+            "Where the simulator says 80 %, there should be an echo 80 times of 100: on the diagonal. Larger dots "
+            "have more samples. Brier score " (number(of.brier, 4)) ", log loss " (number(of.log_loss, 4))
             @if let Some(auc) = of.auc { ", area under the ROC curve " (number(auc, 4)) } "."
         }))
         (table("The same in numbers", ["predicted", "observed", "samples"], &rows))
@@ -187,7 +190,12 @@ fn surfaces(simulator: &Simulator, logs: &Logs) -> Vec<Surface> {
             let (distance, alpha) = ((i % COLUMNS) as f64 * size[0], (i / COLUMNS) as f64 * size[1]);
             let middle = [distance + 0.5 * size[0], alpha + 0.5 * size[1]];
             let value = f64::from(network.evaluate(middle.map(|v| v as f32))).clamp(range[0], range[1]);
-            Cell { distance, alpha, value: libm::round(value * 1000.0) / 1000.0, known: support.has(middle[0], middle[1]) }
+            Cell {
+                distance,
+                alpha,
+                value: libm::round(value * 1000.0) / 1000.0,
+                known: support.has(middle[0], middle[1]),
+            }
         };
         Some(Surface { name, unit, range, size, cells: (0..COLUMNS * ROWS).map(cell).collect() })
     };
@@ -199,8 +207,8 @@ fn surfaces(simulator: &Simulator, logs: &Logs) -> Vec<Surface> {
 fn turnable(surfaces: &[Surface]) -> Markup {
     html! {
         p {
-            "What the networks answer to a distance D and an incidence angle α. Where the logs have no sample nearby the map "
-            "is hatched and the sheet in space is open: there the answer is a guess."
+            "What the networks answer to a distance D and an incidence angle α. Where the logs have no sample nearby "
+            "the map is hatched and the sheet in space is open: there the answer is a guess."
         }
         @for (i, surface) in surfaces.iter().enumerate() {
             h3 { (surface.name) @if !surface.unit.is_empty() { " (" (surface.unit) ")" } }
@@ -226,7 +234,8 @@ fn compared(subject: &Subject) -> Markup {
     html! {
         dl {
             dt { "Simulator" }
-            dd { (sim) ", trained (" (origin.trainer) ") on " (origin.runs) " runs by mindgap " (origin.version) ", seed " (origin.seed) }
+            dd { (sim) ", trained (" (origin.trainer) ") on " (origin.runs) " runs by mindgap " (origin.version)
+            ", seed " (origin.seed) }
             @if !simulator.added.is_empty() {
                 dt { "With effects" }
                 dd { (words::list(&simulator.added.iter().map(|effect| effect.effect.as_str()).collect::<Vec<_>>())) }

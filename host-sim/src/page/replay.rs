@@ -110,7 +110,12 @@ impl Replay {
                 p.quiet { (shown) " of " (self.of) " runs, evenly spread, so that this page stays small." }
             }
             div.controls {
-                label { "Run" select #run { @for (i, run) in self.runs.iter().enumerate() { option value=(i) { (run.name) } } } }
+                label {
+                    "Run"
+                    select #run {
+                        @for (i, run) in self.runs.iter().enumerate() { option value=(i) { (run.name) } }
+                    }
+                }
                 @for kind in self.kinds {
                     label {
                         input type="checkbox" data-show=(kind.id) checked;
@@ -148,7 +153,7 @@ impl Replay {
             }
             @if self.kinds.len() > 1 {
                 figure {
-                    div.chart data-chart="apart" role="img" aria-label="Distance from the robot over the time of the run" {}
+                    div.chart data-chart="apart" role="img" aria-label="Distance from the robot over time" {}
                     figcaption { "How far the simulated robots are from the real one." }
                 }
             }
@@ -165,7 +170,11 @@ mod tests {
         assert_eq!(sampled(&[60; 24]).len(), 24);
         assert_eq!(sampled(&[]), []);
         let many = sampled(&[61; 10_000]);
-        assert!(many.len() <= MOST_RUNS && many.len() * 61 <= MOST_ROWS && many.len() > MOST_RUNS / 2, "{}", many.len());
+        assert!(
+            many.len() <= MOST_RUNS && many.len() * 61 <= MOST_ROWS && many.len() > MOST_RUNS / 2,
+            "{}",
+            many.len()
+        );
         assert!(many.last().is_some_and(|(run, _)| *run > 9_000), "evenly spread over all");
         assert_eq!(sampled(&[50_000, 10]), [(0, MOST_ROWS)], "one long run is cut");
     }

@@ -61,6 +61,8 @@ struct Turn {
     to: usize,
 }
 
+const TUPLES_HEADER: [&str; 5] =
+    ["tuple", "left, right", "until a reading is", "begins at step: median (range)", "runs that get there"];
 const DRIVEN: Kind = Kind { id: "simulator", name: "the simulated robot" };
 
 /// The page, whole in one file.
@@ -97,7 +99,8 @@ pub fn page(subject: &Subject) -> Result<String> {
 
 fn headline(rollouts: &RolloutReport) -> String {
     let (runs, crashed) = (rollouts.runs.len(), ended(rollouts, "crashed"));
-    let crashes = if crashed == 0 { "none crashes".into() } else { format!("{} crash", percent(crashed as f64 / runs as f64)) };
+    let crashes =
+        if crashed == 0 { "none crashes".into() } else { format!("{} crash", percent(crashed as f64 / runs as f64)) };
     match rollouts.success {
         Some(success) => format!("{} of {runs} simulated runs reach the target; {crashes}.", percent(success)),
         None => format!("Of {runs} simulated runs {crashes}; the scene has no target."),
@@ -123,8 +126,8 @@ fn paths(rollouts: &RolloutReport, shown: usize) -> Markup {
         (open_table(["ending", "runs", "what it means"], &rows))
         @if rollouts.success.is_some() {
             p.quiet {
-                "A run reaches the target when it ends within " (number(rollouts.reached_within_cm, 0)) " cm of it without a "
-                "crash, however it ends: one that times out there has reached it too."
+                "A run reaches the target when it ends within " (number(rollouts.reached_within_cm, 0))
+                " cm of it without a crash, however it ends: one that times out there has reached it too."
             }
         }
         (chart("runs", 0, &headline(rollouts), html! {
@@ -161,8 +164,9 @@ fn tuples(subject: &Subject) -> Markup {
         })
         .collect();
     html! {
-        p { "The robot holds a tuple's commands until a reading is on the stated side of its threshold, then takes the next." }
-        (open_table(["tuple", "left, right", "until a reading is", "begins at step: median (range)", "runs that get there"], &rows))
+        p { "The robot holds a tuple's commands until a reading is on the stated side of its threshold, then takes "
+        "the next." }
+        (open_table(TUPLES_HEADER, &rows))
         (chart("turns", 0, "Which tuple each run holds, step by step", html! {
             "Which tuple each run holds, step by step: a row is a run."
         }))

@@ -1,6 +1,7 @@
 //! Words and numbers as a page says them.
 
 use crate::effects::Effect;
+use crate::gap::Diagnosis;
 use crate::gap::budget::{SCATTER, UNEXPLAINED};
 use crate::gap::channel::Channel;
 
@@ -18,8 +19,9 @@ pub struct Cause {
 const WIDER_SCATTER: Cause = Cause {
     name: "wider scatter",
     what: "The robot does the same thing less evenly than the simulator assumes, whatever the circumstances.",
-    check: "Send the same short row of commands ten times from one mark on the floor and measure with a ruler how far the \
-            ends lie apart; look for a loose wheel, a worn castor or a tracker that trembles while the robot stands.",
+    check: "Send the same short row of commands ten times from one mark on the floor and measure with a ruler how far \
+            the ends lie apart; look for a loose wheel, a worn castor or a tracker that trembles while the robot \
+            stands.",
 };
 
 const NOT_EXPLAINED: Cause = Cause {
@@ -43,6 +45,14 @@ pub fn cause(id: &str, catalogue: &[&'static Effect]) -> Option<Cause> {
 /// The name of an id.
 pub fn name<'a>(id: &'a str, catalogue: &[&'static Effect]) -> &'a str {
     cause(id, catalogue).map_or(id, |cause| cause.name)
+}
+
+/// What "with" means in charts of before and after.
+pub fn with(diagnosis: &Diagnosis) -> &'static str {
+    match diagnosis.effects() {
+        [] => "with the effects that came nearest, though they explain too little to be named",
+        _ => "with the effects",
+    }
 }
 
 /// What a channel is.

@@ -8,7 +8,8 @@ fn help_lists_the_commands_in_the_order_of_work_with_examples() {
     let workshop = Workshop::new();
     let help = workshop.done("--help");
     let place = |word: &str| help.find(word).unwrap_or_else(|| panic!("{word} is missing in\n{help}"));
-    let order = ["\n  demo", "\nLogs:", "\n  record", "\n  train", "\n  evolve", "\n  export", "\n  diagnose", "\n  info"];
+    let order =
+        ["\n  demo", "\nLogs:", "\n  record", "\n  train", "\n  evolve", "\n  export", "\n  diagnose", "\n  info"];
     assert!(order.map(place).is_sorted(), "{help}");
     let diagnose = workshop.done("diagnose --help");
     assert!(diagnose.contains("mindgap diagnose kinematic logs"), "{diagnose}");

@@ -27,7 +27,8 @@ pub fn section(subject: &Subject) -> Option<Section> {
             @if let Some(formula) = &diagnosis.formula {
                 @let unit = if formula.channel == Channel::Turn { "radians a step" } else { "cm" };
                 p {
-                    "The simplest expression for it in the " (words::channel(formula.channel)) " is " code { (formula.text) }
+                    "The simplest expression for it in the " (words::channel(formula.channel)) " is "
+                    code { (formula.text) }
                     " (" (unit) "): " (words::percent_within(formula.share, formula.ci95)) " of the gap."
                 }
             }
@@ -42,7 +43,9 @@ fn cause(effect: &NamedEffect, evidence: &[Evidence], catalogue: &[&'static Effe
     let rivals: Vec<&str> = effect.ambiguous_with.iter().map(|id| words::name(id, catalogue)).collect();
     html! {
         article.card aria-labelledby={ "cause-" (effect.id) } {
-            h3 #{ "cause-" (effect.id) } { (words::name(effect.id, catalogue)) " " small.quiet { code { (effect.id) } } }
+            h3 #{ "cause-" (effect.id) } {
+                (words::name(effect.id, catalogue)) " " small.quiet { code { (effect.id) } }
+            }
             dl {
                 @if let Some(cause) = named { dt { "What it is" } dd { (cause.what) } }
                 @if !effect.parameters.is_empty() {
@@ -61,9 +64,11 @@ fn cause(effect: &NamedEffect, evidence: &[Evidence], catalogue: &[&'static Effe
                 h4 { "The evidence" }
                 (chart("evidence", number, &format!(
                     "Logged minus predicted {} along {}: {} without the effect, {} with it.",
-                    words::channel(evidence.channel), evidence.depends_on, reach(&evidence.without), reach(&evidence.with),
+                    words::channel(evidence.channel), evidence.depends_on,
+                    reach(&evidence.without), reach(&evidence.with),
                 ), html! {
-                    "How far the logged " (words::channel(evidence.channel)) " is from the predicted one. On the zero line the "
+                    "How far the logged " (words::channel(evidence.channel))
+                    " is from the predicted one. On the zero line the "
                     "simulator is right. The vertical lines are 95 % intervals."
                 }))
                 (table("The same in numbers", [evidence.depends_on, "without the effect", "with it"], &rows(evidence)))
@@ -80,8 +85,9 @@ fn unexplained(number: usize, profile: &ResidualProfile) -> Markup {
     let off = |bin: &Bin| format!("{} ± {}", words::number(bin.off, 2), words::number(1.96 * bin.error, 2));
     let rows: Vec<[String; 2]> = profile.bins.iter().map(|bin| [range(bin), off(bin)]).collect();
     let name = words::channel(profile.channel);
+    let alternative = format!("Logged minus predicted {name} along {}: {}.", profile.depends_on, reach(&profile.bins));
     html! {
-        (chart("profile", number, &format!("Logged minus predicted {name} along {}: {}.", profile.depends_on, reach(&profile.bins)),
+        (chart("profile", number, &alternative,
             html! { "What is left of the " (name) " depends most on: " (profile.depends_on) "." }))
         (table("The same in numbers", [profile.depends_on, "logged minus predicted"], &rows))
     }
@@ -89,7 +95,12 @@ fn unexplained(number: usize, profile: &ResidualProfile) -> Markup {
 
 fn rows(evidence: &Evidence) -> Vec<[String; 3]> {
     let off = |bin: &Bin| format!("{} ± {}", words::number(bin.off, 2), words::number(1.96 * bin.error, 2));
-    evidence.without.iter().zip(&evidence.with).map(|(without, with)| [range(without), off(without), off(with)]).collect()
+    evidence
+        .without
+        .iter()
+        .zip(&evidence.with)
+        .map(|(without, with)| [range(without), off(without), off(with)])
+        .collect()
 }
 
 fn range(bin: &Bin) -> String {

@@ -24,7 +24,8 @@ pub fn section(subject: &Subject) -> Section {
             @if let Some([first, last]) = written {
                 dt { "Logs written" } dd { (first) @if first != last { " to " (last) } }
             }
-            dt { "Program" } dd { "mindgap " (env!("CARGO_PKG_VERSION")) ", seed " (seed) ", " (catalogue.len()) " effects" }
+            dt { "Program" } dd { "mindgap " (env!("CARGO_PKG_VERSION")) ", seed " (seed) ", " (catalogue.len())
+            " effects" }
             @if let Some(next) = diagnosis.reduction().and_then(|reduction| reduction.runner_up.as_ref()) {
                 @let names: Vec<&str> = next.id.split('+').map(|id| words::name(id, catalogue)).collect();
                 dt { "Next best answer" }

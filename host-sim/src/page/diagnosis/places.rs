@@ -9,6 +9,10 @@ use crate::gap::explain::strata::Stratum;
 use crate::page::document::{Section, chart, open_table, table};
 use crate::page::words;
 
+const CIRCUMSTANCES: [&str; 4] =
+    ["channel", "circumstances that carry most of it", "share of its gap", "nats a step (95 % interval)"];
+const MAP: &str = "Map of the room: squares coloured by how much the logs differ from the simulator there.";
+
 /// The gap of every channel that has one.
 pub fn channels(diagnosis: &Diagnosis) -> Vec<ChannelBar> {
     let all = diagnosis.reduction().map_or(&[][..], |reduction| &reduction.channels);
@@ -35,21 +39,20 @@ pub fn section(diagnosis: &Diagnosis, mapped: bool) -> Option<Section> {
         @if !channels.is_empty() {
             h3 { "In which channels" }
             (chart("channels", 0, &format!("The gap in nats a step: {}.", told.join("; ")), html! {
-                "The gap of each thing that the simulator predicts, without and with the effects. At zero nothing is left "
-                "that follows rules."
+                "The gap of each thing that the simulator predicts, as it is and " (words::with(diagnosis)) ". At zero "
+                "nothing is left that follows rules."
             }))
             (table("The same in numbers", ["channel", "without", "with"], &rows))
         }
         @if !circumstances.is_empty() {
             h3 { "In which circumstances" }
-            (open_table(["channel", "circumstances that carry most of it", "share of its gap", "nats a step (95 % interval)"],
-                &circumstances))
+            (open_table(CIRCUMSTANCES, &circumstances))
         }
         @if mapped {
             h3 { "Where in the room" }
-            (chart("map", 0, "Map of the room: squares coloured by how much the logs differ from the simulator there.", html! {
-                "The brighter a square, the more the logs differ there from the simulator without the effects. Squares in "
-                "which the robot never was are empty."
+            (chart("map", 0, MAP, html! {
+                "The brighter a square, the more the logs differ there from the simulator without the effects. "
+                "Squares in which the robot never was are empty."
             }))
         }
     };

@@ -28,22 +28,28 @@ pub fn ends(diagnosis: &Diagnosis) -> Option<Section> {
         .collect();
     let last = paths.last().map(|p| {
         format!(
-            "After {} steps the simulator is {:.1} cm from where the robot was, {:.1} cm with the effects; scatter alone makes {:.1} cm.",
-            p.steps, p.before_cm, p.after_cm, p.floor_cm
+            "After {} steps the simulator is {:.1} cm from where the robot was, {:.1} cm {}; scatter \
+             alone makes {:.1} cm.",
+            p.steps,
+            p.before_cm,
+            p.after_cm,
+            words::with(diagnosis),
+            p.floor_cm
         )
     });
     let body = html! {
         @if let Some(last) = &last {
             p { (last) }
             (chart("paths", 0, last, html! {
-                "The simulator drives by the logged commands alone, from a place where the robot was; medians over all such "
-                "paths. Below the line of scatter alone no simulator can come."
+                "The simulator drives by the logged commands alone, from a place where the robot was; medians over "
+                "all such paths. Below the line of scatter alone no simulator can come."
             }))
             (table("The same in numbers", ["steps", "without (cm)", "with (cm)", "scatter alone (cm)"], &rows))
         }
         @if let Some(of) = &diagnosis.final_positions {
             p {
-                "The controller's " (of.runs) " runs end " (words::number(of.before_cm, 1)) " cm from where the simulator "
+                "The controller's " (of.runs) " runs end " (words::number(of.before_cm, 1))
+                " cm from where the simulator "
                 "expects, " (words::number(of.after_cm, 1)) " cm with the effects; scatter alone makes "
                 (words::number(of.floor_cm, 1)) " cm."
             }
@@ -59,7 +65,8 @@ pub fn section(replay: Option<&Replay>, diagnosis: &Diagnosis) -> Section {
             p {
                 "The robot as it was logged, and what the simulator makes of the same commands"
                 @if diagnosis.effects().is_empty() { "." } @else { ", without and with the effects." }
-                " Simulated robots start where the real one was first seen and are put back to it every " (PUT_BACK_STEPS)
+                " Simulated robots start where the real one was first seen and are put back to it every "
+                (PUT_BACK_STEPS)
                 " steps. Walls do not stop them."
             }
             (replay.markup())

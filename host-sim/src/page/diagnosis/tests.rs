@@ -103,12 +103,8 @@ fn evil() -> Findings {
 }
 
 fn page_of(findings: &Findings, logs: &Logs, name: &str) -> String {
-    let source = || Source {
-        simulator: name.into(),
-        logs: name.into(),
-        written: Some([name.into(), name.into()]),
-        seed: 1,
-    };
+    let source =
+        || Source { simulator: name.into(), logs: name.into(), written: Some([name.into(), name.into()]), seed: 1 };
     let baseline = &kinematic::baseline(logs);
     page(&Subject { findings, logs, baseline, catalogue: &[&EVIL_EFFECT], source: source() }).expect("a page")
 }
