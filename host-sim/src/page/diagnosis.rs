@@ -89,9 +89,12 @@ pub fn page(subject: &Subject) -> Result<String> {
     let diagnosis = &findings.diagnosis;
     let replay = runs::replay(subject);
     let poses = logs.runs.iter().flat_map(|run| run.rows.iter().filter_map(|row| row.pose));
-    let bar = |part| bar(part, catalogue);
+    let mut budget: Vec<BudgetBar> = diagnosis.budget().iter().map(|part| bar(part, catalogue)).collect();
+    // Effects come first, the strongest before the others.
+    let effects = budget.partition_point(|bar| bar.named);
+    budget[..effects].sort_by(|a, b| b.share.total_cmp(&a.share));
     let data = Data {
-        budget: diagnosis.budget().iter().map(bar).collect(),
+        budget,
         evidence: &findings.evidence,
         profiles: diagnosis.profiles(),
         map: findings.room_map.as_ref(),
@@ -176,7 +179,7 @@ fn budget(diagnosis: &Diagnosis, catalogue: &[&'static Effect]) -> Markup {
         .collect();
     html! {
         (chart("budget", 0, &format!("Shares of the gap: {}", said.join(", ")), html! {
-            "How much of the gap each cause makes: mend the longest bar first. The dark lines are 95 % intervals. "
+            "How much of the gap each cause makes: mend the longest bar first. The thin lines are 95 % intervals. "
             "Scatter is what no rule reduces; unexplained is what follows rules that no named effect describes."
         }))
         (table("The same in numbers", ["part of the gap", "share (95 % interval)"], &rows))
@@ -189,7 +192,7 @@ fn next(diagnosis: &Diagnosis, catalogue: &[&'static Effect]) -> Section {
     let body = html! {
         ol {
             @if let Some(cause) = largest.and_then(|effect| words::cause(effect.id, catalogue)) {
-                li { "Check " strong { (cause.name) } ", which makes most of the gap: " (cause.check) }
+                li { "Check " strong { (cause.name) } ", which makes the largest part of the gap: " (cause.check) }
             }
             @if !diagnosis.effects().is_empty() {
                 li {

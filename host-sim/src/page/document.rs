@@ -167,18 +167,29 @@ pub fn open_table<const N: usize>(header: [&str; N], rows: &[[String; N]]) -> Ma
     html! {
         div.wide tabindex="0" role="region" aria-label={ "Table: " (header.join(", ")) } {
             table {
-                thead { tr { @for (i, name) in header.iter().enumerate() { th.n[i > 0] scope="col" { (name) } } } }
+                thead {
+                    tr {
+                        @for (i, name) in header.iter().enumerate() {
+                            th.n[rows.first().is_some_and(|row| is_number(&row[i]))] scope="col" { (name) }
+                        }
+                    }
+                }
                 tbody {
                     @for row in rows {
                         tr {
-                            th scope="row" { (row[0]) }
-                            @for cell in &row[1..] { td.n { (cell) } }
+                            th.n[is_number(&row[0])] scope="row" { (row[0]) }
+                            @for cell in &row[1..] { td.n[is_number(cell)] { (cell) } }
                         }
                     }
                 }
             }
         }
     }
+}
+
+/// Numbers stand to the right.
+fn is_number(cell: &str) -> bool {
+    cell.starts_with(|first: char| first.is_ascii_digit() || first == '−' || first == '–')
 }
 
 /// JSON inside a page: what would end its element, or begin a comment in it, is written as an escape.

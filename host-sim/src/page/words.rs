@@ -61,7 +61,7 @@ pub fn channel(channel: Channel) -> &'static str {
         Channel::Forward => "way forward",
         Channel::Lateral => "way sideways",
         Channel::Turn => "turn",
-        Channel::EchoRate => "echo or none",
+        Channel::EchoRate => "rate of echoes",
         Channel::EchoValue => "reading",
     }
 }
