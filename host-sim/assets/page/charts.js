@@ -29,8 +29,9 @@ function mapOf(room, width) {
   const ticks = (cm) => Math.max(2, Math.round((cm * scale) / 60));
   return {
     width,
-    height: Math.round((y1 - y0) * scale) + 66,
+    height: Math.round((y1 - y0) * scale) + 72,
     marginLeft: 46,
+    marginTop: 30,
     marginBottom: 40,
     aspectRatio: 1,
     x: { domain: [x0, x1], label: "x (cm) →", ticks: ticks(x1 - x0) },

@@ -50,6 +50,7 @@ function residuals(width, { depends_on, unit }, kinds) {
     width,
     height: 260,
     marginLeft: 52,
+    marginTop: 30,
     marginBottom: 40,
     ...kindScale(
       kinds.map(([kind]) => kind),
@@ -102,7 +103,7 @@ charts.map = (width) => {
         0,
         Math.max(
           0.01,
-          d3.max(squares, (s) => s.nats),
+          d3.quantile(squares, 0.95, (s) => s.nats),
         ),
       ],
       clamp: true,
@@ -167,6 +168,7 @@ charts.paths = (width) => {
     width,
     height: 280,
     marginLeft: 46,
+    marginTop: 30,
     marginBottom: 40,
     ...kindScale(KINDS, BEFORE_AFTER),
     x: { type: "point", label: "steps driven by the commands alone →", domain: page.paths.map((p) => p.steps) },

@@ -118,6 +118,7 @@ addEventListener("DOMContentLoaded", () => {
       width,
       height,
       marginLeft: 46,
+      marginTop: 30,
       marginBottom: 40,
       x: { domain: [0, state.run.t_s.at(-1)], label: "time (s) →" },
       y: { label, grid: true, zero: true, nice: true, ticks: 4 },
@@ -137,7 +138,7 @@ addEventListener("DOMContentLoaded", () => {
       .select(chart)
       .append("line")
       .attr("class", "cursor")
-      .attr("y1", 18)
+      .attr("y1", 26)
       .attr("y2", height - 38)
       .node();
     cursor.move = (t_s) => {

@@ -60,7 +60,7 @@ const WORK: &[Part] = &[
     ),
 ];
 
-const TEMPLATE: &str = "{about}\n\n{usage-heading} {usage}\n{after-help}\n\nOptions:\n{options}";
+const TEMPLATE: &str = "{about}\n\n{usage-heading} {usage}{after-help}\n\nOptions:\n{options}";
 
 /// The command with its subcommands, as it is parsed, explained, completed and printed.
 pub fn command() -> Command {
@@ -82,9 +82,9 @@ fn list(command: &Command) -> String {
     };
     let part = |(title, commands): &Part| {
         let lines: Vec<String> = commands.iter().map(|(name, _)| line(name)).collect();
-        format!("\n{title}:\n{}", lines.join("\n"))
+        format!("{title}:\n{}\n\n", lines.join("\n"))
     };
-    WORK.iter().map(part).collect::<Vec<_>>().join("\n")
+    WORK.iter().map(part).collect::<String>().trim_end().into()
 }
 
 #[cfg(test)]
