@@ -87,7 +87,7 @@ mod tests {
             Row { t_ms: 400.0 * k as f64, left: 50.0, right: 50.0, pose, echo_cm: Some(90.0), ..Row::default() }
         };
         let run = Run { name: "run-000".into(), rows: (0..rows).map(row).collect() };
-        let scene = Scene { arena_cm: Some(DVec2::new(900.0, 100.0)), ..Scene::default() };
+        let scene = Scene { arena_cm: Some(DVec2::new(560.0, 100.0)), ..Scene::default() };
         Logs { robot: default_robot(), scene, runs: vec![run] }
     }
 
@@ -104,7 +104,8 @@ mod tests {
             assert!((x - (30.0 + step_cm * k as f64)).abs() < 1e-9, "{k}: {x}");
         }
         assert!((x_cm[PUT_BACK_STEPS] - (30.0 + 4.0 * PUT_BACK_STEPS as f64)).abs() < 1e-9);
-        assert!(moments[0].echo_cm.is_some(), "a wall straight ahead is expected to be heard");
+        assert!(moments[0].echo_cm.is_none(), "the wall ahead is beyond the sensor's range");
+        assert!(moments[PUT_BACK_STEPS - 1].echo_cm.is_some(), "and now it is near");
     }
 
     #[test]

@@ -89,12 +89,12 @@ pub fn page(subject: &Subject) -> Result<String> {
     let diagnosis = &findings.diagnosis;
     let replay = runs::replay(subject);
     let poses = logs.runs.iter().flat_map(|run| run.rows.iter().filter_map(|row| row.pose));
-    let mut budget: Vec<BudgetBar> = diagnosis.budget().iter().map(|part| bar(part, catalogue)).collect();
+    let mut bars: Vec<BudgetBar> = diagnosis.budget().iter().map(|part| bar(part, catalogue)).collect();
     // Effects come first, the strongest before the others.
-    let effects = budget.partition_point(|bar| bar.named);
-    budget[..effects].sort_by(|a, b| b.share.total_cmp(&a.share));
+    let effects = bars.partition_point(|bar| bar.named);
+    bars[..effects].sort_by(|a, b| b.share.total_cmp(&a.share));
     let data = Data {
-        budget,
+        budget: bars,
         evidence: &findings.evidence,
         profiles: diagnosis.profiles(),
         map: findings.room_map.as_ref(),

@@ -120,15 +120,15 @@ fn headline(values: &[Judged]) -> String {
         words::list(&names)
     };
     let parts = [
-        ("well", among(GOOD, f64::INFINITY)),
-        ("roughly", among(USABLE, GOOD)),
-        ("hardly", among(f64::NEG_INFINITY, USABLE)),
+        (among(GOOD, f64::INFINITY), "well"),
+        (among(USABLE, GOOD), "roughly"),
+        (among(f64::NEG_INFINITY, USABLE), "hardly"),
     ];
     let told: Vec<String> =
-        parts.iter().filter(|p| !p.1.is_empty()).map(|(how, what)| format!("{how} {what}")).collect();
+        parts.iter().filter(|p| !p.0.is_empty()).map(|(what, how)| format!("{what} {how}")).collect();
     match told.as_slice() {
         [] => "The simulator predicts whether there is an echo, and nothing else.".into(),
-        told => format!("The simulator predicts {}.", told.join("; ")),
+        told => format!("The simulator predicts {}.", told.join(", ")),
     }
 }
 
@@ -152,16 +152,21 @@ fn scatters(values: &[Judged]) -> Markup {
             "happened that the simulator foretells: 1 is all, 0 is no more than the mean."
         }
         (open_table(["network", "R²", "typical error", "samples"], &rows))
-        @for (i, (name, unit, v)) in values.iter().enumerate() {
-            @let r2 = v.r2.map_or_else(|| "undefined".into(), |r2| number(r2, 3));
-            (chart("scatter", i, &format!("Predicted against logged {name} in {unit}, R² {r2}"), html! {
-                (name) ": R² " (r2)
-                @if let Some(trend) = &v.trend { ", trend " (number(trend.slope, 3)) " × + "
-                (number(trend.intercept, 2)) }
-                @if v.n > MOST_SAMPLES { "; " (v.n.div_ceil(v.n.div_ceil(MOST_SAMPLES))) " of " (v.n)
-                " samples are drawn" }
-                "."
-            }))
+        div.pairs {
+            @for (i, (name, unit, v)) in values.iter().enumerate() {
+                @let r2 = v.r2.map_or_else(|| "undefined".into(), |r2| number(r2, 3));
+                (chart("scatter", i, &format!("Predicted against logged {name} in {unit}, R² {r2}"), html! {
+                    (name) ": R² " (r2)
+                    @if let Some(trend) = &v.trend {
+                        @let sign = if trend.intercept < 0.0 { " − " } else { " + " };
+                        "; on the whole " (number(trend.slope, 3)) " × logged" (sign) (number(trend.intercept.abs(), 2))
+                    }
+                    @if v.n > MOST_SAMPLES {
+                        "; " (v.n.div_ceil(v.n.div_ceil(MOST_SAMPLES))) " of " (v.n) " samples are drawn"
+                    }
+                    "."
+                }))
+            }
         }
     }
 }
