@@ -49,7 +49,7 @@ addEventListener("DOMContentLoaded", () => {
     cell("heading", now.pose ? `${Math.round(now.pose[2])}°`.replace("-", "−") : "–");
     cell("echo", now.echo === null ? "none" : said(now.echo));
     const off = now.pose && here.pose ? Math.hypot(now.pose[0] - here.pose[0], now.pose[1] - here.pose[1]) : null;
-    cell("off", id === kinds[0].id ? "" : said(off));
+    if (kinds.length > 1) cell("off", id === kinds[0].id ? "" : said(off));
   }
 
   function play(last) {

@@ -65,11 +65,13 @@ pub fn to_text(definition: &Definition) -> String {
 /// # Errors
 /// What is not possible, in one line.
 pub fn effect(definition: &Definition) -> std::result::Result<&'static Effect, String> {
-    if let Some((_, effect)) = kept().iter().find(|(kept, _)| kept == definition) {
+    // Held until it is made: two threads that ask for one definition get one effect.
+    let mut kept = kept();
+    if let Some((_, effect)) = kept.iter().find(|(kept, _)| kept == definition) {
         return Ok(effect);
     }
     let made = make(definition)?;
-    kept().push((definition.clone(), made));
+    kept.push((definition.clone(), made));
     Ok(made)
 }
 

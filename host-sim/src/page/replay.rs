@@ -104,7 +104,7 @@ impl Replay {
 
     /// The map, its controls, and what is read from it.
     pub fn markup(&self) -> Markup {
-        let shown = self.runs.len();
+        let (shown, compares) = (self.runs.len(), self.kinds.len() > 1);
         html! {
             @if shown < self.of {
                 p.quiet { (shown) " of " (self.of) " runs, evenly spread, so that this page stays small." }
@@ -134,14 +134,16 @@ impl Replay {
                     thead {
                         tr {
                             th scope="col" { "who" } th.n scope="col" { "x, y (cm)" } th.n scope="col" { "heading" }
-                            th.n scope="col" { "reading (cm)" } th.n scope="col" { "away from it (cm)" }
+                            th.n scope="col" { "reading (cm)" }
+                            @if compares { th.n scope="col" { "away from it (cm)" } }
                         }
                     }
                     tbody {
                         @for kind in self.kinds {
                             tr data-kind=(kind.id) {
                                 th scope="row" { span.swatch.(kind.id) {} " " (kind.name) }
-                                @for field in ["place", "heading", "echo", "off"] { td.n data-field=(field) {} }
+                                @for field in ["place", "heading", "echo"] { td.n data-field=(field) {} }
+                                @if compares { td.n data-field="off" {} }
                             }
                         }
                     }
@@ -151,7 +153,7 @@ impl Replay {
                 div.chart data-chart="readings" role="img" aria-label="Readings over the time of the run" {}
                 figcaption { "What the sensor reads; where there is no dot there is no reading, or none is expected." }
             }
-            @if self.kinds.len() > 1 {
+            @if compares {
                 figure {
                     div.chart data-chart="apart" role="img" aria-label="Distance from the robot over time" {}
                     figcaption { "How far the simulated robots are from the real one." }

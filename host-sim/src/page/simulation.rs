@@ -197,7 +197,10 @@ fn replay(subject: &Subject, shown: &[usize]) -> Replay {
             echo_cm: p.echo_cm.map(f64::from),
         };
         let told = |p: &PathPoint| match controller.tuples.get(p.tuple - 1) {
-            Some(tuple) => format!("tuple {}: commands {}, {}", p.tuple, tuple.left, tuple.right),
+            Some(tuple) => {
+                let [left, right] = [tuple.left, tuple.right].map(|command| number(f64::from(command), 0));
+                format!("tuple {}: commands {left}, {right}", p.tuple)
+            }
             None => "finished".into(),
         };
         ReplayedRun {
