@@ -44,9 +44,17 @@ charts.turns = (width) => {
     width,
     height: Math.max(90, Math.min(520, 16 * runs.length + 70)),
     marginLeft: 34,
+    marginTop: 30,
     marginBottom: 38,
     x: { label: "step →" },
-    y: { type: "band", domain: runs, label: "run", ticks: runs.length > 30 ? [] : undefined, padding: 0.15 },
+    y: {
+      type: "band",
+      domain: runs,
+      label: "run",
+      labelAnchor: "top",
+      ticks: runs.length > 30 ? [] : undefined,
+      padding: 0.15,
+    },
     color: { type: "ordinal", domain: [1, 2, 3, 4, 5, 6], scheme: "viridis", legend: true, label: "tuple" },
     marks: [
       Plot.barX(page.turns, {
