@@ -190,8 +190,8 @@ fn turns(run: usize, rollout: &Rollout) -> Vec<Turn> {
 
 fn replay(subject: &Subject, shown: &[usize]) -> Replay {
     let Subject { rollouts, controller, robot, .. } = subject;
-    let run = |number: &usize| {
-        let rollout = &rollouts.runs[*number];
+    let run = |place: &usize| {
+        let rollout = &rollouts.runs[*place];
         let moment = |p: &PathPoint| Moment {
             pose: Some(Pose::new(p.x_cm, p.y_cm, p.heading_deg.to_radians())),
             echo_cm: p.echo_cm.map(f64::from),
@@ -204,7 +204,7 @@ fn replay(subject: &Subject, shown: &[usize]) -> Replay {
             None => "finished".into(),
         };
         ReplayedRun {
-            name: format!("run {}: {}", number + 1, rollout.termination.replace('_', " ")),
+            name: format!("run {}: {}", place + 1, rollout.termination.replace('_', " ")),
             t_s: (0..rollout.path.len()).map(|step| step as f64 * f64::from(controller.step_ms) / 1000.0).collect(),
             told: rollout.path.iter().map(told).collect(),
             tracks: BTreeMap::from([(DRIVEN.id, rollout.path.iter().map(moment).collect::<Vec<_>>().into())]),
