@@ -135,7 +135,7 @@ impl Replay {
                         tr {
                             th scope="col" { "who" } th.n scope="col" { "x, y (cm)" } th.n scope="col" { "heading" }
                             th.n scope="col" { "reading (cm)" }
-                            @if compares { th.n scope="col" { "away from it (cm)" } }
+                            @if compares { th.n scope="col" { "away (cm)" } }
                         }
                     }
                     tbody {
