@@ -81,13 +81,15 @@ mod tests {
     use crate::logs::{Row, Scene};
     use crate::simulator::kinematic;
 
+    const WALL_CM: f64 = 400.0;
+
     fn logs(rows: usize) -> Logs {
         let row = |k: usize| {
             let pose = (k != 1).then(|| Pose::new(30.0 + 4.0 * k as f64, 50.0, 0.0));
             Row { t_ms: 400.0 * k as f64, left: 50.0, right: 50.0, pose, echo_cm: Some(90.0), ..Row::default() }
         };
         let run = Run { name: "run-000".into(), rows: (0..rows).map(row).collect() };
-        let scene = Scene { arena_cm: Some(DVec2::new(560.0, 100.0)), ..Scene::default() };
+        let scene = Scene { arena_cm: Some(DVec2::new(WALL_CM, 100.0)), ..Scene::default() };
         Logs { robot: default_robot(), scene, runs: vec![run] }
     }
 
@@ -104,8 +106,9 @@ mod tests {
             assert!((x - (30.0 + step_cm * k as f64)).abs() < 1e-9, "{k}: {x}");
         }
         assert!((x_cm[PUT_BACK_STEPS] - (30.0 + 4.0 * PUT_BACK_STEPS as f64)).abs() < 1e-9);
-        assert!(moments[0].echo_cm.is_none(), "the wall ahead is beyond the sensor's range");
-        assert!(moments[PUT_BACK_STEPS - 1].echo_cm.is_some(), "and now it is near");
+        let wall_cm = WALL_CM - x_cm[30] - logs.robot.ultrasonic.x_cm;
+        let echo_cm = moments[30].echo_cm.expect("the wall ahead is near enough to be heard");
+        assert!((echo_cm - wall_cm).abs() < 5.0, "{echo_cm} for {wall_cm}");
     }
 
     #[test]
