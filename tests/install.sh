@@ -12,6 +12,18 @@ need() {
     fi
 }
 
+# need_npm: what drives the browser in the tests of pages, and the accessibility checker, of versions that are known to work.
+need_npm() {
+    if [ -e target/npm/node_modules/axe-core ] && [ -e target/npm/node_modules/puppeteer-core ]; then return; fi
+    need npm npm
+    echo "installing puppeteer-core and axe-core" >&2
+    mkdir -p target/npm
+    if ! npm install --silent --no-save --prefix target/npm puppeteer-core@24.43.1 axe-core@4.14.1 >/dev/null 2>&1; then
+        echo "puppeteer-core and axe-core cannot be installed from the npm registry into target/npm" >&2
+        exit 1
+    fi
+}
+
 as_root() {
     if [ "$(id -u)" -eq 0 ]; then
         env DEBIAN_FRONTEND=noninteractive "$@"

@@ -33,8 +33,8 @@ need cc gcc
 need nbc nbc
 # With its venv, which Debian packs apart.
 python3 -c 'import ensurepip' 2>/dev/null || need python3-venv python3-venv
-need node nodejs
-need npm npm
+need chromium chromium
+need_npm
 [ -d tests/micropython/node_modules ] || npm ci --prefix tests/micropython --no-audit --no-fund >/dev/null
 need_component fmt rustfmt
 need_component clippy clippy

@@ -10,13 +10,15 @@ mod check;
 mod crosscheck;
 mod demo;
 mod diagnose;
-mod diagnosis_page;
 mod diagnosis_text;
 mod evaluate;
 mod evolve;
 mod export;
+mod guide;
 mod import;
+mod info;
 mod kinds;
+mod manual;
 mod new;
 mod progress;
 mod record;
@@ -28,7 +30,7 @@ use std::io::{self, Write};
 use std::path::Path;
 use std::process::ExitCode;
 
-use clap::{Parser, Subcommand};
+use clap::{FromArgMatches, Parser, Subcommand};
 use serde::Serialize;
 
 use crate::error::{Error, Result};
@@ -66,6 +68,9 @@ enum Command {
     Export(export::Export),
     Import(import::Import),
     New(new::New),
+    Info(info::Info),
+    Completions(manual::Completions),
+    Manual(manual::Manual),
 }
 
 /// A command.
@@ -94,6 +99,9 @@ impl Command {
             Command::Export(command) => command,
             Command::Import(command) => command,
             Command::New(command) => command,
+            Command::Info(command) => command,
+            Command::Completions(command) => command,
+            Command::Manual(command) => command,
         }
     }
 }
@@ -101,7 +109,8 @@ impl Command {
 /// Runs the command of this process's arguments. Exits with 0 when it did what was asked, 1 when it could not, and 2
 /// when the call is wrong.
 pub fn run() -> ExitCode {
-    let Cli { force, command } = Cli::parse();
+    let cli = Cli::from_arg_matches(&guide::command().get_matches());
+    let Cli { force, command } = cli.unwrap_or_else(|error| error.exit());
     let command = command.which();
     let places = command.places();
     let done = places.check(force).and_then(|()| command.run());

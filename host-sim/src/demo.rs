@@ -1,7 +1,5 @@
 //! The whole request on the built-in robot: record, train, evaluate, evolve, simulate, try on the robot, export, draw.
 
-mod pictures;
-
 use std::fs;
 use std::path::Path;
 
@@ -22,6 +20,8 @@ use crate::evolve::robust::{self, EvolutionTask};
 use crate::files;
 use crate::learn::train::{self, TABLE_ONE, Trainer};
 use crate::logs::Scene;
+use crate::pictures;
+use crate::report::paths::{PathPanel, Trace};
 use crate::simulator::environment::Environment;
 use crate::simulator::rollout_report::RolloutReport;
 use crate::simulator::{Noise, Simulator};
@@ -114,7 +114,8 @@ pub fn run(out: &Path, seed: u64, watch: impl Fn(Stage)) -> Result<Summary> {
         .collect::<Result<Vec<_>>>()?;
     watch(Stage::Drawing);
     pictures::networks(out, &simulator, &evaluation, &held_out)?;
-    pictures::paths(out, &scene, &trials)?;
+    let panels: Vec<PathPanel> = trials.iter().enumerate().map(|(i, trial)| panel(i, trial, &scene)).collect();
+    pictures::paths(out, &panels)?;
     Ok(Summary { evaluation, starts: trials.into_iter().map(|trial| trial.summary).collect() })
 }
 
@@ -177,6 +178,17 @@ impl<W: Fn(Stage)> DemoRun<'_, W> {
         files::write(&self.out.join(format!("{name}.nxc")), source)?;
         file.write(&self.out.join(format!("{name}.toml")))
     }
+}
+
+/// The simulated and the real paths of a start (from 0).
+fn panel(start: usize, trial: &Trial, scene: &Scene) -> PathPanel {
+    let title = format!("Start {}", start + 1);
+    let simulated = pictures::simulated_paths(title, scene, scene.starts[start], &trial.rollouts);
+    let trace = |trajectory: &Trajectory| Trace {
+        points_cm: trajectory.points.iter().map(|m| m.true_pose.position_cm).collect(),
+        crashed: trajectory.termination == built_in_robot::Termination::Crashed,
+    };
+    PathPanel { real: trial.trajectories.iter().map(trace).collect(), ..simulated }
 }
 
 /// Final distance to the target, cm; infinite after a crash.

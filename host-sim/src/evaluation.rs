@@ -7,4 +7,6 @@ pub mod observations;
 pub mod paths;
 pub mod predictions;
 pub mod repeats;
+pub mod replay;
 pub mod sensor_models;
+pub mod support;

@@ -5,8 +5,12 @@ mod text;
 mod words;
 mod write;
 
+use std::fs;
 use std::path::Path;
 
+use jiff::Timestamp;
+use jiff::civil::Date;
+use jiff::tz::TimeZone;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
@@ -97,4 +101,28 @@ pub fn write_json(path: &Path, value: &impl Serialize) -> Result<()> {
 pub fn json(path: &Path, value: &impl Serialize) -> Result<String> {
     let text = serde_json::to_string_pretty(value).map_err(|e| Error::in_file(path, e.to_string()))?;
     Ok(text + "\n")
+}
+
+/// Makes a folder unless it is there.
+///
+/// # Errors
+/// When it cannot be made.
+pub fn make_folder(path: &Path) -> Result<()> {
+    fs::create_dir_all(path).map_err(|e| Error::in_file(path, format!("cannot be made: {e}")))
+}
+
+/// The first and the last day (UTC) on which the CSV files of a folder were written; none where the file system does not
+/// tell.
+///
+/// # Errors
+/// When the folder cannot be read.
+pub fn days_written(folder: &Path) -> Result<Option<[String; 2]>> {
+    let listing = fs::read_dir(folder).map_err(|e| Error::in_file(folder, format!("cannot be read: {e}")))?;
+    let days = listing.filter_map(|entry| {
+        let entry = entry.ok().filter(|entry| entry.path().extension().is_some_and(|ending| ending == "csv"))?;
+        let time = entry.metadata().ok()?.modified().ok()?;
+        Some(Timestamp::try_from(time).ok()?.to_zoned(TimeZone::UTC).date())
+    });
+    let days: Vec<Date> = days.collect();
+    Ok(days.iter().min().zip(days.iter().max()).map(|(first, last)| [first, last].map(Date::to_string)))
 }

@@ -23,6 +23,7 @@ pub mod hypothesis;
 mod ledger;
 pub mod method;
 pub mod omnibus;
+pub mod progress;
 pub mod propose;
 pub mod remainder;
 pub mod residual_law;
@@ -32,6 +33,6 @@ pub mod scope;
 pub(crate) mod test_support;
 pub mod validate;
 
-pub use diagnose::{Findings, diagnose, findings};
+pub use diagnose::{Findings, diagnose, findings, findings_watched};
 pub use diagnosis::Diagnosis;
 pub use method::Method;

@@ -24,6 +24,8 @@ pub mod lanes;
 pub mod learn;
 pub mod logs;
 pub mod on_board;
+pub mod page;
+pub mod pictures;
 pub mod report;
 pub mod simulator;
 pub mod sonar;

@@ -92,7 +92,8 @@ impl Run for Brick {
     fn places(&self) -> Places {
         // Readings may be a list.
         let readings = self.readings.as_ref().map(PathBuf::from);
-        let inputs = [Some(&self.program), readings.as_ref(), self.world.as_ref(), self.scene.as_ref(), self.sim.as_ref()];
+        let inputs =
+            [Some(&self.program), readings.as_ref(), self.world.as_ref(), self.scene.as_ref(), self.sim.as_ref()];
         Places::default()
             .reading(inputs.into_iter().flatten())
             .writing(&self.json, kinds::REPORT)
@@ -112,7 +113,9 @@ impl Run for Brick {
         };
         super::reported(self.json.as_deref(), &told::facts(&report), told::text(&report) + &world)
     }
+}
 
+impl Brick {
     fn by_script(&self, program: &Program, config: &RunConfig) -> Result<(Report, String)> {
         let sonar = self.readings.as_deref().map_or(Ok(Vec::new()), readings::read)?;
         let WorldScript { levels, presses } =

@@ -24,23 +24,9 @@ fn line(part: &Part, width: usize, effects: &[NamedEffect]) -> String {
 
 fn meaning(id: &str, effects: &[NamedEffect]) -> String {
     match effects.iter().find(|effect| effect.id == id) {
-        Some(effect) => parameters(effect),
+        Some(effect) => effect.strength(),
         None if id == SCATTER => "steps scatter more than the simulator assumes".into(),
         None if id == UNEXPLAINED => "follows circumstances, and no named effect does so".into(),
         None => String::new(),
     }
-}
-
-/// The strength of an effect, each number with its interval.
-pub fn parameters(effect: &NamedEffect) -> String {
-    let interval = |name: &str| {
-        let ends = effect.intervals.get(name)?.as_array()?;
-        let at_bound = if effect.at_bound.contains(&name) { ", at the end of what is possible" } else { "" };
-        Some(format!(" ({} to {}{at_bound})", ends.first()?, ends.get(1)?))
-    };
-    let told = effect.parameters.iter().map(|(name, value)| {
-        let value = value.as_str().map_or_else(|| value.to_string(), String::from);
-        format!("{name} {value}{}", interval(name).unwrap_or_default())
-    });
-    told.collect::<Vec<String>>().join(", ")
 }

@@ -92,10 +92,10 @@ impl Run for Challenge {
     fn places(&self) -> Places {
         let places = Places::default();
         match &self.part {
-            Part::Make { out, .. } => places.filling(out),
+            Part::Make { out, .. } => places.filling([out]),
             Part::Calibrate { out, csv, .. } => places.writing([out], kinds::CALIBRATION).writing(csv, kinds::UNSIGNED),
             Part::Sensitivity { csv, .. } => places.writing(csv, kinds::UNSIGNED),
-            Part::Answer { folder } => places.reading([folder]).filling(Folder(folder).answers()),
+            Part::Answer { folder } => places.reading([folder]).filling([&Folder(folder).answers()]),
             Part::Score { folder, json, csv } => {
                 places.reading([folder]).writing(json, kinds::REPORT).writing(csv, kinds::UNSIGNED)
             }

@@ -24,7 +24,7 @@ pub struct Demo {
 
 impl Run for Demo {
     fn places(&self) -> Places {
-        Places::default().filling(&self.out)
+        Places::default().filling([&self.out])
     }
 
     fn run(&self) -> Result<String> {

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use mindgap_core::controller::Controller;
 
-use super::{Run, diagnosis_page, diagnosis_text, kinds};
+use super::{Run, diagnosis_text, kinds, progress};
 use crate::effects::applied::AppliedEffect;
 use crate::effects::{CATALOGUE, Effect, own};
 use crate::error::{Error, Result};
@@ -13,9 +13,12 @@ use crate::evaluation::final_position::{FinalPositionErrors, final_position_erro
 use crate::evolve::controller_file::ControllerFile;
 use crate::files;
 use crate::files::places::Places;
-use crate::gap::{Findings, Method, condition, findings, validate};
+use crate::gap::progress::Stage;
+use crate::gap::{Findings, Method, condition, findings_watched, validate};
 use crate::inspection::Inspection;
 use crate::logs::Logs;
+use crate::page::diagnosis::{Source, Subject, page};
+use crate::pictures;
 use crate::simulator::baseline::Baseline;
 use crate::simulator::{Simulator, kinematic, textbook};
 
@@ -45,6 +48,9 @@ pub struct Diagnose {
     /// Also write a page for a browser here.
     #[arg(long, value_name = "FILE")]
     html: Option<PathBuf>,
+    /// Also draw figures into this folder, as SVG, PNG and PDF.
+    #[arg(long, value_name = "DIR")]
+    figures: Option<PathBuf>,
     /// Write a simulator with the effects added that explain the gap, and the formula of what they leave.
     #[arg(long, value_name = "SIM_OUT")]
     apply: Option<PathBuf>,
@@ -64,7 +70,8 @@ impl Run for Diagnose {
         let inputs = self.simulator_file().into_iter().chain([&self.logs]).chain(&self.controller).chain(&self.effects);
         let places = Places::default().reading(inputs).writing(&self.json, kinds::REPORT);
         let places = places.writing(&self.html, kinds::PAGE).writing(&self.apply, kinds::SIMULATOR);
-        places.writing(&self.formula, kinds::FORMULA).writing(&self.next_experiment, kinds::UNSIGNED)
+        let places = places.writing(&self.formula, kinds::FORMULA).writing(&self.next_experiment, kinds::UNSIGNED);
+        places.filling(&self.figures)
     }
 
     fn run(&self) -> Result<String> {
@@ -75,26 +82,38 @@ impl Run for Diagnose {
         let mut inspected = Inspection::of(super::read_logs(&self.logs)?);
         inspected.logs = in_steps(inspected.logs, simulator.as_ref(), self.step_ms)?;
         let logs = &inspected.logs;
-        let mut found = match &simulator {
-            None => findings(kinematic::baseline(logs), &inspected, method)?,
-            Some(simulator) => {
-                validate::same_robot(&simulator.robot, &logs.robot)?;
-                findings(Baseline::learned(simulator)?, &inspected, method)?
-            }
+        if let Some(simulator) = &simulator {
+            validate::same_robot(&simulator.robot, &logs.robot)?;
+        }
+        let bar = progress::shares();
+        let watch = |stage: Stage| {
+            bar.set_position((100.0 * stage.share_before()) as u64);
+            bar.set_message(stage.words());
         };
+        let found = findings_watched(baseline(simulator.as_ref(), logs)?, &inspected, method, watch);
+        bar.finish_and_clear();
+        let mut found = found?;
         if let Some((simulator, controller)) = simulator.as_ref().zip(controller) {
             found.diagnosis.final_positions =
                 Some(ends(simulator, found.with_formula(), &controller, logs, self.seed)?);
         }
-        let diagnosis = &found.diagnosis;
+        if let Some(path) = &self.html {
+            let subject = Subject {
+                findings: &found,
+                logs,
+                baseline: &baseline(simulator.as_ref(), logs)?,
+                catalogue: method.catalogue,
+                source: self.source()?,
+            };
+            files::write(path, page(&subject)?)?;
+        }
+        if let Some(folder) = &self.figures {
+            pictures::diagnosis(folder, &found.diagnosis)?;
+        }
         if let Some(path) = &self.apply {
             with_effects(simulator, logs, &found)?.write(path)?;
         }
-        if let Some(path) = &self.html {
-            let title = format!("{} against {}", self.logs.display(), self.sim.display());
-            files::write(path, diagnosis_page::page(diagnosis, &title) + kinds::PAGE_SIGN)?;
-        }
-        let mut text = diagnosis_text::text(diagnosis);
+        let mut text = diagnosis_text::text(&found.diagnosis);
         match (&self.next_experiment, found.diagnosis.experiment()) {
             (Some(path), Some(experiment)) => experiment.commands.write(path)?,
             (Some(path), None) => text += &format!("No causes are confused: {} is not written.\n", path.display()),
@@ -124,6 +143,18 @@ impl Diagnose {
         Ok(Some(ControllerFile::read_for(path, &simulator.robot)?.controller))
     }
 
+    fn source(&self) -> Result<Source> {
+        Ok(Source {
+            simulator: match self.sim.as_os_str() == KINEMATIC {
+                true => "the textbook's differential drive and an ideal sonar, from robot.toml (kinematic)".into(),
+                false => self.sim.display().to_string(),
+            },
+            logs: self.logs.display().to_string(),
+            written: files::days_written(&self.logs)?,
+            seed: self.seed,
+        })
+    }
+
     /// The built-in effects and those of the user, whose ids have to differ.
     fn catalogue(&self) -> Result<&'static [&'static Effect]> {
         let mut catalogue = CATALOGUE.to_vec();
@@ -137,6 +168,10 @@ impl Diagnose {
         }
         Ok(catalogue.leak())
     }
+}
+
+fn baseline<'s>(simulator: Option<&'s Simulator>, logs: &Logs) -> Result<Baseline<'s>> {
+    simulator.map_or_else(|| Ok(kinematic::baseline(logs)), Baseline::learned)
 }
 
 /// The logs in the steps of the simulator, or in those that are asked for.

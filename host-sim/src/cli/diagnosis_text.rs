@@ -57,8 +57,7 @@ fn verdict(answer: &Answer) -> &'static str {
 }
 
 fn effect(effect: &NamedEffect) -> Vec<String> {
-    let parameters = budget_text::parameters(effect);
-    let mut lines = vec![format!("  {:>3.0} %  {}: {parameters}", 100.0 * effect.probability, effect.id)];
+    let mut lines = vec![format!("  {:>3.0} %  {}: {}", 100.0 * effect.probability, effect.id, effect.strength())];
     if !effect.ambiguous_with.is_empty() {
         lines.push(format!("         these logs cannot tell it from {}", effect.ambiguous_with.join(", ")));
     }

@@ -9,7 +9,10 @@ use super::{Run, kinds};
 use crate::error::Result;
 use crate::evaluation::accuracy::{self, Evaluation, Networks};
 use crate::evaluation::sensor_models::SensorModels;
+use crate::files;
 use crate::files::places::Places;
+use crate::page::evaluation::{Subject, page};
+use crate::pictures;
 use crate::simulator::Simulator;
 
 /// Judge a simulator's networks on logs that they were not trained on.
@@ -22,16 +25,33 @@ pub struct Evaluate {
     /// Also write the figures here; `-` is standard output, in place of the tables.
     #[arg(long)]
     json: Option<PathBuf>,
+    /// Also write a page for a browser here.
+    #[arg(long, value_name = "FILE")]
+    html: Option<PathBuf>,
+    /// Also draw figures into this folder, as SVG, PNG and PDF.
+    #[arg(long, value_name = "DIR")]
+    figures: Option<PathBuf>,
 }
 
 impl Run for Evaluate {
     fn places(&self) -> Places {
-        Places::default().reading([&self.sim, &self.logs]).writing(&self.json, kinds::REPORT)
+        let places = Places::default().reading([&self.sim, &self.logs]).writing(&self.json, kinds::REPORT);
+        places.writing(&self.html, kinds::PAGE).filling(&self.figures)
     }
 
     fn run(&self) -> Result<String> {
         let simulator = Simulator::read(&self.sim)?;
-        let evaluation = accuracy::evaluate(&simulator, &super::read_logs_of(&simulator, &self.logs)?)?;
+        let logs = super::read_logs_of(&simulator, &self.logs)?;
+        let evaluation = accuracy::evaluate(&simulator, &logs)?;
+        if let Some(path) = &self.html {
+            let names = [&self.sim, &self.logs].map(|path| path.display().to_string());
+            let names = names.each_ref().map(String::as_str);
+            let subject = Subject { evaluation: &evaluation, simulator: &simulator, logs: &logs, names };
+            files::write(path, page(&subject)?)?;
+        }
+        if let Some(folder) = &self.figures {
+            pictures::networks(folder, &simulator, &evaluation, &logs)?;
+        }
         super::reported(self.json.as_deref(), &evaluation, told(&evaluation))
     }
 }

@@ -14,7 +14,9 @@ use crate::evolve::robust::{self, EvolutionTask};
 use crate::files::places::Places;
 use crate::geometry::Pose;
 use crate::logs::{Robot, Scene};
+use crate::pictures;
 use crate::simulator::environment::Environment;
+use crate::simulator::rollout_report::RolloutReport;
 use crate::simulator::{Noise, Simulator};
 
 /// Evolve one controller in a simulator.
@@ -51,6 +53,9 @@ pub struct Evolve {
     /// Let every individual of a generation meet its own random numbers, as with --paper, and not all the same ones.
     #[arg(long)]
     fresh_numbers: bool,
+    /// Also draw simulated runs of the controller into this folder, as SVG, PNG and PDF.
+    #[arg(long, value_name = "DIR")]
+    figures: Option<PathBuf>,
 }
 
 /// Which model of the sensor makes the readings of simulated runs.
@@ -67,10 +72,13 @@ pub enum Sonar {
 const JUDGED_RUNS: usize = 200;
 /// Sets the judging runs apart from all others.
 const JUDGING: u64 = 1;
+/// Runs that are drawn.
+const DRAWN_RUNS: usize = 10;
 
 impl Run for Evolve {
     fn places(&self) -> Places {
-        Places::default().reading([&self.sim, &self.scene]).writing([&self.out], kinds::CONTROLLER)
+        let places = Places::default().reading([&self.sim, &self.scene]).writing([&self.out], kinds::CONTROLLER);
+        places.filling(&self.figures)
     }
 
     fn run(&self) -> Result<String> {
@@ -113,6 +121,11 @@ impl Run for Evolve {
             fitness: evolved.fitness,
             success: success.rate,
         };
+        if let Some(folder) = &self.figures {
+            let rollouts = RolloutReport::new(environment, &scene, &evolved.controller, DRAWN_RUNS, self.seed);
+            let title = format!("Start {}", self.start);
+            pictures::paths(folder, &[pictures::simulated_paths(title, &scene, start, &rollouts)])?;
+        }
         ControllerFile { controller: evolved.controller, origin: Some(origin) }.write(&self.out)?;
         Ok(format!(
             "start {}: {:.0} % of {JUDGED_RUNS} fresh simulated runs reach the target, {:.0} % crash; median distance {:.1} cm\n\

@@ -85,7 +85,7 @@ impl Run for Import {
 impl Run for Brick {
     fn places(&self) -> Places {
         let inputs = self.files.iter().chain([&self.scene, &self.robot]);
-        Places::default().reading(inputs).filling(&self.out).writing(&self.json, kinds::REPORT)
+        Places::default().reading(inputs).filling([&self.out]).writing(&self.json, kinds::REPORT)
     }
 
     fn run(&self) -> Result<String> {

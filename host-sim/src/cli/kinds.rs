@@ -21,10 +21,9 @@ pub const PROGRAM: Kind = Kind { name: "a program", is_one: is_program };
 /// The thresholds of the diagnosis.
 pub const CALIBRATION: Kind =
     Kind { name: "a calibration", is_one: |content| content.starts_with(b"# Made by: mindgap challenge calibrate") };
-/// A page of a diagnosis.
-pub const PAGE: Kind = Kind { name: "a page", is_one: |content| text(content).contains(PAGE_SIGN) };
-/// What a page of a diagnosis ends with.
-pub const PAGE_SIGN: &str = "<!-- Made by: mindgap diagnose -->\n";
+/// A page for a browser.
+pub const PAGE: Kind =
+    Kind { name: "a page", is_one: |content| text(content).contains(r#"<meta name="generator" content="mindgap">"#) };
 /// The formula of a diagnosis.
 pub const FORMULA: Kind = Kind { name: "a formula", is_one: |content| text(content).starts_with(FORMULA_SIGN) };
 /// What the file of a formula begins with: own effects without it are somebody's own.

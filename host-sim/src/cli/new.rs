@@ -26,7 +26,7 @@ const FILES: [&str; 3] = ["robot.toml", "scene.toml", "README.md"];
 
 impl Run for New {
     fn places(&self) -> Places {
-        Places::default().filling(&self.folder)
+        Places::default().filling([&self.folder])
     }
 
     fn run(&self) -> Result<String> {

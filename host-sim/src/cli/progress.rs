@@ -1,5 +1,7 @@
 //! Progress on a terminal; nothing in a pipe.
 
+use std::time::Duration;
+
 use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::learn::train::Progress;
@@ -16,6 +18,15 @@ pub fn bar(steps: u64) -> ProgressBar {
     let bar = ProgressBar::new(steps);
     let style = ProgressStyle::with_template("{bar:30} {pos}/{len} [{elapsed}] {msg}").expect("the template is right");
     bar.set_style(style);
+    bar
+}
+
+/// A bar for work of which the share is known that is done, with the time left.
+pub fn shares() -> ProgressBar {
+    let bar = ProgressBar::new(100);
+    let template = "{bar:30} {pos} % [{elapsed}, about {eta} left] {msg}";
+    bar.set_style(ProgressStyle::with_template(template).expect("the template is right"));
+    bar.enable_steady_tick(Duration::from_secs(1));
     bar
 }
 

@@ -36,7 +36,7 @@ pub struct Record {
 
 impl Run for Record {
     fn places(&self) -> Places {
-        Places::default().reading(&self.scene).filling(&self.out)
+        Places::default().reading(&self.scene).filling([&self.out])
     }
 
     fn run(&self) -> Result<String> {

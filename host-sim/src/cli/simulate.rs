@@ -9,8 +9,11 @@ use super::table::{self, number};
 use super::{Run, kinds};
 use crate::error::Result;
 use crate::evolve::controller_file::ControllerFile;
+use crate::files;
 use crate::files::places::Places;
 use crate::logs::Scene;
+use crate::page::simulation::{Subject, page};
+use crate::pictures;
 use crate::simulator::environment::Environment;
 use crate::simulator::rollout_report::RolloutReport;
 use crate::simulator::{Noise, Simulator};
@@ -43,6 +46,12 @@ pub struct Simulate {
     /// Also write paths and outcomes here.
     #[arg(long)]
     json: Option<PathBuf>,
+    /// Also write a page for a browser here.
+    #[arg(long, value_name = "FILE")]
+    html: Option<PathBuf>,
+    /// Also draw figures into this folder, as SVG, PNG and PDF.
+    #[arg(long, value_name = "DIR")]
+    figures: Option<PathBuf>,
 }
 
 /// Rows of the table at most.
@@ -51,7 +60,8 @@ const ROWS: usize = 20;
 impl Run for Simulate {
     fn places(&self) -> Places {
         let inputs = [&self.sim, &self.controller, &self.scene];
-        Places::default().reading(inputs).writing(&self.json, kinds::REPORT)
+        let places = Places::default().reading(inputs).writing(&self.json, kinds::REPORT);
+        places.writing(&self.html, kinds::PAGE).filling(&self.figures)
     }
 
     fn run(&self) -> Result<String> {
@@ -66,6 +76,23 @@ impl Run for Simulate {
             Sonar::FirstEcho => environment.with_first_echo(&simulator, &scene)?,
         };
         let rollouts = RolloutReport::new(&environment, &scene, &controller, self.runs as usize, self.seed);
+        if let Some(path) = &self.html {
+            let names = [&self.sim, &self.controller, &self.scene].map(|path| path.display().to_string());
+            let subject = Subject {
+                rollouts: &rollouts,
+                controller: &controller,
+                robot: &simulator.robot,
+                scene: &scene,
+                names: names.each_ref().map(String::as_str),
+                start: self.start,
+                seed: self.seed,
+            };
+            files::write(path, page(&subject)?)?;
+        }
+        if let Some(folder) = &self.figures {
+            let title = format!("Start {}", self.start);
+            pictures::paths(folder, &[pictures::simulated_paths(title, &scene, start, &rollouts)])?;
+        }
         super::reported(self.json.as_deref(), &rollouts, told(&rollouts))
     }
 }

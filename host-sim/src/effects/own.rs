@@ -26,6 +26,8 @@ use variables::{Circumstances, Stage};
 
 /// Id of the one variant of an own effect.
 const VARIANT: &str = "own";
+/// How one checks an own effect.
+const CHECK: &str = "Measure on the robot what the definition of this effect of your own describes.";
 /// A share of the way from nominal to a bound at which a fit starts unless it is told otherwise: near enough that what is
 /// likely there is like nominal, and far enough that a direction shows.
 const FIRST_GUESS: f64 = 0.1;
@@ -63,11 +65,13 @@ pub fn to_text(definition: &Definition) -> String {
 /// # Errors
 /// What is not possible, in one line.
 pub fn effect(definition: &Definition) -> std::result::Result<&'static Effect, String> {
-    if let Some((_, effect)) = kept().iter().find(|(kept, _)| kept == definition) {
+    // Held until it is made: two threads that ask for one definition get one effect.
+    let mut kept = kept();
+    if let Some((_, effect)) = kept.iter().find(|(kept, _)| kept == definition) {
         return Ok(effect);
     }
     let made = make(definition)?;
-    kept().push((definition.clone(), made));
+    kept.push((definition.clone(), made));
     Ok(made)
 }
 
@@ -101,7 +105,8 @@ fn make(definition: &Definition) -> std::result::Result<&'static Effect, String>
     let hooks = compiled.hooks().leak();
     let variants = vec![Variant { id: VARIANT, parameters, hooks }].leak();
     check::changes_nothing(&variants[0])?;
-    Ok(Box::leak(Box::new(Effect { id: leaked(&definition.id), variants })))
+    let id = leaked(&definition.id);
+    Ok(Box::leak(Box::new(Effect { id, name: id, what: leaked(&definition.description), check: CHECK, variants })))
 }
 
 fn leaked(text: &str) -> &'static str {

@@ -13,6 +13,12 @@ use crate::sonar::Perturbation;
 pub struct Effect {
     /// Its id in the table of docs/formats.md.
     pub id: &'static str,
+    /// What people call it, without an article.
+    pub name: &'static str,
+    /// A sentence of what it is.
+    pub what: &'static str,
+    /// A sentence of how one checks it on the robot, with no more than a ruler, a scale, a film or a multimeter.
+    pub check: &'static str,
     /// The functional forms in which it may show.
     pub variants: &'static [Variant],
 }

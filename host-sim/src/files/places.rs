@@ -47,9 +47,9 @@ impl Places {
         self
     }
 
-    /// With a folder that is filled.
-    pub fn filling(mut self, path: impl Into<PathBuf>) -> Self {
-        self.outputs.push(Output { path: path.into(), form: Form::Folder });
+    /// With folders that are filled.
+    pub fn filling<'a>(mut self, paths: impl IntoIterator<Item = &'a PathBuf>) -> Self {
+        self.outputs.extend(paths.into_iter().map(|path| Output { path: path.clone(), form: Form::Folder }));
         self
     }
 
@@ -187,7 +187,7 @@ mod tests {
         let twice = Places::default().writing([&path, &again], TEXT);
         assert!(refusal(&twice, true).contains("two outputs"));
         fs::write(&path, "mindgap 1").expect("a file");
-        let inside = Places::default().reading([&path]).filling(folder.path());
+        let inside = Places::default().reading([&path]).filling([&folder.path().to_path_buf()]);
         let itself = Places::default().reading([&again]).writing([&path], TEXT);
         for places in [inside, itself] {
             assert!(refusal(&places, false).contains("read by the same command"));
@@ -200,7 +200,7 @@ mod tests {
         let folder = tempfile::tempdir().expect("a temporary folder");
         let path = folder.path().join("nowhere").join("a");
         assert!(refusal(&Places::default().writing([&path], TEXT), true).contains("there is no folder"));
-        assert_eq!(refusal(&Places::default().filling(&path), true), "", "folders above it are made");
+        assert_eq!(refusal(&Places::default().filling([&path]), true), "", "folders above it are made");
         let here = folder.path().to_owned();
         assert!(refusal(&Places::default().writing([&here], TEXT), true).contains("there is a folder"));
     }

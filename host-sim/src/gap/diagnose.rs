@@ -3,10 +3,13 @@
 use super::compare::{Comparison, most_alone};
 use super::condition::Conditioned;
 use super::diagnosis::{Answer, Diagnosis};
+use super::explain::evidence::{Evidence, evidence};
+use super::explain::room_map::{RoomMap, room_map};
 use super::explain::{self, Judged};
 use super::fit::{FitContext, Fitted, Gain, best_of_each};
 use super::formula::Formula;
 use super::method::Method;
+use super::progress::Stage;
 use super::validate::Validated;
 use super::{account, confirm, excitation, formula, propose, remainder, validate};
 use crate::effects::applied::AppliedEffect;
@@ -26,6 +29,10 @@ pub struct Findings {
     pub scatter: [f64; 3],
     /// The formula of what no effect explains, where one holds.
     pub formula: Option<Formula>,
+    /// What each effect that explains the gap predicts against what was logged.
+    pub evidence: Vec<Evidence>,
+    /// Where in the room the gap lies.
+    pub room_map: Option<RoomMap>,
 }
 
 impl Findings {
@@ -47,16 +54,31 @@ pub fn diagnose(baseline: Baseline, logs: &Logs) -> Result<Diagnosis> {
 ///
 /// # Errors
 /// When the logs say nothing that the baseline could be compared with.
-pub fn findings(mut baseline: Baseline, inspected: &Inspection, method: Method) -> Result<Findings> {
+pub fn findings(baseline: Baseline, inspected: &Inspection, method: Method) -> Result<Findings> {
+    findings_watched(baseline, inspected, method, |_| ())
+}
+
+/// The same; `watch` is told each stage when it begins.
+///
+/// # Errors
+/// As [`findings`].
+pub fn findings_watched(
+    mut baseline: Baseline,
+    inspected: &Inspection,
+    method: Method,
+    watch: impl Fn(Stage),
+) -> Result<Findings> {
     // Validate and condition: what the logs cannot say, and what they say row by row.
     let logs = &inspected.logs;
     let (conditioned, Validated { notes, scope, moved_uncommanded }) = conditioned(&mut baseline, inspected)?;
     let context = FitContext::new(&baseline, &conditioned.identification, method);
 
     // Fit every variant of every effect alone; compare them and their combinations; confirm on runs held out.
-    let compared = compared(&context);
+    let compared = compared(&context, &watch);
+    watch(Stage::Confirming);
     let confirmed = confirm::confirm(compared, &context, conditioned.hold_out.as_ref());
 
+    watch(Stage::Explaining);
     // Account for the gap, explain it, put what is left into a formula, propose what to drive next.
     let judged = match Judged::of(&confirmed, &logs.robot, &context.calibration) {
         // What is compared agrees, and does not say what moves the robot.
@@ -64,6 +86,7 @@ pub fn findings(mut baseline: Baseline, inspected: &Inspection, method: Method) 
         judged => judged,
     };
     let strata = explain::strata::strata(&confirmed, &judged, &context);
+    let room_map = room_map(&confirmed, &judged, &context);
     let untestable = excitation::untestable(&confirmed.none, &context);
     let formula = match judged {
         Judged::NoGap => None,
@@ -91,9 +114,11 @@ pub fn findings(mut baseline: Baseline, inspected: &Inspection, method: Method) 
             Answer::Unknown { account: account(&[]), profiles: explain::profile::profiles(&confirmed, &context) }
         }
     };
-    let applied = match answer {
-        Answer::Known { .. } | Answer::PartlyKnown { .. } => confirmed.chosen.applied(),
-        Answer::NoGap | Answer::Unknown { .. } => Vec::new(),
+    let (applied, evidence) = match answer {
+        Answer::Known { .. } | Answer::PartlyKnown { .. } => {
+            (confirmed.chosen.applied(), evidence(&confirmed, &context))
+        }
+        Answer::NoGap | Answer::Unknown { .. } => Default::default(),
     };
     let stated = formula.as_ref().zip(answer.account());
     let stated = stated.map(|(formula, account)| formula.stated(&account.reducible, context.seed));
@@ -109,7 +134,7 @@ pub fn findings(mut baseline: Baseline, inspected: &Inspection, method: Method) 
     };
     let chosen = &confirmed.chosen;
     let scatter = chosen.hypothesis.scatter(context.baseline, context.observations, &chosen.values);
-    Ok(Findings { diagnosis, applied, scatter, formula })
+    Ok(Findings { diagnosis, applied, scatter, formula, evidence, room_map })
 }
 
 /// The effects that logs could not show, and what else limits a diagnosis of them.
@@ -163,7 +188,7 @@ pub fn statistics(mut baseline: Baseline, logs: &Logs, method: Method) -> Result
 pub fn confirmed(mut baseline: Baseline, logs: &Logs, method: Method) -> Result<Comparison> {
     let (conditioned, _) = conditioned(&mut baseline, &Inspection::of(logs.clone()))?;
     let context = FitContext::new(&baseline, &conditioned.identification, method);
-    Ok(confirm::confirm(compared(&context), &context, conditioned.hold_out.as_ref()))
+    Ok(confirm::confirm(compared(&context, |_| ()), &context, conditioned.hold_out.as_ref()))
 }
 
 /// The share of the reducible gap that given effects close on logs, without a search; none where there is no gap.
@@ -186,8 +211,10 @@ fn conditioned(baseline: &mut Baseline, inspected: &Inspection) -> Result<(Condi
     Ok((conditioned.expecting(baseline), validated))
 }
 
-fn compared(context: &FitContext) -> Comparison {
+fn compared(context: &FitContext, watch: impl Fn(Stage)) -> Comparison {
+    watch(Stage::Fitting);
     let none = Fitted::none(context);
     let singles = none.with_each(None, context);
+    watch(Stage::Comparing);
     Comparison::search(none, singles, context)
 }

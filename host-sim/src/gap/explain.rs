@@ -1,7 +1,9 @@
 //! Explanation: is there a gap, which effects cause it, how probable is each, and what cannot be told apart.
 
 mod covariates;
+pub mod evidence;
 pub mod profile;
+pub mod room_map;
 pub mod strata;
 
 use serde::Serialize;
@@ -61,6 +63,22 @@ const AS_PROBABLE: f64 = 0.05;
 
 /// A parameter at its bound has no likeliest value: its effect is as likely wrong as right.
 const AT_BOUND: f64 = 0.5;
+
+impl NamedEffect {
+    /// Its strength in words, each number with its interval.
+    pub fn strength(&self) -> String {
+        let interval = |name: &str| {
+            let ends = self.intervals.get(name)?.as_array()?;
+            let at_bound = if self.at_bound.contains(&name) { ", at the end of what is possible" } else { "" };
+            Some(format!(" ({} to {}{at_bound})", ends.first()?, ends.get(1)?))
+        };
+        let told = self.parameters.iter().map(|(name, value)| {
+            let value = value.as_str().map_or_else(|| value.to_string(), String::from);
+            format!("{name} {value}{}", interval(name).unwrap_or_default())
+        });
+        told.collect::<Vec<String>>().join(", ")
+    }
+}
 
 impl Judged {
     /// Judges what was confirmed.

@@ -158,6 +158,9 @@ const fn length(name: &'static str) -> Parameter {
 /// A length added to every step.
 pub const LONGER: Effect = Effect {
     id: "longer",
+    name: "longer",
+    what: "Made up.",
+    check: "None.",
     variants: &[Variant {
         id: "every_step",
         parameters: &[length("cm")],
@@ -168,6 +171,9 @@ pub const LONGER: Effect = Effect {
 /// A length added to every step, and expected to be small: its prior deviates by 0.05 cm.
 pub const SLIGHTLY_LONGER: Effect = Effect {
     id: "slightly_longer",
+    name: "slightly_longer",
+    what: "Made up.",
+    check: "None.",
     variants: &[Variant {
         id: "every_step",
         parameters: &[length("cm").prior_sd(0.05)],
@@ -178,6 +184,9 @@ pub const SLIGHTLY_LONGER: Effect = Effect {
 /// A length added to steps that turn left.
 pub const LONGER_TO_THE_LEFT: Effect = Effect {
     id: "longer_to_the_left",
+    name: "longer_to_the_left",
+    what: "Made up.",
+    check: "None.",
     variants: &[Variant {
         id: "left_turns",
         parameters: &[length("cm")],
@@ -191,6 +200,9 @@ pub const LONGER_TO_THE_LEFT: Effect = Effect {
 /// A length by which readings are too long, in two variants of which the second works with half of it.
 pub const FARTHER: Effect = Effect {
     id: "farther",
+    name: "farther",
+    what: "Made up.",
+    check: "None.",
     variants: &[
         Variant {
             id: "length",

@@ -10,13 +10,16 @@ use plotters::style::WHITE;
 use resvg::tiny_skia::{Pixmap, Transform};
 use resvg::usvg::fontdb::Database;
 use resvg::usvg::{Options, Tree};
+use svg2pdf::{ConversionOptions, PageOptions};
 
 use super::style::UNIT;
 use crate::error::Result;
 use crate::files;
 
-/// Pixels of the PNG per pixel of the SVG, so that it stays sharp in print and on dense screens.
-const PNG_SCALE: u32 = 2;
+/// Pixels of the PNG per pixel of the SVG: 288 to the inch, so that it stays sharp in print and on dense screens.
+const PNG_SCALE: u32 = 3;
+/// Pixels of the SVG to the inch.
+const DPI: f32 = 96.0;
 
 /// The canvas of a figure; [`UNIT`] canvas units are one pixel of the SVG.
 pub(super) type Canvas<'a> = DrawingArea<SVGBackend<'a>, Shift>;
@@ -56,27 +59,38 @@ impl Figure {
         &self.svg
     }
 
-    /// The SVG as a PNG of twice its size, with the font that comes with the program.
+    /// The SVG as a PNG of three times its size, with the font that comes with the program.
     pub fn png(&self) -> Vec<u8> {
-        let mut fonts = Database::new();
-        fonts.load_font_data(ttf_noto_sans::REGULAR.to_vec());
-        fonts.load_font_data(ttf_noto_sans::BOLD.to_vec());
-        let options = Options { fontdb: Arc::new(fonts), ..Options::default() };
-        let tree = Tree::from_str(&self.svg, &options).expect("the figure is well-formed SVG");
         let mut pixels =
             Pixmap::new(self.width_px * PNG_SCALE, self.height_px * PNG_SCALE).expect("a figure has a size");
         let scale = PNG_SCALE as f32;
-        resvg::render(&tree, Transform::from_scale(scale, scale), &mut pixels.as_mut());
+        resvg::render(&self.tree(), Transform::from_scale(scale, scale), &mut pixels.as_mut());
         pixels.encode_png().expect("encoding into memory cannot fail")
     }
 
-    /// Writes `name.svg` and `name.png` into a folder, each atomically.
+    /// The SVG as a PDF of one page, with the font in it.
+    pub fn pdf(&self) -> Vec<u8> {
+        svg2pdf::to_pdf(&self.tree(), ConversionOptions::default(), PageOptions { dpi: DPI })
+            .expect("a figure has nothing that PDF lacks")
+    }
+
+    fn tree(&self) -> Tree {
+        let mut fonts = Database::new();
+        fonts.load_font_data(ttf_noto_sans::REGULAR.to_vec());
+        fonts.load_font_data(ttf_noto_sans::BOLD.to_vec());
+        // Whatever family is asked for: no other font is there.
+        fonts.set_sans_serif_family("Noto Sans");
+        let options = Options { fontdb: Arc::new(fonts), ..Options::default() };
+        Tree::from_str(&self.svg, &options).expect("the figure is well-formed SVG")
+    }
+
+    /// Writes `name.svg`, `name.png` and `name.pdf` into a folder, each atomically.
     ///
     /// # Errors
     /// When the folder is missing or not writable.
     pub fn write(&self, folder: &Path, name: &str) -> Result<()> {
-        let png = self.png();
         files::write(&folder.join(format!("{name}.svg")), &self.svg)?;
-        files::write(&folder.join(format!("{name}.png")), png)
+        files::write(&folder.join(format!("{name}.png")), self.png())?;
+        files::write(&folder.join(format!("{name}.pdf")), self.pdf())
     }
 }

@@ -140,8 +140,13 @@ fn legend(panels: &[PathPanel]) -> Vec<Entry<'static>> {
         entries.push(Entry::new("simulated path", |c, at| dashed_line(c, &legend::stroke(at), line(SIMULATED, 1.25))));
     }
     entries.push(Entry::new("start", |c, at| arrowhead(c, at, DVec2::X, 13.0, INK)));
-    entries.push(Entry::new("end", |c, at| stop(c, at, GREY)));
-    entries.push(Entry::new("crash", |c, at| crash(c, at, GREY)));
+    let ends = |crashed: bool| panels.iter().any(|p| p.real.iter().chain(&p.simulated).any(|t| t.crashed == crashed));
+    if ends(false) {
+        entries.push(Entry::new("end", |c, at| stop(c, at, GREY)));
+    }
+    if ends(true) {
+        entries.push(Entry::new("crash", |c, at| crash(c, at, GREY)));
+    }
     if panels.iter().any(|p| p.scene.target_cm.is_some()) {
         entries.push(Entry::new("target", |c, at| {
             rimmed_dot(c, at, 7.0, GREEN.mix(0.18), GREEN)?;

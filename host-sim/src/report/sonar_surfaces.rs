@@ -13,7 +13,7 @@ use plotters::prelude::{ColorMap, ViridisRGB};
 use plotters::style::RGBColor;
 
 use super::chart::{Axis, headed, heading_px, is_range, no_data, share};
-use super::figure::Figure;
+use super::figure::{Canvas, Figure};
 use super::glyph::bead;
 use super::legend::{self, Entry};
 use super::style::px;
@@ -32,6 +32,8 @@ pub struct Surface<'a> {
     pub value_name: String,
     /// The response at a distance D (cm) and an incidence angle α (degrees).
     pub at: &'a dyn Fn(f64, f64) -> f64,
+    /// Whether there are data near a distance and an angle; elsewhere the response is a guess, and is not shown as one.
+    pub known: Box<dyn Fn(f64, f64) -> bool + 'a>,
     /// Distances shown, cm.
     pub distance_cm: Range<f64>,
     /// Incidence angles shown, degrees.
@@ -46,8 +48,7 @@ pub struct Surface<'a> {
 pub fn sonar_surfaces(surfaces: &[Surface]) -> Figure {
     let inner_px = VIEW_PX + MAP_PX;
     let row_px = heading_px(0) + ROW_PX + MARGIN_PX;
-    let entry = Entry::new("test sample, coloured by its own value", |canvas, at| bead(canvas, at, colour(0.7)));
-    let entries: &[Entry] = if surfaces.iter().any(|s| !s.test.is_empty()) { &[entry] } else { &[] };
+    let entries = &legend(surfaces);
     let legend_px = f64::from(legend::height_px(entries, inner_px));
     let rows = surfaces.len().max(1);
     let height_px = rows as f64 * row_px + legend_px + 2.0 * MARGIN_PX;
@@ -71,6 +72,20 @@ pub fn sonar_surfaces(surfaces: &[Surface]) -> Figure {
     })
 }
 
+fn legend(surfaces: &[Surface]) -> Vec<Entry<'static>> {
+    let mut entries = Vec::new();
+    if surfaces.iter().any(|s| !s.test.is_empty()) {
+        let mark = |canvas: &Canvas, at| bead(canvas, at, colour(0.7));
+        entries.push(Entry::new("test sample, coloured by its own value", mark));
+    }
+    if surfaces.iter().any(from_above::has_gaps) {
+        entries.push(Entry::new("no data", |canvas, (x, y)| {
+            from_above::hatched(canvas, [(x - px(6.0), y - px(6.0)), (x + px(6.0), y + px(6.0))])
+        }));
+    }
+    entries
+}
+
 impl Surface<'_> {
     /// Whether there is nothing to show: an axis without a span.
     fn is_blank(&self) -> bool {
@@ -79,8 +94,12 @@ impl Surface<'_> {
 
     /// The surface at a share of both ranges.
     fn at_share(&self, distance: f64, incidence: f64) -> f64 {
-        let along = |range: &Range<f64>, share: f64| range.start + share * (range.end - range.start);
         (self.at)(along(&self.distance_cm, distance), along(&self.incidence_deg, incidence))
+    }
+
+    /// Whether there are data near a share of both ranges.
+    fn is_known_at(&self, distance: f64, incidence: f64) -> bool {
+        (self.known)(along(&self.distance_cm, distance), along(&self.incidence_deg, incidence))
     }
 
     /// A value as a share of the scale, clamped to it; `None` if it is not finite.
@@ -110,6 +129,11 @@ impl Surface<'_> {
     fn value_axis(&self) -> Axis {
         Axis::new(self.value_name.as_str(), self.value.clone(), MOST_TICKS)
     }
+}
+
+/// What lies at a share of a range.
+fn along(range: &Range<f64>, share: f64) -> f64 {
+    range.start + share * (range.end - range.start)
 }
 
 /// The colour of a share of the scale.

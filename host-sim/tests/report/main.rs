@@ -84,12 +84,12 @@ fn figure_4_has_equal_scales() {
 }
 
 #[test]
-fn the_png_is_the_svg_at_twice_its_size_and_has_letters() {
+fn the_png_is_the_svg_at_three_times_its_size_and_has_letters() {
     for figure in [expected_against_predicted(&[]), paths(&synthetic::starts()[..1])] {
         let document = Document::parse(figure.svg()).unwrap();
         let side = |name: &str| document.root_element().attribute(name).unwrap().parse::<u32>().unwrap();
         let pixels = Pixmap::decode_png(&figure.png()).unwrap();
-        assert_eq!((pixels.width(), pixels.height()), (2 * side("width"), 2 * side("height")));
+        assert_eq!((pixels.width(), pixels.height()), (3 * side("width"), 3 * side("height")));
         assert!(pixels.pixels().iter().any(|p| p.red() < 128), "the sheet is blank");
         assert!(pixels.pixels().iter().all(|p| p.alpha() == 255));
     }
@@ -107,12 +107,18 @@ fn the_same_data_give_the_same_bytes() {
 }
 
 #[test]
-fn both_files_are_written_or_a_reason_is_given() {
+fn all_files_are_written_or_a_reason_is_given() {
     let folder = tempfile::tempdir().unwrap();
     let figure = paths(&synthetic::starts()[..1]);
     figure.write(folder.path(), "paths").unwrap();
     assert_eq!(std::fs::read_to_string(folder.path().join("paths.svg")).unwrap(), figure.svg());
     assert_eq!(std::fs::read(folder.path().join("paths.png")).unwrap(), figure.png());
+    let pdf = std::fs::read(folder.path().join("paths.pdf")).unwrap();
+    assert_eq!(pdf, figure.pdf());
+    assert!(
+        pdf.starts_with(b"%PDF-") && pdf.windows(9).any(|bytes| bytes == b"/FontFile"),
+        "it has its letters with it"
+    );
     let missing = figure.write(&folder.path().join("missing"), "paths").unwrap_err();
     assert!(missing.to_string().contains("paths.svg: cannot be written"), "{missing}");
 }
@@ -154,6 +160,7 @@ fn a_surface_that_is_no_number_is_left_out() {
         title: "s".into(),
         value_name: "v".into(),
         at: &half,
+        known: Box::new(|_, _| true),
         distance_cm: 0.0..100.0,
         incidence_deg: 0.0..90.0,
         value,

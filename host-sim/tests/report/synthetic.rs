@@ -71,6 +71,7 @@ pub fn surfaces() -> Vec<Surface<'static>> {
         title: title.into(),
         value_name: value_name.into(),
         at,
+        known: Box::new(|_, _| true),
         distance_cm: 0.0..240.0,
         incidence_deg: 0.0..90.0,
         value,

@@ -5,6 +5,9 @@ use mindgap_host_sim::effects::{Effect, Hook, Parameter, Variant};
 
 pub const EFFECT: Effect = Effect {
     id: "turning_loss",
+    name: "turning_loss",
+    what: "Made up.",
+    check: "None.",
     variants: &[Variant {
         id: "with_turn_rate",
         parameters: &[LOSS],

@@ -15,6 +15,7 @@ mod faults;
 mod golden_files;
 mod import;
 mod import_recordings;
+mod information;
 mod messages;
 mod new;
 mod no_sensor;

@@ -122,7 +122,7 @@ struct Given {
 impl Target {
     fn places(&self) -> Places {
         let given = self.robot.iter().chain(&self.scene);
-        Places::default().reading(given).filling(&self.out).writing(&self.json, kinds::REPORT)
+        Places::default().reading(given).filling([&self.out]).writing(&self.json, kinds::REPORT)
     }
 
     /// Reads what is given of robot and scene.

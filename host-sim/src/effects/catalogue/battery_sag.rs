@@ -6,6 +6,10 @@ use crate::effects::{Effect, Hook, Parameter, StepContext, Variant};
 
 pub const EFFECT: Effect = Effect {
     id: "battery_sag",
+    name: "battery sag",
+    what: "The drive gets weaker as the run goes on, as it does on a battery that empties.",
+    check: "Measure the battery's voltage under load with a multimeter before and after a run; then drive straight \
+            for one second with it full and with it used, and compare both ways with a ruler.",
     variants: &[
         Variant {
             id: "command",

@@ -6,6 +6,10 @@ use crate::effects::{Effect, Hook, Parameter, PoseIncrement, StepContext, Varian
 
 pub const EFFECT: Effect = Effect {
     id: "carpet_nap",
+    name: "carpet nap",
+    what: "Drag depends on the direction of travel, as on a carpet whose fibres lie one way.",
+    check: "Drive the same straight command in four directions and measure the ways with a ruler; stroke the carpet \
+            by hand to feel its direction.",
     variants: &[
         Variant {
             id: "against_the_nap",

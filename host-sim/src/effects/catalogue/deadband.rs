@@ -6,6 +6,10 @@ use crate::effects::{Effect, Hook, Parameter, Variant};
 
 pub const EFFECT: Effect = Effect {
     id: "deadband",
+    name: "deadband",
+    what: "Friction in the drive keeps it from moving at small commands.",
+    check: "Raise the command in small steps from zero, on the floor, and note the one at which the wheels begin to \
+            turn.",
     variants: &[
         Variant {
             id: "cut",

@@ -6,6 +6,11 @@ use crate::effects::{Effect, Hook, Parameter, Variant};
 
 pub const EFFECT: Effect = Effect {
     id: "drive_scale",
+    name: "drive scale",
+    what: "Both wheels cover more or less ground than commanded, by one factor: other tyres, another gear, another \
+           battery.",
+    check: "Command a straight metre and measure the way with a ruler; the wheel's diameter, measured with calipers, \
+            should be the one in robot.toml.",
     variants: &[
         Variant {
             id: "distance",

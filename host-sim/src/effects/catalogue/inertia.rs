@@ -7,6 +7,10 @@ use crate::effects::{Effect, Hook, Parameter, Variant};
 
 pub const EFFECT: Effect = Effect {
     id: "inertia",
+    name: "inertia",
+    what: "The drive takes longer to reach the commanded speed.",
+    check: "Film a start beside a ruler and mark the robot's place frame by frame: the way grows as a curve before \
+            it grows as a line.",
     variants: &[Variant {
         id: "first_order_lag",
         parameters: Inertia::PARAMETERS,

@@ -7,6 +7,10 @@ use crate::effects::{Effect, Hook, Parameter, StepContext, Variant};
 
 pub const EFFECT: Effect = Effect {
     id: "latency",
+    name: "latency",
+    what: "Commands take effect late, by a fixed time.",
+    check: "Film the robot together with the screen that sends the command, and count the frames from the command to \
+            the first motion.",
     variants: &[
         Variant {
             id: "delay",

@@ -9,6 +9,10 @@ use crate::geometry::direction;
 
 pub const EFFECT: Effect = Effect {
     id: "lens_distortion",
+    name: "lens distortion",
+    what: "The camera's scale changes towards the edge of its picture.",
+    check: "Lay a long ruler in the middle of the picture and along its edge: one length should have one tracked \
+            length.",
     variants: &[Variant {
         id: "quadratic",
         parameters: Lens::PARAMETERS,

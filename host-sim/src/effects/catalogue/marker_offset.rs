@@ -9,6 +9,10 @@ use crate::geometry::direction;
 
 pub const EFFECT: Effect = Effect {
     id: "marker_offset",
+    name: "marker off the axle",
+    what: "The tracked marker does not sit over the middle of the axle, so turns on the spot look like motion.",
+    check: "Measure from the marker to the middle of the axle with a ruler; turned on the spot by hand, the marker \
+            draws a circle of that radius.",
     variants: &[Variant {
         id: "rigid",
         parameters: Marker::PARAMETERS,

@@ -6,6 +6,10 @@ use crate::effects::{Effect, Hook, Parameter, Variant};
 
 pub const EFFECT: Effect = Effect {
     id: "motor_asymmetry",
+    name: "weaker motor",
+    what: "One motor turns slower than it did at the same command, so the robot bends to that side.",
+    check: "Lift the robot, give both motors the same command for ten seconds, and count the turns of both wheels; \
+            or command a straight metre and measure how far to one side it ends.",
     variants: &[
         Variant {
             id: "command",

@@ -7,6 +7,9 @@ use crate::effects::{Effect, Hook, Parameter, PoseIncrement, StepContext, Varian
 
 pub const EFFECT: Effect = Effect {
     id: "payload",
+    name: "payload",
+    what: "A load that does not sit in the middle slows the robot, and one wheel more than the other.",
+    check: "Put a kitchen scale under each wheel in turn; take off what was added and drive the same commands again.",
     variants: &[
         Variant {
             id: "command",

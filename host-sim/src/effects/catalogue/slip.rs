@@ -7,6 +7,10 @@ use crate::effects::{Effect, Hook, Parameter, StepContext, Variant};
 
 pub const EFFECT: Effect = Effect {
     id: "slip",
+    name: "wheel slip",
+    what: "The tyres lose grip when they are pushed hard.",
+    check: "Clean the tyres and the floor and drive the same commands again; a chalk mark on a tyre shows in a film \
+            whether it turns more than the robot moves.",
     variants: &[
         Variant {
             id: "fast",

@@ -7,6 +7,9 @@ use crate::geometry::direction;
 
 pub const EFFECT: Effect = Effect {
     id: "slope",
+    name: "slope",
+    what: "The floor is tilted: the robot gains way downhill and loses it uphill.",
+    check: "Lay a spirit level on the floor in two directions, or see where a ball rolls.",
     variants: &[
         Variant {
             id: "drift",

@@ -6,6 +6,9 @@ use crate::effects::{Effect, Hook, Parameter, Variant};
 
 pub const EFFECT: Effect = Effect {
     id: "sonar_absorption",
+    name: "absorbing surfaces",
+    what: "Surfaces return less sound, so that echoes are missing.",
+    check: "Hold a hard board before the wall that gives no reading: if it gives one, the wall swallows the sound.",
     variants: &[
         Variant {
             id: "everywhere",

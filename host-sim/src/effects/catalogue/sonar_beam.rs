@@ -6,6 +6,9 @@ use crate::effects::{Effect, Hook, Parameter, Variant};
 
 pub const EFFECT: Effect = Effect {
     id: "sonar_beam",
+    name: "beam width",
+    what: "The beam is wider or narrower than assumed, so that it meets edges earlier or later.",
+    check: "Move a post across in front of the sensor at one metre and measure how far to each side it is still seen.",
     variants: &[
         Variant {
             id: "width",

@@ -6,6 +6,9 @@ use crate::effects::{Effect, Hook, Parameter, Variant};
 
 pub const EFFECT: Effect = Effect {
     id: "sonar_crosstalk",
+    name: "crosstalk",
+    what: "Now and then there is a random reading that is too short, from another source of sound.",
+    check: "Switch off every other ultrasonic sensor, and compressed air, in the room, and log again.",
     variants: &[Variant {
         id: "short",
         parameters: Crosstalk::PARAMETERS,

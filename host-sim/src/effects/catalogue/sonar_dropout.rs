@@ -6,6 +6,10 @@ use crate::effects::{Effect, Hook, Parameter, Variant};
 
 pub const EFFECT: Effect = Effect {
     id: "sonar_dropout",
+    name: "bursts of missing readings",
+    what: "Missing readings come one after the other.",
+    check: "Let the robot stand before a wall, log a few hundred readings, and see whether the missing ones come in \
+            rows; wiggle the sensor's cable meanwhile.",
     variants: &[Variant {
         id: "two_states",
         parameters: Dropout::PARAMETERS,

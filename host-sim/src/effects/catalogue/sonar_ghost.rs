@@ -6,6 +6,10 @@ use crate::effects::{Effect, Hook, Parameter, Variant};
 
 pub const EFFECT: Effect = Effect {
     id: "sonar_ghost",
+    name: "ghost reading",
+    what: "Now and then there is one constant wrong reading, whatever is in front.",
+    check: "Point the sensor into an empty room and list its readings: the ghost is the one that comes again; look \
+            for a cable or a part of the robot at that distance.",
     variants: &[
         Variant {
             id: "for_an_echo",

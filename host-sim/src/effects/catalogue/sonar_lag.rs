@@ -7,6 +7,9 @@ use crate::geometry::{Pose, wrap_rad};
 
 pub const EFFECT: Effect = Effect {
     id: "sonar_lag",
+    name: "old readings",
+    what: "Readings are of where the robot was a while ago.",
+    check: "Drive straight at a wall and film the display beside a ruler: the reading is that of a place behind.",
     variants: &[Variant {
         id: "earlier_pose",
         parameters: Lag::PARAMETERS,

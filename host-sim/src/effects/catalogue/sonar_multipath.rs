@@ -7,6 +7,11 @@ use crate::effects::{Effect, Hook, Parameter, SensorState, StepContext, Variant}
 
 pub const EFFECT: Effect = Effect {
     id: "sonar_multipath",
+    name: "sound by way of other walls",
+    what: "Now and then a reading is too long: a slanted surface mirrors the sound away and it comes back by way of \
+           another.",
+    check: "Stand the robot at 45 degrees to a wall: too long readings become right when a soft cloth covers the \
+            opposite wall.",
     variants: &[
         Variant {
             id: "oblique",

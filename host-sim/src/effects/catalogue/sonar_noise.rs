@@ -6,6 +6,10 @@ use crate::effects::{Effect, Hook, Parameter, Variant};
 
 pub const EFFECT: Effect = Effect {
     id: "sonar_noise",
+    name: "sonar noise",
+    what: "Readings scatter more than the simulator assumes.",
+    check: "Let the robot stand one metre before a wall, log a hundred readings, and compare their range with that \
+            of the earlier logs.",
     variants: &[Variant {
         id: "normal",
         parameters: Noise::PARAMETERS,

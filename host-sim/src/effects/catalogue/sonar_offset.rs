@@ -6,6 +6,9 @@ use crate::effects::{Effect, Hook, Parameter, Variant};
 
 pub const EFFECT: Effect = Effect {
     id: "sonar_offset",
+    name: "sonar offset",
+    what: "Readings are too long or too short by one length.",
+    check: "Place the sensor squarely before a wall at 50, 100 and 200 cm by a ruler: the error is the same at each.",
     variants: &[Variant {
         id: "length",
         parameters: Offset::PARAMETERS,

@@ -6,6 +6,10 @@ use crate::effects::{Effect, Hook, Parameter, Variant};
 
 pub const EFFECT: Effect = Effect {
     id: "sonar_scale",
+    name: "sonar scale",
+    what: "Readings are too long or too short by one factor.",
+    check: "Place the sensor squarely before a wall at 50, 100 and 200 cm by a ruler: the error grows with the \
+            distance.",
     variants: &[Variant {
         id: "gain",
         parameters: Scale::PARAMETERS,

@@ -6,6 +6,9 @@ use crate::effects::{Effect, Hook, Parameter, Variant};
 
 pub const EFFECT: Effect = Effect {
     id: "sonar_yaw",
+    name: "turned sensor",
+    what: "The sensor is mounted turned against the robot's heading.",
+    check: "Lay a ruler along the robot and one along the sensor's two eyes: they should make a right angle.",
     variants: &[Variant {
         id: "axis",
         parameters: Yaw::PARAMETERS,

@@ -6,6 +6,11 @@ use crate::effects::{Effect, Hook, Parameter, Variant};
 
 pub const EFFECT: Effect = Effect {
     id: "track_width",
+    name: "track width",
+    what: "Turns are larger or smaller by one factor, and straight runs are not: the wheels touch the floor farther \
+           apart or nearer than thought.",
+    check: "Measure the distance between the middles of the two tyres where they touch the floor, or command ten \
+            full turns on the spot and see how many the robot makes.",
     variants: &[Variant {
         id: "turn",
         parameters: Track::PARAMETERS,

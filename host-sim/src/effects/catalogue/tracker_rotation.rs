@@ -9,6 +9,10 @@ use crate::geometry::direction;
 
 pub const EFFECT: Effect = Effect {
     id: "tracker_rotation",
+    name: "turned camera frame",
+    what: "The camera's frame is turned against the one that headings are measured in.",
+    check: "Push the robot along a wall by hand: the tracked heading should be the direction of the tracked path, \
+            and both the wall's.",
     variants: &[
         Variant {
             id: "about_the_middle",

@@ -6,6 +6,9 @@ use crate::effects::{Effect, Hook, Parameter, Variant};
 
 pub const EFFECT: Effect = Effect {
     id: "tracker_scale",
+    name: "camera scale",
+    what: "Tracked lengths are off by one factor.",
+    check: "Put the robot at two marks that are one metre apart by a ruler, and compare the tracked distance.",
     variants: &[
         Variant {
             id: "about_the_middle",

@@ -6,6 +6,9 @@ use crate::effects::{Effect, Hook, Parameter, Variant};
 
 pub const EFFECT: Effect = Effect {
     id: "turn_loss",
+    name: "loss of way in turns",
+    what: "Both wheels lose way in turns, more the sharper the turn is.",
+    check: "Command an arc of one metre and a straight metre, and measure both with a string along the track.",
     variants: &[
         Variant {
             id: "at_any_speed",

@@ -3,11 +3,12 @@
 use serde::Serialize;
 
 use super::covariates as of;
+use crate::effects::chain::EffectChain;
 use crate::evaluation::observations::{Observation, Observations};
 use crate::evaluation::predictions::{facing, residual};
 use crate::gap::channel::Channel;
 use crate::gap::compare::Comparison;
-use crate::gap::fit::{FitContext, Fitted};
+use crate::gap::fit::FitContext;
 use crate::simulator::baseline::Baseline;
 use crate::statistics::rounding;
 
@@ -43,7 +44,7 @@ pub struct Bin {
 }
 
 /// A covariate and its name.
-type Variable = (&'static str, fn(&Observation) -> f64);
+pub(super) type Variable = (&'static str, fn(&Observation) -> f64);
 
 const MOTION: &[Variable] = &[
     ("mean command", of::driving),
@@ -68,55 +69,68 @@ const SONAR: &[Variable] = &[
 /// Bins of a table: enough for a bend and a wave.
 const BINS: usize = 5;
 /// Fewer rows make no table: ten a bin.
-const FEWEST: usize = 10 * BINS;
+pub(super) const FEWEST: usize = 10 * BINS;
 /// A reading that is farther off is of something else, and says nothing about readings.
 const FAR_OFF_CM: f64 = 25.0;
 
 /// A table for each channel in which something is unexplained.
 pub fn profiles(found: &Comparison, context: &FitContext) -> Vec<ResidualProfile> {
     let left = found.beyond_chosen.iter().filter(|r| r.counts());
-    left.filter_map(|r| profile(r.channel(), &found.chosen, context.baseline, context.observations)).collect()
+    let effects = found.chosen.effects();
+    left.filter_map(|r| profile(r.channel(), &effects, context.baseline, context.observations)).collect()
 }
 
 fn profile(
     channel: Channel,
-    fit: &Fitted,
+    effects: &EffectChain,
     baseline: &Baseline,
     observations: &Observations,
 ) -> Option<ResidualProfile> {
-    let off = off(channel, fit, baseline, observations);
-    let variables = if channel.motion_axis().is_some() { MOTION } else { SONAR };
+    let off = off(channel, effects, baseline, observations);
     let known: Vec<(&Observation, f64)> =
         observations.rows.iter().zip(off).filter_map(|(row, off)| Some((row, off?))).collect();
     if known.len() < FEWEST {
         return None;
     }
-    let tables = variables.iter().map(|(name, value)| {
+    let tables = variables(channel).iter().map(|(name, value)| {
         let points: Vec<(f64, f64)> = known.iter().map(|(row, off)| (value(row), *off)).collect();
         (*name, table(points))
     });
     let (depends_on, bins) = tables.max_by(|a, b| strength(&a.1).total_cmp(&strength(&b.1)))?;
-    let unit = match channel {
+    Some(ResidualProfile { channel, depends_on, unit: unit(channel), bins })
+}
+
+/// The covariates that a channel may follow.
+pub(super) fn variables(channel: Channel) -> &'static [Variable] {
+    if channel.motion_axis().is_some() { MOTION } else { SONAR }
+}
+
+/// The unit of a channel's residuals.
+pub(super) fn unit(channel: Channel) -> &'static str {
+    match channel {
         Channel::Forward | Channel::Lateral | Channel::EchoValue => "cm",
         Channel::Turn => "deg",
         Channel::EchoRate => "share of rows with a reading",
-    };
-    Some(ResidualProfile { channel, depends_on, unit, bins })
+    }
 }
 
-/// Logged minus predicted for every row that says something.
-fn off(channel: Channel, fit: &Fitted, baseline: &Baseline, observations: &Observations) -> Vec<Option<f64>> {
+/// Logged minus predicted with these effects for every row that says something.
+pub(super) fn off(
+    channel: Channel,
+    effects: &EffectChain,
+    baseline: &Baseline,
+    observations: &Observations,
+) -> Vec<Option<f64>> {
     let rows = &observations.rows;
     match (channel.motion_axis(), &baseline.motion, &baseline.sonar) {
         (Some(axis), Some(drive), _) => {
-            let effects = fit.effects();
-            let residuals: Vec<_> = rows.iter().map(|row| residual(&effects, drive, row)).collect();
+            let residuals: Vec<_> = rows.iter().map(|row| residual(effects, drive, row)).collect();
             let scale = if channel == Channel::Turn { 180.0 / std::f64::consts::PI } else { 1.0 };
             residuals.into_iter().map(|r| r.map(|r| scale * r[axis])).collect()
         }
         (None, _, Some(sonar)) => {
             let one = |row: &Observation| {
-                let (fan, perturbation) = facing(&fit.effects(), observations, row);
+                let (fan, perturbation) = facing(effects, observations, row);
                 let outcomes = sonar.outcomes(&fan, &perturbation, None);
                 if channel == Channel::EchoRate {
                     return Some(f64::from(u8::from(row.echo_cm.is_some())) - 1.0 + outcomes.none);
@@ -131,7 +145,7 @@ fn off(channel: Channel, fit: &Fitted, baseline: &Baseline, observations: &Obser
 }
 
 /// Bins of about equally many points.
-fn table(mut points: Vec<(f64, f64)>) -> Vec<Bin> {
+pub(super) fn table(mut points: Vec<(f64, f64)>) -> Vec<Bin> {
     points.sort_by(|a, b| a.0.total_cmp(&b.0));
     let mut bins: Vec<Bin> = Vec::new();
     let mut rest = points.as_slice();

@@ -107,7 +107,7 @@ fn of_channel(channel: Channel, found: &Comparison, known: bool, context: &FitCo
 
 /// By how much each row of a channel would be likelier with the effects, or with anything where no effect explains it,
 /// wider scatter included.
-fn excess(found: &Comparison, known: bool, channel: Channel, context: &FitContext) -> Vec<f64> {
+pub(super) fn excess(found: &Comparison, known: bool, channel: Channel, context: &FitContext) -> Vec<f64> {
     let remainders = if known { &found.beyond_chosen } else { &found.beyond_none };
     let remainder = remainders.iter().find(|r| r.channel() == channel && r.counts());
     let none = found.none.log_likelihood.channel(channel);

@@ -7,8 +7,8 @@ use plotters::style::{Color, FontTransform};
 use super::{ROW_PX, Surface, colour};
 use crate::report::chart::{BELOW_PX, chart};
 use crate::report::figure::{Canvas, Drawn};
-use crate::report::glyph::{bead, solid_line};
-use crate::report::style::{GREY, INK, SMALL_PX, TEXT_PX, line, px, text};
+use crate::report::glyph::{Place, bead, solid_line};
+use crate::report::style::{FAINT, GREY, INK, SMALL_PX, TEXT_PX, line, px, text};
 
 const COLUMNS: usize = 60;
 const ROWS: usize = 45;
@@ -31,14 +31,18 @@ fn draw_map(canvas: &Canvas, surface: &Surface) -> Drawn {
     for row in 0..ROWS {
         for column in 0..COLUMNS {
             let share = |cell: usize, of: usize| (cell as f64 + 0.5) / of as f64;
-            let value = surface.at_share(share(column, COLUMNS), 1.0 - share(row, ROWS));
-            let Some(value) = surface.share_of_value(value) else { continue };
+            let (distance, incidence) = (share(column, COLUMNS), 1.0 - share(row, ROWS));
+            let Some(value) = surface.share_of_value(surface.at_share(distance, incidence)) else { continue };
             let edge = |cell: usize, of: usize, length: u32| at(cell as f64 / of as f64, length);
             let low = (edge(column, COLUMNS, width), edge(row, ROWS, height));
             // A pixel of overlap with the next cell keeps white from shining through the seam.
             let high = (edge(column + 1, COLUMNS, width), edge(row + 1, ROWS, height));
             let high = ((high.0 + px(1.0)).min(width as i32), (high.1 + px(1.0)).min(height as i32));
-            chart.canvas.draw(&Rectangle::new([low, high], colour(value).filled()))?;
+            if surface.is_known_at(distance, incidence) {
+                chart.canvas.draw(&Rectangle::new([low, high], colour(value).filled()))?;
+            } else {
+                hatched(&chart.canvas, [low, high])?;
+            }
         }
     }
     for sample in surface.test_shares() {
@@ -46,6 +50,18 @@ fn draw_map(canvas: &Canvas, surface: &Surface) -> Drawn {
         bead(&chart.canvas, place, colour(sample.z))?;
     }
     Ok(())
+}
+
+/// A cell without data.
+pub fn hatched(canvas: &Canvas, [low, high]: [Place; 2]) -> Drawn {
+    canvas.draw(&Rectangle::new([low, high], FAINT.filled()))?;
+    solid_line(canvas, &[(low.0, high.1), (high.0, low.1)], line(GREY, 0.5))
+}
+
+/// Whether a cell of the map has no data.
+pub fn has_gaps(surface: &Surface) -> bool {
+    let share = |cell: usize, of: usize| (cell as f64 + 0.5) / of as f64;
+    (0..ROWS).any(|row| (0..COLUMNS).any(|column| !surface.is_known_at(share(column, COLUMNS), share(row, ROWS))))
 }
 
 /// A bar with all colours of the scale and their values.

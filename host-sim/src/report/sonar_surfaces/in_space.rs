@@ -28,7 +28,8 @@ const LIFT: f64 = 0.04;
 
 /// A piece that is drawn in order of depth.
 enum Piece {
-    Cell([DVec3; 4]),
+    /// A cell, and whether there are data in it.
+    Cell([DVec3; 4], bool),
     Sample(DVec3),
 }
 
@@ -43,12 +44,15 @@ pub fn draw(canvas: &Canvas, surface: &Surface) -> Drawn {
     view.draw_box(canvas, surface)?;
     for piece in view.pieces(surface) {
         match piece {
-            Piece::Cell(corners) => {
+            Piece::Cell(corners, known) => {
                 let height = corners.iter().map(|c| c.z).sum::<f64>() / 4.0;
                 let mut places: Vec<Place> = corners.iter().map(|c| view.place(*c)).collect();
-                canvas.draw(&Polygon::new(places.as_slice(), colour(height).filled()))?;
+                if known {
+                    canvas.draw(&Polygon::new(places.as_slice(), colour(height).filled()))?;
+                }
                 places.push(places[0]);
-                solid_line(canvas, &places, line(WHITE.mix(0.55), 0.5))?;
+                let edge = if known { line(WHITE.mix(0.55), 0.5) } else { line(FAINT, 0.5) };
+                solid_line(canvas, &places, edge)?;
             }
             Piece::Sample(at) => bead(canvas, view.place(at), colour(at.z))?,
         }
@@ -87,7 +91,9 @@ impl View {
             let (column, row) = (i % CELLS, i / CELLS);
             let corners = [(0, 0), (1, 0), (1, 1), (0, 1)].map(|(dx, dy)| corner(column + dx, row + dy));
             let [Some(a), Some(b), Some(c), Some(d)] = corners else { return None };
-            Some((self.projection.nearness((a + b + c + d) / 4.0), Piece::Cell([a, b, c, d])))
+            let middle = (a + b + c + d) / 4.0;
+            let known = surface.is_known_at(middle.x, middle.y);
+            Some((self.projection.nearness(middle), Piece::Cell([a, b, c, d], known)))
         };
         let cells = (0..CELLS * CELLS).filter_map(cell);
         let samples = surface.test_shares().map(|s| (self.projection.nearness(s) + LIFT, Piece::Sample(s)));

@@ -1,0 +1,107 @@
+//! The commands in the order of work, and an example of each: what `--help` says besides what every command says itself.
+
+use clap::{Command, CommandFactory};
+
+use super::Cli;
+
+/// A part of the work: what it is, and its commands with an example each.
+type Part = (&'static str, &'static [(&'static str, &'static str)]);
+
+const WORK: &[Part] = &[
+    ("First of all", &[("demo", "mindgap demo --out tried")]),
+    (
+        "Logs",
+        &[
+            ("record", "mindgap record --out logs --runs 24 --effect slip"),
+            ("import", "mindgap import --help"),
+            ("check", "mindgap check logs"),
+        ],
+    ),
+    (
+        "Simulator",
+        &[
+            ("train", "mindgap train logs --out simulator.json"),
+            ("evaluate", "mindgap evaluate simulator.json other-logs --html evaluation.html"),
+        ],
+    ),
+    (
+        "Controller",
+        &[
+            ("evolve", "mindgap evolve simulator.json --scene scene.toml --start 1 --out controller.toml"),
+            ("simulate", "mindgap simulate simulator.json controller.toml --scene scene.toml --html runs.html"),
+        ],
+    ),
+    (
+        "Robot",
+        &[
+            ("export", "mindgap export controller.toml --format nxc --out controller.nxc"),
+            ("brick", "mindgap brick controller.rxe"),
+            ("crosscheck", "mindgap crosscheck simulator.json logs"),
+        ],
+    ),
+    (
+        "Gap",
+        &[
+            (
+                "diagnose",
+                "mindgap diagnose simulator.json logs --html gap.html\n  mindgap diagnose kinematic logs    against \
+                 the textbook's differential drive and an ideal sonar, from robot.toml alone",
+            ),
+            ("challenge", "mindgap challenge --help"),
+        ],
+    ),
+    (
+        "Files",
+        &[
+            ("info", "mindgap info simulator.json"),
+            ("completions", "mindgap completions bash > ~/.local/share/bash-completion/completions/mindgap"),
+            ("manual", "mindgap manual --out ~/.local/share/man/man1"),
+        ],
+    ),
+];
+
+const TEMPLATE: &str = "{about}\n\n{usage-heading} {usage}{after-help}\n\nOptions:\n{options}";
+
+/// The command with its subcommands, as it is parsed, explained, completed and printed.
+pub fn command() -> Command {
+    let examples = WORK.iter().flat_map(|(_, commands)| *commands);
+    let command = examples.fold(Cli::command(), |command, (name, example)| {
+        command.mut_subcommand(name, |of| of.after_help(format!("Example:\n  {example}")))
+    });
+    let list = list(&command);
+    command.help_template(TEMPLATE).after_help(list)
+}
+
+/// The commands part by part, each with what it says of itself.
+fn list(command: &Command) -> String {
+    let commands = || WORK.iter().flat_map(|(_, commands)| *commands);
+    let width = commands().map(|(name, _)| name.len()).max().unwrap_or(0);
+    let line = |name: &str| {
+        let about = command.find_subcommand(name).and_then(Command::get_about);
+        format!("  {name:<width$}  {}", about.map(ToString::to_string).unwrap_or_default())
+    };
+    let part = |(title, commands): &Part| {
+        let lines: Vec<String> = commands.iter().map(|(name, _)| line(name)).collect();
+        format!("{title}:\n{}\n\n", lines.join("\n"))
+    };
+    WORK.iter().map(part).collect::<String>().trim_end().into()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_command_has_its_place_and_an_example_that_names_it() {
+        let command = Cli::command();
+        let mut all: Vec<&str> = command.get_subcommands().map(Command::get_name).collect();
+        let mut placed: Vec<&str> = WORK.iter().flat_map(|(_, commands)| *commands).map(|(name, _)| *name).collect();
+        all.sort_unstable();
+        placed.sort_unstable();
+        assert_eq!(placed, all);
+        for (name, example) in WORK.iter().flat_map(|(_, commands)| *commands) {
+            assert!(example.starts_with(&format!("mindgap {name} ")), "{example}");
+        }
+        super::command().debug_assert();
+    }
+}

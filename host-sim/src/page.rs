@@ -1,0 +1,14 @@
+//! Pages for a browser: what a command found, whole in one file that opens from disk, on a phone, in the dark and in print.
+//!
+//! There is one module a page. Words and tables are made here, and everything that is put into them is escaped; charts are
+//! drawn in the browser by libraries that the page carries (`assets/vendor`), from data that it carries too.
+
+pub mod diagnosis;
+pub mod evaluation;
+pub mod simulation;
+
+mod document;
+mod glossary;
+mod replay;
+mod room;
+mod words;

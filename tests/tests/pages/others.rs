@@ -1,0 +1,42 @@
+//! The pages of an evaluation and of a controller's runs.
+
+use mindgap_tests::rooms::{SCENE, trained};
+
+use crate::visit::{DARK_LAPTOP, LAPTOP, PHONE, Visit, visit};
+
+#[test]
+fn an_evaluation_has_surfaces_that_turn_and_are_hatched() {
+    let workshop = trained();
+    workshop.done("evaluate sim.json logs --html page.html");
+    let sheet = "document.querySelector('.turnable canvas').toDataURL()";
+    let look = |window, picture| {
+        Visit::new(window, picture)
+            .ask("document.querySelectorAll('[fill=\"url(#hatch)\"] rect').length")
+            .ask(sheet)
+            .set("[data-turn='0']", "120")
+            .ask(sheet)
+    };
+    let visits = [
+        look(PHONE, "evaluation-phone"),
+        look(LAPTOP, "evaluation-laptop"),
+        look(DARK_LAPTOP, "evaluation-laptop-dark"),
+    ];
+    for seen in visit(&workshop.path().join("page.html"), &visits) {
+        assert!(seen.answer(0).as_u64() > Some(0), "six runs are not everywhere");
+        assert_ne!(seen.answer(1), seen.answer(3), "the sheet turns");
+    }
+}
+
+#[test]
+fn a_simulation_shows_where_runs_end_and_what_the_controller_does() {
+    let workshop = trained();
+    workshop.write("scene.toml", SCENE);
+    workshop.done("evolve sim.json --scene scene.toml --out controller.toml --max-steps 20");
+    workshop.done("simulate sim.json controller.toml --scene scene.toml --runs 1000 --html page.html");
+    let look = |window, picture| Visit::new(window, picture).set("#moment", "5").text("#tuples").text("#replay");
+    let visits = [look(PHONE, "simulation-phone"), look(LAPTOP, "simulation-laptop")];
+    for seen in visit(&workshop.path().join("page.html"), &visits) {
+        assert!(seen.word(1).contains("until a reading is"), "{}", seen.word(1));
+        assert!(seen.word(2).contains("of 1000 runs, evenly spread"), "{}", seen.word(2));
+    }
+}
