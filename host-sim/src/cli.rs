@@ -3,6 +3,7 @@
 //! A command returns what it has to say, and says it only once everything is done: whoever reads just the first line
 //! of it, as `mindgap evaluate ... | head -1` does, stops nothing halfway.
 
+mod adapt;
 mod brick;
 mod budget_text;
 mod challenge;
@@ -12,6 +13,7 @@ mod demo;
 mod diagnose;
 mod diagnosis_page;
 mod diagnosis_text;
+mod drive;
 mod evaluate;
 mod evolve;
 mod export;
@@ -21,6 +23,7 @@ mod record;
 mod simulate;
 mod table;
 mod train;
+mod trials;
 
 use std::io::{self, ErrorKind, Write};
 use std::path::Path;
@@ -44,12 +47,14 @@ struct Cli {
 
 #[derive(Subcommand)]
 enum Command {
+    Adapt(adapt::Adapt),
     Brick(brick::Brick),
     Challenge(challenge::Challenge),
     Check(check::Check),
     Crosscheck(crosscheck::Crosscheck),
     Demo(demo::Demo),
     Diagnose(diagnose::Diagnose),
+    Drive(drive::Drive),
     Record(record::Record),
     Train(train::Train),
     Evaluate(evaluate::Evaluate),
@@ -57,18 +62,21 @@ enum Command {
     Simulate(simulate::Simulate),
     Export(export::Export),
     Import(import::Import),
+    Loop(trials::Loop),
 }
 
 /// Runs the command of this process's arguments. Exits with 0 when it did what was asked, 1 when it could not, and 2
 /// when the call is wrong.
 pub fn run() -> ExitCode {
     let done = match Cli::parse().command {
+        Command::Adapt(command) => command.run(),
         Command::Brick(command) => command.run(),
         Command::Challenge(command) => command.run(),
         Command::Check(command) => command.run(),
         Command::Crosscheck(command) => command.run(),
         Command::Demo(command) => command.run(),
         Command::Diagnose(command) => command.run(),
+        Command::Drive(command) => command.run(),
         Command::Record(command) => command.run(),
         Command::Train(command) => command.run(),
         Command::Evaluate(command) => command.run(),
@@ -76,6 +84,7 @@ pub fn run() -> ExitCode {
         Command::Simulate(command) => command.run(),
         Command::Export(command) => command.run(),
         Command::Import(command) => command.run(),
+        Command::Loop(command) => command.run(),
     };
     match done.and_then(|text| say(&text)) {
         Ok(()) => ExitCode::SUCCESS,

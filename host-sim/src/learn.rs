@@ -1,6 +1,7 @@
 //! Learns a simulator from logs: data sets, trainers, and evaluation on held-out logs.
 
 pub mod dataset;
+pub mod ensemble;
 pub mod fast;
 pub mod genome;
 pub mod kernel;

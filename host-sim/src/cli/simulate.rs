@@ -7,13 +7,14 @@ use clap::{Args, value_parser};
 use super::evolve::start_of;
 use super::table::{self, number};
 use crate::error::Result;
+use crate::evolve::chance::ROBOTS;
 use crate::evolve::controller_file::ControllerFile;
 use crate::logs::Scene;
 use crate::simulator::environment::Environment;
 use crate::simulator::rollout_report::RolloutReport;
 use crate::simulator::{Noise, Simulator};
 
-/// Run a controller in a simulator.
+/// Run a controller in a simulator: each run is of another robot that its logs leave possible.
 #[derive(Args)]
 pub struct Simulate {
     /// The simulator file.
@@ -51,8 +52,14 @@ impl Simulate {
         let scene = Scene::read(&self.scene)?;
         let start = start_of(&scene, self.start, &simulator.robot, &self.scene)?;
         let noise = if self.paper_noise { Noise::Paper } else { Noise::Learned };
-        let environment = Environment::new(&simulator, &scene, start, noise)?;
-        let rollouts = RolloutReport::new(&environment, &scene, &controller, self.runs as usize, self.seed);
+        let (runs, seed) = (self.runs as usize, self.seed);
+        let open = simulator.ensemble.as_ref().filter(|_| noise == Noise::Learned);
+        let drawn = open.and_then(|ensemble| ensemble.robots(runs.min(ROBOTS), seed)).map(|robots| robots.drawn);
+        let robots = match &drawn {
+            Some(drawn) => Environment::of_robots(&simulator, drawn, &scene, start)?,
+            None => vec![Environment::new(&simulator, &scene, start, noise)?],
+        };
+        let rollouts = RolloutReport::of_robots(&robots, &scene, &controller, runs, seed);
         super::reported(self.json.as_deref(), &rollouts, told(&rollouts))
     }
 }

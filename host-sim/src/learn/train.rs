@@ -3,6 +3,7 @@
 use mindgap_core::network::{Activation, Network};
 
 use super::dataset::{Dataset, Datasets};
+use super::ensemble;
 use super::fast::{self, Loss};
 use super::genome::Shape;
 use super::nominal;
@@ -111,6 +112,7 @@ pub fn train(
         echo_value,
         constant_reading,
         reference: None,
+        ensemble: None,
         table_one: None,
         added: Vec::new(),
         missing: network_trainer.missing,
@@ -122,6 +124,7 @@ pub fn train(
         set_residual_quantiles(&mut simulator.turn, &data.turn, |speeds| motion.correction(speeds)[2].to_degrees());
     }
     simulator.reference = Some(reference);
+    simulator.ensemble = ensemble::learn(&simulator, logs);
     Ok(simulator)
 }
 

@@ -5,6 +5,7 @@ use mindgap_core::folded::FoldedNetwork;
 
 use super::beam::Beam;
 use super::effect_layer::EffectLayer;
+use super::ensemble::Member;
 use super::motion::{MotionNetworks, MotionTable};
 use super::residuals::{ConstantReading, ResidualNoise, ResidualQuantiles};
 use super::room::Room;
@@ -75,6 +76,22 @@ impl<'s> Environment<'s> {
     pub fn with_beam(self, simulator: &Simulator) -> Self {
         let reference = simulator.reference.as_ref().and_then(|r| r.sonar.as_ref());
         Environment { beam: reference.map(Beam::new), ..self }
+    }
+
+    /// The environment with one robot of those that its simulator's may be.
+    pub fn of_robot(self, member: &'s Member) -> Self {
+        let motion = self.motion.of_robot(member);
+        Environment { motion_noise: motion.residual_noise(), motion, ..self }
+    }
+
+    /// An environment for each of these robots, with the beam.
+    ///
+    /// # Errors
+    /// As [`Environment::new`].
+    pub fn of_robots(simulator: &'s Simulator, robots: &'s [Member], scene: &Scene, start: Pose) -> Result<Vec<Self>> {
+        let of_one =
+            |robot| Ok(Self::new(simulator, scene, start, Noise::Learned)?.with_beam(simulator).of_robot(robot));
+        robots.iter().map(of_one).collect()
     }
 
     /// The environment with the motion networks evaluated in every step. Outcomes stay the same to the bit; it is there

@@ -11,5 +11,7 @@ mod crosscheck;
 mod demo;
 mod determinism;
 mod diagnose_logs;
+mod drive;
 mod golden_files;
 mod import;
+mod trials;
