@@ -115,31 +115,30 @@ impl<'a> Trials<'a> {
         let count = self.state.trials.len();
         let search = Search {
             simulator: &simulator,
-            scene: &self.scene,
+            scene: &logs.scene,
             start: self.start,
             max_steps: self.job.max_steps,
             seed: derive(self.job.seed, &[count as u64]),
         };
         let tried = self.tried()?;
-        let last = tried.last().map(|tried| tried.controller.clone());
-        let found = search.best(&self.state.archive, &tried)?;
-        self.note(adapted, last.as_ref().and_then(|last| found.chance_of(last)));
+        let known = search.judged(&tried)?;
+        self.note(adapted, tried.last().and_then(|last| known.chance_of(&last.controller)));
         simulator.write(&self.job.folder.join("simulator.json"))?;
-        let confirmed = tried.iter().find(|tried| {
-            let sure = found.chance_of(&tried.controller).is_some_and(|chance| chance.success >= CHANCE);
-            sure && tried.successes >= SUCCESSES
+        let confirmed = tried.iter().filter(|tried| tried.successes >= SUCCESSES).find_map(|tried| {
+            let chance = known.chance_of(&tried.controller)?;
+            (chance.success >= CHANCE).then_some((&tried.controller, chance))
         });
-        if let Some(tried) = confirmed {
-            let chance = found.chance_of(&tried.controller);
-            return self.settle(Verdict::Works, &tried.controller, chance);
+        if let Some((controller, chance)) = confirmed {
+            return self.settle(Verdict::Works, controller, chance);
         }
-        let (controller, chance) = found.choice(&tried);
-        if count == self.job.trials {
-            let settled = found.settled(&tried).unwrap_or(controller).clone();
-            return self.settle(Verdict::Spent, &settled, found.chance_of(&settled));
+        if count >= self.job.trials {
+            let (controller, chance) = known.choice(&tried).ok_or_else(|| Error::new("no controller was driven"))?;
+            return self.settle(Verdict::Spent, controller, *chance);
         }
+        let found = search.best(&self.state.archive, &tried)?;
+        let (controller, chance) = found.choice(&tried).ok_or_else(|| Error::new("no controller was found"))?;
         if chance.success < HOPELESS {
-            return self.settle(Verdict::OutOfReach, &controller.clone(), Some(*chance));
+            return self.settle(Verdict::OutOfReach, controller, *chance);
         }
         let trial = Trial::planned(count + 1, *chance);
         self.write_controller(&self.job.folder.join(&trial.controller), controller, *chance)?;
@@ -209,12 +208,10 @@ impl<'a> Trials<'a> {
     }
 
     /// Ends the loop with a controller.
-    fn settle(&mut self, verdict: Verdict, controller: &Controller, chance: Option<Chance>) -> Result<()> {
-        if let Some(chance) = chance {
-            self.write_controller(&self.job.folder.join("controller.toml"), controller, chance)?;
-        }
+    fn settle(&mut self, verdict: Verdict, controller: &Controller, chance: Chance) -> Result<()> {
+        self.write_controller(&self.job.folder.join("controller.toml"), controller, chance)?;
         self.state.verdict = verdict;
-        self.state.chance = chance;
+        self.state.chance = Some(chance);
         Ok(())
     }
 

@@ -1,6 +1,7 @@
 //! The search of a turn: controllers from new explorations and from those that did well, judged on many robots and by what
 //! runs of their like came to.
 
+use glam::DVec2;
 use mindgap_core::controller::{Controller, Tuple};
 
 use crate::chance::derive;
@@ -13,7 +14,7 @@ use crate::evolve::robust::{self, EvolutionTask};
 use crate::evolve::way::WayMap;
 use crate::geometry::Pose;
 use crate::logs::Scene;
-use crate::simulator::ensemble::Robots;
+use crate::simulator::ensemble::{Member, Robots};
 use crate::simulator::environment::Environment;
 use crate::simulator::{Noise, Simulator};
 
@@ -81,61 +82,74 @@ enum Purpose {
 }
 
 impl Search<'_> {
+    /// The controllers that were driven, as they are judged now.
+    ///
+    /// # Errors
+    /// As [`best`](Self::best).
+    pub fn judged(&self, tried: &[Tried]) -> Result<Found> {
+        let Robots { drawn, .. } = self.robots()?;
+        let controllers = tried.iter().map(|tried| tried.controller.clone()).collect();
+        Ok(Found(self.jury(&drawn, tried)?.ranked(controllers, RUNS)))
+    }
+
     /// The best controllers, from those of earlier turns, those that were driven, and new ones.
     ///
     /// # Errors
     /// When the simulator lacks a network or what its logs left open, or the robot does not fit at the start.
     pub fn best(&self, archive: &[Vec<Tuple>], tried: &[Tried]) -> Result<Found> {
-        let ensemble = self.simulator.ensemble.as_ref();
-        let robots = ensemble.and_then(|ensemble| ensemble.robots(ROBOTS, self.stream(Purpose::Robots, 0)));
-        let Robots { mean, drawn } = robots.ok_or_else(|| {
-            Error::new("the simulator file does not say what its training logs leave open: train it again")
-        })?;
-        let target_cm = self.scene.target_cm.ok_or_else(|| Error::new("the scene has no target"))?;
-        let judging = self.stream(Purpose::Judging, 0);
-        let judge = Judge::new(self.simulator, &drawn, self.scene, self.start, target_cm, judging)?;
+        let Robots { mean, drawn } = self.robots()?;
+        let jury = self.jury(&drawn, tried)?;
+        let driven = tried.iter().map(|tried| tried.controller.clone());
+        let known = distinct(driven.clone().chain(archive.iter().filter_map(|tuples| self.controller(tuples))));
+        let known = jury.ranked(known, FEW_RUNS);
+        let found = self.searched(&mean, &known)?;
+        let all = distinct(known.into_iter().map(|known| known.controller).chain(found));
+        let promising = jury.ranked(all, FEW_RUNS).into_iter().take(ARCHIVED).map(|candidate| candidate.controller);
+        Ok(Found(jury.ranked(distinct(promising.chain(driven)), RUNS)))
+    }
+
+    /// New controllers, on the robot in the middle: exploring on drawn ones would be a bad search.
+    fn searched(&self, mean: &Member, known: &[Candidate]) -> Result<Vec<Controller>> {
         let environment = Environment::new(self.simulator, self.scene, self.start, Noise::Learned)?;
+        let target_cm = self.target_cm()?;
         let task = EvolutionTask {
-            environment: &environment.with_beam(self.simulator).of_robot(&mean),
+            environment: &environment.with_beam(self.simulator).of_robot(mean),
             target_cm,
             way: &WayMap::new(self.scene, target_cm, self.simulator.robot.body_radius_cm),
-            decoder: GenotypeDecoder::new(self.simulator, self.max_steps),
+            decoder: self.decoder(),
             random_numbers: RandomNumbers::Common,
             seed: self.stream(Purpose::Exploring, 0),
         };
-        let known = archive.iter().filter_map(|tuples| self.controller(tuples));
-        let mut controllers: Vec<Controller> = Vec::new();
-        for controller in tried.iter().map(|tried| tried.controller.clone()).chain(known) {
-            if !controllers.contains(&controller) {
-                controllers.push(controller);
-            }
-        }
-        let known = ranked(&judge, controllers, FEW_RUNS, tried, &task.decoder);
-        let mut controllers: Vec<Controller> = known.iter().map(|known| known.controller.clone()).collect();
-        let mut add = |searched: Vec<(f64, Evolved)>| {
-            for (_, evolved) in searched.into_iter().take(SHORTLISTED) {
-                if !controllers.contains(&evolved.controller) {
-                    controllers.push(evolved.controller);
-                }
-            }
-        };
-        if known.first().is_none_or(|best| best.score < GOOD) {
-            (0..EXPLORED).for_each(|restart| add(robust::explore(&task, restart, |_, _| {})));
-        }
-        for (i, incumbent) in known.iter().take(INCUMBENTS).enumerate() {
-            let seed = self.stream(Purpose::Refining, i as u64);
-            let population = robust::mutants(&task, &incumbent.controller, seed);
-            add(robust::refine(&task, population, seed, |_, _| {}));
-        }
-        let mut judged = ranked(&judge, controllers, FEW_RUNS, tried, &task.decoder);
-        judged.truncate(ARCHIVED.max(tried.len()));
-        let mut finalists: Vec<Controller> = judged.into_iter().map(|candidate| candidate.controller).collect();
-        for tried in tried {
-            if !finalists.contains(&tried.controller) {
-                finalists.push(tried.controller.clone());
-            }
-        }
-        Ok(Found(ranked(&judge, finalists, RUNS, tried, &task.decoder)))
+        let explored = if known.first().is_none_or(|best| best.score < GOOD) { EXPLORED } else { 0 };
+        let new = (0..explored).map(|restart| robust::explore(&task, restart, |_, _| {}));
+        let better = known.iter().take(INCUMBENTS).zip(0..).map(|(incumbent, i)| {
+            let seed = self.stream(Purpose::Refining, i);
+            robust::refine(&task, robust::mutants(&task, &incumbent.controller, seed), seed, |_, _| {})
+        });
+        let shortlist = |ranked: Vec<(f64, Evolved)>| ranked.into_iter().take(SHORTLISTED).map(|(_, e)| e.controller);
+        Ok(new.chain(better).flat_map(shortlist).collect())
+    }
+
+    fn robots(&self) -> Result<Robots> {
+        let ensemble = self.simulator.ensemble.as_ref();
+        let robots = ensemble.and_then(|ensemble| ensemble.robots(ROBOTS, self.stream(Purpose::Robots, 0)));
+        robots.ok_or_else(|| {
+            Error::new("the simulator file does not say what its training logs leave open: train it again")
+        })
+    }
+
+    fn jury<'a>(&'a self, robots: &'a [Member], tried: &'a [Tried]) -> Result<Jury<'a>> {
+        let seed = self.stream(Purpose::Judging, 0);
+        let judge = Judge::new(self.simulator, robots, self.scene, self.start, self.target_cm()?, seed)?;
+        Ok(Jury { judge, tried, decoder: self.decoder() })
+    }
+
+    fn target_cm(&self) -> Result<DVec2> {
+        self.scene.target_cm.ok_or_else(|| Error::new("the scene has no target"))
+    }
+
+    fn decoder(&self) -> GenotypeDecoder {
+        GenotypeDecoder::new(self.simulator, self.max_steps)
     }
 
     fn stream(&self, purpose: Purpose, number: u64) -> u64 {
@@ -148,22 +162,36 @@ impl Search<'_> {
     }
 }
 
-/// Judges controllers; the most promising come first.
-fn ranked(
-    judge: &Judge,
-    controllers: Vec<Controller>,
-    runs: usize,
-    tried: &[Tried],
-    decoder: &GenotypeDecoder,
-) -> Vec<Candidate> {
-    let chances = judge.chances(&controllers, runs);
-    let candidate = |(controller, chance): (Controller, Chance)| {
-        let score = score(&controller, chance.success, tried, decoder);
-        Candidate { controller, chance, score }
-    };
-    let mut candidates: Vec<Candidate> = controllers.into_iter().zip(chances).map(candidate).collect();
-    candidates.sort_by(|a, b| b.score.total_cmp(&a.score));
-    candidates
+/// Controllers, each once.
+fn distinct(controllers: impl Iterator<Item = Controller>) -> Vec<Controller> {
+    let mut distinct: Vec<Controller> = Vec::new();
+    for controller in controllers {
+        if !distinct.contains(&controller) {
+            distinct.push(controller);
+        }
+    }
+    distinct
+}
+
+/// Robots to judge on, and what the real one did.
+struct Jury<'a> {
+    judge: Judge<'a>,
+    tried: &'a [Tried],
+    decoder: GenotypeDecoder,
+}
+
+impl Jury<'_> {
+    /// Controllers with their chances in so many runs of each robot, the most promising first.
+    fn ranked(&self, controllers: Vec<Controller>, runs: usize) -> Vec<Candidate> {
+        let chances = self.judge.chances(&controllers, runs);
+        let candidate = |(controller, chance): (Controller, Chance)| {
+            let score = score(&controller, chance.success, self.tried, &self.decoder);
+            Candidate { controller, chance, score }
+        };
+        let mut candidates: Vec<Candidate> = controllers.into_iter().zip(chances).map(candidate).collect();
+        candidates.sort_by(|a, b| b.score.total_cmp(&a.score));
+        candidates
+    }
 }
 
 /// The simulated chance, corrected by real runs: those of a controller count whole, those of another the less the more it
@@ -185,24 +213,18 @@ fn score(controller: &Controller, chance: f64, tried: &[Tried], decoder: &Genoty
 impl Found {
     /// The controller to drive next. One that never failed on the robot is driven again first: whether it works is what
     /// the loop wants to know.
-    pub fn choice(&self, tried: &[Tried]) -> (&Controller, &Chance) {
+    pub fn choice(&self, tried: &[Tried]) -> Option<(&Controller, &Chance)> {
         let confirms = |candidate: &&Candidate| {
             let succeeded = tried.iter().any(|t| t.controller == candidate.controller && t.successes == t.runs);
             succeeded && candidate.score > PROMISING
         };
-        let Candidate { controller, chance, .. } = self.0.iter().find(confirms).unwrap_or(&self.0[0]);
-        (controller, chance)
+        let Candidate { controller, chance, .. } = self.0.iter().find(confirms).or(self.0.first())?;
+        Some((controller, chance))
     }
 
     /// The chance of a controller, if it was judged.
     pub fn chance_of(&self, controller: &Controller) -> Option<Chance> {
         self.0.iter().find(|candidate| candidate.controller == *controller).map(|candidate| candidate.chance)
-    }
-
-    /// The most promising of those that were driven.
-    pub fn settled(&self, tried: &[Tried]) -> Option<&Controller> {
-        let driven = |candidate: &&Candidate| tried.iter().any(|tried| tried.controller == candidate.controller);
-        self.0.iter().find(driven).map(|candidate| &candidate.controller)
     }
 
     /// The tuples of those with which the next turn begins.
