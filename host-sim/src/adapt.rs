@@ -15,6 +15,7 @@ use crate::learn::ensemble::holds::{Hold, MotionNoise, StepResidual, holds};
 use crate::logs::Logs;
 use crate::simulator::Simulator;
 use crate::simulator::baseline::{Baseline, MotionModel};
+use crate::simulator::ensemble::basis::CHANGE;
 use crate::simulator::ensemble::posterior::log_evidence;
 use crate::simulator::ensemble::{Ensemble, Posterior};
 
@@ -85,12 +86,8 @@ pub fn adapt(simulator: &Simulator, logs: &Logs, seed: u64) -> Result<Adapted> {
     let effects = diagnosed(simulator, logs, seed);
     let explained = steps(simulator, &effects, &observations)?;
     let given = |steps: &[StepResidual]| conditioned(ensemble, &noise, steps);
-    let (effects, steps) =
-        if explained == plain || log_evidence(&given(&explained)) > log_evidence(&given(&plain)) + EFFECT_NATS {
-            (effects, explained)
-        } else {
-            (Vec::new(), plain.clone())
-        };
+    let named = explained == plain || probability(&given(&explained)) > probability(&given(&plain)) + EFFECT_NATS;
+    let (effects, steps) = if named { (effects, explained) } else { (Vec::new(), plain.clone()) };
     let after = given(&steps);
     let lesson = Lesson {
         commands: commands(&holds(&steps), ensemble, &after),
@@ -101,6 +98,13 @@ pub fn adapt(simulator: &Simulator, logs: &Logs, seed: u64) -> Result<Adapted> {
     simulator.added.extend(effects);
     simulator.ensemble = Some(after);
     Ok(Adapted { simulator, lesson })
+}
+
+/// How probable all evidence is, if the robot did not change but by effects.
+fn probability(ensemble: &Ensemble) -> f64 {
+    let mut unchanged = ensemble.clone();
+    unchanged.prior.iter_mut().for_each(|prior| prior[CHANGE] = 0.0);
+    log_evidence(&unchanged)
 }
 
 /// The effects that a diagnosis names; none where the logs do not suffice for one.

@@ -9,7 +9,7 @@ use rayon::prelude::*;
 
 use crate::logs::{Logs, samples};
 use crate::simulator::Simulator;
-use crate::simulator::ensemble::basis::unit_factor;
+use crate::simulator::ensemble::basis::{CHANGE, unit_factor};
 use crate::simulator::ensemble::posterior::Likelihood;
 use crate::simulator::ensemble::{Ensemble, Evidence, PARTS};
 use holds::{Hold, MotionNoise, StepResidual, holds};
@@ -19,6 +19,9 @@ const CELL: f32 = 4.0;
 /// Sizes of the process's parts are sought by factors that get smaller, from this share of the robot's chance in a step.
 const FIRST_SIZE: f64 = 0.5;
 const FACTORS: [f64; 4] = [4.0, 4.0, 2.0, 1.4];
+
+/// How much a wheel may have changed since training, as a share: the one under which the runs are most probable.
+const CHANGES: [f64; 4] = [0.0, 0.02, 0.06, 0.2];
 
 /// The distribution that the training logs of a simulator leave; none without motion networks and what is normal beyond
 /// them.
@@ -33,11 +36,27 @@ pub fn learn(simulator: &Simulator, logs: &Logs) -> Option<Ensemble> {
     Some(Ensemble { prior: [prior[0], prior[1], prior[2]], first_step, evidence })
 }
 
-/// A distribution with what further runs say of the robot.
+/// A distribution with what further runs say of the robot, which may have changed since the training logs.
 pub fn conditioned(ensemble: &Ensemble, noise: &MotionNoise, steps: &[StepResidual]) -> Ensemble {
     let mut ensemble = ensemble.clone();
-    let more = holds(steps).into_iter().map(|hold| hold.evidence(noise, &ensemble.first_step));
-    ensemble.evidence.extend(more.collect::<Vec<_>>());
+    let held = holds(steps);
+    let more = held.iter().map(|hold| hold.evidence(noise, &ensemble.first_step));
+    let more: Vec<Evidence> = more.map(|evidence| Evidence { after_training: true, ..evidence }).collect();
+    ensemble.evidence.extend(more);
+    let factor = unit_factor();
+    for (channel, prior) in ensemble.prior.iter_mut().enumerate() {
+        let likelihood = Likelihood::new(&factor, &ensemble.evidence, channel);
+        let of = |change: f64| {
+            let mut prior = *prior;
+            prior[CHANGE] = change * noise.full(channel);
+            (likelihood.log_evidence(&prior), prior)
+        };
+        let (_, likeliest) = CHANGES
+            .map(of)
+            .into_iter()
+            .fold((f64::NEG_INFINITY, *prior), |best, other| if other.0 > best.0 { other } else { best });
+        *prior = likeliest;
+    }
     ensemble
 }
 
@@ -94,15 +113,17 @@ fn one(together: &[Evidence]) -> Evidence {
         }),
         bias: bias.map(|(mean, _)| mean as f32),
         variance: bias.map(|(_, variance)| variance as f32),
+        after_training: false,
     }
 }
 
 /// The sizes of the process's parts under which the evidence is most probable, one after the other.
 fn sizes(likelihood: &Likelihood, noise: f64) -> [f64; PARTS] {
     let mut best = [FIRST_SIZE * noise; PARTS];
+    best[CHANGE] = 0.0;
     let mut most = likelihood.log_evidence(&best);
     for factor in FACTORS {
-        for part in 0..PARTS {
+        for part in 0..CHANGE {
             for by in [factor, 1.0 / factor] {
                 let mut tried = best;
                 tried[part] *= by;

@@ -42,6 +42,9 @@ pub struct Evidence {
     pub bias: [f32; 3],
     /// Variance of that, from the robot's chance and the tracker's error.
     pub variance: [f32; 3],
+    /// Whether the run was driven after training: the robot may have changed by then.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub after_training: bool,
 }
 
 /// Robots of a distribution.

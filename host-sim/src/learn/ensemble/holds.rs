@@ -1,6 +1,7 @@
 //! Stretches of steps under one command. Their mean tells more of the command's bias than single steps do: the robot's
 //! chance averages out, and of the tracker's errors only those at both ends count.
 
+use crate::logs::Robot;
 use crate::simulator::Simulator;
 use crate::simulator::ensemble::Evidence;
 use crate::simulator::nominal::MotionBias;
@@ -41,6 +42,7 @@ pub struct Hold {
 pub struct MotionNoise<'s> {
     residuals: [&'s ResidualQuantiles; 3],
     tracker_variance: [f64; 3],
+    robot: &'s Robot,
 }
 
 impl StepResidual {
@@ -90,6 +92,7 @@ impl Hold {
             command: self.command.map(|c| c as f32),
             bias: [0, 1, 2].map(|channel| (self.residual[channel] + self.known[channel]) as f32),
             variance: [0, 1, 2].map(variance),
+            after_training: false,
         }
     }
 }
@@ -99,7 +102,11 @@ impl<'s> MotionNoise<'s> {
     pub fn of(simulator: &'s Simulator) -> Option<Self> {
         let [forward, lateral, turn] = [&simulator.forward, &simulator.lateral, &simulator.turn].map(Option::as_ref);
         let residuals = [&forward?.residuals, &lateral?.residuals, &turn?.residuals];
-        Some(MotionNoise { residuals, tracker_variance: residuals.map(ResidualQuantiles::tracker_variance) })
+        Some(MotionNoise {
+            residuals,
+            tracker_variance: residuals.map(ResidualQuantiles::tracker_variance),
+            robot: &simulator.robot,
+        })
     }
 
     /// The variance of a stretch's mean.
@@ -117,7 +124,13 @@ impl<'s> MotionNoise<'s> {
             .max(f64::from(f32::EPSILON))
     }
 
-    /// The standard deviation of that at half of full command.
+    /// What one wheel at full command moves the robot in a step: forward (cm), lateral (cm), turn (degrees).
+    pub fn full(&self, channel: usize) -> f64 {
+        let way_cm = self.robot.full_speed_cm_s * self.robot.step_ms / 1000.0;
+        [0.5 * way_cm, 0.0, (way_cm / self.robot.track_cm).to_degrees()][channel]
+    }
+
+    /// The standard deviation of the robot's chance in a step at half of full command.
     pub fn typical(&self, channel: usize) -> f64 {
         self.process_variance([50.0; 2], channel).sqrt()
     }

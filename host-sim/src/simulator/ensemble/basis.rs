@@ -6,10 +6,15 @@
 
 use nalgebra::{Cholesky, DMatrix};
 
-/// Parts of the process: a constant, the left command, the right one, their difference, both together.
-pub const PARTS: usize = 5;
-/// Weights of a command on nodes: one, three times two, and four.
-const WEIGHTS: usize = 11;
+/// Parts of the process: a constant, the left command, the right one, their difference, both together, and what changed
+/// about the robot since its training logs, a factor on each wheel.
+pub const PARTS: usize = 6;
+/// The last of them, which training logs say nothing of.
+pub const CHANGE: usize = PARTS - 1;
+/// Weights of a command on nodes: one, three times two, four, and two.
+const WEIGHTS: usize = 13;
+/// Those without the change.
+const UNCHANGED: usize = 11;
 
 /// Nodes on either side of zero along one command, along the difference of two, and along each side of the square.
 const REACH: [usize; 3] = [13, 16, 6];
@@ -25,9 +30,9 @@ const JITTER: f64 = 1e-8;
 
 /// Number of nodes of each part.
 const NODES: [usize; PARTS] =
-    [1, 2 * REACH[0] + 1, 2 * REACH[0] + 1, 2 * REACH[1] + 1, (2 * REACH[2] + 1) * (2 * REACH[2] + 1)];
+    [1, 2 * REACH[0] + 1, 2 * REACH[0] + 1, 2 * REACH[1] + 1, (2 * REACH[2] + 1) * (2 * REACH[2] + 1), 2];
 /// Number of all nodes.
-pub const SIZE: usize = NODES[0] + NODES[1] + NODES[2] + NODES[3] + NODES[4];
+pub const SIZE: usize = NODES[0] + NODES[1] + NODES[2] + NODES[3] + NODES[4] + NODES[5];
 
 /// The part that a node belongs to.
 pub fn part(node: usize) -> usize {
@@ -55,11 +60,20 @@ pub fn weights(command: [f64; 2]) -> [(usize, f64); WEIGHTS] {
         first += NODES[1 + part];
     }
     let side = 2 * REACH[2] + 1;
-    for (corner, place) in weights[7..].iter_mut().enumerate() {
+    for (corner, place) in weights[7..UNCHANGED].iter_mut().enumerate() {
         let ((i, along), (j, across)) = (square[0][corner / 2], square[1][corner % 2]);
         *place = (first + i * side + j, along * across);
     }
+    let change = first + NODES[4];
+    weights[UNCHANGED] = (change, left);
+    weights[UNCHANGED + 1] = (change + 1, right);
     weights
+}
+
+/// The same for a robot as it was in its training logs, before it may have changed.
+pub fn weights_in_training(command: [f64; 2]) -> [(usize, f64); UNCHANGED] {
+    let weights = weights(command);
+    std::array::from_fn(|i| weights[i])
 }
 
 /// The lower Cholesky factor of the covariance of all nodes, each part with a standard deviation of one.
@@ -81,6 +95,7 @@ fn covariance(part: usize, i: usize, j: usize) -> f64 {
     let apart = |i: usize, j: usize| i.abs_diff(j) as f64;
     match part {
         0 => 1.0,
+        CHANGE => f64::from(u8::from(i == j)),
         4 => {
             let side = 2 * REACH[2] + 1;
             let (x, y) = (apart(i / side, j / side), apart(i % side, j % side));
@@ -120,10 +135,11 @@ mod tests {
         fn every_part_weighs_one(left in -100f64..100.0, right in -100f64..100.0) {
             let mut sums = [0.0; PARTS];
             for (node, weight) in weights([left, right]) {
-                prop_assert!(node < SIZE && (0.0..=1.0).contains(&weight));
+                prop_assert!(node < SIZE && weight.abs() <= 1.0);
                 sums[part(node)] += weight;
             }
-            prop_assert!(sums.iter().all(|sum| (sum - 1.0).abs() < 1e-12), "{sums:?}");
+            prop_assert!(sums[..CHANGE].iter().all(|sum| (sum - 1.0).abs() < 1e-12), "{sums:?}");
+            prop_assert!((100.0 * sums[CHANGE] - left - right).abs() < 1e-9, "{sums:?}");
         }
     }
 

@@ -6,7 +6,7 @@
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 use rand_distr::{Distribution, StandardNormal};
 
-use super::basis::{SIZE, part, unit_factor, weights};
+use super::basis::{SIZE, part, unit_factor, weights, weights_in_training};
 use super::member::Member;
 use super::{Ensemble, Evidence, PARTS};
 use crate::chance::generator;
@@ -98,11 +98,13 @@ impl Likelihood {
     pub fn new(factor: &DMatrix<f64>, evidence: &[Evidence], channel: usize) -> Self {
         let (mut precision, mut pull) = (DMatrix::zeros(SIZE, SIZE), DVector::zeros(SIZE));
         for e in evidence {
-            let weights = weights(e.command.map(f64::from));
+            let command = e.command.map(f64::from);
+            let weights =
+                if e.after_training { weights(command).to_vec() } else { weights_in_training(command).to_vec() };
             let (bias, certainty) = (f64::from(e.bias[channel]), 1.0 / f64::from(e.variance[channel]));
-            for (i, a) in weights {
+            for &(i, a) in &weights {
                 pull[i] += a * bias * certainty;
-                for (j, b) in weights {
+                for &(j, b) in &weights {
                     precision[(i, j)] += a * b * certainty;
                 }
             }
@@ -137,10 +139,11 @@ mod tests {
         let command = |i: usize| [(i * 7 % 20) as f32 * 8.0 - 76.0, (i * 11 % 20) as f32 * 8.0 - 76.0];
         let evidence = |i: usize| {
             let [left, right] = command(i);
-            Evidence { command: [left, right], bias: [0.0, 0.0, 0.1 * (right - left)], variance: [0.04; 3] }
+            let bias = [0.0, 0.0, 0.1 * (right - left)];
+            Evidence { command: [left, right], bias, variance: [0.04; 3], after_training: false }
         };
         Ensemble {
-            prior: [[1.0, 1.0, 1.0, 5.0, 1.0]; 3],
+            prior: [[1.0, 1.0, 1.0, 5.0, 1.0, 0.0]; 3],
             first_step: [0.0; 3],
             evidence: (0..20).map(evidence).collect(),
         }
@@ -176,7 +179,7 @@ mod tests {
     fn the_likelihood_prefers_the_size_that_made_the_evidence() {
         let factor = unit_factor();
         let likelihood = Likelihood::new(&factor, &ensemble().evidence, 2);
-        let at = |size: f64| likelihood.log_evidence(&[0.1, 0.1, 0.1, size, 0.1]);
+        let at = |size: f64| likelihood.log_evidence(&[0.1, 0.1, 0.1, size, 0.1, 0.0]);
         assert!(at(5.0) > at(0.05) && at(5.0) > at(5000.0));
     }
 }
