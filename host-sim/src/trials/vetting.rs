@@ -66,11 +66,11 @@ impl Vetting<'_> {
         check_tracker(&run)?;
         let logs = Logs { robot: self.simulator.robot, scene: self.scene.clone(), runs: vec![run] };
         logs.check_step(Path::new("")).map_err(|_| Error::new("has steps of another length than the robot's"))?;
+        self.check_frame(&logs)?;
         let inspected = Inspection::of(logs);
         if let Some(why) = inspected.refusal() {
             return Err(Error::new(why));
         }
-        self.check_frame(&inspected.logs)?;
         let mut runs = inspected.logs.runs;
         let mut run = runs.pop().ok_or_else(|| Error::new("holds no run that counts"))?;
         let end =
