@@ -142,9 +142,8 @@ mod tests {
         let target = DVec2::new(150.0, 50.0);
         let map = WayMap::new(&room(), target, 10.0);
         let from = DVec2::new(50.0, 50.0);
-        // Round the end of the wall at a body's radius.
-        let over = DVec2::new(100.0, 160.0);
-        let round = from.distance(over) + over.distance(target);
+        // Two tangents to the disc of the body's radius about the end of the wall, and the arc between them.
+        let round = 2.0 * 111.36 + 23.9;
         assert!((map.cm(from) / round - 1.0).abs() < 0.05, "{} {round}", map.cm(from));
     }
 
