@@ -3,6 +3,7 @@
 //! A command returns what it has to say, and says it only once everything is done: whoever reads just the first line
 //! of it, as `mindgap evaluate ... | head -1` does, stops nothing halfway.
 
+mod adapt;
 mod brick;
 mod budget_text;
 mod challenge;
@@ -11,6 +12,7 @@ mod crosscheck;
 mod demo;
 mod diagnose;
 mod diagnosis_text;
+mod drive;
 mod evaluate;
 mod evolve;
 mod export;
@@ -25,6 +27,7 @@ mod record;
 mod simulate;
 mod table;
 mod train;
+mod trials;
 
 use std::io::{self, Write};
 use std::path::Path;
@@ -54,12 +57,14 @@ struct Cli {
 
 #[derive(Subcommand)]
 enum Command {
+    Adapt(adapt::Adapt),
     Brick(brick::Brick),
     Challenge(challenge::Challenge),
     Check(check::Check),
     Crosscheck(crosscheck::Crosscheck),
     Demo(demo::Demo),
     Diagnose(diagnose::Diagnose),
+    Drive(drive::Drive),
     Record(record::Record),
     Train(train::Train),
     Evaluate(evaluate::Evaluate),
@@ -67,6 +72,7 @@ enum Command {
     Simulate(simulate::Simulate),
     Export(export::Export),
     Import(import::Import),
+    Loop(trials::Loop),
     New(new::New),
     Info(info::Info),
     Completions(manual::Completions),
@@ -85,12 +91,14 @@ trait Run {
 impl Command {
     fn which(&self) -> &dyn Run {
         match self {
+            Command::Adapt(command) => command,
             Command::Brick(command) => command,
             Command::Challenge(command) => command,
             Command::Check(command) => command,
             Command::Crosscheck(command) => command,
             Command::Demo(command) => command,
             Command::Diagnose(command) => command,
+            Command::Drive(command) => command,
             Command::Record(command) => command,
             Command::Train(command) => command,
             Command::Evaluate(command) => command,
@@ -98,6 +106,7 @@ impl Command {
             Command::Simulate(command) => command,
             Command::Export(command) => command,
             Command::Import(command) => command,
+            Command::Loop(command) => command,
             Command::New(command) => command,
             Command::Info(command) => command,
             Command::Completions(command) => command,

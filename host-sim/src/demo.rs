@@ -17,6 +17,7 @@ use crate::evolve::controller_file::{self, ControllerFile};
 use crate::evolve::fitness::{RandomNumbers, Success};
 use crate::evolve::genome::GenotypeDecoder;
 use crate::evolve::robust::{self, EvolutionTask};
+use crate::evolve::way::WayMap;
 use crate::files;
 use crate::learn::train::{self, TABLE_ONE, Trainer};
 use crate::logs::Scene;
@@ -137,7 +138,8 @@ impl<W: Fn(Stage)> DemoRun<'_, W> {
         let target_cm = self.scene.target_cm.ok_or_else(|| Error::new("the scene has no target"))?;
         let decoder = GenotypeDecoder::new(self.simulator, MAX_STEPS);
         let seed = derive(evolution, &[start as u64]);
-        let task = EvolutionTask { environment, target_cm, decoder, random_numbers: RandomNumbers::Common, seed };
+        let way = &WayMap::new(self.scene, target_cm, self.simulator.robot.body_radius_cm);
+        let task = EvolutionTask { environment, target_cm, way, decoder, random_numbers: RandomNumbers::Common, seed };
         let report = |generation, _| (self.watch)(Stage::Evolving { start: start + 1, generation });
         let robot = &BuiltInRobot::new(&self.simulator.robot, self.scene, &[]);
         let drive = |controller: &Controller, place: &[u64]| {

@@ -1,7 +1,9 @@
 //! Evolution of controllers in a simulator (paper, section IX).
 
+pub mod chance;
 pub mod controller_file;
 pub mod fitness;
 pub mod genome;
 pub mod paper;
 pub mod robust;
+pub mod way;

@@ -2,6 +2,7 @@
 
 pub mod dataset;
 pub mod echo_law;
+pub mod ensemble;
 pub mod fast;
 pub mod genome;
 pub mod kernel;

@@ -4,6 +4,7 @@
 //! It follows and extends C. J. Pretorius, M. C. du Plessis and C. B. Cilliers (2013), "A Neural Network Ultrasonic Sensor
 //! Simulator for Evolutionary Robotics", called "the paper" in this crate.
 
+pub mod adapt;
 pub mod built_in_robot;
 pub mod challenge;
 pub mod chance;
@@ -31,3 +32,4 @@ pub mod simulator;
 pub mod sonar;
 pub mod statistics;
 pub mod survey;
+pub mod trials;

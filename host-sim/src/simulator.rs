@@ -6,6 +6,7 @@ mod beam;
 pub mod body;
 pub mod draws;
 mod effect_layer;
+pub mod ensemble;
 pub mod environment;
 mod first_echo;
 pub mod fixed_point;
@@ -29,6 +30,7 @@ use crate::error::{Error, Result};
 use crate::files;
 use crate::logs::Robot;
 use crate::sonar::FirstEchoLaw;
+use ensemble::Ensemble;
 use motion::MotionNetworks;
 use nominal::NominalModel;
 use residuals::{ConstantReading, ResidualQuantiles};
@@ -65,6 +67,9 @@ pub struct Simulator {
     /// What the training logs say beyond the networks: the yardstick of the gap.
     #[serde(default)]
     pub reference: Option<NominalModel>,
+    /// What those logs leave open about the robot's motion, and what runs told since.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub ensemble: Option<Ensemble>,
     /// What the same logs give with the sizes of the paper's Table I, when these networks have others.
     #[serde(default)]
     pub table_one: Option<Box<Simulator>>,
@@ -170,6 +175,9 @@ impl Simulator {
             let why = why.unwrap_or_else(|| "it is not known to this program".into());
             let what = format!("the added effect {} ({}) is not possible: {why}", added.effect, added.variant);
             return Err(Error::in_file(path, what));
+        }
+        if self.ensemble.as_ref().is_some_and(|ensemble| !ensemble.is_sound()) {
+            return Err(Error::in_file(path, "the distribution over robots holds numbers that cannot be"));
         }
         let motion = [("turn", &self.turn), ("forward", &self.forward), ("lateral", &self.lateral)];
         let sonar = [("echo_probability", &self.echo_probability), ("echo_value", &self.echo_value)];

@@ -146,7 +146,8 @@ impl Workshop {
 }
 
 impl Workshop {
-    fn run(&self, mut command: Command) -> Done {
+    /// Runs a prepared process.
+    pub fn run(&self, mut command: Command) -> Done {
         let Output { status, stdout, stderr } = command.output().expect("the command starts");
         let text = |bytes| String::from_utf8(bytes).expect("the command writes UTF-8");
         Done { code: status.code().expect("the command ends by itself"), out: text(stdout), err: text(stderr) }

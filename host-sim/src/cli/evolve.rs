@@ -3,14 +3,17 @@
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum, value_parser};
+use mindgap_core::controller::Controller;
 
 use super::{Run, kinds, progress};
 use crate::error::{Error, Result};
+use crate::evolve::chance::{Chance, Judge, ROBOTS, RUNS};
 use crate::evolve::controller_file::{ControllerFile, Origin};
 use crate::evolve::fitness::{FitnessEvaluator, RandomNumbers};
 use crate::evolve::genome::GenotypeDecoder;
-use crate::evolve::paper;
+use crate::evolve::paper::{self, Evolved};
 use crate::evolve::robust::{self, EvolutionTask};
+use crate::evolve::way::WayMap;
 use crate::files::places::Places;
 use crate::geometry::Pose;
 use crate::logs::{Robot, Scene};
@@ -88,29 +91,43 @@ impl Run for Evolve {
         let target_cm = scene.target_cm.ok_or_else(|| Error::in_file(&self.scene, "has no [target]"))?;
         let noise = if self.paper || self.paper_noise { Noise::Paper } else { Noise::Learned };
         let environment = Environment::new(&simulator, &scene, start, noise)?;
-        let environment = &match (self.sonar, noise) {
+        let open = simulator.ensemble.as_ref().filter(|_| noise == Noise::Learned);
+        let robots = open.and_then(|ensemble| ensemble.robots(ROBOTS, self.seed));
+        let environment = match (self.sonar, noise) {
             (Sonar::FirstEcho, _) => environment.with_first_echo(&simulator, &scene)?,
             (Sonar::Networks, Noise::Learned) => environment.with_beam(&simulator),
             (Sonar::Networks, Noise::Paper) => environment,
         };
+        let environment = &robots.iter().fold(environment, |any, robots| any.of_robot(&robots.mean));
         let decoder = GenotypeDecoder::new(&simulator, self.max_steps);
         let random_numbers =
             if self.paper || self.fresh_numbers { RandomNumbers::Independent } else { RandomNumbers::Common };
         let seed = self.seed;
         let (runs, floor_cm) = (paper::RUNS, paper::FLOOR_CM);
-        let evaluator = FitnessEvaluator { environment, target_cm, decoder, runs, floor_cm, random_numbers, seed };
+        let way = &WayMap::new(&scene, target_cm, simulator.robot.body_radius_cm);
+        let evaluator =
+            FitnessEvaluator { environment, target_cm, way: None, decoder, runs, floor_cm, random_numbers, seed };
         let settings = paper::settings();
         let bar = progress::bar(if self.paper { settings.max_generations } else { robust::GENERATIONS } as u64);
         let watch = |generation: usize, fitness: f64| {
             bar.set_position(generation as u64 + 1);
             bar.set_message(format!("fitness {fitness:.3}"));
         };
-        let evolved = if self.paper {
-            paper::evolve(&evaluator, &settings, watch)
+        let candidates = if self.paper {
+            vec![paper::evolve(&evaluator, &settings, watch)]
         } else {
-            robust::evolve(&EvolutionTask { environment, target_cm, decoder, random_numbers, seed }, watch)
+            robust::candidates(&EvolutionTask { environment, target_cm, way, decoder, random_numbers, seed }, watch)
+        };
+        let chances = match &robots {
+            Some(robots) => {
+                let controllers: Vec<Controller> = candidates.iter().map(|c| c.controller.clone()).collect();
+                let judge = Judge::new(&simulator, &robots.drawn, &scene, start, target_cm, seed)?;
+                judge.chances(&controllers, RUNS)
+            }
+            None => Vec::new(),
         };
         bar.finish_and_clear();
+        let (evolved, chance) = most_likely(candidates, &chances);
         let success = evaluator.success(&evolved.controller, JUDGED_RUNS, JUDGING);
         let origin = Origin {
             simulator: name(&self.sim),
@@ -129,28 +146,34 @@ impl Run for Evolve {
         ControllerFile { controller: evolved.controller, origin: Some(origin) }.write(&self.out)?;
         Ok(format!(
             "start {}: {:.0} % of {JUDGED_RUNS} fresh simulated runs reach the target, {:.0} % crash; median distance {:.1} cm\n\
-             controller written to {}\n",
+             {}controller written to {}\n",
             self.start,
             100.0 * success.rate,
             100.0 * success.crashed,
             success.median_cm,
+            chance.map_or_else(String::new, |chance| told(&chance)),
             self.out.display()
         ))
     }
 }
 
+/// The controller with the best chance, as far as chances are known; else the first.
+fn most_likely(mut candidates: Vec<Evolved>, chances: &[Chance]) -> (Evolved, Option<Chance>) {
+    let better = |a: &usize, b: &usize| chances[*a].success.total_cmp(&chances[*b].success).then(b.cmp(a));
+    let best = (0..chances.len()).max_by(better);
+    (candidates.swap_remove(best.unwrap_or(0)), best.map(|best| chances[best]))
+}
+
+fn told(chance: &Chance) -> String {
+    let not_knowing = 100.0 * chance.not_knowing;
+    format!(
+        "over robots that the logs leave possible {chance}; {not_knowing:.0} % of what is open is not knowing them\n"
+    )
+}
+
 /// Start N (from 1) of a scene, where the robot has room.
 pub fn start_of(scene: &Scene, number: usize, robot: &Robot, path: &Path) -> Result<Pose> {
-    let count = scene.starts.len();
-    let start = number.checked_sub(1).and_then(|i| scene.starts.get(i)).copied();
-    let start = start
-        .ok_or_else(|| Error::in_file(path, format!("has {count} [[start]] table(s); there is no start {number}")))?;
-    let radius_cm = robot.body_radius_cm;
-    if !scene.has_room_for(start.position_cm, radius_cm) {
-        let what = format!("start {number} leaves no room for a robot of radius {radius_cm} cm");
-        return Err(Error::in_file(path, what));
-    }
-    Ok(start)
+    scene.start(number, robot.body_radius_cm).map_err(|error| error.or_in_file(path))
 }
 
 /// A file's name alone: where it lay says nothing to others.

@@ -12,6 +12,7 @@ const WORK: &[Part] = &[
     (
         "Logs",
         &[
+            ("new", "mindgap new my-robot"),
             ("record", "mindgap record --out logs --runs 24 --effect slip"),
             ("import", "mindgap import --help"),
             ("check", "mindgap check logs"),
@@ -34,6 +35,13 @@ const WORK: &[Part] = &[
     (
         "Robot",
         &[
+            ("drive", "mindgap drive controller.toml --scene scene.toml --start 1 --out run.csv"),
+            (
+                "loop",
+                "mindgap loop trials --sim simulator.json --scene scene.toml --start 1 --robot \"sh robot.sh\"\n  mindgap \
+                 loop trials --sim simulator.json --scene scene.toml --robot ask    with a person who drives the robot",
+            ),
+            ("adapt", "mindgap adapt simulator.json robot-logs --out adapted.json"),
             ("export", "mindgap export controller.toml --format nxc --out controller.nxc"),
             ("brick", "mindgap brick controller.rxe"),
             ("crosscheck", "mindgap crosscheck simulator.json logs"),

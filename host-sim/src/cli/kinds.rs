@@ -49,8 +49,18 @@ fn is_program(content: &[u8]) -> bool {
 }
 
 /// Keys of which every report has one, and no other JSON file of mindgap.
-const REPORTS: [&str; 8] =
-    ["networks", "reached_within_cm", "holds", "verdict", "tracks", "recordings", "events", "false_alarms"];
+const REPORTS: [&str; 10] = [
+    "networks",
+    "reached_within_cm",
+    "holds",
+    "verdict",
+    "tracks",
+    "recordings",
+    "events",
+    "false_alarms",
+    "trials",
+    "lessons",
+];
 
 fn is_report(content: &[u8]) -> bool {
     REPORTS.iter().any(|key| has_keys(content, &[key])) && !(SIMULATOR.is_one)(content)

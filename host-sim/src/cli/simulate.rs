@@ -8,6 +8,7 @@ use super::evolve::{Sonar, start_of};
 use super::table::{self, number};
 use super::{Run, kinds};
 use crate::error::Result;
+use crate::evolve::chance::ROBOTS;
 use crate::evolve::controller_file::ControllerFile;
 use crate::files;
 use crate::files::places::Places;
@@ -18,7 +19,7 @@ use crate::simulator::environment::Environment;
 use crate::simulator::rollout_report::RolloutReport;
 use crate::simulator::{Noise, Simulator};
 
-/// Run a controller in a simulator.
+/// Run a controller in a simulator: each run is of another robot that its logs leave possible.
 #[derive(Args)]
 pub struct Simulate {
     /// The simulator file.
@@ -70,12 +71,20 @@ impl Run for Simulate {
         let scene = Scene::read(&self.scene)?;
         let start = start_of(&scene, self.start, &simulator.robot, &self.scene)?;
         let noise = if self.paper_noise { Noise::Paper } else { Noise::Learned };
-        let environment = Environment::new(&simulator, &scene, start, noise)?;
-        let environment = match self.sonar {
-            Sonar::Networks => environment,
-            Sonar::FirstEcho => environment.with_first_echo(&simulator, &scene)?,
+        let (runs, seed) = (self.runs as usize, self.seed);
+        let open = simulator.ensemble.as_ref().filter(|_| noise == Noise::Learned);
+        let drawn = open.and_then(|ensemble| ensemble.robots(runs.min(ROBOTS), seed)).map(|robots| robots.drawn);
+        let robots = match &drawn {
+            Some(drawn) => Environment::of_robots(&simulator, drawn, &scene, start)?,
+            None => vec![Environment::new(&simulator, &scene, start, noise)?],
         };
-        let rollouts = RolloutReport::new(&environment, &scene, &controller, self.runs as usize, self.seed);
+        let robots: Vec<Environment> = match self.sonar {
+            Sonar::Networks => robots,
+            Sonar::FirstEcho => {
+                robots.into_iter().map(|robot| robot.with_first_echo(&simulator, &scene)).collect::<Result<_>>()?
+            }
+        };
+        let rollouts = RolloutReport::of_robots(&robots, &scene, &controller, runs, seed);
         if let Some(path) = &self.html {
             let names = [&self.sim, &self.controller, &self.scene].map(|path| path.display().to_string());
             let subject = Subject {

@@ -5,6 +5,7 @@ use mindgap_core::controller::Controller;
 use rayon::prelude::*;
 
 use super::genome::GenotypeDecoder;
+use super::way::WayMap;
 use crate::chance::{Generator, derive};
 use crate::genetic;
 use crate::simulator::environment::Environment;
@@ -29,6 +30,8 @@ pub struct FitnessEvaluator<'a> {
     pub environment: &'a Environment<'a>,
     /// Where they have to stop, cm.
     pub target_cm: DVec2,
+    /// What counts as distance to that: the way round the obstacles, or none for the straight line.
+    pub way: Option<&'a WayMap>,
     /// Decodes genotypes into controllers.
     pub decoder: GenotypeDecoder,
     /// Number of runs whose fitness is summed (paper: five).
@@ -52,15 +55,15 @@ pub struct Success {
     pub median_cm: f64,
 }
 
-/// Fitness of one run (paper, equation 3), 1/cm: 0.5 / distance after a crash, else 1 / distance. Distances below
-/// `floor_cm` are raised to it, since 1 / distance is unbounded.
-pub fn fitness(outcome: &RolloutOutcome, target_cm: DVec2, floor_cm: f64) -> f64 {
-    let distance_cm = outcome.end_cm.distance(target_cm).max(floor_cm);
+/// Fitness of one run that ended `distance_cm` from the target (paper, equation 3), 1/cm: 0.5 / distance after a crash, else
+/// 1 / distance. Distances below `floor_cm` are raised to it, since 1 / distance is unbounded.
+pub fn fitness(outcome: &RolloutOutcome, distance_cm: f64, floor_cm: f64) -> f64 {
+    let distance_cm = distance_cm.max(floor_cm);
     if outcome.termination == Termination::Crashed { 0.5 / distance_cm } else { 1.0 / distance_cm }
 }
 
 /// Runs alternate between the sonar networks and, where the environment has one, the beam model.
-fn sensor_of(run: usize) -> SensorModel {
+pub(super) fn sensor_of(run: usize) -> SensorModel {
     if run.is_multiple_of(2) { SensorModel::Networks } else { SensorModel::Beam }
 }
 
@@ -106,7 +109,11 @@ impl FitnessEvaluator<'_> {
 
     /// Fitness summed over outcomes.
     pub fn fitness_of(&self, outcomes: &[RolloutOutcome]) -> f64 {
-        outcomes.iter().map(|o| fitness(o, self.target_cm, self.floor_cm)).sum()
+        let distance_cm = |o: &RolloutOutcome| match self.way {
+            Some(way) => way.cm(o.end_cm),
+            None => o.end_cm.distance(self.target_cm),
+        };
+        outcomes.iter().map(|o| fitness(o, distance_cm(o), self.floor_cm)).sum()
     }
 }
 

@@ -59,6 +59,17 @@ impl GenotypeDecoder {
         let tuples = std::array::from_fn(|t| tuple(&genes[t * GENES_PER_TUPLE..]));
         Controller { step_ms: self.step_ms, max_steps: self.max_steps, tuples }
     }
+
+    /// A genotype that encodes a controller, as far as the ranges allow.
+    pub fn genes(&self, controller: &Controller) -> Vec<f32> {
+        let share = |[low, high]: [f32; 2], value: f32| ((value - low) / (high - low)).clamp(0.0, 1.0);
+        let of_tuple = |t: &Tuple| {
+            let when = if t.when == When::Smaller { 0.25 } else { 0.75 };
+            let [left, right] = [t.left, t.right].map(|c| share(self.commands, f32::from(c)));
+            [left, right, when, share(self.thresholds_cm, f32::from(t.threshold_cm))]
+        };
+        controller.tuples.iter().flat_map(of_tuple).collect()
+    }
 }
 
 #[cfg(test)]
@@ -79,6 +90,14 @@ mod tests {
                 prop_assert!((-70..=80).contains(&t.left) && (-70..=80).contains(&t.right));
                 prop_assert!((4..=240).contains(&t.threshold_cm));
             }
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn a_controller_comes_back_from_its_genes(genes in prop::collection::vec(0f32..1.0, GenotypeDecoder::GENES)) {
+            let controller = DECODER.controller(&genes);
+            prop_assert_eq!(DECODER.controller(&DECODER.genes(&controller)), controller);
         }
     }
 

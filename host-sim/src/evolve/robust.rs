@@ -14,7 +14,8 @@ use rayon::prelude::*;
 use super::fitness::{FitnessEvaluator, RandomNumbers, Success};
 use super::genome::GenotypeDecoder;
 use super::paper::Evolved;
-use crate::chance::derive;
+use super::way::WayMap;
+use crate::chance::{derive, generator};
 use crate::genetic::mutation::{Mutation, Unit};
 use crate::genetic::{self, Settings};
 use crate::simulator::environment::Environment;
@@ -58,6 +59,8 @@ pub struct EvolutionTask<'a> {
     pub environment: &'a Environment<'a>,
     /// Where it has to stop, cm.
     pub target_cm: DVec2,
+    /// The way to there round the obstacles.
+    pub way: &'a WayMap,
     /// Decodes genotypes into controllers.
     pub decoder: GenotypeDecoder,
     /// Which random numbers individuals are evaluated with.
@@ -66,47 +69,68 @@ pub struct EvolutionTask<'a> {
     pub seed: u64,
 }
 
-/// Evolves a controller: the first of [`candidates`]. `watch` receives the number of generations completed, of
-/// [`GENERATIONS`], and the best fitness of the current run.
-pub fn evolve(task: &EvolutionTask, watch: impl FnMut(usize, f64)) -> Evolved {
-    candidates(task, watch).swap_remove(0)
-}
-
 /// The controller of each restart, by falling success rate in fresh runs. They may take different routes to the target.
+/// `watch` receives the number of generations completed, of [`GENERATIONS`], and the best fitness of the current run.
 pub fn candidates(task: &EvolutionTask, mut watch: impl FnMut(usize, f64)) -> Vec<Evolved> {
     let mut chosen: Vec<(f64, Evolved)> = (0..RESTARTS)
         .map(|restart| {
-            let seed = derive(task.seed, &[restart as u64]);
             let before = restart * (EXPLORING.max_generations + REFINING.max_generations);
-            let mut report = |generation, best| watch(before + generation, best);
-            let explored = genetic::run(&EXPLORING, &task.evaluator(EXPLORING_RUNS, seed), seed, &mut report);
-            let best = explored.population.into_iter().take(REFINING.population).collect();
-            let before = before + EXPLORING.max_generations;
             let report = |generation, best| watch(before + generation, best);
-            // All restarts are compared on the same runs.
-            let evaluator = task.evaluator(REFINING_RUNS, task.seed);
-            choose(&evaluator, &genetic::run_from(best, &REFINING, &evaluator, seed, report).population)
+            explore(task, restart, report).swap_remove(0)
         })
         .collect();
     chosen.sort_by(|a, b| b.0.total_cmp(&a.0));
     chosen.into_iter().map(|(_, evolved)| evolved).collect()
 }
 
-/// The individual with the highest success rate in fresh runs, ties broken by fitness; with that rate.
-fn choose(evaluator: &FitnessEvaluator, population: &[Vec<f32>]) -> (f64, Evolved) {
-    let judged: Vec<(f64, f64, Controller)> = population
+/// A restart: its controllers by falling success rate in fresh runs, which comes with each.
+pub fn explore(task: &EvolutionTask, restart: usize, mut watch: impl FnMut(usize, f64)) -> Vec<(f64, Evolved)> {
+    let seed = derive(task.seed, &[restart as u64]);
+    let explored = genetic::run(&EXPLORING, &task.evaluator(EXPLORING_RUNS, seed), seed, &mut watch);
+    let best = explored.population.into_iter().take(REFINING.population).collect();
+    refine(task, best, seed, |generation, best| watch(EXPLORING.max_generations + generation, best))
+}
+
+/// The second and third stage from a given population, as [`explore`]; `seed` fixes what the genetic algorithm draws.
+pub fn refine(
+    task: &EvolutionTask,
+    population: Vec<Vec<f32>>,
+    seed: u64,
+    watch: impl FnMut(usize, f64),
+) -> Vec<(f64, Evolved)> {
+    // All restarts are compared on the same runs.
+    let evaluator = task.evaluator(REFINING_RUNS, task.seed);
+    ranked(&evaluator, &genetic::run_from(population, &REFINING, &evaluator, seed, watch).population)
+}
+
+/// A population of a controller and its mutants, to be [refined](refine).
+pub fn mutants(task: &EvolutionTask, controller: &Controller, seed: u64) -> Vec<Vec<f32>> {
+    let mut rng = generator(seed, &[]);
+    let mutant = |of: usize| {
+        let mut genes = task.decoder.genes(controller);
+        if of > 0 {
+            REFINING.mutation.apply(&mut genes, &mut rng);
+            task.decoder.repair(&mut genes);
+        }
+        genes
+    };
+    (0..REFINING.population).map(mutant).collect()
+}
+
+/// Individuals by falling success rate in fresh runs, ties broken by fitness; with that rate.
+fn ranked(evaluator: &FitnessEvaluator, population: &[Vec<f32>]) -> Vec<(f64, Evolved)> {
+    let mut judged: Vec<(f64, Evolved)> = population
         .par_iter()
         .take(CANDIDATES)
         .map(|genes| {
             let controller = evaluator.decoder.controller(genes);
             let outcomes = evaluator.outcomes(&controller, CHOOSING_RUNS, CHOOSING);
-            let (rate, fitness) = (evaluator.success_of(&outcomes).rate, evaluator.fitness_of(&outcomes));
-            (rate, fitness * evaluator.runs as f64 / CHOOSING_RUNS as f64, controller)
+            let fitness = evaluator.fitness_of(&outcomes) * evaluator.runs as f64 / CHOOSING_RUNS as f64;
+            (evaluator.success_of(&outcomes).rate, Evolved { controller, fitness, generations: GENERATIONS })
         })
         .collect();
-    let better = |a: &(f64, f64, Controller), b: &(f64, f64, Controller)| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1));
-    let (rate, fitness, controller) = judged.into_iter().max_by(better).expect("a population is never empty");
-    (rate, Evolved { controller, fitness, generations: GENERATIONS })
+    judged.sort_by(|(a, x), (b, y)| b.total_cmp(a).then(y.fitness.total_cmp(&x.fitness)));
+    judged
 }
 
 impl<'a> EvolutionTask<'a> {
@@ -119,6 +143,7 @@ impl<'a> EvolutionTask<'a> {
         FitnessEvaluator {
             environment: self.environment,
             target_cm: self.target_cm,
+            way: Some(self.way),
             decoder: self.decoder,
             runs,
             // Within the target radius nearer is no better: the success rate counts.

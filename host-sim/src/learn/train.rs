@@ -3,12 +3,9 @@
 use mindgap_core::network::{Activation, Network};
 
 use super::dataset::{Dataset, Datasets};
-use super::echo_law;
 use super::fast::{self, Loss};
 use super::genome::Shape;
-use super::nominal;
-use super::paper;
-use super::scatter;
+use super::{echo_law, ensemble, nominal, paper, scatter};
 use crate::error::{Error, Result};
 use crate::logs::{Logs, Robot};
 use crate::simulator::residuals::{ConstantReading, motion_context};
@@ -113,6 +110,7 @@ pub fn train(
         first_echo: echo_law::learn(logs, seed),
         constant_reading,
         reference: None,
+        ensemble: None,
         table_one: None,
         added: Vec::new(),
         missing,
@@ -124,6 +122,7 @@ pub fn train(
         set_residual_quantiles(&mut simulator.turn, &data.turn, |speeds| motion.correction(speeds)[2].to_degrees());
     }
     simulator.reference = Some(reference);
+    simulator.ensemble = ensemble::learn(&simulator, logs);
     Ok(simulator)
 }
 

@@ -95,6 +95,21 @@ impl Scene {
         files::write(path, toml::to_string(&file).expect("numbers have a TOML form"))
     }
 
+    /// Start `number` (from 1), where a robot of this radius has room.
+    ///
+    /// # Errors
+    /// When there is no such start, or when the robot touches something there.
+    pub fn start(&self, number: usize, radius_cm: f64) -> Result<Pose> {
+        let count = self.starts.len();
+        let start = number.checked_sub(1).and_then(|i| self.starts.get(i)).copied();
+        let start =
+            start.ok_or_else(|| Error::new(format!("has {count} [[start]] table(s); there is no start {number}")))?;
+        if !self.has_room_for(start.position_cm, radius_cm) {
+            return Err(Error::new(format!("start {number} leaves no room for a robot of radius {radius_cm} cm")));
+        }
+        Ok(start)
+    }
+
     /// All surfaces: the sides of the arena, the edges of obstacles, bare walls, in this order.
     pub fn sides(&self) -> Vec<Wall> {
         let arena = self.arena_cm.map(|high_cm| Rectangle { low_cm: DVec2::ZERO, high_cm });

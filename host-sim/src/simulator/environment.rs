@@ -5,6 +5,7 @@ use mindgap_core::folded::FoldedNetwork;
 
 use super::beam::Beam;
 use super::effect_layer::EffectLayer;
+use super::ensemble::Member;
 use super::first_echo::FirstEchoSensor;
 use super::motion::{MotionNetworks, MotionTable};
 use super::residuals::{ConstantReading, ResidualNoise, ResidualQuantiles};
@@ -88,6 +89,22 @@ impl<'s> Environment<'s> {
     pub fn with_first_echo(self, simulator: &'s Simulator, scene: &Scene) -> Result<Self> {
         let is_changed = self.effect_layer.as_ref().is_some_and(EffectLayer::senses);
         Ok(Environment { first_echo: Some(FirstEchoSensor::of(simulator, scene, is_changed)?), ..self })
+    }
+
+    /// The environment with one robot of those that its simulator's may be.
+    pub fn of_robot(self, member: &'s Member) -> Self {
+        let motion = self.motion.of_robot(member);
+        Environment { motion_noise: motion.residual_noise(), motion, ..self }
+    }
+
+    /// An environment for each of these robots, with the beam.
+    ///
+    /// # Errors
+    /// As [`Environment::new`].
+    pub fn of_robots(simulator: &'s Simulator, robots: &'s [Member], scene: &Scene, start: Pose) -> Result<Vec<Self>> {
+        let of_one =
+            |robot| Ok(Self::new(simulator, scene, start, Noise::Learned)?.with_beam(simulator).of_robot(robot));
+        robots.iter().map(of_one).collect()
     }
 
     /// The environment with the motion networks evaluated in every step. Outcomes stay the same to the bit; it is there

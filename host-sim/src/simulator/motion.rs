@@ -4,8 +4,10 @@
 use mindgap_core::controller::{Controller, TUPLES};
 use mindgap_core::folded::{FoldedNetwork, evaluate_all};
 use mindgap_core::maths::Binary32;
+use mindgap_core::scalar::Scalar;
 use pulp::{Arch, Simd, WithSimd};
 
+use super::ensemble::Member;
 use super::nominal::MotionBias;
 use super::nominal::motion_bias::{FEATURES, features};
 use super::residuals::{ResidualNoise, ResidualQuantiles, motion_context};
@@ -21,6 +23,8 @@ pub struct MotionNetworks<'s> {
     residuals: [&'s ResidualQuantiles; 3],
     /// Weights of what is added, one a feature.
     correction: Option<Box<[[f32; FEATURES]; 3]>>,
+    /// The robot whose bias is added, of those that it may be.
+    member: Option<&'s Member>,
 }
 
 /// What one step does, in the robot's own frame, before scatter.
@@ -41,7 +45,12 @@ pub struct Motion {
 pub struct MotionTable {
     first: [Motion; TUPLES],
     steady: [Motion; TUPLES],
+    /// What a robot of a distribution does beyond the networks, for each tuple.
+    bias: [MotionVector; TUPLES],
 }
+
+/// Way forward (cm), way to the left (cm) and turn (rad) of a step.
+type MotionVector = [f32; 3];
 
 /// Left, right, previous left and previous right command.
 pub type Speeds<S> = [S; 4];
@@ -63,6 +72,7 @@ impl<'s> MotionNetworks<'s> {
             networks: Box::new(learned.map(|l| FoldedNetwork::fold(&l.network))),
             residuals: learned.map(|l| &l.residuals),
             correction: None,
+            member: None,
         })
     }
 
@@ -76,9 +86,17 @@ impl<'s> MotionNetworks<'s> {
         MotionNetworks { correction: reference.map(|r| Box::new(weights(r))), ..self }
     }
 
-    /// What chance adds to forward (cm), lateral (cm) and turn (rad).
+    /// The networks with what one robot of a distribution does beyond them, in [tables](Self::table) alone.
+    pub fn of_robot(self, member: &'s Member) -> Self {
+        MotionNetworks { member: Some(member), ..self }
+    }
+
+    /// What chance adds to forward (cm), lateral (cm) and turn (rad). What lasts while a command is held is no chance once
+    /// a robot's bias is added: it stood for not knowing that.
     pub fn residual_noise(&self) -> [ResidualNoise; 3] {
-        let [forward, lateral, turn] = self.residuals.map(ResidualNoise::new);
+        let noise = self.residuals.map(ResidualNoise::new);
+        let [forward, lateral, turn] =
+            if self.member.is_some() { noise.map(ResidualNoise::without_held) } else { noise };
         [forward, lateral, turn.times(RADIANS_PER_DEGREE)]
     }
 
@@ -116,7 +134,23 @@ impl<'s> MotionNetworks<'s> {
             turn_rad: turn_rad[i],
             cells: self.cells(&steps[i]),
         };
-        MotionTable { first: std::array::from_fn(motion), steady: std::array::from_fn(|t| motion(TUPLES + t)) }
+        let (first, steady) = (std::array::from_fn(motion), std::array::from_fn(|t| motion(TUPLES + t)));
+        let mut table = MotionTable { first, steady, bias: [[0.0; 3]; TUPLES] };
+        if let Some(member) = self.member {
+            for tuple in 0..TUPLES {
+                table.add(tuple, self.bias(member, &steps[TUPLES + tuple]), first_step(member, &steps[tuple]));
+            }
+        }
+        table
+    }
+
+    /// What a robot does beyond the networks and their correction while a command is held.
+    fn bias(&self, member: &Member, held: &Speeds<f32>) -> MotionVector {
+        let beyond = in_radians(member.bias([held[0], held[1]].map(f64::from)));
+        let Some(correction) = &self.correction else { return beyond };
+        let features = features(*held);
+        let corrected = |weights: &[f32; FEATURES]| f32::weighted_sum(0.0, &features, weights);
+        std::array::from_fn(|channel| beyond[channel] - corrected(&correction[channel]))
     }
 
     fn cells(&self, speeds: &Speeds<f32>) -> [usize; 3] {
@@ -130,6 +164,40 @@ impl MotionTable {
     pub fn motion(&self, tuple: usize, first: bool) -> &Motion {
         if first { &self.first[tuple] } else { &self.steady[tuple] }
     }
+
+    /// What of that no network says: way forward (cm), way to the left (cm) and turn (rad).
+    pub fn bias(&self, tuple: usize) -> &[f32; 3] {
+        &self.bias[tuple]
+    }
+
+    fn add(&mut self, tuple: usize, bias: MotionVector, first_step: MotionVector) {
+        self.bias[tuple] = bias;
+        self.steady[tuple] = self.steady[tuple].plus(&bias);
+        self.first[tuple] = self.first[tuple].plus(&bias).plus(&first_step);
+    }
+}
+
+impl Motion {
+    /// The motion with more of it: way forward (cm), way to the left (cm) and turn (rad).
+    pub fn plus(&self, more: &[f32; 3]) -> Self {
+        let [forward_cm, lateral_cm, turn_rad] = *more;
+        Motion {
+            forward_cm: self.forward_cm + forward_cm,
+            lateral_cm: self.lateral_cm + lateral_cm,
+            turn_rad: self.turn_rad + turn_rad,
+            cells: self.cells,
+        }
+    }
+}
+
+/// What the first step of a robot's command after another does beyond later ones.
+fn first_step(member: &Member, speeds: &Speeds<f32>) -> MotionVector {
+    let [left, right, left_before, right_before] = speeds.map(|c| c as i8);
+    in_radians(member.first_step([left, right], [left_before, right_before]))
+}
+
+fn in_radians([forward_cm, lateral_cm, turn_deg]: [f64; 3]) -> MotionVector {
+    [forward_cm, lateral_cm, turn_deg.to_radians()].map(|v| v as f32)
 }
 
 /// The commands of a step in which a tuple is held, and of the step before it.

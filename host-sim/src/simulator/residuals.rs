@@ -2,10 +2,15 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::statistics::summary::mean;
+
 /// Cells along each of the two context variables.
 pub const CELLS: usize = 4;
 /// Equally likely residuals that stand for a cell.
 pub const LEVELS: usize = 32;
+
+/// Of a residual at least this fraction is the robot's, where the tracker seems to make all of it.
+const LEAST_SHARE: f64 = 0.2;
 
 /// Residuals of a network by context: turning and driving command for motion, D and α for the sonar.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -67,6 +72,26 @@ impl ResidualQuantiles {
         place(0) * CELLS + place(1)
     }
 
+    /// The variance of what a robot adds in a step drawn anew, in a context.
+    pub fn process_variance(&self, context: [f32; 2]) -> f64 {
+        let cell = self.cell(context);
+        let share = f64::from(self.components[cell].step).max(LEAST_SHARE);
+        share * share * self.variance(cell)
+    }
+
+    /// The variance of the tracker's error in one pose: half of what is neither the step's nor the held command's.
+    pub fn tracker_variance(&self) -> f64 {
+        let of_cell = |cell: usize| {
+            let VarianceComponents { step, held } = self.components[cell];
+            f64::from((1.0 - step * step - held * held).max(0.0)) * self.variance(cell) / 2.0
+        };
+        mean((0..CELLS * CELLS).map(of_cell))
+    }
+
+    fn variance(&self, cell: usize) -> f64 {
+        mean(self.quantiles[cell].iter().map(|residual| f64::from(residual * residual)))
+    }
+
     /// Whether a file could have held this.
     pub fn is_sound(&self) -> bool {
         let finite = |values: &[f32]| values.iter().all(|v| v.is_finite());
@@ -93,6 +118,11 @@ impl ResidualNoise {
     pub fn times(mut self, factor: f32) -> Self {
         self.step.iter_mut().chain(&mut self.held).flatten().for_each(|residual| *residual *= factor);
         self
+    }
+
+    /// The same without what lasts while a command is held.
+    pub fn without_held(self) -> Self {
+        ResidualNoise { held: [[0.0; LEVELS]; CELLS * CELLS], ..self }
     }
 
     /// What a robot adds in a cell: one of the [`LEVELS`] drawn for this step, and one drawn when the command began.

@@ -4,6 +4,7 @@ use mindgap_core::controller::Controller;
 use serde::Serialize;
 
 use super::environment::Environment;
+use super::motion::MotionTable;
 use super::rollout::{REACHED_CM, RolloutOutcome, RolloutRequest, SensorModel, Termination, TrajectoryPoint};
 use crate::chance::derive;
 use crate::logs::Scene;
@@ -59,9 +60,18 @@ pub struct PathPoint {
 impl RolloutReport {
     /// Simulates `runs` runs of a controller.
     pub fn new(environment: &Environment, scene: &Scene, controller: &Controller, runs: usize, seed: u64) -> Self {
-        let motions = &environment.motions(controller);
-        let runs: Vec<Rollout> = (0..runs as u64)
-            .map(|run| {
+        Self::of_robots(std::slice::from_ref(environment), scene, controller, runs, seed)
+    }
+
+    /// The same with several robots that take turns; there is at least one.
+    pub fn of_robots(robots: &[Environment], scene: &Scene, controller: &Controller, runs: usize, seed: u64) -> Self {
+        let motions: Vec<MotionTable> = robots.iter().map(|robot| robot.motions(controller)).collect();
+        let runs: Vec<Rollout> = robots
+            .iter()
+            .zip(&motions)
+            .cycle()
+            .zip(0..runs as u64)
+            .map(|((environment, motions), run)| {
                 let (outcome, trajectory) = environment.trace(RolloutRequest {
                     controller,
                     motions,

@@ -68,6 +68,7 @@ pub fn simulator(baseline: &Baseline, scatter: [f64; 3]) -> Result<Simulator> {
             sonar: baseline.sonar.clone(),
             place_bound: baseline.place_bound,
         }),
+        ensemble: None,
         table_one: None,
         added: baseline.applied.clone(),
         missing: Vec::new(),

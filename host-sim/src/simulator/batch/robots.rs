@@ -273,9 +273,11 @@ impl<'a> Robots<'a> {
         for lane in 0..WIDEST {
             let pose = self.pose(lane);
             let Some(run) = &mut self.runs[lane] else { continue };
-            let command = run.request.controller.tuples[run.machine.tuple()];
+            let place = run.machine.tuple();
+            let command = run.request.controller.tuples[place];
             let command = [command.left, command.right].map(f32::from);
             let motion = effect_layer.motion(&mut run.memory, pose, command, &self.environment.motion);
+            let motion = motion.plus(run.request.motions.bias(place));
             run.cells = motion.cells;
             self.set_motion(lane, &motion);
         }

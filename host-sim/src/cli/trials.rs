@@ -1,0 +1,113 @@
+//! `mindgap loop`
+
+use std::path::PathBuf;
+use std::time::Duration;
+
+use clap::{Args, value_parser};
+
+use super::{Run, kinds, warn};
+use crate::error::Result;
+use crate::evolve::chance::Chance;
+use crate::files::places::Places;
+use crate::trials::robot::{AskRobot, CommandRobot, TrialRobot};
+use crate::trials::state::{State, Trial, Verdict};
+use crate::trials::{self, Event, Job};
+
+/// Evolve a controller, drive it on the robot, adapt the simulator to the run, and again until it works.
+///
+/// The folder holds the state after every step: the same call goes on from there. At the end it holds controller.toml,
+/// simulator.json, loop.json, the controllers and logs of all trials, and paths.png.
+#[derive(Args)]
+pub struct Loop {
+    /// Folder for the state and the results.
+    folder: PathBuf,
+    /// The simulator file.
+    #[arg(long)]
+    sim: PathBuf,
+    /// The scene, with a target and starts.
+    #[arg(long, value_name = "FILE")]
+    scene: PathBuf,
+    /// Which of the scene's starts, from 1.
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    start: usize,
+    /// Command that drives, with its first arguments, parted by blanks; CONTROLLER.toml SCENE.toml START OUT.csv SEED are
+    /// added. `ask` asks a person to drive and to name the log.
+    #[arg(long, value_name = "COMMAND")]
+    robot: String,
+    /// How long the command may take.
+    #[arg(long, value_name = "SECONDS", default_value_t = 300, value_parser = value_parser!(u64).range(1..))]
+    robot_timeout: u64,
+    /// Runs on the robot at most.
+    #[arg(long, value_name = "N", default_value_t = 5, value_parser = value_parser!(u32).range(1..=1000))]
+    trials: u32,
+    /// Steps after which a controller gives up.
+    #[arg(long, default_value_t = 60, value_parser = value_parser!(u16).range(1..))]
+    max_steps: u16,
+    /// Fixes every draw.
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Also write what happened here.
+    #[arg(long)]
+    json: Option<PathBuf>,
+}
+
+/// Stands for a person who drives.
+const ASK: &str = "ask";
+
+impl Run for Loop {
+    fn places(&self) -> Places {
+        let places = Places::default().reading([&self.sim, &self.scene]).writing(&self.json, kinds::REPORT);
+        // A folder in which a loop was begun is gone on with.
+        let fresh = Some(&self.folder).filter(|folder| !folder.join(trials::state::FILE).exists());
+        places.filling(fresh)
+    }
+
+    fn run(&self) -> Result<String> {
+        let job = Job {
+            folder: &self.folder,
+            simulator: &self.sim,
+            scene: &self.scene,
+            start: self.start,
+            trials: self.trials as usize,
+            max_steps: self.max_steps,
+            seed: self.seed,
+        };
+        let command = || CommandRobot { command: self.robot.clone(), timeout: Duration::from_secs(self.robot_timeout) };
+        let robot: &mut dyn TrialRobot = if self.robot == ASK { &mut AskRobot } else { &mut command() };
+        let state = trials::run(&job, robot, |event| match event {
+            Event::Driving(trial) => eprintln!("trial {}: chance {}, driving", trial.number, trial.predicted),
+            Event::Driven(trial) => eprintln!("{}", line(trial)),
+            Event::Failed(failure) => warn(format!("trial {}: nothing is learned: {}", failure.trial, failure.reason)),
+        })?;
+        super::reported(self.json.as_deref(), &state, self.told(&state))
+    }
+}
+
+impl Loop {
+    fn told(&self, state: &State) -> String {
+        let trials: String = state.trials.iter().map(|trial| line(trial) + "\n").collect();
+        let controller = self.folder.join("controller.toml");
+        let chance = state.chance.as_ref().map_or_else(|| "unknown".into(), Chance::to_string);
+        let end = match state.verdict {
+            Verdict::Works => "it works: it reached the target again, and by all that is known",
+            Verdict::OutOfReach => {
+                "no six tuples were found that reach the target on a robot that is possible; of the best"
+            }
+            Verdict::Spent | Verdict::Running => "the trials are spent before one was confirmed; of the best",
+        };
+        format!("{trials}{}: {end} the chance is {chance}\n", controller.display())
+    }
+}
+
+/// A trial in one line.
+fn line(trial: &Trial) -> String {
+    let Some(real) = &trial.real else { return format!("trial {}: not driven", trial.number) };
+    let reached = if real.reached { "reached the target" } else { "missed the target" };
+    let effects: Vec<&str> = trial.effects.iter().map(|effect| effect.effect.as_str()).collect();
+    let effects = if effects.is_empty() { String::new() } else { format!("; effects: {}", effects.join(", ")) };
+    let after = trial.chance_after.as_ref().map_or_else(String::new, |chance| format!(", then {chance}"));
+    format!(
+        "trial {}: {reached} ({} after {} steps, {:.0} cm off); chance {}{after}{effects}",
+        trial.number, real.ending, real.steps, real.distance_cm, trial.predicted
+    )
+}

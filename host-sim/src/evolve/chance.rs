@@ -1,0 +1,128 @@
+//! How often a controller reaches the target, as far as that is known: over robots drawn from what the simulator leaves
+//! open, each with its own chance.
+
+use std::fmt;
+
+use glam::DVec2;
+use mindgap_core::controller::Controller;
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+
+use super::fitness::sensor_of;
+use crate::chance::derive;
+use crate::error::Result;
+use crate::geometry::Pose;
+use crate::logs::Scene;
+use crate::simulator::Simulator;
+use crate::simulator::ensemble::Member;
+use crate::simulator::environment::Environment;
+use crate::simulator::rollout::{RolloutOutcome, RolloutRequest};
+
+/// Robots that tell how far a controller's chance is known.
+pub const ROBOTS: usize = 48;
+/// Runs on each for a chance that is told.
+pub const RUNS: usize = 12;
+
+/// The chance of success of a controller.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Chance {
+    /// Over all robots, 0..=1.
+    pub success: f64,
+    /// What the chances of 95 % of the robots lie between.
+    pub ci95: [f64; 2],
+    /// Share of the variance of one run's success that is between robots: not knowing, where the rest is chance.
+    pub not_knowing: f64,
+}
+
+/// Robots that controllers are judged on.
+pub struct Judge<'a> {
+    robots: Vec<Environment<'a>>,
+    target_cm: DVec2,
+    seed: u64,
+}
+
+impl<'a> Judge<'a> {
+    /// Of these robots, in a scene with a target, from a start. The same seed gives all controllers the same runs.
+    ///
+    /// # Errors
+    /// As [`Environment::new`].
+    pub fn new(
+        simulator: &'a Simulator,
+        members: &'a [Member],
+        scene: &Scene,
+        start: Pose,
+        target_cm: DVec2,
+        seed: u64,
+    ) -> Result<Self> {
+        Ok(Judge { robots: Environment::of_robots(simulator, members, scene, start)?, target_cm, seed })
+    }
+
+    /// The chance of each controller in `runs` runs of every robot.
+    pub fn chances(&self, controllers: &[Controller], runs: usize) -> Vec<Chance> {
+        let by_robot: Vec<Vec<f64>> =
+            self.robots.par_iter().enumerate().map(|(i, robot)| self.rates(i, robot, controllers, runs)).collect();
+        let of = |controller: usize| by_robot.iter().map(|rates| rates[controller]).collect();
+        (0..controllers.len()).map(|controller| Chance::of(of(controller), runs)).collect()
+    }
+
+    /// The success rate of each controller on one robot.
+    fn rates(&self, number: usize, robot: &Environment, controllers: &[Controller], runs: usize) -> Vec<f64> {
+        let motions: Vec<_> = controllers.iter().map(|controller| robot.motions(controller)).collect();
+        let mut requests = Vec::with_capacity(controllers.len() * runs);
+        for (controller, motions) in controllers.iter().zip(&motions) {
+            requests.extend((0..runs).map(|run| RolloutRequest {
+                controller,
+                motions,
+                sensor: sensor_of(run),
+                seed: derive(self.seed, &[number as u64, run as u64]),
+            }));
+        }
+        let outcomes = robot.run(&requests);
+        let reached = |of_one: &[RolloutOutcome]| of_one.iter().filter(|o| o.reached(self.target_cm)).count();
+        outcomes.chunks(runs).map(|of_one| reached(of_one) as f64 / runs as f64).collect()
+    }
+}
+
+/// In percent, with the range of the robots.
+impl fmt::Display for Chance {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [success, low, high] = [self.success, self.ci95[0], self.ci95[1]].map(|share| 100.0 * share);
+        write!(f, "{success:.0} % ({low:.0} to {high:.0})")
+    }
+}
+
+impl Chance {
+    /// From the success rates of robots in `runs` runs each.
+    fn of(mut rates: Vec<f64>, runs: usize) -> Self {
+        rates.sort_by(f64::total_cmp);
+        let count = rates.len() as f64;
+        let success = rates.iter().sum::<f64>() / count;
+        let spread = rates.iter().map(|rate| (rate - success) * (rate - success)).sum::<f64>() / (count - 1.0).max(1.0);
+        let whole = success * (1.0 - success);
+        // Rates of few runs scatter where all robots have one chance.
+        let runs = runs as f64;
+        let between = if runs > 1.0 { (runs * spread - whole) / (runs - 1.0) } else { 0.0 };
+        let at = |share: f64| rates[((count - 1.0) * share).round() as usize];
+        let not_knowing = if whole > 0.0 { (between / whole).clamp(0.0, 1.0) } else { 0.0 };
+        Chance { success, ci95: [at(0.025), at(0.975)], not_knowing }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn robots_that_always_or_never_succeed_are_not_known_and_coins_are_chance() {
+        let split: Vec<f64> = (0..40).map(|robot| f64::from(robot % 2)).collect();
+        let chance = Chance::of(split, 10);
+        assert!(
+            (chance.success - 0.5).abs() < 1e-9 && chance.not_knowing > 0.95 && chance.ci95 == [0.0, 1.0],
+            "{chance:?}"
+        );
+        // As often as ten fair coins show heads.
+        let coins = [0.2, 0.3, 0.4, 0.4, 0.5, 0.5, 0.6, 0.6, 0.7, 0.8].repeat(4);
+        let chance = Chance::of(coins, 10);
+        assert!((chance.success - 0.5).abs() < 1e-9 && chance.not_knowing < 0.1, "{chance:?}");
+    }
+}

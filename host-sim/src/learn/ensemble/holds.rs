@@ -1,0 +1,166 @@
+//! Stretches of steps under one command. Their mean tells more of the command's bias than single steps do: the robot's
+//! chance averages out, and of the tracker's errors only those at both ends count.
+
+use crate::logs::Robot;
+use crate::simulator::Simulator;
+use crate::simulator::ensemble::Evidence;
+use crate::simulator::nominal::MotionBias;
+use crate::simulator::residuals::{ResidualQuantiles, motion_context};
+
+/// Biases that change within a cell or with what no command says: this share of the robot's chance in a step.
+const UNRESOLVED: f64 = 0.2;
+
+/// What the networks and their correction leave of a step. Channels are forward (cm), lateral (cm) and turn (degrees).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StepResidual {
+    /// The run and the row at which it begins.
+    place: [usize; 2],
+    command: [f64; 2],
+    /// Whether the command is that of the step before.
+    steady: bool,
+    residual: [f64; 3],
+    /// What the correction adds where the command is held.
+    known: [f64; 3],
+}
+
+/// Consecutive steps under one command, the first one apart.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hold {
+    /// Left and right command.
+    pub command: [f64; 2],
+    /// Whether it is the first step after another command.
+    pub first: bool,
+    /// Number of steps.
+    pub steps: usize,
+    /// Mean residual of a step.
+    pub residual: [f64; 3],
+    /// What the correction adds to the networks where the command is held.
+    pub known: [f64; 3],
+}
+
+/// The noise of logged steps.
+pub struct MotionNoise<'s> {
+    residuals: [&'s ResidualQuantiles; 3],
+    tracker_variance: [f64; 3],
+    robot: &'s Robot,
+}
+
+impl StepResidual {
+    /// Logged minus predicted of a step in `place`, its run and row: forward (cm), lateral (cm) and turn (rad), for left,
+    /// right, previous left and previous right command.
+    pub fn new(place: [usize; 2], speeds: [f64; 4], off: [f64; 3], correction: &MotionBias) -> Self {
+        let [left, right, left_before, right_before] = speeds;
+        let in_degrees = |[forward_cm, lateral_cm, turn_rad]: [f64; 3]| [forward_cm, lateral_cm, turn_rad.to_degrees()];
+        StepResidual {
+            place,
+            command: [left, right],
+            steady: [left, right] == [left_before, right_before],
+            residual: in_degrees(off),
+            known: in_degrees(correction.correction(&[left, right, left, right])),
+        }
+    }
+
+    /// Index of the run.
+    pub fn run(&self) -> usize {
+        self.place[0]
+    }
+}
+
+/// The stretches of steps, which are in the order of runs and rows.
+pub fn holds(steps: &[StepResidual]) -> Vec<Hold> {
+    let together = |a: &StepResidual, b: &StepResidual| {
+        let next = a.place[0] == b.place[0] && a.place[1] + 1 == b.place[1];
+        next && a.steady && b.steady && a.command == b.command
+    };
+    let hold = |steps: &[StepResidual]| {
+        let mean = |channel: usize| steps.iter().map(|s| s.residual[channel]).sum::<f64>() / steps.len() as f64;
+        let StepResidual { command, steady, known, .. } = steps[0];
+        Hold { command, first: !steady, steps: steps.len(), residual: [0, 1, 2].map(mean), known }
+    };
+    steps.chunk_by(together).map(hold).collect()
+}
+
+impl Hold {
+    /// What it says of the command's bias, whose first step may do otherwise by `first_step`.
+    pub fn evidence(&self, noise: &MotionNoise, first_step: &[f64; 3]) -> Evidence {
+        let variance = |channel: usize| {
+            let unresolved = UNRESOLVED * UNRESOLVED * noise.process_variance(self.command, channel);
+            let first = if self.first { first_step[channel] * first_step[channel] } else { 0.0 };
+            (noise.variance(self, channel) + unresolved + first) as f32
+        };
+        Evidence {
+            command: self.command.map(|c| c as f32),
+            bias: [0, 1, 2].map(|channel| (self.residual[channel] + self.known[channel]) as f32),
+            variance: [0, 1, 2].map(variance),
+            after_training: false,
+        }
+    }
+}
+
+impl<'s> MotionNoise<'s> {
+    /// Of the logs that a simulator was learned from; none without motion networks.
+    pub fn of(simulator: &'s Simulator) -> Option<Self> {
+        let [forward, lateral, turn] = [&simulator.forward, &simulator.lateral, &simulator.turn].map(Option::as_ref);
+        let residuals = [&forward?.residuals, &lateral?.residuals, &turn?.residuals];
+        Some(MotionNoise {
+            residuals,
+            tracker_variance: residuals.map(ResidualQuantiles::tracker_variance),
+            robot: &simulator.robot,
+        })
+    }
+
+    /// The variance of a stretch's mean.
+    pub fn variance(&self, hold: &Hold, channel: usize) -> f64 {
+        let steps = hold.steps as f64;
+        let process = self.process_variance(hold.command, channel);
+        process / steps + 2.0 * self.tracker_variance[channel] / (steps * steps)
+    }
+
+    /// The variance of what the robot adds by chance in a step.
+    pub fn process_variance(&self, command: [f64; 2], channel: usize) -> f64 {
+        let [left, right] = command.map(|c| c as f32);
+        self.residuals[channel]
+            .process_variance(motion_context(&[left, right, left, right]))
+            .max(f64::from(f32::EPSILON))
+    }
+
+    /// What one wheel at full command moves the robot in a step: forward (cm), lateral (cm), turn (degrees).
+    pub fn full(&self, channel: usize) -> f64 {
+        let way_cm = self.robot.full_speed_cm_s * self.robot.step_ms / 1000.0;
+        [0.5 * way_cm, 0.0, (way_cm / self.robot.track_cm).to_degrees()][channel]
+    }
+
+    /// The standard deviation of the robot's chance in a step at half of full command.
+    pub fn typical(&self, channel: usize) -> f64 {
+        self.process_variance([50.0; 2], channel).sqrt()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn step(run: usize, row: usize, command: [f64; 2], before: [f64; 2], turn_rad: f64) -> StepResidual {
+        let none = MotionBias { weights: [const { Vec::new() }; 3], scatter: [1.0; 3] };
+        let speeds = [command[0], command[1], before[0], before[1]];
+        StepResidual::new([run, row], speeds, [1.0, 2.0, turn_rad], &none)
+    }
+
+    #[test]
+    fn a_command_that_is_held_is_one_stretch_after_its_first_step() {
+        let (a, b) = ([50.0, 40.0], [10.0, 20.0]);
+        let turn = 1f64.to_radians();
+        let steps = [
+            step(0, 0, a, [0.0; 2], turn),
+            step(0, 1, a, a, turn),
+            step(0, 2, a, a, 3.0 * turn),
+            step(0, 3, b, a, turn),
+            // The tracker lost the robot at row 4.
+            step(0, 5, b, b, turn),
+            step(1, 6, b, b, turn),
+        ];
+        let found: Vec<(bool, usize)> = holds(&steps).iter().map(|hold| (hold.first, hold.steps)).collect();
+        assert_eq!(found, [(true, 1), (false, 2), (true, 1), (false, 1), (false, 1)]);
+        assert!((holds(&steps)[1].residual[2] - 2.0).abs() < 1e-12);
+    }
+}

@@ -1,0 +1,75 @@
+//! What is not known about a robot, as a distribution over robots.
+//!
+//! A command that is held does the same in every step and every run, and mostly not quite what the networks say: a bias
+//! that no chance stands for, since it adds up while the command is held. It is a Gaussian process over commands, one for
+//! each of forward, lateral and turn, whose covariance is that of [`basis`]. Nothing of it is left out or drawn at random,
+//! so that where no log has driven it is as wide as its prior. What logs say is kept as [`Evidence`]; a run of the robot
+//! adds some, and the networks stay as they are.
+//!
+//! [`Posterior`] is the distribution given all evidence, a [`Member`] one robot of it.
+
+pub mod basis;
+pub mod member;
+pub mod posterior;
+
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+
+use crate::chance::derive;
+pub use basis::PARTS;
+pub use member::Member;
+pub use posterior::Posterior;
+
+/// A distribution over robots as a simulator file holds it. Channels are forward (cm), lateral (cm) and turn (degrees), all
+/// of one step.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Ensemble {
+    /// Prior standard deviation of each part of the process ([`PARTS`]), for each channel.
+    pub prior: [[f64; PARTS]; 3],
+    /// Standard deviation of what the first step of a command does beyond later ones, the same whenever one command follows
+    /// the other.
+    pub first_step: [f64; 3],
+    /// What logs say.
+    pub evidence: Vec<Evidence>,
+}
+
+/// What logs say of the motion under one command.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Evidence {
+    /// Left and right command.
+    pub command: [f32; 2],
+    /// Logged minus what the networks say of the command when it is held, a step.
+    pub bias: [f32; 3],
+    /// Variance of that, from the robot's chance and the tracker's error.
+    pub variance: [f32; 3],
+    /// Whether the run was driven after training: the robot may have changed by then.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub after_training: bool,
+}
+
+/// Robots of a distribution.
+pub struct Robots {
+    /// The one in the middle.
+    pub mean: Member,
+    /// Random ones, all as likely.
+    pub drawn: Vec<Member>,
+}
+
+impl Ensemble {
+    /// The robot in the middle and `count` drawn ones; none if the numbers allow for no robot.
+    pub fn robots(&self, count: usize, seed: u64) -> Option<Robots> {
+        let posterior = Posterior::new(self)?;
+        let drawn = (0..count as u64).into_par_iter().map(|robot| posterior.draw(derive(seed, &[robot]))).collect();
+        Some(Robots { mean: posterior.mean(), drawn })
+    }
+
+    /// Whether a file could have held this.
+    pub fn is_sound(&self) -> bool {
+        let sizes = self.prior.iter().flatten().chain(&self.first_step);
+        let sound = |e: &Evidence| {
+            e.command.iter().chain(&e.bias).all(|v| v.is_finite())
+                && e.variance.iter().all(|v| v.is_finite() && *v > 0.0)
+        };
+        sizes.copied().all(|size| size.is_finite() && size >= 0.0) && self.evidence.iter().all(sound)
+    }
+}

@@ -1,0 +1,255 @@
+//! The loop on the robot: evolve a controller, drive it, adapt the simulator to the run, and again until it works.
+//!
+//! A turn begins with what all runs so far say of the robot ([`adapt`](mod@crate::adapt)), [searches](search) on the robot in
+//! the middle of those that remain possible, judges on many of them, and drives the best. Everything is in the folder's
+//! [state] after every step, so that a loop that is stopped anywhere goes on.
+
+pub mod drawing;
+pub mod robot;
+pub mod search;
+pub mod state;
+pub mod vetting;
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use mindgap_core::controller::Controller;
+
+use crate::adapt::{Adapted, adapt};
+use crate::chance::derive;
+use crate::error::{Error, Result};
+use crate::evolve::chance::Chance;
+use crate::evolve::controller_file::{ControllerFile, Origin};
+use crate::geometry::Pose;
+use crate::logs::{Logs, Run, Scene};
+use crate::simulator::Simulator;
+use robot::{Call, TrialRobot};
+use search::{Search, Tried};
+use state::{Failure, State, Trial, Verdict};
+use vetting::Vetting;
+
+/// So many real successes of a controller, and this chance by the adapted simulator, end the loop: two successes can be luck.
+const SUCCESSES: usize = 2;
+const CHANCE: f64 = 0.7;
+/// Where no controller has this chance on robots that are possible, none is driven.
+const HOPELESS: f64 = 0.03;
+/// A drive that fails is tried so often.
+const ATTEMPTS: usize = 2;
+
+/// The job of a loop.
+pub struct Job<'a> {
+    /// Folder of its state and results.
+    pub folder: &'a Path,
+    /// Simulator file.
+    pub simulator: &'a Path,
+    /// Scene file.
+    pub scene: &'a Path,
+    /// Start within the scene, from 1.
+    pub start: usize,
+    /// Runs on the robot at most.
+    pub trials: usize,
+    /// Steps after which a controller gives up.
+    pub max_steps: u16,
+    /// Seed of all draws.
+    pub seed: u64,
+}
+
+/// What a loop tells while it runs.
+pub enum Event<'a> {
+    /// A controller is to be driven.
+    Driving(&'a Trial),
+    /// It was driven.
+    Driven(&'a Trial),
+    /// A drive failed.
+    Failed(&'a Failure),
+}
+
+/// A loop that is under way.
+struct Trials<'a> {
+    job: &'a Job<'a>,
+    simulator: Simulator,
+    scene: Scene,
+    start: Pose,
+    state: State,
+}
+
+/// Runs a loop to its end, from where it stood if its folder holds one.
+///
+/// # Errors
+/// When a file cannot be read or written, when the folder holds another loop, or when the robot fails twice in a row.
+pub fn run(job: &Job, robot: &mut dyn TrialRobot, mut tell: impl FnMut(Event)) -> Result<State> {
+    let mut trials = Trials::open(job)?;
+    while trials.state.verdict == Verdict::Running {
+        if trials.state.trials.last().is_some_and(|trial| trial.real.is_none()) {
+            trials.drive(robot, &mut tell)?;
+        } else {
+            trials.turn()?;
+        }
+        trials.state.write(job.folder)?;
+    }
+    Ok(trials.state)
+}
+
+impl<'a> Trials<'a> {
+    fn open(job: &'a Job<'a>) -> Result<Self> {
+        let simulator = Simulator::read(job.simulator)?;
+        let scene = Scene::read(job.scene)?;
+        let start = scene.start(job.start, simulator.robot.body_radius_cm).map_err(|e| e.or_in_file(job.scene))?;
+        if scene.target_cm.is_none() {
+            return Err(Error::in_file(job.scene, "has no [target]"));
+        }
+        fs::create_dir_all(job.folder).map_err(|e| Error::in_file(job.folder, format!("cannot be made: {e}")))?;
+        let state = State::open(job)?;
+        Ok(Trials { job, simulator, scene, start, state })
+    }
+
+    /// Adapts to all runs so far, and ends the loop or plans the next trial.
+    fn turn(&mut self) -> Result<()> {
+        let runs = self.runs()?;
+        let logs = Logs { robot: self.simulator.robot, scene: self.scene.clone(), runs };
+        let adapted = match logs.runs.as_slice() {
+            [] => None,
+            _ => Some(adapt(&self.simulator, &logs, self.job.seed)?),
+        };
+        let simulator = adapted.as_ref().map_or(&self.simulator, |adapted| &adapted.simulator).clone();
+        let count = self.state.trials.len();
+        let search = Search {
+            simulator: &simulator,
+            scene: &logs.scene,
+            start: self.start,
+            max_steps: self.job.max_steps,
+            seed: derive(self.job.seed, &[count as u64]),
+        };
+        let tried = self.tried()?;
+        let known = search.judged(&tried)?;
+        self.note(adapted, tried.last().and_then(|last| known.chance_of(&last.controller)));
+        simulator.write(&self.job.folder.join("simulator.json"))?;
+        let confirmed = tried.iter().filter(|tried| tried.successes >= SUCCESSES).find_map(|tried| {
+            let chance = known.chance_of(&tried.controller)?;
+            (chance.success >= CHANCE).then_some((&tried.controller, chance))
+        });
+        if let Some((controller, chance)) = confirmed {
+            return self.settle(Verdict::Works, controller, chance);
+        }
+        if count >= self.job.trials {
+            let (controller, chance) = known.choice(&tried).ok_or_else(|| Error::new("no controller was driven"))?;
+            return self.settle(Verdict::Spent, controller, *chance);
+        }
+        let found = search.best(&self.state.archive, &tried)?;
+        let (controller, chance) = found.choice(&tried).ok_or_else(|| Error::new("no controller was found"))?;
+        if chance.success < HOPELESS {
+            return self.settle(Verdict::OutOfReach, controller, *chance);
+        }
+        let trial = Trial::planned(count + 1, *chance);
+        self.write_controller(&self.job.folder.join(&trial.controller), controller, *chance)?;
+        self.state.trials.push(trial);
+        self.state.archive = found.archive();
+        Ok(())
+    }
+
+    /// What the last run told, at its trial.
+    fn note(&mut self, adapted: Option<Adapted>, chance: Option<Chance>) {
+        if let (Some(trial), Some(Adapted { lesson, .. })) = (self.state.trials.last_mut(), adapted) {
+            trial.effects = lesson.effects;
+            trial.gap = lesson.gap;
+            trial.chance_after = chance;
+        }
+    }
+
+    /// Drives the controller of the last trial and keeps its log if it is one to learn from.
+    fn drive(&mut self, robot: &mut dyn TrialRobot, tell: &mut impl FnMut(Event)) -> Result<()> {
+        let folder = self.job.folder;
+        let Some(trial) = self.state.trials.last().cloned() else { return Ok(()) };
+        let path = folder.join(&trial.controller);
+        let controller = ControllerFile::read(&path)?.controller;
+        let attempt = self.state.failures.iter().filter(|failure| failure.trial == trial.number).count();
+        let out = folder.join("driving.csv");
+        // What an interrupted drive left is of no run that is known.
+        let _ = fs::remove_file(&out);
+        tell(Event::Driving(&trial));
+        let call = Call {
+            controller: &path,
+            scene: self.job.scene,
+            start: self.job.start,
+            out: &out,
+            // Robots see small numbers.
+            seed: derive(self.job.seed, &[trial.number as u64, attempt as u64]) % 1_000_000,
+        };
+        let vetting =
+            Vetting { simulator: &self.simulator, scene: &self.scene, start: self.start, controller: &controller };
+        let driven = robot.drive(&call).and_then(|()| vetting.read(&out));
+        match driven {
+            Ok((run, real)) => {
+                run.write(&folder.join(&trial.log))?;
+                let _ = fs::remove_file(&out);
+                if let Some(trial) = self.state.trials.last_mut() {
+                    trial.real = Some(real);
+                    tell(Event::Driven(trial));
+                }
+                drawing::paths(folder, &self.simulator, &self.scene, self.start, &self.state)
+            }
+            Err(problem) => {
+                let failure = Failure { trial: trial.number, reason: problem.to_string() };
+                tell(Event::Failed(&failure));
+                self.state.failures.push(failure);
+                self.state.write(folder)?;
+                if attempt + 1 < ATTEMPTS {
+                    return Ok(());
+                }
+                // Whoever starts the loop again means to try again.
+                self.state.failures.retain(|failure| failure.trial != trial.number);
+                self.state.write(folder)?;
+                Err(Error::new(format!(
+                    "trial {} failed {ATTEMPTS} times, and the loop stands still: {problem}",
+                    trial.number
+                )))
+            }
+        }
+    }
+
+    /// Ends the loop with a controller.
+    fn settle(&mut self, verdict: Verdict, controller: &Controller, chance: Chance) -> Result<()> {
+        self.write_controller(&self.job.folder.join("controller.toml"), controller, chance)?;
+        self.state.verdict = verdict;
+        self.state.chance = Some(chance);
+        Ok(())
+    }
+
+    /// The logs of all trials.
+    fn runs(&self) -> Result<Vec<Run>> {
+        let driven = self.state.trials.iter().filter(|trial| trial.real.is_some());
+        driven.map(|trial| Run::read(&self.job.folder.join(&trial.log), |_| {})).collect()
+    }
+
+    /// The controllers of all trials, each once, with how they did.
+    fn tried(&self) -> Result<Vec<Tried>> {
+        let mut tried: Vec<Tried> = Vec::new();
+        for trial in &self.state.trials {
+            let controller = ControllerFile::read(&self.job.folder.join(&trial.controller))?.controller;
+            let success = usize::from(trial.real.as_ref().is_some_and(|real| real.reached));
+            match tried.iter().position(|tried| tried.controller == controller) {
+                Some(place) => {
+                    let mut again = tried.remove(place);
+                    (again.runs, again.successes) = (again.runs + 1, again.successes + success);
+                    tried.push(again);
+                }
+                None => tried.push(Tried { controller, runs: 1, successes: success }),
+            }
+        }
+        Ok(tried)
+    }
+
+    fn write_controller(&self, path: &Path, controller: &Controller, chance: Chance) -> Result<()> {
+        let name = |path: &Path| path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        let origin = Origin {
+            simulator: name(&PathBuf::from("simulator.json")),
+            scene: name(self.job.scene),
+            start: self.job.start,
+            seed: self.job.seed,
+            generations: search::GENERATIONS,
+            fitness: 0.0,
+            success: chance.success,
+        };
+        ControllerFile { controller: controller.clone(), origin: Some(origin) }.write(path)
+    }
+}

@@ -1,0 +1,256 @@
+//! The search of a turn: controllers from new explorations and from those that did well, judged on many robots and by what
+//! runs of their like came to.
+
+use glam::DVec2;
+use mindgap_core::controller::{Controller, Tuple};
+
+use crate::chance::derive;
+use crate::error::{Error, Result};
+use crate::evolve::chance::{Chance, Judge, ROBOTS, RUNS};
+use crate::evolve::fitness::RandomNumbers;
+use crate::evolve::genome::GenotypeDecoder;
+use crate::evolve::paper::Evolved;
+use crate::evolve::robust::{self, EvolutionTask};
+use crate::evolve::way::WayMap;
+use crate::geometry::Pose;
+use crate::logs::Scene;
+use crate::simulator::ensemble::{Member, Robots};
+use crate::simulator::environment::Environment;
+use crate::simulator::{Noise, Simulator};
+
+/// Generations that a controller has behind it at most.
+pub const GENERATIONS: usize = robust::GENERATIONS / robust::RESTARTS;
+/// Runs on each robot that tell which candidates are worth more.
+const FEW_RUNS: usize = 3;
+/// New explorations of a turn, and controllers from which a search goes on.
+const EXPLORED: usize = 2;
+const INCUMBENTS: usize = 2;
+/// Where the best known controller has this chance, nothing is explored anew.
+const GOOD: f64 = 0.6;
+/// A controller that succeeded is driven again where it is more likely to succeed than not.
+const PROMISING: f64 = 0.5;
+/// Candidates that a search leaves, and those that the next turn begins with.
+const SHORTLISTED: usize = 8;
+const ARCHIVED: usize = 12;
+/// Real runs count beside the simulated chance, which counts as so many.
+const SIMULATED: f64 = 2.0;
+/// A run tells of controllers whose genes differ by less than about this, root mean square.
+const ALIKE: f64 = 0.06;
+
+/// What a turn searches in.
+pub struct Search<'a> {
+    /// The simulator, adapted to all runs so far.
+    pub simulator: &'a Simulator,
+    /// The scene.
+    pub scene: &'a Scene,
+    /// Where controllers start.
+    pub start: Pose,
+    /// Steps after which a controller gives up.
+    pub max_steps: u16,
+    /// Seed of all draws.
+    pub seed: u64,
+}
+
+/// A controller that was driven.
+#[derive(Clone, Debug)]
+pub struct Tried {
+    /// The controller.
+    pub controller: Controller,
+    /// Runs on the robot.
+    pub runs: usize,
+    /// Those that reached the target.
+    pub successes: usize,
+}
+
+/// Controllers with their chances, the most promising first.
+pub struct Found(Vec<Candidate>);
+
+struct Candidate {
+    controller: Controller,
+    chance: Chance,
+    /// The chance with what real runs of its like came to.
+    score: f64,
+}
+
+/// Streams of random numbers.
+#[derive(Clone, Copy)]
+enum Purpose {
+    Robots,
+    Judging,
+    Exploring,
+    Refining,
+}
+
+impl Search<'_> {
+    /// The controllers that were driven, as they are judged now.
+    ///
+    /// # Errors
+    /// As [`best`](Self::best).
+    pub fn judged(&self, tried: &[Tried]) -> Result<Found> {
+        let Robots { drawn, .. } = self.robots()?;
+        let controllers = tried.iter().map(|tried| tried.controller.clone()).collect();
+        Ok(Found(self.jury(&drawn, tried)?.ranked(controllers, RUNS)))
+    }
+
+    /// The best controllers, from those of earlier turns, those that were driven, and new ones.
+    ///
+    /// # Errors
+    /// When the simulator lacks a network or what its logs left open, or the robot does not fit at the start.
+    pub fn best(&self, archive: &[Vec<Tuple>], tried: &[Tried]) -> Result<Found> {
+        let Robots { mean, drawn } = self.robots()?;
+        let jury = self.jury(&drawn, tried)?;
+        let driven = tried.iter().map(|tried| tried.controller.clone());
+        let known = distinct(driven.clone().chain(archive.iter().filter_map(|tuples| self.controller(tuples))));
+        let known = jury.ranked(known, FEW_RUNS);
+        let found = self.searched(&mean, &known)?;
+        let all = distinct(known.into_iter().map(|known| known.controller).chain(found));
+        let promising = jury.ranked(all, FEW_RUNS).into_iter().take(ARCHIVED).map(|candidate| candidate.controller);
+        Ok(Found(jury.ranked(distinct(promising.chain(driven)), RUNS)))
+    }
+
+    /// New controllers, on the robot in the middle: exploring on drawn ones would be a bad search.
+    fn searched(&self, mean: &Member, known: &[Candidate]) -> Result<Vec<Controller>> {
+        let environment = Environment::new(self.simulator, self.scene, self.start, Noise::Learned)?;
+        let target_cm = self.target_cm()?;
+        let task = EvolutionTask {
+            environment: &environment.with_beam(self.simulator).of_robot(mean),
+            target_cm,
+            way: &WayMap::new(self.scene, target_cm, self.simulator.robot.body_radius_cm),
+            decoder: self.decoder(),
+            random_numbers: RandomNumbers::Common,
+            seed: self.stream(Purpose::Exploring, 0),
+        };
+        let explored = if known.first().is_none_or(|best| best.score < GOOD) { EXPLORED } else { 0 };
+        let new = (0..explored).map(|restart| robust::explore(&task, restart, |_, _| {}));
+        let better = known.iter().take(INCUMBENTS).zip(0..).map(|(incumbent, i)| {
+            let seed = self.stream(Purpose::Refining, i);
+            robust::refine(&task, robust::mutants(&task, &incumbent.controller, seed), seed, |_, _| {})
+        });
+        let shortlist = |ranked: Vec<(f64, Evolved)>| ranked.into_iter().take(SHORTLISTED).map(|(_, e)| e.controller);
+        Ok(new.chain(better).flat_map(shortlist).collect())
+    }
+
+    fn robots(&self) -> Result<Robots> {
+        let ensemble = self.simulator.ensemble.as_ref();
+        let robots = ensemble.and_then(|ensemble| ensemble.robots(ROBOTS, self.stream(Purpose::Robots, 0)));
+        robots.ok_or_else(|| {
+            Error::new("the simulator file does not say what its training logs leave open: train it again")
+        })
+    }
+
+    fn jury<'a>(&'a self, robots: &'a [Member], tried: &'a [Tried]) -> Result<Jury<'a>> {
+        let seed = self.stream(Purpose::Judging, 0);
+        let judge = Judge::new(self.simulator, robots, self.scene, self.start, self.target_cm()?, seed)?;
+        Ok(Jury { judge, tried, decoder: self.decoder() })
+    }
+
+    fn target_cm(&self) -> Result<DVec2> {
+        self.scene.target_cm.ok_or_else(|| Error::new("the scene has no target"))
+    }
+
+    fn decoder(&self) -> GenotypeDecoder {
+        GenotypeDecoder::new(self.simulator, self.max_steps)
+    }
+
+    fn stream(&self, purpose: Purpose, number: u64) -> u64 {
+        derive(self.seed, &[purpose as u64, number])
+    }
+
+    fn controller(&self, tuples: &[Tuple]) -> Option<Controller> {
+        let step_ms = self.simulator.robot.step_ms.round() as u16;
+        Some(Controller { step_ms, max_steps: self.max_steps, tuples: tuples.try_into().ok()? })
+    }
+}
+
+/// Controllers, each once.
+fn distinct(controllers: impl Iterator<Item = Controller>) -> Vec<Controller> {
+    let mut distinct: Vec<Controller> = Vec::new();
+    for controller in controllers {
+        if !distinct.contains(&controller) {
+            distinct.push(controller);
+        }
+    }
+    distinct
+}
+
+/// Robots to judge on, and what the real one did.
+struct Jury<'a> {
+    judge: Judge<'a>,
+    tried: &'a [Tried],
+    decoder: GenotypeDecoder,
+}
+
+impl Jury<'_> {
+    /// Controllers with their chances in so many runs of each robot, the most promising first.
+    fn ranked(&self, controllers: Vec<Controller>, runs: usize) -> Vec<Candidate> {
+        let chances = self.judge.chances(&controllers, runs);
+        let candidate = |(controller, chance): (Controller, Chance)| {
+            let score = score(&controller, chance.success, self.tried, &self.decoder);
+            Candidate { controller, chance, score }
+        };
+        let mut candidates: Vec<Candidate> = controllers.into_iter().zip(chances).map(candidate).collect();
+        candidates.sort_by(|a, b| b.score.total_cmp(&a.score));
+        candidates
+    }
+}
+
+/// The simulated chance, corrected by real runs: those of a controller count whole, those of another the less the more it
+/// differs.
+fn score(controller: &Controller, chance: f64, tried: &[Tried], decoder: &GenotypeDecoder) -> f64 {
+    let genes = decoder.genes(controller);
+    let (mut successes, mut runs) = (SIMULATED * chance, SIMULATED);
+    for other in tried {
+        let others = decoder.genes(&other.controller);
+        let squares: f64 = others.iter().zip(&genes).map(|(a, b)| f64::from((a - b) * (a - b))).sum();
+        let apart = (squares / genes.len() as f64).sqrt() / ALIKE;
+        let weight = libm::exp(-apart * apart);
+        successes += weight * other.successes as f64;
+        runs += weight * other.runs as f64;
+    }
+    successes / runs
+}
+
+impl Found {
+    /// The controller to drive next. One that never failed on the robot is driven again first: whether it works is what
+    /// the loop wants to know.
+    pub fn choice(&self, tried: &[Tried]) -> Option<(&Controller, &Chance)> {
+        let confirms = |candidate: &&Candidate| {
+            let succeeded = tried.iter().any(|t| t.controller == candidate.controller && t.successes == t.runs);
+            succeeded && candidate.score > PROMISING
+        };
+        let Candidate { controller, chance, .. } = self.0.iter().find(confirms).or(self.0.first())?;
+        Some((controller, chance))
+    }
+
+    /// The chance of a controller, if it was judged.
+    pub fn chance_of(&self, controller: &Controller) -> Option<Chance> {
+        self.0.iter().find(|candidate| candidate.controller == *controller).map(|candidate| candidate.chance)
+    }
+
+    /// The tuples of those with which the next turn begins.
+    pub fn archive(&self) -> Vec<Vec<Tuple>> {
+        self.0.iter().take(ARCHIVED).map(|candidate| candidate.controller.tuples.to_vec()).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use mindgap_core::controller::When;
+
+    const DECODER: GenotypeDecoder =
+        GenotypeDecoder { commands: [-80.0, 80.0], thresholds_cm: [4.0, 240.0], step_ms: 400, max_steps: 60 };
+
+    fn controller(left: i8) -> Controller {
+        let tuple = Tuple { left, right: 40, when: When::Larger, threshold_cm: 60 };
+        Controller { step_ms: 400, max_steps: 60, tuples: [tuple; 6] }
+    }
+
+    #[test]
+    fn real_runs_count_for_a_controller_and_its_like() {
+        let failed = [Tried { controller: controller(40), runs: 2, successes: 0 }];
+        let score = |left: i8| score(&controller(left), 0.9, &failed, &DECODER);
+        assert!((score(40) - 1.8 / 4.0).abs() < 1e-9);
+        assert!(score(44) < 0.6 && score(-60) > 0.899, "{} {}", score(44), score(-60));
+    }
+}

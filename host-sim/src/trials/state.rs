@@ -1,0 +1,182 @@
+//! `loop.json`: what happened in a loop so far, and all that it needs to go on.
+
+use std::fmt;
+use std::path::Path;
+
+use mindgap_core::controller::Tuple;
+use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
+
+use super::Job;
+use crate::adapt::Gap;
+use crate::effects::applied::AppliedEffect;
+use crate::error::{Error, Result};
+use crate::evolve::chance::Chance;
+use crate::files;
+
+/// The version of this format.
+const SCHEMA: u32 = 1;
+/// The file's name within the loop's folder.
+pub const FILE: &str = "loop.json";
+
+/// The state of a loop.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct State {
+    /// Version of the format.
+    schema: u32,
+    /// SHA-256 of all that decides how the loop goes: simulator, scene, start, seed.
+    job: String,
+    /// How it stands.
+    pub verdict: Verdict,
+    /// Chance of the controller that it settled on.
+    pub chance: Option<Chance>,
+    /// The trials.
+    pub trials: Vec<Trial>,
+    /// Drives that nothing was learned from.
+    pub failures: Vec<Failure>,
+    /// Tuples of controllers from which the next search goes on.
+    pub archive: Vec<Vec<Tuple>>,
+}
+
+/// How a loop stands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Verdict {
+    /// It has not ended.
+    Running,
+    /// A controller succeeded on the robot again, and has a good chance by all that is known.
+    Works,
+    /// The trials are spent before that.
+    Spent,
+    /// No six tuples were found that reach the target on any robot that is possible.
+    OutOfReach,
+}
+
+/// A controller on the robot.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Trial {
+    /// Which, from 1.
+    pub number: usize,
+    /// File of the controller.
+    pub controller: String,
+    /// File of the log.
+    pub log: String,
+    /// Its chance before it was driven.
+    pub predicted: Chance,
+    /// How it went; null until then.
+    pub real: Option<Real>,
+    /// Its chance by what the run told.
+    pub chance_after: Option<Chance>,
+    /// What simulated steps were off by on runs kept back, before and after adapting to the others.
+    pub gap: Option<Gap>,
+    /// Effects that a diagnosis of all runs up to this one names.
+    pub effects: Vec<AppliedEffect>,
+}
+
+/// How a run on the robot went.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Real {
+    /// How it ended.
+    pub ending: Ending,
+    /// Steps taken.
+    pub steps: usize,
+    /// Where it ended, along x.
+    pub end_x_cm: f64,
+    /// And along y.
+    pub end_y_cm: f64,
+    /// How far from the target that is.
+    pub distance_cm: f64,
+    /// Whether it reached the target.
+    pub reached: bool,
+}
+
+/// How a run ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Ending {
+    /// The sixth tuple's test held.
+    Finished,
+    /// The step limit was reached.
+    TimedOut,
+    /// The robot touched a wall or an obstacle.
+    Crashed,
+}
+
+/// A drive that nothing was learned from.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Failure {
+    /// Which trial it was to be.
+    pub trial: usize,
+    /// What was wrong.
+    pub reason: String,
+}
+
+impl State {
+    /// The state of a job's folder, new where it holds none.
+    ///
+    /// # Errors
+    /// When a file cannot be read, or when the folder's loop has another simulator, scene, start or seed.
+    pub fn open(job: &Job) -> Result<Self> {
+        let mut digest = Sha256::new();
+        for path in [job.simulator, job.scene] {
+            digest.update(files::read_text(path)?);
+        }
+        digest.update(format!("{} {} {}", job.start, job.seed, job.max_steps));
+        let digest = digest.finalize().iter().map(|byte| format!("{byte:02x}")).collect::<String>();
+        let path = job.folder.join(FILE);
+        if !path.exists() {
+            return Ok(State {
+                schema: SCHEMA,
+                job: digest,
+                verdict: Verdict::Running,
+                chance: None,
+                trials: Vec::new(),
+                failures: Vec::new(),
+                archive: Vec::new(),
+            });
+        }
+        let mut state: State = files::read_json(&path)?;
+        if state.schema != SCHEMA || state.job != digest {
+            let what = "is of a loop with another simulator, scene, start, seed or step limit: give another folder";
+            return Err(Error::in_file(&path, what));
+        }
+        if state.verdict == Verdict::Spent && state.trials.len() < job.trials {
+            state.verdict = Verdict::Running;
+        }
+        Ok(state)
+    }
+
+    /// Writes it.
+    ///
+    /// # Errors
+    /// When it cannot be written.
+    pub fn write(&self, folder: &Path) -> Result<()> {
+        files::write_json(&folder.join(FILE), self)
+    }
+}
+
+impl Trial {
+    /// A trial that is still to be driven.
+    pub fn planned(number: usize, predicted: Chance) -> Self {
+        Trial {
+            number,
+            controller: format!("trial-{number}.toml"),
+            log: format!("trial-{number}.csv"),
+            predicted,
+            real: None,
+            chance_after: None,
+            gap: None,
+            effects: Vec::new(),
+        }
+    }
+}
+
+impl fmt::Display for Ending {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Ending::Finished => "finished",
+            Ending::TimedOut => "timed out",
+            Ending::Crashed => "crashed",
+        })
+    }
+}
