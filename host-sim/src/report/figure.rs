@@ -68,10 +68,10 @@ impl Figure {
         pixels.encode_png().expect("encoding into memory cannot fail")
     }
 
-    /// The SVG as a PDF of one page, with the font in it.
+    /// The SVG as a PDF of one page, its letters as outlines: fonts would stand in it in another order each time.
     pub fn pdf(&self) -> Vec<u8> {
-        svg2pdf::to_pdf(&self.tree(), ConversionOptions::default(), PageOptions { dpi: DPI })
-            .expect("a figure has nothing that PDF lacks")
+        let options = ConversionOptions { embed_text: false, ..ConversionOptions::default() };
+        svg2pdf::to_pdf(&self.tree(), options, PageOptions { dpi: DPI }).expect("a figure has nothing that PDF lacks")
     }
 
     fn tree(&self) -> Tree {

@@ -184,8 +184,8 @@ fn in_a_simulator_a_program_drives_as_its_controller_does() {
         |axis: &str| places.iter().map(|run| run["path"][1][axis].as_f64().unwrap()).sum::<f64>() / 40.0;
     let mut of_program = [0.0; 2];
     for seed in 0..10 {
-        workshop.done(&format!("brick run.rxe --scene scene.toml --sim sim.json --seed {seed} --out run.csv"));
-        let log = workshop.text("run.csv");
+        workshop.done(&format!("brick run.rxe --scene scene.toml --sim sim.json --seed {seed} --out run-{seed}.csv"));
+        let log = workshop.text(&format!("run-{seed}.csv"));
         let row: Vec<f64> = log.lines().nth(2).unwrap().split(',').map(|cell| cell.parse().unwrap_or(0.0)).collect();
         (of_program[0], of_program[1]) = (of_program[0] + row[3] / 10.0, of_program[1] + row[4] / 10.0);
     }
@@ -251,6 +251,6 @@ fn a_collecting_program_that_cannot_be_is_refused() {
     assert!(refused("--format nxc-collect --step-ms 50").starts_with("c.nxc: "));
     assert!(refused("--format nxc-collect --steps 60000").starts_with("c.nxc: "));
     let no_script = refused("controller.toml --format nxc-collect");
-    assert!(no_script.starts_with("controller.toml:1: columns t_ms, left, right,"), "{no_script}");
+    assert!(no_script.starts_with("controller.toml:1: columns t_ms, left, right are missing"), "{no_script}");
     assert_eq!(workshop.call("export --format nxc --out c.nxc").code, 2);
 }

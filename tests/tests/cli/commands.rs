@@ -193,7 +193,7 @@ fn a_simulator_knows_the_first_echo_law_of_its_sonar() {
     assert_ne!(by_law, workshop.done(call));
     let mut older = workshop.json("sim.json");
     older.as_object_mut().expect("a table").remove("first_echo");
-    workshop.write("sim.json", &older.to_string());
+    workshop.write("sim.json", older.to_string());
     workshop.done(call);
     let refused = workshop.refused(&format!("{call} --sonar first_echo"));
     assert!(refused.contains("no first-echo law"), "{refused}");

@@ -34,13 +34,14 @@ fn a_run_is_logged_from_the_start_to_where_it_ended() {
 #[test]
 fn the_seed_and_an_effect_decide_how_it_goes() {
     let workshop = workshop();
-    let log = |options: &str| {
-        workshop.done(&format!("drive six.toml --scene scene.toml --out run.csv {options}"));
-        workshop.bytes("run.csv")
+    let log = |name: &str, options: &str| {
+        workshop.done(&format!("drive six.toml --scene scene.toml --out {name} {options}"));
+        workshop.bytes(name)
     };
-    assert_eq!(log("--seed 3"), log("--seed 3"));
-    assert_ne!(log("--seed 3"), log("--seed 4"));
-    assert_ne!(log("--seed 3"), log("--seed 3 --effect drive_scale=0.85"));
+    let once = log("once.csv", "--seed 3");
+    assert_eq!(once, log("again.csv", "--seed 3"));
+    assert_ne!(once, log("other.csv", "--seed 4"));
+    assert_ne!(once, log("changed.csv", "--seed 3 --effect drive_scale=0.85"));
 }
 
 #[test]

@@ -71,7 +71,7 @@ fn clear() -> ScriptedWorld {
 
 #[test]
 fn it_drives_about_a_crowded_room_and_logs_every_step() {
-    const RUNS: usize = 20;
+    const RUNS: usize = 80;
     let robot = BuiltInRobot::new(&default_robot(), &training_room(), &[]);
     let starts = [(40.0, 40.0), (150.0, 110.0), (250.0, 110.0), (150.0, 190.0)];
     let (mut crashes, mut all) = (0, Vec::new());
@@ -94,7 +94,7 @@ fn it_drives_about_a_crowded_room_and_logs_every_step() {
             }
         }
     }
-    assert!(crashes <= 1, "{crashes} of {RUNS} runs crashed");
+    assert!(20 * crashes <= RUNS, "{crashes} of {RUNS} runs crashed");
 
     let steps: Vec<_> = all.iter().flat_map(|rows| rows.windows(2)).collect();
     let share =
