@@ -1,6 +1,6 @@
 //! ROS 2 bags as MCAP: topics of commands, poses and readings become a recording.
 //!
-//! [`records`] reads the file, [`messages`] decode what is in it, [`topics`] say which topic holds what.
+//! `records` reads the file, `messages` decode what is in it, `topics` say which topic holds what.
 
 mod messages;
 mod records;

@@ -1,6 +1,6 @@
 //! Merges a brick's logs and a camera's tracks into a folder of logs.
 //!
-//! Brick and camera have clocks of their own. [`clocks`] aligns them by matching the motion of the wheels with the motion
+//! Brick and camera have clocks of their own. `clocks` aligns them by matching the motion of the wheels with the motion
 //! that the camera saw; the camera's poses are then interpolated at the times of the brick's rows. The [`Report`] names
 //! everything left out.
 

@@ -51,7 +51,7 @@ pub fn most_share(shares: &[f64; 8]) -> (usize, f64) {
 /// How the frame of a track lies against the way that its robot goes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Orientation {
-    /// In which of the [`directions`] it goes: 0 where it heads, or where that cannot be told.
+    /// In which of the `directions` it goes: 0 where it heads, or where that cannot be told.
     pub going: usize,
     /// Whether it turns against the commands.
     pub is_reversed: bool,

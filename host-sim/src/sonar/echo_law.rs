@@ -1,7 +1,7 @@
 //! The first-echo law: a reading is the first echo that rises above the sensor's threshold.
 //!
 //! A wide beam meets many things at once: walls along its rays, the feet of the perpendiculars on walls, and corners
-//! ([`targets`]). Each returns an echo of some strength, in units of the threshold's logistic noise:
+//! (`targets`). Each returns an echo of some strength, in units of the threshold's logistic noise:
 //!
 //! ```text
 //! s = G − n ln d − (β/b)^q − r(ι)      a wall; r(ι) = f (1 − exp(−(ι/i₀)²/f))

@@ -1,6 +1,6 @@
 //! The distribution over robots given all evidence: exact, by one Cholesky factor a channel.
 //!
-//! Nodes are u = L a v with v standard normal a priori, L the unit factor of [`basis`] and a the prior's sizes. Evidence
+//! Nodes are u = L a v with v standard normal a priori, L the unit factor of `basis` and a the prior's sizes. Evidence
 //! with weights W and variances N leaves v normal with precision B = 1 + a Lᵀ Wᵀ N⁻¹ W L a.
 
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
