@@ -19,7 +19,7 @@ use crate::effects::{Candidate, own};
 use crate::evaluation::observations::{FEWEST_BLOCKS, Observation, Observations};
 use crate::evaluation::predictions::{facing, increment, residual};
 use crate::statistics::rounding::three_digits;
-use crate::statistics::summary::median;
+use crate::statistics::summary::{QUARTILE, median};
 use crate::statistics::{bootstrap, rounding};
 use library::Term;
 use pursuit::{Response, Sum, pursue};
@@ -62,8 +62,6 @@ const FEWEST_ROWS: usize = 160;
 /// A row that is farther off pulls no more than this, in standard deviations: a jump of the tracker or a wrong reading says
 /// nothing about a law.
 const FARTHEST: f64 = 4.0;
-/// Half a normal law's values lie within so many standard deviations.
-const QUARTILE: f64 = 0.674;
 /// A reading that is farther off is of something else, and says nothing about readings.
 const FAR_OFF_CM: f64 = 25.0;
 /// Channels in which a formula is sought.

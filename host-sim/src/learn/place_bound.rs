@@ -7,12 +7,10 @@ use crate::logs::{Logs, Row};
 use crate::sonar::place::{Place, place_of};
 use crate::sonar::{Perturbation, SonarModel, fan_at};
 use crate::statistics::intraclass::{self, Deviation};
-use crate::statistics::summary::median;
+use crate::statistics::summary::{QUARTILE, median};
 
 /// A reading that is farther off counts as this many standard deviations: wrong readings say nothing of readings.
 const FARTHEST: f64 = 3.0;
-/// Half a normal law's values lie within so many standard deviations.
-const QUARTILE: f64 = 0.674;
 
 /// A row at which the robot was seen.
 struct Seen {

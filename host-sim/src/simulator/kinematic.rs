@@ -5,6 +5,7 @@ use crate::logs::{Logs, samples};
 use crate::simulator::baseline::{Baseline, MotionModel};
 use crate::sonar::SonarModel;
 use crate::sonar::model::STRENGTHS;
+use crate::statistics::summary::QUARTILE;
 
 /// The least scatter of forward (cm), lateral (cm) and turn (rad): that of a good tracker. The logs' own is refitted
 /// upwards from here.
@@ -38,8 +39,7 @@ fn sonar(logs: &Logs) -> Option<SonarModel> {
         return None;
     }
     errors_cm.sort_by(f64::total_cmp);
-    // The nearer half of a normal scatter ends at 0.674 standard deviations.
-    let scatter_cm = errors_cm[errors_cm.len() / 2] / 0.674;
+    let scatter_cm = errors_cm[errors_cm.len() / 2] / QUARTILE;
     let [least, most] = READING_SCATTER_CM;
     let within = seen.iter().filter(|s| s.distance_cm < mount.max_cm);
     let (echoes, all) = within.fold((0.0, 0.0), |(e, n), s| (e + f64::from(u8::from(s.echo_cm.is_some())), n + 1.0));

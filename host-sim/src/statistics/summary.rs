@@ -1,5 +1,8 @@
 //! Numbers that sum up many.
 
+/// Half of a normal law's values lie within so many standard deviations.
+pub const QUARTILE: f64 = 0.674;
+
 /// The mean; NaN of nothing.
 pub fn mean(values: impl Iterator<Item = f64>) -> f64 {
     let (sum, n) = values.fold((0.0, 0.0), |(sum, n), v| (sum + v, n + 1.0));

@@ -12,7 +12,7 @@ use crate::sonar::SonarModel;
 use crate::sonar::model::FAR_CM;
 use crate::sonar::{Fan, Perturbation};
 use crate::statistics::maximise::{Bounds, climb};
-use crate::statistics::summary::median;
+use crate::statistics::summary::{QUARTILE, median};
 
 /// How readings spread about where they are predicted, beyond the simulator.
 #[derive(Clone, Copy, Debug)]
@@ -47,8 +47,6 @@ const START: [f64; 3] = [0.3, 0.002, 0.002];
 const FARTHEST: f64 = 4.0;
 /// The scatter of what is given in whole centimetres is never less: √(1/12) cm.
 const LEAST_SCATTER_CM: f64 = 0.29;
-/// Half a normal law's values lie within so many standard deviations.
-const QUARTILE: f64 = 0.674;
 /// The unit of log-odds of the rays' return: what a yes or no tells of them, largest where each of the nine rays comes
 /// back once in ten times, is 0.52 a squared log-odds, and about one a squared unit.
 const LOG_ODDS: f64 = 1.4;
