@@ -3,6 +3,10 @@
 use std::path::Path;
 use std::sync::Arc;
 
+use krilla::Document;
+use krilla::geom::Size;
+use krilla::page::PageSettings;
+use krilla_svg::{SurfaceExt, SvgSettings};
 use plotters::coord::Shift;
 use plotters::drawing::{DrawingArea, DrawingAreaErrorKind, IntoDrawingArea};
 use plotters::prelude::SVGBackend;
@@ -10,7 +14,6 @@ use plotters::style::WHITE;
 use resvg::tiny_skia::{Pixmap, Transform};
 use resvg::usvg::fontdb::Database;
 use resvg::usvg::{Options, Tree};
-use svg2pdf::{ConversionOptions, PageOptions};
 
 use super::style::UNIT;
 use crate::error::Result;
@@ -18,8 +21,8 @@ use crate::files;
 
 /// Pixels of the PNG per pixel of the SVG: 288 to the inch, so that it stays sharp in print and on dense screens.
 const PNG_SCALE: u32 = 3;
-/// Pixels of the SVG to the inch.
-const DPI: f32 = 96.0;
+/// Points of a PDF, 72 to the inch, per pixel of the SVG, 96 to the inch.
+const POINTS_PER_PX: f32 = 0.75;
 
 /// The canvas of a figure; [`UNIT`] canvas units are one pixel of the SVG.
 pub(super) type Canvas<'a> = DrawingArea<SVGBackend<'a>, Shift>;
@@ -68,10 +71,17 @@ impl Figure {
         pixels.encode_png().expect("encoding into memory cannot fail")
     }
 
-    /// The SVG as a PDF of one page, its letters as outlines: fonts would stand in it in another order each time.
+    /// The SVG as a PDF of one page, with text that can be searched and copied.
     pub fn pdf(&self) -> Vec<u8> {
-        let options = ConversionOptions { embed_text: false, ..ConversionOptions::default() };
-        svg2pdf::to_pdf(&self.tree(), options, PageOptions { dpi: DPI }).expect("a figure has nothing that PDF lacks")
+        let (width, height) = (self.width_px as f32 * POINTS_PER_PX, self.height_px as f32 * POINTS_PER_PX);
+        let size = Size::from_wh(width, height).expect("a figure has a size");
+        let mut document = Document::new();
+        let mut page = document.start_page_with(PageSettings::new(size));
+        let mut surface = page.surface();
+        surface.draw_svg(&self.tree(), size, SvgSettings::default()).expect("a figure has nothing that PDF lacks");
+        surface.finish();
+        page.finish();
+        document.finish().expect("a figure has nothing that PDF lacks")
     }
 
     fn tree(&self) -> Tree {
