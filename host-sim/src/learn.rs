@@ -3,6 +3,7 @@
 pub mod dataset;
 pub mod echo_law;
 pub mod ensemble;
+pub mod familiar;
 pub mod fast;
 pub mod genome;
 pub mod kernel;

@@ -19,11 +19,11 @@
 //!
 //! where g₁ and c₁ are the probabilities of the ghost and of the constant reading in place of an echo, g₀ and c₀ in
 //! place of none. Then, each in place of all that stand before it: a short reading with p_short, whether there was one or
-//! not; a long reading with p_long in place of a reading; the reading before with p_stale in place of a reading; and with
-//! p_rand a random answer, as often none as a reading from anywhere in the sensor's range.
+//! not; a long reading with p_long in place of a reading; and with p_rand a random answer, as often none as a reading from
+//! anywhere in the sensor's range.
 //!
-//! Hits scatter by Student's t distribution about the distance with a bias, ghost, constant and stale readings about
-//! their value; short readings are uniform from the least reading to what the axis meets, long ones from there to the
+//! Hits scatter by Student's t distribution about the distance with a bias, ghost and constant readings about their
+//! value; short readings are uniform from the least reading to what the axis meets, long ones from there to the
 //! largest, random ones over the whole range.
 //!
 //! [`MixingWeights`] is the table's one implementation and [`Outcomes`] the whole mixture: logs are judged by
@@ -33,6 +33,7 @@
 
 mod draw;
 pub mod echo_law;
+pub mod familiar;
 pub mod fan;
 pub mod first_echo;
 mod likelihood;
@@ -42,6 +43,7 @@ pub mod outcomes;
 pub(crate) mod partition;
 pub mod perturbation;
 pub mod place;
+pub mod pose_grid;
 #[cfg(test)]
 mod tests;
 

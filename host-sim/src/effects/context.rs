@@ -79,7 +79,7 @@ impl Surroundings {
 
     /// The context of a step that begins at `pose`, `elapsed_ms` after the run did.
     pub fn context(&self, history: &RunHistory, elapsed_ms: f64, pose: Pose) -> StepContext {
-        let sensor = self.robot.ultrasonic.pose_on(&pose);
+        let sensor = self.sensor(&pose, 0.0);
         let hit = cast(&self.walls, sensor.position_cm, sensor.direction());
         StepContext {
             elapsed_min: elapsed_ms / 60_000.0,
@@ -96,9 +96,14 @@ impl Surroundings {
     /// What the sensor of a robot at `robot` sees, its axis turned by `yaw_rad`; `width` is the beam's against the usual
     /// fan.
     pub fn fan(&self, robot: &Pose, yaw_rad: f64, width: f64) -> Fan {
+        fan_at(&self.walls, &self.sensor(robot, yaw_rad), width)
+    }
+
+    /// Where the sensor of a robot at `robot` is, its axis turned by `yaw_rad`.
+    pub fn sensor(&self, robot: &Pose, yaw_rad: f64) -> Pose {
         let mut sensor = self.robot.ultrasonic.pose_on(robot);
         sensor.heading_rad += yaw_rad;
-        fan_at(&self.walls, &sensor, width)
+        sensor
     }
 }
 
@@ -124,11 +129,6 @@ impl RunHistory {
     /// What its sensor said at a row that lies behind.
     pub fn sensed(&mut self, echo_cm: Option<f64>) {
         self.echo_cm = Some(echo_cm);
-    }
-
-    /// The reading of the row before, if there was one.
-    pub fn echo_before_cm(&self) -> Option<f64> {
-        self.echo_cm.flatten()
     }
 }
 

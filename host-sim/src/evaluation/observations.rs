@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::ops::Range;
+use std::sync::Arc;
 
 use crate::effects::context::{RunHistory, Surroundings};
 use crate::effects::{PoseIncrement, StepContext};
@@ -9,6 +10,7 @@ use crate::geometry::Pose;
 use crate::logs::{Logs, Run, samples};
 use crate::simulator::baseline::MotionModel;
 use crate::sonar::Fan;
+use crate::sonar::familiar::{FamiliarPoses, Recollection};
 use crate::sonar::place::{Place, place_of};
 
 /// A folder of logs, ready to be judged.
@@ -17,6 +19,8 @@ pub struct Observations {
     pub surroundings: Surroundings,
     /// The beam against the usual fan.
     pub fan_width: f64,
+    /// What is known of single poses in this room.
+    pub recollection: Option<Arc<Recollection>>,
     /// How many blocks of rows are judged together: the runs, or parts of them where there are few.
     pub blocks: usize,
     /// How many places its sensor was at.
@@ -50,8 +54,6 @@ pub struct Observation {
     pub expected: Option<PoseIncrement>,
     /// What the sensor said.
     pub echo_cm: Option<f64>,
-    /// What it said the row before.
-    pub previous_echo_cm: Option<f64>,
     /// What the sensor sees from here if nothing is changed.
     pub fan: Fan,
 }
@@ -73,7 +75,7 @@ impl Observations {
         let parts = parts_of_a_run(logs);
         for (run, logged) in logs.runs.iter().enumerate() {
             let contexts = contexts(logged, &surroundings);
-            for (k, (row, (context, previous_echo_cm))) in logged.rows.iter().zip(&contexts).enumerate() {
+            for (k, (row, context)) in logged.rows.iter().zip(&contexts).enumerate() {
                 let (Some(pose), Some(context)) = (row.pose, context) else { continue };
                 let step = steps.next_if(|s| (s.run, s.row) == (run, k));
                 let motion = step.map(|s| PoseIncrement {
@@ -97,21 +99,27 @@ impl Observations {
                     motion,
                     expected: None,
                     echo_cm: row.echo_cm,
-                    previous_echo_cm: *previous_echo_cm,
                     fan: surroundings.fan(&pose, 0.0, fan_width),
                 });
             }
         }
         let places = number_places(&mut rows);
-        Observations { surroundings, fan_width, blocks: logs.runs.len() * parts, places, rows }
+        Observations { surroundings, fan_width, recollection: None, blocks: logs.runs.len() * parts, places, rows }
+    }
+
+    /// Recalls what is known of single poses, if this is their room.
+    pub fn recalling(self, familiar: Option<&FamiliarPoses>) -> Self {
+        let recollection = familiar.and_then(|familiar| Recollection::of(familiar, &self.surroundings.walls));
+        Observations { recollection: recollection.map(Arc::new), ..self }
     }
 
     /// Two parts of these: the blocks whose role is false, and those whose role is true; a block without a role is dropped.
     pub fn split(self, roles: &[Option<bool>]) -> [Self; 2] {
-        let Observations { surroundings, fan_width, places, rows, .. } = self;
+        let Observations { surroundings, fan_width, recollection, places, rows, .. } = self;
         let mut parts = [false, true].map(|role| Observations {
             surroundings: surroundings.clone(),
             fan_width,
+            recollection: recollection.clone(),
             places,
             blocks: roles.iter().filter(|r| **r == Some(role)).count(),
             rows: Vec::new(),
@@ -193,16 +201,15 @@ pub fn number_places(rows: &mut [Observation]) -> usize {
     known.len()
 }
 
-/// The context of every row at which the robot was seen, and the reading before each.
-fn contexts(run: &Run, surroundings: &Surroundings) -> Vec<(Option<StepContext>, Option<f64>)> {
+/// The context of every row at which the robot was seen.
+fn contexts(run: &Run, surroundings: &Surroundings) -> Vec<Option<StepContext>> {
     let mut history = RunHistory::default();
     let begin_ms = run.rows[0].t_ms;
     let context = |row: &crate::logs::Row| {
         history.command(row.command());
         let context = row.pose.map(|pose| surroundings.context(&history, row.t_ms - begin_ms, pose));
-        let previous_echo_cm = history.echo_before_cm();
         history.leave(context.as_ref(), row.echo_cm);
-        (context, previous_echo_cm)
+        context
     };
     run.rows.iter().map(context).collect()
 }

@@ -8,7 +8,8 @@ use crate::geometry::wrap_rad;
 use crate::logs::Logs;
 use crate::simulator::Simulator;
 use crate::simulator::baseline::{Baseline, MotionModel};
-use crate::sonar::{Fan, Perturbation};
+use crate::sonar::familiar::Familiarity;
+use crate::sonar::{Fan, Outcomes, Perturbation, SonarModel};
 
 /// Logged and predicted, sample by sample.
 #[derive(Clone, Debug, Default)]
@@ -42,8 +43,7 @@ pub fn predict(simulator: &Simulator, logs: &Logs) -> Result<Predictions> {
             all.turn.push([logged.turn_rad, predicted.turn_rad].map(f64::to_degrees));
         }
         if let (Some(sonar), Some(_)) = (&baseline.sonar, row.context.faced) {
-            let (fan, change) = facing(&effects, &observations, row);
-            let outcomes = sonar.outcomes(&fan, &change, None);
+            let outcomes = facing(&effects, &observations, row).outcomes(sonar);
             all.echo_probability.push([f64::from(u8::from(row.echo_cm.is_some())), 1.0 - outcomes.none]);
             if let (Some(echo_cm), Some(expected_cm)) = (row.echo_cm, outcomes.mean_hit_cm()) {
                 all.echo_value.push([echo_cm, expected_cm]);
@@ -90,9 +90,36 @@ pub fn residual(effects: &EffectChain, drive: &MotionModel, row: &Observation) -
     Some(off.map(|off| off / steps.sqrt()))
 }
 
-/// What the sensor faces at a row, and how its readings are perturbed.
-pub fn facing(effects: &EffectChain, observations: &Observations, row: &Observation) -> (Fan, Perturbation) {
-    let SensorState { robot, yaw_rad, width, perturbation } = effects.sensor(&row.context);
+/// What the sensor faces at a row.
+pub struct Faced {
+    /// What it sees.
+    pub fan: Fan,
+    /// How its readings are perturbed.
+    pub change: Perturbation,
+    /// What is known of its pose.
+    pub familiarity: Option<Familiarity>,
+}
+
+/// What the sensor faces at a row with these effects.
+pub fn facing(effects: &EffectChain, observations: &Observations, row: &Observation) -> Faced {
+    let SensorState { robot, yaw_rad, width, perturbation: change } = effects.sensor(&row.context);
     let moved = robot != row.context.pose || yaw_rad != 0.0 || width != 1.0;
-    (if moved { observations.fan(&robot, yaw_rad, width) } else { row.fan }, perturbation)
+    let sensor = observations.surroundings.sensor(&robot, yaw_rad);
+    let familiarity = observations.recollection.as_ref().and_then(|recollection| recollection.at(&sensor));
+    Faced { fan: if moved { observations.fan(&robot, yaw_rad, width) } else { row.fan }, change, familiarity }
+}
+
+impl Faced {
+    /// The same with readings perturbed otherwise.
+    pub fn with(&self, change: Perturbation) -> Faced {
+        Faced { change, fan: self.fan, familiarity: self.familiarity.clone() }
+    }
+
+    /// What the sensor may report.
+    pub fn outcomes(&self, sonar: &SonarModel) -> Outcomes {
+        match &self.familiarity {
+            Some(familiarity) => familiarity.outcomes(sonar, &self.fan, &self.change),
+            None => sonar.outcomes(&self.fan, &self.change),
+        }
+    }
 }

@@ -2,8 +2,8 @@
 //!
 //! Of m rows at a place that have a share ρ of their chance in common each tells 1/(1 + (m − 1) ρ) of what a row alone
 //! would, the design effect of clusters (Kish 1965, Survey Sampling). What they have in common is twice as far off where
-//! they are compared with a simulator: it was learned in a room that had its own. Equal readings of an unmoved sensor are
-//! one.
+//! they are compared with a simulator: it was learned in a room that had its own. At poses that are familiar from the room
+//! that it was learned in, only what earlier readings leave open is in common. Equal readings of an unmoved sensor are one.
 
 use super::observations::{Observation, Observations};
 use crate::geometry::wrap_rad;
@@ -16,7 +16,7 @@ const UNMOVED_DEG: f64 = 2.0;
 
 /// Weighs the echo rate and the reading of every row; `place_bound` are the shares of their chance that belong to the place.
 pub fn weighed(mut observations: Observations, place_bound: [f64; 2]) -> Observations {
-    let Observations { places, rows, .. } = &mut observations;
+    let Observations { places, rows, recollection, surroundings, .. } = &mut observations;
     let mut heard = vec![[0.0; 2]; *places];
     for row in rows.iter() {
         heard[row.place][0] += 1.0;
@@ -24,7 +24,9 @@ pub fn weighed(mut observations: Observations, place_bound: [f64; 2]) -> Observa
     }
     for row in rows.iter_mut() {
         let others = heard[row.place].map(|rows| (rows - 1.0).max(0.0));
-        row.echo_weight = [0, 1].map(|i| 1.0 / (1.0 + ROOMS * others[i] * place_bound[i]));
+        let recalled = recollection.as_ref().filter(|r| r.at(&surroundings.sensor(&row.context.pose, 0.0)).is_some());
+        let common = recalled.map_or(place_bound.map(|share| ROOMS * share), |recollection| recollection.left_share);
+        row.echo_weight = [0, 1].map(|i| 1.0 / (1.0 + others[i] * common[i]));
     }
     let mut begin = 0;
     for end in 1..=rows.len() {

@@ -48,7 +48,7 @@ pub fn sensor_models(simulator: &Simulator, logs: &Logs) -> Option<SensorModels>
     let surfaces = Surfaces::new(logs.scene.sides());
     let sides = logs.scene.sides();
     let of_fan = |model: &SonarModel| {
-        let at = |sensor: &Pose| model.outcomes(&fan_at(&sides, sensor, model.fan_width), &Perturbation::NONE, None);
+        let at = |sensor: &Pose| model.outcomes(&fan_at(&sides, sensor, model.fan_width), &Perturbation::NONE);
         nats(logs, at)
     };
     let beam = simulator.reference.as_ref().and_then(|reference| reference.sonar.as_ref());

@@ -387,13 +387,14 @@ fn jackknife_errors(values: &[f64], without: &[Vec<f64>]) -> Vec<f64> {
 }
 
 /// By how much the evidence exceeds the held-out log-likelihood: the prior at the maximum times the volume about it, less
-/// what held-out rows lose where they are independent, which is one nat a parameter. A gain from freedom alone is none.
+/// what held-out rows lose where they are independent, which is one nat a parameter that they tell of. A gain from freedom
+/// alone is none.
 fn occam(found: &Maximum, hypothesis: &Hypothesis, bounds: &[Bounds]) -> f64 {
     // The prior is the last of the terms.
     let rows = found.scores.len() - 1;
     let volume = found.log_volume(bounds, &hypothesis.prior_precisions(), |term| term < rows);
     let prior = hypothesis.log_prior_peak() + hypothesis.log_prior(&found.at);
-    bounds.len() as f64 + (prior + volume).min(0.0)
+    found.told(|term| term < rows) + (prior + volume).min(0.0)
 }
 
 #[cfg(test)]

@@ -145,8 +145,8 @@ fn rows<'a>(channel: Channel, beneath: &Fitted, context: &FitContext<'a>) -> Vec
         }
         (None, _, Some(sonar)) => {
             let off_cm = |row: &Observation| {
-                let (fan, change) = facing(&effects, context.observations, row);
-                Some(row.echo_cm? - sonar.outcomes(&fan, &change, None).mean_hit_cm()?)
+                let outcomes = facing(&effects, context.observations, row).outcomes(sonar);
+                Some(row.echo_cm? - outcomes.mean_hit_cm()?)
             };
             let known = rows.filter_map(|row| Some((row, off_cm(row)?)));
             known.filter(|(_, off_cm)| off_cm.abs() < FAR_OFF_CM).collect()

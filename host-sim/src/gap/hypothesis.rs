@@ -190,8 +190,7 @@ impl Hypothesis {
         let Some(sonar) = &baseline.sonar else { return vec![[0.0; 2]; rows.len()] };
         let effects = self.at(values);
         let term = |row: &Observation| {
-            let (fan, perturbation) = facing(&effects, observations, row);
-            let outcomes = sonar.outcomes(&fan, &perturbation, row.previous_echo_cm);
+            let outcomes = facing(&effects, observations, row).outcomes(sonar);
             let rate = outcomes.log_detection(row.echo_cm);
             let [rate_weight, value_weight] = row.echo_weight;
             [rate_weight * rate, value_weight * (outcomes.log_likelihood(row.echo_cm) - rate)]

@@ -169,7 +169,7 @@ impl Bench<'_> {
         let Some(sonar) = &self.context.baseline.sonar else { return 0.0 };
         let likelihood = |effects: &EffectChain| {
             let (fan, perturbation) = self.facing(effects, step);
-            let outcomes = sonar.outcomes(&fan, &perturbation, None);
+            let outcomes = sonar.outcomes(&fan, &perturbation);
             move |echo_cm: Option<f64>| outcomes.log_likelihood(echo_cm)
         };
         let (a, b) = (likelihood(&self.chosen), likelihood(&self.rival));

@@ -68,6 +68,7 @@ pub fn baseline() -> Baseline<'static> {
         motion: Some(MotionModel::Kinematic { robot: robot(), scatter: SCATTER }),
         sonar: None,
         place_bound: [0.0; 2],
+        familiar: None,
         applied: Vec::new(),
     }
 }
@@ -116,14 +117,13 @@ pub fn observations(blocks: usize, rows: usize, made: impl Fn(usize, usize) -> M
             motion: Some(motion),
             expected: None,
             echo_cm: echo_off_cm.zip(context.faced).map(|(off_cm, [distance_cm, _])| distance_cm + off_cm),
-            previous_echo_cm: None,
             fan: surroundings.fan(&pose, 0.0, FAN_WIDTH),
         }
     };
     let rows = (0..blocks).flat_map(|block| (0..rows).map(move |at| (block, at))).map(|(block, at)| row(block, at));
     let mut rows: Vec<Observation> = rows.collect();
     let places = number_places(&mut rows);
-    Observations { rows, surroundings, fan_width: FAN_WIDTH, blocks, places }
+    Observations { rows, surroundings, fan_width: FAN_WIDTH, recollection: None, blocks, places }
 }
 
 /// Logs of runs that do what the textbook says of their commands, with readings that are the distance.

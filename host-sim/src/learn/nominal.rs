@@ -4,7 +4,7 @@ use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
 use crate::geometry::{Pose, cast};
-use crate::learn::{place_bound, scatter};
+use crate::learn::{familiar, place_bound, scatter};
 use crate::logs::{Logs, samples};
 use crate::simulator::Simulator;
 use crate::simulator::nominal::NominalModel;
@@ -22,8 +22,9 @@ const FEWEST: usize = 100;
 /// The reference of a simulator whose networks are trained, from its training logs.
 pub fn learn(simulator: &Simulator, logs: &Logs) -> NominalModel {
     let sonar = sonar(simulator, logs);
-    let place_bound = sonar.as_ref().map_or([0.0; 2], |sonar| place_bound::learn(sonar, logs));
-    NominalModel { motion: motion(simulator, logs), sonar, place_bound }
+    let seen = sonar.as_ref().map(|sonar| place_bound::seen(sonar, logs)).unwrap_or_default();
+    let familiar = sonar.as_ref().and_then(|sonar| familiar::learn(sonar, &seen, &logs.scene));
+    NominalModel { motion: motion(simulator, logs), sonar, place_bound: place_bound::learn(&seen), familiar }
 }
 
 fn motion(simulator: &Simulator, logs: &Logs) -> Option<MotionBias> {
@@ -120,7 +121,7 @@ fn sonar(simulator: &Simulator, logs: &Logs) -> Option<SonarModel> {
         let reference = sonar_from(at, value_cm, range_cm);
         let term = |(sensor, echo): &(Pose, Option<f64>)| {
             let fan = fan_at(&sides, sensor, reference.fan_width);
-            reference.outcomes(&fan, &Perturbation::NONE, None).log_likelihood(*echo)
+            reference.outcomes(&fan, &Perturbation::NONE).log_likelihood(*echo)
         };
         seen.par_iter().map(term).collect()
     };

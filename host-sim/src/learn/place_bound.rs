@@ -3,6 +3,7 @@
 
 use rayon::prelude::*;
 
+use crate::geometry::Pose;
 use crate::logs::{Logs, Row};
 use crate::sonar::place::{Place, place_of};
 use crate::sonar::{Perturbation, SonarModel, fan_at};
@@ -13,54 +14,71 @@ use crate::statistics::summary::{QUARTILE, median};
 const FARTHEST: f64 = 3.0;
 
 /// A row at which the robot was seen.
-struct Seen {
-    place: Place,
-    run: usize,
+pub struct Seen {
+    /// Where the sensor was.
+    pub sensor: Pose,
+    /// Which run.
+    pub run: usize,
     /// Probability of no reading.
-    none: f64,
-    heard: bool,
+    pub none: f64,
+    /// What was read, cm.
+    pub echo_cm: Option<f64>,
     /// Reading minus what was expected, if there is one.
-    off_cm: Option<f64>,
+    pub off_cm: Option<f64>,
 }
 
-/// The shares of the echo rate and of the readings, from the sensor's training logs.
-pub fn learn(sonar: &SonarModel, logs: &Logs) -> [f64; 2] {
+/// The shares of the echo rate and of the readings.
+pub fn learn(seen: &[Seen]) -> [f64; 2] {
+    [rate(seen), value(seen)]
+}
+
+/// What the sensor said in its training logs, beside what its model expects.
+pub fn seen(sonar: &SonarModel, logs: &Logs) -> Vec<Seen> {
     let sides = logs.scene.sides();
     let rows: Vec<(usize, &Row)> =
         logs.runs.iter().enumerate().flat_map(|(run, logged)| logged.rows.iter().map(move |row| (run, row))).collect();
     let seen = |(run, row): &(usize, &Row)| {
         let sensor = logs.robot.ultrasonic.pose_on(&row.pose?);
-        let outcomes = sonar.outcomes(&fan_at(&sides, &sensor, sonar.fan_width), &Perturbation::NONE, None);
+        let outcomes = sonar.outcomes(&fan_at(&sides, &sensor, sonar.fan_width), &Perturbation::NONE);
         let off_cm = row.echo_cm.zip(outcomes.mean_hit_cm()).map(|(echo_cm, expected_cm)| echo_cm - expected_cm);
-        let (place, heard) = (place_of(&sensor), row.echo_cm.is_some());
-        Some(Seen { place, run: *run, none: outcomes.none, heard, off_cm })
+        Some(Seen { sensor, run: *run, none: outcomes.none, echo_cm: row.echo_cm, off_cm })
     };
-    let seen: Vec<Seen> = rows.par_iter().filter_map(seen).collect();
-    [rate(&seen), value(&seen)]
+    rows.par_iter().filter_map(seen).collect()
 }
 
 fn rate(seen: &[Seen]) -> f64 {
-    let deviation = |Seen { place, run, none, heard, .. }: &Seen| {
-        let off = if *heard { *none } else { none - 1.0 };
-        Deviation { group: *place, run: *run, off, scatter: (none * (1.0 - none)).sqrt() }
+    let deviation = |row: &Seen| {
+        let [off, scatter] = row.rate();
+        Deviation { group: place_of(&row.sensor), run: row.run, off, scatter }
     };
     intraclass::share(&seen.iter().map(deviation).collect::<Vec<_>>())
 }
 
 fn value(seen: &[Seen]) -> f64 {
-    let scatter_cm = median(seen.iter().filter_map(|row| row.off_cm).map(f64::abs)) / QUARTILE;
-    if scatter_cm.is_nan() || scatter_cm == 0.0 {
-        return 0.0;
-    }
+    let Some(scatter_cm) = scatter_cm(seen) else { return 0.0 };
     let within = |off_cm: f64| (off_cm / scatter_cm).clamp(-FARTHEST, FARTHEST);
     let off: Vec<(Place, usize, f64)> =
-        seen.iter().filter_map(|row| Some((row.place, row.run, within(row.off_cm?)))).collect();
+        seen.iter().filter_map(|row| Some((place_of(&row.sensor), row.run, within(row.off_cm?)))).collect();
     let count = off.len() as f64;
     let mean = off.iter().map(|(.., off)| off).sum::<f64>() / count;
     let scatter = (off.iter().map(|(.., off)| (off - mean) * (off - mean)).sum::<f64>() / count).sqrt();
     let deviation =
         |(place, run, off): &(Place, usize, f64)| Deviation { group: *place, run: *run, off: off - mean, scatter };
     intraclass::share(&off.iter().map(deviation).collect::<Vec<_>>())
+}
+
+/// The scatter of what is read about what was expected; none where there is none.
+fn scatter_cm(seen: &[Seen]) -> Option<f64> {
+    let scatter_cm = median(seen.iter().filter_map(|row| row.off_cm).map(f64::abs)) / QUARTILE;
+    (scatter_cm > 0.0).then_some(scatter_cm)
+}
+
+impl Seen {
+    /// Reading or none minus the probability of one, and the standard deviation of that.
+    fn rate(&self) -> [f64; 2] {
+        let off = if self.echo_cm.is_some() { self.none } else { self.none - 1.0 };
+        [off, (self.none * (1.0 - self.none)).sqrt()]
+    }
 }
 
 #[cfg(test)]

@@ -8,6 +8,7 @@ use crate::simulator::motion::MotionNetworks;
 use crate::simulator::nominal::MotionBias;
 use crate::simulator::{Learned, Simulator};
 use crate::sonar::SonarModel;
+use crate::sonar::familiar::FamiliarPoses;
 
 /// The models of motion and sonar without any gap.
 pub struct Baseline<'s> {
@@ -17,6 +18,8 @@ pub struct Baseline<'s> {
     pub sonar: Option<SonarModel>,
     /// Share of the chance in its echo rate and in its readings that belongs to the place, as far as it is known.
     pub place_bound: [f64; 2],
+    /// What belongs to single poses.
+    pub familiar: Option<&'s FamiliarPoses>,
     /// Effects that were added to the simulator before.
     pub applied: Vec<AppliedEffect>,
 }
@@ -64,6 +67,7 @@ impl<'s> Baseline<'s> {
             motion,
             sonar: reference.sonar.clone(),
             place_bound: reference.place_bound,
+            familiar: reference.familiar.as_ref(),
             applied: simulator.added.clone(),
         })
     }

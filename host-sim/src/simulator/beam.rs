@@ -170,9 +170,9 @@ impl Beam {
 }
 
 impl Thresholds {
-    /// Of a sensor without perturbation: there are no ghosts, no long and no stale readings.
+    /// Of a sensor without perturbation: there are no ghosts and no long readings.
     fn new(reference: &SonarModel, arrives: bool) -> Self {
-        let weights = MixingWeights::new(reference, &Perturbation::NONE, arrives, false);
+        let weights = MixingWeights::new(reference, &Perturbation::NONE, arrives);
         let short = weights.short;
         let stray = short + weights.stray;
         let constant = stray + weights.constant;

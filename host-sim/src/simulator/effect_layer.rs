@@ -99,7 +99,7 @@ impl<'s> EffectLayer<'s> {
         let state = self.effects.sensor(&context);
         let fan = self.surroundings.fan(&state.robot, state.yaw_rad, sonar.fan_width * state.width);
         let mut rng = generator(u64::from(draw.to_bits()), &[memory.steps as u64]);
-        let outcomes = sonar.outcomes(&fan, &state.perturbation, memory.history.echo_before_cm());
+        let outcomes = sonar.outcomes(&fan, &state.perturbation);
         let echo_cm = outcomes.draw(self.noise == Noise::Learned, || rng.random());
         memory.history.sensed(echo_cm);
         echo_cm.map(|cm| cm as f32)

@@ -27,6 +27,7 @@ pub fn baseline(logs: &Logs) -> Baseline<'static> {
         motion: Some(MotionModel::Kinematic { robot: logs.robot, scatter }),
         sonar: sonar(logs),
         place_bound: [0.0; 2],
+        familiar: None,
         applied: Vec::new(),
     }
 }

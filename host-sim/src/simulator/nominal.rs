@@ -8,6 +8,7 @@ pub mod motion_bias;
 use serde::{Deserialize, Serialize};
 
 use crate::sonar::SonarModel;
+use crate::sonar::familiar::FamiliarPoses;
 pub use motion_bias::MotionBias;
 
 /// What is normal, as far as the training logs show it.
@@ -20,4 +21,7 @@ pub struct NominalModel {
     /// Share of the chance in its echo rate and in its readings that belongs to the place.
     #[serde(default)]
     pub place_bound: [f64; 2],
+    /// What belongs to single poses, where readings came from the same ones again and again.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub familiar: Option<FamiliarPoses>,
 }

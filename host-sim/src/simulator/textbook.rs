@@ -67,6 +67,7 @@ pub fn simulator(baseline: &Baseline, scatter: [f64; 3]) -> Result<Simulator> {
             }),
             sonar: baseline.sonar.clone(),
             place_bound: baseline.place_bound,
+            familiar: None,
         }),
         ensemble: None,
         table_one: None,
@@ -175,7 +176,7 @@ mod tests {
     fn baseline() -> Baseline<'static> {
         let robot = crate::built_in_robot::default_robot();
         let motion = Some(MotionModel::Kinematic { robot, scatter: SCATTER });
-        Baseline { motion, sonar: None, place_bound: [0.0; 2], applied: Vec::new() }
+        Baseline { motion, sonar: None, place_bound: [0.0; 2], familiar: None, applied: Vec::new() }
     }
 
     proptest! {

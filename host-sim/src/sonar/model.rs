@@ -9,7 +9,7 @@ pub const FAR_CM: f64 = 300.0;
 /// Probability of a random answer: no model is certain. It bounds what one reading can say against a hypothesis (six
 /// nats for or against an echo, eleven for a place).
 pub const P_RAND: f64 = 0.006;
-/// Constant, ghost and stale readings scatter by this scale, cm: they are logged in whole centimetres, and the paper's is
+/// Constant and ghost readings scatter by this scale, cm: they are logged in whole centimetres, and the paper's is
 /// "roughly" constant (section VIII).
 pub const CONSTANT_SCATTER_CM: f64 = 0.8;
 /// Short and long readings are uniform over this length at least, cm, however near to an end of the range the axis' wall

@@ -40,8 +40,6 @@ pub enum Source {
     Short,
     /// From beyond what the axis meets.
     Long,
-    /// The reading before.
-    Stale,
     /// From anywhere.
     Stray,
 }
@@ -79,8 +77,6 @@ pub struct MixingWeights {
     pub short: f64,
     /// Of a long reading.
     pub long: f64,
-    /// Of the reading before.
-    pub stale: f64,
     /// Of a reading from anywhere.
     pub stray: f64,
     /// Of no reading.
@@ -88,9 +84,8 @@ pub struct MixingWeights {
 }
 
 impl MixingWeights {
-    /// The weights of a sensor where an echo `arrives`, or none; `has_previous` is whether there is a reading that could
-    /// come again.
-    pub fn new(model: &SonarModel, perturbation: &Perturbation, arrives: bool, has_previous: bool) -> Self {
+    /// The weights of a sensor where an echo `arrives`, or none.
+    pub fn new(model: &SonarModel, perturbation: &Perturbation, arrives: bool) -> Self {
         let Perturbation { p_ghost_given_echo, p_ghost_given_none, p_long, .. } = *perturbation;
         let detected = if arrives { neither(model.p_dropout, perturbation.p_dropout) } else { 0.0 };
         let missed = 1.0 - detected;
@@ -103,16 +98,14 @@ impl MixingWeights {
         let not_short = neither(model.p_short, perturbation.p_short);
         let none = not_short * none;
         let reading = 1.0 - none;
-        let p_stale = if has_previous { perturbation.p_stale } else { 0.0 };
-        let fresh = neither(p_long, p_stale);
+        let not_long = 1.0 - p_long;
         let known = 1.0 - P_RAND;
         MixingWeights {
-            hit: known * fresh * not_short * hit,
-            ghost: known * fresh * not_short * ghost,
-            constant: known * fresh * not_short * constant,
-            short: known * fresh * (1.0 - not_short),
-            long: known * reading * p_long * (1.0 - p_stale),
-            stale: known * reading * p_stale,
+            hit: known * not_long * not_short * hit,
+            ghost: known * not_long * not_short * ghost,
+            constant: known * not_long * not_short * constant,
+            short: known * not_long * (1.0 - not_short),
+            long: known * reading * p_long,
             stray: 0.5 * P_RAND,
             none: known * none + 0.5 * P_RAND,
         }
@@ -120,12 +113,11 @@ impl MixingWeights {
 }
 
 impl Outcomes {
-    /// The outcomes of a reading of `fan`; `previous_cm` is the reading before, if there was one.
-    pub fn new(model: &SonarModel, fan: &Fan, perturbation: &Perturbation, previous_cm: Option<f64>) -> Self {
+    /// The outcomes of a reading of `fan`.
+    pub fn new(model: &SonarModel, fan: &Fan, perturbation: &Perturbation) -> Self {
         let echoes = first_echoes(model, fan, perturbation);
         let arrives: f64 = echoes.iter().map(|echo| echo.probability).sum();
-        let [heard, silent] =
-            [true, false].map(|arrives| MixingWeights::new(model, perturbation, arrives, previous_cm.is_some()));
+        let [heard, silent] = [true, false].map(|arrives| MixingWeights::new(model, perturbation, arrives));
         let total = |weight: fn(&MixingWeights) -> f64| arrives * weight(&heard) + (1.0 - arrives) * weight(&silent);
 
         let [low, high] = model.range_cm;
@@ -138,7 +130,6 @@ impl Outcomes {
             (Source::Constant, total(|w| w.constant), about(model.constant[1])),
             (Source::Short, total(|w| w.short), between(low, reach)),
             (Source::Long, total(|w| w.long), between(reach, high)),
-            (Source::Stale, total(|w| w.stale), about(previous_cm.unwrap_or(low))),
             (Source::Stray, total(|w| w.stray), between(low, high)),
         ];
         let hits = echoes.iter().map(|echo| Component {
@@ -172,8 +163,8 @@ impl Distribution {
 
 impl SonarModel {
     /// The outcomes of a reading; see [`Outcomes::new`].
-    pub fn outcomes(&self, fan: &Fan, perturbation: &Perturbation, previous_cm: Option<f64>) -> Outcomes {
-        Outcomes::new(self, fan, perturbation, previous_cm)
+    pub fn outcomes(&self, fan: &Fan, perturbation: &Perturbation) -> Outcomes {
+        Outcomes::new(self, fan, perturbation)
     }
 }
 

@@ -59,7 +59,6 @@ pub const PERTURBED: Perturbation = Perturbation {
     ghost_cm: 34.0,
     p_short: 0.05,
     p_long: 0.06,
-    p_stale: 0.15,
 };
 
 /// A room with an obstacle, and the obstacle alone: there a fan may meet nothing.

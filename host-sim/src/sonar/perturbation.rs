@@ -27,8 +27,6 @@ pub struct Perturbation {
     pub p_short: f64,
     /// Probability of a random reading from beyond what the axis meets, in place of a reading.
     pub p_long: f64,
-    /// Probability of the reading before, in place of a reading.
-    pub p_stale: f64,
 }
 
 impl Perturbation {
@@ -46,6 +44,5 @@ impl Perturbation {
         ghost_cm: 20.0,
         p_short: 0.0,
         p_long: 0.0,
-        p_stale: 0.0,
     };
 }

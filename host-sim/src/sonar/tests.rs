@@ -13,10 +13,8 @@ fn grid() -> Vec<(String, Outcomes)> {
         for (p, pose) in sensors().iter().enumerate() {
             for (m, model) in SENSORS.iter().enumerate() {
                 let fan = fan_at(&scene.sides(), pose, model.fan_width);
-                for (name, perturbation, previous_cm) in
-                    [("as it is", Perturbation::NONE, None), ("perturbed", PERTURBED, Some(47.0))]
-                {
-                    let outcomes = model.outcomes(&fan, &perturbation, previous_cm);
+                for (name, perturbation) in [("as it is", Perturbation::NONE), ("perturbed", PERTURBED)] {
+                    let outcomes = model.outcomes(&fan, &perturbation);
                     grid.push((format!("sensor {m} at {p} of scene {s}, {name}"), outcomes));
                 }
             }
@@ -41,11 +39,11 @@ fn probabilities_add_up_to_one() {
         assert!((probabilities.iter().sum::<f64>() + outcomes.none - 1.0).abs() < 1e-12, "{what}");
     }
     for model in &SENSORS {
-        for (arrives, has_previous) in [(true, true), (true, false), (false, true), (false, false)] {
-            let w = MixingWeights::new(model, &PERTURBED, arrives, has_previous);
-            let sum = w.hit + w.ghost + w.constant + w.short + w.long + w.stale + w.stray + w.none;
+        for arrives in [true, false] {
+            let w = MixingWeights::new(model, &PERTURBED, arrives);
+            let sum = w.hit + w.ghost + w.constant + w.short + w.long + w.stray + w.none;
             assert!((sum - 1.0).abs() < 1e-12, "{w:?}");
-            assert_eq!((w.hit > 0.0, w.stale > 0.0), (arrives, has_previous));
+            assert_eq!(w.hit > 0.0, arrives);
         }
     }
 }
@@ -122,7 +120,7 @@ fn drawn_readings_are_as_likely_as_they_come() {
 fn without_scatter_a_hit_is_its_middle() {
     let model = SonarModel { constant: [0.0, 20.0], p_short: 0.0, p_dropout: 0.0, ..SENSORS[2].clone() };
     let fan = fan_at(&scenes()[0].sides(), &sensors()[0], 0.0);
-    let outcomes = model.outcomes(&fan, &Perturbation::NONE, None);
+    let outcomes = model.outcomes(&fan, &Perturbation::NONE);
     let mean_cm = outcomes.mean_hit_cm().expect("there is a wall");
     let mut rng = generator(6, &[]);
     let draws = (0..1000).filter_map(|_| outcomes.draw(false, || rng.random()));

@@ -72,14 +72,29 @@ pub fn climb_on(
     let Maximum { mut at, terms: mut here, mut scores } = from;
     for _ in 0..rounds {
         let before = sum(&here);
-        let direction = solve(&scores, &at, bounds);
-        let along = |length: f64| {
-            let trial = moved(bounds, &at, &direction.iter().map(|d| d * length).collect::<Vec<f64>>());
-            let there = terms(&trial);
-            (sum(&there), trial, there)
+        let (gradient, curvature) = (gradient(&scores, |_| true), curvature(&scores, |_| true));
+        let search = |direction: &[f64]| {
+            let along = |length: f64| {
+                let trial = moved(bounds, &at, &direction.iter().map(|d| d * length).collect::<Vec<f64>>());
+                let there = terms(&trial);
+                (sum(&there), trial, there)
+            };
+            line_search(before, along)
         };
-        let best = line_search(before, along);
-        let gain = best.as_ref().map_or(0.0, |b| b.0 - before);
+        let gained = |best: &Option<Trial>| best.as_ref().map_or(0.0, |b| b.0 - before);
+        let direction = step(&gradient, &curvature, &at, bounds);
+        let mut best = search(&direction);
+        let promised: f64 = direction.iter().zip(&gradient).map(|(d, g)| d * g).sum();
+        if gained(&best) < enough && promised > enough {
+            // Where all terms pull alike, their scores do not tell how far to go in other directions: each on its own then.
+            let own = |i: usize| {
+                let length = gradient[i] / curvature[(i, i)];
+                search(&(0..at.len()).map(|j| if i == j { length } else { 0.0 }).collect::<Vec<f64>>())
+            };
+            let others = (0..at.len()).map(own);
+            best = others.fold(best, |best, other| if gained(&other) > gained(&best) { other } else { best });
+        }
+        let gain = gained(&best);
         if let Some((_, trial, there)) = best {
             (at, here) = (trial, there);
         }
@@ -115,18 +130,20 @@ impl Maximum {
 
     /// Where the maximum would lie without the terms for which `left_out` holds, to first order.
     pub fn without(&self, bounds: &[Bounds], left_out: impl Fn(usize) -> bool) -> Vec<f64> {
+        let all = gradient(&self.scores, |_| true);
+        let kept = gradient(&self.scores, |i| !left_out(i));
+        // Where no bound holds it the sum's own slope is zero, but for what differences are off by.
+        let at_bound = |i: usize| self.at[i] <= bounds[i].low || self.at[i] >= bounds[i].high;
+        let pull = (0..self.at.len()).map(|i| if at_bound(i) { kept[i] } else { kept[i] - all[i] });
         let curvature = curvature(&self.scores, |i| !left_out(i));
-        let p = self.at.len();
-        // The full sum's gradient vanishes only where no bound holds it; what the kept terms pull beyond it moves the
-        // maximum.
-        let mut pull = DVector::zeros(p);
-        for (i, s) in self.scores.iter().enumerate() {
-            if left_out(i) {
-                pull -= DVector::from_column_slice(s);
-            }
-        }
-        let step = curvature.cholesky().map_or(DVector::zeros(p), |c| c.solve(&pull));
-        moved(bounds, &self.at, step.as_slice())
+        moved(bounds, &self.at, &step(&pull.collect::<Vec<f64>>(), &curvature, &self.at, bounds))
+    }
+
+    /// How many of the parameters the terms tell of: one that moves none of them is none. It is what the sum gains by their
+    /// freedom where terms are independent, in half nats.
+    pub fn told(&self, is_term: impl Fn(usize) -> bool) -> f64 {
+        let inverse = curvature(&self.scores, is_term).cholesky().map(|c| c.inverse());
+        inverse.map_or(0.0, |inverse| self.at.len() as f64 - RIDGE * inverse.trace())
     }
 }
 
@@ -155,15 +172,20 @@ fn line_search(before: f64, along: impl Fn(f64) -> Trial) -> Option<Trial> {
     None
 }
 
-fn solve(scores: &[Vec<f64>], at: &[f64], bounds: &[Bounds]) -> Vec<f64> {
+/// The sum of the kept terms' scores.
+fn gradient(scores: &[Vec<f64>], kept: impl Fn(usize) -> bool) -> Vec<f64> {
+    let kept_scores = || scores.iter().enumerate().filter(|(i, _)| kept(*i)).map(|(_, s)| s);
+    (0..scores.first().map_or(0, Vec::len)).map(|i| kept_scores().map(|s| s[i]).sum()).collect()
+}
+
+/// The step to where the slope vanishes, to first order.
+fn step(gradient: &[f64], curvature: &DMatrix<f64>, at: &[f64], bounds: &[Bounds]) -> Vec<f64> {
     let p = at.len();
-    let gradient: Vec<f64> = (0..p).map(|i| scores.iter().map(|s| s[i]).sum()).collect();
     // A parameter that a bound holds stays out of the step.
     let held =
         |i: usize| (at[i] <= bounds[i].low && gradient[i] < 0.0) || (at[i] >= bounds[i].high && gradient[i] > 0.0);
     let free: Vec<usize> = (0..p).filter(|i| !held(*i)).collect();
-    let full = curvature(scores, |_| true);
-    let matrix = DMatrix::from_fn(free.len(), free.len(), |r, c| full[(free[r], free[c])]);
+    let matrix = DMatrix::from_fn(free.len(), free.len(), |r, c| curvature[(free[r], free[c])]);
     let pull = DVector::from_iterator(free.len(), free.iter().map(|i| gradient[*i]));
     let mut step = vec![0.0; p];
     if let Some(solved) = matrix.cholesky().map(|c| c.solve(&pull)) {
@@ -293,10 +315,42 @@ mod tests {
         assert!((found.at[1] + 3.0).abs() < 0.05, "{:?}", found.at);
     }
 
+    /// A share of the terms is near one value, each just as near: a share and a value to find, and no scatter.
+    #[test]
+    fn what_pulls_in_one_direction_is_followed_to_the_end() {
+        let terms = |at: &[f64]| -> Vec<f64> {
+            let near = at[0] * libm::exp(-0.5 * (at[1] - 60.0) * (at[1] - 60.0));
+            let term = |i: usize| libm::log(if i % 5 == 0 { near + (1.0 - at[0]) * 1e-5 } else { 1.0 - at[0] });
+            (0..500).map(term).collect()
+        };
+        let bounds = [Bounds::new(0.0, 0.6), Bounds { low: 5.0, high: 80.0, scale: 1.5 }];
+        let found = climb(&bounds, &[0.05, 59.0], 50, 0.1, terms);
+        assert!((found.at[0] - 0.2).abs() < 0.02 && (found.at[1] - 60.0).abs() < 0.1, "{:?}", found.at);
+    }
+
     #[test]
     fn leaving_nothing_out_leaves_the_maximum_where_it_is() {
         let found = climb(&[WIDE], &[0.0], 50, 1e-9, normal(&[1.0, 3.0]));
         assert_eq!(found.without(&[WIDE], |_| false), found.at);
+    }
+
+    /// Nineteen of twenty pull beyond the bound, whichever is left out.
+    #[test]
+    fn what_is_left_out_frees_nothing_that_the_others_hold_at_a_bound() {
+        let bounds = [Bounds::new(0.0, 10.0)];
+        let values: Vec<f64> = (0..20).map(|i| if i == 0 { 1.0 } else { -1.0 }).collect();
+        let found = climb(&bounds, &[5.0], 50, 1e-9, normal(&values));
+        assert_eq!(found.at, [0.0]);
+        assert_eq!(found.without(&bounds, |i| i == 7), [0.0]);
+        assert!(found.without(&bounds, |i| i > 0)[0] > 0.0, "the one that is left pulls it off the bound");
+    }
+
+    #[test]
+    fn terms_tell_of_no_parameter_that_moves_none_of_them() {
+        let values = [1.0, 3.0].repeat(50);
+        let told = |terms: &dyn Fn(&[f64]) -> Vec<f64>| climb(&[WIDE; 2], &[0.0; 2], 50, 1e-9, terms).told(|_| true);
+        assert!((told(&|at| normal(&values)(&at[..1])) - 1.0).abs() < 0.01);
+        assert!((told(&|at| [normal(&values)(&at[..1]), normal(&values)(&at[1..])].concat()) - 2.0).abs() < 0.02);
     }
 
     #[test]

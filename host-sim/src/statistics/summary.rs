@@ -37,3 +37,8 @@ pub fn robust_slope(pairs: impl Iterator<Item = (f64, f64)>) -> Option<f64> {
 pub fn logistic(x: f64) -> f64 {
     1.0 / (1.0 + libm::exp(-x))
 }
+
+/// The log-odds of a probability.
+pub fn log_odds(p: f64) -> f64 {
+    libm::log(p / (1.0 - p))
+}

@@ -106,6 +106,56 @@ const DRIVE: &[Injection] = &[
     },
 ];
 
+/// Changes put into scans of a real sonar from places where it stands still.
+const SCANS: &[Injection] = &[
+    Injection { name: "none", called: &[], change: |_| {} },
+    Injection {
+        name: "readings 3 cm longer",
+        called: &["sonar_offset"],
+        change: |run| echoes(run, |cm, _| Some(cm + 3.0)),
+    },
+    Injection {
+        name: "readings 4 cm shorter",
+        called: &["sonar_offset"],
+        change: |run| echoes(run, |cm, _| Some(cm - 4.0)),
+    },
+    Injection {
+        name: "readings 8 % longer",
+        called: &["sonar_scale"],
+        change: |run| echoes(run, |cm, _| Some(1.08 * cm)),
+    },
+    Injection {
+        name: "readings 7 % shorter",
+        called: &["sonar_scale"],
+        change: |run| echoes(run, |cm, _| Some(0.93 * cm)),
+    },
+    // Of a robot that stands still, a sensor that looks elsewhere is a heading that is wrong.
+    Injection {
+        name: "sensor turned by 8 degrees",
+        called: &["sonar_yaw", "tracker_rotation"],
+        change: |run| seen(run, |p| p.heading_rad = wrap_rad(p.heading_rad - 0.14)),
+    },
+    Injection {
+        name: "sensor turned by -12 degrees",
+        called: &["sonar_yaw", "tracker_rotation"],
+        change: |run| seen(run, |p| p.heading_rad = wrap_rad(p.heading_rad + 0.21)),
+    },
+    Injection { name: "a ghost at 35 cm", called: &["sonar_ghost"], change: |run| ghost(run, 35.0, 0.1) },
+    Injection { name: "a ghost at 60 cm", called: &["sonar_ghost"], change: |run| ghost(run, 60.0, 0.15) },
+    Injection { name: "15 % of the readings lost", called: &["sonar_dropout"], change: |run| bursts(run, 0.15) },
+    Injection { name: "30 % of the readings lost", called: &["sonar_dropout"], change: |run| bursts(run, 0.3) },
+    Injection {
+        name: "readings scatter by 4 cm",
+        called: &["sonar_noise"],
+        change: |run| echoes(run, |cm, rng| Some(cm + 4.0 * normal(rng))),
+    },
+    Injection {
+        name: "readings scatter by 7 cm",
+        called: &["sonar_noise"],
+        change: |run| echoes(run, |cm, rng| Some(cm + 7.0 * normal(rng))),
+    },
+];
+
 /// Nine of ten changes are named first, nothing is where nothing was changed, and no wrong name is sure.
 pub fn changes_of_a_real_drive_are_named(folder: &Path) {
     let logs = Logs::read(folder, |_| ()).expect("logs");
@@ -115,6 +165,16 @@ pub fn changes_of_a_real_drive_are_named(folder: &Path) {
         Logs { runs: runs.collect(), ..logs.clone() }
     };
     judge(&part(false), &part(true), DRIVE);
+}
+
+/// The same of a sonar that stands still: three of the five scans from each place are learned from.
+pub fn changes_of_a_real_sonar_that_stands_still_are_named(folder: &Path) {
+    let logs = Logs::read(folder, |_| ()).expect("logs");
+    let part = |held_out: bool| {
+        let runs = logs.runs.iter().enumerate().filter(|(i, _)| (i % 5 >= 3) == held_out).map(|(_, run)| run.clone());
+        Logs { runs: runs.collect(), ..logs.clone() }
+    };
+    judge(&part(false), &part(true), SCANS);
 }
 
 fn judge(training: &Logs, held_out: &Logs, injections: &[Injection]) {
@@ -236,11 +296,42 @@ fn marker(run: &mut Run, ahead_cm: f64) {
 
 /// The tracker scatters.
 fn noise(run: &mut Run, cm: f64, rad: f64) {
-    let mut rng = SmallRng::seed_from_u64(run.rows.len() as u64 + run.name.bytes().map(u64::from).sum::<u64>());
-    // The sum of twelve uniform draws is nearly normal.
-    let mut normal = move || (0..12).map(|_| rng.random::<f64>()).sum::<f64>() - 6.0;
+    let mut rng = generator(run);
     seen(run, |pose| {
-        pose.position_cm += cm * DVec2::new(normal(), normal());
-        pose.heading_rad = wrap_rad(pose.heading_rad + rad * normal());
+        pose.position_cm += cm * DVec2::new(normal(&mut rng), normal(&mut rng));
+        pose.heading_rad = wrap_rad(pose.heading_rad + rad * normal(&mut rng));
     });
+}
+
+/// Changes every reading, given in whole centimetres.
+fn echoes(run: &mut Run, change: impl Fn(f64, &mut SmallRng) -> Option<f64>) {
+    let mut rng = generator(run);
+    for row in &mut run.rows {
+        row.echo_cm = row.echo_cm.and_then(|cm| change(cm, &mut rng)).map(|cm| cm.max(0.0).round());
+    }
+}
+
+/// Now and then one wrong reading.
+fn ghost(run: &mut Run, cm: f64, probability: f64) {
+    echoes(run, |right_cm, rng| Some(if rng.random::<f64>() < probability { cm } else { right_cm }));
+}
+
+/// Readings fail for five rows in a row on average.
+fn bursts(run: &mut Run, share: f64) {
+    let begins = 0.2 * share / (1.0 - share);
+    let mut rng = generator(run);
+    let mut fails = false;
+    for row in &mut run.rows {
+        fails = rng.random::<f64>() < if fails { 0.8 } else { begins };
+        row.echo_cm = row.echo_cm.filter(|_| !fails);
+    }
+}
+
+fn generator(run: &Run) -> SmallRng {
+    SmallRng::seed_from_u64(run.rows.len() as u64 + run.name.bytes().map(u64::from).sum::<u64>())
+}
+
+/// The sum of twelve uniform draws is nearly normal.
+fn normal(rng: &mut SmallRng) -> f64 {
+    (0..12).map(|_| rng.random::<f64>()).sum::<f64>() - 6.0
 }

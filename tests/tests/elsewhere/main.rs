@@ -29,6 +29,7 @@ fn main() -> ExitCode {
         trial!(gap_real::the_loss_in_turns_of_a_real_robot_is_found_as_a_formula, "real/create"),
         trial!(gap_real::a_real_sonar_that_stands_still_is_compared_with_the_textbook, "real/nxt-sonar"),
         trial!(injections::changes_of_a_real_drive_are_named, "real/create"),
+        trial!(injections::changes_of_a_real_sonar_that_stands_still_are_named, "real/nxt-sonar/sacha_repeat"),
         trial!(inspection::made_up_logs_stay_as_they_are, "data"),
         trial!(inspection::scans_at_rest_stay_as_they_are, "real/nxt-sonar"),
         trial!(inspection::a_drive_cut_into_runs_starts_moving, "real/create"),

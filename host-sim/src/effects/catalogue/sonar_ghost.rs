@@ -38,7 +38,7 @@ parameters! {
         /// Chance of it in a reading. Above 0.6 the sensor would measure little else.
         probability: Parameter::new("", 0.0, [0.0, 0.6]).prior_sd(0.2).from(Guesses::At(&[0.05])),
         /// The reading: parts of the robot itself and the floor lie between 5 and 80 cm. A ghost scatters by a centimetre, so
-        /// a fit that starts farther off than 1.5 cm does not find it.
-        cm: Parameter::new("cm", 20.0, [5.0, 80.0]).from(Guesses::Every(3.0)),
+        /// a fit that starts farther off than 1.5 cm does not find it, and a change by as much is large.
+        cm: Parameter::new("cm", 20.0, [5.0, 80.0]).scale(1.5).from(Guesses::Every(3.0)),
     }
 }

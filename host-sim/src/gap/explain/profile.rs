@@ -130,8 +130,7 @@ pub(super) fn off(
         }
         (None, _, Some(sonar)) => {
             let one = |row: &Observation| {
-                let (fan, perturbation) = facing(effects, observations, row);
-                let outcomes = sonar.outcomes(&fan, &perturbation, None);
+                let outcomes = facing(effects, observations, row).outcomes(sonar);
                 if channel == Channel::EchoRate {
                     return Some(f64::from(u8::from(row.echo_cm.is_some())) - 1.0 + outcomes.none);
                 }

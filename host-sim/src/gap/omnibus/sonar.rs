@@ -4,13 +4,13 @@ use super::{Law, ResidualFit, Steps, Surface};
 use crate::effects::StepContext;
 use crate::effects::chain::EffectChain;
 use crate::evaluation::observations::{Observation, Observations};
-use crate::evaluation::predictions::facing;
+use crate::evaluation::predictions::{Faced, facing};
 use crate::gap::channel::Channel;
 use crate::gap::fit::{FitContext, Fitted, MOST_ITERATIONS, TOLERANCE_NATS};
 use crate::simulator::baseline::Baseline;
+use crate::sonar::Perturbation;
 use crate::sonar::SonarModel;
 use crate::sonar::model::FAR_CM;
-use crate::sonar::{Fan, Perturbation};
 use crate::statistics::maximise::{Bounds, climb};
 use crate::statistics::summary::{QUARTILE, median};
 
@@ -32,10 +32,8 @@ pub struct Heard<'a> {
 }
 
 struct Reading {
-    fan: Fan,
-    change: Perturbation,
+    faced: Faced,
     echo_cm: Option<f64>,
-    previous_echo_cm: Option<f64>,
     weight: [f64; 2],
 }
 
@@ -137,9 +135,9 @@ impl<'a> Heard<'a> {
     /// With effects.
     pub fn of(effects: &EffectChain, baseline: &'a Baseline, observations: &Observations) -> Self {
         let reading = |row: &Observation| {
-            let (fan, change) = facing(effects, observations, row);
-            let Observation { echo_cm, previous_echo_cm, echo_weight: weight, .. } = *row;
-            Reading { fan, change, echo_cm, previous_echo_cm, weight }
+            let faced = facing(effects, observations, row);
+            let Observation { echo_cm, echo_weight: weight, .. } = *row;
+            Reading { faced, echo_cm, weight }
         };
         Heard { sonar: baseline.sonar.as_ref(), rows: observations.rows.iter().map(reading).collect() }
     }
@@ -166,9 +164,9 @@ impl<'a> Heard<'a> {
 
     /// The probability of no reading.
     fn none(&self, reading: &Reading, prediction: f64) -> f64 {
-        let attenuation = reading.change.attenuation - prediction;
-        let change = Perturbation { attenuation, ..reading.change };
-        self.sonar.map_or(1.0, |sonar| sonar.outcomes(&reading.fan, &change, None).none)
+        let attenuation = reading.faced.change.attenuation - prediction;
+        let faced = reading.faced.with(Perturbation { attenuation, ..reading.faced.change });
+        self.sonar.map_or(1.0, |sonar| faced.outcomes(sonar).none)
     }
 
     /// The log-likelihood of each reading that there is, moved by the predictions and spread.
@@ -178,20 +176,18 @@ impl<'a> Heard<'a> {
 
     fn value(&self, reading: &Reading, prediction_cm: f64, spread: &Spread) -> f64 {
         let (Some(sonar), Some(_)) = (self.sonar, reading.echo_cm) else { return 0.0 };
-        let mut change = reading.change;
+        let mut change = reading.faced.change;
         change.offset_cm += prediction_cm;
         change.scatter_cm += spread.scatter_cm;
         change.p_short = 1.0 - (1.0 - change.p_short) * (1.0 - spread.short);
         change.p_long += spread.long;
-        let outcomes = sonar.outcomes(&reading.fan, &change, reading.previous_echo_cm);
+        let outcomes = reading.faced.with(change).outcomes(sonar);
         reading.weight[1] * (outcomes.log_likelihood(reading.echo_cm) - outcomes.log_detection(reading.echo_cm))
     }
 
     /// By how much readings are off, cm.
     fn offsets(&self, observations: &Observations) -> (Surface, Vec<f64>) {
-        let off = |reading: &Reading| {
-            Some(reading.echo_cm? - self.sonar?.outcomes(&reading.fan, &reading.change, None).mean_hit_cm()?)
-        };
+        let off = |reading: &Reading| Some(reading.echo_cm? - reading.faced.outcomes(self.sonar?).mean_hit_cm()?);
         let off: Vec<Option<f64>> = self.rows.iter().map(off).collect();
         let scatter_cm = (median(off.iter().flatten().map(|off_cm| off_cm.abs())) / QUARTILE).max(LEAST_SCATTER_CM);
         let response = |i: usize, prediction: f64| {

@@ -33,8 +33,7 @@ fn lanes_draw_the_outcomes_of_the_model() {
                     let echo_cm = f64::from(number(beam.report(&heard, &fate)));
                     (!echo_cm.is_nan()).then_some(echo_cm)
                 };
-                let outcomes =
-                    model.outcomes(&fan_at(&scene.sides(), pose, model.fan_width), &Perturbation::NONE, None);
+                let outcomes = model.outcomes(&fan_at(&scene.sides(), pose, model.fan_width), &Perturbation::NONE);
                 let cells = Partition::new(&outcomes);
                 let counts = cells.count((0..DRAWS).map(|_| reading()));
                 assert_follow(&counts, &cells.probabilities(&outcomes), &format!("sensor {m} at {p} of scene {s}"));

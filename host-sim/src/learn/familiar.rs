@@ -1,0 +1,122 @@
+//! Learns how readings come again at single poses, where training logs came back to them: scans from one place, say.
+
+use rayon::prelude::*;
+
+use crate::learn::place_bound::{self, Seen};
+use crate::logs::Scene;
+use crate::sonar::familiar::{FamiliarPoses, Familiarity, PastReading, RepeatLaw};
+use crate::sonar::model::CONSTANT_SCATTER_CM;
+use crate::sonar::pose_grid::PoseGrid;
+use crate::sonar::{Fan, Outcomes, Perturbation, SonarModel, fan_at};
+use crate::statistics::maximise::{Bounds, climb};
+
+/// Poses are familiar if this share of the readings came from where another run had taken one: of a robot that drives about
+/// it is a tenth, and what single neighbours tell is not worth keeping.
+const MOSTLY: f64 = 0.5;
+/// Bounds of the two shares and of the scale, cm: what comes again scatters no less than constant readings do, and what
+/// scatters more than this does not come again.
+const BOUNDS: [Bounds; 3] = [Bounds::new(0.0, 0.99), Bounds::new(0.0, 0.99), Bounds::new(CONSTANT_SCATTER_CM, 6.0)];
+const START: [f64; 3] = [0.3, 0.3, 1.5];
+/// The search ends after this many iterations, or when one gains less than half a nat, a sixth of what is strong evidence.
+const ROUNDS: usize = 30;
+const ENOUGH: f64 = 0.5;
+
+/// The familiar poses of training logs from one room; none where they did not come back to any. The law is that by which the
+/// other runs make each run's readings most probable.
+pub fn learn(sonar: &SonarModel, seen: &[Seen], scene: &Scene) -> Option<FamiliarPoses> {
+    let walls = scene.sides();
+    let reading = |row: &Seen| PastReading {
+        sensor: [row.sensor.position_cm.x, row.sensor.position_cm.y, row.sensor.heading_rad],
+        p_echo: 1.0 - row.none,
+        echo_cm: row.echo_cm,
+    };
+    let readings: Vec<PastReading> = seen.iter().map(reading).collect();
+    let others = in_other_runs(seen);
+    let came_back = others.iter().filter(|others| !others.is_empty()).count();
+    if seen.is_empty() || (came_back as f64) < MOSTLY * seen.len() as f64 {
+        return None;
+    }
+    let fans: Vec<Fan> = seen.iter().map(|row| fan_at(&walls, &row.sensor, sonar.fan_width)).collect();
+    let outcomes = |law: &RepeatLaw, i: usize| {
+        let known = Familiarity::of(others[i].iter().map(|other| &readings[*other]), law);
+        known.map_or_else(
+            || sonar.outcomes(&fans[i], &Perturbation::NONE),
+            |known| known.outcomes(sonar, &fans[i], &Perturbation::NONE),
+        )
+    };
+    let terms = |at: &[f64]| {
+        let law = law_from(at);
+        let term = |i: usize| outcomes(&law, i).log_likelihood(seen[i].echo_cm);
+        (0..seen.len()).into_par_iter().map(term).collect()
+    };
+    let law = law_from(&climb(&BOUNDS, &START, ROUNDS, ENOUGH, terms).at);
+    let left_over = |i: usize| left_over(&seen[i], i, &outcomes(&law, i));
+    let left_share = place_bound::learn(&(0..seen.len()).map(left_over).collect::<Vec<Seen>>());
+    Some(FamiliarPoses { walls_cm: FamiliarPoses::walls_cm(&walls), law, left_share, readings })
+}
+
+fn law_from(at: &[f64]) -> RepeatLaw {
+    RepeatLaw { rate_share: at[0], value_share: at[1], scale_cm: at[2] }
+}
+
+/// For each row the rows of other runs near its pose.
+fn in_other_runs(seen: &[Seen]) -> Vec<Vec<usize>> {
+    let poses = PoseGrid::new(seen.iter().enumerate().map(|(i, row)| (row.sensor, i)));
+    let of = |row: &Seen| poses.near(&row.sensor).filter(|i| seen[**i].run != row.run).copied().collect();
+    seen.iter().map(of).collect()
+}
+
+/// What is left of a row once its pose is known. Each counts as a run of its own: what a run has in common is left too.
+fn left_over(row: &Seen, i: usize, known: &Outcomes) -> Seen {
+    let off_cm = row.echo_cm.zip(known.mean_hit_cm()).map(|(echo_cm, expected_cm)| echo_cm - expected_cm);
+    Seen { run: i, none: known.none, off_cm, ..*row }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::built_in_robot::training_room;
+    use crate::geometry::Pose;
+    use crate::sonar::partition::SENSORS;
+
+    /// Four scans of 60 poses each, off by what `off_cm` says of scan and pose.
+    fn scans(off_cm: impl Fn(usize, usize) -> f64) -> Vec<Seen> {
+        let sonar = &SENSORS[0];
+        let seen = |i: usize| {
+            let sensor = Pose::new(100.0, 80.0, 0.1 * (i % 60) as f64);
+            let outcomes =
+                sonar.outcomes(&fan_at(&training_room().sides(), &sensor, sonar.fan_width), &Perturbation::NONE);
+            let off_cm = (i % 60 % 2 == 0).then(|| off_cm(i / 60, i % 60));
+            let echo_cm = off_cm.map(|off_cm| outcomes.mean_hit_cm().expect("walls all round") + off_cm);
+            Seen { sensor, run: i / 60, none: outcomes.none, echo_cm, off_cm }
+        };
+        (0..240).map(seen).collect()
+    }
+
+    fn learned(off_cm: impl Fn(usize, usize) -> f64) -> FamiliarPoses {
+        learn(&SENSORS[0], &scans(off_cm), &training_room()).expect("poses that came back")
+    }
+
+    /// Between minus and plus fifteen, as if at random.
+    fn off_cm(number: usize) -> f64 {
+        ((number * 2_654_435_761) >> 7) as f64 % 601.0 / 20.0 - 15.0
+    }
+
+    #[test]
+    fn what_a_pose_decides_is_its_share() {
+        let familiar = learned(|_, pose| off_cm(pose));
+        assert!(familiar.law.rate_share > 0.8 && familiar.law.value_share > 0.8, "{:?}", familiar.law);
+        assert!(familiar.law.scale_cm < 0.9, "it reads just the same: {:?}", familiar.law);
+        let anew = learned(|scan, pose| off_cm(1000 * scan + pose));
+        assert!(anew.law.value_share < 0.2, "{:?}", anew.law);
+        assert_eq!(familiar.readings.len(), 240);
+    }
+
+    #[test]
+    fn nothing_is_kept_of_poses_that_nobody_came_back_to() {
+        let mut seen = scans(|_, pose| off_cm(pose));
+        seen.iter_mut().for_each(|row| row.sensor.position_cm.x += 10.0 * row.run as f64);
+        let learned = |seen: &[Seen]| learn(&SENSORS[0], seen, &training_room());
+        assert!(learned(&seen).is_none() && learned(&[]).is_none());
+    }
+}
