@@ -108,7 +108,7 @@ mod tests {
         assert!(familiar.law.rate_share > 0.8 && familiar.law.value_share > 0.8, "{:?}", familiar.law);
         assert!(familiar.law.scale_cm < 0.9, "it reads just the same: {:?}", familiar.law);
         let anew = learned(|scan, pose| off_cm(1000 * scan + pose));
-        assert!(anew.law.value_share < 0.2, "{:?}", anew.law);
+        assert!(anew.law.scale_cm > 3.0 * familiar.law.scale_cm, "it comes again but roughly: {:?}", anew.law);
         assert_eq!(familiar.readings.len(), 240);
     }
 
