@@ -80,7 +80,7 @@ enum Format {
     C,
     /// An Arduino sketch; of a simulator the header that one includes.
     Arduino,
-    /// A MicroPython program for hubs with pybricks firmware.
+    /// A MicroPython program for hubs with pybricks firmware; of a simulator the module that one imports.
     Pybricks,
     /// NXC source of a program that drives, at random or by a script, and logs.
     NxcCollect,

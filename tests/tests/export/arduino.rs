@@ -288,7 +288,10 @@ fn networks_in_c_answer_the_cores_bits() {
     input.push(0);
     let folder = tempfile::tempdir().unwrap();
     let header = c_networks(&networks);
-    fs::write(folder.path().join("networks.h"), &header).unwrap();
+    let path = folder.path().join("networks.h");
+    fs::write(&path, &header).unwrap();
+    let strict = ["-std=c99", "-pedantic", "-Wall", "-Wextra", "-Wconversion", "-Werror", "-fsyntax-only", "-x", "c"];
+    done(Command::new("cc").args(strict).arg(&path));
     let source = "#include \"networks.cpp\"\n";
     let includes = [workspace().join("tests/avr"), folder.path().to_owned()];
     let image = compile(folder.path(), source, &includes, &[]);
