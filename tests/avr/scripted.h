@@ -1,6 +1,6 @@
 // Runs a sketch case after case. A case comes by the UART: step and step limit, six tuples (left, right, whether larger,
-// threshold), the clock at the start, and pulses of the sensor in microseconds. Back come the motors whenever they were
-// set, the ending, and the most cycles of a step.
+// threshold), the clock at the start, when the button goes down after the motors first ran, and pulses of the sensor in
+// microseconds. Back come the motors whenever they were set, the ending, and the most cycles of a step.
 #include <avr/interrupt.h>
 #include <avr/sleep.h>
 
@@ -10,7 +10,7 @@ enum { MOST_PULSES = 64, NO_ECHO_US = 65535, DEAD_US = 65534 };
 static uint16_t pulses_us[MOST_PULSES];
 static uint8_t asked;
 static bool has_started, is_echo_held;
-static uint32_t start_ms, now_ms;
+static uint32_t start_ms, now_ms, press_ms;
 static uint8_t levels[14], duties[14];
 static bool has_set_motors;
 static uint16_t step_began, longest_step;
@@ -68,7 +68,10 @@ void digitalWrite(uint8_t pin, uint8_t level) {
 }
 
 int digitalRead(uint8_t pin) {
-  return pin == ECHO ? is_echo_held : pin == STOP_BUTTON ? HIGH : levels[pin];
+  if (pin == STOP_BUTTON) {
+    return has_started && now_ms - start_ms >= press_ms ? LOW : HIGH;
+  }
+  return pin == ECHO ? is_echo_held : levels[pin];
 }
 
 void analogWrite(uint8_t pin, int duty) {
@@ -108,6 +111,7 @@ int main() {
       controller_tuples[i].threshold_cm = receive_word();
     }
     now_ms = receive_long();
+    press_ms = receive_long();
     uint8_t count = receive();
     for (uint8_t i = 0; i < count; i++) {
       pulses_us[i] = receive_word();

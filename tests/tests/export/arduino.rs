@@ -9,7 +9,7 @@ use std::process::{Command, Stdio};
 
 use fixed::types::I16F16;
 use mindgap_controller_export::c_networks::c_networks;
-use mindgap_controller_export::onboard::Ending;
+use mindgap_controller_export::onboard::{BUTTON_POLL_MS, Ending};
 use mindgap_controller_export::tabulated::Tabulated;
 use mindgap_controller_export::{ExportError, Origin, arduino};
 use mindgap_core::controller::{Controller, Motors, Tuple, When};
@@ -122,13 +122,14 @@ fn pulses_us(answers: &[Answer], rng: &mut Generator) -> Vec<u16> {
 }
 
 /// A case as `tests/avr/scripted.h` reads it.
-fn case(controller: &Controller, start_ms: u32, pulses_us: &[u16]) -> Vec<u8> {
+fn case(controller: &Controller, start_ms: u32, press_ms: u32, pulses_us: &[u16]) -> Vec<u8> {
     let mut bytes = [controller.step_ms.to_le_bytes(), controller.max_steps.to_le_bytes()].concat();
     for Tuple { left, right, when, threshold_cm } in controller.tuples {
         bytes.extend([left as u8, right as u8, u8::from(when == When::Larger)]);
         bytes.extend(threshold_cm.to_le_bytes());
     }
     bytes.extend(start_ms.to_le_bytes());
+    bytes.extend(press_ms.to_le_bytes());
     bytes.push(pulses_us.len() as u8);
     bytes.extend(pulses_us.iter().flat_map(|us| us.to_le_bytes()));
     bytes
@@ -137,6 +138,30 @@ fn case(controller: &Controller, start_ms: u32, pulses_us: &[u16]) -> Vec<u8> {
 fn motor(power: i8) -> String {
     let duty = i32::from(power.unsigned_abs()) * 255 / 100;
     if power == 0 { "brake".to_owned() } else { (duty * i32::from(power.signum())).to_string() }
+}
+
+/// What the sketch says to these cases.
+fn scripted(cases: Vec<u8>) -> String {
+    let folder = tempfile::tempdir().unwrap();
+    let sketch = arduino::sketch(&at_its_limits(), &Origin::default()).unwrap();
+    let source = format!("#include \"Arduino.h\"\n{}\n#include \"scripted.h\"\n", with_any_controller(&sketch));
+    let image = compile(folder.path(), &source, &[workspace().join("tests/avr")], &[]);
+    told(folder.path(), &image, cases)
+}
+
+#[test]
+fn the_button_stops_a_sketch_at_once() {
+    let controller = Controller { max_steps: 12, ..at_its_limits() };
+    let presses_ms = (1..4_000).step_by(37);
+    let cases = presses_ms.clone().flat_map(|press_ms| case(&controller, 5_000, press_ms, &[60 * 58; 12]));
+    let said = scripted(cases.chain([0, 0]).collect());
+    let stops = said.lines().filter_map(|line| line.strip_suffix(" brake brake"));
+    let stops_ms: Vec<u32> = stops.map(|t_ms| t_ms.parse().unwrap()).collect();
+    assert_eq!(said.lines().filter(|line| line.starts_with(Ending::Stopped.text())).count(), stops_ms.len());
+    assert_eq!(stops_ms.len(), presses_ms.clone().count());
+    for (stop_ms, press_ms) in stops_ms.into_iter().zip(presses_ms) {
+        assert!((press_ms..=press_ms + u32::from(BUTTON_POLL_MS)).contains(&stop_ms), "{press_ms}, {stop_ms}");
+    }
 }
 
 #[test]
@@ -148,15 +173,11 @@ fn sketches_run_as_the_core_does() {
         let answers = answers(&controller, 10, &mut rng);
         // Some clocks wrap on the way.
         let start_ms = u32::MAX - rng.random_range(0..40_000);
-        input.extend(case(&controller, start_ms, &pulses_us(&answers, &mut rng)));
+        input.extend(case(&controller, start_ms, u32::MAX, &pulses_us(&answers, &mut rng)));
         runs.push(expected(&controller, &answers));
     }
     input.extend([0, 0]);
-    let folder = tempfile::tempdir().unwrap();
-    let sketch = arduino::sketch(&at_its_limits(), &Origin::default()).unwrap();
-    let source = format!("#include \"Arduino.h\"\n{}\n#include \"scripted.h\"\n", with_any_controller(&sketch));
-    let image = compile(folder.path(), &source, &[workspace().join("tests/avr")], &[]);
-    let said = told(folder.path(), &image, input);
+    let said = scripted(input);
     let mut lines = said.lines();
     for (number, (ending, mut commands)) in runs.into_iter().enumerate() {
         if ending == Ending::NoSonar {
