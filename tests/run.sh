@@ -31,6 +31,10 @@ need_component() {
 command -v cargo >/dev/null || { echo "cargo is missing: install Rust from https://rustup.rs" >&2; exit 1; }
 need cc gcc
 need nbc nbc
+need avr-g++ gcc-avr
+need /usr/lib/avr/include/avr/io.h avr-libc
+need /usr/share/arduino/hardware/arduino/avr arduino-core-avr
+need /usr/include/simavr/sim_avr.h libsimavr-dev
 # With its venv, which Debian packs apart.
 python3 -c 'import ensurepip' 2>/dev/null || need python3-venv python3-venv
 need chromium chromium

@@ -5,32 +5,34 @@ mod collect;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
+use mindgap_controller_export::c_networks::c_networks;
 use mindgap_controller_export::collect::CollectOptions;
 use mindgap_controller_export::names::{BrickName, RunLogs};
 use mindgap_controller_export::nxc::{self, NxcOptions};
 use mindgap_controller_export::nxc_networks::{self, nxc_networks};
 use mindgap_controller_export::onboard::Safety;
+use mindgap_controller_export::pybricks_networks::{PybricksNetwork, pybricks_networks};
 use mindgap_controller_export::rust_networks::rust_networks;
 use mindgap_controller_export::wiring::{MotorPort, SensorPort, Wiring};
-use mindgap_controller_export::{ExportError, Origin, c, collect as data_collection, pybricks, rust, rxe};
+use mindgap_controller_export::{ExportError, Origin, arduino, c, collect as data_collection, pybricks, rust, rxe};
 
 use super::{Run, kinds};
 use crate::error::{Error, Result};
 use crate::evolve::controller_file::ControllerFile;
 use crate::files;
 use crate::files::places::Places;
-use crate::simulator::Simulator;
-use crate::simulator::fixed_point::FixedNetworks;
+use crate::simulator::fixed_point::{COMMANDS, DOCUMENTATION, FACING, FixedNetworks};
+use crate::simulator::{Learned, Simulator};
 
 /// Turn a controller into an onboard program, or a simulator's networks into constants for a board; or make the
 /// program that collects a robot's first logs.
 #[derive(Args)]
 pub struct Export {
-    /// The controller file; or a simulator file, whose networks have the formats rust and nxc. For nxc-collect none, or
-    /// a run whose commands are a script.
+    /// The controller file; or a simulator file, whose networks have all formats but rxe and nxc-collect. For nxc-collect
+    /// none, or a run whose commands are a script.
     #[arg(
         value_name = "CONTROLLER",
-        required_if_eq_any = [("format", "nxc"), ("format", "rxe"), ("format", "rust"), ("format", "c"), ("format", "pybricks")]
+        required_if_eq_any = [("format", "nxc"), ("format", "rxe"), ("format", "rust"), ("format", "c"), ("format", "pybricks"), ("format", "arduino")]
     )]
     input: Option<PathBuf>,
     /// What to make of it.
@@ -76,7 +78,9 @@ enum Format {
     Rust,
     /// A C99 header with the stepping machine.
     C,
-    /// A MicroPython program for hubs with pybricks firmware.
+    /// An Arduino sketch; of a simulator the header that one includes.
+    Arduino,
+    /// A MicroPython program for hubs with pybricks firmware; of a simulator the module that one imports.
     Pybricks,
     /// NXC source of a program that drives, at random or by a script, and logs.
     NxcCollect,
@@ -119,14 +123,21 @@ impl Export {
 
     fn networks(&self, input: &Path) -> Result<(Vec<u8>, Option<String>)> {
         let simulator = Simulator::read(input)?;
-        let networks = FixedNetworks::quantise(&simulator).map_err(|error| error.or_in_file(input))?;
+        let quantised = || FixedNetworks::quantise(&simulator).map_err(|error| error.or_in_file(input));
         match self.format {
-            Format::Rust => Ok((rust_networks(&networks.rust_definitions()).into_bytes(), None)),
+            Format::Rust => Ok((rust_networks(&quantised()?.rust_definitions()).into_bytes(), None)),
             Format::Nxc => {
-                let networks = networks.nxc_definitions();
+                let networks = quantised()?.tabulated(["Turn", "Forward", "Lateral", "EchoProbability", "EchoValue"]);
                 Ok((nxc_networks(&networks).into_bytes(), Some(nxc_networks::budget(&networks).to_string())))
             }
-            _ => Err(Error::in_file(input, "holds networks, which are exported with --format rust or nxc")),
+            Format::C | Format::Arduino => Ok((c_networks(&quantised()?.tabulated(NAMES)).into_bytes(), None)),
+            Format::Pybricks => {
+                let networks = float_networks(&simulator).map_err(|error| error.or_in_file(input))?;
+                Ok((pybricks_networks(&networks).into_bytes(), None))
+            }
+            Format::Rxe | Format::NxcCollect => {
+                Err(Error::in_file(input, "holds networks, which have no place in formats rxe and nxc-collect"))
+            }
         }
     }
 
@@ -154,6 +165,10 @@ impl Export {
             Format::C => {
                 let (controller, origin) = read()?;
                 (c::header(&controller, &origin).map_err(refused)?.into_bytes(), None)
+            }
+            Format::Arduino => {
+                let (controller, origin) = read()?;
+                (arduino::sketch(&controller, &origin).map_err(refused)?.into_bytes(), None)
             }
             Format::Pybricks => {
                 let (controller, origin) = read()?;
@@ -190,4 +205,27 @@ impl Export {
         let stem = self.out.file_stem().unwrap_or_default().to_string_lossy();
         BrickName::program(&stem).map_err(|e| Error::in_file(&self.out, e.to_string()))
     }
+}
+
+/// The networks' names in C and Python.
+const NAMES: [&str; 5] = ["turn", "forward", "lateral", "echo_probability", "echo_value"];
+
+fn float_networks(simulator: &Simulator) -> Result<[PybricksNetwork; 5]> {
+    Ok([
+        float_network(simulator, &simulator.turn, 0, COMMANDS)?,
+        float_network(simulator, &simulator.forward, 1, COMMANDS)?,
+        float_network(simulator, &simulator.lateral, 2, COMMANDS)?,
+        float_network(simulator, &simulator.echo_probability, 3, FACING)?,
+        float_network(simulator, &simulator.echo_value, 4, FACING)?,
+    ])
+}
+
+fn float_network<const N: usize>(
+    simulator: &Simulator,
+    learned: &Option<Learned<N>>,
+    place: usize,
+    inputs: [&str; N],
+) -> Result<PybricksNetwork> {
+    let learned = simulator.need(learned, NAMES[place])?;
+    Ok(PybricksNetwork::new(NAMES[place], DOCUMENTATION[place], inputs, &learned.network))
 }

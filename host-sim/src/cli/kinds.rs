@@ -32,9 +32,10 @@ pub const FORMULA_SIGN: &str = "# Made by: mindgap diagnose\n";
 pub const UNSIGNED: Kind = Kind { name: "anything", is_one: |_| false };
 
 /// What stands in the first lines of the programs that `export` writes, in any format but the brick's executable.
-const PROGRAMS: [&str; 4] = [
+const PROGRAMS: [&str; 5] = [
     "A six-tuple controller",
     "A simulator's networks in fixed point",
+    "A simulator's networks in floating point",
     "commands for the LEGO NXT with standard firmware",
     "use mindgap_core::fixed_network",
 ];
