@@ -73,7 +73,7 @@ const ENOUGH_RUNS: usize = 100;
 
 /// Of large logs every so many runs, and of long ones the beginning.
 fn enough_of(mut logs: Logs) -> Logs {
-    let rows: usize = logs.runs.iter().map(|run| run.rows.len()).sum();
+    let rows = logs.rows();
     if rows <= ENOUGH_ROWS {
         return logs;
     }

@@ -72,7 +72,7 @@ fn workshop(commands: &str, track: &str) -> Workshop {
 
 fn rows(workshop: &Workshop) -> Vec<Row> {
     let logs = Logs::read(&workshop.path().join("logs"), |warning| panic!("{warning}")).expect("logs");
-    logs.runs.into_iter().flat_map(|run| run.rows).collect()
+    logs.runs.iter().flat_map(|run| &run.rows).collect()
 }
 
 /// Holds rows against the drive, `off_ms` after whose begin they begin.
@@ -220,6 +220,15 @@ fn bags_become_the_same_rows_by_whatever_topics() {
     let (said, by_transforms) = import("transforms.mcap");
     assert!(said.contains("/tf:map>base_link") && by_transforms[10].echo_cm.is_none(), "{said}");
     assert_eq!(by_transforms.len(), tracked.len());
+    let (said, localised) = import("localised.mcap");
+    assert!(
+        said.contains(
+            "/tf:map>base_link is composed of /tf:map>odom and /tf:odom>torso and /tf_static:torso>base_link"
+        ),
+        "{said}"
+    );
+    // Beyond the localiser's last word its frame stays where it was.
+    assert_driven(&localised, 0.0, 1.0);
     let refusal = workshop.refused("import bag tracker.mcap --poses /nowhere --out other");
     assert!(refusal.starts_with("tracker.mcap: /nowhere is no topic of poses"), "{refusal}");
     workshop.done("check logs");
