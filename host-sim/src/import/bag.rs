@@ -17,6 +17,7 @@ use self::topics::Topics;
 use super::frame::Frame;
 use super::recording::{Commands, Kind, Readings, Recording};
 use super::report::Source;
+use super::timestamps::in_order;
 use crate::error::{Error, Result};
 use crate::statistics::summary::median;
 
@@ -147,6 +148,8 @@ fn stamped_as_logged(streams: &HashMap<String, Stream>, topics: &Topics) -> bool
 fn timed(file: &Path, name: &str, samples: &[Sample], uses_stamps: bool) -> Result<Vec<(f64, Decoded)>> {
     let ms = |sample: &Sample| if uses_stamps { sample.said_ms() } else { sample.log_ms };
     let mut timed: Vec<(f64, Decoded)> = samples.iter().map(|sample| (ms(sample), sample.value)).collect();
+    let stamps_ms: Vec<f64> = timed.iter().map(|(ms, _)| *ms).collect();
+    in_order(&stamps_ms).map_err(|(_, what)| Error::in_file(file, format!("{name}: {what}")))?;
     timed.sort_by(|a, b| a.0.total_cmp(&b.0));
     timed.dedup_by(|later, before| later.0 == before.0);
     if timed.len() < 2 {

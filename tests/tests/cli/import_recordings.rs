@@ -187,7 +187,8 @@ fn without_a_robot_a_draft_says_what_to_fill_in() {
     assert!(said.contains("fill in: robot.toml: track_cm = 15"), "{said}");
     assert!(workshop.text("logs/robot.toml").contains("# [ultrasonic]"), "{}", workshop.text("logs/robot.toml"));
     assert_driven(&rows(&workshop), 0.0, 1.0);
-    workshop.done("check logs");
+    let told = workshop.call("check logs").err;
+    assert!(told.contains("2 more: marked FILL IN, so not measured yet"), "{told}");
     // What is there is the user's by now.
     let refusal = workshop.refused(call);
     assert!(refusal.starts_with("logs: holds") && refusal.contains("--force"), "{refusal}");
