@@ -40,6 +40,7 @@ use crate::error::{Error, Result};
 use crate::files;
 use crate::files::places::Places;
 use crate::gap::validate::same_robot;
+use crate::import::draft::to_fill_in;
 use crate::inspection::Inspection;
 use crate::logs::Logs;
 use crate::simulator::Simulator;
@@ -154,7 +155,14 @@ fn printable(line: &str) -> String {
 
 /// Reads a folder of logs and tells its oddities on standard error.
 fn read_logs(folder: &Path) -> Result<Logs> {
-    Logs::read(folder, warn)
+    let logs = Logs::read(folder, warn)?;
+    let robot = folder.join("robot.toml");
+    let open = to_fill_in(&robot.display().to_string(), &files::read_text(&robot)?);
+    if let Some(first) = open.first() {
+        let others = if open.len() > 1 { format!(" and {} more", open.len() - 1) } else { String::new() };
+        warn(format!("{first}{others}: marked FILL IN, so not measured yet; what is wrong about it looks like a gap"));
+    }
+    Ok(logs)
 }
 
 /// Reads a folder of logs from which something is learned or judged: what could be put right in them is told and used.

@@ -8,6 +8,7 @@ pub mod readings;
 mod resample;
 pub mod robot;
 mod row;
+pub mod rows;
 pub mod run;
 pub mod samples;
 pub mod scene;
@@ -18,6 +19,7 @@ use std::path::Path;
 
 pub use robot::{Robot, Ultrasonic};
 pub use row::Row;
+pub use rows::Rows;
 pub use run::Run;
 pub use scene::Scene;
 
@@ -65,9 +67,7 @@ impl Logs {
         };
         let mut runs = names.iter().map(read).collect::<Result<Vec<_>>>()?;
         oddities.tell(&mut warn);
-        let readings =
-            runs.iter_mut().flat_map(|run| &mut run.rows).filter_map(|row| row.echo_cm.take_if(|_| !has_sensor));
-        let count = readings.count();
+        let count = if has_sensor { 0 } else { runs.iter_mut().map(without_readings).sum() };
         if count > 0 {
             let robot = folder.join("robot.toml");
             warn(format!("{}: has no [ultrasonic]: {count} readings are left out", robot.display()));
@@ -90,13 +90,18 @@ impl Logs {
         })
     }
 
+    /// The number of rows of all runs.
+    pub fn rows(&self) -> usize {
+        self.runs.iter().map(|run| run.rows.len()).sum()
+    }
+
     /// Checks that rows are about `step_ms` apart; an error names `folder`.
     ///
     /// # Errors
     /// When the median step time deviates from `step_ms` by more than a fifth.
     pub fn check_step(&self, folder: &Path) -> Result<()> {
         let mut steps_ms: Vec<f64> =
-            self.runs.iter().flat_map(|run| run.rows.windows(2).map(|w| w[1].t_ms - w[0].t_ms)).collect();
+            self.runs.iter().flat_map(|run| run.rows.pairs().map(|w| w[1].t_ms - w[0].t_ms)).collect();
         steps_ms.sort_by(f64::total_cmp);
         let middle_ms = steps_ms[steps_ms.len() / 2];
         if (middle_ms / self.robot.step_ms - 1.0).abs() > STEP_TOLERANCE {
@@ -109,6 +114,13 @@ impl Logs {
         }
         Ok(())
     }
+}
+
+/// Leaves out a run's readings, and says how many.
+fn without_readings(run: &mut Run) -> usize {
+    let count = run.rows.iter().filter(|row| row.echo_cm.is_some()).count();
+    run.rows.edit_each(|row| row.echo_cm = None);
+    count
 }
 
 /// What is odd in files, each told once with the first file that has it.

@@ -73,7 +73,7 @@ pub fn record_driving(
                 let about = Recorder { robot: &robot, driving, step_ms: spec.step_ms, steps };
                 about.drive(start, &mut rng, &mut foresight)
             });
-            Ok(Run { name: format!("run-{run:03}"), rows: rows.ok_or_else(|| no_room(spec))? })
+            Ok(Run { name: format!("run-{run:03}"), rows: rows.ok_or_else(|| no_room(spec))?.into_iter().collect() })
         })
         .collect::<Result<Vec<Run>>>()?;
     Ok(Logs { robot: *spec, scene: scene.clone(), runs })

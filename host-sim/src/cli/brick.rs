@@ -158,7 +158,7 @@ impl Brick {
         let report = brick::run(program, &mut world, config);
         let (end, crashed) = (world.pose(), world.crashed());
         let name = self.out.as_deref().and_then(Path::file_stem).unwrap_or_default().to_string_lossy().into_owned();
-        let run = logs::Run { name, rows: world.into_rows(report.ended_ms) };
+        let run = logs::Run { name, rows: world.into_rows(report.ended_ms).into_iter().collect() };
         if let Some(out) = &self.out {
             run.write(out)?;
         }

@@ -26,9 +26,9 @@ struct Seen {
 /// The shares of the echo rate and of the readings, from the sensor's training logs.
 pub fn learn(sonar: &SonarModel, logs: &Logs) -> [f64; 2] {
     let sides = logs.scene.sides();
-    let rows: Vec<(usize, &Row)> =
+    let rows: Vec<(usize, Row)> =
         logs.runs.iter().enumerate().flat_map(|(run, logged)| logged.rows.iter().map(move |row| (run, row))).collect();
-    let seen = |(run, row): &(usize, &Row)| {
+    let seen = |(run, row): &(usize, Row)| {
         let sensor = logs.robot.ultrasonic.pose_on(&row.pose?);
         let outcomes = sonar.outcomes(&fan_at(&sides, &sensor, sonar.fan_width), &Perturbation::NONE, None);
         let off_cm = row.echo_cm.zip(outcomes.mean_hit_cm()).map(|(echo_cm, expected_cm)| echo_cm - expected_cm);

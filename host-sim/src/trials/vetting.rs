@@ -79,7 +79,7 @@ impl Vetting<'_> {
         if ending == Ending::Crashed {
             // What a wall did to the robot says nothing of its commands.
             let first = run.rows.len().saturating_sub(LAST_STEPS).max(2);
-            run.rows[first..].iter_mut().for_each(|row| row.pose = None);
+            (first..run.rows.len()).for_each(|row| run.rows.edit(row, |row| row.pose = None));
         }
         let target_cm = self.scene.target_cm.ok_or_else(|| Error::new("the scene has no target"))?;
         let distance_cm = end.position_cm.distance(target_cm);
@@ -127,7 +127,7 @@ impl Vetting<'_> {
     }
 
     fn check_start(&self, run: &Run) -> Result<()> {
-        let Some(first) = run.rows[0].pose else {
+        let Some(first) = run.rows.at(0).pose else {
             return Err(Error::new("line 2: the tracker did not see the robot at the start"));
         };
         let off_cm = first.position_cm.distance(self.start.position_cm);
