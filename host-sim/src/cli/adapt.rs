@@ -38,10 +38,10 @@ pub struct Adapt {
     #[arg(long, value_name = "N", default_value_t = 1)]
     start: usize,
     /// Fixes every draw.
-    #[arg(long, default_value_t = Method::SEED)]
+    #[arg(long, value_name = "N", default_value_t = Method::SEED)]
     seed: u64,
-    /// Also write what was learned here.
-    #[arg(long)]
+    /// Also write the same facts here, for programs; `-` is standard output, in place of the text.
+    #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
 }
 

@@ -14,8 +14,8 @@ use crate::survey::{Holdings, Range, Survey};
 pub struct Check {
     /// Folder with robot.toml, scene.toml and run-*.csv.
     logs: PathBuf,
-    /// Also write it here; `-` is standard output, in place of the text.
-    #[arg(long)]
+    /// Also write the same facts here, for programs; `-` is standard output, in place of the text.
+    #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
 }
 
