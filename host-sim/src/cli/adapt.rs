@@ -115,6 +115,7 @@ fn told(lesson: &Lesson) -> String {
             effect.parameters.iter().map(|(name, value)| format!("{name} {value:.3}")).collect();
         text += &format!("  the diagnosis names {}: {}\n", effect.effect, parameters.join(", "));
     }
+    text += "  what a step of each command (left right) that was held does more than was thought, and how unsure that is:\n";
     let rows: Vec<[String; 5]> = lesson.commands.iter().take(COMMANDS).map(row).collect();
     text += &table::text(["command", "steps", "forward (cm)", "left (cm)", "turn (deg)"], &rows);
     if let Some(Gap { forward_cm, lateral_cm, turn_deg }) = &lesson.gap {

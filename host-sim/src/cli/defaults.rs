@@ -42,18 +42,21 @@ struct Taken {
 /// # Errors
 /// When the file cannot be read, has a key that is no option, or a value that no option has.
 pub fn with_defaults(command: &Command, mut call: Vec<OsString>) -> Result<(Vec<OsString>, Defaults)> {
+    // General options become those of every command.
+    let mut command = command.clone();
+    command.build();
     // What is wrong with the call is told when it is parsed with the defaults.
     let Ok(stated) = command.clone().ignore_errors(true).try_get_matches_from(&call) else {
         return Ok((call, Defaults::default()));
     };
-    let chain = chain(command, &stated);
+    let chain = chain(&command, &stated);
     let path = folder(&chain).join(NAME);
     if !path.is_file() {
         return Ok((call, Defaults::default()));
     }
     let text = files::read_text(&path)?;
     let file = File { path: &path, text: &text };
-    let taken = file.taken(command, &chain)?;
+    let taken = file.taken(&command, &chain)?;
     let end = call.iter().position(|argument| argument == "--").unwrap_or(call.len());
     call.splice(end..end, taken.iter().map(|taken| taken.argument.clone()));
     Ok((call, Defaults { path, taken }))
@@ -130,14 +133,16 @@ impl File<'_> {
             chain.iter().any(|(_, matches)| stated(matches))
         };
         // What the call says rules out what it conflicts with.
-        let options = || called.get_arguments().chain(command.get_arguments());
         let conflict =
             |a: &Arg, b: &Arg| called.get_arg_conflicts_with(a).iter().any(|other| other.get_id() == b.get_id());
         let is_ruled_out = |option: &Arg| {
-            options().filter(|other| is_stated(other)).any(|other| conflict(option, other) || conflict(other, option))
+            called
+                .get_arguments()
+                .filter(|other| is_stated(other))
+                .any(|other| conflict(option, other) || conflict(other, option))
         };
         let mut taken = Vec::new();
-        for option in options() {
+        for option in called.get_arguments() {
             let Some(name) = option.get_long() else { continue };
             let Some((key, value)) = tables.iter().rev().find_map(|table| table.get_key_value(name)) else { continue };
             if !is_stated(option) && !is_ruled_out(option) {

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 
 use libtest_mimic::Failed;
 use mindgap_tests::command::{Workshop, workspace};
+use mindgap_tests::rooms::SCENE;
 
 use crate::{PAGES, documents};
 
@@ -25,6 +26,12 @@ pub fn every_document_is_in_the_summary_once() -> Result<(), Failed> {
         return Err(format!("listed {listed:#?}\nthere {there:#?}").into());
     }
     Ok(())
+}
+
+/// The reader of the tutorial has to have the room in which it is run.
+pub fn the_tutorial_shows_its_scene() -> Result<(), Failed> {
+    let text = fs::read_to_string(workspace().join("docs/tutorial.md"))?;
+    if text.contains(&format!("```toml\n{SCENE}```")) { Ok(()) } else { Err("it shows another scene".into()) }
 }
 
 /// Links to other files; those into the web are not looked up.

@@ -11,8 +11,8 @@ use libtest_mimic::Failed;
 use mindgap_tests::command::{Workshop, program, workspace};
 use mindgap_tests::rooms::{SCENE, trained};
 
-use crate::FROM_NOTHING;
-use crate::lines::{CONSOLE, FENCE, PROMPT};
+use crate::lines::{FENCE, PROMPT, is_run};
+use crate::{FROM_NOTHING, is_asked_for};
 
 /// A command in a console.
 struct Call<'a> {
@@ -48,7 +48,7 @@ pub fn run(name: &str, text: &str) -> Result<(), Failed> {
             outputs.push((says, said));
         }
     }
-    if env::var("MINDGAP_DOCS").is_ok_and(|how| how == "overwrite") {
+    if is_asked_for("overwrite") {
         for (says, said) in outputs.iter().rev() {
             told.splice(says.clone(), said.lines());
         }
@@ -82,7 +82,7 @@ fn calls<'a>(lines: &[&'a str]) -> Vec<Call<'a>> {
         match (line.strip_prefix(FENCE), block) {
             (Some(_), Some(_)) => block = None,
             (Some(kind), None) => block = Some(kind),
-            (None, Some(CONSOLE)) => match (line.strip_prefix(PROMPT), calls.last_mut()) {
+            (None, Some(kind)) if is_run(kind) => match (line.strip_prefix(PROMPT), calls.last_mut()) {
                 (Some(command), _) => calls.push(Call { command, says: i + 1..i + 1 }),
                 (None, Some(call)) => call.says.end = i + 1,
                 (None, None) => (),

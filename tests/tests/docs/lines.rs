@@ -2,6 +2,8 @@
 
 use libtest_mimic::Failed;
 
+use crate::is_asked_for;
+
 /// A line that calls the command.
 pub struct CommandLine {
     /// Its number in the document, from 1.
@@ -12,12 +14,19 @@ pub struct CommandLine {
     pub is_run: bool,
 }
 
-/// What a block is said to be in whose lines are run.
-pub const CONSOLE: &str = "console";
+/// How blocks are marked whose lines are run,
+const CONSOLE: &str = "console";
+/// and those whose lines take longer than a test may.
+const SLOW: &str = "console,slow";
 /// How blocks begin and end.
 pub const FENCE: &str = "```";
 /// What stands before a command in a console.
 pub const PROMPT: &str = "$ ";
+
+/// Whether a block of this kind is run.
+pub fn is_run(kind: &str) -> bool {
+    kind == CONSOLE || kind == SLOW && is_asked_for("slow")
+}
 
 /// The lines of all blocks that call the command; usage, which has placeholders, is none.
 pub fn command_lines(text: &str) -> Vec<CommandLine> {
@@ -33,7 +42,7 @@ pub fn command_lines(text: &str) -> Vec<CommandLine> {
         let call = if is_console { line.strip_prefix(PROMPT) } else { Some(line.trim_start()) };
         let call = call.filter(|call| call.starts_with("mindgap ") && !call.contains(['<', '[']));
         if let Some(call) = call {
-            found.push(CommandLine { number: i + 1, text: call.trim_end().into(), is_run: kind == CONSOLE });
+            found.push(CommandLine { number: i + 1, text: call.trim_end().into(), is_run: is_run(kind) });
         }
     }
     found

@@ -1,9 +1,9 @@
 //! The documents are true: their command lines run and say what they are said to say, all others are calls that the command
 //! takes, links lead somewhere, and the pages of commands are those that the command writes.
 //!
-//! `MINDGAP_DOCS=overwrite cargo test -p mindgap-tests --test docs` writes what is said now into the documents. Command
-//! lines that are not run, as those in blocks other than `console` and those in `console,slow`, are reported as ignored, by
-//! name.
+//! Command lines that are not run, as those in blocks other than `console`, are reported as ignored, by name.
+//! `MINDGAP_DOCS=slow cargo test -p mindgap-tests --test docs` runs those in `console,slow` too, `MINDGAP_DOCS=overwrite`
+//! writes what is said now into the documents, and `MINDGAP_DOCS=slow,overwrite` does both.
 
 mod book;
 mod consoles;
@@ -25,6 +25,7 @@ fn main() -> ExitCode {
     let mut trials = vec![
         Trial::test("book: every document is in the summary once", book::every_document_is_in_the_summary_once),
         Trial::test("book: every link leads somewhere", book::every_link_leads_somewhere),
+        Trial::test("book: the tutorial shows its scene", book::the_tutorial_shows_its_scene),
         Trial::test("book: pages of commands are those of the command", book::pages_are_those_of_the_command),
     ];
     for name in documents() {
@@ -45,6 +46,11 @@ fn main() -> ExitCode {
         }
     }
     libtest_mimic::run(&Arguments::from_args(), trials).exit_code()
+}
+
+/// Whether `$MINDGAP_DOCS` has a word.
+fn is_asked_for(word: &str) -> bool {
+    std::env::var("MINDGAP_DOCS").is_ok_and(|words| words.split(',').any(|other| other == word))
 }
 
 /// All documents, from the top of the workspace.
