@@ -50,7 +50,7 @@ check_format() {
 check_dependencies() {
     cargo deny check licenses bans sources
     if cargo deny fetch db >/dev/null 2>&1; then
-        cargo deny check --disable-fetch advisories
+        cargo deny --offline check advisories
     else
         echo "advisories are not looked up: their database cannot be reached"
     fi

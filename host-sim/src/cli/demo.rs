@@ -3,12 +3,14 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use serde_json::{Value, json};
 
 use super::table::{self, number};
-use super::{Run, progress};
+use super::{Run, kinds, progress};
 use crate::built_in_robot::four_obstacles;
-use crate::demo::{self, Stage, Summary};
+use crate::demo::{self, Stage, StartSummary, Summary};
 use crate::error::Result;
+use crate::evolve::fitness::Success;
 use crate::evolve::robust;
 use crate::files::places::Places;
 
@@ -21,11 +23,14 @@ pub struct Demo {
     /// Fixes every draw.
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
+    /// Also write the same facts here, for programs; `-` is standard output, in place of the text.
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
 }
 
 impl Run for Demo {
     fn places(&self) -> Places {
-        Places::default().filling([&self.out])
+        Places::default().filling([&self.out]).writing(&self.json, kinds::REPORT)
     }
 
     fn run(&self) -> Result<String> {
@@ -44,7 +49,9 @@ impl Run for Demo {
         let summary = demo::run(&self.out, self.seed, watch)?;
         bar.finish_and_clear();
         let out = self.out.display();
-        Ok(format!("{}\nlogs, simulator, controllers, NXC programs and pictures are in {out}\n", told(&summary)))
+        let text =
+            format!("{}\nlogs, simulator, controllers, NXC programs and pictures are in {out}\n", told(&summary));
+        super::reported(self.json.as_deref(), &facts(&summary), text)
     }
 }
 
@@ -59,6 +66,13 @@ fn share_before(stage: &Stage) -> f64 {
         }
         Stage::Drawing => 0.95,
     }
+}
+
+fn facts(summary: &Summary) -> Value {
+    let success = |of: &Success| json!({"success": of.rate, "crashed": of.crashed, "median_cm": of.median_cm});
+    let start = |of: &StartSummary| json!({"simulated": success(&of.simulated), "real": success(&of.real)});
+    let starts: Vec<Value> = summary.starts.iter().map(start).collect();
+    json!({"schema": 1, "networks": summary.evaluation.networks, "starts": starts})
 }
 
 fn told(summary: &Summary) -> String {

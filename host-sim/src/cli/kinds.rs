@@ -59,6 +59,7 @@ pub const REPORTS: &[(&[&str], &str)] = &[
     (&["lessons"], "what a simulator learned from runs: `mindgap adapt --json`"),
     (&["trials"], "a loop on the robot: `mindgap loop`"),
     (&["false_alarms"], "a score: `mindgap challenge score --json`"),
+    (&["networks", "starts"], "a demonstration: `mindgap demo --json`"),
     (&["networks", "runs"], "a comparison of fixed with floating point: `mindgap crosscheck --json`"),
     (&["networks"], "an evaluation: `mindgap evaluate --json`"),
     (&["logs", "effects"], "what was recorded: `mindgap record --json`"),
