@@ -16,8 +16,10 @@ use crate::gap::Method;
 use crate::logs::Scene;
 use crate::simulator::Simulator;
 
-/// Adapt a simulator to runs of the robot: effects that a diagnosis names are added, the rest is learned as what this robot
-/// does beyond the networks, which stay as they are.
+/// Adapt a simulator to runs of the robot.
+///
+/// Effects that a diagnosis names are added, the rest is learned as what this robot does beyond the networks, which stay as
+/// they are.
 #[derive(Args)]
 pub struct Adapt {
     /// The simulator file.

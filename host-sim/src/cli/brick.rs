@@ -27,8 +27,9 @@ use crate::simulator::environment::Environment;
 use crate::simulator::rollout::REACHED_CM;
 use crate::simulator::{Noise, Simulator};
 
-/// Run a compiled program without a brick, and tell what it does: motors, tones, text and files. What it senses comes
-/// from a script, or from a robot in a scene: the built-in one, or one in a learned simulator.
+/// Run a compiled program without a brick, and tell what it does: motors, tones, text and files.
+///
+/// What it senses comes from a script, or from a robot in a scene: the built-in one, or one in a learned simulator.
 #[derive(Args)]
 pub struct Brick {
     /// The program, an .rxe file for standard firmware.

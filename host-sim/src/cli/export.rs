@@ -25,8 +25,9 @@ use crate::files::places::Places;
 use crate::simulator::Simulator;
 use crate::simulator::fixed_point::FixedNetworks;
 
-/// Turn a controller into an onboard program, or a simulator's networks into constants for a board; or make the
-/// program that collects a robot's first logs.
+/// Turn a controller into an onboard program.
+///
+/// Or a simulator's networks into constants for a board; or make the program that collects a robot's first logs.
 #[derive(Args)]
 pub struct Export {
     /// The controller file; or a simulator file, whose networks have the formats rust and nxc. For nxc-collect none, or

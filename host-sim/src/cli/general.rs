@@ -9,6 +9,7 @@ use crate::error::{Error, Result};
 
 /// Options of every command.
 #[derive(Args)]
+#[command(next_help_heading = "General options")]
 pub struct General {
     /// Replace what is at the place of an output, whatever it is; what else lies in a folder stays.
     #[arg(long, global = true)]

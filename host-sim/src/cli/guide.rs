@@ -43,7 +43,7 @@ const WORK: &[Part] = &[
             ),
             ("adapt", "mindgap adapt simulator.json robot-logs --out adapted.json"),
             ("export", "mindgap export controller.toml --format nxc --out controller.nxc"),
-            ("brick", "mindgap brick controller.rxe"),
+            ("brick", "mindgap brick controller.rxe --scene scene.toml"),
             ("crosscheck", "mindgap crosscheck simulator.json logs"),
         ],
     ),

@@ -133,7 +133,7 @@ fn words_that_were_probably_meant_are_named() {
 #[test]
 fn help_of_a_command_has_an_example_and_what_else_it_says() {
     let help = Workshop::new().done("record --help");
-    for word in ["Example:\n  mindgap record", "battery_sag", "--threads <N>"] {
+    for word in ["Example:\n  mindgap record", "battery_sag", "General options", "--threads <N>"] {
         assert!(help.contains(word), "{word} is missing in\n{help}");
     }
 }

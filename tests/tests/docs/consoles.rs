@@ -29,15 +29,19 @@ pub fn run(name: &str, text: &str) -> Result<(), Failed> {
     let folder = folder_for(name);
     let bin = tempfile::tempdir()?;
     std::os::unix::fs::symlink(program(), bin.path().join("mindgap"))?;
-    let paths = [bin.path().to_owned()].into_iter().chain(env::split_paths(&env::var_os("PATH").unwrap_or_default()));
+    let others = env::var_os("PATH").unwrap_or_default();
+    let paths = [bin.path().to_owned()].into_iter().chain(env::split_paths(&others));
     let path = env::join_paths(paths.collect::<Vec<PathBuf>>())?;
     let lines: Vec<&str> = text.lines().collect();
     let (mut told, mut differing) = (lines.clone(), Vec::new());
     let mut outputs: Vec<(Range<usize>, String)> = Vec::new();
     for Call { command, says } in calls(&lines) {
         let mut shell = Command::new("sh");
-        let output =
-            shell.current_dir(folder.path()).env("PATH", &path).args(["-c", &format!("({command}) 2>&1")]).output()?;
+        let output = shell
+            .current_dir(folder.path())
+            .env("PATH", &path)
+            .args(["-c", &format!("({command}\n) 2>&1")])
+            .output()?;
         let said = String::from_utf8(output.stdout)?;
         if !output.status.success() {
             return Err(format!("{command}\n{said}").into());

@@ -1,7 +1,7 @@
 //! Pages of commands in Markdown, from the definitions by which calls are parsed.
 
 use clap::builder::StyledStr;
-use clap::{Arg, Command};
+use clap::{Arg, ArgAction, Command};
 
 use super::{HELP, NAME};
 use crate::cli::guide;
@@ -15,35 +15,42 @@ pub fn page(command: &Command) -> String {
 pub fn overview(command: &Command) -> String {
     let mut text = heading(command, 1);
     for (title, names) in guide::parts() {
-        text += &format!("## {title}\n\n");
+        text += &format!("\n## {title}\n\n");
         for name in names {
             let about = command.find_subcommand(name).and_then(Command::get_about);
             text += &format!("- [{NAME} {name}]({NAME}-{name}.md): {}\n", words(about));
         }
-        text += "\n";
     }
-    text += "## Options of all commands\n\n";
-    text += &command.get_opts().map(option).collect::<String>();
+    text += "\n## Options of all commands\n\n";
+    text += &options(command).map(entry).collect::<String>();
     text
 }
 
 fn section(command: &Command, level: usize) -> String {
     let mut text = heading(command, level);
     let arguments: Vec<&Arg> = command.get_positionals().collect();
-    let options: Vec<&Arg> = command.get_opts().filter(|option| !option.is_global_set()).collect();
+    let options: Vec<&Arg> = options(command).filter(|option| !option.is_global_set()).collect();
     for (title, of) in [("Arguments", arguments), ("Options", options)] {
         if !of.is_empty() {
-            text +=
-                &format!("{} {title}\n\n{}\n", "#".repeat(level + 1), of.into_iter().map(option).collect::<String>());
+            let entries: String = of.into_iter().map(entry).collect();
+            text += &format!("\n{} {title}\n\n{entries}", "#".repeat(level + 1));
         }
     }
     if let Some(after) = command.get_after_help() {
-        text += &format!("```text\n{}\n```\n", after.to_string().trim_end());
+        text += &format!("\n```text\n{}\n```\n", after.to_string().trim_end());
     }
     for inner in command.get_subcommands().filter(|inner| inner.get_name() != HELP) {
         text += &format!("\n{}", section(inner, level + 1));
     }
     text
+}
+
+/// What is said by name, but for what every command of every program has.
+fn options(command: &Command) -> impl Iterator<Item = &Arg> {
+    let is_usual = |of: &Arg| {
+        matches!(of.get_action(), ArgAction::Help | ArgAction::HelpShort | ArgAction::HelpLong | ArgAction::Version)
+    };
+    command.get_arguments().filter(move |of| !of.is_positional() && !is_usual(of))
 }
 
 /// Name, purpose and usage.
@@ -52,11 +59,11 @@ fn heading(command: &Command, level: usize) -> String {
     let about = words(command.get_long_about().or(command.get_about()));
     let usage = command.clone().render_usage().to_string();
     let usage = usage.trim_start_matches("Usage:").trim();
-    format!("{} {name}\n\n{about}\n\n```text\n{usage}\n```\n\n", "#".repeat(level))
+    format!("{} {name}\n\n{about}\n\n```text\n{usage}\n```\n", "#".repeat(level))
 }
 
 /// An argument or option as an entry of a list.
-fn option(of: &Arg) -> String {
+fn entry(of: &Arg) -> String {
     let short = of.get_short().map_or_else(String::new, |short| format!("`-{short}`, "));
     let mut text = format!("- {short}`{of}`: {}", words(of.get_long_help().or(of.get_help())));
     if of.get_action().takes_values() {
@@ -65,7 +72,7 @@ fn option(of: &Arg) -> String {
             text += &format!(" Default: {}.", defaults.join(", "));
         }
         for value in of.get_possible_values() {
-            text += &format!("\n  - `{}`: {}", value.get_name(), words(value.get_help()));
+            text += format!("\n  - `{}`: {}", value.get_name(), words(value.get_help())).trim_end_matches(": ");
         }
     }
     text + "\n"
