@@ -3,11 +3,14 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use serde_json::{Value, json};
 
 use super::table::{self, number};
-use super::{Run, progress};
-use crate::demo::{self, Stage, Summary};
+use super::{Run, kinds, progress};
+use crate::built_in_robot::four_obstacles;
+use crate::demo::{self, Stage, StartSummary, Summary};
 use crate::error::Result;
+use crate::evolve::fitness::Success;
 use crate::evolve::robust;
 use crate::files::places::Places;
 
@@ -18,33 +21,58 @@ pub struct Demo {
     #[arg(long, default_value = "mindgap-out")]
     out: PathBuf,
     /// Fixes every draw.
-    #[arg(long, default_value_t = 1)]
+    #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
+    /// Also write the same facts here, for programs; `-` is standard output, in place of the text.
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
 }
 
 impl Run for Demo {
     fn places(&self) -> Places {
-        Places::default().filling([&self.out])
+        Places::default().filling([&self.out]).writing(&self.json, kinds::REPORT)
     }
 
     fn run(&self) -> Result<String> {
-        let line = progress::spinner();
+        let bar = progress::shares();
         let watch = |stage: Stage| {
-            line.set_message(match stage {
+            bar.set_position((100.0 * share_before(&stage)) as u64);
+            bar.set_message(match stage {
                 Stage::Recording => "recording logs of the built-in robot".into(),
-                Stage::Training(p) => progress::training(&p),
+                Stage::Training(p) => progress::training_words(p.network, p.evaluations),
                 Stage::Evolving { start, generation } => {
                     format!("evolving for start {start}: generation {generation} of {}", robust::GENERATIONS)
                 }
                 Stage::Drawing => "drawing".into(),
             });
-            line.tick();
         };
         let summary = demo::run(&self.out, self.seed, watch)?;
-        line.finish_and_clear();
+        bar.finish_and_clear();
         let out = self.out.display();
-        Ok(format!("{}\nlogs, simulator, controllers, NXC programs and pictures are in {out}\n", told(&summary)))
+        let text =
+            format!("{}\nlogs, simulator, controllers, NXC programs and pictures are in {out}\n", told(&summary));
+        super::reported(self.json.as_deref(), &facts(&summary), text)
     }
+}
+
+/// The share of the time that has gone by at a stage, roughly.
+fn share_before(stage: &Stage) -> f64 {
+    match stage {
+        Stage::Recording => 0.0,
+        Stage::Training(_) => 0.05,
+        Stage::Evolving { start, generation } => {
+            let starts = four_obstacles().starts.len() as f64;
+            0.15 + 0.8 * ((start - 1) as f64 + *generation as f64 / robust::GENERATIONS as f64) / starts
+        }
+        Stage::Drawing => 0.95,
+    }
+}
+
+fn facts(summary: &Summary) -> Value {
+    let success = |of: &Success| json!({"success": of.rate, "crashed": of.crashed, "median_cm": of.median_cm});
+    let start = |of: &StartSummary| json!({"simulated": success(&of.simulated), "real": success(&of.real)});
+    let starts: Vec<Value> = summary.starts.iter().map(start).collect();
+    json!({"schema": 1, "networks": summary.evaluation.networks, "starts": starts})
 }
 
 fn told(summary: &Summary) -> String {

@@ -1,6 +1,6 @@
 //! `mindgap diagnose`
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use mindgap_core::controller::Controller;
@@ -25,7 +25,9 @@ use crate::simulator::{Simulator, kinematic, textbook};
 /// Find the gap between a simulator and logs: where it lies, what causes it, and how far it shrinks.
 #[derive(Args)]
 pub struct Diagnose {
-    /// The simulator file.
+    /// The simulator file; or `kinematic`, which compares with the textbook's differential drive and an ideal sonar, by the
+    /// measures in the logs' robot.toml alone.
+    #[arg(value_name = "SIM|kinematic")]
     sim: PathBuf,
     /// Folder of logs.
     logs: PathBuf,
@@ -36,14 +38,14 @@ pub struct Diagnose {
     #[arg(long, value_name = "FILE")]
     effects: Vec<PathBuf>,
     /// Fixes every draw: bootstrap intervals and simulated noise.
-    #[arg(long, default_value_t = Method::SEED)]
+    #[arg(long, value_name = "N", default_value_t = Method::SEED)]
     seed: u64,
     /// Length of the steps in which rows are compared; by default the simulator's, and of rows that come faster than
     /// that, a length that motion shows in.
     #[arg(long, value_name = "MS", value_parser = positive)]
     step_ms: Option<f64>,
-    /// Also write the diagnosis here.
-    #[arg(long)]
+    /// Also write the same facts here, for programs; `-` is standard output, in place of the text.
+    #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
     /// Also write a page for a browser here.
     #[arg(long, value_name = "FILE")]
@@ -75,7 +77,7 @@ impl Run for Diagnose {
     }
 
     fn run(&self) -> Result<String> {
-        let simulator = self.simulator_file().map(|path| Simulator::read(path)).transpose()?;
+        let simulator = self.simulator_file().map(|path| read_simulator(path)).transpose()?;
         let controller = self.controller_of(simulator.as_ref())?;
         let method = Method { catalogue: self.catalogue()?, seed: self.seed, ..Method::default() };
         // What is wrong with rows shows in the rows as they came.
@@ -89,6 +91,7 @@ impl Run for Diagnose {
         let watch = |stage: Stage| {
             bar.set_position((100.0 * stage.share_before()) as u64);
             bar.set_message(stage.words());
+            log::info!("{}", stage.words());
         };
         let found = findings_watched(baseline(simulator.as_ref(), logs)?, &inspected, method, watch);
         bar.finish_and_clear();
@@ -168,6 +171,15 @@ impl Diagnose {
         }
         Ok(catalogue.leak())
     }
+}
+
+/// A simulator file, or what was meant by one that is not there.
+fn read_simulator(path: &Path) -> Result<Simulator> {
+    let meant = files::did_you_mean(&path.to_string_lossy(), [KINEMATIC]);
+    if !path.exists() && !meant.is_empty() {
+        return Err(Error::in_file(path, format!("is not there{meant}")));
+    }
+    Simulator::read(path)
 }
 
 fn baseline<'s>(simulator: Option<&'s Simulator>, logs: &Logs) -> Result<Baseline<'s>> {

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum, value_parser};
 use mindgap_core::controller::Controller;
+use serde_json::json;
 
 use super::{Run, kinds, progress};
 use crate::error::{Error, Result};
@@ -28,16 +29,16 @@ pub struct Evolve {
     /// The simulator file.
     sim: PathBuf,
     /// The scene, with a target and starts.
-    #[arg(long)]
+    #[arg(long, value_name = "FILE")]
     scene: PathBuf,
     /// Which of the scene's starts, from 1.
-    #[arg(long, default_value_t = 1)]
+    #[arg(long, value_name = "N", default_value_t = 1)]
     start: usize,
     /// The controller file to write.
     #[arg(long)]
     out: PathBuf,
     /// Fixes every draw.
-    #[arg(long, default_value_t = 1)]
+    #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
     /// Follow the paper exactly: one run of the genetic algorithm, its fittest individual, echoes that fail as the only
     /// noise.
@@ -56,6 +57,9 @@ pub struct Evolve {
     /// Let every individual of a generation meet its own random numbers, as with --paper, and not all the same ones.
     #[arg(long)]
     fresh_numbers: bool,
+    /// Also write the same facts here, for programs; `-` is standard output, in place of the text.
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
     /// Also draw simulated runs of the controller into this folder, as SVG, PNG and PDF.
     #[arg(long, value_name = "DIR")]
     figures: Option<PathBuf>,
@@ -81,7 +85,7 @@ const DRAWN_RUNS: usize = 10;
 impl Run for Evolve {
     fn places(&self) -> Places {
         let places = Places::default().reading([&self.sim, &self.scene]).writing([&self.out], kinds::CONTROLLER);
-        places.filling(&self.figures)
+        places.writing(&self.json, kinds::REPORT).filling(&self.figures)
     }
 
     fn run(&self) -> Result<String> {
@@ -144,7 +148,12 @@ impl Run for Evolve {
             pictures::paths(folder, &[pictures::simulated_paths(title, &scene, start, &rollouts)])?;
         }
         ControllerFile { controller: evolved.controller, origin: Some(origin) }.write(&self.out)?;
-        Ok(format!(
+        let facts = json!({
+            "schema": 1, "controller": self.out, "start": self.start, "seed": self.seed,
+            "generations": evolved.generations, "fitness": evolved.fitness, "success": success.rate,
+            "crashed": success.crashed, "median_cm": success.median_cm, "chance": chance,
+        });
+        let text = format!(
             "start {}: {:.0} % of {JUDGED_RUNS} fresh simulated runs reach the target, {:.0} % crash; median distance {:.1} cm\n\
              {}controller written to {}\n",
             self.start,
@@ -153,13 +162,17 @@ impl Run for Evolve {
             success.median_cm,
             chance.map_or_else(String::new, |chance| told(&chance)),
             self.out.display()
-        ))
+        );
+        super::reported(self.json.as_deref(), &facts, text)
     }
 }
 
 /// The controller with the best chance, as far as chances are known; else the first.
 fn most_likely(mut candidates: Vec<Evolved>, chances: &[Chance]) -> (Evolved, Option<Chance>) {
     let better = |a: &usize, b: &usize| chances[*a].success.total_cmp(&chances[*b].success).then(b.cmp(a));
+    for (number, (candidate, chance)) in candidates.iter().zip(chances).enumerate() {
+        log::info!("controller {} of the search: fitness {:.3}, chance {chance}", number + 1, candidate.fitness);
+    }
     let best = (0..chances.len()).max_by(better);
     (candidates.swap_remove(best.unwrap_or(0)), best.map(|best| chances[best]))
 }
@@ -167,7 +180,8 @@ fn most_likely(mut candidates: Vec<Evolved>, chances: &[Chance]) -> (Evolved, Op
 fn told(chance: &Chance) -> String {
     let not_knowing = 100.0 * chance.not_knowing;
     format!(
-        "over robots that the logs leave possible {chance}; {not_knowing:.0} % of what is open is not knowing them\n"
+        "over the robots that the logs leave possible {chance}; {not_knowing:.0} % of the doubt is about the robot, the rest \
+         is chance\n"
     )
 }
 

@@ -2,19 +2,22 @@
 
 mod collect;
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
+use mindgap_controller_export::budget::Budget;
 use mindgap_controller_export::c_networks::c_networks;
 use mindgap_controller_export::collect::CollectOptions;
 use mindgap_controller_export::names::{BrickName, RunLogs};
 use mindgap_controller_export::nxc::{self, NxcOptions};
-use mindgap_controller_export::nxc_networks::{self, nxc_networks};
+use mindgap_controller_export::nxc_networks::{self, NetworksBudget, nxc_networks};
 use mindgap_controller_export::onboard::Safety;
 use mindgap_controller_export::pybricks_networks::{PybricksNetwork, pybricks_networks};
 use mindgap_controller_export::rust_networks::rust_networks;
 use mindgap_controller_export::wiring::{MotorPort, SensorPort, Wiring};
 use mindgap_controller_export::{ExportError, Origin, arduino, c, collect as data_collection, pybricks, rust, rxe};
+use serde_json::{Value, json};
 
 use super::{Run, kinds};
 use crate::error::{Error, Result};
@@ -24,8 +27,9 @@ use crate::files::places::Places;
 use crate::simulator::fixed_point::{COMMANDS, DOCUMENTATION, FACING, FixedNetworks};
 use crate::simulator::{Learned, Simulator};
 
-/// Turn a controller into an onboard program, or a simulator's networks into constants for a board; or make the
-/// program that collects a robot's first logs.
+/// Turn a controller into an onboard program.
+///
+/// Or a simulator's networks into constants for a board; or make the program that collects a robot's first logs.
 #[derive(Args)]
 pub struct Export {
     /// The controller file; or a simulator file, whose networks have all formats but rxe and nxc-collect. For nxc-collect
@@ -63,8 +67,37 @@ pub struct Export {
     /// Stop the robot when a driven wheel does not turn.
     #[arg(long)]
     stall: bool,
+    /// Also write the same facts here, for programs; `-` is standard output, in place of the text.
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
     #[command(flatten)]
     collect: collect::Collect,
+}
+
+/// What a program takes of a brick.
+struct Takes {
+    text: String,
+    figures: Value,
+}
+
+impl From<Budget> for Takes {
+    fn from(budget: Budget) -> Self {
+        let Budget { program_bytes, memory_bytes, log_bytes, step_ms, worst_step_ms } = budget;
+        let figures = json!({
+            "program_bytes": program_bytes, "memory_bytes": memory_bytes, "log_bytes": log_bytes, "step_ms": step_ms,
+            "worst_step_ms": worst_step_ms,
+        });
+        Takes { text: budget.to_string(), figures }
+    }
+}
+
+impl From<NetworksBudget> for Takes {
+    fn from(budget: NetworksBudget) -> Self {
+        let NetworksBudget { program_bytes, memory_bytes, answer_ms } = &budget;
+        let answer_ms: BTreeMap<_, _> = answer_ms.iter().cloned().collect();
+        let figures = json!({"program_bytes": program_bytes, "memory_bytes": memory_bytes, "answer_ms": answer_ms});
+        Takes { text: budget.to_string(), figures }
+    }
 }
 
 /// What a controller can be turned into.
@@ -88,7 +121,8 @@ enum Format {
 
 impl Run for Export {
     fn places(&self) -> Places {
-        Places::default().reading(&self.input).writing([&self.out], kinds::PROGRAM)
+        let places = Places::default().reading(&self.input).writing([&self.out], kinds::PROGRAM);
+        places.writing(&self.json, kinds::REPORT)
     }
 
     fn run(&self) -> Result<String> {
@@ -107,28 +141,31 @@ impl Run for Export {
             Some(input) if files::read_text(input)?.trim_start().starts_with('{') => self.networks(input)?,
             Some(input) => self.onboard(input)?,
         };
+        let bytes = program.len();
         files::write(&self.out, program)?;
-        let budget = budget.map_or(String::new(), |budget| format!("{budget}\n"));
-        Ok(format!("{} written\n{budget}", self.out.display()))
+        let (budget, figures) = budget.map_or_else(Default::default, |Takes { text, figures }| (text + "\n", figures));
+        let text = format!("{} written\n{budget}", self.out.display());
+        let facts = json!({"schema": 1, "program": self.out, "bytes": bytes, "takes": figures});
+        super::reported(self.json.as_deref(), &facts, text)
     }
 }
 
 impl Export {
-    fn collection(&self, options: CollectOptions) -> Result<(Vec<u8>, Option<String>)> {
+    fn collection(&self, options: CollectOptions) -> Result<(Vec<u8>, Option<Takes>)> {
         let named = self.input.as_ref().unwrap_or(&self.out);
         let options = CollectOptions { safety: self.safety(), ..options };
         let source = data_collection::program(&options).map_err(|e| Error::in_file(named, e.to_string()))?;
-        Ok((source.into_bytes(), Some(data_collection::budget(&options).to_string())))
+        Ok((source.into_bytes(), Some(data_collection::budget(&options).into())))
     }
 
-    fn networks(&self, input: &Path) -> Result<(Vec<u8>, Option<String>)> {
+    fn networks(&self, input: &Path) -> Result<(Vec<u8>, Option<Takes>)> {
         let simulator = Simulator::read(input)?;
         let quantised = || FixedNetworks::quantise(&simulator).map_err(|error| error.or_in_file(input));
         match self.format {
             Format::Rust => Ok((rust_networks(&quantised()?.rust_definitions()).into_bytes(), None)),
             Format::Nxc => {
                 let networks = quantised()?.tabulated(["Turn", "Forward", "Lateral", "EchoProbability", "EchoValue"]);
-                Ok((nxc_networks(&networks).into_bytes(), Some(nxc_networks::budget(&networks).to_string())))
+                Ok((nxc_networks(&networks).into_bytes(), Some(nxc_networks::budget(&networks).into())))
             }
             Format::C | Format::Arduino => Ok((c_networks(&quantised()?.tabulated(NAMES)).into_bytes(), None)),
             Format::Pybricks => {
@@ -141,7 +178,7 @@ impl Export {
         }
     }
 
-    fn onboard(&self, input: &Path) -> Result<(Vec<u8>, Option<String>)> {
+    fn onboard(&self, input: &Path) -> Result<(Vec<u8>, Option<Takes>)> {
         let read = || {
             let file = ControllerFile::read(input)?;
             let origin = Origin::from(&file);
@@ -154,7 +191,7 @@ impl Export {
                 let (controller, _) = read()?;
                 (
                     rxe::program(&controller, &self.wiring(), self.safety()).map_err(refused)?,
-                    Some(rxe::budget(&controller, self.safety()).to_string()),
+                    Some(rxe::budget(&controller, self.safety()).into()),
                 )
             }
             Format::NxcCollect => self.collection(collect::script(input, self.program_name()?, self.wiring())?)?,
@@ -180,7 +217,7 @@ impl Export {
                 let log = self.logs(&program).transpose().map_err(|e| Error::in_file(&self.out, e.to_string()))?;
                 let options = NxcOptions { program, wiring, safety, log, display };
                 let source = nxc::program(&controller, &origin, &options).map_err(refused)?;
-                (source.into_bytes(), Some(nxc::budget(&controller, &options).to_string()))
+                (source.into_bytes(), Some(nxc::budget(&controller, &options).into()))
             }
         })
     }

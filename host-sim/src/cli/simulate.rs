@@ -27,16 +27,16 @@ pub struct Simulate {
     /// The controller file.
     controller: PathBuf,
     /// The scene.
-    #[arg(long)]
+    #[arg(long, value_name = "FILE")]
     scene: PathBuf,
     /// Which of the scene's starts, from 1.
-    #[arg(long, default_value_t = 1)]
+    #[arg(long, value_name = "N", default_value_t = 1)]
     start: usize,
     /// How many runs.
-    #[arg(long, default_value_t = 10, value_parser = value_parser!(u32).range(1..=1_000_000))]
+    #[arg(long, value_name = "N", default_value_t = 10, value_parser = value_parser!(u32).range(1..=1_000_000))]
     runs: u32,
     /// Fixes every draw.
-    #[arg(long, default_value_t = 1)]
+    #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
     /// Echoes that fail are the only noise.
     #[arg(long)]
@@ -44,8 +44,8 @@ pub struct Simulate {
     /// What makes the readings: the two networks, or the first-echo law.
     #[arg(long, value_enum, default_value_t = Sonar::Networks, conflicts_with = "paper_noise")]
     sonar: Sonar,
-    /// Also write paths and outcomes here.
-    #[arg(long)]
+    /// Also write the same facts here, for programs; `-` is standard output, in place of the text.
+    #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
     /// Also write a page for a browser here.
     #[arg(long, value_name = "FILE")]
@@ -57,6 +57,8 @@ pub struct Simulate {
 
 /// Rows of the table at most.
 const ROWS: usize = 20;
+/// The ending that says least by its name.
+const TIMED_OUT: &str = "timed_out";
 
 impl Run for Simulate {
     fn places(&self) -> Places {
@@ -121,6 +123,9 @@ fn told(rollouts: &RolloutReport) -> String {
     let mut text = table::text(["run", "ending", "steps", "x (cm)", "y (cm)", "to target (cm)"], &rows);
     if rollouts.runs.len() > ROWS {
         text += &format!("... and {} more\n", rollouts.runs.len() - ROWS);
+    }
+    if rollouts.runs.iter().any(|run| run.termination == TIMED_OUT) {
+        text += "timed_out: its steps were spent, so that it stopped; it has reached the target if it stands there\n";
     }
     let crashed = rollouts.runs.iter().filter(|run| run.termination == "crashed").count();
     let crashes = format!("{crashed} of {} crashed", rollouts.runs.len());

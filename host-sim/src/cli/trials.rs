@@ -5,6 +5,7 @@ use std::time::Duration;
 
 use clap::{Args, value_parser};
 
+use super::voice::meanwhile;
 use super::{Run, kinds, warn};
 use crate::error::Result;
 use crate::evolve::chance::Chance;
@@ -44,10 +45,10 @@ pub struct Loop {
     #[arg(long, default_value_t = 60, value_parser = value_parser!(u16).range(1..))]
     max_steps: u16,
     /// Fixes every draw.
-    #[arg(long, default_value_t = 1)]
+    #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
-    /// Also write what happened here.
-    #[arg(long)]
+    /// Also write the same facts here, for programs; `-` is standard output, in place of the text.
+    #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
 }
 
@@ -75,8 +76,10 @@ impl Run for Loop {
         let command = || CommandRobot { command: self.robot.clone(), timeout: Duration::from_secs(self.robot_timeout) };
         let robot: &mut dyn TrialRobot = if self.robot == ASK { &mut AskRobot } else { &mut command() };
         let state = trials::run(&job, robot, |event| match event {
-            Event::Driving(trial) => eprintln!("trial {}: chance {}, driving", trial.number, trial.predicted),
-            Event::Driven(trial) => eprintln!("{}", line(trial)),
+            Event::Driving(trial) => {
+                meanwhile(&format!("trial {}: chance {}, driving", trial.number, trial.predicted));
+            }
+            Event::Driven(trial) => meanwhile(&line(trial)),
             Event::Failed(failure) => warn(format!("trial {}: nothing is learned: {}", failure.trial, failure.reason)),
         })?;
         super::reported(self.json.as_deref(), &state, self.told(&state))

@@ -27,7 +27,7 @@ pub struct Collect {
     #[arg(long, default_value_t = 40, conflicts_with = "input")]
     near_cm: u8,
     /// Where the random commands start from.
-    #[arg(long, default_value_t = 1, conflicts_with = "input")]
+    #[arg(long, value_name = "N", default_value_t = 1, conflicts_with = "input")]
     seed: u32,
 }
 

@@ -79,7 +79,7 @@ struct Target {
     /// Folder for the logs.
     #[arg(long, value_name = "LOGS")]
     out: PathBuf,
-    /// Write what was read, guessed, changed and left out here.
+    /// Also write the same facts here, for programs; `-` is standard output, in place of the text.
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
 }
