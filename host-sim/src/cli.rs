@@ -19,7 +19,7 @@ mod export;
 mod guide;
 mod import;
 mod info;
-mod kinds;
+pub mod kinds;
 mod manual;
 mod new;
 mod progress;

@@ -64,9 +64,12 @@ impl Request<'_> {
     /// Evolves it; `watch` receives the generation and the best fitness.
     ///
     /// # Errors
-    /// When the scene has no target or not this start, or when the simulator cannot run controllers there.
+    /// When the scene has no target or not this start, when there are no steps, or when the simulator cannot run controllers there.
     pub fn evolve(&self, watch: impl FnMut(usize, f64)) -> Result<Answered> {
         let Request { simulator, scene, noise, random_numbers, seed, .. } = *self;
+        if self.max_steps == 0 {
+            return Err(Error::new("a controller needs at least one step"));
+        }
         let start = scene.start(self.start, simulator.robot.body_radius_cm)?;
         let target_cm = scene.target_cm.ok_or_else(|| Error::new("has no [target]"))?;
         let environment = Environment::new(simulator, scene, start, noise)?;

@@ -3,7 +3,7 @@
 use mindgap_core::controller::Controller;
 
 use super::chance::ROBOTS;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::geometry::Pose;
 use crate::logs::Scene;
 use crate::simulator::environment::Environment;
@@ -34,9 +34,12 @@ impl Trial<'_> {
     /// Runs it.
     ///
     /// # Errors
-    /// When the simulator cannot run controllers, or has no first-echo law where it is asked for.
+    /// When there are no runs, when the simulator cannot run controllers, or has no first-echo law where it is asked for.
     pub fn run(&self) -> Result<RolloutReport> {
         let Trial { simulator, controller, scene, start, noise, first_echo, runs, seed } = *self;
+        if runs == 0 {
+            return Err(Error::new("there must be at least one run"));
+        }
         let open = simulator.ensemble.as_ref().filter(|_| noise == Noise::Learned);
         let drawn = open.and_then(|ensemble| ensemble.robots(runs.min(ROBOTS), seed)).map(|robots| robots.drawn);
         let mut robots = match &drawn {

@@ -34,12 +34,16 @@ pub struct Answered {
     pub logs: Logs,
 }
 
-impl Request<'_> {
+impl<'a> Request<'a> {
     /// Diagnoses logs as they were read; `watch` is told each stage when it begins.
     ///
     /// # Errors
-    /// When they are another robot's, cannot be compared in such steps, or say nothing that could be compared.
+    /// When they are another robot's, cannot be compared in such steps, or say nothing that could be compared, and when a
+    /// controller is given without a simulator.
     pub fn of(&self, logs: Logs, watch: impl Fn(Stage)) -> Result<Answered> {
+        if self.controller.is_some() && self.simulator.is_none() {
+            return Err(Error::new("where a controller's runs end needs a simulator that can run it"));
+        }
         // What is wrong with rows shows in the rows as they came.
         let mut inspected = Inspection::of(logs);
         inspected.logs = self.in_steps(inspected.logs)?;
@@ -61,7 +65,7 @@ impl Request<'_> {
     ///
     /// # Errors
     /// As [`Baseline::learned`].
-    pub fn baseline(&self, logs: &Logs) -> Result<Baseline<'_>> {
+    pub fn baseline(&self, logs: &Logs) -> Result<Baseline<'a>> {
         self.simulator.map_or_else(|| Ok(kinematic::baseline(logs)), Baseline::learned)
     }
 
