@@ -140,7 +140,7 @@ impl<'a> Trials<'a> {
         if chance.success < HOPELESS {
             return self.settle(Verdict::OutOfReach, controller, *chance);
         }
-        let trial = Trial::planned(count + 1, *chance);
+        let trial = Trial::planned(count + 1, *chance, search.paths(controller)?);
         self.write_controller(&self.job.folder.join(&trial.controller), controller, *chance)?;
         self.state.trials.push(trial);
         self.state.archive = found.archive();
@@ -186,7 +186,7 @@ impl<'a> Trials<'a> {
                     trial.real = Some(real);
                     tell(Event::Driven(trial));
                 }
-                drawing::paths(folder, &self.simulator, &self.scene, self.start, &self.state)
+                drawing::paths(folder, &self.scene, self.start, &self.state)
             }
             Err(problem) => {
                 let failure = Failure { trial: trial.number, reason: problem.to_string() };

@@ -4,6 +4,7 @@
 use glam::DVec2;
 use mindgap_core::controller::{Controller, Tuple};
 
+use super::state::{SimulatedPath, place_cm};
 use crate::chance::derive;
 use crate::error::{Error, Result};
 use crate::evolve::chance::{Chance, Judge, ROBOTS, RUNS};
@@ -16,6 +17,7 @@ use crate::geometry::Pose;
 use crate::logs::Scene;
 use crate::simulator::ensemble::{Member, Robots};
 use crate::simulator::environment::Environment;
+use crate::simulator::rollout::{RolloutRequest, SensorModel};
 use crate::simulator::{Noise, Simulator};
 
 /// Generations that a controller has behind it at most.
@@ -32,6 +34,8 @@ const PROMISING: f64 = 0.5;
 /// Candidates that a search leaves, and those that the next turn begins with.
 const SHORTLISTED: usize = 8;
 const ARCHIVED: usize = 12;
+/// Robots whose paths are kept with a trial.
+const SHOWN: usize = 5;
 /// Real runs count beside the simulated chance, which counts as so many.
 const SIMULATED: f64 = 2.0;
 /// A run tells of controllers whose genes differ by less than about this, root mean square.
@@ -79,6 +83,7 @@ enum Purpose {
     Judging,
     Exploring,
     Refining,
+    Showing,
 }
 
 impl Search<'_> {
@@ -106,6 +111,27 @@ impl Search<'_> {
         let all = distinct(known.into_iter().map(|known| known.controller).chain(found));
         let promising = jury.ranked(all, FEW_RUNS).into_iter().take(ARCHIVED).map(|candidate| candidate.controller);
         Ok(Found(jury.ranked(distinct(promising.chain(driven)), RUNS)))
+    }
+
+    /// Paths of a controller on some of the robots that it was judged on.
+    ///
+    /// # Errors
+    /// As [`best`](Self::best).
+    pub fn paths(&self, controller: &Controller) -> Result<Vec<SimulatedPath>> {
+        let Robots { drawn, .. } = self.robots()?;
+        let robots = Environment::of_robots(self.simulator, &drawn[..SHOWN], self.scene, self.start)?;
+        let run = |(number, robot): (u64, &Environment)| {
+            let (outcome, points) = robot.trace(RolloutRequest {
+                controller,
+                motions: &robot.motions(controller),
+                sensor: SensorModel::Networks,
+                seed: self.stream(Purpose::Showing, number),
+            });
+            let places = points.iter().map(|point| point.pose.position_cm);
+            let path_cm = [self.start.position_cm].into_iter().chain(places).map(place_cm).collect();
+            SimulatedPath { ending: outcome.termination.into(), path_cm }
+        };
+        Ok((0..).zip(&robots).map(run).collect())
     }
 
     /// New controllers, on the robot in the middle: exploring on drawn ones would be a bad search.
