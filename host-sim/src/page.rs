@@ -6,6 +6,7 @@
 pub mod diagnosis;
 pub mod evaluation;
 pub mod simulation;
+pub mod trials;
 
 mod document;
 mod glossary;

@@ -61,6 +61,19 @@ function roomMarks(room) {
   ];
 }
 
+/** The target of the room, where it has one: the ring within which a run has reached it. */
+function targetMark({ target }) {
+  if (!target) return null;
+  const [x, y, radius] = target;
+  const radians = (degrees) => (degrees * Math.PI) / 180;
+  return Plot.line(d3.range(0, 361, 6), {
+    x: (a) => x + radius * Math.cos(radians(a)),
+    y: (a) => y + radius * Math.sin(radians(a)),
+    stroke: "var(--third)",
+    strokeWidth: 2,
+  });
+}
+
 function draw(place) {
   const width = Math.floor(place.clientWidth);
   if (width === 0 || Number(place.dataset.drawn) === width) return;

@@ -8,7 +8,10 @@ use clap::{Args, value_parser};
 use super::{Run, kinds, warn};
 use crate::error::Result;
 use crate::evolve::chance::Chance;
+use crate::files;
 use crate::files::places::Places;
+use crate::logs::Scene;
+use crate::page::trials::{Subject, page};
 use crate::trials::robot::{AskRobot, CommandRobot, TrialRobot};
 use crate::trials::state::{State, Trial, Verdict};
 use crate::trials::{self, Event, Job};
@@ -49,6 +52,9 @@ pub struct Loop {
     /// Also write what happened here.
     #[arg(long)]
     json: Option<PathBuf>,
+    /// Also write a page for a browser here.
+    #[arg(long, value_name = "FILE")]
+    html: Option<PathBuf>,
 }
 
 /// Stands for a person who drives.
@@ -57,6 +63,7 @@ const ASK: &str = "ask";
 impl Run for Loop {
     fn places(&self) -> Places {
         let places = Places::default().reading([&self.sim, &self.scene]).writing(&self.json, kinds::REPORT);
+        let places = places.writing(&self.html, kinds::PAGE);
         // A folder in which a loop was begun is gone on with.
         let fresh = Some(&self.folder).filter(|folder| !folder.join(trials::state::FILE).exists());
         places.filling(fresh)
@@ -79,6 +86,18 @@ impl Run for Loop {
             Event::Driven(trial) => eprintln!("{}", line(trial)),
             Event::Failed(failure) => warn(format!("trial {}: nothing is learned: {}", failure.trial, failure.reason)),
         })?;
+        if let Some(path) = &self.html {
+            let names = [&self.sim, &self.scene].map(|path| path.display().to_string());
+            let scene = Scene::read(&self.scene)?;
+            let subject = Subject {
+                state: &state,
+                scene: &scene,
+                names: names.each_ref().map(String::as_str),
+                start: self.start,
+                seed: self.seed,
+            };
+            files::write(path, page(&subject)?)?;
+        }
         super::reported(self.json.as_deref(), &state, self.told(&state))
     }
 }
