@@ -5,13 +5,15 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::table::{self, number};
-use super::{Run, progress};
+use super::{Run, progress, trials};
+use crate::demo::repair::Repair;
 use crate::demo::{self, Stage, Summary};
 use crate::error::Result;
 use crate::evolve::robust;
 use crate::files::places::Places;
 
-/// Do the whole job on the built-in robot: record, train, evolve, try, export, draw.
+/// Do the whole job on the built-in robot: record, train, evolve, try, export, draw; then weaken a motor, and let the loop
+/// find out and repair it.
 #[derive(Args)]
 pub struct Demo {
     /// Where to leave everything.
@@ -37,13 +39,18 @@ impl Run for Demo {
                     format!("evolving for start {start}: generation {generation} of {}", robust::GENERATIONS)
                 }
                 Stage::Drawing => "drawing".into(),
+                Stage::Repairing { trial } => format!("a motor got weak: trial {trial} on the robot"),
             });
             line.tick();
         };
         let summary = demo::run(&self.out, self.seed, watch)?;
         line.finish_and_clear();
         let out = self.out.display();
-        Ok(format!("{}\nlogs, simulator, controllers, NXC programs and pictures are in {out}\n", told(&summary)))
+        Ok(format!(
+            "{}\n{}\nlogs, simulator, controllers, NXC programs and pictures are in {out}\n",
+            told(&summary),
+            repaired(&summary.repair)
+        ))
     }
 }
 
@@ -69,5 +76,19 @@ fn told(summary: &Summary) -> String {
         super::evaluate::accuracy(&summary.evaluation.networks),
         table::text(header, &rows),
         robust::RESTARTS
+    )
+}
+
+/// What the loop did about a change of the robot.
+fn repaired(repair: &Repair) -> String {
+    let percent = |rate: f64| format!("{:.0} %", 100.0 * rate);
+    let trials: String = repair.state.trials.iter().map(|trial| format!("  {}\n", trials::line(trial))).collect();
+    format!(
+        "then {} changes the robot: the controller of start {} reaches the target in {} of its runs\n{trials}the loop's \
+         controller reaches it in {} (loop/paths.png)\n",
+        repair.changed,
+        repair.start,
+        percent(repair.before.rate),
+        percent(repair.after.rate)
     )
 }

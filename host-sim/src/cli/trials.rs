@@ -77,6 +77,7 @@ impl Run for Loop {
             start: self.start,
             trials: self.trials as usize,
             max_steps: self.max_steps,
+            known: &[],
             seed: self.seed,
         };
         let command = || CommandRobot { command: self.robot.clone(), timeout: Duration::from_secs(self.robot_timeout) };
@@ -119,7 +120,7 @@ impl Loop {
 }
 
 /// A trial in one line.
-fn line(trial: &Trial) -> String {
+pub(super) fn line(trial: &Trial) -> String {
     let Some(real) = &trial.real else { return format!("trial {}: not driven", trial.number) };
     let reached = if real.reached { "reached the target" } else { "missed the target" };
     let effects: Vec<&str> = trial.effects.iter().map(|effect| effect.effect.as_str()).collect();

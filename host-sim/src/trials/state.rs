@@ -147,7 +147,7 @@ impl State {
                 chance: None,
                 trials: Vec::new(),
                 failures: Vec::new(),
-                archive: Vec::new(),
+                archive: job.known.iter().map(|controller| controller.tuples.to_vec()).collect(),
             });
         }
         let mut state: State = files::read_json(&path)?;

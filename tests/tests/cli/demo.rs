@@ -40,7 +40,20 @@ fn evolved_controllers_reach_the_target_on_the_robot() {
         let svg = fs::read_to_string(out.join(format!("{figure}.svg"))).expect("a picture");
         assert!(svg.contains("<svg") && svg.trim_end().ends_with("</svg>"), "{figure}.svg");
     }
-    for file in ["simulator.json", "evaluation.json", "scene.toml", "logs/robot.toml", "held-out-logs/run-000.csv"] {
+    // A motor got weak: the diagnosis names it, and the loop ends with a controller that reaches the target.
+    let (_, repair) = done.out.split_once("then motor_asymmetry").expect("a robot that changed");
+    assert!(repair.contains("effects: motor_asymmetry"), "{repair}");
+    let state = workshop.json("out/loop/loop.json");
+    assert_eq!(state["verdict"], "works", "{repair}");
+    assert_eq!(state["trials"][0]["real"]["reached"], false, "{repair}");
+    for file in [
+        "simulator.json",
+        "evaluation.json",
+        "scene.toml",
+        "logs/robot.toml",
+        "held-out-logs/run-000.csv",
+        "loop/paths.png",
+    ] {
         assert!(out.join(file).is_file(), "{file}");
     }
 }
