@@ -82,6 +82,8 @@ pub struct Summary {
     pub evaluation: Evaluation,
     /// One entry a start.
     pub starts: Vec<StartSummary>,
+    /// Their simulated and real paths.
+    pub panels: Vec<PathPanel>,
     /// What the loop did about a change of the robot.
     pub repair: Repair,
 }
@@ -140,7 +142,7 @@ pub fn run(out: &Path, seed: u64, watch: impl Fn(Stage)) -> Result<Summary> {
     let best = (0..trials.len()).min_by(better).ok_or_else(|| Error::new("the scene has no start"))?;
     let watch_trial = |trial| watch(Stage::Repairing { trial });
     let repair = repair::run(out, best + 1, &trials[best].controllers, MAX_STEPS, of(Purpose::Repair), watch_trial)?;
-    Ok(Summary { evaluation, starts: trials.into_iter().map(|trial| trial.summary).collect(), repair })
+    Ok(Summary { evaluation, starts: trials.into_iter().map(|trial| trial.summary).collect(), panels, repair })
 }
 
 /// Inputs common to all starts.

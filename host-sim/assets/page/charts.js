@@ -49,6 +49,7 @@ function roomMarks(room) {
       fill: "var(--solid)",
       fillOpacity: 0.6,
       stroke: "var(--quiet)",
+      clip: true,
     }),
     Plot.link(room.walls, {
       x1: (w) => w[0],
@@ -57,6 +58,7 @@ function roomMarks(room) {
       y2: (w) => w[3],
       stroke: "currentColor",
       strokeWidth: 1.5,
+      clip: true,
     }),
   ];
 }

@@ -58,31 +58,28 @@ charts.chances = (width) => {
   });
 };
 
-charts.trial = (width, number) => {
-  const { predicted, real } = page.trials[number];
-  const lines = predicted.flatMap((path, z) => path.map(([x, y]) => ({ kind: "expected", z, x, y })));
-  const driven = real.map(([x, y]) => ({ kind: "the robot", x, y }));
+charts.map = (width, number) => {
+  const points = (paths, kind) => paths.flatMap((path, i) => path.map(([x, y]) => ({ kind, path: `${kind} ${i}`, x, y })));
+  const ends = (paths, kind) => paths.flatMap((path) => path.slice(-1)).map(([x, y]) => ({ kind, x, y }));
+  const { expected, driven } = page.maps[number];
+  const line = (strokeWidth) => ({ x: "x", y: "y", z: "path", stroke: "kind", strokeWidth });
   return Plot.plot({
     ...mapOf(page.room, width),
     ...kindScale(["expected", "the robot"], ["var(--simulator)", "var(--effects)"]),
     marks: [
       ...roomMarks(page.room),
-      Plot.line(lines, { x: "x", y: "y", z: "z", stroke: "kind", strokeOpacity: 0.7 }),
-      Plot.dot(
-        predicted.filter((path) => path.length).map((path) => path.at(-1)),
-        { x: (p) => p[0], y: (p) => p[1], stroke: "var(--simulator)", r: 3 },
-      ),
-      Plot.line(driven, { x: "x", y: "y", stroke: "kind", strokeWidth: 3 }),
-      Plot.dot(driven.slice(-1), {
+      targetMark(page.room),
+      Plot.line(points(expected, "expected"), line(1)),
+      Plot.line(points(driven, "the robot"), line(2.5)),
+      Plot.dot([...ends(expected, "expected"), ...ends(driven, "the robot")], {
         x: "x",
         y: "y",
         stroke: "kind",
         symbol: "kind",
         fill: "var(--paper)",
-        r: 6,
+        r: 4,
         strokeWidth: 2,
       }),
-      targetMark(page.room),
     ],
   });
 };

@@ -5,12 +5,14 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::table::{self, number};
-use super::{Run, progress, trials};
+use super::{Run, kinds, progress, trials};
 use crate::demo::repair::Repair;
 use crate::demo::{self, Stage, Summary};
 use crate::error::Result;
 use crate::evolve::robust;
+use crate::files;
 use crate::files::places::Places;
+use crate::page::demo::page;
 
 /// Do the whole job on the built-in robot: record, train, evolve, try, export, draw; then weaken a motor, and let the loop
 /// find out and repair it.
@@ -22,11 +24,14 @@ pub struct Demo {
     /// Fixes every draw.
     #[arg(long, default_value_t = 1)]
     seed: u64,
+    /// Also write a page for a browser here.
+    #[arg(long, value_name = "FILE")]
+    html: Option<PathBuf>,
 }
 
 impl Run for Demo {
     fn places(&self) -> Places {
-        Places::default().filling([&self.out])
+        Places::default().writing(&self.html, kinds::PAGE).filling([&self.out])
     }
 
     fn run(&self) -> Result<String> {
@@ -45,6 +50,9 @@ impl Run for Demo {
         };
         let summary = demo::run(&self.out, self.seed, watch)?;
         line.finish_and_clear();
+        if let Some(path) = &self.html {
+            files::write(path, page(&summary, &self.out.display().to_string(), self.seed)?)?;
+        }
         let out = self.out.display();
         Ok(format!(
             "{}\n{}\nlogs, simulator, controllers, NXC programs and pictures are in {out}\n",

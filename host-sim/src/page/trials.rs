@@ -30,12 +30,22 @@ pub struct Subject<'a> {
     pub seed: u64,
 }
 
+/// What the charts draw.
 #[derive(Serialize)]
-struct Data<'a> {
+pub struct Charts {
     room: Room,
     chances: Vec<Chances>,
-    trials: Vec<Paths<'a>>,
-    gaps: &'a [Gaps],
+    maps: Vec<Map>,
+    gaps: Vec<Gaps>,
+}
+
+/// Paths that were expected of a controller, and the robot's.
+#[derive(Serialize)]
+pub struct Map {
+    /// In simulation.
+    pub expected: Vec<Vec<[f64; 2]>>,
+    /// On the robot.
+    pub driven: Vec<Vec<[f64; 2]>>,
 }
 
 /// The chance of a trial's controller before and after it was driven, with its range; and how it went.
@@ -46,12 +56,6 @@ struct Chances {
     chance: f64,
     ci95: [f64; 2],
     reached: Option<bool>,
-}
-
-#[derive(Serialize)]
-struct Paths<'a> {
-    predicted: Vec<&'a [[f64; 2]]>,
-    real: &'a [[f64; 2]],
 }
 
 /// What the steps of a channel were off by, trial by trial.
@@ -78,6 +82,9 @@ const CHANNELS: [(&str, &str, fn(&Gap) -> [f64; 2]); 3] = [
 /// As many maps are in a page.
 const MOST_MAPS: usize = 24;
 
+/// How maps are read.
+pub const LINES: &str = "Thin lines are what was expected, thick ones are the robot; the ring is the target. Where they part, \
+                         the simulator did not know something.";
 const TURNS_HEADER: [&str; 5] =
     ["trial", "chance before (95 % of robots)", "on the robot", "chance after", "effects found"];
 
@@ -87,28 +94,7 @@ const TURNS_HEADER: [&str; 5] =
 /// When a number in it has no form in JSON.
 pub fn page(subject: &Subject) -> Result<String> {
     let Subject { state, scene, names: [sim, room], start, .. } = subject;
-    let trials = &state.trials;
-    let shown = shown(trials.len());
-    let gaps = gaps(trials);
-    let places = trials.iter().flat_map(|trial| {
-        let predicted = trial.predicted_paths.iter().flat_map(|path| &path.path_cm);
-        let real = trial.real.iter().flat_map(|real| &real.path_cm);
-        predicted.chain(real).copied().map(DVec2::from)
-    });
-    let data = Data {
-        room: Room::new(scene, REACHED_CM, places),
-        chances: trials.iter().flat_map(chances).collect(),
-        trials: shown.iter().map(|place| paths(&trials[*place])).collect(),
-        gaps: &gaps,
-    };
-    let mut sections = vec![Section { id: "turns", title: "Turn by turn", body: turns(state) }];
-    if !shown.is_empty() {
-        sections.push(Section { id: "paths", title: "Expected and driven", body: maps(trials, &shown) });
-    }
-    if !gaps.is_empty() {
-        sections.push(Section { id: "gap", title: "How far the simulator was off", body: off(&gaps) });
-    }
-    sections.push(Section { id: "effects", title: "What the runs say about the robot", body: effects(trials) });
+    let mut sections = sections(state, 0);
     sections.push(Section { id: "compared", title: "What was run", body: source(subject) });
     Document {
         kind: "Loop on the robot",
@@ -118,7 +104,31 @@ pub fn page(subject: &Subject) -> Result<String> {
         sections,
         scripts: &[Script::Trials],
     }
-    .html(&data)
+    .html(&charts(scene, state, Vec::new()))
+}
+
+/// What the charts of a loop draw, with maps `before` its own.
+pub fn charts(scene: &Scene, state: &State, before: Vec<Map>) -> Charts {
+    let trials = &state.trials;
+    let maps: Vec<Map> = before.into_iter().chain(shown(trials.len()).into_iter().map(|i| map(&trials[i]))).collect();
+    let places = maps.iter().flat_map(|map| map.expected.iter().chain(&map.driven).flatten());
+    let room = Room::new(scene, REACHED_CM, places.copied().map(DVec2::from));
+    Charts { room, chances: trials.iter().flat_map(chances).collect(), maps, gaps: gaps(trials) }
+}
+
+/// The parts of a page that tell of a loop, whose first map has this number.
+pub fn sections(state: &State, first_map: usize) -> Vec<Section> {
+    let trials = &state.trials;
+    let gaps = gaps(trials);
+    let mut sections = vec![Section { id: "turns", title: "Turn by turn", body: turns(state) }];
+    if !trials.is_empty() {
+        sections.push(Section { id: "paths", title: "Expected and driven", body: maps(trials, first_map) });
+    }
+    if !gaps.is_empty() {
+        sections.push(Section { id: "gap", title: "How far the simulator was off", body: off(&gaps) });
+    }
+    sections.push(Section { id: "effects", title: "What the runs say about the robot", body: effects(trials) });
+    sections
 }
 
 /// All trials, or the first and the last ones.
@@ -202,24 +212,24 @@ fn chances(trial: &Trial) -> Vec<Chances> {
     [before].into_iter().chain(trial.chance_after.iter().map(|chance| of("after the run", chance))).collect()
 }
 
-fn paths(trial: &Trial) -> Paths<'_> {
-    Paths {
-        predicted: trial.predicted_paths.iter().map(|path| path.path_cm.as_slice()).collect(),
-        real: trial.real.as_ref().map_or(&[], |real| &real.path_cm),
+fn map(trial: &Trial) -> Map {
+    Map {
+        expected: trial.predicted_paths.iter().map(|path| path.path_cm.clone()).collect(),
+        driven: trial.real.iter().map(|real| real.path_cm.clone()).collect(),
     }
 }
 
-fn maps(trials: &[Trial], shown: &[usize]) -> Markup {
+fn maps(trials: &[Trial], first_map: usize) -> Markup {
+    let shown = shown(trials.len());
     html! {
-        p { "Thin lines are what was expected on robots that were possible, the thick one is the robot; the ring is the "
-        "target. Where they part, the simulator did not know something." }
+        p { (LINES) }
         @if shown.len() < trials.len() {
             p.quiet { "The first and the last " (MOST_MAPS / 2) " of " (trials.len()) " trials." }
         }
         div.pairs {
-            @for (number, place) in shown.iter().enumerate() {
+            @for (number, place) in (first_map..).zip(&shown) {
                 @let [trial, before, real, ..] = row(&trials[*place]);
-                (chart("trial", number, &format!("Trial {trial}: expected paths and the robot's"), html! {
+                (chart("map", number, &format!("Trial {trial}: expected paths and the robot's"), html! {
                     "Trial " (trial) ", expected " (before) ": " (real) "."
                 }))
             }
