@@ -12,6 +12,26 @@ import numpy as np
 import pandas as pd
 from numpy.typing import ArrayLike
 
+__all__ = [
+    "Controller",
+    "Diagnosis",
+    "Error",
+    "Evaluation",
+    "Evolution",
+    "Figure",
+    "Logs",
+    "Page",
+    "Simulation",
+    "Simulator",
+    "__version__",
+    "diagnose",
+    "evaluate",
+    "evolve",
+    "record",
+    "simulate",
+    "train",
+]
+
 __version__: Final[str]
 
 _Path: TypeAlias = str | PathLike[str]

@@ -9,14 +9,14 @@ use pyo3::buffer::PyBuffer;
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::{IntoPyDict, PyDict};
-use pythonize::{depythonize, pythonize};
 use serde::Serialize;
 
 use crate::error::raised;
 
 /// A value as `--json` writes it, in dicts, lists and numbers.
 pub fn facts<'py>(py: Python<'py>, value: &impl Serialize) -> PyResult<Bound<'py, PyAny>> {
-    Ok(pythonize(py, value)?)
+    let text = serde_json::to_string(value).map_err(|e| PyTypeError::new_err(e.to_string()))?;
+    py.import("json")?.call_method1("loads", (text,))
 }
 
 /// Rows as a frame; what is nested in them has dots in its column's name.
@@ -49,10 +49,11 @@ fn from_toml<T>(
     if let Ok(path) = from.extract::<PathBuf>() {
         return read(&path).map_err(raised);
     }
-    let tables: toml::Table = depythonize(from).map_err(|e| {
-        PyTypeError::new_err(format!("{name}: a path of {name}.toml or a dict of what stands in it: {e}"))
-    })?;
-    let text = toml::to_string(&tables).map_err(|e| PyTypeError::new_err(format!("{name}: {e}")))?;
+    let form =
+        |e: String| PyTypeError::new_err(format!("{name}: a path of {name}.toml or a dict of what stands in it: {e}"));
+    let text: String = from.py().import("json")?.call_method1("dumps", (from,))?.extract()?;
+    let tables: toml::Table = serde_json::from_str(&text).map_err(|e| form(e.to_string()))?;
+    let text = toml::to_string(&tables).map_err(|e| form(e.to_string()))?;
     parse(Path::new(name), &text).map_err(raised)
 }
 
