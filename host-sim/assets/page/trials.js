@@ -97,7 +97,7 @@ charts.gaps = (width, number) => {
     ...kindScale(LEARNING, BEFORE_AFTER.slice(0, 2)),
     y: { domain: [0, 1.1 * d3.max(points, (p) => p.off)], grid: true, label: `↑ a step is off by (${unit})`, ticks: 5 },
     marks: [
-      Plot.line(points, { x: "trial", y: "off", stroke: "kind", strokeOpacity: 0.6 }),
+      Plot.line(points, { x: "trial", y: "off", z: "kind", stroke: "kind", strokeOpacity: 0.6 }),
       Plot.dot(points, {
         x: "trial",
         y: "off",

@@ -156,16 +156,23 @@ fn headline(state: &State) -> String {
 fn lead(state: &State) -> String {
     let reached = state.trials.iter().filter(|trial| trial.real.as_ref().is_some_and(|real| real.reached)).count();
     let driven = state.trials.iter().filter(|trial| trial.real.is_some()).count();
-    format!(
-        "Each turn evolves a controller in the simulator, drives it once on the robot, and lets the simulator learn from \
-         that run. The robot reached the target in {reached} of {driven} runs."
-    )
+    let reached = if driven == 0 {
+        String::new()
+    } else {
+        format!(" The robot reached the target in {reached} of {driven} runs.")
+    };
+    "Each turn evolves a controller in the simulator, drives it once on the robot, and lets the simulator learn from that \
+     run."
+    .to_owned()
+        + &reached
 }
 
 fn turns(state: &State) -> Markup {
     let rows: Vec<[String; 5]> = state.trials.iter().map(row).collect();
     html! {
-        @if !rows.is_empty() {
+        @if rows.is_empty() {
+            p { "No controller was driven." }
+        } @else {
             (chart("chances", 0, "Chance of each trial's controller before and after it was driven", html! {
                 "The chance that the simulator gave each controller before it was driven, and gives it after the run, with "
                 "the range of 95 % of the robots that were possible; on top whether the robot reached the target. A wide "
