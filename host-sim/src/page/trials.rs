@@ -73,8 +73,10 @@ struct GapRow {
     after: f64,
 }
 
-/// Channels, their units, and where a gap has them.
-const CHANNELS: [(&str, &str, fn(&Gap) -> [f64; 2]); 3] = [
+/// A channel, its unit, and what its steps were off by before and after.
+type Channel = (&'static str, &'static str, fn(&Gap) -> [f64; 2]);
+
+const CHANNELS: [Channel; 3] = [
     ("way forward", "cm", |gap| gap.forward_cm),
     ("way sideways", "cm", |gap| gap.lateral_cm),
     ("turn", "degrees", |gap| gap.turn_deg),
@@ -246,7 +248,7 @@ fn maps(trials: &[Trial], first_map: usize) -> Markup {
 
 /// Of each channel what its steps were off by; nothing before two runs can be held against each other.
 fn gaps(trials: &[Trial]) -> Vec<Gaps> {
-    let of_channel = |(name, unit, of): &(&'static str, &'static str, fn(&Gap) -> [f64; 2])| {
+    let of_channel = |(name, unit, of): &Channel| {
         let row = |trial: &Trial| {
             let [before, after] = of(trial.gap.as_ref()?);
             Some(GapRow { trial: trial.number, before, after })
