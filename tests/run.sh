@@ -87,6 +87,7 @@ part documentation env RUSTDOCFLAGS="-D warnings" cargo doc --no-deps --workspac
 part compilation cargo test --workspace --no-run
 run_tests() { cargo test --workspace 2>&1 | tee "$log"; }
 part tests run_tests
+part python tests/python/run.sh
 part firmware tests/firmware/run.sh
 
 say "time"

@@ -21,7 +21,7 @@ mod general;
 mod guide;
 mod import;
 mod info;
-mod kinds;
+pub mod kinds;
 mod manual;
 mod new;
 mod progress;
@@ -178,12 +178,8 @@ fn read_logs(folder: &Path) -> Result<Logs> {
 /// # Errors
 /// When they cannot be read, or when something in them is wrong that could not be put right.
 fn read_sound_logs(folder: &Path) -> Result<Logs> {
-    let inspected = Inspection::of(read_logs(folder)?);
-    if let Some(why) = inspected.refusal() {
-        return Err(Error::in_file(folder, why));
-    }
-    inspected.findings.iter().for_each(|found| warn(format!("{}: {}", folder.display(), found.line())));
-    Ok(inspected.logs)
+    let told = |found| warn(format!("{}: {found}", folder.display()));
+    Inspection::of(read_logs(folder)?).sound(told).map_err(|error| error.or_in_file(folder))
 }
 
 /// The same of logs that have to be of a simulator's robot.

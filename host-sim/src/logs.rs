@@ -12,6 +12,7 @@ pub mod rows;
 pub mod run;
 pub mod samples;
 pub mod scene;
+pub mod tables;
 pub mod world_script;
 
 use std::fs;
@@ -23,7 +24,6 @@ pub use rows::Rows;
 pub use run::Run;
 pub use scene::Scene;
 
-use self::columns::{COLUMNS, REQUIRED, REQUIRED_WITHOUT_SENSOR};
 use crate::error::{Error, Result};
 use crate::files;
 
@@ -58,23 +58,27 @@ impl Logs {
         if names.is_empty() {
             return Err(Error::in_file(folder, "has no run-*.csv"));
         }
-        let has_sensor = !robot.ultrasonic.is_none();
-        let required = &COLUMNS[..if has_sensor { REQUIRED } else { REQUIRED_WITHOUT_SENSOR }];
+        let required = robot.required_columns();
         let mut oddities = Oddities::default();
         let read = |name: &String| {
             let path = folder.join(name);
             Run::read_with(&path, required, |oddity| oddities.add(&path, &oddity))
         };
-        let mut runs = names.iter().map(read).collect::<Result<Vec<_>>>()?;
+        let runs = names.iter().map(read).collect::<Result<Vec<_>>>()?;
         oddities.tell(&mut warn);
-        let count = if has_sensor { 0 } else { runs.iter_mut().map(without_readings).sum() };
+        Logs { robot, scene, runs }.checked(folder, warn)
+    }
+
+    /// The logs without what they cannot have; messages name `folder`.
+    fn checked(mut self, folder: &Path, mut warn: impl FnMut(String)) -> Result<Self> {
+        let has_sensor = !self.robot.ultrasonic.is_none();
+        let count = if has_sensor { 0 } else { self.runs.iter_mut().map(without_readings).sum() };
         if count > 0 {
             let robot = folder.join("robot.toml");
             warn(format!("{}: has no [ultrasonic]: {count} readings are left out", robot.display()));
         }
-        let logs = Logs { robot, scene, runs };
-        logs.check_step(folder)?;
-        Ok(logs)
+        self.check_step(folder)?;
+        Ok(self)
     }
 
     /// Writes a folder; logs that are in it already are replaced, and other files stay.

@@ -66,6 +66,7 @@ pub fn record_driving(
     let runs = (0..runs as u64)
         .into_par_iter()
         .map(|run| {
+            let driving = &driving.of_run(run);
             let rows = (0..ATTEMPTS).find_map(|attempt| {
                 let mut rng = generator(seed, &[RECORDING, run, attempt, DRIVING]);
                 let mut foresight = generator(seed, &[RECORDING, run, attempt, FORESIGHT]);

@@ -8,14 +8,13 @@ use super::evolve::{Sonar, start_of};
 use super::table::{self, number};
 use super::{Run, kinds};
 use crate::error::Result;
-use crate::evolve::chance::ROBOTS;
 use crate::evolve::controller_file::ControllerFile;
+use crate::evolve::trial::Trial;
 use crate::files;
 use crate::files::places::Places;
 use crate::logs::Scene;
 use crate::page::simulation::{Subject, page};
 use crate::pictures;
-use crate::simulator::environment::Environment;
 use crate::simulator::rollout_report::RolloutReport;
 use crate::simulator::{Noise, Simulator};
 
@@ -72,21 +71,17 @@ impl Run for Simulate {
         let controller = ControllerFile::read_for(&self.controller, &simulator.robot)?.controller;
         let scene = Scene::read(&self.scene)?;
         let start = start_of(&scene, self.start, &simulator.robot, &self.scene)?;
-        let noise = if self.paper_noise { Noise::Paper } else { Noise::Learned };
-        let (runs, seed) = (self.runs as usize, self.seed);
-        let open = simulator.ensemble.as_ref().filter(|_| noise == Noise::Learned);
-        let drawn = open.and_then(|ensemble| ensemble.robots(runs.min(ROBOTS), seed)).map(|robots| robots.drawn);
-        let robots = match &drawn {
-            Some(drawn) => Environment::of_robots(&simulator, drawn, &scene, start)?,
-            None => vec![Environment::new(&simulator, &scene, start, noise)?],
+        let trial = Trial {
+            simulator: &simulator,
+            controller: &controller,
+            scene: &scene,
+            start,
+            noise: if self.paper_noise { Noise::Paper } else { Noise::Learned },
+            first_echo: self.sonar == Sonar::FirstEcho,
+            runs: self.runs as usize,
+            seed: self.seed,
         };
-        let robots: Vec<Environment> = match self.sonar {
-            Sonar::Networks => robots,
-            Sonar::FirstEcho => {
-                robots.into_iter().map(|robot| robot.with_first_echo(&simulator, &scene)).collect::<Result<_>>()?
-            }
-        };
-        let rollouts = RolloutReport::of_robots(&robots, &scene, &controller, runs, seed);
+        let rollouts = trial.run()?;
         if let Some(path) = &self.html {
             let names = [&self.sim, &self.controller, &self.scene].map(|path| path.display().to_string());
             let subject = Subject {

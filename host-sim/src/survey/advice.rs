@@ -11,6 +11,8 @@ const SMALL: f64 = 20.0;
 const LARGE: f64 = 80.0;
 /// Brick, link and inertia take up to a second until a command acts in full, ms.
 const SETTLED_MS: f64 = 1000.0;
+/// Controllers hold commands for so many steps and more; what is a fraction of a degree in one step adds up there.
+const LONG_HOLD: usize = 10;
 /// Echoes begin to fail in the last quarter of a sensor's range; within the first one a controller decides to stop.
 const QUARTER: f64 = 0.25;
 /// At this incidence, degrees, smooth walls no longer return an echo to most sensors.
@@ -60,6 +62,11 @@ fn of_commands(logs: &Logs, holds: &Holdings) -> Vec<String> {
         missing.push(format!(
             "No command is held for longer than {:.0} ms: hold some for a second.",
             f64::from(longest) * step_ms
+        ));
+    } else if longest < LONG_HOLD {
+        missing.push(format!(
+            "No command is held for longer than {longest} steps: controllers hold theirs for {LONG_HOLD} and more, so let some runs \
+             do that too."
         ));
     }
     let never_changes = logs.runs.iter().all(|run| {

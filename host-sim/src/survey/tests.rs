@@ -9,11 +9,12 @@ fn lacks(missing: &[String], what: &str) -> bool {
     missing.iter().any(|sentence| sentence.contains(what))
 }
 
-/// Commands of all signs and sizes, each held for five steps, and no two runs alike.
+/// Commands of all signs and sizes, each held for five steps, in the first run for ten, and no two runs alike.
 fn everything(run: usize, at: usize) -> [f64; 2] {
     const PAIRS: [[f64; 2]; 6] =
         [[90.0, 90.0], [-40.0, 40.0], [30.0, -15.0], [-90.0, -90.0], [12.0, 35.0], [40.0, 10.0]];
-    let [left, right] = PAIRS[(run + at / 5) % PAIRS.len()];
+    let held = if run == 0 { 10 } else { 5 };
+    let [left, right] = PAIRS[(run + at / held) % PAIRS.len()];
     [left + run as f64, right]
 }
 
@@ -31,7 +32,7 @@ fn amounts_rates_and_ranges_are_counted() {
     // A centimetre a step for every ten of command, four steps a second: backwards by -90 and -90, forwards by 97 and 90.
     let speed = holds.forward_cm_s.expect("steps");
     assert!((speed.low + 36.0).abs() < 1e-9 && (37.0..37.4).contains(&speed.high), "{speed:?}");
-    assert_eq!((holds.held_steps, holds.longest_held_steps), (5.0, 5));
+    assert_eq!((holds.held_steps, holds.longest_held_steps), (5.0, 10));
     // Six pairs in six cells of a hundred.
     assert!((holds.command_coverage - 0.06).abs() < 1e-12, "{}", holds.command_coverage);
 }
@@ -53,6 +54,8 @@ fn what_is_not_driven_is_asked_for() {
         assert!(lacks(&to_the_left, what), "{what}: {to_the_left:?}");
     }
     assert!(!lacks(&to_the_left, "turns to the left"));
+    let briefly = missing(driven(8, 31, |run, at| everything(1 + run, at)));
+    assert!(lacks(&briefly, "longer than 5 steps: controllers"), "{briefly:?}");
     assert!(lacks(&missing(driven(8, 12, |run, _| [10.0 * run as f64, 50.0])), "changes within a run"));
     assert!(lacks(&missing(driven(8, 12, |_, _| [0.0; 2])), "No command drives the motors"));
 }

@@ -7,7 +7,7 @@ use mindgap_tests::command::Workshop;
 #[test]
 fn evolved_controllers_reach_the_target_on_the_robot() {
     let workshop = Workshop::new();
-    let done = workshop.call("demo --out out");
+    let done = workshop.call("demo --out out --html page.html");
     assert_eq!(done.code, 0, "{}", done.err);
     assert_eq!(done.err, "", "a pipe shows no progress");
 
@@ -40,7 +40,25 @@ fn evolved_controllers_reach_the_target_on_the_robot() {
         let svg = fs::read_to_string(out.join(format!("{figure}.svg"))).expect("a picture");
         assert!(svg.contains("<svg") && svg.trim_end().ends_with("</svg>"), "{figure}.svg");
     }
-    for file in ["simulator.json", "evaluation.json", "scene.toml", "logs/robot.toml", "held-out-logs/run-000.csv"] {
+    let page = workshop.text("page.html");
+    assert_eq!(
+        page.matches("data-chart=\"map\"").count(),
+        4 + workshop.json("out/loop/loop.json")["trials"].as_array().map_or(0, Vec::len)
+    );
+    // A motor got weak: the diagnosis names it, and the loop ends with a controller that reaches the target.
+    let (_, repair) = done.out.split_once("then motor_asymmetry").expect("a robot that changed");
+    assert!(repair.contains("effects: motor_asymmetry"), "{repair}");
+    let state = workshop.json("out/loop/loop.json");
+    assert_eq!(state["verdict"], "works", "{repair}");
+    assert_eq!(state["trials"][0]["real"]["reached"], false, "{repair}");
+    for file in [
+        "simulator.json",
+        "evaluation.json",
+        "scene.toml",
+        "logs/robot.toml",
+        "held-out-logs/run-000.csv",
+        "loop/paths.png",
+    ] {
         assert!(out.join(file).is_file(), "{file}");
     }
 }
