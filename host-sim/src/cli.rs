@@ -162,8 +162,8 @@ fn say(text: &str) -> Result<()> {
 /// Reads a folder of logs and tells its oddities on standard error.
 fn read_logs(folder: &Path) -> Result<Logs> {
     let logs = Logs::read(folder, warn)?;
-    let rows: usize = logs.runs.iter().map(|run| run.rows.len()).sum();
-    log::info!("{}: {} runs, {rows} rows, {} ms apart", folder.display(), logs.runs.len(), logs.robot.step_ms);
+    let (runs, rows, step_ms) = (logs.runs.len(), logs.rows(), logs.robot.step_ms);
+    log::info!("{}: {runs} runs, {rows} rows, {step_ms} ms apart", folder.display());
     let robot = folder.join("robot.toml");
     let open = to_fill_in(&robot.display().to_string(), &files::read_text(&robot)?);
     if let Some(first) = open.first() {

@@ -100,8 +100,7 @@ impl Logs {
     }
 
     fn __repr__(&self) -> String {
-        let rows: usize = self.inner.runs.iter().map(|run| run.rows.len()).sum();
-        format!("<mindgap.Logs of {} runs, {rows} rows>", self.inner.runs.len())
+        format!("<mindgap.Logs of {} runs, {} rows>", self.inner.runs.len(), self.inner.rows())
     }
 }
 

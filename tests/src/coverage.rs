@@ -127,14 +127,14 @@ impl Replay<'_> {
     }
 
     fn path(&self, run: &Run, first: usize, count: usize) -> Option<LoggedPath<'_>> {
-        let (from, to) = (run.rows[first].pose?, run.rows[first + count].pose?);
+        let (from, to) = (run.rows.at(first).pose?, run.rows.at(first + count).pose?);
         let steps: Vec<Step> = (first..first + count).map(|row| self.step(run, row)).collect();
         let unbroken = steps.iter().all(|step| step.stretch <= LONGEST_STEP);
         unbroken.then_some(LoggedPath { replay: self, steps, from, to })
     }
 
     fn step(&self, run: &Run, row: usize) -> Step {
-        let ([left, right], [left_before, right_before]) = (run.rows[row].command(), run.previous_command(row));
+        let ([left, right], [left_before, right_before]) = (run.rows.at(row).command(), run.previous_command(row));
         let speeds = [left, right, left_before, right_before].map(|command| command as f32);
         let motion = self.networks.step(speeds);
         // A robot's bias is in place of the correction of the held command.
@@ -147,7 +147,7 @@ impl Replay<'_> {
         Step {
             speeds,
             unbiased: [forward_cm, lateral_cm, turn_rad.to_degrees()],
-            stretch: (run.rows[row + 1].t_ms - run.rows[row].t_ms) / self.step_ms,
+            stretch: (run.rows.at(row + 1).t_ms - run.rows.at(row).t_ms) / self.step_ms,
         }
     }
 }

@@ -62,9 +62,8 @@ fn folder(path: &Path) -> Result<String> {
         return Err(Error::in_file(path, "is a folder without robot.toml: no logs that mindgap reads"));
     }
     let logs = Logs::read(path, super::warn)?;
-    let rows: usize = logs.runs.iter().map(|run| run.rows.len()).sum();
-    let step_ms = logs.robot.step_ms;
-    Ok(format!("logs of {} runs, {rows} rows, {step_ms} ms apart; `mindgap check` tells more", logs.runs.len()))
+    let (runs, rows, step_ms) = (logs.runs.len(), logs.rows(), logs.robot.step_ms);
+    Ok(format!("logs of {runs} runs, {rows} rows, {step_ms} ms apart; `mindgap check` tells more"))
 }
 
 fn file(path: &Path) -> Result<String> {

@@ -243,7 +243,6 @@ fn turnable(surfaces: &[Surface]) -> Markup {
 
 fn compared(subject: &Subject) -> Markup {
     let Subject { simulator, logs, names: [sim, folder], .. } = subject;
-    let rows: usize = logs.runs.iter().map(|run| run.rows.len()).sum();
     let origin = &simulator.origin;
     html! {
         dl {
@@ -254,7 +253,7 @@ fn compared(subject: &Subject) -> Markup {
                 dt { "With effects" }
                 dd { (words::list(&simulator.added.iter().map(|effect| effect.effect.as_str()).collect::<Vec<_>>())) }
             }
-            dt { "Logs" } dd { (folder) ": " (logs.runs.len()) " runs, " (rows) " rows" }
+            dt { "Logs" } dd { (folder) ": " (logs.runs.len()) " runs, " (logs.rows()) " rows" }
             @for missing in &simulator.missing {
                 dt { "No network for " (missing.network) } dd { (missing.reason) }
             }

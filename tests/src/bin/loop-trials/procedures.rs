@@ -215,7 +215,7 @@ impl Workbench<'_> {
             let mut run = driven.to_run("run");
             if driven.termination == Termination::Crashed {
                 let first = run.rows.len().saturating_sub(LAST_ROWS);
-                run.rows[first..].iter_mut().for_each(|row| row.pose = None);
+                (first..run.rows.len()).for_each(|row| run.rows.edit(row, |row| row.pose = None));
             }
             runs.push(run);
             last = Some((controller, reached));
