@@ -2,11 +2,9 @@
 
 use glam::DVec2;
 use mindgap_host_sim::built_in_robot::{ActiveEffect, Effect, default_robot, record, training_room};
-use mindgap_host_sim::gap::{Method, findings};
 use mindgap_host_sim::geometry::Pose;
-use mindgap_host_sim::inspection::{Handling, Inspection, Part};
+use mindgap_host_sim::inspection::{Inspection, Part};
 use mindgap_host_sim::logs::{Logs, Row};
-use mindgap_host_sim::simulator::kinematic;
 use mindgap_tests::faults::{MOTION, RUN, SONAR, assert_found};
 
 fn logs(runs: usize, effects: &[ActiveEffect]) -> Logs {
@@ -116,32 +114,4 @@ fn logs_that_say_little_pass() {
         let inspected = Inspection::of(logs.clone());
         assert!(inspected.findings.is_empty() && inspected.logs == logs, "{:?}", inspected.findings);
     }
-}
-
-/// What is wrong with logs is no cause of a gap: where it is put right the robot's own differences from the textbook are
-/// found as in good logs, and where it is left out or told no other one is.
-#[test]
-fn no_fault_reaches_a_confident_cause() {
-    let good = logs(12, &[]);
-    let of_the_robot = sure_of(&good);
-    for fault in MOTION.iter().chain(&SONAR) {
-        let mut faulty = good.clone();
-        (fault.put)(&mut faulty);
-        let sure = sure_of(&faulty);
-        let is_right = match fault.handling {
-            Handling::PutRight => sure == of_the_robot,
-            Handling::LeftOut | Handling::Told => sure.iter().all(|effect| of_the_robot.contains(effect)),
-        };
-        assert!(is_right, "{}: {sure:?}, and {of_the_robot:?} of good logs", fault.what);
-    }
-}
-
-/// The effects that a diagnosis against the textbook is sure of; none where nothing can be compared.
-fn sure_of(logs: &Logs) -> Vec<&'static str> {
-    const SURE: f64 = 0.9;
-    let inspected = Inspection::of(logs.clone());
-    let Ok(found) = findings(kinematic::baseline(&inspected.logs), &inspected, Method::default()) else {
-        return Vec::new();
-    };
-    found.diagnosis.effects().iter().filter(|effect| effect.probability > SURE).map(|effect| effect.id).collect()
 }
