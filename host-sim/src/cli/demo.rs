@@ -17,8 +17,9 @@ use crate::files;
 use crate::files::places::Places;
 use crate::page::demo::page;
 
-/// Do the whole job on the built-in robot: record, train, evolve, try, export, draw; then weaken a motor, and let the loop
-/// find out and repair it.
+/// Do the whole job on the built-in robot: record, train, evolve, try, export, draw.
+///
+/// Then weaken a motor, and let the loop find out and repair it.
 #[derive(Args)]
 pub struct Demo {
     /// Where to leave everything.
