@@ -7,7 +7,7 @@ use mindgap_tests::command::Workshop;
 #[test]
 fn evolved_controllers_reach_the_target_on_the_robot() {
     let workshop = Workshop::new();
-    let done = workshop.call("demo --out out --html page.html");
+    let done = workshop.call("demo --out out --html page.html --json facts.json");
     assert_eq!(done.code, 0, "{}", done.err);
     assert_eq!(done.err, "", "a pipe shows no progress");
 
@@ -51,6 +51,9 @@ fn evolved_controllers_reach_the_target_on_the_robot() {
     let state = workshop.json("out/loop/loop.json");
     assert_eq!(state["verdict"], "works", "{repair}");
     assert_eq!(state["trials"][0]["real"]["reached"], false, "{repair}");
+    let facts = workshop.json("facts.json");
+    assert_eq!(facts["starts"].as_array().map(Vec::len), Some(4), "{facts}");
+    assert_eq!(facts["repair"]["after"]["crashed"], 0.0, "{facts}");
     for file in [
         "simulator.json",
         "evaluation.json",
