@@ -24,8 +24,11 @@ use mindgap_host_sim::trials::{self, Job};
 
 use crate::cases::{Case, SEED};
 
+/// A name, and what it stands for.
+pub type Procedure = (&'static str, fn(&Workbench) -> Result<Settled>);
+
 /// All procedures.
-pub const PROCEDURES: [(&str, fn(&Workbench) -> Result<Settled>); 7] = [
+pub const PROCEDURES: [Procedure; 7] = [
     ("paper", by_the_paper),
     ("straight", evolve_straight),
     ("evolve", evolve),
