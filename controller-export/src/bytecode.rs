@@ -224,6 +224,13 @@ pub(crate) mod update {
 pub(crate) mod mode {
     pub(crate) const MOTOR_ON: u8 = 0x01;
     pub(crate) const BRAKE: u8 = 0x02;
+    pub(crate) const REGULATED: u8 = 0x04;
+}
+
+/// Values of [`OutputField::RegulationMode`].
+pub(crate) mod regulation_mode {
+    pub(crate) const SPEED: u8 = 0x01;
+    pub(crate) const SYNC: u8 = 0x02;
 }
 
 /// The value of [`OutputField::RunState`] for a motor that is idle.

@@ -18,21 +18,30 @@ const MACHINE: &str = include_str!("c/machine.h");
 pub fn header(controller: &Controller, origin: &Origin) -> Result<String, ExportError> {
     controller.check()?;
     let origin: String = origin.lines().iter().map(|line| format!("\n * {}", line.replace("*/", "* /"))).collect();
-    let Controller { step_ms, max_steps, .. } = controller;
-    let head = format!(
+    Ok(format!(
         "/* A six-tuple controller. Set the motors to controller_motors_now(), and every CONTROLLER_STEP_MS read the sensor\n \
          * once, call controller_step() and set the motors again.\n *{origin}\n */\n\
          #ifndef MINDGAP_CONTROLLER_H\n\
          #define MINDGAP_CONTROLLER_H\n\
          \n\
-         #include <stdbool.h>\n\
+         {}\n\
+         #endif\n",
+        machine(controller)
+    ))
+}
+
+/// The controller's table and its machine, in what C and C++ have in common.
+pub(crate) fn machine(controller: &Controller) -> String {
+    let Controller { step_ms, max_steps, .. } = controller;
+    let numbers = format!(
+        "#include <stdbool.h>\n\
          #include <stdint.h>\n\
          \n\
          #define CONTROLLER_TUPLES {TUPLES}\n\
          #define CONTROLLER_STEP_MS {step_ms}\n\
          #define CONTROLLER_MAX_STEPS {max_steps}\n"
     );
-    Ok(head + &MACHINE.replace("@tuples@\n", &tuples(controller)))
+    numbers + &MACHINE.replace("@tuples@\n", &tuples(controller))
 }
 
 fn tuples(controller: &Controller) -> String {

@@ -22,7 +22,7 @@ use fixed::{FixedI32, Saturating};
 
 pub use cosine::cos_pi;
 pub(crate) use powers::exp2_of_sum;
-pub use powers::{exp2, log2};
+pub use powers::{STEPS, exp2, log2};
 pub(crate) use product::product;
 
 use crate::scalar::Scalar;

@@ -87,7 +87,11 @@ pub fn adapt(simulator: &Simulator, logs: &Logs, seed: u64) -> Result<Adapted> {
     let explained = steps(simulator, &effects, &observations)?;
     let given = |steps: &[StepResidual]| conditioned(ensemble, &noise, steps);
     let named = explained == plain || probability(&given(&explained)) > probability(&given(&plain)) + EFFECT_NATS;
-    let (effects, steps) = if named { (effects, explained) } else { (Vec::new(), plain.clone()) };
+    let (effects, steps) = if named {
+        (effects, explained)
+    } else {
+        (of_no_motion(simulator, effects, &observations, &plain)?, plain.clone())
+    };
     let after = given(&steps);
     let lesson = Lesson {
         commands: commands(&holds(&steps), ensemble, &after),
@@ -105,6 +109,22 @@ fn probability(ensemble: &Ensemble) -> f64 {
     let mut unchanged = ensemble.clone();
     unchanged.prior.iter_mut().for_each(|prior| prior[CHANGE] = 0.0);
     log_evidence(&unchanged)
+}
+
+/// Those of the effects that leave the motion alone, as those of the sensor do.
+fn of_no_motion(
+    simulator: &Simulator,
+    effects: Vec<AppliedEffect>,
+    observations: &Observations,
+    plain: &[StepResidual],
+) -> Result<Vec<AppliedEffect>> {
+    let mut left = Vec::new();
+    for effect in effects {
+        if steps(simulator, std::slice::from_ref(&effect), observations)? == plain {
+            left.push(effect);
+        }
+    }
+    Ok(left)
 }
 
 /// The effects that a diagnosis names; none where the logs do not suffice for one.

@@ -9,6 +9,7 @@ mod budget_text;
 mod challenge;
 mod check;
 mod crosscheck;
+mod defaults;
 mod demo;
 mod diagnose;
 mod diagnosis_text;
@@ -16,10 +17,11 @@ mod drive;
 mod evaluate;
 mod evolve;
 mod export;
+mod general;
 mod guide;
 mod import;
 mod info;
-mod kinds;
+pub mod kinds;
 mod manual;
 mod new;
 mod progress;
@@ -28,18 +30,22 @@ mod simulate;
 mod table;
 mod train;
 mod trials;
+mod voice;
 
-use std::io::{self, Write};
+use std::env;
 use std::path::Path;
 use std::process::ExitCode;
 
 use clap::{FromArgMatches, Parser, Subcommand};
+use general::General;
+pub use guide::command;
 use serde::Serialize;
 
 use crate::error::{Error, Result};
 use crate::files;
 use crate::files::places::Places;
 use crate::gap::validate::same_robot;
+use crate::import::draft::to_fill_in;
 use crate::inspection::Inspection;
 use crate::logs::Logs;
 use crate::simulator::Simulator;
@@ -48,9 +54,8 @@ use crate::simulator::Simulator;
 #[derive(Parser)]
 #[command(name = "mindgap", version)]
 struct Cli {
-    /// Replace what is at the place of an output, whatever it is; what else lies in a folder stays.
-    #[arg(long, global = true)]
-    force: bool,
+    #[command(flatten)]
+    general: General,
     #[command(subcommand)]
     command: Command,
 }
@@ -118,43 +123,54 @@ impl Command {
 /// Runs the command of this process's arguments. Exits with 0 when it did what was asked, 1 when it could not, and 2
 /// when the call is wrong.
 pub fn run() -> ExitCode {
-    let cli = Cli::from_arg_matches(&guide::command().get_matches());
-    let Cli { force, command } = cli.unwrap_or_else(|error| error.exit());
-    let command = command.which();
-    let places = command.places();
-    let done = places.check(force).and_then(|()| command.run());
-    // What goes to standard output as a file stands alone there.
-    match done.and_then(|text| if places.take_standard_output() { Ok(()) } else { say(&text) }) {
+    match answer() {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            complain(&error.to_string());
+            voice::complain(&error.to_string());
             ExitCode::FAILURE
         }
     }
 }
 
+/// Does what this process's arguments and the defaults beside the logs ask for, and says what there is to say.
+fn answer() -> Result<()> {
+    let command = guide::command();
+    let (arguments, defaults) = defaults::with_defaults(&command, env::args_os().collect())?;
+    let matches = command.try_get_matches_from(arguments).map_err(|error| defaults.blamed_for(error))?;
+    let Cli { general, command } = Cli::from_arg_matches(&matches).unwrap_or_else(|error| error.exit());
+    general.take_effect()?;
+    defaults.tell();
+    let command = command.which();
+    let places = command.places();
+    places.check(general.force)?;
+    progress::begin(matches.subcommand_name().unwrap_or_default().to_owned());
+    let done = command.run();
+    progress::end();
+    let text = done?;
+    // What goes to standard output as a file stands alone there.
+    if general.quiet || places.take_standard_output() { Ok(()) } else { say(&text) }
+}
+
 /// Writes to standard output.
 fn say(text: &str) -> Result<()> {
-    let lines: Vec<String> = text.lines().map(printable).collect();
+    let lines: Vec<String> = text.lines().map(voice::printable).collect();
     let end = if text.ends_with('\n') { "\n" } else { "" };
     let written = files::to_standard_output((lines.join("\n") + end).as_bytes());
     written.map_err(|e| Error::new(format!("standard output cannot be written: {e}")))
 }
 
-/// Writes a line to standard error. That nobody can read it ends nothing.
-fn complain(line: &str) {
-    let _ = writeln!(io::stderr(), "mindgap: {}", printable(line));
-}
-
-/// A line without what moves a terminal's cursor: file names may hold anything.
-fn printable(line: &str) -> String {
-    let shown = |c: char| if c.is_control() { c.escape_default().to_string() } else { c.to_string() };
-    line.chars().map(shown).collect()
-}
-
 /// Reads a folder of logs and tells its oddities on standard error.
 fn read_logs(folder: &Path) -> Result<Logs> {
-    Logs::read(folder, warn)
+    let logs = Logs::read(folder, warn)?;
+    let (runs, rows, step_ms) = (logs.runs.len(), logs.rows(), logs.robot.step_ms);
+    log::info!("{}: {runs} runs, {rows} rows, {step_ms} ms apart", folder.display());
+    let robot = folder.join("robot.toml");
+    let open = to_fill_in(&robot.display().to_string(), &files::read_text(&robot)?);
+    if let Some(first) = open.first() {
+        let others = if open.len() > 1 { format!(" and {} more", open.len() - 1) } else { String::new() };
+        warn(format!("{first}{others}: marked FILL IN, so not measured yet; what is wrong about it looks like a gap"));
+    }
+    Ok(logs)
 }
 
 /// Reads a folder of logs from which something is learned or judged: what could be put right in them is told and used.
@@ -162,12 +178,8 @@ fn read_logs(folder: &Path) -> Result<Logs> {
 /// # Errors
 /// When they cannot be read, or when something in them is wrong that could not be put right.
 fn read_sound_logs(folder: &Path) -> Result<Logs> {
-    let inspected = Inspection::of(read_logs(folder)?);
-    if let Some(why) = inspected.refusal() {
-        return Err(Error::in_file(folder, why));
-    }
-    inspected.findings.iter().for_each(|found| warn(format!("{}: {}", folder.display(), found.line())));
-    Ok(inspected.logs)
+    let told = |found| warn(format!("{}: {found}", folder.display()));
+    Inspection::of(read_logs(folder)?).sound(told).map_err(|error| error.or_in_file(folder))
 }
 
 /// The same of logs that have to be of a simulator's robot.
@@ -188,5 +200,5 @@ fn reported(json: Option<&Path>, facts: &impl Serialize, text: String) -> Result
 
 /// Tells what does not keep a command from being done.
 fn warn(warning: String) {
-    complain(&format!("warning: {warning}"));
+    log::warn!("{warning}");
 }

@@ -1,4 +1,8 @@
-//! The whole request on the built-in robot: record, train, evaluate, evolve, simulate, try on the robot, export, draw.
+//! The whole request on the built-in robot: record, train, evaluate, evolve, simulate, try on the robot, export, draw; and
+//! then what to do when the robot is no longer what its logs say.
+
+pub mod repair;
+pub mod robot;
 
 use std::fs;
 use std::path::Path;
@@ -26,6 +30,7 @@ use crate::report::paths::{PathPanel, Trace};
 use crate::simulator::environment::Environment;
 use crate::simulator::rollout_report::RolloutReport;
 use crate::simulator::{Noise, Simulator};
+use repair::Repair;
 
 const TRAINING_RUNS: usize = 100;
 const HELD_OUT_RUNS: usize = 30;
@@ -45,6 +50,7 @@ enum Purpose {
     Evolution,
     Simulation,
     Trial,
+    Repair,
 }
 
 /// Stage of the request, for a progress display.
@@ -63,6 +69,11 @@ pub enum Stage {
     },
     /// Drawing of the figures.
     Drawing,
+    /// Repairing what a change of the robot did to its controllers.
+    Repairing {
+        /// Which trial, from 1.
+        trial: usize,
+    },
 }
 
 /// Results.
@@ -71,6 +82,10 @@ pub struct Summary {
     pub evaluation: Evaluation,
     /// One entry a start.
     pub starts: Vec<StartSummary>,
+    /// Their simulated and real paths.
+    pub panels: Vec<PathPanel>,
+    /// What the loop did about a change of the robot.
+    pub repair: Repair,
 }
 
 /// Success of one start's controller in simulation and in reality.
@@ -83,6 +98,8 @@ pub struct StartSummary {
 
 /// A start's controller and its runs.
 struct Trial {
+    /// Evolved controllers, the best in a trial on the robot first.
+    controllers: Vec<Controller>,
     rollouts: RolloutReport,
     trajectories: Vec<Trajectory>,
     summary: StartSummary,
@@ -117,7 +134,15 @@ pub fn run(out: &Path, seed: u64, watch: impl Fn(Stage)) -> Result<Summary> {
     pictures::networks(out, &simulator, &evaluation, &held_out)?;
     let panels: Vec<PathPanel> = trials.iter().enumerate().map(|(i, trial)| panel(i, trial, &scene)).collect();
     pictures::paths(out, &panels)?;
-    Ok(Summary { evaluation, starts: trials.into_iter().map(|trial| trial.summary).collect() })
+    // The start whose controller does best on the robot as it was.
+    let real = |i: usize| &trials[i].summary.real;
+    let better = |a: &usize, b: &usize| {
+        real(*b).rate.total_cmp(&real(*a).rate).then(real(*a).median_cm.total_cmp(&real(*b).median_cm))
+    };
+    let best = (0..trials.len()).min_by(better).ok_or_else(|| Error::new("the scene has no start"))?;
+    let watch_trial = |trial| watch(Stage::Repairing { trial });
+    let repair = repair::run(out, best + 1, &trials[best].controllers, MAX_STEPS, of(Purpose::Repair), watch_trial)?;
+    Ok(Summary { evaluation, starts: trials.into_iter().map(|trial| trial.summary).collect(), panels, repair })
 }
 
 /// Inputs common to all starts.
@@ -146,10 +171,9 @@ impl<W: Fn(Stage)> DemoRun<'_, W> {
             built_in_robot::run_controller(robot, controller, pose, &mut generator(trial, place))
         };
         // Real runs of one controller nearly coincide, so a single one shows whether it transfers.
-        let candidates = robust::candidates(&task, report);
-        let errors = candidates.iter().map(|c| error_cm(&drive(&c.controller, &[start as u64]), target_cm));
-        let best = errors.enumerate().min_by(|a, b| a.1.total_cmp(&b.1)).map_or(0, |(i, _)| i);
-        let evolved = &candidates[best];
+        let mut candidates = robust::candidates(&task, report);
+        candidates.sort_by_cached_key(|c| millimetres_off(&drive(&c.controller, &[start as u64]), target_cm));
+        let evolved = &candidates[0];
         let controller = evolved.controller.clone();
         let simulated = task.success(&controller, JUDGED_RUNS);
         let origin = controller_file::Origin {
@@ -166,8 +190,9 @@ impl<W: Fn(Stage)> DemoRun<'_, W> {
             RolloutReport::new(environment, self.scene, &controller, TRIALS, derive(simulation, &[start as u64]));
         let trajectories: Vec<Trajectory> =
             (0..TRIALS as u64).map(|run| drive(&controller, &[start as u64, run])).collect();
-        let real = real_success(&trajectories, target_cm);
-        Ok(Trial { rollouts, trajectories, summary: StartSummary { simulated, real } })
+        let real = success(trajectories.iter().cloned(), target_cm);
+        let controllers = candidates.into_iter().map(|c| c.controller).collect();
+        Ok(Trial { controllers, rollouts, trajectories, summary: StartSummary { simulated, real } })
     }
 
     fn write(&self, number: usize, controller: &Controller, origin: controller_file::Origin) -> Result<()> {
@@ -188,22 +213,20 @@ fn panel(start: usize, trial: &Trial, scene: &Scene) -> PathPanel {
     let simulated = pictures::simulated_paths(title, scene, scene.starts[start], &trial.rollouts);
     let trace = |trajectory: &Trajectory| Trace {
         points_cm: trajectory.points.iter().map(|m| m.true_pose.position_cm).collect(),
-        crashed: trajectory.termination == built_in_robot::Termination::Crashed,
+        crashed: crashed(trajectory),
     };
     PathPanel { real: trial.trajectories.iter().map(trace).collect(), ..simulated }
 }
 
-/// Final distance to the target, cm; infinite after a crash.
-fn error_cm(trajectory: &Trajectory, target_cm: DVec2) -> f64 {
-    if trajectory.termination == built_in_robot::Termination::Crashed {
-        return f64::INFINITY;
-    }
-    trajectory.end().position_cm.distance(target_cm)
+fn crashed(trajectory: &Trajectory) -> bool {
+    trajectory.termination == built_in_robot::Termination::Crashed
 }
 
-fn real_success(trajectories: &[Trajectory], target_cm: DVec2) -> Success {
-    let crashed = |trajectory: &Trajectory| trajectory.termination == built_in_robot::Termination::Crashed;
-    let distances =
-        trajectories.iter().map(|trajectory| (trajectory.end().position_cm.distance(target_cm), crashed(trajectory)));
-    Success::of_ends(distances)
+/// Final distance to the target, the largest there is after a crash.
+fn millimetres_off(trajectory: &Trajectory, target_cm: DVec2) -> u64 {
+    if crashed(trajectory) { u64::MAX } else { (10.0 * trajectory.end().position_cm.distance(target_cm)) as u64 }
+}
+
+fn success(trajectories: impl Iterator<Item = Trajectory>, target_cm: DVec2) -> Success {
+    Success::of_ends(trajectories.map(|driven| (driven.end().position_cm.distance(target_cm), crashed(&driven))))
 }

@@ -5,5 +5,7 @@ pub mod controller_file;
 pub mod fitness;
 pub mod genome;
 pub mod paper;
+pub mod request;
 pub mod robust;
+pub mod trial;
 pub mod way;

@@ -26,6 +26,7 @@ pub mod omnibus;
 pub mod progress;
 pub mod propose;
 pub mod remainder;
+pub mod request;
 pub mod residual_law;
 pub mod scatter;
 pub mod scope;

@@ -25,6 +25,7 @@ mod ways;
 pub use finding::{Finding, Handling, Part, Place};
 pub use frames::Orientation;
 
+use crate::error::{Error, Result};
 use crate::logs::Logs;
 
 /// Logs after inspection.
@@ -52,6 +53,18 @@ impl Inspection {
             checks.iter().for_each(|check| findings.extend(check(&mut logs)));
         }
         Inspection { logs, findings }
+    }
+
+    /// The logs, for those who learn from them or judge by them; `warn` receives what could be put right in them.
+    ///
+    /// # Errors
+    /// When something is wrong with them that could not be put right.
+    pub fn sound(self, warn: impl FnMut(String)) -> Result<Logs> {
+        if let Some(why) = self.refusal() {
+            return Err(Error::new(why));
+        }
+        self.findings.iter().map(Finding::line).for_each(warn);
+        Ok(self.logs)
     }
 
     /// Why nothing must be learned from the logs as they are, where something could not be put right.

@@ -8,9 +8,11 @@ pub mod readings;
 mod resample;
 pub mod robot;
 mod row;
+pub mod rows;
 pub mod run;
 pub mod samples;
 pub mod scene;
+pub mod tables;
 pub mod world_script;
 
 use std::fs;
@@ -18,10 +20,10 @@ use std::path::Path;
 
 pub use robot::{Robot, Ultrasonic};
 pub use row::Row;
+pub use rows::Rows;
 pub use run::Run;
 pub use scene::Scene;
 
-use self::columns::{COLUMNS, REQUIRED, REQUIRED_WITHOUT_SENSOR};
 use crate::error::{Error, Result};
 use crate::files;
 
@@ -56,25 +58,27 @@ impl Logs {
         if names.is_empty() {
             return Err(Error::in_file(folder, "has no run-*.csv"));
         }
-        let has_sensor = !robot.ultrasonic.is_none();
-        let required = &COLUMNS[..if has_sensor { REQUIRED } else { REQUIRED_WITHOUT_SENSOR }];
+        let required = robot.required_columns();
         let mut oddities = Oddities::default();
         let read = |name: &String| {
             let path = folder.join(name);
             Run::read_with(&path, required, |oddity| oddities.add(&path, &oddity))
         };
-        let mut runs = names.iter().map(read).collect::<Result<Vec<_>>>()?;
+        let runs = names.iter().map(read).collect::<Result<Vec<_>>>()?;
         oddities.tell(&mut warn);
-        let readings =
-            runs.iter_mut().flat_map(|run| &mut run.rows).filter_map(|row| row.echo_cm.take_if(|_| !has_sensor));
-        let count = readings.count();
+        Logs { robot, scene, runs }.checked(folder, warn)
+    }
+
+    /// The logs without what they cannot have; messages name `folder`.
+    fn checked(mut self, folder: &Path, mut warn: impl FnMut(String)) -> Result<Self> {
+        let has_sensor = !self.robot.ultrasonic.is_none();
+        let count = if has_sensor { 0 } else { self.runs.iter_mut().map(without_readings).sum() };
         if count > 0 {
             let robot = folder.join("robot.toml");
             warn(format!("{}: has no [ultrasonic]: {count} readings are left out", robot.display()));
         }
-        let logs = Logs { robot, scene, runs };
-        logs.check_step(folder)?;
-        Ok(logs)
+        self.check_step(folder)?;
+        Ok(self)
     }
 
     /// Writes a folder; logs that are in it already are replaced, and other files stay.
@@ -90,13 +94,18 @@ impl Logs {
         })
     }
 
+    /// The number of rows of all runs.
+    pub fn rows(&self) -> usize {
+        self.runs.iter().map(|run| run.rows.len()).sum()
+    }
+
     /// Checks that rows are about `step_ms` apart; an error names `folder`.
     ///
     /// # Errors
     /// When the median step time deviates from `step_ms` by more than a fifth.
     pub fn check_step(&self, folder: &Path) -> Result<()> {
         let mut steps_ms: Vec<f64> =
-            self.runs.iter().flat_map(|run| run.rows.windows(2).map(|w| w[1].t_ms - w[0].t_ms)).collect();
+            self.runs.iter().flat_map(|run| run.rows.pairs().map(|w| w[1].t_ms - w[0].t_ms)).collect();
         steps_ms.sort_by(f64::total_cmp);
         let middle_ms = steps_ms[steps_ms.len() / 2];
         if (middle_ms / self.robot.step_ms - 1.0).abs() > STEP_TOLERANCE {
@@ -109,6 +118,13 @@ impl Logs {
         }
         Ok(())
     }
+}
+
+/// Leaves out a run's readings, and says how many.
+fn without_readings(run: &mut Run) -> usize {
+    let count = run.rows.iter().filter(|row| row.echo_cm.is_some()).count();
+    run.rows.edit_each(|row| row.echo_cm = None);
+    count
 }
 
 /// What is odd in files, each told once with the first file that has it.

@@ -3,9 +3,11 @@
 //! There is one module a page. Words and tables are made here, and everything that is put into them is escaped; charts are
 //! drawn in the browser by libraries that the page carries (`assets/vendor`), from data that it carries too.
 
+pub mod demo;
 pub mod diagnosis;
 pub mod evaluation;
 pub mod simulation;
+pub mod trials;
 
 mod document;
 mod glossary;

@@ -30,11 +30,24 @@ use crate::simulator::rollout_report::{Rollout, RolloutReport};
 /// Figure 3 shows one test sample in this many, so that single ones are visible.
 const EVERY: usize = 4;
 
-/// Figure 2, expected against predicted, and figure 3, the sonar surfaces, of a simulator that has the sonar networks.
+/// A figure and the name of its files.
+pub struct NamedFigure {
+    /// The name, without an ending.
+    pub name: String,
+    /// The figure.
+    pub figure: Figure,
+}
+
+/// Writes [`figures_of_networks`].
 ///
 /// # Errors
 /// When the folder cannot be written.
 pub fn networks(folder: &Path, simulator: &Simulator, evaluation: &Evaluation, held_out: &Logs) -> Result<()> {
+    write(folder, &figures_of_networks(simulator, evaluation, held_out))
+}
+
+/// Figure 2, expected against predicted, and figure 3, the sonar surfaces, of a simulator that has the sonar networks.
+pub fn figures_of_networks(simulator: &Simulator, evaluation: &Evaluation, held_out: &Logs) -> Vec<NamedFigure> {
     let n = &evaluation.networks;
     let values = [
         ("Forward", "cm", &n.forward),
@@ -54,12 +67,12 @@ pub fn networks(folder: &Path, simulator: &Simulator, evaluation: &Evaluation, h
         panels
             .insert(panels.len().min(3), Panel { title: "Echo probability".into(), samples: Samples::Events(events) });
     }
-    write(folder, &report::expected_against_predicted(&panels), "figure-2-expected-against-predicted")?;
+    let expected = named("figure-2-expected-against-predicted", report::expected_against_predicted(&panels));
     let data = Datasets::from_logs(held_out);
     let max_cm = simulator.robot.ultrasonic.max_cm;
     let ask = |network: &Network<f32, 2>, d: f64, alpha: f64| f64::from(network.evaluate([d as f32, alpha as f32]));
     let (probability, value) = (&simulator.echo_probability, &simulator.echo_value);
-    let (Some(probability), Some(value)) = (probability, value) else { return Ok(()) };
+    let (Some(probability), Some(value)) = (probability, value) else { return vec![expected] };
     let probability = |d: f64, alpha: f64| ask(&probability.network, d, alpha);
     let value = |d: f64, alpha: f64| ask(&value.network, d, alpha);
     let surface = |title: &str, value_name: &str, at, value, data: &Dataset<2>| {
@@ -85,15 +98,20 @@ pub fn networks(folder: &Path, simulator: &Simulator, evaluation: &Evaluation, h
         ),
         surface("Reading", "reading (cm)", &value, 0.0..max_cm, &data.echo_value),
     ];
-    write(folder, &report::sonar_surfaces(&surfaces), "figure-3-sonar-surfaces")
+    vec![expected, named("figure-3-sonar-surfaces", report::sonar_surfaces(&surfaces))]
 }
 
-/// Figure 4: simulated and real paths, a panel a start.
+/// Writes [`figure_of_paths`].
 ///
 /// # Errors
 /// When the folder cannot be written.
 pub fn paths(folder: &Path, panels: &[PathPanel]) -> Result<()> {
-    write(folder, &report::paths(panels), "figure-4-simulated-and-real-paths")
+    write(folder, &[figure_of_paths(panels)])
+}
+
+/// Figure 4: simulated and real paths, a panel a start.
+pub fn figure_of_paths(panels: &[PathPanel]) -> NamedFigure {
+    named("figure-4-simulated-and-real-paths", report::paths(panels))
 }
 
 /// A panel of figure 4 with simulated runs alone.
@@ -108,25 +126,31 @@ pub fn simulated_paths(title: String, scene: &Scene, start: Pose, rollouts: &Rol
     }
 }
 
-/// The figures of a diagnosis: its budget, the ends of paths, and what is left; nothing of what it does not have.
+/// Writes [`figures_of_diagnosis`].
 ///
 /// # Errors
 /// When the folder cannot be written.
 pub fn diagnosis(folder: &Path, diagnosis: &Diagnosis) -> Result<()> {
+    write(folder, &figures_of_diagnosis(diagnosis))
+}
+
+/// The figures of a diagnosis: its budget, the ends of paths, and what is left; nothing of what it does not have.
+pub fn figures_of_diagnosis(diagnosis: &Diagnosis) -> Vec<NamedFigure> {
     let budget: Vec<Bar> = diagnosis
         .budget()
         .iter()
         .map(|part| Bar { name: part.id.clone(), share: part.share, interval: part.ci95 })
         .collect();
+    let mut figures = Vec::new();
     if !budget.is_empty() {
-        write(folder, &report::bars("What the gap is made of", "share of the gap (%)", &budget), "budget")?;
+        figures.push(named("budget", report::bars("What the gap is made of", "share of the gap (%)", &budget)));
     }
-    if let Some(reduction) = diagnosis.reduction().filter(|reduction| !reduction.paths.is_empty()) {
-        write(folder, &ends(reduction), "path-ends")?;
-    }
-    diagnosis.profiles().iter().try_for_each(|profile| {
-        write(folder, &unexplained(profile), &format!("unexplained-{}", profile.channel.name().replace('_', "-")))
-    })
+    let reduction = diagnosis.reduction().filter(|reduction| !reduction.paths.is_empty());
+    figures.extend(reduction.map(|reduction| named("path-ends", ends(reduction))));
+    figures.extend(diagnosis.profiles().iter().map(|profile| {
+        named(&format!("unexplained-{}", profile.channel.name().replace('_', "-")), unexplained(profile))
+    }));
+    figures
 }
 
 fn ends(found: &GapReduction) -> Figure {
@@ -154,10 +178,16 @@ fn unexplained(part: &ResidualProfile) -> Figure {
     curves(&format!("{name} by {}", part.depends_on), part.depends_on, part.unit, &[curve])
 }
 
-/// Writes a figure into a folder, which is made where there is none.
-fn write(folder: &Path, figure: &Figure, name: &str) -> Result<()> {
-    files::make_folder(folder)?;
-    figure.write(folder, name)
+fn named(name: &str, figure: Figure) -> NamedFigure {
+    NamedFigure { name: name.into(), figure }
+}
+
+/// Writes figures into a folder, which is made where there is none.
+fn write(folder: &Path, figures: &[NamedFigure]) -> Result<()> {
+    if !figures.is_empty() {
+        files::make_folder(folder)?;
+    }
+    figures.iter().try_for_each(|NamedFigure { name, figure }| figure.write(folder, name))
 }
 
 /// A simulated run as a path.

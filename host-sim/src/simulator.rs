@@ -25,7 +25,7 @@ use mindgap_core::network::Network;
 use serde::{Deserialize, Serialize};
 
 use crate::effects::applied::AppliedEffect;
-use crate::effects::{legacy, own};
+use crate::effects::{CATALOGUE, legacy, own};
 use crate::error::{Error, Result};
 use crate::files;
 use crate::logs::Robot;
@@ -172,7 +172,10 @@ impl Simulator {
     fn check(&self, path: &Path) -> Result<()> {
         if let Some(added) = self.added.iter().find(|a| a.resolve().is_none()) {
             let why = added.definition.as_ref().and_then(|definition| own::effect(definition).err());
-            let why = why.unwrap_or_else(|| "it is not known to this program".into());
+            let why = why.unwrap_or_else(|| {
+                let ids = CATALOGUE.iter().map(|effect| effect.id);
+                format!("it is not known to this program{}", files::did_you_mean(&added.effect, ids))
+            });
             let what = format!("the added effect {} ({}) is not possible: {why}", added.effect, added.variant);
             return Err(Error::in_file(path, what));
         }

@@ -17,7 +17,7 @@ use crate::gap::condition;
 use crate::gap::diagnose::{Excitation, excitation};
 use crate::inspection::{Finding, Inspection};
 use crate::learn::train;
-use crate::logs::Logs;
+use crate::logs::{Logs, Run};
 use crate::simulator::{Missing, kinematic};
 
 /// What there is to say about logs; docs/formats.md has the JSON.
@@ -46,11 +46,12 @@ impl Survey {
     pub fn of(logs: Logs) -> Self {
         let mut inspected = Inspection::of(logs);
         let refused = inspected.refusal().map(str::to_owned);
-        let missing_networks = train::unsupported(&inspected.logs);
+        let enough = enough_of(&inspected.logs);
+        let missing_networks = train::unsupported(&enough);
         let coarse = in_steps_that_motion_shows_in(&inspected.logs);
         let holds = Holdings::of(&inspected.logs, coarse.as_ref().unwrap_or(&inspected.logs));
         let mut drive_more = advice::advice(&inspected.logs, &holds);
-        inspected.logs = enough_of(coarse.unwrap_or(inspected.logs));
+        inspected.logs = coarse.map_or(enough, |coarse| enough_of(&coarse));
         let untestable = match shown(&inspected) {
             Ok(Excitation { untestable, notes }) => {
                 drive_more.extend(notes);
@@ -72,17 +73,17 @@ const ENOUGH_ROWS: usize = 100_000;
 const ENOUGH_RUNS: usize = 100;
 
 /// Of large logs every so many runs, and of long ones the beginning.
-fn enough_of(mut logs: Logs) -> Logs {
-    let rows: usize = logs.runs.iter().map(|run| run.rows.len()).sum();
+fn enough_of(logs: &Logs) -> Logs {
+    let rows = logs.rows();
     if rows <= ENOUGH_ROWS {
-        return logs;
+        return logs.clone();
     }
     let every = rows.div_ceil(ENOUGH_ROWS).min(logs.runs.len() / ENOUGH_RUNS).max(1);
-    let mut index = 0..;
-    logs.runs.retain(|_| index.next().is_some_and(|index: usize| index.is_multiple_of(every)));
-    let most = ENOUGH_ROWS / logs.runs.len().max(1);
-    logs.runs.iter_mut().for_each(|run| run.rows.truncate(most.max(2)));
-    logs
+    let most = (ENOUGH_ROWS / logs.runs.len().div_ceil(every)).max(2);
+    let begin =
+        |run: &Run| Run { name: run.name.clone(), rows: run.rows.between(0..most.min(run.rows.len())).collect() };
+    let runs = logs.runs.iter().step_by(every).map(begin).collect();
+    Logs { robot: logs.robot, scene: logs.scene.clone(), runs }
 }
 
 /// What a diagnosis against the textbook could show.

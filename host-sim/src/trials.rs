@@ -28,9 +28,6 @@ use search::{Search, Tried};
 use state::{Failure, State, Trial, Verdict};
 use vetting::Vetting;
 
-/// So many real successes of a controller, and this chance by the adapted simulator, end the loop: two successes can be luck.
-const SUCCESSES: usize = 2;
-const CHANCE: f64 = 0.7;
 /// Where no controller has this chance on robots that are possible, none is driven.
 const HOPELESS: f64 = 0.03;
 /// A drive that fails is tried so often.
@@ -50,6 +47,8 @@ pub struct Job<'a> {
     pub trials: usize,
     /// Steps after which a controller gives up.
     pub max_steps: u16,
+    /// Controllers to begin with.
+    pub known: &'a [Controller],
     /// Seed of all draws.
     pub seed: u64,
 }
@@ -124,12 +123,8 @@ impl<'a> Trials<'a> {
         let known = search.judged(&tried)?;
         self.note(adapted, tried.last().and_then(|last| known.chance_of(&last.controller)));
         simulator.write(&self.job.folder.join("simulator.json"))?;
-        let confirmed = tried.iter().filter(|tried| tried.successes >= SUCCESSES).find_map(|tried| {
-            let chance = known.chance_of(&tried.controller)?;
-            (chance.success >= CHANCE).then_some((&tried.controller, chance))
-        });
-        if let Some((controller, chance)) = confirmed {
-            return self.settle(Verdict::Works, controller, chance);
+        if let Some((controller, chance)) = known.confirmed(&tried) {
+            return self.settle(Verdict::Works, controller, *chance);
         }
         if count >= self.job.trials {
             let (controller, chance) = known.choice(&tried).ok_or_else(|| Error::new("no controller was driven"))?;
@@ -140,7 +135,7 @@ impl<'a> Trials<'a> {
         if chance.success < HOPELESS {
             return self.settle(Verdict::OutOfReach, controller, *chance);
         }
-        let trial = Trial::planned(count + 1, *chance);
+        let trial = Trial::planned(count + 1, *chance, search.paths(controller)?);
         self.write_controller(&self.job.folder.join(&trial.controller), controller, *chance)?;
         self.state.trials.push(trial);
         self.state.archive = found.archive();
@@ -186,7 +181,7 @@ impl<'a> Trials<'a> {
                     trial.real = Some(real);
                     tell(Event::Driven(trial));
                 }
-                drawing::paths(folder, &self.simulator, &self.scene, self.start, &self.state)
+                drawing::paths(folder, &self.scene, self.start, &self.state)
             }
             Err(problem) => {
                 let failure = Failure { trial: trial.number, reason: problem.to_string() };

@@ -1,10 +1,12 @@
-// Runs exported programs in MicroPython, each on a robot that answers by script: `node run.mjs CASES.json` prints for
-// each case the ending and the times and powers of all motor commands.
+// Runs exported programs in MicroPython: `node run.mjs CASES.json` prints for each case, of a program on a robot that answers
+// by script, the ending and the times and powers of all motor commands; of networks, what each answers to all its inputs.
 import { readFileSync } from "node:fs";
 import { loadMicroPython } from "@micropython/micropython-webassembly-pyscript/micropython.mjs";
 
 const HARNESS = `
-import sys, json
+import sys, json, math
+
+sys.modules["umath"] = math
 
 class Anything:
     def __getattr__(self, name):
@@ -46,11 +48,18 @@ def run_case(program, readings):
     robot = Scripted(json.loads(readings))
     ending = names["run"](robot)
     return json.dumps([ending, robot.events])
+
+def call_all(program, calls):
+    names = {"__name__": "networks"}
+    exec(program, names)
+    calls = json.loads(calls)
+    return json.dumps({name: [names[name](*inputs) for inputs in calls[name]] for name in calls})
 `;
 
 const micropython = await loadMicroPython({ heapsize: 8 * 1024 * 1024 });
 micropython.runPython(HARNESS);
 const runCase = micropython.globals.get("run_case");
-for (const { program, readings } of JSON.parse(readFileSync(process.argv[2], "utf8"))) {
-  console.log(runCase(program, JSON.stringify(readings)));
+const callAll = micropython.globals.get("call_all");
+for (const { program, readings, calls } of JSON.parse(readFileSync(process.argv[2], "utf8"))) {
+  console.log(calls ? callAll(program, JSON.stringify(calls)) : runCase(program, JSON.stringify(readings)));
 }

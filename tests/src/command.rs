@@ -183,6 +183,11 @@ static MINDGAP: LazyLock<PathBuf> = LazyLock::new(|| {
     path
 });
 
+/// The command's own file.
+pub fn program() -> &'static Path {
+    &MINDGAP
+}
+
 /// The folder of the workspace.
 pub fn workspace() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("the tests lie in the workspace")

@@ -5,7 +5,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use glam::DVec2;
 use mindgap_host_sim::geometry::{Pose, wrap_rad};
 use mindgap_host_sim::inspection::{Finding, Handling, Inspection};
-use mindgap_host_sim::logs::{Logs, Row};
+use mindgap_host_sim::logs::{Logs, Row, Rows};
 
 /// A fault and what an inspection has to make of it.
 pub struct Fault {
@@ -29,7 +29,7 @@ pub const RUN: usize = 4;
 /// Faults of motion: in commands, poses and clocks.
 pub const MOTION: [Fault; 20] = [
     fault("commands in -1..1", "command_fraction", Handling::PutRight, |logs| {
-        rows(logs).for_each(|row| (row.left, row.right) = (row.left / 100.0, row.right / 100.0));
+        each(logs, |row| (row.left, row.right) = (row.left / 100.0, row.right / 100.0));
     }),
     fault("radians", "heading_radians", Handling::PutRight, |logs| poses(logs, |p| p.heading_rad *= PI / 180.0)),
     fault("metres", "length_metres", Handling::PutRight, |logs| poses(logs, |p| p.position_cm *= 0.01)),
@@ -39,7 +39,7 @@ pub const MOTION: [Fault; 20] = [
         poses(logs, |p| p.position_cm.y = high_cm - p.position_cm.y);
     }),
     fault("left and right exchanged", "left_right_exchanged", Handling::Told, |logs| {
-        rows(logs).for_each(|row| (row.left, row.right) = (row.right, row.left));
+        each(logs, |row| (row.left, row.right) = (row.right, row.left));
     }),
     fault("x and y exchanged", "xy_exchanged", Handling::Told, |logs| {
         poses(logs, |p| p.position_cm = DVec2::new(p.position_cm.y, p.position_cm.x));
@@ -57,30 +57,34 @@ pub const MOTION: [Fault; 20] = [
         poses(logs, |p| p.heading_rad = wrap_rad(p.heading_rad + PI));
     }),
     fault("both motors reversed", "commands_reversed", Handling::Told, |logs| {
-        rows(logs).for_each(|row| (row.left, row.right) = (-row.left, -row.right));
+        each(logs, |row| (row.left, row.right) = (-row.left, -row.right));
     }),
     fault("every tenth heading flipped", "heading_flipped", Handling::PutRight, |logs| {
-        rows(logs).skip(5).step_by(10).filter_map(|row| row.pose.as_mut()).for_each(flip);
+        let mut count = 0..;
+        each(logs, |row| {
+            if count.next().is_some_and(|k| k % 10 == 5) {
+                row.pose.iter_mut().for_each(flip);
+            }
+        });
     }),
     fault("a stretch of headings flipped", "heading_flipped", Handling::PutRight, |logs| {
-        logs.runs[RUN].rows[12..26].iter_mut().filter_map(|row| row.pose.as_mut()).for_each(flip);
+        (12..26).for_each(|k| logs.runs[RUN].rows.edit_pose(k, flip));
     }),
     fault("five headings off by 88°", "heading_jump", Handling::LeftOut, |logs| {
-        let rows = logs.runs[RUN].rows.iter_mut().skip(6).step_by(9).take(5);
-        rows.filter_map(|row| row.pose.as_mut())
-            .for_each(|p| p.heading_rad = wrap_rad(p.heading_rad + 88f64.to_radians()));
+        let turn = |p: &mut Pose| p.heading_rad = wrap_rad(p.heading_rad + 88f64.to_radians());
+        (6..).step_by(9).take(5).for_each(|k| logs.runs[RUN].rows.edit_pose(k, turn));
     }),
     fault("five positions off by 31 cm", "tracker_jump", Handling::LeftOut, |logs| {
-        let rows = logs.runs[RUN].rows.iter_mut().skip(6).step_by(9).take(5);
-        rows.filter_map(|row| row.pose.as_mut()).for_each(|p| p.position_cm += DVec2::new(18.6, -24.8));
+        let jump = |p: &mut Pose| p.position_cm += DVec2::new(18.6, -24.8);
+        (6..).step_by(9).take(5).for_each(|k| logs.runs[RUN].rows.edit_pose(k, jump));
     }),
     fault("a frozen tracker", "tracker_frozen", Handling::LeftOut, |logs| {
         let rows = &mut logs.runs[RUN].rows;
-        let stands = rows[20].pose;
-        rows[21..25].iter_mut().for_each(|row| row.pose = stands);
+        let stands = rows.at(20).pose;
+        (21..25).for_each(|k| rows.edit(k, |row| row.pose = stands));
     }),
     fault("a run in seconds", "clock_seconds", Handling::PutRight, |logs| {
-        logs.runs[RUN].rows.iter_mut().for_each(|row| row.t_ms /= 1000.0);
+        logs.runs[RUN].rows.edit_each(|row| row.t_ms /= 1000.0);
     }),
     fault("a run's commands 1.6 s late", "clock_shifted", Handling::LeftOut, |logs| shift(&mut logs.runs[RUN].rows, 4)),
     fault("a run copied", "run_copied", Handling::LeftOut, |logs| {
@@ -142,7 +146,7 @@ pub fn assert_found(good: &Logs, fault: &Fault) {
         let as_it_was = before.logs.runs.iter().find(|other| other.name == run.name).expect("a run of the good logs");
         for (k, (row, was)) in run.rows.iter().zip(&as_it_was.rows).enumerate() {
             let is_left_out = fault.handling == Handling::LeftOut && found_rows.contains(&(run.name.clone(), k));
-            assert!(is_left_out && row.pose.is_none() || are_equal(row, was), "{what}: {row:?} was {was:?}");
+            assert!(is_left_out && row.pose.is_none() || are_equal(&row, &was), "{what}: {row:?} was {was:?}");
         }
     }
 }
@@ -164,20 +168,20 @@ fn are_equal(a: &Row, b: &Row) -> bool {
     poses && echoes && near(a.t_ms, b.t_ms) && near(a.left, b.left) && near(a.right, b.right)
 }
 
-fn rows(logs: &mut Logs) -> impl Iterator<Item = &mut Row> {
-    logs.runs.iter_mut().flat_map(|run| &mut run.rows)
+fn each(logs: &mut Logs, mut change: impl FnMut(&mut Row)) {
+    logs.runs.iter_mut().for_each(|run| run.rows.edit_each(&mut change));
 }
 
 fn poses(logs: &mut Logs, change: impl Fn(&mut Pose)) {
-    rows(logs).filter_map(|row| row.pose.as_mut()).for_each(change);
+    logs.runs.iter_mut().for_each(|run| run.rows.edit_poses(&change));
 }
 
 fn readings(logs: &mut Logs, change: impl Fn(f64) -> f64) {
-    rows(logs).for_each(|row| row.echo_cm = row.echo_cm.map(&change));
+    each(logs, |row| row.echo_cm = row.echo_cm.map(&change));
 }
 
 fn none(logs: &mut Logs, number: f64) {
-    rows(logs).for_each(|row| row.echo_cm = row.echo_cm.or(Some(number)));
+    each(logs, |row| row.echo_cm = row.echo_cm.or(Some(number)));
 }
 
 fn flip(pose: &mut Pose) {
@@ -185,10 +189,11 @@ fn flip(pose: &mut Pose) {
 }
 
 /// Commands as they would stand if they were logged so many rows late.
-fn shift(rows: &mut [Row], late: usize) {
-    let commands: Vec<[f64; 2]> = rows.iter().map(Row::command).collect();
-    for (k, row) in rows.iter_mut().enumerate() {
-        [row.left, row.right] = if k < late { [0.0; 2] } else { commands[k - late] };
+fn shift(rows: &mut Rows, late: usize) {
+    let commands: Vec<[f64; 2]> = rows.iter().map(|row| row.command()).collect();
+    for k in 0..rows.len() {
+        let command = if k < late { [0.0; 2] } else { commands[k - late] };
+        rows.edit(k, |row| [row.left, row.right] = command);
     }
 }
 

@@ -1,8 +1,9 @@
 //! What the tests share: the built command, golden files, error bounds of fixed point, the compiler for NXT programs,
-//! ROS 2 bags, and which modules of a crate know which.
+//! ROS 2 bags, how often robots end where they are expected, and which modules of a crate know which.
 
 pub mod command;
 pub mod controllers;
+pub mod coverage;
 pub mod faults;
 pub mod firmware_networks;
 pub mod fixed_point_error;

@@ -40,3 +40,15 @@ pub fn trained() -> Workshop {
     });
     TRAINED.copy()
 }
+
+/// The built-in robot, with a weak motor, as the command `robot.sh` of a loop. `before` prepares its arguments, and `after`
+/// is done to the log, a file `$4`.
+///
+/// # Panics
+/// When the path of the command is no UTF-8.
+pub fn robot(workshop: &Workshop, before: &str, after: &str) {
+    let command = workshop.command("");
+    let mindgap = command.get_program().to_str().expect("a path in UTF-8");
+    let drive = format!("'{mindgap}' drive \"$1\" --scene \"$2\" --start \"$3\" --out \"$4\" --seed \"$5\"");
+    workshop.write("robot.sh", format!("set -e\n{before}\n{drive} --effect motor_asymmetry=0.1\n{after}\n"));
+}

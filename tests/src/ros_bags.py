@@ -1,6 +1,7 @@
 """Writes the bags that the tests of `mindgap import bag` read, with the official writer of ROS 2 messages."""
 
 import csv
+import math
 import sys
 from pathlib import Path
 
@@ -99,6 +100,34 @@ def tf(row, parent, child):
     return {"transforms": [stamped]}
 
 
+def localised(path, compression, drive):
+    """A base that reckons in a frame which a localiser moves now and then, and whose axle is behind its frame."""
+    bag = Bag(path, compression)
+    shift_m, turn_rad, ahead_m, first_s = (0.5, -0.3), 0.2, 0.1, drive[0]["t_s"]
+    still = {"t_s": first_s, "x_m": -ahead_m, "y_m": 0.0, "qz": 0.0, "qw": 1.0}
+    bag.write("/tf_static", "tf2_msgs/msg/TFMessage", first_s, tf(still, "torso", "base_link"))
+    for index, row in enumerate(drive):
+        t_s = row["t_s"]
+        bag.write("/cmd_vel", "geometry_msgs/msg/Twist", t_s, twist(row))
+        at_m = (shift_m[0] + 0.01 * (t_s - first_s), shift_m[1])
+        if index % 10 == 0:
+            half = turn_rad / 2
+            odom = {"t_s": t_s, "x_m": at_m[0], "y_m": at_m[1], "qz": math.sin(half), "qw": math.cos(half)}
+            bag.write("/tf", "tf2_msgs/msg/TFMessage", t_s, tf(odom, "map", "odom"))
+        heading = 2 * math.atan2(row["qz"], row["qw"])
+        x = row["x_m"] + ahead_m * math.cos(heading) - at_m[0]
+        y = row["y_m"] + ahead_m * math.sin(heading) - at_m[1]
+        half = (heading - turn_rad) / 2
+        torso = {
+            "t_s": t_s,
+            "x_m": x * math.cos(turn_rad) + y * math.sin(turn_rad),
+            "y_m": y * math.cos(turn_rad) - x * math.sin(turn_rad),
+            "qz": math.sin(half), "qw": math.cos(half),
+        }
+        bag.write("/tf", "tf2_msgs/msg/TFMessage", t_s, tf(torso, "odom", "torso"))
+    bag.writer.finish()
+
+
 def scan(row):
     # The beam straight ahead is the third of five, and one beside it sees something nearer.
     ranges = [9.0, 0.5, row["range_m"], 9.0, float("inf")]
@@ -157,6 +186,7 @@ def main(drive, folder):
     write(folder / "tracker.mcap", CompressionType.ZSTD, [command, tracked, sonar], drive)
     write(folder / "odometry.mcap", CompressionType.LZ4, [stamped, odom, laser], drive)
     write(folder / "transforms.mcap", CompressionType.NONE, [command, transforms], drive)
+    localised(folder / "localised.mcap", CompressionType.ZSTD, drive)
 
 
 if __name__ == "__main__":

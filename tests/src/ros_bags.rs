@@ -9,7 +9,7 @@ use crate::command::workspace;
 /// The writer; what it needs comes with it.
 const PACKAGE: &str = "mcap-ros2-support==0.6.0";
 
-/// Writes `tracker.mcap`, `odometry.mcap` and `transforms.mcap` of a drive into a folder. The drive is CSV with t_s,
+/// Writes `tracker.mcap`, `odometry.mcap`, `transforms.mcap` and `localised.mcap` of a drive into a folder. The drive is CSV with t_s,
 /// v_m_s, w_rad_s, x_m, y_m, qz, qw and range_m.
 pub fn write(drive: &Path, folder: &Path) {
     let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/ros_bags.py");

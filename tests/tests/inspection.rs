@@ -1,5 +1,6 @@
 //! Faults that are put into the built-in robot's logs are found, and what it does by itself is none.
 
+use glam::DVec2;
 use mindgap_host_sim::built_in_robot::{ActiveEffect, Effect, default_robot, record, training_room};
 use mindgap_host_sim::geometry::Pose;
 use mindgap_host_sim::inspection::{Inspection, Part};
@@ -48,9 +49,10 @@ fn lost_commands_look_like_jumps_in_few_rows() {
 fn a_shifted_clock_of_all_runs_withholds_motion() {
     let mut logs = logs(12, &[]);
     for run in &mut logs.runs {
-        let commands: Vec<[f64; 2]> = run.rows.iter().map(Row::command).collect();
-        for (k, row) in run.rows.iter_mut().enumerate() {
-            [row.left, row.right] = if k < 2 { [0.0; 2] } else { commands[k - 2] };
+        let commands: Vec<[f64; 2]> = run.rows.iter().map(|row| row.command()).collect();
+        for k in 0..run.rows.len() {
+            let command = if k < 2 { [0.0; 2] } else { commands[k - 2] };
+            run.rows.edit(k, |row| [row.left, row.right] = command);
         }
     }
     let inspected = Inspection::of(logs);
@@ -66,12 +68,13 @@ fn motion_at_zero_commands_is_left_out() {
     let mut logs = logs(12, &[]);
     let rows = &mut logs.runs[RUN].rows;
     rows.truncate(40);
-    let (carried, stood) = (26..32, rows[20].pose.expect("a pose"));
-    for (k, row) in rows.iter_mut().enumerate().skip(20) {
-        (row.left, row.right) = (0.0, 0.0);
+    let (carried, stood) = (26..32, rows.at(20).pose.expect("a pose"));
+    for k in 20..rows.len() {
         let carried_cm = 5.0 * k.clamp(carried.start, carried.end) as f64 - 5.0 * carried.start as f64;
         let noise_cm = 0.05 * (k % 3) as f64;
-        row.pose = Some(Pose::new(stood.position_cm.x + carried_cm, stood.position_cm.y + noise_cm, stood.heading_rad));
+        let [x_cm, y_cm] = (stood.position_cm + DVec2::new(carried_cm, noise_cm)).to_array();
+        let pose = Some(Pose::new(x_cm, y_cm, stood.heading_rad));
+        rows.edit(k, |row| *row = Row { left: 0.0, right: 0.0, pose, ..*row });
     }
     let inspected = Inspection::of(logs.clone());
     let found: Vec<&str> = inspected.findings.iter().map(|found| found.id).collect();
@@ -87,9 +90,9 @@ fn a_drive_that_is_cut_starts_moving() {
     let mut logs = logs(12, &[late]);
     assert!(Inspection::of(logs.clone()).findings.is_empty());
     for run in &mut logs.runs {
-        run.rows.drain(..7);
-        let begin_ms = run.rows[0].t_ms;
-        run.rows.iter_mut().for_each(|row| row.t_ms -= begin_ms);
+        let begin_ms = run.rows.at(7).t_ms;
+        let cut = run.rows.between(7..run.rows.len()).map(|row| Row { t_ms: row.t_ms - begin_ms, ..row }).collect();
+        run.rows = cut;
     }
     let found: Vec<&str> = Inspection::of(logs).findings.iter().map(|found| found.id).collect();
     assert_eq!(found, ["starts_moving"]);
@@ -98,13 +101,15 @@ fn a_drive_that_is_cut_starts_moving() {
 #[test]
 fn logs_that_say_little_pass() {
     let mut still = logs(6, &[]);
-    still.runs.iter_mut().flat_map(|run| &mut run.rows).for_each(|row| (row.left, row.right) = (0.0, 0.0));
+    still.runs.iter_mut().for_each(|run| run.rows.edit_each(|row| (row.left, row.right) = (0.0, 0.0)));
     let mut unseen = logs(6, &[]);
-    unseen.runs.iter_mut().flat_map(|run| &mut run.rows).for_each(|row| row.pose = None);
+    unseen.runs.iter_mut().for_each(|run| run.rows.edit_each(|row| row.pose = None));
     let mut silent = logs(1, &[]);
-    silent.runs.iter_mut().flat_map(|run| &mut run.rows).for_each(|row| row.echo_cm = None);
+    silent.runs.iter_mut().for_each(|run| run.rows.edit_each(|row| row.echo_cm = None));
     let mut sparse = logs(6, &[]);
-    sparse.runs.iter_mut().flat_map(|run| run.rows.iter_mut().skip(1).step_by(2)).for_each(|row| row.pose = None);
+    for run in &mut sparse.runs {
+        (1..run.rows.len()).step_by(2).for_each(|k| run.rows.edit(k, |row| row.pose = None));
+    }
     for logs in [still, unseen, silent, sparse] {
         let inspected = Inspection::of(logs.clone());
         assert!(inspected.findings.is_empty() && inspected.logs == logs, "{:?}", inspected.findings);

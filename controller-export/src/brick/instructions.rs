@@ -363,13 +363,14 @@ impl<'p> Brick<'p, '_> {
     /// Makes an output do what its fields say.
     pub(super) fn apply_output(&mut self, port: usize) {
         let rotation_deg = self.world.rotation_deg(port, self.t_ms);
-        if let Some(drive) = self.motors[port].apply(rotation_deg) {
+        if let Some(drive) = self.motors[port].apply(rotation_deg, self.t_ms) {
             self.drive(port, drive);
         }
     }
 
+    /// Tells what a motor was set to; a regulated one gets the power that its regulation makes of that.
     pub(super) fn drive(&mut self, port: usize, drive: Drive) {
-        self.world.motor(port, drive, self.t_ms);
+        self.world.motor(port, self.motors[port].regulated_drive(), self.t_ms);
         self.emit(EventKind::Motor { port, drive });
     }
 

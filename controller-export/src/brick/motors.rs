@@ -1,10 +1,10 @@
 //! The outputs: the fields that a program writes and their effect on the motors.
 //!
-//! Regulation is not emulated: a motor runs at the power that is set, at once.
-//!
 //! Source: `c_output.c` of the firmware.
 
-use crate::bytecode::{OutputField, RUN_STATE_IDLE, mode, update};
+use super::Brick;
+use super::regulation::{self, Pair, Speed};
+use crate::bytecode::{OutputField, RUN_STATE_IDLE, mode, regulation_mode, update};
 
 /// Motor ports of a brick.
 pub(super) const PORTS: usize = 3;
@@ -22,7 +22,7 @@ pub enum Drive {
 }
 
 /// An output: its fields and its motor.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub(super) struct Motor {
     flags: u8,
     mode: u8,
@@ -39,10 +39,57 @@ pub(super) struct Motor {
     tacho_zero: i32,
     block_zero: i32,
     rotation_zero: i32,
+    /// The power that was set, and where the motor is regulated how.
     running_power: i8,
+    regulated: Option<Regulated>,
+    overloaded: bool,
     brakes: bool,
     /// Shaft rotation at which the run ends.
     limit_deg: Option<i32>,
+}
+
+/// What sets the power of a motor anew in every window.
+#[derive(Clone, Debug)]
+struct Regulated {
+    by: Regulation,
+    /// Power of this window.
+    power: i8,
+    /// When it ends, and rotation of the shaft at its begin.
+    ends_ms: u32,
+    began_deg: i32,
+}
+
+#[derive(Clone, Debug)]
+enum Regulation {
+    Speed(Speed),
+    /// With another motor: the first of both has the state of the pair.
+    Pair(Pair),
+}
+
+impl Default for Motor {
+    fn default() -> Self {
+        Motor {
+            flags: 0,
+            mode: 0,
+            power: 0,
+            tacho_limit: 0,
+            run_state: RUN_STATE_IDLE,
+            turn_ratio: 0,
+            regulation_mode: 0,
+            gains: regulation::GAINS,
+            options: 0,
+            max_speed: 0,
+            max_acceleration: 0,
+            tacho_zero: 0,
+            block_zero: 0,
+            rotation_zero: 0,
+            running_power: 0,
+            regulated: None,
+            overloaded: false,
+            brakes: false,
+            limit_deg: None,
+        }
+    }
 }
 
 impl Motor {
@@ -75,13 +122,13 @@ impl Motor {
             OutputField::Flags => u32::from(self.flags),
             OutputField::Mode => u32::from(self.mode),
             OutputField::Power => self.power as u32,
-            OutputField::ActualSpeed => self.running_power as u32,
+            OutputField::ActualSpeed => self.regulated_power() as u32,
             OutputField::TachoCount => rotation_deg.wrapping_sub(self.tacho_zero) as u32,
             OutputField::TachoLimit => self.tacho_limit,
             OutputField::RunState => u32::from(self.run_state),
             OutputField::TurnRatio => self.turn_ratio as u32,
             OutputField::RegulationMode => u32::from(self.regulation_mode),
-            OutputField::Overload => 0,
+            OutputField::Overload => self.overloaded.into(),
             OutputField::PValue => u32::from(self.gains[0]),
             OutputField::IValue => u32::from(self.gains[1]),
             OutputField::DValue => u32::from(self.gains[2]),
@@ -95,7 +142,7 @@ impl Motor {
 
     /// Applies the fields that the flags name, as the firmware does in its next millisecond. Returns the new drive if the
     /// flags affect it.
-    pub(super) fn apply(&mut self, rotation_deg: i32) -> Option<Drive> {
+    pub(super) fn apply(&mut self, rotation_deg: i32, t_ms: u32) -> Option<Drive> {
         let flags = std::mem::take(&mut self.flags);
         if flags & update::RESET_ROTATION_COUNT != 0 {
             self.rotation_zero = rotation_deg;
@@ -109,6 +156,7 @@ impl Motor {
         let is_on = self.mode & mode::MOTOR_ON != 0;
         if flags & update::SPEED != 0 && is_on {
             self.running_power = if self.run_state == RUN_STATE_IDLE { 0 } else { self.power };
+            self.overloaded = false;
         }
         if flags & update::MODE != 0 {
             // A motor that is switched off fades and turns freely, whatever the other bits say.
@@ -116,6 +164,9 @@ impl Motor {
             if !is_on {
                 self.running_power = 0;
             }
+        }
+        if flags & (update::MODE | update::SPEED) != 0 {
+            self.regulate(rotation_deg, t_ms);
         }
         if flags & update::TACHO_LIMIT != 0 {
             let way_deg = self.tacho_limit as i32;
@@ -143,14 +194,126 @@ impl Motor {
         self.limit_deg = None;
         self.run_state = RUN_STATE_IDLE;
         self.running_power = 0;
+        self.regulated = None;
         Some(self.drive())
     }
 
+    /// Begins, goes on with or ends the regulation that the fields ask for. A motor at rest waits for its first window's end.
+    fn regulate(&mut self, rotation_deg: i32, t_ms: u32) {
+        let asks = self.mode & mode::REGULATED != 0 && self.running_power != 0;
+        let by = match self.regulation_mode {
+            regulation_mode::SPEED if asks => Regulation::Speed(Speed::default()),
+            regulation_mode::SYNC if asks => Regulation::Pair(Pair::default()),
+            _ => {
+                self.regulated = None;
+                return;
+            }
+        };
+        let holds_speed = |by: &Regulation| matches!(by, Regulation::Speed(_));
+        if !self.regulated.as_ref().is_some_and(|regulated| holds_speed(&regulated.by) && holds_speed(&by)) {
+            let (power, ends_ms) = (self.regulated_power(), t_ms.saturating_add(regulation::WINDOW_MS));
+            self.regulated = Some(Regulated { by, power, ends_ms, began_deg: rotation_deg });
+        }
+    }
+
+    fn regulated_power(&self) -> i8 {
+        self.regulated.as_ref().map_or(self.running_power, |regulated| regulated.power)
+    }
+
+    /// Whether it is one of two motors that are kept together.
+    fn is_of_pair(&self) -> bool {
+        matches!(self.regulated, Some(Regulated { by: Regulation::Pair(_), .. }))
+    }
+
+    /// Begins the next window if one has ended.
+    fn next_window(&mut self, t_ms: u32) -> bool {
+        match &mut self.regulated {
+            Some(regulated) if regulated.ends_ms <= t_ms => {
+                regulated.ends_ms = t_ms.saturating_add(regulation::WINDOW_MS);
+                true
+            }
+            _ => false,
+        }
+    }
+
+    fn hold_speed(&mut self, rotation_deg: i32) {
+        if let Some(Regulated { by: Regulation::Speed(speed), power, began_deg, .. }) = &mut self.regulated {
+            let turned_deg = rotation_deg.wrapping_sub(std::mem::replace(began_deg, rotation_deg));
+            (*power, self.overloaded) = speed.power(self.running_power, turned_deg, self.gains);
+        }
+    }
+
+    /// The powers of this motor and the other of its pair.
+    fn powers_of_pair(&mut self, turned_deg: [i32; 2]) -> Option<[i8; 2]> {
+        match &mut self.regulated {
+            Some(Regulated { by: Regulation::Pair(pair), .. }) => {
+                Some(pair.powers(self.running_power, self.turn_ratio, turned_deg, self.gains))
+            }
+            _ => None,
+        }
+    }
+
+    /// Whether its shaft is looked at in every millisecond: it runs until it has turned by a limit, or is regulated.
+    pub(super) fn is_watched(&self) -> bool {
+        self.has_limit() || self.regulated.is_some()
+    }
+
+    /// The drive that was set.
     pub(super) fn drive(&self) -> Drive {
-        match (self.running_power, self.brakes) {
+        self.drive_with(self.running_power)
+    }
+
+    /// The drive that its regulation makes of that.
+    pub(super) fn regulated_drive(&self) -> Drive {
+        self.drive_with(self.regulated_power())
+    }
+
+    fn drive_with(&self, power: i8) -> Drive {
+        match (power, self.brakes) {
             (0, true) => Drive::Brake,
             (0, false) => Drive::Coast,
             (power, _) => Drive::Power(power),
         }
+    }
+}
+
+impl Brick<'_, '_> {
+    /// Sets the power of regulated motors whose window has ended.
+    pub(super) fn regulate_motors(&mut self) {
+        for port in 0..PORTS {
+            if !self.motors[port].next_window(self.t_ms) {
+                continue;
+            }
+            let changed = if self.motors[port].is_of_pair() { self.regulate_pair(port) } else { self.hold_speed(port) };
+            for port in changed {
+                self.world.motor(port, self.motors[port].regulated_drive(), self.t_ms);
+            }
+        }
+    }
+
+    fn hold_speed(&mut self, port: usize) -> Vec<usize> {
+        let rotation_deg = self.world.rotation_deg(port, self.t_ms);
+        self.motors[port].hold_speed(rotation_deg);
+        vec![port]
+    }
+
+    /// The first motor of a pair sets the power of both; one without another runs on as it does.
+    fn regulate_pair(&mut self, port: usize) -> Vec<usize> {
+        let pair: Vec<usize> = (0..PORTS).filter(|at| self.motors[*at].is_of_pair()).take(2).collect();
+        let [first, second] = pair[..] else { return Vec::new() };
+        if first != port {
+            return Vec::new();
+        }
+        let turned_deg = [first, second].map(|at| {
+            let rotation_deg = self.world.rotation_deg(at, self.t_ms);
+            rotation_deg.wrapping_sub(self.motors[at].block_zero)
+        });
+        let powers = self.motors[first].powers_of_pair(turned_deg).into_iter().flatten();
+        for (at, new_power) in pair.iter().zip(powers) {
+            if let Some(regulated) = &mut self.motors[*at].regulated {
+                regulated.power = new_power;
+            }
+        }
+        pair
     }
 }

@@ -48,5 +48,3 @@ static inline controller_motors controller_motors_now(const controller_machine *
   controller_motors stopped = {0, 0};
   return machine->status == CONTROLLER_RUNNING ? controller_tuples[machine->tuple].motors : stopped;
 }
-
-#endif

@@ -6,8 +6,8 @@ use fixed::FixedI32;
 use super::product::upper_product;
 use super::{Format, saturate};
 
-/// 2^(i/32) - 1 with 32 fractional bits.
-const STEPS: [u32; 32] = [
+/// 2^(i/32) - 1 with 32 fractional bits: the table that evaluators in other languages need too.
+pub const STEPS: [u32; 32] = [
     0x0000_0000,
     0x059b_0d31,
     0x0b55_86d0,

@@ -49,6 +49,7 @@ function roomMarks(room) {
       fill: "var(--solid)",
       fillOpacity: 0.6,
       stroke: "var(--quiet)",
+      clip: true,
     }),
     Plot.link(room.walls, {
       x1: (w) => w[0],
@@ -57,8 +58,22 @@ function roomMarks(room) {
       y2: (w) => w[3],
       stroke: "currentColor",
       strokeWidth: 1.5,
+      clip: true,
     }),
   ];
+}
+
+/** The target of the room, where it has one: the ring within which a run has reached it. */
+function targetMark({ target }) {
+  if (!target) return null;
+  const [x, y, radius] = target;
+  const radians = (degrees) => (degrees * Math.PI) / 180;
+  return Plot.line(d3.range(0, 361, 6), {
+    x: (a) => x + radius * Math.cos(radians(a)),
+    y: (a) => y + radius * Math.sin(radians(a)),
+    stroke: "var(--third)",
+    strokeWidth: 2,
+  });
 }
 
 function draw(place) {

@@ -2,7 +2,6 @@
 // The charts of a controller's runs.
 
 charts.runs = (width) => {
-  const { target } = page.room;
   const ENDS = { finished: "var(--third)", "timed out": "var(--simulator)", crashed: "var(--effects)" };
   const domain = Object.keys(ENDS).filter((end) => page.paths.some((p) => p.ending === end));
   const points = page.paths.flatMap((p) => p.x.map((x, i) => ({ run: p.run, ending: p.ending, x, y: p.y[i] })));
@@ -26,14 +25,7 @@ charts.runs = (width) => {
         strokeWidth: 2,
         title: (e) => `run ${e.run}`,
       }),
-      target
-        ? Plot.line(d3.range(0, 361, 6), {
-            x: (a) => target[0] + target[2] * Math.cos((a * Math.PI) / 180),
-            y: (a) => target[1] + target[2] * Math.sin((a * Math.PI) / 180),
-            stroke: "var(--third)",
-            strokeWidth: 2,
-          })
-        : null,
+      targetMark(page.room),
     ],
   });
 };

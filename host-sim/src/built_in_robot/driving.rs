@@ -13,6 +13,8 @@ pub struct Driving {
     pace: [f64; 2],
     /// Least and largest number of steps for which a command is held.
     held: [usize; 2],
+    /// The largest such number in every third run, where it is another.
+    long_hold: Option<usize>,
     /// Relative frequencies of: nearly straight, an arc, a spin, nearly straight back, any two commands.
     weights: [u32; 5],
 }
@@ -25,24 +27,40 @@ const ANY: [f64; 2] = [-60.0, 80.0];
 const NEARLY: f64 = 12.0;
 /// Speed backwards relative to forwards.
 const BACK: f64 = 0.7;
+/// Of so many runs the last has commands that are held for long.
+const LONG_EVERY: u64 = 3;
 
 impl Driving {
     /// The mixture of the training logs (paper, section VI): straight and nearly straight, back, arcs, spins and single
     /// wheels, slow and fast. Controllers drive nearly straight much of the time, where friction matters most.
-    pub const MIXED: Driving = Driving { name: "mixed", pace: [15.0, 85.0], held: [1, 3], weights: [3, 8, 4, 1, 4] };
+    pub const MIXED: Driving =
+        Driving { name: "mixed", pace: [15.0, 85.0], held: [1, 3], long_hold: None, weights: [3, 8, 4, 1, 4] };
 
     /// All kinds.
     pub const ALL: [Driving; 5] = [
         Driving::MIXED,
-        Driving { name: "slow", pace: [15.0, 50.0], held: [2, 4], weights: [3, 8, 4, 1, 2] },
-        Driving { name: "fast", pace: [45.0, 85.0], held: [1, 2], weights: [4, 8, 3, 2, 4] },
-        Driving { name: "cruise", pace: [25.0, 75.0], held: [2, 5], weights: [8, 10, 2, 0, 0] },
-        Driving { name: "back and forth", pace: [15.0, 85.0], held: [1, 3], weights: [5, 2, 4, 7, 2] },
+        Driving { name: "slow", pace: [15.0, 50.0], held: [2, 4], long_hold: None, weights: [3, 8, 4, 1, 2] },
+        Driving { name: "fast", pace: [45.0, 85.0], held: [1, 2], long_hold: None, weights: [4, 8, 3, 2, 4] },
+        Driving { name: "cruise", pace: [25.0, 75.0], held: [2, 5], long_hold: None, weights: [8, 10, 2, 0, 0] },
+        Driving { name: "back and forth", pace: [15.0, 85.0], held: [1, 3], long_hold: None, weights: [5, 2, 4, 7, 2] },
     ];
 
     /// The kind of a name; `None` for an unknown name.
     pub fn named(name: &str) -> Option<Driving> {
         Driving::ALL.into_iter().find(|kind| kind.name == name)
+    }
+
+    /// The same with commands that are held for up to so many steps in every third run, as controllers hold theirs.
+    pub fn holding(self, long_hold: usize) -> Driving {
+        Driving { long_hold: Some(long_hold.max(self.held[0])), ..self }
+    }
+
+    /// How a run of this number is driven.
+    pub(super) fn of_run(&self, run: u64) -> Driving {
+        match self.long_hold {
+            Some(longest) if run % LONG_EVERY == LONG_EVERY - 1 => Driving { held: [self.held[0], longest], ..*self },
+            _ => *self,
+        }
     }
 
     /// Random number of steps for which a command is held.
@@ -76,5 +94,22 @@ impl Driving {
             Some(*sum)
         });
         until.take_while(|until| *until <= drawn).count()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::chance::generator;
+
+    #[test]
+    fn every_third_run_holds_commands_for_long() {
+        let longest = |driving: Driving| {
+            let mut rng = generator(1, &[]);
+            (0..300).map(|_| driving.steps(&mut rng)).max()
+        };
+        let long = Driving::MIXED.holding(20);
+        assert_eq!([0, 1, 2, 3, 5].map(|run| longest(long.of_run(run))), [3, 3, 20, 3, 20].map(Some));
+        assert_eq!(Driving::MIXED.of_run(2), Driving::MIXED);
     }
 }

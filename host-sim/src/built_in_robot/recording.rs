@@ -66,6 +66,7 @@ pub fn record_driving(
     let runs = (0..runs as u64)
         .into_par_iter()
         .map(|run| {
+            let driving = &driving.of_run(run);
             let rows = (0..ATTEMPTS).find_map(|attempt| {
                 let mut rng = generator(seed, &[RECORDING, run, attempt, DRIVING]);
                 let mut foresight = generator(seed, &[RECORDING, run, attempt, FORESIGHT]);
@@ -73,7 +74,7 @@ pub fn record_driving(
                 let about = Recorder { robot: &robot, driving, step_ms: spec.step_ms, steps };
                 about.drive(start, &mut rng, &mut foresight)
             });
-            Ok(Run { name: format!("run-{run:03}"), rows: rows.ok_or_else(|| no_room(spec))? })
+            Ok(Run { name: format!("run-{run:03}"), rows: rows.ok_or_else(|| no_room(spec))?.into_iter().collect() })
         })
         .collect::<Result<Vec<Run>>>()?;
     Ok(Logs { robot: *spec, scene: scene.clone(), runs })

@@ -3,12 +3,11 @@
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 use rayon::prelude::*;
 
-use super::Folder;
 use super::seal::Published;
+use super::{Counter, Folder};
 use crate::error::{Error, Result};
 use crate::files;
 use crate::gap::{Method, findings};
@@ -21,11 +20,11 @@ use crate::simulator::baseline::Baseline;
 /// Seed of the training.
 const SEED: u64 = 1;
 
-/// Diagnoses all cases and returns their number; `watch` receives the number completed.
+/// Diagnoses all cases and returns their number; `watch` is told how many are done, and of how many.
 ///
 /// # Errors
 /// When the folder is not a challenge, or when a diagnosis cannot be written.
-pub fn answer(folder: &Path, watch: impl Fn(usize) + Sync) -> Result<usize> {
+pub fn answer(folder: &Path, watch: impl Fn(usize, usize) + Sync) -> Result<usize> {
     let folder = Folder(folder);
     let cases: Vec<Published> = files::read_csv(&folder.cases())?;
     let answers = folder.answers();
@@ -38,14 +37,14 @@ pub fn answer(folder: &Path, watch: impl Fn(usize) + Sync) -> Result<usize> {
             simulators.insert(&case.robot, simulator);
         }
     }
-    let done = AtomicUsize::new(0);
+    let counter = Counter::new(cases.len(), watch);
     cases.par_iter().try_for_each(|case| {
         let logs = Logs::read(&folder.case(&case.case), |_| {})?;
         let baseline = Baseline::learned(&simulators[case.robot.as_str()])?;
         let found = findings(baseline, &Inspection::of(logs), Method::default())?;
         files::write_json(&folder.answer(&case.case), &found.diagnosis)?;
         files::write_json(&folder.added(&case.case), &found.applied)?;
-        watch(done.fetch_add(1, Ordering::Relaxed) + 1);
+        counter.one_more();
         Ok(())
     })?;
     Ok(cases.len())

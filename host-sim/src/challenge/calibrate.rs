@@ -9,6 +9,7 @@ mod fitting;
 use rayon::prelude::*;
 use serde::Serialize;
 
+use super::Counter;
 use super::bench::Bench;
 use super::cases::Case;
 use crate::error::{Error, Result};
@@ -45,21 +46,24 @@ pub struct Measured {
 /// Fewer cases settle nothing.
 const FEWEST: usize = 40;
 
-/// The thresholds that `count` cases call for, and what was measured in each; `watch` is told how many are done.
+/// The thresholds that `count` cases call for, and what was measured in each; `watch` is told how many are done,
+/// and of how many.
 ///
 /// # Errors
 /// When there are too few cases.
-pub fn calibrate(count: usize, seed: u64, watch: impl Fn(usize)) -> Result<(Calibration, Vec<Measured>)> {
+pub fn calibrate(count: usize, seed: u64, watch: impl Fn(usize, usize) + Sync) -> Result<(Calibration, Vec<Measured>)> {
     if count < FEWEST {
         return Err(Error::new(format!("{count} cases settle nothing: give at least {FEWEST}")));
     }
     let bench = Bench::new(count, seed)?;
     let (nulls, others): (Vec<usize>, Vec<usize>) = (0..count).partition(|case| bench.effects[*case].is_empty());
-    let nulls = nulls.par_iter().map(|case| without_effect(&bench, *case)).collect::<Result<Vec<Measured>>>()?;
-    watch(nulls.len());
+    let counter = Counter::new(count, watch);
+    let counted = |measured: Result<Measured>| measured.inspect(|_| counter.one_more());
+    let null = |case: &usize| counted(without_effect(&bench, *case));
+    let nulls = nulls.par_iter().map(null).collect::<Result<Vec<Measured>>>()?;
     let open = fitting::open(&nulls);
-    let others = others.par_iter().map(|case| with_effects(&bench, *case, open)).collect::<Result<Vec<Measured>>>()?;
-    watch(count);
+    let other = |case: &usize| counted(with_effects(&bench, *case, open));
+    let others = others.par_iter().map(other).collect::<Result<Vec<Measured>>>()?;
     Ok((fitting::weighed(open, &others), nulls.into_iter().chain(others).collect()))
 }
 

@@ -6,8 +6,8 @@ use std::path::Path;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use super::Folder;
 use super::seal::{Published, Sealed};
+use super::{Counter, Folder};
 use crate::built_in_robot::{ActiveEffect, Driving, Effect, record_driving};
 use crate::effects::applied::AppliedEffect;
 use crate::error::{Error, Result};
@@ -117,14 +117,15 @@ struct AnsweredReduction {
     reducible_closed: f64,
 }
 
-/// Opens the seal of a challenge and scores its answers.
+/// Opens the seal of a challenge and scores its answers; `watch` is told how many are scored, and of how many.
 ///
 /// # Errors
 /// When a case has no diagnosis, or when a sealed entry does not match its commitment.
-pub fn score(folder: &Path) -> Result<Score> {
+pub fn score(folder: &Path, watch: impl Fn(usize, usize) + Sync) -> Result<Score> {
     let folder = Folder(folder);
     let published: Vec<Published> = files::read_csv(&folder.cases())?;
     let sealed: Vec<Sealed> = files::read_json(&folder.sealed())?;
+    let counter = Counter::new(published.len(), watch);
     let opened = published
         .par_iter()
         .map(|case| {
@@ -132,7 +133,9 @@ pub fn score(folder: &Path) -> Result<Score> {
             let broken = || Error::in_file(&folder.sealed(), format!("case {}: not what was committed to", case.case));
             let sealed = sealed.cloned().ok_or_else(broken)?;
             let answer = files::read_json(&folder.answer(&case.case))?;
-            Ok(Opened { closed_on_fresh_runs: closed_on_fresh_runs(&folder, case, &sealed)?, sealed, answer })
+            let closed_on_fresh_runs = closed_on_fresh_runs(&folder, case, &sealed)?;
+            counter.one_more();
+            Ok(Opened { sealed, answer, closed_on_fresh_runs })
         })
         .collect::<Result<Vec<Opened>>>()?;
     Ok(Score::of(&opened))

@@ -16,8 +16,10 @@ use crate::gap::Method;
 use crate::logs::Scene;
 use crate::simulator::Simulator;
 
-/// Adapt a simulator to runs of the robot: effects that a diagnosis names are added, the rest is learned as what this robot
-/// does beyond the networks, which stay as they are.
+/// Adapt a simulator to runs of the robot.
+///
+/// Effects that a diagnosis names are added, the rest is learned as what this robot does beyond the networks, which stay as
+/// they are.
 #[derive(Args)]
 pub struct Adapt {
     /// The simulator file.
@@ -38,10 +40,10 @@ pub struct Adapt {
     #[arg(long, value_name = "N", default_value_t = 1)]
     start: usize,
     /// Fixes every draw.
-    #[arg(long, default_value_t = Method::SEED)]
+    #[arg(long, value_name = "N", default_value_t = Method::SEED)]
     seed: u64,
-    /// Also write what was learned here.
-    #[arg(long)]
+    /// Also write the same facts here, for programs; `-` is standard output, in place of the text.
+    #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
 }
 
@@ -115,6 +117,7 @@ fn told(lesson: &Lesson) -> String {
             effect.parameters.iter().map(|(name, value)| format!("{name} {value:.3}")).collect();
         text += &format!("  the diagnosis names {}: {}\n", effect.effect, parameters.join(", "));
     }
+    text += "  what a step of each command (left right) that was held does more than was thought, and how unsure that is:\n";
     let rows: Vec<[String; 5]> = lesson.commands.iter().take(COMMANDS).map(row).collect();
     text += &table::text(["command", "steps", "forward (cm)", "left (cm)", "turn (deg)"], &rows);
     if let Some(Gap { forward_cm, lateral_cm, turn_deg }) = &lesson.gap {

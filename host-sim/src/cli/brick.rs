@@ -27,8 +27,9 @@ use crate::simulator::environment::Environment;
 use crate::simulator::rollout::REACHED_CM;
 use crate::simulator::{Noise, Simulator};
 
-/// Run a compiled program without a brick, and tell what it does: motors, tones, text and files. What it senses comes
-/// from a script, or from a robot in a scene: the built-in one, or one in a learned simulator.
+/// Run a compiled program without a brick, and tell what it does: motors, tones, text and files.
+///
+/// What it senses comes from a script, or from a robot in a scene: the built-in one, or one in a learned simulator.
 #[derive(Args)]
 pub struct Brick {
     /// The program, an .rxe file for standard firmware.
@@ -48,13 +49,13 @@ pub struct Brick {
     #[arg(long, value_name = "FILE")]
     scene: Option<PathBuf>,
     /// Which of the scene's starts, from 1.
-    #[arg(long, default_value_t = 1, conflicts_with = "readings")]
+    #[arg(long, value_name = "N", default_value_t = 1, conflicts_with = "readings")]
     start: usize,
     /// The simulator that moves the robot; the built-in robot when left out.
     #[arg(long, conflicts_with = "readings")]
     sim: Option<PathBuf>,
     /// Fixes every draw.
-    #[arg(long, default_value_t = 1, conflicts_with = "readings")]
+    #[arg(long, value_name = "N", default_value_t = 1, conflicts_with = "readings")]
     seed: u64,
     /// Write the run as a log here.
     #[arg(long, value_name = "RUN.csv", conflicts_with = "readings")]
@@ -83,8 +84,8 @@ pub struct Brick {
     /// Events that are told; later ones are counted.
     #[arg(long, value_name = "N", default_value_t = 10_000)]
     limit_events: usize,
-    /// Write the same facts here.
-    #[arg(long)]
+    /// Also write the same facts here, for programs; `-` is standard output, in place of the text.
+    #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
 }
 
@@ -158,7 +159,7 @@ impl Brick {
         let report = brick::run(program, &mut world, config);
         let (end, crashed) = (world.pose(), world.crashed());
         let name = self.out.as_deref().and_then(Path::file_stem).unwrap_or_default().to_string_lossy().into_owned();
-        let run = logs::Run { name, rows: world.into_rows(report.ended_ms) };
+        let run = logs::Run { name, rows: world.into_rows(report.ended_ms).into_iter().collect() };
         if let Some(out) = &self.out {
             run.write(out)?;
         }

@@ -31,7 +31,7 @@ enum Part {
         #[arg(long, value_name = "N", default_value_t = 400, value_parser = clap::value_parser!(u32).range(1..=999))]
         cases: u32,
         /// Seed of all that is random.
-        #[arg(long, value_name = "S", default_value_t = 1)]
+        #[arg(long, value_name = "N", default_value_t = 1)]
         seed: u64,
         /// What the effects that no diagnosis knows are drawn from.
         #[arg(long, value_enum, default_value_t = Outside::Usual)]
@@ -49,7 +49,7 @@ enum Part {
         #[arg(long, value_name = "N", default_value_t = 200)]
         cases: u32,
         /// Seed of all that is random; none that a challenge has.
-        #[arg(long, value_name = "S", default_value_t = 1)]
+        #[arg(long, value_name = "N", default_value_t = 1)]
         seed: u64,
         /// Write the thresholds here: diagnoses use those in host-sim/src/gap/calibration.toml when they are compiled.
         #[arg(long, value_name = "FILE")]
@@ -64,7 +64,7 @@ enum Part {
         #[arg(long, value_name = "N", default_value_t = 60)]
         cases: u32,
         /// Seed of all that is random; none that a challenge has.
-        #[arg(long, value_name = "S", default_value_t = 1)]
+        #[arg(long, value_name = "N", default_value_t = 1)]
         seed: u64,
         /// Also write the table here.
         #[arg(long, value_name = "FILE")]
@@ -79,7 +79,7 @@ enum Part {
     Score {
         /// Folder of the challenge.
         folder: PathBuf,
-        /// Also write the score here.
+        /// Also write the same facts here, for programs; `-` is standard output, in place of the text.
         #[arg(long, value_name = "FILE")]
         json: Option<PathBuf>,
         /// Also write what happened in every case here.
@@ -106,14 +106,15 @@ impl Run for Challenge {
         match &self.part {
             Part::Make { cases, seed, outside, place_bound, out } => {
                 let echoes = if *place_bound { Echoes::PlaceBound } else { Echoes::Fresh };
-                make(out, *cases as usize, *seed, *outside, echoes)?;
+                let bar = progress::bar(u64::from(*cases));
+                make(out, *cases as usize, *seed, *outside, echoes, progress::counting(&bar))?;
+                bar.finish_and_clear();
                 Ok(format!("{}: {cases} cases; sealed.json says what is different in each\n", out.display()))
             }
             Part::Calibrate { cases, seed, out, csv } => {
-                let spinner = progress::spinner();
-                let say = |done| spinner.set_message(format!("{done} cases measured"));
-                let (calibration, measured) = calibrate(*cases as usize, *seed, say)?;
-                spinner.finish_and_clear();
+                let bar = progress::bar(u64::from(*cases));
+                let (calibration, measured) = calibrate(*cases as usize, *seed, progress::counting(&bar))?;
+                bar.finish_and_clear();
                 let command =
                     format!("mindgap challenge calibrate --cases {cases} --seed {seed} --out {}", out.display());
                 files::write(out, calibration.to_text(&command))?;
@@ -123,23 +124,24 @@ impl Run for Challenge {
                 Ok(format!("{}: thresholds from {cases} cases\n", out.display()))
             }
             Part::Sensitivity { cases, seed, csv } => {
-                let spinner = progress::spinner();
-                let say = |done, of| spinner.set_message(format!("{done} of {of} rows"));
-                let rows = sensitivity(*cases as usize, *seed, say)?;
-                spinner.finish_and_clear();
+                let bar = progress::bar(0);
+                let rows = sensitivity(*cases as usize, *seed, progress::counting(&bar))?;
+                bar.finish_and_clear();
                 if let Some(path) = csv {
                     files::write_csv(path, &rows)?;
                 }
                 Ok(table(&rows))
             }
             Part::Answer { folder } => {
-                let spinner = progress::spinner();
-                let count = answer(folder, |done| spinner.set_message(format!("{done} cases diagnosed")))?;
-                spinner.finish_and_clear();
+                let bar = progress::bar(0);
+                let count = answer(folder, progress::counting(&bar))?;
+                bar.finish_and_clear();
                 Ok(format!("{}: {count} cases diagnosed\n", folder.display()))
             }
             Part::Score { folder, json, csv } => {
-                let score = score(folder)?;
+                let bar = progress::bar(0);
+                let score = score(folder, progress::counting(&bar))?;
+                bar.finish_and_clear();
                 if let Some(path) = csv {
                     files::write_csv(path, &score.cases)?;
                 }
@@ -170,9 +172,9 @@ fn table(rows: &[Row]) -> String {
 }
 
 fn text(score: &Score) -> String {
-    let line = |what: &str, share: &Share| {
-        let percent = 100.0 * share.count as f64 / share.of.max(1) as f64;
-        format!("{what:<48} {percent:>5.1} %  {} of {}", share.count, share.of)
+    let line = |what: &str, Share { count, of }: &Share| match of {
+        0 => format!("{what:<48}     -    there was none"),
+        _ => format!("{what:<48} {:>5.1} %  {count} of {of}", 100.0 * *count as f64 / *of as f64),
     };
     let mut lines = vec![
         line("false alarms where nothing is different", &score.false_alarms),

@@ -14,8 +14,8 @@ use crate::survey::{Holdings, Range, Survey};
 pub struct Check {
     /// Folder with robot.toml, scene.toml and run-*.csv.
     logs: PathBuf,
-    /// Also write it here; `-` is standard output, in place of the text.
-    #[arg(long)]
+    /// Also write the same facts here, for programs; `-` is standard output, in place of the text.
+    #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
 }
 
@@ -73,7 +73,7 @@ fn holdings(holds: &Holdings) -> Vec<String> {
             percent(holds.with_reading)
         ),
         format!(
-            "  commands  left {}, right {}; {} of the pairs; held for {:.0} steps (median), {} at most",
+            "  commands  left {}, right {}; {} of the pairs of them; held for {:.0} steps (median), {} at most",
             range(holds.left),
             range(holds.right),
             percent(holds.command_coverage),
@@ -90,7 +90,7 @@ fn sensor(holds: &Holdings) -> String {
         return "  sensor    no reading, and no wall that it could face".into();
     }
     format!(
-        "  sensor    reads {} cm; faces D {} cm, alpha {} deg; {:.0} % of what it could face",
+        "  sensor    reads {} cm; faces walls {} cm away (D) at {} deg to their normal (alpha): {:.0} % of what it could face",
         range(holds.reading_cm),
         range(holds.distance_cm),
         range(holds.alpha_deg),

@@ -22,13 +22,13 @@ pub struct Crosscheck {
     #[arg(long)]
     controller: Option<PathBuf>,
     /// How many runs.
-    #[arg(long, default_value_t = 1000, value_parser = value_parser!(u32).range(1..=1_000_000))]
+    #[arg(long, value_name = "N", default_value_t = 1000, value_parser = value_parser!(u32).range(1..=1_000_000))]
     runs: u32,
     /// Fixes every draw.
-    #[arg(long, default_value_t = 1)]
+    #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
-    /// Also write the figures here; `-` is standard output, in place of the tables.
-    #[arg(long)]
+    /// Also write the same facts here, for programs; `-` is standard output, in place of the text.
+    #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
 }
 

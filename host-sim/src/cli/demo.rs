@@ -3,48 +3,98 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use serde_json::{Value, json};
 
 use super::table::{self, number};
-use super::{Run, progress};
-use crate::demo::{self, Stage, Summary};
+use super::{Run, kinds, progress, trials};
+use crate::built_in_robot::four_obstacles;
+use crate::demo::repair::{self, Repair};
+use crate::demo::{self, Stage, StartSummary, Summary};
 use crate::error::Result;
+use crate::evolve::fitness::Success;
 use crate::evolve::robust;
+use crate::files;
 use crate::files::places::Places;
+use crate::page::demo::page;
 
 /// Do the whole job on the built-in robot: record, train, evolve, try, export, draw.
+///
+/// Then weaken a motor, and let the loop find out and repair it.
 #[derive(Args)]
 pub struct Demo {
     /// Where to leave everything.
     #[arg(long, default_value = "mindgap-out")]
     out: PathBuf,
     /// Fixes every draw.
-    #[arg(long, default_value_t = 1)]
+    #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
+    /// Also write the same facts here, for programs; `-` is standard output, in place of the text.
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
+    /// Also write a page for a browser here.
+    #[arg(long, value_name = "FILE")]
+    html: Option<PathBuf>,
 }
 
 impl Run for Demo {
     fn places(&self) -> Places {
-        Places::default().filling([&self.out])
+        let places = Places::default().filling([&self.out]).writing(&self.json, kinds::REPORT);
+        places.writing(&self.html, kinds::PAGE)
     }
 
     fn run(&self) -> Result<String> {
-        let line = progress::spinner();
+        let bar = progress::shares();
         let watch = |stage: Stage| {
-            line.set_message(match stage {
+            bar.set_position((100.0 * share_before(&stage)) as u64);
+            bar.set_message(match stage {
                 Stage::Recording => "recording logs of the built-in robot".into(),
-                Stage::Training(p) => progress::training(&p),
+                Stage::Training(p) => progress::training_words(p.network, p.evaluations),
                 Stage::Evolving { start, generation } => {
                     format!("evolving for start {start}: generation {generation} of {}", robust::GENERATIONS)
                 }
                 Stage::Drawing => "drawing".into(),
+                Stage::Repairing { trial } => format!("a motor got weak: trial {trial} on the robot"),
             });
-            line.tick();
         };
         let summary = demo::run(&self.out, self.seed, watch)?;
-        line.finish_and_clear();
-        let out = self.out.display();
-        Ok(format!("{}\nlogs, simulator, controllers, NXC programs and pictures are in {out}\n", told(&summary)))
+        bar.finish_and_clear();
+        if let Some(path) = &self.html {
+            files::write(path, page(&summary, &self.out.display().to_string(), self.seed)?)?;
+        }
+        let text = format!(
+            "{}\n{}\nlogs, simulator, controllers, NXC programs and pictures are in {}\n",
+            told(&summary),
+            repaired(&summary.repair),
+            self.out.display()
+        );
+        super::reported(self.json.as_deref(), &facts(&summary), text)
     }
+}
+
+/// The share of the time that has gone by at a stage, roughly.
+fn share_before(stage: &Stage) -> f64 {
+    match stage {
+        Stage::Recording => 0.0,
+        Stage::Training(_) => 0.05,
+        Stage::Evolving { start, generation } => {
+            let starts = four_obstacles().starts.len() as f64;
+            0.15 + 0.6 * ((start - 1) as f64 + *generation as f64 / robust::GENERATIONS as f64) / starts
+        }
+        Stage::Drawing => 0.75,
+        Stage::Repairing { trial } => 0.8 + 0.2 * (trial - 1) as f64 / repair::TRIALS as f64,
+    }
+}
+
+fn facts(summary: &Summary) -> Value {
+    let success = |of: &Success| json!({"success": of.rate, "crashed": of.crashed, "median_cm": of.median_cm});
+    let start = |of: &StartSummary| json!({"simulated": success(&of.simulated), "real": success(&of.real)});
+    let starts: Vec<Value> = summary.starts.iter().map(start).collect();
+    let Repair { changed, start, before, state, after } = &summary.repair;
+    let repair = json!({
+        "changed": changed.to_string(), "start": start, "before": success(before), "trials": state.trials.len(),
+        "after": success(after),
+    });
+    json!({"schema": 1, "networks": summary.evaluation.networks, "starts": starts, "repair": repair})
 }
 
 fn told(summary: &Summary) -> String {
@@ -69,5 +119,19 @@ fn told(summary: &Summary) -> String {
         super::evaluate::accuracy(&summary.evaluation.networks),
         table::text(header, &rows),
         robust::RESTARTS
+    )
+}
+
+/// What the loop did about a change of the robot.
+fn repaired(repair: &Repair) -> String {
+    let percent = |rate: f64| format!("{:.0} %", 100.0 * rate);
+    let trials: String = repair.state.trials.iter().map(|trial| format!("  {}\n", trials::line(trial))).collect();
+    format!(
+        "then {} changes the robot: the controller of start {} reaches the target in {} of its runs\n{trials}the loop's \
+         controller reaches it in {} (loop/paths.png)\n",
+        repair.changed,
+        repair.start,
+        percent(repair.before.rate),
+        percent(repair.after.rate)
     )
 }

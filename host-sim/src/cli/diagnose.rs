@@ -1,31 +1,29 @@
 //! `mindgap diagnose`
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use mindgap_core::controller::Controller;
 
 use super::{Run, diagnosis_text, kinds, progress};
-use crate::effects::applied::AppliedEffect;
-use crate::effects::{CATALOGUE, Effect, own};
+use crate::effects::own;
 use crate::error::{Error, Result};
-use crate::evaluation::final_position::{FinalPositionErrors, final_position_errors};
 use crate::evolve::controller_file::ControllerFile;
 use crate::files;
 use crate::files::places::Places;
+use crate::gap::Method;
 use crate::gap::progress::Stage;
-use crate::gap::{Findings, Method, condition, findings_watched, validate};
-use crate::inspection::Inspection;
-use crate::logs::Logs;
+use crate::gap::request::{Answered, Request};
 use crate::page::diagnosis::{Source, Subject, page};
 use crate::pictures;
-use crate::simulator::baseline::Baseline;
-use crate::simulator::{Simulator, kinematic, textbook};
+use crate::simulator::{Simulator, textbook};
 
 /// Find the gap between a simulator and logs: where it lies, what causes it, and how far it shrinks.
 #[derive(Args)]
 pub struct Diagnose {
-    /// The simulator file.
+    /// The simulator file; or `kinematic`, which compares with the textbook's differential drive and an ideal sonar, by the
+    /// measures in the logs' robot.toml alone.
+    #[arg(value_name = "SIM|kinematic")]
     sim: PathBuf,
     /// Folder of logs.
     logs: PathBuf,
@@ -36,14 +34,14 @@ pub struct Diagnose {
     #[arg(long, value_name = "FILE")]
     effects: Vec<PathBuf>,
     /// Fixes every draw: bootstrap intervals and simulated noise.
-    #[arg(long, default_value_t = Method::SEED)]
+    #[arg(long, value_name = "N", default_value_t = Method::SEED)]
     seed: u64,
     /// Length of the steps in which rows are compared; by default the simulator's, and of rows that come faster than
     /// that, a length that motion shows in.
     #[arg(long, value_name = "MS", value_parser = positive)]
     step_ms: Option<f64>,
-    /// Also write the diagnosis here.
-    #[arg(long)]
+    /// Also write the same facts here, for programs; `-` is standard output, in place of the text.
+    #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
     /// Also write a page for a browser here.
     #[arg(long, value_name = "FILE")]
@@ -75,34 +73,30 @@ impl Run for Diagnose {
     }
 
     fn run(&self) -> Result<String> {
-        let simulator = self.simulator_file().map(|path| Simulator::read(path)).transpose()?;
+        let simulator = self.simulator_file().map(|path| read_simulator(path)).transpose()?;
         let controller = self.controller_of(simulator.as_ref())?;
-        let method = Method { catalogue: self.catalogue()?, seed: self.seed, ..Method::default() };
-        // What is wrong with rows shows in the rows as they came.
-        let mut inspected = Inspection::of(super::read_logs(&self.logs)?);
-        inspected.logs = in_steps(inspected.logs, simulator.as_ref(), self.step_ms)?;
-        let logs = &inspected.logs;
-        if let Some(simulator) = &simulator {
-            validate::same_robot(&simulator.robot, &logs.robot)?;
-        }
+        let request = Request {
+            simulator: simulator.as_ref(),
+            controller: controller.as_ref(),
+            method: Method { catalogue: own::beside_built_in(&self.effects)?, seed: self.seed, ..Method::default() },
+            step_ms: self.step_ms,
+        };
         let bar = progress::shares();
         let watch = |stage: Stage| {
             bar.set_position((100.0 * stage.share_before()) as u64);
             bar.set_message(stage.words());
+            log::info!("{}", stage.words());
         };
-        let found = findings_watched(baseline(simulator.as_ref(), logs)?, &inspected, method, watch);
+        let answered = request.of(super::read_logs(&self.logs)?, watch);
         bar.finish_and_clear();
-        let mut found = found?;
-        if let Some((simulator, controller)) = simulator.as_ref().zip(controller) {
-            found.diagnosis.final_positions =
-                Some(ends(simulator, found.with_formula(), &controller, logs, self.seed)?);
-        }
+        let answered = answered?;
+        let Answered { findings: found, logs } = &answered;
         if let Some(path) = &self.html {
             let subject = Subject {
-                findings: &found,
+                findings: found,
                 logs,
-                baseline: &baseline(simulator.as_ref(), logs)?,
-                catalogue: method.catalogue,
+                baseline: &request.baseline(logs)?,
+                catalogue: request.method.catalogue,
                 source: self.source()?,
             };
             files::write(path, page(&subject)?)?;
@@ -111,7 +105,7 @@ impl Run for Diagnose {
             pictures::diagnosis(folder, &found.diagnosis)?;
         }
         if let Some(path) = &self.apply {
-            with_effects(simulator, logs, &found)?.write(path)?;
+            request.mended(&answered).map_err(|error| Error::new(format!("--apply: {error}")))?.write(path)?;
         }
         let mut text = diagnosis_text::text(&found.diagnosis);
         match (&self.next_experiment, found.diagnosis.experiment()) {
@@ -146,7 +140,7 @@ impl Diagnose {
     fn source(&self) -> Result<Source> {
         Ok(Source {
             simulator: match self.sim.as_os_str() == KINEMATIC {
-                true => "the textbook's differential drive and an ideal sonar, from robot.toml (kinematic)".into(),
+                true => textbook::NAME.into(),
                 false => self.sim.display().to_string(),
             },
             logs: self.logs.display().to_string(),
@@ -154,80 +148,19 @@ impl Diagnose {
             seed: self.seed,
         })
     }
-
-    /// The built-in effects and those of the user, whose ids have to differ.
-    fn catalogue(&self) -> Result<&'static [&'static Effect]> {
-        let mut catalogue = CATALOGUE.to_vec();
-        for path in &self.effects {
-            for effect in own::read(path)? {
-                if catalogue.iter().any(|other| other.id == effect.id) {
-                    return Err(Error::in_file(path, format!("effect {} is in another file too", effect.id)));
-                }
-                catalogue.push(effect);
-            }
-        }
-        Ok(catalogue.leak())
-    }
 }
 
-fn baseline<'s>(simulator: Option<&'s Simulator>, logs: &Logs) -> Result<Baseline<'s>> {
-    simulator.map_or_else(|| Ok(kinematic::baseline(logs)), Baseline::learned)
-}
-
-/// The logs in the steps of the simulator, or in those that are asked for.
-fn in_steps(logs: Logs, simulator: Option<&Simulator>, asked_ms: Option<f64>) -> Result<Logs> {
-    let own_ms = logs.robot.step_ms;
-    let step_ms = match (asked_ms, simulator) {
-        (Some(asked_ms), Some(simulator)) if asked_ms != simulator.robot.step_ms => {
-            let what = format!("--step-ms {asked_ms}: the simulator's steps are {} ms", simulator.robot.step_ms);
-            return Err(Error::new(what));
-        }
-        (Some(asked_ms), None) => asked_ms,
-        (_, Some(simulator)) => simulator.robot.step_ms,
-        (None, None) => condition::step_ms(own_ms),
-    };
-    if step_ms < own_ms {
-        return Err(Error::new(format!("steps of {step_ms} ms cannot be compared: rows are {own_ms} ms apart")));
+/// A simulator file, or what was meant by one that is not there.
+fn read_simulator(path: &Path) -> Result<Simulator> {
+    let meant = files::did_you_mean(&path.to_string_lossy(), [KINEMATIC]);
+    if !path.exists() && !meant.is_empty() {
+        return Err(Error::in_file(path, format!("is not there{meant}")));
     }
-    let logs = if step_ms > own_ms { logs.in_steps_of(step_ms) } else { logs };
-    if logs.runs.is_empty() {
-        Err(Error::new(format!("no run is as long as a step of {step_ms} ms")))
-    } else {
-        Ok(logs)
-    }
+    Simulator::read(path)
 }
 
 /// A length of time.
 fn positive(text: &str) -> std::result::Result<f64, String> {
     let ms: f64 = text.parse().map_err(|_| String::from("is no number"))?;
     if ms.is_finite() && ms > 0.0 { Ok(ms) } else { Err("is not above zero".into()) }
-}
-
-/// Where the controller's runs end, with the simulator as it is and with the effects found.
-fn ends(
-    simulator: &Simulator,
-    effects: Vec<AppliedEffect>,
-    controller: &Controller,
-    logs: &Logs,
-    seed: u64,
-) -> Result<FinalPositionErrors> {
-    let mut better = simulator.clone();
-    better.added.extend(effects);
-    final_position_errors([simulator, &better], controller, logs, seed)
-}
-
-/// The simulator with the effects found; the textbook becomes one that can be run.
-fn with_effects(simulator: Option<Simulator>, logs: &Logs, found: &Findings) -> Result<Simulator> {
-    let effects = found.with_formula();
-    if effects.is_empty() {
-        return Err(Error::new(
-            "--apply: neither a known effect nor a formula explains a gap here, so there is nothing to add",
-        ));
-    }
-    let mut simulator = match simulator {
-        Some(simulator) => simulator,
-        None => textbook::simulator(&kinematic::baseline(logs), found.scatter)?,
-    };
-    simulator.added.extend(effects);
-    Ok(simulator)
 }

@@ -34,7 +34,9 @@ pub fn text(diagnosis: &Diagnosis) -> String {
         lines.extend(diagnosis.profiles().iter().map(profile));
     }
     lines.extend(diagnosis.formula.iter().map(formula));
-    lines.extend(diagnosis.reduction().into_iter().flat_map(reduction));
+    let is_explained = !matches!(diagnosis.answer, Answer::Unknown { .. });
+    let table = |found| if is_explained { reduction(found) } else { size(found) };
+    lines.extend(diagnosis.reduction().into_iter().flat_map(table));
     lines.extend(diagnosis.final_positions.iter().map(final_positions));
     lines.extend(diagnosis.experiment().map(Experiment::sentence));
     if !diagnosis.untestable.is_empty() {
@@ -69,9 +71,16 @@ fn stratum(stratum: &Stratum) -> String {
 }
 
 fn profile(profile: &ResidualProfile) -> String {
-    let bins = profile.bins.iter().map(|b| format!("{:.0}..{:.0}: {:+.2}", b.from, b.to, b.off));
+    let bins = profile.bins.iter().map(|b| format!("{}: {:+.2}", range(b.from, b.to), b.off));
     let ResidualProfile { channel, depends_on, unit, .. } = profile;
     format!("  {} ({unit}) by {depends_on}: {}", channel.name(), bins.collect::<Vec<_>>().join(" | "))
+}
+
+/// From one number to another, or the number that both are.
+fn range(from: f64, to: f64) -> String {
+    // Zero has no sign.
+    let [from, to] = [from, to].map(|bound| (libm::round(bound) + 0.0).to_string());
+    if from == to { from } else { format!("{from} to {to}") }
 }
 
 fn formula(of: &Statement) -> String {
@@ -92,6 +101,22 @@ fn final_positions(of: &FinalPositionErrors) -> String {
         "The controller's {runs} run(s) end {before_cm:.1} cm from where the simulator expects, {after_cm:.1} cm with the \
          effects; scatter alone makes {floor_cm:.1} cm."
     )
+}
+
+/// A table of how large a gap is that nothing explains which could be named.
+fn size(found: &GapReduction) -> Vec<String> {
+    let row = |what: &str, size: f64, floor: &str| format!("  {what:<34}{size:>9.3}{floor:>9}").trim_end().to_string();
+    let mut lines = vec![
+        format!("{:<36}{:>9}{:>9}", "How large it is:", "gap", "floor"),
+        row("all channels, nats a step", found.whole.before, ""),
+    ];
+    lines.extend(found.channels.iter().map(|c| row(&format!("  {}", c.channel.name()), c.reduction.before, "")));
+    lines.extend(
+        found.paths.iter().map(|p| {
+            row(&format!("end of paths of {} step(s), cm", p.steps), p.before_cm, &format!("{:.3}", p.floor_cm))
+        }),
+    );
+    lines
 }
 
 /// A table of before and after, and of the floor where there is a measured one.

@@ -3,10 +3,11 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use serde_json::json;
 
 use super::evolve::start_of;
 use super::{Run, kinds};
-use crate::built_in_robot::{ActiveEffect, BuiltInRobot, Termination, Trajectory, default_robot, run_controller};
+use crate::built_in_robot::{ActiveEffect, BuiltInRobot, Termination, default_robot, run_controller};
 use crate::chance::generator;
 use crate::error::Result;
 use crate::evolve::controller_file::ControllerFile;
@@ -33,11 +34,15 @@ pub struct Drive {
     /// The log to write.
     #[arg(long, value_name = "RUN.csv")]
     out: PathBuf,
+    /// Also write the same facts here, for programs; `-` is standard output, in place of the text.
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
 }
 
 impl Run for Drive {
     fn places(&self) -> Places {
-        Places::default().reading([&self.controller, &self.scene]).writing([&self.out], kinds::UNSIGNED)
+        let places = Places::default().reading([&self.controller, &self.scene]).writing([&self.out], kinds::UNSIGNED);
+        places.writing(&self.json, kinds::REPORT)
     }
 
     fn run(&self) -> Result<String> {
@@ -52,24 +57,19 @@ impl Run for Drive {
             &mut generator(self.seed, &[]),
         );
         driven.to_run("run").write(&self.out)?;
-        Ok(format!("{}: {}{}\n", self.out.display(), ending(&driven), distance(&driven, &scene)))
+        let distance_cm = scene.target_cm.map(|target_cm| driven.end().position_cm.distance(target_cm));
+        let distance = distance_cm.map_or_else(String::new, |cm| format!(", {cm:.1} cm from the target"));
+        let (how, steps) = (ending(driven.termination), driven.points.len() - 1);
+        let facts = json!({"schema": 1, "run": self.out, "ending": how, "steps": steps, "distance_cm": distance_cm});
+        let text = format!("{}: {how} after {steps} steps{distance}\n", self.out.display());
+        super::reported(self.json.as_deref(), &facts, text)
     }
 }
 
-fn ending(driven: &Trajectory) -> String {
-    let steps = driven.points.len() - 1;
-    let how = match driven.termination {
+fn ending(how: Termination) -> &'static str {
+    match how {
         Termination::Finished => "finished",
         Termination::TimedOut => "timed out",
         Termination::Crashed => "crashed",
-    };
-    format!("{how} after {steps} steps")
-}
-
-/// How far from the target it came to rest, where the scene has one.
-fn distance(driven: &Trajectory, scene: &Scene) -> String {
-    let end_cm = driven.end().position_cm;
-    scene
-        .target_cm
-        .map_or_else(String::new, |target_cm| format!(", {:.1} cm from the target", end_cm.distance(target_cm)))
+    }
 }

@@ -22,8 +22,8 @@ pub struct Evaluate {
     sim: PathBuf,
     /// Folder of logs to judge on.
     logs: PathBuf,
-    /// Also write the figures here; `-` is standard output, in place of the tables.
-    #[arg(long)]
+    /// Also write the same facts here, for programs; `-` is standard output, in place of the text.
+    #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
     /// Also write a page for a browser here.
     #[arg(long, value_name = "FILE")]
@@ -68,7 +68,8 @@ fn told(evaluation: &Evaluation) -> String {
             .iter()
             .map(|b| [number(Some(b.predicted), 3), number(Some(b.observed), 3), b.n.to_string()])
             .collect();
-        text += &format!("\n{}", table::text(["predicted", "observed", "n"], &bins));
+        let title = "of readings that were predicted with such a probability, the share that came";
+        text += &format!("\n{title}\n{}", table::text(["predicted", "observed", "n"], &bins));
     }
     if let Some(models) = &evaluation.sensor_models {
         text += &format!("\n{}", sensor_models(models));

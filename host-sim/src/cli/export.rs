@@ -2,35 +2,41 @@
 
 mod collect;
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
+use mindgap_controller_export::budget::Budget;
+use mindgap_controller_export::c_networks::c_networks;
 use mindgap_controller_export::collect::CollectOptions;
 use mindgap_controller_export::names::{BrickName, RunLogs};
 use mindgap_controller_export::nxc::{self, NxcOptions};
-use mindgap_controller_export::nxc_networks::{self, nxc_networks};
+use mindgap_controller_export::nxc_networks::{self, NetworksBudget, nxc_networks};
 use mindgap_controller_export::onboard::Safety;
+use mindgap_controller_export::pybricks_networks::{PybricksNetwork, pybricks_networks};
 use mindgap_controller_export::rust_networks::rust_networks;
 use mindgap_controller_export::wiring::{MotorPort, SensorPort, Wiring};
-use mindgap_controller_export::{ExportError, Origin, c, collect as data_collection, pybricks, rust, rxe};
+use mindgap_controller_export::{ExportError, Origin, arduino, c, collect as data_collection, pybricks, rust, rxe};
+use serde_json::{Value, json};
 
 use super::{Run, kinds};
 use crate::error::{Error, Result};
 use crate::evolve::controller_file::ControllerFile;
 use crate::files;
 use crate::files::places::Places;
-use crate::simulator::Simulator;
-use crate::simulator::fixed_point::FixedNetworks;
+use crate::simulator::fixed_point::{COMMANDS, DOCUMENTATION, FACING, FixedNetworks};
+use crate::simulator::{Learned, Simulator};
 
-/// Turn a controller into an onboard program, or a simulator's networks into constants for a board; or make the
-/// program that collects a robot's first logs.
+/// Turn a controller into an onboard program.
+///
+/// Or a simulator's networks into constants for a board; or make the program that collects a robot's first logs.
 #[derive(Args)]
 pub struct Export {
-    /// The controller file; or a simulator file, whose networks have the formats rust and nxc. For nxc-collect none, or
-    /// a run whose commands are a script.
+    /// The controller file; or a simulator file, whose networks have all formats but rxe and nxc-collect. For nxc-collect
+    /// none, or a run whose commands are a script.
     #[arg(
         value_name = "CONTROLLER",
-        required_if_eq_any = [("format", "nxc"), ("format", "rxe"), ("format", "rust"), ("format", "c"), ("format", "pybricks")]
+        required_if_eq_any = [("format", "nxc"), ("format", "rxe"), ("format", "rust"), ("format", "c"), ("format", "pybricks"), ("format", "arduino")]
     )]
     input: Option<PathBuf>,
     /// What to make of it.
@@ -61,8 +67,37 @@ pub struct Export {
     /// Stop the robot when a driven wheel does not turn.
     #[arg(long)]
     stall: bool,
+    /// Also write the same facts here, for programs; `-` is standard output, in place of the text.
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
     #[command(flatten)]
     collect: collect::Collect,
+}
+
+/// What a program takes of a brick.
+struct Takes {
+    text: String,
+    figures: Value,
+}
+
+impl From<Budget> for Takes {
+    fn from(budget: Budget) -> Self {
+        let Budget { program_bytes, memory_bytes, log_bytes, step_ms, worst_step_ms } = budget;
+        let figures = json!({
+            "program_bytes": program_bytes, "memory_bytes": memory_bytes, "log_bytes": log_bytes, "step_ms": step_ms,
+            "worst_step_ms": worst_step_ms,
+        });
+        Takes { text: budget.to_string(), figures }
+    }
+}
+
+impl From<NetworksBudget> for Takes {
+    fn from(budget: NetworksBudget) -> Self {
+        let NetworksBudget { program_bytes, memory_bytes, answer_ms } = &budget;
+        let answer_ms: BTreeMap<_, _> = answer_ms.iter().cloned().collect();
+        let figures = json!({"program_bytes": program_bytes, "memory_bytes": memory_bytes, "answer_ms": answer_ms});
+        Takes { text: budget.to_string(), figures }
+    }
 }
 
 /// What a controller can be turned into.
@@ -76,7 +111,9 @@ enum Format {
     Rust,
     /// A C99 header with the stepping machine.
     C,
-    /// A MicroPython program for hubs with pybricks firmware.
+    /// An Arduino sketch; of a simulator the header that one includes.
+    Arduino,
+    /// A MicroPython program for hubs with pybricks firmware; of a simulator the module that one imports.
     Pybricks,
     /// NXC source of a program that drives, at random or by a script, and logs.
     NxcCollect,
@@ -84,7 +121,8 @@ enum Format {
 
 impl Run for Export {
     fn places(&self) -> Places {
-        Places::default().reading(&self.input).writing([&self.out], kinds::PROGRAM)
+        let places = Places::default().reading(&self.input).writing([&self.out], kinds::PROGRAM);
+        places.writing(&self.json, kinds::REPORT)
     }
 
     fn run(&self) -> Result<String> {
@@ -103,34 +141,44 @@ impl Run for Export {
             Some(input) if files::read_text(input)?.trim_start().starts_with('{') => self.networks(input)?,
             Some(input) => self.onboard(input)?,
         };
+        let bytes = program.len();
         files::write(&self.out, program)?;
-        let budget = budget.map_or(String::new(), |budget| format!("{budget}\n"));
-        Ok(format!("{} written\n{budget}", self.out.display()))
+        let (budget, figures) = budget.map_or_else(Default::default, |Takes { text, figures }| (text + "\n", figures));
+        let text = format!("{} written\n{budget}", self.out.display());
+        let facts = json!({"schema": 1, "program": self.out, "bytes": bytes, "takes": figures});
+        super::reported(self.json.as_deref(), &facts, text)
     }
 }
 
 impl Export {
-    fn collection(&self, options: CollectOptions) -> Result<(Vec<u8>, Option<String>)> {
+    fn collection(&self, options: CollectOptions) -> Result<(Vec<u8>, Option<Takes>)> {
         let named = self.input.as_ref().unwrap_or(&self.out);
         let options = CollectOptions { safety: self.safety(), ..options };
         let source = data_collection::program(&options).map_err(|e| Error::in_file(named, e.to_string()))?;
-        Ok((source.into_bytes(), Some(data_collection::budget(&options).to_string())))
+        Ok((source.into_bytes(), Some(data_collection::budget(&options).into())))
     }
 
-    fn networks(&self, input: &Path) -> Result<(Vec<u8>, Option<String>)> {
+    fn networks(&self, input: &Path) -> Result<(Vec<u8>, Option<Takes>)> {
         let simulator = Simulator::read(input)?;
-        let networks = FixedNetworks::quantise(&simulator).map_err(|error| error.or_in_file(input))?;
+        let quantised = || FixedNetworks::quantise(&simulator).map_err(|error| error.or_in_file(input));
         match self.format {
-            Format::Rust => Ok((rust_networks(&networks.rust_definitions()).into_bytes(), None)),
+            Format::Rust => Ok((rust_networks(&quantised()?.rust_definitions()).into_bytes(), None)),
             Format::Nxc => {
-                let networks = networks.nxc_definitions();
-                Ok((nxc_networks(&networks).into_bytes(), Some(nxc_networks::budget(&networks).to_string())))
+                let networks = quantised()?.tabulated(["Turn", "Forward", "Lateral", "EchoProbability", "EchoValue"]);
+                Ok((nxc_networks(&networks).into_bytes(), Some(nxc_networks::budget(&networks).into())))
             }
-            _ => Err(Error::in_file(input, "holds networks, which are exported with --format rust or nxc")),
+            Format::C | Format::Arduino => Ok((c_networks(&quantised()?.tabulated(NAMES)).into_bytes(), None)),
+            Format::Pybricks => {
+                let networks = float_networks(&simulator).map_err(|error| error.or_in_file(input))?;
+                Ok((pybricks_networks(&networks).into_bytes(), None))
+            }
+            Format::Rxe | Format::NxcCollect => {
+                Err(Error::in_file(input, "holds networks, which have no place in formats rxe and nxc-collect"))
+            }
         }
     }
 
-    fn onboard(&self, input: &Path) -> Result<(Vec<u8>, Option<String>)> {
+    fn onboard(&self, input: &Path) -> Result<(Vec<u8>, Option<Takes>)> {
         let read = || {
             let file = ControllerFile::read(input)?;
             let origin = Origin::from(&file);
@@ -143,7 +191,7 @@ impl Export {
                 let (controller, _) = read()?;
                 (
                     rxe::program(&controller, &self.wiring(), self.safety()).map_err(refused)?,
-                    Some(rxe::budget(&controller, self.safety()).to_string()),
+                    Some(rxe::budget(&controller, self.safety()).into()),
                 )
             }
             Format::NxcCollect => self.collection(collect::script(input, self.program_name()?, self.wiring())?)?,
@@ -155,6 +203,10 @@ impl Export {
                 let (controller, origin) = read()?;
                 (c::header(&controller, &origin).map_err(refused)?.into_bytes(), None)
             }
+            Format::Arduino => {
+                let (controller, origin) = read()?;
+                (arduino::sketch(&controller, &origin).map_err(refused)?.into_bytes(), None)
+            }
             Format::Pybricks => {
                 let (controller, origin) = read()?;
                 (pybricks::program(&controller, &origin).map_err(refused)?.into_bytes(), None)
@@ -165,7 +217,7 @@ impl Export {
                 let log = self.logs(&program).transpose().map_err(|e| Error::in_file(&self.out, e.to_string()))?;
                 let options = NxcOptions { program, wiring, safety, log, display };
                 let source = nxc::program(&controller, &origin, &options).map_err(refused)?;
-                (source.into_bytes(), Some(nxc::budget(&controller, &options).to_string()))
+                (source.into_bytes(), Some(nxc::budget(&controller, &options).into()))
             }
         })
     }
@@ -190,4 +242,27 @@ impl Export {
         let stem = self.out.file_stem().unwrap_or_default().to_string_lossy();
         BrickName::program(&stem).map_err(|e| Error::in_file(&self.out, e.to_string()))
     }
+}
+
+/// The networks' names in C and Python.
+const NAMES: [&str; 5] = ["turn", "forward", "lateral", "echo_probability", "echo_value"];
+
+fn float_networks(simulator: &Simulator) -> Result<[PybricksNetwork; 5]> {
+    Ok([
+        float_network(simulator, &simulator.turn, 0, COMMANDS)?,
+        float_network(simulator, &simulator.forward, 1, COMMANDS)?,
+        float_network(simulator, &simulator.lateral, 2, COMMANDS)?,
+        float_network(simulator, &simulator.echo_probability, 3, FACING)?,
+        float_network(simulator, &simulator.echo_value, 4, FACING)?,
+    ])
+}
+
+fn float_network<const N: usize>(
+    simulator: &Simulator,
+    learned: &Option<Learned<N>>,
+    place: usize,
+    inputs: [&str; N],
+) -> Result<PybricksNetwork> {
+    let learned = simulator.need(learned, NAMES[place])?;
+    Ok(PybricksNetwork::new(NAMES[place], DOCUMENTATION[place], inputs, &learned.network))
 }

@@ -43,7 +43,7 @@ const WORK: &[Part] = &[
             ),
             ("adapt", "mindgap adapt simulator.json robot-logs --out adapted.json"),
             ("export", "mindgap export controller.toml --format nxc --out controller.nxc"),
-            ("brick", "mindgap brick controller.rxe"),
+            ("brick", "mindgap brick controller.rxe --scene scene.toml"),
             ("crosscheck", "mindgap crosscheck simulator.json logs"),
         ],
     ),
@@ -63,7 +63,7 @@ const WORK: &[Part] = &[
         &[
             ("info", "mindgap info simulator.json"),
             ("completions", "mindgap completions bash > ~/.local/share/bash-completion/completions/mindgap"),
-            ("manual", "mindgap manual --out ~/.local/share/man/man1"),
+            ("manual", "mindgap manual --out ~/.local/share/man/man1\n  mindgap manual --format markdown --out pages"),
         ],
     ),
 ];
@@ -74,25 +74,32 @@ const TEMPLATE: &str = "{about}\n\n{usage-heading} {usage}{after-help}\n\nOption
 pub fn command() -> Command {
     let examples = WORK.iter().flat_map(|(_, commands)| *commands);
     let command = examples.fold(Cli::command(), |command, (name, example)| {
-        command.mut_subcommand(name, |of| of.after_help(format!("Example:\n  {example}")))
+        command.mut_subcommand(name, |of| {
+            let own = of.get_after_help().map_or_else(String::new, |own| format!("\n\n{own}"));
+            of.after_help(format!("Example:\n  {example}{own}"))
+        })
     });
     let list = list(&command);
     command.help_template(TEMPLATE).after_help(list)
 }
 
+/// The parts of the work in their order, each with the names of its commands.
+pub fn parts() -> impl Iterator<Item = (&'static str, impl Iterator<Item = &'static str>)> {
+    WORK.iter().map(|(title, commands)| (*title, commands.iter().map(|(name, _)| *name)))
+}
+
 /// The commands part by part, each with what it says of itself.
 fn list(command: &Command) -> String {
-    let commands = || WORK.iter().flat_map(|(_, commands)| *commands);
-    let width = commands().map(|(name, _)| name.len()).max().unwrap_or(0);
+    let width = parts().flat_map(|(_, names)| names).map(str::len).max().unwrap_or(0);
     let line = |name: &str| {
         let about = command.find_subcommand(name).and_then(Command::get_about);
         format!("  {name:<width$}  {}", about.map(ToString::to_string).unwrap_or_default())
     };
-    let part = |(title, commands): &Part| {
-        let lines: Vec<String> = commands.iter().map(|(name, _)| line(name)).collect();
+    let part = |(title, names)| {
+        let lines: Vec<String> = Iterator::map(names, line).collect();
         format!("{title}:\n{}\n\n", lines.join("\n"))
     };
-    WORK.iter().map(part).collect::<String>().trim_end().into()
+    parts().map(part).collect::<String>().trim_end().into()
 }
 
 #[cfg(test)]

@@ -56,7 +56,7 @@ struct Brick {
     /// Unit of a track's heading whose column names none.
     #[arg(long, value_name = "UNIT")]
     angle_unit: Option<Angle>,
-    /// Write what was imported and left out here.
+    /// Also write the same facts here, for programs; `-` is standard output, in place of the text.
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
 }

@@ -4,8 +4,9 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use serde_json::Value;
+use serde_json::{Value, json};
 
+use super::kinds;
 use crate::effects::own;
 use crate::error::{Error, Result};
 use crate::evolve::controller_file::ControllerFile;
@@ -19,18 +20,10 @@ use crate::simulator::Simulator;
 pub struct Info {
     /// The file or folder.
     path: PathBuf,
+    /// Also write the same facts here, for programs; `-` is standard output, in place of the text.
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
 }
-
-/// What JSON files of other commands are, by keys that no other one has.
-const REPORTS: &[(&str, &str)] = &[
-    ("verdict", "a diagnosis: `mindgap diagnose --json`"),
-    ("reached_within_cm", "simulated runs: `mindgap simulate --json`"),
-    ("holds", "what logs hold: `mindgap check --json`"),
-    ("tracks", "an import: `mindgap import --json`"),
-    ("instructions", "a run of an onboard program: `mindgap brick --json`"),
-    ("runs", "a comparison of fixed with floating point: `mindgap crosscheck --json`"),
-    ("networks", "an evaluation: `mindgap evaluate --json`"),
-];
 
 /// What files are that nothing is read from again, by their endings.
 const PRODUCTS: &[(&str, &str)] = &[
@@ -45,15 +38,22 @@ const PRODUCTS: &[(&str, &str)] = &[
     ("1", "a manual page: man -l shows it"),
 ];
 
+/// What lists in JSON are, by a key of their entries.
+const LISTS: &[(&str, &str)] = &[
+    ("salt", "what is different in the cases of a challenge, sealed: `mindgap challenge make`"),
+    ("variant", "the effects that a diagnosis of a challenge names: `mindgap challenge answer`"),
+];
+
 impl super::Run for Info {
     fn places(&self) -> Places {
-        Places::default().reading([&self.path])
+        Places::default().reading([&self.path]).writing(&self.json, kinds::REPORT)
     }
 
     fn run(&self) -> Result<String> {
         let path = self.path.as_path();
-        let told = if path.is_dir() { folder(path)? } else { file(path)? };
-        Ok(format!("{}: {told}\n", path.display()))
+        let what = if path.is_dir() { folder(path)? } else { file(path)? };
+        let text = format!("{}: {what}\n", path.display());
+        super::reported(self.json.as_deref(), &json!({"schema": 1, "path": path, "what": what}), text)
     }
 }
 
@@ -62,16 +62,15 @@ fn folder(path: &Path) -> Result<String> {
         return Err(Error::in_file(path, "is a folder without robot.toml: no logs that mindgap reads"));
     }
     let logs = Logs::read(path, super::warn)?;
-    let rows: usize = logs.runs.iter().map(|run| run.rows.len()).sum();
-    let step_ms = logs.robot.step_ms;
-    Ok(format!("logs of {} runs, {rows} rows, {step_ms} ms apart; `mindgap check` tells more", logs.runs.len()))
+    let (runs, rows, step_ms) = (logs.runs.len(), logs.rows(), logs.robot.step_ms);
+    Ok(format!("logs of {runs} runs, {rows} rows, {step_ms} ms apart; `mindgap check` tells more"))
 }
 
 fn file(path: &Path) -> Result<String> {
     let ending = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
     match ending.as_str() {
-        "json" => json(path),
-        "toml" => toml(path),
+        "json" => of_json(path),
+        "toml" => of_toml(path),
         "csv" => {
             let run = Run::read(path, super::warn)?;
             let seen = run.rows.iter().filter(|row| row.pose.is_some()).count();
@@ -88,12 +87,18 @@ fn file(path: &Path) -> Result<String> {
     }
 }
 
-fn json(path: &Path) -> Result<String> {
+fn of_json(path: &Path) -> Result<String> {
     let value: Value = files::read_json(path)?;
     if value.get("robot").is_some() && value.get("origin").is_some() {
         return Simulator::read(path).map(|simulator| told(&simulator));
     }
-    let report = REPORTS.iter().find(|(key, _)| value.get(key).is_some());
+    if let Some(first) = value.get(0) {
+        let list = LISTS.iter().find(|(key, _)| first.get(key).is_some());
+        return list
+            .map(|(_, what)| (*what).into())
+            .ok_or_else(|| Error::in_file(path, "is no list that mindgap writes"));
+    }
+    let report = kinds::REPORTS.iter().find(|(keys, _)| keys.iter().all(|key| value.get(key).is_some()));
     let (_, what) = report.ok_or_else(|| Error::in_file(path, "is no JSON that mindgap writes"))?;
     Ok(match value.get("verdict").and_then(Value::as_str) {
         Some(verdict) => format!("{what}, verdict {verdict}"),
@@ -117,7 +122,10 @@ fn told(simulator: &Simulator) -> String {
     text
 }
 
-fn toml(path: &Path) -> Result<String> {
+fn of_toml(path: &Path) -> Result<String> {
+    if (kinds::CALIBRATION.is_one)(files::read_text(path)?.as_bytes()) {
+        return Ok("thresholds of the diagnosis: `mindgap challenge calibrate`".into());
+    }
     let table: toml::Table = files::read_toml(path)?;
     let has = |key: &str| table.contains_key(key);
     if has("tuple") {

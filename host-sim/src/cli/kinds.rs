@@ -32,9 +32,10 @@ pub const FORMULA_SIGN: &str = "# Made by: mindgap diagnose\n";
 pub const UNSIGNED: Kind = Kind { name: "anything", is_one: |_| false };
 
 /// What stands in the first lines of the programs that `export` writes, in any format but the brick's executable.
-const PROGRAMS: [&str; 4] = [
+const PROGRAMS: [&str; 5] = [
     "A six-tuple controller",
     "A simulator's networks in fixed point",
+    "A simulator's networks in floating point",
     "commands for the LEGO NXT with standard firmware",
     "use mindgap_core::fixed_network",
 ];
@@ -48,22 +49,30 @@ fn is_program(content: &[u8]) -> bool {
     content.starts_with(EXECUTABLE) || first_lines.any(|line| PROGRAMS.iter().any(|sign| line.contains(sign)))
 }
 
-/// Keys of which every report has one, and no other JSON file of mindgap.
-const REPORTS: [&str; 10] = [
-    "networks",
-    "reached_within_cm",
-    "holds",
-    "verdict",
-    "tracks",
-    "recordings",
-    "events",
-    "false_alarms",
-    "trials",
-    "lessons",
+/// What commands find, as `--json` has it, by keys that no earlier one has.
+pub const REPORTS: &[(&[&str], &str)] = &[
+    (&["verdict"], "a diagnosis: `mindgap diagnose --json`"),
+    (&["reached_within_cm"], "simulated runs: `mindgap simulate --json`"),
+    (&["holds"], "what logs hold: `mindgap check --json`"),
+    (&["tracks"], "an import of a brick's logs: `mindgap import --json`"),
+    (&["recordings"], "an import of recordings: `mindgap import --json`"),
+    (&["events"], "a run of an onboard program: `mindgap brick --json`"),
+    (&["lessons"], "what a simulator learned from runs: `mindgap adapt --json`"),
+    (&["trials"], "a loop on the robot: `mindgap loop`"),
+    (&["false_alarms"], "a score: `mindgap challenge score --json`"),
+    (&["networks", "starts"], "a demonstration: `mindgap demo --json`"),
+    (&["networks", "runs"], "a comparison of fixed with floating point: `mindgap crosscheck --json`"),
+    (&["networks"], "an evaluation: `mindgap evaluate --json`"),
+    (&["logs", "effects"], "what was recorded: `mindgap record --json`"),
+    (&["simulator", "evaluations"], "a training: `mindgap train --json`"),
+    (&["controller", "generations"], "an evolution: `mindgap evolve --json`"),
+    (&["program", "bytes"], "an export: `mindgap export --json`"),
+    (&["run", "ending"], "a drive: `mindgap drive --json`"),
+    (&["path", "what"], "what a file is: `mindgap info --json`"),
 ];
 
 fn is_report(content: &[u8]) -> bool {
-    REPORTS.iter().any(|key| has_keys(content, &[key])) && !(SIMULATOR.is_one)(content)
+    REPORTS.iter().any(|(keys, _)| has_keys(content, keys)) && !(SIMULATOR.is_one)(content)
 }
 
 /// Whether content is a JSON object with these keys.

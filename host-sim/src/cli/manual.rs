@@ -1,8 +1,10 @@
 //! `mindgap completions` and `mindgap manual`: made from the definitions by which the command is parsed.
 
+mod markdown;
+
 use std::path::PathBuf;
 
-use clap::{Args, Command};
+use clap::{Args, Command, ValueEnum};
 use clap_complete::Shell;
 use clap_mangen::Man;
 
@@ -24,9 +26,23 @@ pub struct Manual {
     /// The folder to write them into.
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
+    /// What they are written in.
+    #[arg(long, value_enum, default_value_t = Format::Man)]
+    format: Format,
+}
+
+/// A format of manual pages.
+#[derive(Clone, Copy, ValueEnum)]
+enum Format {
+    /// For the command `man`.
+    Man,
+    /// For a book or a browser.
+    Markdown,
 }
 
 const NAME: &str = "mindgap";
+/// What clap adds to the commands.
+const HELP: &str = "help";
 
 impl Run for Completions {
     fn places(&self) -> Places {
@@ -48,19 +64,31 @@ impl Run for Manual {
     }
 
     fn run(&self) -> Result<String> {
-        let command = guide::command();
-        let subcommands = command.get_subcommands().map(|of| (format!("{NAME}-{}", of.get_name()), of.clone()));
-        let pages: Vec<(String, Command)> = subcommands.collect();
+        let mut command = guide::command();
+        command.build();
+        let of_command = |of: &Command| (format!("{NAME}-{}", of.get_name()), of.clone());
+        let mut pages: Vec<(String, Command)> =
+            command.get_subcommands().filter(|of| of.get_name() != HELP).map(of_command).collect();
+        pages.push((NAME.into(), command));
         files::make_folder(&self.out)?;
-        let count = pages.len() + 1;
-        for (name, page) in pages.into_iter().chain([(NAME.into(), command)]) {
-            let mut text = Vec::new();
-            let told = Man::new(page.name(leaked(&name))).render(&mut text);
-            told.map_err(|e| Error::new(format!("the manual cannot be made: {e}")))?;
-            files::write(&self.out.join(format!("{name}.1")), text)?;
+        let count = pages.len();
+        for (name, page) in pages {
+            let (ending, text) = match self.format {
+                Format::Man => ("1", man(page.name(leaked(&name)))?),
+                Format::Markdown if name == NAME => ("md", markdown::overview(&page).into_bytes()),
+                Format::Markdown => ("md", markdown::page(&page).into_bytes()),
+            };
+            files::write(&self.out.join(format!("{name}.{ending}")), text)?;
         }
         Ok(format!("{count} manual pages written to {}\n", self.out.display()))
     }
+}
+
+fn man(page: Command) -> Result<Vec<u8>> {
+    let mut text = Vec::new();
+    let told = Man::new(page).render(&mut text);
+    told.map_err(|e| Error::new(format!("the manual cannot be made: {e}")))?;
+    Ok(text)
 }
 
 /// Names of commands are kept for as long as the program runs.

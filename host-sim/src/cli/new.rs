@@ -61,6 +61,9 @@ fn readme(folder: &Path) -> String {
          - `robot.toml`: measures of the robot. What is marked FILL IN is not known yet.\n\
          - `scene.toml`: the walls where it drove; open ground as it stands.\n\
          - `{RECORDINGS}`: what it recorded, as it came: CSV files with commands and poses, or ROS 2 bags (MCAP).\n\n\
+         Drive all kinds of commands, slow and fast, straight and in turns, and change them every few steps. In every third \
+         run hold each for ten steps and more: controllers do, and what is a fraction of a degree in one step adds up \
+         there.\n\n\
          Then, one after the other (`mindgap import bag {}/{RECORDINGS}/*.mcap ...` for bags):\n\n{}",
         folder.display(),
         next(folder).lines().map(|line| format!("  {line}\n")).collect::<String>()

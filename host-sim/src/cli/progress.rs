@@ -1,39 +1,84 @@
-//! Progress on a terminal; nothing in a pipe.
+//! Progress on a terminal; nothing in a pipe, nor with `--quiet`.
 
+use std::sync::LazyLock;
 use std::time::Duration;
 
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::{MultiProgress, ProgressBar, ProgressDrawTarget, ProgressStyle};
+use log::LevelFilter;
 
-use crate::learn::train::Progress;
+use crate::learn::train::{NETWORKS, Progress};
 
-/// A line that tells what is being done, with a spinner and the time gone by.
-pub fn spinner() -> ProgressBar {
-    let bar = ProgressBar::new_spinner();
-    bar.set_style(ProgressStyle::with_template("{spinner} [{elapsed}] {msg}").expect("the template is right"));
-    bar
+/// All bars of this process, so that other lines can be written beside them.
+static BARS: LazyLock<MultiProgress> = LazyLock::new(|| {
+    let target = if is_quiet() { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr() };
+    MultiProgress::with_draw_target(target)
+});
+/// Stands where the length of the work is not known, until a bar does.
+static SPINNER: LazyLock<ProgressBar> = LazyLock::new(ProgressBar::new_spinner);
+
+/// Whether nothing but errors is said.
+pub fn is_quiet() -> bool {
+    log::max_level() < LevelFilter::Warn
 }
 
-/// A bar for so many steps of known number.
+/// Shows that a command is at work, and for how long already.
+pub fn begin(command: String) {
+    SPINNER.set_message(command);
+    add(&SPINNER, "{spinner} {msg} [{elapsed}]");
+}
+
+/// Takes away what [`begin`] shows.
+pub fn end() {
+    SPINNER.finish_and_clear();
+}
+
+/// A bar for so many steps, with the time left.
 pub fn bar(steps: u64) -> ProgressBar {
-    let bar = ProgressBar::new(steps);
-    let style = ProgressStyle::with_template("{bar:30} {pos}/{len} [{elapsed}] {msg}").expect("the template is right");
-    bar.set_style(style);
-    bar
+    shown(steps, "{bar:30} {pos}/{len} [{elapsed}, about {eta} left] {msg}")
 }
 
-/// A bar for work of which the share is known that is done, with the time left.
+/// A bar for work of which the share in percent is known that is done, with the time left.
 pub fn shares() -> ProgressBar {
-    let bar = ProgressBar::new(100);
-    let template = "{bar:30} {pos} % [{elapsed}, about {eta} left] {msg}";
-    bar.set_style(ProgressStyle::with_template(template).expect("the template is right"));
-    bar.enable_steady_tick(Duration::from_secs(1));
-    bar
+    shown(100, "{bar:30} {pos} % [{elapsed}, about {eta} left] {msg}")
+}
+
+/// Moves a bar as so many of so many are done.
+pub fn counting(bar: &ProgressBar) -> impl Fn(usize, usize) + Sync + '_ {
+    |done, of| {
+        bar.set_length(of as u64);
+        bar.set_position(done as u64);
+    }
+}
+
+/// Writes something that a bar must not cross.
+pub fn beside(write: impl FnOnce()) {
+    BARS.suspend(write);
+}
+
+/// Moves a bar of networks that are trained one after the other.
+pub fn training(bar: &ProgressBar, Progress { network, evaluations }: Progress) {
+    let place = NETWORKS.iter().position(|name| *name == network);
+    bar.set_position(place.unwrap_or_default() as u64);
+    bar.set_message(training_words(network, evaluations));
 }
 
 /// What training is at.
-pub fn training(progress: &Progress) -> String {
-    match progress.evaluations {
-        0 => format!("training {}", progress.network),
-        evaluations => format!("training {}: {evaluations} networks evaluated", progress.network),
+pub fn training_words(network: &str, evaluations: usize) -> String {
+    match evaluations {
+        0 => format!("training {network}"),
+        evaluations => format!("training {network}: {evaluations} networks evaluated"),
     }
+}
+
+fn shown(length: u64, template: &str) -> ProgressBar {
+    end();
+    let bar = ProgressBar::new(length);
+    add(&bar, template);
+    bar
+}
+
+fn add(bar: &ProgressBar, template: &str) {
+    let bar = BARS.add(bar.clone());
+    bar.set_style(ProgressStyle::with_template(template).expect("the template is right"));
+    bar.enable_steady_tick(Duration::from_secs(1));
 }

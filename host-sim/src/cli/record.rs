@@ -3,40 +3,47 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use serde_json::json;
 
-use super::Run;
-use crate::built_in_robot::{ActiveEffect, Effect, default_robot, record, training_room};
+use super::{Run, kinds};
+use crate::built_in_robot::{ActiveEffect, Driving, Effect, default_robot, record_driving, training_room};
 use crate::error::Result;
 use crate::files::places::Places;
 use crate::logs::Scene;
 
-/// Records random-command logs of the built-in robot.
+/// Record random-command logs of the built-in robot.
 #[derive(Args, Debug)]
 #[command(after_help = effects_help())]
 pub struct Record {
-    /// Folder for the logs
+    /// Folder for the logs.
     #[arg(long, value_name = "LOGS")]
     out: PathBuf,
-    /// Room to drive in; a room with four obstacles when left out
+    /// Room to drive in; a room with four obstacles when left out.
     #[arg(long, value_name = "FILE")]
     scene: Option<PathBuf>,
-    /// Number of runs
+    /// Number of runs.
     #[arg(long, value_name = "N", default_value_t = 100, value_parser = clap::value_parser!(u32).range(1..=999))]
     runs: u32,
-    /// Steps of each run
+    /// Steps of each run.
     #[arg(long, value_name = "N", default_value_t = 60, value_parser = clap::value_parser!(u32).range(1..=100_000))]
     steps: u32,
-    /// What is different about the robot; may be given again
+    /// In every third run, hold commands for up to so many steps, as controllers do; all for three at most when left out.
+    #[arg(long, value_name = "STEPS", value_parser = clap::value_parser!(u32).range(4..=100_000))]
+    hold: Option<u32>,
+    /// What is different about the robot; may be given again.
     #[arg(long = "effect", value_name = "ID[=STRENGTH[@DETAIL]]")]
     effects: Vec<ActiveEffect>,
-    /// Seed of all that is random
+    /// Fixes every draw.
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
+    /// Also write the same facts here, for programs; `-` is standard output, in place of the text.
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
 }
 
 impl Run for Record {
     fn places(&self) -> Places {
-        Places::default().reading(&self.scene).filling([&self.out])
+        Places::default().reading(&self.scene).filling([&self.out]).writing(&self.json, kinds::REPORT)
     }
 
     fn run(&self) -> Result<String> {
@@ -44,11 +51,18 @@ impl Run for Record {
             Some(path) => Scene::read(path)?,
             None => training_room(),
         };
-        let (runs, steps) = (self.runs as usize, self.steps as usize);
-        let logs = record(&default_robot(), &scene, runs, steps, &self.effects, self.seed)
+        let driving = self.hold.map_or(Driving::MIXED, |longest| Driving::MIXED.holding(longest as usize));
+        let amount = [self.runs, self.steps].map(|count| count as usize);
+        let logs = record_driving(&driving, &default_robot(), &scene, amount, &self.effects, self.seed)
             .map_err(|error| self.scene.iter().fold(error, |p, scene| p.or_in_file(scene)))?;
         logs.write(&self.out)?;
-        Ok(format!("{}: {} runs of {} steps\n", self.out.display(), self.runs, self.steps))
+        let effects: Vec<String> = self.effects.iter().map(ToString::to_string).collect();
+        let facts = json!({
+            "schema": 1, "logs": self.out, "runs": self.runs, "steps": self.steps, "step_ms": logs.robot.step_ms, "seed": self.seed,
+            "effects": effects,
+        });
+        let text = format!("{}: {} runs of {} steps\n", self.out.display(), self.runs, self.steps);
+        super::reported(self.json.as_deref(), &facts, text)
     }
 }
 

@@ -8,14 +8,13 @@ use super::evolve::{Sonar, start_of};
 use super::table::{self, number};
 use super::{Run, kinds};
 use crate::error::Result;
-use crate::evolve::chance::ROBOTS;
 use crate::evolve::controller_file::ControllerFile;
+use crate::evolve::trial::Trial;
 use crate::files;
 use crate::files::places::Places;
 use crate::logs::Scene;
 use crate::page::simulation::{Subject, page};
 use crate::pictures;
-use crate::simulator::environment::Environment;
 use crate::simulator::rollout_report::RolloutReport;
 use crate::simulator::{Noise, Simulator};
 
@@ -27,16 +26,16 @@ pub struct Simulate {
     /// The controller file.
     controller: PathBuf,
     /// The scene.
-    #[arg(long)]
+    #[arg(long, value_name = "FILE")]
     scene: PathBuf,
     /// Which of the scene's starts, from 1.
-    #[arg(long, default_value_t = 1)]
+    #[arg(long, value_name = "N", default_value_t = 1)]
     start: usize,
     /// How many runs.
-    #[arg(long, default_value_t = 10, value_parser = value_parser!(u32).range(1..=1_000_000))]
+    #[arg(long, value_name = "N", default_value_t = 10, value_parser = value_parser!(u32).range(1..=1_000_000))]
     runs: u32,
     /// Fixes every draw.
-    #[arg(long, default_value_t = 1)]
+    #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
     /// Echoes that fail are the only noise.
     #[arg(long)]
@@ -44,8 +43,8 @@ pub struct Simulate {
     /// What makes the readings: the two networks, or the first-echo law.
     #[arg(long, value_enum, default_value_t = Sonar::Networks, conflicts_with = "paper_noise")]
     sonar: Sonar,
-    /// Also write paths and outcomes here.
-    #[arg(long)]
+    /// Also write the same facts here, for programs; `-` is standard output, in place of the text.
+    #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
     /// Also write a page for a browser here.
     #[arg(long, value_name = "FILE")]
@@ -57,6 +56,8 @@ pub struct Simulate {
 
 /// Rows of the table at most.
 const ROWS: usize = 20;
+/// The ending that says least by its name.
+const TIMED_OUT: &str = "timed_out";
 
 impl Run for Simulate {
     fn places(&self) -> Places {
@@ -70,21 +71,17 @@ impl Run for Simulate {
         let controller = ControllerFile::read_for(&self.controller, &simulator.robot)?.controller;
         let scene = Scene::read(&self.scene)?;
         let start = start_of(&scene, self.start, &simulator.robot, &self.scene)?;
-        let noise = if self.paper_noise { Noise::Paper } else { Noise::Learned };
-        let (runs, seed) = (self.runs as usize, self.seed);
-        let open = simulator.ensemble.as_ref().filter(|_| noise == Noise::Learned);
-        let drawn = open.and_then(|ensemble| ensemble.robots(runs.min(ROBOTS), seed)).map(|robots| robots.drawn);
-        let robots = match &drawn {
-            Some(drawn) => Environment::of_robots(&simulator, drawn, &scene, start)?,
-            None => vec![Environment::new(&simulator, &scene, start, noise)?],
+        let trial = Trial {
+            simulator: &simulator,
+            controller: &controller,
+            scene: &scene,
+            start,
+            noise: if self.paper_noise { Noise::Paper } else { Noise::Learned },
+            first_echo: self.sonar == Sonar::FirstEcho,
+            runs: self.runs as usize,
+            seed: self.seed,
         };
-        let robots: Vec<Environment> = match self.sonar {
-            Sonar::Networks => robots,
-            Sonar::FirstEcho => {
-                robots.into_iter().map(|robot| robot.with_first_echo(&simulator, &scene)).collect::<Result<_>>()?
-            }
-        };
-        let rollouts = RolloutReport::of_robots(&robots, &scene, &controller, runs, seed);
+        let rollouts = trial.run()?;
         if let Some(path) = &self.html {
             let names = [&self.sim, &self.controller, &self.scene].map(|path| path.display().to_string());
             let subject = Subject {
@@ -121,6 +118,9 @@ fn told(rollouts: &RolloutReport) -> String {
     let mut text = table::text(["run", "ending", "steps", "x (cm)", "y (cm)", "to target (cm)"], &rows);
     if rollouts.runs.len() > ROWS {
         text += &format!("... and {} more\n", rollouts.runs.len() - ROWS);
+    }
+    if rollouts.runs.iter().any(|run| run.termination == TIMED_OUT) {
+        text += "timed_out: its steps were spent, so that it stopped; it has reached the target if it stands there\n";
     }
     let crashed = rollouts.runs.iter().filter(|run| run.termination == "crashed").count();
     let crashes = format!("{crashed} of {} crashed", rollouts.runs.len());

@@ -5,12 +5,14 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
+use serde_json::json;
 
 use super::{Run, kinds, progress, warn};
 use crate::error;
+use crate::files;
 use crate::files::places::Places;
 use crate::learn::genome::Shape;
-use crate::learn::train::TABLE_ONE;
+use crate::learn::train::{NETWORKS, TABLE_ONE};
 use crate::learn::{paper, train};
 
 /// Train the five networks of a simulator on a folder of logs.
@@ -29,14 +31,17 @@ pub struct Train {
     #[arg(long, value_name = "NETWORK=N", value_parser = hidden_layer)]
     hidden: Vec<(String, Shape)>,
     /// Fixes every draw.
-    #[arg(long, default_value_t = 1)]
+    #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
+    /// Also write the same facts here, for programs; `-` is standard output, in place of the text.
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
 }
 
 fn hidden_layer(text: &str) -> Result<(String, Shape), String> {
     let (network, hidden) = text.split_once('=').ok_or("needs the form NETWORK=N")?;
     if TABLE_ONE.clone().of(network).is_none() {
-        return Err(format!("there is no network {network}"));
+        return Err(format!("there is no network {network}{}", files::did_you_mean(network, NETWORKS)));
     }
     let shape = hidden.parse().ok().and_then(Shape::checked_halves);
     Ok((network.into(), shape.ok_or("the hidden layer has two equal halves of 1 to 32 neurons")?))
@@ -53,18 +58,18 @@ enum Trainer {
 
 impl Run for Train {
     fn places(&self) -> Places {
-        Places::default().reading([&self.logs]).writing([&self.out], kinds::SIMULATOR)
+        let places = Places::default().reading([&self.logs]).writing([&self.out], kinds::SIMULATOR);
+        places.writing(&self.json, kinds::REPORT)
     }
 
     fn run(&self) -> error::Result<String> {
         let logs = super::read_sound_logs(&self.logs)?;
-        let spinner = progress::spinner();
+        let bar = progress::bar(NETWORKS.len() as u64);
         // The last that is told of each network.
         let evaluations = RefCell::new(BTreeMap::new());
         let watch = |p: train::Progress| {
             evaluations.borrow_mut().insert(p.network, p.evaluations);
-            spinner.tick();
-            spinner.set_message(progress::training(&p));
+            progress::training(&bar, p);
         };
         let trainer = match self.trainer {
             Trainer::Paper => train::Trainer::Paper(paper::Options::default()),
@@ -78,16 +83,22 @@ impl Run for Train {
         if shapes != TABLE_ONE {
             simulator.table_one = Some(train::train(&logs, &trainer, &TABLE_ONE, self.seed, watch)?.into());
         }
-        spinner.finish_and_clear();
+        bar.finish_and_clear();
         for missing in &simulator.missing {
             warn(format!("no {} network: {}", missing.network, missing.reason));
         }
         simulator.write(&self.out)?;
-        let evaluations: Vec<String> = evaluations.take().iter().map(|(name, n)| format!("{name} {n}")).collect();
-        Ok(format!(
+        let evaluations = evaluations.take();
+        let counts: Vec<String> = evaluations.iter().map(|(name, n)| format!("{name} {n}")).collect();
+        let text = format!(
             "networks evaluated over all samples: {}\nsimulator written to {}\n",
-            evaluations.join(", "),
+            counts.join(", "),
             self.out.display()
-        ))
+        );
+        let facts = json!({
+            "schema": 1, "simulator": self.out, "runs": simulator.origin.runs, "seed": self.seed,
+            "evaluations": evaluations, "missing": simulator.missing,
+        });
+        super::reported(self.json.as_deref(), &facts, text)
     }
 }

@@ -5,10 +5,14 @@ use std::time::Duration;
 
 use clap::{Args, value_parser};
 
+use super::voice::meanwhile;
 use super::{Run, kinds, warn};
 use crate::error::Result;
 use crate::evolve::chance::Chance;
+use crate::files;
 use crate::files::places::Places;
+use crate::logs::Scene;
+use crate::page::trials::{Subject, page};
 use crate::trials::robot::{AskRobot, CommandRobot, TrialRobot};
 use crate::trials::state::{State, Trial, Verdict};
 use crate::trials::{self, Event, Job};
@@ -44,11 +48,14 @@ pub struct Loop {
     #[arg(long, default_value_t = 60, value_parser = value_parser!(u16).range(1..))]
     max_steps: u16,
     /// Fixes every draw.
-    #[arg(long, default_value_t = 1)]
+    #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
-    /// Also write what happened here.
-    #[arg(long)]
+    /// Also write the same facts here, for programs; `-` is standard output, in place of the text.
+    #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
+    /// Also write a page for a browser here.
+    #[arg(long, value_name = "FILE")]
+    html: Option<PathBuf>,
 }
 
 /// Stands for a person who drives.
@@ -57,6 +64,7 @@ const ASK: &str = "ask";
 impl Run for Loop {
     fn places(&self) -> Places {
         let places = Places::default().reading([&self.sim, &self.scene]).writing(&self.json, kinds::REPORT);
+        let places = places.writing(&self.html, kinds::PAGE);
         // A folder in which a loop was begun is gone on with.
         let fresh = Some(&self.folder).filter(|folder| !folder.join(trials::state::FILE).exists());
         places.filling(fresh)
@@ -70,15 +78,30 @@ impl Run for Loop {
             start: self.start,
             trials: self.trials as usize,
             max_steps: self.max_steps,
+            known: &[],
             seed: self.seed,
         };
         let command = || CommandRobot { command: self.robot.clone(), timeout: Duration::from_secs(self.robot_timeout) };
         let robot: &mut dyn TrialRobot = if self.robot == ASK { &mut AskRobot } else { &mut command() };
         let state = trials::run(&job, robot, |event| match event {
-            Event::Driving(trial) => eprintln!("trial {}: chance {}, driving", trial.number, trial.predicted),
-            Event::Driven(trial) => eprintln!("{}", line(trial)),
+            Event::Driving(trial) => {
+                meanwhile(&format!("trial {}: chance {}, driving", trial.number, trial.predicted));
+            }
+            Event::Driven(trial) => meanwhile(&line(trial)),
             Event::Failed(failure) => warn(format!("trial {}: nothing is learned: {}", failure.trial, failure.reason)),
         })?;
+        if let Some(path) = &self.html {
+            let names = [&self.sim, &self.scene].map(|path| path.display().to_string());
+            let scene = Scene::read(&self.scene)?;
+            let subject = Subject {
+                state: &state,
+                scene: &scene,
+                names: names.each_ref().map(String::as_str),
+                start: self.start,
+                seed: self.seed,
+            };
+            files::write(path, page(&subject)?)?;
+        }
         super::reported(self.json.as_deref(), &state, self.told(&state))
     }
 }
@@ -100,7 +123,7 @@ impl Loop {
 }
 
 /// A trial in one line.
-fn line(trial: &Trial) -> String {
+pub(super) fn line(trial: &Trial) -> String {
     let Some(real) = &trial.real else { return format!("trial {}: not driven", trial.number) };
     let reached = if real.reached { "reached the target" } else { "missed the target" };
     let effects: Vec<&str> = trial.effects.iter().map(|effect| effect.effect.as_str()).collect();

@@ -9,7 +9,7 @@ pub mod definition;
 pub mod expression;
 pub mod variables;
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::{LazyLock, Mutex, MutexGuard, PoisonError};
 
 use serde::Deserialize;
@@ -17,7 +17,7 @@ use toml::Spanned;
 
 use super::context::{CommandHistory, StepContext};
 use super::parameter::{Guesses, Parameter};
-use super::{Effect, Hook, PoseIncrement, SensorState, Variant};
+use super::{CATALOGUE, Effect, Hook, PoseIncrement, SensorState, Variant};
 use crate::error::{Error, Result};
 use crate::files;
 use definition::{Change, Definition, ParameterDefinition};
@@ -53,6 +53,23 @@ pub fn read(path: &Path) -> Result<Vec<&'static Effect>> {
         return Err(at(&effects[place], "is there twice".into()));
     }
     effects.iter().map(|entry| effect(entry.get_ref()).map_err(|what| at(entry, what))).collect()
+}
+
+/// The built-in effects and those of files, whose ids have to differ.
+///
+/// # Errors
+/// As [`read`], or when an id is there twice.
+pub fn beside_built_in(files: &[PathBuf]) -> Result<&'static [&'static Effect]> {
+    let mut catalogue = CATALOGUE.to_vec();
+    for path in files {
+        for effect in read(path)? {
+            if catalogue.iter().any(|other| other.id == effect.id) {
+                return Err(Error::in_file(path, format!("effect {} is in another file too", effect.id)));
+            }
+            catalogue.push(effect);
+        }
+    }
+    Ok(catalogue.leak())
 }
 
 /// The text of a file of own effects.

@@ -45,8 +45,8 @@ pub fn final_position_errors(
         .runs
         .iter()
         .filter_map(|run| {
-            let end = run.rows[1..].iter().rev().find_map(|row| row.pose)?;
-            Some((run.rows[0].pose?, end.position_cm))
+            let end = run.rows.between(1..run.rows.len()).rev().find_map(|row| row.pose)?;
+            Some((run.rows.at(0).pose?, end.position_cm))
         })
         .collect();
     if logged.is_empty() {

@@ -83,9 +83,9 @@ impl Observations {
                     lateral_cm: s.lateral_cm,
                     turn_rad: s.turn_rad,
                 });
-                let until = (k + 1..logged.rows.len()).find(|i| logged.rows[*i].pose.is_some());
+                let until = (k + 1..logged.rows.len()).find(|i| logged.rows.at(*i).pose.is_some());
                 let way_until = until.filter(|_| whole_ways);
-                let motion = motion.or_else(|| Some(PoseIncrement::between(&pose, &logged.rows[way_until?].pose?)));
+                let motion = motion.or_else(|| Some(PoseIncrement::between(&pose, &logged.rows.at(way_until?).pose?)));
                 let until_ms = logged.rows.get(k + 1).map_or(row.t_ms, |next| next.t_ms);
                 rows.push(Observation {
                     run,
@@ -186,7 +186,7 @@ impl Observations {
 /// Into how many blocks a run is cut: one where there are enough runs.
 fn parts_of_a_run(logs: &Logs) -> usize {
     let runs = logs.runs.len();
-    let rows: usize = logs.runs.iter().map(|run| run.rows.len()).sum();
+    let rows = logs.rows();
     if runs >= FEWEST_BLOCKS { 1 } else { FEWEST_BLOCKS.div_ceil(runs).max(rows / runs / LONGEST_BLOCK) }
 }
 
@@ -204,8 +204,8 @@ pub fn number_places(rows: &mut [Observation]) -> usize {
 /// The context of every row at which the robot was seen.
 fn contexts(run: &Run, surroundings: &Surroundings) -> Vec<Option<StepContext>> {
     let mut history = RunHistory::default();
-    let begin_ms = run.rows[0].t_ms;
-    let context = |row: &crate::logs::Row| {
+    let begin_ms = run.rows.at(0).t_ms;
+    let context = |row: crate::logs::Row| {
         history.command(row.command());
         let context = row.pose.map(|pose| surroundings.context(&history, row.t_ms - begin_ms, pose));
         history.leave(context.as_ref(), row.echo_cm);
@@ -219,8 +219,8 @@ fn unseen(run: &Run, rows: Range<usize>, seen: &StepContext) -> Vec<StepContext>
     let mut commands = seen.commands;
     let context = |i: usize| {
         commands.rotate_right(1);
-        commands[0] = run.rows[i].command();
-        let elapsed_min = (run.rows[i].t_ms - run.rows[0].t_ms) / 60_000.0;
+        commands[0] = run.rows.at(i).command();
+        let elapsed_min = (run.rows.at(i).t_ms - run.rows.at(0).t_ms) / 60_000.0;
         StepContext { elapsed_min, commands, ..*seen }
     };
     rows.map(context).collect()

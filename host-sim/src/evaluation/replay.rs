@@ -42,7 +42,7 @@ impl<'a> Player<'a> {
     /// What the simulator with these effects makes of the run's commands, a moment a row. It starts where the robot is
     /// first seen and is put back to it every [`PUT_BACK_STEPS`]; without a model of motion it stays with the robot.
     pub fn simulated(&self, effects: &EffectChain, run: &Run) -> Vec<Moment> {
-        let begin_ms = run.rows[0].t_ms;
+        let begin_ms = run.rows.at(0).t_ms;
         let (mut history, mut at, mut since) = (RunHistory::default(), None, 0);
         let mut moments = Vec::with_capacity(run.rows.len());
         for (k, row) in run.rows.iter().enumerate() {

@@ -71,14 +71,22 @@ impl ControllerFile {
     /// As [`ControllerFile::read`], or when its steps are not those of the robot.
     pub fn read_for(path: &Path, robot: &Robot) -> Result<Self> {
         let file = ControllerFile::read(path)?;
-        let (its, robots) = (file.controller.step_ms, robot.step_ms.round());
+        file.check_for(robot).map_err(|error| error.or_in_file(path))?;
+        Ok(file)
+    }
+
+    /// Checks that the controller is to run on a robot.
+    ///
+    /// # Errors
+    /// When its steps are not those of the robot.
+    pub fn check_for(&self, robot: &Robot) -> Result<()> {
+        let (its, robots) = (self.controller.step_ms, robot.step_ms.round());
         if f64::from(its) == robots {
-            return Ok(file);
+            return Ok(());
         }
-        let what = format!(
+        Err(Error::new(format!(
             "has step_ms = {its}, but the simulator's steps are {robots} ms: write step_ms = {robots}, or evolve it anew"
-        );
-        Err(Error::in_file(path, what))
+        )))
     }
 
     /// Writes a controller.

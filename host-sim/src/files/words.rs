@@ -1,4 +1,4 @@
-//! What a parser says, in words of the file instead of the program's.
+//! What a parser says, in words of the file instead of the program's; and the known word that was meant by another.
 
 /// Types of the program, and what they are to somebody who writes a file.
 const TYPES: [(&str, &str); 11] = [
@@ -25,6 +25,17 @@ const FOUND: [(&str, &str); 7] = [
     ("invalid value: integer", "found the number"),
 ];
 
+/// Words that are this much alike are taken for each other, as clap does with options.
+const ALIKE: f64 = 0.7;
+
+/// "; did you mean X?" where one of the known words is like this one; else nothing.
+pub fn did_you_mean<'a>(word: &str, known: impl IntoIterator<Item = &'a str>) -> String {
+    let likeness = |other: &'a str| (strsim::jaro(word, other), other);
+    let nearest = known.into_iter().map(likeness).max_by(|a, b| a.0.total_cmp(&b.0));
+    let nearest = nearest.filter(|(likeness, _)| *likeness > ALIKE);
+    nearest.map_or_else(String::new, |(_, known)| format!("; did you mean {known}?"))
+}
+
 /// What a TOML parser says, in one line.
 pub fn of_toml(message: &str) -> String {
     let mut words = message.replace('\n', "; ");
@@ -47,7 +58,9 @@ pub fn of_toml(message: &str) -> String {
 fn unknown_key(words: &str) -> Option<String> {
     let (key, known) = words.strip_prefix("unknown field ")?.split_once(", expected ")?;
     let known = known.strip_prefix("one of ").unwrap_or(known);
-    Some(format!("the key {key} is not known; known are {known}"))
+    let names = known.split(", ").map(|name| name.trim_matches('`'));
+    let meant = did_you_mean(key.trim_matches('`'), names);
+    Some(format!("the key {key} is not known; known are {known}{meant}"))
 }
 
 #[cfg(test)]
@@ -68,11 +81,20 @@ mod tests {
             ("invalid type: integer `3`, expected struct ArenaTable", "found the number `3`, expected a table"),
             (
                 "unknown field `obstacles`, expected one of `arena`, `obstacle`",
-                "the key `obstacles` is not known; known are `arena`, `obstacle`",
+                "the key `obstacles` is not known; known are `arena`, `obstacle`; did you mean obstacle?",
             ),
             ("expected newline", "expected newline"),
         ] {
             assert_eq!(of_toml(message), words);
         }
+    }
+
+    #[test]
+    fn the_word_that_was_meant_is_the_most_alike() {
+        let known = ["slip", "slope", "latency"];
+        assert_eq!(did_you_mean("slipp", known), "; did you mean slip?");
+        assert_eq!(did_you_mean("latencies", known), "; did you mean latency?");
+        assert_eq!(did_you_mean("compass", known), "");
+        assert_eq!(did_you_mean("slip", []), "");
     }
 }

@@ -39,6 +39,7 @@ pub fn write(path: &Path, content: impl AsRef<[u8]>) -> Result<()> {
         OpenOptions::new().append(true).open(path).and_then(|mut stream| stream.write_all(content))
     } else {
         replace(&behind_links(path), content)
+            .inspect(|()| log::info!("{}: {} bytes written", path.display(), content.len()))
     };
     written.map_err(|e| {
         // The error's own text would name the temporary file.

@@ -25,6 +25,9 @@ pub struct Comparison {
     pub scatter: Vec<WiderScatter>,
 }
 
+/// Effects whose gains are told to whoever asks.
+const TOLD: usize = 5;
+
 impl Comparison {
     /// Searches by adding one effect at a time; after each step effects are exchanged, and those that the others have made
     /// needless are dropped. `alone` is every variant of every effect on its own.
@@ -33,6 +36,9 @@ impl Comparison {
         let singles = best_of_each(alone.clone());
         let counts =
             |single: &&Fitted| gain_alone(single, &singles, &none, calibration).passes(calibration.effect_nats);
+        for single in singles.iter().take(TOLD) {
+            log::info!("{} alone gains {:.1} nats", single.ids().join("+"), single.gain_over(&none).nats);
+        }
         let mut chosen = singles.iter().find(counts).unwrap_or(&none).clone();
         let mut rivals = vec![singles.clone()];
         while !chosen.ids().is_empty() && chosen.ids().len() < calibration.judgement.most_effects {
@@ -49,6 +55,7 @@ impl Comparison {
             }
             let before = chosen.log_evidence();
             (chosen, rivals) = without_needless(settled, in_place, &alone, context);
+            log::info!("{} together gain {:.1} nats", chosen.ids().join("+"), chosen.gain_over(&none).nats);
             // An exchange that led to what was dropped again would lead round in a circle.
             if chosen.log_evidence() <= before {
                 break;

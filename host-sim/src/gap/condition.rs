@@ -91,7 +91,7 @@ mod tests {
     fn parts(runs: usize) -> (Vec<usize>, Option<Vec<usize>>) {
         let mut logs = driven(runs, 4, |_, _| [50.0; 2]);
         for (run, logged) in logs.runs.iter_mut().enumerate() {
-            logged.rows.iter_mut().for_each(|row| row.left = run as f64);
+            logged.rows.edit_each(|row| row.left = run as f64);
         }
         let conditioned = Conditioned::of(&logs, &baseline());
         let runs = |part: &Observations| {

@@ -14,6 +14,7 @@ use super::validate::Validated;
 use super::{account, confirm, excitation, formula, propose, remainder, validate};
 use crate::effects::applied::AppliedEffect;
 use crate::error::Result;
+use crate::evaluation::observations::Observations;
 use crate::inspection::Inspection;
 use crate::logs::Logs;
 use crate::simulator::Simulator;
@@ -72,11 +73,18 @@ pub fn findings_watched(
     let logs = &inspected.logs;
     let (conditioned, Validated { notes, scope, moved_uncommanded }) = conditioned(&mut baseline, inspected)?;
     let context = FitContext::new(&baseline, &conditioned.identification, method);
+    let rows = |part: &Observations| part.rows.len();
+    let held_out = conditioned.hold_out.as_ref().map_or(0, rows);
+    log::info!("{} rows to find effects on, {held_out} held out to confirm", rows(&conditioned.identification));
 
     // Fit every variant of every effect alone; compare them and their combinations; confirm on runs held out.
     let compared = compared(&context, &watch);
     watch(Stage::Confirming);
     let confirmed = confirm::confirm(compared, &context, conditioned.hold_out.as_ref());
+    log::info!(
+        "confirmed: {}",
+        if confirmed.chosen.ids().is_empty() { "nothing".into() } else { confirmed.chosen.ids().join("+") }
+    );
 
     watch(Stage::Explaining);
     // Account for the gap, explain it, put what is left into a formula, propose what to drive next.

@@ -200,12 +200,15 @@ mod tests {
     #[test]
     fn what_the_logs_do_not_say_is_taken_out_of_the_baseline() {
         let mut silent = driven(8, 4, mixed);
-        silent.runs.iter_mut().flat_map(|run| &mut run.rows).for_each(|row| row.echo_cm = None);
+        silent.runs.iter_mut().for_each(|run| run.rows.edit_each(|row| row.echo_cm = None));
         let (notes, baseline) = notes_of(&silent);
         assert!(only(&notes, "There is no reading at all") && baseline.sonar.is_none(), "{notes:?}");
 
         let mut unseen = driven(8, 4, mixed);
-        unseen.runs.iter_mut().flat_map(|run| &mut run.rows[1..]).for_each(|row| row.pose = None);
+        unseen
+            .runs
+            .iter_mut()
+            .for_each(|run| (1..run.rows.len()).for_each(|k| run.rows.edit(k, |row| row.pose = None)));
         let (notes, baseline) = notes_of(&unseen);
         assert!(only(&notes, "No run has two poses") && baseline.motion.is_none(), "{notes:?}");
 
@@ -217,7 +220,7 @@ mod tests {
     fn uncommanded(change: impl Fn(usize, &mut Pose)) -> bool {
         let mut logs = driven(8, 20, |_, _| [0.0; 2]);
         for run in &mut logs.runs {
-            run.rows.iter_mut().enumerate().for_each(|(at, row)| change(at, row.pose.as_mut().expect("a pose")));
+            (0..run.rows.len()).for_each(|at| run.rows.edit_pose(at, |pose| change(at, pose)));
         }
         let rows = Observations::of(&logs, 1.0);
         let inspected = Inspection { logs, findings: Vec::new() };
@@ -259,10 +262,7 @@ mod tests {
         let mut equal = driven(8, 4, |_, at| mixed(0, at));
         // Runs that agree in every number are copies.
         for (number, run) in equal.runs.iter_mut().enumerate() {
-            run.rows
-                .iter_mut()
-                .filter_map(|row| row.pose.as_mut())
-                .for_each(|pose| pose.position_cm.y += number as f64);
+            run.rows.edit_poses(|pose| pose.position_cm.y += number as f64);
         }
         assert!(only(&notes_of(&equal).0, "All runs have the same commands"));
     }
@@ -272,8 +272,8 @@ mod tests {
         let mut exchanged = driven(8, 31, |run, at| {
             [((run * 7 + at * 13) % 9) as f64 * 20.0 - 80.0, ((run * 5 + at * 11) % 7) as f64 * 25.0 - 75.0]
         });
-        exchanged.runs.iter_mut().flat_map(|run| &mut run.rows).for_each(|row| {
-            (row.left, row.right) = (row.right, row.left);
+        exchanged.runs.iter_mut().for_each(|run| {
+            run.rows.edit_each(|row| (row.left, row.right) = (row.right, row.left));
         });
         let inspected = Inspection::of(exchanged);
         let rows = Observations::of(&inspected.logs, 1.0);
@@ -287,7 +287,9 @@ mod tests {
     #[test]
     fn where_no_step_has_both_ends_whole_ways_are_compared() {
         let mut logs = driven(8, 5, mixed);
-        logs.runs.iter_mut().flat_map(|run| run.rows.iter_mut().skip(1).step_by(2)).for_each(|row| row.pose = None);
+        for run in &mut logs.runs {
+            (1..run.rows.len()).step_by(2).for_each(|k| run.rows.edit(k, |row| row.pose = None));
+        }
         let (notes, baseline) = notes_of(&logs);
         assert!(only(&notes, "No step has a pose at both ends") && baseline.motion.is_some(), "{notes:?}");
     }

@@ -1,10 +1,12 @@
 //! ROS 2 bags as MCAP: topics of commands, poses and readings become a recording.
 //!
-//! `records` reads the file, `messages` decode what is in it, `topics` say which topic holds what.
+//! `records` reads the file, `messages` decode what is in it, `transforms` compose chains of frames, `topics` say which topic
+//! holds what.
 
 mod messages;
 mod records;
 mod topics;
+mod transforms;
 
 use std::collections::HashMap;
 use std::path::Path;
@@ -15,6 +17,7 @@ use self::topics::Topics;
 use super::frame::Frame;
 use super::recording::{Commands, Kind, Readings, Recording};
 use super::report::Source;
+use super::timestamps::in_order;
 use crate::error::{Error, Result};
 use crate::statistics::summary::median;
 
@@ -33,6 +36,8 @@ pub(super) struct Stream {
     /// The messages' type.
     pub(super) schema: String,
     samples: Vec<Sample>,
+    /// The streams whose transforms these are one after the other, if they are of a chain.
+    composed_of: Vec<String>,
 }
 
 #[derive(Clone, Copy)]
@@ -41,6 +46,13 @@ struct Sample {
     /// The stamp in the message, if it has one.
     stamp_ms: Option<f64>,
     value: Decoded,
+}
+
+impl Sample {
+    /// The time that the message says, or else that at which it was logged.
+    fn said_ms(&self) -> f64 {
+        self.stamp_ms.unwrap_or(self.log_ms)
+    }
 }
 
 /// Reads a bag. `sonar_yaw_rad` is the direction in which a laser scanner's beams stand for the range sensor.
@@ -71,6 +83,9 @@ pub fn recording(file: &Path, choice: &Choice, sonar_yaw_rad: f64) -> Result<Rec
         }
         Ok(())
     })?;
+    for (name, chain) in transforms::chains(&streams, choice.poses.as_deref()) {
+        streams.entry(name).or_insert(chain);
+    }
     let topics = Topics::choose(&streams, choice).map_err(|what| Error::in_file(file, what))?;
     let uses_stamps = stamped_as_logged(&streams, &topics);
     let timed = |name: &str| timed(file, name, &streams[name].samples, uses_stamps);
@@ -131,8 +146,10 @@ fn stamped_as_logged(streams: &HashMap<String, Stream>, topics: &Topics) -> bool
 
 /// Samples in order of time, each at a time of its own.
 fn timed(file: &Path, name: &str, samples: &[Sample], uses_stamps: bool) -> Result<Vec<(f64, Decoded)>> {
-    let ms = |sample: &Sample| if uses_stamps { sample.stamp_ms.unwrap_or(sample.log_ms) } else { sample.log_ms };
+    let ms = |sample: &Sample| if uses_stamps { sample.said_ms() } else { sample.log_ms };
     let mut timed: Vec<(f64, Decoded)> = samples.iter().map(|sample| (ms(sample), sample.value)).collect();
+    let stamps_ms: Vec<f64> = timed.iter().map(|(ms, _)| *ms).collect();
+    in_order(&stamps_ms).map_err(|(_, what)| Error::in_file(file, format!("{name}: {what}")))?;
     timed.sort_by(|a, b| a.0.total_cmp(&b.0));
     timed.dedup_by(|later, before| later.0 == before.0);
     if timed.len() < 2 {

@@ -104,7 +104,7 @@ fn matched<'a>(
 fn merged(log: &BrickLog, track: &Track, found: &Alignment, name: String) -> (Run, RunReport) {
     let clocks = &found.clocks;
     let seen: Vec<Sighting> = log.run.rows.iter().map(|row| track.at(clocks.camera_ms(row.t_ms))).collect();
-    let rows = log.run.rows.iter().zip(&seen).map(|(row, seen)| Row { pose: seen.pose(), ..*row });
+    let rows = log.run.rows.iter().zip(&seen).map(|(row, seen)| Row { pose: seen.pose(), ..row });
     let run = Run { name: name.clone(), rows: rows.collect() };
     let report = RunReport {
         name,

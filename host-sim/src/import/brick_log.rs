@@ -68,7 +68,7 @@ mod tests {
         let torn = read(ROWS).expect("two rows are whole");
         assert!(torn.torn && torn.run.rows.len() == 2, "{torn:?}");
         let whole = read(&format!("{ROWS}7\r\n")).expect("three rows");
-        assert!(!whole.torn && whole.run.rows[2].echo_cm == Some(87.0), "{whole:?}");
+        assert!(!whole.torn && whole.run.rows.at(2).echo_cm == Some(87.0), "{whole:?}");
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use super::frame::{Frame, GAP_MS};
-use crate::logs::{Robot, Row};
+use crate::logs::{Robot, Row, Rows};
 
 /// Number of components: rotation (rad) and forward travel (cm).
 pub const MOTIONS: usize = 2;
@@ -21,9 +21,9 @@ pub struct CumulativeMotion {
 }
 
 /// Cumulative motion from the rotation counters; rows without them are left out.
-pub fn by_wheels(rows: &[Row], robot: &Robot) -> Vec<CumulativeMotion> {
+pub fn by_wheels(rows: &Rows, robot: &Robot) -> Vec<CumulativeMotion> {
     let cm_per_deg = PI * robot.wheel_diameter_cm / 360.0;
-    let moved = |row: &Row| {
+    let moved = |row: Row| {
         let [left_cm, right_cm] = [row.rot_left_deg? * cm_per_deg, row.rot_right_deg? * cm_per_deg];
         Some(CumulativeMotion {
             t_ms: row.t_ms,

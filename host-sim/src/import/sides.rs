@@ -69,7 +69,7 @@ impl Sides {
     pub fn of_wheels(run: &Run, robot: &Robot) -> Self {
         let cm_per_deg = PI * robot.wheel_diameter_cm / 360.0;
         let turned = |a: Option<f64>, b: Option<f64>| Some((b? - a?) * cm_per_deg);
-        Sides::of(run.rows.windows(2).filter_map(|pair| {
+        Sides::of(run.rows.pairs().filter_map(|pair| {
             let left_cm = turned(pair[0].rot_left_deg, pair[1].rot_left_deg)?;
             let right_cm = turned(pair[0].rot_right_deg, pair[1].rot_right_deg)?;
             Some((drive(left_cm, right_cm, robot), pair[0].pose?, pair[1].pose?))
@@ -78,7 +78,7 @@ impl Sides {
 
     /// Of runs, by their commands.
     pub fn of_commands(runs: &[Run], robot: &Robot) -> Self {
-        let steps = runs.iter().flat_map(|run| run.rows.windows(2));
+        let steps = runs.iter().flat_map(|run| run.rows.pairs());
         Sides::of(steps.filter_map(|pair| {
             let [left_cm, right_cm] = covered(&pair[0], pair[1].t_ms - pair[0].t_ms, robot);
             Some((drive(left_cm, right_cm, robot), pair[0].pose?, pair[1].pose?))

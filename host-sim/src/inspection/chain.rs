@@ -1,5 +1,7 @@
 //! The cheapest reading of a sequence of which some members are wrong: which to keep, in which state, and where it breaks.
 
+use std::collections::VecDeque;
+
 /// What it costs to leave a member out.
 const LEAVE_OUT: f64 = 2.0;
 /// What it costs to go on from a member that the next one cannot follow: two members left out are likelier than that, and
@@ -14,13 +16,21 @@ const MOST_LEFT_OUT: usize = 4;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Kept {
     /// Its state.
-    pub state: usize,
+    pub state: u8,
     /// It cannot follow the one before.
     pub breaks: bool,
 }
 
-/// The cost so far of the cheapest reading up to a member in a state, the member and state before, and whether it breaks.
-type Cheapest = (f64, Option<[usize; 2]>, bool);
+/// From where the cheapest reading comes to a member in a state. There is one of each, and runs are long.
+#[derive(Clone, Copy)]
+struct Step {
+    /// How many members before lies the one before it that is kept; zero where there is none,
+    back: u8,
+    /// and its state.
+    from: u8,
+    /// Whether it breaks there.
+    breaks: bool,
+}
 
 /// The cheapest reading of `members` members with `S` states each; none for a member left out.
 ///
@@ -31,12 +41,15 @@ pub fn cheapest<const S: usize>(
     cost: impl Fn(usize, usize) -> f64,
     follows: impl Fn([usize; 2], [usize; 2]) -> Option<f64>,
 ) -> Vec<Option<Kept>> {
-    let mut table: Vec<[Cheapest; S]> = Vec::with_capacity(members);
+    let mut steps: Vec<[Step; S]> = Vec::with_capacity(members);
+    // What readings cost so far that end at the members just before.
+    let mut lately: VecDeque<[f64; S]> = VecDeque::new();
+    let mut end: Option<(f64, [usize; 2])> = None;
     for at in 0..members {
-        let mut here = [(LEAVE_OUT * at as f64, None, false); S];
+        let mut here = [(LEAVE_OUT * at as f64, Step { back: 0, from: 0, breaks: false }); S];
         for (state, best) in here.iter_mut().enumerate() {
-            for (before, states) in table.iter().enumerate().skip(at.saturating_sub(MOST_LEFT_OUT + 1)) {
-                for (from, (so_far, ..)) in states.iter().enumerate() {
+            for (before, costs) in (at - lately.len()..).zip(&lately) {
+                for (from, so_far) in costs.iter().enumerate() {
                     let following = follows([before, from], [at, state]);
                     let breaks = following.is_none();
                     if breaks && before + 1 < at {
@@ -47,22 +60,28 @@ pub fn cheapest<const S: usize>(
                         + following.unwrap_or(BREAK)
                         + if from == state { 0.0 } else { SWITCH };
                     if price < best.0 {
-                        *best = (price, Some([before, from]), breaks);
+                        *best = (price, Step { back: (at - before) as u8, from: from as u8, breaks });
                     }
                 }
             }
             best.0 += cost(at, state);
+            let whole = best.0 + LEAVE_OUT * (members - 1 - at) as f64;
+            if end.is_none_or(|(least, _)| whole < least) {
+                end = Some((whole, [at, state]));
+            }
         }
-        table.push(here);
+        if lately.len() > MOST_LEFT_OUT {
+            lately.pop_front();
+        }
+        lately.push_back(here.map(|(cost, _)| cost));
+        steps.push(here.map(|(_, step)| step));
     }
     let mut kept = vec![None; members];
-    let ends = (0..members).flat_map(|at| (0..S).map(move |state| [at, state]));
-    let price = |[at, state]: &[usize; 2]| table[*at][*state].0 + LEAVE_OUT * (members - 1 - at) as f64;
-    let mut next = ends.min_by(|a, b| price(a).total_cmp(&price(b)));
+    let mut next = end.map(|(_, end)| end);
     while let Some([at, state]) = next {
-        let (_, before, breaks) = table[at][state];
-        kept[at] = Some(Kept { state, breaks });
-        next = before;
+        let Step { back, from, breaks } = steps[at][state];
+        kept[at] = Some(Kept { state: state as u8, breaks });
+        next = (back > 0).then(|| [at - usize::from(back), usize::from(from)]);
     }
     kept
 }
@@ -81,7 +100,7 @@ mod tests {
         )
     }
 
-    fn states(numbers: &[f64]) -> Vec<Option<usize>> {
+    fn states(numbers: &[f64]) -> Vec<Option<u8>> {
         read(numbers).iter().map(|kept| kept.map(|kept| kept.state)).collect()
     }
 

@@ -1,7 +1,7 @@
 //! Clocks: runs whose time is in seconds or at another rate, and commands that stand beside the motion of another time.
 
 use super::finding::{Finding, Handling, Part, Place};
-use super::ways::{FEWEST, asked, is_broken};
+use super::ways::{FEWEST, asked, is_broken, one_in};
 use crate::geometry::wrap_rad;
 use crate::logs::{Logs, Run};
 use crate::statistics::summary::median;
@@ -23,14 +23,14 @@ const CLIPPED: f64 = 5.0;
 
 /// Runs in seconds are put right; those at another rate are left out.
 pub fn rates(logs: &mut Logs) -> Vec<Finding> {
-    let rate = |run: &Run| median(run.rows.windows(2).map(|pair| pair[1].t_ms - pair[0].t_ms)) / logs.robot.step_ms;
+    let rate = |run: &Run| median(run.rows.pairs().map(|pair| pair[1].t_ms - pair[0].t_ms)) / logs.robot.step_ms;
     let is_at = |rate: f64, factor: f64| (rate / factor - 1.0).abs() <= RATE_TOLERANCE;
     let rates: Vec<f64> = logs.runs.iter().map(rate).collect();
     let (seconds, right): (Vec<bool>, Vec<bool>) = rates.iter().map(|r| (is_at(*r, 0.001), is_at(*r, 1.0))).unzip();
     let mut findings = Vec::new();
     if seconds.contains(&true) {
         for (run, _) in logs.runs.iter_mut().zip(&seconds).filter(|(_, is_meant)| **is_meant) {
-            run.rows.iter_mut().for_each(|row| row.t_ms *= 1000.0);
+            run.rows.edit_each(|row| row.t_ms *= 1000.0);
         }
         findings.push(Finding {
             id: "clock_seconds",
@@ -123,8 +123,9 @@ fn shift(logs: &Logs, runs: &[&Run]) -> Option<f64> {
 /// Reversed turns are a frame's fault and not a clock's.
 fn correlation(logs: &Logs, runs: &[&Run], halves: isize) -> Option<f64> {
     let mut pairs: [Vec<[f64; 2]>; 2] = [Vec::new(), Vec::new()];
+    let one_in = one_in(runs.iter().map(|run| run.rows.len()).sum());
     for run in runs {
-        for (k, pair) in run.rows.windows(2).enumerate() {
+        for (k, pair) in run.rows.pairs().enumerate().step_by(one_in) {
             let commanded = |half: isize| {
                 let row = k.checked_add_signed(-(half.div_euclid(2)))?;
                 Some(asked(&logs.robot, run.rows.get(row)?.command(), pair[1].t_ms - pair[0].t_ms))

@@ -41,8 +41,8 @@ pub fn units(logs: &mut Logs) -> Vec<Finding> {
         return Vec::new();
     };
     let rows = rows_where(logs, |row| row.echo_cm.is_some_and(|echo| echo < ENDLESS_CM));
-    for echo in logs.runs.iter_mut().flat_map(|run| &mut run.rows).filter_map(|row| row.echo_cm.as_mut()) {
-        *echo *= if *echo < ENDLESS_CM { factor } else { 1.0 };
+    for (run, row) in &rows {
+        logs.runs[*run].rows.edit(*row, |row| row.echo_cm = row.echo_cm.map(|echo| echo * factor));
     }
     vec![Finding {
         id: "echo_unit",
@@ -73,7 +73,7 @@ pub fn none_numbers(logs: &mut Logs) -> Vec<Finding> {
     if rows.is_empty() {
         return all_beyond(logs, &beyond);
     }
-    rows.iter().for_each(|(run, row)| logs.runs[*run].rows[*row].echo_cm = None);
+    rows.iter().for_each(|(run, row)| logs.runs[*run].rows.edit(*row, |row| row.echo_cm = None));
     let word = |number: &f64| if *number >= ENDLESS_CM { "inf".into() } else { number.to_string() };
     let words: Vec<String> = numbers.iter().map(word).collect();
     vec![Finding {

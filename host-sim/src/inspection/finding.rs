@@ -98,7 +98,7 @@ impl Finding {
             return None;
         }
         let places = Place::of(logs, rows);
-        rows.iter().for_each(|(run, row)| logs.runs[*run].rows[*row].pose = None);
+        rows.iter().for_each(|(run, row)| logs.runs[*run].rows.edit(*row, |row| row.pose = None));
         Some(Finding { id, places, handling: Handling::LeftOut, withholds: &[], sentence: sentence.into() })
     }
 

@@ -33,15 +33,15 @@ pub fn check(logs: &mut Logs) -> Vec<Finding> {
 
 /// The last row of those from `from` on that have one pose.
 fn equal_until(run: &Run, from: usize) -> usize {
-    let pose = run.rows[from].pose;
-    let equal = run.rows[from + 1..].iter().take_while(|row| pose.is_some() && row.pose == pose).count();
+    let pose = run.rows.at(from).pose;
+    let equal = run.rows.between(from + 1..run.rows.len()).take_while(|row| pose.is_some() && row.pose == pose).count();
     from + equal
 }
 
 /// Whether rows of one pose are those of a robot that moves meanwhile.
 fn is_frozen(logs: &Logs, tolerance: &Tolerance, run: &Run, from: usize, to: usize) -> bool {
     let driven = (from..to).filter(|k| tolerance.is_large(&tolerance.expected(logs, run, *k))).count();
-    let (Some(stood), true) = (run.rows[from].pose, driven > 0) else { return false };
+    let (Some(stood), true) = (run.rows.at(from).pose, driven > 0) else { return false };
     let Some(next) = run.rows.get(to + 1) else {
         let sides = logs.scene.sides();
         let is_near = sides.iter().any(|side| {

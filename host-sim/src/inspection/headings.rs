@@ -22,9 +22,10 @@ pub fn check(logs: &mut Logs) -> Vec<Finding> {
     let Some(tolerance) = Tolerance::of(logs) else { return Vec::new() };
     let (mut flipped, mut jumped) = (Vec::new(), Vec::new());
     for (run, r) in logs.runs.iter().enumerate() {
-        let posed: Vec<usize> = (0..r.rows.len()).filter(|k| r.rows[*k].pose.is_some()).collect();
-        let heading_rad =
-            |[at, state]: [usize; 2]| r.rows[posed[at]].pose.map_or(0.0, |pose| pose.heading_rad) + PI * state as f64;
+        let posed: Vec<usize> = (0..r.rows.len()).filter(|k| r.rows.at(*k).pose.is_some()).collect();
+        let heading_rad = |[at, state]: [usize; 2]| {
+            r.rows.at(posed[at]).pose.map_or(0.0, |pose| pose.heading_rad) + PI * state as f64
+        };
         let turn = |begin: usize, end: usize| tolerance.expected_between(logs, r, begin, end);
         let follows = |from: [usize; 2], to: [usize; 2]| {
             let (begin, end) = (posed[from[0]], posed[to[0]]);
@@ -64,9 +65,7 @@ pub fn check(logs: &mut Logs) -> Vec<Finding> {
         });
     }
     for (run, row) in flipped {
-        if let Some(pose) = &mut logs.runs[run].rows[row].pose {
-            pose.heading_rad = wrap_rad(pose.heading_rad + PI);
-        }
+        logs.runs[run].rows.edit_pose(row, |pose| pose.heading_rad = wrap_rad(pose.heading_rad + PI));
     }
     let sentence = "The heading jumps farther than the robot can turn: leave the pose empty where the tracker is lost.";
     findings.extend(Finding::without_poses(logs, "heading_jump", &jumped, sentence));
@@ -76,7 +75,7 @@ pub fn check(logs: &mut Logs) -> Vec<Finding> {
 /// Whether the step from row `k` goes against its heading; none where it is too short or too crooked to
 /// tell.
 fn goes_against(logs: &Logs, tolerance: &Tolerance, run: &Run, k: usize) -> Option<bool> {
-    let (from, to) = (run.rows[k].pose?, run.rows.get(k + 1)?.pose?);
+    let (from, to) = (run.rows.at(k).pose?, run.rows.get(k + 1)?.pose?);
     let Drive { forward_cm, turn_rad } = tolerance.expected(logs, run, k);
     let large_cm = LARGE * tolerance.fastest.forward_cm;
     let change_cm = to.position_cm - from.position_cm;

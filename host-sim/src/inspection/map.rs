@@ -1,5 +1,6 @@
 //! How well readings fit the walls, for poses as they are and for poses changed.
 
+use super::ways::one_in;
 use crate::geometry::{Pose, cast};
 use crate::logs::Logs;
 
@@ -8,10 +9,10 @@ const FITS: f64 = 0.1;
 /// this length: a beam is wide, and robots move while they listen.
 const FITS_CM: f64 = 5.0;
 
-/// Pairs of a reading and the distance along the sensor's axis, cm, from poses changed by `change`.
+/// Pairs of a reading and the distance along the sensor's axis, cm, from poses changed by `change`; of large logs enough.
 pub fn faced(logs: &Logs, change: impl Fn(&Pose) -> Pose) -> Vec<[f64; 2]> {
     let sides = logs.scene.sides();
-    let rows = logs.runs.iter().flat_map(|run| &run.rows);
+    let rows = logs.runs.iter().flat_map(|run| &run.rows).step_by(one_in(logs.rows()));
     let pairs = rows.filter_map(|row| {
         let sensor = logs.robot.ultrasonic.pose_on(&change(&row.pose?));
         Some([row.echo_cm?, cast(&sides, sensor.position_cm, sensor.direction())?.distance_cm])

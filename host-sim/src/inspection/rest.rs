@@ -34,8 +34,8 @@ pub fn moves_at_zero_command(logs: &mut Logs) -> Vec<Finding> {
 }
 
 fn is_moved(tolerance: &Tolerance, run: &Run, k: usize) -> bool {
-    let (Some(from), Some(to)) = (run.rows[k].pose, run.rows[k + 1].pose) else { return false };
-    let mut lately = run.rows[..=k].iter().rev().take_while(|row| run.rows[k].t_ms - row.t_ms <= STILL_MS);
+    let (Some(from), Some(to)) = (run.rows.at(k).pose, run.rows.at(k + 1).pose) else { return false };
+    let mut lately = run.rows.between(0..k + 1).rev().take_while(|row| run.rows.at(k).t_ms - row.t_ms <= STILL_MS);
     let is_still = lately.all(|row| row.command() == [0.0; 2]);
     let change = from.relative(&to);
     let moved = Drive { forward_cm: change.position_cm.length(), turn_rad: change.heading_rad };
@@ -56,7 +56,7 @@ pub fn starts_moving(logs: &mut Logs) -> Vec<Finding> {
     }
     // Runs that do not tell are taken to begin as most do.
     let begins = logs.runs.iter().zip(&shares).enumerate();
-    let moving = begins.filter(|(_, (run, share))| run.rows[0].pose.is_some() && share.is_none_or(is_moving));
+    let moving = begins.filter(|(_, (run, share))| run.rows.at(0).pose.is_some() && share.is_none_or(is_moving));
     let moving: Vec<(usize, usize)> = moving.map(|(run, _)| (run, 0)).collect();
     let sentence = "Runs begin while the robot moves: begin them at rest, with the first command.";
     Finding::without_poses(logs, "starts_moving", &moving, sentence).into_iter().collect()
@@ -64,10 +64,10 @@ pub fn starts_moving(logs: &mut Logs) -> Vec<Finding> {
 
 /// How far a run's first step goes, against what its command comes to once it acts in full.
 fn share(logs: &Logs, run: &Run, tolerance: &Tolerance, all: f64) -> Option<f64> {
-    let (from, to) = (run.rows[0].pose?, run.rows[1].pose?);
-    let ms = run.rows[1].t_ms - run.rows[0].t_ms;
-    let full_cm = all * asked(&logs.robot, run.rows[0].command(), ms).forward_cm;
-    let is_enough = !is_broken(&logs.robot, run.rows[0].t_ms, run.rows[1].t_ms)
+    let (from, to) = (run.rows.at(0).pose?, run.rows.at(1).pose?);
+    let ms = run.rows.at(1).t_ms - run.rows.at(0).t_ms;
+    let full_cm = all * asked(&logs.robot, run.rows.at(0).command(), ms).forward_cm;
+    let is_enough = !is_broken(&logs.robot, run.rows.at(0).t_ms, run.rows.at(1).t_ms)
         && full_cm.abs() >= ENOUGH * tolerance.fastest.forward_cm;
     is_enough.then(|| from.relative(&to).position_cm.x / full_cm)
 }

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::ways::{Drive, Gains, LARGE, asked, is_broken, ways};
+use super::ways::{Drive, Gains, LARGE, asked, is_broken, one_in, ways};
 use crate::geometry::wrap_rad;
 use crate::logs::{Logs, Run};
 use crate::statistics::summary::median;
@@ -40,8 +40,9 @@ impl Tolerance {
         Gains::of(&ways(logs), &logs.robot).length?;
         let mut steps: [Vec<([f64; 3], f64)>; 2] = [Vec::new(), Vec::new()];
         let mut aside_cm = Vec::new();
+        let one_in = one_in(logs.rows());
         for run in &logs.runs {
-            for (k, pair) in run.rows.windows(2).enumerate() {
+            for (k, pair) in run.rows.pairs().enumerate().step_by(one_in) {
                 let (Some(a), Some(b)) = (pair[0].pose, pair[1].pose) else { continue };
                 if is_broken(&logs.robot, pair[0].t_ms, pair[1].t_ms) {
                     continue;
@@ -86,8 +87,8 @@ impl Tolerance {
     pub fn expected_between(&self, logs: &Logs, run: &Run, from: usize, to: usize) -> Option<Drive> {
         let mut all = Drive::default();
         for k in from..to {
-            let is_unseen = k > from && run.rows[k].pose.is_none();
-            if is_unseen || is_broken(&logs.robot, run.rows[k].t_ms, run.rows[k + 1].t_ms) {
+            let is_unseen = k > from && run.rows.at(k).pose.is_none();
+            if is_unseen || is_broken(&logs.robot, run.rows.at(k).t_ms, run.rows.at(k + 1).t_ms) {
                 return None;
             }
             all = all.and(&self.expected(logs, run, k));
@@ -125,19 +126,19 @@ fn excess(value: f64, expected: f64) -> f64 {
 
 /// What the commands of [`AGES_MS`] ask for in the step from row `k`.
 fn of_ages(logs: &Logs, run: &Run, k: usize) -> [Drive; 3] {
-    let ms = run.rows.get(k + 1).map_or(0.0, |next| next.t_ms - run.rows[k].t_ms);
+    let ms = run.rows.get(k + 1).map_or(0.0, |next| next.t_ms - run.rows.at(k).t_ms);
     let mut row = k;
     let mut begun = true;
     AGES_MS.map(|age_ms| {
         // Half a step of jitter does not make a command another one's age.
-        while begun && run.rows[k].t_ms - run.rows[row].t_ms < age_ms - logs.robot.step_ms / 2.0 {
+        while begun && run.rows.at(k).t_ms - run.rows.at(row).t_ms < age_ms - logs.robot.step_ms / 2.0 {
             if row == 0 {
                 begun = false;
             } else {
                 row -= 1;
             }
         }
-        if begun { asked(&logs.robot, run.rows[row].command(), ms) } else { Drive::default() }
+        if begun { asked(&logs.robot, run.rows.at(row).command(), ms) } else { Drive::default() }
     })
 }
 

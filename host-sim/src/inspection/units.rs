@@ -36,10 +36,9 @@ pub fn commands(logs: &mut Logs) -> Vec<Finding> {
         sentence: format!("No command exceeds {most}: they seem to be fractions; write -100..100 as left and right."),
     };
     if handling == Handling::PutRight {
-        for row in logs.runs.iter_mut().flat_map(|run| &mut run.rows) {
-            row.left *= 100.0;
-            row.right *= 100.0;
-        }
+        logs.runs.iter_mut().for_each(|run| {
+            run.rows.edit_each(|row| (row.left, row.right) = (row.left * 100.0, row.right * 100.0));
+        });
     }
     vec![found]
 }
@@ -52,8 +51,8 @@ pub fn headings(logs: &mut Logs) -> Vec<Finding> {
         return Vec::new();
     };
     let mut right = logs.clone();
-    for pose in right.runs.iter_mut().flat_map(|run| &mut run.rows).filter_map(|row| row.pose.as_mut()) {
-        pose.heading_rad = wrap_rad(pose.heading_rad / RADIANS);
+    for run in &mut right.runs {
+        run.rows.edit_poses(|pose| pose.heading_rad = wrap_rad(pose.heading_rad / RADIANS));
     }
     if !goes_somewhere(&super::ways::ways(&right), &right) {
         return Vec::new();
@@ -77,9 +76,7 @@ pub fn lengths(logs: &mut Logs) -> Vec<Finding> {
     let metres = [(0.01, 100.0, "length_metres", "metres"), (10.0, 0.1, "length_millimetres", "millimetres")];
     for (gain, factor, id, unit) in metres {
         if is_near(length, gain) && turns_as_asked && goes_somewhere(&ways, logs) {
-            for pose in logs.runs.iter_mut().flat_map(|run| &mut run.rows).filter_map(|row| row.pose.as_mut()) {
-                pose.position_cm *= factor;
-            }
+            logs.runs.iter_mut().for_each(|run| run.rows.edit_poses(|pose| pose.position_cm *= factor));
             return vec![Finding {
                 id,
                 places: posed(logs),

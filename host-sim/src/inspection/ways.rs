@@ -16,6 +16,15 @@ pub const LARGE: f64 = 0.25;
 /// With fewer ways nothing is decided: of twenty tosses of a coin sixteen fall on one side once in a hundred times.
 pub const FEWEST: usize = 20;
 
+/// What so many steps of a robot tell of it, more of them hardly would.
+const ENOUGH: usize = 300_000;
+
+/// Of so many rows every so many are enough. It is an odd number, so that commands which change every so many rows are seen
+/// at all their ages.
+pub fn one_in(rows: usize) -> usize {
+    rows.div_ceil(ENOUGH).max(1) | 1
+}
+
 /// What a differential drive covers: forward (cm) and to the left (rad).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Drive {
@@ -56,9 +65,11 @@ pub fn is_broken(robot: &Robot, from_ms: f64, to_ms: f64) -> bool {
     to_ms - from_ms > LONGEST_STEP * robot.step_ms
 }
 
-/// All ways of logs, one after the other.
+/// The ways of logs, one after the other; of large logs enough of them.
 pub fn ways(logs: &Logs) -> Vec<Way> {
     let mut ways = Vec::new();
+    let one_in = one_in(logs.rows());
+    let mut found = 0_usize;
     for r in &logs.runs {
         let mut from = 0;
         while from + 1 < r.rows.len() {
@@ -67,7 +78,7 @@ pub fn ways(logs: &Logs) -> Vec<Way> {
             let mut to = from;
             let way = loop {
                 let Some(next) = r.rows.get(to + 1) else { break None };
-                let here = &r.rows[to];
+                let here = &r.rows.at(to);
                 let (Some(a), Some(b)) = (here.pose, next.pose) else { break None };
                 if is_broken(&logs.robot, here.t_ms, next.t_ms) {
                     break None;
@@ -77,8 +88,8 @@ pub fn ways(logs: &Logs) -> Vec<Way> {
                 driven.turn_rad += step.turn_rad;
                 turn_rad += wrap_rad(b.heading_rad - a.heading_rad);
                 to += 1;
-                let ms = next.t_ms - r.rows[from].t_ms;
-                let Some(begin) = r.rows[from].pose.filter(|_| ms >= WAY_MS) else { continue };
+                let ms = next.t_ms - r.rows.at(from).t_ms;
+                let Some(begin) = r.rows.at(from).pose.filter(|_| ms >= WAY_MS) else { continue };
                 break Some(Way {
                     chord_cm: b.position_cm - begin.position_cm,
                     heading_rad: begin.heading_rad + turn_rad / 2.0,
@@ -86,7 +97,8 @@ pub fn ways(logs: &Logs) -> Vec<Way> {
                     asked: driven,
                 });
             };
-            ways.extend(way);
+            ways.extend(way.filter(|_| found.is_multiple_of(one_in)));
+            found += usize::from(way.is_some());
             from = to.max(from + 1);
         }
     }

@@ -35,9 +35,9 @@ pub fn learn(seen: &[Seen]) -> [f64; 2] {
 /// What the sensor said in its training logs, beside what its model expects.
 pub fn seen(sonar: &SonarModel, logs: &Logs) -> Vec<Seen> {
     let sides = logs.scene.sides();
-    let rows: Vec<(usize, &Row)> =
+    let rows: Vec<(usize, Row)> =
         logs.runs.iter().enumerate().flat_map(|(run, logged)| logged.rows.iter().map(move |row| (run, row))).collect();
-    let seen = |(run, row): &(usize, &Row)| {
+    let seen = |(run, row): &(usize, Row)| {
         let sensor = logs.robot.ultrasonic.pose_on(&row.pose?);
         let outcomes = sonar.outcomes(&fan_at(&sides, &sensor, sonar.fan_width), &Perturbation::NONE);
         let off_cm = row.echo_cm.zip(outcomes.mean_hit_cm()).map(|(echo_cm, expected_cm)| echo_cm - expected_cm);

@@ -42,7 +42,7 @@ const FINE: [f64; 8] = [0.5, 0.5, 0.5, 0.25, 0.25, 0.25, 0.12, 0.06];
 impl Scans {
     /// The rows of logs at which the robot was seen.
     pub fn of(logs: &Logs) -> Self {
-        let heard = |row: &crate::logs::Row| Some(Heard { robot: row.pose?, echo_cm: row.echo_cm });
+        let heard = |row: crate::logs::Row| Some(Heard { robot: row.pose?, echo_cm: row.echo_cm });
         let runs = logs.runs.iter().map(|run| run.rows.iter().filter_map(heard).collect()).collect();
         Scans { mount: logs.robot.ultrasonic, runs }
     }

@@ -20,8 +20,8 @@ pub const TABLE_ONE: Shapes = Shapes {
     echo_value: Shape::halves(40),
 };
 
-/// Number of networks.
-const NETWORKS: usize = 5;
+/// The networks, in the order in which they are trained.
+pub const NETWORKS: [&str; 5] = ["turn", "forward", "lateral", "echo_probability", "echo_value"];
 /// One run in this many is held out of training to estimate the residuals.
 const HELD_OUT: usize = 5;
 /// Least number of samples to train a network.
@@ -86,7 +86,7 @@ pub fn train(
     let mut echo_value = network_trainer.train("echo_value", &data.echo_value, shapes.echo_value, reading, sonar);
     let constant_reading = echo_value.as_mut().and_then(|value| split_constant_reading(value, &data.echo_value));
     let missing = for_want_of_a_sensor(network_trainer.missing, &logs.robot);
-    if missing.len() == NETWORKS {
+    if missing.len() == NETWORKS.len() {
         let reasons: Vec<String> = missing.iter().map(|m| format!("{}: {}", m.network, m.reason)).collect();
         return Err(Error::new(format!("no network can be trained on these logs ({})", reasons.join("; "))));
     }

@@ -21,22 +21,22 @@ impl Logs {
 const GAP: f64 = 2.5;
 
 fn resampled(run: &Run, step_ms: f64, usual_ms: f64) -> Run {
-    let (first, last) = (run.rows[0].t_ms, run.rows[run.rows.len() - 1].t_ms);
+    let (first, last) = (run.rows.at(0).t_ms, run.rows.at(run.rows.len() - 1).t_ms);
     // A step is there that ends a rounding error after the last row.
     let steps = ((last - first) / step_ms + 1e-6) as usize;
     let row = |step: usize| {
         let t_ms = first + step as f64 * step_ms;
-        let at = run.rows.partition_point(|row| row.t_ms <= t_ms + 1e-6) - 1;
-        let (before, after) = (&run.rows[at], run.rows.get(at + 1));
+        let at = run.rows.later_than(t_ms + 1e-6) - 1;
+        let (before, after) = (run.rows.at(at), run.rows.get(at + 1));
         let [left, right] = mean_command(run, t_ms, t_ms + step_ms);
         let is_fresh = t_ms - before.t_ms < usual_ms;
         Row {
             t_ms,
             left,
             right,
-            pose: pose(before, after, t_ms, usual_ms),
+            pose: pose(&before, after, t_ms, usual_ms),
             echo_cm: before.echo_cm.filter(|_| is_fresh),
-            ..*before
+            ..before
         }
     };
     Run { name: run.name.clone(), rows: (0..=steps).map(row).collect() }
@@ -45,8 +45,9 @@ fn resampled(run: &Run, step_ms: f64, usual_ms: f64) -> Run {
 /// The mean of the commands that are held between two times.
 fn mean_command(run: &Run, from_ms: f64, to_ms: f64) -> [f64; 2] {
     let mut sum = [0.0; 2];
-    let begin = run.rows.partition_point(|row| row.t_ms <= from_ms).saturating_sub(1);
-    for (i, row) in run.rows.iter().enumerate().skip(begin).take_while(|(_, row)| row.t_ms < to_ms) {
+    let begin = run.rows.later_than(from_ms).saturating_sub(1);
+    let rows = run.rows.between(begin..run.rows.len());
+    for (i, row) in (begin..).zip(rows).take_while(|(_, row)| row.t_ms < to_ms) {
         let until_ms = run.rows.get(i + 1).map_or(to_ms, |next| next.t_ms.min(to_ms));
         let held_ms = until_ms - row.t_ms.max(from_ms);
         sum = [sum[0] + held_ms * row.left, sum[1] + held_ms * row.right];
@@ -55,7 +56,7 @@ fn mean_command(run: &Run, from_ms: f64, to_ms: f64) -> [f64; 2] {
 }
 
 /// The pose at a time from those before and after it; none where either is missing or too far away.
-fn pose(before: &Row, after: Option<&Row>, t_ms: f64, usual_ms: f64) -> Option<Pose> {
+fn pose(before: &Row, after: Option<Row>, t_ms: f64, usual_ms: f64) -> Option<Pose> {
     let from = before.pose?;
     let Some(after) = after else { return Some(from) };
     let share = (t_ms - before.t_ms) / (after.t_ms - before.t_ms);
@@ -102,25 +103,25 @@ mod tests {
     fn a_command_is_the_mean_of_those_held() {
         // Five and a half rows: 0 to 4 held for 20 ms each and 5 for 10 ms.
         let rows = &logs().in_steps_of(110.0).runs[0].rows;
-        assert!((rows[0].left - (0.0 + 1.0 + 2.0 + 3.0 + 4.0 + 2.5) / 5.5).abs() < 1e-12, "{}", rows[0].left);
-        assert!((rows[1].right - 2.0 * (2.5 + 6.0 + 7.0 + 8.0 + 9.0 + 10.0) / 5.5).abs() < 1e-12);
+        assert!((rows.at(0).left - (0.0 + 1.0 + 2.0 + 3.0 + 4.0 + 2.5) / 5.5).abs() < 1e-12, "{}", rows.at(0).left);
+        assert!((rows.at(1).right - 2.0 * (2.5 + 6.0 + 7.0 + 8.0 + 9.0 + 10.0) / 5.5).abs() < 1e-12);
     }
 
     #[test]
     fn a_pose_lies_between_its_neighbours_across_the_seam_of_headings() {
         let rows = &logs().in_steps_of(210.0).runs[0].rows;
-        let pose = rows[1].pose.expect("a pose");
+        let pose = rows.at(1).pose.expect("a pose");
         assert!((pose.position_cm.x - 10.5).abs() < 1e-9);
         assert!((pose.heading_rad.to_degrees() + 179.5).abs() < 1e-9, "{}", pose.heading_rad.to_degrees());
-        assert_eq!(rows[1].echo_cm, Some(90.0));
+        assert_eq!(rows.at(1).echo_cm, Some(90.0));
     }
 
     #[test]
     fn where_the_tracker_lost_the_robot_there_is_no_pose() {
         let mut lost = logs();
-        lost.runs[0].rows[11].pose = None;
-        assert!(lost.in_steps_of(210.0).runs[0].rows[1].pose.is_none());
-        assert!(lost.in_steps_of(200.0).runs[0].rows[1].pose.is_some());
+        lost.runs[0].rows.edit(11, |row| row.pose = None);
+        assert!(lost.in_steps_of(210.0).runs[0].rows.at(1).pose.is_none());
+        assert!(lost.in_steps_of(200.0).runs[0].rows.at(1).pose.is_some());
     }
 
     #[test]

@@ -5,6 +5,7 @@ use std::path::Path;
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
+use super::columns::{COLUMNS, REQUIRED, REQUIRED_WITHOUT_SENSOR};
 use crate::error::{Error, Result};
 use crate::files;
 use crate::geometry::Pose;
@@ -50,7 +51,15 @@ impl Robot {
     /// # Errors
     /// When the file cannot be read or parsed, or holds an impossible length, speed or time.
     pub fn read(path: &Path) -> Result<Self> {
-        let robot: Robot = files::read_toml(path)?;
+        Robot::parse(path, &files::read_text(path)?)
+    }
+
+    /// The robot that a text says; `path` is for messages.
+    ///
+    /// # Errors
+    /// As [`Robot::read`].
+    pub fn parse(path: &Path, text: &str) -> Result<Self> {
+        let robot: Robot = files::from_toml(path, text)?;
         let sonar = &robot.ultrasonic;
         let positive = [
             ("wheel_diameter_cm", robot.wheel_diameter_cm),
@@ -68,6 +77,11 @@ impl Robot {
             return Err(Error::in_file(path, "[ultrasonic] needs numbers within 100000 and 0 <= min_cm < max_cm"));
         }
         Ok(robot)
+    }
+
+    /// The columns that its runs must have.
+    pub fn required_columns(&self) -> &'static [&'static str] {
+        &COLUMNS[..if self.ultrasonic.is_none() { REQUIRED_WITHOUT_SENSOR } else { REQUIRED }]
     }
 
     /// Writes `robot.toml`.

@@ -6,7 +6,7 @@ use std::path::Path;
 use csv::{ReaderBuilder, StringRecord, Writer};
 
 use super::columns::{COLUMNS, Columns, REQUIRED, cells};
-use super::row::Row;
+use super::rows::Rows;
 use crate::error::{Error, Result};
 use crate::files::{self, TextFile};
 
@@ -16,7 +16,7 @@ pub struct Run {
     /// File name without its ending.
     pub name: String,
     /// The rows.
-    pub rows: Vec<Row>,
+    pub rows: Rows,
 }
 
 impl Run {
@@ -60,13 +60,13 @@ impl Run {
     /// # Errors
     /// When the file cannot be written.
     pub fn write(&self, path: &Path) -> Result<()> {
-        let cells: Vec<[Option<f64>; COLUMNS.len()]> = self.rows.iter().map(cells).collect();
+        let cells = || self.rows.iter().map(|row| cells(&row));
         let written: Vec<usize> =
-            (0..COLUMNS.len()).filter(|c| *c < REQUIRED || cells.iter().any(|row| row[*c].is_some())).collect();
+            (0..COLUMNS.len()).filter(|c| *c < REQUIRED || cells().any(|row| row[*c].is_some())).collect();
         let mut writer = Writer::from_writer(Vec::new());
         let failed = |e: csv::Error| Error::in_file(path, e.to_string());
         writer.write_record(written.iter().map(|c| COLUMNS[*c])).map_err(failed)?;
-        for row in &cells {
+        for row in cells() {
             writer.write_record(written.iter().map(|c| row[*c].map_or(String::new(), two_decimals))).map_err(failed)?;
         }
         let bytes = writer.into_inner().map_err(|e| Error::in_file(path, e.to_string()))?;
@@ -75,16 +75,16 @@ impl Run {
 
     /// Left and right command of the row before `k`; zeros at the first row, since motors start from rest.
     pub fn previous_command(&self, k: usize) -> [f64; 2] {
-        if k == 0 { [0.0, 0.0] } else { self.rows[k - 1].command() }
+        if k == 0 { [0.0, 0.0] } else { self.rows.at(k - 1).command() }
     }
 }
 
 /// Reads rows one by one: the text of a long run is never there as a whole.
-fn rows(path: &Path, text: impl Read, required: &[&str], warn: &mut impl FnMut(String)) -> Result<Vec<Row>> {
+fn rows(path: &Path, text: impl Read, required: &[&str], warn: &mut impl FnMut(String)) -> Result<Rows> {
     let mut reader = ReaderBuilder::new().trim(csv::Trim::All).from_reader(text);
     let header = reader.headers().map_err(|e| files::csv_error(path, &e))?.clone();
     let columns = Columns::find(path, &header, required, warn)?;
-    let mut rows: Vec<Row> = Vec::new();
+    let mut rows = Rows::default();
     let mut record = StringRecord::new();
     while reader.read_record(&mut record).map_err(|e| files::csv_error(path, &e))? {
         let line = record.position().map_or(0, csv::Position::line);
@@ -105,7 +105,7 @@ fn rows(path: &Path, text: impl Read, required: &[&str], warn: &mut impl FnMut(S
     if rows.len() < 2 {
         return Err(Error::in_file(path, format!("has {} row(s); a run needs at least two", rows.len())));
     }
-    rows.shrink_to_fit();
+    rows.shrink();
     Ok(rows)
 }
 

@@ -61,7 +61,7 @@ pub fn steps(logs: &Logs) -> impl Iterator<Item = MotionSample> {
 
 /// The step from a row of a run.
 fn step(step_ms: f64, run: usize, r: &Run, row: usize) -> Option<MotionSample> {
-    let (begin, end) = (&r.rows[row], &r.rows[row + 1]);
+    let (begin, end) = (r.rows.at(row), r.rows.at(row + 1));
     let stretch = (end.t_ms - begin.t_ms) / step_ms;
     let (from, to) = (begin.pose?, end.pose?);
     if stretch > LONGEST_STEP {

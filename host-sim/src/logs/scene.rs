@@ -31,9 +31,16 @@ impl Scene {
     /// # Errors
     /// When the file cannot be read or parsed, holds an impossible size or place.
     pub fn read(path: &Path) -> Result<Self> {
-        let text = files::read_text(path)?;
-        let file: SceneFile = files::from_toml(path, &text)?;
-        let at = |byte: usize, what: &str| Error::at_line(path, files::line_at(&text, byte), what);
+        Scene::parse(path, &files::read_text(path)?)
+    }
+
+    /// The scene that a text says; `path` is for messages.
+    ///
+    /// # Errors
+    /// As [`Scene::read`].
+    pub fn parse(path: &Path, text: &str) -> Result<Self> {
+        let file: SceneFile = files::from_toml(path, text)?;
+        let at = |byte: usize, what: &str| Error::at_line(path, files::line_at(text, byte), what);
         let mut scene = Scene::default();
         if let Some(arena) = file.arena {
             let (start, arena) = (arena.span().start, arena.into_inner());
@@ -85,6 +92,11 @@ impl Scene {
     /// # Errors
     /// When the file cannot be written.
     pub fn write(&self, path: &Path) -> Result<()> {
+        files::write(path, self.to_text())
+    }
+
+    /// The text of `scene.toml`.
+    pub fn to_text(&self) -> String {
         let file = SceneFile {
             arena: self.arena_cm.map(|a| unplaced(ArenaTable { width_cm: a.x, height_cm: a.y })),
             obstacle: self.obstacles.iter().map(|o| unplaced(o.into())).collect(),
@@ -92,7 +104,7 @@ impl Scene {
             target: self.target_cm.map(|t| unplaced(PointTable { x_cm: t.x, y_cm: t.y })),
             start: self.starts.iter().map(|s| unplaced(s.into())).collect(),
         };
-        files::write(path, toml::to_string(&file).expect("numbers have a TOML form"))
+        toml::to_string(&file).expect("numbers have a TOML form")
     }
 
     /// Start `number` (from 1), where a robot of this radius has room.

@@ -23,6 +23,11 @@ pub struct WorldScript {
     pub presses: Vec<Press>,
 }
 
+/// The names of all columns that a script may have.
+fn all_columns() -> impl Iterator<Item = &'static str> {
+    [TIME].into_iter().chain(PORTS).chain(BUTTONS.map(|(button, _)| button))
+}
+
 /// Reads a script: a CSV file with the column `t_ms` and any of `port_1` to `port_4` (percent; a touch sensor is pressed
 /// at more than 0), `right`, `left` and `orange` (1 while the button is down). A row holds until the next; an empty cell
 /// changes nothing.
@@ -37,9 +42,9 @@ pub fn read(path: &Path) -> Result<WorldScript> {
     if !header.iter().any(|name| name == TIME) {
         return Err(Error::at_line(path, 1, format!("column {TIME} is missing")));
     }
-    let known = |name: &str| name == TIME || PORTS.contains(&name) || BUTTONS.iter().any(|(button, _)| *button == name);
-    if let Some(name) = header.iter().find(|name| !known(name)) {
-        return Err(Error::at_line(path, 1, format!("column {name:?} is not known")));
+    if let Some(name) = header.iter().find(|name| all_columns().all(|known| known != *name)) {
+        let meant = files::did_you_mean(name, all_columns());
+        return Err(Error::at_line(path, 1, format!("column {name:?} is not known{meant}")));
     }
     let mut script = WorldScript::default();
     let mut last_ms = None;

@@ -43,6 +43,8 @@ pub enum Script {
     Evaluation,
     /// The charts of a controller's runs.
     Simulation,
+    /// The charts of a loop.
+    Trials,
 }
 
 /// Nothing is fetched: a page that tried to would show an error.
@@ -81,6 +83,7 @@ impl Script {
             Script::Replay => include_str!("../../assets/page/replay.js"),
             Script::Evaluation => include_str!("../../assets/page/evaluation.js"),
             Script::Simulation => include_str!("../../assets/page/simulation.js"),
+            Script::Trials => include_str!("../../assets/page/trials.js"),
         }
     }
 }

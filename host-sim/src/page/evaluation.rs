@@ -138,7 +138,12 @@ fn scatter((name, unit, value): &Judged) -> Scatter {
     Scatter { name, unit, points: value.points.iter().step_by(every).map(rounded).collect() }
 }
 
-fn scatters(values: &[Judged]) -> Markup {
+/// How well each network does, as a table.
+pub fn accuracy(networks: &Networks) -> Markup {
+    judged(&values(networks))
+}
+
+fn judged(values: &[Judged]) -> Markup {
     let rows: Vec<[String; 4]> = values
         .iter()
         .map(|(name, unit, v)| {
@@ -147,11 +152,15 @@ fn scatters(values: &[Judged]) -> Markup {
         })
         .collect();
     html! {
-        p {
-            "Each dot is a sample of the logs. On the diagonal the prediction is right. R² is the share of what "
-            "happened that the simulator foretells: 1 is all, 0 is no more than the mean."
-        }
+        p { "R² is the share of what happened that the simulator foretells: 1 is all, 0 is no more than the mean." }
         (open_table(["network", "R²", "typical error", "samples"], &rows))
+    }
+}
+
+fn scatters(values: &[Judged]) -> Markup {
+    html! {
+        (judged(values))
+        p { "Each dot is a sample of the logs. On the diagonal the prediction is right." }
         div.pairs {
             @for (i, (name, unit, v)) in values.iter().enumerate() {
                 @let r2 = v.r2.map_or_else(|| "undefined".into(), |r2| number(r2, 3));
@@ -234,7 +243,6 @@ fn turnable(surfaces: &[Surface]) -> Markup {
 
 fn compared(subject: &Subject) -> Markup {
     let Subject { simulator, logs, names: [sim, folder], .. } = subject;
-    let rows: usize = logs.runs.iter().map(|run| run.rows.len()).sum();
     let origin = &simulator.origin;
     html! {
         dl {
@@ -245,7 +253,7 @@ fn compared(subject: &Subject) -> Markup {
                 dt { "With effects" }
                 dd { (words::list(&simulator.added.iter().map(|effect| effect.effect.as_str()).collect::<Vec<_>>())) }
             }
-            dt { "Logs" } dd { (folder) ": " (logs.runs.len()) " runs, " (rows) " rows" }
+            dt { "Logs" } dd { (folder) ": " (logs.runs.len()) " runs, " (logs.rows()) " rows" }
             @for missing in &simulator.missing {
                 dt { "No network for " (missing.network) } dd { (missing.reason) }
             }

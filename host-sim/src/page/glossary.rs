@@ -43,7 +43,7 @@ const WORDS: &[(&str, &str)] = &[
     (
         "heading",
         "The direction in which the robot looks: 0° is along x, to the right of the map, and 90° along y, upwards. \
-         East in a list of circumstances is 0° and north is 90°.",
+         Along x is 0°, along y is 90°.",
     ),
     ("incidence", "The angle between the sensor's axis and the normal of the surface that it meets: 0° is square on."),
     (

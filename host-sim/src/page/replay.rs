@@ -105,6 +105,8 @@ impl Replay {
     /// The map, its controls, and what is read from it.
     pub fn markup(&self) -> Markup {
         let (shown, compares) = (self.runs.len(), self.kinds.len() > 1);
+        let tracks = || self.runs.iter().flat_map(|run| run.tracks.values());
+        let reads = tracks().any(|track| track.echo.iter().any(Option::is_some));
         html! {
             @if shown < self.of {
                 p.quiet { (shown) " of " (self.of) " runs, evenly spread, so that this page stays small." }
@@ -149,9 +151,11 @@ impl Replay {
                     }
                 }
             }
-            figure {
-                div.chart data-chart="readings" role="img" aria-label="Readings over the time of the run" {}
-                figcaption { "What the sensor reads; where there is no dot there is no reading, or none is expected." }
+            @if reads {
+                figure {
+                    div.chart data-chart="readings" role="img" aria-label="Readings over the time of the run" {}
+                    figcaption { "What the sensor reads; where there is no dot there is no reading, or none is expected." }
+                }
             }
             @if compares {
                 figure {

@@ -6,7 +6,7 @@ use serde::Serialize;
 use super::words::tenths;
 use crate::logs::Scene;
 
-/// Walls, obstacles and target, cm; `bounds` holds them and all places besides.
+/// Walls, obstacles and target, cm; `bounds` holds them and all places besides, or no more than the places in a hall.
 #[derive(Serialize)]
 pub struct Room {
     bounds: [f64; 4],
@@ -15,6 +15,10 @@ pub struct Room {
     target: Option<[f64; 3]>,
 }
 
+/// A room that is so many times as long as the part of it that the robot was in is a hall: of it that part is shown.
+const HALL: f64 = 2.0;
+/// As long counts that part at least, cm.
+const NEAR_CM: f64 = 150.0;
 /// A room without anything in it is shown as wide as this at least, cm.
 const LEAST_CM: f64 = 50.0;
 
@@ -22,10 +26,15 @@ impl Room {
     /// The room of a scene in which a robot was at `places`; the target is a disc of this radius.
     pub fn new(scene: &Scene, target_radius_cm: f64, places: impl Iterator<Item = DVec2>) -> Self {
         let sides = scene.sides();
-        let outer = || sides.iter().flat_map(|wall| [wall.from_cm, wall.to_cm]);
-        let all = outer().chain(scene.target_cm).chain(places);
-        let (low, high) = all.fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(l, h), at| (l.min(at), h.max(at)));
-        let (low, high) = if low.x <= high.x { (low, high) } else { (DVec2::ZERO, DVec2::ZERO) };
+        let seen = bounds(scene.target_cm.into_iter().chain(places));
+        let whole = bounds(sides.iter().flat_map(|wall| [wall.from_cm, wall.to_cm]).chain(seen.into_iter().flatten()));
+        let whole = whole.unwrap_or_default();
+        let longest = |[low, high]: [DVec2; 2]| (high - low).max_element();
+        let near_cm = seen.map_or(NEAR_CM, |seen| longest(seen).max(NEAR_CM));
+        let [low, high] = match seen {
+            Some([low, high]) if longest(whole) > HALL * near_cm => [low - 0.25 * near_cm, high + 0.25 * near_cm],
+            _ => whole,
+        };
         let more = 0.5 * (DVec2::splat(LEAST_CM) - (high - low)).max(DVec2::ZERO);
         let (low, high) = (low - more, high + more);
         Room {
@@ -41,6 +50,12 @@ impl Room {
     }
 }
 
+/// The corners of the smallest rectangle that holds all places; none of none.
+fn bounds(mut places: impl Iterator<Item = DVec2>) -> Option<[DVec2; 2]> {
+    let first = places.next()?;
+    Some(places.fold([first, first], |[low, high], at| [low.min(at), high.max(at)]))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -50,6 +65,10 @@ mod tests {
         let scene = Scene { arena_cm: Some(DVec2::new(300.0, 200.0)), ..Scene::default() };
         let room = Room::new(&scene, 15.0, [DVec2::new(-20.0, 10.0)].into_iter());
         assert_eq!(room.bounds, [-20.0, 0.0, 300.0, 200.0]);
+        let hall = Scene { arena_cm: Some(DVec2::splat(2000.0)), ..Scene::default() };
+        let corner = [DVec2::new(100.0, 100.0), DVec2::new(500.0, 300.0)].into_iter();
+        assert_eq!(Room::new(&hall, 15.0, corner).bounds, [0.0, 0.0, 600.0, 400.0], "a corner of a hall");
+        assert_eq!(Room::new(&hall, 15.0, std::iter::empty()).bounds, [0.0, 0.0, 2000.0, 2000.0]);
         let empty = Room::new(&Scene::default(), 15.0, std::iter::empty());
         assert_eq!(empty.bounds, [-25.0, -25.0, 25.0, 25.0]);
     }

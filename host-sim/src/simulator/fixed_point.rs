@@ -1,14 +1,27 @@
-//! A simulator's networks in fixed point, for a board or a brick: quantised, and as Rust or NXC source.
+//! A simulator's networks in fixed point, for a board or a brick: quantised, and as source code.
 
 mod quantise;
 
-use mindgap_controller_export::nxc_networks::NxcNetwork;
 use mindgap_controller_export::rust_networks::rust_network;
+use mindgap_controller_export::tabulated::Tabulated;
 
 pub use quantise::{Quantised, Unrepresentable, Weight};
 
 use super::{Learned, Simulator};
 use crate::error::{Error, Result};
+
+/// What the networks answer, in the order turn, forward, lateral, echo_probability, echo_value.
+pub const DOCUMENTATION: [&str; 5] = [
+    "Turn to the left in a step, degrees.",
+    "Way forward in a step, cm.",
+    "Way to the left in a step, cm.",
+    "Probability of an echo.",
+    "Mean reading, cm.",
+];
+/// The inputs of the networks of motion.
+pub const COMMANDS: [&str; 4] = ["left", "right", "previous_left", "previous_right"];
+/// The inputs of the networks of the sonar.
+pub const FACING: [&str; 2] = ["distance_cm", "incidence_deg"];
 
 /// The five networks, quantised.
 #[derive(Clone, Debug, PartialEq)]
@@ -43,26 +56,27 @@ impl FixedNetworks {
     /// The definitions of `TURN`, `FORWARD`, `LATERAL`, `ECHO_PROBABILITY` and `ECHO_VALUE` in Rust, for
     /// [`rust_networks`](mindgap_controller_export::rust_networks::rust_networks).
     pub fn rust_definitions(&self) -> [String; 5] {
+        let [turn, forward, lateral, echo_probability, echo_value] = DOCUMENTATION;
         [
-            rust_network("TURN", "Turn to the left in a step, degrees.", &self.turn.network),
-            rust_network("FORWARD", "Way forward in a step, cm.", &self.forward.network),
-            rust_network("LATERAL", "Way to the left in a step, cm.", &self.lateral.network),
-            rust_network("ECHO_PROBABILITY", "Probability of an echo.", &self.echo_probability.network),
-            rust_network("ECHO_VALUE", "Mean reading, cm.", &self.echo_value.network),
+            rust_network("TURN", turn, &self.turn.network),
+            rust_network("FORWARD", forward, &self.forward.network),
+            rust_network("LATERAL", lateral, &self.lateral.network),
+            rust_network("ECHO_PROBABILITY", echo_probability, &self.echo_probability.network),
+            rust_network("ECHO_VALUE", echo_value, &self.echo_value.network),
         ]
     }
 
-    /// The functions `Turn`, `Forward`, `Lateral`, `EchoProbability` and `EchoValue` in NXC, for
-    /// [`nxc_networks`](mindgap_controller_export::nxc_networks::nxc_networks).
-    pub fn nxc_definitions(&self) -> [NxcNetwork; 5] {
-        let commands = ["left", "right", "previous_left", "previous_right"];
-        let facing = ["distance_cm", "incidence_deg"];
+    /// The networks as functions of these names, for
+    /// [`nxc_networks`](mindgap_controller_export::nxc_networks::nxc_networks) and
+    /// [`c_networks`](mindgap_controller_export::c_networks::c_networks).
+    pub fn tabulated(&self, names: [&'static str; 5]) -> [Tabulated; 5] {
+        let [turn, forward, lateral, echo_probability, echo_value] = DOCUMENTATION;
         [
-            NxcNetwork::new("Turn", "Turn to the left in a step, degrees.", commands, &self.turn.network),
-            NxcNetwork::new("Forward", "Way forward in a step, cm.", commands, &self.forward.network),
-            NxcNetwork::new("Lateral", "Way to the left in a step, cm.", commands, &self.lateral.network),
-            NxcNetwork::new("EchoProbability", "Probability of an echo.", facing, &self.echo_probability.network),
-            NxcNetwork::new("EchoValue", "Mean reading, cm.", facing, &self.echo_value.network),
+            Tabulated::new(names[0], turn, COMMANDS, &self.turn.network),
+            Tabulated::new(names[1], forward, COMMANDS, &self.forward.network),
+            Tabulated::new(names[2], lateral, COMMANDS, &self.lateral.network),
+            Tabulated::new(names[3], echo_probability, FACING, &self.echo_probability.network),
+            Tabulated::new(names[4], echo_value, FACING, &self.echo_value.network),
         ]
     }
 }

@@ -18,6 +18,9 @@ use crate::error::{Error, Result};
 use crate::logs::Robot;
 use crate::statistics::student;
 
+/// What the textbook is called beside files of simulators.
+pub const NAME: &str = "the textbook's differential drive and an ideal sonar, from robot.toml (kinematic)";
+
 /// Largest command.
 const FULL: f32 = 100.0;
 /// Log-odds of an echo per centimetre within the largest reading: a step, as nearly as a ramp can be one.

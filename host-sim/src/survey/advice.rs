@@ -1,6 +1,6 @@
 //! What to drive more: what no row of the logs shows, in plain sentences.
 
-use super::holdings::{Holdings, Range, commands};
+use super::holdings::{Holdings, Range, commands, steps};
 use crate::logs::Logs;
 
 /// Wheels whose commands differ by this much turn the robot clearly: a tenth of full speed is beyond what motors differ by.
@@ -11,6 +11,8 @@ const SMALL: f64 = 20.0;
 const LARGE: f64 = 80.0;
 /// Brick, link and inertia take up to a second until a command acts in full, ms.
 const SETTLED_MS: f64 = 1000.0;
+/// Controllers hold commands for so many steps and more; what is a fraction of a degree in one step adds up there.
+const LONG_HOLD: u32 = 10;
 /// Echoes begin to fail in the last quarter of a sensor's range; within the first one a controller decides to stop.
 const QUARTER: f64 = 0.25;
 /// At this incidence, degrees, smooth walls no longer return an echo to most sensors.
@@ -56,14 +58,22 @@ fn of_commands(logs: &Logs, holds: &Holdings) -> Vec<String> {
         missing.push(format!("No command is beyond {most:.0}, where the drive would show its limit."));
     }
     let (longest, step_ms) = (holds.longest_held_steps, logs.robot.step_ms);
-    if longest as f64 * step_ms < SETTLED_MS {
+    if f64::from(longest) * step_ms < SETTLED_MS {
         missing.push(format!(
             "No command is held for longer than {:.0} ms: hold some for a second.",
-            longest as f64 * step_ms
+            f64::from(longest) * step_ms
+        ));
+    } else if longest < LONG_HOLD {
+        missing.push(format!(
+            "No command is held for longer than {longest} steps: controllers hold theirs for {LONG_HOLD} and more, so let some runs \
+             do that too."
         ));
     }
-    let never_changes =
-        logs.runs.iter().all(|run| run.rows[..run.rows.len() - 1].windows(2).all(|w| w[0].command() == w[1].command()));
+    let never_changes = logs.runs.iter().all(|run| {
+        let mut commands = steps(run).map(|row| row.command());
+        let first = commands.next();
+        commands.all(|command| Some(command) == first)
+    });
     if never_changes {
         missing.push("No command changes within a run: how soon the drive follows does not show.".into());
     }

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use serde::Serialize;
 
-use crate::logs::{Logs, samples};
+use crate::logs::{Logs, Run, rows, samples};
 use crate::statistics::rounding;
 use crate::statistics::summary::median;
 
@@ -55,7 +55,7 @@ pub struct Holdings {
     /// The median number of steps for which a pair of commands is held.
     pub held_steps: f64,
     /// The largest such number.
-    pub longest_held_steps: usize,
+    pub longest_held_steps: u32,
 }
 
 /// Least and largest of some numbers.
@@ -84,15 +84,15 @@ impl Holdings {
         let rows = || logs.runs.iter().flat_map(|run| &run.rows);
         let count = rows().count();
         let share = |n: usize| if count > 0 { n as f64 / count as f64 } else { 0.0 };
-        let times = || logs.runs.iter().flat_map(|run| run.rows.windows(2)).map(|pair| pair[1].t_ms - pair[0].t_ms);
+        let times = || logs.runs.iter().flat_map(|run| run.rows.pairs()).map(|pair| pair[1].t_ms - pair[0].t_ms);
         let step_ms = median(times());
         let duration_ms = logs.runs.iter().filter_map(|run| Some(run.rows.last()?.t_ms - run.rows.first()?.t_ms));
         let motion = || samples::steps(coarse);
-        let faced: Vec<[f64; 2]> = samples::readings(logs).map(|s| [s.distance_cm, s.alpha_deg()]).collect();
+        let faced = || samples::readings(logs).map(|s| [s.distance_cm, s.alpha_deg()]);
         let per_s = 1000.0 / coarse.robot.step_ms;
         let held = held_steps(logs);
         let max_cm = logs.robot.ultrasonic.max_cm;
-        let facing = faced.iter().filter(|[distance_cm, _]| *distance_cm <= max_cm);
+        let facing = faced().filter(|[distance_cm, _]| *distance_cm <= max_cm);
         Holdings {
             runs: logs.runs.len(),
             rows: count,
@@ -107,8 +107,8 @@ impl Holdings {
             forward_cm_s: Range::of(motion().map(|step| step.forward_cm * per_s)),
             turn_deg_s: Range::of(motion().map(|step| step.turn_rad.to_degrees() * per_s)),
             reading_cm: Range::of(rows().filter_map(|row| row.echo_cm)),
-            distance_cm: Range::of(faced.iter().map(|[distance_cm, _]| *distance_cm)),
-            alpha_deg: Range::of(faced.iter().map(|[_, alpha_deg]| *alpha_deg)),
+            distance_cm: Range::of(faced().map(|[distance_cm, _]| distance_cm)),
+            alpha_deg: Range::of(faced().map(|[_, alpha_deg]| alpha_deg)),
             command_coverage: covered(
                 commands(logs).map(|pair| pair.map(|c| (c + 100.0) / 200.0)),
                 [COMMAND_CELLS, COMMAND_CELLS],
@@ -117,7 +117,7 @@ impl Holdings {
                 facing.map(|[distance_cm, alpha_deg]| [distance_cm / max_cm, alpha_deg / 90.0]),
                 [DISTANCE_CELLS, ALPHA_CELLS],
             ),
-            held_steps: median(held.iter().map(|n| *n as f64)),
+            held_steps: median(held.iter().map(|n| f64::from(*n))),
             longest_held_steps: held.into_iter().max().unwrap_or(0),
         }
     }
@@ -134,16 +134,28 @@ impl Range {
 
 /// The commands of all steps: that of a run's last row is never observed.
 pub fn commands(logs: &Logs) -> impl Iterator<Item = [f64; 2]> {
-    logs.runs.iter().flat_map(|run| run.rows.split_last().map_or(&[][..], |(_, steps)| steps)).map(|row| row.command())
+    logs.runs.iter().flat_map(steps).map(|row| row.command())
+}
+
+/// All rows of a run but the last.
+pub fn steps(run: &Run) -> rows::Iter<'_> {
+    run.rows.between(0..run.rows.len().saturating_sub(1))
 }
 
 /// For how many steps each pair of commands is held, run by run.
-fn held_steps(logs: &Logs) -> Vec<usize> {
-    let of_run = |run: &crate::logs::Run| {
-        let steps = run.rows.split_last().map_or(&[][..], |(_, steps)| steps);
-        steps.chunk_by(|a, b| a.command() == b.command()).map(<[_]>::len).collect::<Vec<_>>()
-    };
-    logs.runs.iter().flat_map(of_run).collect()
+fn held_steps(logs: &Logs) -> Vec<u32> {
+    let mut held = Vec::new();
+    for run in &logs.runs {
+        let mut before = None;
+        for row in steps(run) {
+            match held.last_mut().filter(|_| before == Some(row.command())) {
+                Some(so_far) => *so_far += 1,
+                None => held.push(1),
+            }
+            before = Some(row.command());
+        }
+    }
+    held
 }
 
 /// The share of cells of the unit square in which there is something.

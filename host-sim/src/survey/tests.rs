@@ -9,19 +9,20 @@ fn lacks(missing: &[String], what: &str) -> bool {
     missing.iter().any(|sentence| sentence.contains(what))
 }
 
-/// Commands of all signs and sizes, each held for five steps, and no two runs alike.
+/// Commands of all signs and sizes, each held for five steps, in the first run for ten, and no two runs alike.
 fn everything(run: usize, at: usize) -> [f64; 2] {
     const PAIRS: [[f64; 2]; 6] =
         [[90.0, 90.0], [-40.0, 40.0], [30.0, -15.0], [-90.0, -90.0], [12.0, 35.0], [40.0, 10.0]];
-    let [left, right] = PAIRS[(run + at / 5) % PAIRS.len()];
+    let held = if run == 0 { 10 } else { 5 };
+    let [left, right] = PAIRS[(run + at / held) % PAIRS.len()];
     [left + run as f64, right]
 }
 
 #[test]
 fn amounts_rates_and_ranges_are_counted() {
     let mut logs = driven(8, 31, everything);
-    logs.runs[0].rows[3].pose = None;
-    logs.runs[1].rows[4].echo_cm = None;
+    logs.runs[0].rows.edit(3, |row| row.pose = None);
+    logs.runs[1].rows.edit(4, |row| row.echo_cm = None);
     let holds = Survey::of(logs).holds;
     assert_eq!((holds.runs, holds.rows, holds.steps), (8, 248, 238));
     assert_eq!((holds.duration_s, holds.step_ms, holds.jitter_ms), (60.0, 250.0, 0.0));
@@ -31,7 +32,7 @@ fn amounts_rates_and_ranges_are_counted() {
     // A centimetre a step for every ten of command, four steps a second: backwards by -90 and -90, forwards by 97 and 90.
     let speed = holds.forward_cm_s.expect("steps");
     assert!((speed.low + 36.0).abs() < 1e-9 && (37.0..37.4).contains(&speed.high), "{speed:?}");
-    assert_eq!((holds.held_steps, holds.longest_held_steps), (5.0, 5));
+    assert_eq!((holds.held_steps, holds.longest_held_steps), (5.0, 10));
     // Six pairs in six cells of a hundred.
     assert!((holds.command_coverage - 0.06).abs() < 1e-12, "{}", holds.command_coverage);
 }
@@ -53,6 +54,8 @@ fn what_is_not_driven_is_asked_for() {
         assert!(lacks(&to_the_left, what), "{what}: {to_the_left:?}");
     }
     assert!(!lacks(&to_the_left, "turns to the left"));
+    let briefly = missing(driven(8, 31, |run, at| everything(1 + run, at)));
+    assert!(lacks(&briefly, "longer than 5 steps: controllers"), "{briefly:?}");
     assert!(lacks(&missing(driven(8, 12, |run, _| [10.0 * run as f64, 50.0])), "changes within a run"));
     assert!(lacks(&missing(driven(8, 12, |_, _| [0.0; 2])), "No command drives the motors"));
 }
@@ -60,7 +63,7 @@ fn what_is_not_driven_is_asked_for() {
 #[test]
 fn logs_without_anything_to_compare_show_no_effect() {
     let mut empty = driven(8, 12, everything);
-    empty.runs.iter_mut().flat_map(|run| &mut run.rows).for_each(|row| (row.pose, row.echo_cm) = (None, None));
+    empty.runs.iter_mut().for_each(|run| run.rows.edit_each(|row| (row.pose, row.echo_cm) = (None, None)));
     let survey = Survey::of(empty);
     assert_eq!(survey.untestable.len(), CATALOGUE.len());
     assert_eq!(survey.missing_networks.len(), 5);
@@ -70,15 +73,15 @@ fn logs_without_anything_to_compare_show_no_effect() {
 #[test]
 fn faults_are_found_and_what_cannot_be_put_right_is_refused() {
     let mut endless = driven(8, 31, everything);
-    endless.runs[2].rows[5].echo_cm = Some(1e7);
+    endless.runs[2].rows.edit(5, |row| row.echo_cm = Some(1e7));
     let survey = Survey::of(endless);
     assert_eq!(survey.findings.iter().map(|found| found.id).collect::<Vec<_>>(), ["echo_none_number"]);
     assert!(survey.refused.is_none() && survey.holds.reading_cm.is_some_and(|cm| cm.high < 400.0));
     let mut exchanged = driven(8, 31, |run, at| {
         [((run * 7 + at * 13) % 9) as f64 * 20.0 - 80.0, ((run * 5 + at * 11) % 7) as f64 * 25.0 - 75.0]
     });
-    exchanged.runs.iter_mut().flat_map(|run| &mut run.rows).for_each(|row| {
-        (row.left, row.right) = (row.right, row.left);
+    exchanged.runs.iter_mut().for_each(|run| {
+        run.rows.edit_each(|row| (row.left, row.right) = (row.right, row.left));
     });
     let refused = Survey::of(exchanged).refused.expect("a refusal");
     assert!(refused.contains("left and right seem exchanged"), "{refused}");

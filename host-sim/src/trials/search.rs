@@ -4,6 +4,7 @@
 use glam::DVec2;
 use mindgap_core::controller::{Controller, Tuple};
 
+use super::state::{SimulatedPath, place_cm};
 use crate::chance::derive;
 use crate::error::{Error, Result};
 use crate::evolve::chance::{Chance, Judge, ROBOTS, RUNS};
@@ -16,6 +17,7 @@ use crate::geometry::Pose;
 use crate::logs::Scene;
 use crate::simulator::ensemble::{Member, Robots};
 use crate::simulator::environment::Environment;
+use crate::simulator::rollout::{RolloutRequest, SensorModel};
 use crate::simulator::{Noise, Simulator};
 
 /// Generations that a controller has behind it at most.
@@ -27,11 +29,17 @@ const EXPLORED: usize = 2;
 const INCUMBENTS: usize = 2;
 /// Where the best known controller has this chance, nothing is explored anew.
 const GOOD: f64 = 0.6;
-/// A controller that succeeded is driven again where it is more likely to succeed than not.
-const PROMISING: f64 = 0.5;
+/// A controller that never failed on the robot is driven again where its chance, real runs counted, is this.
+const PROMISING: f64 = 0.7;
+/// It works after so many real successes with this chance, which two of two give it if the simulated one is 0.7: two
+/// successes alone can be luck.
+const SUCCESSES: usize = 2;
+const WORKS: f64 = 0.85;
 /// Candidates that a search leaves, and those that the next turn begins with.
 const SHORTLISTED: usize = 8;
 const ARCHIVED: usize = 12;
+/// Robots whose paths are kept with a trial.
+const SHOWN: usize = 5;
 /// Real runs count beside the simulated chance, which counts as so many.
 const SIMULATED: f64 = 2.0;
 /// A run tells of controllers whose genes differ by less than about this, root mean square.
@@ -79,6 +87,7 @@ enum Purpose {
     Judging,
     Exploring,
     Refining,
+    Showing,
 }
 
 impl Search<'_> {
@@ -106,6 +115,27 @@ impl Search<'_> {
         let all = distinct(known.into_iter().map(|known| known.controller).chain(found));
         let promising = jury.ranked(all, FEW_RUNS).into_iter().take(ARCHIVED).map(|candidate| candidate.controller);
         Ok(Found(jury.ranked(distinct(promising.chain(driven)), RUNS)))
+    }
+
+    /// Paths of a controller on some of the robots that it was judged on.
+    ///
+    /// # Errors
+    /// As [`best`](Self::best).
+    pub fn paths(&self, controller: &Controller) -> Result<Vec<SimulatedPath>> {
+        let Robots { drawn, .. } = self.robots()?;
+        let robots = Environment::of_robots(self.simulator, &drawn[..SHOWN], self.scene, self.start)?;
+        let run = |(number, robot): (u64, &Environment)| {
+            let (outcome, points) = robot.trace(RolloutRequest {
+                controller,
+                motions: &robot.motions(controller),
+                sensor: SensorModel::Networks,
+                seed: self.stream(Purpose::Showing, number),
+            });
+            let places = points.iter().map(|point| point.pose.position_cm);
+            let path_cm = [self.start.position_cm].into_iter().chain(places).map(place_cm).collect();
+            SimulatedPath { ending: outcome.termination.into(), path_cm }
+        };
+        Ok((0..).zip(&robots).map(run).collect())
     }
 
     /// New controllers, on the robot in the middle: exploring on drawn ones would be a bad search.
@@ -216,10 +246,19 @@ impl Found {
     pub fn choice(&self, tried: &[Tried]) -> Option<(&Controller, &Chance)> {
         let confirms = |candidate: &&Candidate| {
             let succeeded = tried.iter().any(|t| t.controller == candidate.controller && t.successes == t.runs);
-            succeeded && candidate.score > PROMISING
+            succeeded && candidate.score >= PROMISING
         };
         let Candidate { controller, chance, .. } = self.0.iter().find(confirms).or(self.0.first())?;
         Some((controller, chance))
+    }
+
+    /// The controller that works.
+    pub fn confirmed(&self, tried: &[Tried]) -> Option<(&Controller, &Chance)> {
+        let works = |candidate: &&Candidate| {
+            let again = tried.iter().any(|t| t.controller == candidate.controller && t.successes >= SUCCESSES);
+            again && candidate.score >= WORKS
+        };
+        self.0.iter().find(works).map(|Candidate { controller, chance, .. }| (controller, chance))
     }
 
     /// The chance of a controller, if it was judged.
@@ -252,5 +291,24 @@ mod tests {
         let score = |left: i8| score(&controller(left), 0.9, &failed, &DECODER);
         assert!((score(40) - 1.8 / 4.0).abs() < 1e-9);
         assert!(score(44) < 0.6 && score(-60) > 0.899, "{} {}", score(44), score(-60));
+    }
+
+    #[test]
+    fn a_controller_works_after_two_successes_with_a_good_chance_and_is_dropped_with_a_poor_one() {
+        let chance = Chance { success: 0.0, ci95: [0.0, 1.0], not_knowing: 0.0 };
+        let found = |simulated: f64, tried: &[Tried]| {
+            let score = score(&controller(40), simulated, tried, &DECODER);
+            let better = Candidate { controller: controller(-60), chance, score: 1.0 };
+            Found(vec![better, Candidate { controller: controller(40), chance, score }])
+        };
+        let tried = |runs, successes| [Tried { controller: controller(40), runs, successes }];
+        let works = |simulated, tried: &[Tried]| found(simulated, tried).confirmed(tried).is_some();
+        assert!(works(0.75, &tried(2, 2)) && !works(0.6, &tried(2, 2)) && works(0.6, &tried(4, 4)));
+        assert!(!works(1.0, &tried(1, 1)) && !works(1.0, &tried(3, 2)));
+        let again = |simulated, tried: &[Tried]| {
+            let found = found(simulated, tried);
+            found.choice(tried).is_some_and(|(next, _)| *next == controller(40))
+        };
+        assert!(again(0.6, &tried(1, 1)) && !again(0.4, &tried(1, 1)) && !again(0.9, &tried(2, 1)));
     }
 }

@@ -3,6 +3,7 @@
 use std::fmt;
 use std::path::Path;
 
+use glam::DVec2;
 use mindgap_core::controller::Tuple;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
@@ -13,6 +14,7 @@ use crate::effects::applied::AppliedEffect;
 use crate::error::{Error, Result};
 use crate::evolve::chance::Chance;
 use crate::files;
+use crate::simulator::rollout::Termination;
 
 /// The version of this format.
 const SCHEMA: u32 = 1;
@@ -63,6 +65,8 @@ pub struct Trial {
     pub log: String,
     /// Its chance before it was driven.
     pub predicted: Chance,
+    /// Its paths on robots that were possible then.
+    pub predicted_paths: Vec<SimulatedPath>,
     /// How it went; null until then.
     pub real: Option<Real>,
     /// Its chance by what the run told.
@@ -71,6 +75,15 @@ pub struct Trial {
     pub gap: Option<Gap>,
     /// Effects that a diagnosis of all runs up to this one names.
     pub effects: Vec<AppliedEffect>,
+}
+
+/// A simulated run.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SimulatedPath {
+    /// How it ended.
+    pub ending: Ending,
+    /// Where the robot was at the start and after each step, along x and y.
+    pub path_cm: Vec<[f64; 2]>,
 }
 
 /// How a run on the robot went.
@@ -88,6 +101,8 @@ pub struct Real {
     pub distance_cm: f64,
     /// Whether it reached the target.
     pub reached: bool,
+    /// Where the tracker saw the robot at each row, along x and y.
+    pub path_cm: Vec<[f64; 2]>,
 }
 
 /// How a run ended.
@@ -132,7 +147,7 @@ impl State {
                 chance: None,
                 trials: Vec::new(),
                 failures: Vec::new(),
-                archive: Vec::new(),
+                archive: job.known.iter().map(|controller| controller.tuples.to_vec()).collect(),
             });
         }
         let mut state: State = files::read_json(&path)?;
@@ -157,16 +172,32 @@ impl State {
 
 impl Trial {
     /// A trial that is still to be driven.
-    pub fn planned(number: usize, predicted: Chance) -> Self {
+    pub fn planned(number: usize, predicted: Chance, predicted_paths: Vec<SimulatedPath>) -> Self {
         Trial {
             number,
             controller: format!("trial-{number}.toml"),
             log: format!("trial-{number}.csv"),
             predicted,
+            predicted_paths,
             real: None,
             chance_after: None,
             gap: None,
             effects: Vec::new(),
+        }
+    }
+}
+
+/// A place as it is written, to the millimetre.
+pub fn place_cm(at: DVec2) -> [f64; 2] {
+    at.to_array().map(|cm| (10.0 * cm).round() / 10.0)
+}
+
+impl From<Termination> for Ending {
+    fn from(termination: Termination) -> Self {
+        match termination {
+            Termination::Finished => Ending::Finished,
+            Termination::TimedOut => Ending::TimedOut,
+            Termination::Crashed => Ending::Crashed,
         }
     }
 }

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use mindgap_core::controller::{Controller, TUPLES};
 
-use super::state::{Ending, Real};
+use super::state::{Ending, Real, place_cm};
 use crate::effects::chain::EffectChain;
 use crate::error::{Error, Result};
 use crate::evaluation::observations::Observations;
@@ -76,16 +76,17 @@ impl Vetting<'_> {
         let end =
             run.rows.iter().rev().find_map(|row| row.pose).ok_or_else(|| Error::new("has no pose that counts"))?;
         let ending = self.ending(&driven, &end)?;
+        let path_cm = run.rows.iter().filter_map(|row| row.pose).map(|pose| place_cm(pose.position_cm)).collect();
         if ending == Ending::Crashed {
             // What a wall did to the robot says nothing of its commands.
             let first = run.rows.len().saturating_sub(LAST_STEPS).max(2);
-            run.rows[first..].iter_mut().for_each(|row| row.pose = None);
+            (first..run.rows.len()).for_each(|row| run.rows.edit(row, |row| row.pose = None));
         }
         let target_cm = self.scene.target_cm.ok_or_else(|| Error::new("the scene has no target"))?;
         let distance_cm = end.position_cm.distance(target_cm);
         let reached = ending != Ending::Crashed && distance_cm <= REACHED_CM;
         let [end_x_cm, end_y_cm] = end.position_cm.to_array();
-        Ok((run, Real { ending, steps: driven.steps, end_x_cm, end_y_cm, distance_cm, reached }))
+        Ok((run, Real { ending, steps: driven.steps, end_x_cm, end_y_cm, distance_cm, reached, path_cm }))
     }
 
     /// Follows the controller's tuples through the logged commands.
@@ -127,7 +128,7 @@ impl Vetting<'_> {
     }
 
     fn check_start(&self, run: &Run) -> Result<()> {
-        let Some(first) = run.rows[0].pose else {
+        let Some(first) = run.rows.at(0).pose else {
             return Err(Error::new("line 2: the tracker did not see the robot at the start"));
         };
         let off_cm = first.position_cm.distance(self.start.position_cm);

@@ -76,8 +76,7 @@ fn steps_scatter_a_little_and_remember_the_last_command() {
 
 #[test]
 fn rows_are_a_step_apart_give_or_take_milliseconds() {
-    let steps: Vec<f64> =
-        HEALTHY.runs.iter().flat_map(|run| run.rows.windows(2).map(|w| w[1].t_ms - w[0].t_ms)).collect();
+    let steps: Vec<f64> = HEALTHY.runs.iter().flat_map(|run| run.rows.pairs().map(|w| w[1].t_ms - w[0].t_ms)).collect();
     assert!(steps.iter().all(|ms| *ms == ms.round() && (ms - 400.0).abs() < 30.0));
     assert!((1.0..8.0).contains(&deviation(&steps)), "{}", deviation(&steps));
 }
@@ -215,8 +214,8 @@ fn a_controller_stops_for_the_wall_or_crashes_into_it_or_runs_out_of_steps() {
     assert_eq!(finished.termination, Termination::Finished);
     assert!(finished.points.len() >= 8 && finished.end().position_cm.x > 45.0);
     let log = finished.to_run("run-000");
-    assert_eq!((log.rows[0].left, log.rows[0].echo_cm), (25.0, None));
-    assert_eq!(log.rows[log.rows.len() - 1].left, 0.0);
+    assert_eq!((log.rows.at(0).left, log.rows.at(0).echo_cm), (25.0, None));
+    assert_eq!(log.rows.at(log.rows.len() - 1).left, 0.0);
     assert_eq!(run(60, 0, 100).termination, Termination::Crashed);
     let timed_out = run(10, 0, 4);
     assert_eq!((timed_out.termination, timed_out.points.len()), (Termination::TimedOut, 6));

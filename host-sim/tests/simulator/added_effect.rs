@@ -22,17 +22,17 @@ pub fn with_turning_loss(mut logs: Logs) -> Logs {
     for run in &mut logs.runs {
         // Where the tracker lost the robot, the steps to its next sight count as one.
         let mut last = None;
-        for row in &mut run.rows {
-            let Some(logged) = row.pose else { continue };
+        run.rows.edit_poses(|pose| {
+            let logged = *pose;
             let altered = last.map_or(logged, |(logged_before, altered_before)| {
                 let mut increment = PoseIncrement::between(&logged_before, &logged);
                 increment.forward_cm *= 1.0 - LOSS_PER_RAD_S * (increment.turn_rad / step_s).abs();
                 increment.from(&altered_before)
             });
             last = Some((logged, altered));
-            row.pose = Some(altered);
-        }
-        run.rows.iter_mut().for_each(|row| row.echo_cm = None);
+            *pose = altered;
+        });
+        run.rows.edit_each(|row| row.echo_cm = None);
     }
     logs
 }

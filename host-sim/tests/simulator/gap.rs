@@ -79,7 +79,7 @@ fn smaller_turns_are_not_taken_for_slip() {
 #[test]
 fn without_poses_there_is_nothing_to_compare() {
     let mut logs = logs(4, &[], 76);
-    logs.runs.iter_mut().flat_map(|run| &mut run.rows).for_each(|row| row.pose = None);
+    logs.runs.iter_mut().for_each(|run| run.rows.edit_each(|row| row.pose = None));
     let baseline = Baseline::learned(&SIMULATOR).expect("the simulator knows its scatter");
     assert!(diagnose(baseline, &logs).is_err());
 }
@@ -87,7 +87,7 @@ fn without_poses_there_is_nothing_to_compare() {
 #[test]
 fn without_readings_motion_is_still_diagnosed() {
     let mut logs = logs(16, &["track_width"], 77);
-    logs.runs.iter_mut().flat_map(|run| &mut run.rows).for_each(|row| row.echo_cm = None);
+    logs.runs.iter_mut().for_each(|run| run.rows.edit_each(|row| row.echo_cm = None));
     let diagnosis = diagnosed(&logs);
     assert_eq!(ids(&diagnosis), ["track_width"], "{diagnosis:?}");
     assert!(diagnosis.untestable.contains(&"sonar_noise"));

@@ -169,6 +169,7 @@ fn a_controllers_ends_are_foretold_better_with_the_effect() {
     let found = final_position_errors([&SIMULATOR, &better], &controller, &logs, 1).expect("poses at both ends");
     assert_eq!(found.runs, 8);
     assert!(found.after_cm < 0.7 * found.before_cm && found.floor_cm > 0.0, "{found:?}");
-    let unseen = Logs { runs: vec![Run { name: "run-000".into(), rows: vec![Row::default(); 3] }], ..logs };
+    let unseen =
+        Logs { runs: vec![Run { name: "run-000".into(), rows: [Row::default(); 3].into_iter().collect() }], ..logs };
     assert!(final_position_errors([&SIMULATOR, &better], &controller, &unseen, 1).is_err());
 }

@@ -76,7 +76,7 @@ fn moved(logs: &Logs, turn_rad: f64, shift_cm: DVec2) -> Logs {
 }
 
 fn with_rows(mut logs: Logs, change: impl Fn(&mut Row)) -> Logs {
-    logs.runs.iter_mut().flat_map(|run| &mut run.rows).for_each(change);
+    logs.runs.iter_mut().for_each(|run| run.rows.edit_each(&change));
     logs
 }
 
@@ -120,11 +120,11 @@ fn what_acts_on_the_textbook_is_found_whatever_the_units_and_the_hand() {
 
     // The second halves begin while the robot moves.
     let halves = logs.runs.iter().flat_map(|run| {
-        let (first, second) = run.rows.split_at(30);
-        let begin_ms = second[0].t_ms;
-        let second = second.iter().map(|row| Row { t_ms: row.t_ms - begin_ms, ..*row }).collect();
+        let begin_ms = run.rows.at(30).t_ms;
+        let second = run.rows.between(30..run.rows.len());
+        let second = second.map(|row| Row { t_ms: row.t_ms - begin_ms, ..row }).collect();
         [
-            Run { name: format!("{}0", run.name), rows: first.to_vec() },
+            Run { name: format!("{}0", run.name), rows: run.rows.between(0..30).collect() },
             Run { name: format!("{}1", run.name), rows: second },
         ]
     });

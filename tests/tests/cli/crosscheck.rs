@@ -148,7 +148,7 @@ fn a_network_that_cannot_be_represented_is_refused() {
 }
 
 #[test]
-fn networks_are_exported_as_rust_and_nxc_alone() {
+fn networks_are_exported_as_source_code() {
     let workshop = workshop();
     assert_eq!(workshop.done("export sim.json --format rust --out networks.rs"), "networks.rs written\n");
     let source = workshop.text("networks.rs");
@@ -158,6 +158,14 @@ fn networks_are_exported_as_rust_and_nxc_alone() {
     let said = workshop.done("export sim.json --format nxc --out networks.nxc");
     assert!(said.starts_with("networks.nxc written\nprogram ") && said.contains("\nEchoValue "), "{said}");
     compile(&format!("{} task main() {{ NumOut(0, LCD_LINE1, EchoValue(1, 2)); }}", workshop.text("networks.nxc")));
-    let problem = "sim.json: holds networks, which are exported with --format rust or nxc";
+    for (format, file, definition) in [
+        ("c", "networks.h", "static inline int32_t network_echo_value(int32_t distance_cm, int32_t incidence_deg) {"),
+        ("arduino", "networks.h", "static inline int32_t network_turn("),
+        ("pybricks", "networks.py", "def echo_value(distance_cm, incidence_deg):"),
+    ] {
+        workshop.done(&format!("export sim.json --format {format} --out {file}"));
+        assert!(workshop.text(file).contains(definition), "{}", workshop.text(file));
+    }
+    let problem = "sim.json: holds networks, which have no place in formats rxe and nxc-collect";
     assert_eq!(workshop.refused("export sim.json --format rxe --out networks.rxe"), problem);
 }

@@ -7,7 +7,7 @@ use mindgap_tests::command::Workshop;
 #[test]
 fn evolved_controllers_reach_the_target_on_the_robot() {
     let workshop = Workshop::new();
-    let done = workshop.call("demo --out out");
+    let done = workshop.call("demo --out out --html page.html --json facts.json");
     assert_eq!(done.code, 0, "{}", done.err);
     assert_eq!(done.err, "", "a pipe shows no progress");
 
@@ -40,7 +40,25 @@ fn evolved_controllers_reach_the_target_on_the_robot() {
         let svg = fs::read_to_string(out.join(format!("{figure}.svg"))).expect("a picture");
         assert!(svg.contains("<svg") && svg.trim_end().ends_with("</svg>"), "{figure}.svg");
     }
-    for file in ["simulator.json", "evaluation.json", "scene.toml", "logs/robot.toml", "held-out-logs/run-000.csv"] {
+    // A motor got weak: the first controller misses, the diagnosis names the motor, and a later one reaches the target.
+    let (_, repair) = done.out.split_once("then motor_asymmetry").expect("a robot that changed");
+    assert!(repair.contains("effects: motor_asymmetry"), "{repair}");
+    let state = workshop.json("out/loop/loop.json");
+    let trials = state["trials"].as_array().expect("trials");
+    assert_eq!(trials[0]["real"]["reached"], false, "{repair}");
+    assert!(trials.iter().any(|trial| trial["real"]["reached"] == true), "{repair}");
+    assert_eq!(workshop.text("page.html").matches("data-chart=\"map\"").count(), 4 + trials.len());
+    let facts = workshop.json("facts.json");
+    assert_eq!(facts["starts"].as_array().map(Vec::len), Some(4), "{facts}");
+    assert_eq!(facts["repair"]["trials"].as_u64(), Some(trials.len() as u64), "{facts}");
+    for file in [
+        "simulator.json",
+        "evaluation.json",
+        "scene.toml",
+        "logs/robot.toml",
+        "held-out-logs/run-000.csv",
+        "loop/paths.png",
+    ] {
         assert!(out.join(file).is_file(), "{file}");
     }
 }

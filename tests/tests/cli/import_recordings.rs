@@ -72,7 +72,7 @@ fn workshop(commands: &str, track: &str) -> Workshop {
 
 fn rows(workshop: &Workshop) -> Vec<Row> {
     let logs = Logs::read(&workshop.path().join("logs"), |warning| panic!("{warning}")).expect("logs");
-    logs.runs.into_iter().flat_map(|run| run.rows).collect()
+    logs.runs.iter().flat_map(|run| &run.rows).collect()
 }
 
 /// Holds rows against the drive, `off_ms` after whose begin they begin.
@@ -187,7 +187,8 @@ fn without_a_robot_a_draft_says_what_to_fill_in() {
     assert!(said.contains("fill in: robot.toml: track_cm = 15"), "{said}");
     assert!(workshop.text("logs/robot.toml").contains("# [ultrasonic]"), "{}", workshop.text("logs/robot.toml"));
     assert_driven(&rows(&workshop), 0.0, 1.0);
-    workshop.done("check logs");
+    let told = workshop.call("check logs").err;
+    assert!(told.contains("2 more: marked FILL IN, so not measured yet"), "{told}");
     // What is there is the user's by now.
     let refusal = workshop.refused(call);
     assert!(refusal.starts_with("logs: holds") && refusal.contains("--force"), "{refusal}");
@@ -220,6 +221,15 @@ fn bags_become_the_same_rows_by_whatever_topics() {
     let (said, by_transforms) = import("transforms.mcap");
     assert!(said.contains("/tf:map>base_link") && by_transforms[10].echo_cm.is_none(), "{said}");
     assert_eq!(by_transforms.len(), tracked.len());
+    let (said, localised) = import("localised.mcap");
+    assert!(
+        said.contains(
+            "/tf:map>base_link is composed of /tf:map>odom and /tf:odom>torso and /tf_static:torso>base_link"
+        ),
+        "{said}"
+    );
+    // Beyond the localiser's last word its frame stays where it was.
+    assert_driven(&localised, 0.0, 1.0);
     let refusal = workshop.refused("import bag tracker.mcap --poses /nowhere --out other");
     assert!(refusal.starts_with("tracker.mcap: /nowhere is no topic of poses"), "{refusal}");
     workshop.done("check logs");

@@ -13,6 +13,7 @@ mod determinism;
 mod diagnose_logs;
 mod drive;
 mod faults;
+mod general;
 mod golden_files;
 mod import;
 mod import_recordings;

@@ -1,17 +1,9 @@
 //! `mindgap adapt` and `mindgap loop`: what runs of a robot teach, and what must teach nothing.
 
 use mindgap_tests::command::{Done, Workshop};
-use mindgap_tests::rooms::{SCENE, trained};
+use mindgap_tests::rooms::{SCENE, robot, trained};
 
 const LOOP: &str = "loop out --sim sim.json --scene scene.toml --max-steps 20";
-
-/// The built-in robot as a command. `before` prepares its arguments, and `after` is done to the log, a file `$4`.
-fn robot(workshop: &Workshop, before: &str, after: &str) {
-    let command = workshop.command("");
-    let mindgap = command.get_program().to_str().expect("a path in UTF-8");
-    let drive = format!("'{mindgap}' drive \"$1\" --scene \"$2\" --start \"$3\" --out \"$4\" --seed \"$5\"");
-    workshop.write("robot.sh", format!("set -e\n{before}\n{drive} --effect motor_asymmetry=0.1\n{after}\n"));
-}
 
 fn with_robot() -> Workshop {
     let workshop = trained();

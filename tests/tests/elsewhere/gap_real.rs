@@ -56,8 +56,10 @@ fn neato(folder: &Path) -> Logs {
         .into_iter()
         .for_each(|c: Commanded| commands.entry(c.run).or_default().push(c));
     let ends: Vec<Ends> = table(&folder.join("poses.csv"));
-    let runs =
-        ends.iter().map(|ends| Run { name: format!("run-{:03}", ends.run), rows: rows(ends, &commands[&ends.run]) });
+    let runs = ends.iter().map(|ends| Run {
+        name: format!("run-{:03}", ends.run),
+        rows: rows(ends, &commands[&ends.run]).into_iter().collect(),
+    });
     let ultrasonic = Ultrasonic { x_cm: 0.0, y_cm: 0.0, yaw_deg: 0.0, min_cm: 4.0, max_cm: 240.0 };
     let robot = Robot {
         wheel_diameter_cm: 7.6,

@@ -252,7 +252,7 @@ impl Step {
 
 /// Drives every step anew, changed; `change` is given the time since the run began, minutes.
 fn steps(run: &mut Run, change: impl Fn(&mut Step, f64)) {
-    let begin_ms = run.rows[0].t_ms;
+    let begin_ms = run.rows.at(0).t_ms;
     let poses: Vec<Option<Pose>> = run.rows.iter().map(|row| row.pose).collect();
     let mut here = poses[0];
     for i in 1..poses.len() {
@@ -263,15 +263,15 @@ fn steps(run: &mut Run, change: impl Fn(&mut Step, f64)) {
         let moved = from.relative(&to);
         let mut step =
             Step { forward_cm: moved.position_cm.x, lateral_cm: moved.position_cm.y, turn_rad: moved.heading_rad };
-        change(&mut step, (run.rows[i - 1].t_ms - begin_ms) / 60_000.0);
+        change(&mut step, (run.rows.at(i - 1).t_ms - begin_ms) / 60_000.0);
         here = Some(here.unwrap_or(from).compose(&Pose::new(step.forward_cm, step.lateral_cm, step.turn_rad)));
-        run.rows[i].pose = here;
+        run.rows.edit(i, |row| row.pose = here);
     }
 }
 
 /// Changes every pose as the tracker sees it.
 fn seen(run: &mut Run, change: impl FnMut(&mut Pose)) {
-    run.rows.iter_mut().filter_map(|row| row.pose.as_mut()).for_each(change);
+    run.rows.edit_poses(change);
 }
 
 /// The robot is where it was so long ago.
@@ -279,13 +279,14 @@ fn later(run: &mut Run, ms: f64) {
     let poses: Vec<Option<Pose>> = run.rows.iter().map(|row| row.pose).collect();
     for i in 0..poses.len() {
         let (Some(here), Some(before)) = (poses[i], poses[i.saturating_sub(1)]) else { continue };
-        let step_ms = run.rows[i].t_ms - run.rows[i.saturating_sub(1)].t_ms;
+        let step_ms = run.rows.at(i).t_ms - run.rows.at(i.saturating_sub(1)).t_ms;
         let share = if step_ms > 0.0 { ms / step_ms } else { 0.0 };
         let turn_rad = wrap_rad(before.heading_rad - here.heading_rad);
-        run.rows[i].pose = Some(Pose {
+        let late = Pose {
             position_cm: here.position_cm.lerp(before.position_cm, share),
             heading_rad: wrap_rad(here.heading_rad + share * turn_rad),
-        });
+        };
+        run.rows.edit(i, |row| row.pose = Some(late));
     }
 }
 
@@ -306,9 +307,9 @@ fn noise(run: &mut Run, cm: f64, rad: f64) {
 /// Changes every reading, given in whole centimetres.
 fn echoes(run: &mut Run, change: impl Fn(f64, &mut SmallRng) -> Option<f64>) {
     let mut rng = generator(run);
-    for row in &mut run.rows {
+    run.rows.edit_each(|row| {
         row.echo_cm = row.echo_cm.and_then(|cm| change(cm, &mut rng)).map(|cm| cm.max(0.0).round());
-    }
+    });
 }
 
 /// Now and then one wrong reading.
@@ -321,10 +322,10 @@ fn bursts(run: &mut Run, share: f64) {
     let begins = 0.2 * share / (1.0 - share);
     let mut rng = generator(run);
     let mut fails = false;
-    for row in &mut run.rows {
+    run.rows.edit_each(|row| {
         fails = rng.random::<f64>() < if fails { 0.8 } else { begins };
         row.echo_cm = row.echo_cm.filter(|_| !fails);
-    }
+    });
 }
 
 fn generator(run: &Run) -> SmallRng {

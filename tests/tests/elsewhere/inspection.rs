@@ -46,7 +46,7 @@ pub fn made_up_logs_stay_as_they_are(data: &Path) {
 pub fn scans_at_rest_stay_as_they_are(folder: &Path) {
     for team in folders(folder) {
         let (logs, inspected) = inspected(&team);
-        let rows = |logs: &Logs| logs.runs.iter().flat_map(|run| run.rows.clone()).collect::<Vec<_>>();
+        let rows = |logs: &Logs| logs.runs.iter().flat_map(|run| &run.rows).collect::<Vec<_>>();
         for (before, after) in rows(&logs).iter().zip(rows(&inspected.logs)) {
             assert_eq!(before.pose, after.pose);
             assert_eq!(before.echo_cm.filter(|cm| *cm > 0.0), after.echo_cm, "{}", team.display());

@@ -333,3 +333,31 @@ fn broken_files_neither_panic_nor_hang() {
     });
     outcome.unwrap();
 }
+
+/// Zeros, or words of ones, in place of any piece of the header and the tables behind it.
+#[test]
+fn tables_with_holes_neither_panic_nor_hang() {
+    let intact = a_program();
+    let setup = RunConfig { run_ms: 100, ..RunConfig::default() };
+    let mut loaded = 0;
+    for hole in [2, 4, 10, 64] {
+        for at in (0..intact.len() - hole).step_by(2) {
+            for value in [0, 0xFF] {
+                let mut rxe = intact.clone();
+                rxe[at..at + hole].fill(value);
+                let Ok(program) = Program::load(&rxe) else { continue };
+                loaded += 1;
+                let report = brick::run(&program, &mut ScriptedWorld::sonar([Sonar::Echo(9); 5]), &setup);
+                assert!(report.ended_ms <= setup.run_ms, "{hole} bytes at {at}");
+            }
+        }
+    }
+    assert!(loaded > 1_000, "{loaded} programs");
+}
+
+#[test]
+fn calls_of_every_module_are_answered() {
+    let report = run(include_str!("every_module.nxc"), &mut ScriptedWorld::sonar([Sonar::Echo(50); 9]));
+    assert_eq!(report.end, Termination::Finished, "{:?}", report.failed_at);
+    assert_eq!(texts(&report).last().map(String::as_str), Some("done"));
+}

@@ -1,5 +1,6 @@
 //! Onboard programs, through real compilers and on the machine that runs a brick's bytecode.
 
+mod arduino;
 mod brick;
 mod budget;
 mod c;
@@ -12,3 +13,4 @@ mod pybricks;
 mod rust;
 mod rxe;
 mod safety;
+mod scripted;

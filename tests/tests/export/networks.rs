@@ -2,7 +2,8 @@
 
 use fixed::types::I16F16;
 use mindgap_controller_export::brick::{self, Event, EventKind, Program, Report, RunConfig, ScriptedWorld};
-use mindgap_controller_export::nxc_networks::{NxcNetwork, budget, nxc_networks};
+use mindgap_controller_export::nxc_networks::{budget, nxc_networks};
+use mindgap_controller_export::tabulated::Tabulated;
 use mindgap_core::fixed_network::FixedNetwork;
 use mindgap_core::network::Network;
 use mindgap_host_sim::chance::generator;
@@ -71,11 +72,11 @@ fn networks_on_the_brick_answer_the_cores_bits() {
         let drives = ["left", "right", "previous_left", "previous_right"];
         let faces = ["distance", "incidence"];
         let networks = [
-            NxcNetwork::new("Turn", "Degrees.", drives, &motion[0]),
-            NxcNetwork::new("Forward", "Cm.", drives, &motion[1]),
-            NxcNetwork::new("Lateral", "Cm.", drives, &motion[2]),
-            NxcNetwork::new("EchoProbability", "0 to 1.", faces, &sonar[0]),
-            NxcNetwork::new("EchoValue", "Cm.", faces, &sonar[1]),
+            Tabulated::new("Turn", "Degrees.", drives, &motion[0]),
+            Tabulated::new("Forward", "Cm.", drives, &motion[1]),
+            Tabulated::new("Lateral", "Cm.", drives, &motion[2]),
+            Tabulated::new("EchoProbability", "0 to 1.", faces, &sonar[0]),
+            Tabulated::new("EchoValue", "Cm.", faces, &sonar[1]),
         ];
         let source = nxc_networks(&networks);
         let (commands, facing) = (samples(COMMANDS, seed), samples(SONAR, seed));
@@ -100,8 +101,8 @@ fn a_program_with_all_networks_keeps_its_budget() {
     let PlausibleNetworks { turn, echo_value, .. } = plausible_networks(5);
     let drives = ["left", "right", "previous_left", "previous_right"];
     let networks = [
-        NxcNetwork::new("Turn", "Degrees.", drives, &quantised(&turn)),
-        NxcNetwork::new("EchoValue", "Cm.", ["distance", "incidence"], &quantised(&echo_value)),
+        Tabulated::new("Turn", "Degrees.", drives, &quantised(&turn)),
+        Tabulated::new("EchoValue", "Cm.", ["distance", "incidence"], &quantised(&echo_value)),
     ];
     let budget = budget(&networks);
     let source = nxc_networks(&networks);

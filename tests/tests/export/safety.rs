@@ -6,6 +6,7 @@ use std::collections::BTreeMap;
 use mindgap_controller_export::brick::{
     self, Drive, EventKind, Press, Program, Report, RunConfig, ScriptedWorld, Sonar, Termination,
 };
+use mindgap_controller_export::collect::{self, CollectOptions, Commands};
 use mindgap_controller_export::names::{BrickName, RunLogs};
 use mindgap_controller_export::nxc::{self, NxcOptions};
 use mindgap_controller_export::onboard::{BUTTON_POLL_MS, Ending, Safety};
@@ -127,7 +128,15 @@ fn near_things_and_stalled_wheels_stop_it_on_demand() {
 
 #[test]
 fn a_clock_that_wraps_changes_nothing() {
-    for program in programs(Safety::default()) {
+    let collected = collect::program(&CollectOptions {
+        program: BrickName::program("collect").unwrap(),
+        wiring: Wiring::default(),
+        safety: Safety::default(),
+        step_ms: 400,
+        commands: Commands::Random { steps: STEPS as u16, near_cm: 40, seed: 1 },
+    });
+    let collector = Program::load(&compile(&collected.unwrap())).unwrap();
+    for program in programs(Safety::default()).into_iter().chain([collector]) {
         let report = |start_tick_ms| {
             let config = RunConfig { start_tick_ms, ..RunConfig::default() };
             brick::run(&program, &mut ScriptedWorld::sonar(FAR), &config)

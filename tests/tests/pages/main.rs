@@ -6,4 +6,5 @@
 
 mod diagnosis;
 mod others;
+mod trials;
 mod visit;

@@ -5,6 +5,7 @@ use std::str::FromStr;
 
 use super::entry::Entry;
 use super::{HeldOut, Scale};
+use crate::files;
 
 /// Defines the enum and its entries from one list, so that they cannot differ.
 macro_rules! catalogue {
@@ -174,7 +175,8 @@ impl FromStr for Effect {
     fn from_str(id: &str) -> Result<Self, String> {
         Effect::all().find(|effect| effect.id() == id).ok_or_else(|| {
             let known: Vec<&str> = Effect::all().map(Effect::id).collect();
-            format!("no effect is called {id:?}; known are {}", known.join(", "))
+            let meant = files::did_you_mean(id, known.iter().copied());
+            format!("no effect is called {id:?}; known are {}{meant}", known.join(", "))
         })
     }
 }

@@ -27,7 +27,7 @@ pub struct Collect {
     #[arg(long, default_value_t = 40, conflicts_with = "input")]
     near_cm: u8,
     /// Where the random commands start from.
-    #[arg(long, default_value_t = 1, conflicts_with = "input")]
+    #[arg(long, value_name = "N", default_value_t = 1, conflicts_with = "input")]
     seed: u32,
 }
 
@@ -49,8 +49,8 @@ const COLUMNS: [&str; 3] = ["t_ms", "left", "right"];
 /// When the file holds neither, or its steps are not of one length of whole milliseconds.
 pub fn script(path: &Path, program: BrickName, wiring: Wiring) -> Result<CollectOptions> {
     let rows = Run::parse(path, &files::read_text(path)?, &COLUMNS, warn)?.rows;
-    let step_ms = rows[1].t_ms - rows[0].t_ms;
-    let is_even = rows.windows(2).all(|pair| pair[1].t_ms - pair[0].t_ms == step_ms);
+    let step_ms = rows.at(1).t_ms - rows.at(0).t_ms;
+    let is_even = rows.pairs().all(|pair| pair[1].t_ms - pair[0].t_ms == step_ms);
     if !is_even || step_ms.fract() != 0.0 || step_ms > f64::from(u16::MAX) {
         return Err(Error::in_file(path, "is no script: its rows are not equally many whole milliseconds apart"));
     }

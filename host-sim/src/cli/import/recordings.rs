@@ -79,7 +79,7 @@ struct Target {
     /// Folder for the logs.
     #[arg(long, value_name = "LOGS")]
     out: PathBuf,
-    /// Write what was read, guessed, changed and left out here.
+    /// Also write the same facts here, for programs; `-` is standard output, in place of the text.
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
 }
@@ -182,11 +182,14 @@ fn of_recording(recording: &RecordingReport, step_ms: f64) -> String {
     let RecordingReport { sources, clocks, runs, rows, without_pose, with_reading, jumps, limited } = recording;
     let mut text: String = sources.iter().map(of_source).collect();
     text += &format!("  {}\n", of_clocks(clocks));
+    let names =
+        if let [one] = runs.as_slice() { one.clone() } else { format!("{} to {}", runs[0], runs[runs.len() - 1]) };
     text += &format!(
-        "  {} to {}: {rows} rows, one every {step_ms} ms; {without_pose} without a pose, {with_reading} with a reading\n",
-        runs[0],
-        runs[runs.len() - 1]
+        "  {names}: {rows} rows, one every {step_ms} ms; {without_pose} without a pose, {with_reading} with a reading\n"
     );
+    if *with_reading > 0 {
+        text += &format!("  readings come at times of their own: a row has the last of the {step_ms} ms before it\n");
+    }
     if *jumps > 0 {
         text += &format!("  left out: {jumps} poses that no robot can reach\n");
     }

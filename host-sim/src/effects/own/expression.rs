@@ -3,6 +3,7 @@
 use nanoexpr::{Context, Error, ErrorKind, Instruction, Math, Program};
 
 use super::variables::{Circumstances, Stage, Variable};
+use crate::files;
 
 /// A compiled expression.
 pub struct Expression {
@@ -33,7 +34,10 @@ impl Expression {
             match Variable::known_in(stage).find(|variable| variable.name == name) {
                 Some(variable) => variables.push(variable),
                 None if parameters.contains(&name) || is_constant(name) => (),
-                None => return Err(format!("{name} is not known here; known are {}", known.join(", "))),
+                None => {
+                    let meant = files::did_you_mean(name, known.iter().copied());
+                    return Err(format!("{name} is not known here; known are {}{meant}", known.join(", ")));
+                }
             }
         }
         // As many instructions as there are characters are always enough.

@@ -76,7 +76,7 @@ fn rows_have_the_commands_and_poses_of_their_times() {
     // 400 ms of which 200 belong to the next command.
     let [v, w] = [0, 1].map(|i| (twist(400.0)[i] + twist(600.0)[i]) / 2.0);
     let expected = [v - 10.0 * w, v + 10.0 * w].map(|cm_s| 2.0 * cm_s);
-    let row = logs.runs[0].rows[1];
+    let row = logs.runs[0].rows.at(1);
     assert!((row.left - expected[0]).abs() < 1e-9 && (row.right - expected[1]).abs() < 1e-9, "{row:?} {expected:?}");
 }
 
@@ -151,7 +151,7 @@ fn without_a_robot_its_measures_are_fitted_and_marked() {
     let text = draft.expect("a draft").text();
     assert!((logs.robot.full_speed_cm_s - 50.0).abs() < 1.0 && (logs.robot.track_cm - 20.0).abs() < 0.5, "{text}");
     assert!(text.contains("# FILL IN: fitted to these logs") && text.contains("\n[ultrasonic]"), "{text}");
-    assert_eq!((logs.runs[0].rows[0].echo_cm, logs.runs[0].rows[1].echo_cm), (Some(50.0), None));
+    assert_eq!((logs.runs[0].rows.at(0).echo_cm, logs.runs[0].rows.at(1).echo_cm), (Some(50.0), None));
     let twist = assemble(vec![recording(|frame| frame)], None, Scene::default(), None).expect("logs");
     assert!([20.0, 25.0, 30.0].contains(&twist.logs.robot.full_speed_cm_s), "{}", twist.logs.robot.full_speed_cm_s);
     assert!(twist.draft.expect("a draft").text().contains("\n# [ultrasonic]"));

@@ -107,6 +107,15 @@ fn what_cannot_be_read_is_refused_in_a_line() {
         .flat_map(|_| [("/cmd_vel", TWIST, 0.0, twist(0.1, 0.0)), ("/pose", POSE, 0.0, pose(0.0, 0.0))])
         .collect();
     assert!(refusal(&bag(None, &timeless)).contains("the bag has no time"));
+    let set_back: Vec<_> = (0..9)
+        .map(|i| 100.0 + f64::from(if i < 6 { i } else { i - 6 }))
+        .flat_map(|s| [("/cmd_vel", TWIST, s, twist(0.1, 0.0)), ("/pose", POSE, s, pose(s, s))])
+        .collect();
+    let refused = refusal(&bag(None, &set_back));
+    assert!(
+        refused.contains("/cmd_vel: the clock goes back from 105.000 s to 100.000 s: cut the recording"),
+        "{refused}"
+    );
     let topics: Vec<String> = (0..=MOST_TOPICS).map(|i| format!("/robot{i}/cmd_vel")).collect();
     let many: Vec<_> = topics.iter().map(|topic| (topic.as_str(), TWIST, 1.0, twist(0.1, 0.0))).collect();
     assert!(refusal(&bag(None, &many)).contains("more than 10000 topics"));

@@ -34,6 +34,21 @@ const ASKED_FOR: [&str; 4] = ["goal", "target", "initialpose", "setpoint"];
 /// So many topics are named in a message.
 const NAMED: usize = 8;
 
+/// Whether a frame stays where it is.
+pub fn is_fixed(frame: &str) -> bool {
+    FIXED.contains(&plain(frame))
+}
+
+/// Whether a frame is that of a robot's body.
+pub fn is_body(frame: &str) -> bool {
+    BODY.contains(&plain(frame))
+}
+
+/// A frame's own name: a robot's frames may have its name before them.
+fn plain(frame: &str) -> &str {
+    frame.rsplit('/').next().unwrap_or_default()
+}
+
 /// What a stream can be.
 #[derive(Clone, Copy, PartialEq)]
 enum Role {
@@ -78,6 +93,9 @@ impl Topics {
         if streams[&poses].schema == "nav_msgs/msg/Odometry" {
             guessed.push(format!("{poses} may be the robot's own reckoning, which does not see its wheels slip"));
         }
+        if let parts @ [_, ..] = streams[&poses].composed_of.as_slice() {
+            guessed.push(format!("{poses} is composed of {}", parts.join(" and ")));
+        }
         Ok(Topics { commands, poses, ranges, guessed })
     }
 
@@ -120,11 +138,7 @@ impl Role {
             (Role::Commands, _) => Some(if last == "cmd_vel" { 0 } else { 1 }),
             (Role::Poses, "TFMessage") => {
                 let (parent, child) = name.rsplit_once(':')?.1.split_once('>')?;
-                // A robot's frames may have its name before them.
-                let plain = |frame: &str| frame.rsplit('/').next().unwrap_or_default().to_owned();
-                let (is_fixed, is_body) =
-                    (FIXED.contains(&plain(parent).as_str()), BODY.contains(&plain(child).as_str()));
-                match (is_fixed, is_body) {
+                match (is_fixed(parent), is_body(child)) {
                     (true, true) => Some(1),
                     (true, false) if plain(child) != "odom" => Some(3),
                     (false, true) => (plain(parent) == "odom").then_some(4),

@@ -89,7 +89,7 @@ pub fn replay(subject: &Subject) -> Option<Replay> {
     let after = EffectChain::of(&baseline.applied.iter().chain(&found).cloned().collect::<Vec<_>>());
     let run = |(number, rows): (usize, usize)| {
         let whole = seen[number];
-        let run = Run { name: whole.name.clone(), rows: whole.rows[..rows].to_vec() };
+        let run = Run { name: whole.name.clone(), rows: whole.rows.between(0..rows).collect() };
         let mut tracks = BTreeMap::from([
             (ROBOT.id, Player::logged(&run).into()),
             (SIMULATOR.id, player.simulated(&before, &run).into()),
@@ -100,7 +100,7 @@ pub fn replay(subject: &Subject) -> Option<Replay> {
         let cut = rows < whole.rows.len();
         ReplayedRun {
             name: if cut { format!("{} (first {rows} rows)", run.name) } else { run.name.clone() },
-            t_s: run.rows.iter().map(|row| (row.t_ms - run.rows[0].t_ms) / 1000.0).collect(),
+            t_s: run.rows.iter().map(|row| (row.t_ms - run.rows.at(0).t_ms) / 1000.0).collect(),
             told: run.rows.iter().map(commands).collect(),
             tracks,
         }
@@ -111,6 +111,6 @@ pub fn replay(subject: &Subject) -> Option<Replay> {
     Some(Replay::new(&logs.robot, kinds, runs, logs.runs.len()))
 }
 
-fn commands(row: &Row) -> String {
+fn commands(row: Row) -> String {
     format!("commands {}, {}", words::number(row.left, 0), words::number(row.right, 0))
 }

@@ -131,7 +131,7 @@ fn without_a_gap_there_are_no_empty_parts() {
 #[test]
 fn where_nobody_saw_the_robot_there_is_no_map_and_it_is_said() {
     let mut logs = logs(2, 5, "run-");
-    logs.runs.iter_mut().flat_map(|run| &mut run.rows).for_each(|row| row.pose = None);
+    logs.runs.iter_mut().for_each(|run| run.rows.edit_each(|row| row.pose = None));
     let page = page_of(&no_gap(), &logs, "logs");
     assert!(page.contains("never saw the robot") && !page.contains("id=\"stage\""));
 }

@@ -91,7 +91,7 @@ fn sticky_patch_slows_the_robot_in_the_middle_of_the_room() {
             let middle_cm = m.logs.scene.arena_cm.expect("the room has walls") / 2.0;
             let way = |inside: bool| {
                 slope(m.motion.iter().filter_map(|s| {
-                    let at_cm = m.logs.runs[s.run].rows[s.row].pose?.position_cm;
+                    let at_cm = m.logs.runs[s.run].rows.at(s.row).pose?.position_cm;
                     ((at_cm.distance(middle_cm) < 65.0) == inside).then_some((asked_motion(s).0, s.forward_cm))
                 }))
             };
@@ -137,7 +137,7 @@ fn soft_obstacles_echo_less_than_the_arena_s_sides() {
         let rate = |m: &Measured, obstacle: bool| {
             let sides = m.logs.scene.sides();
             share(m.sonar.iter().filter(|s| s.distance_cm > 30.0 && s.alpha_deg() < 45.0).filter_map(|s| {
-                let sensor = m.logs.robot.ultrasonic.pose_on(&m.logs.runs[s.run].rows[s.row].pose?);
+                let sensor = m.logs.robot.ultrasonic.pose_on(&m.logs.runs[s.run].rows.at(s.row).pose?);
                 let hit = cast(&sides, sensor.position_cm, sensor.direction())?;
                 ((hit.wall >= 4) == obstacle).then_some(s.echo_cm.is_some())
             }))

@@ -28,7 +28,7 @@ fn weights(m: &Measured) -> (f64, f64) {
 
 /// Heading at the beginning of a step, from the log.
 fn heading_rad(m: &Measured, s: &MotionSample) -> f64 {
-    m.logs.runs[s.run].rows[s.row].pose.expect("a sample has a pose").heading_rad
+    m.logs.runs[s.run].rows.at(s.row).pose.expect("a sample has a pose").heading_rad
 }
 
 #[test]
@@ -110,7 +110,7 @@ fn inertia_lets_the_last_command_go_on_even_two_steps_later() {
     for driving in drivings() {
         let two_back = |m: &Measured| {
             let third = m.motion.iter().filter(|s| s.row >= 2 && is_steady(s)).map(|s| {
-                let before = m.logs.runs[s.run].rows[s.row - 2].command();
+                let before = m.logs.runs[s.run].rows.at(s.row - 2).command();
                 (before[0] + before[1] - s.speeds[0] - s.speeds[1], surplus_cm(s))
             });
             slope(third.filter(|(change, _)| *change != 0.0)) / 0.082

@@ -17,7 +17,7 @@ fn forward(m: &Measured, chosen: impl Fn(&MotionSample) -> bool) -> f64 {
 
 /// Logged pose at the beginning of a step.
 fn pose(m: &Measured, s: &MotionSample) -> Pose {
-    m.logs.runs[s.run].rows[s.row].pose.expect("a sample has a pose")
+    m.logs.runs[s.run].rows.at(s.row).pose.expect("a sample has a pose")
 }
 
 #[test]
@@ -130,7 +130,7 @@ fn motor_whine_drowns_echoes_at_high_wheel_speeds() {
     for driving in drivings() {
         let rates = |m: &Measured| {
             let pace = |s: &SonarSample| {
-                let [left, right] = m.logs.runs[s.run].rows[s.row - 1].command();
+                let [left, right] = m.logs.runs[s.run].rows.at(s.row - 1).command();
                 (left.abs() + right.abs()) / 2.0
             };
             [(0.0, 30.0), (50.0, 100.0)].map(|(slow, fast)| {

@@ -8,7 +8,7 @@ use super::measures::{Measured, asked_motion, drivings, slope, two_slopes};
 fn forward_between(m: &Measured, near_cm: f64, far_cm: f64) -> f64 {
     let middle_cm = m.logs.scene.arena_cm.expect("the room has walls") / 2.0;
     slope(m.motion.iter().filter_map(|s| {
-        let pose = m.logs.runs[s.run].rows[s.row].pose?;
+        let pose = m.logs.runs[s.run].rows.at(s.row).pose?;
         let inside = (near_cm..far_cm).contains(&pose.position_cm.distance(middle_cm));
         inside.then_some((asked_motion(s).0, s.forward_cm))
     }))
@@ -54,7 +54,7 @@ fn compass_disturbance_makes_headings_wrong_by_heading() {
         let amplitude_deg = |m: &Measured| {
             let (a, b) = two_slopes(m.motion.iter().filter_map(|s| {
                 let rows = &m.logs.runs[s.run].rows;
-                let (from, to) = (rows[s.row].pose?.heading_rad, rows[s.row + 1].pose?.heading_rad);
+                let (from, to) = (rows.at(s.row).pose?.heading_rad, rows.at(s.row + 1).pose?.heading_rad);
                 let surplus_deg = wrap_rad(s.turn_rad - 0.88 * asked_motion(s).1).to_degrees();
                 Some((libm::sin(to) - libm::sin(from), libm::cos(to) - libm::cos(from), surplus_deg))
             }));

@@ -101,7 +101,7 @@ fn headings_and_distances_are_those_of_their_names() {
         let those = contexts.iter().filter(|(name, holds)| name.starts_with(prefix) && holds(&rows.rows[at]));
         those.map(|(name, _)| *name).collect()
     };
-    for (at, name) in ["heading east", "heading north", "heading west", "heading south"].into_iter().enumerate() {
+    for (at, name) in ["0 (along x)", "90 (along y)", "180 (against x)", "-90 (against y)"].into_iter().enumerate() {
         assert_eq!(holding(MOTION, "heading", at), [name]);
     }
     assert_eq!(holding(SONAR, "distance", 1), ["distance 80 to 150 cm"]);

@@ -1,0 +1,54 @@
+//! A controller tried in a simulator: each run is of another robot that the simulator's logs leave possible.
+
+use mindgap_core::controller::Controller;
+
+use super::chance::ROBOTS;
+use crate::error::{Error, Result};
+use crate::geometry::Pose;
+use crate::logs::Scene;
+use crate::simulator::environment::Environment;
+use crate::simulator::rollout_report::RolloutReport;
+use crate::simulator::{Noise, Simulator};
+
+/// What is asked.
+pub struct Trial<'a> {
+    /// Where it is tried.
+    pub simulator: &'a Simulator,
+    /// What is tried.
+    pub controller: &'a Controller,
+    /// In this scene,
+    pub scene: &'a Scene,
+    /// from here.
+    pub start: Pose,
+    /// What scatters.
+    pub noise: Noise,
+    /// Readings are those of the first-echo law, and not of the networks.
+    pub first_echo: bool,
+    /// How many runs.
+    pub runs: usize,
+    /// Seed of all draws.
+    pub seed: u64,
+}
+
+impl Trial<'_> {
+    /// Runs it.
+    ///
+    /// # Errors
+    /// When there are no runs, when the simulator cannot run controllers, or has no first-echo law where it is asked for.
+    pub fn run(&self) -> Result<RolloutReport> {
+        let Trial { simulator, controller, scene, start, noise, first_echo, runs, seed } = *self;
+        if runs == 0 {
+            return Err(Error::new("there must be at least one run"));
+        }
+        let open = simulator.ensemble.as_ref().filter(|_| noise == Noise::Learned);
+        let drawn = open.and_then(|ensemble| ensemble.robots(runs.min(ROBOTS), seed)).map(|robots| robots.drawn);
+        let mut robots = match &drawn {
+            Some(drawn) => Environment::of_robots(simulator, drawn, scene, start)?,
+            None => vec![Environment::new(simulator, scene, start, noise)?],
+        };
+        if first_echo {
+            robots = robots.into_iter().map(|robot| robot.with_first_echo(simulator, scene)).collect::<Result<_>>()?;
+        }
+        Ok(RolloutReport::of_robots(&robots, scene, controller, runs, seed))
+    }
+}

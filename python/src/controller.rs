@@ -1,0 +1,167 @@
+//! Controllers, and their evolution.
+
+use std::path::PathBuf;
+
+use mindgap_core::controller::Tuple;
+use mindgap_host_sim::cli::kinds;
+use mindgap_host_sim::evolve::chance::Chance;
+use mindgap_host_sim::evolve::controller_file::{ControllerFile, Origin};
+use mindgap_host_sim::evolve::fitness::RandomNumbers;
+use mindgap_host_sim::evolve::request::{Answered, Request};
+use mindgap_host_sim::logs::Scene;
+use mindgap_host_sim::pictures;
+use mindgap_host_sim::simulator::Noise;
+use pyo3::prelude::*;
+use serde::Serialize;
+
+use crate::error::raised;
+use crate::show::{self, Figure};
+use crate::simulator::Simulator;
+use crate::{convert, places};
+
+/// A six-tuple controller.
+#[pyclass(frozen, module = "mindgap")]
+pub struct Controller {
+    /// It, with its origin.
+    pub file: ControllerFile,
+    /// What pages call it.
+    pub name: String,
+}
+
+/// A controller, as in controller.toml.
+#[derive(Serialize)]
+struct Facts<'a> {
+    step_ms: u16,
+    max_steps: u16,
+    tuple: &'a [Tuple],
+    origin: Option<&'a Origin>,
+}
+
+#[pymethods]
+impl Controller {
+    /// Reads a controller file.
+    #[staticmethod]
+    fn read(path: PathBuf) -> PyResult<Self> {
+        Ok(Controller { file: ControllerFile::read(&path).map_err(raised)?, name: path.display().to_string() })
+    }
+
+    /// Writes a controller file; what is there and was not evolved by mindgap is replaced with `force` only.
+    #[pyo3(signature = (path, *, force=false))]
+    fn write(&self, path: PathBuf, force: bool) -> PyResult<()> {
+        places::file(&path, kinds::CONTROLLER, force)?;
+        self.file.write(&path).map_err(raised)
+    }
+
+    /// What stands in its file.
+    #[getter]
+    fn facts<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let ControllerFile { controller, origin } = &self.file;
+        let (step_ms, max_steps) = (controller.step_ms, controller.max_steps);
+        convert::facts(py, &Facts { step_ms, max_steps, tuple: &controller.tuples, origin: origin.as_ref() })
+    }
+
+    /// Its six tuples, as a frame.
+    #[getter]
+    fn tuples<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        convert::frame(py, &self.file.controller.tuples.as_slice())
+    }
+
+    fn __repr__(&self) -> String {
+        format!("<mindgap.Controller {}>", self.name)
+    }
+}
+
+/// A controller that was evolved, and how good it is.
+#[pyclass(frozen, module = "mindgap")]
+pub struct Evolution {
+    answered: Answered,
+    origin: Origin,
+    scene: Scene,
+}
+
+/// How good a controller is, in simulation.
+#[derive(Serialize)]
+struct Success {
+    success: f64,
+    crashed: f64,
+    median_cm: f64,
+    chance: Option<Chance>,
+}
+
+#[pymethods]
+impl Evolution {
+    /// The controller.
+    #[getter]
+    fn controller(&self) -> Controller {
+        let file =
+            ControllerFile { controller: self.answered.evolved.controller.clone(), origin: Some(self.origin.clone()) };
+        Controller { file, name: "a controller from Python".into() }
+    }
+
+    /// Success and crashes in fresh simulated runs, the median distance to the target, and the chance over robots that
+    /// the logs leave possible.
+    #[getter]
+    fn facts<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let Answered { success, chance, .. } = &self.answered;
+        let (crashed, median_cm) = (success.crashed, success.median_cm);
+        convert::facts(py, &Success { success: success.rate, crashed, median_cm, chance: *chance })
+    }
+
+    /// The figures of `mindgap evolve --figures`.
+    fn figures(&self, py: Python<'_>) -> PyResult<Vec<Figure>> {
+        Ok(show::figures(py.detach(|| self.drawn())?))
+    }
+
+    fn _repr_html_(&self, py: Python<'_>) -> PyResult<String> {
+        Ok(show::below_each_other(&py.detach(|| self.drawn())?))
+    }
+
+    fn __repr__(&self) -> String {
+        format!("<mindgap.Evolution: {:.0} % reach the target in simulation>", 100.0 * self.answered.success.rate)
+    }
+}
+
+impl Evolution {
+    fn drawn(&self) -> PyResult<Vec<pictures::NamedFigure>> {
+        let start = self.scene.start(self.origin.start, 0.0).map_err(raised)?;
+        let title = format!("Start {}", self.origin.start);
+        let panel = pictures::simulated_paths(title, &self.scene, start, &self.answered.rollouts);
+        Ok(vec![pictures::figure_of_paths(&[panel])])
+    }
+}
+
+/// Evolves one controller for a start of a scene in a simulator.
+#[pyfunction]
+#[pyo3(signature = (simulator, scene, *, start=1, max_steps=60, seed=1))]
+pub fn evolve(
+    py: Python<'_>,
+    simulator: &Simulator,
+    scene: &Bound<PyAny>,
+    start: usize,
+    max_steps: u16,
+    seed: u64,
+) -> PyResult<Evolution> {
+    let scene = convert::scene(scene)?;
+    let request = Request {
+        simulator: &simulator.inner,
+        scene: &scene,
+        start,
+        max_steps,
+        paper: false,
+        noise: Noise::Learned,
+        first_echo: false,
+        random_numbers: RandomNumbers::Common,
+        seed,
+    };
+    let answered = py.detach(|| request.evolve(|_, _| ())).map_err(raised)?;
+    let origin = Origin {
+        simulator: simulator.name.clone(),
+        scene: "a scene from Python".into(),
+        start,
+        seed,
+        generations: answered.evolved.generations,
+        fitness: answered.evolved.fitness,
+        success: answered.success.rate,
+    };
+    Ok(Evolution { answered, origin, scene })
+}

@@ -1,0 +1,165 @@
+//! The gap between a simulator and logs.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use mindgap_host_sim::cli::kinds;
+use mindgap_host_sim::effects::own;
+use mindgap_host_sim::gap::Method;
+use mindgap_host_sim::gap::request::{Answered, Request};
+use mindgap_host_sim::page::diagnosis::{Source, Subject, page};
+use mindgap_host_sim::simulator::textbook;
+use mindgap_host_sim::{files, gap, pictures, simulator};
+use pyo3::exceptions::PyTypeError;
+use pyo3::prelude::*;
+
+use crate::controller::Controller;
+use crate::error::raised;
+use crate::logs::Logs;
+use crate::show::{self, Figure, Page};
+use crate::simulator::Simulator;
+use crate::{convert, places};
+
+/// Stands for a simulator: the textbook's.
+const KINEMATIC: &str = "kinematic";
+
+/// What the gap is, where it lies, what causes it, and how far it shrinks.
+#[pyclass(frozen, module = "mindgap")]
+pub struct Diagnosis {
+    answered: Answered,
+    simulator: Option<Arc<simulator::Simulator>>,
+    method: Method,
+    names: [String; 2],
+    folder: Option<PathBuf>,
+}
+
+#[pymethods]
+impl Diagnosis {
+    /// The facts of `mindgap diagnose --json`.
+    #[getter]
+    fn facts<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        convert::facts(py, self.diagnosis())
+    }
+
+    /// `no_gap`, `known`, `partly_known` or `unknown`.
+    #[getter]
+    fn verdict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        convert::facts(py, &self.diagnosis().verdict())
+    }
+
+    /// The effects that are named, as a frame.
+    #[getter]
+    fn effects<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        convert::frame(py, &self.diagnosis().effects())
+    }
+
+    /// What the gap is made of, as a frame.
+    #[getter]
+    fn budget<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        convert::frame(py, &self.diagnosis().budget())
+    }
+
+    /// Where the gap lies, as a frame.
+    #[getter]
+    fn r#where<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        convert::frame(py, &self.diagnosis().strata)
+    }
+
+    /// The simulator with the effects added that explain the gap, and the formula of what they leave.
+    fn mended(&self, py: Python<'_>) -> PyResult<Simulator> {
+        py.detach(|| self.request().mended(&self.answered)).map(Simulator::made).map_err(raised)
+    }
+
+    /// Writes the commands to log next, as a run in CSV; False where no causes are confused.
+    #[pyo3(signature = (path, *, force=false))]
+    fn write_next_experiment(&self, path: PathBuf, force: bool) -> PyResult<bool> {
+        let Some(experiment) = self.diagnosis().experiment() else { return Ok(false) };
+        places::file(&path, kinds::UNSIGNED, force)?;
+        experiment.commands.write(&path).map_err(raised)?;
+        Ok(true)
+    }
+
+    /// The page of `mindgap diagnose --html`.
+    fn page(&self, py: Python<'_>) -> PyResult<Page> {
+        Page::made(py.detach(|| {
+            let Answered { findings, logs } = &self.answered;
+            let written = self.folder.as_ref().map_or(Ok(None), |folder| files::days_written(folder))?;
+            let [simulator, name] = self.names.clone();
+            let source = Source { simulator, logs: name, written, seed: self.method.seed };
+            let baseline = self.request().baseline(logs)?;
+            page(&Subject { findings, logs, baseline: &baseline, catalogue: self.method.catalogue, source })
+        }))
+    }
+
+    /// The figures of `mindgap diagnose --figures`.
+    fn figures(&self, py: Python<'_>) -> Vec<Figure> {
+        show::figures(py.detach(|| pictures::figures_of_diagnosis(self.diagnosis())))
+    }
+
+    /// Writes them into a folder as SVG, PNG and PDF.
+    #[pyo3(signature = (folder, *, force=false))]
+    fn write_figures(&self, py: Python<'_>, folder: PathBuf, force: bool) -> PyResult<()> {
+        places::folder(&folder, force)?;
+        py.detach(|| pictures::diagnosis(&folder, self.diagnosis())).map_err(raised)
+    }
+
+    fn _repr_html_(&self, py: Python<'_>) -> String {
+        show::below_each_other(&py.detach(|| pictures::figures_of_diagnosis(self.diagnosis())))
+    }
+
+    fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
+        let ids: Vec<&str> = self.diagnosis().effects().iter().map(|effect| effect.id).collect();
+        let effects = if ids.is_empty() { String::new() } else { format!(": {}", ids.join(", ")) };
+        Ok(format!("<mindgap.Diagnosis {}{effects}>", self.verdict(py)?))
+    }
+}
+
+impl Diagnosis {
+    fn diagnosis(&self) -> &gap::Diagnosis {
+        &self.answered.findings.diagnosis
+    }
+
+    /// What was asked, without the controller and the steps, which are in the answer.
+    fn request(&self) -> Request<'_> {
+        Request { simulator: self.simulator.as_deref(), controller: None, method: self.method, step_ms: None }
+    }
+}
+
+/// Finds the gap between a simulator and logs.
+#[pyfunction]
+#[pyo3(signature = (simulator, logs, *, controller=None, effects=Vec::new(), step_ms=None, seed=1))]
+pub fn diagnose(
+    py: Python<'_>,
+    simulator: &Bound<PyAny>,
+    logs: &Logs,
+    controller: Option<&Controller>,
+    effects: Vec<PathBuf>,
+    step_ms: Option<f64>,
+    seed: u64,
+) -> PyResult<Diagnosis> {
+    let (simulator, name) = against(simulator)?;
+    let controller = controller.map(|controller| &controller.file);
+    if let Some((controller, simulator)) = controller.zip(simulator.as_ref()) {
+        controller.check_for(&simulator.robot).map_err(raised)?;
+    }
+    let method = Method { catalogue: own::beside_built_in(&effects).map_err(raised)?, seed, ..Method::default() };
+    let request = Request {
+        simulator: simulator.as_deref(),
+        controller: controller.map(|file| &file.controller),
+        method,
+        step_ms,
+    };
+    let answered = py.detach(|| request.of((*logs.inner).clone(), |_| ())).map_err(raised)?;
+    Ok(Diagnosis { answered, simulator, method, names: [name, logs.name()], folder: logs.folder.clone() })
+}
+
+/// A simulator, or none for the textbook, and what pages call it.
+fn against(given: &Bound<PyAny>) -> PyResult<(Option<Arc<simulator::Simulator>>, String)> {
+    if let Ok(simulator) = given.cast::<Simulator>() {
+        return Ok((Some(simulator.get().inner.clone()), simulator.get().name.clone()));
+    }
+    if given.extract::<&str>().is_ok_and(|word| word == KINEMATIC) {
+        return Ok((None, textbook::NAME.into()));
+    }
+    Err(PyTypeError::new_err(format!("simulator: a mindgap.Simulator or {KINEMATIC:?}")))
+}

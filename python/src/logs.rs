@@ -1,0 +1,147 @@
+//! Logs of a robot.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use mindgap_host_sim::built_in_robot::{self, ActiveEffect, default_robot, training_room};
+use mindgap_host_sim::gap::validate::same_robot;
+use mindgap_host_sim::inspection::Inspection;
+use mindgap_host_sim::logs;
+use mindgap_host_sim::logs::tables::Table;
+use mindgap_host_sim::simulator::Simulator;
+use mindgap_host_sim::survey::Survey;
+use pyo3::prelude::*;
+use pyo3::types::{IntoPyDict, PyDict};
+
+use crate::error::{Error, raised, warn};
+use crate::{convert, places};
+
+/// Runs of a robot in a scene.
+#[pyclass(frozen, module = "mindgap")]
+pub struct Logs {
+    /// The logs.
+    pub inner: Arc<logs::Logs>,
+    /// Where they were read.
+    pub folder: Option<PathBuf>,
+}
+
+#[pymethods]
+impl Logs {
+    #[new]
+    #[pyo3(signature = (runs, robot, scene=None))]
+    fn new(py: Python<'_>, runs: &Bound<PyAny>, robot: &Bound<PyAny>, scene: Option<&Bound<PyAny>>) -> PyResult<Self> {
+        let robot = convert::robot(robot)?;
+        let scene = scene.map(convert::scene).transpose()?.unwrap_or_default();
+        let tables = convert::tables(runs)?;
+        let mut oddities = Vec::new();
+        let read = py.detach(|| logs::Logs::of_tables(robot, scene, &tables, |oddity| oddities.push(oddity)));
+        warn(py, oddities)?;
+        Ok(Logs { inner: Arc::new(read.map_err(raised)?), folder: None })
+    }
+
+    /// Reads a folder of logs.
+    #[staticmethod]
+    fn read(py: Python<'_>, folder: PathBuf) -> PyResult<Self> {
+        let mut oddities = Vec::new();
+        let read = py.detach(|| logs::Logs::read(&folder, |oddity| oddities.push(oddity)));
+        warn(py, oddities)?;
+        Ok(Logs { inner: Arc::new(read.map_err(raised)?), folder: Some(folder) })
+    }
+
+    /// Writes a folder of logs; one that is not empty is taken with `force` only, and what others keep there stays.
+    #[pyo3(signature = (folder, *, force=false))]
+    fn write(&self, py: Python<'_>, folder: PathBuf, force: bool) -> PyResult<()> {
+        places::folder(&folder, force)?;
+        py.detach(|| self.inner.write(&folder)).map_err(raised)
+    }
+
+    /// The runs: arrays by name of column, by name of run. NaN stands where a cell is empty.
+    #[getter]
+    fn runs<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let runs = PyDict::new(py);
+        for run in &self.inner.runs {
+            runs.set_item(&run.name, convert::arrays(py, Table::of(run))?)?;
+        }
+        Ok(runs)
+    }
+
+    /// All runs in one frame, with a column `run`.
+    fn frame<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let pandas = py.import("pandas")?;
+        let frames = self.inner.runs.iter().map(|run| {
+            let frame = pandas.call_method1("DataFrame", (convert::arrays(py, Table::of(run))?,))?;
+            frame.call_method1("insert", (0, "run", &run.name))?;
+            Ok(frame)
+        });
+        let frames = frames.collect::<PyResult<Vec<_>>>()?;
+        pandas.call_method("concat", (frames,), Some(&[("ignore_index", true)].into_py_dict(py)?))
+    }
+
+    /// The robot, as in robot.toml.
+    #[getter]
+    fn robot<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        convert::facts(py, &self.inner.robot)
+    }
+
+    /// The scene, as in scene.toml.
+    #[getter]
+    fn scene<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        convert::scene_facts(py, &self.inner.scene)
+    }
+
+    /// What the logs hold, what is wrong with them, what they suffice for, and what to drive more.
+    fn check<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let survey = py.detach(|| Survey::of((*self.inner).clone()));
+        convert::facts(py, &survey)
+    }
+
+    fn __len__(&self) -> usize {
+        self.inner.runs.len()
+    }
+
+    fn __repr__(&self) -> String {
+        format!("<mindgap.Logs of {} runs, {} rows>", self.inner.runs.len(), self.inner.rows())
+    }
+}
+
+impl Logs {
+    /// Logs that were made.
+    pub fn made(logs: logs::Logs) -> Self {
+        Logs { inner: Arc::new(logs), folder: None }
+    }
+
+    /// What pages call them.
+    pub fn name(&self) -> String {
+        self.folder.as_ref().map_or_else(|| "logs from Python".into(), |folder| folder.display().to_string())
+    }
+
+    /// The logs to learn from or to judge by, with what could be put right; of a simulator's robot where one is given.
+    pub fn sound(&self, py: Python<'_>, of: Option<&Simulator>) -> PyResult<logs::Logs> {
+        let mut put_right = Vec::new();
+        let sound = py.detach(|| {
+            let sound = Inspection::of((*self.inner).clone()).sound(|found| put_right.push(found))?;
+            of.map_or(Ok(()), |simulator| same_robot(&simulator.robot, &sound.robot))?;
+            Ok(sound)
+        });
+        warn(py, put_right)?;
+        sound.map_err(raised)
+    }
+}
+
+/// Records random-command logs of the built-in robot.
+#[pyfunction]
+#[pyo3(signature = (*, runs=100, steps=60, effects=Vec::new(), scene=None, seed=1))]
+pub fn record(
+    py: Python<'_>,
+    runs: usize,
+    steps: usize,
+    effects: Vec<String>,
+    scene: Option<&Bound<PyAny>>,
+    seed: u64,
+) -> PyResult<Logs> {
+    let scene = scene.map_or_else(|| Ok(training_room()), convert::scene)?;
+    let effects = effects.iter().map(|effect| effect.parse().map_err(Error::new_err));
+    let effects = effects.collect::<PyResult<Vec<ActiveEffect>>>()?;
+    let recorded = py.detach(|| built_in_robot::record(&default_robot(), &scene, runs, steps, &effects, seed));
+    recorded.map(Logs::made).map_err(raised)
+}

@@ -1,0 +1,100 @@
+//! What a notebook shows: figures and pages.
+
+use std::path::PathBuf;
+
+use mindgap_host_sim::cli::kinds;
+use mindgap_host_sim::error::Result;
+use mindgap_host_sim::pictures::NamedFigure;
+use mindgap_host_sim::{files, report};
+use pyo3::prelude::*;
+use pyo3::types::PyBytes;
+
+use crate::error::raised;
+use crate::places;
+
+/// Height of a page within a notebook, px.
+const PAGE_HEIGHT_PX: u32 = 700;
+
+/// A figure.
+#[pyclass(frozen, module = "mindgap")]
+pub struct Figure {
+    /// The name that its files have.
+    #[pyo3(get)]
+    name: String,
+    figure: report::Figure,
+}
+
+#[pymethods]
+impl Figure {
+    /// The figure as SVG.
+    #[getter]
+    fn svg(&self) -> &str {
+        self.figure.svg()
+    }
+
+    /// The figure as PNG of 288 dots to the inch.
+    fn png<'py>(&self, py: Python<'py>) -> Bound<'py, PyBytes> {
+        PyBytes::new(py, &py.detach(|| self.figure.png()))
+    }
+
+    /// The figure as PDF.
+    fn pdf<'py>(&self, py: Python<'py>) -> Bound<'py, PyBytes> {
+        PyBytes::new(py, &py.detach(|| self.figure.pdf()))
+    }
+
+    fn _repr_svg_(&self) -> &str {
+        self.figure.svg()
+    }
+
+    fn __repr__(&self) -> String {
+        format!("<mindgap.Figure {}>", self.name)
+    }
+}
+
+/// Figures as Python has them.
+pub fn figures(figures: Vec<NamedFigure>) -> Vec<Figure> {
+    figures.into_iter().map(|NamedFigure { name, figure }| Figure { name, figure }).collect()
+}
+
+/// Figures one below the other.
+pub fn below_each_other(figures: &[NamedFigure]) -> String {
+    figures.iter().map(|named| format!("<div>{}</div>", named.figure.svg())).collect()
+}
+
+/// A page for a browser.
+#[pyclass(frozen, module = "mindgap")]
+pub struct Page {
+    /// Its HTML, whole in one text.
+    #[pyo3(get)]
+    html: String,
+}
+
+impl Page {
+    /// A page that could be made.
+    pub fn made(html: Result<String>) -> PyResult<Self> {
+        html.map(|html| Page { html }).map_err(raised)
+    }
+}
+
+#[pymethods]
+impl Page {
+    /// Writes it; what is there and no page of mindgap's is replaced with `force` only.
+    #[pyo3(signature = (path, *, force=false))]
+    fn write(&self, path: PathBuf, force: bool) -> PyResult<()> {
+        places::file(&path, kinds::PAGE, force)?;
+        files::write(&path, &self.html).map_err(raised)
+    }
+
+    fn _repr_html_(&self) -> String {
+        // All that would end an attribute.
+        let whole = self.html.replace('&', "&amp;").replace('"', "&quot;");
+        format!(
+            "<iframe title=\"A page by mindgap\" srcdoc=\"{whole}\" \
+             style=\"width: 100%; height: {PAGE_HEIGHT_PX}px; border: 0\"></iframe>"
+        )
+    }
+
+    fn __repr__(&self) -> String {
+        format!("<mindgap.Page of {} bytes>", self.html.len())
+    }
+}

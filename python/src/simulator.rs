@@ -1,0 +1,86 @@
+//! Simulators, and their training.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use mindgap_host_sim::cli::kinds;
+use mindgap_host_sim::learn::paper;
+use mindgap_host_sim::learn::train::{self as training, TABLE_ONE, Trainer};
+use mindgap_host_sim::simulator;
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+
+use crate::error::{raised, warn};
+use crate::logs::Logs;
+use crate::{convert, places};
+
+/// A simulator of a robot.
+#[pyclass(frozen, module = "mindgap")]
+pub struct Simulator {
+    /// The simulator.
+    pub inner: Arc<simulator::Simulator>,
+    /// What pages call it.
+    pub name: String,
+}
+
+#[pymethods]
+impl Simulator {
+    /// Reads a simulator file.
+    #[staticmethod]
+    fn read(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
+        let read = py.detach(|| simulator::Simulator::read(&path)).map_err(raised)?;
+        Ok(Simulator { inner: Arc::new(read), name: path.display().to_string() })
+    }
+
+    /// Writes a simulator file; what is there and no simulator is replaced with `force` only.
+    #[pyo3(signature = (path, *, force=false))]
+    fn write(&self, path: PathBuf, force: bool) -> PyResult<()> {
+        places::file(&path, kinds::SIMULATOR, force)?;
+        self.inner.write(&path).map_err(raised)
+    }
+
+    /// How it was made.
+    #[getter]
+    fn origin<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        convert::facts(py, &self.inner.origin)
+    }
+
+    /// Its robot, as in robot.toml.
+    #[getter]
+    fn robot<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        convert::facts(py, &self.inner.robot)
+    }
+
+    /// The effects that were added to it, in the order in which they act.
+    #[getter]
+    fn added<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        convert::facts(py, &self.inner.added)
+    }
+
+    fn __repr__(&self) -> String {
+        format!("<mindgap.Simulator from {} runs, with {} effects>", self.inner.origin.runs, self.inner.added.len())
+    }
+}
+
+impl Simulator {
+    /// A simulator that was made.
+    pub fn made(simulator: simulator::Simulator) -> Self {
+        Simulator { inner: Arc::new(simulator), name: "a simulator from Python".into() }
+    }
+}
+
+/// Trains the five networks of a simulator on logs.
+#[pyfunction]
+#[pyo3(signature = (logs, *, trainer="fast", seed=1))]
+pub fn train(py: Python<'_>, logs: &Logs, trainer: &str, seed: u64) -> PyResult<Simulator> {
+    let trainer = match trainer {
+        "fast" => Trainer::Fast,
+        "paper" => Trainer::Paper(paper::Options::default()),
+        other => return Err(PyValueError::new_err(format!("trainer {other:?}: there are \"fast\" and \"paper\""))),
+    };
+    let sound = logs.sound(py, None)?;
+    let trained = py.detach(|| training::train(&sound, &trainer, &TABLE_ONE, seed, |_| ())).map_err(raised)?;
+    let missing = trained.missing.iter().map(|missing| format!("no {} network: {}", missing.network, missing.reason));
+    warn(py, missing.collect())?;
+    Ok(Simulator::made(trained))
+}

@@ -1,0 +1,111 @@
+/* Runs an image on an ATmega328P of 16 MHz: `run IMAGE.elf [PULSE_US...]`. Its UART is standard input and output; it ends
+ * when the processor sleeps for good. With pulses an HC-SR04 is there, trigger on 7 and echo on 6, that answers with them;
+ * 0 is a sensor that is not there. Then every change of its answer and of the pins for brakes and directions is told with
+ * its time in microseconds, and the run ends with the first line that the image sends. */
+#include <simavr/avr_ioport.h>
+#include <simavr/avr_uart.h>
+#include <simavr/sim_avr.h>
+#include <simavr/sim_elf.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+enum { FLIGHT_US = 450 };
+
+static avr_t *avr;
+static avr_irq_t *uart_in, *echo;
+static int can_receive;
+static int has_told;
+static char **pulses;
+
+static void say_nothing(avr_t *avr, const int level, const char *format, va_list arguments) {}
+
+static void on_sent(struct avr_irq_t *irq, uint32_t byte, void *context) {
+  putchar((int)byte);
+  has_told |= byte == '\n';
+}
+
+static void on_can_receive(struct avr_irq_t *irq, uint32_t value, void *context) {
+  can_receive = context != NULL;
+}
+
+static avr_cycle_count_t end_pulse(avr_t *avr, avr_cycle_count_t when, void *context) {
+  avr_raise_irq(echo, 0);
+  return 0;
+}
+
+static avr_cycle_count_t begin_pulse(avr_t *avr, avr_cycle_count_t when, void *context) {
+  avr_raise_irq(echo, 1);
+  avr_cycle_timer_register_usec(avr, *(uint32_t *)context, end_pulse, NULL);
+  return 0;
+}
+
+/* A question is the end of the trigger; the last pulse goes on for ever. */
+static void on_trigger(struct avr_irq_t *irq, uint32_t level, void *context) {
+  static uint32_t pulse_us;
+  if (level == 0 && irq->value == 1) {
+    pulse_us = (uint32_t)atoi(*pulses);
+    if (pulses[1] != NULL) {
+      pulses++;
+    }
+    if (pulse_us > 0) {
+      avr_cycle_timer_register_usec(avr, FLIGHT_US, begin_pulse, &pulse_us);
+    }
+  }
+}
+
+static void on_pin(struct avr_irq_t *irq, uint32_t level, void *context) {
+  if (level != irq->value) {
+    printf("%llu %s %u\n", (unsigned long long)(avr->cycle * 1000000 / avr->frequency), (const char *)context, level);
+  }
+}
+
+static void watch(char port, int pin, avr_irq_notify_t notify, void *context) {
+  avr_irq_register_notify(avr_io_getirq(avr, AVR_IOCTL_IOPORT_GETIRQ(port), pin), notify, context);
+}
+
+int main(int count, char **arguments) {
+  avr_global_logger_set(say_nothing);
+  elf_firmware_t firmware = {{0}};
+  if (count < 2 || elf_read_firmware(arguments[1], &firmware) != 0) {
+    fputs("no image\n", stderr);
+    return 1;
+  }
+  avr = avr_make_mcu_by_name("atmega328p");
+  avr_init(avr);
+  avr->frequency = 16000000;
+  avr_load_firmware(avr, &firmware);
+  uint32_t flags = 0;
+  avr_ioctl(avr, AVR_IOCTL_UART_SET_FLAGS('0'), &flags);
+  uart_in = avr_io_getirq(avr, AVR_IOCTL_UART_GETIRQ('0'), UART_IRQ_INPUT);
+  avr_irq_register_notify(avr_io_getirq(avr, AVR_IOCTL_UART_GETIRQ('0'), UART_IRQ_OUTPUT), on_sent, NULL);
+  avr_irq_register_notify(avr_io_getirq(avr, AVR_IOCTL_UART_GETIRQ('0'), UART_IRQ_OUT_XON), on_can_receive, avr);
+  avr_irq_register_notify(avr_io_getirq(avr, AVR_IOCTL_UART_GETIRQ('0'), UART_IRQ_OUT_XOFF), on_can_receive, NULL);
+  pulses = arguments + 2;
+  if (*pulses != NULL) {
+    echo = avr_io_getirq(avr, AVR_IOCTL_IOPORT_GETIRQ('D'), 6);
+    watch('D', 7, on_trigger, NULL);
+    /* Against the pull-ups: a sensor that is there holds its line low. */
+    avr_ioport_external_t lines = {.name = 'D', .mask = 1 << 6 | 1 << 2, .value = (atoi(*pulses) == 0) << 6 | 1 << 2};
+    avr_ioctl(avr, AVR_IOCTL_IOPORT_SET_EXTERNAL('D'), &lines);
+    watch('D', 6, on_pin, "echo");
+    watch('B', 1, on_pin, "left-brake");
+    watch('B', 4, on_pin, "left-direction");
+    watch('B', 0, on_pin, "right-brake");
+    watch('B', 5, on_pin, "right-direction");
+  }
+  int state = cpu_Running;
+  while (state != cpu_Done && state != cpu_Crashed) {
+    if (can_receive && *pulses == NULL) {
+      int byte = getchar();
+      can_receive = byte != EOF;
+      if (can_receive) {
+        avr_raise_irq(uart_in, (uint32_t)byte);
+      }
+    }
+    state = avr_run(avr);
+    if (*pulses != NULL && has_told) {
+      state = cpu_Done;
+    }
+  }
+  return state == cpu_Done ? 0 : 1;
+}

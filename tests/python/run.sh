@@ -1,0 +1,30 @@
+#!/usr/bin/env bash
+# The Python package: builds the wheel, installs it into a fresh environment, holds its types against what it is, and runs
+# its tests and its notebook. Follows the Rust tests, and builds the wheel from what was compiled for those.
+set -euo pipefail
+cd "$(dirname "$0")/../.."
+exec </dev/null
+. tests/install.sh
+
+# With its venv, which Debian packs apart.
+python3 -c 'import ensurepip' 2>/dev/null || need python3-venv python3-venv
+if ! python3 -c 'import sys; sys.exit(sys.version_info < (3, 11))'; then
+    echo "the Python package needs Python 3.11 or newer" >&2
+    exit 1
+fi
+[ -x target/debug/mindgap-under-test ] || cargo test --workspace --no-run
+fresh=$(mktemp -d)
+trap 'rm -rf "$fresh"' EXIT
+quietly() { PIP_DISABLE_PIP_VERSION_CHECK=1 "$@" -q; }
+
+tools=target/python/tools
+[ -x $tools/bin/maturin ] || { python3 -m venv $tools && quietly $tools/bin/pip install maturin==1.16.0; }
+# The settings of [profile.test].
+export CARGO_PROFILE_DEV_OPT_LEVEL=2 CARGO_PROFILE_DEV_DEBUG=false CARGO_PROFILE_DEV_INCREMENTAL=false
+$tools/bin/maturin build --quiet --profile dev --features as-in-tests --manifest-path python/Cargo.toml --out "$fresh/wheels"
+
+python3 -m venv "$fresh/venv"
+quietly "$fresh/venv/bin/pip" install "$fresh"/wheels/mindgap-*.whl -r tests/python/requirements.txt
+# The package is its native module of the same name, which has no types of its own.
+"$fresh/venv/bin/stubtest" mindgap --mypy-config-file tests/python/mypy.ini --allowlist <(echo mindgap.mindgap)
+MINDGAP=$PWD/target/debug/mindgap-under-test "$fresh/venv/bin/pytest" -q -p no:cacheprovider tests/python

@@ -1,0 +1,193 @@
+"""The wheel as a user meets it: frames in, and what the command finds out."""
+
+import json
+import os
+import subprocess
+import threading
+import time
+from pathlib import Path
+
+import nbformat
+import numpy as np
+import pandas as pd
+import pytest
+from nbclient import NotebookClient
+
+import mindgap
+
+NOTEBOOK = Path(__file__).parents[2] / "python" / "examples" / "gap.ipynb"
+SCENE = {
+    "arena": {"width_cm": 200, "height_cm": 150},
+    "obstacle": [{"x_cm": 90, "y_cm": 70, "width_cm": 20, "height_cm": 20}],
+    "target": {"x_cm": 160, "y_cm": 40},
+    "start": [{"x_cm": 40, "y_cm": 40, "heading_deg": 0}],
+}
+
+
+@pytest.fixture(scope="module")
+def logs():
+    return mindgap.record(runs=12, steps=40, seed=1)
+
+
+@pytest.fixture(scope="module")
+def simulator(logs):
+    return mindgap.train(logs, seed=1)
+
+
+@pytest.fixture(scope="module")
+def weak():
+    return mindgap.record(runs=12, steps=40, effects=["motor_asymmetry=0.15"], seed=2)
+
+
+@pytest.fixture(scope="module")
+def diagnosis(simulator, weak):
+    return mindgap.diagnose(simulator, weak)
+
+
+def command(folder, *arguments):
+    """What the command writes to standard output, as JSON."""
+    done = subprocess.run([os.environ["MINDGAP"], *arguments], cwd=folder, check=True, capture_output=True)
+    return json.loads(done.stdout)
+
+
+def in_one_line(refusal):
+    assert "\n" not in str(refusal.value)
+    return str(refusal.value)
+
+
+def test_logs_go_through_frames_and_arrays_unchanged(logs):
+    frame = logs.frame()
+    assert set(frame["run"]) == set(logs.runs) and len(logs) == 12
+    assert frame["echo_cm"].isna().any(), "some readings are missing"
+    structured = {name: rows.drop(columns="run").to_records(index=False) for name, rows in frame.groupby("run")}
+    for given in [frame, logs.runs, structured]:
+        again = mindgap.Logs(given, logs.robot, logs.scene)
+        pd.testing.assert_frame_equal(again.frame(), frame)
+        assert (again.robot, again.scene) == (logs.robot, logs.scene)
+
+
+def test_arrays_of_any_number_and_stride_are_taken(logs):
+    runs = {name: {column: array[::2].astype("float32") for column, array in run.items()} for name, run in logs.runs.items()}
+    robot = logs.robot | {"step_ms": 2 * logs.robot["step_ms"]}
+    assert len(mindgap.Logs(runs, robot).frame()) == sum(len(run["t_ms"]) for run in runs.values())
+
+
+def test_what_is_wrong_is_one_line_with_its_place(logs, simulator, tmp_path):
+    frame = logs.frame()
+    frame.loc[3, "left"] = 180.0
+    with pytest.raises(mindgap.Error) as refusal:
+        mindgap.Logs(frame, logs.robot, logs.scene)
+    assert in_one_line(refusal) == "run-000:5: left = 180 lies outside -100..100"
+    with pytest.raises(mindgap.Error) as refusal:
+        mindgap.Logs(logs.frame().drop(columns="heading_deg"), logs.robot)
+    assert "heading_deg is missing" in in_one_line(refusal)
+    with pytest.raises(mindgap.Error, match="robot.*wheel_diameter_cm"):
+        mindgap.Logs(logs.frame(), {"step_ms": 400}, SCENE)
+    with pytest.raises(mindgap.Error, match="nowhere"):
+        mindgap.Logs.read(tmp_path / "nowhere")
+    with pytest.raises(mindgap.Error, match="start 7"):
+        mindgap.evolve(simulator, SCENE, start=7)
+    with pytest.raises(TypeError, match="kinematic"):
+        mindgap.diagnose("textbook", logs)
+
+
+def test_an_unknown_column_is_warned_of(logs):
+    with pytest.warns(UserWarning, match="temperature"):
+        mindgap.Logs(logs.frame().assign(temperature=20.0), logs.robot, logs.scene)
+
+
+def test_a_diagnosis_is_that_of_the_command(simulator, weak, diagnosis, tmp_path):
+    simulator.write(tmp_path / "sim.json")
+    weak.write(tmp_path / "weak")
+    read = mindgap.diagnose(mindgap.Simulator.read(tmp_path / "sim.json"), mindgap.Logs.read(tmp_path / "weak"))
+    assert read.facts == command(tmp_path, "diagnose", "sim.json", "weak", "--json", "-")
+    textbook = mindgap.diagnose("kinematic", mindgap.Logs.read(tmp_path / "weak"), seed=5)
+    assert textbook.facts == command(tmp_path, "diagnose", "kinematic", "weak", "--seed", "5", "--json", "-")
+    # Files keep two decimals.
+    assert diagnosis.verdict == read.verdict == "known"
+    assert list(diagnosis.effects["id"]) == ["motor_asymmetry"] and repr(diagnosis).endswith("known: motor_asymmetry>")
+    assert 0.8 < diagnosis.effects["parameters.factor"][0] < 0.9
+    assert diagnosis.budget["share"].sum() == pytest.approx(1.0)
+    assert set(diagnosis.where["channel"]) <= {"forward", "lateral", "turn", "echo_probability", "echo_value"}
+
+
+def test_an_evaluation_is_that_of_the_command(simulator, logs, tmp_path):
+    simulator.write(tmp_path / "sim.json")
+    logs.write(tmp_path / "logs")
+    evaluation = mindgap.evaluate(simulator, mindgap.Logs.read(tmp_path / "logs"))
+    assert evaluation.facts == command(tmp_path, "evaluate", "sim.json", "logs", "--json", "-")
+    networks = evaluation.networks.set_index("network")
+    assert networks.loc["turn", "r2"] > 0.8 and np.isnan(networks.loc["turn", "brier"])
+
+
+def test_a_mended_simulator_has_the_effect(diagnosis, weak):
+    mended = diagnosis.mended()
+    assert [effect["effect"] for effect in mended.added] == ["motor_asymmetry"]
+    assert mindgap.diagnose(mended, weak).verdict == "no_gap"
+
+
+def test_a_controller_is_evolved_and_run_as_by_the_command(simulator, tmp_path):
+    evolution = mindgap.evolve(simulator, SCENE, max_steps=15, seed=3)
+    simulation = mindgap.simulate(simulator, evolution.controller, SCENE, runs=8, seed=4)
+    assert len(simulation.runs) == 8 and set(simulation.paths["run"]) == set(range(1, 9))
+    assert evolution.facts["success"] > 0.5 and 0.0 <= evolution.facts["chance"]["success"] <= 1.0
+    assert len(evolution.controller.tuples) == 6
+    simulator.write(tmp_path / "sim.json")
+    evolution.controller.write(tmp_path / "controller.toml")
+    mindgap.Logs(mindgap.record(runs=1, steps=3).runs, simulator.robot, SCENE).write(tmp_path / "room")
+    again = mindgap.Controller.read(tmp_path / "controller.toml")
+    assert again.facts["tuple"] == evolution.controller.facts["tuple"]
+    told = command(
+        tmp_path, "simulate", "sim.json", "controller.toml", "--scene", "room/scene.toml",
+        "--runs", "8", "--seed", "4", "--json", "-",
+    )
+    assert simulation.success == told["success"] and len(told["runs"]) == 8
+    assert [run["end_x_cm"] for run in told["runs"]] == pytest.approx(list(simulation.runs["end_x_cm"]))
+
+
+def test_pictures_and_pages_are_shown_and_written(diagnosis, simulator, logs, tmp_path):
+    for found in [diagnosis, mindgap.evaluate(simulator, logs)]:
+        for figure in found.figures():
+            assert figure._repr_svg_() == figure.svg and figure.svg.startswith("<svg")
+            assert figure.png().startswith(b"\x89PNG") and figure.pdf().startswith(b"%PDF")
+        assert found._repr_html_().count("<div>") == len(found.figures())
+        found.write_figures(tmp_path / type(found).__name__)
+    assert (tmp_path / "Diagnosis" / "budget.pdf").exists()
+    page = diagnosis.page()
+    assert page._repr_html_().startswith("<iframe") and '"' not in page._repr_html_().split('srcdoc="')[1].split('"')[0]
+    page.write(tmp_path / "gap.html")
+    assert (tmp_path / "gap.html").read_text() == page.html
+
+
+def test_what_others_wrote_is_replaced_only_if_asked_for(simulator, tmp_path):
+    mine = tmp_path / "sim.json"
+    mine.write_text("mine")
+    with pytest.raises(mindgap.Error, match="sim.json"):
+        simulator.write(mine)
+    assert mine.read_text() == "mine"
+    simulator.write(mine, force=True)
+    assert mindgap.Simulator.read(mine).origin == simulator.origin
+
+
+def test_other_threads_run_meanwhile(logs):
+    ended, ticks = threading.Event(), []
+    def tick():
+        while not ended.is_set():
+            ticks.append(None)
+            time.sleep(0.001)
+    clock = threading.Thread(target=tick)
+    clock.start()
+    before = len(ticks)
+    mindgap.train(logs)
+    meanwhile = len(ticks) - before
+    ended.set()
+    clock.join()
+    assert meanwhile > 10
+
+
+def test_the_notebook_runs_from_top_to_bottom(tmp_path):
+    notebook = nbformat.read(NOTEBOOK, as_version=4)
+    NotebookClient(notebook, timeout=600, resources={"metadata": {"path": str(tmp_path)}}).execute()
+    shown = [output.get("data", {}) for cell in notebook.cells if cell.cell_type == "code" for output in cell.outputs]
+    assert any("srcdoc" in "".join(data.get("text/html", "")) for data in shown), "a page is shown"
+    assert any("image/svg+xml" in data for data in shown), "a figure is shown"

@@ -1,0 +1,52 @@
+//! Measures the loop on the built-in robot in generated rooms against procedures without it, as rows of CSV for
+//! docs/loop.md: `cargo run --release -p mindgap-tests --bin loop-trials -- SIM LOGS FIRST COUNT PROCEDURE…`. `LOGS` are those
+//! that `SIM` was trained on; `FIRST` and `COUNT` say which of the 360 cases, which are in random order.
+
+mod cases;
+mod procedures;
+
+use std::path::Path;
+use std::process::ExitCode;
+
+use mindgap_host_sim::error::{Error, Result};
+use mindgap_host_sim::logs::Logs;
+use mindgap_host_sim::simulator::Simulator;
+use procedures::{PROCEDURES, Settled, Workbench};
+
+fn main() -> ExitCode {
+    match measure() {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("loop-trials: {error}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn measure() -> Result<()> {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let [sim, logs, first, count, wanted @ ..] = arguments.as_slice() else {
+        return Err(Error::new("SIM LOGS FIRST COUNT PROCEDURE…"));
+    };
+    let number = |text: &String| text.parse::<usize>().map_err(|e| Error::new(format!("{text}: {e}")));
+    let (path, logs) = (Path::new(sim), Logs::read(Path::new(logs), |_| {})?);
+    let simulator = Simulator::read(path)?;
+    let known = || PROCEDURES.map(|(name, _)| name).join(", ");
+    let procedure = |name: &String| {
+        let found = PROCEDURES.into_iter().find(|(known, _)| known == name);
+        found.ok_or_else(|| Error::new(format!("{name} is none of {}", known())))
+    };
+    let procedures = wanted.iter().map(procedure).collect::<Result<Vec<_>>>()?;
+    let cases = cases::all(simulator.robot.body_radius_cm);
+    println!("case,room,start,effect,procedure,trials,fresh_successes,verdict");
+    for (case, at) in cases.iter().zip(0..).skip(number(first)?).take(number(count)?) {
+        let bench = Workbench { path, simulator: &simulator, logs: &logs, case };
+        for (name, run) in &procedures {
+            let Settled { controller, trials, verdict } = run(&bench)?;
+            let effect = case.effect.map_or_else(|| "none".into(), |effect| effect.to_string());
+            let successes = case.fresh_successes(&controller);
+            println!("{at},{},{},{effect},{name},{trials},{successes},{verdict}", case.room, case.start);
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,229 @@
+//! Procedures that come to a controller for a robot, with or without trials on it.
+
+use std::path::Path;
+
+use mindgap_core::controller::Controller;
+use mindgap_host_sim::adapt::adapt;
+use mindgap_host_sim::built_in_robot::Termination;
+use mindgap_host_sim::chance::derive;
+use mindgap_host_sim::demo::robot::TrialledRobot;
+use mindgap_host_sim::error::{Error, Result};
+use mindgap_host_sim::evolve::chance::{Judge, ROBOTS, RUNS};
+use mindgap_host_sim::evolve::controller_file::ControllerFile;
+use mindgap_host_sim::evolve::fitness::{FitnessEvaluator, RandomNumbers};
+use mindgap_host_sim::evolve::genome::GenotypeDecoder;
+use mindgap_host_sim::evolve::paper;
+use mindgap_host_sim::evolve::robust::{self, EvolutionTask};
+use mindgap_host_sim::evolve::way::WayMap;
+use mindgap_host_sim::learn::train::{TABLE_ONE, Trainer, train};
+use mindgap_host_sim::logs::{Logs, Run, Scene};
+use mindgap_host_sim::simulator::environment::Environment;
+use mindgap_host_sim::simulator::nominal::NominalModel;
+use mindgap_host_sim::simulator::{Noise, Simulator};
+use mindgap_host_sim::trials::{self, Job};
+
+use crate::cases::{Case, SEED};
+
+/// A name, and what it stands for.
+pub type Procedure = (&'static str, fn(&Workbench) -> Result<Settled>);
+
+/// All procedures.
+pub const PROCEDURES: [Procedure; 7] = [
+    ("paper", by_the_paper),
+    ("straight", evolve_straight),
+    ("evolve", evolve),
+    ("three", try_three),
+    ("retrain", retrain),
+    ("correct", correct),
+    ("loop", loops),
+];
+
+const TRIALS: usize = 5;
+const MAX_STEPS: u16 = 60;
+/// Rows at the end of a run that a wall may have ended.
+const LAST_ROWS: usize = 2;
+/// The first of the runs that procedures see.
+const SEEN: u64 = 1000;
+
+/// What a procedure is given.
+pub struct Workbench<'a> {
+    /// The simulator's file.
+    pub path: &'a Path,
+    /// The same as it was read.
+    pub simulator: &'a Simulator,
+    /// The logs that it was trained on.
+    pub logs: &'a Logs,
+    /// What it is for.
+    pub case: &'a Case,
+}
+
+/// What a procedure comes to.
+pub struct Settled {
+    /// The controller.
+    pub controller: Controller,
+    /// Runs on the robot until then.
+    pub trials: usize,
+    /// What the procedure itself says of it.
+    pub verdict: &'static str,
+}
+
+/// The paper's: the networks as they are, the straight distance, one run of its genetic algorithm.
+fn by_the_paper(bench: &Workbench) -> Result<Settled> {
+    let Workbench { simulator, case, .. } = bench;
+    let evaluator = FitnessEvaluator {
+        environment: &Environment::new(simulator, &case.scene, case.pose(), Noise::Paper)?,
+        target_cm: case.target_cm(),
+        way: None,
+        decoder: GenotypeDecoder::new(simulator, MAX_STEPS),
+        runs: paper::RUNS,
+        floor_cm: paper::FLOOR_CM,
+        random_numbers: RandomNumbers::Independent,
+        seed: bench.seed(),
+    };
+    Ok(untried(paper::evolve(&evaluator, &paper::settings(), |_, _| {}).controller))
+}
+
+/// As `mindgap evolve` was before it knew ways round obstacles and what logs leave open.
+fn evolve_straight(bench: &Workbench) -> Result<Settled> {
+    let plain = Simulator { ensemble: None, ..bench.simulator.clone() };
+    // In a room without obstacles every way is straight.
+    let empty = Scene { obstacles: Vec::new(), ..bench.case.scene.clone() };
+    Ok(untried(bench.candidates(&plain, &empty)?.swap_remove(0)))
+}
+
+/// As `mindgap evolve` does.
+fn evolve(bench: &Workbench) -> Result<Settled> {
+    Ok(untried(bench.judged()?.swap_remove(0)))
+}
+
+/// The one of its candidates that comes nearest in a trial.
+fn try_three(bench: &Workbench) -> Result<Settled> {
+    let case = bench.case;
+    let candidates = bench.judged()?;
+    let trials = candidates.len();
+    let missed_cm = |controller: &Controller| case.missed_cm(&case.drive(controller, SEEN));
+    let nearest = candidates.into_iter().min_by(|a, b| missed_cm(a).total_cmp(&missed_cm(b)));
+    let controller = nearest.ok_or_else(|| Error::new("no candidate"))?;
+    Ok(Settled { controller, trials, verdict: "" })
+}
+
+/// Motion networks that are trained again on all logs after each trial.
+fn retrain(bench: &Workbench) -> Result<Settled> {
+    let Workbench { simulator, logs, .. } = bench;
+    bench.with_trials(|runs| {
+        // Without walls nothing is learned of the sensor: the new runs were driven in another room.
+        let runs = logs.runs.iter().chain(runs).cloned().collect();
+        let all = Logs { robot: logs.robot, scene: Scene::default(), runs };
+        let again = train(&all, &Trainer::Fast, &TABLE_ONE, bench.seed(), |_| {})?;
+        let motion = again.reference.and_then(|reference| reference.motion);
+        let reference = simulator.reference.clone().map(|before| NominalModel { motion, ..before });
+        let (forward, lateral, turn) = (again.forward, again.lateral, again.turn);
+        Ok(Simulator { forward, lateral, turn, reference, ensemble: None, ..(*simulator).clone() })
+    })
+}
+
+/// The robot in the middle of those that remain possible after each trial, as if it were certain.
+fn correct(bench: &Workbench) -> Result<Settled> {
+    let Workbench { simulator, case, .. } = bench;
+    bench.with_trials(|runs| {
+        if runs.is_empty() {
+            return Ok((*simulator).clone());
+        }
+        let logs = Logs { robot: simulator.robot, scene: case.scene.clone(), runs: runs.to_vec() };
+        Ok(adapt(simulator, &logs, bench.seed())?.simulator)
+    })
+}
+
+/// `mindgap loop`.
+fn loops(bench: &Workbench) -> Result<Settled> {
+    let folder = tempfile::tempdir().map_err(|e| Error::new(e.to_string()))?;
+    let scene = folder.path().join("scene.toml");
+    bench.case.scene.write(&scene)?;
+    let job = Job {
+        folder: &folder.path().join("loop"),
+        simulator: bench.path,
+        scene: &scene,
+        start: bench.case.start,
+        trials: TRIALS,
+        max_steps: MAX_STEPS,
+        known: &[],
+        seed: bench.seed(),
+    };
+    let state = trials::run(&job, &mut TrialledRobot(bench.case.effects()), |_| {})?;
+    let controller = ControllerFile::read(&job.folder.join("controller.toml"))?.controller;
+    let verdict = match state.verdict {
+        trials::state::Verdict::Works => "works",
+        trials::state::Verdict::OutOfReach => "out of reach",
+        trials::state::Verdict::Spent | trials::state::Verdict::Running => "spent",
+    };
+    Ok(Settled { controller, trials: state.trials.len(), verdict })
+}
+
+fn untried(controller: Controller) -> Settled {
+    Settled { controller, trials: 0, verdict: "" }
+}
+
+impl Workbench<'_> {
+    fn seed(&self) -> u64 {
+        derive(SEED, &[self.case.room, self.case.start as u64])
+    }
+
+    /// Controllers that are evolved on the robot in the middle, or the networks alone, with ways as they are in a room.
+    fn candidates(&self, simulator: &Simulator, ways_of: &Scene) -> Result<Vec<Controller>> {
+        let Case { scene, .. } = self.case;
+        let robots = simulator.ensemble.as_ref().and_then(|ensemble| ensemble.robots(1, self.seed()));
+        let environment = Environment::new(simulator, scene, self.case.pose(), Noise::Learned)?.with_beam(simulator);
+        let environment = robots.iter().fold(environment, |any, robots| any.of_robot(&robots.mean));
+        let target_cm = self.case.target_cm();
+        let task = EvolutionTask {
+            environment: &environment,
+            target_cm,
+            way: &WayMap::new(ways_of, target_cm, simulator.robot.body_radius_cm),
+            decoder: GenotypeDecoder::new(simulator, MAX_STEPS),
+            random_numbers: RandomNumbers::Common,
+            seed: self.seed(),
+        };
+        Ok(robust::candidates(&task, |_, _| {}).into_iter().map(|evolved| evolved.controller).collect())
+    }
+
+    /// The candidates of `mindgap evolve`, those first that are most likely to succeed on robots that are possible.
+    fn judged(&self) -> Result<Vec<Controller>> {
+        let Workbench { simulator, case, .. } = self;
+        let candidates = self.candidates(simulator, &case.scene)?;
+        let robots = simulator.ensemble.as_ref().and_then(|ensemble| ensemble.robots(ROBOTS, self.seed()));
+        let robots = robots.ok_or_else(|| Error::new("the simulator does not say what its logs leave open"))?;
+        let judge = Judge::new(simulator, &robots.drawn, &case.scene, case.pose(), case.target_cm(), self.seed())?;
+        let chances = judge.chances(&candidates, RUNS);
+        let mut judged: Vec<_> = candidates.into_iter().zip(chances).collect();
+        judged.sort_by(|a, b| b.1.success.total_cmp(&a.1.success));
+        Ok(judged.into_iter().map(|(controller, _)| controller).collect())
+    }
+
+    /// Evolves in what `learn` makes of the runs so far, and drives; a controller that reached the target is driven again
+    /// and kept if it does so twice.
+    fn with_trials(&self, learn: impl Fn(&[Run]) -> Result<Simulator>) -> Result<Settled> {
+        let (mut runs, mut last): (Vec<Run>, Option<(Controller, bool)>) = (Vec::new(), None);
+        for trial in 1..=TRIALS {
+            let again = last.take().filter(|(_, reached)| *reached);
+            let confirms = again.is_some();
+            let controller = match again {
+                Some((controller, _)) => controller,
+                None => self.candidates(&learn(&runs)?, &self.case.scene)?.swap_remove(0),
+            };
+            let driven = self.case.drive(&controller, SEEN + trial as u64);
+            let reached = self.case.reached(&driven);
+            if confirms && reached {
+                return Ok(Settled { controller, trials: trial, verdict: "works" });
+            }
+            let mut run = driven.to_run("run");
+            if driven.termination == Termination::Crashed {
+                let first = run.rows.len().saturating_sub(LAST_ROWS);
+                (first..run.rows.len()).for_each(|row| run.rows.edit(row, |row| row.pose = None));
+            }
+            runs.push(run);
+            last = Some((controller, reached));
+        }
+        let (controller, _) = last.ok_or_else(|| Error::new("no trial"))?;
+        Ok(Settled { controller, trials: TRIALS, verdict: "spent" })
+    }
+}

@@ -1,0 +1,237 @@
+//! How often a robot ends where the distribution over robots expects it: commands of logs are replayed open-loop on robots
+//! drawn from it, and the region that holds a share of their ends should hold that share of the logged ones.
+
+use glam::DVec2;
+use mindgap_host_sim::built_in_robot::{BuiltInRobot, Termination, default_robot, four_obstacles, run_controller};
+use mindgap_host_sim::chance::{Generator, generator};
+use mindgap_host_sim::evolve::genome::GenotypeDecoder;
+use mindgap_host_sim::geometry::{Pose, wrap_rad};
+use mindgap_host_sim::logs::{Logs, Run};
+use mindgap_host_sim::simulator::Simulator;
+use mindgap_host_sim::simulator::ensemble::{Member, Robots};
+use mindgap_host_sim::simulator::motion::{MotionNetworks, Speeds};
+use mindgap_host_sim::simulator::nominal::MotionBias;
+use mindgap_host_sim::simulator::residuals::{LEVELS, ResidualQuantiles, motion_context};
+use rand::RngExt;
+use rand_distr::{Distribution, StandardNormal};
+
+/// Shares of the ends that the regions hold.
+pub const REGIONS: [f64; 3] = [0.5, 0.8, 0.95];
+/// Lengths of paths in steps.
+pub const LENGTHS: [usize; 3] = [5, 10, 25];
+
+/// Robots drawn, of which each drives every path once.
+const ROBOTS: usize = 200;
+/// A step longer than this multiple of the usual one spans missing rows.
+const LONGEST_STEP: f64 = 1.5;
+/// Rows at the end of a run that a wall may have ended.
+const LAST_ROWS: usize = 3;
+const MAX_STEPS: u16 = 60;
+
+/// What was found for one length.
+#[derive(Clone, Copy, Debug)]
+pub struct Coverage {
+    /// Length of the paths in steps.
+    pub steps: usize,
+    /// Paths.
+    pub paths: usize,
+    /// Share of them that end within each of [`REGIONS`] about the place that is expected.
+    pub places: [f64; 3],
+    /// Share whose heading then is within each.
+    pub headings: [f64; 3],
+}
+
+/// The coverage for every length of which the logs have paths; none of a simulator that does not say what it leaves open.
+pub fn coverage(simulator: &Simulator, logs: &Logs, seed: u64) -> Option<Vec<Coverage>> {
+    let Robots { drawn, .. } = simulator.ensemble.as_ref()?.robots(ROBOTS, seed)?;
+    let correction = simulator.reference.as_ref()?.motion.as_ref()?;
+    let replay = Replay {
+        networks: simulator.motion_networks()?.corrected(Some(correction)),
+        correction,
+        residuals: [
+            &simulator.forward.as_ref()?.residuals,
+            &simulator.lateral.as_ref()?.residuals,
+            &simulator.turn.as_ref()?.residuals,
+        ],
+        step_ms: simulator.robot.step_ms,
+    };
+    let mut rng = generator(seed, &[]);
+    let mut of_length = |steps: usize| {
+        let levels: Vec<[f64; 2]> = logs
+            .runs
+            .iter()
+            .flat_map(|run| replay.paths(run, steps))
+            .map(|path| path.levels(&drawn, &mut rng))
+            .collect();
+        let within = |of: usize| {
+            REGIONS.map(|region| levels.iter().filter(|level| level[of] < region).count() as f64 / levels.len() as f64)
+        };
+        Coverage { steps, paths: levels.len(), places: within(0), headings: within(1) }
+    };
+    Some(LENGTHS.map(&mut of_length).into_iter().filter(|coverage| coverage.paths > 0).collect())
+}
+
+/// Runs of random controllers on the built-in robot, without what a wall did to it. Their commands are held for long.
+pub fn controller_runs(simulator: &Simulator, runs: usize, seed: u64) -> Logs {
+    let (robot, scene) = (default_robot(), four_obstacles());
+    let built_in = BuiltInRobot::new(&robot, &scene, &[]);
+    let decoder = GenotypeDecoder::new(simulator, MAX_STEPS);
+    let mut rng = generator(seed, &[]);
+    let mut driven = Vec::new();
+    while driven.len() < runs {
+        let controller = decoder.controller(&decoder.random(&mut rng));
+        let start = scene.starts[driven.len() % scene.starts.len()];
+        let trajectory = run_controller(&built_in, &controller, start, &mut rng);
+        let mut run = trajectory.to_run("run");
+        if trajectory.termination == Termination::Crashed {
+            run.rows.truncate(run.rows.len().saturating_sub(LAST_ROWS));
+        }
+        if run.rows.len() > LENGTHS[0] {
+            driven.push(run);
+        }
+    }
+    Logs { robot, scene, runs: driven }
+}
+
+/// What predicts a step.
+struct Replay<'a> {
+    networks: MotionNetworks<'a>,
+    correction: &'a MotionBias,
+    residuals: [&'a ResidualQuantiles; 3],
+    step_ms: f64,
+}
+
+/// Steps of a run between two poses.
+struct LoggedPath<'a> {
+    replay: &'a Replay<'a>,
+    steps: Vec<Step>,
+    from: Pose,
+    to: Pose,
+}
+
+/// A logged step without its outcome.
+struct Step {
+    /// Left, right, previous left and previous right command.
+    speeds: Speeds<f32>,
+    /// What it is without a robot's bias: forward (cm), lateral (cm), turn (degrees).
+    unbiased: [f64; 3],
+    /// Its length against the usual one.
+    stretch: f64,
+}
+
+impl Replay<'_> {
+    /// Paths of a run, each beginning in the middle of the one before.
+    fn paths<'a>(&'a self, run: &'a Run, steps: usize) -> impl Iterator<Item = LoggedPath<'a>> {
+        let last = run.rows.len().saturating_sub(steps);
+        (0..last).step_by(steps.div_ceil(2)).filter_map(move |first| self.path(run, first, steps))
+    }
+
+    fn path(&self, run: &Run, first: usize, count: usize) -> Option<LoggedPath<'_>> {
+        let (from, to) = (run.rows.at(first).pose?, run.rows.at(first + count).pose?);
+        let steps: Vec<Step> = (first..first + count).map(|row| self.step(run, row)).collect();
+        let unbroken = steps.iter().all(|step| step.stretch <= LONGEST_STEP);
+        unbroken.then_some(LoggedPath { replay: self, steps, from, to })
+    }
+
+    fn step(&self, run: &Run, row: usize) -> Step {
+        let ([left, right], [left_before, right_before]) = (run.rows.at(row).command(), run.previous_command(row));
+        let speeds = [left, right, left_before, right_before].map(|command| command as f32);
+        let motion = self.networks.step(speeds);
+        // A robot's bias is in place of the correction of the held command.
+        let held = self.correction.correction(&[left, right, left, right]);
+        let [forward_cm, lateral_cm, turn_rad] = [
+            f64::from(motion.forward_cm) - held[0],
+            f64::from(motion.lateral_cm) - held[1],
+            f64::from(motion.turn_rad) - held[2],
+        ];
+        Step {
+            speeds,
+            unbiased: [forward_cm, lateral_cm, turn_rad.to_degrees()],
+            stretch: (run.rows.at(row + 1).t_ms - run.rows.at(row).t_ms) / self.step_ms,
+        }
+    }
+}
+
+impl LoggedPath<'_> {
+    /// The share of drawn ends that are nearer to the expected one than the logged end is: of places, and of headings.
+    fn levels(&self, robots: &[Member], rng: &mut Generator) -> [f64; 2] {
+        let ends: Vec<Pose> = robots.iter().map(|robot| self.end(robot, rng)).collect();
+        let count = ends.len() as f64;
+        let middle_cm = ends.iter().map(|end| end.position_cm).sum::<DVec2>() / count;
+        let turned = |end: &Pose| wrap_rad(end.heading_rad - ends[0].heading_rad);
+        let middle_rad = ends.iter().map(turned).sum::<f64>() / count;
+        let (mut xx, mut xy, mut yy) = (0.0, 0.0, 0.0);
+        for end in &ends {
+            let off = end.position_cm - middle_cm;
+            (xx, xy, yy) = (xx + off.x * off.x, xy + off.x * off.y, yy + off.y * off.y);
+        }
+        // The distance in standard deviations, up to a factor.
+        let distance = |end: &Pose| {
+            let off = end.position_cm - middle_cm;
+            yy * off.x * off.x - 2.0 * xy * off.x * off.y + xx * off.y * off.y
+        };
+        let angle = |end: &Pose| (turned(end) - middle_rad).abs();
+        let share = |of: &dyn Fn(&Pose) -> f64| ends.iter().filter(|end| of(end) < of(&self.to)).count() as f64 / count;
+        [share(&distance), share(&angle)]
+    }
+
+    /// Where a robot ends under these commands, as a tracker sees it that saw the begin.
+    fn end(&self, robot: &Member, rng: &mut Generator) -> Pose {
+        let residuals = &self.replay.residuals;
+        let tracker: [f64; 3] = residuals.map(|of| of.tracker_variance().sqrt());
+        let seen = |pose: Pose, rng: &mut Generator| {
+            let [forward_cm, lateral_cm, turn_deg] = tracker.map(|deviation| deviation * normal(rng));
+            pose.compose(&Pose::new(forward_cm, lateral_cm, turn_deg.to_radians()))
+        };
+        let start = seen(self.from, rng);
+        let end = self.steps.iter().fold(start, |pose, step| {
+            let motion = step.motion(robot, *residuals, rng).map(|moved| moved * step.stretch);
+            pose.compose(&Pose::new(motion[0], motion[1], motion[2].to_radians()))
+        });
+        seen(end, rng)
+    }
+}
+
+impl Step {
+    /// What a robot does in it: forward (cm), lateral (cm), turn (degrees).
+    fn motion(&self, robot: &Member, residuals: [&ResidualQuantiles; 3], rng: &mut Generator) -> [f64; 3] {
+        let [left, right, left_before, right_before] = self.speeds;
+        let bias = robot.bias([left, right].map(f64::from));
+        let first_step = if [left, right] == [left_before, right_before] {
+            [0.0; 3]
+        } else {
+            robot.first_step([left as i8, right as i8], [left_before as i8, right_before as i8])
+        };
+        let context = motion_context(&self.speeds);
+        [0, 1, 2].map(|channel| {
+            let of = residuals[channel];
+            let step = of.components[of.cell(context)].step;
+            let chance = f64::from(step * of.residual(context, rng.random_range(0..LEVELS)));
+            self.unbiased[channel] + bias[channel] + first_step[channel] + chance
+        })
+    }
+}
+
+fn normal(rng: &mut Generator) -> f64 {
+    StandardNormal.sample(rng)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use mindgap_host_sim::built_in_robot::{record, training_room};
+    use mindgap_host_sim::learn::train::{TABLE_ONE, Trainer, train};
+
+    /// Regions that hold much less would drive controllers into what nobody expects, and much more would hide them.
+    #[test]
+    fn regions_hold_the_share_of_paths_that_they_should() {
+        let recorded = |seed| record(&default_robot(), &training_room(), 50, 60, &[], seed).expect("room to drive");
+        let simulator = train(&recorded(1), &Trainer::Fast, &TABLE_ONE, 1, |_| {}).expect("networks");
+        for (name, logs) in [("random", recorded(2)), ("controllers", controller_runs(&simulator, 60, 3))] {
+            for coverage in coverage(&simulator, &logs, 4).expect("a distribution") {
+                let held = coverage.places[1];
+                assert!(coverage.paths > 20 && (0.65..=0.95).contains(&held), "{name}: {coverage:?}");
+            }
+        }
+    }
+}

@@ -1,0 +1,73 @@
+//! The book that the documents are.
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use libtest_mimic::Failed;
+use mindgap_tests::command::{Workshop, workspace};
+use mindgap_tests::rooms::SCENE;
+
+use crate::{PAGES, documents};
+
+const SUMMARY: &str = "docs/SUMMARY.md";
+
+/// What mdbook would leave out, and what it would not find.
+pub fn every_document_is_in_the_summary_once() -> Result<(), Failed> {
+    let summary = fs::read_to_string(workspace().join(SUMMARY))?;
+    let listed: Vec<PathBuf> = links(&summary).into_iter().map(|link| Path::new("docs").join(link)).collect();
+    let once: BTreeSet<PathBuf> = listed.iter().cloned().collect();
+    let there: BTreeSet<PathBuf> = documents()
+        .into_iter()
+        .filter(|name| name.starts_with("docs/") && name != SUMMARY)
+        .map(PathBuf::from)
+        .collect();
+    if listed.len() != once.len() || once != there {
+        return Err(format!("listed {listed:#?}\nthere {there:#?}").into());
+    }
+    Ok(())
+}
+
+/// The reader of the tutorial has to have the room in which it is run.
+pub fn the_tutorial_shows_its_scene() -> Result<(), Failed> {
+    let text = fs::read_to_string(workspace().join("docs/tutorial.md"))?;
+    if text.contains(&format!("```toml\n{SCENE}```")) { Ok(()) } else { Err("it shows another scene".into()) }
+}
+
+/// Links to other files; those into the web are not looked up.
+pub fn every_link_leads_somewhere() -> Result<(), Failed> {
+    let mut broken = Vec::new();
+    for name in documents() {
+        let path = workspace().join(&name);
+        let folder = path.parent().ok_or("a document lies in a folder")?;
+        for link in links(&fs::read_to_string(&path)?) {
+            if !link.contains("://") && !folder.join(&link).exists() {
+                broken.push(format!("{name}: {link}"));
+            }
+        }
+    }
+    if broken.is_empty() { Ok(()) } else { Err(broken.join("\n").into()) }
+}
+
+/// `mindgap manual --format markdown --out docs/commands --force` writes them anew.
+pub fn pages_are_those_of_the_command() -> Result<(), Failed> {
+    let workshop = Workshop::new();
+    workshop.done("manual --format markdown --out pages");
+    let written = workshop.listing().into_iter().filter(|(path, _)| path.is_file());
+    let written: Vec<(PathBuf, Vec<u8>)> =
+        written.map(|(path, bytes)| (Path::new(PAGES).join(path.file_name().unwrap_or_default()), bytes)).collect();
+    let stale = written.iter().filter(|(path, bytes)| fs::read(workspace().join(path)).ok().as_ref() != Some(bytes));
+    let stale: Vec<String> = stale.map(|(path, _)| path.display().to_string()).collect();
+    let there = documents().into_iter().filter(|name| name.starts_with(PAGES)).count();
+    if !stale.is_empty() || there != written.len() {
+        return Err(format!("write them anew with mindgap manual: {} of {there} differ: {stale:?}", stale.len()).into());
+    }
+    Ok(())
+}
+
+/// Where the links of a document lead, without places within files.
+fn links(text: &str) -> Vec<String> {
+    let ends = text.split("](").skip(1).filter_map(|rest| rest.split(')').next());
+    let files = ends.filter_map(|link| link.split('#').next());
+    files.filter(|link| !link.is_empty()).map(str::to_owned).collect()
+}
