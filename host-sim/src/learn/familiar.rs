@@ -86,7 +86,7 @@ mod tests {
             let sensor = Pose::new(100.0, 80.0, 0.1 * (i % 60) as f64);
             let outcomes =
                 sonar.outcomes(&fan_at(&training_room().sides(), &sensor, sonar.fan_width), &Perturbation::NONE);
-            let off_cm = (i % 60 % 2 == 0).then(|| off_cm(i / 60, i % 60));
+            let off_cm = i.is_multiple_of(2).then(|| off_cm(i / 60, i % 60));
             let echo_cm = off_cm.map(|off_cm| outcomes.mean_hit_cm().expect("walls all round") + off_cm);
             Seen { sensor, run: i / 60, none: outcomes.none, echo_cm, off_cm }
         };

@@ -183,7 +183,7 @@ mod tests {
         fn every_number_comes_back_to_its_last_bit(
             numbers in prop::collection::vec(
                 prop::option::of(prop_oneof![
-                    (-1_000_000i32..1_000_000, 0usize..6).prop_map(|(units, places)| f64::from(units) / 10f64.powi(places as i32)),
+                    (-1_000_000i32..1_000_000, 0u8..6).prop_map(|(units, places)| f64::from(units) / libm::pow(10.0, f64::from(places))),
                     any::<f64>().prop_filter("a number", |number| !number.is_nan()),
                 ]),
                 1..20,
