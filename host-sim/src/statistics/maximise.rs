@@ -320,7 +320,8 @@ mod tests {
     fn what_pulls_in_one_direction_is_followed_to_the_end() {
         let terms = |at: &[f64]| -> Vec<f64> {
             let near = at[0] * libm::exp(-0.5 * (at[1] - 60.0) * (at[1] - 60.0));
-            let term = |i: usize| libm::log(if i.is_multiple_of(5) { near + (1.0 - at[0]) * 1e-5 } else { 1.0 - at[0] });
+            let term =
+                |i: usize| libm::log(if i.is_multiple_of(5) { near + (1.0 - at[0]) * 1e-5 } else { 1.0 - at[0] });
             (0..500).map(term).collect()
         };
         let bounds = [Bounds::new(0.0, 0.6), Bounds { low: 5.0, high: 80.0, scale: 1.5 }];
