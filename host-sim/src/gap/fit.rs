@@ -12,7 +12,7 @@ use crate::effects::chain::EffectChain;
 use crate::effects::{Candidate, Effect};
 use crate::evaluation::observations::Observations;
 use crate::simulator::baseline::Baseline;
-use crate::statistics::maximise::{Bounds, Maximum, climb, climb_on};
+use crate::statistics::maximise::{Bounds, Maximum, climb, climb_on, step_of_one};
 
 /// What is fitted, to what, and what counts.
 pub struct FitContext<'a> {
@@ -63,6 +63,8 @@ const LEFT_OUT: usize = 8;
 
 /// A fit ends after this many iterations: ridges of two parameters take twenty.
 pub const MOST_ITERATIONS: usize = 30;
+/// A climb that ended on the way is set going again so often: by the shares of a ghost that does not scatter, four times.
+const MOST_STEPS_OF_ONE: usize = 6;
 /// Iterations after which it shows whether a fit is promising.
 const SKETCH_ITERATIONS: usize = 3;
 /// So many starts are tried, where they lag behind the best by less than what a few iterations gain at the least.
@@ -340,7 +342,12 @@ impl Problem<'_> {
     /// The fit to the end.
     fn settle(self, sketch: Maximum) -> Fitted {
         let bounds = self.hypothesis.bounds();
-        let found = climb_on(&bounds, sketch, MOST_ITERATIONS, TOLERANCE_NATS, |at| self.terms(at));
+        let on = |from: Maximum| climb_on(&bounds, from, MOST_ITERATIONS, TOLERANCE_NATS, |at| self.terms(at));
+        let mut found = on(sketch);
+        for _ in 0..MOST_STEPS_OF_ONE {
+            let Some(further) = step_of_one(&bounds, &found, TOLERANCE_NATS, |at| self.terms(at)) else { break };
+            found = on(further);
+        }
         let Problem { hypothesis, untouched, context } = self;
         let without = without_each_block(&found, &bounds, context);
         let held_out = held_out(&without, &found, &hypothesis, untouched, context);
@@ -387,14 +394,13 @@ fn jackknife_errors(values: &[f64], without: &[Vec<f64>]) -> Vec<f64> {
 }
 
 /// By how much the evidence exceeds the held-out log-likelihood: the prior at the maximum times the volume about it, less
-/// what held-out rows lose where they are independent, which is one nat a parameter that they tell of. A gain from freedom
-/// alone is none.
+/// what held-out rows lose where they are independent, which is one nat a parameter. A gain from freedom alone is none.
 fn occam(found: &Maximum, hypothesis: &Hypothesis, bounds: &[Bounds]) -> f64 {
     // The prior is the last of the terms.
     let rows = found.scores.len() - 1;
     let volume = found.log_volume(bounds, &hypothesis.prior_precisions(), |term| term < rows);
     let prior = hypothesis.log_prior_peak() + hypothesis.log_prior(&found.at);
-    found.told(|term| term < rows) + (prior + volume).min(0.0)
+    bounds.len() as f64 + (prior + volume).min(0.0)
 }
 
 #[cfg(test)]

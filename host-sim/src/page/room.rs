@@ -63,8 +63,8 @@ mod tests {
     #[test]
     fn a_room_holds_its_walls_and_whoever_left_it() {
         let scene = Scene { arena_cm: Some(DVec2::new(300.0, 200.0)), ..Scene::default() };
-        let room = Room::new(&scene, 15.0, [DVec2::new(-20.0, 10.0)].into_iter());
-        assert_eq!(room.bounds, [-20.0, 0.0, 300.0, 200.0]);
+        let left = [DVec2::new(-20.0, 10.0), DVec2::new(180.0, 90.0)].into_iter();
+        assert_eq!(Room::new(&scene, 15.0, left).bounds, [-20.0, 0.0, 300.0, 200.0]);
         let hall = Scene { arena_cm: Some(DVec2::splat(2000.0)), ..Scene::default() };
         let corner = [DVec2::new(100.0, 100.0), DVec2::new(500.0, 300.0)].into_iter();
         assert_eq!(Room::new(&hall, 15.0, corner).bounds, [0.0, 0.0, 600.0, 400.0], "a corner of a hall");

@@ -27,7 +27,7 @@ fn amounts_rates_and_ranges_are_counted() {
     assert_eq!((holds.runs, holds.rows, holds.steps), (8, 248, 238));
     assert_eq!((holds.duration_s, holds.step_ms, holds.jitter_ms), (60.0, 250.0, 0.0));
     assert!((holds.with_pose - 247.0 / 248.0).abs() < 1e-12 && (holds.with_reading - 247.0 / 248.0).abs() < 1e-12);
-    assert_eq!(holds.left, Some(Range { low: -90.0, high: 97.0 }));
+    assert_eq!(holds.left, Some(Range { low: -89.0, high: 97.0 }));
     assert_eq!(holds.right, Some(Range { low: -90.0, high: 90.0 }));
     // A centimetre a step for every ten of command, four steps a second: backwards by -90 and -90, forwards by 97 and 90.
     let speed = holds.forward_cm_s.expect("steps");

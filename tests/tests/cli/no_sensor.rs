@@ -77,7 +77,7 @@ fn open_ground_is_driven_on() {
     let tuple = "  { left = 55, right = 48, when = \"smaller\", threshold_cm = 42 },\n";
     workshop.write("c.toml", format!("step_ms = 400\nmax_steps = 10\ntuple = [\n{}]\n", tuple.repeat(6)));
     let told = workshop.done("simulate sim.json c.toml --scene open.toml --runs 3");
-    assert_eq!(told.matches("timed_out").count(), 3, "{told}");
+    assert_eq!(told.matches(" timed_out ").count(), 3, "{told}");
     let refusal = workshop.refused("record --out more --scene open.toml");
     assert!(refusal.starts_with("open.toml: the scene has no room between its walls"), "{refusal}");
 }

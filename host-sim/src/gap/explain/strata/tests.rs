@@ -102,7 +102,7 @@ fn headings_and_distances_are_those_of_their_names() {
         those.map(|(name, _)| *name).collect()
     };
     for (at, name) in ["0 (along x)", "90 (along y)", "180 (against x)", "-90 (against y)"].into_iter().enumerate() {
-        assert_eq!(holding(MOTION, "heading", at), [name]);
+        assert_eq!(holding(MOTION, "heading", at), [format!("heading within 45 degrees of {name}")]);
     }
     assert_eq!(holding(SONAR, "distance", 1), ["distance 80 to 150 cm"]);
     assert_eq!(holding(SONAR, "distance", 0), ["distance over 150 cm"]);
