@@ -29,7 +29,7 @@ fn a_loop_shows_what_was_expected_what_happened_and_what_it_taught() {
         Visit::new(window, picture)
             .text("h1")
             .text("#turns table")
-            .ask("document.querySelectorAll('[data-chart=map] svg').length")
+            .ask("[...document.querySelectorAll('[data-chart=map]')].filter((map) => map.querySelector('svg')).length")
             .text("#effects")
             .ask("typeof evil === 'undefined' && document.images.length === 0")
             .text(".kind")
