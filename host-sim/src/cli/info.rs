@@ -78,10 +78,10 @@ fn file(path: &Path) -> Result<String> {
             Ok(format!("a run of {} rows, {seen} with a pose and {heard} with a reading", run.rows.len()))
         }
         _ => {
-            let product = PRODUCTS.iter().find(|(other, _)| *other == ending);
-            let (_, what) = product.ok_or_else(|| Error::in_file(path, "is nothing that mindgap writes or reads"))?;
             // That there is such a file is a part of the answer.
             fs::metadata(path).map_err(|e| Error::in_file(path, format!("cannot be read: {e}")))?;
+            let product = PRODUCTS.iter().find(|(other, _)| *other == ending);
+            let (_, what) = product.ok_or_else(|| Error::in_file(path, "is nothing that mindgap writes or reads"))?;
             Ok((*what).into())
         }
     }

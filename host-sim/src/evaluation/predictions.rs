@@ -8,7 +8,7 @@ use crate::geometry::wrap_rad;
 use crate::logs::Logs;
 use crate::simulator::Simulator;
 use crate::simulator::baseline::{Baseline, MotionModel};
-use crate::sonar::familiar::Familiarity;
+use crate::sonar::familiar::{self, Familiarity};
 use crate::sonar::{Fan, Outcomes, Perturbation, SonarModel};
 
 /// Logged and predicted, sample by sample.
@@ -110,16 +110,13 @@ pub fn facing(effects: &EffectChain, observations: &Observations, row: &Observat
 }
 
 impl Faced {
-    /// The same with readings perturbed otherwise.
-    pub fn with(&self, change: Perturbation) -> Faced {
-        Faced { change, fan: self.fan, familiarity: self.familiarity.clone() }
-    }
-
     /// What the sensor may report.
     pub fn outcomes(&self, sonar: &SonarModel) -> Outcomes {
-        match &self.familiarity {
-            Some(familiarity) => familiarity.outcomes(sonar, &self.fan, &self.change),
-            None => sonar.outcomes(&self.fan, &self.change),
-        }
+        self.perturbed(&self.change, sonar)
+    }
+
+    /// The same with another perturbation.
+    pub fn perturbed(&self, change: &Perturbation, sonar: &SonarModel) -> Outcomes {
+        familiar::outcomes(self.familiarity.as_ref(), sonar, &self.fan, change)
     }
 }

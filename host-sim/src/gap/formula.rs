@@ -144,10 +144,8 @@ fn rows<'a>(channel: Channel, beneath: &Fitted, context: &FitContext<'a>) -> Vec
             steps.filter_map(|row| Some((row, residual(&effects, drive, row)?[axis]))).collect()
         }
         (None, _, Some(sonar)) => {
-            let off_cm = |row: &Observation| {
-                let outcomes = facing(&effects, context.observations, row).outcomes(sonar);
-                Some(row.echo_cm? - outcomes.mean_hit_cm()?)
-            };
+            let off_cm =
+                |row: &Observation| facing(&effects, context.observations, row).outcomes(sonar).off_cm(row.echo_cm);
             let known = rows.filter_map(|row| Some((row, off_cm(row)?)));
             known.filter(|(_, off_cm)| off_cm.abs() < FAR_OFF_CM).collect()
         }

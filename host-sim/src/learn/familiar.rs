@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use crate::learn::place_bound::{self, Seen};
 use crate::logs::Scene;
-use crate::sonar::familiar::{FamiliarPoses, Familiarity, PastReading, RepeatLaw};
+use crate::sonar::familiar::{FamiliarPoses, Familiarity, PastReading, RepeatLaw, outcomes};
 use crate::sonar::model::CONSTANT_SCATTER_CM;
 use crate::sonar::pose_grid::PoseGrid;
 use crate::sonar::{Fan, Outcomes, Perturbation, SonarModel, fan_at};
@@ -37,20 +37,17 @@ pub fn learn(sonar: &SonarModel, seen: &[Seen], scene: &Scene) -> Option<Familia
         return None;
     }
     let fans: Vec<Fan> = seen.iter().map(|row| fan_at(&walls, &row.sensor, sonar.fan_width)).collect();
-    let outcomes = |law: &RepeatLaw, i: usize| {
+    let judged = |law: &RepeatLaw, i: usize| {
         let known = Familiarity::of(others[i].iter().map(|other| &readings[*other]), law);
-        known.map_or_else(
-            || sonar.outcomes(&fans[i], &Perturbation::NONE),
-            |known| known.outcomes(sonar, &fans[i], &Perturbation::NONE),
-        )
+        outcomes(known.as_ref(), sonar, &fans[i], &Perturbation::NONE)
     };
     let terms = |at: &[f64]| {
         let law = law_from(at);
-        let term = |i: usize| outcomes(&law, i).log_likelihood(seen[i].echo_cm);
+        let term = |i: usize| judged(&law, i).log_likelihood(seen[i].echo_cm);
         (0..seen.len()).into_par_iter().map(term).collect()
     };
     let law = law_from(&climb(&BOUNDS, &START, ROUNDS, ENOUGH, terms).at);
-    let left_over = |i: usize| left_over(&seen[i], i, &outcomes(&law, i));
+    let left_over = |i: usize| left_over(&seen[i], i, &judged(&law, i));
     let left_share = place_bound::learn(&(0..seen.len()).map(left_over).collect::<Vec<Seen>>());
     Some(FamiliarPoses { walls_cm: FamiliarPoses::walls_cm(&walls), law, left_share, readings })
 }
@@ -68,8 +65,7 @@ fn in_other_runs(seen: &[Seen]) -> Vec<Vec<usize>> {
 
 /// What is left of a row once its pose is known. Each counts as a run of its own: what a run has in common is left too.
 fn left_over(row: &Seen, i: usize, known: &Outcomes) -> Seen {
-    let off_cm = row.echo_cm.zip(known.mean_hit_cm()).map(|(echo_cm, expected_cm)| echo_cm - expected_cm);
-    Seen { run: i, none: known.none, off_cm, ..*row }
+    Seen { run: i, none: known.none, off_cm: known.off_cm(row.echo_cm), ..*row }
 }
 
 #[cfg(test)]

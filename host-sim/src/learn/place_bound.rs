@@ -40,7 +40,7 @@ pub fn seen(sonar: &SonarModel, logs: &Logs) -> Vec<Seen> {
     let seen = |(run, row): &(usize, Row)| {
         let sensor = logs.robot.ultrasonic.pose_on(&row.pose?);
         let outcomes = sonar.outcomes(&fan_at(&sides, &sensor, sonar.fan_width), &Perturbation::NONE);
-        let off_cm = row.echo_cm.zip(outcomes.mean_hit_cm()).map(|(echo_cm, expected_cm)| echo_cm - expected_cm);
+        let off_cm = outcomes.off_cm(row.echo_cm);
         Some(Seen { sensor, run: *run, none: outcomes.none, echo_cm: row.echo_cm, off_cm })
     };
     rows.par_iter().filter_map(seen).collect()

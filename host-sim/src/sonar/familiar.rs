@@ -105,6 +105,11 @@ impl Recollection {
     }
 }
 
+/// The outcomes of a reading of `fan`, by what is `known` of the pose, if anything is.
+pub fn outcomes(known: Option<&Familiarity>, model: &SonarModel, fan: &Fan, change: &Perturbation) -> Outcomes {
+    known.map_or_else(|| model.outcomes(fan, change), |known| known.outcomes(model, fan, change))
+}
+
 impl Familiarity {
     /// What readings near a pose tell of it; none where there are none.
     pub fn of<'r>(readings: impl Iterator<Item = &'r PastReading>, law: &RepeatLaw) -> Option<Self> {
@@ -126,7 +131,7 @@ impl Familiarity {
     }
 
     /// The outcomes of a reading of `fan`. The readings that may come again stand last among the components.
-    pub fn outcomes(&self, model: &SonarModel, fan: &Fan, change: &Perturbation) -> Outcomes {
+    fn outcomes(&self, model: &SonarModel, fan: &Fan, change: &Perturbation) -> Outcomes {
         let change = Perturbation { attenuation: change.attenuation - self.log_odds, ..*change };
         let mut outcomes = model.outcomes(fan, &change);
         let mut hit = 0.0;

@@ -150,6 +150,11 @@ impl Outcomes {
         });
         (probability > 0.0).then(|| sum / probability)
     }
+
+    /// A reading minus the mean one, cm; none where there is no reading, or no echo can come back.
+    pub fn off_cm(&self, echo_cm: Option<f64>) -> Option<f64> {
+        Some(echo_cm? - self.mean_hit_cm()?)
+    }
 }
 
 impl Distribution {

@@ -134,8 +134,7 @@ pub(super) fn off(
                 if channel == Channel::EchoRate {
                     return Some(f64::from(u8::from(row.echo_cm.is_some())) - 1.0 + outcomes.none);
                 }
-                let expected_cm = outcomes.mean_hit_cm()?;
-                Some(row.echo_cm? - expected_cm).filter(|off| off.abs() < FAR_OFF_CM)
+                outcomes.off_cm(row.echo_cm).filter(|off| off.abs() < FAR_OFF_CM)
             };
             rows.iter().map(one).collect()
         }

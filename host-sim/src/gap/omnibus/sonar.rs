@@ -165,8 +165,8 @@ impl<'a> Heard<'a> {
     /// The probability of no reading.
     fn none(&self, reading: &Reading, prediction: f64) -> f64 {
         let attenuation = reading.faced.change.attenuation - prediction;
-        let faced = reading.faced.with(Perturbation { attenuation, ..reading.faced.change });
-        self.sonar.map_or(1.0, |sonar| faced.outcomes(sonar).none)
+        let change = Perturbation { attenuation, ..reading.faced.change };
+        self.sonar.map_or(1.0, |sonar| reading.faced.perturbed(&change, sonar).none)
     }
 
     /// The log-likelihood of each reading that there is, moved by the predictions and spread.
@@ -181,13 +181,13 @@ impl<'a> Heard<'a> {
         change.scatter_cm += spread.scatter_cm;
         change.p_short = 1.0 - (1.0 - change.p_short) * (1.0 - spread.short);
         change.p_long += spread.long;
-        let outcomes = reading.faced.with(change).outcomes(sonar);
+        let outcomes = reading.faced.perturbed(&change, sonar);
         reading.weight[1] * (outcomes.log_likelihood(reading.echo_cm) - outcomes.log_detection(reading.echo_cm))
     }
 
     /// By how much readings are off, cm.
     fn offsets(&self, observations: &Observations) -> (Surface, Vec<f64>) {
-        let off = |reading: &Reading| Some(reading.echo_cm? - reading.faced.outcomes(self.sonar?).mean_hit_cm()?);
+        let off = |reading: &Reading| reading.faced.outcomes(self.sonar?).off_cm(reading.echo_cm);
         let off: Vec<Option<f64>> = self.rows.iter().map(off).collect();
         let scatter_cm = (median(off.iter().flatten().map(|off_cm| off_cm.abs())) / QUARTILE).max(LEAST_SCATTER_CM);
         let response = |i: usize, prediction: f64| {
