@@ -17,7 +17,7 @@ use crate::simulator::Simulator;
 use crate::simulator::baseline::{Baseline, MotionModel};
 use crate::simulator::ensemble::basis::CHANGE;
 use crate::simulator::ensemble::posterior::log_evidence;
-use crate::simulator::ensemble::{Ensemble, Posterior};
+use crate::simulator::ensemble::{Ensemble, Held, Posterior};
 
 /// Effects have to explain the motion better than a bias by command does, by so many nats: strong evidence.
 const EFFECT_NATS: f64 = 5.0;
@@ -85,8 +85,11 @@ pub fn adapt(simulator: &Simulator, logs: &Logs, seed: u64) -> Result<Adapted> {
     }
     let effects = diagnosed(simulator, logs, seed);
     let explained = steps(simulator, &effects, &observations)?;
-    let given = |steps: &[StepResidual]| conditioned(ensemble, &noise, steps);
-    let named = explained == plain || probability(&given(&explained)) > probability(&given(&plain)) + EFFECT_NATS;
+    let networks = simulator.motion_networks().ok_or_else(missing)?;
+    let said: Held = &|command| networks.held(command);
+    let given = |steps: &[StepResidual]| conditioned(ensemble, &noise, said, steps);
+    let probability = |steps: &[StepResidual]| probability(given(steps), said);
+    let named = explained == plain || probability(&explained) > probability(&plain) + EFFECT_NATS;
     let (effects, steps) = if named {
         (effects, explained)
     } else {
@@ -94,8 +97,8 @@ pub fn adapt(simulator: &Simulator, logs: &Logs, seed: u64) -> Result<Adapted> {
     };
     let after = given(&steps);
     let lesson = Lesson {
-        commands: commands(&holds(&steps), ensemble, &after),
-        gap: kept_back(ensemble, &noise, &plain, &steps),
+        commands: commands(&holds(&steps), said, ensemble, &after),
+        gap: kept_back(ensemble, &noise, said, &plain, &steps),
         effects: effects.clone(),
     };
     let mut simulator = simulator.clone();
@@ -105,10 +108,9 @@ pub fn adapt(simulator: &Simulator, logs: &Logs, seed: u64) -> Result<Adapted> {
 }
 
 /// How probable all evidence is, if the robot did not change but by effects.
-fn probability(ensemble: &Ensemble) -> f64 {
-    let mut unchanged = ensemble.clone();
-    unchanged.prior.iter_mut().for_each(|prior| prior[CHANGE] = 0.0);
-    log_evidence(&unchanged)
+fn probability(mut ensemble: Ensemble, said: Held) -> f64 {
+    ensemble.prior.iter_mut().for_each(|prior| prior[CHANGE] = 0.0);
+    log_evidence(&ensemble, said)
 }
 
 /// Those of the effects that leave the motion alone, as those of the sensor do.
@@ -149,15 +151,21 @@ fn steps(simulator: &Simulator, effects: &[AppliedEffect], observations: &Observ
 }
 
 /// The commands that were held, with what is known of them before and after; those that differ most first.
-fn commands(held: &[Hold], before: &Ensemble, after: &Ensemble) -> Vec<CommandBias> {
-    let (Some(before), Some(after)) = (Posterior::new(before), Posterior::new(after)) else { return Vec::new() };
+fn commands(held: &[Hold], said: Held, before: &Ensemble, after: &Ensemble) -> Vec<CommandBias> {
+    let [before, after] = [before, after].map(|ensemble| Posterior::new(ensemble, said));
+    let (Some(before), Some(after)) = (before, after) else { return Vec::new() };
     let mut steps: std::collections::BTreeMap<[i32; 2], usize> = std::collections::BTreeMap::new();
     for hold in held.iter().filter(|hold| !hold.first) {
         *steps.entry(hold.command.map(|c| c.round() as i32)).or_default() += hold.steps;
     }
     let bias = |(command, steps): (&[i32; 2], &usize)| {
         let command = command.map(f64::from);
-        CommandBias { command, steps: *steps, before: before.bias(command), after: after.bias(command) }
+        let networks = said(command);
+        let bias = |of: &Posterior| {
+            let motion = of.motion(command);
+            [0, 1, 2].map(|c| [motion[c][0] - networks[c], motion[c][1]])
+        };
+        CommandBias { command, steps: *steps, before: bias(&before), after: bias(&after) }
     };
     let mut known: Vec<CommandBias> = steps.iter().filter(|(_, steps)| **steps >= FEWEST_STEPS).map(bias).collect();
     known.sort_by(|a, b| b.surprise().total_cmp(&a.surprise()));
@@ -176,6 +184,7 @@ impl CommandBias {
 fn kept_back(
     ensemble: &Ensemble,
     noise: &MotionNoise,
+    said: Held,
     plain: &[StepResidual],
     explained: &[StepResidual],
 ) -> Option<Gap> {
@@ -183,19 +192,20 @@ fn kept_back(
     if runs < 2 {
         return None;
     }
-    let before = Posterior::new(ensemble)?;
+    let before = Posterior::new(ensemble, said)?;
     let (mut sums, mut count) = ([[0.0; 2]; 3], 0.0);
     for part in 0..runs.min(PARTS) {
         let kept = |step: &&StepResidual| step.run() % PARTS == part;
         let others: Vec<StepResidual> = explained.iter().filter(|step| !kept(step)).copied().collect();
-        let after = Posterior::new(&conditioned(ensemble, noise, &others))?;
+        let after = Posterior::new(&conditioned(ensemble, noise, said, &others), said)?;
         let of = |steps: &[StepResidual]| holds(&steps.iter().filter(kept).copied().collect::<Vec<_>>());
         for (a, b) in of(plain).iter().zip(&of(explained)) {
             count += a.steps as f64;
-            let off = [(a, before.bias(a.command)), (b, after.bias(b.command))];
+            let networks = said(a.command);
+            let off = [(a, before.motion(a.command)), (b, after.motion(b.command))];
             for channel in 0..3 {
-                for (sum, (hold, bias)) in sums[channel].iter_mut().zip(&off) {
-                    let left = hold.residual[channel] + hold.known[channel] - bias[channel][0];
+                for (sum, (hold, motion)) in sums[channel].iter_mut().zip(&off) {
+                    let left = hold.residual[channel] + hold.known[channel] + networks[channel] - motion[channel][0];
                     *sum += hold.steps as f64 * left * left;
                 }
             }

@@ -30,7 +30,7 @@ use crate::error::{Error, Result};
 use crate::files;
 use crate::logs::Robot;
 use crate::sonar::FirstEchoLaw;
-use ensemble::Ensemble;
+use ensemble::{Ensemble, Robots};
 use motion::MotionNetworks;
 use nominal::NominalModel;
 use residuals::{ConstantReading, ResidualQuantiles};
@@ -167,6 +167,12 @@ impl Simulator {
     /// The three motion networks, if all are there.
     pub fn motion_networks(&self) -> Option<MotionNetworks<'_>> {
         MotionNetworks::of(self).ok()
+    }
+
+    /// The robot in the middle of what the logs leave open, and `count` drawn ones; none where that is not said.
+    pub fn robots(&self, count: usize, seed: u64) -> Option<Robots> {
+        let networks = self.motion_networks()?;
+        self.ensemble.as_ref()?.robots(&|command| networks.held(command), count, seed)
     }
 
     fn check(&self, path: &Path) -> Result<()> {

@@ -2,9 +2,12 @@
 
 use glam::DVec2;
 use mindgap_host_sim::built_in_robot::{ActiveEffect, Effect, default_robot, record, training_room};
+use mindgap_host_sim::gap::{Method, findings};
 use mindgap_host_sim::geometry::Pose;
-use mindgap_host_sim::inspection::{Inspection, Part};
+use mindgap_host_sim::inspection::{Handling, Inspection, Part};
+use mindgap_host_sim::learn::train::{TABLE_ONE, Trainer, train};
 use mindgap_host_sim::logs::{Logs, Row};
+use mindgap_host_sim::simulator::baseline::Baseline;
 use mindgap_tests::faults::{MOTION, RUN, SONAR, assert_found};
 
 fn logs(runs: usize, effects: &[ActiveEffect]) -> Logs {
@@ -113,5 +116,30 @@ fn logs_that_say_little_pass() {
     for logs in [still, unseen, silent, sparse] {
         let inspected = Inspection::of(logs.clone());
         assert!(inspected.findings.is_empty() && inspected.logs == logs, "{:?}", inspected.findings);
+    }
+}
+
+/// What is wrong with logs of a robot that is as its simulator says is no cause of a gap. Faults that are put right leave
+/// logs as they were, which is held above; those that are left out or told are here.
+#[test]
+fn no_fault_reaches_a_confident_cause() {
+    const SURE: f64 = 0.9;
+    let simulator = train(&logs(24, &[]), &Trainer::Fast, &TABLE_ONE, 1, |_| {}).expect("networks");
+    let sure_of = |logs: Logs| {
+        let baseline = Baseline::learned(&simulator).expect("a reference");
+        // Nothing is sure where nothing can be compared.
+        let found = findings(baseline, &Inspection::of(logs), Method::default());
+        let effects = found.map_or_else(|_| Vec::new(), |found| found.diagnosis.effects().to_vec());
+        effects.into_iter().filter(|effect| effect.probability > SURE).map(|effect| effect.id).collect::<Vec<_>>()
+    };
+    let fresh = |effects: &[ActiveEffect]| {
+        record(&default_robot(), &training_room(), 8, 60, effects, 6).expect("room to drive")
+    };
+    let weak: ActiveEffect = "motor_asymmetry=0.15".parse().expect("an effect");
+    assert_eq!(sure_of(fresh(&[weak])), ["motor_asymmetry"], "what is changed in the robot is found in such logs");
+    for fault in MOTION.iter().chain(&SONAR).filter(|fault| fault.handling != Handling::PutRight) {
+        let mut faulty = fresh(&[]);
+        (fault.put)(&mut faulty);
+        assert_eq!(sure_of(faulty), Vec::<&str>::new(), "{}", fault.what);
     }
 }

@@ -102,7 +102,7 @@ impl Adapt {
         let scene = Scene::read(path)?;
         let start = super::evolve::start_of(&scene, self.start, &simulator.robot, path)?;
         let target_cm = scene.target_cm.ok_or_else(|| Error::in_file(path, "has no [target]"))?;
-        let robots = simulator.ensemble.as_ref().and_then(|ensemble| ensemble.robots(ROBOTS, self.seed));
+        let robots = simulator.robots(ROBOTS, self.seed);
         let robots =
             robots.ok_or_else(|| Error::in_file(&self.sim, "does not say what its training logs leave open"))?;
         let judge = Judge::new(simulator, &robots.drawn, &scene, start, target_cm, self.seed)?;

@@ -73,8 +73,7 @@ impl Request<'_> {
         let start = scene.start(self.start, simulator.robot.body_radius_cm)?;
         let target_cm = scene.target_cm.ok_or_else(|| Error::new("has no [target]"))?;
         let environment = Environment::new(simulator, scene, start, noise)?;
-        let open = simulator.ensemble.as_ref().filter(|_| noise == Noise::Learned);
-        let robots = open.and_then(|ensemble| ensemble.robots(ROBOTS, seed));
+        let robots = if noise == Noise::Learned { simulator.robots(ROBOTS, seed) } else { None };
         let environment = match (self.first_echo, noise) {
             (true, _) => environment.with_first_echo(simulator, scene)?,
             (false, Noise::Learned) => environment.with_beam(simulator),

@@ -40,8 +40,8 @@ impl Trial<'_> {
         if runs == 0 {
             return Err(Error::new("there must be at least one run"));
         }
-        let open = simulator.ensemble.as_ref().filter(|_| noise == Noise::Learned);
-        let drawn = open.and_then(|ensemble| ensemble.robots(runs.min(ROBOTS), seed)).map(|robots| robots.drawn);
+        let open = if noise == Noise::Learned { simulator.robots(runs.min(ROBOTS), seed) } else { None };
+        let drawn = open.map(|robots| robots.drawn);
         let mut robots = match &drawn {
             Some(drawn) => Environment::of_robots(simulator, drawn, scene, start)?,
             None => vec![Environment::new(simulator, scene, start, noise)?],

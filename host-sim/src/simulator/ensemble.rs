@@ -1,10 +1,11 @@
 //! What is not known about a robot, as a distribution over robots.
 //!
 //! A command that is held does the same in every step and every run, and mostly not quite what the networks say: a bias
-//! that no chance stands for, since it adds up while the command is held. It is a Gaussian process over commands, one for
-//! each of forward, lateral and turn, whose covariance is that of [`basis`]. Nothing of it is left out or drawn at random,
-//! so that where no log has driven it is as wide as its prior. What logs say is kept as [`Evidence`]; a run of the robot
-//! adds some, and the networks stay as they are.
+//! that no chance stands for, since it adds up while the command is held. So the motion under a held command is a Gaussian
+//! process over commands, one for each of forward, lateral and turn, whose covariance is that of [`basis`]; networks say
+//! how the first step of a command differs. Nothing of it is left out or drawn at random, so that where no log has driven
+//! it is as wide as its prior, and goes on as the robot does and not as networks happen to. What logs say is kept as
+//! [`Evidence`]; a run of the robot adds some, and the networks stay as they are.
 //!
 //! [`Posterior`] is the distribution given all evidence, a [`Member`] one robot of it.
 
@@ -29,6 +30,10 @@ pub struct Ensemble {
     /// Standard deviation of what the first step of a command does beyond later ones, the same whenever one command follows
     /// the other.
     pub first_step: [f64; 3],
+    /// Standard deviation of what chance adds for as long as a command is held, as a share of what it adds in a step: a
+    /// floor that is rougher here than there.
+    #[serde(default)]
+    pub lasting: [f64; 3],
     /// What logs say.
     pub evidence: Vec<Evidence>,
 }
@@ -47,6 +52,9 @@ pub struct Evidence {
     pub after_training: bool,
 }
 
+/// What networks say of a command that is held: forward (cm), lateral (cm) and turn (degrees) of a step.
+pub type Held<'a> = &'a (dyn Fn([f64; 2]) -> [f64; 3] + Sync);
+
 /// Robots of a distribution.
 pub struct Robots {
     /// The one in the middle.
@@ -55,17 +63,26 @@ pub struct Robots {
     pub drawn: Vec<Member>,
 }
 
+impl Evidence {
+    /// The motion that was logged: relative to what networks say, which is `held`, it would not be a robot's own.
+    pub fn motion(&self, held: Held) -> [f64; 3] {
+        let said = held(self.command.map(f64::from));
+        [0, 1, 2].map(|channel| f64::from(self.bias[channel]) + said[channel])
+    }
+}
+
 impl Ensemble {
-    /// The robot in the middle and `count` drawn ones; none if the numbers allow for no robot.
-    pub fn robots(&self, count: usize, seed: u64) -> Option<Robots> {
-        let posterior = Posterior::new(self)?;
+    /// The robot in the middle and `count` drawn ones; none if the numbers allow for no robot. The evidence is relative to
+    /// what networks say, which is `held`.
+    pub fn robots(&self, held: Held, count: usize, seed: u64) -> Option<Robots> {
+        let posterior = Posterior::new(self, held)?;
         let drawn = (0..count as u64).into_par_iter().map(|robot| posterior.draw(derive(seed, &[robot]))).collect();
         Some(Robots { mean: posterior.mean(), drawn })
     }
 
     /// Whether a file could have held this.
     pub fn is_sound(&self) -> bool {
-        let sizes = self.prior.iter().flatten().chain(&self.first_step);
+        let sizes = self.prior.iter().flatten().chain(&self.first_step).chain(&self.lasting);
         let sound = |e: &Evidence| {
             e.command.iter().chain(&e.bias).all(|v| v.is_finite())
                 && e.variance.iter().all(|v| v.is_finite() && *v > 0.0)

@@ -4,7 +4,6 @@
 use mindgap_core::controller::{Controller, TUPLES};
 use mindgap_core::folded::{FoldedNetwork, evaluate_all};
 use mindgap_core::maths::Binary32;
-use mindgap_core::scalar::Scalar;
 use pulp::{Arch, Simd, WithSimd};
 
 use super::ensemble::Member;
@@ -91,13 +90,21 @@ impl<'s> MotionNetworks<'s> {
         MotionNetworks { member: Some(member), ..self }
     }
 
-    /// What chance adds to forward (cm), lateral (cm) and turn (rad). What lasts while a command is held is no chance once
-    /// a robot's bias is added: it stood for not knowing that.
+    /// What chance adds to forward (cm), lateral (cm) and turn (rad). Of what lasts while a command is held most stood for
+    /// not knowing the robot: for one that is known it is the share that remains.
     pub fn residual_noise(&self) -> [ResidualNoise; 3] {
-        let noise = self.residuals.map(ResidualNoise::new);
-        let [forward, lateral, turn] =
-            if self.member.is_some() { noise.map(ResidualNoise::without_held) } else { noise };
-        [forward, lateral, turn.times(RADIANS_PER_DEGREE)]
+        let noise = |channel: usize| {
+            let noise = ResidualNoise::new(self.residuals[channel]);
+            self.member.map_or(noise.clone(), |member| noise.with_lasting(member.lasting()[channel] as f32))
+        };
+        [noise(0), noise(1), noise(2).times(RADIANS_PER_DEGREE)]
+    }
+
+    /// What is said of a step of a command that is held: forward (cm), lateral (cm) and turn (degrees).
+    pub fn held(&self, command: [f64; 2]) -> [f64; 3] {
+        let [left, right] = command.map(|c| c as f32);
+        let [forward_cm, lateral_cm, turn_rad] = self.evaluate([left, right, left, right]).map(f64::from);
+        [forward_cm, lateral_cm, turn_rad.to_degrees()]
     }
 
     /// What a step does.
@@ -138,19 +145,18 @@ impl<'s> MotionNetworks<'s> {
         let mut table = MotionTable { first, steady, bias: [[0.0; 3]; TUPLES] };
         if let Some(member) = self.member {
             for tuple in 0..TUPLES {
-                table.add(tuple, self.bias(member, &steps[TUPLES + tuple]), first_step(member, &steps[tuple]));
+                let [left, right, ..] = steps[tuple];
+                table.add(tuple, self.bias(member, [left, right]), first_step(member, &steps[tuple]));
             }
         }
         table
     }
 
     /// What a robot does beyond the networks and their correction while a command is held.
-    fn bias(&self, member: &Member, held: &Speeds<f32>) -> MotionVector {
-        let beyond = in_radians(member.bias([held[0], held[1]].map(f64::from)));
-        let Some(correction) = &self.correction else { return beyond };
-        let features = features(*held);
-        let corrected = |weights: &[f32; FEATURES]| f32::weighted_sum(0.0, &features, weights);
-        std::array::from_fn(|channel| beyond[channel] - corrected(&correction[channel]))
+    fn bias(&self, member: &Member, command: [f32; 2]) -> MotionVector {
+        let command = command.map(f64::from);
+        let (does, said) = (member.motion(command), self.held(command));
+        in_radians(std::array::from_fn(|channel| does[channel] - said[channel]))
     }
 
     fn cells(&self, speeds: &Speeds<f32>) -> [usize; 3] {

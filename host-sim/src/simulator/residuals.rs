@@ -120,9 +120,9 @@ impl ResidualNoise {
         self
     }
 
-    /// The same without what lasts while a command is held.
-    pub fn without_held(self) -> Self {
-        ResidualNoise { held: [[0.0; LEVELS]; CELLS * CELLS], ..self }
+    /// The same where what lasts while a command is held is so many times what a step adds.
+    pub fn with_lasting(self, share: f32) -> Self {
+        ResidualNoise { held: self.step.map(|cell| cell.map(|residual| share * residual)), ..self }
     }
 
     /// What a robot adds in a cell: one of the [`LEVELS`] drawn for this step, and one drawn when the command began.

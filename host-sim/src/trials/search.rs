@@ -161,9 +161,7 @@ impl Search<'_> {
     }
 
     fn robots(&self) -> Result<Robots> {
-        let ensemble = self.simulator.ensemble.as_ref();
-        let robots = ensemble.and_then(|ensemble| ensemble.robots(ROBOTS, self.stream(Purpose::Robots, 0)));
-        robots.ok_or_else(|| {
+        self.simulator.robots(ROBOTS, self.stream(Purpose::Robots, 0)).ok_or_else(|| {
             Error::new("the simulator file does not say what its training logs leave open: train it again")
         })
     }

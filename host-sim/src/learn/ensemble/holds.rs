@@ -7,9 +7,6 @@ use crate::simulator::ensemble::Evidence;
 use crate::simulator::nominal::MotionBias;
 use crate::simulator::residuals::{ResidualQuantiles, motion_context};
 
-/// Biases that change within a cell or with what no command says: this share of the robot's chance in a step.
-const UNRESOLVED: f64 = 0.2;
-
 /// What the networks and their correction leave of a step. Channels are forward (cm), lateral (cm) and turn (degrees).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StepResidual {
@@ -81,12 +78,13 @@ pub fn holds(steps: &[StepResidual]) -> Vec<Hold> {
 }
 
 impl Hold {
-    /// What it says of the command's bias, whose first step may do otherwise by `first_step`.
-    pub fn evidence(&self, noise: &MotionNoise, first_step: &[f64; 3]) -> Evidence {
+    /// What it says of the command's bias, whose first step may do otherwise by `first_step` and to which chance adds
+    /// `lasting` for as long as it is held.
+    pub fn evidence(&self, noise: &MotionNoise, first_step: &[f64; 3], lasting: &[f64; 3]) -> Evidence {
         let variance = |channel: usize| {
-            let unresolved = UNRESOLVED * UNRESOLVED * noise.process_variance(self.command, channel);
+            let lasting = lasting[channel] * lasting[channel] * noise.process_variance(self.command, channel);
             let first = if self.first { first_step[channel] * first_step[channel] } else { 0.0 };
-            (noise.variance(self, channel) + unresolved + first) as f32
+            (noise.variance(self, channel) + lasting + first) as f32
         };
         Evidence {
             command: self.command.map(|c| c as f32),

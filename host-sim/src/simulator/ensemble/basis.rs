@@ -1,5 +1,5 @@
-//! The covariance between the biases of two commands: a sum of parts, each a function of the commands on nodes, linear
-//! between them.
+//! The covariance between the motions under two commands: a sum of parts, each a function of the commands on nodes,
+//! linear between them, about a line of which nothing is known beforehand.
 //!
 //! Friction bends the response to a wheel's command, and to the difference of both, near zero and hardly elsewhere; so
 //! those parts have one dimension each and nodes that are close together there. What depends on both commands is smooth.
@@ -11,10 +11,12 @@ use nalgebra::{Cholesky, DMatrix};
 pub const PARTS: usize = 6;
 /// The last of them, which training logs say nothing of.
 pub const CHANGE: usize = PARTS - 1;
-/// Weights of a command on nodes: one, three times two, four, and two.
-const WEIGHTS: usize = 13;
+/// Comes after them: a motion in proportion to each wheel's command, which has no prior size to learn.
+pub const LINE: usize = PARTS;
+/// Weights of a command on nodes: one, three times two, four, two, and two.
+const WEIGHTS: usize = 15;
 /// Those without the change.
-const UNCHANGED: usize = 11;
+const UNCHANGED: usize = 13;
 
 /// Nodes on either side of zero along one command, along the difference of two, and along each side of the square.
 const REACH: [usize; 3] = [13, 16, 6];
@@ -29,10 +31,10 @@ const SQUARE_LENGTH: f64 = 0.5;
 const JITTER: f64 = 1e-8;
 
 /// Number of nodes of each part.
-const NODES: [usize; PARTS] =
-    [1, 2 * REACH[0] + 1, 2 * REACH[0] + 1, 2 * REACH[1] + 1, (2 * REACH[2] + 1) * (2 * REACH[2] + 1), 2];
+const NODES: [usize; PARTS + 1] =
+    [1, 2 * REACH[0] + 1, 2 * REACH[0] + 1, 2 * REACH[1] + 1, (2 * REACH[2] + 1) * (2 * REACH[2] + 1), 2, 2];
 /// Number of all nodes.
-pub const SIZE: usize = NODES[0] + NODES[1] + NODES[2] + NODES[3] + NODES[4] + NODES[5];
+pub const SIZE: usize = NODES[0] + NODES[1] + NODES[2] + NODES[3] + NODES[4] + NODES[5] + NODES[6];
 
 /// The part that a node belongs to.
 pub fn part(node: usize) -> usize {
@@ -46,7 +48,7 @@ pub fn part(node: usize) -> usize {
         .count()
 }
 
-/// The nodes that a command lies among with their weights: its bias is the weighted sum of theirs.
+/// The nodes that a command lies among with their weights: its motion is the weighted sum of theirs.
 pub fn weights(command: [f64; 2]) -> [(usize, f64); WEIGHTS] {
     let [left, right] = command.map(|c| 0.01 * c);
     let (a, b) = (between(bent(left), REACH[0]), between(bent(right), REACH[0]));
@@ -60,11 +62,14 @@ pub fn weights(command: [f64; 2]) -> [(usize, f64); WEIGHTS] {
         first += NODES[1 + part];
     }
     let side = 2 * REACH[2] + 1;
-    for (corner, place) in weights[7..UNCHANGED].iter_mut().enumerate() {
+    for (corner, place) in weights[7..11].iter_mut().enumerate() {
         let ((i, along), (j, across)) = (square[0][corner / 2], square[1][corner % 2]);
         *place = (first + i * side + j, along * across);
     }
     let change = first + NODES[4];
+    let line = change + NODES[CHANGE];
+    weights[11] = (line, left);
+    weights[12] = (line + 1, right);
     weights[UNCHANGED] = (change, left);
     weights[UNCHANGED + 1] = (change + 1, right);
     weights
@@ -95,7 +100,7 @@ fn covariance(part: usize, i: usize, j: usize) -> f64 {
     let apart = |i: usize, j: usize| i.abs_diff(j) as f64;
     match part {
         0 => 1.0,
-        CHANGE => f64::from(u8::from(i == j)),
+        CHANGE | LINE => f64::from(u8::from(i == j)),
         4 => {
             let side = 2 * REACH[2] + 1;
             let (x, y) = (apart(i / side, j / side), apart(i % side, j % side));
@@ -133,13 +138,15 @@ mod tests {
     proptest! {
         #[test]
         fn every_part_weighs_one(left in -100f64..100.0, right in -100f64..100.0) {
-            let mut sums = [0.0; PARTS];
+            let mut sums = [0.0; PARTS + 1];
             for (node, weight) in weights([left, right]) {
                 prop_assert!(node < SIZE && weight.abs() <= 1.0);
                 sums[part(node)] += weight;
             }
             prop_assert!(sums[..CHANGE].iter().all(|sum| (sum - 1.0).abs() < 1e-12), "{sums:?}");
-            prop_assert!((100.0 * sums[CHANGE] - left - right).abs() < 1e-9, "{sums:?}");
+            for wheels in [CHANGE, LINE] {
+                prop_assert!((100.0 * sums[wheels] - left - right).abs() < 1e-9, "{sums:?}");
+            }
         }
     }
 

@@ -6,16 +6,21 @@
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 use rand_distr::{Distribution, StandardNormal};
 
-use super::basis::{SIZE, part, unit_factor, weights, weights_in_training};
+use super::basis::{LINE, SIZE, part, unit_factor, weights, weights_in_training};
 use super::member::Member;
-use super::{Ensemble, Evidence, PARTS};
+use super::{Ensemble, Evidence, Held, PARTS};
 use crate::chance::generator;
+
+/// Prior standard deviation of the line at full command, in cm and degrees of a step: far more than robots move, so that logs
+/// alone say what it is.
+const LINE_SIZE: f64 = 1000.0;
 
 /// A distribution over robots.
 pub struct Posterior {
     factor: DMatrix<f64>,
     channels: [Channel; 3],
     first_step: [f64; 3],
+    lasting: [f64; 3],
 }
 
 /// Sums of what evidence says of one channel: all that its likelihood needs.
@@ -35,33 +40,36 @@ struct Channel {
 
 /// Logarithm of the probability of all evidence of a distribution, up to what depends on its variances alone: which of two
 /// explanations of the same steps it prefers.
-pub fn log_evidence(ensemble: &Ensemble) -> f64 {
+pub fn log_evidence(ensemble: &Ensemble, held: Held) -> f64 {
     let factor = unit_factor();
     let of = |channel: usize| {
-        let squares =
-            ensemble.evidence.iter().map(|e| f64::from(e.bias[channel] * e.bias[channel] / e.variance[channel]));
-        let likelihood = Likelihood::new(&factor, &ensemble.evidence, channel);
-        likelihood.log_evidence(&ensemble.prior[channel]) - 0.5 * squares.sum::<f64>()
+        let square = |e: &Evidence| {
+            let motion = e.motion(held)[channel];
+            motion * motion / f64::from(e.variance[channel])
+        };
+        let squares: f64 = ensemble.evidence.iter().map(square).sum();
+        let likelihood = Likelihood::new(&factor, &ensemble.evidence, held, channel);
+        likelihood.log_evidence(&ensemble.prior[channel]) - 0.5 * squares
     };
     (0..3).map(of).sum()
 }
 
 impl Posterior {
-    /// Given all evidence; none if its numbers have no inverse.
-    pub fn new(ensemble: &Ensemble) -> Option<Self> {
+    /// Given all evidence, which is relative to `held`; none if its numbers have no inverse.
+    pub fn new(ensemble: &Ensemble, held: Held) -> Option<Self> {
         let factor = unit_factor();
         let channel = |channel: usize| {
-            let likelihood = Likelihood::new(&factor, &ensemble.evidence, channel);
+            let likelihood = Likelihood::new(&factor, &ensemble.evidence, held, channel);
             likelihood.given(&ensemble.prior[channel])
         };
         let channels = [channel(0)?, channel(1)?, channel(2)?];
-        Some(Posterior { factor, channels, first_step: ensemble.first_step })
+        Some(Posterior { factor, channels, first_step: ensemble.first_step, lasting: ensemble.lasting })
     }
 
     /// The robot in the middle.
     pub fn mean(&self) -> Member {
         let nodes = |channel: &Channel| self.nodes(channel, &channel.mean);
-        Member::new(self.channels.each_ref().map(nodes), [0.0; 3], 0)
+        Member::new(self.channels.each_ref().map(nodes), [0.0; 3], self.lasting, 0)
     }
 
     /// A robot of it, fixed by `seed`.
@@ -72,11 +80,11 @@ impl Posterior {
             let off = channel.precision.l_dirty().tr_solve_lower_triangular(&normal);
             self.nodes(channel, &(&channel.mean + off.unwrap_or(normal)))
         });
-        Member::new(nodes, self.first_step, seed)
+        Member::new(nodes, self.first_step, self.lasting, seed)
     }
 
-    /// Mean and standard deviation of the bias under a command: forward (cm), lateral (cm), turn (degrees).
-    pub fn bias(&self, command: [f64; 2]) -> [[f64; 2]; 3] {
+    /// Mean and standard deviation of the motion under a held command: forward (cm), lateral (cm), turn (degrees).
+    pub fn motion(&self, command: [f64; 2]) -> [[f64; 2]; 3] {
         let mut along = DVector::zeros(SIZE);
         for (node, weight) in weights(command) {
             along += self.factor.row(node).transpose() * weight;
@@ -94,16 +102,16 @@ impl Posterior {
 }
 
 impl Likelihood {
-    /// Of a channel of the evidence; `factor` is that of [`basis`](super::basis).
-    pub fn new(factor: &DMatrix<f64>, evidence: &[Evidence], channel: usize) -> Self {
+    /// Of a channel of the evidence, which is relative to `held`; `factor` is that of [`basis`](super::basis).
+    pub fn new(factor: &DMatrix<f64>, evidence: &[Evidence], held: Held, channel: usize) -> Self {
         let (mut precision, mut pull) = (DMatrix::zeros(SIZE, SIZE), DVector::zeros(SIZE));
         for e in evidence {
             let command = e.command.map(f64::from);
             let weights =
                 if e.after_training { weights(command).to_vec() } else { weights_in_training(command).to_vec() };
-            let (bias, certainty) = (f64::from(e.bias[channel]), 1.0 / f64::from(e.variance[channel]));
+            let (motion, certainty) = (e.motion(held)[channel], 1.0 / f64::from(e.variance[channel]));
             for &(i, a) in &weights {
-                pull[i] += a * bias * certainty;
+                pull[i] += a * motion * certainty;
                 for &(j, b) in &weights {
                     precision[(i, j)] += a * b * certainty;
                 }
@@ -119,8 +127,10 @@ impl Likelihood {
         0.5 * channel.mean.dot(&self.pull.component_mul(&channel.sizes)) - spread
     }
 
+    /// The distribution of the nodes for sizes of the parts.
     fn given(&self, prior: &[f64; PARTS]) -> Option<Channel> {
-        let sizes = DVector::from_fn(SIZE, |node, _| prior[part(node)]);
+        let size = |part: usize| if part == LINE { LINE_SIZE } else { prior[part] };
+        let sizes = DVector::from_fn(SIZE, |node, _| size(part(node)));
         let mut precision = DMatrix::from_fn(SIZE, SIZE, |i, j| sizes[i] * self.gram[(i, j)] * sizes[j]);
         precision.iter_mut().step_by(SIZE + 1).for_each(|diagonal| *diagonal += 1.0);
         let precision = Cholesky::new(precision)?;
@@ -134,6 +144,11 @@ mod tests {
     use super::*;
     use crate::statistics::summary::mean;
 
+    /// Networks that turn a tenth less than the robot does.
+    fn held([left, right]: [f64; 2]) -> [f64; 3] {
+        [0.0, 0.0, 0.9 * (right - left)]
+    }
+
     /// Twenty commands whose turn is biased by a tenth of their difference, known to 0.2 degrees each.
     fn ensemble() -> Ensemble {
         let command = |i: usize| [(i * 7 % 20) as f32 * 8.0 - 76.0, (i * 11 % 20) as f32 * 8.0 - 76.0];
@@ -145,6 +160,7 @@ mod tests {
         Ensemble {
             prior: [[1.0, 1.0, 1.0, 5.0, 1.0, 0.0]; 3],
             first_step: [0.0; 3],
+            lasting: [0.0; 3],
             evidence: (0..20).map(evidence).collect(),
         }
     }
@@ -152,33 +168,47 @@ mod tests {
     #[test]
     fn it_passes_through_evidence_and_is_wide_elsewhere() {
         let ensemble = ensemble();
-        let posterior = Posterior::new(&ensemble).unwrap();
+        let posterior = Posterior::new(&ensemble, &held).unwrap();
         for e in &ensemble.evidence {
-            let [at, deviation] = posterior.bias(e.command.map(f64::from))[2];
-            assert!((at - f64::from(e.bias[2])).abs() < 0.4 && deviation < 0.2, "{at} {deviation} {e:?}");
+            let [at, deviation] = posterior.motion(e.command.map(f64::from))[2];
+            assert!((at - e.motion(&held)[2]).abs() < 0.4 && deviation < 0.2, "{at} {deviation} {e:?}");
         }
-        let none = Posterior::new(&Ensemble { evidence: Vec::new(), ..ensemble.clone() }).unwrap();
-        let [at, deviation] = none.bias([30.0, -20.0])[2];
+        let none = Posterior::new(&Ensemble { evidence: Vec::new(), ..ensemble.clone() }, &held).unwrap();
+        let [at, deviation] = none.motion([0.0, 0.0])[2];
         assert!(at == 0.0 && (deviation - 29f64.sqrt()).abs() < 1.0, "{at} {deviation}");
+    }
+
+    /// Where no log has driven, the robot goes on as it did and not as networks happen to.
+    #[test]
+    fn beyond_the_evidence_it_is_the_robot_that_goes_on() {
+        let wild = |command: [f64; 2]| {
+            let beyond = f64::from(u8::from(command.iter().any(|c| c.abs() > 80.0)));
+            held(command).map(|said| said + 50.0 * beyond)
+        };
+        let posterior = Posterior::new(&ensemble(), &wild).unwrap();
+        let [at, deviation] = posterior.motion([95.0, -95.0])[2];
+        assert!((at + 190.0).abs() < 3.0 * deviation && deviation < 5.0, "{at} {deviation}");
     }
 
     #[test]
     fn draws_scatter_as_it_says() {
-        let posterior = Posterior::new(&ensemble()).unwrap();
+        let posterior = Posterior::new(&ensemble(), &held).unwrap();
         let command = [50.0, -50.0];
-        let draws: Vec<f64> = (0..400).map(|seed| posterior.draw(seed).bias(command)[2]).collect();
-        let [expected, deviation] = posterior.bias(command)[2];
+        let draws: Vec<f64> = (0..400).map(|seed| posterior.draw(seed).motion(command)[2]).collect();
+        let [expected, deviation] = posterior.motion(command)[2];
         let middle = mean(draws.iter().copied());
         let scatter = mean(draws.iter().map(|d| (d - middle) * (d - middle))).sqrt();
         assert!((middle - expected).abs() < 0.2 * deviation, "{middle} {expected} {deviation}");
         assert!((scatter / deviation - 1.0).abs() < 0.15, "{scatter} {deviation}");
-        assert_eq!(posterior.draw(7).bias(command), posterior.draw(7).bias(command));
+        assert_eq!(posterior.draw(7).motion(command), posterior.draw(7).motion(command));
     }
 
     #[test]
     fn the_likelihood_prefers_the_size_that_made_the_evidence() {
         let factor = unit_factor();
-        let likelihood = Likelihood::new(&factor, &ensemble().evidence, 2);
+        // A turn that saturates in the difference of the commands is no line.
+        let bent = |[left, right]: [f64; 2]| [0.0, 0.0, 20.0 * libm::tanh(0.05 * (right - left))];
+        let likelihood = Likelihood::new(&factor, &ensemble().evidence, &bent, 2);
         let at = |size: f64| likelihood.log_evidence(&[0.1, 0.1, 0.1, size, 0.1, 0.0]);
         assert!(at(5.0) > at(0.05) && at(5.0) > at(5000.0));
     }

@@ -171,7 +171,7 @@ impl Workbench<'_> {
     /// Controllers that are evolved on the robot in the middle, or the networks alone, with ways as they are in a room.
     fn candidates(&self, simulator: &Simulator, ways_of: &Scene) -> Result<Vec<Controller>> {
         let Case { scene, .. } = self.case;
-        let robots = simulator.ensemble.as_ref().and_then(|ensemble| ensemble.robots(1, self.seed()));
+        let robots = simulator.robots(1, self.seed());
         let environment = Environment::new(simulator, scene, self.case.pose(), Noise::Learned)?.with_beam(simulator);
         let environment = robots.iter().fold(environment, |any, robots| any.of_robot(&robots.mean));
         let target_cm = self.case.target_cm();
@@ -190,7 +190,7 @@ impl Workbench<'_> {
     fn judged(&self) -> Result<Vec<Controller>> {
         let Workbench { simulator, case, .. } = self;
         let candidates = self.candidates(simulator, &case.scene)?;
-        let robots = simulator.ensemble.as_ref().and_then(|ensemble| ensemble.robots(ROBOTS, self.seed()));
+        let robots = simulator.robots(ROBOTS, self.seed());
         let robots = robots.ok_or_else(|| Error::new("the simulator does not say what its logs leave open"))?;
         let judge = Judge::new(simulator, &robots.drawn, &case.scene, case.pose(), case.target_cm(), self.seed())?;
         let chances = judge.chances(&candidates, RUNS);
