@@ -15,6 +15,7 @@ use pyo3::prelude::*;
 use serde::Serialize;
 
 use crate::error::raised;
+use crate::interrupt::interruptible;
 use crate::show::{self, Figure};
 use crate::simulator::Simulator;
 use crate::{convert, places};
@@ -79,9 +80,13 @@ pub struct Evolution {
     scene: Scene,
 }
 
-/// How good a controller is, in simulation.
+/// How good a controller is in simulation, and how it came about: what `mindgap evolve --json` writes of it.
 #[derive(Serialize)]
 struct Success {
+    start: usize,
+    seed: u64,
+    generations: usize,
+    fitness: f64,
     success: f64,
     crashed: f64,
     median_cm: f64,
@@ -98,13 +103,15 @@ impl Evolution {
         Controller { file, name: "a controller from Python".into() }
     }
 
-    /// Success and crashes in fresh simulated runs, the median distance to the target, and the chance over robots that
-    /// the logs leave possible.
+    /// Success and crashes in fresh simulated runs, the median distance to the target, the chance over robots that the logs
+    /// leave possible, and how it was evolved.
     #[getter]
     fn facts<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let Answered { success, chance, .. } = &self.answered;
+        let &Origin { start, seed, generations, fitness, .. } = &self.origin;
         let (crashed, median_cm) = (success.crashed, success.median_cm);
-        convert::facts(py, &Success { success: success.rate, crashed, median_cm, chance: *chance })
+        let success = success.rate;
+        convert::facts(py, &Success { start, seed, generations, fitness, success, crashed, median_cm, chance: *chance })
     }
 
     /// The figures of `mindgap evolve --figures`.
@@ -153,7 +160,7 @@ pub fn evolve(
         random_numbers: RandomNumbers::Common,
         seed,
     };
-    let answered = py.detach(|| request.evolve(|_, _| ())).map_err(raised)?;
+    let answered = interruptible(py, |interrupt| request.evolve(|_, _| interrupt.check()))?.map_err(raised)?;
     let origin = Origin {
         simulator: simulator.name.clone(),
         scene: "a scene from Python".into(),

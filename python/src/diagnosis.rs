@@ -15,6 +15,7 @@ use pyo3::prelude::*;
 
 use crate::controller::Controller;
 use crate::error::raised;
+use crate::interrupt::interruptible;
 use crate::logs::Logs;
 use crate::show::{self, Figure, Page};
 use crate::simulator::Simulator;
@@ -149,7 +150,8 @@ pub fn diagnose(
         method,
         step_ms,
     };
-    let answered = py.detach(|| request.of((*logs.inner).clone(), |_| ())).map_err(raised)?;
+    let read = (*logs.inner).clone();
+    let answered = interruptible(py, |interrupt| request.of(read, |_| interrupt.check()))?.map_err(raised)?;
     Ok(Diagnosis { answered, simulator, method, names: [name, logs.name()], folder: logs.folder.clone() })
 }
 

@@ -8,6 +8,7 @@ mod convert;
 mod diagnosis;
 mod error;
 mod evaluation;
+mod interrupt;
 mod logs;
 mod places;
 mod show;

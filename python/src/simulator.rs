@@ -11,6 +11,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 use crate::error::{raised, warn};
+use crate::interrupt::{Interrupt, interruptible};
 use crate::logs::Logs;
 use crate::{convert, places};
 
@@ -79,7 +80,8 @@ pub fn train(py: Python<'_>, logs: &Logs, trainer: &str, seed: u64) -> PyResult<
         other => return Err(PyValueError::new_err(format!("trainer {other:?}: there are \"fast\" and \"paper\""))),
     };
     let sound = logs.sound(py, None)?;
-    let trained = py.detach(|| training::train(&sound, &trainer, &TABLE_ONE, seed, |_| ())).map_err(raised)?;
+    let train = |interrupt: &Interrupt| training::train(&sound, &trainer, &TABLE_ONE, seed, |_| interrupt.check());
+    let trained = interruptible(py, train)?.map_err(raised)?;
     let missing = trained.missing.iter().map(|missing| format!("no {} network: {}", missing.network, missing.reason));
     warn(py, missing.collect())?;
     Ok(Simulator::made(trained))

@@ -2,6 +2,7 @@
 
 import json
 import os
+import signal
 import subprocess
 import threading
 import time
@@ -183,6 +184,23 @@ def test_other_threads_run_meanwhile(logs):
     ended.set()
     clock.join()
     assert meanwhile > 10
+
+
+def test_ctrl_c_ends_long_work(simulator):
+    """The handler runs in the main thread, which is where the work is asked for."""
+    begun = threading.Event()
+
+    def press():
+        begun.wait()
+        signal.raise_signal(signal.SIGINT)
+
+    presser = threading.Thread(target=press)
+    presser.start()
+    with pytest.raises(KeyboardInterrupt):
+        begun.set()
+        mindgap.evolve(simulator, SCENE, max_steps=200, seed=1)
+    presser.join()
+    assert mindgap.evolve(simulator, SCENE, max_steps=5, seed=1).facts["start"] == 1, "and nothing is broken"
 
 
 def test_the_notebook_runs_from_top_to_bottom(tmp_path):

@@ -17,9 +17,12 @@ use crate::files;
 use crate::files::places::Places;
 use crate::page::demo::page;
 
+/// The page among what the demo leaves.
+const PAGE: &str = "demo.html";
+
 /// Do the whole job on the built-in robot: record, train, evolve, try, export, draw.
 ///
-/// Then weaken a motor, and let the loop find out and repair it.
+/// Then weaken a motor, and let the loop find out and repair it. `demo.html` in the folder is a page of all of it.
 #[derive(Args)]
 pub struct Demo {
     /// Where to leave everything.
@@ -58,14 +61,17 @@ impl Run for Demo {
         };
         let summary = demo::run(&self.out, self.seed, watch)?;
         bar.finish_and_clear();
-        if let Some(path) = &self.html {
-            files::write(path, page(&summary, &self.out.display().to_string(), self.seed)?)?;
+        let page = page(&summary, &self.out.display().to_string(), self.seed)?;
+        let in_folder = self.out.join(PAGE);
+        for path in self.html.iter().chain([&in_folder]) {
+            files::write(path, &page)?;
         }
         let text = format!(
-            "{}\n{}\nlogs, simulator, controllers, NXC programs and pictures are in {}\n",
+            "{}\n{}\nlogs, simulator, controllers, NXC programs and pictures are in {}, and a page of it all is {}\n",
             told(&summary),
             repaired(&summary.repair),
-            self.out.display()
+            self.out.display(),
+            in_folder.display()
         );
         super::reported(self.json.as_deref(), &facts(&summary), text)
     }

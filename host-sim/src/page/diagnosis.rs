@@ -161,8 +161,9 @@ fn lead(diagnosis: &Diagnosis, logs: &Logs) -> Markup {
             "Compared: " (words::list(&compared)) " in " (rows) " rows of " (logs.runs.len())
             @if logs.runs.len() == 1 { " run." } @else { " runs." }
         }
-        @for missing in &diagnosis.scope.not_compared {
-            p.bad { "Not compared: " (words::channel(missing.channel)) ". " (missing.reason) }
+        @for missing in diagnosis.scope.not_compared.chunk_by(|a, b| a.reason == b.reason) {
+            @let channels: Vec<&str> = missing.iter().map(|one| words::channel(one.channel)).collect();
+            p.bad { "Not compared: " (words::list(&channels)) ". " (missing[0].reason) }
         }
     }
 }

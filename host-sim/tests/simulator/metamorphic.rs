@@ -116,6 +116,12 @@ fn what_acts_on_the_textbook_is_found_whatever_the_units_and_the_hand() {
     });
     assert_eq!(textbook(&mirrored), causes, "mirrored");
 
+    let mut seldom_seen = logs.clone();
+    for run in &mut seldom_seen.runs {
+        (1..run.rows.len()).step_by(2).for_each(|k| run.rows.edit(k, |row| row.pose = None));
+    }
+    assert_eq!(textbook(&seldom_seen), causes, "poses at twice the step");
+
     assert_eq!(textbook(&moved(&logs, -2.0, DVec2::new(70.0, -40.0))), causes, "turned");
 
     // The second halves begin while the robot moves.

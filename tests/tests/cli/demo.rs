@@ -48,6 +48,7 @@ fn evolved_controllers_reach_the_target_on_the_robot() {
     assert_eq!(trials[0]["real"]["reached"], false, "{repair}");
     assert!(trials.iter().any(|trial| trial["real"]["reached"] == true), "{repair}");
     assert_eq!(workshop.text("page.html").matches("data-chart=\"map\"").count(), 4 + trials.len());
+    assert_eq!(workshop.text("out/demo.html"), workshop.text("page.html"));
     let facts = workshop.json("facts.json");
     assert_eq!(facts["starts"].as_array().map(Vec::len), Some(4), "{facts}");
     assert_eq!(facts["repair"]["trials"].as_u64(), Some(trials.len() as u64), "{facts}");

@@ -36,9 +36,12 @@ pub fn section(subject: &Subject) -> Section {
             h3 { "What was wrong with the logs" }
             ul { @for found in &diagnosis.data { li { (found.line()) } } }
         }
-        @if !diagnosis.notes.is_empty() {
+        // Why a channel is not compared stands at the top of the page.
+        @let told = |note: &String| diagnosis.scope.not_compared.iter().any(|missing| missing.reason == *note);
+        @let notes: Vec<&String> = diagnosis.notes.iter().filter(|note| !told(note)).collect();
+        @if !notes.is_empty() {
             h3 { "What else limits this answer" }
-            ul { @for note in &diagnosis.notes { li { (note) } } }
+            ul { @for note in notes { li { (note) } } }
         }
     };
     Section { id: "compared", title: "What was compared", body }

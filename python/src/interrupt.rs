@@ -1,0 +1,36 @@
+//! Long work that Ctrl-C ends, as it ends everything else in Python.
+
+use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
+use std::sync::{Mutex, PoisonError};
+
+use pyo3::prelude::*;
+
+/// Asks in the middle of some work whether somebody wants it ended.
+#[derive(Default)]
+pub struct Interrupt(Mutex<Option<PyErr>>);
+
+/// Does work with the interpreter released, until a signal's handler raises in one of its checks.
+///
+/// # Errors
+/// What the handler raised: `KeyboardInterrupt` after Ctrl-C.
+pub fn interruptible<T: Send>(py: Python<'_>, work: impl FnOnce(&Interrupt) -> T + Send) -> PyResult<T> {
+    let interrupt = Interrupt::default();
+    let done = py.detach(|| catch_unwind(AssertUnwindSafe(|| work(&interrupt))));
+    let Interrupt(raised) = interrupt;
+    match (done, raised.into_inner().unwrap_or_else(PoisonError::into_inner)) {
+        (Ok(done), _) => Ok(done),
+        (Err(_), Some(raised)) => Err(raised),
+        (Err(panic), None) => resume_unwind(panic),
+    }
+}
+
+impl Interrupt {
+    /// Unwinds to [`interruptible`] if a signal's handler raises. The library's work has no other way out: what it says of
+    /// its progress is not answered.
+    pub fn check(&self) {
+        if let Err(raised) = Python::attach(|py| py.check_signals()) {
+            *self.0.lock().unwrap_or_else(PoisonError::into_inner) = Some(raised);
+            resume_unwind(Box::new("interrupted"));
+        }
+    }
+}
