@@ -8,7 +8,8 @@ use crate::effects::chain::EffectChain;
 use crate::error::{Error, Result};
 use crate::evaluation::observations::Observations;
 use crate::evaluation::predictions;
-use crate::gap::{self, Method, validate};
+use crate::gap::progress::Stage;
+use crate::gap::{Method, findings_watched, validate};
 use crate::inspection::Inspection;
 use crate::learn::ensemble::conditioned;
 use crate::learn::ensemble::holds::{Hold, MotionNoise, StepResidual, holds};
@@ -69,11 +70,12 @@ pub struct Gap {
     pub turn_deg: [f64; 2],
 }
 
-/// Adapts a simulator to logs of the robot that it stands for; `seed` fixes the draws of the diagnosis.
+/// Adapts a simulator to logs of the robot that it stands for; `seed` fixes the draws of the diagnosis, and `watch` is told each
+/// of its stages when it begins.
 ///
 /// # Errors
 /// When the simulator does not say what its training logs left open, or the logs are another robot's or hold no step.
-pub fn adapt(simulator: &Simulator, logs: &Logs, seed: u64) -> Result<Adapted> {
+pub fn adapt(simulator: &Simulator, logs: &Logs, seed: u64, watch: impl Fn(Stage)) -> Result<Adapted> {
     validate::same_robot(&simulator.robot, &logs.robot)?;
     let missing = || Error::new("the simulator file does not say what its training logs leave open: train it again");
     let ensemble = simulator.ensemble.as_ref().ok_or_else(missing)?;
@@ -83,7 +85,7 @@ pub fn adapt(simulator: &Simulator, logs: &Logs, seed: u64) -> Result<Adapted> {
     if plain.is_empty() {
         return Err(Error::new("the runs hold no step with a pose at both ends: there is nothing to adapt to"));
     }
-    let effects = diagnosed(simulator, logs, seed);
+    let effects = diagnosed(simulator, logs, seed, watch);
     let explained = steps(simulator, &effects, &observations)?;
     let networks = simulator.motion_networks().ok_or_else(missing)?;
     let said: Held = &|command| networks.held(command);
@@ -130,10 +132,11 @@ fn of_no_motion(
 }
 
 /// The effects that a diagnosis names; none where the logs do not suffice for one.
-fn diagnosed(simulator: &Simulator, logs: &Logs, seed: u64) -> Vec<AppliedEffect> {
+fn diagnosed(simulator: &Simulator, logs: &Logs, seed: u64, watch: impl Fn(Stage)) -> Vec<AppliedEffect> {
     let Ok(baseline) = Baseline::learned(simulator) else { return Vec::new() };
     let method = Method { seed, ..Method::default() };
-    gap::findings(baseline, &Inspection::of(logs.clone()), method).map_or_else(|_| Vec::new(), |found| found.applied)
+    let found = findings_watched(baseline, &Inspection::of(logs.clone()), method, watch);
+    found.map_or_else(|_| Vec::new(), |found| found.applied)
 }
 
 /// What every logged step is off by, with these effects beside those that the simulator has.

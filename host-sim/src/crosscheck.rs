@@ -43,7 +43,8 @@ pub struct Networks {
 }
 
 /// Compares a simulator's networks in both arithmetics: on every sample of the logs, on a grid over all that they were
-/// trained on, and in whole runs, of `controller` or of random ones, in the room of the logs.
+/// trained on, and in whole runs, of `controller` or of random ones, in the room of the logs. `watch` is told how many runs of
+/// how many are done.
 ///
 /// # Errors
 /// When a network is missing or cannot be represented in fixed point, or when the robot has no room where the logs have
@@ -53,6 +54,7 @@ pub fn crosscheck(
     logs: &Logs,
     controller: Option<&Controller>,
     trials: Trials,
+    watch: impl Fn(usize, usize) + Sync,
 ) -> Result<Crosscheck> {
     let data = Datasets::from_logs(logs);
     let float = Float::new(simulator, &data)?;
@@ -68,6 +70,6 @@ pub fn crosscheck(
             echo_probability: NetworkCheck::new(&float.echo_probability, &quantised.echo_probability, faced),
             echo_value: NetworkCheck::new(&float.echo_value, &quantised.echo_value, faced),
         },
-        runs: runs::side_by_side(&float, &fixed, simulator, logs, controller, trials)?,
+        runs: runs::side_by_side(&float, &fixed, simulator, logs, controller, trials, watch)?,
     })
 }

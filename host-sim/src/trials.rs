@@ -5,6 +5,7 @@
 //! [state] after every step, so that a loop that is stopped anywhere goes on.
 
 pub mod drawing;
+mod driven;
 pub mod robot;
 pub mod search;
 pub mod state;
@@ -108,7 +109,7 @@ impl<'a> Trials<'a> {
         let logs = Logs { robot: self.simulator.robot, scene: self.scene.clone(), runs };
         let adapted = match logs.runs.as_slice() {
             [] => None,
-            _ => Some(adapt(&self.simulator, &logs, self.job.seed)?),
+            _ => Some(adapt(&self.simulator, &logs, self.job.seed, |_| ())?),
         };
         let simulator = adapted.as_ref().map_or(&self.simulator, |adapted| &adapted.simulator).clone();
         let count = self.state.trials.len();

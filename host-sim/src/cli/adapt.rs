@@ -6,13 +6,14 @@ use clap::Args;
 use serde::Serialize;
 
 use super::table::{self, number};
-use super::{Run, kinds};
+use super::{Run, kinds, progress};
 use crate::adapt::{Adapted, CommandBias, Gap, Lesson, adapt};
 use crate::error::{Error, Result};
 use crate::evolve::chance::{Chance, Judge, ROBOTS, RUNS};
 use crate::evolve::controller_file::ControllerFile;
 use crate::files::places::Places;
 use crate::gap::Method;
+use crate::gap::progress::Stage;
 use crate::logs::Scene;
 use crate::simulator::Simulator;
 
@@ -70,13 +71,20 @@ impl Run for Adapt {
         let given = Simulator::read(&self.sim)?;
         let mut simulator = given.clone();
         let mut lessons = Vec::new();
-        for folder in &self.logs {
+        let bar = progress::shares();
+        for (folder, before) in self.logs.iter().zip(0..) {
             let logs = super::read_sound_logs(folder)?;
-            let adapted = adapt(&simulator, &logs, self.seed).map_err(|error| error.or_in_file(folder))?;
+            let watch = |stage: Stage| {
+                let share = (f64::from(before) + stage.share_before()) / self.logs.len() as f64;
+                bar.set_position((100.0 * share) as u64);
+                bar.set_message(format!("{}: {}", folder.display(), stage.words()));
+            };
+            let adapted = adapt(&simulator, &logs, self.seed, watch).map_err(|error| error.or_in_file(folder))?;
             let Adapted { simulator: better, lesson } = adapted;
             simulator = better;
             lessons.push(lesson);
         }
+        bar.finish_and_clear();
         let chance = match (&self.controller, &self.scene) {
             (Some(_), Some(_)) => Some([self.chance(&given)?, self.chance(&simulator)?]),
             _ => None,

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, value_parser};
 
-use super::{Run, kinds, table};
+use super::{Run, kinds, progress, table};
 use crate::crosscheck::{self, Divergence, NetworkCheck, Networks, RunState, Runs, Trials};
 use crate::error::Result;
 use crate::evolve::controller_file::ControllerFile;
@@ -44,8 +44,10 @@ impl Run for Crosscheck {
         let controller = self.controller.as_ref().map(read).transpose()?.map(|file| file.controller);
         let logs = super::read_logs_of(&simulator, &self.logs)?;
         let trials = Trials { runs: self.runs as usize, seed: self.seed };
-        let found = crosscheck::crosscheck(&simulator, &logs, controller.as_ref(), trials)
-            .map_err(|error| error.or_in_file(&self.sim))?;
+        let bar = progress::bar(self.runs.into());
+        let found = crosscheck::crosscheck(&simulator, &logs, controller.as_ref(), trials, progress::counting(&bar));
+        bar.finish_and_clear();
+        let found = found.map_err(|error| error.or_in_file(&self.sim))?;
         super::reported(self.json.as_deref(), &found, networks(&found.networks) + "\n" + &runs(&found.runs))
     }
 }

@@ -6,7 +6,7 @@ use std::time::Duration;
 use clap::{Args, value_parser};
 
 use super::voice::meanwhile;
-use super::{Run, kinds, warn};
+use super::{Run, kinds, progress, warn};
 use crate::error::Result;
 use crate::evolve::chance::Chance;
 use crate::files;
@@ -83,13 +83,17 @@ impl Run for Loop {
         };
         let command = || CommandRobot { command: self.robot.clone(), timeout: Duration::from_secs(self.robot_timeout) };
         let robot: &mut dyn TrialRobot = if self.robot == ASK { &mut AskRobot } else { &mut command() };
+        let bar = progress::bar(self.trials.into());
         let state = trials::run(&job, robot, |event| match event {
             Event::Driving(trial) => {
+                bar.set_position(trial.number as u64 - 1);
                 meanwhile(&format!("trial {}: chance {}, driving", trial.number, trial.predicted));
             }
             Event::Driven(trial) => meanwhile(&line(trial)),
             Event::Failed(failure) => warn(format!("trial {}: nothing is learned: {}", failure.trial, failure.reason)),
-        })?;
+        });
+        bar.finish_and_clear();
+        let state = state?;
         if let Some(path) = &self.html {
             let names = [&self.sim, &self.scene].map(|path| path.display().to_string());
             let scene = Scene::read(&self.scene)?;

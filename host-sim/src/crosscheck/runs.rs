@@ -1,6 +1,8 @@
 //! Whole runs of controllers in both arithmetics, side by side: from one start, through one room, with the same draws.
 //! Poses and rays are the room's and not the robot's; both have them in double precision.
 
+use std::sync::atomic::{AtomicUsize, Ordering};
+
 use mindgap_core::chance::Generator;
 use mindgap_core::controller::{Controller, Machine, Motors, Status};
 use rand::{RngExt, SeedableRng};
@@ -99,6 +101,7 @@ pub(super) fn side_by_side(
     logs: &Logs,
     controller: Option<&Controller>,
     trials: Trials,
+    watch: impl Fn(usize, usize) + Sync,
 ) -> Result<Runs> {
     let world = World { robot: simulator.robot, sides: logs.scene.sides(), room: Room::new(&logs.scene) };
     let has_room = |pose: &Pose| logs.scene.has_room_for(pose.position_cm, world.robot.body_radius_cm);
@@ -108,13 +111,16 @@ pub(super) fn side_by_side(
         return Err(Error::new("the robot has no room to start at any pose that the logs hold"));
     }
     let decoder = GenotypeDecoder::new(simulator, MAX_STEPS);
+    let done = AtomicUsize::new(0);
     let pairs = (0..trials.runs).into_par_iter().map(|run| {
         let seed = derive(trials.seed, &[run as u64]);
         let mut generator = generator(seed, &[PAIR]);
         let start = starts[generator.random_range(0..starts.len())];
         let random = decoder.controller(&decoder.random(&mut generator));
         let controller = controller.unwrap_or(&random);
-        pair(&world, controller, Walker::new(float, start), Walker::new(fixed, start), run + 1, seed)
+        let found = pair(&world, controller, Walker::new(float, start), Walker::new(fixed, start), run + 1, seed);
+        watch(done.fetch_add(1, Ordering::Relaxed) + 1, trials.runs);
+        found
     });
     Ok(pairs.collect::<Vec<Runs>>().into_iter().fold(Runs::default(), Runs::and))
 }

@@ -3,8 +3,9 @@
 
 use std::path::Path;
 
-use mindgap_core::controller::{Controller, TUPLES};
+use mindgap_core::controller::Controller;
 
+use super::driven::Driven;
 use super::state::{Ending, Real, place_cm};
 use crate::effects::chain::EffectChain;
 use crate::error::{Error, Result};
@@ -61,7 +62,7 @@ impl Vetting<'_> {
     }
 
     fn vetted(&self, run: Run) -> Result<(Run, Real)> {
-        let driven = self.driven(&run)?;
+        let driven = Driven::of(self.controller, &run)?;
         self.check_start(&run)?;
         check_tracker(&run)?;
         let logs = Logs { robot: self.simulator.robot, scene: self.scene.clone(), runs: vec![run] };
@@ -89,41 +90,21 @@ impl Vetting<'_> {
         Ok((run, Real { ending, steps: driven.steps, end_x_cm, end_y_cm, distance_cm, reached, path_cm }))
     }
 
-    /// Follows the controller's tuples through the logged commands.
-    fn driven(&self, run: &Run) -> Result<Driven> {
-        let command = |tuple: usize| {
-            let tuple = self.controller.tuples.get(tuple)?;
-            Some([f64::from(tuple.left), f64::from(tuple.right)])
-        };
-        let (mut tuple, mut steps, mut stopped) = (0, 0, false);
-        for (i, row) in run.rows.iter().enumerate() {
-            let is = |of: Option<[f64; 2]>| of.is_some_and(|of| of == row.command());
-            match () {
-                () if !stopped && is(command(tuple)) => steps += 1,
-                () if !stopped && i > 0 && is(command(tuple + 1)) => (tuple, steps) = (tuple + 1, steps + 1),
-                () if i > 0 && row.command() == [0.0; 2] => stopped = true,
-                () => {
-                    let [left, right] = row.command();
-                    let what =
-                        format!("line {}: commands {left}, {right} are not this controller's at that point", i + 2);
-                    return Err(Error::new(format!("{what}: it is the log of another controller or robot")));
-                }
-            }
-        }
-        Ok(Driven { tuple, steps, stopped })
-    }
-
     fn ending(&self, driven: &Driven, end: &Pose) -> Result<Ending> {
         let (at_cm, sides) = (end.position_cm, self.scene.sides());
         let nearest_cm = sides.iter().map(|side| side.nearest(at_cm).distance(at_cm)).fold(f64::INFINITY, f64::min);
         let clearance_cm = nearest_cm - self.simulator.robot.body_radius_cm;
-        match driven {
-            _ if clearance_cm < TOUCHING_CM => Ok(Ending::Crashed),
-            Driven { tuple, stopped: true, .. } if tuple + 1 == TUPLES => Ok(Ending::Finished),
-            Driven { steps, .. } if *steps >= usize::from(self.controller.max_steps) => Ok(Ending::TimedOut),
-            Driven { steps, .. } => Err(Error::new(format!(
+        let steps = driven.steps;
+        if clearance_cm < TOUCHING_CM {
+            Ok(Ending::Crashed)
+        } else if driven.may_have_finished() {
+            Ok(Ending::Finished)
+        } else if steps >= usize::from(self.controller.max_steps) {
+            Ok(Ending::TimedOut)
+        } else {
+            Err(Error::new(format!(
                 "breaks off after {steps} steps, where the controller had not ended and no wall is near: half a log"
-            ))),
+            )))
         }
     }
 
@@ -157,16 +138,6 @@ impl Vetting<'_> {
         }
         Ok(())
     }
-}
-
-/// What the logged commands say of a run.
-struct Driven {
-    /// The last tuple that was held, from 0.
-    tuple: usize,
-    /// Rows at which a tuple was held.
-    steps: usize,
-    /// Whether the motors were stopped then.
-    stopped: bool,
 }
 
 fn check_tracker(run: &Run) -> Result<()> {

@@ -130,7 +130,7 @@ fn correct(bench: &Workbench) -> Result<Settled> {
             return Ok((*simulator).clone());
         }
         let logs = Logs { robot: simulator.robot, scene: case.scene.clone(), runs: runs.to_vec() };
-        Ok(adapt(simulator, &logs, bench.seed())?.simulator)
+        Ok(adapt(simulator, &logs, bench.seed(), |_| ())?.simulator)
     })
 }
 
