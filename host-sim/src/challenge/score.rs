@@ -153,8 +153,11 @@ fn closed_on_fresh_runs(folder: &Folder, case: &Published, sealed: &Sealed) -> R
     let effects = effects.collect::<Result<Vec<_>>>()?;
     let driving = Driving::named(&sealed.driving).ok_or_else(|| unknown(&sealed.driving))?;
     let logs = Logs::read(&folder.case(&case.case), |_| {})?;
-    let fresh = record_driving(&driving, &logs.robot, &logs.scene, FRESH, &effects, sealed.fresh_seed)?;
-    closed(&Simulator::read(&folder.simulator(&case.robot))?, &added, &fresh)
+    // A robot that hits something in every attempt has no fresh runs.
+    match record_driving(&driving, &logs.robot, &logs.scene, FRESH, &effects, sealed.fresh_seed) {
+        Ok(fresh) => closed(&Simulator::read(&folder.simulator(&case.robot))?, &added, &fresh),
+        Err(_) => Ok(None),
+    }
 }
 
 impl Opened {

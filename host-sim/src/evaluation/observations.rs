@@ -62,6 +62,9 @@ pub struct Observation {
 pub const FEWEST_BLOCKS: usize = 8;
 /// Parts of long runs have about this many rows: a minute of steps of 400 ms.
 const LONGEST_BLOCK: usize = 150;
+/// Longer runs than two of those are cut however many there are: of all rows a few thousand count, and those of two runs say
+/// less than those of parts of all.
+const LONGEST_RUN: usize = 2 * LONGEST_BLOCK;
 
 impl Observations {
     /// Takes all that counts out of logs, for a sensor whose beam is `fan_width` times as wide as the usual fan.
@@ -183,11 +186,12 @@ impl Observations {
     }
 }
 
-/// Into how many blocks a run is cut: one where there are enough runs.
+/// Into how many blocks a run is cut: one where there are enough runs that are short enough.
 fn parts_of_a_run(logs: &Logs) -> usize {
     let runs = logs.runs.len();
     let rows = logs.rows();
-    if runs >= FEWEST_BLOCKS { 1 } else { FEWEST_BLOCKS.div_ceil(runs).max(rows / runs / LONGEST_BLOCK) }
+    let is_one = runs >= FEWEST_BLOCKS && rows <= runs * LONGEST_RUN;
+    if is_one { 1 } else { FEWEST_BLOCKS.div_ceil(runs).max(rows / runs / LONGEST_BLOCK) }
 }
 
 /// Numbers the places of rows in the order in which they are visited, and returns how many there are.

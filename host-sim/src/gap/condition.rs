@@ -132,6 +132,15 @@ mod tests {
         assert!(hold_out.rows.iter().all(|row| row.block < hold_out.blocks));
     }
 
+    /// Of ten runs of 4,000 rows a part of each identifies.
+    #[test]
+    fn of_many_long_runs_parts_identify() {
+        let conditioned = Conditioned::of(&driven(10, 4001, |_, _| [50.0; 2]), &baseline());
+        let rows = &conditioned.identification.rows;
+        let runs: std::collections::BTreeSet<usize> = rows.iter().map(|row| row.run).collect();
+        assert!((2500..=3000).contains(&rows.len()) && runs.len() == 10, "{} of {runs:?}", rows.len());
+    }
+
     #[test]
     fn what_confirms_is_what_is_held_out_or_else_all() {
         let count = |runs| {

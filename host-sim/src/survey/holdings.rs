@@ -1,6 +1,6 @@
 //! What logs hold, in numbers.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use serde::Serialize;
 
@@ -88,18 +88,16 @@ impl Holdings {
         let step_ms = median(times());
         let duration_ms = logs.runs.iter().filter_map(|run| Some(run.rows.last()?.t_ms - run.rows.first()?.t_ms));
         let motion = || samples::steps(coarse);
-        let faced = || samples::readings(logs).map(|s| [s.distance_cm, s.alpha_deg()]);
         let per_s = 1000.0 / coarse.robot.step_ms;
         let held = held_steps(logs);
-        let max_cm = logs.robot.ultrasonic.max_cm;
-        let facing = faced().filter(|[distance_cm, _]| *distance_cm <= max_cm);
+        let faced = Faced::of(logs);
         Holdings {
             runs: logs.runs.len(),
             rows: count,
             steps: samples::steps(logs).count(),
             duration_s: duration_ms.sum::<f64>() / 1000.0,
             step_ms,
-            jitter_ms: usual(times().map(|ms| (ms - step_ms).abs()).collect()),
+            jitter_ms: usual(times().map(|ms| (ms - step_ms).abs())),
             with_pose: share(rows().filter(|row| row.pose.is_some()).count()),
             with_reading: share(rows().filter(|row| row.echo_cm.is_some()).count()),
             left: Range::of(commands(logs).map(|[left, _]| left)),
@@ -107,28 +105,53 @@ impl Holdings {
             forward_cm_s: Range::of(motion().map(|step| step.forward_cm * per_s)),
             turn_deg_s: Range::of(motion().map(|step| step.turn_rad.to_degrees() * per_s)),
             reading_cm: Range::of(rows().filter_map(|row| row.echo_cm)),
-            distance_cm: Range::of(faced().map(|[distance_cm, _]| distance_cm)),
-            alpha_deg: Range::of(faced().map(|[_, alpha_deg]| alpha_deg)),
+            distance_cm: faced.distance_cm,
+            alpha_deg: faced.alpha_deg,
             command_coverage: covered(
                 commands(logs).map(|pair| pair.map(|c| (c + 100.0) / 200.0)),
                 [COMMAND_CELLS, COMMAND_CELLS],
             ),
-            sensor_coverage: covered(
-                facing.map(|[distance_cm, alpha_deg]| [distance_cm / max_cm, alpha_deg / 90.0]),
-                [DISTANCE_CELLS, ALPHA_CELLS],
-            ),
+            sensor_coverage: faced.coverage,
             held_steps: median(held.iter().map(|n| f64::from(*n))),
             longest_held_steps: held.into_iter().max().unwrap_or(0),
         }
     }
 }
 
+/// What the sensor faced in all rows with a pose.
+struct Faced {
+    distance_cm: Option<Range>,
+    alpha_deg: Option<Range>,
+    /// The share of cells up to its reach.
+    coverage: f64,
+}
+
+impl Faced {
+    /// In one pass: each row is a ray through the room.
+    fn of(logs: &Logs) -> Self {
+        let max_cm = logs.robot.ultrasonic.max_cm;
+        let (mut distance, mut alpha) = (None, None);
+        let seen = samples::readings(logs).map(|s| {
+            let [distance_cm, alpha_deg] = [s.distance_cm, s.alpha_deg()];
+            distance = Range::wider(distance, distance_cm);
+            alpha = Range::wider(alpha, alpha_deg);
+            [distance_cm, alpha_deg]
+        });
+        let within = seen.filter(|[distance_cm, _]| *distance_cm <= max_cm);
+        let shares = within.map(|[distance_cm, alpha_deg]| [distance_cm / max_cm, alpha_deg / 90.0]);
+        let coverage = covered(shares, [DISTANCE_CELLS, ALPHA_CELLS]);
+        Faced { distance_cm: distance, alpha_deg: alpha, coverage }
+    }
+}
+
 impl Range {
     fn of(numbers: impl Iterator<Item = f64>) -> Option<Self> {
-        numbers.fold(None, |range: Option<Range>, number| {
-            let Range { low, high } = range.unwrap_or(Range { low: number, high: number });
-            Some(Range { low: low.min(number), high: high.max(number) })
-        })
+        numbers.fold(None, Range::wider)
+    }
+
+    fn wider(range: Option<Range>, number: f64) -> Option<Self> {
+        let Range { low, high } = range.unwrap_or(Range { low: number, high: number });
+        Some(Range { low: low.min(number), high: high.max(number) })
     }
 }
 
@@ -165,9 +188,17 @@ fn covered(places: impl Iterator<Item = [f64; 2]>, cells: [usize; 2]) -> f64 {
     found.len() as f64 / (cells[0] * cells[1]) as f64
 }
 
-/// What all but a few of some deviations stay within; NaN of none.
-fn usual(mut deviations: Vec<f64>) -> f64 {
-    deviations.sort_by(f64::total_cmp);
-    let place = (USUAL * deviations.len() as f64) as usize;
-    deviations.get(place.min(deviations.len().saturating_sub(1))).copied().unwrap_or(f64::NAN)
+/// What all but a few of some deviations in ms stay within, in whole parts of one; NaN of none. Counted and not kept: there
+/// may be millions.
+fn usual(deviations_ms: impl Iterator<Item = f64>) -> f64 {
+    const PARTS: f64 = 100.0;
+    let mut counts: BTreeMap<u64, usize> = BTreeMap::new();
+    deviations_ms.for_each(|ms| *counts.entry((PARTS * ms).round() as u64).or_default() += 1);
+    let place = (USUAL * counts.values().sum::<usize>() as f64) as usize;
+    let mut before = 0;
+    let found = counts.iter().find(|(_, count)| {
+        before += **count;
+        before > place
+    });
+    found.or(counts.iter().next_back()).map_or(f64::NAN, |(part, _)| *part as f64 / PARTS)
 }
