@@ -158,7 +158,7 @@ fn answer() -> Result<()> {
     } else {
         return Ok(());
     }
-    lasting::begin(asked.is_shared(), kept, || lasting::task(&command, &matches, &places))?;
+    lasting::begin(asked.is_shared(), kept, &places, (&command, &matches))?;
     progress::begin(matches.subcommand_name().unwrap_or_default().to_owned());
     let done = asked.run();
     progress::end();

@@ -69,7 +69,7 @@ pub fn threads() -> Option<usize> {
 }
 
 /// Leaves the work to the first rank alone.
-pub fn part() {
+pub fn go_alone() {
     RUN.with_borrow_mut(|run| run.ranks = None);
 }
 

@@ -62,15 +62,17 @@ impl Kept {
 ///
 /// # Errors
 /// When another run stood there, or other ranks have another task.
-pub fn begin(is_shared: bool, kept: Option<Kept>, task: impl FnOnce() -> Result<Task>) -> Result<()> {
+pub fn begin(is_shared: bool, kept: Option<Kept>, places: &Places, call: (&Command, &ArgMatches)) -> Result<()> {
     if !is_shared {
-        workers::part();
+        workers::go_alone();
     }
     if !is_shared && kept.is_none() {
         return Ok(());
     }
     let checkpoint = kept.as_ref().map(|kept| (kept.path.as_path(), kept.begin));
-    let count = workers::begin(task(), checkpoint, warn)?;
+    // Neither what is written nor what is kept counts where it lies in a folder that is read.
+    let outputs: Vec<PathBuf> = places.outputs().chain(kept.as_ref().map(|kept| kept.path.clone())).collect();
+    let count = workers::begin(task(call, places.inputs(), &outputs), checkpoint, warn)?;
     if let Some(kept) = kept.filter(|_| count > 0) {
         meanwhile(&format!("{}: goes on, {count} pieces of work are done", kept.path.display()));
     }
@@ -78,11 +80,8 @@ pub fn begin(is_shared: bool, kept: Option<Kept>, task: impl FnOnce() -> Result<
 }
 
 /// What a call asks for.
-///
-/// # Errors
-/// When what it reads cannot be read.
-pub fn task(command: &Command, matches: &ArgMatches, places: &Places) -> Result<Task> {
-    let (mut command, mut matches, mut names) = (command, matches, Vec::new());
+fn task((mut command, mut matches): (&Command, &ArgMatches), inputs: &[PathBuf], outputs: &[PathBuf]) -> Result<Task> {
+    let mut names = Vec::new();
     let mut arguments = BTreeMap::new();
     while let Some((name, within)) = matches.subcommand() {
         command = command.find_subcommand(name).ok_or_else(|| Error::new(format!("there is no command {name}")))?;
@@ -96,5 +95,5 @@ pub fn task(command: &Command, matches: &ArgMatches, places: &Places) -> Result<
             }
         }
     }
-    Task::new(names.join(" "), arguments, places.inputs(), &places.outputs())
+    Task::new(names.join(" "), arguments, inputs, outputs)
 }

@@ -59,8 +59,8 @@ impl Places {
     }
 
     /// What is written.
-    pub fn outputs(&self) -> Vec<PathBuf> {
-        self.outputs.iter().map(|output| output.path.clone()).collect()
+    pub fn outputs(&self) -> impl Iterator<Item = PathBuf> {
+        self.outputs.iter().map(|output| output.path.clone())
     }
 
     /// Checks them; `force` says that what is there may be replaced, whatever it is; `goes_on`, that a run before may have

@@ -161,7 +161,10 @@ fn of_a_torn_checkpoint_the_beginning_is_used() {
     let done = broken.call(&format!("{EVOLVE} --checkpoint kept"));
     assert_eq!(done.code, 0, "{}", done.err);
     let told: Vec<&str> = done.err.lines().collect();
-    assert!(told.len() == 2 && told[0].contains("kept: its end is torn") && told[1].contains("kept: goes on"), "{told:?}");
+    assert!(
+        told.len() == 2 && told[0].contains("kept: its end is torn") && told[1].contains("kept: goes on"),
+        "{told:?}"
+    );
     assert_same(&unbroken, &broken, &[EVOLVE]);
 }
 
