@@ -13,7 +13,10 @@ mod ranks;
 pub mod task;
 
 use std::cell::RefCell;
+use std::env;
+use std::ffi::OsString;
 use std::path::Path;
+use std::process::Command;
 use std::thread::available_parallelism;
 
 use rayon::prelude::*;
@@ -30,6 +33,8 @@ use task::Task;
 
 /// So many pieces a thread are begun before the first of them is taken: whoever waits for a slow one has other work.
 const AHEAD: usize = 4;
+/// How the variables begin by which a process knows that it is a rank.
+const RANK_VARIABLES: [&str; 3] = ["OMPI_", "PMIX_", "PMI_"];
 
 /// What stands around the work of a thread: of the main one alone, if at all.
 #[derive(Default)]
@@ -54,6 +59,14 @@ pub fn join() -> Result<()> {
     let ranks = Ranks::join()?;
     RUN.with_borrow_mut(|run| run.ranks = ranks);
     Ok(())
+}
+
+/// Keeps another program that is called from taking itself for one of the ranks.
+pub fn keep_out(program: &mut Command) {
+    let of_ranks = |name: &OsString| RANK_VARIABLES.iter().any(|prefix| name.to_string_lossy().starts_with(prefix));
+    for name in env::vars_os().map(|(name, _)| name).filter(of_ranks) {
+        program.env_remove(name);
+    }
 }
 
 /// Whether this is the process that writes, prints and asks: the first rank, or the only one.

@@ -75,7 +75,8 @@ impl Places {
             if self.outputs[..i].iter().any(|other| is_same(&other)) {
                 return Err(Error::in_file(&output.path, "is named as two outputs: give each a place of its own"));
             }
-            if !force && !(goes_on && matches!(output.form, Form::Folder)) {
+            let is_ours = goes_on && matches!(output.form, Form::Folder);
+            if !force && !is_ours {
                 output.loses_nothing(&self.inputs)?;
             }
         }

@@ -78,14 +78,9 @@ impl Checkpoint {
             begin,
             places: HashMap::new(),
         };
-        if path.exists() {
-            if checkpoint.resume(task)? {
-                let count = checkpoint.places.len();
-                warn(format!(
-                    "{}: its end is torn; the run goes on from {count} pieces of work before",
-                    path.display()
-                ));
-            }
+        if path.exists() && checkpoint.resume(task)? {
+            let count = checkpoint.count();
+            warn(format!("{}: its end is torn; the run goes on from {count} pieces of work before", path.display()));
         }
         Ok(checkpoint)
     }
