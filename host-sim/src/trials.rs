@@ -79,6 +79,8 @@ struct Trials<'a> {
 /// When a file cannot be read or written, when the folder holds another loop, or when the robot fails twice in a row.
 pub fn run(job: &Job, robot: &mut dyn TrialRobot, mut tell: impl FnMut(Event)) -> Result<State> {
     let mut trials = Trials::open(job)?;
+    // Before anything else lies in the folder, so that it is known for a loop's.
+    trials.state.write(job.folder)?;
     while trials.state.verdict == Verdict::Running {
         if trials.state.trials.last().is_some_and(|trial| trial.real.is_none()) {
             trials.state = workers::once(|| trials.drive(robot, &mut tell).map(|()| trials.state.clone()))?;

@@ -1,19 +1,14 @@
-//! How well the hand-out keeps a cluster busy, for docs/clusters.md: diagnoses cases of a challenge one by one on one
-//! thread, and simulates what a thousand ranks make of a hundred thousand whose times are drawn from theirs:
-//! `RAYON_NUM_THREADS=1 cargo run --release -p mindgap-tests --bin handing-out -- [CASES [RANKS [OF]]]`.
+//! How busy the hand-out keeps a cluster, for docs/clusters.md: simulates what so many ranks make of so many pieces of work,
+//! whose times are drawn from measured ones, in seconds, one a line on standard input:
+//! `cargo run --release -p mindgap-tests --bin handing-out -- RANKS PIECES < SECONDS`.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
+use std::io;
 use std::process::ExitCode;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
-use mindgap_host_sim::challenge::answer::learn;
-use mindgap_host_sim::challenge::cases::{self, Echoes, Outside};
 use mindgap_host_sim::chance::{Generator, generator};
-use mindgap_host_sim::error::Result;
-use mindgap_host_sim::gap::{Method, findings};
-use mindgap_host_sim::inspection::Inspection;
-use mindgap_host_sim::simulator::baseline::Baseline;
 use rand::seq::IndexedRandom;
 
 const SEED: u64 = 1;
@@ -24,44 +19,17 @@ const ON_THE_WAY: Duration = Duration::from_micros(200);
 const SERVED_IN: Duration = Duration::from_micros(100);
 
 fn main() -> ExitCode {
-    let mut arguments = std::env::args().skip(1).map(|argument| argument.parse().unwrap_or(1));
-    let mut next = |usual: usize| arguments.next().unwrap_or(usual).max(1);
-    let (cases, ranks, of) = (next(24), next(1000), next(100_000));
-    match measured(cases) {
-        Ok(times) => {
-            told(&times, ranks, of);
-            ExitCode::SUCCESS
-        }
-        Err(error) => {
-            eprintln!("{error}");
-            ExitCode::FAILURE
-        }
-    }
-}
-
-/// How long each of so many cases takes, to make and to diagnose.
-fn measured(count: usize) -> Result<Vec<Duration>> {
-    let robots = cases::robots(SEED, Echoes::Fresh)?;
-    let simulators = robots.iter().map(learn).collect::<Result<Vec<_>>>()?;
-    let effects = cases::effects(count, SEED, Outside::Usual);
-    let time = |number: usize| {
-        let began = Instant::now();
-        let case = cases::case(number, &effects[number], &robots, Echoes::Fresh, SEED)?;
-        findings(Baseline::learned(&simulators[case.robot])?, &Inspection::of(case.logs), Method::default())?;
-        Ok(began.elapsed())
+    let numbers: Option<Vec<usize>> = std::env::args().skip(1).map(|argument| argument.parse().ok()).collect();
+    let seconds = |line: io::Result<String>| Duration::try_from_secs_f64(line.ok()?.trim().parse().ok()?).ok();
+    let times: Option<Vec<Duration>> = io::stdin().lines().map(seconds).collect();
+    let (Some([ranks, pieces]), Some(times)) = (numbers.as_deref(), &times) else {
+        eprintln!("needs the numbers of ranks and pieces, and seconds on standard input, one a line");
+        return ExitCode::FAILURE;
     };
-    (0..count).map(time).collect()
-}
-
-fn told(times: &[Duration], ranks: usize, of: usize) {
-    let mut sorted = times.to_vec();
-    sorted.sort();
-    let [least, middle, most] = [0, sorted.len() / 2, sorted.len() - 1].map(|place| sorted[place].as_secs_f64());
-    println!("{} cases on one thread: {least:.1} s to {most:.1} s, median {middle:.1} s", times.len());
-    let rng = &mut generator(SEED, &[]);
-    let (took, worked) = handed_out(times, ranks, of, rng);
-    let efficiency = worked.as_secs_f64() / (took.as_secs_f64() * ranks as f64);
-    println!("{of} cases on {ranks} ranks: {:.0} s, {:.1} % of it at work", took.as_secs_f64(), 100.0 * efficiency);
+    let (took, worked) = handed_out(times, *ranks, *pieces, &mut generator(SEED, &[]));
+    let busy = 100.0 * worked.as_secs_f64() / (took.as_secs_f64() * *ranks as f64);
+    println!("{pieces} pieces on {ranks} ranks: {:.0} s, ranks {busy:.1} % busy", took.as_secs_f64());
+    ExitCode::SUCCESS
 }
 
 /// How long it takes until all pieces are done, and how long they take together.
