@@ -188,7 +188,7 @@ fn distribute<T: Serialize + DeserializeOwned + Send>(
 
 #[cfg(test)]
 mod tests {
-    use std::sync::atomic::AtomicUsize;
+    use std::sync::atomic::{AtomicUsize, Ordering};
     use std::thread;
     use std::time::Duration;
 
@@ -201,7 +201,7 @@ mod tests {
             Ok(index * index)
         };
         assert_eq!(map(50, slow_first).unwrap(), (0..50).map(|i| i * i).collect::<Vec<usize>>());
-        assert_eq!(map(0, slow_first).unwrap(), []);
+        assert_eq!(map(0, slow_first).unwrap(), Vec::<usize>::new());
     }
 
     #[test]
