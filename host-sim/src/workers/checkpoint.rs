@@ -292,7 +292,7 @@ mod tests {
         let mut checkpoint = Checkpoint::open(&path, &task(1), Begin::AfterAMinute, |_| {}).unwrap();
         checkpoint.keep((0, 0), &1u8).unwrap();
         assert!(!path.exists());
-        checkpoint.keep((0, 1), &vec!["x"; MOST_HELD]).unwrap();
+        checkpoint.keep((0, 1), &"x".repeat(MOST_HELD)).unwrap();
         assert_eq!(opened(&path, &mut Vec::new()).unwrap().count(), 2, "it is long after all");
         checkpoint.remove().unwrap();
         assert!(!path.exists());
