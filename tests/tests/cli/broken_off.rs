@@ -23,6 +23,7 @@ const LATEST: f64 = 0.5;
 const TORN_AT: u64 = 4000;
 
 const EVOLVE: &str = "evolve sim.json --scene scene.toml --max-steps 10 --paper --out controller.toml";
+const MAKE: &str = "challenge make --cases 3 --seed 5 --out blind";
 
 /// Kills a call again and again, until one comes to its end, and compares what it leaves with what one leaves that was
 /// never killed; and that until it was killed often enough.
@@ -112,11 +113,7 @@ fn train_survives() {
 
 #[test]
 fn a_challenge_survives() {
-    let workshop = Workshop::new();
-    let make = "challenge make --cases 3 --seed 5 --out blind";
-    survives(&workshop, &words(make));
-    workshop.done(make);
-    survives(&workshop, &words("challenge answer blind"));
+    survives(&Workshop::new(), &words(MAKE));
 }
 
 #[test]
@@ -125,6 +122,14 @@ fn a_loop_survives() {
     robot(&workshop, "", "");
     let call = "loop out --sim sim.json --scene scene.toml --max-steps 20 --trials 1 --robot";
     survives(&workshop, &call.split_whitespace().chain(["sh robot.sh"]).collect::<Vec<_>>());
+}
+
+#[test]
+#[ignore = "takes minutes"]
+fn answers_survive() {
+    let workshop = Workshop::new();
+    workshop.done(MAKE);
+    survives(&workshop, &words("challenge answer blind"));
 }
 
 #[test]
