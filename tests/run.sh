@@ -38,6 +38,9 @@ need /usr/include/simavr/sim_avr.h libsimavr-dev
 # With its venv, which Debian packs apart.
 python3 -c 'import ensurepip' 2>/dev/null || need python3-venv python3-venv
 need chromium chromium
+need mpirun openmpi-bin
+need mpicc libopenmpi-dev
+compgen -G '/usr/lib/llvm-*/lib/libclang.so' >/dev/null || need libclang.so libclang-dev
 need_npm
 need_tools
 [ -d tests/micropython/node_modules ] || npm ci --prefix tests/micropython --no-audit --no-fund >/dev/null
@@ -82,10 +85,10 @@ part dependencies check_dependencies
 part rust-version check_rust_version
 part packages check_packages
 part book mdbook build
-part lints cargo clippy --workspace --all-targets -- -D warnings
+part lints cargo clippy --workspace --all-targets --features mindgap-tests/mpi -- -D warnings
 part documentation env RUSTDOCFLAGS="-D warnings" cargo doc --no-deps --workspace
-part compilation cargo test --workspace --no-run
-run_tests() { cargo test --workspace 2>&1 | tee "$log"; }
+part compilation cargo test --workspace --features mindgap-tests/mpi --no-run
+run_tests() { cargo test --workspace --features mindgap-tests/mpi 2>&1 | tee "$log"; }
 part tests run_tests
 part python tests/python/run.sh
 part firmware tests/firmware/run.sh

@@ -22,6 +22,7 @@ mod guide;
 mod import;
 mod info;
 pub mod kinds;
+mod lasting;
 mod manual;
 mod new;
 mod progress;
@@ -39,6 +40,7 @@ use std::process::ExitCode;
 use clap::{FromArgMatches, Parser, Subcommand};
 use general::General;
 pub use guide::command;
+use lasting::Kept;
 use serde::Serialize;
 
 use crate::error::{Error, Result};
@@ -49,6 +51,7 @@ use crate::import::draft::to_fill_in;
 use crate::inspection::Inspection;
 use crate::logs::Logs;
 use crate::simulator::Simulator;
+use crate::workers;
 
 /// Learns a robot's simulator from its logs, evolves controllers in it, and finds what reality has that it lacks.
 #[derive(Parser)]
@@ -91,6 +94,16 @@ trait Run {
 
     /// Does it; returns what there is to say.
     fn run(&self) -> Result<String>;
+
+    /// Where it keeps what is done, for a run that goes on after it was broken off; nowhere when it is soon done.
+    fn kept(&self) -> Option<Kept> {
+        None
+    }
+
+    /// Whether ranks that were started together do its work together, and not the first alone.
+    fn is_shared(&self) -> bool {
+        false
+    }
 }
 
 impl Command {
@@ -123,28 +136,31 @@ impl Command {
 /// Runs the command of this process's arguments. Exits with 0 when it did what was asked, 1 when it could not, and 2
 /// when the call is wrong.
 pub fn run() -> ExitCode {
-    match answer() {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            voice::complain(&error.to_string());
-            ExitCode::FAILURE
-        }
-    }
+    let is_done = workers::end(answer(), |error| voice::complain(&error.to_string()));
+    if is_done { ExitCode::SUCCESS } else { ExitCode::FAILURE }
 }
 
 /// Does what this process's arguments and the defaults beside the logs ask for, and says what there is to say.
 fn answer() -> Result<()> {
     let command = guide::command();
     let (arguments, defaults) = defaults::with_defaults(&command, env::args_os().collect())?;
-    let matches = command.try_get_matches_from(arguments).map_err(|error| defaults.blamed_for(error))?;
-    let Cli { general, command } = Cli::from_arg_matches(&matches).unwrap_or_else(|error| error.exit());
+    let matches = command.clone().try_get_matches_from(arguments).map_err(|error| defaults.blamed_for(error))?;
+    let Cli { general, command: asked } = Cli::from_arg_matches(&matches).unwrap_or_else(|error| error.exit());
+    workers::join()?;
     general.take_effect()?;
     defaults.tell();
-    let command = command.which();
-    let places = command.places();
-    places.check(general.force)?;
+    let asked = asked.which();
+    let (places, kept) = (asked.places(), asked.kept());
+    if workers::is_first() {
+        places.check(general.force, kept.as_ref().is_some_and(Kept::is_there))?;
+    } else if asked.is_shared() {
+        files::leave_writing();
+    } else {
+        return Ok(());
+    }
+    lasting::begin(asked.is_shared(), kept, &places, (&command, &matches))?;
     progress::begin(matches.subcommand_name().unwrap_or_default().to_owned());
-    let done = command.run();
+    let done = asked.run();
     progress::end();
     let text = done?;
     // What goes to standard output as a file stands alone there.

@@ -4,6 +4,7 @@
 pub mod repair;
 pub mod robot;
 
+use std::cell::RefCell;
 use std::fs;
 use std::path::Path;
 
@@ -105,12 +106,24 @@ struct Trial {
     summary: StartSummary,
 }
 
-/// Does the request and leaves everything in the folder `out`.
+/// Does the request and leaves everything in the folder `out`, when all is done.
 ///
 /// # Errors
 /// When `out` cannot be written.
 pub fn run(out: &Path, seed: u64, watch: impl Fn(Stage)) -> Result<Summary> {
-    fs::create_dir_all(out).map_err(|e| Error::in_file(out, format!("cannot be made: {e}")))?;
+    let made = RefCell::new(Vec::new());
+    let mut summary = None;
+    let is_ours = |name: &str| made.borrow().iter().any(|made| made == name);
+    files::write_folder(out, is_ours, |fresh| {
+        summary = Some(fill(fresh, seed, watch)?);
+        let entries = fs::read_dir(fresh).map_err(|e| Error::in_file(out, format!("cannot be read: {e}")))?;
+        made.borrow_mut().extend(entries.flatten().map(|entry| entry.file_name()));
+        Ok(())
+    })?;
+    summary.ok_or_else(|| Error::in_file(out, "was not filled"))
+}
+
+fn fill(out: &Path, seed: u64, watch: impl Fn(Stage)) -> Result<Summary> {
     let of = |purpose: Purpose| derive(seed, &[purpose as u64]);
     watch(Stage::Recording);
     let robot = built_in_robot::default_robot();
@@ -171,7 +184,7 @@ impl<W: Fn(Stage)> DemoRun<'_, W> {
             built_in_robot::run_controller(robot, controller, pose, &mut generator(trial, place))
         };
         // Real runs of one controller nearly coincide, so a single one shows whether it transfers.
-        let mut candidates = robust::candidates(&task, report);
+        let mut candidates = robust::candidates(&task, report)?;
         candidates.sort_by_cached_key(|c| millimetres_off(&drive(&c.controller, &[start as u64]), target_cm));
         let evolved = &candidates[0];
         let controller = evolved.controller.clone();

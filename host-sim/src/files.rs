@@ -16,7 +16,7 @@ use serde::de::DeserializeOwned;
 
 pub use text::{NO_UTF8, TextFile, line_at, read_text};
 pub use words::did_you_mean;
-pub use write::{to_standard_output, write, write_folder};
+pub use write::{is_stream, leave_writing, to_standard_output, write, write_folder};
 
 use crate::error::{Error, Result};
 

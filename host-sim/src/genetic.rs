@@ -11,6 +11,7 @@ pub mod tournament;
 use rand::RngExt;
 
 use crate::chance::{Generator, generator};
+use crate::error::Result;
 use mutation::Mutation;
 use stopping::StagnationCriterion;
 
@@ -56,7 +57,10 @@ pub trait Problem {
     /// Brings the genes of a child back into their bounds.
     fn repair(&self, genes: &mut [f32]);
     /// The fitness of each individual of a generation, one entry an individual; larger is better, and NaN is worst.
-    fn fitness(&self, generation: usize, population: &[Vec<f32>]) -> Vec<f64>;
+    ///
+    /// # Errors
+    /// When it cannot be computed by those to whom it is handed out.
+    fn fitness(&self, generation: usize, population: &[Vec<f32>]) -> Result<Vec<f64>>;
 }
 
 impl Default for Settings {
@@ -76,25 +80,31 @@ impl Default for Settings {
 
 /// Runs the algorithm from a random population. `seed` fixes every draw; `watch` receives the generation and the best
 /// fitness up to it.
-pub fn run(settings: &Settings, problem: &impl Problem, seed: u64, watch: impl FnMut(usize, f64)) -> RunResult {
+///
+/// # Errors
+/// As [`Problem::fitness`].
+pub fn run(settings: &Settings, problem: &impl Problem, seed: u64, watch: impl FnMut(usize, f64)) -> Result<RunResult> {
     let mut rng = generator(seed, &[0]);
     let population = (0..settings.population).map(|_| problem.random(&mut rng)).collect();
     run_from(population, settings, problem, seed, watch)
 }
 
 /// Runs the algorithm from a given population, whose size it keeps; otherwise as [`run`].
+///
+/// # Errors
+/// As [`Problem::fitness`].
 pub fn run_from(
     mut population: Vec<Vec<f32>>,
     settings: &Settings,
     problem: &impl Problem,
     seed: u64,
     mut watch: impl FnMut(usize, f64),
-) -> RunResult {
+) -> Result<RunResult> {
     let mut best: Option<(Vec<f32>, f64)> = None;
     let mut history = Vec::new();
     loop {
         let generation = history.len();
-        let fitness = problem.fitness(generation, &population);
+        let fitness = problem.fitness(generation, &population)?;
         let ranking = tournament::ranking(&fitness);
         let leader = ranking[0];
         if best.as_ref().is_none_or(|(_, f)| fitness[leader] > *f) {
@@ -107,7 +117,7 @@ pub fn run_from(
         if stalled || history.len() >= settings.max_generations {
             let population = ranking.iter().map(|i| std::mem::take(&mut population[*i])).collect();
             let (best, fitness) = best.unwrap_or_default();
-            return RunResult { best, fitness, generations: history.len(), population };
+            return Ok(RunResult { best, fitness, generations: history.len(), population });
         }
         let mut rng = generator(seed, &[1, generation as u64]);
         population = offspring(settings, problem, &population, &ranking, &mut rng);
@@ -155,8 +165,8 @@ mod tests {
 
         fn repair(&self, _: &mut [f32]) {}
 
-        fn fitness(&self, _: usize, population: &[Vec<f32>]) -> Vec<f64> {
-            population.iter().map(|g| -g.iter().map(|x| f64::from(x * x)).sum::<f64>()).collect()
+        fn fitness(&self, _: usize, population: &[Vec<f32>]) -> Result<Vec<f64>> {
+            Ok(population.iter().map(|g| -g.iter().map(|x| f64::from(x * x)).sum::<f64>()).collect())
         }
     }
 
@@ -166,14 +176,14 @@ mod tests {
 
     #[test]
     fn finds_the_top_of_a_sphere() {
-        let outcome = run(&settings(), &Sphere, 1, |_, _| {});
+        let outcome = run(&settings(), &Sphere, 1, |_, _| {}).unwrap();
         assert!(outcome.fitness > -0.05, "{}", outcome.fitness);
         assert_eq!(outcome.generations, 150);
     }
 
     #[test]
     fn the_same_seed_gives_the_same_run_and_another_seed_another() {
-        let again = |seed| run(&settings(), &Sphere, seed, |_, _| {});
+        let again = |seed| run(&settings(), &Sphere, seed, |_, _| {}).unwrap();
         assert_eq!(again(5), again(5));
         assert_ne!(again(5).best, again(6).best);
     }
@@ -184,13 +194,15 @@ mod tests {
         let outcome = run(&Settings { elite: 1, ..settings() }, &Sphere, 2, |_, best| {
             assert!(best >= last);
             last = best;
-        });
-        assert_eq!(Sphere.fitness(0, &outcome.population)[0], outcome.fitness, "the elite is still there");
+        })
+        .unwrap();
+        assert_eq!(Sphere.fitness(0, &outcome.population).unwrap()[0], outcome.fitness, "the elite is still there");
     }
 
     #[test]
     fn one_individual_still_runs() {
-        let outcome = run(&Settings { population: 1, max_generations: 3, ..settings() }, &Sphere, 3, |_, _| {});
+        let outcome =
+            run(&Settings { population: 1, max_generations: 3, ..settings() }, &Sphere, 3, |_, _| {}).unwrap();
         assert_eq!(outcome.population.len(), 1);
     }
 }

@@ -33,3 +33,4 @@ pub mod sonar;
 pub mod statistics;
 pub mod survey;
 pub mod trials;
+pub mod workers;

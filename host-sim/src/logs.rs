@@ -23,6 +23,7 @@ pub use row::Row;
 pub use rows::Rows;
 pub use run::Run;
 pub use scene::Scene;
+use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result};
 use crate::files;
@@ -39,6 +40,24 @@ pub struct Logs {
     pub scene: Scene,
     /// The runs, by file name.
     pub runs: Vec<Run>,
+}
+
+/// The files of a folder of logs: name and text of each.
+#[derive(Serialize, Deserialize)]
+pub struct Texts(Vec<(String, String)>);
+
+impl Texts {
+    /// Writes the folder, as [`Logs::write`].
+    ///
+    /// # Errors
+    /// When it cannot be written.
+    pub fn write(&self, folder: &Path) -> Result<()> {
+        let ours = |name: &str| is_run_file(name) || name == "robot.toml" || name == "scene.toml";
+        let Texts(files) = self;
+        files::write_folder(folder, ours, |fresh| {
+            files.iter().try_for_each(|(name, text)| files::write(&fresh.join(name), text))
+        })
+    }
 }
 
 impl Logs {
@@ -86,12 +105,14 @@ impl Logs {
     /// # Errors
     /// When the folder cannot be written.
     pub fn write(&self, folder: &Path) -> Result<()> {
-        let ours = |name: &str| is_run_file(name) || name == "robot.toml" || name == "scene.toml";
-        files::write_folder(folder, ours, |fresh| {
-            self.robot.write(&fresh.join("robot.toml"))?;
-            self.scene.write(&fresh.join("scene.toml"))?;
-            self.runs.iter().try_for_each(|run| run.write(&fresh.join(format!("{}.csv", run.name))))
-        })
+        self.to_texts().write(folder)
+    }
+
+    /// The texts of the folder's files.
+    pub fn to_texts(&self) -> Texts {
+        let runs = self.runs.iter().map(|run| (format!("{}.csv", run.name), run.to_text()));
+        let others = [("robot.toml".into(), self.robot.to_text()), ("scene.toml".into(), self.scene.to_text())];
+        Texts(others.into_iter().chain(runs).collect())
     }
 
     /// The number of rows of all runs.

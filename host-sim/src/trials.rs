@@ -24,6 +24,7 @@ use crate::evolve::controller_file::{ControllerFile, Origin};
 use crate::geometry::Pose;
 use crate::logs::{Logs, Run, Scene};
 use crate::simulator::Simulator;
+use crate::workers;
 use robot::{Call, TrialRobot};
 use search::{Search, Tried};
 use state::{Failure, State, Trial, Verdict};
@@ -79,9 +80,11 @@ struct Trials<'a> {
 /// When a file cannot be read or written, when the folder holds another loop, or when the robot fails twice in a row.
 pub fn run(job: &Job, robot: &mut dyn TrialRobot, mut tell: impl FnMut(Event)) -> Result<State> {
     let mut trials = Trials::open(job)?;
+    // Before anything else lies in the folder, so that it is known for a loop's.
+    trials.state.write(job.folder)?;
     while trials.state.verdict == Verdict::Running {
         if trials.state.trials.last().is_some_and(|trial| trial.real.is_none()) {
-            trials.drive(robot, &mut tell)?;
+            trials.state = workers::once(|| trials.drive(robot, &mut tell).map(|()| trials.state.clone()))?;
         } else {
             trials.turn()?;
         }
@@ -99,7 +102,7 @@ impl<'a> Trials<'a> {
             return Err(Error::in_file(job.scene, "has no [target]"));
         }
         fs::create_dir_all(job.folder).map_err(|e| Error::in_file(job.folder, format!("cannot be made: {e}")))?;
-        let state = State::open(job)?;
+        let state = workers::once(|| State::open(job))?;
         Ok(Trials { job, simulator, scene, start, state })
     }
 

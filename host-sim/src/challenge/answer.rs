@@ -1,14 +1,11 @@
 //! Answers a challenge: learns each robot's simulator from its own logs and diagnoses every case.
 
-use std::collections::BTreeMap;
-use std::fs;
-use std::path::Path;
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
 
-use rayon::prelude::*;
-
+use super::Folder;
 use super::seal::Published;
-use super::{Counter, Folder};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::files;
 use crate::gap::{Method, findings};
 use crate::inspection::Inspection;
@@ -16,6 +13,7 @@ use crate::learn::train::{TABLE_ONE, Trainer, train};
 use crate::logs::Logs;
 use crate::simulator::Simulator;
 use crate::simulator::baseline::Baseline;
+use crate::workers;
 
 /// Seed of the training.
 const SEED: u64 = 1;
@@ -24,30 +22,43 @@ const SEED: u64 = 1;
 ///
 /// # Errors
 /// When the folder is not a challenge, or when a diagnosis cannot be written.
-pub fn answer(folder: &Path, watch: impl Fn(usize, usize) + Sync) -> Result<usize> {
+pub fn answer(folder: &Path, mut watch: impl FnMut(usize, usize)) -> Result<usize> {
     let folder = Folder(folder);
     let cases: Vec<Published> = files::read_csv(&folder.cases())?;
-    let answers = folder.answers();
-    fs::create_dir_all(&answers).map_err(|e| Error::in_file(&answers, format!("cannot be made: {e}")))?;
-    let mut simulators: BTreeMap<&str, Simulator> = BTreeMap::new();
-    for case in &cases {
-        if !simulators.contains_key(case.robot.as_str()) {
-            let simulator = learn(&Logs::read(&folder.robot(&case.robot), |_| {})?)?;
-            simulator.write(&folder.simulator(&case.robot))?;
-            simulators.insert(&case.robot, simulator);
-        }
-    }
-    let counter = Counter::new(cases.len(), watch);
-    cases.par_iter().try_for_each(|case| {
+    let robots: BTreeSet<&str> = cases.iter().map(|case| case.robot.as_str()).collect();
+    let robots = Vec::from_iter(robots);
+    let learned = workers::map(robots.len(), |robot| learn(&Logs::read(&folder.robot(robots[robot]), |_| {})?))?;
+    let simulators: BTreeMap<&str, &Simulator> = robots.into_iter().zip(&learned).collect();
+    let diagnose = |number: usize| {
+        let case = &cases[number];
         let logs = Logs::read(&folder.case(&case.case), |_| {})?;
-        let baseline = Baseline::learned(&simulators[case.robot.as_str()])?;
+        let baseline = Baseline::learned(simulators[case.robot.as_str()])?;
         let found = findings(baseline, &Inspection::of(logs), Method::default())?;
-        files::write_json(&folder.answer(&case.case), &found.diagnosis)?;
-        files::write_json(&folder.added(&case.case), &found.applied)?;
-        counter.one_more();
-        Ok(())
-    })?;
+        let [answer, added] = [folder.answer(&case.case), folder.added(&case.case)];
+        Ok([files::json(&answer, &found.diagnosis)?, files::json(&added, &found.applied)?])
+    };
+    files::write_folder(
+        &folder.answers(),
+        |name| name.ends_with(".json"),
+        |fresh| {
+            for (robot, simulator) in &simulators {
+                simulator.write(&at(fresh, &folder.simulator(robot)))?;
+            }
+            workers::in_order(cases.len(), diagnose, |number, [answer, added]: [String; 2]| {
+                let case = &cases[number].case;
+                files::write(&at(fresh, &folder.answer(case)), answer)?;
+                files::write(&at(fresh, &folder.added(case)), added)?;
+                watch(number + 1, cases.len());
+                Ok(())
+            })
+        },
+    )?;
     Ok(cases.len())
+}
+
+/// The place of a file in the folder that is to become its own.
+fn at(fresh: &Path, file: &Path) -> PathBuf {
+    fresh.join(file.file_name().unwrap_or_default())
 }
 
 /// Learns a robot's simulator from its own logs.

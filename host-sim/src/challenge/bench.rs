@@ -7,6 +7,7 @@ use crate::error::Result;
 use crate::logs::Logs;
 use crate::simulator::Simulator;
 use crate::simulator::baseline::Baseline;
+use crate::workers;
 
 /// The cases, and the simulators of their robots.
 pub struct Bench {
@@ -24,7 +25,7 @@ impl Bench {
     /// When a robot has no room to drive in, or its logs teach nothing.
     pub fn new(count: usize, seed: u64) -> Result<Self> {
         let robots = cases::robots(seed, Echoes::Fresh)?;
-        let simulators = robots.iter().map(learn).collect::<Result<_>>()?;
+        let simulators = workers::map(robots.len(), |robot| learn(&robots[robot]))?;
         Ok(Bench { seed, robots, simulators, effects: effects(count, seed) })
     }
 

@@ -6,8 +6,7 @@
 
 mod fitting;
 
-use rayon::prelude::*;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::Counter;
 use super::bench::Bench;
@@ -18,9 +17,10 @@ use crate::gap::calibration::Calibration;
 use crate::gap::diagnose::{confirmed, statistics};
 use crate::gap::explain::explained_fraction;
 use crate::gap::fit::Gain;
+use crate::workers;
 
 /// What is measured in one case.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Measured {
     /// What was different, separated by blanks.
     pub truth: String,
@@ -59,11 +59,13 @@ pub fn calibrate(count: usize, seed: u64, watch: impl Fn(usize, usize) + Sync) -
     let (nulls, others): (Vec<usize>, Vec<usize>) = (0..count).partition(|case| bench.effects[*case].is_empty());
     let counter = Counter::new(count, watch);
     let counted = |measured: Result<Measured>| measured.inspect(|_| counter.one_more());
-    let null = |case: &usize| counted(without_effect(&bench, *case));
-    let nulls = nulls.par_iter().map(null).collect::<Result<Vec<Measured>>>()?;
+    let nulls = workers::map(nulls.len(), |null| counted(without_effect(&bench, nulls[null])))?;
     let open = fitting::open(&nulls);
-    let other = |case: &usize| counted(with_effects(&bench, *case, open));
-    let others = others.par_iter().map(other).collect::<Result<Vec<Measured>>>()?;
+    // The rivals are in no table, and go beside the rest of what was measured.
+    let with_rivals = |measured: Measured| (measured.rivals.clone(), measured);
+    let others =
+        workers::map(others.len(), |other| counted(with_effects(&bench, others[other], open)).map(with_rivals))?;
+    let others: Vec<Measured> = others.into_iter().map(|(rivals, measured)| Measured { rivals, ..measured }).collect();
     Ok((fitting::weighed(open, &others), nulls.into_iter().chain(others).collect()))
 }
 

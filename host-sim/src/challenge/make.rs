@@ -3,13 +3,14 @@
 use std::path::Path;
 
 use rand::Rng;
-use rayon::prelude::*;
 
+use super::Folder;
 use super::cases::{self, Echoes, Outside};
 use super::seal::{Published, Sealed};
-use super::{Counter, Folder};
 use crate::error::Result;
 use crate::files;
+use crate::logs::Texts;
+use crate::workers;
 
 /// Writes a challenge of `count` cases to a folder; `outside` is what its effects outside the table are drawn from, and
 /// `echoes` what the chance in their echoes belongs to; `watch` is told how many are done, and of how many.
@@ -22,11 +23,12 @@ pub fn make(
     seed: u64,
     outside: Outside,
     echoes: Echoes,
-    watch: impl Fn(usize, usize) + Sync,
+    mut watch: impl FnMut(usize, usize),
 ) -> Result<()> {
     let ours = |name: &str| ["robots", "cases", "cases.csv", "sealed.json", "answers"].contains(&name);
-    let counter = Counter::new(count, watch);
-    files::write_folder(folder, ours, |fresh| fill(&Folder(fresh), count, seed, outside, echoes, || counter.one_more()))
+    files::write_folder(folder, ours, |fresh| {
+        fill(&Folder(fresh), count, seed, outside, echoes, |done| watch(done, count))
+    })
 }
 
 fn fill(
@@ -35,32 +37,32 @@ fn fill(
     seed: u64,
     outside: Outside,
     echoes: Echoes,
-    done: impl Fn() + Sync,
+    mut watch: impl FnMut(usize),
 ) -> Result<()> {
     let robots = cases::robots(seed, echoes)?;
     for (robot, logs) in robots.iter().enumerate() {
         logs.write(&folder.robot(&robot.to_string()))?;
     }
-    let made: Vec<(Sealed, Published)> = cases::effects(count, seed, outside)
-        .par_iter()
-        .enumerate()
-        .map(|(number, effects)| {
-            let mut made = cases::case(number, effects, &robots, echoes, seed)?;
-            let case = format!("{number:03}");
-            made.logs.write(&folder.case(&case))?;
-            let sealed = Sealed {
-                case: case.clone(),
-                effects: made.effects.iter().map(ToString::to_string).collect(),
-                driving: made.driving.name.into(),
-                fresh_seed: made.rng.next_u64(),
-                salt: format!("{:016x}", made.rng.next_u64()),
-            };
-            let published = Published { case, robot: made.robot.to_string(), commitment: sealed.commitment() };
-            done();
-            Ok((sealed, published))
-        })
-        .collect::<Result<_>>()?;
-    let (sealed, published): (Vec<Sealed>, Vec<Published>) = made.into_iter().unzip();
+    let effects = cases::effects(count, seed, outside);
+    let make = |number: usize| {
+        let mut made = cases::case(number, &effects[number], &robots, echoes, seed)?;
+        let sealed = Sealed {
+            case: format!("{number:03}"),
+            effects: made.effects.iter().map(ToString::to_string).collect(),
+            driving: made.driving.name.into(),
+            fresh_seed: made.rng.next_u64(),
+            salt: format!("{:016x}", made.rng.next_u64()),
+        };
+        Ok((made.logs.to_texts(), made.robot, sealed))
+    };
+    let (mut sealed, mut published) = (Vec::with_capacity(count), Vec::with_capacity(count));
+    workers::in_order(count, make, |number, (logs, robot, case): (Texts, usize, Sealed)| {
+        logs.write(&folder.case(&case.case))?;
+        published.push(Published { case: case.case.clone(), robot: robot.to_string(), commitment: case.commitment() });
+        sealed.push(case);
+        watch(number + 1);
+        Ok(())
+    })?;
     files::write_json(&folder.sealed(), &sealed)?;
     files::write_csv(&folder.cases(), &published)
 }

@@ -1,7 +1,6 @@
 //! How much the thresholds of a diagnosis decide: each halved and doubled, on cases whose answers are known.
 
-use rayon::prelude::*;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use toml::{Table, Value};
 
 use super::bench::Bench;
@@ -10,9 +9,10 @@ use crate::gap::Method;
 use crate::gap::calibration::Calibration;
 use crate::gap::diagnose::confirmed;
 use crate::gap::explain::Judged;
+use crate::workers;
 
 /// What comes of all cases with one threshold changed.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Row {
     /// The threshold, by its name in calibration.toml; empty for the calibration as it is.
     pub threshold: String,
@@ -90,7 +90,7 @@ fn of(bench: &Bench, cases: usize, calibration: &Calibration) -> Result<Row> {
             ..nothing.clone()
         })
     };
-    let all = (0..cases).into_par_iter().map(one).collect::<Result<Vec<Row>>>()?;
+    let all = workers::map(cases, one)?;
     Ok(all.iter().fold(nothing.clone(), |sum, row| Row {
         false_alarms: sum.false_alarms + row.false_alarms,
         named: sum.named + row.named,

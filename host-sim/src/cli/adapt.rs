@@ -114,7 +114,7 @@ impl Adapt {
         let robots =
             robots.ok_or_else(|| Error::in_file(&self.sim, "does not say what its training logs leave open"))?;
         let judge = Judge::new(simulator, &robots.drawn, &scene, start, target_cm, self.seed)?;
-        Ok(judge.chances(&[controller], RUNS)[0])
+        Ok(judge.chances(&[controller], RUNS)?[0])
     }
 }
 

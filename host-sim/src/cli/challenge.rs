@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
 
+use super::lasting::{KeepOption, Kept};
 use super::{Run, kinds, progress};
 use crate::challenge::Folder;
 use crate::challenge::answer::answer;
@@ -28,7 +29,7 @@ enum Part {
     /// Write cases of the built-in robot, and sealed what is different in each.
     Make {
         /// Number of cases.
-        #[arg(long, value_name = "N", default_value_t = 400, value_parser = clap::value_parser!(u32).range(1..=999))]
+        #[arg(long, value_name = "N", default_value_t = 400, value_parser = clap::value_parser!(u32).range(1..))]
         cases: u32,
         /// Seed of all that is random.
         #[arg(long, value_name = "N", default_value_t = 1)]
@@ -42,6 +43,8 @@ enum Part {
         /// Folder for the challenge.
         #[arg(long, value_name = "DIR")]
         out: PathBuf,
+        #[command(flatten)]
+        keep: KeepOption,
     },
     /// Settle the diagnosis's thresholds on cases of other seeds whose answers are known.
     Calibrate {
@@ -57,6 +60,8 @@ enum Part {
         /// Also write what was measured in every case here.
         #[arg(long, value_name = "FILE")]
         csv: Option<PathBuf>,
+        #[command(flatten)]
+        keep: KeepOption,
     },
     /// Print how much each threshold decides: halved and doubled, on cases whose answers are known.
     Sensitivity {
@@ -74,6 +79,8 @@ enum Part {
     Answer {
         /// Folder of the challenge.
         folder: PathBuf,
+        #[command(flatten)]
+        keep: KeepOption,
     },
     /// Open the seal and score the answers.
     Score {
@@ -90,12 +97,13 @@ enum Part {
 
 impl Run for Challenge {
     fn places(&self) -> Places {
-        let places = Places::default();
+        let keep = self.keep().and_then(|(keep, _)| keep.asked().as_ref());
+        let places = Places::default().writing(keep, kinds::CHECKPOINT);
         match &self.part {
             Part::Make { out, .. } => places.filling([out]),
             Part::Calibrate { out, csv, .. } => places.writing([out], kinds::CALIBRATION).writing(csv, kinds::UNSIGNED),
             Part::Sensitivity { csv, .. } => places.writing(csv, kinds::UNSIGNED),
-            Part::Answer { folder } => places.reading([folder]).filling([&Folder(folder).answers()]),
+            Part::Answer { folder, .. } => places.reading([folder]).filling([&Folder(folder).answers()]),
             Part::Score { folder, json, csv } => {
                 places.reading([folder]).writing(json, kinds::REPORT).writing(csv, kinds::UNSIGNED)
             }
@@ -104,14 +112,14 @@ impl Run for Challenge {
 
     fn run(&self) -> Result<String> {
         match &self.part {
-            Part::Make { cases, seed, outside, place_bound, out } => {
+            Part::Make { cases, seed, outside, place_bound, out, .. } => {
                 let echoes = if *place_bound { Echoes::PlaceBound } else { Echoes::Fresh };
                 let bar = progress::bar(u64::from(*cases));
                 make(out, *cases as usize, *seed, *outside, echoes, progress::counting(&bar))?;
                 bar.finish_and_clear();
                 Ok(format!("{}: {cases} cases; sealed.json says what is different in each\n", out.display()))
             }
-            Part::Calibrate { cases, seed, out, csv } => {
+            Part::Calibrate { cases, seed, out, csv, .. } => {
                 let bar = progress::bar(u64::from(*cases));
                 let (calibration, measured) = calibrate(*cases as usize, *seed, progress::counting(&bar))?;
                 bar.finish_and_clear();
@@ -132,7 +140,7 @@ impl Run for Challenge {
                 }
                 Ok(table(&rows))
             }
-            Part::Answer { folder } => {
+            Part::Answer { folder, .. } => {
                 let bar = progress::bar(0);
                 let count = answer(folder, progress::counting(&bar))?;
                 bar.finish_and_clear();
@@ -147,6 +155,25 @@ impl Run for Challenge {
                 }
                 super::reported(json.as_deref(), &score, text(&score))
             }
+        }
+    }
+
+    fn kept(&self) -> Option<Kept> {
+        self.keep().and_then(|(keep, out)| keep.beside(&out))
+    }
+
+    fn is_shared(&self) -> bool {
+        !matches!(self.part, Part::Score { .. })
+    }
+}
+
+impl Challenge {
+    /// The parts that keep what they have done, and for which output.
+    fn keep(&self) -> Option<(&KeepOption, PathBuf)> {
+        match &self.part {
+            Part::Make { keep, out, .. } | Part::Calibrate { keep, out, .. } => Some((keep, out.clone())),
+            Part::Answer { keep, folder } => Some((keep, Folder(folder).answers())),
+            Part::Sensitivity { .. } | Part::Score { .. } => None,
         }
     }
 }

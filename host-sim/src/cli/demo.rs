@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use serde_json::{Value, json};
 
+use super::lasting::{KeepOption, Kept};
 use super::table::{self, number};
 use super::{Run, kinds, progress, trials};
 use crate::built_in_robot::four_obstacles;
@@ -37,12 +38,14 @@ pub struct Demo {
     /// Also write a page for a browser here.
     #[arg(long, value_name = "FILE")]
     html: Option<PathBuf>,
+    #[command(flatten)]
+    keep: KeepOption,
 }
 
 impl Run for Demo {
     fn places(&self) -> Places {
         let places = Places::default().filling([&self.out]).writing(&self.json, kinds::REPORT);
-        places.writing(&self.html, kinds::PAGE)
+        places.writing(&self.html, kinds::PAGE).writing(self.keep.asked(), kinds::CHECKPOINT)
     }
 
     fn run(&self) -> Result<String> {
@@ -74,6 +77,10 @@ impl Run for Demo {
             in_folder.display()
         );
         super::reported(self.json.as_deref(), &facts(&summary), text)
+    }
+
+    fn kept(&self) -> Option<Kept> {
+        self.keep.beside(&self.out)
     }
 }
 

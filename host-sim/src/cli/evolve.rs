@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::{Args, ValueEnum, value_parser};
 use serde_json::json;
 
+use super::lasting::{KeepOption, Kept};
 use super::{Run, kinds, progress};
 use crate::error::Result;
 use crate::evolve::chance::Chance;
@@ -57,6 +58,8 @@ pub struct Evolve {
     /// Also draw simulated runs of the controller into this folder, as SVG, PNG and PDF.
     #[arg(long, value_name = "DIR")]
     figures: Option<PathBuf>,
+    #[command(flatten)]
+    keep: KeepOption,
 }
 
 /// Which model of the sensor makes the readings of simulated runs.
@@ -72,7 +75,8 @@ pub enum Sonar {
 impl Run for Evolve {
     fn places(&self) -> Places {
         let places = Places::default().reading([&self.sim, &self.scene]).writing([&self.out], kinds::CONTROLLER);
-        places.writing(&self.json, kinds::REPORT).filling(&self.figures)
+        let places = places.writing(&self.json, kinds::REPORT).filling(&self.figures);
+        places.writing(self.keep.asked(), kinds::CHECKPOINT)
     }
 
     fn run(&self) -> Result<String> {
@@ -131,6 +135,14 @@ impl Run for Evolve {
             self.out.display()
         );
         super::reported(self.json.as_deref(), &facts, text)
+    }
+
+    fn kept(&self) -> Option<Kept> {
+        self.keep.beside(&self.out)
+    }
+
+    fn is_shared(&self) -> bool {
+        true
     }
 }
 

@@ -6,6 +6,7 @@ use rayon::ThreadPoolBuilder;
 
 use super::voice;
 use crate::error::{Error, Result};
+use crate::workers;
 
 /// Options of every command.
 #[derive(Args)]
@@ -14,7 +15,7 @@ pub struct General {
     /// Replace what is at the place of an output, whatever it is; what else lies in a folder stays.
     #[arg(long, global = true)]
     pub force: bool,
-    /// Work on so many processors at once; on all when left out. Results are the same.
+    /// Work on so many processors at once; on all when left out, which ranks on one machine share. Results are the same.
     #[arg(long, global = true, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
     /// Say nothing but errors: no text, no warnings, no progress. Files are written as ever, `--json -` too.
@@ -31,12 +32,13 @@ impl General {
     /// # Errors
     /// When the system gives no threads.
     pub fn take_effect(&self) -> Result<()> {
-        voice::speak_up_to(match (self.quiet, self.verbose) {
+        voice::speak_up_to(match (self.quiet || !workers::is_first(), self.verbose) {
             (true, _) => LevelFilter::Error,
             (false, false) => LevelFilter::Warn,
             (false, true) => LevelFilter::Info,
         });
-        let threads = self.threads.map_or(0, usize::from);
+        // None are as many as there are processors.
+        let threads = self.threads.map(usize::from).or_else(workers::threads).unwrap_or_default();
         let pool = ThreadPoolBuilder::new().num_threads(threads).build_global();
         pool.map_err(|e| Error::new(format!("there are no {threads} threads: {e}")))?;
         log::info!("mindgap {} on {} threads", env!("CARGO_PKG_VERSION"), rayon::current_num_threads());

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use serde::de::IgnoredAny;
 
 use crate::files::places::Kind;
+use crate::workers::checkpoint;
 
 /// A simulator.
 pub const SIMULATOR: Kind =
@@ -28,6 +29,8 @@ pub const PAGE: Kind =
 pub const FORMULA: Kind = Kind { name: "a formula", is_one: |content| text(content).starts_with(FORMULA_SIGN) };
 /// What the file of a formula begins with: own effects without it are somebody's own.
 pub const FORMULA_SIGN: &str = "# Made by: mindgap diagnose\n";
+/// What a run that was broken off had done.
+pub const CHECKPOINT: Kind = Kind { name: "a checkpoint", is_one: |content| content.starts_with(checkpoint::SIGN) };
 /// What carries no sign of who wrote it, as tables and runs in CSV.
 pub const UNSIGNED: Kind = Kind { name: "anything", is_one: |_| false };
 

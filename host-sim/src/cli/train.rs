@@ -7,6 +7,7 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 use serde_json::json;
 
+use super::lasting::{KeepOption, Kept};
 use super::{Run, kinds, progress, warn};
 use crate::error;
 use crate::files;
@@ -36,6 +37,8 @@ pub struct Train {
     /// Also write the same facts here, for programs; `-` is standard output, in place of the text.
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
+    #[command(flatten)]
+    keep: KeepOption,
 }
 
 fn hidden_layer(text: &str) -> Result<(String, Shape), String> {
@@ -59,7 +62,7 @@ enum Trainer {
 impl Run for Train {
     fn places(&self) -> Places {
         let places = Places::default().reading([&self.logs]).writing([&self.out], kinds::SIMULATOR);
-        places.writing(&self.json, kinds::REPORT)
+        places.writing(&self.json, kinds::REPORT).writing(self.keep.asked(), kinds::CHECKPOINT)
     }
 
     fn run(&self) -> error::Result<String> {
@@ -100,5 +103,13 @@ impl Run for Train {
             "evaluations": evaluations, "missing": simulator.missing,
         });
         super::reported(self.json.as_deref(), &facts, text)
+    }
+
+    fn kept(&self) -> Option<Kept> {
+        self.keep.beside(&self.out)
+    }
+
+    fn is_shared(&self) -> bool {
+        true
     }
 }

@@ -108,6 +108,10 @@ impl Run for Loop {
         }
         super::reported(self.json.as_deref(), &state, self.told(&state))
     }
+
+    fn is_shared(&self) -> bool {
+        true
+    }
 }
 
 impl Loop {

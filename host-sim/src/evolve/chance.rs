@@ -5,7 +5,6 @@ use std::fmt;
 
 use glam::DVec2;
 use mindgap_core::controller::Controller;
-use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::fitness::sensor_of;
@@ -17,6 +16,7 @@ use crate::simulator::Simulator;
 use crate::simulator::ensemble::Member;
 use crate::simulator::environment::Environment;
 use crate::simulator::rollout::{RolloutOutcome, RolloutRequest};
+use crate::workers;
 
 /// Robots that tell how far a controller's chance is known.
 pub const ROBOTS: usize = 48;
@@ -58,11 +58,14 @@ impl<'a> Judge<'a> {
     }
 
     /// The chance of each controller in `runs` runs of every robot.
-    pub fn chances(&self, controllers: &[Controller], runs: usize) -> Vec<Chance> {
-        let by_robot: Vec<Vec<f64>> =
-            self.robots.par_iter().enumerate().map(|(i, robot)| self.rates(i, robot, controllers, runs)).collect();
+    ///
+    /// # Errors
+    /// When it cannot be computed by those to whom it is handed out.
+    pub fn chances(&self, controllers: &[Controller], runs: usize) -> Result<Vec<Chance>> {
+        let rates = |number: usize| Ok(self.rates(number, &self.robots[number], controllers, runs));
+        let by_robot = workers::map(self.robots.len(), rates)?;
         let of = |controller: usize| by_robot.iter().map(|rates| rates[controller]).collect();
-        (0..controllers.len()).map(|controller| Chance::of(of(controller), runs)).collect()
+        Ok((0..controllers.len()).map(|controller| Chance::of(of(controller), runs)).collect())
     }
 
     /// The success rate of each controller on one robot.

@@ -2,15 +2,16 @@
 
 use glam::DVec2;
 use mindgap_core::controller::Controller;
-use rayon::prelude::*;
 
 use super::genome::GenotypeDecoder;
 use super::way::WayMap;
 use crate::chance::{Generator, derive};
+use crate::error::Result;
 use crate::genetic;
 use crate::simulator::environment::Environment;
 use crate::simulator::motion::MotionTable;
 use crate::simulator::rollout::{REACHED_CM, RolloutOutcome, RolloutRequest, SensorModel, Termination};
+use crate::workers;
 
 /// Number of individuals simulated in one batch.
 const TOGETHER: usize = 25;
@@ -148,8 +149,9 @@ impl genetic::Problem for FitnessEvaluator<'_> {
         self.decoder.repair(genes);
     }
 
-    fn fitness(&self, generation: usize, population: &[Vec<f32>]) -> Vec<f64> {
-        let chunks = population.par_chunks(TOGETHER).enumerate();
-        chunks.flat_map_iter(|(chunk, genes)| self.summed(generation, chunk * TOGETHER, genes)).collect()
+    fn fitness(&self, generation: usize, population: &[Vec<f32>]) -> Result<Vec<f64>> {
+        let chunks: Vec<&[Vec<f32>]> = population.chunks(TOGETHER).collect();
+        let summed = |chunk: usize| Ok(self.summed(generation, chunk * TOGETHER, chunks[chunk]));
+        Ok(workers::map(chunks.len(), summed)?.concat())
     }
 }

@@ -4,6 +4,7 @@
 use mindgap_core::controller::Controller;
 
 use super::fitness::FitnessEvaluator;
+use crate::error::Result;
 use crate::genetic::{self, Settings};
 
 /// An evolved controller.
@@ -28,8 +29,11 @@ pub const RUNS: usize = 5;
 pub const FLOOR_CM: f64 = 1.0;
 
 /// Evolves a controller as in the paper, section IX. `watch` receives the generation and the best fitness up to it.
-pub fn evolve(evaluator: &FitnessEvaluator, settings: &Settings, watch: impl FnMut(usize, f64)) -> Evolved {
-    let outcome = genetic::run(settings, evaluator, evaluator.seed, watch);
+///
+/// # Errors
+/// As [`genetic::run`].
+pub fn evolve(evaluator: &FitnessEvaluator, settings: &Settings, watch: impl FnMut(usize, f64)) -> Result<Evolved> {
+    let outcome = genetic::run(settings, evaluator, evaluator.seed, watch)?;
     let controller = evaluator.decoder.controller(&outcome.best);
-    Evolved { controller, fitness: outcome.fitness, generations: outcome.generations }
+    Ok(Evolved { controller, fitness: outcome.fitness, generations: outcome.generations })
 }

@@ -86,15 +86,15 @@ impl Request<'_> {
         let evaluator =
             FitnessEvaluator { environment, target_cm, way: None, decoder, runs, floor_cm, random_numbers, seed };
         let candidates = if self.paper {
-            vec![paper::evolve(&evaluator, &paper::settings(), watch)]
+            vec![paper::evolve(&evaluator, &paper::settings(), watch)?]
         } else {
-            robust::candidates(&EvolutionTask { environment, target_cm, way, decoder, random_numbers, seed }, watch)
+            robust::candidates(&EvolutionTask { environment, target_cm, way, decoder, random_numbers, seed }, watch)?
         };
         let chances = match &robots {
             Some(robots) => {
                 let controllers: Vec<Controller> = candidates.iter().map(|c| c.controller.clone()).collect();
                 let judge = Judge::new(simulator, &robots.drawn, scene, start, target_cm, seed)?;
-                judge.chances(&controllers, RUNS)
+                judge.chances(&controllers, RUNS)?
             }
             None => Vec::new(),
         };

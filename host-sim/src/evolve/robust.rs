@@ -9,17 +9,18 @@
 
 use glam::DVec2;
 use mindgap_core::controller::Controller;
-use rayon::prelude::*;
 
 use super::fitness::{FitnessEvaluator, RandomNumbers, Success};
 use super::genome::GenotypeDecoder;
 use super::paper::Evolved;
 use super::way::WayMap;
 use crate::chance::{derive, generator};
+use crate::error::Result;
 use crate::genetic::mutation::{Mutation, Unit};
 use crate::genetic::{self, Settings};
 use crate::simulator::environment::Environment;
 use crate::simulator::rollout::REACHED_CM;
+use crate::workers;
 
 /// Total number of generations of all restarts.
 pub const GENERATIONS: usize = RESTARTS * (EXPLORING.max_generations + REFINING.max_generations);
@@ -71,36 +72,45 @@ pub struct EvolutionTask<'a> {
 
 /// The controller of each restart, by falling success rate in fresh runs. They may take different routes to the target.
 /// `watch` receives the number of generations completed, of [`GENERATIONS`], and the best fitness of the current run.
-pub fn candidates(task: &EvolutionTask, mut watch: impl FnMut(usize, f64)) -> Vec<Evolved> {
-    let mut chosen: Vec<(f64, Evolved)> = (0..RESTARTS)
+///
+/// # Errors
+/// As [`genetic::run`].
+pub fn candidates(task: &EvolutionTask, mut watch: impl FnMut(usize, f64)) -> Result<Vec<Evolved>> {
+    let mut chosen = (0..RESTARTS)
         .map(|restart| {
             let before = restart * (EXPLORING.max_generations + REFINING.max_generations);
             let report = |generation, best| watch(before + generation, best);
-            explore(task, restart, report).swap_remove(0)
+            Ok(explore(task, restart, report)?.swap_remove(0))
         })
-        .collect();
+        .collect::<Result<Vec<(f64, Evolved)>>>()?;
     chosen.sort_by(|a, b| b.0.total_cmp(&a.0));
-    chosen.into_iter().map(|(_, evolved)| evolved).collect()
+    Ok(chosen.into_iter().map(|(_, evolved)| evolved).collect())
 }
 
 /// A restart: its controllers by falling success rate in fresh runs, which comes with each.
-pub fn explore(task: &EvolutionTask, restart: usize, mut watch: impl FnMut(usize, f64)) -> Vec<(f64, Evolved)> {
+///
+/// # Errors
+/// As [`genetic::run`].
+pub fn explore(task: &EvolutionTask, restart: usize, mut watch: impl FnMut(usize, f64)) -> Result<Vec<(f64, Evolved)>> {
     let seed = derive(task.seed, &[restart as u64]);
-    let explored = genetic::run(&EXPLORING, &task.evaluator(EXPLORING_RUNS, seed), seed, &mut watch);
+    let explored = genetic::run(&EXPLORING, &task.evaluator(EXPLORING_RUNS, seed), seed, &mut watch)?;
     let best = explored.population.into_iter().take(REFINING.population).collect();
     refine(task, best, seed, |generation, best| watch(EXPLORING.max_generations + generation, best))
 }
 
 /// The second and third stage from a given population, as [`explore`]; `seed` fixes what the genetic algorithm draws.
+///
+/// # Errors
+/// As [`genetic::run`].
 pub fn refine(
     task: &EvolutionTask,
     population: Vec<Vec<f32>>,
     seed: u64,
     watch: impl FnMut(usize, f64),
-) -> Vec<(f64, Evolved)> {
+) -> Result<Vec<(f64, Evolved)>> {
     // All restarts are compared on the same runs.
     let evaluator = task.evaluator(REFINING_RUNS, task.seed);
-    ranked(&evaluator, &genetic::run_from(population, &REFINING, &evaluator, seed, watch).population)
+    ranked(&evaluator, &genetic::run_from(population, &REFINING, &evaluator, seed, watch)?.population)
 }
 
 /// A population of a controller and its mutants, to be [refined](refine).
@@ -118,19 +128,20 @@ pub fn mutants(task: &EvolutionTask, controller: &Controller, seed: u64) -> Vec<
 }
 
 /// Individuals by falling success rate in fresh runs, ties broken by fitness; with that rate.
-fn ranked(evaluator: &FitnessEvaluator, population: &[Vec<f32>]) -> Vec<(f64, Evolved)> {
-    let mut judged: Vec<(f64, Evolved)> = population
-        .par_iter()
-        .take(CANDIDATES)
-        .map(|genes| {
-            let controller = evaluator.decoder.controller(genes);
-            let outcomes = evaluator.outcomes(&controller, CHOOSING_RUNS, CHOOSING);
-            let fitness = evaluator.fitness_of(&outcomes) * evaluator.runs as f64 / CHOOSING_RUNS as f64;
-            (evaluator.success_of(&outcomes).rate, Evolved { controller, fitness, generations: GENERATIONS })
-        })
-        .collect();
-    judged.sort_by(|(a, x), (b, y)| b.total_cmp(a).then(y.fitness.total_cmp(&x.fitness)));
-    judged
+fn ranked(evaluator: &FitnessEvaluator, population: &[Vec<f32>]) -> Result<Vec<(f64, Evolved)>> {
+    let controller = |number: usize| evaluator.decoder.controller(&population[number]);
+    let judge = |number: usize| {
+        let outcomes = evaluator.outcomes(&controller(number), CHOOSING_RUNS, CHOOSING);
+        let fitness = evaluator.fitness_of(&outcomes) * evaluator.runs as f64 / CHOOSING_RUNS as f64;
+        Ok((evaluator.success_of(&outcomes).rate, fitness))
+    };
+    let judged = workers::map(population.len().min(CANDIDATES), judge)?.into_iter().enumerate();
+    let evolved = |(number, (rate, fitness)): (usize, (f64, f64))| {
+        (rate, Evolved { controller: controller(number), fitness, generations: GENERATIONS })
+    };
+    let mut ranked: Vec<(f64, Evolved)> = judged.map(evolved).collect();
+    ranked.sort_by(|(a, x), (b, y)| b.total_cmp(a).then(y.fitness.total_cmp(&x.fitness)));
+    Ok(ranked)
 }
 
 impl<'a> EvolutionTask<'a> {

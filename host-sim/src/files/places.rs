@@ -53,18 +53,30 @@ impl Places {
         self
     }
 
-    /// Checks them; `force` says that what is there may be replaced, whatever it is.
+    /// What is read.
+    pub fn inputs(&self) -> &[PathBuf] {
+        &self.inputs
+    }
+
+    /// What is written.
+    pub fn outputs(&self) -> impl Iterator<Item = PathBuf> {
+        self.outputs.iter().map(|output| output.path.clone())
+    }
+
+    /// Checks them; `force` says that what is there may be replaced, whatever it is; `goes_on`, that a run before may have
+    /// filled folders already.
     ///
     /// # Errors
     /// Names the first output that cannot be written, or that would replace what it must not.
-    pub fn check(&self, force: bool) -> Result<()> {
+    pub fn check(&self, force: bool, goes_on: bool) -> Result<()> {
         for (i, output) in self.outputs.iter().enumerate() {
             output.can_be_written()?;
             let is_same = |other: &&Output| !is_sink(&output.path) && at(&other.path) == at(&output.path);
             if self.outputs[..i].iter().any(|other| is_same(&other)) {
                 return Err(Error::in_file(&output.path, "is named as two outputs: give each a place of its own"));
             }
-            if !force {
+            let is_ours = goes_on && matches!(output.form, Form::Folder);
+            if !force && !is_ours {
                 output.loses_nothing(&self.inputs)?;
             }
         }
@@ -164,7 +176,7 @@ mod tests {
     const TEXT: Kind = Kind { name: "a text", is_one: |content| content.starts_with(b"mindgap") };
 
     fn refusal(places: &Places, force: bool) -> String {
-        places.check(force).map_err(|e| e.to_string()).err().unwrap_or_default()
+        places.check(force, false).map_err(|e| e.to_string()).err().unwrap_or_default()
     }
 
     #[test]

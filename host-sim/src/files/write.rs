@@ -3,6 +3,7 @@
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use tempfile::TempDir;
 
@@ -14,6 +15,14 @@ const STANDARD_OUTPUT: [&str; 2] = ["-", "/dev/stdout"];
 const OPEN_FILES: [&str; 4] = ["/dev/stdout", "/dev/stderr", "/dev/fd", "/proc/self/fd"];
 /// Chains of links are followed so far, as by the system.
 const MOST_LINKS: usize = 40;
+
+/// Whether another process writes what this one would.
+static IS_LEFT: AtomicBool = AtomicBool::new(false);
+
+/// From now on nothing is written: another process does the same and writes it.
+pub fn leave_writing() {
+    IS_LEFT.store(true, Ordering::Relaxed);
+}
 
 /// Whether a path is that of standard output.
 pub fn is_standard_output(path: &Path) -> bool {
@@ -33,7 +42,9 @@ pub fn is_stream(path: &Path) -> bool {
 /// When the folder is missing or not writable; `path` is then as it was.
 pub fn write(path: &Path, content: impl AsRef<[u8]>) -> Result<()> {
     let content = content.as_ref();
-    let written = if is_standard_output(path) {
+    let written = if IS_LEFT.load(Ordering::Relaxed) {
+        Ok(())
+    } else if is_standard_output(path) {
         to_standard_output(content)
     } else if is_stream(path) {
         OpenOptions::new().append(true).open(path).and_then(|mut stream| stream.write_all(content))
@@ -51,6 +62,9 @@ pub fn write(path: &Path, content: impl AsRef<[u8]>) -> Result<()> {
 
 /// Writes to standard output. That nobody reads on is no error.
 pub fn to_standard_output(content: &[u8]) -> io::Result<()> {
+    if IS_LEFT.load(Ordering::Relaxed) {
+        return Ok(());
+    }
     let mut out = io::stdout().lock();
     match out.write_all(content).and_then(|()| out.flush()) {
         Err(e) if e.kind() != io::ErrorKind::BrokenPipe => Err(e),
@@ -64,6 +78,9 @@ pub fn to_standard_output(content: &[u8]) -> io::Result<()> {
 /// # Errors
 /// What `fill` returns, or when the folder cannot be written.
 pub fn write_folder(path: &Path, ours: impl Fn(&str) -> bool, fill: impl FnOnce(&Path) -> Result<()>) -> Result<()> {
+    if IS_LEFT.load(Ordering::Relaxed) {
+        return fill(path);
+    }
     let failed = |e: io::Error| Error::in_file(path, format!("cannot be written: {e}"));
     let is_there = path.is_dir();
     // A folder may be a file system of its own, so that nothing can be renamed into it from beside it.

@@ -10,12 +10,13 @@ use levenberg_marquardt::LevenbergMarquardt;
 use mindgap_core::network::{Activation, MAX_HALF, Network, ProductForm, ProductUnit, Scaling, SummationUnit};
 use nalgebra::DVector;
 use rand::RngExt;
-use rayon::prelude::*;
 
 use super::dataset::Dataset;
 use super::genome::Shape;
 use crate::chance::generator;
+use crate::error::Result;
 use crate::statistics::agreement as statistics;
+use crate::workers;
 use anchors::Anchored;
 use projection::{Projection, Ridges};
 
@@ -40,7 +41,7 @@ pub struct Trained<const N: usize> {
 }
 
 /// Number of random starts with each search configuration.
-const STARTS: u64 = 4;
+const STARTS: usize = 4;
 /// Few samples need strong regularisation, many do with a weak one; held-out runs decide.
 const SEARCH_CONFIGS: [SearchConfig; 2] = [
     SearchConfig { ridges: Ridges { weights: 1e-4, exponents: 1e-5 }, start_range: 2.0 },
@@ -60,6 +61,9 @@ const PATIENCE: usize = 3;
 const REWEIGHTINGS: usize = 4;
 
 /// Trains one network on `fitted` and selects among starts by the loss on `judged`; both data sets must have samples.
+///
+/// # Errors
+/// When a start cannot be searched by those to whom it is handed out.
 pub fn train<const N: usize>(
     fitted: &Dataset<N>,
     judged: &Dataset<N>,
@@ -67,33 +71,31 @@ pub fn train<const N: usize>(
     activation: Activation,
     loss: Loss,
     seed: u64,
-) -> Trained<N> {
+) -> Result<Trained<N>> {
     let inputs = fitted.ranges().map(|range| Scaling::onto_one_to_two(*range.start(), *range.end()));
     let anchored = Anchored::new(fitted, &inputs);
     // For readings weak regularisation gains nothing (R² 0.794 either way) and costs accuracy in fixed point.
     let configs = if loss == Loss::Mixture { &SEARCH_CONFIGS[..1] } else { &SEARCH_CONFIGS };
-    let tries: Vec<(u64, &SearchConfig)> = (0..STARTS * configs.len() as u64).zip(configs.iter().cycle()).collect();
-    let searched: Vec<(f64, Network<f32, N>, usize)> = tries
-        .into_par_iter()
-        .map(|(start, config)| {
-            let mut rng = generator(seed, &[start]);
-            let range = -config.start_range..=config.start_range;
-            let exponents = DVector::from_fn(shape.product * N, |_, _| rng.random_range(range.clone()));
-            let problem = Projection::new(&anchored, &inputs, config.ridges, exponents);
-            let (mut problem, mut evaluations) = search(problem);
-            for _ in 0..if loss == Loss::Squares { 0 } else { REWEIGHTINGS } {
-                reweight(&mut problem, loss, &anchored.data.targets);
-                let (found, more) = search(problem);
-                (problem, evaluations) = (found, evaluations + more);
-            }
-            let network = network(&problem, &inputs, shape, activation);
-            (cost(&network, judged, loss), network, evaluations)
-        })
-        .collect();
+    let from_start = |start: usize| {
+        let config = &configs[start % configs.len()];
+        let mut rng = generator(seed, &[start as u64]);
+        let range = -config.start_range..=config.start_range;
+        let exponents = DVector::from_fn(shape.product * N, |_, _| rng.random_range(range.clone()));
+        let problem = Projection::new(&anchored, &inputs, config.ridges, exponents);
+        let (mut problem, mut evaluations) = search(problem);
+        for _ in 0..if loss == Loss::Squares { 0 } else { REWEIGHTINGS } {
+            reweight(&mut problem, loss, &anchored.data.targets);
+            let (found, more) = search(problem);
+            (problem, evaluations) = (found, evaluations + more);
+        }
+        let network = network(&problem, &inputs, shape, activation);
+        Ok((cost(&network, judged, loss), network, evaluations))
+    };
+    let searched = workers::map(STARTS * configs.len(), from_start)?;
     let evaluations = searched.iter().map(|(_, _, evaluations)| evaluations).sum();
     let best = searched.into_iter().min_by(|a, b| is_steep(&a.1).cmp(&is_steep(&b.1)).then(a.0.total_cmp(&b.0)));
     let (_, network, _) = best.expect("there is at least one start");
-    Trained { network, evaluations }
+    Ok(Trained { network, evaluations })
 }
 
 /// Larger exponents overflow in fixed point, and no data set seen needs a surface that steep.

@@ -3,13 +3,17 @@
 
 use mindgap_core::network::{Activation, Network, Scaling};
 use rand::RngExt;
-use rayon::prelude::*;
 
 use super::dataset::Dataset;
 use super::genome::{NetworkTemplate, Shape, unscale_output};
 use super::kernel::Samples;
 use crate::chance::Generator;
+use crate::error::Result;
 use crate::genetic::{self, Settings};
+use crate::workers;
+
+/// Number of individuals that are evaluated as one piece of work.
+const TOGETHER: usize = 5;
 
 /// Parameters of the trainer. The defaults are those of the paper; where it gives none (marked "open"), they are common
 /// choices.
@@ -40,6 +44,9 @@ impl Default for Options {
 
 /// Trains one network. The data set must have samples whose inputs and targets vary. `watch` receives the generation and
 /// the best fitness up to it.
+///
+/// # Errors
+/// As [`genetic::run`].
 pub fn train<const N: usize>(
     data: &Dataset<N>,
     shape: Shape,
@@ -47,7 +54,7 @@ pub fn train<const N: usize>(
     options: &Options,
     seed: u64,
     watch: impl FnMut(usize, f64),
-) -> Trained<N> {
+) -> Result<Trained<N>> {
     // The paper is silent on how inputs are scaled; on [1, 2] every power is real.
     let inputs = data.ranges().map(|range| Scaling::onto_one_to_two(*range.start(), *range.end()));
     let template = NetworkTemplate { shape, inputs, activation };
@@ -58,10 +65,10 @@ pub fn train<const N: usize>(
     };
     let samples = Samples::new(data, &inputs, |target| 1.0 + (target - low) / (high - low));
     let problem = Weights { template, samples, options };
-    let outcome = genetic::run(&options.genetic, &problem, seed, watch);
+    let outcome = genetic::run(&options.genetic, &problem, seed, watch)?;
     let mut network = template.network(&outcome.best);
     unscale_output(&mut network, low, high);
-    Trained { network, evaluations: outcome.generations * options.genetic.population }
+    Ok(Trained { network, evaluations: outcome.generations * options.genetic.population })
 }
 
 /// The search for weights as an optimisation problem: the genes are the weights.
@@ -84,8 +91,11 @@ impl<const N: usize> genetic::Problem for Weights<'_, N> {
         }
     }
 
-    fn fitness(&self, _: usize, population: &[Vec<f32>]) -> Vec<f64> {
+    fn fitness(&self, _: usize, population: &[Vec<f32>]) -> Result<Vec<f64>> {
+        let chunks: Vec<&[Vec<f32>]> = population.chunks(TOGETHER).collect();
         let error = |genes: &Vec<f32>| self.samples.mean_squared_error(&self.template.network(genes));
-        population.par_iter().map(|genes| 1.0 / error(genes)).collect()
+        let inverse_errors =
+            |chunk: usize| Ok(chunks[chunk].iter().map(|genes| 1.0 / error(genes)).collect::<Vec<f64>>());
+        Ok(workers::map(chunks.len(), inverse_errors)?.concat())
     }
 }

@@ -78,12 +78,17 @@ pub fn train(
     let value = Kind { activation: Activation::Linear, loss: Loss::Squares };
     let probability = Kind { activation: Activation::Ramp, loss: Loss::Logistic };
     let reading = Kind { activation: Activation::Linear, loss: Loss::Mixture };
-    let turn = network_trainer.train("turn", &data.turn, shapes.turn, value, motion);
-    let forward = network_trainer.train("forward", &data.forward, shapes.forward, value, motion);
-    let lateral = network_trainer.train("lateral", &data.lateral, shapes.lateral, value, motion);
-    let echo_probability =
-        network_trainer.train("echo_probability", &data.echo_probability, shapes.echo_probability, probability, sonar);
-    let mut echo_value = network_trainer.train("echo_value", &data.echo_value, shapes.echo_value, reading, sonar);
+    let turn = network_trainer.train("turn", &data.turn, shapes.turn, value, motion)?;
+    let forward = network_trainer.train("forward", &data.forward, shapes.forward, value, motion)?;
+    let lateral = network_trainer.train("lateral", &data.lateral, shapes.lateral, value, motion)?;
+    let echo_probability = network_trainer.train(
+        "echo_probability",
+        &data.echo_probability,
+        shapes.echo_probability,
+        probability,
+        sonar,
+    )?;
+    let mut echo_value = network_trainer.train("echo_value", &data.echo_value, shapes.echo_value, reading, sonar)?;
     let constant_reading = echo_value.as_mut().and_then(|value| split_constant_reading(value, &data.echo_value));
     let missing = for_want_of_a_sensor(network_trainer.missing, &logs.robot);
     if missing.len() == NETWORKS.len() {
@@ -218,11 +223,11 @@ impl<W: Fn(Progress)> NetworkTrainer<'_, W> {
         shape: Shape,
         kind: Kind,
         context: impl Fn(&[f32; N]) -> [f32; 2],
-    ) -> Option<Learned<N>> {
+    ) -> Result<Option<Learned<N>>> {
         let fitted = fitted_runs(data, self.runs);
         if let Some(reason) = reason_against(&fitted) {
             self.missing.push(Missing { network: network.into(), reason });
-            return None;
+            return Ok(None);
         }
         let held_out = data.of_runs(|run| is_held_out(run, self.runs));
         let judged = if held_out.is_empty() { &fitted } else { &held_out };
@@ -231,18 +236,18 @@ impl<W: Fn(Progress)> NetworkTrainer<'_, W> {
         let (trained, evaluations) = match self.trainer {
             Trainer::Paper(options) => {
                 let watch = |generation, _| watch(generation * options.genetic.population);
-                let done = paper::train(&fitted, shape, kind.activation, options, self.seed, watch);
+                let done = paper::train(&fitted, shape, kind.activation, options, self.seed, watch)?;
                 (done.network, done.evaluations)
             }
             Trainer::Fast => {
-                let done = fast::train(&fitted, judged, shape, kind.activation, kind.loss, self.seed);
+                let done = fast::train(&fitted, judged, shape, kind.activation, kind.loss, self.seed)?;
                 (done.network, done.evaluations)
             }
         };
         watch(evaluations);
         let contexts: Vec<[f32; 2]> = judged.inputs.iter().map(context).collect();
         let residuals = scatter::residual_quantiles(&contexts, &residuals(&trained, judged));
-        Some(Learned { network: trained, residuals })
+        Ok(Some(Learned { network: trained, residuals }))
     }
 }
 

@@ -89,8 +89,12 @@ impl Robot {
     /// # Errors
     /// When the file cannot be written.
     pub fn write(&self, path: &Path) -> Result<()> {
-        let text = toml::to_string(self).expect("numbers have a TOML form");
-        files::write(path, text)
+        files::write(path, self.to_text())
+    }
+
+    /// The text of `robot.toml`.
+    pub fn to_text(&self) -> String {
+        toml::to_string(self).expect("numbers have a TOML form")
     }
 }
 

@@ -1,6 +1,7 @@
 //! `run-*.csv`: one run of a robot (docs/formats.md).
 
 use std::io::Read;
+use std::iter;
 use std::path::Path;
 
 use csv::{ReaderBuilder, StringRecord, Writer};
@@ -55,22 +56,29 @@ impl Run {
         Ok(Run { name: name_of(path), rows: rows(path, text.as_bytes(), required, &mut warn)? })
     }
 
-    /// Writes a run; an optional column is written if any row has a value.
+    /// Writes a run.
     ///
     /// # Errors
     /// When the file cannot be written.
     pub fn write(&self, path: &Path) -> Result<()> {
+        files::write(path, self.to_text())
+    }
+
+    /// The text of its file; an optional column is there if any row has a value.
+    pub fn to_text(&self) -> String {
         let cells = || self.rows.iter().map(|row| cells(&row));
         let written: Vec<usize> =
             (0..COLUMNS.len()).filter(|c| *c < REQUIRED || cells().any(|row| row[*c].is_some())).collect();
         let mut writer = Writer::from_writer(Vec::new());
-        let failed = |e: csv::Error| Error::in_file(path, e.to_string());
-        writer.write_record(written.iter().map(|c| COLUMNS[*c])).map_err(failed)?;
-        for row in cells() {
-            writer.write_record(written.iter().map(|c| row[*c].map_or(String::new(), two_decimals))).map_err(failed)?;
+        let header = written.iter().map(|c| COLUMNS[*c].to_owned()).collect();
+        let row = |row: [Option<f64>; COLUMNS.len()]| {
+            written.iter().map(|c| row[*c].map_or(String::new(), two_decimals)).collect::<Vec<String>>()
+        };
+        for record in iter::once(header).chain(cells().map(row)) {
+            writer.write_record(record).expect("rows of one length, into memory");
         }
-        let bytes = writer.into_inner().map_err(|e| Error::in_file(path, e.to_string()))?;
-        files::write(path, bytes)
+        let bytes = writer.into_inner().expect("into memory");
+        String::from_utf8(bytes).expect("names and numbers")
     }
 
     /// Left and right command of the row before `k`; zeros at the first row, since motors start from rest.

@@ -8,6 +8,7 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use crate::error::{Error, Result};
+use crate::workers;
 
 /// A robot that drives a controller and logs the run.
 pub trait TrialRobot {
@@ -51,7 +52,9 @@ impl TrialRobot for CommandRobot {
         let mut words = self.command.split_whitespace();
         let program = words.next().ok_or_else(|| Error::new("the robot's command is empty"))?;
         let failed = |what: String| Error::new(format!("the robot's command {program} {what}"));
-        let mut child = Command::new(program)
+        let mut command = Command::new(program);
+        workers::keep_out(&mut command);
+        let mut child = command
             .args(words)
             .args([call.controller, call.scene])
             .arg(call.start.to_string())

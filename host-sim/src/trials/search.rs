@@ -98,7 +98,7 @@ impl Search<'_> {
     pub fn judged(&self, tried: &[Tried]) -> Result<Found> {
         let Robots { drawn, .. } = self.robots()?;
         let controllers = tried.iter().map(|tried| tried.controller.clone()).collect();
-        Ok(Found(self.jury(&drawn, tried)?.ranked(controllers, RUNS)))
+        Ok(Found(self.jury(&drawn, tried)?.ranked(controllers, RUNS)?))
     }
 
     /// The best controllers, from those of earlier turns, those that were driven, and new ones.
@@ -110,11 +110,11 @@ impl Search<'_> {
         let jury = self.jury(&drawn, tried)?;
         let driven = tried.iter().map(|tried| tried.controller.clone());
         let known = distinct(driven.clone().chain(archive.iter().filter_map(|tuples| self.controller(tuples))));
-        let known = jury.ranked(known, FEW_RUNS);
+        let known = jury.ranked(known, FEW_RUNS)?;
         let found = self.searched(&mean, &known)?;
         let all = distinct(known.into_iter().map(|known| known.controller).chain(found));
-        let promising = jury.ranked(all, FEW_RUNS).into_iter().take(ARCHIVED).map(|candidate| candidate.controller);
-        Ok(Found(jury.ranked(distinct(promising.chain(driven)), RUNS)))
+        let promising = jury.ranked(all, FEW_RUNS)?.into_iter().take(ARCHIVED).map(|candidate| candidate.controller);
+        Ok(Found(jury.ranked(distinct(promising.chain(driven)), RUNS)?))
     }
 
     /// Paths of a controller on some of the robots that it was judged on.
@@ -157,7 +157,8 @@ impl Search<'_> {
             robust::refine(&task, robust::mutants(&task, &incumbent.controller, seed), seed, |_, _| {})
         });
         let shortlist = |ranked: Vec<(f64, Evolved)>| ranked.into_iter().take(SHORTLISTED).map(|(_, e)| e.controller);
-        Ok(new.chain(better).flat_map(shortlist).collect())
+        let searched = new.chain(better).collect::<Result<Vec<_>>>()?;
+        Ok(searched.into_iter().flat_map(shortlist).collect())
     }
 
     fn robots(&self) -> Result<Robots> {
@@ -210,15 +211,15 @@ struct Jury<'a> {
 
 impl Jury<'_> {
     /// Controllers with their chances in so many runs of each robot, the most promising first.
-    fn ranked(&self, controllers: Vec<Controller>, runs: usize) -> Vec<Candidate> {
-        let chances = self.judge.chances(&controllers, runs);
+    fn ranked(&self, controllers: Vec<Controller>, runs: usize) -> Result<Vec<Candidate>> {
+        let chances = self.judge.chances(&controllers, runs)?;
         let candidate = |(controller, chance): (Controller, Chance)| {
             let score = score(&controller, chance.success, self.tried, &self.decoder);
             Candidate { controller, chance, score }
         };
         let mut candidates: Vec<Candidate> = controllers.into_iter().zip(chances).map(candidate).collect();
         candidates.sort_by(|a, b| b.score.total_cmp(&a.score));
-        candidates
+        Ok(candidates)
     }
 }
 

@@ -80,7 +80,7 @@ fn by_the_paper(bench: &Workbench) -> Result<Settled> {
         random_numbers: RandomNumbers::Independent,
         seed: bench.seed(),
     };
-    Ok(untried(paper::evolve(&evaluator, &paper::settings(), |_, _| {}).controller))
+    Ok(untried(paper::evolve(&evaluator, &paper::settings(), |_, _| {})?.controller))
 }
 
 /// As `mindgap evolve` was before it knew ways round obstacles and what logs leave open.
@@ -183,7 +183,7 @@ impl Workbench<'_> {
             random_numbers: RandomNumbers::Common,
             seed: self.seed(),
         };
-        Ok(robust::candidates(&task, |_, _| {}).into_iter().map(|evolved| evolved.controller).collect())
+        Ok(robust::candidates(&task, |_, _| {})?.into_iter().map(|evolved| evolved.controller).collect())
     }
 
     /// The candidates of `mindgap evolve`, those first that are most likely to succeed on robots that are possible.
@@ -193,7 +193,7 @@ impl Workbench<'_> {
         let robots = simulator.robots(ROBOTS, self.seed());
         let robots = robots.ok_or_else(|| Error::new("the simulator does not say what its logs leave open"))?;
         let judge = Judge::new(simulator, &robots.drawn, &case.scene, case.pose(), case.target_cm(), self.seed())?;
-        let chances = judge.chances(&candidates, RUNS);
+        let chances = judge.chances(&candidates, RUNS)?;
         let mut judged: Vec<_> = candidates.into_iter().zip(chances).collect();
         judged.sort_by(|a, b| b.1.success.total_cmp(&a.1.success));
         Ok(judged.into_iter().map(|(controller, _)| controller).collect())

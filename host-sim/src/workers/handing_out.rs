@@ -1,0 +1,148 @@
+//! Handing out the pieces of one part of a run, and taking what comes of them in order.
+
+use std::collections::BTreeMap;
+use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{self, Receiver};
+use std::thread;
+use std::time::Duration;
+
+use rayon::Scope;
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+
+use super::{AHEAD, RUN};
+use crate::error::{Error, Result};
+
+/// How long the first rank waits for its own threads before it listens to others again.
+pub const GLANCE: Duration = Duration::from_micros(50);
+/// The first rank.
+const HERE: usize = 0;
+
+/// What is heard while work is handed out.
+#[cfg_attr(not(feature = "mpi"), expect(dead_code))]
+pub enum Told<T> {
+    /// A thread of a rank is free.
+    Free(usize),
+    /// A rank has done a piece, and has that thread free.
+    Done(usize, usize, Result<T>),
+}
+
+/// What a thread sends when a piece is done.
+type Sent<T> = (usize, thread::Result<Result<T>>);
+
+/// Hands out pieces to threads and ranks, and gives them to `take` in order; on other ranks than the first does what is
+/// handed to them.
+pub fn hand_out<T: Serialize + DeserializeOwned + Send>(
+    count: usize,
+    ahead: usize,
+    work: &(impl Fn(usize) -> Result<T> + Sync),
+    mut take: impl FnMut(usize, T) -> Result<()>,
+) -> Result<()> {
+    let part = RUN.with_borrow_mut(|run| {
+        run.parts += 1;
+        run.parts
+    });
+    let threads = rayon::current_num_threads();
+    let is_over = &AtomicBool::new(false);
+    rayon::in_place_scope(|scope| {
+        let (sender, results) = mpsc::channel();
+        let start = |index: usize| {
+            let sender = sender.clone();
+            scope.spawn(move |_: &Scope| {
+                if !is_over.load(Ordering::Relaxed) {
+                    // Nobody listens any more when something else failed.
+                    let _ = sender.send((index, catch_unwind(AssertUnwindSafe(|| work(index)))));
+                }
+            });
+        };
+        let helped = RUN.with_borrow(|run| {
+            let ranks = run.ranks.as_ref().filter(|ranks| !ranks.is_first())?;
+            Some(ranks.help(part, threads, start, &results))
+        });
+        if let Some(helped) = helped {
+            return helped;
+        }
+        // Threads of one process have one queue, which is never to run dry; between ranks no piece waits for a busy one.
+        let of_here = if has_ranks() { threads } else { AHEAD * threads };
+        let mut free = vec![HERE; of_here];
+        let (mut begun, mut waiting) = (0, BTreeMap::new());
+        let mut piece = |next: usize| loop {
+            while begun < count.min(next + ahead) {
+                if !is_known(part, begun) {
+                    let Some(rank) = free.pop() else { break };
+                    if rank == HERE { start(begun) } else { hand(rank, begun)? }
+                }
+                begun += 1;
+            }
+            if let Some(piece) = recall(part, next)?.or_else(|| waiting.remove(&next)) {
+                return Ok(piece);
+            }
+            match listen(part, &results)? {
+                Told::Free(rank) => free.push(rank),
+                Told::Done(rank, index, piece) => {
+                    let piece = piece?;
+                    keep(part, index, &piece)?;
+                    waiting.insert(index, piece);
+                    free.push(rank);
+                }
+            }
+        };
+        let all = (0..count).try_for_each(|next| take(next, piece(next)?));
+        is_over.store(true, Ordering::Relaxed);
+        all.and_then(|()| RUN.with_borrow(|run| run.ranks.as_ref().map_or(Ok(()), |ranks| ranks.over())))
+    })
+}
+
+/// A piece that a thread has done.
+pub fn unwound<T>((index, piece): Sent<T>) -> (usize, Result<T>) {
+    (index, piece.unwrap_or_else(|panic| resume_unwind(panic)))
+}
+
+fn has_ranks() -> bool {
+    RUN.with_borrow(|run| run.ranks.is_some())
+}
+
+fn hand(rank: usize, index: usize) -> Result<()> {
+    RUN.with_borrow(|run| run.ranks.as_ref().map_or(Ok(()), |ranks| ranks.hand(rank, index)))
+}
+
+/// What the next worker tells, here or elsewhere.
+fn listen<T: DeserializeOwned>(part: u32, results: &Receiver<Sent<T>>) -> Result<Told<T>> {
+    let here = |sent: Sent<T>| {
+        let (index, piece) = unwound(sent);
+        Told::Done(HERE, index, piece)
+    };
+    RUN.with_borrow(|run| {
+        let Some(ranks) = &run.ranks else {
+            return results.recv().map(here).map_err(|e| Error::new(format!("a piece of work is lost: {e}")));
+        };
+        loop {
+            if let Some(told) = ranks.told(part)? {
+                return Ok(told);
+            }
+            if let Ok(sent) = results.recv_timeout(GLANCE) {
+                return Ok(here(sent));
+            }
+        }
+    })
+}
+
+/// Whether a run before has done a piece.
+fn is_known(part: u32, index: usize) -> bool {
+    RUN.with_borrow(|run| run.checkpoint.as_ref().is_some_and(|checkpoint| checkpoint.holds((part, index as u32))))
+}
+
+fn recall<T: DeserializeOwned>(part: u32, index: usize) -> Result<Option<T>> {
+    RUN.with_borrow_mut(|run| match &mut run.checkpoint {
+        Some(checkpoint) => checkpoint.recall((part, index as u32)),
+        None => Ok(None),
+    })
+}
+
+fn keep(part: u32, index: usize, piece: &impl Serialize) -> Result<()> {
+    RUN.with_borrow_mut(|run| match &mut run.checkpoint {
+        Some(checkpoint) => checkpoint.keep((part, index as u32), piece),
+        None => Ok(()),
+    })
+}

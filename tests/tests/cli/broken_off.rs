@@ -1,0 +1,195 @@
+//! Commands that take long, killed at random moments and called again: the same files as from a run without a break, and
+//! nothing else.
+//!
+//! `MINDGAP_KILLS=200 cargo test -p mindgap-tests --test cli -- --include-ignored --nocapture broken_off` kills each of
+//! them that often, also those that take minutes.
+
+use std::env;
+use std::path::PathBuf;
+use std::process::{Output, Stdio};
+use std::thread;
+use std::time::Instant;
+
+use mindgap_tests::command::Workshop;
+use mindgap_tests::rooms::{SCENE, robot, trained};
+use rand::rngs::SmallRng;
+use rand::{RngExt, SeedableRng};
+
+/// Kills of each command, by default.
+const KILLS: usize = 20;
+/// A run is killed before this share of the time of a whole one.
+const LATEST: f64 = 0.5;
+/// So much is written before a checkpoint is torn, bytes.
+const TORN_AT: u64 = 4000;
+
+const EVOLVE: &str = "evolve sim.json --scene scene.toml --max-steps 10 --paper --out controller.toml";
+const MAKE: &str = "challenge make --cases 3 --seed 5 --out blind";
+
+/// Kills a call again and again, until one comes to its end, and compares what it leaves with what one leaves that was
+/// never killed; and that until it was killed often enough.
+#[track_caller]
+fn survives(prepared: &Workshop, call: &[&str]) {
+    let kills = env::var("MINDGAP_KILLS").ok().and_then(|count| count.parse().ok()).unwrap_or(KILLS);
+    let unbroken = prepared.copy();
+    let began = Instant::now();
+    let expected = output(&unbroken, call, None).expect("nobody kills it");
+    let whole = began.elapsed();
+    let mut rng = SmallRng::seed_from_u64(20);
+    let (mut killed, mut compared) = (0, 0);
+    while killed < kills {
+        let broken = prepared.copy();
+        let found = loop {
+            let after = (killed < kills).then(|| whole.mul_f64(rng.random_range(0.0..LATEST)));
+            match output(&broken, call, after.map(|after| Instant::now() + after)) {
+                Some(found) => break found,
+                None => killed += 1,
+            }
+        };
+        assert_eq!(found, expected, "{call:?}");
+        compared += 1;
+        assert_same(&unbroken, &broken, call);
+    }
+    println!("{call:?}: {killed} kills, the ends of {compared} runs compared");
+}
+
+/// What a call prints; none if it was killed before its end.
+#[track_caller]
+fn output(workshop: &Workshop, call: &[&str], kill_at: Option<Instant>) -> Option<String> {
+    let mut command = workshop.command("");
+    let mut running =
+        command.args(call).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("the command starts");
+    if let Some(at) = kill_at {
+        thread::sleep(at.saturating_duration_since(Instant::now()));
+        running.kill().expect("a process of ours");
+    }
+    let Output { status, stdout, stderr } = running.wait_with_output().expect("the command ends");
+    let stderr = String::from_utf8_lossy(&stderr);
+    match status.code() {
+        None => None,
+        Some(code) => {
+            assert_eq!(code, 0, "{call:?}: {stderr}");
+            Some(String::from_utf8(stdout).expect("the command writes UTF-8"))
+        }
+    }
+}
+
+#[track_caller]
+fn assert_same(unbroken: &Workshop, broken: &Workshop, call: &[&str]) {
+    let files = |workshop: &Workshop| -> Vec<(PathBuf, Vec<u8>)> {
+        let name = |path: PathBuf| path.strip_prefix(workshop.path()).expect("a path below the folder").to_owned();
+        let files = workshop.listing().into_iter().map(|(path, bytes)| (name(path), bytes));
+        // What lies under temporary names is the matter of the next start in its folder.
+        files.filter(|(path, _)| !path.iter().any(|part| part.as_encoded_bytes().starts_with(b"."))).collect()
+    };
+    let (expected, found) = (files(unbroken), files(broken));
+    let names = |files: &[(PathBuf, Vec<u8>)]| files.iter().map(|(path, _)| path.clone()).collect::<Vec<_>>();
+    assert_eq!(names(&found), names(&expected), "{call:?}");
+    for ((path, found), (_, expected)) in found.iter().zip(&expected) {
+        assert!(found == expected, "{call:?}: {}", path.display());
+    }
+}
+
+fn words(call: &str) -> Vec<&str> {
+    call.split_whitespace().chain(["--checkpoint", "kept"]).collect()
+}
+
+fn with_scene() -> Workshop {
+    let workshop = trained();
+    workshop.write("scene.toml", SCENE);
+    workshop
+}
+
+#[test]
+fn evolve_survives() {
+    survives(&with_scene(), &words(EVOLVE));
+}
+
+#[test]
+fn train_survives() {
+    let hidden = ["turn", "forward", "lateral", "echo_probability", "echo_value"].map(|of| format!(" --hidden {of}=2"));
+    let call = format!("train logs --trainer paper --out paper.json{}", hidden.concat());
+    survives(&Workshop::with_logs(), &words(&call));
+}
+
+#[test]
+fn a_challenge_survives() {
+    survives(&Workshop::new(), &words(MAKE));
+}
+
+#[test]
+fn a_loop_survives() {
+    let workshop = with_scene();
+    robot(&workshop, "", "");
+    let call = "loop out --sim sim.json --scene scene.toml --max-steps 20 --trials 1 --robot";
+    survives(&workshop, &call.split_whitespace().chain(["sh robot.sh"]).collect::<Vec<_>>());
+}
+
+#[test]
+#[ignore = "takes minutes"]
+fn answers_survive() {
+    let workshop = Workshop::new();
+    workshop.done(MAKE);
+    survives(&workshop, &words("challenge answer blind"));
+}
+
+#[test]
+#[ignore = "takes half an hour"]
+fn a_calibration_survives() {
+    survives(&Workshop::new(), &words("challenge calibrate --cases 40 --out calibration.toml --csv cases.csv"));
+}
+
+#[test]
+#[ignore = "takes half an hour"]
+fn a_demo_survives() {
+    survives(&Workshop::new(), &words("demo --out demo --html page.html --json facts.json"));
+}
+
+/// A call that was killed when its checkpoint had some pieces in it.
+fn broken_evolution() -> Workshop {
+    let workshop = with_scene();
+    let kept = workshop.path().join("kept");
+    let mut running = workshop.command(EVOLVE).args(["--checkpoint", "kept"]).spawn().expect("the command starts");
+    while kept.metadata().map_or(0, |file| file.len()) < TORN_AT {
+        assert!(running.try_wait().expect("a process").is_none(), "it ends before it is killed");
+    }
+    running.kill().expect("a process of ours");
+    running.wait().expect("a process that ends");
+    workshop
+}
+
+#[test]
+fn of_a_torn_checkpoint_the_beginning_is_used() {
+    let unbroken = with_scene();
+    unbroken.done(EVOLVE);
+    let broken = broken_evolution();
+    let mut bytes = broken.bytes("kept");
+    bytes.truncate(bytes.len() - 3);
+    broken.write("kept", bytes);
+    let done = broken.call(&format!("{EVOLVE} --checkpoint kept"));
+    assert_eq!(done.code, 0, "{}", done.err);
+    let told: Vec<&str> = done.err.lines().collect();
+    assert!(
+        told.len() == 2 && told[0].contains("kept: its end is torn") && told[1].contains("kept: goes on"),
+        "{told:?}"
+    );
+    assert_same(&unbroken, &broken, &[EVOLVE]);
+}
+
+#[test]
+fn a_checkpoint_of_another_run_is_refused_by_name() {
+    let broken = broken_evolution();
+    let refused = |call: &str| broken.refused(&format!("{call} --checkpoint kept"));
+    assert!(refused(&format!("{EVOLVE} --seed 2")).contains("of a run with --seed 1, not 2"));
+    assert!(refused("challenge make --out blind").contains("of a run with the command evolve, not challenge make"));
+    let kept = broken.bytes("kept");
+    let end = kept.iter().position(|byte| *byte == b'\n').expect("a first line");
+    let header = String::from_utf8(kept[..end].to_vec()).expect("JSON");
+    let older = header.replacen("\"version\":\"", "\"version\":\"0.", 1);
+    broken.write("kept", [older.as_bytes(), &kept[end..]].concat());
+    assert!(refused(EVOLVE).contains("of a run with version 0."));
+    broken.write("kept", kept);
+    broken.edit("scene.toml", |text| text.replace("x_cm = 160", "x_cm = 161"));
+    assert!(refused(EVOLVE).contains("another content of scene.toml"));
+    broken.write("kept", "my own notes\n");
+    assert!(refused(EVOLVE).contains("is not a checkpoint that mindgap wrote"));
+}
