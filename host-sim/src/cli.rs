@@ -17,6 +17,8 @@ mod drive;
 mod evaluate;
 mod evolve;
 mod export;
+mod fleet;
+mod fleet_text;
 mod general;
 mod guide;
 mod import;

@@ -16,6 +16,7 @@ pub mod error;
 pub mod evaluation;
 pub mod evolve;
 pub mod files;
+pub mod fleet;
 pub mod gap;
 pub mod genetic;
 pub mod geometry;

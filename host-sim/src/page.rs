@@ -6,6 +6,7 @@
 pub mod demo;
 pub mod diagnosis;
 pub mod evaluation;
+pub mod fleet;
 pub mod simulation;
 pub mod trials;
 

@@ -9,10 +9,10 @@ use crate::error::raised;
 
 /// Checks a file that is to be written.
 pub fn file(path: &PathBuf, kind: Kind, force: bool) -> PyResult<()> {
-    Places::default().writing([path], kind).check(force).map_err(raised)
+    Places::default().writing([path], kind).check(force, false).map_err(raised)
 }
 
 /// Checks a folder that is to be filled.
 pub fn folder(path: &PathBuf, force: bool) -> PyResult<()> {
-    Places::default().filling([path]).check(force).map_err(raised)
+    Places::default().filling([path]).check(force, false).map_err(raised)
 }

@@ -5,12 +5,15 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use mindgap_core::controller::Controller;
 
+use super::fleet::FleetRequest;
+use super::lasting::{KeepOption, Kept};
 use super::{Run, diagnosis_text, kinds, progress};
 use crate::effects::own;
 use crate::error::{Error, Result};
 use crate::evolve::controller_file::ControllerFile;
 use crate::files;
 use crate::files::places::Places;
+use crate::fleet::source::is_address;
 use crate::gap::Method;
 use crate::gap::progress::Stage;
 use crate::gap::request::{Answered, Request};
@@ -25,7 +28,7 @@ pub struct Diagnose {
     /// measures in the logs' robot.toml alone.
     #[arg(value_name = "SIM|kinematic")]
     sim: PathBuf,
-    /// Folder of logs.
+    /// Folder of logs; with --fleet a folder that has one for each robot.
     logs: PathBuf,
     /// The logs are of this controller's runs: also compare where they end.
     #[arg(long, value_name = "CONTROLLER")]
@@ -58,6 +61,17 @@ pub struct Diagnose {
     /// Write the commands to log next here, as a run in CSV, where causes remain confused.
     #[arg(long, value_name = "FILE")]
     next_experiment: Option<PathBuf>,
+    /// Diagnose a fleet, every folder in LOGS, and write into this folder what the robots have in common, who stands out, and
+    /// each one's diagnosis. LOGS and OUT may be addresses in object storage, as s3://robots/tonight. --apply then
+    /// writes a simulator with the effects that nearly all robots have alike.
+    #[arg(
+        long,
+        value_name = "OUT",
+        conflicts_with_all = ["controller", "json", "html", "figures", "formula", "next_experiment"]
+    )]
+    fleet: Option<PathBuf>,
+    #[command(flatten)]
+    keep: KeepOption,
 }
 
 /// Stands for a simulator file: the textbook's.
@@ -65,14 +79,33 @@ const KINEMATIC: &str = "kinematic";
 
 impl Run for Diagnose {
     fn places(&self) -> Places {
-        let inputs = self.simulator_file().into_iter().chain([&self.logs]).chain(&self.controller).chain(&self.effects);
+        let on_disk = |path: &&PathBuf| !is_address(path);
+        let logs = Some(&self.logs).filter(on_disk);
+        let inputs = self.simulator_file().into_iter().chain(logs).chain(&self.controller).chain(&self.effects);
         let places = Places::default().reading(inputs).writing(&self.json, kinds::REPORT);
         let places = places.writing(&self.html, kinds::PAGE).writing(&self.apply, kinds::SIMULATOR);
         let places = places.writing(&self.formula, kinds::FORMULA).writing(&self.next_experiment, kinds::UNSIGNED);
-        places.filling(&self.figures)
+        let places = places.filling(&self.figures).filling(self.fleet.as_ref().filter(on_disk));
+        places.writing(self.keep.asked(), kinds::CHECKPOINT)
+    }
+
+    fn kept(&self) -> Option<Kept> {
+        let out = self.fleet.as_ref()?;
+        // Beside an address nothing can be kept.
+        let is_possible = !is_address(out) || self.keep.asked().is_some();
+        is_possible.then(|| self.keep.beside(out)).flatten()
+    }
+
+    fn is_shared(&self) -> bool {
+        self.fleet.is_some()
     }
 
     fn run(&self) -> Result<String> {
+        if self.fleet.is_none() && self.keep.asked().is_some() {
+            return Err(Error::new(
+                "--checkpoint keeps the diagnoses of a --fleet: of one robot there is nothing to keep",
+            ));
+        }
         let simulator = self.simulator_file().map(|path| read_simulator(path)).transpose()?;
         let controller = self.controller_of(simulator.as_ref())?;
         let request = Request {
@@ -81,6 +114,10 @@ impl Run for Diagnose {
             method: Method { catalogue: own::beside_built_in(&self.effects)?, seed: self.seed, ..Method::default() },
             step_ms: self.step_ms,
         };
+        if let Some(out) = &self.fleet {
+            let apply = self.apply.as_deref();
+            return FleetRequest { request, logs: &self.logs, out, apply, simulator: self.simulator_name() }.answer();
+        }
         let bar = progress::shares();
         let watch = |stage: Stage| {
             bar.set_position((100.0 * stage.share_before()) as u64);
@@ -137,12 +174,16 @@ impl Diagnose {
         Ok(Some(ControllerFile::read_for(path, &simulator.robot)?.controller))
     }
 
+    fn simulator_name(&self) -> String {
+        match self.sim.as_os_str() == KINEMATIC {
+            true => textbook::NAME.into(),
+            false => self.sim.display().to_string(),
+        }
+    }
+
     fn source(&self) -> Result<Source> {
         Ok(Source {
-            simulator: match self.sim.as_os_str() == KINEMATIC {
-                true => textbook::NAME.into(),
-                false => self.sim.display().to_string(),
-            },
+            simulator: self.simulator_name(),
             logs: self.logs.display().to_string(),
             written: files::days_written(&self.logs)?,
             seed: self.seed,

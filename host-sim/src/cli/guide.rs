@@ -53,7 +53,8 @@ const WORK: &[Part] = &[
             (
                 "diagnose",
                 "mindgap diagnose simulator.json logs --html gap.html\n  mindgap diagnose kinematic logs    against \
-                 the textbook's differential drive and an ideal sonar, from robot.toml alone",
+                 the textbook's differential drive and an ideal sonar, from robot.toml alone\n  mindgap diagnose \
+                 simulator.json robots --fleet answer    of many robots, a folder of logs each",
             ),
             ("challenge", "mindgap challenge --help"),
         ],

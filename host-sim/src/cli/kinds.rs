@@ -54,6 +54,7 @@ fn is_program(content: &[u8]) -> bool {
 
 /// What commands find, as `--json` has it, by keys that no earlier one has.
 pub const REPORTS: &[(&[&str], &str)] = &[
+    (&["stands_out"], "a fleet's answer: `mindgap diagnose --fleet`"),
     (&["verdict"], "a diagnosis: `mindgap diagnose --json`"),
     (&["reached_within_cm"], "simulated runs: `mindgap simulate --json`"),
     (&["holds"], "what logs hold: `mindgap check --json`"),

@@ -95,6 +95,18 @@ pub enum Verdict {
     Unknown,
 }
 
+impl Verdict {
+    /// As it is written.
+    pub fn id(self) -> &'static str {
+        match self {
+            Verdict::NoGap => "no_gap",
+            Verdict::Known => "known",
+            Verdict::PartlyKnown => "partly_known",
+            Verdict::Unknown => "unknown",
+        }
+    }
+}
+
 impl Diagnosis {
     /// The answer in one word.
     pub fn verdict(&self) -> Verdict {

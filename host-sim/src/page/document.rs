@@ -45,6 +45,8 @@ pub enum Script {
     Simulation,
     /// The charts of a loop.
     Trials,
+    /// The charts of a fleet, and its table.
+    Fleet,
 }
 
 /// Nothing is fetched: a page that tried to would show an error.
@@ -84,6 +86,7 @@ impl Script {
             Script::Evaluation => include_str!("../../assets/page/evaluation.js"),
             Script::Simulation => include_str!("../../assets/page/simulation.js"),
             Script::Trials => include_str!("../../assets/page/trials.js"),
+            Script::Fleet => include_str!("../../assets/page/fleet.js"),
         }
     }
 }

@@ -14,6 +14,7 @@ mod determinism;
 mod diagnose_logs;
 mod drive;
 mod faults;
+mod fleet;
 mod general;
 mod golden_files;
 mod import;
