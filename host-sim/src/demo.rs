@@ -4,7 +4,6 @@
 pub mod repair;
 pub mod robot;
 
-use std::fs;
 use std::path::Path;
 
 use glam::DVec2;
@@ -110,7 +109,7 @@ struct Trial {
 /// # Errors
 /// When `out` cannot be written.
 pub fn run(out: &Path, seed: u64, watch: impl Fn(Stage)) -> Result<Summary> {
-    fs::create_dir_all(out).map_err(|e| Error::in_file(out, format!("cannot be made: {e}")))?;
+    files::make_folder(out)?;
     let of = |purpose: Purpose| derive(seed, &[purpose as u64]);
     watch(Stage::Recording);
     let robot = built_in_robot::default_robot();

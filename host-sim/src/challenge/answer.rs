@@ -1,14 +1,13 @@
 //! Answers a challenge: learns each robot's simulator from its own logs and diagnoses every case.
 
 use std::collections::BTreeMap;
-use std::fs;
 use std::path::Path;
 
 use rayon::prelude::*;
 
 use super::seal::Published;
 use super::{Counter, Folder};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::files;
 use crate::gap::{Method, findings};
 use crate::inspection::Inspection;
@@ -28,7 +27,7 @@ pub fn answer(folder: &Path, watch: impl Fn(usize, usize) + Sync) -> Result<usiz
     let folder = Folder(folder);
     let cases: Vec<Published> = files::read_csv(&folder.cases())?;
     let answers = folder.answers();
-    fs::create_dir_all(&answers).map_err(|e| Error::in_file(&answers, format!("cannot be made: {e}")))?;
+    files::make_folder(&answers)?;
     let mut simulators: BTreeMap<&str, Simulator> = BTreeMap::new();
     for case in &cases {
         if !simulators.contains_key(case.robot.as_str()) {

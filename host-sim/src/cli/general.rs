@@ -38,7 +38,7 @@ impl General {
         });
         let threads = self.threads.map_or(0, usize::from);
         let pool = ThreadPoolBuilder::new().num_threads(threads).build_global();
-        pool.map_err(|e| Error::new(format!("there are no {threads} threads: {e}")))?;
+        pool.map_err(|e| Error::new(format!("threads cannot be started: {e}")))?;
         log::info!("mindgap {} on {} threads", env!("CARGO_PKG_VERSION"), rayon::current_num_threads());
         Ok(())
     }

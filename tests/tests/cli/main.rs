@@ -12,6 +12,10 @@ mod demo;
 mod determinism;
 mod diagnose_logs;
 mod drive;
+#[cfg(target_os = "linux")]
+mod ended;
+#[cfg(target_os = "linux")]
+mod failing_disks;
 mod faults;
 mod general;
 mod golden_files;
