@@ -1,14 +1,10 @@
-//! Two ways to one result: fixed point and floating point, many lanes and one, a brick's bytecode and the core.
+//! Two ways to one result: fixed point and floating point, many lanes and one.
 
 use std::array;
 use std::sync::LazyLock;
 
 use fixed::types::I16F16;
-use mindgap_controller_export::brick::{self, Drive, EventKind, Program, RunConfig, ScriptedWorld, Sonar, Termination};
-use mindgap_controller_export::onboard::{FAILED_STEPS_TO_STOP, NO_ECHO_CM, Safety};
-use mindgap_controller_export::rxe;
-use mindgap_controller_export::wiring::Wiring;
-use mindgap_core::controller::{Controller, Machine, Motors, Status, TUPLES, Tuple, When};
+use mindgap_core::controller::{Controller, TUPLES, Tuple, When};
 use mindgap_core::network::Network;
 use mindgap_host_sim::built_in_robot::{default_robot, four_obstacles, record, training_room};
 use mindgap_host_sim::learn::train::{TABLE_ONE, Trainer, train};
@@ -20,11 +16,8 @@ use mindgap_host_sim::simulator::{Noise, Simulator};
 use super::Target;
 use crate::plausible_networks::{PlausibleNetworks, plausible_networks};
 
-pub const TARGETS: &[Target] = &[
-    Target { name: "fixed-and-float", feed: fixed_and_float },
-    Target { name: "lanes-and-one", feed: lanes_and_one },
-    Target { name: "brick-and-core", feed: brick_and_core },
-];
+pub const TARGETS: &[Target] =
+    &[Target { name: "fixed-and-float", feed: fixed_and_float }, Target { name: "lanes-and-one", feed: lanes_and_one }];
 
 /// Bytes of a controller: six tuples of a left and a right command, a test and a threshold.
 const CONTROLLER_BYTES: usize = 4 * TUPLES;
@@ -77,56 +70,6 @@ fn lanes_and_one(bytes: &[u8]) {
     for (request, outcome) in requests.iter().zip(environment.run(&requests)) {
         assert_eq!(environment.trace(*request).0, outcome);
     }
-}
-
-/// A brick's program commands what the core's machine does.
-fn brick_and_core(bytes: &[u8]) {
-    let Some((first, rest)) = bytes.split_first_chunk::<CONTROLLER_BYTES>() else { return };
-    let controller = controller(first);
-    let answers = rest.iter().map(|byte| match byte {
-        254 => Sonar::Silent,
-        cm => Sonar::Echo(*cm),
-    });
-    let sonar: Vec<Sonar> = answers.chain([Sonar::Silent; 2]).take(usize::from(MOST_STEPS)).collect();
-    let file = rxe::program(&controller, &Wiring::default(), Safety::default()).expect("a sound controller");
-    let program = Program::load(&file).expect("its own program");
-    let report = brick::run(&program, &mut ScriptedWorld::sonar(sonar.clone()), &RunConfig::default());
-    assert_eq!(report.end, Termination::Finished);
-    let powers = report.events.iter().filter_map(|event| match event.kind {
-        EventKind::Motor { drive: Drive::Power(power), .. } => Some(power),
-        EventKind::Motor { .. } => Some(0),
-        _ => None,
-    });
-    let powers: Vec<i8> = powers.collect();
-    let commands: Vec<Motors> =
-        powers.as_chunks().0.iter().map(|[left, right]| Motors { left: *left, right: *right }).collect();
-    assert_eq!(commands, commanded(&controller, &sonar));
-}
-
-/// The commands of the core's machine, and the stop of a run whose sensor is dead; without one at the begin there are none.
-fn commanded(controller: &Controller, sonar: &[Sonar]) -> Vec<Motors> {
-    if sonar.first() == Some(&Sonar::Silent) {
-        return Vec::new();
-    }
-    let mut machine = Machine::start();
-    let mut commands = vec![machine.motors(controller)];
-    let mut failed_steps = 0;
-    for answer in sonar {
-        let tuple = machine.tuple();
-        let reading_cm = match answer {
-            Sonar::Echo(cm) if *cm != NO_ECHO_CM => Some(i16::from(*cm)),
-            _ => None,
-        };
-        failed_steps = if matches!(answer, Sonar::Echo(_)) { 0 } else { failed_steps + 1 };
-        if machine.step(controller, reading_cm) != Status::Running || failed_steps == FAILED_STEPS_TO_STOP {
-            commands.push(Motors { left: 0, right: 0 });
-            break;
-        }
-        if machine.tuple() != tuple {
-            commands.push(machine.motors(controller));
-        }
-    }
-    commands
 }
 
 fn controller(bytes: &[u8; CONTROLLER_BYTES]) -> Controller {
