@@ -30,6 +30,7 @@ need_component() {
 
 command -v cargo >/dev/null || { echo "cargo is missing: install Rust from https://rustup.rs" >&2; exit 1; }
 need cc gcc
+need strace strace
 need nbc nbc
 need avr-g++ gcc-avr
 need /usr/lib/avr/include/avr/io.h avr-libc

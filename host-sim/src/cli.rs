@@ -9,7 +9,7 @@ mod budget_text;
 mod challenge;
 mod check;
 mod crosscheck;
-mod defaults;
+pub mod defaults;
 mod demo;
 mod diagnose;
 mod diagnosis_text;
@@ -29,6 +29,8 @@ mod manual;
 mod new;
 mod progress;
 mod record;
+#[cfg(unix)]
+mod signals;
 mod simulate;
 mod table;
 mod train;
@@ -144,6 +146,8 @@ pub fn run() -> ExitCode {
 
 /// Does what this process's arguments and the defaults beside the logs ask for, and says what there is to say.
 fn answer() -> Result<()> {
+    #[cfg(unix)]
+    signals::heed().map_err(|e| Error::new(format!("signals cannot be heeded: {e}")))?;
     let command = guide::command();
     let (arguments, defaults) = defaults::with_defaults(&command, env::args_os().collect())?;
     let matches = command.clone().try_get_matches_from(arguments).map_err(|error| defaults.blamed_for(error))?;

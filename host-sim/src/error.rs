@@ -35,6 +35,12 @@ impl Error {
         Error { file: self.file.or_else(|| Some(file.to_owned())), ..self }
     }
 
+    /// The same error of a file in a folder that is to be another's: it is named as it would be there.
+    pub fn moved(self, from: &Path, to: &Path) -> Self {
+        let there = self.file.as_deref().and_then(|file| file.strip_prefix(from).ok()).map(|file| to.join(file));
+        Error { file: there.or(self.file), ..self }
+    }
+
     fn place(&self) -> String {
         match (&self.file, self.line) {
             (Some(file), Some(line)) => format!("{}:{line}: ", file.display()),

@@ -1,8 +1,11 @@
 //! Whole files in and out: reading with a clear problem, and writing so that nothing is ever left half-written.
 
+mod leftovers;
 pub mod places;
+mod temporary;
 mod text;
 mod words;
+mod workshop;
 mod write;
 
 use std::fs;
@@ -14,9 +17,10 @@ use jiff::tz::TimeZone;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
+pub use leftovers::remove_ours as remove_temporary;
 pub use text::{NO_UTF8, TextFile, line_at, read_text};
 pub use words::did_you_mean;
-pub use write::{is_stream, leave_writing, to_standard_output, write, write_folder};
+pub use write::{is_stream, leave_writing, make_folder, to_standard_output, write, write_folder};
 
 use crate::error::{Error, Result};
 
@@ -102,14 +106,6 @@ pub fn write_json(path: &Path, value: &impl Serialize) -> Result<()> {
 pub fn json(path: &Path, value: &impl Serialize) -> Result<String> {
     let text = serde_json::to_string_pretty(value).map_err(|e| Error::in_file(path, e.to_string()))?;
     Ok(text + "\n")
-}
-
-/// Makes a folder unless it is there.
-///
-/// # Errors
-/// When it cannot be made.
-pub fn make_folder(path: &Path) -> Result<()> {
-    fs::create_dir_all(path).map_err(|e| Error::in_file(path, format!("cannot be made: {e}")))
 }
 
 /// The first and the last day (UTC) on which the CSV files of a folder were written; none where the file system does not

@@ -182,12 +182,17 @@ fn named(name: &str, figure: Figure) -> NamedFigure {
     NamedFigure { name: name.into(), figure }
 }
 
-/// Writes figures into a folder, which is made where there is none.
+/// Writes figures into a folder, which is made where there is none: all of them or none.
 fn write(folder: &Path, figures: &[NamedFigure]) -> Result<()> {
-    if !figures.is_empty() {
-        files::make_folder(folder)?;
+    if figures.is_empty() {
+        return Ok(());
     }
-    figures.iter().try_for_each(|NamedFigure { name, figure }| figure.write(folder, name))
+    let ours = |file: &str| {
+        figures.iter().any(|NamedFigure { name, .. }| file.rsplit_once('.').is_some_and(|(stem, _)| stem == name))
+    };
+    files::write_folder(folder, ours, |fresh| {
+        figures.iter().try_for_each(|NamedFigure { name, figure }| figure.write(fresh, name))
+    })
 }
 
 /// A simulated run as a path.

@@ -21,6 +21,7 @@ use crate::chance::derive;
 use crate::error::{Error, Result};
 use crate::evolve::chance::Chance;
 use crate::evolve::controller_file::{ControllerFile, Origin};
+use crate::files;
 use crate::geometry::Pose;
 use crate::logs::{Logs, Run, Scene};
 use crate::simulator::Simulator;
@@ -101,7 +102,7 @@ impl<'a> Trials<'a> {
         if scene.target_cm.is_none() {
             return Err(Error::in_file(job.scene, "has no [target]"));
         }
-        fs::create_dir_all(job.folder).map_err(|e| Error::in_file(job.folder, format!("cannot be made: {e}")))?;
+        files::make_folder(job.folder)?;
         let state = workers::once(|| State::open(job))?;
         Ok(Trials { job, simulator, scene, start, state })
     }

@@ -7,6 +7,7 @@ pub mod coverage;
 pub mod faults;
 pub mod firmware_networks;
 pub mod fixed_point_error;
+pub mod fuzzing;
 pub mod golden;
 pub mod module_order;
 pub mod modules;

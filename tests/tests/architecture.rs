@@ -33,6 +33,18 @@ fn every_path_that_it_names_exists() {
     }
 }
 
+/// What the workspace forbids, as `unsafe`, is forbidden in a crate that says so.
+#[test]
+fn every_crate_has_the_lints_of_the_workspace() {
+    let read = |path: &str| fs::read_to_string(workspace().join(path)).expect("a manifest");
+    let root = read("Cargo.toml");
+    assert!(root.contains("unsafe_code = \"forbid\""));
+    let members = root.lines().find_map(|line| line.strip_prefix("members = [")).expect("the members");
+    for name in members.trim_end_matches(']').split(", ").map(|name| name.trim_matches('"')) {
+        assert!(read(&format!("{name}/Cargo.toml")).contains("[lints]\nworkspace = true"), "{name}");
+    }
+}
+
 #[test]
 fn the_order_names_every_module_once() {
     let order = order();

@@ -40,7 +40,7 @@ impl General {
         // None are as many as there are processors.
         let threads = self.threads.map(usize::from).or_else(workers::threads).unwrap_or_default();
         let pool = ThreadPoolBuilder::new().num_threads(threads).build_global();
-        pool.map_err(|e| Error::new(format!("there are no {threads} threads: {e}")))?;
+        pool.map_err(|e| Error::new(format!("threads cannot be started: {e}")))?;
         log::info!("mindgap {} on {} threads", env!("CARGO_PKG_VERSION"), rayon::current_num_threads());
         Ok(())
     }

@@ -2,6 +2,7 @@
 
 mod markdown;
 
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use clap::{Args, Command, ValueEnum};
@@ -70,16 +71,21 @@ impl Run for Manual {
         let mut pages: Vec<(String, Command)> =
             command.get_subcommands().filter(|of| of.get_name() != HELP).map(of_command).collect();
         pages.push((NAME.into(), command));
-        files::make_folder(&self.out)?;
         let count = pages.len();
-        for (name, page) in pages {
+        let files = pages.into_iter().map(|(name, page)| {
             let (ending, text) = match self.format {
                 Format::Man => ("1", man(page.name(leaked(&name)))?),
                 Format::Markdown if name == NAME => ("md", markdown::overview(&page).into_bytes()),
                 Format::Markdown => ("md", markdown::page(&page).into_bytes()),
             };
-            files::write(&self.out.join(format!("{name}.{ending}")), text)?;
-        }
+            Ok((format!("{name}.{ending}"), text))
+        });
+        let files: BTreeMap<String, Vec<u8>> = files.collect::<Result<_>>()?;
+        files::write_folder(
+            &self.out,
+            |name| files.contains_key(name),
+            |fresh| files.iter().try_for_each(|(name, text)| files::write(&fresh.join(name), text)),
+        )?;
         Ok(format!("{count} manual pages written to {}\n", self.out.display()))
     }
 }

@@ -1,12 +1,11 @@
 //! `mindgap new`
 
-use std::fs;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
 
 use super::Run;
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::files;
 use crate::files::places::Places;
 use crate::import::draft::{RobotDraft, SCENE};
@@ -31,13 +30,17 @@ impl Run for New {
 
     fn run(&self) -> Result<String> {
         let contents = [RobotDraft::blank().text(), SCENE.to_owned(), readme(&self.folder)];
+        let has_recordings = self.folder.join(RECORDINGS).is_dir();
         files::write_folder(
             &self.folder,
             |name| FILES.contains(&name),
-            |fresh| FILES.iter().zip(contents).try_for_each(|(name, content)| files::write(&fresh.join(name), content)),
+            |fresh| {
+                if !has_recordings {
+                    files::make_folder(&fresh.join(RECORDINGS))?;
+                }
+                FILES.iter().zip(contents).try_for_each(|(name, content)| files::write(&fresh.join(name), content))
+            },
         )?;
-        let recordings = self.folder.join(RECORDINGS);
-        fs::create_dir_all(&recordings).map_err(|e| Error::in_file(&recordings, format!("cannot be written: {e}")))?;
         Ok(format!(
             "{}: fill in robot.toml (and scene.toml, if there are walls), put what the robot recorded into {RECORDINGS}, then:\n{}",
             self.folder.display(),

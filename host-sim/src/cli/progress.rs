@@ -80,5 +80,8 @@ fn shown(length: u64, template: &str) -> ProgressBar {
 fn add(bar: &ProgressBar, template: &str) {
     let bar = BARS.add(bar.clone());
     bar.set_style(ProgressStyle::with_template(template).expect("the template is right"));
-    bar.enable_steady_tick(Duration::from_secs(1));
+    // It takes a thread, and there may be none left: not where nobody sees it.
+    if !BARS.is_hidden() {
+        bar.enable_steady_tick(Duration::from_secs(1));
+    }
 }

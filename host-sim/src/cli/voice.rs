@@ -44,10 +44,15 @@ pub fn meanwhile(what: &str) {
     }
 }
 
-/// A line without what moves a terminal's cursor: file names may hold anything.
+/// A line without what moves a terminal's cursor or turns text round: file names may hold anything.
 pub fn printable(line: &str) -> String {
-    let shown = |c: char| if c.is_control() { c.escape_default().to_string() } else { c.to_string() };
+    let shown = |c: char| if c.is_control() || is_unseen(c) { c.escape_default().to_string() } else { c.to_string() };
     line.chars().map(shown).collect()
+}
+
+/// Marks of direction and of joining, which are not seen and change what is seen beside them.
+fn is_unseen(c: char) -> bool {
+    matches!(c, '\u{200B}'..='\u{200F}' | '\u{2028}'..='\u{202E}' | '\u{2060}'..='\u{206F}' | '\u{FEFF}')
 }
 
 /// Writes a line to standard error. That nobody can read it ends nothing.

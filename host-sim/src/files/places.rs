@@ -4,7 +4,8 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use super::write::{behind_links, folder_of, is_standard_output, is_stream, no_folder, try_folder};
+use super::leftovers;
+use super::write::{behind_links, folder_of, is_standard_output, is_stream, no_folder, reason, try_folder};
 use crate::error::{Error, Result};
 
 /// What a file is that a command writes.
@@ -110,7 +111,8 @@ impl Output {
         if !home.is_dir() {
             return failed(no_folder(home));
         }
-        try_folder(home).or_else(|e| failed(e.kind().to_string()))
+        leftovers::clear(home);
+        try_folder(home).or_else(|e| failed(reason(&e)))
     }
 
     fn loses_nothing(&self, inputs: &[PathBuf]) -> Result<()> {

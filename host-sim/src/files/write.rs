@@ -5,8 +5,9 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use tempfile::TempDir;
-
+use super::leftovers;
+use super::temporary::{TemporaryFile, is_temporary};
+use super::workshop::Workshop;
 use crate::error::{Error, Result};
 
 /// What stands for standard output, as a path.
@@ -36,7 +37,7 @@ pub fn is_stream(path: &Path) -> bool {
 }
 
 /// Writes a file under a temporary name beside `path`, then renames it. A file that is there already keeps its mode, and
-/// a link to it stays; a stream is written as it stands.
+/// a link to it stays; a stream is written as it stands. Of several processes that write one file, the last stays.
 ///
 /// # Errors
 /// When the folder is missing or not writable; `path` is then as it was.
@@ -48,16 +49,24 @@ pub fn write(path: &Path, content: impl AsRef<[u8]>) -> Result<()> {
         to_standard_output(content)
     } else if is_stream(path) {
         OpenOptions::new().append(true).open(path).and_then(|mut stream| stream.write_all(content))
+    } else if is_in_workshop(path) {
+        // It has no name yet that anybody looks for.
+        fs::write(path, content)
     } else {
         replace(&behind_links(path), content)
             .inspect(|()| log::info!("{}: {} bytes written", path.display(), content.len()))
     };
     written.map_err(|e| {
-        // The error's own text would name the temporary file.
         let folder = folder_of(path);
-        let why = if folder.is_dir() { e.kind().to_string() } else { no_folder(folder) };
+        let why = if folder.is_dir() { reason(&e) } else { no_folder(folder) };
         Error::in_file(path, format!("cannot be written: {why}"))
     })
+}
+
+/// What the system says, without the temporary path that is named by what makes those.
+pub fn reason(e: &io::Error) -> String {
+    let said = e.to_string();
+    said.split_once(" at path \"").map_or(said.clone(), |(why, _)| why.to_owned())
 }
 
 /// Writes to standard output. That nobody reads on is no error.
@@ -72,8 +81,22 @@ pub fn to_standard_output(content: &[u8]) -> io::Result<()> {
     }
 }
 
-/// Fills a folder under a temporary name, then moves what is in it to `path`. Of a folder that is there already, what
-/// `ours` holds for goes, and everything else stays.
+/// Makes a folder unless it is there, and clears it of what killed processes left.
+///
+/// # Errors
+/// When it cannot be made.
+pub fn make_folder(path: &Path) -> Result<()> {
+    if IS_LEFT.load(Ordering::Relaxed) {
+        return Ok(());
+    }
+    fs::create_dir_all(path).map_err(|e| Error::in_file(path, format!("cannot be made: {e}")))?;
+    leftovers::clear(path);
+    Ok(())
+}
+
+/// Fills a folder under a temporary name, then puts what is in it into `path`: all of it or nothing. Of a folder that is
+/// there already, what `ours` holds for goes, and everything else stays. Of several processes that fill a folder that was
+/// there, the last stays; one that is there only when it is complete is not replaced.
 ///
 /// # Errors
 /// What `fill` returns, or when the folder cannot be written.
@@ -81,16 +104,24 @@ pub fn write_folder(path: &Path, ours: impl Fn(&str) -> bool, fill: impl FnOnce(
     if IS_LEFT.load(Ordering::Relaxed) {
         return fill(path);
     }
-    let failed = |e: io::Error| Error::in_file(path, format!("cannot be written: {e}"));
+    let failed = |e: io::Error| Error::in_file(path, format!("cannot be written: {}", reason(&e)));
+    if is_in_workshop(path) {
+        fs::create_dir_all(path).map_err(failed)?;
+        return fill(path);
+    }
     let is_there = path.is_dir();
     // A folder may be a file system of its own, so that nothing can be renamed into it from beside it.
     let home = if is_there { path } else { folder_of(path) };
     fs::create_dir_all(home).map_err(failed)?;
-    let workshop = tempfile::tempdir_in(home).map_err(failed)?;
-    let fresh = workshop.path().join("new");
-    fs::create_dir(&fresh).map_err(failed)?;
-    fill(&fresh)?;
-    if is_there { exchange(path, &workshop, &fresh, ours) } else { fs::rename(&fresh, path) }.map_err(failed)
+    let workshop = Workshop::in_folder(home).map_err(failed)?;
+    let fresh = workshop.new_folder();
+    fill(&fresh).map_err(|e| e.moved(&fresh, path))?;
+    if is_there { workshop.exchange(ours) } else { fs::rename(&fresh, path) }.map_err(failed)
+}
+
+/// Whether a path lies in a folder that is being made and is put in its place as a whole.
+fn is_in_workshop(path: &Path) -> bool {
+    path.ancestors().any(is_temporary)
 }
 
 /// The folder in which a path lies.
@@ -114,41 +145,10 @@ pub fn behind_links(path: &Path) -> PathBuf {
 }
 
 fn replace(path: &Path, content: &[u8]) -> io::Result<()> {
-    let mut file = fresh_file().tempfile_in(folder_of(path))?;
-    file.write_all(content)?;
-    if let Ok(before) = fs::metadata(path) {
-        file.as_file().set_permissions(before.permissions())?;
-    }
-    file.persist(path)?;
-    Ok(())
-}
-
-/// A temporary file, which becomes the one that is written, is as readable as any new file.
-fn fresh_file() -> tempfile::Builder<'static, 'static> {
-    let mut builder = tempfile::Builder::new();
-    #[cfg(unix)]
-    {
-        use std::os::unix::fs::PermissionsExt;
-        builder.permissions(fs::Permissions::from_mode(0o666));
-    }
-    builder
-}
-
-/// Puts what is in `fresh` in place of what is ours in a folder.
-fn exchange(path: &Path, workshop: &TempDir, fresh: &Path, ours: impl Fn(&str) -> bool) -> io::Result<()> {
-    let old = workshop.path().join("old");
-    fs::create_dir(&old)?;
-    for entry in fs::read_dir(path)? {
-        let name = entry?.file_name();
-        if path.join(&name) != workshop.path() && name.to_str().is_some_and(&ours) {
-            fs::rename(path.join(&name), old.join(&name))?;
-        }
-    }
-    for entry in fs::read_dir(fresh)? {
-        let name = entry?.file_name();
-        fs::rename(fresh.join(&name), path.join(&name))?;
-    }
-    Ok(())
+    let mut file = TemporaryFile::in_folder(folder_of(path))?;
+    file.write(content)?;
+    file.take_mode_of(path)?;
+    file.become_file(path)
 }
 
 /// Whether a file can be made in a folder.

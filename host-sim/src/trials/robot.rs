@@ -8,6 +8,7 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use crate::error::{Error, Result};
+use crate::files;
 use crate::workers;
 
 /// A robot that drives a controller and logs the run.
@@ -98,8 +99,8 @@ impl TrialRobot for AskRobot {
         if path.as_os_str().is_empty() {
             return Err(Error::new("no log was named"));
         }
-        fs::copy(&path, call.out).map_err(|e| Error::in_file(&path, format!("cannot be read: {e}")))?;
-        Ok(())
+        let log = fs::read(&path).map_err(|e| Error::in_file(&path, format!("cannot be read: {e}")))?;
+        files::write(call.out, log)
     }
 }
 

@@ -7,7 +7,8 @@ use mindgap_host_sim::logs::{Logs, Row};
 use mindgap_tests::command::Workshop;
 use mindgap_tests::ros_bags;
 
-const STREAMS: &str = "import streams command.csv track.csv --robot robot.toml --out logs --json report.json";
+pub(super) const STREAMS: &str =
+    "import streams command.csv track.csv --robot robot.toml --out logs --json report.json";
 const ROBOT: &str = "wheel_diameter_cm = 6\ntrack_cm = 20\nbody_radius_cm = 12\nstep_ms = 400\nfull_speed_cm_s = 50\n";
 const SENSOR: &str = "[ultrasonic]\nx_cm = 0\ny_cm = 0\nyaw_deg = 0\nmin_cm = 4\nmax_cm = 250\n";
 /// Commands change after so many samples.
@@ -68,6 +69,11 @@ fn workshop(commands: &str, track: &str) -> Workshop {
     workshop.write("command.csv", commands);
     workshop.write("track.csv", track);
     workshop
+}
+
+/// A folder with what [`STREAMS`] reads.
+pub(super) fn with_streams() -> Workshop {
+    workshop(&commands(), &track())
 }
 
 fn rows(workshop: &Workshop) -> Vec<Row> {

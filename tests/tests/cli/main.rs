@@ -13,6 +13,10 @@ mod demo;
 mod determinism;
 mod diagnose_logs;
 mod drive;
+#[cfg(target_os = "linux")]
+mod ended;
+#[cfg(target_os = "linux")]
+mod failing_disks;
 mod faults;
 mod fleet;
 mod general;

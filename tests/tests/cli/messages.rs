@@ -72,7 +72,7 @@ fn the_same_is_told_once() {
 #[test]
 fn names_of_files_move_no_cursor() {
     let workshop = Workshop::with_logs();
-    let name = "lo\u{1b}[2Jgs\n";
+    let name = "lo\u{1b}[2Jg\u{202e}s\n";
     fs::rename(workshop.path().join("logs"), workshop.path().join(name)).unwrap();
     let mut command = workshop.command("check");
     let done = command.arg(name).output().unwrap();
@@ -81,7 +81,7 @@ fn names_of_files_move_no_cursor() {
     let done = command.output().unwrap();
     let told = String::from_utf8(done.stderr).unwrap();
     assert!(
-        told.starts_with("mindgap: lo\\u{1b}[2Jgs\\n/robot.toml: cannot be read") && told.lines().count() == 1,
+        told.starts_with("mindgap: lo\\u{1b}[2Jg\\u{202e}s\\n/robot.toml: cannot be read") && told.lines().count() == 1,
         "{told}"
     );
 }

@@ -1,0 +1,55 @@
+//! What is fed with any bytes: every [reader](readers) of what users give, and [twins](twins), two ways to one result.
+//!
+//! A target panics where something is wrong. `tests/tests/fuzzing.rs` feeds them.
+
+pub mod mutation;
+mod readers;
+mod twins;
+
+use std::cell::RefCell;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use tempfile::TempDir;
+
+use crate::command::workspace;
+
+/// Something that takes any bytes.
+pub struct Target {
+    /// Its name, and that of the folder of its corpus.
+    pub name: &'static str,
+    /// Takes them.
+    ///
+    /// # Panics
+    /// When something is wrong with what is tested.
+    pub feed: fn(&[u8]),
+}
+
+/// All of them.
+pub fn targets() -> impl Iterator<Item = &'static Target> {
+    readers::TARGETS.iter().chain(twins::TARGETS)
+}
+
+/// Where a target's small inputs lie, which are kept.
+pub fn corpus(target: &Target) -> PathBuf {
+    workspace().join("fuzz/corpus").join(target.name)
+}
+
+/// Hands bytes as a file to what reads files.
+fn as_file<T>(name: &str, bytes: &[u8], read: impl FnOnce(&Path) -> T) -> T {
+    thread_local! {
+        static FOLDER: RefCell<Option<TempDir>> = const { RefCell::new(None) };
+    }
+    FOLDER.with_borrow_mut(|folder| {
+        let folder = folder.get_or_insert_with(|| in_memory().expect("a temporary folder"));
+        let path = folder.path().join(name);
+        fs::write(&path, bytes).expect("a file");
+        read(&path)
+    })
+}
+
+/// A temporary folder, in memory where the system has one.
+fn in_memory() -> std::io::Result<TempDir> {
+    let memory = Path::new("/dev/shm");
+    if memory.is_dir() { tempfile::tempdir_in(memory) } else { tempfile::tempdir() }
+}

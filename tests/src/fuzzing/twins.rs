@@ -1,0 +1,83 @@
+//! Two ways to one result: fixed point and floating point, many lanes and one.
+
+use std::array;
+use std::sync::LazyLock;
+
+use fixed::types::I16F16;
+use mindgap_core::controller::{Controller, TUPLES, Tuple, When};
+use mindgap_core::network::Network;
+use mindgap_host_sim::built_in_robot::{default_robot, four_obstacles, record, training_room};
+use mindgap_host_sim::learn::train::{TABLE_ONE, Trainer, train};
+use mindgap_host_sim::simulator::environment::Environment;
+use mindgap_host_sim::simulator::fixed_point::Quantised;
+use mindgap_host_sim::simulator::rollout::{RolloutRequest, SensorModel};
+use mindgap_host_sim::simulator::{Noise, Simulator};
+
+use super::Target;
+use crate::plausible_networks::{PlausibleNetworks, plausible_networks};
+
+pub const TARGETS: &[Target] =
+    &[Target { name: "fixed-and-float", feed: fixed_and_float }, Target { name: "lanes-and-one", feed: lanes_and_one }];
+
+/// Bytes of a controller: six tuples of a left and a right command, a test and a threshold.
+const CONTROLLER_BYTES: usize = 4 * TUPLES;
+/// Rooms for so many steps, and no more.
+const MOST_STEPS: u16 = 20;
+
+/// Networks in fixed point answer as in floating point, within the bound that is promised for them.
+fn fixed_and_float(bytes: &[u8]) {
+    static NETWORKS: LazyLock<PlausibleNetworks> = LazyLock::new(|| plausible_networks(1));
+    let numbers: Vec<i16> = bytes.as_chunks::<2>().0.iter().map(|pair| i16::from_le_bytes(*pair)).collect();
+    let Some(&[a, b, c, d]) = numbers.first_chunk() else { return };
+    let commands = [a, b, c, d].map(|number| I16F16::from_num(100.0 * f64::from(number) / 32768.0));
+    let share = |number: i16| f64::from(number.unsigned_abs()) / 32768.0;
+    let facing = [255.0 * share(a), 90.0 * share(b)].map(I16F16::from_num);
+    let PlausibleNetworks { turn, forward, lateral, echo_probability, echo_value } = &*NETWORKS;
+    [turn, forward, lateral].into_iter().for_each(|network| answers_alike(network, commands));
+    [echo_probability, echo_value].into_iter().for_each(|network| answers_alike(network, facing));
+}
+
+fn answers_alike<const N: usize>(network: &Network<f32, N>, inputs: [I16F16; N]) {
+    let Quantised { network: fixed, error_bound } = Quantised::new(network).expect("a network that fits");
+    let float = f64::from(network.evaluate(inputs.map(|input| input.to_num::<f32>())));
+    let fixed = fixed.evaluate(inputs).value.to_num::<f64>();
+    // Floating point rounds too, by much less.
+    assert!((fixed - float).abs() <= 1.5 * error_bound + 1e-3, "{fixed} and {float} at {inputs:?}");
+}
+
+/// A run comes out the same beside others as alone.
+fn lanes_and_one(bytes: &[u8]) {
+    static SIMULATOR: LazyLock<Simulator> = LazyLock::new(|| {
+        let logs = record(&default_robot(), &training_room(), 12, 40, &[], 1).expect("room to drive");
+        train(&logs, &Trainer::Fast, &TABLE_ONE, 1, |_| {}).expect("networks")
+    });
+    let controllers: Vec<Controller> = bytes.as_chunks().0.iter().take(20).map(controller).collect();
+    let scene = four_obstacles();
+    let environment = Environment::new(&SIMULATOR, &scene, scene.starts[0], Noise::Learned);
+    let environment = environment.expect("a room to drive in").with_beam(&SIMULATOR);
+    let motions: Vec<_> = controllers.iter().map(|controller| environment.motions(controller)).collect();
+    let requests: Vec<RolloutRequest> = controllers
+        .iter()
+        .zip(&motions)
+        .enumerate()
+        .map(|(number, (controller, motions))| RolloutRequest {
+            controller,
+            motions,
+            sensor: if number % 3 == 0 { SensorModel::Beam } else { SensorModel::Networks },
+            seed: number as u64,
+        })
+        .collect();
+    for (request, outcome) in requests.iter().zip(environment.run(&requests)) {
+        assert_eq!(environment.trace(*request).0, outcome);
+    }
+}
+
+fn controller(bytes: &[u8; CONTROLLER_BYTES]) -> Controller {
+    let tuple = |place: usize| Tuple {
+        left: bytes[4 * place].cast_signed().clamp(-100, 100),
+        right: bytes[4 * place + 1].cast_signed().clamp(-100, 100),
+        when: if bytes[4 * place + 2] % 2 == 0 { When::Larger } else { When::Smaller },
+        threshold_cm: i16::from(bytes[4 * place + 3]),
+    };
+    Controller { step_ms: 400, max_steps: MOST_STEPS, tuples: array::from_fn(tuple) }
+}
