@@ -95,5 +95,5 @@ fn task((mut command, mut matches): (&Command, &ArgMatches), inputs: &[PathBuf],
             }
         }
     }
-    Task::new(names.join(" "), arguments, inputs, outputs)
+    Ok(Task::new(names.join(" "), arguments, inputs, outputs))
 }

@@ -144,9 +144,9 @@ impl<'s> MotionNetworks<'s> {
         let (first, steady) = (std::array::from_fn(motion), std::array::from_fn(|t| motion(TUPLES + t)));
         let mut table = MotionTable { first, steady, bias: [[0.0; 3]; TUPLES] };
         if let Some(member) = self.member {
-            for tuple in 0..TUPLES {
-                let [left, right, ..] = steps[tuple];
-                table.add(tuple, self.bias(member, [left, right]), first_step(member, &steps[tuple]));
+            for (tuple, first) in steps[..TUPLES].iter().enumerate() {
+                let [left, right, ..] = *first;
+                table.add(tuple, self.bias(member, [left, right]), first_step(member, first));
             }
         }
         table

@@ -212,7 +212,7 @@ mod tests {
     use super::*;
 
     fn task(seed: u64) -> Task {
-        Task::new("evolve".into(), BTreeMap::from([("--seed".into(), seed.to_string())]), &[], &[]).unwrap()
+        Task::new("evolve".into(), BTreeMap::from([("--seed".into(), seed.to_string())]), &[], &[])
     }
 
     fn opened(path: &Path, told: &mut Vec<String>) -> Result<Checkpoint> {

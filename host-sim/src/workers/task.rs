@@ -7,8 +7,6 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
-use crate::error::{Error, Result};
-
 /// A call of a command.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Task {
@@ -20,19 +18,11 @@ pub struct Task {
 }
 
 impl Task {
-    /// A command with its arguments by name. Of what it reads, `outputs` and hidden files count for nothing.
-    ///
-    /// # Errors
-    /// When what it reads cannot be read.
-    pub fn new(
-        command: String,
-        arguments: BTreeMap<String, String>,
-        inputs: &[PathBuf],
-        outputs: &[PathBuf],
-    ) -> Result<Self> {
-        let digested = inputs.iter().map(|input| Ok((input.display().to_string(), digest(input, outputs)?)));
-        let inputs = digested.collect::<Result<_>>()?;
-        Ok(Task { version: env!("CARGO_PKG_VERSION").into(), command, arguments, inputs })
+    /// A command with its arguments by name. Of what it reads, `outputs` and hidden files count for nothing, and what cannot
+    /// be read is for the command to tell.
+    pub fn new(command: String, arguments: BTreeMap<String, String>, inputs: &[PathBuf], outputs: &[PathBuf]) -> Self {
+        let digested = inputs.iter().map(|input| (input.display().to_string(), digest(input, outputs)));
+        Task { version: env!("CARGO_PKG_VERSION").into(), command, arguments, inputs: digested.collect() }
     }
 
     /// The first thing in which this one differs from another, in words.
@@ -56,10 +46,15 @@ impl Task {
 }
 
 /// SHA-256 of a file, or of a folder's files and their names.
-fn digest(path: &Path, except: &[PathBuf]) -> Result<String> {
+fn digest(path: &Path, except: &[PathBuf]) -> String {
     let mut digest = Sha256::new();
-    add(path, except, &mut digest).map_err(|e| Error::in_file(path, format!("cannot be read: {e}")))?;
-    Ok(digest.finalize().iter().map(|byte| format!("{byte:02x}")).collect())
+    add_readable(path, except, &mut digest);
+    digest.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+/// Adds what can be read, and of the rest why it cannot.
+fn add_readable(path: &Path, except: &[PathBuf], digest: &mut Sha256) {
+    add(path, except, digest).unwrap_or_else(|e| digest.update(e.kind().to_string()));
 }
 
 fn add(path: &Path, except: &[PathBuf], digest: &mut Sha256) -> std::io::Result<()> {
@@ -73,8 +68,7 @@ fn add(path: &Path, except: &[PathBuf], digest: &mut Sha256) -> std::io::Result<
         let (path, name) = (entry.path(), entry.file_name());
         if !name.as_encoded_bytes().starts_with(b".") && !except.contains(&path) {
             digest.update(Sha256::digest(name.as_encoded_bytes()));
-            // What cannot be read, as one robot's folder of many, the command itself tells.
-            add(&path, except, digest).unwrap_or_else(|e| digest.update(e.kind().to_string()));
+            add_readable(&path, except, digest);
         }
     }
     Ok(())
@@ -86,7 +80,7 @@ mod tests {
 
     fn task(seed: &str, input: &Path) -> Task {
         let arguments = BTreeMap::from([("--seed".into(), seed.into())]);
-        Task::new("evolve".into(), arguments, &[input.to_owned()], &[input.join("answers")]).unwrap()
+        Task::new("evolve".into(), arguments, &[input.to_owned()], &[input.join("answers")])
     }
 
     #[test]

@@ -76,7 +76,7 @@ fn controller(bytes: &[u8; CONTROLLER_BYTES]) -> Controller {
     let tuple = |place: usize| Tuple {
         left: bytes[4 * place].cast_signed().clamp(-100, 100),
         right: bytes[4 * place + 1].cast_signed().clamp(-100, 100),
-        when: if bytes[4 * place + 2] % 2 == 0 { When::Larger } else { When::Smaller },
+        when: if bytes[4 * place + 2].is_multiple_of(2) { When::Larger } else { When::Smaller },
         threshold_cm: i16::from(bytes[4 * place + 3]),
     };
     Controller { step_ms: 400, max_steps: MOST_STEPS, tuples: array::from_fn(tuple) }

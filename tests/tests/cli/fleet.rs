@@ -24,7 +24,7 @@ fn workshop() -> Workshop {
     WORKSHOP.copy()
 }
 
-const WEAK: &str = "--effect motor_asymmetry=0.3";
+const WEAK: &str = "--effect motor_asymmetry=0.25";
 
 /// The files of a folder by their paths in it.
 fn files(workshop: &Workshop, folder: &str) -> Vec<(PathBuf, Vec<u8>)> {

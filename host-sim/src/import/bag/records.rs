@@ -33,7 +33,7 @@ pub enum Ending {
 }
 
 /// No record, and no chunk of them, is larger: recorders write chunks of a few megabytes.
-const LARGEST: usize = 1 << 28;
+const LARGEST: usize = 1 << 26;
 /// A file holds at most this many times its size: what robots log shrinks by a factor of ten.
 const MOST_EXPANDED: u64 = 256;
 /// Lengths of an opcode and of a record's length.
