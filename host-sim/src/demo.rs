@@ -171,8 +171,10 @@ impl<W: Fn(Stage)> DemoRun<'_, W> {
     /// simulates and drives it.
     fn start(&self, start: usize, [evolution, simulation, trial]: [u64; 3]) -> Result<Trial> {
         let pose = self.scene.starts[start];
-        let environment =
-            &Environment::new(self.simulator, self.scene, pose, Noise::Learned)?.with_beam(self.simulator);
+        let environment = Environment::new(self.simulator, self.scene, pose, Noise::Learned)?.with_beam(self.simulator);
+        // The robot in the middle of those that the logs leave possible, as for `mindgap evolve`.
+        let robots = self.simulator.robots(0, evolution);
+        let environment = &robots.iter().fold(environment, |any, robots| any.of_robot(&robots.mean));
         let target_cm = self.scene.target_cm.ok_or_else(|| Error::new("the scene has no target"))?;
         let decoder = GenotypeDecoder::new(self.simulator, MAX_STEPS);
         let seed = derive(evolution, &[start as u64]);

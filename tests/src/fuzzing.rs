@@ -1,4 +1,4 @@
-//! What is fed with any bytes: every [reader](readers) of what users give, and [twins](twins), two ways to one result.
+//! What is fed with any bytes: every reader of what users give, and twins, two ways to one result.
 //!
 //! A target panics where something is wrong. `tests/tests/fuzzing.rs` feeds them.
 
