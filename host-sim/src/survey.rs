@@ -68,7 +68,7 @@ impl Survey {
 }
 
 /// What so many rows of random driving do not excite, more of them hardly would; each takes most of a kilobyte to judge.
-const ENOUGH_ROWS: usize = 100_000;
+const ENOUGH_ROWS: usize = 20_000;
 /// So many runs are not made fewer.
 const ENOUGH_RUNS: usize = 100;
 
