@@ -32,6 +32,8 @@ pub struct Measured {
     pub effect_nats: f64,
     /// The most that the omnibus residual model gains in a channel, likewise; nothing where effects are sought.
     pub remainder_nats: f64,
+    /// Where there is one effect, and it was found first: the share of what it explains that another could feign.
+    pub feigned_share: Option<f64>,
     /// The effect that was named first; empty when none was.
     pub first: String,
     /// The share of what could be explained that the effects explain.
@@ -82,7 +84,11 @@ fn with_effects(bench: &Bench, number: usize, calibration: Calibration) -> Resul
     let (case, baseline) = bench.case(number)?;
     let method = Method { calibration, ..Method::default() };
     let found = confirmed(baseline, &case.logs, method)?;
-    let measured = Measured::of(&case, found.none.log_likelihood.motion.len(), found.chosen.gain_over(&found.none));
+    let alone = found.first.filter(|first| matches!(&case.effects[..], [one] if one.effect.id() == first.effect));
+    let measured = Measured {
+        feigned_share: alone.map(|first| first.feigned_share),
+        ..Measured::of(&case, found.none.log_likelihood.motion.len(), found.chosen.gain_over(&found.none))
+    };
     let ids = found.chosen.ids();
     // The effect with the least doubt is the one that is named first.
     let rivals = (0..ids.len()).map(|place| (place, found.likelihoods_in_place_of(place, &calibration)));
@@ -110,6 +116,7 @@ impl Measured {
             rows,
             effect_nats: effect.broad_nats,
             remainder_nats: 0.0,
+            feigned_share: None,
             first: String::new(),
             explained_fraction: 0.0,
             likelihood_of_truth: 0.0,

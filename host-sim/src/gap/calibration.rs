@@ -23,6 +23,9 @@ pub struct Calibration {
     pub effect_nats: f64,
     /// The same for what the omnibus residual model explains in a channel, and for a wider scatter.
     pub remainder_nats: f64,
+    /// This share of what effects explain in a channel is within reach of forms that are not quite right: a further effect
+    /// has to gain as much more there.
+    pub further_share: f64,
     /// What calibration does not touch.
     pub judgement: Judgement,
 }
@@ -43,9 +46,6 @@ pub struct Judgement {
     pub vague_factor: f64,
     /// An effect for which more others can stand is no cause that anybody could act on: the gap stays unknown.
     pub most_ambiguous: usize,
-    /// A further effect on the same stage has to gain this share of what is explained already: less is within reach of a
-    /// variant whose form is not quite right.
-    pub further_share: f64,
     /// Most effects that are named together: real robots differ in several ways at once.
     pub most_effects: usize,
     /// Scatter counts from this multiple of the simulator's on: five standard errors of a standard deviation that is
@@ -103,7 +103,6 @@ impl Judgement {
         most_rivals: 3,
         vague_factor: 2.0,
         most_ambiguous: 5,
-        further_share: 0.08,
         most_effects: 4,
         scatter_ratio: 1.12,
     };
@@ -129,10 +128,18 @@ mod tests {
     #[test]
     fn thresholds_are_possible() {
         let Calibration {
-            rows, effect_nats, remainder_nats, adequate, adequacy_width, temperature, accuracy_cap, ..
+            rows,
+            effect_nats,
+            remainder_nats,
+            adequate,
+            adequacy_width,
+            temperature,
+            accuracy_cap,
+            further_share,
+            ..
         } = Calibration::shipped();
         assert!(effect_nats > 0.0 && remainder_nats > 0.0);
-        assert!([adequate, accuracy_cap].iter().all(|share| (0.0..=1.0).contains(share)));
+        assert!([adequate, accuracy_cap, further_share].iter().all(|share| (0.0..=1.0).contains(share)));
         assert!(rows > 0.0 && adequacy_width > 0.0 && temperature > 0.0);
     }
 

@@ -1,6 +1,7 @@
 //! Comparison: which effects together explain the gap best, and what could stand in place of each.
 
 use super::calibration::Calibration;
+use super::channel::Channel;
 use super::fit::{FitContext, Fitted, Gain, best_of_each};
 use super::omnibus::ResidualFit;
 use super::remainder::{Remainder, remainders};
@@ -15,8 +16,10 @@ pub struct Comparison {
     pub chosen: Fitted,
     /// For each of the chosen effects the fits with it or another in its place, best first.
     pub rivals: Vec<Vec<Fitted>>,
-    /// What each of the chosen effects gains beside the others, nats.
-    pub own_nats: Vec<f64>,
+    /// What each of the chosen effects gains beside the others.
+    pub own: Vec<OwnGain>,
+    /// What could be added to the effect that was found first.
+    pub first: Option<FirstFound>,
     /// What anything could explain beyond no effect, by channel.
     pub beyond_none: Vec<Remainder>,
     /// What anything could explain beyond the chosen effects, by channel.
@@ -25,6 +28,26 @@ pub struct Comparison {
     pub scatter: Vec<WiderScatter>,
 }
 
+/// What one effect gains beside others.
+#[derive(Clone, Copy, Debug)]
+pub struct OwnGain {
+    /// All of it, nats.
+    pub nats: f64,
+    /// How much of it is no more than what forms of the others that are not quite right could leave over, nats.
+    pub feigned_nats: f64,
+}
+
+/// The effect that a search finds first.
+#[derive(Clone, Copy, Debug)]
+pub struct FirstFound {
+    /// Its id.
+    pub effect: &'static str,
+    /// The [`further_share`](Calibration::further_share) from which on nothing would be added to it.
+    pub feigned_share: f64,
+}
+
+/// Steps in which the share is sought that could be feigned: half a percent each.
+const SHARES: usize = 200;
 /// Effects whose gains are told to whoever asks.
 const TOLD: usize = 5;
 
@@ -41,8 +64,10 @@ impl Comparison {
         }
         let mut chosen = singles.iter().find(counts).unwrap_or(&none).clone();
         let mut rivals = vec![singles.clone()];
+        let mut first = None;
         while !chosen.ids().is_empty() && chosen.ids().len() < calibration.judgement.most_effects {
             let further = best_of_each(chosen.with_each(Some(&alone), context));
+            first = first.or_else(|| FirstFound::of(&chosen, &further, &none, calibration));
             let Some(next) = further.into_iter().find(|f| is_worth_adding(f, &chosen, &none, calibration)) else {
                 break;
             };
@@ -67,9 +92,10 @@ impl Comparison {
         }
         let beyond_none = remainders(&none, context);
         let beyond_chosen = remainders(&chosen, context);
-        let own = |place: usize| chosen.gain_over(&chosen.without(place, context)).nats;
-        let own_nats = (0..chosen.ids().len()).map(own).collect();
-        Comparison { none, chosen, rivals, own_nats, beyond_none, beyond_chosen, scatter: Vec::new() }
+        let own =
+            |place: usize| OwnGain::of(&chosen, &chosen.without(place, context), &none, calibration.further_share);
+        let own = (0..chosen.ids().len()).map(own).collect();
+        Comparison { none, chosen, rivals, own, first, beyond_none, beyond_chosen, scatter: Vec::new() }
     }
 
     /// Given effects, without a search.
@@ -80,7 +106,8 @@ impl Comparison {
             none: Fitted::none(context),
             chosen,
             rivals: Vec::new(),
-            own_nats: Vec::new(),
+            own: Vec::new(),
+            first: None,
             beyond_none: Vec::new(),
             beyond_chosen,
             scatter: Vec::new(),
@@ -110,14 +137,9 @@ impl Comparison {
     /// How probable it is that an effect is there beside the others, and does not just mend what is not quite right with their
     /// forms: its odds are those of what it gains to what it has to gain to be added at all.
     pub fn probability_beside_others(&self, place: usize, calibration: &Calibration) -> f64 {
-        let Some(own) = self.own_nats.get(place).filter(|_| self.own_nats.len() > 1) else { return 1.0 };
-        let candidates = &self.chosen.hypothesis.candidates;
-        let this = candidates[place].variant;
-        let mut others = candidates.iter().enumerate().filter(|(other, _)| *other != place).map(|(_, c)| c.variant);
-        let share = calibration.judgement.further_share * self.chosen.gain_over(&self.none).nats;
-        let shared = others.any(|other| other.moves() && this.moves() || other.senses() && this.senses());
-        let least = if shared { calibration.effect_nats.max(share) } else { calibration.effect_nats };
-        own.max(0.0) / (own.max(0.0) + least)
+        let Some(own) = self.own.get(place).filter(|_| self.own.len() > 1) else { return 1.0 };
+        let gained = own.nats.max(0.0);
+        gained / (gained + calibration.effect_nats + own.feigned_nats)
     }
 
     /// The best fit in which one of the chosen effects is missing.
@@ -151,14 +173,40 @@ fn gain_alone(single: &Fitted, singles: &[Fitted], none: &Fitted, calibration: &
     Gain { nats: gain.nats / divisor, broad_nats: gain.broad_nats / divisor, error: gain.error / divisor }
 }
 
+impl OwnGain {
+    /// What `fit` gains over the same effects without one of them. In each channel this share of what those explain there
+    /// could be had by a better form of theirs; where they explain nothing, nothing could.
+    fn of(fit: &Fitted, others: &Fitted, none: &Fitted, share: f64) -> Self {
+        let feigned = Channel::ALL.iter().map(|channel| {
+            let nats = |fit: &Fitted| fit.log_likelihood.channel(*channel).iter().sum::<f64>();
+            let explained = (nats(others) - nats(none)).max(0.0);
+            (nats(fit) - nats(others)).clamp(0.0, share * explained)
+        });
+        OwnGain { nats: fit.gain_over(others).nats, feigned_nats: feigned.sum() }
+    }
+}
+
+impl FirstFound {
+    /// The first effect, with all that could be added to it; none where several are chosen.
+    fn of(chosen: &Fitted, further: &[Fitted], none: &Fitted, calibration: &Calibration) -> Option<Self> {
+        let &[effect] = chosen.ids().as_slice() else { return None };
+        let adds = |share: &f64| {
+            let calibration = Calibration { further_share: *share, ..*calibration };
+            further.iter().any(|fit| is_worth_adding(fit, chosen, none, &calibration))
+        };
+        let shares = (0..SHARES).map(|step| step as f64 / SHARES as f64);
+        Some(FirstFound {
+            effect,
+            feigned_share: shares.take_while(adds).last().map_or(0.0, |s| s + 1.0 / SHARES as f64),
+        })
+    }
+}
+
 /// A fit at a bound is no finding: the likelihood would rise beyond what is physically possible.
 fn is_worth_adding(fit: &Fitted, so_far: &Fitted, none: &Fitted, calibration: &Calibration) -> bool {
-    if !fit.at_bound(fit.ids().len() - 1).is_empty() {
-        return false;
-    }
-    let least = calibration.judgement.further_share * so_far.gain_over(none).nats;
-    let beside = calibration.effect_nats.max(least);
-    fit.gain_over(so_far).passes(if fit.shares_a_stage() { beside } else { calibration.effect_nats })
+    let at_bound = !fit.at_bound(fit.ids().len() - 1).is_empty();
+    let feigned = OwnGain::of(fit, so_far, none, calibration.further_share).feigned_nats;
+    !at_bound && fit.gain_over(so_far).less(feigned).passes(calibration.effect_nats)
 }
 
 /// How many effects do nearly as well in the place of one of the chosen.

@@ -13,7 +13,7 @@ pub fn confirm(mut found: Comparison, context: &FitContext, hold_out: Option<&Ob
         let gained = judged(&found.chosen) - judged(&found.none);
         if !found.chosen.ids().is_empty() && gained < context.calibration.judgement.strong_nats {
             found.chosen = found.none.clone();
-            (found.rivals, found.own_nats) = (Vec::new(), Vec::new());
+            (found.rivals, found.own) = (Vec::new(), Vec::new());
             found.beyond_chosen = remainders(&found.none, context);
         }
         let hold = |remainders: Vec<Remainder>, beneath: &Fitted| {

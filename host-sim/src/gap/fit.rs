@@ -170,13 +170,6 @@ impl Fitted {
         [(self.values[parameter] - reach).max(low), (self.values[parameter] + reach).min(high)]
     }
 
-    /// Whether the effect that was added last touches a stage that others touch.
-    pub fn shares_a_stage(&self) -> bool {
-        let Some((last, others)) = self.hypothesis.candidates.split_last() else { return false };
-        let last = last.variant;
-        others.iter().any(|c| c.variant.moves() && last.moves() || c.variant.senses() && last.senses())
-    }
-
     /// The reported parameters of one of its effects that lie at a bound.
     pub fn at_bound(&self, place: usize) -> Vec<&'static str> {
         let parameters = self.hypothesis.candidates[place].variant.parameters.iter().zip(self.values_of(place));
@@ -274,13 +267,18 @@ impl Gain {
 
     /// The gain of each block, together.
     pub fn of(by_block: &[f64]) -> Self {
+        Gain::without_best(by_block, by_block.len().div_ceil(LEFT_OUT))
+    }
+
+    /// The same where so many of the best blocks are left out of the broad gain.
+    pub fn without_best(by_block: &[f64], left_out: usize) -> Self {
         let n = by_block.len() as f64;
         let nats: f64 = by_block.iter().sum();
         let mean = nats / n;
         let variance = by_block.iter().map(|d| (d - mean) * (d - mean)).sum::<f64>() / (n - 1.0).max(1.0);
         let mut ascending = by_block.to_vec();
         ascending.sort_by(f64::total_cmp);
-        let kept = by_block.len() - by_block.len().div_ceil(LEFT_OUT);
+        let kept = by_block.len().saturating_sub(left_out);
         Gain { nats, broad_nats: ascending[..kept].iter().sum(), error: (n * variance).sqrt() }
     }
 

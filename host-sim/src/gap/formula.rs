@@ -113,7 +113,7 @@ fn of(channel: Channel, beneath: &Fitted, context: &FitContext, hold_out: Option
     let values: Vec<f64> = rows.iter().map(|row| row.1.clamp(-bound, bound)).collect();
     let folds: Vec<usize> = rows.iter().map(|row| row.0.block % FOLDS).collect();
     let response = Response { values: &values, folds: &folds, least_scatter };
-    let sum = pursue(&terms, &response, &context.calibration.judgement)?;
+    let sum = pursue(&terms, &response, &context.calibration)?;
     let definition = definition(channel, key, &terms, &sum);
     let effect = own::effect(&definition).ok()?;
     let fitted = beneath.with(Candidate { effect: effect.id, variant: effect.variants.first()? }, context);

@@ -13,7 +13,7 @@ use super::channel::Channel;
 use super::fit::{FitContext, Fitted, Gain};
 use crate::effects::chain::EffectChain;
 use crate::evaluation::observations::{FEWEST_BLOCKS, Observations};
-use basis::Basis;
+use basis::{Basis, Circumstances};
 
 /// What the rest of a channel follows beyond a fit.
 pub struct ResidualFit {
@@ -35,16 +35,17 @@ enum Law {
     EchoValue(sonar::Spread),
 }
 
-/// A fitted response surface.
+/// A fitted response surface: what belongs to the cells of the floor, and over that what follows circumstances.
 struct Surface {
     basis: Basis,
+    on_floor: Vec<f64>,
     weights: Vec<f64>,
     /// What a prediction of one means in the channel's unit.
     unit: f64,
 }
 
-/// The covariates of a row, step by step: several where the ways of several steps are judged as one.
-type Steps = Vec<Vec<f64>>;
+/// The circumstances of a row, step by step: several where the ways of several steps are judged as one.
+type Steps = Vec<Circumstances>;
 
 /// As many folds as there are blocks of rows at least, so that none is empty.
 const FOLDS: usize = FEWEST_BLOCKS;
@@ -72,12 +73,13 @@ impl ResidualFit {
     }
 
     /// What it gains over the fit beneath, and how much that differs between runs, or for echoes between places: what
-    /// belongs to a place does not tell of others.
+    /// belongs to a place does not tell of others. What motion follows may be a spot of the floor that few runs cross; where
+    /// one crosses it as the others tell, it is no chance, so that no more than one run is left out.
     pub fn gain_over(&self, beneath: &Fitted, context: &FitContext) -> Gain {
         let without = beneath.log_likelihood.channel(self.channel);
         let gains: Vec<f64> = self.held_out.iter().zip(without).map(|(a, b)| a - b).collect();
         match &self.law {
-            Law::Motion(_) => Gain::of(&context.observations.by_block(&gains)),
+            Law::Motion(_) => Gain::without_best(&context.observations.by_block(&gains), 1),
             Law::EchoRate | Law::EchoValue(_) => Gain::of(&context.observations.by_place(&gains)),
         }
     }
@@ -155,24 +157,32 @@ impl Surface {
         response: impl Fn(usize, f64) -> f64,
     ) -> (Self, Vec<f64>) {
         let used: Vec<usize> = (0..covariates.len()).filter(|i| has_any(*i)).collect();
-        let first_steps: Vec<Vec<f64>> = used.iter().filter_map(|i| covariates[*i].first().cloned()).collect();
+        let first_steps: Vec<&Circumstances> = used.iter().filter_map(|i| covariates[*i].first()).collect();
         let basis = Basis::of(&first_steps);
-        let rows: Vec<Vec<f64>> = used.iter().map(|i| together(&basis, &covariates[*i])).collect();
         let folds: Vec<usize> = used.iter().map(|i| block(*i) % FOLDS).collect();
-        let fitted = ridge::fit(&rows, &folds, |place, prediction| response(used[place], prediction));
+        let columns = |of: fn(&Basis, &Circumstances) -> Vec<f64>| -> Vec<Vec<f64>> {
+            used.iter().map(|i| together(&covariates[*i], |step| of(&basis, step))).collect()
+        };
+        let floor = ridge::fit(&columns(Basis::on_floor), &folds, |place, p| response(used[place], p));
+        let over = |place: usize, p: f64| response(used[place], floor.held_out[place] + p) - floor.held_out[place];
+        let surface = ridge::fit(&columns(Basis::at), &folds, over);
         let mut predictions = vec![0.0; covariates.len()];
-        used.iter().zip(fitted.held_out).for_each(|(i, held_out)| predictions[*i] = unit * held_out);
-        (Surface { basis, weights: fitted.weights, unit }, predictions)
+        for (place, i) in used.iter().enumerate() {
+            predictions[*i] = unit * (floor.held_out[place] + surface.held_out[place]);
+        }
+        (Surface { basis, on_floor: floor.weights, weights: surface.weights, unit }, predictions)
     }
 
     fn at(&self, steps: &Steps) -> f64 {
-        self.unit * ridge::predicted(&together(&self.basis, steps), &self.weights)
+        let floor = ridge::predicted(&together(steps, |step| self.basis.on_floor(step)), &self.on_floor);
+        let surface = ridge::predicted(&together(steps, |step| self.basis.at(step)), &self.weights);
+        self.unit * (floor + surface)
     }
 }
 
 /// What is off adds up over steps that are judged as one, and is given a step as their scatter is.
-fn together(basis: &Basis, steps: &Steps) -> Vec<f64> {
-    let terms = steps.iter().map(|covariates| basis.at(covariates));
+fn together(steps: &Steps, terms: impl Fn(&Circumstances) -> Vec<f64>) -> Vec<f64> {
+    let terms = steps.iter().map(terms);
     let sum = terms.reduce(|sum, terms| sum.iter().zip(&terms).map(|(a, b)| a + b).collect()).unwrap_or_default();
     let share = 1.0 / (steps.len() as f64).sqrt();
     sum.into_iter().map(|term| share * term).collect()

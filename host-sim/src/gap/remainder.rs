@@ -30,7 +30,15 @@ pub fn most(fit: &Fitted, context: &FitContext) -> Gain {
 impl Remainder {
     fn of(channel: Channel, fit: &Fitted, context: &FitContext) -> Self {
         let model = ResidualFit::of(channel, fit, context);
-        let counts = model.gain_over(fit, context).passes(context.calibration.remainder_nats);
+        let gain = model.gain_over(fit, context);
+        log::info!(
+            "beyond {}, {} follows circumstances by {:.1} nats ({:.1} without the runs that gain most)",
+            if fit.ids().is_empty() { "the simulator".into() } else { fit.ids().join("+") },
+            channel.name(),
+            gain.nats,
+            gain.broad_nats
+        );
+        let counts = gain.passes(context.calibration.remainder_nats);
         let gains = model.gains_over(fit, context);
         let by_block = if counts { gains } else { vec![0.0; gains.len()] };
         Remainder { model, by_block }

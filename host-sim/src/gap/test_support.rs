@@ -79,6 +79,7 @@ pub fn baseline_with_sonar() -> Baseline<'static> {
     strength[0] = 6.0;
     let sonar = SonarModel {
         strength,
+        mirror_loss: None,
         bias: [0.0; 3],
         log_scatter: [0.0; 3],
         constant: [0.0, 3.0],
@@ -229,6 +230,7 @@ pub const CALIBRATION: Calibration = Calibration {
     accuracy_cap: 0.9,
     effect_nats: 5.0,
     remainder_nats: 5.0,
+    further_share: 0.08,
     judgement: Judgement::USUAL,
 };
 
@@ -263,7 +265,8 @@ pub fn comparison(effects: &[&'static Effect], gains: &[f64], context: &FitConte
         none,
         chosen,
         rivals: Vec::new(),
-        own_nats: Vec::new(),
+        own: Vec::new(),
+        first: None,
         beyond_none: Vec::new(),
         beyond_chosen: Vec::new(),
         scatter: Vec::new(),

@@ -68,9 +68,10 @@ fn motion(simulator: &Simulator, logs: &Logs) -> Option<MotionBias> {
 
 /// Bounds of the sonar's numbers: strengths (log-odds, far beyond the ten that make a certainty), bias (20 cm, 30 %), the
 /// logarithm of the scatter (0.2 to 20 cm), three probabilities (a sensor that errs more often is broken), the width of the
-/// beam (4 to 50 degrees to either side), and a fourth probability.
-const SONAR_BOUNDS: [Bounds; STRENGTHS + 11] = {
-    let mut bounds = [Bounds::new(-60.0, 60.0); STRENGTHS + 11];
+/// beam (4 to 50 degrees to either side), a fourth probability, and what a mirrored ray loses (log-odds: at six one in four hundred is left,
+/// which is less than logs show).
+const SONAR_BOUNDS: [Bounds; STRENGTHS + 12] = {
+    let mut bounds = [Bounds::new(-60.0, 60.0); STRENGTHS + 12];
     bounds[STRENGTHS] = Bounds::new(-20.0, 20.0);
     bounds[STRENGTHS + 1] = Bounds::new(-0.3, 0.3);
     bounds[STRENGTHS + 2] = Bounds::new(-10.0, 10.0);
@@ -82,16 +83,18 @@ const SONAR_BOUNDS: [Bounds; STRENGTHS + 11] = {
     bounds[STRENGTHS + 8] = Bounds::new(0.0, 0.3);
     bounds[STRENGTHS + 9] = Bounds::new(0.2, 2.5);
     bounds[STRENGTHS + 10] = Bounds::new(0.0, 0.3);
+    bounds[STRENGTHS + 11] = Bounds::new(-3.0, 6.0);
     bounds
 };
 /// Where the search begins: a beam that sees what is near and faces it.
-const SONAR_START: [f64; STRENGTHS + 11] = [
+const SONAR_START: [f64; STRENGTHS + 12] = [
     3.0, -2.0, 0.0, -1.0, 0.0, 0.0, 0.0, 0.0, -1.0, -1.0, // strengths
     0.0, 0.0, 0.0, // bias
     0.5, 0.1, 0.1, // scatter
     0.01, 0.01, 0.01, // constant, short, lost
     1.0,  // width
     0.01, // constant where no echo comes back
+    2.0,  // loss where a wall mirrors
 ];
 /// The search ends after this many iterations, or when one gains less than half a nat, a sixth of what is strong evidence.
 const SONAR_ROUNDS: usize = 40;
@@ -140,6 +143,7 @@ fn sonar_from(at: &[f64], value_cm: f64, range_cm: [f64; 2]) -> SonarModel {
         p_dropout: rest[8],
         fan_width: rest[9],
         p_constant_given_none: rest[10],
+        mirror_loss: Some(rest[11]),
         range_cm,
     }
 }

@@ -16,7 +16,7 @@ use super::draws::Draws;
 use super::residuals::LEVELS;
 use super::room::{Point, Room};
 use crate::lanes::{Lanes, WIDEST};
-use crate::sonar::fan::{AXIS, FAN_DEG, RAYS};
+use crate::sonar::fan::{AXIS, BEFORE_WALL_CM, DIRECT, FAN_DEG, MIRRORED};
 use crate::sonar::model::{CONSTANT_SCATTER_CM, FAR_CM, STRENGTHS};
 use crate::sonar::{MixingWeights, Perturbation, SonarModel};
 use crate::statistics::student;
@@ -24,7 +24,9 @@ use crate::statistics::student;
 /// A sensor with a fan of rays.
 #[derive(Clone, Debug)]
 pub struct Beam {
-    rays: [Ray; RAYS],
+    rays: [Ray; DIRECT],
+    /// Log-odds that a mirrored ray loses, in base two.
+    log2_mirror_loss: Option<f32>,
     bias: [f32; 3],
     /// Base-two logarithm of the scatter in cm: a constant, per metre, per 45 degrees.
     log2_scatter: [f32; 3],
@@ -93,7 +95,8 @@ impl Beam {
             }
         };
         Beam {
-            rays: FAN_DEG.map(ray),
+            rays: std::array::from_fn(|place| ray(FAN_DEG[place])),
+            log2_mirror_loss: reference.mirror_loss.map(|loss| (loss * log2_e) as f32),
             bias: reference.bias.map(|b| b as f32),
             log2_scatter: reference.log_scatter.map(|w| (w * log2_e) as f32),
             thresholds: [true, false].map(|arrives| Thresholds::new(reference, arrives)),
@@ -116,20 +119,36 @@ impl Beam {
     ) -> Heard<S> {
         let infinite = axis_deg.constant(f32::INFINITY);
         let (mut nearest_cm, mut incidence, mut axis_cm) = (infinite, axis_deg.zero(), infinite);
+        let mut hear = |ray: &Ray, distance_cm: Lanes<S>, alpha_deg: Lanes<S>, log2_loss: f32| {
+            let a = alpha_deg * alpha_deg.constant(1.0 / 45.0);
+            let odds = maths::exp2_within(ray.log2_odds(distance_cm, a, log2_loss));
+            let draw = draws.uniform();
+            // The chance is odds / (1 + odds).
+            let back = (draw + draw * odds).less(odds) & distance_cm.less(nearest_cm);
+            nearest_cm = back.select(distance_cm, nearest_cm);
+            incidence = back.select(a, incidence);
+        };
         for (place, ray) in self.rays.iter().enumerate() {
             let (c, s) = (axis_deg.constant(ray.cos), axis_deg.constant(ray.sin));
             let way = Point { x: axis.x * c - axis.y * s, y: axis.y * c + axis.x * s };
-            let met = room.cast(origin, way, axis_deg + axis_deg.constant(ray.offset_deg));
+            let way_deg = axis_deg + axis_deg.constant(ray.offset_deg);
+            let met = room.cast(origin, way, way_deg);
             if place == AXIS {
                 axis_cm = met.distance_cm;
             }
-            let a = met.alpha_deg * met.alpha_deg.constant(1.0 / 45.0);
-            let odds = maths::exp2_within(ray.log2_odds(met.distance_cm, a));
-            let draw = draws.uniform();
-            // The chance is odds / (1 + odds).
-            let back = (draw + draw * odds).less(odds) & met.distance_cm.less(nearest_cm);
-            nearest_cm = back.select(met.distance_cm, nearest_cm);
-            incidence = back.select(a, incidence);
+            hear(ray, met.distance_cm, met.alpha_deg, 0.0);
+            if let Some(log2_loss) = self.log2_mirror_loss
+                && MIRRORED.contains(&place)
+            {
+                let first_cm = met.distance_cm - met.distance_cm.constant(BEFORE_WALL_CM as f32);
+                let at = Point { x: origin.x + way.x * first_cm, y: origin.y + way.y * first_cm };
+                // Where nothing is met this is not a number, and nothing is heard.
+                let on_deg = met.normal_deg + met.normal_deg - way_deg + way_deg.constant(180.0);
+                let half_turns = on_deg * on_deg.constant(1.0 / 180.0);
+                let on = Point { x: maths::cos_pi(half_turns), y: maths::sin_pi(half_turns) };
+                let second = room.cast(at, on, on_deg);
+                hear(ray, first_cm + second.distance_cm, second.alpha_deg, log2_loss);
+            }
         }
         let affine = |w: [f32; 3], x: Lanes<S>| x.constant(w[0]) + x * x.constant(w[1]) + incidence * x.constant(w[2]);
         let metres = nearest_cm.min(infinite.constant(FAR_CM as f32)) * infinite.constant(0.01);
@@ -183,10 +202,10 @@ impl Thresholds {
 
 impl Ray {
     #[inline(always)]
-    fn log2_odds<S: Simd>(&self, distance_cm: Lanes<S>, a: Lanes<S>) -> Lanes<S> {
+    fn log2_odds<S: Simd>(&self, distance_cm: Lanes<S>, a: Lanes<S>, log2_loss: f32) -> Lanes<S> {
         let x = distance_cm.min(a.constant(FAR_CM as f32)) * a.constant(0.01);
         let [middle, by_x, by_xx, by_a, by_aa, by_aaa, by_ax, by_aax] = self.log2_odds.map(|w| a.constant(w));
-        let of_distance = middle + x * (by_x + x * by_xx);
+        let of_distance = middle - a.constant(log2_loss) + x * (by_x + x * by_xx);
         let of_incidence = a * (by_a + x * by_ax + a * (by_aa + x * by_aax + a * by_aaa));
         let odds = of_distance + of_incidence;
         odds.clamp(odds.constant(-100.0), odds.constant(100.0))

@@ -48,6 +48,7 @@ fn sonar(logs: &Logs) -> Option<SonarModel> {
     strength[0] = CERTAIN;
     Some(SonarModel {
         strength,
+        mirror_loss: None,
         bias: [0.0; 3],
         log_scatter: [libm::log(scatter_cm.clamp(least, most)), 0.0, 0.0],
         constant: [0.0, mount.min_cm],

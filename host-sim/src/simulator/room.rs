@@ -27,6 +27,8 @@ pub struct Faced<S: Simd> {
     pub distance_cm: Lanes<S>,
     /// α, degrees in 0..=90.
     pub alpha_deg: Lanes<S>,
+    /// Direction of the normal there, degrees; to which side does not matter.
+    pub normal_deg: Lanes<S>,
 }
 
 /// Lanes of points or vectors in the plane.
@@ -114,7 +116,7 @@ impl Room {
         // The angle between two undirected lines: what is left of their difference beyond whole half turns.
         let half_turns = (angle_deg - nearest.normal_deg) * zero.constant(1.0 / 180.0);
         let alpha_deg = (half_turns - round(half_turns)).abs() * zero.constant(180.0);
-        Faced { distance_cm: nearest.distance_cm, alpha_deg }
+        Faced { distance_cm: nearest.distance_cm, alpha_deg, normal_deg: nearest.normal_deg }
     }
 
     /// Where discs that sweep along straight steps may touch something: everywhere that they do, and rarely elsewhere

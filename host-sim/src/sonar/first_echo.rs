@@ -1,7 +1,8 @@
-//! Which echo of a fan arrives first: each ray comes back with a probability that depends on its distance, its
-//! incidence and its angle off the axis, independently of the others, and the nearest that does gives the reading.
+//! Which echo of a fan arrives first: each ray comes back with a probability that depends on the length of its way, its
+//! incidence and its angle off the axis, independently of the others, and the nearest that does gives the reading. One that
+//! a wall has mirrored loses something there.
 
-use super::fan::{FAN_DEG, Fan, RAYS, Ray};
+use super::fan::{DIRECT, FAN_DEG, Fan, RAYS, Ray};
 use super::model::{FAR_CM, STRENGTHS, SonarModel};
 use super::perturbation::Perturbation;
 use crate::statistics::summary::logistic;
@@ -27,7 +28,13 @@ pub fn first_echoes(model: &SonarModel, fan: &Fan, perturbation: &Perturbation) 
         if ray.distance_cm.is_infinite() {
             return FirstEcho { probability: 0.0, middle_cm: model.range_cm[1], scale_cm: 1.0 };
         }
-        let returns = return_probability(model, ray, FAN_DEG[i], perturbation);
+        let returns = if i < DIRECT {
+            logistic(log_odds(model, ray, FAN_DEG[i], perturbation))
+        } else {
+            model.mirror_loss.map_or(0.0, |loss| {
+                logistic(log_odds(model, ray, FAN_DEG[i], perturbation) - loss - perturbation.attenuation_mirrored)
+            })
+        };
         let probability = none_yet * returns;
         none_yet *= 1.0 - returns;
         FirstEcho {
@@ -38,13 +45,13 @@ pub fn first_echoes(model: &SonarModel, fan: &Fan, perturbation: &Perturbation) 
     })
 }
 
-/// The probability that a ray comes back.
-fn return_probability(model: &SonarModel, ray: &Ray, offset_deg: f64, perturbation: &Perturbation) -> f64 {
+/// The log-odds that a ray comes back.
+fn log_odds(model: &SonarModel, ray: &Ray, offset_deg: f64, perturbation: &Perturbation) -> f64 {
     let Perturbation { attenuation, attenuation_per_m, attenuation_per_incidence, .. } = perturbation;
     let [metres, incidence] = units(ray);
     let attenuation = attenuation + attenuation_per_m * metres + attenuation_per_incidence * incidence;
     let strength: f64 = ray_features(ray, offset_deg).iter().zip(&model.strength).map(|(f, w)| f * w).sum();
-    logistic(strength - attenuation)
+    strength - attenuation
 }
 
 /// The reading that a ray gives, before scatter.

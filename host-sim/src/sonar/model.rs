@@ -21,6 +21,9 @@ const LEAST_INTERVAL_CM: f64 = 10.0;
 pub struct SonarModel {
     /// Weights of the ray features: the log-odds that a ray comes back.
     pub strength: [f64; STRENGTHS],
+    /// Log-odds that a ray loses where a wall mirrors it on to another; none where no sound comes back by such a way.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub mirror_loss: Option<f64>,
     /// Reading minus distance: a constant, a share of the distance, and per 45 degrees of incidence; cm.
     pub bias: [f64; 3],
     /// Logarithm of the scatter's scale in cm: a constant, per metre, per 45 degrees.

@@ -12,6 +12,7 @@ use crate::statistics::student;
 pub const SENSORS: [SonarModel; 3] = [
     SonarModel {
         strength: [1.0, 2.0, -2.0, 1.0, -1.0, -0.5, -1.0, -0.5, -1.0, -0.5],
+        mirror_loss: Some(1.0),
         bias: [-0.3, 0.01, -0.3],
         log_scatter: [-2.5, 0.1, 0.1],
         constant: [0.1, 21.0],
@@ -23,6 +24,7 @@ pub const SENSORS: [SonarModel; 3] = [
     },
     SonarModel {
         strength: [-2.0, 0.5, -0.4, 0.3, -0.2, -0.1, -0.3, -0.1, -0.4, -0.2],
+        mirror_loss: Some(-0.5),
         bias: [1.5, -0.02, 0.5],
         log_scatter: [-2.0, -0.2, 0.3],
         constant: [0.03, 61.0],
@@ -34,6 +36,7 @@ pub const SENSORS: [SonarModel; 3] = [
     },
     SonarModel {
         strength: [6.0, -1.0, 0.1, -1.0, 0.2, -0.1, -0.1, 0.1, -0.5, -0.1],
+        mirror_loss: None,
         bias: [-1.0, 0.005, 0.2],
         log_scatter: [-2.2, 0.1, -0.1],
         constant: [0.25, 150.0],
@@ -50,6 +53,7 @@ pub const PERTURBED: Perturbation = Perturbation {
     attenuation: 0.2,
     attenuation_per_m: 0.1,
     attenuation_per_incidence: 0.3,
+    attenuation_mirrored: -0.5,
     gain: 1.05,
     offset_cm: -2.0,
     scatter_cm: 0.1,

@@ -9,6 +9,8 @@ pub struct Perturbation {
     pub attenuation_per_m: f64,
     /// Subtracted from a ray's log-odds per 45 degrees of its incidence.
     pub attenuation_per_incidence: f64,
+    /// Subtracted from the log-odds of a ray that a wall has mirrored.
+    pub attenuation_mirrored: f64,
     /// Factor on the readings of echoes.
     pub gain: f64,
     /// Added to the readings of echoes after the factor, cm.
@@ -35,6 +37,7 @@ impl Perturbation {
         attenuation: 0.0,
         attenuation_per_m: 0.0,
         attenuation_per_incidence: 0.0,
+        attenuation_mirrored: 0.0,
         gain: 1.0,
         offset_cm: 0.0,
         scatter_cm: 0.0,

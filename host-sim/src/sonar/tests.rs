@@ -26,7 +26,7 @@ fn grid() -> Vec<(String, Outcomes)> {
 #[test]
 fn files_keep_their_names() {
     let file = serde_json::to_value(&SENSORS[0]).expect("numbers have a form in files");
-    let names = "bias constant constant_for_none fan_width log_scatter lost range_cm short strength";
+    let names = "bias constant constant_for_none fan_width log_scatter lost mirror_loss range_cm short strength";
     assert_eq!(file.as_object().expect("a table").keys().map(String::as_str).collect::<Vec<_>>().join(" "), names);
     assert_eq!(serde_json::from_value::<SonarModel>(file).expect("it was just written"), SENSORS[0]);
 }

@@ -9,6 +9,10 @@ use crate::gap::explain::probability;
 const FALSE_EFFECTS: f64 = 0.02;
 /// The same for what no effect explains, where a simulator's own misfit is often found on the runs held out again.
 const FALSE_REMAINDERS: f64 = 0.02;
+/// Share of all cases with one effect to which a second is added that is not there.
+const FALSE_FURTHER: f64 = 0.05;
+/// What further effects are sought by until it is known how much the first ones' forms feign.
+const FIRST_SHARE: f64 = 0.05;
 /// The law of a tail is read off this share of all.
 const TAIL: f64 = 0.2;
 /// Share of the right answers that leave more over than counts as adequate,
@@ -34,6 +38,7 @@ pub fn open(nulls: &[Measured]) -> Calibration {
         accuracy_cap: 1.0,
         effect_nats: 0.0,
         remainder_nats: 0.0,
+        further_share: FIRST_SHARE,
         judgement: Judgement::USUAL,
     };
     let gate = |share: f64, gain: fn(&Measured) -> f64| {
@@ -51,7 +56,9 @@ pub fn weighed(open: Calibration, others: &[Measured]) -> Calibration {
     let answered: Vec<&Measured> = others.iter().filter(|m| !m.first.is_empty()).collect();
     let right = answered.iter().filter(|m| m.first_is_there());
     let adequate = 1.0 - OTHER_ROBOTS * (1.0 - quantile(right.map(|m| m.explained_fraction).collect(), FALSE_UNKNOWNS));
-    let settled = Calibration { adequate: rounded(adequate), ..open };
+    let feigned: Vec<f64> = others.iter().filter_map(|m| m.feigned_share).collect();
+    let further_share = if feigned.is_empty() { open.further_share } else { quantile(feigned, 1.0 - FALSE_FURTHER) };
+    let settled = Calibration { adequate: rounded(adequate), further_share: rounded(further_share), ..open };
     let known: Vec<&Measured> = answered.into_iter().filter(|m| m.explained_fraction >= settled.adequate).collect();
     let tried = WIDTHS.iter().flat_map(|width| {
         TEMPERATURES
@@ -106,6 +113,7 @@ mod tests {
             rows: 100,
             effect_nats: 100.0,
             remainder_nats: 0.0,
+            feigned_share: Some(0.0),
             first: "slope".into(),
             explained_fraction: adequacy,
             likelihood_of_truth: truth_weight,

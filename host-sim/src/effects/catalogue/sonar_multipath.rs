@@ -14,6 +14,15 @@ pub const EFFECT: Effect = Effect {
             opposite wall.",
     variants: &[
         Variant {
+            id: "mirrored",
+            parameters: MirroredSound::PARAMETERS,
+            hooks: &[Hook::Sensor(&|v, _, sensor| {
+                let MirroredSound { mirrored_log_odds_loss, log_odds_loss } = MirroredSound::read(v);
+                sensor.perturbation.attenuation_mirrored += mirrored_log_odds_loss;
+                sensor.perturbation.attenuation_per_incidence += log_odds_loss;
+            })],
+        },
+        Variant {
             id: "oblique",
             parameters: Multipath::PARAMETERS,
             hooks: &[Hook::Sensor(&|v, context, sensor| {
@@ -35,6 +44,19 @@ pub const EFFECT: Effect = Effect {
 
 /// Chance of it in a reading of a surface at 45 degrees; it is twice that at grazing incidence, and almost sure at most.
 const PROBABILITY: Parameter = Parameter::new("", 0.0, [0.0, 0.45]).prior_sd(0.2).from(Guesses::At(&[0.05, 0.2]));
+
+parameters! {
+    MirroredSound {
+        /// Log-odds of an echo by way of a second wall that are lost where the first one mirrors it; how long the way is
+        /// follows from the room. Below zero more comes by such ways; eight turn the rare into the sure.
+        mirrored_log_odds_loss: Parameter::new("", 0.0, [-8.0, 8.0])
+            .prior_sd(2.0)
+            .from(Guesses::At(&[-1.0, -3.0]))
+            .report(Report::OddsFactor),
+        /// Log-odds of an echo that are lost per 45 degrees: what goes on does not come straight back.
+        log_odds_loss: Parameter::new("", 0.0, [-4.0, 4.0]).prior_sd(1.5).report(Report::Hidden),
+    }
+}
 
 parameters! {
     Multipath {

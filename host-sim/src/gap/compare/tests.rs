@@ -1,6 +1,7 @@
 use super::*;
 use crate::effects::Effect;
 use crate::evaluation::observations::Observations;
+use crate::gap::hypothesis::LogLikelihood;
 use crate::gap::test_support::*;
 
 /// Eight blocks of twelve rows that turn left and right in turn: left turns go `left_cm` too far, right ones
@@ -119,19 +120,27 @@ fn an_effect_for_which_many_can_stand_counts_half() {
     });
 }
 
-/// A further effect on the same stage has to gain 8 % of what is explained already; on another the gate is enough. Of two
-/// blocks the one that gains less has to show it.
+/// A fit of two rows whose log-likelihoods are these of forward motion and of readings each, so that they gain it as well.
+fn of_channels(effects: &[&'static Effect], [forward, reading]: [f64; 2], context: &FitContext) -> Fitted {
+    let fit = made_up(effects, &vec![0.0; effects.len()], &[forward + reading; 2], context);
+    let log_likelihood = LogLikelihood { motion: vec![[forward, 0.0, 0.0]; 2], sonar: vec![[0.0, reading]; 2] };
+    Fitted { log_likelihood, ..fit }
+}
+
+/// In a channel of which a hundred nats are explained a further effect has to gain eight besides what counts (five), and
+/// where nothing is explained that alone. Of two blocks the one that gains less has to show it.
 #[test]
-fn a_further_effect_on_the_same_stage_has_to_gain_more() {
+fn a_further_effect_has_to_gain_more_where_others_explain_much() {
     with_context(|context| {
-        let none = made_up(&[], &[], &[0.0; 2], context);
-        let so_far = made_up(&[&LONGER], &[0.0], &[50.0; 2], context);
-        let worth = |effect: &'static Effect, more: f64| {
-            let fit = made_up(&[&LONGER, effect], &[0.0; 2], &[50.0 + 0.5 * more; 2], context);
+        let none = of_channels(&[], [0.0; 2], context);
+        let so_far = of_channels(&[&LONGER], [50.0, 0.0], context);
+        let worth = |more: [f64; 2]| {
+            let fit = of_channels(&[&LONGER, &FARTHER], [50.0 + more[0], more[1]], context);
             is_worth_adding(&fit, &so_far, &none, &CALIBRATION)
         };
-        assert!(worth(&FARTHER, 10.2) && !worth(&FARTHER, 9.8));
-        assert!(worth(&LONGER_TO_THE_LEFT, 16.2) && !worth(&LONGER_TO_THE_LEFT, 15.8));
+        assert!(worth([0.0, 5.1]) && !worth([0.0, 4.9]));
+        assert!(worth([13.1, 0.0]) && !worth([12.9, 0.0]));
+        assert!(worth([1.0, 5.1]) && !worth([1.0, 4.9]), "what could be feigned does not count");
     });
 }
 
@@ -154,18 +163,21 @@ fn rivals_are_what_stands_in_the_place_of_an_effect() {
     });
 }
 
-/// A hundred nats are explained: beside another effect of the same stage eight of them have to be an effect's own, and on a
-/// stage of its own the five of the gate.
+/// Beside others an effect is as probable as what it gains against what it has to gain: the five of the gate, and what the
+/// others could feign.
 #[test]
 fn an_effect_beside_others_is_as_probable_as_what_it_gains_of_its_own() {
     with_context(|context| {
-        let beside = |second: &'static Effect, own: f64| {
-            let found = comparison(&[&LONGER, second], &[50.0; 2], context);
-            Comparison { own_nats: vec![90.0, own], ..found }.probability_beside_others(1, &CALIBRATION)
+        let beside = |nats: f64, feigned_nats: f64| {
+            let found = comparison(&[&LONGER, &FARTHER], &[50.0; 2], context);
+            let first = OwnGain { nats: 90.0, feigned_nats: 0.0 };
+            Comparison { own: vec![first, OwnGain { nats, feigned_nats }], ..found }
+                .probability_beside_others(1, &CALIBRATION)
         };
-        assert_eq!((beside(&LONGER_TO_THE_LEFT, 8.0), beside(&LONGER_TO_THE_LEFT, 24.0)), (0.5, 0.75));
-        assert_eq!((beside(&FARTHER, 5.0), beside(&FARTHER, -3.0)), (0.5, 0.0));
-        let alone = Comparison { own_nats: vec![9.0], ..comparison(&[&LONGER], &[5.0; 2], context) };
+        assert_eq!((beside(13.0, 8.0), beside(39.0, 8.0)), (0.5, 0.75));
+        assert_eq!((beside(5.0, 0.0), beside(-3.0, 0.0)), (0.5, 0.0));
+        let own = vec![OwnGain { nats: 9.0, feigned_nats: 0.0 }];
+        let alone = Comparison { own, ..comparison(&[&LONGER], &[5.0; 2], context) };
         assert_eq!(alone.probability_beside_others(0, &CALIBRATION), 1.0);
     });
 }

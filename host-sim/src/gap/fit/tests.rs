@@ -202,16 +202,6 @@ fn an_interval_is_two_standard_errors_to_either_side() {
     assert!((0.5 * (low + high) - fit.values[0]).abs() < 1e-9 && ((high - low) / fit.errors[0] - 3.92).abs() < 1e-9);
 }
 
-#[test]
-fn a_stage_is_shared_where_both_move_or_both_sense() {
-    let (baseline, rows) = (baseline(), observations(2, 1, |_, _| Made::default()));
-    let context = FitContext::new(&baseline, &rows, METHOD);
-    let shares =
-        |effects: &[&'static Effect]| made_up(effects, &vec![0.0; effects.len()], &[0.0; 2], &context).shares_a_stage();
-    assert!(shares(&[&LONGER, &LONGER_TO_THE_LEFT]) && shares(&[&FARTHER, &LONGER, &FARTHER]));
-    assert!(!shares(&[]) && !shares(&[&LONGER]) && !shares(&[&LONGER, &FARTHER]));
-}
-
 /// What is known already needs no catalogue of the test: effects are found by their ids in the built-in one.
 #[test]
 fn given_effects_are_taken_as_they_are() {

@@ -4,7 +4,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::library::Term;
-use crate::gap::calibration::Judgement;
+use crate::gap::calibration::Calibration;
 
 /// A sum of more terms is no formula that anybody would remember.
 const MOST_TERMS: usize = 3;
@@ -40,7 +40,7 @@ fn price(term: &Term, factors: usize) -> f64 {
 }
 
 /// The sum of terms that gains most beyond its price; none where no term gains any.
-pub fn pursue(terms: &[Term], response: &Response, judgement: &Judgement) -> Option<Sum> {
+pub fn pursue(terms: &[Term], response: &Response, calibration: &Calibration) -> Option<Sum> {
     let factors = terms.iter().filter(|term| term.factors == 1).count();
     let mut chosen = Fit { places: Vec::new(), nats: nats(response.squares(|_, r| r * r), response), price: 0.0 };
     let nothing = chosen.nats;
@@ -55,7 +55,7 @@ pub fn pursue(terms: &[Term], response: &Response, judgement: &Judgement) -> Opt
         let best = fits.reduce(|best, fit| if fit.worth() > best.worth() { fit } else { best })?;
         // A further term has to gain a share of what is gained already: less is within reach of a form that is not quite
         // right.
-        let least = f64::max(judgement.strong_nats, judgement.further_share * (chosen.worth() - nothing));
+        let least = f64::max(calibration.judgement.strong_nats, calibration.further_share * (chosen.worth() - nothing));
         if best.worth() - chosen.worth() < least {
             break;
         }
@@ -166,6 +166,7 @@ mod tests {
 
     use super::*;
     use crate::chance::generator;
+    use crate::gap::test_support::CALIBRATION;
 
     const ROWS: usize = 400;
     const FOLDS: usize = 8;
@@ -183,7 +184,7 @@ mod tests {
 
     fn pursued(terms: &[Term], values: &[f64], folds: &[usize]) -> Option<Sum> {
         let response = Response { values, folds, least_scatter: 0.1 };
-        pursue(terms, &response, &Judgement::USUAL)
+        pursue(terms, &response, &CALIBRATION)
     }
 
     #[test]

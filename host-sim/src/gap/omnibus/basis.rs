@@ -3,16 +3,47 @@
 //! It is the lowest order at which one covariate can alter what another does (Box and Wilson 1951, On the experimental
 //! attainment of optimum conditions). No covariate and no pair is preferred, and no unit matters: covariates and terms
 //! are standardised.
+//!
+//! A polynomial in the place cannot follow what is so at one spot of the floor and nowhere else: what it makes of it there is
+//! wrong everywhere else. So steps have besides, and before it, a term for each cell of the floor, which says nothing of any
+//! other.
+
+use std::collections::BTreeSet;
+
+use glam::DVec2;
 
 /// Beyond this many standard deviations a covariate counts as this far off: other logs may lie where a polynomial was
 /// never fitted.
 const FARTHEST: f64 = 3.0;
+
+/// One and a half robots of the usual size: in larger cells what is so at a spot of the floor is taken for what is so beside
+/// it, and smaller ones are seldom visited by several runs.
+const CELL_CM: f64 = 30.0;
+
+/// The circumstances of a step or of a reading.
+#[derive(Clone, Debug, Default)]
+pub struct Circumstances {
+    /// Covariates, in the same order everywhere.
+    pub covariates: Vec<f64>,
+    /// Of a step: where it is on the floor, and how far it goes there, on which what the floor does to it depends.
+    pub floor: Option<OnFloor>,
+}
+
+/// A step on the floor.
+#[derive(Clone, Copy, Debug)]
+pub struct OnFloor {
+    cell: [i32; 2],
+    way_cm: f64,
+}
 
 /// The terms of a response surface, standardised on the rows that it was made from.
 #[derive(Clone, Debug)]
 pub struct Basis {
     covariates: Vec<Standard>,
     terms: Vec<Standard>,
+    /// The cells of the floor that were visited, in order.
+    cells: Vec<[i32; 2]>,
+    per_way_cm: f64,
 }
 
 /// What standardises a number, with the prior standard deviation that it gets.
@@ -23,22 +54,43 @@ struct Standard {
 }
 
 impl Basis {
-    /// Standardised on `rows`, each with its covariates in the same order.
-    pub fn of(rows: &[Vec<f64>]) -> Self {
-        let covariates = standards(rows, |_| 1.0);
-        let standardised: Vec<Vec<f64>> = rows.iter().map(|row| surface(&covariates, row)).collect();
+    /// Standardised on `rows`.
+    pub fn of(rows: &[&Circumstances]) -> Self {
+        let covariates: Vec<&[f64]> = rows.iter().map(|row| row.covariates.as_slice()).collect();
+        let covariates = standards(&covariates, |_| 1.0);
+        let standardised: Vec<Vec<f64>> = rows.iter().map(|row| surface(&covariates, &row.covariates)).collect();
         let count = covariates.len();
         // Each order is as likely as any other to carry a gap: the prior variance of an order is shared by its terms.
         let share = |place: usize| if place < 2 * count { count } else { count * (count - 1) / 2 };
         let terms = standards(&standardised, |place| 1.0 / (share(place) as f64).sqrt());
-        Basis { covariates, terms }
+        let steps = || rows.iter().filter_map(|row| row.floor);
+        let cells: BTreeSet<[i32; 2]> = steps().map(|step| step.cell).collect();
+        let squares: f64 = steps().map(|step| step.way_cm * step.way_cm).sum();
+        let per_way_cm = if squares > 0.0 { (rows.len() as f64 / squares).sqrt() } else { 0.0 };
+        Basis { covariates, terms, cells: cells.into_iter().collect(), per_way_cm }
     }
 
-    /// The terms at these covariates.
-    pub fn at(&self, covariates: &[f64]) -> Vec<f64> {
-        let surface = surface(&self.covariates, covariates);
+    /// The terms in these circumstances.
+    pub fn at(&self, circumstances: &Circumstances) -> Vec<f64> {
+        let surface = surface(&self.covariates, &circumstances.covariates);
         let terms = surface.iter().zip(&self.terms).map(|(term, standard)| standard.of(*term));
         std::iter::once(1.0).chain(terms).collect()
+    }
+
+    /// The way on each cell of the floor, as standardised; nothing where no row is on a floor.
+    pub fn on_floor(&self, circumstances: &Circumstances) -> Vec<f64> {
+        let of_cell = |cell: &[i32; 2]| match circumstances.floor {
+            Some(step) if step.cell == *cell => step.way_cm * self.per_way_cm,
+            _ => 0.0,
+        };
+        self.cells.iter().map(of_cell).collect()
+    }
+}
+
+impl OnFloor {
+    /// A step from here that goes so far.
+    pub fn new(position_cm: DVec2, way_cm: f64) -> Self {
+        OnFloor { cell: position_cm.to_array().map(|cm| (cm / CELL_CM).floor() as i32), way_cm }
     }
 }
 
@@ -58,40 +110,48 @@ fn surface(standards: &[Standard], covariates: &[f64]) -> Vec<f64> {
 }
 
 /// What gives each column the mean zero and the standard deviation `deviation`; what is constant becomes zero.
-fn standards(rows: &[Vec<f64>], deviation: impl Fn(usize) -> f64) -> Vec<Standard> {
+fn standards<R: AsRef<[f64]>>(rows: &[R], deviation: impl Fn(usize) -> f64) -> Vec<Standard> {
     let count = rows.len() as f64;
     let column = |place: usize| {
-        let mean = rows.iter().map(|row| row[place]).sum::<f64>() / count;
-        let variance = rows.iter().map(|row| (row[place] - mean) * (row[place] - mean)).sum::<f64>() / count;
+        let mean = rows.iter().map(|row| row.as_ref()[place]).sum::<f64>() / count;
+        let variance = rows.iter().map(|row| row.as_ref()[place] - mean).map(|off| off * off).sum::<f64>() / count;
         // A spread within rounding is none.
         let varies = variance > 1e-12 * (1.0 + mean * mean);
         Standard { mean, scale: if varies { deviation(place) / variance.sqrt() } else { 0.0 } }
     };
-    (0..rows.first().map_or(0, Vec::len)).map(column).collect()
+    (0..rows.first().map_or(0, |row| row.as_ref().len())).map(column).collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn rows() -> Vec<Vec<f64>> {
-        (0..200).map(|i| [7, 11, 13].map(|m| f64::from(i * m % 31)).to_vec()).collect()
+    fn rows() -> Vec<Circumstances> {
+        (0..200).map(|i| of([7, 11, 13].map(|m| f64::from(i * m % 31)).to_vec())).collect()
+    }
+
+    fn of(covariates: Vec<f64>) -> Circumstances {
+        Circumstances { covariates, floor: None }
+    }
+
+    fn basis(rows: &[Circumstances]) -> Basis {
+        Basis::of(&rows.iter().collect::<Vec<_>>())
     }
 
     /// The prior covariance of two predictions, which is all that a ridge sees of its basis.
-    fn covariance(basis: &Basis, a: &[f64], b: &[f64]) -> f64 {
+    fn covariance(basis: &Basis, a: &Circumstances, b: &Circumstances) -> f64 {
         basis.at(a).iter().zip(basis.at(b)).map(|(a, b)| a * b).sum()
     }
 
     #[test]
     fn a_constant_three_covariates_their_squares_and_three_products() {
-        assert_eq!(Basis::of(&rows()).at(&[1.0, 2.0, 3.0]).len(), 1 + 3 + 3 + 3);
+        assert_eq!(basis(&rows()).at(&of(vec![1.0, 2.0, 3.0])).len(), 1 + 3 + 3 + 3);
     }
 
     #[test]
     fn every_order_has_the_same_variance() {
         let rows = rows();
-        let basis = Basis::of(&rows);
+        let basis = basis(&rows);
         let terms: Vec<Vec<f64>> = rows.iter().map(|row| basis.at(row)).collect();
         let variance = |places: std::ops::Range<usize>| -> f64 {
             terms.iter().map(|t| t[places.clone()].iter().map(|v| v * v).sum::<f64>()).sum::<f64>() / rows.len() as f64
@@ -104,9 +164,11 @@ mod tests {
     #[test]
     fn neither_the_order_nor_the_unit_of_covariates_matters() {
         let rows = rows();
-        let other = |row: &Vec<f64>| vec![-0.01 * row[2] + 5.0, 100.0 * row[0], row[1] - 3.0];
-        let basis = Basis::of(&rows);
-        let others = Basis::of(&rows.iter().map(other).collect::<Vec<_>>());
+        let other = |row: &Circumstances| {
+            let [a, b, c] = row.covariates[..] else { unreachable!("three covariates") };
+            of(vec![-0.01 * c + 5.0, 100.0 * a, b - 3.0])
+        };
+        let (basis, others) = (basis(&rows), basis(&rows.iter().map(other).collect::<Vec<_>>()));
         for (a, b) in rows.iter().zip(&rows[7..]) {
             let difference = covariance(&basis, a, b) - covariance(&others, &other(a), &other(b));
             assert!(difference.abs() < 1e-9, "{difference}");
@@ -115,8 +177,22 @@ mod tests {
 
     #[test]
     fn what_never_changes_says_nothing() {
-        let rows: Vec<Vec<f64>> = (0..20).map(|i| vec![f64::from(i), 4.0]).collect();
-        let terms = Basis::of(&rows).at(&[3.0, 9.0]);
+        let rows: Vec<Circumstances> = (0..20).map(|i| of(vec![f64::from(i), 4.0])).collect();
+        let terms = basis(&rows).at(&of(vec![3.0, 9.0]));
         assert_eq!([terms[2], terms[4], terms[5]], [0.0; 3]);
+    }
+
+    /// Four cells were visited, and a fifth is like none of them.
+    #[test]
+    fn cells_of_the_floor_tell_nothing_of_each_other() {
+        let step = |x_cm: f64, way_cm: f64| {
+            let floor = Some(OnFloor::new(DVec2::new(x_cm, 20.0), way_cm));
+            Circumstances { covariates: Vec::new(), floor }
+        };
+        let rows: Vec<Circumstances> = (0..40).map(|i| step(30.0 * f64::from(i % 4) + 10.0, 3.0)).collect();
+        let basis = basis(&rows);
+        assert_eq!(basis.on_floor(&step(50.0, 3.0)), [0.0, 1.0, 0.0, 0.0]);
+        assert_eq!(basis.on_floor(&step(50.0, -1.5)), [0.0, -0.5, 0.0, 0.0]);
+        assert_eq!(basis.on_floor(&step(210.0, 3.0)), [0.0; 4]);
     }
 }

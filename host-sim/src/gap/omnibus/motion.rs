@@ -1,5 +1,6 @@
 //! What the rest of a motion channel follows.
 
+use super::basis::{Circumstances, OnFloor};
 use super::{ResidualFit, Steps, Surface};
 use crate::effects::chain::EffectChain;
 use crate::effects::{PoseIncrement, StepContext};
@@ -63,11 +64,12 @@ fn of_row(effects: &EffectChain, drive: &MotionModel, row: &Observation) -> Step
 
 /// Commands now, before, and two back, whose products with each other make every change of command besides; heading;
 /// time; place; and the motion that is predicted.
-fn of_step(step: &StepContext, predicted: &PoseIncrement, share: f64) -> Vec<f64> {
+fn of_step(step: &StepContext, predicted: &PoseIncrement, share: f64) -> Circumstances {
     let [[left, right], [left_1, right_1], [left_2, right_2], ..] = step.commands;
     let direction = step.pose.direction();
     let position_cm = step.pose.position_cm;
-    vec![
+    let way_cm = share * predicted.forward_cm;
+    let covariates = vec![
         left,
         right,
         left_1,
@@ -79,9 +81,10 @@ fn of_step(step: &StepContext, predicted: &PoseIncrement, share: f64) -> Vec<f64
         step.elapsed_min,
         position_cm.x,
         position_cm.y,
-        share * predicted.forward_cm,
+        way_cm,
         share * predicted.turn_rad,
-    ]
+    ];
+    Circumstances { covariates, floor: Some(OnFloor::new(position_cm, way_cm)) }
 }
 
 impl Law {

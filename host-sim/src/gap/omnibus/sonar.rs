@@ -1,5 +1,6 @@
 //! What the rest of the two sonar channels follows.
 
+use super::basis::Circumstances;
 use super::{Law, ResidualFit, Steps, Surface};
 use crate::effects::StepContext;
 use crate::effects::chain::EffectChain;
@@ -110,13 +111,13 @@ pub fn covariates(rows: &Observations) -> Vec<Steps> {
 /// Distance and incidence; the commands until the reading; heading; time; and the places of the robot and of what it
 /// faces. Whether there was a reading before is no circumstance: what belongs to the place repeats a row later, when the
 /// robot is still about there.
-fn of_reading(step: &StepContext) -> Vec<f64> {
+fn of_reading(step: &StepContext) -> Circumstances {
     let [distance_cm, incidence_rad] = step.faced.unwrap_or([FAR_CM, 0.0]);
     let distance_cm = distance_cm.min(FAR_CM);
     let [_, [left, right], ..] = step.commands;
     let (position_cm, direction) = (step.pose.position_cm, step.pose.direction());
     let faced_cm = position_cm + direction * distance_cm;
-    vec![
+    let covariates = vec![
         distance_cm,
         incidence_rad,
         left,
@@ -128,7 +129,8 @@ fn of_reading(step: &StepContext) -> Vec<f64> {
         position_cm.y,
         faced_cm.x,
         faced_cm.y,
-    ]
+    ];
+    Circumstances { covariates, floor: None }
 }
 
 impl<'a> Heard<'a> {
