@@ -6,6 +6,9 @@
 //! that faces the sensor. And there are readings that have nothing to do with what is ahead: the constant one that the
 //! paper observed (section VIII), and those of faults that a diagnosis looks for ([`Perturbation`]).
 //!
+//! A wall that is met aslant mirrors sound on to another, from which it comes back by the same way. So three of the rays are
+//! followed on to a second wall, as rays of the whole length that lose [`mirror_loss`](SonarModel::mirror_loss) in log-odds.
+//!
 //! With the rays in order of distance, b_j the probability that ray j comes back, and d that an echo is dropped:
 //!
 //! ```text

@@ -1,7 +1,8 @@
 //! The omnibus residual model: how much of what a fit leaves over follows any circumstance at all.
 //!
 //! Every channel has the same neutral basis ([`basis`]) in all covariates of a row, fitted by ridge regression
-//! ([`ridge`]) whose strength cross-validation over runs chooses. Nothing in it stands for a particular effect. What it
+//! ([`ridge`]) whose strength cross-validation over runs chooses, once for the cells of the floor and then for the response
+//! surface over them. Nothing in it stands for a particular effect. What it
 //! gains on runs that it was not fitted on bounds what any effect could explain.
 
 pub mod basis;

@@ -1,5 +1,6 @@
 //! Now and then a reading longer than what the axis meets: sound that a surface mirrors away and that comes back by way of
-//! another.
+//! another. Where the simulator knows rays that walls mirror on, more of them come back, and the room says how long their
+//! ways are; where it does not, as in the textbook, the reading is anywhere beyond.
 
 use super::parameters;
 use crate::effects::parameter::{Guesses, Report};
