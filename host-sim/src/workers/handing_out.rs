@@ -83,7 +83,7 @@ where
         if let Some(helped) = helped {
             return helped;
         }
-        // Threads of one process have one queue, which is never to run dry; between ranks no piece waits for a busy one.
+        // Threads of one process have one queue, which is never to run dry; at the end no piece waits for a busy rank.
         let of_here = if has_ranks() { threads } else { AHEAD * threads };
         let mut free = vec![HERE; of_here];
         let workers = threads * RUN.with_borrow(|run| run.ranks.as_ref().map_or(1, Ranks::count));
