@@ -83,14 +83,13 @@ pub fn diagnose(
         }
         Ok(())
     })?;
-    #[cfg(feature = "parquet")]
-    table.close()?;
-    match (tally.names.is_empty(), tally.refused.first()) {
-        (true, Some(first)) => {
-            Err(Error::new(format!("none of {count} robots can be diagnosed; the first one: {}", first.reason)))
-        }
-        _ => Ok(Fleet::of(tally, listing.left_out, request.method.seed)),
+    if let (true, Some(first)) = (tally.names.is_empty(), tally.refused.first()) {
+        return Err(Error::new(format!("none of {count} robots can be diagnosed; the first one: {}", first.reason)));
     }
+    let fleet = Fleet::of(tally, listing.left_out, request.method.seed);
+    #[cfg(feature = "parquet")]
+    table.close(&fleet.robots.iter().map(|robot| (robot.name.as_str(), robot.group)).collect())?;
+    Ok(fleet)
 }
 
 fn examined(source: &Source, name: &str, request: &Request) -> Examined {

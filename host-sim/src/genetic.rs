@@ -9,9 +9,11 @@ pub mod stopping;
 pub mod tournament;
 
 use rand::RngExt;
+use serde::{Deserialize, Serialize};
 
 use crate::chance::{Generator, generator};
 use crate::error::Result;
+use crate::workers;
 use mutation::Mutation;
 use stopping::StagnationCriterion;
 
@@ -38,7 +40,7 @@ pub struct Settings {
 }
 
 /// Result of a run of the algorithm.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RunResult {
     /// The fittest individual of all generations.
     pub best: Vec<f32>,
@@ -51,16 +53,16 @@ pub struct RunResult {
 }
 
 /// An optimisation problem: how genotypes are made, repaired and evaluated.
-pub trait Problem {
+pub trait Problem: Sync {
     /// A random genotype for the first generation.
     fn random(&self, rng: &mut Generator) -> Vec<f32>;
     /// Brings the genes of a child back into their bounds.
     fn repair(&self, genes: &mut [f32]);
-    /// The fitness of each individual of a generation, one entry an individual; larger is better, and NaN is worst.
-    ///
-    /// # Errors
-    /// When it cannot be computed by those to whom it is handed out.
-    fn fitness(&self, generation: usize, population: &[Vec<f32>]) -> Result<Vec<f64>>;
+    /// Number of individuals that are evaluated as one piece of work.
+    fn together(&self) -> usize;
+    /// The fitness of some individuals of a generation, the first of which has the index `first` therein; larger is better,
+    /// and NaN is worst.
+    fn fitness(&self, generation: usize, first: usize, individuals: &[Vec<f32>]) -> Vec<f64>;
 }
 
 impl Default for Settings {
@@ -79,10 +81,10 @@ impl Default for Settings {
 }
 
 /// Runs the algorithm from a random population. `seed` fixes every draw; `watch` receives the generation and the best
-/// fitness up to it.
+/// fitness up to it, on the first rank.
 ///
 /// # Errors
-/// As [`Problem::fitness`].
+/// When fitness cannot be computed by those to whom it is handed out.
 pub fn run(settings: &Settings, problem: &impl Problem, seed: u64, watch: impl FnMut(usize, f64)) -> Result<RunResult> {
     let mut rng = generator(seed, &[0]);
     let population = (0..settings.population).map(|_| problem.random(&mut rng)).collect();
@@ -92,7 +94,7 @@ pub fn run(settings: &Settings, problem: &impl Problem, seed: u64, watch: impl F
 /// Runs the algorithm from a given population, whose size it keeps; otherwise as [`run`].
 ///
 /// # Errors
-/// As [`Problem::fitness`].
+/// As [`run`].
 pub fn run_from(
     mut population: Vec<Vec<f32>>,
     settings: &Settings,
@@ -102,26 +104,40 @@ pub fn run_from(
 ) -> Result<RunResult> {
     let mut best: Option<(Vec<f32>, f64)> = None;
     let mut history = Vec::new();
-    loop {
-        let generation = history.len();
-        let fitness = problem.fitness(generation, &population)?;
-        let ranking = tournament::ranking(&fitness);
-        let leader = ranking[0];
-        if best.as_ref().is_none_or(|(_, f)| fitness[leader] > *f) {
-            best = Some((population[leader].clone(), fitness[leader]));
+    let size = population.len();
+    for generation in 0.. {
+        let together = problem.together();
+        let some = |piece: usize| population[piece * together..size.min((piece + 1) * together)].to_vec();
+        let evaluated = |piece: usize, some: Vec<Vec<f32>>| Ok(problem.fitness(generation, piece * together, &some));
+        let fitness = workers::map_given(size.div_ceil(together), some, evaluated)?.concat();
+        // The first rank alone breeds: the others are handed the individuals that they evaluate.
+        let is_over = workers::once(|| {
+            let ranking = tournament::ranking(&fitness);
+            let leader = ranking[0];
+            if best.as_ref().is_none_or(|(_, f)| fitness[leader] > *f) {
+                best = Some((population[leader].clone(), fitness[leader]));
+            }
+            let best_fitness = best.as_ref().map_or(f64::NAN, |b| b.1);
+            history.push(best_fitness);
+            watch(generation, best_fitness);
+            let stalled = settings.stagnation.is_some_and(|w| w.has_stalled(&history));
+            let is_over = stalled || history.len() >= settings.max_generations;
+            population = if is_over {
+                ranking.iter().map(|i| std::mem::take(&mut population[*i])).collect()
+            } else {
+                let mut rng = generator(seed, &[1, generation as u64]);
+                offspring(settings, problem, &population, &ranking, &mut rng)
+            };
+            Ok(is_over)
+        })?;
+        if is_over {
+            break;
         }
-        let best_fitness = best.as_ref().map_or(f64::NAN, |b| b.1);
-        history.push(best_fitness);
-        watch(generation, best_fitness);
-        let stalled = settings.stagnation.is_some_and(|w| w.has_stalled(&history));
-        if stalled || history.len() >= settings.max_generations {
-            let population = ranking.iter().map(|i| std::mem::take(&mut population[*i])).collect();
-            let (best, fitness) = best.unwrap_or_default();
-            return Ok(RunResult { best, fitness, generations: history.len(), population });
-        }
-        let mut rng = generator(seed, &[1, generation as u64]);
-        population = offspring(settings, problem, &population, &ranking, &mut rng);
     }
+    workers::once(|| {
+        let (best, fitness) = best.unwrap_or_default();
+        Ok(RunResult { best, fitness, generations: history.len(), population })
+    })
 }
 
 fn offspring(
@@ -165,8 +181,12 @@ mod tests {
 
         fn repair(&self, _: &mut [f32]) {}
 
-        fn fitness(&self, _: usize, population: &[Vec<f32>]) -> Result<Vec<f64>> {
-            Ok(population.iter().map(|g| -g.iter().map(|x| f64::from(x * x)).sum::<f64>()).collect())
+        fn together(&self) -> usize {
+            7
+        }
+
+        fn fitness(&self, _: usize, _: usize, individuals: &[Vec<f32>]) -> Vec<f64> {
+            individuals.iter().map(|g| -g.iter().map(|x| f64::from(x * x)).sum::<f64>()).collect()
         }
     }
 
@@ -196,7 +216,7 @@ mod tests {
             last = best;
         })
         .unwrap();
-        assert_eq!(Sphere.fitness(0, &outcome.population).unwrap()[0], outcome.fitness, "the elite is still there");
+        assert_eq!(Sphere.fitness(0, 0, &outcome.population)[0], outcome.fitness, "the elite is still there");
     }
 
     #[test]

@@ -127,12 +127,25 @@ pub fn map<T: Serialize + DeserializeOwned + Send>(
     count: usize,
     work: impl Fn(usize) -> Result<T> + Sync,
 ) -> Result<Vec<T>> {
-    let mut pieces = Vec::with_capacity(count);
-    distribute(count, count, work, |_, piece| {
-        pieces.push(piece);
+    let pieces = map_given(count, |_| (), |index, ()| work(index))?;
+    once(|| Ok(pieces))
+}
+
+/// What comes of pieces that only the first rank knows, and which it `gives` with their indices; only there is it known.
+///
+/// # Errors
+/// As [`map`].
+pub fn map_given<P: Serialize + DeserializeOwned + Send, T: Serialize + DeserializeOwned + Send>(
+    count: usize,
+    give: impl Fn(usize) -> P + Sync,
+    work: impl Fn(usize, P) -> Result<T> + Sync,
+) -> Result<Vec<T>> {
+    let mut done = Vec::with_capacity(count);
+    distribute(count, count, give, work, |_, piece| {
+        done.push(piece);
         Ok(())
     })?;
-    once(|| Ok(pieces))
+    Ok(done)
 }
 
 /// Does pieces of work and gives each with its index to `take`, the first one first. Only so many are there at once as
@@ -147,7 +160,7 @@ pub fn in_order<T: Serialize + DeserializeOwned + Send>(
     take: impl FnMut(usize, T) -> Result<()>,
 ) -> Result<()> {
     let ranks = RUN.with_borrow(|run| run.ranks.as_ref().map_or(1, Ranks::count));
-    distribute(count, AHEAD * ranks * rayon::current_num_threads(), work, take)?;
+    distribute(count, AHEAD * ranks * rayon::current_num_threads(), |_| (), |index, ()| work(index), take)?;
     if is_first() {
         return Ok(());
     }
@@ -169,18 +182,20 @@ pub fn once<T: Serialize + DeserializeOwned>(work: impl FnOnce() -> Result<T>) -
 }
 
 /// Does pieces of work and takes them in order, at most `ahead` of them on their way.
-fn distribute<T: Serialize + DeserializeOwned + Send>(
+fn distribute<P: Serialize + DeserializeOwned + Send, T: Serialize + DeserializeOwned + Send>(
     count: usize,
     ahead: usize,
-    work: impl Fn(usize) -> Result<T> + Sync,
+    give: impl Fn(usize) -> P + Sync,
+    work: impl Fn(usize, P) -> Result<T> + Sync,
     mut take: impl FnMut(usize, T) -> Result<()>,
 ) -> Result<()> {
     if rayon::current_thread_index().is_none() {
-        return hand_out(count, ahead, &work, take);
+        return hand_out(count, ahead, &give, &work, take);
     }
     // It is called within a piece of other work, and a thread that does pieces must not wait for others to.
     for first in (0..count).step_by(ahead) {
-        let pieces = (first..count.min(first + ahead)).into_par_iter().map(&work).collect::<Result<Vec<T>>>()?;
+        let piece = |index: usize| work(index, give(index));
+        let pieces = (first..count.min(first + ahead)).into_par_iter().map(piece).collect::<Result<Vec<T>>>()?;
         (first..).zip(pieces).try_for_each(|(index, piece)| take(index, piece))?;
     }
     Ok(())

@@ -1,8 +1,10 @@
-//! What is fed with any bytes: every reader of what users give, and twins, two ways to one result.
+//! What is fed with any bytes: every reader of what users give, what runs on a robot, and twins, two ways to one result.
 //!
-//! A target panics where something is wrong. `tests/tests/fuzzing.rs` feeds them.
+//! A target panics where something is wrong. `tests/tests/fuzzing.rs` feeds each a little, `fuzz/run.sh` for hours.
 
-pub mod mutation;
+pub mod feeding;
+mod mutation;
+mod onboard;
 mod readers;
 mod twins;
 
@@ -13,6 +15,9 @@ use std::path::{Path, PathBuf};
 use tempfile::TempDir;
 
 use crate::command::workspace;
+
+/// All of them together may not take more memory, kB.
+pub const MOST_KB: u64 = 256_000;
 
 /// Something that takes any bytes.
 pub struct Target {
@@ -27,7 +32,7 @@ pub struct Target {
 
 /// All of them.
 pub fn targets() -> impl Iterator<Item = &'static Target> {
-    readers::TARGETS.iter().chain(twins::TARGETS)
+    readers::TARGETS.iter().chain(onboard::TARGETS).chain(twins::TARGETS)
 }
 
 /// Where a target's small inputs lie, which are kept.

@@ -6,12 +6,10 @@ use mindgap_core::controller::Controller;
 use super::genome::GenotypeDecoder;
 use super::way::WayMap;
 use crate::chance::{Generator, derive};
-use crate::error::Result;
 use crate::genetic;
 use crate::simulator::environment::Environment;
 use crate::simulator::motion::MotionTable;
 use crate::simulator::rollout::{REACHED_CM, RolloutOutcome, RolloutRequest, SensorModel, Termination};
-use crate::workers;
 
 /// Number of individuals simulated in one batch.
 const TOGETHER: usize = 25;
@@ -79,25 +77,6 @@ impl FitnessEvaluator<'_> {
         self.environment.run(&requests)
     }
 
-    /// Summed fitness of individuals, the first of which has the index `first` in its generation.
-    fn summed(&self, generation: usize, first: usize, individuals: &[Vec<f32>]) -> Vec<f64> {
-        let controllers: Vec<Controller> = individuals.iter().map(|genes| self.decoder.controller(genes)).collect();
-        let motions: Vec<MotionTable> = controllers.iter().map(|c| self.environment.motions(c)).collect();
-        let mut requests = Vec::with_capacity(individuals.len() * self.runs);
-        for (i, (controller, motions)) in controllers.iter().zip(&motions).enumerate() {
-            let individual = if self.random_numbers == RandomNumbers::Common { 0 } else { (first + i) as u64 };
-            let place = |run: usize| [0, generation as u64, individual, run as u64];
-            requests.extend((0..self.runs).map(|run| RolloutRequest {
-                controller,
-                motions,
-                sensor: sensor_of(run),
-                seed: derive(self.seed, &place(run)),
-            }));
-        }
-        let outcomes = self.environment.run(&requests);
-        outcomes.chunks(self.runs).map(|runs| self.fitness_of(runs)).collect()
-    }
-
     /// Success of a controller in a number of runs; random numbers as for [`outcomes`](Self::outcomes).
     pub fn success(&self, controller: &Controller, runs: usize, purpose: u64) -> Success {
         self.success_of(&self.outcomes(controller, runs, purpose))
@@ -149,9 +128,25 @@ impl genetic::Problem for FitnessEvaluator<'_> {
         self.decoder.repair(genes);
     }
 
-    fn fitness(&self, generation: usize, population: &[Vec<f32>]) -> Result<Vec<f64>> {
-        let chunks: Vec<&[Vec<f32>]> = population.chunks(TOGETHER).collect();
-        let summed = |chunk: usize| Ok(self.summed(generation, chunk * TOGETHER, chunks[chunk]));
-        Ok(workers::map(chunks.len(), summed)?.concat())
+    fn together(&self) -> usize {
+        TOGETHER
+    }
+
+    fn fitness(&self, generation: usize, first: usize, individuals: &[Vec<f32>]) -> Vec<f64> {
+        let controllers: Vec<Controller> = individuals.iter().map(|genes| self.decoder.controller(genes)).collect();
+        let motions: Vec<MotionTable> = controllers.iter().map(|c| self.environment.motions(c)).collect();
+        let mut requests = Vec::with_capacity(individuals.len() * self.runs);
+        for (i, (controller, motions)) in controllers.iter().zip(&motions).enumerate() {
+            let individual = if self.random_numbers == RandomNumbers::Common { 0 } else { (first + i) as u64 };
+            let place = |run: usize| [0, generation as u64, individual, run as u64];
+            requests.extend((0..self.runs).map(|run| RolloutRequest {
+                controller,
+                motions,
+                sensor: sensor_of(run),
+                seed: derive(self.seed, &place(run)),
+            }));
+        }
+        let outcomes = self.environment.run(&requests);
+        outcomes.chunks(self.runs).map(|runs| self.fitness_of(runs)).collect()
     }
 }

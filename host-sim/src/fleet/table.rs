@@ -1,6 +1,6 @@
-//! `robots.parquet`: a row for each robot, and one for each effect that is named in it, written group by group as the
-//! robots come.
+//! `robots.parquet`: a row for each part of each robot's gap, written as the robots come, and then one for each robot.
 
+use std::collections::BTreeMap;
 use std::fs::File;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -28,6 +28,7 @@ const SCHEMA: &str = "message robots {
     OPTIONAL INT64 rows;
     OPTIONAL DOUBLE gap_nats;
     OPTIONAL DOUBLE closed;
+    OPTIONAL INT64 group;
     OPTIONAL BYTE_ARRAY effect (STRING);
     OPTIONAL DOUBLE probability;
     OPTIONAL DOUBLE share;
@@ -44,6 +45,8 @@ pub struct Table {
     /// None until the first rows are written.
     writer: Option<SerializedFileWriter<File>>,
     rows: Vec<Row>,
+    /// The robots' own, for which their groups are not known yet.
+    own: Vec<Row>,
 }
 
 /// A row; a robot's own has no effect, and another's no verdict.
@@ -55,6 +58,7 @@ struct Row {
     rows: Option<usize>,
     gap_nats: Option<f64>,
     closed: Option<f64>,
+    group: Option<usize>,
     effect: Option<String>,
     probability: Option<f64>,
     share: Option<f64>,
@@ -67,7 +71,7 @@ struct Row {
 impl Table {
     /// A table at a path, where nothing is yet.
     pub fn at(path: &Path) -> Self {
-        Table { path: path.to_owned(), writer: None, rows: Vec::new() }
+        Table { path: path.to_owned(), writer: None, rows: Vec::new(), own: Vec::new() }
     }
 
     /// Adds a robot, or why it could not be diagnosed.
@@ -76,19 +80,24 @@ impl Table {
     /// When the file cannot be written.
     pub fn add(&mut self, name: &str, robot: std::result::Result<&Robot, &String>) -> Result<()> {
         match robot {
-            Ok(robot) => self.rows.extend(rows(name, robot)),
+            Ok(robot) => {
+                self.own.push(own(name, robot));
+                self.rows.extend(parts(name, robot));
+            }
             Err(reason) => {
-                self.rows.push(Row { robot: name.into(), refused: Some(reason.clone()), ..Row::default() });
+                self.own.push(Row { robot: name.into(), refused: Some(reason.clone()), ..Row::default() });
             }
         }
         if self.rows.len() >= GROUP { self.write().map_err(|e| failed(&self.path, &e)) } else { Ok(()) }
     }
 
-    /// Writes what is left.
+    /// Writes what is left, with the group of each robot that has one.
     ///
     /// # Errors
     /// When the file cannot be written.
-    pub fn close(mut self) -> Result<()> {
+    pub fn close(mut self, groups: &BTreeMap<&str, usize>) -> Result<()> {
+        let own = std::mem::take(&mut self.own).into_iter();
+        self.rows.extend(own.map(|row| Row { group: groups.get(row.robot.as_str()).copied(), ..row }));
         let written = self.write().and_then(|()| self.writer.map_or(Ok(()), |writer| writer.close().map(|_| ())));
         written.map_err(|e| failed(&self.path, &e))
     }
@@ -113,6 +122,7 @@ impl Table {
         column::<Int64Type>(&mut group, &counts(&|row| row.rows))?;
         column::<DoubleType>(&mut group, &numbers(&|row| row.gap_nats))?;
         column::<DoubleType>(&mut group, &numbers(&|row| row.closed))?;
+        column::<Int64Type>(&mut group, &counts(&|row| row.group))?;
         column::<ByteArrayType>(&mut group, &texts(&|row| row.effect.as_deref()))?;
         column::<DoubleType>(&mut group, &numbers(&|row| row.probability))?;
         column::<DoubleType>(&mut group, &numbers(&|row| row.share))?;
@@ -134,9 +144,9 @@ fn begun(path: &Path) -> std::result::Result<SerializedFileWriter<File>, Parquet
     SerializedFileWriter::new(File::create(path)?, schema, Arc::new(properties.build()))
 }
 
-/// A robot's own row, and those of its effects and of the other parts of its gap.
-fn rows(name: &str, robot: &Robot) -> Vec<Row> {
-    let own = Row {
+/// A robot's own row.
+fn own(name: &str, robot: &Robot) -> Row {
+    Row {
         robot: name.into(),
         verdict: Some(Verdict::id(robot.verdict)),
         runs: Some(robot.runs),
@@ -144,7 +154,11 @@ fn rows(name: &str, robot: &Robot) -> Vec<Row> {
         gap_nats: robot.gap_nats,
         closed: robot.closed,
         ..Row::default()
-    };
+    }
+}
+
+/// The rows of a robot's effects, and of the other parts of its gap.
+fn parts(name: &str, robot: &Robot) -> Vec<Row> {
     let part = |id: &str| robot.budget.iter().find(|part| part.0 == id);
     let effects = robot.effects.iter().map(|cause| Row {
         robot: name.into(),
@@ -164,7 +178,7 @@ fn rows(name: &str, robot: &Robot) -> Vec<Row> {
         share_ends: Some(*ends),
         ..Row::default()
     });
-    std::iter::once(own).chain(effects).chain(others).collect()
+    effects.chain(others).collect()
 }
 
 /// Writes a group's next column.
@@ -187,8 +201,6 @@ fn failed(path: &Path, e: &ParquetError) -> Error {
 
 #[cfg(test)]
 mod tests {
-    use std::collections::BTreeMap;
-
     use parquet::file::reader::{FileReader, SerializedFileReader};
 
     use super::*;
@@ -214,19 +226,20 @@ mod tests {
             table.add(&format!("robot-{number}"), Ok(&robot)).expect("a row");
         }
         table.add("broken", Err(&"robot.toml: is missing".into())).expect("a row");
-        table.close().expect("a table");
+        table.close(&BTreeMap::from([("robot-0", 2)])).expect("a table");
         let reader = SerializedFileReader::new(File::open(&path).expect("a file")).expect("a table");
-        assert_eq!(reader.metadata().num_row_groups(), 3);
+        assert_eq!(reader.metadata().num_row_groups(), 3, "two of parts and one of robots");
         let cells = |row: &parquet::record::Row| -> BTreeMap<String, String> {
             row.get_column_iter().map(|(name, cell)| (name.clone(), cell.to_string())).collect()
         };
         let rows: Vec<_> = reader.get_row_iter(None).expect("rows").map(|row| cells(&row.expect("a row"))).collect();
         assert_eq!(rows.len(), 3 * GROUP + 1);
-        let names = ["robot", "verdict", "runs", "effect", "share", "parameters"];
+        let names = ["robot", "verdict", "runs", "group", "effect", "share", "parameters"];
         let row = |number: usize| names.map(|name| rows[number][name].as_str());
-        assert_eq!(row(0), ["\"robot-0\"", "\"known\"", "24", "null", "null", "null"]);
-        assert_eq!(row(1)[3..], ["\"slip\"", "0.75", r#""{"loss":0.25}""#]);
-        assert_eq!(row(2)[3..], ["\"scatter\"", "0.25", "null"]);
+        assert_eq!(row(0)[4..], ["\"slip\"", "0.75", r#""{"loss":0.25}""#]);
+        assert_eq!(row(1)[4..], ["\"scatter\"", "0.25", "null"]);
+        assert_eq!(row(2 * GROUP), ["\"robot-0\"", "\"known\"", "24", "2", "null", "null", "null"]);
+        assert_eq!(row(2 * GROUP + 1)[3], "null");
         assert_eq!(rows[3 * GROUP]["refused"], "\"robot.toml: is missing\"");
     }
 }

@@ -10,7 +10,6 @@ use super::kernel::Samples;
 use crate::chance::Generator;
 use crate::error::Result;
 use crate::genetic::{self, Settings};
-use crate::workers;
 
 /// Number of individuals that are evaluated as one piece of work.
 const TOGETHER: usize = 5;
@@ -91,11 +90,12 @@ impl<const N: usize> genetic::Problem for Weights<'_, N> {
         }
     }
 
-    fn fitness(&self, _: usize, population: &[Vec<f32>]) -> Result<Vec<f64>> {
-        let chunks: Vec<&[Vec<f32>]> = population.chunks(TOGETHER).collect();
+    fn together(&self) -> usize {
+        TOGETHER
+    }
+
+    fn fitness(&self, _: usize, _: usize, individuals: &[Vec<f32>]) -> Vec<f64> {
         let error = |genes: &Vec<f32>| self.samples.mean_squared_error(&self.template.network(genes));
-        let inverse_errors =
-            |chunk: usize| Ok(chunks[chunk].iter().map(|genes| 1.0 / error(genes)).collect::<Vec<f64>>());
-        Ok(workers::map(chunks.len(), inverse_errors)?.concat())
+        individuals.iter().map(|genes| 1.0 / error(genes)).collect()
     }
 }

@@ -21,7 +21,7 @@ use crate::files;
 /// How the file begins.
 pub const SIGN: &[u8] = br#"{"mindgap_checkpoint":"#;
 /// The version of this format.
-const FORMAT: u32 = 1;
+const FORMAT: u32 = 2;
 /// What is held back is written when it is this old,
 const HELD_FOR: Duration = Duration::from_secs(60);
 /// or so large, bytes.
@@ -207,8 +207,6 @@ fn record(reader: &mut impl Read, left: u64) -> Option<(Piece, usize)> {
 mod tests {
     use std::collections::BTreeMap;
 
-    use proptest::prelude::*;
-
     use super::*;
 
     fn task(seed: u64) -> Task {
@@ -246,28 +244,44 @@ mod tests {
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
     }
 
-    proptest! {
-        #[test]
-        fn of_a_torn_file_the_whole_pieces_are_left(share in 0.0f64..1.0, flips in any::<bool>()) {
-            let folder = tempfile::tempdir().unwrap();
-            let path = folder.path().join("a.checkpoint");
-            let mut bytes = written(&path);
-            let header = bytes.iter().position(|byte| *byte == b'\n').unwrap() + 1;
-            let at = header + (share * (bytes.len() - header) as f64) as usize;
-            if flips { bytes[at] ^= 1 } else { bytes.truncate(at) }
-            fs::write(&path, &bytes).unwrap();
-            let mut told = Vec::new();
-            let mut left = opened(&path, &mut told).unwrap();
-            prop_assert!(left.count() < 6);
-            for index in 0..left.count() as u32 {
-                prop_assert_eq!(left.recall::<Vec<f64>>((0, index)).unwrap().unwrap()[0], f64::from(index));
-            }
-            let is_torn = fs::metadata(&path).unwrap().len() < bytes.len() as u64;
-            prop_assert_eq!(told.len(), usize::from(is_torn));
-            // What is added comes after what is left, and the file is whole again.
-            let count = left.count();
-            left.keep((7, 7), &1u8).unwrap();
-            prop_assert_eq!(opened(&path, &mut Vec::new()).unwrap().count(), count + 1);
+    /// The ends of the pieces in a checkpoint, after that of its header.
+    fn ends(bytes: &[u8]) -> Vec<usize> {
+        let mut ends = vec![bytes.iter().position(|byte| *byte == b'\n').unwrap() + 1];
+        while let Some(length) = bytes.get(ends[ends.len() - 1] + 8..).and_then(|rest| rest.first_chunk()) {
+            ends.push(ends[ends.len() - 1] + HEAD + u32::from_le_bytes(*length) as usize);
+        }
+        assert_eq!(ends.last(), Some(&bytes.len()));
+        ends
+    }
+
+    /// What is left of a checkpoint with these bytes are its first pieces, so many; and it can be gone on with.
+    fn assert_left(bytes: &[u8], pieces: usize, is_torn: bool) {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.checkpoint");
+        fs::write(&path, bytes).unwrap();
+        let mut told = Vec::new();
+        let mut left = opened(&path, &mut told).unwrap();
+        assert_eq!((left.count(), told.len()), (pieces, usize::from(is_torn)));
+        for index in 0..pieces as u32 {
+            assert_eq!(left.recall::<Vec<f64>>((0, index)).unwrap().unwrap()[0], f64::from(index));
+        }
+        left.keep((7, 7), &1u8).unwrap();
+        assert_eq!(opened(&path, &mut told).unwrap().count(), pieces + 1);
+        assert_eq!(told.len(), usize::from(is_torn), "the file is whole again");
+    }
+
+    #[test]
+    fn wherever_it_is_cut_off_or_changed_the_pieces_before_are_left() {
+        let folder = tempfile::tempdir().unwrap();
+        let bytes = written(&folder.path().join("a.checkpoint"));
+        let ends = ends(&bytes);
+        assert_eq!(ends.len(), 7);
+        for at in ends[0]..bytes.len() {
+            let before = ends.iter().filter(|end| **end <= at).count() - 1;
+            assert_left(&bytes[..at], before, at != ends[before]);
+            let mut changed = bytes.clone();
+            changed[at] ^= 1 << (at % 8);
+            assert_left(&changed, before, true);
         }
     }
 

@@ -11,11 +11,14 @@ use rayon::Scope;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
+use super::ranks::Ranks;
 use super::{AHEAD, RUN};
 use crate::error::{Error, Result};
 
-/// How long the first rank waits for its own threads before it listens to others again.
-pub const GLANCE: Duration = Duration::from_micros(50);
+/// How long a rank waits, for its own threads or for others, before it listens again: at first,
+const GLANCE: Duration = Duration::from_micros(50);
+/// and at most, when nothing has come for a while.
+const LONGEST_WAIT: Duration = Duration::from_micros(400);
 /// The first rank.
 const HERE: usize = 0;
 
@@ -24,21 +27,38 @@ const HERE: usize = 0;
 pub enum Told<T> {
     /// A thread of a rank is free.
     Free(usize),
-    /// A rank has done a piece, and has that thread free.
+    /// A rank has done a piece.
     Done(usize, usize, Result<T>),
 }
 
 /// What a thread sends when a piece is done.
-type Sent<T> = (usize, thread::Result<Result<T>>);
+pub type Sent<T> = (usize, thread::Result<Result<T>>);
 
-/// Hands out pieces to threads and ranks, and gives them to `take` in order; on other ranks than the first does what is
-/// handed to them.
-pub fn hand_out<T: Serialize + DeserializeOwned + Send>(
+/// How long to wait for what is not there: longer each time, since looking takes time of processors that others need.
+pub struct Waiting(Duration);
+
+/// What other ranks have to do.
+#[derive(Default)]
+struct Helpers {
+    /// Threads of each that are at work,
+    busy: BTreeMap<usize, usize>,
+    /// and its pieces that are not done.
+    begun: BTreeMap<usize, usize>,
+}
+
+/// Hands out pieces, which `give` knows on the first rank, to threads and ranks, and gives what comes of them to `take` in
+/// order; on other ranks than the first does what is handed to them.
+pub fn hand_out<P, T>(
     count: usize,
     ahead: usize,
-    work: &(impl Fn(usize) -> Result<T> + Sync),
+    give: &impl Fn(usize) -> P,
+    work: &(impl Fn(usize, P) -> Result<T> + Sync),
     mut take: impl FnMut(usize, T) -> Result<()>,
-) -> Result<()> {
+) -> Result<()>
+where
+    P: Serialize + DeserializeOwned + Send,
+    T: Serialize + DeserializeOwned + Send,
+{
     let part = RUN.with_borrow_mut(|run| {
         run.parts += 1;
         run.parts
@@ -47,12 +67,12 @@ pub fn hand_out<T: Serialize + DeserializeOwned + Send>(
     let is_over = &AtomicBool::new(false);
     rayon::in_place_scope(|scope| {
         let (sender, results) = mpsc::channel();
-        let start = |index: usize| {
+        let start = |index: usize, piece: P| {
             let sender = sender.clone();
             scope.spawn(move |_: &Scope| {
                 if !is_over.load(Ordering::Relaxed) {
                     // Nobody listens any more when something else failed.
-                    let _ = sender.send((index, catch_unwind(AssertUnwindSafe(|| work(index)))));
+                    let _ = sender.send((index, catch_unwind(AssertUnwindSafe(|| work(index, piece)))));
                 }
             });
         };
@@ -63,17 +83,30 @@ pub fn hand_out<T: Serialize + DeserializeOwned + Send>(
         if let Some(helped) = helped {
             return helped;
         }
-        // Threads of one process have one queue, which is never to run dry; between ranks no piece waits for a busy one.
+        // Threads of one process have one queue, which is never to run dry; at the end no piece waits for a busy rank.
         let of_here = if has_ranks() { threads } else { AHEAD * threads };
         let mut free = vec![HERE; of_here];
+        let workers = threads * RUN.with_borrow(|run| run.ranks.as_ref().map_or(1, Ranks::count));
+        let mut helpers = Helpers::default();
         let (mut begun, mut waiting) = (0, BTreeMap::new());
         let mut piece = |next: usize| loop {
-            while begun < count.min(next + ahead) {
-                if !is_known(part, begun) {
-                    let Some(rank) = free.pop() else { break };
-                    if rank == HERE { start(begun) } else { hand(rank, begun)? }
+            let end = count.min(next + ahead);
+            while begun < end {
+                if is_known(part, begun) {
+                    begun += 1;
+                    continue;
                 }
-                begun += 1;
+                let Some(rank) = free.pop() else { break };
+                if rank == HERE {
+                    start(begun, give(begun));
+                    begun += 1;
+                    continue;
+                }
+                // While there are many, several go with one message: half of an even share, so that all end together.
+                let some = ((end - begun) / (2 * workers)).max(1);
+                let indices: Vec<usize> = (begun..end).filter(|index| !is_known(part, *index)).take(some).collect();
+                begun = indices.last().map_or(end, |last| last + 1);
+                helpers.hand(rank, indices.into_iter().map(|index| (index, give(index))).collect())?;
             }
             if let Some(piece) = recall(part, next)?.or_else(|| waiting.remove(&next)) {
                 return Ok(piece);
@@ -84,7 +117,9 @@ pub fn hand_out<T: Serialize + DeserializeOwned + Send>(
                     let piece = piece?;
                     keep(part, index, &piece)?;
                     waiting.insert(index, piece);
-                    free.push(rank);
+                    if rank == HERE || helpers.has_free_thread(rank) {
+                        free.push(rank);
+                    }
                 }
             }
         };
@@ -94,6 +129,38 @@ pub fn hand_out<T: Serialize + DeserializeOwned + Send>(
     })
 }
 
+impl Waiting {
+    /// Something came.
+    pub fn begin() -> Self {
+        Waiting(GLANCE)
+    }
+
+    /// How long to wait now.
+    pub fn next(&mut self) -> Duration {
+        let now = self.0;
+        self.0 = LONGEST_WAIT.min(2 * now);
+        now
+    }
+}
+
+impl Helpers {
+    /// Hands pieces to one thread of a rank.
+    fn hand<P: Serialize>(&mut self, rank: usize, pieces: Vec<(usize, P)>) -> Result<()> {
+        *self.busy.entry(rank).or_default() += 1;
+        *self.begun.entry(rank).or_default() += pieces.len();
+        RUN.with_borrow(|run| run.ranks.as_ref().map_or(Ok(()), |ranks| ranks.hand(rank, &pieces)))
+    }
+
+    /// Whether a rank that has done a piece has a thread without one.
+    fn has_free_thread(&mut self, rank: usize) -> bool {
+        let (busy, begun) = (self.busy.entry(rank).or_default(), self.begun.entry(rank).or_default());
+        *begun -= 1;
+        let is_free = *begun < *busy;
+        *busy -= usize::from(is_free);
+        is_free
+    }
+}
+
 /// A piece that a thread has done.
 pub fn unwound<T>((index, piece): Sent<T>) -> (usize, Result<T>) {
     (index, piece.unwrap_or_else(|panic| resume_unwind(panic)))
@@ -101,10 +168,6 @@ pub fn unwound<T>((index, piece): Sent<T>) -> (usize, Result<T>) {
 
 fn has_ranks() -> bool {
     RUN.with_borrow(|run| run.ranks.is_some())
-}
-
-fn hand(rank: usize, index: usize) -> Result<()> {
-    RUN.with_borrow(|run| run.ranks.as_ref().map_or(Ok(()), |ranks| ranks.hand(rank, index)))
 }
 
 /// What the next worker tells, here or elsewhere.
@@ -117,11 +180,12 @@ fn listen<T: DeserializeOwned>(part: u32, results: &Receiver<Sent<T>>) -> Result
         let Some(ranks) = &run.ranks else {
             return results.recv().map(here).map_err(|e| Error::new(format!("a piece of work is lost: {e}")));
         };
+        let mut waiting = Waiting::begin();
         loop {
             if let Some(told) = ranks.told(part)? {
                 return Ok(told);
             }
-            if let Ok(sent) = results.recv_timeout(GLANCE) {
+            if let Ok(sent) = results.recv_timeout(waiting.next()) {
                 return Ok(here(sent));
             }
         }

@@ -1,9 +1,8 @@
 //! Without the feature `mpi` there are no ranks.
 
 use std::sync::mpsc::Receiver;
-use std::thread;
 
-use super::handing_out::Told;
+use super::handing_out::{Sent, Told};
 use super::task::Task;
 use crate::error::Result;
 
@@ -35,17 +34,11 @@ impl Ranks {
         match *self {}
     }
 
-    pub fn help<T>(
-        &self,
-        _: u32,
-        _: usize,
-        _: impl Fn(usize),
-        _: &Receiver<(usize, thread::Result<Result<T>>)>,
-    ) -> Result<()> {
+    pub fn help<P, T>(&self, _: u32, _: usize, _: impl Fn(usize, P), _: &Receiver<Sent<T>>) -> Result<()> {
         match *self {}
     }
 
-    pub fn hand(&self, _: usize, _: usize) -> Result<()> {
+    pub fn hand<P>(&self, _: usize, _: &[(usize, P)]) -> Result<()> {
         match *self {}
     }
 

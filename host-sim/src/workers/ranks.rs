@@ -1,9 +1,9 @@
 //! Ranks: processes on one machine or many that `mpirun` started together, all with the same call of the command.
 //!
 //! Each takes the same way through the command; pieces of work are done by the one to which the first rank hands them,
-//! and the first alone writes, prints and asks. A rank asks for a piece for each of its threads, and for the next as one
-//! is done. Only the main thread speaks to MPI. It looks for messages now and then, and sleeps: waiting by MPI would
-//! take a whole processor.
+//! and the first alone writes, prints and asks. A rank asks for work for each of its threads, and for more as it is done.
+//! Only the main thread speaks to MPI. It looks for messages now and then, and sleeps: waiting by MPI would take a whole
+//! processor.
 
 use std::panic;
 use std::process;
@@ -18,7 +18,7 @@ use mpi::traits::*;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-use super::handing_out::{GLANCE, Told, unwound};
+use super::handing_out::{Sent, Told, Waiting, unwound};
 use super::task::Task;
 use crate::error::{Error, Result};
 
@@ -29,8 +29,8 @@ const GRACE: Duration = Duration::from_secs(10);
 const TASK: Tag = 1;
 /// a thread that is free, in a part of the run;
 const FREE: Tag = 2;
-/// the index of a piece to do;
-const PIECE: Tag = 3;
+/// pieces to do, with their indices;
+const PIECES: Tag = 3;
 /// what came of one;
 const DONE: Tag = 4;
 /// that all of a part are done;
@@ -123,34 +123,43 @@ impl Ranks {
     ///
     /// # Errors
     /// When a result cannot be sent.
-    pub fn help<T: Serialize>(
+    pub fn help<P: DeserializeOwned, T: Serialize>(
         &self,
         part: u32,
         threads: usize,
-        start: impl Fn(usize),
-        results: &Receiver<(usize, thread::Result<Result<T>>)>,
+        start: impl Fn(usize, P),
+        results: &Receiver<Sent<T>>,
     ) -> Result<()> {
         (0..threads).try_for_each(|_| self.send(0, FREE, &part))?;
+        let (mut begun, mut waiting) = (0, Waiting::begin());
         loop {
             while let Some((_, tag, bytes)) = self.look() {
                 if tag == OVER {
                     return Ok(());
                 }
-                start(decode(&bytes)?);
+                for (index, piece) in decode::<Vec<(usize, P)>>(&bytes)? {
+                    start(index, piece);
+                    begun += 1;
+                }
+                waiting = Waiting::begin();
             }
-            if let Ok(sent) = results.recv_timeout(GLANCE) {
+            // Nothing is handed to a rank all of whose threads are at work.
+            let sent = if begun < threads { results.recv_timeout(waiting.next()).ok() } else { results.recv().ok() };
+            if let Some(sent) = sent {
                 let (index, piece) = unwound(sent);
                 self.send(0, DONE, &(index, piece.map_err(|e| e.to_string())))?;
+                begun -= 1;
+                waiting = Waiting::begin();
             }
         }
     }
 
-    /// Hands a piece to a rank.
+    /// Hands pieces with their indices to a rank.
     ///
     /// # Errors
-    /// When it cannot be sent.
-    pub fn hand(&self, rank: usize, index: usize) -> Result<()> {
-        self.send(rank, PIECE, &index)
+    /// When they cannot be sent.
+    pub fn hand<P: Serialize>(&self, rank: usize, pieces: &[(usize, P)]) -> Result<()> {
+        self.send(rank, PIECES, &pieces)
     }
 
     /// Tells all that a part is over.
@@ -209,10 +218,11 @@ impl Ranks {
 
     /// The next message, whenever it comes.
     fn receive(&self) -> (usize, Tag, Vec<u8>) {
+        let mut waiting = Waiting::begin();
         loop {
             match self.look() {
                 Some(message) => return message,
-                None => thread::sleep(GLANCE),
+                None => thread::sleep(waiting.next()),
             }
         }
     }

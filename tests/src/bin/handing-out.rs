@@ -13,8 +13,8 @@ use rand::seq::IndexedRandom;
 
 const SEED: u64 = 1;
 /// From when a piece is done until the first rank looks for messages, and from when it sends the next one until the rank
-/// does: twice the time between two looks, and the network.
-const ON_THE_WAY: Duration = Duration::from_micros(200);
+/// does: the longest time between two looks, and the network.
+const ON_THE_WAY: Duration = Duration::from_micros(500);
 /// What the first rank does about one piece: it reads the message, keeps the piece, and sends the next.
 const SERVED_IN: Duration = Duration::from_micros(100);
 

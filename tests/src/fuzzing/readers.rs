@@ -1,16 +1,25 @@
 //! Every reader of what users give: it takes what it is given or refuses it, and what it takes holds.
 
+use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 use std::str;
 
-use mindgap_controller_export::brick::{self, Program, RunConfig, ScriptedWorld, Sonar};
+use mindgap_controller_export::names::BrickName;
+use mindgap_controller_export::wiring::{MotorPort, SensorPort};
+use mindgap_host_sim::built_in_robot::effects::ActiveEffect;
 use mindgap_host_sim::built_in_robot::{default_robot, four_obstacles};
+use mindgap_host_sim::challenge::Folder;
+use mindgap_host_sim::challenge::score::score;
+use mindgap_host_sim::challenge::seal::{Published, Sealed};
 use mindgap_host_sim::cli;
+use mindgap_host_sim::cli::kinds::{CALIBRATION, CHECKPOINT, CONTROLLER, FORMULA, PAGE, PROGRAM, REPORT, SIMULATOR};
+use mindgap_host_sim::effects::applied::AppliedEffect;
 use mindgap_host_sim::effects::own;
 use mindgap_host_sim::effects::own::expression::Expression;
 use mindgap_host_sim::effects::own::variables::Stage;
 use mindgap_host_sim::evolve::controller_file::ControllerFile;
+use mindgap_host_sim::files;
 use mindgap_host_sim::import::bag::{self, Choice};
 use mindgap_host_sim::import::brick_log::BrickLog;
 use mindgap_host_sim::import::mapping::Mapping;
@@ -21,6 +30,8 @@ use mindgap_host_sim::inspection::Inspection;
 use mindgap_host_sim::logs::{Logs, Robot, Run, Scene, readings, world_script};
 use mindgap_host_sim::simulator::Simulator;
 use mindgap_host_sim::trials::state::State;
+use mindgap_host_sim::workers::checkpoint::{Begin, Checkpoint};
+use mindgap_host_sim::workers::task::Task;
 
 use super::{Target, as_file};
 
@@ -58,7 +69,14 @@ pub const TARGETS: &[Target] = &[
     },
     Target { name: "world-script", feed: |bytes| drop(as_file("w.csv", bytes, world_script::read)) },
     Target { name: "defaults", feed: defaults },
-    Target { name: "executable", feed: executable },
+    Target { name: "answer", feed: answer },
+    Target { name: "seal", feed: |bytes| drop(as_file("sealed.json", bytes, files::read_json::<Vec<Sealed>>)) },
+    Target { name: "cases", feed: |bytes| drop(as_file("cases.csv", bytes, files::read_csv::<Published>)) },
+    Target { name: "added", feed: added },
+    Target { name: "checkpoint", feed: checkpoint },
+    Target { name: "kinds", feed: kinds },
+    Target { name: "effect", feed: effect },
+    Target { name: "wiring", feed: wiring },
 ];
 
 /// What is read of a run is what another parser reads, and is read again as it is written.
@@ -98,7 +116,8 @@ fn robot(bytes: &[u8]) {
 
 fn expression(bytes: &[u8]) {
     let Ok(text) = str::from_utf8(bytes) else { return };
-    let _ = Expression::compile(text, &["k"], Stage::Motion);
+    // What is compiled stays for as long as the program runs.
+    let _ = Expression::check(text, &["k"], Stage::Motion);
 }
 
 /// `mindgap.toml` beside logs.
@@ -111,9 +130,73 @@ fn defaults(bytes: &[u8]) {
     });
 }
 
-/// A program for a brick, which then runs.
-fn executable(bytes: &[u8]) {
-    let Ok(program) = Program::load(bytes) else { return };
-    let mut world = ScriptedWorld::sonar([Sonar::Echo(40), Sonar::Silent, Sonar::Hangs, Sonar::Echo(9)]);
-    brick::run(&program, &mut world, &RunConfig { run_ms: 500, limit_events: 1_000, ..RunConfig::default() });
+/// The diagnosis of a case, which is scored.
+fn answer(bytes: &[u8]) {
+    let sealed = Sealed {
+        case: "1".into(),
+        effects: vec!["motor_asymmetry=0.1".into()],
+        driving: "mixed".into(),
+        fresh_seed: 1,
+        salt: String::new(),
+    };
+    as_file("sealed.json", b"", |seal| {
+        let folder = Folder(seal.parent().expect("a folder"));
+        if !folder.answers().exists() {
+            let published = Published { case: "1".into(), robot: "1".into(), commitment: sealed.commitment() };
+            files::write_csv(&folder.cases(), &[published]).expect("a list of cases");
+            fs::create_dir(folder.answers()).expect("a folder");
+            fs::write(folder.added("1"), "[]").expect("no effects");
+        }
+        fs::write(seal, serde_json::to_vec(&[&sealed]).expect("a seal")).expect("a file");
+        fs::write(folder.answer("1"), bytes).expect("an answer");
+        let _ = score(folder.0, |_, _| {});
+    });
+}
+
+/// Effects that are applied to a simulator are resolved or refused.
+fn added(bytes: &[u8]) {
+    let Ok(added) = serde_json::from_slice::<Vec<AppliedEffect>>(bytes) else { return };
+    for effect in &added {
+        if let Some((candidate, values)) = effect.resolve() {
+            assert_eq!(candidate.variant.parameters.len(), values.len());
+        }
+    }
+}
+
+/// What is there of a run that was broken off: the pieces before what is torn come back, and others can be added.
+fn checkpoint(bytes: &[u8]) {
+    let task = Task::new("evolve".into(), BTreeMap::new(), &[], &[]);
+    as_file("a.checkpoint", bytes, |path| {
+        let open = || Checkpoint::open(path, &task, Begin::AtOnce, |_| {});
+        let Ok(mut checkpoint) = open() else { return };
+        let count = checkpoint.count();
+        let _ = checkpoint.recall::<Vec<f64>>((1, 0));
+        checkpoint.keep((u32::MAX, u32::MAX), &[1.0]).expect("room for a piece");
+        let of_both = open().expect("what was written").count();
+        assert!((count.max(1)..=count + 1).contains(&of_both), "{count} and one are {of_both}");
+    });
+}
+
+/// What a file at the place of an output is: what carries no sign is nothing of the command's.
+fn kinds(bytes: &[u8]) {
+    let is_any = [SIMULATOR, REPORT, CONTROLLER, PROGRAM, CALIBRATION, PAGE, FORMULA, CHECKPOINT]
+        .iter()
+        .fold(false, |is_any, kind| (kind.is_one)(bytes) || is_any);
+    assert!(!is_any || bytes.len() > 8);
+}
+
+/// An effect of the built-in robot is read again as it is shown.
+fn effect(bytes: &[u8]) {
+    let Ok(text) = str::from_utf8(bytes) else { return };
+    if let Ok(effect) = text.parse::<ActiveEffect>() {
+        assert_eq!(effect.to_string().parse(), Ok(effect));
+    }
+}
+
+fn wiring(bytes: &[u8]) {
+    let Ok(text) = str::from_utf8(bytes) else { return };
+    let _ = (text.parse::<MotorPort>(), text.parse::<SensorPort>());
+    if let Ok(name) = text.parse::<BrickName>() {
+        assert!(name.to_string().len() <= 19, "a brick has no room for {name}");
+    }
 }

@@ -1,10 +1,12 @@
-//! Two ways to one result: fixed point and floating point, many lanes and one.
+//! Two ways to one result: fixed point and floating point, many lanes and one, the core's
+//! elementary functions and those of `libm`.
 
 use std::array;
 use std::sync::LazyLock;
 
 use fixed::types::I16F16;
 use mindgap_core::controller::{Controller, TUPLES, Tuple, When};
+use mindgap_core::maths;
 use mindgap_core::network::Network;
 use mindgap_host_sim::built_in_robot::{default_robot, four_obstacles, record, training_room};
 use mindgap_host_sim::learn::train::{TABLE_ONE, Trainer, train};
@@ -16,11 +18,16 @@ use mindgap_host_sim::simulator::{Noise, Simulator};
 use super::Target;
 use crate::plausible_networks::{PlausibleNetworks, plausible_networks};
 
-pub const TARGETS: &[Target] =
-    &[Target { name: "fixed-and-float", feed: fixed_and_float }, Target { name: "lanes-and-one", feed: lanes_and_one }];
+pub const TARGETS: &[Target] = &[
+    Target { name: "fixed-and-float", feed: fixed_and_float },
+    Target { name: "lanes-and-one", feed: lanes_and_one },
+    Target { name: "maths", feed: elementary },
+];
 
 /// Bytes of a controller: six tuples of a left and a right command, a test and a threshold.
 const CONTROLLER_BYTES: usize = 4 * TUPLES;
+/// Distance of neighbouring numbers in 32 bits, at most, as a share of them.
+const ULP: f64 = f32::EPSILON as f64;
 /// Rooms for so many steps, and no more.
 const MOST_STEPS: u16 = 20;
 
@@ -69,6 +76,31 @@ fn lanes_and_one(bytes: &[u8]) {
         .collect();
     for (request, outcome) in requests.iter().zip(environment.run(&requests)) {
         assert_eq!(environment.trace(*request).0, outcome);
+    }
+}
+
+/// The core's elementary functions, of any bits, keep the bounds that it states.
+fn elementary(bytes: &[u8]) {
+    for four in bytes.as_chunks::<4>().0 {
+        let x = f32::from_le_bytes(*four);
+        let (sin, cos, exp2, log2) = (maths::sin(x), maths::cos(x), maths::exp2(x), maths::log2(x));
+        let exact = f64::from(x);
+        let near = |found: f32, expected: f64, bound: f64| {
+            assert!((f64::from(found) - expected).abs() <= bound, "{found} and {expected} of {x}");
+        };
+        if x.abs() <= 1000.0 {
+            let bound = 2f64.powi(-22) + 2f64.powi(-23) * exact.abs();
+            near(sin, libm::sin(exact), bound);
+            near(cos, libm::cos(exact), bound);
+        }
+        if x.abs() <= 126.0 {
+            let expected = libm::exp2(exact);
+            near(exp2, expected, 3.0 * ULP * expected);
+        }
+        if x.is_normal() && x > 0.0 {
+            let expected = libm::log2(exact);
+            near(log2, expected, (3.0 * ULP * expected.abs()).max(2f64.powi(-24)));
+        }
     }
 }
 

@@ -1,10 +1,10 @@
 //! Commands that are ended from outside, run out of something, or meet another at the same place.
 
-use std::fs;
+use std::fs::{self, File};
 use std::os::unix::process::ExitStatusExt;
 use std::process::{Child, Command, Stdio};
 use std::thread::sleep;
-use std::time::{Duration, Instant};
+use std::time::{Duration, Instant, SystemTime};
 
 use mindgap_tests::command::{Workshop, program};
 
@@ -66,6 +66,38 @@ fn processes_at_one_place_do_not_mix() {
         assert_one();
         fs::remove_dir_all(workshop.path().join("logs")).expect("a folder");
     }
+}
+
+#[test]
+fn of_what_several_processes_write_into_one_file_one_stays() {
+    let workshop = Workshop::with_logs();
+    let seeds = [1, 2, 3];
+    let train = |out: &str, seed: u32| workshop.command(&format!("train logs --out {out} --seed {seed} -q"));
+    let alone = seeds.map(|seed| {
+        assert!(train("alone.json", seed).status().expect("it starts").success());
+        workshop.bytes("alone.json")
+    });
+    let children = seeds.map(|seed| train("sim.json", seed).spawn().expect("it starts"));
+    children.into_iter().for_each(|mut child| assert!(child.wait().expect("it ends").success()));
+    assert!(alone.contains(&workshop.bytes("sim.json")));
+    assert_eq!(temporary(&workshop), 0);
+}
+
+/// What was written before the clock was set back is of tomorrow.
+#[test]
+fn a_clock_that_is_set_back_changes_nothing() {
+    let workshop = Workshop::with_logs();
+    let unchanged = workshop.copy();
+    workshop.write(".mindgap-AbCdEf.tmp", "left by a process that was killed");
+    let tomorrow = SystemTime::now() + Duration::from_secs(24 * 3600);
+    for (path, _) in workshop.listing() {
+        File::open(path).and_then(|file| file.set_modified(tomorrow)).expect("a file");
+    }
+    for folder in [&workshop, &unchanged] {
+        folder.done("train logs --out sim.json");
+    }
+    assert_eq!(workshop.listing().len(), unchanged.listing().len(), "what was left is gone");
+    assert_eq!(workshop.bytes("sim.json"), unchanged.bytes("sim.json"));
 }
 
 /// With whatever little, a command does its work or says in a line why not.

@@ -83,6 +83,16 @@ fn slow_commands_fail_at_some() {
     }
 }
 
+/// What writes one result after the other, and what keeps a checkpoint: what is there is complete, and goes on.
+#[test]
+fn long_commands_fail_at_some() {
+    let workshop = trained();
+    workshop.write("scene.toml", SCENE);
+    assert_whole(&workshop, "evolve sim.json --scene scene.toml --max-steps 5 --paper --out c.toml", FEW, AllOrNothing);
+    workshop.done("challenge make --cases 2 --out blind");
+    assert_whole(&workshop, "challenge answer blind", FEW, Stages);
+}
+
 /// Files that are late are the same files.
 #[test]
 fn a_slow_network_folder_changes_nothing() {

@@ -25,6 +25,19 @@ impl Expression {
     /// # Errors
     /// What is wrong with it, in one line.
     pub fn compile(text: &str, parameters: &[&'static str], stage: Stage) -> Result<Self, String> {
+        let variables = Self::check(text, parameters, stage)?;
+        // Only what is sound is kept for as long as the program runs.
+        let text: &'static str = String::from(text).leak();
+        let code = vec![Instruction::default(); text.len() + 1].leak();
+        let program = nanoexpr::compile(text, code).map_err(|error| told(text, &error))?;
+        Ok(Expression { program, variables, parameters: parameters.to_vec() })
+    }
+
+    /// The variables of a text that can be compiled for a stage.
+    ///
+    /// # Errors
+    /// What is wrong with it, in one line.
+    pub fn check(text: &str, parameters: &[&str], stage: Stage) -> Result<Vec<&'static Variable>, String> {
         if text.len() > LONGEST {
             return Err(format!("is longer than {LONGEST} characters"));
         }
@@ -44,11 +57,7 @@ impl Expression {
         let mut code = vec![Instruction::default(); text.len() + 1];
         let _: Program<f64> = nanoexpr::compile(text, &mut code).map_err(|error| told(text, &error))?;
         know_functions(text)?;
-        // Only what is sound is kept for as long as the program runs.
-        let text: &'static str = String::from(text).leak();
-        let code = vec![Instruction::default(); text.len() + 1].leak();
-        let program = nanoexpr::compile(text, code).map_err(|error| told(text, &error))?;
-        Ok(Expression { program, variables, parameters: parameters.to_vec() })
+        Ok(variables)
     }
 
     /// Whether a parameter or variable is in it.
