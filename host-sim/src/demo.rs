@@ -137,7 +137,7 @@ fn fill(out: &Path, seed: u64, watch: impl Fn(Stage)) -> Result<Summary> {
     let simulator =
         train::train(&logs, &Trainer::Fast, &TABLE_ONE, of(Purpose::Training), |p| watch(Stage::Training(p)))?;
     simulator.write(&out.join("simulator.json"))?;
-    let evaluation = accuracy::evaluate(&simulator, &held_out)?;
+    let evaluation = accuracy::evaluate(&simulator, &held_out, |_, _| ())?;
     files::write_json(&out.join("evaluation.json"), &evaluation)?;
     let demo = DemoRun { out, simulator: &simulator, scene: &scene, watch: &watch };
     let trials = (0..scene.starts.len())

@@ -5,6 +5,7 @@
 //! [`begin`] and [`end`] stand around a command; without them there are threads alone, and no checkpoint.
 
 pub mod checkpoint;
+pub mod counter;
 mod handing_out;
 #[cfg(not(feature = "mpi"))]
 mod no_ranks;

@@ -24,15 +24,22 @@ struct FileStreams {
 }
 
 /// Reads files and joins them into recordings: a file that holds commands and poses is one by itself; of others the first
-/// with commands goes with the first with poses and the first with readings, and so on.
+/// with commands goes with the first with poses and the first with readings, and so on. `watch` is told how
+/// many of the files are read.
 ///
 /// # Errors
 /// When a file cannot be read or understood, or when there are not as many of one kind as of the other.
-pub fn recordings(files: &[PathBuf], mapping: &Mapping, units: &Units) -> Result<Vec<Recording>> {
+pub fn recordings(
+    files: &[PathBuf],
+    mapping: &Mapping,
+    units: &Units,
+    watch: impl Fn(usize, usize),
+) -> Result<Vec<Recording>> {
     mapping.check(files)?;
     let mut whole = Vec::new();
     let [mut commands, mut poses, mut readings] = [const { Vec::<FileStreams>::new() }; 3];
-    for file in files {
+    for (file, before) in files.iter().zip(0..) {
+        watch(before, files.len());
         let streams = FileStreams::read(file, mapping, units)?;
         match (&streams.commands, &streams.poses) {
             (Some(_), Some(_)) => whole.push(streams),
@@ -170,7 +177,7 @@ mod tests {
         let folder = tempfile::tempdir().expect("a folder");
         let files: Vec<PathBuf> = texts.iter().map(|(name, _)| folder.path().join(name)).collect();
         files.iter().zip(texts).for_each(|(file, (_, text))| files::write(file, text).expect("written"));
-        recordings(&files, &Mapping::default(), &Units::default())
+        recordings(&files, &Mapping::default(), &Units::default(), |_, _| ())
     }
 
     #[test]
