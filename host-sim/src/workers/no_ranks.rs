@@ -27,7 +27,7 @@ impl Ranks {
         match *self {}
     }
 
-    pub fn agree(&self, _: Result<Task>) -> Result<Task> {
+    pub fn agree(&self, _: &Task) -> Result<()> {
         match *self {}
     }
 
