@@ -139,3 +139,28 @@ fn of_networks(
         Outcomes { none: known * (1.0 - echo) + 0.5 * P_RAND, components, range_cm }
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use std::sync::atomic::{AtomicUsize, Ordering};
+
+    use super::*;
+    use crate::built_in_robot::{default_robot, record, training_room};
+    use crate::logs::Row;
+
+    #[test]
+    fn a_model_is_asked_as_often_as_progress_counts() {
+        let driven = record(&default_robot(), &training_room(), 3, 8, &[], 1).expect("logs");
+        let mut scanned = driven.clone();
+        let place = driven.runs[0].rows.iter().find_map(|row| row.pose);
+        scanned.runs[0].rows = driven.runs[0].rows.iter().map(|row| Row { pose: place, ..row }).collect();
+        for logs in [driven, scanned] {
+            let times = AtomicUsize::new(0);
+            nats(&logs, |_| {
+                times.fetch_add(1, Ordering::Relaxed);
+                Outcomes { none: 0.5, components: Vec::new(), range_cm: [5.0, 240.0] }
+            });
+            assert_eq!(times.into_inner(), asked(&Scans::of(&logs)));
+        }
+    }
+}
