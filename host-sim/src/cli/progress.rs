@@ -24,8 +24,9 @@ pub fn is_quiet() -> bool {
 
 /// Shows that a command is at work, and for how long already.
 pub fn begin(command: String) {
-    SPINNER.set_message(command);
+    // What is said before it is one of all would be drawn even when nothing is to be.
     add(&SPINNER, "{spinner} {msg} [{elapsed}]");
+    SPINNER.set_message(command);
 }
 
 /// Takes away what [`begin`] shows.
