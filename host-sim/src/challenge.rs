@@ -15,7 +15,6 @@ pub mod seal;
 pub mod sensitivity;
 
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Paths within the folder of a challenge (docs/formats.md, "A challenge").
 pub struct Folder<'a>(pub &'a Path);
@@ -59,22 +58,5 @@ impl Folder<'_> {
     /// The simulator of a robot, as learned for the answers.
     pub fn simulator(&self, robot: &str) -> PathBuf {
         self.answers().join(format!("simulator-{robot}.json"))
-    }
-}
-
-/// Counts cases that are done on any thread, and tells it, with how many there are.
-struct Counter<W> {
-    done: AtomicUsize,
-    of: usize,
-    watch: W,
-}
-
-impl<W: Fn(usize, usize)> Counter<W> {
-    fn new(of: usize, watch: W) -> Self {
-        Counter { done: AtomicUsize::new(0), of, watch }
-    }
-
-    fn one_more(&self) {
-        (self.watch)(self.done.fetch_add(1, Ordering::Relaxed) + 1, self.of);
     }
 }

@@ -33,6 +33,7 @@ mod record;
 mod signals;
 mod simulate;
 mod table;
+mod textbook;
 mod train;
 mod trials;
 mod voice;

@@ -28,6 +28,7 @@ use crate::learn::train::{self, TABLE_ONE, Trainer};
 use crate::logs::Scene;
 use crate::pictures;
 use crate::report::paths::{PathPanel, Trace};
+use crate::simulator::ensemble::Robots;
 use crate::simulator::environment::Environment;
 use crate::simulator::rollout_report::RolloutReport;
 use crate::simulator::{Noise, Simulator};
@@ -112,15 +113,13 @@ struct Trial {
 /// When `out` cannot be written.
 pub fn run(out: &Path, seed: u64, watch: impl Fn(Stage)) -> Result<Summary> {
     let made = RefCell::new(Vec::new());
-    let mut summary = None;
     let is_ours = |name: &str| made.borrow().iter().any(|made| made == name);
     files::write_folder(out, is_ours, |fresh| {
-        summary = Some(fill(fresh, seed, watch)?);
+        let summary = fill(fresh, seed, watch)?;
         let entries = fs::read_dir(fresh).map_err(|e| Error::in_file(out, format!("cannot be read: {e}")))?;
         made.borrow_mut().extend(entries.flatten().map(|entry| entry.file_name()));
-        Ok(())
-    })?;
-    summary.ok_or_else(|| Error::in_file(out, "was not filled"))
+        Ok(summary)
+    })
 }
 
 fn fill(out: &Path, seed: u64, watch: impl Fn(Stage)) -> Result<Summary> {
@@ -137,9 +136,10 @@ fn fill(out: &Path, seed: u64, watch: impl Fn(Stage)) -> Result<Summary> {
     let simulator =
         train::train(&logs, &Trainer::Fast, &TABLE_ONE, of(Purpose::Training), |p| watch(Stage::Training(p)))?;
     simulator.write(&out.join("simulator.json"))?;
-    let evaluation = accuracy::evaluate(&simulator, &held_out)?;
+    let evaluation = accuracy::evaluate(&simulator, &held_out, |_, _| ())?;
     files::write_json(&out.join("evaluation.json"), &evaluation)?;
-    let demo = DemoRun { out, simulator: &simulator, scene: &scene, watch: &watch };
+    let robots = simulator.robots(0, of(Purpose::Evolution));
+    let demo = DemoRun { out, simulator: &simulator, robots: robots.as_ref(), scene: &scene, watch: &watch };
     let trials = (0..scene.starts.len())
         .map(|start| demo.start(start, [Purpose::Evolution, Purpose::Simulation, Purpose::Trial].map(of)))
         .collect::<Result<Vec<_>>>()?;
@@ -162,6 +162,8 @@ fn fill(out: &Path, seed: u64, watch: impl Fn(Stage)) -> Result<Summary> {
 struct DemoRun<'a, W> {
     out: &'a Path,
     simulator: &'a Simulator,
+    /// Those that the logs leave possible.
+    robots: Option<&'a Robots>,
     scene: &'a Scene,
     watch: &'a W,
 }
@@ -172,9 +174,7 @@ impl<W: Fn(Stage)> DemoRun<'_, W> {
     fn start(&self, start: usize, [evolution, simulation, trial]: [u64; 3]) -> Result<Trial> {
         let pose = self.scene.starts[start];
         let environment = Environment::new(self.simulator, self.scene, pose, Noise::Learned)?.with_beam(self.simulator);
-        // The robot in the middle of those that the logs leave possible, as for `mindgap evolve`.
-        let robots = self.simulator.robots(0, evolution);
-        let environment = &robots.iter().fold(environment, |any, robots| any.of_robot(&robots.mean));
+        let environment = &environment.of_middle(self.robots);
         let target_cm = self.scene.target_cm.ok_or_else(|| Error::new("the scene has no target"))?;
         let decoder = GenotypeDecoder::new(self.simulator, MAX_STEPS);
         let seed = derive(evolution, &[start as u64]);

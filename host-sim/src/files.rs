@@ -20,7 +20,7 @@ use serde::de::DeserializeOwned;
 pub use leftovers::remove_ours as remove_temporary;
 pub use text::{NO_UTF8, TextFile, line_at, read_text};
 pub use words::did_you_mean;
-pub use write::{is_stream, leave_writing, make_folder, to_standard_output, write, write_folder};
+pub use write::{is_stream, leave_writing, make_folder, reason, to_standard_output, write, write_folder};
 
 use crate::error::{Error, Result};
 

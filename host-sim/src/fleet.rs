@@ -35,6 +35,8 @@ use crate::workers;
 
 /// The file of the answer within a fleet's folder.
 pub const ANSWER: &str = "fleet.json";
+/// The table within it, where it is written.
+pub const TABLE: &str = "robots.parquet";
 /// The folder of the diagnoses within it.
 pub const DIAGNOSES: &str = "diagnoses";
 
@@ -63,7 +65,7 @@ pub fn diagnose(
         files::make_folder(&diagnoses)?;
     }
     #[cfg(feature = "parquet")]
-    let mut table = table::Table::at(&folder.join(table::FILE));
+    let mut table = table::Table::at(&folder.join(TABLE));
     let mut tally = Tally::new(request.method.catalogue);
     let count = listing.names.len();
     let work = |index: usize| Ok(examined(source, &listing.names[index], request));

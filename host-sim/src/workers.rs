@@ -5,6 +5,7 @@
 //! [`begin`] and [`end`] stand around a command; without them there are threads alone, and no checkpoint.
 
 pub mod checkpoint;
+pub mod counter;
 mod handing_out;
 #[cfg(not(feature = "mpi"))]
 mod no_ranks;
@@ -91,12 +92,11 @@ pub fn go_alone() {
 ///
 /// # Errors
 /// When other ranks have another task, or the checkpoint has, or it cannot be read or written.
-pub fn begin(task: Result<Task>, checkpoint: Option<(&Path, Begin)>, warn: impl FnMut(String)) -> Result<usize> {
+pub fn begin(task: Task, checkpoint: Option<(&Path, Begin)>, warn: impl FnMut(String)) -> Result<usize> {
     RUN.with_borrow_mut(|run| {
-        let task = match &run.ranks {
-            Some(ranks) => ranks.agree(task)?,
-            None => task?,
-        };
+        if let Some(ranks) = &run.ranks {
+            ranks.agree(&task)?;
+        }
         if let Some((path, begin)) = checkpoint.filter(|_| run.ranks.as_ref().is_none_or(Ranks::is_first)) {
             run.checkpoint = Some(Checkpoint::open(path, &task, begin, warn)?);
         }

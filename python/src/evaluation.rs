@@ -106,7 +106,7 @@ impl Evaluation {
 #[pyfunction]
 pub fn evaluate(py: Python<'_>, simulator: &Simulator, logs: &Logs) -> PyResult<Evaluation> {
     let sound = logs.sound(py, Some(&simulator.inner))?;
-    let evaluation = py.detach(|| accuracy::evaluate(&simulator.inner, &sound)).map_err(raised)?;
+    let evaluation = py.detach(|| accuracy::evaluate(&simulator.inner, &sound, |_, _| ())).map_err(raised)?;
     let names = [simulator.name.clone(), logs.name()];
     Ok(Evaluation { evaluation, simulator: simulator.inner.clone(), logs: sound, names })
 }

@@ -159,7 +159,7 @@ pub fn simulate(
         runs,
         seed,
     };
-    let rollouts = py.detach(|| trial.run()).map_err(raised)?;
+    let rollouts = py.detach(|| trial.run(|_, _| ())).map_err(raised)?;
     let controller = controller.file.controller.clone();
     let names = [simulator.name.clone(), "a controller from Python".into()];
     Ok(Simulation { rollouts, controller, robot, scene, names, start, pose, seed })

@@ -76,6 +76,34 @@ function targetMark({ target }) {
   });
 }
 
+/** Shares in percent, one a row below its name; `marks` draw them, at the number of the row. */
+function namedShares(rows, width, label, marks) {
+  return Plot.plot({
+    width,
+    height: 50 * rows.length + 50,
+    marginLeft: 8,
+    marginRight: 16,
+    marginTop: 6,
+    marginBottom: 40,
+    x: { domain: [0, 100], grid: true, label, labelAnchor: "right" },
+    y: { type: "band", domain: rows.map((_, i) => i), axis: null, padding: 0.55, paddingOuter: 0.35 },
+    marks: [
+      ...marks,
+      Plot.text(rows, {
+        x: 0,
+        y: (_, i) => i,
+        dy: -20,
+        textAnchor: "start",
+        fontSize: 13,
+        lineWidth: width / 13 - 4,
+        textOverflow: "ellipsis",
+        text: (row) => `${percent(row.share)}  ${row.name}`,
+        title: (row) => row.name,
+      }),
+    ],
+  });
+}
+
 function draw(place) {
   const width = Math.floor(place.clientWidth);
   if (width === 0 || Number(place.dataset.drawn) === width) return;

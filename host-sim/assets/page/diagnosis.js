@@ -2,44 +2,23 @@
 // The charts of a diagnosis.
 
 charts.budget = (width) =>
-  Plot.plot({
-    width,
-    height: 50 * page.budget.length + 50,
-    marginLeft: 4,
-    marginRight: 16,
-    marginTop: 6,
-    marginBottom: 40,
-    x: { domain: [0, 100], grid: true, label: "share of the gap (%) →", labelAnchor: "right" },
-    y: { type: "band", domain: page.budget.map((_, i) => i), axis: null, padding: 0.55, paddingOuter: 0.35 },
-    marks: [
-      Plot.barX(page.budget, {
-        x: (p) => 100 * p.share,
-        y: (_, i) => i,
-        fill: (p) => (p.named ? "var(--effects)" : p.id === "scatter" ? "var(--simulator)" : "var(--quiet)"),
-      }),
-      Plot.ruleY(page.budget, {
-        x1: (p) => 100 * p.ci95[0],
-        x2: (p) => 100 * p.ci95[1],
-        y: (_, i) => i,
-        strokeWidth: 2,
-      }),
-      Plot.tickX(
-        page.budget.flatMap((p, i) => p.ci95.map((end) => ({ end, i }))),
-        { x: (e) => 100 * e.end, y: "i", insetTop: 5, insetBottom: 5, strokeWidth: 2 },
-      ),
-      Plot.text(page.budget, {
-        x: 0,
-        y: (_, i) => i,
-        dy: -20,
-        textAnchor: "start",
-        fontSize: 13,
-        lineWidth: width / 13 - 4,
-        textOverflow: "ellipsis",
-        text: (p) => `${percent(p.share)}  ${p.name}`,
-        title: (p) => p.name,
-      }),
-    ],
-  });
+  namedShares(page.budget, width, "share of the gap (%) →", [
+    Plot.barX(page.budget, {
+      x: (p) => 100 * p.share,
+      y: (_, i) => i,
+      fill: (p) => (p.named ? "var(--effects)" : p.id === "scatter" ? "var(--simulator)" : "var(--quiet)"),
+    }),
+    Plot.ruleY(page.budget, {
+      x1: (p) => 100 * p.ci95[0],
+      x2: (p) => 100 * p.ci95[1],
+      y: (_, i) => i,
+      strokeWidth: 2,
+    }),
+    Plot.tickX(
+      page.budget.flatMap((p, i) => p.ci95.map((end) => ({ end, i }))),
+      { x: (e) => 100 * e.end, y: "i", insetTop: 5, insetBottom: 5, strokeWidth: 2 },
+    ),
+  ]);
 
 /** Logged minus predicted along a covariate, for one or two kinds of prediction. */
 function residuals(width, { depends_on, unit }, kinds) {

@@ -2,45 +2,24 @@
 // The charts of a fleet, and its table, which sorts by the column that is clicked.
 
 charts.frequencies = (width) =>
-  Plot.plot({
-    width,
-    height: 50 * page.frequencies.length + 50,
-    marginLeft: 8,
-    marginRight: 16,
-    marginTop: 6,
-    marginBottom: 40,
-    x: { domain: [0, 100], grid: true, label: "robots that have it (%) →", labelAnchor: "right" },
-    y: { type: "band", domain: page.frequencies.map((_, i) => i), axis: null, padding: 0.55, paddingOuter: 0.35 },
-    marks: [
-      Plot.ruleY(page.frequencies, {
-        x1: (f) => 100 * f.ci95[0],
-        x2: (f) => 100 * f.ci95[1],
-        y: (_, i) => i,
-        stroke: "var(--effects)",
-        strokeWidth: 4,
-        strokeOpacity: 0.5,
-      }),
-      Plot.dot(page.frequencies, {
-        x: (f) => 100 * f.share,
-        y: (_, i) => i,
-        r: 6,
-        fill: "var(--paper)",
-        stroke: "var(--effects)",
-        strokeWidth: 2.5,
-      }),
-      Plot.text(page.frequencies, {
-        x: 0,
-        y: (_, i) => i,
-        dy: -20,
-        textAnchor: "start",
-        fontSize: 13,
-        lineWidth: width / 13 - 4,
-        textOverflow: "ellipsis",
-        text: (f) => `${percent(f.share)}  ${f.name}`,
-        title: (f) => f.name,
-      }),
-    ],
-  });
+  namedShares(page.frequencies, width, "robots that have it (%) →", [
+    Plot.ruleY(page.frequencies, {
+      x1: (f) => 100 * f.ci95[0],
+      x2: (f) => 100 * f.ci95[1],
+      y: (_, i) => i,
+      stroke: "var(--effects)",
+      strokeWidth: 4,
+      strokeOpacity: 0.5,
+    }),
+    Plot.dot(page.frequencies, {
+      x: (f) => 100 * f.share,
+      y: (_, i) => i,
+      r: 6,
+      fill: "var(--paper)",
+      stroke: "var(--effects)",
+      strokeWidth: 2.5,
+    }),
+  ]);
 
 charts.groups = (width) =>
   Plot.plot({

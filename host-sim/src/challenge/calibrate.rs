@@ -8,7 +8,6 @@ mod fitting;
 
 use serde::{Deserialize, Serialize};
 
-use super::Counter;
 use super::bench::Bench;
 use super::cases::Case;
 use crate::error::{Error, Result};
@@ -18,6 +17,7 @@ use crate::gap::diagnose::{confirmed, statistics};
 use crate::gap::explain::explained_fraction;
 use crate::gap::fit::Gain;
 use crate::workers;
+use crate::workers::counter::Counter;
 
 /// What is measured in one case.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -6,8 +6,8 @@ use std::path::Path;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
+use super::Folder;
 use super::seal::{Published, Sealed};
-use super::{Counter, Folder};
 use crate::built_in_robot::{ActiveEffect, Driving, Effect, record_driving};
 use crate::effects::applied::AppliedEffect;
 use crate::error::{Error, Result};
@@ -16,6 +16,7 @@ use crate::gap::diagnose::closed;
 use crate::gap::diagnosis::Verdict;
 use crate::logs::Logs;
 use crate::simulator::Simulator;
+use crate::workers::counter::Counter;
 
 /// Largest number of rivals beside the first effect in a set that still counts as an answer.
 const MOST_RIVALS: usize = 3;

@@ -6,7 +6,7 @@ use clap::Args;
 use serde::Serialize;
 
 use super::table::{self, number};
-use super::{Run, kinds, progress};
+use super::{Run, kinds, progress, textbook};
 use crate::adapt::{Adapted, CommandBias, Gap, Lesson, adapt};
 use crate::error::{Error, Result};
 use crate::evolve::chance::{Chance, Judge, ROBOTS, RUNS};
@@ -68,7 +68,7 @@ impl Run for Adapt {
     }
 
     fn run(&self) -> Result<String> {
-        let given = Simulator::read(&self.sim)?;
+        let given = textbook::simulator(&self.sim)?;
         let mut simulator = given.clone();
         let mut lessons = Vec::new();
         let bar = progress::shares();
@@ -76,8 +76,7 @@ impl Run for Adapt {
             let logs = super::read_sound_logs(folder)?;
             let watch = |stage: Stage| {
                 let share = (f64::from(before) + stage.share_before()) / self.logs.len() as f64;
-                bar.set_position((100.0 * share) as u64);
-                bar.set_message(format!("{}: {}", folder.display(), stage.words()));
+                progress::at(&bar, share, format!("{}: {}", folder.display(), stage.words()));
             };
             let adapted = adapt(&simulator, &logs, self.seed, watch).map_err(|error| error.or_in_file(folder))?;
             let Adapted { simulator: better, lesson } = adapted;

@@ -10,7 +10,7 @@ use mindgap_controller_export::brick::{self, Program, Report, RunConfig, Scripte
 use mindgap_controller_export::wiring::{MotorPort, SensorPort, Wiring};
 
 use super::evolve::start_of;
-use super::{Run, kinds};
+use super::{Run, kinds, textbook};
 use crate::built_in_robot::{BuiltInRobot, default_robot};
 use crate::chance::generator;
 use crate::error::{Error, Result};
@@ -22,10 +22,10 @@ use crate::logs::{self, Robot, Scene, readings};
 use crate::on_board::{OnBoard, Vehicle};
 use crate::report::paths::{PathPanel, Trace};
 use crate::report::{Figure, paths};
+use crate::simulator::Noise;
 use crate::simulator::body::SimulatedBody;
 use crate::simulator::environment::Environment;
 use crate::simulator::rollout::REACHED_CM;
-use crate::simulator::{Noise, Simulator};
 
 /// Run a compiled program without a brick, and tell what it does: motors, tones, text and files.
 ///
@@ -142,7 +142,7 @@ impl Brick {
             return Err(Error::in_file(figure, "is no name of a picture: it has to end with .svg or .png"));
         }
         let scene = Scene::read(path)?;
-        let simulator = self.sim.as_deref().map(Simulator::read).transpose()?;
+        let simulator = self.sim.as_deref().map(textbook::simulator).transpose()?;
         let robot = simulator.as_ref().map_or_else(default_robot, |simulator| simulator.robot);
         let start = start_of(&scene, self.start, &robot, path)?;
         let mut rng = generator(self.seed, &[self.start as u64]);

@@ -4,12 +4,11 @@ use std::path::PathBuf;
 
 use clap::{Args, value_parser};
 
-use super::{Run, kinds, progress, table};
+use super::{Run, kinds, progress, table, textbook};
 use crate::crosscheck::{self, Divergence, NetworkCheck, Networks, RunState, Runs, Trials};
 use crate::error::Result;
 use crate::evolve::controller_file::ControllerFile;
 use crate::files::places::Places;
-use crate::simulator::Simulator;
 
 /// Check that a board without floating point computes what the PC does: fixed point against float.
 #[derive(Args)]
@@ -39,7 +38,7 @@ impl Run for Crosscheck {
     }
 
     fn run(&self) -> Result<String> {
-        let simulator = Simulator::read(&self.sim)?;
+        let simulator = textbook::simulator(&self.sim)?;
         let read = |path: &PathBuf| ControllerFile::read_for(path, &simulator.robot);
         let controller = self.controller.as_ref().map(read).transpose()?.map(|file| file.controller);
         let logs = super::read_logs_of(&simulator, &self.logs)?;

@@ -51,8 +51,7 @@ impl Run for Demo {
     fn run(&self) -> Result<String> {
         let bar = progress::shares();
         let watch = |stage: Stage| {
-            bar.set_position((100.0 * share_before(&stage)) as u64);
-            bar.set_message(match stage {
+            let words = match stage {
                 Stage::Recording => "recording logs of the built-in robot".into(),
                 Stage::Training(p) => progress::training_words(p.network, p.evaluations),
                 Stage::Evolving { start, generation } => {
@@ -60,7 +59,8 @@ impl Run for Demo {
                 }
                 Stage::Drawing => "drawing".into(),
                 Stage::Repairing { trial } => format!("a motor got weak: trial {trial} on the robot"),
-            });
+            };
+            progress::at(&bar, share_before(&stage), words);
         };
         let summary = demo::run(&self.out, self.seed, watch)?;
         bar.finish_and_clear();

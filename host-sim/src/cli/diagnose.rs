@@ -1,12 +1,13 @@
 //! `mindgap diagnose`
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::Args;
 use mindgap_core::controller::Controller;
 
 use super::fleet::FleetRequest;
 use super::lasting::{KeepOption, Kept};
+use super::textbook::{KINEMATIC, simulator_beside_textbook};
 use super::{Run, diagnosis_text, kinds, progress};
 use crate::effects::own;
 use crate::error::{Error, Result};
@@ -74,9 +75,6 @@ pub struct Diagnose {
     keep: KeepOption,
 }
 
-/// Stands for a simulator file: the textbook's.
-const KINEMATIC: &str = "kinematic";
-
 impl Run for Diagnose {
     fn places(&self) -> Places {
         let on_disk = |path: &&PathBuf| !is_address(path);
@@ -106,7 +104,7 @@ impl Run for Diagnose {
                 "--checkpoint keeps the diagnoses of a --fleet: of one robot there is nothing to keep",
             ));
         }
-        let simulator = self.simulator_file().map(|path| read_simulator(path)).transpose()?;
+        let simulator = self.simulator_file().map(|path| simulator_beside_textbook(path)).transpose()?;
         let controller = self.controller_of(simulator.as_ref())?;
         let request = Request {
             simulator: simulator.as_ref(),
@@ -120,8 +118,7 @@ impl Run for Diagnose {
         }
         let bar = progress::shares();
         let watch = |stage: Stage| {
-            bar.set_position((100.0 * stage.share_before()) as u64);
-            bar.set_message(stage.words());
+            progress::at(&bar, stage.share_before(), stage.words().into());
             log::info!("{}", stage.words());
         };
         let answered = request.of(super::read_logs(&self.logs)?, watch);
@@ -189,15 +186,6 @@ impl Diagnose {
             seed: self.seed,
         })
     }
-}
-
-/// A simulator file, or what was meant by one that is not there.
-fn read_simulator(path: &Path) -> Result<Simulator> {
-    let meant = files::did_you_mean(&path.to_string_lossy(), [KINEMATIC]);
-    if !path.exists() && !meant.is_empty() {
-        return Err(Error::in_file(path, format!("is not there{meant}")));
-    }
-    Simulator::read(path)
 }
 
 /// A length of time.

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::table::{self, number};
-use super::{Run, kinds};
+use super::{Run, kinds, progress, textbook};
 use crate::error::Result;
 use crate::evaluation::accuracy::{self, Evaluation, Networks};
 use crate::evaluation::sensor_models::SensorModels;
@@ -13,7 +13,6 @@ use crate::files;
 use crate::files::places::Places;
 use crate::page::evaluation::{Subject, page};
 use crate::pictures;
-use crate::simulator::Simulator;
 
 /// Judge a simulator's networks on logs that they were not trained on.
 #[derive(Args)]
@@ -40,9 +39,12 @@ impl Run for Evaluate {
     }
 
     fn run(&self) -> Result<String> {
-        let simulator = Simulator::read(&self.sim)?;
+        let simulator = textbook::simulator(&self.sim)?;
         let logs = super::read_logs_of(&simulator, &self.logs)?;
-        let evaluation = accuracy::evaluate(&simulator, &logs)?;
+        let bar = progress::shares();
+        let evaluation = accuracy::evaluate(&simulator, &logs, progress::part(&bar, 0..100, "judging the networks"));
+        bar.finish_and_clear();
+        let evaluation = evaluation?;
         if let Some(path) = &self.html {
             let names = [&self.sim, &self.logs].map(|path| path.display().to_string());
             let names = names.each_ref().map(String::as_str);

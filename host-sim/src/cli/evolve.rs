@@ -6,7 +6,7 @@ use clap::{Args, ValueEnum, value_parser};
 use serde_json::json;
 
 use super::lasting::{KeepOption, Kept};
-use super::{Run, kinds, progress};
+use super::{Run, kinds, progress, textbook};
 use crate::error::Result;
 use crate::evolve::chance::Chance;
 use crate::evolve::controller_file::{ControllerFile, Origin};
@@ -16,7 +16,7 @@ use crate::files::places::Places;
 use crate::geometry::Pose;
 use crate::logs::{Robot, Scene};
 use crate::pictures;
-use crate::simulator::{Noise, Simulator};
+use crate::simulator::Noise;
 
 /// Evolve one controller in a simulator.
 #[derive(Args)]
@@ -80,7 +80,7 @@ impl Run for Evolve {
     }
 
     fn run(&self) -> Result<String> {
-        let simulator = Simulator::read(&self.sim)?;
+        let simulator = textbook::simulator(&self.sim)?;
         let scene = Scene::read(&self.scene)?;
         let start = start_of(&scene, self.start, &simulator.robot, &self.scene)?;
         let request = Request {

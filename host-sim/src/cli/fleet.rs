@@ -7,14 +7,12 @@ use crate::effects::Effect;
 use crate::error::{Error, Result};
 use crate::files;
 use crate::fleet::source::{Source, is_address};
-use crate::fleet::{self, ANSWER, DIAGNOSES, Fleet};
+use crate::fleet::{self, ANSWER, DIAGNOSES, Fleet, TABLE};
 use crate::gap::request::Request;
 use crate::page::fleet::{Subject, page};
 
 /// The page within a fleet's folder.
 const PAGE: &str = "fleet.html";
-/// The table within it.
-const TABLE: &str = "robots.parquet";
 
 /// What is asked.
 pub struct FleetRequest<'a> {
@@ -55,20 +53,19 @@ impl FleetRequest<'_> {
     }
 
     fn to_folder(&self, source: &Source, folder: &Path) -> Result<Fleet> {
-        let mut found = None;
         let ours = |name: &str| [ANSWER, PAGE, TABLE, DIAGNOSES].contains(&name);
         files::write_folder(folder, ours, |fresh| {
             let bar = progress::bar(0);
             let fleet = fleet::diagnose(source, &self.request, fresh, progress::counting(&bar));
             bar.finish_and_clear();
-            let fleet = found.insert(fleet?);
-            files::write_json(&fresh.join(ANSWER), fleet)?;
+            let fleet = fleet?;
+            files::write_json(&fresh.join(ANSWER), &fleet)?;
             let names = [&*self.logs.to_string_lossy(), self.simulator.as_str()];
             let catalogue: &[&'static Effect] = self.request.method.catalogue;
-            let subject = Subject { fleet, catalogue, names, seed: self.request.method.seed };
-            files::write(&fresh.join(PAGE), page(&subject)?)
-        })?;
-        found.ok_or_else(|| Error::in_file(folder, "was not filled"))
+            let subject = Subject { fleet: &fleet, catalogue, names, seed: self.request.method.seed };
+            files::write(&fresh.join(PAGE), page(&subject)?)?;
+            Ok(fleet)
+        })
     }
 
     #[cfg(feature = "cloud")]

@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use clap::{Args, Subcommand};
 use serde_json::json;
 
-use super::{Run, kinds, table, warn};
+use super::{Run, kinds, progress, table, warn};
 use crate::error::Result;
 use crate::files::places::Places;
 use crate::import::brick::import;
@@ -91,7 +91,10 @@ impl Run for Brick {
     fn run(&self) -> Result<String> {
         let units = Units { time: self.time_unit, length: self.length_unit, angle: self.angle_unit };
         let (robot, scene) = (Robot::read(&self.robot)?, Scene::read(&self.scene)?);
-        let (logs, report) = import(&self.files, &units, robot, scene, warn)?;
+        let bar = progress::bar(self.files.len() as u64);
+        let imported = import(&self.files, &units, robot, scene, warn, progress::counting(&bar));
+        bar.finish_and_clear();
+        let (logs, report) = imported?;
         logs.write(&self.out)?;
         let text = format!("{}{}: {} runs\n", told(&report), self.out.display(), logs.runs.len());
         let facts = json!({"schema": 1, "tracks": report.tracks, "logs": report.logs});

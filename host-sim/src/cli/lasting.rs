@@ -8,7 +8,7 @@ use clap::{ArgMatches, Args, Command};
 
 use super::voice::meanwhile;
 use super::warn;
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::files::is_stream;
 use crate::files::places::Places;
 use crate::workers;
@@ -80,12 +80,13 @@ pub fn begin(is_shared: bool, kept: Option<Kept>, places: &Places, call: (&Comma
 }
 
 /// What a call asks for.
-fn task((mut command, mut matches): (&Command, &ArgMatches), inputs: &[PathBuf], outputs: &[PathBuf]) -> Result<Task> {
+fn task((mut command, mut matches): (&Command, &ArgMatches), inputs: &[PathBuf], outputs: &[PathBuf]) -> Task {
     let mut names = Vec::new();
     let mut arguments = BTreeMap::new();
-    while let Some((name, within)) = matches.subcommand() {
-        command = command.find_subcommand(name).ok_or_else(|| Error::new(format!("there is no command {name}")))?;
-        matches = within;
+    let mut next = matches.subcommand();
+    while let Some(((name, within), called)) = next.and_then(|next| Some((next, command.find_subcommand(next.0)?))) {
+        (command, matches) = (called, within);
+        next = matches.subcommand();
         names.push(name);
         for argument in command.get_arguments().filter(|argument| argument.get_id() != OPTION) {
             if let Ok(Some(values)) = matches.try_get_raw(argument.get_id().as_str()) {
@@ -95,5 +96,5 @@ fn task((mut command, mut matches): (&Command, &ArgMatches), inputs: &[PathBuf],
             }
         }
     }
-    Ok(Task::new(names.join(" "), arguments, inputs, outputs))
+    Task::new(names.join(" "), arguments, inputs, outputs)
 }

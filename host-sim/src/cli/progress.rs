@@ -1,5 +1,6 @@
 //! Progress on a terminal; nothing in a pipe, nor with `--quiet`.
 
+use std::ops::Range;
 use std::sync::LazyLock;
 use std::time::Duration;
 
@@ -23,8 +24,9 @@ pub fn is_quiet() -> bool {
 
 /// Shows that a command is at work, and for how long already.
 pub fn begin(command: String) {
-    SPINNER.set_message(command);
+    // What is said before it is one of all would be drawn even when nothing is to be.
     add(&SPINNER, "{spinner} {msg} [{elapsed}]");
+    SPINNER.set_message(command);
 }
 
 /// Takes away what [`begin`] shows.
@@ -48,6 +50,18 @@ pub fn counting(bar: &ProgressBar) -> impl Fn(usize, usize) + Sync + '_ {
         bar.set_length(of as u64);
         bar.set_position(done as u64);
     }
+}
+
+/// Moves a bar of [`shares`] through the part of the work in percent that is this, as so many of so many are done.
+pub fn part<'b>(bar: &'b ProgressBar, part: Range<u64>, what: &'static str) -> impl Fn(usize, usize) + Sync + 'b {
+    bar.set_message(what);
+    move |done, of| bar.set_position(part.start + (part.end - part.start) * done as u64 / of.max(1) as u64)
+}
+
+/// Moves a bar of [`shares`] to a share of the work, 0..=1, and says what is being done.
+pub fn at(bar: &ProgressBar, share: f64, what: String) {
+    bar.set_position((100.0 * share) as u64);
+    bar.set_message(what);
 }
 
 /// Writes something that a bar must not cross.

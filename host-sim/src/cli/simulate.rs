@@ -6,7 +6,7 @@ use clap::{Args, value_parser};
 
 use super::evolve::{Sonar, start_of};
 use super::table::{self, number};
-use super::{Run, kinds};
+use super::{Run, kinds, progress, textbook};
 use crate::error::Result;
 use crate::evolve::controller_file::ControllerFile;
 use crate::evolve::trial::Trial;
@@ -15,8 +15,8 @@ use crate::files::places::Places;
 use crate::logs::Scene;
 use crate::page::simulation::{Subject, page};
 use crate::pictures;
+use crate::simulator::Noise;
 use crate::simulator::rollout_report::RolloutReport;
-use crate::simulator::{Noise, Simulator};
 
 /// Run a controller in a simulator: each run is of another robot that its logs leave possible.
 #[derive(Args)]
@@ -67,7 +67,7 @@ impl Run for Simulate {
     }
 
     fn run(&self) -> Result<String> {
-        let simulator = Simulator::read(&self.sim)?;
+        let simulator = textbook::simulator(&self.sim)?;
         let controller = ControllerFile::read_for(&self.controller, &simulator.robot)?.controller;
         let scene = Scene::read(&self.scene)?;
         let start = start_of(&scene, self.start, &simulator.robot, &self.scene)?;
@@ -81,7 +81,10 @@ impl Run for Simulate {
             runs: self.runs as usize,
             seed: self.seed,
         };
-        let rollouts = trial.run()?;
+        let bar = progress::bar(self.runs.into());
+        let rollouts = trial.run(progress::counting(&bar));
+        bar.finish_and_clear();
+        let rollouts = rollouts?;
         if let Some(path) = &self.html {
             let names = [&self.sim, &self.controller, &self.scene].map(|path| path.display().to_string());
             let subject = Subject {

@@ -6,7 +6,7 @@ use std::time::Duration;
 use clap::{Args, value_parser};
 
 use super::voice::meanwhile;
-use super::{Run, kinds, progress, warn};
+use super::{Run, kinds, progress, textbook, warn};
 use crate::error::Result;
 use crate::evolve::chance::Chance;
 use crate::files;
@@ -71,6 +71,7 @@ impl Run for Loop {
     }
 
     fn run(&self) -> Result<String> {
+        textbook::learned(&self.sim)?;
         let job = Job {
             folder: &self.folder,
             simulator: &self.sim,

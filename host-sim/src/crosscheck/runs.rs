@@ -1,8 +1,6 @@
 //! Whole runs of controllers in both arithmetics, side by side: from one start, through one room, with the same draws.
 //! Poses and rays are the room's and not the robot's; both have them in double precision.
 
-use std::sync::atomic::{AtomicUsize, Ordering};
-
 use mindgap_core::chance::Generator;
 use mindgap_core::controller::{Controller, Machine, Motors, Status};
 use rand::{RngExt, SeedableRng};
@@ -17,6 +15,7 @@ use crate::geometry::{Pose, Wall, cast, wrap_rad};
 use crate::logs::{Logs, Robot};
 use crate::simulator::Simulator;
 use crate::simulator::room::Room;
+use crate::workers::counter::Counter;
 
 /// How many runs, and from which seed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -111,7 +110,7 @@ pub(super) fn side_by_side(
         return Err(Error::new("the robot has no room to start at any pose that the logs hold"));
     }
     let decoder = GenotypeDecoder::new(simulator, MAX_STEPS);
-    let done = AtomicUsize::new(0);
+    let counter = Counter::new(trials.runs, watch);
     let pairs = (0..trials.runs).into_par_iter().map(|run| {
         let seed = derive(trials.seed, &[run as u64]);
         let mut generator = generator(seed, &[PAIR]);
@@ -119,7 +118,7 @@ pub(super) fn side_by_side(
         let random = decoder.controller(&decoder.random(&mut generator));
         let controller = controller.unwrap_or(&random);
         let found = pair(&world, controller, Walker::new(float, start), Walker::new(fixed, start), run + 1, seed);
-        watch(done.fetch_add(1, Ordering::Relaxed) + 1, trials.runs);
+        counter.one_more();
         found
     });
     Ok(pairs.collect::<Vec<Runs>>().into_iter().fold(Runs::default(), Runs::and))

@@ -88,16 +88,17 @@ pub struct Probability {
 }
 
 /// Judges a simulator, with the effects that were added to it if there are any, on logs, best on such as it was not trained on.
+/// `watch` is told how much of it is done, of how much.
 ///
 /// # Errors
 /// When the simulator and the logs have no network in common.
-pub fn evaluate(simulator: &Simulator, logs: &Logs) -> Result<Evaluation> {
+pub fn evaluate(simulator: &Simulator, logs: &Logs, watch: impl Fn(usize, usize) + Sync) -> Result<Evaluation> {
     let networks = judge(simulator, logs)?;
     if networks == Networks::default() {
         return Err(Error::new("these logs hold no sample for any network of this simulator"));
     }
     let table_one = simulator.table_one.as_ref().map(|simulator| judge(simulator, logs)).transpose()?;
-    Ok(Evaluation { schema: 1, networks, table_one, sensor_models: sensor_models(simulator, logs) })
+    Ok(Evaluation { schema: 1, networks, table_one, sensor_models: sensor_models(simulator, logs, watch) })
 }
 
 fn judge(simulator: &Simulator, logs: &Logs) -> Result<Networks> {

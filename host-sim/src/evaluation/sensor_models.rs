@@ -5,13 +5,14 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use crate::geometry::{Pose, cast};
-use crate::learn::scans::{Heard, Offset, Scans, UNCHANGED};
+use crate::learn::scans::{Heard, Offset, Scans, TRIED, UNCHANGED};
 use crate::logs::Logs;
 use crate::simulator::{Simulator, kinematic};
 use crate::sonar::echo_law::Surfaces;
 use crate::sonar::model::{CONSTANT_SCATTER_CM, P_RAND};
 use crate::sonar::outcomes::{Component, Distribution, Outcomes, Source};
 use crate::sonar::{Perturbation, SonarModel, fan_at};
+use crate::workers::counter::Counter;
 
 /// The log-likelihood of logs' readings under each model that the simulator has.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -41,29 +42,49 @@ pub struct Nats {
     pub poses_refitted: Option<f64>,
 }
 
-/// Judges every model that a simulator has by the readings of logs; none where there are no readings with a pose.
-pub fn sensor_models(simulator: &Simulator, logs: &Logs) -> Option<SensorModels> {
+/// Judges every model that a simulator has by the readings of logs; none where there are no readings with a pose. `watch` is
+/// told how often models were asked, of how often they will be.
+pub fn sensor_models(simulator: &Simulator, logs: &Logs, watch: impl Fn(usize, usize) + Sync) -> Option<SensorModels> {
     let scans = Scans::of(logs);
     let n = scans.rows().count();
+    if n == 0 || scans.rows().all(|row| row.echo_cm.is_none()) {
+        return None;
+    }
     let surfaces = Surfaces::new(logs.scene.sides());
     let sides = logs.scene.sides();
-    let of_fan = |model: &SonarModel| {
-        let at = |sensor: &Pose| model.outcomes(&fan_at(&sides, sensor, model.fan_width), &Perturbation::NONE);
-        nats(logs, at)
-    };
+    let networks = of_networks(simulator, |sensor| {
+        let hit = cast(&sides, sensor.position_cm, sensor.direction())?;
+        Some([hit.distance_cm, hit.incidence_rad.abs().to_degrees()].map(|x| x as f32))
+    });
     let beam = simulator.reference.as_ref().and_then(|reference| reference.sonar.as_ref());
     let law = simulator.first_echo.as_ref();
-    (n > 0 && scans.rows().any(|row| row.echo_cm.is_some())).then(|| SensorModels {
-        n,
-        networks: of_networks(simulator, |sensor| {
-            let hit = cast(&sides, sensor.position_cm, sensor.direction())?;
-            Some([hit.distance_cm, hit.incidence_rad.abs().to_degrees()].map(|x| x as f32))
+    let ideal_ray = kinematic::baseline(logs).sonar;
+    let models = [networks.is_some(), beam.is_some(), law.is_some(), ideal_ray.is_some()];
+    let counter = Counter::new(models.iter().filter(|is_there| **is_there).count() * asked(&scans), watch);
+    let counted = |at: &(dyn Fn(&Pose) -> Outcomes + Sync)| {
+        nats(logs, |sensor| {
+            counter.one_more();
+            at(sensor)
         })
-        .map(|at| nats(logs, at)),
+    };
+    let of_fan = |model: &SonarModel| {
+        counted(&|sensor| model.outcomes(&fan_at(&sides, sensor, model.fan_width), &Perturbation::NONE))
+    };
+    Some(SensorModels {
+        n,
+        networks: networks.map(|at| counted(&at)),
         beam: beam.map(of_fan),
-        first_echo: law.map(|law| nats(logs, |sensor| law.outcomes_at(&surfaces, sensor))),
-        ideal_ray: kinematic::baseline(logs).sonar.as_ref().map(of_fan),
+        first_echo: law.map(|law| counted(&|sensor| law.outcomes_at(&surfaces, sensor))),
+        ideal_ray: ideal_ray.as_ref().map(of_fan),
     })
+}
+
+/// How often [`nats`] asks a model.
+fn asked(scans: &Scans) -> usize {
+    let rows = scans.rows().count();
+    let of_scans: Vec<usize> =
+        (0..scans.runs.len()).filter(|run| scans.is_scan(*run)).map(|run| scans.runs[run].len()).collect();
+    if of_scans.is_empty() { rows } else { 2 * rows + TRIED * of_scans.iter().sum::<usize>() }
 }
 
 /// How likely a model of the sensor makes the readings of logs, which have a row with a pose; `at` gives the outcomes of a
@@ -117,4 +138,29 @@ fn of_networks(
         components.push(Component { source: Source::Stray, probability: 0.5 * P_RAND, distribution });
         Outcomes { none: known * (1.0 - echo) + 0.5 * P_RAND, components, range_cm }
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::atomic::{AtomicUsize, Ordering};
+
+    use super::*;
+    use crate::built_in_robot::{default_robot, record, training_room};
+    use crate::logs::Row;
+
+    #[test]
+    fn a_model_is_asked_as_often_as_progress_counts() {
+        let driven = record(&default_robot(), &training_room(), 3, 8, &[], 1).expect("logs");
+        let mut scanned = driven.clone();
+        let place = driven.runs[0].rows.iter().find_map(|row| row.pose);
+        scanned.runs[0].rows = driven.runs[0].rows.iter().map(|row| Row { pose: place, ..row }).collect();
+        for logs in [driven, scanned] {
+            let times = AtomicUsize::new(0);
+            nats(&logs, |_| {
+                times.fetch_add(1, Ordering::Relaxed);
+                Outcomes { none: 0.5, components: Vec::new(), range_cm: [5.0, 240.0] }
+            });
+            assert_eq!(times.into_inner(), asked(&Scans::of(&logs)));
+        }
+    }
 }

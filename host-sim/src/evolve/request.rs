@@ -79,7 +79,7 @@ impl Request<'_> {
             (false, Noise::Learned) => environment.with_beam(simulator),
             (false, Noise::Paper) => environment,
         };
-        let environment = &robots.iter().fold(environment, |any, robots| any.of_robot(&robots.mean));
+        let environment = &environment.of_middle(robots.as_ref());
         let decoder = GenotypeDecoder::new(simulator, self.max_steps);
         let (runs, floor_cm) = (paper::RUNS, paper::FLOOR_CM);
         let way = &WayMap::new(scene, target_cm, simulator.robot.body_radius_cm);

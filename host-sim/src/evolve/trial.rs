@@ -31,11 +31,11 @@ pub struct Trial<'a> {
 }
 
 impl Trial<'_> {
-    /// Runs it.
+    /// Runs it; `watch` is told how many of the runs are done.
     ///
     /// # Errors
     /// When there are no runs, when the simulator cannot run controllers, or has no first-echo law where it is asked for.
-    pub fn run(&self) -> Result<RolloutReport> {
+    pub fn run(&self, watch: impl Fn(usize, usize) + Sync) -> Result<RolloutReport> {
         let Trial { simulator, controller, scene, start, noise, first_echo, runs, seed } = *self;
         if runs == 0 {
             return Err(Error::new("there must be at least one run"));
@@ -49,6 +49,6 @@ impl Trial<'_> {
         if first_echo {
             robots = robots.into_iter().map(|robot| robot.with_first_echo(simulator, scene)).collect::<Result<_>>()?;
         }
-        Ok(RolloutReport::of_robots(&robots, scene, controller, runs, seed))
+        Ok(RolloutReport::of_robots(&robots, scene, controller, runs, seed, watch))
     }
 }

@@ -96,11 +96,11 @@ pub fn make_folder(path: &Path) -> Result<()> {
 
 /// Fills a folder under a temporary name, then puts what is in it into `path`: all of it or nothing. Of a folder that is
 /// there already, what `ours` holds for goes, and everything else stays. Of several processes that fill a folder that was
-/// there, the last stays; one that is there only when it is complete is not replaced.
+/// there, the last stays; one that is there only when it is complete is not replaced. Returns what `fill` does.
 ///
 /// # Errors
 /// What `fill` returns, or when the folder cannot be written.
-pub fn write_folder(path: &Path, ours: impl Fn(&str) -> bool, fill: impl FnOnce(&Path) -> Result<()>) -> Result<()> {
+pub fn write_folder<T>(path: &Path, ours: impl Fn(&str) -> bool, fill: impl FnOnce(&Path) -> Result<T>) -> Result<T> {
     if IS_LEFT.load(Ordering::Relaxed) {
         return fill(path);
     }
@@ -115,8 +115,9 @@ pub fn write_folder(path: &Path, ours: impl Fn(&str) -> bool, fill: impl FnOnce(
     fs::create_dir_all(home).map_err(failed)?;
     let workshop = Workshop::in_folder(home).map_err(failed)?;
     let fresh = workshop.new_folder();
-    fill(&fresh).map_err(|e| e.moved(&fresh, path))?;
-    if is_there { workshop.exchange(ours) } else { fs::rename(&fresh, path) }.map_err(failed)
+    let filled = fill(&fresh).map_err(|e| e.moved(&fresh, path))?;
+    if is_there { workshop.exchange(ours) } else { fs::rename(&fresh, path) }.map_err(failed)?;
+    Ok(filled)
 }
 
 /// Whether a path lies in a folder that is being made and is put in its place as a whole.

@@ -16,8 +16,6 @@ use super::robot::Robot;
 use crate::error::{Error, Result};
 use crate::gap::diagnosis::Verdict;
 
-/// Its name within a fleet's folder.
-pub const FILE: &str = "robots.parquet";
 /// So many rows are kept before they are written.
 const GROUP: usize = 1000;
 /// The columns, in the order in which [`Table::write`] fills them.
@@ -220,7 +218,7 @@ mod tests {
             untestable: vec![],
         };
         let folder = tempfile::tempdir().expect("a temporary folder");
-        let path = folder.path().join(FILE);
+        let path = folder.path().join(crate::fleet::TABLE);
         let mut table = Table::at(&path);
         for number in 0..GROUP {
             table.add(&format!("robot-{number}"), Ok(&robot)).expect("a row");

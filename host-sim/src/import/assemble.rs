@@ -17,6 +17,7 @@ use super::sides::Sides;
 use crate::error::{Error, Result};
 use crate::inspection::Inspection;
 use crate::logs::{Logs, Robot, Run, Scene};
+use crate::workers::counter::Counter;
 
 /// What robots that fit on a floor measure, cm or cm/s.
 const FITTED_CM: Range<f64> = 1.5..500.0;
@@ -32,7 +33,7 @@ pub struct Assembled {
 }
 
 /// Assembles recordings, of which there is at least one. Without a `robot` its measures are fitted where they can be, and
-/// told.
+/// told. `watch` is told how often the recordings were brought onto one clock, of how often they will be.
 ///
 /// # Errors
 /// When streams have nothing in common, when units or frames do not go together, or when nothing is left.
@@ -41,7 +42,12 @@ pub fn assemble(
     robot: Option<Robot>,
     scene: Scene,
     offset_ms: Option<f64>,
+    watch: impl Fn(usize, usize),
 ) -> Result<Assembled> {
+    let counter = Counter::new(
+        recordings.len() * if robot.is_none() && !all_of(&recordings, Kind::Twist) { 2 } else { 1 },
+        watch,
+    );
     let first_guess = match robot {
         Some(robot) => robot,
         None => first_guess(&recordings)?.robot()?,
@@ -55,13 +61,14 @@ pub fn assemble(
         runs.extend(Prepared::of(recording, &first_guess)?.runs(&as_stated, &first_guess, runs.len()));
     }
     let frame = put_right(&mut recordings, &Logs { robot: first_guess, scene: scene.clone(), runs });
-    let draft = if robot.is_some() { None } else { Some(fitted(&recordings, offset_ms)?) };
+    let draft = if robot.is_some() { None } else { Some(fitted(&recordings, offset_ms, &counter)?) };
     let robot = draft.as_ref().map_or(Ok(first_guess), RobotDraft::robot)?;
     let (mut runs, mut reports) = (Vec::new(), Vec::new());
     for recording in &recordings {
         let (of_recording, report) = runs_of(recording, &robot, offset_ms, runs.len())?;
         runs.extend(of_recording);
         reports.push(report);
+        counter.one_more();
     }
     let logs = Logs { robot, scene, runs };
     let sides = Sides::of_commands(&logs.runs, &logs.robot);
@@ -84,17 +91,20 @@ fn first_guess(recordings: &[Recording]) -> Result<RobotDraft> {
     if spacing_ms > draft.step_ms.value {
         draft.step_ms.value = 100.0 * (spacing_ms / 100.0).ceil();
     }
-    let all_motors = recordings.iter().all(|recording| recording.commands.kind == Kind::Motors);
+    let all_motors = all_of(recordings, Kind::Motors);
     draft.full_speed_cm_s.value = if all_motors { 100.0 } else { fastest_cm_s(recordings, &draft.robot()?) };
     Ok(draft)
 }
 
 /// A draft with what recordings say of the robot.
-fn fitted(recordings: &[Recording], offset_ms: Option<f64>) -> Result<RobotDraft> {
+fn fitted(
+    recordings: &[Recording],
+    offset_ms: Option<f64>,
+    counter: &Counter<impl Fn(usize, usize)>,
+) -> Result<RobotDraft> {
     let mut draft = first_guess(recordings)?;
     let robot = draft.robot()?;
-    let all_of = |kind| recordings.iter().all(|recording| recording.commands.kind == kind);
-    if all_of(Kind::Twist) {
+    if all_of(recordings, Kind::Twist) {
         let how =
             "between the middles of the driven wheels; of commands that are speed and turn rate it changes nothing";
         draft.track_cm.how = how.into();
@@ -102,6 +112,7 @@ fn fitted(recordings: &[Recording], offset_ms: Option<f64>) -> Result<RobotDraft
         let mut runs = Vec::new();
         for recording in recordings {
             runs.extend(runs_of(recording, &robot, offset_ms, runs.len())?.0);
+            counter.one_more();
         }
         let sides = Sides::of_commands(&runs, &robot);
         let fit = |value: f64, what: &str| {
@@ -113,19 +124,24 @@ fn fitted(recordings: &[Recording], offset_ms: Option<f64>) -> Result<RobotDraft
             }
             Ok(Measure::open(value, "fitted to these logs, so that no gap in it can show: measure it"))
         };
-        let length = if all_of(Kind::Motors) { sides.of_travel } else { Some(1.0) };
-        if let Some(length) = length.filter(|_| all_of(Kind::Motors)) {
+        let length = if all_of(recordings, Kind::Motors) { sides.of_travel } else { Some(1.0) };
+        if let Some(length) = length.filter(|_| all_of(recordings, Kind::Motors)) {
             draft.full_speed_cm_s = fit(length * robot.full_speed_cm_s, "full_speed_cm_s")?;
         }
         if let Some((turn, length)) = sides.of_rotation.zip(length).filter(|(turn, _)| *turn != 0.0) {
             draft.track_cm = fit(robot.track_cm * length / turn.abs(), "track_cm")?;
         }
     }
-    if !all_of(Kind::Motors) {
+    if !all_of(recordings, Kind::Motors) {
         let how = "the fastest that a wheel was asked for, rounded up; commands are shares of it";
         draft.full_speed_cm_s = Measure::known(fastest_cm_s(recordings, &draft.robot()?), how);
     }
     Ok(draft)
+}
+
+/// Whether the commands of all recordings are of a kind.
+fn all_of(recordings: &[Recording], kind: Kind) -> bool {
+    recordings.iter().all(|recording| recording.commands.kind == kind)
 }
 
 /// The fastest that a wheel is asked for, rounded up to whole 5 cm/s.

@@ -15,8 +15,10 @@ use super::track::{Sighting, Track};
 use super::units::Units;
 use crate::error::{Error, Result};
 use crate::logs::{Logs, Robot, Row, Run, Scene};
+use crate::workers::counter::Counter;
 
-/// Merges brick logs and tracks, which are distinguished by their headers. `warn` receives one line for each oddity.
+/// Merges brick logs and tracks, which are distinguished by their headers. `warn` receives one line for each oddity,
+/// `watch` how many of the logs are matched.
 ///
 /// # Errors
 /// When a file cannot be read or parsed, when there is no log or no track, or when no log matches a track.
@@ -26,6 +28,7 @@ pub fn import(
     robot: Robot,
     scene: Scene,
     mut warn: impl FnMut(String),
+    watch: impl Fn(usize, usize),
 ) -> Result<(Logs, Report)> {
     let (mut logs, mut tracks) = (Vec::new(), Vec::new());
     for file in files {
@@ -42,6 +45,7 @@ pub fn import(
     }
     let mut runs = Vec::new();
     let mut reports = Vec::new();
+    let counter = Counter::new(logs.len(), watch);
     for log in logs {
         let BrickLog { file, torn, .. } = &log;
         let report = LogReport { file: file.clone(), torn: *torn, run: None, left_out: None };
@@ -57,6 +61,7 @@ pub fn import(
             }
             Err(why) => LogReport { left_out: Some(why), ..report },
         });
+        counter.one_more();
     }
     if runs.is_empty() {
         let first = &reports[0];

@@ -170,6 +170,13 @@ impl Columns {
         self.columns.iter().map(|column| format!("{} = {}", column.quantity.name(), column.name)).collect()
     }
 
+    /// The names of columns that were taken as nothing.
+    pub fn left_over(&self, table: &Table) -> Vec<String> {
+        let is_taken = |place: usize| self.columns.iter().any(|column| column.place == place);
+        let names = table.names.iter().enumerate();
+        names.filter(|(place, _)| !is_taken(*place)).map(|(_, name)| name.clone()).collect()
+    }
+
     fn of(&self, quantity: Quantity) -> Option<&Column> {
         self.columns.iter().find(|column| column.quantity == quantity)
     }

@@ -21,18 +21,27 @@ struct FileStreams {
     poses: Option<Vec<Option<Frame>>>,
     readings: Option<Vec<(f64, Option<f64>)>>,
     source: Source,
+    /// Columns that were taken as nothing.
+    left_over: Vec<String>,
 }
 
 /// Reads files and joins them into recordings: a file that holds commands and poses is one by itself; of others the first
-/// with commands goes with the first with poses and the first with readings, and so on.
+/// with commands goes with the first with poses and the first with readings, and so on. `watch` is told how
+/// many of the files are read.
 ///
 /// # Errors
 /// When a file cannot be read or understood, or when there are not as many of one kind as of the other.
-pub fn recordings(files: &[PathBuf], mapping: &Mapping, units: &Units) -> Result<Vec<Recording>> {
+pub fn recordings(
+    files: &[PathBuf],
+    mapping: &Mapping,
+    units: &Units,
+    watch: impl Fn(usize, usize),
+) -> Result<Vec<Recording>> {
     mapping.check(files)?;
     let mut whole = Vec::new();
     let [mut commands, mut poses, mut readings] = [const { Vec::<FileStreams>::new() }; 3];
-    for file in files {
+    for (file, before) in files.iter().zip(0..) {
+        watch(before, files.len());
         let streams = FileStreams::read(file, mapping, units)?;
         match (&streams.commands, &streams.poses) {
             (Some(_), Some(_)) => whole.push(streams),
@@ -47,13 +56,23 @@ pub fn recordings(files: &[PathBuf], mapping: &Mapping, units: &Units) -> Result
     }
     let is_matched = commands.len() == poses.len() && (readings.is_empty() || readings.len() == commands.len());
     if !is_matched || (whole.is_empty() && commands.is_empty()) {
+        let mut files = [&whole, &commands, &poses, &readings].into_iter().flatten();
+        let not_understood =
+            files.find(|streams| !streams.left_over.is_empty()).map(|FileStreams { file, left_over, .. }| {
+                format!(
+                    "; of {} nothing was made of {}: say in a --map what they are",
+                    file.display(),
+                    left_over.join(", ")
+                )
+            });
         return Err(Error::new(format!(
             "of the files {} hold commands and poses, {} commands, {} poses, {} readings: give one of each a drive, in the same \
-             order",
+             order{}",
             whole.len(),
             commands.len(),
             poses.len(),
-            readings.len()
+            readings.len(),
+            not_understood.unwrap_or_default()
         )));
     }
     let mut readings = readings.into_iter();
@@ -74,7 +93,7 @@ fn joined(files: [Option<FileStreams>; 3]) -> Recording {
         has_one_clock,
         sources: Vec::new(),
     };
-    for FileStreams { file, commands, poses, readings, source } in files.into_iter().flatten() {
+    for FileStreams { file, commands, poses, readings, source, .. } in files.into_iter().flatten() {
         // A file of its own with readings alone was written by the robot, as its commands were.
         let on_clock_of_poses = commands.is_none() && poses.is_some();
         if let Some(samples) = readings.filter(|_| recording.readings.is_none()) {
@@ -151,7 +170,7 @@ impl FileStreams {
         let poses =
             (!poses.is_empty()).then(|| times().map(|(i, t_ms)| poses[i].map(|pose| Frame { t_ms, pose })).collect());
         let readings = (!readings.is_empty()).then(|| times().map(|(i, ms)| (ms, readings[i])).collect());
-        Ok(FileStreams { file: file.into(), commands, poses, readings, source })
+        Ok(FileStreams { file: file.into(), commands, poses, readings, source, left_over: columns.left_over(&table) })
     }
 }
 
@@ -170,7 +189,7 @@ mod tests {
         let folder = tempfile::tempdir().expect("a folder");
         let files: Vec<PathBuf> = texts.iter().map(|(name, _)| folder.path().join(name)).collect();
         files.iter().zip(texts).for_each(|(file, (_, text))| files::write(file, text).expect("written"));
-        recordings(&files, &Mapping::default(), &Units::default())
+        recordings(&files, &Mapping::default(), &Units::default(), |_, _| ())
     }
 
     #[test]
@@ -209,6 +228,11 @@ mod tests {
             ("a.csv", "t_s,v_m_s,w_rad_s\n0,1,1\n9,1,1\n1,1,1\n", ":4: the clock goes back from 9.000 s to 1.000 s"),
             ("a.csv", "t_s,x_m,y_m\n0,1,1\n1,1,1\n", ":1: no column for the heading"),
             ("a.csv", track, "of the files 0 hold commands and poses, 0 commands, 2 poses, 0 readings"),
+            (
+                "a.csv",
+                "t_s,x_m,y_m,th_rad,u1,u2\n0,0,0,0,1,1\n1,0,0,0,1,1\n",
+                "a.csv nothing was made of u1, u2: say in a",
+            ),
         ] {
             let error = read(&[(name, text), ("p.csv", track)]).expect_err(text).to_string();
             assert!(error.contains(what), "{text:?} gave {error}");

@@ -38,6 +38,8 @@ const DEVIATIONS: Offset = [1.5, 1.5, 4.0];
 /// Angles that are tried first, degrees; then steps along each coordinate in shares of its deviation.
 const COARSE_DEG: [f64; 13] = [0.0, -2.0, 2.0, -4.0, 4.0, -6.0, 6.0, -8.0, 8.0, -10.0, 10.0, -12.0, 12.0];
 const FINE: [f64; 8] = [0.5, 0.5, 0.5, 0.25, 0.25, 0.25, 0.12, 0.06];
+/// So many offsets of a scan are tried.
+pub const TRIED: usize = COARSE_DEG.len() + 2 * DEVIATIONS.len() * FINE.len();
 
 impl Scans {
     /// The rows of logs at which the robot was seen.

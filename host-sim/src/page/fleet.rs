@@ -5,6 +5,7 @@ use maud::{Markup, html};
 use serde::Serialize;
 
 use super::document::{Document, Script, Section, chart, open_table};
+use super::glossary;
 use super::words::{self, number, percent, percent_within};
 use crate::effects::Effect;
 use crate::effects::applied::AppliedEffect;
@@ -79,6 +80,7 @@ pub fn page(subject: &Subject) -> Result<String> {
     if !fleet.refused.is_empty() || !fleet.left_out.is_empty() {
         sections.push(Section { id: "refused", title: "What could not be diagnosed", body: refused(fleet) });
     }
+    sections.push(glossary::section());
     Document {
         kind: "Fleet",
         headline: &headline(fleet, catalogue),
@@ -115,8 +117,12 @@ fn lead(subject: &Subject) -> Markup {
         p { "Verdicts: " (words::list(&verdicts.iter().map(String::as_str).collect::<Vec<_>>())) "." }
         @if let Some(gap) = &fleet.gap_nats {
             p {
-                "Where there is a gap, it is " strong { (number(gap.median, 3)) " nats a step" } " in the middle; half of "
-                "the robots have between " (number(gap.quartiles[0], 3)) " and " (number(gap.quartiles[1], 3)) "."
+                "Where there is a gap, it is " strong { (number(gap.median, 3)) " nats a step" } " in the middle"
+                @if gap.quartiles[0] < gap.quartiles[1] {
+                    "; half of the robots have between " (number(gap.quartiles[0], 3)) " and "
+                    (number(gap.quartiles[1], 3))
+                }
+                ". What a nat is stands " a href="#words" { "below" } "."
             }
         }
         @if !fleet.refused.is_empty() {

@@ -5,7 +5,7 @@ use mindgap_core::folded::FoldedNetwork;
 
 use super::beam::Beam;
 use super::effect_layer::EffectLayer;
-use super::ensemble::Member;
+use super::ensemble::{Member, Robots};
 use super::first_echo::FirstEchoSensor;
 use super::motion::{MotionNetworks, MotionTable};
 use super::residuals::{ConstantReading, ResidualNoise, ResidualQuantiles};
@@ -95,6 +95,12 @@ impl<'s> Environment<'s> {
     pub fn of_robot(self, member: &'s Member) -> Self {
         let motion = self.motion.of_robot(member);
         Environment { motion_noise: motion.residual_noise(), motion, ..self }
+    }
+
+    /// The environment with the robot in the middle of those that its simulator's may be, where that is known: what is
+    /// evolved on drawn ones would fit those.
+    pub fn of_middle(self, robots: Option<&'s Robots>) -> Self {
+        robots.into_iter().fold(self, |any, robots| any.of_robot(&robots.mean))
     }
 
     /// An environment for each of these robots, with the beam.

@@ -1,6 +1,7 @@
 //! Several runs of one controller, kept whole: paths, readings, and how each ended.
 
 use mindgap_core::controller::Controller;
+use rayon::prelude::*;
 use serde::Serialize;
 
 use super::environment::Environment;
@@ -8,6 +9,7 @@ use super::motion::MotionTable;
 use super::rollout::{REACHED_CM, RolloutOutcome, RolloutRequest, SensorModel, Termination, TrajectoryPoint};
 use crate::chance::derive;
 use crate::logs::Scene;
+use crate::workers::counter::Counter;
 
 /// What `mindgap simulate --json` writes.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -60,27 +62,32 @@ pub struct PathPoint {
 impl RolloutReport {
     /// Simulates `runs` runs of a controller.
     pub fn new(environment: &Environment, scene: &Scene, controller: &Controller, runs: usize, seed: u64) -> Self {
-        Self::of_robots(std::slice::from_ref(environment), scene, controller, runs, seed)
+        Self::of_robots(std::slice::from_ref(environment), scene, controller, runs, seed, |_, _| ())
     }
 
-    /// The same with several robots that take turns; there is at least one.
-    pub fn of_robots(robots: &[Environment], scene: &Scene, controller: &Controller, runs: usize, seed: u64) -> Self {
+    /// The same with several robots that take turns; there is at least one. `watch` is told how many of the runs are done.
+    pub fn of_robots(
+        robots: &[Environment],
+        scene: &Scene,
+        controller: &Controller,
+        runs: usize,
+        seed: u64,
+        watch: impl Fn(usize, usize) + Sync,
+    ) -> Self {
         let motions: Vec<MotionTable> = robots.iter().map(|robot| robot.motions(controller)).collect();
-        let runs: Vec<Rollout> = robots
-            .iter()
-            .zip(&motions)
-            .cycle()
-            .zip(0..runs as u64)
-            .map(|((environment, motions), run)| {
-                let (outcome, trajectory) = environment.trace(RolloutRequest {
-                    controller,
-                    motions,
-                    sensor: SensorModel::Networks,
-                    seed: derive(seed, &[run]),
-                });
-                Rollout::new(&outcome, &trajectory, environment, scene)
-            })
-            .collect();
+        let counter = Counter::new(runs, watch);
+        let rollout = |run: usize| {
+            let environment = &robots[run % robots.len()];
+            let (outcome, trajectory) = environment.trace(RolloutRequest {
+                controller,
+                motions: &motions[run % robots.len()],
+                sensor: SensorModel::Networks,
+                seed: derive(seed, &[run as u64]),
+            });
+            counter.one_more();
+            Rollout::new(&outcome, &trajectory, environment, scene)
+        };
+        let runs: Vec<Rollout> = (0..runs).into_par_iter().map(rollout).collect();
         let successes = runs.iter().filter(|run| run.reached == Some(true)).count();
         let success = scene.target_cm.map(|_| successes as f64 / runs.len() as f64);
         RolloutReport { schema: 1, reached_within_cm: REACHED_CM, success, runs }

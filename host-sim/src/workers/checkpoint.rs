@@ -17,6 +17,7 @@ use sha2::{Digest, Sha256};
 use super::task::Task;
 use crate::error::{Error, Result};
 use crate::files;
+use crate::files::reason;
 
 /// How the file begins.
 pub const SIGN: &[u8] = br#"{"mindgap_checkpoint":"#;
@@ -175,7 +176,7 @@ fn open(path: &Path) -> io::Result<File> {
 }
 
 fn failed(path: &Path, e: &io::Error) -> Error {
-    Error::in_file(path, format!("cannot be written: {}", e.kind()))
+    Error::in_file(path, format!("cannot be written: {}", reason(e)))
 }
 
 fn head((part, index): Piece, bytes: &[u8]) -> [u8; HEAD] {

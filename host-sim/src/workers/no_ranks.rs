@@ -26,7 +26,7 @@ impl Ranks {
         match *self {}
     }
 
-    pub fn agree(&self, _: Result<Task>) -> Result<Task> {
+    pub fn agree(&self, _: &Task) -> Result<()> {
         match *self {}
     }
 

@@ -84,23 +84,20 @@ impl Ranks {
     ///
     /// # Errors
     /// On the first rank, when one could not find out what to do, or does something else.
-    pub fn agree(&self, task: Result<Task>) -> Result<Task> {
+    pub fn agree(&self, task: &Task) -> Result<()> {
         if !self.is_first() {
-            self.send(0, TASK, &task.as_ref().map_err(ToString::to_string))?;
+            self.send(0, TASK, task)?;
             self.everywhere(None::<bool>)?;
-            return task;
+            return Ok(());
         }
-        let task = task?;
         for _ in 1..self.count() {
             let (rank, _, bytes) = self.receive();
-            let theirs: std::result::Result<Task, String> = decode(&bytes)?;
-            let theirs = theirs.map_err(|what| Error::new(format!("rank {rank}: {what}")))?;
-            if let Some(difference) = theirs.difference_from(&task) {
+            if let Some(difference) = decode::<Task>(&bytes)?.difference_from(task) {
                 return Err(Error::new(format!("rank {rank} differs from rank 0: it has {difference}")));
             }
         }
         self.everywhere(Some(true))?;
-        Ok(task)
+        Ok(())
     }
 
     /// The value that the first rank gives, on all.

@@ -87,7 +87,7 @@ fn a_simulator_with_the_effects_found_has_no_gap_on_fresh_logs() {
     let again = diagnose(Baseline::learned(&applied).expect("a reference"), &fresh).expect("something to compare");
     assert_eq!(again.verdict(), Verdict::NoGap, "{again:?}");
     let error = |simulator: &Simulator| {
-        let networks = evaluate(simulator, &fresh).expect("samples").networks;
+        let networks = evaluate(simulator, &fresh, |_, _| ()).expect("samples").networks;
         [networks.forward.expect("poses").mse, networks.echo_value.expect("echoes").mse]
     };
     let (before, after) = (error(&SIMULATOR), error(&applied));

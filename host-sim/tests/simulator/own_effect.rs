@@ -46,8 +46,9 @@ fn the_example_is_named_with_its_strength_and_applied() {
     Simulator { added: found.applied, ..SIMULATOR.clone() }.write(&path).expect("a file");
     assert!(fs::read_to_string(&path).expect("a file").contains("abs(turn_rad) / step_s"));
     let better = Simulator::read(&path).expect("a simulator");
-    let error =
-        |simulator: &Simulator| evaluate(simulator, &logs).expect("samples").networks.forward.expect("poses").mse;
+    let error = |simulator: &Simulator| {
+        evaluate(simulator, &logs, |_, _| ()).expect("samples").networks.forward.expect("poses").mse
+    };
     let (before, after) = (error(&SIMULATOR), error(&better));
     assert!(after < 0.7 * before, "{before} {after}");
 }
@@ -66,8 +67,9 @@ fn without_the_example_a_formula_tells_of_the_turns() {
     assert_eq!(formula.channel.name(), "forward", "{formula:?}");
     assert!(formula.text.contains("turn_rad") && formula.share > 0.5, "{formula:?}");
     let better = Simulator { added: found.with_formula(), ..SIMULATOR.clone() };
-    let error =
-        |simulator: &Simulator| evaluate(simulator, &logs).expect("samples").networks.forward.expect("poses").mse;
+    let error = |simulator: &Simulator| {
+        evaluate(simulator, &logs, |_, _| ()).expect("samples").networks.forward.expect("poses").mse
+    };
     let (before, after) = (error(&SIMULATOR), error(&better));
     assert!(after < 0.7 * before, "{formula:?} {before} {after}");
 }

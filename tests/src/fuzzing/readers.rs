@@ -58,7 +58,7 @@ pub const TARGETS: &[Target] = &[
         name: "streams",
         feed: |bytes| {
             drop(as_file("s.csv", bytes, |path| {
-                streams::recordings(&[path.into()], &Mapping::default(), &Units::default())
+                streams::recordings(&[path.into()], &Mapping::default(), &Units::default(), |_, _| ())
             }))
         },
     },

@@ -4,7 +4,7 @@ use std::sync::LazyLock;
 
 use mindgap_host_sim::logs::Run;
 use mindgap_tests::command::Workshop;
-use mindgap_tests::rooms::trained;
+use mindgap_tests::rooms::{SCENE, trained};
 use serde_json::Value;
 
 /// Runs of the workshop's logs.
@@ -204,4 +204,21 @@ fn the_experiment_that_tells_confused_causes_apart_is_a_run() {
     assert!(budget.contains("next.nxc written") && budget.contains(" of 400 ms at worst"), "{budget}");
     let said = workshop.done("diagnose sim.json logs --next-experiment none.csv");
     assert!(said.contains("none.csv is not written") && !workshop.path().join("none.csv").exists(), "{said}");
+}
+
+#[test]
+fn the_textbook_is_refused_where_a_learned_simulator_is_needed() {
+    let workshop = trained();
+    workshop.write("scene.toml", SCENE);
+    for call in [
+        "evaluate kinematic logs",
+        "adapt kinematic logs --out adapted.json",
+        "crosscheck kinematic logs",
+        "evolve kinematic --scene scene.toml --out controller.toml",
+        "simulate kinematic controller.toml --scene scene.toml",
+        "loop out --sim kinematic --scene scene.toml --robot false",
+    ] {
+        let refused = workshop.refused(call);
+        assert!(refused.starts_with("kinematic: stands for the textbook, with which mindgap diagnose"), "{refused}");
+    }
 }

@@ -28,4 +28,6 @@ mod messages;
 mod new;
 mod no_sensor;
 mod outputs;
+#[cfg(target_os = "linux")]
+mod progress;
 mod trials;

@@ -5,6 +5,7 @@
 //! `target/pages`.
 
 mod diagnosis;
+mod fleet;
 mod others;
 mod trials;
 mod visit;

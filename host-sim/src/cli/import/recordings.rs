@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use serde_json::json;
 
-use crate::cli::{Run, kinds, reported, table};
+use crate::cli::{Run, kinds, progress, reported, table};
 use crate::error::Result;
 use crate::files;
 use crate::files::places::Places;
@@ -93,7 +93,7 @@ impl Run for Streams {
         let given = self.target.read()?;
         let mapping = self.map.as_deref().map_or(Ok(Mapping::default()), Mapping::read)?;
         let units = Units { time: self.time_unit, length: self.length_unit, angle: self.angle_unit };
-        self.target.make(given, recordings(&self.files, &mapping, &units)?, self.offset_ms)
+        self.target.make(given, |watch| recordings(&self.files, &mapping, &units, watch), self.offset_ms)
     }
 }
 
@@ -106,8 +106,15 @@ impl Run for Bag {
         let given = self.target.read()?;
         let choice = Choice { commands: self.commands.clone(), poses: self.poses.clone(), ranges: self.ranges.clone() };
         let yaw_rad = given.robot.map_or(0.0, |robot| robot.ultrasonic.yaw_deg.to_radians());
-        let recordings = self.bags.iter().map(|bag| recording(bag, &choice, yaw_rad)).collect::<Result<_>>()?;
-        self.target.make(given, recordings, None)
+        let read = |watch: &dyn Fn(usize, usize)| {
+            let bags = self.bags.iter().zip(0..);
+            bags.map(|(bag, before)| {
+                watch(before, self.bags.len());
+                recording(bag, &choice, yaw_rad)
+            })
+            .collect()
+        };
+        self.target.make(given, read, None)
     }
 }
 
@@ -136,9 +143,19 @@ impl Target {
         Ok(Given { robot, robot_text, scene, scene_text })
     }
 
-    /// Makes logs of recordings, and tells it.
-    fn make(&self, given: Given, recordings: Vec<Recording>, offset_ms: Option<f64>) -> Result<String> {
-        let Assembled { logs, draft, mut report } = assemble(recordings, given.robot, given.scene, offset_ms)?;
+    /// Makes logs of recordings, which are first `read`, and tells it.
+    fn make(
+        &self,
+        given: Given,
+        read: impl FnOnce(&dyn Fn(usize, usize)) -> Result<Vec<Recording>>,
+        offset_ms: Option<f64>,
+    ) -> Result<String> {
+        let bar = progress::shares();
+        let recordings = read(&progress::part(&bar, 0..50, "reading"))?;
+        let aligning = progress::part(&bar, 50..100, "bringing clocks together");
+        let Assembled { logs, draft, mut report } =
+            assemble(recordings, given.robot, given.scene, offset_ms, aligning)?;
+        bar.finish_and_clear();
         let robot_text = given.robot_text.or(draft.as_ref().map(RobotDraft::text)).unwrap_or_default();
         report.to_fill_in = to_fill_in("robot.toml", &robot_text);
         let ours = |name: &str| {

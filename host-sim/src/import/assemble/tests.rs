@@ -54,7 +54,7 @@ fn robot() -> Robot {
 }
 
 fn assembled(recording: Recording) -> Result<Assembled> {
-    assemble(vec![recording], Some(robot()), Scene::default(), None)
+    assemble(vec![recording], Some(robot()), Scene::default(), None, |_, _| ())
 }
 
 /// How far the logs' poses lie from the exact ones, cm, at most.
@@ -147,12 +147,12 @@ fn without_a_robot_its_measures_are_fitted_and_marked() {
         *pair = [v - 10.0 * w, v + 10.0 * w].map(|cm_s| 2.0 * cm_s);
     });
     wheels.readings = Some(Readings { samples: vec![(0.0, Some(50.0))], on_clock_of_poses: false });
-    let Assembled { logs, draft, .. } = assemble(vec![wheels], None, Scene::default(), None).expect("logs");
+    let Assembled { logs, draft, .. } = assemble(vec![wheels], None, Scene::default(), None, |_, _| ()).expect("logs");
     let text = draft.expect("a draft").text();
     assert!((logs.robot.full_speed_cm_s - 50.0).abs() < 1.0 && (logs.robot.track_cm - 20.0).abs() < 0.5, "{text}");
     assert!(text.contains("# FILL IN: fitted to these logs") && text.contains("\n[ultrasonic]"), "{text}");
     assert_eq!((logs.runs[0].rows.at(0).echo_cm, logs.runs[0].rows.at(1).echo_cm), (Some(50.0), None));
-    let twist = assemble(vec![recording(|frame| frame)], None, Scene::default(), None).expect("logs");
+    let twist = assemble(vec![recording(|frame| frame)], None, Scene::default(), None, |_, _| ()).expect("logs");
     assert!([20.0, 25.0, 30.0].contains(&twist.logs.robot.full_speed_cm_s), "{}", twist.logs.robot.full_speed_cm_s);
     assert!(twist.draft.expect("a draft").text().contains("\n# [ultrasonic]"));
 }

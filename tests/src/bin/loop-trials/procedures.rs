@@ -173,7 +173,7 @@ impl Workbench<'_> {
         let Case { scene, .. } = self.case;
         let robots = simulator.robots(1, self.seed());
         let environment = Environment::new(simulator, scene, self.case.pose(), Noise::Learned)?.with_beam(simulator);
-        let environment = robots.iter().fold(environment, |any, robots| any.of_robot(&robots.mean));
+        let environment = environment.of_middle(robots.as_ref());
         let target_cm = self.case.target_cm();
         let task = EvolutionTask {
             environment: &environment,
