@@ -197,7 +197,7 @@ mod tests {
 
     /// What the table in docs/formats.md asks each effect to report, and what slip and dropouts tell besides: the loss, and
     /// the probability that a dropout goes on.
-    const REPORTED: [(&str, &[&str]); TABLE] = [
+    const REPORTED: [(&str, &[&str]); TABLE + 1] = [
         ("battery_sag", &["loss_per_min"]),
         ("motor_asymmetry", &["side", "factor"]),
         ("drive_scale", &["factor"]),
@@ -221,6 +221,7 @@ mod tests {
         ("sonar_absorption", &["factor"]),
         ("sonar_crosstalk", &["probability"]),
         ("sonar_multipath", &["probability"]),
+        ("sonar_multipath mirrored", &["factor"]),
         ("sonar_noise", &["cm"]),
         ("tracker_rotation", &["deg"]),
         ("tracker_scale", &["factor"]),
@@ -233,7 +234,8 @@ mod tests {
     fn every_variant_reports_by_the_names_of_the_table() {
         let robot = crate::built_in_robot::default_robot();
         for Candidate { effect, variant } in Candidate::all(CATALOGUE) {
-            let asked = REPORTED.iter().find(|(id, _)| *id == effect).expect(effect).1;
+            let asked = |id: &str| REPORTED.iter().find(|(known, _)| *known == id).map(|(_, names)| names);
+            let asked = asked(&format!("{effect} {}", variant.id)).or_else(|| asked(effect)).expect(effect);
             let reported = variant.reported(&variant.initial_guesses(TOP_SPEED_CM_S)[0], &robot);
             let mut names: Vec<&str> = reported.keys().map(String::as_str).collect();
             let mut asked = asked.to_vec();

@@ -11,7 +11,6 @@ use rayon::Scope;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-use super::ranks::Ranks;
 use super::{AHEAD, RUN};
 use crate::error::{Error, Result};
 
@@ -86,7 +85,7 @@ where
         // Threads of one process have one queue, which is never to run dry; at the end no piece waits for a busy rank.
         let of_here = if has_ranks() { threads } else { AHEAD * threads };
         let mut free = vec![HERE; of_here];
-        let workers = threads * RUN.with_borrow(|run| run.ranks.as_ref().map_or(1, Ranks::count));
+        let workers = threads * RUN.with_borrow(|run| run.ranks.as_ref().map_or(1, |ranks| ranks.count()));
         let mut helpers = Helpers::default();
         let (mut begun, mut waiting) = (0, BTreeMap::new());
         let mut piece = |next: usize| loop {
