@@ -76,6 +76,7 @@ impl Remainder {
 mod tests {
     use super::*;
     use crate::gap::test_support::*;
+    use crate::geometry::Pose;
 
     /// Eight blocks of twelve rows with forward residuals.
     fn rows(off_cm: fn(usize) -> f64) -> Observations {
@@ -117,5 +118,18 @@ mod tests {
     fn wider_scatter_is_no_remainder() {
         let scattered = |at| 2.0 * alternating(at / 2);
         assert!(counting(&confirmed(scattered, scattered)).is_empty());
+    }
+
+    /// Half of the steps begin in a corner, where they scatter three times as much and on average go as far as elsewhere.
+    #[test]
+    fn what_scatters_at_one_spot_of_the_floor_follows_the_place() {
+        let made = |_, at: usize| {
+            let (x_cm, share) = if at % 2 == 0 { (50.0, 3.0) } else { (250.0, 1.0) };
+            let off = [share * 0.9 * alternating(at / 2), 0.0, 0.0];
+            Made { pose: Pose::new(x_cm, 50.0, 0.0), off, ..Made::default() }
+        };
+        let (baseline, rows) = (baseline(), observations(8, 60, made));
+        let context = FitContext::new(&baseline, &rows, METHOD);
+        assert_eq!(counting(&remainders(&Fitted::none(&context), &context)), [Channel::Forward]);
     }
 }

@@ -72,7 +72,7 @@ pub fn climb_on(
     let Maximum { mut at, terms: mut here, mut scores } = from;
     for _ in 0..rounds {
         let before = sum(&here);
-        let direction = step(&gradient(&scores), &curvature(&scores, |_| true), &at, bounds);
+        let direction = step(&gradient(&scores, |_| true), &curvature(&scores, |_| true), &at, bounds);
         let best = line_search(before, |length| along(bounds, &at, &direction, length, &terms));
         let gain = best.as_ref().map_or(0.0, |b| b.0 - before);
         if let Some((_, trial, there)) = best {
@@ -98,7 +98,7 @@ pub fn step_of_one(
     terms: impl Fn(&[f64]) -> Vec<f64>,
 ) -> Option<Maximum> {
     let Maximum { at, terms: here, scores } = from;
-    let (before, gradient, curvature) = (sum(here), gradient(scores), curvature(scores, |_| true));
+    let (before, gradient, curvature) = (sum(here), gradient(scores, |_| true), curvature(scores, |_| true));
     let promised = |i: &usize| gradient[*i] * gradient[*i] / curvature[(*i, *i)];
     let mut order: Vec<usize> = (0..at.len()).collect();
     order.sort_by(|a, b| promised(b).total_cmp(&promised(a)));
@@ -134,19 +134,20 @@ impl Maximum {
 
     /// Where the maximum would lie without the terms for which `left_out` holds, to first order.
     pub fn without(&self, bounds: &[Bounds], left_out: impl Fn(usize) -> bool) -> Vec<f64> {
+        let all = gradient(&self.scores, |_| true);
+        let kept = gradient(&self.scores, |i| !left_out(i));
+        // The whole gradient vanishes at the maximum, but for how far the climb went, except along what a bound holds: that
+        // moves where the kept terms no longer pull it against the bound.
+        let is_held = |i: usize| is_held(self.at[i], all[i], &bounds[i]);
+        let pull: Vec<f64> = (0..kept.len()).map(|i| if is_held(i) { kept[i] } else { kept[i] - all[i] }).collect();
         let curvature = curvature(&self.scores, |i| !left_out(i));
-        let p = self.at.len();
-        // The full sum's gradient vanishes only where no bound holds it; what the kept terms pull beyond it moves the
-        // maximum.
-        let mut pull = DVector::zeros(p);
-        for (i, s) in self.scores.iter().enumerate() {
-            if left_out(i) {
-                pull -= DVector::from_column_slice(s);
-            }
-        }
-        let step = curvature.cholesky().map_or(DVector::zeros(p), |c| c.solve(&pull));
-        moved(bounds, &self.at, step.as_slice())
+        moved(bounds, &self.at, &step(&pull, &curvature, &self.at, bounds))
     }
+}
+
+/// Whether a parameter is pulled against the bound where it is.
+fn is_held(at: f64, pull: f64, bounds: &Bounds) -> bool {
+    (at <= bounds.low && pull < 0.0) || (at >= bounds.high && pull > 0.0)
 }
 
 fn along(bounds: &[Bounds], at: &[f64], direction: &[f64], length: f64, terms: &impl Fn(&[f64]) -> Vec<f64>) -> Trial {
@@ -180,18 +181,20 @@ fn line_search(before: f64, along: impl Fn(f64) -> Trial) -> Option<Trial> {
     None
 }
 
-/// The sum of the terms' scores.
-fn gradient(scores: &[Vec<f64>]) -> Vec<f64> {
-    (0..scores.first().map_or(0, Vec::len)).map(|i| scores.iter().map(|s| s[i]).sum()).collect()
+/// The sum of the scores of the terms that are kept.
+fn gradient(scores: &[Vec<f64>], kept: impl Fn(usize) -> bool) -> Vec<f64> {
+    let mut sum = vec![0.0; scores.first().map_or(0, Vec::len)];
+    for (_, score) in scores.iter().enumerate().filter(|(i, _)| kept(*i)) {
+        sum.iter_mut().zip(score).for_each(|(sum, s)| *sum += s);
+    }
+    sum
 }
 
 /// The step to where the slope vanishes, to first order.
 fn step(gradient: &[f64], curvature: &DMatrix<f64>, at: &[f64], bounds: &[Bounds]) -> Vec<f64> {
     let p = at.len();
     // A parameter that a bound holds stays out of the step.
-    let held =
-        |i: usize| (at[i] <= bounds[i].low && gradient[i] < 0.0) || (at[i] >= bounds[i].high && gradient[i] > 0.0);
-    let free: Vec<usize> = (0..p).filter(|i| !held(*i)).collect();
+    let free: Vec<usize> = (0..p).filter(|i| !is_held(at[*i], gradient[*i], &bounds[*i])).collect();
     let matrix = DMatrix::from_fn(free.len(), free.len(), |r, c| curvature[(free[r], free[c])]);
     let pull = DVector::from_iterator(free.len(), free.iter().map(|i| gradient[*i]));
     let mut step = vec![0.0; p];
@@ -354,5 +357,21 @@ mod tests {
         // What is kept: ten ones and twenty threes. One-sided differences are off by half of what they reach over.
         let most = 0.5 * DIFFERENCE * (WIDE.high - WIDE.low);
         assert!((without - 70.0 / 30.0).abs() < most, "{} {without}", found.at[0]);
+    }
+
+    /// All terms pull the first number against its bound, those of one half less, and hang it together with the second.
+    #[test]
+    fn a_number_that_a_bound_holds_stays_there_whatever_is_left_out() {
+        let terms = |at: &[f64]| -> Vec<f64> {
+            let middle = |i: usize| if i % 2 == 0 { -4.0 } else { -6.0 };
+            let off = |i| [at[0] + 0.5 * at[1] - middle(i), at[1]];
+            (0..40).map(off).map(|[a, b]| -0.5 * (a * a + b * b)).collect()
+        };
+        let bounds = [Bounds::new(0.0, 10.0), WIDE];
+        let found = climb(&bounds, &[5.0, 0.0], 50, 1e-9, terms);
+        assert_eq!(found.at[0], 0.0);
+        let [first, second] = found.without(&bounds, |i| i % 4 == 1)[..] else { unreachable!("two numbers") };
+        assert_eq!(first, 0.0);
+        assert!((second - found.at[1]).abs() < 0.5, "{second} {}", found.at[1]);
     }
 }

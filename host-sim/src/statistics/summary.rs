@@ -9,6 +9,11 @@ pub fn mean(values: impl Iterator<Item = f64>) -> f64 {
     sum / n
 }
 
+/// The square root of the mean of squares; NaN of nothing.
+pub fn root_mean_square(values: impl Iterator<Item = f64>) -> f64 {
+    mean(values.map(|v| v * v)).sqrt()
+}
+
 /// The upper median; NaN of nothing.
 pub fn median(values: impl Iterator<Item = f64>) -> f64 {
     let mut values: Vec<f64> = values.collect();

@@ -4,36 +4,21 @@
 //! attainment of optimum conditions). No covariate and no pair is preferred, and no unit matters: covariates and terms
 //! are standardised.
 //!
-//! A polynomial in the place cannot follow what is so at one spot of the floor and nowhere else: what it makes of it there is
-//! wrong everywhere else. So steps have besides, and before it, a term for each cell of the floor, which says nothing of any
-//! other.
+//! A polynomial in the place cannot follow what is so at one spot and nowhere else: that is left to [`super::nearby`].
 
-use std::collections::BTreeSet;
-
-use glam::DVec2;
+use super::nearby::Spot;
 
 /// Beyond this many standard deviations a covariate counts as this far off: other logs may lie where a polynomial was
 /// never fitted.
 const FARTHEST: f64 = 3.0;
-
-/// One and a half robots of the usual size: in larger cells what is so at a spot of the floor is taken for what is so beside
-/// it, and smaller ones are seldom visited by several runs.
-const CELL_CM: f64 = 30.0;
 
 /// The circumstances of a step or of a reading.
 #[derive(Clone, Debug, Default)]
 pub struct Circumstances {
     /// Covariates, in the same order everywhere.
     pub covariates: Vec<f64>,
-    /// Of a step: where it is on the floor, and how far it goes there, on which what the floor does to it depends.
-    pub floor: Option<OnFloor>,
-}
-
-/// A step on the floor.
-#[derive(Clone, Copy, Debug)]
-pub struct OnFloor {
-    cell: [i32; 2],
-    way_cm: f64,
+    /// Where in the room what is so there shows in it.
+    pub spot: Option<Spot>,
 }
 
 /// The terms of a response surface, standardised on the rows that it was made from.
@@ -41,9 +26,6 @@ pub struct OnFloor {
 pub struct Basis {
     covariates: Vec<Standard>,
     terms: Vec<Standard>,
-    /// The cells of the floor that were visited, in order.
-    cells: Vec<[i32; 2]>,
-    per_way_cm: f64,
 }
 
 /// What standardises a number, with the prior standard deviation that it gets.
@@ -63,11 +45,7 @@ impl Basis {
         // Each order is as likely as any other to carry a gap: the prior variance of an order is shared by its terms.
         let share = |place: usize| if place < 2 * count { count } else { count * (count - 1) / 2 };
         let terms = standards(&standardised, |place| 1.0 / (share(place) as f64).sqrt());
-        let steps = || rows.iter().filter_map(|row| row.floor);
-        let cells: BTreeSet<[i32; 2]> = steps().map(|step| step.cell).collect();
-        let squares: f64 = steps().map(|step| step.way_cm * step.way_cm).sum();
-        let per_way_cm = if squares > 0.0 { (rows.len() as f64 / squares).sqrt() } else { 0.0 };
-        Basis { covariates, terms, cells: cells.into_iter().collect(), per_way_cm }
+        Basis { covariates, terms }
     }
 
     /// The terms in these circumstances.
@@ -75,22 +53,6 @@ impl Basis {
         let surface = surface(&self.covariates, &circumstances.covariates);
         let terms = surface.iter().zip(&self.terms).map(|(term, standard)| standard.of(*term));
         std::iter::once(1.0).chain(terms).collect()
-    }
-
-    /// The way on each cell of the floor, as standardised; nothing where no row is on a floor.
-    pub fn on_floor(&self, circumstances: &Circumstances) -> Vec<f64> {
-        let of_cell = |cell: &[i32; 2]| match circumstances.floor {
-            Some(step) if step.cell == *cell => step.way_cm * self.per_way_cm,
-            _ => 0.0,
-        };
-        self.cells.iter().map(of_cell).collect()
-    }
-}
-
-impl OnFloor {
-    /// A step from here that goes so far.
-    pub fn new(position_cm: DVec2, way_cm: f64) -> Self {
-        OnFloor { cell: position_cm.to_array().map(|cm| (cm / CELL_CM).floor() as i32), way_cm }
     }
 }
 
@@ -131,7 +93,7 @@ mod tests {
     }
 
     fn of(covariates: Vec<f64>) -> Circumstances {
-        Circumstances { covariates, floor: None }
+        Circumstances { covariates, spot: None }
     }
 
     fn basis(rows: &[Circumstances]) -> Basis {
@@ -180,19 +142,5 @@ mod tests {
         let rows: Vec<Circumstances> = (0..20).map(|i| of(vec![f64::from(i), 4.0])).collect();
         let terms = basis(&rows).at(&of(vec![3.0, 9.0]));
         assert_eq!([terms[2], terms[4], terms[5]], [0.0; 3]);
-    }
-
-    /// Four cells were visited, and a fifth is like none of them.
-    #[test]
-    fn cells_of_the_floor_tell_nothing_of_each_other() {
-        let step = |x_cm: f64, way_cm: f64| {
-            let floor = Some(OnFloor::new(DVec2::new(x_cm, 20.0), way_cm));
-            Circumstances { covariates: Vec::new(), floor }
-        };
-        let rows: Vec<Circumstances> = (0..40).map(|i| step(30.0 * f64::from(i % 4) + 10.0, 3.0)).collect();
-        let basis = basis(&rows);
-        assert_eq!(basis.on_floor(&step(50.0, 3.0)), [0.0, 1.0, 0.0, 0.0]);
-        assert_eq!(basis.on_floor(&step(50.0, -1.5)), [0.0, -0.5, 0.0, 0.0]);
-        assert_eq!(basis.on_floor(&step(210.0, 3.0)), [0.0; 4]);
     }
 }

@@ -1,7 +1,8 @@
 //! What the rest of a motion channel follows.
 
-use super::basis::{Circumstances, OnFloor};
-use super::{ResidualFit, Steps, Surface};
+use super::basis::Circumstances;
+use super::nearby::{self, Nearby, Spot};
+use super::{ResidualFit, Rows, Steps};
 use crate::effects::chain::EffectChain;
 use crate::effects::{PoseIncrement, StepContext};
 use crate::evaluation::observations::{Observation, Observations};
@@ -10,14 +11,21 @@ use crate::gap::channel::Channel;
 use crate::gap::fit::{FitContext, Fitted};
 use crate::gap::residual_law::{fitted_scatter, log_density};
 use crate::simulator::baseline::{Baseline, MotionModel};
+use crate::statistics::summary::root_mean_square;
 
 /// The density of a residual.
-#[derive(Clone, Copy)]
+#[derive(Clone)]
 pub struct Law {
     /// The place among forward, lateral and turn.
     pub axis: usize,
-    /// Standard deviation, cm or rad.
+    /// Standard deviation where nothing is different, cm or rad.
     pub scatter: f64,
+    /// By how much more than one the variance differs from that near a spot: where a floor holds a robot back now and then,
+    /// steps scatter more than elsewhere, whatever is expected of them.
+    further_variance: Nearby,
+    /// The share of the scatter of the rows that it was fitted on, by the fit to other runs.
+    own_shares: Vec<f64>,
+    usual_way_cm: f64,
 }
 
 /// A residual that lies farther from its prediction pulls no more than this, in standard deviations: a jump of the
@@ -28,21 +36,28 @@ const FARTHEST: f64 = 4.0;
 pub fn fit(channel: Channel, axis: usize, beneath: &Fitted, context: &FitContext) -> ResidualFit {
     let effects = beneath.effects();
     let scatter = beneath.hypothesis.scatter(context.baseline, context.observations, &beneath.values)[axis];
-    let law = Law { axis, scatter };
-    let residuals = law.residuals(&effects, context.baseline, context.observations);
-    let covariates = covariates(&effects, context.baseline, context.observations);
-    let known = |i: usize| residuals[i].is_some();
-    let response = |i: usize, prediction: f64| {
-        prediction + (residuals[i].unwrap_or(0.0) / scatter - prediction).clamp(-FARTHEST, FARTHEST)
+    let (baseline, rows) = (context.baseline, context.observations);
+    let residuals = residuals(axis, &effects, baseline, rows);
+    let usual_way_cm = usual_way_cm(&effects, baseline, rows);
+    let covariates = covariates(&effects, baseline, rows, usual_way_cm);
+    let of_axis = Rows::of(&covariates, |i| residuals[i].is_some(), |i| rows.rows[i].block);
+    let off = |i: usize| residuals[i].unwrap_or(0.0) / scatter;
+    let response = |i: usize, prediction: f64, share: f64| {
+        prediction + (off(i) - prediction).clamp(-FARTHEST * share, FARTHEST * share)
     };
-    let run = |i: usize| context.observations.rows[i].block;
-    let (surface, predictions) = Surface::fit(&covariates, known, run, scatter, response);
-    let rest = residuals.iter().zip(&predictions).filter_map(|(r, prediction)| Some((*r)? - prediction));
-    let rest: Vec<f64> = rest.collect();
-    let law = Law { scatter: fitted_scatter(axis, &rest, law.least(context.baseline)), ..law };
+    let (nearby, told) = of_axis.nearby(|i, prediction| response(i, prediction, 1.0));
+    // Steps that scatter more say less of what steps follow.
+    let (_, shares) = scatter_nearby(&of_axis, |place, i| off(i) - told[place]);
+    let (surface, predictions) = of_axis.surface((nearby, told), &shares, scatter, response);
+    let rest: Vec<Option<f64>> = residuals.iter().zip(&predictions).map(|(r, p)| Some((*r)? - p)).collect();
+    let (further_variance, shares) = scatter_nearby(&of_axis, |_, i| rest[i].unwrap_or(0.0) / scatter);
+    let own_shares = of_axis.of_all(&shares, 1.0);
+    let even: Vec<f64> = rest.iter().zip(&own_shares).filter_map(|(rest, share)| Some((*rest)? / share)).collect();
+    let least = baseline.motion.as_ref().map_or(1.0, |drive| drive.scatter()[axis]);
+    let law = Law { axis, scatter: fitted_scatter(axis, &even, least), further_variance, own_shares, usual_way_cm };
     ResidualFit {
         channel,
-        held_out: law.terms(&residuals, &predictions),
+        held_out: law.terms(law.scatter, &rest, &law.own_shares),
         surface,
         predictions,
         law: super::Law::Motion(law),
@@ -50,21 +65,55 @@ pub fn fit(channel: Channel, axis: usize, beneath: &Fitted, context: &FitContext
     }
 }
 
-/// The covariates of every step of every row.
-pub fn covariates(effects: &EffectChain, baseline: &Baseline, rows: &Observations) -> Vec<Steps> {
-    let Some(drive) = &baseline.motion else { return vec![Vec::new(); rows.rows.len()] };
-    rows.rows.iter().map(|row| of_row(effects, drive, row)).collect()
+/// How steps scatter near a spot, by what is `left` of each place and row in units of the usual scatter: by how much more than
+/// one its variance is, and each row's share of the scatter by the fit to other runs.
+fn scatter_nearby(rows: &Rows, left: impl Fn(usize, usize) -> f64) -> (Nearby, Vec<f64>) {
+    let spots: Vec<Option<Spot>> =
+        rows.spots.iter().map(|spot| spot.map(|spot| Spot::usual(spot.position_cm))).collect();
+    let further = |place: usize, _| {
+        let left = left(place, rows.used[place]).clamp(-FARTHEST, FARTHEST);
+        left * left - 1.0
+    };
+    let (nearby, told) = nearby::fit(&spots, &rows.folds, further);
+    (nearby, told.into_iter().map(share).collect())
 }
 
-fn of_row(effects: &EffectChain, drive: &MotionModel, row: &Observation) -> Steps {
+/// Of a standard deviation, where the variance is so much more than one. What [`nearby`] tells of squares is more than minus
+/// one, since its prior is worth some rows.
+fn share(further_variance: f64) -> f64 {
+    (1.0 + further_variance).sqrt()
+}
+
+/// Logged minus predicted.
+fn residuals(axis: usize, effects: &EffectChain, baseline: &Baseline, rows: &Observations) -> Vec<Option<f64>> {
+    let Some(drive) = &baseline.motion else { return vec![None; rows.rows.len()] };
+    rows.rows.iter().map(|row| residual(effects, drive, row).map(|r| r[axis])).collect()
+}
+
+/// Root mean square of what is expected of steps; one where nothing is.
+fn usual_way_cm(effects: &EffectChain, baseline: &Baseline, rows: &Observations) -> f64 {
+    let Some(drive) = &baseline.motion else { return 1.0 };
+    let ways_cm = rows.rows.iter().map(|row| increment(effects, drive, row).forward_cm);
+    let usual_cm = root_mean_square(ways_cm);
+    if usual_cm > 0.0 { usual_cm } else { 1.0 }
+}
+
+/// The covariates of every step of every row.
+fn covariates(effects: &EffectChain, baseline: &Baseline, rows: &Observations, usual_way_cm: f64) -> Vec<Steps> {
+    let Some(drive) = &baseline.motion else { return vec![Vec::new(); rows.rows.len()] };
+    rows.rows.iter().map(|row| of_row(effects, drive, row, usual_way_cm)).collect()
+}
+
+fn of_row(effects: &EffectChain, drive: &MotionModel, row: &Observation, usual_way_cm: f64) -> Steps {
     let predicted = increment(effects, drive, row);
     let share = 1.0 / (1 + row.then.len()) as f64;
-    std::iter::once(&row.context).chain(&row.then).map(|step| of_step(step, &predicted, share)).collect()
+    let of_step = |step| of_step(step, &predicted, share, usual_way_cm);
+    std::iter::once(&row.context).chain(&row.then).map(of_step).collect()
 }
 
 /// Commands now, before, and two back, whose products with each other make every change of command besides; heading;
 /// time; place; and the motion that is predicted.
-fn of_step(step: &StepContext, predicted: &PoseIncrement, share: f64) -> Circumstances {
+fn of_step(step: &StepContext, predicted: &PoseIncrement, share: f64, usual_way_cm: f64) -> Circumstances {
     let [[left, right], [left_1, right_1], [left_2, right_2], ..] = step.commands;
     let direction = step.pose.direction();
     let position_cm = step.pose.position_cm;
@@ -84,26 +133,34 @@ fn of_step(step: &StepContext, predicted: &PoseIncrement, share: f64) -> Circums
         way_cm,
         share * predicted.turn_rad,
     ];
-    Circumstances { covariates, floor: Some(OnFloor::new(position_cm, way_cm)) }
+    // What a floor does to a step shows in proportion to its way.
+    Circumstances { covariates, spot: Some(Spot { position_cm, weight: way_cm / usual_way_cm }) }
 }
 
 impl Law {
+    /// The circumstances of rows, as it was fitted in them.
+    pub fn covariates(&self, effects: &EffectChain, baseline: &Baseline, rows: &Observations) -> Vec<Steps> {
+        covariates(effects, baseline, rows, self.usual_way_cm)
+    }
+
     /// Logged minus predicted.
     pub fn residuals(&self, effects: &EffectChain, baseline: &Baseline, rows: &Observations) -> Vec<Option<f64>> {
-        let Some(drive) = &baseline.motion else { return vec![None; rows.rows.len()] };
-        rows.rows.iter().map(|row| residual(effects, drive, row).map(|r| r[self.axis])).collect()
+        residuals(self.axis, effects, baseline, rows)
     }
 
-    /// The simulator's own scatter.
-    pub fn least(&self, baseline: &Baseline) -> f64 {
-        baseline.motion.as_ref().map_or(1.0, |drive| drive.scatter()[self.axis])
+    /// Each row's share of the scatter: of the rows that it was fitted on, by the fit to other runs.
+    pub fn shares(&self, rows: &Observations, is_own: bool) -> Vec<f64> {
+        if is_own {
+            return self.own_shares.clone();
+        }
+        let spot = |row: &Observation| row.then.is_empty().then(|| Spot::usual(row.context.pose.position_cm));
+        rows.rows.iter().map(|row| share(self.further_variance.at(spot(row)))).collect()
     }
 
-    /// The log-likelihood of each row where these predictions are right.
-    pub fn terms(&self, residuals: &[Option<f64>], predictions: &[f64]) -> Vec<f64> {
-        let term = |(r, prediction): (&Option<f64>, &f64)| {
-            r.map_or(0.0, |r| log_density(self.axis, r - prediction, self.scatter))
-        };
-        residuals.iter().zip(predictions).map(term).collect()
+    /// The log-likelihood of each row where this is the scatter, and the rest is what predictions leave.
+    pub fn terms(&self, scatter: f64, rest: &[Option<f64>], shares: &[f64]) -> Vec<f64> {
+        let term =
+            |(rest, share): (&Option<f64>, &f64)| rest.map_or(0.0, |r| log_density(self.axis, r, share * scatter));
+        rest.iter().zip(shares).map(term).collect()
     }
 }

@@ -1,7 +1,8 @@
 //! What the rest of the two sonar channels follows.
 
 use super::basis::Circumstances;
-use super::{Law, ResidualFit, Steps, Surface};
+use super::nearby::Spot;
+use super::{Law, ResidualFit, Rows, Steps, Surface};
 use crate::effects::StepContext;
 use crate::effects::chain::EffectChain;
 use crate::evaluation::observations::{Observation, Observations};
@@ -41,9 +42,6 @@ struct Reading {
 /// Bounds and start of scatter, short and long: the widest that a beam and a room leave any sense to, and near none.
 const BOUNDS: [Bounds; 3] = [Bounds::new(0.0, 10.0), Bounds::new(0.0, 0.5), Bounds::new(0.0, 0.5)];
 const START: [f64; 3] = [0.3, 0.002, 0.002];
-/// A reading that lies farther from its prediction pulls no more than this, in standard deviations: a wrong reading
-/// says nothing about readings.
-const FARTHEST: f64 = 4.0;
 /// The scatter of what is given in whole centimetres is never less: √(1/12) cm.
 const LEAST_SCATTER_CM: f64 = 0.29;
 /// The unit of log-odds of the rays' return: what a yes or no tells of them, largest where each of the nine rays comes
@@ -56,9 +54,9 @@ const DIFFERENCE: f64 = 0.01;
 pub fn rate(beneath: &Fitted, context: &FitContext) -> ResidualFit {
     let heard = Heard::of(&beneath.effects(), context.baseline, context.observations);
     let response = |i: usize, prediction: f64| prediction + heard.score(&heard.rows[i], prediction);
-    let known = |_| heard.sonar.is_some();
-    let (surface, predictions) =
-        Surface::fit(&covariates(context.observations), known, place(context.observations), LOG_ODDS, response);
+    let covariates = covariates(context.observations);
+    let rows = Rows::of(&covariates, |_| heard.sonar.is_some(), place(context.observations));
+    let (surface, predictions) = rows.evenly(LOG_ODDS, response);
     let held_out = heard.rates(&predictions);
     fitted(Channel::EchoRate, beneath, held_out, surface, predictions, Law::EchoRate)
 }
@@ -130,7 +128,7 @@ fn of_reading(step: &StepContext) -> Circumstances {
         faced_cm.x,
         faced_cm.y,
     ];
-    Circumstances { covariates, floor: None }
+    Circumstances { covariates, spot: step.faced.map(|_| Spot::usual(faced_cm)) }
 }
 
 impl<'a> Heard<'a> {
@@ -192,10 +190,16 @@ impl<'a> Heard<'a> {
         let off = |reading: &Reading| reading.faced.outcomes(self.sonar?).off_cm(reading.echo_cm);
         let off: Vec<Option<f64>> = self.rows.iter().map(off).collect();
         let scatter_cm = (median(off.iter().flatten().map(|off_cm| off_cm.abs())) / QUARTILE).max(LEAST_SCATTER_CM);
+        // As far as the likelihood says, to which a reading from elsewhere than the echo is one of the others, and no farther
+        // than to the reading.
         let response = |i: usize, prediction: f64| {
-            prediction + (off[i].unwrap_or(0.0) / scatter_cm - prediction).clamp(-FARTHEST, FARTHEST)
+            let value = |prediction: f64| self.value(&self.rows[i], scatter_cm * prediction, &Spread::NONE);
+            let score = (value(prediction + DIFFERENCE) - value(prediction)) / DIFFERENCE;
+            let most = (off[i].unwrap_or(0.0) / scatter_cm - prediction).abs();
+            prediction + score.clamp(-most, most)
         };
-        Surface::fit(&covariates(observations), |i| off[i].is_some(), place(observations), scatter_cm, response)
+        let covariates = covariates(observations);
+        Rows::of(&covariates, |i| off[i].is_some(), place(observations)).evenly(scatter_cm, response)
     }
 }
 
