@@ -182,7 +182,9 @@ fn path(run: usize, rollout: &Rollout) -> Path {
 
 fn turns(run: usize, rollout: &Rollout) -> Vec<Turn> {
     let mut from = 0;
-    let held = rollout.path.chunk_by(|a, b| a.tuple == b.tuple).map(|points| {
+    // At its last point a run is over.
+    let driven = rollout.path.split_last().map_or(&[][..], |(_, driven)| driven);
+    let held = driven.chunk_by(|a, b| a.tuple == b.tuple).map(|points| {
         let turn = Turn { run: run + 1, tuple: points[0].tuple, from, to: from + points.len() };
         from += points.len();
         turn
