@@ -39,9 +39,9 @@ const HELD_OUT_RUNS: usize = 30;
 const STEPS: usize = 60;
 const MAX_STEPS: u16 = 60;
 /// Number of runs of each controller on the robot, and of simulated ones (paper, figure 4).
-const TRIALS: usize = 3;
+pub const TRIALS: usize = 3;
 /// Number of fresh simulated runs for a success rate.
-const JUDGED_RUNS: usize = 200;
+pub const JUDGED_RUNS: usize = 200;
 
 /// Stream keys of the parts of the request.
 #[derive(Clone, Copy)]

@@ -1,5 +1,6 @@
 //! The command `mindgap` as a black box, in a folder of its own.
 
+use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
@@ -136,7 +137,15 @@ impl Workshop {
         self.write(name, after);
     }
 
-    /// Every file below this folder with its bytes, in order.
+    /// Every file below a folder in this one (`""` for this one) by its path in it, with its bytes. Folders count for
+    /// nothing.
+    pub fn files(&self, folder: &str) -> BTreeMap<PathBuf, Vec<u8>> {
+        let root = self.path().join(folder);
+        let files = self.listing().into_iter().filter(|(path, _)| path.is_file());
+        files.filter_map(|(path, bytes)| Some((path.strip_prefix(&root).ok()?.to_owned(), bytes))).collect()
+    }
+
+    /// Every file and folder below this folder with its bytes, in order.
     pub fn listing(&self) -> Vec<(PathBuf, Vec<u8>)> {
         let mut files = Vec::new();
         collect(self.path(), &mut files);

@@ -41,6 +41,13 @@ pub fn trained() -> Workshop {
     TRAINED.copy()
 }
 
+/// The same with the room in `scene.toml`.
+pub fn with_scene() -> Workshop {
+    let workshop = trained();
+    workshop.write("scene.toml", SCENE);
+    workshop
+}
+
 /// The built-in robot, with a weak motor, as the command `robot.sh` of a loop. `before` prepares its arguments, and `after`
 /// is done to the log, a file `$4`.
 ///

@@ -8,7 +8,7 @@ use std::thread;
 use std::time::Duration;
 
 use mindgap_tests::command::{Done, Workshop, program};
-use mindgap_tests::rooms::{SCENE, robot, trained};
+use mindgap_tests::rooms::{robot, with_scene};
 
 /// A process with so many ranks in a workshop's folder, each with these arguments.
 fn ranks(workshop: &Workshop, count: usize, arguments: &str) -> Command {
@@ -35,24 +35,12 @@ fn same_at_any_number(prepared: &Workshop, calls: &[&str]) {
             assert_eq!(done.code, 0, "{count} ranks: {call}: {}", done.err);
             assert_eq!(done.out, *told, "{count} ranks: {call}");
         }
-        let (expected, found) = (files(&threads), files(&workshop));
+        let (expected, found) = (threads.files(""), workshop.files(""));
         assert_eq!(expected.len(), found.len(), "{count} ranks: {calls:?}");
         for (a, b) in expected.iter().zip(&found) {
-            assert!(a == b, "{count} ranks: {calls:?}: {} and {}", a.0, b.0);
+            assert!(a == b, "{count} ranks: {calls:?}: {} and {}", a.0.display(), b.0.display());
         }
     }
-}
-
-/// Every file by its path within the workshop.
-fn files(workshop: &Workshop) -> Vec<(String, Vec<u8>)> {
-    let name = |path: &Path| path.strip_prefix(workshop.path()).unwrap_or(path).display().to_string();
-    workshop.listing().into_iter().map(|(path, bytes)| (name(&path), bytes)).collect()
-}
-
-fn with_scene() -> Workshop {
-    let workshop = trained();
-    workshop.write("scene.toml", SCENE);
-    workshop
 }
 
 #[test]
@@ -127,7 +115,7 @@ fn after_a_rank_is_killed_the_run_goes_on_from_its_checkpoint() {
     let done = broken.call(&call);
     assert_eq!(done.code, 0, "{}", done.err);
     assert!(done.err.contains("kept: goes on, "), "{}", done.err);
-    assert_eq!(files(&unbroken), files(&broken));
+    assert_eq!(unbroken.files(""), broken.files(""));
 }
 
 /// The process of a rank that works in a folder.

@@ -25,14 +25,15 @@ const percent = (share) => `${Math.round(100 * share)} %`;
 /** A map of the room: size, axes and scales for a width. */
 function mapOf(room, width) {
   const [x0, y0, x1, y1] = room.bounds;
-  const margins = { marginLeft: 46, marginRight: 20, marginTop: 30, marginBottom: 40 };
+  // The inset keeps half of a wall at the edge from being cut off.
+  const margins = { marginLeft: 46, marginRight: 20, marginTop: 30, marginBottom: 40, inset: 2 };
   // One length for a centimetre along both axes.
-  const scale = Math.min((width - 66) / (x1 - x0), 520 / (y1 - y0));
+  const scale = Math.min((width - 70) / (x1 - x0), 520 / (y1 - y0));
   const ticks = (cm) => Math.max(2, Math.round((cm * scale) / 60));
   return {
     ...margins,
-    width: (x1 - x0) * scale + 66,
-    height: (y1 - y0) * scale + 70,
+    width: (x1 - x0) * scale + 70,
+    height: (y1 - y0) * scale + 74,
     x: { domain: [x0, x1], label: "x (cm) →", ticks: ticks(x1 - x0) },
     y: { domain: [y0, y1], label: "↑ y (cm)", ticks: ticks(y1 - y0) },
   };

@@ -32,6 +32,7 @@ charts.runs = (width) => {
 
 charts.turns = (width) => {
   const runs = [...new Set(page.turns.map((turn) => turn.run))];
+  const tuples = [...new Set(page.turns.map((turn) => turn.tuple))].sort();
   return Plot.plot({
     width,
     height: Math.max(90, Math.min(520, 16 * runs.length + 70)),
@@ -45,9 +46,16 @@ charts.turns = (width) => {
       label: "run",
       labelAnchor: "top",
       ticks: runs.length > 30 ? [] : undefined,
-      padding: 0.15,
+      padding: runs.length > 30 ? 0 : 0.15,
     },
-    color: { type: "ordinal", domain: [1, 2, 3, 4, 5, 6], scheme: "viridis", legend: true, label: "tuple" },
+    // A tuple has one colour on every page; the darkest of the scheme is lost on a dark page.
+    color: {
+      type: "ordinal",
+      domain: tuples,
+      range: tuples.map((tuple) => d3.interpolateViridis(0.25 + 0.14 * (tuple - 1))),
+      legend: true,
+      label: "tuple",
+    },
     marks: [
       Plot.barX(page.turns, {
         x1: "from",

@@ -62,6 +62,11 @@ pub fn run_controller(robot: &BuiltInRobot, controller: &Controller, start: Pose
 }
 
 impl Trajectory {
+    /// Steps that the controller took: the first point is its start, and after the last step the motors stop.
+    pub fn steps(&self) -> usize {
+        self.points.len() - 2
+    }
+
     /// The true pose at which the robot came to rest.
     pub fn end(&self) -> Pose {
         self.points[self.points.len() - 1].true_pose

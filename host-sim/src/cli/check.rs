@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use super::table::count;
 use super::{Run, kinds};
 use crate::error::Result;
 use crate::files::places::Places;
@@ -65,7 +66,11 @@ fn holdings(holds: &Holdings) -> Vec<String> {
     let Holdings { runs, rows, steps, duration_s, step_ms, jitter_ms, .. } = holds;
     let percent = |share: f64| format!("{:.0} %", 100.0 * share);
     vec![
-        format!("{runs} runs, {rows} rows, {steps} steps with a pose at both ends, {:.1} min", duration_s / 60.0),
+        format!(
+            "{}, {rows} rows, {steps} steps with a pose at both ends, {:.1} min",
+            count(*runs, "run"),
+            duration_s / 60.0
+        ),
         format!("  rows      {step_ms:.0} ms apart, 95 % of them within {jitter_ms:.0} ms"),
         format!(
             "  present   pose in {} and reading in {} of the rows",

@@ -59,7 +59,7 @@ impl Run for Drive {
         driven.to_run("run").write(&self.out)?;
         let distance_cm = scene.target_cm.map(|target_cm| driven.end().position_cm.distance(target_cm));
         let distance = distance_cm.map_or_else(String::new, |cm| format!(", {cm:.1} cm from the target"));
-        let (how, steps) = (ending(driven.termination), driven.points.len() - 1);
+        let (how, steps) = (ending(driven.termination), driven.steps());
         let facts = json!({"schema": 1, "run": self.out, "ending": how, "steps": steps, "distance_cm": distance_cm});
         let text = format!("{}: {how} after {steps} steps{distance}\n", self.out.display());
         super::reported(self.json.as_deref(), &facts, text)

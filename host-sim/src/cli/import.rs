@@ -7,7 +7,8 @@ use std::path::PathBuf;
 use clap::{Args, Subcommand};
 use serde_json::json;
 
-use super::{Run, kinds, progress, table, warn};
+use super::table::{self, count};
+use super::{Run, kinds, progress, warn};
 use crate::error::Result;
 use crate::files::places::Places;
 use crate::import::brick::import;
@@ -96,7 +97,7 @@ impl Run for Brick {
         bar.finish_and_clear();
         let (logs, report) = imported?;
         logs.write(&self.out)?;
-        let text = format!("{}{}: {} runs\n", told(&report), self.out.display(), logs.runs.len());
+        let text = format!("{}{}: {}\n", told(&report), self.out.display(), count(logs.runs.len(), "run"));
         let facts = json!({"schema": 1, "tracks": report.tracks, "logs": report.logs});
         super::reported(self.json.as_deref(), &facts, text)
     }

@@ -1,12 +1,15 @@
 //! `mindgap info`
 
+use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use serde::de::IgnoredAny;
 use serde_json::{Value, json};
 
 use super::kinds;
+use super::table::count;
 use crate::effects::own;
 use crate::error::{Error, Result};
 use crate::evolve::controller_file::ControllerFile;
@@ -35,7 +38,17 @@ const PRODUCTS: &[(&str, &str)] = &[
     ("rxe", "an onboard program for an NXT: `mindgap brick` runs it"),
     ("rs", "an onboard program in Rust"),
     ("c", "an onboard program in C"),
+    ("ino", "an onboard program for an Arduino"),
+    ("py", "an onboard program for Pybricks"),
     ("1", "a manual page: man -l shows it"),
+];
+
+/// What folders are that are no logs, by a file in them.
+const FOLDERS: &[(&str, &str)] = &[
+    ("demo.html", "what `mindgap demo` left: open demo.html in a browser"),
+    ("loop.json", "a loop on the robot: `mindgap loop`; loop.json has its trials"),
+    ("fleet.json", "the diagnoses of a fleet: `mindgap diagnose --fleet`; open fleet.html in a browser"),
+    ("mindgap.1", "manual pages: `mindgap manual`"),
 ];
 
 /// What lists in JSON are, by a key of their entries.
@@ -59,11 +72,14 @@ impl super::Run for Info {
 
 fn folder(path: &Path) -> Result<String> {
     if !path.join("robot.toml").exists() {
-        return Err(Error::in_file(path, "is a folder without robot.toml: no logs that mindgap reads"));
+        let known = FOLDERS.iter().find(|(file, _)| path.join(file).exists());
+        return known
+            .map(|(_, what)| (*what).into())
+            .ok_or_else(|| Error::in_file(path, "is a folder without robot.toml: no logs that mindgap reads"));
     }
     let logs = Logs::read(path, super::warn)?;
     let (runs, rows, step_ms) = (logs.runs.len(), logs.rows(), logs.robot.step_ms);
-    Ok(format!("logs of {runs} runs, {rows} rows, {step_ms} ms apart; `mindgap check` tells more"))
+    Ok(format!("logs of {}, {rows} rows, {step_ms} ms apart; `mindgap check` tells more", count(runs, "run")))
 }
 
 fn file(path: &Path) -> Result<String> {
@@ -126,7 +142,8 @@ fn of_toml(path: &Path) -> Result<String> {
     if (kinds::CALIBRATION.is_one)(files::read_text(path)?.as_bytes()) {
         return Ok("thresholds of the diagnosis: `mindgap challenge calibrate`".into());
     }
-    let table: toml::Table = files::read_toml(path)?;
+    // Keys alone: a table of values has no room for the larger half of seeds.
+    let table: BTreeMap<String, IgnoredAny> = files::read_toml(path)?;
     let has = |key: &str| table.contains_key(key);
     if has("tuple") {
         let ControllerFile { controller, origin } = ControllerFile::read(path)?;
@@ -152,6 +169,7 @@ fn of_toml(path: &Path) -> Result<String> {
     }
     let scene = Scene::read(path)?;
     let target = if scene.target_cm.is_some() { "a target" } else { "no target" };
-    let [obstacles, walls, starts] = [scene.obstacles.len(), scene.walls.len(), scene.starts.len()];
-    Ok(format!("a scene with {obstacles} obstacles, {walls} bare walls, {target} and {starts} starts"))
+    let obstacles = count(scene.obstacles.len(), "obstacle");
+    let [walls, starts] = [count(scene.walls.len(), "bare wall"), count(scene.starts.len(), "start")];
+    Ok(format!("a scene with {obstacles}, {walls}, {target} and {starts}"))
 }

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use serde_json::json;
 
+use super::table::count;
 use super::{Run, kinds};
 use crate::built_in_robot::{ActiveEffect, Driving, Effect, default_robot, record_driving, training_room};
 use crate::error::Result;
@@ -61,7 +62,7 @@ impl Run for Record {
             "schema": 1, "logs": self.out, "runs": self.runs, "steps": self.steps, "step_ms": logs.robot.step_ms, "seed": self.seed,
             "effects": effects,
         });
-        let text = format!("{}: {} runs of {} steps\n", self.out.display(), self.runs, self.steps);
+        let text = format!("{}: {} of {} steps\n", self.out.display(), count(amount[0], "run"), self.steps);
         super::reported(self.json.as_deref(), &facts, text)
     }
 }

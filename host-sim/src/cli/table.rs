@@ -22,3 +22,8 @@ pub fn text<const N: usize>(header: [&str; N], rows: &[[String; N]]) -> String {
 pub fn number(value: Option<f64>, decimals: usize) -> String {
     value.map_or("-".into(), |v| format!("{v:.decimals$}"))
 }
+
+/// So many of something, in words: "1 run", "2 runs".
+pub fn count(of: usize, what: &str) -> String {
+    format!("{of} {what}{}", if of == 1 { "" } else { "s" })
+}

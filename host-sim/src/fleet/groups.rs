@@ -8,6 +8,7 @@ use rand_distr::{Distribution, StandardNormal};
 
 use super::tally::Tally;
 use crate::chance::{Generator, derive, generator};
+use crate::statistics::summary::mean;
 
 /// There are at most so many groups.
 const MOST: usize = 8;
@@ -56,10 +57,8 @@ pub fn groups(tally: &Tally, seed: u64) -> Vec<Group> {
 }
 
 fn mean_budget(tally: &Tally, members: &[usize]) -> Vec<f64> {
-    let mean = |part: usize| {
-        members.iter().map(|member| f64::from(tally.budgets[*member][part])).sum::<f64>() / members.len() as f64
-    };
-    (0..tally.parts.len()).map(mean).collect()
+    let share = |part: usize| mean(members.iter().map(|member| f64::from(tally.budgets[*member][part])));
+    (0..tally.parts.len()).map(share).collect()
 }
 
 /// The smallest number of groups that is as much tighter than in fleets without groups as any number is, within two errors
@@ -74,9 +73,9 @@ fn number_of_groups(points: &[Point], seed: u64) -> usize {
     let gap = |count: usize| {
         let tightness = |points: &[Point]| libm::log(divided(points, count, seed).0 + alike);
         let expected: Vec<f64> = references.iter().map(|reference| tightness(reference)).collect();
-        let mean = expected.iter().sum::<f64>() / expected.len() as f64;
-        let variance = expected.iter().map(|e| (e - mean) * (e - mean)).sum::<f64>() / expected.len() as f64;
-        (mean - tightness(points), (variance * (1.0 + 1.0 / REFERENCES as f64)).sqrt())
+        let middle = mean(expected.iter().copied());
+        let variance = mean(expected.iter().map(|e| (e - middle) * (e - middle)));
+        (middle - tightness(points), (variance * (1.0 + 1.0 / REFERENCES as f64)).sqrt())
     };
     let gaps: Vec<(f64, f64)> = (1..=loose).map(gap).collect();
     let widest = gaps.iter().copied().max_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or_default();
@@ -86,13 +85,13 @@ fn number_of_groups(points: &[Point], seed: u64) -> usize {
 /// As many points that scatter about their mean as these do on the whole, by a normal law with their covariance.
 fn without_groups(points: &[Point], rng: &mut Generator) -> Vec<Point> {
     let count = points.len() as f64;
-    let mean: Point = (0..points[0].len()).map(|axis| points.iter().map(|p| p[axis]).sum::<f64>() / count).collect();
+    let middle: Point = (0..points[0].len()).map(|axis| mean(points.iter().map(|point| point[axis]))).collect();
     let draw = |rng: &mut Generator| {
-        let mut drawn = mean.clone();
+        let mut drawn = middle.clone();
         for point in points {
             let weight: f64 = StandardNormal.sample(rng);
             for (axis, value) in drawn.iter_mut().enumerate() {
-                *value += weight / count.sqrt() * (point[axis] - mean[axis]);
+                *value += weight / count.sqrt() * (point[axis] - middle[axis]);
             }
         }
         drawn
@@ -125,9 +124,8 @@ fn from_start(points: &[Point], groups: usize, rng: &mut Generator) -> (f64, Vec
     for _ in 0..ROUNDS {
         for (group, middle) in middles.iter_mut().enumerate() {
             let members = || points.iter().zip(&of).filter(|(_, of)| **of == group).map(|(point, _)| point);
-            let count = members().count();
-            for (axis, value) in middle.iter_mut().enumerate().filter(|_| count > 0) {
-                *value = members().map(|point| point[axis]).sum::<f64>() / count as f64;
+            for (axis, value) in middle.iter_mut().enumerate().filter(|_| members().next().is_some()) {
+                *value = mean(members().map(|point| point[axis]));
             }
         }
         let (now, closer) = assigned(&middles);

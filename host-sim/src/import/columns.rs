@@ -47,7 +47,7 @@ impl Columns {
             None => by_names(table),
         };
         let columns = Columns { columns: found.map_err(|what| Error::at_line(&table.file, 1, what))? };
-        columns.with_units(units).and_then(Columns::complete).map_err(|what| match what {
+        columns.with_units(units).and_then(|columns| columns.complete(table)).map_err(|what| match what {
             Lack::Anything => {
                 let names = table.names.join(", ");
                 let what = format!(
@@ -208,16 +208,19 @@ impl Columns {
     }
 
     /// The same if nothing is missing.
-    fn complete(self) -> std::result::Result<Self, Lack> {
+    fn complete(self, table: &Table) -> std::result::Result<Self, Lack> {
         let has = |quantity: &Quantity| self.has(*quantity);
-        let missing = |what: &str, names: &str| {
-            Err(Lack::Column(format!("no column for {what}: name it {names}, or say in a --map which one it is")))
+        let missing = |quantity: Quantity, the: &str, names: &str| {
+            let (what, others) = (quantity.name(), self.left_over(table).join(", "));
+            let which = if others.is_empty() { String::new() } else { format!(" of {others}") };
+            let map = format!("or say in a --map which one{which} it is, as {what} = \"its name\"");
+            Err(Lack::Column(format!("no column for {the}{what}: name it {names}, {map}")))
         };
         if [TWIST, WHEELS].iter().flatten().chain(&POSES).chain([&Quantity::Range]).all(|quantity| !has(quantity)) {
             return Err(Lack::Anything);
         }
         if !has(&Quantity::Time) {
-            return missing("the time", "t_s, time_ms, timestamp or the like");
+            return missing(Quantity::Time, "the ", "t_s, time_ms, timestamp or the like");
         }
         if TWIST.iter().any(has) && WHEELS.iter().any(has) {
             let of = |pair: [Quantity; 2]| pair.map(|q| self.of(q).map_or("", |column| &column.name)).join(" ");
@@ -227,7 +230,7 @@ impl Columns {
         for [a, b] in [TWIST, WHEELS, [Quantity::X, Quantity::Y]] {
             if has(&a) != has(&b) {
                 let lacking = if has(&a) { b } else { a };
-                return missing(lacking.name(), "as in docs/bring-your-own-robot.md");
+                return missing(lacking, "", "as in docs/bring-your-own-robot.md");
             }
         }
         let unequal = WHEELS.map(|wheel| self.of(wheel).and_then(|column| Some(column.unit?.dimension)));
@@ -236,7 +239,7 @@ impl Columns {
         }
         let has_heading = has(&Quantity::Heading) || (has(&Quantity::Qz) && has(&Quantity::Qw));
         if has(&Quantity::X) && !has_heading {
-            return missing("the heading", "heading_deg, yaw_rad, or qx, qy, qz, qw of a quaternion");
+            return missing(Quantity::Heading, "the ", "heading_deg, yaw_rad, or qx, qy, qz, qw of a quaternion");
         }
         Ok(self)
     }

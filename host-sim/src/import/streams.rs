@@ -227,6 +227,7 @@ mod tests {
             ("a.csv", "t_s,left_pwm,right_pwm\n0,200,1\n1,1,1\n", "exceed 100: say what motors get at full command"),
             ("a.csv", "t_s,v_m_s,w_rad_s\n0,1,1\n9,1,1\n1,1,1\n", ":4: the clock goes back from 9.000 s to 1.000 s"),
             ("a.csv", "t_s,x_m,y_m\n0,1,1\n1,1,1\n", ":1: no column for the heading"),
+            ("a.csv", "t_s,x_m,y_m,cap\n0,1,1,0\n1,1,1,0\n", "which one of cap it is, as heading = "),
             ("a.csv", track, "of the files 0 hold commands and poses, 0 commands, 2 poses, 0 readings"),
             (
                 "a.csv",

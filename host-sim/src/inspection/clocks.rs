@@ -3,7 +3,7 @@
 use super::finding::{Finding, Handling, Part, Place};
 use super::ways::{FEWEST, asked, is_broken, one_in};
 use crate::geometry::wrap_rad;
-use crate::logs::{Logs, Run};
+use crate::logs::{Logs, Robot, Row, Run};
 use crate::statistics::summary::median;
 
 /// Rows of a run are this far off the usual time when they are at another rate, as for the logs as a whole.
@@ -107,7 +107,9 @@ fn whole(logs: &Logs, is_meant: &[bool]) -> Vec<Place> {
 fn shift(logs: &Logs, runs: &[&Run]) -> Option<f64> {
     let every = libm::round(2.0 * SOUGHT_EVERY_MS / logs.robot.step_ms).max(1.0);
     let times = |ms: f64| libm::floor(2.0 * ms / (every * logs.robot.step_ms)) as isize;
-    let fit = |times: isize| correlation(logs, runs, times * every as isize);
+    let one_in = one_in(runs.iter().map(|run| run.rows.len()).sum());
+    let courses: Vec<Course> = runs.iter().map(|run| Course::of(&logs.robot, run, one_in)).collect();
+    let fit = |times: isize| correlation(&logs.robot, &courses, times * every as isize);
     let as_is = (0..=times(LATEST_MS)).filter_map(fit).fold(0.0, f64::max);
     let mut best = (0, as_is);
     for times in (-times(SOUGHT_MS)..-1).chain(times(LATEST_MS) + 1..=times(SOUGHT_MS)) {
@@ -119,25 +121,51 @@ fn shift(logs: &Logs, runs: &[&Run]) -> Option<f64> {
     (best.0 != 0 && is_decisive).then_some(best.0 as f64 * every / 2.0 * logs.robot.step_ms)
 }
 
+/// What a run was asked for, row by row, and its steps: taken from its rows once for all times at which clocks are sought.
+struct Course {
+    commands: Vec<[f64; 2]>,
+    steps: Vec<Step>,
+}
+
+/// A step between two places, and the row at which it begins.
+struct Step {
+    row: usize,
+    ms: f64,
+    length_cm: f64,
+    turn_rad: f64,
+}
+
+impl Course {
+    /// Of a run, with one step in so many.
+    fn of(robot: &Robot, run: &Run, one_in: usize) -> Self {
+        let step = |(row, [from, to]): (usize, [Row; 2])| {
+            let (a, b) = from.pose.zip(to.pose)?;
+            let length_cm = a.position_cm.distance(b.position_cm);
+            let turn_rad = wrap_rad(b.heading_rad - a.heading_rad);
+            let is_whole = !is_broken(robot, from.t_ms, to.t_ms);
+            is_whole.then_some(Step { row, ms: to.t_ms - from.t_ms, length_cm, turn_rad })
+        };
+        Course {
+            commands: run.rows.iter().map(|row| row.command()).collect(),
+            steps: run.rows.pairs().enumerate().step_by(one_in).filter_map(step).collect(),
+        }
+    }
+}
+
 /// How motion correlates with the commands so many halves of a row before, the mean of length and turn; none of too few steps.
 /// Reversed turns are a frame's fault and not a clock's.
-fn correlation(logs: &Logs, runs: &[&Run], halves: isize) -> Option<f64> {
+fn correlation(robot: &Robot, courses: &[Course], halves: isize) -> Option<f64> {
     let mut pairs: [Vec<[f64; 2]>; 2] = [Vec::new(), Vec::new()];
-    let one_in = one_in(runs.iter().map(|run| run.rows.len()).sum());
-    for run in runs {
-        for (k, pair) in run.rows.pairs().enumerate().step_by(one_in) {
+    for Course { commands, steps } in courses {
+        for step in steps {
             let commanded = |half: isize| {
-                let row = k.checked_add_signed(-(half.div_euclid(2)))?;
-                Some(asked(&logs.robot, run.rows.get(row)?.command(), pair[1].t_ms - pair[0].t_ms))
+                let row = step.row.checked_add_signed(-(half.div_euclid(2)))?;
+                Some(asked(robot, *commands.get(row)?, step.ms))
             };
-            let commanded = commanded(halves).zip(commanded(halves + 1));
-            let (Some(a), Some(b), Some((one, other))) = (pair[0].pose, pair[1].pose, commanded) else { continue };
-            if is_broken(&logs.robot, pair[0].t_ms, pair[1].t_ms) {
-                continue;
-            }
+            let Some((one, other)) = commanded(halves).zip(commanded(halves + 1)) else { continue };
             let forward_cm = (one.forward_cm + other.forward_cm) / 2.0;
-            pairs[0].push([forward_cm.abs(), a.position_cm.distance(b.position_cm)]);
-            pairs[1].push([(one.turn_rad + other.turn_rad) / 2.0, wrap_rad(b.heading_rad - a.heading_rad)]);
+            pairs[0].push([forward_cm.abs(), step.length_cm]);
+            pairs[1].push([(one.turn_rad + other.turn_rad) / 2.0, step.turn_rad]);
         }
     }
     if pairs[0].len() < FEWEST {

@@ -7,12 +7,15 @@ use super::document::{Document, Script, Section, chart, open_table};
 use super::evaluation;
 use super::trials::{self, LINES, Map};
 use super::words::{number, percent};
-use crate::demo::Summary;
 use crate::demo::repair::Repair;
+use crate::demo::{JUDGED_RUNS, Summary, TRIALS};
 use crate::error::Result;
 use crate::evolve::fitness::Success;
 use crate::report::paths::{PathPanel, Trace};
+use crate::simulator::rollout::REACHED_CM;
 use crate::trials::state::place_cm;
+
+const STARTS_HEADER: [&str; 5] = ["start", "simulated", "cm off", "on the robot", "cm off"];
 
 /// The page, whole in one file; `folder` has everything else.
 ///
@@ -30,6 +33,7 @@ pub fn page(summary: &Summary, folder: &str, seed: u64) -> Result<String> {
         Section { id: "change", title: "Then a motor gets weak", body: change(repair) },
     ];
     sections.extend(trials::sections(&repair.state, panels.len()));
+    sections.push(Section { id: "next", title: "What to do next", body: next() });
     sections.push(Section { id: "compared", title: "What was run", body: source(folder, seed) });
     let maps = panels.iter().map(map).collect();
     Document {
@@ -51,8 +55,8 @@ pub fn page(summary: &Summary, folder: &str, seed: u64) -> Result<String> {
 fn headline(Summary { starts, repair, .. }: &Summary) -> String {
     let works = starts.iter().filter(|start| start.real.rate > 0.5).count();
     format!(
-        "{works} of {} controllers reach the target on the robot; when a motor gets weak, the loop brings the one of start {} \
-         from {} to {} of its runs.",
+        "{works} of {} controllers reach the target in most of their runs on the robot. When a motor gets weak, the loop brings \
+         that of start {} from {} to {} of its runs.",
         starts.len(),
         repair.start,
         percent(repair.before.rate),
@@ -69,15 +73,12 @@ fn starts(Summary { starts, panels, .. }: &Summary) -> Markup {
             [number.to_string(), reached(&s.simulated), off(&s.simulated), reached(&s.real), off(&s.real)]
         })
         .collect();
-    let header = [
-        "start",
-        "in simulation: reached",
-        "median (cm from target)",
-        "on the robot: reached",
-        "median (cm from target)",
-    ];
     html! {
-        (open_table(header, &rows))
+        (open_table(STARTS_HEADER, &rows))
+        p.quiet {
+            "Shares of runs that end within " (number(REACHED_CM, 0)) " cm of the target without a crash, and the median distance "
+            "to it: of " (JUDGED_RUNS) " simulated runs, and of " (TRIALS) " on the robot."
+        }
         p { (LINES) }
         div.pairs {
             @for (place, panel) in panels.iter().enumerate() {
@@ -105,6 +106,21 @@ fn map(panel: &PathPanel) -> Map {
         traces.iter().map(|trace| trace.points_cm.iter().map(|at| place_cm(*at)).collect()).collect()
     };
     Map { expected: paths(&panel.simulated), driven: paths(&panel.real) }
+}
+
+fn next() -> Markup {
+    html! {
+        ol {
+            li {
+                "Bring a robot of your own: " code { "mindgap new mine" } " makes the files to fill in, and "
+                code { "mindgap import" } " makes logs of what it recorded."
+            }
+            li {
+                "Ask what separates it from its simulator: "
+                code { "mindgap diagnose kinematic mine/logs --html gap.html" } "."
+            }
+        }
+    }
 }
 
 fn source(folder: &str, seed: u64) -> Markup {

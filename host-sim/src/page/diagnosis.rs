@@ -80,6 +80,9 @@ struct ChannelBar {
     after: f64,
 }
 
+/// A part of the gap from which on it is worth a walk to the robot: less than a twentieth changes no controller's fate.
+const WORTH_A_CHECK: f64 = 0.05;
+
 /// The page, whole in one file.
 ///
 /// # Errors
@@ -119,7 +122,7 @@ pub fn page(subject: &Subject) -> Result<String> {
         kind: "Diagnosis",
         headline: &headline(diagnosis, catalogue),
         subject: &format!("{} against {}", source.logs, source.simulator),
-        lead: lead(diagnosis, logs),
+        lead: lead(diagnosis, catalogue, logs),
         sections,
         scripts,
     }
@@ -135,28 +138,44 @@ fn bar<'a>(part: &'a Part, catalogue: &[&'static Effect]) -> BudgetBar<'a> {
 /// The verdict in one sentence.
 fn headline(diagnosis: &Diagnosis, catalogue: &[&'static Effect]) -> String {
     let names: Vec<&str> = diagnosis.effects().iter().map(|effect| words::name(effect.id, catalogue)).collect();
-    let (names, verb) = (words::list(&names), if names.len() == 1 { "explains" } else { "explain" });
+    let names = words::list(&names);
     match &diagnosis.answer {
         Answer::NoGap => "There is no gap: the logs agree with the simulator within its own error.".into(),
-        Answer::Known { .. } => format!("There is a gap between simulator and robot, and {names} {verb} it."),
+        Answer::Known { .. } => {
+            format!("There is a gap between simulator and robot. Known effects explain it: {names}.")
+        }
         Answer::PartlyKnown { .. } => {
-            format!("There is a gap between simulator and robot: {names} {verb} a part of it, and something is left.")
+            format!("There is a gap between simulator and robot. Known effects explain a part of it: {names}.")
         }
         Answer::Unknown { .. } => "There is a gap between simulator and robot, and no known effect explains it.".into(),
     }
 }
 
-fn lead(diagnosis: &Diagnosis, logs: &Logs) -> Markup {
+/// How probable each named effect is, in words.
+fn sure(diagnosis: &Diagnosis, catalogue: &[&'static Effect]) -> String {
+    let told: Vec<String> = diagnosis
+        .effects()
+        .iter()
+        .map(|effect| format!("{} {}", words::name(effect.id, catalogue), words::percent(effect.probability)))
+        .collect();
+    words::list(&told.iter().map(String::as_str).collect::<Vec<_>>())
+}
+
+fn lead(diagnosis: &Diagnosis, catalogue: &[&'static Effect], logs: &Logs) -> Markup {
     let compared: Vec<&str> = diagnosis.scope.compared.iter().map(|channel| words::channel(*channel)).collect();
     let rows: usize = logs.runs.iter().map(|run| run.rows.len()).sum();
     html! {
+        @if let Some(astray) = runs::astray(diagnosis) { p { (astray) } }
         @if let (Some(reduction), false) = (diagnosis.reduction(), diagnosis.effects().is_empty()) {
+            @let [low, high] = reduction.whole.ci95.map(words::percent);
             p {
                 "With " @if diagnosis.effects().len() == 1 { "it" } @else { "them" } " the simulator closes "
-                strong { (words::percent_within(reduction.whole.reducible_closed, reduction.whole.ci95)) }
-                " of what any model could close."
+                strong { (words::percent(reduction.whole.reducible_closed)) }
+                " of the gap that is not chance (95 % interval: " (low) " to " (high) "). "
+                "How sure each is: " (sure(diagnosis, catalogue)) "."
             }
         }
+        @if !matches!(diagnosis.answer, Answer::NoGap) { p { a href="#next" { "What to do next" } " stands below." } }
         p.quiet {
             "Compared: " (words::list(&compared)) " in " (rows) " rows of " (logs.runs.len())
             @if logs.runs.len() == 1 { " run." } @else { " runs." }
@@ -189,15 +208,22 @@ fn budget(diagnosis: &Diagnosis, catalogue: &[&'static Effect]) -> Markup {
 
 /// What to do now.
 fn next(diagnosis: &Diagnosis, catalogue: &[&'static Effect]) -> Section {
-    let largest = diagnosis.effects().iter().max_by(|a, b| a.share.unwrap_or(0.0).total_cmp(&b.share.unwrap_or(0.0)));
+    let mut parts: Vec<&Part> = diagnosis.budget().iter().filter(|part| part.share >= WORTH_A_CHECK).collect();
+    parts.sort_by(|a, b| b.share.total_cmp(&a.share));
+    let is_left = |part: &&Part| part.id == UNEXPLAINED;
+    let left = parts.iter().copied().find(is_left);
+    parts.retain(|part| !is_left(part));
     let body = html! {
         ol {
-            @if let Some(cause) = largest.and_then(|effect| words::cause(effect.id, catalogue)) {
-                li { "Check " strong { (cause.name) } ", which makes the largest part of the gap: " (cause.check) }
+            @for part in parts {
+                @if let Some(cause) = words::cause(&part.id, catalogue) {
+                    li { "Check " strong { (cause.name) } ", which makes " (words::percent(part.share))
+                        " of the gap: " (cause.check) }
+                }
             }
             @if !diagnosis.effects().is_empty() {
                 li {
-                    "Mend it on the robot and log again; or let the simulator have it too: the same command with "
+                    "Mend the robot and log it again; or teach the simulator: the same command with "
                     code { "--apply better.json" } " writes a simulator with the effects, to evolve controllers in."
                 }
             }
@@ -209,9 +235,12 @@ fn next(diagnosis: &Diagnosis, catalogue: &[&'static Effect]) -> Section {
                     code { "--next-experiment next.csv" } " writes the commands."
                 }
             }
-            @if matches!(diagnosis.answer, Answer::Unknown { .. }) {
-                li { "See on what the gap depends, watch the robot there, and state what you suspect as an effect of "
-                    "your own: " code { "--effects FILE" } " lets it compete with the built-in ones." }
+            @if left.is_some() || matches!(diagnosis.answer, Answer::Unknown { .. }) {
+                li {
+                    @if let Some(left) = left { (words::percent(left.share)) " of the gap is not explained. " }
+                    "See " a href="#where" { "where it lies" } ", watch the robot there, and state what you suspect as an "
+                    "effect of your own: " code { "--effects FILE" } " lets it compete with the built-in ones."
+                }
             }
             @if matches!(diagnosis.answer, Answer::NoGap) {
                 li { "Nothing has to be mended for what these logs show. A controller that fails all the same drives "

@@ -171,21 +171,22 @@ pub fn table<const N: usize>(summary: &str, header: [&str; N], rows: &[[String; 
 
 /// The same in plain sight.
 pub fn open_table<const N: usize>(header: [&str; N], rows: &[[String; N]]) -> Markup {
+    let numbers: [bool; N] = std::array::from_fn(|i| are_numbers(rows.iter().map(|row| row[i].as_str())));
     html! {
         div.wide tabindex="0" role="region" aria-label={ "Table: " (header.join(", ")) } {
             table {
                 thead {
                     tr {
                         @for (i, name) in header.iter().enumerate() {
-                            th.n[rows.first().is_some_and(|row| is_number(&row[i]))] scope="col" { (name) }
+                            th.n[numbers[i]] scope="col" { (name) }
                         }
                     }
                 }
                 tbody {
                     @for row in rows {
                         tr {
-                            th.n[is_number(&row[0])] scope="row" { (row[0]) }
-                            @for cell in &row[1..] { td.n[is_number(cell)] { (cell) } }
+                            th.n[numbers[0]] scope="row" { (row[0]) }
+                            @for (i, cell) in row.iter().enumerate().skip(1) { td.n[numbers[i]] { (cell) } }
                         }
                     }
                 }
@@ -194,9 +195,10 @@ pub fn open_table<const N: usize>(header: [&str; N], rows: &[[String; N]]) -> Ma
     }
 }
 
-/// Numbers stand to the right.
-fn is_number(cell: &str) -> bool {
-    cell.starts_with(|first: char| first.is_ascii_digit() || first == '−' || first == '–')
+/// Columns of numbers stand to the right; a dash is a number that is not there.
+fn are_numbers<'a>(mut column: impl Iterator<Item = &'a str> + Clone) -> bool {
+    let is_number = |cell: &str| cell.starts_with(|first: char| first.is_ascii_digit() || first == '−');
+    column.clone().any(is_number) && column.all(|cell| cell == "–" || is_number(cell))
 }
 
 /// JSON inside a page: what would end its element, or begin a comment in it, is written as an escape.
@@ -218,6 +220,13 @@ mod tests {
         let PreEscaped(text) = embedded(&data);
         assert!(!text.contains('<') && !text.contains('\u{2028}'), "{text}");
         assert_eq!(serde_json::from_str::<Value>(&text).expect("still JSON"), data);
+    }
+
+    #[test]
+    fn columns_of_numbers_stand_to_the_right_and_words_do_not() {
+        assert!(are_numbers(["−2 to 3", "–", "41 %"].into_iter()));
+        assert!(!are_numbers(["–", "weaker motor"].into_iter()), "a dash among words");
+        assert!(!are_numbers(["–"].into_iter()) && !are_numbers([].into_iter()));
     }
 
     #[test]

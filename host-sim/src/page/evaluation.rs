@@ -92,7 +92,13 @@ pub fn page(subject: &Subject) -> Result<String> {
         kind: "Evaluation",
         headline: &headline(&values),
         subject: &format!("{sim} on {folder}"),
-        lead: html! {},
+        lead: html! {
+            p {
+                "Well is an R² of " (GOOD) " or more, roughly of " (USABLE) ". Where it predicts less well on these logs than on those "
+                "that it learned from, the robot has changed or drives otherwise: " code { "mindgap diagnose " (sim) " " (folder) }
+                " says why."
+            }
+        },
         sections,
         scripts: &[Script::Evaluation],
     }
@@ -102,10 +108,10 @@ pub fn page(subject: &Subject) -> Result<String> {
 fn values(networks: &Networks) -> Vec<Judged<'_>> {
     let Networks { turn, forward, lateral, echo_value, .. } = networks;
     [
-        ("way forward", "cm", forward),
-        ("way sideways", "cm", lateral),
+        ("forward motion", "cm", forward),
+        ("sideways motion", "cm", lateral),
         ("turn", "degrees", turn),
-        ("reading", "cm", echo_value),
+        ("sonar reading", "cm", echo_value),
     ]
     .into_iter()
     .filter_map(|(name, unit, value)| Some((name, unit, value.as_ref()?)))
@@ -153,7 +159,7 @@ fn judged(values: &[Judged]) -> Markup {
         .collect();
     html! {
         p { "R² is the share of what happened that the simulator foretells: 1 is all, 0 is no more than the mean." }
-        (open_table(["network", "R²", "typical error", "samples"], &rows))
+        (open_table(["network", "R²", "typical error (RMS)", "samples"], &rows))
     }
 }
 

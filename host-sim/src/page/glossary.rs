@@ -36,14 +36,13 @@ const WORDS: &[(&str, &str)] = &[
     ("unexplained", "What follows circumstances (speed, place, time, distance) and is described by no named effect."),
     (
         "channel",
-        "One of the five things that a simulator predicts of a step: the way forward and sideways, the turn, whether \
-         there is an echo, and what the reading is.",
+        "One of the five things that a simulator predicts of a step: its motion forward and sideways, its turn, whether \
+         the sonar hears an echo, and what it reads.",
     ),
     ("step", "The time between two commands; a row of a log. Steps are the smallest thing that is compared."),
     (
         "heading",
-        "The direction in which the robot looks: 0° is along x, to the right of the map, and 90° along y, upwards. \
-         Along x is 0°, along y is 90°.",
+        "The direction in which the robot looks: 0° is along x, to the right of the map, and 90° along y, upwards.",
     ),
     ("incidence", "The angle between the sensor's axis and the normal of the surface that it meets: 0° is square on."),
     (
@@ -56,5 +55,5 @@ const WORDS: &[(&str, &str)] = &[
 /// The words that are used in a page's other sections.
 pub fn section() -> Section {
     let body = html! { dl { @for (word, meaning) in WORDS { dt { (word) } dd { (meaning) } } } };
-    Section { id: "words", title: "Words", body }
+    Section { id: "words", title: "Glossary", body }
 }

@@ -61,8 +61,7 @@ struct Turn {
     to: usize,
 }
 
-const TUPLES_HEADER: [&str; 5] =
-    ["tuple", "left, right", "until a reading is", "begins at step: median (range)", "runs that get there"];
+const TUPLES_HEADER: [&str; 5] = ["tuple", "left, right", "until a reading is", "begins at step (range)", "runs"];
 const DRIVEN: Kind = Kind { id: "simulator", name: "the simulated robot" };
 
 /// The page, whole in one file.
@@ -85,7 +84,9 @@ pub fn page(subject: &Subject) -> Result<String> {
         kind: "Simulation",
         headline: &headline(rollouts),
         subject: &format!("{controller} in {sim}, {room}, start {}", subject.start),
-        lead: html! {},
+        lead: html! {
+            p { "Each run is of another robot that the simulator's logs leave possible, with the noise of its motors and its sensor." }
+        },
         sections: vec![
             Section { id: "paths", title: "Where the runs end", body: paths(rollouts, shown.len()) },
             Section { id: "tuples", title: "What the controller does", body: tuples(subject) },
@@ -156,8 +157,8 @@ fn tuples(subject: &Subject) -> Markup {
             };
             [
                 format!("{}", i + 1),
-                format!("{}, {}", number(f64::from(tuple.left), 0), number(f64::from(tuple.right), 0)),
-                format!("{side} {} cm", tuple.threshold_cm),
+                format!("{},\u{a0}{}", number(f64::from(tuple.left), 0), number(f64::from(tuple.right), 0)),
+                format!("{side} {}\u{a0}cm", tuple.threshold_cm),
                 begin,
                 begins.len().to_string(),
             ]
@@ -167,6 +168,7 @@ fn tuples(subject: &Subject) -> Markup {
         p { "The robot holds a tuple's commands until a reading is on the stated side of its threshold, then takes "
         "the next." }
         (open_table(TUPLES_HEADER, &rows))
+        p.quiet { "The step is the median over the runs in which the tuple is reached; the last column counts them." }
         (chart("turns", 0, "Which tuple each run holds, step by step", html! {
             "Which tuple each run holds, step by step: a row is a run."
         }))
@@ -180,7 +182,9 @@ fn path(run: usize, rollout: &Rollout) -> Path {
 
 fn turns(run: usize, rollout: &Rollout) -> Vec<Turn> {
     let mut from = 0;
-    let held = rollout.path.chunk_by(|a, b| a.tuple == b.tuple).map(|points| {
+    // At its last point a run is over.
+    let driven = rollout.path.split_last().map_or(&[][..], |(_, driven)| driven);
+    let held = driven.chunk_by(|a, b| a.tuple == b.tuple).map(|points| {
         let turn = Turn { run: run + 1, tuple: points[0].tuple, from, to: from + points.len() };
         from += points.len();
         turn

@@ -77,8 +77,8 @@ struct GapRow {
 type Channel = (&'static str, &'static str, fn(&Gap) -> [f64; 2]);
 
 const CHANNELS: [Channel; 3] = [
-    ("way forward", "cm", |gap| gap.forward_cm),
-    ("way sideways", "cm", |gap| gap.lateral_cm),
+    ("forward motion", "cm", |gap| gap.forward_cm),
+    ("sideways motion", "cm", |gap| gap.lateral_cm),
     ("turn", "degrees", |gap| gap.turn_deg),
 ];
 /// As many maps are in a page.
@@ -97,6 +97,7 @@ const TURNS_HEADER: [&str; 5] =
 pub fn page(subject: &Subject) -> Result<String> {
     let Subject { state, scene, names: [sim, room], start, .. } = subject;
     let mut sections = sections(state, 0);
+    sections.push(Section { id: "next", title: "What to do next", body: next(state) });
     sections.push(Section { id: "compared", title: "What was run", body: source(subject) });
     Document {
         kind: "Loop on the robot",
@@ -302,6 +303,31 @@ fn cause(applied: &AppliedEffect) -> Markup {
                 @if let Some(cause) = known { dt { "What it is" } dd { (cause.what) } }
                 dt { "How strong" } dd { (words::list(&values.iter().map(String::as_str).collect::<Vec<_>>())) }
                 @if let Some(cause) = known { dt { "How to check" } dd { (cause.check) } }
+            }
+        }
+    }
+}
+
+fn next(state: &State) -> Markup {
+    let named = state.trials.last().is_some_and(|trial| !trial.effects.is_empty());
+    html! {
+        ol {
+            @match state.verdict {
+                Verdict::Works => li {
+                    "Make a program of the controller: " code { "mindgap export controller.toml --format nxc --out drive.nxc" } "."
+                },
+                Verdict::Spent => li {
+                    "The same call with more " code { "--trials" } " goes on from here: each run narrows what is not known of the "
+                    "robot."
+                },
+                Verdict::OutOfReach => li {
+                    "Make it easier: a start nearer to the target, or more " code { "--max-steps" } ". Where even that fails, "
+                    "log the robot while it drives at random, and train the simulator anew."
+                },
+                Verdict::Running => li { "The same call goes on from here." },
+            }
+            @if named {
+                li { "Check on the robot what " a href="#effects" { "its runs say" } ": what is mended there needs no learning." }
             }
         }
     }

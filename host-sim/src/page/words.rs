@@ -27,7 +27,7 @@ const WIDER_SCATTER: Cause = Cause {
 const NOT_EXPLAINED: Cause = Cause {
     name: "unexplained",
     what: "The logs follow circumstances in a way that no named effect does.",
-    check: "See below on what it depends, and watch the robot in those circumstances.",
+    check: "Watch the robot in the circumstances on which it depends.",
 };
 
 /// What an id of a budget means; none of an effect that is not among these.
@@ -58,11 +58,11 @@ pub fn with(diagnosis: &Diagnosis) -> &'static str {
 /// What a channel is.
 pub fn channel(channel: Channel) -> &'static str {
     match channel {
-        Channel::Forward => "way forward",
-        Channel::Lateral => "way sideways",
+        Channel::Forward => "forward motion",
+        Channel::Lateral => "sideways motion",
         Channel::Turn => "turn",
-        Channel::EchoRate => "rate of echoes",
-        Channel::EchoValue => "reading",
+        Channel::EchoRate => "echo rate",
+        Channel::EchoValue => "sonar reading",
     }
 }
 
@@ -75,9 +75,9 @@ pub fn list(of: &[&str]) -> String {
     }
 }
 
-/// A share in per cent.
+/// A share in per cent, which no line ends within.
 pub fn percent(share: f64) -> String {
-    format!("{:.0} %", 100.0 * share)
+    format!("{:.0}\u{a0}%", 100.0 * share)
 }
 
 /// A share with its interval.

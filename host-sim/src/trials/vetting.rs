@@ -97,10 +97,11 @@ impl Vetting<'_> {
         let steps = driven.steps;
         if clearance_cm < TOUCHING_CM {
             Ok(Ending::Crashed)
+        } else if steps >= usize::from(self.controller.max_steps) {
+            // One that holds its sixth tuple then has not finished either.
+            Ok(Ending::TimedOut)
         } else if driven.may_have_finished() {
             Ok(Ending::Finished)
-        } else if steps >= usize::from(self.controller.max_steps) {
-            Ok(Ending::TimedOut)
         } else {
             Err(Error::new(format!(
                 "breaks off after {steps} steps, where the controller had not ended and no wall is near: half a log"

@@ -3,7 +3,7 @@
 use std::fs;
 
 use mindgap_tests::command::Workshop;
-use mindgap_tests::rooms::{SCENE, trained};
+use mindgap_tests::rooms::{SCENE, trained, with_scene};
 
 /// Changes one file of small logs and expects that training on them is refused.
 fn refused_after(file: &str, change: impl FnOnce(String) -> String) -> String {
@@ -282,8 +282,7 @@ fn scripts_that_cannot_be_driven() {
 
 #[test]
 fn controllers_that_cannot_be() {
-    let workshop = trained();
-    workshop.write("scene.toml", SCENE);
+    let workshop = with_scene();
     let calls = ["export c.toml --format nxc --out c.nxc", "simulate sim.json c.toml --scene scene.toml --json r.json"];
     let line = "  { left = 55, right = 48, when = \"larger\", threshold_cm = 42 },\n";
     for call in calls {

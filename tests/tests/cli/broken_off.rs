@@ -5,13 +5,12 @@
 //! them that often, also those that take minutes.
 
 use std::env;
-use std::path::PathBuf;
 use std::process::{Output, Stdio};
 use std::thread;
 use std::time::Instant;
 
 use mindgap_tests::command::Workshop;
-use mindgap_tests::rooms::{SCENE, robot, trained};
+use mindgap_tests::rooms::{robot, with_scene};
 use rand::rngs::SmallRng;
 use rand::{RngExt, SeedableRng};
 
@@ -75,26 +74,15 @@ fn output(workshop: &Workshop, call: &[&str], kill_at: Option<Instant>) -> Optio
 
 #[track_caller]
 fn assert_same(unbroken: &Workshop, broken: &Workshop, call: &[&str]) {
-    let files = |workshop: &Workshop| -> Vec<(PathBuf, Vec<u8>)> {
-        let name = |path: PathBuf| path.strip_prefix(workshop.path()).expect("a path below the folder").to_owned();
-        workshop.listing().into_iter().map(|(path, bytes)| (name(path), bytes)).collect()
-    };
-    let (expected, found) = (files(unbroken), files(broken));
-    let names = |files: &[(PathBuf, Vec<u8>)]| files.iter().map(|(path, _)| path.clone()).collect::<Vec<_>>();
-    assert_eq!(names(&found), names(&expected), "{call:?}");
-    for ((path, found), (_, expected)) in found.iter().zip(&expected) {
-        assert!(found == expected, "{call:?}: {}", path.display());
+    let (expected, found) = (unbroken.files(""), broken.files(""));
+    assert!(found.keys().eq(expected.keys()), "{call:?}: {:?}", found.keys());
+    for (path, found) in &found {
+        assert!(*found == expected[path], "{call:?}: {}", path.display());
     }
 }
 
 fn words(call: &str) -> Vec<&str> {
     call.split_whitespace().chain(["--checkpoint", "kept"]).collect()
-}
-
-fn with_scene() -> Workshop {
-    let workshop = trained();
-    workshop.write("scene.toml", SCENE);
-    workshop
 }
 
 #[test]

@@ -4,7 +4,7 @@ use std::io::Read;
 use std::process::Stdio;
 
 use mindgap_tests::command::{Workshop, workspace};
-use mindgap_tests::rooms::{SCENE, trained};
+use mindgap_tests::rooms::{SCENE, trained, with_scene};
 use serde_json::Value;
 
 #[test]
@@ -116,8 +116,7 @@ fn the_first_line_of_an_output_can_be_read_alone() {
 
 #[test]
 fn a_controller_is_evolved_simulated_and_exported() {
-    let workshop = trained();
-    workshop.write("scene.toml", SCENE);
+    let workshop = with_scene();
     let told = workshop.done("evolve sim.json --scene scene.toml --start 2 --out controller.toml --max-steps 20");
     assert!(told.starts_with("start 2: ") && told.ends_with("controller written to controller.toml\n"), "{told}");
     let controller = workshop.text("controller.toml");
@@ -150,8 +149,7 @@ fn a_controller_is_evolved_simulated_and_exported() {
 
 #[test]
 fn simulated_noise_is_the_users_choice() {
-    let workshop = trained();
-    workshop.write("scene.toml", SCENE);
+    let workshop = with_scene();
     workshop.done("evolve sim.json --scene scene.toml --out c.toml --max-steps 20");
     let ends = |noise: &str| -> Vec<Value> {
         workshop.done(&format!("simulate sim.json c.toml --scene scene.toml --runs 8 --json runs.json {noise}"));

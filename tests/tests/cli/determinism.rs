@@ -1,7 +1,7 @@
 //! The same seed and inputs give the same bytes on any number of threads, and another seed gives others.
 
 use mindgap_tests::command::Workshop;
-use mindgap_tests::rooms::{SCENE, trained};
+use mindgap_tests::rooms::with_scene;
 
 /// Calls a command that writes to the file or folder `out` on one and on two threads, and checks that it writes the
 /// same; and that it writes something else with another seed.
@@ -10,10 +10,7 @@ fn assert_settled(workshop: &Workshop, command: &str) {
         let copy = workshop.copy();
         let done = copy.call_on_threads(threads, &format!("{command} --out out --seed {seed}"));
         assert_eq!(done.code, 0, "{}", done.err);
-        let files = copy.listing().into_iter();
-        let files: Vec<_> =
-            files.map(|(path, bytes)| (path.strip_prefix(copy.path()).unwrap().to_owned(), bytes)).collect();
-        (done.out, files)
+        (done.out, copy.files(""))
     };
     let first = written(1, 5);
     assert!(first == written(2, 5), "mindgap {command} depends on the number of threads");
@@ -32,14 +29,12 @@ fn training() {
 
 #[test]
 fn evolution() {
-    let workshop = trained();
-    workshop.write("scene.toml", SCENE);
+    let workshop = with_scene();
     assert_settled(&workshop, "evolve sim.json --scene scene.toml --max-steps 12");
 }
 
 #[test]
 fn evolution_as_the_paper_has_it() {
-    let workshop = trained();
-    workshop.write("scene.toml", SCENE);
+    let workshop = with_scene();
     assert_settled(&workshop, "evolve sim.json --scene scene.toml --max-steps 6 --paper");
 }

@@ -4,7 +4,7 @@ use std::sync::LazyLock;
 
 use mindgap_host_sim::logs::Run;
 use mindgap_tests::command::Workshop;
-use mindgap_tests::rooms::{SCENE, trained};
+use mindgap_tests::rooms::{trained, with_scene};
 use serde_json::Value;
 
 /// Runs of the workshop's logs.
@@ -208,8 +208,7 @@ fn the_experiment_that_tells_confused_causes_apart_is_a_run() {
 
 #[test]
 fn the_textbook_is_refused_where_a_learned_simulator_is_needed() {
-    let workshop = trained();
-    workshop.write("scene.toml", SCENE);
+    let workshop = with_scene();
     for call in [
         "evaluate kinematic logs",
         "adapt kinematic logs --out adapted.json",

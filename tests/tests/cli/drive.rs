@@ -32,6 +32,14 @@ fn a_run_is_logged_from_the_start_to_where_it_ended() {
 }
 
 #[test]
+fn a_run_takes_no_more_steps_than_its_controller_may() {
+    let workshop = workshop();
+    workshop.edit("six.toml", |text| text.replace("max_steps = 150", "max_steps = 2"));
+    let told = workshop.done("drive six.toml --scene scene.toml --out run.csv");
+    assert!(told.starts_with("run.csv: timed out after 2 steps, "), "{told}");
+}
+
+#[test]
 fn the_seed_and_an_effect_decide_how_it_goes() {
     let workshop = workshop();
     let log = |name: &str, options: &str| {

@@ -4,11 +4,10 @@
 
 use std::collections::BTreeMap;
 use std::fs;
-use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use mindgap_tests::command::{Done, Workshop, program};
-use mindgap_tests::rooms::{SCENE, trained};
+use mindgap_tests::rooms::{trained, with_scene};
 use rayon::prelude::*;
 
 use super::import_recordings;
@@ -39,8 +38,7 @@ struct SystemCall {
 
 #[test]
 fn quick_commands_fail_at_every_call() {
-    let workshop = trained();
-    workshop.write("scene.toml", SCENE);
+    let workshop = with_scene();
     let tuple = "  { left = 55, right = 48, when = \"larger\", threshold_cm = 42 },\n";
     workshop.write("six.toml", format!("step_ms = 400\nmax_steps = 10\ntuple = [\n{}]\n", tuple.repeat(6)));
     workshop.done("export six.toml --format rxe --out six.rxe");
@@ -86,8 +84,7 @@ fn slow_commands_fail_at_some() {
 /// What writes one result after the other, and what keeps a checkpoint: what is there is complete, and goes on.
 #[test]
 fn long_commands_fail_at_some() {
-    let workshop = trained();
-    workshop.write("scene.toml", SCENE);
+    let workshop = with_scene();
     assert_whole(&workshop, "evolve sim.json --scene scene.toml --max-steps 5 --paper --out c.toml", FEW, AllOrNothing);
     workshop.done("challenge make --cases 2 --out blind");
     assert_whole(&workshop, "challenge answer blind", FEW, Stages);
@@ -101,7 +98,7 @@ fn a_slow_network_folder_changes_nothing() {
     workshop.done("record --out logs --runs 1 --steps 5");
     let inject = ["-e", "trace=openat,write,fsync,rename", "-e", "inject=openat,write,fsync,rename:delay_enter=20000"];
     assert_eq!(traced(&late, &inject, "record --out logs --runs 1 --steps 5").code, 0);
-    assert_eq!(files(&late), files(&workshop));
+    assert_eq!(late.files(""), workshop.files(""));
 }
 
 /// Fails calls of a command, and checks what it leaves.
@@ -114,7 +111,7 @@ fn assert_whole(workshop: &Workshop, call: &str, most: usize, leaves: Leaves) {
     let changes = changes(&fs::read_to_string(&trace).expect("strace is there: install the package strace"));
     assert!(changes.len() > 3, "{call}: {changes:?}");
     fs::remove_file(trace).expect("a trace");
-    let (before, after) = (files(workshop), files(&undisturbed));
+    let (before, after) = (workshop.files(""), undisturbed.files(""));
     let stride = changes.len().div_ceil(most);
     let failing: Vec<(usize, &SystemCall)> = changes.iter().enumerate().step_by(stride).collect();
     failing.par_iter().for_each(|(number, SystemCall { name, count })| {
@@ -126,7 +123,7 @@ fn assert_whole(workshop: &Workshop, call: &str, most: usize, leaves: Leaves) {
             let failing = workshop.copy();
             let inject = format!("inject={name}:error={error}:when={count}{lasts}");
             let done = traced(&failing, &["-o", "/dev/null", "-e", &format!("trace={name}"), "-e", &inject], call);
-            let left = files(&failing);
+            let left = failing.files("");
             if done.code == 0 {
                 assert_eq!(left, after, "{what}");
                 continue;
@@ -137,7 +134,7 @@ fn assert_whole(workshop: &Workshop, call: &str, most: usize, leaves: Leaves) {
                 // Where nothing can be opened or renamed any more, what is left waits for the next command.
                 assert!((name.starts_with("rename") || name == "openat") && *lasts == "+", "{what}");
                 assert_eq!(traced(&failing, &["-o", "/dev/null"], call).code, 0, "{what}");
-                assert!(files(&failing) == after, "{what}");
+                assert!(failing.files("") == after, "{what}");
                 continue;
             }
             let is_whole = match leaves {
@@ -186,12 +183,5 @@ fn changes(trace: &str) -> Vec<SystemCall> {
 
 /// Whether something under a temporary name is left.
 fn is_kept(workshop: &Workshop) -> bool {
-    files(workshop).keys().any(|path| path.to_string_lossy().contains(".mindgap-"))
-}
-
-/// Every file below a folder with its bytes. Folders that a command made on its way to a place count for nothing.
-fn files(workshop: &Workshop) -> BTreeMap<PathBuf, Vec<u8>> {
-    let relative = |path: &Path| path.strip_prefix(workshop.path()).expect("a path below the folder").to_owned();
-    let files = workshop.listing().into_iter().filter(|(path, _)| path.is_file());
-    files.map(|(path, bytes)| (relative(&path), bytes)).collect()
+    workshop.files("").keys().any(|path| path.to_string_lossy().contains(".mindgap-"))
 }

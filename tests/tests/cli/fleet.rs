@@ -1,7 +1,6 @@
 //! `mindgap diagnose --fleet`: one diagnosis a robot, and what they say together.
 
 use std::fs;
-use std::path::PathBuf;
 use std::sync::LazyLock;
 
 use mindgap_tests::command::Workshop;
@@ -25,13 +24,6 @@ fn workshop() -> Workshop {
 }
 
 const WEAK: &str = "--effect motor_asymmetry=0.25";
-
-/// The files of a folder by their paths in it.
-fn files(workshop: &Workshop, folder: &str) -> Vec<(PathBuf, Vec<u8>)> {
-    let root = workshop.path().join(folder);
-    let files = workshop.listing().into_iter();
-    files.filter_map(|(path, bytes)| Some((path.strip_prefix(&root).ok()?.to_owned(), bytes))).collect()
-}
 
 fn ids<'a>(list: &'a Value, key: &str) -> Vec<&'a str> {
     list.as_array().expect("a list").iter().map(|entry| entry[key].as_str().expect("a text")).collect()
@@ -78,7 +70,7 @@ fn it_is_the_same_on_any_number_of_threads() {
         let done = workshop.call_on_threads(threads, &format!("diagnose sim.json fleet --fleet {out}"));
         assert_eq!(done.code, 0, "{}", done.err);
     }
-    assert!(files(&workshop, "one") == files(&workshop, "two"));
+    assert!(workshop.files("one") == workshop.files("two"));
 }
 
 #[test]

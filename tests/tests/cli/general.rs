@@ -1,7 +1,7 @@
 //! What all commands have in common: general options, defaults beside the logs, JSON, words that were probably meant.
 
 use mindgap_tests::command::Workshop;
-use mindgap_tests::rooms::{SCENE, trained};
+use mindgap_tests::rooms::{SCENE, trained, with_scene};
 
 #[test]
 fn results_are_the_same_on_any_number_of_threads() {
@@ -36,8 +36,7 @@ fn verbose_says_on_standard_error_what_is_decided() {
 
 #[test]
 fn every_command_that_makes_something_tells_it_as_json_and_knows_its_own_file() {
-    let workshop = trained();
-    workshop.write("scene.toml", SCENE);
+    let workshop = with_scene();
     for (call, key) in [
         ("record --out more --runs 2 --steps 5 --effect slip", "effects"),
         ("train logs --out sim.json", "evaluations"),

@@ -1,7 +1,9 @@
 //! What the command tells of itself and of files: help, completions, manual pages, `mindgap info`.
 
+use std::process::Command;
+
 use mindgap_tests::command::Workshop;
-use mindgap_tests::rooms::{SCENE, trained};
+use mindgap_tests::rooms::{trained, with_scene};
 
 #[test]
 fn help_lists_the_commands_in_the_order_of_work_with_examples() {
@@ -17,19 +19,29 @@ fn help_lists_the_commands_in_the_order_of_work_with_examples() {
 
 #[test]
 fn files_that_it_writes_are_told() {
-    let workshop = trained();
-    workshop.write("scene.toml", SCENE);
+    let workshop = with_scene();
     workshop.done("diagnose sim.json logs --json diagnosis.json --html page.html");
     workshop.done("evaluate sim.json logs --json evaluation.json");
+    let seed = u64::MAX;
+    workshop.done(&format!("evolve sim.json --scene scene.toml --out controller.toml --max-steps 6 --seed {seed}"));
+    for (format, ending) in [("arduino", "ino"), ("pybricks", "py"), ("rxe", "rxe")] {
+        workshop.done(&format!("export controller.toml --format {format} --out drive.{ending}"));
+    }
+    workshop.done("manual --out man");
     for (path, what) in [
         ("sim.json", "a simulator, trained (fast) on 6 runs"),
         ("logs", "logs of 6 runs, 156 rows"),
         ("logs/run-000.csv", "a run of 26 rows"),
         ("logs/robot.toml", "a robot with a track of"),
-        ("scene.toml", "a scene with 1 obstacles, 0 bare walls, a target and 2 starts"),
+        ("scene.toml", "a scene with 1 obstacle, 0 bare walls, a target and 2 starts"),
         ("diagnosis.json", "a diagnosis: `mindgap diagnose --json`, verdict "),
         ("evaluation.json", "an evaluation"),
         ("page.html", "a page"),
+        ("controller.toml", "a controller, a step every 400 ms, 6 at most; evolved in sim.json for start 1"),
+        ("drive.ino", "an onboard program for an Arduino"),
+        ("drive.py", "an onboard program for Pybricks"),
+        ("drive.rxe", "an onboard program for an NXT"),
+        ("man", "manual pages"),
     ] {
         let told = workshop.done(&format!("info {path}"));
         assert!(told.starts_with(&format!("{path}: {what}")), "{told}");
@@ -45,6 +57,14 @@ fn completions_and_manual_pages_know_the_options() {
     for shell in ["bash", "zsh", "fish"] {
         assert!(workshop.done(&format!("completions {shell}")).contains("diagnose"), "{shell}");
     }
+    workshop.write("mindgap.bash", workshop.done("completions bash"));
+    let mut bash = Command::new("bash");
+    bash.current_dir(workshop.path());
+    bash.args([
+        "-c",
+        ". ./mindgap.bash && COMP_WORDS=(mindgap diagnose --ht) COMP_CWORD=2 && _mindgap mindgap --ht diagnose && echo $COMPREPLY",
+    ]);
+    assert_eq!(workshop.run(bash).out, "--html\n", "what bash makes of --ht");
     workshop.done("manual --out man");
     assert!(workshop.text("man/mindgap.1").contains("demo"));
     assert!(workshop.text("man/mindgap-diagnose.1").contains("html"));
@@ -62,8 +82,7 @@ fn what_is_misspelt_is_put_right() {
 
 #[test]
 fn figures_are_written_as_svg_png_and_pdf() {
-    let workshop = trained();
-    workshop.write("scene.toml", SCENE);
+    let workshop = with_scene();
     workshop.done("evaluate sim.json logs --figures drawn/networks");
     workshop.done("evolve sim.json --scene scene.toml --out controller.toml --max-steps 6 --figures drawn/evolved");
     workshop.done("simulate sim.json controller.toml --scene scene.toml --figures drawn/simulated");

@@ -3,7 +3,7 @@
 use std::fs;
 
 use mindgap_tests::command::Workshop;
-use mindgap_tests::rooms::{SCENE, trained};
+use mindgap_tests::rooms::{trained, with_scene};
 
 #[test]
 fn keys_and_types_are_told_in_words_of_the_file() {
@@ -31,8 +31,7 @@ fn controller(step_ms: u32) -> String {
 
 #[test]
 fn controllers_are_told_what_to_write() {
-    let workshop = trained();
-    workshop.write("scene.toml", SCENE);
+    let workshop = with_scene();
     workshop.write("c.toml", controller(400).replacen("left = 55", "left = \"fast\"", 1));
     let refusal = workshop.refused("export c.toml --format nxc --out c.nxc");
     assert_eq!(refusal, "c.toml:4: found the text \"fast\", expected a whole number from -128 to 127");

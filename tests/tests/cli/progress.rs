@@ -3,7 +3,7 @@
 use std::process::Command;
 
 use mindgap_tests::command::{Done, Workshop, program};
-use mindgap_tests::rooms::{SCENE, trained};
+use mindgap_tests::rooms::with_scene;
 
 /// Calls the command on a terminal of its own.
 fn on_a_terminal(workshop: &Workshop, arguments: &str) -> Done {
@@ -15,8 +15,7 @@ fn on_a_terminal(workshop: &Workshop, arguments: &str) -> Done {
 
 #[test]
 fn a_terminal_sees_how_much_is_done_and_a_pipe_does_not() {
-    let workshop = trained();
-    workshop.write("scene.toml", SCENE);
+    let workshop = with_scene();
     workshop.done("evolve sim.json --scene scene.toml --out controller.toml --max-steps 6");
     workshop.write("drive.csv", drive());
     for (call, shown) in [

@@ -1,13 +1,12 @@
 //! `mindgap adapt` and `mindgap loop`: what runs of a robot teach, and what must teach nothing.
 
 use mindgap_tests::command::{Done, Workshop};
-use mindgap_tests::rooms::{SCENE, robot, trained};
+use mindgap_tests::rooms::{robot, trained, with_scene};
 
 const LOOP: &str = "loop out --sim sim.json --scene scene.toml --max-steps 20";
 
 fn with_robot() -> Workshop {
-    let workshop = trained();
-    workshop.write("scene.toml", SCENE);
+    let workshop = with_scene();
     robot(&workshop, "", "");
     workshop
 }

@@ -53,9 +53,8 @@ pub fn every_link_leads_somewhere() -> Result<(), Failed> {
 pub fn pages_are_those_of_the_command() -> Result<(), Failed> {
     let workshop = Workshop::new();
     workshop.done("manual --format markdown --out pages");
-    let written = workshop.listing().into_iter().filter(|(path, _)| path.is_file());
     let written: Vec<(PathBuf, Vec<u8>)> =
-        written.map(|(path, bytes)| (Path::new(PAGES).join(path.file_name().unwrap_or_default()), bytes)).collect();
+        workshop.files("pages").into_iter().map(|(name, bytes)| (Path::new(PAGES).join(name), bytes)).collect();
     let stale = written.iter().filter(|(path, bytes)| fs::read(workspace().join(path)).ok().as_ref() != Some(bytes));
     let stale: Vec<String> = stale.map(|(path, _)| path.display().to_string()).collect();
     let there = documents().into_iter().filter(|name| name.starts_with(PAGES)).count();

@@ -119,7 +119,7 @@ fn logs_without_echoes_or_company_have_pages_too() {
     for (logs, picture) in [("one-run", "diagnosis-one-run"), ("no-echoes", "diagnosis-no-echoes")] {
         workshop.done(&format!("diagnose kinematic {logs} --html {logs}.html"));
         let seen = visit(&workshop.path().join(format!("{logs}.html")), &[Visit::new(PHONE, picture).text("header")]);
-        let not_compared = seen[0].word(0).contains("Not compared: rate of echoes and reading");
+        let not_compared = seen[0].word(0).contains("Not compared: echo rate and sonar reading");
         assert_eq!(not_compared, logs == "no-echoes", "{}", seen[0].word(0));
     }
 }

@@ -49,7 +49,7 @@ fn cause(effect: &NamedEffect, evidence: &[Evidence], catalogue: &[&'static Effe
             dl {
                 @if let Some(cause) = named { dt { "What it is" } dd { (cause.what) } }
                 @if !effect.parameters.is_empty() {
-                    dt { "How strong" }
+                    dt { "How strong (95\u{a0}%)" }
                     dd { (effect.strength()) @if has_direction(effect) { ". Directions: 0 is along x, 90 along y." } }
                 }
                 @if let Some(share) = effect.share { dt { "Of the gap" } dd { (words::percent(share)) } }

@@ -40,7 +40,7 @@ pub fn section(diagnosis: &Diagnosis, mapped: bool) -> Option<Section> {
             h3 { "In which channels" }
             (chart("channels", 0, &format!("The gap in nats a step: {}.", told.join("; ")), html! {
                 "The gap of each thing that the simulator predicts, as it is and " (words::with(diagnosis)) ". At zero "
-                "nothing is left that follows rules."
+                "nothing is left that follows rules. The " a href="#words" { "glossary" } " says what a nat is."
             }))
             (table("The same in numbers", ["channel", "without", "with"], &rows))
         }

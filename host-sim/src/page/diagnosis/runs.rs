@@ -13,6 +13,20 @@ use crate::page::document::{Section, chart, table};
 use crate::page::replay::{ROBOT, Replay, ReplayedRun, SIMULATOR, WITH_EFFECTS, sampled};
 use crate::page::words;
 
+/// How far the longest paths go astray, in a sentence; none where no path was compared.
+pub fn astray(diagnosis: &Diagnosis) -> Option<String> {
+    let longest = diagnosis.reduction()?.paths.last()?;
+    Some(format!(
+        "After {} steps of the same commands the simulated robot is {:.1} cm from the real one, {:.1} cm {}; scatter alone \
+         makes {:.1} cm.",
+        longest.steps,
+        longest.before_cm,
+        longest.after_cm,
+        words::with(diagnosis),
+        longest.floor_cm
+    ))
+}
+
 /// How far paths end from where the robot was; none where no path was compared.
 pub fn ends(diagnosis: &Diagnosis) -> Option<Section> {
     let paths = diagnosis.reduction().map_or(&[][..], |reduction| &reduction.paths);
@@ -26,17 +40,7 @@ pub fn ends(diagnosis: &Diagnosis) -> Option<Section> {
             [p.steps.to_string(), before, after, floor]
         })
         .collect();
-    let last = paths.last().map(|p| {
-        format!(
-            "After {} steps the simulator is {:.1} cm from where the robot was, {:.1} cm {}; scatter \
-             alone makes {:.1} cm.",
-            p.steps,
-            p.before_cm,
-            p.after_cm,
-            words::with(diagnosis),
-            p.floor_cm
-        )
-    });
+    let last = astray(diagnosis);
     let body = html! {
         @if let Some(last) = &last {
             p { (last) }

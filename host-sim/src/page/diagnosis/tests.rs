@@ -142,3 +142,19 @@ fn ten_thousand_runs_are_sampled_and_that_is_said() {
     assert!(page.len() < 2_000_000, "{} bytes", page.len());
     assert!(page.contains("of 10000 runs, evenly spread"));
 }
+
+#[test]
+fn what_makes_most_of_the_gap_is_checked_first_even_if_it_is_scatter() {
+    let mut findings = evil();
+    let Answer::PartlyKnown { account, .. } = &mut findings.diagnosis.answer else { panic!("it is known in part") };
+    let part = |id: &str, share: f64| Part { id: id.into(), share, ci95: [share, share] };
+    account.budget = vec![part(EVIL, 0.2), part(SCATTER, 0.7), part(UNEXPLAINED, 0.1)];
+    let page = page_of(&findings, &logs(2, 5, "run-"), "logs");
+    let (_, next) = page.split_once("<section id=\"next\"").expect("what to do next");
+    let place = |words: &str| next.find(words).unwrap_or_else(|| panic!("{words} is missing"));
+    let order =
+        ["wider scatter</strong>, which makes 70\u{a0}%", "which makes 20\u{a0}%", "10\u{a0}% of the gap is not"];
+    assert!(order.map(place).is_sorted());
+    let (header, _) = page.split_once("<nav").expect("a header");
+    assert!(header.contains("2.0 cm from the real one, 1.0 cm with the effects"), "how far");
+}
