@@ -23,6 +23,9 @@ const LATEST: f64 = 0.5;
 const TORN_AT: u64 = 4000;
 
 const EVOLVE: &str = "evolve sim.json --scene scene.toml --max-steps 10 --paper --out controller.toml";
+/// How small networks are trained.
+const PAPER: &str = "--trainer paper --hidden turn=2 --hidden forward=2 --hidden lateral=2 --hidden echo_probability=2 \
+                     --hidden echo_value=2";
 const MAKE: &str = "challenge make --cases 3 --seed 5 --out blind";
 
 /// Kills a call again and again, until one comes to its end, and compares what it leaves with what one leaves that was
@@ -104,9 +107,7 @@ fn evolve_survives() {
 
 #[test]
 fn train_survives() {
-    let hidden = ["turn", "forward", "lateral", "echo_probability", "echo_value"].map(|of| format!(" --hidden {of}=2"));
-    let call = format!("train logs --trainer paper --out paper.json{}", hidden.concat());
-    survives(&Workshop::with_logs(), &words(&call));
+    survives(&Workshop::with_logs(), &words(&format!("train logs {PAPER} --out paper.json")));
 }
 
 #[test]
@@ -145,14 +146,18 @@ fn a_demo_survives() {
 /// A call that was killed when its checkpoint had some pieces in it.
 fn broken_evolution() -> Workshop {
     let workshop = with_scene();
-    let kept = workshop.path().join("kept");
-    let mut running = workshop.command(EVOLVE).args(["--checkpoint", "kept"]).spawn().expect("the command starts");
+    kill_when_kept(&workshop, EVOLVE, "kept");
+    workshop
+}
+
+fn kill_when_kept(workshop: &Workshop, call: &str, checkpoint: &str) {
+    let kept = workshop.path().join(checkpoint);
+    let mut running = workshop.command(call).args(["--checkpoint", checkpoint]).spawn().expect("the command starts");
     while kept.metadata().map_or(0, |file| file.len()) < TORN_AT {
         assert!(running.try_wait().expect("a process").is_none(), "it ends before it is killed");
     }
     running.kill().expect("a process of ours");
     running.wait().expect("a process that ends");
-    workshop
 }
 
 #[test]
@@ -171,6 +176,19 @@ fn of_a_torn_checkpoint_the_beginning_is_used() {
         "{told:?}"
     );
     assert_same(&unbroken, &broken, &[EVOLVE]);
+}
+
+#[test]
+fn what_is_called_by_another_path_is_the_same() {
+    let unbroken = Workshop::with_logs();
+    let broken = unbroken.copy();
+    let (folder, call) = (broken.path().display(), |logs: &str, out: &str| format!("train {logs} {PAPER} --out {out}"));
+    unbroken.done(&call("logs", "paper.json"));
+    // It lies in the folder that is read, of which it is no part by any name.
+    kill_when_kept(&broken, &call("logs", "paper.json"), "logs/kept");
+    let done = broken.call(&format!("{} --checkpoint ./logs/kept", call(&format!("{folder}/logs"), "./paper.json")));
+    assert!(done.code == 0 && done.err.contains("kept: goes on"), "{}", done.err);
+    assert_same(&unbroken, &broken, &[PAPER]);
 }
 
 #[test]
