@@ -226,7 +226,7 @@ mod tests {
 
     #[test]
     fn no_room_is_made_for_what_is_only_claimed() {
-        let bytes = [&mcap::MAGIC[..], &record(op::HEADER, LARGEST, b"short")].concat();
+        let bytes = [mcap::MAGIC, &record(op::HEADER, LARGEST, b"short")].concat();
         let (told, most) = read_bytes(&bytes);
         assert!(told.contains("ends before its first message"), "{told}");
         assert!(most <= STEP, "{most}");
@@ -243,7 +243,7 @@ mod tests {
                 compression: "zstd".into(),
                 compressed_size: 0,
             };
-            read_bytes(&[&mcap::MAGIC[..], &chunk_record(&header, &[])].concat()).0
+            read_bytes(&[mcap::MAGIC, &chunk_record(&header, &[])].concat()).0
         };
         assert!(chunk(2 * SMALL).contains("no recorder writes that"));
         assert!(!chunk(SMALL).contains("no recorder writes that"));
