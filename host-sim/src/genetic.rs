@@ -80,64 +80,105 @@ impl Default for Settings {
     }
 }
 
+/// A run of the algorithm on its way: a population that descends from another, by draws of its own.
+pub struct Lineage<'a, P> {
+    problem: &'a P,
+    seed: u64,
+    population: Vec<Vec<f32>>,
+    best: Option<(Vec<f32>, f64)>,
+    /// The best fitness up to each generation.
+    history: Vec<f64>,
+    is_over: bool,
+}
+
 /// Runs the algorithm from a random population. `seed` fixes every draw; `watch` receives the generation and the best
 /// fitness up to it, on the first rank.
 ///
 /// # Errors
 /// When fitness cannot be computed by those to whom it is handed out.
 pub fn run(settings: &Settings, problem: &impl Problem, seed: u64, watch: impl FnMut(usize, f64)) -> Result<RunResult> {
-    let mut rng = generator(seed, &[0]);
-    let population = (0..settings.population).map(|_| problem.random(&mut rng)).collect();
-    run_from(population, settings, problem, seed, watch)
+    let result = run_beside(settings, vec![Lineage::random(settings, problem, seed)], watch)?;
+    Ok(result.into_iter().next().expect("a result of each"))
 }
 
-/// Runs the algorithm from a given population, whose size it keeps; otherwise as [`run`].
+/// Runs several lineages, each as it would run alone. Their generations go side by side, so that the individuals of all
+/// can be handed out at once. `watch` receives the generation and the best fitness in any of them.
 ///
 /// # Errors
 /// As [`run`].
-pub fn run_from(
-    mut population: Vec<Vec<f32>>,
+pub fn run_beside<P: Problem>(
     settings: &Settings,
-    problem: &impl Problem,
-    seed: u64,
+    mut lineages: Vec<Lineage<P>>,
     mut watch: impl FnMut(usize, f64),
-) -> Result<RunResult> {
-    let mut best: Option<(Vec<f32>, f64)> = None;
-    let mut history = Vec::new();
-    let size = population.len();
+) -> Result<Vec<RunResult>> {
     for generation in 0.. {
-        let together = problem.together();
-        let some = |piece: usize| population[piece * together..size.min((piece + 1) * together)].to_vec();
-        let evaluated = |piece: usize, some: Vec<Vec<f32>>| Ok(problem.fitness(generation, piece * together, &some));
-        let fitness = workers::map_given(size.div_ceil(together), some, evaluated)?.concat();
+        let together = |number: usize| lineages[number].problem.together();
+        let pieces: Vec<(usize, usize)> = (0..lineages.len())
+            .filter(|number| !lineages[*number].is_over)
+            .flat_map(|number| {
+                (0..lineages[number].population.len()).step_by(together(number)).map(move |i| (number, i))
+            })
+            .collect();
+        let give = |piece: usize| {
+            let (number, first) = pieces[piece];
+            let population = &lineages[number].population;
+            (number, first, population[first..population.len().min(first + together(number))].to_vec())
+        };
+        let evaluate = |_, (number, first, some): (usize, usize, Vec<Vec<f32>>)| {
+            Ok(lineages[number].problem.fitness(generation, first, &some))
+        };
+        let mut fitness = workers::map_given(pieces.len(), give, evaluate)?.into_iter().flatten();
         // The first rank alone breeds: the others are handed the individuals that they evaluate.
         let is_over = workers::once(|| {
-            let ranking = tournament::ranking(&fitness);
-            let leader = ranking[0];
-            if best.as_ref().is_none_or(|(_, f)| fitness[leader] > *f) {
-                best = Some((population[leader].clone(), fitness[leader]));
+            for lineage in lineages.iter_mut().filter(|lineage| !lineage.is_over) {
+                let own: Vec<f64> = fitness.by_ref().take(lineage.population.len()).collect();
+                lineage.go_on(settings, generation, &own);
             }
-            let best_fitness = best.as_ref().map_or(f64::NAN, |b| b.1);
-            history.push(best_fitness);
-            watch(generation, best_fitness);
-            let stalled = settings.stagnation.is_some_and(|w| w.has_stalled(&history));
-            let is_over = stalled || history.len() >= settings.max_generations;
-            population = if is_over {
-                ranking.iter().map(|i| std::mem::take(&mut population[*i])).collect()
-            } else {
-                let mut rng = generator(seed, &[1, generation as u64]);
-                offspring(settings, problem, &population, &ranking, &mut rng)
-            };
-            Ok(is_over)
+            let best = lineages.iter().filter_map(|lineage| lineage.history.last().copied());
+            watch(generation, best.fold(f64::NAN, f64::max));
+            Ok(lineages.iter().all(|lineage| lineage.is_over))
         })?;
         if is_over {
             break;
         }
     }
-    workers::once(|| {
-        let (best, fitness) = best.unwrap_or_default();
-        Ok(RunResult { best, fitness, generations: history.len(), population })
-    })
+    workers::once(|| Ok(lineages.into_iter().map(Lineage::result).collect()))
+}
+
+impl<'a, P: Problem> Lineage<'a, P> {
+    /// Begins with a random population.
+    pub fn random(settings: &Settings, problem: &'a P, seed: u64) -> Self {
+        let mut rng = generator(seed, &[0]);
+        Lineage::from(problem, (0..settings.population).map(|_| problem.random(&mut rng)).collect(), seed)
+    }
+
+    /// Begins with a given population, whose size it keeps.
+    pub fn from(problem: &'a P, population: Vec<Vec<f32>>, seed: u64) -> Self {
+        Lineage { problem, seed, population, best: None, history: Vec::new(), is_over: false }
+    }
+
+    /// Breeds the next generation, unless this is the last, which is then sorted.
+    fn go_on(&mut self, settings: &Settings, generation: usize, fitness: &[f64]) {
+        let ranking = tournament::ranking(fitness);
+        let leader = ranking[0];
+        if self.best.as_ref().is_none_or(|(_, f)| fitness[leader] > *f) {
+            self.best = Some((self.population[leader].clone(), fitness[leader]));
+        }
+        self.history.push(self.best.as_ref().map_or(f64::NAN, |best| best.1));
+        let stalled = settings.stagnation.is_some_and(|w| w.has_stalled(&self.history));
+        self.is_over = stalled || self.history.len() >= settings.max_generations;
+        self.population = if self.is_over {
+            ranking.iter().map(|i| std::mem::take(&mut self.population[*i])).collect()
+        } else {
+            let mut rng = generator(self.seed, &[1, generation as u64]);
+            offspring(settings, self.problem, &self.population, &ranking, &mut rng)
+        };
+    }
+
+    fn result(self) -> RunResult {
+        let (best, fitness) = self.best.unwrap_or_default();
+        RunResult { best, fitness, generations: self.history.len(), population: self.population }
+    }
 }
 
 fn offspring(
@@ -206,6 +247,16 @@ mod tests {
         let again = |seed| run(&settings(), &Sphere, seed, |_, _| {}).unwrap();
         assert_eq!(again(5), again(5));
         assert_ne!(again(5).best, again(6).best);
+    }
+
+    #[test]
+    fn a_run_beside_others_is_as_alone() {
+        // Each ends when ten generations have not halved its distance from the top, squared: not all at once.
+        let stagnation = Some(StagnationCriterion { generations: 10, improvement: -0.5 });
+        let settings = Settings { stagnation, ..settings() };
+        let lineages = [5, 6, 7].map(|seed| Lineage::random(&settings, &Sphere, seed));
+        let beside = run_beside(&settings, lineages.into(), |_, _| {}).unwrap();
+        assert_eq!(beside, [5, 6, 7].map(|seed| run(&settings, &Sphere, seed, |_, _| {}).unwrap()));
     }
 
     #[test]

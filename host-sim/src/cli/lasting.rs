@@ -1,7 +1,9 @@
 //! Commands that take long: what they have done is kept, so that a run that was broken off goes on, and ranks that were
 //! started together do their work together.
 
+use std::any::TypeId;
 use std::collections::BTreeMap;
+use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
 use clap::{ArgMatches, Args, Command};
@@ -17,6 +19,8 @@ use crate::workers::task::Task;
 
 /// The name of the option, which says nothing of what is to be done.
 const OPTION: &str = "checkpoint";
+/// Stands for the path of a place.
+const GIVEN: &str = "given";
 
 /// The option of commands that keep what they have done.
 #[derive(Args)]
@@ -72,15 +76,16 @@ pub fn begin(is_shared: bool, kept: Option<Kept>, places: &Places, call: (&Comma
     let checkpoint = kept.as_ref().map(|kept| (kept.path.as_path(), kept.begin));
     // Neither what is written nor what is kept counts where it lies in a folder that is read.
     let outputs: Vec<PathBuf> = places.outputs().chain(kept.as_ref().map(|kept| kept.path.clone())).collect();
-    let count = workers::begin(task(call, places.inputs(), &outputs), checkpoint, warn)?;
+    let count = workers::begin(task(call, places, &outputs), checkpoint, warn)?;
     if let Some(kept) = kept.filter(|_| count > 0) {
         meanwhile(&format!("{}: goes on, {count} pieces of work are done", kept.path.display()));
     }
     Ok(())
 }
 
-/// What a call asks for.
-fn task((mut command, mut matches): (&Command, &ArgMatches), inputs: &[PathBuf], outputs: &[PathBuf]) -> Task {
+/// What a call asks for. Of its places only that they are given is an argument: what is read counts by its content, and
+/// where results go changes none of them.
+fn task((mut command, mut matches): (&Command, &ArgMatches), places: &Places, outputs: &[PathBuf]) -> Task {
     let mut names = Vec::new();
     let mut arguments = BTreeMap::new();
     let mut next = matches.subcommand();
@@ -90,11 +95,14 @@ fn task((mut command, mut matches): (&Command, &ArgMatches), inputs: &[PathBuf],
         names.push(name);
         for argument in command.get_arguments().filter(|argument| argument.get_id() != OPTION) {
             if let Ok(Some(values)) = matches.try_get_raw(argument.get_id().as_str()) {
-                let values: Vec<_> = values.map(|value| value.to_string_lossy()).collect();
+                let is_path = argument.get_value_parser().type_id() == TypeId::of::<PathBuf>();
+                let is_place = |value: &OsStr| is_path && places.contain(Path::new(value));
+                let word = |value| if is_place(value) { GIVEN.into() } else { value.to_string_lossy() };
+                let values: Vec<_> = values.map(word).collect();
                 let name = argument.get_long().map_or(argument.get_id().to_string(), |long| format!("--{long}"));
                 arguments.insert(name, values.join(" "));
             }
         }
     }
-    Task::new(names.join(" "), arguments, inputs, outputs)
+    Task::new(names.join(" "), arguments, places.inputs(), outputs)
 }

@@ -17,7 +17,7 @@ use super::way::WayMap;
 use crate::chance::{derive, generator};
 use crate::error::Result;
 use crate::genetic::mutation::{Mutation, Unit};
-use crate::genetic::{self, Settings};
+use crate::genetic::{self, Lineage, RunResult, Settings};
 use crate::simulator::environment::Environment;
 use crate::simulator::rollout::REACHED_CM;
 use crate::workers;
@@ -71,46 +71,50 @@ pub struct EvolutionTask<'a> {
 }
 
 /// The controller of each restart, by falling success rate in fresh runs. They may take different routes to the target.
-/// `watch` receives the number of generations completed, of [`GENERATIONS`], and the best fitness of the current run.
+/// `watch` receives the number of generations completed, of [`GENERATIONS`], and the best fitness of them.
 ///
 /// # Errors
 /// As [`genetic::run`].
 pub fn candidates(task: &EvolutionTask, mut watch: impl FnMut(usize, f64)) -> Result<Vec<Evolved>> {
-    let mut chosen = (0..RESTARTS)
-        .map(|restart| {
-            let before = restart * (EXPLORING.max_generations + REFINING.max_generations);
-            let report = |generation, best| watch(before + generation, best);
-            Ok(explore(task, restart, report)?.swap_remove(0))
-        })
-        .collect::<Result<Vec<(f64, Evolved)>>>()?;
+    let explored = explore(task, RESTARTS, |generation, best| watch(RESTARTS * generation, best))?;
+    let mut chosen: Vec<(f64, Evolved)> = explored.into_iter().map(|mut ranked| ranked.swap_remove(0)).collect();
     chosen.sort_by(|a, b| b.0.total_cmp(&a.0));
     Ok(chosen.into_iter().map(|(_, evolved)| evolved).collect())
 }
 
-/// A restart: its controllers by falling success rate in fresh runs, which comes with each.
+/// Restarts, side by side: of each its controllers by falling success rate in fresh runs, which comes with each.
 ///
 /// # Errors
 /// As [`genetic::run`].
-pub fn explore(task: &EvolutionTask, restart: usize, mut watch: impl FnMut(usize, f64)) -> Result<Vec<(f64, Evolved)>> {
-    let seed = derive(task.seed, &[restart as u64]);
-    let explored = genetic::run(&EXPLORING, &task.evaluator(EXPLORING_RUNS, seed), seed, &mut watch)?;
-    let best = explored.population.into_iter().take(REFINING.population).collect();
-    refine(task, best, seed, |generation, best| watch(EXPLORING.max_generations + generation, best))
+pub fn explore(
+    task: &EvolutionTask,
+    restarts: usize,
+    mut watch: impl FnMut(usize, f64),
+) -> Result<Vec<Vec<(f64, Evolved)>>> {
+    let seeds: Vec<u64> = (0..restarts).map(|restart| derive(task.seed, &[restart as u64])).collect();
+    let evaluators: Vec<FitnessEvaluator> = seeds.iter().map(|seed| task.evaluator(EXPLORING_RUNS, *seed)).collect();
+    let lineages = evaluators.iter().zip(&seeds).map(|(evaluator, seed)| Lineage::random(&EXPLORING, evaluator, *seed));
+    let explored = genetic::run_beside(&EXPLORING, lineages.collect(), &mut watch)?;
+    let best = |explored: RunResult| explored.population.into_iter().take(REFINING.population).collect();
+    let begun = explored.into_iter().map(best).zip(seeds).collect();
+    refine(task, begun, |generation, best| watch(EXPLORING.max_generations + generation, best))
 }
 
-/// The second and third stage from a given population, as [`explore`]; `seed` fixes what the genetic algorithm draws.
+/// The second and third stage from given populations, as [`explore`]; the seed of each fixes what the genetic algorithm
+/// draws.
 ///
 /// # Errors
 /// As [`genetic::run`].
 pub fn refine(
     task: &EvolutionTask,
-    population: Vec<Vec<f32>>,
-    seed: u64,
+    begun: Vec<(Vec<Vec<f32>>, u64)>,
     watch: impl FnMut(usize, f64),
-) -> Result<Vec<(f64, Evolved)>> {
+) -> Result<Vec<Vec<(f64, Evolved)>>> {
     // All restarts are compared on the same runs.
     let evaluator = task.evaluator(REFINING_RUNS, task.seed);
-    ranked(&evaluator, &genetic::run_from(population, &REFINING, &evaluator, seed, watch)?.population)
+    let lineages = begun.into_iter().map(|(population, seed)| Lineage::from(&evaluator, population, seed));
+    let refined = genetic::run_beside(&REFINING, lineages.collect(), watch)?;
+    refined.into_iter().map(|refined| ranked(&evaluator, &refined.population)).collect()
 }
 
 /// A population of a controller and its mutants, to be [refined](refine).

@@ -64,6 +64,11 @@ impl Places {
         self.outputs.iter().map(|output| output.path.clone())
     }
 
+    /// Whether a path is one of them, as it was given.
+    pub fn contain(&self, path: &Path) -> bool {
+        self.inputs.iter().any(|input| input == path) || self.outputs.iter().any(|output| output.path == path)
+    }
+
     /// Checks them; `force` says that what is there may be replaced, whatever it is; `goes_on`, that a run before may have
     /// filled folders already.
     ///
@@ -159,7 +164,7 @@ fn is_sink(path: &Path) -> bool {
 }
 
 /// Where a path leads, whatever it is called.
-fn at(path: &Path) -> PathBuf {
+pub fn at(path: &Path) -> PathBuf {
     if is_standard_output(path) {
         return "-".into();
     }

@@ -151,13 +151,14 @@ impl Search<'_> {
             seed: self.stream(Purpose::Exploring, 0),
         };
         let explored = if known.first().is_none_or(|best| best.score < GOOD) { EXPLORED } else { 0 };
-        let new = (0..explored).map(|restart| robust::explore(&task, restart, |_, _| {}));
-        let better = known.iter().take(INCUMBENTS).zip(0..).map(|(incumbent, i)| {
+        let mut searched = robust::explore(&task, explored, |_, _| {})?;
+        let mutants = |(incumbent, i): (&Candidate, u64)| {
             let seed = self.stream(Purpose::Refining, i);
-            robust::refine(&task, robust::mutants(&task, &incumbent.controller, seed), seed, |_, _| {})
-        });
+            (robust::mutants(&task, &incumbent.controller, seed), seed)
+        };
+        let incumbents = known.iter().take(INCUMBENTS).zip(0..).map(mutants).collect();
+        searched.extend(robust::refine(&task, incumbents, |_, _| {})?);
         let shortlist = |ranked: Vec<(f64, Evolved)>| ranked.into_iter().take(SHORTLISTED).map(|(_, e)| e.controller);
-        let searched = new.chain(better).collect::<Result<Vec<_>>>()?;
         Ok(searched.into_iter().flat_map(shortlist).collect())
     }
 

@@ -22,7 +22,7 @@ use crate::files::reason;
 /// How the file begins.
 pub const SIGN: &[u8] = br#"{"mindgap_checkpoint":"#;
 /// The version of this format.
-const FORMAT: u32 = 2;
+const FORMAT: u32 = 3;
 /// What is held back is written when it is this old,
 const HELD_FOR: Duration = Duration::from_secs(60);
 /// or so large, bytes.

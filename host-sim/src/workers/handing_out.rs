@@ -15,9 +15,9 @@ use super::{AHEAD, RUN};
 use crate::error::{Error, Result};
 
 /// How long a rank waits, for its own threads or for others, before it listens again: at first,
-const GLANCE: Duration = Duration::from_micros(50);
+const GLANCE: Duration = Duration::from_micros(100);
 /// and at most, when nothing has come for a while.
-const LONGEST_WAIT: Duration = Duration::from_micros(400);
+const LONGEST_WAIT: Duration = Duration::from_millis(1);
 /// The first rank.
 const HERE: usize = 0;
 

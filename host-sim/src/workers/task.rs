@@ -7,22 +7,34 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
+use crate::files::places::at;
+
 /// A call of a command.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Task {
     version: String,
     command: String,
     arguments: BTreeMap<String, String>,
-    /// SHA-256 of what is read, by path.
-    inputs: BTreeMap<String, String>,
+    /// What is read, in the order in which the command names it.
+    inputs: Vec<Input>,
+}
+
+/// A file or folder that is read. It counts by what it holds: the same one may be called by another path.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+struct Input {
+    path: String,
+    sha256: String,
 }
 
 impl Task {
     /// A command with its arguments by name. Of what it reads, `outputs` and hidden files count for nothing, and what cannot
     /// be read is for the command to tell.
     pub fn new(command: String, arguments: BTreeMap<String, String>, inputs: &[PathBuf], outputs: &[PathBuf]) -> Self {
-        let digested = inputs.iter().map(|input| (input.display().to_string(), digest(input, outputs)));
-        Task { version: env!("CARGO_PKG_VERSION").into(), command, arguments, inputs: digested.collect() }
+        let outputs: Vec<PathBuf> = outputs.iter().map(|output| at(output)).collect();
+        let digested =
+            |input: &PathBuf| Input { path: input.display().to_string(), sha256: digest(&at(input), &outputs) };
+        let inputs = inputs.iter().map(digested).collect();
+        Task { version: env!("CARGO_PKG_VERSION").into(), command, arguments, inputs }
     }
 
     /// The first thing in which this one differs from another, in words.
@@ -39,9 +51,9 @@ impl Task {
         if let Some(name) = names.into_iter().find(differs) {
             return Some(format!("{name} {}, not {}", value(self, name), value(other, name)));
         }
-        let mut inputs = self.inputs.iter();
-        let changed = inputs.find(|(path, digest)| other.inputs.get(*path) != Some(digest));
-        changed.map(|(path, _)| format!("another content of {path}"))
+        let mut theirs = other.inputs.iter();
+        let is_changed = |input: &&Input| theirs.next().is_none_or(|other| other.sha256 != input.sha256);
+        self.inputs.iter().find(is_changed).map(|input| format!("another content of {}", input.path))
     }
 }
 
@@ -99,6 +111,7 @@ mod tests {
         fs::write(folder.path().join("answers"), "an output").unwrap();
         fs::write(folder.path().join(".hidden"), "on the way").unwrap();
         assert_eq!(one, task("1", folder.path()));
+        assert_eq!(one.difference_from(&task("1", &folder.path().join("."))), None, "another name of the same folder");
         fs::write(folder.path().join("a.csv"), "2").unwrap();
         let changed = format!("another content of {}", folder.path().display());
         assert_eq!(one.difference_from(&task("1", folder.path())), Some(changed));

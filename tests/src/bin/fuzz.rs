@@ -1,7 +1,8 @@
-//! Feeds every target with inputs that it has not had before: `fuzz SECONDS COUNTS`, so many seconds for each target.
+//! Feeds every target with inputs that it has not had before: `fuzz SECONDS COUNTS [TARGET]`, so many seconds for each
+//! target, or for one alone.
 //!
-//! The file of counts, `name count slowest_ms` a line, says how many inputs each has had; it is read if it is there, and
-//! written again after each target. Nothing may panic, take longer than a second, or take too much memory.
+//! The file of counts, `name count slowest_ms slowest_number` a line, says how many inputs each has had, and which of them
+//! took longest; it is read if it is there, and written again after each target. Nothing may panic, take longer than a second, or take too much memory.
 
 use std::collections::BTreeMap;
 use std::env;
@@ -19,15 +20,19 @@ const ROUND: u64 = 100;
 
 fn main() {
     let arguments: Vec<String> = env::args().skip(1).collect();
-    let [seconds, path] = arguments.as_slice() else { panic!("fuzz SECONDS COUNTS") };
+    let (seconds, path, chosen) = match arguments.as_slice() {
+        [seconds, path] => (seconds, path, None),
+        [seconds, path, target] => (seconds, path, Some(target)),
+        _ => panic!("fuzz SECONDS COUNTS [TARGET]"),
+    };
     let enough = Duration::from_secs_f64(seconds.parse().expect("a number of seconds"));
     let path = Path::new(path);
     let mut counts = read(path);
-    for target in targets() {
-        let count = counts.entry(target.name.into()).or_default();
-        let (fed, slowest) = feed(target, count.0, enough);
-        *count = (count.0 + fed, count.1.max(slowest.as_millis()));
-        println!("{}: {fed} inputs, the slowest took {slowest:.1?}", target.name);
+    for target in targets().filter(|target| chosen.is_none_or(|chosen| chosen == target.name)) {
+        let (count, most) = counts.entry(target.name.into()).or_default();
+        let (fed, (slowest, number)) = feed(target, *count, enough);
+        (*count, *most) = (*count + fed, (*most).max((slowest.as_millis(), number)));
+        println!("{}: {fed} inputs, the slowest, number {number}, took {slowest:.1?}", target.name);
         assert!(slowest < MOST, "{} took {slowest:.1?} for an input", target.name);
         write(path, &counts);
     }
@@ -39,8 +44,8 @@ fn main() {
     }
 }
 
-/// How many inputs a target took, from the first of them on, and how long the slowest.
-fn feed(target: &'static Target, first: u64, enough: Duration) -> (u64, Duration) {
+/// How many inputs a target took, from the first of them on, and how long the slowest, with its number.
+fn feed(target: &'static Target, first: u64, enough: Duration) -> (u64, (Duration, u64)) {
     let mut feeding = Feeding::of(target);
     let begun = Instant::now();
     let mut next = first;
@@ -51,20 +56,23 @@ fn feed(target: &'static Target, first: u64, enough: Duration) -> (u64, Duration
     (next - first, feeding.slowest)
 }
 
-/// Inputs and the slowest of them, ms, by target.
-type Counts = BTreeMap<String, (u64, u128)>;
+/// Inputs, and the slowest of them in ms with its number, by target.
+type Counts = BTreeMap<String, (u64, (u128, u64))>;
 
 fn read(path: &Path) -> Counts {
     let text = fs::read_to_string(path).unwrap_or_default();
     let count = |line: &str| {
         let mut words = line.split(' ');
-        Some((words.next()?.to_owned(), (words.next()?.parse().ok()?, words.next()?.parse().ok()?)))
+        let name = words.next()?.to_owned();
+        let mut number = || words.next()?.parse::<u64>().ok();
+        Some((name, (number()?, (number()?.into(), number()?))))
     };
     text.lines().map(|line| count(line).expect("a line of counts")).collect()
 }
 
 fn write(path: &Path, counts: &Counts) {
-    let line = |(name, (count, slowest_ms)): (&String, &(u64, u128))| format!("{name} {count} {slowest_ms}\n");
+    let line =
+        |(name, (count, (ms, number))): (&String, &(u64, (u128, u64)))| format!("{name} {count} {ms} {number}\n");
     let part = path.with_extension("part");
     fs::write(&part, counts.iter().map(line).collect::<String>()).expect("counts are written");
     fs::rename(part, path).expect("counts are put in place");

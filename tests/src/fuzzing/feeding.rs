@@ -13,8 +13,8 @@ use super::{Target, corpus};
 pub struct Feeding {
     target: &'static Target,
     kept: Vec<Vec<u8>>,
-    /// How long the slowest input took.
-    pub slowest: Duration,
+    /// How long the slowest input took, and its number.
+    pub slowest: (Duration, u64),
 }
 
 /// Says which input it was when feeding it panics.
@@ -32,7 +32,7 @@ impl Feeding {
         let kept: Vec<Vec<u8>> = paths.iter().map(|path| fs::read(path).expect("an input")).collect();
         assert!(!kept.is_empty(), "{} has a corpus", target.name);
         kept.iter().for_each(|input| (target.feed)(input));
-        Feeding { target, kept, slowest: Duration::ZERO }
+        Feeding { target, kept, slowest: (Duration::ZERO, 0) }
     }
 
     /// Feeds it with the inputs of these numbers, made of those that are kept.
@@ -45,8 +45,8 @@ impl Feeding {
             let told = Told(self.target.name, number);
             let took = self.took(&input);
             // On a busy machine a quick input may be slow once.
-            let took = if took > self.slowest { took.min(self.took(&input)) } else { took };
-            self.slowest = self.slowest.max(took);
+            let took = if took > self.slowest.0 { took.min(self.took(&input)) } else { took };
+            self.slowest = self.slowest.max((took, number));
             std::mem::forget(told);
         }
     }

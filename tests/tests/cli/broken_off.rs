@@ -14,21 +14,26 @@ use mindgap_tests::rooms::{robot, with_scene};
 use rand::rngs::SmallRng;
 use rand::{RngExt, SeedableRng};
 
-/// Kills of each command, by default.
+/// Kills of each command, by default,
 const KILLS: usize = 20;
+/// and of those that take long.
+const FEW: usize = 4;
 /// A run is killed before this share of the time of a whole one.
 const LATEST: f64 = 0.5;
 /// So much is written before a checkpoint is torn, bytes.
 const TORN_AT: u64 = 4000;
 
 const EVOLVE: &str = "evolve sim.json --scene scene.toml --max-steps 10 --paper --out controller.toml";
+/// How small networks are trained.
+const PAPER: &str = "--trainer paper --hidden turn=2 --hidden forward=2 --hidden lateral=2 --hidden echo_probability=2 \
+                     --hidden echo_value=2";
 const MAKE: &str = "challenge make --cases 3 --seed 5 --out blind";
 
 /// Kills a call again and again, until one comes to its end, and compares what it leaves with what one leaves that was
 /// never killed; and that until it was killed often enough.
 #[track_caller]
-fn survives(prepared: &Workshop, call: &[&str]) {
-    let kills = env::var("MINDGAP_KILLS").ok().and_then(|count| count.parse().ok()).unwrap_or(KILLS);
+fn survives(prepared: &Workshop, call: &[&str], kills: usize) {
+    let kills = env::var("MINDGAP_KILLS").ok().and_then(|count| count.parse().ok()).unwrap_or(kills);
     let unbroken = prepared.copy();
     let began = Instant::now();
     let expected = output(&unbroken, call, None).expect("nobody kills it");
@@ -87,19 +92,17 @@ fn words(call: &str) -> Vec<&str> {
 
 #[test]
 fn evolve_survives() {
-    survives(&with_scene(), &words(EVOLVE));
+    survives(&with_scene(), &words(EVOLVE), KILLS);
 }
 
 #[test]
 fn train_survives() {
-    let hidden = ["turn", "forward", "lateral", "echo_probability", "echo_value"].map(|of| format!(" --hidden {of}=2"));
-    let call = format!("train logs --trainer paper --out paper.json{}", hidden.concat());
-    survives(&Workshop::with_logs(), &words(&call));
+    survives(&Workshop::with_logs(), &words(&format!("train logs {PAPER} --out paper.json")), KILLS);
 }
 
 #[test]
 fn a_challenge_survives() {
-    survives(&Workshop::new(), &words(MAKE));
+    survives(&Workshop::new(), &words(MAKE), KILLS);
 }
 
 #[test]
@@ -107,40 +110,43 @@ fn a_loop_survives() {
     let workshop = with_scene();
     robot(&workshop, "", "");
     let call = "loop out --sim sim.json --scene scene.toml --max-steps 20 --trials 1 --robot";
-    survives(&workshop, &call.split_whitespace().chain(["sh robot.sh"]).collect::<Vec<_>>());
+    survives(&workshop, &call.split_whitespace().chain(["sh robot.sh"]).collect::<Vec<_>>(), KILLS);
 }
 
 #[test]
-#[ignore = "takes minutes"]
 fn answers_survive() {
     let workshop = Workshop::new();
-    workshop.done(MAKE);
-    survives(&workshop, &words("challenge answer blind"));
+    workshop.done("challenge make --cases 2 --seed 5 --out blind");
+    survives(&workshop, &words("challenge answer blind"), FEW);
 }
 
 #[test]
 #[ignore = "takes half an hour"]
 fn a_calibration_survives() {
-    survives(&Workshop::new(), &words("challenge calibrate --cases 40 --out calibration.toml --csv cases.csv"));
+    survives(&Workshop::new(), &words("challenge calibrate --cases 40 --out calibration.toml --csv cases.csv"), KILLS);
 }
 
 #[test]
 #[ignore = "takes half an hour"]
 fn a_demo_survives() {
-    survives(&Workshop::new(), &words("demo --out demo --html page.html --json facts.json"));
+    survives(&Workshop::new(), &words("demo --out demo --html page.html --json facts.json"), KILLS);
 }
 
 /// A call that was killed when its checkpoint had some pieces in it.
 fn broken_evolution() -> Workshop {
     let workshop = with_scene();
-    let kept = workshop.path().join("kept");
-    let mut running = workshop.command(EVOLVE).args(["--checkpoint", "kept"]).spawn().expect("the command starts");
+    kill_when_kept(&workshop, EVOLVE, "kept");
+    workshop
+}
+
+fn kill_when_kept(workshop: &Workshop, call: &str, checkpoint: &str) {
+    let kept = workshop.path().join(checkpoint);
+    let mut running = workshop.command(call).args(["--checkpoint", checkpoint]).spawn().expect("the command starts");
     while kept.metadata().map_or(0, |file| file.len()) < TORN_AT {
         assert!(running.try_wait().expect("a process").is_none(), "it ends before it is killed");
     }
     running.kill().expect("a process of ours");
     running.wait().expect("a process that ends");
-    workshop
 }
 
 #[test]
@@ -159,6 +165,19 @@ fn of_a_torn_checkpoint_the_beginning_is_used() {
         "{told:?}"
     );
     assert_same(&unbroken, &broken, &[EVOLVE]);
+}
+
+#[test]
+fn what_is_called_by_another_path_is_the_same() {
+    let unbroken = Workshop::with_logs();
+    let broken = unbroken.copy();
+    let (folder, call) = (broken.path().display(), |logs: &str, out: &str| format!("train {logs} {PAPER} --out {out}"));
+    unbroken.done(&call("logs", "paper.json"));
+    // It lies in the folder that is read, of which it is no part by any name.
+    kill_when_kept(&broken, &call("logs", "paper.json"), "logs/kept");
+    let done = broken.call(&format!("{} --checkpoint ./logs/kept", call(&format!("{folder}/logs"), "./paper.json")));
+    assert!(done.code == 0 && done.err.contains("kept: goes on"), "{}", done.err);
+    assert_same(&unbroken, &broken, &[PAPER]);
 }
 
 #[test]

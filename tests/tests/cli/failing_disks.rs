@@ -7,7 +7,7 @@ use std::fs;
 use std::process::Command;
 
 use mindgap_tests::command::{Done, Workshop, program};
-use mindgap_tests::rooms::{trained, with_scene};
+use mindgap_tests::rooms::{SCENE, robot, trained, with_scene};
 use rayon::prelude::*;
 
 use super::import_recordings;
@@ -26,8 +26,10 @@ enum Leaves {
     AllOrNothing,
     /// Files that are complete, of some of its stages.
     Stages,
+    /// Files from which the same call goes on to the same end.
+    State,
 }
-use Leaves::{AllOrNothing, Stages};
+use Leaves::{AllOrNothing, Stages, State};
 
 /// A call of the system: its name, and which of that name it is in its thread, from 1.
 #[derive(Clone, Debug)]
@@ -90,6 +92,22 @@ fn long_commands_fail_at_some() {
     assert_whole(&workshop, "challenge answer blind", FEW, Stages);
 }
 
+/// The robot's command is another program, which does not fail: `strace` lets go of it.
+#[test]
+fn a_loop_fails_at_some() {
+    let workshop = trained();
+    workshop.write("scene.toml", SCENE);
+    robot(&workshop, "", "");
+    let call = "loop out --sim sim.json --scene scene.toml --max-steps 5 --trials 1 --robot 'sh robot.sh'";
+    assert_whole(&workshop, call, FEW, State);
+}
+
+#[test]
+#[ignore = "takes minutes"]
+fn a_demo_fails_at_some() {
+    assert_whole(&Workshop::new(), "demo --out demo --html page.html --force", FEW, State);
+}
+
 /// Files that are late are the same files.
 #[test]
 fn a_slow_network_folder_changes_nothing() {
@@ -130,18 +148,19 @@ fn assert_whole(workshop: &Workshop, call: &str, most: usize, leaves: Leaves) {
             }
             assert_eq!(done.code, 1, "{what}: {}", done.err);
             assert!(done.err.starts_with("mindgap: ") && done.err.lines().count() == 1, "{what}: {}", done.err);
-            if is_kept(&failing) {
-                // Where nothing can be opened or renamed any more, what is left waits for the next command.
-                assert!((name.starts_with("rename") || name == "openat") && *lasts == "+", "{what}");
+            let is_kept = is_kept(&failing);
+            // Where nothing can be opened or renamed any more, what is left waits for the next command.
+            assert!(!is_kept || (name.starts_with("rename") || name == "openat") && *lasts == "+", "{what}");
+            if is_kept || leaves == State {
                 assert_eq!(traced(&failing, &["-o", "/dev/null"], call).code, 0, "{what}");
                 assert!(failing.files("") == after, "{what}");
                 continue;
             }
+            let is_either =
+                |file: (&PathBuf, &Vec<u8>)| [&before, &after].iter().any(|all| all.get(file.0) == Some(file.1));
             let is_whole = match leaves {
                 AllOrNothing => left == before || left == after,
-                Stages => {
-                    left.iter().all(|file| before.get(file.0) == Some(file.1) || after.get(file.0) == Some(file.1))
-                }
+                Stages | State => left.iter().all(is_either),
             };
             assert!(is_whole, "{what}: {:?} is left", left.keys());
             assert!(before.keys().all(|file| left.contains_key(file) || !after.contains_key(file)), "{what}");
@@ -152,7 +171,8 @@ fn assert_whole(workshop: &Workshop, call: &str, most: usize, leaves: Leaves) {
 /// Runs a command under strace, without what it is not asked for.
 fn traced(workshop: &Workshop, options: &[&str], call: &str) -> Done {
     let mut strace = Command::new("strace");
-    strace.current_dir(workshop.path()).args(["-f", "-qq"]).args(options).arg(program()).args(call.split_whitespace());
+    let words = shlex::split(call).expect("closed quotes");
+    strace.current_dir(workshop.path()).args(["-f", "-b", "execve", "-qq"]).args(options).arg(program()).args(words);
     workshop.run(strace)
 }
 

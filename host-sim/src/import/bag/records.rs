@@ -34,8 +34,12 @@ pub enum Ending {
 
 /// No record, and no chunk of them, is larger: recorders write chunks of a few megabytes.
 const LARGEST: usize = 1 << 26;
-/// A file holds at most this many times its size: what robots log shrinks by a factor of ten.
+/// Chunks hold at most this many times the file's size, since what robots log shrinks by a factor of ten,
 const MOST_EXPANDED: u64 = 256;
+/// and this much more, of which a small file may be made.
+const SMALL: u64 = 1 << 20;
+/// So much of a file is read at once: room for a record is made as it comes, and not by the length that it claims to have.
+const STEP: usize = 1 << 16;
 /// Lengths of an opcode and of a record's length.
 const OPCODE: usize = 1;
 const LENGTH: usize = 8;
@@ -52,11 +56,16 @@ struct Known {
 ///
 /// # Errors
 /// When it cannot be read or is corrupt, or what `take` returns.
-pub fn read(path: &Path, mut take: impl FnMut(Item) -> Result<()>) -> Result<Ending> {
+pub fn read(path: &Path, take: impl FnMut(Item) -> Result<()>) -> Result<Ending> {
     let unreadable = |e: std::io::Error| Error::in_file(path, format!("cannot be read: {e}"));
     let file = File::open(path).map_err(unreadable)?;
-    let most = MOST_EXPANDED * file.metadata().map_err(unreadable)?.len() + LARGEST as u64;
-    let mut file = BufReader::new(file);
+    let size = file.metadata().map_err(unreadable)?.len();
+    read_from(path, BufReader::new(file), size, take)
+}
+
+/// As [`read`], of a file's content and its size.
+fn read_from(path: &Path, mut file: impl Read, size: u64, mut take: impl FnMut(Item) -> Result<()>) -> Result<Ending> {
+    let most = MOST_EXPANDED * size + SMALL;
     let options = LinearReaderOptions::default().with_emit_chunks(true).with_record_length_limit(LARGEST);
     let mut reader = LinearReader::new_with_options(options);
     let mut known = Known::default();
@@ -64,7 +73,8 @@ pub fn read(path: &Path, mut take: impl FnMut(Item) -> Result<()>) -> Result<End
     while let Some(event) = reader.next_event() {
         match event {
             Ok(LinearReadEvent::ReadRequest(need)) => {
-                let written = file.read(reader.insert(need)).map_err(unreadable)?;
+                let written = file.read(reader.insert(need.min(STEP)));
+                let written = written.map_err(|e| Error::in_file(path, format!("cannot be read: {e}")))?;
                 reader.notify_read(written);
             }
             Ok(LinearReadEvent::Record { opcode: op::CHUNK, data }) => {
@@ -123,7 +133,7 @@ fn in_chunk(
         .with_skip_start_magic(true)
         .with_skip_end_magic(true)
         .with_validate_chunk_crcs(true)
-        .with_record_length_limit(LARGEST);
+        .with_record_length_limit(usize::try_from(header.uncompressed_size).map_or(LARGEST, |size| size.min(LARGEST)));
     let mut reader = LinearReader::new_with_options(options);
     let mut left = chunk.as_slice();
     while let Some(event) = reader.next_event() {
@@ -186,5 +196,56 @@ impl Known {
             _ => {}
         }
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A file that remembers how much was asked of it at once.
+    struct Asked<'a>(&'a [u8], &'a mut usize);
+
+    impl Read for Asked<'_> {
+        fn read(&mut self, room: &mut [u8]) -> std::io::Result<usize> {
+            *self.1 = room.len().max(*self.1);
+            self.0.read(room)
+        }
+    }
+
+    fn record(opcode: u8, claimed: usize, data: &[u8]) -> Vec<u8> {
+        [&[opcode][..], &(claimed as u64).to_le_bytes(), data].concat()
+    }
+
+    fn read_bytes(bytes: &[u8]) -> (String, usize) {
+        let mut most = 0;
+        let file = Asked(bytes, &mut most);
+        let read = read_from(Path::new("a.mcap"), file, bytes.len() as u64, |_| Ok(()));
+        (read.expect_err("nothing is whole").to_string(), most)
+    }
+
+    #[test]
+    fn no_room_is_made_for_what_is_only_claimed() {
+        let bytes = [mcap::MAGIC, &record(op::HEADER, LARGEST, b"short")].concat();
+        let (told, most) = read_bytes(&bytes);
+        assert!(told.contains("ends before its first message"), "{told}");
+        assert!(most <= STEP, "{most}");
+    }
+
+    #[test]
+    fn a_small_file_holds_no_large_chunk() {
+        let chunk = |size: u64| {
+            let header = ChunkHeader {
+                message_start_time: 0,
+                message_end_time: 0,
+                uncompressed_size: size,
+                uncompressed_crc: 0,
+                compression: "zstd".into(),
+                compressed_size: 0,
+            };
+            read_bytes(&[mcap::MAGIC, &chunk_record(&header, &[])].concat()).0
+        };
+        assert!(chunk(2 * SMALL).contains("no recorder writes that"));
+        assert!(!chunk(SMALL).contains("no recorder writes that"));
     }
 }
