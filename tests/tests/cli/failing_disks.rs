@@ -7,7 +7,7 @@ use std::fs;
 use std::process::Command;
 
 use mindgap_tests::command::{Done, Workshop, program};
-use mindgap_tests::rooms::{SCENE, robot, trained, with_scene};
+use mindgap_tests::rooms::{robot, trained, with_scene};
 use rayon::prelude::*;
 
 use super::import_recordings;
@@ -95,8 +95,7 @@ fn long_commands_fail_at_some() {
 /// The robot's command is another program, which does not fail: `strace` lets go of it.
 #[test]
 fn a_loop_fails_at_some() {
-    let workshop = trained();
-    workshop.write("scene.toml", SCENE);
+    let workshop = with_scene();
     robot(&workshop, "", "");
     let call = "loop out --sim sim.json --scene scene.toml --max-steps 5 --trials 1 --robot 'sh robot.sh'";
     assert_whole(&workshop, call, FEW, State);
