@@ -23,6 +23,8 @@ pub struct Law {
     /// By how much more than one the variance differs from that near a spot: where a floor holds a robot back now and then,
     /// steps scatter more than elsewhere, whatever is expected of them.
     further_variance: Nearby,
+    /// Nowhere do steps scatter less than the simulator's: that it is sure of less than it could be is no gap.
+    least_share: f64,
     /// The share of the scatter of the rows that it was fitted on, by the fit to other runs.
     own_shares: Vec<f64>,
     usual_way_cm: f64,
@@ -51,10 +53,13 @@ pub fn fit(channel: Channel, axis: usize, beneath: &Fitted, context: &FitContext
     let (surface, predictions) = of_axis.surface((nearby, told), &shares, scatter, response);
     let rest: Vec<Option<f64>> = residuals.iter().zip(&predictions).map(|(r, p)| Some((*r)? - p)).collect();
     let (further_variance, shares) = scatter_nearby(&of_axis, |_, i| rest[i].unwrap_or(0.0) / scatter);
-    let own_shares = of_axis.of_all(&shares, 1.0);
-    let even: Vec<f64> = rest.iter().zip(&own_shares).filter_map(|(rest, share)| Some((*rest)? / share)).collect();
+    let shares = of_axis.of_all(&shares, 1.0);
+    let even: Vec<f64> = rest.iter().zip(&shares).filter_map(|(rest, share)| Some((*rest)? / share)).collect();
     let least = baseline.motion.as_ref().map_or(1.0, |drive| drive.scatter()[axis]);
-    let law = Law { axis, scatter: fitted_scatter(axis, &even, least), further_variance, own_shares, usual_way_cm };
+    let scatter = fitted_scatter(axis, &even, least);
+    let least_share = least / scatter;
+    let own_shares = shares.into_iter().map(|share| share.max(least_share)).collect();
+    let law = Law { axis, scatter, further_variance, own_shares, least_share, usual_way_cm };
     ResidualFit {
         channel,
         held_out: law.terms(law.scatter, &rest, &law.own_shares),
@@ -154,7 +159,7 @@ impl Law {
             return self.own_shares.clone();
         }
         let spot = |row: &Observation| row.then.is_empty().then(|| Spot::usual(row.context.pose.position_cm));
-        rows.rows.iter().map(|row| share(self.further_variance.at(spot(row)))).collect()
+        rows.rows.iter().map(|row| share(self.further_variance.at(spot(row))).max(self.least_share)).collect()
     }
 
     /// The log-likelihood of each row where this is the scatter, and the rest is what predictions leave.
