@@ -16,7 +16,7 @@ use super::fit::{FitContext, Fitted, Gain};
 use crate::effects::chain::EffectChain;
 use crate::evaluation::observations::{FEWEST_BLOCKS, Observations};
 use basis::{Basis, Circumstances};
-use nearby::{Nearby, Spot};
+use nearby::{Nearby, Neighbours, Spot};
 
 /// What the rest of a channel follows beyond a fit.
 pub struct ResidualFit {
@@ -50,8 +50,8 @@ struct Surface {
 /// The circumstances of a row, step by step: several where the ways of several steps are judged as one.
 type Steps = Vec<Circumstances>;
 
-/// From this share of their chance on, echoes count as bound to places. Training logs of 24 runs show at most 0.03 where there is
-/// none (the fixed challenge's robots) and at least 0.15 where most of it is (the same with `--place-bound`).
+/// From this share of their chance on, echoes count as bound to places. Training logs of 24 runs show at most 0.03 where
+/// there is none (the fixed challenge's robots) and at least 0.15 where most of it is (the same with `--place-bound`).
 const PLACE_BOUND: f64 = 0.1;
 
 /// As many folds as there are blocks of rows at least, so that none is empty.
@@ -74,9 +74,7 @@ impl ResidualFit {
 
     /// The gain on each block over the fit beneath, by fits to other blocks.
     pub fn gains_over(&self, beneath: &Fitted, context: &FitContext) -> Vec<f64> {
-        let without = beneath.log_likelihood.channel(self.channel);
-        let gains: Vec<f64> = self.held_out.iter().zip(without).map(|(a, b)| a - b).collect();
-        context.observations.by_block(&gains)
+        context.observations.by_block(&self.gain_of_rows(beneath))
     }
 
     /// What it gains over the fit beneath. What a channel follows may be at one spot of the room, which few runs meet: where
@@ -86,9 +84,12 @@ impl ResidualFit {
         if self.channel.motion_axis().is_some() || context.baseline.place_bound[0] < PLACE_BOUND {
             return Gain::without_best(&self.gains_over(beneath, context), 1);
         }
+        Gain::of(&context.observations.by_place(&self.gain_of_rows(beneath)))
+    }
+
+    fn gain_of_rows(&self, beneath: &Fitted) -> Vec<f64> {
         let without = beneath.log_likelihood.channel(self.channel);
-        let gains: Vec<f64> = self.held_out.iter().zip(without).map(|(a, b)| a - b).collect();
-        Gain::of(&context.observations.by_place(&gains))
+        self.held_out.iter().zip(without).map(|(a, b)| a - b).collect()
     }
 
     /// The log-likelihood of each row in the channel, never by a fit to its own run.
@@ -112,8 +113,8 @@ impl ResidualFit {
         }
     }
 
-    /// What is left of each row of a motion channel: with the effects alone, or with the model's prediction taken away too and
-    /// as it would be where steps scatter as usual.
+    /// What is left of each row of a motion channel: with the effects alone, or with the model's prediction taken away
+    /// too and as it would be where steps scatter as usual.
     pub fn rest(&self, with_model: bool, rows: &Observations, context: &FitContext) -> Option<Vec<Option<f64>>> {
         let Law::Motion(law) = &self.law else { return None };
         if !with_model {
@@ -161,6 +162,7 @@ struct Rows<'a> {
     used: Vec<usize>,
     folds: Vec<usize>,
     spots: Vec<Option<Spot>>,
+    neighbours: Neighbours,
 }
 
 impl<'a> Rows<'a> {
@@ -168,17 +170,17 @@ impl<'a> Rows<'a> {
     fn of(covariates: &'a [Steps], has_any: impl Fn(usize) -> bool, block: impl Fn(usize) -> usize) -> Self {
         let used: Vec<usize> = (0..covariates.len()).filter(|i| has_any(*i)).collect();
         let folds = used.iter().map(|i| block(*i) % FOLDS).collect();
-        let spots = used.iter().map(|i| spot(&covariates[*i])).collect();
-        Rows { covariates, used, folds, spots }
+        let spots: Vec<Option<Spot>> = used.iter().map(|i| spot(&covariates[*i])).collect();
+        Rows { covariates, used, folds, neighbours: Neighbours::of(&spots), spots }
     }
 
     /// What is told near each row's spot of `response(row, prediction)`.
     fn nearby(&self, response: impl Fn(usize, f64) -> f64) -> (Nearby, Vec<f64>) {
-        nearby::fit(&self.spots, &self.folds, |place, p| response(self.used[place], p))
+        nearby::fit(&self.spots, &self.neighbours, &self.folds, |place, p| response(self.used[place], p))
     }
 
-    /// Fits a surface of `response(row, prediction, share)`, in units of `unit`, over what is told near each row's spot; with the
-    /// predictions of all rows from the other folds. `shares` are those of the noise, one for a usual row.
+    /// Fits a surface of `response(row, prediction, share)`, in units of `unit`, over what is told near each row's spot;
+    /// with the predictions of all rows from the other folds. `shares` are those of the noise, one for a usual row.
     fn surface(
         &self,
         (nearby, told): (Nearby, Vec<f64>),

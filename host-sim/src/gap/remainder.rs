@@ -81,7 +81,7 @@ mod tests {
     /// Eight blocks of twelve rows with forward residuals.
     fn rows(off_cm: fn(usize) -> f64) -> Observations {
         observations(8, 12, move |_, at| {
-            let command = if at % 2 == 0 { [40.0, 60.0] } else { [60.0, 40.0] };
+            let command = if at.is_multiple_of(2) { [40.0, 60.0] } else { [60.0, 40.0] };
             Made { commands: [command; 2], off: [off_cm(at), 0.0, 0.0], ..Made::default() }
         })
     }
@@ -124,7 +124,7 @@ mod tests {
     #[test]
     fn what_scatters_at_one_spot_of_the_floor_follows_the_place() {
         let made = |_, at: usize| {
-            let (x_cm, share) = if at % 2 == 0 { (50.0, 3.0) } else { (250.0, 1.0) };
+            let (x_cm, share) = if at.is_multiple_of(2) { (50.0, 3.0) } else { (250.0, 1.0) };
             let off = [share * 0.9 * alternating(at / 2), 0.0, 0.0];
             Made { pose: Pose::new(x_cm, 50.0, 0.0), off, ..Made::default() }
         };

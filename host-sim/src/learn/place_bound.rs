@@ -8,7 +8,7 @@ use crate::logs::{Logs, Row};
 use crate::sonar::place::{Place, place_of};
 use crate::sonar::{Perturbation, SonarModel, fan_at};
 use crate::statistics::intraclass::{self, Deviation};
-use crate::statistics::summary::{QUARTILE, median};
+use crate::statistics::summary::{QUARTILE, mean, median, root_mean_square};
 
 /// A reading that is farther off counts as this many standard deviations: wrong readings say nothing of readings.
 const FARTHEST: f64 = 3.0;
@@ -59,11 +59,10 @@ fn value(seen: &[Seen]) -> f64 {
     let within = |off_cm: f64| (off_cm / scatter_cm).clamp(-FARTHEST, FARTHEST);
     let off: Vec<(Place, usize, f64)> =
         seen.iter().filter_map(|row| Some((place_of(&row.sensor), row.run, within(row.off_cm?)))).collect();
-    let count = off.len() as f64;
-    let mean = off.iter().map(|(.., off)| off).sum::<f64>() / count;
-    let scatter = (off.iter().map(|(.., off)| (off - mean) * (off - mean)).sum::<f64>() / count).sqrt();
+    let middle = mean(off.iter().map(|(.., off)| *off));
+    let scatter = root_mean_square(off.iter().map(|(.., off)| off - middle));
     let deviation =
-        |(place, run, off): &(Place, usize, f64)| Deviation { group: *place, run: *run, off: off - mean, scatter };
+        |(place, run, off): &(Place, usize, f64)| Deviation { group: *place, run: *run, off: off - middle, scatter };
     intraclass::share(&off.iter().map(deviation).collect::<Vec<_>>())
 }
 

@@ -363,7 +363,7 @@ mod tests {
     #[test]
     fn a_number_that_a_bound_holds_stays_there_whatever_is_left_out() {
         let terms = |at: &[f64]| -> Vec<f64> {
-            let middle = |i: usize| if i % 2 == 0 { -4.0 } else { -6.0 };
+            let middle = |i: usize| if i.is_multiple_of(2) { -4.0 } else { -6.0 };
             let off = |i| [at[0] + 0.5 * at[1] - middle(i), at[1]];
             (0..40).map(off).map(|[a, b]| -0.5 * (a * a + b * b)).collect()
         };
@@ -372,7 +372,8 @@ mod tests {
         assert_eq!(found.at[0], 0.0);
         let [first, second] = found.without(&bounds, |i| i % 4 == 1)[..] else { unreachable!("two numbers") };
         assert_eq!(first, 0.0);
-        // Ten scores of -10 are left out, and thirty of ±10 kept: a thirtieth of the scale of 20, and what one-sided differences add.
+        // Ten scores of -10 are left out, and thirty of ±10 kept: a thirtieth of the scale of 20, and what one-sided
+        // differences add.
         assert!((second - found.at[1]).abs() < 1.0, "{second} {}", found.at[1]);
     }
 }

@@ -2,7 +2,8 @@
 //! target, or for one alone.
 //!
 //! The file of counts, `name count slowest_ms slowest_number` a line, says how many inputs each has had, and which of them
-//! took longest; it is read if it is there, and written again after each target. Nothing may panic, take longer than a second, or take too much memory.
+//! took longest; it is read if it is there, and written again after each target. Nothing may panic, take longer than a
+//! second, or take too much memory.
 
 use std::collections::BTreeMap;
 use std::env;

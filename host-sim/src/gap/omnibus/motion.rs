@@ -70,8 +70,8 @@ pub fn fit(channel: Channel, axis: usize, beneath: &Fitted, context: &FitContext
     }
 }
 
-/// How steps scatter near a spot, by what is `left` of each place and row in units of the usual scatter: by how much more than
-/// one its variance is, and each row's share of the scatter by the fit to other runs.
+/// How steps scatter near a spot, by what is `left` of each place and row in units of the usual scatter: by how much more
+/// than one its variance is, and each row's share of the scatter by the fit to other runs.
 fn scatter_nearby(rows: &Rows, left: impl Fn(usize, usize) -> f64) -> (Nearby, Vec<f64>) {
     let spots: Vec<Option<Spot>> =
         rows.spots.iter().map(|spot| spot.map(|spot| Spot::usual(spot.position_cm))).collect();
@@ -79,7 +79,7 @@ fn scatter_nearby(rows: &Rows, left: impl Fn(usize, usize) -> f64) -> (Nearby, V
         let left = left(place, rows.used[place]).clamp(-FARTHEST, FARTHEST);
         left * left - 1.0
     };
-    let (nearby, told) = nearby::fit(&spots, &rows.folds, further);
+    let (nearby, told) = nearby::fit(&spots, &rows.neighbours, &rows.folds, further);
     (nearby, told.into_iter().map(share).collect())
 }
 

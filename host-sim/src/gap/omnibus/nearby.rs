@@ -3,15 +3,14 @@
 
 use glam::DVec2;
 
+use super::ridge::{MOST_STEPS, SETTLED};
+
 /// Rows that lie this far apart or farther say nothing of each other: the patches of a floor and the sides of an obstacle
 /// are about so large, and in a smaller circle there is seldom a second run.
 const REACH_CM: f64 = 50.0;
 /// That nothing is different at a spot counts as much as so many rows there, about as many as 24 runs of 60 steps leave
 /// there: of what fewer say, more than half is taken for chance.
 const PRIOR_ROWS: f64 = 30.0;
-/// Most steps from one working response to the next, and the change of a prediction in noise deviations that ends them.
-const MOST_STEPS: usize = 10;
-const SETTLED: f64 = 1e-3;
 
 /// Where a row is in the room, and how much what is so there shows in it.
 #[derive(Clone, Copy, Debug)]
@@ -35,22 +34,26 @@ pub struct Nearby {
     rows: Vec<(Spot, f64)>,
 }
 
-/// The rows near each row, each with how much it counts there.
-struct Neighbours(Vec<Vec<(u32, f32)>>);
+/// The rows near each row, each with how much it counts there, whatever their weights.
+pub struct Neighbours(Vec<Vec<(u32, f32)>>);
 
 /// Fits `response(row, prediction)`, the working response of a row where its prediction stands, as `ridge::fit` does;
 /// with the prediction of each row from the other folds. A row without a spot neither says anything nor is told.
-pub fn fit(spots: &[Option<Spot>], folds: &[usize], response: impl Fn(usize, f64) -> f64) -> (Nearby, Vec<f64>) {
-    let neighbours = Neighbours::of(spots);
+pub fn fit(
+    spots: &[Option<Spot>],
+    neighbours: &Neighbours,
+    folds: &[usize],
+    response: impl Fn(usize, f64) -> f64,
+) -> (Nearby, Vec<f64>) {
     let count = folds.iter().max().map_or(0, |most| most + 1);
     let mut held_out = vec![0.0; spots.len()];
     for fold in 0..count {
-        let (_, predictions) = settled(spots, &neighbours, |i| folds[i] != fold, &response);
+        let (_, predictions) = settled(spots, neighbours, |i| folds[i] != fold, &response);
         for i in (0..spots.len()).filter(|i| folds[*i] == fold) {
             held_out[i] = predictions[i];
         }
     }
-    let (responses, _) = settled(spots, &neighbours, |_| true, &response);
+    let (responses, _) = settled(spots, neighbours, |_| true, &response);
     let rows = spots.iter().zip(responses).filter_map(|(spot, response)| Some(((*spot)?, response)));
     (Nearby { rows: rows.collect() }, held_out)
 }
@@ -103,7 +106,8 @@ fn predicted(spot: &Spot, near: impl Iterator<Item = (f64, Spot, f64)>) -> f64 {
 }
 
 impl Neighbours {
-    fn of(spots: &[Option<Spot>]) -> Self {
+    /// Of these spots.
+    pub fn of(spots: &[Option<Spot>]) -> Self {
         let near = |spot: Option<Spot>| -> Vec<(u32, f32)> {
             let share = |other: Option<Spot>| Some(kernel(&spot?, &other?)).filter(|share| *share > 0.0);
             let others = spots.iter().zip(0u32..);
@@ -135,7 +139,7 @@ mod tests {
     #[test]
     fn a_spot_tells_of_itself_alone() {
         let (spots, folds) = rows();
-        let (nearby, held_out) = fit(&spots, &folds, |i, _| f64::from(u8::from(i % 2 == 0)));
+        let (nearby, held_out) = fit(&spots, &Neighbours::of(&spots), &folds, |i, _| f64::from(u8::from(i % 2 == 0)));
         // Seven folds of twenty rows against the prior.
         let expected = 140.0 / (PRIOR_ROWS + 140.0);
         assert!((held_out[0] - expected).abs() < 1e-9 && held_out[1] == 0.0, "{} {}", held_out[0], held_out[1]);
@@ -148,13 +152,14 @@ mod tests {
     #[test]
     fn what_shows_half_as_much_is_told_half_as_much() {
         let (spots, folds) = rows();
-        let (nearby, _) = fit(&spots, &folds, |_, _| 1.0);
+        let (nearby, _) = fit(&spots, &Neighbours::of(&spots), &folds, |_, _| 1.0);
         assert_eq!(nearby.at(spot(50.0, -0.5)), -0.5 * nearby.at(spot(50.0, 1.0)));
     }
 
     #[test]
     fn rows_without_a_spot_say_nothing() {
-        let (nearby, held_out) = fit(&[None, None, spot(50.0, 1.0)], &[0, 1, 1], |_, _| 1.0);
+        let spots = [None, None, spot(50.0, 1.0)];
+        let (nearby, held_out) = fit(&spots, &Neighbours::of(&spots), &[0, 1, 1], |_, _| 1.0);
         assert_eq!(held_out, [0.0; 3]);
         assert_eq!(nearby.rows.len(), 1);
     }
@@ -163,7 +168,7 @@ mod tests {
     #[test]
     fn working_responses_are_followed_to_where_they_settle() {
         let (spots, folds) = rows();
-        let (nearby, _) = fit(&spots, &folds, |_, p| p + 0.25 * (2.0 - p));
+        let (nearby, _) = fit(&spots, &Neighbours::of(&spots), &folds, |_, p| p + 0.25 * (2.0 - p));
         let share = 160.0 / (PRIOR_ROWS + 160.0);
         // p = share (p + (2 − p) / 4)
         let expected = share * 0.5 / (1.0 - 0.75 * share);

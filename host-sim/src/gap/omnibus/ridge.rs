@@ -9,9 +9,10 @@ use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 /// half a nat; at the last, the prior is wider than the noise and the penalty has no say. The error is flat between
 /// neighbours. No fit at all is tried besides.
 const STRENGTHS: [f64; 7] = [1000.0, 215.0, 46.0, 10.0, 2.15, 0.46, 0.1];
-/// Most steps from one working response to the next, and the change of a prediction in noise deviations that ends them.
-const MOST_STEPS: usize = 10;
-const SETTLED: f64 = 1e-3;
+/// Most steps from one working response to the next.
+pub const MOST_STEPS: usize = 10;
+/// The change of a prediction, in noise deviations, that ends them.
+pub const SETTLED: f64 = 1e-3;
 
 /// What a regression predicts.
 #[derive(Clone, Debug, PartialEq)]

@@ -57,10 +57,13 @@ struct Known {
 /// # Errors
 /// When it cannot be read or is corrupt, or what `take` returns.
 pub fn read(path: &Path, take: impl FnMut(Item) -> Result<()>) -> Result<Ending> {
-    let unreadable = |e: std::io::Error| Error::in_file(path, format!("cannot be read: {e}"));
-    let file = File::open(path).map_err(unreadable)?;
-    let size = file.metadata().map_err(unreadable)?.len();
+    let file = File::open(path).map_err(|e| unreadable(path, &e))?;
+    let size = file.metadata().map_err(|e| unreadable(path, &e))?.len();
     read_from(path, BufReader::new(file), size, take)
+}
+
+fn unreadable(path: &Path, why: &std::io::Error) -> Error {
+    Error::in_file(path, format!("cannot be read: {why}"))
 }
 
 /// As [`read`], of a file's content and its size.
@@ -74,7 +77,7 @@ fn read_from(path: &Path, mut file: impl Read, size: u64, mut take: impl FnMut(I
         match event {
             Ok(LinearReadEvent::ReadRequest(need)) => {
                 let written = file.read(reader.insert(need.min(STEP)));
-                let written = written.map_err(|e| Error::in_file(path, format!("cannot be read: {e}")))?;
+                let written = written.map_err(|e| unreadable(path, &e))?;
                 reader.notify_read(written);
             }
             Ok(LinearReadEvent::Record { opcode: op::CHUNK, data }) => {

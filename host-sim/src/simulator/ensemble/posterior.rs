@@ -142,7 +142,7 @@ impl Likelihood {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::statistics::summary::mean;
+    use crate::statistics::summary::{mean, root_mean_square};
 
     /// Networks that turn a tenth less than the robot does.
     fn held([left, right]: [f64; 2]) -> [f64; 3] {
@@ -197,7 +197,7 @@ mod tests {
         let draws: Vec<f64> = (0..400).map(|seed| posterior.draw(seed).motion(command)[2]).collect();
         let [expected, deviation] = posterior.motion(command)[2];
         let middle = mean(draws.iter().copied());
-        let scatter = mean(draws.iter().map(|d| (d - middle) * (d - middle))).sqrt();
+        let scatter = root_mean_square(draws.iter().map(|d| d - middle));
         assert!((middle - expected).abs() < 0.2 * deviation, "{middle} {expected} {deviation}");
         assert!((scatter / deviation - 1.0).abs() < 0.15, "{scatter} {deviation}");
         assert_eq!(posterior.draw(7).motion(command), posterior.draw(7).motion(command));
