@@ -99,7 +99,12 @@ fn each_command(commands: &mut CommandHistory, change: impl Fn(f64, usize) -> f6
 /// The distance that a force of strength one costs in a step: a share of it grows with the distance covered, the rest is
 /// that of [`LOADED_SPEED_CM_S`] at any speed.
 fn distance_lost_cm(with_speed: f64, covered_cm: f64, context: &StepContext) -> f64 {
-    with_speed * covered_cm.abs() + (1.0 - with_speed) * LOADED_SPEED_CM_S * context.step_s()
+    loaded(with_speed, covered_cm.abs(), LOADED_SPEED_CM_S * context.step_s())
+}
+
+/// A drag of which one share grows with the speed and the rest is that of the `reference` at any speed.
+fn loaded(with_speed: f64, speed: f64, reference: f64) -> f64 {
+    with_speed * speed + (1.0 - with_speed) * reference
 }
 
 /// How much a step counts as motion, 0 to 1.

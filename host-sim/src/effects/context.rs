@@ -11,8 +11,8 @@ pub const HISTORY: usize = 7;
 /// Left and right command of the present step and of those before it, newest first; zero before the run began.
 pub type CommandHistory = [[f64; 2]; HISTORY];
 
-/// Number of earlier poses visible to an effect: the oldest reading that is thought of, 0.8 s, at 10 steps a second.
-pub const EARLIER: usize = 8;
+/// Number of earlier poses visible to an effect: the oldest reading that is thought of, 1.6 s, at 10 steps a second.
+pub const EARLIER: usize = 16;
 
 /// The circumstances of a step, or of the reading at its begin.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -68,6 +68,11 @@ impl Comparison {
         while !chosen.ids().is_empty() && chosen.ids().len() < calibration.judgement.most_effects {
             let further = best_of_each(chosen.with_each(Some(&alone), context));
             first = first.or_else(|| FirstFound::of(&chosen, &further, &none, calibration));
+            for fit in further.iter().take(TOLD) {
+                let feigned = OwnGain::of(fit, &chosen, &none, calibration.further_share).feigned_nats;
+                let nats = fit.gain_over(&chosen).nats;
+                log::info!("{} gain {nats:.1} nats more, {feigned:.1} would mend a form", fit.ids().join("+"));
+            }
             let Some(next) = further.into_iter().find(|f| is_worth_adding(f, &chosen, &none, calibration)) else {
                 break;
             };
@@ -76,6 +81,7 @@ impl Comparison {
                 .iter()
                 .any(|others| rivals_in_reach(&settled, others, calibration) > calibration.judgement.most_rivals)
             {
+                log::info!("too many others could stand for {}", settled.ids().join("+"));
                 break;
             }
             let before = chosen.log_evidence();

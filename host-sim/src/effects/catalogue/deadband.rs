@@ -39,6 +39,16 @@ pub const EFFECT: Effect = Effect {
                 each_command(commands, |c, _| (c - edge).max(0.0) * 100.0 / (100.0 - edge));
             })],
         },
+        Variant {
+            id: "wheel",
+            parameters: Deadband::PARAMETERS,
+            hooks: &[Hook::Motion(&|v, context, increment| {
+                let held_cm = Deadband::read(v).break_away_cm_s * context.step_s();
+                let wheels = increment.wheels_cm(context.robot.track_cm);
+                let left = wheels.map(|covered_cm| (covered_cm.abs() - held_cm).max(0.0).copysign(covered_cm));
+                increment.set_wheels(left, context.robot.track_cm);
+            })],
+        },
     ],
 };
 

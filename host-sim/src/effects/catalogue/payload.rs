@@ -1,6 +1,6 @@
 //! A load, off the middle.
 
-use super::{distance_lost_cm, each_command, parameters, pushed_cm};
+use super::{distance_lost_cm, each_command, loaded, parameters, pushed_cm};
 use crate::effects::context::CommandHistory;
 use crate::effects::parameter::{Guesses, Report};
 use crate::effects::{Effect, Hook, Parameter, PoseIncrement, StepContext, Variant};
@@ -63,6 +63,17 @@ pub const EFFECT: Effect = Effect {
                 }),
             ],
         },
+        Variant {
+            id: "motor_load",
+            parameters: RollingLoad::PARAMETERS,
+            hooks: &[Hook::Commands(&|v, _, commands| {
+                let RollingLoad { loss, other_side, with_speed, start_loss } = RollingLoad::read(v);
+                start_slowly(start_loss * loss.abs(), commands);
+                // To a motor, the torque of a load is a lower voltage, which is what a command sets.
+                let lost = by_side(loss, other_side);
+                each_command(commands, |c, motor| (c - lost[motor] * loaded(with_speed, c, HALF_POWER)).max(0.0));
+            })],
+        },
     ],
 };
 
@@ -104,13 +115,15 @@ parameters! {
         loss: LOSS,
         /// The other wheel's loss as a share of it.
         other_side: Parameter::new("", 0.5, [0.0, 0.8]).prior_sd(0.3).from(Guesses::At(&[0.2])).report(Report::Hidden),
-        /// Share of the loss that grows with speed: with all of it it would be a weaker motor.
-        with_speed: Parameter::new("", 0.3, [0.0, 0.6]).prior_sd(0.3).report(Report::Hidden),
+        /// Share of the loss that grows with speed, as it does where tyres flex: with all of it it would be a weaker motor.
+        with_speed: Parameter::new("", 0.3, [0.0, 0.9]).prior_sd(0.3).report(Report::Hidden),
         /// See [`START_LOSS`].
         start_loss: START_LOSS,
     }
 }
 
+/// The command to which the loss of a motor refers: half of full power.
+const HALF_POWER: f64 = 50.0;
 /// The turn to which the loss of turns refers: half of what an NXT robot's wheels can do.
 const SCRUBBED_RAD_S: f64 = 3.5;
 /// Turns slower than this scrub less and less.

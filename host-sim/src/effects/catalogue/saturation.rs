@@ -50,9 +50,9 @@ const NO_LIMIT_CM_S: f64 = 100.0;
 
 parameters! {
     Saturation {
-        /// Wheel speed above which nothing is added. Below 8 cm/s a robot could hardly drive: a regulated NXT motor under
-        /// load is flat from half of its full 41 cm/s at the earliest.
-        limit_cm_s: Parameter::new("cm/s", NO_LIMIT_CM_S, [8.0, NO_LIMIT_CM_S])
+        /// Wheel speed above which nothing is added. A regulated NXT motor under load is flat from half of its full
+        /// 41 cm/s at the earliest; robots that clean floors drive at 10 to 50 cm/s, and half of the slowest is left.
+        limit_cm_s: Parameter::new("cm/s", NO_LIMIT_CM_S, [5.0, NO_LIMIT_CM_S])
             .scale(33.0)
             .from(Guesses::OfTopSpeed(&[0.35, 0.5, 0.65, 0.8]))
             .report(Report::Command),

@@ -19,10 +19,11 @@ pub const EFFECT: Effect = Effect {
 
 parameters! {
     Lag {
-        /// Age of a reading. An NXT sensor takes 35 to 75 ms, a program that hands readings through a step or two.
-        lag_ms: Parameter::new("ms", 0.0, [0.0, 800.0])
+        /// Age of a reading. An NXT sensor takes 35 to 75 ms, a program that hands readings through or averages them a few
+        /// steps, of 400 ms in the paper.
+        lag_ms: Parameter::new("ms", 0.0, [0.0, 1600.0])
             .prior_sd(300.0)
-            .from(Guesses::At(&[80.0, 240.0, 400.0, 640.0]))
+            .from(Guesses::At(&[80.0, 240.0, 400.0, 640.0, 1200.0]))
             .report(Report::Steps),
     }
 }
