@@ -1,6 +1,6 @@
 //! A load, off the middle.
 
-use super::{distance_lost_cm, each_command, loaded, parameters, pushed_cm};
+use super::{LOADED_SPEED_CM_S, distance_lost_cm, each_command, loaded, parameters, pushed_cm};
 use crate::effects::context::CommandHistory;
 use crate::effects::parameter::{Guesses, Report};
 use crate::effects::{Effect, Hook, Parameter, PoseIncrement, StepContext, Variant};
@@ -66,12 +66,12 @@ pub const EFFECT: Effect = Effect {
         Variant {
             id: "motor_load",
             parameters: RollingLoad::PARAMETERS,
-            hooks: &[Hook::Commands(&|v, _, commands| {
+            hooks: &[Hook::Commands(&|v, context, commands| {
                 let RollingLoad { loss, other_side, with_speed, start_loss } = RollingLoad::read(v);
                 start_slowly(start_loss * loss.abs(), commands);
                 // To a motor, the torque of a load is a lower voltage, which is what a command sets.
-                let lost = by_side(loss, other_side);
-                each_command(commands, |c, motor| (c - lost[motor] * loaded(with_speed, c, HALF_POWER)).max(0.0));
+                let (lost, reference) = (by_side(loss, other_side), context.command_for(LOADED_SPEED_CM_S));
+                each_command(commands, |c, motor| (c - lost[motor] * loaded(with_speed, c, reference)).max(0.0));
             })],
         },
     ],
@@ -122,8 +122,6 @@ parameters! {
     }
 }
 
-/// The command to which the loss of a motor refers: half of full power.
-const HALF_POWER: f64 = 50.0;
 /// The turn to which the loss of turns refers: half of what an NXT robot's wheels can do.
 const SCRUBBED_RAD_S: f64 = 3.5;
 /// Turns slower than this scrub less and less.
