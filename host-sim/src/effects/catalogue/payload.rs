@@ -115,8 +115,9 @@ parameters! {
         loss: LOSS,
         /// The other wheel's loss as a share of it.
         other_side: Parameter::new("", 0.5, [0.0, 0.8]).prior_sd(0.3).from(Guesses::At(&[0.2])).report(Report::Hidden),
-        /// Share of the loss that grows with speed, as it does where tyres flex: with all of it it would be a weaker motor.
-        with_speed: Parameter::new("", 0.3, [0.0, 0.9]).prior_sd(0.3).report(Report::Hidden),
+        /// Share of the loss that grows with speed, as it does where tyres flex. Gears and hubs rub at any speed: with all of
+        /// it it would be a weaker motor.
+        with_speed: Parameter::new("", 0.3, [0.0, 0.75]).prior_sd(0.3).report(Report::Hidden),
         /// See [`START_LOSS`].
         start_loss: START_LOSS,
     }
