@@ -175,7 +175,8 @@ fn gain_alone(single: &Fitted, singles: &[Fitted], none: &Fitted, calibration: &
     let gain = single.gain_over(none);
     let judgement = &calibration.judgement;
     let vague = rivals_in_reach(single, singles, calibration) > judgement.most_rivals;
-    if vague { gain.times(1.0 / judgement.vague_factor) } else { gain }
+    let divisor = if vague { judgement.vague_factor } else { 1.0 };
+    Gain { nats: gain.nats / divisor, broad_nats: gain.broad_nats / divisor, error: gain.error / divisor }
 }
 
 impl OwnGain {
@@ -210,10 +211,8 @@ impl FirstFound {
 /// A fit at a bound is no finding: the likelihood would rise beyond what is physically possible.
 fn is_worth_adding(fit: &Fitted, so_far: &Fitted, none: &Fitted, calibration: &Calibration) -> bool {
     let at_bound = !fit.at_bound(fit.ids().len() - 1).is_empty();
-    let own = OwnGain::of(fit, so_far, none, calibration.further_share);
-    // The blocks that gain most take their part of what is feigned with them.
-    let real = 1.0 - own.feigned_nats / own.nats;
-    !at_bound && own.nats > 0.0 && fit.gain_over(so_far).times(real).passes(calibration.effect_nats)
+    let feigned = OwnGain::of(fit, so_far, none, calibration.further_share).feigned_nats;
+    !at_bound && fit.gain_over(so_far).less(feigned).passes(calibration.effect_nats)
 }
 
 /// How many effects do nearly as well in the place of one of the chosen.

@@ -287,11 +287,6 @@ impl Gain {
         Gain { nats: self.nats - nats, broad_nats: self.broad_nats - nats, ..self }
     }
 
-    /// A share of it.
-    pub fn times(self, share: f64) -> Self {
-        Gain { nats: self.nats * share, broad_nats: self.broad_nats * share, error: self.error * share }
-    }
-
     /// Whether it counts: it is large enough without the blocks that gain most.
     pub fn passes(&self, gate_nats: f64) -> bool {
         self.broad_nats >= gate_nats
