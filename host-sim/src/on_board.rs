@@ -13,9 +13,9 @@ use crate::simulator::body::SimulatedBody;
 /// What moves and senses.
 pub enum Vehicle<'r> {
     /// The built-in robot.
-    BuiltIn(Body<'r>),
+    BuiltIn(Box<Body<'r>>),
     /// A robot in a learned simulator. It says nothing of wheels and battery: shafts turn freely, the battery is charged.
-    Simulated(SimulatedBody<'r>),
+    Simulated(Box<SimulatedBody<'r>>),
 }
 
 /// A robot in its room, as the brick's program sees and moves it, with a log.

@@ -152,8 +152,8 @@ impl Brick {
             .map(|simulator| Environment::new(simulator, &scene, start, Noise::Learned))
             .transpose()?;
         let vehicle = match &environment {
-            Some(environment) => Vehicle::Simulated(SimulatedBody::at_rest(environment, &scene)),
-            None => Vehicle::BuiltIn(built_in.start(start, &mut rng)),
+            Some(environment) => Vehicle::Simulated(Box::new(SimulatedBody::at_rest(environment, &scene))),
+            None => Vehicle::BuiltIn(Box::new(built_in.start(start, &mut rng))),
         };
         let mut world = OnBoard::new(vehicle, wiring, robot.step_ms as u32, rng);
         let report = brick::run(program, &mut world, config);

@@ -80,7 +80,7 @@ fn it_drives_about_a_crowded_room_and_logs_every_step() {
         for (number, (x_cm, y_cm)) in (0..).zip(starts) {
             let mut rng = generator(seed as u64, &[number]);
             let body = robot.start(Pose::new(x_cm, y_cm, 0.7), &mut rng);
-            let mut world = OnBoard::new(Vehicle::BuiltIn(body), Wiring::default(), 400, rng);
+            let mut world = OnBoard::new(Vehicle::BuiltIn(Box::new(body)), Wiring::default(), 400, rng);
             let report = run(&program, &mut world);
             assert_eq!(report.end, Termination::Finished);
             crashes += usize::from(world.crashed());
