@@ -1,6 +1,6 @@
 //! The omnibus residual model: how much of what a fit leaves over follows any circumstance at all.
 //!
-//! First comes what other rows say near the same spot of the room ([`nearby`]). Over that every channel has the same neutral
+//! First comes what other rows say near the same spot of the room (`nearby`). Over that every channel has the same neutral
 //! basis ([`basis`]) in all covariates of a row, fitted by ridge regression ([`ridge`]) whose strength cross-validation over
 //! runs chooses. Nothing in it stands for a particular effect. What it gains on runs that it was not fitted on bounds what
 //! any effect could explain.

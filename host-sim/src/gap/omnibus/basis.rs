@@ -4,7 +4,7 @@
 //! attainment of optimum conditions). No covariate and no pair is preferred, and no unit matters: covariates and terms
 //! are standardised.
 //!
-//! A polynomial in the place cannot follow what is so at one spot and nowhere else: that is left to [`super::nearby`].
+//! A polynomial in the place cannot follow what is so at one spot and nowhere else: that is left to `nearby`.
 
 use super::nearby::Spot;
 
