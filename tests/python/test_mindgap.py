@@ -188,6 +188,8 @@ def test_other_threads_run_meanwhile(logs):
 
 def test_ctrl_c_ends_long_work(simulator):
     """The handler runs in the main thread, which is where the work is asked for."""
+    # Shells start what runs in the background with SIGINT ignored, and Python leaves it so.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
     begun = threading.Event()
 
     def press():
