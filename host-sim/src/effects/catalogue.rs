@@ -4,7 +4,7 @@
 
 use super::context::{CommandHistory, StepContext};
 use super::parameter::parameters;
-use super::{Effect, Variant};
+use super::{Effect, PoseIncrement, Variant};
 
 /// Declares the modules and lists them, so that an effect cannot be in one place and not in the other.
 macro_rules! catalogue {
@@ -94,6 +94,12 @@ fn each_command(commands: &mut CommandHistory, change: impl Fn(f64, usize) -> f6
             *command = change(command.abs(), motor) * command.signum();
         }
     }
+}
+
+/// Changes the distance that each wheel covers; `change` is given it and the wheel, 0 for the left one.
+fn each_wheel(context: &StepContext, increment: &mut PoseIncrement, change: impl Fn(f64, usize) -> f64) {
+    let [left_cm, right_cm] = increment.wheels_cm(context.robot.track_cm);
+    increment.set_wheels([change(left_cm, 0), change(right_cm, 1)], context.robot.track_cm);
 }
 
 /// The distance that a force of strength one costs in a step: a share of it grows with the distance covered, the rest is

@@ -69,9 +69,9 @@ impl Comparison {
             let further = best_of_each(chosen.with_each(Some(&alone), context));
             first = first.or_else(|| FirstFound::of(&chosen, &further, &none, calibration));
             for fit in further.iter().take(TOLD) {
-                let feigned = OwnGain::of(fit, &chosen, &none, calibration.further_share).feigned_nats;
-                let nats = fit.gain_over(&chosen).nats;
-                log::info!("{} gain {nats:.1} nats more, {feigned:.1} would mend a form", fit.ids().join("+"));
+                // Worked out only where it is told.
+                let own = || OwnGain::of(fit, &chosen, &none, calibration.further_share).in_words();
+                log::info!("{} gain {}", fit.ids().join("+"), own());
             }
             let Some(next) = further.into_iter().find(|f| is_worth_adding(f, &chosen, &none, calibration)) else {
                 break;
@@ -189,6 +189,10 @@ impl OwnGain {
             (nats(fit) - nats(others)).clamp(0.0, share * explained)
         });
         OwnGain { nats: fit.gain_over(others).nats, feigned_nats: feigned.sum() }
+    }
+
+    fn in_words(&self) -> String {
+        format!("{:.1} nats more, {:.1} would mend a form", self.nats, self.feigned_nats)
     }
 }
 

@@ -1,6 +1,6 @@
 //! Friction in the drive: small commands move little or nothing.
 
-use super::{each_command, parameters};
+use super::{each_command, each_wheel, parameters};
 use crate::effects::parameter::{Guesses, Report};
 use crate::effects::{Effect, Hook, Parameter, Variant};
 
@@ -44,9 +44,7 @@ pub const EFFECT: Effect = Effect {
             parameters: Deadband::PARAMETERS,
             hooks: &[Hook::Motion(&|v, context, increment| {
                 let held_cm = Deadband::read(v).break_away_cm_s * context.step_s();
-                let wheels = increment.wheels_cm(context.robot.track_cm);
-                let left = wheels.map(|covered_cm| (covered_cm.abs() - held_cm).max(0.0).copysign(covered_cm));
-                increment.set_wheels(left, context.robot.track_cm);
+                each_wheel(context, increment, |cm, _| (cm.abs() - held_cm).max(0.0).copysign(cm));
             })],
         },
     ],

@@ -1,6 +1,6 @@
 //! One motor is weaker than it was.
 
-use super::parameters;
+use super::{each_wheel, parameters};
 use crate::effects::parameter::{Guesses, Report};
 use crate::effects::{Effect, Hook, Parameter, Variant};
 
@@ -24,8 +24,7 @@ pub const EFFECT: Effect = Effect {
             parameters: Asymmetry::PARAMETERS,
             hooks: &[Hook::Motion(&|v, context, increment| {
                 let factors = Asymmetry::read(v).factors();
-                let [left, right] = increment.wheels_cm(context.robot.track_cm);
-                increment.set_wheels([left * factors[0], right * factors[1]], context.robot.track_cm);
+                each_wheel(context, increment, |cm, wheel| cm * factors[wheel]);
             })],
         },
     ],

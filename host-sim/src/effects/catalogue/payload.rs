@@ -1,6 +1,6 @@
 //! A load, off the middle.
 
-use super::{LOADED_SPEED_CM_S, distance_lost_cm, each_command, loaded, parameters, pushed_cm};
+use super::{LOADED_SPEED_CM_S, distance_lost_cm, each_command, each_wheel, loaded, parameters, pushed_cm};
 use crate::effects::context::CommandHistory;
 use crate::effects::parameter::{Guesses, Report};
 use crate::effects::{Effect, Hook, Parameter, PoseIncrement, StepContext, Variant};
@@ -54,12 +54,9 @@ pub const EFFECT: Effect = Effect {
                 Hook::Motion(&|v, context, increment| {
                     let RollingLoad { loss, other_side, with_speed, .. } = RollingLoad::read(v);
                     let losses = by_side(loss, other_side);
-                    let wheels = increment.wheels_cm(context.robot.track_cm);
-                    let wheels = [0, 1].map(|m| {
-                        let lost_cm = losses[m] * distance_lost_cm(with_speed, wheels[m], context);
-                        pushed_cm(wheels[m], -lost_cm, context)
+                    each_wheel(context, increment, |cm, wheel| {
+                        pushed_cm(cm, -losses[wheel] * distance_lost_cm(with_speed, cm, context), context)
                     });
-                    increment.set_wheels(wheels, context.robot.track_cm);
                 }),
             ],
         },
@@ -143,8 +140,7 @@ fn by_side(loss: f64, other_side: f64) -> [f64; 2] {
 }
 
 fn shorten(losses: [f64; 2], context: &StepContext, increment: &mut PoseIncrement) {
-    let wheels = increment.wheels_cm(context.robot.track_cm);
-    increment.set_wheels([0, 1].map(|m| wheels[m] * (1.0 - losses[m])), context.robot.track_cm);
+    each_wheel(context, increment, |cm, wheel| cm * (1.0 - losses[wheel]));
 }
 
 /// The share `late` of every change of command is not there yet.

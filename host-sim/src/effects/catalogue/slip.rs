@@ -1,6 +1,6 @@
 //! The tyres lose grip when pushed.
 
-use super::{each_command, parameters};
+use super::{each_command, each_wheel, parameters};
 use crate::effects::context::CommandHistory;
 use crate::effects::parameter::{Guesses, Report};
 use crate::effects::{Effect, Hook, Parameter, StepContext, Variant};
@@ -36,13 +36,11 @@ pub const EFFECT: Effect = Effect {
             hooks: &[Hook::Motion(&|v, context, increment| {
                 let Slip { onset_cm_s, loss } = Slip::read(v);
                 let [now, before, ..] = context.commands;
-                let wheels = increment.wheels_cm(context.robot.track_cm);
-                let kept = [0, 1].map(|m| {
+                each_wheel(context, increment, |cm, m| {
                     let change_cm_s = context.wheel_speed_cm_s((now[m] - before[m]).abs());
                     let beyond = (change_cm_s - onset_cm_s).max(0.0) / WHOLE_CHANGE_CM_S;
-                    1.0 - (loss * beyond).min(1.0)
+                    cm * (1.0 - (loss * beyond).min(1.0))
                 });
-                increment.set_wheels([0, 1].map(|m| wheels[m] * kept[m]), context.robot.track_cm);
             })],
         },
         Variant {
