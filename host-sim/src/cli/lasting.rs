@@ -3,6 +3,7 @@
 
 use std::any::TypeId;
 use std::collections::BTreeMap;
+use std::env;
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
@@ -84,7 +85,7 @@ pub fn begin(is_shared: bool, kept: Option<Kept>, places: &Places, call: (&Comma
 }
 
 /// What a call asks for. Of its places only that they are given is an argument: what is read counts by its content, and
-/// where results go changes none of them.
+/// where results go changes none of them. The program is read too: two builds of one version may give other results.
 fn task((mut command, mut matches): (&Command, &ArgMatches), places: &Places, outputs: &[PathBuf]) -> Task {
     let mut names = Vec::new();
     let mut arguments = BTreeMap::new();
@@ -104,5 +105,6 @@ fn task((mut command, mut matches): (&Command, &ArgMatches), places: &Places, ou
             }
         }
     }
-    Task::new(names.join(" "), arguments, places.inputs(), outputs)
+    let inputs: Vec<PathBuf> = places.inputs().iter().cloned().chain(env::current_exe()).collect();
+    Task::new(names.join(" "), arguments, &inputs, outputs)
 }
