@@ -25,8 +25,11 @@ impl Outcomes {
 impl Distribution {
     fn draw(&self, scatters: bool, mut uniform: impl FnMut() -> f64) -> f64 {
         match *self {
-            Distribution::Student { middle_cm, .. } if !scatters => middle_cm,
+            Distribution::Student { middle_cm, .. } | Distribution::Within { middle_cm, .. } if !scatters => middle_cm,
             Distribution::Student { middle_cm, scale_cm } => middle_cm + scale_cm * student::draw(uniform),
+            Distribution::Within { middle_cm, scale_cm, below, inside } => {
+                middle_cm + scale_cm * student::quantile(below + inside * uniform())
+            }
             Distribution::Uniform { low_cm, high_cm } => low_cm + (high_cm - low_cm) * uniform(),
         }
     }

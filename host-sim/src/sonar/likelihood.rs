@@ -27,6 +27,10 @@ impl Distribution {
     fn density(&self, echo_cm: f64) -> f64 {
         match *self {
             Distribution::Student { middle_cm, scale_cm } => student::density(echo_cm - middle_cm, scale_cm),
+            // Whoever asks is within the range.
+            Distribution::Within { middle_cm, scale_cm, inside, .. } => {
+                student::density(echo_cm - middle_cm, scale_cm) / inside
+            }
             Distribution::Uniform { low_cm, high_cm } if (low_cm..=high_cm).contains(&echo_cm) => {
                 1.0 / (high_cm - low_cm)
             }

@@ -1,9 +1,10 @@
 //! The mixture over everything that the sensor may report.
 
 use super::fan::{AXIS, Fan};
-use super::first_echo::first_echoes;
+use super::first_echo::{FirstEcho, first_echoes};
 use super::model::{CONSTANT_SCATTER_CM, P_RAND, SonarModel};
 use super::perturbation::Perturbation;
+use crate::statistics::student;
 
 /// Probabilities of all outcomes of a reading. They add up to one.
 #[derive(Clone, Debug, PartialEq)]
@@ -53,6 +54,17 @@ pub enum Distribution {
         middle_cm: f64,
         /// Its scale.
         scale_cm: f64,
+    },
+    /// The same, of those readings alone that lie within the sensor's range.
+    Within {
+        /// The middle of all.
+        middle_cm: f64,
+        /// Their scale.
+        scale_cm: f64,
+        /// The share of all that lies below the range.
+        below: f64,
+        /// The share that lies within.
+        inside: f64,
     },
     /// Uniform on an interval.
     Uniform {
@@ -132,14 +144,21 @@ impl Outcomes {
             (Source::Long, total(|w| w.long), between(reach, high)),
             (Source::Stray, total(|w| w.stray), between(low, high)),
         ];
-        let hits = echoes.iter().map(|echo| Component {
-            source: Source::Hit,
-            probability: echo.probability * heard.hit,
-            distribution: Distribution::Student { middle_cm: echo.middle_cm, scale_cm: echo.scale_cm },
+        // What scatters by itself beyond the range is reported as its ends, as the logs had it that the model was fitted on.
+        // What a perturbation scatters there is not reported.
+        let is_lost = perturbation.scatter_cm > 0.0;
+        let hits = echoes.iter().map(|echo| {
+            let &FirstEcho { middle_cm, scale_cm, .. } = echo;
+            let probability = echo.probability * heard.hit;
+            let distribution = Distribution::Student { middle_cm, scale_cm };
+            let hit = Component { source: Source::Hit, probability, distribution };
+            if is_lost { hit.within(model.range_cm) } else { hit }
         });
         let others = others.map(|(source, probability, distribution)| Component { source, probability, distribution });
-        let components = hits.chain(others).collect();
-        Outcomes { none: total(|w| w.none), components, range_cm: model.range_cm }
+        let components: Vec<Component> = hits.chain(others).collect();
+        let lost = arrives * heard.hit - components[..echoes.len()].iter().map(|hit| hit.probability).sum::<f64>();
+        let none = total(|w| w.none) + if is_lost { lost.max(0.0) } else { 0.0 };
+        Outcomes { none, components, range_cm: model.range_cm }
     }
 
     /// The mean reading of the hits, cm; none where no echo can come back.
@@ -157,10 +176,21 @@ impl Outcomes {
     }
 }
 
+impl Component {
+    /// What of it lies within a range.
+    fn within(self, [low, high]: [f64; 2]) -> Self {
+        let Distribution::Student { middle_cm, scale_cm } = self.distribution else { return self };
+        let [below, above] = [low, high].map(|end| student::cumulative((end - middle_cm) / scale_cm));
+        let inside = above - below;
+        let distribution = Distribution::Within { middle_cm, scale_cm, below, inside };
+        Component { probability: self.probability * inside, distribution, ..self }
+    }
+}
+
 impl Distribution {
     fn mean_cm(&self) -> f64 {
         match *self {
-            Distribution::Student { middle_cm, .. } => middle_cm,
+            Distribution::Student { middle_cm, .. } | Distribution::Within { middle_cm, .. } => middle_cm,
             Distribution::Uniform { low_cm, high_cm } => 0.5 * (low_cm + high_cm),
         }
     }

@@ -102,7 +102,7 @@ impl Partition {
     /// The cells of these outcomes.
     pub fn new(outcomes: &Outcomes) -> Self {
         let window = |distribution: &Distribution| match *distribution {
-            Distribution::Student { middle_cm, scale_cm } => {
+            Distribution::Student { middle_cm, scale_cm } | Distribution::Within { middle_cm, scale_cm, .. } => {
                 Some([middle_cm - Self::SCALES * scale_cm, middle_cm + Self::SCALES * scale_cm])
             }
             Distribution::Uniform { .. } => None,
@@ -148,6 +148,9 @@ pub fn probability_between(outcomes: &Outcomes, from: f64, to: f64) -> f64 {
     let below = |distribution: &Distribution, cm: f64| match *distribution {
         _ if cm.is_infinite() => f64::from(u8::from(cm > 0.0)),
         Distribution::Student { middle_cm, scale_cm } => student::cumulative((cm - middle_cm) / scale_cm),
+        Distribution::Within { middle_cm, scale_cm, below, inside } => {
+            ((student::cumulative((cm - middle_cm) / scale_cm) - below) / inside).clamp(0.0, 1.0)
+        }
         Distribution::Uniform { low_cm, high_cm } => ((cm - low_cm) / (high_cm - low_cm)).clamp(0.0, 1.0),
     };
     let between = |distribution| below(distribution, to) - below(distribution, from);

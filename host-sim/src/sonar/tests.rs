@@ -48,6 +48,18 @@ fn probabilities_add_up_to_one() {
     }
 }
 
+/// Before a wall at the near end of the range half of what scatters is too near to be reported.
+#[test]
+fn what_a_perturbation_scatters_beyond_the_range_is_not_reported() {
+    let model = &SENSORS[0];
+    let mut fan = fan_at(&scenes()[0].sides(), &sensors()[0], model.fan_width);
+    fan.iter_mut().for_each(|ray| ray.distance_cm = model.range_cm[0]);
+    let none = |scatter_cm| model.outcomes(&fan, &Perturbation { scatter_cm, ..Perturbation::NONE }).none;
+    let [as_it_is, scattered] = [none(0.0), none(5.0)];
+    let half = 0.5 * (1.0 - as_it_is);
+    assert!((scattered - as_it_is - half).abs() < 0.1 * half, "{as_it_is} {scattered}");
+}
+
 #[test]
 fn no_component_is_missing_from_the_grid() {
     let grid = grid();
