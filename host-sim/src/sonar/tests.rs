@@ -54,10 +54,12 @@ fn what_a_perturbation_scatters_beyond_the_range_is_not_reported() {
     let model = &SENSORS[0];
     let mut fan = fan_at(&scenes()[0].sides(), &sensors()[0], model.fan_width);
     fan.iter_mut().for_each(|ray| ray.distance_cm = model.range_cm[0]);
-    let none = |scatter_cm| model.outcomes(&fan, &Perturbation { scatter_cm, ..Perturbation::NONE }).none;
-    let [as_it_is, scattered] = [none(0.0), none(5.0)];
-    let half = 0.5 * (1.0 - as_it_is);
-    assert!((scattered - as_it_is - half).abs() < 0.1 * half, "{as_it_is} {scattered}");
+    let outcomes = |scatter_cm| model.outcomes(&fan, &Perturbation { scatter_cm, ..Perturbation::NONE });
+    let [as_it_is, scattered] = [outcomes(0.0), outcomes(5.0)];
+    let hits: f64 =
+        as_it_is.components.iter().filter(|c| c.source == Source::Hit).map(|component| component.probability).sum();
+    let lost = scattered.none - as_it_is.none;
+    assert!((lost / hits - 0.5).abs() < 0.05, "{lost} of {hits}");
 }
 
 #[test]
