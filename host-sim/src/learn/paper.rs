@@ -12,7 +12,7 @@ use crate::error::Result;
 use crate::genetic::{self, Settings};
 
 /// Number of individuals that are evaluated as one piece of work.
-const TOGETHER: usize = 5;
+const TOGETHER: usize = 25;
 
 /// Parameters of the trainer. The defaults are those of the paper; where it gives none (marked "open"), they are common
 /// choices.
