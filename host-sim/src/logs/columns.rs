@@ -160,7 +160,7 @@ fn number(column: usize, name: &str, cell: &str) -> std::result::Result<f64, Str
 const EMPTY: &str = "; leave the cell empty where there is none";
 
 fn no_number(column: usize, name: &str, cell: &str) -> String {
-    let is_date = cell.contains(':') || cell.len() > 6 && cell[4.min(cell.len())..].starts_with('-');
+    let is_date = cell.contains(':') || cell.len() > 6 && cell.get(4..).is_some_and(|rest| rest.starts_with('-'));
     let instead = if cell == name {
         ": the header stands here again; give every run a file of its own"
     } else if name == TIME && cell.is_ascii() && is_date {
