@@ -52,6 +52,9 @@ pub struct RunResult {
     pub population: Vec<Vec<f32>>,
 }
 
+/// With five at a time a small network's training spent a third of its time in handing out; more leave processors idle.
+const TOGETHER: usize = 25;
+
 /// An optimisation problem: how genotypes are made, repaired and evaluated.
 pub trait Problem: Sync {
     /// A random genotype for the first generation.
@@ -59,7 +62,9 @@ pub trait Problem: Sync {
     /// Brings the genes of a child back into their bounds.
     fn repair(&self, genes: &mut [f32]);
     /// Number of individuals that are evaluated as one piece of work.
-    fn together(&self) -> usize;
+    fn together(&self) -> usize {
+        TOGETHER
+    }
     /// The fitness of some individuals of a generation, the first of which has the index `first` therein; larger is better,
     /// and NaN is worst.
     fn fitness(&self, generation: usize, first: usize, individuals: &[Vec<f32>]) -> Vec<f64>;

@@ -11,9 +11,6 @@ use crate::simulator::environment::Environment;
 use crate::simulator::motion::MotionTable;
 use crate::simulator::rollout::{REACHED_CM, RolloutOutcome, RolloutRequest, SensorModel, Termination};
 
-/// Number of individuals simulated in one batch.
-const TOGETHER: usize = 25;
-
 /// Which random numbers the individuals of a generation are evaluated with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RandomNumbers {
@@ -126,10 +123,6 @@ impl genetic::Problem for FitnessEvaluator<'_> {
 
     fn repair(&self, genes: &mut [f32]) {
         self.decoder.repair(genes);
-    }
-
-    fn together(&self) -> usize {
-        TOGETHER
     }
 
     fn fitness(&self, generation: usize, first: usize, individuals: &[Vec<f32>]) -> Vec<f64> {

@@ -69,9 +69,9 @@ impl Comparison {
             let further = best_of_each(chosen.with_each(Some(&alone), context));
             first = first.or_else(|| FirstFound::of(&chosen, &further, &none, calibration));
             for fit in further.iter().take(TOLD) {
-                // Worked out only where it is told.
-                let own = || OwnGain::of(fit, &chosen, &none, calibration.further_share).in_words();
-                log::info!("{} gain {}", fit.ids().join("+"), own());
+                // `info!` works out what it tells only if somebody listens.
+                let share = calibration.further_share;
+                log::info!("{} gain {}", fit.ids().join("+"), OwnGain::of(fit, &chosen, &none, share).in_words());
             }
             let Some(next) = further.into_iter().find(|f| is_worth_adding(f, &chosen, &none, calibration)) else {
                 break;

@@ -11,9 +11,6 @@ use crate::chance::Generator;
 use crate::error::Result;
 use crate::genetic::{self, Settings};
 
-/// Number of individuals that are evaluated as one piece of work.
-const TOGETHER: usize = 25;
-
 /// Parameters of the trainer. The defaults are those of the paper; where it gives none (marked "open"), they are common
 /// choices.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -88,10 +85,6 @@ impl<const N: usize> genetic::Problem for Weights<'_, N> {
         for place in self.template.exponents() {
             genes[place] = genes[place].clamp(-bound, bound);
         }
-    }
-
-    fn together(&self) -> usize {
-        TOGETHER
     }
 
     fn fitness(&self, _: usize, _: usize, individuals: &[Vec<f32>]) -> Vec<f64> {

@@ -1,7 +1,7 @@
 //! The mixture over everything that the sensor may report.
 
 use super::fan::{AXIS, Fan};
-use super::first_echo::{FirstEcho, first_echoes};
+use super::first_echo::first_echoes;
 use super::model::{CONSTANT_SCATTER_CM, P_RAND, SonarModel};
 use super::perturbation::Perturbation;
 use crate::statistics::student;
@@ -144,21 +144,26 @@ impl Outcomes {
             (Source::Long, total(|w| w.long), between(reach, high)),
             (Source::Stray, total(|w| w.stray), between(low, high)),
         ];
-        // What scatters by itself beyond the range is reported as its ends, as the logs had it that the model was fitted on.
-        // What a perturbation scatters there is not reported.
-        let is_lost = perturbation.scatter_cm > 0.0;
-        let hits = echoes.iter().map(|echo| {
-            let &FirstEcho { middle_cm, scale_cm, .. } = echo;
-            let probability = echo.probability * heard.hit;
-            let distribution = Distribution::Student { middle_cm, scale_cm };
-            let hit = Component { source: Source::Hit, probability, distribution };
-            if is_lost { hit.within(model.range_cm) } else { hit }
+        let hits = echoes.iter().map(|echo| Component {
+            source: Source::Hit,
+            probability: echo.probability * heard.hit,
+            distribution: Distribution::Student { middle_cm: echo.middle_cm, scale_cm: echo.scale_cm },
         });
         let others = others.map(|(source, probability, distribution)| Component { source, probability, distribution });
-        let components: Vec<Component> = hits.chain(others).collect();
-        let lost = arrives * heard.hit - components[..echoes.len()].iter().map(|hit| hit.probability).sum::<f64>();
-        let none = total(|w| w.none) + if is_lost { lost.max(0.0) } else { 0.0 };
-        Outcomes { none, components, range_cm: model.range_cm }
+        let components = hits.chain(others).collect();
+        let outcomes = Outcomes { none: total(|w| w.none), components, range_cm: model.range_cm };
+        // What scatters by itself beyond the range is reported as its ends, as in the logs that the model was fitted on.
+        if perturbation.scatter_cm > 0.0 { outcomes.without_hits_beyond_range() } else { outcomes }
+    }
+
+    /// The same where hits beyond the range are not reported.
+    fn without_hits_beyond_range(mut self) -> Self {
+        for hit in self.components.iter_mut().filter(|component| component.source == Source::Hit) {
+            let within = hit.within(self.range_cm);
+            self.none += hit.probability - within.probability;
+            *hit = within;
+        }
+        self
     }
 
     /// The mean reading of the hits, cm; none where no echo can come back.
