@@ -59,6 +59,14 @@ struct Ray {
     log2_odds: [f32; STRENGTHS - 2],
 }
 
+/// The first echo of those heard so far.
+struct Nearest<S: Simd> {
+    /// Infinite before the first.
+    distance_cm: Lanes<S>,
+    /// In units of 45 degrees.
+    incidence: Lanes<S>,
+}
+
 /// What came back to lanes of sensors.
 pub struct Heard<S: Simd> {
     /// Middle of the first echo's reading, cm; infinite where nothing came back.
@@ -118,16 +126,8 @@ impl Beam {
         draws: &mut Draws<S>,
     ) -> Heard<S> {
         let infinite = axis_deg.constant(f32::INFINITY);
-        let (mut nearest_cm, mut incidence, mut axis_cm) = (infinite, axis_deg.zero(), infinite);
-        let mut hear = |ray: &Ray, distance_cm: Lanes<S>, alpha_deg: Lanes<S>, log2_loss: f32| {
-            let a = alpha_deg * alpha_deg.constant(1.0 / 45.0);
-            let odds = maths::exp2_within(ray.log2_odds(distance_cm, a, log2_loss));
-            let draw = draws.uniform();
-            // The chance is odds / (1 + odds).
-            let back = (draw + draw * odds).less(odds) & distance_cm.less(nearest_cm);
-            nearest_cm = back.select(distance_cm, nearest_cm);
-            incidence = back.select(a, incidence);
-        };
+        let mut nearest = Nearest { distance_cm: infinite, incidence: axis_deg.zero() };
+        let mut axis_cm = infinite;
         for (place, ray) in self.rays.iter().enumerate() {
             let (c, s) = (axis_deg.constant(ray.cos), axis_deg.constant(ray.sin));
             let way = Point { x: axis.x * c - axis.y * s, y: axis.y * c + axis.x * s };
@@ -136,7 +136,7 @@ impl Beam {
             if place == AXIS {
                 axis_cm = met.distance_cm;
             }
-            hear(ray, met.distance_cm, met.alpha_deg, 0.0);
+            nearest.hear(ray, met.distance_cm, met.alpha_deg, 0.0, draws.uniform());
             if let Some(log2_loss) = self.log2_mirror_loss
                 && MIRRORED.contains(&place)
             {
@@ -147,9 +147,10 @@ impl Beam {
                 let half_turns = on_deg * on_deg.constant(1.0 / 180.0);
                 let on = Point { x: maths::cos_pi(half_turns), y: maths::sin_pi(half_turns) };
                 let second = room.cast(at, on, on_deg);
-                hear(ray, first_cm + second.distance_cm, second.alpha_deg, log2_loss);
+                nearest.hear(ray, first_cm + second.distance_cm, second.alpha_deg, log2_loss, draws.uniform());
             }
         }
+        let Nearest { distance_cm: nearest_cm, incidence } = nearest;
         let affine = |w: [f32; 3], x: Lanes<S>| x.constant(w[0]) + x * x.constant(w[1]) + incidence * x.constant(w[2]);
         let metres = nearest_cm.min(infinite.constant(FAR_CM as f32)) * infinite.constant(0.01);
         Heard {
@@ -197,6 +198,19 @@ impl Thresholds {
         let constant = stray + weights.constant;
         let hit = constant + weights.hit;
         Thresholds { short: short as f32, stray: stray as f32, constant: constant as f32, hit: hit as f32 }
+    }
+}
+
+impl<S: Simd> Nearest<S> {
+    /// A method and no closure: what is not inlined is compiled without the processor's wide instructions.
+    #[inline(always)]
+    fn hear(&mut self, ray: &Ray, distance_cm: Lanes<S>, alpha_deg: Lanes<S>, log2_loss: f32, draw: Lanes<S>) {
+        let a = alpha_deg * alpha_deg.constant(1.0 / 45.0);
+        let odds = maths::exp2_within(ray.log2_odds(distance_cm, a, log2_loss));
+        // The chance is odds / (1 + odds).
+        let back = (draw + draw * odds).less(odds) & distance_cm.less(self.distance_cm);
+        self.distance_cm = back.select(distance_cm, self.distance_cm);
+        self.incidence = back.select(a, self.incidence);
     }
 }
 
