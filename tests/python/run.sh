@@ -12,16 +12,16 @@ if ! python3 -c 'import sys; sys.exit(sys.version_info < (3, 11))'; then
     echo "the Python package needs Python 3.11 or newer" >&2
     exit 1
 fi
-[ -x target/debug/mindgap-under-test ] || cargo test --workspace --no-run
+[ -x target/debug/mindgap-under-test ] || cargo test --workspace --features mindgap-tests/mpi --no-run
 fresh=$(mktemp -d)
 trap 'rm -rf "$fresh"' EXIT
 quietly() { PIP_DISABLE_PIP_VERSION_CHECK=1 "$@" -q; }
 
 tools=target/python/tools
 [ -x $tools/bin/maturin ] || { python3 -m venv $tools && quietly $tools/bin/pip install maturin==1.16.0; }
-# The settings of [profile.test].
-export CARGO_PROFILE_DEV_OPT_LEVEL=2 CARGO_PROFILE_DEV_DEBUG=false CARGO_PROFILE_DEV_INCREMENTAL=false
-$tools/bin/maturin build --quiet --profile dev --features as-in-tests --manifest-path python/Cargo.toml --out "$fresh/wheels"
+# The library for ranks, which the tests of the other crates ask for, stays where it is.
+$tools/bin/maturin build --quiet --profile dev --features as-in-tests --auditwheel skip \
+    --manifest-path python/Cargo.toml --out "$fresh/wheels"
 
 python3 -m venv "$fresh/venv"
 quietly "$fresh/venv/bin/pip" install "$fresh"/wheels/mindgap-*.whl -r tests/python/requirements.txt

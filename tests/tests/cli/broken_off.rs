@@ -10,14 +10,12 @@ use std::thread;
 use std::time::Instant;
 
 use mindgap_tests::command::Workshop;
-use mindgap_tests::rooms::{robot, with_scene};
+use mindgap_tests::rooms::{challenge, robot, with_scene};
 use rand::rngs::SmallRng;
 use rand::{RngExt, SeedableRng};
 
-/// Kills of each command, by default,
+/// Kills of each command, by default.
 const KILLS: usize = 20;
-/// and of those that take long.
-const FEW: usize = 4;
 /// A run is killed before this share of the time of a whole one.
 const LATEST: f64 = 0.5;
 /// So much is written before a checkpoint is torn, bytes.
@@ -32,8 +30,8 @@ const MAKE: &str = "challenge make --cases 3 --seed 5 --out blind";
 /// Kills a call again and again, until one comes to its end, and compares what it leaves with what one leaves that was
 /// never killed; and that until it was killed often enough.
 #[track_caller]
-fn survives(prepared: &Workshop, call: &[&str], kills: usize) {
-    let kills = env::var("MINDGAP_KILLS").ok().and_then(|count| count.parse().ok()).unwrap_or(kills);
+fn survives(prepared: &Workshop, call: &[&str]) {
+    let kills = env::var("MINDGAP_KILLS").ok().and_then(|count| count.parse().ok()).unwrap_or(KILLS);
     let unbroken = prepared.copy();
     let began = Instant::now();
     let expected = output(&unbroken, call, None).expect("nobody kills it");
@@ -92,17 +90,17 @@ fn words(call: &str) -> Vec<&str> {
 
 #[test]
 fn evolve_survives() {
-    survives(&with_scene(), &words(EVOLVE), KILLS);
+    survives(&with_scene(), &words(EVOLVE));
 }
 
 #[test]
 fn train_survives() {
-    survives(&Workshop::with_logs(), &words(&format!("train logs {PAPER} --out paper.json")), KILLS);
+    survives(&Workshop::with_logs(), &words(&format!("train logs {PAPER} --out paper.json")));
 }
 
 #[test]
 fn a_challenge_survives() {
-    survives(&Workshop::new(), &words(MAKE), KILLS);
+    survives(&Workshop::new(), &words(MAKE));
 }
 
 #[test]
@@ -110,26 +108,24 @@ fn a_loop_survives() {
     let workshop = with_scene();
     robot(&workshop, "", "");
     let call = "loop out --sim sim.json --scene scene.toml --max-steps 20 --trials 1 --robot";
-    survives(&workshop, &call.split_whitespace().chain(["sh robot.sh"]).collect::<Vec<_>>(), KILLS);
+    survives(&workshop, &call.split_whitespace().chain(["sh robot.sh"]).collect::<Vec<_>>());
 }
 
 #[test]
 fn answers_survive() {
-    let workshop = Workshop::new();
-    workshop.done("challenge make --cases 2 --seed 5 --out blind");
-    survives(&workshop, &words("challenge answer blind"), FEW);
+    survives(&challenge(2), &words("challenge answer blind"));
 }
 
 #[test]
 #[ignore = "takes half an hour"]
 fn a_calibration_survives() {
-    survives(&Workshop::new(), &words("challenge calibrate --cases 40 --out calibration.toml --csv cases.csv"), KILLS);
+    survives(&Workshop::new(), &words("challenge calibrate --cases 40 --out calibration.toml --csv cases.csv"));
 }
 
 #[test]
 #[ignore = "takes half an hour"]
 fn a_demo_survives() {
-    survives(&Workshop::new(), &words("demo --out demo --html page.html --json facts.json"), KILLS);
+    survives(&Workshop::new(), &words("demo --out demo --html page.html --json facts.json"));
 }
 
 /// A call that was killed when its checkpoint had some pieces in it.

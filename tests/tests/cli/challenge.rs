@@ -1,12 +1,12 @@
 //! The blind test of the diagnosis from end to end.
 
 use mindgap_tests::command::Workshop;
+use mindgap_tests::rooms::challenge;
 use serde_json::{Value, json};
 
 #[test]
 fn a_challenge_is_made_answered_and_scored() {
-    let workshop = Workshop::new();
-    workshop.done("challenge make --cases 3 --seed 5 --out blind");
+    let workshop = challenge(3);
     let refusal = workshop.refused("challenge score blind");
     assert!(refusal.contains("answers"), "nothing is answered yet: {refusal}");
     workshop.done("challenge answer blind");
