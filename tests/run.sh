@@ -87,7 +87,7 @@ part rust-version check_rust_version
 part packages check_packages
 part book mdbook build
 part lints cargo clippy --workspace --all-targets --features mindgap-tests/mpi -- -D warnings
-part documentation env RUSTDOCFLAGS="-D warnings" cargo doc --no-deps --workspace
+part documentation env RUSTDOCFLAGS="-D warnings" cargo doc --no-deps --workspace --features mindgap-tests/mpi
 part compilation cargo test --workspace --features mindgap-tests/mpi --no-run
 run_tests() { cargo test --workspace --features mindgap-tests/mpi 2>&1 | tee "$log"; }
 part tests run_tests

@@ -124,5 +124,5 @@ fn command(bencher: Bencher, call: &str) {
 /// A simulator with networks of the paper's sizes, learned from few logs.
 fn simulator() -> Simulator {
     let logs = record(&default_robot(), &training_room(), 20, 40, &[], SEED).expect("the room has room");
-    train::train(&logs, &train::Trainer::Fast, &train::TABLE_ONE, SEED, |_| {}).expect("these logs train all networks")
+    train::train(&logs, &train::Trainer::Fast, &train::TABLE_ONE, SEED, &|_| {}).expect("these logs train all networks")
 }

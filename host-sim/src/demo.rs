@@ -134,7 +134,7 @@ fn fill(out: &Path, seed: u64, watch: impl Fn(Stage)) -> Result<Summary> {
     held_out.write(&out.join("held-out-logs"))?;
     scene.write(&out.join("scene.toml"))?;
     let simulator =
-        train::train(&logs, &Trainer::Fast, &TABLE_ONE, of(Purpose::Training), |p| watch(Stage::Training(p)))?;
+        train::train(&logs, &Trainer::Fast, &TABLE_ONE, of(Purpose::Training), &|p| watch(Stage::Training(p)))?;
     simulator.write(&out.join("simulator.json"))?;
     let evaluation = accuracy::evaluate(&simulator, &held_out, |_, _| ())?;
     files::write_json(&out.join("evaluation.json"), &evaluation)?;

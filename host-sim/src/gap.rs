@@ -3,8 +3,7 @@
 //! [`mod@diagnose`] is the method, stage by stage: validate, condition, fit, compare, confirm, account, explain, propose.
 //! Each stage has a file of that name. A [hypothesis] is one or more [effects](crate::effects) round a step of the
 //! [baseline](crate::simulator::baseline); the [omnibus] residual model bounds what any effect could explain; the
-//! thresholds are those of the [calibration]. What is left
-//! may follow a [formula].
+//! thresholds are those of the [calibration]. What is left may follow a [formula].
 
 pub mod account;
 pub mod budget;
@@ -19,6 +18,7 @@ pub mod excitation;
 pub mod explain;
 pub mod fit;
 pub mod formula;
+pub mod gain;
 pub mod hypothesis;
 mod ledger;
 pub mod method;

@@ -147,7 +147,7 @@ install_tools() {
   need nm binutils
   if ! target/tools/bin/defmt-print --version 2>/dev/null | grep -q "$DEFMT_PRINT"; then
     # Unoptimised it is built in half the time, and it has little to do.
-    cargo install --quiet --locked --debug --root target/tools --version "$DEFMT_PRINT" defmt-print 2>"$logs/tools.txt" ||
+    CARGO_PROFILE_DEV_DEBUG=false cargo install --quiet --locked --debug --root target/tools --version "$DEFMT_PRINT" defmt-print 2>"$logs/tools.txt" ||
       fail "defmt-print cannot be installed: $(tail -1 "$logs/tools.txt")"
   fi
 }

@@ -236,7 +236,7 @@ mod tests {
     #[test]
     fn regions_hold_the_share_of_paths_that_they_should() {
         let recorded = |seed| record(&default_robot(), &training_room(), 50, 60, &[], seed).expect("room to drive");
-        let simulator = train(&recorded(1), &Trainer::Fast, &TABLE_ONE, 1, |_| {}).expect("networks");
+        let simulator = train(&recorded(1), &Trainer::Fast, &TABLE_ONE, 1, &|_| {}).expect("networks");
         for (name, logs) in [("random", recorded(2)), ("controllers", controller_runs(&simulator, 60, 3))] {
             for coverage in coverage(&simulator, &logs, 4).expect("a distribution") {
                 let [places, headings] = [coverage.places[1], coverage.headings[1]];

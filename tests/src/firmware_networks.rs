@@ -18,7 +18,7 @@ const SEED: u64 = 1;
 /// When a network cannot be trained or has no fixed-point form.
 pub fn files() -> Result<[(&'static str, String); 2]> {
     let logs = record(&default_robot(), &training_room(), RUNS, STEPS, &[], SEED)?;
-    let simulator = train(&logs, &Trainer::Fast, &TABLE_ONE, SEED, |_| {})?;
+    let simulator = train(&logs, &Trainer::Fast, &TABLE_ONE, SEED, &|_| {})?;
     let all = FixedNetworks::quantise(&simulator)?.rust_definitions();
     let [_, forward, _, echo_probability, _] = all.clone();
     Ok([

@@ -124,7 +124,7 @@ fn logs_that_say_little_pass() {
 #[test]
 fn no_fault_reaches_a_confident_cause() {
     const SURE: f64 = 0.9;
-    let simulator = train(&logs(24, &[]), &Trainer::Fast, &TABLE_ONE, 1, |_| {}).expect("networks");
+    let simulator = train(&logs(24, &[]), &Trainer::Fast, &TABLE_ONE, 1, &|_| {}).expect("networks");
     let sure_of = |logs: Logs| {
         let baseline = Baseline::learned(&simulator).expect("a reference");
         // Nothing is sure where nothing can be compared.

@@ -66,5 +66,5 @@ fn at(fresh: &Path, file: &Path) -> PathBuf {
 /// # Errors
 /// When the logs support no network.
 pub fn learn(logs: &Logs) -> Result<Simulator> {
-    train(logs, &Trainer::Fast, &TABLE_ONE, SEED, |_| {})
+    train(logs, &Trainer::Fast, &TABLE_ONE, SEED, &|_| {})
 }

@@ -15,7 +15,7 @@ use crate::gap::Method;
 use crate::gap::calibration::Calibration;
 use crate::gap::diagnose::{confirmed, statistics};
 use crate::gap::explain::explained_fraction;
-use crate::gap::fit::Gain;
+use crate::gap::gain::Gain;
 use crate::workers;
 use crate::workers::counter::Counter;
 

@@ -82,9 +82,9 @@ impl Run for Train {
         for (network, shape) in &self.hidden {
             shapes.of(network).into_iter().for_each(|layer| *layer = *shape);
         }
-        let mut simulator = train::train(&logs, &trainer, &shapes, self.seed, watch)?;
+        let mut simulator = train::train(&logs, &trainer, &shapes, self.seed, &watch)?;
         if shapes != TABLE_ONE {
-            simulator.table_one = Some(train::train(&logs, &trainer, &TABLE_ONE, self.seed, watch)?.into());
+            simulator.table_one = Some(train::train(&logs, &trainer, &TABLE_ONE, self.seed, &watch)?.into());
         }
         bar.finish_and_clear();
         for missing in &simulator.missing {

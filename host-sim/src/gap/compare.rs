@@ -2,7 +2,8 @@
 
 use super::calibration::Calibration;
 use super::channel::Channel;
-use super::fit::{FitContext, Fitted, Gain, best_of_each};
+use super::fit::{FitContext, Fitted, best_of_each};
+use super::gain::Gain;
 use super::omnibus::ResidualFit;
 use super::remainder::{Remainder, remainders};
 use super::scatter::WiderScatter;

@@ -5,6 +5,7 @@ use std::ops::Range;
 use rayon::prelude::*;
 
 use super::calibration::Calibration;
+use super::gain::Gain;
 use super::hypothesis::{Hypothesis, LogLikelihood};
 use super::method::Method;
 use crate::effects::applied::AppliedEffect;
@@ -45,21 +46,6 @@ pub struct Fitted {
     /// What the evidence exceeds the held-out log-likelihood by, nats: less than nothing, the price of freedom.
     pub occam: f64,
 }
-
-/// How much better one hypothesis does than another on runs that it was not fitted on.
-#[derive(Clone, Copy, Debug)]
-pub struct Gain {
-    /// Nats over all blocks, less the price of the parameters.
-    pub nats: f64,
-    /// The same without the blocks that gain most: what only an eighth of them shows is no property of the robot.
-    pub broad_nats: f64,
-    /// Standard error over blocks.
-    pub error: f64,
-}
-
-/// One block in this many, and one at least, is left out of a broad gain. An effect that one place in ten shows still counts,
-/// and so does none that a single run shows.
-const LEFT_OUT: usize = 8;
 
 /// A fit ends after this many iterations: ridges of two parameters take twenty.
 pub const MOST_ITERATIONS: usize = 30;
@@ -258,38 +244,6 @@ impl Fitted {
         let errors = [self.errors.as_slice(), &other.errors].concat();
         let occam = self.occam + other.occam;
         Fitted { hypothesis: self.hypothesis.of(candidates), values, log_likelihood, held_out, errors, occam }
-    }
-}
-
-impl Gain {
-    /// Nothing.
-    pub const NONE: Gain = Gain { nats: 0.0, broad_nats: 0.0, error: 0.0 };
-
-    /// The gain of each block, together.
-    pub fn of(by_block: &[f64]) -> Self {
-        Gain::without_best(by_block, by_block.len().div_ceil(LEFT_OUT))
-    }
-
-    /// The same where so many of the best blocks are left out of the broad gain.
-    pub fn without_best(by_block: &[f64], left_out: usize) -> Self {
-        let n = by_block.len() as f64;
-        let nats: f64 = by_block.iter().sum();
-        let mean = nats / n;
-        let variance = by_block.iter().map(|d| (d - mean) * (d - mean)).sum::<f64>() / (n - 1.0).max(1.0);
-        let mut ascending = by_block.to_vec();
-        ascending.sort_by(f64::total_cmp);
-        let kept = by_block.len().saturating_sub(left_out);
-        Gain { nats, broad_nats: ascending[..kept].iter().sum(), error: (n * variance).sqrt() }
-    }
-
-    /// The same at a price.
-    pub fn less(self, nats: f64) -> Self {
-        Gain { nats: self.nats - nats, broad_nats: self.broad_nats - nats, ..self }
-    }
-
-    /// Whether it counts: it is large enough without the blocks that gain most.
-    pub fn passes(&self, gate_nats: f64) -> bool {
-        self.broad_nats >= gate_nats
     }
 }
 

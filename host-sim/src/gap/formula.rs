@@ -12,7 +12,8 @@ use serde::Serialize;
 
 use super::channel::Channel;
 use super::compare::Comparison;
-use super::fit::{FitContext, Fitted, Gain};
+use super::fit::{FitContext, Fitted};
+use super::gain::Gain;
 use crate::effects::own::definition::{Change, Definition, ParameterDefinition};
 use crate::effects::own::variables::{Circumstances, Stage};
 use crate::effects::{Candidate, own};

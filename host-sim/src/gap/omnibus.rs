@@ -12,7 +12,8 @@ pub mod ridge;
 mod sonar;
 
 use super::channel::Channel;
-use super::fit::{FitContext, Fitted, Gain};
+use super::fit::{FitContext, Fitted};
+use super::gain::Gain;
 use crate::effects::chain::EffectChain;
 use crate::evaluation::observations::{FEWEST_BLOCKS, Observations};
 use basis::{Basis, Circumstances};

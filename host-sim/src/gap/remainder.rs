@@ -3,7 +3,8 @@
 use rayon::prelude::*;
 
 use super::channel::Channel;
-use super::fit::{FitContext, Fitted, Gain};
+use super::fit::{FitContext, Fitted};
+use super::gain::Gain;
 use super::omnibus::ResidualFit;
 use crate::evaluation::observations::Observations;
 

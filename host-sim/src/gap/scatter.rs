@@ -1,7 +1,8 @@
 //! Scatter of steps beyond what the simulator assumes. It follows nothing, so that no effect could close it, and it is told
 //! as what it is.
 
-use super::fit::{FitContext, Gain};
+use super::fit::FitContext;
+use super::gain::Gain;
 use super::remainder::Remainder;
 use super::residual_law::{fitted_scatter, log_density};
 use crate::evaluation::observations::{Observation, Observations};

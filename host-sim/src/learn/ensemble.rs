@@ -195,7 +195,7 @@ mod tests {
     #[test]
     fn held_commands_stay_within_what_is_not_known() {
         let logs = record(&default_robot(), &training_room(), 40, 60, &[], 3).expect("room to drive");
-        let simulator = train(&logs, &Trainer::Fast, &TABLE_ONE, 1, |_| {}).expect("networks");
+        let simulator = train(&logs, &Trainer::Fast, &TABLE_ONE, 1, &|_| {}).expect("networks");
         let ensemble = simulator.ensemble.clone().expect("a distribution");
         assert!(ensemble.is_sound() && ensemble.evidence.len() > 100);
         let networks = simulator.motion_networks().expect("networks");

@@ -89,7 +89,7 @@ mod tests {
     fn learned(sensor: &str) -> f64 {
         let effects: Vec<_> = sensor.split_whitespace().map(|text| text.parse().expect("an effect")).collect();
         let logs = record(&default_robot(), &training_room(), 40, 60, &effects, 3).expect("room to drive");
-        let simulator = train(&logs, &Trainer::Fast, &TABLE_ONE, 1, |_| {}).expect("networks");
+        let simulator = train(&logs, &Trainer::Fast, &TABLE_ONE, 1, &|_| {}).expect("networks");
         simulator.reference.expect("a reference").place_bound[0]
     }
 

@@ -69,7 +69,7 @@ pub fn train(
     trainer: &Trainer,
     shapes: &Shapes,
     seed: u64,
-    watch: impl Fn(Progress),
+    watch: &dyn Fn(Progress),
 ) -> Result<Simulator> {
     let data = Datasets::from_logs(logs);
     let mut network_trainer = NetworkTrainer { trainer, seed, runs: logs.runs.len(), watch, missing: Vec::new() };
@@ -199,11 +199,11 @@ impl Trainer {
 }
 
 /// Trains the networks of a simulator one by one and notes those that the logs do not support.
-struct NetworkTrainer<'a, W> {
+struct NetworkTrainer<'a> {
     trainer: &'a Trainer,
     seed: u64,
     runs: usize,
-    watch: W,
+    watch: &'a dyn Fn(Progress),
     missing: Vec<Missing>,
 }
 
@@ -215,7 +215,7 @@ struct Kind {
     loss: Loss,
 }
 
-impl<W: Fn(Progress)> NetworkTrainer<'_, W> {
+impl NetworkTrainer<'_> {
     fn train<const N: usize>(
         &mut self,
         network: &'static str,

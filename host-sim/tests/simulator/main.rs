@@ -24,7 +24,7 @@ static HEALTHY: LazyLock<Logs> = LazyLock::new(|| logs(60, &[], 1));
 
 /// A simulator of the built-in robot as it is.
 static SIMULATOR: LazyLock<Simulator> =
-    LazyLock::new(|| train(&HEALTHY, &Trainer::Fast, &TABLE_ONE, 1, |_| {}).expect("the logs train every network"));
+    LazyLock::new(|| train(&HEALTHY, &Trainer::Fast, &TABLE_ONE, 1, &|_| {}).expect("the logs train every network"));
 
 fn logs(runs: usize, effects: &[&str], seed: u64) -> Logs {
     let effects: Vec<ActiveEffect> = effects.iter().map(|e| e.parse().expect("an effect")).collect();

@@ -56,7 +56,7 @@ fn answers_alike<const N: usize>(network: &Network<f32, N>, inputs: [I16F16; N])
 fn lanes_and_one(bytes: &[u8]) {
     static SIMULATOR: LazyLock<Simulator> = LazyLock::new(|| {
         let logs = record(&default_robot(), &training_room(), 12, 40, &[], 1).expect("room to drive");
-        train(&logs, &Trainer::Fast, &TABLE_ONE, 1, |_| {}).expect("networks")
+        train(&logs, &Trainer::Fast, &TABLE_ONE, 1, &|_| {}).expect("networks")
     });
     let controllers: Vec<Controller> = bytes.as_chunks().0.iter().take(20).map(controller).collect();
     let scene = four_obstacles();

@@ -6,11 +6,6 @@ use crate::gap::test_support::*;
 use crate::statistics::student;
 use rand::RngExt;
 
-fn gain(by_block: &[f64]) -> [f64; 2] {
-    let Gain { nats, error, .. } = Gain::of(by_block);
-    [nats, error]
-}
-
 /// Blocks of rows whose forward residuals are drawn from the law of residuals about their mean, with so much scatter.
 fn scattered(means: &'static [f64], rows: usize, scatter: f64) -> Observations {
     let mut rng = generator(7, &[]);
@@ -21,23 +16,6 @@ fn scattered(means: &'static [f64], rows: usize, scatter: f64) -> Observations {
         commands: [if at % 2 == 0 { [40.0, 60.0] } else { [60.0, 40.0] }; 2],
         ..Made::default()
     })
-}
-
-/// The sample variance of 1, 3 and 5 is 4; three blocks of that add up to 12.
-#[test]
-fn a_gain_is_the_sum_and_its_error_that_of_independent_blocks() {
-    assert_eq!(gain(&[1.0, 3.0, 5.0]), [9.0, 12f64.sqrt()]);
-    assert_eq!(gain(&[2.0; 8]), [16.0, 0.0]);
-    assert_eq!(gain(&[7.0]), [7.0, 0.0]);
-}
-
-/// What a single block gains is left out of a broad gain, and of nine blocks two.
-#[test]
-fn a_gate_asks_for_a_gain_that_more_than_a_few_blocks_show() {
-    let broad = |by_block: &[f64]| Gain::of(by_block).broad_nats;
-    assert_eq!([broad(&[100.0, 0.0, 0.0]), broad(&[3.0; 8]), broad(&[3.0; 9])], [0.0, 21.0, 21.0]);
-    assert!(Gain::of(&[6.0, 9.0]).passes(6.0) && !Gain::of(&[5.9, 900.0]).passes(6.0));
-    assert!(!Gain::of(&[6.0, 9.0]).less(0.1).passes(6.0), "less its price");
 }
 
 /// Residuals of variance one about 0.2 in 400 rows and a prior of deviation 0.05 about zero weigh 400 each: the maximum a

@@ -19,7 +19,7 @@ const CHECKSUM: &str = "989dfe8d1454cf1e8aaca515ab10389c5c057a92db238c2aa4d9f921
 
 static SIMULATOR: LazyLock<Simulator> = LazyLock::new(|| {
     let logs = record(&default_robot(), &training_room(), 20, 40, &[], SEED).unwrap();
-    train::train(&logs, &Trainer::Fast, &TABLE_ONE, SEED, |_| {}).unwrap()
+    train::train(&logs, &Trainer::Fast, &TABLE_ONE, SEED, &|_| {}).unwrap()
 });
 
 fn environment(noise: Noise) -> Environment<'static> {

@@ -114,7 +114,7 @@ fn retrain(bench: &Workbench) -> Result<Settled> {
         // Without walls nothing is learned of the sensor: the new runs were driven in another room.
         let runs = logs.runs.iter().chain(runs).cloned().collect();
         let all = Logs { robot: logs.robot, scene: Scene::default(), runs };
-        let again = train(&all, &Trainer::Fast, &TABLE_ONE, bench.seed(), |_| {})?;
+        let again = train(&all, &Trainer::Fast, &TABLE_ONE, bench.seed(), &|_| {})?;
         let motion = again.reference.and_then(|reference| reference.motion);
         let reference = simulator.reference.clone().map(|before| NominalModel { motion, ..before });
         let (forward, lateral, turn) = (again.forward, again.lateral, again.turn);

@@ -1,0 +1,75 @@
+//! What one hypothesis gains over another, and whether that counts.
+
+/// How much better one hypothesis does than another on runs that it was not fitted on.
+#[derive(Clone, Copy, Debug)]
+pub struct Gain {
+    /// Nats over all blocks, less the price of the parameters.
+    pub nats: f64,
+    /// The same without the blocks that gain most: what only an eighth of them shows is no property of the robot.
+    pub broad_nats: f64,
+    /// Standard error over blocks.
+    pub error: f64,
+}
+
+/// One block in this many, and one at least, is left out of a broad gain. An effect that one place in ten shows still counts,
+/// and so does none that a single run shows.
+const LEFT_OUT: usize = 8;
+
+impl Gain {
+    /// Nothing.
+    pub const NONE: Gain = Gain { nats: 0.0, broad_nats: 0.0, error: 0.0 };
+
+    /// The gain of each block, together.
+    pub fn of(by_block: &[f64]) -> Self {
+        Gain::without_best(by_block, by_block.len().div_ceil(LEFT_OUT))
+    }
+
+    /// The same where so many of the best blocks are left out of the broad gain.
+    pub fn without_best(by_block: &[f64], left_out: usize) -> Self {
+        let n = by_block.len() as f64;
+        let nats: f64 = by_block.iter().sum();
+        let mean = nats / n;
+        let variance = by_block.iter().map(|d| (d - mean) * (d - mean)).sum::<f64>() / (n - 1.0).max(1.0);
+        let mut ascending = by_block.to_vec();
+        ascending.sort_by(f64::total_cmp);
+        let kept = by_block.len().saturating_sub(left_out);
+        Gain { nats, broad_nats: ascending[..kept].iter().sum(), error: (n * variance).sqrt() }
+    }
+
+    /// The same at a price.
+    pub fn less(self, nats: f64) -> Self {
+        Gain { nats: self.nats - nats, broad_nats: self.broad_nats - nats, ..self }
+    }
+
+    /// Whether it counts: it is large enough without the blocks that gain most.
+    pub fn passes(&self, gate_nats: f64) -> bool {
+        self.broad_nats >= gate_nats
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn gain(by_block: &[f64]) -> [f64; 2] {
+        let Gain { nats, error, .. } = Gain::of(by_block);
+        [nats, error]
+    }
+
+    /// The sample variance of 1, 3 and 5 is 4; three blocks of that add up to 12.
+    #[test]
+    fn a_gain_is_the_sum_and_its_error_that_of_independent_blocks() {
+        assert_eq!(gain(&[1.0, 3.0, 5.0]), [9.0, 12f64.sqrt()]);
+        assert_eq!(gain(&[2.0; 8]), [16.0, 0.0]);
+        assert_eq!(gain(&[7.0]), [7.0, 0.0]);
+    }
+
+    /// What a single block gains is left out of a broad gain, and of nine blocks two.
+    #[test]
+    fn a_gate_asks_for_a_gain_that_more_than_a_few_blocks_show() {
+        let broad = |by_block: &[f64]| Gain::of(by_block).broad_nats;
+        assert_eq!([broad(&[100.0, 0.0, 0.0]), broad(&[3.0; 8]), broad(&[3.0; 9])], [0.0, 21.0, 21.0]);
+        assert!(Gain::of(&[6.0, 9.0]).passes(6.0) && !Gain::of(&[5.9, 900.0]).passes(6.0));
+        assert!(!Gain::of(&[6.0, 9.0]).less(0.1).passes(6.0), "less its price");
+    }
+}
