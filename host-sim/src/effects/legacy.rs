@@ -67,10 +67,18 @@ impl Entry {
                 let form = "the reading before".into();
                 LegacyEffect { effect: effect.effect, form, values }.upgrade(robot)
             }
-            Entry::Named(effect) => Some(*effect),
+            Entry::Named(mut effect) => {
+                if (effect.effect.as_str(), effect.variant.as_str()) == WITHOUT_CREEP {
+                    effect.parameters.entry("creep_ms".into()).or_insert(0.0);
+                }
+                Some(*effect)
+            }
         }
     }
 }
+
+/// A variant that had no creep once.
+const WITHOUT_CREEP: (&str, &str) = ("slip", "growing");
 
 /// A variant that repeated a share of the readings before, which no sensor does. That share was their mean age in steps.
 const EARLIER_READING: &str = "earlier_reading";
@@ -148,7 +156,12 @@ const TABLE: &[Row] = &[
     ("slip", "large commands lose grip", "fast", &[Command, Same]),
     ("slip", "large changes lose grip", "change", &[Command, Same]),
     ("slip", "large changes lose way", "distance", &[Command, Same]),
-    ("slip", "large changes lose more than in proportion, and turns drag", "growing", &[Command, Same, Same]),
+    (
+        "slip",
+        "large changes lose more than in proportion, and turns drag",
+        "growing",
+        &[Command, Same, Same, Constant(0.0)],
+    ),
     ("sonar_scale", "a factor", "gain", &[Same]),
     ("sonar_offset", "a length", "length", &[Same]),
     ("sonar_yaw", "a turned axis", "axis", &[Radians]),
@@ -203,6 +216,16 @@ mod tests {
         let sentence = serde_json::json!({ "effect": "sonar_lag", "form": "the reading before", "values": [0.5] });
         assert_eq!(lag_ms(sentence), Some(0.5 * robot.step_ms));
         assert_eq!(lag_ms(entry("earlier_pose", "lag_ms", 80.0)), None, "as it is today");
+    }
+
+    #[test]
+    fn tyres_that_never_crept_do_not_creep() {
+        let robot = crate::built_in_robot::default_robot();
+        let parameters = serde_json::json!({ "onset_cm_s": 12.0, "loss": 0.4, "turn_drag_rad": 0.01 });
+        let added = serde_json::json!([{ "effect": "slip", "variant": "growing", "parameters": parameters }]);
+        let file = upgraded(&serde_json::json!({ "robot": robot, "added": added }).to_string()).unwrap();
+        let effect: AppliedEffect = serde_json::from_value(file["added"][0].clone()).unwrap();
+        assert_eq!(effect.resolve().map(|(_, values)| values), Some(vec![12.0, 0.4, 0.01, 0.0]));
     }
 
     #[test]

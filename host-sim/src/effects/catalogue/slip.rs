@@ -48,8 +48,10 @@ pub const EFFECT: Effect = Effect {
             parameters: DraggingSlip::PARAMETERS,
             hooks: &[
                 Hook::Commands(&|v, context, commands| {
-                    let DraggingSlip { onset_cm_s, loss, .. } = DraggingSlip::read(v);
+                    let DraggingSlip { onset_cm_s, loss, creep_ms, .. } = DraggingSlip::read(v);
                     let lost = growing(loss, context);
+                    // What a tyre creeps does not make it slide.
+                    lose_change(commands, 0, 0.0, |change| change * loss * creep_ms / context.robot.step_ms);
                     lose_change(commands, 0, context.command_for(onset_cm_s), &lost);
                     lose_change(commands, 1, NOT_CAUGHT_UP * context.command_for(onset_cm_s), &lost);
                 }),
@@ -98,6 +100,12 @@ parameters! {
         turn_drag_rad: Parameter::new("rad", 0.0, [0.0, 0.1])
             .prior_sd(0.05)
             .from(Guesses::At(&[0.0, 0.05]))
+            .report(Report::Hidden),
+        /// Time by which the robot lags behind its wheels for a loss of one: a tyre creeps by some 5 cm/s at half its grip,
+        /// and a grip of half the weight takes 10 to 40 ms for that.
+        creep_ms: Parameter::new("ms", 0.0, [0.0, 80.0])
+            .prior_sd(30.0)
+            .from(Guesses::At(&[0.0, 30.0]))
             .report(Report::Hidden),
     }
 }
