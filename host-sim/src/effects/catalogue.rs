@@ -312,6 +312,18 @@ mod tests {
         }
 
         #[test]
+        fn what_follows_from_commands_alone_is_the_same_everywhere(here in context(), elsewhere in context()) {
+            let elsewhere = StepContext { commands: here.commands, ..elsewhere };
+            for Candidate { effect, variant } in Candidate::all(CATALOGUE) {
+                for values in variant.initial_guesses(TOP_SPEED_CM_S) {
+                    let [here, elsewhere] = [&here, &elsewhere].map(|context| applied(variant, &values, context));
+                    let same = (here.0, here.1) == (elsewhere.0, elsewhere.1);
+                    prop_assert!(same || !variant.is_of_commands_alone(), "{effect} {}", variant.id);
+                }
+            }
+        }
+
+        #[test]
         fn at_its_bounds_an_effect_stays_finite(context in context(), corner in any::<[bool; 5]>()) {
             for Candidate { effect, variant } in Candidate::all(CATALOGUE) {
                 let bound = |(p, high): (&super::super::Parameter, &bool)| p.bounds[usize::from(*high)];

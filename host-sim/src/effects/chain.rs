@@ -35,17 +35,22 @@ impl EffectChain {
         self.links.iter().any(|(variant, _)| variant.senses())
     }
 
+    /// Whether what they do follows from commands, wherever and whenever they are driven.
+    pub fn is_of_commands_alone(&self) -> bool {
+        self.links.iter().all(|(variant, _)| variant.is_of_commands_alone())
+    }
+
     /// The increment of a step with these effects; `step` gives that of the simulator for the commands now and before.
     pub fn wrap(&self, context: &StepContext, step: impl FnMut([f64; 2], [f64; 2]) -> PoseIncrement) -> PoseIncrement {
         let (mut commands, mut late_steps) = (context.commands, 0.0);
         self.each(|hook, values| match hook {
-            Hook::Commands(change) => change(values, context, &mut commands),
+            Hook::Commands(change) | Hook::CommandsHere(change) => change(values, context, &mut commands),
             Hook::Delay(delay) => late_steps += delay(values, context),
-            Hook::Motion(_) | Hook::Sensor(_) => {}
+            Hook::Motion(_) | Hook::MotionHere(_) | Hook::Sensor(_) => {}
         });
         let mut increment = delayed(&commands, late_steps, step);
         self.each(|hook, values| {
-            if let Hook::Motion(change) = hook {
+            if let Hook::Motion(change) | Hook::MotionHere(change) = hook {
                 change(values, context, &mut increment);
             }
         });

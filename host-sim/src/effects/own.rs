@@ -186,14 +186,14 @@ impl Compiled {
         let Compiled { commands, motion, reading, loss } = self;
         let mut hooks = Vec::new();
         if commands.iter().any(Option::is_some) {
-            hooks.push(Hook::Commands(Box::leak(Box::new(
+            hooks.push(Hook::CommandsHere(Box::leak(Box::new(
                 move |values: &[f64], step: &StepContext, sent: &mut CommandHistory| {
                     command(&commands, values, step, sent);
                 },
             ))));
         }
         if motion.iter().any(Option::is_some) {
-            hooks.push(Hook::Motion(Box::leak(Box::new(
+            hooks.push(Hook::MotionHere(Box::leak(Box::new(
                 move |values: &[f64], step: &StepContext, increment: &mut PoseIncrement| {
                     moved(&motion, values, step, increment);
                 },

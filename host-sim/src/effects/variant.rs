@@ -35,12 +35,16 @@ pub struct Variant {
 
 /// A change to one stage of a step; parameters come in the order of [`Variant::parameters`].
 pub enum Hook {
-    /// To the commands that reach the motors, for every step of the history.
+    /// To the commands that reach the motors, for every step of the history, by these commands alone.
     Commands(&'static (dyn Fn(&[f64], &StepContext, &mut CommandHistory) + Sync)),
+    /// The same, by where and when too.
+    CommandsHere(&'static (dyn Fn(&[f64], &StepContext, &mut CommandHistory) + Sync)),
     /// By so many steps the motion comes late, 0 and more.
     Delay(&'static (dyn Fn(&[f64], &StepContext) -> f64 + Sync)),
-    /// To the increment of the pose that the tracker sees.
+    /// To the increment of the pose that the tracker sees, by this and commands alone.
     Motion(&'static (dyn Fn(&[f64], &StepContext, &mut PoseIncrement) + Sync)),
+    /// The same, by where and when too.
+    MotionHere(&'static (dyn Fn(&[f64], &StepContext, &mut PoseIncrement) + Sync)),
     /// To the sensor.
     Sensor(&'static (dyn Fn(&[f64], &StepContext, &mut SensorState) + Sync)),
 }
@@ -80,7 +84,12 @@ impl Variant {
 
     /// Whether it changes what the robot does or how that is seen.
     pub fn moves(&self) -> bool {
-        self.hooks.iter().any(|hook| matches!(hook, Hook::Commands(_) | Hook::Delay(_) | Hook::Motion(_)))
+        self.hooks.iter().any(|hook| !matches!(hook, Hook::Sensor(_)))
+    }
+
+    /// Whether what it does follows from commands, wherever and whenever they are driven.
+    pub fn is_of_commands_alone(&self) -> bool {
+        self.hooks.iter().all(|hook| matches!(hook, Hook::Commands(_) | Hook::Delay(_) | Hook::Motion(_)))
     }
 
     /// Whether at these parameters all that it does at a step is to scatter readings more.

@@ -1,13 +1,16 @@
-//! The chain of applied effects around each simulated step. An effect may depend on the run's history, so the motion
-//! of a controller cannot be computed in advance.
+//! The chain of applied effects around each simulated step. Where they depend on commands alone, the motions of a
+//! controller are worked out ahead; else an effect may ask for all that a run did.
 
+use std::array;
+
+use mindgap_core::controller::{Controller, TUPLES};
 use rand::RngExt;
 
-use super::motion::{Motion, MotionNetworks};
+use super::motion::{Motion, MotionNetworks, speeds};
 use super::{Noise, Simulator};
 use crate::chance::generator;
 use crate::effects::chain::EffectChain;
-use crate::effects::context::{RunHistory, Surroundings};
+use crate::effects::context::{HISTORY, RunHistory, Surroundings};
 use crate::effects::{PoseIncrement, StepContext};
 use crate::error::{Error, Result};
 use crate::geometry::Pose;
@@ -25,11 +28,22 @@ pub(super) struct EffectLayer<'s> {
     noise: Noise,
 }
 
+/// Motions of the first steps of each tuple, and of every later one, if the tuple before was held for as many steps as an
+/// effect looks back.
+pub(super) type Transients = [[Motion; HISTORY]; TUPLES];
+
 /// What effects depend on: a run's history so far.
 #[derive(Clone, Debug, Default)]
 pub(super) struct EffectMemory {
     history: RunHistory,
     steps: usize,
+}
+
+impl EffectMemory {
+    /// A step begins with this command.
+    pub fn command(&mut self, command: [f32; 2]) {
+        self.history.command(command.map(f64::from));
+    }
 }
 
 impl<'s> EffectLayer<'s> {
@@ -65,8 +79,32 @@ impl<'s> EffectLayer<'s> {
         command: [f32; 2],
         networks: &MotionNetworks,
     ) -> Motion {
-        memory.history.command(command.map(f64::from));
-        let context = self.context(memory, pose);
+        memory.command(command);
+        let motion = self.step(&self.context(memory, pose), networks);
+        memory.history.was_at(Some(pose));
+        memory.steps += 1;
+        motion
+    }
+
+    /// The motions of a controller that starts from rest, if they depend on its commands alone.
+    pub fn transients(&self, controller: &Controller, networks: &MotionNetworks) -> Option<Transients> {
+        if !self.effects.is_of_commands_alone() {
+            return None;
+        }
+        let anywhere = self.context(&EffectMemory::default(), Pose::new(0.0, 0.0, 0.0));
+        let of_tuple = |tuple: usize| {
+            let [left, right, left_before, right_before] = speeds(controller, tuple, true).map(f64::from);
+            array::from_fn(|steps| {
+                let command = |ago: usize| if ago <= steps { [left, right] } else { [left_before, right_before] };
+                let mut context = anywhere;
+                context.commands = array::from_fn(command);
+                self.step(&context, networks)
+            })
+        };
+        Some(array::from_fn(of_tuple))
+    }
+
+    fn step(&self, context: &StepContext, networks: &MotionNetworks) -> Motion {
         let mut cells = [0; 3];
         let step = |now: [f64; 2], before: [f64; 2]| {
             let [low, high] = self.commands;
@@ -76,9 +114,7 @@ impl<'s> EffectLayer<'s> {
                 [learned.forward_cm, learned.lateral_cm, learned.turn_rad].map(f64::from);
             PoseIncrement { forward_cm, lateral_cm, turn_rad }
         };
-        let increment = self.effects.wrap(&context, step);
-        memory.history.was_at(Some(pose));
-        memory.steps += 1;
+        let increment = self.effects.wrap(context, step);
         Motion {
             forward_cm: increment.forward_cm as f32,
             lateral_cm: increment.lateral_cm as f32,

@@ -121,6 +121,7 @@ impl<'s> Environment<'s> {
 
     /// The motions of a controller on this environment.
     pub fn motions(&self, controller: &Controller) -> MotionTable {
-        self.motion.table(controller)
+        let affected = self.effect_layer.as_ref().and_then(|layer| layer.transients(controller, &self.motion));
+        self.motion.table(controller).with_transients(affected)
     }
 }

@@ -6,6 +6,7 @@ use mindgap_core::folded::{FoldedNetwork, evaluate_all};
 use mindgap_core::maths::Binary32;
 use pulp::{Arch, Simd, WithSimd};
 
+use super::effect_layer::Transients;
 use super::ensemble::Member;
 use super::nominal::MotionBias;
 use super::nominal::motion_bias::{FEATURES, features};
@@ -46,6 +47,8 @@ pub struct MotionTable {
     steady: [Motion; TUPLES],
     /// What a robot of a distribution does beyond the networks, for each tuple.
     bias: [MotionVector; TUPLES],
+    /// With added effects that depend on commands alone.
+    transients: Option<Box<Transients>>,
 }
 
 /// Way forward (cm), way to the left (cm) and turn (rad) of a step.
@@ -142,7 +145,7 @@ impl<'s> MotionNetworks<'s> {
             cells: self.cells(&steps[i]),
         };
         let (first, steady) = (std::array::from_fn(motion), std::array::from_fn(|t| motion(TUPLES + t)));
-        let mut table = MotionTable { first, steady, bias: [[0.0; 3]; TUPLES] };
+        let mut table = MotionTable { first, steady, bias: [[0.0; 3]; TUPLES], transients: None };
         if let Some(member) = self.member {
             for (tuple, first) in steps[..TUPLES].iter().enumerate() {
                 let [left, right, ..] = *first;
@@ -174,6 +177,16 @@ impl MotionTable {
     /// What of that no network says: way forward (cm), way to the left (cm) and turn (rad).
     pub fn bias(&self, tuple: usize) -> &[f32; 3] {
         &self.bias[tuple]
+    }
+
+    /// The table with what added effects make of the motions, before the bias.
+    pub(super) fn with_transients(self, transients: Option<Transients>) -> Self {
+        MotionTable { transients: transients.map(Box::new), ..self }
+    }
+
+    /// What added effects make of the motions, before the bias, where that is known ahead.
+    pub(super) fn transients(&self) -> Option<&Transients> {
+        self.transients.as_deref()
     }
 
     fn add(&mut self, tuple: usize, bias: MotionVector, first_step: MotionVector) {

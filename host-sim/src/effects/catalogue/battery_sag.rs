@@ -14,7 +14,7 @@ pub const EFFECT: Effect = Effect {
         Variant {
             id: "command",
             parameters: Sag::PARAMETERS,
-            hooks: &[Hook::Commands(&|v, context, commands| {
+            hooks: &[Hook::CommandsHere(&|v, context, commands| {
                 let left = Sag::read(v).left(context);
                 each_command(commands, |command, _| command * left);
             })],
@@ -22,7 +22,7 @@ pub const EFFECT: Effect = Effect {
         Variant {
             id: "distance",
             parameters: Sag::PARAMETERS,
-            hooks: &[Hook::Motion(&|v, context, increment| increment.scale(Sag::read(v).left(context)))],
+            hooks: &[Hook::MotionHere(&|v, context, increment| increment.scale(Sag::read(v).left(context)))],
         },
     ],
 };

@@ -14,7 +14,7 @@ pub const EFFECT: Effect = Effect {
         Variant {
             id: "against_the_nap",
             parameters: Nap::PARAMETERS,
-            hooks: &[Hook::Motion(&|v, context, increment| {
+            hooks: &[Hook::MotionHere(&|v, context, increment| {
                 let Nap { direction_deg, loss, with_speed, across } = Nap::read(v);
                 let against = along(direction_deg, context, increment);
                 let drag = across * 0.5 * (1.0 + against) + (1.0 - across) * against.max(0.0);
@@ -25,7 +25,7 @@ pub const EFFECT: Effect = Effect {
         Variant {
             id: "along_an_axis",
             parameters: Axis::PARAMETERS,
-            hooks: &[Hook::Motion(&|v, context, increment| {
+            hooks: &[Hook::MotionHere(&|v, context, increment| {
                 let Axis { direction_deg, loss } = Axis::read(v);
                 let left = 1.0 - loss * along(direction_deg, context, increment).abs();
                 increment.forward_cm *= left;

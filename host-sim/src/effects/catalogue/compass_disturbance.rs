@@ -16,7 +16,7 @@ pub const EFFECT: Effect = Effect {
             id: "hard_iron",
             parameters: Wave::PARAMETERS,
             hooks: &[
-                Hook::Motion(&|v, context, increment| Wave::read(v).disturb(1.0, context, increment)),
+                Hook::MotionHere(&|v, context, increment| Wave::read(v).disturb(1.0, context, increment)),
                 Hook::Sensor(&|v, _, sensor| Wave::read(v).undo(1.0, sensor)),
             ],
         },
@@ -24,7 +24,7 @@ pub const EFFECT: Effect = Effect {
             id: "soft_iron",
             parameters: Wave::PARAMETERS,
             hooks: &[
-                Hook::Motion(&|v, context, increment| Wave::read(v).disturb(2.0, context, increment)),
+                Hook::MotionHere(&|v, context, increment| Wave::read(v).disturb(2.0, context, increment)),
                 Hook::Sensor(&|v, _, sensor| Wave::read(v).undo(2.0, sensor)),
             ],
         },

@@ -17,7 +17,7 @@ pub const EFFECT: Effect = Effect {
         id: "quadratic",
         parameters: Lens::PARAMETERS,
         hooks: &[
-            Hook::Motion(&|v, context, increment| {
+            Hook::MotionHere(&|v, context, increment| {
                 let lens = Lens::read(v);
                 let start_cm = context.pose.position_cm;
                 let heading = direction(context.pose.heading_rad);

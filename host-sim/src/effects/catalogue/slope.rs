@@ -14,7 +14,7 @@ pub const EFFECT: Effect = Effect {
         Variant {
             id: "drift",
             parameters: Drift::PARAMETERS,
-            hooks: &[Hook::Motion(&|v, context, increment| {
+            hooks: &[Hook::MotionHere(&|v, context, increment| {
                 let Drift { direction_deg, loss } = Drift::read(v);
                 let [left, right] = increment.wheels_cm(context.robot.track_cm);
                 let down_cm = loss * 0.5 * (left.abs() + right.abs());
@@ -26,7 +26,7 @@ pub const EFFECT: Effect = Effect {
         Variant {
             id: "gain_and_slide",
             parameters: Slope::PARAMETERS,
-            hooks: &[Hook::Motion(&|v, context, increment| {
+            hooks: &[Hook::MotionHere(&|v, context, increment| {
                 let Slope { direction_deg, loss, with_speed, sideways } = Slope::read(v);
                 // A wheel that is driven gives way downhill, one that stands holds.
                 let [left, right] = increment.wheels_cm(context.robot.track_cm);

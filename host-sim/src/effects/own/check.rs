@@ -142,10 +142,10 @@ pub fn changes_nothing(variant: &Variant) -> Result<(), String> {
         let (mut commands, mut moved, mut sensor) = (step.commands, increment, SensorState::nominal(step.pose));
         for hook in variant.hooks {
             match hook {
-                Hook::Commands(change) => change(&nominal, &step, &mut commands),
+                Hook::Commands(change) | Hook::CommandsHere(change) => change(&nominal, &step, &mut commands),
                 // No expression makes one.
                 Hook::Delay(_) => {}
-                Hook::Motion(change) => change(&nominal, &step, &mut moved),
+                Hook::Motion(change) | Hook::MotionHere(change) => change(&nominal, &step, &mut moved),
                 Hook::Sensor(change) => change(&nominal, &step, &mut sensor),
             }
         }

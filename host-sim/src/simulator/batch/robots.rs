@@ -7,6 +7,7 @@ use mindgap_core::scalar::Scalar;
 use pulp::Simd;
 
 use super::{Row, StepDraws, level, load, row};
+use crate::effects::context::HISTORY;
 use crate::geometry::Pose;
 use crate::lanes::{Lanes, Mask, WIDEST};
 use crate::simulator::Noise;
@@ -52,6 +53,9 @@ pub struct Run<'a> {
     machine: Machine,
     /// What added effects look back on.
     pub memory: EffectMemory,
+    /// Steps for which its tuple and the one before were held, as far back as effects look.
+    held_steps: usize,
+    held_before: usize,
     /// Residual cells of the motion that is held.
     cells: [usize; 3],
     /// The residuals that last as long as it is held.
@@ -99,6 +103,8 @@ impl<'a> Robots<'a> {
                 request,
                 machine: Machine::start(),
                 memory: EffectMemory::default(),
+                held_steps: HISTORY,
+                held_before: HISTORY,
                 cells: [0; 3],
                 held_levels: [0; 3],
             }
@@ -253,6 +259,9 @@ impl<'a> Robots<'a> {
             When::Smaller => (f32::INFINITY, threshold_cm),
         };
         self.first[lane] = if first { 1.0 } else { 0.0 };
+        if first {
+            (run.held_before, run.held_steps) = (run.held_steps, 0);
+        }
         for (row, speed) in self.speeds.iter_mut().zip(speeds(run.request.controller, place, first)) {
             row[lane] = speed;
         }
@@ -273,11 +282,20 @@ impl<'a> Robots<'a> {
         for lane in 0..WIDEST {
             let pose = self.pose(lane);
             let Some(run) = &mut self.runs[lane] else { continue };
-            let place = run.machine.tuple();
+            let (place, motions) = (run.machine.tuple(), run.request.motions);
             let command = run.request.controller.tuples[place];
             let command = [command.left, command.right].map(f32::from);
-            let motion = effect_layer.motion(&mut run.memory, pose, command, &self.environment.motion);
-            let motion = motion.plus(run.request.motions.bias(place));
+            let motion = match motions.transients() {
+                // Nothing else lies as far back as effects look: the motion goes on.
+                Some(_) if run.held_steps == HISTORY => continue,
+                Some(transients) if run.held_steps + run.held_before >= HISTORY - 1 => {
+                    run.memory.command(command);
+                    transients[place][run.held_steps]
+                }
+                _ => effect_layer.motion(&mut run.memory, pose, command, &self.environment.motion),
+            };
+            run.held_steps = HISTORY.min(run.held_steps + 1);
+            let motion = motion.plus(motions.bias(place));
             run.cells = motion.cells;
             self.set_motion(lane, &motion);
         }

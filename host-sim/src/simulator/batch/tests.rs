@@ -1,6 +1,8 @@
 use super::*;
 use crate::built_in_robot::{default_robot, four_obstacles, record, training_room};
 use crate::chance::generator;
+use crate::effects::applied::AppliedEffect;
+use crate::effects::catalogue::Candidate;
 use crate::evolve::genome::GenotypeDecoder;
 use crate::learn::train::{self, TABLE_ONE, Trainer};
 use crate::simulator::motion::{MotionTable, speeds};
@@ -13,6 +15,8 @@ use std::sync::LazyLock;
 const SEED: u64 = 3;
 const MAX_STEPS: u16 = 150;
 const RUNS: u64 = 100;
+/// Fastest command of the robot.
+const TOP_SPEED_CM_S: f64 = 41.0;
 
 /// Of all outcomes of [`outcomes`] on every kind of course, whatever the machine; made with [`SEED`].
 const CHECKSUM: &str = "989dfe8d1454cf1e8aaca515ab10389c5c057a92db238c2aa4d9f92145b593f3";
@@ -45,9 +49,18 @@ fn requests<'a>(
 }
 
 fn outcomes(environment: &Environment, sensor: SensorModel, simd: impl Simd) -> Vec<RolloutOutcome> {
+    let tables: Vec<MotionTable> = controllers().iter().map(|c| environment.motions(c)).collect();
+    outcomes_by(&tables, environment, sensor, simd)
+}
+
+fn outcomes_by(
+    tables: &[MotionTable],
+    environment: &Environment,
+    sensor: SensorModel,
+    simd: impl Simd,
+) -> Vec<RolloutOutcome> {
     let controllers = controllers();
-    let tables: Vec<MotionTable> = controllers.iter().map(|c| environment.motions(c)).collect();
-    let requests = requests(&controllers, &tables, sensor);
+    let requests = requests(&controllers, tables, sensor);
     let mut outcomes = vec![None; requests.len()];
     let finish = |number: usize, outcome| outcomes[number] = Some(outcome);
     simd.vectorize(Batch { environment, sensor, requests: &requests, watch: |_| {}, finish });
@@ -111,6 +124,34 @@ fn motions_worked_out_ahead_are_those_of_every_step() {
             }
         }
     }
+}
+
+#[test]
+fn what_effects_make_of_motions_is_worked_out_ahead_as_in_every_step() {
+    let applied = |effect: &str, variant: &str| {
+        let candidate = Candidate::named(effect, variant).unwrap();
+        AppliedEffect::new(&candidate, &candidate.variant.initial_guesses(TOP_SPEED_CM_S)[0])
+    };
+    let of = |added: &[AppliedEffect]| Simulator { added: added.to_vec(), ..SIMULATOR.clone() };
+    let scene = four_obstacles();
+    let by_commands = [
+        vec![applied("motor_asymmetry", "command")],
+        vec![applied("latency", "of_motion"), applied("inertia", "first_order_lag")],
+        vec![applied("slip", "growing"), applied("track_width", "turn")],
+    ];
+    for added in by_commands {
+        let simulator = of(&added);
+        let environment = Environment::new(&simulator, &scene, scene.starts[0], Noise::Learned).unwrap();
+        let ahead = controllers().iter().all(|controller| environment.motions(controller).transients().is_some());
+        assert!(ahead, "{added:?}");
+        let not_ahead: Vec<MotionTable> = controllers().iter().map(|c| environment.motion.table(c)).collect();
+        let (sensor, simd) = (SensorModel::Networks, pulp::Scalar::new());
+        let every_step = outcomes_by(&not_ahead, &environment, sensor, simd);
+        assert_eq!(outcomes(&environment, sensor, simd), every_step, "{added:?}");
+    }
+    let timed = of(&[applied("battery_sag", "command")]);
+    let environment = Environment::new(&timed, &scene, scene.starts[0], Noise::Learned).unwrap();
+    assert!(environment.motions(&controllers()[0]).transients().is_none());
 }
 
 #[test]
