@@ -82,8 +82,7 @@ fn without_effect(bench: &Bench, number: usize) -> Result<Measured> {
 
 fn with_effects(bench: &Bench, number: usize, calibration: Calibration) -> Result<Measured> {
     let (case, baseline) = bench.case(number)?;
-    let method = Method { calibration, ..Method::default() };
-    let found = confirmed(baseline, &case.logs, method)?;
+    let found = confirmed(baseline, &case.logs, &[calibration])?.swap_remove(0);
     let alone = found.first.filter(|first| matches!(&case.effects[..], [one] if one.effect.id() == first.effect));
     let measured = Measured {
         feigned_share: alone.map(|first| first.feigned_share),

@@ -4,12 +4,15 @@ use serde::{Deserialize, Serialize};
 use toml::{Table, Value};
 
 use super::bench::Bench;
+use super::cases::Case;
 use crate::error::{Error, Result};
 use crate::gap::Method;
 use crate::gap::calibration::Calibration;
+use crate::gap::compare::Comparison;
 use crate::gap::diagnose::confirmed;
 use crate::gap::explain::Judged;
 use crate::workers;
+use crate::workers::counter::Counter;
 
 /// What comes of all cases with one threshold changed.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -33,11 +36,11 @@ pub struct Row {
 /// What a threshold is multiplied by.
 const FACTORS: [f64; 2] = [0.5, 2.0];
 
-/// The table of sensitivity on this many cases; `watch` is told how many rows are done, and of how many.
+/// The table of sensitivity on this many cases; `watch` is told how many are done, and of how many.
 ///
 /// # Errors
 /// When a case cannot be driven.
-pub fn sensitivity(cases: usize, seed: u64, watch: impl Fn(usize, usize)) -> Result<Vec<Row>> {
+pub fn sensitivity(cases: usize, seed: u64, watch: impl Fn(usize, usize) + Sync) -> Result<Vec<Row>> {
     let bench = Bench::new(cases, seed)?;
     let shipped = Calibration::shipped();
     let thresholds = names(&table(&shipped)?, "");
@@ -48,57 +51,65 @@ pub fn sensitivity(cases: usize, seed: u64, watch: impl Fn(usize, usize)) -> Res
                 .extend(with(&shipped, name, factor)?.map(|(value, calibration)| (name.clone(), value, calibration)));
         }
     }
-    let mut rows = Vec::new();
-    for (name, value, calibration) in &changed {
-        watch(rows.len(), changed.len());
-        rows.push(Row { threshold: name.clone(), value: *value, ..of(&bench, cases, calibration)? });
-    }
-    Ok(rows)
+    let calibrations: Vec<Calibration> = changed.iter().map(|(_, _, calibration)| *calibration).collect();
+    let counter = Counter::new(cases, watch);
+    let counted = |number| of_case(&bench, number, &calibrations).inspect(|_| counter.one_more());
+    let by_case = workers::map(cases, counted)?;
+    let row = |(place, (threshold, value, _)): (usize, (String, f64, Calibration))| {
+        let sum = |count: fn(&Row) -> usize| by_case.iter().map(|rows| count(&rows[place])).sum();
+        Row {
+            threshold,
+            value,
+            false_alarms: sum(|row| row.false_alarms),
+            named: sum(|row| row.named),
+            false_unknowns: sum(|row| row.false_unknowns),
+            unknowns: sum(|row| row.unknowns),
+            wrong: sum(|row| row.wrong),
+        }
+    };
+    Ok(changed.into_iter().enumerate().map(row).collect())
 }
 
-/// What comes of all cases with a calibration.
-fn of(bench: &Bench, cases: usize, calibration: &Calibration) -> Result<Row> {
-    let nothing = Row {
+/// What comes of a case with each calibration.
+fn of_case(bench: &Bench, number: usize, calibrations: &[Calibration]) -> Result<Vec<Row>> {
+    let (case, baseline) = bench.case(number)?;
+    // Most thresholds of a judgement change nothing of what is searched for.
+    let mut searched: Vec<Calibration> = Vec::new();
+    for calibration in calibrations.iter().map(Calibration::for_search) {
+        if !searched.contains(&calibration) {
+            searched.push(calibration);
+        }
+    }
+    let found = confirmed(baseline, &case.logs, &searched)?;
+    let of = |calibration: &Calibration| {
+        let place = searched.iter().position(|searched| *searched == calibration.for_search())?;
+        Some(judged(&case, &found[place], calibration))
+    };
+    Ok(calibrations.iter().filter_map(of).collect())
+}
+
+/// What comes of a case of which this was found, judged by a calibration.
+fn judged(case: &Case, found: &Comparison, calibration: &Calibration) -> Row {
+    let method = Method { calibration: *calibration, ..Method::default() };
+    let rows = found.none.log_likelihood.motion.len();
+    let judged = Judged::of(found, &case.logs.robot, &method.calibration_for(rows));
+    let in_table = case.effects.iter().all(|active| active.effect.in_table());
+    let (is_null, is_unknown) = (case.effects.is_empty(), matches!(judged, Judged::Unknown));
+    let first = match &judged {
+        Judged::Known { effects } | Judged::PartlyKnown { effects } => effects.first().map(|effect| effect.id),
+        Judged::NoGap | Judged::Unknown => None,
+    };
+    let is_there = first.is_some_and(|id| case.effects.iter().any(|active| active.effect.id() == id));
+    let count = usize::from;
+    Row {
         threshold: String::new(),
         value: 0.0,
-        false_alarms: 0,
-        named: 0,
-        false_unknowns: 0,
-        unknowns: 0,
-        wrong: 0,
-    };
-    let one = |number: usize| -> Result<Row> {
-        let (case, baseline) = bench.case(number)?;
-        let method = Method { calibration: *calibration, ..Method::default() };
-        let found = confirmed(baseline, &case.logs, method)?;
-        let rows = found.none.log_likelihood.motion.len();
-        let judged = Judged::of(&found, &case.logs.robot, &method.calibration_for(rows));
-        let in_table = case.effects.iter().all(|active| active.effect.in_table());
-        let (is_null, is_unknown) = (case.effects.is_empty(), matches!(judged, Judged::Unknown));
-        let first = match &judged {
-            Judged::Known { effects } | Judged::PartlyKnown { effects } => effects.first().map(|effect| effect.id),
-            Judged::NoGap | Judged::Unknown => None,
-        };
-        let is_there = first.is_some_and(|id| case.effects.iter().any(|active| active.effect.id() == id));
-        let count = usize::from;
-        Ok(Row {
-            false_alarms: count(is_null && !matches!(judged, Judged::NoGap)),
-            named: count(in_table && is_there),
-            false_unknowns: count(!is_null && in_table && is_unknown),
-            unknowns: count(!in_table && is_unknown),
-            wrong: count(first.is_some() && !is_there),
-            ..nothing.clone()
-        })
-    };
-    let all = workers::map(cases, one)?;
-    Ok(all.iter().fold(nothing.clone(), |sum, row| Row {
-        false_alarms: sum.false_alarms + row.false_alarms,
-        named: sum.named + row.named,
-        false_unknowns: sum.false_unknowns + row.false_unknowns,
-        unknowns: sum.unknowns + row.unknowns,
-        wrong: sum.wrong + row.wrong,
-        ..sum
-    }))
+        false_alarms: count(is_null && !matches!(judged, Judged::NoGap)),
+        named: count(in_table && is_there),
+        false_unknowns: count(!is_null && in_table && is_unknown),
+        unknowns: count(!in_table && is_unknown),
+        wrong: count(first.is_some() && !is_there),
+    }
 }
 
 fn table(calibration: &Calibration) -> Result<Table> {
@@ -151,5 +162,8 @@ mod tests {
             let (value, changed) = with(&shipped, name, 2.0).unwrap().expect(name);
             assert!(value > 0.0 && changed != shipped, "{name}");
         }
+        let (_, surer) = with(&shipped, "temperature", 2.0).unwrap().unwrap();
+        let (_, stricter) = with(&shipped, "effect_nats", 2.0).unwrap().unwrap();
+        assert!(surer.for_search() == shipped.for_search() && stricter.for_search() != shipped.for_search());
     }
 }

@@ -66,6 +66,14 @@ impl Calibration {
         *CALIBRATION
     }
 
+    /// The same with the usual thresholds in place of those by which what was found is judged: with equal ones the same is
+    /// found.
+    pub fn for_search(&self) -> Self {
+        let Calibration { adequate, adequacy_width, temperature, accuracy_cap, .. } = Self::shipped();
+        let judgement = Judgement { most_ambiguous: Self::shipped().judgement.most_ambiguous, ..self.judgement };
+        Calibration { adequate, adequacy_width, temperature, accuracy_cap, judgement, ..*self }
+    }
+
     /// The same for this many rows: what the simulator's own misfit feigns grows with them, and so do the nats that are
     /// asked for.
     pub fn for_rows(self, rows: usize) -> Self {

@@ -1,5 +1,6 @@
 //! The method, from logs to an answer.
 
+use super::calibration::Calibration;
 use super::compare::{Comparison, most_alone};
 use super::condition::Conditioned;
 use super::diagnosis::{Answer, Diagnosis};
@@ -190,14 +191,22 @@ pub fn statistics(mut baseline: Baseline, logs: &Logs, method: Method) -> Result
     })
 }
 
-/// What explains logs, before anything is made of it.
+/// What explains logs, before anything is made of it, by each of these calibrations; effects alone are fitted once for all.
 ///
 /// # Errors
 /// When the logs say nothing that the baseline could be compared with.
-pub fn confirmed(mut baseline: Baseline, logs: &Logs, method: Method) -> Result<Comparison> {
+pub fn confirmed(mut baseline: Baseline, logs: &Logs, calibrations: &[Calibration]) -> Result<Vec<Comparison>> {
     let (conditioned, _) = conditioned(&mut baseline, &Inspection::of(logs.clone()))?;
-    let context = FitContext::new(&baseline, &conditioned.identification, method);
-    Ok(confirm::confirm(compared(&context, |_| ()), &context, conditioned.hold_out.as_ref()))
+    let context = |method: Method| FitContext::new(&baseline, &conditioned.identification, method);
+    let usual = context(Method::default());
+    let none = Fitted::none(&usual);
+    let alone = none.with_each(None, &usual);
+    let by = |calibration: &Calibration| {
+        let context = context(Method { calibration: *calibration, ..Method::default() });
+        let compared = Comparison::search(none.clone(), alone.clone(), &context);
+        confirm::confirm(compared, &context, conditioned.hold_out.as_ref())
+    };
+    Ok(calibrations.iter().map(by).collect())
 }
 
 /// The share of the reducible gap that given effects close on logs, without a search; none where there is no gap.
