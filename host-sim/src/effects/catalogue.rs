@@ -318,7 +318,22 @@ mod tests {
                 for values in variant.initial_guesses(TOP_SPEED_CM_S) {
                     let [here, elsewhere] = [&here, &elsewhere].map(|context| applied(variant, &values, context));
                     let same = (here.0, here.1) == (elsewhere.0, elsewhere.1);
-                    prop_assert!(same || !variant.is_of_commands_alone(), "{effect} {}", variant.id);
+                    prop_assert!(same || !variant.moves_by_commands_alone(), "{effect} {}", variant.id);
+                }
+            }
+        }
+
+        #[test]
+        fn what_senses_alike_everywhere_does(here in context(), elsewhere in context()) {
+            let elsewhere = StepContext { echo_before: here.echo_before, ..elsewhere };
+            for Candidate { effect, variant } in Candidate::all(CATALOGUE) {
+                for values in variant.initial_guesses(TOP_SPEED_CM_S) {
+                    let same = [&here, &elsewhere].map(|context| {
+                        let (.., sensor) = applied(variant, &values, context);
+                        (sensor.robot == context.pose).then(|| SensorState { robot: here.pose, ..sensor })
+                    });
+                    let alike = same[0].is_some() && same[0] == same[1];
+                    prop_assert!(alike || !variant.senses_alike_everywhere(), "{effect} {}", variant.id);
                 }
             }
         }

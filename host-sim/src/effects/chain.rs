@@ -35,9 +35,14 @@ impl EffectChain {
         self.links.iter().any(|(variant, _)| variant.senses())
     }
 
-    /// Whether what they do follows from commands, wherever and whenever they are driven.
-    pub fn is_of_commands_alone(&self) -> bool {
-        self.links.iter().all(|(variant, _)| variant.is_of_commands_alone())
+    /// Whether what they do to the motion follows from commands, wherever and whenever they are driven.
+    pub fn moves_by_commands_alone(&self) -> bool {
+        self.links.iter().all(|(variant, _)| variant.moves_by_commands_alone())
+    }
+
+    /// Whether what they do to the sensor is the same wherever and whenever that is asked.
+    pub fn senses_alike_everywhere(&self) -> bool {
+        self.links.iter().all(|(variant, _)| variant.senses_alike_everywhere())
     }
 
     /// The increment of a step with these effects; `step` gives that of the simulator for the commands now and before.
@@ -46,7 +51,7 @@ impl EffectChain {
         self.each(|hook, values| match hook {
             Hook::Commands(change) | Hook::CommandsHere(change) => change(values, context, &mut commands),
             Hook::Delay(delay) => late_steps += delay(values, context),
-            Hook::Motion(_) | Hook::MotionHere(_) | Hook::Sensor(_) => {}
+            Hook::Motion(_) | Hook::MotionHere(_) | Hook::Sensor(_) | Hook::SensorHere(_) => {}
         });
         let mut increment = delayed(&commands, late_steps, step);
         self.each(|hook, values| {
@@ -61,7 +66,7 @@ impl EffectChain {
     pub fn sensor(&self, context: &StepContext) -> SensorState {
         let mut sensor = SensorState::nominal(context.pose);
         self.each(|hook, values| {
-            if let Hook::Sensor(change) = hook {
+            if let Hook::Sensor(change) | Hook::SensorHere(change) = hook {
                 change(values, context, &mut sensor);
             }
         });

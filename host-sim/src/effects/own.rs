@@ -200,7 +200,7 @@ impl Compiled {
             ))));
         }
         if reading.is_some() || loss.is_some() {
-            hooks.push(Hook::Sensor(Box::leak(Box::new(
+            hooks.push(Hook::SensorHere(Box::leak(Box::new(
                 move |values: &[f64], step: &StepContext, sensor: &mut SensorState| {
                     sensed(reading.as_ref(), loss.as_ref(), values, step, sensor);
                 },

@@ -45,8 +45,10 @@ pub enum Hook {
     Motion(&'static (dyn Fn(&[f64], &StepContext, &mut PoseIncrement) + Sync)),
     /// The same, by where and when too.
     MotionHere(&'static (dyn Fn(&[f64], &StepContext, &mut PoseIncrement) + Sync)),
-    /// To the sensor.
+    /// To the sensor, by whether it heard an echo before and nothing else.
     Sensor(&'static (dyn Fn(&[f64], &StepContext, &mut SensorState) + Sync)),
+    /// The same, by where and when too.
+    SensorHere(&'static (dyn Fn(&[f64], &StepContext, &mut SensorState) + Sync)),
 }
 
 /// The sensor at a row, as effects leave it.
@@ -84,19 +86,24 @@ impl Variant {
 
     /// Whether it changes what the robot does or how that is seen.
     pub fn moves(&self) -> bool {
-        self.hooks.iter().any(|hook| !matches!(hook, Hook::Sensor(_)))
+        self.hooks.iter().any(|hook| !hook.senses())
     }
 
-    /// Whether what it does follows from commands, wherever and whenever they are driven.
-    pub fn is_of_commands_alone(&self) -> bool {
-        self.hooks.iter().all(|hook| matches!(hook, Hook::Commands(_) | Hook::Delay(_) | Hook::Motion(_)))
+    /// Whether what it does to the motion follows from commands, wherever and whenever they are driven.
+    pub fn moves_by_commands_alone(&self) -> bool {
+        !self.hooks.iter().any(|hook| matches!(hook, Hook::CommandsHere(_) | Hook::MotionHere(_)))
+    }
+
+    /// Whether what it does to the sensor is the same wherever and whenever that is asked.
+    pub fn senses_alike_everywhere(&self) -> bool {
+        !self.hooks.iter().any(|hook| matches!(hook, Hook::SensorHere(_)))
     }
 
     /// Whether at these parameters all that it does at a step is to scatter readings more.
     pub fn only_widens_scatter(&self, values: &[f64], step: &StepContext) -> bool {
         let mut state = SensorState::nominal(step.pose);
         for hook in self.hooks {
-            if let Hook::Sensor(change) = hook {
+            if let Hook::Sensor(change) | Hook::SensorHere(change) = hook {
                 change(values, step, &mut state);
             }
         }
@@ -107,7 +114,13 @@ impl Variant {
 
     /// Whether it changes what the sensor says.
     pub fn senses(&self) -> bool {
-        self.hooks.iter().any(|hook| matches!(hook, Hook::Sensor(_)))
+        self.hooks.iter().any(Hook::senses)
+    }
+}
+
+impl Hook {
+    fn senses(&self) -> bool {
+        matches!(self, Hook::Sensor(_) | Hook::SensorHere(_))
     }
 }
 

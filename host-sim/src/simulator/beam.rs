@@ -15,6 +15,8 @@ use pulp::Simd;
 use super::draws::Draws;
 use super::residuals::LEVELS;
 use super::room::{Point, Room};
+use crate::effects::SensorState;
+use crate::geometry::Pose;
 use crate::lanes::{Lanes, WIDEST};
 use crate::sonar::fan::{AXIS, BEFORE_WALL_CM, DIRECT, FAN_DEG, MIRRORED};
 use crate::sonar::model::{CONSTANT_SCATTER_CM, FAR_CM, STRENGTHS};
@@ -30,8 +32,17 @@ pub struct Beam {
     bias: [f32; 3],
     /// Base-two logarithm of the scatter in cm: a constant, per metre, per 45 degrees.
     log2_scatter: [f32; 3],
+    /// Factor on the readings of echoes.
+    gain: f32,
+    /// Added to them after that, cm.
+    offset_cm: f32,
+    /// Scatter in cm beside that; hits that it leads beyond the range are not reported.
+    added_scatter_cm: f32,
     /// Where an echo arrives, and where none does.
     thresholds: [Thresholds; 2],
+    /// The same where the reading before was none, if that matters.
+    thresholds_after_none: Option<[Thresholds; 2]>,
+    ghost_cm: f32,
     constant_cm: f32,
     range_cm: [f32; 2],
     reach_bounds_cm: [f32; 2],
@@ -44,7 +55,9 @@ pub struct Beam {
 struct Thresholds {
     short: f32,
     stray: f32,
+    long: f32,
     constant: f32,
+    ghost: f32,
     hit: f32,
 }
 
@@ -85,15 +98,51 @@ pub struct Fate<S: Simd> {
     pub place: Lanes<S>,
     /// Scatter about a value, in scales: a draw of [`Beam::scatter`].
     pub student: Lanes<S>,
+    /// The reading before, cm: not a number where there was none.
+    pub before_cm: Lanes<S>,
 }
 
 impl Beam {
     /// The sensor that a reference describes.
     pub fn new(reference: &SonarModel) -> Self {
+        Self::of(reference, &SensorState::nominal(Pose::new(0.0, 0.0, 0.0)))
+    }
+
+    /// The same as effects leave it after an echo and after none; none where these differ in more than what becomes of
+    /// echoes.
+    pub fn changed(reference: &SonarModel, [after_echo, after_none]: &[SensorState; 2]) -> Option<Self> {
+        let Perturbation { p_dropout, p_ghost_given_echo, p_ghost_given_none, p_short, p_long, .. } =
+            after_echo.perturbation;
+        let otherwise = SensorState {
+            perturbation: Perturbation {
+                p_dropout,
+                p_ghost_given_echo,
+                p_ghost_given_none,
+                p_short,
+                p_long,
+                ..after_none.perturbation
+            },
+            ..*after_none
+        };
+        let thresholds = |after: &SensorState| Thresholds::both(reference, &after.perturbation);
+        let matters = after_none != after_echo;
+        (otherwise == *after_echo).then(|| Beam {
+            thresholds_after_none: matters.then(|| thresholds(after_none)),
+            ..Self::of(reference, after_echo)
+        })
+    }
+
+    fn of(reference: &SonarModel, state: &SensorState) -> Self {
         let log2_e = std::f64::consts::LOG2_E;
-        let [level, x, xx, a, aa, aaa, ax, aax, square, size] = reference.strength.map(|w| w * log2_e);
+        let SensorState { yaw_rad, width, perturbation, .. } = state;
+        let Perturbation { attenuation, attenuation_per_m, attenuation_per_incidence, .. } = perturbation;
+        let mut strength = reference.strength;
+        strength[0] -= attenuation;
+        strength[1] -= attenuation_per_m;
+        strength[3] -= attenuation_per_incidence;
+        let [level, x, xx, a, aa, aaa, ax, aax, square, size] = strength.map(|w| w * log2_e);
         let ray = |deg: f64| {
-            let (offset_deg, off) = (deg * reference.fan_width, deg / 15.0);
+            let (offset_deg, off) = (deg * reference.fan_width * width + yaw_rad.to_degrees(), deg / 15.0);
             let middle = level + square * off * off + size * off.abs();
             Ray {
                 offset_deg: offset_deg as f32,
@@ -104,10 +153,17 @@ impl Beam {
         };
         Beam {
             rays: std::array::from_fn(|place| ray(FAN_DEG[place])),
-            log2_mirror_loss: reference.mirror_loss.map(|loss| (loss * log2_e) as f32),
+            log2_mirror_loss: reference
+                .mirror_loss
+                .map(|loss| ((loss + perturbation.attenuation_mirrored) * log2_e) as f32),
             bias: reference.bias.map(|b| b as f32),
             log2_scatter: reference.log_scatter.map(|w| (w * log2_e) as f32),
-            thresholds: [true, false].map(|arrives| Thresholds::new(reference, arrives)),
+            gain: perturbation.gain as f32,
+            offset_cm: perturbation.offset_cm as f32,
+            added_scatter_cm: perturbation.scatter_cm as f32,
+            thresholds: Thresholds::both(reference, perturbation),
+            thresholds_after_none: None,
+            ghost_cm: perturbation.ghost_cm as f32,
             constant_cm: reference.constant[1] as f32,
             range_cm: reference.range_cm.map(|cm| cm as f32),
             reach_bounds_cm: reference.reach_bounds_cm().map(|cm| cm as f32),
@@ -153,9 +209,16 @@ impl Beam {
         let Nearest { distance_cm: nearest_cm, incidence } = nearest;
         let affine = |w: [f32; 3], x: Lanes<S>| x.constant(w[0]) + x * x.constant(w[1]) + incidence * x.constant(w[2]);
         let metres = nearest_cm.min(infinite.constant(FAR_CM as f32)) * infinite.constant(0.01);
+        let echo_cm = nearest_cm + affine(self.bias, nearest_cm);
+        let own_cm = maths::exp2(affine(self.log2_scatter, metres));
+        let added_cm = own_cm.constant(self.added_scatter_cm);
         Heard {
-            reading_cm: nearest_cm + affine(self.bias, nearest_cm),
-            scatter_cm: maths::exp2(affine(self.log2_scatter, metres)),
+            reading_cm: echo_cm * echo_cm.constant(self.gain) + echo_cm.constant(self.offset_cm),
+            scatter_cm: if self.added_scatter_cm > 0.0 {
+                (own_cm * own_cm + added_cm * added_cm).sqrt()
+            } else {
+                own_cm
+            },
             axis_cm,
         }
     }
@@ -173,31 +236,53 @@ impl Beam {
         let lane = |value| fate.outcome.constant(value);
         let arrives = heard.reading_cm.less(lane(f32::INFINITY));
         let below = |threshold: fn(&Thresholds) -> f32| {
-            let [heard, silent] = &self.thresholds;
-            fate.outcome.less(arrives.select(lane(threshold(heard)), lane(threshold(silent))))
+            let of =
+                |[heard, silent]: &[Thresholds; 2]| arrives.select(lane(threshold(heard)), lane(threshold(silent)));
+            let usual = of(&self.thresholds);
+            fate.outcome.less(match &self.thresholds_after_none {
+                Some(after_none) => fate.before_cm.less(lane(f32::INFINITY)).select(usual, of(after_none)),
+                None => usual,
+            })
         };
         let [low, high] = self.range_cm;
         let within = |high_cm: Lanes<S>| lane(low) + (high_cm - lane(low)) * fate.place;
         let [least, most] = self.reach_bounds_cm;
-        let short_cm = within(heard.axis_cm.clamp(lane(least), lane(most)));
-        let constant_cm = lane(self.constant_cm) + lane(CONSTANT_SCATTER_CM as f32) * fate.student;
-        let hit_cm = heard.reading_cm.clamp(lane(low), lane(high)) + heard.scatter_cm * fate.student;
+        let reach_cm = heard.axis_cm.clamp(lane(least), lane(most));
+        let long_cm = reach_cm + (lane(high) - reach_cm) * fate.place;
+        let about = |value_cm: f32| lane(value_cm) + lane(CONSTANT_SCATTER_CM as f32) * fate.student;
+        let mut hit_cm = heard.reading_cm.clamp(lane(low), lane(high)) + heard.scatter_cm * fate.student;
+        if self.added_scatter_cm > 0.0 {
+            let beyond = hit_cm.less(lane(low)) | lane(high).less(hit_cm);
+            hit_cm = beyond.select(lane(f32::NAN), hit_cm);
+        }
         let echo_cm = below(|t| t.hit).select(hit_cm, lane(f32::NAN));
-        let echo_cm = below(|t| t.constant).select(constant_cm, echo_cm);
+        let echo_cm = below(|t| t.ghost).select(about(self.ghost_cm), echo_cm);
+        let echo_cm = below(|t| t.constant).select(about(self.constant_cm), echo_cm);
+        let echo_cm = below(|t| t.long).select(long_cm, echo_cm);
         let echo_cm = below(|t| t.stray).select(within(lane(high)), echo_cm);
-        below(|t| t.short).select(short_cm, echo_cm)
+        below(|t| t.short).select(within(reach_cm), echo_cm)
     }
 }
 
 impl Thresholds {
-    /// Of a sensor without perturbation: there are no ghosts and no long readings.
-    fn new(reference: &SonarModel, arrives: bool) -> Self {
-        let weights = MixingWeights::new(reference, &Perturbation::NONE, arrives);
-        let short = weights.short;
-        let stray = short + weights.stray;
-        let constant = stray + weights.constant;
-        let hit = constant + weights.hit;
-        Thresholds { short: short as f32, stray: stray as f32, constant: constant as f32, hit: hit as f32 }
+    /// Where an echo arrives, and where none does.
+    fn both(reference: &SonarModel, perturbation: &Perturbation) -> [Self; 2] {
+        [true, false].map(|arrives| {
+            let weights = MixingWeights::new(reference, perturbation, arrives);
+            let mut end = 0.0;
+            let mut next = |weight: f64| {
+                end += weight;
+                end as f32
+            };
+            Thresholds {
+                short: next(weights.short),
+                stray: next(weights.stray),
+                long: next(weights.long),
+                constant: next(weights.constant),
+                ghost: next(weights.ghost),
+                hit: next(weights.hit),
+            }
+        })
     }
 }
 

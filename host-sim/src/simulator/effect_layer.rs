@@ -3,14 +3,15 @@
 
 use std::array;
 
-use mindgap_core::controller::{Controller, TUPLES};
+use mindgap_core::controller::Controller;
 use rand::RngExt;
 
-use super::motion::{Motion, MotionNetworks, speeds};
+use super::beam::Beam;
+use super::motion::{Motion, MotionNetworks, Transients, speeds};
 use super::{Noise, Simulator};
 use crate::chance::generator;
 use crate::effects::chain::EffectChain;
-use crate::effects::context::{HISTORY, RunHistory, Surroundings};
+use crate::effects::context::{RunHistory, Surroundings};
 use crate::effects::{PoseIncrement, StepContext};
 use crate::error::{Error, Result};
 use crate::geometry::Pose;
@@ -25,12 +26,10 @@ pub(super) struct EffectLayer<'s> {
     commands: [f64; 2],
     /// There when an effect changes the sensor.
     sonar: Option<&'s SonarModel>,
+    /// There when what becomes of it is the same everywhere.
+    beam: Option<Beam>,
     noise: Noise,
 }
-
-/// Motions of the first steps of each tuple, and of every later one, if the tuple before was held for as many steps as an
-/// effect looks back.
-pub(super) type Transients = [[Motion; HISTORY]; TUPLES];
 
 /// What effects depend on: a run's history so far.
 #[derive(Clone, Debug, Default)]
@@ -62,10 +61,20 @@ impl<'s> EffectLayer<'s> {
                 "an added effect changes the sonar, and the simulator does not know its usual beam",
             ));
         }
+        let surroundings = Surroundings::new(&simulator.robot, scene);
+        let anywhere = surroundings.context(&RunHistory::default(), 0.0, Pose::new(0.0, 0.0, 0.0));
+        let sensor = |heard_before: bool| {
+            let mut context = anywhere;
+            context.echo_before = Some(heard_before);
+            effects.sensor(&context)
+        };
+        let is_alike = noise == Noise::Learned && effects.senses() && effects.senses_alike_everywhere();
+        let alike = model.filter(|_| is_alike);
         Ok(Some(EffectLayer {
+            beam: alike.and_then(|model| Beam::changed(model, &[true, false].map(sensor))),
             sonar: model.filter(|_| effects.senses()),
             effects,
-            surroundings: Surroundings::new(&simulator.robot, scene),
+            surroundings,
             commands: simulator.commands.map(f64::from),
             noise,
         }))
@@ -88,7 +97,8 @@ impl<'s> EffectLayer<'s> {
 
     /// The motions of a controller that starts from rest, if they depend on its commands alone.
     pub fn transients(&self, controller: &Controller, networks: &MotionNetworks) -> Option<Transients> {
-        if !self.effects.is_of_commands_alone() {
+        // A sensor that asks for more looks back on where the robot was.
+        if !self.effects.moves_by_commands_alone() || self.senses() && self.beam.is_none() {
             return None;
         }
         let anywhere = self.context(&EffectMemory::default(), Pose::new(0.0, 0.0, 0.0));
@@ -126,6 +136,11 @@ impl<'s> EffectLayer<'s> {
     /// Whether readings are generated here.
     pub fn senses(&self) -> bool {
         self.sonar.is_some()
+    }
+
+    /// What generates them for lanes of robots, where it can.
+    pub fn beam(&self) -> Option<&Beam> {
+        self.beam.as_ref()
     }
 
     /// The reading at `pose`, where the effects change the sensor; `draw` fixes what chance adds.

@@ -6,12 +6,12 @@ use mindgap_core::folded::{FoldedNetwork, evaluate_all};
 use mindgap_core::maths::Binary32;
 use pulp::{Arch, Simd, WithSimd};
 
-use super::effect_layer::Transients;
 use super::ensemble::Member;
 use super::nominal::MotionBias;
 use super::nominal::motion_bias::{FEATURES, features};
 use super::residuals::{ResidualNoise, ResidualQuantiles, motion_context};
 use super::{Learned, Simulator};
+use crate::effects::context::HISTORY;
 use crate::error::Result;
 use crate::lanes::Lanes;
 
@@ -50,6 +50,10 @@ pub struct MotionTable {
     /// With added effects that depend on commands alone.
     transients: Option<Box<Transients>>,
 }
+
+/// Motions of the first steps of each tuple, and of every later one, if the tuple before was held for as many steps as an
+/// effect looks back.
+pub(super) type Transients = [[Motion; HISTORY]; TUPLES];
 
 /// Way forward (cm), way to the left (cm) and turn (rad) of a step.
 type MotionVector = [f32; 3];

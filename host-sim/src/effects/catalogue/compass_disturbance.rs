@@ -17,7 +17,7 @@ pub const EFFECT: Effect = Effect {
             parameters: Wave::PARAMETERS,
             hooks: &[
                 Hook::MotionHere(&|v, context, increment| Wave::read(v).disturb(1.0, context, increment)),
-                Hook::Sensor(&|v, _, sensor| Wave::read(v).undo(1.0, sensor)),
+                Hook::SensorHere(&|v, _, sensor| Wave::read(v).undo(1.0, sensor)),
             ],
         },
         Variant {
@@ -25,7 +25,7 @@ pub const EFFECT: Effect = Effect {
             parameters: Wave::PARAMETERS,
             hooks: &[
                 Hook::MotionHere(&|v, context, increment| Wave::read(v).disturb(2.0, context, increment)),
-                Hook::Sensor(&|v, _, sensor| Wave::read(v).undo(2.0, sensor)),
+                Hook::SensorHere(&|v, _, sensor| Wave::read(v).undo(2.0, sensor)),
             ],
         },
     ],

@@ -27,7 +27,7 @@ pub const EFFECT: Effect = Effect {
                 let seen_cm = direction(-context.pose.heading_rad).rotate(seen_cm);
                 (increment.forward_cm, increment.lateral_cm) = (seen_cm.x, seen_cm.y);
             }),
-            Hook::Sensor(&|v, context, sensor| {
+            Hook::SensorHere(&|v, context, sensor| {
                 let seen_cm = sensor.robot.position_cm;
                 sensor.robot.position_cm = Lens::read(v).undistorted(seen_cm, context.middle_cm);
             }),

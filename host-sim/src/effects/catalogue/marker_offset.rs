@@ -23,7 +23,7 @@ pub const EFFECT: Effect = Effect {
                 increment.forward_cm += carried_cm.x;
                 increment.lateral_cm += carried_cm.y;
             }),
-            Hook::Sensor(&|v, _, sensor| {
+            Hook::SensorHere(&|v, _, sensor| {
                 let at_cm = Marker::read(v).on_the_robot();
                 sensor.robot.position_cm -= direction(sensor.robot.heading_rad).rotate(at_cm);
             }),

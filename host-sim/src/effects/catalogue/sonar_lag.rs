@@ -13,7 +13,7 @@ pub const EFFECT: Effect = Effect {
     variants: &[Variant {
         id: "earlier_pose",
         parameters: Lag::PARAMETERS,
-        hooks: &[Hook::Sensor(&|v, context, sensor| sensor.robot = earlier(Lag::read(v).lag_ms, context))],
+        hooks: &[Hook::SensorHere(&|v, context, sensor| sensor.robot = earlier(Lag::read(v).lag_ms, context))],
     }],
 };
 

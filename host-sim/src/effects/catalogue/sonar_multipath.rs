@@ -26,7 +26,7 @@ pub const EFFECT: Effect = Effect {
         Variant {
             id: "oblique",
             parameters: Multipath::PARAMETERS,
-            hooks: &[Hook::Sensor(&|v, context, sensor| {
+            hooks: &[Hook::SensorHere(&|v, context, sensor| {
                 let Multipath { probability } = Multipath::read(v);
                 lengthen(probability, context, sensor);
             })],
@@ -34,7 +34,7 @@ pub const EFFECT: Effect = Effect {
         Variant {
             id: "oblique_and_strength",
             parameters: MirroringSurfaces::PARAMETERS,
-            hooks: &[Hook::Sensor(&|v, context, sensor| {
+            hooks: &[Hook::SensorHere(&|v, context, sensor| {
                 let MirroringSurfaces { probability, log_odds_loss } = MirroringSurfaces::read(v);
                 lengthen(probability, context, sensor);
                 sensor.perturbation.attenuation_per_incidence += log_odds_loss;

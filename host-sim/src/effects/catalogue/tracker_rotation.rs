@@ -19,7 +19,7 @@ pub const EFFECT: Effect = Effect {
             parameters: Rotation::PARAMETERS,
             hooks: &[
                 ROTATED,
-                Hook::Sensor(&|v, context, sensor| {
+                Hook::SensorHere(&|v, context, sensor| {
                     sensor.robot.position_cm = Rotation::read(v).undone(sensor.robot.position_cm, context.middle_cm);
                 }),
             ],
@@ -29,7 +29,7 @@ pub const EFFECT: Effect = Effect {
             parameters: Rotation::PARAMETERS,
             hooks: &[
                 ROTATED,
-                Hook::Sensor(&|v, _, sensor| {
+                Hook::SensorHere(&|v, _, sensor| {
                     sensor.robot.position_cm = Rotation::read(v).undone(sensor.robot.position_cm, DVec2::ZERO);
                 }),
             ],

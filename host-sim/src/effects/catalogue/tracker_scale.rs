@@ -15,7 +15,7 @@ pub const EFFECT: Effect = Effect {
             parameters: Scale::PARAMETERS,
             hooks: &[
                 SCALED,
-                Hook::Sensor(&|v, context, sensor| {
+                Hook::SensorHere(&|v, context, sensor| {
                     let from_middle = sensor.robot.position_cm - context.middle_cm;
                     sensor.robot.position_cm = context.middle_cm + from_middle / Scale::read(v).factor;
                 }),
@@ -24,7 +24,7 @@ pub const EFFECT: Effect = Effect {
         Variant {
             id: "about_the_origin",
             parameters: Scale::PARAMETERS,
-            hooks: &[SCALED, Hook::Sensor(&|v, _, sensor| sensor.robot.position_cm /= Scale::read(v).factor)],
+            hooks: &[SCALED, Hook::SensorHere(&|v, _, sensor| sensor.robot.position_cm /= Scale::read(v).factor)],
         },
     ],
 };

@@ -146,7 +146,7 @@ pub fn changes_nothing(variant: &Variant) -> Result<(), String> {
                 // No expression makes one.
                 Hook::Delay(_) => {}
                 Hook::Motion(change) | Hook::MotionHere(change) => change(&nominal, &step, &mut moved),
-                Hook::Sensor(change) => change(&nominal, &step, &mut sensor),
+                Hook::Sensor(change) | Hook::SensorHere(change) => change(&nominal, &step, &mut sensor),
             }
         }
         let usual = SensorState::nominal(step.pose).perturbation;

@@ -28,19 +28,20 @@ impl Robots<'_> {
     #[inline(always)]
     pub fn sense<S: Simd>(&mut self, simd: S, sensor: SensorModel, draws: &StepDraws) -> Row {
         let environment = self.environment;
-        if environment.effect_layer.as_ref().is_some_and(|effect_layer| effect_layer.senses()) {
-            return self.sense_through_effects(draws);
-        }
-        if let Some(sensor) = &environment.first_echo {
-            return self.listen(sensor, draws);
-        }
-        let sensors = self.sensors(simd);
-        let reading_cm = match (&environment.beam, sensor) {
-            (Some(beam), SensorModel::Beam) => self.hear(simd, beam, &sensors, draws),
-            _ => self.look(simd, &sensors, draws),
+        let effects = environment.effect_layer.as_ref().filter(|effects| effects.senses());
+        let reading_cm = match (effects, &environment.first_echo, &environment.beam) {
+            (Some(effects), ..) => match effects.beam() {
+                Some(beam) => self.hear(simd, beam, draws),
+                None => return self.sense_through_effects(draws),
+            },
+            (None, Some(sensor), _) => return self.listen(sensor, draws),
+            (None, None, Some(beam)) if sensor == SensorModel::Beam => self.hear(simd, beam, draws),
+            _ => self.look(simd, draws),
         };
         let sonar = &environment.robot.ultrasonic;
-        row(reading_cm.clamp(reading_cm.constant(sonar.min_cm as f32), reading_cm.constant(sonar.max_cm as f32)))
+        let (low, high) = (reading_cm.constant(sonar.min_cm as f32), reading_cm.constant(sonar.max_cm as f32));
+        self.echo_before_cm = row(reading_cm.clamp(low, high));
+        self.echo_before_cm
     }
 
     /// The readings where added effects change the sensor.
@@ -86,9 +87,9 @@ impl Robots<'_> {
 
     /// Listens with every beam.
     #[inline(always)]
-    fn hear<S: Simd>(&mut self, simd: S, beam: &Beam, sensors: &Sensors<S>, draws: &StepDraws) -> Lanes<S> {
+    fn hear<S: Simd>(&mut self, simd: S, beam: &Beam, draws: &StepDraws) -> Lanes<S> {
         let mut generators = Draws::load(simd, &self.seeds);
-        let Sensors { origin, axis, axis_deg } = *sensors;
+        let Sensors { origin, axis, axis_deg } = self.sensors(simd);
         let heard = beam.hear(&self.environment.room, origin, axis, axis_deg, &mut generators);
         generators.store(&mut self.seeds);
         let mut levels = [0; WIDEST];
@@ -99,14 +100,16 @@ impl Robots<'_> {
             outcome: load(simd, &draws.constant),
             place: load(simd, &draws.echo),
             student: beam.scatter(simd, &levels),
+            before_cm: load(simd, &self.echo_before_cm),
         };
         beam.report(&heard, &fate)
     }
 
     /// Casts every sensor's axis into the room and asks the two sonar networks; where it faces nothing it reads nothing.
     #[inline(always)]
-    fn look<S: Simd>(&self, simd: S, sensors: &Sensors<S>, draws: &StepDraws) -> Lanes<S> {
+    fn look<S: Simd>(&self, simd: S, draws: &StepDraws) -> Lanes<S> {
         let environment = self.environment;
+        let sensors = self.sensors(simd);
         let faced = environment.room.cast(sensors.origin, sensors.axis, sensors.axis_deg);
         let [probability, mut reading_cm] = evaluate_all(&environment.sonar, [faced.distance_cm, faced.alpha_deg]);
         let echo =

@@ -32,6 +32,8 @@ pub struct Robots<'a> {
     pub heading_rad: Row,
     pub heading_cos: Row,
     pub heading_sin: Row,
+    /// The last reading: not a number where there was none.
+    pub echo_before_cm: Row,
     /// Forward (cm), lateral (cm) and turn (rad) of the command that is held.
     motion: [Row; 3],
     /// The commands themselves, where the networks are asked in every step.
@@ -75,6 +77,7 @@ impl<'a> Robots<'a> {
             heading_rad: row,
             heading_cos: row,
             heading_sin: row,
+            echo_before_cm: row,
             motion: [row; 3],
             speeds: [row; 4],
             above_cm: row,
@@ -93,6 +96,7 @@ impl<'a> Robots<'a> {
         self.heading_rad[lane] = start.heading_rad as f32;
         self.heading_cos[lane] = maths::cos(self.heading_rad[lane]);
         self.heading_sin[lane] = maths::sin(self.heading_rad[lane]);
+        self.echo_before_cm[lane] = 0.0;
         self.running -= usize::from(self.runs[lane].is_some());
         self.running += usize::from(next.is_some());
         self.runs[lane] = next.map(|(number, request)| {
