@@ -330,7 +330,7 @@ mod tests {
                 for values in variant.initial_guesses(TOP_SPEED_CM_S) {
                     let same = [&here, &elsewhere].map(|context| {
                         let (.., sensor) = applied(variant, &values, context);
-                        (sensor.robot == context.pose).then(|| SensorState { robot: here.pose, ..sensor })
+                        (sensor.robot == context.pose).then_some(SensorState { robot: here.pose, ..sensor })
                     });
                     let alike = same[0].is_some() && same[0] == same[1];
                     prop_assert!(alike || !variant.senses_alike_everywhere(), "{effect} {}", variant.id);
