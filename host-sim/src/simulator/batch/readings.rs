@@ -31,11 +31,21 @@ impl Robots<'_> {
         let effects = environment.effect_layer.as_ref().filter(|effects| effects.senses());
         let reading_cm = match (effects, &environment.first_echo, &environment.beam) {
             (Some(effects), ..) => match effects.beam() {
-                Some(beam) => self.hear(simd, beam, draws),
+                Some(beam) => {
+                    let mut generators = Draws::load(simd, &self.sensor_seeds);
+                    let reading_cm = self.hear(simd, beam, draws, &mut generators);
+                    generators.store(&mut self.sensor_seeds);
+                    reading_cm
+                }
                 None => return self.sense_through_effects(draws),
             },
             (None, Some(sensor), _) => return self.listen(sensor, draws),
-            (None, None, Some(beam)) if sensor == SensorModel::Beam => self.hear(simd, beam, draws),
+            (None, None, Some(beam)) if sensor == SensorModel::Beam => {
+                let mut generators = Draws::load(simd, &self.seeds);
+                let reading_cm = self.hear(simd, beam, draws, &mut generators);
+                generators.store(&mut self.seeds);
+                reading_cm
+            }
             _ => self.look(simd, draws),
         };
         let sonar = &environment.robot.ultrasonic;
@@ -87,11 +97,9 @@ impl Robots<'_> {
 
     /// Listens with every beam.
     #[inline(always)]
-    fn hear<S: Simd>(&mut self, simd: S, beam: &Beam, draws: &StepDraws) -> Lanes<S> {
-        let mut generators = Draws::load(simd, &self.seeds);
+    fn hear<S: Simd>(&self, simd: S, beam: &Beam, draws: &StepDraws, generators: &mut Draws<S>) -> Lanes<S> {
         let Sensors { origin, axis, axis_deg } = self.sensors(simd);
-        let heard = beam.hear(&self.environment.room, origin, axis, axis_deg, &mut generators);
-        generators.store(&mut self.seeds);
+        let heard = beam.hear(&self.environment.room, origin, axis, axis_deg, generators);
         let mut levels = [0; WIDEST];
         for (level_of_lane, bits) in levels.iter_mut().zip(draws.bits) {
             *level_of_lane = level(bits, 3);

@@ -7,6 +7,7 @@ use mindgap_core::scalar::Scalar;
 use pulp::Simd;
 
 use super::{Row, StepDraws, level, load, row};
+use crate::chance::derive;
 use crate::effects::context::HISTORY;
 use crate::geometry::Pose;
 use crate::lanes::{Lanes, Mask, WIDEST};
@@ -18,6 +19,8 @@ use crate::simulator::motion::{Motion, speeds};
 use crate::simulator::rollout::{RolloutOutcome, RolloutRequest, Termination, TrajectoryPoint};
 use crate::simulator::room::Point;
 
+/// Stream key of what a sensor draws that effects change.
+const SENSOR: u64 = 1;
 /// What happens to a robot that may have touched something.
 const MAY_TOUCH: f32 = 2.0;
 
@@ -46,6 +49,8 @@ pub struct Robots<'a> {
     /// One where the step is the first of a tuple: the next one moves otherwise.
     first: Row,
     pub seeds: Seeds,
+    /// Of what a sensor draws that effects change: it moves no robot otherwise.
+    pub sensor_seeds: Seeds,
 }
 
 /// A run on its lane.
@@ -85,6 +90,7 @@ impl<'a> Robots<'a> {
             steps_left: row,
             first: row,
             seeds: Seeds::default(),
+            sensor_seeds: Seeds::default(),
         }
     }
 
@@ -101,6 +107,7 @@ impl<'a> Robots<'a> {
         self.running += usize::from(next.is_some());
         self.runs[lane] = next.map(|(number, request)| {
             self.seeds.set(lane, request.seed);
+            self.sensor_seeds.set(lane, derive(request.seed, &[SENSOR]));
             self.steps_left[lane] = f32::from(request.controller.max_steps);
             Run {
                 number,
