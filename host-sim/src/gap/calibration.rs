@@ -30,7 +30,7 @@ pub struct Calibration {
     pub judgement: Judgement,
 }
 
-/// Thresholds by convention or judgement; docs/measurements.md has their sensitivity.
+/// Thresholds by convention or judgement; `mindgap challenge sensitivity` prints how much they decide.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Judgement {
