@@ -33,6 +33,16 @@ pub struct Row {
     pub wrong: usize,
 }
 
+/// How a case ends, as a [`Row`] counts it.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+struct Ending {
+    false_alarm: bool,
+    named: bool,
+    false_unknown: bool,
+    unknown: bool,
+    wrong: bool,
+}
+
 /// What a threshold is multiplied by.
 const FACTORS: [f64; 2] = [0.5, 2.0];
 
@@ -56,22 +66,22 @@ pub fn sensitivity(cases: usize, seed: u64, watch: impl Fn(usize, usize) + Sync)
     let counted = |number| of_case(&bench, number, &calibrations).inspect(|_| counter.one_more());
     let by_case = workers::map(cases, counted)?;
     let row = |(place, (threshold, value, _)): (usize, (String, f64, Calibration))| {
-        let sum = |count: fn(&Row) -> usize| by_case.iter().map(|rows| count(&rows[place])).sum();
+        let count = |is: fn(&Ending) -> bool| by_case.iter().filter(|endings| is(&endings[place])).count();
         Row {
             threshold,
             value,
-            false_alarms: sum(|row| row.false_alarms),
-            named: sum(|row| row.named),
-            false_unknowns: sum(|row| row.false_unknowns),
-            unknowns: sum(|row| row.unknowns),
-            wrong: sum(|row| row.wrong),
+            false_alarms: count(|case| case.false_alarm),
+            named: count(|case| case.named),
+            false_unknowns: count(|case| case.false_unknown),
+            unknowns: count(|case| case.unknown),
+            wrong: count(|case| case.wrong),
         }
     };
     Ok(changed.into_iter().enumerate().map(row).collect())
 }
 
 /// What comes of a case with each calibration.
-fn of_case(bench: &Bench, number: usize, calibrations: &[Calibration]) -> Result<Vec<Row>> {
+fn of_case(bench: &Bench, number: usize, calibrations: &[Calibration]) -> Result<Vec<Ending>> {
     let (case, baseline) = bench.case(number)?;
     // Most thresholds of a judgement change nothing of what is searched for.
     let mut searched: Vec<Calibration> = Vec::new();
@@ -89,7 +99,7 @@ fn of_case(bench: &Bench, number: usize, calibrations: &[Calibration]) -> Result
 }
 
 /// What comes of a case of which this was found, judged by a calibration.
-fn judged(case: &Case, found: &Comparison, calibration: &Calibration) -> Row {
+fn judged(case: &Case, found: &Comparison, calibration: &Calibration) -> Ending {
     let method = Method { calibration: *calibration, ..Method::default() };
     let rows = found.none.log_likelihood.motion.len();
     let judged = Judged::of(found, &case.logs.robot, &method.calibration_for(rows));
@@ -100,15 +110,12 @@ fn judged(case: &Case, found: &Comparison, calibration: &Calibration) -> Row {
         Judged::NoGap | Judged::Unknown => None,
     };
     let is_there = first.is_some_and(|id| case.effects.iter().any(|active| active.effect.id() == id));
-    let count = usize::from;
-    Row {
-        threshold: String::new(),
-        value: 0.0,
-        false_alarms: count(is_null && !matches!(judged, Judged::NoGap)),
-        named: count(in_table && is_there),
-        false_unknowns: count(!is_null && in_table && is_unknown),
-        unknowns: count(!in_table && is_unknown),
-        wrong: count(first.is_some() && !is_there),
+    Ending {
+        false_alarm: is_null && !matches!(judged, Judged::NoGap),
+        named: in_table && is_there,
+        false_unknown: !is_null && in_table && is_unknown,
+        unknown: !in_table && is_unknown,
+        wrong: first.is_some() && !is_there,
     }
 }
 

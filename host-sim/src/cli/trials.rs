@@ -121,7 +121,7 @@ impl Loop {
         let controller = self.folder.join("controller.toml");
         let chance = state.chance.as_ref().map_or_else(|| "unknown".into(), Chance::to_string);
         let end = match state.verdict {
-            Verdict::Works => "it works: it reached the target again, and by all that is known",
+            Verdict::Works => "it works: it reached the target three times, and by all that is known",
             Verdict::OutOfReach => {
                 "no six tuples were found that reach the target on a robot that is possible; of the best"
             }

@@ -149,7 +149,9 @@ fn headline(state: &State) -> String {
         runs => format!("after {runs} runs on the robot"),
     };
     match state.verdict {
-        Verdict::Works => format!("The controller works {after}: it reached the target again, and has {chance}."),
+        Verdict::Works => {
+            format!("The controller works {after}: it reached the target three times, and has {chance} in simulation.")
+        }
         Verdict::Spent => format!("No controller is confirmed {after}; the best has {chance}."),
         Verdict::OutOfReach => "No controller was found that reaches the target on a robot that is possible.".into(),
         Verdict::Running => format!("The loop is under way {after}."),

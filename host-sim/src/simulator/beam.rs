@@ -32,18 +32,18 @@ pub struct Beam {
     bias: [f32; 3],
     /// Base-two logarithm of the scatter in cm: a constant, per metre, per 45 degrees.
     log2_scatter: [f32; 3],
+    /// Scatter in cm beside that; hits that it leads beyond the range are not reported.
+    added_scatter_cm: f32,
     /// Factor on the readings of echoes.
     gain: f32,
     /// Added to them after that, cm.
     offset_cm: f32,
-    /// Scatter in cm beside that; hits that it leads beyond the range are not reported.
-    added_scatter_cm: f32,
-    /// Where an echo arrives, and where none does.
+    /// Of an echo that arrives, and of none.
     thresholds: [Thresholds; 2],
     /// The same where the reading before was none, if that matters.
     thresholds_after_none: Option<[Thresholds; 2]>,
-    ghost_cm: f32,
     constant_cm: f32,
+    ghost_cm: f32,
     range_cm: [f32; 2],
     reach_bounds_cm: [f32; 2],
     /// Equally likely draws from Student's distribution.
@@ -108,8 +108,7 @@ impl Beam {
         Self::of(reference, &SensorState::nominal(Pose::new(0.0, 0.0, 0.0)))
     }
 
-    /// The same as effects leave it after an echo and after none; none where these differ in more than what becomes of
-    /// echoes.
+    /// The same as effects leave it after an echo and after none, if these differ only in the probabilities of outcomes.
     pub fn changed(reference: &SonarModel, [after_echo, after_none]: &[SensorState; 2]) -> Option<Self> {
         let Perturbation { p_dropout, p_ghost_given_echo, p_ghost_given_none, p_short, p_long, .. } =
             after_echo.perturbation;
@@ -158,13 +157,13 @@ impl Beam {
                 .map(|loss| ((loss + perturbation.attenuation_mirrored) * log2_e) as f32),
             bias: reference.bias.map(|b| b as f32),
             log2_scatter: reference.log_scatter.map(|w| (w * log2_e) as f32),
+            added_scatter_cm: perturbation.scatter_cm as f32,
             gain: perturbation.gain as f32,
             offset_cm: perturbation.offset_cm as f32,
-            added_scatter_cm: perturbation.scatter_cm as f32,
             thresholds: Thresholds::both(reference, perturbation),
             thresholds_after_none: None,
-            ghost_cm: perturbation.ghost_cm as f32,
             constant_cm: reference.constant[1] as f32,
+            ghost_cm: perturbation.ghost_cm as f32,
             range_cm: reference.range_cm.map(|cm| cm as f32),
             reach_bounds_cm: reference.reach_bounds_cm().map(|cm| cm as f32),
             student: std::array::from_fn(|level| student::quantile((level as f64 + 0.5) / LEVELS as f64) as f32),
@@ -265,7 +264,7 @@ impl Beam {
 }
 
 impl Thresholds {
-    /// Where an echo arrives, and where none does.
+    /// Of an echo that arrives, and of none.
     fn both(reference: &SonarModel, perturbation: &Perturbation) -> [Self; 2] {
         [true, false].map(|arrives| {
             let weights = MixingWeights::new(reference, perturbation, arrives);

@@ -13,7 +13,7 @@ pub struct Draws<S: Simd> {
 }
 
 /// The states of as many generators, one lane after the other, so that single lanes can be seeded anew.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct Seeds([[u32; WIDEST]; 4]);
 
 impl Seeds {

@@ -46,7 +46,7 @@ pub struct State {
 pub enum Verdict {
     /// It has not ended.
     Running,
-    /// A controller succeeded on the robot again, and has a good chance by all that is known.
+    /// A controller succeeded on the robot often enough, and has a good chance by all that is known.
     Works,
     /// The trials are spent before that.
     Spent,

@@ -11,7 +11,7 @@ use super::{Row, StepDraws, level, load, row};
 use crate::lanes::{Lanes, WIDEST};
 use crate::simulator::Noise;
 use crate::simulator::beam::{Beam, Fate};
-use crate::simulator::draws::Draws;
+use crate::simulator::draws::{Draws, Seeds};
 use crate::simulator::first_echo::FirstEchoSensor;
 use crate::simulator::rollout::SensorModel;
 use crate::simulator::room::Point;
@@ -32,18 +32,16 @@ impl Robots<'_> {
         let reading_cm = match (effects, &environment.first_echo, &environment.beam) {
             (Some(effects), ..) => match effects.beam() {
                 Some(beam) => {
-                    let mut generators = Draws::load(simd, &self.sensor_seeds);
-                    let reading_cm = self.hear(simd, beam, draws, &mut generators);
-                    generators.store(&mut self.sensor_seeds);
+                    let (reading_cm, seeds) = self.hear(simd, beam, draws, self.sensor_seeds);
+                    self.sensor_seeds = seeds;
                     reading_cm
                 }
                 None => return self.sense_through_effects(draws),
             },
             (None, Some(sensor), _) => return self.listen(sensor, draws),
             (None, None, Some(beam)) if sensor == SensorModel::Beam => {
-                let mut generators = Draws::load(simd, &self.seeds);
-                let reading_cm = self.hear(simd, beam, draws, &mut generators);
-                generators.store(&mut self.seeds);
+                let (reading_cm, seeds) = self.hear(simd, beam, draws, self.seeds);
+                self.seeds = seeds;
                 reading_cm
             }
             _ => self.look(simd, draws),
@@ -95,11 +93,13 @@ impl Robots<'_> {
         Sensors { origin, axis, axis_deg }
     }
 
-    /// Listens with every beam.
+    /// Listens with every beam, which draws from these generators; they come back for the next step.
     #[inline(always)]
-    fn hear<S: Simd>(&self, simd: S, beam: &Beam, draws: &StepDraws, generators: &mut Draws<S>) -> Lanes<S> {
+    fn hear<S: Simd>(&self, simd: S, beam: &Beam, draws: &StepDraws, mut seeds: Seeds) -> (Lanes<S>, Seeds) {
         let Sensors { origin, axis, axis_deg } = self.sensors(simd);
-        let heard = beam.hear(&self.environment.room, origin, axis, axis_deg, generators);
+        let mut generators = Draws::load(simd, &seeds);
+        let heard = beam.hear(&self.environment.room, origin, axis, axis_deg, &mut generators);
+        generators.store(&mut seeds);
         let mut levels = [0; WIDEST];
         for (level_of_lane, bits) in levels.iter_mut().zip(draws.bits) {
             *level_of_lane = level(bits, 3);
@@ -110,7 +110,7 @@ impl Robots<'_> {
             student: beam.scatter(simd, &levels),
             before_cm: load(simd, &self.echo_before_cm),
         };
-        beam.report(&heard, &fate)
+        (beam.report(&heard, &fate), seeds)
     }
 
     /// Casts every sensor's axis into the room and asks the two sonar networks; where it faces nothing it reads nothing.

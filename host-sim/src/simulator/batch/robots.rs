@@ -107,7 +107,9 @@ impl<'a> Robots<'a> {
         self.running += usize::from(next.is_some());
         self.runs[lane] = next.map(|(number, request)| {
             self.seeds.set(lane, request.seed);
-            self.sensor_seeds.set(lane, derive(request.seed, &[SENSOR]));
+            if self.environment.effect_layer.is_some() {
+                self.sensor_seeds.set(lane, derive(request.seed, &[SENSOR]));
+            }
             self.steps_left[lane] = f32::from(request.controller.max_steps);
             Run {
                 number,
