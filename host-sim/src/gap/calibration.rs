@@ -39,12 +39,13 @@ pub struct Judgement {
     pub strong_nats: f64,
     /// Another effect can stand for one that it lags by no more than this many standard errors, and is named beside it.
     pub rival_z: f64,
-    /// An effect for which more others can stand has to gain `vague_factor` times as much: the misfit of a simulator is a
-    /// bit like many effects.
+    /// An effect for which more others can stand has to gain `vague_factor` times as much, alone or beside others: the
+    /// misfit of a simulator is a bit like many effects.
     pub most_rivals: usize,
     /// See `most_rivals`.
     pub vague_factor: f64,
-    /// An effect for which more others can stand is no cause that anybody could act on: the gap stays unknown.
+    /// An effect for which more others can stand is no cause that anybody could act on: unless another one is clearer, the
+    /// gap stays unknown.
     pub most_ambiguous: usize,
     /// Most effects that are named together: real robots differ in several ways at once.
     pub most_effects: usize,

@@ -2,7 +2,7 @@
 
 use super::calibration::Calibration;
 use super::channel::Channel;
-use super::fit::{FitContext, Fitted, best_of_each};
+use super::fit::{FitContext, Fitted, TOLERANCE_NATS, best_of_each};
 use super::gain::Gain;
 use super::omnibus::ResidualFit;
 use super::remainder::{Remainder, remainders};
@@ -64,7 +64,7 @@ impl Comparison {
             log::info!("{} alone gains {:.1} nats", single.ids().join("+"), single.gain_over(&none).nats);
         }
         let mut chosen = singles.iter().find(counts).unwrap_or(&none).clone();
-        let mut rivals = vec![singles.clone()];
+        let mut rivals = vec![showing(singles.clone(), &none)];
         let mut first = None;
         while !chosen.ids().is_empty() && chosen.ids().len() < calibration.judgement.most_effects {
             let further = best_of_each(chosen.with_each(Some(&alone), context));
@@ -78,12 +78,13 @@ impl Comparison {
                 break;
             };
             let (settled, in_place) = settled(next, &alone, context);
-            if in_place
-                .iter()
-                .any(|others| rivals_in_reach(&settled, others, calibration) > calibration.judgement.most_rivals)
-            {
-                log::info!("too many others could stand for {}", settled.ids().join("+"));
-                break;
+            if in_place.iter().any(|others| is_vague(&settled, others, calibration)) {
+                let own = OwnGain::of(&settled, &chosen, &none, calibration.further_share);
+                let gain = settled.gain_over(&chosen).less(own.feigned_nats);
+                if !gain.over(calibration.judgement.vague_factor).passes(calibration.effect_nats) {
+                    log::info!("too many others could stand for {}", settled.ids().join("+"));
+                    break;
+                }
             }
             let before = chosen.log_evidence();
             (chosen, rivals) = without_needless(settled, in_place, &alone, context);
@@ -174,10 +175,7 @@ pub fn most_alone(singles: &[Fitted], none: &Fitted, calibration: &Calibration) 
 /// What a single effect gains; less where many others can stand for it.
 fn gain_alone(single: &Fitted, singles: &[Fitted], none: &Fitted, calibration: &Calibration) -> Gain {
     let gain = single.gain_over(none);
-    let judgement = &calibration.judgement;
-    let vague = rivals_in_reach(single, singles, calibration) > judgement.most_rivals;
-    let divisor = if vague { judgement.vague_factor } else { 1.0 };
-    Gain { nats: gain.nats / divisor, broad_nats: gain.broad_nats / divisor, error: gain.error / divisor }
+    if is_vague(single, singles, calibration) { gain.over(calibration.judgement.vague_factor) } else { gain }
 }
 
 impl OwnGain {
@@ -218,6 +216,11 @@ fn is_worth_adding(fit: &Fitted, so_far: &Fitted, none: &Fitted, calibration: &C
     let at_bound = !fit.at_bound(fit.ids().len() - 1).is_empty();
     let feigned = OwnGain::of(fit, so_far, none, calibration.further_share).feigned_nats;
     !at_bound && fit.gain_over(so_far).less(feigned).passes(calibration.effect_nats)
+}
+
+/// Whether too many other effects could stand for one.
+fn is_vague(chosen: &Fitted, rivals: &[Fitted], calibration: &Calibration) -> bool {
+    rivals_in_reach(chosen, rivals, calibration) > calibration.judgement.most_rivals
 }
 
 /// How many effects do nearly as well in the place of one of the chosen.
@@ -270,9 +273,18 @@ fn without_feigned_scatter(chosen: &Fitted, context: &FitContext) -> Option<Fitt
 
 /// For each effect the fits with it or another in its place, best first.
 fn in_place_of_each(chosen: &Fitted, alone: &[Fitted], context: &FitContext) -> Vec<Vec<Fitted>> {
-    let places = 0..chosen.ids().len();
-    let in_place = |place: usize| chosen.without(place, context).with_each(Some(alone), context);
-    places.map(|place| best_of_each(in_place(place))).collect()
+    let in_place = |place: usize| {
+        let without = chosen.without(place, context);
+        showing(best_of_each(without.with_each(Some(alone), context)), &without)
+    };
+    (0..chosen.ids().len()).map(in_place).collect()
+}
+
+/// Those that do better on blocks held out than the same without their last effect: what these logs do not show stands for
+/// nothing. A dozen effects of motion are no rivals to a beam where the robot stands still.
+fn showing(mut fits: Vec<Fitted>, without: &Fitted) -> Vec<Fitted> {
+    fits.retain(|fit| fit.gains_over(without).iter().sum::<f64>() > TOLERANCE_NATS);
+    fits
 }
 
 #[cfg(test)]

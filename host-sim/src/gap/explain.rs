@@ -87,13 +87,11 @@ impl Judged {
         // Scatter that grows with speed or comes back follows a cause that is not named.
         let scatters_unevenly = found.scatter.iter().any(|s| !s.is_even);
         let whole = explained_fraction(found);
-        let is_vague = |effects: &[NamedEffect]| {
-            effects.iter().any(|e| e.ambiguous_with.len() > calibration.judgement.most_ambiguous)
-        };
+        let is_clear = |effect: &NamedEffect| effect.ambiguous_with.len() <= calibration.judgement.most_ambiguous;
         let effects = named(found, whole, robot, calibration);
         let doubt = gap(found, calibration) * (1.0 - probability(whole, std::iter::empty(), calibration));
         let likeliest = effects.first().is_some_and(|first| first.probability >= doubt);
-        if likeliest && !is_vague(&effects) && whole >= calibration.adequate && !scatters_unevenly {
+        if likeliest && effects.iter().all(is_clear) && whole >= calibration.adequate && !scatters_unevenly {
             return Judged::Known { effects };
         }
         // A wrong effect leaves something over wherever it explains something; a right one beside which there is another
@@ -101,7 +99,8 @@ impl Judged {
         let best_channel = Channel::ALL.map(|channel| explained_fraction_of(channel, found, calibration));
         let best_channel = best_channel.into_iter().fold(0.0, f64::max);
         let effects = named(found, best_channel, robot, calibration);
-        if !effects.is_empty() && !is_vague(&effects) && best_channel >= calibration.adequate {
+        // One that many others could stand for is told with them, beside those that are clear.
+        if effects.iter().any(is_clear) && best_channel >= calibration.adequate {
             return Judged::PartlyKnown { effects };
         }
         if !effects.is_empty() || unexplained > 0.0 || scatters_unevenly {

@@ -41,6 +41,11 @@ impl Gain {
         Gain { nats: self.nats - nats, broad_nats: self.broad_nats - nats, ..self }
     }
 
+    /// A share of it, all over this.
+    pub fn over(self, divisor: f64) -> Self {
+        Gain { nats: self.nats / divisor, broad_nats: self.broad_nats / divisor, error: self.error / divisor }
+    }
+
     /// Whether it counts: it is large enough without the blocks that gain most.
     pub fn passes(&self, gate_nats: f64) -> bool {
         self.broad_nats >= gate_nats
@@ -71,5 +76,6 @@ mod tests {
         assert_eq!([broad(&[100.0, 0.0, 0.0]), broad(&[3.0; 8]), broad(&[3.0; 9])], [0.0, 21.0, 21.0]);
         assert!(Gain::of(&[6.0, 9.0]).passes(6.0) && !Gain::of(&[5.9, 900.0]).passes(6.0));
         assert!(!Gain::of(&[6.0, 9.0]).less(0.1).passes(6.0), "less its price");
+        assert!(!Gain::of(&[11.9, 90.0]).over(2.0).passes(6.0) && Gain::of(&[12.0, 90.0]).over(2.0).passes(6.0));
     }
 }

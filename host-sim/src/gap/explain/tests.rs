@@ -111,24 +111,39 @@ fn a_gap_that_no_effect_explains_is_unknown() {
     });
 }
 
+/// What is judged where so many others lag behind the first of these effects by seven nats: each is named beside it, and the
+/// doubt of six is that of one that is 0.4 as likely. All that the effects gain is of forward motion.
+fn with_others(count: usize, effects: &[&'static Effect], context: &FitContext) -> Judged {
+    const IDS: [&str; 6] = ["a", "b", "c", "d", "e", "f"];
+    let other = |id: &&'static str| {
+        let mut fit = made_up(effects, &[0.5; 2][..effects.len()], &[6.5; 2], context);
+        fit.hypothesis.candidates[0].effect = id;
+        fit
+    };
+    let mut found = comparison(effects, &[10.0; 2], context);
+    found.chosen.log_likelihood.motion = vec![[10.0, 0.0, 0.0]; 2];
+    found.rivals = vec![IDS[..count].iter().map(other).collect()];
+    let judgement = Judgement { rival_z: 2.45, ..CALIBRATION.judgement };
+    Judged::of(&found, &robot(), &Calibration { judgement, ..CALIBRATION })
+}
+
 #[test]
 fn an_effect_for_which_too_many_could_stand_is_no_answer() {
     with_context(|context| {
-        const IDS: [&str; 6] = ["a", "b", "c", "d", "e", "f"];
-        let rival = |id: &&'static str| {
-            let mut fit = made_up(&[&LONGER], &[0.5], &[6.5; 2], context);
-            fit.hypothesis.candidates[0].effect = id;
-            fit
+        assert!(matches!(with_others(5, &[&LONGER], context), Judged::Known { .. }));
+        assert!(matches!(with_others(6, &[&LONGER], context), Judged::Unknown));
+    });
+}
+
+#[test]
+fn beside_an_effect_that_is_clear_it_is_told_with_the_others() {
+    with_context(|context| {
+        assert!(matches!(with_others(5, &[&LONGER, &FARTHER], context), Judged::Known { .. }));
+        let Judged::PartlyKnown { effects } = with_others(6, &[&LONGER, &FARTHER], context) else {
+            panic!("one of two is clear")
         };
-        // Seven nats behind: each is named, and the doubt of six is that of one that is 0.4 as likely.
-        let with = |count: usize| {
-            let rivals = vec![IDS[..count].iter().map(rival).collect()];
-            let judgement = Judgement { rival_z: 2.45, ..CALIBRATION.judgement };
-            let calibration = Calibration { judgement, ..CALIBRATION };
-            Judged::of(&Comparison { rivals, ..comparison(&[&LONGER], &[10.0; 2], context) }, &robot(), &calibration)
-        };
-        assert!(matches!(with(5), Judged::Known { .. }));
-        assert!(matches!(with(6), Judged::Unknown));
+        let told: Vec<(&str, usize)> = effects.iter().map(|e| (e.id, e.ambiguous_with.len())).collect();
+        assert_eq!(told, [("farther", 0), ("longer", 6)]);
     });
 }
 
