@@ -27,7 +27,7 @@ pub struct Row {
     pub named: usize,
     /// Cases with effects of the table that are called unknown.
     pub false_unknowns: usize,
-    /// Cases with effects outside the table that are called unknown.
+    /// Cases with effects outside the table that are called unknown, or known in part.
     pub unknowns: usize,
     /// Cases in which the most probable effect named is not there.
     pub wrong: usize,
@@ -114,7 +114,7 @@ fn judged(case: &Case, found: &Comparison, calibration: &Calibration) -> Ending 
         false_alarm: is_null && !matches!(judged, Judged::NoGap),
         named: in_table && is_there,
         false_unknown: !is_null && in_table && is_unknown,
-        unknown: !in_table && is_unknown,
+        unknown: !in_table && matches!(judged, Judged::Unknown | Judged::PartlyKnown { .. }),
         wrong: first.is_some() && !is_there,
     }
 }

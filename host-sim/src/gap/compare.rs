@@ -15,7 +15,7 @@ pub struct Comparison {
     pub none: Fitted,
     /// The effects together.
     pub chosen: Fitted,
-    /// For each of the chosen effects the fits with it or another in its place, best first.
+    /// For each of the chosen effects the fits with it or another in its place that show in these logs, best first.
     pub rivals: Vec<Vec<Fitted>>,
     /// What each of the chosen effects gains beside the others.
     pub own: Vec<OwnGain>,
@@ -47,6 +47,14 @@ pub struct FirstFound {
     pub feigned_share: f64,
 }
 
+/// The place of one of several effects.
+struct Place {
+    /// The others alone.
+    without: Fitted,
+    /// The others with the effect or another one in its place, as far as it shows in these logs, best first.
+    taken: Vec<Fitted>,
+}
+
 /// Steps in which the share is sought that could be feigned: half a percent each.
 const SHARES: usize = 200;
 /// Effects whose gains are told to whoever asks.
@@ -64,7 +72,7 @@ impl Comparison {
             log::info!("{} alone gains {:.1} nats", single.ids().join("+"), single.gain_over(&none).nats);
         }
         let mut chosen = singles.iter().find(counts).unwrap_or(&none).clone();
-        let mut rivals = vec![showing(singles.clone(), &none)];
+        let mut places: Vec<Place> = chosen.ids().iter().map(|_| Place::new(none.clone(), singles.clone())).collect();
         let mut first = None;
         while !chosen.ids().is_empty() && chosen.ids().len() < calibration.judgement.most_effects {
             let further = best_of_each(chosen.with_each(Some(&alone), context));
@@ -77,17 +85,15 @@ impl Comparison {
             let Some(next) = further.into_iter().find(|f| is_worth_adding(f, &chosen, &none, calibration)) else {
                 break;
             };
-            let (settled, in_place) = settled(next, &alone, context);
-            if in_place.iter().any(|others| is_vague(&settled, others, calibration)) {
-                let own = OwnGain::of(&settled, &chosen, &none, calibration.further_share);
-                let gain = settled.gain_over(&chosen).less(own.feigned_nats);
-                if !gain.over(calibration.judgement.vague_factor).passes(calibration.effect_nats) {
-                    log::info!("too many others could stand for {}", settled.ids().join("+"));
-                    break;
-                }
+            let (settled, places_of_it) = settled(next, &alone, context);
+            let is_vague = places_of_it.iter().any(|place| is_vague(&settled, &place.taken, calibration));
+            let gain = further_gain(&settled, &chosen, &none, calibration).over(calibration.judgement.vague_factor);
+            if is_vague && !gain.passes(calibration.effect_nats) {
+                log::info!("too many others could stand for {}", settled.ids().join("+"));
+                break;
             }
             let before = chosen.log_evidence();
-            (chosen, rivals) = without_needless(settled, in_place, &alone, context);
+            (chosen, places) = without_needless(settled, places_of_it, &alone, context);
             log::info!("{} together gain {:.1} nats", chosen.ids().join("+"), chosen.gain_over(&none).nats);
             // An exchange that led to what was dropped again would lead round in a circle.
             if chosen.log_evidence() <= before {
@@ -95,14 +101,14 @@ impl Comparison {
             }
         }
         if let Some(others) = without_feigned_scatter(&chosen, context) {
-            rivals = in_place_of_each(&others, &alone, context);
+            places = places_of(&others, &alone, context);
             chosen = others;
         }
         let beyond_none = remainders(&none, context);
         let beyond_chosen = remainders(&chosen, context);
-        let own =
-            |place: usize| OwnGain::of(&chosen, &chosen.without(place, context), &none, calibration.further_share);
-        let own = (0..chosen.ids().len()).map(own).collect();
+        let own = |place: &Place| OwnGain::of(&chosen, &place.without, &none, calibration.further_share);
+        let own = places.iter().map(own).collect();
+        let rivals = places.into_iter().map(|place| place.taken).collect();
         Comparison { none, chosen, rivals, own, first, beyond_none, beyond_chosen, scatter: Vec::new() }
     }
 
@@ -214,8 +220,13 @@ impl FirstFound {
 /// A fit at a bound is no finding: the likelihood would rise beyond what is physically possible.
 fn is_worth_adding(fit: &Fitted, so_far: &Fitted, none: &Fitted, calibration: &Calibration) -> bool {
     let at_bound = !fit.at_bound(fit.ids().len() - 1).is_empty();
+    !at_bound && further_gain(fit, so_far, none, calibration).passes(calibration.effect_nats)
+}
+
+/// What one more effect gains beyond what forms of the others that are not quite right could leave over.
+fn further_gain(fit: &Fitted, so_far: &Fitted, none: &Fitted, calibration: &Calibration) -> Gain {
     let feigned = OwnGain::of(fit, so_far, none, calibration.further_share).feigned_nats;
-    !at_bound && fit.gain_over(so_far).less(feigned).passes(calibration.effect_nats)
+    fit.gain_over(so_far).less(feigned)
 }
 
 /// Whether too many other effects could stand for one.
@@ -230,32 +241,33 @@ fn rivals_in_reach(chosen: &Fitted, rivals: &[Fitted], calibration: &Calibration
     rivals.iter().filter(in_reach).count()
 }
 
-/// Exchanges one effect for what does better in its place, if there is such. Returns what stands then, and for each of its
-/// effects the fits with others in its place.
-fn settled(chosen: Fitted, alone: &[Fitted], context: &FitContext) -> (Fitted, Vec<Vec<Fitted>>) {
-    let rivals = in_place_of_each(&chosen, alone, context);
-    let better = rivals.iter().flatten().max_by(|a, b| a.log_evidence().total_cmp(&b.log_evidence()));
+/// Exchanges one effect for what does better in its place, if there is such. Returns what stands then, and the places of its
+/// effects.
+fn settled(chosen: Fitted, alone: &[Fitted], context: &FitContext) -> (Fitted, Vec<Place>) {
+    let places = places_of(&chosen, alone, context);
+    let taken = places.iter().flat_map(|place| &place.taken);
+    let better = taken.max_by(|a, b| a.log_evidence().total_cmp(&b.log_evidence()));
     match better.filter(|f| f.log_evidence() > chosen.log_evidence() && f.ids() != chosen.ids()) {
-        Some(better) => (better.clone(), in_place_of_each(better, alone, context)),
-        None => (chosen, rivals),
+        Some(better) => (better.clone(), places_of(better, alone, context)),
+        None => (chosen, places),
     }
 }
 
 /// Drops effects that no longer count beside the others.
 fn without_needless(
     chosen: Fitted,
-    rivals: Vec<Vec<Fitted>>,
+    places: Vec<Place>,
     alone: &[Fitted],
     context: &FitContext,
-) -> (Fitted, Vec<Vec<Fitted>>) {
-    let others = (0..chosen.ids().len()).map(|place| chosen.without(place, context));
-    let needless = others.filter(|others| !chosen.gain_over(others).passes(context.calibration.effect_nats));
-    match needless.max_by(|a, b| a.log_evidence().total_cmp(&b.log_evidence())) {
+) -> (Fitted, Vec<Place>) {
+    let needless = |others: &&Fitted| !chosen.gain_over(others).passes(context.calibration.effect_nats);
+    let fewer = places.iter().map(|place| &place.without).filter(needless);
+    match fewer.max_by(|a, b| a.log_evidence().total_cmp(&b.log_evidence())).cloned() {
         Some(fewer) => {
-            let rivals = in_place_of_each(&fewer, alone, context);
-            without_needless(fewer, rivals, alone, context)
+            let places = places_of(&fewer, alone, context);
+            without_needless(fewer, places, alone, context)
         }
-        None => (chosen, rivals),
+        None => (chosen, places),
     }
 }
 
@@ -271,20 +283,22 @@ fn without_feigned_scatter(chosen: &Fitted, context: &FitContext) -> Option<Fitt
     (others.log_evidence() + moved > chosen.log_evidence()).then_some(others)
 }
 
-/// For each effect the fits with it or another in its place, best first.
-fn in_place_of_each(chosen: &Fitted, alone: &[Fitted], context: &FitContext) -> Vec<Vec<Fitted>> {
-    let in_place = |place: usize| {
+fn places_of(chosen: &Fitted, alone: &[Fitted], context: &FitContext) -> Vec<Place> {
+    let place = |place: usize| {
         let without = chosen.without(place, context);
-        showing(best_of_each(without.with_each(Some(alone), context)), &without)
+        let taken = best_of_each(without.with_each(Some(alone), context));
+        Place::new(without, taken)
     };
-    (0..chosen.ids().len()).map(in_place).collect()
+    (0..chosen.ids().len()).map(place).collect()
 }
 
-/// Those that do better on blocks held out than the same without their last effect: what these logs do not show stands for
-/// nothing. A dozen effects of motion are no rivals to a beam where the robot stands still.
-fn showing(mut fits: Vec<Fitted>, without: &Fitted) -> Vec<Fitted> {
-    fits.retain(|fit| fit.gains_over(without).iter().sum::<f64>() > TOLERANCE_NATS);
-    fits
+impl Place {
+    /// Of these only those count that do better on blocks held out than the others alone: what these logs do not show stands
+    /// for nothing. A dozen effects of motion are no rivals to a beam where the robot stands still.
+    fn new(without: Fitted, mut taken: Vec<Fitted>) -> Self {
+        taken.retain(|fit| fit.gains_over(&without).iter().sum::<f64>() > TOLERANCE_NATS);
+        Place { without, taken }
+    }
 }
 
 #[cfg(test)]
