@@ -133,21 +133,24 @@ fn of_no_motion(
 
 /// The effects that a diagnosis names; none where the logs do not suffice for one.
 fn diagnosed(simulator: &Simulator, logs: &Logs, seed: u64, watch: impl Fn(Stage)) -> Vec<AppliedEffect> {
-    let Ok(baseline) = Baseline::learned(simulator) else { return Vec::new() };
+    let Ok(baseline) = Baseline::of_middle(simulator) else { return Vec::new() };
     let method = Method { seed, ..Method::default() };
     let found = findings_watched(baseline, &Inspection::of(logs.clone()), method, watch);
     found.map_or_else(|_| Vec::new(), |found| found.applied)
 }
 
-/// What every logged step is off by, with these effects beside those that the simulator has.
+/// What every logged step is off by, with these effects beside those that the simulator has. Effects act on the robot as it
+/// was known in training, and what that does beyond the networks is no news.
 fn steps(simulator: &Simulator, effects: &[AppliedEffect], observations: &Observations) -> Result<Vec<StepResidual>> {
-    let baseline = Baseline::learned(simulator)?;
+    let baseline = Baseline::of_middle(simulator)?;
     let Some(motion @ MotionModel::Learned { reference, .. }) = &baseline.motion else { return Ok(Vec::new()) };
     let applied: Vec<AppliedEffect> = simulator.added.iter().chain(effects).cloned().collect();
     let chain = EffectChain::of(&applied);
     let step = |row: &crate::evaluation::observations::Observation| {
         let [now, before, ..] = row.context.commands;
-        let off = predictions::residual(&chain, motion, row).filter(|_| row.then.is_empty())?;
+        let left = predictions::residual(&chain, motion, row).filter(|_| row.then.is_empty())?;
+        let beyond = motion.beyond(now);
+        let off = [0, 1, 2].map(|channel| left[channel] + beyond[channel]);
         Some(StepResidual::new([row.run, row.at], [now[0], now[1], before[0], before[1]], off, reference))
     };
     Ok(observations.rows.iter().filter_map(step).collect())

@@ -23,22 +23,11 @@ use crate::simulator::rollout::REACHED_CM;
 use crate::workers;
 
 /// Total number of generations of all restarts.
-pub const GENERATIONS: usize = RESTARTS * THOROUGH.generations();
+pub const GENERATIONS: usize = RESTARTS * (EXPLORING.max_generations + REFINING_GENERATIONS);
+/// Those of [`refine`].
+pub const REFINING_GENERATIONS: usize = REFINING.max_generations;
 /// Number of independent restarts.
 pub const RESTARTS: usize = 3;
-
-/// How controllers are explored: in so many restarts, the best of which are refined.
-pub struct Exploration {
-    restarts: usize,
-    refined: usize,
-    settings: Settings,
-}
-
-/// Few restarts and all of them refined, so that candidates of different ways are left.
-pub const THOROUGH: Exploration = Exploration { restarts: RESTARTS, refined: RESTARTS, settings: EXPLORING };
-/// Many short ones, for whoever comes back: for the same time the best controller is the better one (docs/loop.md).
-pub const BROAD: Exploration =
-    Exploration { restarts: 24, refined: 6, settings: Settings { population: 400, max_generations: 60, ..EXPLORING } };
 
 const EXPLORING: Settings = Settings {
     population: 1000,
@@ -63,16 +52,12 @@ const REFINING_RUNS: usize = 20;
 const CANDIDATES: usize = 100;
 /// Number of fresh runs of each.
 const CHOOSING_RUNS: usize = 200;
-/// What a restart is worth its best individuals tell, so many of them in so many runs.
-const FOREMOST: usize = 10;
-const FOREMOST_RUNS: usize = 40;
-/// Worth of ending at the target in every run against that of reaching it in all: it tells restarts apart none of which
+/// Worth of ending at the target in every run against that of reaching it in all: it tells controllers apart none of which
 /// reaches it.
-const NEARNESS: f64 = 0.1;
-/// Stream keys of the runs that select a controller, of those that measure its success, and of those that select restarts.
+pub const NEARNESS: f64 = 0.1;
+/// Stream keys of the runs that select a controller, and of those that measure its success.
 const CHOOSING: u64 = 2;
 const JUDGING: u64 = 1;
-const COMPARING: u64 = 3;
 
 /// The task that a controller is evolved for.
 pub struct EvolutionTask<'a> {
@@ -96,40 +81,21 @@ pub struct EvolutionTask<'a> {
 /// # Errors
 /// As [`genetic::run`].
 pub fn candidates(task: &EvolutionTask, mut watch: impl FnMut(usize, f64)) -> Result<Vec<Evolved>> {
-    let explored = explore(task, &THOROUGH, |generation, best| watch(RESTARTS * generation, best))?;
-    let mut chosen: Vec<(f64, Evolved)> = explored.into_iter().map(|mut ranked| ranked.swap_remove(0)).collect();
+    let mut watch = |generation, best| watch(RESTARTS * generation, best);
+    let seeds: Vec<u64> = (0..RESTARTS).map(|restart| derive(task.seed, &[restart as u64])).collect();
+    let evaluators: Vec<FitnessEvaluator> = seeds.iter().map(|seed| task.evaluator(EXPLORING_RUNS, *seed)).collect();
+    let lineages = evaluators.iter().zip(&seeds).map(|(evaluator, seed)| Lineage::random(&EXPLORING, evaluator, *seed));
+    let explored = genetic::run_beside(&EXPLORING, lineages.collect(), &mut watch)?;
+    let best = |explored: RunResult| explored.population.into_iter().take(REFINING.population).collect();
+    let begun = explored.into_iter().map(best).zip(seeds).collect();
+    let refined = refine(task, begun, |generation, best| watch(EXPLORING.max_generations + generation, best))?;
+    let mut chosen: Vec<(f64, Evolved)> = refined.into_iter().map(|mut ranked| ranked.swap_remove(0)).collect();
     chosen.sort_by(|a, b| b.0.total_cmp(&a.0));
     Ok(chosen.into_iter().map(|(_, evolved)| evolved).collect())
 }
 
-/// Restarts, side by side: of each that is refined its controllers by falling success rate in fresh runs, which comes with
-/// each.
-///
-/// # Errors
-/// As [`genetic::run`].
-pub fn explore(
-    task: &EvolutionTask,
-    exploration: &Exploration,
-    mut watch: impl FnMut(usize, f64),
-) -> Result<Vec<Vec<(f64, Evolved)>>> {
-    let Exploration { restarts, refined, settings } = exploration;
-    let seeds: Vec<u64> = (0..*restarts).map(|restart| derive(task.seed, &[restart as u64])).collect();
-    let evaluators: Vec<FitnessEvaluator> = seeds.iter().map(|seed| task.evaluator(EXPLORING_RUNS, *seed)).collect();
-    let lineages = evaluators.iter().zip(&seeds).map(|(evaluator, seed)| Lineage::random(settings, evaluator, *seed));
-    let explored = genetic::run_beside(settings, lineages.collect(), &mut watch)?;
-    let best = |explored: RunResult| explored.population.into_iter().take(REFINING.population).collect();
-    let mut begun: Vec<(Vec<Vec<f32>>, u64)> = explored.into_iter().map(best).zip(seeds).collect();
-    if refined < restarts {
-        let worth = workers::map(begun.len(), |restart| Ok(task.worth(&begun[restart].0)))?;
-        let mut ranked: Vec<_> = worth.into_iter().zip(begun).collect();
-        ranked.sort_by(|(a, _), (b, _)| b.total_cmp(a));
-        begun = ranked.into_iter().take(*refined).map(|(_, begun)| begun).collect();
-    }
-    refine(task, begun, |generation, best| watch(settings.max_generations + generation, best))
-}
-
-/// The second and third stage from given populations, as [`explore`]; the seed of each fixes what the genetic algorithm
-/// draws.
+/// The second and third stage from given populations, side by side: of each its controllers by falling success rate in fresh
+/// runs, which comes with each. A population's seed fixes what the genetic algorithm draws.
 ///
 /// # Errors
 /// As [`genetic::run`].
@@ -176,25 +142,7 @@ fn ranked(evaluator: &FitnessEvaluator, population: &[Vec<f32>]) -> Result<Vec<(
     Ok(ranked)
 }
 
-impl Exploration {
-    /// Generations of a restart that is refined.
-    pub const fn generations(&self) -> usize {
-        self.settings.max_generations + REFINING.max_generations
-    }
-}
-
 impl<'a> EvolutionTask<'a> {
-    /// The best success rate of a population's foremost individuals; a bit more for ending near.
-    fn worth(&self, population: &[Vec<f32>]) -> f64 {
-        let evaluator = self.evaluator(FOREMOST_RUNS, self.seed);
-        let of = |genes: &Vec<f32>| {
-            let outcomes = evaluator.outcomes(&evaluator.decoder.controller(genes), FOREMOST_RUNS, COMPARING);
-            let nearness = REACHED_CM * evaluator.fitness_of(&outcomes) / FOREMOST_RUNS as f64;
-            evaluator.success_of(&outcomes).rate + NEARNESS * nearness
-        };
-        population.iter().take(FOREMOST).map(of).fold(0.0, f64::max)
-    }
-
     /// Success of a controller in a number of runs that played no part in its evolution.
     pub fn success(&self, controller: &Controller, runs: usize) -> Success {
         self.evaluator(REFINING_RUNS, self.seed).success(controller, runs, JUDGING)

@@ -4,6 +4,7 @@ use crate::effects::PoseIncrement;
 use crate::effects::applied::AppliedEffect;
 use crate::error::{Error, Result};
 use crate::logs::Robot;
+use crate::simulator::ensemble::Member;
 use crate::simulator::motion::MotionNetworks;
 use crate::simulator::nominal::MotionBias;
 use crate::simulator::{Learned, Simulator};
@@ -34,6 +35,8 @@ pub enum MotionModel<'s> {
         reference: &'s MotionBias,
         /// Least and largest command that they know.
         commands: [f64; 2],
+        /// The robot whose bias is added, if one is known.
+        member: Option<Member>,
         /// Fraction of the noise of forward, lateral and turn that is the robot's own and not the tracker's, 0 to 1.
         process_noise_fraction: [f64; 3],
     },
@@ -60,6 +63,7 @@ impl<'s> Baseline<'s> {
             networks,
             reference,
             commands: simulator.commands.map(f64::from),
+            member: None,
             process_noise_fraction: [&simulator.forward, &simulator.lateral, &simulator.turn]
                 .map(process_noise_fraction),
         });
@@ -71,6 +75,19 @@ impl<'s> Baseline<'s> {
             applied: simulator.added.clone(),
         })
     }
+
+    /// A trained simulator with the robot in the middle of those that its training logs allow. Networks are off where logs
+    /// are few, which is where controllers drive, and an effect would be fitted to that.
+    ///
+    /// # Errors
+    /// As [`learned`](Self::learned).
+    pub fn of_middle(simulator: &'s Simulator) -> Result<Self> {
+        let mut baseline = Baseline::learned(simulator)?;
+        if let Some(MotionModel::Learned { member, .. }) = &mut baseline.motion {
+            *member = simulator.robots(0, 0).map(|robots| robots.mean);
+        }
+        Ok(baseline)
+    }
 }
 
 impl MotionModel<'_> {
@@ -80,7 +97,8 @@ impl MotionModel<'_> {
             MotionModel::Learned { networks, reference, commands, .. } => {
                 let speeds = [now[0], now[1], before[0], before[1]].map(|c| c.clamp(commands[0], commands[1]));
                 let learned = networks.step(speeds.map(|c| c as f32));
-                let more = reference.correction(&speeds);
+                let (known, beyond) = (reference.correction(&speeds), self.beyond([speeds[0], speeds[1]]));
+                let more = [0, 1, 2].map(|channel| known[channel] + beyond[channel]);
                 PoseIncrement {
                     forward_cm: f64::from(learned.forward_cm) + more[0],
                     lateral_cm: f64::from(learned.lateral_cm) + more[1],
@@ -98,6 +116,15 @@ impl MotionModel<'_> {
                 PoseIncrement { forward_cm, lateral_cm, turn_rad }
             }
         }
+    }
+
+    /// What the robot does beyond networks and their bias while a command is held, if one is known.
+    pub fn beyond(&self, command: [f64; 2]) -> [f64; 3] {
+        let MotionModel::Learned { networks, reference, member: Some(member), .. } = self else { return [0.0; 3] };
+        let (does, said) = (member.trained(command), networks.held(command));
+        let known = reference.correction(&[command[0], command[1], command[0], command[1]]);
+        let beyond = [does[0] - said[0], does[1] - said[1], (does[2] - said[2]).to_radians()];
+        [0, 1, 2].map(|channel| beyond[channel] - known[channel])
     }
 
     /// Standard deviations of forward (cm), lateral (cm) and turn (rad) where nothing is different.

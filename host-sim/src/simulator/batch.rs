@@ -21,34 +21,36 @@ use robots::Robots;
 impl Environment<'_> {
     /// Simulates runs side by side; the outcomes are in the order of the requests.
     pub fn run(&self, requests: &[RolloutRequest]) -> Vec<RolloutOutcome> {
+        self.run_watched(requests, |_, _| {})
+    }
+
+    /// The same; `watch` is told every point of every run's trajectory, each run's in their order, by the number of its
+    /// request.
+    pub fn run_watched(
+        &self,
+        requests: &[RolloutRequest],
+        mut watch: impl FnMut(usize, TrajectoryPoint),
+    ) -> Vec<RolloutOutcome> {
         let mut outcomes = vec![None; requests.len()];
         for sensor in [SensorModel::Networks, SensorModel::Beam] {
             let requests: Vec<(usize, RolloutRequest)> =
                 requests.iter().copied().enumerate().filter(|(_, request)| request.sensor == sensor).collect();
             let finish = |request: usize, outcome| outcomes[request] = Some(outcome);
-            Arch::new().dispatch(Batch { environment: self, sensor, requests: &requests, watch: |_| {}, finish });
+            Arch::new().dispatch(Batch { environment: self, sensor, requests: &requests, watch: &mut watch, finish });
         }
         outcomes.into_iter().flatten().collect()
     }
 
     /// Simulates one run and keeps its trajectory.
     pub fn trace(&self, request: RolloutRequest) -> (RolloutOutcome, Vec<TrajectoryPoint>) {
-        let (mut trajectory, mut outcome) = (Vec::new(), None);
-        let watch = |point| trajectory.push(point);
-        let finish = |_, ended| outcome = Some(ended);
-        Arch::new().dispatch(Batch {
-            environment: self,
-            sensor: request.sensor,
-            requests: &[(0, request)],
-            watch,
-            finish,
-        });
-        (outcome.expect("every run ends"), trajectory)
+        let mut trajectory = Vec::new();
+        let outcomes = self.run_watched(&[request], |_, point| trajectory.push(point));
+        (outcomes[0], trajectory)
     }
 }
 
 /// Runs `requests`, which all have `sensor`; `finish` is told the outcome of each by its number, `watch` every
-/// trajectory point of all.
+/// trajectory point by the same.
 struct Batch<'a, W, F> {
     pub environment: &'a Environment<'a>,
     pub sensor: SensorModel,
@@ -74,7 +76,7 @@ struct StepDraws {
     held_bits: [u32; WIDEST],
 }
 
-impl<W: FnMut(TrajectoryPoint), F: FnMut(usize, RolloutOutcome)> WithSimd for Batch<'_, W, F> {
+impl<W: FnMut(usize, TrajectoryPoint), F: FnMut(usize, RolloutOutcome)> WithSimd for Batch<'_, W, F> {
     type Output = ();
 
     #[inline(always)]
@@ -93,8 +95,8 @@ impl<W: FnMut(TrajectoryPoint), F: FnMut(usize, RolloutOutcome)> WithSimd for Ba
             let happens = robots.happens(simd, &echo_cm, may_touch);
             for (lane, happens) in happens.iter().enumerate().take(width) {
                 let ended = if *happens > 0.0 { robots.close(lane, *happens, &from, &echo_cm) } else { None };
-                if let Some(point) = robots.trajectory_point(lane, &echo_cm, &ended) {
-                    (self.watch)(point);
+                if let Some((number, point)) = robots.trajectory_point(lane, &echo_cm, &ended) {
+                    (self.watch)(number, point);
                 }
                 if let Some((number, outcome)) = ended {
                     (self.finish)(number, outcome);

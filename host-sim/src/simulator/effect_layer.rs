@@ -118,7 +118,8 @@ impl<'s> EffectLayer<'s> {
         let mut cells = [0; 3];
         let step = |now: [f64; 2], before: [f64; 2]| {
             let [low, high] = self.commands;
-            let learned = networks.step([now[0], now[1], before[0], before[1]].map(|c| c.clamp(low, high) as f32));
+            let learned =
+                networks.trained_step([now[0], now[1], before[0], before[1]].map(|c| c.clamp(low, high) as f32));
             cells = learned.cells;
             let [forward_cm, lateral_cm, turn_rad] =
                 [learned.forward_cm, learned.lateral_cm, learned.turn_rad].map(f64::from);

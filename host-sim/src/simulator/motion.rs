@@ -45,7 +45,7 @@ pub struct Motion {
 pub struct MotionTable {
     first: [Motion; TUPLES],
     steady: [Motion; TUPLES],
-    /// What a robot of a distribution does beyond the networks, for each tuple.
+    /// What a robot of a distribution does beyond what was known of it in training, for each tuple: effects act on that.
     bias: [MotionVector; TUPLES],
     /// With added effects that depend on commands alone.
     transients: Option<Box<Transients>>,
@@ -152,18 +152,19 @@ impl<'s> MotionNetworks<'s> {
         let mut table = MotionTable { first, steady, bias: [[0.0; 3]; TUPLES], transients: None };
         if let Some(member) = self.member {
             for (tuple, first) in steps[..TUPLES].iter().enumerate() {
-                let [left, right, ..] = *first;
-                table.add(tuple, self.bias(member, [left, right]), first_step(member, first));
+                let command = [first[0], first[1]].map(f64::from);
+                let (does, trained) = (member.motion(command), member.trained(command));
+                table.add(tuple, beyond(does, self.held(command)), first_step(member, first));
+                table.bias[tuple] = beyond(does, trained);
             }
         }
         table
     }
 
-    /// What a robot does beyond the networks and their correction while a command is held.
-    fn bias(&self, member: &Member, command: [f32; 2]) -> MotionVector {
-        let command = command.map(f64::from);
-        let (does, said) = (member.motion(command), self.held(command));
-        in_radians(std::array::from_fn(|channel| does[channel] - said[channel]))
+    /// A step as it was known in training: what networks say, and what their logs say beyond it.
+    pub fn trained_step(&self, speeds: Speeds<f32>) -> Motion {
+        let (step, command) = (self.step(speeds), [speeds[0], speeds[1]].map(f64::from));
+        self.member.map_or(step, |member| step.plus(&beyond(member.trained(command), self.held(command))))
     }
 
     fn cells(&self, speeds: &Speeds<f32>) -> [usize; 3] {
@@ -194,7 +195,6 @@ impl MotionTable {
     }
 
     fn add(&mut self, tuple: usize, bias: MotionVector, first_step: MotionVector) {
-        self.bias[tuple] = bias;
         self.steady[tuple] = self.steady[tuple].plus(&bias);
         self.first[tuple] = self.first[tuple].plus(&bias).plus(&first_step);
     }
@@ -211,6 +211,11 @@ impl Motion {
             cells: self.cells,
         }
     }
+}
+
+/// What a robot does beyond something that is known: forward and lateral in cm, turn in degrees.
+fn beyond(does: [f64; 3], known: [f64; 3]) -> MotionVector {
+    in_radians(std::array::from_fn(|channel| does[channel] - known[channel]))
 }
 
 /// What the first step of a robot's command after another does beyond later ones.

@@ -11,6 +11,7 @@ use crate::evolve::chance::{Chance, Judge, ROBOTS, RUNS};
 use crate::evolve::fitness::RandomNumbers;
 use crate::evolve::genome::GenotypeDecoder;
 use crate::evolve::paper::Evolved;
+use crate::evolve::prefixes;
 use crate::evolve::robust::{self, EvolutionTask};
 use crate::evolve::way::WayMap;
 use crate::geometry::Pose;
@@ -21,11 +22,12 @@ use crate::simulator::rollout::{RolloutRequest, SensorModel};
 use crate::simulator::{Noise, Simulator};
 
 /// Generations that a controller has behind it at most.
-pub const GENERATIONS: usize = robust::BROAD.generations();
+pub const GENERATIONS: usize = robust::REFINING_GENERATIONS;
 /// Runs on each robot that tell which candidates are worth more.
 const FEW_RUNS: usize = 3;
-/// Controllers from which a search goes on.
+/// Controllers from which a search goes on, and new ones that are refined.
 const INCUMBENTS: usize = 2;
+const REFINED: usize = 6;
 /// Where the best known controller has this chance, nothing is explored anew.
 const GOOD: f64 = 0.9;
 /// A controller that never failed on the robot is driven again where its chance, real runs counted, is this.
@@ -150,15 +152,16 @@ impl Search<'_> {
             seed: self.stream(Purpose::Exploring, 0),
         };
         let explores = known.first().is_none_or(|best| best.score < GOOD);
-        let mut searched = if explores { robust::explore(&task, &robust::BROAD, |_, _| {})? } else { Vec::new() };
-        let mutants = |(incumbent, i): (&Candidate, u64)| {
+        let explored = if explores { prefixes::explore(&task)? } else { Vec::new() };
+        let incumbents = known.iter().take(INCUMBENTS).map(|known| &known.controller);
+        let mutants = |(controller, i): (&Controller, u64)| {
             let seed = self.stream(Purpose::Refining, i);
-            (robust::mutants(&task, &incumbent.controller, seed), seed)
+            (robust::mutants(&task, controller, seed), seed)
         };
-        let incumbents = known.iter().take(INCUMBENTS).zip(0..).map(mutants).collect();
-        searched.extend(robust::refine(&task, incumbents, |_, _| {})?);
+        let begun = incumbents.chain(explored.iter().take(REFINED)).zip(0..).map(mutants).collect();
+        let refined = robust::refine(&task, begun, |_, _| {})?;
         let shortlist = |ranked: Vec<(f64, Evolved)>| ranked.into_iter().take(SHORTLISTED).map(|(_, e)| e.controller);
-        Ok(searched.into_iter().flat_map(shortlist).collect())
+        Ok(refined.into_iter().flat_map(shortlist).collect())
     }
 
     fn robots(&self) -> Result<Robots> {

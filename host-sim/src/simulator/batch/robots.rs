@@ -235,21 +235,18 @@ impl<'a> Robots<'a> {
         Some((run.number, RolloutOutcome { termination, end_cm: to_cm, steps }))
     }
 
-    /// The trajectory point after a step of a lane that has a run.
+    /// The trajectory point after a step of a lane that has a run, and which it is.
     pub fn trajectory_point(
         &self,
         lane: usize,
         echo_cm: &Row,
         ended: &Option<(usize, RolloutOutcome)>,
-    ) -> Option<TrajectoryPoint> {
+    ) -> Option<(usize, TrajectoryPoint)> {
         let run = self.runs[lane].as_ref()?;
         let here = self.pose(lane);
         let position_cm = ended.map_or(here.position_cm, |(_, outcome)| outcome.end_cm);
-        Some(TrajectoryPoint {
-            pose: Pose { position_cm, ..here },
-            echo_cm: reading(echo_cm[lane]),
-            tuple: run.machine.tuple(),
-        })
+        let (pose, tuple) = (Pose { position_cm, ..here }, run.machine.tuple());
+        Some((run.number, TrajectoryPoint { pose, echo_cm: reading(echo_cm[lane]), tuple }))
     }
 
     /// Where the robot of a lane is.

@@ -5,7 +5,7 @@ use crate::effects::applied::AppliedEffect;
 use crate::effects::catalogue::Candidate;
 use crate::evolve::genome::GenotypeDecoder;
 use crate::learn::train::{self, TABLE_ONE, Trainer};
-use crate::simulator::motion::{MotionTable, speeds};
+use crate::simulator::motion::{Motion, MotionTable, speeds};
 use crate::simulator::rollout::Termination;
 use crate::simulator::{Noise, Simulator};
 use mindgap_core::controller::{Controller, Machine, Status, TUPLES};
@@ -63,7 +63,7 @@ fn outcomes_by(
     let requests = requests(&controllers, tables, sensor);
     let mut outcomes = vec![None; requests.len()];
     let finish = |number: usize, outcome| outcomes[number] = Some(outcome);
-    simd.vectorize(Batch { environment, sensor, requests: &requests, watch: |_| {}, finish });
+    simd.vectorize(Batch { environment, sensor, requests: &requests, watch: |_, _| {}, finish });
     outcomes.into_iter().map(|outcome| outcome.expect("every run ends")).collect()
 }
 
@@ -182,4 +182,31 @@ fn every_run_steps_as_the_machine_of_the_core_does() {
         }
     }
     assert!(endings.iter().all(|count| *count > 0), "{endings:?} ended in each way");
+}
+
+/// Of three quarters of the distance three quarters of what training logs say is left, also where that is not what networks say.
+#[test]
+fn effects_act_on_the_robot_as_it_was_known_in_training() {
+    const SHARE: f64 = 0.75;
+    let less = AppliedEffect::new(&Candidate::named("drive_scale", "distance").unwrap(), &[SHARE]);
+    let affected = Simulator { added: vec![less], ..SIMULATOR.clone() };
+    let (scene, robots) = (four_obstacles(), SIMULATOR.robots(0, SEED).unwrap());
+    let of_middle = |simulator| {
+        Environment::new(simulator, &scene, scene.starts[0], Noise::Learned).unwrap().of_robot(&robots.mean)
+    };
+    let (usual, less) = (of_middle(&SIMULATOR), of_middle(&affected));
+    let mut beyond_networks_cm: f32 = 0.0;
+    for controller in controllers() {
+        let (usual_motions, motions) = (usual.motions(&controller), less.motions(&controller));
+        for (tuple, less) in motions.transients().expect("worked out ahead").iter().enumerate() {
+            let (expected, less) = (usual_motions.motion(tuple, false), less.last().unwrap());
+            let less = less.plus(motions.bias(tuple));
+            assert!((less.forward_cm - SHARE as f32 * expected.forward_cm).abs() < 1e-4, "{less:?} {expected:?}");
+            assert!((less.turn_rad - SHARE as f32 * expected.turn_rad).abs() < 1e-5, "{less:?} {expected:?}");
+            let Motion { forward_cm, .. } =
+                SIMULATOR.motion_networks().unwrap().step(speeds(&controller, tuple, false));
+            beyond_networks_cm = beyond_networks_cm.max((expected.forward_cm - forward_cm).abs());
+        }
+    }
+    assert!(beyond_networks_cm > 0.1, "{beyond_networks_cm}");
 }

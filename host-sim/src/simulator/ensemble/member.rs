@@ -1,5 +1,7 @@
 //! One robot of a distribution over robots.
 
+use std::sync::Arc;
+
 use rand_distr::{Distribution, StandardNormal};
 
 use super::basis::weights;
@@ -10,6 +12,8 @@ use crate::chance::generator;
 #[derive(Clone, Debug)]
 pub struct Member {
     nodes: [Vec<f64>; 3],
+    /// Those of the robot in the middle of what training logs say.
+    trained: Arc<[Vec<f64>; 3]>,
     first_step: [f64; 3],
     lasting: [f64; 3],
     seed: u64,
@@ -18,14 +22,25 @@ pub struct Member {
 impl Member {
     /// The robot with these motions of the nodes; `seed` fixes what its first steps do, with standard deviations
     /// `first_step`.
-    pub(super) fn new(nodes: [Vec<f64>; 3], first_step: [f64; 3], lasting: [f64; 3], seed: u64) -> Self {
-        Member { nodes, first_step, lasting, seed }
+    pub(super) fn new(
+        nodes: [Vec<f64>; 3],
+        trained: Arc<[Vec<f64>; 3]>,
+        first_step: [f64; 3],
+        lasting: [f64; 3],
+        seed: u64,
+    ) -> Self {
+        Member { nodes, trained, first_step, lasting, seed }
     }
 
     /// Its motion in every step of a command that is held, but for chance.
     pub fn motion(&self, command: [f64; 2]) -> [f64; 3] {
-        let weights = weights(command);
-        self.nodes.each_ref().map(|nodes| weights.iter().map(|(node, weight)| nodes[*node] * weight).sum())
+        along(&self.nodes, command)
+    }
+
+    /// The same of the robot in the middle of what training logs say: effects act on that, and what runs tell of this one
+    /// since then comes on top.
+    pub fn trained(&self, command: [f64; 2]) -> [f64; 3] {
+        along(&self.trained, command)
     }
 
     /// What the first step of a command after another one does beyond what networks say of that.
@@ -39,4 +54,10 @@ impl Member {
     pub fn lasting(&self) -> [f64; 3] {
         self.lasting
     }
+}
+
+/// The motion under a command that is held, from those of the nodes.
+fn along(nodes: &[Vec<f64>; 3], command: [f64; 2]) -> [f64; 3] {
+    let weights = weights(command);
+    nodes.each_ref().map(|nodes| weights.iter().map(|(node, weight)| nodes[*node] * weight).sum())
 }
