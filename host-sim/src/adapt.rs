@@ -81,12 +81,13 @@ pub fn adapt(simulator: &Simulator, logs: &Logs, seed: u64, watch: impl Fn(Stage
     let ensemble = simulator.ensemble.as_ref().ok_or_else(missing)?;
     let noise = MotionNoise::of(simulator).ok_or_else(missing)?;
     let observations = Observations::of(logs, 1.0);
-    let plain = steps(simulator, &[], &observations)?;
+    let baseline = Baseline::of_middle(simulator)?;
+    let plain = steps(&baseline, &[], &observations);
     if plain.is_empty() {
         return Err(Error::new("the runs hold no step with a pose at both ends: there is nothing to adapt to"));
     }
     let effects = diagnosed(simulator, logs, seed, watch);
-    let explained = steps(simulator, &effects, &observations)?;
+    let explained = steps(&baseline, &effects, &observations);
     let networks = simulator.motion_networks().ok_or_else(missing)?;
     let said: Held = &|command| networks.held(command);
     let given = |steps: &[StepResidual]| conditioned(ensemble, &noise, said, steps);
@@ -95,7 +96,7 @@ pub fn adapt(simulator: &Simulator, logs: &Logs, seed: u64, watch: impl Fn(Stage
     let (effects, steps) = if named {
         (effects, explained)
     } else {
-        (of_no_motion(simulator, effects, &observations, &plain)?, plain.clone())
+        (of_no_motion(&baseline, effects, &observations, &plain), plain.clone())
     };
     let after = given(&steps);
     let lesson = Lesson {
@@ -117,18 +118,13 @@ fn probability(mut ensemble: Ensemble, said: Held) -> f64 {
 
 /// Those of the effects that leave the motion alone, as those of the sensor do.
 fn of_no_motion(
-    simulator: &Simulator,
-    effects: Vec<AppliedEffect>,
+    baseline: &Baseline,
+    mut effects: Vec<AppliedEffect>,
     observations: &Observations,
     plain: &[StepResidual],
-) -> Result<Vec<AppliedEffect>> {
-    let mut left = Vec::new();
-    for effect in effects {
-        if steps(simulator, std::slice::from_ref(&effect), observations)? == plain {
-            left.push(effect);
-        }
-    }
-    Ok(left)
+) -> Vec<AppliedEffect> {
+    effects.retain(|effect| steps(baseline, std::slice::from_ref(effect), observations) == plain);
+    effects
 }
 
 /// The effects that a diagnosis names; none where the logs do not suffice for one.
@@ -139,12 +135,11 @@ fn diagnosed(simulator: &Simulator, logs: &Logs, seed: u64, watch: impl Fn(Stage
     found.map_or_else(|_| Vec::new(), |found| found.applied)
 }
 
-/// What every logged step is off by, with these effects beside those that the simulator has. Effects act on the robot as it
+/// What every logged step is off by, with these effects beside those that were added before. Effects act on the robot as it
 /// was known in training, and what that does beyond the networks is no news.
-fn steps(simulator: &Simulator, effects: &[AppliedEffect], observations: &Observations) -> Result<Vec<StepResidual>> {
-    let baseline = Baseline::of_middle(simulator)?;
-    let Some(motion @ MotionModel::Learned { reference, .. }) = &baseline.motion else { return Ok(Vec::new()) };
-    let applied: Vec<AppliedEffect> = simulator.added.iter().chain(effects).cloned().collect();
+fn steps(baseline: &Baseline, effects: &[AppliedEffect], observations: &Observations) -> Vec<StepResidual> {
+    let Some(motion @ MotionModel::Learned { reference, .. }) = &baseline.motion else { return Vec::new() };
+    let applied: Vec<AppliedEffect> = baseline.applied.iter().chain(effects).cloned().collect();
     let chain = EffectChain::of(&applied);
     let step = |row: &crate::evaluation::observations::Observation| {
         let [now, before, ..] = row.context.commands;
@@ -153,7 +148,7 @@ fn steps(simulator: &Simulator, effects: &[AppliedEffect], observations: &Observ
         let off = [0, 1, 2].map(|channel| left[channel] + beyond[channel]);
         Some(StepResidual::new([row.run, row.at], [now[0], now[1], before[0], before[1]], off, reference))
     };
-    Ok(observations.rows.iter().filter_map(step).collect())
+    observations.rows.iter().filter_map(step).collect()
 }
 
 /// The commands that were held, with what is known of them before and after; those that differ most first.

@@ -9,5 +9,7 @@ pub mod prefixes;
 pub mod request;
 pub mod robust;
 mod stops;
+#[cfg(test)]
+mod test_support;
 pub mod trial;
 pub mod way;

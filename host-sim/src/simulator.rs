@@ -30,7 +30,7 @@ use crate::error::{Error, Result};
 use crate::files;
 use crate::logs::Robot;
 use crate::sonar::FirstEchoLaw;
-use ensemble::{Ensemble, Robots};
+use ensemble::{Ensemble, Member, Robots};
 use motion::MotionNetworks;
 use nominal::NominalModel;
 use residuals::{ConstantReading, ResidualQuantiles};
@@ -173,6 +173,12 @@ impl Simulator {
     pub fn robots(&self, count: usize, seed: u64) -> Option<Robots> {
         let networks = self.motion_networks()?;
         self.ensemble.as_ref()?.robots(&|command| networks.held(command), count, seed)
+    }
+
+    /// The robot in the middle of what the training logs alone say; none where that is not said.
+    pub fn trained_robot(&self) -> Option<Member> {
+        let networks = self.motion_networks()?;
+        self.ensemble.as_ref()?.trained(&|command| networks.held(command))
     }
 
     fn check(&self, path: &Path) -> Result<()> {

@@ -11,7 +11,7 @@ use crate::simulator::motion::MotionTable;
 use crate::simulator::rollout::{REACHED_CM, RolloutRequest, Termination, TrajectoryPoint};
 
 /// Thresholds lie this far apart, cm: about the scatter of a reading.
-const APART_CM: i16 = 4;
+const APART_CM: usize = 4;
 /// No reading is larger, and thus none ends a tuple.
 const NEVER: Tuple = Tuple { left: 0, right: 0, when: When::Larger, threshold_cm: 255 };
 /// Any reading ends this one, and without one the robot stays where it is.
@@ -52,10 +52,10 @@ pub fn controller(task: &EvolutionTask, first: &[Tuple]) -> Controller {
     Controller { step_ms: task.decoder.step_ms, max_steps: task.decoder.max_steps, tuples }
 }
 
-/// For each of some beginnings of controllers the thresholds of its last tuple that end it at different places, in as many
-/// runs. Fewer than half of the runs tell nothing of a place.
+/// For each of some beginnings of controllers, of a tuple at least, the thresholds of its last tuple that end it at different
+/// places, in as many runs. Fewer than half of the runs tell nothing of a place.
 pub fn stops(task: &EvolutionTask, beginnings: &[&[Tuple]], runs: usize, seed: u64) -> Vec<Vec<Stop>> {
-    let held: Vec<Controller> = beginnings.iter().map(|first| controller(task, &held(first))).collect();
+    let held: Vec<Controller> = beginnings.iter().map(|first| holding(task, first)).collect();
     let motions: Vec<MotionTable> = held.iter().map(|controller| task.environment.motions(controller)).collect();
     let request = |number: usize| RolloutRequest {
         controller: &held[number / runs],
@@ -78,25 +78,25 @@ pub fn stops(task: &EvolutionTask, beginnings: &[&[Tuple]], runs: usize, seed: u
             path.pop();
         }
     }
-    let tuple = |of: usize| beginnings[of].last().copied().unwrap_or(REST);
-    paths.chunks(runs).enumerate().map(|(of, paths)| of_paths(paths, tuple(of), task)).collect()
-}
-
-/// The same tuples, the last of which never ends.
-fn held(first: &[Tuple]) -> Vec<Tuple> {
-    let mut held = first.to_vec();
-    if let Some(last) = held.last_mut() {
-        *last = Tuple { left: last.left, right: last.right, ..NEVER };
-    }
-    held
-}
-
-fn of_paths(paths: &[Vec<Step>], tuple: Tuple, task: &EvolutionTask) -> Vec<Stop> {
     let [low, high] = task.decoder.thresholds_cm.map(|cm| cm as i16);
-    let thresholds: Vec<i16> = (low..=high).step_by(usize::from(APART_CM.unsigned_abs())).collect();
+    let thresholds: Vec<i16> = (low..=high).step_by(APART_CM).collect();
+    let of_each = paths.chunks(runs).zip(beginnings);
+    of_each.map(|(paths, first)| of_paths(paths, first[first.len() - 1], &thresholds)).collect()
+}
+
+/// The controller that holds the last of its first tuples.
+fn holding(task: &EvolutionTask, first: &[Tuple]) -> Controller {
+    let mut whole = controller(task, first);
+    let last = &mut whole.tuples[first.len() - 1];
+    *last = Tuple { left: last.left, right: last.right, ..NEVER };
+    whole
+}
+
+/// Where these runs that hold a tuple would end with each of the thresholds.
+fn of_paths(paths: &[Vec<Step>], tuple: Tuple, thresholds: &[i16]) -> Vec<Stop> {
     let mut stops = Vec::new();
     for when in [When::Larger, When::Smaller] {
-        let ends: Vec<Vec<Option<usize>>> = paths.iter().map(|path| first_beyond(path, when, &thresholds)).collect();
+        let ends: Vec<Vec<Option<usize>>> = paths.iter().map(|path| first_beyond(path, when, thresholds)).collect();
         let mut before = Vec::new();
         for (at, threshold_cm) in thresholds.iter().enumerate() {
             let ends: Vec<Option<usize>> = ends.iter().map(|ends| ends[at]).collect();
@@ -167,41 +167,13 @@ impl Stop {
 }
 
 #[cfg(test)]
-pub mod tests {
-    use std::sync::LazyLock;
-
+mod tests {
     use super::*;
-    use crate::built_in_robot::{default_robot, four_obstacles, record, training_room};
     use crate::chance::generator;
-    use crate::evolve::fitness::RandomNumbers;
-    use crate::evolve::genome::GenotypeDecoder;
-    use crate::evolve::way::WayMap;
-    use crate::learn::train::{TABLE_ONE, Trainer, train};
-    use crate::simulator::environment::Environment;
-    use crate::simulator::{Noise, Simulator};
+    use crate::evolve::test_support::with_task;
 
     const SEED: u64 = 5;
     const RUNS: usize = 8;
-
-    static SIMULATOR: LazyLock<Simulator> = LazyLock::new(|| {
-        let logs = record(&default_robot(), &training_room(), 20, 40, &[], SEED).unwrap();
-        train(&logs, &Trainer::Fast, &TABLE_ONE, SEED, &|_| {}).unwrap()
-    });
-
-    /// Calls `check` with a task among four obstacles.
-    pub fn with_task(check: impl Fn(&EvolutionTask)) {
-        let scene = four_obstacles();
-        let target_cm = scene.target_cm.unwrap();
-        let environment = Environment::new(&SIMULATOR, &scene, scene.starts[0], Noise::Learned).unwrap();
-        check(&EvolutionTask {
-            environment: &environment.with_beam(&SIMULATOR),
-            target_cm,
-            way: &WayMap::new(&scene, target_cm, SIMULATOR.robot.body_radius_cm),
-            decoder: GenotypeDecoder::new(&SIMULATOR, 60),
-            random_numbers: RandomNumbers::Common,
-            seed: SEED,
-        });
-    }
 
     /// Where the runs of a controller end that are not lost, with the seeds of a single beginning.
     fn ends(task: &EvolutionTask, controller: &Controller) -> Vec<DVec2> {

@@ -86,9 +86,9 @@ impl Comparison {
                 break;
             };
             let (settled, places_of_it) = settled(next, &alone, context);
-            let is_vague = places_of_it.iter().any(|place| is_vague(&settled, &place.taken, calibration));
             let gain = further_gain(&settled, &chosen, &none, calibration).over(calibration.judgement.vague_factor);
-            if is_vague && !gain.passes(calibration.effect_nats) {
+            let vague = |place: &Place| is_vague(&settled, &place.taken, calibration);
+            if places_of_it.iter().any(vague) && !gain.passes(calibration.effect_nats) {
                 log::info!("too many others could stand for {}", settled.ids().join("+"));
                 break;
             }

@@ -84,7 +84,7 @@ impl<'s> Baseline<'s> {
     pub fn of_middle(simulator: &'s Simulator) -> Result<Self> {
         let mut baseline = Baseline::learned(simulator)?;
         if let Some(MotionModel::Learned { member, .. }) = &mut baseline.motion {
-            *member = simulator.robots(0, 0).map(|robots| robots.mean);
+            *member = simulator.trained_robot();
         }
         Ok(baseline)
     }
@@ -121,7 +121,7 @@ impl MotionModel<'_> {
     /// What the robot does beyond networks and their bias while a command is held, if one is known.
     pub fn beyond(&self, command: [f64; 2]) -> [f64; 3] {
         let MotionModel::Learned { networks, reference, member: Some(member), .. } = self else { return [0.0; 3] };
-        let (does, said) = (member.trained(command), networks.held(command));
+        let (does, said) = (member.motion(command), networks.held(command));
         let known = reference.correction(&[command[0], command[1], command[0], command[1]]);
         let beyond = [does[0] - said[0], does[1] - said[1], (does[2] - said[2]).to_radians()];
         [0, 1, 2].map(|channel| beyond[channel] - known[channel])

@@ -13,6 +13,8 @@ pub mod basis;
 pub mod member;
 pub mod posterior;
 
+use std::sync::Arc;
+
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
@@ -76,8 +78,18 @@ impl Ensemble {
     /// what networks say, which is `held`.
     pub fn robots(&self, held: Held, count: usize, seed: u64) -> Option<Robots> {
         let posterior = Posterior::new(self, held)?;
-        let drawn = (0..count as u64).into_par_iter().map(|robot| posterior.draw(derive(seed, &[robot]))).collect();
-        Some(Robots { mean: posterior.mean(), drawn })
+        let mean = posterior.mean();
+        let is_changed = self.evidence.iter().any(|e| e.after_training);
+        let trained = Arc::new(if is_changed { self.trained(held)? } else { mean.clone() });
+        let draw = |robot: u64| posterior.draw(derive(seed, &[robot])).known_as(&trained);
+        let drawn = (0..count as u64).into_par_iter().map(draw).collect();
+        Some(Robots { mean: mean.known_as(&trained), drawn })
+    }
+
+    /// The robot in the middle of what the training logs alone say; none as for [`robots`](Self::robots).
+    pub fn trained(&self, held: Held) -> Option<Member> {
+        let evidence = self.evidence.iter().filter(|e| !e.after_training).copied().collect();
+        Some(Posterior::new(&Ensemble { evidence, ..self.clone() }, held)?.mean())
     }
 
     /// Whether a file could have held this.

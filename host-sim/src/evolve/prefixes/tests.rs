@@ -1,5 +1,5 @@
 use super::*;
-use crate::evolve::stops::tests::with_task;
+use crate::evolve::test_support::with_task;
 use glam::DVec2;
 use mindgap_core::controller::When;
 

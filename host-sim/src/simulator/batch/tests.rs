@@ -184,7 +184,8 @@ fn every_run_steps_as_the_machine_of_the_core_does() {
     assert!(endings.iter().all(|count| *count > 0), "{endings:?} ended in each way");
 }
 
-/// Of three quarters of the distance three quarters of what training logs say is left, also where that is not what networks say.
+/// Of three quarters of the distance three quarters of what training logs say is left, also where that is not what networks
+/// say.
 #[test]
 fn effects_act_on_the_robot_as_it_was_known_in_training() {
     const SHARE: f64 = 0.75;

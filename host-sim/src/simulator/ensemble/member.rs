@@ -12,8 +12,8 @@ use crate::chance::generator;
 #[derive(Clone, Debug)]
 pub struct Member {
     nodes: [Vec<f64>; 3],
-    /// Those of the robot in the middle of what training logs say.
-    trained: Arc<[Vec<f64>; 3]>,
+    /// What was known of it in training; none where that is all that is known.
+    trained: Option<Arc<Member>>,
     first_step: [f64; 3],
     lasting: [f64; 3],
     seed: u64,
@@ -22,25 +22,25 @@ pub struct Member {
 impl Member {
     /// The robot with these motions of the nodes; `seed` fixes what its first steps do, with standard deviations
     /// `first_step`.
-    pub(super) fn new(
-        nodes: [Vec<f64>; 3],
-        trained: Arc<[Vec<f64>; 3]>,
-        first_step: [f64; 3],
-        lasting: [f64; 3],
-        seed: u64,
-    ) -> Self {
-        Member { nodes, trained, first_step, lasting, seed }
+    pub(super) fn new(nodes: [Vec<f64>; 3], first_step: [f64; 3], lasting: [f64; 3], seed: u64) -> Self {
+        Member { nodes, trained: None, first_step, lasting, seed }
+    }
+
+    /// The same one, of which this was known in training.
+    pub(super) fn known_as(self, trained: &Arc<Member>) -> Self {
+        Member { trained: Some(trained.clone()), ..self }
     }
 
     /// Its motion in every step of a command that is held, but for chance.
     pub fn motion(&self, command: [f64; 2]) -> [f64; 3] {
-        along(&self.nodes, command)
+        let weights = weights(command);
+        self.nodes.each_ref().map(|nodes| weights.iter().map(|(node, weight)| nodes[*node] * weight).sum())
     }
 
     /// The same of the robot in the middle of what training logs say: effects act on that, and what runs tell of this one
     /// since then comes on top.
     pub fn trained(&self, command: [f64; 2]) -> [f64; 3] {
-        along(&self.trained, command)
+        self.trained.as_deref().unwrap_or(self).motion(command)
     }
 
     /// What the first step of a command after another one does beyond what networks say of that.
@@ -54,10 +54,4 @@ impl Member {
     pub fn lasting(&self) -> [f64; 3] {
         self.lasting
     }
-}
-
-/// The motion under a command that is held, from those of the nodes.
-fn along(nodes: &[Vec<f64>; 3], command: [f64; 2]) -> [f64; 3] {
-    let weights = weights(command);
-    nodes.each_ref().map(|nodes| weights.iter().map(|(node, weight)| nodes[*node] * weight).sum())
 }

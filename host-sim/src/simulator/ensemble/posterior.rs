@@ -3,8 +3,6 @@
 //! Nodes are u = L a v with v standard normal a priori, L the unit factor of `basis` and a the prior's sizes. Evidence
 //! with weights W and variances N leaves v normal with precision B = 1 + a Lᵀ Wᵀ N⁻¹ W L a.
 
-use std::sync::Arc;
-
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 use rand_distr::{Distribution, StandardNormal};
 
@@ -23,8 +21,6 @@ pub struct Posterior {
     channels: [Channel; 3],
     first_step: [f64; 3],
     lasting: [f64; 3],
-    /// The nodes of the robot in the middle of what training logs say.
-    trained: Arc<[Vec<f64>; 3]>,
 }
 
 /// Sums of what evidence says of one channel: all that its likelihood needs.
@@ -62,24 +58,18 @@ impl Posterior {
     /// Given all evidence, which is relative to `held`; none if its numbers have no inverse.
     pub fn new(ensemble: &Ensemble, held: Held) -> Option<Self> {
         let factor = unit_factor();
-        let given = |evidence: &[Evidence]| {
-            let channel =
-                |channel: usize| Likelihood::new(&factor, evidence, held, channel).given(&ensemble.prior[channel]);
-            Some([channel(0)?, channel(1)?, channel(2)?])
+        let channel = |channel: usize| {
+            let likelihood = Likelihood::new(&factor, &ensemble.evidence, held, channel);
+            likelihood.given(&ensemble.prior[channel])
         };
-        let channels = given(&ensemble.evidence)?;
-        let in_training: Vec<Evidence> = ensemble.evidence.iter().filter(|e| !e.after_training).copied().collect();
-        let more = in_training.len() < ensemble.evidence.len();
-        let trained = if more { Some(given(&in_training)?) } else { None };
-        let middle = |channel: &Channel| channel.nodes(&factor, &channel.mean);
-        let trained = Arc::new(trained.as_ref().unwrap_or(&channels).each_ref().map(middle));
-        Some(Posterior { factor, channels, first_step: ensemble.first_step, lasting: ensemble.lasting, trained })
+        let channels = [channel(0)?, channel(1)?, channel(2)?];
+        Some(Posterior { factor, channels, first_step: ensemble.first_step, lasting: ensemble.lasting })
     }
 
     /// The robot in the middle.
     pub fn mean(&self) -> Member {
-        let nodes = |channel: &Channel| channel.nodes(&self.factor, &channel.mean);
-        Member::new(self.channels.each_ref().map(nodes), self.trained.clone(), [0.0; 3], self.lasting, 0)
+        let nodes = |channel: &Channel| self.nodes(channel, &channel.mean);
+        Member::new(self.channels.each_ref().map(nodes), [0.0; 3], self.lasting, 0)
     }
 
     /// A robot of it, fixed by `seed`.
@@ -88,9 +78,9 @@ impl Posterior {
         let nodes = self.channels.each_ref().map(|channel| {
             let normal = DVector::from_fn(SIZE, |_, _| StandardNormal.sample(&mut rng));
             let off = channel.precision.l_dirty().tr_solve_lower_triangular(&normal);
-            channel.nodes(&self.factor, &(&channel.mean + off.unwrap_or(normal)))
+            self.nodes(channel, &(&channel.mean + off.unwrap_or(normal)))
         });
-        Member::new(nodes, self.trained.clone(), self.first_step, self.lasting, seed)
+        Member::new(nodes, self.first_step, self.lasting, seed)
     }
 
     /// Mean and standard deviation of the motion under a held command: forward (cm), lateral (cm), turn (degrees).
@@ -105,12 +95,9 @@ impl Posterior {
             [along.dot(&channel.mean), off.map_or(0.0, |off| off.norm())]
         })
     }
-}
 
-impl Channel {
-    /// The motions of the nodes, from v.
-    fn nodes(&self, factor: &DMatrix<f64>, v: &DVector<f64>) -> Vec<f64> {
-        (factor * v.component_mul(&self.sizes)).as_slice().to_vec()
+    fn nodes(&self, channel: &Channel, v: &DVector<f64>) -> Vec<f64> {
+        (&self.factor * v.component_mul(&channel.sizes)).as_slice().to_vec()
     }
 }
 

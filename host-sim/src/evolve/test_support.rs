@@ -1,0 +1,34 @@
+//! A task for what is made of an [`EvolutionTask`].
+
+use std::sync::LazyLock;
+
+use super::fitness::RandomNumbers;
+use super::genome::GenotypeDecoder;
+use super::robust::EvolutionTask;
+use super::way::WayMap;
+use crate::built_in_robot::{default_robot, four_obstacles, record, training_room};
+use crate::learn::train::{TABLE_ONE, Trainer, train};
+use crate::simulator::environment::Environment;
+use crate::simulator::{Noise, Simulator};
+
+const SEED: u64 = 5;
+
+static SIMULATOR: LazyLock<Simulator> = LazyLock::new(|| {
+    let logs = record(&default_robot(), &training_room(), 20, 40, &[], SEED).unwrap();
+    train(&logs, &Trainer::Fast, &TABLE_ONE, SEED, &|_| {}).unwrap()
+});
+
+/// Calls `check` with a task among four obstacles.
+pub fn with_task(check: impl Fn(&EvolutionTask)) {
+    let scene = four_obstacles();
+    let target_cm = scene.target_cm.unwrap();
+    let environment = Environment::new(&SIMULATOR, &scene, scene.starts[0], Noise::Learned).unwrap();
+    check(&EvolutionTask {
+        environment: &environment.with_beam(&SIMULATOR),
+        target_cm,
+        way: &WayMap::new(&scene, target_cm, SIMULATOR.robot.body_radius_cm),
+        decoder: GenotypeDecoder::new(&SIMULATOR, 60),
+        random_numbers: RandomNumbers::Common,
+        seed: SEED,
+    });
+}
