@@ -37,11 +37,21 @@ pub struct Stop {
     pub nearness: f64,
 }
 
+/// What a run shows that holds the last tuple.
+#[derive(Default)]
+struct Path {
+    steps: usize,
+    /// The steps whose readings are larger or smaller than all before: others end no tuple that has not ended.
+    steps_to_end: Vec<Step>,
+    range_cm: Option<[f32; 2]>,
+}
+
 /// Where a run is after a step of the last tuple.
 struct Step {
+    number: usize,
     place_cm: DVec2,
     heading: DVec2,
-    echo_cm: Option<f32>,
+    echo_cm: f32,
     nearness: f64,
     reaches: bool,
 }
@@ -64,18 +74,18 @@ pub fn stops(task: &EvolutionTask, beginnings: &[&[Tuple]], runs: usize, seed: u
         seed: derive(seed, &[number as u64]),
     };
     let requests: Vec<RolloutRequest> = (0..runs * held.len()).map(request).collect();
-    let mut paths: Vec<Vec<Step>> = requests.iter().map(|_| Vec::new()).collect();
+    let mut paths: Vec<Path> = requests.iter().map(|_| Path::default()).collect();
     // The step that ends the tuple before is not one of the last.
     let mut has_begun: Vec<bool> = (0..requests.len()).map(|number| beginnings[number / runs].len() == 1).collect();
     let outcomes = task.environment.run_watched(&requests, |number, point| {
         if has_begun[number] {
-            paths[number].push(Step::of(&point, task));
+            paths[number].go_on(&point, task);
         }
         has_begun[number] |= point.tuple + 1 == beginnings[number / runs].len();
     });
     for (path, outcome) in paths.iter_mut().zip(&outcomes) {
         if outcome.termination == Termination::Crashed {
-            path.pop();
+            path.take_back();
         }
     }
     let [low, high] = task.decoder.thresholds_cm.map(|cm| cm as i16);
@@ -93,7 +103,7 @@ fn holding(task: &EvolutionTask, first: &[Tuple]) -> Controller {
 }
 
 /// Where these runs that hold a tuple would end with each of the thresholds.
-fn of_paths(paths: &[Vec<Step>], tuple: Tuple, thresholds: &[i16]) -> Vec<Stop> {
+fn of_paths(paths: &[Path], tuple: Tuple, thresholds: &[i16]) -> Vec<Stop> {
     let mut stops = Vec::new();
     for when in [When::Larger, When::Smaller] {
         let ends: Vec<Vec<Option<usize>>> = paths.iter().map(|path| first_beyond(path, when, thresholds)).collect();
@@ -111,16 +121,15 @@ fn of_paths(paths: &[Vec<Step>], tuple: Tuple, thresholds: &[i16]) -> Vec<Stop> 
 }
 
 /// The first step whose reading is beyond each threshold; these rise.
-fn first_beyond(path: &[Step], when: When, thresholds: &[i16]) -> Vec<Option<usize>> {
+fn first_beyond(path: &Path, when: When, thresholds: &[i16]) -> Vec<Option<usize>> {
     let mut first = vec![None; thresholds.len()];
     // Those that were passed are the lowest or the highest.
     let mut waiting: Vec<usize> = (0..thresholds.len()).collect();
     if when == When::Larger {
         waiting.reverse();
     }
-    for (number, step) in path.iter().enumerate() {
-        let Some(echo_cm) = step.echo_cm else { continue };
-        let is_beyond = |at: &usize| Tuple { when, threshold_cm: thresholds[*at], ..NEVER }.ends_at(echo_cm);
+    for (number, step) in path.steps_to_end.iter().enumerate() {
+        let is_beyond = |at: &usize| Tuple { when, threshold_cm: thresholds[*at], ..NEVER }.ends_at(step.echo_cm);
         while let Some(at) = waiting.pop_if(|at| is_beyond(at)) {
             first[at] = Some(number);
         }
@@ -128,13 +137,31 @@ fn first_beyond(path: &[Step], when: When, thresholds: &[i16]) -> Vec<Option<usi
     first
 }
 
+impl Path {
+    fn go_on(&mut self, point: &TrajectoryPoint, task: &EvolutionTask) {
+        self.steps += 1;
+        let Some(echo_cm) = point.echo_cm else { return };
+        let [smallest_cm, largest_cm] = self.range_cm.unwrap_or([f32::INFINITY, f32::NEG_INFINITY]);
+        if echo_cm < smallest_cm || echo_cm > largest_cm {
+            self.range_cm = Some([smallest_cm.min(echo_cm), largest_cm.max(echo_cm)]);
+            self.steps_to_end.push(Step::of(self.steps, echo_cm, point, task));
+        }
+    }
+
+    /// Takes back the last step, which touched something.
+    fn take_back(&mut self) {
+        self.steps_to_end.pop_if(|step| step.number == self.steps);
+    }
+}
+
 impl Step {
-    fn of(point: &TrajectoryPoint, task: &EvolutionTask) -> Self {
+    fn of(number: usize, echo_cm: f32, point: &TrajectoryPoint, task: &EvolutionTask) -> Self {
         let place_cm = point.pose.position_cm;
         Step {
+            number,
             place_cm,
             heading: DVec2::from_angle(point.pose.heading_rad),
-            echo_cm: point.echo_cm,
+            echo_cm,
             nearness: REACHED_CM / task.way.cm(place_cm).max(REACHED_CM),
             reaches: place_cm.distance(task.target_cm) <= REACHED_CM,
         }
@@ -143,8 +170,9 @@ impl Step {
 
 impl Stop {
     /// Of the step in which each run ends.
-    fn of(tuple: Tuple, paths: &[Vec<Step>], ends: &[Option<usize>]) -> Option<Self> {
-        let ended: Vec<&Step> = paths.iter().zip(ends).filter_map(|(path, end)| Some(&path[(*end)?])).collect();
+    fn of(tuple: Tuple, paths: &[Path], ends: &[Option<usize>]) -> Option<Self> {
+        let ended: Vec<&Step> =
+            paths.iter().zip(ends).filter_map(|(path, end)| Some(&path.steps_to_end[(*end)?])).collect();
         if 2 * ended.len() < paths.len() {
             return None;
         }

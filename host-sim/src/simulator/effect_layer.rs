@@ -7,7 +7,7 @@ use mindgap_core::controller::Controller;
 use rand::RngExt;
 
 use super::beam::Beam;
-use super::motion::{Motion, MotionNetworks, Transients, speeds};
+use super::motion::{Motion, MotionNetworks, Speeds, Transients, speeds};
 use super::{Noise, Simulator};
 use crate::chance::generator;
 use crate::effects::chain::EffectChain;
@@ -89,7 +89,7 @@ impl<'s> EffectLayer<'s> {
         networks: &MotionNetworks,
     ) -> Motion {
         memory.command(command);
-        let motion = self.step(&self.context(memory, pose), networks);
+        let motion = self.step(&self.context(memory, pose), |speeds| networks.trained_step(speeds));
         memory.history.was_at(Some(pose));
         memory.steps += 1;
         motion
@@ -102,27 +102,37 @@ impl<'s> EffectLayer<'s> {
             return None;
         }
         let anywhere = self.context(&EffectMemory::default(), Pose::new(0.0, 0.0, 0.0));
+        // Effects mostly ask for the same few steps again.
+        let mut known: Vec<(Speeds<f32>, Motion)> = Vec::new();
+        let mut learned = |speeds: Speeds<f32>| {
+            let found = known.iter().find(|(of, _)| *of == speeds).map(|(_, motion)| *motion);
+            found.unwrap_or_else(|| {
+                let motion = networks.trained_step(speeds);
+                known.push((speeds, motion));
+                motion
+            })
+        };
         let of_tuple = |tuple: usize| {
             let [left, right, left_before, right_before] = speeds(controller, tuple, true).map(f64::from);
             array::from_fn(|steps| {
                 let command = |ago: usize| if ago <= steps { [left, right] } else { [left_before, right_before] };
                 let mut context = anywhere;
                 context.commands = array::from_fn(command);
-                self.step(&context, networks)
+                self.step(&context, &mut learned)
             })
         };
         Some(array::from_fn(of_tuple))
     }
 
-    fn step(&self, context: &StepContext, networks: &MotionNetworks) -> Motion {
+    /// Motion in a step of which `learned` knows what it is without effects.
+    fn step(&self, context: &StepContext, mut learned: impl FnMut(Speeds<f32>) -> Motion) -> Motion {
         let mut cells = [0; 3];
         let step = |now: [f64; 2], before: [f64; 2]| {
             let [low, high] = self.commands;
-            let learned =
-                networks.trained_step([now[0], now[1], before[0], before[1]].map(|c| c.clamp(low, high) as f32));
-            cells = learned.cells;
+            let motion = learned([now[0], now[1], before[0], before[1]].map(|c| c.clamp(low, high) as f32));
+            cells = motion.cells;
             let [forward_cm, lateral_cm, turn_rad] =
-                [learned.forward_cm, learned.lateral_cm, learned.turn_rad].map(f64::from);
+                [motion.forward_cm, motion.lateral_cm, motion.turn_rad].map(f64::from);
             PoseIncrement { forward_cm, lateral_cm, turn_rad }
         };
         let increment = self.effects.wrap(context, step);
