@@ -86,7 +86,7 @@ pub fn adapt(simulator: &Simulator, logs: &Logs, seed: u64, watch: impl Fn(Stage
     if plain.is_empty() {
         return Err(Error::new("the runs hold no step with a pose at both ends: there is nothing to adapt to"));
     }
-    let effects = diagnosed(simulator, logs, seed, watch);
+    let effects = diagnosed(baseline.clone(), logs, seed, watch);
     let explained = steps(&baseline, &effects, &observations);
     let networks = simulator.motion_networks().ok_or_else(missing)?;
     let said: Held = &|command| networks.held(command);
@@ -128,8 +128,7 @@ fn of_no_motion(
 }
 
 /// The effects that a diagnosis names; none where the logs do not suffice for one.
-fn diagnosed(simulator: &Simulator, logs: &Logs, seed: u64, watch: impl Fn(Stage)) -> Vec<AppliedEffect> {
-    let Ok(baseline) = Baseline::of_middle(simulator) else { return Vec::new() };
+fn diagnosed(baseline: Baseline, logs: &Logs, seed: u64, watch: impl Fn(Stage)) -> Vec<AppliedEffect> {
     let method = Method { seed, ..Method::default() };
     let found = findings_watched(baseline, &Inspection::of(logs.clone()), method, watch);
     found.map_or_else(|_| Vec::new(), |found| found.applied)

@@ -56,7 +56,11 @@ impl GenotypeDecoder {
             when: if g[2] < 0.5 { When::Smaller } else { When::Larger },
             threshold_cm: within(self.thresholds_cm, g[3]) as i16,
         };
-        let tuples = std::array::from_fn(|t| tuple(&genes[t * GENES_PER_TUPLE..]));
+        self.with_tuples(std::array::from_fn(|t| tuple(&genes[t * GENES_PER_TUPLE..])))
+    }
+
+    /// The controller of these tuples.
+    pub fn with_tuples(&self, tuples: [Tuple; TUPLES]) -> Controller {
         Controller { step_ms: self.step_ms, max_steps: self.max_steps, tuples }
     }
 

@@ -58,8 +58,7 @@ struct Step {
 
 /// The whole controller of its first tuples: after them it rests.
 pub fn controller(task: &EvolutionTask, first: &[Tuple]) -> Controller {
-    let tuples = std::array::from_fn(|i| first.get(i).copied().unwrap_or(REST));
-    Controller { step_ms: task.decoder.step_ms, max_steps: task.decoder.max_steps, tuples }
+    task.decoder.with_tuples(std::array::from_fn(|i| first.get(i).copied().unwrap_or(REST)))
 }
 
 /// For each of some beginnings of controllers, of a tuple at least, the thresholds of its last tuple that end it at different

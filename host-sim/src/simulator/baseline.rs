@@ -12,6 +12,7 @@ use crate::sonar::SonarModel;
 use crate::sonar::familiar::FamiliarPoses;
 
 /// The models of motion and sonar without any gap.
+#[derive(Clone)]
 pub struct Baseline<'s> {
     /// The motion, if the simulator knows it.
     pub motion: Option<MotionModel<'s>>,
@@ -26,6 +27,7 @@ pub struct Baseline<'s> {
 }
 
 /// How commands become motion, and its noise.
+#[derive(Clone)]
 pub enum MotionModel<'s> {
     /// As learned from logs.
     Learned {

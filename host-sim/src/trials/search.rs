@@ -189,8 +189,7 @@ impl Search<'_> {
     }
 
     fn controller(&self, tuples: &[Tuple]) -> Option<Controller> {
-        let step_ms = self.simulator.robot.step_ms.round() as u16;
-        Some(Controller { step_ms, max_steps: self.max_steps, tuples: tuples.try_into().ok()? })
+        Some(self.decoder().with_tuples(tuples.try_into().ok()?))
     }
 }
 

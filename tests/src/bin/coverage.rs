@@ -9,18 +9,13 @@ use mindgap_host_sim::error::{Error, Result};
 use mindgap_host_sim::logs::Logs;
 use mindgap_host_sim::simulator::Simulator;
 use mindgap_tests::coverage::{Coverage, controller_runs, coverage};
+use mindgap_tests::exit_code::exit_code;
 
 const SEED: u64 = 5;
 const CONTROLLERS: usize = 200;
 
 fn main() -> ExitCode {
-    match print() {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            eprintln!("coverage: {error}");
-            ExitCode::FAILURE
-        }
-    }
+    exit_code(env!("CARGO_BIN_NAME"), print())
 }
 
 fn print() -> Result<()> {

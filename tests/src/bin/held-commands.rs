@@ -16,6 +16,7 @@ use mindgap_host_sim::simulator::environment::Environment;
 use mindgap_host_sim::simulator::rollout::{RolloutRequest, SensorModel};
 use mindgap_host_sim::simulator::{Noise, Simulator};
 use mindgap_host_sim::statistics::summary::{mean, root_mean_square};
+use mindgap_tests::exit_code::exit_code;
 
 const SEED: u64 = 9;
 const RUNS: u64 = 40;
@@ -35,13 +36,7 @@ const COMMANDS: [[i8; 2]; 12] = [
 ];
 
 fn main() -> ExitCode {
-    match measure() {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            eprintln!("held-commands: {error}");
-            ExitCode::FAILURE
-        }
-    }
+    exit_code(env!("CARGO_BIN_NAME"), measure())
 }
 
 fn measure() -> Result<()> {

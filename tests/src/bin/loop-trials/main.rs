@@ -11,16 +11,11 @@ use std::process::ExitCode;
 use mindgap_host_sim::error::{Error, Result};
 use mindgap_host_sim::logs::Logs;
 use mindgap_host_sim::simulator::Simulator;
+use mindgap_tests::exit_code::exit_code;
 use procedures::{PROCEDURES, Settled, Workbench};
 
 fn main() -> ExitCode {
-    match measure() {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            eprintln!("loop-trials: {error}");
-            ExitCode::FAILURE
-        }
-    }
+    exit_code(env!("CARGO_BIN_NAME"), measure())
 }
 
 fn measure() -> Result<()> {
