@@ -12,8 +12,8 @@ use crate::gap::progress::Stage;
 use crate::gap::{Method, findings_watched, validate};
 use crate::inspection::Inspection;
 use crate::learn::ensemble::conditioned;
-use crate::learn::ensemble::holds::{Hold, MotionNoise, StepResidual, holds};
-use crate::logs::Logs;
+use crate::learn::ensemble::holds::{Hold, StepResidual, holds};
+use crate::logs::{Logs, Robot};
 use crate::simulator::Simulator;
 use crate::simulator::baseline::{Baseline, MotionModel};
 use crate::simulator::ensemble::basis::CHANGE;
@@ -79,7 +79,7 @@ pub fn adapt(simulator: &Simulator, logs: &Logs, seed: u64, watch: impl Fn(Stage
     validate::same_robot(&simulator.robot, &logs.robot)?;
     let missing = || Error::new("the simulator file does not say what its training logs leave open: train it again");
     let ensemble = simulator.ensemble.as_ref().ok_or_else(missing)?;
-    let noise = MotionNoise::of(simulator).ok_or_else(missing)?;
+    let robot = &simulator.robot;
     let observations = Observations::of(logs, 1.0);
     let baseline = Baseline::of_middle(simulator)?;
     let plain = steps(&baseline, &[], &observations);
@@ -90,7 +90,7 @@ pub fn adapt(simulator: &Simulator, logs: &Logs, seed: u64, watch: impl Fn(Stage
     let explained = steps(&baseline, &effects, &observations);
     let networks = simulator.motion_networks().ok_or_else(missing)?;
     let said: Held = &|command| networks.held(command);
-    let given = |steps: &[StepResidual]| conditioned(ensemble, &noise, said, steps);
+    let given = |steps: &[StepResidual]| conditioned(ensemble, robot, said, steps);
     let probability = |steps: &[StepResidual]| probability(given(steps), said);
     let named = explained == plain || probability(&explained) > probability(&plain) + EFFECT_NATS;
     let (effects, steps) = if named {
@@ -101,7 +101,7 @@ pub fn adapt(simulator: &Simulator, logs: &Logs, seed: u64, watch: impl Fn(Stage
     let after = given(&steps);
     let lesson = Lesson {
         commands: commands(&holds(&steps), said, ensemble, &after),
-        gap: kept_back(ensemble, &noise, said, &plain, &steps),
+        gap: kept_back(ensemble, robot, said, &plain, &steps),
         effects: effects.clone(),
     };
     let mut simulator = simulator.clone();
@@ -183,7 +183,7 @@ impl CommandBias {
 /// The gap on runs kept back: each part is predicted from the others.
 fn kept_back(
     ensemble: &Ensemble,
-    noise: &MotionNoise,
+    robot: &Robot,
     said: Held,
     plain: &[StepResidual],
     explained: &[StepResidual],
@@ -197,7 +197,7 @@ fn kept_back(
     for part in 0..runs.min(PARTS) {
         let kept = |step: &&StepResidual| step.run() % PARTS == part;
         let others: Vec<StepResidual> = explained.iter().filter(|step| !kept(step)).copied().collect();
-        let after = Posterior::new(&conditioned(ensemble, noise, said, &others), said)?;
+        let after = Posterior::new(&conditioned(ensemble, robot, said, &others), said)?;
         let of = |steps: &[StepResidual]| holds(&steps.iter().filter(kept).copied().collect::<Vec<_>>());
         for (a, b) in of(plain).iter().zip(&of(explained)) {
             count += a.steps as f64;

@@ -21,7 +21,8 @@ use crate::evaluation::accuracy::{self, Evaluation};
 use crate::evolve::controller_file::{self, ControllerFile};
 use crate::evolve::fitness::{RandomNumbers, Success};
 use crate::evolve::genome::GenotypeDecoder;
-use crate::evolve::robust::{self, EvolutionTask};
+use crate::evolve::robust;
+use crate::evolve::task::EvolutionTask;
 use crate::evolve::way::WayMap;
 use crate::files;
 use crate::learn::train::{self, TABLE_ONE, Trainer};
@@ -38,6 +39,8 @@ const TRAINING_RUNS: usize = 100;
 const HELD_OUT_RUNS: usize = 30;
 const STEPS: usize = 60;
 const MAX_STEPS: u16 = 60;
+/// Controllers for a start that are tried on the robot.
+pub const TRIED: usize = 3;
 /// Number of runs of each controller on the robot, and of simulated ones (paper, figure 4).
 pub const TRIALS: usize = 3;
 /// Number of fresh simulated runs for a success rate.
@@ -187,6 +190,7 @@ impl<W: Fn(Stage)> DemoRun<'_, W> {
         };
         // Real runs of one controller nearly coincide, so a single one shows whether it transfers.
         let mut candidates = robust::candidates(&task, report)?;
+        candidates.truncate(TRIED);
         candidates.sort_by_cached_key(|c| millimetres_off(&drive(&c.controller, &[start as u64]), target_cm));
         let evolved = &candidates[0];
         let controller = evolved.controller.clone();

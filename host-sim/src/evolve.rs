@@ -9,6 +9,7 @@ pub mod prefixes;
 pub mod request;
 pub mod robust;
 mod stops;
+pub mod task;
 #[cfg(test)]
 mod test_support;
 pub mod trial;

@@ -67,8 +67,9 @@ pub struct Simulator {
     /// What the training logs say beyond the networks: the yardstick of the gap.
     #[serde(default)]
     pub reference: Option<NominalModel>,
-    /// What those logs leave open about the robot's motion, and what runs told since.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    /// What those logs leave open about the robot's motion, and what runs told since. Earlier files call theirs "ensemble",
+    /// which held no noise: they are read without.
+    #[serde(default, skip_serializing_if = "Option::is_none", rename = "robots")]
     pub ensemble: Option<Ensemble>,
     /// What the same logs give with the sizes of the paper's Table I, when these networks have others.
     #[serde(default)]

@@ -127,7 +127,19 @@ pub fn map<T: Serialize + DeserializeOwned + Send>(
     count: usize,
     work: impl Fn(usize) -> Result<T> + Sync,
 ) -> Result<Vec<T>> {
-    let pieces = map_given(count, |_| (), |index, ()| work(index))?;
+    map_told(count, work, |_, _| {})
+}
+
+/// The same; the first rank is `told` of each with its index when all before it are done, too.
+///
+/// # Errors
+/// As [`map`].
+pub fn map_told<T: Serialize + DeserializeOwned + Send>(
+    count: usize,
+    work: impl Fn(usize) -> Result<T> + Sync,
+    told: impl FnMut(usize, &T),
+) -> Result<Vec<T>> {
+    let pieces = map_all(count, |_| (), |index, ()| work(index), told)?;
     once(|| Ok(pieces))
 }
 
@@ -140,12 +152,7 @@ pub fn map_given<P: Serialize + DeserializeOwned + Send, T: Serialize + Deserial
     give: impl Fn(usize) -> P + Sync,
     work: impl Fn(usize, P) -> Result<T> + Sync,
 ) -> Result<Vec<T>> {
-    let mut done = Vec::with_capacity(count);
-    distribute(count, count, give, work, |_, piece| {
-        done.push(piece);
-        Ok(())
-    })?;
-    Ok(done)
+    map_all(count, give, work, |_, _| {})
 }
 
 /// Does pieces of work and gives each with its index to `take`, the first one first. Only so many are there at once as
@@ -181,6 +188,21 @@ pub fn once<T: Serialize + DeserializeOwned>(work: impl FnOnce() -> Result<T>) -
     })
 }
 
+fn map_all<P: Serialize + DeserializeOwned + Send, T: Serialize + DeserializeOwned + Send>(
+    count: usize,
+    give: impl Fn(usize) -> P + Sync,
+    work: impl Fn(usize, P) -> Result<T> + Sync,
+    mut told: impl FnMut(usize, &T),
+) -> Result<Vec<T>> {
+    let mut done = Vec::with_capacity(count);
+    distribute(count, count, give, work, |index, piece| {
+        told(index, &piece);
+        done.push(piece);
+        Ok(())
+    })?;
+    Ok(done)
+}
+
 /// Does pieces of work and takes them in order, at most `ahead` of them on their way.
 fn distribute<P: Serialize + DeserializeOwned + Send, T: Serialize + DeserializeOwned + Send>(
     count: usize,
@@ -203,6 +225,7 @@ fn distribute<P: Serialize + DeserializeOwned + Send, T: Serialize + Deserialize
 
 #[cfg(test)]
 mod tests {
+    use std::panic::{AssertUnwindSafe, catch_unwind};
     use std::sync::atomic::{AtomicUsize, Ordering};
     use std::thread;
     use std::time::Duration;
@@ -251,6 +274,21 @@ mod tests {
         assert!(begun.load(Ordering::SeqCst) < 1000);
         let refused = in_order(100_000, Ok::<usize, Error>, |_, _| Err(Error::new("full")));
         assert_eq!(refused.unwrap_err().to_string(), "full");
+    }
+
+    /// As when Ctrl-C ends it.
+    #[test]
+    fn a_panic_of_whoever_is_told_leaves_what_has_not_begun() {
+        let begun = AtomicUsize::new(0);
+        let work = |index: usize| {
+            begun.fetch_add(1, Ordering::SeqCst);
+            thread::sleep(Duration::from_millis(20));
+            Ok(index)
+        };
+        let panics = || map_told(100, work, |_, _| panic!("enough"));
+        assert!(catch_unwind(AssertUnwindSafe(panics)).is_err());
+        let begun = begun.load(Ordering::SeqCst);
+        assert!(begun <= 3 * rayon::current_num_threads(), "{begun}");
     }
 
     #[test]

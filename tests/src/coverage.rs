@@ -10,8 +10,6 @@ use mindgap_host_sim::logs::{Logs, Run};
 use mindgap_host_sim::simulator::Simulator;
 use mindgap_host_sim::simulator::ensemble::{Member, Robots};
 use mindgap_host_sim::simulator::motion::{MotionNetworks, Speeds};
-use mindgap_host_sim::simulator::residuals::{LEVELS, ResidualQuantiles, motion_context};
-use rand::RngExt;
 use rand_distr::{Distribution, StandardNormal};
 
 /// Shares of the ends that the regions hold.
@@ -46,11 +44,7 @@ pub fn coverage(simulator: &Simulator, logs: &Logs, seed: u64) -> Option<Vec<Cov
     let correction = simulator.reference.as_ref()?.motion.as_ref()?;
     let replay = Replay {
         networks: simulator.motion_networks()?.corrected(Some(correction)),
-        residuals: [
-            &simulator.forward.as_ref()?.residuals,
-            &simulator.lateral.as_ref()?.residuals,
-            &simulator.turn.as_ref()?.residuals,
-        ],
+        tracker: simulator.ensemble.as_ref()?.noise.tracker.map(f64::sqrt),
         step_ms: simulator.robot.step_ms,
     };
     let mut rng = generator(seed, &[]);
@@ -94,7 +88,8 @@ pub fn controller_runs(simulator: &Simulator, runs: usize, seed: u64) -> Logs {
 /// What predicts a step.
 struct Replay<'a> {
     networks: MotionNetworks<'a>,
-    residuals: [&'a ResidualQuantiles; 3],
+    /// Standard deviations of the tracker's error in one pose.
+    tracker: [f64; 3],
     step_ms: f64,
 }
 
@@ -168,19 +163,17 @@ impl LoggedPath<'_> {
 
     /// Where a robot ends under these commands, as a tracker sees it that saw the begin.
     fn end(&self, robot: &Member, rng: &mut Generator) -> Pose {
-        let residuals = &self.replay.residuals;
-        let tracker: [f64; 3] = residuals.map(|of| of.tracker_variance().sqrt());
         let seen = |pose: Pose, rng: &mut Generator| {
-            let [forward_cm, lateral_cm, turn_deg] = tracker.map(|deviation| deviation * normal(rng));
+            let [forward_cm, lateral_cm, turn_deg] = self.replay.tracker.map(|deviation| deviation * normal(rng));
             pose.compose(&Pose::new(forward_cm, lateral_cm, turn_deg.to_radians()))
         };
         let start = seen(self.from, rng);
-        let mut lasting = [0; 3];
+        let mut lasting = [0.0; 3];
         let end = self.steps.iter().enumerate().fold(start, |pose, (place, step)| {
             if place == 0 || !step.is_steady() {
-                lasting = [0; 3].map(|_: usize| rng.random_range(0..LEVELS));
+                lasting = [0.0; 3].map(|_: f64| normal(rng));
             }
-            let motion = step.motion(robot, *residuals, lasting, rng).map(|moved| moved * step.stretch);
+            let motion = step.motion(robot, lasting, rng).map(|moved| moved * step.stretch);
             pose.compose(&Pose::new(motion[0], motion[1], motion[2].to_radians()))
         });
         seen(end, rng)
@@ -193,15 +186,9 @@ impl Step {
         self.speeds[..2] == self.speeds[2..]
     }
 
-    /// What a robot does in it: forward (cm), lateral (cm), turn (degrees). Of what lasts while a command is held these
-    /// levels were drawn when it began.
-    fn motion(
-        &self,
-        robot: &Member,
-        residuals: [&ResidualQuantiles; 3],
-        lasting: [usize; 3],
-        rng: &mut Generator,
-    ) -> [f64; 3] {
+    /// What a robot does in it: forward (cm), lateral (cm), turn (degrees). What lasts while a command is held is so many
+    /// standard deviations.
+    fn motion(&self, robot: &Member, lasting: [f64; 3], rng: &mut Generator) -> [f64; 3] {
         let [left, right, left_before, right_before] = self.speeds;
         let held = robot.motion([left, right].map(f64::from));
         let first_step = if self.is_steady() {
@@ -209,13 +196,10 @@ impl Step {
         } else {
             robot.first_step([left as i8, right as i8], [left_before as i8, right_before as i8])
         };
-        let context = motion_context(&self.speeds);
+        let scatter = robot.scatter([left, right].map(f64::from));
         [0, 1, 2].map(|channel| {
-            let of = residuals[channel];
-            let step = f64::from(of.components[of.cell(context)].step);
-            let level = |level: usize| f64::from(of.residual(context, level));
-            let chance =
-                step * (level(rng.random_range(0..LEVELS)) + robot.lasting()[channel] * level(lasting[channel]));
+            let [step, lasts] = scatter[channel];
+            let chance = step * normal(rng) + lasts * lasting[channel];
             held[channel] + self.beyond_held[channel] + first_step[channel] + chance
         })
     }

@@ -55,7 +55,7 @@ impl Run for Demo {
                 Stage::Recording => "recording logs of the built-in robot".into(),
                 Stage::Training(p) => progress::training_words(p.network, p.evaluations),
                 Stage::Evolving { start, generation } => {
-                    format!("evolving for start {start}: generation {generation} of {}", robust::GENERATIONS)
+                    format!("evolving for start {start}: round {} of {}", generation + 1, robust::GENERATIONS)
                 }
                 Stage::Drawing => "drawing".into(),
                 Stage::Repairing { trial } => format!("a motor got weak: trial {trial} on the robot"),
@@ -131,7 +131,7 @@ fn told(summary: &Summary) -> String {
         "{}\n{}of {} controllers a start, that which did best in one trial on the robot\n",
         super::evaluate::accuracy(&summary.evaluation.networks),
         table::text(header, &rows),
-        robust::RESTARTS
+        demo::TRIED
     )
 }
 

@@ -13,17 +13,20 @@ use rand::RngExt;
 use rand_distr::{Distribution, StandardNormal};
 
 use super::genome::GenotypeDecoder;
-use super::robust::{EvolutionTask, NEARNESS};
 use super::stops::{self, Stop};
+use super::task::{EvolutionTask, Judged, NEARNESS, sort};
 use crate::chance::{Generator, derive, generator};
 use crate::error::Result;
 use crate::genetic::mutation::{Mutation, Unit};
 use crate::simulator::rollout::REACHED_CM;
 use crate::workers;
 
+/// Rounds of all searches.
+pub const ALL_ROUNDS: usize = SEARCHES * ROUNDS;
+
 /// Searches side by side, each with its own archive.
-const SEARCHES: usize = 2;
-const ROUNDS: usize = 400;
+const SEARCHES: usize = 4;
+const ROUNDS: usize = 200;
 /// Beginnings that are tried in a round.
 const TRIED: usize = 256;
 /// Runs of each.
@@ -88,15 +91,20 @@ struct Archive<'a> {
     candidates: BTreeMap<Cell, Candidate>,
 }
 
-/// Controllers by falling success rate in fresh runs.
+/// Controllers by falling success rate in fresh runs. `watch` receives the last round completed, of [`ALL_ROUNDS`], and the
+/// fitness of the best controller of its search.
 ///
 /// # Errors
 /// When it cannot be computed by those to whom it is handed out.
-pub fn explore(task: &EvolutionTask) -> Result<Vec<Controller>> {
+pub fn explore(task: &EvolutionTask, mut watch: impl FnMut(usize, f64)) -> Result<Vec<Controller>> {
     let search = |number: usize| Ok(Archive::new(task).searched(derive(task.seed, &[number as u64])));
-    let mut found: Vec<(f64, Controller)> = workers::map(SEARCHES, search)?.concat();
-    found.sort_by(|(a, _), (b, _)| b.total_cmp(a));
-    Ok(found.into_iter().map(|(_, controller)| controller).collect())
+    let told = |number: usize, found: &Vec<Judged>| {
+        let fitness = found.iter().map(|judged| judged.fitness);
+        watch((number + 1) * ROUNDS - 1, fitness.fold(f64::NAN, f64::max));
+    };
+    let mut found = workers::map_told(SEARCHES, search, told)?.concat();
+    sort(&mut found);
+    Ok(found.into_iter().map(|judged| judged.controller).collect())
 }
 
 impl<'a> Archive<'a> {
@@ -107,8 +115,8 @@ impl<'a> Archive<'a> {
         Archive { task, elites: vec![start], places: BTreeMap::from([(cell, 0)]), candidates: BTreeMap::new() }
     }
 
-    /// Its best controllers after all rounds, with their success rates.
-    fn searched(mut self, seed: u64) -> Vec<(f64, Controller)> {
+    /// Its best controllers after all rounds.
+    fn searched(mut self, seed: u64) -> Vec<Judged> {
         for round in 0..ROUNDS as u64 {
             let tried = self.beginnings(&mut generator(seed, &[round]));
             let tuples: Vec<&[Tuple]> = tried.iter().map(|beginning| beginning.tuples.as_slice()).collect();
@@ -117,10 +125,8 @@ impl<'a> Archive<'a> {
                 stops.iter().for_each(|stop| self.learn(beginning, stop));
             }
         }
-        let judged = |candidate: Beginning| {
-            let controller = stops::controller(self.task, &candidate.tuples);
-            (self.task.success(&controller, JUDGED_RUNS).rate, controller)
-        };
+        let judged =
+            |candidate: Beginning| self.task.judged(stops::controller(self.task, &candidate.tuples), JUDGED_RUNS);
         self.foremost().into_iter().map(judged).collect()
     }
 

@@ -5,7 +5,7 @@ use glam::DVec2;
 use mindgap_core::controller::{Controller, Tuple, When};
 
 use super::fitness::sensor_of;
-use super::robust::EvolutionTask;
+use super::task::EvolutionTask;
 use crate::chance::derive;
 use crate::simulator::motion::MotionTable;
 use crate::simulator::rollout::{REACHED_CM, RolloutRequest, Termination, TrajectoryPoint};

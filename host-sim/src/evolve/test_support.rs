@@ -4,7 +4,7 @@ use std::sync::LazyLock;
 
 use super::fitness::RandomNumbers;
 use super::genome::GenotypeDecoder;
-use super::robust::EvolutionTask;
+use super::task::EvolutionTask;
 use super::way::WayMap;
 use crate::built_in_robot::{default_robot, four_obstacles, record, training_room};
 use crate::learn::train::{TABLE_ONE, Trainer, train};

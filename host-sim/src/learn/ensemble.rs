@@ -2,26 +2,21 @@
 //! reach and how large they are.
 
 pub mod holds;
-
-use std::collections::BTreeMap;
+pub mod noise;
 
 use rayon::prelude::*;
 
-use crate::logs::{Logs, samples};
+use crate::logs::{Logs, Robot, samples};
 use crate::simulator::Simulator;
 use crate::simulator::ensemble::basis::{CHANGE, unit_factor};
+use crate::simulator::ensemble::evidence::by_cell;
 use crate::simulator::ensemble::posterior::Likelihood;
-use crate::simulator::ensemble::{Ensemble, Evidence, Held, Member, PARTS, Posterior};
-use holds::{Hold, MotionNoise, StepResidual, holds};
+use crate::simulator::ensemble::{Ensemble, Evidence, Held, MotionNoise, PARTS, Posterior};
+use holds::{StepResidual, holds};
 
-/// Training logs are summed up over commands as far apart as this: finer than friction bends.
-const CELL: f32 = 4.0;
 /// Sizes of the process's parts are sought by factors that get smaller, from this share of the robot's chance in a step.
 const FIRST_SIZE: f64 = 0.5;
 const FACTORS: [f64; 4] = [4.0, 4.0, 2.0, 1.4];
-/// Chance that lasts is sought up to so many times what a step adds, in such parts of it: finer than logs tell it.
-const MOST_TIMES: u32 = 2;
-const PARTS_OF_ONE: u32 = 20;
 
 /// How much a wheel may have changed since training, as a share: the one under which the runs are most probable.
 const CHANGES: [f64; 4] = [0.0, 0.02, 0.06, 0.2];
@@ -29,40 +24,42 @@ const CHANGES: [f64; 4] = [0.0, 0.02, 0.06, 0.2];
 /// The distribution that the training logs of a simulator leave; none without motion networks and what is normal beyond
 /// them.
 pub fn learn(simulator: &Simulator, logs: &Logs) -> Option<Ensemble> {
-    let noise = MotionNoise::of(simulator)?;
     let networks = simulator.motion_networks()?;
     let said = |command: [f64; 2]| networks.held(command);
-    let stretches = holds(&residuals(simulator, logs)?);
-    // Chance is what a process leaves, and how large the process is depends on chance.
-    let plain = given(&stretches, &noise, &said, Chance::default());
+    let steps = residuals(simulator, logs)?;
+    // Noise is what a process leaves, and how large the process is depends on noise.
+    let plain = given(&steps, &said, noise::rough(&steps));
     let middle = Posterior::new(&plain, &said)?.mean();
-    Some(given(&stretches, &noise, &said, Chance::of(&stretches, &noise, &middle, &said)))
+    Some(given(&steps, &said, noise::learn(&steps, &middle, &said)))
 }
 
-/// The distribution that stretches of steps leave, if chance is this.
-fn given(stretches: &[Hold], noise: &MotionNoise, said: Held, chance: Chance) -> Ensemble {
-    let Chance { first_step, lasting } = chance;
-    let evidence = summed(stretches.iter().map(|hold| hold.evidence(noise, &first_step, &lasting)));
+/// The distribution that steps leave, if noise is this.
+fn given(steps: &[StepResidual], said: Held, noise: MotionNoise) -> Ensemble {
+    let evidence = by_cell(holds(steps).iter().map(|hold| hold.evidence(&noise, said)));
     let factor = unit_factor();
-    let sizes = |channel: usize| sizes(&Likelihood::new(&factor, &evidence, said, channel), noise.typical(channel));
+    let typical = |channel: usize| {
+        let variances = evidence.iter().map(|e| noise.step_variance(e.motion(said), channel));
+        (variances.sum::<f64>() / evidence.len().max(1) as f64).sqrt()
+    };
+    let sizes = |channel: usize| sizes(&Likelihood::new(&factor, &evidence, &noise, said, channel), typical(channel));
     let prior: Vec<[f64; PARTS]> = (0..3).into_par_iter().map(sizes).collect();
-    Ensemble { prior: [prior[0], prior[1], prior[2]], first_step, lasting, evidence }
+    Ensemble { prior: [prior[0], prior[1], prior[2]], noise, evidence }
 }
 
 /// A distribution with what further runs say of the robot, which may have changed since the training logs; `said` is what its
 /// networks say.
-pub fn conditioned(ensemble: &Ensemble, noise: &MotionNoise, said: Held, steps: &[StepResidual]) -> Ensemble {
+pub fn conditioned(ensemble: &Ensemble, robot: &Robot, said: Held, steps: &[StepResidual]) -> Ensemble {
     let mut ensemble = ensemble.clone();
-    let stretches = holds(steps);
-    let more = stretches.iter().map(|hold| hold.evidence(noise, &ensemble.first_step, &ensemble.lasting));
+    let more = holds(steps).into_iter().map(|hold| hold.evidence(&ensemble.noise, said));
     let more: Vec<Evidence> = more.map(|evidence| Evidence { after_training: true, ..evidence }).collect();
     ensemble.evidence.extend(more);
     let factor = unit_factor();
+    let cells = by_cell(ensemble.evidence.iter().copied());
     for (channel, prior) in ensemble.prior.iter_mut().enumerate() {
-        let likelihood = Likelihood::new(&factor, &ensemble.evidence, said, channel);
+        let likelihood = Likelihood::new(&factor, &cells, &ensemble.noise, said, channel);
         let of = |change: f64| {
             let mut prior = *prior;
-            prior[CHANGE] = change * noise.full(channel);
+            prior[CHANGE] = change * full(robot)[channel];
             (likelihood.log_evidence(&prior), prior)
         };
         let (_, likeliest) = CHANGES
@@ -72,6 +69,12 @@ pub fn conditioned(ensemble: &Ensemble, noise: &MotionNoise, said: Held, steps: 
         *prior = likeliest;
     }
     ensemble
+}
+
+/// What one wheel at full command moves a robot in a step: forward (cm), lateral (cm), turn (degrees).
+fn full(robot: &Robot) -> [f64; 3] {
+    let way_cm = robot.full_speed_cm_s * robot.step_ms / 1000.0;
+    [0.5 * way_cm, 0.0, (way_cm / robot.track_cm).to_degrees()]
 }
 
 /// What the networks leave of every step of training logs.
@@ -86,83 +89,6 @@ fn residuals(simulator: &Simulator, logs: &Logs) -> Option<Vec<StepResidual>> {
         StepResidual::new([s.run, s.row], s.speeds, [0, 1, 2].map(|c| off[c] - correction[c]), known)
     };
     Some(samples::motion(logs).iter().map(residual).collect())
-}
-
-/// What a robot does that neither its command says nor a step alone draws, as standard deviations.
-#[derive(Clone, Copy, Default)]
-struct Chance {
-    first_step: [f64; 3],
-    lasting: [f64; 3],
-}
-
-impl Chance {
-    /// What is left of stretches by the robot in the middle of a distribution that they leave.
-    fn of(stretches: &[Hold], noise: &MotionNoise, middle: &Member, said: Held) -> Self {
-        let mut chance = Chance::default();
-        for channel in 0..3 {
-            let process = |hold: &Hold| noise.process_variance(hold.command, channel);
-            let left = |hold: &Hold| {
-                let (does, says) = (middle.motion(hold.command), said(hold.command));
-                let off = hold.residual[channel] + hold.known[channel] + says[channel] - does[channel];
-                off * off
-            };
-            let steady = stretches.iter().filter(|hold| !hold.first);
-            let lasting = likeliest(steady.map(|hold| [left(hold), noise.variance(hold, channel), process(hold)]));
-            let typical = noise.typical(channel);
-            let of_first = |hold: &Hold| {
-                let known = noise.variance(hold, channel) + lasting * lasting * process(hold);
-                [left(hold), known, typical * typical]
-            };
-            let first = likeliest(stretches.iter().filter(|hold| hold.first).map(of_first));
-            (chance.lasting[channel], chance.first_step[channel]) = (lasting, first * typical);
-        }
-        chance
-    }
-}
-
-/// How many times a standard deviation adds to what is known of chance, such that squares of residuals are the most probable:
-/// of each stretch its square, the variance that is known, and the one that is added.
-fn likeliest(stretches: impl Iterator<Item = [f64; 3]>) -> f64 {
-    let stretches: Vec<[f64; 3]> = stretches.collect();
-    let log_likelihood = |times: f64| {
-        let of = |[square, known, added]: &[f64; 3]| {
-            let variance = known + times * times * added;
-            -0.5 * (libm::log(variance) + square / variance)
-        };
-        stretches.iter().map(of).sum::<f64>()
-    };
-    let grid = (0..=MOST_TIMES * PARTS_OF_ONE).map(|i| f64::from(i) / f64::from(PARTS_OF_ONE));
-    let known = grid.map(|times| (log_likelihood(times), times));
-    known.fold((f64::NEG_INFINITY, 0.0), |best, other| if other.0 > best.0 { other } else { best }).1
-}
-
-/// Evidence of commands that lie together as one.
-fn summed(evidence: impl Iterator<Item = Evidence>) -> Vec<Evidence> {
-    let mut cells: BTreeMap<[i32; 2], Vec<Evidence>> = BTreeMap::new();
-    for e in evidence {
-        cells.entry(e.command.map(|c| (c / CELL).round() as i32)).or_default().push(e);
-    }
-    cells.values().map(|together| one(together)).collect()
-}
-
-fn one(together: &[Evidence]) -> Evidence {
-    let weighted = |value: fn(&Evidence, usize) -> f32, channel: usize| {
-        let (sum, weights) = together.iter().fold((0.0, 0.0), |(sum, weights), e| {
-            let weight = 1.0 / f64::from(e.variance[channel]);
-            (sum + weight * f64::from(value(e, channel)), weights + weight)
-        });
-        (sum / weights, 1.0 / weights)
-    };
-    let bias = [0, 1, 2].map(|channel| weighted(|e, c| e.bias[c], channel));
-    Evidence {
-        command: [0, 1].map(|side| {
-            let sum: f32 = together.iter().map(|e| e.command[side]).sum();
-            sum / together.len() as f32
-        }),
-        bias: bias.map(|(mean, _)| mean as f32),
-        variance: bias.map(|(_, variance)| variance as f32),
-        after_training: false,
-    }
 }
 
 /// The sizes of the process's parts under which the evidence is most probable, one after the other.
@@ -202,15 +128,14 @@ mod tests {
         let said = |command: [f64; 2]| networks.held(command);
         let posterior = Posterior::new(&ensemble, &said).expect("a posterior");
         let fresh = record(&default_robot(), &training_room(), 40, 60, &[], 4).expect("room to drive");
-        let noise = MotionNoise::of(&simulator).expect("noise");
         let steps = residuals(&simulator, &fresh).expect("residuals");
         let mut squares = [0.0; 3];
-        let held: Vec<Hold> = holds(&steps).into_iter().filter(|hold| !hold.first).collect();
+        let held: Vec<holds::Hold> = holds(&steps).into_iter().filter(|hold| !hold.first).collect();
         for hold in &held {
             let motion = posterior.motion(hold.command);
             for channel in 0..3 {
                 let [mean, deviation] = motion[channel];
-                let evidence = hold.evidence(&noise, &ensemble.first_step, &ensemble.lasting);
+                let evidence = hold.evidence(&ensemble.noise, &said);
                 let variance = deviation * deviation + f64::from(evidence.variance[channel]);
                 let off = evidence.motion(&said)[channel] - mean;
                 squares[channel] += off * off / variance;

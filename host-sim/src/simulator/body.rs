@@ -134,7 +134,7 @@ impl<'e> SimulatedBody<'e> {
             for (axis, sum) in motion.iter_mut().enumerate() {
                 let level = rng.random_range(0..LEVELS);
                 let noise = &environment.motion_noise[axis];
-                *sum += f64::from(noise.residual(cells[axis], level, self.held_levels[axis]));
+                *sum += f64::from(noise.residual(cells[axis], level, self.held_levels[axis], [1.0; 2]));
             }
         }
         Step { from: self.pose, motion, passed_ms: 0.0 }

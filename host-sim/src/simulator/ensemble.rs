@@ -2,15 +2,18 @@
 //!
 //! A command that is held does the same in every step and every run, and mostly not quite what the networks say: a bias
 //! that no chance stands for, since it adds up while the command is held. So the motion under a held command is a Gaussian
-//! process over commands, one for each of forward, lateral and turn, whose covariance is that of [`basis`]; networks say
-//! how the first step of a command differs. Nothing of it is left out or drawn at random, so that where no log has driven
+//! process over commands, one for each of forward, lateral and turn, whose covariance is that of [`basis`], and a
+//! [`nugget`] of each command beside it; networks say how the first step of a command differs. Nothing of it is left out or drawn at random, so that where no log has driven
 //! it is as wide as its prior, and goes on as the robot does and not as networks happen to. What logs say is kept as
 //! [`Evidence`]; a run of the robot adds some, and the networks stay as they are.
 //!
 //! [`Posterior`] is the distribution given all evidence, a [`Member`] one robot of it.
 
 pub mod basis;
+pub mod evidence;
 pub mod member;
+pub mod noise;
+pub mod nugget;
 pub mod posterior;
 
 use std::sync::Arc;
@@ -20,7 +23,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::chance::derive;
 pub use basis::PARTS;
+pub use evidence::Evidence;
 pub use member::Member;
+pub use noise::MotionNoise;
 pub use posterior::Posterior;
 
 /// A distribution over robots as a simulator file holds it. Channels are forward (cm), lateral (cm) and turn (degrees), all
@@ -29,29 +34,10 @@ pub use posterior::Posterior;
 pub struct Ensemble {
     /// Prior standard deviation of each part of the process ([`PARTS`]), for each channel.
     pub prior: [[f64; PARTS]; 3],
-    /// Standard deviation of what the first step of a command does beyond later ones, the same whenever one command follows
-    /// the other.
-    pub first_step: [f64; 3],
-    /// Standard deviation of what chance adds for as long as a command is held, as a share of what it adds in a step: a
-    /// floor that is rougher here than there.
-    #[serde(default)]
-    pub lasting: [f64; 3],
+    /// What moves the robot beyond the process.
+    pub noise: MotionNoise,
     /// What logs say.
     pub evidence: Vec<Evidence>,
-}
-
-/// What logs say of the motion under one command.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Evidence {
-    /// Left and right command.
-    pub command: [f32; 2],
-    /// Logged minus what the networks say of the command when it is held, a step.
-    pub bias: [f32; 3],
-    /// Variance of that, from the robot's chance and the tracker's error.
-    pub variance: [f32; 3],
-    /// Whether the run was driven after training: the robot may have changed by then.
-    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
-    pub after_training: bool,
 }
 
 /// What networks say of a command that is held: forward (cm), lateral (cm) and turn (degrees) of a step.
@@ -63,14 +49,6 @@ pub struct Robots {
     pub mean: Member,
     /// Random ones, all as likely.
     pub drawn: Vec<Member>,
-}
-
-impl Evidence {
-    /// The motion that was logged: relative to what networks say, which is `held`, it would not be a robot's own.
-    pub fn motion(&self, held: Held) -> [f64; 3] {
-        let said = held(self.command.map(f64::from));
-        [0, 1, 2].map(|channel| f64::from(self.bias[channel]) + said[channel])
-    }
 }
 
 impl Ensemble {
@@ -94,11 +72,13 @@ impl Ensemble {
 
     /// Whether a file could have held this.
     pub fn is_sound(&self) -> bool {
-        let sizes = self.prior.iter().flatten().chain(&self.first_step).chain(&self.lasting);
+        let sizes = self.prior.iter().flatten();
         let sound = |e: &Evidence| {
             e.command.iter().chain(&e.bias).all(|v| v.is_finite())
                 && e.variance.iter().all(|v| v.is_finite() && *v > 0.0)
         };
-        sizes.copied().all(|size| size.is_finite() && size >= 0.0) && self.evidence.iter().all(sound)
+        sizes.copied().all(|size| size.is_finite() && size >= 0.0)
+            && self.noise.is_sound()
+            && self.evidence.iter().all(sound)
     }
 }

@@ -47,6 +47,8 @@ pub struct MotionTable {
     steady: [Motion; TUPLES],
     /// What a robot of a distribution does beyond what was known of it in training, for each tuple: effects act on that.
     bias: [MotionVector; TUPLES],
+    /// Multiples of residuals in each step and for as long as it is held, of each channel.
+    scatter: [[[f32; 2]; 3]; TUPLES],
     /// With added effects that depend on commands alone.
     transients: Option<Box<Transients>>,
 }
@@ -97,13 +99,13 @@ impl<'s> MotionNetworks<'s> {
         MotionNetworks { member: Some(member), ..self }
     }
 
-    /// What chance adds to forward (cm), lateral (cm) and turn (rad). Of what lasts while a command is held most stood for
-    /// not knowing the robot: for one that is known it is the share that remains.
+    /// What chance adds to forward (cm), lateral (cm) and turn (rad), in multiples that [tables](Self::table) tell. Of what
+    /// lasts while a command is held most stood for not knowing the robot: of one that is known its own chance is known.
     pub fn residual_noise(&self) -> [ResidualNoise; 3] {
-        let noise = |channel: usize| {
-            let noise = ResidualNoise::new(self.residuals[channel]);
-            self.member.map_or(noise.clone(), |member| noise.with_lasting(member.lasting()[channel] as f32))
-        };
+        if self.member.is_some() {
+            return [(); 3].map(|()| ResidualNoise::normal());
+        }
+        let noise = |channel: usize| ResidualNoise::new(self.residuals[channel]);
         [noise(0), noise(1), noise(2).times(RADIANS_PER_DEGREE)]
     }
 
@@ -149,13 +151,16 @@ impl<'s> MotionNetworks<'s> {
             cells: self.cells(&steps[i]),
         };
         let (first, steady) = (std::array::from_fn(motion), std::array::from_fn(|t| motion(TUPLES + t)));
-        let mut table = MotionTable { first, steady, bias: [[0.0; 3]; TUPLES], transients: None };
+        let mut table =
+            MotionTable { first, steady, bias: [[0.0; 3]; TUPLES], scatter: [[[1.0; 2]; 3]; TUPLES], transients: None };
         if let Some(member) = self.member {
             for (tuple, first) in steps[..TUPLES].iter().enumerate() {
                 let command = [first[0], first[1]].map(f64::from);
                 let (does, trained) = (member.motion(command), member.trained(command));
                 table.add(tuple, beyond(does, self.held(command)), first_step(member, first));
                 table.bias[tuple] = beyond(does, trained);
+                let [forward, lateral, turn] = member.scatter(command);
+                table.scatter[tuple] = [forward, lateral, turn.map(f64::to_radians)].map(|of| of.map(|v| v as f32));
             }
         }
         table
@@ -182,6 +187,12 @@ impl MotionTable {
     /// What of that no network says: way forward (cm), way to the left (cm) and turn (rad).
     pub fn bias(&self, tuple: usize) -> &[f32; 3] {
         &self.bias[tuple]
+    }
+
+    /// Multiples of residuals while a tuple is held: in each step, and for as long, of each channel.
+    #[inline(always)]
+    pub fn scatter(&self, tuple: usize) -> &[[f32; 2]; 3] {
+        &self.scatter[tuple]
     }
 
     /// The table with what added effects make of the motions, before the bias.

@@ -2,15 +2,16 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::statistics::summary::mean;
-
 /// Cells along each of the two context variables.
 pub const CELLS: usize = 4;
 /// Equally likely residuals that stand for a cell.
 pub const LEVELS: usize = 32;
 
-/// Of a residual at least this fraction is the robot's, where the tracker seems to make all of it.
-const LEAST_SHARE: f64 = 0.2;
+/// The upper half of as many equally likely values of a normal distribution, with a standard deviation of one.
+const NORMAL: [f32; LEVELS / 2] = [
+    0.03996, 0.120126, 0.201043, 0.283247, 0.367335, 0.454002, 0.544082, 0.638626, 0.739011, 0.847128, 0.965725,
+    1.099075, 1.254466, 1.446165, 1.709472, 2.19697,
+];
 
 /// Residuals of a network by context: turning and driving command for motion, D and α for the sonar.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -72,26 +73,6 @@ impl ResidualQuantiles {
         place(0) * CELLS + place(1)
     }
 
-    /// The variance of what a robot adds in a step drawn anew, in a context.
-    pub fn process_variance(&self, context: [f32; 2]) -> f64 {
-        let cell = self.cell(context);
-        let share = f64::from(self.components[cell].step).max(LEAST_SHARE);
-        share * share * self.variance(cell)
-    }
-
-    /// The variance of the tracker's error in one pose: half of what is neither the step's nor the held command's.
-    pub fn tracker_variance(&self) -> f64 {
-        let of_cell = |cell: usize| {
-            let VarianceComponents { step, held } = self.components[cell];
-            f64::from((1.0 - step * step - held * held).max(0.0)) * self.variance(cell) / 2.0
-        };
-        mean((0..CELLS * CELLS).map(of_cell))
-    }
-
-    fn variance(&self, cell: usize) -> f64 {
-        mean(self.quantiles[cell].iter().map(|residual| f64::from(residual * residual)))
-    }
-
     /// Whether a file could have held this.
     pub fn is_sound(&self) -> bool {
         let finite = |values: &[f32]| values.iter().all(|v| v.is_finite());
@@ -120,15 +101,21 @@ impl ResidualNoise {
         self
     }
 
-    /// The same where what lasts while a command is held is so many times what a step adds.
-    pub fn with_lasting(self, share: f32) -> Self {
-        ResidualNoise { held: self.step.map(|cell| cell.map(|residual| share * residual)), ..self }
+    /// Normal residuals with a standard deviation of one in every cell.
+    pub fn normal() -> Self {
+        let level = |level: usize| match level.checked_sub(LEVELS / 2) {
+            Some(above) => NORMAL[above],
+            None => -NORMAL[LEVELS / 2 - 1 - level],
+        };
+        let cells = [std::array::from_fn(level); CELLS * CELLS];
+        ResidualNoise { step: cells, held: cells }
     }
 
-    /// What a robot adds in a cell: one of the [`LEVELS`] drawn for this step, and one drawn when the command began.
+    /// What a robot adds in a cell: one of the [`LEVELS`] drawn for this step, and one drawn when the command began, so many
+    /// times each.
     #[inline(always)]
-    pub fn residual(&self, cell: usize, step: usize, held: usize) -> f32 {
-        self.step[cell][step] + self.held[cell][held]
+    pub fn residual(&self, cell: usize, step: usize, held: usize, times: [f32; 2]) -> f32 {
+        times[0] * self.step[cell][step] + times[1] * self.held[cell][held]
     }
 }
 

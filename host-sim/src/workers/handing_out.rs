@@ -65,6 +65,7 @@ where
     let threads = rayon::current_num_threads();
     let is_over = &AtomicBool::new(false);
     rayon::in_place_scope(|scope| {
+        let _over = Over(is_over);
         let (sender, results) = mpsc::channel();
         let start = |index: usize, piece: P| {
             let sender = sender.clone();
@@ -123,9 +124,17 @@ where
             }
         };
         let all = (0..count).try_for_each(|next| take(next, piece(next)?));
-        is_over.store(true, Ordering::Relaxed);
         all.and_then(|()| RUN.with_borrow(|run| run.ranks.as_ref().map_or(Ok(()), |ranks| ranks.over())))
     })
+}
+
+/// Keeps pieces from being begun once it is dropped, even where something panicked.
+struct Over<'a>(&'a AtomicBool);
+
+impl Drop for Over<'_> {
+    fn drop(&mut self) {
+        self.0.store(true, Ordering::Relaxed);
+    }
 }
 
 impl Waiting {

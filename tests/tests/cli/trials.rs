@@ -24,7 +24,7 @@ fn a_simulator_adapts_to_runs_and_keeps_its_networks() {
     for network in ["turn", "forward", "lateral", "echo_probability", "echo_value"] {
         assert_eq!(before[network], after[network], "{network}");
     }
-    let evidence = |file: &serde_json::Value| file["ensemble"]["evidence"].as_array().map_or(0, Vec::len);
+    let evidence = |file: &serde_json::Value| file["robots"]["evidence"].as_array().map_or(0, Vec::len);
     assert!(evidence(&after) > evidence(&before));
     workshop.done("crosscheck better.json logs");
     let again = workshop.copy();
@@ -37,7 +37,7 @@ fn an_older_simulator_cannot_adapt() {
     let workshop = trained();
     workshop.edit("sim.json", |text| {
         let mut file: serde_json::Value = serde_json::from_str(&text).expect("JSON");
-        file.as_object_mut().expect("an object").remove("ensemble");
+        file.as_object_mut().expect("an object").remove("robots");
         file.to_string()
     });
     workshop.done("evaluate sim.json logs");
@@ -61,7 +61,7 @@ fn a_loop_leaves_all_that_happened_and_goes_on_from_where_it_stood() {
     }
     assert!(workshop.bytes("out/paths.png").starts_with(b"\x89PNG"));
     assert_eq!(workshop.text("out/controller.toml").matches("[[tuple]]").count(), 6);
-    assert!(workshop.json("out/simulator.json")["ensemble"].is_object());
+    assert!(workshop.json("out/simulator.json")["robots"].is_object());
 
     // One trial, and then the second: the same as both at once.
     stopped.loops("--trials 1");

@@ -1,11 +1,9 @@
 //! Stretches of steps under one command. Their mean tells more of the command's bias than single steps do: the robot's
 //! chance averages out, and of the tracker's errors only those at both ends count.
 
-use crate::logs::Robot;
-use crate::simulator::Simulator;
-use crate::simulator::ensemble::Evidence;
+use crate::simulator::ensemble::noise::MotionNoise;
+use crate::simulator::ensemble::{Evidence, Held};
 use crate::simulator::nominal::MotionBias;
-use crate::simulator::residuals::{ResidualQuantiles, motion_context};
 
 /// What the networks and their correction leave of a step. Channels are forward (cm), lateral (cm) and turn (degrees).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -35,13 +33,6 @@ pub struct Hold {
     pub known: [f64; 3],
 }
 
-/// The noise of logged steps.
-pub struct MotionNoise<'s> {
-    residuals: [&'s ResidualQuantiles; 3],
-    tracker_variance: [f64; 3],
-    robot: &'s Robot,
-}
-
 impl StepResidual {
     /// Logged minus predicted of a step in `place`, its run and row: forward (cm), lateral (cm) and turn (rad), for left,
     /// right, previous left and previous right command.
@@ -61,30 +52,54 @@ impl StepResidual {
     pub fn run(&self) -> usize {
         self.place[0]
     }
+
+    /// Left and right command.
+    pub fn command(&self) -> [f64; 2] {
+        self.command
+    }
+
+    /// Whether the command is that of the step before.
+    pub fn is_steady(&self) -> bool {
+        self.steady
+    }
+
+    /// Logged minus predicted.
+    pub fn residual(&self) -> [f64; 3] {
+        self.residual
+    }
+
+    /// What the correction adds where the command is held.
+    pub fn known(&self) -> [f64; 3] {
+        self.known
+    }
 }
 
 /// The stretches of steps, which are in the order of runs and rows.
-pub fn holds(steps: &[StepResidual]) -> Vec<Hold> {
+pub fn stretches(steps: &[StepResidual]) -> Vec<&[StepResidual]> {
     let together = |a: &StepResidual, b: &StepResidual| {
         let next = a.place[0] == b.place[0] && a.place[1] + 1 == b.place[1];
         next && a.steady && b.steady && a.command == b.command
     };
+    steps.chunk_by(together).collect()
+}
+
+/// The same, summed up.
+pub fn holds(steps: &[StepResidual]) -> Vec<Hold> {
     let hold = |steps: &[StepResidual]| {
         let mean = |channel: usize| steps.iter().map(|s| s.residual[channel]).sum::<f64>() / steps.len() as f64;
         let StepResidual { command, steady, known, .. } = steps[0];
         Hold { command, first: !steady, steps: steps.len(), residual: [0, 1, 2].map(mean), known }
     };
-    steps.chunk_by(together).map(hold).collect()
+    stretches(steps).into_iter().map(hold).collect()
 }
 
 impl Hold {
-    /// What it says of the command's bias, whose first step may do otherwise by `first_step` and to which chance adds
-    /// `lasting` for as long as it is held.
-    pub fn evidence(&self, noise: &MotionNoise, first_step: &[f64; 3], lasting: &[f64; 3]) -> Evidence {
+    /// What it says of the command's bias, if noise is this; `said` is what networks say.
+    pub fn evidence(&self, noise: &MotionNoise, said: Held) -> Evidence {
+        let motion = said(self.command);
         let variance = |channel: usize| {
-            let lasting = lasting[channel] * lasting[channel] * noise.process_variance(self.command, channel);
-            let first = if self.first { first_step[channel] * first_step[channel] } else { 0.0 };
-            (noise.variance(self, channel) + lasting + first) as f32
+            let first = if self.first { noise.first_step[channel] * noise.first_step[channel] } else { 0.0 };
+            (noise.mean_variance(motion, channel, self.steps) + first) as f32
         };
         Evidence {
             command: self.command.map(|c| c as f32),
@@ -92,45 +107,6 @@ impl Hold {
             variance: [0, 1, 2].map(variance),
             after_training: false,
         }
-    }
-}
-
-impl<'s> MotionNoise<'s> {
-    /// Of the logs that a simulator was learned from; none without motion networks.
-    pub fn of(simulator: &'s Simulator) -> Option<Self> {
-        let [forward, lateral, turn] = [&simulator.forward, &simulator.lateral, &simulator.turn].map(Option::as_ref);
-        let residuals = [&forward?.residuals, &lateral?.residuals, &turn?.residuals];
-        Some(MotionNoise {
-            residuals,
-            tracker_variance: residuals.map(ResidualQuantiles::tracker_variance),
-            robot: &simulator.robot,
-        })
-    }
-
-    /// The variance of a stretch's mean.
-    pub fn variance(&self, hold: &Hold, channel: usize) -> f64 {
-        let steps = hold.steps as f64;
-        let process = self.process_variance(hold.command, channel);
-        process / steps + 2.0 * self.tracker_variance[channel] / (steps * steps)
-    }
-
-    /// The variance of what the robot adds by chance in a step.
-    pub fn process_variance(&self, command: [f64; 2], channel: usize) -> f64 {
-        let [left, right] = command.map(|c| c as f32);
-        self.residuals[channel]
-            .process_variance(motion_context(&[left, right, left, right]))
-            .max(f64::from(f32::EPSILON))
-    }
-
-    /// What one wheel at full command moves the robot in a step: forward (cm), lateral (cm), turn (degrees).
-    pub fn full(&self, channel: usize) -> f64 {
-        let way_cm = self.robot.full_speed_cm_s * self.robot.step_ms / 1000.0;
-        [0.5 * way_cm, 0.0, (way_cm / self.robot.track_cm).to_degrees()][channel]
-    }
-
-    /// The standard deviation of the robot's chance in a step at half of full command.
-    pub fn typical(&self, channel: usize) -> f64 {
-        self.process_variance([50.0; 2], channel).sqrt()
     }
 }
 

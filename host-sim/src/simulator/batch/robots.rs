@@ -321,9 +321,10 @@ impl<'a> Robots<'a> {
             if self.first[lane] > 0.0 {
                 run.held_levels = [level(held_bits, 0), level(held_bits, 1), level(held_bits, 2)];
             }
-            for (network, scatter) in self.environment.motion_noise.iter().enumerate() {
+            let times = run.request.motions.scatter(run.machine.tuple());
+            for (network, noise) in self.environment.motion_noise.iter().enumerate() {
                 let (cell, held) = (run.cells[network], run.held_levels[network]);
-                residuals[network][lane] = scatter.residual(cell, level(bits, network as u32), held);
+                residuals[network][lane] = noise.residual(cell, level(bits, network as u32), held, times[network]);
             }
         }
         residuals

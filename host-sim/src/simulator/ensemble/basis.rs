@@ -15,8 +15,10 @@ pub const CHANGE: usize = PARTS - 1;
 pub const LINE: usize = PARTS;
 /// Weights of a command on nodes: one, three times two, four, two, and two.
 const WEIGHTS: usize = 15;
-/// Those without the change.
-const UNCHANGED: usize = 13;
+/// The first of those of the change.
+const OF_CHANGE: usize = 13;
+/// The nodes that a command lies among with their weights.
+pub type Weights = [(usize, f64); WEIGHTS];
 
 /// Nodes on either side of zero along one command, along the difference of two, and along each side of the square.
 const REACH: [usize; 3] = [13, 16, 6];
@@ -49,7 +51,7 @@ pub fn part(node: usize) -> usize {
 }
 
 /// The nodes that a command lies among with their weights: its motion is the weighted sum of theirs.
-pub fn weights(command: [f64; 2]) -> [(usize, f64); WEIGHTS] {
+pub fn weights(command: [f64; 2]) -> Weights {
     let [left, right] = command.map(|c| 0.01 * c);
     let (a, b) = (between(bent(left), REACH[0]), between(bent(right), REACH[0]));
     let difference = between(bent(right - left), REACH[1]);
@@ -70,15 +72,16 @@ pub fn weights(command: [f64; 2]) -> [(usize, f64); WEIGHTS] {
     let line = change + NODES[CHANGE];
     weights[11] = (line, left);
     weights[12] = (line + 1, right);
-    weights[UNCHANGED] = (change, left);
-    weights[UNCHANGED + 1] = (change + 1, right);
+    weights[OF_CHANGE] = (change, left);
+    weights[OF_CHANGE + 1] = (change + 1, right);
     weights
 }
 
 /// The same for a robot as it was in its training logs, before it may have changed.
-pub fn weights_in_training(command: [f64; 2]) -> [(usize, f64); UNCHANGED] {
-    let weights = weights(command);
-    std::array::from_fn(|i| weights[i])
+pub fn weights_in_training(command: [f64; 2]) -> Weights {
+    let mut weights = weights(command);
+    weights[OF_CHANGE..].iter_mut().for_each(|(_, weight)| *weight = 0.0);
+    weights
 }
 
 /// The lower Cholesky factor of the covariance of all nodes, each part with a standard deviation of one.

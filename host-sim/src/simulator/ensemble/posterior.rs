@@ -3,11 +3,16 @@
 //! Nodes are u = L a v with v standard normal a priori, L the unit factor of `basis` and a the prior's sizes. Evidence
 //! with weights W and variances N leaves v normal with precision B = 1 + a Lᵀ Wᵀ N⁻¹ W L a.
 
+use std::sync::Arc;
+
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 use rand_distr::{Distribution, StandardNormal};
 
-use super::basis::{LINE, SIZE, part, unit_factor, weights, weights_in_training};
+use super::basis::{LINE, SIZE, part, unit_factor, weights};
+use super::evidence::{by_cell, cells, one};
 use super::member::Member;
+use super::noise::MotionNoise;
+use super::nugget::Nuggets;
 use super::{Ensemble, Evidence, Held, PARTS};
 use crate::chance::generator;
 
@@ -19,8 +24,7 @@ const LINE_SIZE: f64 = 1000.0;
 pub struct Posterior {
     factor: DMatrix<f64>,
     channels: [Channel; 3],
-    first_step: [f64; 3],
-    lasting: [f64; 3],
+    nuggets: Arc<Nuggets>,
 }
 
 /// Sums of what evidence says of one channel: all that its likelihood needs.
@@ -42,34 +46,39 @@ struct Channel {
 /// explanations of the same steps it prefers.
 pub fn log_evidence(ensemble: &Ensemble, held: Held) -> f64 {
     let factor = unit_factor();
+    let cells = cells(ensemble.evidence.iter().copied());
+    let means: Vec<Evidence> = cells.iter().map(|together| one(together)).collect();
+    let about =
+        |(together, mean): (&Vec<Evidence>, &Evidence)| together.iter().map(|e| e.squares_about(mean)).sum::<f64>();
+    let within: f64 = cells.iter().zip(&means).map(about).sum();
     let of = |channel: usize| {
         let square = |e: &Evidence| {
             let motion = e.motion(held)[channel];
-            motion * motion / f64::from(e.variance[channel])
+            motion * motion / e.variance_about_process(&ensemble.noise, held, channel)
         };
-        let squares: f64 = ensemble.evidence.iter().map(square).sum();
-        let likelihood = Likelihood::new(&factor, &ensemble.evidence, held, channel);
+        let squares: f64 = means.iter().map(square).sum();
+        let likelihood = Likelihood::new(&factor, &means, &ensemble.noise, held, channel);
         likelihood.log_evidence(&ensemble.prior[channel]) - 0.5 * squares
     };
-    (0..3).map(of).sum()
+    (0..3).map(of).sum::<f64>() - 0.5 * within
 }
 
 impl Posterior {
     /// Given all evidence, which is relative to `held`; none if its numbers have no inverse.
     pub fn new(ensemble: &Ensemble, held: Held) -> Option<Self> {
         let factor = unit_factor();
-        let channel = |channel: usize| {
-            let likelihood = Likelihood::new(&factor, &ensemble.evidence, held, channel);
-            likelihood.given(&ensemble.prior[channel])
-        };
+        let noise = ensemble.noise;
+        let cells = by_cell(ensemble.evidence.iter().copied());
+        let channel =
+            |channel: usize| Likelihood::new(&factor, &cells, &noise, held, channel).given(&ensemble.prior[channel]);
         let channels = [channel(0)?, channel(1)?, channel(2)?];
-        Some(Posterior { factor, channels, first_step: ensemble.first_step, lasting: ensemble.lasting })
+        Some(Posterior { factor, channels, nuggets: Arc::new(Nuggets::new(&cells, noise, held)) })
     }
 
     /// The robot in the middle.
     pub fn mean(&self) -> Member {
         let nodes = |channel: &Channel| self.nodes(channel, &channel.mean);
-        Member::new(self.channels.each_ref().map(nodes), [0.0; 3], self.lasting, 0)
+        Member::new(self.channels.each_ref().map(nodes), self.nuggets.clone(), None)
     }
 
     /// A robot of it, fixed by `seed`.
@@ -80,20 +89,31 @@ impl Posterior {
             let off = channel.precision.l_dirty().tr_solve_lower_triangular(&normal);
             self.nodes(channel, &(&channel.mean + off.unwrap_or(normal)))
         });
-        Member::new(nodes, self.first_step, self.lasting, seed)
+        Member::new(nodes, self.nuggets.clone(), Some(seed))
     }
 
     /// Mean and standard deviation of the motion under a held command: forward (cm), lateral (cm), turn (degrees).
     pub fn motion(&self, command: [f64; 2]) -> [[f64; 2]; 3] {
-        let mut along = DVector::zeros(SIZE);
-        for (node, weight) in weights(command) {
-            along += self.factor.row(node).transpose() * weight;
-        }
-        self.channels.each_ref().map(|channel| {
-            let along = along.component_mul(&channel.sizes);
+        let place = weights(command);
+        let known = self.nuggets.known(command, [0, 1, 2].map(|c| self.along(&place, c).dot(&self.channels[c].mean)));
+        [0, 1, 2].map(|c| {
+            // What the process does there, but for what of it the command's own takes back where it is known.
+            let (channel, known) = (&self.channels[c], &known[c]);
+            let along = self.along(&place, c) - known.share * self.along(known.place, c);
             let off = channel.precision.l_dirty().solve_lower_triangular(&along);
-            [along.dot(&channel.mean), off.map_or(0.0, |off| off.norm())]
+            let of_process = off.map_or(0.0, |off| off.norm());
+            let motion = along.dot(&channel.mean) + known.share * known.motion;
+            [motion, (of_process * of_process + known.deviation * known.deviation).sqrt()]
         })
+    }
+
+    /// The process in a place as a sum over v.
+    fn along(&self, weights: &[(usize, f64)], channel: usize) -> DVector<f64> {
+        let mut along = DVector::zeros(SIZE);
+        for (node, weight) in weights {
+            along += self.factor.row(*node).transpose() * *weight;
+        }
+        along.component_mul(&self.channels[channel].sizes)
     }
 
     fn nodes(&self, channel: &Channel, v: &DVector<f64>) -> Vec<f64> {
@@ -102,14 +122,13 @@ impl Posterior {
 }
 
 impl Likelihood {
-    /// Of a channel of the evidence, which is relative to `held`; `factor` is that of [`basis`](super::basis).
-    pub fn new(factor: &DMatrix<f64>, evidence: &[Evidence], held: Held, channel: usize) -> Self {
+    /// Of a channel of [cells](by_cell) of evidence, which is relative to `held`; `factor` is that of
+    /// [`basis`](super::basis).
+    pub fn new(factor: &DMatrix<f64>, cells: &[Evidence], noise: &MotionNoise, held: Held, channel: usize) -> Self {
         let (mut precision, mut pull) = (DMatrix::zeros(SIZE, SIZE), DVector::zeros(SIZE));
-        for e in evidence {
-            let command = e.command.map(f64::from);
-            let weights =
-                if e.after_training { weights(command).to_vec() } else { weights_in_training(command).to_vec() };
-            let (motion, certainty) = (e.motion(held)[channel], 1.0 / f64::from(e.variance[channel]));
+        for e in cells {
+            let weights = e.weights();
+            let (motion, certainty) = (e.motion(held)[channel], 1.0 / e.variance_about_process(noise, held, channel));
             for &(i, a) in &weights {
                 pull[i] += a * motion * certainty;
                 for &(j, b) in &weights {
@@ -159,8 +178,7 @@ mod tests {
         };
         Ensemble {
             prior: [[1.0, 1.0, 1.0, 5.0, 1.0, 0.0]; 3],
-            first_step: [0.0; 3],
-            lasting: [0.0; 3],
+            noise: MotionNoise::default(),
             evidence: (0..20).map(evidence).collect(),
         }
     }
@@ -208,7 +226,7 @@ mod tests {
         let factor = unit_factor();
         // A turn that saturates in the difference of the commands is no line.
         let bent = |[left, right]: [f64; 2]| [0.0, 0.0, 20.0 * libm::tanh(0.05 * (right - left))];
-        let likelihood = Likelihood::new(&factor, &ensemble().evidence, &bent, 2);
+        let likelihood = Likelihood::new(&factor, &ensemble().evidence, &MotionNoise::default(), &bent, 2);
         let at = |size: f64| likelihood.log_evidence(&[0.1, 0.1, 0.1, size, 0.1, 0.0]);
         assert!(at(5.0) > at(0.05) && at(5.0) > at(5000.0));
     }
