@@ -132,11 +132,11 @@ impl<'a> Trials<'a> {
             return self.settle(Verdict::Works, controller, *chance);
         }
         if count >= self.job.trials {
-            let (controller, chance) = known.first().ok_or_else(|| Error::new("no controller was driven"))?;
+            let (controller, chance) = known.choice(&tried).ok_or_else(|| Error::new("no controller was driven"))?;
             return self.settle(Verdict::Spent, controller, *chance);
         }
         let found = search.best(&self.state.archive, &tried)?;
-        let (controller, chance) = found.first().ok_or_else(|| Error::new("no controller was found"))?;
+        let (controller, chance) = found.choice(&tried).ok_or_else(|| Error::new("no controller was found"))?;
         if chance.success < HOPELESS {
             return self.settle(Verdict::OutOfReach, controller, *chance);
         }

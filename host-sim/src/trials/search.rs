@@ -1,6 +1,8 @@
 //! The search of a turn: controllers from new explorations and from those that did well, judged on many robots and by their
 //! own real runs. What the runs of others tell is in the simulator by then.
 
+use std::cmp::Reverse;
+
 use glam::DVec2;
 use mindgap_core::controller::{Controller, Tuple};
 
@@ -224,10 +226,24 @@ fn score(controller: &Controller, chance: f64, tried: &[Tried]) -> f64 {
     (SIMULATED * chance + successes as f64) / (SIMULATED + runs as f64)
 }
 
+/// That of a chance over the robots that it was judged on, by Laplace's rule: even a chance of one has an error.
+fn standard_error(chance: f64) -> f64 {
+    let robots = ROBOTS as f64;
+    let chance = (robots * chance + 1.0) / (robots + 2.0);
+    (chance * (1.0 - chance) / robots).sqrt()
+}
+
 impl Found {
-    /// The most promising controller.
-    pub fn first(&self) -> Option<(&Controller, &Chance)> {
-        self.0.first().map(|Candidate { controller, chance, .. }| (controller, chance))
+    /// The most promising controller. Of those that the judgement cannot tell from it, one that the robot has proven: whether
+    /// it works is what the loop wants to know.
+    pub fn choice(&self, tried: &[Tried]) -> Option<(&Controller, &Chance)> {
+        let best = self.0.first()?.score;
+        let alike = self.0.iter().take_while(|candidate| best - candidate.score <= standard_error(best));
+        let proven = |candidate: &&Candidate| {
+            let always = tried.iter().find(|t| t.controller == candidate.controller && t.successes == t.runs);
+            Reverse(always.map_or(0, |t| t.successes))
+        };
+        alike.min_by_key(proven).map(|Candidate { controller, chance, .. }| (controller, chance))
     }
 
     /// The controller that works.
@@ -282,8 +298,11 @@ mod tests {
         assert!(!works(1.0, &tried(2, 2)) && works(0.8, &tried(3, 3)) && !works(0.7, &tried(3, 3)));
         assert!(!works(0.9, &tried(4, 3)));
         let again = |simulated, tried: &[Tried]| {
-            found(simulated, tried).first().is_some_and(|(first, _)| *first == controller(40))
+            found(simulated, tried).choice(tried).is_some_and(|(next, _)| *next == controller(40))
         };
-        assert!(again(0.8, &tried(1, 1)) && !again(0.7, &tried(1, 1)) && !again(0.8, &tried(2, 1)));
+        // Its score is 0.76 and 0.68 where the other's is 0.8, more or less 0.06.
+        assert!(again(0.7, &tried(1, 1)) && !again(0.6, &tried(1, 1)));
+        // 0.78 after a failure is only less.
+        assert!(!again(0.92, &tried(2, 1)) && again(1.0, &tried(2, 1)));
     }
 }
