@@ -21,7 +21,7 @@ pub struct Trajectory {
 pub struct TrajectoryPoint {
     /// The true pose.
     pub true_pose: Pose,
-    /// The row of the log: the commands from here on, the tracked pose, and the reading that led to them.
+    /// The row of the log: the commands from here on, the tracked pose, and the reading here.
     pub row: Row,
 }
 
@@ -40,19 +40,23 @@ pub enum Termination {
 pub fn run_controller(robot: &BuiltInRobot, controller: &Controller, start: Pose, rng: &mut Generator) -> Trajectory {
     let mut body = robot.start(start, rng);
     let mut machine = Machine::start();
-    let mut points = Vec::new();
-    let mut echo_cm = None;
-    loop {
+    let mut points: Vec<TrajectoryPoint> = Vec::new();
+    // Every row is read, but a controller looks only once it has driven a step and while it does. Where it does not look, the
+    // reading moves no robot: it draws from a copy.
+    while machine.status() == Status::Running && !body.crashed() {
+        let echo_cm = if points.is_empty() {
+            body.read_sonar(&mut rng.clone())
+        } else {
+            let echo_cm = body.read_sonar(rng);
+            machine.step(controller, echo_cm);
+            echo_cm
+        };
         let command = speeds(machine.motors(controller));
         points.push(TrajectoryPoint { true_pose: body.true_pose(), row: body.row(command, echo_cm, rng) });
         body.drive(command, robot.step_length_ms(f64::from(controller.step_ms), rng), rng);
-        if body.crashed() || machine.status() != Status::Running {
-            break;
-        }
-        echo_cm = body.read_sonar(rng);
-        machine.step(controller, echo_cm);
     }
-    points.push(TrajectoryPoint { true_pose: body.true_pose(), row: body.row([0.0, 0.0], None, rng) });
+    let echo_cm = body.read_sonar(&mut rng.clone());
+    points.push(TrajectoryPoint { true_pose: body.true_pose(), row: body.row([0.0, 0.0], echo_cm, rng) });
     let termination = match machine.status() {
         _ if body.crashed() => Termination::Crashed,
         Status::Finished => Termination::Finished,

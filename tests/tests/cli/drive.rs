@@ -31,6 +31,22 @@ fn a_run_is_logged_from_the_start_to_where_it_ended() {
     assert_eq!(last[1..3], [0.0, 0.0], "the motors are stopped");
 }
 
+/// Also where its controller does not look: in the first row, and once the motors have stopped. Of ten readings near walls one
+/// or two fail.
+#[test]
+fn the_sensor_is_read_at_both_ends_of_a_run() {
+    let workshop = workshop();
+    let mut read = [0; 2];
+    for seed in 1..=8 {
+        workshop.done(&format!("drive six.toml --scene scene.toml --seed {seed} --out run.csv --force"));
+        let log = workshop.text("run.csv");
+        let rows: Vec<&str> = log.lines().skip(1).collect();
+        let is_read = |row: &str| row.split(',').nth(6).is_some_and(|echo_cm| !echo_cm.is_empty());
+        [rows[0], rows[rows.len() - 1]].iter().zip(&mut read).for_each(|(row, read)| *read += i32::from(is_read(row)));
+    }
+    assert!(read.iter().all(|read| *read >= 4), "{read:?} of 8");
+}
+
 #[test]
 fn a_run_takes_no_more_steps_than_its_controller_may() {
     let workshop = workshop();
