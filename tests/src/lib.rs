@@ -11,6 +11,7 @@ pub mod firmware_networks;
 pub mod fixed_point_error;
 pub mod fuzzing;
 pub mod golden;
+pub mod held_out_scans;
 pub mod module_order;
 pub mod modules;
 pub mod nbc;

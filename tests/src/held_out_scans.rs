@@ -1,0 +1,68 @@
+//! How likely the first-echo law makes scans at a place that it was not fitted on.
+
+use mindgap_host_sim::evaluation::sensor_models::nats;
+use mindgap_host_sim::inspection::Inspection;
+use mindgap_host_sim::learn::echo_law;
+use mindgap_host_sim::learn::scans::{Heard, Offset, Scans};
+use mindgap_host_sim::logs::Logs;
+use mindgap_host_sim::sonar::FirstEchoLaw;
+use mindgap_host_sim::sonar::echo_law::Surfaces;
+
+/// Mean log-likelihoods of a reading over scans that are left out one by one.
+pub struct HeldOut {
+    /// Number of readings.
+    pub readings: usize,
+    /// With offsets in x, y and heading that are fitted on the judged scan itself.
+    pub poses_refitted: f64,
+    /// With an offset in heading alone.
+    pub heading_refitted: f64,
+    /// With poses as logged.
+    pub as_logged: f64,
+}
+
+/// Headings of a judged scan that are tried, half degrees to either side, and their standard deviation beforehand, degrees.
+const HALF_DEGREES: i32 = 30;
+const DEVIATION_DEG: f64 = 4.0;
+
+impl HeldOut {
+    /// Of logs whose runs are scans, one a place; what is no reading is left out of them as everywhere.
+    pub fn of(logs: Logs) -> Self {
+        let logs = Inspection::of(logs).logs;
+        let surfaces = Surfaces::new(logs.scene.sides());
+        let mut sum = HeldOut { readings: 0, poses_refitted: 0.0, heading_refitted: 0.0, as_logged: 0.0 };
+        for out in 0..logs.runs.len() {
+            let mut others = logs.clone();
+            let scan = Logs { runs: vec![others.runs.remove(out)], ..others.clone() };
+            let law = echo_law::learn(&others, 1).expect("readings");
+            let readings = Scans::of(&scan).rows().count();
+            let judged = nats(&scan, |sensor| law.outcomes_at(&surfaces, sensor));
+            sum.readings += readings;
+            sum.poses_refitted += readings as f64 * judged.poses_refitted.expect("a scan");
+            sum.heading_refitted += heading_refitted(&law, &surfaces, &scan);
+            sum.as_logged += readings as f64 * judged.as_logged;
+        }
+        let mean = |nats: f64| nats / sum.readings as f64;
+        HeldOut {
+            poses_refitted: mean(sum.poses_refitted),
+            heading_refitted: mean(sum.heading_refitted),
+            as_logged: mean(sum.as_logged),
+            ..sum
+        }
+    }
+}
+
+/// The log-likelihood of a scan at the most probable of its headings.
+fn heading_refitted(law: &FirstEchoLaw, surfaces: &Surfaces, scan: &Logs) -> f64 {
+    let scans = Scans::of(scan);
+    let at = |half: i32| {
+        let deg = 0.5 * f64::from(half);
+        let offset: Offset = [0.0, 0.0, deg];
+        let term =
+            |row: &Heard| law.outcomes_at(surfaces, &scans.sensor(&row.robot, &offset)).log_likelihood(row.echo_cm);
+        let log_likelihood: f64 = scans.rows().map(term).sum();
+        let off = deg / DEVIATION_DEG;
+        (scans.weight() * log_likelihood - 0.5 * off * off, log_likelihood)
+    };
+    let tried = (-HALF_DEGREES..=HALF_DEGREES).map(at);
+    tried.fold((f64::NEG_INFINITY, 0.0), |best, tried| if tried.0 > best.0 { tried } else { best }).1
+}
