@@ -42,8 +42,8 @@ const ARCHIVED: usize = 12;
 /// Robots whose paths are kept with a trial.
 const SHOWN: usize = 5;
 /// Real runs count beside the simulated chance, which counts as so many. Under a beta distribution about the simulated
-/// chance that counts as so many, the successes of 252 controllers in forty runs each are the most probable for this
-/// (docs/loop.md).
+/// chance that counts as so many, the successes of 28 controllers in forty runs each are the most probable for 5.6, and within
+/// one nat for 4 to 8 (docs/loop.md): the fewest, since where the robot has an effect the simulator is worse than there.
 const SIMULATED: f64 = 4.0;
 
 /// What a turn searches in.

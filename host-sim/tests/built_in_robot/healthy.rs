@@ -214,7 +214,8 @@ fn a_controller_stops_for_the_wall_or_crashes_into_it_or_runs_out_of_steps() {
     assert_eq!(finished.termination, Termination::Finished);
     assert!(finished.points.len() >= 8 && finished.end().position_cm.x > 45.0);
     let log = finished.to_run("run-000");
-    assert_eq!((log.rows.at(0).left, log.rows.at(0).echo_cm), (25.0, None));
+    // The sensor, 7 cm ahead of the axle, faces the wall at 100 cm before the controller first looks.
+    assert_eq!((log.rows.at(0).left, log.rows.at(0).echo_cm), (25.0, Some(63.0)));
     assert_eq!(log.rows.at(log.rows.len() - 1).left, 0.0);
     assert_eq!(run(60, 0, 100).termination, Termination::Crashed);
     let timed_out = run(10, 0, 4);
