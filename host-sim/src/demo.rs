@@ -21,6 +21,8 @@ use crate::evaluation::accuracy::{self, Evaluation};
 use crate::evolve::controller_file::{self, ControllerFile};
 use crate::evolve::fitness::{RandomNumbers, Success};
 use crate::evolve::genome::GenotypeDecoder;
+use crate::evolve::paper::Evolved;
+use crate::evolve::request::Request;
 use crate::evolve::robust;
 use crate::evolve::task::EvolutionTask;
 use crate::evolve::way::WayMap;
@@ -35,8 +37,6 @@ use crate::simulator::rollout_report::RolloutReport;
 use crate::simulator::{Noise, Simulator};
 use repair::Repair;
 
-const TRAINING_RUNS: usize = 100;
-const HELD_OUT_RUNS: usize = 30;
 const STEPS: usize = 60;
 const MAX_STEPS: u16 = 60;
 /// Controllers for a start that are tried on the robot.
@@ -45,6 +45,26 @@ pub const TRIED: usize = 3;
 pub const TRIALS: usize = 3;
 /// Number of fresh simulated runs for a success rate.
 pub const JUDGED_RUNS: usize = 200;
+
+/// How much is done.
+#[derive(Clone, Copy, Debug)]
+pub struct Size {
+    training_runs: usize,
+    held_out_runs: usize,
+    /// Starts of the scene that controllers are evolved for, the first ones.
+    pub starts: usize,
+    /// Whether there is one run of the genetic algorithm for each, as in the paper, and one controller.
+    pub paper: bool,
+    /// Runs on the changed robot that the loop may have.
+    pub trials: usize,
+}
+
+impl Size {
+    /// That of the paper's experiments.
+    pub const USUAL: Size = Size { training_runs: 100, held_out_runs: 30, starts: 4, paper: false, trials: 5 };
+    /// A little of everything.
+    pub const QUICK: Size = Size { training_runs: 12, held_out_runs: 4, starts: 1, paper: true, trials: 1 };
+}
 
 /// Stream keys of the parts of the request.
 #[derive(Clone, Copy)]
@@ -69,8 +89,10 @@ pub enum Stage {
     Evolving {
         /// Its start, from 1.
         start: usize,
-        /// Number of generations completed.
+        /// Number of generations completed,
         generation: usize,
+        /// of so many at most.
+        generations: usize,
     },
     /// Drawing of the figures.
     Drawing,
@@ -114,26 +136,27 @@ struct Trial {
 ///
 /// # Errors
 /// When `out` cannot be written.
-pub fn run(out: &Path, seed: u64, watch: impl Fn(Stage)) -> Result<Summary> {
+pub fn run(out: &Path, seed: u64, size: Size, watch: impl Fn(Stage)) -> Result<Summary> {
     let made = RefCell::new(Vec::new());
     let is_ours = |name: &str| made.borrow().iter().any(|made| made == name);
     files::write_folder(out, is_ours, |fresh| {
-        let summary = fill(fresh, seed, watch)?;
+        let summary = fill(fresh, seed, size, watch)?;
         let entries = fs::read_dir(fresh).map_err(|e| Error::in_file(out, format!("cannot be read: {e}")))?;
         made.borrow_mut().extend(entries.flatten().map(|entry| entry.file_name()));
         Ok(summary)
     })
 }
 
-fn fill(out: &Path, seed: u64, watch: impl Fn(Stage)) -> Result<Summary> {
+fn fill(out: &Path, seed: u64, size: Size, watch: impl Fn(Stage)) -> Result<Summary> {
     let of = |purpose: Purpose| derive(seed, &[purpose as u64]);
     watch(Stage::Recording);
     let robot = built_in_robot::default_robot();
-    let scene = built_in_robot::four_obstacles();
+    let mut scene = built_in_robot::four_obstacles();
+    scene.starts.truncate(size.starts);
     let record = |room: &Scene, runs, purpose| built_in_robot::record(&robot, room, runs, STEPS, &[], of(purpose));
-    let logs = record(&built_in_robot::training_room(), TRAINING_RUNS, Purpose::TrainingLogs)?;
+    let logs = record(&built_in_robot::training_room(), size.training_runs, Purpose::TrainingLogs)?;
     logs.write(&out.join("logs"))?;
-    let held_out = record(&scene, HELD_OUT_RUNS, Purpose::HeldOutLogs)?;
+    let held_out = record(&scene, size.held_out_runs, Purpose::HeldOutLogs)?;
     held_out.write(&out.join("held-out-logs"))?;
     scene.write(&out.join("scene.toml"))?;
     let simulator =
@@ -142,7 +165,14 @@ fn fill(out: &Path, seed: u64, watch: impl Fn(Stage)) -> Result<Summary> {
     let evaluation = accuracy::evaluate(&simulator, &held_out, |_, _| ())?;
     files::write_json(&out.join("evaluation.json"), &evaluation)?;
     let robots = simulator.robots(0, of(Purpose::Evolution));
-    let demo = DemoRun { out, simulator: &simulator, robots: robots.as_ref(), scene: &scene, watch: &watch };
+    let demo = DemoRun {
+        out,
+        simulator: &simulator,
+        robots: robots.as_ref(),
+        scene: &scene,
+        paper: size.paper,
+        watch: &watch,
+    };
     let trials = (0..scene.starts.len())
         .map(|start| demo.start(start, [Purpose::Evolution, Purpose::Simulation, Purpose::Trial].map(of)))
         .collect::<Result<Vec<_>>>()?;
@@ -157,7 +187,8 @@ fn fill(out: &Path, seed: u64, watch: impl Fn(Stage)) -> Result<Summary> {
     };
     let best = (0..trials.len()).min_by(better).ok_or_else(|| Error::new("the scene has no start"))?;
     let watch_trial = |trial| watch(Stage::Repairing { trial });
-    let repair = repair::run(out, best + 1, &trials[best].controllers, MAX_STEPS, of(Purpose::Repair), watch_trial)?;
+    let job = repair::Job { start: best + 1, max_steps: MAX_STEPS, trials: size.trials, seed: of(Purpose::Repair) };
+    let repair = repair::run(out, &trials[best].controllers, &job, watch_trial)?;
     Ok(Summary { evaluation, starts: trials.into_iter().map(|trial| trial.summary).collect(), panels, repair })
 }
 
@@ -168,6 +199,8 @@ struct DemoRun<'a, W> {
     /// Those that the logs leave possible.
     robots: Option<&'a Robots>,
     scene: &'a Scene,
+    /// Whether controllers are searched for as in the paper.
+    paper: bool,
     watch: &'a W,
 }
 
@@ -183,13 +216,12 @@ impl<W: Fn(Stage)> DemoRun<'_, W> {
         let seed = derive(evolution, &[start as u64]);
         let way = &WayMap::new(self.scene, target_cm, self.simulator.robot.body_radius_cm);
         let task = EvolutionTask { environment, target_cm, way, decoder, random_numbers: RandomNumbers::Common, seed };
-        let report = |generation, _| (self.watch)(Stage::Evolving { start: start + 1, generation });
         let robot = &BuiltInRobot::new(&self.simulator.robot, self.scene, &[]);
         let drive = |controller: &Controller, place: &[u64]| {
             built_in_robot::run_controller(robot, controller, pose, &mut generator(trial, place))
         };
         // Real runs of one controller nearly coincide, so a single one shows whether it transfers.
-        let mut candidates = robust::candidates(&task, report)?;
+        let mut candidates = self.candidates(start + 1, &task)?;
         candidates.truncate(TRIED);
         candidates.sort_by_cached_key(|c| millimetres_off(&drive(&c.controller, &[start as u64]), target_cm));
         let evolved = &candidates[0];
@@ -212,6 +244,26 @@ impl<W: Fn(Stage)> DemoRun<'_, W> {
         let real = success(trajectories.iter().cloned(), target_cm);
         let controllers = candidates.into_iter().map(|c| c.controller).collect();
         Ok(Trial { controllers, rollouts, trajectories, summary: StartSummary { simulated, real } })
+    }
+
+    /// Controllers for a start (from 1), the most promising first.
+    fn candidates(&self, start: usize, task: &EvolutionTask) -> Result<Vec<Evolved>> {
+        let evolving = |generation, generations| (self.watch)(Stage::Evolving { start, generation, generations });
+        if !self.paper {
+            return robust::candidates(task, |generation, _| evolving(generation, robust::GENERATIONS));
+        }
+        let request = Request {
+            simulator: self.simulator,
+            scene: self.scene,
+            start,
+            max_steps: MAX_STEPS,
+            paper: true,
+            noise: Noise::Paper,
+            first_echo: false,
+            random_numbers: RandomNumbers::Independent,
+            seed: task.seed,
+        };
+        Ok(vec![request.evolve(|generation, _| evolving(generation, request.generations()))?.evolved])
     }
 
     fn write(&self, number: usize, controller: &Controller, origin: controller_file::Origin) -> Result<()> {

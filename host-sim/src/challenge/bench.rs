@@ -1,7 +1,7 @@
 //! Cases with known answers, driven as they are asked for: what thresholds are set and tried on.
 
 use super::answer::learn;
-use super::cases::{self, Case, Echoes, Outside};
+use super::cases::{self, Case, Echoes, Outside, Setting, Size};
 use crate::built_in_robot::Effect;
 use crate::error::Result;
 use crate::logs::Logs;
@@ -12,6 +12,7 @@ use crate::workers;
 /// The cases, and the simulators of their robots.
 pub struct Bench {
     seed: u64,
+    setting: Setting,
     robots: Vec<Logs>,
     simulators: Vec<Simulator>,
     /// What is different in each case.
@@ -23,10 +24,11 @@ impl Bench {
     ///
     /// # Errors
     /// When a robot has no room to drive in, or its logs teach nothing.
-    pub fn new(count: usize, seed: u64) -> Result<Self> {
-        let robots = cases::robots(seed, Echoes::Fresh)?;
+    pub fn new(count: usize, seed: u64, size: Size) -> Result<Self> {
+        let setting = Setting { outside: OUTSIDE, echoes: Echoes::Fresh, size };
+        let robots = cases::robots(seed, setting)?;
         let simulators = workers::map(robots.len(), |robot| learn(&robots[robot]))?;
-        Ok(Bench { seed, robots, simulators, effects: effects(count, seed) })
+        Ok(Bench { seed, setting, robots, simulators, effects: effects(count, seed) })
     }
 
     /// A case with the baseline of its robot.
@@ -34,15 +36,18 @@ impl Bench {
     /// # Errors
     /// When the robot hits something in every room.
     pub fn case(&self, number: usize) -> Result<(Case, Baseline<'_>)> {
-        let case = cases::case(number, &self.effects[number], &self.robots, Echoes::Fresh, self.seed)?;
+        let case = cases::case(number, &self.effects[number], &self.robots, self.setting, self.seed)?;
         let baseline = Baseline::learned(&self.simulators[case.robot])?;
         Ok((case, baseline))
     }
 }
 
-/// The effects of the cases; the held-out ones stay unseen.
+/// The held-out effects stay unseen.
+const OUTSIDE: Outside = Outside::Usual;
+
+/// The effects of the cases.
 fn effects(count: usize, seed: u64) -> Vec<Vec<Effect>> {
-    cases::effects(count, seed, Outside::Usual)
+    cases::effects(count, seed, OUTSIDE)
 }
 
 #[cfg(test)]

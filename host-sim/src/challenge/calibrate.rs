@@ -9,7 +9,7 @@ mod fitting;
 use serde::{Deserialize, Serialize};
 
 use super::bench::Bench;
-use super::cases::Case;
+use super::cases::{Case, Size};
 use crate::error::{Error, Result};
 use crate::gap::Method;
 use crate::gap::calibration::Calibration;
@@ -53,11 +53,16 @@ const FEWEST: usize = 40;
 ///
 /// # Errors
 /// When there are too few cases.
-pub fn calibrate(count: usize, seed: u64, watch: impl Fn(usize, usize) + Sync) -> Result<(Calibration, Vec<Measured>)> {
+pub fn calibrate(
+    count: usize,
+    seed: u64,
+    size: Size,
+    watch: impl Fn(usize, usize) + Sync,
+) -> Result<(Calibration, Vec<Measured>)> {
     if count < FEWEST {
         return Err(Error::new(format!("{count} cases settle nothing: give at least {FEWEST}")));
     }
-    let bench = Bench::new(count, seed)?;
+    let bench = Bench::new(count, seed, size)?;
     let (nulls, others): (Vec<usize>, Vec<usize>) = (0..count).partition(|case| bench.effects[*case].is_empty());
     let counter = Counter::new(count, watch);
     let counted = |measured: Result<Measured>| measured.inspect(|_| counter.one_more());

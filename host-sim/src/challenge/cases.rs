@@ -12,12 +12,6 @@ use crate::logs::Logs;
 
 /// Number of robots in a challenge.
 pub const ROBOTS: usize = 4;
-/// Number of steps of a run.
-pub const STEPS: usize = 60;
-/// Number of runs that a robot's simulator is learned from.
-const NOMINAL_RUNS: usize = 80;
-/// Least and largest number of runs of a case.
-const RUNS: [usize; 2] = [16, 28];
 /// Probability that a case is driven like the logs that its simulator is learned from.
 const DRIVEN_ALIKE: f64 = 0.5;
 /// Of ten cases, this many have no effect.
@@ -50,6 +44,35 @@ pub enum Echoes {
     PlaceBound,
 }
 
+/// How much is logged.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Size {
+    /// Number of steps of a run.
+    steps: usize,
+    /// Number of runs that a robot's simulator is learned from.
+    nominal_runs: usize,
+    /// Least and largest number of runs of a case.
+    runs: [usize; 2],
+}
+
+impl Size {
+    /// That of a challenge that tells something.
+    pub const USUAL: Size = Size { steps: 60, nominal_runs: 80, runs: [16, 28] };
+    /// Of everything as little as there has to be: so many runs as are held out from each other.
+    pub const QUICK: Size = Size { steps: 25, nominal_runs: 8, runs: [6, 6] };
+}
+
+/// What all cases of a challenge have alike.
+#[derive(Clone, Copy, Debug)]
+pub struct Setting {
+    /// What its effects outside the table are drawn from.
+    pub outside: Outside,
+    /// What the chance in its echoes belongs to.
+    pub echoes: Echoes,
+    /// How much is logged.
+    pub size: Size,
+}
+
 impl Echoes {
     /// The sensor of a robot in another room.
     fn sensor(self, rng: &mut Generator) -> Option<ActiveEffect> {
@@ -79,13 +102,13 @@ pub struct Case {
 ///
 /// # Errors
 /// When a room has no space for its robot.
-pub fn robots(seed: u64, echoes: Echoes) -> Result<Vec<Logs>> {
+pub fn robots(seed: u64, Setting { echoes, size, .. }: Setting) -> Result<Vec<Logs>> {
     let robot = |robot: u64| {
         let mut rng = generator(seed, &[ROBOT, robot]);
         let spec = rooms::robot(&mut rng);
         let room = rooms::room(&mut rng);
         let sensor = Vec::from_iter(echoes.sensor(&mut rng));
-        record(&spec, &room, NOMINAL_RUNS, STEPS, &sensor, rng.next_u64())
+        record(&spec, &room, size.nominal_runs, size.steps, &sensor, rng.next_u64())
     };
     (0..ROBOTS as u64).map(robot).collect()
 }
@@ -94,12 +117,13 @@ pub fn robots(seed: u64, echoes: Echoes) -> Result<Vec<Logs>> {
 ///
 /// # Errors
 /// When the robot hits something in every room tried.
-pub fn case(number: usize, effects: &[Effect], robots: &[Logs], echoes: Echoes, seed: u64) -> Result<Case> {
+pub fn case(number: usize, effects: &[Effect], robots: &[Logs], setting: Setting, seed: u64) -> Result<Case> {
+    let Setting { echoes, size, .. } = setting;
     let mut rng = generator(seed, &[CASE, number as u64]);
     let mut tried = 0;
     loop {
         let robot = rng.random_range(0..robots.len());
-        let runs = rng.random_range(RUNS[0]..=RUNS[1]);
+        let runs = rng.random_range(size.runs[0]..=size.runs[1]);
         let mut effects: Vec<ActiveEffect> = effects.iter().map(|e| ActiveEffect::random(*e, &mut rng)).collect();
         effects.extend(echoes.sensor(&mut rng));
         let alike = rng.random_bool(DRIVEN_ALIKE);
@@ -107,7 +131,7 @@ pub fn case(number: usize, effects: &[Effect], robots: &[Logs], echoes: Echoes, 
         let driving = *kind.unwrap_or(&Driving::MIXED);
         let (spec, scene) = (&robots[robot].robot, rooms::room(&mut rng));
         tried += 1;
-        match record_driving(&driving, spec, &scene, [runs, STEPS], &effects, rng.next_u64()) {
+        match record_driving(&driving, spec, &scene, [runs, size.steps], &effects, rng.next_u64()) {
             Ok(logs) => return Ok(Case { robot, effects, driving, logs, rng }),
             Err(error) if tried == ROOMS_TRIED => return Err(error),
             Err(_) => {}

@@ -5,15 +5,14 @@ use std::path::Path;
 use rand::Rng;
 
 use super::Folder;
-use super::cases::{self, Echoes, Outside};
+use super::cases::{self, Setting};
 use super::seal::{Published, Sealed};
 use crate::error::Result;
 use crate::files;
 use crate::logs::Texts;
 use crate::workers;
 
-/// Writes a challenge of `count` cases to a folder; `outside` is what its effects outside the table are drawn from, and
-/// `echoes` what the chance in their echoes belongs to; `watch` is told how many are done, and of how many.
+/// Writes a challenge of `count` cases to a folder; `watch` is told how many are done, and of how many.
 ///
 /// # Errors
 /// When the folder cannot be written or a case cannot be recorded.
@@ -21,31 +20,21 @@ pub fn make(
     folder: &Path,
     count: usize,
     seed: u64,
-    outside: Outside,
-    echoes: Echoes,
+    setting: Setting,
     mut watch: impl FnMut(usize, usize),
 ) -> Result<()> {
     let ours = |name: &str| ["robots", "cases", "cases.csv", "sealed.json", "answers"].contains(&name);
-    files::write_folder(folder, ours, |fresh| {
-        fill(&Folder(fresh), count, seed, outside, echoes, |done| watch(done, count))
-    })
+    files::write_folder(folder, ours, |fresh| fill(&Folder(fresh), count, seed, setting, |done| watch(done, count)))
 }
 
-fn fill(
-    folder: &Folder,
-    count: usize,
-    seed: u64,
-    outside: Outside,
-    echoes: Echoes,
-    mut watch: impl FnMut(usize),
-) -> Result<()> {
-    let robots = cases::robots(seed, echoes)?;
+fn fill(folder: &Folder, count: usize, seed: u64, setting: Setting, mut watch: impl FnMut(usize)) -> Result<()> {
+    let robots = cases::robots(seed, setting)?;
     for (robot, logs) in robots.iter().enumerate() {
         logs.write(&folder.robot(&robot.to_string()))?;
     }
-    let effects = cases::effects(count, seed, outside);
+    let effects = cases::effects(count, seed, setting.outside);
     let make = |number: usize| {
-        let mut made = cases::case(number, &effects[number], &robots, echoes, seed)?;
+        let mut made = cases::case(number, &effects[number], &robots, setting, seed)?;
         let sealed = Sealed {
             case: format!("{number:03}"),
             effects: made.effects.iter().map(ToString::to_string).collect(),

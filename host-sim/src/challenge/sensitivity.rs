@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 use toml::{Table, Value};
 
 use super::bench::Bench;
-use super::cases::Case;
+use super::cases::{Case, Size};
 use crate::error::{Error, Result};
 use crate::gap::Method;
 use crate::gap::calibration::Calibration;
@@ -51,7 +51,7 @@ const FACTORS: [f64; 2] = [0.5, 2.0];
 /// # Errors
 /// When a case cannot be driven.
 pub fn sensitivity(cases: usize, seed: u64, watch: impl Fn(usize, usize) + Sync) -> Result<Vec<Row>> {
-    let bench = Bench::new(cases, seed)?;
+    let bench = Bench::new(cases, seed, Size::USUAL)?;
     let shipped = Calibration::shipped();
     let thresholds = names(&table(&shipped)?, "");
     let mut changed = vec![(String::new(), 0.0, shipped)];

@@ -9,7 +9,7 @@ use super::{Run, kinds, progress};
 use crate::challenge::Folder;
 use crate::challenge::answer::answer;
 use crate::challenge::calibrate::calibrate;
-use crate::challenge::cases::{Echoes, Outside};
+use crate::challenge::cases::{Echoes, Outside, Setting, Size};
 use crate::challenge::make::make;
 use crate::challenge::score::{Score, Share, score};
 use crate::challenge::sensitivity::{Row, sensitivity};
@@ -40,6 +40,8 @@ enum Part {
         /// Give all robots sensors whose echoes are decided by the place more than by chance, other in every room.
         #[arg(long)]
         place_bound: bool,
+        #[command(flatten)]
+        size: SizeOption,
         /// Folder for the challenge.
         #[arg(long, value_name = "DIR")]
         out: PathBuf,
@@ -60,6 +62,8 @@ enum Part {
         /// Also write what was measured in every case here.
         #[arg(long, value_name = "FILE")]
         csv: Option<PathBuf>,
+        #[command(flatten)]
+        size: SizeOption,
         #[command(flatten)]
         keep: KeepOption,
     },
@@ -95,6 +99,21 @@ enum Part {
     },
 }
 
+/// How much is logged.
+#[derive(Args)]
+struct SizeOption {
+    /// Log little, to try the command: six short runs a case, and eight that a robot's simulator is learned from. What
+    /// such cases say of the diagnosis counts for nothing.
+    #[arg(long)]
+    quick: bool,
+}
+
+impl SizeOption {
+    fn size(&self) -> Size {
+        if self.quick { Size::QUICK } else { Size::USUAL }
+    }
+}
+
 impl Run for Challenge {
     fn places(&self) -> Places {
         let keep = self.keep().and_then(|(keep, _)| keep.asked().as_ref());
@@ -112,19 +131,21 @@ impl Run for Challenge {
 
     fn run(&self) -> Result<String> {
         match &self.part {
-            Part::Make { cases, seed, outside, place_bound, out, .. } => {
+            Part::Make { cases, seed, outside, place_bound, size, out, .. } => {
                 let echoes = if *place_bound { Echoes::PlaceBound } else { Echoes::Fresh };
                 let bar = progress::bar(u64::from(*cases));
-                make(out, *cases as usize, *seed, *outside, echoes, progress::counting(&bar))?;
+                let setting = Setting { outside: *outside, echoes, size: size.size() };
+                make(out, *cases as usize, *seed, setting, progress::counting(&bar))?;
                 bar.finish_and_clear();
                 Ok(format!("{}: {cases} cases; sealed.json says what is different in each\n", out.display()))
             }
-            Part::Calibrate { cases, seed, out, csv, .. } => {
+            Part::Calibrate { cases, seed, out, csv, size, .. } => {
                 let bar = progress::bar(u64::from(*cases));
-                let (calibration, measured) = calibrate(*cases as usize, *seed, progress::counting(&bar))?;
+                let (calibration, measured) = calibrate(*cases as usize, *seed, size.size(), progress::counting(&bar))?;
                 bar.finish_and_clear();
+                let quick = if size.quick { " --quick" } else { "" };
                 let command =
-                    format!("mindgap challenge calibrate --cases {cases} --seed {seed} --out {}", out.display());
+                    format!("mindgap challenge calibrate --cases {cases} --seed {seed}{quick} --out {}", out.display());
                 files::write(out, calibration.to_text(&command))?;
                 if let Some(path) = csv {
                     files::write_csv(path, &measured)?;

@@ -8,12 +8,10 @@ use serde_json::{Value, json};
 use super::lasting::{KeepOption, Kept};
 use super::table::{self, number};
 use super::{Run, kinds, progress, trials};
-use crate::built_in_robot::four_obstacles;
-use crate::demo::repair::{self, Repair};
-use crate::demo::{self, Stage, StartSummary, Summary};
+use crate::demo::repair::Repair;
+use crate::demo::{self, Size, Stage, StartSummary, Summary};
 use crate::error::Result;
 use crate::evolve::fitness::Success;
-use crate::evolve::robust;
 use crate::files;
 use crate::files::places::Places;
 use crate::page::demo::page;
@@ -32,6 +30,10 @@ pub struct Demo {
     /// Fixes every draw.
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
+    /// Do little of everything, to see what comes of it: fewer logs, one start, the paper's one run of the genetic
+    /// algorithm, one run of the loop.
+    #[arg(long)]
+    quick: bool,
     /// Also write the same facts here, for programs; `-` is standard output, in place of the text.
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
@@ -49,20 +51,21 @@ impl Run for Demo {
     }
 
     fn run(&self) -> Result<String> {
+        let size = if self.quick { Size::QUICK } else { Size::USUAL };
         let bar = progress::shares();
         let watch = |stage: Stage| {
             let words = match stage {
                 Stage::Recording => "recording logs of the built-in robot".into(),
                 Stage::Training(p) => progress::training_words(p.network, p.evaluations),
-                Stage::Evolving { start, generation } => {
-                    format!("evolving for start {start}: round {} of {}", generation + 1, robust::GENERATIONS)
+                Stage::Evolving { start, generation, generations } => {
+                    format!("evolving for start {start}: round {} of {generations}", generation + 1)
                 }
                 Stage::Drawing => "drawing".into(),
                 Stage::Repairing { trial } => format!("a motor got weak: trial {trial} on the robot"),
             };
-            progress::at(&bar, share_before(&stage), words);
+            progress::at(&bar, share_before(&stage, size), words);
         };
-        let summary = demo::run(&self.out, self.seed, watch)?;
+        let summary = demo::run(&self.out, self.seed, size, watch)?;
         bar.finish_and_clear();
         let page = page(&summary, &self.out.display().to_string(), self.seed)?;
         let in_folder = self.out.join(PAGE);
@@ -71,7 +74,7 @@ impl Run for Demo {
         }
         let text = format!(
             "{}\n{}\nlogs, simulator, controllers, NXC programs and pictures are in {}, and a page of it all is {}\n",
-            told(&summary),
+            told(&summary, size),
             repaired(&summary.repair),
             self.out.display(),
             in_folder.display()
@@ -85,16 +88,15 @@ impl Run for Demo {
 }
 
 /// The share of the time that has gone by at a stage, roughly.
-fn share_before(stage: &Stage) -> f64 {
+fn share_before(stage: &Stage, size: Size) -> f64 {
     match stage {
         Stage::Recording => 0.0,
         Stage::Training(_) => 0.05,
-        Stage::Evolving { start, generation } => {
-            let starts = four_obstacles().starts.len() as f64;
-            0.15 + 0.6 * ((start - 1) as f64 + *generation as f64 / robust::GENERATIONS as f64) / starts
+        Stage::Evolving { start, generation, generations } => {
+            0.15 + 0.6 * ((start - 1) as f64 + *generation as f64 / *generations as f64) / size.starts as f64
         }
         Stage::Drawing => 0.75,
-        Stage::Repairing { trial } => 0.8 + 0.2 * (trial - 1) as f64 / repair::TRIALS as f64,
+        Stage::Repairing { trial } => 0.8 + 0.2 * (trial - 1) as f64 / size.trials as f64,
     }
 }
 
@@ -110,7 +112,7 @@ fn facts(summary: &Summary) -> Value {
     json!({"schema": 1, "networks": summary.evaluation.networks, "starts": starts, "repair": repair})
 }
 
-fn told(summary: &Summary) -> String {
+fn told(summary: &Summary, size: Size) -> String {
     let percent = |rate: f64| format!("{:.0} %", 100.0 * rate);
     let rows: Vec<[String; 5]> = summary
         .starts
@@ -127,11 +129,12 @@ fn told(summary: &Summary) -> String {
         })
         .collect();
     let header = ["controller for", "simulated: reached", "median (cm)", "robot: reached", "median (cm)"];
+    let chosen = format!("of {} controllers a start, that which did best in one trial on the robot\n", demo::TRIED);
     format!(
-        "{}\n{}of {} controllers a start, that which did best in one trial on the robot\n",
+        "{}\n{}{}",
         super::evaluate::accuracy(&summary.evaluation.networks),
         table::text(header, &rows),
-        demo::TRIED
+        if size.paper { "" } else { &chosen }
     )
 }
 

@@ -13,15 +13,25 @@ use crate::evolve::controller_file::ControllerFile;
 use crate::evolve::fitness::Success;
 use crate::logs::Scene;
 use crate::trials::state::State;
-use crate::trials::{self, Event, Job};
+use crate::trials::{self, Event};
 
-/// Runs on the robot that the loop may have.
-pub const TRIALS: usize = 5;
 /// Runs that tell how a controller does on the changed robot.
 const RUNS: u64 = 5;
 /// Stream keys of the runs before and after the loop.
 const BEFORE: u64 = 0;
 const AFTER: u64 = 1;
+
+/// What the loop is given besides.
+pub struct Job {
+    /// Start of the controllers, from 1.
+    pub start: usize,
+    /// Steps after which a controller gives up.
+    pub max_steps: u16,
+    /// Runs on the robot that it may have.
+    pub trials: usize,
+    /// Seed of all draws.
+    pub seed: u64,
+}
 
 /// What the loop came to.
 pub struct Repair {
@@ -37,17 +47,15 @@ pub struct Repair {
     pub after: Success,
 }
 
-/// Lets the loop repair what a weak motor does to the first of some `controllers` for a start, from 1. The folder holds
+/// Lets the loop repair what a weak motor does to the first of some `controllers` for a start. The folder holds
 /// `simulator.json` and `scene.toml`, and receives `loop`.
 ///
 /// # Errors
 /// When a file cannot be read or written.
 pub fn run(
     folder: &Path,
-    start: usize,
     controllers: &[Controller],
-    max_steps: u16,
-    seed: u64,
+    &Job { start, max_steps, trials, seed }: &Job,
     mut watch: impl FnMut(usize),
 ) -> Result<Repair> {
     let [simulator, scene_file] = ["simulator.json", "scene.toml"].map(|name| folder.join(name));
@@ -61,12 +69,12 @@ pub fn run(
         };
         super::success((0..RUNS).map(drive), scene.target_cm.unwrap_or_default())
     };
-    let job = Job {
+    let job = trials::Job {
         folder: &folder.join("loop"),
         simulator: &simulator,
         scene: &scene_file,
         start,
-        trials: TRIALS,
+        trials,
         max_steps,
         known: controllers,
         seed,

@@ -1,8 +1,7 @@
 //! Commands that take long, killed at random moments and called again: the same files as from a run without a break, and
 //! nothing else.
 //!
-//! `MINDGAP_KILLS=200 cargo test -p mindgap-tests --test cli -- --include-ignored --nocapture broken_off` kills each of
-//! them that often, also those that take minutes.
+//! `MINDGAP_KILLS=200 cargo test -p mindgap-tests --test cli -- --nocapture broken_off` kills each of them that often.
 
 use std::env;
 use std::process::{Command, Output, Stdio};
@@ -14,8 +13,10 @@ use mindgap_tests::rooms::{challenge, robot, with_scene};
 use rand::rngs::SmallRng;
 use rand::{RngExt, SeedableRng};
 
-/// Kills of each command, by default.
+/// Kills of each command, by default,
 const KILLS: usize = 20;
+/// and of one that takes long.
+const FEW: usize = 3;
 /// A run is killed before this share of the time of a whole one.
 const LATEST: f64 = 0.5;
 /// So much is written before a checkpoint is torn, bytes.
@@ -30,8 +31,8 @@ const MAKE: &str = "challenge make --cases 3 --seed 5 --out blind";
 /// Kills a call again and again, until one comes to its end, and compares what it leaves with what one leaves that was
 /// never killed; and that until it was killed often enough.
 #[track_caller]
-fn survives(prepared: &Workshop, call: &[&str]) {
-    let kills = env::var("MINDGAP_KILLS").ok().and_then(|count| count.parse().ok()).unwrap_or(KILLS);
+fn survives(prepared: &Workshop, call: &[&str], usual: usize) {
+    let kills = env::var("MINDGAP_KILLS").ok().and_then(|count| count.parse().ok()).unwrap_or(usual);
     let unbroken = prepared.copy();
     let began = Instant::now();
     let expected = output(&unbroken, call, None).expect("nobody kills it");
@@ -90,17 +91,17 @@ fn words(call: &str) -> Vec<&str> {
 
 #[test]
 fn evolve_survives() {
-    survives(&with_scene(), &words(EVOLVE));
+    survives(&with_scene(), &words(EVOLVE), KILLS);
 }
 
 #[test]
 fn train_survives() {
-    survives(&Workshop::with_logs(), &words(&format!("train logs {PAPER} --out paper.json")));
+    survives(&Workshop::with_logs(), &words(&format!("train logs {PAPER} --out paper.json")), KILLS);
 }
 
 #[test]
 fn a_challenge_survives() {
-    survives(&Workshop::new(), &words(MAKE));
+    survives(&Workshop::new(), &words(MAKE), KILLS);
 }
 
 #[test]
@@ -108,24 +109,23 @@ fn a_loop_survives() {
     let workshop = with_scene();
     robot(&workshop, "", "");
     let call = "loop out --sim sim.json --scene scene.toml --max-steps 20 --trials 1 --robot";
-    survives(&workshop, &call.split_whitespace().chain(["sh robot.sh"]).collect::<Vec<_>>());
+    survives(&workshop, &call.split_whitespace().chain(["sh robot.sh"]).collect::<Vec<_>>(), KILLS);
 }
 
 #[test]
 fn answers_survive() {
-    survives(&challenge(2), &words("challenge answer blind"));
+    survives(&challenge(2), &words("challenge answer blind"), KILLS);
 }
 
 #[test]
-#[ignore = "takes half an hour"]
 fn a_calibration_survives() {
-    survives(&Workshop::new(), &words("challenge calibrate --cases 40 --out calibration.toml --csv cases.csv"));
+    let call = "challenge calibrate --quick --cases 40 --out calibration.toml --csv cases.csv";
+    survives(&Workshop::new(), &words(call), FEW);
 }
 
 #[test]
-#[ignore = "takes half an hour"]
 fn a_demo_survives() {
-    survives(&Workshop::new(), &words("demo --out demo --html page.html --json facts.json"));
+    survives(&Workshop::new(), &words("demo --quick --out demo --html page.html --json facts.json"), FEW);
 }
 
 /// A call that was killed when its checkpoint had some pieces in it.

@@ -102,9 +102,8 @@ fn a_loop_fails_at_some() {
 }
 
 #[test]
-#[ignore = "takes minutes"]
 fn a_demo_fails_at_some() {
-    assert_whole(&Workshop::new(), "demo --out demo --html page.html --force", FEW, State);
+    assert_whole(&Workshop::new(), "demo --quick --out demo --html page.html --force", FEW, State);
 }
 
 /// Files that are late are the same files.
