@@ -119,11 +119,17 @@ pub fn clear(path: &Path) {
     }
 }
 
-/// Removes a workshop unless something in it belongs into its home and cannot be put there.
+/// Removes a workshop unless something in it belongs into its home and cannot be put there. The lock goes last: by it the
+/// next one knows what to remove where this is killed meanwhile.
 pub fn discard(path: &Path) {
     if settle(path).is_ok() {
-        let _ = (0..ATTEMPTS).find(|_| fs::remove_dir_all(path).is_ok() || !path.exists());
+        let folders = [NEW, READY, OLD].map(|name| path.join(name));
+        let _ = (0..ATTEMPTS).find(|_| folders.iter().all(|folder| is_removed(folder)) && is_removed(path));
     }
+}
+
+fn is_removed(folder: &Path) -> bool {
+    fs::remove_dir_all(folder).is_ok() || !folder.exists()
 }
 
 /// Ends an exchange that was broken off: goes on where all of the old was out of the way, and back where it was not.

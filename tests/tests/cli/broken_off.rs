@@ -26,7 +26,8 @@ const EVOLVE: &str = "evolve sim.json --scene scene.toml --max-steps 10 --paper 
 /// How small networks are trained.
 const PAPER: &str = "--trainer paper --hidden turn=2 --hidden forward=2 --hidden lateral=2 --hidden echo_probability=2 \
                      --hidden echo_value=2";
-const MAKE: &str = "challenge make --cases 3 --seed 5 --out blind";
+/// Most of its time goes into cases.
+const MAKE: &str = "challenge make --quick --cases 40 --seed 5 --out blind";
 
 /// Kills a call again and again, until one comes to its end, and compares what it leaves with what one leaves that was
 /// never killed; and that until it was killed often enough.
@@ -35,15 +36,17 @@ fn survives(prepared: &Workshop, call: &[&str], usual: usize) {
     let kills = env::var("MINDGAP_KILLS").ok().and_then(|count| count.parse().ok()).unwrap_or(usual);
     let unbroken = prepared.copy();
     let began = Instant::now();
-    let expected = output(&unbroken, call, None).expect("nobody kills it");
+    let expected = output(&unbroken, call, None).0.expect("nobody kills it");
     let whole = began.elapsed();
     let mut rng = SmallRng::seed_from_u64(20);
-    let (mut killed, mut compared) = (0, 0);
+    let (mut killed, mut went_on, mut compared) = (0, 0, 0);
     while killed < kills {
         let broken = prepared.copy();
         let found = loop {
             let after = (killed < kills).then(|| whole.mul_f64(rng.random_range(0.0..LATEST)));
-            match output(&broken, call, after.map(|after| Instant::now() + after)) {
+            let (found, goes_on) = output(&broken, call, after.map(|after| Instant::now() + after));
+            went_on += usize::from(goes_on);
+            match found {
                 Some(found) => break found,
                 None => killed += 1,
             }
@@ -52,12 +55,14 @@ fn survives(prepared: &Workshop, call: &[&str], usual: usize) {
         compared += 1;
         assert_same(&unbroken, &broken, call);
     }
-    println!("{call:?}: {killed} kills, the ends of {compared} runs compared");
+    println!(
+        "{call:?}: {killed} kills, went on from a checkpoint {went_on} times, the ends of {compared} runs compared"
+    );
 }
 
-/// What a call prints; none if it was killed before its end.
+/// What a call prints, none if it was killed before its end; and whether it said that it goes on.
 #[track_caller]
-fn output(workshop: &Workshop, call: &[&str], kill_at: Option<Instant>) -> Option<String> {
+fn output(workshop: &Workshop, call: &[&str], kill_at: Option<Instant>) -> (Option<String>, bool) {
     let mut command = workshop.command("");
     let mut running =
         command.args(call).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("the command starts");
@@ -67,13 +72,11 @@ fn output(workshop: &Workshop, call: &[&str], kill_at: Option<Instant>) -> Optio
     }
     let Output { status, stdout, stderr } = running.wait_with_output().expect("the command ends");
     let stderr = String::from_utf8_lossy(&stderr);
-    match status.code() {
-        None => None,
-        Some(code) => {
-            assert_eq!(code, 0, "{call:?}: {stderr}");
-            Some(String::from_utf8(stdout).expect("the command writes UTF-8"))
-        }
-    }
+    let printed = status.code().map(|code| {
+        assert_eq!(code, 0, "{call:?}: {stderr}");
+        String::from_utf8(stdout).expect("the command writes UTF-8")
+    });
+    (printed, stderr.contains("goes on"))
 }
 
 #[track_caller]
