@@ -30,7 +30,7 @@ use crate::error::{Error, Result};
 use crate::files;
 use crate::logs::Robot;
 use crate::sonar::FirstEchoLaw;
-use ensemble::{Ensemble, Posterior, Robots};
+use ensemble::{Ensemble, Member, Robots};
 use motion::MotionNetworks;
 use nominal::NominalModel;
 use residuals::{ConstantReading, ResidualQuantiles};
@@ -176,8 +176,8 @@ impl Simulator {
         self.ensemble.as_ref()?.robots(&|command| networks.held(command), count, seed)
     }
 
-    /// What the training logs alone say of the robot; none where that is not said.
-    pub fn trained(&self) -> Option<Posterior> {
+    /// The robot in the middle of what the training logs alone say; none where that is not said.
+    pub fn trained_robot(&self) -> Option<Member> {
         let networks = self.motion_networks()?;
         self.ensemble.as_ref()?.trained(&|command| networks.held(command))
     }

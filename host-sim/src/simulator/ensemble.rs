@@ -58,16 +58,16 @@ impl Ensemble {
         let posterior = Posterior::new(self, held)?;
         let mean = posterior.mean();
         let is_changed = self.evidence.iter().any(|e| e.after_training);
-        let trained = Arc::new(if is_changed { self.trained(held)?.mean() } else { mean.clone() });
+        let trained = Arc::new(if is_changed { self.trained(held)? } else { mean.clone() });
         let draw = |robot: u64| posterior.draw(derive(seed, &[robot])).known_as(&trained);
         let drawn = (0..count as u64).into_par_iter().map(draw).collect();
         Some(Robots { mean: mean.known_as(&trained), drawn })
     }
 
-    /// What the training logs alone say; none as for [`robots`](Self::robots).
-    pub fn trained(&self, held: Held) -> Option<Posterior> {
+    /// The robot in the middle of what the training logs alone say; none as for [`robots`](Self::robots).
+    pub fn trained(&self, held: Held) -> Option<Member> {
         let evidence = self.evidence.iter().filter(|e| !e.after_training).copied().collect();
-        Posterior::new(&Ensemble { evidence, ..self.clone() }, held)
+        Some(Posterior::new(&Ensemble { evidence, ..self.clone() }, held)?.mean())
     }
 
     /// Whether a file could have held this.

@@ -107,11 +107,6 @@ impl Posterior {
         })
     }
 
-    /// Variances of what the first step of a command does beyond later ones, the same whenever one command follows the other.
-    pub fn first_step_variances(&self) -> [f64; 3] {
-        self.nuggets.noise.first_step.map(|deviation| deviation * deviation)
-    }
-
     /// The process in a place as a sum over v.
     fn along(&self, weights: &[(usize, f64)], channel: usize) -> DVector<f64> {
         let mut along = DVector::zeros(SIZE);
