@@ -60,7 +60,7 @@ impl<'a> EvolutionTask<'a> {
         Judged { controller, success: evaluator.success_of(&outcomes).rate, fitness }
     }
 
-    /// What individuals are evaluated with: all restarts are compared on the same runs.
+    /// What individuals are evaluated with: all controllers are compared on the same runs.
     pub fn evaluator(&self) -> FitnessEvaluator<'a> {
         FitnessEvaluator {
             environment: self.environment,

@@ -3,8 +3,9 @@
 //! A command that is held does the same in every step and every run, and mostly not quite what the networks say: a bias
 //! that no chance stands for, since it adds up while the command is held. So the motion under a held command is a Gaussian
 //! process over commands, one for each of forward, lateral and turn, whose covariance is that of [`basis`], and a
-//! [`nugget`] of each command beside it; networks say how the first step of a command differs. Nothing of it is left out or drawn at random, so that where no log has driven
-//! it is as wide as its prior, and goes on as the robot does and not as networks happen to. What logs say is kept as
+//! [`nugget`] of each command beside it; networks say how the first step of a command differs. Nothing of it is left out or
+//! drawn at random, so that where no log has driven it is as wide as its prior, and goes on as the robot does and not as
+//! networks happen to. What logs say is kept as
 //! [`Evidence`]; a run of the robot adds some, and the networks stay as they are.
 //!
 //! [`Posterior`] is the distribution given all evidence, a [`Member`] one robot of it.
