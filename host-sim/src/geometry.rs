@@ -93,8 +93,8 @@ pub fn bounding_box(walls: &[Wall]) -> Option<Rectangle> {
 }
 
 impl Wall {
-    /// The distance along a ray to this wall with the signed incidence angle, if the ray meets it.
-    fn meet(&self, origin_cm: DVec2, direction: DVec2) -> Option<(f64, f64)> {
+    /// The distance along a ray to this wall, if the ray meets it.
+    fn distance_along_cm(&self, origin_cm: DVec2, direction: DVec2) -> Option<f64> {
         let along = self.to_cm - self.from_cm;
         let across = direction.perp_dot(along);
         if across == 0.0 {
@@ -102,14 +102,17 @@ impl Wall {
         }
         let offset = self.from_cm - origin_cm;
         let distance_cm = offset.perp_dot(along) / across;
-        let share = offset.perp_dot(direction) / across;
-        if distance_cm < 0.0 || !(0.0..=1.0).contains(&share) {
-            return None;
-        }
-        let normal = along.perp() * across.signum();
+        let is_met = distance_cm >= 0.0 && (0.0..=1.0).contains(&(offset.perp_dot(direction) / across));
+        is_met.then_some(distance_cm)
+    }
+
+    /// The signed incidence angle of a ray that meets it.
+    fn incidence_rad(&self, direction: DVec2) -> f64 {
+        let along = self.to_cm - self.from_cm;
+        let normal = along.perp() * direction.perp_dot(along).signum();
         let back = -direction;
         let normal = if normal.dot(back) < 0.0 { -normal } else { normal };
-        Some((distance_cm, libm::atan2(back.perp_dot(normal), back.dot(normal))))
+        libm::atan2(back.perp_dot(normal), back.dot(normal))
     }
 
     /// The point of this wall nearest to `point_cm`.
@@ -143,15 +146,15 @@ impl Wall {
 
 /// The first wall that a ray meets; `direction` has length one.
 pub fn cast(walls: &[Wall], origin_cm: DVec2, direction: DVec2) -> Option<Hit> {
-    let mut first: Option<Hit> = None;
+    let mut first: Option<(f64, usize)> = None;
     for (wall, w) in walls.iter().enumerate() {
-        if let Some((distance_cm, incidence_rad)) = w.meet(origin_cm, direction)
-            && first.is_none_or(|f| distance_cm < f.distance_cm)
+        if let Some(distance_cm) = w.distance_along_cm(origin_cm, direction)
+            && first.is_none_or(|(nearest_cm, _)| distance_cm < nearest_cm)
         {
-            first = Some(Hit { distance_cm, incidence_rad, wall });
+            first = Some((distance_cm, wall));
         }
     }
-    first
+    first.map(|(distance_cm, wall)| Hit { distance_cm, incidence_rad: walls[wall].incidence_rad(direction), wall })
 }
 
 /// A unit vector at an angle.
