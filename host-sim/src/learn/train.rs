@@ -10,6 +10,7 @@ use crate::error::{Error, Result};
 use crate::logs::{Logs, Robot};
 use crate::simulator::residuals::{ConstantReading, motion_context};
 use crate::simulator::{Learned, Missing, Origin, SCHEMA, Simulator};
+use crate::workers;
 
 /// Hidden layers of the five networks (paper, Table I).
 pub const TABLE_ONE: Shapes = Shapes {
@@ -112,7 +113,7 @@ pub fn train(
         lateral,
         echo_probability,
         echo_value,
-        first_echo: echo_law::learn(logs, seed),
+        first_echo: workers::once(|| Ok(echo_law::learn(logs, seed)))?,
         constant_reading,
         reference: None,
         ensemble: None,
@@ -120,14 +121,14 @@ pub fn train(
         added: Vec::new(),
         missing,
     };
-    let reference = nominal::learn(&simulator, logs);
+    let reference = workers::once(|| Ok(nominal::learn(&simulator, logs)))?;
     if let Some(motion) = &reference.motion {
         set_residual_quantiles(&mut simulator.forward, &data.forward, |speeds| motion.correction(speeds)[0]);
         set_residual_quantiles(&mut simulator.lateral, &data.lateral, |speeds| motion.correction(speeds)[1]);
         set_residual_quantiles(&mut simulator.turn, &data.turn, |speeds| motion.correction(speeds)[2].to_degrees());
     }
     simulator.reference = Some(reference);
-    simulator.ensemble = ensemble::learn(&simulator, logs);
+    simulator.ensemble = workers::once(|| Ok(ensemble::learn(&simulator, logs)))?;
     Ok(simulator)
 }
 
