@@ -3,6 +3,7 @@
 //! that `SIM` was trained on; `FIRST` and `COUNT` say which of the 360 cases, which are in random order.
 
 mod cases;
+mod on_robot;
 mod procedures;
 
 use std::path::Path;

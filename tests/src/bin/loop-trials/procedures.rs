@@ -24,12 +24,13 @@ use mindgap_host_sim::simulator::{Noise, Simulator};
 use mindgap_host_sim::trials::{self, Job};
 
 use crate::cases::{Case, SEED};
+use crate::on_robot;
 
 /// A name, and what it stands for.
 pub type Procedure = (&'static str, fn(&Workbench) -> Result<Settled>);
 
 /// All procedures.
-pub const PROCEDURES: [Procedure; 7] = [
+pub const PROCEDURES: [Procedure; 8] = [
     ("paper", by_the_paper),
     ("straight", evolve_straight),
     ("evolve", evolve),
@@ -37,6 +38,7 @@ pub const PROCEDURES: [Procedure; 7] = [
     ("retrain", retrain),
     ("correct", correct),
     ("loop", loops),
+    ("on_robot", on_robot),
 ];
 
 const TRIALS: usize = 5;
@@ -158,6 +160,13 @@ fn loops(bench: &Workbench) -> Result<Settled> {
         trials::state::Verdict::Spent | trials::state::Verdict::Running => "spent",
     };
     Ok(Settled { controller, trials: state.trials.len(), verdict })
+}
+
+/// Thousands of runs on the robot, after `mindgap evolve`.
+fn on_robot(bench: &Workbench) -> Result<Settled> {
+    let decoder = GenotypeDecoder::new(bench.simulator, MAX_STEPS);
+    let (controller, trials) = on_robot::evolved(bench.case, &decoder, &bench.judged()?, bench.seed());
+    Ok(Settled { controller, trials, verdict: "" })
 }
 
 fn untried(controller: Controller) -> Settled {

@@ -1,0 +1,74 @@
+//! What evolution comes to that has the robot itself in place of a simulator, and thousands of runs: no procedure can expect
+//! more of the controllers that it finds.
+
+use mindgap_core::controller::Controller;
+use mindgap_host_sim::chance::generator;
+use mindgap_host_sim::evolve::genome::GenotypeDecoder;
+use mindgap_host_sim::genetic::mutation::{Mutation, Unit};
+use mindgap_host_sim::simulator::rollout::REACHED_CM;
+use rand::RngExt;
+
+use crate::cases::Case;
+
+const GENERATIONS: u64 = 40;
+/// Controllers that a generation keeps, and mutants of them that it tries.
+const KEPT: usize = 8;
+const MUTANTS: usize = 30;
+/// Runs of each controller in each generation: those that stay are driven again, so that luck fades.
+const RUNS: u64 = 10;
+/// A mutant differs in so many of its genes, by one of these deviations.
+const CHANCE: f64 = 0.15;
+const DEVIATIONS: [f32; 3] = [0.01, 0.03, 0.08];
+/// The first run that it drives: no other procedure drives these.
+const FIRST: u64 = 1_000_000;
+
+/// A run that comes near counts for so much of one that arrives: it shows where to go on.
+const NEARNESS: f64 = 0.1;
+
+/// A controller, how often it was driven and what that was worth.
+struct Driven {
+    genes: Vec<f32>,
+    runs: u64,
+    worth: f64,
+}
+
+/// The best controller that comes of these by selection on the robot, and how many runs that took.
+pub fn evolved(case: &Case, decoder: &GenotypeDecoder, from: &[Controller], seed: u64) -> (Controller, usize) {
+    let mut rng = generator(seed, &[]);
+    let driven = |genes: Vec<f32>| Driven { genes, runs: 0, worth: 0.0 };
+    let mut kept: Vec<Driven> = from.iter().map(|controller| driven(decoder.genes(controller))).collect();
+    let mut runs = 0;
+    for generation in 0..GENERATIONS {
+        let mutants: Vec<Vec<f32>> = (0..MUTANTS)
+            .map(|_| {
+                let mut genes = kept[rng.random_range(0..kept.len())].genes.clone();
+                let deviation = DEVIATIONS[rng.random_range(0..DEVIATIONS.len())];
+                Mutation { chance: CHANCE, unit: Unit::Gene, deviation }.apply(&mut genes, &mut rng);
+                decoder.repair(&mut genes);
+                genes
+            })
+            .collect();
+        kept.extend(mutants.into_iter().map(driven));
+        let first = FIRST + generation * RUNS;
+        for one in &mut kept {
+            let controller = decoder.controller(&one.genes);
+            let worth = |run: u64| {
+                let missed_cm = case.missed_cm(&case.drive(&controller, run));
+                if missed_cm <= REACHED_CM { 1.0 } else { NEARNESS * REACHED_CM / missed_cm }
+            };
+            one.worth += (first..first + RUNS).map(worth).sum::<f64>();
+            one.runs += RUNS;
+            runs += RUNS as usize;
+        }
+        kept.sort_by(|a, b| b.expected().total_cmp(&a.expected()));
+        kept.truncate(KEPT);
+    }
+    (decoder.controller(&kept[0].genes), runs)
+}
+
+impl Driven {
+    /// What is expected of a run (Laplace's rule).
+    fn expected(&self) -> f64 {
+        (self.worth + 1.0) / (self.runs + 2) as f64
+    }
+}
