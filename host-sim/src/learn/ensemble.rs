@@ -11,12 +11,15 @@ use crate::simulator::Simulator;
 use crate::simulator::ensemble::basis::{CHANGE, unit_factor};
 use crate::simulator::ensemble::evidence::by_cell;
 use crate::simulator::ensemble::posterior::Likelihood;
-use crate::simulator::ensemble::{Ensemble, Evidence, Held, MotionNoise, PARTS, Posterior};
+use crate::simulator::ensemble::{Ensemble, Evidence, Held, Member, MotionNoise, PARTS, Posterior};
 use holds::{StepResidual, holds};
 
 /// Sizes of the process's parts are sought by factors that get smaller, from this share of the robot's chance in a step.
 const FIRST_SIZE: f64 = 0.5;
 const FACTORS: [f64; 4] = [4.0, 4.0, 2.0, 1.4];
+
+/// Parts of the logs that are left out in turn.
+const FOLDS: usize = 5;
 
 /// How much a wheel may have changed since training, as a share: the one under which the runs are most probable.
 const CHANGES: [f64; 4] = [0.0, 0.02, 0.06, 0.2];
@@ -29,8 +32,22 @@ pub fn learn(simulator: &Simulator, logs: &Logs) -> Option<Ensemble> {
     let steps = residuals(simulator, logs)?;
     // Noise is what a process leaves, and how large the process is depends on noise.
     let plain = given(&steps, &said, noise::rough(&steps));
-    let middle = Posterior::new(&plain, &said)?.mean();
-    Some(given(&steps, &said, noise::learn(&steps, &middle, &said)))
+    let pieces = noise::pieces(&steps);
+    let middles = without_each_fold(&pieces, &plain, &said)?;
+    let middle = |piece: usize| &middles[piece % FOLDS];
+    Some(given(&steps, &said, noise::learn(&pieces, middle, &said)))
+}
+
+/// The robot in the middle by all pieces of the logs but those of a fold, for each fold: a process that has seen a step leaves
+/// too little of it.
+fn without_each_fold(pieces: &[&[StepResidual]], plain: &Ensemble, said: Held) -> Option<Vec<Member>> {
+    let without = |fold: usize| {
+        let others = pieces.iter().enumerate().filter(|(piece, _)| piece % FOLDS != fold);
+        let others: Vec<StepResidual> = others.flat_map(|(_, steps)| steps.iter().copied()).collect();
+        let evidence = holds(&others).iter().map(|hold| hold.evidence(&plain.noise, said)).collect();
+        Some(Posterior::new(&Ensemble { evidence, ..plain.clone() }, said)?.mean())
+    };
+    (0..FOLDS).into_par_iter().map(without).collect()
 }
 
 /// The distribution that steps leave, if noise is this.

@@ -63,6 +63,11 @@ impl StepResidual {
         self.steady
     }
 
+    /// Whether it begins where another one of the same run ends.
+    pub fn follows(&self, before: &StepResidual) -> bool {
+        before.place[0] == self.place[0] && before.place[1] + 1 == self.place[1]
+    }
+
     /// Logged minus predicted.
     pub fn residual(&self) -> [f64; 3] {
         self.residual
@@ -76,10 +81,7 @@ impl StepResidual {
 
 /// The stretches of steps, which are in the order of runs and rows.
 pub fn stretches(steps: &[StepResidual]) -> Vec<&[StepResidual]> {
-    let together = |a: &StepResidual, b: &StepResidual| {
-        let next = a.place[0] == b.place[0] && a.place[1] + 1 == b.place[1];
-        next && a.steady && b.steady && a.command == b.command
-    };
+    let together = |a: &StepResidual, b: &StepResidual| b.follows(a) && a.steady && b.steady && a.command == b.command;
     steps.chunk_by(together).collect()
 }
 

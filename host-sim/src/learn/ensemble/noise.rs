@@ -1,29 +1,56 @@
-//! Learns the noise of a robot: the robot's own part is drawn anew in each, the tracker's errors at both ends of a step
-//! cancel in the next one, and a nugget is the same in all steps of a command.
+//! Learns the noise of a robot from all steps of its logs: the robot's own part is drawn anew in each, the tracker's error at
+//! the end of a step comes back with the other sign in the next one, a nugget is the same in all steps of a command, and so is
+//! what a first step does beyond later ones.
 
 use nalgebra::{Cholesky, DMatrix, DVector};
+use rayon::prelude::*;
 
-use super::holds::{StepResidual, stretches};
-use crate::simulator::ensemble::noise::{MotionNoise, TERMS, terms};
+use super::holds::StepResidual;
+use crate::simulator::ensemble::evidence::cell;
+use crate::simulator::ensemble::noise::{FORWARD, LATERAL, MotionNoise, TERMS, TURN, is_slow, terms};
 use crate::simulator::ensemble::{Held, Member};
+use crate::statistics::maximise::{Bounds, climb};
 
-/// Sizes are sought by factors that get smaller, so often each.
-const FACTORS: [f64; 6] = [10.0, 4.0, 2.0, 2.0, 1.4, 1.2];
-/// The nugget is sought in such shares of what a step adds.
-const NUGGET: [f64; 9] = [0.0, 0.05, 0.1, 0.2, 0.3, 0.45, 0.65, 1.0, 1.5];
-/// That of first steps is sought up to so many times what later ones have, in such parts of it: finer than logs tell it.
-const MOST_TIMES: u32 = 2;
-const PARTS_OF_ONE: u32 = 20;
-/// Sizes begin with such shares of the variance of residuals: mostly they are the tracker's.
+/// Of the variance of residuals such shares are a step's and the tracker's, before anything is known.
 const FIRST_STEP: f64 = 0.1;
 const FIRST_TRACKER: f64 = 0.4;
-/// Of a stretch no more steps than this are looked at: the time they take grows with the third power.
-const MOST_STEPS: usize = 25;
+/// What is sought: the terms of a step's, the tracker's and a first step's standard deviation, as shares of that of residuals,
+/// and the two nuggets, as shares of what a step adds. Where a square is zero nothing shows which way to go, so that all
+/// begin above.
+const TRACKER: usize = TERMS;
+const OF_FIRST: usize = TERMS + 1;
+const NUGGETS: usize = TERMS + 2;
+const BOUNDS: [Bounds; NUGGETS + 2] = {
+    let mut bounds = [Bounds::new(0.0, 1.0); NUGGETS + 2];
+    (bounds[NUGGETS], bounds[NUGGETS + 1]) = (Bounds::new(0.0, 5.0), Bounds::new(0.0, 5.0));
+    bounds
+};
+const START: [f64; NUGGETS + 2] = [0.2, 0.2, 0.2, 0.6, 0.3, 0.5, 0.5];
+/// The search ends after so many rounds, or where one gains less than this, in nats.
+const ROUNDS: usize = 40;
+const ENOUGH: f64 = 0.05;
+/// Where the numbers have no inverse.
+const LEAST_LIKELY: f64 = -1e9;
+/// So many steps are looked at together: the time they take grows with the third power.
+const TOGETHER: usize = 20;
 
-/// The steps of one stretch, about what the robot in the middle does.
-struct Stretch {
-    terms: [f64; TERMS],
+/// Consecutive steps of a run and what they leave, about what the robot in the middle does.
+struct Piece {
+    steps: Vec<Step>,
     left: DVector<f64>,
+}
+
+/// What the noise of a step depends on.
+struct Step {
+    terms: [f64; TERMS],
+    cell: [i32; 2],
+    /// Which nugget is its command's.
+    class: usize,
+    is_first: bool,
+    /// Variance that the tracker's error in heading adds.
+    aslant: f64,
+    /// The share of the tracker's error at its end that comes back in the next step.
+    comes_back: f64,
 }
 
 /// What is assumed of one channel.
@@ -31,13 +58,15 @@ struct Stretch {
 struct Assumed {
     step: [f64; TERMS],
     tracker: f64,
-    nugget: f64,
+    nugget: [f64; 2],
+    /// Variance.
+    first_step: f64,
 }
 
 /// What steps leave about the networks, before anything is known.
 pub fn rough(steps: &[StepResidual]) -> MotionNoise {
     let mut noise = MotionNoise::default();
-    for channel in 0..3 {
+    for channel in [FORWARD, LATERAL, TURN] {
         let squares = steps.iter().map(|step| step.residual()[channel] * step.residual()[channel]);
         let variance = squares.sum::<f64>() / steps.len().max(1) as f64;
         noise.step[channel][0] = 2.0 * FIRST_STEP * variance;
@@ -47,100 +76,150 @@ pub fn rough(steps: &[StepResidual]) -> MotionNoise {
     noise
 }
 
-/// The noise under which the steps are the most probable, about the robot in the middle; `said` is what networks say.
-pub fn learn(steps: &[StepResidual], middle: &Member, said: Held) -> MotionNoise {
+/// Pieces of runs, each looked at as a whole.
+pub fn pieces(steps: &[StepResidual]) -> Vec<&[StepResidual]> {
+    steps.chunk_by(|before, step| step.follows(before)).flat_map(|run| run.chunks(TOGETHER)).collect()
+}
+
+/// The noise under which the pieces are the most probable. `middle` is the robot in the middle by what others than this piece
+/// and some more say, and `said` what networks say.
+pub fn learn<'a>(pieces: &[&[StepResidual]], middle: impl Fn(usize) -> &'a Member, said: Held) -> MotionNoise {
     let mut noise = MotionNoise::default();
-    for channel in 0..3 {
-        let all = stretches(steps);
-        let of = |steps: &&[StepResidual]| stretch(steps, channel, middle, said);
-        let steady: Vec<Stretch> = all.iter().filter(|s| s[0].is_steady()).map(of).collect();
-        let Assumed { step, tracker, nugget } = likeliest(&steady);
+    // A heading that is tracked wrongly shows in the lateral channel.
+    for channel in [TURN, FORWARD, LATERAL] {
+        let piece =
+            |(number, steps): (usize, &&[StepResidual])| Piece::new(steps, channel, &noise, middle(number), said);
+        let of_channel: Vec<Piece> = pieces.iter().enumerate().map(piece).collect();
+        let Assumed { step, tracker, nugget, first_step } = likeliest(&of_channel);
         (noise.step[channel], noise.tracker[channel], noise.nugget[channel]) = (step, tracker, nugget);
-        let first: Vec<Stretch> = all.iter().filter(|s| !s[0].is_steady()).map(of).collect();
-        noise.first_step[channel] = first_step(&first, &noise, channel);
+        noise.first_step[channel] = first_step.sqrt();
     }
     noise
 }
 
-fn stretch(steps: &[StepResidual], channel: usize, middle: &Member, said: Held) -> Stretch {
-    let command = steps[0].command();
-    let (does, says) = (middle.motion(command), said(command));
-    let off = |step: &StepResidual| step.residual()[channel] + step.known()[channel] + says[channel] - does[channel];
-    let left = steps.iter().take(MOST_STEPS).map(off).collect::<Vec<f64>>();
-    Stretch { terms: terms(does), left: DVector::from_vec(left) }
-}
-
-/// One size after the other.
-fn likeliest(stretches: &[Stretch]) -> Assumed {
-    let count: usize = stretches.iter().map(|s| s.left.len()).sum();
-    let squares: f64 = stretches.iter().map(|s| s.left.norm_squared()).sum();
-    let variance = squares / count.max(1) as f64;
-    let mean_term = |term: usize| {
-        let sum: f64 = stretches.iter().map(|s| s.terms[term] * s.left.len() as f64).sum();
-        (sum / count.max(1) as f64).max(f64::EPSILON)
-    };
-    let step = std::array::from_fn(|term| FIRST_STEP * variance / mean_term(term) / TERMS as f64);
-    let mut best = Assumed { step, tracker: FIRST_TRACKER * variance, nugget: 0.0 };
-    let mut most = log_likelihood(stretches, &best);
-    let mut better = |tried: Assumed, best: &mut Assumed| {
-        let probable = log_likelihood(stretches, &tried);
-        if probable > most {
-            (*best, most) = (tried, probable);
+/// What makes the pieces the most probable.
+fn likeliest(pieces: &[Piece]) -> Assumed {
+    let steps = || pieces.iter().flat_map(|piece| &piece.steps);
+    let count = steps().count().max(1) as f64;
+    let variance = pieces.iter().map(|piece| piece.left.norm_squared()).sum::<f64>() / count;
+    let mean_term = |term: usize| (steps().map(|step| step.terms[term]).sum::<f64>() / count).max(f64::EPSILON);
+    let usual: [f64; TERMS] = std::array::from_fn(mean_term);
+    let assumed = |at: &[f64]| {
+        let share = |place: usize| at[place] * at[place] * variance;
+        Assumed {
+            step: std::array::from_fn(|term| share(term) / usual[term]),
+            tracker: share(TRACKER),
+            nugget: [at[NUGGETS], at[NUGGETS + 1]],
+            first_step: share(OF_FIRST),
         }
     };
-    for factor in FACTORS {
-        for by in [factor, 1.0 / factor] {
-            for term in 0..TERMS {
-                let mut tried = best;
-                tried.step[term] *= by;
-                better(tried, &mut best);
-            }
-            better(Assumed { tracker: best.tracker * by, ..best }, &mut best);
-        }
-        for nugget in NUGGET {
-            better(Assumed { nugget, ..best }, &mut best);
-        }
-    }
-    best
+    let terms = |at: &[f64]| pieces.par_iter().map(|piece| piece.log_likelihood(&assumed(at))).collect();
+    assumed(&climb(&BOUNDS, &START, ROUNDS, ENOUGH, terms).at)
 }
 
-fn log_likelihood(stretches: &[Stretch], assumed: &Assumed) -> f64 {
-    stretches.iter().map(|stretch| stretch.log_likelihood(assumed)).sum()
-}
-
-impl Stretch {
-    fn log_likelihood(&self, assumed: &Assumed) -> f64 {
-        let step: f64 = (0..TERMS).map(|term| assumed.step[term] * self.terms[term]).sum();
-        let nugget = assumed.nugget * assumed.nugget * step;
-        let size = self.left.len();
-        let covariance = DMatrix::from_fn(size, size, |i, j| match i.abs_diff(j) {
-            0 => step + nugget + 2.0 * assumed.tracker,
-            1 => nugget - assumed.tracker,
-            _ => nugget,
+impl Piece {
+    /// Of a channel; `noise` is what is known of those before.
+    fn new(steps: &[StepResidual], channel: usize, noise: &MotionNoise, middle: &Member, said: Held) -> Self {
+        let left = steps.iter().map(|step| {
+            let (does, says) = (middle.motion(step.command()), said(step.command()));
+            step.residual()[channel] + step.known()[channel] + says[channel] - does[channel]
         });
-        let Some(factor) = Cholesky::new(covariance) else { return f64::NEG_INFINITY };
+        let left = DVector::from_iterator(steps.len(), left);
+        let step = |step: &StepResidual| {
+            let motion = middle.motion(step.command());
+            Step {
+                terms: terms(motion),
+                cell: cell(step.command()),
+                class: usize::from(is_slow(step.command())),
+                is_first: !step.is_steady(),
+                aslant: noise.aslant_variance(motion, channel),
+                comes_back: if channel == TURN { 1.0 } else { libm::cos(motion[TURN].to_radians()) },
+            }
+        };
+        Piece { steps: steps.iter().map(step).collect(), left }
+    }
+
+    fn log_likelihood(&self, assumed: &Assumed) -> f64 {
+        let of_step = |step: &Step| (0..TERMS).map(|term| assumed.step[term] * step.terms[term]).sum::<f64>();
+        let own: Vec<f64> = self.steps.iter().map(of_step).collect();
+        let nuggets: Vec<f64> =
+            self.steps.iter().zip(&own).map(|(step, own)| assumed.nugget[step.class] * own.sqrt()).collect();
+        let size = self.steps.len();
+        let covariance = DMatrix::from_fn(size, size, |i, j| {
+            let (one, other) = (&self.steps[i], &self.steps[j]);
+            let nugget = if one.cell == other.cell { nuggets[i] * nuggets[j] } else { 0.0 };
+            let rest = match i.abs_diff(j) {
+                0 => {
+                    let first = if one.is_first { assumed.first_step } else { 0.0 };
+                    own[i] + first + one.aslant + 2.0 * assumed.tracker
+                }
+                1 => -assumed.tracker * self.steps[i.min(j)].comes_back,
+                _ => 0.0,
+            };
+            nugget + rest
+        });
+        let Some(factor) = Cholesky::new(covariance) else { return LEAST_LIKELY };
         let spread: f64 = factor.l_dirty().diagonal().iter().map(|d| libm::log(*d)).sum();
         -spread - 0.5 * self.left.dot(&factor.solve(&self.left))
     }
 }
 
-/// The standard deviation that first steps have beyond later ones.
-fn first_step(first: &[Stretch], noise: &MotionNoise, channel: usize) -> f64 {
-    let known = |stretch: &Stretch| {
-        let step: f64 = (0..TERMS).map(|term| noise.step[channel][term] * stretch.terms[term]).sum();
-        let nugget = noise.nugget[channel];
-        step * (1.0 + nugget * nugget) + 2.0 * noise.tracker[channel]
-    };
-    let squares: Vec<[f64; 2]> = first.iter().flat_map(|s| s.left.iter().map(|left| [left * left, known(s)])).collect();
-    let typical = (squares.iter().map(|[_, known]| known).sum::<f64>() / squares.len().max(1) as f64).sqrt();
-    let log_likelihood = |deviation: f64| {
-        let of = |[square, known]: &[f64; 2]| {
-            let variance = known + deviation * deviation;
-            -0.5 * (libm::log(variance) + square / variance)
-        };
-        squares.iter().map(of).sum::<f64>()
-    };
-    let grid = (0..MOST_TIMES * PARTS_OF_ONE).map(|i| f64::from(i) / f64::from(PARTS_OF_ONE) * typical);
-    let tried = grid.map(|deviation| (log_likelihood(deviation), deviation));
-    tried.fold((f64::NEG_INFINITY, 0.0), |best, other| if other.0 > best.0 { other } else { best }).1
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeMap;
+
+    use rand::RngExt;
+    use rand_distr::{Distribution, StandardNormal};
+
+    use super::*;
+    use crate::chance::generator;
+    use crate::simulator::ensemble::{Ensemble, PARTS, Posterior};
+    use crate::simulator::nominal::MotionBias;
+
+    const RUNS: usize = 80;
+    const STEPS: usize = 60;
+
+    /// Steps of a robot that stands still but for noise, whose commands are held for twenty steps at most.
+    #[test]
+    fn the_noise_that_made_the_steps_is_found() {
+        let (step, tracker, first_step, nugget) = (0.2, 0.5, 0.36, [0.65, 2.25]);
+        let mut rng = generator(3, &[]);
+        let none = MotionBias { weights: [const { Vec::new() }; 3], scatter: [1.0; 3] };
+        let mut nuggets: BTreeMap<[i32; 2], f64> = BTreeMap::new();
+        let mut steps = Vec::new();
+        for run in 0..RUNS {
+            let (mut command, mut before, mut left) = ([0.0; 2], [0.0; 2], 0);
+            let mut normal = |deviation: f64| -> f64 {
+                let drawn: f64 = StandardNormal.sample(&mut rng);
+                deviation * drawn
+            };
+            let mut error = normal(f64::sqrt(tracker));
+            for row in 0..STEPS {
+                if left == 0 {
+                    let mut rng = generator(4, &[run as u64, row as u64]);
+                    (command, left) = ([0; 2].map(|_| f64::from(rng.random_range(-80..80))), rng.random_range(1..21));
+                }
+                left -= 1;
+                let deviation = f64::sqrt(step);
+                let drawn = normal(deviation * nugget[usize::from(is_slow(command))]);
+                let lasting = *nuggets.entry(cell(command)).or_insert(drawn);
+                let next = normal(f64::sqrt(tracker));
+                let first = if command == before { 0.0 } else { normal(f64::sqrt(first_step)) };
+                let turn_deg = normal(deviation) + lasting + first + next - error;
+                error = next;
+                let speeds = [command[0], command[1], before[0], before[1]];
+                steps.push(StepResidual::new([run, row], speeds, [0.0, 0.0, turn_deg.to_radians()], &none));
+                before = command;
+            }
+        }
+        let still = Ensemble { prior: [[0.0; PARTS]; 3], noise: MotionNoise::default(), evidence: Vec::new() };
+        let said = |_: [f64; 2]| [0.0; 3];
+        let middle = Posterior::new(&still, &said).expect("a posterior").mean();
+        let found = learn(&pieces(&steps), |_| &middle, &said);
+        // So many steps tell that of first ones to a third, and the others to a tenth, by a search of other make.
+        let is_near = |found: f64, true_one: f64, share: f64| (found / true_one - 1.0).abs() < share;
+        assert!(is_near(found.step[TURN][0], step, 0.25) && is_near(found.tracker[TURN], tracker, 0.15), "{found:?}");
+        assert!(is_near(found.first_step[TURN].powi(2), first_step, 0.5), "{found:?}");
+        assert!(found.nugget[TURN].into_iter().zip(nugget).all(|(f, t)| is_near(f, t, 0.25)), "{found:?}");
+    }
 }

@@ -40,7 +40,8 @@ impl Evidence {
 
     /// The variance of its motion about the smooth process.
     pub fn variance_about_process(&self, noise: &MotionNoise, held: Held, channel: usize) -> f64 {
-        f64::from(self.variance[channel]) + noise.nugget_variance(held(self.command.map(f64::from)), channel)
+        let command = self.command.map(f64::from);
+        f64::from(self.variance[channel]) + noise.nugget_variance(command, held(command), channel)
     }
 
     /// What is left of it beside the mean of its [cell](by_cell), as squares of standard deviations.

@@ -3,18 +3,27 @@
 
 use serde::{Deserialize, Serialize};
 
+/// Channel of the way forward, cm.
+pub const FORWARD: usize = 0;
+/// Channel of the way to the left, cm.
+pub const LATERAL: usize = 1;
+/// Channel of the turn, degrees.
+pub const TURN: usize = 2;
 /// What a step's variance is a weighted sum of: a constant, the square of the way, and the square of the turn.
 pub const TERMS: usize = 3;
 /// Variances are at least this, of a resolution that no tracker has: nothing is ever certain.
 const LEAST: f64 = 1e-6;
+/// A wheel at less than this command is slow: twice what [`basis`](super::basis) takes for its breaking away.
+const SLOW: f64 = 16.0;
 
 /// Noise of forward (cm), lateral (cm) and turn (degrees).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct MotionNoise {
     /// Weights of the terms of a step's variance, which is drawn anew in each; motions are in cm and degrees.
     pub step: [[f64; TERMS]; 3],
-    /// Standard deviation of what a command does beyond the smooth process, the same in every run, as a share of a step's.
-    pub nugget: [f64; 3],
+    /// Standard deviation of what a command does beyond the smooth process, the same in every run, as a share of a step's: of
+    /// commands that drive both wheels, and of those that leave one [slow](is_slow).
+    pub nugget: [[f64; 2]; 3],
     /// Standard deviation of what the first step of a command does beyond later ones, the same whenever one command follows
     /// the other.
     pub first_step: [f64; 3],
@@ -30,21 +39,35 @@ impl MotionNoise {
     }
 
     /// The variance of what a command that moves it so does beyond the smooth process.
-    pub fn nugget_variance(&self, motion: [f64; 3], channel: usize) -> f64 {
-        self.nugget[channel] * self.nugget[channel] * self.step_variance(motion, channel)
+    pub fn nugget_variance(&self, command: [f64; 2], motion: [f64; 3], channel: usize) -> f64 {
+        let nugget = self.nugget[channel][usize::from(is_slow(command))];
+        nugget * nugget * self.step_variance(motion, channel)
     }
 
     /// The variance of the mean of so many steps of a command that is held, as it is tracked.
     pub fn mean_variance(&self, motion: [f64; 3], channel: usize, steps: usize) -> f64 {
         let steps = steps as f64;
-        self.step_variance(motion, channel) / steps + 2.0 * self.tracker[channel] / (steps * steps)
+        let own = self.step_variance(motion, channel) + self.aslant_variance(motion, channel);
+        own / steps + 2.0 * self.tracker[channel] / (steps * steps)
+    }
+
+    /// The variance that the tracker's error in heading adds to a step: what it takes for lateral is way.
+    pub fn aslant_variance(&self, motion: [f64; 3], channel: usize) -> f64 {
+        let way_cm = if channel == LATERAL { motion[FORWARD] } else { 0.0 };
+        way_cm * way_cm * self.tracker[TURN] * 1f64.to_radians() * 1f64.to_radians()
     }
 
     /// Whether a file could have held this.
     pub fn is_sound(&self) -> bool {
-        let all = self.step.iter().flatten().chain(&self.nugget).chain(&self.first_step).chain(&self.tracker);
+        let all =
+            self.step.iter().flatten().chain(self.nugget.iter().flatten()).chain(&self.first_step).chain(&self.tracker);
         all.copied().all(|value| value.is_finite() && value >= 0.0)
     }
+}
+
+/// Whether a command leaves a wheel to friction, which no smooth process knows: whether that moves depends on the other one.
+pub fn is_slow(command: [f64; 2]) -> bool {
+    command.iter().any(|c| c.abs() < SLOW)
 }
 
 /// What a step's variance is a sum of.

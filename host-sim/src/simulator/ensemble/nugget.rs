@@ -48,7 +48,7 @@ impl Nuggets {
     pub fn new(cells: &[Evidence], noise: MotionNoise, held: Held) -> Self {
         let logged = |e: &Evidence| {
             let command = e.command.map(f64::from);
-            let nugget = [0, 1, 2].map(|channel| noise.nugget_variance(held(command), channel));
+            let nugget = [0, 1, 2].map(|channel| noise.nugget_variance(command, held(command), channel));
             let share = [0, 1, 2].map(|channel| nugget[channel] / e.variance_about_process(&noise, held, channel));
             let deviation = [0, 1, 2].map(|channel| (nugget[channel] * (1.0 - share[channel])).max(0.0).sqrt());
             (cell(command), Logged { place: e.weights(), motion: e.motion(held), share, deviation })
@@ -64,7 +64,7 @@ impl Nuggets {
                 Known { share: share[channel], place, motion: motion[channel], deviation: deviation[channel] }
             }
             None => {
-                let deviation = self.noise.nugget_variance(motion, channel).sqrt();
+                let deviation = self.noise.nugget_variance(command, motion, channel).sqrt();
                 Known { share: 0.0, place: &[], motion: 0.0, deviation }
             }
         })
