@@ -80,7 +80,7 @@ impl StepResidual {
 }
 
 /// The stretches of steps, which are in the order of runs and rows.
-pub fn stretches(steps: &[StepResidual]) -> Vec<&[StepResidual]> {
+fn stretches(steps: &[StepResidual]) -> Vec<&[StepResidual]> {
     let together = |a: &StepResidual, b: &StepResidual| b.follows(a) && a.steady && b.steady && a.command == b.command;
     steps.chunk_by(together).collect()
 }

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 
 use super::holds::StepResidual;
 use crate::simulator::ensemble::evidence::cell;
-use crate::simulator::ensemble::noise::{FORWARD, LATERAL, MotionNoise, TERMS, TURN, is_slow, terms};
+use crate::simulator::ensemble::noise::{FORWARD, LATERAL, MotionNoise, TERMS, TURN, is_slow, terms, weighed};
 use crate::simulator::ensemble::{Held, Member};
 use crate::statistics::maximise::{Bounds, climb};
 
@@ -120,28 +120,26 @@ fn likeliest(pieces: &[Piece]) -> Assumed {
 impl Piece {
     /// Of a channel; `noise` is what is known of those before.
     fn new(steps: &[StepResidual], channel: usize, noise: &MotionNoise, middle: &Member, said: Held) -> Self {
-        let left = steps.iter().map(|step| {
-            let (does, says) = (middle.motion(step.command()), said(step.command()));
-            step.residual()[channel] + step.known()[channel] + says[channel] - does[channel]
-        });
-        let left = DVector::from_iterator(steps.len(), left);
         let step = |step: &StepResidual| {
-            let motion = middle.motion(step.command());
-            Step {
-                terms: terms(motion),
-                cell: cell(step.command()),
-                class: usize::from(is_slow(step.command())),
+            let command = step.command();
+            let (does, says) = (middle.motion(command), said(command));
+            let left = step.residual()[channel] + step.known()[channel] + says[channel] - does[channel];
+            let step = Step {
+                terms: terms(does),
+                cell: cell(command),
+                class: usize::from(is_slow(command)),
                 is_first: !step.is_steady(),
-                aslant: noise.aslant_variance(motion, channel),
-                comes_back: if channel == TURN { 1.0 } else { libm::cos(motion[TURN].to_radians()) },
-            }
+                aslant: noise.aslant_variance(does, channel),
+                comes_back: if channel == TURN { 1.0 } else { libm::cos(does[TURN].to_radians()) },
+            };
+            (step, left)
         };
-        Piece { steps: steps.iter().map(step).collect(), left }
+        let (steps, left): (Vec<Step>, Vec<f64>) = steps.iter().map(step).unzip();
+        Piece { steps, left: DVector::from_vec(left) }
     }
 
     fn log_likelihood(&self, assumed: &Assumed) -> f64 {
-        let of_step = |step: &Step| (0..TERMS).map(|term| assumed.step[term] * step.terms[term]).sum::<f64>();
-        let own: Vec<f64> = self.steps.iter().map(of_step).collect();
+        let own: Vec<f64> = self.steps.iter().map(|step| weighed(&assumed.step, &step.terms)).collect();
         let nuggets: Vec<f64> =
             self.steps.iter().zip(&own).map(|(step, own)| assumed.nugget[step.class] * own.sqrt()).collect();
         let size = self.steps.len();

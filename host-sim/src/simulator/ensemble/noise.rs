@@ -34,8 +34,7 @@ pub struct MotionNoise {
 impl MotionNoise {
     /// The variance of what a robot adds in a step that moves it so: forward (cm), lateral (cm), turn (degrees).
     pub fn step_variance(&self, motion: [f64; 3], channel: usize) -> f64 {
-        let terms = terms(motion);
-        (0..TERMS).map(|term| self.step[channel][term] * terms[term]).sum::<f64>().max(LEAST)
+        weighed(&self.step[channel], &terms(motion)).max(LEAST)
     }
 
     /// The variance of what a command that moves it so does beyond the smooth process.
@@ -73,4 +72,9 @@ pub fn is_slow(command: [f64; 2]) -> bool {
 /// What a step's variance is a sum of.
 pub fn terms([forward_cm, _, turn_deg]: [f64; 3]) -> [f64; TERMS] {
     [1.0, forward_cm * forward_cm, turn_deg * turn_deg]
+}
+
+/// The sum of terms by their weights.
+pub fn weighed(weights: &[f64; TERMS], terms: &[f64; TERMS]) -> f64 {
+    (0..TERMS).map(|term| weights[term] * terms[term]).sum()
 }
