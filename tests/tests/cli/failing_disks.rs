@@ -102,7 +102,6 @@ fn a_loop_fails_at_some() {
 }
 
 #[test]
-#[ignore = "takes minutes"]
 fn a_demo_fails_at_some() {
     assert_whole(&Workshop::new(), "demo --quick --out demo --html page.html --force", FEW, State);
 }
