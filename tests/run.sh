@@ -30,6 +30,7 @@ need_component() {
 
 command -v cargo >/dev/null || { echo "cargo is missing: install Rust from https://rustup.rs" >&2; exit 1; }
 need cc gcc
+need c++ g++
 need strace strace
 need nbc nbc
 need avr-g++ gcc-avr
@@ -76,7 +77,7 @@ sys.exit("these need a newer Rust than " + ours + ": " + ", ".join(newer) if new
 }
 
 check_packages() {
-    cargo package --workspace --exclude mindgap-tests --exclude mindgap-python --no-verify --allow-dirty 2>&1 | tee "$log"
+    cargo package --workspace --exclude mindgap-tests --exclude mindgap-fuzz --exclude mindgap-python --no-verify --allow-dirty 2>&1 | tee "$log"
     ! grep -q '^warning' "$log"
 }
 

@@ -9,7 +9,6 @@ pub mod exit_code;
 pub mod faults;
 pub mod firmware_networks;
 pub mod fixed_point_error;
-pub mod fuzzing;
 pub mod golden;
 pub mod held_out_scans;
 pub mod module_order;

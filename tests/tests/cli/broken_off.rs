@@ -9,7 +9,7 @@ use std::thread;
 use std::time::Instant;
 
 use mindgap_tests::command::Workshop;
-use mindgap_tests::rooms::{challenge, robot, with_scene};
+use mindgap_tests::rooms::{challenge, robot, trained, with_scene};
 use rand::rngs::SmallRng;
 use rand::{RngExt, SeedableRng};
 
@@ -118,6 +118,15 @@ fn a_loop_survives() {
 #[test]
 fn answers_survive() {
     survives(&challenge(2), &words("challenge answer blind"), KILLS);
+}
+
+#[test]
+fn a_fleet_survives() {
+    let workshop = trained();
+    for robot in 1..=6 {
+        workshop.done(&format!("record --out fleet/{robot} --runs 2 --steps 10 --seed {robot}"));
+    }
+    survives(&workshop, &words("diagnose sim.json fleet --fleet out"), KILLS);
 }
 
 #[test]

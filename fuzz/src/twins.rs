@@ -15,8 +15,8 @@ use mindgap_host_sim::simulator::fixed_point::Quantised;
 use mindgap_host_sim::simulator::rollout::{RolloutRequest, SensorModel};
 use mindgap_host_sim::simulator::{Noise, Simulator};
 
-use super::Target;
-use crate::plausible_networks::{PlausibleNetworks, plausible_networks};
+use crate::Target;
+use mindgap_tests::plausible_networks::{PlausibleNetworks, plausible_networks};
 
 pub const TARGETS: &[Target] = &[
     Target { name: "fixed-and-float", feed: fixed_and_float },

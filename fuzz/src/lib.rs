@@ -1,23 +1,16 @@
 //! What is fed with any bytes: every reader of what users give, what runs on a robot, and twins, two ways to one result.
 //!
-//! A target panics where something is wrong. `tests/tests/fuzzing.rs` feeds each a little, `fuzz/run.sh` for hours.
+//! A target panics where something is wrong. `fuzz/tests/kept.rs` feeds each a little, `fuzz/run.sh` for hours.
 
-pub mod feeding;
-mod mutation;
 mod onboard;
 mod readers;
 mod twins;
 
 use std::cell::RefCell;
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use tempfile::TempDir;
-
-use crate::command::workspace;
-
-/// All of them together may not take more memory, kB.
-pub const MOST_KB: u64 = 256_000;
 
 /// Something that takes any bytes.
 pub struct Target {
@@ -35,26 +28,15 @@ pub fn targets() -> impl Iterator<Item = &'static Target> {
     readers::TARGETS.iter().chain(onboard::TARGETS).chain(twins::TARGETS)
 }
 
-/// Where a target's small inputs lie, which are kept.
-pub fn corpus(target: &Target) -> PathBuf {
-    workspace().join("fuzz/corpus").join(target.name)
-}
-
 /// Hands bytes as a file to what reads files.
 fn as_file<T>(name: &str, bytes: &[u8], read: impl FnOnce(&Path) -> T) -> T {
     thread_local! {
         static FOLDER: RefCell<Option<TempDir>> = const { RefCell::new(None) };
     }
     FOLDER.with_borrow_mut(|folder| {
-        let folder = folder.get_or_insert_with(|| in_memory().expect("a temporary folder"));
+        let folder = folder.get_or_insert_with(|| tempfile::tempdir().expect("a temporary folder"));
         let path = folder.path().join(name);
         fs::write(&path, bytes).expect("a file");
         read(&path)
     })
-}
-
-/// A temporary folder, in memory where the system has one.
-fn in_memory() -> std::io::Result<TempDir> {
-    let memory = Path::new("/dev/shm");
-    if memory.is_dir() { tempfile::tempdir_in(memory) } else { tempfile::tempdir() }
 }

@@ -5,7 +5,7 @@ use std::array;
 use mindgap_controller_export::brick::{self, Program, RunConfig, ScriptedWorld, Sonar};
 use mindgap_core::controller::{Controller, FULL_SPEED, Machine, Status, TUPLES, Tuple, When};
 
-use super::Target;
+use crate::Target;
 
 pub const TARGETS: &[Target] =
     &[Target { name: "executable", feed: executable }, Target { name: "machine", feed: machine }];

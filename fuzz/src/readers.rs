@@ -33,7 +33,7 @@ use mindgap_host_sim::trials::state::State;
 use mindgap_host_sim::workers::checkpoint::{Begin, Checkpoint};
 use mindgap_host_sim::workers::task::Task;
 
-use super::{Target, as_file};
+use crate::{Target, as_file};
 
 pub const TARGETS: &[Target] = &[
     Target { name: "run", feed: run },

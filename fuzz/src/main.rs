@@ -1,0 +1,22 @@
+//! Feeds one target by libFuzzer: `fuzz [OPTIONS] FOLDERS`, or `fuzz [OPTIONS] FILE` for one input.
+//!
+//! The target is the one whose name the last folder has, or the folder that the file lies in.
+#![no_main]
+
+use std::env;
+use std::path::Path;
+use std::sync::LazyLock;
+
+use libfuzzer_sys::fuzz_target;
+use mindgap_fuzz::{Target, targets};
+
+static TARGET: LazyLock<&Target> = LazyLock::new(|| {
+    let last = env::args().skip(1).filter(|argument| !argument.starts_with('-')).last().expect("a folder of inputs");
+    let last = Path::new(&last);
+    let folder = if last.is_dir() { last } else { last.parent().expect("a file in a folder") };
+    let name = folder.file_name().expect("a folder with a name").to_string_lossy();
+    targets().find(|target| target.name == name).unwrap_or_else(|| panic!("there is no target {name}"))
+});
+
+// What is prepared once takes time and room that no input is to blame for.
+fuzz_target!(init: (TARGET.feed)(&[]), |bytes: &[u8]| (TARGET.feed)(bytes));
