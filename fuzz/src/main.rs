@@ -11,7 +11,7 @@ use libfuzzer_sys::fuzz_target;
 use mindgap_fuzz::{Target, targets};
 
 static TARGET: LazyLock<&Target> = LazyLock::new(|| {
-    let last = env::args().skip(1).filter(|argument| !argument.starts_with('-')).last().expect("a folder of inputs");
+    let last = env::args().skip(1).rfind(|argument| !argument.starts_with('-')).expect("a folder of inputs");
     let last = Path::new(&last);
     let folder = if last.is_dir() { last } else { last.parent().expect("a file in a folder") };
     let name = folder.file_name().expect("a folder with a name").to_string_lossy();
