@@ -41,7 +41,8 @@ need /usr/include/simavr/sim_avr.h libsimavr-dev
 python3 -c 'import ensurepip' 2>/dev/null || need python3-venv python3-venv
 need chromium chromium
 need mpirun openmpi-bin
-need mpicc libopenmpi-dev
+# Its compiler comes without its headers, which Debian packs apart.
+mpicc -E -include mpi.h -x c /dev/null >/dev/null 2>&1 || need mpi.h libopenmpi-dev
 compgen -G '/usr/lib/llvm-*/lib/libclang.so' >/dev/null || need libclang.so libclang-dev
 need_npm
 need_tools
