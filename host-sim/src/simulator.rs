@@ -11,6 +11,7 @@ pub mod environment;
 mod first_echo;
 pub mod fixed_point;
 pub mod kinematic;
+mod known_steps;
 pub mod motion;
 pub mod nominal;
 pub mod residuals;

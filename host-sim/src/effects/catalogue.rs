@@ -323,6 +323,18 @@ mod tests {
             }
         }
 
+        /// A simulated step is spared the search for it.
+        #[test]
+        fn no_effect_on_the_motion_asks_for_what_the_sensor_faces(facing in context()) {
+            let unseen = StepContext { faced: None, ..facing };
+            for Candidate { effect, variant } in Candidate::all(CATALOGUE) {
+                for values in variant.initial_guesses(TOP_SPEED_CM_S) {
+                    let [facing, unseen] = [&facing, &unseen].map(|context| applied(variant, &values, context));
+                    prop_assert_eq!((facing.0, facing.1), (unseen.0, unseen.1), "{} {}", effect, variant.id);
+                }
+            }
+        }
+
         #[test]
         fn what_senses_alike_everywhere_does(here in context(), elsewhere in context()) {
             let elsewhere = StepContext { echo_before: here.echo_before, ..elsewhere };

@@ -82,11 +82,19 @@ impl Surroundings {
         let sensor = self.sensor(&pose, 0.0);
         let hit = cast(&self.walls, sensor.position_cm, sensor.direction());
         StepContext {
+            faced: hit.map(|hit| [hit.distance_cm, hit.incidence_rad]),
+            ..self.unseen(history, elapsed_ms, pose)
+        }
+    }
+
+    /// The same without what the sensor faces, which takes the longest to find.
+    pub fn unseen(&self, history: &RunHistory, elapsed_ms: f64, pose: Pose) -> StepContext {
+        StepContext {
             elapsed_min: elapsed_ms / 60_000.0,
             commands: history.commands,
             pose,
             earlier: history.poses,
-            faced: hit.map(|hit| [hit.distance_cm, hit.incidence_rad]),
+            faced: None,
             echo_before: history.echo_cm.map(|echo| echo.is_some()),
             middle_cm: self.middle_cm,
             robot: self.robot,

@@ -123,7 +123,9 @@ impl<'e> SimulatedBody<'e> {
         let environment = self.environment;
         let command = self.command.map(|c| c as f32);
         let Motion { forward_cm, lateral_cm, turn_rad, cells } = match &environment.effect_layer {
-            Some(effects) => effects.motion(&mut self.memory, self.pose, command, &environment.motion),
+            Some(effects) => {
+                effects.motion(&mut self.memory, self.pose, command, |speeds| environment.motion.trained_step(speeds))
+            }
             None => {
                 let before = self.before.map(|c| c as f32);
                 environment.motion.step([command[0], command[1], before[0], before[1]])

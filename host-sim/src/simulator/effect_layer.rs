@@ -7,6 +7,7 @@ use mindgap_core::controller::Controller;
 use rand::RngExt;
 
 use super::beam::Beam;
+use super::known_steps::KnownSteps;
 use super::motion::{Motion, MotionNetworks, Speeds, Transients, speeds};
 use super::{Noise, Simulator};
 use crate::chance::generator;
@@ -24,6 +25,8 @@ pub(super) struct EffectLayer<'s> {
     surroundings: Surroundings,
     /// Least and largest command that the networks know.
     commands: [f64; 2],
+    /// Whether an effect on the motion may ask for what the sensor faces: of the catalogue none does.
+    looks: bool,
     /// There when an effect changes the sensor.
     sonar: Option<&'s SonarModel>,
     /// There when what becomes of it is the same everywhere.
@@ -76,20 +79,22 @@ impl<'s> EffectLayer<'s> {
             effects,
             surroundings,
             commands: simulator.commands.map(f64::from),
+            looks: simulator.added.iter().any(|effect| effect.definition.is_some()),
             noise,
         }))
     }
 
-    /// Motion in a step of a robot at `pose` under `command`, before noise.
+    /// Motion in a step of a robot at `pose` under `command`, before noise; `trained` says what a step does without effects.
     pub fn motion(
         &self,
         memory: &mut EffectMemory,
         pose: Pose,
         command: [f32; 2],
-        networks: &MotionNetworks,
+        trained: impl FnMut(Speeds<f32>) -> Motion,
     ) -> Motion {
         memory.command(command);
-        let motion = self.step(&self.context(memory, pose), |speeds| networks.trained_step(speeds));
+        let context = if self.looks { self.context(memory, pose) } else { self.unseen(memory, pose) };
+        let motion = self.step(&context, trained);
         memory.history.was_at(Some(pose));
         memory.steps += 1;
         motion
@@ -102,34 +107,25 @@ impl<'s> EffectLayer<'s> {
             return None;
         }
         let anywhere = self.context(&EffectMemory::default(), Pose::new(0.0, 0.0, 0.0));
-        // Effects mostly ask for the same few steps again.
-        let mut known: Vec<(Speeds<f32>, Motion)> = Vec::new();
-        let mut learned = |speeds: Speeds<f32>| {
-            let found = known.iter().find(|(of, _)| *of == speeds).map(|(_, motion)| *motion);
-            found.unwrap_or_else(|| {
-                let motion = networks.trained_step(speeds);
-                known.push((speeds, motion));
-                motion
-            })
-        };
+        let mut known = KnownSteps::new(networks);
         let of_tuple = |tuple: usize| {
             let [left, right, left_before, right_before] = speeds(controller, tuple, true).map(f64::from);
             array::from_fn(|steps| {
                 let command = |ago: usize| if ago <= steps { [left, right] } else { [left_before, right_before] };
                 let mut context = anywhere;
                 context.commands = array::from_fn(command);
-                self.step(&context, &mut learned)
+                self.step(&context, |speeds| known.step(speeds))
             })
         };
         Some(array::from_fn(of_tuple))
     }
 
-    /// Motion in a step of which `learned` knows what it is without effects.
-    fn step(&self, context: &StepContext, mut learned: impl FnMut(Speeds<f32>) -> Motion) -> Motion {
+    /// Motion in a step.
+    fn step(&self, context: &StepContext, mut trained: impl FnMut(Speeds<f32>) -> Motion) -> Motion {
         let mut cells = [0; 3];
         let step = |now: [f64; 2], before: [f64; 2]| {
             let [low, high] = self.commands;
-            let motion = learned([now[0], now[1], before[0], before[1]].map(|c| c.clamp(low, high) as f32));
+            let motion = trained([now[0], now[1], before[0], before[1]].map(|c| c.clamp(low, high) as f32));
             cells = motion.cells;
             let [forward_cm, lateral_cm, turn_rad] =
                 [motion.forward_cm, motion.lateral_cm, motion.turn_rad].map(f64::from);
@@ -168,6 +164,14 @@ impl<'s> EffectLayer<'s> {
     }
 
     fn context(&self, memory: &EffectMemory, pose: Pose) -> StepContext {
-        self.surroundings.context(&memory.history, memory.steps as f64 * self.surroundings.robot.step_ms, pose)
+        self.surroundings.context(&memory.history, self.elapsed_ms(memory), pose)
+    }
+
+    fn unseen(&self, memory: &EffectMemory, pose: Pose) -> StepContext {
+        self.surroundings.unseen(&memory.history, self.elapsed_ms(memory), pose)
+    }
+
+    fn elapsed_ms(&self, memory: &EffectMemory) -> f64 {
+        memory.steps as f64 * self.surroundings.robot.step_ms
     }
 }

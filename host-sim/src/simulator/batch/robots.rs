@@ -15,6 +15,7 @@ use crate::simulator::Noise;
 use crate::simulator::draws::{Draws, Seeds};
 use crate::simulator::effect_layer::EffectMemory;
 use crate::simulator::environment::Environment;
+use crate::simulator::known_steps::KnownSteps;
 use crate::simulator::motion::{Motion, speeds};
 use crate::simulator::rollout::{RolloutOutcome, RolloutRequest, Termination, TrajectoryPoint};
 use crate::simulator::room::Point;
@@ -51,6 +52,8 @@ pub struct Robots<'a> {
     pub seeds: Seeds,
     /// Of what a sensor draws that effects change: it moves no robot otherwise.
     pub sensor_seeds: Seeds,
+    /// What effects asked for.
+    known_steps: KnownSteps<'a>,
 }
 
 /// A run on its lane.
@@ -91,6 +94,7 @@ impl<'a> Robots<'a> {
             first: row,
             seeds: Seeds::default(),
             sensor_seeds: Seeds::default(),
+            known_steps: KnownSteps::new(&environment.motion),
         }
     }
 
@@ -302,7 +306,7 @@ impl<'a> Robots<'a> {
                     run.memory.command(command);
                     transients[place][run.held_steps]
                 }
-                _ => effect_layer.motion(&mut run.memory, pose, command, &self.environment.motion),
+                _ => effect_layer.motion(&mut run.memory, pose, command, |speeds| self.known_steps.step(speeds)),
             };
             run.held_steps = HISTORY.min(run.held_steps + 1);
             let motion = motion.plus(motions.bias(place));

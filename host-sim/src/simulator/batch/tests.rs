@@ -5,6 +5,7 @@ use crate::effects::applied::AppliedEffect;
 use crate::effects::catalogue::Candidate;
 use crate::evolve::genome::GenotypeDecoder;
 use crate::learn::train::{self, TABLE_ONE, Trainer};
+use crate::simulator::known_steps::KnownSteps;
 use crate::simulator::motion::{Motion, MotionTable, speeds};
 use crate::simulator::rollout::Termination;
 use crate::simulator::{Noise, Simulator};
@@ -210,4 +211,21 @@ fn effects_act_on_the_robot_as_it_was_known_in_training() {
         }
     }
     assert!(beyond_networks_cm > 0.1, "{beyond_networks_cm}");
+}
+
+/// Also of commands between whole ones, and of more steps than are remembered.
+#[test]
+fn a_step_is_known_as_the_networks_say_it() {
+    const STEPS: usize = 70_000;
+    let (scene, robots) = (four_obstacles(), SIMULATOR.robots(0, SEED).unwrap());
+    let environment =
+        Environment::new(&SIMULATOR, &scene, scene.starts[0], Noise::Learned).unwrap().of_robot(&robots.mean);
+    let mut known = KnownSteps::new(&environment.motion);
+    for number in (0..STEPS).chain(0..100) {
+        let command = [number as f32 * 100.0 / STEPS as f32, 33.3];
+        let step = known.step([command[0], command[1], 20.0, -20.0]);
+        if number % 100 == 0 {
+            assert_eq!(step, environment.motion.trained_step([command[0], command[1], 20.0, -20.0]), "{command:?}");
+        }
+    }
 }
