@@ -173,7 +173,7 @@ impl<'s> MotionNetworks<'s> {
 
     /// What a step of a command that is held does beyond what networks say of it: forward and lateral in cm, turn in
     /// radians. It is known of whole commands, and an effective one between them has that of the nearest.
-    pub(super) fn trained_beyond(&self, command: [i16; 2]) -> MotionVector {
+    pub fn trained_beyond(&self, command: [i16; 2]) -> MotionVector {
         let command = command.map(f64::from);
         self.member.map_or([0.0; 3], |member| beyond(member.trained(command), self.held(command)))
     }
