@@ -58,7 +58,7 @@ pub struct MotionTable {
 pub(super) type Transients = [[Motion; HISTORY]; TUPLES];
 
 /// Way forward (cm), way to the left (cm) and turn (rad) of a step.
-pub(super) type MotionVector = [f32; 3];
+type MotionVector = [f32; 3];
 
 /// Left, right, previous left and previous right command.
 pub type Speeds<S> = [S; 4];
@@ -166,16 +166,10 @@ impl<'s> MotionNetworks<'s> {
         table
     }
 
-    /// A step as it was known in training: what networks say, and what their logs say [beyond](Self::trained_beyond) it.
+    /// A step as it was known in training: what networks say, and what their logs say beyond it.
     pub fn trained_step(&self, speeds: Speeds<f32>) -> Motion {
-        self.step(speeds).plus(&self.trained_beyond(whole([speeds[0], speeds[1]])))
-    }
-
-    /// What a step of a command that is held does beyond what networks say of it: forward and lateral in cm, turn in
-    /// radians. It is known of whole commands, and an effective one between them has that of the nearest.
-    pub fn trained_beyond(&self, command: [i16; 2]) -> MotionVector {
-        let command = command.map(f64::from);
-        self.member.map_or([0.0; 3], |member| beyond(member.trained(command), self.held(command)))
+        let (step, command) = (self.step(speeds), [speeds[0], speeds[1]].map(f64::from));
+        self.member.map_or(step, |member| step.plus(&beyond(member.trained(command), self.held(command))))
     }
 
     fn cells(&self, speeds: &Speeds<f32>) -> [usize; 3] {
@@ -233,11 +227,6 @@ impl Motion {
 /// What a robot does beyond something that is known: forward and lateral in cm, turn in degrees.
 fn beyond(does: [f64; 3], known: [f64; 3]) -> MotionVector {
     in_radians(std::array::from_fn(|channel| does[channel] - known[channel]))
-}
-
-/// The whole command nearest to this one.
-pub(super) fn whole(command: [f32; 2]) -> [i16; 2] {
-    command.map(|c| c.round() as i16)
 }
 
 /// What the first step of a robot's command after another does beyond later ones.
