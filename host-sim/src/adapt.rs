@@ -89,7 +89,7 @@ pub fn adapt(simulator: &Simulator, logs: &Logs, seed: u64, watch: impl Fn(Stage
     let effects = diagnosed(baseline.clone(), logs, seed, watch);
     let explained = steps(&baseline, &effects, &observations);
     let networks = simulator.motion_networks().ok_or_else(missing)?;
-    let said: Held = &|command| networks.held(command);
+    let said: Held = &networks;
     let given = |steps: &[StepResidual]| conditioned(ensemble, robot, said, steps);
     let probability = |steps: &[StepResidual]| probability(given(steps), said);
     let named = explained == plain || probability(&explained) > probability(&plain) + EFFECT_NATS;
@@ -160,7 +160,7 @@ fn commands(held: &[Hold], said: Held, before: &Ensemble, after: &Ensemble) -> V
     }
     let bias = |(command, steps): (&[i32; 2], &usize)| {
         let command = command.map(f64::from);
-        let networks = said(command);
+        let networks = said.motion(command);
         let bias = |of: &Posterior| {
             let motion = of.motion(command);
             [0, 1, 2].map(|c| [motion[c][0] - networks[c], motion[c][1]])
@@ -201,7 +201,7 @@ fn kept_back(
         let of = |steps: &[StepResidual]| holds(&steps.iter().filter(kept).copied().collect::<Vec<_>>());
         for (a, b) in of(plain).iter().zip(&of(explained)) {
             count += a.steps as f64;
-            let networks = said(a.command);
+            let networks = said.motion(a.command);
             let off = [(a, before.motion(a.command)), (b, after.motion(b.command))];
             for channel in 0..3 {
                 for (sum, (hold, motion)) in sums[channel].iter_mut().zip(&off) {

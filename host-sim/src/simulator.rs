@@ -31,7 +31,7 @@ use crate::error::{Error, Result};
 use crate::files;
 use crate::logs::Robot;
 use crate::sonar::FirstEchoLaw;
-use ensemble::{Ensemble, Member, Robots};
+use ensemble::{Ensemble, Posterior, Robots};
 use motion::MotionNetworks;
 use nominal::NominalModel;
 use residuals::{ConstantReading, ResidualQuantiles};
@@ -174,13 +174,13 @@ impl Simulator {
     /// The robot in the middle of what the logs leave open, and `count` drawn ones; none where that is not said.
     pub fn robots(&self, count: usize, seed: u64) -> Option<Robots> {
         let networks = self.motion_networks()?;
-        self.ensemble.as_ref()?.robots(&|command| networks.held(command), count, seed)
+        self.ensemble.as_ref()?.robots(&networks, count, seed)
     }
 
-    /// The robot in the middle of what the training logs alone say; none where that is not said.
-    pub fn trained_robot(&self) -> Option<Member> {
+    /// What the training logs alone say of the robot; none where that is not said.
+    pub fn trained(&self) -> Option<Posterior> {
         let networks = self.motion_networks()?;
-        self.ensemble.as_ref()?.trained(&|command| networks.held(command))
+        self.ensemble.as_ref()?.trained(&networks)
     }
 
     fn check(&self, path: &Path) -> Result<()> {

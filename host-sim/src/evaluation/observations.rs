@@ -39,6 +39,8 @@ pub struct Observation {
     pub block: usize,
     /// Which place of the sensor: nearby poses, at which it hears much the same.
     pub place: usize,
+    /// How much the way forward, the way to the left and the turn of its step count among others that repeat them.
+    pub motion_weight: [f64; 3],
     /// How much its echo or none, and its reading, count among others that repeat it.
     pub echo_weight: [f64; 2],
     /// Length of the step that begins here, against the usual one.
@@ -76,6 +78,7 @@ impl Observations {
         let mut steps = steps.iter().peekable();
         let mut rows = Vec::new();
         let parts = parts_of_a_run(logs);
+        let unread_ends = unread_ends(logs);
         for (run, logged) in logs.runs.iter().enumerate() {
             let contexts = contexts(logged, &surroundings);
             for (k, (row, context)) in logged.rows.iter().zip(&contexts).enumerate() {
@@ -95,7 +98,8 @@ impl Observations {
                     at: k,
                     block: run * parts + k * parts / logged.rows.len(),
                     place: 0,
-                    echo_weight: [1.0; 2],
+                    motion_weight: [1.0; 3],
+                    echo_weight: if unread_ends(logged, k) { [0.0; 2] } else { [1.0; 2] },
                     stretch: (until_ms - row.t_ms) / logs.robot.step_ms,
                     context: *context,
                     then: way_until.map_or_else(Vec::new, |until| unseen(logged, k + 1..until, context)),
@@ -184,6 +188,18 @@ impl Observations {
             self.rows.iter().flat_map(|row| row.context.commands[0].map(|c| row.context.wheel_speed_cm_s(c).abs()));
         speeds.fold(0.0, f64::max)
     }
+}
+
+/// Which rows nobody read the sensor at: a controller looks once it has driven a step, and no more when it has stopped. So it
+/// is where no run at all has a reading in its first row, or in its last, though there are others; and what is left out where
+/// chance made it so is no more than that one row of each.
+fn unread_ends(logs: &Logs) -> impl Fn(&Run, usize) -> bool {
+    let last = |run: &Run| run.rows.len() - 1;
+    let is_read = logs.runs.iter().flat_map(|run| &run.rows).any(|row| row.echo_cm.is_some());
+    let is_unread =
+        |at: fn(&Run) -> usize| is_read && logs.runs.iter().all(|run| run.rows.at(at(run)).echo_cm.is_none());
+    let (first_is_unread, last_is_unread) = (is_unread(|_| 0), is_unread(last));
+    move |run, row| (first_is_unread && row == 0) || (last_is_unread && row == last(run))
 }
 
 /// Into how many blocks a run is cut: one where there are enough runs that are short enough.

@@ -1,12 +1,20 @@
-//! How much a reading counts where others repeat it: rows are fewer than they look.
+//! How much a step and a reading count where others repeat them: rows are fewer than they look.
 //!
 //! Of m rows at a place that have a share ρ of their chance in common each tells 1/(1 + (m − 1) ρ) of what a row alone
 //! would, the design effect of clusters (Kish 1965, Survey Sampling). What they have in common is twice as far off where
 //! they are compared with a simulator: it was learned in a room that had its own. At poses that are familiar from the room
 //! that it was learned in, only what earlier readings leave open is in common. Equal readings of an unmoved sensor are one.
+//!
+//! A simulator is off by the same in every step of the same commands. Its training logs say by how much about (`own_error`);
+//! against the scatter of a step that is what these steps have in common. A controller that holds a command for thirty steps
+//! says of the robot hardly more than one that holds it for ten.
+
+use std::collections::BTreeMap;
 
 use super::observations::{Observation, Observations};
 use crate::geometry::wrap_rad;
+use crate::simulator::baseline::Baseline;
+use crate::simulator::ensemble::evidence::cell;
 
 /// The room of the logs, and the one that the simulator was learned in.
 const ROOMS: f64 = 2.0;
@@ -14,9 +22,40 @@ const ROOMS: f64 = 2.0;
 const UNMOVED_CM: f64 = 1.0;
 const UNMOVED_DEG: f64 = 2.0;
 
-/// Weighs the echo rate and the reading of every row; `place_bound` are the shares of their chance that belong to the place.
-pub fn weighed(mut observations: Observations, place_bound: [f64; 2]) -> Observations {
-    let Observations { places, rows, recollection, surroundings, .. } = &mut observations;
+/// Weighs every row by what the simulator knows of its chance and of its own error.
+pub fn weighed(mut observations: Observations, baseline: &Baseline) -> Observations {
+    if let Some(motion) = &baseline.motion {
+        let commands = |command: [f64; 2]| cell(motion.percent(command));
+        weigh_motion(&mut observations.rows, motion.scatter(), commands, |now, before| motion.own_error(now, before));
+    }
+    weigh_echoes(&mut observations, baseline.place_bound);
+    observations
+}
+
+/// A step repeats others of the same commands, now and before: the simulator is off by the same in all of them, with these
+/// mean squares where steps scatter so. Those of one `cell` are the same.
+fn weigh_motion(
+    rows: &mut [Observation],
+    scatter: [f64; 3],
+    cell: impl Fn([f64; 2]) -> [i32; 2],
+    own_error: impl Fn([f64; 2], [f64; 2]) -> [f64; 3],
+) {
+    let mut repeated: BTreeMap<[[i32; 2]; 2], Vec<usize>> = BTreeMap::new();
+    for (i, row) in rows.iter().enumerate().filter(|(_, row)| row.motion.is_some() && row.then.is_empty()) {
+        let [now, before, ..] = row.context.commands;
+        repeated.entry([cell(now), cell(before)]).or_default().push(i);
+    }
+    for steps in repeated.into_values().filter(|steps| steps.len() > 1) {
+        let [now, before, ..] = rows[steps[0]].context.commands;
+        let (own_error, others) = (own_error(now, before), (steps.len() - 1) as f64);
+        let weight = [0, 1, 2].map(|i| 1.0 / (1.0 + others * own_error[i] / (scatter[i] * scatter[i])));
+        steps.into_iter().for_each(|i| rows[i].motion_weight = weight);
+    }
+}
+
+/// The echo rate and the reading; `place_bound` are the shares of their chance that belong to the place.
+fn weigh_echoes(observations: &mut Observations, place_bound: [f64; 2]) {
+    let Observations { places, rows, recollection, surroundings, .. } = observations;
     let mut heard = vec![[0.0; 2]; *places];
     for row in rows.iter() {
         heard[row.place][0] += 1.0;
@@ -26,7 +65,7 @@ pub fn weighed(mut observations: Observations, place_bound: [f64; 2]) -> Observa
         let others = heard[row.place].map(|rows| (rows - 1.0).max(0.0));
         let recalled = recollection.as_ref().filter(|r| r.at(&surroundings.sensor(&row.context.pose, 0.0)).is_some());
         let common = recalled.map_or(place_bound.map(|share| ROOMS * share), |recollection| recollection.left_share);
-        row.echo_weight = [0, 1].map(|i| 1.0 / (1.0 + others[i] * common[i]));
+        [0, 1].into_iter().for_each(|i| row.echo_weight[i] /= 1.0 + others[i] * common[i]);
     }
     let mut begin = 0;
     for end in 1..=rows.len() {
@@ -36,7 +75,6 @@ pub fn weighed(mut observations: Observations, place_bound: [f64; 2]) -> Observa
             begin = end;
         }
     }
-    observations
 }
 
 /// Whether a row of the same run has the same reading of a sensor that has not moved.
@@ -54,6 +92,8 @@ mod tests {
     use crate::built_in_robot::{default_robot, training_room};
     use crate::geometry::Pose;
     use crate::logs::{Logs, Row, Run};
+    use crate::simulator::ensemble::command_scale::Percent;
+    use crate::simulator::kinematic;
 
     /// Two runs of twelve rows: the places and readings of their rows.
     fn rows_of(place_bound: [f64; 2], row: impl Fn(usize) -> (f64, Option<f64>)) -> Vec<Observation> {
@@ -63,7 +103,8 @@ mod tests {
         };
         let run = |run: usize| Run { name: format!("run-{run:03}"), rows: (0..12).map(row).collect() };
         let logs = Logs { robot: default_robot(), scene: training_room(), runs: (0..2).map(run).collect() };
-        weighed(Observations::of(&logs, 1.0), place_bound).rows
+        let baseline = Baseline { place_bound, ..kinematic::baseline(&logs) };
+        weighed(Observations::of(&logs, 1.0), &baseline).rows
     }
 
     /// One of three places, far from one another.
@@ -81,9 +122,42 @@ mod tests {
         assert!(free.iter().all(|row| row.echo_weight == [1.0; 2]));
     }
 
+    /// Two runs of twelve rows under two commands, of which one is held and one comes after another and again before it.
+    #[test]
+    fn steps_of_the_same_commands_count_as_many_as_they_tell() {
+        let command = |at: usize| if at == 6 { [30.0, 50.0] } else { [50.0, 50.0] };
+        let row = |at: usize| {
+            let pose = Some(Pose::new(20.0 + 5.0 * at as f64, 100.0, 0.0));
+            let [left, right] = command(at);
+            Row { t_ms: 400.0 * at as f64, left, right, pose, ..Row::default() }
+        };
+        let run = |run: usize| Run { name: format!("run-{run:03}"), rows: (0..12).map(row).collect() };
+        let logs = Logs { robot: default_robot(), scene: training_room(), runs: (0..2).map(run).collect() };
+        let mut rows = Observations::of(&logs, 1.0).rows;
+        weigh_motion(&mut rows, [2.0; 3], |command| cell(Percent(command)), |now, before| if now == before { [1.0, 2.0, 0.0] } else { [4.0; 3] });
+        // Eight steps of a run go on with the command: 1 + 15 / 4 and 1 + 15 / 2. Its others are like that of the other run.
+        assert_eq!(rows[3].motion_weight, [1.0 / 4.75, 1.0 / 8.5, 1.0]);
+        assert_eq!(
+            (rows[0].motion_weight, rows[6].motion_weight, rows[7].motion_weight),
+            ([0.5; 3], [0.5; 3], [0.5; 3])
+        );
+        assert_eq!(rows[11].motion_weight, [1.0; 3], "no step begins there");
+        assert!(weighed(Observations::of(&logs, 1.0), &kinematic::baseline(&logs)).rows[3].motion_weight == [1.0; 3]);
+    }
+
     #[test]
     fn where_nothing_is_read_no_reading_repeats() {
         assert!(rows_of([0.0, 1.0], |at| (place_cm(at), None)).iter().all(|row| row.echo_weight == [1.0; 2]));
+    }
+
+    #[test]
+    fn rows_at_an_end_that_no_run_reads_tell_nothing_of_the_sensor() {
+        let weights = |is_read: fn(usize) -> bool| {
+            let rows = rows_of([0.0; 2], |at| (place_cm(at), is_read(at).then_some(at as f64)));
+            [0, 1, 10, 11, 12].map(|row| rows[row].echo_weight[0])
+        };
+        assert_eq!(weights(|at| at > 0 && at < 11), [0.0, 1.0, 1.0, 0.0, 0.0]);
+        assert_eq!(weights(|at| at != 1 && at != 10), [1.0; 5]);
     }
 
     #[test]

@@ -36,7 +36,7 @@ impl Conditioned {
         let all = Observations::of(logs, fan_width).recalling(baseline.familiar);
         let (rows, blocks) = (all.rows.len(), all.blocks);
         if logs.runs.len() < FEWEST_RUNS && rows < AS_A_RUN * blocks {
-            return Conditioned { identification: weighed(all, baseline.place_bound), hold_out: None };
+            return Conditioned { identification: weighed(all, baseline), hold_out: None };
         }
         let identifying = MOST_IDENTIFYING as f64 / rows as f64;
         let confirming = MOST_CONFIRMING as f64 / rows as f64;
@@ -54,7 +54,7 @@ impl Conditioned {
             is_among(others - 1, confirming).then_some(true)
         };
         let roles: Vec<Option<bool>> = (0..blocks).map(role).collect();
-        let [identification, hold_out] = all.split(&roles).map(|part| weighed(part, baseline.place_bound));
+        let [identification, hold_out] = all.split(&roles).map(|part| weighed(part, baseline));
         Conditioned { identification, hold_out: Some(hold_out) }
     }
 

@@ -106,7 +106,7 @@ impl Hypothesis {
         let kept = |touched: bool| untouched.filter(|_| !touched);
         let motion = || {
             let residuals = self.residuals(baseline, &observations.rows, values);
-            densities(&residuals, fitted(&residuals, baseline))
+            densities(&observations.rows, &residuals, fitted(&observations.rows, &residuals, baseline))
         };
         let sonar = || self.sonar(baseline, observations, 0..observations.rows.len(), values);
         LogLikelihood {
@@ -155,7 +155,7 @@ impl Hypothesis {
 
     /// A nuisance of every hypothesis: the scatter may be larger than the simulator's, never smaller.
     pub fn scatter(&self, baseline: &Baseline, observations: &Observations, values: &[f64]) -> [f64; 3] {
-        fitted(&self.residuals(baseline, &observations.rows, values), baseline)
+        fitted(&observations.rows, &self.residuals(baseline, &observations.rows, values), baseline)
     }
 
     /// Whether a further effect changes the motion.
@@ -170,7 +170,7 @@ impl Hypothesis {
 
     /// The log-likelihoods of the motion channels with a given scatter.
     fn motion(&self, baseline: &Baseline, rows: &[Observation], values: &[f64], scatter: [f64; 3]) -> Vec<[f64; 3]> {
-        densities(&self.residuals(baseline, rows, values), scatter)
+        densities(rows, &self.residuals(baseline, rows, values), scatter)
     }
 
     /// Logged minus predicted of every row.
@@ -200,17 +200,20 @@ impl Hypothesis {
 }
 
 /// The log-density of each channel, zero where nothing was logged.
-fn densities(residuals: &[Option<[f64; 3]>], scatter: [f64; 3]) -> Vec<[f64; 3]> {
-    let of = |r: [f64; 3]| [0, 1, 2].map(|axis| log_density(axis, r[axis], scatter[axis]));
-    residuals.iter().map(|r| r.map_or([0.0; 3], of)).collect()
+fn densities(rows: &[Observation], residuals: &[Option<[f64; 3]>], scatter: [f64; 3]) -> Vec<[f64; 3]> {
+    let of = |(row, r): (&Observation, &Option<[f64; 3]>)| {
+        let term = |r: [f64; 3]| [0, 1, 2].map(|i| row.motion_weight[i] * log_density(i, r[i], scatter[i]));
+        r.map_or([0.0; 3], term)
+    };
+    rows.iter().zip(residuals).map(of).collect()
 }
 
-fn fitted(residuals: &[Option<[f64; 3]>], baseline: &Baseline) -> [f64; 3] {
+fn fitted(rows: &[Observation], residuals: &[Option<[f64; 3]>], baseline: &Baseline) -> [f64; 3] {
     let Some(drive) = &baseline.motion else { return [1.0; 3] };
     let least = drive.scatter();
     [0, 1, 2].map(|axis| {
-        let of_axis: Vec<f64> = residuals.iter().flatten().map(|r| r[axis]).collect();
-        fitted_scatter(axis, &of_axis, least[axis])
+        let of_axis = rows.iter().zip(residuals).filter_map(|(row, r)| Some([(*r)?[axis], row.motion_weight[axis]]));
+        fitted_scatter(axis, &of_axis.collect::<Vec<[f64; 2]>>(), least[axis])
     })
 }
 

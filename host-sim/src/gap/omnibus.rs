@@ -137,7 +137,7 @@ impl ResidualFit {
 
     fn steps(&self, law: &motion::Law, scatter: f64, rows: &Observations, context: &FitContext) -> Vec<f64> {
         let rest = self.beyond_prediction(law, rows, context);
-        law.terms(scatter, &rest, &law.shares(rows, is_own(rows, context)))
+        law.terms(scatter, rows, &rest, &law.shares(rows, is_own(rows, context)))
     }
 
     fn beyond_prediction(&self, law: &motion::Law, rows: &Observations, context: &FitContext) -> Vec<Option<f64>> {

@@ -66,7 +66,7 @@ impl<'a> Request<'a> {
     /// # Errors
     /// As [`Baseline::learned`].
     pub fn baseline(&self, logs: &Logs) -> Result<Baseline<'a>> {
-        self.simulator.map_or_else(|| Ok(kinematic::baseline(logs)), Baseline::learned)
+        self.simulator.map_or_else(|| Ok(kinematic::baseline(logs)), Baseline::of_middle)
     }
 
     /// The simulator with the effects found and the formula of what they leave; the textbook becomes one that can be run.

@@ -32,11 +32,12 @@ pub fn most_nats(axis: usize, scatter: f64) -> f64 {
     log_density(axis, 0.0, scatter) - libm::log(outlying(axis))
 }
 
-/// The most likely scatter of residuals, `least` or more.
-pub fn fitted_scatter(axis: usize, residuals: &[f64], least: f64) -> f64 {
-    let middle = median(residuals.iter().map(|r| r.abs())) / QUARTILE / SCALE_OF_NORMAL;
-    let squares: Vec<f64> = residuals.iter().map(|r| r * r).filter(|square| square.is_finite()).collect();
-    let next = |scatter: f64| reweighted(axis, &squares, scatter).max(least);
+/// The most likely scatter of residuals, `least` or more; with each stands how much it counts.
+pub fn fitted_scatter(axis: usize, residuals: &[[f64; 2]], least: f64) -> f64 {
+    let middle = median(residuals.iter().map(|[r, _]| r.abs())) / QUARTILE / SCALE_OF_NORMAL;
+    let squares = residuals.iter().map(|[r, counts]| (r * r, *counts)).filter(|(square, _)| square.is_finite());
+    let (squares, counts): (Vec<f64>, Vec<f64>) = squares.unzip();
+    let next = |scatter: f64| reweighted(axis, &squares, &counts, scatter).max(least);
     // NaN where there are no residuals.
     let mut scatter = if middle > least { middle } else { least };
     for _ in 0..MOST_ITERATIONS {
@@ -58,28 +59,29 @@ const LANES: usize = 4;
 
 /// One round of expectation and maximisation with an expanded parameter, which converges faster than the plain one (Liu,
 /// Rubin and Wu 1998, Biometrika 85): the mean of squares, each weighed by how usual it is.
-fn reweighted(axis: usize, squares: &[f64], scatter: f64) -> f64 {
+fn reweighted(axis: usize, squares: &[f64], counts: &[f64], scatter: f64) -> f64 {
     let scale = SCALE_OF_NORMAL * scatter;
     let per_square = 1.0 / (student::DEGREES * scale * scale);
     // Density of outliers relative to the usual one in the middle.
     let outlying = outlying(axis) / usual(0.0, scatter);
-    let weight = |square: f64| {
+    let weight = |square: f64, counts: f64| {
         let base = 1.0 + square * per_square;
-        1.0 / (base * (1.0 + outlying * base * base * base))
+        counts / (base * (1.0 + outlying * base * base * base))
     };
     let (mut sums, mut weights) = ([0.0; LANES], [0.0; LANES]);
-    let chunks = squares.chunks_exact(LANES);
-    let rest = chunks.remainder().iter().enumerate();
-    for chunk in chunks {
+    let (squares, counts) = (squares.chunks_exact(LANES), counts.chunks_exact(LANES));
+    let rest = squares.remainder().iter().zip(counts.remainder()).enumerate();
+    for (squares, counts) in squares.zip(counts) {
         for lane in 0..LANES {
-            let w = weight(chunk[lane]);
-            sums[lane] += w * chunk[lane];
+            let w = weight(squares[lane], counts[lane]);
+            sums[lane] += w * squares[lane];
             weights[lane] += w;
         }
     }
-    for (lane, square) in rest {
-        sums[lane] += weight(*square) * square;
-        weights[lane] += weight(*square);
+    for (lane, (square, counts)) in rest {
+        let w = weight(*square, *counts);
+        sums[lane] += w * square;
+        weights[lane] += w;
     }
     let weights: f64 = weights.iter().sum();
     if weights > 0.0 { (sums.iter().sum::<f64>() / weights).sqrt() / SCALE_OF_NORMAL } else { scatter }
@@ -115,13 +117,28 @@ mod tests {
         (0..n).map(|i| deviation * normal((i as f64 + 0.5) / n as f64)).collect()
     }
 
+    /// Residuals of which each counts as much.
+    fn alike(residuals: &[f64]) -> Vec<[f64; 2]> {
+        residuals.iter().map(|r| [*r, 1.0]).collect()
+    }
+
+    /// A third of them is wide and counts a thousandth.
+    #[test]
+    fn what_counts_little_hardly_widens_the_scatter() {
+        let mut residuals = alike(&normal(2000, 0.4));
+        residuals.extend(normal(1000, 2.0).into_iter().map(|r| [r, 0.001]));
+        assert!((fitted_scatter(0, &residuals, 1e-6) / 0.4 - 1.0).abs() < 0.03);
+        residuals.iter_mut().for_each(|[_, counts]| *counts = 1.0);
+        assert!(fitted_scatter(0, &residuals, 1e-6) > 0.5);
+    }
+
     #[test]
     fn the_scatter_of_normal_residuals_is_their_standard_deviation() {
         for (axis, deviation) in [(0, 0.4), (1, 3.0), (2, 0.02)] {
-            let fitted = fitted_scatter(axis, &normal(2000, deviation), 1e-6);
+            let fitted = fitted_scatter(axis, &alike(&normal(2000, deviation)), 1e-6);
             assert!((fitted / deviation - 1.0).abs() < 0.02, "{fitted} {deviation}");
         }
-        assert_eq!(fitted_scatter(0, &normal(200, 0.4), 0.5), 0.5, "never less than the least");
+        assert_eq!(fitted_scatter(0, &alike(&normal(200, 0.4)), 0.5), 0.5, "never less than the least");
         assert_eq!(fitted_scatter(0, &[], 0.5), 0.5);
     }
 
@@ -131,7 +148,7 @@ mod tests {
         let mut residuals = normal(300, 0.3);
         residuals.extend([40.0, -7.0, 2.0, -2.5, 1e9]);
         let sum = |scatter: f64| residuals.iter().map(|r| log_density(0, *r, scatter)).sum::<f64>();
-        let fitted = fitted_scatter(0, &residuals, 0.01);
+        let fitted = fitted_scatter(0, &alike(&residuals), 0.01);
         let best = (50..1000).map(|i| 0.001 * f64::from(i)).max_by(|a, b| sum(*a).total_cmp(&sum(*b))).unwrap();
         assert!((fitted - best).abs() <= 0.001, "{fitted} {best}");
     }
@@ -153,7 +170,7 @@ mod tests {
             changed[at] = absurd;
             let least = 0.1;
             let sum = |residuals: &[f64]| {
-                let scatter = fitted_scatter(0, residuals, least);
+                let scatter = fitted_scatter(0, &alike(residuals), least);
                 residuals.iter().map(|r| log_density(0, *r, scatter)).sum::<f64>()
             };
             let moved = (sum(&usual) - sum(&changed)).abs();

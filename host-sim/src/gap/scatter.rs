@@ -37,10 +37,10 @@ pub fn wider(beyond: &[Remainder], context: &FitContext, hold_out: Option<&Obser
     let of = |remainder: &Remainder| {
         let rest = remainder.rest(context.observations, context)?;
         let wider = WiderScatter::of(remainder, &rest, context)?;
-        let gains = wider.gains(&rest);
+        let gains = wider.gains(&rest, context.observations);
         let counts = Gain::of(&context.observations.by_block(&gains)).passes(context.calibration.remainder_nats);
         let confirmed = hold_out.is_none_or(|rows| {
-            let gained: f64 = remainder.rest(rows, context).iter().flat_map(|rest| wider.gains(rest)).sum();
+            let gained: f64 = remainder.rest(rows, context).iter().flat_map(|rest| wider.gains(rest, rows)).sum();
             gained >= context.calibration.judgement.strong_nats
         });
         (counts && confirmed).then_some(wider)
@@ -53,10 +53,10 @@ impl WiderScatter {
     fn of(remainder: &Remainder, rest: &[Option<f64>], context: &FitContext) -> Option<Self> {
         let axis = remainder.channel().motion_axis()?;
         let assumed = context.baseline.motion.as_ref()?.scatter()[axis];
-        let own = scatter(axis, rest, assumed, |_| true);
         let rows = &context.observations.rows;
+        let own = scatter(axis, rest, rows, assumed, |_| true);
         let slow_speed = slow_speed(rows);
-        let slow = scatter(axis, rest, 0.0, |i| speed(&rows[i]) <= slow_speed);
+        let slow = scatter(axis, rest, rows, 0.0, |row| speed(row) <= slow_speed);
         let further = |scatter: f64| scatter * scatter - assumed * assumed;
         let comes_back = correlation(rest, rows, FARTHEST * own) > MOST_CORRELATION;
         let is_even = further(slow) >= EVEN * further(own) && !comes_back;
@@ -69,15 +69,23 @@ impl WiderScatter {
     }
 
     /// By how much each row is likelier with the scatter of the logs than with the simulator's.
-    pub fn gains(&self, rest: &[Option<f64>]) -> Vec<f64> {
+    pub fn gains(&self, rest: &[Option<f64>], rows: &Observations) -> Vec<f64> {
         let gain = |r: f64| log_density(self.axis, r, self.own) - log_density(self.axis, r, self.assumed);
-        rest.iter().map(|r| r.map_or(0.0, gain)).collect()
+        let rows = rest.iter().zip(&rows.rows);
+        rows.map(|(r, row)| row.motion_weight[self.axis] * r.map_or(0.0, gain)).collect()
     }
 }
 
-fn scatter(axis: usize, rest: &[Option<f64>], least: f64, counts: impl Fn(usize) -> bool) -> f64 {
-    let of_rows = rest.iter().enumerate().filter(|(i, _)| counts(*i)).filter_map(|(_, r)| *r);
-    fitted_scatter(axis, &of_rows.collect::<Vec<f64>>(), least)
+fn scatter(
+    axis: usize,
+    rest: &[Option<f64>],
+    rows: &[Observation],
+    least: f64,
+    is_among: impl Fn(&Observation) -> bool,
+) -> f64 {
+    let of_rows = rest.iter().zip(rows).filter(|(_, row)| is_among(row));
+    let of_rows = of_rows.filter_map(|(r, row)| Some([(*r)?, row.motion_weight[axis]]));
+    fitted_scatter(axis, &of_rows.collect::<Vec<[f64; 2]>>(), least)
 }
 
 /// The correlation of neighbouring steps, each within `most`.

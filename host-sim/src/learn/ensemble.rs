@@ -28,14 +28,13 @@ const CHANGES: [f64; 4] = [0.0, 0.02, 0.06, 0.2];
 /// them.
 pub fn learn(simulator: &Simulator, logs: &Logs) -> Option<Ensemble> {
     let networks = simulator.motion_networks()?;
-    let said = |command: [f64; 2]| networks.held(command);
     let steps = residuals(simulator, logs)?;
     // Noise is what a process leaves, and how large the process is depends on noise.
-    let plain = given(&steps, &said, noise::rough(&steps));
+    let plain = given(&steps, &networks, noise::rough(&steps));
     let pieces = noise::pieces(&steps);
-    let middles = without_each_fold(&pieces, &plain, &said)?;
+    let middles = without_each_fold(&pieces, &plain, &networks)?;
     let middle = |piece: usize| &middles[piece % FOLDS];
-    Some(given(&steps, &said, noise::learn(&pieces, middle, &said)))
+    Some(given(&steps, &networks, noise::learn(&pieces, middle, &networks)))
 }
 
 /// The robot in the middle by all pieces of the logs but those of a fold, for each fold: a process that has seen a step leaves
@@ -52,7 +51,7 @@ fn without_each_fold(pieces: &[&[StepResidual]], plain: &Ensemble, said: Held) -
 
 /// The distribution that steps leave, if noise is this.
 fn given(steps: &[StepResidual], said: Held, noise: MotionNoise) -> Ensemble {
-    let evidence = by_cell(holds(steps).iter().map(|hold| hold.evidence(&noise, said)));
+    let evidence = by_cell(holds(steps).iter().map(|hold| hold.evidence(&noise, said)), said.scale());
     let factor = unit_factor();
     let typical = |channel: usize| {
         let variances = evidence.iter().map(|e| noise.step_variance(e.motion(said), channel));
@@ -71,7 +70,7 @@ pub fn conditioned(ensemble: &Ensemble, robot: &Robot, said: Held, steps: &[Step
     let more: Vec<Evidence> = more.map(|evidence| Evidence { after_training: true, ..evidence }).collect();
     ensemble.evidence.extend(more);
     let factor = unit_factor();
-    let cells = by_cell(ensemble.evidence.iter().copied());
+    let cells = by_cell(ensemble.evidence.iter().copied(), said.scale());
     for (channel, prior) in ensemble.prior.iter_mut().enumerate() {
         let likelihood = Likelihood::new(&factor, &cells, &ensemble.noise, said, channel);
         let of = |change: f64| {
@@ -142,8 +141,7 @@ mod tests {
         let ensemble = simulator.ensemble.clone().expect("a distribution");
         assert!(ensemble.is_sound() && ensemble.evidence.len() > 100);
         let networks = simulator.motion_networks().expect("networks");
-        let said = |command: [f64; 2]| networks.held(command);
-        let posterior = Posterior::new(&ensemble, &said).expect("a posterior");
+            let posterior = Posterior::new(&ensemble, &networks).expect("a posterior");
         let fresh = record(&default_robot(), &training_room(), 40, 60, &[], 4).expect("room to drive");
         let steps = residuals(&simulator, &fresh).expect("residuals");
         let mut squares = [0.0; 3];
@@ -152,9 +150,9 @@ mod tests {
             let motion = posterior.motion(hold.command);
             for channel in 0..3 {
                 let [mean, deviation] = motion[channel];
-                let evidence = hold.evidence(&ensemble.noise, &said);
+                let evidence = hold.evidence(&ensemble.noise, &networks);
                 let variance = deviation * deviation + f64::from(evidence.variance[channel]);
-                let off = evidence.motion(&said)[channel] - mean;
+                let off = evidence.motion(&networks)[channel] - mean;
                 squares[channel] += off * off / variance;
             }
         }

@@ -1,10 +1,13 @@
 //! The simulator as the diagnosis sees it: networks, their known bias, and the noise that is normal.
 
+use std::sync::Arc;
+
 use crate::effects::PoseIncrement;
 use crate::effects::applied::AppliedEffect;
 use crate::error::{Error, Result};
 use crate::logs::Robot;
-use crate::simulator::ensemble::Member;
+use crate::simulator::ensemble::command_scale::Percent;
+use crate::simulator::ensemble::{CommandScale, HeldMotion, Member, Posterior};
 use crate::simulator::motion::MotionNetworks;
 use crate::simulator::nominal::MotionBias;
 use crate::simulator::{Learned, Simulator};
@@ -37,6 +40,8 @@ pub enum MotionModel<'s> {
         reference: &'s MotionBias,
         /// Least and largest command that they know.
         commands: [f64; 2],
+        /// What the training logs leave open, if that is known.
+        open: Option<Arc<Posterior>>,
         /// The robot whose bias is added, if one is known.
         member: Option<Member>,
         /// Fraction of the noise of forward, lateral and turn that is the robot's own and not the tracker's, 0 to 1.
@@ -65,6 +70,7 @@ impl<'s> Baseline<'s> {
             networks,
             reference,
             commands: simulator.commands.map(f64::from),
+            open: simulator.trained().map(Arc::new),
             member: None,
             process_noise_fraction: [&simulator.forward, &simulator.lateral, &simulator.turn]
                 .map(process_noise_fraction),
@@ -85,8 +91,8 @@ impl<'s> Baseline<'s> {
     /// As [`learned`](Self::learned).
     pub fn of_middle(simulator: &'s Simulator) -> Result<Self> {
         let mut baseline = Baseline::learned(simulator)?;
-        if let Some(MotionModel::Learned { member, .. }) = &mut baseline.motion {
-            *member = simulator.trained_robot();
+        if let Some(MotionModel::Learned { member, open, .. }) = &mut baseline.motion {
+            *member = open.as_ref().map(|open| open.mean());
         }
         Ok(baseline)
     }
@@ -127,6 +133,39 @@ impl MotionModel<'_> {
         let known = reference.correction(&[command[0], command[1], command[0], command[1]]);
         let beyond = [does[0] - said[0], does[1] - said[1], (does[2] - said[2]).to_radians()];
         [0, 1, 2].map(|channel| beyond[channel] - known[channel])
+    }
+
+    /// A command in percent of full speed.
+    pub fn percent(&self, command: [f64; 2]) -> Percent {
+        let scale = match self {
+            MotionModel::Learned { networks, .. } => networks.scale(),
+            MotionModel::Kinematic { .. } => CommandScale::PERCENT,
+        };
+        scale.percent(command)
+    }
+
+    /// How far this may be off in every step of commands now and before, as mean squares of forward (cm), lateral (cm) and turn
+    /// (rad): what the training logs leave open of them, and what they say beyond it.
+    pub fn own_error(&self, now: [f64; 2], before: [f64; 2]) -> [f64; 3] {
+        let MotionModel::Learned { open: Some(open), .. } = self else { return [0.0; 3] };
+        let mut squares = self.held_error(open, now);
+        // The first step of a command is still moved by the one before.
+        if now != before {
+            let (others, first) = (self.held_error(open, before), open.first_step_variances());
+            squares = [0, 1, 2].map(|channel| squares[channel] + others[channel] + first[channel]);
+        }
+        let [forward, lateral, turn] = squares;
+        [forward, lateral, turn.to_radians().to_radians()]
+    }
+
+    /// The same of a command that is held; that of the turn in degrees.
+    fn held_error(&self, open: &Posterior, command: [f64; 2]) -> [f64; 3] {
+        let PoseIncrement { forward_cm, lateral_cm, turn_rad } = self.step(command, command);
+        let (does, said) = (open.motion(command), [forward_cm, lateral_cm, turn_rad.to_degrees()]);
+        [0, 1, 2].map(|channel| {
+            let [mean, deviation] = does[channel];
+            (mean - said[channel]) * (mean - said[channel]) + deviation * deviation
+        })
     }
 
     /// Standard deviations of forward (cm), lateral (cm) and turn (rad) where nothing is different.

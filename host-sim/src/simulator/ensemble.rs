@@ -11,6 +11,7 @@
 //! [`Posterior`] is the distribution given all evidence, a [`Member`] one robot of it.
 
 pub mod basis;
+pub mod command_scale;
 pub mod evidence;
 pub mod member;
 pub mod noise;
@@ -24,6 +25,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::chance::derive;
 pub use basis::PARTS;
+pub use command_scale::CommandScale;
 pub use evidence::Evidence;
 pub use member::Member;
 pub use noise::MotionNoise;
@@ -41,8 +43,17 @@ pub struct Ensemble {
     pub evidence: Vec<Evidence>,
 }
 
-/// What networks say of a command that is held: forward (cm), lateral (cm) and turn (degrees) of a step.
-pub type Held<'a> = &'a (dyn Fn([f64; 2]) -> [f64; 3] + Sync);
+/// What is said of commands that are held before logs are looked at.
+pub trait HeldMotion: Sync {
+    /// Forward (cm), lateral (cm) and turn (degrees) of a step.
+    fn motion(&self, command: [f64; 2]) -> [f64; 3];
+
+    /// How large the robot's commands are.
+    fn scale(&self) -> CommandScale;
+}
+
+/// Mostly networks.
+pub type Held<'a> = &'a dyn HeldMotion;
 
 /// Robots of a distribution.
 pub struct Robots {
@@ -59,16 +70,16 @@ impl Ensemble {
         let posterior = Posterior::new(self, held)?;
         let mean = posterior.mean();
         let is_changed = self.evidence.iter().any(|e| e.after_training);
-        let trained = Arc::new(if is_changed { self.trained(held)? } else { mean.clone() });
+        let trained = Arc::new(if is_changed { self.trained(held)?.mean() } else { mean.clone() });
         let draw = |robot: u64| posterior.draw(derive(seed, &[robot])).known_as(&trained);
         let drawn = (0..count as u64).into_par_iter().map(draw).collect();
         Some(Robots { mean: mean.known_as(&trained), drawn })
     }
 
-    /// The robot in the middle of what the training logs alone say; none as for [`robots`](Self::robots).
-    pub fn trained(&self, held: Held) -> Option<Member> {
+    /// What the training logs alone say; none as for [`robots`](Self::robots).
+    pub fn trained(&self, held: Held) -> Option<Posterior> {
         let evidence = self.evidence.iter().filter(|e| !e.after_training).copied().collect();
-        Some(Posterior::new(&Ensemble { evidence, ..self.clone() }, held)?.mean())
+        Posterior::new(&Ensemble { evidence, ..self.clone() }, held)
     }
 
     /// Whether a file could have held this.
@@ -81,5 +92,17 @@ impl Ensemble {
         sizes.copied().all(|size| size.is_finite() && size >= 0.0)
             && self.noise.is_sound()
             && self.evidence.iter().all(sound)
+    }
+}
+
+/// Of commands in percent.
+#[cfg(test)]
+impl<F: Fn([f64; 2]) -> [f64; 3] + Sync> HeldMotion for F {
+    fn motion(&self, command: [f64; 2]) -> [f64; 3] {
+        self(command)
+    }
+
+    fn scale(&self) -> CommandScale {
+        CommandScale::PERCENT
     }
 }

@@ -6,7 +6,7 @@ use mindgap_core::folded::{FoldedNetwork, evaluate_all};
 use mindgap_core::maths::Binary32;
 use pulp::{Arch, Simd, WithSimd};
 
-use super::ensemble::Member;
+use super::ensemble::{CommandScale, HeldMotion, Member};
 use super::nominal::MotionBias;
 use super::nominal::motion_bias::{FEATURES, features};
 use super::residuals::{ResidualNoise, ResidualQuantiles, motion_context};
@@ -21,6 +21,7 @@ pub struct MotionNetworks<'s> {
     /// Forward, lateral, turn.
     networks: Box<[FoldedNetwork<f32, 4>; 3]>,
     residuals: [&'s ResidualQuantiles; 3],
+    scale: CommandScale,
     /// Weights of what is added, one a feature.
     correction: Option<Box<[[f32; FEATURES]; 3]>>,
     /// The robot whose bias is added, of those that it may be.
@@ -79,6 +80,7 @@ impl<'s> MotionNetworks<'s> {
         Ok(MotionNetworks {
             networks: Box::new(learned.map(|l| FoldedNetwork::fold(&l.network))),
             residuals: learned.map(|l| &l.residuals),
+            scale: CommandScale::of(simulator.commands),
             correction: None,
             member: None,
         })
@@ -175,6 +177,16 @@ impl<'s> MotionNetworks<'s> {
     fn cells(&self, speeds: &Speeds<f32>) -> [usize; 3] {
         let context = motion_context(speeds);
         self.residuals.map(|residuals| residuals.cell(context))
+    }
+}
+
+impl HeldMotion for MotionNetworks<'_> {
+    fn motion(&self, command: [f64; 2]) -> [f64; 3] {
+        self.held(command)
+    }
+
+    fn scale(&self) -> CommandScale {
+        self.scale
     }
 }
 

@@ -117,7 +117,7 @@ pub(super) fn excess(found: &Comparison, known: bool, channel: Channel, context:
     let scatter = found.scatter.iter().find(|wider| channel.motion_axis() == Some(wider.axis));
     let rest = found.beyond_chosen.iter().find(|r| r.channel() == channel);
     if let (Some(wider), Some(rest)) = (scatter, rest.and_then(|r| r.rest(context.observations, context))) {
-        excess.iter_mut().zip(wider.gains(&rest)).for_each(|(e, gain)| *e += gain);
+        excess.iter_mut().zip(wider.gains(&rest, context.observations)).for_each(|(e, gain)| *e += gain);
     }
     excess
 }

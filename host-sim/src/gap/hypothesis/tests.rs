@@ -11,7 +11,10 @@ fn the_scatter_of_a_hypothesis_is_that_of_what_it_leaves_over() {
     );
     let none = Hypothesis::none(&baseline);
     let [forward, lateral, turn] = none.scatter(&baseline, &rows, &[]);
-    let of = |axis, residuals: &[f64]| fitted_scatter(axis, residuals, SCATTER[axis]);
+    let of = |axis, residuals: &[f64]| {
+        let alike: Vec<[f64; 2]> = residuals.iter().map(|r| [*r, 1.0]).collect();
+        fitted_scatter(axis, &alike, SCATTER[axis])
+    };
     assert_eq!((forward, lateral, turn), (of(0, &[-0.5, 3.5].repeat(4)), SCATTER[1], of(2, &[0.3; 8])));
     assert_eq!(none.with(candidate(&LONGER)).scatter(&baseline, &rows, &[1.5])[0], of(0, &[-2.0, 2.0].repeat(4)));
 }

@@ -44,8 +44,10 @@ pub fn fit(channel: Channel, axis: usize, beneath: &Fitted, context: &FitContext
     let covariates = covariates(&effects, baseline, rows, usual_way_cm);
     let of_axis = Rows::of(&covariates, |i| residuals[i].is_some(), |i| rows.rows[i].block);
     let off = |i: usize| residuals[i].unwrap_or(0.0) / scatter;
+    // Of what repeats a row says less.
     let response = |i: usize, prediction: f64, share: f64| {
-        prediction + (off(i) - prediction).clamp(-FARTHEST * share, FARTHEST * share)
+        let off = (off(i) - prediction).clamp(-FARTHEST * share, FARTHEST * share);
+        prediction + rows.rows[i].motion_weight[axis] * off
     };
     let (nearby, told) = of_axis.nearby(|i, prediction| response(i, prediction, 1.0));
     // Steps that scatter more say less of what steps follow.
@@ -54,15 +56,16 @@ pub fn fit(channel: Channel, axis: usize, beneath: &Fitted, context: &FitContext
     let rest: Vec<Option<f64>> = residuals.iter().zip(&predictions).map(|(r, p)| Some((*r)? - p)).collect();
     let (further_variance, shares) = scatter_nearby(&of_axis, |_, i| rest[i].unwrap_or(0.0) / scatter);
     let shares = of_axis.of_all(&shares, 1.0);
-    let even: Vec<f64> = rest.iter().zip(&shares).filter_map(|(rest, share)| Some((*rest)? / share)).collect();
+    let even = rest.iter().zip(&shares).zip(&rows.rows);
+    let even = even.filter_map(|((rest, share), row)| Some([(*rest)? / share, row.motion_weight[axis]]));
     let least = baseline.motion.as_ref().map_or(1.0, |drive| drive.scatter()[axis]);
-    let scatter = fitted_scatter(axis, &even, least);
+    let scatter = fitted_scatter(axis, &even.collect::<Vec<[f64; 2]>>(), least);
     let least_share = least / scatter;
     let own_shares = shares.into_iter().map(|share| share.max(least_share)).collect();
     let law = Law { axis, scatter, further_variance, own_shares, least_share, usual_way_cm };
     ResidualFit {
         channel,
-        held_out: law.terms(law.scatter, &rest, &law.own_shares),
+        held_out: law.terms(law.scatter, rows, &rest, &law.own_shares),
         surface,
         predictions,
         law: super::Law::Motion(law),
@@ -163,9 +166,10 @@ impl Law {
     }
 
     /// The log-likelihood of each row where this is the scatter, and the rest is what predictions leave.
-    pub fn terms(&self, scatter: f64, rest: &[Option<f64>], shares: &[f64]) -> Vec<f64> {
-        let term =
-            |(rest, share): (&Option<f64>, &f64)| rest.map_or(0.0, |r| log_density(self.axis, r, share * scatter));
-        rest.iter().zip(shares).map(term).collect()
+    pub fn terms(&self, scatter: f64, rows: &Observations, rest: &[Option<f64>], shares: &[f64]) -> Vec<f64> {
+        let term = |((row, rest), share): ((&Observation, &Option<f64>), &f64)| {
+            rest.map_or(0.0, |r| row.motion_weight[self.axis] * log_density(self.axis, r, share * scatter))
+        };
+        rows.rows.iter().zip(rest).zip(shares).map(term).collect()
     }
 }

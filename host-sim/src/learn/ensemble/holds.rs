@@ -98,7 +98,7 @@ pub fn holds(steps: &[StepResidual]) -> Vec<Hold> {
 impl Hold {
     /// What it says of the command's bias, if noise is this; `said` is what networks say.
     pub fn evidence(&self, noise: &MotionNoise, said: Held) -> Evidence {
-        let motion = said(self.command);
+        let motion = said.motion(self.command);
         let variance = |channel: usize| {
             let first = if self.first { noise.first_step[channel] * noise.first_step[channel] } else { 0.0 };
             (noise.mean_variance(motion, channel, self.steps) + first) as f32

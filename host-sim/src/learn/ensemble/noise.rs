@@ -122,12 +122,13 @@ impl Piece {
     fn new(steps: &[StepResidual], channel: usize, noise: &MotionNoise, middle: &Member, said: Held) -> Self {
         let step = |step: &StepResidual| {
             let command = step.command();
-            let (does, says) = (middle.motion(command), said(command));
+            let percent = said.scale().percent(command);
+            let (does, says) = (middle.motion(command), said.motion(command));
             let left = step.residual()[channel] + step.known()[channel] + says[channel] - does[channel];
             let step = Step {
                 terms: terms(does),
-                cell: cell(command),
-                class: usize::from(is_slow(command)),
+                cell: cell(percent),
+                class: usize::from(is_slow(percent)),
                 is_first: !step.is_steady(),
                 aslant: noise.aslant_variance(does, channel),
                 comes_back: if channel == TURN { 1.0 } else { libm::cos(does[TURN].to_radians()) },
@@ -171,6 +172,7 @@ mod tests {
 
     use super::*;
     use crate::chance::generator;
+    use crate::simulator::ensemble::command_scale::Percent;
     use crate::simulator::ensemble::{Ensemble, PARTS, Posterior};
     use crate::simulator::nominal::MotionBias;
 
@@ -199,8 +201,8 @@ mod tests {
                 }
                 left -= 1;
                 let deviation = f64::sqrt(step);
-                let drawn = normal(deviation * nugget[usize::from(is_slow(command))]);
-                let lasting = *nuggets.entry(cell(command)).or_insert(drawn);
+                let drawn = normal(deviation * nugget[usize::from(is_slow(Percent(command)))]);
+                let lasting = *nuggets.entry(cell(Percent(command))).or_insert(drawn);
                 let next = normal(f64::sqrt(tracker));
                 let first = if command == before { 0.0 } else { normal(f64::sqrt(first_step)) };
                 let turn_deg = normal(deviation) + lasting + first + next - error;

@@ -6,6 +6,8 @@
 
 use nalgebra::{Cholesky, DMatrix};
 
+use super::command_scale::Percent;
+
 /// Parts of the process: a constant, the left command, the right one, their difference, both together, and what changed
 /// about the robot since its training logs, a factor on each wheel.
 pub const PARTS: usize = 6;
@@ -51,7 +53,7 @@ pub fn part(node: usize) -> usize {
 }
 
 /// The nodes that a command lies among with their weights: its motion is the weighted sum of theirs.
-pub fn weights(command: [f64; 2]) -> Weights {
+pub fn weights(Percent(command): Percent) -> Weights {
     let [left, right] = command.map(|c| 0.01 * c);
     let (a, b) = (between(bent(left), REACH[0]), between(bent(right), REACH[0]));
     let difference = between(bent(right - left), REACH[1]);
@@ -78,7 +80,7 @@ pub fn weights(command: [f64; 2]) -> Weights {
 }
 
 /// The same for a robot as it was in its training logs, before it may have changed.
-pub fn weights_in_training(command: [f64; 2]) -> Weights {
+pub fn weights_in_training(command: Percent) -> Weights {
     let mut weights = weights(command);
     weights[OF_CHANGE..].iter_mut().for_each(|(_, weight)| *weight = 0.0);
     weights
@@ -142,7 +144,7 @@ mod tests {
         #[test]
         fn every_part_weighs_one(left in -100f64..100.0, right in -100f64..100.0) {
             let mut sums = [0.0; PARTS + 1];
-            for (node, weight) in weights([left, right]) {
+            for (node, weight) in weights(Percent([left, right])) {
                 prop_assert!(node < SIZE && weight.abs() <= 1.0);
                 sums[part(node)] += weight;
             }

@@ -6,9 +6,10 @@ use serde::{Deserialize, Serialize};
 
 use super::Held;
 use super::basis::{Weights, weights, weights_in_training};
+use super::command_scale::{CommandScale, Percent};
 use super::noise::MotionNoise;
 
-/// Commands as far apart as this are one: finer than friction bends.
+/// Commands as far apart as this, in percent of full speed, are one: finer than friction bends.
 const CELL: f64 = 4.0;
 
 /// What logs say of the motion under one command.
@@ -28,20 +29,25 @@ pub struct Evidence {
 impl Evidence {
     /// The motion that was logged: relative to what networks say, which is `held`, it would not be a robot's own.
     pub fn motion(&self, held: Held) -> [f64; 3] {
-        let said = held(self.command.map(f64::from));
+        let said = held.motion(self.command.map(f64::from));
         [0, 1, 2].map(|channel| f64::from(self.bias[channel]) + said[channel])
     }
 
     /// The nodes of the smooth process that it tells of.
-    pub fn weights(&self) -> Weights {
-        let command = self.command.map(f64::from);
+    pub fn weights(&self, scale: CommandScale) -> Weights {
+        let command = self.percent(scale);
         if self.after_training { weights(command) } else { weights_in_training(command) }
     }
 
     /// The variance of its motion about the smooth process.
     pub fn variance_about_process(&self, noise: &MotionNoise, held: Held, channel: usize) -> f64 {
         let command = self.command.map(f64::from);
-        f64::from(self.variance[channel]) + noise.nugget_variance(command, held(command), channel)
+        f64::from(self.variance[channel]) + noise.nugget_variance(self.percent(held.scale()), held.motion(command), channel)
+    }
+
+    /// Its command.
+    pub fn percent(&self, scale: CommandScale) -> Percent {
+        scale.percent(self.command.map(f64::from))
     }
 
     /// What is left of it beside the mean of its [cell](by_cell), as squares of standard deviations.
@@ -55,20 +61,20 @@ impl Evidence {
 }
 
 /// The cell of a command: all of one are taken for the same command.
-pub fn cell(command: [f64; 2]) -> [i32; 2] {
+pub fn cell(Percent(command): Percent) -> [i32; 2] {
     command.map(|c| (c / CELL).round() as i32)
 }
 
 /// Evidence of one cell as one, that of the training logs apart and before what came after.
-pub fn by_cell(evidence: impl IntoIterator<Item = Evidence>) -> Vec<Evidence> {
-    cells(evidence).iter().map(|together| one(together)).collect()
+pub fn by_cell(evidence: impl IntoIterator<Item = Evidence>, scale: CommandScale) -> Vec<Evidence> {
+    cells(evidence, scale).iter().map(|together| one(together)).collect()
 }
 
 /// The cells of evidence, in the order of [`by_cell`].
-pub fn cells(evidence: impl IntoIterator<Item = Evidence>) -> Vec<Vec<Evidence>> {
+pub fn cells(evidence: impl IntoIterator<Item = Evidence>, scale: CommandScale) -> Vec<Vec<Evidence>> {
     let mut cells: BTreeMap<(bool, [i32; 2]), Vec<Evidence>> = BTreeMap::new();
     for e in evidence {
-        cells.entry((e.after_training, cell(e.command.map(f64::from)))).or_default().push(e);
+        cells.entry((e.after_training, cell(e.percent(scale)))).or_default().push(e);
     }
     cells.into_values().collect()
 }

@@ -34,7 +34,7 @@ impl Member {
 
     /// Its motion in every step of a command that is held, but for chance.
     pub fn motion(&self, command: [f64; 2]) -> [f64; 3] {
-        let drawn = self.drawn.map_or([0.0; 3], |seed| normals(seed, cell(command)));
+        let drawn = self.drawn.map_or([0.0; 3], |seed| normals(seed, cell(self.nuggets.scale.percent(command))));
         let [process, nugget, deviation] = self.parts(command);
         [0, 1, 2].map(|channel| process[channel] + nugget[channel] + drawn[channel] * deviation[channel])
     }
@@ -66,6 +66,7 @@ impl Member {
 
     /// What the smooth process says of a command, the mean of what is the command's own, and the standard deviation of that.
     fn parts(&self, command: [f64; 2]) -> [[f64; 3]; 3] {
+        let command = self.nuggets.scale.percent(command);
         let process = [0, 1, 2].map(|channel| self.process(&weights(command), channel));
         let known = self.nuggets.known(command, process);
         let mean = [0, 1, 2].map(|channel| {

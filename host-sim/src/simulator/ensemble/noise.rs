@@ -3,6 +3,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::command_scale::Percent;
+
 /// Channel of the way forward, cm.
 pub const FORWARD: usize = 0;
 /// Channel of the way to the left, cm.
@@ -13,7 +15,7 @@ pub const TURN: usize = 2;
 pub const TERMS: usize = 3;
 /// Variances are at least this, of a resolution that no tracker has: nothing is ever certain.
 const LEAST: f64 = 1e-6;
-/// A wheel at less than this command is slow: twice what [`basis`](super::basis) takes for its breaking away.
+/// A wheel at less than this command, in percent of full speed, is slow: twice what [`basis`](super::basis) takes for its breaking away.
 const SLOW: f64 = 16.0;
 
 /// Noise of forward (cm), lateral (cm) and turn (degrees).
@@ -38,7 +40,7 @@ impl MotionNoise {
     }
 
     /// The variance of what a command that moves it so does beyond the smooth process.
-    pub fn nugget_variance(&self, command: [f64; 2], motion: [f64; 3], channel: usize) -> f64 {
+    pub fn nugget_variance(&self, command: Percent, motion: [f64; 3], channel: usize) -> f64 {
         let nugget = self.nugget[channel][usize::from(is_slow(command))];
         nugget * nugget * self.step_variance(motion, channel)
     }
@@ -65,7 +67,7 @@ impl MotionNoise {
 }
 
 /// Whether a command leaves a wheel to friction, which no smooth process knows: whether that moves depends on the other one.
-pub fn is_slow(command: [f64; 2]) -> bool {
+pub fn is_slow(Percent(command): Percent) -> bool {
     command.iter().any(|c| c.abs() < SLOW)
 }
 

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 
 use super::Held;
 use super::basis::Weights;
+use super::command_scale::{CommandScale, Percent};
 use super::evidence::{Evidence, cell};
 use super::noise::MotionNoise;
 
@@ -13,6 +14,8 @@ use super::noise::MotionNoise;
 pub struct Nuggets {
     /// What else moves the robot beyond the process.
     pub noise: MotionNoise,
+    /// How large the robot's commands are.
+    pub scale: CommandScale,
     /// By cell.
     logged: BTreeMap<[i32; 2], Logged>,
 }
@@ -46,18 +49,19 @@ pub struct Known<'a> {
 impl Nuggets {
     /// As [cells](super::evidence::by_cell) of evidence tell them: what came after training outranks what was known in it.
     pub fn new(cells: &[Evidence], noise: MotionNoise, held: Held) -> Self {
+        let scale = held.scale();
         let logged = |e: &Evidence| {
-            let command = e.command.map(f64::from);
-            let nugget = [0, 1, 2].map(|channel| noise.nugget_variance(command, held(command), channel));
+            let (command, motion) = (e.percent(scale), held.motion(e.command.map(f64::from)));
+            let nugget = [0, 1, 2].map(|channel| noise.nugget_variance(command, motion, channel));
             let share = [0, 1, 2].map(|channel| nugget[channel] / e.variance_about_process(&noise, held, channel));
             let deviation = [0, 1, 2].map(|channel| (nugget[channel] * (1.0 - share[channel])).max(0.0).sqrt());
-            (cell(command), Logged { place: e.weights(), motion: e.motion(held), share, deviation })
+            (cell(command), Logged { place: e.weights(scale), motion: e.motion(held), share, deviation })
         };
-        Nuggets { noise, logged: cells.iter().map(logged).collect() }
+        Nuggets { noise, scale, logged: cells.iter().map(logged).collect() }
     }
 
     /// What is known of a command's nugget, where the smooth process moves the robot so.
-    pub fn known(&self, command: [f64; 2], motion: [f64; 3]) -> [Known<'_>; 3] {
+    pub fn known(&self, command: Percent, motion: [f64; 3]) -> [Known<'_>; 3] {
         let logged = self.logged.get(&cell(command));
         [0, 1, 2].map(|channel| match logged {
             Some(Logged { place, motion, share, deviation }) => {

@@ -46,7 +46,7 @@ struct Channel {
 /// explanations of the same steps it prefers.
 pub fn log_evidence(ensemble: &Ensemble, held: Held) -> f64 {
     let factor = unit_factor();
-    let cells = cells(ensemble.evidence.iter().copied());
+    let cells = cells(ensemble.evidence.iter().copied(), held.scale());
     let means: Vec<Evidence> = cells.iter().map(|together| one(together)).collect();
     let about =
         |(together, mean): (&Vec<Evidence>, &Evidence)| together.iter().map(|e| e.squares_about(mean)).sum::<f64>();
@@ -68,7 +68,7 @@ impl Posterior {
     pub fn new(ensemble: &Ensemble, held: Held) -> Option<Self> {
         let factor = unit_factor();
         let noise = ensemble.noise;
-        let cells = by_cell(ensemble.evidence.iter().copied());
+        let cells = by_cell(ensemble.evidence.iter().copied(), held.scale());
         let channel =
             |channel: usize| Likelihood::new(&factor, &cells, &noise, held, channel).given(&ensemble.prior[channel]);
         let channels = [channel(0)?, channel(1)?, channel(2)?];
@@ -94,6 +94,7 @@ impl Posterior {
 
     /// Mean and standard deviation of the motion under a held command: forward (cm), lateral (cm), turn (degrees).
     pub fn motion(&self, command: [f64; 2]) -> [[f64; 2]; 3] {
+        let command = self.nuggets.scale.percent(command);
         let place = weights(command);
         let known = self.nuggets.known(command, [0, 1, 2].map(|c| self.along(&place, c).dot(&self.channels[c].mean)));
         [0, 1, 2].map(|c| {
@@ -105,6 +106,11 @@ impl Posterior {
             let motion = along.dot(&channel.mean) + known.share * known.motion;
             [motion, (of_process * of_process + known.deviation * known.deviation).sqrt()]
         })
+    }
+
+    /// Variances of what the first step of a command does beyond later ones, the same whenever one command follows the other.
+    pub fn first_step_variances(&self) -> [f64; 3] {
+        self.nuggets.noise.first_step.map(|deviation| deviation * deviation)
     }
 
     /// The process in a place as a sum over v.
@@ -127,7 +133,7 @@ impl Likelihood {
     pub fn new(factor: &DMatrix<f64>, cells: &[Evidence], noise: &MotionNoise, held: Held, channel: usize) -> Self {
         let (mut precision, mut pull) = (DMatrix::zeros(SIZE, SIZE), DVector::zeros(SIZE));
         for e in cells {
-            let weights = e.weights();
+            let weights = e.weights(held.scale());
             let (motion, certainty) = (e.motion(held)[channel], 1.0 / e.variance_about_process(noise, held, channel));
             for &(i, a) in &weights {
                 pull[i] += a * motion * certainty;
