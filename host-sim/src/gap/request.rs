@@ -64,7 +64,7 @@ impl<'a> Request<'a> {
     /// What logs are compared with.
     ///
     /// # Errors
-    /// As [`Baseline::learned`].
+    /// As [`Baseline::of_middle`].
     pub fn baseline(&self, logs: &Logs) -> Result<Baseline<'a>> {
         self.simulator.map_or_else(|| Ok(kinematic::baseline(logs)), Baseline::of_middle)
     }

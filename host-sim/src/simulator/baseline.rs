@@ -102,10 +102,15 @@ impl MotionModel<'_> {
     /// What a step does for the commands now and before.
     pub fn step(&self, now: [f64; 2], before: [f64; 2]) -> PoseIncrement {
         match self {
-            MotionModel::Learned { networks, reference, commands, .. } => {
-                let speeds = [now[0], now[1], before[0], before[1]].map(|c| c.clamp(commands[0], commands[1]));
+            MotionModel::Learned { networks, reference, commands, member, .. } => {
+                let [now, before] = [now, before].map(|command| command.map(|c| c.clamp(commands[0], commands[1])));
+                if let Some(member) = member.as_ref().filter(|_| now == before) {
+                    let [forward_cm, lateral_cm, turn_deg] = member.motion(now);
+                    return PoseIncrement { forward_cm, lateral_cm, turn_rad: turn_deg.to_radians() };
+                }
+                let speeds = [now[0], now[1], before[0], before[1]];
                 let learned = networks.step(speeds.map(|c| c as f32));
-                let (known, beyond) = (reference.correction(&speeds), self.beyond([speeds[0], speeds[1]]));
+                let (known, beyond) = (reference.correction(&speeds), self.beyond(now));
                 let more = [0, 1, 2].map(|channel| known[channel] + beyond[channel]);
                 PoseIncrement {
                     forward_cm: f64::from(learned.forward_cm) + more[0],

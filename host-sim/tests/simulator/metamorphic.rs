@@ -24,7 +24,7 @@ fn named(baseline: Baseline, logs: &Logs) -> BTreeSet<&'static str> {
 }
 
 fn learned(logs: &Logs) -> BTreeSet<&'static str> {
-    named(Baseline::learned(&SIMULATOR).expect("a reference"), logs)
+    named(Baseline::of_middle(&SIMULATOR).expect("a reference"), logs)
 }
 
 fn textbook(logs: &Logs) -> BTreeSet<&'static str> {
