@@ -134,7 +134,12 @@ mod tests {
         let run = |run: usize| Run { name: format!("run-{run:03}"), rows: (0..12).map(row).collect() };
         let logs = Logs { robot: default_robot(), scene: training_room(), runs: (0..2).map(run).collect() };
         let mut rows = Observations::of(&logs, 1.0).rows;
-        weigh_motion(&mut rows, [2.0; 3], |command| cell(Percent(command)), |now, before| if now == before { [1.0, 2.0, 0.0] } else { [4.0; 3] });
+        weigh_motion(
+            &mut rows,
+            [2.0; 3],
+            |command| cell(Percent(command)),
+            |now, before| if now == before { [1.0, 2.0, 0.0] } else { [4.0; 3] },
+        );
         // Eight steps of a run go on with the command: 1 + 15 / 4 and 1 + 15 / 2. Its others are like that of the other run.
         assert_eq!(rows[3].motion_weight, [1.0 / 4.75, 1.0 / 8.5, 1.0]);
         assert_eq!(

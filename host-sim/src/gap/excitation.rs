@@ -8,14 +8,17 @@ use crate::effects::Candidate;
 /// The effects of which a plain strength promises no strong evidence, in the order of the catalogue.
 pub fn untestable(none: &Fitted, context: &FitContext) -> Vec<&'static str> {
     let candidates = Candidate::all(context.catalogue);
-    let here = none.log_likelihood.total();
+    let here = &none.log_likelihood;
     let expected = |candidate: &Candidate| {
         let hypothesis = none.hypothesis.with(*candidate);
         let nats = |start: &Vec<f64>| {
-            let there =
-                hypothesis.log_likelihood(context.baseline, context.observations, start, Some(&none.log_likelihood));
-            // To second order half of the squared change of the log-likelihood is what a row is expected to tell.
-            0.5 * there.total().iter().zip(&here).map(|(a, b)| (a - b) * (a - b)).sum::<f64>()
+            let there = hypothesis.log_likelihood(context.baseline, context.observations, start, Some(here));
+            let rows = context.observations.rows.iter().enumerate();
+            rows.map(|(i, row)| {
+                told(&there.motion[i], &here.motion[i], &row.motion_weight)
+                    + told(&there.sonar[i], &here.sonar[i], &row.echo_weight)
+            })
+            .sum()
         };
         context.initial_guesses(candidate).iter().map(nats).fold(0.0, f64::max)
     };
@@ -25,6 +28,13 @@ pub fn untestable(none: &Fitted, context: &FitContext) -> Vec<&'static str> {
     };
     let ids = context.catalogue.iter().map(|effect| effect.id);
     ids.filter(|id| reach(id) < context.calibration.judgement.strong_nats).collect()
+}
+
+/// To second order half of the squared change of its log-likelihood is what a row is expected to tell in a channel, as often
+/// as it counts.
+fn told(there: &[f64], here: &[f64], counts: &[f64]) -> f64 {
+    let channels = there.iter().zip(here).zip(counts).filter(|(_, counts)| **counts > 0.0);
+    channels.map(|((a, b), counts)| 0.5 * (a - b) * (a - b) / counts).sum()
 }
 
 #[cfg(test)]
@@ -56,6 +66,20 @@ mod tests {
         let never = ["longer_to_the_left", "farther"];
         assert_eq!(untestable_on(&straight(2 * enough)), never);
         assert_eq!(untestable_on(&straight(enough / 2)), ["longer", never[0], never[1]]);
+    }
+
+    /// Four rows that count a quarter each tell what one does.
+    #[test]
+    fn rows_that_others_repeat_promise_as_much_as_they_count() {
+        let rows = |count: usize, weight: f64| {
+            let mut rows =
+                observations(1, count, |_, at| Made { off: [2.0 * alternating(at), 0.0, 0.0], ..Made::default() });
+            rows.rows.iter_mut().for_each(|row| row.motion_weight = [weight; 3]);
+            rows
+        };
+        let counts = [8, 64, 512, 4096].map(|count| untestable_on(&rows(count, 1.0)).contains(&"longer"));
+        assert_eq!([32, 256, 2048, 16384].map(|count| untestable_on(&rows(count, 0.25)).contains(&"longer")), counts);
+        assert_eq!((counts[0], counts[3]), (true, false));
     }
 
     #[test]

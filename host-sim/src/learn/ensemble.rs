@@ -141,7 +141,7 @@ mod tests {
         let ensemble = simulator.ensemble.clone().expect("a distribution");
         assert!(ensemble.is_sound() && ensemble.evidence.len() > 100);
         let networks = simulator.motion_networks().expect("networks");
-            let posterior = Posterior::new(&ensemble, &networks).expect("a posterior");
+        let posterior = Posterior::new(&ensemble, &networks).expect("a posterior");
         let fresh = record(&default_robot(), &training_room(), 40, 60, &[], 4).expect("room to drive");
         let steps = residuals(&simulator, &fresh).expect("residuals");
         let mut squares = [0.0; 3];

@@ -42,7 +42,8 @@ impl Evidence {
     /// The variance of its motion about the smooth process.
     pub fn variance_about_process(&self, noise: &MotionNoise, held: Held, channel: usize) -> f64 {
         let command = self.command.map(f64::from);
-        f64::from(self.variance[channel]) + noise.nugget_variance(self.percent(held.scale()), held.motion(command), channel)
+        f64::from(self.variance[channel])
+            + noise.nugget_variance(self.percent(held.scale()), held.motion(command), channel)
     }
 
     /// Its command.
