@@ -39,6 +39,8 @@ pub struct Observation {
     pub block: usize,
     /// Which place of the sensor: nearby poses, at which it hears much the same.
     pub place: usize,
+    /// Which rows what its step leaves is foretold together with: of its block, or of runs under the same commands.
+    pub fold: usize,
     /// How much the way forward, the way to the left and the turn of its step count among others that repeat them.
     pub motion_weight: [f64; 3],
     /// How much its echo or none, and its reading, count among others that repeat it.
@@ -98,6 +100,7 @@ impl Observations {
                     at: k,
                     block: run * parts + k * parts / logged.rows.len(),
                     place: 0,
+                    fold: run * parts + k * parts / logged.rows.len(),
                     motion_weight: [1.0; 3],
                     echo_weight: if unread_ends(logged, k) { [0.0; 2] } else { [1.0; 2] },
                     stretch: (until_ms - row.t_ms) / logs.robot.step_ms,
@@ -142,7 +145,7 @@ impl Observations {
             .collect();
         for row in rows {
             if let Some((part, block)) = numbers[row.block] {
-                parts[part].rows.push(Observation { block, ..row });
+                parts[part].rows.push(Observation { block, fold: block, ..row });
             }
         }
         parts

@@ -7,9 +7,10 @@
 //!
 //! A simulator is off by the same in every step of the same commands. Its training logs say by how much about (`own_error`);
 //! against the scatter of a step that is what these steps have in common. A controller that holds a command for thirty steps
-//! says of the robot hardly more than one that holds it for ten.
+//! says of the robot hardly more than one that holds it for ten. And what runs of one controller leave, all in the same steps,
+//! other runs of it foretell, whatever the simulator is off by there: only what runs under other commands foretell is the robot's.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::observations::{Observation, Observations};
 use crate::geometry::wrap_rad;
@@ -22,11 +23,18 @@ const ROOMS: f64 = 2.0;
 const UNMOVED_CM: f64 = 1.0;
 const UNMOVED_DEG: f64 = 2.0;
 
+/// From this share of its steps on a run repeats another one: runs of one controller end some tuples earlier or later, and
+/// those under commands at random share hardly any step.
+const MOSTLY: f64 = 0.5;
+
 /// Weighs every row by what the simulator knows of its chance and of its own error.
 pub fn weighed(mut observations: Observations, baseline: &Baseline) -> Observations {
     if let Some(motion) = &baseline.motion {
         let commands = |command: [f64; 2]| cell(motion.percent(command));
         weigh_motion(&mut observations.rows, motion.scatter(), commands, |now, before| motion.own_error(now, before));
+        if motion.is_learned() {
+            fold_together(&mut observations.rows, commands);
+        }
     }
     weigh_echoes(&mut observations, baseline.place_bound);
     observations
@@ -51,6 +59,31 @@ fn weigh_motion(
         let weight = [0, 1, 2].map(|i| 1.0 / (1.0 + others * own_error[i] / (scatter[i] * scatter[i])));
         steps.into_iter().for_each(|i| rows[i].motion_weight = weight);
     }
+}
+
+/// Runs most of whose steps are under the same commands of one `cell`, now and before, are one fold, where there are others.
+fn fold_together(rows: &mut [Observation], cell: impl Fn([f64; 2]) -> [i32; 2]) {
+    let mut steps: BTreeMap<usize, BTreeSet<[[i32; 2]; 2]>> = BTreeMap::new();
+    for row in rows.iter().filter(|row| row.motion.is_some()) {
+        let [now, before, ..] = row.context.commands;
+        steps.entry(row.run).or_default().insert([cell(now), cell(before)]);
+    }
+    let repeats = |one: &BTreeSet<_>, other: &BTreeSet<_>| {
+        one.intersection(other).count() as f64 >= MOSTLY * one.len().min(other.len()) as f64
+    };
+    // Each run is of the group of the first one that it repeats.
+    let mut groups: BTreeMap<usize, usize> = BTreeMap::new();
+    for (run, of_run) in &steps {
+        let first = steps.range(..run).find(|(_, of_other)| repeats(of_run, of_other));
+        let group = first.map_or(*run, |(other, _)| groups[other]);
+        groups.insert(*run, group);
+    }
+    let found: BTreeSet<usize> = groups.values().copied().collect();
+    if found.len() == 1 || found.len() == groups.len() {
+        return;
+    }
+    let number = |run: &usize| groups.get(run).map_or(0, |group| found.range(..group).count());
+    rows.iter_mut().for_each(|row| row.fold = number(&row.run));
 }
 
 /// The echo rate and the reading; `place_bound` are the shares of their chance that belong to the place.
@@ -148,6 +181,28 @@ mod tests {
         );
         assert_eq!(rows[11].motion_weight, [1.0; 3], "no step begins there");
         assert!(weighed(Observations::of(&logs, 1.0), &kinematic::baseline(&logs)).rows[3].motion_weight == [1.0; 3]);
+    }
+
+    /// Nine runs of a command that changes half-way, each under one of so many.
+    fn folds(commands: usize) -> Vec<usize> {
+        let row = |run: usize, at: usize| {
+            let command = 30.0 + 8.0 * (run % commands) as f64 + if at < 6 { 0.0 } else { 4.0 };
+            let pose = Some(Pose::new(20.0 + 5.0 * at as f64, 100.0, 0.0));
+            Row { t_ms: 400.0 * at as f64, left: command, right: command, pose, ..Row::default() }
+        };
+        let run = |run: usize| Run { name: format!("run-{run:03}"), rows: (0..12).map(|at| row(run, at)).collect() };
+        let logs = Logs { robot: default_robot(), scene: training_room(), runs: (0..9).map(run).collect() };
+        let mut rows = Observations::of(&logs, 1.0).rows;
+        fold_together(&mut rows, |command| cell(Percent(command)));
+        rows.iter().filter(|row| row.at == 0).map(|row| row.fold).collect()
+    }
+
+    #[test]
+    fn what_one_controller_leaves_another_one_foretells() {
+        assert_eq!(folds(2), [0, 1, 0, 1, 0, 1, 0, 1, 0]);
+        assert_eq!(folds(4), [0, 1, 2, 3, 0, 1, 2, 3, 0]);
+        let each_alone: Vec<usize> = (0..9).collect();
+        assert_eq!((folds(9), folds(1)), (each_alone.clone(), each_alone));
     }
 
     #[test]

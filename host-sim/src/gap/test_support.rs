@@ -111,6 +111,7 @@ pub fn observations(blocks: usize, rows: usize, made: impl Fn(usize, usize) -> M
             at,
             block,
             place: 0,
+            fold: block,
             motion_weight: [1.0; 3],
             echo_weight: [1.0; 2],
             stretch: 1.0,

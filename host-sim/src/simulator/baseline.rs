@@ -149,6 +149,11 @@ impl MotionModel<'_> {
         scale.percent(command)
     }
 
+    /// Whether it was learned from logs, and so is off where they were few.
+    pub fn is_learned(&self) -> bool {
+        matches!(self, MotionModel::Learned { .. })
+    }
+
     /// How far this may be off in every step of commands now and before, as mean squares of forward (cm), lateral (cm) and turn
     /// (rad): what the training logs leave open of them, and what they say beyond it.
     pub fn own_error(&self, now: [f64; 2], before: [f64; 2]) -> [f64; 3] {

@@ -42,7 +42,7 @@ pub fn fit(channel: Channel, axis: usize, beneath: &Fitted, context: &FitContext
     let residuals = residuals(axis, &effects, baseline, rows);
     let usual_way_cm = usual_way_cm(&effects, baseline, rows);
     let covariates = covariates(&effects, baseline, rows, usual_way_cm);
-    let of_axis = Rows::of(&covariates, |i| residuals[i].is_some(), |i| rows.rows[i].block);
+    let of_axis = Rows::of(&covariates, |i| residuals[i].is_some(), |i| rows.rows[i].fold);
     let off = |i: usize| residuals[i].unwrap_or(0.0) / scatter;
     // Of what repeats a row says less.
     let response = |i: usize, prediction: f64, share: f64| {
