@@ -1,5 +1,5 @@
 """Runs of evolved controllers in rooms that nobody trained in, of the robot as it is and with something different about it,
-and what a diagnosis calls them: writes runs.csv beside this script. `mindgap` has to be on the path. Half an hour on two
+and what a diagnosis calls them: writes runs.csv beside this script. `mindgap` has to be on the path. Ten minutes on two
 free cores.
 """
 
