@@ -95,12 +95,13 @@ impl Observations {
                 let way_until = until.filter(|_| whole_ways);
                 let motion = motion.or_else(|| Some(PoseIncrement::between(&pose, &logged.rows.at(way_until?).pose?)));
                 let until_ms = logged.rows.get(k + 1).map_or(row.t_ms, |next| next.t_ms);
+                let block = run * parts + k * parts / logged.rows.len();
                 rows.push(Observation {
                     run,
                     at: k,
-                    block: run * parts + k * parts / logged.rows.len(),
+                    block,
                     place: 0,
-                    fold: run * parts + k * parts / logged.rows.len(),
+                    fold: block,
                     motion_weight: [1.0; 3],
                     echo_weight: if unread_ends(logged, k) { [0.0; 2] } else { [1.0; 2] },
                     stretch: (until_ms - row.t_ms) / logs.robot.step_ms,

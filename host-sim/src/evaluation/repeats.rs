@@ -29,44 +29,40 @@ const MOSTLY: f64 = 0.5;
 
 /// Weighs every row by what the simulator knows of its chance and of its own error.
 pub fn weighed(mut observations: Observations, baseline: &Baseline) -> Observations {
-    if let Some(motion) = &baseline.motion {
-        let commands = |command: [f64; 2]| cell(motion.percent(command));
-        weigh_motion(&mut observations.rows, motion.scatter(), commands, |now, before| motion.own_error(now, before));
-        if motion.is_learned() {
-            fold_together(&mut observations.rows, commands);
-        }
+    if let Some(motion) = baseline.motion.as_ref().filter(|motion| motion.is_learned()) {
+        let cells = |row: &Observation| commands(row).map(|command| cell(motion.percent(command)));
+        weigh_motion(&mut observations.rows, motion.scatter(), cells, |now, before| motion.own_error(now, before));
+        fold_together(&mut observations.rows, cells);
     }
     weigh_echoes(&mut observations, baseline.place_bound);
     observations
 }
 
 /// A step repeats others of the same commands, now and before: the simulator is off by the same in all of them, with these
-/// mean squares where steps scatter so. Those of one `cell` are the same.
+/// mean squares where steps scatter so. Those of the same `cells` are the same.
 fn weigh_motion(
     rows: &mut [Observation],
     scatter: [f64; 3],
-    cell: impl Fn([f64; 2]) -> [i32; 2],
+    cells: impl Fn(&Observation) -> [[i32; 2]; 2],
     own_error: impl Fn([f64; 2], [f64; 2]) -> [f64; 3],
 ) {
     let mut repeated: BTreeMap<[[i32; 2]; 2], Vec<usize>> = BTreeMap::new();
     for (i, row) in rows.iter().enumerate().filter(|(_, row)| row.motion.is_some() && row.then.is_empty()) {
-        let [now, before, ..] = row.context.commands;
-        repeated.entry([cell(now), cell(before)]).or_default().push(i);
+        repeated.entry(cells(row)).or_default().push(i);
     }
     for steps in repeated.into_values().filter(|steps| steps.len() > 1) {
-        let [now, before, ..] = rows[steps[0]].context.commands;
+        let [now, before] = commands(&rows[steps[0]]);
         let (own_error, others) = (own_error(now, before), (steps.len() - 1) as f64);
         let weight = [0, 1, 2].map(|i| 1.0 / (1.0 + others * own_error[i] / (scatter[i] * scatter[i])));
         steps.into_iter().for_each(|i| rows[i].motion_weight = weight);
     }
 }
 
-/// Runs most of whose steps are under the same commands of one `cell`, now and before, are one fold, where there are others.
-fn fold_together(rows: &mut [Observation], cell: impl Fn([f64; 2]) -> [i32; 2]) {
+/// Runs most of whose steps are of the same `cells` are one fold, where there are others.
+fn fold_together(rows: &mut [Observation], cells: impl Fn(&Observation) -> [[i32; 2]; 2]) {
     let mut steps: BTreeMap<usize, BTreeSet<[[i32; 2]; 2]>> = BTreeMap::new();
     for row in rows.iter().filter(|row| row.motion.is_some()) {
-        let [now, before, ..] = row.context.commands;
-        steps.entry(row.run).or_default().insert([cell(now), cell(before)]);
+        steps.entry(row.run).or_default().insert(cells(row));
     }
     let repeats = |one: &BTreeSet<_>, other: &BTreeSet<_>| {
         one.intersection(other).count() as f64 >= MOSTLY * one.len().min(other.len()) as f64
@@ -84,6 +80,12 @@ fn fold_together(rows: &mut [Observation], cell: impl Fn([f64; 2]) -> [i32; 2]) 
     }
     let number = |run: &usize| groups.get(run).map_or(0, |group| found.range(..group).count());
     rows.iter_mut().for_each(|row| row.fold = number(&row.run));
+}
+
+/// The commands of a row's step, now and before.
+fn commands(row: &Observation) -> [[f64; 2]; 2] {
+    let [now, before, ..] = row.context.commands;
+    [now, before]
 }
 
 /// The echo rate and the reading; `place_bound` are the shares of their chance that belong to the place.
@@ -140,6 +142,11 @@ mod tests {
         weighed(Observations::of(&logs, 1.0), &baseline).rows
     }
 
+    /// The cells of a robot whose commands are percent.
+    fn in_percent(row: &Observation) -> [[i32; 2]; 2] {
+        commands(row).map(|command| cell(Percent(command)))
+    }
+
     /// One of three places, far from one another.
     fn place_cm(at: usize) -> f64 {
         20.0 + 65.0 * (at % 3) as f64
@@ -170,7 +177,7 @@ mod tests {
         weigh_motion(
             &mut rows,
             [2.0; 3],
-            |command| cell(Percent(command)),
+            in_percent,
             |now, before| if now == before { [1.0, 2.0, 0.0] } else { [4.0; 3] },
         );
         // Eight steps of a run go on with the command: 1 + 15 / 4 and 1 + 15 / 2. Its others are like that of the other run.
@@ -193,7 +200,7 @@ mod tests {
         let run = |run: usize| Run { name: format!("run-{run:03}"), rows: (0..12).map(|at| row(run, at)).collect() };
         let logs = Logs { robot: default_robot(), scene: training_room(), runs: (0..9).map(run).collect() };
         let mut rows = Observations::of(&logs, 1.0).rows;
-        fold_together(&mut rows, |command| cell(Percent(command)));
+        fold_together(&mut rows, in_percent);
         rows.iter().filter(|row| row.at == 0).map(|row| row.fold).collect()
     }
 

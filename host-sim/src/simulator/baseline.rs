@@ -40,7 +40,7 @@ pub enum MotionModel<'s> {
         reference: &'s MotionBias,
         /// Least and largest command that they know.
         commands: [f64; 2],
-        /// What the training logs leave open, if that is known.
+        /// What the training logs leave open about the robot, where `member` is the one in its middle.
         open: Option<Arc<Posterior>>,
         /// The robot whose bias is added, if one is known.
         member: Option<Member>,
@@ -70,7 +70,7 @@ impl<'s> Baseline<'s> {
             networks,
             reference,
             commands: simulator.commands.map(f64::from),
-            open: simulator.trained().map(Arc::new),
+            open: None,
             member: None,
             process_noise_fraction: [&simulator.forward, &simulator.lateral, &simulator.turn]
                 .map(process_noise_fraction),
@@ -92,6 +92,7 @@ impl<'s> Baseline<'s> {
     pub fn of_middle(simulator: &'s Simulator) -> Result<Self> {
         let mut baseline = Baseline::learned(simulator)?;
         if let Some(MotionModel::Learned { member, open, .. }) = &mut baseline.motion {
+            *open = simulator.trained().map(Arc::new);
             *member = open.as_ref().map(|open| open.mean());
         }
         Ok(baseline)
@@ -104,6 +105,7 @@ impl MotionModel<'_> {
         match self {
             MotionModel::Learned { networks, reference, commands, member, .. } => {
                 let [now, before] = [now, before].map(|command| command.map(|c| c.clamp(commands[0], commands[1])));
+                // Of a command that is held this is all there is to say, and the networks need not be asked.
                 if let Some(member) = member.as_ref().filter(|_| now == before) {
                     let [forward_cm, lateral_cm, turn_deg] = member.motion(now);
                     return PoseIncrement { forward_cm, lateral_cm, turn_rad: turn_deg.to_radians() };

@@ -15,7 +15,8 @@ pub const TURN: usize = 2;
 pub const TERMS: usize = 3;
 /// Variances are at least this, of a resolution that no tracker has: nothing is ever certain.
 const LEAST: f64 = 1e-6;
-/// A wheel at less than this command, in percent of full speed, is slow: twice what [`basis`](super::basis) takes for its breaking away.
+/// A wheel at less than this command, in percent of full speed, is slow: twice what [`basis`](super::basis) takes for its
+/// breaking away.
 const SLOW: f64 = 16.0;
 
 /// Noise of forward (cm), lateral (cm) and turn (degrees).
