@@ -80,7 +80,7 @@ pub fn adapt(simulator: &Simulator, logs: &Logs, seed: u64, watch: impl Fn(Stage
     let missing = || Error::new("the simulator file does not say what its training logs leave open: train it again");
     let ensemble = simulator.ensemble.as_ref().ok_or_else(missing)?;
     let robot = &simulator.robot;
-    let observations = Observations::of(logs, 1.0);
+    let observations = Observations::of(logs, None);
     let baseline = Baseline::of_middle(simulator)?;
     let plain = steps(&baseline, &[], &observations);
     if plain.is_empty() {

@@ -30,7 +30,7 @@ use crate::effects::{CATALOGUE, legacy, own};
 use crate::error::{Error, Result};
 use crate::files;
 use crate::logs::Robot;
-use crate::sonar::FirstEchoLaw;
+use crate::sonar::{FirstEchoLaw, SensorLaw};
 use ensemble::{Ensemble, Posterior, Robots};
 use motion::MotionNetworks;
 use nominal::NominalModel;
@@ -169,6 +169,15 @@ impl Simulator {
     /// The three motion networks, if all are there.
     pub fn motion_networks(&self) -> Option<MotionNetworks<'_>> {
         MotionNetworks::of(self).ok()
+    }
+
+    /// The law by which its sensor is judged: the likelier of the reference's beam and the first-echo law.
+    pub fn sensor_law(&self) -> Option<SensorLaw> {
+        let reference = self.reference.as_ref()?;
+        match &self.first_echo {
+            Some(law) if reference.is_first_echo => Some(SensorLaw::FirstEcho(law.clone())),
+            _ => reference.sonar.clone().map(SensorLaw::Beam),
+        }
     }
 
     /// The robot in the middle of what the logs leave open, and `count` drawn ones; none where that is not said.

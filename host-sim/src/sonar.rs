@@ -39,6 +39,7 @@ pub mod echo_law;
 pub mod familiar;
 pub mod fan;
 pub mod first_echo;
+pub mod law;
 mod likelihood;
 pub mod model;
 pub mod outcomes;
@@ -52,6 +53,7 @@ mod tests;
 
 pub use echo_law::FirstEchoLaw;
 pub use fan::{Fan, Ray, fan_at};
+pub use law::{SensorLaw, View};
 pub use model::SonarModel;
 pub use outcomes::{MixingWeights, Outcomes};
 pub use perturbation::Perturbation;

@@ -4,7 +4,7 @@ use glam::DVec2;
 
 use crate::geometry::{Pose, Wall, bounding_box, cast};
 use crate::logs::{Robot, Scene};
-use crate::sonar::{Fan, fan_at};
+use crate::sonar::echo_law::Surfaces;
 
 /// Number of commands visible to an effect, newest first.
 pub const HISTORY: usize = 7;
@@ -35,13 +35,13 @@ pub struct StepContext {
     pub robot: Robot,
 }
 
-/// What stays the same from step to step: the robot and the walls round it.
+/// What stays the same from step to step: the robot and what is round it.
 #[derive(Clone, Debug)]
 pub struct Surroundings {
     /// The robot's measures.
     pub robot: Robot,
-    /// Everything that a ray can meet.
-    pub walls: Vec<Wall>,
+    /// Everything that can return an echo.
+    pub surfaces: Surfaces,
     middle_cm: DVec2,
 }
 
@@ -74,13 +74,13 @@ impl Surroundings {
     /// Of a robot in a scene.
     pub fn new(robot: &Robot, scene: &Scene) -> Self {
         let walls = scene.sides();
-        Surroundings { robot: *robot, middle_cm: middle(&walls), walls }
+        Surroundings { robot: *robot, middle_cm: middle(&walls), surfaces: Surfaces::new(walls) }
     }
 
     /// The context of a step that begins at `pose`, `elapsed_ms` after the run did.
     pub fn context(&self, history: &RunHistory, elapsed_ms: f64, pose: Pose) -> StepContext {
         let sensor = self.sensor(&pose, 0.0);
-        let hit = cast(&self.walls, sensor.position_cm, sensor.direction());
+        let hit = cast(self.surfaces.walls(), sensor.position_cm, sensor.direction());
         StepContext {
             faced: hit.map(|hit| [hit.distance_cm, hit.incidence_rad]),
             ..self.unseen(history, elapsed_ms, pose)
@@ -99,12 +99,6 @@ impl Surroundings {
             middle_cm: self.middle_cm,
             robot: self.robot,
         }
-    }
-
-    /// What the sensor of a robot at `robot` sees, its axis turned by `yaw_rad`; `width` is the beam's against the usual
-    /// fan.
-    pub fn fan(&self, robot: &Pose, yaw_rad: f64, width: f64) -> Fan {
-        fan_at(&self.walls, &self.sensor(robot, yaw_rad), width)
     }
 
     /// Where the sensor of a robot at `robot` is, its axis turned by `yaw_rad`.

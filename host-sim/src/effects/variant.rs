@@ -2,12 +2,12 @@
 
 use serde_json::{Map, Value};
 
-use super::context::{CommandHistory, StepContext};
+use super::context::{CommandHistory, StepContext, Surroundings};
 use super::parameter::Parameter;
 use super::pose_increment::PoseIncrement;
 use crate::geometry::Pose;
 use crate::logs::Robot;
-use crate::sonar::Perturbation;
+use crate::sonar::{Outcomes, Perturbation, SensorLaw};
 
 /// Something that is there in reality and not in the simulator.
 pub struct Effect {
@@ -128,5 +128,11 @@ impl SensorState {
     /// The sensor of a robot at `robot` that no effect changes.
     pub fn nominal(robot: Pose) -> Self {
         SensorState { robot, yaw_rad: 0.0, width: 1.0, perturbation: Perturbation::NONE }
+    }
+
+    /// What it may report by a law, where it is.
+    pub fn outcomes(&self, law: &SensorLaw, surroundings: &Surroundings) -> Outcomes {
+        let sensor = surroundings.sensor(&self.robot, self.yaw_rad);
+        law.outcomes(&law.view(&surroundings.surfaces, &sensor, self.width), &self.perturbation)
     }
 }

@@ -6,19 +6,19 @@ use std::sync::Arc;
 
 use crate::effects::context::{RunHistory, Surroundings};
 use crate::effects::{PoseIncrement, StepContext};
-use crate::geometry::Pose;
+use crate::geometry::{Pose, cast};
 use crate::logs::{Logs, Run, samples};
 use crate::simulator::baseline::MotionModel;
-use crate::sonar::Fan;
 use crate::sonar::familiar::{FamiliarPoses, Recollection};
 use crate::sonar::place::{Place, place_of};
+use crate::sonar::{SensorLaw, View};
 
 /// A folder of logs, ready to be judged.
 pub struct Observations {
     /// The robot, and the walls round it.
     pub surroundings: Surroundings,
-    /// The beam against the usual fan.
-    pub fan_width: f64,
+    /// The law of the sensor; none where it is not judged.
+    pub law: Option<SensorLaw>,
     /// What is known of single poses in this room.
     pub recollection: Option<Arc<Recollection>>,
     /// How many blocks of rows are judged together: the runs, or parts of them where there are few.
@@ -58,9 +58,14 @@ pub struct Observation {
     pub expected: Option<PoseIncrement>,
     /// What the sensor said.
     pub echo_cm: Option<f64>,
-    /// What the sensor sees from here if nothing is changed.
-    pub fan: Fan,
+    /// What the law of the sensor looks at from here if nothing is changed.
+    pub view: Option<View>,
+    /// How far rays reach that lie to the right and to the left of the sensor's axis, cm.
+    pub beside_cm: [f64; 2],
 }
+
+/// Angle between those rays and the axis, degrees.
+const BESIDE_DEG: f64 = 5.0;
 
 /// With fewer runs than this each is cut into parts, so that there is a scatter between blocks.
 pub const FEWEST_BLOCKS: usize = 8;
@@ -71,8 +76,8 @@ const LONGEST_BLOCK: usize = 150;
 const LONGEST_RUN: usize = 2 * LONGEST_BLOCK;
 
 impl Observations {
-    /// Takes all that counts out of logs, for a sensor whose beam is `fan_width` times as wide as the usual fan.
-    pub fn of(logs: &Logs, fan_width: f64) -> Self {
+    /// Takes all that counts out of logs, for a sensor that follows a law.
+    pub fn of(logs: &Logs, law: Option<&SensorLaw>) -> Self {
         let surroundings = Surroundings::new(&logs.robot, &logs.scene);
         let steps = samples::motion(logs);
         // Where no step has a pose at both ends, whole ways between poses are judged.
@@ -110,26 +115,28 @@ impl Observations {
                     motion,
                     expected: None,
                     echo_cm: row.echo_cm,
-                    fan: surroundings.fan(&pose, 0.0, fan_width),
+                    view: law.map(|law| law.view(&surroundings.surfaces, &surroundings.sensor(&pose, 0.0), 1.0)),
+                    beside_cm: beside_cm(&surroundings, &pose),
                 });
             }
         }
         let places = number_places(&mut rows);
-        Observations { surroundings, fan_width, recollection: None, blocks: logs.runs.len() * parts, places, rows }
+        let blocks = logs.runs.len() * parts;
+        Observations { surroundings, law: law.cloned(), recollection: None, blocks, places, rows }
     }
 
     /// Recalls what is known of single poses, if this is their room.
     pub fn recalling(self, familiar: Option<&FamiliarPoses>) -> Self {
-        let recollection = familiar.and_then(|familiar| Recollection::of(familiar, &self.surroundings.walls));
+        let recollection = familiar.and_then(|familiar| Recollection::of(familiar, self.surroundings.surfaces.walls()));
         Observations { recollection: recollection.map(Arc::new), ..self }
     }
 
     /// Two parts of these: the blocks whose role is false, and those whose role is true; a block without a role is dropped.
     pub fn split(self, roles: &[Option<bool>]) -> [Self; 2] {
-        let Observations { surroundings, fan_width, recollection, places, rows, .. } = self;
+        let Observations { surroundings, law, recollection, places, rows, .. } = self;
         let mut parts = [false, true].map(|role| Observations {
             surroundings: surroundings.clone(),
-            fan_width,
+            law: law.clone(),
             recollection: recollection.clone(),
             places,
             blocks: roles.iter().filter(|r| **r == Some(role)).count(),
@@ -181,17 +188,21 @@ impl Observations {
         sums
     }
 
-    /// What the sensor of a robot at `robot` sees, its axis turned and its beam widened.
-    pub fn fan(&self, robot: &Pose, yaw_rad: f64, width: f64) -> Fan {
-        self.surroundings.fan(robot, yaw_rad, self.fan_width * width)
-    }
-
     /// The largest wheel speed that is commanded, cm/s.
     pub fn top_speed_cm_s(&self) -> f64 {
         let speeds =
             self.rows.iter().flat_map(|row| row.context.commands[0].map(|c| row.context.wheel_speed_cm_s(c).abs()));
         speeds.fold(0.0, f64::max)
     }
+}
+
+/// How far rays beside the axis of the sensor of a robot at a pose reach.
+pub fn beside_cm(surroundings: &Surroundings, robot: &Pose) -> [f64; 2] {
+    [-BESIDE_DEG, BESIDE_DEG].map(|deg| {
+        let ray = surroundings.sensor(robot, deg.to_radians());
+        let hit = cast(surroundings.surfaces.walls(), ray.position_cm, ray.direction());
+        hit.map_or(f64::INFINITY, |hit| hit.distance_cm)
+    })
 }
 
 /// Which rows nobody read the sensor at: a controller looks once it has driven a step, and no more when it has stopped. So it

@@ -1,5 +1,7 @@
 //! What a simulator with effects predicts of logs, beside what was logged.
 
+use std::borrow::Cow;
+
 use super::observations::{Observation, Observations};
 use crate::effects::chain::EffectChain;
 use crate::effects::{PoseIncrement, SensorState, StepContext};
@@ -9,7 +11,7 @@ use crate::logs::Logs;
 use crate::simulator::Simulator;
 use crate::simulator::baseline::{Baseline, MotionModel};
 use crate::sonar::familiar::{self, Familiarity};
-use crate::sonar::{Fan, Outcomes, Perturbation, SonarModel};
+use crate::sonar::{Outcomes, Perturbation, SensorLaw, View};
 
 /// Logged and predicted, sample by sample.
 #[derive(Clone, Debug, Default)]
@@ -32,7 +34,7 @@ pub struct Predictions {
 /// When the simulator does not know how its training logs scattered.
 pub fn predict(simulator: &Simulator, logs: &Logs) -> Result<Predictions> {
     let baseline = Baseline::learned(simulator)?;
-    let observations = Observations::of(logs, baseline.sonar.as_ref().map_or(1.0, |sonar| sonar.fan_width));
+    let observations = Observations::of(logs, baseline.sonar.as_ref());
     let effects = EffectChain::of(&baseline.applied);
     let mut all = Predictions::default();
     for row in &observations.rows {
@@ -42,8 +44,10 @@ pub fn predict(simulator: &Simulator, logs: &Logs) -> Result<Predictions> {
             all.lateral.push([logged.lateral_cm, predicted.lateral_cm]);
             all.turn.push([logged.turn_rad, predicted.turn_rad].map(f64::to_degrees));
         }
-        if let (Some(sonar), Some(_)) = (&baseline.sonar, row.context.faced) {
-            let outcomes = facing(&effects, &observations, row).outcomes(sonar);
+        if row.context.faced.is_some()
+            && let Some(faced) = facing(&effects, &observations, row)
+        {
+            let outcomes = faced.outcomes();
             all.echo_probability.push([f64::from(u8::from(row.echo_cm.is_some())), 1.0 - outcomes.none]);
             if let (Some(echo_cm), Some(expected_cm)) = (row.echo_cm, outcomes.mean_hit_cm()) {
                 all.echo_value.push([echo_cm, expected_cm]);
@@ -91,32 +95,40 @@ pub fn residual(effects: &EffectChain, drive: &MotionModel, row: &Observation) -
 }
 
 /// What the sensor faces at a row.
-pub struct Faced {
-    /// What it sees.
-    pub fan: Fan,
+pub struct Faced<'o> {
+    /// Its law.
+    law: &'o SensorLaw,
+    /// What that looks at.
+    view: Cow<'o, View>,
     /// How its readings are perturbed.
     pub change: Perturbation,
     /// What is known of its pose.
     pub familiarity: Option<Familiarity>,
 }
 
-/// What the sensor faces at a row with these effects.
-pub fn facing(effects: &EffectChain, observations: &Observations, row: &Observation) -> Faced {
+/// What the sensor faces at a row with these effects; none where no law of it is known.
+pub fn facing<'o>(effects: &EffectChain, observations: &'o Observations, row: &'o Observation) -> Option<Faced<'o>> {
+    let (law, usual) = observations.law.as_ref().zip(row.view.as_ref())?;
     let SensorState { robot, yaw_rad, width, perturbation: change } = effects.sensor(&row.context);
     let moved = robot != row.context.pose || yaw_rad != 0.0 || width != 1.0;
     let sensor = observations.surroundings.sensor(&robot, yaw_rad);
     let familiarity = observations.recollection.as_ref().and_then(|recollection| recollection.at(&sensor));
-    Faced { fan: if moved { observations.fan(&robot, yaw_rad, width) } else { row.fan }, change, familiarity }
+    let view = if moved {
+        Cow::Owned(law.view(&observations.surroundings.surfaces, &sensor, width))
+    } else {
+        Cow::Borrowed(usual)
+    };
+    Some(Faced { law, view, change, familiarity })
 }
 
-impl Faced {
+impl Faced<'_> {
     /// What the sensor may report.
-    pub fn outcomes(&self, sonar: &SonarModel) -> Outcomes {
-        self.perturbed(&self.change, sonar)
+    pub fn outcomes(&self) -> Outcomes {
+        self.perturbed(&self.change)
     }
 
     /// The same with another perturbation.
-    pub fn perturbed(&self, change: &Perturbation, sonar: &SonarModel) -> Outcomes {
-        familiar::outcomes(self.familiarity.as_ref(), sonar, &self.fan, change)
+    pub fn perturbed(&self, change: &Perturbation) -> Outcomes {
+        familiar::outcomes(self.familiarity.as_ref(), self.law, &self.view, change)
     }
 }

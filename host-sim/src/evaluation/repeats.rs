@@ -139,7 +139,7 @@ mod tests {
         let run = |run: usize| Run { name: format!("run-{run:03}"), rows: (0..12).map(row).collect() };
         let logs = Logs { robot: default_robot(), scene: training_room(), runs: (0..2).map(run).collect() };
         let baseline = Baseline { place_bound, ..kinematic::baseline(&logs) };
-        weighed(Observations::of(&logs, 1.0), &baseline).rows
+        weighed(Observations::of(&logs, None), &baseline).rows
     }
 
     /// The cells of a robot whose commands are percent.
@@ -173,7 +173,7 @@ mod tests {
         };
         let run = |run: usize| Run { name: format!("run-{run:03}"), rows: (0..12).map(row).collect() };
         let logs = Logs { robot: default_robot(), scene: training_room(), runs: (0..2).map(run).collect() };
-        let mut rows = Observations::of(&logs, 1.0).rows;
+        let mut rows = Observations::of(&logs, None).rows;
         weigh_motion(
             &mut rows,
             [2.0; 3],
@@ -187,7 +187,7 @@ mod tests {
             ([0.5; 3], [0.5; 3], [0.5; 3])
         );
         assert_eq!(rows[11].motion_weight, [1.0; 3], "no step begins there");
-        assert!(weighed(Observations::of(&logs, 1.0), &kinematic::baseline(&logs)).rows[3].motion_weight == [1.0; 3]);
+        assert!(weighed(Observations::of(&logs, None), &kinematic::baseline(&logs)).rows[3].motion_weight == [1.0; 3]);
     }
 
     /// Nine runs of a command that changes half-way, each under one of so many.
@@ -199,7 +199,7 @@ mod tests {
         };
         let run = |run: usize| Run { name: format!("run-{run:03}"), rows: (0..12).map(|at| row(run, at)).collect() };
         let logs = Logs { robot: default_robot(), scene: training_room(), runs: (0..9).map(run).collect() };
-        let mut rows = Observations::of(&logs, 1.0).rows;
+        let mut rows = Observations::of(&logs, None).rows;
         fold_together(&mut rows, in_percent);
         rows.iter().filter(|row| row.at == 0).map(|row| row.fold).collect()
     }

@@ -54,8 +54,7 @@ impl<'a> Player<'a> {
             let echo_cm = step.as_ref().and_then(|step| {
                 let sonar = self.baseline.sonar.as_ref()?;
                 let sensor = effects.sensor(step);
-                let fan = self.surroundings.fan(&sensor.robot, sensor.yaw_rad, sonar.fan_width * sensor.width);
-                let outcomes = sonar.outcomes(&fan, &sensor.perturbation);
+                let outcomes = sensor.outcomes(sonar, &self.surroundings);
                 outcomes.mean_hit_cm().filter(|_| outcomes.none < 0.5)
             });
             moments.push(Moment { pose: at, echo_cm });

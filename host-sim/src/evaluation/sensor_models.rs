@@ -8,10 +8,10 @@ use crate::geometry::{Pose, cast};
 use crate::learn::scans::{Heard, Offset, Scans, TRIED, UNCHANGED};
 use crate::logs::Logs;
 use crate::simulator::{Simulator, kinematic};
+use crate::sonar::SensorLaw;
 use crate::sonar::echo_law::Surfaces;
 use crate::sonar::model::{CONSTANT_SCATTER_CM, P_RAND};
 use crate::sonar::outcomes::{Component, Distribution, Outcomes, Source};
-use crate::sonar::{Perturbation, SonarModel, fan_at};
 use crate::workers::counter::Counter;
 
 /// The log-likelihood of logs' readings under each model that the simulator has.
@@ -56,8 +56,9 @@ pub fn sensor_models(simulator: &Simulator, logs: &Logs, watch: impl Fn(usize, u
         let hit = cast(&sides, sensor.position_cm, sensor.direction())?;
         Some([hit.distance_cm, hit.incidence_rad.abs().to_degrees()].map(|x| x as f32))
     });
-    let beam = simulator.reference.as_ref().and_then(|reference| reference.sonar.as_ref());
-    let law = simulator.first_echo.as_ref();
+    let reference = simulator.reference.as_ref();
+    let beam = reference.and_then(|reference| reference.sonar.clone()).map(SensorLaw::Beam);
+    let law = simulator.first_echo.clone().map(SensorLaw::FirstEcho);
     let ideal_ray = kinematic::baseline(logs).sonar;
     let models = [networks.is_some(), beam.is_some(), law.is_some(), ideal_ray.is_some()];
     let counter = Counter::new(models.iter().filter(|is_there| **is_there).count() * asked(&scans), watch);
@@ -67,15 +68,13 @@ pub fn sensor_models(simulator: &Simulator, logs: &Logs, watch: impl Fn(usize, u
             at(sensor)
         })
     };
-    let of_fan = |model: &SonarModel| {
-        counted(&|sensor| model.outcomes(&fan_at(&sides, sensor, model.fan_width), &Perturbation::NONE))
-    };
+    let of_law = |law: &SensorLaw| counted(&|sensor| law.outcomes_at(&surfaces, sensor));
     Some(SensorModels {
         n,
         networks: networks.map(|at| counted(&at)),
-        beam: beam.map(of_fan),
-        first_echo: law.map(|law| counted(&|sensor| law.outcomes_at(&surfaces, sensor))),
-        ideal_ray: ideal_ray.as_ref().map(of_fan),
+        beam: beam.as_ref().map(of_law),
+        first_echo: law.as_ref().map(of_law),
+        ideal_ray: ideal_ray.as_ref().map(of_law),
     })
 }
 

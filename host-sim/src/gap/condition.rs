@@ -32,8 +32,7 @@ pub struct Conditioned {
 impl Conditioned {
     /// Holds every fourth block out, and more of what is plentiful.
     pub fn of(logs: &Logs, baseline: &Baseline) -> Self {
-        let fan_width = baseline.sonar.as_ref().map_or(1.0, |sonar| sonar.fan_width);
-        let all = Observations::of(logs, fan_width).recalling(baseline.familiar);
+        let all = Observations::of(logs, baseline.sonar.as_ref()).recalling(baseline.familiar);
         let (rows, blocks) = (all.rows.len(), all.blocks);
         if logs.runs.len() < FEWEST_RUNS && rows < AS_A_RUN * blocks {
             return Conditioned { identification: weighed(all, baseline), hold_out: None };

@@ -144,9 +144,9 @@ fn rows<'a>(channel: Channel, beneath: &Fitted, context: &FitContext<'a>) -> Vec
             let steps = rows.filter(|row| row.then.is_empty());
             steps.filter_map(|row| Some((row, residual(&effects, drive, row)?[axis]))).collect()
         }
-        (None, _, Some(sonar)) => {
+        (None, _, Some(_)) => {
             let off_cm =
-                |row: &Observation| facing(&effects, context.observations, row).outcomes(sonar).off_cm(row.echo_cm);
+                |row: &Observation| facing(&effects, context.observations, row)?.outcomes().off_cm(row.echo_cm);
             let known = rows.filter_map(|row| Some((row, off_cm(row)?)));
             known.filter(|(_, off_cm)| off_cm.abs() < FAR_OFF_CM).collect()
         }

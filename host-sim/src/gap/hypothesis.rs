@@ -187,10 +187,13 @@ impl Hypothesis {
         rows: Range<usize>,
         values: &[f64],
     ) -> Vec<[f64; 2]> {
-        let Some(sonar) = &baseline.sonar else { return vec![[0.0; 2]; rows.len()] };
+        if baseline.sonar.is_none() {
+            return vec![[0.0; 2]; rows.len()];
+        }
         let effects = self.at(values);
         let term = |row: &Observation| {
-            let outcomes = facing(&effects, observations, row).outcomes(sonar);
+            let Some(faced) = facing(&effects, observations, row) else { return [0.0; 2] };
+            let outcomes = faced.outcomes();
             let rate = outcomes.log_detection(row.echo_cm);
             let [rate_weight, value_weight] = row.echo_weight;
             [rate_weight * rate, value_weight * (outcomes.log_likelihood(row.echo_cm) - rate)]

@@ -13,7 +13,6 @@ use crate::effects::context::RunHistory;
 use crate::evaluation::predictions;
 use crate::geometry::{Pose, Rectangle, bounding_box};
 use crate::logs::{self, Run};
-use crate::sonar::{Fan, Perturbation};
 use scripts::Script;
 
 /// A script worth driving.
@@ -110,7 +109,7 @@ impl Bench<'_> {
     /// Where the robot stands free, the freest place first.
     fn starts(&self) -> Vec<Pose> {
         let Some(Rectangle { low_cm: low, high_cm: high }) =
-            bounding_box(&self.context.observations.surroundings.walls)
+            bounding_box(self.context.observations.surroundings.surfaces.walls())
         else {
             return Vec::new();
         };
@@ -124,7 +123,7 @@ impl Bench<'_> {
     }
 
     fn clearance_cm(&self, at_cm: DVec2) -> f64 {
-        let walls = &self.context.observations.surroundings.walls;
+        let walls = self.context.observations.surroundings.surfaces.walls();
         walls.iter().map(|wall| wall.nearest(at_cm).distance(at_cm)).fold(f64::INFINITY, f64::min)
     }
 
@@ -168,8 +167,7 @@ impl Bench<'_> {
     fn of_reading(&self, step: &StepContext) -> f64 {
         let Some(sonar) = &self.context.baseline.sonar else { return 0.0 };
         let likelihood = |effects: &EffectChain| {
-            let (fan, perturbation) = self.facing(effects, step);
-            let outcomes = sonar.outcomes(&fan, &perturbation);
+            let outcomes = effects.sensor(step).outcomes(sonar, &self.context.observations.surroundings);
             move |echo_cm: Option<f64>| outcomes.log_likelihood(echo_cm)
         };
         let (a, b) = (likelihood(&self.chosen), likelihood(&self.rival));
@@ -177,15 +175,10 @@ impl Bench<'_> {
             let log = a(echo_cm);
             width * libm::exp(log) * (log - b(echo_cm))
         };
-        let [low, high] = sonar.range_cm;
+        let [low, high] = sonar.range_cm();
         let cells = ((high - low) / GRID_CM) as usize;
         let readings = (0..cells).map(|i| low + (i as f64 + 0.5) * GRID_CM);
         divergence(None, 1.0) + readings.map(|z| divergence(Some(z), GRID_CM)).sum::<f64>()
-    }
-
-    fn facing(&self, effects: &EffectChain, step: &StepContext) -> (Fan, Perturbation) {
-        let state = effects.sensor(step);
-        (self.context.observations.fan(&state.robot, state.yaw_rad, state.width), state.perturbation)
     }
 }
 

@@ -10,17 +10,14 @@ use super::method::Method;
 use crate::effects::context::{CommandHistory, HISTORY, Surroundings};
 use crate::effects::parameter::Guesses;
 use crate::effects::{Candidate, Effect, Hook, Parameter, StepContext, Variant};
-use crate::evaluation::observations::{Observation, Observations, number_places};
+use crate::evaluation::observations::{Observation, Observations, beside_cm, number_places};
 use crate::geometry::Pose;
 use crate::logs::{Logs, Robot, Row, Run, Scene, Ultrasonic};
 use crate::simulator::baseline::{Baseline, MotionModel};
-use crate::sonar::SonarModel;
-use crate::sonar::model::STRENGTHS;
+use crate::sonar::{SensorLaw, SonarModel};
 
 /// Standard deviations of the drive: forward (cm), lateral (cm) and turn (rad).
 pub const SCATTER: [f64; 3] = [1.0, 1.0, 0.1];
-/// Width of the beam: nearly a ray.
-const FAN_WIDTH: f64 = 0.05;
 
 /// A row as it is made up.
 #[derive(Clone, Copy)]
@@ -75,26 +72,16 @@ pub fn baseline() -> Baseline<'static> {
 
 /// The same with a ray that comes back for certain and scatters by a centimetre.
 pub fn baseline_with_sonar() -> Baseline<'static> {
-    let mut strength = [0.0; STRENGTHS];
-    strength[0] = 6.0;
-    let sonar = SonarModel {
-        strength,
-        mirror_loss: None,
-        bias: [0.0; 3],
-        log_scatter: [0.0; 3],
-        constant: [0.0, 3.0],
-        p_constant_given_none: 0.0,
-        p_short: 0.0,
-        p_dropout: 0.0,
-        fan_width: FAN_WIDTH,
-        range_cm: [3.0, 250.0],
-    };
-    Baseline { sonar: Some(sonar), ..baseline() }
+    Baseline { sonar: Some(ray()), ..baseline() }
+}
+
+fn ray() -> SensorLaw {
+    SensorLaw::Beam(SonarModel::ideal_ray(1.0, 0.0, [3.0, 250.0]))
 }
 
 /// Blocks of equally many rows.
 pub fn observations(blocks: usize, rows: usize, made: impl Fn(usize, usize) -> Made) -> Observations {
-    let surroundings = Surroundings::new(&robot(), &room());
+    let (surroundings, law) = (Surroundings::new(&robot(), &room()), ray());
     let drive = baseline().motion.expect("a drive");
     let row = |block: usize, at: usize| {
         let Made { commands: [now, before], pose, elapsed_min, off, echo_off_cm } = made(block, at);
@@ -120,13 +107,14 @@ pub fn observations(blocks: usize, rows: usize, made: impl Fn(usize, usize) -> M
             motion: Some(motion),
             expected: None,
             echo_cm: echo_off_cm.zip(context.faced).map(|(off_cm, [distance_cm, _])| distance_cm + off_cm),
-            fan: surroundings.fan(&pose, 0.0, FAN_WIDTH),
+            view: Some(law.view(&surroundings.surfaces, &surroundings.sensor(&pose, 0.0), 1.0)),
+            beside_cm: beside_cm(&surroundings, &pose),
         }
     };
     let rows = (0..blocks).flat_map(|block| (0..rows).map(move |at| (block, at))).map(|(block, at)| row(block, at));
     let mut rows: Vec<Observation> = rows.collect();
     let places = number_places(&mut rows);
-    Observations { rows, surroundings, fan_width: FAN_WIDTH, recollection: None, blocks, places }
+    Observations { rows, surroundings, law: Some(law), recollection: None, blocks, places }
 }
 
 /// Logs of runs that do what the textbook says of their commands, with readings that are the distance.

@@ -180,7 +180,7 @@ mod tests {
     fn notes_of(logs: &Logs) -> (Vec<String>, Baseline<'static>) {
         let mut baseline = baseline_with_sonar();
         let inspected = Inspection::of(logs.clone());
-        let rows = Observations::of(&inspected.logs, 1.0);
+        let rows = Observations::of(&inspected.logs, None);
         let validated = validate(&mut baseline, &rows, &inspected).expect("something to compare");
         (validated.notes, baseline)
     }
@@ -222,7 +222,7 @@ mod tests {
         for run in &mut logs.runs {
             (0..run.rows.len()).for_each(|at| run.rows.edit_pose(at, |pose| change(at, pose)));
         }
-        let rows = Observations::of(&logs, 1.0);
+        let rows = Observations::of(&logs, None);
         let inspected = Inspection { logs, findings: Vec::new() };
         let validated = validate(&mut baseline_with_sonar(), &rows, &inspected).expect("a sensor");
         let reason = &validated.scope.not_compared[0].reason;
@@ -242,7 +242,7 @@ mod tests {
     #[test]
     fn what_the_baseline_does_not_know_is_said() {
         let logs = driven(8, 4, mixed);
-        let rows = Observations::of(&logs, 1.0);
+        let rows = Observations::of(&logs, None);
         let inspected = Inspection::of(logs);
         let Validated { notes, scope, .. } = validate(&mut baseline(), &rows, &inspected).expect("motion");
         assert!(only(&notes, "From too few readings"), "{notes:?}");
@@ -276,7 +276,7 @@ mod tests {
             run.rows.edit_each(|row| (row.left, row.right) = (row.right, row.left));
         });
         let inspected = Inspection::of(exchanged);
-        let rows = Observations::of(&inspected.logs, 1.0);
+        let rows = Observations::of(&inspected.logs, None);
         let mut baseline = baseline_with_sonar();
         let scope = validate(&mut baseline, &rows, &inspected).expect("a sensor").scope;
         assert!(baseline.motion.is_none() && baseline.sonar.is_some());

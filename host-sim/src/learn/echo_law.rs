@@ -6,8 +6,8 @@ use rayon::prelude::*;
 use super::scans::{Heard, Offset, Scans, UNCHANGED};
 use crate::chance::generator;
 use crate::logs::Logs;
-use crate::sonar::FirstEchoLaw;
 use crate::sonar::echo_law::{Surfaces, Target, reach_cm, targets_at};
+use crate::sonar::{FirstEchoLaw, Perturbation};
 use crate::statistics::maximise::{Bounds, Maximum, climb, climb_on};
 
 /// What is known of a parameter before any log is seen.
@@ -134,7 +134,10 @@ impl Fit {
     /// Log-likelihoods of all rows, weighted, and of the parameters before any row.
     fn terms(&self, at: &[f64], faced: &[Faced]) -> Vec<f64> {
         let law = law(at, self.range_cm);
-        let term = |row: &Faced| self.weight * law.outcomes(&row.targets, row.reach_cm).log_likelihood(row.echo_cm);
+        let term = |row: &Faced| {
+            let outcomes = law.outcomes(&row.targets, row.reach_cm, &Perturbation::NONE);
+            self.weight * outcomes.log_likelihood(row.echo_cm)
+        };
         let mut terms: Vec<f64> = faced.par_iter().map(term).collect();
         terms.extend(PRIORS.iter().zip(at).map(|(prior, value)| {
             let off = (value - prior.middle) / prior.deviation;

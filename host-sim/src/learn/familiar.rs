@@ -4,10 +4,11 @@ use rayon::prelude::*;
 
 use crate::learn::place_bound::{self, Seen};
 use crate::logs::Scene;
+use crate::sonar::echo_law::Surfaces;
 use crate::sonar::familiar::{FamiliarPoses, Familiarity, PastReading, RepeatLaw, outcomes};
 use crate::sonar::model::CONSTANT_SCATTER_CM;
 use crate::sonar::pose_grid::PoseGrid;
-use crate::sonar::{Fan, Outcomes, Perturbation, SonarModel, fan_at};
+use crate::sonar::{Outcomes, Perturbation, SensorLaw, View};
 use crate::statistics::maximise::{Bounds, climb};
 
 /// Poses are familiar if this share of the readings came from where another run had taken one: of a robot that drives about
@@ -23,7 +24,7 @@ const ENOUGH: f64 = 0.5;
 
 /// The familiar poses of training logs from one room; none where they did not come back to any. The law is that by which the
 /// other runs make each run's readings most probable.
-pub fn learn(sonar: &SonarModel, seen: &[Seen], scene: &Scene) -> Option<FamiliarPoses> {
+pub fn learn(law: &SensorLaw, seen: &[Seen], scene: &Scene) -> Option<FamiliarPoses> {
     let walls = scene.sides();
     let reading = |row: &Seen| PastReading {
         sensor: [row.sensor.position_cm.x, row.sensor.position_cm.y, row.sensor.heading_rad],
@@ -36,20 +37,21 @@ pub fn learn(sonar: &SonarModel, seen: &[Seen], scene: &Scene) -> Option<Familia
     if seen.is_empty() || (came_back as f64) < MOSTLY * seen.len() as f64 {
         return None;
     }
-    let fans: Vec<Fan> = seen.iter().map(|row| fan_at(&walls, &row.sensor, sonar.fan_width)).collect();
-    let judged = |law: &RepeatLaw, i: usize| {
-        let known = Familiarity::of(others[i].iter().map(|other| &readings[*other]), law);
-        outcomes(known.as_ref(), sonar, &fans[i], &Perturbation::NONE)
+    let surfaces = Surfaces::new(walls.clone());
+    let views: Vec<View> = seen.iter().map(|row| law.view(&surfaces, &row.sensor, 1.0)).collect();
+    let judged = |repeats: &RepeatLaw, i: usize| {
+        let known = Familiarity::of(others[i].iter().map(|other| &readings[*other]), repeats);
+        outcomes(known.as_ref(), law, &views[i], &Perturbation::NONE)
     };
     let terms = |at: &[f64]| {
-        let law = law_from(at);
-        let term = |i: usize| judged(&law, i).log_likelihood(seen[i].echo_cm);
+        let repeats = law_from(at);
+        let term = |i: usize| judged(&repeats, i).log_likelihood(seen[i].echo_cm);
         (0..seen.len()).into_par_iter().map(term).collect()
     };
-    let law = law_from(&climb(&BOUNDS, &START, ROUNDS, ENOUGH, terms).at);
-    let left_over = |i: usize| left_over(&seen[i], i, &judged(&law, i));
+    let repeats = law_from(&climb(&BOUNDS, &START, ROUNDS, ENOUGH, terms).at);
+    let left_over = |i: usize| left_over(&seen[i], i, &judged(&repeats, i));
     let left_share = place_bound::learn(&(0..seen.len()).map(left_over).collect::<Vec<Seen>>());
-    Some(FamiliarPoses { walls_cm: FamiliarPoses::walls_cm(&walls), law, left_share, readings })
+    Some(FamiliarPoses { walls_cm: FamiliarPoses::walls_cm(&walls), law: repeats, left_share, readings })
 }
 
 fn law_from(at: &[f64]) -> RepeatLaw {
@@ -75,13 +77,16 @@ mod tests {
     use crate::geometry::Pose;
     use crate::sonar::partition::SENSORS;
 
+    fn law() -> SensorLaw {
+        SensorLaw::Beam(SENSORS[0].clone())
+    }
+
     /// Four scans of 60 poses each, off by what `off_cm` says of scan and pose.
     fn scans(off_cm: impl Fn(usize, usize) -> f64) -> Vec<Seen> {
-        let sonar = &SENSORS[0];
+        let (law, surfaces) = (law(), Surfaces::new(training_room().sides()));
         let seen = |i: usize| {
             let sensor = Pose::new(100.0, 80.0, 0.1 * (i % 60) as f64);
-            let outcomes =
-                sonar.outcomes(&fan_at(&training_room().sides(), &sensor, sonar.fan_width), &Perturbation::NONE);
+            let outcomes = law.outcomes_at(&surfaces, &sensor);
             let off_cm = i.is_multiple_of(2).then(|| off_cm(i / 60, i % 60));
             let echo_cm = off_cm.map(|off_cm| outcomes.mean_hit_cm().expect("walls all round") + off_cm);
             Seen { sensor, run: i / 60, none: outcomes.none, echo_cm, off_cm }
@@ -90,7 +95,7 @@ mod tests {
     }
 
     fn learned(off_cm: impl Fn(usize, usize) -> f64) -> FamiliarPoses {
-        learn(&SENSORS[0], &scans(off_cm), &training_room()).expect("poses that came back")
+        learn(&law(), &scans(off_cm), &training_room()).expect("poses that came back")
     }
 
     /// Between minus and plus fifteen, as if at random.
@@ -112,7 +117,7 @@ mod tests {
     fn nothing_is_kept_of_poses_that_nobody_came_back_to() {
         let mut seen = scans(|_, pose| off_cm(pose));
         seen.iter_mut().for_each(|row| row.sensor.position_cm.x += 10.0 * row.run as f64);
-        let learned = |seen: &[Seen]| learn(&SENSORS[0], seen, &training_room());
+        let learned = |seen: &[Seen]| learn(&law(), seen, &training_room());
         assert!(learned(&seen).is_none() && learned(&[]).is_none());
     }
 }

@@ -4,14 +4,17 @@ use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
 use crate::geometry::{Pose, cast};
+use crate::learn::scans::{Heard, Scans, UNCHANGED};
 use crate::learn::{familiar, place_bound, scatter};
 use crate::logs::{Logs, samples};
 use crate::simulator::Simulator;
 use crate::simulator::nominal::NominalModel;
 use crate::simulator::nominal::motion_bias::{FEATURES, MotionBias, features};
+use crate::sonar::echo_law::Surfaces;
 use crate::sonar::model::STRENGTHS;
-use crate::sonar::{Perturbation, SonarModel, fan_at};
+use crate::sonar::{Perturbation, SensorLaw, SonarModel, fan_at};
 use crate::statistics::maximise::{Bounds, climb};
+use crate::statistics::summary::mean;
 
 /// Pulls the weights of the motion's correction towards zero, in squared features: commands are in hundreds, so that a
 /// thousand samples of a product of three half-power commands weigh five thousand times as much.
@@ -22,9 +25,38 @@ const FEWEST: usize = 100;
 /// The reference of a simulator whose networks are trained, from its training logs.
 pub fn learn(simulator: &Simulator, logs: &Logs) -> NominalModel {
     let sonar = sonar(simulator, logs);
-    let seen = sonar.as_ref().map(|sonar| place_bound::seen(sonar, logs)).unwrap_or_default();
-    let familiar = sonar.as_ref().and_then(|sonar| familiar::learn(sonar, &seen, &logs.scene));
-    NominalModel { motion: motion(simulator, logs), sonar, place_bound: place_bound::learn(&seen), familiar }
+    let beam = sonar.clone().map(SensorLaw::Beam);
+    let first_echo = simulator.first_echo.clone().map(SensorLaw::FirstEcho);
+    let is_first_echo = match (&beam, &first_echo) {
+        (Some(beam), Some(first_echo)) => is_likelier(first_echo, beam, logs),
+        _ => false,
+    };
+    let law = if is_first_echo { first_echo } else { beam };
+    let seen = law.as_ref().map(|law| place_bound::seen(law, logs)).unwrap_or_default();
+    let familiar = law.as_ref().and_then(|law| familiar::learn(law, &seen, &logs.scene));
+    let place_bound = place_bound::learn(&seen);
+    NominalModel { motion: motion(simulator, logs), sonar, is_first_echo, place_bound, familiar }
+}
+
+/// Where runs differ by more than a third of what a law gains, its gain may be that of a few places.
+const STANDARD_ERRORS: f64 = 3.0;
+
+/// Whether a law makes the readings of logs more probable than another with as many parameters, by more than their runs differ
+/// in that.
+fn is_likelier(law: &SensorLaw, other: &SensorLaw, logs: &Logs) -> bool {
+    let scans = Scans::of(logs);
+    let surfaces = Surfaces::new(logs.scene.sides());
+    let term = |row: &Heard| {
+        let sensor = scans.sensor(&row.robot, &UNCHANGED);
+        let [law, other] = [law, other].map(|law| law.outcomes_at(&surfaces, &sensor).log_likelihood(row.echo_cm));
+        law - other
+    };
+    let gains: Vec<f64> = scans.runs.par_iter().map(|run| run.iter().map(term).sum()).collect();
+    let gained: f64 = gains.iter().sum();
+    let middle = mean(gains.iter().copied());
+    let error = (gains.iter().map(|gain| (gain - middle) * (gain - middle)).sum::<f64>()).sqrt();
+    log::info!("the first-echo law gains {gained:.1} nats on the beam, with a standard error of {error:.1}");
+    gained > STANDARD_ERRORS * error
 }
 
 fn motion(simulator: &Simulator, logs: &Logs) -> Option<MotionBias> {

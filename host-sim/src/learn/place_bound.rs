@@ -5,8 +5,9 @@ use rayon::prelude::*;
 
 use crate::geometry::Pose;
 use crate::logs::{Logs, Row};
+use crate::sonar::SensorLaw;
+use crate::sonar::echo_law::Surfaces;
 use crate::sonar::place::{Place, place_of};
-use crate::sonar::{Perturbation, SonarModel, fan_at};
 use crate::statistics::intraclass::{self, Deviation};
 use crate::statistics::summary::{QUARTILE, mean, median, root_mean_square};
 
@@ -33,13 +34,13 @@ pub fn learn(seen: &[Seen]) -> [f64; 2] {
 }
 
 /// What the sensor said in its training logs, beside what its model expects.
-pub fn seen(sonar: &SonarModel, logs: &Logs) -> Vec<Seen> {
-    let sides = logs.scene.sides();
+pub fn seen(law: &SensorLaw, logs: &Logs) -> Vec<Seen> {
+    let surfaces = Surfaces::new(logs.scene.sides());
     let rows: Vec<(usize, Row)> =
         logs.runs.iter().enumerate().flat_map(|(run, logged)| logged.rows.iter().map(move |row| (run, row))).collect();
     let seen = |(run, row): &(usize, Row)| {
         let sensor = logs.robot.ultrasonic.pose_on(&row.pose?);
-        let outcomes = sonar.outcomes(&fan_at(&sides, &sensor, sonar.fan_width), &Perturbation::NONE);
+        let outcomes = law.outcomes_at(&surfaces, &sensor);
         let off_cm = outcomes.off_cm(row.echo_cm);
         Some(Seen { sensor, run: *run, none: outcomes.none, echo_cm: row.echo_cm, off_cm })
     };

@@ -11,7 +11,7 @@ use crate::simulator::ensemble::{CommandScale, HeldMotion, Member, Posterior};
 use crate::simulator::motion::MotionNetworks;
 use crate::simulator::nominal::MotionBias;
 use crate::simulator::{Learned, Simulator};
-use crate::sonar::SonarModel;
+use crate::sonar::SensorLaw;
 use crate::sonar::familiar::FamiliarPoses;
 
 /// The models of motion and sonar without any gap.
@@ -19,8 +19,8 @@ use crate::sonar::familiar::FamiliarPoses;
 pub struct Baseline<'s> {
     /// The motion, if the simulator knows it.
     pub motion: Option<MotionModel<'s>>,
-    /// The sensor, if the simulator knows it.
-    pub sonar: Option<SonarModel>,
+    /// The law of the sensor, if the simulator knows it.
+    pub sonar: Option<SensorLaw>,
     /// Share of the chance in its echo rate and in its readings that belongs to the place, as far as it is known.
     pub place_bound: [f64; 2],
     /// What belongs to single poses.
@@ -77,7 +77,7 @@ impl<'s> Baseline<'s> {
         });
         Ok(Baseline {
             motion,
-            sonar: reference.sonar.clone(),
+            sonar: simulator.sensor_law(),
             place_bound: reference.place_bound,
             familiar: reference.familiar.as_ref(),
             applied: simulator.added.clone(),

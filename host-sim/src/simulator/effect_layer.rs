@@ -17,10 +17,10 @@ use crate::effects::{PoseIncrement, StepContext};
 use crate::error::{Error, Result};
 use crate::geometry::Pose;
 use crate::logs::Scene;
-use crate::sonar::SonarModel;
+use crate::sonar::SensorLaw;
 
 /// Applied effects in an environment.
-pub(super) struct EffectLayer<'s> {
+pub(super) struct EffectLayer {
     effects: EffectChain,
     surroundings: Surroundings,
     /// Least and largest command that the networks know.
@@ -28,7 +28,7 @@ pub(super) struct EffectLayer<'s> {
     /// Whether an effect on the motion may ask for what the sensor faces: of the catalogue none does.
     looks: bool,
     /// There when an effect changes the sensor.
-    sonar: Option<&'s SonarModel>,
+    sonar: Option<SensorLaw>,
     /// There when what becomes of it is the same everywhere.
     beam: Option<Beam>,
     noise: Noise,
@@ -48,21 +48,19 @@ impl EffectMemory {
     }
 }
 
-impl<'s> EffectLayer<'s> {
+impl EffectLayer {
     /// The effects applied to a simulator, if there are any.
     ///
     /// # Errors
     /// When an effect changes a sensor of which the simulator does not know what is normal.
-    pub fn of(simulator: &'s Simulator, scene: &Scene, noise: Noise) -> Result<Option<Self>> {
+    pub fn of(simulator: &Simulator, scene: &Scene, noise: Noise) -> Result<Option<Self>> {
         if simulator.added.is_empty() {
             return Ok(None);
         }
         let effects = EffectChain::of(&simulator.added);
-        let model = simulator.reference.as_ref().and_then(|r| r.sonar.as_ref());
-        if effects.senses() && model.is_none() {
-            return Err(Error::new(
-                "an added effect changes the sonar, and the simulator does not know its usual beam",
-            ));
+        let law = simulator.sensor_law();
+        if effects.senses() && law.is_none() {
+            return Err(Error::new("an added effect changes the sonar, and the simulator does not know its usual law"));
         }
         let surroundings = Surroundings::new(&simulator.robot, scene);
         let anywhere = surroundings.context(&RunHistory::default(), 0.0, Pose::new(0.0, 0.0, 0.0));
@@ -72,10 +70,13 @@ impl<'s> EffectLayer<'s> {
             effects.sensor(&context)
         };
         let is_alike = noise == Noise::Learned && effects.senses() && effects.senses_alike_everywhere();
-        let alike = model.filter(|_| is_alike);
+        let beam = match &law {
+            Some(SensorLaw::Beam(model)) if is_alike => Beam::changed(model, &[true, false].map(sensor)),
+            _ => None,
+        };
         Ok(Some(EffectLayer {
-            beam: alike.and_then(|model| Beam::changed(model, &[true, false].map(sensor))),
-            sonar: model.filter(|_| effects.senses()),
+            beam,
+            sonar: law.filter(|_| effects.senses()),
             effects,
             surroundings,
             commands: simulator.commands.map(f64::from),
@@ -140,6 +141,11 @@ impl<'s> EffectLayer<'s> {
         }
     }
 
+    /// The same with readings by another law, where effects change them.
+    pub fn hearing_by(self, law: SensorLaw) -> Self {
+        EffectLayer { sonar: self.sonar.map(|_| law), beam: None, ..self }
+    }
+
     /// Whether readings are generated here.
     pub fn senses(&self) -> bool {
         self.sonar.is_some()
@@ -152,12 +158,10 @@ impl<'s> EffectLayer<'s> {
 
     /// The reading at `pose`, where the effects change the sensor; `draw` fixes what chance adds.
     pub fn echo_cm(&self, memory: &mut EffectMemory, pose: Pose, draw: f32) -> Option<f32> {
-        let sonar = self.sonar?;
+        let law = self.sonar.as_ref()?;
         let context = self.context(memory, pose);
-        let state = self.effects.sensor(&context);
-        let fan = self.surroundings.fan(&state.robot, state.yaw_rad, sonar.fan_width * state.width);
+        let outcomes = self.effects.sensor(&context).outcomes(law, &self.surroundings);
         let mut rng = generator(u64::from(draw.to_bits()), &[memory.steps as u64]);
-        let outcomes = sonar.outcomes(&fan, &state.perturbation);
         let echo_cm = outcomes.draw(self.noise == Noise::Learned, || rng.random());
         memory.history.sensed(echo_cm);
         echo_cm.map(|cm| cm as f32)

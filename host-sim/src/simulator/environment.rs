@@ -14,6 +14,7 @@ use super::{Noise, Simulator};
 use crate::error::{Error, Result};
 use crate::geometry::Pose;
 use crate::logs::{Robot, Scene};
+use crate::sonar::SensorLaw;
 
 /// Where and how controllers are rolled out.
 pub struct Environment<'s> {
@@ -33,7 +34,7 @@ pub struct Environment<'s> {
     pub(super) constant_reading: Option<ConstantReading>,
     pub(super) noise: Noise,
     /// There when effects were added to the simulator.
-    pub(super) effect_layer: Option<EffectLayer<'s>>,
+    pub(super) effect_layer: Option<EffectLayer>,
     /// There when some runs meet it.
     pub(super) beam: Option<Beam>,
     /// There when all runs hear by the first-echo law.
@@ -85,10 +86,15 @@ impl<'s> Environment<'s> {
     /// The environment with readings by the first-echo law in every run.
     ///
     /// # Errors
-    /// When the simulator does not know the law of its sensor, or was given effects that change another model of it.
+    /// When the simulator does not know the law of its sensor.
     pub fn with_first_echo(self, simulator: &'s Simulator, scene: &Scene) -> Result<Self> {
-        let is_changed = self.effect_layer.as_ref().is_some_and(EffectLayer::senses);
-        Ok(Environment { first_echo: Some(FirstEchoSensor::of(simulator, scene, is_changed)?), ..self })
+        let law = simulator.first_echo.as_ref();
+        let law = law.ok_or_else(|| Error::new("the simulator has no first-echo law of its sonar: train it again"))?;
+        let effect_layer = self.effect_layer.map(|layer| layer.hearing_by(SensorLaw::FirstEcho(law.clone())));
+        // Readings that effects change are made where the effects are.
+        let is_changed = effect_layer.as_ref().is_some_and(EffectLayer::senses);
+        let first_echo = (!is_changed).then(|| FirstEchoSensor::new(law, scene, simulator.robot.ultrasonic));
+        Ok(Environment { effect_layer, first_echo, ..self })
     }
 
     /// The environment with one robot of those that its simulator's may be.

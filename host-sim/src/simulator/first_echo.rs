@@ -2,9 +2,7 @@
 
 use rand::RngExt;
 
-use super::Simulator;
 use crate::chance::generator;
-use crate::error::{Error, Result};
 use crate::geometry::Pose;
 use crate::logs::{Scene, Ultrasonic};
 use crate::sonar::FirstEchoLaw;
@@ -18,19 +16,9 @@ pub(super) struct FirstEchoSensor<'s> {
 }
 
 impl<'s> FirstEchoSensor<'s> {
-    /// The sensor of a simulator's robot.
-    ///
-    /// # Errors
-    /// When the simulator does not know the law of its sensor, or was given effects that change another model of it.
-    pub fn of(simulator: &'s Simulator, scene: &Scene, is_changed: bool) -> Result<Self> {
-        let law = simulator.first_echo.as_ref();
-        let law = law.ok_or_else(|| Error::new("the simulator has no first-echo law of its sonar: train it again"))?;
-        if is_changed {
-            return Err(Error::new(
-                "the simulator's added effects change its sonar, and do not know the first-echo law",
-            ));
-        }
-        Ok(FirstEchoSensor { law, surfaces: Surfaces::new(scene.sides()), mount: simulator.robot.ultrasonic })
+    /// The sensor that is mounted so.
+    pub fn new(law: &'s FirstEchoLaw, scene: &Scene, mount: Ultrasonic) -> Self {
+        FirstEchoSensor { law, surfaces: Surfaces::new(scene.sides()), mount }
     }
 
     /// The reading of a robot; `draws` fix what chance adds.

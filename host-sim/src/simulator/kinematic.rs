@@ -3,8 +3,7 @@
 
 use crate::logs::{Logs, samples};
 use crate::simulator::baseline::{Baseline, MotionModel};
-use crate::sonar::SonarModel;
-use crate::sonar::model::STRENGTHS;
+use crate::sonar::{FirstEchoLaw, SensorLaw};
 use crate::statistics::summary::QUARTILE;
 
 /// The least scatter of forward (cm), lateral (cm) and turn (rad): that of a good tracker. The logs' own is refitted
@@ -13,10 +12,6 @@ const LEAST_SCATTER: [f64; 3] = [0.1, 0.1, 0.005];
 /// The same where whole ways are compared: the tracker's error is there at both ends alone, the robot's own adds up from
 /// step to step.
 const LEAST_OWN_SCATTER: [f64; 3] = [0.1, 0.1, 0.001];
-/// An ideal ray is so much narrower than a real beam.
-const RAY_WIDTH: f64 = 0.05;
-/// Log-odds that a ray comes back: it does.
-const CERTAIN: f64 = 6.0;
 /// Bounds of the estimated scatter of readings, cm.
 const READING_SCATTER_CM: [f64; 2] = [0.5, 4.0];
 
@@ -32,7 +27,7 @@ pub fn baseline(logs: &Logs) -> Baseline<'static> {
     }
 }
 
-fn sonar(logs: &Logs) -> Option<SonarModel> {
+fn sonar(logs: &Logs) -> Option<SensorLaw> {
     let seen = samples::sonar(logs);
     let mount = &logs.robot.ultrasonic;
     let mut errors_cm: Vec<f64> = seen.iter().filter_map(|s| Some((s.echo_cm? - s.distance_cm).abs())).collect();
@@ -44,18 +39,7 @@ fn sonar(logs: &Logs) -> Option<SonarModel> {
     let [least, most] = READING_SCATTER_CM;
     let within = seen.iter().filter(|s| s.distance_cm < mount.max_cm);
     let (echoes, all) = within.fold((0.0, 0.0), |(e, n), s| (e + f64::from(u8::from(s.echo_cm.is_some())), n + 1.0));
-    let mut strength = [0.0; STRENGTHS];
-    strength[0] = CERTAIN;
-    Some(SonarModel {
-        strength,
-        mirror_loss: None,
-        bias: [0.0; 3],
-        log_scatter: [libm::log(scatter_cm.clamp(least, most)), 0.0, 0.0],
-        constant: [0.0, mount.min_cm],
-        p_constant_given_none: 0.0,
-        p_short: 0.0,
-        p_dropout: 1.0 - echoes / f64::max(all, 1.0),
-        fan_width: RAY_WIDTH,
-        range_cm: [mount.min_cm, mount.max_cm],
-    })
+    let p_dropout = 1.0 - echoes / f64::max(all, 1.0);
+    let range_cm = [mount.min_cm, mount.max_cm];
+    Some(SensorLaw::FirstEcho(FirstEchoLaw::ideal_ray(scatter_cm.clamp(least, most), p_dropout, range_cm)))
 }

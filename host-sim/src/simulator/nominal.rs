@@ -16,12 +16,20 @@ pub use motion_bias::MotionBias;
 pub struct NominalModel {
     /// Of the motion, if the logs had poses.
     pub motion: Option<MotionBias>,
-    /// Of the sonar, if the logs had echoes.
+    /// Of the sonar as a beam, if the logs had echoes.
     pub sonar: Option<SonarModel>,
+    /// Whether the simulator's first-echo law makes those logs more probable than the beam.
+    #[serde(default, skip_serializing_if = "is_false")]
+    pub is_first_echo: bool,
     /// Share of the chance in its echo rate and in its readings that belongs to the place.
     #[serde(default)]
     pub place_bound: [f64; 2],
     /// What belongs to single poses, where readings came from the same ones again and again.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub familiar: Option<FamiliarPoses>,
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands over a reference")]
+fn is_false(value: &bool) -> bool {
+    !value
 }

@@ -16,6 +16,7 @@ use super::residuals::{CELLS, LEVELS, ResidualQuantiles, VarianceComponents};
 use super::{Learned, Origin, SCHEMA, Simulator};
 use crate::error::{Error, Result};
 use crate::logs::Robot;
+use crate::sonar::{SensorLaw, SonarModel};
 use crate::statistics::student;
 
 /// What the textbook is called beside files of simulators.
@@ -48,6 +49,14 @@ pub fn simulator(baseline: &Baseline, scatter: [f64; 3]) -> Result<Simulator> {
     let learned = |polynomial, axis: usize| -> Result<_> {
         Ok(Some(Learned { network: network(polynomial)?, residuals: residuals(scatters[axis], FULL) }))
     };
+    // Runs hear by the same ideal ray as a beam, which lanes of them can draw.
+    let (first_echo, sonar) = match &baseline.sonar {
+        Some(SensorLaw::FirstEcho(law)) => {
+            (Some(law.clone()), Some(SonarModel::ideal_ray(law.scatter_cm, law.p_dropout, law.range_cm)))
+        }
+        Some(SensorLaw::Beam(model)) => (None, Some(model.clone())),
+        None => (None, None),
+    };
     let has_sensor = !robot.ultrasonic.is_none();
     let [near_cm, far_cm] = [robot.ultrasonic.min_cm, robot.ultrasonic.max_cm].map(|cm| cm as f32);
     Ok(Simulator {
@@ -61,14 +70,15 @@ pub fn simulator(baseline: &Baseline, scatter: [f64; 3]) -> Result<Simulator> {
         echo_probability: has_sensor.then(|| Learned { network: within(far_cm), residuals: residuals(0.0, far_cm) }),
         echo_value: has_sensor
             .then(|| Learned { network: distance(near_cm, far_cm), residuals: residuals(0.0, far_cm) }),
-        first_echo: None,
+        first_echo,
         constant_reading: None,
         reference: Some(NominalModel {
             motion: Some(MotionBias {
                 weights: [const { Vec::new() }; 3].map(|_: Vec<f64>| vec![0.0; FEATURES]),
                 scatter,
             }),
-            sonar: baseline.sonar.clone(),
+            sonar,
+            is_first_echo: true,
             place_bound: baseline.place_bound,
             familiar: None,
         }),

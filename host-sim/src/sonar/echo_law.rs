@@ -37,6 +37,7 @@ mod tests;
 
 use serde::{Deserialize, Serialize};
 
+use super::model::P_RAND;
 pub use readings::reach_cm;
 pub use surfaces::Surfaces;
 pub use targets::{Target, TargetKind, targets_at};
@@ -88,7 +89,40 @@ pub struct FirstEchoLaw {
     pub range_cm: [f64; 2],
 }
 
+/// An ideal ray's echo comes back for certain: in units of the threshold's noise.
+const CERTAIN: f64 = 6.0;
+/// An ideal ray is a twentieth as wide as a usual beam, degrees: nothing beside the axis is heard.
+const RAY_DEG: f64 = 8.7 / 20.0;
+
 impl FirstEchoLaw {
+    /// The textbook's ideal ray: all that it meets returns it, however far and however slanted; `p_dropout` of the echoes are
+    /// lost, and readings scatter.
+    pub fn ideal_ray(scatter_cm: f64, p_dropout: f64, range_cm: [f64; 2]) -> Self {
+        FirstEchoLaw {
+            gain: CERTAIN,
+            spreading: 0.0,
+            beam_deg: RAY_DEG,
+            beam_power: 1.33,
+            specular_deg: 90.0,
+            oblique_loss: 1e-9,
+            corner: 0.0,
+            edge: 0.0,
+            offset_cm: 0.0,
+            scale: 1.0,
+            off_axis_cm: 0.0,
+            scatter_cm,
+            scatter_per_m: 0.0,
+            scatter_off_axis: 0.0,
+            p_dropout,
+            p_other: 0.0,
+            p_long_given_other: 0.5,
+            p_ghost: 0.0,
+            ghost_cm: range_cm[0],
+            p_stray: P_RAND,
+            range_cm,
+        }
+    }
+
     /// Whether the numbers can be those of a sensor, so that every outcome has a probability.
     pub fn is_sound(&self) -> bool {
         let FirstEchoLaw { p_dropout, p_other, p_long_given_other, p_ghost, p_stray, .. } = *self;

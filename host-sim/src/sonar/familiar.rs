@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 use super::outcomes::{Component, Distribution, Outcomes, Source};
 use super::perturbation::Perturbation;
 use super::pose_grid::PoseGrid;
-use super::{Fan, SonarModel};
+use super::{SensorLaw, View};
 use crate::geometry::{Pose, Wall};
 use crate::statistics::summary::log_odds;
 
@@ -105,9 +105,9 @@ impl Recollection {
     }
 }
 
-/// The outcomes of a reading of `fan`, by what is `known` of the pose, if anything is.
-pub fn outcomes(known: Option<&Familiarity>, model: &SonarModel, fan: &Fan, change: &Perturbation) -> Outcomes {
-    known.map_or_else(|| model.outcomes(fan, change), |known| known.outcomes(model, fan, change))
+/// The outcomes of a reading of `view`, by what is `known` of the pose, if anything is.
+pub fn outcomes(known: Option<&Familiarity>, law: &SensorLaw, view: &View, change: &Perturbation) -> Outcomes {
+    known.map_or_else(|| law.outcomes(view, change), |known| known.outcomes(law, view, change))
 }
 
 impl Familiarity {
@@ -130,10 +130,10 @@ impl Familiarity {
         })
     }
 
-    /// The outcomes of a reading of `fan`. The readings that may come again stand last among the components.
-    fn outcomes(&self, model: &SonarModel, fan: &Fan, change: &Perturbation) -> Outcomes {
+    /// The outcomes of a reading of `view`. The readings that may come again stand last among the components.
+    fn outcomes(&self, law: &SensorLaw, view: &View, change: &Perturbation) -> Outcomes {
         let change = Perturbation { attenuation: change.attenuation - self.log_odds, ..*change };
-        let mut outcomes = model.outcomes(fan, &change);
+        let mut outcomes = law.outcomes(view, &change);
         let mut hit = 0.0;
         for component in outcomes.components.iter_mut().filter(|component| component.source == Source::Hit) {
             hit += component.probability;
@@ -154,7 +154,7 @@ impl Familiarity {
 mod tests {
     use super::*;
     use crate::built_in_robot::training_room;
-    use crate::sonar::fan_at;
+    use crate::sonar::echo_law::Surfaces;
     use crate::sonar::partition::{PERTURBED, SENSORS};
 
     const READING: PastReading = PastReading { sensor: [50.0, 60.0, 0.5], p_echo: 0.8, echo_cm: Some(90.0) };
@@ -173,9 +173,13 @@ mod tests {
         here.at(&READING.pose()).expect("a familiar pose")
     }
 
+    fn view(law: &SensorLaw) -> View {
+        law.view(&Surfaces::new(training_room().sides()), &READING.pose(), 1.0)
+    }
+
     fn outcomes(familiarity: &Familiarity, change: &Perturbation) -> Outcomes {
-        let fan = fan_at(&training_room().sides(), &READING.pose(), SENSORS[0].fan_width);
-        familiarity.outcomes(&SENSORS[0], &fan, change)
+        let law = SensorLaw::Beam(SENSORS[0].clone());
+        familiarity.outcomes(&law, &view(&law), change)
     }
 
     #[test]
@@ -190,9 +194,9 @@ mod tests {
 
     #[test]
     fn what_is_drawn_anew_tells_nothing() {
-        let fan = fan_at(&training_room().sides(), &READING.pose(), SENSORS[0].fan_width);
+        let law = SensorLaw::Beam(SENSORS[0].clone());
         let (known, unknown) =
-            (outcomes(&recalled(0.0, &[READING]), &PERTURBED), SENSORS[0].outcomes(&fan, &PERTURBED));
+            (outcomes(&recalled(0.0, &[READING]), &PERTURBED), law.outcomes(&view(&law), &PERTURBED));
         assert_eq!((known.none, known.mean_hit_cm()), (unknown.none, unknown.mean_hit_cm()));
     }
 

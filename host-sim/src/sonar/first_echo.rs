@@ -47,18 +47,16 @@ pub fn first_echoes(model: &SonarModel, fan: &Fan, perturbation: &Perturbation) 
 
 /// The log-odds that a ray comes back.
 fn log_odds(model: &SonarModel, ray: &Ray, offset_deg: f64, perturbation: &Perturbation) -> f64 {
-    let Perturbation { attenuation, attenuation_per_m, attenuation_per_incidence, .. } = perturbation;
     let [metres, incidence] = units(ray);
-    let attenuation = attenuation + attenuation_per_m * metres + attenuation_per_incidence * incidence;
     let strength: f64 = ray_features(ray, offset_deg).iter().zip(&model.strength).map(|(f, w)| f * w).sum();
-    strength - attenuation
+    strength - perturbation.loss(metres, incidence)
 }
 
 /// The reading that a ray gives, before scatter.
 fn middle_cm(model: &SonarModel, ray: &Ray, perturbation: &Perturbation) -> f64 {
     let bias = model.bias[0] + model.bias[1] * ray.distance_cm + model.bias[2] * ray.alpha_deg / 45.0;
     let [low, high] = model.range_cm;
-    ((ray.distance_cm + bias) * perturbation.gain + perturbation.offset_cm).clamp(low, high)
+    perturbation.reading_cm(ray.distance_cm + bias).clamp(low, high)
 }
 
 fn scale_cm(model: &SonarModel, ray: &Ray, perturbation: &Perturbation) -> f64 {

@@ -45,7 +45,30 @@ pub struct SonarModel {
     pub range_cm: [f64; 2],
 }
 
+/// An ideal ray is so much narrower than a usual beam.
+const RAY_WIDTH: f64 = 0.05;
+/// Log-odds that it comes back: it does.
+const CERTAIN: f64 = 6.0;
+
 impl SonarModel {
+    /// The textbook's ideal ray: `p_dropout` of the echoes are lost, and readings scatter.
+    pub fn ideal_ray(scatter_cm: f64, p_dropout: f64, range_cm: [f64; 2]) -> Self {
+        let mut strength = [0.0; STRENGTHS];
+        strength[0] = CERTAIN;
+        SonarModel {
+            strength,
+            mirror_loss: None,
+            bias: [0.0; 3],
+            log_scatter: [libm::log(scatter_cm), 0.0, 0.0],
+            constant: [0.0, range_cm[0]],
+            p_constant_given_none: 0.0,
+            p_short: 0.0,
+            p_dropout,
+            fan_width: RAY_WIDTH,
+            range_cm,
+        }
+    }
+
     /// Bounds of the distance that parts short readings from long ones, cm.
     pub fn reach_bounds_cm(&self) -> [f64; 2] {
         reach_bounds_cm(self.range_cm)

@@ -156,8 +156,31 @@ impl Outcomes {
         if perturbation.scatter_cm > 0.0 { outcomes.without_hits_beyond_range() } else { outcomes }
     }
 
+    /// The same with the faults of a perturbation that come in place of what there would be: the ghost, then a short reading,
+    /// then a long one, each in place of all before it. The axis reaches as far as `reach_cm`, which leaves room on both sides.
+    pub(super) fn with_faults(mut self, change: &Perturbation, reach_cm: f64) -> Self {
+        let [low_cm, high_cm] = self.range_cm;
+        let reading = 1.0 - self.none;
+        let ghost = change.p_ghost_given_echo * reading + change.p_ghost_given_none * self.none;
+        let not_short = 1.0 - change.p_short;
+        let not_long = 1.0 - change.p_long;
+        let kept = (1.0 - change.p_ghost_given_echo) * not_short * not_long;
+        self.components.iter_mut().for_each(|component| component.probability *= kept);
+        self.none *= (1.0 - change.p_ghost_given_none) * not_short;
+        let about_ghost = Distribution::Student { middle_cm: change.ghost_cm, scale_cm: CONSTANT_SCATTER_CM };
+        let between = |low_cm, high_cm| Distribution::Uniform { low_cm, high_cm };
+        let faults = [
+            (Source::Ghost, ghost * not_short * not_long, about_ghost),
+            (Source::Short, change.p_short * not_long, between(low_cm, reach_cm)),
+            (Source::Long, (1.0 - self.none) * change.p_long, between(reach_cm, high_cm)),
+        ];
+        let faults = faults.map(|(source, probability, distribution)| Component { source, probability, distribution });
+        self.components.extend(faults.into_iter().filter(|fault| fault.probability > 0.0));
+        self
+    }
+
     /// The same where hits beyond the range are not reported.
-    fn without_hits_beyond_range(mut self) -> Self {
+    pub(super) fn without_hits_beyond_range(mut self) -> Self {
         for hit in self.components.iter_mut().filter(|component| component.source == Source::Hit) {
             let within = hit.within(self.range_cm);
             self.none += hit.probability - within.probability;

@@ -32,6 +32,16 @@ pub struct Perturbation {
 }
 
 impl Perturbation {
+    /// What an echo loses in log-odds over a distance in metres, at an incidence in units of 45 degrees.
+    pub fn loss(&self, metres: f64, incidence: f64) -> f64 {
+        self.attenuation + self.attenuation_per_m * metres + self.attenuation_per_incidence * incidence
+    }
+
+    /// The reading of an echo that otherwise reads `echo_cm`.
+    pub fn reading_cm(&self, echo_cm: f64) -> f64 {
+        echo_cm * self.gain + self.offset_cm
+    }
+
     /// The sensor as its model has it.
     pub const NONE: Perturbation = Perturbation {
         attenuation: 0.0,

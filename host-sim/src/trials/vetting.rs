@@ -125,7 +125,7 @@ impl Vetting<'_> {
     /// Steps that no robot could have made.
     fn check_frame(&self, logs: &Logs) -> Result<()> {
         let Some(motion) = Baseline::learned(self.simulator)?.motion else { return Ok(()) };
-        let observations = Observations::of(logs, 1.0);
+        let observations = Observations::of(logs, None);
         let effects = EffectChain::of(&self.simulator.added);
         let last = logs.runs.first().map_or(0, |run| run.rows.len()).saturating_sub(LAST_STEPS + 1);
         for row in observations.rows.iter().filter(|row| row.at < last) {

@@ -74,8 +74,8 @@ pub fn echo_before(row: &Observation) -> f64 {
 
 /// Whether the rays beside the axis meet something much nearer or farther.
 pub fn edge_in_beam(row: &Observation) -> bool {
-    let middle = row.fan.len() / 2;
-    let [right, axis, left] = [middle - 1, middle, middle + 1].map(|i| row.fan[i].distance_cm);
+    let Some([axis, _]) = row.context.faced else { return false };
+    let [right, left] = row.beside_cm;
     let expected = 2.0 * right * left / (right + left);
     (axis - expected).abs() > 0.15 * axis
 }
@@ -147,8 +147,7 @@ mod tests {
     fn an_edge_is_what_no_wall_could_be() {
         let mut row = placed(250.0, 100.0, 20.0);
         assert!(!edge_in_beam(&row));
-        let axis = row.fan.len() / 2;
-        row.fan[axis].distance_cm *= 1.2;
+        row.context.faced = row.context.faced.map(|[axis_cm, incidence_rad]| [1.2 * axis_cm, incidence_rad]);
         assert!(edge_in_beam(&row));
     }
 }

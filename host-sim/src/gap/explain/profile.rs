@@ -128,9 +128,9 @@ pub(super) fn off(
             let scale = if channel == Channel::Turn { 180.0 / std::f64::consts::PI } else { 1.0 };
             residuals.into_iter().map(|r| r.map(|r| scale * r[axis])).collect()
         }
-        (None, _, Some(sonar)) => {
+        (None, _, Some(_)) => {
             let one = |row: &Observation| {
-                let outcomes = facing(effects, observations, row).outcomes(sonar);
+                let outcomes = facing(effects, observations, row)?.outcomes();
                 if channel == Channel::EchoRate {
                     return Some(f64::from(u8::from(row.echo_cm.is_some())) - 1.0 + outcomes.none);
                 }

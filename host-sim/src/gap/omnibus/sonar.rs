@@ -11,7 +11,6 @@ use crate::gap::channel::Channel;
 use crate::gap::fit::{FitContext, Fitted, MOST_ITERATIONS, TOLERANCE_NATS};
 use crate::simulator::baseline::Baseline;
 use crate::sonar::Perturbation;
-use crate::sonar::SonarModel;
 use crate::sonar::model::FAR_CM;
 use crate::statistics::maximise::{Bounds, climb};
 use crate::statistics::summary::{QUARTILE, median};
@@ -29,12 +28,12 @@ pub struct Spread {
 
 /// What the sensor said at each row, and what it should have.
 pub struct Heard<'a> {
-    sonar: Option<&'a SonarModel>,
-    rows: Vec<Reading>,
+    rows: Vec<Reading<'a>>,
 }
 
-struct Reading {
-    faced: Faced,
+struct Reading<'a> {
+    /// None where the sensor is not judged.
+    faced: Option<Faced<'a>>,
     echo_cm: Option<f64>,
     weight: [f64; 2],
 }
@@ -53,9 +52,9 @@ const DIFFERENCE: f64 = 0.01;
 /// Whether there is an echo.
 pub fn rate(beneath: &Fitted, context: &FitContext) -> ResidualFit {
     let heard = Heard::of(&beneath.effects(), context.baseline, context.observations);
-    let response = |i: usize, prediction: f64| prediction + heard.score(&heard.rows[i], prediction);
+    let response = |i: usize, prediction: f64| prediction + heard.rows[i].score(prediction);
     let covariates = covariates(context.observations);
-    let rows = Rows::of(&covariates, |_| heard.sonar.is_some(), place(context.observations));
+    let rows = Rows::of(&covariates, |i| heard.rows[i].faced.is_some(), place(context.observations));
     let (surface, predictions) = rows.evenly(LOG_ODDS, response);
     let held_out = heard.rates(&predictions);
     fitted(Channel::EchoRate, beneath, held_out, surface, predictions, Law::EchoRate)
@@ -70,7 +69,7 @@ pub fn value(beneath: &Fitted, context: &FitContext) -> ResidualFit {
     let held_out = (0..context.observations.blocks).flat_map(|block| {
         let rows = context.observations.of_block(block);
         let spread = Spread::from(&found.without(&BOUNDS, |row| rows.contains(&row)));
-        let value = |i: usize| heard.value(&heard.rows[i], predictions[i], &spread);
+        let value = |i: usize| heard.rows[i].value(predictions[i], &spread);
         rows.map(value).collect::<Vec<f64>>()
     });
     let held_out = held_out.collect();
@@ -133,73 +132,74 @@ fn of_reading(step: &StepContext) -> Circumstances {
 
 impl<'a> Heard<'a> {
     /// With effects.
-    pub fn of(effects: &EffectChain, baseline: &'a Baseline, observations: &Observations) -> Self {
-        let reading = |row: &Observation| {
-            let faced = facing(effects, observations, row);
+    pub fn of(effects: &EffectChain, baseline: &Baseline, observations: &'a Observations) -> Self {
+        let judged = baseline.sonar.is_some();
+        let reading = |row: &'a Observation| {
+            let faced = if judged { facing(effects, observations, row) } else { None };
             let Observation { echo_cm, echo_weight: weight, .. } = *row;
             Reading { faced, echo_cm, weight }
         };
-        Heard { sonar: baseline.sonar.as_ref(), rows: observations.rows.iter().map(reading).collect() }
+        Heard { rows: observations.rows.iter().map(reading).collect() }
     }
 
     /// The log-likelihood of an echo or none at each row, the log-odds of every ray moved by the predictions.
     pub fn rates(&self, predictions: &[f64]) -> Vec<f64> {
         let rate = |(reading, prediction): (&Reading, &f64)| {
-            let none = self.none(reading, *prediction);
+            let Some(none) = reading.none(*prediction) else { return 0.0 };
             reading.weight[0] * libm::log(if reading.echo_cm.is_some() { 1.0 - none } else { none })
         };
-        match self.sonar {
-            Some(_) => self.rows.iter().zip(predictions).map(rate).collect(),
-            None => vec![0.0; self.rows.len()],
-        }
-    }
-
-    /// The derivative of that log-likelihood by a prediction in units.
-    fn score(&self, reading: &Reading, prediction: f64) -> f64 {
-        let none = self.none(reading, LOG_ODDS * prediction);
-        let fewer = self.none(reading, LOG_ODDS * (prediction + DIFFERENCE));
-        let slope = (none - fewer) / DIFFERENCE;
-        if reading.echo_cm.is_some() { slope / (1.0 - none) } else { -slope / none }
-    }
-
-    /// The probability of no reading.
-    fn none(&self, reading: &Reading, prediction: f64) -> f64 {
-        let attenuation = reading.faced.change.attenuation - prediction;
-        let change = Perturbation { attenuation, ..reading.faced.change };
-        self.sonar.map_or(1.0, |sonar| reading.faced.perturbed(&change, sonar).none)
+        self.rows.iter().zip(predictions).map(rate).collect()
     }
 
     /// The log-likelihood of each reading that there is, moved by the predictions and spread.
     pub fn values(&self, predictions: &[f64], spread: &Spread) -> Vec<f64> {
-        self.rows.iter().zip(predictions).map(|(reading, cm)| self.value(reading, *cm, spread)).collect()
-    }
-
-    fn value(&self, reading: &Reading, prediction_cm: f64, spread: &Spread) -> f64 {
-        let (Some(sonar), Some(_)) = (self.sonar, reading.echo_cm) else { return 0.0 };
-        let mut change = reading.faced.change;
-        change.offset_cm += prediction_cm;
-        change.scatter_cm += spread.scatter_cm;
-        change.p_short = 1.0 - (1.0 - change.p_short) * (1.0 - spread.short);
-        change.p_long += spread.long;
-        let outcomes = reading.faced.perturbed(&change, sonar);
-        reading.weight[1] * (outcomes.log_likelihood(reading.echo_cm) - outcomes.log_detection(reading.echo_cm))
+        self.rows.iter().zip(predictions).map(|(reading, cm)| reading.value(*cm, spread)).collect()
     }
 
     /// By how much readings are off, cm.
     fn offsets(&self, observations: &Observations) -> (Surface, Vec<f64>) {
-        let off = |reading: &Reading| reading.faced.outcomes(self.sonar?).off_cm(reading.echo_cm);
+        let off = |reading: &Reading| reading.faced.as_ref()?.outcomes().off_cm(reading.echo_cm);
         let off: Vec<Option<f64>> = self.rows.iter().map(off).collect();
         let scatter_cm = (median(off.iter().flatten().map(|off_cm| off_cm.abs())) / QUARTILE).max(LEAST_SCATTER_CM);
         // As far as the likelihood says, to which a reading from elsewhere than the echo is one of the others, and no farther
         // than to the reading.
         let response = |i: usize, prediction: f64| {
-            let value = |prediction: f64| self.value(&self.rows[i], scatter_cm * prediction, &Spread::NONE);
+            let value = |prediction: f64| self.rows[i].value(scatter_cm * prediction, &Spread::NONE);
             let score = (value(prediction + DIFFERENCE) - value(prediction)) / DIFFERENCE;
             let most = (off[i].unwrap_or(0.0) / scatter_cm - prediction).abs();
             prediction + score.clamp(-most, most)
         };
         let covariates = covariates(observations);
         Rows::of(&covariates, |i| off[i].is_some(), place(observations)).evenly(scatter_cm, response)
+    }
+}
+
+impl Reading<'_> {
+    /// The derivative of the log-likelihood of an echo or none by a prediction in units.
+    fn score(&self, prediction: f64) -> f64 {
+        let nones = [prediction, prediction + DIFFERENCE].map(|units| self.none(LOG_ODDS * units));
+        let [Some(none), Some(fewer)] = nones else { return 0.0 };
+        let slope = (none - fewer) / DIFFERENCE;
+        if self.echo_cm.is_some() { slope / (1.0 - none) } else { -slope / none }
+    }
+
+    /// The probability of no reading, the log-odds of every echo moved by a prediction.
+    fn none(&self, prediction: f64) -> Option<f64> {
+        let faced = self.faced.as_ref()?;
+        let change = Perturbation { attenuation: faced.change.attenuation - prediction, ..faced.change };
+        Some(faced.perturbed(&change).none)
+    }
+
+    /// The log-likelihood of a reading that there is, moved by a prediction and spread.
+    fn value(&self, prediction_cm: f64, spread: &Spread) -> f64 {
+        let (Some(faced), Some(_)) = (&self.faced, self.echo_cm) else { return 0.0 };
+        let mut change = faced.change;
+        change.offset_cm += prediction_cm;
+        change.scatter_cm += spread.scatter_cm;
+        change.p_short = 1.0 - (1.0 - change.p_short) * (1.0 - spread.short);
+        change.p_long += spread.long;
+        let outcomes = faced.perturbed(&change);
+        self.weight[1] * (outcomes.log_likelihood(self.echo_cm) - outcomes.log_detection(self.echo_cm))
     }
 }
 

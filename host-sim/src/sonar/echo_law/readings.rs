@@ -3,6 +3,7 @@
 use super::targets::{SPACING_DEG, Target, TargetKind};
 use super::{FirstEchoLaw, Surfaces, targets_at};
 use crate::geometry::{Pose, cast};
+use crate::sonar::Perturbation;
 use crate::sonar::model::{CONSTANT_SCATTER_CM, reach_bounds_cm};
 use crate::sonar::outcomes::{Component, Distribution, Outcomes, Source};
 use crate::statistics::summary::logistic;
@@ -13,22 +14,24 @@ const GRAZING_DEG: f64 = 80.0;
 impl FirstEchoLaw {
     /// The outcomes of a reading of a sensor at a pose.
     pub fn outcomes_at(&self, surfaces: &Surfaces, sensor: &Pose) -> Outcomes {
-        self.outcomes(&targets_at(surfaces, sensor), reach_cm(surfaces, sensor))
+        self.outcomes(&targets_at(surfaces, sensor), reach_cm(surfaces, sensor), &Perturbation::NONE)
     }
 
-    /// The outcomes of a reading of targets, nearest first, where the axis reaches as far as `reach_cm`.
-    pub fn outcomes(&self, targets: &[Target], reach_cm: f64) -> Outcomes {
+    /// The outcomes of a reading of targets, nearest first, where the axis reaches as far as `reach_cm`, by a sensor that
+    /// differs from the law by a perturbation.
+    pub fn outcomes(&self, targets: &[Target], reach_cm: f64, change: &Perturbation) -> Outcomes {
         let known = 1.0 - self.p_stray;
         let mut components = Vec::with_capacity(targets.len() + 4);
         let (mut loudest, mut heard_before, mut not_ghost, mut before_ghost) = (f64::NEG_INFINITY, 0.0, 1.0, None);
         for target in targets {
-            let strength = self.strength(target);
+            let strength =
+                self.strength(target) - change.loss(target.distance_cm / 100.0, incidence_deg(target) / 45.0);
             if strength <= loudest {
                 continue;
             }
             loudest = strength;
-            let heard = (1.0 - self.p_dropout) * logistic(loudest);
-            let middle_cm = self.middle_cm(target);
+            let heard = (1.0 - self.p_dropout) * (1.0 - change.p_dropout) * logistic(loudest);
+            let middle_cm = self.middle_cm(target, change);
             if middle_cm >= self.ghost_cm && before_ghost.is_none() {
                 before_ghost = Some(heard_before);
                 not_ghost = 1.0 - self.p_ghost;
@@ -36,7 +39,7 @@ impl FirstEchoLaw {
             components.push(Component {
                 source: Source::Hit,
                 probability: known * not_ghost * (heard - heard_before),
-                distribution: Distribution::Student { middle_cm, scale_cm: self.scale_cm(target) },
+                distribution: Distribution::Student { middle_cm, scale_cm: self.scale_cm(target, change) },
             });
             heard_before = heard;
         }
@@ -56,7 +59,10 @@ impl FirstEchoLaw {
         ];
         let others = others.map(|(source, probability, distribution)| Component { source, probability, distribution });
         components.extend(others);
-        Outcomes { none: known * (silent - other) + 0.5 * self.p_stray, components, range_cm: self.range_cm }
+        let none = known * (silent - other) + 0.5 * self.p_stray;
+        let outcomes = Outcomes { none, components, range_cm: self.range_cm }.with_faults(change, reach_cm);
+        // As of a beam: what scatters by itself beyond the range is reported as its ends, as in the logs of the fit.
+        if change.scatter_cm > 0.0 { outcomes.without_hits_beyond_range() } else { outcomes }
     }
 
     /// The strength of a target's echo, in units of the threshold's noise.
@@ -77,21 +83,27 @@ impl FirstEchoLaw {
         self.oblique_loss * (1.0 - libm::exp(-turned * turned / self.oblique_loss))
     }
 
-    fn middle_cm(&self, target: &Target) -> f64 {
+    fn middle_cm(&self, target: &Target, change: &Perturbation) -> f64 {
         let off = target.off_axis_deg / 10.0;
         let [low, high] = self.range_cm;
-        (self.offset_cm + self.scale * target.distance_cm + self.off_axis_cm * off * off).clamp(low, high)
+        let echo_cm = self.offset_cm + self.scale * target.distance_cm + self.off_axis_cm * off * off;
+        change.reading_cm(echo_cm).clamp(low, high)
     }
 
-    fn scale_cm(&self, target: &Target) -> f64 {
+    fn scale_cm(&self, target: &Target, change: &Perturbation) -> f64 {
         let growth =
             self.scatter_per_m * target.distance_cm / 100.0 + self.scatter_off_axis * target.off_axis_deg / 10.0;
         let own = self.scatter_cm * libm::exp(growth);
-        let incidence_rad = target.incidence_deg().unwrap_or(0.0).min(GRAZING_DEG).to_radians();
+        let incidence_rad = incidence_deg(target).min(GRAZING_DEG).to_radians();
         // A uniform distribution has a standard deviation of its width over the root of twelve.
         let between = target.distance_cm * libm::tan(incidence_rad) * SPACING_DEG.to_radians() / 12f64.sqrt();
-        (own * own + between * between).sqrt()
+        (own * own + between * between + change.scatter_cm * change.scatter_cm).sqrt()
     }
+}
+
+/// The incidence of a target, degrees; a point has none.
+fn incidence_deg(target: &Target) -> f64 {
+    target.incidence_deg().unwrap_or(0.0)
 }
 
 /// How far the axis reaches, cm; infinite where it meets nothing.

@@ -49,6 +49,11 @@ impl Surfaces {
         Surfaces { walls, corners }
     }
 
+    /// The walls.
+    pub fn walls(&self) -> &[Wall] {
+        &self.walls
+    }
+
     /// Whether nothing stands between two points.
     pub(super) fn is_visible(&self, from_cm: DVec2, point_cm: DVec2) -> bool {
         let way = point_cm - from_cm;

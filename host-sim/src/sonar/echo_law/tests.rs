@@ -5,6 +5,7 @@ use rand::RngExt;
 use super::{FirstEchoLaw, Surfaces, Target, TargetKind, targets_at};
 use crate::chance::generator;
 use crate::geometry::{Pose, Rectangle, Wall};
+use crate::sonar::Perturbation;
 use crate::sonar::outcomes::{Outcomes, Source};
 use crate::sonar::partition::{Partition, assert_follow, scenes, sensors};
 use crate::statistics::summary::logistic;
@@ -135,10 +136,9 @@ fn a_weaker_echo_behind_a_stronger_one_is_never_the_first() {
     let target = |distance_cm, kind| Target { distance_cm, off_axis_deg: 0.0, kind };
     let near = target(50.0, TargetKind::Foot);
     let [weak, strong] = [TargetKind::Edge, TargetKind::Foot].map(|kind| target(60.0, kind));
-    let alone = LAW.outcomes(&[near], 50.0);
-    assert_eq!(hits(&LAW.outcomes(&[near, weak], 50.0)), hits(&alone));
-    let masked = LAW.outcomes(&[weak, strong], 50.0);
-    assert!((hits(&masked) - heard(LAW.strength(&strong))).abs() < 1e-12);
+    let hits_of = |targets: &[Target]| hits(&LAW.outcomes(targets, 50.0, &Perturbation::NONE));
+    assert_eq!(hits_of(&[near, weak]), hits_of(&[near]));
+    assert!((hits_of(&[weak, strong]) - heard(LAW.strength(&strong))).abs() < 1e-12);
 }
 
 /// The outcomes in every place of every scene.
