@@ -22,7 +22,7 @@
 //!
 //! where g₁ and c₁ are the probabilities of the ghost and of the constant reading in place of an echo, g₀ and c₀ in
 //! place of none. Then, each in place of all that stand before it: a short reading with p_short, whether there was one or
-//! not; a long reading with p_long in place of a reading; and with p_rand a random answer, as often none as a reading from
+//! not; a long reading with p_long in place of a reading, and with p_long_given_none in place of none; and with p_rand a random answer, as often none as a reading from
 //! anywhere in the sensor's range.
 //!
 //! Hits scatter by Student's t distribution about the distance with a bias, ghost and constant readings about their

@@ -305,7 +305,6 @@ mod tests {
                     && near(s.robot.position_cm.distance(context.pose.position_cm), 0.0)
                     && near(wrap_rad(s.robot.heading_rad - context.pose.heading_rad), 0.0)
                     && near(s.yaw_rad, 0.0)
-                    && near(s.width, 1.0)
                     && Perturbation { ghost_cm: Perturbation::NONE.ghost_cm, ..s.perturbation } == Perturbation::NONE;
                 prop_assert!(same, "{effect} {}", variant.id);
             }
@@ -357,7 +356,7 @@ mod tests {
                 let values: Vec<f64> = variant.parameters.iter().zip(&corner).map(bound).collect();
                 let (c, m, s) = applied(variant, &values, &context);
                 let finite = c.as_flattened().iter().all(|c| c.is_finite() && c.abs() <= 200.0)
-                    && [m.forward_cm, m.lateral_cm, m.turn_rad, s.yaw_rad, s.width].iter().all(|v| v.is_finite())
+                    && [m.forward_cm, m.lateral_cm, m.turn_rad, s.yaw_rad, s.perturbation.width].iter().all(|v| v.is_finite())
                     && s.robot.position_cm.is_finite();
                 prop_assert!(finite, "{effect} {}", variant.id);
             }

@@ -58,9 +58,7 @@ pub struct SensorState {
     pub robot: Pose,
     /// Rotation of the sensor's axis to the left of where it is mounted.
     pub yaw_rad: f64,
-    /// Factor on the width of the beam.
-    pub width: f64,
-    /// What becomes of the echoes.
+    /// How the sensor itself differs, and what becomes of the echoes.
     pub perturbation: Perturbation,
 }
 
@@ -127,12 +125,12 @@ impl Hook {
 impl SensorState {
     /// The sensor of a robot at `robot` that no effect changes.
     pub fn nominal(robot: Pose) -> Self {
-        SensorState { robot, yaw_rad: 0.0, width: 1.0, perturbation: Perturbation::NONE }
+        SensorState { robot, yaw_rad: 0.0, perturbation: Perturbation::NONE }
     }
 
     /// What it may report by a law, where it is.
     pub fn outcomes(&self, law: &SensorLaw, surroundings: &Surroundings) -> Outcomes {
         let sensor = surroundings.sensor(&self.robot, self.yaw_rad);
-        law.outcomes(&law.view(&surroundings.surfaces, &sensor, self.width), &self.perturbation)
+        law.outcomes(&law.view(&surroundings.surfaces, &sensor, self.perturbation.width), &self.perturbation)
     }
 }

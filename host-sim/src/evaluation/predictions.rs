@@ -109,12 +109,13 @@ pub struct Faced<'o> {
 /// What the sensor faces at a row with these effects; none where no law of it is known.
 pub fn facing<'o>(effects: &EffectChain, observations: &'o Observations, row: &'o Observation) -> Option<Faced<'o>> {
     let (law, usual) = observations.law.as_ref().zip(row.view.as_ref())?;
-    let SensorState { robot, yaw_rad, width, perturbation: change } = effects.sensor(&row.context);
-    let moved = robot != row.context.pose || yaw_rad != 0.0 || width != 1.0;
+    let SensorState { robot, yaw_rad, perturbation: change } = effects.sensor(&row.context);
+    let widened = change.width != 1.0 && law.looks_by_width();
+    let moved = robot != row.context.pose || yaw_rad != 0.0 || widened;
     let sensor = observations.surroundings.sensor(&robot, yaw_rad);
     let familiarity = observations.recollection.as_ref().and_then(|recollection| recollection.at(&sensor));
     let view = if moved {
-        Cow::Owned(law.view(&observations.surroundings.surfaces, &sensor, width))
+        Cow::Owned(law.view(&observations.surroundings.surfaces, &sensor, change.width))
     } else {
         Cow::Borrowed(usual)
     };

@@ -108,10 +108,12 @@ impl Beam {
         Self::of(reference, &SensorState::nominal(Pose::new(0.0, 0.0, 0.0)))
     }
 
-    /// The same as effects leave it after an echo and after none, if these differ only in the probabilities of outcomes.
+    /// The same as effects leave it after an echo and after none, if these differ only in the probabilities of outcomes, and
+    /// what rays lose by distance and incidence keeps its form.
     pub fn changed(reference: &SonarModel, [after_echo, after_none]: &[SensorState; 2]) -> Option<Self> {
         let Perturbation { p_dropout, p_ghost_given_echo, p_ghost_given_none, p_short, p_long, .. } =
             after_echo.perturbation;
+        let p_long_given_none = after_echo.perturbation.p_long_given_none;
         let otherwise = SensorState {
             perturbation: Perturbation {
                 p_dropout,
@@ -119,13 +121,15 @@ impl Beam {
                 p_ghost_given_none,
                 p_short,
                 p_long,
+                p_long_given_none,
                 ..after_none.perturbation
             },
             ..*after_none
         };
         let thresholds = |after: &SensorState| Thresholds::both(reference, &after.perturbation);
         let matters = after_none != after_echo;
-        (otherwise == *after_echo).then(|| Beam {
+        let is_known = otherwise == *after_echo && !after_echo.perturbation.shapes_losses();
+        is_known.then(|| Beam {
             thresholds_after_none: matters.then(|| thresholds(after_none)),
             ..Self::of(reference, after_echo)
         })
@@ -133,8 +137,8 @@ impl Beam {
 
     fn of(reference: &SonarModel, state: &SensorState) -> Self {
         let log2_e = std::f64::consts::LOG2_E;
-        let SensorState { yaw_rad, width, perturbation, .. } = state;
-        let Perturbation { attenuation, attenuation_per_m, attenuation_per_incidence, .. } = perturbation;
+        let SensorState { yaw_rad, perturbation, .. } = state;
+        let Perturbation { width, attenuation, attenuation_per_m, attenuation_per_incidence, .. } = perturbation;
         let mut strength = reference.strength;
         strength[0] -= attenuation;
         strength[1] -= attenuation_per_m;

@@ -20,7 +20,7 @@ pub enum View {
     Fan(Fan),
     /// What can return an echo.
     Targets {
-        /// Nearest first, their angles off the axis as a beam of the law's own width sees them.
+        /// Nearest first.
         targets: Vec<Target>,
         /// How far the axis reaches, cm; infinite where it meets nothing.
         reach_cm: f64,
@@ -28,14 +28,13 @@ pub enum View {
 }
 
 impl SensorLaw {
-    /// What a sensor at a pose looks at if its beam is so much wider than the law says.
+    /// What a sensor at a pose looks at if its beam is so much wider than the law says; the first-echo law looks at the same
+    /// whatever its width.
     pub fn view(&self, surfaces: &Surfaces, sensor: &Pose, width: f64) -> View {
         match self {
             SensorLaw::Beam(model) => View::Fan(fan_at(surfaces.walls(), sensor, model.fan_width * width)),
             SensorLaw::FirstEcho(_) => {
-                let mut targets = targets_at(surfaces, sensor);
-                targets.iter_mut().for_each(|target| target.off_axis_deg /= width);
-                View::Targets { targets, reach_cm: reach_cm(surfaces, sensor) }
+                View::Targets { targets: targets_at(surfaces, sensor), reach_cm: reach_cm(surfaces, sensor) }
             }
         }
     }
@@ -54,6 +53,11 @@ impl SensorLaw {
     /// What a sensor at a pose may report.
     pub fn outcomes_at(&self, surfaces: &Surfaces, sensor: &Pose) -> Outcomes {
         self.outcomes(&self.view(surfaces, sensor, 1.0), &Perturbation::NONE)
+    }
+
+    /// Whether what it looks at depends on the width of its beam.
+    pub fn looks_by_width(&self) -> bool {
+        matches!(self, SensorLaw::Beam(_))
     }
 
     /// Least and largest reading, cm.

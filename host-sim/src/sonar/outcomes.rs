@@ -108,8 +108,9 @@ impl MixingWeights {
         let none = no_ghost[1] * (1.0 - model.p_constant_given_none);
 
         let not_short = neither(model.p_short, perturbation.p_short);
-        let none = not_short * none;
-        let reading = 1.0 - none;
+        let detour = not_short * none * perturbation.p_long_given_none;
+        let none = not_short * none - detour;
+        let reading = 1.0 - none - detour;
         let not_long = 1.0 - p_long;
         let known = 1.0 - P_RAND;
         MixingWeights {
@@ -117,7 +118,7 @@ impl MixingWeights {
             ghost: known * not_long * not_short * ghost,
             constant: known * not_long * not_short * constant,
             short: known * not_long * (1.0 - not_short),
-            long: known * reading * p_long,
+            long: known * (reading * p_long + detour),
             stray: 0.5 * P_RAND,
             none: known * none + 0.5 * P_RAND,
         }
@@ -157,7 +158,7 @@ impl Outcomes {
     }
 
     /// The same with the faults of a perturbation that come in place of what there would be: the ghost, then a short reading,
-    /// then a long one, each in place of all before it. The axis reaches as far as `reach_cm`, which leaves room on both sides.
+    /// then a long one, each in place of all before it, and a long one in place of none. The axis reaches as far as `reach_cm`, which leaves room on both sides.
     pub(super) fn with_faults(mut self, change: &Perturbation, reach_cm: f64) -> Self {
         let [low_cm, high_cm] = self.range_cm;
         let reading = 1.0 - self.none;
@@ -167,12 +168,15 @@ impl Outcomes {
         let kept = (1.0 - change.p_ghost_given_echo) * not_short * not_long;
         self.components.iter_mut().for_each(|component| component.probability *= kept);
         self.none *= (1.0 - change.p_ghost_given_none) * not_short;
+        let detour = self.none * change.p_long_given_none;
+        let long = (1.0 - self.none) * change.p_long + detour;
+        self.none -= detour;
         let about_ghost = Distribution::Student { middle_cm: change.ghost_cm, scale_cm: CONSTANT_SCATTER_CM };
         let between = |low_cm, high_cm| Distribution::Uniform { low_cm, high_cm };
         let faults = [
             (Source::Ghost, ghost * not_short * not_long, about_ghost),
             (Source::Short, change.p_short * not_long, between(low_cm, reach_cm)),
-            (Source::Long, (1.0 - self.none) * change.p_long, between(reach_cm, high_cm)),
+            (Source::Long, long, between(reach_cm, high_cm)),
         ];
         let faults = faults.map(|(source, probability, distribution)| Component { source, probability, distribution });
         self.components.extend(faults.into_iter().filter(|fault| fault.probability > 0.0));

@@ -50,9 +50,12 @@ pub const SENSORS: [SonarModel; 3] = [
 
 /// A perturbation in which nothing is missing either.
 pub const PERTURBED: Perturbation = Perturbation {
+    width: 1.0,
     attenuation: 0.2,
     attenuation_per_m: 0.1,
     attenuation_per_incidence: 0.3,
+    spreading: 0.0,
+    mirroring: 0.0,
     attenuation_mirrored: -0.5,
     gain: 1.05,
     offset_cm: -2.0,
@@ -63,6 +66,7 @@ pub const PERTURBED: Perturbation = Perturbation {
     ghost_cm: 34.0,
     p_short: 0.05,
     p_long: 0.06,
+    p_long_given_none: 0.15,
 };
 
 /// A room with an obstacle, and the obstacle alone: there a fan may meet nothing.

@@ -1,14 +1,25 @@
 //! How a sensor differs from its model.
 
+/// i₀ and f of the first-echo law's loss by incidence, the medians over eleven sensors.
+const USUAL_SPECULAR_DEG: f64 = 15.0;
+const USUAL_OBLIQUE_LOSS: f64 = 10.7;
+
 /// Changes to a sensor; [`Perturbation::NONE`] changes nothing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Perturbation {
+    /// Factor on the width of the beam.
+    pub width: f64,
     /// Subtracted from every ray's log-odds.
     pub attenuation: f64,
     /// Subtracted from a ray's log-odds per metre of its distance.
     pub attenuation_per_m: f64,
     /// Subtracted from a ray's log-odds per 45 degrees of its incidence.
     pub attenuation_per_incidence: f64,
+    /// Subtracted from a ray's log-odds per unit of the natural logarithm of its distance in metres: sound spreads.
+    pub spreading: f64,
+    /// Share of what walls usually swallow or send on by incidence that is subtracted from a ray's log-odds: see
+    /// [`loss_by_incidence`].
+    pub mirroring: f64,
     /// Subtracted from the log-odds of a ray that a wall has mirrored.
     pub attenuation_mirrored: f64,
     /// Factor on the readings of echoes.
@@ -29,12 +40,24 @@ pub struct Perturbation {
     pub p_short: f64,
     /// Probability of a random reading from beyond what the axis meets, in place of a reading.
     pub p_long: f64,
+    /// Probability of the same in place of none.
+    pub p_long_given_none: f64,
 }
 
 impl Perturbation {
     /// What an echo loses in log-odds over a distance in metres, at an incidence in units of 45 degrees.
     pub fn loss(&self, metres: f64, incidence: f64) -> f64 {
-        self.attenuation + self.attenuation_per_m * metres + self.attenuation_per_incidence * incidence
+        let loss = self.attenuation + self.attenuation_per_m * metres + self.attenuation_per_incidence * incidence;
+        if !self.shapes_losses() {
+            return loss;
+        }
+        let usual = loss_by_incidence(45.0 * incidence, USUAL_SPECULAR_DEG, USUAL_OBLIQUE_LOSS);
+        loss + self.spreading * libm::log(metres) + self.mirroring * usual
+    }
+
+    /// Whether what echoes lose is more than a plane over distance and incidence.
+    pub fn shapes_losses(&self) -> bool {
+        self.spreading != 0.0 || self.mirroring != 0.0
     }
 
     /// The reading of an echo that otherwise reads `echo_cm`.
@@ -44,9 +67,12 @@ impl Perturbation {
 
     /// The sensor as its model has it.
     pub const NONE: Perturbation = Perturbation {
+        width: 1.0,
         attenuation: 0.0,
         attenuation_per_m: 0.0,
         attenuation_per_incidence: 0.0,
+        spreading: 0.0,
+        mirroring: 0.0,
         attenuation_mirrored: 0.0,
         gain: 1.0,
         offset_cm: 0.0,
@@ -57,5 +83,13 @@ impl Perturbation {
         ghost_cm: 20.0,
         p_short: 0.0,
         p_long: 0.0,
+        p_long_given_none: 0.0,
     };
+}
+
+/// What a wall loses in log-odds by its incidence: as a mirror does, but never more than `most`; at `specular_deg` it is about
+/// one.
+pub fn loss_by_incidence(incidence_deg: f64, specular_deg: f64, most: f64) -> f64 {
+    let turned = incidence_deg / specular_deg;
+    most * (1.0 - libm::exp(-turned * turned / most))
 }

@@ -27,6 +27,16 @@ pub const EFFECT: Effect = Effect {
                 s.perturbation.attenuation_per_incidence += Absorption::read(v).log_odds_loss
             })],
         },
+        Variant {
+            id: "as_mirrors",
+            parameters: Mirrors::PARAMETERS,
+            hooks: &[Hook::Sensor(&|v, _, s| {
+                let Mirrors { share, log_odds_loss } = Mirrors::read(v);
+                s.perturbation.mirroring += share;
+                s.perturbation.spreading += SPREADING * share;
+                s.perturbation.attenuation += log_odds_loss;
+            })],
+        },
     ],
 };
 
@@ -37,6 +47,22 @@ parameters! {
         log_odds_loss: Parameter::new("", 0.0, [-4.0, 8.0])
             .prior_sd(2.0)
             .from(Guesses::At(&[0.3, -0.3, 1.5]))
+            .report(Report::OddsFactor),
+    }
+}
+
+/// n of the first-echo law, the median over eleven sensors: log-odds per unit of the natural logarithm of the distance.
+const SPREADING: f64 = 3.65;
+
+parameters! {
+    Mirrors {
+        /// Share of what walls usually send elsewhere and air usually spreads (docs/sonar.md, the first-echo law): nothing in
+        /// a textbook, one of a usual sensor, and seldom much more.
+        share: Parameter::new("", 0.0, [0.0, 1.5]).from(Guesses::At(&[1.0])).report(Report::Hidden),
+        /// Log-odds of an echo that are lost squarely before a wall at a metre: usual sensors differ by 2 in that.
+        log_odds_loss: Parameter::new("", 0.0, [-4.0, 8.0])
+            .prior_sd(3.0)
+            .from(Guesses::At(&[0.0, 3.0]))
             .report(Report::OddsFactor),
     }
 }

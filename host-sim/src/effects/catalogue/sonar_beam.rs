@@ -13,21 +13,21 @@ pub const EFFECT: Effect = Effect {
         Variant {
             id: "width",
             parameters: Width::PARAMETERS,
-            hooks: &[Hook::Sensor(&|v, _, sensor| sensor.width *= Width::read(v).factor)],
+            hooks: &[Hook::Sensor(&|v, _, sensor| sensor.perturbation.width *= Width::read(v).factor)],
         },
         Variant {
             id: "width_and_strength",
             parameters: WidthAndStrength::PARAMETERS,
             hooks: &[Hook::Sensor(&|v, _, sensor| {
                 let WidthAndStrength { factor, log_odds_loss } = WidthAndStrength::read(v);
-                sensor.width *= factor;
+                sensor.perturbation.width *= factor;
                 sensor.perturbation.attenuation += log_odds_loss;
             })],
         },
         Variant {
             id: "beam_for_ray",
             parameters: BeamForRay::PARAMETERS,
-            hooks: &[Hook::Sensor(&|v, _, sensor| sensor.width *= BeamForRay::read(v).factor)],
+            hooks: &[Hook::Sensor(&|v, _, sensor| sensor.perturbation.width *= BeamForRay::read(v).factor)],
         },
     ],
 };

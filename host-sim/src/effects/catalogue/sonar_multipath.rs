@@ -24,6 +24,15 @@ pub const EFFECT: Effect = Effect {
             })],
         },
         Variant {
+            id: "detours",
+            parameters: Detours::PARAMETERS,
+            hooks: &[Hook::Sensor(&|v, _, sensor| {
+                let Detours { probability, share } = Detours::read(v);
+                sensor.perturbation.p_long_given_none = probability;
+                sensor.perturbation.mirroring += share;
+            })],
+        },
+        Variant {
             id: "oblique",
             parameters: Multipath::PARAMETERS,
             hooks: &[Hook::SensorHere(&|v, context, sensor| {
@@ -56,6 +65,16 @@ parameters! {
             .report(Report::OddsFactor),
         /// Log-odds of an echo that are lost per 45 degrees: what goes on does not come straight back.
         log_odds_loss: Parameter::new("", 0.0, [-4.0, 4.0]).prior_sd(1.5).report(Report::Hidden),
+    }
+}
+
+parameters! {
+    Detours {
+        /// Chance that sound of which nothing comes straight back is heard by way of another wall: filters and rooms differ in
+        /// that from next to none to more than half.
+        probability: Parameter::new("", 0.0, [0.0, 0.98]).from(Guesses::At(&[0.3])),
+        /// Share of what walls usually send on rather than back (docs/sonar.md, the first-echo law): one of usual walls.
+        share: Parameter::new("", 0.0, [0.0, 1.5]).from(Guesses::At(&[1.0])).report(Report::Hidden),
     }
 }
 

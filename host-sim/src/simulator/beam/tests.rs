@@ -18,14 +18,18 @@ fn lanes_draw_the_outcomes_of_the_model() {
 #[test]
 fn lanes_draw_the_outcomes_of_what_effects_leave() {
     let nominal = SensorState::nominal(Pose::new(0.0, 0.0, 0.0));
-    let after_echo = SensorState { yaw_rad: 0.2, width: 1.3, perturbation: PERTURBED, ..nominal };
+    let after_echo = SensorState { yaw_rad: 0.2, perturbation: Perturbation { width: 1.3, ..PERTURBED }, ..nominal };
     let mut after_none = after_echo;
     after_none.perturbation.p_dropout = 0.6;
     for (m, model) in SENSORS.iter().enumerate() {
         let beam = Beam::changed(model, &[after_echo, after_none]).expect("rays alike");
         assert_draws(&beam, model, &after_echo, 50.0, &format!("sensor {m} after an echo"));
         assert_draws(&beam, model, &after_none, f64::NAN, &format!("sensor {m} after none"));
-        assert!(Beam::changed(model, &[after_echo, SensorState { width: 1.4, ..after_none }]).is_none());
+        for otherwise in [Perturbation { width: 1.4, ..PERTURBED }, Perturbation { mirroring: 1.0, ..PERTURBED }] {
+            assert!(
+                Beam::changed(model, &[after_echo, SensorState { perturbation: otherwise, ..after_none }]).is_none()
+            );
+        }
     }
 }
 
@@ -57,7 +61,7 @@ fn assert_draws(beam: &Beam, model: &SonarModel, state: &SensorState, before_cm:
             };
             let mut turned = *pose;
             turned.heading_rad += state.yaw_rad;
-            let fan = fan_at(&scene.sides(), &turned, model.fan_width * state.width);
+            let fan = fan_at(&scene.sides(), &turned, model.fan_width * state.perturbation.width);
             let outcomes = model.outcomes(&fan, &state.perturbation);
             let cells = Partition::new(&outcomes);
             let counts = cells.count((0..DRAWS).map(|_| reading()));

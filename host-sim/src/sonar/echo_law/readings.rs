@@ -6,6 +6,7 @@ use crate::geometry::{Pose, cast};
 use crate::sonar::Perturbation;
 use crate::sonar::model::{CONSTANT_SCATTER_CM, reach_bounds_cm};
 use crate::sonar::outcomes::{Component, Distribution, Outcomes, Source};
+use crate::sonar::perturbation::loss_by_incidence;
 use crate::statistics::summary::logistic;
 
 /// Beyond this incidence a wall's part between two rays is as long as the range, degrees.
@@ -23,15 +24,22 @@ impl FirstEchoLaw {
         let known = 1.0 - self.p_stray;
         let mut components = Vec::with_capacity(targets.len() + 4);
         let (mut loudest, mut heard_before, mut not_ghost, mut before_ghost) = (f64::NEG_INFINITY, 0.0, 1.0, None);
+        let log_width_deg = libm::log(self.beam_deg * change.width);
         for target in targets {
-            let strength =
-                self.strength(target) - change.loss(target.distance_cm / 100.0, incidence_deg(target) / 45.0);
+            let before_beam =
+                self.on_axis(target) - change.loss(target.distance_cm / 100.0, incidence_deg(target) / 45.0);
+            if before_beam <= loudest {
+                continue;
+            }
+            let strength = before_beam - self.beam_loss(target, log_width_deg);
             if strength <= loudest {
                 continue;
             }
             loudest = strength;
             let heard = (1.0 - self.p_dropout) * (1.0 - change.p_dropout) * logistic(loudest);
-            let middle_cm = self.middle_cm(target, change);
+            let off_axis = target.off_axis_deg / change.width / 10.0;
+            let middle_cm =
+                change.reading_cm(self.direct_cm(target, off_axis)).clamp(self.range_cm[0], self.range_cm[1]);
             if middle_cm >= self.ghost_cm && before_ghost.is_none() {
                 before_ghost = Some(heard_before);
                 not_ghost = 1.0 - self.p_ghost;
@@ -39,7 +47,10 @@ impl FirstEchoLaw {
             components.push(Component {
                 source: Source::Hit,
                 probability: known * not_ghost * (heard - heard_before),
-                distribution: Distribution::Student { middle_cm, scale_cm: self.scale_cm(target, change) },
+                distribution: Distribution::Student {
+                    middle_cm,
+                    scale_cm: libm::hypot(self.scale_cm(target, off_axis), change.scatter_cm),
+                },
             });
             heard_before = heard;
         }
@@ -67,37 +78,40 @@ impl FirstEchoLaw {
 
     /// The strength of a target's echo, in units of the threshold's noise.
     pub fn strength(&self, target: &Target) -> f64 {
+        self.on_axis(target) - self.beam_loss(target, libm::log(self.beam_deg))
+    }
+
+    /// The strength if it stood on the axis.
+    fn on_axis(&self, target: &Target) -> f64 {
         let kind = match target.kind {
-            TargetKind::Ray { incidence_deg } => -self.loss_by_incidence(incidence_deg),
+            TargetKind::Ray { incidence_deg } => {
+                -loss_by_incidence(incidence_deg, self.specular_deg, self.oblique_loss)
+            }
             TargetKind::Foot => 0.0,
             TargetKind::Corner => self.corner,
             TargetKind::Edge => self.edge,
         };
-        let beam = libm::pow(target.off_axis_deg / self.beam_deg, self.beam_power);
-        self.gain - self.spreading * libm::log(target.distance_cm / 100.0) - beam + kind
+        self.gain - self.spreading * target.log[0] + kind
     }
 
-    /// What a wall loses by its incidence.
-    fn loss_by_incidence(&self, incidence_deg: f64) -> f64 {
-        let turned = incidence_deg / self.specular_deg;
-        self.oblique_loss * (1.0 - libm::exp(-turned * turned / self.oblique_loss))
+    /// What it loses where it stands, by a beam with this logarithm of its width in degrees.
+    fn beam_loss(&self, target: &Target, log_width_deg: f64) -> f64 {
+        libm::exp(self.beam_power * (target.log[1] - log_width_deg))
     }
 
-    fn middle_cm(&self, target: &Target, change: &Perturbation) -> f64 {
-        let off = target.off_axis_deg / 10.0;
-        let [low, high] = self.range_cm;
-        let echo_cm = self.offset_cm + self.scale * target.distance_cm + self.off_axis_cm * off * off;
-        change.reading_cm(echo_cm).clamp(low, high)
+    /// What it reads before scatter, cm, at an angle off the axis in units of 10 degrees.
+    fn direct_cm(&self, target: &Target, off_axis: f64) -> f64 {
+        self.offset_cm + self.scale * target.distance_cm + self.off_axis_cm * off_axis * off_axis
     }
 
-    fn scale_cm(&self, target: &Target, change: &Perturbation) -> f64 {
-        let growth =
-            self.scatter_per_m * target.distance_cm / 100.0 + self.scatter_off_axis * target.off_axis_deg / 10.0;
+    /// The scale of its readings, cm.
+    fn scale_cm(&self, target: &Target, off_axis: f64) -> f64 {
+        let growth = self.scatter_per_m * target.distance_cm / 100.0 + self.scatter_off_axis * off_axis;
         let own = self.scatter_cm * libm::exp(growth);
         let incidence_rad = incidence_deg(target).min(GRAZING_DEG).to_radians();
         // A uniform distribution has a standard deviation of its width over the root of twelve.
         let between = target.distance_cm * libm::tan(incidence_rad) * SPACING_DEG.to_radians() / 12f64.sqrt();
-        (own * own + between * between + change.scatter_cm * change.scatter_cm).sqrt()
+        (own * own + between * between).sqrt()
     }
 }
 

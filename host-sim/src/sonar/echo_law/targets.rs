@@ -12,6 +12,8 @@ pub struct Target {
     pub off_axis_deg: f64,
     /// What it is.
     pub kind: TargetKind,
+    /// Natural logarithms of the distance in metres and of the angle in degrees: laws ask for them again and again.
+    pub(super) log: [f64; 2],
 }
 
 /// What returns an echo.
@@ -56,6 +58,12 @@ pub fn targets_at(surfaces: &Surfaces, sensor: &Pose) -> Vec<Target> {
 }
 
 impl Target {
+    /// A target at a distance in cm, so many degrees off the axis.
+    pub fn new(distance_cm: f64, off_axis_deg: f64, kind: TargetKind) -> Self {
+        let log = [libm::log(distance_cm / 100.0), libm::log(off_axis_deg)];
+        Target { distance_cm, off_axis_deg, kind, log }
+    }
+
     /// The incidence of a wall, degrees.
     pub fn incidence_deg(&self) -> Option<f64> {
         match self.kind {
@@ -81,11 +89,8 @@ fn rays(surfaces: &Surfaces, sensor: &Pose) -> impl Iterator<Item = Target> {
         let off_axis_deg = SPACING_DEG * f64::from(ray);
         let way = direction(sensor.heading_rad + off_axis_deg.to_radians());
         let hit = cast(&surfaces.walls, sensor.position_cm, way)?;
-        Some(Target {
-            distance_cm: hit.distance_cm.max(NEAREST_CM),
-            off_axis_deg: off_axis_deg.abs(),
-            kind: TargetKind::Ray { incidence_deg: hit.incidence_rad.abs().to_degrees() },
-        })
+        let kind = TargetKind::Ray { incidence_deg: hit.incidence_rad.abs().to_degrees() };
+        Some(Target::new(hit.distance_cm.max(NEAREST_CM), off_axis_deg.abs(), kind))
     })
 }
 
@@ -118,5 +123,5 @@ fn point(surfaces: &Surfaces, sensor: &Pose, at_cm: glam::DVec2, kind: TargetKin
     let is_heard = distance_cm > 0.0
         && off_axis_deg <= SPACING_DEG * f64::from(RAYS)
         && surfaces.is_visible(sensor.position_cm, at_cm);
-    is_heard.then(|| Target { distance_cm: distance_cm.max(NEAREST_CM), off_axis_deg, kind })
+    is_heard.then(|| Target::new(distance_cm.max(NEAREST_CM), off_axis_deg, kind))
 }

@@ -133,7 +133,7 @@ fn what_stands_behind_another_wall_is_no_target() {
 
 #[test]
 fn a_weaker_echo_behind_a_stronger_one_is_never_the_first() {
-    let target = |distance_cm, kind| Target { distance_cm, off_axis_deg: 0.0, kind };
+    let target = |distance_cm, kind| Target::new(distance_cm, 0.0, kind);
     let near = target(50.0, TargetKind::Foot);
     let [weak, strong] = [TargetKind::Edge, TargetKind::Foot].map(|kind| target(60.0, kind));
     let hits_of = |targets: &[Target]| hits(&LAW.outcomes(targets, 50.0, &Perturbation::NONE));
