@@ -1,6 +1,6 @@
 //! The outcomes of a reading by the first-echo law.
 
-use super::targets::{SPACING_DEG, Target, TargetKind};
+use super::targets::{Target, TargetKind};
 use super::{FirstEchoLaw, Surfaces, targets_at};
 use crate::geometry::{Pose, cast};
 use crate::sonar::Perturbation;
@@ -8,9 +8,6 @@ use crate::sonar::model::{CONSTANT_SCATTER_CM, reach_bounds_cm};
 use crate::sonar::outcomes::{Component, Distribution, Outcomes, Source};
 use crate::sonar::perturbation::loss_by_incidence;
 use crate::statistics::summary::logistic;
-
-/// Beyond this incidence a wall's part between two rays is as long as the range, degrees.
-const GRAZING_DEG: f64 = 80.0;
 
 impl FirstEchoLaw {
     /// The outcomes of a reading of a sensor at a pose.
@@ -26,8 +23,8 @@ impl FirstEchoLaw {
         let (mut loudest, mut heard_before, mut not_ghost, mut before_ghost) = (f64::NEG_INFINITY, 0.0, 1.0, None);
         let log_width_deg = libm::log(self.beam_deg * change.width);
         for target in targets {
-            let before_beam =
-                self.on_axis(target) - change.loss(target.distance_cm / 100.0, incidence_deg(target) / 45.0);
+            let lost = change.loss(target.distance_cm / 100.0, incidence_deg(target) / 45.0, || target.known.shaped);
+            let before_beam = self.on_axis(target) - lost;
             if before_beam <= loudest {
                 continue;
             }
@@ -91,12 +88,12 @@ impl FirstEchoLaw {
             TargetKind::Corner => self.corner,
             TargetKind::Edge => self.edge,
         };
-        self.gain - self.spreading * target.log[0] + kind
+        self.gain - self.spreading * target.known.shaped[0] + kind
     }
 
     /// What it loses where it stands, by a beam with this logarithm of its width in degrees.
     fn beam_loss(&self, target: &Target, log_width_deg: f64) -> f64 {
-        libm::exp(self.beam_power * (target.log[1] - log_width_deg))
+        libm::exp(self.beam_power * (target.known.log_off_axis - log_width_deg))
     }
 
     /// What it reads before scatter, cm, at an angle off the axis in units of 10 degrees.
@@ -108,9 +105,7 @@ impl FirstEchoLaw {
     fn scale_cm(&self, target: &Target, off_axis: f64) -> f64 {
         let growth = self.scatter_per_m * target.distance_cm / 100.0 + self.scatter_off_axis * off_axis;
         let own = self.scatter_cm * libm::exp(growth);
-        let incidence_rad = incidence_deg(target).min(GRAZING_DEG).to_radians();
-        // A uniform distribution has a standard deviation of its width over the root of twelve.
-        let between = target.distance_cm * libm::tan(incidence_rad) * SPACING_DEG.to_radians() / 12f64.sqrt();
+        let between = target.known.between_cm;
         (own * own + between * between).sqrt()
     }
 }

@@ -2,6 +2,7 @@
 
 use super::surfaces::{Side, Surfaces};
 use crate::geometry::{Pose, cast, direction, wrap_rad};
+use crate::sonar::perturbation::shaped;
 
 /// Something that can return an echo.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -12,9 +13,23 @@ pub struct Target {
     pub off_axis_deg: f64,
     /// What it is.
     pub kind: TargetKind,
-    /// Natural logarithms of the distance in metres and of the angle in degrees: laws ask for them again and again.
-    pub(super) log: [f64; 2],
+    /// Laws ask for these again and again.
+    pub(super) known: Known,
 }
+
+/// What follows from a target's place.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Known {
+    /// Of its distance and incidence: see [`shaped`].
+    pub shaped: [f64; 2],
+    /// The logarithm of its angle off the axis in degrees.
+    pub log_off_axis: f64,
+    /// Standard deviation of what lies between two rays along a wall, cm.
+    pub between_cm: f64,
+}
+
+/// Beyond this incidence a wall's part between two rays is as long as the range, degrees.
+const GRAZING_DEG: f64 = 80.0;
 
 /// What returns an echo.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,7 +48,7 @@ pub enum TargetKind {
 }
 
 /// Angle between two rays, degrees.
-pub(super) const SPACING_DEG: f64 = 3.0;
+const SPACING_DEG: f64 = 3.0;
 /// Rays to either side of the axis: out to 60 degrees, where a wall a hand's breadth away is no longer heard.
 const RAYS: i32 = 20;
 /// Nothing is nearer to the sensor than its own membrane, cm.
@@ -54,14 +69,31 @@ pub fn targets_at(surfaces: &Surfaces, sensor: &Pose) -> Vec<Target> {
             heard.push(target);
         }
     }
+    heard.iter_mut().for_each(|target| *target = target.with_known());
     heard
 }
 
 impl Target {
     /// A target at a distance in cm, so many degrees off the axis.
     pub fn new(distance_cm: f64, off_axis_deg: f64, kind: TargetKind) -> Self {
-        let log = [libm::log(distance_cm / 100.0), libm::log(off_axis_deg)];
-        Target { distance_cm, off_axis_deg, kind, log }
+        Target::unknown(distance_cm, off_axis_deg, kind).with_known()
+    }
+
+    /// The same before what follows from its place is worked out.
+    fn unknown(distance_cm: f64, off_axis_deg: f64, kind: TargetKind) -> Self {
+        Target { distance_cm, off_axis_deg, kind, known: Known::default() }
+    }
+
+    fn with_known(self) -> Self {
+        let incidence_deg = self.incidence_deg().unwrap_or(0.0);
+        // A uniform distribution has a standard deviation of its width over the root of twelve.
+        let spacing = libm::tan(incidence_deg.min(GRAZING_DEG).to_radians()) * SPACING_DEG.to_radians() / 12f64.sqrt();
+        let known = Known {
+            shaped: shaped(self.distance_cm / 100.0, incidence_deg / 45.0),
+            log_off_axis: libm::log(self.off_axis_deg),
+            between_cm: self.distance_cm * spacing,
+        };
+        Target { known, ..self }
     }
 
     /// The incidence of a wall, degrees.
@@ -90,7 +122,7 @@ fn rays(surfaces: &Surfaces, sensor: &Pose) -> impl Iterator<Item = Target> {
         let way = direction(sensor.heading_rad + off_axis_deg.to_radians());
         let hit = cast(&surfaces.walls, sensor.position_cm, way)?;
         let kind = TargetKind::Ray { incidence_deg: hit.incidence_rad.abs().to_degrees() };
-        Some(Target::new(hit.distance_cm.max(NEAREST_CM), off_axis_deg.abs(), kind))
+        Some(Target::unknown(hit.distance_cm.max(NEAREST_CM), off_axis_deg.abs(), kind))
     })
 }
 
@@ -123,5 +155,5 @@ fn point(surfaces: &Surfaces, sensor: &Pose, at_cm: glam::DVec2, kind: TargetKin
     let is_heard = distance_cm > 0.0
         && off_axis_deg <= SPACING_DEG * f64::from(RAYS)
         && surfaces.is_visible(sensor.position_cm, at_cm);
-    is_heard.then(|| Target::new(distance_cm.max(NEAREST_CM), off_axis_deg, kind))
+    is_heard.then(|| Target::unknown(distance_cm.max(NEAREST_CM), off_axis_deg, kind))
 }
