@@ -31,8 +31,10 @@
 //!
 //! [`MixingWeights`] is the table's one implementation and [`Outcomes`] the whole mixture: logs are judged by
 //! [`Outcomes::log_likelihood`], and readings are drawn by [`Outcomes::draw`]. The vectorised simulator draws the first
-//! echo ray by ray and the rest by the same weights. Another law of the first echo would change [`first_echo`] and that
-//! loop alone.
+//! echo ray by ray and the rest by the same weights.
+//!
+//! Another law of the same sensor is the first-echo law ([`echo_law`]). A diagnosis judges a sensor by the one that its training
+//! logs make likelier, and knows both as a [`SensorLaw`]; perturbations mean the same to either.
 
 mod draw;
 pub mod echo_law;

@@ -192,7 +192,7 @@ fn law(at: &[f64], range_cm: [f64; 2]) -> FirstEchoLaw {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
     use crate::built_in_robot::{default_robot, training_room};
     use crate::geometry::Pose;
@@ -209,8 +209,11 @@ mod tests {
         law(&at, [4.0, 240.0])
     }
 
+    /// By how much headings are off, degrees.
+    pub const MIXED_UP_DEG: [f64; 12] = [0.0, 3.0, -4.0, 6.0, -2.0, 1.0, 0.0, -5.0, 4.0, 2.0, -3.0, 0.0];
+
     /// Scans of a sensor that turns by 5 degrees a row at places of a room, with headings off by these.
-    fn scans(seed: u64, off_deg: [f64; 12]) -> Logs {
+    pub fn scans(seed: u64, off_deg: [f64; 12]) -> Logs {
         let scene = training_room();
         let surfaces = Surfaces::new(scene.sides());
         let robot = crate::logs::Robot {
@@ -236,7 +239,7 @@ mod tests {
 
     #[test]
     fn a_made_up_sensor_is_found_again() {
-        let off_deg = [0.0, 3.0, -4.0, 6.0, -2.0, 1.0, 0.0, -5.0, 4.0, 2.0, -3.0, 0.0];
+        let off_deg = MIXED_UP_DEG;
         let logs = scans(1, off_deg);
         let found = learn(&logs, 1).expect("readings");
         let truth = made_up();

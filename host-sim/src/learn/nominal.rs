@@ -179,3 +179,25 @@ fn sonar_from(at: &[f64], value_cm: f64, range_cm: [f64; 2]) -> SonarModel {
         range_cm,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::built_in_robot::{default_robot, record, training_room};
+    use crate::learn::echo_law::tests::{MIXED_UP_DEG, scans};
+    use crate::learn::train::{TABLE_ONE, Trainer, train};
+    use crate::logs::Logs;
+    use crate::sonar::SensorLaw;
+
+    fn law_of(logs: &Logs) -> SensorLaw {
+        let simulator = train(logs, &Trainer::Fast, &TABLE_ONE, 1, &|_| {}).expect("networks");
+        simulator.sensor_law().expect("enough readings")
+    }
+
+    /// The built-in robot's sensor follows neither, so that the beam, which lanes of robots can draw, is as good.
+    #[test]
+    fn a_sensor_is_judged_by_the_law_that_it_follows() {
+        assert!(matches!(law_of(&scans(1, MIXED_UP_DEG)), SensorLaw::FirstEcho(_)));
+        let driven = record(&default_robot(), &training_room(), 40, 60, &[], 3).expect("room to drive");
+        assert!(matches!(law_of(&driven), SensorLaw::Beam(_)));
+    }
+}

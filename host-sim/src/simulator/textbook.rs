@@ -70,7 +70,6 @@ pub fn simulator(baseline: &Baseline, scatter: [f64; 3]) -> Result<Simulator> {
         echo_probability: has_sensor.then(|| Learned { network: within(far_cm), residuals: residuals(0.0, far_cm) }),
         echo_value: has_sensor
             .then(|| Learned { network: distance(near_cm, far_cm), residuals: residuals(0.0, far_cm) }),
-        first_echo,
         constant_reading: None,
         reference: Some(NominalModel {
             motion: Some(MotionBias {
@@ -78,10 +77,11 @@ pub fn simulator(baseline: &Baseline, scatter: [f64; 3]) -> Result<Simulator> {
                 scatter,
             }),
             sonar,
-            is_first_echo: true,
+            is_first_echo: first_echo.is_some(),
             place_bound: baseline.place_bound,
             familiar: None,
         }),
+        first_echo,
         ensemble: None,
         table_one: None,
         added: baseline.applied.clone(),

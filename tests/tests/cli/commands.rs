@@ -5,7 +5,7 @@ use std::process::Stdio;
 
 use mindgap_tests::command::{Workshop, workspace};
 use mindgap_tests::rooms::{SCENE, trained, with_scene};
-use serde_json::Value;
+use serde_json::{Value, json};
 
 #[test]
 fn record_writes_a_folder_of_logs() {
@@ -190,7 +190,16 @@ fn a_simulator_knows_the_first_echo_law_of_its_sonar() {
     let by_law = workshop.done(&format!("{call} --sonar first_echo"));
     assert_eq!(by_law, workshop.done(&format!("{call} --sonar first_echo")));
     assert_ne!(by_law, workshop.done(call));
-    let mut older = workshop.json("sim.json");
+    // What an effect changes of the sensor it changes of the law too.
+    let mut changed = workshop.json("sim.json");
+    let original = changed.clone();
+    let added = json!({ "effect": "sonar_offset", "variant": "length", "parameters": { "cm": -20.0 } });
+    changed["added"] = json!([added]);
+    workshop.write("sim.json", changed.to_string());
+    let later = workshop.done(&format!("{call} --sonar first_echo"));
+    assert_ne!(later, by_law);
+    assert_ne!(later, workshop.done(call));
+    let mut older = original;
     older.as_object_mut().expect("a table").remove("first_echo");
     workshop.write("sim.json", older.to_string());
     workshop.done(call);

@@ -129,7 +129,7 @@ pub fn the_ends_of_a_neatos_runs_show_its_gap_to_the_textbook(folder: &Path) {
 pub fn a_real_sonar_that_stands_still_is_compared_with_the_textbook(folder: &Path) {
     let entries = fs::read_dir(folder).expect("a folder").map(|entry| entry.expect("an entry").path());
     let teams: Vec<PathBuf> = entries.filter(|path| path.is_dir()).collect();
-    let mut with_gap = 0;
+    let (mut with_gap, mut wide) = (0, 0);
     for team in &teams {
         let diagnosis = diagnosed(&Workshop::new(), &team.display().to_string());
         let notes = diagnosis["notes"].to_string();
@@ -144,9 +144,13 @@ pub fn a_real_sonar_that_stands_still_is_compared_with_the_textbook(folder: &Pat
         );
         assert_ne!(diagnosis["verdict"], "no_gap", "{}: {places:?}", team.display());
         with_gap += usize::from(!places.is_empty());
+        let effects = diagnosis["effects"].as_array().expect("a list");
+        wide += usize::from(effects.iter().any(|effect| effect["id"] == "sonar_beam"));
     }
     // No real sonar is the ideal ray of the textbook, and five scans are enough to show it for most.
     assert!(teams.len() >= 5 && 2 * with_gap > teams.len(), "{with_gap} of {} teams", teams.len());
+    // An independent analysis found beams of 7 to 11 degrees for all of them.
+    assert!(wide + 1 >= teams.len(), "{wide} of {} teams", teams.len());
 }
 
 /// A loss of forward speed in turns that its owner measured as 6.9 cm a radian of turn, sought where nothing but latency is

@@ -9,6 +9,16 @@ use crate::sonar::outcomes::{Component, Distribution, Outcomes, Source};
 use crate::sonar::perturbation::loss_by_incidence;
 use crate::statistics::summary::logistic;
 
+/// What comes straight back.
+struct Direct {
+    /// The echoes, nearest first.
+    components: Vec<Component>,
+    /// Probability that one of them is heard,
+    heard: f64,
+    /// and that one is that reads less than the ghost.
+    heard_before_ghost: f64,
+}
+
 impl FirstEchoLaw {
     /// The outcomes of a reading of a sensor at a pose.
     pub fn outcomes_at(&self, surfaces: &Surfaces, sensor: &Pose) -> Outcomes {
@@ -19,40 +29,10 @@ impl FirstEchoLaw {
     /// differs from the law by a perturbation.
     pub fn outcomes(&self, targets: &[Target], reach_cm: f64, change: &Perturbation) -> Outcomes {
         let known = 1.0 - self.p_stray;
-        let mut components = Vec::with_capacity(targets.len() + 4);
-        let (mut loudest, mut heard_before, mut not_ghost, mut before_ghost) = (f64::NEG_INFINITY, 0.0, 1.0, None);
-        let log_width_deg = libm::log(self.beam_deg * change.width);
-        for target in targets {
-            let lost = change.loss(target.distance_cm / 100.0, incidence_deg(target) / 45.0, || target.known.shaped);
-            let before_beam = self.on_axis(target) - lost;
-            if before_beam <= loudest {
-                continue;
-            }
-            let strength = before_beam - self.beam_loss(target, log_width_deg);
-            if strength <= loudest {
-                continue;
-            }
-            loudest = strength;
-            let heard = (1.0 - self.p_dropout) * (1.0 - change.p_dropout) * logistic(loudest);
-            let off_axis = target.off_axis_deg / change.width / 10.0;
-            let middle_cm =
-                change.reading_cm(self.direct_cm(target, off_axis)).clamp(self.range_cm[0], self.range_cm[1]);
-            if middle_cm >= self.ghost_cm && before_ghost.is_none() {
-                before_ghost = Some(heard_before);
-                not_ghost = 1.0 - self.p_ghost;
-            }
-            components.push(Component {
-                source: Source::Hit,
-                probability: known * not_ghost * (heard - heard_before),
-                distribution: Distribution::Student {
-                    middle_cm,
-                    scale_cm: libm::hypot(self.scale_cm(target, off_axis), change.scatter_cm),
-                },
-            });
-            heard_before = heard;
-        }
-        let ghost = self.p_ghost * (1.0 - before_ghost.unwrap_or(heard_before));
-        let silent = (1.0 - self.p_ghost) * (1.0 - heard_before);
+        let Direct { mut components, heard, heard_before_ghost } = self.direct(targets, change);
+        components.iter_mut().for_each(|echo| echo.probability *= known);
+        let ghost = self.p_ghost * (1.0 - heard_before_ghost);
+        let silent = (1.0 - self.p_ghost) * (1.0 - heard);
         let other = silent * self.p_other;
         let [low_cm, high_cm] = self.range_cm;
         let [least_cm, most_cm] = reach_bounds_cm(self.range_cm);
@@ -69,8 +49,43 @@ impl FirstEchoLaw {
         components.extend(others);
         let none = known * (silent - other) + 0.5 * self.p_stray;
         let outcomes = Outcomes { none, components, range_cm: self.range_cm }.with_faults(change, reach_cm);
-        // As of a beam: what scatters by itself beyond the range is reported as its ends, as in the logs of the fit.
+        // As of a beam: what scatters by itself beyond the range is not reported, and all else as its ends.
         if change.scatter_cm > 0.0 { outcomes.without_hits_beyond_range() } else { outcomes }
+    }
+
+    /// The direct echoes of targets, where no reading is a stray one.
+    fn direct(&self, targets: &[Target], change: &Perturbation) -> Direct {
+        let log_width_deg = libm::log(self.beam_deg * change.width);
+        let [low_cm, high_cm] = self.range_cm;
+        let mut components = Vec::with_capacity(targets.len() + 4);
+        let (mut loudest, mut heard, mut heard_before_ghost) = (f64::NEG_INFINITY, 0.0, None);
+        for target in targets {
+            let lost = change.loss(target.distance_cm / 100.0, incidence_deg(target) / 45.0, || target.known.shaped);
+            let on_axis = self.on_axis(target) - lost;
+            if on_axis <= loudest {
+                continue;
+            }
+            let strength = on_axis - self.beam_loss(target, log_width_deg);
+            if strength <= loudest {
+                continue;
+            }
+            loudest = strength;
+            let heard_before = heard;
+            heard = (1.0 - self.p_dropout) * (1.0 - change.p_dropout) * logistic(loudest);
+            let off_axis = target.off_axis_deg / change.width / 10.0;
+            let middle_cm = change.reading_cm(self.direct_cm(target, off_axis)).clamp(low_cm, high_cm);
+            let scale_cm = libm::hypot(self.scale_cm(target, off_axis), change.scatter_cm);
+            if middle_cm >= self.ghost_cm {
+                heard_before_ghost.get_or_insert(heard_before);
+            }
+            let not_ghost = if heard_before_ghost.is_some() { 1.0 - self.p_ghost } else { 1.0 };
+            components.push(Component {
+                source: Source::Hit,
+                probability: not_ghost * (heard - heard_before),
+                distribution: Distribution::Student { middle_cm, scale_cm },
+            });
+        }
+        Direct { components, heard, heard_before_ghost: heard_before_ghost.unwrap_or(heard) }
     }
 
     /// The strength of a target's echo, in units of the threshold's noise.

@@ -2,12 +2,12 @@ use glam::DVec2;
 use proptest::prelude::*;
 use rand::RngExt;
 
-use super::{FirstEchoLaw, Surfaces, Target, TargetKind, targets_at};
+use super::{FirstEchoLaw, Surfaces, Target, TargetKind, reach_cm, targets_at};
 use crate::chance::generator;
 use crate::geometry::{Pose, Rectangle, Wall};
 use crate::sonar::Perturbation;
 use crate::sonar::outcomes::{Outcomes, Source};
-use crate::sonar::partition::{Partition, assert_follow, scenes, sensors};
+use crate::sonar::partition::{PERTURBED, Partition, assert_follow, scenes, sensors};
 use crate::statistics::summary::logistic;
 
 /// A sensor with all parts of the law, whose readings scatter little, so that cells tell them apart.
@@ -141,13 +141,69 @@ fn a_weaker_echo_behind_a_stronger_one_is_never_the_first() {
     assert!((hits_of(&[weak, strong]) - heard(LAW.strength(&strong))).abs() < 1e-12);
 }
 
-/// The outcomes in every place of every scene.
+/// What effects change of a sensor is what a sensor with other parameters does.
+#[test]
+fn a_perturbed_sensor_is_another_sensor() {
+    let louder = FirstEchoLaw { gain: LAW.gain + 0.7, ..LAW };
+    let wider = FirstEchoLaw { beam_deg: 1.5 * LAW.beam_deg, off_axis_cm: LAW.off_axis_cm / 2.25, ..LAW };
+    let wider = FirstEchoLaw { scatter_off_axis: LAW.scatter_off_axis / 1.5, ..wider };
+    let longer = FirstEchoLaw { offset_cm: LAW.offset_cm + 4.0, ..LAW };
+    let others = [
+        (louder, Perturbation { attenuation: -0.7, ..Perturbation::NONE }),
+        (wider, Perturbation { width: 1.5, ..Perturbation::NONE }),
+        (longer, Perturbation { offset_cm: 4.0, ..Perturbation::NONE }),
+    ];
+    let surfaces = Surfaces::new(scenes()[0].sides());
+    for sensor in sensors() {
+        let targets = targets_at(&surfaces, &sensor);
+        for (other, change) in &others {
+            let reach_cm = reach_cm(&surfaces, &sensor);
+            let [perturbed, other] = [(&LAW, change), (other, &Perturbation::NONE)]
+                .map(|(law, change)| law.outcomes(&targets, reach_cm, change));
+            for echo_cm in [None, Some(21.0), Some(60.0), Some(90.0), Some(170.0)] {
+                let [a, b] = [&perturbed, &other].map(|outcomes| outcomes.log_likelihood(echo_cm));
+                assert!((a - b).abs() < 1e-9, "{change:?}: {a} {b}");
+            }
+        }
+    }
+}
+
+/// With a beam's width and the usual losses the textbook's ray hears what a usual sensor does.
+#[test]
+fn an_ideal_ray_becomes_a_sensor() {
+    let ray = FirstEchoLaw::ideal_ray(0.5, 0.0, LAW.range_cm);
+    let usual = FirstEchoLaw {
+        gain: 2.7,
+        spreading: 3.65,
+        beam_deg: 8.7,
+        specular_deg: 15.0,
+        oblique_loss: 10.7,
+        ..FirstEchoLaw::ideal_ray(0.5, 0.0, LAW.range_cm)
+    };
+    let change = Perturbation { width: 20.0, attenuation: 3.3, spreading: 3.65, mirroring: 1.0, ..Perturbation::NONE };
+    let surfaces = Surfaces::new(scenes()[0].sides());
+    for sensor in sensors() {
+        let targets = targets_at(&surfaces, &sensor);
+        let [a, b] = [(&ray, &change), (&usual, &Perturbation::NONE)]
+            .map(|(law, change)| law.outcomes(&targets, reach_cm(&surfaces, &sensor), change));
+        assert!((a.none - b.none).abs() < 1e-6, "{} {}", a.none, b.none);
+        let axis_cm = reach_cm(&surfaces, &sensor);
+        let heard = ray.outcomes(&targets, axis_cm, &Perturbation::NONE);
+        let mean_cm = heard.mean_hit_cm().expect("the ray meets something");
+        assert!(heard.none < 0.01 && (mean_cm - axis_cm).abs() < 0.5, "{mean_cm} for {axis_cm}");
+    }
+}
+
+/// The outcomes in every place of every scene, of the sensor as it is and perturbed.
 fn grid() -> Vec<(String, Outcomes)> {
     let mut grid = Vec::new();
     for (s, scene) in scenes().iter().enumerate() {
         let surfaces = Surfaces::new(scene.sides());
         for (p, sensor) in sensors().iter().enumerate() {
-            grid.push((format!("{p} of scene {s}"), LAW.outcomes_at(&surfaces, sensor)));
+            for (name, change) in [("as it is", Perturbation::NONE), ("perturbed", PERTURBED)] {
+                let outcomes = LAW.outcomes(&targets_at(&surfaces, sensor), reach_cm(&surfaces, sensor), &change);
+                grid.push((format!("{p} of scene {s}, {name}"), outcomes));
+            }
         }
     }
     grid
