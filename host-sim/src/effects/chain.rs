@@ -51,7 +51,7 @@ impl EffectChain {
         self.each(|hook, values| match hook {
             Hook::Commands(change) | Hook::CommandsHere(change) => change(values, context, &mut commands),
             Hook::Delay(delay) => late_steps += delay(values, context),
-            Hook::Motion(_) | Hook::MotionHere(_) | Hook::Sensor(_) | Hook::SensorHere(_) => {}
+            Hook::Motion(_) | Hook::MotionHere(_) | Hook::Sensor(_) | Hook::SensorHere(_) | Hook::Ray(_) => {}
         });
         let mut increment = delayed(&commands, late_steps, step);
         self.each(|hook, values| {
@@ -66,7 +66,7 @@ impl EffectChain {
     pub fn sensor(&self, context: &StepContext) -> SensorState {
         let mut sensor = SensorState::nominal(context.pose);
         self.each(|hook, values| {
-            if let Hook::Sensor(change) | Hook::SensorHere(change) = hook {
+            if let Hook::Sensor(change) | Hook::SensorHere(change) | Hook::Ray(change) = hook {
                 change(values, context, &mut sensor);
             }
         });

@@ -49,6 +49,8 @@ pub enum Hook {
     Sensor(&'static (dyn Fn(&[f64], &StepContext, &mut SensorState) + Sync)),
     /// The same, by where and when too.
     SensorHere(&'static (dyn Fn(&[f64], &StepContext, &mut SensorState) + Sync)),
+    /// To the textbook's ideal ray, as the first: what any real sensor has, and one that was learned from logs has already.
+    Ray(&'static (dyn Fn(&[f64], &StepContext, &mut SensorState) + Sync)),
 }
 
 /// The sensor at a row, as effects leave it.
@@ -101,13 +103,18 @@ impl Variant {
     pub fn only_widens_scatter(&self, values: &[f64], step: &StepContext) -> bool {
         let mut state = SensorState::nominal(step.pose);
         for hook in self.hooks {
-            if let Hook::Sensor(change) | Hook::SensorHere(change) = hook {
+            if let Hook::Sensor(change) | Hook::SensorHere(change) | Hook::Ray(change) = hook {
                 change(values, step, &mut state);
             }
         }
         let widened = state.perturbation.scatter_cm > 0.0;
         state.perturbation.scatter_cm = 0.0;
         widened && state == SensorState::nominal(step.pose) && !self.moves()
+    }
+
+    /// Whether it is sought in the textbook's ideal ray alone.
+    pub fn is_for_a_ray(&self) -> bool {
+        self.hooks.iter().any(|hook| matches!(hook, Hook::Ray(_)))
     }
 
     /// Whether it changes what the sensor says.
@@ -118,7 +125,7 @@ impl Variant {
 
 impl Hook {
     fn senses(&self) -> bool {
-        matches!(self, Hook::Sensor(_) | Hook::SensorHere(_))
+        matches!(self, Hook::Sensor(_) | Hook::SensorHere(_) | Hook::Ray(_))
     }
 }
 

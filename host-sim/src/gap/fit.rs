@@ -13,6 +13,7 @@ use crate::effects::chain::EffectChain;
 use crate::effects::{Candidate, Effect};
 use crate::evaluation::observations::Observations;
 use crate::simulator::baseline::Baseline;
+use crate::sonar::SensorLaw;
 use crate::statistics::maximise::{Bounds, Maximum, climb, climb_on, step_of_one};
 
 /// What is fitted, to what, and what counts.
@@ -179,7 +180,9 @@ impl Fitted {
     /// end.
     pub fn with_each(&self, alone: Option<&[Fitted]>, context: &FitContext) -> Vec<Fitted> {
         let mut fresh = Candidate::all(context.catalogue);
-        fresh.retain(|candidate| !self.ids().contains(&candidate.effect));
+        let hears_by_a_ray = context.baseline.sonar.as_ref().is_some_and(SensorLaw::is_ray);
+        let is_sought = |candidate: &Candidate| hears_by_a_ray || !candidate.variant.is_for_a_ray();
+        fresh.retain(|candidate| !self.ids().contains(&candidate.effect) && is_sought(candidate));
         let Some(alone) = alone else {
             return fresh.par_iter().map(|candidate| self.with(*candidate, context)).collect();
         };

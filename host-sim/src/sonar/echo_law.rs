@@ -123,6 +123,11 @@ impl FirstEchoLaw {
         }
     }
 
+    /// Whether it is such a ray.
+    pub fn is_ray(&self) -> bool {
+        *self == FirstEchoLaw::ideal_ray(self.scatter_cm, self.p_dropout, self.range_cm)
+    }
+
     /// Whether the numbers can be those of a sensor, so that every outcome has a probability.
     pub fn is_sound(&self) -> bool {
         let FirstEchoLaw { p_dropout, p_other, p_long_given_other, p_ghost, p_stray, .. } = *self;

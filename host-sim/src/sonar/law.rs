@@ -60,6 +60,11 @@ impl SensorLaw {
         matches!(self, SensorLaw::Beam(_))
     }
 
+    /// Whether it is the textbook's ideal ray.
+    pub fn is_ray(&self) -> bool {
+        matches!(self, SensorLaw::FirstEcho(law) if law.is_ray())
+    }
+
     /// Least and largest reading, cm.
     pub fn range_cm(&self) -> [f64; 2] {
         match self {

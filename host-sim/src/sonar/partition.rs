@@ -66,7 +66,7 @@ pub const PERTURBED: Perturbation = Perturbation {
     ghost_cm: 34.0,
     p_short: 0.05,
     p_long: 0.06,
-    p_long_given_none: 0.15,
+    p_long_given_none: 0.05,
 };
 
 /// A room with an obstacle, and the obstacle alone: there a fan may meet nothing.

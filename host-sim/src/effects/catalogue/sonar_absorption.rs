@@ -30,7 +30,7 @@ pub const EFFECT: Effect = Effect {
         Variant {
             id: "as_mirrors",
             parameters: Mirrors::PARAMETERS,
-            hooks: &[Hook::Sensor(&|v, _, s| {
+            hooks: &[Hook::Ray(&|v, _, s| {
                 let Mirrors { share, log_odds_loss } = Mirrors::read(v);
                 s.perturbation.mirroring += share;
                 s.perturbation.spreading += SPREADING * share;

@@ -26,7 +26,7 @@ pub const EFFECT: Effect = Effect {
         Variant {
             id: "detours",
             parameters: Detours::PARAMETERS,
-            hooks: &[Hook::Sensor(&|v, _, sensor| {
+            hooks: &[Hook::Ray(&|v, _, sensor| {
                 let Detours { probability, share } = Detours::read(v);
                 sensor.perturbation.p_long_given_none = probability;
                 sensor.perturbation.mirroring += share;

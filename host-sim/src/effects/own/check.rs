@@ -146,7 +146,9 @@ pub fn changes_nothing(variant: &Variant) -> Result<(), String> {
                 // No expression makes one.
                 Hook::Delay(_) => {}
                 Hook::Motion(change) | Hook::MotionHere(change) => change(&nominal, &step, &mut moved),
-                Hook::Sensor(change) | Hook::SensorHere(change) => change(&nominal, &step, &mut sensor),
+                Hook::Sensor(change) | Hook::SensorHere(change) | Hook::Ray(change) => {
+                    change(&nominal, &step, &mut sensor)
+                }
             }
         }
         let usual = SensorState::nominal(step.pose).perturbation;
