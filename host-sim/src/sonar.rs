@@ -29,7 +29,7 @@
 //! value; short readings are uniform from the least reading to what the axis meets, long ones from there to the
 //! largest, random ones over the whole range.
 //!
-//! [`MixingWeights`] is the table's one implementation and [`Outcomes`] the whole mixture: logs are judged by
+//! [`MixingWeights`] is the table's one implementation for a beam and [`Outcomes`] the whole mixture: logs are judged by
 //! [`Outcomes::log_likelihood`], and readings are drawn by [`Outcomes::draw`]. The vectorised simulator draws the first
 //! echo ray by ray and the rest by the same weights.
 //!

@@ -66,7 +66,7 @@ impl EffectChain {
     pub fn sensor(&self, context: &StepContext) -> SensorState {
         let mut sensor = SensorState::nominal(context.pose);
         self.each(|hook, values| {
-            if let Hook::Sensor(change) | Hook::SensorHere(change) | Hook::Ray(change) = hook {
+            if let Some(change) = hook.of_sensor() {
                 change(values, context, &mut sensor);
             }
         });

@@ -33,6 +33,9 @@ pub struct Variant {
     pub hooks: &'static [Hook],
 }
 
+/// A change to the sensor at a row, by parameters and circumstances.
+pub type ChangeOfSensor = &'static (dyn Fn(&[f64], &StepContext, &mut SensorState) + Sync);
+
 /// A change to one stage of a step; parameters come in the order of [`Variant::parameters`].
 pub enum Hook {
     /// To the commands that reach the motors, for every step of the history, by these commands alone.
@@ -46,11 +49,11 @@ pub enum Hook {
     /// The same, by where and when too.
     MotionHere(&'static (dyn Fn(&[f64], &StepContext, &mut PoseIncrement) + Sync)),
     /// To the sensor, by whether it heard an echo before and nothing else.
-    Sensor(&'static (dyn Fn(&[f64], &StepContext, &mut SensorState) + Sync)),
+    Sensor(ChangeOfSensor),
     /// The same, by where and when too.
-    SensorHere(&'static (dyn Fn(&[f64], &StepContext, &mut SensorState) + Sync)),
+    SensorHere(ChangeOfSensor),
     /// To the textbook's ideal ray, as the first: what any real sensor has, and one that was learned from logs has already.
-    Ray(&'static (dyn Fn(&[f64], &StepContext, &mut SensorState) + Sync)),
+    Ray(ChangeOfSensor),
 }
 
 /// The sensor at a row, as effects leave it.
@@ -86,7 +89,7 @@ impl Variant {
 
     /// Whether it changes what the robot does or how that is seen.
     pub fn moves(&self) -> bool {
-        self.hooks.iter().any(|hook| !hook.senses())
+        self.hooks.iter().any(|hook| hook.of_sensor().is_none())
     }
 
     /// Whether what it does to the motion follows from commands, wherever and whenever they are driven.
@@ -103,7 +106,7 @@ impl Variant {
     pub fn only_widens_scatter(&self, values: &[f64], step: &StepContext) -> bool {
         let mut state = SensorState::nominal(step.pose);
         for hook in self.hooks {
-            if let Hook::Sensor(change) | Hook::SensorHere(change) | Hook::Ray(change) = hook {
+            if let Some(change) = hook.of_sensor() {
                 change(values, step, &mut state);
             }
         }
@@ -119,13 +122,17 @@ impl Variant {
 
     /// Whether it changes what the sensor says.
     pub fn senses(&self) -> bool {
-        self.hooks.iter().any(Hook::senses)
+        self.hooks.iter().any(|hook| hook.of_sensor().is_some())
     }
 }
 
 impl Hook {
-    fn senses(&self) -> bool {
-        matches!(self, Hook::Sensor(_) | Hook::SensorHere(_) | Hook::Ray(_))
+    /// What it changes of the sensor, if it is a change to that.
+    pub fn of_sensor(&self) -> Option<ChangeOfSensor> {
+        match self {
+            Hook::Sensor(change) | Hook::SensorHere(change) | Hook::Ray(change) => Some(*change),
+            Hook::Commands(_) | Hook::CommandsHere(_) | Hook::Delay(_) | Hook::Motion(_) | Hook::MotionHere(_) => None,
+        }
     }
 }
 

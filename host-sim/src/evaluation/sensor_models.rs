@@ -51,9 +51,8 @@ pub fn sensor_models(simulator: &Simulator, logs: &Logs, watch: impl Fn(usize, u
         return None;
     }
     let surfaces = Surfaces::new(logs.scene.sides());
-    let sides = logs.scene.sides();
     let networks = of_networks(simulator, |sensor| {
-        let hit = cast(&sides, sensor.position_cm, sensor.direction())?;
+        let hit = cast(surfaces.walls(), sensor.position_cm, sensor.direction())?;
         Some([hit.distance_cm, hit.incidence_rad.abs().to_degrees()].map(|x| x as f32))
     });
     let reference = simulator.reference.as_ref();
