@@ -1,5 +1,6 @@
 //! Learns a simulator from logs: data sets, trainers, and evaluation on held-out logs.
 
+pub mod beam;
 pub mod dataset;
 pub mod echo_law;
 pub mod ensemble;
@@ -12,4 +13,5 @@ pub mod paper;
 pub mod place_bound;
 pub mod scans;
 pub mod scatter;
+pub mod sensor_law;
 pub mod train;

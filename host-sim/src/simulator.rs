@@ -171,13 +171,11 @@ impl Simulator {
         MotionNetworks::of(self).ok()
     }
 
-    /// The law by which its sensor is judged: the likelier of the reference's beam and the first-echo law.
+    /// The law by which its sensor is judged: the reference's first-echo law where that is the likelier, else its beam.
     pub fn sensor_law(&self) -> Option<SensorLaw> {
         let reference = self.reference.as_ref()?;
-        match &self.first_echo {
-            Some(law) if reference.is_first_echo => Some(SensorLaw::FirstEcho(law.clone())),
-            _ => reference.sonar.clone().map(SensorLaw::Beam),
-        }
+        let first_echo = reference.first_echo.clone().map(SensorLaw::FirstEcho);
+        first_echo.or_else(|| reference.sonar.clone().map(SensorLaw::Beam))
     }
 
     /// The robot in the middle of what the logs leave open, and `count` drawn ones; none where that is not said.

@@ -33,7 +33,7 @@ impl HeldOut {
         for out in 0..logs.runs.len() {
             let mut others = logs.clone();
             let scan = Logs { runs: vec![others.runs.remove(out)], ..others.clone() };
-            let law = echo_law::learn(&others, 1).expect("readings");
+            let law = echo_law::learn(&others, 1).expect("readings").sensor;
             let readings = Scans::of(&scan).rows().count();
             let judged = nats(&scan, |sensor| law.outcomes_at(&surfaces, sensor));
             sum.readings += readings;

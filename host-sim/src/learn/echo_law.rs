@@ -2,6 +2,7 @@
 
 use rand::RngExt;
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 
 use super::scans::{Heard, Offset, Scans, UNCHANGED};
 use crate::chance::generator;
@@ -68,18 +69,26 @@ const MOST_ROWS: usize = 1000;
 const FEWEST: usize = 30;
 
 /// The law of the sensor that made these logs; none where they hold too few readings.
-pub fn learn(logs: &Logs, seed: u64) -> Option<FirstEchoLaw> {
-    let scans = Scans::of(logs);
-    if scans.rows().filter(|row| row.echo_cm.is_some()).count() < FEWEST {
-        return None;
-    }
-    let fit = Fit {
-        surfaces: Surfaces::new(logs.scene.sides()),
-        weight: scans.weight(),
-        scans: scans.sampled(MOST_ROWS, seed),
-        range_cm: [logs.robot.ultrasonic.min_cm, logs.robot.ultrasonic.max_cm],
-    };
-    Some(fit.most_probable(seed))
+pub fn learn(logs: &Logs, seed: u64) -> Option<Found> {
+    let readings = logs.runs.iter().flat_map(|run| &run.rows).filter(|row| row.pose.and(row.echo_cm).is_some()).count();
+    (readings >= FEWEST).then(|| Fit::new(logs, seed).most_probable(seed))
+}
+
+/// The law of these logs, with poses as logged, sought from another on.
+pub fn learn_from(start: &FirstEchoLaw, logs: &Logs, seed: u64) -> FirstEchoLaw {
+    let fit = Fit::new(logs, seed);
+    let faced = fit.faced(&vec![UNCHANGED; fit.scans.runs.len()]);
+    let found = climb(&bounds(), &numbers(start), TURNS * LATER_ROUNDS, ENOUGH, |at| fit.terms(at, &faced));
+    law(&found.at, fit.range_cm)
+}
+
+/// The most probable law of a sensor; where no run is a scan both are the same.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Found {
+    /// With the poses of scans as nuisances: what the sensor is like.
+    pub sensor: FirstEchoLaw,
+    /// With poses as they are logged: how readings lie about them, with what the poses of such scans are off by.
+    pub as_logged: FirstEchoLaw,
 }
 
 struct Fit {
@@ -97,28 +106,39 @@ struct Faced {
 }
 
 impl Fit {
-    fn most_probable(&self, seed: u64) -> FirstEchoLaw {
-        let as_logged = self.faced(&vec![UNCHANGED; self.scans.runs.len()]);
+    fn new(logs: &Logs, seed: u64) -> Self {
+        let scans = Scans::of(logs);
+        Fit {
+            surfaces: Surfaces::new(logs.scene.sides()),
+            weight: scans.weight(),
+            scans: scans.sampled(MOST_ROWS, seed),
+            range_cm: [logs.robot.ultrasonic.min_cm, logs.robot.ultrasonic.max_cm],
+        }
+    }
+
+    fn most_probable(&self, seed: u64) -> Found {
+        let unchanged = self.faced(&vec![UNCHANGED; self.scans.runs.len()]);
         let mut best: Option<Maximum> = None;
         for start in starts(seed) {
-            let found = climb(&bounds(), &start, FIRST_ROUNDS, ENOUGH, |at| self.terms(at, &as_logged));
+            let found = climb(&bounds(), &start, FIRST_ROUNDS, ENOUGH, |at| self.terms(at, &unchanged));
             if best.as_ref().is_none_or(|best| found.value() > best.value()) {
                 best = Some(found);
             }
         }
         let best = best.expect("there are several starts");
+        let mut at = best.at.clone();
+        let as_logged = climb_on(&bounds(), best, TURNS * LATER_ROUNDS, ENOUGH, |at| self.terms(at, &unchanged));
+        let as_logged = law(&as_logged.at, self.range_cm);
         if !(0..self.scans.runs.len()).any(|run| self.scans.is_scan(run)) {
-            let found = climb_on(&bounds(), best, TURNS * LATER_ROUNDS, ENOUGH, |at| self.terms(at, &as_logged));
-            return law(&found.at, self.range_cm);
+            return Found { sensor: as_logged.clone(), as_logged };
         }
-        let mut at = best.at;
         for _ in 0..TURNS {
             let now = law(&at, self.range_cm);
             let log_likelihood = |sensor: &_, echo_cm| now.outcomes_at(&self.surfaces, sensor).log_likelihood(echo_cm);
             let faced = self.faced(&self.scans.offsets(log_likelihood));
             at = climb(&bounds(), &at, LATER_ROUNDS, ENOUGH, |at| self.terms(at, &faced)).at;
         }
-        law(&at, self.range_cm)
+        Found { sensor: law(&at, self.range_cm), as_logged }
     }
 
     /// What was faced at every row, with an offset to the poses of each run.
@@ -191,6 +211,32 @@ fn law(at: &[f64], range_cm: [f64; 2]) -> FirstEchoLaw {
     }
 }
 
+/// What [`law`] makes a law of.
+fn numbers(law: &FirstEchoLaw) -> [f64; PARAMETERS] {
+    [
+        law.gain,
+        law.spreading,
+        law.beam_deg,
+        law.beam_power,
+        law.specular_deg,
+        law.oblique_loss,
+        law.corner,
+        law.edge,
+        law.offset_cm,
+        law.scale,
+        law.off_axis_cm,
+        law.scatter_cm,
+        law.scatter_per_m,
+        law.scatter_off_axis,
+        law.p_dropout,
+        law.p_other,
+        law.p_long_given_other,
+        law.p_ghost,
+        law.ghost_cm,
+        law.p_stray,
+    ]
+}
+
 #[cfg(test)]
 pub(super) mod tests {
     use super::*;
@@ -241,7 +287,7 @@ pub(super) mod tests {
     fn a_made_up_sensor_is_found_again() {
         let off_deg = MIXED_UP_DEG;
         let logs = scans(1, off_deg);
-        let found = learn(&logs, 1).expect("readings");
+        let found = learn(&logs, 1).expect("readings").sensor;
         let truth = made_up();
         let near = |name: &str, found: f64, truth: f64, within: f64| {
             assert!((found - truth).abs() < within, "{name}: {found}, and {truth} in truth");

@@ -98,6 +98,7 @@ pub fn train(
     }
     let commands = logs.runs.iter().flat_map(|run| run.rows.iter().flat_map(|row| row.command()));
     let (low, high) = commands.fold((0.0, 0.0), |(l, h): (f64, f64), c| (l.min(c), h.max(c)));
+    let first_echo = workers::once(|| Ok(echo_law::learn(logs, seed)))?;
     let mut simulator = Simulator {
         schema: SCHEMA,
         origin: Origin {
@@ -113,7 +114,7 @@ pub fn train(
         lateral,
         echo_probability,
         echo_value,
-        first_echo: workers::once(|| Ok(echo_law::learn(logs, seed)))?,
+        first_echo: first_echo.as_ref().map(|law| law.sensor.clone()),
         constant_reading,
         reference: None,
         ensemble: None,
@@ -121,7 +122,7 @@ pub fn train(
         added: Vec::new(),
         missing,
     };
-    let reference = workers::once(|| Ok(nominal::learn(&simulator, logs)))?;
+    let reference = workers::once(|| Ok(nominal::learn(&simulator, first_echo.map(|law| law.as_logged), logs)))?;
     if let Some(motion) = &reference.motion {
         set_residual_quantiles(&mut simulator.forward, &data.forward, |speeds| motion.correction(speeds)[0]);
         set_residual_quantiles(&mut simulator.lateral, &data.lateral, |speeds| motion.correction(speeds)[1]);

@@ -7,8 +7,8 @@ pub mod motion_bias;
 
 use serde::{Deserialize, Serialize};
 
-use crate::sonar::SonarModel;
 use crate::sonar::familiar::FamiliarPoses;
+use crate::sonar::{FirstEchoLaw, SonarModel};
 pub use motion_bias::MotionBias;
 
 /// What is normal, as far as the training logs show it.
@@ -18,18 +18,13 @@ pub struct NominalModel {
     pub motion: Option<MotionBias>,
     /// Of the sonar as a beam, if the logs had echoes.
     pub sonar: Option<SonarModel>,
-    /// Whether the simulator's first-echo law makes those logs more probable than the beam.
-    #[serde(default, skip_serializing_if = "is_false")]
-    pub is_first_echo: bool,
+    /// Of the sonar by the first-echo law, with poses as logged, if that makes those logs more probable than the beam.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub first_echo: Option<FirstEchoLaw>,
     /// Share of the chance in its echo rate and in its readings that belongs to the place.
     #[serde(default)]
     pub place_bound: [f64; 2],
     /// What belongs to single poses, where readings came from the same ones again and again.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub familiar: Option<FamiliarPoses>,
-}
-
-#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands over a reference")]
-fn is_false(value: &bool) -> bool {
-    !value
 }

@@ -77,7 +77,7 @@ pub fn simulator(baseline: &Baseline, scatter: [f64; 3]) -> Result<Simulator> {
                 scatter,
             }),
             sonar,
-            is_first_echo: first_echo.is_some(),
+            first_echo: first_echo.clone(),
             place_bound: baseline.place_bound,
             familiar: None,
         }),

@@ -1,0 +1,79 @@
+//! Chooses the law by which a diagnosis judges a sensor: the one that foretells readings of runs that it was not fitted to.
+
+use rayon::prelude::*;
+
+use super::scans::{Scans, UNCHANGED};
+use super::{beam, echo_law};
+use crate::logs::Logs;
+use crate::sonar::echo_law::Surfaces;
+use crate::sonar::{FirstEchoLaw, SensorLaw, SonarModel};
+use crate::statistics::summary::mean;
+
+/// Whether the first-echo law foretells the sensor's readings, at poses as logged, better than a beam does, by more than runs
+/// differ in that. Both have some twenty parameters and are fitted to other runs again, since what either makes of its own runs
+/// says little: five scans hold as few places as a beam has parameters for.
+pub fn is_first_echo(first_echo: &FirstEchoLaw, beam: &SonarModel, logs: &Logs, seed: u64) -> bool {
+    if logs.runs.len() < FEWEST_RUNS {
+        return false;
+    }
+    let fold = |fold: usize| gains(first_echo, beam, logs, seed, fold);
+    let gains: Vec<f64> = (0..FOLDS.min(logs.runs.len())).into_par_iter().map(fold).collect::<Vec<_>>().concat();
+    let gained: f64 = gains.iter().sum();
+    let middle = mean(gains.iter().copied());
+    let error = (gains.iter().map(|gain| (gain - middle) * (gain - middle)).sum::<f64>()).sqrt();
+    log::info!(
+        "on runs that neither saw the first-echo law gains {gained:.1} nats on the beam, with a standard error of {error:.1}"
+    );
+    gained > STANDARD_ERRORS * error
+}
+
+/// Fewer runs say nothing of how runs differ.
+const FEWEST_RUNS: usize = 3;
+/// Every run is foretold once, from the runs of the other folds.
+const FOLDS: usize = 5;
+/// The simpler of two models is kept unless the other is better by more than this (Breiman and others 1984, Classification and
+/// Regression Trees, section 3.4.3): here the beam, which lanes of robots can draw.
+const STANDARD_ERRORS: f64 = 1.0;
+
+/// By how many nats the first-echo law foretells each run of a fold better than the beam.
+fn gains(first_echo: &FirstEchoLaw, beam: &SonarModel, logs: &Logs, seed: u64, fold: usize) -> Vec<f64> {
+    let part = |held_out: bool| {
+        let runs = logs.runs.iter().enumerate().filter(|(run, _)| (run % FOLDS == fold) == held_out);
+        Logs { runs: runs.map(|(_, run)| run.clone()).collect(), ..logs.clone() }
+    };
+    let (others, held_out) = (part(false), Scans::of(&part(true)));
+    let first_echo = SensorLaw::FirstEcho(echo_law::learn_from(first_echo, &others, seed));
+    let beam = SensorLaw::Beam(beam::learn_from(beam, &others));
+    let surfaces = Surfaces::new(logs.scene.sides());
+    let gain = |run: usize| -> f64 {
+        let gains = held_out.runs[run].iter().map(|row| {
+            let sensor = held_out.sensor(&row.robot, &UNCHANGED);
+            let nats = |law: &SensorLaw| law.outcomes_at(&surfaces, &sensor).log_likelihood(row.echo_cm);
+            nats(&first_echo) - nats(&beam)
+        });
+        gains.sum()
+    };
+    (0..held_out.runs.len()).map(gain).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::built_in_robot::{default_robot, record, training_room};
+    use crate::learn::echo_law::tests::{MIXED_UP_DEG, scans};
+    use crate::learn::train::{TABLE_ONE, Trainer, train};
+    use crate::logs::Logs;
+    use crate::sonar::SensorLaw;
+
+    fn law_of(logs: &Logs) -> SensorLaw {
+        let simulator = train(logs, &Trainer::Fast, &TABLE_ONE, 1, &|_| {}).expect("networks");
+        simulator.sensor_law().expect("enough readings")
+    }
+
+    /// The built-in robot's sensor follows neither, so that the beam, which lanes of robots can draw, is as good.
+    #[test]
+    fn a_sensor_is_judged_by_the_law_that_it_follows() {
+        assert!(matches!(law_of(&scans(1, MIXED_UP_DEG)), SensorLaw::FirstEcho(_)));
+        let driven = record(&default_robot(), &training_room(), 40, 60, &[], 3).expect("room to drive");
+        assert!(matches!(law_of(&driven), SensorLaw::Beam(_)));
+    }
+}
