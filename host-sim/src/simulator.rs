@@ -207,7 +207,8 @@ impl Simulator {
         let sonar = [("echo_probability", &self.echo_probability), ("echo_value", &self.echo_value)];
         let motion = motion.map(|(name, l)| (name, l.as_ref().is_none_or(Learned::is_sound)));
         let sonar = sonar.map(|(name, l)| (name, l.as_ref().is_none_or(Learned::is_sound)));
-        if self.first_echo.as_ref().is_some_and(|law| !law.is_sound()) {
+        let judged = self.reference.as_ref().and_then(|reference| reference.first_echo.as_ref());
+        if self.first_echo.iter().chain(judged).any(|law| !law.is_sound()) {
             return Err(Error::in_file(path, "the first-echo law holds numbers that cannot be"));
         }
         match motion.iter().chain(&sonar).find(|(_, sound)| !sound) {

@@ -20,7 +20,9 @@ pub fn is_first_echo(first_echo: &FirstEchoLaw, beam: &SonarModel, logs: &Logs, 
     let gains: Vec<f64> = (0..FOLDS.min(logs.runs.len())).into_par_iter().map(fold).collect::<Vec<_>>().concat();
     let gained: f64 = gains.iter().sum();
     let middle = mean(gains.iter().copied());
-    let error = (gains.iter().map(|gain| (gain - middle) * (gain - middle)).sum::<f64>()).sqrt();
+    let squares: f64 = gains.iter().map(|gain| (gain - middle) * (gain - middle)).sum();
+    // Of a sum over runs, whose variance is known from themselves.
+    let error = (squares * gains.len() as f64 / (gains.len() - 1) as f64).sqrt();
     log::info!(
         "on runs that neither saw the first-echo law gains {gained:.1} nats on the beam, with a standard error of {error:.1}"
     );
