@@ -146,6 +146,12 @@ impl Wall {
 
 /// The first wall that a ray meets; `direction` has length one.
 pub fn cast(walls: &[Wall], origin_cm: DVec2, direction: DVec2) -> Option<Hit> {
+    let (distance_cm, wall) = first_met(walls, origin_cm, direction)?;
+    Some(Hit { distance_cm, incidence_rad: walls[wall].incidence_rad(direction), wall })
+}
+
+/// How far away the first wall is that a ray meets, cm, and which it is; `direction` has length one.
+pub fn first_met(walls: &[Wall], origin_cm: DVec2, direction: DVec2) -> Option<(f64, usize)> {
     let mut first: Option<(f64, usize)> = None;
     for (wall, w) in walls.iter().enumerate() {
         if let Some(distance_cm) = w.distance_along_cm(origin_cm, direction)
@@ -154,7 +160,7 @@ pub fn cast(walls: &[Wall], origin_cm: DVec2, direction: DVec2) -> Option<Hit> {
             first = Some((distance_cm, wall));
         }
     }
-    first.map(|(distance_cm, wall)| Hit { distance_cm, incidence_rad: walls[wall].incidence_rad(direction), wall })
+    first
 }
 
 /// A unit vector at an angle.

@@ -2,7 +2,7 @@
 
 use super::targets::{Target, TargetKind};
 use super::{FirstEchoLaw, Surfaces, targets_at};
-use crate::geometry::{Pose, cast};
+use crate::geometry::{Pose, first_met};
 use crate::sonar::Perturbation;
 use crate::sonar::model::{CONSTANT_SCATTER_CM, reach_bounds_cm};
 use crate::sonar::outcomes::{Component, Distribution, Outcomes, Source};
@@ -132,5 +132,5 @@ fn incidence_deg(target: &Target) -> f64 {
 
 /// How far the axis reaches, cm; infinite where it meets nothing.
 pub fn reach_cm(surfaces: &Surfaces, sensor: &Pose) -> f64 {
-    cast(&surfaces.walls, sensor.position_cm, sensor.direction()).map_or(f64::INFINITY, |hit| hit.distance_cm)
+    first_met(&surfaces.walls, sensor.position_cm, sensor.direction()).map_or(f64::INFINITY, |(met_cm, _)| met_cm)
 }

@@ -2,12 +2,14 @@
 
 use glam::DVec2;
 
-use crate::geometry::{Wall, cast};
+use crate::geometry::{Wall, first_met};
 
 /// Everything that can return an echo.
 #[derive(Clone, Debug)]
 pub struct Surfaces {
     pub(super) walls: Vec<Wall>,
+    /// Where the normals of the walls point to, degrees.
+    normals_deg: Vec<f64>,
     pub(super) corners: Vec<Corner>,
 }
 
@@ -46,7 +48,12 @@ impl Surfaces {
             let ends = [one.from_cm, one.to_cm].into_iter().filter(is_free);
             corners.extend(ends.map(|at_cm| Corner { at_cm, arms: Vec::new() }));
         }
-        Surfaces { walls, corners }
+        let normal_deg = |wall: &Wall| {
+            let normal = (wall.to_cm - wall.from_cm).perp();
+            libm::atan2(normal.y, normal.x).to_degrees()
+        };
+        let normals_deg = walls.iter().map(normal_deg).collect();
+        Surfaces { walls, normals_deg, corners }
     }
 
     /// The walls.
@@ -54,12 +61,18 @@ impl Surfaces {
         &self.walls
     }
 
+    /// The angle between a ray at `ray_deg` and a wall's normal, degrees, 0 to 90.
+    pub(super) fn incidence_deg(&self, wall: usize, ray_deg: f64) -> f64 {
+        let turned = (ray_deg - self.normals_deg[wall]) / 180.0;
+        180.0 * (turned - libm::round(turned)).abs()
+    }
+
     /// Whether nothing stands between two points.
     pub(super) fn is_visible(&self, from_cm: DVec2, point_cm: DVec2) -> bool {
         let way = point_cm - from_cm;
         let distance_cm = way.length();
-        let hit = cast(&self.walls, from_cm, way / distance_cm);
-        hit.is_none_or(|hit| hit.distance_cm > distance_cm - TOUCHING_CM)
+        let met = first_met(&self.walls, from_cm, way / distance_cm);
+        met.is_none_or(|(met_cm, _)| met_cm > distance_cm - TOUCHING_CM)
     }
 }
 

@@ -1,7 +1,11 @@
 //! What can return an echo to a sensor at a pose.
 
+use std::sync::LazyLock;
+
+use glam::DVec2;
+
 use super::surfaces::{Side, Surfaces};
-use crate::geometry::{Pose, cast, direction, wrap_rad};
+use crate::geometry::{Pose, direction, first_met, wrap_rad};
 use crate::sonar::perturbation::shaped;
 
 /// Something that can return an echo.
@@ -117,14 +121,19 @@ impl Target {
 }
 
 fn rays(surfaces: &Surfaces, sensor: &Pose) -> impl Iterator<Item = Target> {
-    (-RAYS..=RAYS).filter_map(|ray| {
-        let off_axis_deg = SPACING_DEG * f64::from(ray);
-        let way = direction(sensor.heading_rad + off_axis_deg.to_radians());
-        let hit = cast(&surfaces.walls, sensor.position_cm, way)?;
-        let kind = TargetKind::Ray { incidence_deg: hit.incidence_rad.abs().to_degrees() };
-        Some(Target::unknown(hit.distance_cm.max(NEAREST_CM), off_axis_deg.abs(), kind))
+    let (axis, axis_deg) = (sensor.direction(), sensor.heading_rad.to_degrees());
+    FAN.iter().filter_map(move |(off_axis_deg, turn)| {
+        let (distance_cm, wall) = first_met(&surfaces.walls, sensor.position_cm, axis.rotate(*turn))?;
+        let kind = TargetKind::Ray { incidence_deg: surfaces.incidence_deg(wall, axis_deg + off_axis_deg) };
+        Some(Target::unknown(distance_cm.max(NEAREST_CM), off_axis_deg.abs(), kind))
     })
 }
+
+/// The rays: their angles off the axis, degrees, and the unit vectors there if the axis is that of x.
+static FAN: LazyLock<Vec<(f64, DVec2)>> = LazyLock::new(|| {
+    let ray = |ray: i32| SPACING_DEG * f64::from(ray);
+    (-RAYS..=RAYS).map(|number| (ray(number), direction(ray(number).to_radians()))).collect()
+});
 
 /// The feet of the perpendiculars that lie on their walls. The nearest point of a wall to which no perpendicular leads is
 /// its end, and that is no mirror.
