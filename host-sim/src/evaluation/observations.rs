@@ -30,6 +30,7 @@ pub struct Observations {
 }
 
 /// A row at which the tracker saw the robot.
+#[derive(Clone)]
 pub struct Observation {
     /// Which run of the folder,
     pub run: usize,
@@ -157,6 +158,19 @@ impl Observations {
             }
         }
         parts
+    }
+
+    /// Every so many rows of these, the first one first.
+    pub fn every(&self, step: usize) -> Self {
+        let Observations { surroundings, law, recollection, blocks, places, rows } = self;
+        Observations {
+            surroundings: surroundings.clone(),
+            law: law.clone(),
+            recollection: recollection.clone(),
+            blocks: *blocks,
+            places: *places,
+            rows: rows.iter().step_by(step).cloned().collect(),
+        }
     }
 
     /// Asks the simulator once what it expects of every row: most hypotheses leave the commands as they are.

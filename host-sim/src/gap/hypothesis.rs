@@ -36,6 +36,14 @@ impl LogLikelihood {
         self.motion.iter().zip(&self.sonar).map(both).collect()
     }
 
+    /// Every so many rows of these, the first one first.
+    pub fn every(&self, step: usize) -> Self {
+        LogLikelihood {
+            motion: self.motion.iter().step_by(step).copied().collect(),
+            sonar: self.sonar.iter().step_by(step).copied().collect(),
+        }
+    }
+
     /// One channel of each row.
     pub fn channel(&self, channel: Channel) -> Vec<f64> {
         match channel {
