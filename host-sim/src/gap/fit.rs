@@ -311,9 +311,9 @@ impl Problem<'_> {
         let bounds = self.hypothesis.bounds();
         let best = starts.first().map_or(0.0, |start| start.0);
         let promising = starts.iter().take(STARTS).take_while(|start| best - start.0 < NEARLY_AS_GOOD_NATS);
-        let climbs = promising.map(|(_, start)| climb(&bounds, start, SKETCH_ITERATIONS, TOLERANCE_NATS, &terms));
+        let climbs = promising.map(|(_, start)| climb(&bounds, start, SKETCH_ITERATIONS, TOLERANCE_NATS, terms));
         let best = climbs.max_by(|a, b| a.value().total_cmp(&b.value()));
-        best.unwrap_or_else(|| climb(&bounds, &vec![0.0; bounds.len()], 0, TOLERANCE_NATS, &terms))
+        best.unwrap_or_else(|| climb(&bounds, &vec![0.0; bounds.len()], 0, TOLERANCE_NATS, terms))
     }
 
     /// The fit to the end.

@@ -120,3 +120,15 @@ fn numbers(model: &SonarModel) -> [f64; STRENGTHS + 12] {
     }
     at
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_search_begins_at_the_model_that_it_is_given() {
+        let at: [f64; STRENGTHS + 12] = std::array::from_fn(|i| i as f64 + 0.5);
+        let made_up = model(&at, 20.0, [4.0, 240.0]);
+        assert_eq!(model(&numbers(&made_up), 20.0, [4.0, 240.0]), made_up);
+    }
+}

@@ -324,6 +324,11 @@ pub(super) mod tests {
     }
 
     #[test]
+    fn a_search_begins_at_the_law_that_it_is_given() {
+        assert_eq!(law(&numbers(&made_up()), [4.0, 240.0]), made_up());
+    }
+
+    #[test]
     fn few_readings_tell_nothing() {
         let mut logs = scans(1, [0.0; 12]);
         logs.runs.truncate(1);

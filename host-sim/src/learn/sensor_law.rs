@@ -75,6 +75,10 @@ mod tests {
     #[test]
     fn a_sensor_is_judged_by_the_law_that_it_follows() {
         assert!(matches!(law_of(&scans(1, MIXED_UP_DEG)), SensorLaw::FirstEcho(_)));
+        // Two runs do not say how runs differ.
+        let mut few = scans(1, MIXED_UP_DEG);
+        few.runs.truncate(2);
+        assert!(matches!(law_of(&few), SensorLaw::Beam(_)));
         let driven = record(&default_robot(), &training_room(), 40, 60, &[], 3).expect("room to drive");
         assert!(matches!(law_of(&driven), SensorLaw::Beam(_)));
     }

@@ -31,6 +31,22 @@ fn a_fit_is_the_weighted_mean_of_rows_and_prior() {
     assert!((with_prior - 0.5 * without).abs() < 0.02, "{with_prior} {without}");
 }
 
+/// Every third of 4000 rows is sketched on: what is fitted then is fitted to all, the mean of all residuals.
+#[test]
+fn a_fit_to_many_rows_is_a_fit_to_all_of_them() {
+    let (baseline, rows) = (baseline(), scattered(&[0.2; 8], 500, 1.0));
+    let context = FitContext::new(&baseline, &rows, METHOD);
+    assert!(context.few.as_ref().is_some_and(|few| few.rows.rows.len() < 1500));
+    let fit = Fitted::none(&context).with(candidate(&LONGER), &context);
+    let likelihood = |value: f64| fit.hypothesis.log_likelihood(&baseline, &rows, &[value], None).total().iter().sum();
+    let found: f64 = likelihood(fit.values[0]);
+    // A grid of a tenth of the standard error about the truth holds nothing that is more likely.
+    for off in -20..=20 {
+        let on_grid: f64 = likelihood(0.2 + 0.0016 * f64::from(off));
+        assert!(on_grid < found + TOLERANCE_NATS, "{on_grid} at {off}, {found} at {}", fit.values[0]);
+    }
+}
+
 /// Means of the blocks about 1 deviate by 0.6: a block is judged by the parameter that the other seven have.
 #[test]
 fn a_block_is_judged_by_the_fit_to_the_others() {
