@@ -178,6 +178,13 @@ impl Simulator {
         first_echo.or_else(|| reference.sonar.clone().map(SensorLaw::Beam))
     }
 
+    /// The law by which readings are drawn that effects change: the beam, since vector lanes draw from it and evolution takes a
+    /// tenth of the time; but an ideal ray is one by the first-echo law alone.
+    pub fn drawn_law(&self) -> Option<SensorLaw> {
+        let beam = self.reference.as_ref().and_then(|reference| reference.sonar.clone());
+        self.sensor_law().filter(SensorLaw::is_ray).or_else(|| beam.map(SensorLaw::Beam))
+    }
+
     /// The robot in the middle of what the logs leave open, and `count` drawn ones; none where that is not said.
     pub fn robots(&self, count: usize, seed: u64) -> Option<Robots> {
         let networks = self.motion_networks()?;

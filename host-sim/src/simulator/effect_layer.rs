@@ -58,7 +58,7 @@ impl EffectLayer {
             return Ok(None);
         }
         let effects = EffectChain::of(&simulator.added);
-        let law = simulator.sensor_law();
+        let law = simulator.drawn_law();
         if effects.senses() && law.is_none() {
             return Err(Error::new("an added effect changes the sonar, and the simulator does not know its usual law"));
         }
