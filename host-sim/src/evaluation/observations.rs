@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use crate::effects::context::{RunHistory, Surroundings};
 use crate::effects::{PoseIncrement, StepContext};
-use crate::geometry::{Pose, cast};
+use crate::geometry::{Pose, first_met};
 use crate::logs::{Logs, Run, samples};
 use crate::simulator::baseline::MotionModel;
 use crate::sonar::familiar::{FamiliarPoses, Recollection};
@@ -214,8 +214,8 @@ impl Observations {
 pub fn beside_cm(surroundings: &Surroundings, robot: &Pose) -> [f64; 2] {
     [-BESIDE_DEG, BESIDE_DEG].map(|deg| {
         let ray = surroundings.sensor(robot, deg.to_radians());
-        let hit = cast(surroundings.surfaces.walls(), ray.position_cm, ray.direction());
-        hit.map_or(f64::INFINITY, |hit| hit.distance_cm)
+        let met = first_met(surroundings.surfaces.walls(), ray.position_cm, ray.direction());
+        met.map_or(f64::INFINITY, |(met_cm, _)| met_cm)
     })
 }
 

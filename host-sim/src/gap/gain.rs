@@ -1,5 +1,7 @@
 //! What one hypothesis gains over another, and whether that counts.
 
+use crate::statistics::summary::error_of_sum;
+
 /// How much better one hypothesis does than another on runs that it was not fitted on.
 #[derive(Clone, Copy, Debug)]
 pub struct Gain {
@@ -26,14 +28,11 @@ impl Gain {
 
     /// The same where so many of the best blocks are left out of the broad gain.
     pub fn without_best(by_block: &[f64], left_out: usize) -> Self {
-        let n = by_block.len() as f64;
-        let nats: f64 = by_block.iter().sum();
-        let mean = nats / n;
-        let variance = by_block.iter().map(|d| (d - mean) * (d - mean)).sum::<f64>() / (n - 1.0).max(1.0);
         let mut ascending = by_block.to_vec();
         ascending.sort_by(f64::total_cmp);
         let kept = by_block.len().saturating_sub(left_out);
-        Gain { nats, broad_nats: ascending[..kept].iter().sum(), error: (n * variance).sqrt() }
+        let (nats, broad_nats) = (by_block.iter().sum(), ascending[..kept].iter().sum());
+        Gain { nats, broad_nats, error: error_of_sum(by_block) }
     }
 
     /// The same at a price.

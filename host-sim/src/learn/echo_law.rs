@@ -70,7 +70,7 @@ const FEWEST: usize = 30;
 
 /// The law of the sensor that made these logs; none where they hold too few readings.
 pub fn learn(logs: &Logs, seed: u64) -> Option<Found> {
-    let readings = logs.runs.iter().flat_map(|run| &run.rows).filter(|row| row.pose.and(row.echo_cm).is_some()).count();
+    let readings = Scans::of(logs).rows().filter(|row| row.echo_cm.is_some()).count();
     (readings >= FEWEST).then(|| Fit::new(logs, seed).most_probable(seed))
 }
 

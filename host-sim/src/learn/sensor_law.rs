@@ -7,7 +7,7 @@ use super::{beam, echo_law};
 use crate::logs::Logs;
 use crate::sonar::echo_law::Surfaces;
 use crate::sonar::{FirstEchoLaw, SensorLaw, SonarModel};
-use crate::statistics::summary::mean;
+use crate::statistics::summary::error_of_sum;
 
 /// Whether the first-echo law foretells the sensor's readings, at poses as logged, better than a beam does, by more than runs
 /// differ in that. Both have some twenty parameters and are fitted to other runs again, since what either makes of its own runs
@@ -19,10 +19,7 @@ pub fn is_first_echo(first_echo: &FirstEchoLaw, beam: &SonarModel, logs: &Logs, 
     let fold = |fold: usize| gains(first_echo, beam, logs, seed, fold);
     let gains: Vec<f64> = (0..FOLDS.min(logs.runs.len())).into_par_iter().map(fold).collect::<Vec<_>>().concat();
     let gained: f64 = gains.iter().sum();
-    let middle = mean(gains.iter().copied());
-    let squares: f64 = gains.iter().map(|gain| (gain - middle) * (gain - middle)).sum();
-    // Of a sum over runs, whose variance is known from themselves.
-    let error = (squares * gains.len() as f64 / (gains.len() - 1) as f64).sqrt();
+    let error = error_of_sum(&gains);
     log::info!(
         "on runs that neither saw the first-echo law gains {gained:.1} nats on the beam, with a standard error of {error:.1}"
     );

@@ -18,7 +18,7 @@ pub struct NominalModel {
     pub motion: Option<MotionBias>,
     /// Of the sonar as a beam, if the logs had echoes.
     pub sonar: Option<SonarModel>,
-    /// Of the sonar by the first-echo law, with poses as logged, if that makes those logs more probable than the beam.
+    /// Of the sonar by the first-echo law, with poses as logged, if that foretells readings better than the beam.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub first_echo: Option<FirstEchoLaw>,
     /// Share of the chance in its echo rate and in its readings that belongs to the place.

@@ -9,6 +9,14 @@ pub fn mean(values: impl Iterator<Item = f64>) -> f64 {
     sum / n
 }
 
+/// Standard error of a sum of independent terms, whose variance is known from themselves.
+pub fn error_of_sum(terms: &[f64]) -> f64 {
+    let n = terms.len() as f64;
+    let mean = terms.iter().sum::<f64>() / n;
+    let variance = terms.iter().map(|d| (d - mean) * (d - mean)).sum::<f64>() / (n - 1.0).max(1.0);
+    (n * variance).sqrt()
+}
+
 /// The square root of the mean of squares; NaN of nothing.
 pub fn root_mean_square(values: impl Iterator<Item = f64>) -> f64 {
     mean(values.map(|v| v * v)).sqrt()
