@@ -23,6 +23,7 @@ pub mod hypothesis;
 mod ledger;
 pub mod method;
 pub mod omnibus;
+pub mod own_error;
 pub mod progress;
 pub mod propose;
 pub mod remainder;

@@ -4,6 +4,7 @@ pub mod agreement;
 pub mod bootstrap;
 pub mod intraclass;
 pub mod maximise;
+pub mod ridge;
 pub mod rounding;
 pub mod student;
 pub mod summary;

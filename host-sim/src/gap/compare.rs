@@ -279,7 +279,7 @@ fn without_feigned_scatter(chosen: &Fitted, context: &FitContext) -> Option<Fitt
         context.initial_guesses(c).first().is_some_and(|values| c.variant.only_widens_scatter(values, step))
     });
     let others = chosen.without(widens?, context);
-    let moved: f64 = ResidualFit::moved_readings(&others, context).gains_over(&others, context).iter().sum();
+    let moved: f64 = ResidualFit::moved_readings(&others, context).gains(context).iter().sum();
     (others.log_evidence() + moved > chosen.log_evidence()).then_some(others)
 }
 

@@ -73,7 +73,7 @@ pub fn findings_watched(
 ) -> Result<Findings> {
     // Validate and condition: what the logs cannot say, and what they say row by row.
     let logs = &inspected.logs;
-    let (conditioned, Validated { notes, scope, moved_uncommanded }) = conditioned(&mut baseline, inspected)?;
+    let (conditioned, Validated { mut notes, scope, moved_uncommanded }) = conditioned(&mut baseline, inspected)?;
     let context = FitContext::new(&baseline, &conditioned.identification, method);
     let rows = |part: &Observations| part.rows.len();
     let held_out = conditioned.hold_out.as_ref().map_or(0, rows);
@@ -87,6 +87,8 @@ pub fn findings_watched(
         "confirmed: {}",
         if confirmed.chosen.ids().is_empty() { "nothing".into() } else { confirmed.chosen.ids().join("+") }
     );
+
+    notes.extend(confirmed.beyond_chosen.iter().filter_map(|remainder| remainder.own_error(&context.calibration)));
 
     watch(Stage::Explaining);
     // Account for the gap, explain it, put what is left into a formula, propose what to drive next.

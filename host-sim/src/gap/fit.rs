@@ -8,6 +8,7 @@ use super::calibration::Calibration;
 use super::gain::Gain;
 use super::hypothesis::{Hypothesis, LogLikelihood};
 use super::method::Method;
+use super::own_error::OwnErrors;
 use crate::effects::applied::AppliedEffect;
 use crate::effects::chain::EffectChain;
 use crate::effects::{Candidate, Effect};
@@ -28,6 +29,8 @@ pub struct FitContext<'a> {
     pub calibration: Calibration,
     /// Seed of what is drawn.
     pub seed: u64,
+    /// What the simulator does not know of its own motion, and these logs tell; none where it knows it better than they do.
+    pub own_errors: Option<OwnErrors>,
     top_speed_cm_s: f64,
     /// What sketches look at where there are many rows.
     few: Option<Few>,
@@ -86,6 +89,7 @@ impl<'a> FitContext<'a> {
             catalogue: method.catalogue,
             calibration: method.calibration_for(observations.rows.len()),
             seed: method.seed,
+            own_errors: OwnErrors::of(baseline, observations),
             top_speed_cm_s: observations.top_speed_cm_s(),
         }
     }

@@ -8,7 +8,6 @@
 pub mod basis;
 mod motion;
 mod nearby;
-pub mod ridge;
 mod sonar;
 
 use super::channel::Channel;
@@ -16,6 +15,7 @@ use super::fit::{FitContext, Fitted};
 use super::gain::Gain;
 use crate::effects::chain::EffectChain;
 use crate::evaluation::observations::{FEWEST_BLOCKS, Observations};
+use crate::statistics::ridge;
 use basis::{Basis, Circumstances};
 use nearby::{Nearby, Neighbours, Spot};
 
@@ -25,11 +25,23 @@ pub struct ResidualFit {
     pub channel: Channel,
     /// The log-likelihood of each row that it was fitted on, by the fit to other runs.
     pub held_out: Vec<f64>,
+    /// The same by the fit beneath and what the simulator does not know of its own motion.
+    without: Vec<f64>,
+    /// What that is; none where it foretells nothing.
+    pub own_error: Option<Foretold>,
     surface: Surface,
     predictions: Vec<f64>,
     law: Law,
     /// The effects of the fit beneath.
     effects: EffectChain,
+}
+
+/// What the simulator does not know of its own motion, as rows of other runs tell it.
+pub struct Foretold {
+    /// By how much likelier rows are with it, nats.
+    pub nats: f64,
+    /// Root mean square of it, cm or rad a step.
+    pub root_mean_square: f64,
 }
 
 /// How likely a prediction makes a row.
@@ -55,6 +67,10 @@ type Steps = Vec<Circumstances>;
 /// there is none (the fixed challenge's robots) and at least 0.15 where most of it is (the same with `--place-bound`).
 const PLACE_BOUND: f64 = 0.1;
 
+/// Ratios of noise variance to prior variance that are tried. At the first, a thousand rows hold half a nat; at the last, the
+/// prior is wider than the noise and the penalty has no say. The error is flat between neighbours.
+const STRENGTHS: [f64; 7] = [1000.0, 215.0, 46.0, 10.0, 2.15, 0.46, 0.1];
+
 /// As many folds as there are blocks of rows at least, so that none is empty.
 const FOLDS: usize = FEWEST_BLOCKS;
 
@@ -74,23 +90,22 @@ impl ResidualFit {
     }
 
     /// The gain on each block over the fit beneath, by fits to other blocks.
-    pub fn gains_over(&self, beneath: &Fitted, context: &FitContext) -> Vec<f64> {
-        context.observations.by_block(&self.gain_of_rows(beneath))
+    pub fn gains(&self, context: &FitContext) -> Vec<f64> {
+        context.observations.by_block(&self.gain_of_rows())
     }
 
     /// What it gains over the fit beneath. What a channel follows may be at one spot of the room, which few runs meet: where
     /// one meets it as the others tell, it is no chance, so that no more than one run is left out. Where the chance of echoes
     /// belongs to places, every room has such spots, and what a few places show is no property of the robot.
-    pub fn gain_over(&self, beneath: &Fitted, context: &FitContext) -> Gain {
+    pub fn gain(&self, context: &FitContext) -> Gain {
         if self.channel.motion_axis().is_some() || context.baseline.place_bound[0] < PLACE_BOUND {
-            return Gain::without_best(&self.gains_over(beneath, context), 1);
+            return Gain::without_best(&self.gains(context), 1);
         }
-        Gain::of(&context.observations.by_place(&self.gain_of_rows(beneath)))
+        Gain::of(&context.observations.by_place(&self.gain_of_rows()))
     }
 
-    fn gain_of_rows(&self, beneath: &Fitted) -> Vec<f64> {
-        let without = beneath.log_likelihood.channel(self.channel);
-        self.held_out.iter().zip(without).map(|(a, b)| a - b).collect()
+    fn gain_of_rows(&self) -> Vec<f64> {
+        self.held_out.iter().zip(&self.without).map(|(a, b)| a - b).collect()
     }
 
     /// The log-likelihood of each row in the channel, never by a fit to its own run.
@@ -200,7 +215,7 @@ impl<'a> Rows<'a> {
             let share = shares[place];
             (response(self.used[place], told[place] + share * p, share) - told[place]) / share
         };
-        let surface = ridge::fit(&columns, &self.folds, over);
+        let surface = ridge::fit(&columns, &self.folds, &STRENGTHS, over);
         let predictions: Vec<f64> =
             (0..told.len()).map(|place| unit * (told[place] + shares[place] * surface.held_out[place])).collect();
         (Surface { nearby, basis, weights: surface.weights, unit }, self.of_all(&predictions, 0.0))

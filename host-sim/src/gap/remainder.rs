@@ -2,10 +2,11 @@
 
 use rayon::prelude::*;
 
+use super::calibration::Calibration;
 use super::channel::Channel;
 use super::fit::{FitContext, Fitted};
 use super::gain::Gain;
-use super::omnibus::ResidualFit;
+use super::omnibus::{Foretold, ResidualFit};
 use crate::evaluation::observations::Observations;
 
 /// What the omnibus residual model explains in a channel beyond a fit.
@@ -23,7 +24,7 @@ pub fn remainders(fit: &Fitted, context: &FitContext) -> Vec<Remainder> {
 
 /// The most that the model gains in a channel beyond a fit, before any gate.
 pub fn most(fit: &Fitted, context: &FitContext) -> Gain {
-    let of_channel = |channel: &Channel| ResidualFit::of(*channel, fit, context).gain_over(fit, context);
+    let of_channel = |channel: &Channel| ResidualFit::of(*channel, fit, context).gain(context);
     let gains: Vec<Gain> = Channel::ALL.par_iter().map(of_channel).collect();
     gains.into_iter().max_by(|a, b| a.broad_nats.total_cmp(&b.broad_nats)).unwrap_or(Gain::NONE)
 }
@@ -31,7 +32,7 @@ pub fn most(fit: &Fitted, context: &FitContext) -> Gain {
 impl Remainder {
     fn of(channel: Channel, fit: &Fitted, context: &FitContext) -> Self {
         let model = ResidualFit::of(channel, fit, context);
-        let gain = model.gain_over(fit, context);
+        let gain = model.gain(context);
         log::info!(
             "beyond {}, {} follows circumstances by {:.1} nats ({:.1} without the runs that gain most)",
             if fit.ids().is_empty() { "the simulator".into() } else { fit.ids().join("+") },
@@ -40,7 +41,7 @@ impl Remainder {
             gain.broad_nats
         );
         let counts = gain.passes(context.calibration.remainder_nats);
-        let gains = model.gains_over(fit, context);
+        let gains = model.gains(context);
         let by_block = if counts { gains } else { vec![0.0; gains.len()] };
         Remainder { model, by_block }
     }
@@ -53,6 +54,21 @@ impl Remainder {
     /// Whether the model explains anything.
     pub fn counts(&self) -> bool {
         self.by_block.iter().any(|g| *g != 0.0)
+    }
+
+    /// What the simulator does not know of its own motion here, in words; none where that foretells too little.
+    pub fn own_error(&self, calibration: &Calibration) -> Option<String> {
+        let Foretold { root_mean_square, .. } =
+            self.model.own_error.as_ref().filter(|own_error| own_error.nats >= calibration.remainder_nats)?;
+        let (named, off) = match self.channel() {
+            Channel::Forward => ("The way forward", format!("{root_mean_square:.2} cm")),
+            Channel::Lateral => ("The way to the left", format!("{root_mean_square:.2} cm")),
+            _ => ("The turn", format!("{:.2} degrees", root_mean_square.to_degrees())),
+        };
+        Some(format!(
+            "{named} is off by {off} a step under commands that the training logs leave open: no gap, but not known. Train on \
+             logs that drive them."
+        ))
     }
 
     /// What is left of each row of a motion channel once all is explained that counts; none of a sonar channel.
@@ -78,6 +94,8 @@ mod tests {
     use super::*;
     use crate::gap::test_support::*;
     use crate::geometry::Pose;
+    use crate::simulator::baseline::Baseline;
+    use crate::simulator::textbook;
 
     /// Eight blocks of twelve rows with forward residuals.
     fn rows(off_cm: fn(usize) -> f64) -> Observations {
@@ -119,6 +137,29 @@ mod tests {
     fn wider_scatter_is_no_remainder() {
         let scattered = |at| 2.0 * alternating(at / 2);
         assert!(counting(&confirmed(scattered, scattered)).is_empty());
+    }
+
+    /// Half of the steps are spins that turn too far by the scatter.
+    #[test]
+    fn what_the_training_logs_leave_open_is_no_remainder() {
+        let left_over = |spins: usize| {
+            let mut simulator = textbook::simulator(&baseline(), SCATTER).expect("a simulator");
+            let motion = simulator.reference.as_mut().and_then(|reference| reference.motion.as_mut());
+            motion.expect("a motion").precision = Some(precision(2000, spins));
+            let baseline = Baseline::learned(&simulator).expect("a baseline");
+            let rows = observations(8, 24, |_, at| {
+                let (command, off) = if at < 12 { (STRAIGHT, 0.0) } else { (SPIN, SCATTER[2]) };
+                let off = [0.0, 0.0, off + 0.9 * SCATTER[2] * alternating(at)];
+                Made { commands: [command; 2], off, ..Made::default() }
+            });
+            let context = FitContext::new(&baseline, &rows, METHOD);
+            let beyond = remainders(&Fitted::none(&context), &context);
+            let told: Vec<String> = beyond.iter().filter_map(|r| r.own_error(&context.calibration)).collect();
+            (counting(&beyond), told)
+        };
+        let (remainders, told) = left_over(0);
+        assert!(remainders.is_empty() && told.len() == 1 && told[0].starts_with("The turn is off by"), "{told:?}");
+        assert_eq!(left_over(2000), (vec![Channel::Turn], Vec::new()));
     }
 
     /// Half of the steps begin in a corner, where they scatter three times as much and on average go as far as elsewhere.

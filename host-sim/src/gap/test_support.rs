@@ -14,6 +14,8 @@ use crate::evaluation::observations::{Observation, Observations, beside_cm, numb
 use crate::geometry::Pose;
 use crate::logs::{Logs, Robot, Row, Run, Scene, Ultrasonic};
 use crate::simulator::baseline::{Baseline, MotionModel};
+use crate::simulator::ensemble::CommandScale;
+use crate::simulator::nominal::motion_bias::{Precision, features, products};
 use crate::sonar::{SensorLaw, SonarModel};
 
 /// Standard deviations of the drive: forward (cm), lateral (cm) and turn (rad).
@@ -134,6 +136,18 @@ pub fn driven(runs: usize, rows: usize, command: impl Fn(usize, usize) -> [f64; 
         Run { name: format!("run-{run:03}"), rows: (0..rows).map(row).collect() }
     };
     Logs { robot: robot(), scene: room(), runs: (0..runs).map(run).collect() }
+}
+
+/// Straight on, and a spin to the left.
+pub const STRAIGHT: [f64; 2] = [50.0, 50.0];
+/// See [`STRAIGHT`].
+pub const SPIN: [f64; 2] = [-30.0, 30.0];
+
+/// What so many steps straight on and in spins tell of a correction's weights, with a prior as wide as the noise.
+pub fn precision(straight: usize, spins: usize) -> Precision {
+    let step = |[left, right]: [f64; 2]| features([left, right, left, right], CommandScale::PERCENT.share()).to_vec();
+    let rows = [vec![step(STRAIGHT); straight], vec![step(SPIN); spins]].concat();
+    Precision { products: products(&rows), prior: [1.0; 3] }
 }
 
 /// What alternates between plus and minus one.

@@ -22,8 +22,8 @@ pub struct MotionNetworks<'s> {
     networks: Box<[FoldedNetwork<f32, 4>; 3]>,
     residuals: [&'s ResidualQuantiles; 3],
     scale: CommandScale,
-    /// Weights of what is added, one a feature.
-    correction: Option<Box<[[f32; FEATURES]; 3]>>,
+    /// Weights of what is added, one a feature, and what makes shares of full speed of commands.
+    correction: Option<(Box<[[f32; FEATURES]; 3]>, f32)>,
     /// The robot whose bias is added, of those that it may be.
     member: Option<&'s Member>,
 }
@@ -93,7 +93,7 @@ impl<'s> MotionNetworks<'s> {
         let weights = |r: &MotionBias| {
             [0, 1, 2].map(|network| std::array::from_fn(|feature| weight(&r.weights[network], feature)))
         };
-        MotionNetworks { correction: reference.map(|r| Box::new(weights(r))), ..self }
+        MotionNetworks { correction: reference.map(|r| (Box::new(weights(r)), r.scale.share())), ..self }
     }
 
     /// The networks with what one robot of a distribution does beyond them, in [tables](Self::table) alone.
@@ -129,8 +129,8 @@ impl<'s> MotionNetworks<'s> {
     pub fn evaluate<S: Binary32>(&self, speeds: Speeds<S>) -> [S; 3] {
         let mut motion = evaluate_all(&self.networks, speeds);
         motion[2] = motion[2] * motion[2].constant(RADIANS_PER_DEGREE);
-        if let Some(correction) = &self.correction {
-            let features = features(speeds);
+        if let Some((correction, share)) = &self.correction {
+            let features = features(speeds, *share);
             for (sum, weights) in motion.iter_mut().zip(correction.iter()) {
                 *sum = *sum + S::weighted_sum(sum.zero(), &features, weights);
             }

@@ -10,6 +10,7 @@ use std::collections::BTreeMap;
 use mindgap_core::network::{Activation, Network, ProductUnit, Scaling, SummationUnit};
 
 use super::baseline::{Baseline, MotionModel};
+use super::ensemble::CommandScale;
 use super::nominal::NominalModel;
 use super::nominal::motion_bias::{FEATURES, MotionBias};
 use super::residuals::{CELLS, LEVELS, ResidualQuantiles, VarianceComponents};
@@ -73,8 +74,10 @@ pub fn simulator(baseline: &Baseline, scatter: [f64; 3]) -> Result<Simulator> {
         constant_reading: None,
         reference: Some(NominalModel {
             motion: Some(MotionBias {
+                scale: CommandScale::PERCENT,
                 weights: [const { Vec::new() }; 3].map(|_: Vec<f64>| vec![0.0; FEATURES]),
                 scatter,
+                precision: None,
             }),
             sonar,
             first_echo: first_echo.clone(),

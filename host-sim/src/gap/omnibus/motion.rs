@@ -2,7 +2,7 @@
 
 use super::basis::Circumstances;
 use super::nearby::{self, Nearby, Spot};
-use super::{ResidualFit, Rows, Steps};
+use super::{Foretold, ResidualFit, Rows, Steps};
 use crate::effects::chain::EffectChain;
 use crate::effects::{PoseIncrement, StepContext};
 use crate::evaluation::observations::{Observation, Observations};
@@ -43,6 +43,8 @@ pub fn fit(channel: Channel, axis: usize, beneath: &Fitted, context: &FitContext
     let usual_way_cm = usual_way_cm(&effects, baseline, rows);
     let covariates = covariates(&effects, baseline, rows, usual_way_cm);
     let of_axis = Rows::of(&covariates, |i| residuals[i].is_some(), |i| rows.rows[i].fold);
+    let (without, own, own_error) = without_own_error(axis, beneath, &residuals, context);
+    let residuals: Vec<Option<f64>> = residuals.iter().zip(&own).map(|(r, own)| Some((*r)? - own)).collect();
     let off = |i: usize| residuals[i].unwrap_or(0.0) / scatter;
     // Of what repeats a row says less.
     let response = |i: usize, prediction: f64, share: f64| {
@@ -66,11 +68,55 @@ pub fn fit(channel: Channel, axis: usize, beneath: &Fitted, context: &FitContext
     ResidualFit {
         channel,
         held_out: law.terms(law.scatter, rows, &rest, &law.own_shares),
+        without,
+        own_error,
         surface,
-        predictions,
+        predictions: own.iter().zip(&predictions).map(|(own, p)| own + p).collect(),
         law: super::Law::Motion(law),
         effects,
     }
+}
+
+/// The log-likelihood of each row by the fit beneath once what the simulator does not know of its own motion is taken away, and
+/// what that is, cm or rad; nothing where rows are no likelier without it.
+fn without_own_error(
+    axis: usize,
+    beneath: &Fitted,
+    residuals: &[Option<f64>],
+    context: &FitContext,
+) -> (Vec<f64>, Vec<f64>, Option<Foretold>) {
+    let rows = context.observations;
+    let with: Vec<f64> = beneath.log_likelihood.motion.iter().map(|nats| nats[axis]).collect();
+    let foretold = || {
+        let own = context.own_errors.as_ref()?.foretold(axis, &rows.rows, residuals)?;
+        let rest: Vec<Option<f64>> = residuals.iter().zip(&own).map(|(r, own)| Some((*r)? - own)).collect();
+        let counted = rest.iter().zip(&rows.rows).filter_map(|(r, row)| Some([(*r)?, row.motion_weight[axis]]));
+        let least = context.baseline.motion.as_ref()?.scatter()[axis];
+        let scatter = fitted_scatter(axis, &counted.collect::<Vec<[f64; 2]>>(), least);
+        Some((terms(axis, scatter, rows, &rest, std::iter::repeat(&1.0)), own))
+    };
+    let nats = |without: &[f64]| without.iter().sum::<f64>() - with.iter().sum::<f64>();
+    match foretold().map(|(without, own)| (nats(&without), without, own)) {
+        Some((nats, without, own)) if nats > 0.0 => {
+            let root_mean_square = root_mean_square(own.iter().copied());
+            (without, own, Some(Foretold { nats, root_mean_square }))
+        }
+        _ => (with, vec![0.0; rows.rows.len()], None),
+    }
+}
+
+/// The log-likelihood of each row where this is the scatter, of which it has a share, and the rest is what predictions leave.
+fn terms<'a>(
+    axis: usize,
+    scatter: f64,
+    rows: &Observations,
+    rest: &[Option<f64>],
+    shares: impl IntoIterator<Item = &'a f64>,
+) -> Vec<f64> {
+    let term = |((row, rest), share): ((&Observation, &Option<f64>), &f64)| {
+        rest.map_or(0.0, |r| row.motion_weight[axis] * log_density(axis, r, share * scatter))
+    };
+    rows.rows.iter().zip(rest).zip(shares).map(term).collect()
 }
 
 /// How steps scatter near a spot, by what is `left` of each place and row in units of the usual scatter: by how much more
@@ -167,9 +213,6 @@ impl Law {
 
     /// The log-likelihood of each row where this is the scatter, and the rest is what predictions leave.
     pub fn terms(&self, scatter: f64, rows: &Observations, rest: &[Option<f64>], shares: &[f64]) -> Vec<f64> {
-        let term = |((row, rest), share): ((&Observation, &Option<f64>), &f64)| {
-            rest.map_or(0.0, |r| row.motion_weight[self.axis] * log_density(self.axis, r, share * scatter))
-        };
-        rows.rows.iter().zip(rest).zip(shares).map(term).collect()
+        terms(self.axis, scatter, rows, rest, shares)
     }
 }

@@ -92,7 +92,8 @@ fn fitted(
     predictions: Vec<f64>,
     law: Law,
 ) -> ResidualFit {
-    ResidualFit { channel, held_out, surface, predictions, law, effects: beneath.effects() }
+    let without = beneath.log_likelihood.channel(channel);
+    ResidualFit { channel, held_out, without, own_error: None, surface, predictions, law, effects: beneath.effects() }
 }
 
 /// The place of a row: what belongs to a place is judged by others.

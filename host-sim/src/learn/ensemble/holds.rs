@@ -115,9 +115,15 @@ impl Hold {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::simulator::ensemble::CommandScale;
 
     fn step(run: usize, row: usize, command: [f64; 2], before: [f64; 2], turn_rad: f64) -> StepResidual {
-        let none = MotionBias { weights: [const { Vec::new() }; 3], scatter: [1.0; 3] };
+        let none = MotionBias {
+            scale: CommandScale::PERCENT,
+            weights: [const { Vec::new() }; 3],
+            scatter: [1.0; 3],
+            precision: None,
+        };
         let speeds = [command[0], command[1], before[0], before[1]];
         StepResidual::new([run, row], speeds, [1.0, 2.0, turn_rad], &none)
     }

@@ -172,6 +172,7 @@ mod tests {
 
     use super::*;
     use crate::chance::generator;
+    use crate::simulator::ensemble::CommandScale;
     use crate::simulator::ensemble::command_scale::Percent;
     use crate::simulator::ensemble::{Ensemble, PARTS, Posterior};
     use crate::simulator::nominal::MotionBias;
@@ -184,7 +185,12 @@ mod tests {
     fn the_noise_that_made_the_steps_is_found() {
         let (step, tracker, first_step, nugget) = (0.2, 0.5, 0.36, [0.65, 2.25]);
         let mut rng = generator(3, &[]);
-        let none = MotionBias { weights: [const { Vec::new() }; 3], scatter: [1.0; 3] };
+        let none = MotionBias {
+            scale: CommandScale::PERCENT,
+            weights: [const { Vec::new() }; 3],
+            scatter: [1.0; 3],
+            precision: None,
+        };
         let mut nuggets: BTreeMap<[i32; 2], f64> = BTreeMap::new();
         let mut steps = Vec::new();
         for run in 0..RUNS {

@@ -20,7 +20,7 @@ const RUNS: u64 = 100;
 const TOP_SPEED_CM_S: f64 = 41.0;
 
 /// Of all outcomes of [`outcomes`] on every kind of course, whatever the machine; made with [`SEED`].
-const CHECKSUM: &str = "989dfe8d1454cf1e8aaca515ab10389c5c057a92db238c2aa4d9f92145b593f3";
+const CHECKSUM: &str = "67303e3689269ef70ca794c8457ada6ebb5b8ef743f379a3f036811e2e67f867";
 
 static SIMULATOR: LazyLock<Simulator> = LazyLock::new(|| {
     let logs = record(&default_robot(), &training_room(), 20, 40, &[], SEED).unwrap();

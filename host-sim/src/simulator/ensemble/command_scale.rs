@@ -1,6 +1,8 @@
 //! How large a robot's commands are. They are percent of full speed for one robot, cm/s for another and duty cycles of 255
 //! for a third; where friction bends what wheels do, and how fine commands differ, goes by what the robot can drive.
 
+use serde::{Deserialize, Serialize};
+
 /// What the largest command of training logs is taken for: they leave some of full speed out, as those of [`record`] do.
 ///
 /// [`record`]: crate::built_in_robot::record
@@ -11,8 +13,14 @@ const LARGEST_PERCENT: f64 = 80.0;
 pub struct Percent(pub [f64; 2]);
 
 /// The factor that makes percent of a robot's commands.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct CommandScale(f64);
+
+impl Default for CommandScale {
+    fn default() -> Self {
+        CommandScale::PERCENT
+    }
+}
 
 impl CommandScale {
     /// Of robots whose commands are percent already.
@@ -26,6 +34,11 @@ impl CommandScale {
             return CommandScale::PERCENT;
         }
         CommandScale(libm::ldexp(1.0, libm::round(libm::log2(LARGEST_PERCENT / largest)) as i32))
+    }
+
+    /// The factor that makes shares of full speed of commands.
+    pub fn share(self) -> f32 {
+        (0.01 * self.0) as f32
     }
 
     /// A command in percent.

@@ -1,15 +1,48 @@
 //! The motion networks' own misfit: what is added to their outputs, and how reality scatters about the sum.
 
 use mindgap_core::scalar::Scalar;
+use nalgebra::DMatrix;
 use serde::{Deserialize, Serialize};
+
+use crate::simulator::ensemble::CommandScale;
 
 /// Corrections and scatter of forward (cm), lateral (cm) and turn (rad).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct MotionBias {
+    /// How large the robot's commands are.
+    #[serde(default)]
+    pub scale: CommandScale,
     /// One weight a feature (see [`features`]), for each of the three outputs.
     pub weights: [Vec<f64>; 3],
     /// Standard deviations about the corrected outputs.
     pub scatter: [f64; 3],
+    /// How well the training logs tell the weights.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub precision: Option<Precision>,
+}
+
+/// The precision of weights by Bayesian linear regression, in units of the scatter: the products of features summed over all
+/// training steps, and what the prior adds on the diagonal.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Precision {
+    /// The lower triangle of the products, row by row.
+    pub products: Vec<f32>,
+    /// Precision of the prior, for each of the three outputs.
+    pub prior: [f64; 3],
+}
+
+impl Precision {
+    /// That of the weights of one output; none where a file has another number of products.
+    pub fn of(&self, output: usize) -> Option<DMatrix<f64>> {
+        let mut precision = DMatrix::from_diagonal_element(FEATURES, FEATURES, self.prior[output]);
+        let places = (0..FEATURES).flat_map(|a| (0..=a).map(move |b| (a, b)));
+        (self.products.len() == FEATURES * (FEATURES + 1) / 2).then_some(())?;
+        for ((a, b), product) in places.zip(&self.products) {
+            precision[(a, b)] += f64::from(*product);
+            precision[(b, a)] = precision[(a, b)];
+        }
+        Some(precision)
+    }
 }
 
 /// Magnitudes of commands, and of the difference of right and left one, at which a correction may bend: friction holds
@@ -21,19 +54,20 @@ pub const FEATURES: usize = 1 + 4 + 10 + 20 + 6 * (1 + 2 * KNOTS.len());
 impl MotionBias {
     /// What is added to the networks' outputs for left, right, previous left and previous right command.
     pub fn correction(&self, speeds: &[f64; 4]) -> [f64; 3] {
-        let features = features(*speeds);
+        let features = features(*speeds, self.scale.share());
         [0, 1, 2].map(|c| self.weights[c].iter().zip(&features).map(|(w, f)| w * f).sum())
     }
 }
 
 /// All products of up to three commands, and bends where the magnitude of a command, or of the difference of right and
 /// left one, passes a knot.
+/// `share` makes shares of full speed of commands.
 #[inline(always)]
-pub fn features<S: Scalar<Weight: From<f32>>>(speeds: [S; 4]) -> [S; FEATURES] {
+pub fn features<S: Scalar<Weight: From<f32>>>(speeds: [S; 4], share: f32) -> [S; FEATURES] {
     let one = speeds[0].one();
     let mut u = speeds;
     for command in &mut u {
-        *command = *command * one.constant(0.01.into());
+        *command = *command * one.constant(share.into());
     }
     let mut features = Features { values: [one; FEATURES], count: 1 };
     for a in 0..4 {
@@ -52,6 +86,12 @@ pub fn features<S: Scalar<Weight: From<f32>>>(speeds: [S; 4]) -> [S; FEATURES] {
     features.bend(u[1] - u[0]);
     features.bend(u[3] - u[2]);
     features.values
+}
+
+/// The lower triangle, row by row, of the products of features, summed over rows of them.
+pub fn products(rows: &[Vec<f64>]) -> Vec<f32> {
+    let product = |a: usize, b: usize| rows.iter().map(|row| row[a] * row[b]).sum::<f64>() as f32;
+    (0..FEATURES).flat_map(|a| (0..=a).map(move |b| (a, b))).map(|(a, b)| product(a, b)).collect()
 }
 
 /// The features so far.

@@ -5,10 +5,6 @@
 
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
-/// Ratios of noise variance to prior variance that are tried, weakest penalty last. At the first, a thousand rows hold
-/// half a nat; at the last, the prior is wider than the noise and the penalty has no say. The error is flat between
-/// neighbours. No fit at all is tried besides.
-const STRENGTHS: [f64; 7] = [1000.0, 215.0, 46.0, 10.0, 2.15, 0.46, 0.1];
 /// Most steps from one working response to the next.
 pub const MOST_STEPS: usize = 10;
 /// The change of a prediction, in noise deviations, that ends them.
@@ -21,6 +17,8 @@ pub struct Ridge {
     pub held_out: Vec<f64>,
     /// The weight of each column from all rows; zeros where no fit at all is best.
     pub weights: Vec<f64>,
+    /// The ratio of noise variance to prior variance that was chosen; none where no fit at all is best.
+    pub strength: Option<f64>,
 }
 
 /// The normal equations of some rows.
@@ -35,8 +33,8 @@ type Factor = Cholesky<f64, Dyn>;
 /// Fits `response(row, prediction)`, the working response of a row where its prediction stands: for a Gaussian
 /// likelihood the datum itself, otherwise prediction plus score over the largest curvature, so that every step climbs
 /// (Böhning and Lindsay 1988). Responses are in units in which their noise has at most the deviation one. `folds` gives
-/// the fold of each row.
-pub fn fit(rows: &[Vec<f64>], folds: &[usize], response: impl Fn(usize, f64) -> f64) -> Ridge {
+/// the fold of each row, `tried` the ratios of noise variance to prior variance that are tried; no fit at all is tried besides.
+pub fn fit(rows: &[Vec<f64>], folds: &[usize], tried: &[f64], response: impl Fn(usize, f64) -> f64) -> Ridge {
     let count = folds.iter().max().map_or(0, |most| most + 1);
     let normals: Vec<Normal> =
         (0..count).map(|fold| normal(rows, |i| folds[i] == fold, |i| response(i, 0.0))).collect();
@@ -48,10 +46,10 @@ pub fn fit(rows: &[Vec<f64>], folds: &[usize], response: impl Fn(usize, f64) -> 
             |(factor, start)| settled(rows, |i| Some(folds[i]) != left_out, &response, &factor, start),
         )
     };
-    let (nested, overall) = strengths(&normals);
+    let (nested, strength) = strengths(&normals, tried);
     let without: Vec<Vec<f64>> = nested.iter().enumerate().map(|(fold, s)| settle(*s, Some(fold))).collect();
     let held_out = rows.iter().zip(folds).map(|(row, fold)| predicted(row, &without[*fold])).collect();
-    Ridge { held_out, weights: settle(overall, None) }
+    Ridge { held_out, weights: settle(strength, None), strength }
 }
 
 /// The prediction of a row.
@@ -60,11 +58,11 @@ pub fn predicted(row: &[f64], weights: &[f64]) -> f64 {
 }
 
 /// The best strength for each fold as the others tell it, and the best of all folds.
-fn strengths(normals: &[Normal]) -> (Vec<Option<f64>>, Option<f64>) {
+fn strengths(normals: &[Normal], tried: &[f64]) -> (Vec<Option<f64>>, Option<f64>) {
     let count = normals.len();
-    let mut nested = vec![[0.0; STRENGTHS.len()]; count];
-    let mut overall = [0.0; STRENGTHS.len()];
-    for (place, strength) in STRENGTHS.iter().enumerate() {
+    let mut nested = vec![vec![0.0; tried.len()]; count];
+    let mut overall = vec![0.0; tried.len()];
+    for (place, strength) in tried.iter().enumerate() {
         for one in 0..count {
             if let Some((_, weights)) = factor(normals, &[one], *strength) {
                 overall[place] += normals[one].error(&weights);
@@ -77,13 +75,14 @@ fn strengths(normals: &[Normal]) -> (Vec<Option<f64>>, Option<f64>) {
             }
         }
     }
+    let best = |errors: &Vec<f64>| best(tried, errors);
     (nested.iter().map(best).collect(), best(&overall))
 }
 
 /// The strength of least error; none where no fit at all has less.
-fn best(errors: &[f64; STRENGTHS.len()]) -> Option<f64> {
-    let least = errors.iter().zip(STRENGTHS).min_by(|a, b| a.0.total_cmp(b.0));
-    least.filter(|(error, _)| **error < 0.0).map(|(_, strength)| strength)
+fn best(tried: &[f64], errors: &[f64]) -> Option<f64> {
+    let least = errors.iter().zip(tried).min_by(|a, b| a.0.total_cmp(b.0));
+    least.filter(|(error, _)| **error < 0.0).map(|(_, strength)| *strength)
 }
 
 /// The penalised normal equations of all folds but some, and their solution.
@@ -159,6 +158,7 @@ mod tests {
     use super::*;
     use crate::chance::generator;
 
+    const STRENGTHS: [f64; 7] = [1000.0, 215.0, 46.0, 10.0, 2.15, 0.46, 0.1];
     const FOLDS: usize = 8;
     const ROWS: usize = 400;
     const COLUMNS: usize = 20;
@@ -210,7 +210,7 @@ mod tests {
         for seed in 0..20 {
             let (rows, folds, noise) = made_up(seed);
             let signal: Vec<f64> = rows.iter().zip(&noise).map(|(row, n)| 30.0 * row.iter().sum::<f64>() + n).collect();
-            let strength = |data: &[f64]| strengths(&normals(&rows, &folds, data)).1;
+            let strength = |data: &[f64]| strengths(&normals(&rows, &folds, data), &STRENGTHS).1;
             strongest += usize::from(strength(&noise).is_none_or(|s| s == STRENGTHS[0]));
             weakest += usize::from(strength(&signal).is_some_and(|s| s < 1.0));
         }
@@ -221,7 +221,7 @@ mod tests {
     fn noise_is_not_predicted() {
         let gains = (0..100).map(|seed| {
             let (rows, folds, noise) = made_up(seed);
-            gain(&noise, &fit(&rows, &folds, |i, _| noise[i]).held_out)
+            gain(&noise, &fit(&rows, &folds, &STRENGTHS, |i, _| noise[i]).held_out)
         });
         let mean = gains.sum::<f64>() / 100.0;
         assert!(mean <= 0.0, "{mean}");
@@ -231,7 +231,7 @@ mod tests {
     fn a_signal_is_predicted_on_runs_never_seen() {
         let (rows, folds, noise) = made_up(7);
         let data: Vec<f64> = rows.iter().zip(&noise).map(|(row, n)| row[3] + n).collect();
-        let gain = gain(&data, &fit(&rows, &folds, |i, _| data[i]).held_out);
+        let gain = gain(&data, &fit(&rows, &folds, &STRENGTHS, |i, _| data[i]).held_out);
         let there: f64 = rows.iter().map(|row| row[3] * row[3]).sum();
         assert!(gain > 0.8 * there && gain < 1.2 * there, "{gain} of {there}");
     }
@@ -246,7 +246,7 @@ mod tests {
             rows.iter().map(|r| f64::from(u8::from(rng.random::<f64>() < chance(1.5 * r[0])))).collect();
         let folds: Vec<usize> = (0..rows.len()).map(|i| i % FOLDS).collect();
         let response = |i: usize, eta: f64| eta + 2.0 * (yes[i] - chance(2.0 * eta));
-        let found = 2.0 * fit(&rows, &folds, response).weights[0];
+        let found = 2.0 * fit(&rows, &folds, &STRENGTHS, response).weights[0];
         assert!((found - 1.5).abs() < 0.1, "{found}");
     }
 }
