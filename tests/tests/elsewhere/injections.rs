@@ -37,6 +37,23 @@ const DRIVE: &[Injection] = &[
         change: |run| steps(run, |s, _| s.turn_rad *= 1.08),
     },
     Injection {
+        name: "turns 15 % smaller",
+        called: &["track_width"],
+        change: |run| steps(run, |s, _| s.turn_rad *= 0.85),
+    },
+    Injection {
+        name: "turns 15 % larger",
+        called: &["track_width"],
+        change: |run| steps(run, |s, _| s.turn_rad *= 1.15),
+    },
+    Injection {
+        name: "turns cost 4 cm a radian",
+        called: &["turn_loss"],
+        change: |run| {
+            steps(run, |s, _| s.forward_cm -= s.forward_cm.signum() * (4.0 * s.turn_rad.abs()).min(s.forward_cm.abs()))
+        },
+    },
+    Injection {
         name: "left motor 5 % weaker",
         called: &["motor_asymmetry"],
         change: |run| steps(run, |s, _| s.wheels([0.95, 1.0])),
@@ -156,15 +173,18 @@ const SCANS: &[Injection] = &[
     },
 ];
 
-/// Nine of ten changes are named first, nothing is where nothing was changed, and no wrong name is sure.
+/// Nothing is where nothing was changed, no wrong name is sure, and most changes are named first: nine of ten in the runs of
+/// one third, and eight of ten in those of each third by what the others taught. What a third drives that the others hardly
+/// do, as spins, its simulator does not know.
 pub fn changes_of_a_real_drive_are_named(folder: &Path) {
     let logs = Logs::read(folder, |_| ()).expect("logs");
-    // Every third run is held out.
-    let part = |held_out: bool| {
-        let runs = logs.runs.iter().enumerate().filter(|(i, _)| (i % 3 == 2) == held_out).map(|(_, run)| run.clone());
-        Logs { runs: runs.collect(), ..logs.clone() }
+    let part = |third: usize, held_out: bool| {
+        let runs = logs.runs.iter().enumerate().filter(|(i, _)| (i % 3 == third) == held_out);
+        Logs { runs: runs.map(|(_, run)| run.clone()).collect(), ..logs.clone() }
     };
-    judge(&part(false), &part(true), DRIVE);
+    let thirds = [0, 1, 2].map(|third| judged(&part(third, false), &part(third, true), DRIVE));
+    enough(thirds[2], 9);
+    enough(thirds.into_iter().reduce(|[named, asked], [n, a]| [named + n, asked + a]).expect("thirds"), 8);
 }
 
 /// The same of a sonar that stands still: three of the five scans from each place are learned from.
@@ -174,10 +194,16 @@ pub fn changes_of_a_real_sonar_that_stands_still_are_named(folder: &Path) {
         let runs = logs.runs.iter().enumerate().filter(|(i, _)| (i % 5 >= 3) == held_out).map(|(_, run)| run.clone());
         Logs { runs: runs.collect(), ..logs.clone() }
     };
-    judge(&part(false), &part(true), SCANS);
+    enough(judged(&part(false), &part(true), SCANS), 9);
 }
 
-fn judge(training: &Logs, held_out: &Logs, injections: &[Injection]) {
+/// So many of ten are named first.
+fn enough([named, asked]: [usize; 2], of_ten: usize) {
+    assert!(10 * named >= of_ten * asked, "{named} of {asked}");
+}
+
+/// How many changes are named first, of how many.
+fn judged(training: &Logs, held_out: &Logs, injections: &[Injection]) -> [usize; 2] {
     let workshop = Workshop::new();
     training.write(&workshop.path().join("training")).expect("a folder");
     workshop.done("train training --out sim.json");
@@ -209,7 +235,7 @@ fn judge(training: &Logs, held_out: &Logs, injections: &[Injection]) {
     }
     println!("{named} of {asked} named first");
     assert!(wrong.is_empty(), "{wrong:#?}");
-    assert!(10 * named >= 9 * asked, "{named} of {asked}");
+    [named, asked]
 }
 
 fn told(effects: &[Value]) -> String {
