@@ -157,7 +157,7 @@ impl ResidualFit {
 
     fn beyond_prediction(&self, law: &motion::Law, rows: &Observations, context: &FitContext) -> Vec<Option<f64>> {
         let residuals = law.residuals(&self.effects, context.baseline, rows);
-        residuals.iter().zip(self.predictions(rows, context)).map(|(r, prediction)| Some((*r)? - prediction)).collect()
+        beyond(&residuals, &self.predictions(rows, context))
     }
 
     fn predictions(&self, rows: &Observations, context: &FitContext) -> Vec<f64> {
@@ -254,6 +254,11 @@ fn together(steps: &Steps, terms: impl Fn(&Circumstances) -> Vec<f64>) -> Vec<f6
     let sum = terms.reduce(|sum, terms| sum.iter().zip(&terms).map(|(a, b)| a + b).collect()).unwrap_or_default();
     let share = 1.0 / (steps.len() as f64).sqrt();
     sum.into_iter().map(|term| share * term).collect()
+}
+
+/// What predictions leave of residuals.
+fn beyond(residuals: &[Option<f64>], predictions: &[f64]) -> Vec<Option<f64>> {
+    residuals.iter().zip(predictions).map(|(residual, prediction)| Some((*residual)? - prediction)).collect()
 }
 
 fn is_own(rows: &Observations, context: &FitContext) -> bool {

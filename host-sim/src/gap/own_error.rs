@@ -15,7 +15,7 @@ use crate::evaluation::predictions::residual;
 use crate::simulator::baseline::{Baseline, MotionModel};
 use crate::simulator::nominal::MotionBias;
 use crate::simulator::nominal::motion_bias::{FEATURES, features};
-use crate::statistics::summary::median;
+use crate::statistics::summary::{QUARTILE, median};
 
 /// What is open of forward, lateral and turn; none where the training logs tell all of it.
 pub struct OwnErrors([Option<OwnError>; 3]);
@@ -36,10 +36,8 @@ struct OwnError {
 
 /// A direction is open where these rows tell at least as much of it as all training logs did.
 const LEAST_TOLD: f64 = 1.0;
-/// Half of a normal law lies within so many standard deviations.
-const QUARTILE: f64 = 0.6745;
 /// A residual that is farther off pulls no more than this, in standard deviations: a jump of the tracker says nothing of steps.
-const FARTHEST: f64 = 4.0;
+pub const FARTHEST: f64 = 4.0;
 /// Of an eigendecomposition; a hundred columns take some two hundred.
 const MOST_ITERATIONS: usize = 10_000;
 
@@ -123,14 +121,14 @@ fn open_directions(precision: DMatrix<f64>, told: DMatrix<f64>) -> Option<DMatri
 /// For each fold the posterior covariance by the other ones.
 fn covariances(directions: &DMatrix<f64>, rows: &[Observation], weights: &[f64], share: f64) -> Vec<DMatrix<f64>> {
     let folds = rows.iter().map(|row| row.fold + 1).max().unwrap_or(0);
-    let of_fold = |fold: Option<usize>| {
-        let kept = rows.iter().zip(weights).map(|(row, w)| if fold == Some(row.fold) { 0.0 } else { *w });
-        weighted_products(directions, &kept.collect::<Vec<f64>>()) * (share * share)
-    };
     let identity = DMatrix::identity(directions.ncols(), directions.ncols());
-    // A sum of squares and the identity has an inverse.
-    let covariance = |fold| (of_fold(Some(fold)) + &identity).cholesky().map(|factor| factor.inverse());
-    (0..folds).map(|fold| covariance(fold).unwrap_or_else(|| identity.clone())).collect()
+    let covariance = |fold: usize| {
+        let others = rows.iter().zip(weights).map(|(row, w)| if row.fold == fold { 0.0 } else { *w });
+        let told = weighted_products(directions, &others.collect::<Vec<f64>>()) * (share * share);
+        // A sum of squares and the identity has an inverse.
+        (told + &identity).cholesky().map_or_else(|| identity.clone(), |factor| factor.inverse())
+    };
+    (0..folds).map(covariance).collect()
 }
 
 #[cfg(test)]

@@ -98,10 +98,7 @@ fn residuals(simulator: &Simulator, logs: &Logs) -> Option<Vec<StepResidual>> {
     let networks = simulator.motion_networks()?;
     let known = simulator.reference.as_ref()?.motion.as_ref()?;
     let residual = |s: &samples::MotionSample| {
-        let m = networks.step(s.speeds.map(|v| v as f32));
-        let correction = known.correction(&s.speeds);
-        let predicted = [m.forward_cm, m.lateral_cm, m.turn_rad].map(f64::from);
-        let off = [s.forward_cm - predicted[0], s.lateral_cm - predicted[1], s.turn_rad - predicted[2]];
+        let (off, correction) = (networks.residual(s), known.correction(&s.speeds));
         StepResidual::new([s.run, s.row], s.speeds, [0, 1, 2].map(|c| off[c] - correction[c]), known)
     };
     Some(samples::motion(logs).iter().map(residual).collect())

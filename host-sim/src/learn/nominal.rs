@@ -44,14 +44,7 @@ fn motion(simulator: &Simulator, logs: &Logs) -> Option<MotionBias> {
     let parts = if logs.runs.len() < FOLDS { FOLDS } else { 1 };
     let part = |s: &samples::MotionSample| s.run + s.row * parts / logs.runs[s.run].rows.len();
     let folds: Vec<usize> = steps.iter().map(|s| part(s) % FOLDS).collect();
-    let residuals: Vec<[f64; 3]> = steps
-        .iter()
-        .map(|s| {
-            let m = networks.step(s.speeds.map(|v| v as f32));
-            let predicted = [m.forward_cm, m.lateral_cm, m.turn_rad].map(f64::from);
-            [s.forward_cm - predicted[0], s.lateral_cm - predicted[1], s.turn_rad - predicted[2]]
-        })
-        .collect();
+    let residuals: Vec<[f64; 3]> = steps.iter().map(|s| networks.residual(s)).collect();
     let fit = |c: usize| {
         let unit = root_mean_square(residuals.iter().map(|r| r[c])).max(f64::MIN_POSITIVE);
         let ridge = ridge::fit(&rows, &folds, &STRENGTHS, |i, _| residuals[i][c] / unit);

@@ -14,6 +14,7 @@ use super::{Learned, Simulator};
 use crate::effects::context::HISTORY;
 use crate::error::Result;
 use crate::lanes::Lanes;
+use crate::logs::samples::MotionSample;
 
 /// The three motion networks of a simulator, as they are or with what the logs say beyond them.
 #[derive(Clone)]
@@ -122,6 +123,12 @@ impl<'s> MotionNetworks<'s> {
     pub fn step(&self, speeds: Speeds<f32>) -> Motion {
         let [forward_cm, lateral_cm, turn_rad] = self.evaluate(speeds);
         Motion { forward_cm, lateral_cm, turn_rad, cells: self.cells(&speeds) }
+    }
+
+    /// Logged minus what is said of a step: forward (cm), lateral (cm) and turn (rad).
+    pub fn residual(&self, logged: &MotionSample) -> [f64; 3] {
+        let [forward_cm, lateral_cm, turn_rad] = self.evaluate(logged.speeds.map(|v| v as f32)).map(f64::from);
+        [logged.forward_cm - forward_cm, logged.lateral_cm - lateral_cm, logged.turn_rad - turn_rad]
     }
 
     /// Way forward and to the left in cm and turn to the left in radians.

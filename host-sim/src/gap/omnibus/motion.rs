@@ -2,13 +2,14 @@
 
 use super::basis::Circumstances;
 use super::nearby::{self, Nearby, Spot};
-use super::{Foretold, ResidualFit, Rows, Steps};
+use super::{Foretold, ResidualFit, Rows, Steps, beyond};
 use crate::effects::chain::EffectChain;
 use crate::effects::{PoseIncrement, StepContext};
 use crate::evaluation::observations::{Observation, Observations};
 use crate::evaluation::predictions::{increment, residual};
 use crate::gap::channel::Channel;
 use crate::gap::fit::{FitContext, Fitted};
+use crate::gap::own_error::FARTHEST;
 use crate::gap::residual_law::{fitted_scatter, log_density};
 use crate::simulator::baseline::{Baseline, MotionModel};
 use crate::statistics::summary::root_mean_square;
@@ -30,10 +31,6 @@ pub struct Law {
     usual_way_cm: f64,
 }
 
-/// A residual that lies farther from its prediction pulls no more than this, in standard deviations: a jump of the
-/// tracker says nothing about steps.
-const FARTHEST: f64 = 4.0;
-
 /// The rest of a motion channel.
 pub fn fit(channel: Channel, axis: usize, beneath: &Fitted, context: &FitContext) -> ResidualFit {
     let effects = beneath.effects();
@@ -43,8 +40,8 @@ pub fn fit(channel: Channel, axis: usize, beneath: &Fitted, context: &FitContext
     let usual_way_cm = usual_way_cm(&effects, baseline, rows);
     let covariates = covariates(&effects, baseline, rows, usual_way_cm);
     let of_axis = Rows::of(&covariates, |i| residuals[i].is_some(), |i| rows.rows[i].fold);
-    let (without, own, own_error) = without_own_error(axis, beneath, &residuals, context);
-    let residuals: Vec<Option<f64>> = residuals.iter().zip(&own).map(|(r, own)| Some((*r)? - own)).collect();
+    let (without, own, own_error) = without_own_error(channel, axis, beneath, &residuals, context);
+    let residuals = beyond(&residuals, &own);
     let off = |i: usize| residuals[i].unwrap_or(0.0) / scatter;
     // Of what repeats a row says less.
     let response = |i: usize, prediction: f64, share: f64| {
@@ -55,13 +52,11 @@ pub fn fit(channel: Channel, axis: usize, beneath: &Fitted, context: &FitContext
     // Steps that scatter more say less of what steps follow.
     let (_, shares) = scatter_nearby(&of_axis, |place, i| off(i) - told[place]);
     let (surface, predictions) = of_axis.surface((nearby, told), &shares, scatter, response);
-    let rest: Vec<Option<f64>> = residuals.iter().zip(&predictions).map(|(r, p)| Some((*r)? - p)).collect();
+    let rest = beyond(&residuals, &predictions);
     let (further_variance, shares) = scatter_nearby(&of_axis, |_, i| rest[i].unwrap_or(0.0) / scatter);
     let shares = of_axis.of_all(&shares, 1.0);
-    let even = rest.iter().zip(&shares).zip(&rows.rows);
-    let even = even.filter_map(|((rest, share), row)| Some([(*rest)? / share, row.motion_weight[axis]]));
     let least = baseline.motion.as_ref().map_or(1.0, |drive| drive.scatter()[axis]);
-    let scatter = fitted_scatter(axis, &even.collect::<Vec<[f64; 2]>>(), least);
+    let scatter = even_scatter(axis, rows, &rest, &shares, least);
     let least_share = least / scatter;
     let own_shares = shares.into_iter().map(|share| share.max(least_share)).collect();
     let law = Law { axis, scatter, further_variance, own_shares, least_share, usual_way_cm };
@@ -80,20 +75,20 @@ pub fn fit(channel: Channel, axis: usize, beneath: &Fitted, context: &FitContext
 /// The log-likelihood of each row by the fit beneath once what the simulator does not know of its own motion is taken away, and
 /// what that is, cm or rad; nothing where rows are no likelier without it.
 fn without_own_error(
+    channel: Channel,
     axis: usize,
     beneath: &Fitted,
     residuals: &[Option<f64>],
     context: &FitContext,
 ) -> (Vec<f64>, Vec<f64>, Option<Foretold>) {
     let rows = context.observations;
-    let with: Vec<f64> = beneath.log_likelihood.motion.iter().map(|nats| nats[axis]).collect();
+    let with = beneath.log_likelihood.channel(channel);
     let foretold = || {
         let own = context.own_errors.as_ref()?.foretold(axis, &rows.rows, residuals)?;
-        let rest: Vec<Option<f64>> = residuals.iter().zip(&own).map(|(r, own)| Some((*r)? - own)).collect();
-        let counted = rest.iter().zip(&rows.rows).filter_map(|(r, row)| Some([(*r)?, row.motion_weight[axis]]));
+        let (rest, alike) = (beyond(residuals, &own), vec![1.0; rows.rows.len()]);
         let least = context.baseline.motion.as_ref()?.scatter()[axis];
-        let scatter = fitted_scatter(axis, &counted.collect::<Vec<[f64; 2]>>(), least);
-        Some((terms(axis, scatter, rows, &rest, std::iter::repeat(&1.0)), own))
+        let scatter = even_scatter(axis, rows, &rest, &alike, least);
+        Some((terms(axis, scatter, rows, &rest, &alike), own))
     };
     let nats = |without: &[f64]| without.iter().sum::<f64>() - with.iter().sum::<f64>();
     match foretold().map(|(without, own)| (nats(&without), without, own)) {
@@ -106,17 +101,18 @@ fn without_own_error(
 }
 
 /// The log-likelihood of each row where this is the scatter, of which it has a share, and the rest is what predictions leave.
-fn terms<'a>(
-    axis: usize,
-    scatter: f64,
-    rows: &Observations,
-    rest: &[Option<f64>],
-    shares: impl IntoIterator<Item = &'a f64>,
-) -> Vec<f64> {
+fn terms(axis: usize, scatter: f64, rows: &Observations, rest: &[Option<f64>], shares: &[f64]) -> Vec<f64> {
     let term = |((row, rest), share): ((&Observation, &Option<f64>), &f64)| {
         rest.map_or(0.0, |r| row.motion_weight[axis] * log_density(axis, r, share * scatter))
     };
     rows.rows.iter().zip(rest).zip(shares).map(term).collect()
+}
+
+/// The scatter of rows of which each has its share of it, `least` or more, where the rest is what predictions leave.
+fn even_scatter(axis: usize, rows: &Observations, rest: &[Option<f64>], shares: &[f64], least: f64) -> f64 {
+    let even = rest.iter().zip(shares).zip(&rows.rows);
+    let even = even.filter_map(|((rest, share), row)| Some([(*rest)? / share, row.motion_weight[axis]]));
+    fitted_scatter(axis, &even.collect::<Vec<[f64; 2]>>(), least)
 }
 
 /// How steps scatter near a spot, by what is `left` of each place and row in units of the usual scatter: by how much more

@@ -35,9 +35,8 @@ impl Precision {
     /// That of the weights of one output; none where a file has another number of products.
     pub fn of(&self, output: usize) -> Option<DMatrix<f64>> {
         let mut precision = DMatrix::from_diagonal_element(FEATURES, FEATURES, self.prior[output]);
-        let places = (0..FEATURES).flat_map(|a| (0..=a).map(move |b| (a, b)));
-        (self.products.len() == FEATURES * (FEATURES + 1) / 2).then_some(())?;
-        for ((a, b), product) in places.zip(&self.products) {
+        (self.products.len() == lower_triangle().count()).then_some(())?;
+        for ((a, b), product) in lower_triangle().zip(&self.products) {
             precision[(a, b)] += f64::from(*product);
             precision[(b, a)] = precision[(a, b)];
         }
@@ -60,8 +59,7 @@ impl MotionBias {
 }
 
 /// All products of up to three commands, and bends where the magnitude of a command, or of the difference of right and
-/// left one, passes a knot.
-/// `share` makes shares of full speed of commands.
+/// left one, passes a knot. Commands times `share` are shares of full speed.
 #[inline(always)]
 pub fn features<S: Scalar<Weight: From<f32>>>(speeds: [S; 4], share: f32) -> [S; FEATURES] {
     let one = speeds[0].one();
@@ -91,7 +89,12 @@ pub fn features<S: Scalar<Weight: From<f32>>>(speeds: [S; 4], share: f32) -> [S;
 /// The lower triangle, row by row, of the products of features, summed over rows of them.
 pub fn products(rows: &[Vec<f64>]) -> Vec<f32> {
     let product = |a: usize, b: usize| rows.iter().map(|row| row[a] * row[b]).sum::<f64>() as f32;
-    (0..FEATURES).flat_map(|a| (0..=a).map(move |b| (a, b))).map(|(a, b)| product(a, b)).collect()
+    lower_triangle().map(|(a, b)| product(a, b)).collect()
+}
+
+/// Pairs of features in the order of [`Precision::products`].
+fn lower_triangle() -> impl Iterator<Item = (usize, usize)> {
+    (0..FEATURES).flat_map(|a| (0..=a).map(move |b| (a, b)))
 }
 
 /// The features so far.
