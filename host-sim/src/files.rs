@@ -2,6 +2,7 @@
 
 mod leftovers;
 pub mod places;
+mod records;
 mod temporary;
 mod text;
 mod words;
@@ -11,6 +12,7 @@ mod write;
 use std::fs;
 use std::path::Path;
 
+use csv::{ReaderBuilder, StringRecord};
 use jiff::Timestamp;
 use jiff::civil::Date;
 use jiff::tz::TimeZone;
@@ -18,6 +20,7 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 pub use leftovers::remove_ours as remove_temporary;
+pub use records::Records;
 pub use text::{NO_UTF8, TextFile, line_at, read_text};
 pub use words::did_you_mean;
 pub use write::{is_stream, leave_writing, make_folder, reason, to_standard_output, write, write_folder};
@@ -72,23 +75,13 @@ pub fn write_csv(path: &Path, rows: &[impl Serialize]) -> Result<()> {
 /// # Errors
 /// When the file is missing or a row is not of the expected form.
 pub fn read_csv<T: DeserializeOwned>(path: &Path) -> Result<Vec<T>> {
-    let text = read_text(path)?;
-    let rows = csv::Reader::from_reader(text.as_bytes()).deserialize().collect::<csv::Result<_>>();
-    rows.map_err(|e| csv_error(path, &e))
-}
-
-/// What is wrong with a CSV file, and in which line.
-pub fn csv_error(path: &Path, e: &csv::Error) -> Error {
-    let line = e.position().map_or(1, csv::Position::line);
-    let what = match e.kind() {
-        csv::ErrorKind::UnequalLengths { expected_len, len, .. } => {
-            let comma = if len > expected_len { " (numbers have a decimal point)" } else { "" };
-            format!("has {len} cells where the header has {expected_len}: torn or wrong line{comma}")
-        }
-        csv::ErrorKind::Utf8 { .. } => NO_UTF8.into(),
-        _ => e.to_string().replace('\n', " "),
-    };
-    Error::at_line(path, line, what)
+    let mut records = Records::new(path, TextFile::open(path)?, &ReaderBuilder::new());
+    let header = records.header()?;
+    let (mut record, mut rows) = (StringRecord::new(), Vec::new());
+    while let Some(line) = records.read(&mut record)? {
+        rows.push(record.deserialize(Some(&header)).map_err(|e| Error::at_line(path, line, e.to_string()))?);
+    }
+    Ok(rows)
 }
 
 /// Writes a value as JSON.

@@ -1,11 +1,12 @@
 //! A table as text: any separator, a header of any form, numbers with a point or a comma.
 
+use std::iter;
 use std::path::{Path, PathBuf};
 
 use csv::{ReaderBuilder, StringRecord};
 
 use crate::error::{Error, Result};
-use crate::files;
+use crate::files::{self, Records};
 
 /// A table with a header.
 pub struct Table {
@@ -77,11 +78,16 @@ impl Table {
 
     /// The lines below the header, each with as many cells as it.
     pub fn lines(&self) -> impl Iterator<Item = Result<Line<'_>>> {
-        let mut builder = ReaderBuilder::new();
-        builder.has_headers(false).flexible(true).delimiter(self.separator).trim(csv::Trim::All);
-        builder.from_reader(self.body.as_bytes()).into_records().map(|record| {
-            let record = record.map_err(|e| files::csv_error(&self.file, &e))?;
-            let number = self.header_line + record.position().map_or(0, csv::Position::line);
+        let mut settings = ReaderBuilder::new();
+        settings.has_headers(false).flexible(true).delimiter(self.separator).trim(csv::Trim::All);
+        let mut records = Records::new(&self.file, self.body.as_bytes(), &settings);
+        let next = move || {
+            let mut record = StringRecord::new();
+            records.read(&mut record).transpose().map(|line| line.map(|line| (line, record)))
+        };
+        iter::from_fn(next).map(|read| {
+            let (line, record) = read?;
+            let number = self.header_line + line;
             if record.len() < self.names.len() {
                 let what =
                     format!("has {} cells where the header has {}: torn or wrong line", record.len(), self.names.len());

@@ -2,12 +2,12 @@
 
 use std::path::Path;
 
-use csv::ReaderBuilder;
+use csv::{ReaderBuilder, StringRecord};
 use mindgap_controller_export::brick::Sonar;
 use mindgap_controller_export::onboard::NO_ECHO_CM;
 
 use crate::error::{Error, Result};
-use crate::files;
+use crate::files::{Records, TextFile};
 
 const COLUMN: &str = "echo_cm";
 
@@ -29,15 +29,11 @@ pub fn read(list_or_file: &str) -> Result<Vec<Sonar>> {
 }
 
 fn read_column(path: &Path) -> Result<Vec<Sonar>> {
-    let text = files::read_text(path)?;
-    let mut reader = ReaderBuilder::new().trim(csv::Trim::All).from_reader(text.as_bytes());
-    let broken = |e: csv::Error| files::csv_error(path, &e);
-    let column = reader.headers().map_err(broken)?.iter().position(|name| name == COLUMN);
+    let mut records = Records::new(path, TextFile::open(path)?, ReaderBuilder::new().trim(csv::Trim::All));
+    let column = records.header()?.iter().position(|name| name == COLUMN);
     let column = column.ok_or_else(|| Error::at_line(path, 1, format!("column {COLUMN} is missing")))?;
-    let mut readings = Vec::new();
-    for record in reader.records() {
-        let record = record.map_err(broken)?;
-        let line = record.position().map_or(0, csv::Position::line);
+    let (mut record, mut readings) = (StringRecord::new(), Vec::new());
+    while let Some(line) = records.read(&mut record)? {
         let cell = record.get(column).unwrap_or_default();
         let answer = reading(cell).map_err(|what| Error::at_line(path, line, format!("{COLUMN} {what}")))?;
         readings.push(answer);

@@ -9,7 +9,7 @@ use csv::{ReaderBuilder, StringRecord, Writer};
 use super::columns::{COLUMNS, Columns, REQUIRED, cells};
 use super::rows::Rows;
 use crate::error::{Error, Result};
-use crate::files::{self, TextFile};
+use crate::files::{self, Records, TextFile};
 
 /// One run of a robot: at least two rows in order of time.
 #[derive(Clone, Debug, PartialEq)]
@@ -89,13 +89,12 @@ impl Run {
 
 /// Reads rows one by one: the text of a long run is never there as a whole.
 fn rows(path: &Path, text: impl Read, required: &[&str], warn: &mut impl FnMut(String)) -> Result<Rows> {
-    let mut reader = ReaderBuilder::new().trim(csv::Trim::All).from_reader(text);
-    let header = reader.headers().map_err(|e| files::csv_error(path, &e))?.clone();
+    let mut records = Records::new(path, text, ReaderBuilder::new().trim(csv::Trim::All));
+    let header = records.header()?;
     let columns = Columns::find(path, &header, required, warn)?;
     let mut rows = Rows::default();
     let mut record = StringRecord::new();
-    while reader.read_record(&mut record).map_err(|e| files::csv_error(path, &e))? {
-        let line = record.position().map_or(0, csv::Position::line);
+    while let Some(line) = records.read(&mut record)? {
         let row = columns.row(&record).map_err(|what| Error::at_line(path, line, what))?;
         if let Some(before) = rows.last().filter(|before| row.t_ms <= before.t_ms) {
             let what = if row.t_ms == before.t_ms {

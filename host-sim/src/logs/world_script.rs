@@ -3,11 +3,11 @@
 
 use std::path::Path;
 
-use csv::ReaderBuilder;
+use csv::{ReaderBuilder, StringRecord};
 use mindgap_controller_export::brick::{Level, Press};
 
 use crate::error::{Error, Result};
-use crate::files;
+use crate::files::{self, Records, TextFile};
 
 const TIME: &str = "t_ms";
 /// Columns of the sensor ports, and of the buttons by their numbers.
@@ -35,10 +35,8 @@ fn all_columns() -> impl Iterator<Item = &'static str> {
 /// # Errors
 /// When the file cannot be read, or has another column or an invalid number.
 pub fn read(path: &Path) -> Result<WorldScript> {
-    let text = files::read_text(path)?;
-    let mut reader = ReaderBuilder::new().trim(csv::Trim::All).from_reader(text.as_bytes());
-    let broken = |e: csv::Error| files::csv_error(path, &e);
-    let header = reader.headers().map_err(broken)?.clone();
+    let mut records = Records::new(path, TextFile::open(path)?, ReaderBuilder::new().trim(csv::Trim::All));
+    let header = records.header()?;
     if !header.iter().any(|name| name == TIME) {
         return Err(Error::at_line(path, 1, format!("column {TIME} is missing")));
     }
@@ -49,9 +47,8 @@ pub fn read(path: &Path) -> Result<WorldScript> {
     let mut script = WorldScript::default();
     let mut last_ms = None;
     let mut down_since = [None; BUTTONS.len()];
-    for record in reader.records() {
-        let record = record.map_err(broken)?;
-        let line = record.position().map_or(0, csv::Position::line);
+    let mut record = StringRecord::new();
+    while let Some(line) = records.read(&mut record)? {
         let wrong = |what: String| Error::at_line(path, line, what);
         let number = |name: &str, most: u32| {
             let cell = header.iter().zip(&record).find(|(column, _)| *column == name).map_or("", |(_, cell)| cell);

@@ -6,7 +6,7 @@ use clap::ValueEnum;
 use csv::{ReaderBuilder, StringRecord};
 
 use crate::error::{Error, Result};
-use crate::files::csv_error;
+use crate::files::Records;
 use crate::geometry::Pose;
 use crate::import::frame::Frame;
 use crate::import::units::Units;
@@ -19,8 +19,8 @@ const HEADING: [&str; 3] = ["heading", "yaw", "theta"];
 
 /// The frames of a track; `None` where the robot was lost (a cell of the pose is empty or `nan`).
 pub(super) fn frames(file: &Path, text: &str, units: &Units) -> Result<Vec<Option<Frame>>> {
-    let mut reader = ReaderBuilder::new().trim(csv::Trim::All).from_reader(text.as_bytes());
-    let header = reader.headers().map_err(|e| csv_error(file, &e))?.clone();
+    let mut records = Records::new(file, text.as_bytes(), ReaderBuilder::new().trim(csv::Trim::All));
+    let header = records.header()?;
     let find = |what: &str, names: &[&str]| Column::find(&header, what, names).map_err(|e| Error::at_line(file, 1, e));
     let [time, x, y, heading] = [find("time", &TIME)?, find("x", &X)?, find("y", &Y)?, find("the heading", &HEADING)?];
     let of_unit = |e| Error::at_line(file, 1, e);
@@ -28,10 +28,8 @@ pub(super) fn frames(file: &Path, text: &str, units: &Units) -> Result<Vec<Optio
     let [x_unit, y_unit] = [&x, &y].map(|column| column.unit(units.length, "--length-unit"));
     let (x_cm, y_cm) = (x_unit.map_err(of_unit)?.cm(), y_unit.map_err(of_unit)?.cm());
     let rad = heading.unit(units.angle, "--angle-unit").map_err(of_unit)?.rad();
-    let mut frames = Vec::new();
-    for record in reader.records() {
-        let record = record.map_err(|e| csv_error(file, &e))?;
-        let line = record.position().map_or(0, csv::Position::line);
+    let (mut record, mut frames) = (StringRecord::new(), Vec::new());
+    while let Some(line) = records.read(&mut record)? {
         let number = |column: &Column| column.number(&record).map_err(|what| Error::at_line(file, line, what));
         let t_ms = number(&time)?.ok_or_else(|| Error::at_line(file, line, format!("{} is empty", time.name)))? * ms;
         let pose = match (number(&x)?, number(&y)?, number(&heading)?) {

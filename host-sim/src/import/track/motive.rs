@@ -2,11 +2,11 @@
 
 use std::path::Path;
 
-use csv::ReaderBuilder;
+use csv::{ReaderBuilder, StringRecord};
 use glam::{DQuat, DVec3};
 
 use crate::error::{Error, Result};
-use crate::files::csv_error;
+use crate::files::Records;
 use crate::geometry::Pose;
 use crate::import::frame::Frame;
 use crate::import::units::Length;
@@ -22,13 +22,11 @@ pub(super) fn is_one(text: &str) -> bool {
 
 /// The frames of the first rigid body; `None` where it was lost. The scene's x is Motive's X, and its y is Motive's -Z.
 pub(super) fn frames(file: &Path, text: &str) -> Result<Vec<Option<Frame>>> {
-    let mut reader = ReaderBuilder::new().has_headers(false).flexible(true).from_reader(text.as_bytes());
+    let mut records = Records::new(file, text.as_bytes(), ReaderBuilder::new().has_headers(false).flexible(true));
     let mut unit = None;
     let mut is_body = false;
-    let mut frames = Vec::new();
-    for record in reader.records() {
-        let record = record.map_err(|e| csv_error(file, &e))?;
-        let line = record.position().map_or(0, csv::Position::line);
+    let (mut record, mut frames) = (StringRecord::new(), Vec::new());
+    while let Some(line) = records.read(&mut record)? {
         let cell = |at: usize| record.get(at).map_or("", str::trim);
         if !is_body {
             let stated = record.iter().position(|cell| cell.trim() == "Length Units").map(|at| cell(at + 1));
