@@ -10,9 +10,9 @@ use mindgap_core::maths;
 use mindgap_core::network::Network;
 use mindgap_host_sim::built_in_robot::{default_robot, four_obstacles, record, training_room};
 use mindgap_host_sim::learn::train::{TABLE_ONE, Trainer, train};
-use mindgap_host_sim::simulator::environment::Environment;
+use mindgap_host_sim::simulator::environment::{Environment, SensorModel};
 use mindgap_host_sim::simulator::fixed_point::Quantised;
-use mindgap_host_sim::simulator::rollout::{RolloutRequest, SensorModel};
+use mindgap_host_sim::simulator::rollout::RolloutRequest;
 use mindgap_host_sim::simulator::{Noise, Simulator};
 
 use crate::Target;
@@ -60,22 +60,16 @@ fn lanes_and_one(bytes: &[u8]) {
     });
     let controllers: Vec<Controller> = bytes.as_chunks().0.iter().take(20).map(controller).collect();
     let scene = four_obstacles();
-    let environment = Environment::new(&SIMULATOR, &scene, scene.starts[0], Noise::Learned);
-    let environment = environment.expect("a room to drive in").with_beam(&SIMULATOR);
-    let motions: Vec<_> = controllers.iter().map(|controller| environment.motions(controller)).collect();
-    let requests: Vec<RolloutRequest> = controllers
-        .iter()
-        .zip(&motions)
-        .enumerate()
-        .map(|(number, (controller, motions))| RolloutRequest {
-            controller,
-            motions,
-            sensor: if number % 3 == 0 { SensorModel::Beam } else { SensorModel::Networks },
-            seed: number as u64,
-        })
-        .collect();
-    for (request, outcome) in requests.iter().zip(environment.run(&requests)) {
-        assert_eq!(environment.trace(*request).0, outcome);
+    for sensor in [SensorModel::Beam, SensorModel::Networks] {
+        let environment = Environment::new(&SIMULATOR, &scene, scene.starts[0], Noise::Learned);
+        let environment = environment.expect("a room to drive in").sensing_by(sensor, &SIMULATOR, &scene);
+        let environment = environment.expect("no law is asked for");
+        let motions: Vec<_> = controllers.iter().map(|controller| environment.motions(controller)).collect();
+        let request = |((controller, motions), seed)| RolloutRequest { controller, motions, seed };
+        let requests: Vec<RolloutRequest> = controllers.iter().zip(&motions).zip(0..).map(request).collect();
+        for (request, outcome) in requests.iter().zip(environment.run(&requests)) {
+            assert_eq!(environment.trace(*request).0, outcome);
+        }
     }
 }
 

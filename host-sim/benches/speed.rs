@@ -15,8 +15,8 @@ use mindgap_host_sim::genetic::Settings;
 use mindgap_host_sim::learn::dataset::Dataset;
 use mindgap_host_sim::learn::genome::Shape;
 use mindgap_host_sim::learn::{paper as paper_trainer, train};
-use mindgap_host_sim::simulator::environment::Environment;
-use mindgap_host_sim::simulator::rollout::{RolloutRequest, SensorModel};
+use mindgap_host_sim::simulator::environment::{Environment, SensorModel};
+use mindgap_host_sim::simulator::rollout::RolloutRequest;
 use mindgap_host_sim::simulator::{Noise, Simulator};
 use rand::RngExt;
 
@@ -51,17 +51,16 @@ fn robot_steps(bencher: Bencher, step: Step) {
         Step::TabulatedBeam => (Noise::Learned, SensorModel::Beam),
     };
     let environment = Environment::new(&simulator, &scene, scene.starts[0], noise).expect("the robot has room");
+    let environment = environment.sensing_by(sensor, &simulator, &scene).expect("no law is asked for");
     let environment = match step {
         Step::FiveNetworks => environment.asking_every_step(),
-        Step::TabulatedBeam => environment.with_beam(&simulator),
         _ => environment,
     };
     // It turns on the spot, and no reading is below zero: every run goes on to its last step.
     let turning = Tuple { left: 30, right: -30, when: When::Smaller, threshold_cm: 0 };
     let controller = &Controller { step_ms: 400, max_steps: MAX_STEPS, tuples: [turning; 6] };
     let motions = &environment.motions(controller);
-    let requests: Vec<RolloutRequest> =
-        (0..RUNS).map(|seed| RolloutRequest { controller, motions, sensor, seed }).collect();
+    let requests: Vec<RolloutRequest> = (0..RUNS).map(|seed| RolloutRequest { controller, motions, seed }).collect();
     let steps: u64 = environment.run(&requests).iter().map(|outcome| u64::from(outcome.steps)).sum();
     bencher.counter(ItemsCount::new(steps)).bench(|| environment.run(&requests));
 }

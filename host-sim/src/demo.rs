@@ -32,7 +32,7 @@ use crate::logs::Scene;
 use crate::pictures;
 use crate::report::paths::{PathPanel, Trace};
 use crate::simulator::ensemble::Robots;
-use crate::simulator::environment::Environment;
+use crate::simulator::environment::{Environment, SensorModel};
 use crate::simulator::rollout_report::RolloutReport;
 use crate::simulator::{Noise, Simulator};
 use repair::Repair;
@@ -209,7 +209,7 @@ impl<W: Fn(Stage)> DemoRun<'_, W> {
     /// simulates and drives it.
     fn start(&self, start: usize, [evolution, simulation, trial]: [u64; 3]) -> Result<Trial> {
         let pose = self.scene.starts[start];
-        let environment = Environment::new(self.simulator, self.scene, pose, Noise::Learned)?.with_beam(self.simulator);
+        let environment = Environment::new(self.simulator, self.scene, pose, Noise::Learned)?;
         let environment = &environment.of_middle(self.robots);
         let target_cm = self.scene.target_cm.ok_or_else(|| Error::new("the scene has no target"))?;
         let decoder = GenotypeDecoder::new(self.simulator, MAX_STEPS);
@@ -259,7 +259,7 @@ impl<W: Fn(Stage)> DemoRun<'_, W> {
             max_steps: MAX_STEPS,
             paper: true,
             noise: Noise::Paper,
-            first_echo: false,
+            sensor: SensorModel::Networks,
             random_numbers: RandomNumbers::Independent,
             seed: task.seed,
         };

@@ -133,6 +133,7 @@ impl<'a> Trials<'a> {
         }
         if count >= self.job.trials {
             let (controller, chance) = known.choice(&tried).ok_or_else(|| Error::new("no controller was driven"))?;
+            self.state.if_known = Some(search.if_known(&self.state.archive, &tried)?);
             return self.settle(Verdict::Spent, controller, *chance);
         }
         let found = search.best(&self.state.archive, &tried)?;

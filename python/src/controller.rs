@@ -11,6 +11,7 @@ use mindgap_host_sim::evolve::request::{Answered, Request};
 use mindgap_host_sim::logs::Scene;
 use mindgap_host_sim::pictures;
 use mindgap_host_sim::simulator::Noise;
+use mindgap_host_sim::simulator::environment::SensorModel;
 use pyo3::prelude::*;
 use serde::Serialize;
 
@@ -156,7 +157,7 @@ pub fn evolve(
         max_steps,
         paper: false,
         noise: Noise::Learned,
-        first_echo: false,
+        sensor: SensorModel::Beam,
         random_numbers: RandomNumbers::Common,
         seed,
     };

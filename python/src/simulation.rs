@@ -8,6 +8,7 @@ use mindgap_host_sim::logs::{Robot, Scene};
 use mindgap_host_sim::page::simulation::{Subject, page};
 use mindgap_host_sim::pictures;
 use mindgap_host_sim::simulator::Noise;
+use mindgap_host_sim::simulator::environment::SensorModel;
 use mindgap_host_sim::simulator::rollout_report::{PathPoint, RolloutReport};
 use pyo3::prelude::*;
 use serde::Serialize;
@@ -155,7 +156,7 @@ pub fn simulate(
         scene: &scene,
         start: pose,
         noise: Noise::Learned,
-        first_echo: false,
+        sensor: SensorModel::Beam,
         runs,
         seed,
     };

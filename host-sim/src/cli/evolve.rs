@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use clap::{Args, ValueEnum, value_parser};
+use clap::{Args, value_parser};
 use serde_json::json;
 
 use super::lasting::{KeepOption, Kept};
@@ -17,6 +17,7 @@ use crate::geometry::Pose;
 use crate::logs::{Robot, Scene};
 use crate::pictures;
 use crate::simulator::Noise;
+use crate::simulator::environment::SensorModel;
 
 /// Evolve one controller in a simulator.
 #[derive(Args)]
@@ -42,10 +43,10 @@ pub struct Evolve {
     /// Echoes that fail are the only noise.
     #[arg(long)]
     paper_noise: bool,
-    /// What makes the readings: the networks (and the beam that the training logs show, in turn with them), or the
-    /// first-echo law, which is slower.
-    #[arg(long, value_enum, default_value_t = Sonar::Networks, conflicts_with_all = ["paper", "paper_noise"])]
-    sonar: Sonar,
+    /// What makes the readings: the beam that the training logs show, the two networks, or the first-echo law, which is
+    /// slower. With --paper and --paper-noise it is the networks.
+    #[arg(long, value_enum, default_value_t = SensorModel::Beam, conflicts_with_all = ["paper", "paper_noise"])]
+    sonar: SensorModel,
     /// Steps after which a controller gives up.
     #[arg(long, default_value_t = 60, value_parser = value_parser!(u16).range(1..))]
     max_steps: u16,
@@ -60,16 +61,6 @@ pub struct Evolve {
     figures: Option<PathBuf>,
     #[command(flatten)]
     keep: KeepOption,
-}
-
-/// Which model of the sensor makes the readings of simulated runs.
-#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum Sonar {
-    /// The two sonar networks.
-    Networks,
-    /// The first-echo law.
-    #[value(name = "first_echo")]
-    FirstEcho,
 }
 
 impl Run for Evolve {
@@ -90,7 +81,7 @@ impl Run for Evolve {
             max_steps: self.max_steps,
             paper: self.paper,
             noise: if self.paper || self.paper_noise { Noise::Paper } else { Noise::Learned },
-            first_echo: self.sonar == Sonar::FirstEcho,
+            sensor: self.sonar,
             random_numbers: match self.paper || self.fresh_numbers {
                 true => RandomNumbers::Independent,
                 false => RandomNumbers::Common,

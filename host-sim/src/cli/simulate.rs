@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, value_parser};
 
-use super::evolve::{Sonar, start_of};
+use super::evolve::start_of;
 use super::table::{self, number};
 use super::{Run, kinds, progress, textbook};
 use crate::error::Result;
@@ -16,6 +16,7 @@ use crate::logs::Scene;
 use crate::page::simulation::{Subject, page};
 use crate::pictures;
 use crate::simulator::Noise;
+use crate::simulator::environment::SensorModel;
 use crate::simulator::rollout_report::RolloutReport;
 
 /// Run a controller in a simulator: each run is of another robot that its logs leave possible.
@@ -40,9 +41,10 @@ pub struct Simulate {
     /// Echoes that fail are the only noise.
     #[arg(long)]
     paper_noise: bool,
-    /// What makes the readings: the two networks, or the first-echo law.
-    #[arg(long, value_enum, default_value_t = Sonar::Networks, conflicts_with = "paper_noise")]
-    sonar: Sonar,
+    /// What makes the readings: the beam that the training logs show, the two networks, or the first-echo law. With
+    /// --paper-noise it is the networks.
+    #[arg(long, value_enum, default_value_t = SensorModel::Beam, conflicts_with = "paper_noise")]
+    sonar: SensorModel,
     /// Also write the same facts here, for programs; `-` is standard output, in place of the text.
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
@@ -77,7 +79,7 @@ impl Run for Simulate {
             scene: &scene,
             start,
             noise: if self.paper_noise { Noise::Paper } else { Noise::Learned },
-            first_echo: self.sonar == Sonar::FirstEcho,
+            sensor: self.sonar,
             runs: self.runs as usize,
             seed: self.seed,
         };

@@ -14,7 +14,7 @@ use crate::files::places::Places;
 use crate::logs::Scene;
 use crate::page::trials::{Subject, page};
 use crate::trials::robot::{AskRobot, CommandRobot, TrialRobot};
-use crate::trials::state::{State, Trial, Verdict};
+use crate::trials::state::{IfKnown, State, Trial, Verdict};
 use crate::trials::{self, Event, Job};
 
 /// Evolve a controller, drive it on the robot, adapt the simulator to the run, and again until it works.
@@ -127,7 +127,21 @@ impl Loop {
             }
             Verdict::Spent | Verdict::Running => "the trials are spent before one was confirmed; of the best",
         };
-        format!("{trials}{}: {end} the chance is {chance}\n", controller.display())
+        let known = state.if_known.as_ref().map_or_else(String::new, if_known);
+        format!("{trials}{}: {end} the chance is {chance}\n{known}", controller.display())
+    }
+}
+
+/// What further trials may do.
+fn if_known(IfKnown { success, is_enough }: &IfKnown) -> String {
+    let (known, percent) = ("if the robot were known it would be", 100.0 * success);
+    if *is_enough {
+        format!("{known} {percent:.0} %: further trials may get there\n")
+    } else {
+        format!(
+            "{known} {percent:.0} %: no six tuples were found that do better against chance in motion and readings; further \
+             trials do not change that, a nearer start or a wider way may\n"
+        )
     }
 }
 

@@ -7,7 +7,6 @@ use glam::DVec2;
 use mindgap_core::controller::Controller;
 use serde::{Deserialize, Serialize};
 
-use super::fitness::sensor_of;
 use crate::chance::derive;
 use crate::error::Result;
 use crate::geometry::Pose;
@@ -62,28 +61,59 @@ impl<'a> Judge<'a> {
     /// # Errors
     /// When it cannot be computed by those to whom it is handed out.
     pub fn chances(&self, controllers: &[Controller], runs: usize) -> Result<Vec<Chance>> {
-        let rates = |number: usize| Ok(self.rates(number, &self.robots[number], controllers, runs));
-        let by_robot = workers::map(self.robots.len(), rates)?;
-        let of = |controller: usize| by_robot.iter().map(|rates| rates[controller]).collect();
+        let by_robot = self.successes(controllers, runs)?;
+        let of = |controller: usize| by_robot.iter().map(|robot| share(&robot[controller])).collect();
         Ok((0..controllers.len()).map(|controller| Chance::of(of(controller), runs)).collect())
     }
 
-    /// The success rate of each controller on one robot.
-    fn rates(&self, number: usize, robot: &Environment, controllers: &[Controller], runs: usize) -> Vec<f64> {
+    /// The chance of success if the robot were known: on each robot that of the controller which does best there. One half
+    /// of `runs` runs each chooses and the other one tells, since a chance by which one has chosen is too good.
+    ///
+    /// # Errors
+    /// As [`chances`](Self::chances).
+    pub fn if_known(&self, controllers: &[Controller], runs: usize) -> Result<f64> {
+        let by_robot = self.successes(controllers, runs)?;
+        let best = by_robot.iter().flat_map(|robot| {
+            [0, 1].map(|half| {
+                let halves = robot.iter().map(|runs| runs.split_at(runs.len() / 2));
+                let halves = halves.map(|(a, b)| if half == 0 { (share(a), share(b)) } else { (share(b), share(a)) });
+                halves.max_by(|one, other| one.0.total_cmp(&other.0)).map_or(0.0, |(_, told)| told)
+            })
+        });
+        Ok(best.sum::<f64>() / (2 * self.robots.len()) as f64)
+    }
+
+    /// Of every robot, and there of every controller, which runs reach the target.
+    fn successes(&self, controllers: &[Controller], runs: usize) -> Result<Vec<Vec<Vec<bool>>>> {
+        let of_robot = |number: usize| Ok(self.successes_on(number, &self.robots[number], controllers, runs));
+        workers::map(self.robots.len(), of_robot)
+    }
+
+    fn successes_on(
+        &self,
+        number: usize,
+        robot: &Environment,
+        controllers: &[Controller],
+        runs: usize,
+    ) -> Vec<Vec<bool>> {
         let motions: Vec<_> = controllers.iter().map(|controller| robot.motions(controller)).collect();
         let mut requests = Vec::with_capacity(controllers.len() * runs);
         for (controller, motions) in controllers.iter().zip(&motions) {
             requests.extend((0..runs).map(|run| RolloutRequest {
                 controller,
                 motions,
-                sensor: sensor_of(run),
                 seed: derive(self.seed, &[number as u64, run as u64]),
             }));
         }
         let outcomes = robot.run(&requests);
-        let reached = |of_one: &[RolloutOutcome]| of_one.iter().filter(|o| o.reached(self.target_cm)).count();
-        outcomes.chunks(runs).map(|of_one| reached(of_one) as f64 / runs as f64).collect()
+        let reached = |of_one: &[RolloutOutcome]| of_one.iter().map(|o| o.reached(self.target_cm)).collect();
+        outcomes.chunks(runs).map(reached).collect()
     }
+}
+
+/// Share of the runs that reach the target.
+fn share(reached: &[bool]) -> f64 {
+    reached.iter().filter(|reached| **reached).count() as f64 / reached.len() as f64
 }
 
 /// In percent, with the range of the robots.
@@ -114,6 +144,39 @@ impl Chance {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::built_in_robot::four_obstacles;
+    use crate::chance::generator;
+    use crate::evolve::genome::GenotypeDecoder;
+    use crate::evolve::test_support::SIMULATOR;
+
+    const SEED: u64 = 5;
+
+    #[test]
+    fn a_robot_that_is_known_gets_the_controller_that_is_best_for_it() {
+        let (scene, robots) = (four_obstacles(), SIMULATOR.robots(12, SEED).expect("robots"));
+        let start = scene.starts[0];
+        // Some of what drives at random gets there.
+        let target_cm = start.position_cm + DVec2::new(25.0, 0.0);
+        let judge = Judge::new(&SIMULATOR, &robots.drawn, &scene, start, target_cm, SEED).expect("room");
+        let decoder = GenotypeDecoder::new(&SIMULATOR, 60);
+        let controllers: Vec<Controller> =
+            (0..300).map(|number| decoder.controller(&decoder.random(&mut generator(SEED, &[number])))).collect();
+        let chances = judge.chances(&controllers, 4 * RUNS).expect("chances");
+        let uncertain: Vec<usize> =
+            (0..300).filter(|number| (0.1..0.9).contains(&chances[*number].success)).take(5).collect();
+        assert_eq!(uncertain.len(), 5);
+        let known = |numbers: &[usize]| {
+            let some: Vec<Controller> = numbers.iter().map(|number| controllers[*number].clone()).collect();
+            judge.if_known(&some, 4 * RUNS).expect("a chance")
+        };
+        let never = (0..300).find(|number| chances[*number].success == 0.0).expect("one that does not get there");
+        for number in &uncertain {
+            assert!((known(&[*number]) - chances[*number].success).abs() < 1e-9);
+            assert!((known(&[*number, never]) - chances[*number].success).abs() < 0.05);
+        }
+        let best = uncertain.iter().map(|number| chances[*number].success).fold(0.0, f64::max);
+        assert!(known(&uncertain) > best - 0.1 && known(&uncertain) <= 1.0, "{} of {best}", known(&uncertain));
+    }
 
     #[test]
     fn robots_that_always_or_never_succeed_are_not_known_and_coins_are_chance() {

@@ -9,7 +9,7 @@ use crate::chance::{Generator, derive};
 use crate::genetic;
 use crate::simulator::environment::Environment;
 use crate::simulator::motion::MotionTable;
-use crate::simulator::rollout::{REACHED_CM, RolloutOutcome, RolloutRequest, SensorModel, Termination};
+use crate::simulator::rollout::{REACHED_CM, RolloutOutcome, RolloutRequest, Termination};
 
 /// Which random numbers the individuals of a generation are evaluated with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -58,19 +58,13 @@ pub fn fitness(outcome: &RolloutOutcome, distance_cm: f64, floor_cm: f64) -> f64
     if outcome.termination == Termination::Crashed { 0.5 / distance_cm } else { 1.0 / distance_cm }
 }
 
-/// Runs alternate between the sonar networks and, where the environment has one, the beam model.
-pub(super) fn sensor_of(run: usize) -> SensorModel {
-    if run.is_multiple_of(2) { SensorModel::Networks } else { SensorModel::Beam }
-}
-
 impl FitnessEvaluator<'_> {
     /// Outcomes of a number of runs of a controller; another `purpose` gives independent random numbers.
     pub fn outcomes(&self, controller: &Controller, runs: usize, purpose: u64) -> Vec<RolloutOutcome> {
         let motions = &self.environment.motions(controller);
         let seed = |run: usize| derive(self.seed, &[purpose, run as u64]);
-        let requests: Vec<RolloutRequest> = (0..runs)
-            .map(|run| RolloutRequest { controller, motions, sensor: sensor_of(run), seed: seed(run) })
-            .collect();
+        let requests: Vec<RolloutRequest> =
+            (0..runs).map(|run| RolloutRequest { controller, motions, seed: seed(run) }).collect();
         self.environment.run(&requests)
     }
 
@@ -135,7 +129,6 @@ impl genetic::Problem for FitnessEvaluator<'_> {
             requests.extend((0..self.runs).map(|run| RolloutRequest {
                 controller,
                 motions,
-                sensor: sensor_of(run),
                 seed: derive(self.seed, &place(run)),
             }));
         }

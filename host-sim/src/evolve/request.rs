@@ -11,7 +11,7 @@ use super::task::EvolutionTask;
 use super::way::WayMap;
 use crate::error::{Error, Result};
 use crate::logs::Scene;
-use crate::simulator::environment::Environment;
+use crate::simulator::environment::{Environment, SensorModel};
 use crate::simulator::rollout_report::RolloutReport;
 use crate::simulator::{Noise, Simulator};
 
@@ -29,8 +29,8 @@ pub struct Request<'a> {
     pub paper: bool,
     /// What scatters.
     pub noise: Noise,
-    /// Readings are those of the first-echo law, and not of the networks and the beam in turn.
-    pub first_echo: bool,
+    /// What makes the readings, where more scatters than in the paper.
+    pub sensor: SensorModel,
     /// Which random numbers individuals meet.
     pub random_numbers: RandomNumbers,
     /// Seed of all draws.
@@ -75,12 +75,7 @@ impl Request<'_> {
         let target_cm = scene.target_cm.ok_or_else(|| Error::new("has no [target]"))?;
         let environment = Environment::new(simulator, scene, start, noise)?;
         let robots = if noise == Noise::Learned { simulator.robots(ROBOTS, seed) } else { None };
-        let environment = match (self.first_echo, noise) {
-            (true, _) => environment.with_first_echo(simulator, scene)?,
-            (false, Noise::Learned) => environment.with_beam(simulator),
-            (false, Noise::Paper) => environment,
-        };
-        let environment = &environment.of_middle(robots.as_ref());
+        let environment = &environment.sensing_by(self.sensor, simulator, scene)?.of_middle(robots.as_ref());
         let decoder = GenotypeDecoder::new(simulator, self.max_steps);
         let (runs, floor_cm) = (paper::RUNS, paper::FLOOR_CM);
         let way = &WayMap::new(scene, target_cm, simulator.robot.body_radius_cm);

@@ -1,6 +1,5 @@
 //! Robust evolution, the default. A single run of the paper's procedure often stagnates at a poor controller, or selects one
-//! that was lucky in its five runs. Here every run has the learned noise and alternates between two sensor models, since a
-//! behaviour that exploits one of them rarely transfers to the robot. There are three stages:
+//! that was lucky in its five runs. Here every run has the learned noise. There are three stages:
 //!
 //! 1. exploration: controllers from [beginnings](super::prefixes) that lead somewhere with little scatter;
 //! 2. refinement: the genetic algorithm from mutants of each of the best, with small mutations and many runs an individual;

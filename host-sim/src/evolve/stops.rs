@@ -4,7 +4,6 @@
 use glam::DVec2;
 use mindgap_core::controller::{Controller, Tuple, When};
 
-use super::fitness::sensor_of;
 use super::task::EvolutionTask;
 use crate::chance::derive;
 use crate::simulator::motion::MotionTable;
@@ -69,7 +68,6 @@ pub fn stops(task: &EvolutionTask, beginnings: &[&[Tuple]], runs: usize, seed: u
     let request = |number: usize| RolloutRequest {
         controller: &held[number / runs],
         motions: &motions[number / runs],
-        sensor: sensor_of(number % runs),
         seed: derive(seed, &[number as u64]),
     };
     let requests: Vec<RolloutRequest> = (0..runs * held.len()).map(request).collect();
@@ -205,12 +203,7 @@ mod tests {
     /// Where the runs of a controller end that are not lost, with the seeds of a single beginning.
     fn ends(task: &EvolutionTask, controller: &Controller) -> Vec<DVec2> {
         let motions = &task.environment.motions(controller);
-        let request = |run: usize| RolloutRequest {
-            controller,
-            motions,
-            sensor: sensor_of(run),
-            seed: derive(SEED, &[run as u64]),
-        };
+        let request = |run: usize| RolloutRequest { controller, motions, seed: derive(SEED, &[run as u64]) };
         let outcomes = task.environment.run(&(0..RUNS).map(request).collect::<Vec<_>>());
         let finished = outcomes.iter().filter(|outcome| outcome.termination == Termination::Finished);
         finished.map(|outcome| outcome.end_cm).collect()

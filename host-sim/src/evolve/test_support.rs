@@ -1,4 +1,4 @@
-//! A task for what is made of an [`EvolutionTask`].
+//! A simulator and a task for what is made of an [`EvolutionTask`].
 
 use std::sync::LazyLock;
 
@@ -13,7 +13,8 @@ use crate::simulator::{Noise, Simulator};
 
 const SEED: u64 = 5;
 
-static SIMULATOR: LazyLock<Simulator> = LazyLock::new(|| {
+/// Of the built-in robot, from a few logs.
+pub static SIMULATOR: LazyLock<Simulator> = LazyLock::new(|| {
     let logs = record(&default_robot(), &training_room(), 20, 40, &[], SEED).unwrap();
     train(&logs, &Trainer::Fast, &TABLE_ONE, SEED, &|_| {}).unwrap()
 });
@@ -24,7 +25,7 @@ pub fn with_task(check: impl Fn(&EvolutionTask)) {
     let target_cm = scene.target_cm.unwrap();
     let environment = Environment::new(&SIMULATOR, &scene, scene.starts[0], Noise::Learned).unwrap();
     check(&EvolutionTask {
-        environment: &environment.with_beam(&SIMULATOR),
+        environment: &environment,
         target_cm,
         way: &WayMap::new(&scene, target_cm, SIMULATOR.robot.body_radius_cm),
         decoder: GenotypeDecoder::new(&SIMULATOR, 60),

@@ -6,7 +6,7 @@ use super::chance::ROBOTS;
 use crate::error::{Error, Result};
 use crate::geometry::Pose;
 use crate::logs::Scene;
-use crate::simulator::environment::Environment;
+use crate::simulator::environment::{Environment, SensorModel};
 use crate::simulator::rollout_report::RolloutReport;
 use crate::simulator::{Noise, Simulator};
 
@@ -22,8 +22,8 @@ pub struct Trial<'a> {
     pub start: Pose,
     /// What scatters.
     pub noise: Noise,
-    /// Readings are those of the first-echo law, and not of the networks.
-    pub first_echo: bool,
+    /// What makes the readings, where more scatters than in the paper.
+    pub sensor: SensorModel,
     /// How many runs.
     pub runs: usize,
     /// Seed of all draws.
@@ -36,19 +36,18 @@ impl Trial<'_> {
     /// # Errors
     /// When there are no runs, when the simulator cannot run controllers, or has no first-echo law where it is asked for.
     pub fn run(&self, watch: impl Fn(usize, usize) + Sync) -> Result<RolloutReport> {
-        let Trial { simulator, controller, scene, start, noise, first_echo, runs, seed } = *self;
+        let Trial { simulator, controller, scene, start, noise, sensor, runs, seed } = *self;
         if runs == 0 {
             return Err(Error::new("there must be at least one run"));
         }
         let open = if noise == Noise::Learned { simulator.robots(runs.min(ROBOTS), seed) } else { None };
         let drawn = open.map(|robots| robots.drawn);
-        let mut robots = match &drawn {
+        let robots = match &drawn {
             Some(drawn) => Environment::of_robots(simulator, drawn, scene, start)?,
             None => vec![Environment::new(simulator, scene, start, noise)?],
         };
-        if first_echo {
-            robots = robots.into_iter().map(|robot| robot.with_first_echo(simulator, scene)).collect::<Result<_>>()?;
-        }
-        Ok(RolloutReport::of_robots(&robots, scene, controller, runs, seed, watch))
+        let robots: Result<Vec<_>> =
+            robots.into_iter().map(|robot| robot.sensing_by(sensor, simulator, scene)).collect();
+        Ok(RolloutReport::of_robots(&robots?, scene, controller, runs, seed, watch))
     }
 }

@@ -142,7 +142,7 @@ mod tests {
             let (found, why) = read(torn.as_bytes());
             assert_eq!(found.len(), 1);
             assert!(why.as_deref().is_some_and(|why| why.starts_with("a.csv:4: has 1 cells")), "{torn:?} gave {why:?}");
-            let no_text = [torn[..torn.len() - 1 - end.len()].as_bytes(), b"\xE9,1", end.as_bytes()].concat();
+            let no_text = [&torn.as_bytes()[..torn.len() - 1 - end.len()], b"\xE9,1", end.as_bytes()].concat();
             assert_eq!(read(&no_text).1.as_deref(), Some("a.csv:4: is no UTF-8: save it as UTF-8"));
         }
     }

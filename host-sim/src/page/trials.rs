@@ -152,6 +152,9 @@ fn headline(state: &State) -> String {
         Verdict::Works => {
             format!("The controller works {after}: it reached the target three times, and has {chance} in simulation.")
         }
+        Verdict::Spent if state.limit().is_some() => format!(
+            "No six tuples were found that reach the target often enough; {after} the best has {chance}, and chance limits it."
+        ),
         Verdict::Spent => format!("No controller is confirmed {after}; the best has {chance}."),
         Verdict::OutOfReach => "No controller was found that reaches the target on a robot that is possible.".into(),
         Verdict::Running => format!("The loop is under way {after}."),
@@ -318,9 +321,15 @@ fn next(state: &State) -> Markup {
                 Verdict::Works => li {
                     "Make a program of the controller: " code { "mindgap export controller.toml --format nxc --out drive.nxc" } "."
                 },
-                Verdict::Spent => li {
-                    "The same call with more " code { "--trials" } " goes on from here: each run narrows what is not known of the "
-                    "robot."
+                Verdict::Spent => @match state.limit() {
+                    Some(success) => li {
+                        "Make it easier: a start nearer to the target, or a wider way. If all were known of the robot the best of "
+                        "these controllers would reach the target in " (percent(success)) " of its runs: more trials do not help."
+                    },
+                    None => li {
+                        "The same call with more " code { "--trials" } " goes on from here: each run narrows what is not known of "
+                        "the robot."
+                    },
                 },
                 Verdict::OutOfReach => li {
                     "Make it easier: a start nearer to the target, or more " code { "--max-steps" } ". Where even that fails, "

@@ -14,7 +14,7 @@ mod tests;
 use pulp::{Arch, Simd, WithSimd};
 
 use super::environment::Environment;
-use super::rollout::{RolloutOutcome, RolloutRequest, SensorModel, TrajectoryPoint};
+use super::rollout::{RolloutOutcome, RolloutRequest, TrajectoryPoint};
 use crate::lanes::{Lanes, WIDEST};
 use robots::Robots;
 
@@ -32,12 +32,8 @@ impl Environment<'_> {
         mut watch: impl FnMut(usize, TrajectoryPoint),
     ) -> Vec<RolloutOutcome> {
         let mut outcomes = vec![None; requests.len()];
-        for sensor in [SensorModel::Networks, SensorModel::Beam] {
-            let requests: Vec<(usize, RolloutRequest)> =
-                requests.iter().copied().enumerate().filter(|(_, request)| request.sensor == sensor).collect();
-            let finish = |request: usize, outcome| outcomes[request] = Some(outcome);
-            Arch::new().dispatch(Batch { environment: self, sensor, requests: &requests, watch: &mut watch, finish });
-        }
+        let finish = |request: usize, outcome| outcomes[request] = Some(outcome);
+        Arch::new().dispatch(Batch { environment: self, requests, watch: &mut watch, finish });
         outcomes.into_iter().flatten().collect()
     }
 
@@ -49,12 +45,10 @@ impl Environment<'_> {
     }
 }
 
-/// Runs `requests`, which all have `sensor`; `finish` is told the outcome of each by its number, `watch` every
-/// trajectory point by the same.
+/// Runs `requests`; `finish` is told the outcome of each by its number, `watch` every trajectory point by the same.
 struct Batch<'a, W, F> {
     pub environment: &'a Environment<'a>,
-    pub sensor: SensorModel,
-    pub requests: &'a [(usize, RolloutRequest<'a>)],
+    pub requests: &'a [RolloutRequest<'a>],
     pub watch: W,
     pub finish: F,
 }
@@ -82,7 +76,7 @@ impl<W: FnMut(usize, TrajectoryPoint), F: FnMut(usize, RolloutOutcome)> WithSimd
     #[inline(always)]
     fn with_simd<S: Simd>(mut self, simd: S) {
         let width = Lanes::<S>::WIDTH;
-        let mut waiting = self.requests.iter().copied();
+        let mut waiting = self.requests.iter().copied().enumerate();
         let mut robots = Robots::new(self.environment);
         for lane in 0..width {
             robots.begin(lane, waiting.next());
@@ -91,7 +85,7 @@ impl<W: FnMut(usize, TrajectoryPoint), F: FnMut(usize, RolloutOutcome)> WithSimd
             let draws = robots.draw(simd);
             let from = robots.place();
             let may_touch = robots.advance(simd, &draws);
-            let echo_cm = robots.sense(simd, self.sensor, &draws);
+            let echo_cm = robots.sense(simd, &draws);
             let happens = robots.happens(simd, &echo_cm, may_touch);
             for (lane, happens) in happens.iter().enumerate().take(width) {
                 let ended = if *happens > 0.0 { robots.close(lane, *happens, &from, &echo_cm) } else { None };

@@ -2,8 +2,7 @@
 //! does not; the nearest that does gives the reading (see [`SonarModel`]).
 //!
 //! The networks know the axis alone, so what a real beam meets beside it is chance to them, drawn anew at each step.
-//! Here it is a matter of where the robot stands. A controller that has to do well with both relies on neither's
-//! weakness.
+//! Here it is a matter of where the robot stands.
 //!
 //! The probabilities are those of [`Outcomes`](crate::sonar::Outcomes). A lane does not work out all candidates: it
 //! draws whether each ray comes back and keeps the nearest, then one draw falls to an outcome by the [`MixingWeights`].

@@ -1,5 +1,6 @@
 //! A simulator, a scene and a start, ready for rollouts of controllers.
 
+use clap::ValueEnum;
 use mindgap_core::controller::Controller;
 use mindgap_core::folded::FoldedNetwork;
 
@@ -35,14 +36,27 @@ pub struct Environment<'s> {
     pub(super) noise: Noise,
     /// There when effects were added to the simulator.
     pub(super) effect_layer: Option<EffectLayer>,
-    /// There when some runs meet it.
+    /// There when it makes the readings.
     pub(super) beam: Option<Beam>,
-    /// There when all runs hear by the first-echo law.
+    /// The same of the first-echo law.
     pub(super) first_echo: Option<FirstEchoSensor<'s>>,
 }
 
+/// What makes the readings of simulated runs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum SensorModel {
+    /// The beam that the training logs show; the networks where they show none.
+    Beam,
+    /// The two sonar networks.
+    Networks,
+    /// The first-echo law.
+    #[value(name = "first_echo")]
+    FirstEcho,
+}
+
 impl<'s> Environment<'s> {
-    /// The environment for rollouts from `start`.
+    /// The environment for rollouts from `start`. What makes the readings is the networks without noise beyond the paper's, else
+    /// the beam.
     ///
     /// # Errors
     /// When the simulator lacks a network or the robot does not fit at the start.
@@ -59,6 +73,7 @@ impl<'s> Environment<'s> {
         let yaw_rad = robot.ultrasonic.yaw_deg.to_radians();
         let beyond = simulator.reference.as_ref().filter(|_| noise == Noise::Learned);
         let motion = MotionNetworks::of(simulator)?.corrected(beyond.and_then(|r| r.motion.as_ref()));
+        let beam = beyond.and_then(|r| r.sonar.as_ref()).map(Beam::new);
         Ok(Environment {
             robot,
             start,
@@ -72,22 +87,24 @@ impl<'s> Environment<'s> {
             constant_reading: simulator.constant_reading,
             noise,
             effect_layer: EffectLayer::of(simulator, scene, noise)?,
-            beam: None,
+            beam,
             first_echo: None,
         })
     }
 
-    /// The environment with the beam that the training logs of its simulator show, for the runs that ask for it.
-    pub fn with_beam(self, simulator: &Simulator) -> Self {
-        let reference = simulator.reference.as_ref().and_then(|r| r.sonar.as_ref());
-        Environment { beam: reference.map(Beam::new), ..self }
-    }
-
-    /// The environment with readings by the first-echo law in every run.
+    /// The environment with readings of this model.
     ///
     /// # Errors
-    /// When the simulator does not know the law of its sensor.
-    pub fn with_first_echo(self, simulator: &'s Simulator, scene: &Scene) -> Result<Self> {
+    /// When the simulator does not know the first-echo law of its sensor, and this is asked for.
+    pub fn sensing_by(self, sensor: SensorModel, simulator: &'s Simulator, scene: &Scene) -> Result<Self> {
+        match sensor {
+            SensorModel::Beam => Ok(self),
+            SensorModel::Networks => Ok(Environment { beam: None, ..self }),
+            SensorModel::FirstEcho => self.with_first_echo(simulator, scene),
+        }
+    }
+
+    fn with_first_echo(self, simulator: &'s Simulator, scene: &Scene) -> Result<Self> {
         let law = simulator.first_echo.as_ref();
         let law = law.ok_or_else(|| Error::new("the simulator has no first-echo law of its sonar: train it again"))?;
         let effect_layer = self.effect_layer.map(|layer| layer.hearing_by(SensorLaw::FirstEcho(law.clone())));
@@ -109,13 +126,12 @@ impl<'s> Environment<'s> {
         robots.into_iter().fold(self, |any, robots| any.of_robot(&robots.mean))
     }
 
-    /// An environment for each of these robots, with the beam.
+    /// An environment for each of these robots.
     ///
     /// # Errors
     /// As [`Environment::new`].
     pub fn of_robots(simulator: &'s Simulator, robots: &'s [Member], scene: &Scene, start: Pose) -> Result<Vec<Self>> {
-        let of_one =
-            |robot| Ok(Self::new(simulator, scene, start, Noise::Learned)?.with_beam(simulator).of_robot(robot));
+        let of_one = |robot| Ok(Self::new(simulator, scene, start, Noise::Learned)?.of_robot(robot));
         robots.iter().map(of_one).collect()
     }
 

@@ -13,19 +13,8 @@ pub struct RolloutRequest<'c> {
     pub controller: &'c Controller,
     /// Its motions in this environment.
     pub motions: &'c MotionTable,
-    /// Which model makes the readings.
-    pub sensor: SensorModel,
     /// Fixes every draw of the run.
     pub seed: u64,
-}
-
-/// What makes the readings of a run.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum SensorModel {
-    /// The two sonar networks.
-    Networks,
-    /// The beam that the training logs show, in an environment that has one; else the networks.
-    Beam,
 }
 
 /// How a run ended.

@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::environment::Environment;
 use super::motion::MotionTable;
-use super::rollout::{REACHED_CM, RolloutOutcome, RolloutRequest, SensorModel, Termination, TrajectoryPoint};
+use super::rollout::{REACHED_CM, RolloutOutcome, RolloutRequest, Termination, TrajectoryPoint};
 use crate::chance::derive;
 use crate::logs::Scene;
 use crate::workers::counter::Counter;
@@ -81,7 +81,6 @@ impl RolloutReport {
             let (outcome, trajectory) = environment.trace(RolloutRequest {
                 controller,
                 motions: &motions[run % robots.len()],
-                sensor: SensorModel::Networks,
                 seed: derive(seed, &[run as u64]),
             });
             counter.one_more();

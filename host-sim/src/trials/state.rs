@@ -32,6 +32,9 @@ pub struct State {
     pub verdict: Verdict,
     /// Chance of the controller that it settled on.
     pub chance: Option<Chance>,
+    /// Where the trials were spent, what could be reached if the robot were known.
+    #[serde(default)]
+    pub if_known: Option<IfKnown>,
     /// The trials.
     pub trials: Vec<Trial>,
     /// Drives that nothing was learned from.
@@ -52,6 +55,15 @@ pub enum Verdict {
     Spent,
     /// No six tuples were found that reach the target on any robot that is possible.
     OutOfReach,
+}
+
+/// What the best of the controllers that were found reaches on a robot that is known.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct IfKnown {
+    /// Its chance of success.
+    pub success: f64,
+    /// Whether that could be confirmed. If not, chance is what limits it, which further trials do not change.
+    pub is_enough: bool,
 }
 
 /// A controller on the robot.
@@ -145,6 +157,7 @@ impl State {
                 job: digest,
                 verdict: Verdict::Running,
                 chance: None,
+                if_known: None,
                 trials: Vec::new(),
                 failures: Vec::new(),
                 archive: job.known.iter().map(|controller| controller.tuples.to_vec()).collect(),
@@ -157,8 +170,14 @@ impl State {
         }
         if state.verdict == Verdict::Spent && state.trials.len() < job.trials {
             state.verdict = Verdict::Running;
+            state.if_known = None;
         }
         Ok(state)
+    }
+
+    /// The chance of success beyond which no controller that was found gets, if that cannot be confirmed.
+    pub fn limit(&self) -> Option<f64> {
+        self.if_known.filter(|known| !known.is_enough).map(|known| known.success)
     }
 
     /// Writes it.

@@ -13,7 +13,7 @@ use mindgap_host_sim::error::{Error, Result};
 use mindgap_host_sim::geometry::{Pose, wrap_rad};
 use mindgap_host_sim::logs::Scene;
 use mindgap_host_sim::simulator::environment::Environment;
-use mindgap_host_sim::simulator::rollout::{RolloutRequest, SensorModel};
+use mindgap_host_sim::simulator::rollout::RolloutRequest;
 use mindgap_host_sim::simulator::{Noise, Simulator};
 use mindgap_host_sim::statistics::summary::{mean, root_mean_square};
 use mindgap_tests::exit_code::exit_code;
@@ -61,8 +61,7 @@ fn measure() -> Result<()> {
             turned_deg(driven.points[1..].iter().take(usize::from(max_steps)).map(|point| point.true_pose))
         });
         let model = (0..RUNS).map(|seed| {
-            let (_, points) =
-                simulated.trace(RolloutRequest { controller, motions, sensor: SensorModel::Networks, seed });
+            let (_, points) = simulated.trace(RolloutRequest { controller, motions, seed });
             turned_deg(points.into_iter().map(|point| point.pose))
         });
         let [robot, simulated] = [summary(real.collect()), summary(model.collect())];

@@ -13,7 +13,6 @@ use crate::simulator::Noise;
 use crate::simulator::beam::{Beam, Fate};
 use crate::simulator::draws::{Draws, Seeds};
 use crate::simulator::first_echo::FirstEchoSensor;
-use crate::simulator::rollout::SensorModel;
 use crate::simulator::room::Point;
 
 /// Where every sensor is, its axis as a unit vector, and its angle in degrees.
@@ -26,7 +25,7 @@ struct Sensors<S: Simd> {
 impl Robots<'_> {
     /// The reading of every robot, cm.
     #[inline(always)]
-    pub fn sense<S: Simd>(&mut self, simd: S, sensor: SensorModel, draws: &StepDraws) -> Row {
+    pub fn sense<S: Simd>(&mut self, simd: S, draws: &StepDraws) -> Row {
         let environment = self.environment;
         let effects = environment.effect_layer.as_ref().filter(|effects| effects.senses());
         let reading_cm = match (effects, &environment.first_echo, &environment.beam) {
@@ -39,12 +38,12 @@ impl Robots<'_> {
                 None => return self.sense_through_effects(draws),
             },
             (None, Some(sensor), _) => return self.listen(sensor, draws),
-            (None, None, Some(beam)) if sensor == SensorModel::Beam => {
+            (None, None, Some(beam)) => {
                 let (reading_cm, seeds) = self.hear(simd, beam, draws, self.seeds);
                 self.seeds = seeds;
                 reading_cm
             }
-            _ => self.look(simd, draws),
+            (None, None, None) => self.look(simd, draws),
         };
         let sonar = &environment.robot.ultrasonic;
         let (low, high) = (reading_cm.constant(sonar.min_cm as f32), reading_cm.constant(sonar.max_cm as f32));

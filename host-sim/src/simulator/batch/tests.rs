@@ -5,6 +5,7 @@ use crate::effects::applied::AppliedEffect;
 use crate::effects::catalogue::Candidate;
 use crate::evolve::genome::GenotypeDecoder;
 use crate::learn::train::{self, TABLE_ONE, Trainer};
+use crate::simulator::environment::SensorModel;
 use crate::simulator::known_steps::KnownSteps;
 use crate::simulator::motion::{Motion, MotionTable, speeds};
 use crate::simulator::rollout::Termination;
@@ -20,7 +21,7 @@ const RUNS: u64 = 100;
 const TOP_SPEED_CM_S: f64 = 41.0;
 
 /// Of all outcomes of [`outcomes`] on every kind of course, whatever the machine; made with [`SEED`].
-const CHECKSUM: &str = "67303e3689269ef70ca794c8457ada6ebb5b8ef743f379a3f036811e2e67f867";
+const CHECKSUM: &str = "80b5041cef32e69a018f4453c074fb25a90ab1efddf96b3653afe7860b8da8ea";
 
 static SIMULATOR: LazyLock<Simulator> = LazyLock::new(|| {
     let logs = record(&default_robot(), &training_room(), 20, 40, &[], SEED).unwrap();
@@ -29,7 +30,13 @@ static SIMULATOR: LazyLock<Simulator> = LazyLock::new(|| {
 
 fn environment(noise: Noise) -> Environment<'static> {
     let scene = four_obstacles();
-    Environment::new(&SIMULATOR, &scene, scene.starts[0], noise).unwrap().with_beam(&SIMULATOR)
+    Environment::new(&SIMULATOR, &scene, scene.starts[0], noise).unwrap()
+}
+
+/// One of each kind: without noise, and with each of two sensors.
+fn environments() -> [Environment<'static>; 3] {
+    let sensing_by = |sensor| environment(Noise::Learned).sensing_by(sensor, &SIMULATOR, &four_obstacles()).unwrap();
+    [environment(Noise::Paper), sensing_by(SensorModel::Networks), sensing_by(SensorModel::Beam)]
 }
 
 fn controllers() -> Vec<Controller> {
@@ -38,47 +45,33 @@ fn controllers() -> Vec<Controller> {
 }
 
 /// So many runs of every controller, mixed.
-fn requests<'a>(
-    controllers: &'a [Controller],
-    tables: &'a [MotionTable],
-    sensor: SensorModel,
-) -> Vec<(usize, RolloutRequest<'a>)> {
-    let of_seed = |seed| {
-        controllers.iter().zip(tables).map(move |(c, m)| RolloutRequest { controller: c, motions: m, sensor, seed })
-    };
-    (0..RUNS).flat_map(of_seed).enumerate().collect()
+fn requests<'a>(controllers: &'a [Controller], tables: &'a [MotionTable]) -> Vec<RolloutRequest<'a>> {
+    let of_seed =
+        |seed| controllers.iter().zip(tables).map(move |(c, m)| RolloutRequest { controller: c, motions: m, seed });
+    (0..RUNS).flat_map(of_seed).collect()
 }
 
-fn outcomes(environment: &Environment, sensor: SensorModel, simd: impl Simd) -> Vec<RolloutOutcome> {
+fn outcomes(environment: &Environment, simd: impl Simd) -> Vec<RolloutOutcome> {
     let tables: Vec<MotionTable> = controllers().iter().map(|c| environment.motions(c)).collect();
-    outcomes_by(&tables, environment, sensor, simd)
+    outcomes_by(&tables, environment, simd)
 }
 
-fn outcomes_by(
-    tables: &[MotionTable],
-    environment: &Environment,
-    sensor: SensorModel,
-    simd: impl Simd,
-) -> Vec<RolloutOutcome> {
+fn outcomes_by(tables: &[MotionTable], environment: &Environment, simd: impl Simd) -> Vec<RolloutOutcome> {
     let controllers = controllers();
-    let requests = requests(&controllers, tables, sensor);
+    let requests = requests(&controllers, tables);
     let mut outcomes = vec![None; requests.len()];
     let finish = |number: usize, outcome| outcomes[number] = Some(outcome);
-    simd.vectorize(Batch { environment, sensor, requests: &requests, watch: |_, _| {}, finish });
+    simd.vectorize(Batch { environment, requests: &requests, watch: |_, _| {}, finish });
     outcomes.into_iter().map(|outcome| outcome.expect("every run ends")).collect()
 }
 
 /// One checksum over long runs on every kind of course.
 fn checksum(simd: impl Simd) -> String {
     let mut digest = Sha256::new();
-    for noise in [Noise::Paper, Noise::Learned] {
-        for sensor in [SensorModel::Networks, SensorModel::Beam] {
-            for outcome in outcomes(&environment(noise), sensor, simd) {
-                let end = outcome.end_cm;
-                digest.update(
-                    [end.x.to_bits(), end.y.to_bits(), u64::from(outcome.steps)].map(u64::to_le_bytes).concat(),
-                );
-            }
+    for environment in environments() {
+        for outcome in outcomes(&environment, simd) {
+            let end = outcome.end_cm;
+            digest.update([end.x.to_bits(), end.y.to_bits(), u64::from(outcome.steps)].map(u64::to_le_bytes).concat());
         }
     }
     digest.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
@@ -104,8 +97,8 @@ fn a_run_does_not_depend_on_those_beside_it() {
     let environment = environment(Noise::Learned);
     let controllers = controllers();
     let tables: Vec<MotionTable> = controllers.iter().map(|c| environment.motions(c)).collect();
-    let together = outcomes(&environment, SensorModel::Beam, pulp::Scalar::new());
-    for (number, request) in requests(&controllers, &tables, SensorModel::Beam).into_iter().step_by(97) {
+    let together = outcomes(&environment, pulp::Scalar::new());
+    for (number, request) in requests(&controllers, &tables).into_iter().enumerate().step_by(97) {
         assert_eq!(environment.trace(request).0, together[number], "run {number}");
     }
 }
@@ -113,8 +106,8 @@ fn a_run_does_not_depend_on_those_beside_it() {
 #[test]
 fn motions_worked_out_ahead_are_those_of_every_step() {
     for noise in [Noise::Paper, Noise::Learned] {
-        let ahead = outcomes(&environment(noise), SensorModel::Networks, pulp::Scalar::new());
-        let every_step = outcomes(&environment(noise).asking_every_step(), SensorModel::Networks, pulp::Scalar::new());
+        let ahead = outcomes(&environment(noise), pulp::Scalar::new());
+        let every_step = outcomes(&environment(noise).asking_every_step(), pulp::Scalar::new());
         assert_eq!(ahead, every_step);
         for controller in controllers() {
             let (environment, table) = (environment(noise), environment(noise).motions(&controller));
@@ -146,9 +139,8 @@ fn what_effects_make_of_motions_is_worked_out_ahead_as_in_every_step() {
         let ahead = controllers().iter().all(|controller| environment.motions(controller).transients().is_some());
         assert!(ahead, "{added:?}");
         let not_ahead: Vec<MotionTable> = controllers().iter().map(|c| environment.motion.table(c)).collect();
-        let (sensor, simd) = (SensorModel::Networks, pulp::Scalar::new());
-        let every_step = outcomes_by(&not_ahead, &environment, sensor, simd);
-        assert_eq!(outcomes(&environment, sensor, simd), every_step, "{added:?}");
+        let every_step = outcomes_by(&not_ahead, &environment, pulp::Scalar::new());
+        assert_eq!(outcomes(&environment, pulp::Scalar::new()), every_step, "{added:?}");
     }
     let timed = of(&[applied("battery_sag", "command")]);
     let environment = Environment::new(&timed, &scene, scene.starts[0], Noise::Learned).unwrap();
@@ -162,8 +154,7 @@ fn every_run_steps_as_the_machine_of_the_core_does() {
     for controller in &controllers() {
         let motions = &environment.motions(controller);
         for seed in 0..20 {
-            let (outcome, moments) =
-                environment.trace(RolloutRequest { controller, motions, sensor: SensorModel::Networks, seed });
+            let (outcome, moments) = environment.trace(RolloutRequest { controller, motions, seed });
             let mut machine = Machine::start();
             for (i, moment) in moments.iter().enumerate() {
                 let crashed = outcome.termination == Termination::Crashed && i + 1 == moments.len();

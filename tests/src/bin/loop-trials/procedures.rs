@@ -99,10 +99,11 @@ fn evolve(bench: &Workbench) -> Result<Settled> {
     Ok(untried(bench.judged()?.swap_remove(0)))
 }
 
-/// The one of its candidates that comes nearest in a trial.
+/// The one of its three best candidates that comes nearest in a trial.
 fn try_three(bench: &Workbench) -> Result<Settled> {
     let case = bench.case;
-    let candidates = bench.judged()?;
+    let mut candidates = bench.judged()?;
+    candidates.truncate(3);
     let trials = candidates.len();
     let missed_cm = |controller: &Controller| case.missed_cm(&case.drive(controller, SEEN));
     let nearest = candidates.into_iter().min_by(|a, b| missed_cm(a).total_cmp(&missed_cm(b)));
@@ -157,6 +158,7 @@ fn loops(bench: &Workbench) -> Result<Settled> {
     let verdict = match state.verdict {
         trials::state::Verdict::Works => "works",
         trials::state::Verdict::OutOfReach => "out of reach",
+        trials::state::Verdict::Spent if state.limit().is_some() => "limited by chance",
         trials::state::Verdict::Spent | trials::state::Verdict::Running => "spent",
     };
     Ok(Settled { controller, trials: state.trials.len(), verdict })
@@ -182,7 +184,7 @@ impl Workbench<'_> {
     fn candidates(&self, simulator: &Simulator, ways_of: &Scene) -> Result<Vec<Controller>> {
         let Case { scene, .. } = self.case;
         let robots = simulator.robots(1, self.seed());
-        let environment = Environment::new(simulator, scene, self.case.pose(), Noise::Learned)?.with_beam(simulator);
+        let environment = Environment::new(simulator, scene, self.case.pose(), Noise::Learned)?;
         let environment = environment.of_middle(robots.as_ref());
         let target_cm = self.case.target_cm();
         let task = EvolutionTask {
