@@ -131,20 +131,20 @@ impl<'a> Trials<'a> {
         if let Some((controller, chance)) = known.confirmed(&tried) {
             return self.settle(Verdict::Works, controller, *chance);
         }
+        let found = search.best(&self.state.archive, &tried)?;
+        self.state.archive = found.archive();
+        let (controller, chance) = found.choice(&tried).ok_or_else(|| Error::new("no controller was found"))?;
         if count >= self.job.trials {
-            let (controller, chance) = known.choice(&tried).ok_or_else(|| Error::new("no controller was driven"))?;
+            // The last run may have told what none of the driven ones was made for.
             self.state.if_known = Some(search.if_known(&self.state.archive, &tried)?);
             return self.settle(Verdict::Spent, controller, *chance);
         }
-        let found = search.best(&self.state.archive, &tried)?;
-        let (controller, chance) = found.choice(&tried).ok_or_else(|| Error::new("no controller was found"))?;
         if chance.success < HOPELESS {
             return self.settle(Verdict::OutOfReach, controller, *chance);
         }
         let trial = Trial::planned(count + 1, *chance, search.paths(controller)?);
         self.write_controller(&self.job.folder.join(&trial.controller), controller, *chance)?;
         self.state.trials.push(trial);
-        self.state.archive = found.archive();
         Ok(())
     }
 
