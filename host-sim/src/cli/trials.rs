@@ -140,7 +140,7 @@ fn if_known(IfKnown { success, is_enough }: &IfKnown) -> String {
     } else {
         format!(
             "{known} {percent:.0} %: no six tuples were found that do better against chance in motion and readings; further \
-             trials do not change that, a nearer start or a wider way may\n"
+             trials will hardly change that, a nearer start or a wider way may\n"
         )
     }
 }

@@ -324,7 +324,7 @@ fn next(state: &State) -> Markup {
                 Verdict::Spent => @match state.limit() {
                     Some(success) => li {
                         "Make it easier: a start nearer to the target, or a wider way. If all were known of the robot the best of "
-                        "these controllers would reach the target in " (percent(success)) " of its runs: more trials do not help."
+                        "these controllers would reach the target in " (percent(success)) " of its runs: more trials will hardly help."
                     },
                     None => li {
                         "The same call with more " code { "--trials" } " goes on from here: each run narrows what is not known of "

@@ -62,7 +62,7 @@ pub enum Verdict {
 pub struct IfKnown {
     /// Its chance of success.
     pub success: f64,
-    /// Whether that could be confirmed. If not, chance is what limits it, which further trials do not change.
+    /// Whether that could be confirmed. If not, chance is what limits it, which further trials will hardly change.
     pub is_enough: bool,
 }
 
