@@ -75,7 +75,7 @@ pub fn write_csv(path: &Path, rows: &[impl Serialize]) -> Result<()> {
 /// # Errors
 /// When the file is missing or a row is not of the expected form.
 pub fn read_csv<T: DeserializeOwned>(path: &Path) -> Result<Vec<T>> {
-    let mut records = Records::new(path, TextFile::open(path)?, &ReaderBuilder::new());
+    let mut records = Records::with(path, TextFile::open(path)?, &ReaderBuilder::new());
     let header = records.header()?;
     let (mut record, mut rows) = (StringRecord::new(), Vec::new());
     while let Some(line) = records.read(&mut record)? {

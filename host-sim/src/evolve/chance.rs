@@ -74,10 +74,10 @@ impl<'a> Judge<'a> {
     pub fn if_known(&self, controllers: &[Controller], runs: usize) -> Result<f64> {
         let by_robot = self.successes(controllers, runs)?;
         let best = by_robot.iter().flat_map(|robot| {
-            [0, 1].map(|half| {
-                let halves = robot.iter().map(|runs| runs.split_at(runs.len() / 2));
-                let halves = halves.map(|(a, b)| if half == 0 { (share(a), share(b)) } else { (share(b), share(a)) });
-                halves.max_by(|one, other| one.0.total_cmp(&other.0)).map_or(0.0, |(_, told)| told)
+            let halves = robot.iter().map(|runs| [&runs[..runs.len() / 2], &runs[runs.len() / 2..]].map(share));
+            [0, 1].map(|chooses| {
+                let best = halves.clone().max_by(|one, other| one[chooses].total_cmp(&other[chooses]));
+                best.map_or(0.0, |halves| halves[1 - chooses])
             })
         });
         Ok(best.sum::<f64>() / (2 * self.robots.len()) as f64)

@@ -15,8 +15,13 @@ pub struct Records<R> {
 }
 
 impl<R: Read> Records<R> {
-    /// Of a file's text, by a builder's settings; `path` is for messages.
-    pub fn new(path: &Path, text: R, settings: &ReaderBuilder) -> Self {
+    /// Of the text of a table: a header and below it as many cells a line, without the blanks about them. `path` is for messages.
+    pub fn new(path: &Path, text: R) -> Self {
+        Self::with(path, text, ReaderBuilder::new().trim(csv::Trim::All))
+    }
+
+    /// The same by other settings.
+    pub fn with(path: &Path, text: R, settings: &ReaderBuilder) -> Self {
         Records { path: path.into(), reader: settings.from_reader(LineEnds { text, last: None }) }
     }
 
@@ -112,7 +117,7 @@ mod tests {
 
     /// The records of a text with their lines; what is wrong ends them.
     fn read(text: &[u8]) -> (Vec<(u64, String)>, Option<String>) {
-        let mut records = Records::new(Path::new("a.csv"), text, ReaderBuilder::new().trim(csv::Trim::All));
+        let mut records = Records::new(Path::new("a.csv"), text);
         let (mut record, mut found) = (StringRecord::new(), Vec::new());
         loop {
             match records.read(&mut record) {

@@ -80,7 +80,7 @@ impl Table {
     pub fn lines(&self) -> impl Iterator<Item = Result<Line<'_>>> {
         let mut settings = ReaderBuilder::new();
         settings.has_headers(false).flexible(true).delimiter(self.separator).trim(csv::Trim::All);
-        let mut records = Records::new(&self.file, self.body.as_bytes(), &settings);
+        let mut records = Records::with(&self.file, self.body.as_bytes(), &settings);
         let next = move || {
             let mut record = StringRecord::new();
             records.read(&mut record).transpose().map(|line| line.map(|line| (line, record)))

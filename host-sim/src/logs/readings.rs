@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use csv::{ReaderBuilder, StringRecord};
+use csv::StringRecord;
 use mindgap_controller_export::brick::Sonar;
 use mindgap_controller_export::onboard::NO_ECHO_CM;
 
@@ -29,7 +29,7 @@ pub fn read(list_or_file: &str) -> Result<Vec<Sonar>> {
 }
 
 fn read_column(path: &Path) -> Result<Vec<Sonar>> {
-    let mut records = Records::new(path, TextFile::open(path)?, ReaderBuilder::new().trim(csv::Trim::All));
+    let mut records = Records::new(path, TextFile::open(path)?);
     let column = records.header()?.iter().position(|name| name == COLUMN);
     let column = column.ok_or_else(|| Error::at_line(path, 1, format!("column {COLUMN} is missing")))?;
     let (mut record, mut readings) = (StringRecord::new(), Vec::new());

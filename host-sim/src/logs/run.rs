@@ -4,7 +4,7 @@ use std::io::Read;
 use std::iter;
 use std::path::Path;
 
-use csv::{ReaderBuilder, StringRecord, Writer};
+use csv::{StringRecord, Writer};
 
 use super::columns::{COLUMNS, Columns, REQUIRED, cells};
 use super::rows::Rows;
@@ -89,7 +89,7 @@ impl Run {
 
 /// Reads rows one by one: the text of a long run is never there as a whole.
 fn rows(path: &Path, text: impl Read, required: &[&str], warn: &mut impl FnMut(String)) -> Result<Rows> {
-    let mut records = Records::new(path, text, ReaderBuilder::new().trim(csv::Trim::All));
+    let mut records = Records::new(path, text);
     let header = records.header()?;
     let columns = Columns::find(path, &header, required, warn)?;
     let mut rows = Rows::default();

@@ -3,7 +3,7 @@
 
 use std::path::Path;
 
-use csv::{ReaderBuilder, StringRecord};
+use csv::StringRecord;
 use mindgap_controller_export::brick::{Level, Press};
 
 use crate::error::{Error, Result};
@@ -35,7 +35,7 @@ fn all_columns() -> impl Iterator<Item = &'static str> {
 /// # Errors
 /// When the file cannot be read, or has another column or an invalid number.
 pub fn read(path: &Path) -> Result<WorldScript> {
-    let mut records = Records::new(path, TextFile::open(path)?, ReaderBuilder::new().trim(csv::Trim::All));
+    let mut records = Records::new(path, TextFile::open(path)?);
     let header = records.header()?;
     if !header.iter().any(|name| name == TIME) {
         return Err(Error::at_line(path, 1, format!("column {TIME} is missing")));

@@ -100,8 +100,7 @@ impl Search<'_> {
     /// As [`best`](Self::best).
     pub fn judged(&self, tried: &[Tried]) -> Result<Found> {
         let Robots { drawn, .. } = self.robots()?;
-        let controllers = tried.iter().map(|tried| tried.controller.clone()).collect();
-        Ok(Found(self.jury(&drawn, tried)?.ranked(controllers, RUNS)?))
+        Ok(Found(self.jury(&drawn, tried)?.ranked(driven(tried).collect(), RUNS)?))
     }
 
     /// The best controllers, from those of earlier turns, those that were driven, and new ones.
@@ -111,13 +110,11 @@ impl Search<'_> {
     pub fn best(&self, archive: &[Vec<Tuple>], tried: &[Tried]) -> Result<Found> {
         let Robots { mean, drawn } = self.robots()?;
         let jury = self.jury(&drawn, tried)?;
-        let driven = tried.iter().map(|tried| tried.controller.clone());
-        let known = distinct(driven.clone().chain(archive.iter().filter_map(|tuples| self.controller(tuples))));
-        let known = jury.ranked(known, FEW_RUNS)?;
+        let known = jury.ranked(self.known(archive, tried), FEW_RUNS)?;
         let found = self.searched(&mean, &known)?;
         let all = distinct(known.into_iter().map(|known| known.controller).chain(found));
         let promising = jury.ranked(all, FEW_RUNS)?.into_iter().take(ARCHIVED).map(|candidate| candidate.controller);
-        Ok(Found(jury.ranked(distinct(promising.chain(driven)), RUNS)?))
+        Ok(Found(jury.ranked(distinct(promising.chain(driven(tried))), RUNS)?))
     }
 
     /// The chance of success with the best of these controllers if the robot were known: what a search can reach.
@@ -126,9 +123,7 @@ impl Search<'_> {
     /// As [`best`](Self::best).
     pub fn if_known(&self, archive: &[Vec<Tuple>], tried: &[Tried]) -> Result<IfKnown> {
         let Robots { drawn, .. } = self.robots()?;
-        let driven = tried.iter().map(|tried| tried.controller.clone());
-        let all = distinct(driven.chain(archive.iter().filter_map(|tuples| self.controller(tuples))));
-        let success = self.jury(&drawn, tried)?.judge.if_known(&all, KNOWING_RUNS)?;
+        let success = self.judge(&drawn)?.if_known(&self.known(archive, tried), KNOWING_RUNS)?;
         Ok(IfKnown { success, is_enough: success >= CONFIRMED })
     }
 
@@ -180,9 +175,17 @@ impl Search<'_> {
     }
 
     fn jury<'a>(&'a self, robots: &'a [Member], tried: &'a [Tried]) -> Result<Jury<'a>> {
+        Ok(Jury { judge: self.judge(robots)?, tried })
+    }
+
+    fn judge<'a>(&'a self, robots: &'a [Member]) -> Result<Judge<'a>> {
         let seed = self.stream(Purpose::Judging, 0);
-        let judge = Judge::new(self.simulator, robots, self.scene, self.start, self.target_cm()?, seed)?;
-        Ok(Jury { judge, tried })
+        Judge::new(self.simulator, robots, self.scene, self.start, self.target_cm()?, seed)
+    }
+
+    /// The controllers that were driven and those of earlier turns.
+    fn known(&self, archive: &[Vec<Tuple>], tried: &[Tried]) -> Vec<Controller> {
+        distinct(driven(tried).chain(archive.iter().filter_map(|tuples| self.controller(tuples))))
     }
 
     fn target_cm(&self) -> Result<DVec2> {
@@ -200,6 +203,10 @@ impl Search<'_> {
     fn controller(&self, tuples: &[Tuple]) -> Option<Controller> {
         Some(self.decoder().with_tuples(tuples.try_into().ok()?))
     }
+}
+
+fn driven(tried: &[Tried]) -> impl Iterator<Item = Controller> {
+    tried.iter().map(|tried| tried.controller.clone())
 }
 
 /// Controllers, each once.

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use clap::ValueEnum;
-use csv::{ReaderBuilder, StringRecord};
+use csv::StringRecord;
 
 use crate::error::{Error, Result};
 use crate::files::Records;
@@ -19,7 +19,7 @@ const HEADING: [&str; 3] = ["heading", "yaw", "theta"];
 
 /// The frames of a track; `None` where the robot was lost (a cell of the pose is empty or `nan`).
 pub(super) fn frames(file: &Path, text: &str, units: &Units) -> Result<Vec<Option<Frame>>> {
-    let mut records = Records::new(file, text.as_bytes(), ReaderBuilder::new().trim(csv::Trim::All));
+    let mut records = Records::new(file, text.as_bytes());
     let header = records.header()?;
     let find = |what: &str, names: &[&str]| Column::find(&header, what, names).map_err(|e| Error::at_line(file, 1, e));
     let [time, x, y, heading] = [find("time", &TIME)?, find("x", &X)?, find("y", &Y)?, find("the heading", &HEADING)?];

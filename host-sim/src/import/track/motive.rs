@@ -22,7 +22,7 @@ pub(super) fn is_one(text: &str) -> bool {
 
 /// The frames of the first rigid body; `None` where it was lost. The scene's x is Motive's X, and its y is Motive's -Z.
 pub(super) fn frames(file: &Path, text: &str) -> Result<Vec<Option<Frame>>> {
-    let mut records = Records::new(file, text.as_bytes(), ReaderBuilder::new().has_headers(false).flexible(true));
+    let mut records = Records::with(file, text.as_bytes(), ReaderBuilder::new().has_headers(false).flexible(true));
     let mut unit = None;
     let mut is_body = false;
     let (mut record, mut frames) = (StringRecord::new(), Vec::new());
