@@ -6,6 +6,8 @@
 
 pub mod drawing;
 mod driven;
+pub mod jury;
+mod likeness;
 pub mod robot;
 pub mod search;
 pub mod state;
@@ -26,8 +28,9 @@ use crate::geometry::Pose;
 use crate::logs::{Logs, Run, Scene};
 use crate::simulator::Simulator;
 use crate::workers;
+use jury::{Candidate, Tried};
 use robot::{Call, TrialRobot};
-use search::{Search, Tried};
+use search::Search;
 use state::{Failure, State, Trial, Verdict};
 use vetting::Vetting;
 
@@ -128,22 +131,22 @@ impl<'a> Trials<'a> {
         let known = search.judged(&tried)?;
         self.note(adapted, tried.last().and_then(|last| known.chance_of(&last.controller)));
         simulator.write(&self.job.folder.join("simulator.json"))?;
-        if let Some((controller, chance)) = known.confirmed(&tried) {
-            return self.settle(Verdict::Works, controller, *chance);
+        if let Some(works) = known.confirmed(&tried) {
+            return self.settle(Verdict::Works, works);
         }
         let found = search.best(&self.state.archive, &tried)?;
-        self.state.archive = found.archive();
-        let (controller, chance) = found.choice(&tried).ok_or_else(|| Error::new("no controller was found"))?;
+        self.state.archive = found.tuples(search::ARCHIVED);
+        let choice = found.choice(&tried).ok_or_else(|| Error::new("no controller was found"))?;
         if count >= self.job.trials {
             // The last run may have told what none of the driven ones was made for.
             self.state.if_known = Some(search.if_known(&self.state.archive, &tried)?);
-            return self.settle(Verdict::Spent, controller, *chance);
+            return self.settle(Verdict::Spent, choice);
         }
-        if chance.success < HOPELESS {
-            return self.settle(Verdict::OutOfReach, controller, *chance);
+        if choice.chance.success < HOPELESS {
+            return self.settle(Verdict::OutOfReach, choice);
         }
-        let trial = Trial::planned(count + 1, *chance, search.paths(controller)?);
-        self.write_controller(&self.job.folder.join(&trial.controller), controller, *chance)?;
+        let trial = Trial::planned(count + 1, choice.chance, search.paths(&choice.controller)?);
+        self.write_controller(&self.job.folder.join(&trial.controller), choice)?;
         self.state.trials.push(trial);
         Ok(())
     }
@@ -209,10 +212,11 @@ impl<'a> Trials<'a> {
     }
 
     /// Ends the loop with a controller.
-    fn settle(&mut self, verdict: Verdict, controller: &Controller, chance: Chance) -> Result<()> {
-        self.write_controller(&self.job.folder.join("controller.toml"), controller, chance)?;
+    fn settle(&mut self, verdict: Verdict, settled: &Candidate) -> Result<()> {
+        self.write_controller(&self.job.folder.join("controller.toml"), settled)?;
         self.state.verdict = verdict;
-        self.state.chance = Some(chance);
+        self.state.chance = Some(settled.chance);
+        self.state.chance_with_runs = Some(settled.score);
         Ok(())
     }
 
@@ -227,20 +231,20 @@ impl<'a> Trials<'a> {
         let mut tried: Vec<Tried> = Vec::new();
         for trial in &self.state.trials {
             let controller = ControllerFile::read(&self.job.folder.join(&trial.controller))?.controller;
-            let success = usize::from(trial.real.as_ref().is_some_and(|real| real.reached));
-            match tried.iter().position(|tried| tried.controller == controller) {
-                Some(place) => {
-                    let mut again = tried.remove(place);
-                    (again.runs, again.successes) = (again.runs + 1, again.successes + success);
-                    tried.push(again);
-                }
-                None => tried.push(Tried { controller, runs: 1, successes: success }),
-            }
+            let Some(real) = &trial.real else { continue };
+            let before = tried.iter().position(|tried| tried.controller == controller).map(|at| tried.remove(at));
+            let before = before.unwrap_or(Tried { controller, runs: 0, successes: 0, steps: 0 });
+            tried.push(Tried {
+                runs: before.runs + 1,
+                successes: before.successes + usize::from(real.reached),
+                steps: before.steps.max(real.steps),
+                ..before
+            });
         }
         Ok(tried)
     }
 
-    fn write_controller(&self, path: &Path, controller: &Controller, chance: Chance) -> Result<()> {
+    fn write_controller(&self, path: &Path, Candidate { controller, chance, .. }: &Candidate) -> Result<()> {
         let name = |path: &Path| path.file_name().unwrap_or_default().to_string_lossy().into_owned();
         let origin = Origin {
             simulator: name(&PathBuf::from("simulator.json")),

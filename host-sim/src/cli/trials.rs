@@ -127,9 +127,14 @@ impl Loop {
             }
             Verdict::Spent | Verdict::Running => "the trials are spent before one was confirmed; of the best",
         };
+        let with_runs = state.chance_with_runs.map_or_else(String::new, with_runs);
         let known = state.if_known.as_ref().map_or_else(String::new, if_known);
-        format!("{trials}{}: {end} the chance is {chance}\n{known}", controller.display())
+        format!("{trials}{}: {end} the chance is {chance}{with_runs}\n{known}", controller.display())
     }
+}
+
+fn with_runs(chance: f64) -> String {
+    format!(", {:.0} % with real runs of it and its like", 100.0 * chance)
 }
 
 /// What further trials may do.

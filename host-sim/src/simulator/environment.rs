@@ -1,6 +1,7 @@
 //! A simulator, a scene and a start, ready for rollouts of controllers.
 
 use clap::ValueEnum;
+use glam::DVec2;
 use mindgap_core::controller::Controller;
 use mindgap_core::folded::FoldedNetwork;
 
@@ -124,6 +125,11 @@ impl<'s> Environment<'s> {
     /// evolved on drawn ones would fit those.
     pub fn of_middle(self, robots: Option<&'s Robots>) -> Self {
         robots.into_iter().fold(self, |any, robots| any.of_robot(&robots.mean))
+    }
+
+    /// Where controllers start, cm.
+    pub fn start_cm(&self) -> DVec2 {
+        self.start.position_cm
     }
 
     /// An environment for each of these robots.

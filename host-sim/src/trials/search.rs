@@ -1,15 +1,14 @@
-//! The search of a turn: controllers from new explorations and from those that did well, judged on many robots and by their
-//! own real runs. What the runs of others tell is in the simulator by then.
-
-use std::cmp::Reverse;
+//! The search of a turn: controllers from new explorations and from those that did well, judged on many robots and by real
+//! runs.
 
 use glam::DVec2;
 use mindgap_core::controller::{Controller, Tuple};
 
+use super::jury::{CONFIRMED, Found, Jury, Tried};
 use super::state::{IfKnown, SimulatedPath, place_cm};
 use crate::chance::derive;
 use crate::error::{Error, Result};
-use crate::evolve::chance::{Chance, Judge, ROBOTS, RUNS};
+use crate::evolve::chance::{Judge, ROBOTS, RUNS};
 use crate::evolve::fitness::RandomNumbers;
 use crate::evolve::genome::GenotypeDecoder;
 use crate::evolve::prefixes;
@@ -31,23 +30,14 @@ const FEW_RUNS: usize = 3;
 const INCUMBENTS: usize = 2;
 /// Where the best known controller has this chance, nothing is explored anew.
 const GOOD: f64 = 0.9;
-/// A controller works after so many real successes with this chance, real runs counted: two alone were luck for 4 of 16
-/// controllers, which then reached the target in three of five fresh runs or fewer.
-const SUCCESSES: usize = 3;
-const WORKS: f64 = 0.85;
-/// The simulated chance that three of three successes confirm.
-const CONFIRMED: f64 = (WORKS * (SIMULATED + SUCCESSES as f64) - SUCCESSES as f64) / SIMULATED;
 /// Runs on each robot that tell which controller is best there.
 const KNOWING_RUNS: usize = 48;
-/// Candidates that a search leaves, and those that the next turn begins with.
+/// Candidates that a search leaves.
 const SHORTLISTED: usize = 8;
-const ARCHIVED: usize = 12;
+/// Those that the next turn begins with.
+pub const ARCHIVED: usize = 12;
 /// Robots whose paths are kept with a trial.
 const SHOWN: usize = 5;
-/// Real runs count beside the simulated chance, which counts as so many. Under a beta distribution about the simulated
-/// chance that counts as so many, the successes of 44 controllers in forty runs each are the most probable for 9.5, and within
-/// one nat for 6 to 15 (docs/loop.md): the fewest, since where the robot has an effect the simulator is worse than there.
-const SIMULATED: f64 = 6.0;
 
 /// What a turn searches in.
 pub struct Search<'a> {
@@ -63,27 +53,6 @@ pub struct Search<'a> {
     pub seed: u64,
 }
 
-/// A controller that was driven.
-#[derive(Clone, Debug)]
-pub struct Tried {
-    /// The controller.
-    pub controller: Controller,
-    /// Runs on the robot.
-    pub runs: usize,
-    /// Those that reached the target.
-    pub successes: usize,
-}
-
-/// Controllers with their chances, the most promising first.
-pub struct Found(Vec<Candidate>);
-
-struct Candidate {
-    controller: Controller,
-    chance: Chance,
-    /// The chance with what its real runs came to.
-    score: f64,
-}
-
 /// Streams of random numbers.
 #[derive(Clone, Copy)]
 enum Purpose {
@@ -91,6 +60,7 @@ enum Purpose {
     Judging,
     Searching,
     Showing,
+    Comparing,
 }
 
 impl Search<'_> {
@@ -99,8 +69,8 @@ impl Search<'_> {
     /// # Errors
     /// As [`best`](Self::best).
     pub fn judged(&self, tried: &[Tried]) -> Result<Found> {
-        let Robots { drawn, .. } = self.robots()?;
-        Ok(Found(self.jury(&drawn, tried)?.ranked(driven(tried).collect(), RUNS)?))
+        let robots = self.robots()?;
+        self.jury(&robots, tried)?.ranked(Vec::new(), RUNS)
     }
 
     /// The best controllers, from those of earlier turns, those that were driven, and new ones.
@@ -108,13 +78,13 @@ impl Search<'_> {
     /// # Errors
     /// When the simulator lacks a network or what its logs left open, or the robot does not fit at the start.
     pub fn best(&self, archive: &[Vec<Tuple>], tried: &[Tried]) -> Result<Found> {
-        let Robots { mean, drawn } = self.robots()?;
-        let jury = self.jury(&drawn, tried)?;
-        let known = jury.ranked(self.known(archive, tried), FEW_RUNS)?;
-        let found = self.searched(&mean, &known)?;
-        let all = distinct(known.into_iter().map(|known| known.controller).chain(found));
-        let promising = jury.ranked(all, FEW_RUNS)?.into_iter().take(ARCHIVED).map(|candidate| candidate.controller);
-        Ok(Found(jury.ranked(distinct(promising.chain(driven(tried))), RUNS)?))
+        let robots = self.robots()?;
+        let jury = self.jury(&robots, tried)?;
+        let known = jury.ranked(self.archived(archive), FEW_RUNS)?;
+        let found = self.searched(&robots.mean, &known)?;
+        let all = known.controllers().chain(found).collect();
+        let promising = jury.ranked(all, FEW_RUNS)?.controllers().take(ARCHIVED).collect();
+        jury.ranked(promising, RUNS)
     }
 
     /// The chance of success with the best of these controllers if the robot were known: what a search can reach.
@@ -122,8 +92,8 @@ impl Search<'_> {
     /// # Errors
     /// As [`best`](Self::best).
     pub fn if_known(&self, archive: &[Vec<Tuple>], tried: &[Tried]) -> Result<IfKnown> {
-        let Robots { drawn, .. } = self.robots()?;
-        let success = self.judge(&drawn)?.if_known(&self.known(archive, tried), KNOWING_RUNS)?;
+        let robots = self.robots()?;
+        let success = self.jury(&robots, tried)?.if_known(self.archived(archive), KNOWING_RUNS)?;
         Ok(IfKnown { success, is_enough: success >= CONFIRMED })
     }
 
@@ -148,20 +118,19 @@ impl Search<'_> {
     }
 
     /// New controllers, on the robot in the middle: exploring on drawn ones would be a bad search.
-    fn searched(&self, mean: &Member, known: &[Candidate]) -> Result<Vec<Controller>> {
-        let environment = Environment::new(self.simulator, self.scene, self.start, Noise::Learned)?;
+    fn searched(&self, mean: &Member, known: &Found) -> Result<Vec<Controller>> {
         let target_cm = self.target_cm()?;
         let task = EvolutionTask {
-            environment: &environment.of_robot(mean),
+            environment: &self.environment(mean)?,
             target_cm,
             way: &WayMap::new(self.scene, target_cm, self.simulator.robot.body_radius_cm),
             decoder: self.decoder(),
             random_numbers: RandomNumbers::Common,
             seed: self.stream(Purpose::Searching, 0),
         };
-        let explores = known.first().is_none_or(|best| best.score < GOOD);
+        let explores = known.best().is_none_or(|best| best.score < GOOD);
         let explored = if explores { prefixes::explore(&task, |_, _| {})? } else { Vec::new() };
-        let incumbents = known.iter().take(INCUMBENTS).map(|known| known.controller.clone());
+        let incumbents = known.controllers().take(INCUMBENTS);
         let begun: Vec<Controller> = incumbents.chain(explored.into_iter().take(REFINED)).collect();
         let refined = robust::refine(&task, &begun, |_, _| {})?;
         let shortlist = |ranked: Vec<Judged>| ranked.into_iter().take(SHORTLISTED).map(|judged| judged.controller);
@@ -174,18 +143,19 @@ impl Search<'_> {
         })
     }
 
-    fn jury<'a>(&'a self, robots: &'a [Member], tried: &'a [Tried]) -> Result<Jury<'a>> {
-        Ok(Jury { judge: self.judge(robots)?, tried })
-    }
-
-    fn judge<'a>(&'a self, robots: &'a [Member]) -> Result<Judge<'a>> {
+    fn jury<'a>(&'a self, robots: &'a Robots, tried: &'a [Tried]) -> Result<Jury<'a>> {
         let seed = self.stream(Purpose::Judging, 0);
-        Judge::new(self.simulator, robots, self.scene, self.start, self.target_cm()?, seed)
+        let judge = Judge::new(self.simulator, &robots.drawn, self.scene, self.start, self.target_cm()?, seed)?;
+        Ok(Jury { judge, middle: self.environment(&robots.mean)?, seed: self.stream(Purpose::Comparing, 0), tried })
     }
 
-    /// The controllers that were driven and those of earlier turns.
-    fn known(&self, archive: &[Vec<Tuple>], tried: &[Tried]) -> Vec<Controller> {
-        distinct(driven(tried).chain(archive.iter().filter_map(|tuples| self.controller(tuples))))
+    fn environment<'a>(&'a self, robot: &'a Member) -> Result<Environment<'a>> {
+        Ok(Environment::new(self.simulator, self.scene, self.start, Noise::Learned)?.of_robot(robot))
+    }
+
+    /// The controllers of earlier turns.
+    fn archived(&self, archive: &[Vec<Tuple>]) -> Vec<Controller> {
+        archive.iter().filter_map(|tuples| self.controller(tuples)).collect()
     }
 
     fn target_cm(&self) -> Result<DVec2> {
@@ -202,128 +172,5 @@ impl Search<'_> {
 
     fn controller(&self, tuples: &[Tuple]) -> Option<Controller> {
         Some(self.decoder().with_tuples(tuples.try_into().ok()?))
-    }
-}
-
-fn driven(tried: &[Tried]) -> impl Iterator<Item = Controller> {
-    tried.iter().map(|tried| tried.controller.clone())
-}
-
-/// Controllers, each once.
-fn distinct(controllers: impl Iterator<Item = Controller>) -> Vec<Controller> {
-    let mut distinct: Vec<Controller> = Vec::new();
-    for controller in controllers {
-        if !distinct.contains(&controller) {
-            distinct.push(controller);
-        }
-    }
-    distinct
-}
-
-/// Robots to judge on, and what the real one did.
-struct Jury<'a> {
-    judge: Judge<'a>,
-    tried: &'a [Tried],
-}
-
-impl Jury<'_> {
-    /// Controllers with their chances in so many runs of each robot, the most promising first.
-    fn ranked(&self, controllers: Vec<Controller>, runs: usize) -> Result<Vec<Candidate>> {
-        let chances = self.judge.chances(&controllers, runs)?;
-        let candidate = |(controller, chance): (Controller, Chance)| {
-            let score = score(&controller, chance.success, self.tried);
-            Candidate { controller, chance, score }
-        };
-        let mut candidates: Vec<Candidate> = controllers.into_iter().zip(chances).map(candidate).collect();
-        candidates.sort_by(|a, b| b.score.total_cmp(&a.score));
-        Ok(candidates)
-    }
-}
-
-/// The simulated chance, corrected by the controller's own real runs.
-fn score(controller: &Controller, chance: f64, tried: &[Tried]) -> f64 {
-    let real = tried.iter().find(|tried| tried.controller == *controller);
-    let (runs, successes) = real.map_or((0, 0), |real| (real.runs, real.successes));
-    (SIMULATED * chance + successes as f64) / (SIMULATED + runs as f64)
-}
-
-/// That of a chance over the robots that it was judged on, by Laplace's rule: even a chance of one has an error.
-fn standard_error(chance: f64) -> f64 {
-    let robots = ROBOTS as f64;
-    let chance = (robots * chance + 1.0) / (robots + 2.0);
-    (chance * (1.0 - chance) / robots).sqrt()
-}
-
-impl Found {
-    /// The most promising controller. Of those that the judgement cannot tell from it, one that the robot has proven: whether
-    /// it works is what the loop wants to know.
-    pub fn choice(&self, tried: &[Tried]) -> Option<(&Controller, &Chance)> {
-        let best = self.0.first()?.score;
-        let alike = self.0.iter().take_while(|candidate| best - candidate.score <= standard_error(best));
-        let proven = |candidate: &&Candidate| {
-            let always = tried.iter().find(|t| t.controller == candidate.controller && t.successes == t.runs);
-            Reverse(always.map_or(0, |t| t.successes))
-        };
-        alike.min_by_key(proven).map(|Candidate { controller, chance, .. }| (controller, chance))
-    }
-
-    /// The controller that works.
-    pub fn confirmed(&self, tried: &[Tried]) -> Option<(&Controller, &Chance)> {
-        let works = |candidate: &&Candidate| {
-            let again = tried.iter().any(|t| t.controller == candidate.controller && t.successes >= SUCCESSES);
-            again && candidate.score >= WORKS
-        };
-        self.0.iter().find(works).map(|Candidate { controller, chance, .. }| (controller, chance))
-    }
-
-    /// The chance of a controller, if it was judged.
-    pub fn chance_of(&self, controller: &Controller) -> Option<Chance> {
-        self.0.iter().find(|candidate| candidate.controller == *controller).map(|candidate| candidate.chance)
-    }
-
-    /// The tuples of those with which the next turn begins.
-    pub fn archive(&self) -> Vec<Vec<Tuple>> {
-        self.0.iter().take(ARCHIVED).map(|candidate| candidate.controller.tuples.to_vec()).collect()
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use mindgap_core::controller::When;
-
-    fn controller(left: i8) -> Controller {
-        let tuple = Tuple { left, right: 40, when: When::Larger, threshold_cm: 60 };
-        Controller { step_ms: 400, max_steps: 60, tuples: [tuple; 6] }
-    }
-
-    #[test]
-    fn real_runs_count_for_a_controller() {
-        let failed = [Tried { controller: controller(40), runs: 2, successes: 0 }];
-        let score = |left: i8| score(&controller(left), 0.9, &failed);
-        assert!((score(40) - 6.0 * 0.9 / 8.0).abs() < 1e-9 && score(44) == 0.9);
-    }
-
-    #[test]
-    fn a_controller_works_after_three_successes_with_a_good_chance_and_is_driven_again_unless_another_is_better() {
-        let chance = Chance { success: 0.0, ci95: [0.0, 1.0], not_knowing: 0.0 };
-        let found = |simulated: f64, tried: &[Tried]| {
-            let score = score(&controller(40), simulated, tried);
-            let other = Candidate { controller: controller(-60), chance, score: 0.8 };
-            let mut both = vec![other, Candidate { controller: controller(40), chance, score }];
-            both.sort_by(|a, b| b.score.total_cmp(&a.score));
-            Found(both)
-        };
-        let tried = |runs, successes| [Tried { controller: controller(40), runs, successes }];
-        let works = |simulated, tried: &[Tried]| found(simulated, tried).confirmed(tried).is_some();
-        assert!(!works(1.0, &tried(2, 2)) && works(0.8, &tried(3, 3)) && !works(0.7, &tried(3, 3)));
-        assert!(!works(0.9, &tried(4, 3)));
-        let again = |simulated, tried: &[Tried]| {
-            found(simulated, tried).choice(tried).is_some_and(|(next, _)| *next == controller(40))
-        };
-        // Its score is 0.74 and 0.66 where the other's is 0.8, more or less 0.06.
-        assert!(again(0.7, &tried(1, 1)) && !again(0.6, &tried(1, 1)));
-        // 0.76 after a failure is only less.
-        assert!(!again(0.85, &tried(2, 1)) && again(1.0, &tried(2, 1)));
     }
 }

@@ -30,8 +30,11 @@ pub struct State {
     job: String,
     /// How it stands.
     pub verdict: Verdict,
-    /// Chance of the controller that it settled on.
+    /// Simulated chance of the controller that it settled on.
     pub chance: Option<Chance>,
+    /// The same with what real runs came to, its own and those of controllers like it.
+    #[serde(default)]
+    pub chance_with_runs: Option<f64>,
     /// Where the trials were spent, what could be reached if the robot were known.
     #[serde(default)]
     pub if_known: Option<IfKnown>,
@@ -157,6 +160,7 @@ impl State {
                 job: digest,
                 verdict: Verdict::Running,
                 chance: None,
+                chance_with_runs: None,
                 if_known: None,
                 trials: Vec::new(),
                 failures: Vec::new(),

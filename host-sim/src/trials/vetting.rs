@@ -14,7 +14,7 @@ use crate::evaluation::predictions;
 use crate::files;
 use crate::geometry::{Pose, wrap_rad};
 use crate::inspection::Inspection;
-use crate::logs::{Logs, Run, Scene};
+use crate::logs::{Logs, Row, Run, Scene};
 use crate::simulator::Simulator;
 use crate::simulator::baseline::Baseline;
 use crate::simulator::rollout::REACHED_CM;
@@ -30,8 +30,6 @@ const LOST_AT_THE_END: usize = 1;
 /// No robot that the simulator stands for is off by this in a step: the frame of the poses moved.
 const JUMP_CM: f64 = 12.0;
 const JUMP_DEG: f64 = 60.0;
-/// Steps at the end of a run that a wall may have ended.
-const LAST_STEPS: usize = 2;
 
 /// What a log is held against.
 pub struct Vetting<'a> {
@@ -80,8 +78,7 @@ impl Vetting<'_> {
         let path_cm = run.rows.iter().filter_map(|row| row.pose).map(|pose| place_cm(pose.position_cm)).collect();
         if ending == Ending::Crashed {
             // What a wall did to the robot says nothing of its commands.
-            let first = run.rows.len().saturating_sub(LAST_STEPS).max(2);
-            (first..run.rows.len()).for_each(|row| run.rows.edit(row, |row| row.pose = None));
+            (self.free_rows(&run)..run.rows.len()).for_each(|row| run.rows.edit(row, |row| row.pose = None));
         }
         let target_cm = self.scene.target_cm.ok_or_else(|| Error::new("the scene has no target"))?;
         let distance_cm = end.position_cm.distance(target_cm);
@@ -91,11 +88,8 @@ impl Vetting<'_> {
     }
 
     fn ending(&self, driven: &Driven, end: &Pose) -> Result<Ending> {
-        let (at_cm, sides) = (end.position_cm, self.scene.sides());
-        let nearest_cm = sides.iter().map(|side| side.nearest(at_cm).distance(at_cm)).fold(f64::INFINITY, f64::min);
-        let clearance_cm = nearest_cm - self.simulator.robot.body_radius_cm;
         let steps = driven.steps;
-        if clearance_cm < TOUCHING_CM {
+        if self.touches(end) {
             Ok(Ending::Crashed)
         } else if steps >= usize::from(self.controller.max_steps) {
             // One that holds its sixth tuple then has not finished either.
@@ -107,6 +101,19 @@ impl Vetting<'_> {
                 "breaks off after {steps} steps, where the controller had not ended and no wall is near: half a log"
             )))
         }
+    }
+
+    fn touches(&self, pose: &Pose) -> bool {
+        let (at_cm, sides) = (pose.position_cm, self.scene.sides());
+        let nearest_cm = sides.iter().map(|side| side.nearest(at_cm).distance(at_cm)).fold(f64::INFINITY, f64::min);
+        nearest_cm - self.simulator.robot.body_radius_cm < TOUCHING_CM
+    }
+
+    /// Rows before the last one and before those at the end that are at a wall.
+    fn free_rows(&self, run: &Run) -> usize {
+        let last = run.rows.len().saturating_sub(1);
+        let at_the_wall = |row: &Row| row.pose.is_none_or(|pose| self.touches(&pose));
+        last - run.rows.iter().take(last).rev().take_while(|row| at_the_wall(row)).count()
     }
 
     fn check_start(&self, run: &Run) -> Result<()> {
@@ -127,8 +134,8 @@ impl Vetting<'_> {
         let Some(motion) = Baseline::learned(self.simulator)?.motion else { return Ok(()) };
         let observations = Observations::of(logs, None);
         let effects = EffectChain::of(&self.simulator.added);
-        let last = logs.runs.first().map_or(0, |run| run.rows.len()).saturating_sub(LAST_STEPS + 1);
-        for row in observations.rows.iter().filter(|row| row.at < last) {
+        let free = logs.runs.first().map_or(0, |run| self.free_rows(run));
+        for row in observations.rows.iter().filter(|row| row.at + 1 < free) {
             let Some([forward, lateral, turn_rad]) = predictions::residual(&effects, &motion, row) else { continue };
             if (forward * forward + lateral * lateral).sqrt() > JUMP_CM || turn_rad.abs().to_degrees() > JUMP_DEG {
                 let what = format!("line {}: the poses jump as no robot does", row.at + 2);

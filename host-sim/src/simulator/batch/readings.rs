@@ -11,7 +11,7 @@ use super::{Row, StepDraws, level, load, row};
 use crate::lanes::{Lanes, WIDEST};
 use crate::simulator::Noise;
 use crate::simulator::beam::{Beam, Fate};
-use crate::simulator::draws::{Draws, Seeds};
+use crate::simulator::draws::Draws;
 use crate::simulator::first_echo::FirstEchoSensor;
 use crate::simulator::room::Point;
 
@@ -30,19 +30,11 @@ impl Robots<'_> {
         let effects = environment.effect_layer.as_ref().filter(|effects| effects.senses());
         let reading_cm = match (effects, &environment.first_echo, &environment.beam) {
             (Some(effects), ..) => match effects.beam() {
-                Some(beam) => {
-                    let (reading_cm, seeds) = self.hear(simd, beam, draws, self.sensor_seeds);
-                    self.sensor_seeds = seeds;
-                    reading_cm
-                }
+                Some(beam) => self.hear(simd, beam, draws),
                 None => return self.sense_through_effects(draws),
             },
             (None, Some(sensor), _) => return self.listen(sensor, draws),
-            (None, None, Some(beam)) => {
-                let (reading_cm, seeds) = self.hear(simd, beam, draws, self.seeds);
-                self.seeds = seeds;
-                reading_cm
-            }
+            (None, None, Some(beam)) => self.hear(simd, beam, draws),
             (None, None, None) => self.look(simd, draws),
         };
         let sonar = &environment.robot.ultrasonic;
@@ -92,13 +84,13 @@ impl Robots<'_> {
         Sensors { origin, axis, axis_deg }
     }
 
-    /// Listens with every beam, which draws from these generators; they come back for the next step.
+    /// Listens with every beam.
     #[inline(always)]
-    fn hear<S: Simd>(&self, simd: S, beam: &Beam, draws: &StepDraws, mut seeds: Seeds) -> (Lanes<S>, Seeds) {
+    fn hear<S: Simd>(&mut self, simd: S, beam: &Beam, draws: &StepDraws) -> Lanes<S> {
         let Sensors { origin, axis, axis_deg } = self.sensors(simd);
-        let mut generators = Draws::load(simd, &seeds);
+        let mut generators = Draws::load(simd, &self.sensor_seeds);
         let heard = beam.hear(&self.environment.room, origin, axis, axis_deg, &mut generators);
-        generators.store(&mut seeds);
+        generators.store(&mut self.sensor_seeds);
         let mut levels = [0; WIDEST];
         for (level_of_lane, bits) in levels.iter_mut().zip(draws.bits) {
             *level_of_lane = level(bits, 3);
@@ -109,7 +101,7 @@ impl Robots<'_> {
             student: beam.scatter(simd, &levels),
             before_cm: load(simd, &self.echo_before_cm),
         };
-        (beam.report(&heard, &fate), seeds)
+        beam.report(&heard, &fate)
     }
 
     /// Casts every sensor's axis into the room and asks the two sonar networks; where it faces nothing it reads nothing.

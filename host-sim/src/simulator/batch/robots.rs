@@ -49,8 +49,8 @@ pub struct Robots<'a> {
     steps_left: Row,
     /// One where the step is the first of a tuple: the next one moves otherwise.
     first: Row,
-    pub seeds: Seeds,
-    /// Of what a sensor draws that effects change: it moves no robot otherwise.
+    seeds: Seeds,
+    /// Of what a beam draws, so that robots move alike whatever hears for them.
     pub sensor_seeds: Seeds,
     /// What effects asked for.
     known_steps: KnownSteps<'a>,
@@ -111,9 +111,7 @@ impl<'a> Robots<'a> {
         self.running += usize::from(next.is_some());
         self.runs[lane] = next.map(|(number, request)| {
             self.seeds.set(lane, request.seed);
-            if self.environment.effect_layer.is_some() {
-                self.sensor_seeds.set(lane, derive(request.seed, &[SENSOR]));
-            }
+            self.sensor_seeds.set(lane, derive(request.seed, &[SENSOR]));
             self.steps_left[lane] = f32::from(request.controller.max_steps);
             Run {
                 number,
