@@ -11,6 +11,6 @@ pub mod robust;
 mod stops;
 pub mod task;
 #[cfg(test)]
-pub(crate) mod test_support;
+mod test_support;
 pub mod trial;
 pub mod way;

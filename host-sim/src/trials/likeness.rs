@@ -43,33 +43,34 @@ pub fn likeness(one: &Paths, other: &Paths, steps: usize) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::built_in_robot::four_obstacles;
-    use crate::evolve::test_support::SIMULATOR;
-    use crate::simulator::Noise;
-    use mindgap_core::controller::{Tuple, When};
 
-    /// On until a wall is near, then back.
-    fn controller(on: i8, back: i8) -> Controller {
-        let tuple = |speed| Tuple { left: speed, right: speed, when: When::Smaller, threshold_cm: 40 };
-        let mut tuples = [tuple(back); 6];
-        tuples[0] = tuple(on);
-        tuples[1].threshold_cm = 0;
-        Controller { step_ms: 400, max_steps: 40, tuples }
+    /// Ten steps along x and ten along y, so long each, from one place.
+    fn corner(first_cm: f64, then_cm: f64) -> Paths {
+        let x_cm = |step: usize| first_cm * step.min(10) as f64;
+        let y_cm = |step: usize| then_cm * step.saturating_sub(10) as f64;
+        vec![(0..=20).map(|step| DVec2::new(x_cm(step), y_cm(step))).collect()]
+    }
+
+    #[test]
+    fn paths_are_alike_within_a_tenth_of_the_way() {
+        let alike = |first_cm| likeness(&corner(10.0, 0.0), &corner(first_cm, 0.0), 10);
+        assert_eq!(alike(10.0), 1.0);
+        // They end ten centimetres apart after a metre.
+        assert!((alike(9.0) - libm::exp(-0.5)).abs() < 1e-9 && (alike(11.0) - libm::exp(-0.5)).abs() < 1e-9);
+        assert!(alike(5.0) < 1e-5 && alike(-10.0) < 1e-9);
     }
 
     #[test]
     fn what_comes_after_the_end_of_a_run_does_not_count() {
-        let scene = four_obstacles();
-        let environment = Environment::new(&SIMULATOR, &scene, scene.starts[0], Noise::Learned).expect("room");
-        let paths = |controller: &Controller| paths(&environment, controller, 7);
-        let one = paths(&controller(60, -50));
-        let alike = |other: &Controller, steps| likeness(&one, &paths(other), steps);
-        assert_eq!(alike(&controller(60, -50), 40), 1.0);
-        // Another way back after the same way on, but for a reading out of nowhere that ends it.
-        let slower = [3, 40].map(|steps| alike(&controller(60, -10), steps));
-        assert!(slower[0] > 0.8 && slower[1] < 0.2, "{slower:?}");
-        // Nearly as fast, half as fast, and backwards.
-        let other = [58, 30, -60].map(|on| alike(&controller(on, -50), 3));
-        assert!(other[0] > 0.8 && other[1] < 0.1 && other[2] < 1e-6, "{other:?}");
+        let alike = |steps| likeness(&corner(10.0, 10.0), &corner(10.0, -10.0), steps);
+        assert!(alike(10) == 1.0 && alike(11) < 1.0 && alike(20) < 1e-9);
+    }
+
+    #[test]
+    fn who_has_ended_stays_where_it_is() {
+        let mut ended = corner(10.0, 0.0);
+        ended[0].truncate(11);
+        assert_eq!(likeness(&corner(10.0, 0.0), &ended, 20), 1.0);
+        assert_eq!(likeness(&ended, &corner(10.0, 0.0), 20), 1.0);
     }
 }
