@@ -1,7 +1,7 @@
 //! What controllers are worth: their chances on many simulated robots, and what the real one did.
 //!
 //! What real runs say of the robot is in the simulator by then. What they came to against that says how far the simulator is
-//! wrong about them, and so about controllers whose paths are [alike](super::likeness), as in adapting from trial to trial
+//! wrong about them, and so about controllers whose paths are alike (`likeness`), as in adapting from trial to trial
 //! by a Gaussian process over behaviours (Cully and others, Nature 2015).
 
 use std::cmp::Reverse;
