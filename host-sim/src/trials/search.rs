@@ -17,7 +17,7 @@ use crate::evolve::task::{EvolutionTask, Judged};
 use crate::evolve::way::WayMap;
 use crate::geometry::Pose;
 use crate::logs::Scene;
-use crate::simulator::ensemble::{Member, Robots};
+use crate::simulator::ensemble::Robots;
 use crate::simulator::environment::Environment;
 use crate::simulator::rollout::RolloutRequest;
 use crate::simulator::{Noise, Simulator};
@@ -81,7 +81,7 @@ impl Search<'_> {
         let robots = self.robots()?;
         let jury = self.jury(&robots, tried)?;
         let known = jury.ranked(self.archived(archive), FEW_RUNS)?;
-        let found = self.searched(&robots.mean, &known)?;
+        let found = self.searched(&jury.middle, &known)?;
         let all = known.controllers().chain(found).collect();
         let promising = jury.ranked(all, FEW_RUNS)?.controllers().take(ARCHIVED).collect();
         jury.ranked(promising, RUNS)
@@ -118,10 +118,10 @@ impl Search<'_> {
     }
 
     /// New controllers, on the robot in the middle: exploring on drawn ones would be a bad search.
-    fn searched(&self, mean: &Member, known: &Found) -> Result<Vec<Controller>> {
+    fn searched(&self, middle: &Environment, known: &Found) -> Result<Vec<Controller>> {
         let target_cm = self.target_cm()?;
         let task = EvolutionTask {
-            environment: &self.environment(mean)?,
+            environment: middle,
             target_cm,
             way: &WayMap::new(self.scene, target_cm, self.simulator.robot.body_radius_cm),
             decoder: self.decoder(),
@@ -146,11 +146,8 @@ impl Search<'_> {
     fn jury<'a>(&'a self, robots: &'a Robots, tried: &'a [Tried]) -> Result<Jury<'a>> {
         let seed = self.stream(Purpose::Judging, 0);
         let judge = Judge::new(self.simulator, &robots.drawn, self.scene, self.start, self.target_cm()?, seed)?;
-        Ok(Jury { judge, middle: self.environment(&robots.mean)?, seed: self.stream(Purpose::Comparing, 0), tried })
-    }
-
-    fn environment<'a>(&'a self, robot: &'a Member) -> Result<Environment<'a>> {
-        Ok(Environment::new(self.simulator, self.scene, self.start, Noise::Learned)?.of_robot(robot))
+        let middle = Environment::new(self.simulator, self.scene, self.start, Noise::Learned)?.of_robot(&robots.mean);
+        Ok(Jury { judge, middle, seed: self.stream(Purpose::Comparing, 0), tried })
     }
 
     /// The controllers of earlier turns.

@@ -77,8 +77,8 @@ impl Vetting<'_> {
         let ending = self.ending(&driven, &end)?;
         let path_cm = run.rows.iter().filter_map(|row| row.pose).map(|pose| place_cm(pose.position_cm)).collect();
         if ending == Ending::Crashed {
-            // What a wall did to the robot says nothing of its commands.
-            (self.free_rows(&run)..run.rows.len()).for_each(|row| run.rows.edit(row, |row| row.pose = None));
+            // What a wall did to the robot says nothing of its commands; a run that crashes in its first step has no other.
+            (self.free_rows(&run).max(2)..run.rows.len()).for_each(|row| run.rows.edit(row, |row| row.pose = None));
         }
         let target_cm = self.scene.target_cm.ok_or_else(|| Error::new("the scene has no target"))?;
         let distance_cm = end.position_cm.distance(target_cm);
