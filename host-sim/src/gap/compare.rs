@@ -69,7 +69,10 @@ impl Comparison {
         let counts =
             |single: &&Fitted| gain_alone(single, &singles, &none, calibration).passes(calibration.effect_nats);
         for single in singles.iter().take(TOLD) {
-            log::info!("{} alone gains {:.1} nats", single.ids().join("+"), single.gain_over(&none).nats);
+            let Gain { nats, broad_nats, .. } = single.gain_over(&none);
+            let vague = if is_vague(single, &singles, calibration) { "; many others could stand for it" } else { "" };
+            let name = single.ids().join("+");
+            log::info!("{name} alone gains {nats:.1} nats ({broad_nats:.1} with less of the runs that gain most{vague})");
         }
         let mut chosen = singles.iter().find(counts).unwrap_or(&none).clone();
         let mut places: Vec<Place> = chosen.ids().iter().map(|_| Place::new(none.clone(), singles.clone())).collect();

@@ -142,7 +142,7 @@ impl Familiarity {
         let probability = hit * self.p_again / self.readings_cm.len().max(1) as f64;
         let scale_cm = libm::hypot(self.scale_cm, change.scatter_cm);
         let again = self.readings_cm.iter().map(|echo_cm| {
-            let middle_cm = echo_cm * change.gain + change.offset_cm;
+            let middle_cm = change.reading_cm(*echo_cm);
             Component { source: Source::Hit, probability, distribution: Distribution::Student { middle_cm, scale_cm } }
         });
         outcomes.components.extend(again);
