@@ -72,7 +72,9 @@ impl Comparison {
             let Gain { nats, broad_nats, .. } = single.gain_over(&none);
             let vague = if is_vague(single, &singles, calibration) { "; many others could stand for it" } else { "" };
             let name = single.ids().join("+");
-            log::info!("{name} alone gains {nats:.1} nats ({broad_nats:.1} with less of the runs that gain most{vague})");
+            log::info!(
+                "{name} alone gains {nats:.1} nats ({broad_nats:.1} with less of the runs that gain most{vague})"
+            );
         }
         let mut chosen = singles.iter().find(counts).unwrap_or(&none).clone();
         let mut places: Vec<Place> = chosen.ids().iter().map(|_| Place::new(none.clone(), singles.clone())).collect();
