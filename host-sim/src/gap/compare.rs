@@ -91,12 +91,6 @@ impl Comparison {
                 break;
             };
             let (settled, places_of_it) = settled(next, &alone, context);
-            let gain = further_gain(&settled, &chosen, &none, calibration).over(calibration.judgement.vague_factor);
-            let vague = |place: &Place| is_vague(&settled, &place.taken, calibration);
-            if places_of_it.iter().any(vague) && !gain.passes(calibration.effect_nats) {
-                log::info!("too many others could stand for {}", settled.ids().join("+"));
-                break;
-            }
             let before = chosen.log_evidence();
             (chosen, places) = without_needless(settled, places_of_it, &alone, context);
             log::info!("{} together gain {:.1} nats", chosen.ids().join("+"), chosen.gain_over(&none).nats);
@@ -158,7 +152,8 @@ impl Comparison {
     pub fn probability_beside_others(&self, place: usize, calibration: &Calibration) -> f64 {
         let Some(own) = self.own.get(place).filter(|_| self.own.len() > 1) else { return 1.0 };
         let gained = own.nats.max(0.0);
-        gained / (gained + calibration.effect_nats + own.feigned_nats)
+        let asked = calibration.judgement.vague_factor * calibration.effect_nats + own.feigned_nats;
+        gained / (gained + asked)
     }
 
     /// The best fit in which one of the chosen effects is missing.
@@ -228,10 +223,11 @@ fn is_worth_adding(fit: &Fitted, so_far: &Fitted, none: &Fitted, calibration: &C
     !at_bound && further_gain(fit, so_far, none, calibration).passes(calibration.effect_nats)
 }
 
-/// What one more effect gains beyond what forms of the others that are not quite right could leave over.
+/// What one more effect gains beyond what forms of the others that are not quite right could leave over; it counts as that
+/// of an effect for which many can stand, since what they leave is a bit like many effects.
 fn further_gain(fit: &Fitted, so_far: &Fitted, none: &Fitted, calibration: &Calibration) -> Gain {
     let feigned = OwnGain::of(fit, so_far, none, calibration.further_share).feigned_nats;
-    fit.gain_over(so_far).less(feigned)
+    fit.gain_over(so_far).less(feigned).over(calibration.judgement.vague_factor)
 }
 
 /// Whether too many other effects could stand for one.
