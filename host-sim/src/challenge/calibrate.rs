@@ -28,7 +28,7 @@ pub struct Measured {
     pub in_table: bool,
     /// Rows that the gains are summed over.
     pub rows: usize,
-    /// What the best effect gains, or the effects together, with less of the blocks that gain most, nats.
+    /// What the best effect gains, or the effects together, without the blocks that gain most, nats.
     pub effect_nats: f64,
     /// The most that the omnibus residual model gains in a channel, likewise; nothing where effects are sought.
     pub remainder_nats: f64,

@@ -19,7 +19,7 @@ pub struct Calibration {
     pub temperature: f64,
     /// How often the plainest answer is right: no answer is surer.
     pub accuracy_cap: f64,
-    /// When an effect counts: least gain on held-out runs, nats, with less of the blocks that gain most.
+    /// When an effect counts: least gain on held-out runs, nats, without the blocks that gain most.
     pub effect_nats: f64,
     /// The same for what the omnibus residual model explains in a channel, and for a wider scatter.
     pub remainder_nats: f64,
@@ -39,8 +39,8 @@ pub struct Judgement {
     pub strong_nats: f64,
     /// Another effect can stand for one that it lags by no more than this many standard errors, and is named beside it.
     pub rival_z: f64,
-    /// An effect for which more others can stand has to gain `vague_factor` times as much, and so has one beside others: the
-    /// misfit of a simulator, and of the others' forms, is a bit like many effects.
+    /// An effect for which more others can stand has to gain `vague_factor` times as much, alone or beside others: the
+    /// misfit of a simulator is a bit like many effects.
     pub most_rivals: usize,
     /// See `most_rivals`.
     pub vague_factor: f64,

@@ -72,9 +72,7 @@ impl Comparison {
             let Gain { nats, broad_nats, .. } = single.gain_over(&none);
             let vague = if is_vague(single, &singles, calibration) { "; many others could stand for it" } else { "" };
             let name = single.ids().join("+");
-            log::info!(
-                "{name} alone gains {nats:.1} nats ({broad_nats:.1} with less of the runs that gain most{vague})"
-            );
+            log::info!("{name} alone gains {nats:.1} nats ({broad_nats:.1} without the runs that gain most{vague})");
         }
         let mut chosen = singles.iter().find(counts).unwrap_or(&none).clone();
         let mut places: Vec<Place> = chosen.ids().iter().map(|_| Place::new(none.clone(), singles.clone())).collect();
@@ -91,6 +89,12 @@ impl Comparison {
                 break;
             };
             let (settled, places_of_it) = settled(next, &alone, context);
+            let gain = further_gain(&settled, &chosen, &none, calibration).over(calibration.judgement.vague_factor);
+            let vague = |place: &Place| is_vague(&settled, &place.taken, calibration);
+            if places_of_it.iter().any(vague) && !gain.passes(calibration.effect_nats) {
+                log::info!("too many others could stand for {}", settled.ids().join("+"));
+                break;
+            }
             let before = chosen.log_evidence();
             (chosen, places) = without_needless(settled, places_of_it, &alone, context);
             log::info!("{} together gain {:.1} nats", chosen.ids().join("+"), chosen.gain_over(&none).nats);
@@ -152,8 +156,7 @@ impl Comparison {
     pub fn probability_beside_others(&self, place: usize, calibration: &Calibration) -> f64 {
         let Some(own) = self.own.get(place).filter(|_| self.own.len() > 1) else { return 1.0 };
         let gained = own.nats.max(0.0);
-        let asked = calibration.judgement.vague_factor * calibration.effect_nats + own.feigned_nats;
-        gained / (gained + asked)
+        gained / (gained + calibration.effect_nats + own.feigned_nats)
     }
 
     /// The best fit in which one of the chosen effects is missing.
@@ -223,11 +226,10 @@ fn is_worth_adding(fit: &Fitted, so_far: &Fitted, none: &Fitted, calibration: &C
     !at_bound && further_gain(fit, so_far, none, calibration).passes(calibration.effect_nats)
 }
 
-/// What one more effect gains beyond what forms of the others that are not quite right could leave over; it counts as that
-/// of an effect for which many can stand, since what they leave is a bit like many effects.
+/// What one more effect gains beyond what forms of the others that are not quite right could leave over.
 fn further_gain(fit: &Fitted, so_far: &Fitted, none: &Fitted, calibration: &Calibration) -> Gain {
     let feigned = OwnGain::of(fit, so_far, none, calibration.further_share).feigned_nats;
-    fit.gain_over(so_far).less(feigned).over(calibration.judgement.vague_factor)
+    fit.gain_over(so_far).less(feigned)
 }
 
 /// Whether too many other effects could stand for one.
