@@ -11,10 +11,11 @@ pub fn confirm(mut found: Comparison, context: &FitContext, hold_out: Option<&Ob
     if let Some(hold_out) = hold_out {
         let judged = |fit: &Fitted| fit.judged_on(hold_out, context).total().iter().sum::<f64>();
         let gained = judged(&found.chosen) - judged(&found.none);
-        if !found.chosen.ids().is_empty() {
-            log::info!("{} gain {gained:.1} nats on runs kept back", found.chosen.ids().join("+"));
+        let ids = found.chosen.ids();
+        if !ids.is_empty() {
+            log::info!("{} gain {gained:.1} nats on runs kept back", ids.join("+"));
         }
-        if !found.chosen.ids().is_empty() && gained < context.calibration.judgement.strong_nats {
+        if !ids.is_empty() && gained < context.calibration.judgement.strong_nats {
             found.chosen = found.none.clone();
             (found.rivals, found.own) = (Vec::new(), Vec::new());
             found.beyond_chosen = remainders(&found.none, context);

@@ -165,7 +165,7 @@ impl Beam {
             offset_cm: perturbation.offset_cm as f32,
             thresholds: Thresholds::both(reference, perturbation),
             thresholds_after_none: None,
-            constant_cm: perturbation.reading_cm(reference.constant[1]) as f32,
+            constant_cm: reference.constant[1] as f32,
             ghost_cm: perturbation.ghost_cm as f32,
             range_cm: reference.range_cm.map(|cm| cm as f32),
             reach_bounds_cm: reference.reach_bounds_cm().map(|cm| cm as f32),

@@ -140,7 +140,7 @@ impl Outcomes {
         let between = |low_cm, high_cm| Distribution::Uniform { low_cm, high_cm };
         let others = [
             (Source::Ghost, total(|w| w.ghost), about(perturbation.ghost_cm)),
-            (Source::Constant, total(|w| w.constant), about(perturbation.reading_cm(model.constant[1]))),
+            (Source::Constant, total(|w| w.constant), about(model.constant[1])),
             (Source::Short, total(|w| w.short), between(low, reach)),
             (Source::Long, total(|w| w.long), between(reach, high)),
             (Source::Stray, total(|w| w.stray), between(low, high)),
