@@ -28,7 +28,7 @@ pub struct Measured {
     pub in_table: bool,
     /// Rows that the gains are summed over.
     pub rows: usize,
-    /// What the best effect gains, or the effects together, without the blocks that gain most, nats.
+    /// What the best effect gains, or the effects together, with less of the blocks that gain most, nats.
     pub effect_nats: f64,
     /// The most that the omnibus residual model gains in a channel, likewise; nothing where effects are sought.
     pub remainder_nats: f64,
@@ -88,9 +88,12 @@ fn without_effect(bench: &Bench, number: usize) -> Result<Measured> {
 fn with_effects(bench: &Bench, number: usize, calibration: Calibration) -> Result<Measured> {
     let (case, baseline) = bench.case(number)?;
     let found = confirmed(baseline, &case.logs, &[calibration])?.swap_remove(0);
-    let alone = found.first.filter(|first| matches!(&case.effects[..], [one] if one.effect.id() == first.effect));
+    let alone = found
+        .first
+        .as_ref()
+        .filter(|first| matches!(&case.effects[..], [one] if [one.effect.id()] == *first.found.ids()));
     let measured = Measured {
-        feigned_share: alone.map(|first| first.feigned_share),
+        feigned_share: alone.map(|first| first.feigned_share()),
         ..Measured::of(&case, found.none.log_likelihood.motion.len(), found.chosen.gain_over(&found.none))
     };
     let ids = found.chosen.ids();

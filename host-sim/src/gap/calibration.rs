@@ -19,7 +19,7 @@ pub struct Calibration {
     pub temperature: f64,
     /// How often the plainest answer is right: no answer is surer.
     pub accuracy_cap: f64,
-    /// When an effect counts: least gain on held-out runs, nats, without the blocks that gain most.
+    /// When an effect counts: least gain on held-out runs, nats, with less of the blocks that gain most.
     pub effect_nats: f64,
     /// The same for what the omnibus residual model explains in a channel, and for a wider scatter.
     pub remainder_nats: f64,

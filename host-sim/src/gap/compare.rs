@@ -21,6 +21,8 @@ pub struct Comparison {
     pub own: Vec<OwnGain>,
     /// What could be added to the effect that was found first.
     pub first: Option<FirstFound>,
+    /// Every variant of every effect on its own.
+    pub alone: Vec<Fitted>,
     /// What anything could explain beyond no effect, by channel.
     pub beyond_none: Vec<Remainder>,
     /// What anything could explain beyond the chosen effects, by channel.
@@ -39,12 +41,11 @@ pub struct OwnGain {
 }
 
 /// The effect that a search finds first.
-#[derive(Clone, Copy, Debug)]
 pub struct FirstFound {
-    /// Its id.
-    pub effect: &'static str,
-    /// The [`further_share`](Calibration::further_share) from which on nothing would be added to it.
-    pub feigned_share: f64,
+    /// It alone.
+    pub found: Fitted,
+    /// What could be added, each with the [`further_share`](Calibration::further_share) from which on it would not be.
+    pub further: Vec<(Fitted, f64)>,
 }
 
 /// The place of one of several effects.
@@ -65,31 +66,36 @@ impl Comparison {
     /// needless are dropped. `alone` is every variant of every effect on its own.
     pub fn search(none: Fitted, alone: Vec<Fitted>, context: &FitContext) -> Self {
         let calibration = &context.calibration;
+        let share = calibration.further_share;
         let singles = best_of_each(alone.clone());
-        let counts =
-            |single: &&Fitted| gain_alone(single, &singles, &none, calibration).passes(calibration.effect_nats);
+        let counts = |single: &&Fitted| gain_alone(single, &singles, &none, context).passes(calibration.effect_nats);
         for single in singles.iter().take(TOLD) {
             let Gain { nats, broad_nats, .. } = single.gain_over(&none);
             let vague = if is_vague(single, &singles, calibration) { "; many others could stand for it" } else { "" };
             let name = single.ids().join("+");
-            log::info!("{name} alone gains {nats:.1} nats ({broad_nats:.1} without the runs that gain most{vague})");
+            log::info!(
+                "{name} alone gains {nats:.1} nats ({broad_nats:.1} with less of the runs that gain most{vague})"
+            );
         }
         let mut chosen = singles.iter().find(counts).unwrap_or(&none).clone();
         let mut places: Vec<Place> = chosen.ids().iter().map(|_| Place::new(none.clone(), singles.clone())).collect();
         let mut first = None;
         while !chosen.ids().is_empty() && chosen.ids().len() < calibration.judgement.most_effects {
             let further = best_of_each(chosen.with_each(Some(&alone), context));
-            first = first.or_else(|| FirstFound::of(&chosen, &further, &none, calibration));
+            first = first.or_else(|| FirstFound::of(&chosen, &further, &none, context));
             for fit in further.iter().take(TOLD) {
                 // `info!` works out what it tells only if somebody listens.
-                let share = calibration.further_share;
-                log::info!("{} gain {}", fit.ids().join("+"), OwnGain::of(fit, &chosen, &none, share).in_words());
+                log::info!(
+                    "{} gain {}",
+                    fit.ids().join("+"),
+                    OwnGain::of(fit, &chosen, &none, share, context).in_words()
+                );
             }
-            let Some(next) = further.into_iter().find(|f| is_worth_adding(f, &chosen, &none, calibration)) else {
+            let Some(next) = further.into_iter().find(|f| is_worth_adding(f, &chosen, &none, share, context)) else {
                 break;
             };
             let (settled, places_of_it) = settled(next, &alone, context);
-            let gain = further_gain(&settled, &chosen, &none, calibration).over(calibration.judgement.vague_factor);
+            let gain = further_gain(&settled, &chosen, &none, share, context).over(calibration.judgement.vague_factor);
             let vague = |place: &Place| is_vague(&settled, &place.taken, calibration);
             if places_of_it.iter().any(vague) && !gain.passes(calibration.effect_nats) {
                 log::info!("too many others could stand for {}", settled.ids().join("+"));
@@ -108,25 +114,41 @@ impl Comparison {
             chosen = others;
         }
         let beyond_none = remainders(&none, context);
-        let beyond_chosen = remainders(&chosen, context);
-        let own = |place: &Place| OwnGain::of(&chosen, &place.without, &none, calibration.further_share);
-        let own = places.iter().map(own).collect();
-        let rivals = places.into_iter().map(|place| place.taken).collect();
-        Comparison { none, chosen, rivals, own, first, beyond_none, beyond_chosen, scatter: Vec::new() }
+        Comparison { alone, first, beyond_none, ..Comparison::of(none.clone(), none) }
+            .settled_on(chosen, places, context)
     }
 
     /// Given effects, without a search.
     pub fn given(applied: &[AppliedEffect], context: &FitContext) -> Self {
         let chosen = Fitted::given(applied, context);
         let beyond_chosen = remainders(&chosen, context);
+        Comparison { beyond_chosen, ..Comparison::of(Fitted::none(context), chosen) }
+    }
+
+    /// The same with other effects chosen.
+    pub fn choosing(self, chosen: Fitted, context: &FitContext) -> Self {
+        let places = places_of(&chosen, &self.alone, context);
+        self.settled_on(chosen, places, context)
+    }
+
+    fn settled_on(self, chosen: Fitted, places: Vec<Place>, context: &FitContext) -> Self {
+        let share = context.calibration.further_share;
+        let own = places.iter().map(|place| OwnGain::of(&chosen, &place.without, &self.none, share, context)).collect();
+        let rivals = places.into_iter().map(|place| place.taken).collect();
+        Comparison { beyond_chosen: remainders(&chosen, context), chosen, rivals, own, ..self }
+    }
+
+    /// Two fits, with nothing beside them.
+    fn of(none: Fitted, chosen: Fitted) -> Self {
         Comparison {
-            none: Fitted::none(context),
+            none,
             chosen,
             rivals: Vec::new(),
             own: Vec::new(),
             first: None,
+            alone: Vec::new(),
             beyond_none: Vec::new(),
-            beyond_chosen,
+            beyond_chosen: Vec::new(),
             scatter: Vec::new(),
         }
     }
@@ -176,27 +198,28 @@ pub fn relative_likelihood(winner: &Fitted, rival: &Fitted, calibration: &Calibr
 }
 
 /// What the single effect gains that gains most, if it is to count alone.
-pub fn most_alone(singles: &[Fitted], none: &Fitted, calibration: &Calibration) -> Gain {
-    let gains = singles.iter().map(|single| gain_alone(single, singles, none, calibration));
+pub fn most_alone(singles: &[Fitted], none: &Fitted, context: &FitContext) -> Gain {
+    let gains = singles.iter().map(|single| gain_alone(single, singles, none, context));
     gains.max_by(|a, b| a.broad_nats.total_cmp(&b.broad_nats)).unwrap_or(Gain::NONE)
 }
 
 /// What a single effect gains; less where many others can stand for it.
-fn gain_alone(single: &Fitted, singles: &[Fitted], none: &Fitted, calibration: &Calibration) -> Gain {
-    let gain = single.gain_over(none);
+fn gain_alone(single: &Fitted, singles: &[Fitted], none: &Fitted, context: &FitContext) -> Gain {
+    let calibration = &context.calibration;
+    let gain = further_gain(single, none, none, calibration.further_share, context);
     if is_vague(single, singles, calibration) { gain.over(calibration.judgement.vague_factor) } else { gain }
 }
 
 impl OwnGain {
-    /// What `fit` gains over the same effects without one of them. In each channel this share of what those explain there
-    /// could be had by a better form of theirs; where they explain nothing, nothing could.
-    fn of(fit: &Fitted, others: &Fitted, none: &Fitted, share: f64) -> Self {
-        let feigned = Channel::ALL.iter().map(|channel| {
-            let nats = |fit: &Fitted| fit.log_likelihood.channel(*channel).iter().sum::<f64>();
-            let explained = (nats(others) - nats(none)).max(0.0);
+    /// What `fit` gains over the same effects without one of them. In each channel this share of what those and the
+    /// simulator's effects explain there could be had by a better form of theirs; where they explain nothing, nothing could.
+    fn of(fit: &Fitted, others: &Fitted, none: &Fitted, share: f64, context: &FitContext) -> Self {
+        let feigned = Channel::ALL.map(|channel| {
+            let nats = |fit: &Fitted| fit.log_likelihood.of(channel);
+            let explained = (nats(others) - nats(none)).max(0.0) + context.explained_already[channel.index()];
             (nats(fit) - nats(others)).clamp(0.0, share * explained)
         });
-        OwnGain { nats: fit.gain_over(others).nats, feigned_nats: feigned.sum() }
+        OwnGain { nats: fit.gain_over(others).nats, feigned_nats: feigned.iter().sum() }
     }
 
     fn in_words(&self) -> String {
@@ -206,30 +229,31 @@ impl OwnGain {
 
 impl FirstFound {
     /// The first effect, with all that could be added to it; none where several are chosen.
-    fn of(chosen: &Fitted, further: &[Fitted], none: &Fitted, calibration: &Calibration) -> Option<Self> {
-        let &[effect] = chosen.ids().as_slice() else { return None };
-        let adds = |share: &f64| {
-            let calibration = Calibration { further_share: *share, ..*calibration };
-            further.iter().any(|fit| is_worth_adding(fit, chosen, none, &calibration))
+    fn of(found: &Fitted, further: &[Fitted], none: &Fitted, context: &FitContext) -> Option<Self> {
+        let share = |fit: &Fitted| {
+            let adds = |share: &f64| is_worth_adding(fit, found, none, *share, context);
+            let shares = (0..SHARES).map(|step| step as f64 / SHARES as f64);
+            shares.take_while(adds).last().map(|share| share + 1.0 / SHARES as f64)
         };
-        let shares = (0..SHARES).map(|step| step as f64 / SHARES as f64);
-        Some(FirstFound {
-            effect,
-            feigned_share: shares.take_while(adds).last().map_or(0.0, |s| s + 1.0 / SHARES as f64),
-        })
+        let further = further.iter().filter_map(|fit| Some((fit.clone(), share(fit)?)));
+        (found.ids().len() == 1).then(|| FirstFound { found: found.clone(), further: further.collect() })
+    }
+
+    /// The [`further_share`](Calibration::further_share) from which on nothing would be added.
+    pub fn feigned_share(&self) -> f64 {
+        self.further.iter().map(|(_, share)| *share).fold(0.0, f64::max)
     }
 }
 
 /// A fit at a bound is no finding: the likelihood would rise beyond what is physically possible.
-fn is_worth_adding(fit: &Fitted, so_far: &Fitted, none: &Fitted, calibration: &Calibration) -> bool {
+fn is_worth_adding(fit: &Fitted, so_far: &Fitted, none: &Fitted, share: f64, context: &FitContext) -> bool {
     let at_bound = !fit.at_bound(fit.ids().len() - 1).is_empty();
-    !at_bound && further_gain(fit, so_far, none, calibration).passes(calibration.effect_nats)
+    !at_bound && further_gain(fit, so_far, none, share, context).passes(context.calibration.effect_nats)
 }
 
 /// What one more effect gains beyond what forms of the others that are not quite right could leave over.
-fn further_gain(fit: &Fitted, so_far: &Fitted, none: &Fitted, calibration: &Calibration) -> Gain {
-    let feigned = OwnGain::of(fit, so_far, none, calibration.further_share).feigned_nats;
-    fit.gain_over(so_far).less(feigned)
+fn further_gain(fit: &Fitted, so_far: &Fitted, none: &Fitted, share: f64, context: &FitContext) -> Gain {
+    fit.gain_over(so_far).less(OwnGain::of(fit, so_far, none, share, context).feigned_nats)
 }
 
 /// Whether too many other effects could stand for one.

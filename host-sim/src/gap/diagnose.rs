@@ -187,7 +187,7 @@ pub fn statistics(mut baseline: Baseline, logs: &Logs, method: Method) -> Result
     let none = Fitted::none(&context);
     let singles = best_of_each(none.with_each(None, &context));
     Ok(GapStatistics {
-        effect: most_alone(&singles, &none, &context.calibration),
+        effect: most_alone(&singles, &none, &context),
         remainder: remainder::most(&none, &context),
         rows: context.observations.rows.len(),
     })

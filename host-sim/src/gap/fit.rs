@@ -5,6 +5,7 @@ use std::ops::Range;
 use rayon::prelude::*;
 
 use super::calibration::Calibration;
+use super::channel::Channel;
 use super::gain::Gain;
 use super::hypothesis::{Hypothesis, LogLikelihood};
 use super::method::Method;
@@ -31,6 +32,8 @@ pub struct FitContext<'a> {
     pub seed: u64,
     /// What the simulator does not know of its own motion, and these logs tell; none where it knows it better than they do.
     pub own_errors: Option<OwnErrors>,
+    /// What the effects that the simulator has already explain of these logs in each channel, nats.
+    pub explained_already: [f64; Channel::ALL.len()],
     top_speed_cm_s: f64,
     /// What sketches look at where there are many rows.
     few: Option<Few>,
@@ -90,14 +93,30 @@ impl<'a> FitContext<'a> {
             calibration: method.calibration_for(observations.rows.len()),
             seed: method.seed,
             own_errors: OwnErrors::of(baseline, observations),
+            explained_already: explained_already(baseline, observations),
             top_speed_cm_s: observations.top_speed_cm_s(),
         }
+    }
+
+    /// What of a channel forms of the effects that the simulator has already could leave over that are not quite right, nats:
+    /// as much as those of effects that were found.
+    pub fn feigned_already(&self, channel: Channel) -> f64 {
+        self.calibration.further_share * self.explained_already[channel.index()]
     }
 
     /// Where fits of an effect start.
     pub fn initial_guesses(&self, candidate: &Candidate) -> Vec<Vec<f64>> {
         candidate.variant.initial_guesses(self.top_speed_cm_s)
     }
+}
+
+fn explained_already(baseline: &Baseline, observations: &Observations) -> [f64; Channel::ALL.len()] {
+    if baseline.applied.is_empty() {
+        return Default::default();
+    }
+    let [with, without] = [Hypothesis::none(baseline), Hypothesis::bare()]
+        .map(|hypothesis| hypothesis.log_likelihood(baseline, observations, &[], None));
+    Channel::ALL.map(|channel| (with.of(channel) - without.of(channel)).max(0.0))
 }
 
 impl Fitted {

@@ -120,7 +120,7 @@ fn of(channel: Channel, beneath: &Fitted, context: &FitContext, hold_out: Option
     let fitted = beneath.with(Candidate { effect: effect.id, variant: effect.variants.first()? }, context);
     let gains = fitted.gains_over(beneath);
     let is_at_bound = !fitted.at_bound(fitted.ids().len() - 1).is_empty();
-    if !Gain::of(&gains).passes(context.calibration.remainder_nats + sum.price) || is_at_bound {
+    if !Gain::of_free_form(&gains).passes(context.calibration.remainder_nats + sum.price) || is_at_bound {
         return None;
     }
     let judged = |rows: &Observations| {

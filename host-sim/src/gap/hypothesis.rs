@@ -44,6 +44,11 @@ impl LogLikelihood {
         }
     }
 
+    /// One channel of all rows.
+    pub fn of(&self, channel: Channel) -> f64 {
+        self.channel(channel).iter().sum()
+    }
+
     /// One channel of each row.
     pub fn channel(&self, channel: Channel) -> Vec<f64> {
         match channel {
@@ -60,6 +65,11 @@ impl Hypothesis {
     /// The simulator as it is.
     pub fn none(baseline: &Baseline) -> Self {
         Hypothesis { given: EffectChain::of(&baseline.applied), candidates: Vec::new() }
+    }
+
+    /// The simulator without the effects that it has already.
+    pub fn bare() -> Self {
+        Hypothesis { given: EffectChain::of(&[]), candidates: Vec::new() }
     }
 
     /// The same simulator with these effects.

@@ -102,7 +102,7 @@ impl ResidualFit {
         if self.channel.motion_axis().is_some() || context.baseline.place_bound[0] < PLACE_BOUND {
             return Gain::without_best(&self.gains(context), 1);
         }
-        Gain::of(&context.observations.by_place(&self.gain_of_rows()))
+        Gain::of_free_form(&context.observations.by_place(&self.gain_of_rows()))
     }
 
     fn gain_of_rows(&self) -> Vec<f64> {

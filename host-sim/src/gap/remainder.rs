@@ -40,7 +40,7 @@ impl Remainder {
             gain.nats,
             gain.broad_nats
         );
-        let counts = gain.passes(context.calibration.remainder_nats);
+        let counts = gain.less(context.feigned_already(channel)).passes(context.calibration.remainder_nats);
         let gains = model.gains(context);
         let by_block = if counts { gains } else { vec![0.0; gains.len()] };
         Remainder { model, by_block }

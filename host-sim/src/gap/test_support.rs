@@ -271,6 +271,7 @@ pub fn comparison(effects: &[&'static Effect], gains: &[f64], context: &FitConte
         rivals: Vec::new(),
         own: Vec::new(),
         first: None,
+        alone: Vec::new(),
         beyond_none: Vec::new(),
         beyond_chosen: Vec::new(),
         scatter: Vec::new(),

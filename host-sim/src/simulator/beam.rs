@@ -31,7 +31,7 @@ pub struct Beam {
     bias: [f32; 3],
     /// Base-two logarithm of the scatter in cm: a constant, per metre, per 45 degrees.
     log2_scatter: [f32; 3],
-    /// Scatter in cm beside that; hits that it leads beyond the range are not reported.
+    /// Scatter in cm beside that. Hits that it leads beyond the range are not reported.
     added_scatter_cm: f32,
     /// Factor on the readings of echoes.
     gain: f32,
@@ -165,7 +165,7 @@ impl Beam {
             offset_cm: perturbation.offset_cm as f32,
             thresholds: Thresholds::both(reference, perturbation),
             thresholds_after_none: None,
-            constant_cm: reference.constant[1] as f32,
+            constant_cm: perturbation.reading_cm(reference.constant[1]) as f32,
             ghost_cm: perturbation.ghost_cm as f32,
             range_cm: reference.range_cm.map(|cm| cm as f32),
             reach_bounds_cm: reference.reach_bounds_cm().map(|cm| cm as f32),
@@ -252,10 +252,14 @@ impl Beam {
         let reach_cm = heard.axis_cm.clamp(lane(least), lane(most));
         let long_cm = reach_cm + (lane(high) - reach_cm) * fate.place;
         let about = |value_cm: f32| lane(value_cm) + lane(CONSTANT_SCATTER_CM as f32) * fate.student;
-        let mut hit_cm = heard.reading_cm.clamp(lane(low), lane(high)) + heard.scatter_cm * fate.student;
+        let middle_cm = heard.reading_cm.clamp(lane(low), lane(high));
+        let mut hit_cm = middle_cm + heard.scatter_cm * fate.student;
         if self.added_scatter_cm > 0.0 {
-            let beyond = hit_cm.less(lane(low)) | lane(high).less(hit_cm);
-            hit_cm = beyond.select(lane(f32::NAN), hit_cm);
+            let added_cm = lane(self.added_scatter_cm);
+            let own_cm = (heard.scatter_cm * heard.scatter_cm - added_cm * added_cm).max(lane(0.0)).sqrt();
+            let beyond = |cm: Lanes<S>| cm.less(lane(low)) | lane(high).less(cm);
+            let led_beyond = beyond(hit_cm) & !beyond(middle_cm + own_cm * fate.student);
+            hit_cm = led_beyond.select(lane(f32::NAN), hit_cm);
         }
         let echo_cm = below(|t| t.hit).select(hit_cm, lane(f32::NAN));
         let echo_cm = below(|t| t.ghost).select(about(self.ghost_cm), echo_cm);

@@ -27,8 +27,9 @@ impl Distribution {
         match *self {
             Distribution::Student { middle_cm, .. } | Distribution::Within { middle_cm, .. } if !scatters => middle_cm,
             Distribution::Student { middle_cm, scale_cm } => middle_cm + scale_cm * student::draw(uniform),
-            Distribution::Within { middle_cm, scale_cm, below, inside } => {
-                middle_cm + scale_cm * student::quantile(below + inside * uniform())
+            Distribution::Within { middle_cm, scale_cm, below, inside, at_ends: [at_low, _] } => {
+                let share = self.reported() * uniform() - at_low;
+                middle_cm + scale_cm * student::quantile(below + share.clamp(0.0, inside))
             }
             Distribution::Uniform { low_cm, high_cm } => low_cm + (high_cm - low_cm) * uniform(),
         }

@@ -28,8 +28,8 @@ impl Distribution {
         match *self {
             Distribution::Student { middle_cm, scale_cm } => student::density(echo_cm - middle_cm, scale_cm),
             // Whoever asks is within the range.
-            Distribution::Within { middle_cm, scale_cm, inside, .. } => {
-                student::density(echo_cm - middle_cm, scale_cm) / inside
+            Distribution::Within { middle_cm, scale_cm, .. } => {
+                student::density(echo_cm - middle_cm, scale_cm) / self.reported()
             }
             Distribution::Uniform { low_cm, high_cm } if (low_cm..=high_cm).contains(&echo_cm) => {
                 1.0 / (high_cm - low_cm)

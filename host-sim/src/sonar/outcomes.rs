@@ -55,7 +55,7 @@ pub enum Distribution {
         /// Its scale.
         scale_cm: f64,
     },
-    /// The same, of those readings alone that lie within the sensor's range.
+    /// The same, without those readings that a further scatter led beyond the sensor's range.
     Within {
         /// The middle of all.
         middle_cm: f64,
@@ -65,6 +65,8 @@ pub enum Distribution {
         below: f64,
         /// The share that lies within.
         inside: f64,
+        /// The shares that lie below and above without the further scatter too, and are reported as the range's ends.
+        at_ends: [f64; 2],
     },
     /// Uniform on an interval.
     Uniform {
@@ -140,7 +142,7 @@ impl Outcomes {
         let between = |low_cm, high_cm| Distribution::Uniform { low_cm, high_cm };
         let others = [
             (Source::Ghost, total(|w| w.ghost), about(perturbation.ghost_cm)),
-            (Source::Constant, total(|w| w.constant), about(model.constant[1])),
+            (Source::Constant, total(|w| w.constant), about(perturbation.reading_cm(model.constant[1]))),
             (Source::Short, total(|w| w.short), between(low, reach)),
             (Source::Long, total(|w| w.long), between(reach, high)),
             (Source::Stray, total(|w| w.stray), between(low, high)),
@@ -153,8 +155,7 @@ impl Outcomes {
         let others = others.map(|(source, probability, distribution)| Component { source, probability, distribution });
         let components = hits.chain(others).collect();
         let outcomes = Outcomes { none: total(|w| w.none), components, range_cm: model.range_cm };
-        // What scatters by itself beyond the range is reported as its ends, as in the logs that the model was fitted on.
-        if perturbation.scatter_cm > 0.0 { outcomes.without_hits_beyond_range() } else { outcomes }
+        outcomes.without_hits_led_beyond_range(perturbation.scatter_cm)
     }
 
     /// The same with the faults of a perturbation that come in place of what there would be: the ghost, then a short reading,
@@ -183,12 +184,15 @@ impl Outcomes {
         self
     }
 
-    /// The same where hits beyond the range are not reported.
-    pub(super) fn without_hits_beyond_range(mut self) -> Self {
-        for hit in self.components.iter_mut().filter(|component| component.source == Source::Hit) {
-            let within = hit.within(self.range_cm);
-            self.none += hit.probability - within.probability;
-            *hit = within;
+    /// The same where hits that a further scatter leads beyond the range are not reported. What scatters by itself beyond it is
+    /// reported as its ends, as in the logs that a model was fitted on.
+    pub(super) fn without_hits_led_beyond_range(mut self, further_cm: f64) -> Self {
+        if further_cm > 0.0 {
+            for hit in self.components.iter_mut().filter(|component| component.source == Source::Hit) {
+                let within = hit.within(self.range_cm, further_cm);
+                self.none += hit.probability - within.probability;
+                *hit = within;
+            }
         }
         self
     }
@@ -209,17 +213,29 @@ impl Outcomes {
 }
 
 impl Component {
-    /// What of it lies within a range.
-    fn within(self, [low, high]: [f64; 2]) -> Self {
+    /// What of it a further scatter, which is part of its scale, does not lead beyond a range in which its middle lies.
+    fn within(self, range_cm: [f64; 2], further_cm: f64) -> Self {
         let Distribution::Student { middle_cm, scale_cm } = self.distribution else { return self };
-        let [below, above] = [low, high].map(|end| student::cumulative((end - middle_cm) / scale_cm));
-        let inside = above - below;
-        let distribution = Distribution::Within { middle_cm, scale_cm, below, inside };
-        Component { probability: self.probability * inside, distribution, ..self }
+        let own_cm = (scale_cm * scale_cm - further_cm * further_cm).max(0.0).sqrt();
+        let beyond = |scale_cm: f64| {
+            let [below, above] = range_cm.map(|end_cm| (end_cm - middle_cm) / scale_cm);
+            [student::cumulative(below), student::cumulative(-above)]
+        };
+        let ([below, above], at_ends) = (beyond(scale_cm), beyond(own_cm));
+        let distribution = Distribution::Within { middle_cm, scale_cm, below, inside: 1.0 - below - above, at_ends };
+        Component { probability: self.probability * distribution.reported(), distribution, ..self }
     }
 }
 
 impl Distribution {
+    /// The share of its readings that is reported.
+    pub(super) fn reported(&self) -> f64 {
+        match *self {
+            Distribution::Within { inside, at_ends: [low, high], .. } => inside + low + high,
+            Distribution::Student { .. } | Distribution::Uniform { .. } => 1.0,
+        }
+    }
+
     fn mean_cm(&self) -> f64 {
         match *self {
             Distribution::Student { middle_cm, .. } | Distribution::Within { middle_cm, .. } => middle_cm,

@@ -152,8 +152,9 @@ pub fn probability_between(outcomes: &Outcomes, from: f64, to: f64) -> f64 {
     let below = |distribution: &Distribution, cm: f64| match *distribution {
         _ if cm.is_infinite() => f64::from(u8::from(cm > 0.0)),
         Distribution::Student { middle_cm, scale_cm } => student::cumulative((cm - middle_cm) / scale_cm),
-        Distribution::Within { middle_cm, scale_cm, below, inside } => {
-            ((student::cumulative((cm - middle_cm) / scale_cm) - below) / inside).clamp(0.0, 1.0)
+        Distribution::Within { middle_cm, scale_cm, below, inside, at_ends: [at_low, _] } => {
+            let share = (student::cumulative((cm - middle_cm) / scale_cm) - below).clamp(0.0, inside);
+            (at_low + share) / distribution.reported()
         }
         Distribution::Uniform { low_cm, high_cm } => ((cm - low_cm) / (high_cm - low_cm)).clamp(0.0, 1.0),
     };

@@ -22,9 +22,9 @@ pub struct Perturbation {
     pub mirroring: f64,
     /// Subtracted from the log-odds of a ray that a wall has mirrored.
     pub attenuation_mirrored: f64,
-    /// Factor on the readings of echoes.
+    /// Factor on the readings of echoes and on the constant one, which the same electronics measure.
     pub gain: f64,
-    /// Added to the readings of echoes after the factor, cm.
+    /// Added to them after the factor, cm.
     pub offset_cm: f64,
     /// Further scatter of the readings of echoes, cm, independent of the model's.
     pub scatter_cm: f64,
@@ -61,7 +61,7 @@ impl Perturbation {
         self.spreading != 0.0 || self.mirroring != 0.0
     }
 
-    /// The reading of an echo that otherwise reads `echo_cm`.
+    /// The reading of what otherwise reads `echo_cm`.
     pub fn reading_cm(&self, echo_cm: f64) -> f64 {
         echo_cm * self.gain + self.offset_cm
     }

@@ -38,7 +38,8 @@ impl FirstEchoLaw {
         let [least_cm, most_cm] = reach_bounds_cm(self.range_cm);
         let reach_cm = reach_cm.clamp(least_cm, most_cm);
         let between = |low_cm, high_cm| Distribution::Uniform { low_cm, high_cm };
-        let about_ghost = Distribution::Student { middle_cm: self.ghost_cm, scale_cm: CONSTANT_SCATTER_CM };
+        let about_ghost =
+            Distribution::Student { middle_cm: change.reading_cm(self.ghost_cm), scale_cm: CONSTANT_SCATTER_CM };
         let others = [
             (Source::Ghost, known * ghost, about_ghost),
             (Source::Long, known * other * self.p_long_given_other, between(reach_cm, high_cm)),
@@ -49,8 +50,7 @@ impl FirstEchoLaw {
         components.extend(others);
         let none = known * (silent - other) + 0.5 * self.p_stray;
         let outcomes = Outcomes { none, components, range_cm: self.range_cm }.with_faults(change, reach_cm);
-        // As of a beam: what scatters by itself beyond the range is not reported, and all else as its ends.
-        if change.scatter_cm > 0.0 { outcomes.without_hits_beyond_range() } else { outcomes }
+        outcomes.without_hits_led_beyond_range(change.scatter_cm)
     }
 
     /// The direct echoes of targets, where no reading is a stray one.
@@ -75,7 +75,7 @@ impl FirstEchoLaw {
             let off_axis = target.off_axis_deg / change.width / 10.0;
             let middle_cm = change.reading_cm(self.direct_cm(target, off_axis)).clamp(low_cm, high_cm);
             let scale_cm = libm::hypot(self.scale_cm(target, off_axis), change.scatter_cm);
-            if middle_cm >= self.ghost_cm {
+            if middle_cm >= change.reading_cm(self.ghost_cm) {
                 heard_before_ghost.get_or_insert(heard_before);
             }
             let not_ghost = if heard_before_ghost.is_some() { 1.0 - self.p_ghost } else { 1.0 };
