@@ -19,6 +19,7 @@ use crate::geometry::Pose;
 use crate::lanes::{Lanes, WIDEST};
 use crate::sonar::fan::{AXIS, BEFORE_WALL_CM, DIRECT, FAN_DEG, MIRRORED};
 use crate::sonar::model::{CONSTANT_SCATTER_CM, FAR_CM, STRENGTHS};
+use crate::sonar::outcomes::WHOLE_CM;
 use crate::sonar::{MixingWeights, Perturbation, SonarModel};
 use crate::statistics::student;
 
@@ -255,11 +256,10 @@ impl Beam {
         let middle_cm = heard.reading_cm.clamp(lane(low), lane(high));
         let mut hit_cm = middle_cm + heard.scatter_cm * fate.student;
         if self.added_scatter_cm > 0.0 {
-            let added_cm = lane(self.added_scatter_cm);
-            let own_cm = (heard.scatter_cm * heard.scatter_cm - added_cm * added_cm).max(lane(0.0)).sqrt();
-            let beyond = |cm: Lanes<S>| cm.less(lane(low)) | lane(high).less(cm);
-            let led_beyond = beyond(hit_cm) & !beyond(middle_cm + own_cm * fate.student);
-            hit_cm = led_beyond.select(lane(f32::NAN), hit_cm);
+            let led_cm = middle_cm + lane(self.added_scatter_cm) * fate.student;
+            let whole_cm = WHOLE_CM as f32;
+            let beyond = led_cm.less(lane(low - whole_cm)) | lane(high + whole_cm).less(led_cm);
+            hit_cm = beyond.select(lane(f32::NAN), hit_cm);
         }
         let echo_cm = below(|t| t.hit).select(hit_cm, lane(f32::NAN));
         let echo_cm = below(|t| t.ghost).select(about(self.ghost_cm), echo_cm);

@@ -65,7 +65,7 @@ pub enum Distribution {
         below: f64,
         /// The share that lies within.
         inside: f64,
-        /// The shares that lie below and above without the further scatter too, and are reported as the range's ends.
+        /// The shares below and above that are reported all the same, as the range's ends.
         at_ends: [f64; 2],
     },
     /// Uniform on an interval.
@@ -96,6 +96,9 @@ pub struct MixingWeights {
     /// Of no reading.
     pub none: f64,
 }
+
+/// Sensors report whole centimetres: what lies beyond the range by less than half of one is reported.
+pub const WHOLE_CM: f64 = 0.5;
 
 impl MixingWeights {
     /// The weights of a sensor where an echo `arrives`, or none.
@@ -214,15 +217,20 @@ impl Outcomes {
 
 impl Component {
     /// What of it a further scatter, which is part of its scale, does not lead beyond a range in which its middle lies.
-    fn within(self, range_cm: [f64; 2], further_cm: f64) -> Self {
+    fn within(self, [low_cm, high_cm]: [f64; 2], further_cm: f64) -> Self {
         let Distribution::Student { middle_cm, scale_cm } = self.distribution else { return self };
-        let own_cm = (scale_cm * scale_cm - further_cm * further_cm).max(0.0).sqrt();
-        let beyond = |scale_cm: f64| {
-            let [below, above] = range_cm.map(|end_cm| (end_cm - middle_cm) / scale_cm);
-            [student::cumulative(below), student::cumulative(-above)]
+        let farther = |by_cm: f64, scale_cm: f64| student::cumulative(-by_cm / scale_cm);
+        let [below, above] = [middle_cm - low_cm, high_cm - middle_cm].map(|room_cm| {
+            let beyond = farther(room_cm, scale_cm);
+            [beyond, beyond - farther(room_cm + WHOLE_CM, further_cm)]
+        });
+        let distribution = Distribution::Within {
+            middle_cm,
+            scale_cm,
+            below: below[0],
+            inside: 1.0 - below[0] - above[0],
+            at_ends: [below[1], above[1]],
         };
-        let ([below, above], at_ends) = (beyond(scale_cm), beyond(own_cm));
-        let distribution = Distribution::Within { middle_cm, scale_cm, below, inside: 1.0 - below - above, at_ends };
         Component { probability: self.probability * distribution.reported(), distribution, ..self }
     }
 }

@@ -147,7 +147,8 @@ fn a_perturbed_sensor_is_another_sensor() {
     let louder = FirstEchoLaw { gain: LAW.gain + 0.7, ..LAW };
     let wider = FirstEchoLaw { beam_deg: 1.5 * LAW.beam_deg, off_axis_cm: LAW.off_axis_cm / 2.25, ..LAW };
     let wider = FirstEchoLaw { scatter_off_axis: LAW.scatter_off_axis / 1.5, ..wider };
-    let longer = FirstEchoLaw { offset_cm: LAW.offset_cm + 4.0, ..LAW };
+    // The same electronics measure the ghost.
+    let longer = FirstEchoLaw { offset_cm: LAW.offset_cm + 4.0, ghost_cm: LAW.ghost_cm + 4.0, ..LAW };
     let others = [
         (louder, Perturbation { attenuation: -0.7, ..Perturbation::NONE }),
         (wider, Perturbation { width: 1.5, ..Perturbation::NONE }),
