@@ -48,18 +48,20 @@ fn probabilities_add_up_to_one() {
     }
 }
 
-/// Before a wall at the near end of the range half of what scatters is too near to be reported.
+/// Before a wall at the near end of the range half of what scatters far is too near to be reported, and of what scatters by
+/// less than readings are rounded by next to nothing.
 #[test]
 fn what_a_perturbation_scatters_beyond_the_range_is_not_reported() {
     let model = &SENSORS[0];
     let mut fan = fan_at(&scenes()[0].sides(), &sensors()[0], model.fan_width);
     fan.iter_mut().for_each(|ray| ray.distance_cm = model.range_cm[0]);
     let outcomes = |scatter_cm| model.outcomes(&fan, &Perturbation { scatter_cm, ..Perturbation::NONE });
-    let [as_it_is, scattered] = [outcomes(0.0), outcomes(5.0)];
+    let [as_it_is, hardly, scattered] = [outcomes(0.0), outcomes(0.1), outcomes(5.0)];
     let hits: f64 =
         as_it_is.components.iter().filter(|c| c.source == Source::Hit).map(|component| component.probability).sum();
-    let lost = scattered.none - as_it_is.none;
-    assert!((lost / hits - 0.5).abs() < 0.05, "{lost} of {hits}");
+    let lost = |outcomes: &Outcomes| (outcomes.none - as_it_is.none) / hits;
+    assert!((lost(&scattered) - 0.5).abs() < 0.05, "{}", lost(&scattered));
+    assert!(lost(&hardly) < 0.01, "{}", lost(&hardly));
 }
 
 #[test]

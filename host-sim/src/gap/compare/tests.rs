@@ -1,8 +1,9 @@
 use super::*;
-use crate::effects::Effect;
+use crate::effects::{self, Candidate, Effect};
 use crate::evaluation::observations::Observations;
 use crate::gap::hypothesis::LogLikelihood;
 use crate::gap::test_support::*;
+use crate::simulator::baseline::Baseline;
 
 /// Eight blocks of twelve rows that turn left and right in turn: left turns go `left_cm` too far, right ones
 /// `right_cm`, and readings are `echo_cm` too long.
@@ -142,6 +143,36 @@ fn a_further_effect_has_to_gain_more_where_others_explain_much() {
         assert!(worth([6.6, 0.0]) && !worth([6.4, 0.0]));
         assert!(worth([1.0, 2.6]) && !worth([1.0, 2.4]), "what could be feigned does not count");
     });
+}
+
+/// Steps of seven centimetres where the textbook has five, as a simulator with 1.4 times the speed has them.
+#[test]
+fn what_effects_explain_that_the_simulator_has_already_is_known() {
+    let faster = Candidate::all(effects::CATALOGUE).into_iter().find(|c| c.effect == "drive_scale").expect("an effect");
+    let explained = |applied: Vec<AppliedEffect>| {
+        let baseline = Baseline { applied, ..baseline() };
+        let off = |at| [2.0 + 0.9 * alternating(at), 0.0, 0.0];
+        let rows = observations(8, 10, move |_, at| Made { off: off(at), ..Made::default() });
+        FitContext::new(&baseline, &rows, METHOD).explained_already
+    };
+    assert_eq!(explained(Vec::new()), [0.0; 5]);
+    let [forward, others @ ..] = explained(vec![AppliedEffect::new(&faster, &[1.4])]);
+    assert!(forward > 20.0 && others == [0.0; 4], "{forward} {others:?}");
+}
+
+/// Of a thousand nats that they explain eighty could be left over by forms that are not quite right.
+#[test]
+fn what_forms_of_effects_leave_that_the_simulator_has_already_is_no_effect() {
+    let (baseline, rows) = (baseline_with_sonar(), rows([1.0; 2], 0.0));
+    let mut context = FitContext::new(&baseline, &rows, METHOD);
+    let found = |context: &FitContext| {
+        let none = Fitted::none(context);
+        let alone = none.with_each(None, context);
+        Comparison::search(none, alone, context).chosen.ids()
+    };
+    assert_eq!(found(&context), ["longer"]);
+    context.explained_already[Channel::Forward.index()] = 1000.0;
+    assert_eq!(found(&context), [""; 0]);
 }
 
 #[test]
