@@ -135,13 +135,15 @@ impl<'a> Trials<'a> {
             return self.settle(Verdict::Works, works);
         }
         let found = search.best(&self.state.archive, &tried)?;
-        self.state.archive = found.tuples(search::ARCHIVED);
+        let archive = found.tuples(search::ARCHIVED);
         let choice = found.choice(&tried).ok_or_else(|| Error::new("no controller was found"))?;
         if count >= self.job.trials {
             // The last run may have told what none of the driven ones was made for.
-            self.state.if_known = Some(search.if_known(&self.state.archive, &tried)?);
+            self.state.if_known = Some(search.if_known(&archive, &tried)?);
+            // The archive stays as it is: with more trials this turn is made again, from what it is made from now.
             return self.settle(Verdict::Spent, choice);
         }
+        self.state.archive = archive;
         if choice.chance.success < HOPELESS {
             return self.settle(Verdict::OutOfReach, choice);
         }
