@@ -19,7 +19,7 @@ use crate::geometry::Pose;
 use crate::lanes::{Lanes, WIDEST};
 use crate::sonar::fan::{AXIS, BEFORE_WALL_CM, DIRECT, FAN_DEG, MIRRORED};
 use crate::sonar::model::{CONSTANT_SCATTER_CM, FAR_CM, STRENGTHS};
-use crate::sonar::outcomes::WHOLE_CM;
+use crate::sonar::outcomes::ROUNDED_BY_CM;
 use crate::sonar::{MixingWeights, Perturbation, SonarModel};
 use crate::statistics::student;
 
@@ -257,8 +257,8 @@ impl Beam {
         let mut hit_cm = middle_cm + heard.scatter_cm * fate.student;
         if self.added_scatter_cm > 0.0 {
             let led_cm = middle_cm + lane(self.added_scatter_cm) * fate.student;
-            let whole_cm = WHOLE_CM as f32;
-            let beyond = led_cm.less(lane(low - whole_cm)) | lane(high + whole_cm).less(led_cm);
+            let rounded_by_cm = ROUNDED_BY_CM as f32;
+            let beyond = led_cm.less(lane(low - rounded_by_cm)) | lane(high + rounded_by_cm).less(led_cm);
             hit_cm = beyond.select(lane(f32::NAN), hit_cm);
         }
         let echo_cm = below(|t| t.hit).select(hit_cm, lane(f32::NAN));

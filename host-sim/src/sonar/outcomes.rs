@@ -97,8 +97,8 @@ pub struct MixingWeights {
     pub none: f64,
 }
 
-/// Sensors report whole centimetres: what lies beyond the range by less than half of one is reported.
-pub const WHOLE_CM: f64 = 0.5;
+/// Sensors report whole centimetres, so that what lies beyond the range by no more than this is reported.
+pub const ROUNDED_BY_CM: f64 = 0.5;
 
 impl MixingWeights {
     /// The weights of a sensor where an echo `arrives`, or none.
@@ -222,7 +222,7 @@ impl Component {
         let farther = |by_cm: f64, scale_cm: f64| student::cumulative(-by_cm / scale_cm);
         let [below, above] = [middle_cm - low_cm, high_cm - middle_cm].map(|room_cm| {
             let beyond = farther(room_cm, scale_cm);
-            [beyond, beyond - farther(room_cm + WHOLE_CM, further_cm)]
+            [beyond, beyond - farther(room_cm + ROUNDED_BY_CM, further_cm)]
         });
         let distribution = Distribution::Within {
             middle_cm,
