@@ -32,7 +32,8 @@ pub struct Measured {
     pub effect_nats: f64,
     /// The most that the omnibus residual model gains in a channel, likewise; nothing where effects are sought.
     pub remainder_nats: f64,
-    /// Where there is one effect, and it was found first: the share of what it explains that another could feign.
+    /// Where there is one effect, and it is found first: the share of what it explains that its form would have to feign for
+    /// no other to be named beside it.
     pub feigned_share: Option<f64>,
     /// The effect that was named first; empty when none was.
     pub first: String,
@@ -87,13 +88,16 @@ fn without_effect(bench: &Bench, number: usize) -> Result<Measured> {
 
 fn with_effects(bench: &Bench, number: usize, calibration: Calibration) -> Result<Measured> {
     let (case, baseline) = bench.case(number)?;
-    let found = confirmed(baseline, &case.logs, &[calibration])?.swap_remove(0);
-    let alone = found
-        .first
-        .as_ref()
-        .filter(|first| matches!(&case.effects[..], [one] if [one.effect.id()] == *first.found.ids()));
+    let (found, feigned_share) = confirmed(baseline, &case.logs, &[calibration], |found, context, hold_out| {
+        let feigned_share = match &case.effects[..] {
+            [one] => found.feigned_share(one.effect.id(), context, hold_out),
+            _ => None,
+        };
+        (found, feigned_share)
+    })?
+    .swap_remove(0);
     let measured = Measured {
-        feigned_share: alone.map(|first| first.feigned_share()),
+        feigned_share,
         ..Measured::of(&case, found.none.log_likelihood.motion.len(), found.chosen.gain_over(&found.none))
     };
     let ids = found.chosen.ids();

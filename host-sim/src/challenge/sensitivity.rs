@@ -90,7 +90,7 @@ fn of_case(bench: &Bench, number: usize, calibrations: &[Calibration]) -> Result
             searched.push(calibration);
         }
     }
-    let found = confirmed(baseline, &case.logs, &searched)?;
+    let found = confirmed(baseline, &case.logs, &searched, |found, _, _| found)?;
     let of = |calibration: &Calibration| {
         let place = searched.iter().position(|searched| *searched == calibration.for_search())?;
         Some(judged(&case, &found[place], calibration))

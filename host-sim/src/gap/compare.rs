@@ -1,5 +1,7 @@
 //! Comparison: which effects together explain the gap best, and what could stand in place of each.
 
+mod feigned;
+
 use super::calibration::Calibration;
 use super::channel::Channel;
 use super::fit::{FitContext, Fitted, TOLERANCE_NATS, best_of_each};
@@ -19,8 +21,6 @@ pub struct Comparison {
     pub rivals: Vec<Vec<Fitted>>,
     /// What each of the chosen effects gains beside the others.
     pub own: Vec<OwnGain>,
-    /// What could be added to the effect that was found first.
-    pub first: Option<FirstFound>,
     /// Every variant of every effect on its own.
     pub alone: Vec<Fitted>,
     /// What anything could explain beyond no effect, by channel.
@@ -40,14 +40,6 @@ pub struct OwnGain {
     pub feigned_nats: f64,
 }
 
-/// The effect that a search finds first.
-pub struct FirstFound {
-    /// It alone.
-    pub found: Fitted,
-    /// What could be added, each with the [`further_share`](Calibration::further_share) from which on it would not be.
-    pub further: Vec<(Fitted, f64)>,
-}
-
 /// The place of one of several effects.
 struct Place {
     /// The others alone.
@@ -56,8 +48,6 @@ struct Place {
     taken: Vec<Fitted>,
 }
 
-/// Steps in which the share is sought that could be feigned: half a percent each.
-const SHARES: usize = 200;
 /// Effects whose gains are told to whoever asks.
 const TOLD: usize = 5;
 
@@ -68,7 +58,6 @@ impl Comparison {
         let calibration = &context.calibration;
         let share = calibration.further_share;
         let singles = best_of_each(alone.clone());
-        let counts = |single: &&Fitted| gain_alone(single, &singles, &none, context).passes(calibration.effect_nats);
         for single in singles.iter().take(TOLD) {
             let Gain { nats, broad_nats, .. } = single.gain_over(&none);
             let vague = if is_vague(single, &singles, calibration) { "; many others could stand for it" } else { "" };
@@ -77,12 +66,10 @@ impl Comparison {
                 "{name} alone gains {nats:.1} nats ({broad_nats:.1} with less of the runs that gain most{vague})"
             );
         }
-        let mut chosen = singles.iter().find(counts).unwrap_or(&none).clone();
+        let mut chosen = first(&singles, &none, context).unwrap_or(&none).clone();
         let mut places: Vec<Place> = chosen.ids().iter().map(|_| Place::new(none.clone(), singles.clone())).collect();
-        let mut first = None;
         while !chosen.ids().is_empty() && chosen.ids().len() < calibration.judgement.most_effects {
             let further = best_of_each(chosen.with_each(Some(&alone), context));
-            first = first.or_else(|| FirstFound::of(&chosen, &further, &none, context));
             for fit in further.iter().take(TOLD) {
                 // `info!` works out what it tells only if somebody listens.
                 log::info!(
@@ -95,9 +82,7 @@ impl Comparison {
                 break;
             };
             let (settled, places_of_it) = settled(next, &alone, context);
-            let gain = further_gain(&settled, &chosen, &none, share, context).over(calibration.judgement.vague_factor);
-            let vague = |place: &Place| is_vague(&settled, &place.taken, calibration);
-            if places_of_it.iter().any(vague) && !gain.passes(calibration.effect_nats) {
+            if !is_clear(&settled, &places_of_it, &chosen, &none, share, context) {
                 log::info!("too many others could stand for {}", settled.ids().join("+"));
                 break;
             }
@@ -114,8 +99,7 @@ impl Comparison {
             chosen = others;
         }
         let beyond_none = remainders(&none, context);
-        Comparison { alone, first, beyond_none, ..Comparison::of(none.clone(), none) }
-            .settled_on(chosen, places, context)
+        Comparison { alone, beyond_none, ..Comparison::of(none.clone(), none) }.settled_on(chosen, places, context)
     }
 
     /// Given effects, without a search.
@@ -145,7 +129,6 @@ impl Comparison {
             chosen,
             rivals: Vec::new(),
             own: Vec::new(),
-            first: None,
             alone: Vec::new(),
             beyond_none: Vec::new(),
             beyond_chosen: Vec::new(),
@@ -197,6 +180,11 @@ pub fn relative_likelihood(winner: &Fitted, rival: &Fitted, calibration: &Calibr
     libm::exp(-0.5 * z * z)
 }
 
+/// The single effect that is found first; none where none counts.
+fn first<'a>(singles: &'a [Fitted], none: &Fitted, context: &FitContext) -> Option<&'a Fitted> {
+    singles.iter().find(|single| gain_alone(single, singles, none, context).passes(context.calibration.effect_nats))
+}
+
 /// What the single effect gains that gains most, if it is to count alone.
 pub fn most_alone(singles: &[Fitted], none: &Fitted, context: &FitContext) -> Gain {
     let gains = singles.iter().map(|single| gain_alone(single, singles, none, context));
@@ -227,24 +215,6 @@ impl OwnGain {
     }
 }
 
-impl FirstFound {
-    /// The first effect, with all that could be added to it; none where several are chosen.
-    fn of(found: &Fitted, further: &[Fitted], none: &Fitted, context: &FitContext) -> Option<Self> {
-        let share = |fit: &Fitted| {
-            let adds = |share: &f64| is_worth_adding(fit, found, none, *share, context);
-            let shares = (0..SHARES).map(|step| step as f64 / SHARES as f64);
-            shares.take_while(adds).last().map(|share| share + 1.0 / SHARES as f64)
-        };
-        let further = further.iter().filter_map(|fit| Some((fit.clone(), share(fit)?)));
-        (found.ids().len() == 1).then(|| FirstFound { found: found.clone(), further: further.collect() })
-    }
-
-    /// The [`further_share`](Calibration::further_share) from which on nothing would be added.
-    pub fn feigned_share(&self) -> f64 {
-        self.further.iter().map(|(_, share)| *share).fold(0.0, f64::max)
-    }
-}
-
 /// A fit at a bound is no finding: the likelihood would rise beyond what is physically possible.
 fn is_worth_adding(fit: &Fitted, so_far: &Fitted, none: &Fitted, share: f64, context: &FitContext) -> bool {
     let at_bound = !fit.at_bound(fit.ids().len() - 1).is_empty();
@@ -254,6 +224,15 @@ fn is_worth_adding(fit: &Fitted, so_far: &Fitted, none: &Fitted, share: f64, con
 /// What one more effect gains beyond what forms of the others that are not quite right could leave over.
 fn further_gain(fit: &Fitted, so_far: &Fitted, none: &Fitted, share: f64, context: &FitContext) -> Gain {
     fit.gain_over(so_far).less(OwnGain::of(fit, so_far, none, share, context).feigned_nats)
+}
+
+/// Whether not too many others could stand for any of the effects, or what they gain over those so far is twice as much as
+/// has to be.
+fn is_clear(fit: &Fitted, places: &[Place], so_far: &Fitted, none: &Fitted, share: f64, context: &FitContext) -> bool {
+    let calibration = &context.calibration;
+    let gain = further_gain(fit, so_far, none, share, context).over(calibration.judgement.vague_factor);
+    let vague = |place: &Place| is_vague(fit, &place.taken, calibration);
+    gain.passes(calibration.effect_nats) || !places.iter().any(vague)
 }
 
 /// Whether too many other effects could stand for one.

@@ -6,23 +6,10 @@ use super::remainder::Remainder;
 use super::scatter;
 use crate::evaluation::observations::Observations;
 
-/// Effects that gain nothing on the runs held out explain nothing, neither all together nor each beside the others, and
-/// neither does the residual model.
+/// Effects that gain nothing on the runs held out explain nothing, and neither does the residual model.
 pub fn confirm(mut found: Comparison, context: &FitContext, hold_out: Option<&Observations>) -> Comparison {
     if let Some(hold_out) = hold_out {
-        let judged = |fit: &Fitted| fit.judged_on(hold_out, context).total().iter().sum::<f64>();
-        if let Some(first) = &mut found.first {
-            let alone = judged(&first.found);
-            first.further.retain(|(fit, _)| judged(fit) > alone);
-        }
-        let mut chosen = borne_out(found.chosen.clone(), &judged, context);
-        let gained = judged(&chosen) - judged(&found.none);
-        if !chosen.ids().is_empty() {
-            log::info!("{} gain {gained:.1} nats on runs kept back", chosen.ids().join("+"));
-            if gained < context.calibration.judgement.strong_nats {
-                chosen = found.none.clone();
-            }
-        }
+        let chosen = borne_out(&found.chosen, &found.none, context, hold_out);
         if chosen.ids() != found.chosen.ids() {
             found = found.choosing(chosen, context);
         }
@@ -36,9 +23,21 @@ pub fn confirm(mut found: Comparison, context: &FitContext, hold_out: Option<&Ob
     found
 }
 
+/// Those of the effects that gain on the runs held out, all together and each beside the others.
+pub fn borne_out(chosen: &Fitted, none: &Fitted, context: &FitContext, hold_out: &Observations) -> Fitted {
+    if chosen.ids().is_empty() {
+        return none.clone();
+    }
+    let judged = |fit: &Fitted| fit.judged_on(hold_out, context).total().iter().sum::<f64>();
+    let chosen = without_idle(chosen.clone(), &judged, context);
+    let gained = judged(&chosen) - judged(none);
+    log::info!("{} gain {gained:.1} nats on runs kept back", chosen.ids().join("+"));
+    if gained < context.calibration.judgement.strong_nats { none.clone() } else { chosen }
+}
+
 /// The effects without those that gain nothing beside the others; the one that costs most goes first. Any gain is enough: few
 /// runs are held out, and those on which it was found asked for strong evidence of each effect already.
-fn borne_out(chosen: Fitted, judged: &impl Fn(&Fitted) -> f64, context: &FitContext) -> Fitted {
+fn without_idle(chosen: Fitted, judged: &impl Fn(&Fitted) -> f64, context: &FitContext) -> Fitted {
     if chosen.ids().len() < 2 {
         return chosen;
     }
@@ -47,7 +46,7 @@ fn borne_out(chosen: Fitted, judged: &impl Fn(&Fitted) -> f64, context: &FitCont
     match fewer.max_by(|a, b| a.0.total_cmp(&b.0)) {
         Some((nats, fewer)) if nats >= all => {
             log::info!("of {} only {} gain on runs kept back", chosen.ids().join("+"), fewer.ids().join("+"));
-            borne_out(fewer, judged, context)
+            without_idle(fewer, judged, context)
         }
         _ => chosen,
     }

@@ -193,20 +193,27 @@ pub fn statistics(mut baseline: Baseline, logs: &Logs, method: Method) -> Result
     })
 }
 
-/// What explains logs, before anything is made of it, by each of these calibrations; effects alone are fitted once for all.
+/// What `look` makes of what explains logs, and of the runs held out, by each of these calibrations; effects alone are fitted
+/// once for all.
 ///
 /// # Errors
 /// When the logs say nothing that the baseline could be compared with.
-pub fn confirmed(mut baseline: Baseline, logs: &Logs, calibrations: &[Calibration]) -> Result<Vec<Comparison>> {
+pub fn confirmed<T>(
+    mut baseline: Baseline,
+    logs: &Logs,
+    calibrations: &[Calibration],
+    look: impl Fn(Comparison, &FitContext, Option<&Observations>) -> T,
+) -> Result<Vec<T>> {
     let (conditioned, _) = conditioned(&mut baseline, &Inspection::of(logs.clone()))?;
     let context = |method: Method| FitContext::new(&baseline, &conditioned.identification, method);
+    let hold_out = conditioned.hold_out.as_ref();
     let usual = context(Method::default());
     let none = Fitted::none(&usual);
     let alone = none.with_each(None, &usual);
     let by = |calibration: &Calibration| {
         let context = context(Method { calibration: *calibration, ..Method::default() });
         let compared = Comparison::search(none.clone(), alone.clone(), &context);
-        confirm::confirm(compared, &context, conditioned.hold_out.as_ref())
+        look(confirm::confirm(compared, &context, hold_out), &context, hold_out)
     };
     Ok(calibrations.iter().map(by).collect())
 }

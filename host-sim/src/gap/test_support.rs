@@ -270,7 +270,6 @@ pub fn comparison(effects: &[&'static Effect], gains: &[f64], context: &FitConte
         chosen,
         rivals: Vec::new(),
         own: Vec::new(),
-        first: None,
         alone: Vec::new(),
         beyond_none: Vec::new(),
         beyond_chosen: Vec::new(),

@@ -19,7 +19,7 @@ use crate::geometry::Pose;
 use crate::lanes::{Lanes, WIDEST};
 use crate::sonar::fan::{AXIS, BEFORE_WALL_CM, DIRECT, FAN_DEG, MIRRORED};
 use crate::sonar::model::{CONSTANT_SCATTER_CM, FAR_CM, STRENGTHS};
-use crate::sonar::outcomes::ROUNDED_BY_CM;
+use crate::sonar::perturbation::ROUNDED_BY_CM;
 use crate::sonar::{MixingWeights, Perturbation, SonarModel};
 use crate::statistics::student;
 
@@ -32,8 +32,10 @@ pub struct Beam {
     bias: [f32; 3],
     /// Base-two logarithm of the scatter in cm: a constant, per metre, per 45 degrees.
     log2_scatter: [f32; 3],
-    /// Scatter in cm beside that. Hits that it leads beyond the range are not reported.
+    /// Scatter in cm beside that. Hits that it leads beyond the range are not reported,
     added_scatter_cm: f32,
+    /// and none beyond an end of the range that the gain and the offset lead beyond it.
+    leads_ends_beyond: [bool; 2],
     /// Factor on the readings of echoes.
     gain: f32,
     /// Added to them after that, cm.
@@ -162,6 +164,7 @@ impl Beam {
             bias: reference.bias.map(|b| b as f32),
             log2_scatter: reference.log_scatter.map(|w| (w * log2_e) as f32),
             added_scatter_cm: perturbation.scatter_cm as f32,
+            leads_ends_beyond: perturbation.leads_ends_beyond(reference.range_cm),
             gain: perturbation.gain as f32,
             offset_cm: perturbation.offset_cm as f32,
             thresholds: Thresholds::both(reference, perturbation),
@@ -253,13 +256,19 @@ impl Beam {
         let reach_cm = heard.axis_cm.clamp(lane(least), lane(most));
         let long_cm = reach_cm + (lane(high) - reach_cm) * fate.place;
         let about = |value_cm: f32| lane(value_cm) + lane(CONSTANT_SCATTER_CM as f32) * fate.student;
-        let middle_cm = heard.reading_cm.clamp(lane(low), lane(high));
-        let mut hit_cm = middle_cm + heard.scatter_cm * fate.student;
-        if self.added_scatter_cm > 0.0 {
+        let [below_is_lost, above_is_lost] = self.leads_ends_beyond;
+        let least = if below_is_lost { f32::NEG_INFINITY } else { low };
+        let most = if above_is_lost { f32::INFINITY } else { high };
+        let middle_cm = heard.reading_cm.clamp(lane(least), lane(most));
+        let scattered_cm = middle_cm + heard.scatter_cm * fate.student;
+        let mut hit_cm = scattered_cm;
+        if self.added_scatter_cm > 0.0 || below_is_lost || above_is_lost {
             let led_cm = middle_cm + lane(self.added_scatter_cm) * fate.student;
+            let led = |is_lost: bool| if is_lost { scattered_cm } else { led_cm };
             let rounded_by_cm = ROUNDED_BY_CM as f32;
-            let beyond = led_cm.less(lane(low - rounded_by_cm)) | lane(high + rounded_by_cm).less(led_cm);
-            hit_cm = beyond.select(lane(f32::NAN), hit_cm);
+            let below = led(below_is_lost).less(lane(low - rounded_by_cm));
+            let above = lane(high + rounded_by_cm).less(led(above_is_lost));
+            hit_cm = (below | above).select(lane(f32::NAN), hit_cm);
         }
         let echo_cm = below(|t| t.hit).select(hit_cm, lane(f32::NAN));
         let echo_cm = below(|t| t.ghost).select(about(self.ghost_cm), echo_cm);

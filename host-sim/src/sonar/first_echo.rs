@@ -55,8 +55,7 @@ fn log_odds(model: &SonarModel, ray: &Ray, offset_deg: f64, perturbation: &Pertu
 /// The reading that a ray gives, before scatter.
 fn middle_cm(model: &SonarModel, ray: &Ray, perturbation: &Perturbation) -> f64 {
     let bias = model.bias[0] + model.bias[1] * ray.distance_cm + model.bias[2] * ray.alpha_deg / 45.0;
-    let [low, high] = model.range_cm;
-    perturbation.reading_cm(ray.distance_cm + bias).clamp(low, high)
+    perturbation.middle_cm(ray.distance_cm + bias, model.range_cm)
 }
 
 fn scale_cm(model: &SonarModel, ray: &Ray, perturbation: &Perturbation) -> f64 {

@@ -3,7 +3,7 @@
 use super::fan::{AXIS, Fan};
 use super::first_echo::first_echoes;
 use super::model::{CONSTANT_SCATTER_CM, P_RAND, SonarModel};
-use super::perturbation::Perturbation;
+use super::perturbation::{Perturbation, ROUNDED_BY_CM};
 use crate::statistics::student;
 
 /// Probabilities of all outcomes of a reading. They add up to one.
@@ -55,7 +55,7 @@ pub enum Distribution {
         /// Its scale.
         scale_cm: f64,
     },
-    /// The same, without those readings that a further scatter led beyond the sensor's range.
+    /// The same, without those readings that a change of the sensor led beyond its range.
     Within {
         /// The middle of all.
         middle_cm: f64,
@@ -96,9 +96,6 @@ pub struct MixingWeights {
     /// Of no reading.
     pub none: f64,
 }
-
-/// Sensors report whole centimetres, so that what lies beyond the range by no more than this is reported.
-pub const ROUNDED_BY_CM: f64 = 0.5;
 
 impl MixingWeights {
     /// The weights of a sensor where an echo `arrives`, or none.
@@ -158,7 +155,7 @@ impl Outcomes {
         let others = others.map(|(source, probability, distribution)| Component { source, probability, distribution });
         let components = hits.chain(others).collect();
         let outcomes = Outcomes { none: total(|w| w.none), components, range_cm: model.range_cm };
-        outcomes.without_hits_led_beyond_range(perturbation.scatter_cm)
+        outcomes.without_hits_led_beyond_range(perturbation)
     }
 
     /// The same with the faults of a perturbation that come in place of what there would be: the ghost, then a short reading,
@@ -187,12 +184,13 @@ impl Outcomes {
         self
     }
 
-    /// The same where hits that a further scatter leads beyond the range are not reported. What scatters by itself beyond it is
-    /// reported as its ends, as in the logs that a model was fitted on.
-    pub(super) fn without_hits_led_beyond_range(mut self, further_cm: f64) -> Self {
-        if further_cm > 0.0 {
+    /// The same where hits that a change of the sensor leads beyond the range are not reported. What lies or scatters beyond it
+    /// without that is reported as its ends, as in the logs that a model was fitted on.
+    pub(super) fn without_hits_led_beyond_range(mut self, change: &Perturbation) -> Self {
+        let ends = change.leads_ends_beyond(self.range_cm);
+        if change.scatter_cm > 0.0 || ends.contains(&true) {
             for hit in self.components.iter_mut().filter(|component| component.source == Source::Hit) {
-                let within = hit.within(self.range_cm, further_cm);
+                let within = hit.within(self.range_cm, ends, change.scatter_cm);
                 self.none += hit.probability - within.probability;
                 *hit = within;
             }
@@ -202,9 +200,10 @@ impl Outcomes {
 
     /// The mean reading of the hits, cm; none where no echo can come back.
     pub fn mean_hit_cm(&self) -> Option<f64> {
+        let [low, high] = self.range_cm;
         let hits = self.components.iter().filter(|c| c.source == Source::Hit && c.probability > 0.0);
         let (sum, probability) = hits.fold((0.0, 0.0), |(sum, probability), hit| {
-            (sum + hit.probability * hit.distribution.mean_cm(), probability + hit.probability)
+            (sum + hit.probability * hit.distribution.mean_cm().clamp(low, high), probability + hit.probability)
         });
         (probability > 0.0).then(|| sum / probability)
     }
@@ -216,19 +215,25 @@ impl Outcomes {
 }
 
 impl Component {
-    /// What of it a further scatter, which is part of its scale, does not lead beyond a range in which its middle lies.
-    fn within(self, [low_cm, high_cm]: [f64; 2], further_cm: f64) -> Self {
+    /// What of it is reported of a range. Where all that reads an end is led beyond it, all that lies beyond is lost, and
+    /// elsewhere what a further scatter, which is part of its scale, leads there.
+    fn within(self, [low_cm, high_cm]: [f64; 2], leads_ends_beyond: [bool; 2], further_cm: f64) -> Self {
         let Distribution::Student { middle_cm, scale_cm } = self.distribution else { return self };
-        let farther = |by_cm: f64, scale_cm: f64| student::cumulative(-by_cm / scale_cm);
-        let [below, above] = [middle_cm - low_cm, high_cm - middle_cm].map(|room_cm| {
+        let farther = |by_cm: f64, scale_cm: f64| {
+            if scale_cm > 0.0 { student::cumulative(-by_cm / scale_cm) } else { 0.0 }
+        };
+        let end = |room_cm: f64, is_led_beyond: bool| {
             let beyond = farther(room_cm, scale_cm);
-            [beyond, beyond - farther(room_cm + ROUNDED_BY_CM, further_cm)]
-        });
+            let leads_cm = if is_led_beyond { scale_cm } else { further_cm };
+            [beyond, beyond - farther(room_cm + ROUNDED_BY_CM, leads_cm)]
+        };
+        let below = end(middle_cm - low_cm, leads_ends_beyond[0]);
+        let above = end(high_cm - middle_cm, leads_ends_beyond[1]);
         let distribution = Distribution::Within {
             middle_cm,
             scale_cm,
             below: below[0],
-            inside: 1.0 - below[0] - above[0],
+            inside: (1.0 - below[0] - above[0]).max(0.0),
             at_ends: [below[1], above[1]],
         };
         Component { probability: self.probability * distribution.reported(), distribution, ..self }

@@ -3,6 +3,8 @@
 /// i₀ and f of the first-echo law's loss by incidence, the medians over eleven sensors.
 const USUAL_SPECULAR_DEG: f64 = 15.0;
 const USUAL_OBLIQUE_LOSS: f64 = 10.7;
+/// Sensors report whole centimetres, so that what lies beyond the range by no more than this is reported.
+pub const ROUNDED_BY_CM: f64 = 0.5;
 
 /// Changes to a sensor; [`Perturbation::NONE`] changes nothing.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -64,6 +66,22 @@ impl Perturbation {
     /// The reading of what otherwise reads `echo_cm`.
     pub fn reading_cm(&self, echo_cm: f64) -> f64 {
         echo_cm * self.gain + self.offset_cm
+    }
+
+    /// The middle of the readings of what otherwise reads `echo_cm`: within the range, but for the ends that are
+    /// [led beyond it](Self::leads_ends_beyond).
+    pub fn middle_cm(&self, echo_cm: f64, [low_cm, high_cm]: [f64; 2]) -> f64 {
+        let [below, above] = self.leads_ends_beyond([low_cm, high_cm]);
+        let least_cm = if below { f64::NEG_INFINITY } else { low_cm };
+        let most_cm = if above { f64::INFINITY } else { high_cm };
+        self.reading_cm(echo_cm).clamp(least_cm, most_cm)
+    }
+
+    /// Whether what otherwise reads the low and the high end of a range is led beyond it, and so is not reported. What lies
+    /// beyond the range without that is reported as its end.
+    pub fn leads_ends_beyond(&self, [low_cm, high_cm]: [f64; 2]) -> [bool; 2] {
+        [low_cm - self.reading_cm(low_cm), self.reading_cm(high_cm) - high_cm]
+            .map(|beyond_cm| beyond_cm > ROUNDED_BY_CM)
     }
 
     /// The sensor as its model has it.

@@ -64,6 +64,30 @@ fn what_a_perturbation_scatters_beyond_the_range_is_not_reported() {
     assert!(lost(&hardly) < 0.01, "{}", lost(&hardly));
 }
 
+/// All hits come from one distance and scatter little. A wall that would read the end of the range, or half a centimetre
+/// beyond it, is the last that does; what the change does not lead beyond an end is reported as that end.
+#[test]
+fn what_an_offset_or_a_gain_leads_beyond_the_range_is_not_reported() {
+    let model = SonarModel { bias: [0.0; 3], ..SENSORS[0].clone() };
+    let [low_cm, high_cm] = model.range_cm;
+    let lost = |distance_cm: f64, change: &Perturbation| {
+        let mut fan = fan_at(&scenes()[0].sides(), &sensors()[0], model.fan_width);
+        fan.iter_mut().for_each(|ray| ray.distance_cm = distance_cm);
+        let [as_it_is, changed] = [&Perturbation::NONE, change].map(|change| model.outcomes(&fan, change));
+        let hits = as_it_is.components.iter().filter(|c| c.source == Source::Hit).map(|c| c.probability).sum::<f64>();
+        (changed.none - as_it_is.none) / hits
+    };
+    let by = |offset_cm: f64| Perturbation { offset_cm, ..Perturbation::NONE };
+    let nearer = |distance_cm| lost(distance_cm, &by(-3.0));
+    assert!(nearer(low_cm) > 0.99 && nearer(low_cm + 1.5) > 0.99);
+    assert!((nearer(low_cm + 2.5) - 0.5).abs() < 0.01 && nearer(low_cm + 3.5) < 0.01);
+    let kept = [lost(low_cm, &by(-0.4)), lost(low_cm, &by(3.0)), lost(high_cm, &by(-3.0))];
+    assert!(kept.iter().all(|lost| *lost < 1e-9), "{kept:?}");
+    let longer = |distance_cm| lost(distance_cm, &Perturbation { gain: 1.2, ..Perturbation::NONE });
+    assert!(longer(high_cm) > 0.99 && longer(high_cm / 1.2 + 2.0) > 0.99);
+    assert!(longer(high_cm / 1.2 - 2.0) < 0.01 && longer(low_cm) < 0.01);
+}
+
 #[test]
 fn no_component_is_missing_from_the_grid() {
     let grid = grid();

@@ -50,13 +50,12 @@ impl FirstEchoLaw {
         components.extend(others);
         let none = known * (silent - other) + 0.5 * self.p_stray;
         let outcomes = Outcomes { none, components, range_cm: self.range_cm }.with_faults(change, reach_cm);
-        outcomes.without_hits_led_beyond_range(change.scatter_cm)
+        outcomes.without_hits_led_beyond_range(change)
     }
 
     /// The direct echoes of targets, where no reading is a stray one.
     fn direct(&self, targets: &[Target], change: &Perturbation) -> Direct {
         let log_width_deg = libm::log(self.beam_deg * change.width);
-        let [low_cm, high_cm] = self.range_cm;
         let mut components = Vec::with_capacity(targets.len() + 4);
         let (mut loudest, mut heard, mut heard_before_ghost) = (f64::NEG_INFINITY, 0.0, None);
         for target in targets {
@@ -73,7 +72,7 @@ impl FirstEchoLaw {
             let heard_before = heard;
             heard = (1.0 - self.p_dropout) * (1.0 - change.p_dropout) * logistic(loudest);
             let off_axis = target.off_axis_deg / change.width / 10.0;
-            let middle_cm = change.reading_cm(self.direct_cm(target, off_axis)).clamp(low_cm, high_cm);
+            let middle_cm = change.middle_cm(self.direct_cm(target, off_axis), self.range_cm);
             let scale_cm = libm::hypot(self.scale_cm(target, off_axis), change.scatter_cm);
             if middle_cm >= change.reading_cm(self.ghost_cm) {
                 heard_before_ghost.get_or_insert(heard_before);
