@@ -14,7 +14,7 @@ use crate::error::{Error, Result};
 use crate::gap::Method;
 use crate::gap::calibration::Calibration;
 use crate::gap::diagnose::{confirmed, statistics};
-use crate::gap::explain::explained_fraction;
+use crate::gap::explain::Explained;
 use crate::gap::gain::Gain;
 use crate::workers;
 use crate::workers::counter::Counter;
@@ -37,8 +37,10 @@ pub struct Measured {
     pub feigned_share: Option<f64>,
     /// The effect that was named first; empty when none was.
     pub first: String,
-    /// The share of what could be explained that the effects explain.
+    /// The share of what could be explained that the effects explain,
     pub explained_fraction: f64,
+    /// and its standard error.
+    pub explained_error: f64,
     /// Relative likelihood of an effect that is there: one when it is the first, zero when it is none of the rivals.
     pub likelihood_of_truth: f64,
     /// Relative likelihoods of the effects that could be in the first one's place.
@@ -107,11 +109,13 @@ fn with_effects(bench: &Bench, number: usize, calibration: Calibration) -> Resul
     let Some((place, rivals)) = rivals.min_by(|a, b| doubt(&a.1).total_cmp(&doubt(&b.1))) else {
         return Ok(measured);
     };
+    let explained = Explained::of(&found);
     let is_there = |id: &str| case.effects.iter().any(|active| active.effect.id() == id);
     let among_rivals = rivals.iter().find(|(id, _)| is_there(id)).map_or(0.0, |(_, likelihood)| *likelihood);
     Ok(Measured {
         first: ids[place].into(),
-        explained_fraction: explained_fraction(&found),
+        explained_fraction: explained.fraction,
+        explained_error: explained.error,
         likelihood_of_truth: if is_there(ids[place]) { 1.0 } else { among_rivals },
         rivals: rivals.iter().map(|(_, likelihood)| *likelihood).collect(),
         ..measured
@@ -130,6 +134,7 @@ impl Measured {
             feigned_share: None,
             first: String::new(),
             explained_fraction: 0.0,
+            explained_error: 0.0,
             likelihood_of_truth: 0.0,
             rivals: Vec::new(),
         }

@@ -44,9 +44,6 @@ pub struct Judgement {
     pub most_rivals: usize,
     /// See `most_rivals`.
     pub vague_factor: f64,
-    /// An effect for which more others can stand is no cause that anybody could act on: unless another one is clearer, the
-    /// gap stays unknown.
-    pub most_ambiguous: usize,
     /// Most effects that are named together: real robots differ in several ways at once.
     pub most_effects: usize,
     /// Scatter counts from this multiple of the simulator's on: five standard errors of a standard deviation that is
@@ -71,8 +68,7 @@ impl Calibration {
     /// found.
     pub fn for_search(&self) -> Self {
         let Calibration { adequate, adequacy_width, temperature, accuracy_cap, .. } = Self::shipped();
-        let judgement = Judgement { most_ambiguous: Self::shipped().judgement.most_ambiguous, ..self.judgement };
-        Calibration { adequate, adequacy_width, temperature, accuracy_cap, judgement, ..*self }
+        Calibration { adequate, adequacy_width, temperature, accuracy_cap, ..*self }
     }
 
     /// The same for this many rows: what the simulator's own misfit feigns grows with them, and so do the nats that are
@@ -111,7 +107,6 @@ impl Judgement {
         rival_z: 2.0,
         most_rivals: 3,
         vague_factor: 2.0,
-        most_ambiguous: 5,
         most_effects: 4,
         scatter_ratio: 1.12,
     };

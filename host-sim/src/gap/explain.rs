@@ -13,11 +13,10 @@ use super::budget::{Part, SCATTER};
 use super::calibration::Calibration;
 use super::channel::Channel;
 use super::compare::Comparison;
-use super::fit::Fitted;
 use super::remainder::Remainder;
 use crate::logs::Robot;
 use crate::statistics::rounding;
-use crate::statistics::summary::logistic;
+use crate::statistics::summary::{error_of_sum, logistic};
 
 /// An effect that explains the gap, or a part of it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -40,6 +39,15 @@ pub struct NamedEffect {
     pub at_bound: Vec<&'static str>,
 }
 
+/// The share of what could be explained that effects explain.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Explained {
+    /// The share.
+    pub fraction: f64,
+    /// Its standard error.
+    pub error: f64,
+}
+
 /// What was found, worked out once.
 pub enum Judged {
     /// The logs agree with the simulator within its own error.
@@ -60,6 +68,9 @@ pub enum Judged {
 
 /// Probabilities that differ by less are as good as equal: hundreds of calibrating cases tell no finer.
 const AS_PROBABLE: f64 = 0.05;
+
+/// The scale of the logistic law whose standard deviation is one: the root of 3 over pi.
+const LOGISTIC_SCALE: f64 = 0.551_328_895_421_792_1;
 
 /// A parameter at its bound has no likeliest value: its effect is as likely wrong as right.
 const AT_BOUND: f64 = 0.5;
@@ -86,21 +97,20 @@ impl Judged {
         let unexplained = unexplained_nats(found);
         // Scatter that grows with speed or comes back follows a cause that is not named.
         let scatters_unevenly = found.scatter.iter().any(|s| !s.is_even);
-        let whole = explained_fraction(found);
-        let is_clear = |effect: &NamedEffect| effect.ambiguous_with.len() <= calibration.judgement.most_ambiguous;
+        let whole = Explained::of(found);
         let effects = named(found, whole, robot, calibration);
         let doubt = gap(found, calibration) * (1.0 - probability(whole, std::iter::empty(), calibration));
         let likeliest = effects.first().is_some_and(|first| first.probability >= doubt);
-        if likeliest && effects.iter().all(is_clear) && whole >= calibration.adequate && !scatters_unevenly {
+        if likeliest && whole.fraction >= calibration.adequate && !scatters_unevenly {
             return Judged::Known { effects };
         }
         // A wrong effect leaves something over wherever it explains something; a right one beside which there is another
-        // cause explains the channels that the other one does not touch.
-        let best_channel = Channel::ALL.map(|channel| explained_fraction_of(channel, found, calibration));
-        let best_channel = best_channel.into_iter().fold(0.0, f64::max);
+        // cause explains the channels that the other one does not touch. Where few runs leave open whether it does, it is told.
+        let most = |explained: &Explained| explained.fraction + calibration.judgement.rival_z * explained.error;
+        let by_channel = Channel::ALL.map(|channel| Explained::of_channel(channel, found, calibration));
+        let best_channel = by_channel.into_iter().max_by(|a, b| most(a).total_cmp(&most(b))).unwrap_or(whole);
         let effects = named(found, best_channel, robot, calibration);
-        // One that many others could stand for is told with them, beside those that are clear.
-        if effects.iter().any(is_clear) && best_channel >= calibration.adequate {
+        if !effects.is_empty() && most(&best_channel) >= calibration.adequate {
             return Judged::PartlyKnown { effects };
         }
         if !effects.is_empty() || unexplained > 0.0 || scatters_unevenly {
@@ -127,21 +137,49 @@ pub fn with_shares(effects: Vec<NamedEffect>, budget: &[Part]) -> Vec<NamedEffec
     effects
 }
 
-/// The share of what could be explained that the chosen effects explain.
-pub fn explained_fraction(found: &Comparison) -> f64 {
-    let explained = explained_nats(found).max(0.0);
-    let all = explained + unexplained_nats(found);
-    if all > 0.0 { explained / all } else { 1.0 }
+impl Explained {
+    /// By the chosen effects, over all channels.
+    pub fn of(found: &Comparison) -> Self {
+        let left = found.beyond_chosen.iter().map(|remainder| remainder.by_block.as_slice());
+        Explained::beside(explained_nats(found), left)
+    }
+
+    /// In a channel; nothing where they explain no more there than chance does.
+    fn of_channel(channel: Channel, found: &Comparison, calibration: &Calibration) -> Self {
+        let explained = found.chosen.log_likelihood.of(channel) - found.none.log_likelihood.of(channel);
+        if explained < calibration.effect_nats {
+            return Explained { fraction: 0.0, error: 0.0 };
+        }
+        let left = found.beyond_chosen.iter().filter(|r| r.channel() == channel);
+        Explained::beside(explained, left.map(|remainder| remainder.by_block.as_slice()))
+    }
+
+    /// Where so many nats are explained, and these are left on each block.
+    fn beside<'a>(explained: f64, left: impl Iterator<Item = &'a [f64]>) -> Self {
+        let (nats, variance) = left.fold((0.0, 0.0), |(nats, variance), by_block| {
+            let error = error_of_sum(by_block);
+            (nats + by_block.iter().sum::<f64>(), variance + error * error)
+        });
+        let (explained, left) = (explained.max(0.0), nats.max(0.0));
+        let all = explained + left;
+        if all > 0.0 {
+            // By the derivative of the share: what is explained is known better than what is left.
+            Explained { fraction: explained / all, error: explained * variance.sqrt() / (all * all) }
+        } else {
+            Explained { fraction: 1.0, error: 0.0 }
+        }
+    }
 }
 
-/// How probable an answer is whose effects explain this fraction, and whose rivals have these relative likelihoods.
-pub fn probability(explained_fraction: f64, rivals: impl Iterator<Item = f64>, calibration: &Calibration) -> f64 {
-    let known = logistic((explained_fraction - calibration.adequate) / calibration.adequacy_width);
+/// How probable an answer is whose effects explain this much, and whose rivals have these relative likelihoods.
+pub fn probability(explained: Explained, rivals: impl Iterator<Item = f64>, calibration: &Calibration) -> f64 {
+    let width = libm::hypot(calibration.adequacy_width, LOGISTIC_SCALE * explained.error);
+    let known = logistic((explained.fraction - calibration.adequate) / width);
     let doubt: f64 = rivals.map(|likelihood| libm::pow(likelihood, 1.0 / calibration.temperature)).sum();
     calibration.accuracy_cap * known / (1.0 + doubt)
 }
 
-fn named(found: &Comparison, fraction: f64, robot: &Robot, calibration: &Calibration) -> Vec<NamedEffect> {
+fn named(found: &Comparison, explained: Explained, robot: &Robot, calibration: &Calibration) -> Vec<NamedEffect> {
     let gap = gap(found, calibration);
     let one = |(place, candidate): (usize, &crate::effects::Candidate)| {
         let rivals = found.likelihoods_in_place_of(place, calibration);
@@ -151,7 +189,7 @@ fn named(found: &Comparison, fraction: f64, robot: &Robot, calibration: &Calibra
         let most = if at_bound.is_empty() { 1.0 } else { AT_BOUND };
         NamedEffect {
             id: candidate.effect,
-            probability: (gap * beside * probability(fraction, rivals.iter().map(|r| r.1), calibration)).min(most),
+            probability: (gap * beside * probability(explained, rivals.iter().map(|r| r.1), calibration)).min(most),
             parameters: candidate.variant.reported(found.chosen.values_of(place), robot),
             ambiguous_with: ambiguous.map(|(id, _)| *id).collect(),
             share: None,
@@ -201,18 +239,6 @@ fn scattered(found: &Comparison, calibration: &Calibration) -> Option<NamedEffec
         intervals: Map::new(),
         at_bound: Vec::new(),
     })
-}
-
-/// The share of what could be explained in a channel that the chosen effects explain; nothing where they explain no more
-/// there than chance does.
-fn explained_fraction_of(channel: Channel, found: &Comparison, calibration: &Calibration) -> f64 {
-    let sum = |fit: &Fitted| fit.log_likelihood.channel(channel).iter().sum::<f64>();
-    let explained = sum(&found.chosen) - sum(&found.none);
-    if explained < calibration.effect_nats {
-        return 0.0;
-    }
-    let left = found.beyond_chosen.iter().filter(|r| r.channel() == channel);
-    explained / (explained + left.map(|r| r.by_block.iter().sum::<f64>()).sum::<f64>().max(0.0))
 }
 
 fn explained_nats(found: &Comparison) -> f64 {

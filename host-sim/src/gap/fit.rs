@@ -74,7 +74,7 @@ const MOST_SKETCHED_ROWS: usize = 1500;
 /// So many starts are tried, where they lag behind the best by less than what a few iterations gain at the least.
 const STARTS: usize = 3;
 const NEARLY_AS_GOOD_NATS: f64 = 5.0;
-/// So many fits are then carried on: twice as many as the rivals that make an effect unclear (`most_ambiguous`).
+/// So many fits are then carried on: more than twice as many as the rivals beside which an effect has to gain more.
 const PROMISING: usize = 10;
 /// An iteration that gains less ends the fit, nats: a tenth of what a parameter costs.
 pub const TOLERANCE_NATS: f64 = 0.1;

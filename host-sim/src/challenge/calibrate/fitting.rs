@@ -2,7 +2,7 @@
 
 use super::Measured;
 use crate::gap::calibration::{Calibration, Judgement};
-use crate::gap::explain::probability;
+use crate::gap::explain::{Explained, probability};
 
 /// Share of all cases without an effect whose gain passes the gate for an effect. A gain on the runs held out is asked for
 /// besides: fewer than one in a hundred passes both.
@@ -79,7 +79,8 @@ impl Measured {
 
     /// Of what is true about the first effect under the probability that it is given.
     fn log_likelihood(&self, calibration: &Calibration) -> f64 {
-        let there = probability(self.explained_fraction, self.rivals.iter().copied(), calibration);
+        let explained = Explained { fraction: self.explained_fraction, error: self.explained_error };
+        let there = probability(explained, self.rivals.iter().copied(), calibration);
         libm::log(if self.first_is_there() { there } else { 1.0 - there })
     }
 }
@@ -116,6 +117,7 @@ mod tests {
             feigned_share: Some(0.0),
             first: "slope".into(),
             explained_fraction: adequacy,
+            explained_error: 0.0,
             likelihood_of_truth: truth_weight,
             rivals: vec![rival],
         }
