@@ -16,6 +16,7 @@ pub mod diagnose;
 pub mod diagnosis;
 pub mod excitation;
 pub mod explain;
+mod feigned;
 pub mod fit;
 pub mod formula;
 pub mod gain;

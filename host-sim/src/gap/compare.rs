@@ -1,7 +1,5 @@
 //! Comparison: which effects together explain the gap best, and what could stand in place of each.
 
-mod feigned;
-
 use super::calibration::Calibration;
 use super::channel::Channel;
 use super::fit::{FitContext, Fitted, TOLERANCE_NATS, best_of_each};
@@ -41,7 +39,7 @@ pub struct OwnGain {
 }
 
 /// The place of one of several effects.
-struct Place {
+pub(super) struct Place {
     /// The others alone.
     without: Fitted,
     /// The others with the effect or another one in its place, as far as it shows in these logs, best first.
@@ -181,7 +179,7 @@ pub fn relative_likelihood(winner: &Fitted, rival: &Fitted, calibration: &Calibr
 }
 
 /// The single effect that is found first; none where none counts.
-fn first<'a>(singles: &'a [Fitted], none: &Fitted, context: &FitContext) -> Option<&'a Fitted> {
+pub(super) fn first<'a>(singles: &'a [Fitted], none: &Fitted, context: &FitContext) -> Option<&'a Fitted> {
     singles.iter().find(|single| gain_alone(single, singles, none, context).passes(context.calibration.effect_nats))
 }
 
@@ -216,7 +214,7 @@ impl OwnGain {
 }
 
 /// A fit at a bound is no finding: the likelihood would rise beyond what is physically possible.
-fn is_worth_adding(fit: &Fitted, so_far: &Fitted, none: &Fitted, share: f64, context: &FitContext) -> bool {
+pub(super) fn is_worth_adding(fit: &Fitted, so_far: &Fitted, none: &Fitted, share: f64, context: &FitContext) -> bool {
     let at_bound = !fit.at_bound(fit.ids().len() - 1).is_empty();
     !at_bound && further_gain(fit, so_far, none, share, context).passes(context.calibration.effect_nats)
 }
@@ -228,7 +226,14 @@ fn further_gain(fit: &Fitted, so_far: &Fitted, none: &Fitted, share: f64, contex
 
 /// Whether not too many others could stand for any of the effects, or what they gain over those so far is twice as much as
 /// has to be.
-fn is_clear(fit: &Fitted, places: &[Place], so_far: &Fitted, none: &Fitted, share: f64, context: &FitContext) -> bool {
+pub(super) fn is_clear(
+    fit: &Fitted,
+    places: &[Place],
+    so_far: &Fitted,
+    none: &Fitted,
+    share: f64,
+    context: &FitContext,
+) -> bool {
     let calibration = &context.calibration;
     let gain = further_gain(fit, so_far, none, share, context).over(calibration.judgement.vague_factor);
     let vague = |place: &Place| is_vague(fit, &place.taken, calibration);
@@ -249,7 +254,7 @@ fn rivals_in_reach(chosen: &Fitted, rivals: &[Fitted], calibration: &Calibration
 
 /// Exchanges one effect for what does better in its place, if there is such. Returns what stands then, and the places of its
 /// effects.
-fn settled(chosen: Fitted, alone: &[Fitted], context: &FitContext) -> (Fitted, Vec<Place>) {
+pub(super) fn settled(chosen: Fitted, alone: &[Fitted], context: &FitContext) -> (Fitted, Vec<Place>) {
     let places = places_of(&chosen, alone, context);
     let taken = places.iter().flat_map(|place| &place.taken);
     let better = taken.max_by(|a, b| a.log_evidence().total_cmp(&b.log_evidence()));

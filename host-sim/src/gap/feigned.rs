@@ -1,15 +1,15 @@
 //! How much of what an effect explains its form feigns: what is named beside an effect that is there alone.
 
-use super::{Comparison, Place, best_of_each, first, is_clear, is_worth_adding, settled};
+use super::compare::{Comparison, Place, first, is_clear, is_worth_adding, settled};
+use super::confirm::borne_out;
+use super::fit::{FitContext, Fitted, best_of_each};
 use crate::evaluation::observations::Observations;
-use crate::gap::confirm::borne_out;
-use crate::gap::fit::{FitContext, Fitted};
 
 /// Steps in which the share is sought: a thousandth each.
 const SHARES: usize = 1000;
 
 impl Comparison {
-    /// The [`further_share`](crate::gap::calibration::Calibration::further_share) from which on no other effect is named
+    /// The [`further_share`](super::calibration::Calibration::further_share) from which on no other effect is named
     /// beside the one with this id, which is there alone; none where another is found first. A search by that share would end
     /// with it.
     pub fn feigned_share(&self, id: &str, context: &FitContext, hold_out: Option<&Observations>) -> Option<f64> {
