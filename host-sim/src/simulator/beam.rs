@@ -36,6 +36,8 @@ pub struct Beam {
     added_scatter_cm: f32,
     /// and none beyond an end of the range that the gain and the offset lead beyond it.
     leads_ends_beyond: [bool; 2],
+    /// Between what the middles of hits lie, cm.
+    middle_bounds_cm: [f32; 2],
     /// Factor on the readings of echoes.
     gain: f32,
     /// Added to them after that, cm.
@@ -165,6 +167,7 @@ impl Beam {
             log2_scatter: reference.log_scatter.map(|w| (w * log2_e) as f32),
             added_scatter_cm: perturbation.scatter_cm as f32,
             leads_ends_beyond: perturbation.leads_ends_beyond(reference.range_cm),
+            middle_bounds_cm: perturbation.middle_bounds_cm(reference.range_cm).map(|cm| cm as f32),
             gain: perturbation.gain as f32,
             offset_cm: perturbation.offset_cm as f32,
             thresholds: Thresholds::both(reference, perturbation),
@@ -257,9 +260,8 @@ impl Beam {
         let long_cm = reach_cm + (lane(high) - reach_cm) * fate.place;
         let about = |value_cm: f32| lane(value_cm) + lane(CONSTANT_SCATTER_CM as f32) * fate.student;
         let [below_is_lost, above_is_lost] = self.leads_ends_beyond;
-        let least = if below_is_lost { f32::NEG_INFINITY } else { low };
-        let most = if above_is_lost { f32::INFINITY } else { high };
-        let middle_cm = heard.reading_cm.clamp(lane(least), lane(most));
+        let [least_cm, most_cm] = self.middle_bounds_cm;
+        let middle_cm = heard.reading_cm.clamp(lane(least_cm), lane(most_cm));
         let scattered_cm = middle_cm + heard.scatter_cm * fate.student;
         let mut hit_cm = scattered_cm;
         if self.added_scatter_cm > 0.0 || below_is_lost || above_is_lost {

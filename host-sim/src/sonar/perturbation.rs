@@ -68,13 +68,17 @@ impl Perturbation {
         echo_cm * self.gain + self.offset_cm
     }
 
-    /// The middle of the readings of what otherwise reads `echo_cm`: within the range, but for the ends that are
-    /// [led beyond it](Self::leads_ends_beyond).
-    pub fn middle_cm(&self, echo_cm: f64, [low_cm, high_cm]: [f64; 2]) -> f64 {
-        let [below, above] = self.leads_ends_beyond([low_cm, high_cm]);
-        let least_cm = if below { f64::NEG_INFINITY } else { low_cm };
-        let most_cm = if above { f64::INFINITY } else { high_cm };
+    /// The middle of the readings of what otherwise reads `echo_cm`.
+    pub fn middle_cm(&self, echo_cm: f64, range_cm: [f64; 2]) -> f64 {
+        let [least_cm, most_cm] = self.middle_bounds_cm(range_cm);
         self.reading_cm(echo_cm).clamp(least_cm, most_cm)
+    }
+
+    /// Between what the middles of readings lie: the ends of the range, but for those that are
+    /// [led beyond it](Self::leads_ends_beyond).
+    pub fn middle_bounds_cm(&self, [low_cm, high_cm]: [f64; 2]) -> [f64; 2] {
+        let [below, above] = self.leads_ends_beyond([low_cm, high_cm]);
+        [if below { f64::NEG_INFINITY } else { low_cm }, if above { f64::INFINITY } else { high_cm }]
     }
 
     /// Whether what otherwise reads the low and the high end of a range is led beyond it, and so is not reported. What lies
