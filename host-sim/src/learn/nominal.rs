@@ -22,9 +22,8 @@ const FEWEST: usize = 100;
 /// with poses as logged.
 pub fn learn(simulator: &Simulator, first_echo: Option<FirstEchoLaw>, logs: &Logs) -> NominalModel {
     let sonar = beam::learn(simulator.constant_reading, logs);
-    let seed = simulator.origin.seed;
     let first_echo =
-        first_echo.filter(|law| sonar.as_ref().is_some_and(|beam| sensor_law::is_first_echo(law, beam, logs, seed)));
+        first_echo.filter(|law| sonar.as_ref().is_some_and(|beam| sensor_law::is_first_echo(law, beam, logs)));
     let law = first_echo.clone().map(SensorLaw::FirstEcho).or_else(|| sonar.clone().map(SensorLaw::Beam));
     let seen = law.as_ref().map(|law| place_bound::seen(law, logs)).unwrap_or_default();
     let familiar = law.as_ref().and_then(|law| familiar::learn(law, &seen, &logs.scene));

@@ -12,11 +12,11 @@ use crate::statistics::summary::error_of_sum;
 /// Whether the first-echo law foretells the sensor's readings, at poses as logged, better than a beam does, by more than runs
 /// differ in that. Both have some twenty parameters and are fitted to other runs again, since what either makes of its own runs
 /// says little: five scans hold as few places as a beam has parameters for.
-pub fn is_first_echo(first_echo: &FirstEchoLaw, beam: &SonarModel, logs: &Logs, seed: u64) -> bool {
+pub fn is_first_echo(first_echo: &FirstEchoLaw, beam: &SonarModel, logs: &Logs) -> bool {
     if logs.runs.len() < FEWEST_RUNS {
         return false;
     }
-    let fold = |fold: usize| gains(first_echo, beam, logs, seed, fold);
+    let fold = |fold: usize| gains(first_echo, beam, logs, fold);
     let gains: Vec<f64> = (0..FOLDS.min(logs.runs.len())).into_par_iter().map(fold).collect::<Vec<_>>().concat();
     let gained: f64 = gains.iter().sum();
     let error = error_of_sum(&gains);
@@ -35,13 +35,13 @@ const FOLDS: usize = 5;
 const STANDARD_ERRORS: f64 = 1.0;
 
 /// By how many nats the first-echo law foretells each run of a fold better than the beam.
-fn gains(first_echo: &FirstEchoLaw, beam: &SonarModel, logs: &Logs, seed: u64, fold: usize) -> Vec<f64> {
+fn gains(first_echo: &FirstEchoLaw, beam: &SonarModel, logs: &Logs, fold: usize) -> Vec<f64> {
     let part = |held_out: bool| {
         let runs = logs.runs.iter().enumerate().filter(|(run, _)| (run % FOLDS == fold) == held_out);
         Logs { runs: runs.map(|(_, run)| run.clone()).collect(), ..logs.clone() }
     };
     let (others, held_out) = (part(false), Scans::of(&part(true)));
-    let first_echo = SensorLaw::FirstEcho(echo_law::learn_from(first_echo, &others, seed));
+    let first_echo = SensorLaw::FirstEcho(echo_law::learn_from(first_echo, &others));
     let beam = SensorLaw::Beam(beam::learn_from(beam, &others));
     let surfaces = Surfaces::new(logs.scene.sides());
     let gain = |run: usize| -> f64 {
