@@ -71,12 +71,9 @@ const FEWEST: usize = 30;
 
 /// The law of the sensor that made these logs; none where they hold too few readings.
 pub fn learn(logs: &Logs, seed: u64) -> Option<Found> {
-    let readings = Scans::of(logs).rows().filter(|row| row.echo_cm.is_some()).count();
-    (readings >= FEWEST).then(|| {
-        let all = Fit::new(logs);
-        let sample = Fit { scans: all.scans.clone().sampled(MOST_ROWS, seed), ..all.clone() };
-        all.most_probable(sample.best_of(&starts(seed)))
-    })
+    let all = Fit::new(logs);
+    let readings = all.scans.rows().filter(|row| row.echo_cm.is_some()).count();
+    (readings >= FEWEST).then(|| all.most_probable(all.clone().sampled(seed).best_of(&starts(seed))))
 }
 
 /// The law of these logs, with poses as logged, sought from another on.
@@ -117,6 +114,11 @@ impl Fit {
             scans,
             range_cm: [logs.robot.ultrasonic.min_cm, logs.robot.ultrasonic.max_cm],
         }
+    }
+
+    /// The same with [`MOST_ROWS`] rows at most.
+    fn sampled(self, seed: u64) -> Self {
+        Fit { scans: self.scans.sampled(MOST_ROWS, seed), ..self }
     }
 
     /// Where the highest of several searches ends, with poses as logged.
@@ -351,8 +353,7 @@ pub(super) mod tests {
         let found = [1, 2].map(|seed| likely(&learn(&logs, seed).expect("readings").as_logged));
         assert!((found[0] - found[1]).abs() < 2.0, "{found:?}");
         assert!(likely(&learn_from(&made_up(), &logs)) < found[0] + 2.0, "{found:?}");
-        let sampled = Fit { scans: fit.scans.clone().sampled(MOST_ROWS, 1), ..fit.clone() };
-        let by_some = likely(&sampled.as_logged(&numbers(&made_up())));
+        let by_some = likely(&fit.clone().sampled(1).as_logged(&numbers(&made_up())));
         assert!(by_some < found[0] - 2.0, "{by_some}, and {found:?} by all");
     }
 
