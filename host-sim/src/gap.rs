@@ -22,6 +22,7 @@ pub mod formula;
 pub mod gain;
 pub mod hypothesis;
 mod ledger;
+mod memo;
 pub mod method;
 pub mod omnibus;
 pub mod own_error;

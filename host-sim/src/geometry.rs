@@ -94,7 +94,7 @@ pub fn bounding_box(walls: &[Wall]) -> Option<Rectangle> {
 
 impl Wall {
     /// The distance along a ray to this wall, if the ray meets it.
-    fn distance_along_cm(&self, origin_cm: DVec2, direction: DVec2) -> Option<f64> {
+    pub fn distance_along_cm(&self, origin_cm: DVec2, direction: DVec2) -> Option<f64> {
         let along = self.to_cm - self.from_cm;
         let across = direction.perp_dot(along);
         if across == 0.0 {

@@ -108,8 +108,17 @@ pub struct Faced<'o> {
 
 /// What the sensor faces at a row with these effects; none where no law of it is known.
 pub fn facing<'o>(effects: &EffectChain, observations: &'o Observations, row: &'o Observation) -> Option<Faced<'o>> {
+    facing_in(observations, row, &effects.sensor(&row.context))
+}
+
+/// What it faces at a row in a state.
+pub fn facing_in<'o>(
+    observations: &'o Observations,
+    row: &'o Observation,
+    state: &SensorState,
+) -> Option<Faced<'o>> {
     let (law, usual) = observations.law.as_ref().zip(row.view.as_ref())?;
-    let SensorState { robot, yaw_rad, perturbation: change } = effects.sensor(&row.context);
+    let SensorState { robot, yaw_rad, perturbation: change } = *state;
     let widened = change.width != 1.0 && law.looks_by_width();
     let moved = robot != row.context.pose || yaw_rad != 0.0 || widened;
     let sensor = observations.surroundings.sensor(&robot, yaw_rad);

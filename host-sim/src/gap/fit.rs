@@ -8,6 +8,7 @@ use super::calibration::Calibration;
 use super::channel::Channel;
 use super::gain::Gain;
 use super::hypothesis::{Hypothesis, LogLikelihood};
+use super::memo::Memo;
 use super::method::Method;
 use super::own_error::OwnErrors;
 use crate::effects::applied::AppliedEffect;
@@ -16,7 +17,7 @@ use crate::effects::{Candidate, Effect};
 use crate::evaluation::observations::Observations;
 use crate::simulator::baseline::Baseline;
 use crate::sonar::SensorLaw;
-use crate::statistics::maximise::{Bounds, Maximum, climb, climb_on, step_of_one};
+use crate::statistics::maximise::{Bounds, Maximum, Point, climb_on, step_of_one};
 
 /// What is fitted, to what, and what counts.
 pub struct FitContext<'a> {
@@ -239,7 +240,7 @@ impl Fitted {
     }
 
     /// A few iterations of the fit with one more effect.
-    fn sketched_with<'a>(&'a self, candidate: Candidate, context: &'a FitContext<'a>) -> (Problem<'a>, Maximum) {
+    fn sketched_with<'a>(&'a self, candidate: Candidate, context: &'a FitContext<'a>) -> (Problem<'a>, Point) {
         let hypothesis = self.hypothesis.with(candidate);
         let starts = context.initial_guesses(&candidate).into_iter();
         let starts = starts.map(|own| [self.values.as_slice(), own.as_slice()].concat()).collect();
@@ -309,57 +310,47 @@ struct Problem<'a> {
 
 impl Problem<'_> {
     /// The log-likelihood of each row. The prior stands behind them as one more term, which belongs to no block.
-    fn terms(&self, at: &[f64]) -> Vec<f64> {
-        self.terms_of(self.context.observations, self.untouched, at)
-    }
-
-    fn terms_of(&self, observations: &Observations, untouched: &LogLikelihood, at: &[f64]) -> Vec<f64> {
-        let baseline = self.context.baseline;
-        let mut terms = self.hypothesis.log_likelihood(baseline, observations, at, Some(untouched)).total();
+    fn terms(&self, memo: &Memo, untouched: &LogLikelihood, at: &[f64]) -> Vec<f64> {
+        let mut terms = memo.log_likelihood(&self.hypothesis, self.context.baseline, at, untouched).total();
         terms.push(self.hypothesis.log_prior(at));
         terms
     }
 
     /// A few iterations from the best starts, on some of the rows where there are many: likelihoods with several maxima have
     /// more than one that is promising.
-    fn sketch(&self, starts: Vec<Vec<f64>>) -> Maximum {
+    fn sketch(&self, starts: Vec<Vec<f64>>) -> Point {
         let few = self.context.few.as_ref().map(|few| (&few.rows, self.untouched.every(few.every)));
-        let terms = |at: &[f64]| match &few {
-            Some((rows, untouched)) => self.terms_of(rows, untouched, at),
-            None => self.terms(at),
-        };
-        let mut starts: Vec<(f64, Vec<f64>)> =
-            starts.into_iter().map(|start| (terms(&start).iter().sum(), start)).collect();
-        starts.sort_by(|a, b| b.0.total_cmp(&a.0));
+        let (rows, untouched) =
+            few.as_ref().map_or((self.context.observations, self.untouched), |(rows, untouched)| (*rows, untouched));
+        let memo = Memo::new(rows);
+        let terms = |at: &[f64]| self.terms(&memo, untouched, at);
+        let mut starts: Vec<Point> = starts.into_iter().map(|start| Point::new(&start, terms)).collect();
+        starts.sort_by(|a, b| b.value().total_cmp(&a.value()));
         let bounds = self.hypothesis.bounds();
-        let best = starts.first().map_or(0.0, |start| start.0);
-        let promising = starts.iter().take(STARTS).take_while(|start| best - start.0 < NEARLY_AS_GOOD_NATS);
-        let climbs = promising.map(|(_, start)| climb(&bounds, start, SKETCH_ITERATIONS, TOLERANCE_NATS, terms));
+        let best = starts.first().map_or(0.0, Point::value);
+        let promising = starts.into_iter().take(STARTS).take_while(|start| best - start.value() < NEARLY_AS_GOOD_NATS);
+        let climbs = promising.map(|start| climb_on(&bounds, start, SKETCH_ITERATIONS, TOLERANCE_NATS, terms));
         let best = climbs.max_by(|a, b| a.value().total_cmp(&b.value()));
-        best.unwrap_or_else(|| climb(&bounds, &vec![0.0; bounds.len()], 0, TOLERANCE_NATS, terms))
+        best.unwrap_or_else(|| Point::new(&vec![0.0; bounds.len()], terms))
     }
 
     /// The fit to the end.
-    fn settle(self, sketch: Maximum) -> Fitted {
-        let bounds = self.hypothesis.bounds();
-        let on = |from: Maximum| climb_on(&bounds, from, MOST_ITERATIONS, TOLERANCE_NATS, |at| self.terms(at));
-        let mut found = if self.context.few.is_none() {
-            on(sketch)
-        } else {
-            climb(&bounds, &sketch.at, MOST_ITERATIONS, TOLERANCE_NATS, |at| self.terms(at))
-        };
+    fn settle(self, sketch: Point) -> Fitted {
+        let Problem { hypothesis, untouched, context } = &self;
+        let (bounds, memo) = (hypothesis.bounds(), Memo::new(context.observations));
+        let terms = |at: &[f64]| self.terms(&memo, untouched, at);
+        let on = |from: Point| climb_on(&bounds, from, MOST_ITERATIONS, TOLERANCE_NATS, terms).scored(&bounds, terms);
+        let mut found = on(if context.few.is_none() { sketch } else { Point::new(&sketch.at, terms) });
         for _ in 0..MOST_STEPS_OF_ONE {
-            let Some(further) = step_of_one(&bounds, &found, TOLERANCE_NATS, |at| self.terms(at)) else { break };
+            let Some(further) = step_of_one(&bounds, &found, TOLERANCE_NATS, terms) else { break };
             found = on(further);
         }
-        let Problem { hypothesis, untouched, context } = self;
         let without = without_each_block(&found, &bounds, context);
-        let held_out = held_out(&without, &found, &hypothesis, untouched, context);
+        let held_out = held_out(&without, &found, hypothesis, untouched, context);
         let errors = jackknife_errors(&found.at, &without);
-        let log_likelihood =
-            hypothesis.log_likelihood(context.baseline, context.observations, &found.at, Some(untouched));
-        let occam = occam(&found, &hypothesis, &bounds);
-        Fitted { hypothesis, values: found.at, log_likelihood, held_out, errors, occam }
+        let log_likelihood = memo.log_likelihood(hypothesis, context.baseline, &found.at, untouched);
+        let occam = occam(&found, hypothesis, &bounds);
+        Fitted { hypothesis: self.hypothesis, values: found.at, log_likelihood, held_out, errors, occam }
     }
 }
 

@@ -5,10 +5,11 @@ use std::ops::Range;
 use super::channel::Channel;
 use super::residual_law::{fitted_scatter, log_density};
 use crate::effects::chain::EffectChain;
-use crate::effects::{Candidate, Parameter};
+use crate::effects::{Candidate, Parameter, SensorState, Variant};
 use crate::evaluation::observations::{Observation, Observations};
-use crate::evaluation::predictions::{facing, residual};
+use crate::evaluation::predictions::{facing_in, residual};
 use crate::simulator::baseline::Baseline;
+use crate::sonar::Outcomes;
 use crate::statistics::maximise::Bounds;
 
 /// Effects that are supposed to be there, in the order in which they act; none is the simulator as it is.
@@ -122,11 +123,8 @@ impl Hypothesis {
         untouched: Option<&LogLikelihood>,
     ) -> LogLikelihood {
         let kept = |touched: bool| untouched.filter(|_| !touched);
-        let motion = || {
-            let residuals = self.residuals(baseline, &observations.rows, values);
-            densities(&observations.rows, &residuals, fitted(&observations.rows, &residuals, baseline))
-        };
-        let sonar = || self.sonar(baseline, observations, 0..observations.rows.len(), values);
+        let motion = || self.motion(baseline, &observations.rows, values);
+        let sonar = || self.sonar_of(baseline, observations, 0..observations.rows.len(), values);
         LogLikelihood {
             motion: kept(self.moves()).map_or_else(motion, |t| t.motion.clone()),
             sonar: kept(self.senses()).map_or_else(sonar, |t| t.sonar.clone()),
@@ -142,8 +140,8 @@ impl Hypothesis {
         values: &[f64],
     ) -> LogLikelihood {
         LogLikelihood {
-            motion: self.motion(baseline, &others.rows, values, scatter),
-            sonar: self.sonar(baseline, others, 0..others.rows.len(), values),
+            motion: self.motion_with(scatter, baseline, &others.rows, values),
+            sonar: self.sonar_of(baseline, others, 0..others.rows.len(), values),
         }
     }
 
@@ -159,12 +157,12 @@ impl Hypothesis {
     ) -> f64 {
         let range = observations.of_block(block);
         let motion: f64 = if self.moves() {
-            self.motion(baseline, &observations.rows[range.clone()], values, scatter).as_flattened().iter().sum()
+            self.motion_with(scatter, baseline, &observations.rows[range.clone()], values).as_flattened().iter().sum()
         } else {
             untouched.motion[range.clone()].as_flattened().iter().sum()
         };
         let sonar: f64 = if self.senses() {
-            self.sonar(baseline, observations, range, values).as_flattened().iter().sum()
+            self.sonar_of(baseline, observations, range, values).as_flattened().iter().sum()
         } else {
             untouched.sonar[range].as_flattened().iter().sum()
         };
@@ -186,8 +184,26 @@ impl Hypothesis {
         self.candidates.iter().any(|c| c.variant.senses())
     }
 
-    /// The log-likelihoods of the motion channels with a given scatter.
-    fn motion(&self, baseline: &Baseline, rows: &[Observation], values: &[f64], scatter: [f64; 3]) -> Vec<[f64; 3]> {
+    /// The values of those of its effects that a test picks.
+    pub fn values_of(&self, values: &[f64], is_picked: impl Fn(&Variant) -> bool) -> Vec<f64> {
+        let picked = self.candidates.iter().flat_map(|c| c.variant.parameters.iter().map(|_| is_picked(c.variant)));
+        picked.zip(values).filter(|(is_picked, _)| *is_picked).map(|(_, value)| *value).collect()
+    }
+
+    /// The log-likelihoods of the motion channels.
+    pub fn motion(&self, baseline: &Baseline, rows: &[Observation], values: &[f64]) -> Vec<[f64; 3]> {
+        let residuals = self.residuals(baseline, rows, values);
+        densities(rows, &residuals, fitted(rows, &residuals, baseline))
+    }
+
+    /// The same with a given scatter.
+    fn motion_with(
+        &self,
+        scatter: [f64; 3],
+        baseline: &Baseline,
+        rows: &[Observation],
+        values: &[f64],
+    ) -> Vec<[f64; 3]> {
         densities(rows, &self.residuals(baseline, rows, values), scatter)
     }
 
@@ -198,25 +214,39 @@ impl Hypothesis {
         rows.iter().map(|row| residual(&effects, drive, row)).collect()
     }
 
-    fn sonar(
+    /// The log-likelihoods of the sonar's channels; `outcomes` tells what the sensor may report at a row in a state.
+    pub fn sonar(
+        &self,
+        baseline: &Baseline,
+        observations: &Observations,
+        rows: Range<usize>,
+        values: &[f64],
+        outcomes: impl Fn(usize, &SensorState) -> Option<Outcomes>,
+    ) -> Vec<[f64; 2]> {
+        if baseline.sonar.is_none() {
+            return vec![[0.0; 2]; rows.len()];
+        }
+        let effects = self.at(values);
+        let term = |i: usize| {
+            let row = &observations.rows[i];
+            let Some(outcomes) = outcomes(i, &effects.sensor(&row.context)) else { return [0.0; 2] };
+            let rate = outcomes.log_detection(row.echo_cm);
+            let [rate_weight, value_weight] = row.echo_weight;
+            [rate_weight * rate, value_weight * (outcomes.log_likelihood(row.echo_cm) - rate)]
+        };
+        rows.map(term).collect()
+    }
+
+    fn sonar_of(
         &self,
         baseline: &Baseline,
         observations: &Observations,
         rows: Range<usize>,
         values: &[f64],
     ) -> Vec<[f64; 2]> {
-        if baseline.sonar.is_none() {
-            return vec![[0.0; 2]; rows.len()];
-        }
-        let effects = self.at(values);
-        let term = |row: &Observation| {
-            let Some(faced) = facing(&effects, observations, row) else { return [0.0; 2] };
-            let outcomes = faced.outcomes();
-            let rate = outcomes.log_detection(row.echo_cm);
-            let [rate_weight, value_weight] = row.echo_weight;
-            [rate_weight * rate, value_weight * (outcomes.log_likelihood(row.echo_cm) - rate)]
-        };
-        observations.rows[rows].iter().map(term).collect()
+        self.sonar(baseline, observations, rows, values, |row, state| {
+            Some(facing_in(observations, &observations.rows[row], state)?.outcomes())
+        })
     }
 }
 

@@ -9,7 +9,7 @@ use crate::chance::generator;
 use crate::logs::Logs;
 use crate::sonar::echo_law::{Surfaces, Target, reach_cm, targets_at};
 use crate::sonar::{FirstEchoLaw, Perturbation};
-use crate::statistics::maximise::{Bounds, Maximum, climb};
+use crate::statistics::maximise::{Bounds, Point, climb};
 
 /// What is known of a parameter before any log is seen.
 struct Prior {
@@ -126,7 +126,7 @@ impl Fit {
         let unchanged = self.unchanged();
         let search =
             |start: &[f64; PARAMETERS]| climb(&bounds(), start, FIRST_ROUNDS, ENOUGH, |at| self.terms(at, &unchanged));
-        let mut best: Option<Maximum> = None;
+        let mut best: Option<Point> = None;
         for found in starts.iter().map(search) {
             if best.as_ref().is_none_or(|best| found.value() > best.value()) {
                 best = Some(found);

@@ -29,6 +29,7 @@
 //! simulation model for acoustic sensor robot navigation, IEEE PAMI 9; constant distance over a range of directions those of
 //! Leonard and Durrant-Whyte (1991), Mobile robot localization by tracking geometric beacons, IEEE Trans. Robot. Autom. 7.
 
+mod rays;
 mod readings;
 mod surfaces;
 mod targets;

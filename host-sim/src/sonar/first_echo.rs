@@ -4,7 +4,7 @@
 
 use super::fan::{DIRECT, FAN_DEG, Fan, RAYS, Ray};
 use super::model::{FAR_CM, STRENGTHS, SonarModel};
-use super::perturbation::{Perturbation, shaped};
+use super::Perturbation;
 use crate::statistics::summary::logistic;
 
 /// A candidate for the first echo.
@@ -49,7 +49,7 @@ pub fn first_echoes(model: &SonarModel, fan: &Fan, perturbation: &Perturbation) 
 fn log_odds(model: &SonarModel, ray: &Ray, offset_deg: f64, perturbation: &Perturbation) -> f64 {
     let [metres, incidence] = units(ray);
     let strength: f64 = ray_features(ray, offset_deg).iter().zip(&model.strength).map(|(f, w)| f * w).sum();
-    strength - perturbation.loss(metres, incidence, || shaped(metres, incidence))
+    strength - perturbation.loss(metres, incidence)
 }
 
 /// The reading that a ray gives, before scatter.

@@ -20,8 +20,8 @@ pub enum View {
     Fan(Fan),
     /// What can return an echo.
     Targets {
-        /// Nearest first.
-        targets: Vec<Target>,
+        /// Nearest first, each with the strength of its echo if it stood on the axis.
+        targets: Vec<(Target, f64)>,
         /// How far the axis reaches, cm; infinite where it meets nothing.
         reach_cm: f64,
     },
@@ -33,8 +33,10 @@ impl SensorLaw {
     pub fn view(&self, surfaces: &Surfaces, sensor: &Pose, width: f64) -> View {
         match self {
             SensorLaw::Beam(model) => View::Fan(fan_at(surfaces.walls(), sensor, model.fan_width * width)),
-            SensorLaw::FirstEcho(_) => {
-                View::Targets { targets: targets_at(surfaces, sensor), reach_cm: reach_cm(surfaces, sensor) }
+            SensorLaw::FirstEcho(law) => {
+                let targets = targets_at(surfaces, sensor).into_iter();
+                let targets = targets.map(|target| (target, law.on_axis(&target))).collect();
+                View::Targets { targets, reach_cm: reach_cm(surfaces, sensor) }
             }
         }
     }
@@ -44,7 +46,7 @@ impl SensorLaw {
         match (self, view) {
             (SensorLaw::Beam(model), View::Fan(fan)) => model.outcomes(fan, change),
             (SensorLaw::FirstEcho(law), View::Targets { targets, reach_cm }) => {
-                law.outcomes(targets, *reach_cm, change)
+                law.outcomes_of(targets.iter().map(|(target, on_axis)| (target, *on_axis)), *reach_cm, change)
             }
             _ => unreachable!("a view is shown to the law that made it"),
         }

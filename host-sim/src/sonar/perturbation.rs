@@ -47,15 +47,14 @@ pub struct Perturbation {
 }
 
 impl Perturbation {
-    /// What an echo loses in log-odds over a distance in metres, at an incidence in units of 45 degrees; `shaped` is asked
-    /// for [`shaped`] of these where that matters.
-    pub fn loss(&self, metres: f64, incidence: f64, shaped: impl FnOnce() -> [f64; 2]) -> f64 {
+    /// What an echo loses in log-odds over a distance in metres, at an incidence in units of 45 degrees.
+    pub fn loss(&self, metres: f64, incidence: f64) -> f64 {
         let loss = self.attenuation + self.attenuation_per_m * metres + self.attenuation_per_incidence * incidence;
         if !self.shapes_losses() {
             return loss;
         }
-        let [log_metres, usual] = shaped();
-        loss + self.spreading * log_metres + self.mirroring * usual
+        let usual = loss_by_incidence(45.0 * incidence, USUAL_SPECULAR_DEG, USUAL_OBLIQUE_LOSS);
+        loss + self.spreading * libm::log(metres) + self.mirroring * usual
     }
 
     /// Whether what echoes lose is more than a plane over distance and incidence.
@@ -108,11 +107,6 @@ impl Perturbation {
         p_long: 0.0,
         p_long_given_none: 0.0,
     };
-}
-
-/// The logarithm of a distance in metres, and what a wall usually loses at an incidence in units of 45 degrees.
-pub fn shaped(metres: f64, incidence: f64) -> [f64; 2] {
-    [libm::log(metres), loss_by_incidence(45.0 * incidence, USUAL_SPECULAR_DEG, USUAL_OBLIQUE_LOSS)]
 }
 
 /// What a wall loses in log-odds by its incidence: as a mirror does, but never more than `most`; at `specular_deg` it is about

@@ -21,13 +21,22 @@ impl Bounds {
     }
 }
 
+/// A point, and what the terms are there.
+#[derive(Clone, Debug)]
+pub struct Point {
+    /// Where it lies.
+    pub at: Vec<f64>,
+    /// The log-likelihood of each term there.
+    pub terms: Vec<f64>,
+}
+
 /// A maximum, and what is known of its surroundings.
 #[derive(Clone, Debug)]
 pub struct Maximum {
     /// Where it lies.
     pub at: Vec<f64>,
-    /// The log-likelihood of each term there.
-    pub terms: Vec<f64>,
+    /// The log-likelihood of all terms there.
+    pub value: f64,
     /// The score of each term there, by parameter, per unit of the bounds' scale.
     pub scores: Vec<Vec<f64>>,
 }
@@ -43,9 +52,6 @@ const LENGTHS: usize = 6;
 const SHORTER: f64 = 0.35;
 const LONGER: f64 = 2.5;
 
-/// A point on a line: the sum there, where it is, and the terms.
-type Trial = (f64, Vec<f64>, Vec<f64>);
-
 /// Climbs from `start` until a round gains less than `enough`, for `rounds` at most. `terms` gives the log-likelihood
 /// of each term at a point.
 pub fn climb(
@@ -54,38 +60,31 @@ pub fn climb(
     rounds: usize,
     enough: f64,
     terms: impl Fn(&[f64]) -> Vec<f64>,
-) -> Maximum {
-    let at = start.to_vec();
-    let here = terms(&at);
-    let scores = score(bounds, &at, &here, &terms);
-    climb_on(bounds, Maximum { at, terms: here, scores }, rounds, enough, terms)
+) -> Point {
+    climb_on(bounds, Point::new(start, &terms), rounds, enough, terms)
 }
 
 /// Climbs on from where another climb ended.
 pub fn climb_on(
     bounds: &[Bounds],
-    from: Maximum,
+    from: Point,
     rounds: usize,
     enough: f64,
     terms: impl Fn(&[f64]) -> Vec<f64>,
-) -> Maximum {
-    let Maximum { mut at, terms: mut here, mut scores } = from;
+) -> Point {
+    let mut here = from;
     for _ in 0..rounds {
-        let before = sum(&here);
-        let direction = step(&gradient(&scores, |_| true), &curvature(&scores, |_| true), &at, bounds);
-        let best = line_search(before, |length| along(bounds, &at, &direction, length, &terms));
-        let gain = best.as_ref().map_or(0.0, |b| b.0 - before);
-        if let Some((_, trial, there)) = best {
-            (at, here) = (trial, there);
-        }
-        if gain > 0.0 {
-            scores = score(bounds, &at, &here, &terms);
-        }
+        let before = here.value();
+        let scores = score(bounds, &here, &terms);
+        let direction = step(&gradient(&scores, |_| true), &curvature(&scores, |_| true), &here.at, bounds);
+        let best = line_search(before, |length| along(bounds, &here.at, &direction, length, &terms));
+        let gain = best.as_ref().map_or(0.0, |best| best.value() - before);
+        here = best.unwrap_or(here);
         if gain < enough {
             break;
         }
     }
-    Maximum { at, terms: here, scores }
+    here
 }
 
 /// A step of one parameter alone, of the two that promise most, if one gains `enough`. Where all terms pull alike, as those of
@@ -96,28 +95,38 @@ pub fn step_of_one(
     from: &Maximum,
     enough: f64,
     terms: impl Fn(&[f64]) -> Vec<f64>,
-) -> Option<Maximum> {
-    let Maximum { at, terms: here, scores } = from;
-    let (before, gradient, curvature) = (sum(here), gradient(scores, |_| true), curvature(scores, |_| true));
+) -> Option<Point> {
+    let Maximum { at, value: before, scores } = from;
+    let (gradient, curvature) = (gradient(scores, |_| true), curvature(scores, |_| true));
     let promised = |i: &usize| gradient[*i] * gradient[*i] / curvature[(*i, *i)];
     let mut order: Vec<usize> = (0..at.len()).collect();
     order.sort_by(|a, b| promised(b).total_cmp(&promised(a)));
-    let (_, at, here) = order.into_iter().take(2).filter(|i| promised(i) > enough).find_map(|i| {
+    order.into_iter().take(2).filter(|i| promised(i) > enough).find_map(|i| {
         let direction: Vec<f64> =
             (0..at.len()).map(|j| if i == j { gradient[i] / curvature[(i, i)] } else { 0.0 }).collect();
-        let best = line_search(before, |length| along(bounds, at, &direction, length, &terms));
-        best.filter(|best| best.0 - before >= enough)
-    })?;
-    let scores = score(bounds, &at, &here, &terms);
-    Some(Maximum { at, terms: here, scores })
+        let best = line_search(*before, |length| along(bounds, at, &direction, length, &terms));
+        best.filter(|best| best.value() - before >= enough)
+    })
+}
+
+impl Point {
+    /// A point by its parameters.
+    pub fn new(at: &[f64], terms: impl Fn(&[f64]) -> Vec<f64>) -> Self {
+        Point { at: at.to_vec(), terms: terms(at) }
+    }
+
+    /// The value of the sum.
+    pub fn value(&self) -> f64 {
+        self.terms.iter().sum()
+    }
+
+    /// The same as a maximum.
+    pub fn scored(self, bounds: &[Bounds], terms: impl Fn(&[f64]) -> Vec<f64>) -> Maximum {
+        Maximum { value: self.value(), scores: score(bounds, &self, &terms), at: self.at }
+    }
 }
 
 impl Maximum {
-    /// The value of the sum.
-    pub fn value(&self) -> f64 {
-        sum(&self.terms)
-    }
-
     /// Logarithm of the integral over all points of the exponential of the sum, relative to its maximum, by Laplace's method:
     /// the sum falls off as its scores say, and as a prior of these precisions (one a parameter, in squared inverse units).
     /// A share of the terms, `is_term`, makes up the scores: a prior that is among the terms is given by its precision.
@@ -150,21 +159,19 @@ fn is_held(at: f64, pull: f64, bounds: &Bounds) -> bool {
     (at <= bounds.low && pull < 0.0) || (at >= bounds.high && pull > 0.0)
 }
 
-fn along(bounds: &[Bounds], at: &[f64], direction: &[f64], length: f64, terms: &impl Fn(&[f64]) -> Vec<f64>) -> Trial {
-    let trial = moved(bounds, at, &direction.iter().map(|d| d * length).collect::<Vec<f64>>());
-    let there = terms(&trial);
-    (sum(&there), trial, there)
+fn along(bounds: &[Bounds], at: &[f64], direction: &[f64], length: f64, terms: &impl Fn(&[f64]) -> Vec<f64>) -> Point {
+    Point::new(&moved(bounds, at, &direction.iter().map(|d| d * length).collect::<Vec<f64>>()), terms)
 }
 
 /// The best of a few lengths, if any climbs.
-fn line_search(before: f64, along: impl Fn(f64) -> Trial) -> Option<Trial> {
+fn line_search(before: f64, along: impl Fn(f64) -> Point) -> Option<Point> {
     let mut length = 1.0;
     let mut best = along(length);
-    if best.0 > before {
+    if best.value() > before {
         for _ in 0..LENGTHS {
             length *= LONGER;
             let further = along(length);
-            if further.0 <= best.0 {
+            if further.value() <= best.value() {
                 break;
             }
             best = further;
@@ -174,7 +181,7 @@ fn line_search(before: f64, along: impl Fn(f64) -> Trial) -> Option<Trial> {
     for _ in 0..LENGTHS {
         length *= SHORTER;
         best = along(length);
-        if best.0 > before {
+        if best.value() > before {
             return Some(best);
         }
     }
@@ -217,11 +224,12 @@ fn curvature(scores: &[Vec<f64>], kept: impl Fn(usize) -> bool) -> DMatrix<f64> 
     matrix
 }
 
-fn score(bounds: &[Bounds], at: &[f64], here: &[f64], terms: &impl Fn(&[f64]) -> Vec<f64>) -> Vec<Vec<f64>> {
+fn score(bounds: &[Bounds], here: &Point, terms: &impl Fn(&[f64]) -> Vec<f64>) -> Vec<Vec<f64>> {
+    let Point { at, terms: here } = here;
     let mut scores = vec![vec![0.0; at.len()]; here.len()];
     for (i, b) in bounds.iter().enumerate() {
         let h = if at[i] + DIFFERENCE * b.scale <= b.high { DIFFERENCE } else { -DIFFERENCE };
-        let mut beside = at.to_vec();
+        let mut beside = at.clone();
         beside[i] += h * b.scale;
         let there = terms(&beside);
         for (s, (a, b)) in scores.iter_mut().zip(there.iter().zip(here)) {
@@ -234,10 +242,6 @@ fn score(bounds: &[Bounds], at: &[f64], here: &[f64], terms: &impl Fn(&[f64]) ->
 fn moved(bounds: &[Bounds], at: &[f64], step: &[f64]) -> Vec<f64> {
     let one = |((a, s), b): ((&f64, &f64), &Bounds)| (a + s * b.scale).clamp(b.low, b.high);
     at.iter().zip(step).zip(bounds).map(one).collect()
-}
-
-fn sum(terms: &[f64]) -> f64 {
-    terms.iter().sum()
 }
 
 #[cfg(test)]
@@ -288,8 +292,9 @@ mod tests {
 
     #[test]
     fn scores_and_value_are_those_of_the_maximum() {
-        let found = climb(&[WIDE], &[2.0], 1, f64::INFINITY, normal(&[1.0, 3.0]));
-        assert!((found.value() + 1.0).abs() < 0.01, "{}", found.value());
+        let terms = normal(&[1.0, 3.0]);
+        let found = climb(&[WIDE], &[2.0], 1, f64::INFINITY, &terms).scored(&[WIDE], terms);
+        assert!((found.value + 1.0).abs() < 0.01, "{}", found.value);
         // The slopes are −1 and 1, per the bounds' scale of 20.
         for (score, slope) in found.scores.iter().zip([-20.0, 20.0]) {
             assert!((score[0] - slope).abs() < 2.0, "{:?}", found.scores);
@@ -310,7 +315,7 @@ mod tests {
         };
         assert!(calls(50, 1e6) < calls(50, 1e-9));
         assert_eq!(calls(1, 1e-9), calls(50, 1e6), "one round");
-        assert_eq!(calls(0, 1e-9), 2, "here, and beside here for the scores");
+        assert_eq!(calls(0, 1e-9), 1, "here");
     }
 
     #[test]
@@ -335,16 +340,17 @@ mod tests {
             (0..500).map(term).collect()
         };
         let bounds = [Bounds::new(0.0, 0.6), Bounds { low: 5.0, high: 80.0, scale: 1.5 }];
-        let mut found = climb(&bounds, &[0.05, 59.0], 50, 0.1, terms);
+        let mut found = climb(&bounds, &[0.05, 59.0], 50, 0.1, terms).scored(&bounds, terms);
         while let Some(further) = step_of_one(&bounds, &found, 0.1, terms) {
-            found = climb_on(&bounds, further, 50, 0.1, terms);
+            found = climb_on(&bounds, further, 50, 0.1, terms).scored(&bounds, terms);
         }
         assert!((found.at[0] - 0.2).abs() < 0.02 && (found.at[1] - 60.0).abs() < 0.1, "{:?}", found.at);
     }
 
     #[test]
     fn leaving_nothing_out_leaves_the_maximum_where_it_is() {
-        let found = climb(&[WIDE], &[0.0], 50, 1e-9, normal(&[1.0, 3.0]));
+        let terms = normal(&[1.0, 3.0]);
+        let found = climb(&[WIDE], &[0.0], 50, 1e-9, &terms).scored(&[WIDE], terms);
         assert_eq!(found.without(&[WIDE], |_| false), found.at);
     }
 
@@ -352,7 +358,8 @@ mod tests {
     fn leaving_terms_out_moves_the_maximum_away_from_them() {
         // Of variance one about their mean of 2, as the law has it, so that a step to first order is exact.
         let values: Vec<f64> = (0..40).map(|i| if i < 20 { 1.0 } else { 3.0 }).collect();
-        let found = climb(&[WIDE], &[0.0], 50, 1e-9, normal(&values));
+        let terms = normal(&values);
+        let found = climb(&[WIDE], &[0.0], 50, 1e-9, &terms).scored(&[WIDE], terms);
         let without = found.without(&[WIDE], |i| i < 10)[0];
         // What is kept: ten ones and twenty threes. One-sided differences are off by half of what they reach over.
         let most = 0.5 * DIFFERENCE * (WIDE.high - WIDE.low);
@@ -368,7 +375,7 @@ mod tests {
             (0..40).map(off).map(|[a, b]| -0.5 * (a * a + b * b)).collect()
         };
         let bounds = [Bounds::new(0.0, 10.0), WIDE];
-        let found = climb(&bounds, &[0.0, -2.0], 50, 1e-9, terms);
+        let found = climb(&bounds, &[0.0, -2.0], 50, 1e-9, terms).scored(&bounds, terms);
         assert_eq!(found.at[0], 0.0);
         let [first, second] = found.without(&bounds, |i| i % 4 == 1)[..] else { unreachable!("two numbers") };
         assert_eq!(first, 0.0);

@@ -9,6 +9,9 @@ use crate::sonar::outcomes::{Component, Distribution, Outcomes, Source};
 use crate::sonar::perturbation::loss_by_incidence;
 use crate::statistics::summary::logistic;
 
+/// Room for so many echoes, ghost and strays with them: a target that is nearer and stronger silences most others.
+const USUALLY_HEARD: usize = 16;
+
 /// What comes straight back.
 struct Direct {
     /// The echoes, nearest first.
@@ -28,8 +31,19 @@ impl FirstEchoLaw {
     /// The outcomes of a reading of targets, nearest first, where the axis reaches as far as `reach_cm`, by a sensor that
     /// differs from the law by a perturbation.
     pub fn outcomes(&self, targets: &[Target], reach_cm: f64, change: &Perturbation) -> Outcomes {
+        let echoes = targets.iter().map(|target| (target, self.on_axis(target)));
+        self.outcomes_of(echoes, reach_cm, change)
+    }
+
+    /// The same, each target with the strength that it had on the axis.
+    pub fn outcomes_of<'t>(
+        &self,
+        echoes: impl Iterator<Item = (&'t Target, f64)>,
+        reach_cm: f64,
+        change: &Perturbation,
+    ) -> Outcomes {
         let known = 1.0 - self.p_stray;
-        let Direct { mut components, heard, heard_before_ghost } = self.direct(targets, change);
+        let Direct { mut components, heard, heard_before_ghost } = self.direct(echoes, change);
         components.iter_mut().for_each(|echo| echo.probability *= known);
         let ghost = self.p_ghost * (1.0 - heard_before_ghost);
         let silent = (1.0 - self.p_ghost) * (1.0 - heard);
@@ -54,13 +68,13 @@ impl FirstEchoLaw {
     }
 
     /// The direct echoes of targets, where no reading is a stray one.
-    fn direct(&self, targets: &[Target], change: &Perturbation) -> Direct {
+    fn direct<'t>(&self, echoes: impl Iterator<Item = (&'t Target, f64)>, change: &Perturbation) -> Direct {
         let log_width_deg = libm::log(self.beam_deg * change.width);
-        let mut components = Vec::with_capacity(targets.len() + 4);
+        let mut components = Vec::with_capacity(USUALLY_HEARD);
         let (mut loudest, mut heard, mut heard_before_ghost) = (f64::NEG_INFINITY, 0.0, None);
-        for target in targets {
-            let lost = change.loss(target.distance_cm / 100.0, incidence_deg(target) / 45.0, || target.known.shaped);
-            let on_axis = self.on_axis(target) - lost;
+        for (target, on_axis) in echoes {
+            let lost = change.loss(target.distance_cm / 100.0, incidence_deg(target) / 45.0);
+            let on_axis = on_axis - lost;
             if on_axis <= loudest {
                 continue;
             }
@@ -93,7 +107,7 @@ impl FirstEchoLaw {
     }
 
     /// The strength if it stood on the axis.
-    fn on_axis(&self, target: &Target) -> f64 {
+    pub fn on_axis(&self, target: &Target) -> f64 {
         let kind = match target.kind {
             TargetKind::Ray { incidence_deg } => {
                 -loss_by_incidence(incidence_deg, self.specular_deg, self.oblique_loss)
@@ -102,7 +116,7 @@ impl FirstEchoLaw {
             TargetKind::Corner => self.corner,
             TargetKind::Edge => self.edge,
         };
-        self.gain - self.spreading * target.known.shaped[0] + kind
+        self.gain - self.spreading * target.known.log_metres + kind
     }
 
     /// What it loses where it stands, by a beam with this logarithm of its width in degrees.
@@ -126,7 +140,7 @@ impl FirstEchoLaw {
 
 /// The incidence of a target, degrees; a point has none.
 fn incidence_deg(target: &Target) -> f64 {
-    target.incidence_deg().unwrap_or(0.0)
+    target.kind.incidence_deg().unwrap_or(0.0)
 }
 
 /// How far the axis reaches, cm; infinite where it meets nothing.
