@@ -1,14 +1,16 @@
 //! Fitting: the parameters of a hypothesis by maximum a posteriori, judged on runs that they were not fitted on.
 
+mod problem;
+
 use std::ops::Range;
 
+use problem::Problem;
 use rayon::prelude::*;
 
 use super::calibration::Calibration;
 use super::channel::Channel;
 use super::gain::Gain;
 use super::hypothesis::{Hypothesis, LogLikelihood};
-use super::memo::Memo;
 use super::method::Method;
 use super::own_error::OwnErrors;
 use crate::effects::applied::AppliedEffect;
@@ -17,7 +19,7 @@ use crate::effects::{Candidate, Effect};
 use crate::evaluation::observations::Observations;
 use crate::simulator::baseline::Baseline;
 use crate::sonar::SensorLaw;
-use crate::statistics::maximise::{Bounds, Maximum, Point, climb_on, step_of_one};
+use crate::statistics::maximise::Point;
 
 /// What is fitted, to what, and what counts.
 pub struct FitContext<'a> {
@@ -66,17 +68,13 @@ pub struct Fitted {
 
 /// A fit ends after this many iterations: ridges of two parameters take twenty.
 pub const MOST_ITERATIONS: usize = 30;
-/// A climb that ended on the way is set going again so often: by the shares of a ghost that does not scatter, four times.
-const MOST_STEPS_OF_ONE: usize = 6;
-/// Iterations after which it shows whether a fit is promising.
-const SKETCH_ITERATIONS: usize = 3;
 /// It shows on so many rows, as many as 24 runs of a minute have: of twice as many a sketch looks at every second one.
 const MOST_SKETCHED_ROWS: usize = 1500;
-/// So many starts are tried, where they lag behind the best by less than what a few iterations gain at the least.
-const STARTS: usize = 3;
-const NEARLY_AS_GOOD_NATS: f64 = 5.0;
-/// So many fits are then carried on: more than twice as many as the rivals beside which an effect has to gain more.
+/// So many fits are carried on after a few iterations: more than twice as many as the rivals beside which an effect has to gain
+/// more.
 const PROMISING: usize = 10;
+/// So many are after the first one.
+const HOPEFUL: usize = 25;
 /// An iteration that gains less ends the fit, nats: a tenth of what a parameter costs.
 pub const TOLERANCE_NATS: f64 = 0.1;
 /// 95 % of a normal law lie within so many standard errors.
@@ -208,7 +206,9 @@ impl Fitted {
 
     /// Adds one effect and fits everything anew, from these values and the variant's guesses.
     pub fn with(&self, candidate: Candidate, context: &FitContext) -> Fitted {
-        let (problem, sketch) = self.sketched_with(candidate, context);
+        let problem = self.problem_with(candidate, context);
+        let begun = problem.begun(self.starts_with(&candidate, context), None);
+        let sketch = problem.sketch(begun);
         problem.settle(sketch)
     }
 
@@ -227,26 +227,41 @@ impl Fitted {
             alone.iter().find(|f| f.hypothesis.candidates[0] == *candidate).filter(|f| self.is_apart_from(f))
         };
         let combined = fresh.par_iter().filter_map(|c| Some((*c, self.combined_with(apart(c)?, context))));
-        let sketches = fresh.par_iter().filter(|c| apart(c).is_none()).map(|c| (*c, self.sketched_with(*c, context)));
         let mut fits: Vec<(Candidate, Fitted)> = combined.collect();
-        let mut sketches: Vec<_> = sketches.collect();
-        sketches.sort_by(|a, b| b.1.1.value().total_cmp(&a.1.1.value()));
-        sketches.truncate(PROMISING);
-        fits.par_extend(sketches.into_par_iter().map(|(c, (problem, sketch))| (c, problem.settle(sketch))));
+        let sights = self.hypothesis.senses().then(|| self.problem(self.hypothesis.clone(), context).sights(&self.values));
+        let begun = fresh.par_iter().filter(|candidate| apart(candidate).is_none()).map(|candidate| {
+            let problem = self.problem_with(*candidate, context);
+            let begun = problem.begun(self.starts_with(candidate, context), sights.as_ref());
+            (*candidate, problem, begun)
+        });
+        let highest = |points: &[Point]| points.iter().map(Point::value).fold(f64::NEG_INFINITY, f64::max);
+        let begun = best(begun.collect(), HOPEFUL, |(.., begun)| highest(begun));
+        let sketches = begun.into_par_iter().map(|(candidate, problem, begun)| {
+            let sketch = problem.sketch(begun);
+            (candidate, problem, sketch)
+        });
+        let sketches = best(sketches.collect(), PROMISING, |(.., sketch)| sketch.value());
+        fits.par_extend(sketches.into_par_iter().map(|(candidate, problem, sketch)| (candidate, problem.settle(sketch))));
         // In the order of the catalogue, whichever way they came about.
         let place = |candidate: &Candidate| fresh.iter().position(|c| c == candidate);
         fits.sort_by_key(|(candidate, _)| place(candidate));
         fits.into_iter().map(|(_, fit)| fit).collect()
     }
 
-    /// A few iterations of the fit with one more effect.
-    fn sketched_with<'a>(&'a self, candidate: Candidate, context: &'a FitContext<'a>) -> (Problem<'a>, Point) {
-        let hypothesis = self.hypothesis.with(candidate);
-        let starts = context.initial_guesses(&candidate).into_iter();
-        let starts = starts.map(|own| [self.values.as_slice(), own.as_slice()].concat()).collect();
-        let problem = Problem { hypothesis, untouched: &self.log_likelihood, context };
-        let sketch = problem.sketch(starts);
-        (problem, sketch)
+    /// The fit with one more effect.
+    fn problem_with<'a>(&'a self, candidate: Candidate, context: &'a FitContext<'a>) -> Problem<'a> {
+        self.problem(self.hypothesis.with(candidate), context)
+    }
+
+    /// A fit of effects that leave what these do not touch as it is, or touch it themselves.
+    fn problem<'a>(&'a self, hypothesis: Hypothesis, context: &'a FitContext<'a>) -> Problem<'a> {
+        Problem { hypothesis, untouched: &self.log_likelihood, context }
+    }
+
+    /// Where fits with one more effect start.
+    fn starts_with(&self, candidate: &Candidate, context: &FitContext) -> Vec<Vec<f64>> {
+        let guesses = context.initial_guesses(candidate).into_iter();
+        guesses.map(|own| [self.values.as_slice(), own.as_slice()].concat()).collect()
     }
 
     /// Leaves the effect at `place` out and fits the others anew.
@@ -260,7 +275,7 @@ impl Fitted {
         let others = (0..=candidates.len()).filter(|i| *i != place);
         let values = others.flat_map(|i| self.values_of(i)).copied().collect();
         let problem = Problem { hypothesis: self.hypothesis.of(candidates), untouched: &none.log_likelihood, context };
-        let sketch = problem.sketch(vec![values]);
+        let sketch = problem.sketch(problem.begun(vec![values], None));
         problem.settle(sketch)
     }
 
@@ -287,6 +302,13 @@ impl Fitted {
     }
 }
 
+/// The so many highest of several, highest first.
+fn best<T>(mut all: Vec<T>, most: usize, value: impl Fn(&T) -> f64) -> Vec<T> {
+    all.sort_by(|a, b| value(b).total_cmp(&value(a)));
+    all.truncate(most);
+    all
+}
+
 /// The best fit of each effect that was added last, best first.
 pub fn best_of_each(mut fits: Vec<Fitted>) -> Vec<Fitted> {
     fits.sort_by(|a, b| b.log_evidence().total_cmp(&a.log_evidence()));
@@ -298,104 +320,6 @@ pub fn best_of_each(mut fits: Vec<Fitted>) -> Vec<Fitted> {
         fresh
     });
     fits
-}
-
-/// A hypothesis whose parameters are sought.
-struct Problem<'a> {
-    hypothesis: Hypothesis,
-    /// The log-likelihood of what it does not touch.
-    untouched: &'a LogLikelihood,
-    context: &'a FitContext<'a>,
-}
-
-impl Problem<'_> {
-    /// The log-likelihood of each row. The prior stands behind them as one more term, which belongs to no block.
-    fn terms(&self, memo: &Memo, untouched: &LogLikelihood, at: &[f64]) -> Vec<f64> {
-        let mut terms = memo.log_likelihood(&self.hypothesis, self.context.baseline, at, untouched).total();
-        terms.push(self.hypothesis.log_prior(at));
-        terms
-    }
-
-    /// A few iterations from the best starts, on some of the rows where there are many: likelihoods with several maxima have
-    /// more than one that is promising.
-    fn sketch(&self, starts: Vec<Vec<f64>>) -> Point {
-        let few = self.context.few.as_ref().map(|few| (&few.rows, self.untouched.every(few.every)));
-        let (rows, untouched) =
-            few.as_ref().map_or((self.context.observations, self.untouched), |(rows, untouched)| (*rows, untouched));
-        let memo = Memo::new(rows);
-        let terms = |at: &[f64]| self.terms(&memo, untouched, at);
-        let mut starts: Vec<Point> = starts.into_iter().map(|start| Point::new(&start, terms)).collect();
-        starts.sort_by(|a, b| b.value().total_cmp(&a.value()));
-        let bounds = self.hypothesis.bounds();
-        let best = starts.first().map_or(0.0, Point::value);
-        let promising = starts.into_iter().take(STARTS).take_while(|start| best - start.value() < NEARLY_AS_GOOD_NATS);
-        let climbs = promising.map(|start| climb_on(&bounds, start, SKETCH_ITERATIONS, TOLERANCE_NATS, terms));
-        let best = climbs.max_by(|a, b| a.value().total_cmp(&b.value()));
-        best.unwrap_or_else(|| Point::new(&vec![0.0; bounds.len()], terms))
-    }
-
-    /// The fit to the end.
-    fn settle(self, sketch: Point) -> Fitted {
-        let Problem { hypothesis, untouched, context } = &self;
-        let (bounds, memo) = (hypothesis.bounds(), Memo::new(context.observations));
-        let terms = |at: &[f64]| self.terms(&memo, untouched, at);
-        let on = |from: Point| climb_on(&bounds, from, MOST_ITERATIONS, TOLERANCE_NATS, terms).scored(&bounds, terms);
-        let mut found = on(if context.few.is_none() { sketch } else { Point::new(&sketch.at, terms) });
-        for _ in 0..MOST_STEPS_OF_ONE {
-            let Some(further) = step_of_one(&bounds, &found, TOLERANCE_NATS, terms) else { break };
-            found = on(further);
-        }
-        let without = without_each_block(&found, &bounds, context);
-        let held_out = held_out(&without, &found, hypothesis, untouched, context);
-        let errors = jackknife_errors(&found.at, &without);
-        let log_likelihood = memo.log_likelihood(hypothesis, context.baseline, &found.at, untouched);
-        let occam = occam(&found, hypothesis, &bounds);
-        Fitted { hypothesis: self.hypothesis, values: found.at, log_likelihood, held_out, errors, occam }
-    }
-}
-
-/// The parameters that the blocks would have without each in turn, by the one-step jackknife.
-fn without_each_block(found: &Maximum, bounds: &[Bounds], context: &FitContext) -> Vec<Vec<f64>> {
-    let without = |block: usize| {
-        let left_out = context.observations.of_block(block);
-        found.without(bounds, |row| left_out.contains(&row))
-    };
-    (0..context.observations.blocks).map(without).collect()
-}
-
-/// The log-likelihood of each block with the parameters that the others alone would have.
-fn held_out(
-    without: &[Vec<f64>],
-    found: &Maximum,
-    hypothesis: &Hypothesis,
-    untouched: &LogLikelihood,
-    context: &FitContext,
-) -> Vec<f64> {
-    let scatter = hypothesis.scatter(context.baseline, context.observations, &found.at);
-    let of_block = |(block, values): (usize, &Vec<f64>)| {
-        hypothesis.of_block(context.baseline, context.observations, block, values, scatter, untouched)
-    };
-    without.iter().enumerate().map(of_block).collect()
-}
-
-/// Standard errors by the jackknife (Efron and Tibshirani 1993, equation 11.5).
-fn jackknife_errors(values: &[f64], without: &[Vec<f64>]) -> Vec<f64> {
-    let n = without.len() as f64;
-    let error = |i: usize| {
-        let mean = without.iter().map(|w| w[i]).sum::<f64>() / n;
-        ((n - 1.0) / n * without.iter().map(|w| (w[i] - mean) * (w[i] - mean)).sum::<f64>()).sqrt()
-    };
-    (0..values.len()).map(error).collect()
-}
-
-/// By how much the evidence exceeds the held-out log-likelihood: the prior at the maximum times the volume about it, less
-/// what held-out rows lose where they are independent, which is one nat a parameter. A gain from freedom alone is none.
-fn occam(found: &Maximum, hypothesis: &Hypothesis, bounds: &[Bounds]) -> f64 {
-    // The prior is the last of the terms.
-    let rows = found.scores.len() - 1;
-    let volume = found.log_volume(bounds, &hypothesis.prior_precisions(), |term| term < rows);
-    let prior = hypothesis.log_prior_peak() + hypothesis.log_prior(&found.at);
-    bounds.len() as f64 + (prior + volume).min(0.0)
 }
 
 #[cfg(test)]

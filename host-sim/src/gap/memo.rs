@@ -12,12 +12,19 @@ use crate::simulator::baseline::Baseline;
 use crate::sonar::Outcomes;
 
 /// What is known of a hypothesis on some rows.
-pub struct Memo<'o> {
+pub struct Memo<'m, 'o> {
     observations: &'o Observations,
+    /// What was known of the rows before.
+    before: Option<&'m Sights<'o>>,
     motion: RefCell<Recent<Vec<f64>, Vec<[f64; 3]>>>,
     sonar: RefCell<Recent<Vec<f64>, Vec<[f64; 2]>>>,
-    faced: Vec<RefCell<Recent<Look, Option<Faced<'o>>>>>,
+    faced: Vec<RefCell<Sight<'o>>>,
 }
+
+/// What the sensor faced at each row.
+pub struct Sights<'o>(Vec<Sight<'o>>);
+
+type Sight<'o> = Recent<Look, Option<Faced<'o>>>;
 
 /// On what it depends what the sensor faces: where the robot is, how the sensor is turned on it, and how wide its beam is.
 type Look = (Pose, f64, f64);
@@ -29,11 +36,16 @@ struct Recent<K, V>(Vec<(K, V)>);
 /// Where a climb is, and beside it for each of five parameters that move the sensor.
 const MOST: usize = 6;
 
-impl<'o> Memo<'o> {
-    /// Nothing is known yet.
-    pub fn new(observations: &'o Observations) -> Self {
+impl<'m, 'o> Memo<'m, 'o> {
+    /// Nothing is known yet but what is faced with other hypotheses, if that.
+    pub fn new(observations: &'o Observations, before: Option<&'m Sights<'o>>) -> Self {
         let faced = observations.rows.iter().map(|_| RefCell::default()).collect();
-        Memo { observations, motion: RefCell::default(), sonar: RefCell::default(), faced }
+        Memo { observations, before, motion: RefCell::default(), sonar: RefCell::default(), faced }
+    }
+
+    /// What the sensor faced last at each row.
+    pub fn into_sights(self) -> Sights<'o> {
+        Sights(self.faced.into_iter().map(RefCell::into_inner).collect())
     }
 
     /// [`Hypothesis::log_likelihood`] of the rows; the hypothesis is the same at every call.
@@ -65,9 +77,12 @@ impl<'o> Memo<'o> {
     /// What the sensor may report at a row in a state.
     fn outcomes(&self, row: usize, state: &SensorState) -> Option<Outcomes> {
         let look = (state.robot, state.yaw_rad, state.perturbation.width);
-        let mut faced = self.faced[row].borrow_mut();
+        let perturbed = |faced: &Option<Faced>| Some(faced.as_ref()?.perturbed(&state.perturbation));
+        if let Some(faced) = self.before.and_then(|before| before.0[row].known(&look)) {
+            return perturbed(faced);
+        }
         let face = || facing_in(self.observations, &self.observations.rows[row], state);
-        Some(faced.recall(look, face).as_ref()?.perturbed(&state.perturbation))
+        perturbed(self.faced[row].borrow_mut().recall(look, face))
     }
 }
 
@@ -78,6 +93,10 @@ impl<K, V> Default for Recent<K, V> {
 }
 
 impl<K: PartialEq, V> Recent<K, V> {
+    fn known(&self, key: &K) -> Option<&V> {
+        self.0.iter().find(|(known, _)| known == key).map(|(_, value)| value)
+    }
+
     /// What belongs to a key, worked out if it is not known.
     fn recall(&mut self, key: K, work_out: impl FnOnce() -> V) -> &V {
         match self.0.iter().position(|(known, _)| *known == key) {
