@@ -12,12 +12,15 @@ use mindgap_host_sim::evolve::fitness::{FitnessEvaluator, RandomNumbers};
 use mindgap_host_sim::evolve::genome::GenotypeDecoder;
 use mindgap_host_sim::evolve::paper;
 use mindgap_host_sim::genetic::Settings;
+use mindgap_host_sim::geometry::Pose;
 use mindgap_host_sim::learn::dataset::Dataset;
 use mindgap_host_sim::learn::genome::Shape;
 use mindgap_host_sim::learn::{paper as paper_trainer, train};
 use mindgap_host_sim::simulator::environment::{Environment, SensorModel};
 use mindgap_host_sim::simulator::rollout::RolloutRequest;
 use mindgap_host_sim::simulator::{Noise, Simulator};
+use mindgap_host_sim::sonar::echo_law::Surfaces;
+use mindgap_host_sim::sonar::{FirstEchoLaw, SensorLaw};
 use rand::RngExt;
 
 const SEED: u64 = 1;
@@ -99,6 +102,20 @@ fn evolving_generations(bencher: Bencher) {
     let settings = paper::settings();
     let evolve = || paper::evolve(&evaluator, &settings, |_, _| {});
     bencher.counter(ItemsCount::new(settings.max_generations)).bench(evolve);
+}
+
+/// What a sensor that follows the first-echo law faces, at poses all over a room; the counter is poses.
+#[divan::bench]
+fn sights(bencher: Bencher) {
+    const POSES: usize = 1000;
+    let (scene, mut rng) = (four_obstacles(), generator(SEED, &[]));
+    let surfaces = Surfaces::new(scene.sides());
+    let law = SensorLaw::FirstEcho(FirstEchoLaw::ideal_ray(1.0, 0.0, [4.0, 240.0]));
+    let poses: Vec<Pose> = (0..POSES)
+        .map(|_| Pose::new(rng.random_range(20.0..280.0), rng.random_range(20.0..200.0), rng.random_range(-3.0..3.0)))
+        .collect();
+    let look = || poses.iter().map(|pose| law.view(&surfaces, pose, 1.0)).collect::<Vec<_>>();
+    bencher.counter(ItemsCount::new(POSES)).bench(look);
 }
 
 /// Whole commands, from files to a file, on all processors: 100 runs of 60 steps, and the first start among four boxes.

@@ -1,7 +1,5 @@
 //! Comparison: which effects together explain the gap best, and what could stand in place of each.
 
-mod searched;
-
 use super::calibration::Calibration;
 use super::channel::Channel;
 use super::fit::{FitContext, Fitted, TOLERANCE_NATS, best_of_each};
@@ -9,7 +7,6 @@ use super::gain::Gain;
 use super::omnibus::ResidualFit;
 use super::remainder::{Remainder, remainders};
 use super::scatter::WiderScatter;
-pub(super) use searched::Searched;
 use crate::effects::applied::AppliedEffect;
 
 /// The effects that explain a gap best, if any does.
@@ -68,11 +65,10 @@ impl Comparison {
             );
         }
         let mut chosen = first(&singles, &none, context).unwrap_or(&none).clone();
-        let mut places: Vec<Place> = chosen.ids().iter().map(|_| Place::new(none.clone(), &singles)).collect();
-        let searched = Searched::new(&alone, context);
+        let mut places: Vec<Place> = chosen.ids().iter().map(|_| Place::new(none.clone(), singles.clone())).collect();
         while !chosen.ids().is_empty() && chosen.ids().len() < calibration.judgement.most_effects {
-            let extended = searched.extended(chosen.clone());
-            for fit in extended.further.iter().take(TOLD) {
+            let further = best_of_each(chosen.with_each(Some(&alone), context));
+            for fit in further.iter().take(TOLD) {
                 // `info!` works out what it tells only if somebody listens.
                 log::info!(
                     "{} gain {}",
@@ -80,16 +76,16 @@ impl Comparison {
                     OwnGain::of(fit, &chosen, &none, share, context).in_words()
                 );
             }
-            let Some(next) = extended.further.iter().find(|f| is_worth_adding(f, &chosen, &none, share, context)) else {
+            let Some(next) = further.into_iter().find(|f| is_worth_adding(f, &chosen, &none, share, context)) else {
                 break;
             };
-            let (settled, places_of_it) = settled(next, &searched);
+            let (settled, places_of_it) = settled(next, &alone, context);
             if !is_clear(&settled, &places_of_it, &chosen, &none, share, context) {
                 log::info!("too many others could stand for {}", settled.ids().join("+"));
                 break;
             }
             let before = chosen.log_evidence();
-            (chosen, places) = without_needless(settled, places_of_it, &searched, context);
+            (chosen, places) = without_needless(settled, places_of_it, &alone, context);
             log::info!("{} together gain {:.1} nats", chosen.ids().join("+"), chosen.gain_over(&none).nats);
             // An exchange that led to what was dropped again would lead round in a circle.
             if chosen.log_evidence() <= before {
@@ -97,7 +93,7 @@ impl Comparison {
             }
         }
         if let Some(others) = without_feigned_scatter(&chosen, context) {
-            places = places_of(&others, &searched);
+            places = places_of(&others, &alone, context);
             chosen = others;
         }
         let beyond_none = remainders(&none, context);
@@ -113,7 +109,7 @@ impl Comparison {
 
     /// The same with other effects chosen.
     pub fn choosing(self, chosen: Fitted, context: &FitContext) -> Self {
-        let places = places_of(&chosen, &Searched::new(&self.alone, context));
+        let places = places_of(&chosen, &self.alone, context);
         self.settled_on(chosen, places, context)
     }
 
@@ -258,13 +254,13 @@ fn rivals_in_reach(chosen: &Fitted, rivals: &[Fitted], calibration: &Calibration
 
 /// Exchanges one effect for what does better in its place, if there is such. Returns what stands then, and the places of its
 /// effects.
-pub(super) fn settled(chosen: &Fitted, searched: &Searched) -> (Fitted, Vec<Place>) {
-    let places = places_of(chosen, searched);
+pub(super) fn settled(chosen: Fitted, alone: &[Fitted], context: &FitContext) -> (Fitted, Vec<Place>) {
+    let places = places_of(&chosen, alone, context);
     let taken = places.iter().flat_map(|place| &place.taken);
     let better = taken.max_by(|a, b| a.log_evidence().total_cmp(&b.log_evidence()));
     match better.filter(|f| f.log_evidence() > chosen.log_evidence() && f.ids() != chosen.ids()) {
-        Some(better) => (better.clone(), places_of(better, searched)),
-        None => (chosen.clone(), places),
+        Some(better) => (better.clone(), places_of(better, alone, context)),
+        None => (chosen, places),
     }
 }
 
@@ -272,15 +268,15 @@ pub(super) fn settled(chosen: &Fitted, searched: &Searched) -> (Fitted, Vec<Plac
 fn without_needless(
     chosen: Fitted,
     places: Vec<Place>,
-    searched: &Searched,
+    alone: &[Fitted],
     context: &FitContext,
 ) -> (Fitted, Vec<Place>) {
     let needless = |others: &&Fitted| !chosen.gain_over(others).passes(context.calibration.effect_nats);
     let fewer = places.iter().map(|place| &place.without).filter(needless);
     match fewer.max_by(|a, b| a.log_evidence().total_cmp(&b.log_evidence())).cloned() {
         Some(fewer) => {
-            let places = places_of(&fewer, searched);
-            without_needless(fewer, places, searched, context)
+            let places = places_of(&fewer, alone, context);
+            without_needless(fewer, places, alone, context)
         }
         None => (chosen, places),
     }
@@ -298,10 +294,11 @@ fn without_feigned_scatter(chosen: &Fitted, context: &FitContext) -> Option<Fitt
     (others.log_evidence() + moved > chosen.log_evidence()).then_some(others)
 }
 
-fn places_of(chosen: &Fitted, searched: &Searched) -> Vec<Place> {
+fn places_of(chosen: &Fitted, alone: &[Fitted], context: &FitContext) -> Vec<Place> {
     let place = |place: usize| {
-        let others = searched.without(chosen, place);
-        Place::new(others.fit.clone(), &others.further)
+        let without = chosen.without(place, context);
+        let taken = best_of_each(without.with_each(Some(alone), context));
+        Place::new(without, taken)
     };
     (0..chosen.ids().len()).map(place).collect()
 }
@@ -309,9 +306,8 @@ fn places_of(chosen: &Fitted, searched: &Searched) -> Vec<Place> {
 impl Place {
     /// Of these only those count that do better on blocks held out than the others alone: what these logs do not show stands
     /// for nothing. A dozen effects of motion are no rivals to a beam where the robot stands still.
-    fn new(without: Fitted, further: &[Fitted]) -> Self {
-        let shows = |fit: &&Fitted| fit.gains_over(&without).iter().sum::<f64>() > TOLERANCE_NATS;
-        let taken = further.iter().filter(shows).cloned().collect();
+    fn new(without: Fitted, mut taken: Vec<Fitted>) -> Self {
+        taken.retain(|fit| fit.gains_over(&without).iter().sum::<f64>() > TOLERANCE_NATS);
         Place { without, taken }
     }
 }

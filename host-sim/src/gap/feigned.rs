@@ -1,6 +1,6 @@
 //! How much of what an effect explains its form feigns: what is named beside an effect that is there alone.
 
-use super::compare::{Comparison, Place, Searched, first, is_clear, is_worth_adding, settled};
+use super::compare::{Comparison, Place, first, is_clear, is_worth_adding, settled};
 use super::confirm::borne_out;
 use super::fit::{FitContext, Fitted, best_of_each};
 use crate::evaluation::observations::Observations;
@@ -15,15 +15,13 @@ impl Comparison {
     pub fn feigned_share(&self, id: &str, context: &FitContext, hold_out: Option<&Observations>) -> Option<f64> {
         let singles = best_of_each(self.alone.clone());
         let found = first(&singles, &self.none, context).filter(|found| found.ids() == [id])?;
-        let searched = Searched::new(&self.alone, context);
-        let extended = searched.extended(found.clone());
-        let worth_adding = |fit: &&Fitted| is_worth_adding(fit, found, &self.none, 0.0, context);
-        let further: Vec<&Fitted> = extended.further.iter().filter(worth_adding).collect();
+        let mut further = best_of_each(found.with_each(Some(&self.alone), context));
+        further.retain(|fit| is_worth_adding(fit, found, &self.none, 0.0, context));
         let mut settled_on: Vec<Option<Settled>> = further.iter().map(|_| None).collect();
         let mut is_named = |share: f64| {
             let next = further.iter().position(|fit| is_worth_adding(fit, found, &self.none, share, context));
             next.is_some_and(|next| {
-                let of = || Settled::of(further[next], &searched, &self.none, context, hold_out);
+                let of = || Settled::of(further[next].clone(), self, context, hold_out);
                 let Settled { fit, places, holds } = settled_on[next].get_or_insert_with(of);
                 *holds && is_clear(fit, places, found, &self.none, share, context)
             })
@@ -42,15 +40,9 @@ struct Settled {
 }
 
 impl Settled {
-    fn of(
-        next: &Fitted,
-        searched: &Searched,
-        none: &Fitted,
-        context: &FitContext,
-        hold_out: Option<&Observations>,
-    ) -> Self {
-        let (fit, places) = settled(next, searched);
-        let borne_out = |hold_out| borne_out(&fit, none, context, hold_out).ids().len();
+    fn of(next: Fitted, found: &Comparison, context: &FitContext, hold_out: Option<&Observations>) -> Self {
+        let (fit, places) = settled(next, &found.alone, context);
+        let borne_out = |hold_out| borne_out(&fit, &found.none, context, hold_out).ids().len();
         let holds = hold_out.map_or(fit.ids().len(), borne_out) > 1;
         Settled { fit, places, holds }
     }

@@ -19,7 +19,6 @@ use crate::effects::{Candidate, Effect};
 use crate::evaluation::observations::Observations;
 use crate::simulator::baseline::Baseline;
 use crate::sonar::SensorLaw;
-use crate::statistics::maximise::Point;
 
 /// What is fitted, to what, and what counts.
 pub struct FitContext<'a> {
@@ -70,11 +69,8 @@ pub struct Fitted {
 pub const MOST_ITERATIONS: usize = 30;
 /// It shows on so many rows, as many as 24 runs of a minute have: of twice as many a sketch looks at every second one.
 const MOST_SKETCHED_ROWS: usize = 1500;
-/// So many fits are carried on after a few iterations: more than twice as many as the rivals beside which an effect has to gain
-/// more.
+/// So many fits are then carried on: more than twice as many as the rivals beside which an effect has to gain more.
 const PROMISING: usize = 10;
-/// So many are after the first one.
-const HOPEFUL: usize = 25;
 /// An iteration that gains less ends the fit, nats: a tenth of what a parameter costs.
 pub const TOLERANCE_NATS: f64 = 0.1;
 /// 95 % of a normal law lie within so many standard errors.
@@ -207,8 +203,7 @@ impl Fitted {
     /// Adds one effect and fits everything anew, from these values and the variant's guesses.
     pub fn with(&self, candidate: Candidate, context: &FitContext) -> Fitted {
         let problem = self.problem_with(candidate, context);
-        let begun = problem.begun(self.starts_with(&candidate, context), None);
-        let sketch = problem.sketch(begun);
+        let sketch = problem.sketch(self.starts_with(&candidate, context), None);
         problem.settle(sketch)
     }
 
@@ -229,18 +224,14 @@ impl Fitted {
         let combined = fresh.par_iter().filter_map(|c| Some((*c, self.combined_with(apart(c)?, context))));
         let mut fits: Vec<(Candidate, Fitted)> = combined.collect();
         let sights = self.hypothesis.senses().then(|| self.problem(self.hypothesis.clone(), context).sights(&self.values));
-        let begun = fresh.par_iter().filter(|candidate| apart(candidate).is_none()).map(|candidate| {
+        let sketches = fresh.par_iter().filter(|candidate| apart(candidate).is_none()).map(|candidate| {
             let problem = self.problem_with(*candidate, context);
-            let begun = problem.begun(self.starts_with(candidate, context), sights.as_ref());
-            (*candidate, problem, begun)
+            let sketch = problem.sketch(self.starts_with(candidate, context), sights.as_ref());
+            (*candidate, problem, sketch)
         });
-        let highest = |points: &[Point]| points.iter().map(Point::value).fold(f64::NEG_INFINITY, f64::max);
-        let begun = best(begun.collect(), HOPEFUL, |(.., begun)| highest(begun));
-        let sketches = begun.into_par_iter().map(|(candidate, problem, begun)| {
-            let sketch = problem.sketch(begun);
-            (candidate, problem, sketch)
-        });
-        let sketches = best(sketches.collect(), PROMISING, |(.., sketch)| sketch.value());
+        let mut sketches: Vec<_> = sketches.collect();
+        sketches.sort_by(|a, b| b.2.value().total_cmp(&a.2.value()));
+        sketches.truncate(PROMISING);
         fits.par_extend(sketches.into_par_iter().map(|(candidate, problem, sketch)| (candidate, problem.settle(sketch))));
         // In the order of the catalogue, whichever way they came about.
         let place = |candidate: &Candidate| fresh.iter().position(|c| c == candidate);
@@ -275,7 +266,7 @@ impl Fitted {
         let others = (0..=candidates.len()).filter(|i| *i != place);
         let values = others.flat_map(|i| self.values_of(i)).copied().collect();
         let problem = Problem { hypothesis: self.hypothesis.of(candidates), untouched: &none.log_likelihood, context };
-        let sketch = problem.sketch(problem.begun(vec![values], None));
+        let sketch = problem.sketch(vec![values], None);
         problem.settle(sketch)
     }
 
@@ -300,13 +291,6 @@ impl Fitted {
         let occam = self.occam + other.occam;
         Fitted { hypothesis: self.hypothesis.of(candidates), values, log_likelihood, held_out, errors, occam }
     }
-}
-
-/// The so many highest of several, highest first.
-fn best<T>(mut all: Vec<T>, most: usize, value: impl Fn(&T) -> f64) -> Vec<T> {
-    all.sort_by(|a, b| value(b).total_cmp(&value(a)));
-    all.truncate(most);
-    all
 }
 
 /// The best fit of each effect that was added last, best first.

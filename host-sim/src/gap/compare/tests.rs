@@ -51,11 +51,11 @@ fn a_worse_effect_is_exchanged_for_a_better_one() {
     let context = FitContext::new(&baseline, &rows, METHOD);
     let alone = Fitted::none(&context).with_each(None, &context);
     let fit_of = |id: &str| alone.iter().find(|f| f.ids() == [id]).expect(id).clone();
-    let (settled_on, places) = settled(&fit_of("longer_to_the_left"), &Searched::new(&alone, &context));
+    let (settled_on, places) = settled(fit_of("longer_to_the_left"), &alone, &context);
     assert_eq!(settled_on.ids(), ["longer"]);
     assert_eq!(places.len(), 1);
     assert_eq!(places[0].taken.iter().map(|f| f.ids()[0]).collect::<Vec<_>>(), ["longer", "longer_to_the_left"]);
-    assert_eq!(settled(&settled_on, &Searched::new(&alone, &context)).0.ids(), ["longer"], "the best one stays");
+    assert_eq!(settled(settled_on, &alone, &context).0.ids(), ["longer"], "the best one stays");
 }
 
 /// Calls `check` with the context of two rows in two blocks.

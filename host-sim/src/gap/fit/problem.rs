@@ -1,5 +1,5 @@
-//! A hypothesis whose parameters are sought: by a first iteration from several starts, a few more where that is promising, and
-//! the fit to the end where those are.
+//! A hypothesis whose parameters are sought: by a few iterations from several starts, and on to the end where those are
+//! promising.
 
 use std::borrow::Cow;
 
@@ -22,15 +22,15 @@ pub struct Problem<'a> {
 /// So many starts are tried, where they lag behind the best by less than what a few iterations gain at the least.
 const STARTS: usize = 3;
 const NEARLY_AS_GOOD_NATS: f64 = 5.0;
-/// Iterations after the first one that a sketch has.
-const SKETCH_ITERATIONS: usize = 2;
+/// Iterations after which it shows whether a fit is promising.
+const SKETCH_ITERATIONS: usize = 3;
 /// A climb that ended on the way is set going again so often: by the shares of a ghost that does not scatter, four times.
 const MOST_STEPS_OF_ONE: usize = 6;
 
 impl<'a> Problem<'a> {
-    /// Where the first iteration leads from the best starts, on some of the rows where there are many: likelihoods with
-    /// several maxima have more than one that is promising.
-    pub fn begun(&self, starts: Vec<Vec<f64>>, sights: Option<&Sights>) -> Vec<Point> {
+    /// A few iterations from the best starts, on some of the rows where there are many: likelihoods with several maxima have
+    /// more than one that is promising. `sights` are what the sensor faces about the starts, if that is known.
+    pub fn sketch(&self, starts: Vec<Vec<f64>>, sights: Option<&Sights>) -> Point {
         let (rows, untouched) = self.sketched_rows();
         let memo = Memo::new(rows, sights);
         let terms = |at: &[f64]| self.terms(&memo, &untouched, at);
@@ -39,15 +39,7 @@ impl<'a> Problem<'a> {
         let best = starts.first().map_or(0.0, Point::value);
         let promising = starts.into_iter().take(STARTS).take_while(|start| best - start.value() < NEARLY_AS_GOOD_NATS);
         let bounds = self.hypothesis.bounds();
-        promising.map(|start| climb_on(&bounds, start, 1, TOLERANCE_NATS, terms)).collect()
-    }
-
-    /// The best of what a few more iterations lead to.
-    pub fn sketch(&self, begun: Vec<Point>) -> Point {
-        let (rows, untouched) = self.sketched_rows();
-        let (bounds, memo) = (self.hypothesis.bounds(), Memo::new(rows, None));
-        let terms = |at: &[f64]| self.terms(&memo, &untouched, at);
-        let climbs = begun.into_iter().map(|from| climb_on(&bounds, from, SKETCH_ITERATIONS, TOLERANCE_NATS, terms));
+        let climbs = promising.map(|start| climb_on(&bounds, start, SKETCH_ITERATIONS, TOLERANCE_NATS, terms));
         let best = climbs.max_by(|a, b| a.value().total_cmp(&b.value()));
         best.unwrap_or_else(|| Point::new(&vec![0.0; bounds.len()], terms))
     }
