@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use crate::geometry::{Wall, first_met};
+use crate::geometry::Wall;
 
 /// Everything that can return an echo.
 #[derive(Clone, Debug)]
@@ -71,8 +71,11 @@ impl Surfaces {
     pub(super) fn is_visible(&self, from_cm: DVec2, point_cm: DVec2) -> bool {
         let way = point_cm - from_cm;
         let distance_cm = way.length();
-        let met = first_met(&self.walls, from_cm, way / distance_cm);
-        met.is_none_or(|(met_cm, _)| met_cm > distance_cm - TOUCHING_CM)
+        let direction = way / distance_cm;
+        let stands_between = |wall: &Wall| {
+            wall.distance_along_cm(from_cm, direction).is_some_and(|met_cm| met_cm <= distance_cm - TOUCHING_CM)
+        };
+        !self.walls.iter().any(stands_between)
     }
 }
 

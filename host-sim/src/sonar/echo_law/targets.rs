@@ -3,7 +3,7 @@
 use glam::DVec2;
 
 use super::rays::{Met, OUTERMOST_DEG, SPACING_DEG, met_by_rays};
-use super::surfaces::{Side, Surfaces};
+use super::surfaces::{Corner, Side, Surfaces};
 use crate::geometry::{Pose, wrap_rad};
 
 /// Something that can return an echo.
@@ -189,30 +189,38 @@ fn feet(surfaces: &Surfaces, sensor: &Pose) -> impl Iterator<Item = Found> {
     let axis = sensor.direction();
     surfaces.walls.iter().filter_map(move |wall| {
         let foot_cm = wall.nearest(sensor.position_cm);
-        let is_inside = [wall.from_cm, wall.to_cm].iter().all(|end| end.distance(foot_cm) > END_CM);
-        is_inside.then(|| point(surfaces, sensor, axis, foot_cm, TargetKind::Foot))?
+        let is_inside = || [wall.from_cm, wall.to_cm].iter().all(|end| end.distance(foot_cm) > END_CM);
+        point(surfaces, sensor, axis, foot_cm, || is_inside().then_some(TargetKind::Foot))
     })
 }
 
 fn corners(surfaces: &Surfaces, sensor: &Pose) -> impl Iterator<Item = Found> {
     let axis = sensor.direction();
-    surfaces.corners.iter().filter_map(move |corner| {
-        let kind = match corner.side(sensor.position_cm) {
-            Side::Concave => TargetKind::Corner,
-            Side::Convex => TargetKind::Edge,
-            Side::Flat => return None,
-        };
-        point(surfaces, sensor, axis, corner.at_cm, kind)
-    })
+    let kind = |side| match side {
+        Side::Concave => Some(TargetKind::Corner),
+        Side::Convex => Some(TargetKind::Edge),
+        Side::Flat => None,
+    };
+    let corner = move |corner: &Corner| {
+        point(surfaces, sensor, axis, corner.at_cm, || kind(corner.side(sensor.position_cm)))
+    };
+    surfaces.corners.iter().filter_map(corner)
 }
 
-/// A point as a target, if it is within the beam and in sight.
-fn point(surfaces: &Surfaces, sensor: &Pose, axis: DVec2, at_cm: DVec2, kind: TargetKind) -> Option<Found> {
+/// A point as a target, if it is one, within the beam and in sight; most are not within the beam.
+fn point(
+    surfaces: &Surfaces,
+    sensor: &Pose,
+    axis: DVec2,
+    at_cm: DVec2,
+    kind: impl FnOnce() -> Option<TargetKind>,
+) -> Option<Found> {
     let way = at_cm - sensor.position_cm;
     let distance_cm = way.length();
     if way.dot(axis) < WITHIN_COSINE * distance_cm {
         return None;
     }
+    let kind = kind()?;
     let off_axis_deg = wrap_rad(libm::atan2(way.y, way.x) - sensor.heading_rad).abs().to_degrees();
     let is_heard = distance_cm > 0.0
         && off_axis_deg <= OUTERMOST_DEG
