@@ -112,11 +112,7 @@ pub fn facing<'o>(effects: &EffectChain, observations: &'o Observations, row: &'
 }
 
 /// What it faces at a row in a state.
-pub fn facing_in<'o>(
-    observations: &'o Observations,
-    row: &'o Observation,
-    state: &SensorState,
-) -> Option<Faced<'o>> {
+pub fn facing_in<'o>(observations: &'o Observations, row: &'o Observation, state: &SensorState) -> Option<Faced<'o>> {
     let (law, usual) = observations.law.as_ref().zip(row.view.as_ref())?;
     let SensorState { robot, yaw_rad, perturbation: change } = *state;
     let widened = change.width != 1.0 && law.looks_by_width();

@@ -223,7 +223,8 @@ impl Fitted {
         };
         let combined = fresh.par_iter().filter_map(|c| Some((*c, self.combined_with(apart(c)?, context))));
         let mut fits: Vec<(Candidate, Fitted)> = combined.collect();
-        let sights = self.hypothesis.senses().then(|| self.problem(self.hypothesis.clone(), context).sights(&self.values));
+        let sights =
+            self.hypothesis.senses().then(|| self.problem(self.hypothesis.clone(), context).sights(&self.values));
         let sketches = fresh.par_iter().filter(|candidate| apart(candidate).is_none()).map(|candidate| {
             let problem = self.problem_with(*candidate, context);
             let sketch = problem.sketch(self.starts_with(candidate, context), sights.as_ref());
@@ -232,7 +233,9 @@ impl Fitted {
         let mut sketches: Vec<_> = sketches.collect();
         sketches.sort_by(|a, b| b.2.value().total_cmp(&a.2.value()));
         sketches.truncate(PROMISING);
-        fits.par_extend(sketches.into_par_iter().map(|(candidate, problem, sketch)| (candidate, problem.settle(sketch))));
+        fits.par_extend(
+            sketches.into_par_iter().map(|(candidate, problem, sketch)| (candidate, problem.settle(sketch))),
+        );
         // In the order of the catalogue, whichever way they came about.
         let place = |candidate: &Candidate| fresh.iter().position(|c| c == candidate);
         fits.sort_by_key(|(candidate, _)| place(candidate));

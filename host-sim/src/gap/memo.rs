@@ -109,3 +109,75 @@ impl<K: PartialEq, V> Recent<K, V> {
         &self.0[0].1
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::effects::Candidate;
+    use crate::gap::test_support::*;
+
+    fn hypothesis(baseline: &Baseline, variants: &[(&str, &str)]) -> Hypothesis {
+        let candidates =
+            variants.iter().map(|(effect, variant)| Candidate::named(effect, variant).expect("in the catalogue"));
+        Hypothesis::none(baseline).of(candidates.collect())
+    }
+
+    /// A climb's way: beside a point by each parameter, on, back, and to what changes the sensor alone.
+    #[test]
+    fn what_is_recalled_is_what_would_be_worked_out() {
+        let (baseline, rows) = (
+            baseline_with_sonar(),
+            observations(3, 8, |_, at| Made {
+                off: [0.3, 0.1 * alternating(at), 0.0],
+                echo_off_cm: (at > 0).then_some(0.5),
+                ..Made::default()
+            }),
+        );
+        let untouched = Hypothesis::none(&baseline).log_likelihood(&baseline, &rows, &[], None);
+        let all =
+            hypothesis(&baseline, &[("marker_offset", "rigid"), ("drive_scale", "distance"), ("sonar_yaw", "axis")]);
+        let marker = hypothesis(&baseline, &[("marker_offset", "rigid")]);
+        let before = Memo::new(&rows, None);
+        before.log_likelihood(&marker, &baseline, &[1.0, -2.0], &untouched);
+        let before = before.into_sights();
+        for before in [None, Some(&before)] {
+            let memo = Memo::new(&rows, before);
+            let way = [
+                [1.0, -2.0, 1.0, 0.0],
+                [1.1, -2.0, 1.0, 0.0],
+                [1.0, -2.1, 1.0, 0.0],
+                [1.0, -2.0, 1.1, 0.0],
+                [1.0, -2.0, 1.0, 0.1],
+                [2.0, -3.0, 1.2, 0.2],
+                [1.0, -2.0, 1.0, 0.0],
+            ];
+            for values in way {
+                let recalled = memo.log_likelihood(&all, &baseline, &values, &untouched);
+                let worked_out = all.log_likelihood(&baseline, &rows, &values, None);
+                assert_eq!(recalled.motion, worked_out.motion, "{values:?}");
+                assert_eq!(recalled.sonar, worked_out.sonar, "{values:?}");
+            }
+        }
+        let recalled = Memo::new(&rows, None).log_likelihood(&hypothesis(&baseline, &[]), &baseline, &[], &untouched);
+        assert_eq!(recalled.total(), untouched.total(), "what is not touched is taken over");
+    }
+
+    #[test]
+    fn the_last_few_are_known() {
+        let mut recent = Recent::default();
+        let mut asked = Vec::new();
+        let mut recall = |key: usize| {
+            let mut is_new = false;
+            let value = *recent.recall(key, || {
+                is_new = true;
+                10 * key
+            });
+            asked.push(is_new);
+            value
+        };
+        let keys = [0, 1, 0, 2, 3, 4, 5, 0, 6, 1];
+        assert_eq!(keys.map(&mut recall), keys.map(|key| 10 * key));
+        // Of seven keys the one that was asked for longest ago is forgotten.
+        assert_eq!(asked, [true, true, false, true, true, true, true, false, true, true]);
+    }
+}

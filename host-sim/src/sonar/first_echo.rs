@@ -2,9 +2,9 @@
 //! incidence and its angle off the axis, independently of the others, and the nearest that does gives the reading. One that
 //! a wall has mirrored loses something there.
 
+use super::Perturbation;
 use super::fan::{DIRECT, FAN_DEG, Fan, RAYS, Ray};
 use super::model::{FAR_CM, STRENGTHS, SonarModel};
-use super::Perturbation;
 use crate::statistics::summary::logistic;
 
 /// A candidate for the first echo.

@@ -201,9 +201,8 @@ fn corners(surfaces: &Surfaces, sensor: &Pose) -> impl Iterator<Item = Found> {
         Side::Convex => Some(TargetKind::Edge),
         Side::Flat => None,
     };
-    let corner = move |corner: &Corner| {
-        point(surfaces, sensor, axis, corner.at_cm, || kind(corner.side(sensor.position_cm)))
-    };
+    let corner =
+        move |corner: &Corner| point(surfaces, sensor, axis, corner.at_cm, || kind(corner.side(sensor.position_cm)));
     surfaces.corners.iter().filter_map(corner)
 }
 
@@ -222,8 +221,51 @@ fn point(
     }
     let kind = kind()?;
     let off_axis_deg = wrap_rad(libm::atan2(way.y, way.x) - sensor.heading_rad).abs().to_degrees();
-    let is_heard = distance_cm > 0.0
-        && off_axis_deg <= OUTERMOST_DEG
-        && surfaces.is_visible(sensor.position_cm, at_cm);
+    let is_heard = distance_cm > 0.0 && off_axis_deg <= OUTERMOST_DEG && surfaces.is_visible(sensor.position_cm, at_cm);
     is_heard.then(|| Found { distance_cm: distance_cm.max(NEAREST_CM), off_axis_deg, kind })
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::built_in_robot::four_obstacles;
+
+    /// Whether a target, which is no farther, is stronger for certain.
+    fn masks(nearer: &Found, farther: &Target) -> bool {
+        let is_alike = match (nearer.kind.incidence_deg(), farther.kind.incidence_deg()) {
+            (Some(own), Some(other)) => own <= other,
+            (None, None) => nearer.kind == farther.kind,
+            _ => false,
+        };
+        is_alike && nearer.off_axis_deg <= farther.off_axis_deg
+    }
+
+    proptest! {
+        /// All that are left out have one of those that are heard before them, and none of these has another before it.
+        #[test]
+        fn what_is_left_out_is_masked(x_cm in 5.0..295.0, y_cm in 5.0..215.0, heading_deg in -180.0..180.0) {
+            let (surfaces, sensor) = (Surfaces::new(four_obstacles().sides()), Pose::new(x_cm, y_cm, f64::to_radians(heading_deg)));
+            let heard = targets_at(&surfaces, &sensor);
+            prop_assert!(heard.is_sorted_by(|a, b| a.distance_cm <= b.distance_cm));
+            let axis_deg = sensor.heading_rad.to_degrees();
+            let rays = met_by_rays(&surfaces, &sensor).map(|met| Found {
+                distance_cm: met.distance_cm.max(NEAREST_CM),
+                off_axis_deg: met.off_axis_deg.abs(),
+                kind: TargetKind::Ray { incidence_deg: surfaces.incidence_deg(met.wall, axis_deg + met.off_axis_deg) },
+            });
+            let all: Vec<Found> = rays.chain(feet(&surfaces, &sensor)).chain(corners(&surfaces, &sensor)).collect();
+            for found in &all {
+                let same = Target::new(found.distance_cm, found.off_axis_deg, found.kind);
+                let is_before = |target: &&Target| target.distance_cm <= found.distance_cm;
+                let as_found = |target: &Target| Found { distance_cm: target.distance_cm, off_axis_deg: target.off_axis_deg, kind: target.kind };
+                prop_assert!(heard.iter().filter(is_before).any(|target| *target == same || masks(&as_found(target), &same)));
+            }
+            for target in &heard {
+                let is_nearer = |found: &&Found| found.distance_cm < target.distance_cm;
+                prop_assert!(!all.iter().filter(is_nearer).any(|found| masks(found, target)));
+            }
+        }
+    }
 }
