@@ -121,20 +121,43 @@ fn sights(bencher: Bencher) {
 /// Whole commands, from files to a file, on all processors: 100 runs of 60 steps, and the first start among four boxes.
 #[divan::bench(args = ["train", "evolve", "evolve --paper"], sample_size = 1, sample_count = 3)]
 fn command(bencher: Bencher, call: &str) {
-    let folder = tempfile::tempdir().expect("a folder");
-    let mindgap = |call: &str| {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_mindgap"));
-        let done = command.args(call.split(' ')).current_dir(&folder).output().expect("the command starts");
-        assert!(done.status.success(), "{call}: {}", String::from_utf8_lossy(&done.stderr));
-    };
-    four_obstacles().write(&folder.path().join("scene.toml")).expect("a folder takes files");
-    mindgap("record --out logs");
-    mindgap("train logs --out sim.json");
+    let folder = Folder::new();
+    four_obstacles().write(&folder.0.path().join("scene.toml")).expect("a folder takes files");
+    folder.mindgap("record --out logs");
+    folder.mindgap("train logs --out sim.json");
     let call = match call.split_once("evolve") {
         Some((_, options)) => format!("evolve sim.json --scene scene.toml --out controller.toml{options}"),
         None => format!("{call} logs --out again.json"),
     };
-    bencher.bench_local(|| mindgap(&call));
+    bencher.bench_local(|| folder.mindgap(&call));
+}
+
+/// The diagnosis of 24 runs of 60 steps of a robot in which these effects are at work, from files to a file, on all
+/// processors: one cause, and two of which one moves the sensor.
+#[divan::bench(args = ["drive_scale=1.1", "marker_offset=4@2 sonar_crosstalk=0.2"], sample_size = 1, sample_count = 3)]
+fn diagnosis(bencher: Bencher, effects: &str) {
+    let folder = Folder::new();
+    folder.mindgap("record --out logs");
+    folder.mindgap("train logs --out sim.json");
+    let effects: String = effects.split(' ').map(|effect| format!(" --effect {effect}")).collect();
+    folder.mindgap(&format!("record --out changed --runs 24 --seed 5{effects}"));
+    bencher.bench_local(|| folder.mindgap("diagnose sim.json changed --json report.json --force"));
+}
+
+/// A folder in which commands are at work.
+struct Folder(tempfile::TempDir);
+
+impl Folder {
+    fn new() -> Self {
+        Folder(tempfile::tempdir().expect("a folder"))
+    }
+
+    /// Runs a command to its end.
+    fn mindgap(&self, call: &str) {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_mindgap"));
+        let done = command.args(call.split(' ')).current_dir(&self.0).output().expect("the command starts");
+        assert!(done.status.success(), "{call}: {}", String::from_utf8_lossy(&done.stderr));
+    }
 }
 
 /// A simulator with networks of the paper's sizes, learned from few logs.
