@@ -11,6 +11,7 @@ use super::calibration::Calibration;
 use super::channel::Channel;
 use super::gain::Gain;
 use super::hypothesis::{Hypothesis, LogLikelihood};
+use super::memo::Sights;
 use super::method::Method;
 use super::own_error::OwnErrors;
 use crate::effects::applied::AppliedEffect;
@@ -19,6 +20,7 @@ use crate::effects::{Candidate, Effect};
 use crate::evaluation::observations::Observations;
 use crate::simulator::baseline::Baseline;
 use crate::sonar::SensorLaw;
+use crate::statistics::maximise::Point;
 
 /// What is fitted, to what, and what counts.
 pub struct FitContext<'a> {
@@ -67,9 +69,11 @@ pub struct Fitted {
 
 /// A fit ends after this many iterations: ridges of two parameters take twenty.
 pub const MOST_ITERATIONS: usize = 30;
-/// It shows on so many rows, as many as 24 runs of a minute have: of twice as many a sketch looks at every second one.
+/// Whether a fit is promising shows on so many rows, as many as 24 runs of a minute have: of twice as many a sketch looks at
+/// every second one.
 const MOST_SKETCHED_ROWS: usize = 1500;
-/// So many fits are then carried on: more than twice as many as the rivals beside which an effect has to gain more.
+/// So many of the fits that were sketched are carried on: more than twice as many as the rivals beside which an effect has to
+/// gain more.
 const PROMISING: usize = 10;
 /// An iteration that gains less ends the fit, nats: a tenth of what a parameter costs.
 pub const TOLERANCE_NATS: f64 = 0.1;
@@ -202,8 +206,7 @@ impl Fitted {
 
     /// Adds one effect and fits everything anew, from these values and the variant's guesses.
     pub fn with(&self, candidate: Candidate, context: &FitContext) -> Fitted {
-        let problem = self.problem_with(candidate, context);
-        let sketch = problem.sketch(self.starts_with(&candidate, context), None);
+        let (problem, sketch) = self.sketched_with(candidate, None, context);
         problem.settle(sketch)
     }
 
@@ -225,37 +228,35 @@ impl Fitted {
         let mut fits: Vec<(Candidate, Fitted)> = combined.collect();
         let sights =
             self.hypothesis.senses().then(|| self.problem(self.hypothesis.clone(), context).sights(&self.values));
-        let sketches = fresh.par_iter().filter(|candidate| apart(candidate).is_none()).map(|candidate| {
-            let problem = self.problem_with(*candidate, context);
-            let sketch = problem.sketch(self.starts_with(candidate, context), sights.as_ref());
-            (*candidate, problem, sketch)
-        });
-        let mut sketches: Vec<_> = sketches.collect();
-        sketches.sort_by(|a, b| b.2.value().total_cmp(&a.2.value()));
+        let sketches = fresh.par_iter().filter(|c| apart(c).is_none());
+        let mut sketches: Vec<_> = sketches.map(|c| (*c, self.sketched_with(*c, sights.as_ref(), context))).collect();
+        sketches.sort_by(|a, b| b.1.1.value().total_cmp(&a.1.1.value()));
         sketches.truncate(PROMISING);
-        fits.par_extend(
-            sketches.into_par_iter().map(|(candidate, problem, sketch)| (candidate, problem.settle(sketch))),
-        );
+        fits.par_extend(sketches.into_par_iter().map(|(c, (problem, sketch))| (c, problem.settle(sketch))));
         // In the order of the catalogue, whichever way they came about.
         let place = |candidate: &Candidate| fresh.iter().position(|c| c == candidate);
         fits.sort_by_key(|(candidate, _)| place(candidate));
         fits.into_iter().map(|(_, fit)| fit).collect()
     }
 
-    /// The fit with one more effect.
-    fn problem_with<'a>(&'a self, candidate: Candidate, context: &'a FitContext<'a>) -> Problem<'a> {
-        self.problem(self.hypothesis.with(candidate), context)
+    /// A few iterations of the fit with one more effect; `sights` are what the sensor faces about these values, if that is
+    /// known.
+    fn sketched_with<'a>(
+        &'a self,
+        candidate: Candidate,
+        sights: Option<&Sights>,
+        context: &'a FitContext<'a>,
+    ) -> (Problem<'a>, Point) {
+        let starts = context.initial_guesses(&candidate).into_iter();
+        let starts = starts.map(|own| [self.values.as_slice(), own.as_slice()].concat()).collect();
+        let problem = self.problem(self.hypothesis.with(candidate), context);
+        let sketch = problem.sketch(starts, sights);
+        (problem, sketch)
     }
 
-    /// A fit of effects that leave what these do not touch as it is, or touch it themselves.
+    /// A fit of a hypothesis that takes what it does not touch from here.
     fn problem<'a>(&'a self, hypothesis: Hypothesis, context: &'a FitContext<'a>) -> Problem<'a> {
         Problem { hypothesis, untouched: &self.log_likelihood, context }
-    }
-
-    /// Where fits with one more effect start.
-    fn starts_with(&self, candidate: &Candidate, context: &FitContext) -> Vec<Vec<f64>> {
-        let guesses = context.initial_guesses(candidate).into_iter();
-        guesses.map(|own| [self.values.as_slice(), own.as_slice()].concat()).collect()
     }
 
     /// Leaves the effect at `place` out and fits the others anew.
@@ -268,7 +269,7 @@ impl Fitted {
         }
         let others = (0..=candidates.len()).filter(|i| *i != place);
         let values = others.flat_map(|i| self.values_of(i)).copied().collect();
-        let problem = Problem { hypothesis: self.hypothesis.of(candidates), untouched: &none.log_likelihood, context };
+        let problem = none.problem(self.hypothesis.of(candidates), context);
         let sketch = problem.sketch(vec![values], None);
         problem.settle(sketch)
     }
