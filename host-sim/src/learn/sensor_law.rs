@@ -9,21 +9,16 @@ use crate::sonar::echo_law::Surfaces;
 use crate::sonar::{FirstEchoLaw, SensorLaw, SonarModel};
 use crate::statistics::summary::error_of_sum;
 
-/// Whether the first-echo law foretells the sensor's readings, at poses as logged, better than a beam does, by more than runs
-/// differ in that. Both have some twenty parameters and are fitted to other runs again, since what either makes of its own runs
-/// says little: five scans hold as few places as a beam has parameters for.
+/// Whether the first-echo law foretells the sensor's readings, at poses as logged, better than a beam does: by more than runs
+/// differ in that, and by so much that it will in another room. Both have some twenty parameters and are fitted to other runs
+/// again, since what either makes of its own runs says little: five scans hold as few places as a beam has parameters for.
 pub fn is_first_echo(first_echo: &FirstEchoLaw, beam: &SonarModel, logs: &Logs) -> bool {
     if logs.runs.len() < FEWEST_RUNS {
         return false;
     }
     let fold = |fold: usize| gains(first_echo, beam, logs, fold);
     let gains: Vec<f64> = (0..FOLDS.min(logs.runs.len())).into_par_iter().map(fold).collect::<Vec<_>>().concat();
-    let gained: f64 = gains.iter().sum();
-    let error = error_of_sum(&gains);
-    log::info!(
-        "on runs that neither saw the first-echo law gains {gained:.1} nats on the beam, with a standard error of {error:.1}"
-    );
-    gained > STANDARD_ERRORS * error
+    is_worth_a_law(&gains, Scans::of(logs).rows().count())
 }
 
 /// Fewer runs say nothing of how runs differ.
@@ -33,6 +28,21 @@ const FOLDS: usize = 5;
 /// The simpler of two models is kept unless the other is better by more than this (Breiman and others 1984, Classification and
 /// Regression Trees, section 3.4.3): here the beam, which lanes of robots can draw.
 const STANDARD_ERRORS: f64 = 1.0;
+/// Models whose held-out scores differ by fewer nats a reading are alike: by so much a model's score differs from place to place
+/// and from team to team, and a diagnosis is made in another room. Many readings make a smaller difference certain, and the
+/// effects that are found are applied with the beam, so that another model costs them some of their meaning.
+const ALIKE_NATS: f64 = 0.1;
+
+/// Whether gains on runs of so many readings in all are more than chance, and hold in other rooms.
+fn is_worth_a_law(gains: &[f64], readings: usize) -> bool {
+    let gained: f64 = gains.iter().sum();
+    let error = error_of_sum(gains);
+    log::info!(
+        "on runs that neither saw the first-echo law gains {gained:.1} nats on the beam for {readings} readings, with a standard \
+         error of {error:.1}"
+    );
+    gained > STANDARD_ERRORS * error && gained > ALIKE_NATS * readings as f64
+}
 
 /// By how many nats the first-echo law foretells each run of a fold better than the beam.
 fn gains(first_echo: &FirstEchoLaw, beam: &SonarModel, logs: &Logs, fold: usize) -> Vec<f64> {
@@ -57,6 +67,7 @@ fn gains(first_echo: &FirstEchoLaw, beam: &SonarModel, logs: &Logs, fold: usize)
 
 #[cfg(test)]
 mod tests {
+    use super::is_worth_a_law;
     use crate::built_in_robot::{default_robot, record, training_room};
     use crate::learn::echo_law::tests::{MIXED_UP_DEG, scans};
     use crate::learn::train::{TABLE_ONE, Trainer, train};
@@ -78,5 +89,16 @@ mod tests {
         assert!(matches!(law_of(&few), SensorLaw::Beam(_)));
         let driven = record(&default_robot(), &training_room(), 40, 60, &[], 3).expect("room to drive");
         assert!(matches!(law_of(&driven), SensorLaw::Beam(_)));
+    }
+    /// Runs of a hundred readings that gain so much each, and as much more or less in turn.
+    #[test]
+    fn a_law_has_to_gain_more_than_chance_and_so_much_that_rooms_matter_less() {
+        let is_worth = |gain: f64, scatter: f64| {
+            let gains: Vec<f64> = (0..50).map(|run| if run % 2 == 0 { gain + scatter } else { gain - scatter }).collect();
+            is_worth_a_law(&gains, 5000)
+        };
+        assert!(is_worth(15.0, 20.0));
+        assert!(!is_worth(15.0, 200.0), "chance");
+        assert!(!is_worth(5.0, 1.0), "certain, but less than rooms differ");
     }
 }
