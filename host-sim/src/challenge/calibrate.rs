@@ -109,7 +109,7 @@ fn with_effects(bench: &Bench, number: usize, calibration: Calibration) -> Resul
     let Some((place, rivals)) = rivals.min_by(|a, b| doubt(&a.1).total_cmp(&doubt(&b.1))) else {
         return Ok(measured);
     };
-    let explained = Explained::of(&found);
+    let explained = Explained::at_least(&found);
     let is_there = |id: &str| case.effects.iter().any(|active| active.effect.id() == id);
     let among_rivals = rivals.iter().find(|(id, _)| is_there(id)).map_or(0.0, |(_, likelihood)| *likelihood);
     Ok(Measured {

@@ -39,7 +39,7 @@ pub struct NamedEffect {
     pub at_bound: Vec<&'static str>,
 }
 
-/// The share of what could be explained that effects explain.
+/// The share of what could be explained in a channel that effects explain.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Explained {
     /// The share.
@@ -97,20 +97,18 @@ impl Judged {
         let unexplained = unexplained_nats(found);
         // Scatter that grows with speed or comes back follows a cause that is not named.
         let scatters_unevenly = found.scatter.iter().any(|s| !s.is_even);
-        let whole = Explained::of(found);
-        let effects = named(found, whole, robot, calibration);
-        let doubt = gap(found, calibration) * (1.0 - probability(whole, std::iter::empty(), calibration));
+        let least = Explained::at_least(found);
+        let effects = named(found, least, robot, calibration);
+        let doubt = gap(found, calibration) * (1.0 - probability(least, std::iter::empty(), calibration));
         let likeliest = effects.first().is_some_and(|first| first.probability >= doubt);
-        if likeliest && whole.fraction >= calibration.adequate && !scatters_unevenly {
+        if likeliest && least.fraction >= calibration.adequate && !scatters_unevenly {
             return Judged::Known { effects };
         }
         // A wrong effect leaves something over wherever it explains something; a right one beside which there is another
         // cause explains the channels that the other one does not touch. Where few runs leave open whether it does, it is told.
-        let most = |explained: &Explained| explained.fraction + calibration.judgement.rival_z * explained.error;
-        let by_channel = Channel::ALL.map(|channel| Explained::of_channel(channel, found, calibration));
-        let best_channel = by_channel.into_iter().max_by(|a, b| most(a).total_cmp(&most(b))).unwrap_or(whole);
-        let effects = named(found, best_channel, robot, calibration);
-        if !effects.is_empty() && most(&best_channel) >= calibration.adequate {
+        let most = Explained::at_most(found, calibration);
+        let effects = named(found, most, robot, calibration);
+        if !effects.is_empty() && most.most(calibration) >= calibration.adequate {
             return Judged::PartlyKnown { effects };
         }
         if !effects.is_empty() || unexplained > 0.0 || scatters_unevenly {
@@ -138,27 +136,42 @@ pub fn with_shares(effects: Vec<NamedEffect>, budget: &[Part]) -> Vec<NamedEffec
 }
 
 impl Explained {
-    /// By the chosen effects, over all channels.
-    pub fn of(found: &Comparison) -> Self {
-        let left = found.beyond_chosen.iter().map(|remainder| remainder.by_block.as_slice());
-        Explained::beside(explained_nats(found), left)
+    /// By the chosen effects, in the channel where they leave most of it. What a right effect leaves is what its form lacks, a
+    /// share of what it explains there, and what is left where it explains little is another cause's. Sideways a robot of two
+    /// wheels gets by its way and its turn alone, so that forms of these leave something there.
+    pub fn at_least(found: &Comparison) -> Self {
+        const MOTION: [Channel; 3] = [Channel::Forward, Channel::Lateral, Channel::Turn];
+        let in_channel = |channel| match channel {
+            Channel::Lateral => Explained::beside(explained_nats(&MOTION, found), channel, found),
+            _ => Explained::of_channel(channel, found),
+        };
+        let least = Channel::ALL.map(in_channel).into_iter().min_by(|a, b| a.fraction.total_cmp(&b.fraction));
+        least.unwrap_or(Explained { fraction: 1.0, error: 0.0 })
     }
 
-    /// In a channel; nothing where they explain no more there than chance does.
-    fn of_channel(channel: Channel, found: &Comparison, calibration: &Calibration) -> Self {
-        let explained = found.chosen.log_likelihood.of(channel) - found.none.log_likelihood.of(channel);
-        if explained < calibration.effect_nats {
-            return Explained { fraction: 0.0, error: 0.0 };
-        }
+    /// In the channel of which they explain most; nothing where they explain no more than chance does in any.
+    fn at_most(found: &Comparison, calibration: &Calibration) -> Self {
+        let touched = Channel::ALL.into_iter().filter(|c| explained_nats(&[*c], found) >= calibration.effect_nats);
+        let by_channel = touched.map(|channel| Explained::of_channel(channel, found));
+        let most = by_channel.max_by(|a, b| a.most(calibration).total_cmp(&b.most(calibration)));
+        most.unwrap_or(Explained { fraction: 0.0, error: 0.0 })
+    }
+
+    /// As far as few runs leave that open.
+    fn most(&self, calibration: &Calibration) -> f64 {
+        self.fraction + calibration.judgement.rival_z * self.error
+    }
+
+    fn of_channel(channel: Channel, found: &Comparison) -> Self {
+        Explained::beside(explained_nats(&[channel], found), channel, found)
+    }
+
+    /// Where so many nats are explained, beside what is left in a channel.
+    fn beside(explained: f64, channel: Channel, found: &Comparison) -> Self {
         let left = found.beyond_chosen.iter().filter(|r| r.channel() == channel);
-        Explained::beside(explained, left.map(|remainder| remainder.by_block.as_slice()))
-    }
-
-    /// Where so many nats are explained, and these are left on each block.
-    fn beside<'a>(explained: f64, left: impl Iterator<Item = &'a [f64]>) -> Self {
-        let (nats, variance) = left.fold((0.0, 0.0), |(nats, variance), by_block| {
-            let error = error_of_sum(by_block);
-            (nats + by_block.iter().sum::<f64>(), variance + error * error)
+        let (nats, variance) = left.fold((0.0, 0.0), |(nats, variance), remainder| {
+            let error = error_of_sum(&remainder.by_block);
+            (nats + remainder.nats(), variance + error * error)
         });
         let (explained, left) = (explained.max(0.0), nats.max(0.0));
         let all = explained + left;
@@ -241,19 +254,19 @@ fn scattered(found: &Comparison, calibration: &Calibration) -> Option<NamedEffec
     })
 }
 
-fn explained_nats(found: &Comparison) -> f64 {
-    found.chosen.gain_over(&found.none).nats
+fn explained_nats(channels: &[Channel], found: &Comparison) -> f64 {
+    let gained = |channel: &Channel| found.chosen.log_likelihood.of(*channel) - found.none.log_likelihood.of(*channel);
+    channels.iter().map(gained).sum()
 }
 
 fn unexplained_nats(found: &Comparison) -> f64 {
-    let of = |remainder: &Remainder| remainder.by_block.iter().sum::<f64>();
-    found.beyond_chosen.iter().map(of).sum::<f64>().max(0.0)
+    found.beyond_chosen.iter().map(Remainder::nats).sum::<f64>().max(0.0)
 }
 
 /// How probable a gap is that is none of chance: half where the effects gain just what the gate asks for, and nearly
 /// certain from strong evidence beyond it on.
 fn gap(found: &Comparison, calibration: &Calibration) -> f64 {
-    let beyond = explained_nats(found) - calibration.effect_nats;
+    let beyond = found.chosen.gain_over(&found.none).nats - calibration.effect_nats;
     logistic(beyond / calibration.judgement.strong_nats)
 }
 

@@ -51,6 +51,11 @@ impl Remainder {
         self.model.channel
     }
 
+    /// What it explains in all.
+    pub fn nats(&self) -> f64 {
+        self.by_block.iter().sum()
+    }
+
     /// Whether the model explains anything.
     pub fn counts(&self) -> bool {
         self.by_block.iter().any(|g| *g != 0.0)

@@ -11,11 +11,18 @@ fn with_context(check: impl Fn(&FitContext)) {
     check(&FitContext::new(&baseline, &rows, METHOD));
 }
 
-/// A remainder of this many nats, half of them in each of two blocks.
-fn remainder(nats: f64, context: &FitContext) -> Remainder {
-    let mut remainder = remainders(&Fitted::none(context), context).swap_remove(0);
+/// A remainder of this many nats in a channel, half of them in each of two blocks.
+fn remainder(channel: Channel, nats: f64, context: &FitContext) -> Remainder {
+    let mut remainder = remainders(&Fitted::none(context), context).swap_remove(channel.index());
     remainder.by_block = vec![0.5 * nats; 2];
     remainder
+}
+
+/// Effects that gain this many nats of forward motion and leave these.
+fn leaving(effects: &[&'static Effect], gained: f64, left: Vec<Remainder>, context: &FitContext) -> Comparison {
+    let mut found = comparison(effects, &[0.5 * gained; 2], context);
+    found.chosen.log_likelihood.motion = vec![[0.5 * gained, 0.0, 0.0]; 2];
+    Comparison { beyond_chosen: left, ..found }
 }
 
 fn judged(found: &Comparison) -> Judged {
@@ -26,8 +33,8 @@ fn judged(found: &Comparison) -> Judged {
 fn the_explained_fraction_is_that_of_what_could_be_explained() {
     with_context(|context| {
         let fraction = |gained: f64, left: f64| {
-            let beyond_chosen = vec![remainder(left, context)];
-            Explained::of(&Comparison { beyond_chosen, ..comparison(&[&LONGER], &[0.5 * gained; 2], context) }).fraction
+            let left = vec![remainder(Channel::Forward, left, context)];
+            Explained::at_least(&leaving(&[&LONGER], gained, left, context)).fraction
         };
         assert_eq!(fraction(30.0, 10.0), 0.75);
         assert_eq!(fraction(30.0, 0.0), 1.0);
@@ -102,13 +109,35 @@ fn the_more_probable_effect_is_named_first() {
 fn a_gap_that_no_effect_explains_is_unknown() {
     with_context(|context| {
         let left = |effects: &[&'static Effect], gained: f64, left: f64| {
-            let beyond_chosen = vec![remainder(left, context)];
-            judged(&Comparison { beyond_chosen, ..comparison(effects, &[0.5 * gained; 2], context) })
+            judged(&leaving(effects, gained, vec![remainder(Channel::Forward, left, context)], context))
         };
         assert!(matches!(left(&[], 0.0, 10.0), Judged::Unknown));
         // 79 % are less than the 80 % that are asked for, 90 % are enough.
         assert!(matches!(left(&[&LONGER], 79.0, 21.0), Judged::Unknown));
         assert!(matches!(left(&[&LONGER], 90.0, 10.0), Judged::Known { .. }));
+    });
+}
+
+/// However little it is beside what the effect explains elsewhere.
+#[test]
+fn what_is_left_where_an_effect_explains_nothing_is_another_cause_s() {
+    with_context(|context| {
+        let left = |forward: f64, turn: f64| {
+            let left = [(Channel::Forward, forward), (Channel::Turn, turn)];
+            let left = left.map(|(channel, nats)| remainder(channel, nats, context)).into();
+            judged(&leaving(&[&LONGER], 90.0, left, context))
+        };
+        assert!(matches!(left(10.0, 0.0), Judged::Known { .. }), "what its form lacks");
+        let Judged::PartlyKnown { effects } = left(0.0, 10.0) else { panic!("it explains all where it explains") };
+        let expected = 0.9 * logistic((1.0 - 0.8) / 0.05);
+        assert!((effects[0].probability - expected).abs() < 1e-9, "{} {expected}", effects[0].probability);
+        assert!(matches!(left(30.0, 10.0), Judged::Unknown));
+        // Sideways it explains nothing either, but forms of a way forward leave something there.
+        let sideways = |nats: f64| {
+            judged(&leaving(&[&LONGER], 90.0, vec![remainder(Channel::Lateral, nats, context)], context))
+        };
+        assert!(matches!(sideways(10.0), Judged::Known { .. }));
+        assert!(matches!(sideways(30.0), Judged::PartlyKnown { .. }));
     });
 }
 
@@ -148,12 +177,9 @@ fn an_effect_for_which_many_could_stand_is_told_with_them() {
 fn an_effect_that_may_leave_no_more_than_a_right_one_is_told_with_its_doubt() {
     with_context(|context| {
         let judged = |more: f64| {
-            let mut found = comparison(&[&LONGER], &[39.5; 2], context);
-            found.chosen.log_likelihood.motion = vec![[39.5, 0.0, 0.0]; 2];
-            let mut left = remainder(21.0, context);
+            let mut left = remainder(Channel::Forward, 21.0, context);
             left.by_block = vec![10.5 - 0.5 * more, 10.5 + 0.5 * more];
-            found.beyond_chosen = vec![left];
-            judged(&found)
+            judged(&leaving(&[&LONGER], 79.0, vec![left], context))
         };
         assert!(matches!(judged(0.0), Judged::Unknown));
         let Judged::PartlyKnown { effects } = judged(4.0) else { panic!("80 of a hundred are within two errors") };
