@@ -100,7 +100,8 @@ mod tests {
     #[test]
     fn a_law_has_to_gain_more_than_chance_and_to_hold_in_other_rooms() {
         let is_worth = |gain: f64, scatter: f64, at_place: f64| {
-            let gains: Vec<f64> = (0..50).map(|run| if run % 2 == 0 { gain + scatter } else { gain - scatter }).collect();
+            let gains: Vec<f64> =
+                (0..50).map(|run| if run % 2 == 0 { gain + scatter } else { gain - scatter }).collect();
             is_worth_a_law(&gains, 5000, at_place)
         };
         assert!(is_worth(15.0, 20.0, 0.0));

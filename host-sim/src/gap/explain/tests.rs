@@ -133,9 +133,8 @@ fn what_is_left_where_an_effect_explains_nothing_is_another_cause_s() {
         assert!((effects[0].probability - expected).abs() < 1e-9, "{} {expected}", effects[0].probability);
         assert!(matches!(left(30.0, 10.0), Judged::Unknown));
         // Sideways it explains nothing either, but forms of a way forward leave something there.
-        let sideways = |nats: f64| {
-            judged(&leaving(&[&LONGER], 90.0, vec![remainder(Channel::Lateral, nats, context)], context))
-        };
+        let sideways =
+            |nats: f64| judged(&leaving(&[&LONGER], 90.0, vec![remainder(Channel::Lateral, nats, context)], context));
         assert!(matches!(sideways(10.0), Judged::Known { .. }));
         assert!(matches!(sideways(30.0), Judged::PartlyKnown { .. }));
     });
