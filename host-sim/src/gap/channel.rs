@@ -23,6 +23,9 @@ impl Channel {
     pub const ALL: [Channel; 5] =
         [Channel::Forward, Channel::Lateral, Channel::Turn, Channel::EchoRate, Channel::EchoValue];
 
+    /// Those of a step's motion.
+    pub const MOTION: [Channel; 3] = [Channel::Forward, Channel::Lateral, Channel::Turn];
+
     /// Its place among all.
     pub fn index(self) -> usize {
         self as usize
@@ -30,7 +33,7 @@ impl Channel {
 
     /// Its place among forward, lateral and turn.
     pub fn motion_axis(self) -> Option<usize> {
-        [Channel::Forward, Channel::Lateral, Channel::Turn].iter().position(|c| *c == self)
+        Self::MOTION.iter().position(|c| *c == self)
     }
 
     /// Its name in a diagnosis.

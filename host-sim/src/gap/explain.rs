@@ -108,7 +108,7 @@ impl Judged {
         // cause explains the channels that the other one does not touch. Where few runs leave open whether it does, it is told.
         let most = Explained::at_most(found, calibration);
         let effects = named(found, most, robot, calibration);
-        if !effects.is_empty() && most.most(calibration) >= calibration.adequate {
+        if !effects.is_empty() && most.possible_fraction(calibration) >= calibration.adequate {
             return Judged::PartlyKnown { effects };
         }
         if !effects.is_empty() || unexplained > 0.0 || scatters_unevenly {
@@ -140,9 +140,8 @@ impl Explained {
     /// share of what it explains there, and what is left where it explains little is another cause's. Sideways a robot of two
     /// wheels gets by its way and its turn alone, so that forms of these leave something there.
     pub fn at_least(found: &Comparison) -> Self {
-        const MOTION: [Channel; 3] = [Channel::Forward, Channel::Lateral, Channel::Turn];
         let in_channel = |channel| match channel {
-            Channel::Lateral => Explained::beside(explained_nats(&MOTION, found), channel, found),
+            Channel::Lateral => Explained::beside(explained_nats(&Channel::MOTION, found), channel, found),
             _ => Explained::of_channel(channel, found),
         };
         let least = Channel::ALL.map(in_channel).into_iter().min_by(|a, b| a.fraction.total_cmp(&b.fraction));
@@ -153,12 +152,12 @@ impl Explained {
     fn at_most(found: &Comparison, calibration: &Calibration) -> Self {
         let touched = Channel::ALL.into_iter().filter(|c| explained_nats(&[*c], found) >= calibration.effect_nats);
         let by_channel = touched.map(|channel| Explained::of_channel(channel, found));
-        let most = by_channel.max_by(|a, b| a.most(calibration).total_cmp(&b.most(calibration)));
-        most.unwrap_or(Explained { fraction: 0.0, error: 0.0 })
+        let possible = |explained: &Explained| explained.possible_fraction(calibration);
+        by_channel.max_by(|a, b| possible(a).total_cmp(&possible(b))).unwrap_or(Explained { fraction: 0.0, error: 0.0 })
     }
 
-    /// As far as few runs leave that open.
-    fn most(&self, calibration: &Calibration) -> f64 {
+    /// The largest share that few runs leave open.
+    fn possible_fraction(&self, calibration: &Calibration) -> f64 {
         self.fraction + calibration.judgement.rival_z * self.error
     }
 
@@ -168,16 +167,13 @@ impl Explained {
 
     /// Where so many nats are explained, beside what is left in a channel.
     fn beside(explained: f64, channel: Channel, found: &Comparison) -> Self {
-        let left = found.beyond_chosen.iter().filter(|r| r.channel() == channel);
-        let (nats, variance) = left.fold((0.0, 0.0), |(nats, variance), remainder| {
-            let error = error_of_sum(&remainder.by_block);
-            (nats + remainder.nats(), variance + error * error)
-        });
+        let remainder = found.beyond_chosen.iter().find(|r| r.channel() == channel);
+        let (nats, error) = remainder.map_or((0.0, 0.0), |r| (r.nats(), error_of_sum(&r.by_block)));
         let (explained, left) = (explained.max(0.0), nats.max(0.0));
         let all = explained + left;
         if all > 0.0 {
             // By the derivative of the share: what is explained is known better than what is left.
-            Explained { fraction: explained / all, error: explained * variance.sqrt() / (all * all) }
+            Explained { fraction: explained / all, error: explained * error / (all * all) }
         } else {
             Explained { fraction: 1.0, error: 0.0 }
         }

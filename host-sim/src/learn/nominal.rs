@@ -22,10 +22,20 @@ const FEWEST: usize = 100;
 /// with poses as logged.
 pub fn learn(simulator: &Simulator, first_echo: Option<FirstEchoLaw>, logs: &Logs) -> NominalModel {
     let sonar = beam::learn(simulator.constant_reading, logs);
-    let first_echo =
-        first_echo.filter(|law| sonar.as_ref().is_some_and(|beam| sensor_law::is_first_echo(law, beam, logs)));
-    let law = first_echo.clone().map(SensorLaw::FirstEcho).or_else(|| sonar.clone().map(SensorLaw::Beam));
-    let seen = law.as_ref().map(|law| place_bound::seen(law, logs)).unwrap_or_default();
+    let with_seen = |law: SensorLaw| {
+        let seen = place_bound::seen(&law, logs);
+        (law, seen)
+    };
+    let by_beam = sonar.clone().map(|beam| with_seen(SensorLaw::Beam(beam)));
+    let is_first_echo = |law: &FirstEchoLaw| {
+        sonar.as_ref().zip(by_beam.as_ref()).is_some_and(|(beam, (_, seen))| {
+            let [at_place, _] = place_bound::learn(seen);
+            sensor_law::is_first_echo(law, beam, at_place, logs)
+        })
+    };
+    let first_echo = first_echo.filter(is_first_echo);
+    let (law, seen) = first_echo.clone().map(|law| with_seen(SensorLaw::FirstEcho(law))).or(by_beam).unzip();
+    let seen = seen.unwrap_or_default();
     let familiar = law.as_ref().and_then(|law| familiar::learn(law, &seen, &logs.scene));
     let place_bound = place_bound::learn(&seen);
     NominalModel { motion: motion(simulator, logs), sonar, first_echo, place_bound, familiar }

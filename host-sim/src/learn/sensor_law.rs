@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use super::scans::{Scans, UNCHANGED};
-use super::{beam, echo_law, place_bound};
+use super::{beam, echo_law};
 use crate::logs::Logs;
 use crate::sonar::echo_law::Surfaces;
 use crate::sonar::{FirstEchoLaw, SensorLaw, SonarModel};
@@ -12,13 +12,13 @@ use crate::statistics::summary::error_of_sum;
 /// Whether the first-echo law foretells the sensor's readings, at poses as logged, better than a beam does: by more than runs
 /// differ in that, and so that it will in another room. Both have some twenty parameters and are fitted to other runs
 /// again, since what either makes of its own runs says little: five scans hold as few places as a beam has parameters for.
-pub fn is_first_echo(first_echo: &FirstEchoLaw, beam: &SonarModel, logs: &Logs) -> bool {
+/// `at_place` is the share of the chance of an echo that the beam leaves to the place.
+pub fn is_first_echo(first_echo: &FirstEchoLaw, beam: &SonarModel, at_place: f64, logs: &Logs) -> bool {
     if logs.runs.len() < FEWEST_RUNS {
         return false;
     }
     let fold = |fold: usize| gains(first_echo, beam, logs, fold);
     let gains: Vec<f64> = (0..FOLDS.min(logs.runs.len())).into_par_iter().map(fold).collect::<Vec<_>>().concat();
-    let [at_place, _] = place_bound::learn(&place_bound::seen(&SensorLaw::Beam(beam.clone()), logs));
     is_worth_a_law(&gains, Scans::of(logs).rows().count(), at_place)
 }
 
@@ -96,6 +96,7 @@ mod tests {
         let driven = record(&default_robot(), &training_room(), 40, 60, &[], 3).expect("room to drive");
         assert!(matches!(law_of(&driven), SensorLaw::Beam(_)));
     }
+
     /// Runs of a hundred readings that gain so much each, and as much more or less in turn.
     #[test]
     fn a_law_has_to_gain_more_than_chance_and_to_hold_in_other_rooms() {
