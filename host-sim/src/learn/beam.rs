@@ -2,32 +2,28 @@
 
 use rayon::prelude::*;
 
-use super::scatter;
 use crate::geometry::{Pose, cast};
 use crate::logs::Logs;
 use crate::simulator::residuals::ConstantReading;
-use crate::sonar::model::STRENGTHS;
+use crate::sonar::model::{CONSTANT_SCATTER_CM, STRENGTHS};
 use crate::sonar::{Perturbation, SonarModel, fan_at};
 use crate::statistics::maximise::{Bounds, climb};
+use crate::statistics::student;
 
-/// The beam of the sensor that made these logs, with the reading that it gives where there is nothing if that is known; none
-/// where they hold too few readings.
+/// The beam of the sensor that made these logs, with the reading that it gives where there is nothing if that is known, and else
+/// with one that makes them likely; none where they hold too few readings.
 pub fn learn(constant: Option<ConstantReading>, logs: &Logs) -> Option<SonarModel> {
     let sides = logs.scene.sides();
     let mount = &logs.robot.ultrasonic;
-    let (mut echoes, mut distances) = (Vec::new(), Vec::new());
-    for (sensor, echo_cm) in seen(logs) {
-        if let (Some(echo), Some(hit)) = (echo_cm, cast(&sides, sensor.position_cm, sensor.direction())) {
-            echoes.push(echo as f32);
-            distances.push(hit.distance_cm as f32);
-        }
-    }
-    if echoes.len() < FEWEST {
+    let meets_a_wall = |sensor: &Pose| cast(&sides, sensor.position_cm, sensor.direction()).is_some();
+    let readings = seen(logs).iter().filter(|(sensor, echo_cm)| echo_cm.is_some() && meets_a_wall(sensor)).count();
+    if readings < FEWEST {
         return None;
     }
-    let constant = constant.or_else(|| scatter::constant_reading(&echoes, &distances));
     let value_cm = constant.map_or(mount.min_cm, |c| f64::from(c.value_cm));
-    Some(learn_from(&model(&START, value_cm, [mount.min_cm, mount.max_cm]), logs))
+    let found = learn_from(&model(&START, value_cm, [mount.min_cm, mount.max_cm]), logs);
+    let likely = constant.is_none().then(|| likely_constant_cm(&found, logs)).flatten();
+    Some(likely.map_or(found.clone(), |value_cm| learn_from(&with_constant(&found, value_cm), logs)))
 }
 
 /// The beam of these logs, sought from another on.
@@ -44,6 +40,33 @@ pub fn learn_from(start: &SonarModel, logs: &Logs) -> SonarModel {
         seen.par_iter().map(term).collect()
     };
     model(&climb(&BOUNDS, &numbers(start), ROUNDS, ENOUGH, terms).at)
+}
+
+/// The reading in whole cm that makes these logs most likely if the sensor gives it now and then whatever it faces; none where
+/// it gains no more than the logarithm of the number of values, of which any might have been it. Small logs hold too few for
+/// [`scatter::constant_reading`](super::scatter::constant_reading), which asks for a peak of the readings that are far off.
+fn likely_constant_cm(beam: &SonarModel, logs: &Logs) -> Option<f64> {
+    let sides = logs.scene.sides();
+    let outcomes = |sensor: &Pose| beam.outcomes(&fan_at(&sides, sensor, beam.fan_width), &Perturbation::NONE);
+    let rows: Vec<(Option<f64>, f64)> = seen(logs)
+        .par_iter()
+        .map(|(sensor, echo_cm)| (*echo_cm, echo_cm.map_or(1.0, |cm| outcomes(sensor).density(cm))))
+        .collect();
+    let [low, high] = beam.range_cm.map(|cm| cm.ceil() as i64);
+    let gain = |value_cm: f64| -> f64 {
+        let density = |cm: f64| student::density(cm - value_cm, CONSTANT_SCATTER_CM);
+        let gain = |(echo_cm, other): &(Option<f64>, f64)| {
+            libm::log1p(CONSTANT_AT_START * (echo_cm.map_or(0.0, density) / other - 1.0))
+        };
+        rows.iter().map(gain).sum()
+    };
+    let gains = (low..=high).map(|cm| (cm as f64, gain(cm as f64)));
+    let (value_cm, gained) = gains.max_by(|a, b| a.1.total_cmp(&b.1))?;
+    (gained > libm::log((high - low + 1) as f64)).then_some(value_cm)
+}
+
+fn with_constant(beam: &SonarModel, value_cm: f64) -> SonarModel {
+    SonarModel { constant: [CONSTANT_AT_START, value_cm], p_constant_given_none: CONSTANT_AT_START, ..beam.clone() }
 }
 
 /// Where the sensor was at every row, and what it read.
@@ -84,6 +107,7 @@ const START: [f64; STRENGTHS + 12] = [
     0.01, // constant where no echo comes back
     2.0,  // loss where a wall mirrors
 ];
+const CONSTANT_AT_START: f64 = START[STRENGTHS + 6];
 /// The search ends after this many iterations, or when one gains less than half a nat, a sixth of what is strong evidence.
 const ROUNDS: usize = 40;
 const ENOUGH: f64 = 0.5;
@@ -123,7 +147,42 @@ fn numbers(model: &SonarModel) -> [f64; STRENGTHS + 12] {
 
 #[cfg(test)]
 mod tests {
+    use rand::RngExt;
+
     use super::*;
+    use crate::built_in_robot::{default_robot, record, training_room};
+    use crate::chance::generator;
+
+    /// Twelve runs of a sensor like the built-in robot's, which gives this constant reading.
+    fn drawn([p_constant, value_cm]: [f64; 2]) -> (SonarModel, Logs) {
+        let mut logs = record(&default_robot(), &training_room(), 12, 40, &[], 1).expect("room to drive");
+        let beam =
+            SonarModel { constant: [0.0, 4.0], p_constant_given_none: 0.0, ..learn(None, &logs).expect("readings") };
+        let sensor = SonarModel { constant: [p_constant, value_cm], p_constant_given_none: p_constant, ..beam.clone() };
+        let (sides, mut rng) = (logs.scene.sides(), generator(2, &[]));
+        let mount = logs.robot.ultrasonic.clone();
+        let read =
+            |pose: &Pose| sensor.outcomes(&fan_at(&sides, &mount.pose_on(pose), sensor.fan_width), &Perturbation::NONE);
+        for run in &mut logs.runs {
+            run.rows.edit_each(|row| {
+                if let Some(pose) = &row.pose {
+                    row.echo_cm = read(pose).draw(true, || rng.random()).map(f64::round);
+                }
+            });
+        }
+        (beam, logs)
+    }
+
+    #[test]
+    fn a_constant_reading_is_found_in_a_few_runs() {
+        let (beam, logs) = drawn([0.025, 57.0]);
+        let near = |value_cm: f64| (value_cm - 57.0).abs() <= 1.0;
+        assert!(likely_constant_cm(&beam, &logs).is_some_and(near));
+        let [probability, value_cm] = learn(None, &logs).expect("readings").constant;
+        assert!(near(value_cm) && (0.01..0.05).contains(&probability), "{probability} at {value_cm}");
+        let (beam, logs) = drawn([0.0, 57.0]);
+        assert_eq!(likely_constant_cm(&beam, &logs), None);
+    }
 
     #[test]
     fn a_search_begins_at_the_model_that_it_is_given() {
