@@ -201,6 +201,13 @@ impl Deck {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::gap::calibration::CALIBRATED_STEPS;
+
+    #[test]
+    fn robots_are_trained_on_as_many_steps_as_the_gates_are_set_for() {
+        let Size { steps, nominal_runs, .. } = Size::USUAL;
+        assert_eq!((steps * nominal_runs) as f64, CALIBRATED_STEPS);
+    }
 
     #[test]
     fn held_out_effects_take_the_place_of_the_usual_ones_outside_the_table() {

@@ -83,6 +83,7 @@ pub fn sensitivity(cases: usize, seed: u64, watch: impl Fn(usize, usize) + Sync)
 /// What comes of a case with each calibration.
 fn of_case(bench: &Bench, number: usize, calibrations: &[Calibration]) -> Result<Vec<Ending>> {
     let (case, baseline) = bench.case(number)?;
+    let trained_on = baseline.trained_on();
     // Most thresholds of a judgement change nothing of what is searched for.
     let mut searched: Vec<Calibration> = Vec::new();
     for calibration in calibrations.iter().map(Calibration::for_search) {
@@ -93,16 +94,16 @@ fn of_case(bench: &Bench, number: usize, calibrations: &[Calibration]) -> Result
     let found = confirmed(baseline, &case.logs, &searched, |found, _, _| found)?;
     let of = |calibration: &Calibration| {
         let place = searched.iter().position(|searched| *searched == calibration.for_search())?;
-        Some(judged(&case, &found[place], calibration))
+        Some(judged(&case, trained_on, &found[place], calibration))
     };
     Ok(calibrations.iter().filter_map(of).collect())
 }
 
 /// What comes of a case of which this was found, judged by a calibration.
-fn judged(case: &Case, found: &Comparison, calibration: &Calibration) -> Ending {
+fn judged(case: &Case, trained_on: Option<f64>, found: &Comparison, calibration: &Calibration) -> Ending {
     let method = Method { calibration: *calibration, ..Method::default() };
     let rows = found.none.log_likelihood.motion.len();
-    let judged = Judged::of(found, &case.logs.robot, &method.calibration_for(rows));
+    let judged = Judged::of(found, &case.logs.robot, &method.calibration_for(rows, trained_on));
     let in_table = case.effects.iter().all(|active| active.effect.in_table());
     let (is_null, is_unknown) = (case.effects.is_empty(), matches!(judged, Judged::Unknown));
     let first = match &judged {

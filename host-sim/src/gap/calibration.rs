@@ -51,6 +51,10 @@ pub struct Judgement {
     pub scatter_ratio: f64,
 }
 
+/// Steps that a simulator of the calibration learned its motion from: eighty runs of sixty. A test of `challenge` holds it
+/// against those that it trains.
+pub const CALIBRATED_STEPS: f64 = 4800.0;
+
 /// The file that `mindgap challenge calibrate` wrote.
 pub const SHIPPED: &str = include_str!("calibration.toml");
 
@@ -71,10 +75,10 @@ impl Calibration {
         Calibration { adequate, adequacy_width, temperature, accuracy_cap, ..*self }
     }
 
-    /// The same for this many rows: what the simulator's own misfit feigns grows with them, and so do the nats that are
-    /// asked for.
-    pub fn for_rows(self, rows: usize) -> Self {
-        let growth = self.growth(rows);
+    /// The same for this many rows, and a simulator that learned its motion from so many steps if it did: what its own misfit
+    /// feigns grows with the rows, and what few steps leave open with their ratio, and so do the nats that are asked for.
+    pub fn for_rows(self, rows: usize, trained_on: Option<f64>) -> Self {
+        let growth = self.growth(rows).max(trained_on.map_or(1.0, |steps| self.growth_by_training(rows, steps)));
         let (effect_nats, remainder_nats) = (growth * self.effect_nats, growth * self.remainder_nats);
         Calibration { effect_nats, remainder_nats, ..self }
     }
@@ -91,6 +95,14 @@ impl Calibration {
     /// How much more is asked for with this many rows; never less, since what chance feigns does not shrink.
     pub fn growth(&self, rows: usize) -> f64 {
         (rows as f64 / self.rows).max(1.0)
+    }
+
+    /// How much more chance feigns with this many rows against a simulator that learned from so many steps than in the
+    /// calibration. A form that differs from a number estimated from m steps gains by n rows, where nothing has changed, half a
+    /// nat times 1 + n / m: the variance of the difference of two means, in units of that of the second.
+    fn growth_by_training(&self, rows: usize, steps: f64) -> f64 {
+        let feigned = |rows: f64, steps: f64| 1.0 + rows / steps.max(1.0);
+        feigned(rows as f64, steps) / feigned(self.rows, CALIBRATED_STEPS)
     }
 
     /// The text of a calibration file, with the command that made it.
@@ -159,9 +171,20 @@ mod tests {
     #[test]
     fn twice_the_rows_ask_for_twice_the_nats_and_few_for_no_fewer() {
         let shipped = Calibration { rows: 1000.0, ..Calibration::shipped() };
-        assert_eq!(shipped.for_rows(10), shipped);
-        let twice = shipped.for_rows(2000);
+        assert_eq!(shipped.for_rows(10, None), shipped);
+        let twice = shipped.for_rows(2000, None);
         assert_eq!(twice.effect_nats, 2.0 * shipped.effect_nats);
         assert_eq!(twice.remainder_nats, 2.0 * shipped.remainder_nats);
+    }
+
+    #[test]
+    fn a_simulator_that_learned_from_few_steps_asks_for_more() {
+        let shipped = Calibration { rows: 1200.0, ..Calibration::shipped() };
+        for (rows, steps, growth) in
+            [(1200, CALIBRATED_STEPS, 1.0), (1200, 1e6, 1.0), (300, 200.0, 2.0), (2400, 4800.0, 2.0)]
+        {
+            let found = shipped.for_rows(rows, Some(steps)).effect_nats / shipped.effect_nats;
+            assert!((found - growth).abs() < 1e-12, "{rows} rows, {steps} steps: {found}");
+        }
     }
 }

@@ -89,7 +89,7 @@ impl<'a> FitContext<'a> {
             observations,
             few: (every > 1).then(|| Few { rows: observations.every(every), every }),
             catalogue: method.catalogue,
-            calibration: method.calibration_for(observations.rows.len()),
+            calibration: method.calibration_for(observations.rows.len(), baseline.trained_on()),
             seed: method.seed,
             own_errors: OwnErrors::of(baseline, observations),
             explained_already: explained_already(baseline, observations),

@@ -19,9 +19,10 @@ impl Method {
     /// The seed unless another is given.
     pub const SEED: u64 = 1;
 
-    /// The thresholds for so many rows, among all that competes.
-    pub fn calibration_for(&self, rows: usize) -> Calibration {
-        self.calibration.among(self.catalogue.len(), Channel::ALL.len()).for_rows(rows)
+    /// The thresholds for so many rows against a simulator that learned its motion from so many steps if it did, among all
+    /// that competes.
+    pub fn calibration_for(&self, rows: usize, trained_on: Option<f64>) -> Calibration {
+        self.calibration.among(self.catalogue.len(), Channel::ALL.len()).for_rows(rows, trained_on)
     }
 }
 

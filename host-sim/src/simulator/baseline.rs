@@ -10,6 +10,7 @@ use crate::simulator::ensemble::command_scale::Percent;
 use crate::simulator::ensemble::{CommandScale, HeldMotion, Member, Posterior};
 use crate::simulator::motion::MotionNetworks;
 use crate::simulator::nominal::MotionBias;
+use crate::simulator::nominal::motion_bias::Precision;
 use crate::simulator::{Learned, Simulator};
 use crate::sonar::SensorLaw;
 use crate::sonar::familiar::FamiliarPoses;
@@ -96,6 +97,12 @@ impl<'s> Baseline<'s> {
             *member = open.as_ref().map(|open| open.mean());
         }
         Ok(baseline)
+    }
+
+    /// Number of steps that the motion was learned from, as far as that is known; none of the textbook.
+    pub fn trained_on(&self) -> Option<f64> {
+        let MotionModel::Learned { reference, .. } = self.motion.as_ref()? else { return None };
+        reference.precision.as_ref().and_then(Precision::steps)
     }
 }
 

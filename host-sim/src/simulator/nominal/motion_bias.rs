@@ -42,6 +42,11 @@ impl Precision {
         }
         Some(precision)
     }
+
+    /// Number of training steps: the first feature is one.
+    pub fn steps(&self) -> Option<f64> {
+        self.products.first().copied().map(f64::from)
+    }
 }
 
 /// Magnitudes of commands, and of the difference of right and left one, at which a correction may bend: friction holds
