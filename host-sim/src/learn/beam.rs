@@ -1,5 +1,7 @@
 //! Fits the sonar model of a beam to logs: the most probable parameters.
 
+use std::collections::BTreeSet;
+
 use rayon::prelude::*;
 
 use crate::geometry::{Pose, cast};
@@ -60,7 +62,10 @@ fn likely_constant_cm(beam: &SonarModel, logs: &Logs) -> Option<f64> {
         };
         rows.iter().map(gain).sum()
     };
-    let gains = (low..=high).map(|cm| (cm as f64, gain(cm as f64)));
+    // Of a range that is absurdly long few values were read.
+    let read = rows.iter().filter_map(|(echo_cm, _)| Some(echo_cm.as_ref()?.round() as i64));
+    let read: BTreeSet<i64> = read.filter(|cm| (low..=high).contains(cm)).collect();
+    let gains = read.into_iter().map(|cm| (cm as f64, gain(cm as f64)));
     let (value_cm, gained) = gains.max_by(|a, b| a.1.total_cmp(&b.1))?;
     (gained > libm::log((high - low + 1) as f64)).then_some(value_cm)
 }
@@ -160,7 +165,7 @@ mod tests {
             SonarModel { constant: [0.0, 4.0], p_constant_given_none: 0.0, ..learn(None, &logs).expect("readings") };
         let sensor = SonarModel { constant: [p_constant, value_cm], p_constant_given_none: p_constant, ..beam.clone() };
         let (sides, mut rng) = (logs.scene.sides(), generator(2, &[]));
-        let mount = logs.robot.ultrasonic.clone();
+        let mount = logs.robot.ultrasonic;
         let read =
             |pose: &Pose| sensor.outcomes(&fan_at(&sides, &mount.pose_on(pose), sensor.fan_width), &Perturbation::NONE);
         for run in &mut logs.runs {
