@@ -75,10 +75,9 @@ impl Calibration {
         Calibration { adequate, adequacy_width, temperature, accuracy_cap, ..*self }
     }
 
-    /// The same for this many rows, and a simulator that learned its motion from so many steps if it did: what its own misfit
-    /// feigns grows with the rows, and what few steps leave open with their ratio, and so do the nats that are asked for.
+    /// The same for this many rows, and a simulator that learned its motion from so many steps if it did.
     pub fn for_rows(self, rows: usize, trained_on: Option<f64>) -> Self {
-        let growth = self.growth(rows).max(trained_on.map_or(1.0, |steps| self.growth_by_training(rows, steps)));
+        let growth = self.growth(rows, trained_on);
         let (effect_nats, remainder_nats) = (growth * self.effect_nats, growth * self.remainder_nats);
         Calibration { effect_nats, remainder_nats, ..self }
     }
@@ -92,17 +91,15 @@ impl Calibration {
         Calibration { effect_nats, remainder_nats, ..self }
     }
 
-    /// How much more is asked for with this many rows; never less, since what chance feigns does not shrink.
-    pub fn growth(&self, rows: usize) -> f64 {
-        (rows as f64 / self.rows).max(1.0)
-    }
-
-    /// How much more chance feigns with this many rows against a simulator that learned from so many steps than in the
-    /// calibration. A form that differs from a number estimated from m steps gains by n rows, where nothing has changed, half a
-    /// nat times 1 + n / m: the variance of the difference of two means, in units of that of the second.
-    fn growth_by_training(&self, rows: usize, steps: f64) -> f64 {
+    /// How much more is asked for with this many rows, and of a simulator that learned from so many steps; never less, since what
+    /// chance feigns does not shrink. What the simulator's own misfit feigns grows with the rows. And a form that differs from a
+    /// number estimated from m steps gains by n rows, where nothing has changed, half a nat times 1 + n / m: the variance of the
+    /// difference of two means, in units of that of the second.
+    pub fn growth(&self, rows: usize, trained_on: Option<f64>) -> f64 {
+        let rows = rows as f64;
         let feigned = |rows: f64, steps: f64| 1.0 + rows / steps.max(1.0);
-        feigned(rows as f64, steps) / feigned(self.rows, CALIBRATED_STEPS)
+        let left_open = |steps: f64| feigned(rows, steps) / feigned(self.rows, CALIBRATED_STEPS);
+        (rows / self.rows).max(trained_on.map_or(1.0, left_open)).max(1.0)
     }
 
     /// The text of a calibration file, with the command that made it.

@@ -24,8 +24,11 @@ pub fn learn(constant: Option<ConstantReading>, logs: &Logs) -> Option<SonarMode
     }
     let value_cm = constant.map_or(mount.min_cm, |c| f64::from(c.value_cm));
     let found = learn_from(&model(&START, value_cm, [mount.min_cm, mount.max_cm]), logs);
-    let likely = constant.is_none().then(|| likely_constant_cm(&found, logs)).flatten();
-    Some(likely.map_or(found.clone(), |value_cm| learn_from(&with_constant(&found, value_cm), logs)))
+    let likely_cm = if constant.is_none() { likely_constant_cm(&found, logs) } else { None };
+    Some(match likely_cm {
+        Some(value_cm) => learn_from(&with_constant(&found, CONSTANT_AT_START, value_cm), logs),
+        None => found,
+    })
 }
 
 /// The beam of these logs, sought from another on.
@@ -70,8 +73,9 @@ fn likely_constant_cm(beam: &SonarModel, logs: &Logs) -> Option<f64> {
     (gained > libm::log((high - low + 1) as f64)).then_some(value_cm)
 }
 
-fn with_constant(beam: &SonarModel, value_cm: f64) -> SonarModel {
-    SonarModel { constant: [CONSTANT_AT_START, value_cm], p_constant_given_none: CONSTANT_AT_START, ..beam.clone() }
+/// The same beam with a constant reading of this probability, in place of an echo and of none.
+fn with_constant(beam: &SonarModel, probability: f64, value_cm: f64) -> SonarModel {
+    SonarModel { constant: [probability, value_cm], p_constant_given_none: probability, ..beam.clone() }
 }
 
 /// Where the sensor was at every row, and what it read.
@@ -158,12 +162,11 @@ mod tests {
     use crate::built_in_robot::{default_robot, record, training_room};
     use crate::chance::generator;
 
-    /// Twelve runs of a sensor like the built-in robot's, which gives this constant reading.
-    fn drawn([p_constant, value_cm]: [f64; 2]) -> (SonarModel, Logs) {
+    /// Twelve runs of a sensor like the built-in robot's, which gives this constant reading; and its beam without that.
+    fn drawn(p_constant: f64, value_cm: f64) -> (SonarModel, Logs) {
         let mut logs = record(&default_robot(), &training_room(), 12, 40, &[], 1).expect("room to drive");
-        let beam =
-            SonarModel { constant: [0.0, 4.0], p_constant_given_none: 0.0, ..learn(None, &logs).expect("readings") };
-        let sensor = SonarModel { constant: [p_constant, value_cm], p_constant_given_none: p_constant, ..beam.clone() };
+        let beam = with_constant(&learn(None, &logs).expect("readings"), 0.0, 4.0);
+        let sensor = with_constant(&beam, p_constant, value_cm);
         let (sides, mut rng) = (logs.scene.sides(), generator(2, &[]));
         let mount = logs.robot.ultrasonic;
         let read =
@@ -180,12 +183,12 @@ mod tests {
 
     #[test]
     fn a_constant_reading_is_found_in_a_few_runs() {
-        let (beam, logs) = drawn([0.025, 57.0]);
+        let (beam, logs) = drawn(0.025, 57.0);
         let near = |value_cm: f64| (value_cm - 57.0).abs() <= 1.0;
         assert!(likely_constant_cm(&beam, &logs).is_some_and(near));
         let [probability, value_cm] = learn(None, &logs).expect("readings").constant;
         assert!(near(value_cm) && (0.01..0.05).contains(&probability), "{probability} at {value_cm}");
-        let (beam, logs) = drawn([0.0, 57.0]);
+        let (beam, logs) = drawn(0.0, 57.0);
         assert_eq!(likely_constant_cm(&beam, &logs), None);
     }
 

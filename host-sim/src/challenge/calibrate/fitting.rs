@@ -1,7 +1,7 @@
 //! From what was measured to thresholds: each by the criterion that it stands for.
 
 use super::Measured;
-use crate::gap::calibration::{Calibration, Judgement};
+use crate::gap::calibration::{CALIBRATED_STEPS, Calibration, Judgement};
 use crate::gap::explain::{Explained, probability};
 
 /// Share of all cases without an effect whose gain passes the gate for an effect. A gain on the runs held out is asked for
@@ -42,7 +42,7 @@ pub fn open(nulls: &[Measured]) -> Calibration {
         judgement: Judgement::USUAL,
     };
     let gate = |share: f64, gain: fn(&Measured) -> f64| {
-        rounded(tail(nulls.iter().map(|m| gain(m) / ungated.growth(m.rows)).collect(), share))
+        rounded(tail(nulls.iter().map(|m| gain(m) / ungated.growth(m.rows, Some(CALIBRATED_STEPS))).collect(), share))
     };
     Calibration {
         effect_nats: gate(FALSE_EFFECTS, |m| m.effect_nats),
