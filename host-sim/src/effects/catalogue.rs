@@ -2,6 +2,8 @@
 //!
 //! What several of them share stands below: how commands, distances and forces change.
 
+mod drive;
+
 use super::context::{CommandHistory, StepContext};
 use super::parameter::parameters;
 use super::{Effect, PoseIncrement, Variant};

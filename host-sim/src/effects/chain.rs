@@ -80,26 +80,25 @@ impl EffectChain {
     }
 }
 
-/// The motion of so many steps ago: between that of two steps where it is no whole number.
+/// The motion of so many steps ago. Where that is no whole number, the earlier step lasts into this one at the speed that it
+/// came to, and this one ends so much before it.
 fn delayed(
     commands: &CommandHistory,
     late_steps: f64,
     mut step: impl FnMut([f64; 2], [f64; 2]) -> PoseIncrement,
 ) -> PoseIncrement {
     let (whole, part) = (late_steps as usize, late_steps % 1.0);
-    let mut ago = |steps: usize| {
-        let command = |steps: usize| commands.get(steps).copied().unwrap_or([0.0; 2]);
-        step(command(steps), command(steps + 1))
-    };
-    let later = ago(whole);
+    let ago = |steps: usize| commands.get(steps).copied().unwrap_or([0.0; 2]);
+    let (now, before) = (ago(whole), ago(whole + 1));
+    let motion = step(now, before);
     if part == 0.0 {
-        return later;
+        return motion;
     }
-    let earlier = ago(whole + 1);
-    let between = |later: f64, earlier: f64| later + part * (earlier - later);
+    let [lasting, ending] = [before, now].map(|command| step(command, command));
+    let moved = |motion: f64, lasting: f64, ending: f64| motion + part * (lasting - ending);
     PoseIncrement {
-        forward_cm: between(later.forward_cm, earlier.forward_cm),
-        lateral_cm: between(later.lateral_cm, earlier.lateral_cm),
-        turn_rad: between(later.turn_rad, earlier.turn_rad),
+        forward_cm: moved(motion.forward_cm, lasting.forward_cm, ending.forward_cm),
+        lateral_cm: moved(motion.lateral_cm, lasting.lateral_cm, ending.lateral_cm),
+        turn_rad: moved(motion.turn_rad, lasting.turn_rad, ending.turn_rad),
     }
 }

@@ -1,5 +1,6 @@
 //! The drive takes longer to reach its speed.
 
+use super::drive::{Drive, OWN_MS};
 use super::parameters;
 use crate::effects::context::HISTORY;
 use crate::effects::parameter::{Guesses, Report};
@@ -11,35 +12,67 @@ pub const EFFECT: Effect = Effect {
     what: "The drive takes longer to reach the commanded speed.",
     check: "Film a start beside a ruler and mark the robot's place frame by frame: the way grows as a curve before \
             it grows as a line.",
-    variants: &[Variant {
-        id: "first_order_lag",
-        parameters: Inertia::PARAMETERS,
-        hooks: &[Hook::Commands(&|v, context, commands| {
-            let Inertia { ms, remaining } = Inertia::read(v);
-            if ms == 0.0 {
-                return;
-            }
-            // The speed at the step's begin has come within `remaining` of the command before.
-            let mut speed = commands[HISTORY - 1];
-            for command in commands[1..].iter().rev() {
-                speed = [0, 1].map(|m| command[m] + remaining * (speed[m] - command[m]));
-            }
-            let share = (ms / context.robot.step_ms).min(1.0);
-            commands[0] = [0, 1].map(|m| commands[0][m] + share * (speed[m] - commands[0][m]));
-            commands[1] = speed;
-        })],
-    }],
+    variants: &[
+        Variant {
+            id: "first_order_lag",
+            parameters: Lag::PARAMETERS,
+            hooks: &[Hook::Commands(&|v, context, commands| {
+                let Lag { ms, remaining } = Lag::read(v);
+                if ms == 0.0 {
+                    return;
+                }
+                // The speed at the step's begin has come within `remaining` of the command before.
+                let mut speed = commands[HISTORY - 1];
+                for command in commands[1..].iter().rev() {
+                    speed = [0, 1].map(|m| command[m] + remaining * (speed[m] - command[m]));
+                }
+                let share = (ms / context.robot.step_ms).min(1.0);
+                commands[0] = [0, 1].map(|m| commands[0][m] + share * (speed[m] - commands[0][m]));
+                commands[1] = speed;
+            })],
+        },
+        Variant {
+            id: "drive_with_friction",
+            parameters: SlowDrive::PARAMETERS,
+            hooks: &[Hook::Commands(&|v, context, commands| {
+                let SlowDrive { ms, own_ms, friction_cm_s } = SlowDrive::read(v);
+                if ms > 0.0 {
+                    let own = Drive::of(own_ms, friction_cm_s, context);
+                    own.imitate(&Drive::of(own_ms + ms, friction_cm_s, context), commands);
+                }
+            })],
+        },
+    ],
 };
 
+/// Time that is added to the drive's time constant. An NXT motor takes about 50 ms; more than 300 ms would need many times
+/// its rotor's inertia.
+const ADDED_MS: Parameter =
+    Parameter::new("ms", 0.0, [0.0, 320.0]).prior_sd(120.0).from(Guesses::At(&[40.0, 120.0, 200.0]));
+
 parameters! {
-    Inertia {
-        /// Time that is added to the drive's time constant. An NXT motor takes about 50 ms; more than 300 ms would need
-        /// many times its rotor's inertia.
-        ms: Parameter::new("ms", 0.0, [0.0, 320.0]).prior_sd(120.0).from(Guesses::At(&[40.0, 120.0, 200.0])),
+    Lag {
+        /// See [`ADDED_MS`].
+        ms: ADDED_MS,
         /// Share of a change of speed that is still missing a step later: never none, or it would be a delay.
         remaining: Parameter::new("", 0.2, [0.03, 0.8])
             .prior_sd(0.3)
             .from(Guesses::At(&[0.15, 0.4]))
+            .report(Report::Hidden),
+    }
+}
+
+parameters! {
+    SlowDrive {
+        /// See [`ADDED_MS`].
+        ms: ADDED_MS,
+        /// See [`OWN_MS`].
+        own_ms: OWN_MS,
+        /// The wheel speed whose command does no more than overcome the drive's dry friction, which helps it to stop and not
+        /// to start. Of an NXT motor it is 2 cm/s.
+        friction_cm_s: Parameter::new("cm/s", 0.0, [0.0, 12.0])
+            .prior_sd(4.0)
+            .from(Guesses::At(&[2.0]))
             .report(Report::Hidden),
     }
 }

@@ -1,0 +1,122 @@
+//! A drive that follows its commands late and has dry friction: what slows it, and what its friction does to it.
+
+use crate::effects::context::{CommandHistory, HISTORY};
+use crate::effects::parameter::Report;
+use crate::effects::{Parameter, StepContext};
+
+/// Time constant of the drive that a simulator knows. An NXT motor takes about 50 ms.
+pub const OWN_MS: Parameter = Parameter::new("ms", 50.0, [10.0, 150.0]).prior_sd(25.0).report(Report::Hidden);
+
+/// A drive of the first order with dry friction; speeds are in units of the command that keeps them without it.
+pub struct Drive {
+    /// Its time constant, in steps.
+    steps: f64,
+    /// The command that does no more than overcome the friction.
+    friction: f64,
+}
+
+impl Drive {
+    /// Of this time constant, which this wheel speed's command does no more than keep from standing.
+    pub fn of(ms: f64, friction_cm_s: f64, context: &StepContext) -> Self {
+        Drive { steps: ms / context.robot.step_ms, friction: context.command_for(friction_cm_s) }
+    }
+
+    /// The commands by which this drive moves as the other one does by these.
+    pub fn imitate(&self, other: &Drive, commands: &mut CommandHistory) {
+        for motor in 0..2 {
+            let mut speed = other.settled(commands[HISTORY - 1][motor]);
+            for age in (1..HISTORY - 1).rev() {
+                (_, speed) = other.step(speed, commands[age][motor]);
+            }
+            let [own, others] = [self, other].map(|drive| drive.step(speed, commands[0][motor]).0);
+            // This one follows a command late too, and makes less of what is added to it.
+            commands[0][motor] += (others - own) / (1.0 - self.missed());
+            commands[1][motor] = self.command_for(speed);
+        }
+    }
+
+    /// The speed that a command comes to.
+    fn settled(&self, command: f64) -> f64 {
+        (command.abs() - self.friction).max(0.0).copysign(command)
+    }
+
+    /// The command that comes to a speed.
+    fn command_for(&self, speed: f64) -> f64 {
+        if speed == 0.0 { 0.0 } else { speed + self.friction.copysign(speed) }
+    }
+
+    /// The mean speed of a step under a command, and the speed at its end.
+    fn step(&self, speed: f64, command: f64) -> (f64, f64) {
+        // Friction acts against the speed until there is none; from rest it acts against the command.
+        let towards = if speed == 0.0 { self.settled(command) } else { command - self.friction.copysign(speed) };
+        let turns_back = speed * towards < 0.0;
+        let until_rest = if turns_back { self.steps * libm::log(1.0 - speed / towards) } else { f64::INFINITY };
+        if until_rest >= 1.0 {
+            return self.approach(speed, towards, 1.0);
+        }
+        let (on, _) = self.approach(speed, towards, until_rest);
+        let (back, then) = self.approach(0.0, self.settled(command), 1.0 - until_rest);
+        (on + back, then)
+    }
+
+    /// The way covered in so many steps towards a speed, and the speed then.
+    fn approach(&self, from: f64, towards: f64, steps: f64) -> (f64, f64) {
+        let left = libm::exp(-steps / self.steps);
+        (towards * steps + (from - towards) * self.steps * (1.0 - left), towards + (from - towards) * left)
+    }
+
+    /// The share of a change of speed that its first step misses.
+    fn missed(&self) -> f64 {
+        self.steps * (1.0 - libm::exp(-1.0 / self.steps))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The same by many small steps.
+    fn integrated(drive: &Drive, mut speed: f64, command: f64) -> (f64, f64) {
+        let (parts, mut way) = (100_000, 0.0);
+        for _ in 0..parts {
+            let towards = if speed == 0.0 { drive.settled(command) } else { command - drive.friction.copysign(speed) };
+            let next = speed + (towards - speed) / (drive.steps * f64::from(parts));
+            speed = if next * speed < 0.0 { 0.0 } else { next };
+            way += speed / f64::from(parts);
+        }
+        (way, speed)
+    }
+
+    #[test]
+    fn a_step_is_the_integral_of_the_drive_from_rest_to_rest_and_backwards() {
+        let drive = Drive { steps: 0.6, friction: 8.0 };
+        for (speed, command) in
+            [(0.0, 50.0), (0.0, 5.0), (40.0, 0.0), (2.0, 0.0), (40.0, -60.0), (-3.0, 5.0), (-30.0, 90.0), (10.0, 60.0)]
+        {
+            let ((way, then), (expected_way, expected)) =
+                (drive.step(speed, command), integrated(&drive, speed, command));
+            let off = (way - expected_way).abs().max((then - expected).abs());
+            assert!(off < 2e-3, "{speed} by {command}: {way} and {then}, not {expected_way} and {expected}");
+        }
+    }
+
+    #[test]
+    fn a_drive_imitates_itself_by_the_commands_that_it_is_given() {
+        let drive = Drive { steps: 0.1, friction: 5.0 };
+        let mut commands = [[60.0, -40.0], [20.0, 50.0], [80.0, -30.0], [0.0; 2], [0.0; 2], [0.0; 2], [0.0; 2]];
+        let given = commands;
+        drive.imitate(&drive, &mut commands);
+        for (given, made) in given[..2].iter().zip(&commands).flat_map(|(a, b)| a.iter().zip(b)) {
+            assert!((given - made).abs() < 0.2, "{commands:?}");
+        }
+    }
+
+    #[test]
+    fn friction_helps_to_stop_and_not_to_start() {
+        let drive = |friction| Drive { steps: 0.5, friction };
+        let stop = |friction: f64| drive(friction).step(40.0, 0.0).0;
+        let start = |friction: f64| drive(friction).step(0.0, 40.0 + friction).0;
+        assert!(stop(8.0) < 0.9 * stop(0.0), "{} {}", stop(8.0), stop(0.0));
+        assert_eq!(start(8.0), start(0.0));
+    }
+}
