@@ -28,9 +28,10 @@ impl Drive {
             for age in (1..HISTORY - 1).rev() {
                 (_, speed) = other.step(speed, commands[age][motor]);
             }
-            let [own, others] = [self, other].map(|drive| drive.step(speed, commands[0][motor]).0);
-            // This one follows a command late too, and makes less of what is added to it.
-            commands[0][motor] += (others - own) / (1.0 - self.missed());
+            let (mean, _) = other.step(speed, commands[0][motor]);
+            // This one follows a command late too: it is given what makes the mean of that.
+            let missed = self.missed();
+            commands[0][motor] = self.command_for((mean - missed * speed) / (1.0 - missed));
             commands[1][motor] = self.command_for(speed);
         }
     }
@@ -101,9 +102,9 @@ mod tests {
     }
 
     #[test]
-    fn a_drive_imitates_itself_by_the_commands_that_it_is_given() {
+    fn a_drive_that_goes_on_one_way_imitates_itself_by_the_commands_that_it_is_given() {
         let drive = Drive { steps: 0.1, friction: 5.0 };
-        let mut commands = [[60.0, -40.0], [20.0, 50.0], [80.0, -30.0], [0.0; 2], [0.0; 2], [0.0; 2], [0.0; 2]];
+        let mut commands = [[60.0, -40.0], [20.0, -50.0], [80.0, -30.0], [0.0; 2], [0.0; 2], [0.0; 2], [0.0; 2]];
         let given = commands;
         drive.imitate(&drive, &mut commands);
         for (given, made) in given[..2].iter().zip(&commands).flat_map(|(a, b)| a.iter().zip(b)) {
