@@ -1,6 +1,6 @@
 //! Friction in the drive: small commands move little or nothing.
 
-use super::drive::{Drive, OWN_MS};
+use super::drive::Drive;
 use super::{each_command, each_wheel, parameters};
 use crate::effects::parameter::{Guesses, Report};
 use crate::effects::{Effect, Hook, Parameter, Variant};
@@ -50,39 +50,27 @@ pub const EFFECT: Effect = Effect {
         },
         Variant {
             id: "friction",
-            parameters: Friction::PARAMETERS,
+            parameters: Deadband::PARAMETERS,
             hooks: &[Hook::Commands(&|v, context, commands| {
-                let Friction { break_away_cm_s, own_ms } = Friction::read(v);
-                if break_away_cm_s > 0.0 {
+                let edge_cm_s = Deadband::read(v).break_away_cm_s;
+                if edge_cm_s > 0.0 {
                     // What keeps a drive from moving helps it to stop, too.
-                    let own = Drive::of(own_ms, 0.0, context);
-                    own.imitate(&Drive::of(own_ms, break_away_cm_s, context), commands);
+                    let known = Drive::slower(0.0, 0.0, context);
+                    known.imitate(&Drive::slower(0.0, edge_cm_s, context), commands);
                 }
             })],
         },
     ],
 };
 
-/// Wheel speed below whose command nothing moves. Real NXT motors on the ground break away at 12 to 16 % of full power,
-/// about 6 cm/s; 20 cm/s is half of their full speed.
-const BREAK_AWAY_CM_S: Parameter = Parameter::new("cm/s", 0.0, [0.0, 20.0])
-    .prior_sd(8.0)
-    .from(Guesses::OfTopSpeed(&[0.04, 0.08, 0.14, 0.22, 0.3]))
-    .report(Report::Command);
-
 parameters! {
     Deadband {
-        /// See [`BREAK_AWAY_CM_S`].
-        break_away_cm_s: BREAK_AWAY_CM_S,
-    }
-}
-
-parameters! {
-    Friction {
-        /// See [`BREAK_AWAY_CM_S`].
-        break_away_cm_s: BREAK_AWAY_CM_S,
-        /// See [`OWN_MS`].
-        own_ms: OWN_MS,
+        /// Wheel speed below whose command nothing moves. Real NXT motors on the ground break away at 12 to 16 % of full
+        /// power, about 6 cm/s; 20 cm/s is half of their full speed.
+        break_away_cm_s: Parameter::new("cm/s", 0.0, [0.0, 20.0])
+            .prior_sd(8.0)
+            .from(Guesses::OfTopSpeed(&[0.04, 0.08, 0.14, 0.22, 0.3]))
+            .report(Report::Command),
     }
 }
 

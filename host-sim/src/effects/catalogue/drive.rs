@@ -1,11 +1,11 @@
 //! A drive that follows its commands late and has dry friction: what slows it, and what its friction does to it.
 
+use crate::effects::StepContext;
 use crate::effects::context::{CommandHistory, HISTORY};
-use crate::effects::parameter::Report;
-use crate::effects::{Parameter, StepContext};
 
-/// Time constant of the drive that a simulator knows. An NXT motor takes about 50 ms.
-pub const OWN_MS: Parameter = Parameter::new("ms", 50.0, [10.0, 150.0]).prior_sd(25.0).report(Report::Hidden);
+/// Time constant of the drive that simulators know, where their logs showed it: that of an NXT motor. Left free, it would
+/// make a slow drive of a late one where nothing of it was known, as the textbook does not.
+const KNOWN_MS: f64 = 50.0;
 
 /// A drive of the first order with dry friction; speeds are in units of the command that keeps them without it.
 pub struct Drive {
@@ -16,9 +16,10 @@ pub struct Drive {
 }
 
 impl Drive {
-    /// Of this time constant, which this wheel speed's command does no more than keep from standing.
-    pub fn of(ms: f64, friction_cm_s: f64, context: &StepContext) -> Self {
-        Drive { steps: ms / context.robot.step_ms, friction: context.command_for(friction_cm_s) }
+    /// Slower by so much than the one that simulators know, with dry friction that the command for this wheel speed does no
+    /// more than overcome.
+    pub fn slower(ms: f64, friction_cm_s: f64, context: &StepContext) -> Self {
+        Drive { steps: (KNOWN_MS + ms) / context.robot.step_ms, friction: context.command_for(friction_cm_s) }
     }
 
     /// The commands by which this drive moves as the other one does by these.

@@ -1,6 +1,6 @@
 //! The drive takes longer to reach its speed.
 
-use super::drive::{Drive, OWN_MS};
+use super::drive::Drive;
 use super::parameters;
 use crate::effects::context::HISTORY;
 use crate::effects::parameter::{Guesses, Report};
@@ -35,10 +35,10 @@ pub const EFFECT: Effect = Effect {
             id: "drive_with_friction",
             parameters: SlowDrive::PARAMETERS,
             hooks: &[Hook::Commands(&|v, context, commands| {
-                let SlowDrive { ms, own_ms, friction_cm_s } = SlowDrive::read(v);
+                let SlowDrive { ms, friction_cm_s } = SlowDrive::read(v);
                 if ms > 0.0 {
-                    let own = Drive::of(own_ms, friction_cm_s, context);
-                    own.imitate(&Drive::of(own_ms + ms, friction_cm_s, context), commands);
+                    let known = Drive::slower(0.0, friction_cm_s, context);
+                    known.imitate(&Drive::slower(ms, friction_cm_s, context), commands);
                 }
             })],
         },
@@ -66,8 +66,6 @@ parameters! {
     SlowDrive {
         /// See [`ADDED_MS`].
         ms: ADDED_MS,
-        /// See [`OWN_MS`].
-        own_ms: OWN_MS,
         /// The wheel speed whose command does no more than overcome the drive's dry friction, which helps it to stop and not
         /// to start. Of an NXT motor it is 2 cm/s.
         friction_cm_s: Parameter::new("cm/s", 0.0, [0.0, 12.0])
