@@ -1,6 +1,6 @@
 //! The effects that a diagnosis knows: one file each, and one line here.
 //!
-//! What several of them share stands below: how commands, distances and forces change.
+//! What several of them share stands below, how commands, distances and forces change, and in `drive`.
 
 mod drive;
 

@@ -3,8 +3,7 @@
 use crate::effects::StepContext;
 use crate::effects::context::{CommandHistory, HISTORY};
 
-/// Time constant of the drive that simulators know, where their logs showed it: that of an NXT motor. Left free, it would
-/// make a slow drive of a late one where nothing of it was known, as the textbook does not.
+/// Time constant of the drive that simulators know: that of an NXT motor.
 const KNOWN_MS: f64 = 50.0;
 
 /// A drive of the first order with dry friction; speeds are in units of the command that keeps them without it.
