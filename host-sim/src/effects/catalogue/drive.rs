@@ -23,7 +23,7 @@ impl Drive {
 
     /// The commands by which this drive moves as the other one does by these.
     pub fn imitate(&self, other: &Drive, commands: &mut CommandHistory) {
-        for motor in 0..2 {
+        for motor in [0, 1] {
             let mut speed = other.settled(commands[HISTORY - 1][motor]);
             for age in (1..HISTORY - 1).rev() {
                 (_, speed) = other.step(speed, commands[age][motor]);
