@@ -23,14 +23,14 @@ impl Drive {
 
     /// The commands by which this drive moves as the other one does by these.
     pub fn imitate(&self, other: &Drive, commands: &mut CommandHistory) {
+        // This one follows a command late too: it is given what makes the mean of the other one.
+        let missed = self.missed();
         for motor in [0, 1] {
             let mut speed = other.settled(commands[HISTORY - 1][motor]);
             for age in (1..HISTORY - 1).rev() {
                 (_, speed) = other.step(speed, commands[age][motor]);
             }
             let (mean, _) = other.step(speed, commands[0][motor]);
-            // This one follows a command late too: it is given what makes the mean of that.
-            let missed = self.missed();
             commands[0][motor] = self.command_for((mean - missed * speed) / (1.0 - missed));
             commands[1][motor] = self.command_for(speed);
         }
