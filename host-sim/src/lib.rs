@@ -35,3 +35,10 @@ pub mod statistics;
 pub mod survey;
 pub mod trials;
 pub mod workers;
+
+#[cfg(test)]
+#[test]
+#[should_panic = "attempt to add with overflow"]
+fn tests_run_with_overflow_checks() {
+    std::hint::black_box(std::hint::black_box(u8::MAX) + 1);
+}
