@@ -200,9 +200,12 @@ impl Simulator {
     fn check(&self, path: &Path) -> Result<()> {
         if let Some(added) = self.added.iter().find(|a| a.resolve().is_none()) {
             let why = added.definition.as_ref().and_then(|definition| own::effect(definition).err());
-            let why = why.unwrap_or_else(|| {
-                let ids = CATALOGUE.iter().map(|effect| effect.id);
-                format!("it is not known to this program{}", files::did_you_mean(&added.effect, ids))
+            let why = why.unwrap_or_else(|| match CATALOGUE.iter().any(|effect| effect.id == added.effect) {
+                true => "this program knows no such variant with these parameters and values".to_owned(),
+                false => {
+                    let ids = CATALOGUE.iter().map(|effect| effect.id);
+                    format!("it is not known to this program{}", files::did_you_mean(&added.effect, ids))
+                }
             });
             let what = format!("the added effect {} ({}) is not possible: {why}", added.effect, added.variant);
             return Err(Error::in_file(path, what));

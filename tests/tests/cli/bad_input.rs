@@ -319,6 +319,18 @@ fn simulators_that_cannot_be() {
     );
     begins(&refused(&|text| text[..text.len() / 2].to_owned()), "sim.json:");
     begins(&refused(&|_| "[arena]\n".into()), "sim.json:1: is no simulator file of mindgap");
+    let with = |effect: &str, ms: f64| {
+        refused(&|text| {
+            let mut file: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+            file["added"] = serde_json::json!([{ "effect": effect, "variant": "delay", "parameters": { "ms": ms } }]);
+            file.to_string()
+        })
+    };
+    let known = "sim.json: the added effect latency (delay) is not possible: this program knows no such variant with";
+    begins(&with("latency", -1.0), known);
+    let unknown =
+        "sim.json: the added effect latencies (delay) is not possible: it is not known to this program; did you";
+    begins(&with("latencies", 100.0), unknown);
 }
 
 #[test]

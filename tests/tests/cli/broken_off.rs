@@ -111,7 +111,7 @@ fn a_challenge_survives() {
 fn a_loop_survives() {
     let workshop = with_scene();
     robot(&workshop, "", "");
-    let call = "loop out --sim sim.json --scene scene.toml --max-steps 20 --trials 1 --robot";
+    let call = "loop out --sim sim.json --scene scene.toml --max-steps 5 --trials 1 --robot";
     survives(&workshop, &call.split_whitespace().chain(["sh robot.sh"]).collect::<Vec<_>>(), KILLS);
 }
 
