@@ -21,4 +21,4 @@ pub use catalogue::{CATALOGUE, Candidate};
 pub use context::StepContext;
 pub use parameter::Parameter;
 pub use pose_increment::PoseIncrement;
-pub use variant::{Effect, Hook, SensorState, Variant};
+pub use variant::{Effect, Hook, Late, SensorState, Variant};

@@ -3,7 +3,7 @@
 use super::applied::AppliedEffect;
 use super::context::{CommandHistory, StepContext};
 use super::pose_increment::PoseIncrement;
-use super::variant::{Hook, SensorState, Variant};
+use super::variant::{Hook, Late, SensorState, Variant};
 
 /// Effects that act together, in their order; an empty chain changes nothing.
 #[derive(Clone, Default)]
@@ -47,13 +47,17 @@ impl EffectChain {
 
     /// The increment of a step with these effects; `step` gives that of the simulator for the commands now and before.
     pub fn wrap(&self, context: &StepContext, step: impl FnMut([f64; 2], [f64; 2]) -> PoseIncrement) -> PoseIncrement {
-        let (mut commands, mut late_steps) = (context.commands, 0.0);
+        let (mut commands, mut late) = (context.commands, Late::default());
         self.each(|hook, values| match hook {
             Hook::Commands(change) | Hook::CommandsHere(change) => change(values, context, &mut commands),
-            Hook::Delay(delay) => late_steps += delay(values, context),
+            Hook::Delay(delay) => {
+                let more = delay(values, context);
+                late.drive_steps += more.drive_steps;
+                late.poses_steps += more.poses_steps;
+            }
             Hook::Motion(_) | Hook::MotionHere(_) | Hook::Sensor(_) | Hook::SensorHere(_) | Hook::Ray(_) => {}
         });
-        let mut increment = delayed(&commands, late_steps, step);
+        let mut increment = delayed(&commands, late, step);
         self.each(|hook, values| {
             if let Hook::Motion(change) | Hook::MotionHere(change) = hook {
                 change(values, context, &mut increment);
@@ -80,12 +84,27 @@ impl EffectChain {
     }
 }
 
-/// The motion of so many steps ago. Where that is no whole number, the earlier step lasts into this one at the speed that it
-/// came to, and this one ends so much before it.
+/// The motion that comes so late. Poses that are late by a part of a step lie between those of two rows.
 fn delayed(
     commands: &CommandHistory,
-    late_steps: f64,
+    late: Late,
     mut step: impl FnMut([f64; 2], [f64; 2]) -> PoseIncrement,
+) -> PoseIncrement {
+    let (whole, part) = (libm::floor(late.poses_steps), late.poses_steps % 1.0);
+    let motion = driven_late(commands, late.drive_steps + whole, &mut step);
+    if part == 0.0 {
+        return motion;
+    }
+    let earlier = driven_late(commands, late.drive_steps + whole + 1.0, &mut step);
+    weighted([(1.0 - part, motion), (part, earlier)])
+}
+
+/// The motion of a drive that is so many steps late. Where that is no whole number, the earlier step lasts into this one at the
+/// speed that it came to, and this one ends so much before it.
+fn driven_late(
+    commands: &CommandHistory,
+    late_steps: f64,
+    step: &mut impl FnMut([f64; 2], [f64; 2]) -> PoseIncrement,
 ) -> PoseIncrement {
     let (whole, part) = (late_steps as usize, late_steps % 1.0);
     let ago = |steps: usize| commands.get(steps).copied().unwrap_or([0.0; 2]);
@@ -94,11 +113,15 @@ fn delayed(
     if part == 0.0 {
         return motion;
     }
-    let [lasting, ending] = [before, now].map(|command| step(command, command));
-    let moved = |motion: f64, lasting: f64, ending: f64| motion + part * (lasting - ending);
+    weighted([(1.0, motion), (part, step(before, before)), (-part, step(now, now))])
+}
+
+/// The sum of increments, each times its weight.
+fn weighted<const N: usize>(increments: [(f64, PoseIncrement); N]) -> PoseIncrement {
+    let sum = |of: fn(&PoseIncrement) -> f64| increments.iter().map(|(weight, increment)| weight * of(increment)).sum();
     PoseIncrement {
-        forward_cm: moved(motion.forward_cm, lasting.forward_cm, ending.forward_cm),
-        lateral_cm: moved(motion.lateral_cm, lasting.lateral_cm, ending.lateral_cm),
-        turn_rad: moved(motion.turn_rad, lasting.turn_rad, ending.turn_rad),
+        forward_cm: sum(|increment| increment.forward_cm),
+        lateral_cm: sum(|increment| increment.lateral_cm),
+        turn_rad: sum(|increment| increment.turn_rad),
     }
 }

@@ -42,8 +42,8 @@ pub enum Hook {
     Commands(&'static (dyn Fn(&[f64], &StepContext, &mut CommandHistory) + Sync)),
     /// The same, by where and when too.
     CommandsHere(&'static (dyn Fn(&[f64], &StepContext, &mut CommandHistory) + Sync)),
-    /// By so many steps the motion comes late, 0 and more.
-    Delay(&'static (dyn Fn(&[f64], &StepContext) -> f64 + Sync)),
+    /// By how much the motion comes late.
+    Delay(&'static (dyn Fn(&[f64], &StepContext) -> Late + Sync)),
     /// To the increment of the pose that the tracker sees, by this and commands alone.
     Motion(&'static (dyn Fn(&[f64], &StepContext, &mut PoseIncrement) + Sync)),
     /// The same, by where and when too.
@@ -54,6 +54,15 @@ pub enum Hook {
     SensorHere(ChangeOfSensor),
     /// To the textbook's ideal ray, as the first: what any real sensor has, and one that was learned from logs has already.
     Ray(ChangeOfSensor),
+}
+
+/// By how many steps the motion comes late, 0 and more.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Late {
+    /// The drive, which does in a step what it would have done so much earlier.
+    pub drive_steps: f64,
+    /// The poses, which are told by rows and lie on straight lines between them.
+    pub poses_steps: f64,
 }
 
 /// The sensor at a row, as effects leave it.

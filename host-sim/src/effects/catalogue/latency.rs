@@ -3,7 +3,7 @@
 use super::parameters;
 use crate::effects::context::HISTORY;
 use crate::effects::parameter::Guesses;
-use crate::effects::{Effect, Hook, Parameter, StepContext, Variant};
+use crate::effects::{Effect, Hook, Late, Parameter, StepContext, Variant};
 
 pub const EFFECT: Effect = Effect {
     id: "latency",
@@ -24,7 +24,16 @@ pub const EFFECT: Effect = Effect {
                 *now = [0, 1].map(|m| (1.0 - part) * now[m] + part * before[m]);
             })],
         },
-        Variant { id: "of_motion", parameters: Latency::PARAMETERS, hooks: &[Hook::Delay(&late_steps)] },
+        Variant {
+            id: "of_drive",
+            parameters: Latency::PARAMETERS,
+            hooks: &[Hook::Delay(&|v, context| Late { drive_steps: late_steps(v, context), ..Late::default() })],
+        },
+        Variant {
+            id: "of_motion",
+            parameters: Latency::PARAMETERS,
+            hooks: &[Hook::Delay(&|v, context| Late { poses_steps: late_steps(v, context), ..Late::default() })],
+        },
     ],
 };
 
