@@ -26,7 +26,7 @@ use mindgap_core::network::Network;
 use serde::{Deserialize, Serialize};
 
 use crate::effects::applied::AppliedEffect;
-use crate::effects::{CATALOGUE, legacy, own};
+use crate::effects::legacy;
 use crate::error::{Error, Result};
 use crate::files;
 use crate::logs::Robot;
@@ -198,17 +198,9 @@ impl Simulator {
     }
 
     fn check(&self, path: &Path) -> Result<()> {
-        if let Some(added) = self.added.iter().find(|a| a.resolve().is_none()) {
-            let why = added.definition.as_ref().and_then(|definition| own::effect(definition).err());
-            let why = why.unwrap_or_else(|| match CATALOGUE.iter().any(|effect| effect.id == added.effect) {
-                true => "this program knows no such variant with these parameters and values".to_owned(),
-                false => {
-                    let ids = CATALOGUE.iter().map(|effect| effect.id);
-                    format!("it is not known to this program{}", files::did_you_mean(&added.effect, ids))
-                }
-            });
-            let what = format!("the added effect {} ({}) is not possible: {why}", added.effect, added.variant);
-            return Err(Error::in_file(path, what));
+        for added in &self.added {
+            let what = format!("the added effect {} ({})", added.effect, added.variant);
+            added.resolve().map_err(|why| Error::in_file(path, format!("{what} is not possible: {why}")))?;
         }
         if self.ensemble.as_ref().is_some_and(|ensemble| !ensemble.is_sound()) {
             return Err(Error::in_file(path, "the distribution over robots holds numbers that cannot be"));

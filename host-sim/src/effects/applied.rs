@@ -4,9 +4,10 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use super::catalogue::Candidate;
-use super::own;
+use super::catalogue::{CATALOGUE, Candidate};
 use super::own::definition::Definition;
+use super::{Parameter, Variant, own};
+use crate::files::did_you_mean;
 
 /// One effect as files hold it: by the ids of the effect and its variant, and the names of its parameters.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -35,26 +36,40 @@ impl AppliedEffect {
         }
     }
 
-    /// The variant and its values, if this program knows it and each of its parameters is there and possible.
-    pub fn resolve(&self) -> Option<(Candidate, Vec<f64>)> {
-        let candidate = match &self.definition {
-            None => Candidate::named(&self.effect, &self.variant)?,
+    /// The variant and its values.
+    ///
+    /// # Errors
+    /// In one line, when this program does not know it, or one of its parameters is missing or not possible.
+    pub fn resolve(&self) -> Result<(Candidate, Vec<f64>), String> {
+        let own;
+        let known = match &self.definition {
+            None => CATALOGUE,
             Some(definition) => {
-                let own = Candidate::all(&[own::effect(definition).ok()?]);
-                own.into_iter().find(|c| c.effect == self.effect && c.variant.id == self.variant)?
+                own = [own::effect(definition)?];
+                &own
             }
         };
-        let parameters = candidate.variant.parameters;
-        let value = |p: &super::Parameter| self.parameters.get(p.name).copied().filter(|value| p.allows(*value));
-        let values = parameters.iter().map(value).collect::<Option<Vec<f64>>>()?;
-        (parameters.len() == self.parameters.len()).then_some((candidate, values))
+        let ids = known.iter().map(|effect| effect.id);
+        if ids.clone().all(|id| id != self.effect) {
+            return Err(format!("it is not known to this program{}", did_you_mean(&self.effect, ids)));
+        }
+        let mut variants = Candidate::all(known).into_iter();
+        let named = variants.find(|c| c.effect == self.effect && c.variant.id == self.variant);
+        let resolved = named.and_then(|candidate| Some((candidate, self.values(candidate.variant)?)));
+        resolved.ok_or_else(|| "this program knows no such variant with these parameters and values".into())
+    }
+
+    /// Its values in the order of the variant's parameters, if it has these and no others, and each is possible.
+    fn values(&self, variant: &Variant) -> Option<Vec<f64>> {
+        let value = |p: &Parameter| self.parameters.get(p.name).copied().filter(|value| p.allows(*value));
+        let values = variant.parameters.iter().map(value).collect::<Option<Vec<f64>>>()?;
+        (values.len() == self.parameters.len()).then_some(values)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::effects::CATALOGUE;
 
     #[test]
     fn every_variant_comes_back_from_a_file() {
@@ -62,7 +77,7 @@ mod tests {
             let values = candidate.variant.nominal();
             let text = serde_json::to_string(&AppliedEffect::new(&candidate, &values)).unwrap();
             let read: AppliedEffect = serde_json::from_str(&text).unwrap();
-            assert!(read.resolve().is_some_and(|(c, v)| c == candidate && v == values), "{text}");
+            assert!(read.resolve().is_ok_and(|(c, v)| c == candidate && v == values), "{text}");
         }
     }
 
@@ -74,10 +89,10 @@ mod tests {
             parameters: parameters.iter().map(|(name, value)| (String::from(*name), *value)).collect(),
             definition: None,
         };
-        assert!(latency(&[("ms", 100.0)]).resolve().is_some());
-        assert!(latency(&[("ms", -1.0)]).resolve().is_none());
-        assert!(latency(&[("ms", f64::NAN)]).resolve().is_none());
-        assert!(latency(&[]).resolve().is_none());
-        assert!(latency(&[("ms", 100.0), ("s", 0.1)]).resolve().is_none());
+        assert!(latency(&[("ms", 100.0)]).resolve().is_ok());
+        assert!(latency(&[("ms", -1.0)]).resolve().is_err());
+        assert!(latency(&[("ms", f64::NAN)]).resolve().is_err());
+        assert!(latency(&[]).resolve().is_err());
+        assert!(latency(&[("ms", 100.0), ("s", 0.1)]).resolve().is_err());
     }
 }

@@ -14,7 +14,7 @@ pub struct EffectChain {
 impl EffectChain {
     /// The effects of a simulator file; one that this program does not know is left out.
     pub fn of(applied: &[AppliedEffect]) -> Self {
-        let links = applied.iter().filter_map(AppliedEffect::resolve);
+        let links = applied.iter().flat_map(AppliedEffect::resolve);
         EffectChain { links: links.map(|(candidate, values)| (candidate.variant, values)).collect() }
     }
 
@@ -123,5 +123,31 @@ fn weighted<const N: usize>(increments: [(f64, PoseIncrement); N]) -> PoseIncrem
         forward_cm: sum(|increment| increment.forward_cm),
         lateral_cm: sum(|increment| increment.lateral_cm),
         turn_rad: sum(|increment| increment.turn_rad),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::context::HISTORY;
+    use super::*;
+
+    /// A start, by a drive that misses a tenth of a step's way: half a step late both ways it ends at the same place, but a late
+    /// drive has missed its tenth by the end of the first step, and late poses tell half of it in each.
+    #[test]
+    fn a_late_drive_starts_late_and_late_poses_lie_between_rows() {
+        let step = |now: [f64; 2], before: [f64; 2]| PoseIncrement {
+            forward_cm: now[0] - 0.1 * (now[0] - before[0]),
+            lateral_cm: 0.0,
+            turn_rad: 0.0,
+        };
+        let started = |ago: usize| std::array::from_fn::<_, HISTORY, _>(|age| if age <= ago { [1.0; 2] } else { [0.0; 2] });
+        let forward_cm = |late| [0, 1, 2].map(|ago| delayed(&started(ago), late, step).forward_cm);
+        let close = |found: [f64; 3], right: [f64; 3]| {
+            assert!(found.iter().zip(right).all(|(f, r)| (f - r).abs() < 1e-12), "{found:?} {right:?}");
+        };
+        close(forward_cm(Late { drive_steps: 0.5, poses_steps: 0.0 }), [0.4, 1.0, 1.0]);
+        close(forward_cm(Late { drive_steps: 0.0, poses_steps: 0.5 }), [0.45, 0.95, 1.0]);
+        close(forward_cm(Late { drive_steps: 1.0, poses_steps: 0.0 }), [0.0, 0.9, 1.0]);
+        close(forward_cm(Late { drive_steps: 0.0, poses_steps: 1.0 }), [0.0, 0.9, 1.0]);
     }
 }

@@ -209,7 +209,7 @@ mod tests {
         let lag_ms = |added: Value| {
             let file = upgraded(&file(added))?;
             let effect: AppliedEffect = serde_json::from_value(file["added"][0].clone()).ok()?;
-            effect.resolve().map(|(_, values)| values[0])
+            effect.resolve().ok().map(|(_, values)| values[0])
         };
         let entry = |variant: &str, name: &str, value: f64| serde_json::json!({ "effect": "sonar_lag", "variant": variant, "parameters": { name: value } });
         assert_eq!(lag_ms(entry("earlier_reading", "steps", 0.5)), Some(0.5 * robot.step_ms));
@@ -225,7 +225,7 @@ mod tests {
         let added = serde_json::json!([{ "effect": "slip", "variant": "growing", "parameters": parameters }]);
         let file = upgraded(&serde_json::json!({ "robot": robot, "added": added }).to_string()).unwrap();
         let effect: AppliedEffect = serde_json::from_value(file["added"][0].clone()).unwrap();
-        assert_eq!(effect.resolve().map(|(_, values)| values), Some(vec![12.0, 0.4, 0.01, 0.0]));
+        assert_eq!(effect.resolve().map(|(_, values)| values), Ok(vec![12.0, 0.4, 0.01, 0.0]));
     }
 
     #[test]
@@ -233,7 +233,7 @@ mod tests {
         let robot = crate::built_in_robot::default_robot();
         let legacy = |effect: &str, form: &str, value| {
             let old = LegacyEffect { effect: effect.into(), form: form.into(), values: vec![value] };
-            old.upgrade(&robot).and_then(|new| new.resolve()).map(|(_, values)| values[0])
+            old.upgrade(&robot).and_then(|new| new.resolve().ok()).map(|(_, values)| values[0])
         };
         let part = "part of the step still has the command before";
         assert_eq!(legacy("latency", part, 0.5), Some(0.5 * robot.step_ms));

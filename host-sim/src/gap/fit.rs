@@ -127,7 +127,7 @@ impl Fitted {
     /// Effects that are known and need no fit.
     pub fn given(applied: &[AppliedEffect], context: &FitContext) -> Self {
         let (candidates, values): (Vec<Candidate>, Vec<Vec<f64>>) =
-            applied.iter().filter_map(AppliedEffect::resolve).unzip();
+            applied.iter().flat_map(AppliedEffect::resolve).unzip();
         Fitted::at(Hypothesis::none(context.baseline).of(candidates), values.concat(), context)
     }
 

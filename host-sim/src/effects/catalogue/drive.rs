@@ -21,19 +21,39 @@ impl Drive {
         Drive { steps: (KNOWN_MS + ms) / context.robot.step_ms, friction: context.command_for(friction_cm_s) }
     }
 
+    /// The one that simulators know, where the robot's body weighs by this factor more on the motors.
+    pub fn loaded(factor: f64, body_share: f64, context: &StepContext) -> Self {
+        Drive::slower(KNOWN_MS * body_share * (factor - 1.0), 0.0, context)
+    }
+
     /// The commands by which this drive moves as the other one does by these.
     pub fn imitate(&self, other: &Drive, commands: &mut CommandHistory) {
+        for motor in [0, 1] {
+            let [now, before] = self.imitating(other, commands.map(|pair| pair[motor]));
+            commands[0][motor] = now;
+            commands[1][motor] = before;
+        }
+    }
+
+    /// The same where both wheels turn the robot; what they do alike stays.
+    pub fn imitate_turning(&self, other: &Drive, commands: &mut CommandHistory) {
+        let given = self.imitating(other, commands.map(|[left, right]| (right - left) / 2.0));
+        for (pair, turning) in commands.iter_mut().zip(given) {
+            let straight = (pair[0] + pair[1]) / 2.0;
+            *pair = [straight - turning, straight + turning];
+        }
+    }
+
+    /// The present command and the one before, of one series of commands.
+    fn imitating(&self, other: &Drive, commands: [f64; HISTORY]) -> [f64; 2] {
         // This one follows a command late too: it is given what makes the mean of the other one.
         let missed = self.missed();
-        for motor in [0, 1] {
-            let mut speed = other.settled(commands[HISTORY - 1][motor]);
-            for age in (1..HISTORY - 1).rev() {
-                (_, speed) = other.step(speed, commands[age][motor]);
-            }
-            let (mean, _) = other.step(speed, commands[0][motor]);
-            commands[0][motor] = self.command_for((mean - missed * speed) / (1.0 - missed));
-            commands[1][motor] = self.command_for(speed);
+        let mut speed = other.settled(commands[HISTORY - 1]);
+        for command in commands[1..HISTORY - 1].iter().rev() {
+            (_, speed) = other.step(speed, *command);
         }
+        let (mean, _) = other.step(speed, commands[0]);
+        [self.command_for((mean - missed * speed) / (1.0 - missed)), self.command_for(speed)]
     }
 
     /// The speed that a command comes to.

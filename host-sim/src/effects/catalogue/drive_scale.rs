@@ -1,7 +1,8 @@
 //! Both wheels cover more or less ground than commanded, by one factor.
 
+use super::drive::Drive;
 use super::{each_command, parameters};
-use crate::effects::parameter::Guesses;
+use crate::effects::parameter::{Guesses, Report};
 use crate::effects::{Effect, Hook, Parameter, Variant};
 
 pub const EFFECT: Effect = Effect {
@@ -25,13 +26,40 @@ pub const EFFECT: Effect = Effect {
                 each_command(commands, |command, _| command * factor);
             })],
         },
+        Variant {
+            id: "lever",
+            parameters: LeverScale::PARAMETERS,
+            hooks: &[
+                Hook::Commands(&|v, context, commands| {
+                    let LeverScale { factor, body_share } = LeverScale::read(v);
+                    // A wheel that goes farther in a turn has less force, and so much more to move for each turn.
+                    if factor != 1.0 {
+                        let loaded = Drive::loaded(factor * factor, body_share, context);
+                        Drive::loaded(1.0, body_share, context).imitate(&loaded, commands);
+                    }
+                }),
+                Hook::Motion(&|v, _, increment| increment.scale(LeverScale::read(v).factor)),
+            ],
+        },
     ],
 };
 
+/// Factor on the distance covered. The two wheels that LEGO sells with the NXT, 43.2 and 56 mm, differ by 1.3; a regulated
+/// motor on a flat battery loses up to a third.
+const FACTOR: Parameter = Parameter::new("", 1.0, [0.6, 1.5]).prior_sd(0.15).from(Guesses::At(&[1.03, 0.97]));
+
 parameters! {
     Scale {
-        /// Factor on the distance covered. The two wheels that LEGO sells with the NXT, 43.2 and 56 mm, differ by 1.3;
-        /// a regulated motor on a flat battery loses up to a third.
-        factor: Parameter::new("", 1.0, [0.6, 1.5]).prior_sd(0.15).from(Guesses::At(&[1.03, 0.97])),
+        /// See [`FACTOR`].
+        factor: FACTOR,
+    }
+}
+
+parameters! {
+    LeverScale {
+        /// See [`FACTOR`].
+        factor: FACTOR,
+        /// Share of the drive's time constant that the robot's body makes; the motor's rotor makes the rest.
+        body_share: Parameter::new("", 0.5, [0.0, 1.0]).prior_sd(0.3).report(Report::Hidden),
     }
 }

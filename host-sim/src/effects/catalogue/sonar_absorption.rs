@@ -28,6 +28,15 @@ pub const EFFECT: Effect = Effect {
             })],
         },
         Variant {
+            id: "of_weak_echoes",
+            parameters: WeakEchoes::PARAMETERS,
+            hooks: &[Hook::Sensor(&|v, _, s| {
+                let WeakEchoes { log_odds_loss, obliquely } = WeakEchoes::read(v);
+                s.perturbation.attenuation_per_m += log_odds_loss;
+                s.perturbation.attenuation_per_incidence += obliquely * log_odds_loss;
+            })],
+        },
+        Variant {
             id: "as_mirrors",
             parameters: Mirrors::PARAMETERS,
             hooks: &[Hook::Ray(&|v, _, s| {
@@ -40,14 +49,26 @@ pub const EFFECT: Effect = Effect {
     ],
 };
 
+/// Log-odds of an echo that are lost. Eight turn a sure echo into a rare one; below zero surfaces return more.
+const LOG_ODDS_LOSS: Parameter = Parameter::new("", 0.0, [-4.0, 8.0])
+    .prior_sd(2.0)
+    .from(Guesses::At(&[0.3, -0.3, 1.5]))
+    .report(Report::OddsFactor);
+
 parameters! {
     Absorption {
-        /// Log-odds of an echo that are lost: everywhere, a metre of distance, or 45 degrees of incidence. Eight turn a
-        /// sure echo into a rare one; below zero surfaces return more.
-        log_odds_loss: Parameter::new("", 0.0, [-4.0, 8.0])
-            .prior_sd(2.0)
-            .from(Guesses::At(&[0.3, -0.3, 1.5]))
-            .report(Report::OddsFactor),
+        /// Everywhere, a metre of distance, or 45 degrees of incidence; see [`LOG_ODDS_LOSS`].
+        log_odds_loss: LOG_ODDS_LOSS,
+    }
+}
+
+parameters! {
+    WeakEchoes {
+        /// A metre of distance; see [`LOG_ODDS_LOSS`].
+        log_odds_loss: LOG_ODDS_LOSS,
+        /// Beside that, per 45 degrees of incidence, as a multiple of it: what a surface swallows of an echo that was loud goes
+        /// unnoticed, and slanted surfaces return weak ones as distant surfaces do.
+        obliquely: Parameter::new("", 1.0, [0.0, 4.0]).prior_sd(1.0).report(Report::Hidden),
     }
 }
 

@@ -1,7 +1,8 @@
 //! Turns are larger or smaller by one factor, straight runs are not.
 
+use super::drive::Drive;
 use super::parameters;
-use crate::effects::parameter::Guesses;
+use crate::effects::parameter::{Guesses, Report};
 use crate::effects::{Effect, Hook, Parameter, Variant};
 
 pub const EFFECT: Effect = Effect {
@@ -11,17 +12,57 @@ pub const EFFECT: Effect = Effect {
            apart or nearer than thought.",
     check: "Measure the distance between the middles of the two tyres where they touch the floor, or command ten \
             full turns on the spot and see how many the robot makes.",
-    variants: &[Variant {
-        id: "turn",
-        parameters: Track::PARAMETERS,
-        hooks: &[Hook::Motion(&|v, _, increment| increment.turn_rad *= Track::read(v).factor)],
-    }],
+    variants: &[
+        Variant {
+            id: "turn",
+            parameters: Track::PARAMETERS,
+            hooks: &[Hook::Motion(&|v, _, increment| increment.turn_rad *= Track::read(v).factor)],
+        },
+        Variant {
+            id: "lever",
+            parameters: LeverTrack::PARAMETERS,
+            hooks: &[
+                Hook::Commands(&|v, context, commands| {
+                    let LeverTrack { factor, body_share, .. } = LeverTrack::read(v);
+                    // Wheels that are nearer to each other need more force for the same torque, and turn the robot faster.
+                    if factor != 1.0 {
+                        let loaded = Drive::loaded(factor * factor, body_share, context);
+                        Drive::loaded(1.0, body_share, context).imitate_turning(&loaded, commands);
+                    }
+                }),
+                Hook::Motion(&|v, context, increment| {
+                    let LeverTrack { factor, scrub_rad_s, .. } = LeverTrack::read(v);
+                    let turn_rad = increment.turn_rad;
+                    let scrubbed_rad =
+                        scrub_rad_s * context.step_s() * libm::tanh(turn_rad / (CREEPING_RAD_S * context.step_s()));
+                    increment.turn_rad = factor * (turn_rad - (factor - 1.0) * scrubbed_rad);
+                }),
+            ],
+        },
+    ],
 };
+
+/// Factor on turns. Tyres 26 mm wide on a track of 12 cm touch the floor up to 10 % nearer or farther apart; a wheel mounted
+/// one stud over changes it by up to a third.
+const FACTOR: Parameter = Parameter::new("", 1.0, [0.6, 1.5]).prior_sd(0.15).from(Guesses::At(&[1.03, 0.97]));
+
+/// Turns slower than this scrub less and less.
+const CREEPING_RAD_S: f64 = 0.1;
 
 parameters! {
     Track {
-        /// Factor on turns. Tyres 26 mm wide on a track of 12 cm touch the floor up to 10 % nearer or farther apart;
-        /// a wheel mounted one stud over changes it by up to a third.
-        factor: Parameter::new("", 1.0, [0.6, 1.5]).prior_sd(0.15).from(Guesses::At(&[1.03, 0.97])),
+        /// See [`FACTOR`].
+        factor: FACTOR,
+    }
+}
+
+parameters! {
+    LeverTrack {
+        /// See [`FACTOR`].
+        factor: FACTOR,
+        /// Share of the drive's time constant in turns that the robot's body makes; the motors' rotors make the rest.
+        body_share: Parameter::new("", 0.5, [0.0, 1.0]).prior_sd(0.3).report(Report::Hidden),
+        /// Rate of turn that scrubbing tyres cost on the track that is known.
+        scrub_rad_s: Parameter::new("rad/s", 0.0, [0.0, 1.0]).prior_sd(0.4).from(Guesses::At(&[0.2])).report(Report::Hidden),
     }
 }

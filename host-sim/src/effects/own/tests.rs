@@ -121,7 +121,9 @@ fn a_simulator_file_holds_the_definition() {
     let read: AppliedEffect = serde_json::from_str(&text).expect("what was written");
     let (candidate, values) = read.resolve().expect("an effect");
     assert!(std::ptr::eq(candidate.variant, own(0).variant) && values == [6.0]);
-    assert!(AppliedEffect { effect: "another".into(), ..read }.resolve().is_none());
+    assert!(AppliedEffect { effect: "another".into(), ..read }.resolve().is_err());
+    let too_much = AppliedEffect::new(&own(0), &[60.0]).resolve().unwrap_err();
+    assert!(too_much.contains("these parameters and values"), "{too_much}");
 }
 
 /// Where an expression has no value nothing changes, be it for a division by zero or for a number beyond all sense.
