@@ -162,6 +162,25 @@ impl Parameter {
         };
         reported.into_iter().map(|(name, value)| (name.into(), value)).collect()
     }
+
+    /// Between what the reported numbers of a value lie, where it lies between these.
+    pub(super) fn reported_between(&self, value: f64, [low, high]: [f64; 2], robot: &Robot) -> Vec<(String, Value)> {
+        let numbers = |value: f64| {
+            let reported = self.reported(value, robot).into_iter();
+            reported.filter_map(|(name, told)| Some((name, told.as_f64()?))).next()
+        };
+        let Some((name, told)) = numbers(value) else { return vec![] };
+        if let Report::Direction = self.report {
+            // Beyond half a turn where the direction is near it: 179 (176 to 182).
+            let ends = [low, high].map(|end| ((told + end - value) * 10.0).round() / 10.0);
+            return vec![(name, json!(ends))];
+        }
+        // A magnitude is least where nothing is changed.
+        let nominal = (low < self.nominal && self.nominal < high).then_some(self.nominal);
+        let reached = || [low, high].into_iter().chain(nominal).filter_map(|value| Some(numbers(value)?.1));
+        let ends = [reached().fold(f64::INFINITY, f64::min), reached().fold(f64::NEG_INFINITY, f64::max)];
+        vec![(name, json!(ends))]
+    }
 }
 
 /// Declares the parameters of a variant once: as a struct whose fields a hook reads by name, and as data.
@@ -246,5 +265,23 @@ mod tests {
         assert_eq!(told(Report::Onset, 10.0), one("onset", 20.0));
         assert_eq!(told(Report::Steps, 600.0), one("steps", 1.5));
         assert_eq!(told(Report::OddsFactor, libm::log(2.0)), one("factor", 0.5));
+    }
+
+    #[test]
+    fn intervals_hold_the_value_they_are_of() {
+        let robot = Robot { step_ms: 400.0, full_speed_cm_s: 50.0, ..crate::built_in_robot::default_robot() };
+        let between = |report, value, ends| -> Vec<(String, Value)> {
+            LENGTH.report(report).reported_between(value, ends, &robot)
+        };
+        let one = |name: &str, ends: [f64; 2]| vec![(String::from(name), json!(ends))];
+        assert_eq!(between(Report::Hidden, 3.0, [2.0, 4.0]), []);
+        assert_eq!(between(Report::Value, 3.0, [2.0, 4.0]), one("cm", [2.0, 4.0]));
+        assert_eq!(between(Report::OddsFactor, 0.0, [-1.0, 1.0]), one("factor", [0.368, 2.72]));
+        assert_eq!(between(Report::SideAndLoss, 0.25, [0.125, 0.375]), one("loss", [0.125, 0.375]));
+        assert_eq!(between(Report::SideAndLoss, -0.002, [-0.008, 0.004]), one("loss", [0.0, 0.008]), "either side");
+        assert_eq!(between(Report::SideAndFactor, -0.25, [-0.5, 0.125]), one("factor", [0.5, 1.0]));
+        assert_eq!(between(Report::Direction, 20.0, [-5.0, 45.0]), one("cm", [-5.0, 45.0]));
+        assert_eq!(between(Report::Direction, 179.0, [176.0, 182.0]), one("cm", [176.0, 182.0]));
+        assert_eq!(between(Report::Direction, -270.0, [-275.0, -265.0]), one("cm", [85.0, 95.0]));
     }
 }

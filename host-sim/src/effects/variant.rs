@@ -96,6 +96,12 @@ impl Variant {
         self.parameters.iter().zip(values).flat_map(|(p, value)| p.reported(*value, robot)).collect()
     }
 
+    /// Between what the reported numbers lie, where the values lie between these ends.
+    pub fn reported_between(&self, values: &[f64], ends: &[[f64; 2]], robot: &Robot) -> Map<String, Value> {
+        let parameters = self.parameters.iter().zip(values).zip(ends);
+        parameters.flat_map(|((p, value), ends)| p.reported_between(*value, *ends, robot)).collect()
+    }
+
     /// Whether it changes what the robot does or how that is seen.
     pub fn moves(&self) -> bool {
         self.hooks.iter().any(|hook| hook.of_sensor().is_none())

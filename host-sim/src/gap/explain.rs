@@ -211,16 +211,11 @@ fn named(found: &Comparison, explained: Explained, robot: &Robot, calibration: &
     named
 }
 
-/// The reported numbers at both ends of the parameters' intervals.
+/// The intervals of the reported numbers.
 fn intervals(found: &Comparison, place: usize, robot: &Robot) -> Map<String, Value> {
     let variant = found.chosen.hypothesis.candidates[place].variant;
     let ends: Vec<[f64; 2]> = found.chosen.parameters_of(place).map(|i| found.chosen.interval(i)).collect();
-    let [low, high] = [0, 1].map(|end| variant.reported(&ends.iter().map(|e| e[end]).collect::<Vec<f64>>(), robot));
-    let both = |(name, low): (String, Value)| {
-        let (low, high) = (low.as_f64()?, high.get(&name)?.as_f64()?);
-        Some((name, serde_json::json!([low.min(high), low.max(high)])))
-    };
-    low.into_iter().filter_map(both).collect()
+    variant.reported_between(found.chosen.values_of(place), &ends, robot)
 }
 
 /// Scatter as the one thing that differs; none where steps scatter as the simulator assumes.

@@ -132,6 +132,22 @@ mod tests {
         }
     }
 
+    /// Straight on nothing is different; on the spot each wheel is driven as by a drive that is slower in everything.
+    #[test]
+    fn a_slower_drive_in_turns_goes_straight_on_as_before() {
+        let (known, slower) = (Drive { steps: 0.1, friction: 0.0 }, Drive { steps: 0.4, friction: 0.0 });
+        let straight = [60.0, 20.0, 80.0, 0.0, 0.0, 0.0, 0.0].map(|command| [command; 2]);
+        let mut commands = straight;
+        known.imitate_turning(&slower, &mut commands);
+        assert_eq!(commands, straight);
+        let on_the_spot = straight.map(|[left, right]| [-left, right]);
+        let (mut turning, mut each) = (on_the_spot, on_the_spot);
+        known.imitate_turning(&slower, &mut turning);
+        known.imitate(&slower, &mut each);
+        assert_eq!(turning, each);
+        assert!(turning[0][1] < 60.0, "{turning:?}: it is on its way from 20");
+    }
+
     #[test]
     fn friction_helps_to_stop_and_not_to_start() {
         let drive = |friction| Drive { steps: 0.5, friction };
