@@ -140,7 +140,8 @@ mod tests {
             lateral_cm: 0.0,
             turn_rad: 0.0,
         };
-        let started = |ago: usize| std::array::from_fn::<_, HISTORY, _>(|age| if age <= ago { [1.0; 2] } else { [0.0; 2] });
+        let started =
+            |ago: usize| std::array::from_fn::<_, HISTORY, _>(|age| if age <= ago { [1.0; 2] } else { [0.0; 2] });
         let forward_cm = |late| [0, 1, 2].map(|ago| delayed(&started(ago), late, step).forward_cm);
         let close = |found: [f64; 3], right: [f64; 3]| {
             assert!(found.iter().zip(right).all(|(f, r)| (f - r).abs() < 1e-12), "{found:?} {right:?}");

@@ -271,7 +271,8 @@ mod tests {
     fn intervals_hold_the_value_they_are_of() {
         let robot = Robot { step_ms: 400.0, full_speed_cm_s: 50.0, ..crate::built_in_robot::default_robot() };
         let between = |report, value, ends| -> Vec<(String, Value)> {
-            LENGTH.report(report).reported_between(value, ends, &robot)
+            let parameter = Parameter { nominal: 0.0, ..LENGTH.report(report) };
+            parameter.reported_between(value, ends, &robot)
         };
         let one = |name: &str, ends: [f64; 2]| vec![(String::from(name), json!(ends))];
         assert_eq!(between(Report::Hidden, 3.0, [2.0, 4.0]), []);

@@ -85,7 +85,7 @@ impl Comparison {
                 break;
             }
             let before = chosen.log_evidence();
-            (chosen, places) = without_needless(settled, places_of_it, &alone, context);
+            (chosen, places) = without_needless(settled, places_of_it, &alone, &none, context);
             log::info!("{} together gain {:.1} nats", chosen.ids().join("+"), chosen.gain_over(&none).nats);
             // An exchange that led to what was dropped again would lead round in a circle.
             if chosen.log_evidence() <= before {
@@ -264,19 +264,21 @@ pub(super) fn settled(chosen: Fitted, alone: &[Fitted], context: &FitContext) ->
     }
 }
 
-/// Drops effects that no longer count beside the others.
+/// Drops effects that would not be added any more beside the others as they are now.
 fn without_needless(
     chosen: Fitted,
     places: Vec<Place>,
     alone: &[Fitted],
+    none: &Fitted,
     context: &FitContext,
 ) -> (Fitted, Vec<Place>) {
-    let needless = |others: &&Fitted| !chosen.gain_over(others).passes(context.calibration.effect_nats);
+    let Calibration { effect_nats, further_share, .. } = context.calibration;
+    let needless = |others: &&Fitted| !further_gain(&chosen, others, none, further_share, context).passes(effect_nats);
     let fewer = places.iter().map(|place| &place.without).filter(needless);
     match fewer.max_by(|a, b| a.log_evidence().total_cmp(&b.log_evidence())).cloned() {
         Some(fewer) => {
             let places = places_of(&fewer, alone, context);
-            without_needless(fewer, places, alone, context)
+            without_needless(fewer, places, alone, none, context)
         }
         None => (chosen, places),
     }

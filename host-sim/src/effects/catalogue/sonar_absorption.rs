@@ -50,10 +50,8 @@ pub const EFFECT: Effect = Effect {
 };
 
 /// Log-odds of an echo that are lost. Eight turn a sure echo into a rare one; below zero surfaces return more.
-const LOG_ODDS_LOSS: Parameter = Parameter::new("", 0.0, [-4.0, 8.0])
-    .prior_sd(2.0)
-    .from(Guesses::At(&[0.3, -0.3, 1.5]))
-    .report(Report::OddsFactor);
+const LOG_ODDS_LOSS: Parameter =
+    Parameter::new("", 0.0, [-4.0, 8.0]).prior_sd(2.0).from(Guesses::At(&[0.3, -0.3, 1.5])).report(Report::OddsFactor);
 
 parameters! {
     Absorption {

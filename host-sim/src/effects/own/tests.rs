@@ -122,7 +122,7 @@ fn a_simulator_file_holds_the_definition() {
     let (candidate, values) = read.resolve().expect("an effect");
     assert!(std::ptr::eq(candidate.variant, own(0).variant) && values == [6.0]);
     assert!(AppliedEffect { effect: "another".into(), ..read }.resolve().is_err());
-    let too_much = AppliedEffect::new(&own(0), &[60.0]).resolve().unwrap_err();
+    let too_much = AppliedEffect::new(&own(0), &[60.0]).resolve().err().expect("a refusal");
     assert!(too_much.contains("these parameters and values"), "{too_much}");
 }
 
