@@ -53,8 +53,7 @@ impl AppliedEffect {
         if ids.clone().all(|id| id != self.effect) {
             return Err(format!("it is not known to this program{}", did_you_mean(&self.effect, ids)));
         }
-        let mut variants = Candidate::all(known).into_iter();
-        let named = variants.find(|c| c.effect == self.effect && c.variant.id == self.variant);
+        let named = Candidate::named_in(known, &self.effect, &self.variant);
         let resolved = named.and_then(|candidate| Some((candidate, self.values(candidate.variant)?)));
         resolved.ok_or_else(|| "this program knows no such variant with these parameters and values".into())
     }

@@ -71,7 +71,12 @@ impl Candidate {
 
     /// The variant of an effect, by their ids.
     pub fn named(effect: &str, variant: &str) -> Option<Candidate> {
-        Candidate::all(CATALOGUE).into_iter().find(|c| c.effect == effect && c.variant.id == variant)
+        Candidate::named_in(CATALOGUE, effect, variant)
+    }
+
+    /// The same of another catalogue.
+    pub fn named_in(catalogue: &[&'static Effect], effect: &str, variant: &str) -> Option<Candidate> {
+        Candidate::all(catalogue).into_iter().find(|c| c.effect == effect && c.variant.id == variant)
     }
 }
 
@@ -87,6 +92,8 @@ const DIRECTIONS_DEG: [f64; 4] = [0.0, 90.0, 180.0, -90.0];
 const LOADED_SPEED_CM_S: f64 = 20.0;
 /// Below this speed a force moves or holds back less and less: a robot that stands stays.
 const CREEPING_CM_S: f64 = 3.75;
+/// Turns slower than this scrub less and less.
+const CREEPING_RAD_S: f64 = 0.1;
 
 /// Changes the magnitude of every command and keeps its sign; `change` is given the magnitude and the motor, 0 for the
 /// left one.
@@ -118,6 +125,11 @@ fn loaded(with_speed: f64, speed: f64, reference: f64) -> f64 {
 /// How much a step counts as motion, 0 to 1.
 fn moving(covered_cm: f64, context: &StepContext) -> f64 {
     (covered_cm.abs() / (CREEPING_CM_S * context.step_s())).min(1.0)
+}
+
+/// How much a turn scrubs the tyres, and which way, -1 to 1.
+fn scrubbing(turn_rad: f64, context: &StepContext) -> f64 {
+    libm::tanh(turn_rad / (CREEPING_RAD_S * context.step_s()))
 }
 
 /// A distance made longer or shorter, not below nothing; a robot that stands stays.

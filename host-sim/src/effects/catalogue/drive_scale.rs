@@ -35,7 +35,7 @@ pub const EFFECT: Effect = Effect {
                     // A wheel that goes farther in a turn has less force, and so much more to move for each turn.
                     if factor != 1.0 {
                         let loaded = Drive::loaded(factor * factor, body_share, context);
-                        Drive::loaded(1.0, body_share, context).imitate(&loaded, commands);
+                        Drive::slower(0.0, 0.0, context).imitate(&loaded, commands);
                     }
                 }),
                 Hook::Motion(&|v, _, increment| increment.scale(LeverScale::read(v).factor)),

@@ -1,6 +1,6 @@
 //! A load, off the middle.
 
-use super::{LOADED_SPEED_CM_S, distance_lost_cm, each_command, each_wheel, loaded, parameters, pushed_cm};
+use super::{LOADED_SPEED_CM_S, distance_lost_cm, each_command, each_wheel, loaded, parameters, pushed_cm, scrubbing};
 use crate::effects::context::CommandHistory;
 use crate::effects::parameter::{Guesses, Report};
 use crate::effects::{Effect, Hook, Parameter, PoseIncrement, StepContext, Variant};
@@ -122,14 +122,11 @@ parameters! {
 
 /// The turn to which the loss of turns refers: half of what an NXT robot's wheels can do.
 const SCRUBBED_RAD_S: f64 = 3.5;
-/// Turns slower than this scrub less and less.
-const CREEPING_RAD_S: f64 = 0.1;
 
 /// A turn that loses the share `lost` to scrubbing: of itself in part, and of the reference turn for the rest.
 fn scrubbed_rad(turn_rad: f64, lost: f64, with_rate: f64, context: &StepContext) -> f64 {
-    let [reference_rad, creeping_rad] = [SCRUBBED_RAD_S, CREEPING_RAD_S].map(|rate| rate * context.step_s());
-    let of_rad = with_rate * turn_rad.abs() + (1.0 - with_rate) * reference_rad;
-    let lost_rad = lost * of_rad * libm::tanh(turn_rad / creeping_rad);
+    let of_rad = with_rate * turn_rad.abs() + (1.0 - with_rate) * (SCRUBBED_RAD_S * context.step_s());
+    let lost_rad = lost * of_rad * scrubbing(turn_rad, context);
     if lost_rad.abs() < turn_rad.abs() { turn_rad - lost_rad } else { 0.0 }
 }
 

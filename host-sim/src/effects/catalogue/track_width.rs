@@ -1,7 +1,7 @@
 //! Turns are larger or smaller by one factor, straight runs are not.
 
 use super::drive::Drive;
-use super::parameters;
+use super::{parameters, scrubbing};
 use crate::effects::parameter::{Guesses, Report};
 use crate::effects::{Effect, Hook, Parameter, Variant};
 
@@ -27,14 +27,13 @@ pub const EFFECT: Effect = Effect {
                     // Wheels that are nearer to each other need more force for the same torque, and turn the robot faster.
                     if factor != 1.0 {
                         let loaded = Drive::loaded(factor * factor, body_share, context);
-                        Drive::loaded(1.0, body_share, context).imitate_turning(&loaded, commands);
+                        Drive::slower(0.0, 0.0, context).imitate_turning(&loaded, commands);
                     }
                 }),
                 Hook::Motion(&|v, context, increment| {
                     let LeverTrack { factor, scrub_rad_s, .. } = LeverTrack::read(v);
                     let turn_rad = increment.turn_rad;
-                    let scrubbed_rad =
-                        scrub_rad_s * context.step_s() * libm::tanh(turn_rad / (CREEPING_RAD_S * context.step_s()));
+                    let scrubbed_rad = scrub_rad_s * context.step_s() * scrubbing(turn_rad, context);
                     increment.turn_rad = factor * (turn_rad - (factor - 1.0) * scrubbed_rad);
                 }),
             ],
@@ -45,9 +44,6 @@ pub const EFFECT: Effect = Effect {
 /// Factor on turns. Tyres 26 mm wide on a track of 12 cm touch the floor up to 10 % nearer or farther apart; a wheel mounted
 /// one stud over changes it by up to a third.
 const FACTOR: Parameter = Parameter::new("", 1.0, [0.6, 1.5]).prior_sd(0.15).from(Guesses::At(&[1.03, 0.97]));
-
-/// Turns slower than this scrub less and less.
-const CREEPING_RAD_S: f64 = 0.1;
 
 parameters! {
     Track {
