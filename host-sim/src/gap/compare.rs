@@ -201,9 +201,8 @@ impl OwnGain {
     /// simulator's effects explain there could be had by a better form of theirs; where they explain nothing, nothing could.
     fn of(fit: &Fitted, others: &Fitted, none: &Fitted, share: f64, context: &FitContext) -> Self {
         let feigned = Channel::ALL.map(|channel| {
-            let nats = |fit: &Fitted| fit.log_likelihood.of(channel);
-            let explained = (nats(others) - nats(none)).max(0.0) + context.explained_already[channel.index()];
-            (nats(fit) - nats(others)).clamp(0.0, share * explained)
+            let explained = others.gained_in(channel, none).max(0.0) + context.explained_already[channel.index()];
+            fit.gained_in(channel, others).clamp(0.0, share * explained)
         });
         OwnGain { nats: fit.gain_over(others).nats, feigned_nats: feigned.iter().sum() }
     }

@@ -246,8 +246,7 @@ fn scattered(found: &Comparison, calibration: &Calibration) -> Option<NamedEffec
 }
 
 fn explained_nats(channels: &[Channel], found: &Comparison) -> f64 {
-    let gained = |channel: &Channel| found.chosen.log_likelihood.of(*channel) - found.none.log_likelihood.of(*channel);
-    channels.iter().map(gained).sum()
+    channels.iter().map(|channel| found.chosen.gained_in(*channel, &found.none)).sum()
 }
 
 fn unexplained_nats(found: &Comparison) -> f64 {

@@ -176,6 +176,11 @@ impl Fitted {
         Gain::of(&self.gains_over(other)).less(other.occam - self.occam)
     }
 
+    /// By how much a channel is likelier than under `other`, nats.
+    pub fn gained_in(&self, channel: Channel, other: &Fitted) -> f64 {
+        self.log_likelihood.of(channel) - other.log_likelihood.of(channel)
+    }
+
     /// Logarithm of the marginal likelihood, by which hypotheses are compared: that of the logs under all values that the
     /// priors allow, by Laplace's method (Kass and Raftery 1995, section 4.1). Whole runs are its unit: in place of the
     /// likelihood at its maximum it takes that of each block at the parameters of the others, which is less by one nat a

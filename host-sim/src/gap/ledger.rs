@@ -148,8 +148,7 @@ fn wider(found: &Comparison, logs: &Observations) -> Entry {
 /// What each effect gains on average over all orders in which the effects could be added (Shapley 1953): effects that
 /// overlap share what both explain.
 fn shapley(effects: usize, gained: impl Fn(&[usize]) -> Entry) -> Vec<Entry> {
-    let members = |set: usize| -> Vec<usize> { (0..effects).filter(|i| set >> i & 1 == 1).collect() };
-    let worth: Vec<Entry> = (0..1usize << effects).map(|set| gained(&members(set))).collect();
+    let worth = worth_of_sets(effects, gained);
     let factorial = |n: usize| (1..=n).map(|i| i as f64).product::<f64>();
     let of = |effect: usize| {
         let mut entry = Entry::nothing(worth[0].channels[0].len());
@@ -164,9 +163,58 @@ fn shapley(effects: usize, gained: impl Fn(&[usize]) -> Entry) -> Vec<Entry> {
     (0..effects).map(of).collect()
 }
 
+/// What each set of effects gains, a bit an effect. Fewer than all gain as much as the best of them do: a wide beam without
+/// the absorption beside it loses, and nobody would add it first to lose by it.
+fn worth_of_sets(effects: usize, gained: impl Fn(&[usize]) -> Entry) -> Vec<Entry> {
+    let all = (1 << effects) - 1;
+    let total = |entry: &Entry| entry.of(&Channel::ALL).iter().sum::<f64>();
+    let mut worth: Vec<Entry> = Vec::with_capacity(1 << effects);
+    for set in 0..=all {
+        let members: Vec<usize> = (0..effects).filter(|i| set >> i & 1 == 1).collect();
+        let own = gained(&members);
+        let fewer = members.iter().map(|i| &worth[set & !(1 << i)]).max_by(|a, b| total(a).total_cmp(&total(b)));
+        let best = fewer.filter(|fewer| set != all && total(fewer) > total(&own)).cloned().unwrap_or(own);
+        worth.push(best);
+    }
+    worth
+}
+
 /// Some of the effects at the parameters that all have together.
 fn subset(chosen: &Fitted, kept: &[usize]) -> (Hypothesis, Vec<f64>) {
     let candidates: Vec<Candidate> = kept.iter().map(|i| chosen.hypothesis.candidates[*i]).collect();
     let values = kept.iter().flat_map(|i| chosen.values_of(*i)).copied().collect();
     (chosen.hypothesis.of(candidates), values)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What two effects get of ten nats that both gain together, by what each gains alone.
+    fn shares(alone: [f64; 2]) -> [f64; 2] {
+        let gained = |kept: &[usize]| {
+            let nats = match kept {
+                [] => 0.0,
+                [one] => alone[*one],
+                _ => 10.0,
+            };
+            Entry::of_channel(Channel::EchoValue, vec![nats])
+        };
+        let entries = shapley(2, gained);
+        [0, 1].map(|effect| entries[effect].of(&Channel::ALL)[0])
+    }
+
+    #[test]
+    fn effects_share_what_they_gain_together() {
+        assert_eq!(shares([4.0, 6.0]), [4.0, 6.0]);
+        assert_eq!(shares([8.0, 10.0]), [4.0, 6.0]);
+        assert_eq!(shares([4.0, 0.0]), [7.0, 3.0]);
+    }
+
+    /// Without the other one each makes things worse: neither would be added first for its own sake.
+    #[test]
+    fn what_loses_without_the_others_has_its_part_of_what_they_gain_together() {
+        assert_eq!(shares([-50.0, 6.0]), [2.0, 8.0]);
+        assert_eq!(shares([-50.0, -1.0]), [5.0, 5.0]);
+    }
 }
