@@ -17,6 +17,7 @@ mod drive;
 mod evaluate;
 mod evolve;
 mod export;
+mod facts;
 mod fleet;
 mod fleet_text;
 mod general;
@@ -27,6 +28,7 @@ pub mod kinds;
 mod lasting;
 mod manual;
 mod new;
+mod ports;
 mod progress;
 mod record;
 #[cfg(unix)]
@@ -46,7 +48,6 @@ use clap::{FromArgMatches, Parser, Subcommand};
 use general::General;
 pub use guide::command;
 use lasting::Kept;
-use serde::Serialize;
 
 use crate::error::{Error, Result};
 use crate::files;
@@ -213,12 +214,6 @@ fn read_logs_of(simulator: &Simulator, folder: &Path) -> Result<Logs> {
     let logs = read_sound_logs(folder)?;
     same_robot(&simulator.robot, &logs.robot)?;
     Ok(logs)
-}
-
-/// Writes what a command found as JSON where that is asked for; returns the `text` that tells it.
-fn reported(json: Option<&Path>, facts: &impl Serialize, text: String) -> Result<String> {
-    json.map_or(Ok(()), |path| files::write_json(path, facts))?;
-    Ok(text)
 }
 
 /// Tells what does not keep a command from being done.

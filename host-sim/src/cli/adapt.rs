@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use serde::Serialize;
 
+use super::facts::FactsOption;
 use super::table::{self, number};
 use super::{Run, kinds, progress, textbook};
 use crate::adapt::{Adapted, CommandBias, Gap, Lesson, adapt};
@@ -43,9 +44,8 @@ pub struct Adapt {
     /// Fixes every draw.
     #[arg(long, value_name = "N", default_value_t = Method::SEED)]
     seed: u64,
-    /// Also write the same facts here, for programs; `-` is standard output, in place of the text.
-    #[arg(long, value_name = "FILE")]
-    json: Option<PathBuf>,
+    #[command(flatten)]
+    facts: FactsOption,
 }
 
 /// Commands that are told.
@@ -64,7 +64,10 @@ struct Told {
 impl Run for Adapt {
     fn places(&self) -> Places {
         let inputs = [&self.sim].into_iter().chain(&self.logs).chain(&self.controller).chain(&self.scene);
-        Places::default().reading(inputs).writing([&self.out], kinds::SIMULATOR).writing(&self.json, kinds::REPORT)
+        Places::default()
+            .reading(inputs)
+            .writing([&self.out], kinds::SIMULATOR)
+            .writing(self.facts.asked(), kinds::REPORT)
     }
 
     fn run(&self) -> Result<String> {
@@ -95,7 +98,7 @@ impl Run for Adapt {
             text += &format!("chance of the controller: {before} before, {after} after\n");
         }
         text += &format!("simulator written to {}\n", self.out.display());
-        super::reported(self.json.as_deref(), &Told { schema: 1, lessons, chance }, text)
+        self.facts.told(&Told { schema: 1, lessons, chance }, text)
     }
 }
 

@@ -7,9 +7,10 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use mindgap_controller_export::brick::{self, Program, Report, RunConfig, ScriptedWorld};
-use mindgap_controller_export::wiring::{MotorPort, SensorPort, Wiring};
 
 use super::evolve::start_of;
+use super::facts::FactsOption;
+use super::ports::PortOptions;
 use super::{Run, kinds, textbook};
 use crate::built_in_robot::{BuiltInRobot, default_robot};
 use crate::chance::generator;
@@ -63,15 +64,8 @@ pub struct Brick {
     /// Draw its path here, .svg or .png.
     #[arg(long, value_name = "FILE", conflicts_with = "readings")]
     figure: Option<PathBuf>,
-    /// Port of the left motor.
-    #[arg(long, default_value = "B")]
-    left: MotorPort,
-    /// Port of the right motor.
-    #[arg(long, default_value = "C")]
-    right: MotorPort,
-    /// Port of the ultrasonic sensor.
-    #[arg(long, default_value = "4")]
-    sonar: SensorPort,
+    #[command(flatten)]
+    ports: PortOptions,
     /// Battery voltage.
     #[arg(long, default_value_t = 7800, conflicts_with = "scene")]
     battery_mv: u16,
@@ -84,9 +78,8 @@ pub struct Brick {
     /// Events that are told; later ones are counted.
     #[arg(long, value_name = "N", default_value_t = 10_000)]
     limit_events: usize,
-    /// Also write the same facts here, for programs; `-` is standard output, in place of the text.
-    #[arg(long, value_name = "FILE")]
-    json: Option<PathBuf>,
+    #[command(flatten)]
+    facts: FactsOption,
 }
 
 impl Run for Brick {
@@ -97,7 +90,7 @@ impl Run for Brick {
             [Some(&self.program), readings.as_ref(), self.world.as_ref(), self.scene.as_ref(), self.sim.as_ref()];
         Places::default()
             .reading(inputs.into_iter().flatten())
-            .writing(&self.json, kinds::REPORT)
+            .writing(self.facts.asked(), kinds::REPORT)
             .writing(&self.out, kinds::UNSIGNED)
             .writing(&self.figure, kinds::UNSIGNED)
     }
@@ -112,7 +105,7 @@ impl Run for Brick {
             Some(scene) => self.in_scene(scene, &program, &config)?,
             None => self.by_script(&program, &config)?,
         };
-        super::reported(self.json.as_deref(), &told::facts(&report), told::text(&report) + &world)
+        self.facts.told(&told::facts(&report), told::text(&report) + &world)
     }
 }
 
@@ -122,7 +115,7 @@ impl Brick {
         let WorldScript { levels, presses } =
             self.world.as_deref().map_or(Ok(WorldScript::default()), world_script::read)?;
         let mut world = ScriptedWorld {
-            sonar_port: self.sonar as usize,
+            sonar_port: self.ports.wiring().sonar as usize,
             battery_mv: self.battery_mv,
             exit_pressed_ms: self.exit_ms,
             wheels_blocked: self.blocked,
@@ -136,7 +129,7 @@ impl Brick {
     }
 
     fn in_scene(&self, path: &Path, program: &Program, config: &RunConfig) -> Result<(Report, String)> {
-        let wiring = Wiring { left: self.left, right: self.right, sonar: self.sonar };
+        let wiring = self.ports.wiring();
         wiring.check().map_err(|e| Error::new(e.to_string()))?;
         if let Some(figure) = self.figure.as_ref().filter(|figure| !is_svg(figure) && !has_ending(figure, "png")) {
             return Err(Error::in_file(figure, "is no name of a picture: it has to end with .svg or .png"));

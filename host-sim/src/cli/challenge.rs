@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
 
+use super::facts::FactsOption;
 use super::lasting::{KeepOption, Kept};
 use super::{Run, kinds, progress};
 use crate::challenge::Folder;
@@ -90,9 +91,8 @@ enum Part {
     Score {
         /// Folder of the challenge.
         folder: PathBuf,
-        /// Also write the same facts here, for programs; `-` is standard output, in place of the text.
-        #[arg(long, value_name = "FILE")]
-        json: Option<PathBuf>,
+        #[command(flatten)]
+        facts: FactsOption,
         /// Also write what happened in every case here.
         #[arg(long, value_name = "FILE")]
         csv: Option<PathBuf>,
@@ -123,8 +123,8 @@ impl Run for Challenge {
             Part::Calibrate { out, csv, .. } => places.writing([out], kinds::CALIBRATION).writing(csv, kinds::UNSIGNED),
             Part::Sensitivity { csv, .. } => places.writing(csv, kinds::UNSIGNED),
             Part::Answer { folder, .. } => places.reading([folder]).filling([&Folder(folder).answers()]),
-            Part::Score { folder, json, csv } => {
-                places.reading([folder]).writing(json, kinds::REPORT).writing(csv, kinds::UNSIGNED)
+            Part::Score { folder, facts, csv } => {
+                places.reading([folder]).writing(facts.asked(), kinds::REPORT).writing(csv, kinds::UNSIGNED)
             }
         }
     }
@@ -167,14 +167,14 @@ impl Run for Challenge {
                 bar.finish_and_clear();
                 Ok(format!("{}: {count} cases diagnosed\n", folder.display()))
             }
-            Part::Score { folder, json, csv } => {
+            Part::Score { folder, facts, csv } => {
                 let bar = progress::bar(0);
                 let score = score(folder, progress::counting(&bar))?;
                 bar.finish_and_clear();
                 if let Some(path) = csv {
                     files::write_csv(path, &score.cases)?;
                 }
-                super::reported(json.as_deref(), &score, text(&score))
+                facts.told(&score, text(&score))
             }
         }
     }

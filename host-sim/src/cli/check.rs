@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use super::facts::FactsOption;
 use super::table::count;
 use super::{Run, kinds};
 use crate::error::Result;
@@ -15,19 +16,18 @@ use crate::survey::{Holdings, Range, Survey};
 pub struct Check {
     /// Folder with robot.toml, scene.toml and run-*.csv.
     logs: PathBuf,
-    /// Also write the same facts here, for programs; `-` is standard output, in place of the text.
-    #[arg(long, value_name = "FILE")]
-    json: Option<PathBuf>,
+    #[command(flatten)]
+    facts: FactsOption,
 }
 
 impl Run for Check {
     fn places(&self) -> Places {
-        Places::default().reading([&self.logs]).writing(&self.json, kinds::REPORT)
+        Places::default().reading([&self.logs]).writing(self.facts.asked(), kinds::REPORT)
     }
 
     fn run(&self) -> Result<String> {
         let survey = Survey::of(super::read_logs(&self.logs)?);
-        super::reported(self.json.as_deref(), &survey, text(&survey))
+        self.facts.told(&survey, text(&survey))
     }
 }
 

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, value_parser};
 
+use super::facts::FactsOption;
 use super::{Run, kinds, progress, table, textbook};
 use crate::crosscheck::{self, Divergence, NetworkCheck, Networks, RunState, Runs, Trials};
 use crate::error::Result;
@@ -26,15 +27,14 @@ pub struct Crosscheck {
     /// Fixes every draw.
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
-    /// Also write the same facts here, for programs; `-` is standard output, in place of the text.
-    #[arg(long, value_name = "FILE")]
-    json: Option<PathBuf>,
+    #[command(flatten)]
+    facts: FactsOption,
 }
 
 impl Run for Crosscheck {
     fn places(&self) -> Places {
         let inputs = [&self.sim, &self.logs].into_iter().chain(&self.controller);
-        Places::default().reading(inputs).writing(&self.json, kinds::REPORT)
+        Places::default().reading(inputs).writing(self.facts.asked(), kinds::REPORT)
     }
 
     fn run(&self) -> Result<String> {
@@ -47,7 +47,7 @@ impl Run for Crosscheck {
         let found = crosscheck::crosscheck(&simulator, &logs, controller.as_ref(), trials, progress::counting(&bar));
         bar.finish_and_clear();
         let found = found.map_err(|error| error.or_in_file(&self.sim))?;
-        super::reported(self.json.as_deref(), &found, networks(&found.networks) + "\n" + &runs(&found.runs))
+        self.facts.told(&found, networks(&found.networks) + "\n" + &runs(&found.runs))
     }
 }
 

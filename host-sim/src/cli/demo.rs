@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use serde_json::{Value, json};
 
+use super::facts::FactsOption;
 use super::lasting::{KeepOption, Kept};
 use super::table::{self, number};
 use super::{Run, kinds, progress, trials};
@@ -34,9 +35,8 @@ pub struct Demo {
     /// algorithm, one run of the loop.
     #[arg(long)]
     quick: bool,
-    /// Also write the same facts here, for programs; `-` is standard output, in place of the text.
-    #[arg(long, value_name = "FILE")]
-    json: Option<PathBuf>,
+    #[command(flatten)]
+    facts: FactsOption,
     /// Also write a page for a browser here.
     #[arg(long, value_name = "FILE")]
     html: Option<PathBuf>,
@@ -46,7 +46,7 @@ pub struct Demo {
 
 impl Run for Demo {
     fn places(&self) -> Places {
-        let places = Places::default().filling([&self.out]).writing(&self.json, kinds::REPORT);
+        let places = Places::default().filling([&self.out]).writing(self.facts.asked(), kinds::REPORT);
         places.writing(&self.html, kinds::PAGE).writing(self.keep.asked(), kinds::CHECKPOINT)
     }
 
@@ -79,7 +79,7 @@ impl Run for Demo {
             self.out.display(),
             in_folder.display()
         );
-        super::reported(self.json.as_deref(), &facts(&summary), text)
+        self.facts.told(&facts(&summary), text)
     }
 
     fn kept(&self) -> Option<Kept> {

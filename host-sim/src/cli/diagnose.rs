@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use mindgap_core::controller::Controller;
 
+use super::facts::FactsOption;
 use super::fleet::FleetRequest;
 use super::lasting::{KeepOption, Kept};
 use super::textbook::{KINEMATIC, simulator_beside_textbook};
@@ -44,9 +45,8 @@ pub struct Diagnose {
     /// that, a length that motion shows in.
     #[arg(long, value_name = "MS", value_parser = positive)]
     step_ms: Option<f64>,
-    /// Also write the same facts here, for programs; `-` is standard output, in place of the text.
-    #[arg(long, value_name = "FILE")]
-    json: Option<PathBuf>,
+    #[command(flatten)]
+    facts: FactsOption,
     /// Also write a page for a browser here.
     #[arg(long, value_name = "FILE")]
     html: Option<PathBuf>,
@@ -80,7 +80,7 @@ impl Run for Diagnose {
         let on_disk = |path: &&PathBuf| !is_address(path);
         let logs = Some(&self.logs).filter(on_disk);
         let inputs = self.simulator_file().into_iter().chain(logs).chain(&self.controller).chain(&self.effects);
-        let places = Places::default().reading(inputs).writing(&self.json, kinds::REPORT);
+        let places = Places::default().reading(inputs).writing(self.facts.asked(), kinds::REPORT);
         let places = places.writing(&self.html, kinds::PAGE).writing(&self.apply, kinds::SIMULATOR);
         let places = places.writing(&self.formula, kinds::FORMULA).writing(&self.next_experiment, kinds::UNSIGNED);
         let places = places.filling(&self.figures).filling(self.fleet.as_ref().filter(on_disk));
@@ -154,7 +154,7 @@ impl Run for Diagnose {
             (Some(path), None) => text += &format!("No formula holds: {} is not written.\n", path.display()),
             (None, _) => (),
         }
-        super::reported(self.json.as_deref(), &found.diagnosis, text)
+        self.facts.told(&found.diagnosis, text)
     }
 }
 

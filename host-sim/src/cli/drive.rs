@@ -6,6 +6,7 @@ use clap::Args;
 use serde_json::json;
 
 use super::evolve::start_of;
+use super::facts::FactsOption;
 use super::{Run, kinds};
 use crate::built_in_robot::{ActiveEffect, BuiltInRobot, Termination, default_robot, run_controller};
 use crate::chance::generator;
@@ -34,15 +35,14 @@ pub struct Drive {
     /// The log to write.
     #[arg(long, value_name = "RUN.csv")]
     out: PathBuf,
-    /// Also write the same facts here, for programs; `-` is standard output, in place of the text.
-    #[arg(long, value_name = "FILE")]
-    json: Option<PathBuf>,
+    #[command(flatten)]
+    facts: FactsOption,
 }
 
 impl Run for Drive {
     fn places(&self) -> Places {
         let places = Places::default().reading([&self.controller, &self.scene]).writing([&self.out], kinds::UNSIGNED);
-        places.writing(&self.json, kinds::REPORT)
+        places.writing(self.facts.asked(), kinds::REPORT)
     }
 
     fn run(&self) -> Result<String> {
@@ -62,7 +62,7 @@ impl Run for Drive {
         let (how, steps) = (ending(driven.termination), driven.steps());
         let facts = json!({"schema": 1, "run": self.out, "ending": how, "steps": steps, "distance_cm": distance_cm});
         let text = format!("{}: {how} after {steps} steps{distance}\n", self.out.display());
-        super::reported(self.json.as_deref(), &facts, text)
+        self.facts.told(&facts, text)
     }
 }
 

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use super::facts::FactsOption;
 use super::table::{self, number};
 use super::{Run, kinds, progress, textbook};
 use crate::error::Result;
@@ -21,9 +22,8 @@ pub struct Evaluate {
     sim: PathBuf,
     /// Folder of logs to judge on.
     logs: PathBuf,
-    /// Also write the same facts here, for programs; `-` is standard output, in place of the text.
-    #[arg(long, value_name = "FILE")]
-    json: Option<PathBuf>,
+    #[command(flatten)]
+    facts: FactsOption,
     /// Also write a page for a browser here.
     #[arg(long, value_name = "FILE")]
     html: Option<PathBuf>,
@@ -34,7 +34,7 @@ pub struct Evaluate {
 
 impl Run for Evaluate {
     fn places(&self) -> Places {
-        let places = Places::default().reading([&self.sim, &self.logs]).writing(&self.json, kinds::REPORT);
+        let places = Places::default().reading([&self.sim, &self.logs]).writing(self.facts.asked(), kinds::REPORT);
         places.writing(&self.html, kinds::PAGE).filling(&self.figures)
     }
 
@@ -54,7 +54,7 @@ impl Run for Evaluate {
         if let Some(folder) = &self.figures {
             pictures::networks(folder, &simulator, &evaluation, &logs)?;
         }
-        super::reported(self.json.as_deref(), &evaluation, told(&evaluation))
+        self.facts.told(&evaluation, told(&evaluation))
     }
 }
 

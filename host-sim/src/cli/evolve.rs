@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::{Args, value_parser};
 use serde_json::json;
 
+use super::facts::FactsOption;
 use super::lasting::{KeepOption, Kept};
 use super::{Run, kinds, progress, textbook};
 use crate::error::Result;
@@ -53,9 +54,8 @@ pub struct Evolve {
     /// Let every individual of a generation meet its own random numbers, as with --paper, and not all the same ones.
     #[arg(long)]
     fresh_numbers: bool,
-    /// Also write the same facts here, for programs; `-` is standard output, in place of the text.
-    #[arg(long, value_name = "FILE")]
-    json: Option<PathBuf>,
+    #[command(flatten)]
+    facts: FactsOption,
     /// Also draw simulated runs of the controller into this folder, as SVG, PNG and PDF.
     #[arg(long, value_name = "DIR")]
     figures: Option<PathBuf>,
@@ -66,7 +66,7 @@ pub struct Evolve {
 impl Run for Evolve {
     fn places(&self) -> Places {
         let places = Places::default().reading([&self.sim, &self.scene]).writing([&self.out], kinds::CONTROLLER);
-        let places = places.writing(&self.json, kinds::REPORT).filling(&self.figures);
+        let places = places.writing(self.facts.asked(), kinds::REPORT).filling(&self.figures);
         places.writing(self.keep.asked(), kinds::CHECKPOINT)
     }
 
@@ -125,7 +125,7 @@ impl Run for Evolve {
             chance.map_or_else(String::new, |chance| told(&chance)),
             self.out.display()
         );
-        super::reported(self.json.as_deref(), &facts, text)
+        self.facts.told(&facts, text)
     }
 
     fn kept(&self) -> Option<Kept> {

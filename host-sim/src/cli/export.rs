@@ -15,10 +15,11 @@ use mindgap_controller_export::nxc_networks::{self, NetworksBudget, nxc_networks
 use mindgap_controller_export::onboard::Safety;
 use mindgap_controller_export::pybricks_networks::{PybricksNetwork, pybricks_networks};
 use mindgap_controller_export::rust_networks::rust_networks;
-use mindgap_controller_export::wiring::{MotorPort, SensorPort, Wiring};
 use mindgap_controller_export::{ExportError, Origin, arduino, c, collect as data_collection, pybricks, rust, rxe};
 use serde_json::{Value, json};
 
+use super::facts::FactsOption;
+use super::ports::PortOptions;
 use super::{Run, kinds};
 use crate::error::{Error, Result};
 use crate::evolve::controller_file::ControllerFile;
@@ -45,15 +46,8 @@ pub struct Export {
     /// The file to write.
     #[arg(long)]
     out: PathBuf,
-    /// Port of the left motor.
-    #[arg(long, default_value = "B")]
-    left: MotorPort,
-    /// Port of the right motor.
-    #[arg(long, default_value = "C")]
-    right: MotorPort,
-    /// Port of the ultrasonic sensor.
-    #[arg(long, default_value = "4")]
-    sonar: SensorPort,
+    #[command(flatten)]
+    ports: PortOptions,
     /// Log every step on the brick: each start of the program writes a file of its own, as NAME_000.csv. They have the
     /// program's name, or this one.
     #[arg(long, value_name = "NAME.csv", num_args = 0..=1)]
@@ -67,9 +61,8 @@ pub struct Export {
     /// Stop the robot when a driven wheel does not turn.
     #[arg(long)]
     stall: bool,
-    /// Also write the same facts here, for programs; `-` is standard output, in place of the text.
-    #[arg(long, value_name = "FILE")]
-    json: Option<PathBuf>,
+    #[command(flatten)]
+    facts: FactsOption,
     #[command(flatten)]
     collect: collect::Collect,
 }
@@ -122,7 +115,7 @@ enum Format {
 impl Run for Export {
     fn places(&self) -> Places {
         let places = Places::default().reading(&self.input).writing([&self.out], kinds::PROGRAM);
-        places.writing(&self.json, kinds::REPORT)
+        places.writing(self.facts.asked(), kinds::REPORT)
     }
 
     fn run(&self) -> Result<String> {
@@ -136,7 +129,7 @@ impl Run for Export {
             ));
         }
         let (program, budget) = match &self.input {
-            None => self.collection(self.collect.options(self.program_name()?, self.wiring()))?,
+            None => self.collection(self.collect.options(self.program_name()?, self.ports.wiring()))?,
             // Simulators are JSON; no TOML begins like that.
             Some(input) if files::read_text(input)?.trim_start().starts_with('{') => self.networks(input)?,
             Some(input) => self.onboard(input)?,
@@ -146,7 +139,7 @@ impl Run for Export {
         let (budget, figures) = budget.map_or_else(Default::default, |Takes { text, figures }| (text + "\n", figures));
         let text = format!("{} written\n{budget}", self.out.display());
         let facts = json!({"schema": 1, "program": self.out, "bytes": bytes, "takes": figures});
-        super::reported(self.json.as_deref(), &facts, text)
+        self.facts.told(&facts, text)
     }
 }
 
@@ -190,11 +183,13 @@ impl Export {
                 self.program_name()?;
                 let (controller, _) = read()?;
                 (
-                    rxe::program(&controller, &self.wiring(), self.safety()).map_err(refused)?,
+                    rxe::program(&controller, &self.ports.wiring(), self.safety()).map_err(refused)?,
                     Some(rxe::budget(&controller, self.safety()).into()),
                 )
             }
-            Format::NxcCollect => self.collection(collect::script(input, self.program_name()?, self.wiring())?)?,
+            Format::NxcCollect => {
+                self.collection(collect::script(input, self.program_name()?, self.ports.wiring())?)?
+            }
             Format::Rust => {
                 let (controller, origin) = read()?;
                 (rust::module(&controller, &origin).map_err(refused)?.into_bytes(), None)
@@ -213,17 +208,13 @@ impl Export {
             }
             Format::Nxc => {
                 let ((controller, origin), program) = (read()?, self.program_name()?);
-                let (wiring, safety, display) = (self.wiring(), self.safety(), self.display);
+                let (wiring, safety, display) = (self.ports.wiring(), self.safety(), self.display);
                 let log = self.logs(&program).transpose().map_err(|e| Error::in_file(&self.out, e.to_string()))?;
                 let options = NxcOptions { program, wiring, safety, log, display };
                 let source = nxc::program(&controller, &origin, &options).map_err(refused)?;
                 (source.into_bytes(), Some(nxc::budget(&controller, &options).into()))
             }
         })
-    }
-
-    fn wiring(&self) -> Wiring {
-        Wiring { left: self.left, right: self.right, sonar: self.sonar }
     }
 
     fn safety(&self) -> Safety {

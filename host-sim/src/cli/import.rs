@@ -7,6 +7,7 @@ use std::path::PathBuf;
 use clap::{Args, Subcommand};
 use serde_json::json;
 
+use super::facts::FactsOption;
 use super::table::{self, count};
 use super::{Run, kinds, progress, warn};
 use crate::error::Result;
@@ -57,9 +58,8 @@ struct Brick {
     /// Unit of a track's heading whose column names none.
     #[arg(long, value_name = "UNIT")]
     angle_unit: Option<Angle>,
-    /// Also write the same facts here, for programs; `-` is standard output, in place of the text.
-    #[arg(long, value_name = "FILE")]
-    json: Option<PathBuf>,
+    #[command(flatten)]
+    facts: FactsOption,
 }
 
 impl Import {
@@ -86,7 +86,7 @@ impl Run for Import {
 impl Run for Brick {
     fn places(&self) -> Places {
         let inputs = self.files.iter().chain([&self.scene, &self.robot]);
-        Places::default().reading(inputs).filling([&self.out]).writing(&self.json, kinds::REPORT)
+        Places::default().reading(inputs).filling([&self.out]).writing(self.facts.asked(), kinds::REPORT)
     }
 
     fn run(&self) -> Result<String> {
@@ -99,7 +99,7 @@ impl Run for Brick {
         logs.write(&self.out)?;
         let text = format!("{}{}: {}\n", told(&report), self.out.display(), count(logs.runs.len(), "run"));
         let facts = json!({"schema": 1, "tracks": report.tracks, "logs": report.logs});
-        super::reported(self.json.as_deref(), &facts, text)
+        self.facts.told(&facts, text)
     }
 }
 

@@ -8,6 +8,7 @@ use clap::Args;
 use serde::de::IgnoredAny;
 use serde_json::{Value, json};
 
+use super::facts::FactsOption;
 use super::kinds;
 use super::table::count;
 use crate::effects::own;
@@ -23,9 +24,8 @@ use crate::simulator::Simulator;
 pub struct Info {
     /// The file or folder.
     path: PathBuf,
-    /// Also write the same facts here, for programs; `-` is standard output, in place of the text.
-    #[arg(long, value_name = "FILE")]
-    json: Option<PathBuf>,
+    #[command(flatten)]
+    facts: FactsOption,
 }
 
 /// What files are that nothing is read from again, by their endings.
@@ -59,14 +59,14 @@ const LISTS: &[(&str, &str)] = &[
 
 impl super::Run for Info {
     fn places(&self) -> Places {
-        Places::default().reading([&self.path]).writing(&self.json, kinds::REPORT)
+        Places::default().reading([&self.path]).writing(self.facts.asked(), kinds::REPORT)
     }
 
     fn run(&self) -> Result<String> {
         let path = self.path.as_path();
         let what = if path.is_dir() { folder(path)? } else { file(path)? };
         let text = format!("{}: {what}\n", path.display());
-        super::reported(self.json.as_deref(), &json!({"schema": 1, "path": path, "what": what}), text)
+        self.facts.told(&json!({"schema": 1, "path": path, "what": what}), text)
     }
 }
 

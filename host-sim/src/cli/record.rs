@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use serde_json::json;
 
+use super::facts::FactsOption;
 use super::table::count;
 use super::{Run, kinds};
 use crate::built_in_robot::{ActiveEffect, Driving, Effect, default_robot, record_driving, training_room};
@@ -13,7 +14,7 @@ use crate::files::places::Places;
 use crate::logs::Scene;
 
 /// Record random-command logs of the built-in robot.
-#[derive(Args, Debug)]
+#[derive(Args)]
 #[command(after_help = effects_help())]
 pub struct Record {
     /// Folder for the logs.
@@ -37,14 +38,13 @@ pub struct Record {
     /// Fixes every draw.
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
-    /// Also write the same facts here, for programs; `-` is standard output, in place of the text.
-    #[arg(long, value_name = "FILE")]
-    json: Option<PathBuf>,
+    #[command(flatten)]
+    facts: FactsOption,
 }
 
 impl Run for Record {
     fn places(&self) -> Places {
-        Places::default().reading(&self.scene).filling([&self.out]).writing(&self.json, kinds::REPORT)
+        Places::default().reading(&self.scene).filling([&self.out]).writing(self.facts.asked(), kinds::REPORT)
     }
 
     fn run(&self) -> Result<String> {
@@ -63,7 +63,7 @@ impl Run for Record {
             "effects": effects,
         });
         let text = format!("{}: {} of {} steps\n", self.out.display(), count(amount[0], "run"), self.steps);
-        super::reported(self.json.as_deref(), &facts, text)
+        self.facts.told(&facts, text)
     }
 }
 

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::{Args, value_parser};
 
 use super::evolve::start_of;
+use super::facts::FactsOption;
 use super::table::{self, number};
 use super::{Run, kinds, progress, textbook};
 use crate::error::Result;
@@ -45,9 +46,8 @@ pub struct Simulate {
     /// --paper-noise it is the networks.
     #[arg(long, value_enum, default_value_t = SensorModel::Beam, conflicts_with = "paper_noise")]
     sonar: SensorModel,
-    /// Also write the same facts here, for programs; `-` is standard output, in place of the text.
-    #[arg(long, value_name = "FILE")]
-    json: Option<PathBuf>,
+    #[command(flatten)]
+    facts: FactsOption,
     /// Also write a page for a browser here.
     #[arg(long, value_name = "FILE")]
     html: Option<PathBuf>,
@@ -64,7 +64,7 @@ const TIMED_OUT: &str = "timed_out";
 impl Run for Simulate {
     fn places(&self) -> Places {
         let inputs = [&self.sim, &self.controller, &self.scene];
-        let places = Places::default().reading(inputs).writing(&self.json, kinds::REPORT);
+        let places = Places::default().reading(inputs).writing(self.facts.asked(), kinds::REPORT);
         places.writing(&self.html, kinds::PAGE).filling(&self.figures)
     }
 
@@ -104,7 +104,7 @@ impl Run for Simulate {
             let title = format!("Start {}", self.start);
             pictures::paths(folder, &[pictures::simulated_paths(title, &scene, start, &rollouts)])?;
         }
-        super::reported(self.json.as_deref(), &rollouts, told(&rollouts))
+        self.facts.told(&rollouts, told(&rollouts))
     }
 }
 

@@ -7,6 +7,7 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 use serde_json::json;
 
+use super::facts::FactsOption;
 use super::lasting::{KeepOption, Kept};
 use super::{Run, kinds, progress, warn};
 use crate::error;
@@ -34,9 +35,8 @@ pub struct Train {
     /// Fixes every draw.
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
-    /// Also write the same facts here, for programs; `-` is standard output, in place of the text.
-    #[arg(long, value_name = "FILE")]
-    json: Option<PathBuf>,
+    #[command(flatten)]
+    facts: FactsOption,
     #[command(flatten)]
     keep: KeepOption,
 }
@@ -62,7 +62,7 @@ enum Trainer {
 impl Run for Train {
     fn places(&self) -> Places {
         let places = Places::default().reading([&self.logs]).writing([&self.out], kinds::SIMULATOR);
-        places.writing(&self.json, kinds::REPORT).writing(self.keep.asked(), kinds::CHECKPOINT)
+        places.writing(self.facts.asked(), kinds::REPORT).writing(self.keep.asked(), kinds::CHECKPOINT)
     }
 
     fn run(&self) -> error::Result<String> {
@@ -102,7 +102,7 @@ impl Run for Train {
             "schema": 1, "simulator": self.out, "runs": simulator.origin.runs, "seed": self.seed,
             "evaluations": evaluations, "missing": simulator.missing,
         });
-        super::reported(self.json.as_deref(), &facts, text)
+        self.facts.told(&facts, text)
     }
 
     fn kept(&self) -> Option<Kept> {

@@ -5,6 +5,7 @@ use std::time::Duration;
 
 use clap::{Args, value_parser};
 
+use super::facts::FactsOption;
 use super::voice::meanwhile;
 use super::{Run, kinds, progress, textbook, warn};
 use crate::error::Result;
@@ -50,9 +51,8 @@ pub struct Loop {
     /// Fixes every draw.
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
-    /// Also write the same facts here, for programs; `-` is standard output, in place of the text.
-    #[arg(long, value_name = "FILE")]
-    json: Option<PathBuf>,
+    #[command(flatten)]
+    facts: FactsOption,
     /// Also write a page for a browser here.
     #[arg(long, value_name = "FILE")]
     html: Option<PathBuf>,
@@ -63,7 +63,7 @@ const ASK: &str = "ask";
 
 impl Run for Loop {
     fn places(&self) -> Places {
-        let places = Places::default().reading([&self.sim, &self.scene]).writing(&self.json, kinds::REPORT);
+        let places = Places::default().reading([&self.sim, &self.scene]).writing(self.facts.asked(), kinds::REPORT);
         let places = places.writing(&self.html, kinds::PAGE);
         // A folder in which a loop was begun is gone on with.
         let fresh = Some(&self.folder).filter(|folder| !folder.join(trials::state::FILE).exists());
@@ -107,7 +107,7 @@ impl Run for Loop {
             };
             files::write(path, page(&subject)?)?;
         }
-        super::reported(self.json.as_deref(), &state, self.told(&state))
+        self.facts.told(&state, self.told(&state))
     }
 
     fn is_shared(&self) -> bool {

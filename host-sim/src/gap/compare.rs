@@ -121,7 +121,7 @@ impl Comparison {
     }
 
     /// Two fits, with nothing beside them.
-    fn of(none: Fitted, chosen: Fitted) -> Self {
+    pub(super) fn of(none: Fitted, chosen: Fitted) -> Self {
         Comparison {
             none,
             chosen,

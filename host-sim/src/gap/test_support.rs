@@ -265,14 +265,5 @@ pub fn made_up(effects: &[&'static Effect], values: &[f64], held_out: &[f64], co
 pub fn comparison(effects: &[&'static Effect], gains: &[f64], context: &FitContext) -> Comparison {
     let none = made_up(&[], &[], &vec![0.0; gains.len()], context);
     let chosen = made_up(effects, &vec![0.5; effects.len()], gains, context);
-    Comparison {
-        none,
-        chosen,
-        rivals: Vec::new(),
-        own: Vec::new(),
-        alone: Vec::new(),
-        beyond_none: Vec::new(),
-        beyond_chosen: Vec::new(),
-        scatter: Vec::new(),
-    }
+    Comparison::of(none, chosen)
 }

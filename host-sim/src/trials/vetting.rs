@@ -104,9 +104,7 @@ impl Vetting<'_> {
     }
 
     fn touches(&self, pose: &Pose) -> bool {
-        let (at_cm, sides) = (pose.position_cm, self.scene.sides());
-        let nearest_cm = sides.iter().map(|side| side.nearest(at_cm).distance(at_cm)).fold(f64::INFINITY, f64::min);
-        nearest_cm - self.simulator.robot.body_radius_cm < TOUCHING_CM
+        !self.scene.has_room_for(pose.position_cm, self.simulator.robot.body_radius_cm + TOUCHING_CM)
     }
 
     /// Rows before the last one and before those at the end that are at a wall.

@@ -5,7 +5,8 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use serde_json::json;
 
-use crate::cli::{Run, kinds, progress, reported, table};
+use crate::cli::facts::FactsOption;
+use crate::cli::{Run, kinds, progress, table};
 use crate::error::Result;
 use crate::files;
 use crate::files::places::Places;
@@ -79,9 +80,8 @@ struct Target {
     /// Folder for the logs.
     #[arg(long, value_name = "LOGS")]
     out: PathBuf,
-    /// Also write the same facts here, for programs; `-` is standard output, in place of the text.
-    #[arg(long, value_name = "FILE")]
-    json: Option<PathBuf>,
+    #[command(flatten)]
+    facts: FactsOption,
 }
 
 impl Run for Streams {
@@ -129,7 +129,7 @@ struct Given {
 impl Target {
     fn places(&self) -> Places {
         let given = self.robot.iter().chain(&self.scene);
-        Places::default().reading(given).filling([&self.out]).writing(&self.json, kinds::REPORT)
+        Places::default().reading(given).filling([&self.out]).writing(self.facts.asked(), kinds::REPORT)
     }
 
     /// Reads what is given of robot and scene.
@@ -172,7 +172,7 @@ impl Target {
             "schema": 1, "recordings": recordings, "sides": sides, "frame": frame, "findings": findings,
             "to_fill_in": to_fill_in,
         });
-        reported(self.json.as_deref(), &facts, text)
+        self.facts.told(&facts, text)
     }
 }
 
