@@ -9,7 +9,7 @@ use crate::simulator::baseline::Baseline;
 /// One block in this many is held out: a quarter confirms within twice the error of the rest.
 const EVERY: usize = 4;
 /// With fewer runs than this none is held out, unless they are long: two confirm nothing that one does not.
-pub const FEWEST_RUNS: usize = 8;
+const FEWEST_RUNS: usize = 8;
 /// Parts of fewer runs stand for runs where they have this many rows: as many as a run that one drives in a minute.
 const AS_A_RUN: usize = 100;
 /// Effects are identified on this many rows at most. Strong evidence is a few nats, and an effect that a tenth of this does
@@ -62,6 +62,22 @@ impl Conditioned {
         Conditioned { identification: self.identification.expect(baseline.motion.as_ref()), ..self }
     }
 
+    /// What so few runs leave open, in words; none where they are enough.
+    pub fn caveat(&self, runs: usize) -> Option<String> {
+        let few = (2..FEWEST_RUNS).contains(&runs);
+        few.then(|| match self.hold_out {
+            None => {
+                format!(
+                    "With fewer than {FEWEST_RUNS} runs none is kept back: the gap shrinks on runs that were fitted."
+                )
+            }
+            Some(_) => format!(
+                "With fewer than {FEWEST_RUNS} runs none is kept back but parts of them: what holds for other runs can \
+                 hardly be told."
+            ),
+        })
+    }
+
     /// The blocks that confirm: those held out, or the others where none is.
     pub fn confirming(&self) -> &Observations {
         self.hold_out.as_ref().unwrap_or(&self.identification)
@@ -110,6 +126,14 @@ mod tests {
     #[test]
     fn of_few_runs_none_is_held_out() {
         assert_eq!(parts(7), ((0..7).collect(), None));
+    }
+
+    #[test]
+    fn what_few_runs_leave_open_is_told() {
+        let told = |runs, rows| Conditioned::of(&driven(runs, rows, |_, _| [50.0; 2]), &baseline()).caveat(runs);
+        assert!(told(7, 4).is_some_and(|told| told.ends_with("that were fitted.")));
+        assert!(told(5, 801).is_some_and(|told| told.contains("but parts of them")));
+        assert_eq!([told(8, 4), told(1, 1601)], [None, None]);
     }
 
     #[test]

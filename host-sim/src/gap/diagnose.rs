@@ -234,7 +234,8 @@ pub fn closed(simulator: &Simulator, applied: &[AppliedEffect], logs: &Logs) -> 
 /// Observations of what the baseline knows, and what has to be said about them.
 fn conditioned(baseline: &mut Baseline, inspected: &Inspection) -> Result<(Conditioned, Validated)> {
     let conditioned = Conditioned::of(&inspected.logs, baseline);
-    let validated = validate::validate(baseline, &conditioned.identification, inspected)?;
+    let mut validated = validate::validate(baseline, &conditioned.identification, inspected)?;
+    validated.notes.extend(conditioned.caveat(inspected.logs.runs.len()));
     Ok((conditioned.expecting(baseline), validated))
 }
 

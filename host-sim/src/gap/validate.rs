@@ -2,7 +2,6 @@
 
 use glam::DVec2;
 
-use super::condition::FEWEST_RUNS;
 use super::scope::Scope;
 use crate::error::{Error, Result};
 use crate::evaluation::observations::{Observation, Observations};
@@ -95,11 +94,6 @@ pub fn validate(baseline: &mut Baseline, observations: &Observations, inspected:
     }
     if logs.runs.len() == 1 {
         notes.push("One run only: its parts stand for runs, and what holds for other runs cannot be told.".into());
-    }
-    if (2..FEWEST_RUNS).contains(&logs.runs.len()) {
-        notes.push(format!(
-            "With fewer than {FEWEST_RUNS} runs none is kept back: the gap shrinks on runs that were fitted."
-        ));
     }
     if logs.runs.len() > 1 && logs.runs.windows(2).all(|pair| same_commands(&pair[0], &pair[1])) {
         notes.push("All runs have the same commands: what other commands would show is not excited.".into());
@@ -256,9 +250,8 @@ mod tests {
     }
 
     #[test]
-    fn few_runs_and_equal_runs_are_said() {
+    fn one_run_and_equal_runs_are_said() {
         assert!(only(&notes_of(&driven(1, 16, mixed)).0, "One run only"));
-        assert!(only(&notes_of(&driven(7, 4, mixed)).0, "With fewer than 8 runs"));
         let mut equal = driven(8, 4, |_, at| mixed(0, at));
         // Runs that agree in every number are copies.
         for (number, run) in equal.runs.iter_mut().enumerate() {
