@@ -1,6 +1,6 @@
 //! What a command finds, for programs.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use serde::Serialize;
@@ -22,12 +22,20 @@ impl FactsOption {
         &self.json
     }
 
-    /// Writes the facts where that is asked for; returns the `text` that tells them.
+    /// As [`reported`].
     ///
     /// # Errors
     /// When the file cannot be written.
     pub fn told(&self, facts: &impl Serialize, text: String) -> Result<String> {
-        self.json.as_deref().map_or(Ok(()), |path| files::write_json(path, facts))?;
-        Ok(text)
+        reported(self.json.as_deref(), facts, text)
     }
+}
+
+/// Writes the facts where that is asked for; returns the `text` that tells them.
+///
+/// # Errors
+/// When the file cannot be written.
+pub fn reported(json: Option<&Path>, facts: &impl Serialize, text: String) -> Result<String> {
+    json.map_or(Ok(()), |path| files::write_json(path, facts))?;
+    Ok(text)
 }

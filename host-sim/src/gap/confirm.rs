@@ -135,10 +135,10 @@ mod tests {
         let steps = |blocks, rows, straight: usize, off_cm: [f64; 2]| {
             observations(blocks, rows, move |_, at| {
                 let (commands, off_cm) = if at < straight { (STRAIGHT, off_cm[0]) } else { (SPIN, off_cm[1]) };
-                Made { commands: [commands; 2], off: [off_cm, 0.0, 0.0], ..Made::default() }
+                Made { commands: [commands; 2], off: [off_cm + 0.5 * alternating(at), 0.0, 0.0], ..Made::default() }
             })
         };
-        let (baseline, rows, hold_out) = (baseline(), steps(8, 10, 2, [1.0, 3.0]), steps(1, 31, 1, [0.2, 2.5]));
+        let (baseline, rows, hold_out) = (baseline(), steps(8, 10, 2, [1.0, 3.0]), steps(1, 62, 2, [0.2, 2.5]));
         let context = FitContext::new(&baseline, &rows, METHOD);
         let none = Fitted::none(&context);
         let judged = |fit: &Fitted| fit.judged_on(&hold_out, &context).total().iter().sum::<f64>();
