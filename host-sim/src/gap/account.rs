@@ -5,10 +5,10 @@ use serde::Serialize;
 use super::budget::{Part, budget};
 use super::channel::Channel;
 use super::compare::Comparison;
-use super::fit::{FitContext, Fitted};
+use super::fit::FitContext;
 use super::ledger::Ledger;
 use crate::evaluation::observations::Observations;
-use crate::evaluation::paths::{self, PathError};
+use crate::evaluation::paths::PathError;
 use crate::statistics::{bootstrap, rounding};
 
 /// What a gap is made of, and how far it shrinks.
@@ -105,9 +105,7 @@ fn reduction(found: &Comparison, ledger: &Ledger, context: &FitContext, logs: &O
         let gained: f64 = ledger.gained_by(fit, found, context, logs).of(&Channel::ALL).iter().sum();
         RunnerUp { id: fit.ids().join("+"), reducible_closed: gained / all.reducible() }
     });
-    let drive = context.baseline.motion.as_ref();
-    let effects = [&found.none, &found.chosen].map(Fitted::effects);
-    let paths = drive.map_or_else(Vec::new, |drive| paths::open_loop([&effects[0], &effects[1]], drive, logs, seed));
+    let paths = found.paths.iter().map(|paths| paths.error).collect();
     let channels = Channel::ALL.into_iter().filter_map(channel).collect();
     Some(GapReduction { whole, floor: 0.0, runner_up, channels, paths })
 }
@@ -138,6 +136,7 @@ impl Tally {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::gap::fit::Fitted;
     use crate::gap::residual_law::log_density;
     use crate::gap::test_support::*;
 

@@ -49,6 +49,9 @@ pub struct Judgement {
     /// Scatter counts from this multiple of the simulator's on: five standard errors of a standard deviation that is
     /// estimated from a thousand rows.
     pub scatter_ratio: f64,
+    /// Effects bring rollouts nearer by at least this share of what they foretell, or are no whole cause: an answer that is
+    /// nearer to nothing than to what it foretells.
+    pub rollouts_nearer: f64,
 }
 
 /// Steps that a simulator of the calibration learned its motion from: eighty runs of sixty. A test of `challenge` holds it
@@ -118,6 +121,7 @@ impl Judgement {
         vague_factor: 2.0,
         most_effects: 4,
         scatter_ratio: 1.12,
+        rollouts_nearer: 0.5,
     };
 
     /// Relative likelihood of a rival that lags by `rival_z` standard errors.

@@ -8,6 +8,7 @@ use super::omnibus::ResidualFit;
 use super::remainder::{Remainder, remainders};
 use super::scatter::WiderScatter;
 use crate::effects::applied::AppliedEffect;
+use crate::evaluation::paths::Paths;
 
 /// The effects that explain a gap best, if any does.
 pub struct Comparison {
@@ -27,6 +28,8 @@ pub struct Comparison {
     pub beyond_chosen: Vec<Remainder>,
     /// The motion channels that scatter more than the simulator assumes, once confirmed.
     pub scatter: Vec<WiderScatter>,
+    /// Rollouts without and with the chosen effects on the confirming runs, once confirmed.
+    pub paths: Vec<Paths>,
 }
 
 /// What one effect gains beside others.
@@ -131,6 +134,7 @@ impl Comparison {
             beyond_none: Vec::new(),
             beyond_chosen: Vec::new(),
             scatter: Vec::new(),
+            paths: Vec::new(),
         }
     }
 

@@ -5,6 +5,7 @@ use super::fit::{FitContext, Fitted};
 use super::remainder::Remainder;
 use super::scatter;
 use crate::evaluation::observations::Observations;
+use crate::evaluation::paths::{Paths, Rollouts};
 
 /// Effects that gain nothing on the runs held out explain nothing, and neither does the residual model.
 pub fn confirm(mut found: Comparison, context: &FitContext, hold_out: Option<&Observations>) -> Comparison {
@@ -20,7 +21,16 @@ pub fn confirm(mut found: Comparison, context: &FitContext, hold_out: Option<&Ob
         found.beyond_chosen = hold(found.beyond_chosen, &found.chosen);
     }
     found.scatter = scatter::wider(&found.beyond_chosen, context, hold_out);
+    found.paths = paths(&found, context, hold_out.unwrap_or(context.observations));
     found
+}
+
+/// None where motion is not compared.
+fn paths(found: &Comparison, context: &FitContext, logs: &Observations) -> Vec<Paths> {
+    let Some(drive) = &context.baseline.motion else { return Vec::new() };
+    let [before, after] = [&found.none, &found.chosen].map(Fitted::effects);
+    let scatter = found.chosen.scatter(context);
+    Rollouts { drive, before: &before, after: &after, scatter }.paths(logs, context.seed)
 }
 
 /// Those of the effects that gain on the runs held out, all together and each beside the others.
@@ -65,6 +75,7 @@ fn without_idle(chosen: Fitted, judged: &impl Fn(&Fitted) -> f64, context: &FitC
 mod tests {
     use super::*;
     use crate::gap::test_support::*;
+    use crate::geometry::Pose;
 
     /// Blocks of rows that go so much too far.
     fn longer_by(off_cm: f64, blocks: usize) -> Observations {
@@ -155,5 +166,48 @@ mod tests {
         let context = FitContext::new(&baseline, &rows, METHOD);
         let found = confirm(comparison(&[&LONGER], &[10.0; 2], &context), &context, None);
         assert_eq!(found.chosen.ids(), ["longer"]);
+    }
+
+    /// What comes of paths of five steps if every step goes 5 cm and so much farther, and an effect of a centimetre is found; one
+    /// pose of the first run is thrown so far.
+    fn five_steps(off_cm: fn(usize) -> f64, thrown_cm: f64) -> Paths {
+        let baseline = baseline();
+        let rows = observations(8, 20, move |block, at| {
+            let gone_cm: f64 = (0..at).map(|step| 5.0 + off_cm(step)).sum();
+            let thrown_cm = if (block, at) == (0, 9) { thrown_cm } else { 0.0 };
+            let pose = Pose::new(20.0 + gone_cm, 100.0 + thrown_cm, 0.0);
+            Made { pose, off: [off_cm(at), 0.0, 0.0], ..Made::default() }
+        });
+        let context = FitContext::new(&baseline, &rows, METHOD);
+        let mut found = comparison(&[&LONGER], &[10.0; 8], &context);
+        found.chosen.values = vec![1.0];
+        paths(&found, &context, &rows).into_iter().find(|paths| paths.error.steps == 5).expect("paths")
+    }
+
+    /// All steps go a centimetre too far; or four of five do, and the fifth goes four too short, so that five steps end where
+    /// the simulator says and a centimetre more takes them away from there.
+    #[test]
+    fn rollouts_bear_out_what_steps_say_or_they_do_not() {
+        let Paths { error, nearer_ci95 } = five_steps(|_| 1.0, 0.0);
+        assert!((error.before_cm - 5.0).abs() < 1e-9 && error.after_cm < 1e-9, "{error:?}");
+        assert!(nearer_ci95.is_some_and(|[low, _]| low > 0.9), "{nearer_ci95:?}");
+        let Paths { error, nearer_ci95 } = five_steps(|at| if at % 5 == 4 { -4.0 } else { 1.0 }, 0.0);
+        assert!(error.before_cm < 1e-9 && (error.after_cm - 5.0).abs() < 1e-9, "{error:?}");
+        assert!(nearer_ci95.is_some_and(|[_, high]| high < 0.0), "{nearer_ci95:?}");
+    }
+
+    #[test]
+    fn a_wild_pose_does_not_move_what_rollouts_say() {
+        let nearer_ci95 = five_steps(|_| 1.0, 1e9).nearer_ci95;
+        assert!(nearer_ci95.is_some_and(|[low, _]| low > 0.8), "{nearer_ci95:?}");
+    }
+
+    /// Three blocks draw the same one three times too often for an interval.
+    #[test]
+    fn rollouts_of_few_runs_tell_nothing() {
+        let (baseline, rows) = (baseline(), longer_by(1.0, 3));
+        let context = FitContext::new(&baseline, &rows, METHOD);
+        let told = paths(&comparison(&[&LONGER], &[10.0; 3], &context), &context, &rows);
+        assert!(!told.is_empty() && told.iter().all(|paths| paths.nearer_ci95.is_none()));
     }
 }

@@ -113,6 +113,7 @@ pub fn findings_watched(
             Answer::Known { effects: explain::with_shares(effects, &account.budget), account, experiment }
         }
         Judged::PartlyKnown { effects } => {
+            notes.extend(explain::rollouts::refutation(&confirmed, &context.calibration));
             let (account, experiment) = (account(&ids), propose::next(&confirmed, &context));
             let profiles = explain::profile::profiles(&confirmed, &context);
             Answer::PartlyKnown {
@@ -144,8 +145,7 @@ pub fn findings_watched(
         untestable,
         notes,
     };
-    let chosen = &confirmed.chosen;
-    let scatter = chosen.hypothesis.scatter(context.baseline, context.observations, &chosen.values);
+    let scatter = confirmed.chosen.scatter(&context);
     Ok(Findings { diagnosis, applied, scatter, formula, evidence, room_map })
 }
 

@@ -3,6 +3,7 @@
 mod covariates;
 pub mod evidence;
 pub mod profile;
+pub mod rollouts;
 pub mod room_map;
 pub mod strata;
 
@@ -101,7 +102,10 @@ impl Judged {
         let effects = named(found, least, robot, calibration);
         let doubt = gap(found, calibration) * (1.0 - probability(least, std::iter::empty(), calibration));
         let likeliest = effects.first().is_some_and(|first| first.probability >= doubt);
-        if likeliest && least.fraction >= calibration.adequate && !scatters_unevenly {
+        let is_whole = least.fraction >= calibration.adequate
+            && !scatters_unevenly
+            && rollouts::refuting(found, calibration).is_none();
+        if likeliest && is_whole {
             return Judged::Known { effects };
         }
         // A wrong effect leaves something over wherever it explains something; a right one beside which there is another

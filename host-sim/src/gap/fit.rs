@@ -203,10 +203,14 @@ impl Fitted {
         parameters.filter(|(parameter, value)| parameter.is_at_a_bound(**value)).map(|(p, _)| p.name).collect()
     }
 
+    /// How steps scatter that it leaves: forward (cm), lateral (cm), turn (rad).
+    pub fn scatter(&self, context: &FitContext) -> [f64; 3] {
+        self.hypothesis.scatter(context.baseline, context.observations, &self.values)
+    }
+
     /// The log-likelihood of rows that it was not fitted on.
     pub fn judged_on(&self, others: &Observations, context: &FitContext) -> LogLikelihood {
-        let scatter = self.hypothesis.scatter(context.baseline, context.observations, &self.values);
-        self.hypothesis.log_likelihood_with(scatter, context.baseline, others, &self.values)
+        self.hypothesis.log_likelihood_with(self.scatter(context), context.baseline, others, &self.values)
     }
 
     /// Adds one effect and fits everything anew, from these values and the variant's guesses.

@@ -125,7 +125,7 @@ impl Entry {
 
 /// See [`Ledger::settled`].
 fn settled_scatter(found: &Comparison, context: &FitContext) -> [f64; 3] {
-    let mut scatter = found.chosen.hypothesis.scatter(context.baseline, context.observations, &found.chosen.values);
+    let mut scatter = found.chosen.scatter(context);
     for remainder in found.beyond_chosen.iter().filter(|r| r.counts()) {
         if let (Some(axis), Some(own)) = (remainder.channel().motion_axis(), remainder.model.scatter()) {
             scatter[axis] = own;

@@ -150,6 +150,11 @@ fn one_run_and_runs_alike_are_said_to_be_little() {
 }
 
 #[test]
+fn few_runs_are_said_to_be_fitted_and_not_kept_back() {
+    assert_noted(&trained(), "With fewer than 8 runs none is kept back");
+}
+
+#[test]
 fn jumps_of_the_tracker_are_told_and_cause_nothing() {
     let workshop = trained();
     assert_eq!(diagnosis(&workshop)["verdict"], "no_gap", "the simulator's own logs");

@@ -8,7 +8,8 @@ pub const EFFECT: Effect = Effect {
     id: "sonar_yaw",
     name: "turned sensor",
     what: "The sensor is mounted turned against the robot's heading.",
-    check: "Lay a ruler along the robot and one along the sensor's two eyes: they should make a right angle.",
+    check: "Lay a ruler along the robot and one along the sensor's two eyes: they should make a right angle. If they do, the \
+            sensor hears better to one side, which looks the same in logs.",
     variants: &[Variant {
         id: "axis",
         parameters: Yaw::PARAMETERS,

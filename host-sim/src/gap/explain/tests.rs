@@ -1,5 +1,6 @@
 use super::*;
 use crate::effects::Effect;
+use crate::evaluation::paths::{PathError, Paths};
 use crate::gap::calibration::Judgement;
 use crate::gap::fit::{FitContext, Fitted};
 use crate::gap::remainder::remainders;
@@ -137,6 +138,35 @@ fn what_is_left_where_an_effect_explains_nothing_is_another_cause_s() {
             |nats: f64| judged(&leaving(&[&LONGER], 90.0, vec![remainder(Channel::Lateral, nats, context)], context));
         assert!(matches!(sideways(10.0), Judged::Known { .. }));
         assert!(matches!(sideways(30.0), Judged::PartlyKnown { .. }));
+    });
+}
+
+/// A comparison whose rollouts of so many steps the effect brings nearer by this share of what it foretells.
+fn bringing_nearer(steps: usize, nearer_ci95: Option<[f64; 2]>, context: &FitContext) -> Comparison {
+    let error = PathError { steps, before_cm: 3.0, after_cm: 3.2, floor_cm: 1.0 };
+    Comparison { paths: vec![Paths { error, nearer_ci95 }], ..leaving(&[&LONGER], 20.0, Vec::new(), context) }
+}
+
+#[test]
+fn an_effect_that_brings_rollouts_no_nearer_is_no_whole_cause() {
+    with_context(|context| {
+        let judged = |steps, nearer_ci95| judged(&bringing_nearer(steps, nearer_ci95, context));
+        for steps in [2, 5, 10] {
+            assert!(matches!(judged(steps, Some([-0.3, 0.49])), Judged::PartlyKnown { .. }), "{steps}");
+            assert!(matches!(judged(steps, Some([-0.3, 0.51])), Judged::Known { .. }), "{steps}");
+        }
+        for (steps, nearer) in [(1, Some([0.0; 2])), (25, Some([0.0; 2])), (5, None)] {
+            assert!(matches!(judged(steps, nearer), Judged::Known { .. }), "{steps}");
+        }
+    });
+}
+
+#[test]
+fn rollouts_that_stay_as_far_off_are_told() {
+    with_context(|context| {
+        let told = |nearer| rollouts::refutation(&bringing_nearer(5, Some(nearer), context), &CALIBRATION);
+        assert!(told([-0.3, 0.1]).is_some_and(|told| told.starts_with("Paths of 5 steps end 3.20 cm from where")));
+        assert_eq!(told([0.7, 1.2]), None);
     });
 }
 
