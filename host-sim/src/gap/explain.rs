@@ -73,8 +73,9 @@ const AS_PROBABLE: f64 = 0.05;
 /// The scale of the logistic law whose standard deviation is one: the root of 3 over pi.
 const LOGISTIC_SCALE: f64 = 0.551_328_895_421_792_1;
 
-/// A parameter at its bound has no likeliest value: its effect is as likely wrong as right.
-const AT_BOUND: f64 = 0.5;
+/// A parameter at its bound has no likeliest value, and of what steps and rollouts say only one can be true: such an effect is as
+/// likely wrong as right.
+const AS_LIKELY_WRONG: f64 = 0.5;
 
 impl NamedEffect {
     /// Its strength in words, each number with its interval.
@@ -194,12 +195,14 @@ pub fn probability(explained: Explained, rivals: impl Iterator<Item = f64>, cali
 
 fn named(found: &Comparison, explained: Explained, robot: &Robot, calibration: &Calibration) -> Vec<NamedEffect> {
     let gap = gap(found, calibration);
+    let is_refuted = rollouts::refuting(found, calibration).is_some();
     let one = |(place, candidate): (usize, &crate::effects::Candidate)| {
         let rivals = found.likelihoods_in_place_of(place, calibration);
         let ambiguous = rivals.iter().filter(|(_, likelihood)| *likelihood >= calibration.judgement.rival_likelihood());
         let at_bound = found.chosen.at_bound(place);
         let beside = found.probability_beside_others(place, calibration);
-        let most = if at_bound.is_empty() { 1.0 } else { AT_BOUND };
+        let is_doubtful = !at_bound.is_empty() || is_refuted && candidate.variant.moves();
+        let most = if is_doubtful { AS_LIKELY_WRONG } else { 1.0 };
         NamedEffect {
             id: candidate.effect,
             probability: (gap * beside * probability(explained, rivals.iter().map(|r| r.1), calibration)).min(most),

@@ -152,8 +152,10 @@ fn an_effect_that_brings_rollouts_no_nearer_is_no_whole_cause() {
     with_context(|context| {
         let judged = |steps, nearer_ci95| judged(&bringing_nearer(steps, nearer_ci95, context));
         for steps in [2, 5, 10] {
-            assert!(matches!(judged(steps, Some([-0.3, 0.49])), Judged::PartlyKnown { .. }), "{steps}");
-            assert!(matches!(judged(steps, Some([-0.3, 0.51])), Judged::Known { .. }), "{steps}");
+            let Judged::PartlyKnown { effects } = judged(steps, Some([-0.3, 0.49])) else { panic!("{steps}") };
+            assert_eq!(effects[0].probability, 0.5, "{steps}");
+            let Judged::Known { effects } = judged(steps, Some([-0.3, 0.51])) else { panic!("{steps}") };
+            assert!(effects[0].probability > 0.8, "{steps}");
         }
         for (steps, nearer) in [(1, Some([0.0; 2])), (25, Some([0.0; 2])), (5, None)] {
             assert!(matches!(judged(steps, nearer), Judged::Known { .. }), "{steps}");
