@@ -78,26 +78,28 @@ impl Rollouts<'_> {
     pub fn paths(&self, logs: &Observations, seed: u64) -> Vec<Paths> {
         let stream = seed.wrapping_add(STREAM);
         let (mut floor, mut foretold) = (generator(stream, &[]), generator(stream, &[1]));
+        let noise = [self.drive.scatter(), self.scatter].map(|scatter| Noise::of(self.drive, scatter));
         let of_length = |steps| {
             let starts = (0..logs.rows.len().saturating_sub(steps)).step_by(steps.div_ceil(2));
             let pieces = starts.map(|i| &logs.rows[i..=i + steps]).filter(|piece| is_unbroken(piece));
-            let ends: Vec<End> = pieces.map(|piece| self.end(piece, &mut floor, &mut foretold)).collect();
+            let ends: Vec<End> = pieces.map(|piece| self.end(piece, &noise, [&mut floor, &mut foretold])).collect();
             (!ends.is_empty()).then(|| Paths::of(steps, &ends, seed))
         };
         LENGTHS.into_iter().filter_map(of_length).collect()
     }
 
-    fn end(&self, piece: &[Observation], floor: &mut Generator, foretold: &mut Generator) -> End {
-        let Rollouts { drive, before, after, scatter } = *self;
+    /// The noise is that of the drive, for the floor, and that which the effects leave.
+    fn end(&self, piece: &[Observation], [assumed, own]: &[Noise; 2], [floor, foretold]: [&mut Generator; 2]) -> End {
+        let Rollouts { drive, before, after, .. } = *self;
         let predicted = [before, after].map(|effects| end(effects, drive, piece, || [0.0; 3]));
         let off = |end: DVec2| predicted.map(|predicted| predicted.distance(end));
         let drawn =
-            |noise: Noise, rng: &mut Generator| [(); DRAWS].map(|()| off(noise.drawn(after, drive, piece, rng)));
+            |noise: &Noise, rng: &mut Generator| [(); DRAWS].map(|()| off(noise.drawn(after, drive, piece, rng)));
         End {
             block: piece[0].block,
             off_cm: off(piece[piece.len() - 1].context.pose.position_cm),
-            floor_cm: drawn(Noise::of(drive, drive.scatter()), floor).map(|[_, after_cm]| after_cm),
-            foretold_cm: drawn(Noise::of(drive, scatter), foretold),
+            floor_cm: drawn(assumed, floor).map(|[_, after_cm]| after_cm),
+            foretold_cm: drawn(own, foretold),
         }
     }
 }
