@@ -1,0 +1,341 @@
+//! The page of a fleet: which effects are how frequent, what is the simulator's fault, which robots are alike, and who
+//! stands out.
+
+use maud::{Markup, html};
+use serde::Serialize;
+
+use super::document::{Document, Script, Section, chart, open_table};
+use super::glossary;
+use super::words::{self, number, percent, percent_within};
+use mindgap_applications::fleet::answer::{Fleet, Group, Row, Share};
+use mindgap_applications::fleet::frequency::{Frequency, Strength};
+use mindgap_applications::fleet::{ANSWER, DIAGNOSES};
+use mindgap_foundations::error::Result;
+use mindgap_models::effects::Effect;
+use mindgap_models::effects::applied::AppliedEffect;
+
+/// What a page is made of.
+pub struct Subject<'a> {
+    /// What was found.
+    pub fleet: &'a Fleet,
+    /// Among these effects.
+    pub catalogue: &'a [&'static Effect],
+    /// Where the logs lie, and the simulator's file or the word for the textbook.
+    pub names: [&'a str; 2],
+    /// Seed of the draws.
+    pub seed: u64,
+}
+
+/// What the charts draw.
+#[derive(Serialize)]
+struct Data<'a> {
+    frequencies: Vec<Bar<'a>>,
+    groups: Vec<String>,
+    shares: Vec<Part<'a>>,
+}
+
+#[derive(Serialize)]
+struct Bar<'a> {
+    name: &'a str,
+    share: f64,
+    ci95: [f64; 2],
+}
+
+#[derive(Serialize)]
+struct Part<'a> {
+    group: String,
+    name: &'a str,
+    share: f64,
+}
+
+/// As many robots are listed.
+const MOST_ROBOTS: usize = 500;
+/// As many names of a group are.
+const MOST_NAMES: usize = 12;
+/// As many parts of a robot's gap are told.
+const MOST_PARTS: usize = 3;
+
+/// The page, whole in one file.
+///
+/// # Errors
+/// When a number in it has no form in JSON.
+pub fn page(subject: &Subject) -> Result<String> {
+    let Subject { fleet, catalogue, names: [logs, simulator], .. } = subject;
+    let data = Data {
+        frequencies: fleet
+            .effects
+            .iter()
+            .map(|f| Bar { name: words::name(f.id, catalogue), share: f.frequency, ci95: f.ci95 })
+            .collect(),
+        groups: (1..=fleet.groups.len()).map(group_name).collect(),
+        shares: shares(fleet, catalogue),
+    };
+    let mut sections = vec![
+        Section { id: "common", title: "What is the simulator's fault", body: common(subject) },
+        Section { id: "effects", title: "How frequent effects are", body: frequencies(&fleet.effects, catalogue) },
+        Section { id: "groups", title: "Robots with gaps of one kind", body: groups(fleet, catalogue) },
+        Section { id: "out", title: "Who stands out", body: outliers(fleet, catalogue) },
+        Section { id: "robots", title: "The robots", body: robots(fleet, catalogue) },
+    ];
+    if !fleet.refused.is_empty() || !fleet.left_out.is_empty() {
+        sections.push(Section { id: "refused", title: "What could not be diagnosed", body: refused(fleet) });
+    }
+    sections.push(glossary::section());
+    Document {
+        kind: "Fleet",
+        headline: &headline(fleet, catalogue),
+        subject: &format!("{logs} against {simulator}"),
+        lead: lead(subject),
+        sections,
+        scripts: &[Script::Fleet],
+    }
+    .html(&data)
+}
+
+/// What the robots have, in one sentence.
+fn headline(fleet: &Fleet, catalogue: &[&'static Effect]) -> String {
+    let robots = match fleet.diagnosed {
+        1 => "One robot".into(),
+        count => format!("{count} robots"),
+    };
+    let common: Vec<&str> = fleet.common.iter().map(|c| words::name(&c.effect.effect, catalogue)).collect();
+    match (common.is_empty(), fleet.effects.first()) {
+        (false, _) => format!("{robots}: nearly all have {} alike, which the simulator lacks.", words::list(&common)),
+        (true, Some(Frequency { id, frequency, .. })) => {
+            let name = words::name(id, catalogue);
+            format!("{robots}: the most frequent effect is {name}, in {} of them.", percent(*frequency))
+        }
+        (true, None) => format!("{robots}: no effect is named in any of them."),
+    }
+}
+
+fn lead(subject: &Subject) -> Markup {
+    let Subject { fleet, seed, .. } = subject;
+    let verdicts: Vec<String> =
+        fleet.verdicts.iter().map(|(verdict, count)| format!("{count} {}", verdict.replace('_', " "))).collect();
+    html! {
+        p { "Verdicts: " (words::list(&verdicts.iter().map(String::as_str).collect::<Vec<_>>())) "." }
+        @if let Some(gap) = &fleet.gap_nats {
+            p {
+                "Where there is a gap, it is " strong { (number(gap.median, 3)) " nats a step" } " in the middle"
+                @if gap.quartiles[0] < gap.quartiles[1] {
+                    "; half of the robots have between " (number(gap.quartiles[0], 3)) " and "
+                    (number(gap.quartiles[1], 3))
+                }
+                ". What a nat is stands " a href="#words" { "below" } "."
+            }
+        }
+        @if !fleet.refused.is_empty() {
+            p.bad {
+                (fleet.refused.len()) " of " (fleet.count()) " robots could not be diagnosed: "
+                a href="#refused" { "why" } "."
+            }
+        }
+        p.quiet { "The same facts for programs: " a href=(ANSWER) { (ANSWER) } ". Seed " (seed) "." }
+    }
+}
+
+fn common(subject: &Subject) -> Markup {
+    let Subject { fleet, catalogue, .. } = subject;
+    html! {
+        @if fleet.common.is_empty() {
+            p {
+                "No effect is in nearly all robots in the same strength. What the robots have is their own: see below on "
+                "which of them to mend."
+            }
+        } @else {
+            p {
+                "What nearly all robots have alike is no wear of theirs. Train the simulator again with logs of several of "
+                "these robots; or add it: the same command with " code { "--apply better.json" } " writes a simulator that "
+                "has it."
+            }
+            ul {
+                @for common in &fleet.common {
+                    li {
+                        strong { (words::name(&common.effect.effect, catalogue)) } ", " (parameters(&common.effect)) ": "
+                        (common.because) "."
+                    }
+                }
+            }
+        }
+    }
+}
+
+fn parameters(effect: &AppliedEffect) -> String {
+    effect.parameters.iter().map(|(name, value)| format!("{name} {value}")).collect::<Vec<String>>().join(", ")
+}
+
+fn frequencies(effects: &[Frequency], catalogue: &[&'static Effect]) -> Markup {
+    if effects.is_empty() {
+        return html! { p { "No effect is named in any robot." } };
+    }
+    let said: Vec<String> =
+        effects.iter().map(|f| format!("{} {}", words::name(f.id, catalogue), percent(f.frequency))).collect();
+    let rows: Vec<[String; 4]> = effects.iter().map(|f| row(f, catalogue)).collect();
+    html! {
+        (chart("frequencies", 0, &format!("Share of the robots that have an effect: {}", said.join(", ")), html! {
+            "The share of the robots that have an effect, each counted by how probable its diagnosis calls it, among those "
+            "whose logs could show it. The lines are 95 % intervals: few robots tell little."
+        }))
+        (open_table(["effect", "frequency (95 %)", "named in", "strength: median (quartiles)"], &rows))
+    }
+}
+
+fn row(of: &Frequency, catalogue: &[&'static Effect]) -> [String; 4] {
+    let strength = |s: &Strength| {
+        let unit = if s.unit.is_empty() { String::new() } else { format!(" {}", s.unit) };
+        let [low, high] = s.spread.quartiles;
+        format!("{} {}{unit} ({low} to {high})", s.parameter, s.spread.median)
+    };
+    let strengths: Vec<String> = of.strengths.iter().map(strength).collect();
+    [
+        words::name(of.id, catalogue).into(),
+        percent_within(of.frequency, of.ci95),
+        format!("{} of {}", of.named, of.testable),
+        if strengths.is_empty() { "–".into() } else { strengths.join(", ") },
+    ]
+}
+
+fn group_name(number: usize) -> String {
+    format!("group {number}")
+}
+
+fn shares<'a>(fleet: &Fleet, catalogue: &'a [&'static Effect]) -> Vec<Part<'a>> {
+    let of = |(i, group): (usize, &Group)| -> Vec<Part<'a>> {
+        let part = |s: &Share| Part { group: group_name(i + 1), name: words::name(s.id, catalogue), share: s.share };
+        group.budget.iter().map(part).collect()
+    };
+    fleet.groups.iter().enumerate().flat_map(of).collect()
+}
+
+fn groups(fleet: &Fleet, catalogue: &[&'static Effect]) -> Markup {
+    let rows: Vec<[String; 4]> = fleet
+        .groups
+        .iter()
+        .enumerate()
+        .map(|(i, group)| {
+            let names = group.robots.iter().take(MOST_NAMES).map(String::as_str).collect::<Vec<&str>>().join(", ");
+            let more = group.robots.len().saturating_sub(MOST_NAMES);
+            [
+                group_name(i + 1),
+                group.robots.len().to_string(),
+                told(&group.budget, catalogue),
+                if more > 0 { format!("{names} and {more} more") } else { names },
+            ]
+        })
+        .collect();
+    html! {
+        @if fleet.groups.len() == 1 {
+            p { "The robots' gaps are made of the same things, as far as these robots tell." }
+        } @else {
+            p {
+                "Robots in one group can be mended alike: their gaps are made of the same things in like shares."
+            }
+        }
+        (chart("groups", 0, "Mean shares of the gap in each group, as in the table below", html! {
+            "What the gaps of each group are made of. A short bar is of robots many of which have no gap."
+        }))
+        (open_table(["group", "robots", "their gap", "who"], &rows))
+    }
+}
+
+fn outliers(fleet: &Fleet, catalogue: &[&'static Effect]) -> Markup {
+    let what = |what: &str| match what.split_once('.') {
+        Some((id, parameter)) => format!("{}: {parameter}", words::name(id, catalogue)),
+        None => "size of the gap, nats a step".into(),
+    };
+    let rows: Vec<[String; 5]> = fleet
+        .stands_out
+        .iter()
+        .take(MOST_ROBOTS)
+        .map(|o| {
+            let value = |value: f64| value.to_string().replace('-', "−");
+            [o.robot.clone(), what(&o.what), value(o.value), value(o.median), number(o.deviations, 1)]
+        })
+        .collect();
+    html! {
+        @if rows.is_empty() {
+            p { "No robot is further from the others than chance brings robots." }
+        } @else {
+            p {
+                "These lie further from the middle of the fleet than any robot would by chance in 19 of 20 fleets. Look at "
+                "them first; or their logs are of something else."
+            }
+            (open_table(["robot", "in what", "it has", "the fleet has", "deviations away"], &rows))
+        }
+    }
+}
+
+/// Parts of a gap in words.
+fn told(budget: &[Share], catalogue: &[&'static Effect]) -> String {
+    let parts: Vec<String> = budget
+        .iter()
+        .take(MOST_PARTS)
+        .map(|part| format!("{} {}", words::name(part.id, catalogue), percent(part.share)))
+        .collect();
+    if parts.is_empty() { "no gap".into() } else { parts.join(", ") }
+}
+
+fn robots(fleet: &Fleet, catalogue: &[&'static Effect]) -> Markup {
+    // Whoever stands out is among them.
+    let is_out = |row: &&Row| fleet.stands_out.iter().take(MOST_ROBOTS).any(|outlier| outlier.robot == row.name);
+    let spaced = fleet.robots.len().div_ceil(MOST_ROBOTS).max(1);
+    let shown: Vec<&Row> =
+        fleet.robots.iter().enumerate().filter(|(i, row)| i % spaced == 0 || is_out(row)).map(|(_, row)| row).collect();
+    let header = ["robot", "verdict", "gap (nats a step)", "made of", "group"];
+    html! {
+        p {
+            "Each name leads to the robot's diagnosis as JSON; a column's name sorts by it."
+            @if shown.len() < fleet.robots.len() {
+                " These are " (shown.len()) " of " (fleet.robots.len()) ", evenly spread and whoever stands out; "
+                "all are in the files beside this page."
+            }
+        }
+        div.wide tabindex="0" role="region" aria-label="Table: the robots" {
+            table {
+                thead { tr { @for name in header { th scope="col" { button type="button" { (name) } } } } }
+                tbody {
+                    @for row in shown {
+                        tr {
+                            th scope="row" { a href={ (DIAGNOSES) "/" (encoded(&row.name)) ".json" } { (row.name) } }
+                            td { (row.verdict.id().replace('_', " ")) }
+                            td.n data-value=(row.gap_nats.unwrap_or(0.0)) {
+                                (row.gap_nats.map_or("–".into(), |gap| number(gap, 3)))
+                            }
+                            td { (told(&row.budget, catalogue)) }
+                            td.n { (row.group) }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// A file's name as a part of an address.
+fn encoded(name: &str) -> String {
+    let is_plain = |byte: u8| byte.is_ascii_alphanumeric() || b"-_.~".contains(&byte);
+    name.bytes().map(|b| if is_plain(b) { char::from(b).to_string() } else { format!("%{b:02X}") }).collect()
+}
+
+fn refused(fleet: &Fleet) -> Markup {
+    let rows: Vec<[String; 2]> =
+        fleet.refused.iter().take(MOST_ROBOTS).map(|r| [r.robot.clone(), r.reason.clone()]).collect();
+    html! {
+        @if !rows.is_empty() { (open_table(["robot", "why not"], &rows)) }
+        @if !fleet.left_out.is_empty() {
+            p { "No folders, and so no robots: " (words::list(&fleet.left_out.iter().map(String::as_str).collect::<Vec<_>>())) "." }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_of_files_are_addresses() {
+        assert_eq!(encoded("robot-3"), "robot-3");
+        assert_eq!(encoded("a b#?%/ü"), "a%20b%23%3F%25%2F%C3%BC");
+    }
+}
