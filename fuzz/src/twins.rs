@@ -9,6 +9,7 @@ use mindgap_built_in_robot::{default_robot, four_obstacles, record, training_roo
 use mindgap_core::controller::{Controller, TUPLES, Tuple, When};
 use mindgap_core::maths;
 use mindgap_core::network::Network;
+use mindgap_foundations::executor::Serial;
 use mindgap_learning::learn::train::{TABLE_ONE, Trainer, train};
 use mindgap_models::simulator::environment::{Environment, SensorModel};
 use mindgap_models::simulator::fixed_point::Quantised;
@@ -56,7 +57,7 @@ fn answers_alike<const N: usize>(network: &Network<f32, N>, inputs: [I16F16; N])
 fn lanes_and_one(bytes: &[u8]) {
     static SIMULATOR: LazyLock<Simulator> = LazyLock::new(|| {
         let logs = record(&default_robot(), &training_room(), 12, 40, &[], 1).expect("room to drive");
-        train(&logs, &Trainer::Fast, &TABLE_ONE, 1, &|_| {}).expect("networks")
+        train(&Serial, &logs, &Trainer::Fast, &TABLE_ONE, 1, &|_| {}).expect("networks")
     });
     let controllers: Vec<Controller> = bytes.as_chunks().0.iter().take(20).map(controller).collect();
     let scene = four_obstacles();

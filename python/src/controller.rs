@@ -12,6 +12,7 @@ use mindgap_learning::evolve::request::{Answered, Request};
 use mindgap_logs::Scene;
 use mindgap_models::simulator::Noise;
 use mindgap_models::simulator::environment::SensorModel;
+use mindgap_workers::Workers;
 use pyo3::prelude::*;
 use serde::Serialize;
 
@@ -151,6 +152,7 @@ pub fn evolve(
 ) -> PyResult<Evolution> {
     let scene = convert::scene(scene)?;
     let request = Request {
+        executor: &Workers::default(),
         simulator: &simulator.inner,
         scene: &scene,
         start,

@@ -7,6 +7,7 @@ use mindgap_command::kinds;
 use mindgap_learning::learn::paper;
 use mindgap_learning::learn::train::{self as training, TABLE_ONE, Trainer};
 use mindgap_models::simulator;
+use mindgap_workers::Workers;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
@@ -80,7 +81,9 @@ pub fn train(py: Python<'_>, logs: &Logs, trainer: &str, seed: u64) -> PyResult<
         other => return Err(PyValueError::new_err(format!("trainer {other:?}: there are \"fast\" and \"paper\""))),
     };
     let sound = logs.sound(py, None)?;
-    let train = |interrupt: &Interrupt| training::train(&sound, &trainer, &TABLE_ONE, seed, &|_| interrupt.check());
+    let train = |interrupt: &Interrupt| {
+        training::train(&Workers::default(), &sound, &trainer, &TABLE_ONE, seed, &|_| interrupt.check())
+    };
     let trained = interruptible(py, train)?.map_err(raised)?;
     let missing = trained.missing.iter().map(|missing| format!("no {} network: {}", missing.network, missing.reason));
     warn(py, missing.collect())?;

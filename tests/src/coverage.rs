@@ -4,6 +4,7 @@
 use glam::DVec2;
 use mindgap_built_in_robot::{BuiltInRobot, Termination, default_robot, four_obstacles, run_controller};
 use mindgap_foundations::chance::{Generator, generator};
+use mindgap_foundations::executor::Serial;
 use mindgap_foundations::geometry::{Pose, wrap_rad};
 use mindgap_learning::evolve::genome::GenotypeDecoder;
 use mindgap_logs::{Logs, Run};
@@ -220,7 +221,7 @@ mod tests {
     #[test]
     fn regions_hold_the_share_of_paths_that_they_should() {
         let recorded = |seed| record(&default_robot(), &training_room(), 50, 60, &[], seed).expect("room to drive");
-        let simulator = train(&recorded(1), &Trainer::Fast, &TABLE_ONE, 1, &|_| {}).expect("networks");
+        let simulator = train(&Serial, &recorded(1), &Trainer::Fast, &TABLE_ONE, 1, &|_| {}).expect("networks");
         for (name, logs) in [("random", recorded(2)), ("controllers", controller_runs(&simulator, 60, 3))] {
             for coverage in coverage(&simulator, &logs, 4).expect("a distribution") {
                 let [places, headings] = [coverage.places[1], coverage.headings[1]];

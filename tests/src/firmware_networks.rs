@@ -4,6 +4,7 @@
 use mindgap_built_in_robot::{default_robot, record, training_room};
 use mindgap_controller_export::rust_networks::rust_networks;
 use mindgap_foundations::error::Result;
+use mindgap_foundations::executor::Serial;
 use mindgap_learning::learn::train::{TABLE_ONE, Trainer, train};
 use mindgap_models::simulator::fixed_point::FixedNetworks;
 
@@ -18,7 +19,7 @@ const SEED: u64 = 1;
 /// When a network cannot be trained or has no fixed-point form.
 pub fn files() -> Result<[(&'static str, String); 2]> {
     let logs = record(&default_robot(), &training_room(), RUNS, STEPS, &[], SEED)?;
-    let simulator = train(&logs, &Trainer::Fast, &TABLE_ONE, SEED, &|_| {})?;
+    let simulator = train(&Serial, &logs, &Trainer::Fast, &TABLE_ONE, SEED, &|_| {})?;
     let all = FixedNetworks::quantise(&simulator)?.rust_definitions();
     let [_, forward, _, echo_probability, _] = all.clone();
     Ok([

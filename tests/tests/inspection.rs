@@ -3,6 +3,7 @@
 use glam::DVec2;
 use mindgap_built_in_robot::{ActiveEffect, Effect, default_robot, record, training_room};
 use mindgap_diagnosis::{Method, findings};
+use mindgap_foundations::executor::Serial;
 use mindgap_foundations::geometry::Pose;
 use mindgap_learning::learn::train::{TABLE_ONE, Trainer, train};
 use mindgap_logs::inspection::{Handling, Inspection, Part};
@@ -124,7 +125,7 @@ fn logs_that_say_little_pass() {
 #[test]
 fn no_fault_reaches_a_confident_cause() {
     const SURE: f64 = 0.9;
-    let simulator = train(&logs(24, &[]), &Trainer::Fast, &TABLE_ONE, 1, &|_| {}).expect("networks");
+    let simulator = train(&Serial, &logs(24, &[]), &Trainer::Fast, &TABLE_ONE, 1, &|_| {}).expect("networks");
     let sure_of = |logs: Logs| {
         let baseline = Baseline::of_middle(&simulator).expect("a reference");
         // Nothing is sure where nothing can be compared.

@@ -20,6 +20,7 @@ use mindgap_figures::report::paths::{PathPanel, Trace};
 use mindgap_files as files;
 use mindgap_foundations::chance::{derive, generator};
 use mindgap_foundations::error::{Error, Result};
+use mindgap_foundations::executor::Executor;
 use mindgap_learning::evaluation::accuracy::{self, Evaluation};
 use mindgap_learning::evolve::controller_file::{self, ControllerFile};
 use mindgap_learning::evolve::fitness::{RandomNumbers, Success};
@@ -136,18 +137,18 @@ struct Trial {
 ///
 /// # Errors
 /// When `out` cannot be written.
-pub fn run(out: &Path, seed: u64, size: Size, watch: impl Fn(Stage)) -> Result<Summary> {
+pub fn run(executor: &dyn Executor, out: &Path, seed: u64, size: Size, watch: impl Fn(Stage)) -> Result<Summary> {
     let made = RefCell::new(Vec::new());
     let is_ours = |name: &str| made.borrow().iter().any(|made| made == name);
     files::write_folder(out, is_ours, |fresh| {
-        let summary = fill(fresh, seed, size, watch)?;
+        let summary = fill(executor, fresh, seed, size, watch)?;
         let entries = fs::read_dir(fresh).map_err(|e| Error::in_file(out, format!("cannot be read: {e}")))?;
         made.borrow_mut().extend(entries.flatten().map(|entry| entry.file_name()));
         Ok(summary)
     })
 }
 
-fn fill(out: &Path, seed: u64, size: Size, watch: impl Fn(Stage)) -> Result<Summary> {
+fn fill(executor: &dyn Executor, out: &Path, seed: u64, size: Size, watch: impl Fn(Stage)) -> Result<Summary> {
     let of = |purpose: Purpose| derive(seed, &[purpose as u64]);
     watch(Stage::Recording);
     let robot = built_in_robot::default_robot();
@@ -159,13 +160,15 @@ fn fill(out: &Path, seed: u64, size: Size, watch: impl Fn(Stage)) -> Result<Summ
     let held_out = record(&scene, size.held_out_runs, Purpose::HeldOutLogs)?;
     held_out.write(&out.join("held-out-logs"))?;
     scene.write(&out.join("scene.toml"))?;
-    let simulator =
-        train::train(&logs, &Trainer::Fast, &TABLE_ONE, of(Purpose::Training), &|p| watch(Stage::Training(p)))?;
+    let simulator = train::train(executor, &logs, &Trainer::Fast, &TABLE_ONE, of(Purpose::Training), &|p| {
+        watch(Stage::Training(p))
+    })?;
     simulator.write(&out.join("simulator.json"))?;
     let evaluation = accuracy::evaluate(&simulator, &held_out, |_, _| ())?;
     files::write_json(&out.join("evaluation.json"), &evaluation)?;
     let robots = simulator.robots(0, of(Purpose::Evolution));
     let demo = DemoRun {
+        executor,
         out,
         simulator: &simulator,
         robots: robots.as_ref(),
@@ -188,12 +191,13 @@ fn fill(out: &Path, seed: u64, size: Size, watch: impl Fn(Stage)) -> Result<Summ
     let best = (0..trials.len()).min_by(better).ok_or_else(|| Error::new("the scene has no start"))?;
     let watch_trial = |trial| watch(Stage::Repairing { trial });
     let job = repair::Job { start: best + 1, max_steps: MAX_STEPS, trials: size.trials, seed: of(Purpose::Repair) };
-    let repair = repair::run(out, &trials[best].controllers, &job, watch_trial)?;
+    let repair = repair::run(executor, out, &trials[best].controllers, &job, watch_trial)?;
     Ok(Summary { evaluation, starts: trials.into_iter().map(|trial| trial.summary).collect(), panels, repair })
 }
 
 /// Inputs common to all starts.
 struct DemoRun<'a, W> {
+    executor: &'a dyn Executor,
     out: &'a Path,
     simulator: &'a Simulator,
     /// Those that the logs leave possible.
@@ -215,7 +219,15 @@ impl<W: Fn(Stage)> DemoRun<'_, W> {
         let decoder = GenotypeDecoder::new(self.simulator, MAX_STEPS);
         let seed = derive(evolution, &[start as u64]);
         let way = &WayMap::new(self.scene, target_cm, self.simulator.robot.body_radius_cm);
-        let task = EvolutionTask { environment, target_cm, way, decoder, random_numbers: RandomNumbers::Common, seed };
+        let task = EvolutionTask {
+            executor: self.executor,
+            environment,
+            target_cm,
+            way,
+            decoder,
+            random_numbers: RandomNumbers::Common,
+            seed,
+        };
         let robot = &BuiltInRobot::new(&self.simulator.robot, self.scene, &[]);
         let drive = |controller: &Controller, place: &[u64]| {
             built_in_robot::run_controller(robot, controller, pose, &mut generator(trial, place))
@@ -253,6 +265,7 @@ impl<W: Fn(Stage)> DemoRun<'_, W> {
             return robust::candidates(task, |generation, _| evolving(generation, robust::GENERATIONS));
         }
         let request = Request {
+            executor: self.executor,
             simulator: self.simulator,
             scene: self.scene,
             start,

@@ -30,8 +30,8 @@ use tally::Tally;
 use mindgap_diagnosis::request::Request;
 use mindgap_files as files;
 use mindgap_foundations::error::{Error, Result};
+use mindgap_foundations::executor::{self, Executor};
 use mindgap_logs::Logs;
-use mindgap_workers as workers;
 
 /// The file of the answer within a fleet's folder.
 pub const ANSWER: &str = "fleet.json";
@@ -54,6 +54,7 @@ struct Examined {
 /// # Errors
 /// When the robots cannot be listed, when none of them can be diagnosed, or when the folder cannot be written.
 pub fn diagnose(
+    executor: &dyn Executor,
     source: &Source,
     request: &Request<'_>,
     folder: &Path,
@@ -61,7 +62,7 @@ pub fn diagnose(
 ) -> Result<Fleet> {
     let listing = source.listing()?;
     let diagnoses = folder.join(DIAGNOSES);
-    if workers::is_first() {
+    if executor.is_first() {
         files::make_folder(&diagnoses)?;
     }
     #[cfg(feature = "parquet")]
@@ -69,7 +70,7 @@ pub fn diagnose(
     let mut tally = Tally::new(request.method.catalogue);
     let count = listing.names.len();
     let work = |index: usize| Ok(examined(source, &listing.names[index], request));
-    workers::in_order(count, work, |index, Examined { name, outcome }: Examined| {
+    executor::in_order(executor, count, work, |index, Examined { name, outcome }: Examined| {
         watch(index + 1, count);
         #[cfg(feature = "parquet")]
         table.add(&name, outcome.as_ref().map(|(robot, _)| robot))?;

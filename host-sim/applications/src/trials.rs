@@ -23,12 +23,12 @@ use jury::{Candidate, Tried};
 use mindgap_files as files;
 use mindgap_foundations::chance::derive;
 use mindgap_foundations::error::{Error, Result};
+use mindgap_foundations::executor::{self, Executor};
 use mindgap_foundations::geometry::Pose;
 use mindgap_learning::evolve::chance::Chance;
 use mindgap_learning::evolve::controller_file::{ControllerFile, Origin};
 use mindgap_logs::{Logs, Run, Scene};
 use mindgap_models::simulator::Simulator;
-use mindgap_workers as workers;
 use robot::{Call, TrialRobot};
 use search::Search;
 use state::{Failure, State, Trial, Verdict};
@@ -41,6 +41,8 @@ const ATTEMPTS: usize = 2;
 
 /// The job of a loop.
 pub struct Job<'a> {
+    /// Executes independent pieces of work.
+    pub executor: &'a dyn Executor,
     /// Folder of its state and results.
     pub folder: &'a Path,
     /// Simulator file.
@@ -88,7 +90,8 @@ pub fn run(job: &Job, robot: &mut dyn TrialRobot, mut tell: impl FnMut(Event)) -
     trials.state.write(job.folder)?;
     while trials.state.verdict == Verdict::Running {
         if trials.state.trials.last().is_some_and(|trial| trial.real.is_none()) {
-            trials.state = workers::once(|| trials.drive(robot, &mut tell).map(|()| trials.state.clone()))?;
+            trials.state =
+                executor::once(job.executor, || trials.drive(robot, &mut tell).map(|()| trials.state.clone()))?;
         } else {
             trials.turn()?;
         }
@@ -106,7 +109,7 @@ impl<'a> Trials<'a> {
             return Err(Error::in_file(job.scene, "has no [target]"));
         }
         files::make_folder(job.folder)?;
-        let state = workers::once(|| State::open(job))?;
+        let state = executor::once(job.executor, || State::open(job))?;
         Ok(Trials { job, simulator, scene, start, state })
     }
 
@@ -121,6 +124,7 @@ impl<'a> Trials<'a> {
         let simulator = adapted.as_ref().map_or(&self.simulator, |adapted| &adapted.simulator).clone();
         let count = self.state.trials.len();
         let search = Search {
+            executor: self.job.executor,
             simulator: &simulator,
             scene: &logs.scene,
             start: self.start,

@@ -21,6 +21,7 @@ use mindgap_models::simulator::rollout::RolloutRequest;
 use mindgap_models::simulator::{Noise, Simulator};
 use mindgap_models::sonar::echo_law::Surfaces;
 use mindgap_models::sonar::{FirstEchoLaw, SensorLaw};
+use mindgap_workers::Workers;
 use rand::RngExt;
 
 const SEED: u64 = 1;
@@ -163,5 +164,6 @@ impl Folder {
 /// A simulator with networks of the paper's sizes, learned from few logs.
 fn simulator() -> Simulator {
     let logs = record(&default_robot(), &training_room(), 20, 40, &[], SEED).expect("the room has room");
-    train::train(&logs, &train::Trainer::Fast, &train::TABLE_ONE, SEED, &|_| {}).expect("these logs train all networks")
+    train::train(&Workers::default(), &logs, &train::Trainer::Fast, &train::TABLE_ONE, SEED, &|_| {})
+        .expect("these logs train all networks")
 }

@@ -13,6 +13,7 @@ use mindgap_diagnosis::Method;
 use mindgap_diagnosis::progress::Stage;
 use mindgap_files::places::Places;
 use mindgap_foundations::error::{Error, Result};
+use mindgap_foundations::executor::Executor;
 use mindgap_learning::evolve::chance::{Chance, Judge, ROBOTS, RUNS};
 use mindgap_learning::evolve::controller_file::ControllerFile;
 use mindgap_logs::Scene;
@@ -70,7 +71,7 @@ impl Run for Adapt {
             .writing(self.facts.asked(), kinds::REPORT)
     }
 
-    fn run(&self) -> Result<String> {
+    fn run(&self, executor: &dyn Executor) -> Result<String> {
         let given = textbook::simulator(&self.sim)?;
         let mut simulator = given.clone();
         let mut lessons = Vec::new();
@@ -88,7 +89,7 @@ impl Run for Adapt {
         }
         bar.finish_and_clear();
         let chance = match (&self.controller, &self.scene) {
-            (Some(_), Some(_)) => Some([self.chance(&given)?, self.chance(&simulator)?]),
+            (Some(_), Some(_)) => Some([self.chance(executor, &given)?, self.chance(executor, &simulator)?]),
             _ => None,
         };
         simulator.write(&self.out)?;
@@ -104,7 +105,7 @@ impl Run for Adapt {
 
 impl Adapt {
     /// The chance of the controller on robots that a simulator leaves possible.
-    fn chance(&self, simulator: &Simulator) -> Result<Chance> {
+    fn chance(&self, executor: &dyn Executor, simulator: &Simulator) -> Result<Chance> {
         let (Some(controller), Some(path)) = (&self.controller, &self.scene) else {
             return Err(Error::new("--controller needs --scene"));
         };
@@ -115,7 +116,7 @@ impl Adapt {
         let robots = simulator.robots(ROBOTS, self.seed);
         let robots =
             robots.ok_or_else(|| Error::in_file(&self.sim, "does not say what its training logs leave open"))?;
-        let judge = Judge::new(simulator, &robots.drawn, &scene, start, target_cm, self.seed)?;
+        let judge = Judge::new(executor, simulator, &robots.drawn, &scene, start, target_cm, self.seed)?;
         Ok(judge.chances(&[controller], RUNS)?[0])
     }
 }

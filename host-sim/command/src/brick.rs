@@ -20,6 +20,7 @@ use mindgap_files as files;
 use mindgap_files::places::Places;
 use mindgap_foundations::chance::generator;
 use mindgap_foundations::error::{Error, Result};
+use mindgap_foundations::executor::Executor;
 use mindgap_foundations::geometry::Pose;
 use mindgap_logs::world_script::{self, WorldScript};
 use mindgap_logs::{self as logs, Robot, Scene, readings};
@@ -95,7 +96,7 @@ impl Run for Brick {
             .writing(&self.figure, kinds::UNSIGNED)
     }
 
-    fn run(&self) -> Result<String> {
+    fn run(&self, _: &dyn Executor) -> Result<String> {
         let file =
             fs::read(&self.program).map_err(|e| Error::in_file(&self.program, format!("cannot be read: {e}")))?;
         let program = Program::load(&file)

@@ -17,6 +17,7 @@ use mindgap_applications::challenge::sensitivity::{Row, sensitivity};
 use mindgap_files as files;
 use mindgap_files::places::Places;
 use mindgap_foundations::error::Result;
+use mindgap_foundations::executor::Executor;
 
 /// The blind test of a diagnosis: make cases with withheld effects, answer them, score the answers.
 #[derive(Args)]
@@ -129,19 +130,20 @@ impl Run for Challenge {
         }
     }
 
-    fn run(&self) -> Result<String> {
+    fn run(&self, executor: &dyn Executor) -> Result<String> {
         match &self.part {
             Part::Make { cases, seed, outside, place_bound, size, out, .. } => {
                 let echoes = if *place_bound { Echoes::PlaceBound } else { Echoes::Fresh };
                 let bar = progress::bar(u64::from(*cases));
                 let setting = Setting { outside: *outside, echoes, size: size.size() };
-                make(out, *cases as usize, *seed, setting, progress::counting(&bar))?;
+                make(executor, out, *cases as usize, *seed, setting, progress::counting(&bar))?;
                 bar.finish_and_clear();
                 Ok(format!("{}: {cases} cases; sealed.json says what is different in each\n", out.display()))
             }
             Part::Calibrate { cases, seed, out, csv, size, .. } => {
                 let bar = progress::bar(u64::from(*cases));
-                let (calibration, measured) = calibrate(*cases as usize, *seed, size.size(), progress::counting(&bar))?;
+                let (calibration, measured) =
+                    calibrate(executor, *cases as usize, *seed, size.size(), progress::counting(&bar))?;
                 bar.finish_and_clear();
                 let quick = if size.quick { " --quick" } else { "" };
                 let command =
@@ -154,7 +156,7 @@ impl Run for Challenge {
             }
             Part::Sensitivity { cases, seed, csv } => {
                 let bar = progress::bar(0);
-                let rows = sensitivity(*cases as usize, *seed, progress::counting(&bar))?;
+                let rows = sensitivity(executor, *cases as usize, *seed, progress::counting(&bar))?;
                 bar.finish_and_clear();
                 if let Some(path) = csv {
                     files::write_csv(path, &rows)?;
@@ -163,7 +165,7 @@ impl Run for Challenge {
             }
             Part::Answer { folder, .. } => {
                 let bar = progress::bar(0);
-                let count = answer(folder, progress::counting(&bar))?;
+                let count = answer(executor, folder, progress::counting(&bar))?;
                 bar.finish_and_clear();
                 Ok(format!("{}: {count} cases diagnosed\n", folder.display()))
             }

@@ -10,6 +10,7 @@ use super::{Run, kinds};
 use mindgap_diagnosis::survey::{Holdings, Range, Survey};
 use mindgap_files::places::Places;
 use mindgap_foundations::error::Result;
+use mindgap_foundations::executor::Executor;
 
 /// Say what logs hold, what is wrong with them, what they suffice for, and what to drive more.
 #[derive(Args)]
@@ -25,7 +26,7 @@ impl Run for Check {
         Places::default().reading([&self.logs]).writing(self.facts.asked(), kinds::REPORT)
     }
 
-    fn run(&self) -> Result<String> {
+    fn run(&self, _: &dyn Executor) -> Result<String> {
         let survey = Survey::of(super::read_logs(&self.logs)?);
         self.facts.told(&survey, text(&survey))
     }

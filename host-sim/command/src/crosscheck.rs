@@ -8,6 +8,7 @@ use super::facts::FactsOption;
 use super::{Run, kinds, progress, table, textbook};
 use mindgap_files::places::Places;
 use mindgap_foundations::error::Result;
+use mindgap_foundations::executor::Executor;
 use mindgap_learning::crosscheck::{self, Divergence, NetworkCheck, Networks, RunState, Runs, Trials};
 use mindgap_learning::evolve::controller_file::ControllerFile;
 
@@ -37,7 +38,7 @@ impl Run for Crosscheck {
         Places::default().reading(inputs).writing(self.facts.asked(), kinds::REPORT)
     }
 
-    fn run(&self) -> Result<String> {
+    fn run(&self, _: &dyn Executor) -> Result<String> {
         let simulator = textbook::simulator(&self.sim)?;
         let read = |path: &PathBuf| ControllerFile::read_for(path, &simulator.robot);
         let controller = self.controller.as_ref().map(read).transpose()?.map(|file| file.controller);

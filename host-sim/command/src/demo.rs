@@ -14,6 +14,7 @@ use mindgap_applications::demo::{self, Size, Stage, StartSummary, Summary};
 use mindgap_files as files;
 use mindgap_files::places::Places;
 use mindgap_foundations::error::Result;
+use mindgap_foundations::executor::Executor;
 use mindgap_learning::evolve::fitness::Success;
 use mindgap_pages::demo::page;
 
@@ -50,7 +51,7 @@ impl Run for Demo {
         places.writing(&self.html, kinds::PAGE).writing(self.keep.asked(), kinds::CHECKPOINT)
     }
 
-    fn run(&self) -> Result<String> {
+    fn run(&self, executor: &dyn Executor) -> Result<String> {
         let size = if self.quick { Size::QUICK } else { Size::USUAL };
         let bar = progress::shares();
         let watch = |stage: Stage| {
@@ -65,7 +66,7 @@ impl Run for Demo {
             };
             progress::at(&bar, share_before(&stage, size), words);
         };
-        let summary = demo::run(&self.out, self.seed, size, watch)?;
+        let summary = demo::run(executor, &self.out, self.seed, size, watch)?;
         bar.finish_and_clear();
         let page = page(&summary, &self.out.display().to_string(), self.seed)?;
         let in_folder = self.out.join(PAGE);

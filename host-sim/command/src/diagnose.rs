@@ -18,6 +18,7 @@ use mindgap_figures::pictures;
 use mindgap_files as files;
 use mindgap_files::places::Places;
 use mindgap_foundations::error::{Error, Result};
+use mindgap_foundations::executor::Executor;
 use mindgap_learning::evolve::controller_file::ControllerFile;
 use mindgap_models::effects::own;
 use mindgap_models::simulator::{Simulator, textbook};
@@ -98,7 +99,7 @@ impl Run for Diagnose {
         self.fleet.is_some()
     }
 
-    fn run(&self) -> Result<String> {
+    fn run(&self, executor: &dyn Executor) -> Result<String> {
         if self.fleet.is_none() && self.keep.asked().is_some() {
             return Err(Error::new(
                 "--checkpoint keeps the diagnoses of a --fleet: of one robot there is nothing to keep",
@@ -114,7 +115,8 @@ impl Run for Diagnose {
         };
         if let Some(out) = &self.fleet {
             let apply = self.apply.as_deref();
-            return FleetRequest { request, logs: &self.logs, out, apply, simulator: self.simulator_name() }.answer();
+            return FleetRequest { executor, request, logs: &self.logs, out, apply, simulator: self.simulator_name() }
+                .answer();
         }
         let bar = progress::shares();
         let watch = |stage: Stage| {

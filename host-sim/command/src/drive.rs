@@ -12,6 +12,7 @@ use mindgap_built_in_robot::{ActiveEffect, BuiltInRobot, Termination, default_ro
 use mindgap_files::places::Places;
 use mindgap_foundations::chance::generator;
 use mindgap_foundations::error::Result;
+use mindgap_foundations::executor::Executor;
 use mindgap_learning::evolve::controller_file::ControllerFile;
 use mindgap_logs::Scene;
 
@@ -45,7 +46,7 @@ impl Run for Drive {
         places.writing(self.facts.asked(), kinds::REPORT)
     }
 
-    fn run(&self) -> Result<String> {
+    fn run(&self, _: &dyn Executor) -> Result<String> {
         let controller = ControllerFile::read(&self.controller)?.controller;
         let scene = Scene::read(&self.scene)?;
         let robot = default_robot();

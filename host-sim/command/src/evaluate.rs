@@ -11,6 +11,7 @@ use mindgap_figures::pictures;
 use mindgap_files as files;
 use mindgap_files::places::Places;
 use mindgap_foundations::error::Result;
+use mindgap_foundations::executor::Executor;
 use mindgap_learning::evaluation::accuracy::{self, Evaluation, Networks};
 use mindgap_learning::evaluation::sensor_models::SensorModels;
 use mindgap_pages::evaluation::{Subject, page};
@@ -38,7 +39,7 @@ impl Run for Evaluate {
         places.writing(&self.html, kinds::PAGE).filling(&self.figures)
     }
 
-    fn run(&self) -> Result<String> {
+    fn run(&self, _: &dyn Executor) -> Result<String> {
         let simulator = textbook::simulator(&self.sim)?;
         let logs = super::read_logs_of(&simulator, &self.logs)?;
         let bar = progress::shares();

@@ -11,6 +11,7 @@ use super::{Run, kinds, progress, textbook};
 use mindgap_figures::pictures;
 use mindgap_files::places::Places;
 use mindgap_foundations::error::Result;
+use mindgap_foundations::executor::Executor;
 use mindgap_foundations::geometry::Pose;
 use mindgap_learning::evolve::chance::Chance;
 use mindgap_learning::evolve::controller_file::{ControllerFile, Origin};
@@ -70,11 +71,12 @@ impl Run for Evolve {
         places.writing(self.keep.asked(), kinds::CHECKPOINT)
     }
 
-    fn run(&self) -> Result<String> {
+    fn run(&self, executor: &dyn Executor) -> Result<String> {
         let simulator = textbook::simulator(&self.sim)?;
         let scene = Scene::read(&self.scene)?;
         let start = start_of(&scene, self.start, &simulator.robot, &self.scene)?;
         let request = Request {
+            executor,
             simulator: &simulator,
             scene: &scene,
             start: self.start,

@@ -24,6 +24,7 @@ use super::{Run, kinds};
 use mindgap_files as files;
 use mindgap_files::places::Places;
 use mindgap_foundations::error::{Error, Result};
+use mindgap_foundations::executor::Executor;
 use mindgap_learning::evolve::controller_file::ControllerFile;
 use mindgap_models::simulator::fixed_point::{COMMANDS, DOCUMENTATION, FACING, FixedNetworks};
 use mindgap_models::simulator::{Learned, Simulator};
@@ -118,7 +119,7 @@ impl Run for Export {
         places.writing(self.facts.asked(), kinds::REPORT)
     }
 
-    fn run(&self) -> Result<String> {
+    fn run(&self, _: &dyn Executor) -> Result<String> {
         if (self.log.is_some() || self.display) && !matches!(self.format, Format::Nxc) {
             return Err(Error::new("--log and --display are for a controller with --format nxc"));
         }

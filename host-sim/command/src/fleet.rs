@@ -8,6 +8,7 @@ use mindgap_applications::fleet::{self, ANSWER, DIAGNOSES, Fleet, TABLE};
 use mindgap_diagnosis::request::Request;
 use mindgap_files as files;
 use mindgap_foundations::error::{Error, Result};
+use mindgap_foundations::executor::Executor;
 use mindgap_models::effects::Effect;
 use mindgap_pages::fleet::{Subject, page};
 
@@ -16,6 +17,8 @@ const PAGE: &str = "fleet.html";
 
 /// What is asked.
 pub struct FleetRequest<'a> {
+    /// Executes the diagnoses.
+    pub executor: &'a dyn Executor,
     /// Of each robot.
     pub request: Request<'a>,
     /// Where the logs lie.
@@ -56,7 +59,7 @@ impl FleetRequest<'_> {
         let ours = |name: &str| [ANSWER, PAGE, TABLE, DIAGNOSES].contains(&name);
         files::write_folder(folder, ours, |fresh| {
             let bar = progress::bar(0);
-            let fleet = fleet::diagnose(source, &self.request, fresh, progress::counting(&bar));
+            let fleet = fleet::diagnose(self.executor, source, &self.request, fresh, progress::counting(&bar));
             bar.finish_and_clear();
             let fleet = fleet?;
             files::write_json(&fresh.join(ANSWER), &fleet)?;

@@ -6,7 +6,8 @@ use rayon::ThreadPoolBuilder;
 
 use super::voice;
 use mindgap_foundations::error::{Error, Result};
-use mindgap_workers as workers;
+use mindgap_foundations::executor::Executor;
+use mindgap_workers::Workers;
 
 /// Options of every command.
 #[derive(Args)]
@@ -31,14 +32,14 @@ impl General {
     ///
     /// # Errors
     /// When the system gives no threads.
-    pub fn take_effect(&self) -> Result<()> {
-        voice::speak_up_to(match (self.quiet || !workers::is_first(), self.verbose) {
+    pub fn take_effect(&self, workers: &Workers) -> Result<()> {
+        voice::speak_up_to(match (self.quiet || !workers.is_first(), self.verbose) {
             (true, _) => LevelFilter::Error,
             (false, false) => LevelFilter::Warn,
             (false, true) => LevelFilter::Info,
         });
         // None are as many as there are processors.
-        let threads = self.threads.map(usize::from).or_else(workers::threads).unwrap_or_default();
+        let threads = self.threads.map(usize::from).or_else(|| workers.threads()).unwrap_or_default();
         let pool = ThreadPoolBuilder::new().num_threads(threads).build_global();
         pool.map_err(|e| Error::new(format!("threads cannot be started: {e}")))?;
         log::info!("mindgap {} on {} threads", env!("CARGO_PKG_VERSION"), rayon::current_num_threads());

@@ -12,6 +12,7 @@ use super::table::{self, count};
 use super::{Run, kinds, progress, warn};
 use mindgap_files::places::Places;
 use mindgap_foundations::error::Result;
+use mindgap_foundations::executor::Executor;
 use mindgap_import::brick::import;
 use mindgap_import::report::{LogReport, Report, RunReport, TrackReport};
 use mindgap_import::units::{Angle, Length, Time, Units};
@@ -80,8 +81,8 @@ impl Run for Import {
         self.way().map(Run::places).unwrap_or_default()
     }
 
-    fn run(&self) -> Result<String> {
-        self.way().map_or(Ok(String::new()), Run::run)
+    fn run(&self, executor: &dyn Executor) -> Result<String> {
+        self.way().map_or(Ok(String::new()), |way| way.run(executor))
     }
 }
 
@@ -91,7 +92,7 @@ impl Run for Brick {
         Places::default().reading(inputs).filling([&self.out]).writing(&self.json, kinds::REPORT)
     }
 
-    fn run(&self) -> Result<String> {
+    fn run(&self, _: &dyn Executor) -> Result<String> {
         let units = Units { time: self.time_unit, length: self.length_unit, angle: self.angle_unit };
         let (robot, scene) = (Robot::read(&self.robot)?, Scene::read(&self.scene)?);
         let bar = progress::bar(self.files.len() as u64);

@@ -14,6 +14,7 @@ use super::table::count;
 use mindgap_files as files;
 use mindgap_files::places::Places;
 use mindgap_foundations::error::{Error, Result};
+use mindgap_foundations::executor::Executor;
 use mindgap_learning::evolve::controller_file::ControllerFile;
 use mindgap_logs::{Logs, Robot, Run, Scene};
 use mindgap_models::effects::own;
@@ -62,7 +63,7 @@ impl super::Run for Info {
         Places::default().reading([&self.path]).writing(self.facts.asked(), kinds::REPORT)
     }
 
-    fn run(&self) -> Result<String> {
+    fn run(&self, _: &dyn Executor) -> Result<String> {
         let path = self.path.as_path();
         let what = if path.is_dir() { folder(path)? } else { file(path)? };
         let text = format!("{}: {what}\n", path.display());

@@ -14,7 +14,7 @@ use super::warn;
 use mindgap_files::is_stream;
 use mindgap_files::places::Places;
 use mindgap_foundations::error::Result;
-use mindgap_workers as workers;
+use mindgap_workers::Workers;
 use mindgap_workers::checkpoint::Begin;
 use mindgap_workers::task::Task;
 
@@ -67,9 +67,15 @@ impl Kept {
 ///
 /// # Errors
 /// When another run stood there, or other ranks have another task.
-pub fn begin(is_shared: bool, kept: Option<Kept>, places: &Places, call: (&Command, &ArgMatches)) -> Result<()> {
+pub fn begin(
+    workers: &mut Workers,
+    is_shared: bool,
+    kept: Option<Kept>,
+    places: &Places,
+    call: (&Command, &ArgMatches),
+) -> Result<()> {
     if !is_shared {
-        workers::go_alone();
+        workers.go_alone();
     }
     if !is_shared && kept.is_none() {
         return Ok(());
@@ -77,7 +83,7 @@ pub fn begin(is_shared: bool, kept: Option<Kept>, places: &Places, call: (&Comma
     let checkpoint = kept.as_ref().map(|kept| (kept.path.as_path(), kept.begin));
     // Neither what is written nor what is kept counts where it lies in a folder that is read.
     let outputs: Vec<PathBuf> = places.outputs().chain(kept.as_ref().map(|kept| kept.path.clone())).collect();
-    let count = workers::begin(task(call, places, &outputs), checkpoint, warn)?;
+    let count = workers.begin(task(call, places, &outputs), checkpoint, warn)?;
     if let Some(kept) = kept.filter(|_| count > 0) {
         meanwhile(&format!("{}: goes on, {count} pieces of work are done", kept.path.display()));
     }

@@ -53,11 +53,12 @@ use mindgap_diagnosis::validate::same_robot;
 use mindgap_files as files;
 use mindgap_files::places::Places;
 use mindgap_foundations::error::{Error, Result};
+use mindgap_foundations::executor::Executor;
 use mindgap_import::draft::to_fill_in;
 use mindgap_logs::Logs;
 use mindgap_logs::inspection::Inspection;
 use mindgap_models::simulator::Simulator;
-use mindgap_workers as workers;
+use mindgap_workers::Workers;
 
 /// Learns a robot's simulator from its logs, evolves controllers in it, and finds what reality has that it lacks.
 #[derive(Parser)]
@@ -99,7 +100,7 @@ trait Run {
     fn places(&self) -> Places;
 
     /// Does it; returns what there is to say.
-    fn run(&self) -> Result<String>;
+    fn run(&self, executor: &dyn Executor) -> Result<String>;
 
     /// Where it keeps what is done, for a run that goes on after it was broken off; nowhere when it is soon done.
     fn kept(&self) -> Option<Kept> {
@@ -142,33 +143,42 @@ impl Command {
 /// Runs the command of this process's arguments. Exits with 0 when it did what was asked, 1 when it could not, and 2
 /// when the call is wrong.
 pub fn run() -> ExitCode {
-    let is_done = workers::end(answer(), |error| voice::complain(&error.to_string()));
+    let complain = |error: &Error| voice::complain(&error.to_string());
+    let is_done = match Workers::join() {
+        Ok(mut workers) => {
+            let done = answer(&mut workers);
+            workers.end(done, complain)
+        }
+        Err(error) => {
+            complain(&error);
+            false
+        }
+    };
     if is_done { ExitCode::SUCCESS } else { ExitCode::FAILURE }
 }
 
 /// Does what this process's arguments and the defaults beside the logs ask for, and says what there is to say.
-fn answer() -> Result<()> {
+fn answer(workers: &mut Workers) -> Result<()> {
     #[cfg(unix)]
     signals::heed().map_err(|e| Error::new(format!("signals cannot be heeded: {e}")))?;
     let command = guide::command();
     let (arguments, defaults) = defaults::with_defaults(&command, env::args_os().collect())?;
     let matches = command.clone().try_get_matches_from(arguments).map_err(|error| defaults.blamed_for(error))?;
     let Cli { general, command: asked } = Cli::from_arg_matches(&matches).unwrap_or_else(|error| error.exit());
-    workers::join()?;
-    general.take_effect()?;
+    general.take_effect(workers)?;
     defaults.tell();
     let asked = asked.which();
     let (places, kept) = (asked.places(), asked.kept());
-    if workers::is_first() {
+    if workers.is_first() {
         places.check(general.force, kept.as_ref().is_some_and(Kept::is_there))?;
     } else if asked.is_shared() {
         files::leave_writing();
     } else {
         return Ok(());
     }
-    lasting::begin(asked.is_shared(), kept, &places, (&command, &matches))?;
+    lasting::begin(workers, asked.is_shared(), kept, &places, (&command, &matches))?;
     progress::begin(matches.subcommand_name().unwrap_or_default().to_owned());
-    let done = asked.run();
+    let done = asked.run(workers);
     progress::end();
     let text = done?;
     // What goes to standard output as a file stands alone there.

@@ -13,6 +13,7 @@ use super::{Run, guide};
 use mindgap_files as files;
 use mindgap_files::places::Places;
 use mindgap_foundations::error::{Error, Result};
+use mindgap_foundations::executor::Executor;
 
 /// Print what makes a shell complete this command.
 #[derive(Args)]
@@ -50,7 +51,7 @@ impl Run for Completions {
         Places::default()
     }
 
-    fn run(&self) -> Result<String> {
+    fn run(&self, _: &dyn Executor) -> Result<String> {
         let mut script = Vec::new();
         clap_complete::generate(self.shell, &mut guide::command(), NAME, &mut script);
         let printed = files::to_standard_output(&script);
@@ -64,7 +65,7 @@ impl Run for Manual {
         Places::default().filling([&self.out])
     }
 
-    fn run(&self) -> Result<String> {
+    fn run(&self, _: &dyn Executor) -> Result<String> {
         let mut command = guide::command();
         command.build();
         let of_command = |of: &Command| (format!("{NAME}-{}", of.get_name()), of.clone());

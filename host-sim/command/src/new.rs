@@ -8,6 +8,7 @@ use super::Run;
 use mindgap_files as files;
 use mindgap_files::places::Places;
 use mindgap_foundations::error::Result;
+use mindgap_foundations::executor::Executor;
 use mindgap_import::draft::{RobotDraft, SCENE};
 
 /// Make a folder for a robot of your own: robot.toml and scene.toml to fill in, and a place for recordings.
@@ -28,7 +29,7 @@ impl Run for New {
         Places::default().filling([&self.folder])
     }
 
-    fn run(&self) -> Result<String> {
+    fn run(&self, _: &dyn Executor) -> Result<String> {
         let contents = [RobotDraft::blank().text(), SCENE.to_owned(), readme(&self.folder)];
         let has_recordings = self.folder.join(RECORDINGS).is_dir();
         files::write_folder(

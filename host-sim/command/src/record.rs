@@ -11,6 +11,7 @@ use super::{Run, kinds};
 use mindgap_built_in_robot::{ActiveEffect, Driving, Effect, default_robot, record_driving, training_room};
 use mindgap_files::places::Places;
 use mindgap_foundations::error::Result;
+use mindgap_foundations::executor::Executor;
 use mindgap_logs::Scene;
 
 /// Record random-command logs of the built-in robot.
@@ -47,7 +48,7 @@ impl Run for Record {
         Places::default().reading(&self.scene).filling([&self.out]).writing(self.facts.asked(), kinds::REPORT)
     }
 
-    fn run(&self) -> Result<String> {
+    fn run(&self, _: &dyn Executor) -> Result<String> {
         let scene = match &self.scene {
             Some(path) => Scene::read(path)?,
             None => training_room(),

@@ -12,6 +12,7 @@ use mindgap_figures::pictures;
 use mindgap_files as files;
 use mindgap_files::places::Places;
 use mindgap_foundations::error::Result;
+use mindgap_foundations::executor::Executor;
 use mindgap_learning::evolve::controller_file::ControllerFile;
 use mindgap_learning::evolve::trial::Trial;
 use mindgap_logs::Scene;
@@ -68,7 +69,7 @@ impl Run for Simulate {
         places.writing(&self.html, kinds::PAGE).filling(&self.figures)
     }
 
-    fn run(&self) -> Result<String> {
+    fn run(&self, _: &dyn Executor) -> Result<String> {
         let simulator = textbook::simulator(&self.sim)?;
         let controller = ControllerFile::read_for(&self.controller, &simulator.robot)?.controller;
         let scene = Scene::read(&self.scene)?;

@@ -13,6 +13,7 @@ use super::{Run, kinds, progress, warn};
 use mindgap_files as files;
 use mindgap_files::places::Places;
 use mindgap_foundations::error;
+use mindgap_foundations::executor::Executor;
 use mindgap_learning::learn::genome::Shape;
 use mindgap_learning::learn::train::{NETWORKS, TABLE_ONE};
 use mindgap_learning::learn::{paper, train};
@@ -65,7 +66,7 @@ impl Run for Train {
         places.writing(self.facts.asked(), kinds::REPORT).writing(self.keep.asked(), kinds::CHECKPOINT)
     }
 
-    fn run(&self) -> error::Result<String> {
+    fn run(&self, executor: &dyn Executor) -> error::Result<String> {
         let logs = super::read_sound_logs(&self.logs)?;
         let bar = progress::bar(NETWORKS.len() as u64);
         // The last that is told of each network.
@@ -82,9 +83,9 @@ impl Run for Train {
         for (network, shape) in &self.hidden {
             shapes.of(network).into_iter().for_each(|layer| *layer = *shape);
         }
-        let mut simulator = train::train(&logs, &trainer, &shapes, self.seed, &watch)?;
+        let mut simulator = train::train(executor, &logs, &trainer, &shapes, self.seed, &watch)?;
         if shapes != TABLE_ONE {
-            simulator.table_one = Some(train::train(&logs, &trainer, &TABLE_ONE, self.seed, &watch)?.into());
+            simulator.table_one = Some(train::train(executor, &logs, &trainer, &TABLE_ONE, self.seed, &watch)?.into());
         }
         bar.finish_and_clear();
         for missing in &simulator.missing {

@@ -14,6 +14,7 @@ use mindgap_applications::trials::{self, Event, Job};
 use mindgap_files as files;
 use mindgap_files::places::Places;
 use mindgap_foundations::error::Result;
+use mindgap_foundations::executor::Executor;
 use mindgap_learning::evolve::chance::Chance;
 use mindgap_logs::Scene;
 use mindgap_pages::trials::{Subject, page};
@@ -70,9 +71,10 @@ impl Run for Loop {
         places.filling(fresh)
     }
 
-    fn run(&self) -> Result<String> {
+    fn run(&self, executor: &dyn Executor) -> Result<String> {
         textbook::learned(&self.sim)?;
         let job = Job {
+            executor,
             folder: &self.folder,
             simulator: &self.sim,
             scene: &self.scene,

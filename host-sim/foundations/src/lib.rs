@@ -3,6 +3,7 @@
 pub mod chance;
 pub mod counter;
 pub mod error;
+pub mod executor;
 pub mod geometry;
 pub mod lanes;
 pub mod statistics;

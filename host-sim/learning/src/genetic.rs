@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 
 use mindgap_foundations::chance::{Generator, generator};
 use mindgap_foundations::error::Result;
-use mindgap_workers as workers;
+use mindgap_foundations::executor::{self, Executor};
 use mutation::Mutation;
 use stopping::StagnationCriterion;
 
@@ -101,8 +101,14 @@ pub struct Lineage<'a, P> {
 ///
 /// # Errors
 /// When fitness cannot be computed by those to whom it is handed out.
-pub fn run(settings: &Settings, problem: &impl Problem, seed: u64, watch: impl FnMut(usize, f64)) -> Result<RunResult> {
-    let result = run_beside(settings, vec![Lineage::random(settings, problem, seed)], watch)?;
+pub fn run(
+    executor: &dyn Executor,
+    settings: &Settings,
+    problem: &impl Problem,
+    seed: u64,
+    watch: impl FnMut(usize, f64),
+) -> Result<RunResult> {
+    let result = run_beside(executor, settings, vec![Lineage::random(settings, problem, seed)], watch)?;
     Ok(result.into_iter().next().expect("a result of each"))
 }
 
@@ -112,6 +118,7 @@ pub fn run(settings: &Settings, problem: &impl Problem, seed: u64, watch: impl F
 /// # Errors
 /// As [`run`].
 pub fn run_beside<P: Problem>(
+    executor: &dyn Executor,
     settings: &Settings,
     mut lineages: Vec<Lineage<P>>,
     mut watch: impl FnMut(usize, f64),
@@ -132,9 +139,9 @@ pub fn run_beside<P: Problem>(
         let evaluate = |_, (number, first, some): (usize, usize, Vec<Vec<f32>>)| {
             Ok(lineages[number].problem.fitness(generation, first, &some))
         };
-        let mut fitness = workers::map_given(pieces.len(), give, evaluate)?.into_iter().flatten();
+        let mut fitness = executor::map_inputs(executor, pieces.len(), give, evaluate)?.into_iter().flatten();
         // The first rank alone breeds: the others are handed the individuals that they evaluate.
-        let is_over = workers::once(|| {
+        let is_over = executor::once(executor, || {
             for lineage in lineages.iter_mut().filter(|lineage| !lineage.is_over) {
                 let own: Vec<f64> = fitness.by_ref().take(lineage.population.len()).collect();
                 lineage.go_on(settings, generation, &own);
@@ -147,7 +154,7 @@ pub fn run_beside<P: Problem>(
             break;
         }
     }
-    workers::once(|| Ok(lineages.into_iter().map(Lineage::result).collect()))
+    executor::once(executor, || Ok(lineages.into_iter().map(Lineage::result).collect()))
 }
 
 impl<'a, P: Problem> Lineage<'a, P> {
@@ -216,6 +223,7 @@ fn offspring(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use mindgap_foundations::executor::Serial;
 
     /// The sphere function: fitness is highest at the origin.
     struct Sphere;
@@ -242,14 +250,14 @@ mod tests {
 
     #[test]
     fn finds_the_top_of_a_sphere() {
-        let outcome = run(&settings(), &Sphere, 1, |_, _| {}).unwrap();
+        let outcome = run(&Serial, &settings(), &Sphere, 1, |_, _| {}).unwrap();
         assert!(outcome.fitness > -0.05, "{}", outcome.fitness);
         assert_eq!(outcome.generations, 150);
     }
 
     #[test]
     fn the_same_seed_gives_the_same_run_and_another_seed_another() {
-        let again = |seed| run(&settings(), &Sphere, seed, |_, _| {}).unwrap();
+        let again = |seed| run(&Serial, &settings(), &Sphere, seed, |_, _| {}).unwrap();
         assert_eq!(again(5), again(5));
         assert_ne!(again(5).best, again(6).best);
     }
@@ -260,14 +268,14 @@ mod tests {
         let stagnation = Some(StagnationCriterion { generations: 10, improvement: -0.5 });
         let settings = Settings { stagnation, ..settings() };
         let lineages = [5, 6, 7].map(|seed| Lineage::random(&settings, &Sphere, seed));
-        let beside = run_beside(&settings, lineages.into(), |_, _| {}).unwrap();
-        assert_eq!(beside, [5, 6, 7].map(|seed| run(&settings, &Sphere, seed, |_, _| {}).unwrap()));
+        let beside = run_beside(&Serial, &settings, lineages.into(), |_, _| {}).unwrap();
+        assert_eq!(beside, [5, 6, 7].map(|seed| run(&Serial, &settings, &Sphere, seed, |_, _| {}).unwrap()));
     }
 
     #[test]
     fn an_elite_never_loses_its_best() {
         let mut last = f64::NEG_INFINITY;
-        let outcome = run(&Settings { elite: 1, ..settings() }, &Sphere, 2, |_, best| {
+        let outcome = run(&Serial, &Settings { elite: 1, ..settings() }, &Sphere, 2, |_, best| {
             assert!(best >= last);
             last = best;
         })
@@ -278,7 +286,7 @@ mod tests {
     #[test]
     fn one_individual_still_runs() {
         let outcome =
-            run(&Settings { population: 1, max_generations: 3, ..settings() }, &Sphere, 3, |_, _| {}).unwrap();
+            run(&Serial, &Settings { population: 1, max_generations: 3, ..settings() }, &Sphere, 3, |_, _| {}).unwrap();
         assert_eq!(outcome.population.len(), 1);
     }
 }

@@ -8,11 +8,12 @@ use std::thread;
 use std::time::Duration;
 
 use rayon::Scope;
-use serde::Serialize;
-use serde::de::DeserializeOwned;
+use serde_bytes::ByteBuf;
 
-use super::{AHEAD, RUN};
+use super::ranks::Ranks;
+use super::{AHEAD, Workers};
 use mindgap_foundations::error::{Error, Result};
+use mindgap_foundations::executor::Batch;
 
 /// How long a rank waits, for its own threads or for others, before it listens again: at first,
 const GLANCE: Duration = Duration::from_micros(100);
@@ -21,17 +22,17 @@ const LONGEST_WAIT: Duration = Duration::from_millis(1);
 /// The first rank.
 const HERE: usize = 0;
 
-/// What is heard while work is handed out.
+/// A message of a worker.
 #[cfg_attr(not(feature = "mpi"), expect(dead_code))]
-pub enum Told<T> {
+pub enum Heard {
     /// A thread of a rank is free.
     Free(usize),
-    /// A rank has done a piece.
-    Done(usize, usize, Result<T>),
+    /// A rank has executed a piece: its rank, the index and the result.
+    Done(usize, usize, Result<ByteBuf>),
 }
 
-/// What a thread sends when a piece is done.
-pub type Sent<T> = (usize, thread::Result<Result<T>>);
+/// The index and the result of a piece, as a thread sends it.
+pub type Sent = (usize, thread::Result<Result<ByteBuf>>);
 
 /// How long to wait for what is not there: longer each time, since looking takes time of processors that others need.
 pub struct Waiting(Duration);
@@ -45,86 +46,74 @@ struct Helpers {
     begun: BTreeMap<usize, usize>,
 }
 
-/// Hands out pieces, which `give` knows on the first rank, to threads and ranks, and gives what comes of them to `take` in
-/// order; on other ranks than the first does what is handed to them.
-pub fn hand_out<P, T>(
-    count: usize,
-    ahead: usize,
-    give: &impl Fn(usize) -> P,
-    work: &(impl Fn(usize, P) -> Result<T> + Sync),
-    mut take: impl FnMut(usize, T) -> Result<()>,
-) -> Result<()>
-where
-    P: Serialize + DeserializeOwned + Send,
-    T: Serialize + DeserializeOwned + Send,
-{
-    let part = RUN.with_borrow_mut(|run| {
-        run.parts += 1;
-        run.parts
-    });
+/// Hands out the pieces of a batch to threads and ranks, and their results to `batch.take` in order. Ranks other than the first
+/// execute what is handed to them.
+pub fn hand_out(workers: &Workers, batch: Batch<'_>) -> Result<()> {
+    let Batch { count, is_bounded, input, work, take, .. } = batch;
+    let part = workers.batches.fetch_add(1, Ordering::Relaxed) + 1;
     let threads = rayon::current_num_threads();
+    let all = threads * workers.ranks.as_ref().map_or(1, Ranks::count);
+    let ahead = if is_bounded { AHEAD * all } else { count };
     let is_over = &AtomicBool::new(false);
     rayon::in_place_scope(|scope| {
         let _over = Over(is_over);
         let (sender, results) = mpsc::channel();
-        let start = |index: usize, piece: P| {
+        let start = |index: usize, piece: ByteBuf| {
             let sender = sender.clone();
             scope.spawn(move |_: &Scope| {
                 if !is_over.load(Ordering::Relaxed) {
+                    let done = catch_unwind(AssertUnwindSafe(|| work(index, &piece).map(ByteBuf::from)));
                     // Nobody listens any more when something else failed.
-                    let _ = sender.send((index, catch_unwind(AssertUnwindSafe(|| work(index, piece)))));
+                    let _ = sender.send((index, done));
                 }
             });
         };
-        let helped = RUN.with_borrow(|run| {
-            let ranks = run.ranks.as_ref().filter(|ranks| !ranks.is_first())?;
-            Some(ranks.help(part, threads, start, &results))
-        });
-        if let Some(helped) = helped {
-            return helped;
+        if let Some(ranks) = workers.ranks.as_ref().filter(|ranks| !ranks.is_first()) {
+            return ranks.help(part, threads, start, &results);
         }
-        // Threads of one process have one queue, which is never to run dry; at the end no piece waits for a busy rank.
-        let of_here = if has_ranks() { threads } else { AHEAD * threads };
-        let mut free = vec![HERE; of_here];
-        let workers = threads * RUN.with_borrow(|run| run.ranks.as_ref().map_or(1, |ranks| ranks.count()));
+        // Threads of one process share one queue, which must never run dry; with ranks, no piece waits for a busy one.
+        let own = if workers.ranks.is_some() { threads } else { AHEAD * threads };
+        let mut free = vec![HERE; own];
         let mut helpers = Helpers::default();
         let (mut begun, mut waiting) = (0, BTreeMap::new());
-        let mut piece = |next: usize| loop {
+        let mut result = |next: usize| loop {
             let end = count.min(next + ahead);
             while begun < end {
-                if is_known(part, begun) {
+                if is_known(workers, part, begun) {
                     begun += 1;
                     continue;
                 }
                 let Some(rank) = free.pop() else { break };
                 if rank == HERE {
-                    start(begun, give(begun));
+                    start(begun, ByteBuf::from(input(begun)?));
                     begun += 1;
                     continue;
                 }
                 // While there are many, several go with one message: half of an even share, so that all end together.
-                let some = ((end - begun) / (2 * workers)).max(1);
-                let indices: Vec<usize> = (begun..end).filter(|index| !is_known(part, *index)).take(some).collect();
+                let some = ((end - begun) / (2 * all)).max(1);
+                let indices: Vec<usize> =
+                    (begun..end).filter(|index| !is_known(workers, part, *index)).take(some).collect();
                 begun = indices.last().map_or(end, |last| last + 1);
-                helpers.hand(rank, indices.into_iter().map(|index| (index, give(index))).collect())?;
+                let pieces = indices.into_iter().map(|index| Ok((index, ByteBuf::from(input(index)?))));
+                helpers.hand(workers, rank, pieces.collect::<Result<_>>()?)?;
             }
-            if let Some(piece) = recall(part, next)?.or_else(|| waiting.remove(&next)) {
-                return Ok(piece);
+            if let Some(result) = recall(workers, part, next)?.or_else(|| waiting.remove(&next)) {
+                return Ok::<ByteBuf, Error>(result);
             }
-            match listen(part, &results)? {
-                Told::Free(rank) => free.push(rank),
-                Told::Done(rank, index, piece) => {
-                    let piece = piece?;
-                    keep(part, index, &piece)?;
-                    waiting.insert(index, piece);
+            match listen(workers, part, &results)? {
+                Heard::Free(rank) => free.push(rank),
+                Heard::Done(rank, index, result) => {
+                    let result = result?;
+                    keep(workers, part, index, &result)?;
+                    waiting.insert(index, result);
                     if rank == HERE || helpers.has_free_thread(rank) {
                         free.push(rank);
                     }
                 }
             }
         };
-        let all = (0..count).try_for_each(|next| take(next, piece(next)?));
-        all.and_then(|()| RUN.with_borrow(|run| run.ranks.as_ref().map_or(Ok(()), |ranks| ranks.over())))
+        let all = (0..count).try_for_each(|next| take(next, result(next)?.into_vec()));
+        all.and_then(|()| workers.ranks.as_ref().map_or(Ok(()), Ranks::over))
     })
 }
 
@@ -153,10 +142,10 @@ impl Waiting {
 
 impl Helpers {
     /// Hands pieces to one thread of a rank.
-    fn hand<P: Serialize>(&mut self, rank: usize, pieces: Vec<(usize, P)>) -> Result<()> {
+    fn hand(&mut self, workers: &Workers, rank: usize, pieces: Vec<(usize, ByteBuf)>) -> Result<()> {
         *self.busy.entry(rank).or_default() += 1;
         *self.begun.entry(rank).or_default() += pieces.len();
-        RUN.with_borrow(|run| run.ranks.as_ref().map_or(Ok(()), |ranks| ranks.hand(rank, &pieces)))
+        workers.ranks.as_ref().map_or(Ok(()), |ranks| ranks.hand(rank, &pieces))
     }
 
     /// Whether a rank that has done a piece has a thread without one.
@@ -169,52 +158,40 @@ impl Helpers {
     }
 }
 
-/// A piece that a thread has done.
-pub fn unwound<T>((index, piece): Sent<T>) -> (usize, Result<T>) {
-    (index, piece.unwrap_or_else(|panic| resume_unwind(panic)))
+/// The result of a piece that a thread has executed; a panic goes on here.
+pub fn unwound((index, result): Sent) -> (usize, Result<ByteBuf>) {
+    (index, result.unwrap_or_else(|panic| resume_unwind(panic)))
 }
 
-fn has_ranks() -> bool {
-    RUN.with_borrow(|run| run.ranks.is_some())
-}
-
-/// What the next worker tells, here or elsewhere.
-fn listen<T: DeserializeOwned>(part: u32, results: &Receiver<Sent<T>>) -> Result<Told<T>> {
-    let here = |sent: Sent<T>| {
-        let (index, piece) = unwound(sent);
-        Told::Done(HERE, index, piece)
+/// Waits for the next message of a worker, here or on another rank.
+fn listen(workers: &Workers, part: u32, results: &Receiver<Sent>) -> Result<Heard> {
+    let here = |sent: Sent| {
+        let (index, result) = unwound(sent);
+        Heard::Done(HERE, index, result)
     };
-    RUN.with_borrow(|run| {
-        let Some(ranks) = &run.ranks else {
-            return results.recv().map(here).map_err(|e| Error::new(format!("a piece of work is lost: {e}")));
-        };
-        let mut waiting = Waiting::begin();
-        loop {
-            if let Some(told) = ranks.told(part)? {
-                return Ok(told);
-            }
-            if let Ok(sent) = results.recv_timeout(waiting.next()) {
-                return Ok(here(sent));
-            }
+    let Some(ranks) = &workers.ranks else {
+        return results.recv().map(here).map_err(|e| Error::new(format!("a piece of work is lost: {e}")));
+    };
+    let mut waiting = Waiting::begin();
+    loop {
+        if let Some(heard) = ranks.heard(part)? {
+            return Ok(heard);
         }
-    })
+        if let Ok(sent) = results.recv_timeout(waiting.next()) {
+            return Ok(here(sent));
+        }
+    }
 }
 
-/// Whether a run before has done a piece.
-fn is_known(part: u32, index: usize) -> bool {
-    RUN.with_borrow(|run| run.checkpoint.as_ref().is_some_and(|checkpoint| checkpoint.holds((part, index as u32))))
+/// Whether an interrupted run has left the result of a piece.
+fn is_known(workers: &Workers, part: u32, index: usize) -> bool {
+    workers.checkpoint().as_ref().is_some_and(|checkpoint| checkpoint.holds((part, index as u32)))
 }
 
-fn recall<T: DeserializeOwned>(part: u32, index: usize) -> Result<Option<T>> {
-    RUN.with_borrow_mut(|run| match &mut run.checkpoint {
-        Some(checkpoint) => checkpoint.recall((part, index as u32)),
-        None => Ok(None),
-    })
+fn recall(workers: &Workers, part: u32, index: usize) -> Result<Option<ByteBuf>> {
+    workers.checkpoint().as_mut().map_or(Ok(None), |checkpoint| checkpoint.recall((part, index as u32)))
 }
 
-fn keep(part: u32, index: usize, piece: &impl Serialize) -> Result<()> {
-    RUN.with_borrow_mut(|run| match &mut run.checkpoint {
-        Some(checkpoint) => checkpoint.keep((part, index as u32), piece),
-        None => Ok(()),
-    })
+fn keep(workers: &Workers, part: u32, index: usize, result: &ByteBuf) -> Result<()> {
+    workers.checkpoint().as_mut().map_or(Ok(()), |checkpoint| checkpoint.keep((part, index as u32), result))
 }

@@ -1,8 +1,7 @@
-//! Independent pieces of work, handed out by index to whoever is free: threads, and with the feature `mpi` the ranks of a
-//! cluster. What comes of them is taken in the order of their indices, so that it is the same whoever did the work, and
-//! kept in a [`checkpoint`], from which a run goes on that was broken off.
+//! Workers of a command: the threads of this process, and with the feature `mpi` the ranks of a cluster.
 //!
-//! [`begin`] and [`end`] stand around a command; without them there are threads alone, and no checkpoint.
+//! [`Workers`] is the [`Executor`] of the command. It takes results in the order of their indices, so they do not depend on who did
+//! the work, and can keep them in a [`checkpoint`], from which an interrupted run resumes.
 
 pub mod checkpoint;
 mod handing_out;
@@ -12,53 +11,127 @@ mod no_ranks;
 mod ranks;
 pub mod task;
 
-use std::cell::RefCell;
 use std::env;
 use std::ffi::OsString;
 use std::path::Path;
 use std::process::Command;
+use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::thread::available_parallelism;
 
+use mindgap_foundations::error::{Error, Result};
+use mindgap_foundations::executor::{Batch, Executor};
 use rayon::prelude::*;
-use serde::Serialize;
-use serde::de::DeserializeOwned;
+use serde_bytes::ByteBuf;
 
 use checkpoint::{Begin, Checkpoint};
 use handing_out::hand_out;
-use mindgap_foundations::error::{Error, Result};
 #[cfg(not(feature = "mpi"))]
 use no_ranks as ranks;
 use ranks::Ranks;
 use task::Task;
 
-/// So many pieces a thread are begun before the first of them is taken: whoever waits for a slow one has other work.
+/// Pieces per worker that are begun before the first of them is taken, so that one slow piece leaves nobody idle.
 const AHEAD: usize = 4;
-/// How the variables begin by which a process knows that it is a rank.
+/// Prefixes of the variables by which a process knows that it is a rank.
 const RANK_VARIABLES: [&str; 3] = ["OMPI_", "PMIX_", "PMI_"];
 
-/// What stands around the work of a thread: of the main one alone, if at all.
+/// Threads, ranks and a checkpoint. The default has threads only.
 #[derive(Default)]
-struct Run {
+pub struct Workers {
     ranks: Option<Ranks>,
-    checkpoint: Option<Checkpoint>,
-    /// Parts that have begun: each hand-out is one.
-    parts: u32,
-    /// Whether all that is left to do is the first rank's.
-    is_released: bool,
+    checkpoint: Mutex<Option<Checkpoint>>,
+    /// Number of batches that have begun.
+    batches: AtomicU32,
+    /// Whether only the first rank has work left.
+    is_released: AtomicBool,
 }
 
-thread_local! {
-    static RUN: RefCell<Run> = RefCell::default();
+impl Workers {
+    /// Joins the ranks with which `mpirun` started this process, if it did.
+    ///
+    /// # Errors
+    /// When MPI cannot be started.
+    pub fn join() -> Result<Self> {
+        Ok(Workers { ranks: Ranks::join()?, ..Workers::default() })
+    }
+
+    /// Returns the number of threads for each of several ranks: those on one machine share its processors.
+    pub fn threads(&self) -> Option<usize> {
+        let processors = available_parallelism().map_or(1, usize::from);
+        let ranks = self.ranks.as_ref().map(Ranks::on_this_machine)?;
+        Some((processors / ranks).max(1))
+    }
+
+    /// Leaves the work to the first rank alone.
+    pub fn go_alone(&mut self) {
+        self.ranks = None;
+    }
+
+    /// Begins a task, resuming from its checkpoint if there is one; returns the number of results in it. `warn` receives a
+    /// line when the end of the checkpoint is lost.
+    ///
+    /// # Errors
+    /// When other ranks or the checkpoint have another task, or the checkpoint cannot be read or written.
+    pub fn begin(&mut self, task: Task, checkpoint: Option<(&Path, Begin)>, warn: impl FnMut(String)) -> Result<usize> {
+        if let Some(ranks) = &self.ranks {
+            ranks.agree(&task)?;
+        }
+        let checkpoint = checkpoint.filter(|_| self.is_first());
+        let checkpoint = checkpoint.map(|(path, begin)| Checkpoint::open(path, &task, begin, warn)).transpose()?;
+        let count = checkpoint.as_ref().map_or(0, Checkpoint::count);
+        *self.checkpoint() = checkpoint;
+        Ok(count)
+    }
+
+    /// Ends the task and removes its checkpoint; calls `complain` if it failed, and returns whether it succeeded.
+    pub fn end(self, done: Result<()>, complain: impl FnOnce(&Error)) -> bool {
+        let checkpoint = self.checkpoint().take();
+        let done = done.and_then(|()| checkpoint.map_or(Ok(()), Checkpoint::remove));
+        match (done, self.ranks) {
+            (Ok(()), _) => true,
+            (Err(_), Some(_)) if self.is_released.into_inner() => true,
+            (Err(error), Some(ranks)) => ranks.fail(|| complain(&error)),
+            (Err(error), None) => {
+                complain(&error);
+                false
+            }
+        }
+    }
+
+    /// The checkpoint; a thread that panicked while it held it has not left it half-changed.
+    fn checkpoint(&self) -> MutexGuard<'_, Option<Checkpoint>> {
+        self.checkpoint.lock().unwrap_or_else(PoisonError::into_inner)
+    }
 }
 
-/// Joins the ranks with which this process was started, if it was by `mpirun`.
-///
-/// # Errors
-/// When MPI cannot be begun.
-pub fn join() -> Result<()> {
-    let ranks = Ranks::join()?;
-    RUN.with_borrow_mut(|run| run.ranks = ranks);
-    Ok(())
+impl Executor for Workers {
+    fn execute(&self, batch: Batch<'_>) -> Result<()> {
+        let is_last = batch.is_last;
+        if is_nested() {
+            return in_pool(batch);
+        }
+        hand_out(self, batch)?;
+        if !is_last || self.is_first() {
+            return Ok(());
+        }
+        self.is_released.store(true, Ordering::Relaxed);
+        Err(Error::new("the rest is for the first rank"))
+    }
+
+    fn once(&self, work: &mut dyn FnMut() -> Result<Vec<u8>>) -> Result<Vec<u8>> {
+        match self.ranks.as_ref().filter(|_| !is_nested()) {
+            None => work(),
+            Some(ranks) => {
+                let value = if ranks.is_first() { Some(ByteBuf::from(work()?)) } else { None };
+                ranks.everywhere(value).map(ByteBuf::into_vec)
+            }
+        }
+    }
+
+    fn is_first(&self) -> bool {
+        is_nested() || self.ranks.as_ref().is_none_or(Ranks::is_first)
+    }
 }
 
 /// Keeps another program that is called from taking itself for one of the ranks.
@@ -69,155 +142,19 @@ pub fn keep_out(program: &mut Command) {
     }
 }
 
-/// Whether this is the process that writes, prints and asks: the first rank, or the only one.
-pub fn is_first() -> bool {
-    RUN.with_borrow(|run| run.ranks.as_ref().is_none_or(Ranks::is_first))
+/// Whether this thread executes a piece of a batch. It must not wait for others, nor speak for its rank.
+fn is_nested() -> bool {
+    rayon::current_thread_index().is_some()
 }
 
-/// Threads for each of several ranks: those on one machine share its processors.
-pub fn threads() -> Option<usize> {
-    let processors = available_parallelism().map_or(1, usize::from);
-    let ranks = RUN.with_borrow(|run| run.ranks.as_ref().map(Ranks::on_this_machine))?;
-    Some((processors / ranks).max(1))
-}
-
-/// Leaves the work to the first rank alone.
-pub fn go_alone() {
-    RUN.with_borrow_mut(|run| run.ranks = None);
-}
-
-/// Begins a task whose work is handed out, from where the checkpoint stands if there is one; returns the number of pieces
-/// of work in it. `warn` is told when some of them are lost.
-///
-/// # Errors
-/// When other ranks have another task, or the checkpoint has, or it cannot be read or written.
-pub fn begin(task: Task, checkpoint: Option<(&Path, Begin)>, warn: impl FnMut(String)) -> Result<usize> {
-    RUN.with_borrow_mut(|run| {
-        if let Some(ranks) = &run.ranks {
-            ranks.agree(&task)?;
-        }
-        if let Some((path, begin)) = checkpoint.filter(|_| run.ranks.as_ref().is_none_or(Ranks::is_first)) {
-            run.checkpoint = Some(Checkpoint::open(path, &task, begin, warn)?);
-        }
-        Ok(run.checkpoint.as_ref().map_or(0, Checkpoint::count))
-    })
-}
-
-/// Ends what was begun, and `complain`s where it failed; returns whether it was done. Its checkpoint is then removed.
-pub fn end(done: Result<()>, complain: impl FnOnce(&Error)) -> bool {
-    let Run { ranks, checkpoint, is_released, .. } = RUN.take();
-    let done = done.and_then(|()| checkpoint.map_or(Ok(()), Checkpoint::remove));
-    match (done, ranks) {
-        (Ok(()), _) => true,
-        (Err(_), Some(_)) if is_released => true,
-        (Err(error), Some(ranks)) => ranks.fail(|| complain(&error)),
-        (Err(error), None) => {
-            complain(&error);
-            false
-        }
-    }
-}
-
-/// What comes of pieces of work, by index, on every rank.
-///
-/// # Errors
-/// What a piece returns; the others are then left.
-pub fn map<T: Serialize + DeserializeOwned + Send>(
-    count: usize,
-    work: impl Fn(usize) -> Result<T> + Sync,
-) -> Result<Vec<T>> {
-    map_told(count, work, |_, _| {})
-}
-
-/// The same; the first rank is `told` of each with its index when all before it are done, too.
-///
-/// # Errors
-/// As [`map`].
-pub fn map_told<T: Serialize + DeserializeOwned + Send>(
-    count: usize,
-    work: impl Fn(usize) -> Result<T> + Sync,
-    told: impl FnMut(usize, &T),
-) -> Result<Vec<T>> {
-    let pieces = map_all(count, |_| (), |index, ()| work(index), told)?;
-    once(|| Ok(pieces))
-}
-
-/// What comes of pieces that only the first rank knows, and which it `gives` with their indices; only there is it known.
-///
-/// # Errors
-/// As [`map`].
-pub fn map_given<P: Serialize + DeserializeOwned + Send, T: Serialize + DeserializeOwned + Send>(
-    count: usize,
-    give: impl Fn(usize) -> P + Sync,
-    work: impl Fn(usize, P) -> Result<T> + Sync,
-) -> Result<Vec<T>> {
-    map_all(count, give, work, |_, _| {})
-}
-
-/// Does pieces of work and gives each with its index to `take`, the first one first. Only so many are there at once as
-/// there are workers, times a few. `take` hands out nothing itself. This is the end for ranks other than the first:
-/// nothing is taken on them.
-///
-/// # Errors
-/// What a piece or `take` returns; the other pieces are then left.
-pub fn in_order<T: Serialize + DeserializeOwned + Send>(
-    count: usize,
-    work: impl Fn(usize) -> Result<T> + Sync,
-    take: impl FnMut(usize, T) -> Result<()>,
-) -> Result<()> {
-    let ranks = RUN.with_borrow(|run| run.ranks.as_ref().map_or(1, Ranks::count));
-    distribute(count, AHEAD * ranks * rayon::current_num_threads(), |_| (), |index, ()| work(index), take)?;
-    if is_first() {
-        return Ok(());
-    }
-    RUN.with_borrow_mut(|run| run.is_released = true);
-    Err(Error::new("the rest is the first rank's"))
-}
-
-/// What the first rank does alone and all need to know.
-///
-/// # Errors
-/// What the work returns.
-pub fn once<T: Serialize + DeserializeOwned>(work: impl FnOnce() -> Result<T>) -> Result<T> {
-    let value = if is_first() { Some(work()?) } else { None };
-    RUN.with_borrow(|run| match (&run.ranks, value) {
-        (None, Some(value)) => Ok(value),
-        (Some(ranks), value) => ranks.everywhere(value),
-        (None, None) => Err(Error::new("there is no first rank")),
-    })
-}
-
-fn map_all<P: Serialize + DeserializeOwned + Send, T: Serialize + DeserializeOwned + Send>(
-    count: usize,
-    give: impl Fn(usize) -> P + Sync,
-    work: impl Fn(usize, P) -> Result<T> + Sync,
-    mut told: impl FnMut(usize, &T),
-) -> Result<Vec<T>> {
-    let mut done = Vec::with_capacity(count);
-    distribute(count, count, give, work, |index, piece| {
-        told(index, &piece);
-        done.push(piece);
-        Ok(())
-    })?;
-    Ok(done)
-}
-
-/// Does pieces of work and takes them in order, at most `ahead` of them on their way.
-fn distribute<P: Serialize + DeserializeOwned + Send, T: Serialize + DeserializeOwned + Send>(
-    count: usize,
-    ahead: usize,
-    give: impl Fn(usize) -> P + Sync,
-    work: impl Fn(usize, P) -> Result<T> + Sync,
-    mut take: impl FnMut(usize, T) -> Result<()>,
-) -> Result<()> {
-    if rayon::current_thread_index().is_none() {
-        return hand_out(count, ahead, &give, &work, take);
-    }
-    // It is called within a piece of other work, and a thread that does pieces must not wait for others to.
-    for first in (0..count).step_by(ahead) {
-        let piece = |index: usize| work(index, give(index));
-        let pieces = (first..count.min(first + ahead)).into_par_iter().map(piece).collect::<Result<Vec<T>>>()?;
-        (first..).zip(pieces).try_for_each(|(index, piece)| take(index, piece))?;
+/// Executes a batch within a piece of another one.
+fn in_pool(batch: Batch<'_>) -> Result<()> {
+    let at_once = if batch.is_bounded { AHEAD * rayon::current_num_threads() } else { batch.count.max(1) };
+    for first in (0..batch.count).step_by(at_once) {
+        let piece = |index: usize| (batch.work)(index, &(batch.input)(index)?);
+        let indices = first..batch.count.min(first + at_once);
+        let results = indices.into_par_iter().map(piece).collect::<Result<Vec<Vec<u8>>>>()?;
+        (first..).zip(results).try_for_each(|(index, result)| (batch.take)(index, result))?;
     }
     Ok(())
 }
@@ -229,6 +166,8 @@ mod tests {
     use std::thread;
     use std::time::Duration;
 
+    use mindgap_foundations::executor::{in_order, map, map_watched};
+
     use super::*;
 
     #[test]
@@ -237,13 +176,15 @@ mod tests {
             thread::sleep(Duration::from_millis((50 - index as u64) / 10));
             Ok(index * index)
         };
-        assert_eq!(map(50, slow_first).unwrap(), (0..50).map(|i| i * i).collect::<Vec<usize>>());
-        assert_eq!(map(0, slow_first).unwrap(), Vec::<usize>::new());
+        assert_eq!(map(&Workers::default(), 50, slow_first).unwrap(), (0..50).map(|i| i * i).collect::<Vec<usize>>());
+        assert_eq!(map(&Workers::default(), 0, slow_first).unwrap(), Vec::<usize>::new());
     }
 
     #[test]
     fn a_piece_may_hand_out_work_of_its_own() {
-        let sums = map(40, |outer| Ok(map(40, |inner| Ok(outer * inner))?.iter().sum::<usize>())).unwrap();
+        let workers = &Workers::default();
+        let sum = |outer: usize| Ok(map(workers, 40, |inner| Ok(outer * inner))?.iter().sum::<usize>());
+        let sums = map(workers, 40, sum).unwrap();
         assert_eq!(sums, (0..40).map(|outer| outer * 780).collect::<Vec<usize>>());
     }
 
@@ -255,7 +196,7 @@ mod tests {
             Ok(index)
         };
         let most = AHEAD * rayon::current_num_threads();
-        in_order(10_000, work, |index, _| {
+        in_order(&Workers::default(), 10_000, work, |index, _| {
             assert!(begun.load(Ordering::SeqCst) <= index + most);
             Ok(())
         })
@@ -269,9 +210,9 @@ mod tests {
             begun.fetch_add(1, Ordering::SeqCst);
             if index == 3 { Err(Error::new("the third")) } else { Ok(index) }
         };
-        assert_eq!(map(100_000, work).unwrap_err().to_string(), "the third");
+        assert_eq!(map(&Workers::default(), 100_000, work).unwrap_err().to_string(), "the third");
         assert!(begun.load(Ordering::SeqCst) < 1000);
-        let refused = in_order(100_000, Ok::<usize, Error>, |_, _| Err(Error::new("full")));
+        let refused = in_order(&Workers::default(), 100_000, Ok::<usize, Error>, |_, _| Err(Error::new("full")));
         assert_eq!(refused.unwrap_err().to_string(), "full");
     }
 
@@ -284,7 +225,7 @@ mod tests {
             thread::sleep(Duration::from_millis(20));
             Ok(index)
         };
-        let panics = || map_told(100, work, |_, _| panic!("enough"));
+        let panics = || map_watched(&Workers::default(), 100, work, |_, _| panic!("enough"));
         assert!(catch_unwind(AssertUnwindSafe(panics)).is_err());
         let begun = begun.load(Ordering::SeqCst);
         assert!(begun <= 3 * rayon::current_num_threads(), "{begun}");
@@ -293,6 +234,6 @@ mod tests {
     #[test]
     #[should_panic(expected = "a mistake")]
     fn a_panic_goes_through() {
-        let _ = map(10, |index| if index == 5 { panic!("a mistake") } else { Ok(index) });
+        let _ = map(&Workers::default(), 10, |index| if index == 5 { panic!("a mistake") } else { Ok(index) });
     }
 }

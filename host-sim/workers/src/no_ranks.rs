@@ -2,7 +2,9 @@
 
 use std::sync::mpsc::Receiver;
 
-use super::handing_out::{Sent, Told};
+use serde_bytes::ByteBuf;
+
+use super::handing_out::{Heard, Sent};
 use super::task::Task;
 use mindgap_foundations::error::Result;
 
@@ -34,11 +36,11 @@ impl Ranks {
         match *self {}
     }
 
-    pub fn help<P, T>(&self, _: u32, _: usize, _: impl Fn(usize, P), _: &Receiver<Sent<T>>) -> Result<()> {
+    pub fn help(&self, _: u32, _: usize, _: impl Fn(usize, ByteBuf), _: &Receiver<Sent>) -> Result<()> {
         match *self {}
     }
 
-    pub fn hand<P>(&self, _: usize, _: &[(usize, P)]) -> Result<()> {
+    pub fn hand(&self, _: usize, _: &[(usize, ByteBuf)]) -> Result<()> {
         match *self {}
     }
 
@@ -46,7 +48,7 @@ impl Ranks {
         match *self {}
     }
 
-    pub fn told<T>(&self, _: u32) -> Result<Option<Told<T>>> {
+    pub fn heard(&self, _: u32) -> Result<Option<Heard>> {
         match *self {}
     }
 

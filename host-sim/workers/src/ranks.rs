@@ -17,8 +17,9 @@ use mpi::topology::SimpleCommunicator;
 use mpi::traits::*;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
+use serde_bytes::ByteBuf;
 
-use super::handing_out::{Sent, Told, Waiting, unwound};
+use super::handing_out::{Heard, Sent, Waiting, unwound};
 use super::task::Task;
 use mindgap_foundations::error::{Error, Result};
 
@@ -120,12 +121,12 @@ impl Ranks {
     ///
     /// # Errors
     /// When a result cannot be sent.
-    pub fn help<P: DeserializeOwned, T: Serialize>(
+    pub fn help(
         &self,
         part: u32,
         threads: usize,
-        start: impl Fn(usize, P),
-        results: &Receiver<Sent<T>>,
+        start: impl Fn(usize, ByteBuf),
+        results: &Receiver<Sent>,
     ) -> Result<()> {
         (0..threads).try_for_each(|_| self.send(0, FREE, &part))?;
         let (mut begun, mut waiting) = (0, Waiting::begin());
@@ -134,7 +135,7 @@ impl Ranks {
                 if tag == OVER {
                     return Ok(());
                 }
-                for (index, piece) in decode::<Vec<(usize, P)>>(&bytes)? {
+                for (index, piece) in decode::<Vec<(usize, ByteBuf)>>(&bytes)? {
                     start(index, piece);
                     begun += 1;
                 }
@@ -155,7 +156,7 @@ impl Ranks {
     ///
     /// # Errors
     /// When they cannot be sent.
-    pub fn hand<P: Serialize>(&self, rank: usize, pieces: &[(usize, P)]) -> Result<()> {
+    pub fn hand(&self, rank: usize, pieces: &[(usize, ByteBuf)]) -> Result<()> {
         self.send(rank, PIECES, &pieces)
     }
 
@@ -167,19 +168,19 @@ impl Ranks {
         (1..self.count()).try_for_each(|rank| self.send(rank, OVER, &()))
     }
 
-    /// What a rank tells of a part, if one does.
+    /// Returns the next message of a rank about a batch, if there is one.
     ///
     /// # Errors
     /// When it is not to be understood.
-    pub fn told<T: DeserializeOwned>(&self, part: u32) -> Result<Option<Told<T>>> {
+    pub fn heard(&self, part: u32) -> Result<Option<Heard>> {
         while let Some((rank, tag, bytes)) = self.look() {
             if tag == DONE {
-                let (index, piece): (usize, std::result::Result<T, String>) = decode(&bytes)?;
-                return Ok(Some(Told::Done(rank, index, piece.map_err(Error::new))));
+                let (index, piece): (usize, std::result::Result<ByteBuf, String>) = decode(&bytes)?;
+                return Ok(Some(Heard::Done(rank, index, piece.map_err(Error::new))));
             }
             // A rank that was late asks for work of a part that is over; it will hear that.
             if decode::<u32>(&bytes)? == part {
-                return Ok(Some(Told::Free(rank)));
+                return Ok(Some(Heard::Free(rank)));
             }
         }
         Ok(None)

@@ -8,12 +8,12 @@ use super::seal::Published;
 use mindgap_diagnosis::{Method, findings};
 use mindgap_files as files;
 use mindgap_foundations::error::Result;
+use mindgap_foundations::executor::{self, Executor};
 use mindgap_learning::learn::train::{TABLE_ONE, Trainer, train};
 use mindgap_logs::Logs;
 use mindgap_logs::inspection::Inspection;
 use mindgap_models::simulator::Simulator;
 use mindgap_models::simulator::baseline::Baseline;
-use mindgap_workers as workers;
 
 /// Seed of the training.
 const SEED: u64 = 1;
@@ -22,12 +22,14 @@ const SEED: u64 = 1;
 ///
 /// # Errors
 /// When the folder is not a challenge, or when a diagnosis cannot be written.
-pub fn answer(folder: &Path, mut watch: impl FnMut(usize, usize)) -> Result<usize> {
+pub fn answer(executor: &dyn Executor, folder: &Path, mut watch: impl FnMut(usize, usize)) -> Result<usize> {
     let folder = Folder(folder);
     let cases: Vec<Published> = files::read_csv(&folder.cases())?;
     let robots: BTreeSet<&str> = cases.iter().map(|case| case.robot.as_str()).collect();
     let robots = Vec::from_iter(robots);
-    let learned = workers::map(robots.len(), |robot| learn(&Logs::read(&folder.robot(robots[robot]), |_| {})?))?;
+    let learned = executor::map(executor, robots.len(), |robot| {
+        learn(executor, &Logs::read(&folder.robot(robots[robot]), |_| {})?)
+    })?;
     let simulators: BTreeMap<&str, &Simulator> = robots.into_iter().zip(&learned).collect();
     let diagnose = |number: usize| {
         let case = &cases[number];
@@ -44,7 +46,7 @@ pub fn answer(folder: &Path, mut watch: impl FnMut(usize, usize)) -> Result<usiz
             for (robot, simulator) in &simulators {
                 simulator.write(&at(fresh, &folder.simulator(robot)))?;
             }
-            workers::in_order(cases.len(), diagnose, |number, [answer, added]: [String; 2]| {
+            executor::in_order(executor, cases.len(), diagnose, |number, [answer, added]: [String; 2]| {
                 let case = &cases[number].case;
                 files::write(&at(fresh, &folder.answer(case)), answer)?;
                 files::write(&at(fresh, &folder.added(case)), added)?;
@@ -65,6 +67,6 @@ fn at(fresh: &Path, file: &Path) -> PathBuf {
 ///
 /// # Errors
 /// When the logs support no network.
-pub fn learn(logs: &Logs) -> Result<Simulator> {
-    train(logs, &Trainer::Fast, &TABLE_ONE, SEED, &|_| {})
+pub fn learn(executor: &dyn Executor, logs: &Logs) -> Result<Simulator> {
+    train(executor, logs, &Trainer::Fast, &TABLE_ONE, SEED, &|_| {})
 }

@@ -4,10 +4,10 @@ use super::answer::learn;
 use super::cases::{self, Case, Echoes, Outside, Setting, Size};
 use mindgap_built_in_robot::Effect;
 use mindgap_foundations::error::Result;
+use mindgap_foundations::executor::{self, Executor};
 use mindgap_logs::Logs;
 use mindgap_models::simulator::Simulator;
 use mindgap_models::simulator::baseline::Baseline;
-use mindgap_workers as workers;
 
 /// The cases, and the simulators of their robots.
 pub struct Bench {
@@ -24,10 +24,10 @@ impl Bench {
     ///
     /// # Errors
     /// When a robot has no room to drive in, or its logs teach nothing.
-    pub fn new(count: usize, seed: u64, size: Size) -> Result<Self> {
+    pub fn new(executor: &dyn Executor, count: usize, seed: u64, size: Size) -> Result<Self> {
         let setting = Setting { outside: OUTSIDE, echoes: Echoes::Fresh, size };
         let robots = cases::robots(seed, setting)?;
-        let simulators = workers::map(robots.len(), |robot| learn(&robots[robot]))?;
+        let simulators = executor::map(executor, robots.len(), |robot| learn(executor, &robots[robot]))?;
         Ok(Bench { seed, setting, robots, simulators, effects: effects(count, seed) })
     }
 

@@ -17,7 +17,7 @@ use mindgap_diagnosis::explain::Explained;
 use mindgap_diagnosis::gain::Gain;
 use mindgap_foundations::counter::Counter;
 use mindgap_foundations::error::{Error, Result};
-use mindgap_workers as workers;
+use mindgap_foundations::executor::{self, Executor};
 
 /// What is measured in one case.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -57,6 +57,7 @@ const FEWEST: usize = 40;
 /// # Errors
 /// When there are too few cases.
 pub fn calibrate(
+    executor: &dyn Executor,
     count: usize,
     seed: u64,
     size: Size,
@@ -65,16 +66,17 @@ pub fn calibrate(
     if count < FEWEST {
         return Err(Error::new(format!("{count} cases settle nothing: give at least {FEWEST}")));
     }
-    let bench = Bench::new(count, seed, size)?;
+    let bench = Bench::new(executor, count, seed, size)?;
     let (nulls, others): (Vec<usize>, Vec<usize>) = (0..count).partition(|case| bench.effects[*case].is_empty());
     let counter = Counter::new(count, watch);
     let counted = |measured: Result<Measured>| measured.inspect(|_| counter.one_more());
-    let nulls = workers::map(nulls.len(), |null| counted(without_effect(&bench, nulls[null])))?;
+    let nulls = executor::map(executor, nulls.len(), |null| counted(without_effect(&bench, nulls[null])))?;
     let open = fitting::open(&nulls);
     // The rivals are in no table, and go beside the rest of what was measured.
     let with_rivals = |measured: Measured| (measured.rivals.clone(), measured);
-    let others =
-        workers::map(others.len(), |other| counted(with_effects(&bench, others[other], open)).map(with_rivals))?;
+    let others = executor::map(executor, others.len(), |other| {
+        counted(with_effects(&bench, others[other], open)).map(with_rivals)
+    })?;
     let others: Vec<Measured> = others.into_iter().map(|(rivals, measured)| Measured { rivals, ..measured }).collect();
     Ok((fitting::weighed(open, &others), nulls.into_iter().chain(others).collect()))
 }

@@ -9,14 +9,15 @@ use super::cases::{self, Setting};
 use super::seal::{Published, Sealed};
 use mindgap_files as files;
 use mindgap_foundations::error::Result;
+use mindgap_foundations::executor::{self, Executor};
 use mindgap_logs::Texts;
-use mindgap_workers as workers;
 
 /// Writes a challenge of `count` cases to a folder; `watch` is told how many are done, and of how many.
 ///
 /// # Errors
 /// When the folder cannot be written or a case cannot be recorded.
 pub fn make(
+    executor: &dyn Executor,
     folder: &Path,
     count: usize,
     seed: u64,
@@ -24,10 +25,19 @@ pub fn make(
     mut watch: impl FnMut(usize, usize),
 ) -> Result<()> {
     let ours = |name: &str| ["robots", "cases", "cases.csv", "sealed.json", "answers"].contains(&name);
-    files::write_folder(folder, ours, |fresh| fill(&Folder(fresh), count, seed, setting, |done| watch(done, count)))
+    files::write_folder(folder, ours, |fresh| {
+        fill(executor, &Folder(fresh), count, seed, setting, |done| watch(done, count))
+    })
 }
 
-fn fill(folder: &Folder, count: usize, seed: u64, setting: Setting, mut watch: impl FnMut(usize)) -> Result<()> {
+fn fill(
+    executor: &dyn Executor,
+    folder: &Folder,
+    count: usize,
+    seed: u64,
+    setting: Setting,
+    mut watch: impl FnMut(usize),
+) -> Result<()> {
     let robots = cases::robots(seed, setting)?;
     for (robot, logs) in robots.iter().enumerate() {
         logs.write(&folder.robot(&robot.to_string()))?;
@@ -45,7 +55,7 @@ fn fill(folder: &Folder, count: usize, seed: u64, setting: Setting, mut watch: i
         Ok((made.logs.to_texts(), made.robot, sealed))
     };
     let (mut sealed, mut published) = (Vec::with_capacity(count), Vec::with_capacity(count));
-    workers::in_order(count, make, |number, (logs, robot, case): (Texts, usize, Sealed)| {
+    executor::in_order(executor, count, make, |number, (logs, robot, case): (Texts, usize, Sealed)| {
         logs.write(&folder.case(&case.case))?;
         published.push(Published { case: case.case.clone(), robot: robot.to_string(), commitment: case.commitment() });
         sealed.push(case);

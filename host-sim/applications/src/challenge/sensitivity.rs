@@ -12,7 +12,7 @@ use mindgap_diagnosis::diagnose::confirmed;
 use mindgap_diagnosis::explain::Judged;
 use mindgap_foundations::counter::Counter;
 use mindgap_foundations::error::{Error, Result};
-use mindgap_workers as workers;
+use mindgap_foundations::executor::{self, Executor};
 
 /// What comes of all cases with one threshold changed.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -50,8 +50,13 @@ const FACTORS: [f64; 2] = [0.5, 2.0];
 ///
 /// # Errors
 /// When a case cannot be driven.
-pub fn sensitivity(cases: usize, seed: u64, watch: impl Fn(usize, usize) + Sync) -> Result<Vec<Row>> {
-    let bench = Bench::new(cases, seed, Size::USUAL)?;
+pub fn sensitivity(
+    executor: &dyn Executor,
+    cases: usize,
+    seed: u64,
+    watch: impl Fn(usize, usize) + Sync,
+) -> Result<Vec<Row>> {
+    let bench = Bench::new(executor, cases, seed, Size::USUAL)?;
     let shipped = Calibration::shipped();
     let thresholds = names(&table(&shipped)?, "");
     let mut changed = vec![(String::new(), 0.0, shipped)];
@@ -64,7 +69,7 @@ pub fn sensitivity(cases: usize, seed: u64, watch: impl Fn(usize, usize) + Sync)
     let calibrations: Vec<Calibration> = changed.iter().map(|(_, _, calibration)| *calibration).collect();
     let counter = Counter::new(cases, watch);
     let counted = |number| of_case(&bench, number, &calibrations).inspect(|_| counter.one_more());
-    let by_case = workers::map(cases, counted)?;
+    let by_case = executor::map(executor, cases, counted)?;
     let row = |(place, (threshold, value, _)): (usize, (String, f64, Calibration))| {
         let count = |is: fn(&Ending) -> bool| by_case.iter().filter(|endings| is(&endings[place])).count();
         Row {

@@ -11,6 +11,7 @@ use crate::trials::{self, Event};
 use mindgap_built_in_robot::{self as built_in_robot, ActiveEffect, BuiltInRobot, Effect};
 use mindgap_foundations::chance::generator;
 use mindgap_foundations::error::Result;
+use mindgap_foundations::executor::Executor;
 use mindgap_learning::evolve::controller_file::ControllerFile;
 use mindgap_learning::evolve::fitness::Success;
 use mindgap_logs::Scene;
@@ -53,6 +54,7 @@ pub struct Repair {
 /// # Errors
 /// When a file cannot be read or written.
 pub fn run(
+    executor: &dyn Executor,
     folder: &Path,
     controllers: &[Controller],
     &Job { start, max_steps, trials, seed }: &Job,
@@ -70,6 +72,7 @@ pub fn run(
         super::success((0..RUNS).map(drive), scene.target_cm.unwrap_or_default())
     };
     let job = trials::Job {
+        executor,
         folder: &folder.join("loop"),
         simulator: &simulator,
         scene: &scene_file,

@@ -8,6 +8,7 @@ use super::jury::{CONFIRMED, Found, Jury, Tried};
 use super::state::{IfKnown, SimulatedPath, place_cm};
 use mindgap_foundations::chance::derive;
 use mindgap_foundations::error::{Error, Result};
+use mindgap_foundations::executor::Executor;
 use mindgap_foundations::geometry::Pose;
 use mindgap_learning::evolve::chance::{Judge, ROBOTS, RUNS};
 use mindgap_learning::evolve::fitness::RandomNumbers;
@@ -41,6 +42,8 @@ const SHOWN: usize = 5;
 
 /// What a turn searches in.
 pub struct Search<'a> {
+    /// Executes independent pieces of work.
+    pub executor: &'a dyn Executor,
     /// The simulator, adapted to all runs so far.
     pub simulator: &'a Simulator,
     /// The scene.
@@ -121,6 +124,7 @@ impl Search<'_> {
     fn searched(&self, middle: &Environment, known: &Found) -> Result<Vec<Controller>> {
         let target_cm = self.target_cm()?;
         let task = EvolutionTask {
+            executor: self.executor,
             environment: middle,
             target_cm,
             way: &WayMap::new(self.scene, target_cm, self.simulator.robot.body_radius_cm),
@@ -145,7 +149,8 @@ impl Search<'_> {
 
     fn jury<'a>(&'a self, robots: &'a Robots, tried: &'a [Tried]) -> Result<Jury<'a>> {
         let seed = self.stream(Purpose::Judging, 0);
-        let judge = Judge::new(self.simulator, &robots.drawn, self.scene, self.start, self.target_cm()?, seed)?;
+        let judge =
+            Judge::new(self.executor, self.simulator, &robots.drawn, self.scene, self.start, self.target_cm()?, seed)?;
         let middle = Environment::new(self.simulator, self.scene, self.start, Noise::Learned)?.of_robot(&robots.mean);
         Ok(Jury { judge, middle, seed: self.stream(Purpose::Comparing, 0), tried })
     }

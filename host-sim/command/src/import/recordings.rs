@@ -10,6 +10,7 @@ use crate::{Run, kinds, progress, table};
 use mindgap_files as files;
 use mindgap_files::places::Places;
 use mindgap_foundations::error::Result;
+use mindgap_foundations::executor::Executor;
 use mindgap_import::assemble::{Assembled, assemble};
 use mindgap_import::bag::{Choice, recording};
 use mindgap_import::draft::{RobotDraft, SCENE, to_fill_in};
@@ -89,7 +90,7 @@ impl Run for Streams {
         self.target.places().reading(&self.files).reading(&self.map)
     }
 
-    fn run(&self) -> Result<String> {
+    fn run(&self, _: &dyn Executor) -> Result<String> {
         let given = self.target.read()?;
         let mapping = self.map.as_deref().map_or(Ok(Mapping::default()), Mapping::read)?;
         let units = Units { time: self.time_unit, length: self.length_unit, angle: self.angle_unit };
@@ -102,7 +103,7 @@ impl Run for Bag {
         self.target.places().reading(&self.bags)
     }
 
-    fn run(&self) -> Result<String> {
+    fn run(&self, _: &dyn Executor) -> Result<String> {
         let given = self.target.read()?;
         let choice = Choice { commands: self.commands.clone(), poses: self.poses.clone(), ranges: self.ranges.clone() };
         let yaw_rad = given.robot.map_or(0.0, |robot| robot.ultrasonic.yaw_deg.to_radians());

@@ -12,6 +12,7 @@ mod turning_loss;
 use std::sync::LazyLock;
 
 use mindgap_built_in_robot::{ActiveEffect, default_robot, record, training_room};
+use mindgap_foundations::executor::Serial;
 use mindgap_learning::learn::train::{TABLE_ONE, Trainer, train};
 use mindgap_logs::Logs;
 use mindgap_models::simulator::Simulator;
@@ -23,8 +24,9 @@ const STEPS: usize = 60;
 static HEALTHY: LazyLock<Logs> = LazyLock::new(|| logs(60, &[], 1));
 
 /// A simulator of the built-in robot as it is.
-static SIMULATOR: LazyLock<Simulator> =
-    LazyLock::new(|| train(&HEALTHY, &Trainer::Fast, &TABLE_ONE, 1, &|_| {}).expect("the logs train every network"));
+static SIMULATOR: LazyLock<Simulator> = LazyLock::new(|| {
+    train(&Serial, &HEALTHY, &Trainer::Fast, &TABLE_ONE, 1, &|_| {}).expect("the logs train every network")
+});
 
 fn logs(runs: usize, effects: &[&str], seed: u64) -> Logs {
     let effects: Vec<ActiveEffect> = effects.iter().map(|e| e.parse().expect("an effect")).collect();

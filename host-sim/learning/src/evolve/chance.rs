@@ -9,13 +9,13 @@ use serde::{Deserialize, Serialize};
 
 use mindgap_foundations::chance::derive;
 use mindgap_foundations::error::Result;
+use mindgap_foundations::executor::{self, Executor};
 use mindgap_foundations::geometry::Pose;
 use mindgap_logs::Scene;
 use mindgap_models::simulator::Simulator;
 use mindgap_models::simulator::ensemble::Member;
 use mindgap_models::simulator::environment::Environment;
 use mindgap_models::simulator::rollout::{RolloutOutcome, RolloutRequest};
-use mindgap_workers as workers;
 
 /// Robots that tell how far a controller's chance is known.
 pub const ROBOTS: usize = 48;
@@ -35,6 +35,7 @@ pub struct Chance {
 
 /// Robots that controllers are judged on.
 pub struct Judge<'a> {
+    executor: &'a dyn Executor,
     robots: Vec<Environment<'a>>,
     target_cm: DVec2,
     seed: u64,
@@ -46,6 +47,7 @@ impl<'a> Judge<'a> {
     /// # Errors
     /// As [`Environment::new`].
     pub fn new(
+        executor: &'a dyn Executor,
         simulator: &'a Simulator,
         members: &'a [Member],
         scene: &Scene,
@@ -53,7 +55,7 @@ impl<'a> Judge<'a> {
         target_cm: DVec2,
         seed: u64,
     ) -> Result<Self> {
-        Ok(Judge { robots: Environment::of_robots(simulator, members, scene, start)?, target_cm, seed })
+        Ok(Judge { executor, robots: Environment::of_robots(simulator, members, scene, start)?, target_cm, seed })
     }
 
     /// The chance of each controller in `runs` runs of every robot.
@@ -86,7 +88,7 @@ impl<'a> Judge<'a> {
     /// Of every robot, and there of every controller, which runs reach the target.
     fn successes(&self, controllers: &[Controller], runs: usize) -> Result<Vec<Vec<Vec<bool>>>> {
         let of_robot = |number: usize| Ok(self.successes_on(number, &self.robots[number], controllers, runs));
-        workers::map(self.robots.len(), of_robot)
+        executor::map(self.executor, self.robots.len(), of_robot)
     }
 
     fn successes_on(
@@ -148,6 +150,7 @@ mod tests {
     use crate::evolve::test_support::SIMULATOR;
     use mindgap_built_in_robot::four_obstacles;
     use mindgap_foundations::chance::generator;
+    use mindgap_foundations::executor::Serial;
 
     const SEED: u64 = 5;
 
@@ -157,7 +160,7 @@ mod tests {
         let start = scene.starts[0];
         // Some of what drives at random gets there.
         let target_cm = start.position_cm + DVec2::new(25.0, 0.0);
-        let judge = Judge::new(&SIMULATOR, &robots.drawn, &scene, start, target_cm, SEED).expect("room");
+        let judge = Judge::new(&Serial, &SIMULATOR, &robots.drawn, &scene, start, target_cm, SEED).expect("room");
         let decoder = GenotypeDecoder::new(&SIMULATOR, 60);
         let controllers: Vec<Controller> =
             (0..300).map(|number| decoder.controller(&decoder.random(&mut generator(SEED, &[number])))).collect();

@@ -6,6 +6,7 @@ use mindgap_core::controller::Controller;
 use super::fitness::FitnessEvaluator;
 use crate::genetic::{self, Settings};
 use mindgap_foundations::error::Result;
+use mindgap_foundations::executor::Executor;
 
 /// An evolved controller.
 #[derive(Clone, Debug, PartialEq)]
@@ -32,8 +33,13 @@ pub const FLOOR_CM: f64 = 1.0;
 ///
 /// # Errors
 /// As [`genetic::run`].
-pub fn evolve(evaluator: &FitnessEvaluator, settings: &Settings, watch: impl FnMut(usize, f64)) -> Result<Evolved> {
-    let outcome = genetic::run(settings, evaluator, evaluator.seed, watch)?;
+pub fn evolve(
+    executor: &dyn Executor,
+    evaluator: &FitnessEvaluator,
+    settings: &Settings,
+    watch: impl FnMut(usize, f64),
+) -> Result<Evolved> {
+    let outcome = genetic::run(executor, settings, evaluator, evaluator.seed, watch)?;
     let controller = evaluator.decoder.controller(&outcome.best);
     Ok(Evolved { controller, fitness: outcome.fitness, generations: outcome.generations })
 }

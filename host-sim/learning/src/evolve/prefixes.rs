@@ -18,8 +18,8 @@ use super::task::{EvolutionTask, Judged, NEARNESS, sort};
 use crate::genetic::mutation::{Mutation, Unit};
 use mindgap_foundations::chance::{Generator, derive, generator};
 use mindgap_foundations::error::Result;
+use mindgap_foundations::executor;
 use mindgap_models::simulator::rollout::REACHED_CM;
-use mindgap_workers as workers;
 
 /// Rounds of all searches.
 pub const ALL_ROUNDS: usize = SEARCHES * ROUNDS;
@@ -102,7 +102,7 @@ pub fn explore(task: &EvolutionTask, mut watch: impl FnMut(usize, f64)) -> Resul
         let fitness = found.iter().map(|judged| judged.fitness);
         watch((number + 1) * ROUNDS - 1, fitness.fold(f64::NAN, f64::max));
     };
-    let mut found = workers::map_told(SEARCHES, search, told)?.concat();
+    let mut found = executor::map_watched(task.executor, SEARCHES, search, told)?.concat();
     sort(&mut found);
     Ok(found.into_iter().map(|judged| judged.controller).collect())
 }

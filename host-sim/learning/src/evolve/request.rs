@@ -10,6 +10,7 @@ use super::robust;
 use super::task::EvolutionTask;
 use super::way::WayMap;
 use mindgap_foundations::error::{Error, Result};
+use mindgap_foundations::executor::Executor;
 use mindgap_logs::Scene;
 use mindgap_models::simulator::environment::{Environment, SensorModel};
 use mindgap_models::simulator::rollout_report::RolloutReport;
@@ -17,6 +18,8 @@ use mindgap_models::simulator::{Noise, Simulator};
 
 /// What is asked.
 pub struct Request<'a> {
+    /// Executes independent pieces of the search.
+    pub executor: &'a dyn Executor,
     /// Where the controller is evolved.
     pub simulator: &'a Simulator,
     /// The scene, which has a target.
@@ -67,7 +70,7 @@ impl Request<'_> {
     /// # Errors
     /// When the scene has no target or not this start, when there are no steps, or when the simulator cannot run controllers there.
     pub fn evolve(&self, watch: impl FnMut(usize, f64)) -> Result<Answered> {
-        let Request { simulator, scene, noise, random_numbers, seed, .. } = *self;
+        let Request { executor, simulator, scene, noise, random_numbers, seed, .. } = *self;
         if self.max_steps == 0 {
             return Err(Error::new("a controller needs at least one step"));
         }
@@ -82,14 +85,17 @@ impl Request<'_> {
         let evaluator =
             FitnessEvaluator { environment, target_cm, way: None, decoder, runs, floor_cm, random_numbers, seed };
         let candidates = if self.paper {
-            vec![paper::evolve(&evaluator, &paper::settings(), watch)?]
+            vec![paper::evolve(executor, &evaluator, &paper::settings(), watch)?]
         } else {
-            robust::candidates(&EvolutionTask { environment, target_cm, way, decoder, random_numbers, seed }, watch)?
+            robust::candidates(
+                &EvolutionTask { executor, environment, target_cm, way, decoder, random_numbers, seed },
+                watch,
+            )?
         };
         let chances = match &robots {
             Some(robots) => {
                 let controllers: Vec<Controller> = candidates.iter().map(|c| c.controller.clone()).collect();
-                let judge = Judge::new(simulator, &robots.drawn, scene, start, target_cm, seed)?;
+                let judge = Judge::new(executor, simulator, &robots.drawn, scene, start, target_cm, seed)?;
                 judge.chances(&controllers, RUNS)?
             }
             None => Vec::new(),

@@ -14,7 +14,7 @@ use crate::genetic::mutation::{Mutation, Unit};
 use crate::genetic::{self, Lineage, Settings};
 use mindgap_foundations::chance::{derive, generator};
 use mindgap_foundations::error::Result;
-use mindgap_workers as workers;
+use mindgap_foundations::executor;
 
 /// Rounds and generations of all stages.
 pub const GENERATIONS: usize = prefixes::ALL_ROUNDS + REFINING_GENERATIONS;
@@ -69,7 +69,7 @@ pub fn refine(
         Lineage::from(&evaluator, mutants(task, controller, seed), seed)
     };
     let lineages = controllers.iter().zip(0..).map(lineage).collect();
-    let refined = genetic::run_beside(&REFINING, lineages, watch)?;
+    let refined = genetic::run_beside(task.executor, &REFINING, lineages, watch)?;
     refined.into_iter().map(|refined| ranked(task, &refined.population)).collect()
 }
 
@@ -90,7 +90,7 @@ fn mutants(task: &EvolutionTask, controller: &Controller, seed: u64) -> Vec<Vec<
 /// Individuals as they do in fresh runs.
 fn ranked(task: &EvolutionTask, population: &[Vec<f32>]) -> Result<Vec<Judged>> {
     let judged = |number: usize| Ok(task.judged(task.decoder.controller(&population[number]), CHOOSING_RUNS));
-    let mut ranked = workers::map(population.len(), judged)?;
+    let mut ranked = executor::map(task.executor, population.len(), judged)?;
     sort(&mut ranked);
     Ok(ranked)
 }

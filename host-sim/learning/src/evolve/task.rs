@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::fitness::{FitnessEvaluator, RandomNumbers, Success};
 use super::genome::GenotypeDecoder;
 use super::way::WayMap;
+use mindgap_foundations::executor::Executor;
 use mindgap_models::simulator::environment::Environment;
 use mindgap_models::simulator::rollout::REACHED_CM;
 
@@ -21,6 +22,8 @@ const JUDGING: u64 = 1;
 
 /// The task that a controller is evolved for.
 pub struct EvolutionTask<'a> {
+    /// Executes independent pieces of the search.
+    pub executor: &'a dyn Executor,
     /// Where it runs.
     pub environment: &'a Environment<'a>,
     /// Where it has to stop, cm.

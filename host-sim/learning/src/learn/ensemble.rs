@@ -129,12 +129,13 @@ mod tests {
     use super::*;
     use crate::learn::train::{TABLE_ONE, Trainer, train};
     use mindgap_built_in_robot::{default_robot, record, training_room};
+    use mindgap_foundations::executor::Serial;
 
     /// A robot that is driven by the same commands for long does what the distribution allows.
     #[test]
     fn held_commands_stay_within_what_is_not_known() {
         let logs = record(&default_robot(), &training_room(), 40, 60, &[], 3).expect("room to drive");
-        let simulator = train(&logs, &Trainer::Fast, &TABLE_ONE, 1, &|_| {}).expect("networks");
+        let simulator = train(&Serial, &logs, &Trainer::Fast, &TABLE_ONE, 1, &|_| {}).expect("networks");
         let ensemble = simulator.ensemble.clone().expect("a distribution");
         assert!(ensemble.is_sound() && ensemble.evidence.len() > 100);
         let networks = simulator.motion_networks().expect("networks");

@@ -16,8 +16,8 @@ use super::genome::Shape;
 use anchors::Anchored;
 use mindgap_foundations::chance::generator;
 use mindgap_foundations::error::Result;
+use mindgap_foundations::executor::{self, Executor};
 use mindgap_foundations::statistics::agreement as statistics;
-use mindgap_workers as workers;
 use projection::{Projection, Ridges};
 
 /// Loss function of a network.
@@ -65,6 +65,7 @@ const REWEIGHTINGS: usize = 4;
 /// # Errors
 /// When a start cannot be searched by those to whom it is handed out.
 pub fn train<const N: usize>(
+    executor: &dyn Executor,
     fitted: &Dataset<N>,
     judged: &Dataset<N>,
     shape: Shape,
@@ -91,7 +92,7 @@ pub fn train<const N: usize>(
         let network = network(&problem, &inputs, shape, activation);
         Ok((cost(&network, judged, loss), network, evaluations))
     };
-    let searched = workers::map(STARTS * configs.len(), from_start)?;
+    let searched = executor::map(executor, STARTS * configs.len(), from_start)?;
     let evaluations = searched.iter().map(|(_, _, evaluations)| evaluations).sum();
     let best = searched.into_iter().min_by(|a, b| is_steep(&a.1).cmp(&is_steep(&b.1)).then(a.0.total_cmp(&b.0)));
     let (_, network, _) = best.expect("there is at least one start");

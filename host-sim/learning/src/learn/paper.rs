@@ -10,6 +10,7 @@ use super::kernel::Samples;
 use crate::genetic::{self, Settings};
 use mindgap_foundations::chance::Generator;
 use mindgap_foundations::error::Result;
+use mindgap_foundations::executor::Executor;
 
 /// Parameters of the trainer. The defaults are those of the paper; where it gives none (marked "open"), they are common
 /// choices.
@@ -44,6 +45,7 @@ impl Default for Options {
 /// # Errors
 /// As [`genetic::run`].
 pub fn train<const N: usize>(
+    executor: &dyn Executor,
     data: &Dataset<N>,
     shape: Shape,
     activation: Activation,
@@ -61,7 +63,7 @@ pub fn train<const N: usize>(
     };
     let samples = Samples::new(data, &inputs, |target| 1.0 + (target - low) / (high - low));
     let problem = Weights { template, samples, options };
-    let outcome = genetic::run(&options.genetic, &problem, seed, watch)?;
+    let outcome = genetic::run(executor, &options.genetic, &problem, seed, watch)?;
     let mut network = template.network(&outcome.best);
     unscale_output(&mut network, low, high);
     Ok(Trained { network, evaluations: outcome.generations * options.genetic.population })

@@ -85,12 +85,13 @@ impl Seen {
 mod tests {
     use crate::learn::train::{TABLE_ONE, Trainer, train};
     use mindgap_built_in_robot::{default_robot, record, training_room};
+    use mindgap_foundations::executor::Serial;
 
     /// The share of the echo rate that a simulator learns of the built-in robot's sensor.
     fn learned(sensor: &str) -> f64 {
         let effects: Vec<_> = sensor.split_whitespace().map(|text| text.parse().expect("an effect")).collect();
         let logs = record(&default_robot(), &training_room(), 40, 60, &effects, 3).expect("room to drive");
-        let simulator = train(&logs, &Trainer::Fast, &TABLE_ONE, 1, &|_| {}).expect("networks");
+        let simulator = train(&Serial, &logs, &Trainer::Fast, &TABLE_ONE, 1, &|_| {}).expect("networks");
         simulator.reference.expect("a reference").place_bound[0]
     }
 

@@ -77,11 +77,12 @@ mod tests {
     use crate::learn::echo_law::tests::{MIXED_UP_DEG, scans};
     use crate::learn::train::{TABLE_ONE, Trainer, train};
     use mindgap_built_in_robot::{default_robot, record, training_room};
+    use mindgap_foundations::executor::Serial;
     use mindgap_logs::Logs;
     use mindgap_models::sonar::SensorLaw;
 
     fn law_of(logs: &Logs) -> SensorLaw {
-        let simulator = train(logs, &Trainer::Fast, &TABLE_ONE, 1, &|_| {}).expect("networks");
+        let simulator = train(&Serial, logs, &Trainer::Fast, &TABLE_ONE, 1, &|_| {}).expect("networks");
         simulator.sensor_law().expect("enough readings")
     }
 

@@ -7,10 +7,10 @@ use super::fast::{self, Loss};
 use super::genome::Shape;
 use super::{echo_law, ensemble, nominal, paper, scatter};
 use mindgap_foundations::error::{Error, Result};
+use mindgap_foundations::executor::{self, Executor};
 use mindgap_logs::{Logs, Robot};
 use mindgap_models::simulator::residuals::{ConstantReading, motion_context};
 use mindgap_models::simulator::{Learned, Missing, Origin, SCHEMA, Simulator};
-use mindgap_workers as workers;
 
 /// Hidden layers of the five networks (paper, Table I).
 pub const TABLE_ONE: Shapes = Shapes {
@@ -66,6 +66,7 @@ pub struct Progress {
 /// # Errors
 /// When the logs support none; the message gives the reason for each.
 pub fn train(
+    executor: &dyn Executor,
     logs: &Logs,
     trainer: &Trainer,
     shapes: &Shapes,
@@ -73,7 +74,8 @@ pub fn train(
     watch: &dyn Fn(Progress),
 ) -> Result<Simulator> {
     let data = Datasets::from_logs(logs);
-    let mut network_trainer = NetworkTrainer { trainer, seed, runs: logs.runs.len(), watch, missing: Vec::new() };
+    let mut network_trainer =
+        NetworkTrainer { executor, trainer, seed, runs: logs.runs.len(), watch, missing: Vec::new() };
     // D and α themselves are the context of the sonar networks.
     let (motion, sonar) = (motion_context, |inputs: &[f32; 2]| *inputs);
     let value = Kind { activation: Activation::Linear, loss: Loss::Squares };
@@ -98,7 +100,7 @@ pub fn train(
     }
     let commands = logs.runs.iter().flat_map(|run| run.rows.iter().flat_map(|row| row.command()));
     let (low, high) = commands.fold((0.0, 0.0), |(l, h): (f64, f64), c| (l.min(c), h.max(c)));
-    let first_echo = workers::once(|| Ok(echo_law::learn(logs, seed)))?;
+    let first_echo = executor::once(executor, || Ok(echo_law::learn(logs, seed)))?;
     let mut simulator = Simulator {
         schema: SCHEMA,
         origin: Origin {
@@ -122,14 +124,15 @@ pub fn train(
         added: Vec::new(),
         missing,
     };
-    let reference = workers::once(|| Ok(nominal::learn(&simulator, first_echo.map(|law| law.as_logged), logs)))?;
+    let reference =
+        executor::once(executor, || Ok(nominal::learn(&simulator, first_echo.map(|law| law.as_logged), logs)))?;
     if let Some(motion) = &reference.motion {
         set_residual_quantiles(&mut simulator.forward, &data.forward, |speeds| motion.correction(speeds)[0]);
         set_residual_quantiles(&mut simulator.lateral, &data.lateral, |speeds| motion.correction(speeds)[1]);
         set_residual_quantiles(&mut simulator.turn, &data.turn, |speeds| motion.correction(speeds)[2].to_degrees());
     }
     simulator.reference = Some(reference);
-    simulator.ensemble = workers::once(|| Ok(ensemble::learn(&simulator, logs)))?;
+    simulator.ensemble = executor::once(executor, || Ok(ensemble::learn(&simulator, logs)))?;
     Ok(simulator)
 }
 
@@ -202,6 +205,7 @@ impl Trainer {
 
 /// Trains the networks of a simulator one by one and notes those that the logs do not support.
 struct NetworkTrainer<'a> {
+    executor: &'a dyn Executor,
     trainer: &'a Trainer,
     seed: u64,
     runs: usize,
@@ -238,11 +242,11 @@ impl NetworkTrainer<'_> {
         let (trained, evaluations) = match self.trainer {
             Trainer::Paper(options) => {
                 let watch = |generation, _| watch(generation * options.genetic.population);
-                let done = paper::train(&fitted, shape, kind.activation, options, self.seed, watch)?;
+                let done = paper::train(self.executor, &fitted, shape, kind.activation, options, self.seed, watch)?;
                 (done.network, done.evaluations)
             }
             Trainer::Fast => {
-                let done = fast::train(&fitted, judged, shape, kind.activation, kind.loss, self.seed)?;
+                let done = fast::train(self.executor, &fitted, judged, shape, kind.activation, kind.loss, self.seed)?;
                 (done.network, done.evaluations)
             }
         };

@@ -9,6 +9,7 @@ use mindgap_built_in_robot::Termination;
 use mindgap_core::controller::Controller;
 use mindgap_foundations::chance::derive;
 use mindgap_foundations::error::{Error, Result};
+use mindgap_foundations::executor::Serial;
 use mindgap_learning::evolve::chance::{Judge, ROBOTS, RUNS};
 use mindgap_learning::evolve::controller_file::ControllerFile;
 use mindgap_learning::evolve::fitness::{FitnessEvaluator, RandomNumbers};
@@ -118,7 +119,7 @@ fn retrain(bench: &Workbench) -> Result<Settled> {
         // Without walls nothing is learned of the sensor: the new runs were driven in another room.
         let runs = logs.runs.iter().chain(runs).cloned().collect();
         let all = Logs { robot: logs.robot, scene: Scene::default(), runs };
-        let again = train(&all, &Trainer::Fast, &TABLE_ONE, bench.seed(), &|_| {})?;
+        let again = train(&Serial, &all, &Trainer::Fast, &TABLE_ONE, bench.seed(), &|_| {})?;
         let motion = again.reference.and_then(|reference| reference.motion);
         let reference = simulator.reference.clone().map(|before| NominalModel { motion, ..before });
         let (forward, lateral, turn) = (again.forward, again.lateral, again.turn);
@@ -144,6 +145,7 @@ fn loops(bench: &Workbench) -> Result<Settled> {
     let scene = folder.path().join("scene.toml");
     bench.case.scene.write(&scene)?;
     let job = Job {
+        executor: &Serial,
         folder: &folder.path().join("loop"),
         simulator: bench.path,
         scene: &scene,
@@ -188,6 +190,7 @@ impl Workbench<'_> {
         let environment = environment.of_middle(robots.as_ref());
         let target_cm = self.case.target_cm();
         let task = EvolutionTask {
+            executor: &Serial,
             environment: &environment,
             target_cm,
             way: &WayMap::new(ways_of, target_cm, simulator.robot.body_radius_cm),
@@ -204,7 +207,8 @@ impl Workbench<'_> {
         let candidates = self.candidates(simulator, &case.scene)?;
         let robots = simulator.robots(ROBOTS, self.seed());
         let robots = robots.ok_or_else(|| Error::new("the simulator does not say what its logs leave open"))?;
-        let judge = Judge::new(simulator, &robots.drawn, &case.scene, case.pose(), case.target_cm(), self.seed())?;
+        let judge =
+            Judge::new(&Serial, simulator, &robots.drawn, &case.scene, case.pose(), case.target_cm(), self.seed())?;
         let chances = judge.chances(&candidates, RUNS)?;
         let mut judged: Vec<_> = candidates.into_iter().zip(chances).collect();
         judged.sort_by(|a, b| b.1.success.total_cmp(&a.1.success));

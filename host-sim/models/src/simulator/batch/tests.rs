@@ -9,6 +9,7 @@ use crate::simulator::{Noise, Simulator};
 use mindgap_built_in_robot::{default_robot, four_obstacles, record, training_room};
 use mindgap_core::controller::{Controller, Machine, Status, TUPLES};
 use mindgap_foundations::chance::generator;
+use mindgap_foundations::executor::Serial;
 use mindgap_learning::evolve::genome::GenotypeDecoder;
 use mindgap_learning::learn::train::{self, TABLE_ONE, Trainer};
 use sha2::{Digest, Sha256};
@@ -27,7 +28,7 @@ const CHECKSUM: &str = "87c5cb2d373b54d657536ed606745ce29d47ba87129113ea1a28f5a6
 /// the form of its file.
 static TRAINED: LazyLock<(Simulator, Vec<Controller>)> = LazyLock::new(|| {
     let logs = record(&default_robot(), &training_room(), 20, 40, &[], SEED).unwrap();
-    let trained = train::train(&logs, &Trainer::Fast, &TABLE_ONE, SEED, &|_| {}).unwrap();
+    let trained = train::train(&Serial, &logs, &Trainer::Fast, &TABLE_ONE, SEED, &|_| {}).unwrap();
     let decoder = GenotypeDecoder::new(&trained, MAX_STEPS);
     let controllers = (0..40).map(|i| decoder.controller(&decoder.random(&mut generator(SEED, &[i])))).collect();
     (serde_json::from_str(&serde_json::to_string(&trained).unwrap()).unwrap(), controllers)
