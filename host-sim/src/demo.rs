@@ -19,7 +19,7 @@ use crate::chance::{derive, generator};
 use crate::error::{Error, Result};
 use crate::evaluation::accuracy::{self, Evaluation};
 use crate::evolve::controller_file::{self, ControllerFile};
-use crate::evolve::fitness::{RandomNumbers, Success};
+use crate::evolve::fitness::Success;
 use crate::evolve::genome::GenotypeDecoder;
 use crate::evolve::paper::Evolved;
 use crate::evolve::request::Request;
@@ -215,7 +215,7 @@ impl<W: Fn(Stage)> DemoRun<'_, W> {
         let decoder = GenotypeDecoder::new(self.simulator, MAX_STEPS);
         let seed = derive(evolution, &[start as u64]);
         let way = &WayMap::new(self.scene, target_cm, self.simulator.robot.body_radius_cm);
-        let task = EvolutionTask { environment, target_cm, way, decoder, random_numbers: RandomNumbers::Common, seed };
+        let task = EvolutionTask { environment, target_cm, way, decoder, seed };
         let robot = &BuiltInRobot::new(&self.simulator.robot, self.scene, &[]);
         let drive = |controller: &Controller, place: &[u64]| {
             built_in_robot::run_controller(robot, controller, pose, &mut generator(trial, place))
@@ -260,7 +260,6 @@ impl<W: Fn(Stage)> DemoRun<'_, W> {
             paper: true,
             noise: Noise::Paper,
             sensor: SensorModel::Networks,
-            random_numbers: RandomNumbers::Independent,
             seed: task.seed,
         };
         Ok(vec![request.evolve(|generation, _| evolving(generation, request.generations()))?.evolved])

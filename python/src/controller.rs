@@ -6,7 +6,6 @@ use mindgap_core::controller::Tuple;
 use mindgap_host_sim::cli::kinds;
 use mindgap_host_sim::evolve::chance::Chance;
 use mindgap_host_sim::evolve::controller_file::{ControllerFile, Origin};
-use mindgap_host_sim::evolve::fitness::RandomNumbers;
 use mindgap_host_sim::evolve::request::{Answered, Request};
 use mindgap_host_sim::logs::Scene;
 use mindgap_host_sim::pictures;
@@ -158,7 +157,6 @@ pub fn evolve(
         paper: false,
         noise: Noise::Learned,
         sensor: SensorModel::Beam,
-        random_numbers: RandomNumbers::Common,
         seed,
     };
     let answered = interruptible(py, |interrupt| request.evolve(|_, _| interrupt.check()))?.map_err(raised)?;

@@ -15,7 +15,6 @@ use crate::error::{Error, Result};
 use crate::evolve::controller_file::ControllerFile;
 use crate::files;
 use crate::files::places::Places;
-use crate::fleet::source::is_address;
 use crate::gap::Method;
 use crate::gap::progress::Stage;
 use crate::gap::request::{Answered, Request};
@@ -63,8 +62,7 @@ pub struct Diagnose {
     #[arg(long, value_name = "FILE")]
     next_experiment: Option<PathBuf>,
     /// Diagnose a fleet, every folder in LOGS, and write into this folder what the robots have in common, who stands out, and
-    /// each one's diagnosis. LOGS and OUT may be addresses in object storage, as s3://robots/tonight. --apply then
-    /// writes a simulator with the effects that nearly all robots have alike.
+    /// each one's diagnosis. --apply then writes a simulator with the effects that nearly all robots have alike.
     #[arg(
         long,
         value_name = "OUT",
@@ -77,21 +75,16 @@ pub struct Diagnose {
 
 impl Run for Diagnose {
     fn places(&self) -> Places {
-        let on_disk = |path: &&PathBuf| !is_address(path);
-        let logs = Some(&self.logs).filter(on_disk);
-        let inputs = self.simulator_file().into_iter().chain(logs).chain(&self.controller).chain(&self.effects);
+        let inputs = self.simulator_file().into_iter().chain([&self.logs]).chain(&self.controller).chain(&self.effects);
         let places = Places::default().reading(inputs).writing(self.facts.asked(), kinds::REPORT);
         let places = places.writing(&self.html, kinds::PAGE).writing(&self.apply, kinds::SIMULATOR);
         let places = places.writing(&self.formula, kinds::FORMULA).writing(&self.next_experiment, kinds::UNSIGNED);
-        let places = places.filling(&self.figures).filling(self.fleet.as_ref().filter(on_disk));
+        let places = places.filling(&self.figures).filling(&self.fleet);
         places.writing(self.keep.asked(), kinds::CHECKPOINT)
     }
 
     fn kept(&self) -> Option<Kept> {
-        let out = self.fleet.as_ref()?;
-        // Beside an address nothing can be kept.
-        let is_possible = !is_address(out) || self.keep.asked().is_some();
-        is_possible.then(|| self.keep.beside(out)).flatten()
+        self.keep.beside(self.fleet.as_ref()?)
     }
 
     fn is_shared(&self) -> bool {

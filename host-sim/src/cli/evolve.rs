@@ -11,7 +11,6 @@ use super::{Run, kinds, progress, textbook};
 use crate::error::Result;
 use crate::evolve::chance::Chance;
 use crate::evolve::controller_file::{ControllerFile, Origin};
-use crate::evolve::fitness::RandomNumbers;
 use crate::evolve::request::{Answered, JUDGED_RUNS, Request};
 use crate::files::places::Places;
 use crate::geometry::Pose;
@@ -51,9 +50,6 @@ pub struct Evolve {
     /// Steps after which a controller gives up.
     #[arg(long, default_value_t = 60, value_parser = value_parser!(u16).range(1..))]
     max_steps: u16,
-    /// Let every individual of a generation meet its own random numbers, as with --paper, and not all the same ones.
-    #[arg(long)]
-    fresh_numbers: bool,
     #[command(flatten)]
     facts: FactsOption,
     /// Also draw simulated runs of the controller into this folder, as SVG, PNG and PDF.
@@ -82,10 +78,6 @@ impl Run for Evolve {
             paper: self.paper,
             noise: if self.paper || self.paper_noise { Noise::Paper } else { Noise::Learned },
             sensor: self.sonar,
-            random_numbers: match self.paper || self.fresh_numbers {
-                true => RandomNumbers::Independent,
-                false => RandomNumbers::Common,
-            },
             seed: self.seed,
         };
         let bar = progress::bar(request.generations() as u64);

@@ -9,7 +9,6 @@ use super::state::{IfKnown, SimulatedPath, place_cm};
 use crate::chance::derive;
 use crate::error::{Error, Result};
 use crate::evolve::chance::{Judge, ROBOTS, RUNS};
-use crate::evolve::fitness::RandomNumbers;
 use crate::evolve::genome::GenotypeDecoder;
 use crate::evolve::prefixes;
 use crate::evolve::robust::{self, REFINED};
@@ -125,7 +124,6 @@ impl Search<'_> {
             target_cm,
             way: &WayMap::new(self.scene, target_cm, self.simulator.robot.body_radius_cm),
             decoder: self.decoder(),
-            random_numbers: RandomNumbers::Common,
             seed: self.stream(Purpose::Searching, 0),
         };
         let explores = known.best().is_none_or(|best| best.score < GOOD);

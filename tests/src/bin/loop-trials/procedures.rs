@@ -192,7 +192,6 @@ impl Workbench<'_> {
             target_cm,
             way: &WayMap::new(ways_of, target_cm, simulator.robot.body_radius_cm),
             decoder: GenotypeDecoder::new(simulator, MAX_STEPS),
-            random_numbers: RandomNumbers::Common,
             seed: self.seed(),
         };
         Ok(robust::candidates(&task, |_, _| {})?.into_iter().map(|evolved| evolved.controller).collect())
