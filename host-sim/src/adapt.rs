@@ -9,10 +9,11 @@ use crate::error::{Error, Result};
 use crate::evaluation::observations::Observations;
 use crate::evaluation::predictions;
 use crate::gap::progress::Stage;
-use crate::gap::{Method, findings_watched, validate};
+use crate::gap::{Method, findings_watched};
 use crate::inspection::Inspection;
 use crate::learn::ensemble::conditioned;
 use crate::learn::ensemble::holds::{Hold, StepResidual, holds};
+use crate::logs::robot::same_robot;
 use crate::logs::{Logs, Robot};
 use crate::simulator::Simulator;
 use crate::simulator::baseline::{Baseline, MotionModel};
@@ -76,7 +77,7 @@ pub struct Gap {
 /// # Errors
 /// When the simulator does not say what its training logs left open, or the logs are another robot's or hold no step.
 pub fn adapt(simulator: &Simulator, logs: &Logs, seed: u64, watch: impl Fn(Stage)) -> Result<Adapted> {
-    validate::same_robot(&simulator.robot, &logs.robot)?;
+    same_robot(&simulator.robot, &logs.robot)?;
     let missing = || Error::new("the simulator file does not say what its training logs leave open: train it again");
     let ensemble = simulator.ensemble.as_ref().ok_or_else(missing)?;
     let robot = &simulator.robot;

@@ -18,7 +18,6 @@ use crate::built_in_robot::{self, BuiltInRobot, Trajectory};
 use crate::chance::{derive, generator};
 use crate::error::{Error, Result};
 use crate::evaluation::accuracy::{self, Evaluation};
-use crate::evolve::controller_file::{self, ControllerFile};
 use crate::evolve::fitness::Success;
 use crate::evolve::genome::GenotypeDecoder;
 use crate::evolve::paper::Evolved;
@@ -28,7 +27,8 @@ use crate::evolve::task::EvolutionTask;
 use crate::evolve::way::WayMap;
 use crate::files;
 use crate::learn::train::{self, TABLE_ONE, Trainer};
-use crate::logs::Scene;
+use crate::logs::controller_file::{self, ControllerFile};
+use crate::logs::{Scene, Termination};
 use crate::pictures;
 use crate::report::paths::{PathPanel, Trace};
 use crate::simulator::ensemble::Robots;
@@ -233,7 +233,7 @@ impl<W: Fn(Stage)> DemoRun<'_, W> {
             start: start + 1,
             seed,
             generations: evolved.generations,
-            fitness: evolved.fitness,
+            fitness: Some(evolved.fitness),
             success: simulated.rate,
         };
         self.write(start + 1, &controller, origin)?;
@@ -289,7 +289,7 @@ fn panel(start: usize, trial: &Trial, scene: &Scene) -> PathPanel {
 }
 
 fn crashed(trajectory: &Trajectory) -> bool {
-    trajectory.termination == built_in_robot::Termination::Crashed
+    trajectory.termination == Termination::Crashed
 }
 
 /// Final distance to the target, the largest there is after a crash.

@@ -4,6 +4,7 @@
 //! learn from the [`samples`] extracted from it.
 
 mod columns;
+pub mod controller_file;
 pub mod readings;
 mod resample;
 pub mod robot;
@@ -13,6 +14,7 @@ pub mod run;
 pub mod samples;
 pub mod scene;
 pub mod tables;
+mod termination;
 pub mod world_script;
 
 use std::fs;
@@ -24,6 +26,7 @@ pub use rows::Rows;
 pub use run::Run;
 pub use scene::Scene;
 use serde::{Deserialize, Serialize};
+pub use termination::Termination;
 
 use crate::error::{Error, Result};
 use crate::files;
@@ -90,7 +93,7 @@ impl Logs {
 
     /// The logs without what they cannot have; messages name `folder`.
     fn checked(mut self, folder: &Path, mut warn: impl FnMut(String)) -> Result<Self> {
-        let has_sensor = !self.robot.ultrasonic.is_none();
+        let has_sensor = self.robot.ultrasonic.is_some();
         let count = if has_sensor { 0 } else { self.runs.iter_mut().map(without_readings).sum() };
         if count > 0 {
             let robot = folder.join("robot.toml");

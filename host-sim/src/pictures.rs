@@ -15,7 +15,7 @@ use crate::gap::account::GapReduction;
 use crate::gap::explain::profile::ResidualProfile;
 use crate::geometry::Pose;
 use crate::learn::dataset::{Dataset, Datasets};
-use crate::logs::{Logs, Scene};
+use crate::logs::{Logs, Scene, Termination, Ultrasonic};
 use crate::report;
 use crate::report::bars::Bar;
 use crate::report::curves::Curve;
@@ -68,8 +68,8 @@ pub fn figures_of_networks(simulator: &Simulator, evaluation: &Evaluation, held_
             .insert(panels.len().min(3), Panel { title: "Echo probability".into(), samples: Samples::Events(events) });
     }
     let expected = named("figure-2-expected-against-predicted", report::expected_against_predicted(&panels));
+    let Some(Ultrasonic { max_cm, .. }) = simulator.robot.ultrasonic else { return vec![expected] };
     let data = Datasets::from_logs(held_out);
-    let max_cm = simulator.robot.ultrasonic.max_cm;
     let ask = |network: &Network<f32, 2>, d: f64, alpha: f64| f64::from(network.evaluate([d as f32, alpha as f32]));
     let (probability, value) = (&simulator.echo_probability, &simulator.echo_value);
     let (Some(probability), Some(value)) = (probability, value) else { return vec![expected] };
@@ -198,7 +198,7 @@ fn write(folder: &Path, figures: &[NamedFigure]) -> Result<()> {
 /// A simulated run as a path.
 pub fn simulated(run: &Rollout) -> Trace {
     let points_cm = run.path.iter().map(|p| DVec2::new(p.x_cm, p.y_cm)).collect();
-    Trace { points_cm, crashed: run.termination == "crashed" }
+    Trace { points_cm, crashed: run.termination == Termination::Crashed }
 }
 
 fn test_points(data: &Dataset<2>) -> Vec<DVec3> {

@@ -137,7 +137,8 @@ impl Simulator {
                 format!("is a simulator file of version {}; this program reads version {SCHEMA}", version.schema);
             return Err(Error::in_file(path, what));
         }
-        let simulator: Self = serde_json::from_str(&text).map_err(|e| broken(path, &e, "is a broken simulator file"))?;
+        let simulator: Self =
+            serde_json::from_str(&text).map_err(|e| broken(path, &e, "is a broken simulator file"))?;
         simulator.check(path)?;
         Ok(simulator)
     }

@@ -22,9 +22,9 @@ use crate::adapt::{Adapted, adapt};
 use crate::chance::derive;
 use crate::error::{Error, Result};
 use crate::evolve::chance::Chance;
-use crate::evolve::controller_file::{ControllerFile, Origin};
 use crate::files;
 use crate::geometry::Pose;
+use crate::logs::controller_file::{ControllerFile, Origin};
 use crate::logs::{Logs, Run, Scene};
 use crate::simulator::Simulator;
 use crate::workers;
@@ -254,7 +254,7 @@ impl<'a> Trials<'a> {
             start: self.job.start,
             seed: self.job.seed,
             generations: search::GENERATIONS,
-            fitness: 0.0,
+            fitness: None,
             success: chance.success,
         };
         ControllerFile { controller: controller.clone(), origin: Some(origin) }.write(path)

@@ -5,9 +5,9 @@ use std::path::PathBuf;
 use mindgap_core::controller::Tuple;
 use mindgap_host_sim::cli::kinds;
 use mindgap_host_sim::evolve::chance::Chance;
-use mindgap_host_sim::evolve::controller_file::{ControllerFile, Origin};
 use mindgap_host_sim::evolve::request::{Answered, Request};
 use mindgap_host_sim::logs::Scene;
+use mindgap_host_sim::logs::controller_file::{ControllerFile, Origin};
 use mindgap_host_sim::pictures;
 use mindgap_host_sim::simulator::Noise;
 use mindgap_host_sim::simulator::environment::SensorModel;
@@ -107,8 +107,9 @@ impl Evolution {
     /// leave possible, and how it was evolved.
     #[getter]
     fn facts<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        let Answered { success, chance, .. } = &self.answered;
-        let &Origin { start, seed, generations, fitness, .. } = &self.origin;
+        let Answered { evolved, success, chance, .. } = &self.answered;
+        let &Origin { start, seed, generations, .. } = &self.origin;
+        let fitness = evolved.fitness;
         let (crashed, median_cm) = (success.crashed, success.median_cm);
         let success = success.rate;
         convert::facts(py, &Success { start, seed, generations, fitness, success, crashed, median_cm, chance: *chance })
@@ -166,7 +167,7 @@ pub fn evolve(
         start,
         seed,
         generations: answered.evolved.generations,
-        fitness: answered.evolved.fitness,
+        fitness: Some(answered.evolved.fitness),
         success: answered.success.rate,
     };
     Ok(Evolution { answered, origin, scene })

@@ -4,9 +4,9 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use mindgap_host_sim::built_in_robot::{self, ActiveEffect, default_robot, training_room};
-use mindgap_host_sim::gap::validate::same_robot;
 use mindgap_host_sim::inspection::Inspection;
 use mindgap_host_sim::logs;
+use mindgap_host_sim::logs::robot::same_robot;
 use mindgap_host_sim::logs::tables::Table;
 use mindgap_host_sim::simulator::Simulator;
 use mindgap_host_sim::survey::Survey;

@@ -2,11 +2,11 @@
 //! drawn from it, and the region that holds a share of their ends should hold that share of the logged ones.
 
 use glam::DVec2;
-use mindgap_host_sim::built_in_robot::{BuiltInRobot, Termination, default_robot, four_obstacles, run_controller};
+use mindgap_host_sim::built_in_robot::{BuiltInRobot, default_robot, four_obstacles, run_controller};
 use mindgap_host_sim::chance::{Generator, generator};
 use mindgap_host_sim::evolve::genome::GenotypeDecoder;
 use mindgap_host_sim::geometry::{Pose, wrap_rad};
-use mindgap_host_sim::logs::{Logs, Run};
+use mindgap_host_sim::logs::{Logs, Run, Termination};
 use mindgap_host_sim::simulator::Simulator;
 use mindgap_host_sim::simulator::ensemble::{Member, Robots};
 use mindgap_host_sim::simulator::motion::{MotionNetworks, Speeds};

@@ -11,11 +11,11 @@ use super::{Run, kinds, progress, textbook};
 use crate::adapt::{Adapted, CommandBias, Gap, Lesson, adapt};
 use crate::error::{Error, Result};
 use crate::evolve::chance::{Chance, Judge, ROBOTS, RUNS};
-use crate::evolve::controller_file::ControllerFile;
 use crate::files::places::Places;
 use crate::gap::Method;
 use crate::gap::progress::Stage;
 use crate::logs::Scene;
+use crate::logs::controller_file::ControllerFile;
 use crate::simulator::Simulator;
 
 /// Adapt a simulator to runs of the robot.

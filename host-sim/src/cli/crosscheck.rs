@@ -8,8 +8,8 @@ use super::facts::FactsOption;
 use super::{Run, kinds, progress, table, textbook};
 use crate::crosscheck::{self, Divergence, NetworkCheck, Networks, RunState, Runs, Trials};
 use crate::error::Result;
-use crate::evolve::controller_file::ControllerFile;
 use crate::files::places::Places;
+use crate::logs::controller_file::ControllerFile;
 
 /// Check that a board without floating point computes what the PC does: fixed point against float.
 #[derive(Args)]

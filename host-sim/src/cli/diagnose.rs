@@ -12,12 +12,12 @@ use super::textbook::{KINEMATIC, simulator_beside_textbook};
 use super::{Run, diagnosis_text, kinds, progress};
 use crate::effects::own;
 use crate::error::{Error, Result};
-use crate::evolve::controller_file::ControllerFile;
 use crate::files;
 use crate::files::places::Places;
 use crate::gap::Method;
 use crate::gap::progress::Stage;
 use crate::gap::request::{Answered, Request};
+use crate::logs::controller_file::ControllerFile;
 use crate::page::diagnosis::{Source, Subject, page};
 use crate::pictures;
 use crate::simulator::{Simulator, textbook};
@@ -118,6 +118,11 @@ impl Run for Diagnose {
         bar.finish_and_clear();
         let answered = answered?;
         let Answered { findings: found, logs } = &answered;
+        // What can fail is made before anything is written.
+        let applied = match &self.apply {
+            Some(path) if !found.with_formula().is_empty() => Some((path, request.mended(&answered)?)),
+            _ => None,
+        };
         if let Some(path) = &self.html {
             let subject = Subject {
                 findings: found,
@@ -131,10 +136,13 @@ impl Run for Diagnose {
         if let Some(folder) = &self.figures {
             pictures::diagnosis(folder, &found.diagnosis)?;
         }
-        if let Some(path) = &self.apply {
-            request.mended(&answered).map_err(|error| Error::new(format!("--apply: {error}")))?.write(path)?;
+        if let Some((path, simulator)) = &applied {
+            simulator.write(path)?;
         }
         let mut text = diagnosis_text::text(&found.diagnosis);
+        if let (Some(path), None) = (&self.apply, &applied) {
+            text += &format!("Nothing explains a gap: {} is not written.\n", path.display());
+        }
         match (&self.next_experiment, found.diagnosis.experiment()) {
             (Some(path), Some(experiment)) => experiment.commands.write(path)?,
             (Some(path), None) => text += &format!("No causes are confused: {} is not written.\n", path.display()),

@@ -5,15 +5,16 @@ use std::path::{Path, PathBuf};
 use clap::{Args, value_parser};
 use serde_json::json;
 
+use super::choices::{SENSOR_MODELS, one_of};
 use super::facts::FactsOption;
 use super::lasting::{KeepOption, Kept};
 use super::{Run, kinds, progress, textbook};
 use crate::error::Result;
 use crate::evolve::chance::Chance;
-use crate::evolve::controller_file::{ControllerFile, Origin};
 use crate::evolve::request::{Answered, JUDGED_RUNS, Request};
 use crate::files::places::Places;
 use crate::geometry::Pose;
+use crate::logs::controller_file::{ControllerFile, Origin};
 use crate::logs::{Robot, Scene};
 use crate::pictures;
 use crate::simulator::Noise;
@@ -45,7 +46,7 @@ pub struct Evolve {
     paper_noise: bool,
     /// What makes the readings: the beam that the training logs show, the two networks, or the first-echo law, which is
     /// slower. With --paper and --paper-noise it is the networks.
-    #[arg(long, value_enum, default_value_t = SensorModel::Beam, conflicts_with_all = ["paper", "paper_noise"])]
+    #[arg(long, value_parser = one_of::<SensorModel>(SENSOR_MODELS), default_value = "beam", conflicts_with_all = ["paper", "paper_noise"])]
     sonar: SensorModel,
     /// Steps after which a controller gives up.
     #[arg(long, default_value_t = 60, value_parser = value_parser!(u16).range(1..))]
@@ -94,7 +95,7 @@ impl Run for Evolve {
             start: self.start,
             seed: self.seed,
             generations: evolved.generations,
-            fitness: evolved.fitness,
+            fitness: Some(evolved.fitness),
             success: success.rate,
         };
         if let Some(folder) = &self.figures {

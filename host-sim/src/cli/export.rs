@@ -22,9 +22,9 @@ use super::facts::FactsOption;
 use super::ports::PortOptions;
 use super::{Run, kinds};
 use crate::error::{Error, Result};
-use crate::evolve::controller_file::ControllerFile;
 use crate::files;
 use crate::files::places::Places;
+use crate::logs::controller_file::ControllerFile;
 use crate::simulator::fixed_point::{COMMANDS, DOCUMENTATION, FACING, FixedNetworks};
 use crate::simulator::{Learned, Simulator};
 

@@ -13,9 +13,9 @@ use super::kinds;
 use super::table::count;
 use crate::effects::own;
 use crate::error::{Error, Result};
-use crate::evolve::controller_file::ControllerFile;
 use crate::files;
 use crate::files::places::Places;
+use crate::logs::controller_file::ControllerFile;
 use crate::logs::{Logs, Robot, Run, Scene};
 use crate::simulator::Simulator;
 

@@ -9,9 +9,9 @@ use super::robot::TrialledRobot;
 use crate::built_in_robot::{self, ActiveEffect, BuiltInRobot, Effect};
 use crate::chance::generator;
 use crate::error::Result;
-use crate::evolve::controller_file::ControllerFile;
 use crate::evolve::fitness::Success;
 use crate::logs::Scene;
+use crate::logs::controller_file::ControllerFile;
 use crate::trials::state::State;
 use crate::trials::{self, Event};
 

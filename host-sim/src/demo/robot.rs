@@ -3,8 +3,8 @@
 use crate::built_in_robot::{self, ActiveEffect, BuiltInRobot};
 use crate::chance::generator;
 use crate::error::{Error, Result};
-use crate::evolve::controller_file::ControllerFile;
 use crate::logs::Scene;
+use crate::logs::controller_file::ControllerFile;
 use crate::trials::robot::{Call, TrialRobot};
 
 /// The built-in robot with these effects, of which its simulator need not know.

@@ -7,9 +7,10 @@ use super::genome::GenotypeDecoder;
 use super::way::WayMap;
 use crate::chance::{Generator, derive};
 use crate::genetic;
+use crate::logs::Termination;
 use crate::simulator::environment::Environment;
 use crate::simulator::motion::MotionTable;
-use crate::simulator::rollout::{REACHED_CM, RolloutOutcome, RolloutRequest, Termination};
+use crate::simulator::rollout::{REACHED_CM, RolloutOutcome, RolloutRequest};
 
 /// Which random numbers the individuals of a generation are evaluated with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -6,8 +6,9 @@ use mindgap_core::controller::{Controller, Tuple, When};
 
 use super::task::EvolutionTask;
 use crate::chance::derive;
+use crate::logs::Termination;
 use crate::simulator::motion::MotionTable;
-use crate::simulator::rollout::{REACHED_CM, RolloutRequest, Termination, TrajectoryPoint};
+use crate::simulator::rollout::{REACHED_CM, RolloutRequest, TrajectoryPoint};
 
 /// Thresholds lie this far apart, cm: about the scatter of a reading.
 const APART_CM: usize = 4;

@@ -6,11 +6,11 @@ use super::condition;
 use super::diagnose::{Findings, findings_watched};
 use super::method::Method;
 use super::progress::Stage;
-use super::validate::same_robot;
 use crate::error::{Error, Result};
 use crate::evaluation::final_position::final_position_errors;
 use crate::inspection::Inspection;
 use crate::logs::Logs;
+use crate::logs::robot::same_robot;
 use crate::simulator::baseline::Baseline;
 use crate::simulator::{Simulator, kinematic, textbook};
 

@@ -4,10 +4,10 @@ use std::path::Path;
 
 use glam::DVec2;
 
-use super::state::{Ending, Real, State, Trial};
+use super::state::{Real, State, Trial};
 use crate::error::Result;
 use crate::geometry::Pose;
-use crate::logs::Scene;
+use crate::logs::{Scene, Termination};
 use crate::report;
 use crate::report::paths::{PathPanel, Trace};
 use crate::simulator::rollout::REACHED_CM;
@@ -40,6 +40,6 @@ fn title(trial: &Trial, real: &Real) -> String {
     format!("Trial {}: {went}", trial.number)
 }
 
-fn trace(path_cm: &[[f64; 2]], ending: Ending) -> Trace {
-    Trace { points_cm: path_cm.iter().copied().map(DVec2::from).collect(), crashed: ending == Ending::Crashed }
+fn trace(path_cm: &[[f64; 2]], ending: Termination) -> Trace {
+    Trace { points_cm: path_cm.iter().copied().map(DVec2::from).collect(), crashed: ending == Termination::Crashed }
 }

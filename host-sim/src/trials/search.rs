@@ -111,7 +111,7 @@ impl Search<'_> {
             });
             let places = points.iter().map(|point| point.pose.position_cm);
             let path_cm = [self.start.position_cm].into_iter().chain(places).map(place_cm).collect();
-            SimulatedPath { ending: outcome.termination.into(), path_cm }
+            SimulatedPath { ending: outcome.termination, path_cm }
         };
         Ok((0..).zip(&robots).map(run).collect())
     }

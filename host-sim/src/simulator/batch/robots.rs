@@ -11,13 +11,14 @@ use crate::chance::derive;
 use crate::effects::context::HISTORY;
 use crate::geometry::Pose;
 use crate::lanes::{Lanes, Mask, WIDEST};
+use crate::logs::Termination;
 use crate::simulator::Noise;
 use crate::simulator::draws::{Draws, Seeds};
 use crate::simulator::effect_layer::EffectMemory;
 use crate::simulator::environment::Environment;
 use crate::simulator::known_steps::KnownSteps;
 use crate::simulator::motion::{Motion, speeds};
-use crate::simulator::rollout::{RolloutOutcome, RolloutRequest, Termination, TrajectoryPoint};
+use crate::simulator::rollout::{RolloutOutcome, RolloutRequest, TrajectoryPoint};
 use crate::simulator::room::Point;
 
 /// Stream key of what a sensor draws that effects change.

@@ -3,13 +3,11 @@
 
 use glam::DVec2;
 use mindgap_core::controller::Controller;
-use mindgap_host_sim::built_in_robot::{
-    ActiveEffect, BuiltInRobot, Effect, Termination, Trajectory, default_robot, run_controller,
-};
+use mindgap_host_sim::built_in_robot::{ActiveEffect, BuiltInRobot, Effect, Trajectory, default_robot, run_controller};
 use mindgap_host_sim::chance::{Generator, generator};
 use mindgap_host_sim::evolve::way::WayMap;
 use mindgap_host_sim::geometry::{Pose, Rectangle};
-use mindgap_host_sim::logs::Scene;
+use mindgap_host_sim::logs::{Scene, Termination};
 use mindgap_host_sim::simulator::rollout::REACHED_CM;
 use rand::RngExt;
 use rand::seq::SliceRandom;
