@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use mindgap_host_sim::evolve::trial::Trial;
 use mindgap_host_sim::geometry::Pose;
-use mindgap_host_sim::logs::{Robot, Scene};
+use mindgap_host_sim::logs::{Robot, Scene, Termination};
 use mindgap_host_sim::page::simulation::{Subject, page};
 use mindgap_host_sim::pictures;
 use mindgap_host_sim::simulator::Noise;
@@ -34,9 +34,9 @@ pub struct Simulation {
 
 /// A run's row.
 #[derive(Serialize)]
-struct Run<'a> {
+struct Run {
     run: usize,
-    ending: &'a str,
+    ending: Termination,
     steps: u16,
     end_x_cm: f64,
     end_y_cm: f64,

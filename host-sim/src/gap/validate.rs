@@ -132,7 +132,7 @@ fn same_commands(a: &Run, b: &Run) -> bool {
 mod tests {
     use super::*;
     use crate::gap::channel::Channel;
-    use crate::gap::test_support::{alternating, baseline, baseline_with_sonar, driven, robot};
+    use crate::gap::test_support::{alternating, baseline, baseline_with_sonar, driven};
     use crate::geometry::Pose;
     use crate::logs::Logs;
 
