@@ -22,7 +22,7 @@ use mindgap_import::mapping::Mapping;
 use mindgap_import::streams;
 use mindgap_import::track::Track;
 use mindgap_import::units::Units;
-use mindgap_learning::evolve::controller_file::ControllerFile;
+use mindgap_logs::controller_file::ControllerFile;
 use mindgap_logs::inspection::Inspection;
 use mindgap_logs::{Logs, Robot, Run, Scene, readings, world_script};
 use mindgap_models::effects::applied::AppliedEffect;

@@ -6,10 +6,9 @@ use mindgap_command::kinds;
 use mindgap_core::controller::Tuple;
 use mindgap_figures::pictures;
 use mindgap_learning::evolve::chance::Chance;
-use mindgap_learning::evolve::controller_file::{ControllerFile, Origin};
-use mindgap_learning::evolve::fitness::RandomNumbers;
 use mindgap_learning::evolve::request::{Answered, Request};
 use mindgap_logs::Scene;
+use mindgap_logs::controller_file::{ControllerFile, Origin};
 use mindgap_models::simulator::Noise;
 use mindgap_models::simulator::environment::SensorModel;
 use mindgap_workers::Workers;
@@ -109,8 +108,9 @@ impl Evolution {
     /// leave possible, and how it was evolved.
     #[getter]
     fn facts<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        let Answered { success, chance, .. } = &self.answered;
-        let &Origin { start, seed, generations, fitness, .. } = &self.origin;
+        let Answered { evolved, success, chance, .. } = &self.answered;
+        let &Origin { start, seed, generations, .. } = &self.origin;
+        let fitness = evolved.fitness;
         let (crashed, median_cm) = (success.crashed, success.median_cm);
         let success = success.rate;
         convert::facts(py, &Success { start, seed, generations, fitness, success, crashed, median_cm, chance: *chance })
@@ -160,7 +160,6 @@ pub fn evolve(
         paper: false,
         noise: Noise::Learned,
         sensor: SensorModel::Beam,
-        random_numbers: RandomNumbers::Common,
         seed,
     };
     let answered = interruptible(py, |interrupt| request.evolve(|_, _| interrupt.check()))?.map_err(raised)?;
@@ -170,7 +169,7 @@ pub fn evolve(
         start,
         seed,
         generations: answered.evolved.generations,
-        fitness: answered.evolved.fitness,
+        fitness: Some(answered.evolved.fitness),
         success: answered.success.rate,
     };
     Ok(Evolution { answered, origin, scene })

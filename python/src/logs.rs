@@ -5,9 +5,9 @@ use std::sync::Arc;
 
 use mindgap_built_in_robot::{self as built_in_robot, ActiveEffect, default_robot, training_room};
 use mindgap_diagnosis::survey::Survey;
-use mindgap_diagnosis::validate::same_robot;
 use mindgap_logs as logs;
 use mindgap_logs::inspection::Inspection;
+use mindgap_logs::robot::same_robot;
 use mindgap_logs::tables::Table;
 use mindgap_models::simulator::Simulator;
 use pyo3::prelude::*;

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use mindgap_figures::pictures;
 use mindgap_foundations::geometry::Pose;
 use mindgap_learning::evolve::trial::Trial;
-use mindgap_logs::{Robot, Scene};
+use mindgap_logs::{Robot, Scene, Termination};
 use mindgap_models::simulator::Noise;
 use mindgap_models::simulator::environment::SensorModel;
 use mindgap_models::simulator::rollout_report::{PathPoint, RolloutReport};
@@ -34,9 +34,9 @@ pub struct Simulation {
 
 /// A run's row.
 #[derive(Serialize)]
-struct Run<'a> {
+struct Run {
     run: usize,
-    ending: &'a str,
+    ending: Termination,
     steps: u16,
     end_x_cm: f64,
     end_y_cm: f64,

@@ -2,12 +2,11 @@
 //! drawn from it, and the region that holds a share of their ends should hold that share of the logged ones.
 
 use glam::DVec2;
-use mindgap_built_in_robot::{BuiltInRobot, Termination, default_robot, four_obstacles, run_controller};
+use mindgap_built_in_robot::{BuiltInRobot, default_robot, four_obstacles, run_controller};
 use mindgap_foundations::chance::{Generator, generator};
-use mindgap_foundations::executor::Serial;
 use mindgap_foundations::geometry::{Pose, wrap_rad};
 use mindgap_learning::evolve::genome::GenotypeDecoder;
-use mindgap_logs::{Logs, Run};
+use mindgap_logs::{Logs, Run, Termination};
 use mindgap_models::simulator::Simulator;
 use mindgap_models::simulator::ensemble::{Member, Robots};
 use mindgap_models::simulator::motion::{MotionNetworks, Speeds};
@@ -214,6 +213,7 @@ fn normal(rng: &mut Generator) -> f64 {
 mod tests {
     use super::*;
     use mindgap_built_in_robot::{record, training_room};
+    use mindgap_foundations::executor::Serial;
     use mindgap_learning::learn::train::{TABLE_ONE, Trainer, train};
 
     /// Regions that hold much less would drive controllers into what nobody expects, and much more would hide them. So few runs

@@ -4,13 +4,14 @@
 use serde::Serialize;
 
 use mindgap_diagnosis::progress::Stage;
-use mindgap_diagnosis::{Method, findings_watched, validate};
+use mindgap_diagnosis::{Method, findings_watched};
 use mindgap_foundations::error::{Error, Result};
 use mindgap_learning::evaluation::observations::Observations;
 use mindgap_learning::evaluation::predictions;
 use mindgap_learning::learn::ensemble::conditioned;
 use mindgap_learning::learn::ensemble::holds::{Hold, StepResidual, holds};
 use mindgap_logs::inspection::Inspection;
+use mindgap_logs::robot::same_robot;
 use mindgap_logs::{Logs, Robot};
 use mindgap_models::effects::applied::AppliedEffect;
 use mindgap_models::effects::chain::EffectChain;
@@ -76,7 +77,7 @@ pub struct Gap {
 /// # Errors
 /// When the simulator does not say what its training logs left open, or the logs are another robot's or hold no step.
 pub fn adapt(simulator: &Simulator, logs: &Logs, seed: u64, watch: impl Fn(Stage)) -> Result<Adapted> {
-    validate::same_robot(&simulator.robot, &logs.robot)?;
+    same_robot(&simulator.robot, &logs.robot)?;
     let missing = || Error::new("the simulator file does not say what its training logs leave open: train it again");
     let ensemble = simulator.ensemble.as_ref().ok_or_else(missing)?;
     let robot = &simulator.robot;

@@ -22,8 +22,7 @@ use mindgap_foundations::chance::{derive, generator};
 use mindgap_foundations::error::{Error, Result};
 use mindgap_foundations::executor::Executor;
 use mindgap_learning::evaluation::accuracy::{self, Evaluation};
-use mindgap_learning::evolve::controller_file::{self, ControllerFile};
-use mindgap_learning::evolve::fitness::{RandomNumbers, Success};
+use mindgap_learning::evolve::fitness::Success;
 use mindgap_learning::evolve::genome::GenotypeDecoder;
 use mindgap_learning::evolve::paper::Evolved;
 use mindgap_learning::evolve::request::Request;
@@ -31,7 +30,8 @@ use mindgap_learning::evolve::robust;
 use mindgap_learning::evolve::task::EvolutionTask;
 use mindgap_learning::evolve::way::WayMap;
 use mindgap_learning::learn::train::{self, TABLE_ONE, Trainer};
-use mindgap_logs::Scene;
+use mindgap_logs::controller_file::{self, ControllerFile};
+use mindgap_logs::{Scene, Termination};
 use mindgap_models::simulator::ensemble::Robots;
 use mindgap_models::simulator::environment::{Environment, SensorModel};
 use mindgap_models::simulator::rollout_report::RolloutReport;
@@ -219,15 +219,7 @@ impl<W: Fn(Stage)> DemoRun<'_, W> {
         let decoder = GenotypeDecoder::new(self.simulator, MAX_STEPS);
         let seed = derive(evolution, &[start as u64]);
         let way = &WayMap::new(self.scene, target_cm, self.simulator.robot.body_radius_cm);
-        let task = EvolutionTask {
-            executor: self.executor,
-            environment,
-            target_cm,
-            way,
-            decoder,
-            random_numbers: RandomNumbers::Common,
-            seed,
-        };
+        let task = EvolutionTask { executor: self.executor, environment, target_cm, way, decoder, seed };
         let robot = &BuiltInRobot::new(&self.simulator.robot, self.scene, &[]);
         let drive = |controller: &Controller, place: &[u64]| {
             built_in_robot::run_controller(robot, controller, pose, &mut generator(trial, place))
@@ -245,7 +237,7 @@ impl<W: Fn(Stage)> DemoRun<'_, W> {
             start: start + 1,
             seed,
             generations: evolved.generations,
-            fitness: evolved.fitness,
+            fitness: Some(evolved.fitness),
             success: simulated.rate,
         };
         self.write(start + 1, &controller, origin)?;
@@ -273,7 +265,6 @@ impl<W: Fn(Stage)> DemoRun<'_, W> {
             paper: true,
             noise: Noise::Paper,
             sensor: SensorModel::Networks,
-            random_numbers: RandomNumbers::Independent,
             seed: task.seed,
         };
         Ok(vec![request.evolve(|generation, _| evolving(generation, request.generations()))?.evolved])
@@ -303,7 +294,7 @@ fn panel(start: usize, trial: &Trial, scene: &Scene) -> PathPanel {
 }
 
 fn crashed(trajectory: &Trajectory) -> bool {
-    trajectory.termination == built_in_robot::Termination::Crashed
+    trajectory.termination == Termination::Crashed
 }
 
 /// Final distance to the target, the largest there is after a crash.

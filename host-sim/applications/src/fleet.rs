@@ -7,13 +7,10 @@ pub mod answer;
 pub mod common;
 pub mod frequency;
 pub mod groups;
-pub mod listing;
+mod listing;
 pub mod outliers;
 pub mod robot;
-pub mod source;
 pub mod spread;
-#[cfg(feature = "cloud")]
-pub mod storage;
 #[cfg(feature = "parquet")]
 mod table;
 pub mod tally;
@@ -23,8 +20,8 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 
 pub use answer::Fleet;
+use listing::Listing;
 use robot::Robot;
-use source::Source;
 use tally::Tally;
 
 use mindgap_diagnosis::request::Request;
@@ -48,19 +45,19 @@ struct Examined {
     outcome: std::result::Result<(Robot, String), String>,
 }
 
-/// Diagnoses every robot of a fleet into a folder, and answers for all of them. `watch` is told how many robots are done,
-/// of how many.
+/// Diagnoses every robot of a fleet, each a folder in `logs`, into `folder`, and answers for all of them. `watch` receives
+/// how many robots are done, and how many there are.
 ///
 /// # Errors
 /// When the robots cannot be listed, when none of them can be diagnosed, or when the folder cannot be written.
 pub fn diagnose(
     executor: &dyn Executor,
-    source: &Source,
+    logs: &Path,
     request: &Request<'_>,
     folder: &Path,
     mut watch: impl FnMut(usize, usize),
 ) -> Result<Fleet> {
-    let listing = source.listing()?;
+    let listing = Listing::of(logs)?;
     let diagnoses = folder.join(DIAGNOSES);
     if executor.is_first() {
         files::make_folder(&diagnoses)?;
@@ -69,7 +66,7 @@ pub fn diagnose(
     let mut table = table::Table::at(&folder.join(TABLE));
     let mut tally = Tally::new(request.method.catalogue);
     let count = listing.names.len();
-    let work = |index: usize| Ok(examined(source, &listing.names[index], request));
+    let work = |index: usize| Ok(examined(logs, &listing.names[index], request));
     executor::in_order(executor, count, work, |index, Examined { name, outcome }: Examined| {
         watch(index + 1, count);
         #[cfg(feature = "parquet")]
@@ -95,12 +92,13 @@ pub fn diagnose(
     Ok(fleet)
 }
 
-fn examined(source: &Source, name: &str, request: &Request) -> Examined {
-    let outcome = source.with_logs(name, |folder| {
-        let logs = Logs::read(folder, |oddity| log::info!("{oddity}"))?;
-        let answered = request.of(logs, |_| ()).map_err(|error| error.or_in_file(folder))?;
-        let json = files::json(folder, &answered.findings.diagnosis)?;
+fn examined(logs: &Path, name: &str, request: &Request) -> Examined {
+    let folder = logs.join(name);
+    let diagnosed = || -> Result<(Robot, String)> {
+        let logs = Logs::read(&folder, |oddity| log::info!("{oddity}"))?;
+        let answered = request.of(logs, |_| ()).map_err(|error| error.or_in_file(&folder))?;
+        let json = files::json(&folder, &answered.findings.diagnosis)?;
         Ok((Robot::of(&answered), json))
-    });
-    Examined { name: name.into(), outcome: outcome.map_err(|error| error.to_string()) }
+    };
+    Examined { name: name.into(), outcome: diagnosed().map_err(|error| error.to_string()) }
 }

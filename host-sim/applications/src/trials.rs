@@ -26,7 +26,7 @@ use mindgap_foundations::error::{Error, Result};
 use mindgap_foundations::executor::{self, Executor};
 use mindgap_foundations::geometry::Pose;
 use mindgap_learning::evolve::chance::Chance;
-use mindgap_learning::evolve::controller_file::{ControllerFile, Origin};
+use mindgap_logs::controller_file::{ControllerFile, Origin};
 use mindgap_logs::{Logs, Run, Scene};
 use mindgap_models::simulator::Simulator;
 use robot::{Call, TrialRobot};
@@ -258,7 +258,7 @@ impl<'a> Trials<'a> {
             start: self.job.start,
             seed: self.job.seed,
             generations: search::GENERATIONS,
-            fitness: 0.0,
+            fitness: None,
             success: chance.success,
         };
         ControllerFile { controller: controller.clone(), origin: Some(origin) }.write(path)

@@ -5,14 +5,14 @@ use mindgap_core::controller::{Controller, Machine, Motors, Status};
 use super::BuiltInRobot;
 use mindgap_foundations::chance::Generator;
 use mindgap_foundations::geometry::Pose;
-use mindgap_logs::{Row, Run};
+use mindgap_logs::{Row, Run, Termination};
 
 /// The trajectory of a controller's run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Trajectory {
     /// One point a step, beginning at the start; the last one step after the motors stopped, when the robot is at rest.
     pub points: Vec<TrajectoryPoint>,
-    /// How the run ended.
+    /// How the run ended; a crash is one with the motors on or while the robot coasts to a halt.
     pub termination: Termination,
 }
 
@@ -23,17 +23,6 @@ pub struct TrajectoryPoint {
     pub true_pose: Pose,
     /// The row of the log: the commands from here on, the tracked pose, and the reading here.
     pub row: Row,
-}
-
-/// How a controller's run on the robot ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Termination {
-    /// The sixth tuple's test held.
-    Finished,
-    /// The step limit was reached.
-    TimedOut,
-    /// The robot touched a wall or an obstacle, with its motors on or while it coasted to a halt.
-    Crashed,
 }
 
 /// Runs a controller from the pose `start` until it stops the motors or the robot crashes.

@@ -338,12 +338,13 @@ fn voltage_for(motor: &Motor, tyre: &Tyre, castor: &Castor, speed_m_s: f64) -> f
 
 impl Sonar {
     fn new(spec: &Robot, scene: &Scene) -> Self {
-        let seat = &spec.ultrasonic;
+        // Without a sensor nothing is heard, since no reading lies within this range.
+        let [min_cm, max_cm] = spec.ultrasonic.map_or([0.0; 2], |sensor| sensor.range_cm());
         Sonar {
-            place_cm: DVec2::new(seat.x_cm, seat.y_cm),
-            yaw_rad: seat.yaw_deg.to_radians(),
-            min_cm: seat.min_cm,
-            max_cm: seat.max_cm,
+            place_cm: spec.ultrasonic.map_or(DVec2::ZERO, |sensor| DVec2::new(sensor.x_cm, sensor.y_cm)),
+            yaw_rad: spec.ultrasonic.map_or(0.0, |sensor| sensor.yaw_deg.to_radians()),
+            min_cm,
+            max_cm,
             half_angle_rad: 0.23,
             edge_db: 20.0,
             lean_db: 0.0,

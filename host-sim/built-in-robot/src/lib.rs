@@ -24,7 +24,7 @@ mod tracker;
 mod wheel;
 
 pub use body::Body;
-pub use controller_run::{Termination, Trajectory, TrajectoryPoint, run_controller};
+pub use controller_run::{Trajectory, TrajectoryPoint, run_controller};
 pub use driving::Driving;
 pub use effects::{ActiveEffect, Effect, HeldOut};
 pub use recording::{record, record_driving};

@@ -13,7 +13,7 @@ pub fn default_robot() -> Robot {
         body_radius_cm: 10.0,
         step_ms: 400.0,
         full_speed_cm_s: 41.0,
-        ultrasonic: Ultrasonic { x_cm: 7.0, y_cm: 0.0, yaw_deg: 0.0, min_cm: 4.0, max_cm: 240.0 },
+        ultrasonic: Some(Ultrasonic { x_cm: 7.0, y_cm: 0.0, yaw_deg: 0.0, min_cm: 4.0, max_cm: 240.0 }),
     }
 }
 

@@ -81,7 +81,17 @@ fn training_generations(bencher: Bencher) {
     }
     let genetic = Settings { stagnation: None, max_generations: GENERATIONS, ..Settings::default() };
     let options = paper_trainer::Options { genetic, ..paper_trainer::Options::default() };
-    let train = || paper_trainer::train(&data, Shape::halves(10), Activation::Linear, &options, SEED, |_, _| {});
+    let train = || {
+        paper_trainer::train(
+            &Workers::default(),
+            &data,
+            Shape::halves(10),
+            Activation::Linear,
+            &options,
+            SEED,
+            |_, _| {},
+        )
+    };
     bencher.counter(ItemsCount::new(GENERATIONS)).bench(train);
 }
 
@@ -101,7 +111,7 @@ fn evolving_generations(bencher: Bencher) {
         seed: SEED,
     };
     let settings = paper::settings();
-    let evolve = || paper::evolve(&evaluator, &settings, |_, _| {});
+    let evolve = || paper::evolve(&Workers::default(), &evaluator, &settings, |_, _| {});
     bencher.counter(ItemsCount::new(settings.max_generations)).bench(evolve);
 }
 

@@ -1,8 +1,6 @@
 #!/usr/bin/env bash
-# How often evolved controllers reach the target: the default, the default with
-# fresh random numbers for every individual, and the paper's
-# single run, for every start of a scene and so many seeds. Prints one line a controller (kind, start, seed, success in
-# 200 fresh runs under the learned noise), and then the table.
+# How often evolved controllers reach the target: the default and the paper's single run, for every start of a scene and
+# SEEDS seeds. Prints one line per controller: kind, start, seed, success in 200 fresh runs under the learned noise.
 #   host-sim/command/benches/success.sh SIM SCENE SEEDS >raw.csv
 set -euo pipefail
 [ $# -eq 3 ] || { echo "usage: $0 SIM SCENE SEEDS" >&2; exit 2; }
@@ -29,5 +27,4 @@ measure() {
 
 echo kind,start,seed,success
 measure common
-measure fresh --fresh-numbers
 measure paper --paper

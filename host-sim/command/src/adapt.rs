@@ -15,8 +15,8 @@ use mindgap_files::places::Places;
 use mindgap_foundations::error::{Error, Result};
 use mindgap_foundations::executor::Executor;
 use mindgap_learning::evolve::chance::{Chance, Judge, ROBOTS, RUNS};
-use mindgap_learning::evolve::controller_file::ControllerFile;
 use mindgap_logs::Scene;
+use mindgap_logs::controller_file::ControllerFile;
 use mindgap_models::simulator::Simulator;
 
 /// Adapt a simulator to runs of the robot.

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
 
+use super::choices::{OUTSIDE, one_of};
 use super::facts::FactsOption;
 use super::lasting::{KeepOption, Kept};
 use super::{Run, kinds, progress};
@@ -37,7 +38,7 @@ enum Part {
         #[arg(long, value_name = "N", default_value_t = 1)]
         seed: u64,
         /// What the effects that no diagnosis knows are drawn from.
-        #[arg(long, value_enum, default_value_t = Outside::Usual)]
+        #[arg(long, value_parser = one_of::<Outside>(OUTSIDE), default_value = "usual")]
         outside: Outside,
         /// Give all robots sensors whose echoes are decided by the place more than by chance, other in every room.
         #[arg(long)]

@@ -10,7 +10,7 @@ use mindgap_files::places::Places;
 use mindgap_foundations::error::Result;
 use mindgap_foundations::executor::Executor;
 use mindgap_learning::crosscheck::{self, Divergence, NetworkCheck, Networks, RunState, Runs, Trials};
-use mindgap_learning::evolve::controller_file::ControllerFile;
+use mindgap_logs::controller_file::ControllerFile;
 
 /// Check that a board without floating point computes what the PC does: fixed point against float.
 #[derive(Args)]

@@ -10,7 +10,6 @@ use super::fleet::FleetRequest;
 use super::lasting::{KeepOption, Kept};
 use super::textbook::{KINEMATIC, simulator_beside_textbook};
 use super::{Run, diagnosis_text, kinds, progress};
-use mindgap_applications::fleet::source::is_address;
 use mindgap_diagnosis::Method;
 use mindgap_diagnosis::progress::Stage;
 use mindgap_diagnosis::request::{Answered, Request};
@@ -19,7 +18,7 @@ use mindgap_files as files;
 use mindgap_files::places::Places;
 use mindgap_foundations::error::{Error, Result};
 use mindgap_foundations::executor::Executor;
-use mindgap_learning::evolve::controller_file::ControllerFile;
+use mindgap_logs::controller_file::ControllerFile;
 use mindgap_models::effects::own;
 use mindgap_models::simulator::{Simulator, textbook};
 use mindgap_pages::diagnosis::{Source, Subject, page};
@@ -64,8 +63,7 @@ pub struct Diagnose {
     #[arg(long, value_name = "FILE")]
     next_experiment: Option<PathBuf>,
     /// Diagnose a fleet, every folder in LOGS, and write into this folder what the robots have in common, who stands out, and
-    /// each one's diagnosis. LOGS and OUT may be addresses in object storage, as s3://robots/tonight. --apply then
-    /// writes a simulator with the effects that nearly all robots have alike.
+    /// each one's diagnosis. --apply then writes a simulator with the effects that nearly all robots have alike.
     #[arg(
         long,
         value_name = "OUT",
@@ -78,21 +76,16 @@ pub struct Diagnose {
 
 impl Run for Diagnose {
     fn places(&self) -> Places {
-        let on_disk = |path: &&PathBuf| !is_address(path);
-        let logs = Some(&self.logs).filter(on_disk);
-        let inputs = self.simulator_file().into_iter().chain(logs).chain(&self.controller).chain(&self.effects);
+        let inputs = self.simulator_file().into_iter().chain([&self.logs]).chain(&self.controller).chain(&self.effects);
         let places = Places::default().reading(inputs).writing(self.facts.asked(), kinds::REPORT);
         let places = places.writing(&self.html, kinds::PAGE).writing(&self.apply, kinds::SIMULATOR);
         let places = places.writing(&self.formula, kinds::FORMULA).writing(&self.next_experiment, kinds::UNSIGNED);
-        let places = places.filling(&self.figures).filling(self.fleet.as_ref().filter(on_disk));
+        let places = places.filling(&self.figures).filling(&self.fleet);
         places.writing(self.keep.asked(), kinds::CHECKPOINT)
     }
 
     fn kept(&self) -> Option<Kept> {
-        let out = self.fleet.as_ref()?;
-        // Beside an address nothing can be kept.
-        let is_possible = !is_address(out) || self.keep.asked().is_some();
-        is_possible.then(|| self.keep.beside(out)).flatten()
+        self.keep.beside(self.fleet.as_ref()?)
     }
 
     fn is_shared(&self) -> bool {
@@ -127,6 +120,11 @@ impl Run for Diagnose {
         bar.finish_and_clear();
         let answered = answered?;
         let Answered { findings: found, logs } = &answered;
+        // What can fail is made before anything is written.
+        let applied = match &self.apply {
+            Some(path) if !found.with_formula().is_empty() => Some((path, request.mended(&answered)?)),
+            _ => None,
+        };
         if let Some(path) = &self.html {
             let subject = Subject {
                 findings: found,
@@ -140,10 +138,13 @@ impl Run for Diagnose {
         if let Some(folder) = &self.figures {
             pictures::diagnosis(folder, &found.diagnosis)?;
         }
-        if let Some(path) = &self.apply {
-            request.mended(&answered).map_err(|error| Error::new(format!("--apply: {error}")))?.write(path)?;
+        if let Some((path, simulator)) = &applied {
+            simulator.write(path)?;
         }
         let mut text = diagnosis_text::text(&found.diagnosis);
+        if let (Some(path), None) = (&self.apply, &applied) {
+            text += &format!("Nothing explains a gap: {} is not written.\n", path.display());
+        }
         match (&self.next_experiment, found.diagnosis.experiment()) {
             (Some(path), Some(experiment)) => experiment.commands.write(path)?,
             (Some(path), None) => text += &format!("No causes are confused: {} is not written.\n", path.display()),

@@ -11,6 +11,7 @@ use mindgap_diagnosis::explain::strata::Stratum;
 use mindgap_diagnosis::formula::Statement;
 use mindgap_diagnosis::propose::Experiment;
 use mindgap_learning::evaluation::final_position::FinalPositionErrors;
+use mindgap_pages::words;
 
 /// The words.
 pub fn text(diagnosis: &Diagnosis) -> String {
@@ -19,7 +20,7 @@ pub fn text(diagnosis: &Diagnosis) -> String {
         lines.push("Data:".into());
         lines.extend(diagnosis.data.iter().map(|found| format!("  {}", found.line())));
     }
-    lines.push(verdict(&diagnosis.answer).to_string());
+    lines.push(verdict(&diagnosis.answer));
     lines.extend(budget_text::lines(diagnosis));
     if !diagnosis.effects().is_empty() {
         lines.push("The effects (probability, effect, strength with 95 % interval):".into());
@@ -47,15 +48,9 @@ pub fn text(diagnosis: &Diagnosis) -> String {
     lines.join("\n") + "\n"
 }
 
-fn verdict(answer: &Answer) -> &'static str {
-    match answer {
-        Answer::NoGap => "No gap: the logs agree with the simulator within its own error.",
-        Answer::Known { .. } => "There is a gap, and known effects explain it. What it is made of:",
-        Answer::PartlyKnown { .. } => {
-            "There is a gap. Known effects explain a part of it, and something is left. What it is made of:"
-        }
-        Answer::Unknown { .. } => "There is a gap, and no known effect explains it. What it is made of:",
-    }
+fn verdict(answer: &Answer) -> String {
+    let made_of = if matches!(answer, Answer::NoGap) { "" } else { " What it is made of:" };
+    format!("{}{made_of}", words::verdict(answer))
 }
 
 fn effect(effect: &NamedEffect) -> Vec<String> {

@@ -8,13 +8,13 @@ use serde_json::json;
 use super::evolve::start_of;
 use super::facts::FactsOption;
 use super::{Run, kinds};
-use mindgap_built_in_robot::{ActiveEffect, BuiltInRobot, Termination, default_robot, run_controller};
+use mindgap_built_in_robot::{ActiveEffect, BuiltInRobot, default_robot, run_controller};
 use mindgap_files::places::Places;
 use mindgap_foundations::chance::generator;
 use mindgap_foundations::error::Result;
 use mindgap_foundations::executor::Executor;
-use mindgap_learning::evolve::controller_file::ControllerFile;
 use mindgap_logs::Scene;
+use mindgap_logs::controller_file::ControllerFile;
 
 /// Drive a controller on the built-in robot and log the run.
 #[derive(Args)]
@@ -60,17 +60,9 @@ impl Run for Drive {
         driven.to_run("run").write(&self.out)?;
         let distance_cm = scene.target_cm.map(|target_cm| driven.end().position_cm.distance(target_cm));
         let distance = distance_cm.map_or_else(String::new, |cm| format!(", {cm:.1} cm from the target"));
-        let (how, steps) = (ending(driven.termination), driven.steps());
+        let (how, steps) = (driven.termination.to_string(), driven.steps());
         let facts = json!({"schema": 1, "run": self.out, "ending": how, "steps": steps, "distance_cm": distance_cm});
         let text = format!("{}: {how} after {steps} steps{distance}\n", self.out.display());
         self.facts.told(&facts, text)
-    }
-}
-
-fn ending(how: Termination) -> &'static str {
-    match how {
-        Termination::Finished => "finished",
-        Termination::TimedOut => "timed out",
-        Termination::Crashed => "crashed",
     }
 }

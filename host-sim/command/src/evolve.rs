@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::{Args, value_parser};
 use serde_json::json;
 
+use super::choices::{SENSOR_MODELS, one_of};
 use super::facts::FactsOption;
 use super::lasting::{KeepOption, Kept};
 use super::{Run, kinds, progress, textbook};
@@ -14,9 +15,8 @@ use mindgap_foundations::error::Result;
 use mindgap_foundations::executor::Executor;
 use mindgap_foundations::geometry::Pose;
 use mindgap_learning::evolve::chance::Chance;
-use mindgap_learning::evolve::controller_file::{ControllerFile, Origin};
-use mindgap_learning::evolve::fitness::RandomNumbers;
 use mindgap_learning::evolve::request::{Answered, JUDGED_RUNS, Request};
+use mindgap_logs::controller_file::{ControllerFile, Origin};
 use mindgap_logs::{Robot, Scene};
 use mindgap_models::simulator::Noise;
 use mindgap_models::simulator::environment::SensorModel;
@@ -47,14 +47,11 @@ pub struct Evolve {
     paper_noise: bool,
     /// What makes the readings: the beam that the training logs show, the two networks, or the first-echo law, which is
     /// slower. With --paper and --paper-noise it is the networks.
-    #[arg(long, value_enum, default_value_t = SensorModel::Beam, conflicts_with_all = ["paper", "paper_noise"])]
+    #[arg(long, value_parser = one_of::<SensorModel>(SENSOR_MODELS), default_value = "beam", conflicts_with_all = ["paper", "paper_noise"])]
     sonar: SensorModel,
     /// Steps after which a controller gives up.
     #[arg(long, default_value_t = 60, value_parser = value_parser!(u16).range(1..))]
     max_steps: u16,
-    /// Let every individual of a generation meet its own random numbers, as with --paper, and not all the same ones.
-    #[arg(long)]
-    fresh_numbers: bool,
     #[command(flatten)]
     facts: FactsOption,
     /// Also draw simulated runs of the controller into this folder, as SVG, PNG and PDF.
@@ -84,10 +81,6 @@ impl Run for Evolve {
             paper: self.paper,
             noise: if self.paper || self.paper_noise { Noise::Paper } else { Noise::Learned },
             sensor: self.sonar,
-            random_numbers: match self.paper || self.fresh_numbers {
-                true => RandomNumbers::Independent,
-                false => RandomNumbers::Common,
-            },
             seed: self.seed,
         };
         let bar = progress::bar(request.generations() as u64);
@@ -104,7 +97,7 @@ impl Run for Evolve {
             start: self.start,
             seed: self.seed,
             generations: evolved.generations,
-            fitness: evolved.fitness,
+            fitness: Some(evolved.fitness),
             success: success.rate,
         };
         if let Some(folder) = &self.figures {

@@ -3,7 +3,6 @@
 use std::path::Path;
 
 use super::{fleet_text, progress};
-use mindgap_applications::fleet::source::{Source, is_address};
 use mindgap_applications::fleet::{self, ANSWER, DIAGNOSES, Fleet, TABLE};
 use mindgap_diagnosis::request::Request;
 use mindgap_files as files;
@@ -40,8 +39,7 @@ impl FleetRequest<'_> {
         if self.apply.is_some() && self.request.simulator.is_none() {
             return Err(Error::new("--apply with --fleet needs a simulator file to add to"));
         }
-        let source = Source::of(self.logs)?;
-        let found = if is_address(self.out) { self.to_storage(&source) } else { self.to_folder(&source, self.out) }?;
+        let found = self.written()?;
         let mut text = fleet_text::text(&found);
         if let (Some(path), Some(simulator)) = (self.apply, self.request.simulator) {
             if found.common.is_empty() {
@@ -55,11 +53,12 @@ impl FleetRequest<'_> {
         Ok(text)
     }
 
-    fn to_folder(&self, source: &Source, folder: &Path) -> Result<Fleet> {
+    /// Writes the fleet's folder.
+    fn written(&self) -> Result<Fleet> {
         let ours = |name: &str| [ANSWER, PAGE, TABLE, DIAGNOSES].contains(&name);
-        files::write_folder(folder, ours, |fresh| {
+        files::write_folder(self.out, ours, |fresh| {
             let bar = progress::bar(0);
-            let fleet = fleet::diagnose(self.executor, source, &self.request, fresh, progress::counting(&bar));
+            let fleet = fleet::diagnose(self.executor, self.logs, &self.request, fresh, progress::counting(&bar));
             bar.finish_and_clear();
             let fleet = fleet?;
             files::write_json(&fresh.join(ANSWER), &fleet)?;
@@ -69,24 +68,5 @@ impl FleetRequest<'_> {
             files::write(&fresh.join(PAGE), page(&subject)?)?;
             Ok(fleet)
         })
-    }
-
-    #[cfg(feature = "cloud")]
-    fn to_storage(&self, source: &Source) -> Result<Fleet> {
-        let storage = mindgap_applications::fleet::storage::Storage::of(self.out)?;
-        storage.expect_empty()?;
-        let workshop =
-            tempfile::tempdir().map_err(|e| Error::new(format!("a temporary folder cannot be made: {e}")))?;
-        let folder = workshop.path().join("fleet");
-        let found = self.to_folder(source, &folder)?;
-        // With the answer the rest is there.
-        storage.put_folder(&folder, ANSWER)?;
-        Ok(found)
-    }
-
-    #[cfg(not(feature = "cloud"))]
-    fn to_storage(&self, _: &Source) -> Result<Fleet> {
-        Source::of(self.out)?;
-        Err(Error::in_file(self.out, "is no folder"))
     }
 }

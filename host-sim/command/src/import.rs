@@ -7,6 +7,7 @@ use std::path::PathBuf;
 use clap::{Args, Subcommand};
 use serde_json::json;
 
+use super::choices::{ANGLES, LENGTHS, TIMES, one_of};
 use super::facts::reported;
 use super::table::{self, count};
 use super::{Run, kinds, progress, warn};
@@ -51,13 +52,13 @@ struct Brick {
     #[arg(long, value_name = "LOGS")]
     out: PathBuf,
     /// Unit of a track's time whose column names none.
-    #[arg(long, value_name = "UNIT")]
+    #[arg(long, value_name = "UNIT", value_parser = one_of::<Time>(TIMES))]
     time_unit: Option<Time>,
     /// Unit of a track's x and y whose columns name none.
-    #[arg(long, value_name = "UNIT")]
+    #[arg(long, value_name = "UNIT", value_parser = one_of::<Length>(LENGTHS))]
     length_unit: Option<Length>,
     /// Unit of a track's heading whose column names none.
-    #[arg(long, value_name = "UNIT")]
+    #[arg(long, value_name = "UNIT", value_parser = one_of::<Angle>(ANGLES))]
     angle_unit: Option<Angle>,
     // No `FactsOption`: clap does not see that a group which is left out as a whole was called where it flattens another.
     /// Also write the same facts here, for programs; `-` is standard output, in place of the text.

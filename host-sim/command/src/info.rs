@@ -15,7 +15,7 @@ use mindgap_files as files;
 use mindgap_files::places::Places;
 use mindgap_foundations::error::{Error, Result};
 use mindgap_foundations::executor::Executor;
-use mindgap_learning::evolve::controller_file::ControllerFile;
+use mindgap_logs::controller_file::ControllerFile;
 use mindgap_logs::{Logs, Robot, Run, Scene};
 use mindgap_models::effects::own;
 use mindgap_models::simulator::Simulator;

@@ -8,6 +8,7 @@ mod brick;
 mod budget_text;
 mod challenge;
 mod check;
+mod choices;
 mod crosscheck;
 pub mod defaults;
 mod demo;
@@ -49,7 +50,6 @@ use general::General;
 pub use guide::command;
 use lasting::Kept;
 
-use mindgap_diagnosis::validate::same_robot;
 use mindgap_files as files;
 use mindgap_files::places::Places;
 use mindgap_foundations::error::{Error, Result};
@@ -57,6 +57,7 @@ use mindgap_foundations::executor::Executor;
 use mindgap_import::draft::to_fill_in;
 use mindgap_logs::Logs;
 use mindgap_logs::inspection::Inspection;
+use mindgap_logs::robot::same_robot;
 use mindgap_models::simulator::Simulator;
 use mindgap_workers::Workers;
 

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, value_parser};
 
+use super::choices::{SENSOR_MODELS, one_of};
 use super::evolve::start_of;
 use super::facts::FactsOption;
 use super::table::{self, number};
@@ -13,9 +14,9 @@ use mindgap_files as files;
 use mindgap_files::places::Places;
 use mindgap_foundations::error::Result;
 use mindgap_foundations::executor::Executor;
-use mindgap_learning::evolve::controller_file::ControllerFile;
 use mindgap_learning::evolve::trial::Trial;
-use mindgap_logs::Scene;
+use mindgap_logs::controller_file::ControllerFile;
+use mindgap_logs::{Scene, Termination};
 use mindgap_models::simulator::Noise;
 use mindgap_models::simulator::environment::SensorModel;
 use mindgap_models::simulator::rollout_report::RolloutReport;
@@ -45,7 +46,7 @@ pub struct Simulate {
     paper_noise: bool,
     /// What makes the readings: the beam that the training logs show, the two networks, or the first-echo law. With
     /// --paper-noise it is the networks.
-    #[arg(long, value_enum, default_value_t = SensorModel::Beam, conflicts_with = "paper_noise")]
+    #[arg(long, value_parser = one_of::<SensorModel>(SENSOR_MODELS), default_value = "beam", conflicts_with = "paper_noise")]
     sonar: SensorModel,
     #[command(flatten)]
     facts: FactsOption,
@@ -59,8 +60,6 @@ pub struct Simulate {
 
 /// Rows of the table at most.
 const ROWS: usize = 20;
-/// The ending that says least by its name.
-const TIMED_OUT: &str = "timed_out";
 
 impl Run for Simulate {
     fn places(&self) -> Places {
@@ -118,17 +117,17 @@ fn told(rollouts: &RolloutReport) -> String {
         .map(|(i, run)| {
             let end = [number(Some(run.end_x_cm), 1), number(Some(run.end_y_cm), 1)];
             let [x, y] = end;
-            [(i + 1).to_string(), run.termination.into(), run.steps.to_string(), x, y, number(run.distance_cm, 1)]
+            [(i + 1).to_string(), run.termination.to_string(), run.steps.to_string(), x, y, number(run.distance_cm, 1)]
         })
         .collect();
     let mut text = table::text(["run", "ending", "steps", "x (cm)", "y (cm)", "to target (cm)"], &rows);
     if rollouts.runs.len() > ROWS {
         text += &format!("... and {} more\n", rollouts.runs.len() - ROWS);
     }
-    if rollouts.runs.iter().any(|run| run.termination == TIMED_OUT) {
-        text += "timed_out: its steps were spent, so that it stopped; it has reached the target if it stands there\n";
+    if rollouts.runs.iter().any(|run| run.termination == Termination::TimedOut) {
+        text += "timed out: its steps were spent, so that it stopped; it has reached the target if it stands there\n";
     }
-    let crashed = rollouts.runs.iter().filter(|run| run.termination == "crashed").count();
+    let crashed = rollouts.runs.iter().filter(|run| run.termination == Termination::Crashed).count();
     let crashes = format!("{crashed} of {} crashed", rollouts.runs.len());
     text + &match rollouts.success {
         Some(success) => format!(

@@ -1,16 +1,16 @@
 //! The answer as data, and as it is written.
 
-use serde::ser::SerializeStruct;
 use serde::{Deserialize, Serialize, Serializer};
 
 use super::account::{Account, GapReduction};
 use super::budget::Part;
+use super::channel::Channel;
 use super::explain::NamedEffect;
 use super::explain::profile::ResidualProfile;
 use super::explain::strata::Stratum;
 use super::formula::Statement;
 use super::propose::Experiment;
-use super::scope::Scope;
+use super::scope::{NotCompared, Scope};
 use mindgap_learning::evaluation::final_position::FinalPositionErrors;
 use mindgap_logs::inspection::Finding;
 
@@ -156,24 +156,49 @@ impl Diagnosis {
 /// Version of the JSON.
 const SCHEMA: u32 = 1;
 
+/// A diagnosis as it is written.
+#[derive(Serialize)]
+struct Written<'a> {
+    schema: u32,
+    verdict: Verdict,
+    budget: &'a [Part],
+    effects: &'a [NamedEffect],
+    #[serde(rename = "where")]
+    strata: &'a [Stratum],
+    #[serde(rename = "shrink")]
+    reduction: Option<&'a GapReduction>,
+    #[serde(rename = "endings")]
+    final_positions: &'a Option<FinalPositionErrors>,
+    next_experiment: Option<String>,
+    formula: &'a Option<Statement>,
+    #[serde(rename = "unexplained")]
+    profiles: &'a [ResidualProfile],
+    compared: &'a [Channel],
+    not_compared: &'a [NotCompared],
+    data: &'a [Finding],
+    untestable: &'a [&'static str],
+    notes: &'a [String],
+}
+
 impl Serialize for Diagnosis {
     fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
-        let mut fields = to.serialize_struct("Diagnosis", 14)?;
-        fields.serialize_field("schema", &SCHEMA)?;
-        fields.serialize_field("verdict", &self.verdict())?;
-        fields.serialize_field("budget", self.budget())?;
-        fields.serialize_field("effects", self.effects())?;
-        fields.serialize_field("where", &self.strata)?;
-        fields.serialize_field("shrink", &self.reduction())?;
-        fields.serialize_field("endings", &self.final_positions)?;
-        fields.serialize_field("next_experiment", &self.experiment().map(Experiment::sentence))?;
-        fields.serialize_field("formula", &self.formula)?;
-        fields.serialize_field("unexplained", self.profiles())?;
-        fields.serialize_field("compared", &self.scope.compared)?;
-        fields.serialize_field("not_compared", &self.scope.not_compared)?;
-        fields.serialize_field("data", &self.data)?;
-        fields.serialize_field("untestable", &self.untestable)?;
-        fields.serialize_field("notes", &self.notes)?;
-        fields.end()
+        let written = Written {
+            schema: SCHEMA,
+            verdict: self.verdict(),
+            budget: self.budget(),
+            effects: self.effects(),
+            strata: &self.strata,
+            reduction: self.reduction(),
+            final_positions: &self.final_positions,
+            next_experiment: self.experiment().map(Experiment::sentence),
+            formula: &self.formula,
+            profiles: self.profiles(),
+            compared: &self.scope.compared,
+            not_compared: &self.scope.not_compared,
+            data: &self.data,
+            untestable: &self.untestable,
+            notes: &self.notes,
+        };
+        written.serialize(to)
     }
 }

@@ -6,11 +6,11 @@ use super::condition;
 use super::diagnose::{Findings, findings_watched};
 use super::method::Method;
 use super::progress::Stage;
-use super::validate::same_robot;
 use mindgap_foundations::error::{Error, Result};
 use mindgap_learning::evaluation::final_position::final_position_errors;
 use mindgap_logs::Logs;
 use mindgap_logs::inspection::Inspection;
+use mindgap_logs::robot::same_robot;
 use mindgap_models::simulator::baseline::Baseline;
 use mindgap_models::simulator::{Simulator, kinematic, textbook};
 

@@ -52,7 +52,7 @@ pub fn robot() -> Robot {
         body_radius_cm: 8.0,
         step_ms: 250.0,
         full_speed_cm_s: 40.0,
-        ultrasonic: Ultrasonic { x_cm: 0.0, y_cm: 0.0, yaw_deg: 0.0, min_cm: 3.0, max_cm: 250.0 },
+        ultrasonic: Some(Ultrasonic { x_cm: 0.0, y_cm: 0.0, yaw_deg: 0.0, min_cm: 3.0, max_cm: 250.0 }),
     }
 }
 

@@ -1,4 +1,4 @@
-//! Validation: whether logs are of the simulator's robot, and what they cannot say.
+//! Validation: what logs cannot say.
 
 use glam::DVec2;
 
@@ -7,46 +7,16 @@ use mindgap_foundations::error::{Error, Result};
 use mindgap_foundations::geometry::wrap_rad;
 use mindgap_foundations::statistics::summary::median;
 use mindgap_learning::evaluation::observations::{Observation, Observations};
+use mindgap_logs::Run;
 use mindgap_logs::inspection::{Inspection, Part};
-use mindgap_logs::{Robot, Run};
 use mindgap_models::simulator::baseline::Baseline;
 
-/// Two people who measure one robot agree to this share.
-const SAME: f64 = 0.02;
 /// The track of a robot that stands scatters by less: a camera's marker by a centimetre or two,
 const STANDING_CM: f64 = 4.0;
 /// and a compass by a few degrees (here 15).
 const STANDING_RAD: f64 = 0.26;
 /// A robot moved where at least this share of a run's poses lies beyond: a few jumps of the tracker are fewer.
 const MOVED: f64 = 0.1;
-
-/// Checks that logs are of the robot that the simulator was learned from.
-///
-/// # Errors
-/// Names the first measurement that differs.
-pub fn same_robot(simulator: &Robot, logs: &Robot) -> Result<()> {
-    let measures = |r: &Robot| {
-        [
-            ("step_ms", r.step_ms),
-            ("wheel_diameter_cm", r.wheel_diameter_cm),
-            ("track_cm", r.track_cm),
-            ("full_speed_cm_s", r.full_speed_cm_s),
-            ("ultrasonic.x_cm", r.ultrasonic.x_cm),
-            ("ultrasonic.y_cm", r.ultrasonic.y_cm),
-            ("ultrasonic.yaw_deg", r.ultrasonic.yaw_deg),
-        ]
-    };
-    // Where a sensor lies matters where both have one: the last three.
-    let compared = if simulator.ultrasonic.is_none() || logs.ultrasonic.is_none() { 4 } else { 7 };
-    let pairs = measures(simulator).into_iter().zip(measures(logs)).take(compared);
-    match pairs.into_iter().find(|((_, a), (_, b))| (a - b).abs() > SAME * a.abs().max(1.0)) {
-        Some(((name, a), (_, b))) => Err(Error::new(format!(
-            "these are logs of another robot than the simulator's: {name} is {b} in the logs' robot.toml and {a} in the simulator; \
-             mend robot.toml, or train a simulator of this robot"
-        ))),
-        None => Ok(()),
-    }
-}
 
 /// What a diagnosis can speak of.
 pub struct Validated {
@@ -162,7 +132,7 @@ fn same_commands(a: &Run, b: &Run) -> bool {
 mod tests {
     use super::*;
     use crate::channel::Channel;
-    use crate::test_support::{alternating, baseline, baseline_with_sonar, driven, robot};
+    use crate::test_support::{alternating, baseline, baseline_with_sonar, driven};
     use mindgap_foundations::geometry::Pose;
     use mindgap_logs::Logs;
 
@@ -285,13 +255,5 @@ mod tests {
         }
         let (notes, baseline) = notes_of(&logs);
         assert!(only(&notes, "No step has a pose at both ends") && baseline.motion.is_some(), "{notes:?}");
-    }
-
-    #[test]
-    fn a_robot_is_the_same_within_two_per_cent() {
-        let logged = |track_cm: f64| same_robot(&robot(), &Robot { track_cm, ..robot() });
-        assert!(logged(10.19).is_ok());
-        let refusal = logged(10.3).expect_err("another robot").to_string();
-        assert!(refusal.contains("track_cm is 10.3 in the logs' robot.toml and 10 in the simulator"), "{refusal}");
     }
 }

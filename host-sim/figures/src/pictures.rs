@@ -22,7 +22,7 @@ use mindgap_learning::evaluation::accuracy::Evaluation;
 use mindgap_learning::evaluation::paths::PathError;
 use mindgap_learning::evaluation::support::Support;
 use mindgap_learning::learn::dataset::{Dataset, Datasets};
-use mindgap_logs::{Logs, Scene};
+use mindgap_logs::{Logs, Scene, Termination, Ultrasonic};
 use mindgap_models::simulator::Simulator;
 use mindgap_models::simulator::rollout::REACHED_CM;
 use mindgap_models::simulator::rollout_report::{Rollout, RolloutReport};
@@ -68,8 +68,8 @@ pub fn figures_of_networks(simulator: &Simulator, evaluation: &Evaluation, held_
             .insert(panels.len().min(3), Panel { title: "Echo probability".into(), samples: Samples::Events(events) });
     }
     let expected = named("figure-2-expected-against-predicted", report::expected_against_predicted(&panels));
+    let Some(Ultrasonic { max_cm, .. }) = simulator.robot.ultrasonic else { return vec![expected] };
     let data = Datasets::from_logs(held_out);
-    let max_cm = simulator.robot.ultrasonic.max_cm;
     let ask = |network: &Network<f32, 2>, d: f64, alpha: f64| f64::from(network.evaluate([d as f32, alpha as f32]));
     let (probability, value) = (&simulator.echo_probability, &simulator.echo_value);
     let (Some(probability), Some(value)) = (probability, value) else { return vec![expected] };
@@ -198,7 +198,7 @@ fn write(folder: &Path, figures: &[NamedFigure]) -> Result<()> {
 /// A simulated run as a path.
 pub fn simulated(run: &Rollout) -> Trace {
     let points_cm = run.path.iter().map(|p| DVec2::new(p.x_cm, p.y_cm)).collect();
-    Trace { points_cm, crashed: run.termination == "crashed" }
+    Trace { points_cm, crashed: run.termination == Termination::Crashed }
 }
 
 fn test_points(data: &Dataset<2>) -> Vec<DVec3> {

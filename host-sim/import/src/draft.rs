@@ -156,7 +156,7 @@ mod tests {
         draft.track_cm = Measure::known(23.504, "measured");
         draft.has_sensor = Some(true);
         let robot = draft.robot().expect("a robot");
-        assert_eq!((robot.track_cm, robot.step_ms, robot.ultrasonic.max_cm), (23.5, 400.0, 240.0));
+        assert_eq!((robot.track_cm, robot.step_ms, robot.ultrasonic.map(|s| s.max_cm)), (23.5, 400.0, Some(240.0)));
         let open = to_fill_in("robot.toml", &draft.text());
         assert!(open.iter().any(|line| line.starts_with("robot.toml: body_radius_cm = 10")), "{open:?}");
         assert!(!open.iter().any(|line| line.contains("track_cm")), "{open:?}");

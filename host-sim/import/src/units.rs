@@ -1,6 +1,6 @@
 //! Units of time, length and angle in which a track may be written.
 
-use clap::ValueEnum;
+use std::str::FromStr;
 
 /// Units of the columns whose names do not state one.
 #[derive(Clone, Copy, Debug, Default)]
@@ -14,33 +14,33 @@ pub struct Units {
 }
 
 /// A unit of time.
-#[derive(Clone, Copy, Debug, PartialEq, ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Time {
-    /// Seconds
+    /// Seconds.
     S,
-    /// Milliseconds
+    /// Milliseconds.
     Ms,
-    /// Microseconds
+    /// Microseconds.
     Us,
 }
 
 /// A unit of length.
-#[derive(Clone, Copy, Debug, PartialEq, ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Length {
-    /// Metres
+    /// Metres.
     M,
-    /// Centimetres
+    /// Centimetres.
     Cm,
-    /// Millimetres
+    /// Millimetres.
     Mm,
 }
 
 /// A unit of angle.
-#[derive(Clone, Copy, Debug, PartialEq, ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Angle {
-    /// Degrees
+    /// Degrees.
     Deg,
-    /// Radians
+    /// Radians.
     Rad,
 }
 
@@ -72,6 +72,44 @@ impl Angle {
         match self {
             Angle::Deg => std::f64::consts::PI / 180.0,
             Angle::Rad => 1.0,
+        }
+    }
+}
+
+impl FromStr for Time {
+    type Err = String;
+
+    fn from_str(name: &str) -> Result<Self, String> {
+        match name {
+            "s" => Ok(Time::S),
+            "ms" => Ok(Time::Ms),
+            "us" => Ok(Time::Us),
+            _ => Err(format!("{name:?} is not a unit of time")),
+        }
+    }
+}
+
+impl FromStr for Length {
+    type Err = String;
+
+    fn from_str(name: &str) -> Result<Self, String> {
+        match name {
+            "m" => Ok(Length::M),
+            "cm" => Ok(Length::Cm),
+            "mm" => Ok(Length::Mm),
+            _ => Err(format!("{name:?} is not a unit of length")),
+        }
+    }
+}
+
+impl FromStr for Angle {
+    type Err = String;
+
+    fn from_str(name: &str) -> Result<Self, String> {
+        match name {
+            "deg" => Ok(Angle::Deg),
+            "rad" => Ok(Angle::Rad),
+            _ => Err(format!("{name:?} is not a unit of angle")),
         }
     }
 }

@@ -1,7 +1,6 @@
 //! Evolution of controllers in a simulator (paper, section IX).
 
 pub mod chance;
-pub mod controller_file;
 pub mod fitness;
 pub mod genome;
 pub mod paper;

@@ -4,6 +4,7 @@
 //! learn from the [`samples`] extracted from it.
 
 mod columns;
+pub mod controller_file;
 pub mod inspection;
 pub mod readings;
 mod resample;
@@ -14,6 +15,7 @@ pub mod run;
 pub mod samples;
 pub mod scene;
 pub mod tables;
+mod termination;
 pub mod world_script;
 
 use std::fs;
@@ -25,6 +27,7 @@ pub use rows::Rows;
 pub use run::Run;
 pub use scene::Scene;
 use serde::{Deserialize, Serialize};
+pub use termination::Termination;
 
 use mindgap_files as files;
 use mindgap_foundations::error::{Error, Result};
@@ -91,7 +94,7 @@ impl Logs {
 
     /// The logs without what they cannot have; messages name `folder`.
     fn checked(mut self, folder: &Path, mut warn: impl FnMut(String)) -> Result<Self> {
-        let has_sensor = !self.robot.ultrasonic.is_none();
+        let has_sensor = self.robot.ultrasonic.is_some();
         let count = if has_sensor { 0 } else { self.runs.iter_mut().map(without_readings).sum() };
         if count > 0 {
             let robot = folder.join("robot.toml");

@@ -3,7 +3,8 @@
 use std::path::Path;
 
 use glam::DVec2;
-use serde::{Deserialize, Serialize};
+use serde::de::Error as _;
+use serde::{Deserialize, Deserializer, Serialize};
 
 use super::columns::{COLUMNS, REQUIRED, REQUIRED_WITHOUT_SENSOR};
 use mindgap_files as files;
@@ -24,9 +25,9 @@ pub struct Robot {
     pub step_ms: f64,
     /// Speed of a wheel's rim at command 100 with a fresh battery, cm/s.
     pub full_speed_cm_s: f64,
-    /// The ultrasonic sensor; [`Ultrasonic::NONE`] where there is none.
-    #[serde(default = "Ultrasonic::none", skip_serializing_if = "Ultrasonic::is_none")]
-    pub ultrasonic: Ultrasonic,
+    /// The ultrasonic sensor, if it has one.
+    #[serde(default, deserialize_with = "possible_sensor", skip_serializing_if = "Option::is_none")]
+    pub ultrasonic: Option<Ultrasonic>,
 }
 
 /// Mounting and range of the ultrasonic sensor.
@@ -60,7 +61,6 @@ impl Robot {
     /// As [`Robot::read`].
     pub fn parse(path: &Path, text: &str) -> Result<Self> {
         let robot: Robot = files::from_toml(path, text)?;
-        let sonar = &robot.ultrasonic;
         let positive = [
             ("wheel_diameter_cm", robot.wheel_diameter_cm),
             ("track_cm", robot.track_cm),
@@ -71,12 +71,12 @@ impl Robot {
         if let Some((name, value)) = positive.iter().find(|(_, v)| !(*v > 0.0 && *v < 1e5)) {
             return Err(Error::in_file(path, format!("{name} = {value} must lie between 0 and 100000")));
         }
-        let is_within = [sonar.x_cm, sonar.y_cm, sonar.yaw_deg, sonar.max_cm].iter().all(|v| v.abs() < 1e5);
-        let is_possible = is_within && (0.0..sonar.max_cm).contains(&sonar.min_cm);
-        if !(sonar.is_none() || is_possible) {
-            return Err(Error::in_file(path, "[ultrasonic] needs numbers within 100000 and 0 <= min_cm < max_cm"));
-        }
         Ok(robot)
+    }
+
+    /// Returns the pose of the sensor on the robot at `pose`; of a robot without one, `pose`.
+    pub fn sensor_pose(&self, pose: &Pose) -> Pose {
+        self.ultrasonic.map_or(*pose, |sensor| sensor.pose_on(pose))
     }
 
     /// The columns that its runs must have.
@@ -98,21 +98,62 @@ impl Robot {
     }
 }
 
-impl Ultrasonic {
-    /// What a robot without such a sensor has: one that reaches nowhere.
-    pub const NONE: Ultrasonic = Ultrasonic { x_cm: 0.0, y_cm: 0.0, yaw_deg: 0.0, min_cm: 0.0, max_cm: 0.0 };
+/// Reads a sensor whose numbers are possible.
+fn possible_sensor<'de, D: Deserializer<'de>>(from: D) -> std::result::Result<Option<Ultrasonic>, D::Error> {
+    let sensor = Ultrasonic::deserialize(from)?;
+    if sensor.is_possible() {
+        Ok(Some(sensor))
+    } else {
+        Err(D::Error::custom("[ultrasonic] needs numbers within 100000 and 0 <= min_cm < max_cm"))
+    }
+}
 
-    /// Whether there is no sensor.
-    pub fn is_none(&self) -> bool {
-        *self == Ultrasonic::NONE
+impl Ultrasonic {
+    fn is_possible(&self) -> bool {
+        let is_within = [self.x_cm, self.y_cm, self.yaw_deg, self.max_cm].iter().all(|v| v.abs() < 1e5);
+        is_within && (0.0..self.max_cm).contains(&self.min_cm)
     }
 
-    fn none() -> Self {
-        Ultrasonic::NONE
+    /// Its least and its largest reading, cm.
+    pub fn range_cm(&self) -> [f64; 2] {
+        [self.min_cm, self.max_cm]
     }
 
     /// The pose of the sensor on a robot at `robot`; its heading is that of the axis.
     pub fn pose_on(&self, robot: &Pose) -> Pose {
         robot.compose(&Pose { position_cm: DVec2::new(self.x_cm, self.y_cm), heading_rad: self.yaw_deg.to_radians() })
+    }
+}
+
+/// Two people who measure one robot agree to this share.
+const SAME: f64 = 0.02;
+
+/// Checks that logs are of the robot that the simulator was learned from.
+///
+/// # Errors
+/// Names the first measurement that differs.
+pub fn same_robot(simulator: &Robot, logs: &Robot) -> Result<()> {
+    let body = |r: &Robot| {
+        vec![
+            ("step_ms", r.step_ms),
+            ("wheel_diameter_cm", r.wheel_diameter_cm),
+            ("track_cm", r.track_cm),
+            ("full_speed_cm_s", r.full_speed_cm_s),
+        ]
+    };
+    let mount =
+        |s: &Ultrasonic| [("ultrasonic.x_cm", s.x_cm), ("ultrasonic.y_cm", s.y_cm), ("ultrasonic.yaw_deg", s.yaw_deg)];
+    let (mut ours, mut theirs) = (body(simulator), body(logs));
+    // The mounting of a sensor is compared where both have one.
+    if let (Some(a), Some(b)) = (&simulator.ultrasonic, &logs.ultrasonic) {
+        ours.extend(mount(a));
+        theirs.extend(mount(b));
+    }
+    match ours.into_iter().zip(theirs).find(|((_, a), (_, b))| (a - b).abs() > SAME * a.abs().max(1.0)) {
+        Some(((name, a), (_, b))) => Err(Error::new(format!(
+            "these are logs of another robot than the simulator's: {name} is {b} in the logs' robot.toml and {a} in the simulator; \
+             mend robot.toml, or train a simulator of this robot"
+        ))),
+        None => Ok(()),
     }
 }

@@ -87,7 +87,7 @@ pub fn sonar(logs: &Logs) -> Vec<SonarSample> {
 /// The same one by one, for logs that are large.
 pub fn readings(logs: &Logs) -> impl Iterator<Item = SonarSample> {
     let sides = logs.scene.sides();
-    let sensor = Some(logs.robot.ultrasonic).filter(|sensor| !sensor.is_none());
+    let sensor = logs.robot.ultrasonic;
     let rows =
         logs.runs.iter().enumerate().flat_map(|(run, r)| r.rows.iter().enumerate().map(move |(k, row)| (run, k, row)));
     rows.filter_map(move |(run, row, logged)| {

@@ -135,19 +135,14 @@ fn bar<'a>(part: &'a Part, catalogue: &[&'static Effect]) -> BudgetBar<'a> {
     BudgetBar { id, name: words::name(id, catalogue), named, share: *share, ci95: *ci95 }
 }
 
-/// The verdict in one sentence.
+/// The verdict, and the names of the effects.
 fn headline(diagnosis: &Diagnosis, catalogue: &[&'static Effect]) -> String {
+    let verdict = words::verdict(&diagnosis.answer);
     let names: Vec<&str> = diagnosis.effects().iter().map(|effect| words::name(effect.id, catalogue)).collect();
-    let names = words::list(&names);
-    match &diagnosis.answer {
-        Answer::NoGap => "There is no gap: the logs agree with the simulator within its own error.".into(),
-        Answer::Known { .. } => {
-            format!("There is a gap between simulator and robot. Known effects explain it: {names}.")
-        }
-        Answer::PartlyKnown { .. } => {
-            format!("There is a gap between simulator and robot. Known effects explain a part of it: {names}.")
-        }
-        Answer::Unknown { .. } => "There is a gap between simulator and robot, and no known effect explains it.".into(),
+    match names.as_slice() {
+        [] => verdict.into(),
+        [name] => format!("{verdict} The effect: {name}."),
+        names => format!("{verdict} The effects: {}.", words::list(names)),
     }
 }
 

@@ -200,8 +200,9 @@ fn reliability(of: &Probability) -> Markup {
 }
 
 fn surfaces(simulator: &Simulator, logs: &Logs) -> Vec<Surface> {
+    let Some(sensor) = simulator.robot.ultrasonic else { return Vec::new() };
+    let max_cm = sensor.max_cm;
     let data = Datasets::from_logs(logs);
-    let max_cm = simulator.robot.ultrasonic.max_cm;
     let size = [max_cm / COLUMNS as f64, 90.0 / ROWS as f64];
     let surface = |name, unit, learned: &Option<Learned<2>>, samples, range: [f64; 2]| {
         let network = &learned.as_ref()?.network;

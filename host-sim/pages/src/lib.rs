@@ -9,9 +9,9 @@ pub mod evaluation;
 pub mod fleet;
 pub mod simulation;
 pub mod trials;
+pub mod words;
 
 mod document;
 mod glossary;
 mod replay;
 mod room;
-mod words;

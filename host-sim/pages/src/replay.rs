@@ -97,8 +97,8 @@ pub fn sampled(rows: &[usize]) -> Vec<(usize, usize)> {
 impl Replay {
     /// Runs of a robot, `of` all.
     pub fn new(robot: &Robot, kinds: &'static [Kind], runs: Vec<ReplayedRun>, of: usize) -> Self {
-        let sensor = &robot.ultrasonic;
-        let body = Body { radius_cm: robot.body_radius_cm, sensor: [sensor.x_cm, sensor.y_cm, sensor.yaw_deg] };
+        let sensor = robot.ultrasonic.map_or([0.0; 3], |sensor| [sensor.x_cm, sensor.y_cm, sensor.yaw_deg]);
+        let body = Body { radius_cm: robot.body_radius_cm, sensor };
         Replay { runs, kinds, robot: body, of }
     }
 

@@ -15,7 +15,7 @@ use mindgap_foundations::error::Result;
 use mindgap_foundations::geometry::Pose;
 use mindgap_foundations::statistics::summary::median;
 use mindgap_learning::evaluation::replay::Moment;
-use mindgap_logs::{Robot, Scene};
+use mindgap_logs::{Robot, Scene, Termination};
 use mindgap_models::simulator::rollout_report::{PathPoint, Rollout, RolloutReport};
 
 /// What a page is made of.
@@ -99,7 +99,7 @@ pub fn page(subject: &Subject) -> Result<String> {
 }
 
 fn headline(rollouts: &RolloutReport) -> String {
-    let (runs, crashed) = (rollouts.runs.len(), ended(rollouts, "crashed"));
+    let (runs, crashed) = (rollouts.runs.len(), ended(rollouts, Termination::Crashed));
     let crashes =
         if crashed == 0 { "none crashes".into() } else { format!("{} crash", percent(crashed as f64 / runs as f64)) };
     match rollouts.success {
@@ -108,20 +108,23 @@ fn headline(rollouts: &RolloutReport) -> String {
     }
 }
 
-fn ended(rollouts: &RolloutReport, how: &str) -> usize {
+fn ended(rollouts: &RolloutReport, how: Termination) -> usize {
     rollouts.runs.iter().filter(|run| run.termination == how).count()
 }
 
 fn paths(rollouts: &RolloutReport, shown: usize) -> Markup {
     let told = [
-        ("finished", "the sixth tuple's test held and the robot stopped"),
-        ("timed_out", "the robot was still driving when the steps that it may take were used up, and was stopped"),
-        ("crashed", "the robot touched a wall or an obstacle"),
+        (Termination::Finished, "the sixth tuple's test held and the robot stopped"),
+        (
+            Termination::TimedOut,
+            "the robot was still driving when the steps that it may take were used up, and was stopped",
+        ),
+        (Termination::Crashed, "the robot touched a wall or an obstacle"),
     ];
     let rows: Vec<[String; 3]> = told
         .into_iter()
-        .filter(|(how, _)| ended(rollouts, how) > 0)
-        .map(|(how, meaning)| [how.replace('_', " "), ended(rollouts, how).to_string(), meaning.into()])
+        .filter(|(how, _)| ended(rollouts, *how) > 0)
+        .map(|(how, meaning)| [how.to_string(), ended(rollouts, how).to_string(), meaning.into()])
         .collect();
     html! {
         (open_table(["ending", "runs", "what it means"], &rows))
@@ -177,7 +180,7 @@ fn tuples(subject: &Subject) -> Markup {
 
 fn path(run: usize, rollout: &Rollout) -> Path {
     let along = |of: fn(&PathPoint) -> f64| rollout.path.iter().map(|p| tenths(of(p))).collect();
-    Path { run: run + 1, ending: rollout.termination.replace('_', " "), x: along(|p| p.x_cm), y: along(|p| p.y_cm) }
+    Path { run: run + 1, ending: rollout.termination.to_string(), x: along(|p| p.x_cm), y: along(|p| p.y_cm) }
 }
 
 fn turns(run: usize, rollout: &Rollout) -> Vec<Turn> {
@@ -208,7 +211,7 @@ fn replay(subject: &Subject, shown: &[usize]) -> Replay {
             None => "finished".into(),
         };
         ReplayedRun {
-            name: format!("run {}: {}", place + 1, rollout.termination.replace('_', " ")),
+            name: format!("run {}: {}", place + 1, rollout.termination),
             t_s: (0..rollout.path.len()).map(|step| step as f64 * f64::from(controller.step_ms) / 1000.0).collect(),
             told: rollout.path.iter().map(told).collect(),
             tracks: BTreeMap::from([(DRIVEN.id, rollout.path.iter().map(moment).collect::<Vec<_>>().into())]),

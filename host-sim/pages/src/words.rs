@@ -3,6 +3,7 @@
 use mindgap_diagnosis::Diagnosis;
 use mindgap_diagnosis::budget::{SCATTER, UNEXPLAINED};
 use mindgap_diagnosis::channel::Channel;
+use mindgap_diagnosis::diagnosis::Answer;
 use mindgap_models::effects::Effect;
 
 /// A part of a gap for people.
@@ -45,6 +46,16 @@ pub fn cause(id: &str, catalogue: &[&'static Effect]) -> Option<Cause> {
 /// The name of an id.
 pub fn name<'a>(id: &'a str, catalogue: &[&'static Effect]) -> &'a str {
     cause(id, catalogue).map_or(id, |cause| cause.name)
+}
+
+/// The verdict as a sentence.
+pub fn verdict(answer: &Answer) -> &'static str {
+    match answer {
+        Answer::NoGap => "No gap: the logs agree with the simulator within its own error.",
+        Answer::Known { .. } => "There is a gap, and known effects explain it.",
+        Answer::PartlyKnown { .. } => "There is a gap. Known effects explain a part of it, and something is left.",
+        Answer::Unknown { .. } => "There is a gap, and no known effect explains it.",
+    }
 }
 
 /// What "with" means in charts of before and after.

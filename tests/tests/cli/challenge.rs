@@ -50,9 +50,12 @@ fn a_challenge_is_made_answered_and_scored() {
 }
 
 #[test]
-fn effects_are_added_only_if_there_are_any() {
+fn diagnosis_without_gap_writes_every_output_but_the_applied_simulator() {
     let workshop = Workshop::with_logs();
     workshop.done("train logs --out sim.json");
-    let refusal = workshop.refused("diagnose sim.json logs --apply better.json");
-    assert!(refusal.contains("nothing to add"), "{refusal}");
+    let said = workshop.done("diagnose sim.json logs --apply better.json --json gap.json --html gap.html");
+    assert!(said.contains("Nothing explains a gap: better.json is not written."), "{said}");
+    assert_eq!(workshop.json("gap.json")["verdict"], "no_gap");
+    assert!(workshop.text("gap.html").contains("</html>"));
+    assert!(!workshop.path().join("better.json").exists());
 }

@@ -127,8 +127,8 @@ fn a_controller_is_evolved_simulated_and_exported() {
 
     let table =
         workshop.done("simulate sim.json controller.toml --scene scene.toml --start 2 --runs 4 --json runs.json");
-    // A head, the runs, what "timed_out" means where it occurs, and the sum.
-    assert_eq!(table.lines().count(), 1 + 4 + usize::from(table.contains("\ntimed_out: ")) + 1, "{table}");
+    // A head, the runs, what "timed out" means where it occurs, and the sum.
+    assert_eq!(table.lines().count(), 1 + 4 + usize::from(table.contains("\ntimed out: ")) + 1, "{table}");
     let rehearsal = workshop.json("runs.json");
     assert_eq!(rehearsal["schema"], 1);
     assert!((0.0..=1.0).contains(&rehearsal["success"].as_f64().unwrap()));

@@ -79,8 +79,6 @@ fn places_that_are_not_for_a_fleet_are_refused() {
     assert!(workshop.refused("diagnose sim.json logs --fleet out").contains("has no folder in it"));
     assert!(workshop.refused("diagnose sim.json . --fleet .").contains("read by the same command"));
     assert!(workshop.refused("diagnose sim.json nowhere --fleet out").contains("nowhere: cannot be read"));
-    assert!(workshop.refused("diagnose sim.json s3://robots/tonight --fleet out").contains("--features cloud"));
-    assert!(workshop.refused("diagnose sim.json . --fleet s3://robots/answer").contains("--features cloud"));
     assert!(
         workshop.refused("diagnose kinematic . --fleet out --apply better.json").contains("needs a simulator file")
     );

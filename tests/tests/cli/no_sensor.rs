@@ -54,6 +54,19 @@ fn what_needs_a_sensor_says_so() {
 }
 
 #[test]
+fn sensor_of_zeros_is_an_error_and_not_an_absent_sensor() {
+    let workshop = Workshop::with_logs();
+    let mut line = 0;
+    workshop.edit("logs/robot.toml", |text| {
+        let body = text.split_once("[ultrasonic]").expect("a sensor").0;
+        line = body.lines().count() + 1;
+        format!("{body}[ultrasonic]\nx_cm = 0.0\ny_cm = 0.0\nyaw_deg = 0.0\nmin_cm = 0.0\nmax_cm = 0.0\n")
+    });
+    let refusal = workshop.refused("check logs");
+    assert!(refusal.starts_with(&format!("logs/robot.toml:{line}: [ultrasonic] needs numbers")), "{refusal}");
+}
+
+#[test]
 fn a_column_of_readings_is_needed_by_a_sensor_alone() {
     let workshop = without_sensor();
     for run in 0..12 {
@@ -77,7 +90,7 @@ fn open_ground_is_driven_on() {
     let tuple = "  { left = 55, right = 48, when = \"smaller\", threshold_cm = 42 },\n";
     workshop.write("c.toml", format!("step_ms = 400\nmax_steps = 10\ntuple = [\n{}]\n", tuple.repeat(6)));
     let told = workshop.done("simulate sim.json c.toml --scene open.toml --runs 3");
-    assert_eq!(told.matches(" timed_out ").count(), 3, "{told}");
+    assert_eq!(told.matches(" timed out ").count(), 3, "{told}");
     let refusal = workshop.refused("record --out more --scene open.toml");
     assert!(refusal.starts_with("open.toml: the scene has no room between its walls"), "{refusal}");
 }

@@ -60,7 +60,10 @@ fn a_loop_leaves_all_that_happened_and_goes_on_from_where_it_stood() {
         assert!(workshop.text(&format!("out/trial-{number}.csv")).starts_with("t_ms,"));
     }
     assert!(workshop.bytes("out/paths.png").starts_with(b"\x89PNG"));
-    assert_eq!(workshop.text("out/controller.toml").matches("[[tuple]]").count(), 6);
+    let controller = workshop.text("out/controller.toml");
+    assert_eq!(controller.matches("[[tuple]]").count(), 6);
+    // It was selected by its chance of success.
+    assert!(controller.contains("success = ") && !controller.contains("fitness"), "{controller}");
     assert!(workshop.json("out/simulator.json")["robots"].is_object());
 
     // One trial, and then the second: the same as both at once.

@@ -67,7 +67,7 @@ fn neato(folder: &Path) -> Logs {
         body_radius_cm: 17.0,
         step_ms: STEP_MS,
         full_speed_cm_s: FULL_CM_S,
-        ultrasonic,
+        ultrasonic: Some(ultrasonic),
     };
     let scene = Scene { arena_cm: Some(glam::DVec2::splat(400.0)), ..Scene::default() };
     Logs { robot, scene, runs: runs.collect() }

@@ -1,6 +1,7 @@
 //! The random cases of a challenge: robot, effects, room and kind of driving.
 
-use clap::ValueEnum;
+use std::str::FromStr;
+
 use rand::seq::{IndexedRandom, SliceRandom};
 use rand::{Rng, RngExt};
 
@@ -27,11 +28,11 @@ const ROBOT: u64 = 0;
 const CASE: u64 = 1;
 
 /// The effects outside the table of the diagnosis that cases are drawn from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Outside {
-    /// Those that the thresholds of the diagnosis were fitted on as well, on cases of other seeds
+    /// Those that the thresholds of the diagnosis were fitted on as well, on cases of other seeds.
     Usual,
-    /// Those that no part of the diagnosis was made or fitted on
+    /// Those that no part of the diagnosis was made or fitted on.
     HeldOut,
 }
 
@@ -163,6 +164,18 @@ pub fn effects(cases: usize, seed: u64, outside: Outside) -> Vec<Vec<Effect>> {
         .collect();
     effects.shuffle(rng);
     effects
+}
+
+impl FromStr for Outside {
+    type Err = String;
+
+    fn from_str(name: &str) -> std::result::Result<Self, String> {
+        match name {
+            "usual" => Ok(Outside::Usual),
+            "held-out" => Ok(Outside::HeldOut),
+            _ => Err(format!("{name:?} is not a source of effects")),
+        }
+    }
 }
 
 impl Outside {

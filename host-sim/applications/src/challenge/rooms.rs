@@ -25,7 +25,7 @@ pub fn robot(rng: &mut Generator) -> Robot {
         track_cm: about(usual.track_cm, 0.2),
         body_radius_cm: usual.body_radius_cm,
         full_speed_cm_s: about(usual.full_speed_cm_s, 0.2),
-        ultrasonic: Ultrasonic { x_cm: about(usual.ultrasonic.x_cm, 0.3), ..usual.ultrasonic },
+        ultrasonic: usual.ultrasonic.map(|sensor| Ultrasonic { x_cm: about(sensor.x_cm, 0.3), ..sensor }),
         ..usual
     }
 }

@@ -12,9 +12,9 @@ use mindgap_built_in_robot::{self as built_in_robot, ActiveEffect, BuiltInRobot,
 use mindgap_foundations::chance::generator;
 use mindgap_foundations::error::Result;
 use mindgap_foundations::executor::Executor;
-use mindgap_learning::evolve::controller_file::ControllerFile;
 use mindgap_learning::evolve::fitness::Success;
 use mindgap_logs::Scene;
+use mindgap_logs::controller_file::ControllerFile;
 
 /// Runs that tell how a controller does on the changed robot.
 const RUNS: u64 = 5;

@@ -4,8 +4,8 @@ use crate::trials::robot::{Call, TrialRobot};
 use mindgap_built_in_robot::{self as built_in_robot, ActiveEffect, BuiltInRobot};
 use mindgap_foundations::chance::generator;
 use mindgap_foundations::error::{Error, Result};
-use mindgap_learning::evolve::controller_file::ControllerFile;
 use mindgap_logs::Scene;
+use mindgap_logs::controller_file::ControllerFile;
 
 /// The built-in robot with these effects, of which its simulator need not know.
 pub struct TrialledRobot(pub Vec<ActiveEffect>);

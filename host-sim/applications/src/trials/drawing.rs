@@ -4,12 +4,12 @@ use std::path::Path;
 
 use glam::DVec2;
 
-use super::state::{Ending, Real, State, Trial};
+use super::state::{Real, State, Trial};
 use mindgap_figures::report;
 use mindgap_figures::report::paths::{PathPanel, Trace};
 use mindgap_foundations::error::Result;
 use mindgap_foundations::geometry::Pose;
-use mindgap_logs::Scene;
+use mindgap_logs::{Scene, Termination};
 use mindgap_models::simulator::rollout::REACHED_CM;
 
 /// Draws `paths.svg` and `paths.png` into the folder of a loop.
@@ -40,6 +40,6 @@ fn title(trial: &Trial, real: &Real) -> String {
     format!("Trial {}: {went}", trial.number)
 }
 
-fn trace(path_cm: &[[f64; 2]], ending: Ending) -> Trace {
-    Trace { points_cm: path_cm.iter().copied().map(DVec2::from).collect(), crashed: ending == Ending::Crashed }
+fn trace(path_cm: &[[f64; 2]], ending: Termination) -> Trace {
+    Trace { points_cm: path_cm.iter().copied().map(DVec2::from).collect(), crashed: ending == Termination::Crashed }
 }

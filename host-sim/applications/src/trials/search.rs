@@ -11,7 +11,6 @@ use mindgap_foundations::error::{Error, Result};
 use mindgap_foundations::executor::Executor;
 use mindgap_foundations::geometry::Pose;
 use mindgap_learning::evolve::chance::{Judge, ROBOTS, RUNS};
-use mindgap_learning::evolve::fitness::RandomNumbers;
 use mindgap_learning::evolve::genome::GenotypeDecoder;
 use mindgap_learning::evolve::prefixes;
 use mindgap_learning::evolve::robust::{self, REFINED};
@@ -115,7 +114,7 @@ impl Search<'_> {
             });
             let places = points.iter().map(|point| point.pose.position_cm);
             let path_cm = [self.start.position_cm].into_iter().chain(places).map(place_cm).collect();
-            SimulatedPath { ending: outcome.termination.into(), path_cm }
+            SimulatedPath { ending: outcome.termination, path_cm }
         };
         Ok((0..).zip(&robots).map(run).collect())
     }
@@ -129,7 +128,6 @@ impl Search<'_> {
             target_cm,
             way: &WayMap::new(self.scene, target_cm, self.simulator.robot.body_radius_cm),
             decoder: self.decoder(),
-            random_numbers: RandomNumbers::Common,
             seed: self.stream(Purpose::Searching, 0),
         };
         let explores = known.best().is_none_or(|best| best.score < GOOD);

@@ -1,6 +1,5 @@
 //! `loop.json`: what happened in a loop so far, and all that it needs to go on.
 
-use std::fmt;
 use std::path::Path;
 
 use glam::DVec2;
@@ -13,8 +12,8 @@ use crate::adapt::Gap;
 use mindgap_files as files;
 use mindgap_foundations::error::{Error, Result};
 use mindgap_learning::evolve::chance::Chance;
+use mindgap_logs::Termination;
 use mindgap_models::effects::applied::AppliedEffect;
-use mindgap_models::simulator::rollout::Termination;
 
 /// The version of this format.
 const SCHEMA: u32 = 1;
@@ -96,7 +95,7 @@ pub struct Trial {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SimulatedPath {
     /// How it ended.
-    pub ending: Ending,
+    pub ending: Termination,
     /// Where the robot was at the start and after each step, along x and y.
     pub path_cm: Vec<[f64; 2]>,
 }
@@ -105,7 +104,7 @@ pub struct SimulatedPath {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Real {
     /// How it ended.
-    pub ending: Ending,
+    pub ending: Termination,
     /// Steps taken.
     pub steps: usize,
     /// Where it ended, along x.
@@ -118,18 +117,6 @@ pub struct Real {
     pub reached: bool,
     /// Where the tracker saw the robot at each row, along x and y.
     pub path_cm: Vec<[f64; 2]>,
-}
-
-/// How a run ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Ending {
-    /// The sixth tuple's test held.
-    Finished,
-    /// The step limit was reached.
-    TimedOut,
-    /// The robot touched a wall or an obstacle.
-    Crashed,
 }
 
 /// A drive that nothing was learned from.
@@ -213,24 +200,4 @@ impl Trial {
 /// A place as it is written, to the millimetre.
 pub fn place_cm(at: DVec2) -> [f64; 2] {
     at.to_array().map(|cm| (10.0 * cm).round() / 10.0)
-}
-
-impl From<Termination> for Ending {
-    fn from(termination: Termination) -> Self {
-        match termination {
-            Termination::Finished => Ending::Finished,
-            Termination::TimedOut => Ending::TimedOut,
-            Termination::Crashed => Ending::Crashed,
-        }
-    }
-}
-
-impl fmt::Display for Ending {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Ending::Finished => "finished",
-            Ending::TimedOut => "timed out",
-            Ending::Crashed => "crashed",
-        })
-    }
 }

@@ -6,14 +6,14 @@ use std::path::Path;
 use mindgap_core::controller::Controller;
 
 use super::driven::Driven;
-use super::state::{Ending, Real, place_cm};
+use super::state::{Real, place_cm};
 use mindgap_files as files;
 use mindgap_foundations::error::{Error, Result};
 use mindgap_foundations::geometry::{Pose, wrap_rad};
 use mindgap_learning::evaluation::observations::Observations;
 use mindgap_learning::evaluation::predictions;
 use mindgap_logs::inspection::Inspection;
-use mindgap_logs::{Logs, Row, Run, Scene};
+use mindgap_logs::{Logs, Row, Run, Scene, Termination};
 use mindgap_models::effects::chain::EffectChain;
 use mindgap_models::simulator::Simulator;
 use mindgap_models::simulator::baseline::Baseline;
@@ -76,26 +76,26 @@ impl Vetting<'_> {
             run.rows.iter().rev().find_map(|row| row.pose).ok_or_else(|| Error::new("has no pose that counts"))?;
         let ending = self.ending(&driven, &end)?;
         let path_cm = run.rows.iter().filter_map(|row| row.pose).map(|pose| place_cm(pose.position_cm)).collect();
-        if ending == Ending::Crashed {
+        if ending == Termination::Crashed {
             // What a wall did to the robot says nothing of its commands; a run that crashes in its first step has no other.
             (self.free_rows(&run).max(2)..run.rows.len()).for_each(|row| run.rows.edit(row, |row| row.pose = None));
         }
         let target_cm = self.scene.target_cm.ok_or_else(|| Error::new("the scene has no target"))?;
         let distance_cm = end.position_cm.distance(target_cm);
-        let reached = ending != Ending::Crashed && distance_cm <= REACHED_CM;
+        let reached = ending != Termination::Crashed && distance_cm <= REACHED_CM;
         let [end_x_cm, end_y_cm] = end.position_cm.to_array();
         Ok((run, Real { ending, steps: driven.steps, end_x_cm, end_y_cm, distance_cm, reached, path_cm }))
     }
 
-    fn ending(&self, driven: &Driven, end: &Pose) -> Result<Ending> {
+    fn ending(&self, driven: &Driven, end: &Pose) -> Result<Termination> {
         let steps = driven.steps;
         if self.touches(end) {
-            Ok(Ending::Crashed)
+            Ok(Termination::Crashed)
         } else if steps >= usize::from(self.controller.max_steps) {
             // One that holds its sixth tuple then has not finished either.
-            Ok(Ending::TimedOut)
+            Ok(Termination::TimedOut)
         } else if driven.may_have_finished() {
-            Ok(Ending::Finished)
+            Ok(Termination::Finished)
         } else {
             Err(Error::new(format!(
                 "breaks off after {steps} steps, where the controller had not ended and no wall is near: half a log"

@@ -4,14 +4,13 @@ use std::sync::LazyLock;
 
 use glam::DVec2;
 use mindgap_built_in_robot::{
-    ActiveEffect, BuiltInRobot, Effect, Termination, default_robot, four_obstacles, record, run_controller,
-    training_room,
+    ActiveEffect, BuiltInRobot, Effect, default_robot, four_obstacles, record, run_controller, training_room,
 };
 use mindgap_core::controller::{Controller, Tuple, When};
 use mindgap_foundations::chance::generator;
 use mindgap_foundations::geometry::{Pose, Rectangle};
 use mindgap_logs::samples::{motion, sonar};
-use mindgap_logs::{Logs, Scene};
+use mindgap_logs::{Logs, Scene, Termination};
 
 /// 40 runs of the healthy robot.
 static HEALTHY: LazyLock<Logs> =
@@ -42,7 +41,7 @@ fn readings_are_whole_centimetres_near_the_wall_ahead() {
     let close = errors.iter().filter(|e| e.abs() < 4.0).count();
     assert!(errors.len() > 100 && close as f64 > 0.85 * errors.len() as f64, "{close} of {}", errors.len());
     let echoes = HEALTHY.runs.iter().flat_map(|run| &run.rows).filter_map(|row| row.echo_cm);
-    let sensor = default_robot().ultrasonic;
+    let sensor = default_robot().ultrasonic.expect("a sensor");
     for echo_cm in echoes {
         assert!(echo_cm == echo_cm.round() && (sensor.min_cm..=sensor.max_cm).contains(&echo_cm), "{echo_cm}");
     }

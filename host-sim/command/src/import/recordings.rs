@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use serde_json::json;
 
+use crate::choices::{ANGLES, LENGTHS, TIMES, one_of};
 use crate::facts::FactsOption;
 use crate::{Run, kinds, progress, table};
 use mindgap_files as files;
@@ -36,13 +37,13 @@ pub struct Streams {
     #[arg(long, value_name = "FILE")]
     map: Option<PathBuf>,
     /// Unit of a time whose column names none; guessed if left out.
-    #[arg(long, value_name = "UNIT")]
+    #[arg(long, value_name = "UNIT", value_parser = one_of::<Time>(TIMES))]
     time_unit: Option<Time>,
     /// Unit of lengths whose columns name none, and of speeds a second.
-    #[arg(long, value_name = "UNIT")]
+    #[arg(long, value_name = "UNIT", value_parser = one_of::<Length>(LENGTHS))]
     length_unit: Option<Length>,
     /// Unit of headings whose columns name none, and of turn rates a second.
-    #[arg(long, value_name = "UNIT")]
+    #[arg(long, value_name = "UNIT", value_parser = one_of::<Angle>(ANGLES))]
     angle_unit: Option<Angle>,
     /// What the clock of the poses is ahead of that of the commands, ms; found by the motion if left out.
     #[arg(long, value_name = "MS", allow_negative_numbers = true)]
@@ -106,7 +107,7 @@ impl Run for Bag {
     fn run(&self, _: &dyn Executor) -> Result<String> {
         let given = self.target.read()?;
         let choice = Choice { commands: self.commands.clone(), poses: self.poses.clone(), ranges: self.ranges.clone() };
-        let yaw_rad = given.robot.map_or(0.0, |robot| robot.ultrasonic.yaw_deg.to_radians());
+        let yaw_rad = given.robot.and_then(|robot| robot.ultrasonic).map_or(0.0, |sensor| sensor.yaw_deg.to_radians());
         let read = |watch: &dyn Fn(usize, usize)| {
             let bags = self.bags.iter().zip(0..);
             bags.map(|(bag, before)| {

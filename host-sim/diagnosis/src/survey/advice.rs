@@ -1,7 +1,7 @@
 //! What to drive more: what no row of the logs shows, in plain sentences.
 
 use super::holdings::{Holdings, Range, commands, steps};
-use mindgap_logs::Logs;
+use mindgap_logs::{Logs, Ultrasonic};
 
 /// Wheels whose commands differ by this much turn the robot clearly: a tenth of full speed is beyond what motors differ by.
 const CLEAR: f64 = 10.0;
@@ -31,8 +31,10 @@ pub fn advice(logs: &Logs, holds: &Holdings) -> Vec<String> {
         let percent = 100.0 * holds.with_pose;
         missing.push(format!("The tracker sees the robot in {percent:.0} % of the rows only."));
     }
-    if let (Some(distance_cm), Some(alpha_deg)) = (holds.distance_cm, holds.alpha_deg) {
-        missing.extend(of_sensor(logs, distance_cm, alpha_deg));
+    if let (Some(sensor), Some(distance_cm), Some(alpha_deg)) =
+        (&logs.robot.ultrasonic, holds.distance_cm, holds.alpha_deg)
+    {
+        missing.extend(of_sensor(sensor, distance_cm, alpha_deg));
     }
     missing
 }
@@ -80,8 +82,8 @@ fn of_commands(logs: &Logs, holds: &Holdings) -> Vec<String> {
     missing
 }
 
-fn of_sensor(logs: &Logs, distance_cm: Range, alpha_deg: Range) -> Vec<String> {
-    let max_cm = logs.robot.ultrasonic.max_cm;
+fn of_sensor(sensor: &Ultrasonic, distance_cm: Range, alpha_deg: Range) -> Vec<String> {
+    let max_cm = sensor.max_cm;
     let mut missing = Vec::new();
     if distance_cm.high < (1.0 - QUARTER) * max_cm {
         missing.push(format!("No wall is seen beyond {:.0} cm; the sensor's range is {max_cm} cm.", distance_cm.high));

@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use mindgap_foundations::statistics::rounding;
 use mindgap_foundations::statistics::summary::median;
-use mindgap_logs::{Logs, Run, rows, samples};
+use mindgap_logs::{Logs, Run, Ultrasonic, rows, samples};
 
 /// Amount, rates, ranges and coverage of logs. Ranges are none where there is nothing.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -129,7 +129,9 @@ struct Faced {
 impl Faced {
     /// In one pass: each row is a ray through the room.
     fn of(logs: &Logs) -> Self {
-        let max_cm = logs.robot.ultrasonic.max_cm;
+        let Some(Ultrasonic { max_cm, .. }) = logs.robot.ultrasonic else {
+            return Faced { distance_cm: None, alpha_deg: None, coverage: 0.0 };
+        };
         let (mut distance, mut alpha) = (None, None);
         let seen = samples::readings(logs).map(|s| {
             let [distance_cm, alpha_deg] = [s.distance_cm, s.alpha_deg()];

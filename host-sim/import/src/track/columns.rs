@@ -1,8 +1,8 @@
 //! Tracks as plain CSV, with columns named after quantity and unit such as `time_s`, `x_m`, `y_m`, `yaw_rad`.
 
 use std::path::Path;
+use std::str::FromStr;
 
-use clap::ValueEnum;
 use csv::StringRecord;
 
 use crate::frame::Frame;
@@ -45,7 +45,7 @@ pub(super) fn frames(file: &Path, text: &str, units: &Units) -> Result<Vec<Optio
 struct Column {
     name: String,
     place: usize,
-    /// The unit in its name; empty if there is none.
+    /// The unit in its name, in lower case; empty if there is none.
     unit: String,
 }
 
@@ -65,11 +65,11 @@ impl Column {
         }
     }
 
-    fn unit<U: ValueEnum>(&self, default: Option<U>, option: &str) -> std::result::Result<U, String> {
+    fn unit<U: FromStr>(&self, default: Option<U>, option: &str) -> std::result::Result<U, String> {
         if self.unit.is_empty() {
             return default.ok_or_else(|| format!("column {} has no unit: give {option}", self.name));
         }
-        U::from_str(&self.unit, true).map_err(|_| format!("column {} has an unknown unit", self.name))
+        self.unit.parse().map_err(|_| format!("column {} has an unknown unit", self.name))
     }
 
     fn number(&self, record: &StringRecord) -> std::result::Result<Option<f64>, String> {

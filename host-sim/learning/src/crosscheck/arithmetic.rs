@@ -8,7 +8,7 @@ use mindgap_core::folded::FoldedNetwork;
 use rand::Rng;
 
 use crate::learn::dataset::{Dataset, Datasets};
-use mindgap_foundations::error::Result;
+use mindgap_foundations::error::{Error, Result};
 use mindgap_models::simulator::Simulator;
 use mindgap_models::simulator::fixed_point::FixedNetworks;
 
@@ -64,12 +64,14 @@ impl Float {
         let echo_probability =
             FoldedNetwork::fold(&simulator.need(&simulator.echo_probability, "echo_probability")?.network);
         let echo_value = FoldedNetwork::fold(&simulator.need(&simulator.echo_value, "echo_value")?.network);
+        let sensor = simulator.robot.ultrasonic;
+        let sensor = sensor.ok_or_else(|| Error::new("the simulator's robot has no [ultrasonic]"))?;
         let scatter = Scatter {
             turn_deg: deviation(&turn, &data.turn),
             forward_cm: deviation(&forward, &data.forward),
             lateral_cm: deviation(&lateral, &data.lateral),
             echo_cm: deviation(&echo_value, &data.echo_value),
-            range_cm: [simulator.robot.ultrasonic.min_cm, simulator.robot.ultrasonic.max_cm],
+            range_cm: sensor.range_cm(),
         };
         Ok(Float { turn, forward, lateral, echo_probability, echo_value, scatter })
     }

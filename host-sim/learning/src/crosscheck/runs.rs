@@ -197,7 +197,7 @@ impl<'a, A: Arithmetic> Walker<'a, A> {
         if self.crashed {
             return;
         }
-        let sensor = world.robot.ultrasonic.pose_on(&self.pose);
+        let sensor = world.robot.sensor_pose(&self.pose);
         self.echo_cm = cast(&world.sides, sensor.position_cm, sensor.direction()).and_then(|hit| {
             self.arithmetic.reading([hit.distance_cm, hit.incidence_rad.abs().to_degrees()], generator)
         });

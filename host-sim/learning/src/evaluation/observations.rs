@@ -245,7 +245,7 @@ pub fn number_places(rows: &mut [Observation]) -> usize {
     for row in rows.iter_mut() {
         let StepContext { robot, pose, .. } = row.context;
         let next = known.len();
-        row.place = *known.entry(place_of(&robot.ultrasonic.pose_on(&pose))).or_insert(next);
+        row.place = *known.entry(place_of(&robot.sensor_pose(&pose))).or_insert(next);
     }
     known.len()
 }

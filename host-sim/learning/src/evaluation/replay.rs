@@ -105,7 +105,7 @@ mod tests {
             assert!((x - (30.0 + step_cm * k as f64)).abs() < 1e-9, "{k}: {x}");
         }
         assert!((x_cm[PUT_BACK_STEPS] - (30.0 + 4.0 * PUT_BACK_STEPS as f64)).abs() < 1e-9);
-        let wall_cm = WALL_CM - x_cm[30] - logs.robot.ultrasonic.x_cm;
+        let wall_cm = WALL_CM - x_cm[30] - logs.robot.ultrasonic.expect("a sensor").x_cm;
         let echo_cm = moments[30].echo_cm.expect("the wall ahead is near enough to be heard");
         assert!((echo_cm - wall_cm).abs() < 5.0, "{echo_cm} for {wall_cm}");
     }

@@ -112,7 +112,7 @@ fn of_networks(
     axis: impl Fn(&Pose) -> Option<[f32; 2]> + Sync,
 ) -> Option<impl Fn(&Pose) -> Outcomes + Sync> {
     let (probability, value) = simulator.echo_probability.as_ref().zip(simulator.echo_value.as_ref())?;
-    let range_cm = [simulator.robot.ultrasonic.min_cm, simulator.robot.ultrasonic.max_cm];
+    let range_cm = simulator.robot.ultrasonic?.range_cm();
     let constant = simulator.constant_reading;
     Some(move |sensor: &Pose| {
         let known = 1.0 - P_RAND;

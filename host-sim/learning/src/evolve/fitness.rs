@@ -7,9 +7,10 @@ use super::genome::GenotypeDecoder;
 use super::way::WayMap;
 use crate::genetic;
 use mindgap_foundations::chance::{Generator, derive};
+use mindgap_logs::Termination;
 use mindgap_models::simulator::environment::Environment;
 use mindgap_models::simulator::motion::MotionTable;
-use mindgap_models::simulator::rollout::{REACHED_CM, RolloutOutcome, RolloutRequest, Termination};
+use mindgap_models::simulator::rollout::{REACHED_CM, RolloutOutcome, RolloutRequest};
 
 /// Which random numbers the individuals of a generation are evaluated with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -28,10 +28,10 @@ impl GenotypeDecoder {
 
     /// The decoder for a simulator's robot.
     pub fn new(simulator: &Simulator, max_steps: u16) -> Self {
-        let sonar = &simulator.robot.ultrasonic;
+        let [min_cm, max_cm] = simulator.robot.ultrasonic.map_or([0.0; 2], |sensor| sensor.range_cm());
         GenotypeDecoder {
             commands: simulator.commands,
-            thresholds_cm: [sonar.min_cm as f32, (sonar.max_cm as f32).min(f32::from(MAX_THRESHOLD_CM))],
+            thresholds_cm: [min_cm as f32, (max_cm as f32).min(f32::from(MAX_THRESHOLD_CM))],
             step_ms: simulator.robot.step_ms.round() as u16,
             max_steps,
         }

@@ -34,8 +34,6 @@ pub struct Request<'a> {
     pub noise: Noise,
     /// What makes the readings, where more scatters than in the paper.
     pub sensor: SensorModel,
-    /// Which random numbers individuals meet.
-    pub random_numbers: RandomNumbers,
     /// Seed of all draws.
     pub seed: u64,
 }
@@ -70,7 +68,7 @@ impl Request<'_> {
     /// # Errors
     /// When the scene has no target or not this start, when there are no steps, or when the simulator cannot run controllers there.
     pub fn evolve(&self, watch: impl FnMut(usize, f64)) -> Result<Answered> {
-        let Request { executor, simulator, scene, noise, random_numbers, seed, .. } = *self;
+        let Request { executor, simulator, scene, noise, seed, .. } = *self;
         if self.max_steps == 0 {
             return Err(Error::new("a controller needs at least one step"));
         }
@@ -82,15 +80,13 @@ impl Request<'_> {
         let decoder = GenotypeDecoder::new(simulator, self.max_steps);
         let (runs, floor_cm) = (paper::RUNS, paper::FLOOR_CM);
         let way = &WayMap::new(scene, target_cm, simulator.robot.body_radius_cm);
+        let random_numbers = RandomNumbers::Independent;
         let evaluator =
             FitnessEvaluator { environment, target_cm, way: None, decoder, runs, floor_cm, random_numbers, seed };
         let candidates = if self.paper {
             vec![paper::evolve(executor, &evaluator, &paper::settings(), watch)?]
         } else {
-            robust::candidates(
-                &EvolutionTask { executor, environment, target_cm, way, decoder, random_numbers, seed },
-                watch,
-            )?
+            robust::candidates(&EvolutionTask { executor, environment, target_cm, way, decoder, seed }, watch)?
         };
         let chances = match &robots {
             Some(robots) => {

@@ -6,8 +6,9 @@ use mindgap_core::controller::{Controller, Tuple, When};
 
 use super::task::EvolutionTask;
 use mindgap_foundations::chance::derive;
+use mindgap_logs::Termination;
 use mindgap_models::simulator::motion::MotionTable;
-use mindgap_models::simulator::rollout::{REACHED_CM, RolloutRequest, Termination, TrajectoryPoint};
+use mindgap_models::simulator::rollout::{REACHED_CM, RolloutRequest, TrajectoryPoint};
 
 /// Thresholds lie this far apart, cm: about the scatter of a reading.
 const APART_CM: usize = 4;

@@ -32,8 +32,6 @@ pub struct EvolutionTask<'a> {
     pub way: &'a WayMap,
     /// Decodes genotypes into controllers.
     pub decoder: GenotypeDecoder,
-    /// Which random numbers individuals are evaluated with.
-    pub random_numbers: RandomNumbers,
     /// Seed of all draws.
     pub seed: u64,
 }
@@ -73,7 +71,7 @@ impl<'a> EvolutionTask<'a> {
             runs: RUNS,
             // Within the target radius nearer is no better: the success rate counts.
             floor_cm: REACHED_CM,
-            random_numbers: self.random_numbers,
+            random_numbers: RandomNumbers::Common,
             seed: self.seed,
         }
     }

@@ -2,7 +2,6 @@
 
 use std::sync::LazyLock;
 
-use super::fitness::RandomNumbers;
 use super::genome::GenotypeDecoder;
 use super::task::EvolutionTask;
 use super::way::WayMap;
@@ -31,7 +30,6 @@ pub fn with_task(check: impl Fn(&EvolutionTask)) {
         target_cm,
         way: &WayMap::new(&scene, target_cm, SIMULATOR.robot.body_radius_cm),
         decoder: GenotypeDecoder::new(&SIMULATOR, 60),
-        random_numbers: RandomNumbers::Common,
         seed: SEED,
     });
 }

@@ -16,14 +16,14 @@ use mindgap_models::sonar::{Perturbation, SonarModel, fan_at};
 /// with one that makes them likely; none where they hold too few readings.
 pub fn learn(constant: Option<ConstantReading>, logs: &Logs) -> Option<SonarModel> {
     let sides = logs.scene.sides();
-    let mount = &logs.robot.ultrasonic;
+    let mount = logs.robot.ultrasonic?;
     let meets_a_wall = |sensor: &Pose| cast(&sides, sensor.position_cm, sensor.direction()).is_some();
     let readings = seen(logs).iter().filter(|(sensor, echo_cm)| echo_cm.is_some() && meets_a_wall(sensor)).count();
     if readings < FEWEST {
         return None;
     }
     let value_cm = constant.map_or(mount.min_cm, |c| f64::from(c.value_cm));
-    let found = learn_from(&model(&START, value_cm, [mount.min_cm, mount.max_cm]), logs);
+    let found = learn_from(&model(&START, value_cm, mount.range_cm()), logs);
     let likely_cm = if constant.is_none() { likely_constant_cm(&found, logs) } else { None };
     Some(match likely_cm {
         Some(value_cm) => learn_from(&with_constant(&found, CONSTANT_AT_START, value_cm), logs),
@@ -81,7 +81,7 @@ fn with_constant(beam: &SonarModel, probability: f64, value_cm: f64) -> SonarMod
 /// Where the sensor was at every row, and what it read.
 fn seen(logs: &Logs) -> Vec<(Pose, Option<f64>)> {
     let rows = logs.runs.iter().flat_map(|run| &run.rows);
-    rows.filter_map(|row| Some((logs.robot.ultrasonic.pose_on(&row.pose?), row.echo_cm))).collect()
+    rows.filter_map(|row| Some((logs.robot.sensor_pose(&row.pose?), row.echo_cm))).collect()
 }
 
 /// Fewer readings than this tell nothing of some twenty parameters.
@@ -168,9 +168,10 @@ mod tests {
         let beam = with_constant(&learn(None, &logs).expect("readings"), 0.0, 4.0);
         let sensor = with_constant(&beam, p_constant, value_cm);
         let (sides, mut rng) = (logs.scene.sides(), generator(2, &[]));
-        let mount = logs.robot.ultrasonic;
-        let read =
-            |pose: &Pose| sensor.outcomes(&fan_at(&sides, &mount.pose_on(pose), sensor.fan_width), &Perturbation::NONE);
+        let robot = logs.robot;
+        let read = |pose: &Pose| {
+            sensor.outcomes(&fan_at(&sides, &robot.sensor_pose(pose), sensor.fan_width), &Perturbation::NONE)
+        };
         for run in &mut logs.runs {
             run.rows.edit_each(|row| {
                 if let Some(pose) = &row.pose {

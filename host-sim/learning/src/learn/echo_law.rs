@@ -71,14 +71,15 @@ const FEWEST: usize = 30;
 
 /// The law of the sensor that made these logs; none where they hold too few readings.
 pub fn learn(logs: &Logs, seed: u64) -> Option<Found> {
-    let all = Fit::new(logs);
+    let all = Fit::new(logs, logs.robot.ultrasonic?.range_cm());
     let readings = all.scans.rows().filter(|row| row.echo_cm.is_some()).count();
     (readings >= FEWEST).then(|| all.most_probable(all.clone().sampled(seed).best_of(&starts(seed))))
 }
 
 /// The law of these logs, with poses as logged, sought from another on.
 pub fn learn_from(start: &FirstEchoLaw, logs: &Logs) -> FirstEchoLaw {
-    Fit::new(logs).as_logged(&numbers(start))
+    let range_cm = logs.robot.ultrasonic.map_or(start.range_cm, |sensor| sensor.range_cm());
+    Fit::new(logs, range_cm).as_logged(&numbers(start))
 }
 
 /// The most probable law of a sensor; where no run is a scan both are the same.
@@ -106,14 +107,9 @@ struct Faced {
 }
 
 impl Fit {
-    fn new(logs: &Logs) -> Self {
+    fn new(logs: &Logs, range_cm: [f64; 2]) -> Self {
         let scans = Scans::of(logs);
-        Fit {
-            surfaces: Surfaces::new(logs.scene.sides()),
-            weight: scans.weight(),
-            scans,
-            range_cm: [logs.robot.ultrasonic.min_cm, logs.robot.ultrasonic.max_cm],
-        }
+        Fit { surfaces: Surfaces::new(logs.scene.sides()), weight: scans.weight(), scans, range_cm }
     }
 
     /// The same with [`MOST_ROWS`] rows at most.
@@ -283,7 +279,7 @@ pub(super) mod tests {
         let scene = training_room();
         let surfaces = Surfaces::new(scene.sides());
         let robot = mindgap_logs::Robot {
-            ultrasonic: mindgap_logs::Ultrasonic { x_cm: 0.0, ..default_robot().ultrasonic },
+            ultrasonic: default_robot().ultrasonic.map(|sensor| mindgap_logs::Ultrasonic { x_cm: 0.0, ..sensor }),
             ..default_robot()
         };
         let (sensor, mut rng) = (made_up(), generator(seed, &[]));
@@ -347,7 +343,7 @@ pub(super) mod tests {
     fn all_rows_tell_of_a_sensor() {
         let mut logs = scans(1, [0.0; 12]);
         logs.runs.extend(scans(2, [0.0; 12]).runs);
-        let fit = Fit::new(&logs);
+        let fit = Fit::new(&logs, [4.0, 240.0]);
         assert!(fit.scans.rows().count() > MOST_ROWS);
         let likely = |law: &FirstEchoLaw| fit.terms(&numbers(law), &fit.unchanged()).iter().sum::<f64>();
         let found = [1, 2].map(|seed| likely(&learn(&logs, seed).expect("readings").as_logged));

@@ -39,7 +39,7 @@ pub fn seen(law: &SensorLaw, logs: &Logs) -> Vec<Seen> {
     let rows: Vec<(usize, Row)> =
         logs.runs.iter().enumerate().flat_map(|(run, logged)| logged.rows.iter().map(move |row| (run, row))).collect();
     let seen = |(run, row): &(usize, Row)| {
-        let sensor = logs.robot.ultrasonic.pose_on(&row.pose?);
+        let sensor = logs.robot.sensor_pose(&row.pose?);
         let outcomes = law.outcomes_at(&surfaces, &sensor);
         let off_cm = outcomes.off_cm(row.echo_cm);
         Some(Seen { sensor, run: *run, none: outcomes.none, echo_cm: row.echo_cm, off_cm })

@@ -6,12 +6,12 @@ use rayon::prelude::*;
 
 use mindgap_foundations::chance::generator;
 use mindgap_foundations::geometry::{Pose, wrap_rad};
-use mindgap_logs::{Logs, Ultrasonic};
+use mindgap_logs::{Logs, Robot};
 
 /// The rows of logs at which the robot was seen.
 #[derive(Clone, Debug)]
 pub struct Scans {
-    mount: Ultrasonic,
+    robot: Robot,
     /// The rows of each run.
     pub runs: Vec<Vec<Heard>>,
 }
@@ -46,7 +46,7 @@ impl Scans {
     pub fn of(logs: &Logs) -> Self {
         let heard = |row: mindgap_logs::Row| Some(Heard { robot: row.pose?, echo_cm: row.echo_cm });
         let runs = logs.runs.iter().map(|run| run.rows.iter().filter_map(heard).collect()).collect();
-        Scans { mount: logs.robot.ultrasonic, runs }
+        Scans { robot: logs.robot, runs }
     }
 
     /// At most `most` of these rows, in order; which is a matter of `seed`.
@@ -74,7 +74,7 @@ impl Scans {
     /// The sensor of a robot to whose pose an offset is added.
     pub fn sensor(&self, robot: &Pose, [x_cm, y_cm, deg]: &Offset) -> Pose {
         let position_cm = robot.position_cm + DVec2::new(*x_cm, *y_cm);
-        self.mount.pose_on(&Pose { position_cm, heading_rad: wrap_rad(robot.heading_rad + deg.to_radians()) })
+        self.robot.sensor_pose(&Pose { position_cm, heading_rad: wrap_rad(robot.heading_rad + deg.to_radians()) })
     }
 
     /// How much a row counts: runs of equal readings of an unmoved sensor are one observation each, though their ends tell

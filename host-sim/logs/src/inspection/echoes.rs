@@ -3,7 +3,7 @@
 use super::finding::{Finding, Handling, Part, Place};
 use super::map::{faced, fitting};
 use super::ways::FEWEST;
-use crate::{Logs, Row};
+use crate::{Logs, Row, Ultrasonic};
 use mindgap_foundations::statistics::summary::median;
 
 /// Centimetres in units that sensors' drivers use.
@@ -55,7 +55,7 @@ pub fn units(logs: &mut Logs) -> Vec<Finding> {
 
 /// Numbers that stand for no reading are taken out; other readings beyond the sensor's range stay.
 pub fn none_numbers(logs: &mut Logs) -> Vec<Finding> {
-    let max_cm = logs.robot.ultrasonic.max_cm;
+    let Some(Ultrasonic { min_cm, max_cm, .. }) = logs.robot.ultrasonic else { return Vec::new() };
     let echoes = || logs.runs.iter().flat_map(|run| &run.rows).filter_map(|row| row.echo_cm);
     let mut beyond: Vec<f64> = echoes().filter(|echo| *echo > max_cm).collect();
     beyond.sort_by(f64::total_cmp);
@@ -64,7 +64,7 @@ pub fn none_numbers(logs: &mut Logs) -> Vec<Finding> {
     let repeated = equal.filter(|equal| equal.len() >= OFTEN && 2 * equal.len() > beyond.len()).map(|equal| equal[0]);
     let is_none = |echo: f64| {
         let nxt = echo == NXT_NONE && echo > max_cm;
-        echo == 0.0 && logs.robot.ultrasonic.min_cm > 0.0 || echo >= ENDLESS_CM || nxt || Some(echo) == repeated
+        echo == 0.0 && min_cm > 0.0 || echo >= ENDLESS_CM || nxt || Some(echo) == repeated
     };
     let mut numbers: Vec<f64> = echoes().filter(|echo| is_none(*echo)).collect();
     let rows = rows_where(logs, |row| row.echo_cm.is_some_and(is_none));

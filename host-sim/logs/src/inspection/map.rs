@@ -11,13 +11,14 @@ const FITS_CM: f64 = 5.0;
 
 /// Pairs of a reading and the distance along the sensor's axis, cm, from poses changed by `change`; of large logs enough.
 pub fn faced(logs: &Logs, change: impl Fn(&Pose) -> Pose) -> Vec<[f64; 2]> {
+    let Some(mount) = logs.robot.ultrasonic else { return Vec::new() };
     let sides = logs.scene.sides();
     let rows = logs.runs.iter().flat_map(|run| &run.rows).step_by(one_in(logs.rows()));
     let pairs = rows.filter_map(|row| {
-        let sensor = logs.robot.ultrasonic.pose_on(&change(&row.pose?));
+        let sensor = mount.pose_on(&change(&row.pose?));
         Some([row.echo_cm?, cast(&sides, sensor.position_cm, sensor.direction())?.distance_cm])
     });
-    pairs.filter(|[_, distance_cm]| *distance_cm <= logs.robot.ultrasonic.max_cm).collect()
+    pairs.filter(|[_, distance_cm]| *distance_cm <= mount.max_cm).collect()
 }
 
 /// The share of pairs that fit when readings are multiplied by `factor`.

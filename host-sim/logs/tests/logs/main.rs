@@ -1,4 +1,5 @@
-//! Logs of the built-in robot: in longer steps, and as tables in memory.
+//! Logs of the built-in robot: in longer steps, as tables in memory, and the robot that they belong to.
 
 mod resample;
+mod robot;
 mod tables;

@@ -103,7 +103,7 @@ impl Surroundings {
 
     /// Where the sensor of a robot at `robot` is, its axis turned by `yaw_rad`.
     pub fn sensor(&self, robot: &Pose, yaw_rad: f64) -> Pose {
-        let mut sensor = self.robot.ultrasonic.pose_on(robot);
+        let mut sensor = self.robot.sensor_pose(robot);
         sensor.heading_rad += yaw_rad;
         sensor
     }

@@ -84,12 +84,12 @@ impl<'e> SimulatedBody<'e> {
     /// One reading of the ultrasonic sensor, cm; `None` if it produced no value.
     pub fn read_sonar(&mut self, rng: &mut Generator) -> Option<f64> {
         let environment = self.environment;
-        let sonar = &environment.robot.ultrasonic;
-        let range = |cm: f64| cm.clamp(sonar.min_cm, sonar.max_cm);
+        let mount = &environment.mount;
+        let range = |cm: f64| cm.clamp(mount.min_cm, mount.max_cm);
         if let Some(effects) = environment.effect_layer.as_ref().filter(|effects| effects.senses()) {
             return effects.echo_cm(&mut self.memory, self.pose, rng.random()).map(|cm| range(cm.into()));
         }
-        let sensor = sonar.pose_on(&self.pose);
+        let sensor = mount.pose_on(&self.pose);
         let faced = cast(&self.sides, sensor.position_cm, sensor.direction())?;
         let context = [faced.distance_cm as f32, faced.incidence_rad.abs().to_degrees() as f32];
         let [probability, mut reading_cm] = evaluate_all(&environment.sonar, context);

@@ -1,6 +1,7 @@
 //! A simulator, a scene and a start, ready for rollouts of controllers.
 
-use clap::ValueEnum;
+use std::str::FromStr;
+
 use glam::DVec2;
 use mindgap_core::controller::Controller;
 use mindgap_core::folded::FoldedNetwork;
@@ -16,11 +17,12 @@ use super::{Noise, Simulator};
 use crate::sonar::SensorLaw;
 use mindgap_foundations::error::{Error, Result};
 use mindgap_foundations::geometry::Pose;
-use mindgap_logs::{Robot, Scene};
+use mindgap_logs::{Robot, Scene, Ultrasonic};
 
 /// Where and how controllers are rolled out.
 pub struct Environment<'s> {
     pub(super) robot: Robot,
+    pub(super) mount: Ultrasonic,
     pub(super) start: Pose,
     /// Unit vector along the sensor's axis on the robot.
     pub(super) yaw_direction: [f32; 2],
@@ -44,15 +46,27 @@ pub struct Environment<'s> {
 }
 
 /// What makes the readings of simulated runs.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SensorModel {
     /// The beam that the training logs show; the networks where they show none.
     Beam,
     /// The two sonar networks.
     Networks,
     /// The first-echo law.
-    #[value(name = "first_echo")]
     FirstEcho,
+}
+
+impl FromStr for SensorModel {
+    type Err = String;
+
+    fn from_str(name: &str) -> std::result::Result<Self, String> {
+        match name {
+            "beam" => Ok(SensorModel::Beam),
+            "networks" => Ok(SensorModel::Networks),
+            "first_echo" => Ok(SensorModel::FirstEcho),
+            _ => Err(format!("{name:?} is not a sensor model")),
+        }
+    }
 }
 
 impl<'s> Environment<'s> {
@@ -71,12 +85,14 @@ impl<'s> Environment<'s> {
         }
         let echo_probability = simulator.need(&simulator.echo_probability, "echo_probability")?;
         let echo_value = simulator.need(&simulator.echo_value, "echo_value")?;
-        let yaw_rad = robot.ultrasonic.yaw_deg.to_radians();
+        let mount = robot.ultrasonic.ok_or_else(|| Error::new("the simulator's robot has no [ultrasonic]"))?;
+        let yaw_rad = mount.yaw_deg.to_radians();
         let beyond = simulator.reference.as_ref().filter(|_| noise == Noise::Learned);
         let motion = MotionNetworks::of(simulator)?.corrected(beyond.and_then(|r| r.motion.as_ref()));
         let beam = beyond.and_then(|r| r.sonar.as_ref()).map(Beam::new);
         Ok(Environment {
             robot,
+            mount,
             start,
             yaw_direction: [libm::cos(yaw_rad) as f32, libm::sin(yaw_rad) as f32],
             room: Room::new(scene),
@@ -111,7 +127,7 @@ impl<'s> Environment<'s> {
         let effect_layer = self.effect_layer.map(|layer| layer.hearing_by(SensorLaw::FirstEcho(law.clone())));
         // Readings that effects change are made where the effects are.
         let is_changed = effect_layer.as_ref().is_some_and(EffectLayer::senses);
-        let first_echo = (!is_changed).then(|| FirstEchoSensor::new(law, scene, simulator.robot.ultrasonic));
+        let first_echo = (!is_changed).then(|| FirstEchoSensor::new(law, scene, self.mount));
         Ok(Environment { effect_layer, first_echo, ..self })
     }
 

@@ -29,7 +29,7 @@ pub fn baseline(logs: &Logs) -> Baseline<'static> {
 
 fn sonar(logs: &Logs) -> Option<SensorLaw> {
     let seen = samples::sonar(logs);
-    let mount = &logs.robot.ultrasonic;
+    let mount = logs.robot.ultrasonic?;
     let mut errors_cm: Vec<f64> = seen.iter().filter_map(|s| Some((s.echo_cm? - s.distance_cm).abs())).collect();
     if errors_cm.is_empty() {
         return None;
@@ -40,6 +40,5 @@ fn sonar(logs: &Logs) -> Option<SensorLaw> {
     let within = seen.iter().filter(|s| s.distance_cm < mount.max_cm);
     let (echoes, all) = within.fold((0.0, 0.0), |(e, n), s| (e + f64::from(u8::from(s.echo_cm.is_some())), n + 1.0));
     let p_dropout = 1.0 - echoes / f64::max(all, 1.0);
-    let range_cm = [mount.min_cm, mount.max_cm];
-    Some(SensorLaw::FirstEcho(FirstEchoLaw::ideal_ray(scatter_cm.clamp(least, most), p_dropout, range_cm)))
+    Some(SensorLaw::FirstEcho(FirstEchoLaw::ideal_ray(scatter_cm.clamp(least, most), p_dropout, mount.range_cm())))
 }

@@ -5,6 +5,7 @@ use mindgap_core::controller::Controller;
 
 use super::motion::MotionTable;
 use mindgap_foundations::geometry::Pose;
+use mindgap_logs::Termination;
 
 /// One run to be simulated.
 #[derive(Clone, Copy)]
@@ -15,17 +16,6 @@ pub struct RolloutRequest<'c> {
     pub motions: &'c MotionTable,
     /// Fixes every draw of the run.
     pub seed: u64,
-}
-
-/// How a run ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Termination {
-    /// The sixth tuple's test held.
-    Finished,
-    /// The step limit was reached.
-    TimedOut,
-    /// The body touched a wall or an obstacle.
-    Crashed,
 }
 
 /// The outcome of a run.

@@ -6,10 +6,10 @@ use serde::Serialize;
 
 use super::environment::Environment;
 use super::motion::MotionTable;
-use super::rollout::{REACHED_CM, RolloutOutcome, RolloutRequest, Termination, TrajectoryPoint};
+use super::rollout::{REACHED_CM, RolloutOutcome, RolloutRequest, TrajectoryPoint};
 use mindgap_foundations::chance::derive;
 use mindgap_foundations::counter::Counter;
-use mindgap_logs::Scene;
+use mindgap_logs::{Scene, Termination};
 
 /// What `mindgap simulate --json` writes.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -27,9 +27,9 @@ pub struct RolloutReport {
 /// One run.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Rollout {
-    /// `finished`, `timed_out` or `crashed`.
+    /// How it ended.
     #[serde(rename = "ending")]
-    pub termination: &'static str,
+    pub termination: Termination,
     /// Number of steps taken.
     pub steps: u16,
     /// Final position along x.
@@ -104,11 +104,7 @@ impl Rollout {
             tuple: m.tuple + 1,
         };
         Rollout {
-            termination: match outcome.termination {
-                Termination::Finished => "finished",
-                Termination::TimedOut => "timed_out",
-                Termination::Crashed => "crashed",
-            },
+            termination: outcome.termination,
             steps: outcome.steps,
             end_x_cm: outcome.end_cm.x,
             end_y_cm: outcome.end_cm.y,

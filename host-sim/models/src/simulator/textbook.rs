@@ -58,8 +58,7 @@ pub fn simulator(baseline: &Baseline, scatter: [f64; 3]) -> Result<Simulator> {
         Some(SensorLaw::Beam(model)) => (None, Some(model.clone())),
         None => (None, None),
     };
-    let has_sensor = !robot.ultrasonic.is_none();
-    let [near_cm, far_cm] = [robot.ultrasonic.min_cm, robot.ultrasonic.max_cm].map(|cm| cm as f32);
+    let range_cm = robot.ultrasonic.map(|sensor| sensor.range_cm().map(|cm| cm as f32));
     Ok(Simulator {
         schema: SCHEMA,
         origin: Origin { version: env!("CARGO_PKG_VERSION").into(), trainer: "textbook".into(), seed: 0, runs: 0 },
@@ -68,9 +67,10 @@ pub fn simulator(baseline: &Baseline, scatter: [f64; 3]) -> Result<Simulator> {
         turn: learned(&turn_deg, 2)?,
         forward: learned(&forward_cm, 0)?,
         lateral: learned(&lateral_cm, 1)?,
-        echo_probability: has_sensor.then(|| Learned { network: within(far_cm), residuals: residuals(0.0, far_cm) }),
-        echo_value: has_sensor
-            .then(|| Learned { network: distance(near_cm, far_cm), residuals: residuals(0.0, far_cm) }),
+        echo_probability: range_cm
+            .map(|[_, far_cm]| Learned { network: within(far_cm), residuals: residuals(0.0, far_cm) }),
+        echo_value: range_cm
+            .map(|[near_cm, far_cm]| Learned { network: distance(near_cm, far_cm), residuals: residuals(0.0, far_cm) }),
         constant_reading: None,
         reference: Some(NominalModel {
             motion: Some(MotionBias {
@@ -212,7 +212,7 @@ mod tests {
         #[test]
         fn it_hears_the_distance_within_its_range(distance_cm in 0f32..400.0, alpha_deg in 0f32..90.0) {
             let simulator = simulator(&baseline(), SCATTER).unwrap();
-            let [near, far] = [simulator.robot.ultrasonic.min_cm, simulator.robot.ultrasonic.max_cm].map(|cm| cm as f32);
+            let [near, far] = simulator.robot.ultrasonic.unwrap().range_cm().map(|cm| cm as f32);
             let probability: f32 = simulator.echo_probability.as_ref().unwrap().network.evaluate([distance_cm, alpha_deg]);
             let value: f32 = simulator.echo_value.as_ref().unwrap().network.evaluate([distance_cm, alpha_deg]);
             if (distance_cm - far).abs() > 0.2 {

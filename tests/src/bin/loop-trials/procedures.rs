@@ -5,13 +5,11 @@ use std::path::Path;
 use mindgap_applications::adapt::adapt;
 use mindgap_applications::demo::robot::TrialledRobot;
 use mindgap_applications::trials::{self, Job};
-use mindgap_built_in_robot::Termination;
 use mindgap_core::controller::Controller;
 use mindgap_foundations::chance::derive;
 use mindgap_foundations::error::{Error, Result};
 use mindgap_foundations::executor::Serial;
 use mindgap_learning::evolve::chance::{Judge, ROBOTS, RUNS};
-use mindgap_learning::evolve::controller_file::ControllerFile;
 use mindgap_learning::evolve::fitness::{FitnessEvaluator, RandomNumbers};
 use mindgap_learning::evolve::genome::GenotypeDecoder;
 use mindgap_learning::evolve::paper;
@@ -19,7 +17,8 @@ use mindgap_learning::evolve::robust;
 use mindgap_learning::evolve::task::EvolutionTask;
 use mindgap_learning::evolve::way::WayMap;
 use mindgap_learning::learn::train::{TABLE_ONE, Trainer, train};
-use mindgap_logs::{Logs, Run, Scene};
+use mindgap_logs::controller_file::ControllerFile;
+use mindgap_logs::{Logs, Run, Scene, Termination};
 use mindgap_models::simulator::environment::Environment;
 use mindgap_models::simulator::nominal::NominalModel;
 use mindgap_models::simulator::{Noise, Simulator};
@@ -84,7 +83,7 @@ fn by_the_paper(bench: &Workbench) -> Result<Settled> {
         random_numbers: RandomNumbers::Independent,
         seed: bench.seed(),
     };
-    Ok(untried(paper::evolve(&evaluator, &paper::settings(), |_, _| {})?.controller))
+    Ok(untried(paper::evolve(&Serial, &evaluator, &paper::settings(), |_, _| {})?.controller))
 }
 
 /// As `mindgap evolve` was before it knew ways round obstacles and what logs leave open.
@@ -195,7 +194,6 @@ impl Workbench<'_> {
             target_cm,
             way: &WayMap::new(ways_of, target_cm, simulator.robot.body_radius_cm),
             decoder: GenotypeDecoder::new(simulator, MAX_STEPS),
-            random_numbers: RandomNumbers::Common,
             seed: self.seed(),
         };
         Ok(robust::candidates(&task, |_, _| {})?.into_iter().map(|evolved| evolved.controller).collect())

@@ -137,7 +137,7 @@ fn soft_obstacles_echo_less_than_the_arena_s_sides() {
         let rate = |m: &Measured, obstacle: bool| {
             let sides = m.logs.scene.sides();
             share(m.sonar.iter().filter(|s| s.distance_cm > 30.0 && s.alpha_deg() < 45.0).filter_map(|s| {
-                let sensor = m.logs.robot.ultrasonic.pose_on(&m.logs.runs[s.run].rows.at(s.row).pose?);
+                let sensor = m.logs.robot.sensor_pose(&m.logs.runs[s.run].rows.at(s.row).pose?);
                 let hit = cast(&sides, sensor.position_cm, sensor.direction())?;
                 ((hit.wall >= 4) == obstacle).then_some(s.echo_cm.is_some())
             }))

@@ -181,7 +181,7 @@ fn samples() -> Vec<(StepContext, PoseIncrement)> {
         body_radius_cm: 10.0,
         step_ms: 400.0,
         full_speed_cm_s: 40.0,
-        ultrasonic,
+        ultrasonic: Some(ultrasonic),
     };
     let scene = Scene { arena_cm: Some(glam::DVec2::new(300.0, 200.0)), ..Scene::default() };
     let surroundings = Surroundings::new(&robot, &scene);

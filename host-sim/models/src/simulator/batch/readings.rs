@@ -37,8 +37,7 @@ impl Robots<'_> {
             (None, None, Some(beam)) => self.hear(simd, beam, draws),
             (None, None, None) => self.look(simd, draws),
         };
-        let sonar = &environment.robot.ultrasonic;
-        let (low, high) = (reading_cm.constant(sonar.min_cm as f32), reading_cm.constant(sonar.max_cm as f32));
+        let [low, high] = environment.mount.range_cm().map(|cm| reading_cm.constant(cm as f32));
         self.echo_before_cm = row(reading_cm.clamp(low, high));
         self.echo_before_cm
     }
@@ -68,11 +67,11 @@ impl Robots<'_> {
     #[inline(always)]
     fn sensors<S: Simd>(&self, simd: S) -> Sensors<S> {
         let environment = self.environment;
-        let sonar = &environment.robot.ultrasonic;
+        let mount = &environment.mount;
         let heading = load(simd, &self.heading_rad);
         let (c, s) = (load(simd, &self.heading_cos), load(simd, &self.heading_sin));
-        let ahead = heading.constant(sonar.x_cm as f32);
-        let left = heading.constant(sonar.y_cm as f32);
+        let ahead = heading.constant(mount.x_cm as f32);
+        let left = heading.constant(mount.y_cm as f32);
         let origin = Point {
             x: load(simd, &self.x_cm) + (ahead * c - left * s),
             y: load(simd, &self.y_cm) + (ahead * s + left * c),
@@ -80,7 +79,7 @@ impl Robots<'_> {
         let (cos_yaw, sin_yaw) =
             (heading.constant(environment.yaw_direction[0]), heading.constant(environment.yaw_direction[1]));
         let axis = Point { x: c * cos_yaw - s * sin_yaw, y: s * cos_yaw + c * sin_yaw };
-        let axis_deg = heading * heading.constant(180.0 / PI) + heading.constant(sonar.yaw_deg as f32);
+        let axis_deg = heading * heading.constant(180.0 / PI) + heading.constant(mount.yaw_deg as f32);
         Sensors { origin, axis, axis_deg }
     }
 

@@ -14,11 +14,12 @@ use crate::simulator::effect_layer::EffectMemory;
 use crate::simulator::environment::Environment;
 use crate::simulator::known_steps::KnownSteps;
 use crate::simulator::motion::{Motion, speeds};
-use crate::simulator::rollout::{RolloutOutcome, RolloutRequest, Termination, TrajectoryPoint};
+use crate::simulator::rollout::{RolloutOutcome, RolloutRequest, TrajectoryPoint};
 use crate::simulator::room::Point;
 use mindgap_foundations::chance::derive;
 use mindgap_foundations::geometry::Pose;
 use mindgap_foundations::lanes::{Lanes, Mask, WIDEST};
+use mindgap_logs::Termination;
 
 /// Stream key of what a sensor draws that effects change.
 const SENSOR: u64 = 1;

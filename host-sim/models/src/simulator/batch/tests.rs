@@ -4,7 +4,6 @@ use crate::effects::catalogue::Candidate;
 use crate::simulator::environment::SensorModel;
 use crate::simulator::known_steps::KnownSteps;
 use crate::simulator::motion::{Motion, MotionTable, speeds};
-use crate::simulator::rollout::Termination;
 use crate::simulator::{Noise, Simulator};
 use mindgap_built_in_robot::{default_robot, four_obstacles, record, training_room};
 use mindgap_core::controller::{Controller, Machine, Status, TUPLES};
@@ -12,6 +11,7 @@ use mindgap_foundations::chance::generator;
 use mindgap_foundations::executor::Serial;
 use mindgap_learning::evolve::genome::GenotypeDecoder;
 use mindgap_learning::learn::train::{self, TABLE_ONE, Trainer};
+use mindgap_logs::Termination;
 use sha2::{Digest, Sha256};
 use std::sync::LazyLock;
 

@@ -6,9 +6,9 @@ use mindgap_core::controller::{Controller, InvalidController, TUPLES, Tuple};
 use serde::{Deserialize, Serialize};
 use toml::Spanned;
 
+use super::Robot;
 use mindgap_files as files;
 use mindgap_foundations::error::{Error, Result};
-use mindgap_logs::Robot;
 
 /// The contents of `controller.toml`.
 #[derive(Clone, Debug, PartialEq)]
@@ -32,8 +32,10 @@ pub struct Origin {
     pub seed: u64,
     /// Total number of generations.
     pub generations: usize,
-    /// Fitness when the controller was selected: equation (3) of the paper, summed over its runs.
-    pub fitness: f64,
+    /// Fitness when the controller was selected: equation (3) of the paper, summed over its runs; none where it was selected
+    /// by its chance of success.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub fitness: Option<f64>,
     /// Success rate in simulated runs that played no part in the evolution, 0..=1.
     pub success: f64,
 }
@@ -110,7 +112,7 @@ impl From<&ControllerFile> for mindgap_controller_export::Origin {
             start: Some(origin.start),
             seed: Some(origin.seed),
             generations: u32::try_from(origin.generations).ok(),
-            fitness: Some(origin.fitness),
+            fitness: origin.fitness,
         }
     }
 }
