@@ -69,3 +69,12 @@ fn children_of_one_parent_know_each_other_without_circles() {
     let circles: Vec<Edge> = parents.flat_map(|parent| in_circles(&modules.edges(parent))).collect();
     assert!(circles.is_empty(), "these lead back to where they begin:\n{circles:#?}");
 }
+
+#[test]
+fn core_and_export_have_no_import_circles() {
+    for source in ["core/src", "controller-export/src"] {
+        let modules = Modules::read(&workspace().join(source));
+        let circles: Vec<Edge> = modules.parents().flat_map(|parent| in_circles(&modules.edges(parent))).collect();
+        assert!(circles.is_empty(), "{source}: {circles:#?}");
+    }
+}
