@@ -1,4 +1,4 @@
-//! Tells `fixed_point::product` which cores lack an instruction for the 64-bit product of two words.
+//! Sets `short_products` for processors without an instruction for the 64-bit product of two 32-bit words.
 
 fn main() {
     println!("cargo:rerun-if-changed=build.rs");

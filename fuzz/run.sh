@@ -1,8 +1,7 @@
 #!/usr/bin/env bash
-# Feeds every target by libFuzzer, a while each and again, for so many hours: fuzz/run.sh HOURS [SECONDS-EACH]. It ends
-# before that where an input panics, takes over a second, or where a target takes more than 256 MB, and says where the input
-# lies. Inputs that reach something new are kept in target/fuzz/corpus, and how many inputs each target has had in
-# target/fuzz/counts; remove that folder to begin anew.
+# Fuzzes every target in turn with libFuzzer: fuzz/run.sh HOURS [SECONDS-EACH]. It stops early when an input panics or takes
+# over a second, or when a target uses more than 256 MB, and prints the path of the input. Inputs that reach new code are
+# kept in target/fuzz/corpus, and the number of inputs per target in target/fuzz/counts; remove that folder to start again.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 [ $# -ge 1 ] || { echo "fuzz/run.sh HOURS [SECONDS-EACH]" >&2; exit 2; }
@@ -11,7 +10,7 @@ each=${2:-60}
 out=target/fuzz
 mkdir -p $out/corpus $out/counts $out/found
 
-# The instrumentation of `cargo fuzz`, which stable Rust has too. With a target named, build scripts and macros have none.
+# The instrumentation of `cargo fuzz`, which stable Rust also supports. With --target, build scripts and macros have none.
 flags='--cfg fuzzing -Ccodegen-units=1 -Cpasses=sancov-module'
 for option in level=4 inline-8bit-counters pc-table trace-compares; do
     flags+=" -Cllvm-args=-sanitizer-coverage-$option"
@@ -23,7 +22,7 @@ TMPDIR=$(mktemp -d -p "$([ -d /dev/shm ] && echo /dev/shm || echo /tmp)")
 export TMPDIR
 trap 'rm -rf "$TMPDIR"' EXIT
 
-# feed TARGET: for a while. Of what libFuzzer says its last figures are kept.
+# feed TARGET: fuzzes a target for a while and keeps the last figures of libFuzzer's output.
 feed() {
     local log=$out/$1.log
     mkdir -p $out/corpus/"$1"
@@ -34,8 +33,8 @@ feed() {
     fi
     awk '$1 == "stat::number_of_executed_units:" { inputs = $2 }
          $1 == "stat::peak_rss_mb:" { memory = $2 }
-         / cov: / { for (i = 1; i < NF; i++) if ($i == "cov:") places = $(i + 1) }
-         END { print inputs, places, memory }' "$log" >>$out/counts/"$1"
+         / cov: / { for (i = 1; i < NF; i++) if ($i == "cov:") edges = $(i + 1) }
+         END { print inputs, edges, memory }' "$log" >>$out/counts/"$1"
 }
 
 while :; do
@@ -43,9 +42,9 @@ while :; do
         feed "$(basename "$folder")"
     done
     for counts in $out/counts/*; do
-        awk -v name="$(basename "$counts")" '{ inputs += $1; places = $2; if ($3 > memory) memory = $3 }
-            END { printf "%-16s %12d inputs, %6d places reached, at most %3d MB\n", name, inputs, places, memory }' "$counts"
+        awk -v name="$(basename "$counts")" '{ inputs += $1; edges = $2; if ($3 > memory) memory = $3 }
+            END { printf "%-16s %12d inputs, %6d edges covered, at most %3d MB\n", name, inputs, edges, memory }' "$counts"
     done
-    cat $out/counts/* | awk '{ inputs += $1 } END { printf "%d inputs in all\n", inputs }'
+    cat $out/counts/* | awk '{ inputs += $1 } END { printf "%d inputs in total\n", inputs }'
     [ "$(date +%s)" -lt "$until" ] || break
 done

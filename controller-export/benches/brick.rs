@@ -1,4 +1,4 @@
-//! How fast the brick in software is: `cargo bench -p mindgap-controller-export`.
+//! How fast the emulated brick is: `cargo bench -p mindgap-controller-export`.
 
 use divan::Bencher;
 use divan::counter::ItemsCount;
@@ -12,10 +12,10 @@ fn main() {
     divan::main();
 }
 
-/// A loop of sums, an array access and a branch; the counter is the number of bytecode instructions.
+/// A loop with a sum, an array access and a branch. The counter is the number of bytecode instructions.
 #[divan::bench]
 fn busy_loop(bencher: Bencher) {
-    let program = Program::load(&loop_program()).expect("a sound program");
+    let program = Program::load(&loop_program()).expect("a valid program");
     let setup = RunConfig { run_ms: 1_000, instructions_per_ms: 1_000, ..RunConfig::default() };
     let instructions = brick::run(&program, &mut ScriptedWorld::default(), &setup).instructions;
     bencher.counter(ItemsCount::new(instructions)).bench(|| {
@@ -24,17 +24,17 @@ fn busy_loop(bencher: Bencher) {
     });
 }
 
-/// A whole run of a controller, 150 steps of 400 ms; the counter is the number of runs.
+/// A full run of a controller, 150 steps of 400 ms. The counter is the number of runs.
 #[divan::bench]
 fn controller_run(bencher: Bencher) {
     let ahead = Tuple { left: 55, right: 48, when: When::Smaller, threshold_cm: 0 };
     let controller = Controller { step_ms: 400, max_steps: 150, tuples: [ahead; 6] };
-    let file = rxe::program(&controller, &Wiring::default(), Safety::default()).expect("a sound controller");
-    let program = Program::load(&file).expect("a sound program");
+    let file = rxe::program(&controller, &Wiring::default(), Safety::default()).expect("a valid controller");
+    let program = Program::load(&file).expect("a valid program");
     bencher.counter(ItemsCount::new(1u32)).bench(|| {
         let mut world = ScriptedWorld::sonar([Sonar::Echo(100); 150]);
         let report = brick::run(&program, &mut world, &RunConfig::default());
-        assert_eq!((report.end, world.asked), (Termination::Finished, 150));
+        assert_eq!((report.end, world.requests), (Termination::Finished, 150));
     });
 }
 
@@ -48,7 +48,7 @@ fn loop_program() -> Vec<u8> {
         [7, 0, 14, 0], // 4: table, array
         [1, 0, 0, 0],  // 5: its elements, u8
     ];
-    // The step, the array's dope vector; the array, then its list: the array before the table of dope vectors.
+    // The step and the dope vector of the array; the array; its list, in which the array comes before the table.
     let defaults: [u16; 15] = [3, 0, 1, 0x0907, 0xFFFF, 20, 10, 2, 0xFFFF, 0xFFFF, 16, 1, 2, 14, 0];
     let code: [u16; 14] = [
         0x8000, 0, 0, 1, // add sum, sum, step

@@ -1,12 +1,12 @@
-//! An emulator of the brick: runs .rxe programs as the standard firmware does, with simulated sensors.
+//! An emulator of the brick, which runs .rxe programs as the standard firmware does, with simulated sensors.
 //!
-//! * [`Program`]: a checked .rxe file, as nbc makes it for standard firmware (file versions 0.5 and 0.6).
+//! * [`Program`]: a checked .rxe file, as nbc makes it for the standard firmware (file versions 0.5 and 0.6).
 //! * [`run`]: runs it to its end on an emulated clock and reports every [`Event`].
 //! * [`World`]: sensors, buttons and motors around the brick; [`ScriptedWorld`] returns values given in advance.
 //!
-//! All opcodes that nbc emits for standard firmware and all its system calls are there. Beyond the brick there is
-//! nothing: no other brick answers by Bluetooth, there is no colour sensor, and sounds from files take no time. Pictures
-//! are not drawn.
+//! It covers all opcodes that nbc emits for the standard firmware, and all its system calls. There is nothing beyond the
+//! brick: no other brick answers by Bluetooth, there is no colour sensor, sounds from files take no time, and pictures are
+//! not drawn.
 //!
 //! ```
 //! use mindgap_controller_export::brick::{self, Termination, Program, ScriptedWorld, RunConfig};
@@ -62,128 +62,187 @@ use crate::bytecode::{Op, Syscall};
 use crate::onboard::FREE_FLASH_BYTES;
 
 /// Number of instructions that a clump executes before the next one is scheduled.
-const TURN: u32 = 20;
-/// Time without use after which the brick switches itself off, as it is delivered.
+const INSTRUCTIONS_PER_TURN: u32 = 20;
+/// Time without use after which the brick switches itself off, by default.
 const SLEEP_TIMEOUT_MIN: u32 = 10;
-/// Parts of arrays and clusters that take as long as an instruction. The firmware's own figure is not known.
-const PARTS_AN_INSTRUCTION: u32 = 8;
+/// Number of array or cluster parts that take as long as an instruction. The firmware's own figure is not known.
+const PARTS_PER_INSTRUCTION: u32 = 8;
 
-/// Configuration of a run: the state and speed of the brick, and a time limit.
+/// The configuration of a run: the state and speed of the brick, and a time limit.
+///
+/// ```
+/// use mindgap_controller_export::brick::RunConfig;
+///
+/// let slow = RunConfig { instructions_per_ms: 80, ..RunConfig::default() };
+/// assert_eq!(slow.run_ms, 600_000);
+/// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct RunConfig {
-    /// Time limit of the run.
+    /// Time limit of the run, in ms.
     pub run_ms: u32,
-    /// Bytecode instructions executed in a millisecond; a brick manages 80 to 160.
+    /// Number of bytecode instructions executed per millisecond. A brick executes 80 to 160.
     pub instructions_per_ms: u32,
-    /// System clock when the program starts; a brick counts from when it was switched on.
+    /// System clock when the program starts, in ms. A brick counts from the time at which it was switched on.
     pub start_tick_ms: u32,
-    /// Flash available for files.
+    /// Flash available for files, in bytes.
     pub flash_bytes: u32,
     /// Files present at the start, by name.
     pub files: BTreeMap<String, Vec<u8>>,
-    /// Events that are kept; later ones are only counted.
+    /// Number of events that are kept. Later ones are only counted.
     pub limit_events: usize,
 }
 
 /// What a program did in a run.
+///
+/// ```
+/// use mindgap_controller_export::brick::{Drive, Report};
+///
+/// /// Whether the robot stands still after the run.
+/// fn stands(report: &Report) -> bool {
+///     report.motors.iter().all(|drive| !matches!(drive, Drive::Power(_)))
+/// }
+/// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Report {
     /// Observable events in order of time, at most [`RunConfig::limit_events`].
     pub events: Vec<Event>,
-    /// Number of events after those.
+    /// Number of further events, which were not kept.
     pub further_events: u64,
     /// How the program ended.
     pub end: Termination,
-    /// The instruction at which it failed.
-    pub failed_at: Option<CodePlace>,
-    /// Time of its end, ms since its start.
+    /// Instruction at which the program failed, if it did.
+    pub failed_at: Option<CodeLocation>,
+    /// Time of the end, in ms since the start.
     pub ended_ms: u32,
     /// Number of instructions executed.
     pub instructions: u64,
     /// Drive of each motor at the end, ports A to C.
     pub motors: [Drive; motors::PORTS],
-    /// Files at the end by name, truncated to the bytes written.
+    /// Files at the end, by name, truncated to the bytes written.
     pub files: BTreeMap<String, Vec<u8>>,
     /// Peak memory of clump records, values and arrays, in bytes.
     pub pool_bytes: usize,
 }
 
 /// An observable event.
+///
+/// ```
+/// use mindgap_controller_export::brick::{Event, EventKind};
+///
+/// let event = Event { t_ms: 400, kind: EventKind::Tone { hz: 880, ms: 250 } };
+/// assert_ne!(event.kind, EventKind::Sound("Start.rso".to_owned()));
+/// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Event {
-    /// Time since the program started, ms.
+    /// Time since the program started, in ms.
     pub t_ms: u32,
-    /// Kind of event.
+    /// What happened.
     pub kind: EventKind,
 }
 
-/// Kind of an observable event.
+/// The kind of an observable event.
+///
+/// ```
+/// use mindgap_controller_export::brick::{Drive, EventKind};
+///
+/// let brake = EventKind::Motor { port: 1, drive: Drive::Brake };
+/// assert!(matches!(brake, EventKind::Motor { port: 1, .. }));
+/// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum EventKind {
-    /// A motor was set, possibly to the drive that it had already.
+    /// A motor was set, possibly to the drive that it already had.
     Motor {
-        /// The motor's port, from 0.
+        /// Port of the motor, from 0.
         port: usize,
-        /// Its drive from now on.
+        /// Drive from now on.
         drive: Drive,
     },
     /// A tone was started.
     Tone {
-        /// Its frequency, Hz.
+        /// Frequency of the tone, in Hz.
         hz: u16,
-        /// Its duration, ms.
+        /// Duration of the tone, in ms.
         ms: u16,
     },
-    /// A sound file was started.
+    /// A sound file with this name was started.
     Sound(String),
     /// Text was drawn.
     Text {
-        /// Pixels from the left.
+        /// Position in pixels from the left.
         x: i16,
-        /// Pixels from the bottom.
+        /// Position in pixels from the bottom.
         y: i16,
         /// The text.
         text: String,
     },
 }
 
-/// A place in a program's code.
+/// A location in a program's code.
+///
+/// ```
+/// use mindgap_controller_export::brick::CodeLocation;
+///
+/// fn text(CodeLocation { clump, word, instruction, .. }: &CodeLocation) -> String {
+///     format!("word {word} of clump {clump}: {instruction}")
+/// }
+/// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct CodePlace {
-    /// The clump: a task or subroutine, numbered as in the listing of nbc.
+#[non_exhaustive]
+pub struct CodeLocation {
+    /// Number of the clump (a task or subroutine), as in the listing of nbc.
     pub clump: u8,
-    /// The word within the clump, from 0.
+    /// Number of the word within the clump, from 0.
     pub word: usize,
-    /// The instruction there, and the system call that it makes.
+    /// Name of the instruction there, and of the system call that it makes.
     pub instruction: String,
 }
 
 /// How a program ended.
+///
+/// ```
+/// use mindgap_controller_export::brick::{Fault, Termination};
+///
+/// let end = Termination::Failed(Fault::Memory);
+/// assert_ne!(end, Termination::Finished);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Termination {
-    /// It reached its end or stopped itself.
+    /// The program reached its end or stopped itself.
     Finished,
-    /// The dark button was pressed: the motors coast.
+    /// The dark button was pressed. The motors coast.
     Aborted,
-    /// The firmware aborted it: the motors run on until somebody presses a button.
+    /// The firmware aborted the program. The motors run on until somebody presses a button.
     Failed(Fault),
-    /// It was still running at [`RunConfig::run_ms`].
+    /// The program was still running at [`RunConfig::run_ms`].
     OutOfTime,
 }
 
-/// Why the firmware aborts a program.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// The reason why the firmware aborts a program.
+///
+/// ```
+/// use mindgap_controller_export::brick::Fault;
+///
+/// assert_eq!(Fault::Pointer.to_string(), "data outside the dataspace");
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum Fault {
     /// An unknown instruction or call, or execution past the end of the code.
+    #[error("unknown instruction")]
     Instruction,
     /// An operand of the wrong type, or an index outside its array.
+    #[error("wrong operand or index")]
     Argument,
     /// Data outside the dataspace.
+    #[error("data outside the dataspace")]
     Pointer,
     /// Out of memory.
+    #[error("out of memory")]
     Memory,
-    /// An instruction on more parts than memory holds, in a file whose arrays lie within each other.
-    Endless,
+    /// An instruction on more parts than the memory can hold, in a damaged file whose arrays contain each other.
+    #[error("arrays that contain each other")]
+    CyclicData,
 }
 
 /// The brick while a program runs.
@@ -197,27 +256,28 @@ struct Brick<'p, 'w> {
     flash: Flash,
     mailboxes: Mailboxes,
     io_maps: IoMaps,
-    /// When the last tone ends.
+    /// Time at which the last tone ends.
     tone_until_ms: u32,
     sleep_timeout_min: u32,
-    /// Bits of which tasks agree who uses what.
+    /// Bits by which tasks agree on the use of resources.
     semaphores: [u8; 2],
-    /// Releases of each button before the program last reset its counter.
-    forgotten_releases: [u8; 4],
-    chance: u32,
+    /// Number of releases of each button when the program last reset its counter.
+    reset_releases: [u8; 4],
+    random_state: u32,
     start_tick_ms: u32,
     t_ms: u32,
     events: Vec<Event>,
     further_events: u64,
     limit_events: usize,
     instructions: u64,
-    /// Instructions that long operations on arrays have taken ahead of time.
-    owed: u32,
-    failed_at: Option<CodePlace>,
+    /// Number of instructions by which long operations on arrays have overdrawn their millisecond.
+    overdrawn: u32,
+    failed_at: Option<CodeLocation>,
 }
 
 impl Default for RunConfig {
-    /// Ten minutes, 100 instructions a millisecond, switched on five seconds ago, an empty file system, and 100,000 events.
+    /// Returns a limit of ten minutes, 100 instructions per ms, a brick that was switched on five seconds ago, an empty file
+    /// system, and 100,000 events.
     fn default() -> Self {
         RunConfig {
             run_ms: 600_000,
@@ -230,7 +290,7 @@ impl Default for RunConfig {
     }
 }
 
-/// Runs a program until it ends.
+/// Runs a program until it ends or reaches its time limit, and reports what it did.
 pub fn run(program: &Program, world: &mut dyn World, config: &RunConfig) -> Report {
     let clump_bytes = program.pool_bytes() - program.data.len();
     let (memory, started) = match Memory::new(program) {
@@ -250,15 +310,15 @@ pub fn run(program: &Program, world: &mut dyn World, config: &RunConfig) -> Repo
         tone_until_ms: 0,
         sleep_timeout_min: SLEEP_TIMEOUT_MIN,
         semaphores: [0; 2],
-        forgotten_releases: [0; 4],
-        chance: 1,
+        reset_releases: [0; 4],
+        random_state: 1,
         start_tick_ms: config.start_tick_ms,
         t_ms: 0,
         events: Vec::new(),
         further_events: 0,
         limit_events: config.limit_events,
         instructions: 0,
-        owed: 0,
+        overdrawn: 0,
         failed_at: None,
     };
     let end = started.unwrap_or_else(|| brick.run(config));
@@ -275,12 +335,12 @@ pub fn run(program: &Program, world: &mut dyn World, config: &RunConfig) -> Repo
         instructions: brick.instructions,
         motors,
         files: brick.flash.into_files(),
-        pool_bytes: clump_bytes + brick.memory.most_bytes(),
+        pool_bytes: clump_bytes + brick.memory.peak_bytes(),
     }
 }
 
 impl Brick<'_, '_> {
-    /// Runs the firmware's scheduler once a millisecond, skipping those in which every clump sleeps.
+    /// Runs the firmware's scheduler once per millisecond, and skips milliseconds in which every clump sleeps.
     fn run(&mut self, config: &RunConfig) -> Termination {
         loop {
             if self.world.exit_pressed_ms().is_some_and(|exit_ms| self.t_ms >= exit_ms) {
@@ -303,7 +363,7 @@ impl Brick<'_, '_> {
                 _ => self.t_ms + 1,
             };
             let idle_ms = next_ms - self.t_ms - 1;
-            self.owed = self.owed.saturating_sub(idle_ms.saturating_mul(config.instructions_per_ms));
+            self.overdrawn = self.overdrawn.saturating_sub(idle_ms.saturating_mul(config.instructions_per_ms));
             self.t_ms = next_ms;
         }
     }
@@ -319,21 +379,21 @@ impl Brick<'_, '_> {
         }
     }
 
-    /// One millisecond: clumps run in turn.
+    /// Runs the clumps in turn for one millisecond.
     fn pass(&mut self, instructions: u32) -> Result<Option<Termination>, Fault> {
         let mut left = instructions.max(1);
-        let paid = self.owed.min(left);
-        (left, self.owed) = (left - paid, self.owed - paid);
+        let repaid = self.overdrawn.min(left);
+        (left, self.overdrawn) = (left - repaid, self.overdrawn - repaid);
         while let Some(clump) = self.schedule.running() {
             if left == 0 {
                 self.schedule.rotate();
                 return Ok(None);
             }
-            let (executed, turn) = self.turn(clump, TURN.min(left));
+            let (executed, turn) = self.turn(clump, INSTRUCTIONS_PER_TURN.min(left));
             self.instructions += u64::from(executed);
-            // Long operations may take more than what is left to this millisecond.
-            let cost = executed + self.memory.take_parts() / PARTS_AN_INSTRUCTION;
-            self.owed += cost.saturating_sub(left);
+            // Long operations may take more than the rest of this millisecond.
+            let cost = executed + self.memory.take_parts() / PARTS_PER_INSTRUCTION;
+            self.overdrawn += cost.saturating_sub(left);
             left = left.saturating_sub(cost);
             match turn? {
                 Turn::Over => self.schedule.rotate(),
@@ -344,10 +404,10 @@ impl Brick<'_, '_> {
         Ok(self.schedule.is_empty().then_some(Termination::Finished))
     }
 
-    /// At most `most` instructions of one clump; their number, and how the turn ended.
-    fn turn(&mut self, clump: u8, most: u32) -> (u32, Result<Turn, Fault>) {
+    /// Executes at most `limit` instructions of one clump. Returns their number and how the turn ended.
+    fn turn(&mut self, clump: u8, limit: u32) -> (u32, Result<Turn, Fault>) {
         let (mut pc, end) = (self.schedule.pc(clump), self.program.clumps[usize::from(clump)].code.end);
-        for executed in 1..=most {
+        for executed in 1..=limit {
             if pc >= end {
                 return (executed - 1, Err(self.failed(clump, pc, Fault::Instruction)));
             }
@@ -382,17 +442,17 @@ impl Brick<'_, '_> {
             return (executed, turn);
         }
         self.schedule.set_pc(clump, pc);
-        (most, Ok(Turn::Over))
+        (limit, Ok(Turn::Over))
     }
 
-    /// The memory may be in pieces: packs it and tries an instruction once more.
+    /// Compacts the memory, which may be fragmented, and tries an instruction once more.
     #[cold]
     fn execute_packed(&mut self, pc: usize) -> Result<Flow, Fault> {
         self.memory.compact();
         self.execute(pc)
     }
 
-    /// Notes where a program failed, and returns why.
+    /// Records where a program failed, and returns the fault.
     #[cold]
     fn failed(&mut self, clump: u8, pc: usize, fault: Fault) -> Fault {
         let code = &self.program.clumps[usize::from(clump)].code;
@@ -403,15 +463,17 @@ impl Brick<'_, '_> {
                     None => format!("syscall {number}, which standard firmware does not have"),
                 },
                 (Some(op), _) => format!("{op:?}").to_lowercase(),
-                (None, _) => format!("{:#06x}, which is no instruction of standard firmware", self.program.code[pc]),
+                (None, _) => {
+                    format!("{:#06x}, which is not an instruction of standard firmware", self.program.code[pc])
+                }
             },
-            _ => "behind the end of the clump".to_owned(),
+            _ => "past the end of the clump".to_owned(),
         };
-        self.failed_at = Some(CodePlace { clump, word: pc.saturating_sub(code.start), instruction });
+        self.failed_at = Some(CodeLocation { clump, word: pc.saturating_sub(code.start), instruction });
         fault
     }
 
-    /// The brick's clock.
+    /// Returns the brick's clock.
     fn tick_ms(&self) -> u32 {
         self.start_tick_ms.wrapping_add(self.t_ms)
     }
@@ -427,9 +489,9 @@ impl Brick<'_, '_> {
 
 /// How a clump's turn ended.
 enum Turn {
-    /// It may continue after the others.
+    /// The clump may continue after the others.
     Over,
-    /// It waits or has ended.
+    /// The clump waits or has ended.
     Left,
     /// The program stops.
     Stop,

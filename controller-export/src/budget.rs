@@ -1,24 +1,41 @@
-//! Resources that a program takes, and those of the brick.
+//! The resources that a program needs, compared with those of the brick.
 
 use std::fmt;
 
 use mindgap_core::limits::POOL_BYTES;
 
 use crate::error::ExportError;
-use crate::nxc::source::{log_bytes, log_rows};
 use crate::onboard::{FREE_FLASH_BYTES, SONAR_HANG_MS, SONAR_TIMEOUT_MS};
 
-/// Bytecode instructions that the slowest brick executes in a millisecond.
+/// Number of bytecode instructions that the slowest brick executes per millisecond.
 pub const INSTRUCTIONS_PER_MS: u32 = 80;
-/// From a step's tick to its request: the clock's own millisecond, and the instructions in between.
+/// Time from a step's tick to its request: the clock's resolution of a millisecond, and the instructions in between.
 const REQUEST_MS: u32 = 2;
-/// What a step is longer than its parts: the scheduler's passes, and a brick that is slower than any that was measured.
+/// Allowance for the firmware's scheduler, and for a brick that is slower than any measured one.
 const MARGIN_MS: u32 = 10;
-/// Time to write a row of the log, which writes a page of flash now and then.
+/// Time to write a row of the log, which occasionally writes a page of flash.
 const LOG_ROW_MS: u32 = 5;
+/// Size of the log's header line.
+const LOG_HEADER_BYTES: u32 = 80;
+/// Size of the longest row of a log: a time of ten digits, two commands, two wheel rotations of seven digits, millivolts, a
+/// reading, six commas, and the line end.
+const LOG_ROW_BYTES: u32 = 10 + 4 + 4 + 7 + 7 + 5 + 3 + 6 + 2;
 
-/// Resources that a program takes.
+/// The resources that a program needs. `Display` prints one line per resource, with what the brick has.
+///
+/// ```
+/// use mindgap_controller_export::onboard::Safety;
+/// use mindgap_controller_export::rxe;
+/// use mindgap_core::controller::{Controller, Tuple, When};
+///
+/// let ahead = Tuple { left: 55, right: 48, when: When::Smaller, threshold_cm: 42 };
+/// let controller = Controller { step_ms: 400, max_steps: 150, tuples: [ahead; 6] };
+/// let budget = rxe::budget(&controller, Safety::default());
+/// assert!(budget.worst_step_ms < controller.step_ms);
+/// println!("{budget}");
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Budget {
     /// Upper bound on the size of the .rxe file in flash.
     pub program_bytes: u32,
@@ -26,13 +43,13 @@ pub struct Budget {
     pub memory_bytes: u32,
     /// Flash reserved for the log.
     pub log_bytes: u32,
-    /// Time between two steps.
+    /// Time between two steps, as the controller states it.
     pub step_ms: u16,
-    /// Worst-case duration of a step, with a margin: the shortest step that the brick keeps.
+    /// Worst-case duration of a step, with a margin. It is the shortest step time that the brick can keep.
     pub worst_step_ms: u16,
 }
 
-/// Resources of a kind of program, whatever its controller.
+/// The resources of a type of program, which do not depend on its controller.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Cost {
     pub(crate) program_bytes: u32,
@@ -52,12 +69,12 @@ impl Cost {
 }
 
 impl Budget {
-    /// The budget of a program of this cost that logs its start and `logged_steps` steps, or nothing.
+    /// Returns the budget of a program with this cost that logs its start and `logged_steps` steps, or nothing.
     pub(crate) fn new(cost: Cost, step_ms: u16, logged_steps: Option<u16>) -> Self {
         let log_ms = if logged_steps.is_some() { LOG_ROW_MS } else { 0 };
         let work_ms = cost.step_instructions.div_ceil(INSTRUCTIONS_PER_MS) + log_ms;
-        // The next request has to find the port free that a sensor keeps busy which hangs; the program itself gives up
-        // sooner, and does its work meanwhile.
+        // A sensor that hangs keeps its port busy, and the next request has to find it free. The program itself gives up
+        // earlier and does its work in the meantime.
         let busy_ms = SONAR_HANG_MS.max(u32::from(SONAR_TIMEOUT_MS) + work_ms);
         Budget {
             program_bytes: cost.program_bytes,
@@ -83,7 +100,16 @@ impl Budget {
     }
 }
 
-/// One line a resource: taken and available.
+/// Returns the size of a log of `rows` rows in flash.
+fn log_bytes(rows: u32) -> u32 {
+    LOG_HEADER_BYTES + rows * LOG_ROW_BYTES
+}
+
+/// Returns the number of rows of a log that fit into `bytes`.
+fn log_rows(bytes: u32) -> u32 {
+    bytes.saturating_sub(LOG_HEADER_BYTES) / LOG_ROW_BYTES
+}
+
 impl fmt::Display for Budget {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let Budget { program_bytes, memory_bytes, log_bytes, step_ms, worst_step_ms } = self;

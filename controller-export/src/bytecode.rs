@@ -6,7 +6,7 @@
 pub(crate) const MAGIC: [u8; 14] = *b"MindstormsNXT\0";
 /// Bytes of a program's header.
 pub(crate) const HEADER_BYTES: usize = 38;
-/// "No operand", "no dope vector", "no offset".
+/// Means "no operand", "no dope vector" or "no offset".
 pub(crate) const NONE: u16 = 0xFFFF;
 /// Bytes of a dope vector: five 16-bit fields.
 pub(crate) const DOPE_VECTOR_BYTES: usize = 10;
@@ -14,9 +14,9 @@ pub(crate) const DOPE_VECTOR_BYTES: usize = 10;
 pub(crate) const CLUMP_RECORD_BYTES: usize = 28;
 /// The flag of a dataspace entry whose value is zero and is not stored.
 pub(crate) const DEFAULT_ZERO: u8 = 1;
-/// The size nibble of an instruction whose size stands in its second word.
+/// The size nibble of an instruction whose size is in its second word.
 pub(crate) const VARIABLE_SIZE: u16 = 0xE;
-/// The bit of an instruction's first word that marks the short forms.
+/// The bit of an instruction's first word that marks a short form.
 pub(crate) const SHORT_FORM: u16 = 1 << 11;
 
 /// Declares an enum with numbered variants and its conversion from a number.
@@ -239,7 +239,7 @@ pub(crate) const RUN_STATE_IDLE: u8 = 0x00;
 pub(crate) const RUN_STATE_RUNNING: u8 = 0x20;
 /// The value of [`InputField::Type`] for a digital sensor with 9 V supply.
 pub(crate) const SENSOR_LOW_SPEED_9V: u8 = 11;
-/// The same without supply.
+/// The value of [`InputField::Type`] for a digital sensor without supply.
 pub(crate) const SENSOR_LOW_SPEED: u8 = 10;
 
 /// The value of [`InputField::Type`] for a touch sensor.
@@ -269,13 +269,13 @@ pub(crate) mod comm {
 
 /// The ultrasonic sensor's address on its bus.
 pub(crate) const SONAR_ADDRESS: u8 = 0x02;
-/// The register where the sensor's kind stands, "Sonar".
-pub(crate) const SONAR_KIND: u8 = 0x10;
+/// The register that holds the sensor's type, "Sonar".
+pub(crate) const SONAR_TYPE: u8 = 0x10;
 /// The register that holds the distance of the nearest echo in cm.
 pub(crate) const SONAR_FIRST_ECHO: u8 = 0x42;
 
 impl Type {
-    /// Size of a value in bytes; that of an array is the index of its dope vector.
+    /// Returns the size of a value in bytes. The value of an array is the index of its dope vector.
     pub(crate) fn bytes(self) -> usize {
         match self {
             Type::Void | Type::Cluster => 0,
@@ -299,7 +299,7 @@ impl Type {
 }
 
 impl Op {
-    /// Size of the instruction in bytes; `None` if it varies.
+    /// Returns the size of the instruction in bytes, or `None` if it varies.
     pub(crate) fn bytes(self) -> Option<u16> {
         use Op::*;
         match self {
@@ -317,7 +317,7 @@ impl Op {
 }
 
 impl Comparison {
-    /// Whether values in this order satisfy the comparison; unordered ones are only unequal.
+    /// Returns whether values in this order satisfy the comparison. Unordered values are only unequal.
     pub(crate) fn holds(self, order: Option<std::cmp::Ordering>) -> bool {
         use std::cmp::Ordering::{Equal, Greater, Less};
         match self {

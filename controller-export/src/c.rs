@@ -1,20 +1,31 @@
-//! The controller as a C99 header: its tuples as a table, and the machine that steps through them.
+//! A controller as a C99 header: its tuples as a table, and the machine that steps through them.
 //!
-//! It does not allocate and needs `stdbool.h` and `stdint.h` only. The program that includes it reads the sensor, sets the
-//! motors and keeps time.
+//! It does not allocate and needs only `stdbool.h` and `stdint.h`. The program that includes it reads the sensor, sets the
+//! motors and keeps the time.
 
 use mindgap_core::controller::{Controller, FULL_SPEED, TUPLES, When};
 
 use crate::error::ExportError;
 use crate::origin::Origin;
 
-/// `@tuples@` stands where the table goes.
+/// The machine. The table replaces `@tuples@`.
 const MACHINE: &str = include_str!("c/machine.h");
 
-/// The controller as a header.
+/// Returns the controller as a C99 header.
 ///
 /// # Errors
-/// [`ExportError::Controller`].
+/// Returns [`ExportError::Controller`] when a number of the controller is out of range.
+///
+/// ```
+/// use mindgap_controller_export::{Origin, c};
+/// use mindgap_core::controller::{Controller, Tuple, When};
+///
+/// let ahead = Tuple { left: 55, right: 48, when: When::Smaller, threshold_cm: 42 };
+/// let controller = Controller { step_ms: 400, max_steps: 150, tuples: [ahead; 6] };
+/// let header = c::header(&controller, &Origin::default())?;
+/// assert!(header.contains("#define CONTROLLER_STEP_MS 400"));
+/// # Ok::<(), mindgap_controller_export::ExportError>(())
+/// ```
 pub fn header(controller: &Controller, origin: &Origin) -> Result<String, ExportError> {
     controller.check()?;
     let origin: String = origin.lines().iter().map(|line| format!("\n * {}", line.replace("*/", "* /"))).collect();
@@ -30,7 +41,7 @@ pub fn header(controller: &Controller, origin: &Origin) -> Result<String, Export
     ))
 }
 
-/// The controller's table and its machine, in what C and C++ have in common.
+/// Returns the controller's table and its machine, in the common subset of C and C++.
 pub(crate) fn machine(controller: &Controller) -> String {
     let Controller { step_ms, max_steps, .. } = controller;
     let numbers = format!(

@@ -1,5 +1,5 @@
-//! Fixed-point networks as a C99 header, for any board with a C compiler and for Arduino sketches; equal to the core's to
-//! the bit.
+//! Fixed-point networks as a C99 header, for any board with a C compiler and for Arduino sketches. Their results equal the
+//! core's to the bit.
 
 use std::fmt::Write;
 
@@ -9,10 +9,16 @@ use crate::tabulated::{Tabulated, lines};
 
 const NETWORK: &str = include_str!("c_networks/network.h");
 
-/// A header that defines a function for each of these networks.
+/// Returns a header that defines one function per network.
+///
+/// ```
+/// use mindgap_controller_export::c_networks::c_networks;
+///
+/// assert!(c_networks(&[]).contains("#ifndef MINDGAP_NETWORKS_H"));
+/// ```
 pub fn c_networks(networks: &[Tabulated]) -> String {
     let mut tables =
-        table("network_steps", "2^(i/32) - 1 with 32 fractional bits, without sign.", &STEPS.map(|s| s as i32));
+        table("network_steps", "2^(i/32) - 1 with 32 fractional bits, unsigned.", &STEPS.map(|s| s as i32));
     let mut functions = String::new();
     for Tabulated { name, documentation, inputs, weights } in networks {
         let weights_name = format!("network_{name}_weights");
@@ -30,15 +36,15 @@ pub fn c_networks(networks: &[Tabulated]) -> String {
         );
     }
     format!(
-        "/* A simulator's networks in fixed point. Arguments and results are whole numbers that stand for so many 65536ths:\n \
-         * give cm * 65536, and divide what comes back by 65536. */\n\
+        "/* A simulator's networks in fixed point. Arguments and results are integers in units of 1/65536: pass cm * 65536, and\n \
+         * divide the result by 65536. */\n\
          #ifndef MINDGAP_NETWORKS_H\n\
          #define MINDGAP_NETWORKS_H\n\
          \n\
          #include <stdbool.h>\n\
          #include <stdint.h>\n\
          \n\
-         /* AVR processors read their flash in a way of their own. */\n\
+         /* AVR processors need special instructions to read their flash. */\n\
          #ifdef __AVR__\n\
          #include <avr/pgmspace.h>\n\
          #define NETWORK_FLASH PROGMEM\n\

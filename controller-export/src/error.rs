@@ -1,27 +1,36 @@
-//! Why a controller cannot be exported as an onboard program.
+//! The reasons why a controller cannot be exported as an onboard program.
 
 use mindgap_core::controller::InvalidController;
 
 use crate::onboard::SONAR_HANG_MS;
 
-/// Why a controller cannot be exported as an onboard program: one line that says what to change.
+/// The reason why a controller cannot be exported. Its message is one line that says what to change.
+///
+/// ```
+/// use mindgap_controller_export::ExportError;
+/// use mindgap_controller_export::wiring::SensorPort;
+///
+/// let error: ExportError = "5".parse::<SensorPort>().unwrap_err();
+/// assert_eq!(error.to_string(), "\"5\" is not a sensor port; the brick has 1, 2, 3 and 4");
+/// ```
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum ExportError {
-    /// A number of the controller is out of its range.
-    #[error("{}", describe(.0))]
-    Controller(InvalidController),
-    /// Two steps are closer together than a step takes.
+    /// A number of the controller is out of range.
+    #[error(transparent)]
+    Controller(#[from] InvalidController),
+    /// Two steps are closer together than a step can take.
     #[error(
-        "step_ms is {step_ms}, but a step takes up to {shortest_ms} ms: a sensor that hangs keeps its port busy for \
-         {SONAR_HANG_MS} ms, and there is a margin: raise it"
+        "step_ms is {step_ms}, but a step can take {shortest_ms} ms: a sensor that hangs keeps its port busy for \
+         {SONAR_HANG_MS} ms, and there is a margin: raise step_ms"
     )]
     StepTooShort {
         /// Time between two steps.
         step_ms: u16,
-        /// The shortest possible.
+        /// The shortest possible time.
         shortest_ms: u16,
     },
-    /// A file name that the brick refuses.
+    /// The brick refuses this file name.
     #[error("\"{name}\" cannot be a file name on the brick: {why}")]
     Name {
         /// The name as given.
@@ -29,8 +38,8 @@ pub enum ExportError {
         /// The rule that it breaks.
         why: &'static str,
     },
-    /// A port that the brick does not have.
-    #[error("\"{port}\" is no {kind} port; the brick has {has}")]
+    /// The brick does not have this port.
+    #[error("\"{port}\" is not a {kind} port; the brick has {has}")]
     NoSuchPort {
         /// The port as given.
         port: String,
@@ -39,42 +48,27 @@ pub enum ExportError {
         /// The existing ports.
         has: &'static str,
     },
-    /// Both motors on one port.
+    /// Both motors are on one port.
     #[error("left and right motor cannot both be on port {0}")]
     OnePortForTwoMotors(char),
-    /// A log that the brick's flash cannot hold.
+    /// The brick's flash cannot hold the log.
     #[error("the log takes {log_bytes} of {flash_bytes} bytes of flash: log at most {steps} steps, or nothing")]
     LogTooLarge {
-        /// The size of the log.
+        /// Size of the log.
         log_bytes: u32,
-        /// Flash available beside the program.
+        /// Flash available besides the program.
         flash_bytes: u32,
         /// Largest number of steps whose log fits.
         steps: u16,
     },
-    /// A parameter of a program that collects data is out of range.
-    #[error("{name} is {value}; it has to lie in {range}")]
+    /// A parameter of a program is out of range.
+    #[error("{name} is {value}; it has to be in {range}")]
     OutOfRange {
-        /// The number's name.
+        /// Name of the parameter.
         name: &'static str,
-        /// The number.
+        /// Value of the parameter.
         value: u32,
         /// Its valid range.
         range: &'static str,
     },
-}
-
-impl From<InvalidController> for ExportError {
-    fn from(problem: InvalidController) -> Self {
-        ExportError::Controller(problem)
-    }
-}
-
-fn describe(problem: &InvalidController) -> String {
-    match problem {
-        InvalidController::Speed(i) => format!("tuple {}: a motor command is outside -100..100", i + 1),
-        InvalidController::Threshold(i) => format!("tuple {}: threshold_cm is outside 0..255", i + 1),
-        InvalidController::StepTime => "step_ms is 0".to_owned(),
-        InvalidController::StepLimit => "max_steps is 0".to_owned(),
-    }
 }

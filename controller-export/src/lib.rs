@@ -1,21 +1,18 @@
-//! Turns a six-tuple controller into an onboard program.
+#![doc = include_str!("../README.md")]
 //!
-//! The controller is that of C. J. Pretorius, M. C. du Plessis and C. B. Cilliers (2013), "A Neural
-//! Network Ultrasonic Sensor Simulator for Evolutionary Robotics", called "the paper" in this crate.
+//! ## Modules
 //!
-//! * [`nxc`]: readable NXC source for the LEGO NXT's standard firmware.
-//! * [`rxe`]: the executable itself, less than half the size.
-//! * [`rust`], [`c`]: a constant for programs that use the core, and a C99 header.
-//! * [`arduino`]: an Arduino sketch.
-//! * [`pybricks`]: a MicroPython program for hubs with pybricks firmware.
-//! * [`nxc_networks`], [`rust_networks`], [`c_networks`]: a simulator's networks in fixed point; [`pybricks_networks`]: in
-//!   floating point, for MicroPython. [`tabulated`] is what NXC and C read.
-//! * [`collect`]: a program that drives at random or by a script and logs, in NXC.
-//! * [`brick`]: an emulator of the brick, with which tests show that all formats behave alike.
+//! * [`nxc`], [`rxe`], [`c`], [`rust`], [`arduino`], [`pybricks`]: a controller as source code or as an executable.
+//! * [`nxc_networks`], [`c_networks`], [`rust_networks`]: networks in fixed point; [`pybricks_networks`]: in floating
+//!   point. NXC and C read the same table, [`tabulated`].
+//! * [`collect`]: a program that drives and logs.
+//! * [`brick`]: the emulator, with which tests show that all formats behave alike.
 //! * [`wiring`], [`names`], [`onboard`], [`origin`], [`budget`]: what the formats share: ports, file names on the brick,
-//!   behaviour beyond the controller, the controller's origin, and the resources that a program takes.
+//!   behaviour beyond the controller, the controller's origin, and the resources of a program.
+//! * [`error`]: the reasons why a controller cannot be exported.
 //!
-//! Every program runs the same stepping machine as [`mindgap_core::controller::Machine`].
+//! "The paper" in these pages is C. J. Pretorius, M. C. du Plessis and C. B. Cilliers (2013), *A Neural Network Ultrasonic
+//! Sensor Simulator for Evolutionary Robotics*.
 
 pub mod arduino;
 pub mod brick;

@@ -6,31 +6,49 @@ use std::str::FromStr;
 use crate::error::ExportError;
 
 const LONGEST_STEM: usize = 15;
-/// What the number of a run adds to a stem, as `_000`.
+/// Length of the run number that is appended to a stem, as in `_000`.
 const RUN_NUMBER: usize = 4;
 const LONGEST_EXTENSION: usize = 3;
 
 /// The name of a file on the brick.
+///
+/// ```
+/// use mindgap_controller_export::names::BrickName;
+///
+/// let name = BrickName::program("avoid")?;
+/// assert_eq!((name.to_string().as_str(), name.stem()), ("avoid.rxe", "avoid"));
+/// assert!("sixteen-letters-.rxe".parse::<BrickName>().is_err());
+/// # Ok::<(), mindgap_controller_export::ExportError>(())
+/// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct BrickName(String);
 
 impl BrickName {
-    /// The name of a compiled program, `STEM.rxe`.
+    /// Returns the name of a compiled program, `STEM.rxe`.
     ///
     /// # Errors
-    /// [`ExportError::Name`].
+    /// Returns [`ExportError::Name`] when the brick would refuse the name.
     pub fn program(stem: &str) -> Result<Self, ExportError> {
         format!("{stem}.rxe").parse()
     }
 
-    /// The part before the dot.
+    /// Returns the part before the dot.
     pub fn stem(&self) -> &str {
         self.0.split_once('.').map_or(&self.0, |(stem, _)| stem)
     }
 }
 
-/// The names of a program's logs, a new one each start: `avoid_000.csv`, `avoid_001.csv` and so on. Programs that collect
-/// data name theirs `run-000.csv`, and no other program names a file like either.
+/// The names of a program's logs. Every start of the program writes a new one: `avoid_000.csv`, `avoid_001.csv` and so on.
+///
+/// Programs that collect data call theirs `run-000.csv`, which no other program can.
+///
+/// ```
+/// use mindgap_controller_export::names::RunLogs;
+///
+/// let logs = RunLogs::named_after(&"avoid.csv".parse()?)?;
+/// assert_eq!(logs.name(7), "avoid_007.csv");
+/// # Ok::<(), mindgap_controller_export::ExportError>(())
+/// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct RunLogs {
     stem: String,
@@ -38,35 +56,35 @@ pub struct RunLogs {
 }
 
 impl RunLogs {
-    /// The logs named after a file.
+    /// Returns logs that are named after a file.
     ///
     /// # Errors
-    /// [`ExportError::Name`] when the number of the run does not fit behind it.
-    pub fn of(name: &BrickName) -> Result<Self, ExportError> {
+    /// Returns [`ExportError::Name`] when the name leaves no room for the run number.
+    pub fn named_after(name: &BrickName) -> Result<Self, ExportError> {
         let (stem, extension) = name.0.split_once('.').unwrap_or((&name.0, ""));
         if stem.len() > LONGEST_STEM - RUN_NUMBER {
-            let why = "the number of the run comes behind it, so before the dot it needs 1 to 11 characters";
+            let why = "the run number is appended to it, so it needs 1 to 11 characters before the dot";
             return Err(ExportError::Name { name: name.0.clone(), why });
         }
         Ok(RunLogs { stem: format!("{stem}_"), extension: extension.to_owned() })
     }
 
-    /// The logs of programs that collect data.
-    pub fn of_collector() -> Self {
+    /// Returns the logs of programs that collect data.
+    pub fn for_collection() -> Self {
         RunLogs { stem: "run-".to_owned(), extension: "csv".to_owned() }
     }
 
-    /// What comes before the number of the run.
+    /// Returns the part of the names before the run number.
     pub fn stem(&self) -> &str {
         &self.stem
     }
 
-    /// What comes after the dot.
+    /// Returns the part of the names after the dot.
     pub fn extension(&self) -> &str {
         &self.extension
     }
 
-    /// The name of a run's log.
+    /// Returns the name of a run's log.
     pub fn name(&self, run: u16) -> String {
         format!("{}{run:03}.{}", self.stem, self.extension)
     }
@@ -83,13 +101,13 @@ impl FromStr for BrickName {
         let fits = |part: &str, longest| (1..=longest).contains(&part.len());
         let known = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
         if !stem.chars().chain(extension.chars()).all(known) {
-            return refused("only letters, digits, _ and - are safe, and one dot");
+            return refused("only letters, digits, _ and - are allowed, and one dot");
         }
         if !fits(stem, LONGEST_STEM) {
-            return refused("before the dot it needs 1 to 15 characters");
+            return refused("it needs 1 to 15 characters before the dot");
         }
         if !fits(extension, LONGEST_EXTENSION) {
-            return refused("after the dot it needs 1 to 3 characters");
+            return refused("it needs 1 to 3 characters after the dot");
         }
         Ok(BrickName(name.to_owned()))
     }
@@ -106,7 +124,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_limit_is_fifteen_and_three() {
+    fn name_has_at_most_fifteen_and_three_characters() {
         assert!("exactly-fifteen.rxe".parse::<BrickName>().is_ok());
         assert_eq!(BrickName::program("exactly-fifteen").map(|n| n.stem().len()), Ok(15));
         for refused in [
@@ -126,19 +144,19 @@ mod tests {
     }
 
     #[test]
-    fn logs_of_runs_have_a_number_behind_the_name() {
-        let logs = |name: &str| RunLogs::of(&name.parse().unwrap());
+    fn log_names_end_with_the_run_number() {
+        let logs = |name: &str| RunLogs::named_after(&name.parse().unwrap());
         assert_eq!(logs("elevenchars.csv").map(|logs| logs.name(7)), Ok("elevenchars_007.csv".to_owned()));
         assert!(logs("twelve-chars.csv").is_err());
-        assert!(logs("run-000.csv").unwrap().name(0) != RunLogs::of_collector().name(0));
+        assert!(logs("run-000.csv").unwrap().name(0) != RunLogs::for_collection().name(0));
     }
 
     #[test]
-    fn the_error_names_the_name_and_the_rule() {
+    fn error_states_the_name_and_the_rule() {
         let message = BrickName::program("avoid-obstacles-1").unwrap_err().to_string();
         assert_eq!(
             message,
-            "\"avoid-obstacles-1.rxe\" cannot be a file name on the brick: before the dot it needs 1 to 15 characters"
+            "\"avoid-obstacles-1.rxe\" cannot be a file name on the brick: it needs 1 to 15 characters before the dot"
         );
     }
 }

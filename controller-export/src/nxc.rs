@@ -1,9 +1,8 @@
 //! Readable NXC source for the LEGO NXT's standard firmware (`nbc -v=128`).
 //!
-//! The constant parts are NXC files in the folder beside this file. They use integers only, no shifts and no product wider
-//! than 32 bits, which the compiler translates differently for each firmware. No local variable is initialised in its
-//! declaration: there nbc 1.2.1 mistakes a signed result for an unsigned one, or the reverse, if the preceding function
-//! ended with the other kind.
+//! The fixed parts are NXC files in `src/nxc`. They use only integers, no shifts and no products wider than 32 bits, which
+//! the compiler translates differently for each firmware. No local variable is initialised in its declaration: there nbc
+//! 1.2.1 mistakes a signed result for an unsigned one, or the reverse, if the preceding function ended with the other kind.
 
 pub(crate) mod source;
 
@@ -16,7 +15,7 @@ use crate::onboard::Safety;
 use crate::origin::Origin;
 use crate::wiring::Wiring;
 
-use source::{Constants, DISPLAY, ENDING, LOG, MOTORS, Parts, SONAR, STALL, TIME, wired_and_stopped};
+use source::{Constants, DISPLAY, ENDING, LOG, MOTORS, Parts, SONAR, STALL, TIME, ports_and_stops};
 
 /// The main loop.
 const RUN: &str = include_str!("nxc/run.nxc");
@@ -28,23 +27,37 @@ const WITH_DISPLAY: Cost = Cost { program_bytes: 600, memory_bytes: 650, step_in
 const WITH_NEAR: Cost = Cost { program_bytes: 200, memory_bytes: 60, step_instructions: 10 };
 const WITH_STALL: Cost = Cost { program_bytes: 650, memory_bytes: 100, step_instructions: 80 };
 
-/// Options of an NXC program.
+/// The options of an NXC program.
+///
+/// ```
+/// use mindgap_controller_export::names::BrickName;
+/// use mindgap_controller_export::nxc::{self, NxcOptions};
+/// use mindgap_controller_export::Origin;
+/// use mindgap_core::controller::{Controller, Tuple, When};
+///
+/// let ahead = Tuple { left: 55, right: 48, when: When::Smaller, threshold_cm: 42 };
+/// let controller = Controller { step_ms: 400, max_steps: 150, tuples: [ahead; 6] };
+/// let options = NxcOptions { display: true, ..NxcOptions::new(BrickName::program("avoid")?) };
+/// let source = nxc::program(&controller, &Origin::default(), &options)?;
+/// assert!(source.contains("task main()"));
+/// # Ok::<(), mindgap_controller_export::ExportError>(())
+/// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct NxcOptions {
-    /// The compiled program's name on the brick.
+    /// Name of the compiled program on the brick.
     pub program: BrickName,
-    /// Ports of motors and sensor.
+    /// Ports of the motors and the sensor.
     pub wiring: Wiring,
-    /// What stops it beside the controller.
+    /// Additional reasons to stop.
     pub safety: Safety,
-    /// Files on the brick to which every step is logged, a new one each start.
+    /// Files on the brick to which every step is logged, a new one at each start.
     pub log: Option<RunLogs>,
     /// Whether the brick's display shows tuple, reading and outcome.
     pub display: bool,
 }
 
 impl NxcOptions {
-    /// The program of this name as it is without options.
+    /// Returns the options of a plain program with this name.
     pub fn new(program: BrickName) -> Self {
         NxcOptions { program, wiring: Wiring::default(), safety: Safety::default(), log: None, display: false }
     }
@@ -54,10 +67,10 @@ impl NxcOptions {
     }
 }
 
-/// The controller as an NXC program, with its origin and the compiler call in the first lines.
+/// Returns the controller as NXC source, with its origin and the call of the compiler in the first lines.
 ///
 /// # Errors
-/// When the brick cannot run or store the program: see [`ExportError`].
+/// Returns an [`ExportError`] when the brick cannot run or store the program.
 pub fn program(controller: &Controller, origin: &Origin, options: &NxcOptions) -> Result<String, ExportError> {
     controller.check()?;
     options.wiring.check()?;
@@ -73,12 +86,12 @@ pub fn program(controller: &Controller, origin: &Origin, options: &NxcOptions) -
         options.log.is_some().then(|| LOG.to_owned()),
         options.display.then(|| DISPLAY.to_owned()),
         Some(ENDING.to_owned()),
-        Some(options.parts().choose(RUN)),
+        Some(options.parts().select(RUN)),
     ];
     Ok(parts.into_iter().flatten().collect::<Vec<_>>().join("\n"))
 }
 
-/// Resources of the compiled program.
+/// Returns the resources of the compiled program.
 pub fn budget(controller: &Controller, options: &NxcOptions) -> Budget {
     let parts = [(options.log.is_some(), WITH_LOG), (options.display, WITH_DISPLAY)];
     let wanted = parts.iter().filter(|(wanted, _)| *wanted);
@@ -86,7 +99,7 @@ pub fn budget(controller: &Controller, options: &NxcOptions) -> Budget {
     Budget::new(cost, controller.step_ms, options.log.as_ref().map(|_| controller.max_steps))
 }
 
-/// What stopping for other reasons than the controller's adds to a program.
+/// Returns the cost of the additional reasons to stop.
 pub(crate) fn safety_cost(safety: Safety) -> Cost {
     let parts = [(safety.stop_cm.is_some(), WITH_NEAR), (safety.stall, WITH_STALL)];
     parts.iter().filter(|(wanted, _)| *wanted).fold(Cost::default(), |sum, (_, cost)| sum.plus(*cost))
@@ -104,14 +117,11 @@ fn head(controller: &Controller, origin: &Origin, options: &NxcOptions) -> Strin
          // next tuple. The robot stops after the sixth, after {} steps, or when the sensor is dead.\n{}",
         controller.step_ms,
         controller.max_steps,
-        wired_and_stopped(wiring, *safety)
+        ports_and_stops(wiring, *safety)
     );
     if let Some(log) = log {
-        text += &format!(
-            "// Every start of the program writes a file of its own: {}, {} and so on.\n",
-            log.name(0),
-            log.name(1)
-        );
+        text +=
+            &format!("// Every start of the program writes a new file: {}, {} and so on.\n", log.name(0), log.name(1));
     }
     for line in origin.lines() {
         text += &format!("// {line}\n");
@@ -135,7 +145,7 @@ pub(crate) fn log_constants(constants: Constants, log: &RunLogs, log_bytes: u32)
     constants
         .with("LOG_STEM", format!("\"{}\"", log.stem()), "")
         .with("LOG_EXTENSION", format!("\".{}\"", log.extension()), "")
-        .with("LOG_BYTES", log_bytes, "for the longest run")
+        .with("LOG_BYTES", log_bytes, "of the longest run")
 }
 
 fn table(controller: &Controller) -> String {
@@ -151,7 +161,7 @@ fn table(controller: &Controller) -> String {
     };
     let rows: String = (1..).zip(&controller.tuples).map(row).collect();
     format!(
-        "// The tuples, one a row.\n\
+        "// The tuples, one per row.\n\
          #define LEFT_POWER           0\n\
          #define RIGHT_POWER          1\n\
          #define WHEN                 2\n\

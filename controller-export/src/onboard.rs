@@ -1,73 +1,86 @@
-//! Behaviour of every onboard program beyond the controller: how it reads the ultrasonic sensor and when it considers it
-//! dead, how it is stopped, and how it says that it has ended.
+//! Behaviour of every onboard program beyond the controller: how it reads the ultrasonic sensor, when it considers the
+//! sensor dead, how it can be stopped, and how it reports the end of a run.
 
 pub use mindgap_core::limits::FREE_FLASH_BYTES;
 
-/// The sensor's code for "no echo". It does not count as a reading: the tuple is held.
+/// The sensor's code for "no echo", which does not count as a reading: the tuple is held.
 pub const NO_ECHO_CM: u8 = 255;
 
-/// Timeout of one exchange with the sensor. The firmware's own driver gives up after three polls 15 ms apart.
+/// Timeout of one exchange with the sensor. The firmware's own driver gives up after three polls, 15 ms apart.
 pub const SONAR_TIMEOUT_MS: u16 = 45;
 
-/// How long a sensor that begins an answer and never ends it keeps its port busy: the firmware's timeout of 100 ms and
-/// the passes in which its driver resets. In the virtual machine of firmware 1.29 a request is refused 104 ms after such
-/// a one, and accepted after 106.
+/// Time for which a sensor that starts an answer and never finishes it keeps its port busy: the firmware's timeout of
+/// 100 ms plus the time in which its driver resets. In the virtual machine of firmware 1.29 the next request is refused
+/// after 104 ms and accepted after 106 ms.
 pub const SONAR_HANG_MS: u32 = 106;
 
 /// Time between two polls for the sensor's answer.
 pub const SONAR_POLL_MS: u16 = 3;
 
-/// Steps in a row without an answer after which the sensor counts as dead and the robot is stopped. One missed answer
-/// may be a disturbed wire, and holds the tuple as a missing echo does.
+/// Number of consecutive steps without an answer after which the sensor counts as dead and the robot stops. A single
+/// missing answer may be interference on the wire; it holds the tuple, as a missing echo does.
 pub const FAILED_STEPS_TO_STOP: u8 = 2;
 
-/// Time between switching the sensor on and the first question to it.
+/// Time between switching the sensor on and the first request.
 pub const SONAR_WARM_UP_MS: u16 = 250;
 
-/// Questions before the start, of which the sensor has to answer one. They ask for its kind, which is no measurement.
+/// Number of requests before the start, of which the sensor has to answer one. They ask for its type and take no reading.
 pub const SONAR_PROBES: u8 = 3;
 
-/// Time between two looks at the orange button while the program waits.
+/// Time between two checks of the orange button while the program waits.
 pub const BUTTON_POLL_MS: u16 = 20;
 
-/// How long the tone of an ending lasts.
+/// Duration of the tone of an ending.
 pub const TONE_MS: u16 = 250;
 
-/// How long the text of an ending is shown, and the motors brake, before the program ends: then the firmware lets go of
-/// both.
+/// Time for which the text of an ending is shown and the motors brake before the program ends. Then the firmware clears the
+/// display and releases the motors.
 pub const ENDING_MS: u16 = 2_000;
 
-/// Volume of the tones, of 4.
+/// Volume of the tones, 0..=4.
 pub const TONE_VOLUME: u8 = 4;
 
-/// What makes a program stop the motors beside its controller; a controller as its definition says stops for neither.
+/// Additional reasons for a program to stop the motors. A controller on its own stops for neither.
+///
+/// ```
+/// use mindgap_controller_export::onboard::Safety;
+///
+/// let safety = Safety { stop_cm: Some(15), stall: true };
+/// assert_ne!(safety, Safety::default());
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Safety {
-    /// A reading below this stops the robot.
+    /// Distance in cm; a reading below it stops the robot.
     pub stop_cm: Option<u8>,
-    /// Wheels that are driven and do not turn stop it.
+    /// Whether a driven wheel that does not turn stops the robot.
     pub stall: bool,
 }
 
-/// Power from which a driven wheel has to turn: friction may hold it at less.
+/// Power from which a driven wheel has to turn. Below it friction may hold the wheel.
 pub const STALL_POWER: u8 = 30;
 
-/// Rotation of a wheel in a second below which it does not turn; at [`STALL_POWER`] a free one turns ten times as fast.
+/// Rotation speed below which a wheel counts as not turning. At [`STALL_POWER`] a free wheel turns ten times as fast.
 const STALL_DEG_S: u32 = 20;
 
-/// Time without rotation after which a wheel has stalled: it includes setting off and turning back.
+/// Time without rotation after which a wheel has stalled. It allows for acceleration and for reversing.
 const STALL_MS: u16 = 800;
 
 /// How a run ends.
+///
+/// ```
+/// use mindgap_controller_export::onboard::Ending;
+///
+/// assert_eq!((Ending::Stopped.text(), Ending::Stopped.hz()), ("stopped", 523));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ending {
-    /// The sixth tuple's test held, or the last step of a drive that collects data is done.
+    /// A reading ended the sixth tuple, or the last step of a program that collects data is done.
     Finished,
     /// The step limit was reached.
     TimedOut,
     /// The sensor stopped answering.
     SonarDead,
-    /// Nothing answers on the sensor's port: nothing has moved.
+    /// No sensor answers on the port; nothing has moved.
     NoSonar,
     /// The orange button was pressed.
     Stopped,
@@ -75,7 +88,7 @@ pub enum Ending {
     Near,
     /// A driven wheel does not turn.
     Stalled,
-    /// The flash has no room for the log: nothing has moved.
+    /// The flash has no room for the log; nothing has moved.
     NoRoom,
 }
 
@@ -92,7 +105,7 @@ impl Ending {
         Ending::NoRoom,
     ];
 
-    /// The text on the display, at most 16 characters.
+    /// Returns the text on the display, at most 16 characters.
     pub fn text(self) -> &'static str {
         match self {
             Ending::Finished => "finished",
@@ -106,7 +119,7 @@ impl Ending {
         }
     }
 
-    /// Frequency of the tone, another one for each.
+    /// Returns the frequency of the tone in Hz, which differs between endings.
     pub fn hz(self) -> u16 {
         match self {
             Ending::Finished => 880,
@@ -121,12 +134,12 @@ impl Ending {
     }
 }
 
-/// Rotation within a step below which a wheel does not turn, degrees.
+/// Returns the rotation per step, in degrees, below which a wheel counts as not turning.
 pub fn stall_deg(step_ms: u16) -> u16 {
     (u32::from(step_ms) * STALL_DEG_S).div_ceil(1_000) as u16
 }
 
-/// Steps in a row without rotation after which a wheel has stalled.
+/// Returns the number of consecutive steps without rotation after which a wheel has stalled.
 pub fn stalled_steps(step_ms: u16) -> u16 {
     STALL_MS.div_ceil(step_ms.max(1)).max(2)
 }
@@ -136,7 +149,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_ending_has_a_text_that_fits_the_display_and_a_tone_of_its_own() {
+    fn every_ending_has_its_own_tone_and_a_text_that_fits_the_display() {
         for (at, ending) in Ending::ALL.iter().enumerate() {
             assert!(ending.text().len() <= 16, "{ending:?}");
             assert!(Ending::ALL[..at].iter().all(|other| other.hz() != ending.hz() && other.text() != ending.text()));
@@ -144,7 +157,7 @@ mod tests {
     }
 
     #[test]
-    fn a_wheel_has_stalled_after_the_same_time_at_any_step() {
+    fn stall_is_detected_after_the_same_time_at_any_step_length() {
         assert_eq!((stalled_steps(100), stalled_steps(400), stalled_steps(1_000)), (8, 2, 2));
         assert_eq!((stall_deg(10), stall_deg(400), stall_deg(u16::MAX)), (1, 8, 1_311));
     }

@@ -1,24 +1,31 @@
-//! Origin of a controller.
+//! The origin of a controller, for the comments of a program.
 
-/// Origin of a controller for the comments of an onboard program. Unknown facts are omitted.
+/// The origin of a controller. Programs state it in their comments; unknown facts are omitted.
+///
+/// ```
+/// use mindgap_controller_export::Origin;
+///
+/// let origin = Origin { scene: Some("maze.toml".to_owned()), seed: Some(7), ..Origin::default() };
+/// assert_eq!(origin.lines(), ["scene: maze.toml", "seed: 7"]);
+/// ```
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Origin {
-    /// The simulator that the controller was evolved in, usually a file name.
+    /// Simulator in which the controller was evolved, usually a file name.
     pub simulator: Option<String>,
-    /// The scene that it was evolved for, usually a file name.
+    /// Scene for which it was evolved, usually a file name.
     pub scene: Option<String>,
-    /// The start within that scene, from 1.
+    /// Number of the start within that scene, from 1.
     pub start: Option<usize>,
-    /// The seed of the evolution.
+    /// Seed of the evolution.
     pub seed: Option<u64>,
     /// Total number of generations.
     pub generations: Option<u32>,
-    /// Fitness in simulation.
+    /// Fitness in simulation (paper, equation 3).
     pub fitness: Option<f64>,
 }
 
 impl Origin {
-    /// One line of printable ASCII for each known fact, safe in a comment of any C-like language.
+    /// Returns one line of printable ASCII per known fact, safe in a comment of any C-like language.
     pub fn lines(&self) -> Vec<String> {
         let facts = [
             ("simulator", self.simulator.clone()),
@@ -32,7 +39,8 @@ impl Origin {
     }
 }
 
-/// A backslash at a line's end would pull the next line into the comment, so it turns into a slash.
+/// Returns the text as printable ASCII. A backslash becomes a slash, because at the end of a line it would continue the
+/// comment on the next one.
 fn plain(text: &str) -> String {
     let plain = |c: char| match c {
         '\\' => '/',
@@ -47,7 +55,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn no_fact_can_leave_its_comment() {
+    fn facts_stay_inside_their_comment() {
         let origin =
             Origin { simulator: Some("a\n*/ \u{e9} C:\\sim\\".to_owned()), seed: Some(7), ..Origin::default() };
         assert_eq!(origin.lines(), ["simulator: a?*/ ? C:/sim/", "seed: 7"]);

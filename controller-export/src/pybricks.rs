@@ -1,6 +1,6 @@
-//! The controller as a MicroPython program for hubs with pybricks firmware: SPIKE, Technic, and EV3.
+//! A controller as a MicroPython program for hubs with Pybricks firmware: SPIKE, Technic and EV3.
 //!
-//! Its class `Robot` is the driver, the only part that knows the hub's motors and sensor.
+//! Its class `Robot` is the driver, the only part that depends on the hub's motors and sensor.
 
 use mindgap_core::controller::{Controller, FULL_SPEED, Tuple, When};
 
@@ -11,17 +11,28 @@ use crate::origin::Origin;
 const DRIVER: &str = include_str!("pybricks/driver.py");
 const RUN: &str = include_str!("pybricks/run.py");
 
-/// The controller as a program.
+/// Returns the controller as a MicroPython program.
 ///
 /// # Errors
-/// [`ExportError::Controller`].
+/// Returns [`ExportError::Controller`] when a number of the controller is out of range.
+///
+/// ```
+/// use mindgap_controller_export::{Origin, pybricks};
+/// use mindgap_core::controller::{Controller, Tuple, When};
+///
+/// let ahead = Tuple { left: 55, right: 48, when: When::Smaller, threshold_cm: 42 };
+/// let controller = Controller { step_ms: 400, max_steps: 150, tuples: [ahead; 6] };
+/// let source = pybricks::program(&controller, &Origin::default())?;
+/// assert!(source.contains("(55, 48, SMALLER, 42),  # 1"));
+/// # Ok::<(), mindgap_controller_export::ExportError>(())
+/// ```
 pub fn program(controller: &Controller, origin: &Origin) -> Result<String, ExportError> {
     controller.check()?;
     let Controller { step_ms, max_steps, tuples } = controller;
     let origin: String = origin.lines().iter().map(|line| format!("# {line}\n")).collect();
     let rows: String = (1..).zip(tuples).map(row).collect();
     let head = format!(
-        "# A six-tuple controller for a hub with pybricks firmware. Every {step_ms} ms the ultrasonic sensor is read once; a reading\n\
+        "# A six-tuple controller for a hub with Pybricks firmware. Every {step_ms} ms the ultrasonic sensor is read once; a reading\n\
          # on the stated side of a tuple's threshold starts the next tuple. The robot stops after the sixth, after {max_steps} steps,\n\
          # or when the sensor is dead; nothing moves unless the sensor answers. The hub's button stops it at once.\n\
          {origin}\n\
@@ -32,14 +43,14 @@ pub fn program(controller: &Controller, origin: &Origin) -> Result<String, Expor
          LEFT = Port.A\n\
          RIGHT = Port.B\n\
          SONAR = Port.C  # on an EV3: Port.S4\n\
-         NO_ECHO_MM = 2000  # the sensor's own code; on an EV3: 2550\n\
+         NO_ECHO_MM = 2000  # the sensor's code; on an EV3: 2550\n\
          \n\
          STEP_MS = {step_ms}\n\
          MAX_STEPS = {max_steps}\n\
          FAILED_STEPS_TO_STOP = {FAILED_STEPS_TO_STOP}  # in a row\n\
          SMALLER = 0\n\
          LARGER = 1\n\
-         # Left and right power, when the tuple ends, and its threshold in cm.\n\
+         # Left power, right power, side of the threshold on which the tuple ends, threshold in cm.\n\
          TUPLES = (\n{rows})\n"
     );
     Ok([&head, DRIVER, RUN].join("\n\n"))

@@ -1,18 +1,27 @@
-//! Networks as a MicroPython module for hubs with pybricks firmware.
+//! Networks as a MicroPython module for hubs with Pybricks firmware.
 //!
-//! They are in floating point: the hubs' whole numbers have 31 bits, too few for the products of fixed point.
+//! They are in floating point: integers on the hubs have 31 bits, too few for the products of fixed point.
 
 use mindgap_core::folded::FoldedNetwork;
 use mindgap_core::network::{Activation, Network};
 
 const NETWORK: &str = include_str!("pybricks_networks/network.py");
 
-/// One network as a function with a table of its weights.
+/// A network as a function with a table of its weights.
+///
+/// ```
+/// use mindgap_controller_export::pybricks_networks::{PybricksNetwork, pybricks_networks};
+/// use mindgap_core::network::{Network, Scaling};
+///
+/// let network = Network::constant([Scaling::onto_one_to_two(0.0, 10.0)], 0.5);
+/// let module = pybricks_networks(&[PybricksNetwork::new("turn", "Degrees.", ["left"], &network)]);
+/// assert!(module.contains("def turn(left):"));
+/// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PybricksNetwork(String);
 
 impl PybricksNetwork {
-    /// The function `name` with arguments named `inputs`; `documentation` is one line.
+    /// Returns the function `name` with arguments named `inputs`. `documentation` is one line of text.
     pub fn new<const N: usize>(
         name: &str,
         documentation: &str,
@@ -32,11 +41,11 @@ impl PybricksNetwork {
     }
 }
 
-/// A module that defines these networks.
+/// Returns the source of a module that defines these networks.
 pub fn pybricks_networks(networks: &[PybricksNetwork]) -> String {
-    let head = "# A simulator's networks in floating point, for a hub with pybricks firmware: from this file import what is needed.
-# Of each network: gain, offset and range of every input; bias; slopes; product units with exponents and weight; whether the
-# answer is a probability.
+    let head = "# A simulator's networks in floating point, for a hub with Pybricks firmware: import the functions from this file.
+# Each table holds gain, offset and range of every input; bias; slopes; exponents and weight of every product unit; and
+# whether the output is a probability.
 
 from umath import exp, log
 ";
@@ -49,7 +58,7 @@ fn tuple(numbers: &[f32]) -> String {
     format!("({})", words.join(", "))
 }
 
-/// Items on lines of their own, with a comma behind each.
+/// Writes one item per line, each followed by a comma.
 fn rows(items: impl Iterator<Item = String>) -> String {
     let rows: String = items.map(|item| format!("\n        {item},")).collect();
     rows + "\n    "

@@ -1,14 +1,25 @@
-//! The controller as a Rust constant for programs that use [`mindgap_core`].
+//! A controller as a Rust constant, for programs that use [`mindgap_core`].
 
 use mindgap_core::controller::{Controller, Tuple, When};
 
 use crate::error::ExportError;
 use crate::origin::Origin;
 
-/// The controller as a Rust module with one constant, `CONTROLLER`.
+/// Returns the source of a Rust module with one constant, `CONTROLLER`.
 ///
 /// # Errors
-/// [`ExportError::Controller`].
+/// Returns [`ExportError::Controller`] when a number of the controller is out of range.
+///
+/// ```
+/// use mindgap_controller_export::{Origin, rust};
+/// use mindgap_core::controller::{Controller, Tuple, When};
+///
+/// let ahead = Tuple { left: 55, right: 48, when: When::Smaller, threshold_cm: 42 };
+/// let controller = Controller { step_ms: 400, max_steps: 150, tuples: [ahead; 6] };
+/// let source = rust::module(&controller, &Origin::default())?;
+/// assert!(source.contains("pub const CONTROLLER: Controller"));
+/// # Ok::<(), mindgap_controller_export::ExportError>(())
+/// ```
 pub fn module(controller: &Controller, origin: &Origin) -> Result<String, ExportError> {
     controller.check()?;
     let origin: String = origin.lines().iter().map(|line| format!("//!\n//! {line}\n")).collect();

@@ -1,5 +1,4 @@
-//! Fixed-point networks as Rust source: statics that stay in flash, for a program that depends on `mindgap-core`, `fixed`
-//! and `heapless`.
+//! Fixed-point networks as Rust source: statics that stay in flash, for a program that depends on `mindgap-core`.
 
 use std::fmt::Write;
 
@@ -7,19 +6,26 @@ use mindgap_core::fixed_network::FixedNetwork;
 use mindgap_core::folded::Sign;
 use mindgap_core::network::Activation;
 
-/// Rust source of these networks, each made by [`rust_network`].
+/// Returns a Rust source file with these networks, each of which was made by [`rust_network`].
+///
+/// ```
+/// use mindgap_controller_export::rust_networks::rust_networks;
+///
+/// assert!(rust_networks(&[]).starts_with("use mindgap_core::"));
+/// ```
 pub fn rust_networks(networks: &[String]) -> String {
-    let head = "use fixed::types::{I6F26, I38F26};
-use heapless::Vec;
+    let head = "use mindgap_core::fixed::types::{I6F26, I38F26};
 use mindgap_core::fixed_network::{FixedNetwork, FixedScaling};
 use mindgap_core::folded::{Power, PowerSum, Sign};
+use mindgap_core::heapless::Vec;
 use mindgap_core::network::Activation;
 ";
     networks.iter().fold(head.to_owned(), |text, network| text + "\n" + network)
 }
 
-/// The definition of one network as a static. `name` must be a Rust identifier and `documentation` one line. Its capacity
-/// is that of its product units.
+/// Returns the definition of one network as a static, with room for exactly its product units.
+///
+/// `name` has to be a Rust identifier, and `documentation` one line of text.
 pub fn rust_network<const N: usize>(name: &str, documentation: &str, network: &FixedNetwork<N>) -> String {
     let activation = match network.activation {
         Activation::Linear => "Linear",
@@ -42,11 +48,11 @@ pub fn rust_network<const N: usize>(name: &str, documentation: &str, network: &F
     }));
     let bias = bits(network.sum.bias.to_bits());
     let slopes = list(network.sum.slopes.iter().map(|slope| slope.to_bits()));
-    let powers_type = network.sum.powers.len();
+    let capacity = network.sum.powers.len();
     let output_shift = network.output_shift;
     format!(
         "/// {documentation}
-pub static {name}: FixedNetwork<{N}, {powers_type}> = FixedNetwork {{
+pub static {name}: FixedNetwork<{N}, {capacity}> = FixedNetwork {{
     inputs: [
 {inputs}    ],
     sum: PowerSum {{
@@ -70,7 +76,7 @@ fn list(values: impl Iterator<Item = i32>) -> String {
     format!("[{}]", values.map(bits).collect::<Vec<_>>().join(", "))
 }
 
-/// One item a line.
+/// Writes one item per line.
 fn lines(items: impl Iterator<Item = String>) -> String {
     items.fold(String::new(), |mut text, item| {
         let _ = writeln!(text, "            {item},");

@@ -1,13 +1,23 @@
-//! A fixed-point network as a table of whole numbers, which evaluators in several languages read in one order.
+//! A fixed-point network as a table of integers, which evaluators in several languages read in the same order.
 
 use mindgap_core::fixed_network::{FixedNetwork, FixedScaling};
 use mindgap_core::folded::Sign;
 use mindgap_core::network::Activation;
 
-/// Number of weights on a line of a table.
-const A_LINE: usize = 8;
+/// Number of weights per line of a table.
+const WEIGHTS_PER_LINE: usize = 8;
 
-/// One network as a function with a table of its weights.
+/// A network as a function with a table of its weights.
+///
+/// ```
+/// use mindgap_controller_export::c_networks::c_networks;
+/// use mindgap_controller_export::tabulated::Tabulated;
+/// use mindgap_core::fixed_network::FixedNetwork;
+///
+/// fn header(forward: &FixedNetwork<2>) -> String {
+///     c_networks(&[Tabulated::new("forward", "Centimetres.", ["left", "right"], forward)])
+/// }
+/// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Tabulated {
     pub(crate) name: &'static str,
@@ -17,7 +27,7 @@ pub struct Tabulated {
 }
 
 impl Tabulated {
-    /// The function `name` with arguments named `inputs`; `documentation` is one line.
+    /// Returns the function `name` with arguments named `inputs`. `documentation` is one line of text.
     pub fn new<const N: usize>(
         name: &'static str,
         documentation: &'static str,
@@ -27,14 +37,14 @@ impl Tabulated {
         Tabulated { name, documentation, inputs: inputs.to_vec(), weights: weights(network) }
     }
 
-    /// Number of product units.
+    /// Returns the number of product units.
     pub(crate) fn powers(&self) -> usize {
         self.weights[1] as usize
     }
 }
 
-/// Inputs, product units, shift and ramp; the scaling of each input; bias and slopes; and of each product unit sign,
-/// weight and exponents.
+/// Returns, in this order: number of inputs, number of product units, output shift, whether the output is a ramp; the
+/// scaling of each input; bias and slopes; sign, weight and exponents of each product unit.
 fn weights<const N: usize>(network: &FixedNetwork<N>) -> Vec<i32> {
     let FixedNetwork { inputs, sum, output_shift, activation } = network;
     let is_ramp = i32::from(*activation == Activation::Ramp);
@@ -49,20 +59,20 @@ fn weights<const N: usize>(network: &FixedNetwork<N>) -> Vec<i32> {
     weights
 }
 
-/// Gain, shift, the four limbs of the offset, and the range.
+/// Returns gain, shift, the four 16-bit limbs of the offset from the highest, and the range.
 fn scaling(scaling: &FixedScaling) -> [i32; 8] {
     let FixedScaling { gain, shift, offset, low, high } = scaling;
     let offset = offset.to_bits();
-    let piece = |i: u32| ((offset >> (16 * i)) & 0xffff) as i32;
+    let limb = |i: u32| ((offset >> (16 * i)) & 0xffff) as i32;
     let highest = (offset >> 48) as i32;
-    [*gain, i32::from(*shift), highest, piece(2), piece(1), piece(0), low.to_bits(), high.to_bits()]
+    [*gain, i32::from(*shift), highest, limb(2), limb(1), limb(0), low.to_bits(), high.to_bits()]
 }
 
-/// Numbers in lines, with a comma behind each.
+/// Writes numbers in lines, each followed by a comma.
 pub(crate) fn lines(numbers: &[i32]) -> String {
     let line = |numbers: &[i32]| {
         let words: Vec<String> = numbers.iter().map(i32::to_string).collect();
         format!("  {},\n", words.join(", "))
     };
-    numbers.chunks(A_LINE).map(line).collect()
+    numbers.chunks(WEIGHTS_PER_LINE).map(line).collect()
 }

@@ -5,7 +5,14 @@ use std::str::FromStr;
 
 use crate::error::ExportError;
 
-/// The ports of motors and ultrasonic sensor.
+/// The ports of the motors and the ultrasonic sensor.
+///
+/// ```
+/// use mindgap_controller_export::wiring::{MotorPort, Wiring};
+///
+/// let wiring = Wiring { left: MotorPort::A, ..Wiring::default() };
+/// assert!(wiring.check().is_ok());
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Wiring {
     /// The left motor.
@@ -16,7 +23,13 @@ pub struct Wiring {
     pub sonar: SensorPort,
 }
 
-/// An output of the brick.
+/// A motor port of the brick.
+///
+/// ```
+/// use mindgap_controller_export::wiring::MotorPort;
+///
+/// assert_eq!("b".parse(), Ok(MotorPort::B));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MotorPort {
     /// Port A.
@@ -27,7 +40,13 @@ pub enum MotorPort {
     C,
 }
 
-/// An input of the brick.
+/// A sensor port of the brick.
+///
+/// ```
+/// use mindgap_controller_export::wiring::SensorPort;
+///
+/// assert_eq!(SensorPort::Four.to_string(), "4");
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SensorPort {
     /// Port 1.
@@ -41,17 +60,17 @@ pub enum SensorPort {
 }
 
 impl Default for Wiring {
-    /// Left motor on B, right motor on C, ultrasonic sensor on 4.
+    /// Returns the usual ports: left motor on B, right motor on C, ultrasonic sensor on 4.
     fn default() -> Self {
         Wiring { left: MotorPort::B, right: MotorPort::C, sonar: SensorPort::Four }
     }
 }
 
 impl Wiring {
-    /// Checks that the motors have a port each.
+    /// Checks that each motor has its own port.
     ///
     /// # Errors
-    /// [`ExportError::OnePortForTwoMotors`].
+    /// Returns [`ExportError::OnePortForTwoMotors`] when both are on one port.
     pub fn check(&self) -> Result<(), ExportError> {
         if self.left == self.right {
             return Err(ExportError::OnePortForTwoMotors(self.left.letter()));
@@ -114,7 +133,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn ports_read_back_as_they_print() {
+    fn ports_parse_from_their_own_text() {
         for port in ["A", "B", "C"] {
             assert_eq!(port.parse::<MotorPort>().unwrap().to_string(), port);
         }
@@ -123,7 +142,7 @@ mod tests {
         }
         assert_eq!(
             "5".parse::<SensorPort>().unwrap_err().to_string(),
-            "\"5\" is no sensor port; the brick has 1, 2, 3 and 4"
+            "\"5\" is not a sensor port; the brick has 1, 2, 3 and 4"
         );
     }
 }

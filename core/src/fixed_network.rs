@@ -1,9 +1,9 @@
 //! Networks in fixed point, for processors without a floating-point unit.
 //!
-//! Inputs and outputs are Q16.16. Between them everything is Q6.26: scaled inputs lie in [1, 2], their logarithms in
-//! [0, 1], exponents and weights below 32. The terms of a network may be larger, and cancel: they are then stored divided
-//! by a power of two, chosen so that all of them together stay below 32. The host works out that power, and how far
-//! rounding can take the output, when it quantises a trained network. Q16.16 throughout would not do: half an ulp in the
+//! Inputs and outputs are Q16.16. Everything in between is Q6.26: scaled inputs lie in [1, 2], their logarithms in [0, 1],
+//! exponents and weights below 32. The terms of a network may be larger and cancel each other. They are then stored divided
+//! by a power of two, chosen so that their sum stays below 32. The host computes that power, and a bound on the rounding
+//! error of the output, when it quantises a trained network. Q16.16 throughout would be too coarse: half an ulp in the
 //! logarithm of a term of 1000 cm is 0.005 cm, and a value network sums twenty of them.
 
 use core::array;
@@ -12,38 +12,83 @@ use fixed::types::{I6F26, I16F16, I38F26};
 use fixed::{FixedI32, Saturating};
 
 use crate::fixed_point::{Q6_26, Q16_16, exp2_of_sum, log2, product, saturate};
-use crate::folded::{Power, PowerSum, Sign, Term};
-use crate::network::{Activation, MAX_HALF};
+use crate::folded::{Power, PowerSum, Sign};
+use crate::network::{Activation, MAX_HALF, Term};
 
-/// A folded network in fixed point: `N` inputs, room for `POWERS` product units.
+/// A folded network in fixed point, with `N` inputs and room for `POWERS` product units.
+///
+/// ```
+/// use mindgap_core::fixed::types::{I16F16, I38F26, I6F26};
+/// use mindgap_core::fixed_network::{FixedNetwork, FixedScaling};
+/// use mindgap_core::folded::{Power, PowerSum, Sign};
+/// use mindgap_core::heapless::Vec;
+/// use mindgap_core::network::Activation;
+///
+/// // The square of an input in 1..=2, which is not scaled: 2^10 makes 26 fractional bits of 16.
+/// let square = FixedNetwork::<1, 1> {
+///     inputs: [FixedScaling { gain: 1 << 10, shift: 0, offset: I38F26::ZERO, low: I6F26::ONE, high: 2 * I6F26::ONE }],
+///     sum: PowerSum {
+///         bias: I6F26::ZERO,
+///         slopes: [I6F26::ZERO],
+///         powers: Vec::from_array([
+///             Power { exponents: [2 * I6F26::ONE], log2_weight: I6F26::ZERO, sign: Sign::Plus },
+///         ]),
+///     },
+///     output_shift: 0,
+///     activation: Activation::Linear,
+/// };
+/// let output = square.evaluate([I16F16::from_num(1.5)]);
+/// assert!((output.value - I16F16::from_num(2.25)).abs() <= I16F16::DELTA && !output.clamped);
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct FixedNetwork<const N: usize, const POWERS: usize = MAX_HALF> {
-    /// How each input is brought to the range that was trained.
+    /// Scaling of each input to the trained range.
     pub inputs: [FixedScaling; N],
-    /// What reaches the output unit, divided by two to the power of `output_shift`.
+    /// Sum that reaches the output unit, divided by 2^`output_shift`.
     pub sum: PowerSum<I6F26, N, POWERS>,
-    /// See `sum`; at most [`MAX_OUTPUT_SHIFT`].
+    /// Exponent of the power of two by which `sum` is divided, at most [`MAX_OUTPUT_SHIFT`].
     pub output_shift: u8,
-    /// What the output unit does with the sum.
+    /// Activation function of the output unit.
     pub activation: Activation,
 }
 
-/// An affine map of one input, clamped to the range that was trained: `clamp(x · gain / 2^shift + offset, low, high)`.
+/// An affine map of one input, clamped to the trained range: `clamp(x · gain / 2^shift + offset, low, high)`.
+///
+/// ```
+/// use mindgap_core::fixed::types::{I38F26, I6F26};
+/// use mindgap_core::fixed_network::FixedScaling;
+///
+/// // Maps -100..=100 in Q16.16 onto 1..=2 in Q6.26, so the gain is 2^(26 - 16 + shift) / 200.
+/// let (low, high) = (I6F26::ONE, 2 * I6F26::ONE);
+/// let scaling = FixedScaling { gain: 1_374_389_535, shift: 28, offset: I38F26::from_num(1.5), low, high };
+/// assert!(scaling.gain > i32::MAX / 2, "a larger shift would need more than 32 bits");
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FixedScaling {
     /// Factor, as large as 32 bits allow.
     pub gain: i32,
-    /// Fractional bits that the product of a Q16.16 input and `gain` has beyond the 26 of Q6.26; at most 63.
+    /// Number of fractional bits that the product of a Q16.16 input and `gain` has beyond the 26 of Q6.26, at most 63.
     pub shift: u8,
-    /// Summand; large where the range is narrow and far from zero.
+    /// Summand. It is large where the range is narrow and far from zero.
     pub offset: I38F26,
-    /// Least scaled value.
+    /// Smallest scaled value.
     pub low: I6F26,
     /// Largest scaled value.
     pub high: I6F26,
 }
 
-/// Scaled inputs and their logarithms, which networks of equal [`inputs`](FixedNetwork::inputs) can share.
+/// Scaled inputs and their logarithms, which networks with equal [`inputs`](FixedNetwork::inputs) can share.
+///
+/// ```
+/// use mindgap_core::fixed::types::I16F16;
+/// use mindgap_core::fixed_network::FixedNetwork;
+///
+/// /// Evaluates two networks that have the same scaling.
+/// fn both(turn: &FixedNetwork<4, 2>, forward: &FixedNetwork<4, 10>, commands: [I16F16; 4]) -> [I16F16; 2] {
+///     let scaled = turn.scale(commands);
+///     [turn.evaluate_scaled(&scaled).value, forward.evaluate_scaled(&scaled).value]
+/// }
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct ScaledInputs<const N: usize> {
     x: [Q6_26; N],
@@ -51,32 +96,45 @@ pub struct ScaledInputs<const N: usize> {
     clamped: bool,
 }
 
-/// What a network answers.
+/// The output of a network.
+///
+/// ```
+/// use mindgap_core::fixed::types::I16F16;
+/// use mindgap_core::fixed_network::Output;
+///
+/// /// Uses a prediction only where the network was trained.
+/// fn trusted(output: Output) -> Option<I16F16> {
+///     (!output.clamped).then_some(output.value)
+/// }
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Output {
     /// The output, in the unit that the network was trained in.
     pub value: I16F16,
-    /// Whether an input lay outside the trained range, so that the range's end was taken for it.
+    /// Whether an input lay outside the trained range, so that the end of the range was used instead.
     pub clamped: bool,
 }
 
-/// The largest [`FixedNetwork::output_shift`]; the terms then reach 2^31.
+/// The largest [`FixedNetwork::output_shift`]. The terms then reach 2^31.
 pub const MAX_OUTPUT_SHIFT: u8 = 26;
 
 /// A scaled input below 2^-10 counts as 2^-10, so that sums of logarithms have room; trained ones are at least 1.
 const LEAST_SCALED: I6F26 = I6F26::from_bits(1 << 16);
 
-/// How far, in scaled units, an input may be outside the trained range before it is said to be clamped, so that
-/// rounding at the very end of the range is not.
+/// Distance outside the trained range, in scaled units, from which an input is reported as clamped. Rounding at the end of
+/// the range stays below it.
 const CLAMP_TOLERANCE: i64 = 1 << 10;
 
 impl<const N: usize, const POWERS: usize> FixedNetwork<N, POWERS> {
-    /// The output for one sample. Any weights and inputs give an answer; what does not fit saturates.
+    /// Returns the output for one sample of `N` inputs.
+    ///
+    /// Any weights and inputs give a result; numbers that do not fit saturate.
     pub fn evaluate(&self, inputs: [I16F16; N]) -> Output {
         self.evaluate_scaled(&self.scale(inputs))
     }
 
-    /// A sample as [`evaluate_scaled`](Self::evaluate_scaled) takes it.
+    /// Returns a sample in the form that [`evaluate_scaled`](Self::evaluate_scaled) takes.
     pub fn scale(&self, inputs: [I16F16; N]) -> ScaledInputs<N> {
         let mut clamped = false;
         let x = array::from_fn(|i| {
@@ -87,13 +145,13 @@ impl<const N: usize, const POWERS: usize> FixedNetwork<N, POWERS> {
         ScaledInputs { x, log2_x: x.map(|x| Saturating(log2(x.0.max(LEAST_SCALED)))), clamped }
     }
 
-    /// The output for a sample that was scaled by this network, or by another with equal `inputs`.
+    /// Returns the output for a sample that was scaled by this network or by another with equal `inputs`.
     pub fn evaluate_scaled(&self, scaled: &ScaledInputs<N>) -> Output {
         let sum = self.sum.evaluate(&scaled.x, &scaled.log2_x);
         Output { value: self.activation.apply(self.unscaled(sum)).0, clamped: scaled.clamped }
     }
 
-    /// The sum in Q16.16, rounded to nearest, without its division by two to the power of `output_shift`.
+    /// Returns the sum times 2^`output_shift` in Q16.16, rounded to nearest.
     fn unscaled(&self, sum: Q6_26) -> Q16_16 {
         const FEWER_BITS: u32 = I6F26::FRAC_NBITS - I16F16::FRAC_NBITS;
         let wide = i64::from(sum.0.to_bits()) << self.output_shift.min(MAX_OUTPUT_SHIFT);
@@ -112,8 +170,8 @@ impl<const N: usize> Term<Q6_26, N> for Power<I6F26, N> {
     }
 }
 
-/// Two to the power of `start` + Σ `logarithms` · `exponents`; the sum is exact. Not to be inlined: in a loop over
-/// product units the compiler would widen the logarithms once, ahead of the loop, and then multiply 64 bits by 64.
+/// Returns 2^(`start` + Σ `logarithms` · `exponents`), where the sum is exact. It must not be inlined: in a loop over
+/// product units the compiler would widen the logarithms ahead of the loop and then multiply 64 bits by 64.
 #[inline(never)]
 fn product_of_powers<const N: usize>(start: I6F26, logarithms: &[Q6_26; N], exponents: &[I6F26; N]) -> Q6_26 {
     // A logarithm is between -10 and 5, so a product has at most 61 bits.
@@ -126,7 +184,7 @@ fn product_of_powers<const N: usize>(start: I6F26, logarithms: &[Q6_26; N], expo
 }
 
 impl FixedScaling {
-    /// The scaled input, and whether it had to be clamped.
+    /// Returns the scaled input, and whether it had to be clamped.
     #[inline(always)]
     fn apply(&self, input: I16F16) -> (Q6_26, bool) {
         let scaled = (product(input.to_bits(), self.gain) >> self.shift.min(63)).saturating_add(self.offset.to_bits());

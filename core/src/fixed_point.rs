@@ -1,17 +1,17 @@
-//! Fixed point: numbers that need no floating-point unit, the same bits on every machine.
+//! Fixed-point numbers and functions, which need no floating-point unit and have the same bits on every machine.
 //!
-//! Two formats are in use, both 32 bits wide: [`Q16_16`] for what comes in and goes out (speeds, centimetres, degrees,
-//! probabilities) and [`Q6_26`] for what lies between (scaled inputs, logarithms, exponents). Sums, differences and
-//! products saturate; a product drops the bits that do not fit, so it rounds towards minus infinity.
+//! There are two formats, both 32 bits wide: [`Q16_16`] for inputs and outputs (commands, centimetres, degrees,
+//! probabilities) and [`Q6_26`] for everything in between (scaled inputs, logarithms, exponents). Sums, differences and
+//! products saturate. A product drops the bits that do not fit, so it rounds towards minus infinity.
 //!
-//! | function | of zero and below | where it does not fit |
+//! | function | zero and negative arguments | result that does not fit |
 //! | --- | --- | --- |
-//! | [`exp2`] | - | the largest number |
-//! | [`log2`] | as of the least positive number | - |
-//! | [`cos_pi`] | - | - |
+//! | [`exp2`] | as any other | the largest number |
+//! | [`log2`] | count as the smallest positive number | does not occur |
+//! | [`cos_pi`] | as any other | does not occur |
 //!
-//! Each is within 1 unit of the last place (2^-16 or 2^-26) at every input of both formats: `cargo run --release -p
-//! mindgap-tests --bin exhaustive-fixed-point` goes through them all.
+//! Each is within 1 unit in the last place (2^-16 or 2^-26) at every input of both formats. The project's binary
+//! `exhaustive-fixed-point` checks them all.
 
 mod cosine;
 mod powers;
@@ -27,12 +27,35 @@ pub(crate) use product::product;
 
 use crate::scalar::Scalar;
 
-/// A number with 16 fractional bits, -32768..32768.
+/// A saturating number with 16 fractional bits, in -32768..32768.
+///
+/// ```
+/// use mindgap_core::fixed_point::Q16_16;
+///
+/// assert_eq!(Q16_16::MAX + Q16_16::MAX, Q16_16::MAX);
+/// ```
 pub type Q16_16 = Saturating<FixedI32<U16>>;
-/// A number with 26 fractional bits, -32..32.
+/// A saturating number with 26 fractional bits, in -32..32.
+///
+/// ```
+/// use mindgap_core::fixed_point::Q6_26;
+///
+/// assert_eq!(Q6_26::MIN - Q6_26::MAX, Q6_26::MIN);
+/// ```
 pub type Q6_26 = Saturating<FixedI32<U26>>;
 
-/// A number of fractional bits that the functions of this module are made and checked for.
+/// A number of fractional bits that the functions of this module support: 16 or 26.
+///
+/// ```
+/// use mindgap_core::fixed::FixedI32;
+/// use mindgap_core::fixed_point::{Format, exp2, log2};
+///
+/// fn square_root<F: Format>(x: FixedI32<F>) -> FixedI32<F> {
+///     exp2(log2(x) / 2)
+/// }
+/// use mindgap_core::fixed::types::I16F16;
+/// assert_eq!(square_root(I16F16::from_num(16)), I16F16::from_num(4));
+/// ```
 pub trait Format: LeEqU32 + IsLessOrEqual<U30, Output = True> {}
 
 impl Format for U16 {}
@@ -65,7 +88,7 @@ impl<F: Format> Scalar for Saturating<FixedI32<F>> {
     }
 }
 
-/// The nearest number of 32 bits.
+/// Returns the nearest 32-bit number.
 #[inline(always)]
 pub(crate) fn saturate(wide: i64) -> i32 {
     let narrow = wide as i32;
@@ -84,7 +107,7 @@ mod tests {
     use fixed::types::I16F16;
 
     #[test]
-    fn a_weighted_sum_saturates_once_at_its_end() {
+    fn weighted_sum_saturates_only_at_its_end() {
         let number = |x: f64| Saturating(I16F16::from_num(x));
         let [large, minus] = [I16F16::from_num(20_000), I16F16::from_num(-20_000)];
         assert_eq!(Scalar::weighted_sum(number(1.0), &[number(2.0); 2], &[large, minus]), number(1.0));

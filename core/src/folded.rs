@@ -1,15 +1,15 @@
-//! The one evaluator of networks, for floats, pairs, vectors and fixed point.
+//! Folded networks and their evaluator, which works on floats, pairs, vectors and fixed point alike.
 //!
-//! Summation units are linear and so is the output, so they fold into one affine map: a network is exactly
-//! `bias + Σ slopes·x + Σ output·2^(Σ exponents·log2 x)`. Over the five networks of Table I that leaves 206 of
-//! 422 parameters, one logarithm an input and one power of two a product unit.
+//! Summation units are linear and so is the output unit, so together they fold into one affine map: a network is exactly
+//! `bias + Σ slopes·x + Σ output·2^(Σ exponents·log2 x)`. Over the five networks of Table I in the paper this leaves 206 of
+//! 422 parameters, with one logarithm per input and one power of two per product unit.
 
 use crate::maths::{self, Binary32};
-use crate::network::{Activation, MAX_HALF, Network, ProductUnit, Scaling};
+use crate::network::{Activation, MAX_HALF, Network, ProductUnit, Scaling, Term, add_terms, scale};
 use crate::pair::Pair;
 use crate::scalar::Scalar;
 
-/// A [`Network`] with its summation units folded together.
+/// A [`Network`] with `N` inputs whose summation units are folded together.
 ///
 /// ```
 /// use mindgap_core::folded::FoldedNetwork;
@@ -20,59 +20,86 @@ use crate::scalar::Scalar;
 /// network.product.push(ProductUnit { exponents: [2.0], output: -4.0 }).unwrap();
 /// let folded = FoldedNetwork::fold(&network);
 /// assert_eq!((folded.sum.bias, folded.sum.slopes), (2.5, [6.0]));
-/// // 2.5 + 6 x - 4 x^2 at x = 1.5.
+/// // 2.5 + 6 x - 4 x² at x = 1.5.
 /// assert!((folded.evaluate([5.0f32]) - 2.5).abs() < 1e-5);
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct FoldedNetwork<W, const N: usize> {
-    /// How each input is brought to the range that was trained.
+    /// Scaling of each input to the trained range.
     pub inputs: [Scaling<W>; N],
-    /// What reaches the output unit.
+    /// Sum that reaches the output unit.
     pub sum: PowerSum<W, N, MAX_HALF, ProductUnit<W, N>>,
-    /// What the output unit does with it.
+    /// Activation function of the output unit.
     pub activation: Activation,
-    /// Whether no power of any input can overflow, and no scaled input lacks a logarithm.
+    /// Whether no power of any input can overflow, and every scaled input is a normal positive number.
     overflow_safe: bool,
 }
 
-/// An affine map of `N` scaled inputs and up to `POWERS` product units of the form `U`.
+/// An affine map of `N` scaled inputs plus up to `POWERS` product units of type `U`.
+///
+/// ```
+/// use mindgap_core::folded::PowerSum;
+/// use mindgap_core::heapless::Vec;
+/// use mindgap_core::network::ProductUnit;
+///
+/// let powers = Vec::<_, 1>::from_array([ProductUnit { exponents: [2.0], output: -4.0 }]);
+/// let sum = PowerSum { bias: 2.5, slopes: [6.0], powers };
+/// // 2.5 + 6 x - 4 x² at x = 2, whose logarithm to base two is 1.
+/// assert_eq!(sum.evaluate(&[2.0f32], &[1.0]), -1.5);
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct PowerSum<W, const N: usize, const POWERS: usize = MAX_HALF, U = Power<W, N>> {
-    /// The constant.
+    /// Constant term.
     pub bias: W,
-    /// One factor an input.
+    /// One slope per input.
     pub slopes: [W; N],
-    /// The product units.
+    /// Product units.
     pub powers: heapless::Vec<U, POWERS>,
 }
 
-/// A product unit with its weight in the output sum as one power of two, as fixed point takes it.
+/// A product unit with its output weight as a power of two, as fixed point needs it.
+///
+/// It stands for `± 2^(log2_weight + Σ exponents·log2 x)`.
+///
+/// ```
+/// use mindgap_core::fixed::Saturating;
+/// use mindgap_core::fixed::types::I6F26;
+/// use mindgap_core::folded::{Power, Sign};
+/// use mindgap_core::network::Term;
+///
+/// // -4 x² at x = 2, whose logarithm to base two is 1.
+/// let number = |x: i32| I6F26::from_num(x);
+/// let power = Power { exponents: [number(2)], log2_weight: number(2), sign: Sign::Minus };
+/// assert_eq!(power.add_to(Saturating(number(0)), &[Saturating(number(1))]).0, number(-16));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Power<W, const N: usize> {
-    /// One exponent an input.
+    /// One exponent per input.
     pub exponents: [W; N],
-    /// The logarithm to base two of the output weight's absolute value.
+    /// Logarithm to base two of the output weight's absolute value.
     pub log2_weight: W,
-    /// The output weight's sign.
+    /// Sign of the output weight.
     pub sign: Sign,
 }
 
-/// Whether a power is added or subtracted.
+/// The sign of a [`Power`].
+///
+/// ```
+/// use mindgap_core::folded::Sign;
+///
+/// let sign_of = |weight: f32| if weight < 0.0 { Sign::Minus } else { Sign::Plus };
+/// assert_eq!(sign_of(-0.5), Sign::Minus);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Sign {
-    /// Added.
+    /// The power is added.
     Plus,
-    /// Subtracted.
+    /// The power is subtracted.
     Minus,
 }
 
-/// A product unit in a form that numbers of the kind `S` can evaluate.
-pub trait Term<S, const N: usize> {
-    /// `sum` and the weighted power of the inputs, given by their logarithms to base two.
-    fn add_to(&self, sum: S, log2_x: &[S; N]) -> S;
-}
-
-/// The outputs of several networks for the same inputs. Those that scale them alike share the logarithms.
+/// Returns the outputs of `K` networks for the same `N` inputs. Consecutive networks with the same scaling share the
+/// logarithms.
 #[inline(always)]
 pub fn evaluate_all<S: Binary32, const N: usize, const K: usize>(
     networks: &[FoldedNetwork<f32, N>; K],
@@ -106,7 +133,7 @@ impl<W: Scalar<Weight = W> + From<f32>, const N: usize> FoldedNetwork<W, N> {
         }
         let mut powers = heapless::Vec::new();
         for unit in &network.product {
-            // There is room for as many as there were.
+            // The capacity is that of the network's own vector.
             let _ = powers.push(ProductUnit { exponents: unit.exponents.map(W::from), output: unit.output.into() });
         }
         FoldedNetwork {
@@ -124,28 +151,29 @@ impl<W: Scalar<Weight = W> + From<f32>, const N: usize> FoldedNetwork<W, N> {
 }
 
 impl<const N: usize> FoldedNetwork<f32, N> {
-    /// The output for one sample, in the unit that the network was trained in; an input outside the trained range
-    /// counts as the range's end.
+    /// Returns the output for one sample, in the unit that the network was trained in.
+    ///
+    /// An input outside the trained range counts as the end of the range. A NaN input gives NaN.
     #[inline(always)]
     pub fn evaluate<S: Binary32>(&self, inputs: [S; N]) -> S {
         let (x, log2_x) = self.scale(inputs);
         self.evaluate_scaled(&x, &log2_x)
     }
 
-    /// The inputs scaled, and their logarithms to base two, which networks of equal `inputs` can share.
+    /// Returns the scaled inputs and their logarithms to base two. Networks with equal `inputs` can share them.
     #[inline(always)]
     pub fn scale<S: Binary32>(&self, inputs: [S; N]) -> ([S; N], [S; N]) {
         scale(&self.inputs, inputs, self.overflow_safe)
     }
 
-    /// The output for a scaled sample. Two product units at a time keep a processor busy.
+    /// Returns the output for a scaled sample. Evaluates two product units at a time, which keeps a processor busy.
     #[inline(always)]
     pub fn evaluate_scaled<S: Binary32>(&self, x: &[S; N], log2_x: &[S; N]) -> S {
         let sum = if self.overflow_safe {
             let mut sum = self.sum.affine(x);
             let (pairs, last) = self.sum.powers.as_chunks::<2>();
             for [one, other] in pairs {
-                let powers = maths::exp2_within(Pair(log2_power(one, log2_x), log2_power(other, log2_x)));
+                let powers = maths::exp2_within(Pair(one.log2_power(log2_x), other.log2_power(log2_x)));
                 sum = sum + powers.0 * sum.constant(one.output);
                 sum = sum + powers.1 * sum.constant(other.output);
             }
@@ -156,7 +184,7 @@ impl<const N: usize> FoldedNetwork<f32, N> {
         self.activation.apply(sum)
     }
 
-    /// The same for two scaled samples, which keep a processor busy with one product unit at a time.
+    /// Returns the outputs for two scaled samples. Two samples keep a processor busy with one product unit at a time.
     #[inline(always)]
     pub fn evaluate_scaled_pair<S: Binary32>(&self, x: &[Pair<S>; N], log2_x: &[Pair<S>; N]) -> Pair<S> {
         let sum = match self.overflow_safe {
@@ -168,7 +196,7 @@ impl<const N: usize> FoldedNetwork<f32, N> {
 }
 
 impl<W: Copy, const N: usize, const POWERS: usize, U> PowerSum<W, N, POWERS, U> {
-    /// The sum at a scaled sample, every member of which is above zero, given with its logarithms to base two.
+    /// Returns the sum for `N` scaled inputs, all above zero, and their logarithms to base two.
     #[inline(always)]
     pub fn evaluate<S: Scalar<Weight = W>>(&self, x: &[S; N], log2_x: &[S; N]) -> S
     where
@@ -184,64 +212,17 @@ impl<W: Copy, const N: usize, const POWERS: usize, U> PowerSum<W, N, POWERS, U> 
     }
 }
 
-impl<S: Binary32, const N: usize> Term<S, N> for ProductUnit<f32, N> {
-    #[inline(always)]
-    fn add_to(&self, sum: S, log2_x: &[S; N]) -> S {
-        sum + maths::exp2(log2_power(self, log2_x)) * sum.constant(self.output)
-    }
-}
-
-/// `start` and all terms, from the first to the last.
-#[inline(always)]
-pub(crate) fn add_terms<S: Copy, T: Term<S, N>, const N: usize>(terms: &[T], start: S, log2_x: &[S; N]) -> S {
-    let mut sum = start;
-    for term in terms {
-        sum = term.add_to(sum, log2_x);
-    }
-    sum
-}
-
-/// [`add_terms`] to the bit, where no power overflows.
+/// Equals [`add_terms`] to the bit where no power overflows.
 #[inline(always)]
 fn add_safe_units<S: Binary32, const N: usize>(units: &[ProductUnit<f32, N>], start: S, log2_x: &[S; N]) -> S {
     let mut sum = start;
     for unit in units {
-        sum = sum + maths::exp2_within(log2_power(unit, log2_x)) * sum.constant(unit.output);
+        sum = sum + maths::exp2_within(unit.log2_power(log2_x)) * sum.constant(unit.output);
     }
     sum
 }
 
-#[inline(always)]
-fn log2_power<S: Binary32, const N: usize>(unit: &ProductUnit<f32, N>, log2_x: &[S; N]) -> S {
-    let mut terms = log2_x.iter().zip(&unit.exponents);
-    let Some((x, exponent)) = terms.next() else { return log2_x[0].zero() };
-    let mut log2 = *x * x.constant(*exponent);
-    for (x, exponent) in terms {
-        log2 = log2 + *x * x.constant(*exponent);
-    }
-    log2
-}
-
-/// Scaled inputs and their logarithms to base two; `normal` says that the former are normal positive numbers.
-#[inline(always)]
-pub(crate) fn scale<S: Binary32, const N: usize>(
-    scalings: &[Scaling<f32>; N],
-    inputs: [S; N],
-    normal: bool,
-) -> ([S; N], [S; N]) {
-    // Loops and not closures: a closure would not be compiled for the vectors of a lane.
-    let mut x = inputs;
-    for (x, scaling) in x.iter_mut().zip(scalings) {
-        *x = scaling.apply(*x);
-    }
-    let mut log2_x = x;
-    for value in &mut log2_x {
-        *value = if normal { maths::log2_normal(*value) } else { maths::log2(*value) };
-    }
-    (x, log2_x)
-}
-
-/// Logarithms of powers that are safe stay within this, far from what [`maths::exp2_within`] needs.
+/// Logarithms of powers within this bound are safe: it is well inside the domain of [`maths::exp2_within`].
 const SAFE_LOG2: f32 = 100.0;
 
 fn is_overflow_safe<const N: usize>(network: &Network<f32, N>) -> bool {

@@ -1,16 +1,20 @@
-//! What runs on the robot: the six-tuple threshold controller and small simulator neural networks (SNNs).
+#![doc = include_str!("../README.md")]
 //!
-//! * [`controller`]: a [`Tuple`](controller::Tuple), a [`Controller`](controller::Controller) of six of them, and the
-//!   [`Machine`](controller::Machine) that steps through it.
-//! * [`network`]: a trained network, one hidden layer of summation and product units.
-//! * [`folded`]: the one evaluator of networks, their summation units folded together, over any
-//!   [`Scalar`](scalar::Scalar); a [`Pair`](pair::Pair) of numbers is one.
-//! * [`fixed_network`]: folded networks in fixed point, over the numbers and functions of [`fixed_point`].
-//! * [`chance`]: whether an echo comes back, and the scatter of a reading, in fixed point.
-//! * [`maths`]: the only powers, logarithms and sines of floats in use, the same bits on every machine.
-//! * [`limits`]: what an NXT-class brick has room for, checked when this crate is compiled.
+//! ## Modules
 //!
-//! Nothing here allocates, panics or calls the platform's maths.
+//! * [`controller`]: a [`Tuple`](controller::Tuple), a [`Controller`](controller::Controller) of six tuples, and the
+//!   [`Machine`](controller::Machine) that steps through them.
+//! * [`network`]: a trained network with one hidden layer of summation and product units.
+//! * [`folded`]: networks with their summation units folded into one affine map, and their evaluator, which works on any
+//!   [`Scalar`](scalar::Scalar).
+//! * [`fixed_network`]: folded networks in fixed point, built on the numbers and functions of [`fixed_point`].
+//! * [`chance`]: random draws in fixed point: whether an echo returns, and the noise of a reading.
+//! * [`maths`]: powers, logarithms and sines in `f32`, with the same bits on every machine.
+//! * [`scalar`], [`pair`]: the numbers that networks are evaluated on.
+//! * [`limits`]: the memory of an NXT-class brick, checked when this crate is compiled.
+//!
+//! "The paper" in these pages is C. J. Pretorius, M. C. du Plessis and C. B. Cilliers (2013), *A Neural Network Ultrasonic
+//! Sensor Simulator for Evolutionary Robotics*.
 #![cfg_attr(not(test), no_std)]
 
 pub mod chance;
@@ -23,3 +27,7 @@ pub mod maths;
 pub mod network;
 pub mod pair;
 pub mod scalar;
+
+pub use fixed;
+pub use heapless;
+pub use rand_core;

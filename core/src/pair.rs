@@ -1,12 +1,22 @@
-//! An interleaved pair: two numbers that go through the same operations one right after the other.
+//! An interleaved pair: two numbers that go through the same operations, one right after the other.
 
 use core::ops::{Add, Mul, Sub};
 
 use crate::maths::Binary32;
 use crate::scalar::Scalar;
 
-/// Two numbers or two lanes. While a processor waits for the result of one it works on the other, and both share the
-/// constants of an operation; two calls in a row would be too far apart in the program for that.
+/// Two numbers or two vector lanes that are computed together.
+///
+/// While a processor waits for the result of one, it works on the other, and both share the constants of an operation. Two
+/// calls in a row would be too far apart in the program for that.
+///
+/// ```
+/// use mindgap_core::maths::exp2;
+/// use mindgap_core::pair::Pair;
+///
+/// let Pair(a, b) = exp2(Pair(2.0f32, -1.0));
+/// assert_eq!((a, b), (exp2(2.0f32), exp2(-1.0f32)));
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Pair<T>(pub T, pub T);
 
@@ -45,7 +55,7 @@ impl<T: Binary32> Binary32 for Pair<T> {
     }
 }
 
-/// Implements an operator of [`Pair`] by that of its members.
+/// Implements an operator of [`Pair`] member by member.
 macro_rules! operator {
     ($operator:ident, $method:ident) => {
         impl<T: $operator<Output = T>> $operator for Pair<T> {

@@ -1,35 +1,46 @@
-//! What a network asks of a number. Floats answer here, pairs of them in [`pair`](crate::pair), fixed point in
-//! [`fixed_point`](crate::fixed_point), vectors in the host's `lanes`.
+//! The numbers that a network can be evaluated on.
+//!
+//! Floats implement [`Scalar`] here, pairs of numbers in [`pair`](crate::pair), and fixed-point numbers in
+//! [`fixed_point`](crate::fixed_point). Vectors of a host processor can implement it too.
 
 use core::ops::{Add, Mul, Sub};
 
-/// A number that the affine part of a network can be evaluated in.
+/// A number, or several side by side, on which the affine part of a network can be evaluated.
+///
+/// ```
+/// use mindgap_core::scalar::Scalar;
+///
+/// fn line<S: Scalar>(x: S, slope: S::Weight, bias: S::Weight) -> S {
+///     x * x.constant(slope) + x.constant(bias)
+/// }
+/// assert_eq!(line(2.0f32, 3.0, 1.0), 7.0);
+/// ```
 pub trait Scalar: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> {
-    /// The form in which a weight is stored; several kinds of number may share it.
+    /// The type in which weights are stored. Several types of number may share it.
     type Weight: Copy;
-    /// Zero as a weight.
+    /// The weight zero.
     const ZERO: Self::Weight;
-    /// One as a weight.
+    /// The weight one.
     const ONE: Self::Weight;
 
-    /// `value` as a number beside `self`: a lane of numbers takes its width from `self`.
+    /// Returns `value` as a number of the same kind as `self`, which gives a vector its width.
     fn constant(self, value: Self::Weight) -> Self;
-    /// `low` where `self` is below it, `high` where above it; NaN stays NaN.
+    /// Returns `low` where `self` is below it, `high` where `self` is above it, and otherwise `self`. NaN stays NaN.
     fn clamp(self, low: Self, high: Self) -> Self;
 
-    /// Zero beside `self`.
+    /// Returns zero as a number of the same kind as `self`.
     #[inline(always)]
     fn zero(self) -> Self {
         self.constant(Self::ZERO)
     }
 
-    /// One beside `self`.
+    /// Returns one as a number of the same kind as `self`.
     #[inline(always)]
     fn one(self) -> Self {
         self.constant(Self::ONE)
     }
 
-    /// `start` + Σ `terms` · `weights`, from the first term to the last.
+    /// Returns `start` + Σ `terms` · `weights`, added from the first term to the last.
     #[inline(always)]
     fn weighted_sum<const N: usize>(start: Self, terms: &[Self; N], weights: &[Self::Weight; N]) -> Self {
         let mut sum = start;

@@ -1,6 +1,6 @@
-//! What is fed with any bytes: every reader of what users give, what runs on a robot, and twins, two ways to one result.
+//! Fuzz targets: every reader of user input, everything that runs on a robot, and pairs of implementations that must agree.
 //!
-//! A target panics where something is wrong. `fuzz/tests/kept.rs` feeds each a little, `fuzz/run.sh` for hours.
+//! A target panics when it finds a fault. `fuzz/tests/kept.rs` runs each briefly, and `fuzz/run.sh` runs them for hours.
 
 mod onboard;
 mod readers;
@@ -12,23 +12,23 @@ use std::path::Path;
 
 use tempfile::TempDir;
 
-/// Something that takes any bytes.
+/// A fuzz target, which accepts any bytes.
 pub struct Target {
-    /// Its name, and that of the folder of its corpus.
+    /// Name of the target and of the folder of its corpus.
     pub name: &'static str,
-    /// Takes them.
+    /// Runs the target on an input.
     ///
     /// # Panics
-    /// When something is wrong with what is tested.
+    /// Panics when the code under test is at fault.
     pub feed: fn(&[u8]),
 }
 
-/// All of them.
+/// Returns all targets.
 pub fn targets() -> impl Iterator<Item = &'static Target> {
     readers::TARGETS.iter().chain(onboard::TARGETS).chain(twins::TARGETS)
 }
 
-/// Hands bytes as a file to what reads files.
+/// Writes bytes to a temporary file and passes its path to a reader.
 fn as_file<T>(name: &str, bytes: &[u8], read: impl FnOnce(&Path) -> T) -> T {
     thread_local! {
         static FOLDER: RefCell<Option<TempDir>> = const { RefCell::new(None) };

@@ -1,6 +1,6 @@
-//! Feeds one target by libFuzzer: `fuzz [OPTIONS] FOLDERS`, or `fuzz [OPTIONS] FILE` for one input.
+//! Fuzzes one target with libFuzzer: `fuzz [OPTIONS] FOLDERS`, or `fuzz [OPTIONS] FILE` for one input.
 //!
-//! The target is the one whose name the last folder has, or the folder that the file lies in.
+//! The name of the last folder, or of the folder of the file, selects the target.
 #![no_main]
 
 use std::env;
@@ -18,5 +18,5 @@ static TARGET: LazyLock<&Target> = LazyLock::new(|| {
     targets().find(|target| target.name == name).unwrap_or_else(|| panic!("there is no target {name}"))
 });
 
-// What is prepared once takes time and room that no input is to blame for.
+// The first call prepares shared state, whose time and memory must not count against an input.
 fuzz_target!(init: (TARGET.feed)(&[]), |bytes: &[u8]| (TARGET.feed)(bytes));

@@ -1,4 +1,4 @@
-//! Every reader of what users give: it takes what it is given or refuses it, and what it takes holds.
+//! Every reader of user input: it accepts or rejects any bytes, and accepted values are consistent.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -79,17 +79,17 @@ pub const TARGETS: &[Target] = &[
     Target { name: "wiring", feed: wiring },
 ];
 
-/// What is read of a run is what another parser reads, and is read again as it is written.
+/// A run has the times that a simple parser finds.
 fn run(bytes: &[u8]) {
     let Ok(text) = str::from_utf8(bytes) else { return };
     let Ok(run) = Run::parse(Path::new("run-000.csv"), text, &["t_ms"], |_| {}) else { return };
-    // Without quotes and comments, a table is what commas and line ends part.
+    // Without quotes and comments, commas and line ends separate the cells of a table.
     if !text.contains(['"', '#', '\r']) {
         let mut lines = text.lines().filter(|line| !line.is_empty());
-        let place = lines.next().and_then(|header| header.split(',').position(|name| name.trim() == "t_ms"));
-        let place = place.expect("what was read has the column");
-        let times_ms = lines.map(|line| line.split(',').nth(place).and_then(|cell| cell.trim().parse::<f64>().ok()));
-        assert!(times_ms.eq(run.rows.iter().map(|row| Some(row.t_ms))), "another parser reads other times");
+        let column = lines.next().and_then(|header| header.split(',').position(|name| name.trim() == "t_ms"));
+        let column = column.expect("a run that was read has the column");
+        let times_ms = lines.map(|line| line.split(',').nth(column).and_then(|cell| cell.trim().parse::<f64>().ok()));
+        assert!(times_ms.eq(run.rows.iter().map(|row| Some(row.t_ms))), "a simple parser reads different times");
     }
 }
 
@@ -100,7 +100,7 @@ fn inspection(bytes: &[u8]) {
     let _ = Inspection::of(logs).sound(|_| {});
 }
 
-/// A scene is read again as it is written.
+/// A scene round-trips through its own text.
 fn scene(bytes: &[u8]) {
     let Ok(text) = str::from_utf8(bytes) else { return };
     let path = Path::new("scene.toml");
@@ -116,7 +116,7 @@ fn robot(bytes: &[u8]) {
 
 fn expression(bytes: &[u8]) {
     let Ok(text) = str::from_utf8(bytes) else { return };
-    // What is compiled stays for as long as the program runs.
+    // Only checked: a compiled expression stays in memory until the program ends.
     let _ = Expression::check(text, &["k"], Stage::Motion);
 }
 
@@ -130,7 +130,7 @@ fn defaults(bytes: &[u8]) {
     });
 }
 
-/// The diagnosis of a case, which is scored.
+/// Scores the diagnosis of a case.
 fn answer(bytes: &[u8]) {
     let sealed = Sealed {
         case: "1".into(),
@@ -153,7 +153,7 @@ fn answer(bytes: &[u8]) {
     });
 }
 
-/// Effects that are applied to a simulator are resolved or refused.
+/// Effects that are applied to a simulator are resolved or rejected.
 fn added(bytes: &[u8]) {
     let Ok(added) = serde_json::from_slice::<Vec<AppliedEffect>>(bytes) else { return };
     for effect in &added {
@@ -163,7 +163,7 @@ fn added(bytes: &[u8]) {
     }
 }
 
-/// What is there of a run that was broken off: the pieces before what is torn come back, and others can be added.
+/// A checkpoint of an interrupted run: the valid items before damaged bytes are recovered, and others can be added.
 fn checkpoint(bytes: &[u8]) {
     let task = Task::new("evolve".into(), BTreeMap::new(), &[], &[]);
     as_file("a.checkpoint", bytes, |path| {
@@ -172,19 +172,19 @@ fn checkpoint(bytes: &[u8]) {
         let count = checkpoint.count();
         let _ = checkpoint.recall::<Vec<f64>>((1, 0));
         checkpoint.keep((u32::MAX, u32::MAX), &[1.0]).expect("room for a piece");
-        let of_both = open().expect("what was written").count();
-        assert!((count.max(1)..=count + 1).contains(&of_both), "{count} and one are {of_both}");
+        let count_after = open().expect("what was written").count();
+        assert!((count.max(1)..=count + 1).contains(&count_after), "{count} items and one more gave {count_after}");
     });
 }
 
-/// What a file at the place of an output is: what carries no sign is nothing of the command's.
+/// The kind of a file at an output path: a file without a signature is not one of the command's own.
 fn kinds(bytes: &[u8]) {
     let kinds = [SIMULATOR, REPORT, CONTROLLER, PROGRAM, CALIBRATION, PAGE, FORMULA, CHECKPOINT];
-    let of_kind = kinds.iter().filter(|kind| (kind.is_one)(bytes)).count();
-    assert!(of_kind == 0 || bytes.len() > 8);
+    let recognised = kinds.iter().filter(|kind| (kind.is_one)(bytes)).count();
+    assert!(recognised == 0 || bytes.len() > 8);
 }
 
-/// An effect of the built-in robot is read again as it is shown.
+/// An effect of the built-in robot round-trips through its text.
 fn effect(bytes: &[u8]) {
     let Ok(text) = str::from_utf8(bytes) else { return };
     if let Ok(effect) = text.parse::<ActiveEffect>() {

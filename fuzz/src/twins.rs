@@ -1,5 +1,5 @@
-//! Two ways to one result: fixed point and floating point, many lanes and one, the core's
-//! elementary functions and those of `libm`.
+//! Pairs of implementations that must agree: fixed point and floating point, many lanes and one, the core's elementary
+//! functions and those of `libm`.
 
 use std::array;
 use std::sync::LazyLock;
@@ -25,14 +25,14 @@ pub const TARGETS: &[Target] = &[
     Target { name: "maths", feed: elementary },
 ];
 
-/// Bytes of a controller: six tuples of a left and a right command, a test and a threshold.
+/// Size of a controller: six tuples of a left and a right command, a comparison and a threshold.
 const CONTROLLER_BYTES: usize = 4 * TUPLES;
-/// Distance of neighbouring numbers in 32 bits, at most, as a share of them.
+/// Largest relative distance between neighbouring f32 numbers.
 const ULP: f64 = f32::EPSILON as f64;
-/// Rooms for so many steps, and no more.
-const MOST_STEPS: u16 = 20;
+/// Step limit of the controllers.
+const MAX_STEPS: u16 = 20;
 
-/// Networks in fixed point answer as in floating point, within the bound that is promised for them.
+/// Networks in fixed point agree with floating point, within their stated bound.
 fn fixed_and_float(bytes: &[u8]) {
     static NETWORKS: LazyLock<PlausibleNetworks> = LazyLock::new(|| plausible_networks(1));
     let numbers: Vec<i16> = bytes.as_chunks::<2>().0.iter().map(|pair| i16::from_le_bytes(*pair)).collect();
@@ -41,19 +41,19 @@ fn fixed_and_float(bytes: &[u8]) {
     let share = |number: i16| f64::from(number.unsigned_abs()) / 32768.0;
     let facing = [255.0 * share(a), 90.0 * share(b)].map(I16F16::from_num);
     let PlausibleNetworks { turn, forward, lateral, echo_probability, echo_value } = &*NETWORKS;
-    [turn, forward, lateral].into_iter().for_each(|network| answers_alike(network, commands));
-    [echo_probability, echo_value].into_iter().for_each(|network| answers_alike(network, facing));
+    [turn, forward, lateral].into_iter().for_each(|network| assert_agreement(network, commands));
+    [echo_probability, echo_value].into_iter().for_each(|network| assert_agreement(network, facing));
 }
 
-fn answers_alike<const N: usize>(network: &Network<f32, N>, inputs: [I16F16; N]) {
+fn assert_agreement<const N: usize>(network: &Network<f32, N>, inputs: [I16F16; N]) {
     let Quantised { network: fixed, error_bound } = Quantised::new(network).expect("a network that fits");
     let float = f64::from(network.evaluate(inputs.map(|input| input.to_num::<f32>())));
     let fixed = fixed.evaluate(inputs).value.to_num::<f64>();
-    // Floating point rounds too, by much less.
+    // Floating point rounds as well, but much less.
     assert!((fixed - float).abs() <= 1.5 * error_bound + 1e-3, "{fixed} and {float} at {inputs:?}");
 }
 
-/// A run comes out the same beside others as alone.
+/// A run has the same result alone and together with others.
 fn lanes_and_one(bytes: &[u8]) {
     static SIMULATOR: LazyLock<Simulator> = LazyLock::new(|| {
         let logs = record(&default_robot(), &training_room(), 12, 40, &[], 1).expect("room to drive");
@@ -74,7 +74,7 @@ fn lanes_and_one(bytes: &[u8]) {
     }
 }
 
-/// The core's elementary functions, of any bits, keep the bounds that it states.
+/// The core's elementary functions keep their stated bounds for any bits.
 fn elementary(bytes: &[u8]) {
     for four in bytes.as_chunks::<4>().0 {
         let x = f32::from_le_bytes(*four);
@@ -100,11 +100,11 @@ fn elementary(bytes: &[u8]) {
 }
 
 fn controller(bytes: &[u8; CONTROLLER_BYTES]) -> Controller {
-    let tuple = |place: usize| Tuple {
-        left: bytes[4 * place].cast_signed().clamp(-100, 100),
-        right: bytes[4 * place + 1].cast_signed().clamp(-100, 100),
-        when: if bytes[4 * place + 2].is_multiple_of(2) { When::Larger } else { When::Smaller },
-        threshold_cm: i16::from(bytes[4 * place + 3]),
+    let tuple = |index: usize| Tuple {
+        left: bytes[4 * index].cast_signed().clamp(-100, 100),
+        right: bytes[4 * index + 1].cast_signed().clamp(-100, 100),
+        when: if bytes[4 * index + 2].is_multiple_of(2) { When::Larger } else { When::Smaller },
+        threshold_cm: i16::from(bytes[4 * index + 3]),
     };
-    Controller { step_ms: 400, max_steps: MOST_STEPS, tuples: array::from_fn(tuple) }
+    Controller { step_ms: 400, max_steps: MAX_STEPS, tuples: array::from_fn(tuple) }
 }

@@ -1,4 +1,4 @@
-//! Every target takes the inputs that are kept for it, and others made of them.
+//! Every target accepts the inputs of its corpus, and others derived from them.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -10,13 +10,13 @@ use proptest::prelude::*;
 use proptest::sample::{Index, select};
 use proptest::test_runner::{RngSeed, TestRunner};
 
-/// Inputs for each target that are made of those that are kept.
-const MADE: u32 = 1_000;
-/// What readers look at more closely than at other bytes.
+/// Number of inputs per target that are derived from its corpus.
+const DERIVED: u32 = 1_000;
+/// Bytes that are special to readers.
 const PIECES: [&str; 10] = ["\n", ",", "[", "\"", "=", "-", "1e308", "nan", "[[x]]\n", "18446744073709551616"];
 
 #[test]
-fn every_target_has_inputs_that_are_kept() {
+fn every_target_has_a_corpus() {
     let folders = fs::read_dir(workspace().join("fuzz/corpus")).expect("the corpora");
     let folders = folders.map(|entry| entry.expect("a folder").file_name().into_string().expect("a name in UTF-8"));
     let names = targets().map(|target| target.name.to_owned());
@@ -24,22 +24,22 @@ fn every_target_has_inputs_that_are_kept() {
 }
 
 #[test]
-fn none_of_them_panics() {
+fn no_target_panics() {
     for target in targets() {
         let kept = corpus(target);
         assert!(!kept.is_empty(), "{}", target.name);
         kept.iter().for_each(|input| (target.feed)(input));
         let config = ProptestConfig {
-            cases: MADE,
+            cases: DERIVED,
             rng_seed: RngSeed::Fixed(1),
             failure_persistence: None,
             ..ProptestConfig::default()
         };
-        let taken = TestRunner::new(config).run(&made_of(kept), |input| {
+        let outcome = TestRunner::new(config).run(&derived_from(kept), |input| {
             (target.feed)(&input);
             Ok(())
         });
-        taken.unwrap_or_else(|e| panic!("{}: {e}", target.name));
+        outcome.unwrap_or_else(|e| panic!("{}: {e}", target.name));
     }
 }
 
@@ -50,8 +50,8 @@ fn corpus(target: &Target) -> Vec<Vec<u8>> {
     paths.iter().map(|path| fs::read(path).expect("an input")).collect()
 }
 
-/// Inputs with a few places in which some bytes have been replaced by others, by a piece, or by some of another input.
-fn made_of(kept: Vec<Vec<u8>>) -> impl Strategy<Value = Vec<u8>> {
+/// Derives inputs in which some bytes are replaced by random ones, by a special piece, or by a part of another input.
+fn derived_from(kept: Vec<Vec<u8>>) -> impl Strategy<Value = Vec<u8>> {
     let some = (select(kept.clone()), any::<Index>(), 0..64_usize).prop_map(|(other, from, count)| {
         let from = from.index(other.len() + 1);
         other.into_iter().skip(from).take(count).collect()

@@ -1,5 +1,5 @@
-// What a sketch needs of Arduino.h, on an AVR whose world is a script: time passes only where the sketch waits, pulses of
-// the sensor come from the script, and what the pins say of the motors is told. See scripted.h.
+// The part of Arduino.h that a sketch needs, for an AVR in a scripted world: time passes only while the sketch waits, the
+// script gives the pulses of the sensor, and the motor pins are reported. See scripted.h.
 #pragma once
 #include <stdbool.h>
 #include <stdint.h>
@@ -20,7 +20,7 @@ struct ScriptedSerial {
 };
 extern ScriptedSerial Serial;
 
-// The numbers of the controller, in place of the sketch's constants.
+// The numbers of the controller, which replace the sketch's constants.
 extern uint16_t case_step_ms, case_max_steps;
 
 void pinMode(uint8_t pin, uint8_t mode);

@@ -1,4 +1,4 @@
-// Answers networks case after case: the number of the network and its inputs come by the UART, answer and cycles go back.
+// Evaluates networks case by case: the UART receives the number of a network and its inputs, and sends output and cycles.
 #include <avr/interrupt.h>
 #include <avr/sleep.h>
 #include <stdlib.h>
@@ -12,7 +12,7 @@ ISR(TIMER1_OVF_vect) {
   wraps++;
 }
 
-static int32_t answer(uint8_t network, const int32_t *in) {
+static int32_t evaluate(uint8_t network, const int32_t *in) {
   switch (network) {
     case 1: return network_turn(in[0], in[1], in[2], in[3]);
     case 2: return network_forward(in[0], in[1], in[2], in[3]);
@@ -34,7 +34,7 @@ int main() {
     wraps = 0;
     TCNT1 = 0;
     sei();
-    int32_t out = answer(network, in);
+    int32_t out = evaluate(network, in);
     cli();
     uint32_t cycles = ((uint32_t)wraps << 16 | TCNT1) * 8;
     send_number(out);

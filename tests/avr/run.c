@@ -1,7 +1,7 @@
-/* Runs an image on an ATmega328P of 16 MHz: `run IMAGE.elf [PULSE_US...]`. Its UART is standard input and output; it ends
- * when the processor sleeps for good. With pulses an HC-SR04 is there, trigger on 7 and echo on 6, that answers with them;
- * 0 is a sensor that is not there. Then every change of its answer and of the pins for brakes and directions is told with
- * its time in microseconds, and the run ends with the first line that the image sends. */
+/* Runs an image on an ATmega328P at 16 MHz: `run IMAGE.elf [PULSE_US...]`. The UART is standard input and output, and the
+ * run ends when the processor sleeps with interrupts off. With pulses, an HC-SR04 with its trigger on pin 7 and its echo on
+ * pin 6 answers with them; 0 means that there is no sensor. Then every change of the echo and of the brake and direction pins
+ * is printed with its time in microseconds, and the run ends with the first line that the image sends. */
 #include <simavr/avr_ioport.h>
 #include <simavr/avr_uart.h>
 #include <simavr/sim_avr.h>
@@ -14,14 +14,14 @@ enum { FLIGHT_US = 450 };
 static avr_t *avr;
 static avr_irq_t *uart_in, *echo;
 static int can_receive;
-static int has_told;
+static int has_sent_line;
 static char **pulses;
 
-static void say_nothing(avr_t *avr, const int level, const char *format, va_list arguments) {}
+static void discard_log(avr_t *avr, const int level, const char *format, va_list arguments) {}
 
 static void on_sent(struct avr_irq_t *irq, uint32_t byte, void *context) {
   putchar((int)byte);
-  has_told |= byte == '\n';
+  has_sent_line |= byte == '\n';
 }
 
 static void on_can_receive(struct avr_irq_t *irq, uint32_t value, void *context) {
@@ -39,7 +39,7 @@ static avr_cycle_count_t begin_pulse(avr_t *avr, avr_cycle_count_t when, void *c
   return 0;
 }
 
-/* A question is the end of the trigger; the last pulse goes on for ever. */
+/* The end of the trigger is a request. The last pulse is repeated for ever. */
 static void on_trigger(struct avr_irq_t *irq, uint32_t level, void *context) {
   static uint32_t pulse_us;
   if (level == 0 && irq->value == 1) {
@@ -64,7 +64,7 @@ static void watch(char port, int pin, avr_irq_notify_t notify, void *context) {
 }
 
 int main(int count, char **arguments) {
-  avr_global_logger_set(say_nothing);
+  avr_global_logger_set(discard_log);
   elf_firmware_t firmware = {{0}};
   if (count < 2 || elf_read_firmware(arguments[1], &firmware) != 0) {
     fputs("no image\n", stderr);
@@ -84,7 +84,7 @@ int main(int count, char **arguments) {
   if (*pulses != NULL) {
     echo = avr_io_getirq(avr, AVR_IOCTL_IOPORT_GETIRQ('D'), 6);
     watch('D', 7, on_trigger, NULL);
-    /* Against the pull-ups: a sensor that is there holds its line low. */
+    /* Overrides the pull-ups: a connected sensor holds its line low. */
     avr_ioport_external_t lines = {.name = 'D', .mask = 1 << 6 | 1 << 2, .value = (atoi(*pulses) == 0) << 6 | 1 << 2};
     avr_ioctl(avr, AVR_IOCTL_IOPORT_SET_EXTERNAL('D'), &lines);
     watch('D', 6, on_pin, "echo");
@@ -103,7 +103,7 @@ int main(int count, char **arguments) {
       }
     }
     state = avr_run(avr);
-    if (*pulses != NULL && has_told) {
+    if (*pulses != NULL && has_sent_line) {
       state = cpu_Done;
     }
   }

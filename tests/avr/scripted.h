@@ -1,23 +1,23 @@
-// Runs a sketch case after case. A case comes by the UART: step and step limit, six tuples (left, right, whether larger,
-// threshold), the clock at the start, when the button goes down after the motors first ran, and pulses of the sensor in
-// microseconds. Back come the motors whenever they were set, the ending, and the most cycles of a step.
+// Runs a sketch case by case. The UART receives a case: step time and step limit, six tuples (left, right, whether larger,
+// threshold), the clock at the start, the time of a button press after the first motor command, and the pulses of the
+// sensor in microseconds. It sends the motors whenever they are set, the ending, and the largest number of cycles of a step.
 #include <avr/interrupt.h>
 #include <avr/sleep.h>
 
 #include "uart.h"
 
-enum { MOST_PULSES = 64, NO_ECHO_US = 65535, DEAD_US = 65534 };
-static uint16_t pulses_us[MOST_PULSES];
-static uint8_t asked;
+enum { MAX_PULSES = 64, NO_ECHO_US = 65535, DEAD_US = 65534 };
+static uint16_t pulses_us[MAX_PULSES];
+static uint8_t pulse_index;
 static bool has_started, is_echo_held;
 static uint32_t start_ms, now_ms, press_ms;
 static uint8_t levels[14], duties[14];
 static bool has_set_motors;
-static uint16_t step_began, longest_step;
+static uint16_t step_start, longest_step;
 uint16_t case_step_ms, case_max_steps;
 ScriptedSerial Serial;
 
-static void tell_motor(uint8_t direction, uint8_t brake, uint8_t power) {
+static void send_motor(uint8_t direction, uint8_t brake, uint8_t power) {
   send(' ');
   if (levels[brake]) {
     send_text("brake");
@@ -26,8 +26,8 @@ static void tell_motor(uint8_t direction, uint8_t brake, uint8_t power) {
   }
 }
 
-// Tells motors that were set since it was last called.
-static void tell_motors() {
+// Sends the motors if they were set since the last call.
+static void send_motors() {
   if (!has_set_motors) {
     return;
   }
@@ -37,23 +37,23 @@ static void tell_motors() {
     start_ms = now_ms;
   }
   send_number(now_ms - start_ms);
-  tell_motor(LEFT_DIRECTION, LEFT_BRAKE, LEFT_POWER);
-  tell_motor(RIGHT_DIRECTION, RIGHT_BRAKE, RIGHT_POWER);
+  send_motor(LEFT_DIRECTION, LEFT_BRAKE, LEFT_POWER);
+  send_motor(RIGHT_DIRECTION, RIGHT_BRAKE, RIGHT_POWER);
   send('\n');
 }
 
-// A step has done its work when it next asks for the time.
+// A step has done its work when it next reads the time.
 static void end_step() {
-  uint16_t took = TCNT1 - step_began;
-  if (step_began != 0 && took > longest_step) {
-    longest_step = took;
+  uint16_t cycles = TCNT1 - step_start;
+  if (step_start != 0 && cycles > longest_step) {
+    longest_step = cycles;
   }
-  step_began = 0;
+  step_start = 0;
 }
 
 void ScriptedSerial::println(const __FlashStringHelper *text) {
   end_step();
-  tell_motors();
+  send_motors();
   send_text(reinterpret_cast<const char *>(text));
   send(' ');
   send_number((int32_t)longest_step * 8);
@@ -80,10 +80,10 @@ void analogWrite(uint8_t pin, int duty) {
 }
 
 uint32_t pulseIn(uint8_t, uint8_t, uint32_t) {
-  tell_motors();
-  // Questions before the start take no pulse out of the script.
-  uint16_t pulse_us = pulses_us[has_started ? asked++ : 0];
-  step_began = TCNT1 | 1;
+  send_motors();
+  // Requests before the start take no pulse from the script.
+  uint16_t pulse_us = pulses_us[has_started ? pulse_index++ : 0];
+  step_start = TCNT1 | 1;
   is_echo_held = pulse_us == NO_ECHO_US;
   return pulse_us < DEAD_US ? pulse_us : 0;
 }
@@ -91,7 +91,7 @@ uint32_t pulseIn(uint8_t, uint8_t, uint32_t) {
 uint32_t millis() {
   end_step();
   is_echo_held = false;
-  tell_motors();
+  send_motors();
   return now_ms;
 }
 
@@ -116,7 +116,7 @@ int main() {
     for (uint8_t i = 0; i < count; i++) {
       pulses_us[i] = receive_word();
     }
-    asked = 0;
+    pulse_index = 0;
     longest_step = 0;
     has_started = is_echo_held = false;
     setup();

@@ -1,4 +1,4 @@
-// Bytes in and out by the first UART.
+// Input and output over the first UART.
 #pragma once
 #include <avr/io.h>
 #include <stdint.h>
@@ -43,7 +43,7 @@ static void send_number(int32_t number) {
   send_text(digits);
 }
 
-// A clock that counts processor cycles by eight.
+// Starts a clock that counts every eighth processor cycle.
 static void begin_clock() {
   TCCR1B = 1 << CS11;
 }

@@ -1,4 +1,4 @@
-//! Chooses the linker scripts for a processor and tells the code of which kind it is.
+//! Selects the linker scripts for a processor, and sets `cortex_m` for Cortex-M.
 
 use std::path::Path;
 use std::{env, fs};
@@ -10,7 +10,7 @@ fn main() {
     match target.as_str() {
         "thumbv6m-none-eabi" | "thumbv7em-none-eabi" => {
             println!("cargo:rustc-cfg=cortex_m");
-            // cortex-m-rt's script asks for a file of this name.
+            // The script of cortex-m-rt includes a file of this name.
             let memory = if target.starts_with("thumbv6m") { "link/microbit.x" } else { "link/mps2-an386.x" };
             let out = env::var("OUT_DIR").expect("cargo names a folder");
             fs::copy(memory, Path::new(&out).join("memory.x")).expect("the folder can be written to");

@@ -1,20 +1,20 @@
 #!/usr/bin/env bash
-# Builds the images for four processors, runs them in QEMU and compares what they print with the host, bit for bit.
-# Then it checks that no panic can be reached, and how much flash, stack and time the five networks and the controller
-# take. Installs what is missing. Ends with 1 and one line of reason where something is not as it should be.
+# Builds the images for four processors, runs them in QEMU and compares their output with the host, bit for bit. Then it
+# checks that no panic is reachable, and how much flash, stack and time the five networks and the controller need. It
+# installs missing tools, and exits with 1 and a one-line reason if a check fails.
 set -euo pipefail
 cd "$(dirname "$0")"
 . ../install.sh
 
 TARGETS=(thumbv6m-none-eabi thumbv7em-none-eabi armv4t-none-eabi thumbv4t-none-eabi)
-MOST_FLASH=12288 # bytes of the image `bare`: code, five networks, one controller
-MOST_STACK=1023  # bytes
+MAX_FLASH=12288 # bytes of the image `bare`: code, five networks, one controller
+MAX_STACK=1023  # bytes
 DEFMT_PRINT=1.2.0
 logs=$(mktemp -d)
 trap 'rm -rf "$logs"' EXIT
 
-# The most instructions that all five networks may take together.
-most_instructions() {
+# Largest number of instructions of all five networks together.
+max_instructions() {
   case $1 in
   thumbv7em-*) echo 4000 ;;
   armv4t-*) echo 7000 ;;
@@ -35,32 +35,32 @@ main() {
 
 check() {
   local target=$1 folder=target/$1/release
-  # One target at a time: cargo would give all of them the features that any of them asks for.
-  build --target "$target" --bins || fail "$target: does not build, or a panic can be reached (see above)"
+  # One target at a time: otherwise cargo would enable the features of any target for all of them.
+  build --target "$target" --bins || fail "$target: does not build, or a panic is reachable (see above)"
   emulate "$target" "$folder/job" >"$logs/raw" || fail "$target: the job ended with $?"
   text "$target" "$folder/job" <"$logs/raw" >"$logs/all.txt"
   grep -v '^measured:' "$logs/all.txt" >"$logs/target.txt" || fail "$target: printed nothing"
-  diff "$logs/host.txt" "$logs/target.txt" || fail "$target: prints something else than the host (<)"
+  diff "$logs/host.txt" "$logs/target.txt" || fail "$target: prints something other than the host (<)"
 
   local stack flash instructions
   stack=$(sed -n 's/^measured: stack \([0-9]*\) bytes$/\1/p' "$logs/all.txt")
   flash=$(size "$folder/bare" | awk 'NR == 2 { print $1 + $2 }')
-  instructions=$(most_counted "$target" "$folder/bare")
-  echo "$target: $(wc -l <"$logs/host.txt") lines as on the host; $flash bytes of flash, $stack bytes of stack," \
+  instructions=$(max_counted "$target" "$folder/bare")
+  echo "$target: $(wc -l <"$logs/host.txt") lines equal the host's; $flash bytes of flash, $stack bytes of stack," \
     "at most $instructions instructions for all five networks"
-  ((stack > 0 && stack <= MOST_STACK)) || fail "$target: takes more than $MOST_STACK bytes of stack"
-  ((flash > 0 && flash <= MOST_FLASH)) || fail "$target: takes more than $MOST_FLASH bytes of flash"
-  ((instructions > 0 && instructions <= $(most_instructions "$target"))) ||
-    fail "$target: takes more than $(most_instructions "$target") instructions"
+  ((stack > 0 && stack <= MAX_STACK)) || fail "$target: needs more than $MAX_STACK bytes of stack"
+  ((flash > 0 && flash <= MAX_FLASH)) || fail "$target: needs more than $MAX_FLASH bytes of flash"
+  ((instructions > 0 && instructions <= $(max_instructions "$target"))) ||
+    fail "$target: needs more than $(max_instructions "$target") instructions"
 
-  # The check for panics has to be able to fail.
+  # The check for panics must be able to fail.
   if build --target "$target" --bin panic_free --features reachable-panic 2>"$logs/panic.txt"; then
-    fail "$target: links although a panic can be reached"
+    fail "$target: links although a panic is reachable"
   fi
-  grep -q a_panic_can_be_reached "$logs/panic.txt" || fail "$target: the image with a panic fails for another reason"
+  grep -q a_panic_is_reachable "$logs/panic.txt" || fail "$target: the image with a panic fails for another reason"
 }
 
-# The example of a project of one's own, as far as QEMU's board goes.
+# Builds the example project and runs it on a board of QEMU.
 check_example() {
   local target=thumbv7em-none-eabi here=$PWD
   (cd ../../core/examples/rtic && build --target "$target" --target-dir "$here/target") ||
@@ -71,7 +71,8 @@ check_example() {
   echo "core/examples/rtic: the controller finished"
 }
 
-# Chooses a compiler with the source of the core library, which nobody ships ready-made for armv4t: rustup's or Debian's.
+# Selects a compiler with the source of the core library, which is not distributed in compiled form for armv4t: rustup's
+# or Debian's.
 choose_compiler() {
   cross=(env RUSTC_BOOTSTRAP=1 cargo)
   if rustup component add rust-src >/dev/null 2>&1; then return; fi
@@ -105,7 +106,7 @@ emulate_board() {
     -semihosting-config enable=on,target=native "$@" </dev/null
 }
 
-# What an image printed: frames of defmt on Cortex-M, plain text on ARM7.
+# Decodes the output of an image: frames of defmt on Cortex-M, plain text on ARM7.
 text() {
   case $1 in
   *v4t-*) cat ;;
@@ -113,8 +114,8 @@ text() {
   esac
 }
 
-# The largest number of instructions between the two marks of the image `bare`.
-most_counted() {
+# Prints the largest number of instructions between the two marks of the image `bare`.
+max_counted() {
   local target=$1 image=$2 each from to
   case $target in
   *v4t-*) each=$(one_by_one qemu-arm -one-insn-per-tb) ;;
@@ -126,17 +127,17 @@ most_counted() {
   to=$(address "$image" count_to_here)
   awk -F'[][/]' -v from="$from" -v to="$to" '
     /^Trace/ && $3 == from { counts = 1; n = 0 }
-    /^Trace/ && $3 == to { counts = 0; if (n > most) most = n }
+    /^Trace/ && $3 == to { counts = 0; if (n > max) max = n }
     /^Trace/ && counts { n++ }
-    END { print most + 0 }' "$logs/trace"
+    END { print max + 0 }' "$logs/trace"
 }
 
-# How this version of QEMU is told to translate one instruction at a time.
+# Prints the option that makes this version of QEMU translate one instruction at a time.
 one_by_one() {
   if "$1" -help | grep -q -- -singlestep; then echo -singlestep; else echo "$2"; fi
 }
 
-# A symbol's address as QEMU's traces write it, without the mark of a Thumb function.
+# Prints a symbol's address in the format of QEMU's traces, without the mark of a Thumb function.
 address() {
   printf '%08x' $((0x$(nm "$1" | awk -v name="$2" '$3 == name { print $1 }') & ~1))
 }
@@ -146,7 +147,7 @@ install_tools() {
   need qemu-system-arm qemu-system-arm
   need nm binutils
   if ! target/tools/bin/defmt-print --version 2>/dev/null | grep -q "$DEFMT_PRINT"; then
-    # Unoptimised it is built in half the time, and it has little to do.
+    # Without optimisation it builds in half the time, and it has little to do.
     CARGO_PROFILE_DEV_DEBUG=false cargo install --quiet --locked --debug --root target/tools --version "$DEFMT_PRINT" defmt-print 2>"$logs/tools.txt" ||
       fail "defmt-print cannot be installed: $(tail -1 "$logs/tools.txt")"
   fi

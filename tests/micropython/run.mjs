@@ -1,5 +1,5 @@
-// Runs exported programs in MicroPython: `node run.mjs CASES.json` prints for each case, of a program on a robot that answers
-// by script, the ending and the times and powers of all motor commands; of networks, what each answers to all its inputs.
+// Runs exported programs in MicroPython: `node run.mjs CASES.json` prints one line per case. For a program on a scripted
+// robot it is the ending with the times and powers of all motor commands; for networks it is the outputs for all inputs.
 import { readFileSync } from "node:fs";
 import { loadMicroPython } from "@micropython/micropython-webassembly-pyscript/micropython.mjs";
 
@@ -18,7 +18,7 @@ for name in ("pybricks", "pybricks.parameters", "pybricks.pupdevices", "pybricks
 class Scripted:
     def __init__(self, readings):
         self.readings = readings
-        self.asked = -1
+        self.requests = -1
         self.now_ms = 0
         self.events = []
 
@@ -29,9 +29,9 @@ class Scripted:
         self.events.append((self.now_ms, 0, 0))
 
     def distance_mm(self):
-        # The first question comes before the start and takes no reading.
-        self.asked += 1
-        reading = self.readings[max(0, self.asked - 1)]
+        # The first request comes before the start and takes no reading.
+        self.requests += 1
+        reading = self.readings[max(0, self.requests - 1)]
         if reading == "dead":
             raise OSError(19)
         return None if reading == "none" else reading

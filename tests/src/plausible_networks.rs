@@ -1,7 +1,7 @@
-//! Networks of the sizes of Table I with made-up weights, for tests that need networks and no training.
+//! Networks of the sizes in Table I of the paper with invented weights, for tests that need networks without training.
 //!
-//! Each follows a plain law (a differential drive, a sonar that reads a little long and hears less at an angle) and
-//! carries pairs of large product units that almost cancel, as trained networks do.
+//! Each follows a simple law (a differential drive, a sonar that reads slightly long and hears less at an angle) and has
+//! pairs of large product units that almost cancel, as trained networks do.
 
 use mindgap_core::network::{Activation, Network, ProductUnit, Scaling, SummationUnit};
 use mindgap_foundations::chance::{Generator, generator};
@@ -9,37 +9,37 @@ use rand::RngExt;
 
 /// The five networks of a simulator.
 pub struct PlausibleNetworks {
-    /// Turn of a step in degrees, from current left and right and previous left and right command.
+    /// Turn per step in degrees, from the current left and right and the previous left and right command.
     pub turn: Network<f32, 4>,
-    /// Forward movement in a step in cm, from the same.
+    /// Forward motion per step in cm, from the same inputs.
     pub forward: Network<f32, 4>,
-    /// Movement to the left in a step in cm, from the same.
+    /// Motion to the left per step in cm, from the same inputs.
     pub lateral: Network<f32, 4>,
     /// Probability of an echo, from the distance in cm and the incidence angle in degrees.
     pub echo_probability: Network<f32, 2>,
-    /// Mean reading in cm, from the same.
+    /// Mean reading in cm, from the same inputs.
     pub echo_value: Network<f32, 2>,
 }
 
-/// The networks that a seed makes.
+/// Returns the networks of a seed.
 pub fn plausible_networks(seed: u64) -> PlausibleNetworks {
     let commands = [Scaling::onto_one_to_two(-100.0, 100.0); 4];
     let sonar = [Scaling::onto_one_to_two(0.0, 255.0), Scaling::onto_one_to_two(0.0, 90.0)];
-    let network = |place| generator(seed, &[place]);
-    let mut echo_probability = made(10, sonar, 1.1, [-0.3, -0.8], 20.0, &mut network(3));
+    let generator_of = |number| generator(seed, &[number]);
+    let mut echo_probability = random_network(10, sonar, 1.1, [-0.3, -0.8], 20.0, &mut generator_of(3));
     echo_probability.activation = Activation::Ramp;
     PlausibleNetworks {
-        turn: made(4, commands, 0.0, [-56.0, 56.0, -12.0, 12.0], 40.0, &mut network(0)),
-        forward: made(20, commands, -16.0, [13.0, 13.0, 3.0, 3.0], 30.0, &mut network(1)),
-        lateral: made(20, commands, 0.0, [-1.4, 1.4, -0.6, 0.6], 10.0, &mut network(2)),
+        turn: random_network(4, commands, 0.0, [-56.0, 56.0, -12.0, 12.0], 40.0, &mut generator_of(0)),
+        forward: random_network(20, commands, -16.0, [13.0, 13.0, 3.0, 3.0], 30.0, &mut generator_of(1)),
+        lateral: random_network(20, commands, 0.0, [-1.4, 1.4, -0.6, 0.6], 10.0, &mut generator_of(2)),
         echo_probability,
-        echo_value: made(40, sonar, 1.5, [251.0, 4.0], 500.0, &mut network(4)),
+        echo_value: random_network(40, sonar, 1.5, [251.0, 4.0], 500.0, &mut generator_of(4)),
     }
 }
 
-/// A network of `hidden` units that answers `at_low` at the low ends of its inputs' ranges and `rises` by so much over
-/// each, give or take what product units with output weights up to `largest_weight` leave.
-fn made<const N: usize>(
+/// Returns a network of `hidden` units whose output is about `at_low` at the low ends of the inputs' ranges and rises by
+/// `rises` over each range. The remainder of product units with output weights up to `largest_weight` is added.
+fn random_network<const N: usize>(
     hidden: usize,
     inputs: [Scaling<f32>; N],
     at_low: f32,

@@ -1,4 +1,4 @@
-// Waits until a time of the board's clock, which may wrap; false if the button was pressed.
+// Waits until a time of the board's clock, which may wrap. Returns false if the button was pressed.
 bool wait_until(uint32_t t_ms) {
   while (!stop_is_pressed()) {
     int32_t left_ms = t_ms - millis();
@@ -10,7 +10,7 @@ bool wait_until(uint32_t t_ms) {
   return false;
 }
 
-// Whether the sensor answers one of a few questions, which are no readings.
+// Returns whether the sensor answers one of a few requests, which do not count as readings.
 bool sonar_answers() {
   uint32_t t_ms = millis();
   for (uint8_t probe = 0; probe < SONAR_PROBES; probe++) {
@@ -25,7 +25,7 @@ bool sonar_answers() {
   return false;
 }
 
-// Drives until the controller is done, and returns how it ended.
+// Drives until the controller is done. Returns how the run ended.
 const __FlashStringHelper *run() {
   if (!sonar_answers()) {
     return stop_is_pressed() ? F("stopped") : F("no sonar");
@@ -33,7 +33,7 @@ const __FlashStringHelper *run() {
   controller_machine machine = {};
   uint8_t failed_steps = 0;
   set_motors(controller_motors_now(&machine));
-  // Steps follow absolute times, so what a reading takes does not add up.
+  // Steps follow absolute times, so the time of a reading does not add up.
   uint32_t next_ms = millis();
   while (true) {
     next_ms += CONTROLLER_STEP_MS;

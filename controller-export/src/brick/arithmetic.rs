@@ -12,7 +12,7 @@ pub(super) struct Operation {
     pub(super) comparison: Comparison,
 }
 
-/// The order of two integers: as signed numbers when both types are signed.
+/// Returns the order of two integers, which are compared as signed numbers when both types are signed.
 pub(super) fn order(left: u32, right: u32, left_type: Type, right_type: Type) -> Ordering {
     if left_type.is_signed() && right_type.is_signed() { (left as i32).cmp(&(right as i32)) } else { left.cmp(&right) }
 }
@@ -98,7 +98,7 @@ mod tests {
     }
 
     #[test]
-    fn integers_wrap_and_zero_divides() {
+    fn integers_wrap_and_division_by_zero_is_defined() {
         use Type::I32;
         assert_eq!(binary(Op::Mul, 46341, 46341, I32, I32), -2_147_479_015);
         assert_eq!(binary(Op::Div, -7, 2, I32, I32), -3);
@@ -109,7 +109,7 @@ mod tests {
     }
 
     #[test]
-    fn one_unsigned_side_makes_the_comparison_unsigned() {
+    fn comparison_is_unsigned_if_either_side_is() {
         assert_eq!(binary(Op::Cmp, -1, 1, Type::I32, Type::I16), 1);
         assert_eq!(binary(Op::Cmp, -1, 1, Type::I32, Type::U8), 0);
     }

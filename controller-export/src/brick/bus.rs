@@ -10,22 +10,22 @@ use crate::bytecode::{
 };
 use crate::onboard::{NO_ECHO_CM, SONAR_HANG_MS};
 
-/// Sensor ports of a brick.
+/// Number of sensor ports of a brick.
 pub(super) const PORTS: usize = 4;
 
-/// How long a port's values count as invalid after its type changed.
+/// Time for which a port's values are invalid after its type has changed.
 const SETTLE_MS: u32 = 20;
-/// Two bytes out, the address again and one byte in, at 9600 bit/s.
+/// Duration of an exchange: two bytes out, the address again and one byte in, at 9600 bit/s.
 const ANSWER_MS: u32 = 6;
-/// Four attempts without an acknowledgement.
+/// Duration of four attempts without an acknowledgement.
 const SILENCE_MS: u32 = 6;
-/// Size of the input and of the output buffer.
+/// Size of the input buffer and of the output buffer.
 const BUFFER_BYTES: usize = 16;
-/// The registers before the echoes that hold text: version, maker and kind.
+/// The registers that hold text: version, maker and type.
 const TEXTS: &[u8; 24] = b"V1.0\0\0\0\0LEGO\0\0\0\0Sonar\0\0\0";
-/// Registers that hold echoes.
+/// Number of registers that hold echoes.
 const ECHOES: usize = 8;
-/// Raw value of a port with nothing in it, and of a touch sensor that is pressed.
+/// Raw value of an empty port, and of a pressed touch sensor.
 const OPEN_RAW: u32 = 1023;
 const PRESSED_RAW: u32 = 183;
 
@@ -43,7 +43,7 @@ pub(super) struct Port {
 enum State {
     #[default]
     Idle,
-    /// An exchange that ends at this time, with an answer or without.
+    /// An exchange that ends at this time, with or without an answer.
     Busy(u32, Option<Vec<u8>>),
     Failed,
 }
@@ -62,7 +62,7 @@ impl Port {
         }
     }
 
-    /// The value of a field, given what an analogue sensor on this port senses.
+    /// Returns the value of a field, given the reading of an analogue sensor on this port.
     pub(super) fn get(&self, field: InputField, percent: Option<u8>, t_ms: u32) -> u32 {
         match field {
             InputField::Type => u32::from(self.kind),
@@ -73,7 +73,7 @@ impl Port {
                 (input_mode::RAW, ..) => self.raw(percent),
                 (input_mode::BOOLEAN, SENSOR_SWITCH, _) => u32::from(percent.is_some_and(|percent| percent > 0)),
                 (input_mode::BOOLEAN, ..) => u32::from(percent.is_some_and(|percent| percent > 50)),
-                // Other modes are a percentage; those that count edges are not emulated.
+                // Other modes give a percentage. Modes that count edges are not emulated.
                 (_, _, percent) => percent.unwrap_or(0).into(),
             },
         }
@@ -113,7 +113,7 @@ impl Port {
         comm::OK
     }
 
-    /// Status of the exchange and number of bytes ready to be read.
+    /// Returns the status of the exchange and the number of bytes ready to be read.
     pub(super) fn status(&mut self, t_ms: u32) -> (i8, u8) {
         self.settle(t_ms);
         let status = match self.state {
@@ -125,13 +125,13 @@ impl Port {
         (status, self.received.len() as u8)
     }
 
-    /// Removes and returns at most `most` received bytes, with the status.
-    pub(super) fn read(&mut self, most: u8, t_ms: u32) -> (i8, Vec<u8>) {
+    /// Removes and returns at most `limit` received bytes, with the status.
+    pub(super) fn read(&mut self, limit: u8, t_ms: u32) -> (i8, Vec<u8>) {
         let (status, _) = self.status(t_ms);
         if status < 0 {
             return (status, Vec::new());
         }
-        let count = usize::from(most).min(self.received.len());
+        let count = usize::from(limit).min(self.received.len());
         (status, self.received.drain(..count).collect())
     }
 
@@ -147,7 +147,7 @@ impl Port {
         match &mut self.state {
             State::Busy(until, answer) if t_ms >= *until => match answer.take() {
                 Some(answer) => {
-                    // Like the firmware's ring buffer, which loses what was not read in time.
+                    // The firmware's ring buffer also loses bytes that are not read in time.
                     self.received.extend(answer);
                     if self.received.len() >= BUFFER_BYTES {
                         self.received.clear();

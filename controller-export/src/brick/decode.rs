@@ -1,23 +1,23 @@
-//! Instructions taken apart once when a program is loaded, and not whenever they are executed.
+//! Decodes instructions once, when a program is loaded, rather than at every execution.
 
 use crate::bytecode::{Comparison, Op, SHORT_FORM, VARIABLE_SIZE};
 
-/// Operands of the instruction that has most of a fixed number.
+/// Largest number of operands of an instruction with a fixed size.
 const OPERANDS: usize = 5;
 
-/// What stands at a word of the code, be it the first of an instruction or not.
+/// The instruction that starts at a word of the code, whether or not the program reaches it there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Decoded {
-    /// `None` where no instruction can begin.
+    /// Operation; `None` where no instruction can start.
     pub(super) op: Option<Op>,
-    /// [`Comparison::Equal`] where the instruction compares nothing.
+    /// Comparison; [`Comparison::Equal`] if the instruction compares nothing.
     pub(super) comparison: Comparison,
-    /// Words of code.
+    /// Size in words.
     pub(super) words: u16,
     pub(super) operands: [u16; OPERANDS],
 }
 
-/// Takes apart what stands at each word.
+/// Decodes the instruction at each word.
 pub(super) fn decode(code: &[u16]) -> Vec<Decoded> {
     let unknown = Decoded { op: None, comparison: Comparison::Equal, words: 1, operands: [0; OPERANDS] };
     (0..code.len()).map(|at| at_word(&code[at..]).unwrap_or(unknown)).collect()
@@ -42,7 +42,7 @@ fn at_word(code: &[u16]) -> Option<Decoded> {
     }
     let words = bytes / 2;
     let present = code.get(1..usize::from(words))?;
-    // Those of variable size have their size and their target before the others.
+    // Instructions of variable size have their size and their target before the other operands.
     if op.bytes().is_none() && words < 3 {
         return None;
     }
@@ -51,7 +51,7 @@ fn at_word(code: &[u16]) -> Option<Decoded> {
     Some(Decoded { op: Some(op), comparison, words, operands })
 }
 
-/// The short forms, whose first word holds one operand as a signed byte.
+/// Decodes a short form, whose first word holds one operand as a signed byte.
 fn short(word: u16, code: &[u16]) -> Option<Decoded> {
     let byte = word as i8;
     let (op, words) = match word >> 8 & 7 {

@@ -1,5 +1,5 @@
 //! The brick's file system. Names are case-insensitive, and a file's size is reserved when it is created. The running
-//! program is an open file itself, and has the first handle.
+//! program is an open file itself and has the first handle.
 //!
 //! Source: `d_loader.c` of the firmware.
 
@@ -23,11 +23,11 @@ pub(super) mod status {
 
 const HANDLES: usize = 16;
 const PROGRAM_HANDLE: usize = 0;
-/// Files that can be open for writing at once.
+/// Number of files that can be open for writing at once.
 const WRITE_BUFFERS: usize = 4;
-const MOST_FILES: usize = 127;
-const LONGEST_NAME: usize = 19;
-const LONGEST_STEM: usize = 15;
+const MAX_FILES: usize = 127;
+const MAX_NAME: usize = 19;
+const MAX_STEM: usize = 15;
 const PAGE_BYTES: u32 = 256;
 
 /// The files of a brick.
@@ -50,12 +50,12 @@ struct Handle {
     file: String,
     /// The name as the program wrote it.
     opened_as: String,
-    /// Position of the next read; `None` for a file opened for writing.
+    /// Position of the next read; `None` if the file is open for writing.
     read_at: Option<usize>,
 }
 
 impl Flash {
-    /// A flash of `bytes` bytes that holds these files.
+    /// Returns a flash of `bytes` bytes that holds these files.
     pub(super) fn new(bytes: u32, files: &BTreeMap<String, Vec<u8>>) -> Self {
         let file = |(name, content): (&String, &Vec<u8>)| {
             let file = File { name: name.clone(), content: content.clone(), reserved: content.len() as u32 };
@@ -70,7 +70,7 @@ impl Flash {
         if self.files.contains_key(&key) {
             return Err(status::EXISTS);
         }
-        if self.files.len() >= MOST_FILES {
+        if self.files.len() >= MAX_FILES {
             return Err(status::NO_MORE_FILES);
         }
         if pages(reserved) > self.free_pages() {
@@ -81,7 +81,7 @@ impl Flash {
         Ok(handle)
     }
 
-    /// Opens a file at its end; returns the handle and the number of bytes still reserved.
+    /// Opens a file at its end. Returns the handle and the number of bytes still reserved.
     pub(super) fn append(&mut self, name: &str) -> Result<(u8, u32), u16> {
         let key = self.find(name)?;
         let file = &self.files[&key];
@@ -89,14 +89,14 @@ impl Flash {
         Ok((self.open(Handle { file: key, opened_as: name.to_owned(), read_at: None })?, left))
     }
 
-    /// Opens a file at its start; returns the handle and its length.
+    /// Opens a file at its start. Returns the handle and its length.
     pub(super) fn open_read(&mut self, name: &str) -> Result<(u8, u32), u16> {
         let key = self.find(name)?;
         let length = self.files[&key].content.len() as u32;
         Ok((self.open(Handle { file: key, opened_as: name.to_owned(), read_at: Some(0) })?, length))
     }
 
-    /// Writes as much as fits; returns the status and the number of bytes written.
+    /// Writes as much as fits. Returns the status and the number of bytes written.
     pub(super) fn write(&mut self, handle: u8, bytes: &[u8]) -> (u16, u32) {
         let slot = self.handles.get(usize::from(handle)).and_then(Option::as_ref);
         let Some(Handle { file, read_at: None, .. }) = slot else { return (status::CLOSED_HANDLE, 0) };
@@ -104,19 +104,19 @@ impl Flash {
         let room = (file.reserved as usize).saturating_sub(file.content.len());
         let fits = &bytes[..bytes.len().min(room)];
         file.content.extend_from_slice(fits);
-        let answer = if fits.len() < bytes.len() { status::END_EXPECTED } else { status::OK };
-        (answer, fits.len() as u32)
+        let status = if fits.len() < bytes.len() { status::END_EXPECTED } else { status::OK };
+        (status, fits.len() as u32)
     }
 
-    pub(super) fn read(&mut self, handle: u8, most: u32) -> (u16, Vec<u8>) {
+    pub(super) fn read(&mut self, handle: u8, limit: u32) -> (u16, Vec<u8>) {
         let slot = self.handles.get_mut(usize::from(handle)).and_then(Option::as_mut);
         let Some(Handle { file, read_at: Some(at), .. }) = slot else { return (status::CLOSED_HANDLE, Vec::new()) };
         let Some(file) = self.files.get(file) else { return (status::CLOSED_HANDLE, Vec::new()) };
         let rest = &file.content[(*at).min(file.content.len())..];
-        let taken = &rest[..rest.len().min(most as usize)];
+        let taken = &rest[..rest.len().min(limit as usize)];
         *at += taken.len();
-        let answer = if (taken.len() as u32) < most { status::END_OF_FILE } else { status::OK };
-        (answer, taken.to_vec())
+        let status = if (taken.len() as u32) < limit { status::END_OF_FILE } else { status::OK };
+        (status, taken.to_vec())
     }
 
     pub(super) fn close(&mut self, handle: u8) -> u16 {
@@ -126,18 +126,18 @@ impl Flash {
         }
     }
 
-    /// The handle of a file that was opened by this very name, and whether it is open for writing.
+    /// Returns the handle of the file that was opened by exactly this name, and whether it is open for writing.
     pub(super) fn resolve(&self, name: &str) -> Option<(u8, bool)> {
         let mut open = self.handles.iter().enumerate().filter_map(|(i, handle)| Some((i, handle.as_ref()?)));
         open.find(|(_, handle)| handle.opened_as == name).map(|(i, handle)| (i as u8, handle.read_at.is_none()))
     }
 
-    /// Free flash in bytes, whole pages.
+    /// Returns the free flash in bytes, in whole pages.
     pub(super) fn free_bytes(&self) -> u32 {
         self.free_pages() * PAGE_BYTES
     }
 
-    /// The names that match a pattern, in which either part may be a star.
+    /// Returns the names that match a pattern, either part of which may be a star.
     pub(super) fn list(&self, pattern: &str) -> Vec<&str> {
         let parts = |name: &str| {
             let name = name.to_ascii_lowercase();
@@ -176,12 +176,12 @@ impl Flash {
         }
     }
 
-    /// All files by name, with the bytes written.
+    /// Returns all files by name, with the bytes written.
     pub(super) fn into_files(self) -> BTreeMap<String, Vec<u8>> {
         self.files.into_values().map(|file| (file.name, file.content)).collect()
     }
 
-    /// The key of an existing file that is not open.
+    /// Returns the key of an existing file that is not open.
     fn find(&self, name: &str) -> Result<String, u16> {
         let key = name.to_ascii_lowercase();
         if !self.files.contains_key(&key) {
@@ -211,7 +211,7 @@ fn pages(bytes: u32) -> u32 {
 
 fn check_name(name: &str) -> Result<(), u16> {
     let stem = name.split_once('.').map_or(0, |(stem, _)| stem.len());
-    if name.is_empty() || name.len() > LONGEST_NAME || stem > LONGEST_STEM {
+    if name.is_empty() || name.len() > MAX_NAME || stem > MAX_STEM {
         return Err(status::ILLEGAL_NAME);
     }
     Ok(())

@@ -8,13 +8,13 @@ use super::memory::Place;
 use super::{Brick, Drive, EventKind, Fault, polymorphic, text};
 use crate::bytecode::{Comparison, InputField, NONE, Op, OutputField, Type};
 
-/// Control flow after an instruction; offsets are words of code from its first.
+/// Control flow after an instruction. Offsets are words of code from its first word.
 pub(super) enum Flow {
     Next(usize),
     Branch(i16),
-    /// The clump waits, and resumes at this offset.
+    /// The clump waits and resumes at this offset.
     Suspend(usize),
-    /// The clump yields to the others, and resumes at this offset.
+    /// The clump yields to the others and resumes at this offset.
     Yield(usize),
     ClumpEnds,
     Stop,
@@ -35,7 +35,7 @@ impl<'p> Brick<'p, '_> {
                 self.calculate(operation, first, second, third)?;
             }
             Op::Neg | Op::Not | Op::Sqrt | Op::Abs | Op::Tst => {
-                polymorphic::unary(&mut self.memory, operation, Place::of(first), Place::of(second))?;
+                polymorphic::unary(&mut self.memory, operation, Place::new(first), Place::new(second))?;
             }
             Op::Cmp => self.compare(operation, first, second, third)?,
             Op::BrCmp => {
@@ -53,15 +53,15 @@ impl<'p> Brick<'p, '_> {
             Op::Index => self.index(first, second, third)?,
             Op::Replace => self.replace([first, second, third, fourth])?,
             Op::ArrSize => {
-                let count = self.memory.count(Place::of(second))?;
+                let count = self.memory.count(Place::new(second))?;
                 self.memory.set_id(first, count as u32)?;
             }
             Op::ArrInit => {
                 let count = usize::from(self.number_or(third, 0)? as u16);
-                self.memory.resize(Place::of(first), count)?;
+                self.memory.resize(Place::new(first), count)?;
                 for index in 0..count {
-                    let element = self.memory.element(Place::of(first), index)?;
-                    polymorphic::copy(&mut self.memory, element, Place::of(second))?;
+                    let element = self.memory.element(Place::new(first), index)?;
+                    polymorphic::copy(&mut self.memory, element, Place::new(second))?;
                 }
             }
             Op::ArrSubset => self.array_subset([first, second, third, fourth])?,
@@ -69,18 +69,18 @@ impl<'p> Brick<'p, '_> {
             Op::StrCat => self.concatenate(second, pc + 3..pc + next)?,
             Op::StrSubset => self.string_subset([first, second, third, fourth])?,
             Op::StrToByteArr => {
-                if let Some((_, text)) = self.memory.array(Place::of(second))?.split_last() {
+                if let Some((_, text)) = self.memory.array(Place::new(second))?.split_last() {
                     let text = text.to_vec();
-                    self.memory.set_array(Place::of(first), &text)?;
+                    self.memory.set_array(Place::new(first), &text)?;
                 }
             }
             Op::ByteArrToStr => {
-                let text = self.memory.array(Place::of(second))?.to_vec();
+                let text = self.memory.array(Place::new(second))?.to_vec();
                 self.set_string(first, &text)?;
             }
             Op::NumToString => {
                 let text = match self.memory.kind(second)? {
-                    Type::Float => text::of_float(self.memory.get_float(Place::of(second))?),
+                    Type::Float => text::from_float(self.memory.get_float(Place::new(second))?),
                     kind if kind.is_signed() => (self.memory.get_id(second)? as i32).to_string(),
                     _ => self.memory.get_id(second)?.to_string(),
                 };
@@ -89,7 +89,7 @@ impl<'p> Brick<'p, '_> {
             Op::StringToNum => self.string_to_number([first, second, third, fourth, fifth])?,
             Op::Flatten => {
                 let mut bytes = Vec::new();
-                self.memory.flatten(Place::of(second), &mut bytes)?;
+                self.memory.flatten(Place::new(second), &mut bytes)?;
                 self.set_string(first, &bytes)?;
             }
             Op::Unflatten => self.unflatten([first, second, third, fourth])?,
@@ -121,7 +121,7 @@ impl<'p> Brick<'p, '_> {
                 self.schedule.return_to(caller)?;
                 return Ok(Flow::ClumpEnds);
             }
-            // The firmware does not check the port, and reaches into other memory.
+            // The firmware does not check the port and accesses other memory.
             Op::SetIn => {
                 let (value, port) = (self.memory.get_id(first)?, self.memory.get_id(second)?);
                 let field = InputField::from_number(third).ok_or(Fault::Instruction)?;
@@ -171,7 +171,7 @@ impl<'p> Brick<'p, '_> {
             let value = self.memory.value(from_entry, 0)?;
             return self.memory.set_value(to_entry, 0, value);
         }
-        polymorphic::copy(&mut self.memory, Place::of(to), Place::of(from))
+        polymorphic::copy(&mut self.memory, Place::new(to), Place::new(from))
     }
 
     #[inline]
@@ -184,19 +184,19 @@ impl<'p> Brick<'p, '_> {
             let value = operation.binary(left, right, left_entry.kind, right_entry.kind)?;
             return memory.set_value(to_entry, 0, value);
         }
-        polymorphic::binary(memory, operation, Place::of(to), Place::of(left), Place::of(right))
+        polymorphic::binary(memory, operation, Place::new(to), Place::new(left), Place::new(right))
     }
 
     #[inline]
     fn index(&mut self, to: u16, array: u16, index: u16) -> Result<(), Fault> {
         let index = self.number_or(index, 0)?;
-        let element = self.memory.element(Place::of(array), index)?;
+        let element = self.memory.element(Place::new(array), index)?;
         let (to_entry, from_entry) = (self.memory.entry(to)?, self.memory.entry(element.id)?);
         if to_entry.kind.is_integer() && from_entry.kind.is_integer() {
             let value = self.memory.value(from_entry, element.base)?;
             return self.memory.set_value(to_entry, 0, value);
         }
-        polymorphic::copy(&mut self.memory, Place::of(to), element)
+        polymorphic::copy(&mut self.memory, Place::new(to), element)
     }
 
     fn compare(&mut self, operation: Operation, to: u16, left: u16, right: u16) -> Result<(), Fault> {
@@ -207,7 +207,7 @@ impl<'p> Brick<'p, '_> {
             let holds = self.holds(operation.comparison, left, right)?;
             return self.memory.set_id(to, holds.into());
         }
-        polymorphic::binary(&mut self.memory, operation, Place::of(to), Place::of(left), Place::of(right))
+        polymorphic::binary(&mut self.memory, operation, Place::new(to), Place::new(left), Place::new(right))
     }
 
     #[inline]
@@ -217,7 +217,7 @@ impl<'p> Brick<'p, '_> {
             let (left, right) = (self.memory.value(left_entry, 0)?, self.memory.value(right_entry, 0)?);
             return Ok(comparison.holds(Some(order(left, right, left_entry.kind, right_entry.kind))));
         }
-        polymorphic::compare(&self.memory, comparison, Place::of(left), Place::of(right))
+        polymorphic::compare(&self.memory, comparison, Place::new(left), Place::new(right))
     }
 
     fn acquire(&mut self, mutex: u16, next: usize) -> Result<Flow, Fault> {
@@ -231,13 +231,13 @@ impl<'p> Brick<'p, '_> {
         Ok(Flow::Suspend(next))
     }
 
-    /// Copies an array with one or more elements replaced; an index out of range changes nothing.
+    /// Copies an array with one or more elements replaced. An index out of range changes nothing.
     fn replace(&mut self, [to, from, index, value]: [u16; 4]) -> Result<(), Fault> {
         if to != from {
             self.mov(to, from)?;
         }
         let index = self.number_or(index, 0)?;
-        let (to, value) = (Place::of(to), Place::of(value));
+        let (to, value) = (Place::new(to), Place::new(value));
         let room = self.memory.count(to)?.saturating_sub(index);
         if self.memory.kind(value.id)? != Type::Array {
             if room > 0 {
@@ -254,7 +254,7 @@ impl<'p> Brick<'p, '_> {
     }
 
     fn array_subset(&mut self, [to, from, start, length]: [u16; 4]) -> Result<(), Fault> {
-        let (to, from) = (Place::of(to), Place::of(from));
+        let (to, from) = (Place::new(to), Place::new(from));
         let start = self.number_or(start, 0)?;
         let rest = self.memory.count(from)?.saturating_sub(start);
         let count = self.number_or(length, rest)?.min(rest);
@@ -271,13 +271,13 @@ impl<'p> Brick<'p, '_> {
         let sources = self.sources(to, sources)?;
         let mut count = 0;
         for source in sources {
-            count += if self.memory.is_same_type(to, *source)? { self.memory.count(Place::of(*source))? } else { 1 };
+            count += if self.memory.is_same_type(to, *source)? { self.memory.count(Place::new(*source))? } else { 1 };
         }
-        let to = Place::of(to);
+        let to = Place::new(to);
         self.memory.resize(to, count)?;
         let mut at = 0;
         for source in sources {
-            let source = Place::of(*source);
+            let source = Place::new(*source);
             if !self.memory.is_same_type(to.id, source.id)? {
                 let element = self.memory.element(to, at)?;
                 polymorphic::copy(&mut self.memory, element, source)?;
@@ -302,8 +302,8 @@ impl<'p> Brick<'p, '_> {
         self.set_string(to, &text)
     }
 
-    /// The operands that an array is built from. The firmware resizes the array first, so that if it is itself an operand,
-    /// its contents are overwritten.
+    /// Returns the operands from which an array is built. The array itself cannot be one, because the firmware resizes it
+    /// first and so overwrites its contents.
     fn sources(&self, to: u16, sources: Range<usize>) -> Result<&'p [u16], Fault> {
         let sources = self.program.code.get(sources).ok_or(Fault::Instruction)?;
         if sources.contains(&to) { Err(Fault::Argument) } else { Ok(sources) }
@@ -319,11 +319,11 @@ impl<'p> Brick<'p, '_> {
 
     fn string_to_number(&mut self, [to, end, from, start, default]: [u16; 5]) -> Result<(), Fault> {
         let start = self.number_or(start, 0)?;
-        let default = if default == NONE { 0.0 } else { self.memory.get_float(Place::of(default))? };
+        let default = if default == NONE { 0.0 } else { self.memory.get_float(Place::new(default))? };
         let string = self.string(from)?;
         let found = text::to_float(string.get(start..).unwrap_or_default());
         let end_at = if found.is_some() { text::end_of_number(string, start) } else { 0 };
-        self.memory.set_float(Place::of(to), found.unwrap_or(default))?;
+        self.memory.set_float(Place::new(to), found.unwrap_or(default))?;
         self.memory.set_id(end, end_at as u32)
     }
 
@@ -331,10 +331,10 @@ impl<'p> Brick<'p, '_> {
         self.mov(to, template)?;
         let bytes = self.string(from)?.to_vec();
         let mut expected = Vec::new();
-        self.memory.flatten(Place::of(template), &mut expected)?;
+        self.memory.flatten(Place::new(template), &mut expected)?;
         let fits = bytes.len() == expected.len();
         if fits {
-            self.memory.unflatten(Place::of(to), &mut bytes.as_slice())?;
+            self.memory.unflatten(Place::new(to), &mut bytes.as_slice())?;
         }
         self.memory.set_id(failed, (!fits).into())
     }
@@ -342,7 +342,7 @@ impl<'p> Brick<'p, '_> {
     fn set_outputs(&mut self, ports: u16, fields: Range<usize>) -> Result<(), Fault> {
         let fields = self.program.code.get(fields).ok_or(Fault::Instruction)?;
         let ports: Vec<usize> = if self.memory.kind(ports)? == Type::Array {
-            let ports = Place::of(ports);
+            let ports = Place::new(ports);
             let port = |i| self.memory.get(self.memory.element(ports, i)?).map(|port| port as usize);
             (0..self.memory.count(ports)?).map(port).collect::<Result<_, _>>()?
         } else {
@@ -360,7 +360,7 @@ impl<'p> Brick<'p, '_> {
         Ok(())
     }
 
-    /// Makes an output do what its fields say.
+    /// Applies the fields of an output to its motor.
     pub(super) fn apply_output(&mut self, port: usize) {
         let rotation_deg = self.world.rotation_deg(port, self.t_ms);
         if let Some(drive) = self.motors[port].apply(rotation_deg, self.t_ms) {
@@ -368,23 +368,23 @@ impl<'p> Brick<'p, '_> {
         }
     }
 
-    /// Tells what a motor was set to; a regulated one gets the power that its regulation makes of that.
+    /// Reports the drive that a motor was set to. A regulated motor gets the power that its regulation computes from it.
     pub(super) fn drive(&mut self, port: usize, drive: Drive) {
         self.world.motor(port, self.motors[port].regulated_drive(), self.t_ms);
         self.emit(EventKind::Motor { port, drive });
     }
 
-    /// A string without its terminating NUL.
+    /// Returns a string without its terminating NUL.
     pub(super) fn string(&self, id: u16) -> Result<&[u8], Fault> {
-        let bytes = self.memory.array(Place::of(id))?;
+        let bytes = self.memory.array(Place::new(id))?;
         Ok(bytes.split_last().map_or(&[], |(_, text)| text))
     }
 
     pub(super) fn set_string(&mut self, id: u16, text: &[u8]) -> Result<(), Fault> {
-        self.memory.set_array(Place::of(id), &[text, &[0]].concat())
+        self.memory.set_array(Place::new(id), &[text, &[0]].concat())
     }
 
-    /// A number, or `default` if the operand is omitted.
+    /// Returns a number, or `default` if the operand is omitted.
     fn number_or(&self, id: u16, default: usize) -> Result<usize, Fault> {
         if id == NONE { Ok(default) } else { Ok(self.memory.get_id(id)? as usize) }
     }

@@ -1,16 +1,16 @@
-//! The modules' I/O maps, which programs read and write by offset. What the machine knows stands in them, what a program
-//! writes elsewhere is kept.
+//! The I/O maps of the firmware's modules, which programs read and write by offset. They contain the state of the emulator;
+//! bytes that a program writes elsewhere are kept.
 //!
 //! Source: the `.iom` files of the firmware; names and offsets as in nbc's `NXTDefs.h`.
 
 use super::{Brick, bus, motors};
 use crate::bytecode::{InputField, OutputField};
 
-/// Reads and writes of more are refused.
-pub(super) const MOST_BYTES: usize = 64;
+/// Largest number of bytes per read or write.
+pub(super) const MAX_BYTES: usize = 64;
 
 const MAPS: usize = 10;
-/// Fields of an input that have a place in its 20 bytes: offset and size.
+/// Offset and size of the fields in the 20 bytes of an input.
 const INPUT: [(InputField, usize, usize); 6] = [
     (InputField::AdRaw, 2, 2),
     (InputField::NormRaw, 4, 2),
@@ -20,7 +20,7 @@ const INPUT: [(InputField, usize, usize); 6] = [
     (InputField::InvalidData, 16, 1),
 ];
 const INPUT_BYTES: usize = 20;
-/// The same of an output.
+/// Offset and size of the fields in the 32 bytes of an output.
 const OUTPUT: [(OutputField, usize, usize); 17] = [
     (OutputField::TachoCount, 0, 4),
     (OutputField::BlockTachoCount, 4, 4),
@@ -67,7 +67,7 @@ pub(super) enum Module {
     Comm,
 }
 
-/// What programs wrote into the maps, each as large as its module's once it is used.
+/// The contents of the maps. Each has its full size once it is used.
 #[derive(Debug, Default)]
 pub(super) struct IoMaps([Vec<u8>; MAPS]);
 
@@ -105,7 +105,7 @@ impl Module {
 }
 
 impl Brick<'_, '_> {
-    /// A piece of a module's map; `None` beyond its end.
+    /// Returns a part of a module's map, or `None` beyond its end.
     pub(super) fn read_map(&mut self, module: Module, offset: usize, count: usize) -> Option<Vec<u8>> {
         let range = offset..offset.checked_add(count)?;
         if range.end > module.bytes() {
@@ -115,7 +115,7 @@ impl Brick<'_, '_> {
         self.io_maps.0[module as usize].get(range).map(<[u8]>::to_vec)
     }
 
-    /// Writes a piece of a module's map; `false` beyond its end.
+    /// Writes a part of a module's map. Returns `false` beyond its end.
     pub(super) fn write_map(&mut self, module: Module, offset: usize, bytes: &[u8]) -> bool {
         let range = offset..offset.saturating_add(bytes.len());
         if range.end > module.bytes() {
@@ -126,9 +126,9 @@ impl Brick<'_, '_> {
         let touched = |at: usize, size: usize| range.start < at + size && at < range.end;
         match module {
             Module::Input => {
-                for (field, place, size) in INPUT {
+                for (field, offset, size) in INPUT {
                     for port in 0..bus::PORTS {
-                        let at = port * INPUT_BYTES + place;
+                        let at = port * INPUT_BYTES + offset;
                         if touched(at, size) {
                             let value = self.number(module, at, size);
                             self.ports[port].set(field, value, self.t_ms);
@@ -138,8 +138,8 @@ impl Brick<'_, '_> {
             }
             Module::Output => {
                 for port in 0..motors::PORTS {
-                    for (field, place, size) in OUTPUT {
-                        let at = port * OUTPUT_BYTES + place;
+                    for (field, offset, size) in OUTPUT {
+                        let at = port * OUTPUT_BYTES + offset;
                         if touched(at, size) {
                             let value = self.number(module, at, size);
                             self.motors[port].set(field, value);
@@ -156,7 +156,7 @@ impl Brick<'_, '_> {
         true
     }
 
-    /// Brings what the machine knows into a module's map.
+    /// Writes the state of the emulator into a module's map.
     fn refresh(&mut self, module: Module) {
         self.io_maps.0[module as usize].resize(module.bytes(), 0);
         let t_ms = self.t_ms;
@@ -167,7 +167,7 @@ impl Brick<'_, '_> {
             Module::Button => {
                 for button in 0..4u8 {
                     let state = self.world.button(button, t_ms);
-                    let releases = state.released.wrapping_sub(self.forgotten_releases[usize::from(button)]);
+                    let releases = state.released.wrapping_sub(self.reset_releases[usize::from(button)]);
                     let pressed = if state.pressed { BUTTON_PRESSED } else { 0 };
                     let counts = usize::from(button) * BUTTON_COUNTS_BYTES;
                     self.put(module, counts + BUTTON_RELEASES, 1, releases.into());

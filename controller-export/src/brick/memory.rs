@@ -12,13 +12,13 @@ use crate::bytecode::{CLUMP_RECORD_BYTES, Type};
 
 /// Number of dope vectors added at once when none is free.
 const DOPE_VECTORS_ADDED: usize = 25;
-const MOST_SPARE_DOPE_VECTORS: usize = 200;
-/// Parts of arrays and clusters that the instructions of one turn may touch: more than sound ones do in this memory, fewer
-/// than a broken file can pretend to hold.
-const MOST_PARTS: u32 = 1 << 22;
-/// Bytes of a whole copy that count as one part.
-const BYTES_A_PART: usize = 64;
-/// The dope vector that stands for the table of dope vectors itself.
+const MAX_SPARE_DOPE_VECTORS: usize = 200;
+/// Number of array and cluster parts that the instructions of one turn may touch: more than a valid program can in this
+/// memory, fewer than a damaged file can claim to hold.
+const MAX_PARTS: u32 = 1 << 22;
+/// Number of bytes of a block copy that count as one part.
+const BYTES_PER_PART: usize = 64;
+/// The dope vector of the table of dope vectors itself.
 const TABLE: usize = 0;
 
 pub(super) struct Memory<'p> {
@@ -27,10 +27,10 @@ pub(super) struct Memory<'p> {
     static_bytes: usize,
     dope: Vec<DopeVector>,
     free: Vec<u16>,
-    /// Bytes of the pool available to the dataspace.
+    /// Size of the pool available to the dataspace, in bytes.
     limit: usize,
-    most_bytes: usize,
-    /// Parts touched since they were last taken.
+    peak_bytes: usize,
+    /// Number of parts touched since the last `take_parts`.
     parts: Cell<u32>,
 }
 
@@ -42,13 +42,14 @@ pub(super) struct Place {
 }
 
 impl Place {
-    pub(super) fn of(id: u16) -> Place {
+    /// Returns the place of an entry outside arrays.
+    pub(super) fn new(id: u16) -> Place {
         Place { id, base: 0 }
     }
 }
 
 impl<'p> Memory<'p> {
-    /// The dataspace at a program's start; as an error if the pool is too small for it.
+    /// Returns the dataspace at a program's start, as an error if the pool is too small for it.
     pub(super) fn new(program: &'p Program) -> Result<Memory<'p>, Memory<'p>> {
         let limit = POOL_BYTES - (program.clumps.len() * CLUMP_RECORD_BYTES).next_multiple_of(4);
         let mut memory = Memory {
@@ -58,10 +59,10 @@ impl<'p> Memory<'p> {
             dope: program.dope.clone(),
             free: Vec::new(),
             limit,
-            most_bytes: program.data.len(),
+            peak_bytes: program.data.len(),
             parts: Cell::new(0),
         };
-        match memory.add_dope_vectors((program.dope.len() / 2).min(MOST_SPARE_DOPE_VECTORS)) {
+        match memory.add_dope_vectors((program.dope.len() / 2).min(MAX_SPARE_DOPE_VECTORS)) {
             Ok(()) => Ok(memory),
             Err(_) => Err(memory),
         }
@@ -77,7 +78,7 @@ impl<'p> Memory<'p> {
         Ok(self.entry(id)?.kind)
     }
 
-    /// Takes the number of parts touched since the last time.
+    /// Returns the number of parts touched since the last call.
     pub(super) fn take_parts(&self) -> u32 {
         self.parts.replace(0)
     }
@@ -85,15 +86,16 @@ impl<'p> Memory<'p> {
     fn touch(&self, parts: usize) -> Result<(), Fault> {
         let touched = self.parts.get().saturating_add(parts as u32);
         self.parts.set(touched);
-        if touched > MOST_PARTS { Err(Fault::Endless) } else { Ok(()) }
+        if touched > MAX_PARTS { Err(Fault::CyclicData) } else { Ok(()) }
     }
 
-    /// An integer as the firmware's 32-bit accumulator holds it; a float is rounded to the nearest, halves away from 0.
+    /// Returns a number as an integer in the firmware's 32-bit accumulator. A float is rounded to nearest, halves away from
+    /// zero.
     pub(super) fn get(&self, place: Place) -> Result<u32, Fault> {
         self.value(self.entry(place.id)?, place.base)
     }
 
-    /// The same of an entry that is known.
+    /// Equals [`get`](Self::get) for an entry that was looked up before.
     #[inline]
     pub(super) fn value(&self, entry: Entry, base: usize) -> Result<u32, Fault> {
         let at = entry.at(base);
@@ -110,7 +112,7 @@ impl<'p> Memory<'p> {
 
     #[inline]
     pub(super) fn get_id(&self, id: u16) -> Result<u32, Fault> {
-        self.get(Place::of(id))
+        self.get(Place::new(id))
     }
 
     pub(super) fn get_float(&self, place: Place) -> Result<f32, Fault> {
@@ -122,12 +124,12 @@ impl<'p> Memory<'p> {
         }
     }
 
-    /// Stores as many low bytes as the type has.
+    /// Stores the low bytes of a number, as many as the type has.
     pub(super) fn set(&mut self, place: Place, value: u32) -> Result<(), Fault> {
         self.set_value(self.entry(place.id)?, place.base, value)
     }
 
-    /// The same for an entry that is known.
+    /// Equals [`set`](Self::set) for an entry that was looked up before.
     #[inline]
     pub(super) fn set_value(&mut self, entry: Entry, base: usize, value: u32) -> Result<(), Fault> {
         let at = entry.at(base);
@@ -142,10 +144,10 @@ impl<'p> Memory<'p> {
 
     #[inline]
     pub(super) fn set_id(&mut self, id: u16, value: u32) -> Result<(), Fault> {
-        self.set(Place::of(id), value)
+        self.set(Place::new(id), value)
     }
 
-    /// Stores a float; into an integer it is cut off toward zero.
+    /// Stores a float. In an integer it is truncated towards zero.
     pub(super) fn set_float(&mut self, place: Place, value: f32) -> Result<(), Fault> {
         let entry = self.entry(place.id)?;
         match entry.kind {
@@ -154,12 +156,12 @@ impl<'p> Memory<'p> {
         }
     }
 
-    /// The number of elements of an array.
+    /// Returns the number of elements of an array.
     pub(super) fn count(&self, array: Place) -> Result<usize, Fault> {
         Ok(self.dope[self.vector(array)?].count)
     }
 
-    /// The place of an array's element.
+    /// Returns the place of an array's element.
     #[inline]
     pub(super) fn element(&self, array: Place, index: usize) -> Result<Place, Fault> {
         self.touch(1)?;
@@ -172,16 +174,16 @@ impl<'p> Memory<'p> {
         }
     }
 
-    /// An array's elements as bytes.
+    /// Returns an array's elements as bytes.
     pub(super) fn array(&self, array: Place) -> Result<&[u8], Fault> {
         let vector = self.dope[self.vector(array)?];
         let offset = vector.offset.unwrap_or(0);
         let bytes = self.bytes.get(offset..offset + vector.element_bytes * vector.count).ok_or(Fault::Pointer)?;
-        self.touch(bytes.len() / BYTES_A_PART)?;
+        self.touch(bytes.len() / BYTES_PER_PART)?;
         Ok(bytes)
     }
 
-    /// Replaces the contents of an array by bytes.
+    /// Replaces the contents of an array.
     pub(super) fn set_array(&mut self, array: Place, bytes: &[u8]) -> Result<(), Fault> {
         let vector = self.vector(array)?;
         let element_bytes = self.dope[vector].element_bytes.max(1);
@@ -192,8 +194,8 @@ impl<'p> Memory<'p> {
         Ok(())
     }
 
-    /// Resizes an array to `count` elements. [`Fault::Memory`] leaves everything unchanged: [`compact`](Self::compact) and
-    /// try again.
+    /// Resizes an array to `count` elements. After a [`Fault::Memory`] everything is unchanged; call
+    /// [`compact`](Self::compact) and try again.
     pub(super) fn resize(&mut self, array: Place, count: usize) -> Result<(), Fault> {
         let vector = self.vector(array)?;
         let old_count = self.dope[vector].count;
@@ -220,7 +222,7 @@ impl<'p> Memory<'p> {
 
     /// Moves all arrays together, in the order of their offsets.
     pub(super) fn compact(&mut self) {
-        let parts = self.bytes.len() / BYTES_A_PART + self.dope.len();
+        let parts = self.bytes.len() / BYTES_PER_PART + self.dope.len();
         self.parts.set(self.parts.get().saturating_add(parts as u32));
         let mut order: Vec<usize> = (0..self.dope.len()).filter(|i| self.dope[*i].offset.is_some()).collect();
         order.sort_by_key(|i| self.dope[*i].offset);
@@ -242,12 +244,12 @@ impl<'p> Memory<'p> {
         self.bytes.truncate(end);
     }
 
-    /// Peak size of the dataspace, in bytes.
-    pub(super) fn most_bytes(&self) -> usize {
-        self.most_bytes
+    /// Returns the peak size of the dataspace, in bytes.
+    pub(super) fn peak_bytes(&self) -> usize {
+        self.peak_bytes
     }
 
-    /// Whether two entries describe the same type.
+    /// Returns whether two entries describe the same type.
     pub(super) fn is_same_type(&self, left: u16, right: u16) -> Result<bool, Fault> {
         let (left_entry, right_entry) = (self.entry(left)?, self.entry(right)?);
         if left_entry.kind != right_entry.kind {
@@ -295,7 +297,7 @@ impl<'p> Memory<'p> {
         Ok(())
     }
 
-    /// The inverse of [`flatten`](Self::flatten); arrays must have their lengths already.
+    /// Inverts [`flatten`](Self::flatten). Arrays have to have their lengths already.
     pub(super) fn unflatten(&mut self, place: Place, bytes: &mut &[u8]) -> Result<(), Fault> {
         let entry = self.entry(place.id)?;
         match entry.kind {
@@ -336,7 +338,7 @@ impl<'p> Memory<'p> {
                 return Err(Fault::Memory);
             }
             self.bytes.resize(to + size, 0);
-            self.most_bytes = self.most_bytes.max(to + size);
+            self.peak_bytes = self.peak_bytes.max(to + size);
             if let Some(from) = offset {
                 self.bytes.copy_within(from..from + element_bytes * old_count, to);
             }
@@ -404,7 +406,7 @@ impl<'p> Memory<'p> {
         Ok(())
     }
 
-    /// Bytes and alignment of a value of this type.
+    /// Returns the size and the alignment of a value of this type, in bytes.
     fn layout(&self, id: u16) -> Result<(usize, usize), Fault> {
         let entry = self.entry(id)?;
         if entry.kind != Type::Cluster {

@@ -6,17 +6,24 @@ use super::Brick;
 use super::regulation::{self, Pair, Speed};
 use crate::bytecode::{OutputField, RUN_STATE_IDLE, mode, regulation_mode, update};
 
-/// Motor ports of a brick.
+/// Number of motor ports of a brick.
 pub(super) const PORTS: usize = 3;
 
-/// Drive of a motor.
+/// The drive of a motor.
+///
+/// ```
+/// use mindgap_controller_export::brick::Drive;
+///
+/// assert_eq!(Drive::default(), Drive::Coast);
+/// assert_ne!(Drive::Power(0), Drive::Brake);
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Drive {
-    /// It runs at this power, -100..=100; negative is backward.
+    /// The motor runs at this power, -100..=100; negative is backward.
     Power(i8),
-    /// It holds.
+    /// The motor brakes.
     Brake,
-    /// It turns freely.
+    /// The motor turns freely.
     #[default]
     Coast,
 }
@@ -35,11 +42,11 @@ pub(super) struct Motor {
     options: u8,
     max_speed: i8,
     max_acceleration: i8,
-    /// Shaft rotation at which each of the three counters was set to zero.
+    /// Shaft rotation at which each of the three counters was reset.
     tacho_zero: i32,
     block_zero: i32,
     rotation_zero: i32,
-    /// The power that was set, and where the motor is regulated how.
+    /// The power that was set, and the regulation if there is one.
     running_power: i8,
     regulated: Option<Regulated>,
     overloaded: bool,
@@ -48,21 +55,21 @@ pub(super) struct Motor {
     limit_deg: Option<i32>,
 }
 
-/// What sets the power of a motor anew in every window.
+/// The regulation of a motor, which sets its power once per window.
 #[derive(Clone, Debug)]
 struct Regulated {
     by: Regulation,
-    /// Power of this window.
+    /// Power in this window.
     power: i8,
-    /// When it ends, and rotation of the shaft at its begin.
+    /// Time at which the window ends, and rotation of the shaft at its start.
     ends_ms: u32,
-    began_deg: i32,
+    start_deg: i32,
 }
 
 #[derive(Clone, Debug)]
 enum Regulation {
     Speed(Speed),
-    /// With another motor: the first of both has the state of the pair.
+    /// Together with another motor: the first of the two has the state of the pair.
     Pair(Pair),
 }
 
@@ -140,7 +147,7 @@ impl Motor {
         }
     }
 
-    /// Applies the fields that the flags name, as the firmware does in its next millisecond. Returns the new drive if the
+    /// Applies the fields selected by the flags, as the firmware does in its next millisecond. Returns the new drive if the
     /// flags affect it.
     pub(super) fn apply(&mut self, rotation_deg: i32, t_ms: u32) -> Option<Drive> {
         let flags = std::mem::take(&mut self.flags);
@@ -159,7 +166,7 @@ impl Motor {
             self.overloaded = false;
         }
         if flags & update::MODE != 0 {
-            // A motor that is switched off fades and turns freely, whatever the other bits say.
+            // A motor that is switched off turns freely, whatever the other bits are.
             self.brakes = is_on && self.mode & mode::BRAKE != 0;
             if !is_on {
                 self.running_power = 0;
@@ -169,26 +176,26 @@ impl Motor {
             self.regulate(rotation_deg, t_ms);
         }
         if flags & update::TACHO_LIMIT != 0 {
-            let way_deg = self.tacho_limit as i32;
+            let limit_deg = self.tacho_limit as i32;
             self.limit_deg = match self.running_power {
-                _ if way_deg == 0 => None,
-                power if power < 0 => Some(rotation_deg.wrapping_sub(way_deg)),
-                _ => Some(rotation_deg.wrapping_add(way_deg)),
+                _ if limit_deg == 0 => None,
+                power if power < 0 => Some(rotation_deg.wrapping_sub(limit_deg)),
+                _ => Some(rotation_deg.wrapping_add(limit_deg)),
             };
         }
         (flags & (update::SPEED | update::MODE) != 0).then(|| self.drive())
     }
 
-    /// Whether it runs until it has turned by a limit.
+    /// Returns whether the motor runs until it has turned by a limit.
     pub(super) fn has_limit(&self) -> bool {
         self.limit_deg.is_some()
     }
 
-    /// Ends a run that has reached its limit; returns the new drive.
+    /// Ends a run that has reached its limit. Returns the new drive.
     pub(super) fn end_at_limit(&mut self, rotation_deg: i32) -> Option<Drive> {
         let left_deg = self.limit_deg?.wrapping_sub(rotation_deg);
-        let goes_on = if self.running_power < 0 { left_deg < 0 } else { left_deg > 0 };
-        if goes_on && self.running_power != 0 {
+        let continues = if self.running_power < 0 { left_deg < 0 } else { left_deg > 0 };
+        if continues && self.running_power != 0 {
             return None;
         }
         self.limit_deg = None;
@@ -198,12 +205,12 @@ impl Motor {
         Some(self.drive())
     }
 
-    /// Begins, goes on with or ends the regulation that the fields ask for. A motor at rest waits for its first window's end.
+    /// Starts, continues or ends the regulation that the fields select. A motor at rest waits for the end of its first window.
     fn regulate(&mut self, rotation_deg: i32, t_ms: u32) {
-        let asks = self.mode & mode::REGULATED != 0 && self.running_power != 0;
+        let is_regulated = self.mode & mode::REGULATED != 0 && self.running_power != 0;
         let by = match self.regulation_mode {
-            regulation_mode::SPEED if asks => Regulation::Speed(Speed::default()),
-            regulation_mode::SYNC if asks => Regulation::Pair(Pair::default()),
+            regulation_mode::SPEED if is_regulated => Regulation::Speed(Speed::default()),
+            regulation_mode::SYNC if is_regulated => Regulation::Pair(Pair::default()),
             _ => {
                 self.regulated = None;
                 return;
@@ -212,7 +219,7 @@ impl Motor {
         let holds_speed = |by: &Regulation| matches!(by, Regulation::Speed(_));
         if !self.regulated.as_ref().is_some_and(|regulated| holds_speed(&regulated.by) && holds_speed(&by)) {
             let (power, ends_ms) = (self.regulated_power(), t_ms.saturating_add(regulation::WINDOW_MS));
-            self.regulated = Some(Regulated { by, power, ends_ms, began_deg: rotation_deg });
+            self.regulated = Some(Regulated { by, power, ends_ms, start_deg: rotation_deg });
         }
     }
 
@@ -220,12 +227,12 @@ impl Motor {
         self.regulated.as_ref().map_or(self.running_power, |regulated| regulated.power)
     }
 
-    /// Whether it is one of two motors that are kept together.
-    fn is_of_pair(&self) -> bool {
+    /// Returns whether the motor is one of two that are kept together.
+    fn is_synchronised(&self) -> bool {
         matches!(self.regulated, Some(Regulated { by: Regulation::Pair(_), .. }))
     }
 
-    /// Begins the next window if one has ended.
+    /// Starts the next window if one has ended. Returns whether it has.
     fn next_window(&mut self, t_ms: u32) -> bool {
         match &mut self.regulated {
             Some(regulated) if regulated.ends_ms <= t_ms => {
@@ -237,14 +244,14 @@ impl Motor {
     }
 
     fn hold_speed(&mut self, rotation_deg: i32) {
-        if let Some(Regulated { by: Regulation::Speed(speed), power, began_deg, .. }) = &mut self.regulated {
-            let turned_deg = rotation_deg.wrapping_sub(std::mem::replace(began_deg, rotation_deg));
+        if let Some(Regulated { by: Regulation::Speed(speed), power, start_deg, .. }) = &mut self.regulated {
+            let turned_deg = rotation_deg.wrapping_sub(std::mem::replace(start_deg, rotation_deg));
             (*power, self.overloaded) = speed.power(self.running_power, turned_deg, self.gains);
         }
     }
 
-    /// The powers of this motor and the other of its pair.
-    fn powers_of_pair(&mut self, turned_deg: [i32; 2]) -> Option<[i8; 2]> {
+    /// Returns the powers of this motor and of the other one of its pair.
+    fn pair_powers(&mut self, turned_deg: [i32; 2]) -> Option<[i8; 2]> {
         match &mut self.regulated {
             Some(Regulated { by: Regulation::Pair(pair), .. }) => {
                 Some(pair.powers(self.running_power, self.turn_ratio, turned_deg, self.gains))
@@ -253,17 +260,17 @@ impl Motor {
         }
     }
 
-    /// Whether its shaft is looked at in every millisecond: it runs until it has turned by a limit, or is regulated.
+    /// Returns whether the shaft is checked in every millisecond: the motor runs to a limit or is regulated.
     pub(super) fn is_watched(&self) -> bool {
         self.has_limit() || self.regulated.is_some()
     }
 
-    /// The drive that was set.
+    /// Returns the drive that was set.
     pub(super) fn drive(&self) -> Drive {
         self.drive_with(self.running_power)
     }
 
-    /// The drive that its regulation makes of that.
+    /// Returns the drive that the regulation computes from it.
     pub(super) fn regulated_drive(&self) -> Drive {
         self.drive_with(self.regulated_power())
     }
@@ -284,7 +291,8 @@ impl Brick<'_, '_> {
             if !self.motors[port].next_window(self.t_ms) {
                 continue;
             }
-            let changed = if self.motors[port].is_of_pair() { self.regulate_pair(port) } else { self.hold_speed(port) };
+            let changed =
+                if self.motors[port].is_synchronised() { self.regulate_pair(port) } else { self.hold_speed(port) };
             for port in changed {
                 self.world.motor(port, self.motors[port].regulated_drive(), self.t_ms);
             }
@@ -297,9 +305,9 @@ impl Brick<'_, '_> {
         vec![port]
     }
 
-    /// The first motor of a pair sets the power of both; one without another runs on as it does.
+    /// Lets the first motor of a pair set the power of both. A motor without a partner continues unchanged.
     fn regulate_pair(&mut self, port: usize) -> Vec<usize> {
-        let pair: Vec<usize> = (0..PORTS).filter(|at| self.motors[*at].is_of_pair()).take(2).collect();
+        let pair: Vec<usize> = (0..PORTS).filter(|at| self.motors[*at].is_synchronised()).take(2).collect();
         let [first, second] = pair[..] else { return Vec::new() };
         if first != port {
             return Vec::new();
@@ -308,7 +316,7 @@ impl Brick<'_, '_> {
             let rotation_deg = self.world.rotation_deg(at, self.t_ms);
             rotation_deg.wrapping_sub(self.motors[at].block_zero)
         });
-        let powers = self.motors[first].powers_of_pair(turned_deg).into_iter().flatten();
+        let powers = self.motors[first].pair_powers(turned_deg).into_iter().flatten();
         for (at, new_power) in pair.iter().zip(powers) {
             if let Some(regulated) = &mut self.motors[*at].regulated {
                 regulated.power = new_power;

@@ -8,7 +8,7 @@ use crate::bytecode::{Comparison, Op, Type};
 /// Iteration over the parts of a value.
 #[derive(Clone, Copy)]
 enum Parts {
-    /// A number, which is repeated for every part of the other operand.
+    /// A number, which is used for every part of the other operand.
     One(Place),
     Elements {
         array: Place,
@@ -28,7 +28,7 @@ pub(super) fn copy(memory: &mut Memory, to: Place, from: Place) -> Result<(), Fa
 pub(super) fn unary(memory: &mut Memory, operation: Operation, to: Place, from: Place) -> Result<(), Fault> {
     let (to_type, from_type) = (memory.kind(to.id)?, memory.kind(from.id)?);
     if !from_type.is_aggregate() {
-        // The firmware finds no way to store a number in an array, and goes on.
+        // The firmware cannot store a number in an array, and continues.
         if to_type.is_aggregate() {
             return Ok(());
         }
@@ -39,7 +39,7 @@ pub(super) fn unary(memory: &mut Memory, operation: Operation, to: Place, from: 
         let value = operation.unary(memory.get(from)?, from_type)?;
         return memory.set(to, value);
     }
-    // Whatever the operation: the firmware copies arrays of one integer type as they are.
+    // The firmware copies arrays of the same integer type unchanged, whatever the operation is.
     if to_type == Type::Array && from_type == Type::Array {
         let (to_element, from_element) = (memory.kind(to.id + 1)?, memory.kind(from.id + 1)?);
         if to_element == from_element && to_element.is_integer() {
@@ -108,7 +108,7 @@ pub(super) fn binary(
     Ok(())
 }
 
-/// Compares two arrays or clusters by their first parts that differ, then by their lengths.
+/// Compares two arrays or clusters by their first different parts, then by their lengths.
 pub(super) fn compare(memory: &Memory, comparison: Comparison, left: Place, right: Place) -> Result<bool, Fault> {
     let order = match (memory.kind(left.id)?, memory.kind(right.id)?) {
         (Type::Float, _) | (_, Type::Float) => memory.get_float(left)?.partial_cmp(&memory.get_float(right)?),
@@ -159,7 +159,7 @@ fn parts(memory: &Memory, place: Place) -> Result<Parts, Fault> {
 }
 
 impl Parts {
-    /// The next part; `index` counts from 0.
+    /// Returns the next part, whose index is `index`.
     fn part(&mut self, memory: &Memory, index: usize) -> Result<Place, Fault> {
         match self {
             Parts::One(place) => Ok(*place),

@@ -1,4 +1,4 @@
-//! The scheduler: clumps that are ready, asleep, or waiting for a mutex.
+//! The scheduler of clumps, which are ready, asleep, or waiting for a mutex.
 //!
 //! Source: the scheduler in the firmware's `c_cmd.c`.
 
@@ -11,7 +11,7 @@ pub(super) struct Schedule {
     clumps: Vec<State>,
     queue: VecDeque<u8>,
     asleep: Vec<(u8, u32)>,
-    /// For each entry of the dataspace that is a mutex, its owner followed by the clumps that wait for it.
+    /// For each mutex, by its entry in the dataspace: its owner, followed by the clumps that wait for it.
     mutexes: Vec<VecDeque<u8>>,
 }
 
@@ -39,12 +39,12 @@ impl Schedule {
         }
     }
 
-    /// The running clump.
+    /// Returns the running clump.
     pub(super) fn running(&self) -> Option<u8> {
         self.queue.front().copied()
     }
 
-    /// Whether no clump runs or sleeps; clumps that wait for a mutex would wait for ever.
+    /// Returns whether no clump runs or sleeps. Clumps that wait for a mutex would then wait for ever.
     pub(super) fn is_empty(&self) -> bool {
         self.queue.is_empty() && self.asleep.is_empty()
     }
@@ -81,7 +81,7 @@ impl Schedule {
         });
     }
 
-    /// When the next clump wakes; `None` if one is ready, or none sleeps.
+    /// Returns the time at which the next clump wakes, or `None` if one is ready or none sleeps.
     pub(super) fn next_wake_ms(&self) -> Option<u32> {
         if !self.queue.is_empty() {
             return None;
@@ -89,9 +89,9 @@ impl Schedule {
         self.asleep.iter().map(|(_, until_ms)| *until_ms).min()
     }
 
-    /// Replaces the running clump by the subroutine that it calls.
+    /// Replaces the running clump with the subroutine that it calls.
     pub(super) fn call(&mut self, callee: u8) -> Result<(), Fault> {
-        self.known(callee)?;
+        self.check(callee)?;
         self.queue.pop_front();
         self.queue.push_back(callee);
         Ok(())
@@ -99,17 +99,17 @@ impl Schedule {
 
     /// Ends the running subroutine and resumes its caller.
     pub(super) fn return_to(&mut self, caller: u8) -> Result<(), Fault> {
-        self.known(caller)?;
+        self.check(caller)?;
         self.end_running();
         self.queue.push_back(caller);
         Ok(())
     }
 
-    /// Ends the running clump and starts those of its dependents that wait for no other.
+    /// Ends the running clump and starts those of its dependents that wait for no other clump.
     pub(super) fn finish(&mut self, dependents: &[u8]) -> Result<(), Fault> {
         self.end_running();
         for dependent in dependents {
-            self.known(*dependent)?;
+            self.check(*dependent)?;
             let state = &mut self.clumps[usize::from(*dependent)];
             state.fire_count = state.fire_count.wrapping_sub(1);
             if state.fire_count == 0 {
@@ -119,7 +119,7 @@ impl Schedule {
         Ok(())
     }
 
-    /// Acquires a mutex for the running clump; if it is taken, the clump waits and the result is `false`.
+    /// Acquires a mutex for the running clump. If it is taken, the clump waits and the result is `false`.
     pub(super) fn acquire(&mut self, mutex: u16) -> Result<bool, Fault> {
         let running = self.running().ok_or(Fault::Instruction)?;
         let waiting = self.mutexes.get_mut(usize::from(mutex)).ok_or(Fault::Argument)?;
@@ -146,7 +146,7 @@ impl Schedule {
         }
     }
 
-    fn known(&self, clump: u8) -> Result<(), Fault> {
+    fn check(&self, clump: u8) -> Result<(), Fault> {
         if usize::from(clump) < self.clumps.len() { Ok(()) } else { Err(Fault::Argument) }
     }
 }

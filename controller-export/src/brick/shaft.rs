@@ -1,17 +1,25 @@
-//! A motor's shaft: it follows the drive with inertia, and counts its rotation.
+//! A motor's shaft, which follows the drive with inertia and counts its rotation.
 
 use super::motors::Drive;
 
-/// Speed for each percent of power, degrees a second: about that of a loaded motor on a charged battery.
+/// Speed per percent of power, in degrees per second: about that of a loaded motor on a charged battery.
 const DEG_S_PER_POWER: f64 = 7.0;
-/// Time constants with which the speed follows a power, fades when the motor is let go of, and ends when it brakes.
+/// Time constants of the speed when the motor is driven, when it coasts and when it brakes.
 const DRIVEN_MS: f64 = 60.0;
 const COASTING_MS: f64 = 200.0;
 const BRAKING_MS: f64 = 20.0;
-/// Difference to the final speed below which that is reached.
+/// Difference from the final speed below which it counts as reached.
 const REACHED_DEG_S: f64 = 0.01;
 
-/// A shaft without load.
+/// The shaft of a motor without load.
+///
+/// ```
+/// use mindgap_controller_export::brick::{Drive, Shaft};
+///
+/// let mut shaft = Shaft::default();
+/// shaft.set(Drive::Power(50), 0);
+/// assert!(shaft.angle_deg(1_000) > 300);
+/// ```
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Shaft {
     drive: Drive,
@@ -21,19 +29,19 @@ pub struct Shaft {
 }
 
 impl Shaft {
-    /// Changes the drive at this time.
+    /// Changes the drive at a time in ms.
     pub fn set(&mut self, drive: Drive, t_ms: u32) {
         self.advance(t_ms);
         self.drive = drive;
     }
 
-    /// Rotation since the start, degrees.
+    /// Returns the rotation since the start in degrees, at a time in ms.
     pub fn angle_deg(&mut self, t_ms: u32) -> i32 {
         self.advance(t_ms);
         self.angle_deg.round() as i32
     }
 
-    /// Rotation and speed in milliseconds, and the rest at once when the speed no longer changes.
+    /// Advances by milliseconds, and by the rest at once when the speed no longer changes.
     fn advance(&mut self, t_ms: u32) {
         let (final_deg_s, constant_ms) = match self.drive {
             Drive::Power(power) => (f64::from(power.clamp(-100, 100)) * DEG_S_PER_POWER, DRIVEN_MS),
@@ -60,7 +68,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn it_turns_by_its_power_and_stops_sooner_with_the_brake() {
+    fn shaft_turns_in_proportion_to_power_and_stops_sooner_with_the_brake() {
         let after = |drive: Drive| {
             let mut shaft = Shaft::default();
             shaft.set(Drive::Power(50), 0);
@@ -75,7 +83,7 @@ mod tests {
     }
 
     #[test]
-    fn it_does_not_matter_how_often_one_looks() {
+    fn rotation_does_not_depend_on_how_often_it_is_read() {
         let mut shafts = [Shaft::default(), Shaft::default()];
         shafts.iter_mut().for_each(|shaft| shaft.set(Drive::Power(-30), 5));
         (6..900).for_each(|t_ms| _ = shafts[0].angle_deg(t_ms));

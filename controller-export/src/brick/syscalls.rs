@@ -1,6 +1,6 @@
-//! System calls of the firmware: all 48 of standard firmware 1.29.
+//! All 48 system calls of standard firmware 1.29.
 //!
-//! Here are those for sound, display, buttons and time; the others are in the folder of this file.
+//! Those for sound, display, buttons and time are here, and the others in `src/brick/syscalls`.
 //!
 //! Source: `cCmdWrap…` in `c_cmd.c` of the firmware.
 
@@ -12,21 +12,21 @@ use super::memory::Place;
 use super::{Brick, EventKind, Fault};
 use crate::bytecode::{NONE, Syscall, Type};
 
-const MOST_ARGUMENTS: usize = 16;
+const MAX_ARGUMENTS: usize = 16;
 const BUTTONS: usize = 4;
 const EXIT_BUTTON: u32 = 0;
 const BAD_PORT: i8 = -16;
 /// States of the sound module.
 const SOUND_IDLE: u32 = 0;
 const SOUND_TONE: u32 = 3;
-/// What the display shows of a text: characters of 6 pixels on 100.
+/// Width of the display and of a character, which limit the text that is shown.
 const DISPLAY_PIXELS: i16 = 100;
 const CHARACTER_PIXELS: i16 = 6;
-/// Longest name of a sound.
-const LONGEST_NAME: usize = 19;
+/// Longest name of a sound file.
+const MAX_NAME: usize = 19;
 
 /// The members of a call's argument cluster; missing ones are [`NONE`].
-type Arguments = [u16; MOST_ARGUMENTS];
+type Arguments = [u16; MAX_ARGUMENTS];
 
 impl Brick<'_, '_> {
     pub(super) fn syscall(&mut self, number: u16, arguments: u16) -> Result<(), Fault> {
@@ -45,7 +45,7 @@ impl Brick<'_, '_> {
             | Syscall::FileDelete
             | Syscall::ListFiles => self.file_call(call, argument),
             Syscall::SoundPlayFile => {
-                let name = self.name(argument[1])?.chars().take(LONGEST_NAME).collect();
+                let name = self.name(argument[1])?.chars().take(MAX_NAME).collect();
                 self.emit(EventKind::Sound(name));
                 self.memory.set_id(result, 0)
             }
@@ -61,7 +61,7 @@ impl Brick<'_, '_> {
                 self.memory.set_id(argument[1], 0)
             }
             Syscall::SoundSetState => {
-                // Whatever the state, a sound ends.
+                // Any state ends the sound.
                 self.tone_until_ms = self.t_ms;
                 let state = self.memory.get_id(argument[1])?;
                 self.memory.set_id(result, state)
@@ -89,9 +89,9 @@ impl Brick<'_, '_> {
             | Syscall::CommHsCheckStatus
             | Syscall::ColorSensorRead => self.bus_call(call, argument),
             Syscall::RandomNumber => {
-                // The generator of the example in the C standard.
-                self.chance = self.chance.wrapping_mul(1_103_515_245).wrapping_add(12_345);
-                self.memory.set_id(result, self.chance >> 16)
+                // The generator in the example of the C standard.
+                self.random_state = self.random_state.wrapping_mul(1_103_515_245).wrapping_add(12_345);
+                self.memory.set_id(result, self.random_state >> 16)
             }
             Syscall::GetStartTick => self.memory.set_id(result, self.start_tick_ms),
             Syscall::MessageWrite
@@ -114,17 +114,17 @@ impl Brick<'_, '_> {
         }
     }
 
-    /// State of the sound module. Of sounds only tones take time.
+    /// Returns the state of the sound module. Only tones take time.
     pub(super) fn sound_state(&self) -> u32 {
         if self.t_ms < self.tone_until_ms { SOUND_TONE } else { SOUND_IDLE }
     }
 
     fn arguments(&self, cluster: u16) -> Result<Arguments, Fault> {
         let entry = self.memory.entry(cluster)?;
-        if entry.kind != Type::Cluster || usize::from(entry.members) > MOST_ARGUMENTS {
+        if entry.kind != Type::Cluster || usize::from(entry.members) > MAX_ARGUMENTS {
             return Err(Fault::Instruction);
         }
-        let mut arguments = [NONE; MOST_ARGUMENTS];
+        let mut arguments = [NONE; MAX_ARGUMENTS];
         let mut id = cluster + 1;
         for argument in arguments.iter_mut().take(usize::from(entry.members)) {
             *argument = id;
@@ -140,10 +140,10 @@ impl Brick<'_, '_> {
             status = BAD_PORT;
         } else if index != EXIT_BUTTON {
             let button = self.world.button(index as u8, self.t_ms);
-            let forgotten = &mut self.forgotten_releases[index as usize];
-            (pressed, count) = (button.pressed, button.released.wrapping_sub(*forgotten));
+            let reset = &mut self.reset_releases[index as usize];
+            (pressed, count) = (button.pressed, button.released.wrapping_sub(*reset));
             if self.memory.get_id(argument[4])? != 0 {
-                *forgotten = button.released;
+                *reset = button.released;
             }
         }
         self.memory.set_id(argument[2], pressed.into())?;
@@ -151,9 +151,9 @@ impl Brick<'_, '_> {
         self.memory.set_id(argument[0], status as u32)
     }
 
-    /// A string up to its first NUL.
+    /// Returns a string up to its first NUL.
     fn name(&self, id: u16) -> Result<String, Fault> {
-        let bytes = self.memory.array(Place::of(id))?;
+        let bytes = self.memory.array(Place::new(id))?;
         let text = bytes.split(|byte| *byte == 0).next().unwrap_or_default();
         Ok(String::from_utf8_lossy(text).into_owned())
     }

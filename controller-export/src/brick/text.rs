@@ -1,7 +1,7 @@
 //! Conversion between numbers and text, as in the firmware's C library.
 
-/// A float with at most two decimals, or with six digits and an exponent if it would not fit the display.
-pub(super) fn of_float(x: f32) -> String {
+/// Formats a float with at most two decimals, or with six digits and an exponent if it would not fit on the display.
+pub(super) fn from_float(x: f32) -> String {
     const FITS: std::ops::RangeInclusive<f32> = -1e12..=1e13;
     if x.is_nan() {
         return "nan".to_owned();
@@ -27,7 +27,7 @@ fn with_exponent(x: f32) -> String {
     format!("{digits}e+{exponent:0>2}")
 }
 
-/// The number at the start of a text after blanks, as C's `%f` reads it.
+/// Parses the number at the start of a text, after white space, as `%f` does in C.
 pub(super) fn to_float(text: &[u8]) -> Option<f32> {
     let start = text.iter().position(|c| !c.is_ascii_whitespace())?;
     let text = &text[start..];
@@ -53,7 +53,7 @@ pub(super) fn to_float(text: &[u8]) -> Option<f32> {
     std::str::from_utf8(&text[..end]).ok()?.parse().ok()
 }
 
-/// End of the first number in a text from `from`: digits with at most one point.
+/// Returns the end of the first number in a text from `from`: digits with at most one decimal point.
 pub(super) fn end_of_number(text: &[u8], from: usize) -> usize {
     let is_digit = |at: usize| text.get(at).is_some_and(u8::is_ascii_digit);
     let mut at = from;
@@ -73,15 +73,15 @@ mod tests {
     use super::*;
 
     #[test]
-    fn floats_print_as_on_the_brick() {
+    fn floats_are_formatted_as_on_the_brick() {
         for (x, text) in [(0.0, "0"), (1.5, "1.5"), (-2.25, "-2.25"), (3.0, "3"), (0.004, "0"), (1e20, "1e+20")] {
-            assert_eq!(of_float(x), text);
+            assert_eq!(from_float(x), text);
         }
-        assert_eq!(of_float(-1.25e13), "-1.25e+13");
+        assert_eq!(from_float(-1.25e13), "-1.25e+13");
     }
 
     #[test]
-    fn numbers_are_read_up_to_what_follows() {
+    fn number_is_parsed_from_the_start_of_a_text() {
         assert_eq!(to_float(b" -12.5cm"), Some(-12.5));
         assert_eq!(to_float(b"1e2"), Some(100.0));
         assert_eq!(to_float(b"1e"), Some(1.0));

@@ -1,5 +1,5 @@
 
-/* What the motors are told, -100..100. */
+/* Motor commands, -100..100. */
 typedef struct {
   int8_t left;
   int8_t right;
@@ -7,14 +7,14 @@ typedef struct {
 
 typedef struct {
   controller_motors motors;
-  /* On which side of the threshold a reading ends the tuple. */
+  /* Whether a reading above the threshold ends the tuple; otherwise one below it does. */
   bool when_larger;
   int16_t threshold_cm;
 } controller_tuple;
 
 typedef enum { CONTROLLER_RUNNING, CONTROLLER_FINISHED, CONTROLLER_TIMED_OUT } controller_status;
 
-/* A run: which tuple is held, and for how many steps it has run. Start with {0}. */
+/* A run: the tuple that is held, and the number of steps taken. Initialise it with {0}. */
 typedef struct {
   uint8_t tuple;
   uint16_t steps;
@@ -22,8 +22,7 @@ typedef struct {
 } controller_machine;
 
 @tuples@
-/* Takes the one reading of a step; reading_cm counts only if the sensor produced a value. Once stopped, a run stays
- * stopped. */
+/* Takes one step with its reading. reading_cm is used only if has_reading is true. A stopped run stays stopped. */
 static inline controller_status controller_step(controller_machine *machine, bool has_reading, int16_t reading_cm) {
   if (machine->status != CONTROLLER_RUNNING) {
     return machine->status;
@@ -43,7 +42,7 @@ static inline controller_status controller_step(controller_machine *machine, boo
   return machine->status;
 }
 
-/* What the motors are told now; zero once stopped. */
+/* Returns the current motor commands; zero once stopped. */
 static inline controller_motors controller_motors_now(const controller_machine *machine) {
   controller_motors stopped = {0, 0};
   return machine->status == CONTROLLER_RUNNING ? controller_tuples[machine->tuple].motors : stopped;

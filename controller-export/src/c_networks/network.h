@@ -1,4 +1,4 @@
-/* Products need 64 bits; numbers below zero are shifted to the right as every compiler for a microcontroller does it. */
+/* Products need 64 bits. Right shifts of negative numbers are arithmetic, as on every compiler for microcontrollers. */
 
 static inline uint32_t network_upper_product(uint32_t a, uint32_t b) {
   return (uint32_t)(((uint64_t)a * b) >> 32);
@@ -8,16 +8,16 @@ static inline int32_t network_saturated(int64_t wide) {
   return wide > INT32_MAX ? INT32_MAX : wide < INT32_MIN ? INT32_MIN : (int32_t)wide;
 }
 
-static inline uint32_t network_step(uint8_t place) {
-  return (uint32_t)NETWORK_READ(&network_steps[place]);
+static inline uint32_t network_step(uint8_t index) {
+  return (uint32_t)NETWORK_READ(&network_steps[index]);
 }
 
-/* One more than a number in 0..1 with 32 fractional bits, with 31 of them. */
+/* Returns 1 + fraction with 31 fractional bits; fraction has 32. */
 static inline uint32_t network_mantissa(uint32_t fraction) {
   return UINT32_C(0x80000000) | fraction >> 1;
 }
 
-/* Two to the power of a number with 52 fractional bits, with 26 of them. */
+/* Returns 2^x with 26 fractional bits; x has 52. */
 static inline int32_t network_exp2(int64_t x) {
   int32_t shift = 4 - (int32_t)(x >> 52);
   if (shift < 0 || shift > 31) {
@@ -34,7 +34,7 @@ static inline int32_t network_exp2(int64_t x) {
   return network_saturated((int64_t)(bits >> 1) + (bits & 1));
 }
 
-/* The logarithm to base two; both have 26 fractional bits. What is below 2^-10 counts as that. */
+/* Returns the logarithm of x to base two; both have 26 fractional bits. An x below 2^-10 counts as 2^-10. */
 static inline int32_t network_log2(int32_t x) {
   uint32_t bits = x < 65536 ? 65536 : (uint32_t)x;
   int32_t whole = 5;
@@ -58,12 +58,12 @@ static inline int32_t network_log2(int32_t x) {
   return whole * INT32_C(67108864) + (above - 1) * INT32_C(2097152) + (int32_t)((u + 32) >> 6);
 }
 
-/* An input brought to the range that was trained, with 26 fractional bits; weights are gain, shift, the offset in pieces
+/* Returns an input scaled to the trained range, with 26 fractional bits. The weights are gain, shift, the offset in limbs
  * of 16 bits, and the range. */
 static inline int32_t network_scaled(const int32_t *weights, int32_t input) {
   uint64_t offset = 0;
-  for (uint8_t piece = 2; piece < 6; piece++) {
-    offset = offset << 16 | (uint16_t)NETWORK_READ(&weights[piece]);
+  for (uint8_t limb = 2; limb < 6; limb++) {
+    offset = offset << 16 | (uint16_t)NETWORK_READ(&weights[limb]);
   }
   int64_t gained = ((int64_t)input * NETWORK_READ(&weights[0])) >> NETWORK_READ(&weights[1]);
   int64_t scaled = gained + (int64_t)offset;
@@ -71,7 +71,7 @@ static inline int32_t network_scaled(const int32_t *weights, int32_t input) {
   return scaled < low ? low : scaled > high ? high : (int32_t)scaled;
 }
 
-/* The network whose weights these are: numbers with 16 fractional bits in and out. */
+/* Evaluates the network with these weights. Inputs and output have 16 fractional bits. */
 static inline int32_t network_evaluate(const int32_t *weights, const int32_t *inputs) {
   int32_t scaled[4], log2_scaled[4];
   uint8_t count = (uint8_t)NETWORK_READ(weights++);

@@ -1,29 +1,24 @@
-//! Common parts of all NXC programs: named constants, then constant parts.
+//! The common parts of all NXC programs: named constants, and source files that do not change.
 
 use crate::onboard::{self, Ending, Safety};
 use crate::wiring::Wiring;
 
-/// Waiting, and looking at the orange button meanwhile.
+/// Waits, and checks the orange button meanwhile.
 pub(crate) const TIME: &str = include_str!("time.nxc");
-/// Reading the ultrasonic sensor.
+/// Reads the ultrasonic sensor.
 pub(crate) const SONAR: &str = include_str!("sonar.nxc");
-/// Setting and stopping the motors.
+/// Sets and stops the motors.
 pub(crate) const MOTORS: &str = include_str!("motors.nxc");
-/// Noticing wheels that do not turn.
+/// Detects wheels that do not turn.
 pub(crate) const STALL: &str = include_str!("stall.nxc");
-/// Writing a log on the brick.
+/// Writes a log on the brick.
 pub(crate) const LOG: &str = include_str!("log.nxc");
-/// Showing numbers.
+/// Shows numbers on the display.
 pub(crate) const DISPLAY: &str = include_str!("display.nxc");
-/// Saying how a run ended.
+/// Reports how a run ended.
 pub(crate) const ENDING: &str = include_str!("ending.nxc");
 
-const LOG_HEADER_BYTES: u32 = 80;
-/// Longest row of a log, line end included: a time of ten digits, two commands, two wheel rotations of seven digits,
-/// millivolts, and a reading.
-const LOG_ROW_BYTES: u32 = 10 + 4 + 4 + 7 + 7 + 5 + 3 + 6 + 2;
-
-/// The parts of a program that are there on demand; lines for one of them start with its name, as `@log `.
+/// The optional parts of a program. A source line that belongs to one of them starts with its name, as in `@log `.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Parts {
     pub(crate) log: bool,
@@ -32,38 +27,38 @@ pub(crate) struct Parts {
 }
 
 impl Parts {
-    /// The lines of a source that these parts need.
-    pub(crate) fn choose(self, source: &str) -> String {
+    /// Returns the lines of a source that these parts need.
+    pub(crate) fn select(self, source: &str) -> String {
         let parts = [
             ("@log ", self.log),
             ("@display ", self.display),
             ("@near ", self.safety.stop_cm.is_some()),
             ("@stall ", self.safety.stall),
         ];
-        let chosen = |line| {
+        let selected = |line| {
             let part = parts.iter().find_map(|(mark, wanted)| Some((str::strip_prefix(line, mark)?, *wanted)));
             let (line, wanted) = part.unwrap_or((line, true));
             wanted.then_some([line, "\n"])
         };
-        source.lines().filter_map(chosen).flatten().collect()
+        source.lines().filter_map(selected).flatten().collect()
     }
 }
 
-/// Named constants, a line each.
+/// Named constants, one per line.
 #[derive(Debug, Default)]
 pub(crate) struct Constants(String);
 
 impl Constants {
-    /// The constants of the common parts: ports, timing of the sensor, endings.
+    /// Returns the constants of the common parts: ports, timing of the sensor, endings.
     pub(crate) fn shared(wiring: &Wiring, parts: Parts, step_ms: u16) -> Self {
         let Wiring { left, right, sonar } = wiring;
         let mut constants = Constants::default()
             .with("LEFT", format!("OUT_{left}"), "")
             .with("RIGHT", format!("OUT_{right}"), "")
             .with("SONAR", format!("IN_{sonar}"), "")
-            .with("SONAR_NEAREST_ECHO", "0x42", "a register of the sensor: cm")
-            .with("SONAR_KIND", "0x10", "another one: what it is")
-            .with("NO_ECHO", onboard::NO_ECHO_CM, "the sensor's own code")
+            .with("SONAR_NEAREST_ECHO", "0x42", "register with the distance in cm")
+            .with("SONAR_TYPE", "0x10", "register with the type of sensor")
+            .with("NO_ECHO", onboard::NO_ECHO_CM, "the sensor's code")
             .with("SONAR_FAILED", -1, "")
             .with("SONAR_WARM_UP_MS", onboard::SONAR_WARM_UP_MS, "")
             .with("SONAR_PROBES", onboard::SONAR_PROBES, "before anything moves")
@@ -73,18 +68,18 @@ impl Constants {
             .with("FAILED_STEPS_TO_STOP", onboard::FAILED_STEPS_TO_STOP, "in a row")
             .with("BUTTON_POLL_MS", onboard::BUTTON_POLL_MS, "");
         if let Some(stop_cm) = parts.safety.stop_cm {
-            constants = constants.with("STOP_CM", stop_cm, "a nearer thing stops the robot");
+            constants = constants.with("STOP_CM", stop_cm, "a smaller reading stops the robot");
         }
         if parts.safety.stall {
             constants = constants
-                .with("STALL_POWER", onboard::STALL_POWER, "with less a wheel may stand")
-                .with("STALL_DEG", onboard::stall_deg(step_ms), "a step")
+                .with("STALL_POWER", onboard::STALL_POWER, "with less power a wheel may stand still")
+                .with("STALL_DEG", onboard::stall_deg(step_ms), "per step")
                 .with("STALLED_STEPS", onboard::stalled_steps(step_ms), "in a row");
         }
-        constants = constants.with("TONE_MS", onboard::TONE_MS, "of an ending").with(
+        constants = constants.with("TONE_MS", onboard::TONE_MS, "duration of the tone at the end of a run").with(
             "ENDING_MS",
             onboard::ENDING_MS,
-            "in which its text is shown and the motors brake",
+            "duration of the text at the end of a run",
         );
         for ending in Ending::ALL {
             let (name, is_used) = match ending {
@@ -111,31 +106,21 @@ impl Constants {
         self
     }
 
-    /// As source.
+    /// Returns the constants as source.
     pub(crate) fn into_text(self) -> String {
         self.0
     }
 }
 
-/// Lines of a program's head that say how it is wired and how to stop it.
-pub(crate) fn wired_and_stopped(wiring: &Wiring, safety: Safety) -> String {
+/// Returns the lines of a program's head that state its ports and how it can be stopped.
+pub(crate) fn ports_and_stops(wiring: &Wiring, safety: Safety) -> String {
     let Wiring { left, right, sonar } = wiring;
-    let near = safety.stop_cm.map(|stop_cm| format!(" It stops where a reading is below {stop_cm} cm."));
-    let stall = safety.stall.then(|| " It stops when a driven wheel does not turn.".to_owned());
+    let near = safety.stop_cm.map(|stop_cm| format!("// It also stops when a reading is below {stop_cm} cm.\n"));
+    let stall = safety.stall.then(|| "// It also stops when a driven wheel does not turn.\n".to_owned());
     format!(
         "// Left motor on {left}, right motor on {right}, ultrasonic sensor on {sonar}; nothing moves unless the sensor answers. The orange\n\
-         // button stops the robot at once, the dark one too.{}{}\n",
+         // button stops the robot at once, and so does the dark one.\n{}{}",
         near.unwrap_or_default(),
         stall.unwrap_or_default()
     )
-}
-
-/// Size of a log of `rows` rows in flash.
-pub(crate) fn log_bytes(rows: u32) -> u32 {
-    LOG_HEADER_BYTES + rows * LOG_ROW_BYTES
-}
-
-/// Number of rows of a log that fit into `bytes`.
-pub(crate) fn log_rows(bytes: u32) -> u32 {
-    bytes.saturating_sub(LOG_HEADER_BYTES) / LOG_ROW_BYTES
 }

@@ -1,5 +1,5 @@
 class Robot:
-    """What the controller drives: change this where another hub or sensor is built in."""
+    """The driver: change this part for another hub or sensor."""
 
     def __init__(self):
         self.left = Motor(LEFT, Direction.COUNTERCLOCKWISE)
@@ -16,7 +16,7 @@ class Robot:
         self.right.brake()
 
     def distance_mm(self):
-        """The distance, None without an echo. A sensor that is not there raises OSError."""
+        """Returns the distance, or None without an echo. Raises OSError if there is no sensor."""
         distance_mm = self.sonar.distance()
         return distance_mm if distance_mm < NO_ECHO_MM else None
 

@@ -1,5 +1,5 @@
 def ends(row, distance_mm):
-    """Whether a distance is on the stated side of a tuple's threshold; it holds on exactly the threshold."""
+    """Returns whether a distance is on the stated side of a tuple's threshold. The comparison is strict."""
     if distance_mm is None:
         return False
     if row[2] == LARGER:
@@ -8,7 +8,7 @@ def ends(row, distance_mm):
 
 
 def run(robot):
-    """Drives until the controller is done, and returns how it ended."""
+    """Drives until the controller is done. Returns how the run ended."""
     try:
         robot.distance_mm()
     except OSError:
@@ -16,7 +16,7 @@ def run(robot):
     number = 0
     steps = 0
     failed_steps = 0
-    # Steps follow absolute times, so what a reading takes does not add up.
+    # Steps follow absolute times, so the time of a reading does not add up.
     next_ms = robot.time_ms()
     robot.set_motors(TUPLES[0][0], TUPLES[0][1])
     while True:

@@ -1,5 +1,5 @@
 def network(weights, inputs):
-    """What a network answers: an affine map of its scaled inputs, and weighted products of their powers."""
+    """Returns the output of a network: an affine map of its scaled inputs plus weighted products of their powers."""
     scalings, bias, slopes, units, is_ramp = weights
     total = bias
     logarithms = []

@@ -1,4 +1,4 @@
-//! A small assembler for the standard firmware: a single clump, one method an instruction.
+//! A small assembler for the standard firmware, with a single clump and one method per instruction.
 
 use super::layout::{Array, Cluster, Dataspace, Number};
 use crate::bytecode::{
@@ -17,13 +17,13 @@ pub(super) struct Assembler {
     branches: Vec<Branch>,
 }
 
-/// A position in the code, to be [bound](Assembler::bind) once.
+/// A position in the code, which is [bound](Assembler::bind) once.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Label(usize);
 
 #[derive(Debug)]
 struct Branch {
-    /// Offset of its instruction, to which the branch is relative.
+    /// Offset of the branch instruction, to which its target is relative.
     at: usize,
     to: Label,
 }
@@ -37,12 +37,12 @@ impl Assembler {
         self.data.array(kind, values)
     }
 
-    /// A string: its bytes and a NUL.
+    /// Declares a string: its bytes and a NUL.
     pub(super) fn string(&mut self, text: &str) -> Array {
         self.data.array(Type::U8, text.bytes().chain([0]).map(i32::from))
     }
 
-    /// A cluster whose members are the next numbers and arrays to be declared.
+    /// Declares a cluster whose members are the numbers and arrays declared next.
     pub(super) fn cluster(&mut self, members: u16) -> Cluster {
         self.data.cluster(members)
     }
@@ -57,7 +57,7 @@ impl Assembler {
         self.labels[label.0] = Some(self.code.len());
     }
 
-    /// A label bound to the current position.
+    /// Returns a label bound to the current position.
     pub(super) fn here(&mut self) -> Label {
         let label = self.label();
         self.bind(label);
@@ -133,7 +133,7 @@ impl Assembler {
         self.instruction(Op::GetOut, None, &[to.0, port.0, field as u16]);
     }
 
-    /// Sets fields of one output, in this order.
+    /// Sets fields of one output, in the given order.
     pub(super) fn set_output<const N: usize>(&mut self, port: Number, fields: [(OutputField, Number); N]) {
         let words = 3 + 2 * N as u16;
         self.code.extend([VARIABLE_SIZE << 12 | Op::SetOut as u16, 2 * words, port.0]);
@@ -144,7 +144,7 @@ impl Assembler {
         self.instruction(Op::Stop, None, &[NONE]);
     }
 
-    /// The program as an .rxe file; every label that is used must be bound.
+    /// Returns the program as an .rxe file. Every label that is used has to be bound.
     pub(super) fn into_file(mut self) -> Vec<u8> {
         for Branch { at, to } in &self.branches {
             let target = self.labels[to.0].expect("a label is bound where it is used");
@@ -171,7 +171,7 @@ impl Assembler {
         file.extend(data.table);
         file.extend(data.defaults);
         file.resize(file.len().next_multiple_of(2), 0);
-        // The one clump waits for none, starts none, and begins at the first word.
+        // The only clump waits for none, starts none, and begins at the first word.
         file.extend([0, 0, 0, 0]);
         file.extend(self.code.iter().flat_map(|word| word.to_le_bytes()));
         file

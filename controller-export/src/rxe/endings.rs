@@ -1,4 +1,4 @@
-//! Says how the run ended: a text on the display and a tone.
+//! Reports how the run ended, by a text on the display and a tone.
 
 use super::assembler::{Assembler, Label};
 use super::layout::{Array, Cluster, Number};
@@ -25,42 +25,42 @@ impl Endings {
         let endings = endings.iter().map(|ending| (*ending, asm.label(), asm.string(ending.text()))).collect();
         let ending_ms = asm.number(Type::U16, onboard::ENDING_MS.into());
         let draw = asm.cluster(4);
-        // The call's result, which is always the same.
+        // The result of the call, which is always the same.
         asm.number(Type::I8, 0);
-        // Where: x, and y.
+        // Position: x and y.
         asm.cluster(2);
         asm.number(Type::I16, 0);
         let line = asm.number(Type::I16, 0);
         let text = asm.array(Type::U8, []);
-        // Whether it clears the display.
+        // Whether to clear the display.
         asm.number(Type::U32, 0);
         let tone = asm.cluster(5);
         asm.number(Type::I8, 0);
         let (frequency_hz, tone_ms) = (asm.number(Type::U16, 0), asm.number(Type::U16, 0));
-        // Whether it repeats.
+        // Whether to repeat.
         asm.number(Type::U8, 0);
         let volume = asm.number(Type::U8, 0);
         Endings { endings, tone, frequency_hz, tone_ms, volume, draw, line, text, ending_ms }
     }
 
-    /// Where to jump for an ending.
+    /// Returns the label to jump to for an ending.
     pub(super) fn label(&self, ending: Ending) -> Label {
         let known = self.endings.iter().find(|(known, ..)| *known == ending);
         known.expect("an ending is declared where it is used").1
     }
 
-    /// Prepares text and tone at each ending's label, then jumps to `tell`, or on to `halt` where something moves.
-    pub(super) fn choose(&self, asm: &mut Assembler, halt: Label, tell: Label) {
+    /// Prepares text and tone at each ending's label, then jumps to `halt`, or to `announce` if nothing has moved.
+    pub(super) fn prepare(&self, asm: &mut Assembler, halt: Label, announce: Label) {
         for (ending, label, text) in &self.endings {
             asm.bind(*label);
             asm.mov_array(self.text, *text);
             asm.set(self.frequency_hz, ending.hz());
-            asm.jump(if *ending == Ending::NoSonar { tell } else { halt });
+            asm.jump(if *ending == Ending::NoSonar { announce } else { halt });
         }
     }
 
-    /// Shows the text as long as the tone and the brakes need, and ends the program.
-    pub(super) fn tell(&self, asm: &mut Assembler) {
+    /// Shows the text for as long as the tone and the brakes need, and ends the program.
+    pub(super) fn announce(&self, asm: &mut Assembler) {
         asm.set(self.line, LINE_PIXELS);
         asm.call(Syscall::DrawText, self.draw);
         asm.set(self.tone_ms, onboard::TONE_MS);

@@ -1,4 +1,4 @@
-//! The dataspace of an .rxe file as nbc lays it out: its table, its default values, and its arrays with the linked list
+//! The dataspace of an .rxe file, laid out as nbc does: its table, its default values, and its arrays with the linked list
 //! of the firmware's memory manager.
 
 use crate::bytecode::{DEFAULT_ZERO, DOPE_VECTOR_BYTES, NONE, Type};
@@ -27,12 +27,12 @@ pub(super) struct Dataspace {
 /// The sections of a dataspace in the file.
 #[derive(Debug)]
 pub(super) struct Sections {
-    /// Four bytes an entry: type, flags, offset.
+    /// Four bytes per entry: type, flags, offset.
     pub(super) table: Vec<u8>,
     /// Values that are not zero, then [`dynamic_bytes`](Self::dynamic_bytes) of arrays.
     pub(super) defaults: Vec<u8>,
     pub(super) static_bytes: usize,
-    /// Contents of arrays and their dope vectors: the last bytes of the defaults.
+    /// Size of the arrays and their dope vectors, which are the last bytes of the defaults.
     pub(super) dynamic_bytes: usize,
     /// Offset of the dope vectors in the dataspace.
     pub(super) dope_offset: usize,
@@ -64,12 +64,12 @@ impl Dataspace {
         self.entry(kind, false, 0);
         let content = values.into_iter().flat_map(|value| value.to_le_bytes().into_iter().take(kind.bytes())).collect();
         self.arrays.push(Stored { slot, element_bytes: kind.bytes(), content });
-        // Dope vector 0 is the table's own.
+        // Dope vector 0 is that of the table itself.
         self.defaults.extend((self.arrays.len() as u16).to_le_bytes());
         Array(id)
     }
 
-    /// A cluster of the next `members` numbers and arrays.
+    /// Declares a cluster of the next `members` numbers and arrays.
     pub(super) fn cluster(&mut self, members: u16) -> Cluster {
         self.reserve_aligned(4);
         Cluster(self.entry(Type::Cluster, false, usize::from(members)))
@@ -96,7 +96,7 @@ impl Dataspace {
             after.copied().unwrap_or(NONE)
         };
         let count = self.arrays.len() + 1;
-        // The fourth field once referred back to the array; the firmware sets it itself.
+        // The fourth field once pointed back to the array; the firmware sets it.
         let table = [dope_offset as u16, DOPE_VECTOR_BYTES as u16, count as u16, NONE, link(0)];
         dynamic.extend(table.iter().flat_map(|field| field.to_le_bytes()));
         for ((vector, array), offset) in (1..).zip(&self.arrays).zip(&offsets) {
@@ -124,7 +124,7 @@ impl Dataspace {
         id
     }
 
-    /// Reserves an aligned offset for a value: the processor needs natural alignment.
+    /// Reserves an aligned offset for a value, because the processor needs natural alignment.
     fn reserve(&mut self, bytes: usize) -> usize {
         self.reserve_aligned(bytes);
         self.static_bytes += bytes;

@@ -1,4 +1,4 @@
-//! The motors: the tuples' commands, and wheels that do not turn.
+//! The motors: the tuples' commands, and the detection of wheels that do not turn.
 
 use mindgap_core::controller::{Controller, FULL_SPEED};
 
@@ -10,7 +10,7 @@ use crate::wiring::Wiring;
 
 /// The motors and the tuples' commands.
 pub(super) struct Motors {
-    /// The port of each and its powers, left and right.
+    /// Port and powers of the left and the right motor.
     pub(super) sides: [(Number, Array); 2],
     power: Number,
     on: Number,
@@ -42,7 +42,7 @@ impl Motors {
         }
     }
 
-    /// Power 0 with the brake on.
+    /// Sets power 0 with the brake on.
     pub(super) fn stop(&self, asm: &mut Assembler) {
         asm.set(self.power, 0);
         for (port, _) in self.sides {
@@ -66,11 +66,11 @@ impl Motors {
 /// Counts the steps in which a driven wheel has not turned.
 pub(super) struct Stall {
     still_steps: Number,
-    most_steps: Number,
-    least_deg: Number,
-    least_power: Number,
+    max_steps: Number,
+    min_deg: Number,
+    min_power: Number,
     power: Number,
-    /// Rotation at the last step, and since the one before it; left and right.
+    /// Rotation at the last step, and rotation during it, of the left and the right wheel.
     sides: [(Number, Number); 2],
 }
 
@@ -78,15 +78,15 @@ impl Stall {
     pub(super) fn declare(asm: &mut Assembler, step_ms: u16) -> Self {
         Stall {
             sides: std::array::from_fn(|_| (asm.number(Type::I32, 0), asm.number(Type::I32, 0))),
-            least_deg: asm.number(Type::U16, onboard::stall_deg(step_ms).into()),
+            min_deg: asm.number(Type::U16, onboard::stall_deg(step_ms).into()),
             still_steps: asm.number(Type::U16, 0),
-            most_steps: asm.number(Type::U16, onboard::stalled_steps(step_ms).into()),
-            least_power: asm.number(Type::U8, STALL_POWER.into()),
+            max_steps: asm.number(Type::U16, onboard::stalled_steps(step_ms).into()),
+            min_power: asm.number(Type::U8, STALL_POWER.into()),
             power: asm.number(Type::I8, 0),
         }
     }
 
-    /// Looks at both wheels after a step with the commands of `tuple`.
+    /// Checks both wheels after a step with the commands of `tuple`.
     pub(super) fn count(&self, asm: &mut Assembler, motors: &Motors, tuple: Number, one: Number) {
         let [still, counted] = std::array::from_fn(|_| asm.label());
         for ((port, _), (at_deg, turned_deg)) in motors.sides.into_iter().zip(self.sides) {
@@ -97,10 +97,10 @@ impl Stall {
         }
         for ((_, powers), (_, turned_deg)) in motors.sides.into_iter().zip(self.sides) {
             let turns = asm.label();
-            asm.branch_if(turned_deg, Comparison::GreaterOrEqual, self.least_deg, turns);
+            asm.branch_if(turned_deg, Comparison::GreaterOrEqual, self.min_deg, turns);
             asm.index(self.power, powers, tuple);
             asm.abs(self.power, self.power);
-            asm.branch_if(self.power, Comparison::GreaterOrEqual, self.least_power, still);
+            asm.branch_if(self.power, Comparison::GreaterOrEqual, self.min_power, still);
             asm.bind(turns);
         }
         asm.set(self.still_steps, 0);
@@ -110,8 +110,8 @@ impl Stall {
         asm.bind(counted);
     }
 
-    /// Jumps to `stalled` after too many of them in a row.
+    /// Jumps to `stalled` after too many consecutive steps without rotation.
     pub(super) fn check(&self, asm: &mut Assembler, stalled: Label) {
-        asm.branch_if(self.still_steps, Comparison::GreaterOrEqual, self.most_steps, stalled);
+        asm.branch_if(self.still_steps, Comparison::GreaterOrEqual, self.max_steps, stalled);
     }
 }

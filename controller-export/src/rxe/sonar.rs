@@ -4,7 +4,7 @@ use super::assembler::{Assembler, Label};
 use super::clock::Clock;
 use super::layout::{Array, Cluster, Number};
 use crate::bytecode::{
-    Comparison, InputField, SENSOR_LOW_SPEED_9V, SONAR_ADDRESS, SONAR_FIRST_ECHO, SONAR_KIND, Syscall, Type,
+    Comparison, InputField, SENSOR_LOW_SPEED_9V, SONAR_ADDRESS, SONAR_FIRST_ECHO, SONAR_TYPE, Syscall, Type,
 };
 use crate::onboard;
 use crate::wiring::Wiring;
@@ -14,7 +14,7 @@ pub(super) struct Sonar {
     pub(super) reading_cm: Number,
     port: Number,
     due_ms: Number,
-    asked_ms: Number,
+    requested_ms: Number,
     passed_ms: Number,
     warm_up_ms: Number,
     hang_ms: Number,
@@ -22,13 +22,13 @@ pub(super) struct Sonar {
     timeout_ms: Number,
     probes: Number,
     one: Number,
-    /// The sensor's address and a register: that of its kind, and that of the nearest echo.
-    ask_kind: Array,
-    ask_echo: Array,
+    /// Requests for the sensor's type and for its nearest echo: the sensor's address and a register.
+    type_request: Array,
+    echo_request: Array,
     write: Write,
     status: Status,
     read: Read,
-    /// Scratch byte: the value of a field, the index of the newest answer.
+    /// Scratch byte: the value of a field, or the index of the newest answer.
     value: Number,
 }
 
@@ -55,7 +55,7 @@ struct Read {
     result: Number,
     port: Number,
     answer: Array,
-    most_bytes: Number,
+    max_bytes: Number,
 }
 
 impl Sonar {
@@ -63,12 +63,12 @@ impl Sonar {
         let request = |register: u8| [SONAR_ADDRESS.into(), register.into()];
         Sonar {
             due_ms: asm.number(Type::U32, 0),
-            asked_ms: asm.number(Type::U32, 0),
+            requested_ms: asm.number(Type::U32, 0),
             passed_ms: asm.number(Type::U32, 0),
             warm_up_ms: asm.number(Type::U16, onboard::SONAR_WARM_UP_MS.into()),
             hang_ms: asm.number(Type::U16, onboard::SONAR_HANG_MS as i32),
-            ask_kind: asm.array(Type::U8, request(SONAR_KIND)),
-            ask_echo: asm.array(Type::U8, request(SONAR_FIRST_ECHO)),
+            type_request: asm.array(Type::U8, request(SONAR_TYPE)),
+            echo_request: asm.array(Type::U8, request(SONAR_FIRST_ECHO)),
             reading_cm: asm.number(Type::U8, 0),
             port: asm.number(Type::U8, wiring.sonar as i32),
             poll_ms: asm.number(Type::U8, onboard::SONAR_POLL_MS.into()),
@@ -94,12 +94,12 @@ impl Sonar {
                 result: asm.number(Type::I8, 0),
                 port: asm.number(Type::U8, 0),
                 answer: asm.array(Type::U8, []),
-                most_bytes: asm.number(Type::U8, 0),
+                max_bytes: asm.number(Type::U8, 0),
             },
         }
     }
 
-    /// Switches the sensor on and asks for its kind, before anything moves; jumps to `absent` if it never answers.
+    /// Switches the sensor on and asks for its type, before anything moves. Jumps to `absent` if it never answers.
     pub(super) fn find(&self, asm: &mut Assembler, clock: &Clock, absent: Label, stopped: Label) {
         let [failed, found] = std::array::from_fn(|_| asm.label());
         self.switch_on(asm);
@@ -107,7 +107,7 @@ impl Sonar {
         asm.add(self.due_ms, self.due_ms, self.warm_up_ms);
         clock.wait_until(asm, self.due_ms, stopped);
 
-        asm.mov_array(self.write.request, self.ask_kind);
+        asm.mov_array(self.write.request, self.type_request);
         let probe = asm.here();
         self.ask(asm, clock, failed, stopped);
         asm.jump(found);
@@ -119,29 +119,29 @@ impl Sonar {
         asm.branch_if_zero(self.probes, Comparison::NotEqual, probe);
         asm.jump(absent);
         asm.bind(found);
-        asm.mov_array(self.write.request, self.ask_echo);
+        asm.mov_array(self.write.request, self.echo_request);
     }
 
-    /// One exchange: stores the newest byte as the reading; jumps to `failed` without an answer in time.
+    /// Makes one exchange and stores the newest byte as the reading. Jumps to `failed` without an answer in time.
     pub(super) fn ask(&self, asm: &mut Assembler, clock: &Clock, failed: Label, stopped: Label) {
         let Sonar { write, status, read, .. } = self;
         let answered = asm.label();
         asm.call(Syscall::CommLsWrite, write.call);
         asm.branch_if_zero(write.result, Comparison::NotEqual, failed);
-        asm.tick(self.asked_ms);
+        asm.tick(self.requested_ms);
         let poll = asm.here();
         asm.wait(self.poll_ms);
         asm.call(Syscall::CommLsCheckStatus, status.call);
         asm.branch_if_zero(status.result, Comparison::Equal, answered);
         asm.branch_if_zero(status.result, Comparison::Less, failed);
-        clock.look(asm, stopped);
+        clock.check_button(asm, stopped);
         asm.tick(self.passed_ms);
-        asm.sub(self.passed_ms, self.passed_ms, self.asked_ms);
+        asm.sub(self.passed_ms, self.passed_ms, self.requested_ms);
         asm.branch_if(self.passed_ms, Comparison::Less, self.timeout_ms, poll);
         asm.jump(failed);
         asm.bind(answered);
         asm.branch_if_zero(status.ready, Comparison::Equal, failed);
-        asm.mov(read.most_bytes, status.ready);
+        asm.mov(read.max_bytes, status.ready);
         asm.call(Syscall::CommLsRead, read.call);
         asm.branch_if_zero(read.result, Comparison::NotEqual, failed);
         asm.sub(self.value, status.ready, self.one);
@@ -149,7 +149,7 @@ impl Sonar {
     }
 
     fn switch_on(&self, asm: &mut Assembler) {
-        // Constants of the calls are set by code, as nbc does, whose decompiler loses the defaults of a cluster.
+        // Constants of the calls are set by code, as nbc does: its decompiler loses the defaults of a cluster.
         for port in [self.write.port, self.status.port, self.read.port] {
             asm.mov(port, self.port);
         }

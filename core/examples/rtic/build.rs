@@ -1,4 +1,4 @@
-//! Gives the linker the script of cortex-m-rt, and the memory that it asks for.
+//! Gives the linker the script of cortex-m-rt and the memory layout that it includes.
 
 fn main() {
     println!("cargo:rustc-link-search={}", env!("CARGO_MANIFEST_DIR"));

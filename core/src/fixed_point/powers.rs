@@ -1,12 +1,14 @@
-//! Powers of two and logarithms to base two. Both split their range by the same 32 steps of 2^(1/32) and cover the
-//! step that is left by a cubic, so one table of 128 bytes serves both.
+//! Powers of two and logarithms to base two.
+//!
+//! Both divide their range into the same 32 steps of 2^(1/32) and use a cubic within a step, so they share one table of
+//! 128 bytes.
 
 use fixed::FixedI32;
 
 use super::product::upper_product;
 use super::{Format, saturate};
 
-/// 2^(i/32) - 1 with 32 fractional bits: the table that evaluators in other languages need too.
+/// 2^(i/32) - 1 with 32 fractional bits. Evaluators in other languages need this table too.
 pub const STEPS: [u32; 32] = [
     0x0000_0000,
     0x059b_0d31,
@@ -42,17 +44,25 @@ pub const STEPS: [u32; 32] = [
     0xf507_65b7,
 ];
 
-/// Two to the power of `x`: the largest number where that does not fit, zero where it is under half an ulp.
+/// Returns 2^`x`: the largest number where the result does not fit, zero where it is under half an ulp.
+///
+/// ```
+/// use mindgap_core::fixed::types::I16F16;
+/// use mindgap_core::fixed_point::exp2;
+///
+/// assert_eq!(exp2(I16F16::from_num(-3)), I16F16::from_num(0.125));
+/// assert_eq!(exp2(I16F16::from_num(15)), I16F16::MAX);
+/// ```
 pub fn exp2<F: Format>(x: FixedI32<F>) -> FixedI32<F> {
     exp2_of_sum(i64::from(x.to_bits()) << F::U32)
 }
 
-/// Two to the power of a number with twice as many fractional bits, as products and their sums have.
+/// Returns 2^`x` for `x` with twice as many fractional bits, as products and their sums have.
 #[inline(always)]
 pub fn exp2_of_sum<F: Format>(x: i64) -> FixedI32<F> {
     let whole = (x >> (2 * F::U32)) as i32;
     let fraction = ((x << (64 - 2 * F::U32)) as u64 >> 32) as u32;
-    // How far the mantissa, of 31 fractional bits, has to go down, less one for the bit that decides the rounding.
+    // Right shift of the mantissa, which has 31 fractional bits, less one for the bit that decides the rounding.
     let shift = 30 - F::I32 - whole;
     FixedI32::from_bits(match shift {
         0..32 => {
@@ -64,7 +74,14 @@ pub fn exp2_of_sum<F: Format>(x: i64) -> FixedI32<F> {
     })
 }
 
-/// The logarithm of `x` to base two. Zero and negative numbers count as the least positive number.
+/// Returns the logarithm of `x` to base two. Zero and negative numbers count as the smallest positive number.
+///
+/// ```
+/// use mindgap_core::fixed::types::I16F16;
+/// use mindgap_core::fixed_point::log2;
+///
+/// assert_eq!(log2(I16F16::from_num(0.125)), I16F16::from_num(-3));
+/// ```
 pub fn log2<F: Format>(x: FixedI32<F>) -> FixedI32<F> {
     let bits = x.to_bits().max(1) as u32;
     let leading_zeros = bits.leading_zeros();
@@ -74,7 +91,7 @@ pub fn log2<F: Format>(x: FixedI32<F>) -> FixedI32<F> {
     FixedI32::from_bits(saturate((logarithm + half_ulp) >> (32 - F::U32)))
 }
 
-/// Two to the power of a number in [0, 1) with 32 fractional bits, less one, with 32 of them; error below 2^-31.
+/// Returns 2^`fraction` - 1, for `fraction` in [0, 1); both have 32 fractional bits. The error is below 2^-31.
 fn exp2_of_fraction(fraction: u32) -> u32 {
     // 2^(t/32) - 1 = t (C1 + t (C2 + t C3)) for t in [0, 1) with 36 fractional bits, within 8.5e-11.
     const C1: u32 = 1_488_522_352;
@@ -83,18 +100,18 @@ fn exp2_of_fraction(fraction: u32) -> u32 {
     let step = STEPS[(fraction >> 27) as usize];
     let t = fraction << 5;
     let growth = upper_product(t, C1 + upper_product(t, C2 + upper_product(t, C3)));
-    // (1 + step) · growth, from 36 down to 32 fractional bits. The sum comes no nearer to 2^32 than 1.
+    // (1 + step) · growth, from 36 down to 32 fractional bits. The sum stays below 2^32.
     step + ((growth + upper_product(step, growth) + 8) >> 4)
 }
 
-/// The logarithm of one more than a number in [0, 1) with 32 fractional bits, with 32 of them; error below 2^-29.
+/// Returns log2(1 + `fraction`), for `fraction` in [0, 1); both have 32 fractional bits. The error is below 2^-29.
 fn log2_of_one_more(fraction: u32) -> i64 {
     // log2(1 + u) = u (C1 - u (C2 - u C3)) for u in [0, 2^(1/32) - 1], within 7.3e-10; 31, 32 and 27 fractional bits.
     const C1: u32 = 3_098_162_573;
     const C2: u32 = 3_097_363_789;
     const C3: u32 = 62_557_795;
     let above = STEPS.partition_point(|step| *step <= fraction);
-    // Dividing by 2^((above - 1)/32) is multiplying by half of 2^((33 - above)/32); nothing to divide in the first step.
+    // To divide by 2^((above - 1)/32) is to multiply by half of 2^((33 - above)/32). The first step needs no division.
     let whole = mantissa(fraction);
     let ratio = STEPS.get(33 - above).map_or(whole, |inverse| upper_product(whole, mantissa(*inverse)));
     let u = ratio.saturating_sub(mantissa(0)) << 6;
@@ -102,7 +119,7 @@ fn log2_of_one_more(fraction: u32) -> i64 {
     (((above as i64) - 1) << 27) + i64::from(upper_product(u, slope) >> 4)
 }
 
-/// One more than a number in [0, 1) with 32 fractional bits, with 31 of them.
+/// Returns 1 + `fraction` with 31 fractional bits, for `fraction` in [0, 1) with 32 of them.
 fn mantissa(fraction: u32) -> u32 {
     (1 << 31) | (fraction >> 1)
 }
@@ -113,7 +130,7 @@ mod tests {
     use fixed::types::{I6F26, I16F16};
 
     #[test]
-    fn the_table_is_rounded_to_nearest() {
+    fn table_is_rounded_to_nearest() {
         for (i, step) in STEPS.iter().enumerate() {
             let exact = libm::exp2(32.0 + i as f64 / 32.0) - libm::exp2(32.0);
             assert!((f64::from(*step) - exact).abs() <= 0.5, "step {i}");
@@ -121,7 +138,7 @@ mod tests {
     }
 
     #[test]
-    fn the_end_of_the_last_step_does_not_reach_the_next_power() {
+    fn last_step_ends_below_the_next_power() {
         for fraction in u32::MAX - 1000..=u32::MAX {
             let exact = libm::exp2(32.0 + f64::from(fraction) / libm::exp2(32.0)) - libm::exp2(32.0);
             assert!((f64::from(exp2_of_fraction(fraction)) - exact).abs() < 2.0, "{fraction}");
@@ -138,7 +155,7 @@ mod tests {
     }
 
     #[test]
-    fn what_does_not_fit_saturates() {
+    fn power_that_does_not_fit_saturates() {
         assert_eq!(exp2(I16F16::from_num(15)), I16F16::MAX);
         assert_eq!(exp2(I16F16::MAX), I16F16::MAX);
         assert_eq!(exp2(I16F16::from_num(-17.1)), I16F16::ZERO);
@@ -148,7 +165,7 @@ mod tests {
     }
 
     #[test]
-    fn no_logarithm_of_zero_or_less_is_asked_for() {
+    fn logarithm_of_zero_or_less_is_that_of_the_smallest_positive_number() {
         for x in [I16F16::ZERO, I16F16::NEG_ONE, I16F16::MIN] {
             assert_eq!(log2(x), I16F16::from_num(-16));
         }

@@ -1,16 +1,16 @@
-//! Products of two words of 32 bits.
+//! Products of two 32-bit words.
 //!
-//! Cores without an instruction for the long product (`build.rs` names them) get it from four short ones, which is a
-//! third of what the compiler's own routine for two words of 64 bits takes.
+//! Processors without an instruction for the 64-bit product (`build.rs` names them) compute it from four 16-bit products,
+//! in a third of the time of the compiler's own routine for two 64-bit words.
 
-/// The whole product.
+/// Returns the whole product.
 #[cfg(not(short_products))]
 #[inline(always)]
 pub fn product(a: i32, b: i32) -> i64 {
     i64::from(a) * i64::from(b)
 }
 
-/// The upper half of the product: with `a` of p and `b` of q fractional bits it has p + q - 32.
+/// Returns the upper half of the product. With p and q fractional bits in `a` and `b` it has p + q - 32.
 #[cfg(not(short_products))]
 #[inline(always)]
 pub fn upper_product(a: u32, b: u32) -> u32 {
@@ -26,7 +26,7 @@ mod short {
         let (a_low, a_high) = (a & 0xffff, a >> 16);
         let (b_low, b_high) = (b & 0xffff, b >> 16);
         let low = (a_low as u32).wrapping_mul(b_low as u32);
-        // |high · low| is at most 2^15 · (2^16 - 1), which leaves room for 16 bits more.
+        // |high · low| is at most 2^15 · (2^16 - 1), which leaves room to add 16 bits.
         let middle = (a_high * b_low).wrapping_add((low >> 16) as i32);
         let other = (a_low * b_high).wrapping_add(middle & 0xffff);
         let high = (a_high * b_high).wrapping_add(middle >> 16).wrapping_add(other >> 16);
@@ -48,7 +48,7 @@ mod tests {
     use proptest::prelude::*;
 
     #[test]
-    fn short_products_are_right_at_the_ends() {
+    fn short_products_are_exact_at_the_ends_of_the_range() {
         let ends = [i32::MIN, i32::MIN + 1, -65_537, -65_536, -1, 0, 1, 65_535, 65_536, i32::MAX - 1, i32::MAX];
         for a in ends {
             for b in ends {
@@ -61,7 +61,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn short_products_are_right(a in any::<i32>(), b in any::<i32>()) {
+        fn short_products_are_exact(a in any::<i32>(), b in any::<i32>()) {
             prop_assert_eq!(short::product(a, b), product(a, b));
             prop_assert_eq!(short::upper_product(a as u32, b as u32), upper_product(a as u32, b as u32));
         }

@@ -28,7 +28,7 @@ pub struct TrajectoryPoint {
 /// Runs a controller from the pose `start` until it stops the motors or the robot crashes.
 pub fn run_controller(robot: &BuiltInRobot, controller: &Controller, start: Pose, rng: &mut Generator) -> Trajectory {
     let mut body = robot.start(start, rng);
-    let mut machine = Machine::start();
+    let mut machine = Machine::start(controller);
     let mut points: Vec<TrajectoryPoint> = Vec::new();
     // Every row is read, but a controller looks only once it has driven a step and while it does. Where it does not look, the
     // reading moves no robot: it draws from a copy.
@@ -37,10 +37,10 @@ pub fn run_controller(robot: &BuiltInRobot, controller: &Controller, start: Pose
             body.read_sonar(&mut rng.clone())
         } else {
             let echo_cm = body.read_sonar(rng);
-            machine.step(controller, echo_cm);
+            machine.step(echo_cm);
             echo_cm
         };
-        let command = speeds(machine.motors(controller));
+        let command = speeds(machine.motors());
         points.push(TrajectoryPoint { true_pose: body.true_pose(), row: body.row(command, echo_cm, rng) });
         body.drive(command, robot.step_length_ms(f64::from(controller.step_ms), rng), rng);
     }

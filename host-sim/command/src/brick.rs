@@ -125,7 +125,7 @@ impl Brick {
             ..ScriptedWorld::sonar(sonar)
         };
         let report = brick::run(program, &mut world, config);
-        let used = world.asked.min(world.sonar.len());
+        let used = world.requests.min(world.sonar.len());
         Ok((report, format!("{used} of {} readings were asked for\n", world.sonar.len())))
     }
 

@@ -76,7 +76,7 @@ struct Takes {
 
 impl From<Budget> for Takes {
     fn from(budget: Budget) -> Self {
-        let Budget { program_bytes, memory_bytes, log_bytes, step_ms, worst_step_ms } = budget;
+        let Budget { program_bytes, memory_bytes, log_bytes, step_ms, worst_step_ms, .. } = budget;
         let figures = json!({
             "program_bytes": program_bytes, "memory_bytes": memory_bytes, "log_bytes": log_bytes, "step_ms": step_ms,
             "worst_step_ms": worst_step_ms,
@@ -87,7 +87,7 @@ impl From<Budget> for Takes {
 
 impl From<NetworksBudget> for Takes {
     fn from(budget: NetworksBudget) -> Self {
-        let NetworksBudget { program_bytes, memory_bytes, answer_ms } = &budget;
+        let NetworksBudget { program_bytes, memory_bytes, answer_ms, .. } = &budget;
         let answer_ms: BTreeMap<_, _> = answer_ms.iter().cloned().collect();
         let figures = json!({"program_bytes": program_bytes, "memory_bytes": memory_bytes, "answer_ms": answer_ms});
         Takes { text: budget.to_string(), figures }
@@ -224,7 +224,7 @@ impl Export {
 
     /// The names of the logs that are asked for.
     fn logs(&self, program: &BrickName) -> Option<std::result::Result<RunLogs, ExportError>> {
-        let named = |name: &BrickName| RunLogs::of(name);
+        let named = |name: &BrickName| RunLogs::named_after(name);
         let by_program = || named(&format!("{}.csv", program.stem()).parse()?);
         self.log.as_ref().map(|name| name.as_ref().map_or_else(by_program, named))
     }

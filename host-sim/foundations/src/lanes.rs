@@ -6,15 +6,18 @@
 #[cfg(test)]
 mod tests;
 
+use std::f32::consts::FRAC_1_SQRT_2;
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
-use mindgap_core::maths::{self, Binary32};
+use mindgap_core::maths::Binary32;
 use mindgap_core::scalar::Scalar;
 use pulp::Simd;
 
 /// The widest vector of any instruction set, in f32 numbers. Sums over samples are kept in so many parts whatever the
 /// real width, so that they group alike everywhere.
 pub const WIDEST: usize = 16;
+/// Bit pattern of 1.
+const ONE_BITS: u32 = 1.0f32.to_bits();
 
 /// A vector of f32, as wide as the instruction set `S` has it.
 #[derive(Clone, Copy, Debug)]
@@ -140,12 +143,12 @@ impl<S: Simd> Binary32 for Lanes<S> {
         let bits = s.transmute_u32s_f32s(self.values);
         // As for f32, with the exponent kept biased, since vectors have no cheap way from integers to f32: in the low
         // bits of 2^23 it is a whole number.
-        let above = s.add_u32s(bits, s.splat_u32s(maths::ONE_BITS.wrapping_sub(maths::SQRT_HALF_BITS)));
+        let above = s.add_u32s(bits, s.splat_u32s(ONE_BITS.wrapping_sub(FRAC_1_SQRT_2.to_bits())));
         let biased = s.wrapping_dyn_shr_u32s(above, s.splat_u32s(23));
         let whole = s.transmute_f32s_u32s(s.or_u32s(biased, s.splat_u32s(0x4b00_0000)));
         let exponent = Lanes { simd: s, values: s.sub_f32s(whole, s.splat_f32s(8_388_608.0 + 127.0)) };
         let scale = s.wrapping_dyn_shl_u32s(biased, s.splat_u32s(23));
-        let mantissa = s.sub_u32s(s.add_u32s(bits, s.splat_u32s(maths::ONE_BITS)), scale);
+        let mantissa = s.sub_u32s(s.add_u32s(bits, s.splat_u32s(ONE_BITS)), scale);
         (Lanes { simd: s, values: s.transmute_f32s_u32s(mantissa) }, exponent)
     }
 }

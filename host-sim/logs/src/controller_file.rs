@@ -63,6 +63,7 @@ impl ControllerFile {
             }
             Err(InvalidController::StepTime) => Error::in_file(path, "step_ms must be at least 1"),
             Err(InvalidController::StepLimit) => Error::in_file(path, "max_steps must be at least 1"),
+            Err(error) => Error::in_file(path, error.to_string()),
         };
         Err(error)
     }

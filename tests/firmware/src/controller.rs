@@ -2,7 +2,7 @@
 
 use mindgap_core::controller::{Controller, Tuple, When};
 
-/// Goes up to a wall and back, three times.
+/// Drives up to a wall and back, three times.
 pub static CONTROLLER: Controller = Controller {
     step_ms: 400,
     max_steps: 150,

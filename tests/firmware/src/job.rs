@@ -1,12 +1,12 @@
-//! The same work on every processor, from a fixed seed.
+//! The job that every processor does, from a fixed seed.
 
 use crc::{CRC_32_ISO_HDLC, Crc, Digest};
-use fixed::types::I16F16;
 use mindgap_core::chance::{Generator, happens, normal};
 use mindgap_core::controller::{Machine, Motors, Status};
+use mindgap_core::fixed::types::I16F16;
 use mindgap_core::fixed_network::Output;
 use mindgap_core::fixed_point::cos_pi;
-use rand_core::{Rng, SeedableRng};
+use mindgap_core::rand_core::{Rng, SeedableRng};
 
 use crate::controller::CONTROLLER;
 use crate::networks::{ECHO_PROBABILITY, ECHO_VALUE, FORWARD, LATERAL, TURN};
@@ -19,13 +19,13 @@ const RUNS: u32 = 40;
 pub const HALF: I16F16 = I16F16::from_bits(1 << 15);
 static CRC: Crc<u32> = Crc::<u32>::new(&CRC_32_ISO_HDLC);
 
-/// What the simulator says of one step.
-pub struct Answers {
+/// The outputs of the simulator for one step.
+pub struct Outputs {
     /// Turn in degrees.
     pub turn: Output,
-    /// Movement ahead in cm.
+    /// Forward motion in cm.
     pub forward: Output,
-    /// Movement to the left in cm.
+    /// Motion to the left in cm.
     pub lateral: Output,
     /// Probability of an echo.
     pub echo_probability: Output,
@@ -36,17 +36,17 @@ pub struct Answers {
 /// The inputs of all networks for one step.
 #[derive(Clone, Copy)]
 pub struct Sample {
-    /// Left and right command, and those of the step before.
+    /// Left and right command, and those of the previous step.
     pub commands: [I16F16; 4],
     /// Distance in cm and incidence angle in degrees.
     pub sonar: [I16F16; 2],
 }
 
-/// Runs all five networks. Those of motion share their scaled inputs, and so do those of the sonar.
-pub fn evaluate(sample: &Sample) -> Answers {
+/// Evaluates all five networks. Those of the motion share their scaled inputs, and so do those of the sonar.
+pub fn evaluate(sample: &Sample) -> Outputs {
     let motion = TURN.scale(sample.commands);
     let sonar = ECHO_PROBABILITY.scale(sample.sonar);
-    Answers {
+    Outputs {
         turn: TURN.evaluate_scaled(&motion),
         forward: FORWARD.evaluate_scaled(&motion),
         lateral: LATERAL.evaluate_scaled(&motion),
@@ -55,12 +55,12 @@ pub fn evaluate(sample: &Sample) -> Answers {
     }
 }
 
-/// Draws a reading, if there is an echo.
-pub fn reading_cm(answers: &Answers, generator: &mut Generator) -> Option<I16F16> {
-    happens(answers.echo_probability.value, generator).then(|| normal(answers.echo_value.value, HALF, generator))
+/// Draws a reading in cm, if there is an echo.
+pub fn reading_cm(outputs: &Outputs, generator: &mut Generator) -> Option<I16F16> {
+    happens(outputs.echo_probability.value, generator).then(|| normal(outputs.echo_value.value, HALF, generator))
 }
 
-/// A sample from anywhere in the trained ranges, and now and then outside.
+/// Draws a sample from the trained ranges and slightly beyond.
 pub fn sample(generator: &mut Generator) -> Sample {
     let mut between = |from: i32, to: i32| {
         let uniform = I16F16::from_bits((generator.next_u32() >> 16) as i32);
@@ -69,7 +69,7 @@ pub fn sample(generator: &mut Generator) -> Sample {
     Sample { commands: core::array::from_fn(|_| between(-102, 102)), sonar: [between(-2, 260), between(-1, 92)] }
 }
 
-/// Does all the work and reports it, a checksum over every bit last.
+/// Does the whole job and reports it, with a checksum over every bit at the end.
 pub fn run() {
     let mut checksum = CRC.digest();
     inferences(&mut checksum);
@@ -82,27 +82,27 @@ fn inferences(checksum: &mut Digest<u32>) {
     let mut generator = Generator::seed_from_u64(SEED);
     for i in 0..SAMPLES {
         let a = evaluate(&sample(&mut generator));
-        let answers = [a.turn, a.forward, a.lateral, a.echo_probability, a.echo_value];
-        for answer in answers {
-            checksum.update(&answer.value.to_bits().to_le_bytes());
-            checksum.update(&[u8::from(answer.clamped)]);
+        let outputs = [a.turn, a.forward, a.lateral, a.echo_probability, a.echo_value];
+        for output in outputs {
+            checksum.update(&output.value.to_bits().to_le_bytes());
+            checksum.update(&[u8::from(output.clamped)]);
         }
         if i % 300 == 0 {
-            let [turn, forward, lateral, probability, value] = answers.map(|answer| answer.value.to_bits());
+            let [turn, forward, lateral, probability, value] = outputs.map(|output| output.value.to_bits());
             report!("sample {}: {} {} {} {} {}", i, turn, forward, lateral, probability, value);
         }
     }
 }
 
-/// Runs the controller in front of a wall, the networks being the robot.
+/// Runs the controller in front of a wall, with the networks as the robot.
 fn controller_runs(checksum: &mut Digest<u32>) {
     let mut generator = Generator::seed_from_u64(SEED + 1);
     for run in 0..RUNS {
         let mut robot = Robot::at(I16F16::saturating_from_num(100 + run * 3));
-        let mut machine = Machine::start();
+        let mut machine = Machine::start(&CONTROLLER);
         while machine.status() == Status::Running {
-            let reading_cm = robot.step(machine.motors(&CONTROLLER), &mut generator);
-            machine.step(&CONTROLLER, reading_cm);
+            let reading_cm = robot.step(machine.motors(), &mut generator);
+            machine.step(reading_cm);
             checksum.update(&robot.distance_cm.to_bits().to_le_bytes());
             checksum.update(&robot.heading_deg.to_bits().to_le_bytes());
             checksum.update(&[machine.tuple() as u8]);
@@ -113,10 +113,10 @@ fn controller_runs(checksum: &mut Digest<u32>) {
     }
 }
 
-/// A robot in front of a wall without end.
+/// A robot in front of an infinite wall.
 struct Robot {
     distance_cm: I16F16,
-    /// Zero towards the wall.
+    /// Heading relative to the normal of the wall.
     heading_deg: I16F16,
     previous: Motors,
 }
@@ -129,11 +129,11 @@ impl Robot {
     /// Drives for one step and reads the sensor.
     fn step(&mut self, motors: Motors, generator: &mut Generator) -> Option<I16F16> {
         let commands = [motors.left, motors.right, self.previous.left, self.previous.right].map(I16F16::from);
-        let answers = evaluate(&Sample { commands, sonar: [self.distance_cm, self.heading_deg.saturating_abs()] });
+        let outputs = evaluate(&Sample { commands, sonar: [self.distance_cm, self.heading_deg.saturating_abs()] });
         self.previous = motors;
         let ahead = cos_pi(self.heading_deg / 180);
-        self.distance_cm = self.distance_cm.saturating_sub(answers.forward.value.saturating_mul(ahead));
-        self.heading_deg = self.heading_deg.saturating_add(answers.turn.value);
-        reading_cm(&answers, generator)
+        self.distance_cm = self.distance_cm.saturating_sub(outputs.forward.value.saturating_mul(ahead));
+        self.heading_deg = self.heading_deg.saturating_add(outputs.turn.value);
+        reading_cm(&outputs, generator)
     }
 }

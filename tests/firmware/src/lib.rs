@@ -1,4 +1,4 @@
-//! What the images share: [`job`] makes the same results on every processor, [`report`] prints them.
+//! The common parts of the images: [`job`] computes the same results on every processor, and [`report`] prints them.
 #![cfg_attr(target_os = "none", no_std)]
 
 pub mod controller;
@@ -10,13 +10,13 @@ pub mod stack;
 #[cfg(all(target_os = "none", not(cortex_m)))]
 mod start;
 
-/// Prints a line: by defmt on Cortex-M, as plain text elsewhere. The arguments are such that all print them alike.
+/// Prints a line: by defmt on Cortex-M, as plain text elsewhere. The arguments have to print alike on all of them.
 #[macro_export]
 macro_rules! report {
     ($($argument:tt)*) => { $crate::report_with::println!($($argument)*) };
 }
 
-/// Who prints.
+/// The macro that prints on this target.
 pub mod report_with {
     #[cfg(cortex_m)]
     pub use defmt::println;
@@ -26,16 +26,16 @@ pub mod report_with {
     pub use std::println;
 }
 
-/// A panic handler that calls what is defined nowhere: an image from which a panic can be reached does not link.
+/// Defines a panic handler that calls an undefined function: an image in which a panic is reachable does not link.
 #[macro_export]
 macro_rules! panics_must_not_link {
     () => {
         #[panic_handler]
         fn panic(_: &core::panic::PanicInfo<'_>) -> ! {
             unsafe extern "C" {
-                safe fn a_panic_can_be_reached() -> !;
+                safe fn a_panic_is_reachable() -> !;
             }
-            a_panic_can_be_reached()
+            a_panic_is_reachable()
         }
     };
 }

@@ -1,20 +1,20 @@
-//! How much stack a function takes: everything below is painted first, and what is no longer paint was used.
+//! Measures the stack of a function: the stack is painted first, and words that are no longer paint were used.
 
 use core::arch::asm;
 use core::ptr;
 
 const PAINT: u32 = 0x5041_494e;
-/// What is painted; far more than anything here takes.
+/// Number of words that are painted, far more than anything here needs.
 const DEPTH_WORDS: usize = 1024;
 
-/// The bytes of stack that `work` takes.
+/// Returns the number of bytes of stack that `work` uses.
 #[inline(never)]
 pub fn used_by(work: fn()) -> usize {
     let top: *mut u32;
     // SAFETY: reads a register.
     unsafe { asm!("mov {}, sp", out(reg) top, options(nomem, nostack)) };
-    // SAFETY: all images leave at least this much between the stack and everything else, nothing below the stack
-    // pointer is in use, and interrupts are off or use it alike.
+    // SAFETY: all images leave at least this much space below the stack, nothing below the stack pointer is in use, and
+    // interrupts are off or use the stack in the same way.
     unsafe {
         for i in 1..=DEPTH_WORDS {
             ptr::write_volatile(top.sub(i), PAINT);

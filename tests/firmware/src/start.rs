@@ -1,4 +1,4 @@
-//! Where an ARM7 begins: the stack is set up and `main` called, in whichever of the two instruction sets it is.
+//! The entry point of an ARM7: sets up the stack and calls `main`, in either of the two instruction sets.
 
 core::arch::global_asm!(
     ".section .text._start, \"ax\"",

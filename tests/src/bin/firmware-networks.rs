@@ -1,4 +1,4 @@
-//! Trains the networks of firmware and example and writes them as Rust source:
+//! Trains the networks of the firmware and the example, and writes them as Rust source:
 //! `cargo run --release -p mindgap-tests --bin firmware-networks`.
 
 use std::path::Path;

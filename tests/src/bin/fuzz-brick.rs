@@ -1,7 +1,7 @@
-//! Feeds the machine for the NXT's bytecode with programs that are broken in every way: those of `tests/conformance` and
-//! exported controllers, with bytes changed, cut out and put in. Nothing may panic, hang or take memory without bound.
+//! Feeds the NXT emulator with damaged programs: those of `tests/conformance` and exported controllers, with bytes changed,
+//! removed and copied. Nothing may panic, hang or use unbounded memory.
 //!
-//! `cargo run --release -p mindgap-tests --bin fuzz-brick -- [MILLIONS] [SEED]` goes on until so many millions of
+//! `cargo run --release -p mindgap-tests --bin fuzz-brick -- [MILLIONS] [SEED]` runs until the given number of millions of
 //! instructions have been executed.
 
 use std::time::Instant;
@@ -21,12 +21,12 @@ const RUN_MS: u32 = 2_000;
 
 fn main() {
     let mut numbers = std::env::args().skip(1).map(|word| word.parse::<u64>().expect("a number"));
-    let wanted = numbers.next().unwrap_or(100) * 1_000_000;
+    let total = numbers.next().unwrap_or(100) * 1_000_000;
     let seed = numbers.next().unwrap_or(1);
     let seeds = seeds();
     let (mut programs, mut loaded, mut instructions) = (0u64, 0u64, 0u64);
     let (mut failed, mut slowest_ms) = (0u64, 0);
-    while instructions < wanted {
+    while instructions < total {
         let mut rng = generator(seed, &[programs]);
         let mut file = seeds[rng.random_range(0..seeds.len())].clone();
         mutate(&mut file, &mut rng);
@@ -37,10 +37,10 @@ fn main() {
             presses: vec![Press::orange(rng.random_range(0..RUN_MS), RUN_MS)],
             ..ScriptedWorld::sonar([Sonar::Echo(rng.random()), Sonar::Silent, Sonar::Hangs, Sonar::Echo(9)])
         };
-        let began = Instant::now();
+        let start = Instant::now();
         let config = RunConfig { run_ms: RUN_MS, limit_events: 1_000, ..RunConfig::default() };
         let report = brick::run(&program, &mut world, &config);
-        slowest_ms = slowest_ms.max(began.elapsed().as_millis());
+        slowest_ms = slowest_ms.max(start.elapsed().as_millis());
         instructions += report.instructions;
         failed += u64::from(matches!(report.end, Termination::Failed(_)));
     }
@@ -50,16 +50,16 @@ fn main() {
     );
 }
 
-/// Programs to be broken.
+/// Returns the programs to be damaged.
 fn seeds() -> Vec<Vec<u8>> {
-    let kit = std::fs::read_dir(workspace().join("tests/conformance")).expect("the kit");
-    let mut sources: Vec<_> = kit.map(|entry| entry.expect("a file").path()).collect();
+    let folder = std::fs::read_dir(workspace().join("tests/conformance")).expect("the folder");
+    let mut sources: Vec<_> = folder.map(|entry| entry.expect("a file").path()).collect();
     sources.retain(|path| path.extension().is_some_and(|ending| ending == "nxc"));
     sources.sort();
     let compiled = sources.iter().map(|path| compile(&std::fs::read_to_string(path).expect("a program")));
     let careful = Safety { stop_cm: Some(15), stall: true };
     let written = [Safety::default(), careful]
-        .map(|safety| rxe::program(&at_its_limits(), &Wiring::default(), safety).expect("a sound controller"));
+        .map(|safety| rxe::program(&at_its_limits(), &Wiring::default(), safety).expect("a valid controller"));
     compiled.chain(written).collect()
 }
 

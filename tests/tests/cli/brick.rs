@@ -114,10 +114,7 @@ fn a_program_that_fails_says_where() {
     let workshop = Workshop::new();
     workshop.write("fails.rxe", compile("task main() { int a[] = {1}; int i = 5; NumOut(0, LCD_LINE1, a[i]); }"));
     let told = workshop.done("brick fails.rxe --readings none --json facts.json");
-    assert!(
-        told.contains("failed: a wrong operand or index after ") && told.contains(" of clump 0: index\n"),
-        "{told}"
-    );
+    assert!(told.contains("failed: wrong operand or index after ") && told.contains(" of clump 0: index\n"), "{told}");
     assert_eq!(workshop.json("facts.json")["failed_at"]["instruction"], "index");
 }
 
@@ -246,7 +243,7 @@ fn a_collecting_program_logs_runs() {
 fn a_collecting_program_that_cannot_be_is_refused() {
     let workshop = with_program();
     let refused = |options: &str| workshop.refused(&format!("export {options} --out c.nxc"));
-    assert_eq!(refused("--format nxc-collect --steps 0"), "c.nxc: steps is 0; it has to lie in 1..65535");
+    assert_eq!(refused("--format nxc-collect --steps 0"), "c.nxc: steps is 0; it has to be in 1..65535");
     assert!(refused("--format nxc-collect --near-cm 0").starts_with("c.nxc: near_cm is 0"));
     assert!(refused("--format nxc-collect --step-ms 50").starts_with("c.nxc: "));
     assert!(refused("--format nxc-collect --steps 60000").starts_with("c.nxc: "));

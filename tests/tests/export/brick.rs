@@ -1,4 +1,4 @@
-//! The brick in software runs what the real compiler makes, and does what was seen in the real firmware.
+//! The emulated brick runs programs of the real compiler and behaves as the real firmware was seen to.
 
 use mindgap_controller_export::brick::{
     self, Drive, EventKind, Fault, LoadError, Press, Program, Report, RunConfig, ScriptedWorld, Sonar, Termination,
@@ -11,7 +11,7 @@ fn run(source: &str, world: &mut ScriptedWorld) -> Report {
     brick::run(&Program::load(&compile(source)).unwrap(), world, &RunConfig::default())
 }
 
-/// What a task with this body shows on the display.
+/// Returns the texts that a task with this body shows on the display.
 fn shown(body: &str) -> Vec<String> {
     let report = run(&format!("task main() {{ {body} }}"), &mut ScriptedWorld::default());
     assert_eq!(report.end, Termination::Finished);
@@ -90,7 +90,7 @@ fn arrays_strings_and_structs() {
 }
 
 #[test]
-fn tasks_take_turns_and_wait_for_a_mutex() {
+fn tasks_alternate_and_wait_for_a_mutex() {
     let source = r#"
         mutex lock;
         int shared = 0;
@@ -109,7 +109,7 @@ fn tasks_take_turns_and_wait_for_a_mutex() {
 }
 
 #[test]
-fn motors_change_with_their_flags_and_keep_going_when_the_firmware_gives_up() {
+fn motors_follow_their_flags_and_run_on_when_the_firmware_aborts() {
     let source = "task main() { OnFwd(OUT_B, 50); OnRev(OUT_C, 20); Off(OUT_B); Coast(OUT_C); OnFwd(OUT_A, -30);
         int a[] = {1}; int i = 5; NumOut(0, LCD_LINE1, a[i]); }";
     let report = run(source, &mut ScriptedWorld::default());
@@ -130,7 +130,7 @@ fn motors_change_with_their_flags_and_keep_going_when_the_firmware_gives_up() {
 }
 
 #[test]
-fn the_dark_button_ends_any_program_and_lets_go_of_the_motors() {
+fn dark_button_ends_any_program_and_releases_the_motors() {
     let mut world = ScriptedWorld { exit_pressed_ms: Some(777), ..ScriptedWorld::default() };
     let report = run("task main() { OnFwd(OUT_BC, 50); Wait(5000); }", &mut world);
     assert_eq!((report.end, report.ended_ms, report.motors), (Termination::Aborted, 777, [Drive::Coast; 3]));
@@ -149,7 +149,7 @@ fn buttons_battery_tones_and_ticks() {
 }
 
 #[test]
-fn files_reserve_fill_up_and_are_cut_to_what_was_written() {
+fn file_size_is_reserved_and_truncated_to_the_bytes_written() {
     let source = r#"
         task main() {
           byte h; int n; unsigned int size = 10;
@@ -180,9 +180,9 @@ fn files_reserve_fill_up_and_are_cut_to_what_was_written() {
     assert_eq!(files, [("LOG.csv".into(), content("12345\r\n123")), ("open.csv".into(), content("a\r\n"))]);
 }
 
-/// The library's own call takes 30 ms and hides a dead sensor behind the last good value.
+/// The library's own call takes 30 ms and returns the last good value of a dead sensor.
 #[test]
-fn the_library_call_for_the_sonar_behaves_as_seen_in_the_firmware() {
+fn library_call_for_the_sonar_behaves_as_in_the_firmware() {
     let source = "task main() { SetSensorLowspeed(IN_4); for (int i = 0; i < 5; i++) { long t = CurrentTick();
         NumOut(0, LCD_LINE1, SensorUS(IN_4)); NumOut(0, LCD_LINE2, CurrentTick() - t); } }";
     let sonar = [Sonar::Echo(77), Sonar::Echo(255), Sonar::Silent, Sonar::Hangs, Sonar::Silent];
@@ -193,9 +193,9 @@ fn the_library_call_for_the_sonar_behaves_as_seen_in_the_firmware() {
     assert!((29..=33).contains(&shown[1]) && (29..=33).contains(&shown[3]), "{shown:?}");
 }
 
-/// nbc's code for old firmware runs the last wait a second time.
+/// nbc's code for old firmware executes the last wait a second time.
 #[test]
-fn the_compilers_defect_for_old_firmware_shows() {
+fn compiler_defect_for_old_firmware_is_reproduced() {
     let source = "task main() { SetSensorLowspeed(IN_4); NumOut(0, LCD_LINE1, SensorUS(IN_4)); Wait(1000);
         long t = CurrentTick(); int r = SensorUS(IN_4); NumOut(0, LCD_LINE2, CurrentTick() - t); }";
     let took_ms = |firmware| {
@@ -208,7 +208,7 @@ fn the_compilers_defect_for_old_firmware_shows() {
 }
 
 #[test]
-fn arrays_beyond_the_memory_end_the_program() {
+fn array_larger_than_the_memory_ends_the_program() {
     let body = |count| {
         format!(
             "task main() {{ long a[]; ArrayInit(a, 7, {count}); int last = {count} - 1; NumOut(0, LCD_LINE1, a[last]); }}"
@@ -219,7 +219,7 @@ fn arrays_beyond_the_memory_end_the_program() {
 }
 
 #[test]
-fn memory_is_packed_when_it_is_in_pieces() {
+fn fragmented_memory_is_compacted() {
     let source = "task main() { string a = \"\"; string b = \"\";
         for (int i = 0; i < 400; i++) { a = StrCat(a, \"0123456789\"); b = StrCat(a, \"!\"); }
         NumOut(0, LCD_LINE1, StrLen(b)); }";
@@ -227,19 +227,19 @@ fn memory_is_packed_when_it_is_in_pieces() {
 }
 
 #[test]
-fn a_program_that_never_ends_runs_out_of_time() {
+fn endless_program_runs_out_of_time() {
     let report = run("task main() { while (true) Wait(7); }", &mut ScriptedWorld::default());
     assert_eq!((report.end, report.ended_ms), (Termination::OutOfTime, RunConfig::default().run_ms));
     let busy = RunConfig { run_ms: 1000, ..RunConfig::default() };
     let program = Program::load(&compile("task main() { int i; while (true) i++; }")).unwrap();
     let report = brick::run(&program, &mut ScriptedWorld::default(), &busy);
-    // A hundred a millisecond, but for what operations on arrays take longer when the program starts.
+    // A hundred per millisecond, less the longer array operations at the start of the program.
     assert_eq!(report.end, Termination::OutOfTime);
     assert!((99_900..=100_000).contains(&report.instructions), "{}", report.instructions);
 }
 
 #[test]
-fn a_jump_outside_ends_the_program() {
+fn jump_out_of_the_code_ends_the_program() {
     const JUMP: [u8; 2] = 0x4025u16.to_le_bytes();
     let intact = compile("task main() { int i; while (true) i++; }");
     let place = intact.windows(2).rposition(|word| word == JUMP).expect("the loop jumps back") + 2;
@@ -251,9 +251,9 @@ fn a_jump_outside_ends_the_program() {
     }
 }
 
-/// The compiler refuses recursion, so calls are bent: among others every subroutine then calls itself.
+/// The compiler refuses recursion, so the targets of calls are changed: among others, every subroutine then calls itself.
 #[test]
-fn a_subroutine_that_calls_itself_does_not_hang_the_machine() {
+fn subroutine_that_calls_itself_does_not_hang_the_emulator() {
     let subs = "int n; sub Inner() { n++; } sub Outer() { Inner(); n++; Inner(); }";
     let intact = compile(&format!("{subs} task main() {{ Outer(); Outer(); NumOut(0, LCD_LINE1, n); }}"));
     let is_call = |place: &usize| intact[*place + 1] == 0x4b;
@@ -269,11 +269,11 @@ fn a_subroutine_that_calls_itself_does_not_hang_the_machine() {
         assert!(report.ended_ms <= 500, "{report:?}");
         stuck += usize::from(texts(&report) != ["6"]);
     }
-    assert!(stuck > 0, "no call was bent into a circle");
+    assert!(stuck > 0, "no change made a subroutine call itself");
 }
 
-/// A program that uses most of what there is.
-fn a_program() -> Vec<u8> {
+/// Compiles a program that uses most features of the firmware.
+fn large_program() -> Vec<u8> {
     compile(
         r#"
         struct Pair { int left; string name; };
@@ -302,8 +302,8 @@ fn a_program() -> Vec<u8> {
 }
 
 #[test]
-fn a_whole_program_is_loaded_and_a_cut_one_is_not() {
-    let rxe = a_program();
+fn complete_program_is_loaded_and_a_truncated_one_is_rejected() {
+    let rxe = large_program();
     assert!(Program::load(&rxe).is_ok());
     for length in 0..rxe.len() {
         let refused: Result<_, LoadError> = Program::load(&rxe[..length]);
@@ -311,10 +311,10 @@ fn a_whole_program_is_loaded_and_a_cut_one_is_not() {
     }
 }
 
-/// Whatever a broken file does, it does inside the machine.
+/// A damaged file can do harm only inside the emulator.
 #[test]
-fn broken_files_neither_panic_nor_hang() {
-    let intact = a_program();
+fn damaged_files_neither_panic_nor_hang() {
+    let intact = large_program();
     let setup = RunConfig { run_ms: 300, ..RunConfig::default() };
     let sonar = prop_oneof![any::<u8>().prop_map(Sonar::Echo), Just(Sonar::Silent), Just(Sonar::Hangs)];
     let changes = prop::collection::vec((0..intact.len(), any::<u8>()), 1..12);
@@ -334,10 +334,10 @@ fn broken_files_neither_panic_nor_hang() {
     outcome.unwrap();
 }
 
-/// Zeros, or words of ones, in place of any piece of the header and the tables behind it.
+/// Any part of the header and of the tables after it is overwritten with zeros or ones.
 #[test]
-fn tables_with_holes_neither_panic_nor_hang() {
-    let intact = a_program();
+fn overwritten_tables_neither_panic_nor_hang() {
+    let intact = large_program();
     let setup = RunConfig { run_ms: 100, ..RunConfig::default() };
     let mut loaded = 0;
     for hole in [2, 4, 10, 64] {
@@ -356,7 +356,7 @@ fn tables_with_holes_neither_panic_nor_hang() {
 }
 
 #[test]
-fn calls_of_every_module_are_answered() {
+fn calls_of_every_module_are_supported() {
     let report = run(include_str!("every_module.nxc"), &mut ScriptedWorld::sonar([Sonar::Echo(50); 9]));
     assert_eq!(report.end, Termination::Finished, "{:?}", report.failed_at);
     assert_eq!(texts(&report).last().map(String::as_str), Some("done"));

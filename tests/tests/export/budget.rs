@@ -1,4 +1,4 @@
-//! Budgets against what the compiler makes, and what the programs then take.
+//! Budgets are compared with the compiled programs and the resources that they use.
 
 use mindgap_controller_export::brick::{self, Program, Report, RunConfig, ScriptedWorld, Sonar};
 use mindgap_controller_export::budget::{Budget, INSTRUCTIONS_PER_MS};
@@ -12,11 +12,11 @@ use mindgap_core::controller::Controller;
 use mindgap_tests::controllers::at_its_limits;
 use mindgap_tests::nbc::compile;
 
-/// A budget may promise so much more than is taken.
+/// Largest ratio of a budget to the resources used.
 const SLACK: f64 = 1.25;
 
 fn nxc_options(log: bool, display: bool) -> NxcOptions {
-    let log = log.then(|| RunLogs::of(&"elevenchars.csv".parse().unwrap()).unwrap());
+    let log = log.then(|| RunLogs::named_after(&"elevenchars.csv".parse().unwrap()).unwrap());
     NxcOptions { log, display, ..NxcOptions::new(BrickName::program("run").unwrap()) }
 }
 
@@ -54,13 +54,13 @@ fn run(program: &Program, sonar: &[Sonar]) -> Report {
     brick::run(program, &mut ScriptedWorld::sonar(sonar), &setup)
 }
 
-fn assert_close(what: &str, promised: u32, taken: usize) {
-    assert!(taken <= promised as usize, "{what}: {taken} taken of {promised}");
-    assert!(f64::from(promised) <= SLACK * taken as f64, "{what}: only {taken} taken of {promised}");
+fn assert_close(resource: &str, budget: u32, used: usize) {
+    assert!(used <= budget as usize, "{resource}: {used} used of {budget}");
+    assert!(f64::from(budget) <= SLACK * used as f64, "{resource}: only {used} used of {budget}");
 }
 
 #[test]
-fn programs_take_what_their_budgets_say_and_hardly_less() {
+fn programs_use_at_most_their_budgets_and_hardly_less() {
     let long: Vec<_> = (0..160u32).map(|k| Sonar::Echo((k * 37 % 256) as u8)).collect();
     for (file, budget) in programs() {
         let program = Program::load(&file).unwrap();
@@ -71,9 +71,9 @@ fn programs_take_what_their_budgets_say_and_hardly_less() {
     }
 }
 
-/// A step is over before the next one begins, be the sensor as slow as it can be.
+/// A step ends before the next one starts, even with the slowest sensor.
 #[test]
-fn the_shortest_step_is_kept_by_the_slowest_brick() {
+fn slowest_brick_keeps_the_shortest_step() {
     for (_, budget) in programs() {
         assert!(budget.worst_step_ms <= 130, "{budget}");
     }
@@ -89,7 +89,7 @@ fn the_shortest_step_is_kept_by_the_slowest_brick() {
     let report = run(&program, &sonar);
     let log = String::from_utf8(report.files["elevenchars_000.csv"].clone()).unwrap();
     let times: Vec<u32> = log.lines().skip(1).map(|row| row.split(',').next().unwrap().parse().unwrap()).collect();
-    assert_eq!(times.len(), 151, "a hanging answer is in the way of the next request");
+    assert_eq!(times.len(), 151, "a hanging answer blocks the next request");
     for (step, t_ms) in (0..).zip(times) {
         let late_ms = t_ms - step * u32::from(shortest_ms);
         assert!(late_ms < u32::from(shortest_ms), "step {step} is {late_ms} ms late");
@@ -97,7 +97,7 @@ fn the_shortest_step_is_kept_by_the_slowest_brick() {
 }
 
 #[test]
-fn a_budget_prints_what_is_taken_of_what_there_is() {
+fn budget_prints_one_line_per_resource() {
     let lines = nxc::budget(&at_its_limits(), &nxc_options(true, false)).to_string();
     let expected = "program     6800 of 104104 bytes of flash\n\
                     log         7328 of 97304 bytes of flash without other files\n\

@@ -1,4 +1,4 @@
-//! C headers go through a real compiler, and their machine runs against the core's.
+//! C headers are compiled by a real compiler, and their machine is compared with the core's.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -13,7 +13,7 @@ use proptest::test_runner::{RngAlgorithm, TestRng, TestRunner};
 const CONTROLLERS: usize = 12;
 const RUNS_OF_EACH: usize = 200;
 
-/// Reads one run a line, readings apart by blanks with `-` for none, and prints the machine after each of them.
+/// Reads readings separated by spaces, with `-` for no reading and `/` between runs, and prints the machine after each.
 const MAIN: &str = r#"
 #include <stdio.h>
 #include <stdlib.h>
@@ -71,8 +71,8 @@ fn compile(header: &str, folder: &Path) -> PathBuf {
     folder.join("run")
 }
 
-fn state(machine: &Machine, controller: &Controller) -> String {
-    let motors = machine.motors(controller);
+fn state(machine: &Machine) -> String {
+    let motors = machine.motors();
     let status = match machine.status() {
         Status::Running => 0,
         Status::Finished => 1,
@@ -82,23 +82,23 @@ fn state(machine: &Machine, controller: &Controller) -> String {
 }
 
 #[test]
-fn the_header_compiles_without_a_warning_and_runs_as_the_core_does() {
+fn header_compiles_without_warnings_and_behaves_like_the_core() {
     let mut runner =
         TestRunner::new_with_rng(ProptestConfig::default(), TestRng::deterministic_rng(RngAlgorithm::XorShift));
     for _ in 0..CONTROLLERS {
         let controller = controllers().new_tree(&mut runner).unwrap().current();
         let (mut input, mut expected) = (String::new(), String::new());
         for run in 0..RUNS_OF_EACH {
-            let mut machine = Machine::start();
+            let mut machine = Machine::start(&controller);
             if run > 0 {
                 input += "/ ";
             }
-            expected += &state(&machine, &controller);
+            expected += &state(&machine);
             let readings = prop::collection::vec(prop::option::weighted(0.8, 0..=20i16), 45);
             for reading_cm in readings.new_tree(&mut runner).unwrap().current() {
                 input += &reading_cm.map_or("- ".to_owned(), |reading_cm| format!("{reading_cm} "));
-                machine.step(&controller, reading_cm);
-                expected += &state(&machine, &controller);
+                machine.step(reading_cm);
+                expected += &state(&machine);
             }
         }
         let folder = tempfile::tempdir().unwrap();
@@ -109,12 +109,12 @@ fn the_header_compiles_without_a_warning_and_runs_as_the_core_does() {
         let output = child.wait_with_output().unwrap();
         feeder.join().unwrap().unwrap();
         assert!(output.status.success());
-        assert!(String::from_utf8(output.stdout).unwrap() == expected, "not as the core: {controller:?}");
+        assert!(String::from_utf8(output.stdout).unwrap() == expected, "differs from the core: {controller:?}");
     }
 }
 
 #[test]
-fn the_origin_cannot_end_its_comment() {
+fn origin_cannot_end_its_comment() {
     let origin = Origin { simulator: Some("*/ int main(void); \\".to_owned()), seed: Some(7), ..Origin::default() };
     let tuple = Tuple { left: -100, right: 100, when: When::Larger, threshold_cm: 255 };
     let controller = Controller { step_ms: 400, max_steps: u16::MAX, tuples: [tuple; 6] };

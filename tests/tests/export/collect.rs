@@ -1,4 +1,4 @@
-//! The data-collection program, compiled and run: on the built-in robot, and with scripted sensors.
+//! The data-collection program, compiled and run on the built-in robot and with scripted sensors.
 
 use std::collections::BTreeMap;
 
@@ -64,13 +64,13 @@ fn turns(command: [i32; 2]) -> bool {
     command[0] == -command[1] && command[0] != 0
 }
 
-/// Readings of a sensor that sees far.
+/// A world without obstacles.
 fn clear() -> ScriptedWorld {
     ScriptedWorld::sonar([Sonar::Echo(200); STEPS + 1])
 }
 
 #[test]
-fn it_drives_about_a_crowded_room_and_logs_every_step() {
+fn random_program_drives_through_a_crowded_room_and_logs_every_step() {
     const RUNS: usize = 80;
     let robot = BuiltInRobot::new(&default_robot(), &training_room(), &[]);
     let starts = [(40.0, 40.0), (150.0, 110.0), (250.0, 110.0), (150.0, 190.0)];
@@ -94,7 +94,7 @@ fn it_drives_about_a_crowded_room_and_logs_every_step() {
             }
         }
     }
-    // It sees nothing beside or behind it: of 400 runs 24 crash, whatever the seeds one in sixteen.
+    // It sees nothing to its sides or behind it: 24 of 400 runs crash, about one in sixteen for any seeds.
     assert!(8 * crashes <= RUNS, "{crashes} of {RUNS} runs crashed");
 
     let steps: Vec<_> = all.iter().flat_map(|rows| rows.windows(2)).collect();
@@ -106,14 +106,14 @@ fn it_drives_about_a_crowded_room_and_logs_every_step() {
     assert!(share(&|row| row.command.iter().sum::<i32>() < 0) > 0.005);
     assert!(share(&|row| row.echo_cm.is_some()) > 0.4);
     assert!(steps.iter().all(|pair| pair[0].command.iter().all(|power| (-100..=100).contains(power))));
-    // Wheels turn the way they are told to once they are up to speed.
+    // Wheels turn in the commanded direction once they are up to speed.
     for pair in steps.iter().filter(|pair| pair[0].command.iter().all(|power| *power > 40)) {
         assert!((0..2).all(|side| pair[1].rotation_deg[side] > pair[0].rotation_deg[side]), "{pair:?}");
     }
 }
 
 #[test]
-fn near_things_make_it_turn_until_the_way_is_free() {
+fn near_obstacle_makes_it_turn_until_the_way_is_free() {
     let program = program(7);
     let sonar: Vec<_> = (0..=STEPS).map(|k| Sonar::Echo(if k % 10 < 5 { 200 } else { NEAR_CM - 1 })).collect();
     let rows = rows(&run(&program, &mut ScriptedWorld::sonar(sonar)), "run-000.csv");
@@ -122,7 +122,7 @@ fn near_things_make_it_turn_until_the_way_is_free() {
         assert!(!is_near || turns(row.command), "{row:?}");
     }
     let unseen = rows_of(&program, ScriptedWorld::sonar([Sonar::Echo(255); STEPS + 1]));
-    assert!(unseen[2..STEPS].iter().all(|row| turns(row.command)), "it drives on without an echo");
+    assert!(unseen[2..STEPS].iter().all(|row| turns(row.command)), "it continues without an echo");
 }
 
 fn rows_of(program: &Program, mut world: ScriptedWorld) -> Vec<Row> {
@@ -130,7 +130,7 @@ fn rows_of(program: &Program, mut world: ScriptedWorld) -> Vec<Row> {
 }
 
 #[test]
-fn commands_depend_on_seed_and_run_alone() {
+fn commands_depend_only_on_seed_and_run() {
     let (first, other) = (program(7), program(8));
     let driven = commands(&rows_of(&first, clear()));
     assert_eq!(driven, commands(&rows_of(&first, clear())));
@@ -144,7 +144,7 @@ fn commands_depend_on_seed_and_run_alone() {
 }
 
 #[test]
-fn it_stops_for_a_dead_sensor_and_for_the_orange_button() {
+fn dead_sensor_and_orange_button_stop_it() {
     let program = program(7);
     let sonar = [&[Sonar::Echo(200); 4][..], &[Sonar::Silent; 2]].concat();
     let report = run(&program, &mut ScriptedWorld::sonar(sonar));
@@ -154,7 +154,7 @@ fn it_stops_for_a_dead_sensor_and_for_the_orange_button() {
 
     let mut world = ScriptedWorld { presses: vec![Press::orange(2_000, 2_005)], ..clear() };
     let rows = rows_of(&program, world.clone());
-    // A short press between two steps counts, and at once.
+    // A short press between two steps stops it at once.
     assert_eq!((rows.len(), rows[5].command), (6, [0, 0]));
     assert!((1_700..1_770).contains(&rows[5].t_ms), "{:?}", rows[5]);
     assert_eq!(run(&program, &mut world).motors, [Drive::Coast, Drive::Brake, Drive::Brake]);
@@ -172,7 +172,7 @@ fn script_options(powers: Vec<[i8; 2]>) -> CollectOptions {
 }
 
 #[test]
-fn a_script_is_driven_as_it_is_whatever_is_near() {
+fn script_is_driven_unchanged_near_obstacles() {
     let powers: Vec<[i8; 2]> = (0..50i8).map(|k| [2 * k - 50, 4 * (25 - k)]).collect();
     let program = Program::load(&compile(&collect::program(&script_options(powers.clone())).unwrap())).unwrap();
     let rows = rows_of(&program, ScriptedWorld::sonar([Sonar::Echo(NEAR_CM / 2); STEPS]));
@@ -182,16 +182,16 @@ fn a_script_is_driven_as_it_is_whatever_is_near() {
 }
 
 #[test]
-fn what_cannot_be_collected_is_refused() {
+fn impossible_collection_is_rejected() {
     let refused = |options: CollectOptions| collect::program(&options).unwrap_err();
     let random =
         |steps, near_cm| CollectOptions { commands: Commands::Random { steps, near_cm, seed: 0 }, ..options(0) };
     let zero = refused(random(0, NEAR_CM));
-    assert_eq!(zero.to_string(), "steps is 0; it has to lie in 1..65535");
+    assert_eq!(zero.to_string(), "steps is 0; it has to be in 1..65535");
     assert!(matches!(refused(random(150, 255)), ExportError::OutOfRange { .. }));
     assert!(matches!(refused(CollectOptions { step_ms: 100, ..options(0) }), ExportError::StepTooShort { .. }));
     let ExportError::LogTooLarge { steps, .. } = refused(random(u16::MAX, NEAR_CM)) else {
-        panic!("refused for another reason")
+        panic!("rejected for another reason")
     };
     assert!(collect::program(&random(steps, NEAR_CM)).is_ok());
     assert!(collect::program(&random(steps + 1, NEAR_CM)).is_err());

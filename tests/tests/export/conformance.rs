@@ -1,5 +1,5 @@
-//! Our machine against `tests/conformance`, programs with the events that standard firmware gives. Its README explains the
-//! format.
+//! The emulated brick is compared with `tests/conformance`: programs with the events that the standard firmware gives. The
+//! README there explains the format.
 
 use std::fs;
 
@@ -10,15 +10,15 @@ use mindgap_controller_export::onboard::NO_ECHO_CM;
 use mindgap_tests::command::workspace;
 use mindgap_tests::nbc::compile;
 
-/// Programs of the kit at least.
-const LEAST: usize = 14;
+/// Smallest number of programs in the folder.
+const MIN_PROGRAMS: usize = 14;
 
 #[test]
-fn programs_do_what_they_do_in_the_firmware() {
+fn programs_behave_as_in_the_firmware() {
     let folder = workspace().join("tests/conformance");
     let files = fs::read_dir(&folder).unwrap().map(|entry| entry.unwrap().path());
     let programs: Vec<_> = files.filter(|path| path.extension().is_some_and(|ending| ending == "nxc")).collect();
-    assert!(programs.len() >= LEAST, "{} programs", programs.len());
+    assert!(programs.len() >= MIN_PROGRAMS, "{} programs", programs.len());
     let mut differing = Vec::new();
     for path in programs {
         let name = path.file_stem().unwrap().to_string_lossy().into_owned();
@@ -31,7 +31,7 @@ fn programs_do_what_they_do_in_the_firmware() {
     assert!(differing.is_empty(), "{}", differing.join("\n"));
 }
 
-/// Runs a program in the world that the expectation states, and names the first event that is another.
+/// Runs a program in the world of the expectation and returns the first event that differs.
 fn differs(file: &[u8], expectation: &str) -> Result<(), String> {
     let lines = expectation.lines().filter(|line| !line.starts_with('#') && !line.is_empty());
     let (setting, expected): (Vec<&str>, Vec<&str>) =
@@ -39,21 +39,25 @@ fn differs(file: &[u8], expectation: &str) -> Result<(), String> {
     let mut world = ScriptedWorld::sonar([]);
     setting.iter().for_each(|line| set(&mut world, line));
     let report = brick::run(&Program::load(file).unwrap(), &mut world, &RunConfig::default());
-    let mut events: Vec<(u32, String)> = report.events.iter().map(|event| (event.t_ms, told(&event.kind))).collect();
+    let mut events: Vec<(u32, String)> = report.events.iter().map(|event| (event.t_ms, text_of(&event.kind))).collect();
     let end = if report.end == Termination::Finished { "end finished" } else { "end failed" };
     events.push((report.ended_ms, end.to_owned()));
-    for (place, line) in expected.iter().enumerate() {
+    for (i, line) in expected.iter().enumerate() {
         let (times, event) = match line.split_once(' ') {
             Some((times, event)) if times.contains("..") => (times.split_once(".."), event),
             _ => (None, *line),
         };
         let times = times.map_or(0..=u32::MAX, |(from, to)| from.parse().unwrap()..=to.parse().unwrap());
-        match events.get(place) {
-            Some((t_ms, done)) if done == event && times.contains(t_ms) => {}
-            other => return Err(format!("{line} is expected, {other:?} is done; {:?}", report.failed_at)),
+        match events.get(i) {
+            Some((t_ms, actual)) if actual == event && times.contains(t_ms) => {}
+            other => return Err(format!("expected {line}, got {other:?}; {:?}", report.failed_at)),
         }
     }
-    if events.len() > expected.len() { Err(format!("{:?} is done more", events[expected.len()])) } else { Ok(()) }
+    if events.len() > expected.len() {
+        Err(format!("unexpected further event {:?}", events[expected.len()]))
+    } else {
+        Ok(())
+    }
 }
 
 fn set(world: &mut ScriptedWorld, line: &str) {
@@ -79,7 +83,7 @@ fn set(world: &mut ScriptedWorld, line: &str) {
     }
 }
 
-fn told(kind: &EventKind) -> String {
+fn text_of(kind: &EventKind) -> String {
     match kind {
         EventKind::Motor { port, drive } => {
             let drive = match drive {

@@ -1,4 +1,4 @@
-//! Onboard programs do what the core's stepping machine does: same tuples, same commands, same end, at the same times.
+//! Onboard programs behave like the core's machine: same tuples, same commands, same ending, at the same times.
 
 use mindgap_controller_export::brick::{
     self, Drive, Event, EventKind, Program, Report, RunConfig, ScriptedWorld, Sonar, Termination,
@@ -14,26 +14,26 @@ use proptest::prelude::*;
 use proptest::strategy::ValueTree;
 use proptest::test_runner::{RngAlgorithm, TestRng, TestRunner};
 
-/// Runs of the .rxe writer's programs, each of a controller of its own.
+/// Number of runs of programs of the .rxe writer, each with a different controller.
 const RUNS: u32 = 10_000;
-/// Controllers that go through the real compiler, and runs of each; the environment's `MINDGAP_CONTROLLERS` states another
-/// number of controllers, each of which then runs a few times.
+/// Number of controllers that are compiled by the real compiler, and of runs of each. The environment variable
+/// `MINDGAP_CONTROLLERS` sets another number of controllers, each of which then runs a few times.
 const COMPILED: usize = 24;
 const RUNS_OF_COMPILED: u32 = 100;
 const RUNS_OF_MANY: u32 = 3;
 /// Time from a step's tick to its motor commands when the sensor answers.
 const LATENCY_MS: u32 = 15;
-/// How far two programs' times may lie apart.
+/// Largest difference between the times of two programs.
 const JITTER_MS: u32 = 5;
 
-/// Motor commands, and the step at which they are given; both are zero at the end.
+/// Motor commands and the step at which they are given. Both commands are zero at the end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Change {
     step: u32,
     motors: Motors,
 }
 
-/// Any distance, and often ones that meet each other.
+/// Any distance, and often one of a few that coincide.
 fn distances_cm() -> impl Strategy<Value = u8> {
     prop_oneof![any::<u8>(), 100..=102u8]
 }
@@ -48,11 +48,11 @@ fn tuples() -> impl Strategy<Value = Tuple> {
     })
 }
 
-/// The shortest step that a program without log and display is exported with.
-fn least_step_ms() -> u16 {
+/// Returns the shortest step time of a program without log and display.
+fn min_step_ms() -> u16 {
     let hasty = Controller { step_ms: 1, ..mindgap_tests::controllers::at_its_limits() };
     let [rxe, nxc] = [rxe::budget(&hasty, Safety::default()), nxc::budget(&hasty, &options())].map(|b| b.worst_step_ms);
-    assert_eq!(rxe, nxc, "one rule for both formats");
+    assert_eq!(rxe, nxc, "both formats have the same limit");
     rxe
 }
 
@@ -61,8 +61,8 @@ fn options() -> NxcOptions {
 }
 
 fn controllers() -> impl Strategy<Value = Controller> {
-    let least_ms = least_step_ms();
-    let step_ms = prop_oneof![1 => least_ms..least_ms + 3, 3 => least_ms..1000];
+    let min_ms = min_step_ms();
+    let step_ms = prop_oneof![1 => min_ms..min_ms + 3, 3 => min_ms..1000];
     (step_ms, 1..50u16, prop::array::uniform6(tuples())).prop_map(|(step_ms, max_steps, tuples)| Controller {
         step_ms,
         max_steps,
@@ -88,10 +88,10 @@ fn rng() -> TestRng {
     TestRng::deterministic_rng(RngAlgorithm::XorShift)
 }
 
-/// What the core's machine does, and the rule that ends a run whose sensor is dead.
+/// Returns what the core's machine does, with the rule that ends a run when the sensor is dead.
 fn expected(controller: &Controller, sonar: &[Sonar]) -> (Vec<Change>, Ending) {
-    let mut machine = Machine::start();
-    let mut changes = vec![Change { step: 0, motors: machine.motors(controller) }];
+    let mut machine = Machine::start(controller);
+    let mut changes = vec![Change { step: 0, motors: machine.motors() }];
     let mut failed_steps = 0;
     for (step, answer) in (1..).zip(sonar) {
         let tuple = machine.tuple();
@@ -100,7 +100,7 @@ fn expected(controller: &Controller, sonar: &[Sonar]) -> (Vec<Change>, Ending) {
             Sonar::Echo(echo_cm) => Some(i16::from(*echo_cm)),
         };
         failed_steps = if matches!(answer, Sonar::Echo(_)) { 0 } else { failed_steps + 1 };
-        let status = machine.step(controller, reading_cm);
+        let status = machine.step(reading_cm);
         let is_over = status != Status::Running || failed_steps == FAILED_STEPS_TO_STOP;
         if is_over {
             changes.push(Change { step, motors: Motors { left: 0, right: 0 } });
@@ -112,7 +112,7 @@ fn expected(controller: &Controller, sonar: &[Sonar]) -> (Vec<Change>, Ending) {
             return (changes, ending);
         }
         if machine.tuple() != tuple {
-            changes.push(Change { step, motors: machine.motors(controller) });
+            changes.push(Change { step, motors: machine.motors() });
         }
     }
     panic!("the script is longer than any run");
@@ -123,7 +123,7 @@ fn run(program: &Program, wiring: &Wiring, sonar: &[Sonar]) -> Report {
     brick::run(program, &mut world, &RunConfig::default())
 }
 
-/// The motor commands of a run, left and right together, with their times.
+/// Returns the motor commands of a run, left and right together, with their times.
 fn commands(report: &Report, wiring: &Wiring) -> Vec<(u32, Drive, Drive)> {
     let drives = report.events.iter().filter_map(|Event { t_ms, kind }| match kind {
         EventKind::Motor { port, drive } => Some((*t_ms, *port, *drive)),
@@ -143,7 +143,7 @@ fn drive(command: i8) -> Drive {
     if command == 0 { Drive::Brake } else { Drive::Power(command) }
 }
 
-/// Checks a run against the core's machine, and its times against its steps.
+/// Compares a run with the core's machine, and its times with its steps.
 fn check(controller: &Controller, wiring: &Wiring, sonar: &[Sonar], report: &Report) {
     let (changes, ending) = expected(controller, sonar);
     assert_eq!(report.end, Termination::Finished);
@@ -152,9 +152,9 @@ fn check(controller: &Controller, wiring: &Wiring, sonar: &[Sonar], report: &Rep
     let expected: Vec<_> = changes.iter().map(|c| (drive(c.motors.left), drive(c.motors.right))).collect();
     assert_eq!(drives, expected);
 
-    let began_ms = commands[0].0;
+    let start_ms = commands[0].0;
     for (change, (t_ms, ..)) in changes.iter().zip(&commands).skip(1) {
-        let tick_ms = began_ms + change.step * u32::from(controller.step_ms);
+        let tick_ms = start_ms + change.step * u32::from(controller.step_ms);
         let dead = matches!(sonar[change.step as usize - 1], Sonar::Hangs);
         let late_ms = if dead { u32::from(SONAR_TIMEOUT_MS) } else { 0 } + LATENCY_MS;
         assert!((tick_ms..tick_ms + late_ms).contains(t_ms), "step {} at {t_ms}, tick {tick_ms}", change.step);
@@ -174,7 +174,7 @@ fn check(controller: &Controller, wiring: &Wiring, sonar: &[Sonar], report: &Rep
 }
 
 #[test]
-fn bytecode_runs_as_the_core_does() {
+fn written_bytecode_behaves_like_the_core() {
     let outcome = runner(RUNS, rng()).run(&(controllers(), readings()), |(controller, sonar)| {
         let wiring = Wiring::default();
         let program = Program::load(&rxe::program(&controller, &wiring, Safety::default()).unwrap()).unwrap();
@@ -185,7 +185,7 @@ fn bytecode_runs_as_the_core_does() {
 }
 
 #[test]
-fn compiled_nxc_runs_as_the_core_and_the_bytecode_do() {
+fn compiled_nxc_behaves_like_the_core_and_the_written_bytecode() {
     let other = Wiring { left: MotorPort::A, right: MotorPort::B, sonar: SensorPort::Two };
     let mut chance = runner(1, rng());
     let many = std::env::var("MINDGAP_CONTROLLERS").ok().map(|number| number.parse().expect("a number of controllers"));
@@ -193,20 +193,20 @@ fn compiled_nxc_runs_as_the_core_and_the_bytecode_do() {
     for number in 0..many.unwrap_or(COMPILED) {
         let controller = controllers().new_tree(&mut chance).unwrap().current();
         let wiring = if number % 2 == 0 { Wiring::default() } else { other };
-        let log = (number % 4 >= 2).then(|| RunLogs::of(&"run.csv".parse().unwrap()).unwrap());
+        let log = (number % 4 >= 2).then(|| RunLogs::named_after(&"run.csv".parse().unwrap()).unwrap());
         let options = NxcOptions { wiring, display: log.is_some(), log, ..options() };
         let source = nxc::program(&controller, &Origin::default(), &options).unwrap();
         let compiled = Program::load(&compile(&source)).unwrap();
         let written = Program::load(&rxe::program(&controller, &wiring, Safety::default()).unwrap()).unwrap();
         let outcome = runner(runs, chance.new_rng()).run(&readings(), |sonar| {
-            let of_compiled = run(&compiled, &wiring, &sonar);
-            check(&controller, &wiring, &sonar, &of_compiled);
+            let compiled_run = run(&compiled, &wiring, &sonar);
+            check(&controller, &wiring, &sonar, &compiled_run);
             if options.log.is_some() {
-                check_log(&controller, &sonar, &of_compiled);
+                check_log(&controller, &sonar, &compiled_run);
             }
-            let of_written = run(&written, &wiring, &sonar);
+            let written_run = run(&written, &wiring, &sonar);
             let times = |report| commands(report, &wiring).into_iter().map(|(t_ms, ..)| t_ms);
-            for (compiled_ms, written_ms) in times(&of_compiled).zip(times(&of_written)) {
+            for (compiled_ms, written_ms) in times(&compiled_run).zip(times(&written_run)) {
                 assert!(compiled_ms.abs_diff(written_ms) <= JITTER_MS, "{compiled_ms} and {written_ms}");
             }
             Ok(())
@@ -215,7 +215,7 @@ fn compiled_nxc_runs_as_the_core_and_the_bytecode_do() {
     }
 }
 
-/// The log holds one row a step: the commands from then on, and the reading that led to them.
+/// Checks that the log has one row per step: the commands from then on, and the reading that led to them.
 fn check_log(controller: &Controller, sonar: &[Sonar], report: &Report) {
     let (changes, _) = expected(controller, sonar);
     let log = String::from_utf8(report.files["run_000.csv"].clone()).unwrap();
@@ -227,7 +227,7 @@ fn check_log(controller: &Controller, sonar: &[Sonar], report: &Report) {
         if let Some(change) = changes.iter().find(|change| change.step == step) {
             motors = change.motors;
         }
-        let reading = match step.checked_sub(1).map(|asked| sonar[asked as usize]) {
+        let reading = match step.checked_sub(1).map(|request| sonar[request as usize]) {
             None | Some(Sonar::Silent | Sonar::Hangs | Sonar::Echo(NO_ECHO_CM)) => String::new(),
             Some(Sonar::Echo(echo_cm)) => echo_cm.to_string(),
         };

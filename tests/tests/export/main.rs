@@ -1,4 +1,4 @@
-//! Onboard programs, through real compilers and on the machine that runs a brick's bytecode.
+//! Onboard programs: compiled by the real compilers and run in emulators.
 
 mod arduino;
 mod brick;

@@ -1,4 +1,4 @@
-//! Networks as NXC: compiled by the real compiler and run on the brick in software they answer the core's bits.
+//! Networks as NXC, compiled by the real compiler and run on the emulated brick, equal the core to the bit.
 
 use fixed::types::I16F16;
 use mindgap_controller_export::brick::{self, Event, EventKind, Program, Report, RunConfig, ScriptedWorld};
@@ -12,9 +12,9 @@ use mindgap_tests::nbc::compile;
 use mindgap_tests::plausible_networks::{PlausibleNetworks, plausible_networks};
 use rand::RngExt;
 
-/// Inputs tried with each network.
+/// Number of inputs tried with each network.
 const SAMPLES: usize = 40;
-/// Seeds of networks.
+/// Number of seeds of networks.
 const SEEDS: u64 = 4;
 
 fn quantised<const N: usize>(network: &Network<f32, N>) -> FixedNetwork<N> {
@@ -22,13 +22,13 @@ fn quantised<const N: usize>(network: &Network<f32, N>) -> FixedNetwork<N> {
 }
 
 fn number(text: &str) -> i32 {
-    text.parse().unwrap_or_else(|_| panic!("{text:?} is no number"))
+    text.parse().unwrap_or_else(|_| panic!("{text:?} is not a number"))
 }
 
-/// What a program shows, number by number, and what it took.
+/// Returns the numbers that a program shows, and the report of its run.
 fn shown(source: &str) -> (Vec<i32>, Report) {
     let setup = RunConfig { run_ms: 600_000, ..RunConfig::default() };
-    let program = Program::load(&compile(source)).expect("what the compiler made");
+    let program = Program::load(&compile(source)).expect("a program of the compiler");
     let report = brick::run(&program, &mut ScriptedWorld::default(), &setup);
     let text = |Event { kind, .. }: &Event| match kind {
         EventKind::Text { text, .. } => Some(number(text)),
@@ -37,7 +37,7 @@ fn shown(source: &str) -> (Vec<i32>, Report) {
     (report.events.iter().filter_map(text).collect(), report)
 }
 
-/// Samples from a little beyond the range that was trained, some of them at its ends.
+/// Draws samples from slightly more than the trained range, some of them at its ends.
 fn samples<const N: usize>(range: [(f64, f64); N], seed: u64) -> Vec<[I16F16; N]> {
     let rng = &mut generator(seed, &[77]);
     let mut input = |(low, high): (f64, f64)| {
@@ -51,7 +51,7 @@ fn samples<const N: usize>(range: [(f64, f64); N], seed: u64) -> Vec<[I16F16; N]
     (0..SAMPLES).map(|_| range.map(&mut input)).collect()
 }
 
-/// Calls of a function at samples, each shown.
+/// Returns calls of a function at samples, whose results are shown.
 fn calls<const N: usize>(name: &str, samples: &[[I16F16; N]]) -> String {
     let call = |sample: &[I16F16; N]| {
         let arguments: Vec<String> = sample.iter().map(|x| x.to_bits().to_string()).collect();
@@ -64,51 +64,51 @@ const COMMANDS: [(f64, f64); 4] = [(-100.0, 100.0); 4];
 const SONAR: [(f64, f64); 2] = [(0.0, 255.0), (0.0, 90.0)];
 
 #[test]
-fn networks_on_the_brick_answer_the_cores_bits() {
+fn networks_on_the_brick_equal_the_core_to_the_bit() {
     for seed in 0..SEEDS {
         let PlausibleNetworks { turn, forward, lateral, echo_probability, echo_value } = plausible_networks(seed);
         let motion = [quantised(&turn), quantised(&forward), quantised(&lateral)];
         let sonar = [quantised(&echo_probability), quantised(&echo_value)];
-        let drives = ["left", "right", "previous_left", "previous_right"];
-        let faces = ["distance", "incidence"];
+        let commands = ["left", "right", "previous_left", "previous_right"];
+        let facing = ["distance", "incidence"];
         let networks = [
-            Tabulated::new("Turn", "Degrees.", drives, &motion[0]),
-            Tabulated::new("Forward", "Cm.", drives, &motion[1]),
-            Tabulated::new("Lateral", "Cm.", drives, &motion[2]),
-            Tabulated::new("EchoProbability", "0 to 1.", faces, &sonar[0]),
-            Tabulated::new("EchoValue", "Cm.", faces, &sonar[1]),
+            Tabulated::new("Turn", "Degrees.", commands, &motion[0]),
+            Tabulated::new("Forward", "Cm.", commands, &motion[1]),
+            Tabulated::new("Lateral", "Cm.", commands, &motion[2]),
+            Tabulated::new("EchoProbability", "0 to 1.", facing, &sonar[0]),
+            Tabulated::new("EchoValue", "Cm.", facing, &sonar[1]),
         ];
         let source = nxc_networks(&networks);
-        let (commands, facing) = (samples(COMMANDS, seed), samples(SONAR, seed));
-        let moved = ["Turn", "Forward", "Lateral"].map(|name| calls(name, &commands));
-        let heard = ["EchoProbability", "EchoValue"].map(|name| calls(name, &facing));
-        let body = [moved.concat(), heard.concat()].concat();
-        let (answers, report) = shown(&format!("{source}\ntask main()\n{{\n{body}}}\n"));
-        let motions = motion.iter().flat_map(|n| commands.iter().map(|x| n.evaluate(*x).value.to_bits()));
-        let sonars = sonar.iter().flat_map(|n| facing.iter().map(|x| n.evaluate(*x).value.to_bits()));
+        let (motion_samples, sonar_samples) = (samples(COMMANDS, seed), samples(SONAR, seed));
+        let motion_calls = ["Turn", "Forward", "Lateral"].map(|name| calls(name, &motion_samples));
+        let sonar_calls = ["EchoProbability", "EchoValue"].map(|name| calls(name, &sonar_samples));
+        let body = [motion_calls.concat(), sonar_calls.concat()].concat();
+        let (outputs, report) = shown(&format!("{source}\ntask main()\n{{\n{body}}}\n"));
+        let motions = motion.iter().flat_map(|n| motion_samples.iter().map(|x| n.evaluate(*x).value.to_bits()));
+        let sonars = sonar.iter().flat_map(|n| sonar_samples.iter().map(|x| n.evaluate(*x).value.to_bits()));
         let expected: Vec<i32> = motions.chain(sonars).collect();
-        assert_eq!(answers.len(), expected.len(), "{:?}", report.end);
-        for (place, (answer, expected)) in answers.iter().zip(expected).enumerate() {
-            assert_eq!(*answer, expected, "seed {seed}, answer {place}");
+        assert_eq!(outputs.len(), expected.len(), "{:?}", report.end);
+        for (i, (output, expected)) in outputs.iter().zip(expected).enumerate() {
+            assert_eq!(*output, expected, "seed {seed}, output {i}");
         }
-        let planned_ms: usize = budget(&networks).answer_ms.iter().map(|(_, ms)| ms * SAMPLES).sum();
-        assert!(report.instructions < 80 * planned_ms as u64, "{} instructions", report.instructions);
+        let budget_ms: usize = budget(&networks).answer_ms.iter().map(|(_, ms)| ms * SAMPLES).sum();
+        assert!(report.instructions < 80 * budget_ms as u64, "{} instructions", report.instructions);
     }
 }
 
 #[test]
-fn a_program_with_all_networks_keeps_its_budget() {
+fn program_with_networks_keeps_its_budget() {
     let PlausibleNetworks { turn, echo_value, .. } = plausible_networks(5);
-    let drives = ["left", "right", "previous_left", "previous_right"];
+    let commands = ["left", "right", "previous_left", "previous_right"];
     let networks = [
-        Tabulated::new("Turn", "Degrees.", drives, &quantised(&turn)),
+        Tabulated::new("Turn", "Degrees.", commands, &quantised(&turn)),
         Tabulated::new("EchoValue", "Cm.", ["distance", "incidence"], &quantised(&echo_value)),
     ];
     let budget = budget(&networks);
     let source = nxc_networks(&networks);
     let body = "NumOut(0, LCD_LINE1, Turn(1, 2, 3, 4)); NumOut(0, LCD_LINE1, EchoValue(1, 2));";
     let program = compile(&format!("{source} task main() {{ {body} }}"));
-    assert!(program.len() <= budget.program_bytes, "{} bytes, planned {}", program.len(), budget.program_bytes);
+    assert!(program.len() <= budget.program_bytes, "{} bytes, budget {}", program.len(), budget.program_bytes);
     let report =
         brick::run(&Program::load(&program).expect("a program"), &mut ScriptedWorld::default(), &RunConfig::default());
     assert!(report.pool_bytes as usize <= budget.memory_bytes, "{} of {}", report.pool_bytes, budget.memory_bytes);

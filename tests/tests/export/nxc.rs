@@ -1,4 +1,4 @@
-//! NXC programs go through the real compiler, `nbc`.
+//! NXC programs are compiled by the real compiler, `nbc`.
 
 use mindgap_controller_export::collect::{self, CollectOptions, Commands};
 use mindgap_controller_export::names::{BrickName, RunLogs};
@@ -10,7 +10,7 @@ use mindgap_core::controller::Controller;
 use mindgap_tests::controllers::at_its_limits;
 use mindgap_tests::nbc::compile;
 
-/// The file version that firmware 1.28 and later runs.
+/// The file version of firmware 1.28 and later.
 const FILE_VERSION: u8 = 6;
 
 fn options() -> NxcOptions {
@@ -18,7 +18,7 @@ fn options() -> NxcOptions {
 }
 
 fn full_options() -> NxcOptions {
-    let log = Some(RunLogs::of(&"avoid.csv".parse().unwrap()).unwrap());
+    let log = Some(RunLogs::named_after(&"avoid.csv".parse().unwrap()).unwrap());
     NxcOptions { log, display: true, safety: Safety { stop_cm: Some(15), stall: true }, ..options() }
 }
 
@@ -37,13 +37,13 @@ fn nbc_accepts_every_kind_of_program() {
         assert_eq!(rxe[15], FILE_VERSION);
         rxe.len()
     });
-    assert_eq!(sizes[0], sizes[1], "ports change no size");
+    assert_eq!(sizes[0], sizes[1], "ports do not change the size");
     assert!(sizes[1] < sizes[2] && sizes[2] < sizes[3], "{sizes:?}");
     assert!(sizes[3] < 9000, "{sizes:?}");
 }
 
 #[test]
-fn the_first_lines_say_where_the_controller_came_from() {
+fn first_lines_state_the_origin_of_the_controller() {
     let origin = Origin {
         simulator: Some("sim.mgap\nStopAllTasks();".to_owned()),
         seed: Some(7),
@@ -68,7 +68,7 @@ fn no_statement_depends_on_the_firmware() {
     }
 }
 
-/// nbc reads the wrong register for the first value of a local variable when the function before it ended so.
+/// nbc may read the wrong register for the initial value of a local variable, depending on the preceding function.
 #[test]
 fn no_local_variable_is_initialised_where_it_is_declared() {
     let options = CollectOptions {
@@ -88,7 +88,7 @@ fn no_local_variable_is_initialised_where_it_is_declared() {
 }
 
 #[test]
-fn what_the_brick_cannot_run_is_refused_with_what_to_change() {
+fn impossible_program_is_rejected_with_the_necessary_change() {
     let program = |controller: &Controller, options: &NxcOptions| nxc::program(controller, &Origin::default(), options);
     let mut wild = at_its_limits();
     wild.tuples[2].left = -128;
@@ -106,7 +106,7 @@ fn what_the_brick_cannot_run_is_refused_with_what_to_change() {
 }
 
 #[test]
-fn a_log_too_large_names_the_step_limit_that_fits() {
+fn error_of_a_log_too_large_states_the_step_limit_that_fits() {
     let long =
         |max_steps| nxc::program(&Controller { max_steps, ..at_its_limits() }, &Origin::default(), &full_options());
     let Err(ExportError::LogTooLarge { steps, .. }) = long(u16::MAX) else { panic!("accepted") };

@@ -1,4 +1,4 @@
-//! Programs for pybricks hubs in a real MicroPython do what the core's machine and networks do.
+//! Programs for Pybricks hubs, run in a real MicroPython, behave like the core's machine and networks.
 
 use std::process::Command;
 
@@ -15,14 +15,14 @@ use serde_json::{Value, json};
 use super::scripted::{Answer, answers, controller, expected};
 
 const CONTROLLERS: u64 = 2_000;
-/// Seeds of networks, and inputs tried with each network.
+/// Number of seeds of networks, and of inputs tried with each network.
 const SEEDS: u64 = 4;
 const SAMPLES: usize = 500;
 const MOTION: [&str; 4] = ["left", "right", "previous_left", "previous_right"];
 const SONAR: [&str; 2] = ["distance_cm", "incidence_deg"];
 
 #[test]
-fn micropython_runs_as_the_core_does() {
+fn program_in_micropython_behaves_like_the_core() {
     let cases = (0..CONTROLLERS).map(|number| {
         let mut rng = generator(7, &[number]);
         let controller = controller(1, &mut rng);
@@ -39,15 +39,15 @@ fn micropython_runs_as_the_core_does() {
         (case, json!([ending.text(), commands]))
     });
     let (cases, expected): (Vec<Value>, Vec<Value>) = cases.unzip();
-    let done = in_micropython(&cases);
-    assert_eq!(done.len(), expected.len());
-    for (number, (done, expected)) in done.iter().zip(&expected).enumerate() {
-        assert_eq!(done, expected, "case {number}");
+    let results = in_micropython(&cases);
+    assert_eq!(results.len(), expected.len());
+    for (number, (result, expected)) in results.iter().zip(&expected).enumerate() {
+        assert_eq!(result, expected, "case {number}");
     }
 }
 
 #[test]
-fn networks_in_micropython_answer_as_the_core() {
+fn networks_in_micropython_agree_with_the_core() {
     for seed in 0..SEEDS {
         let PlausibleNetworks { turn, forward, lateral, echo_probability, echo_value } = plausible_networks(seed);
         let networks = [
@@ -59,45 +59,46 @@ fn networks_in_micropython_answer_as_the_core() {
         ];
         let rng = &mut generator(seed, &[78]);
         let commands: Vec<[f32; 4]> = (0..SAMPLES).map(|_| inputs([(-100.0, 100.0); 4], rng)).collect();
-        let faces: Vec<[f32; 2]> = (0..SAMPLES).map(|_| inputs([(0.0, 255.0), (0.0, 90.0)], rng)).collect();
+        let facing: Vec<[f32; 2]> = (0..SAMPLES).map(|_| inputs([(0.0, 255.0), (0.0, 90.0)], rng)).collect();
         let case = json!({
             "program": pybricks_networks(&networks),
-            "calls": {"turn": commands, "forward": commands, "lateral": commands, "echo_probability": faces,
-                      "echo_value": faces},
+            "calls": {"turn": commands, "forward": commands, "lateral": commands, "echo_probability": facing,
+                      "echo_value": facing},
         });
-        let done = in_micropython(&[case]);
-        let off = |name: &str, core: Vec<f32>| {
-            let answers = done[0][name].as_array().expect("an answer a sample");
-            assert_eq!(answers.len(), core.len());
-            let off = answers.iter().zip(core).map(|(answer, core)| (answer.as_f64().unwrap() - f64::from(core)).abs());
-            off.fold(0.0, f64::max)
+        let results = in_micropython(&[case]);
+        let largest_error = |name: &str, core: Vec<f32>| {
+            let outputs = results[0][name].as_array().expect("one output per sample");
+            assert_eq!(outputs.len(), core.len());
+            let errors =
+                outputs.iter().zip(core).map(|(output, core)| (output.as_f64().unwrap() - f64::from(core)).abs());
+            errors.fold(0.0, f64::max)
         };
         let core = |network: &Network<f32, 4>| {
             let folded = FoldedNetwork::<f32, 4>::fold(network);
             commands.iter().map(|inputs| folded.evaluate(*inputs)).collect()
         };
-        let core_of_sonar = |network: &Network<f32, 2>| {
+        let core_sonar = |network: &Network<f32, 2>| {
             let folded = FoldedNetwork::<f32, 2>::fold(network);
-            faces.iter().map(|inputs| folded.evaluate(*inputs)).collect()
+            facing.iter().map(|inputs| folded.evaluate(*inputs)).collect()
         };
         let motion = [("turn", &turn), ("forward", &forward), ("lateral", &lateral)];
         for (name, network) in motion {
-            let off = off(name, core(network));
-            assert!(off < 2e-3, "{name} of seed {seed}: {off}");
+            let error = largest_error(name, core(network));
+            assert!(error < 2e-3, "{name} of seed {seed}: {error}");
         }
         for (name, network) in [("echo_probability", &echo_probability), ("echo_value", &echo_value)] {
-            let off = off(name, core_of_sonar(network));
-            assert!(off < 1e-2, "{name} of seed {seed}: {off}");
+            let error = largest_error(name, core_sonar(network));
+            assert!(error < 1e-2, "{name} of seed {seed}: {error}");
         }
     }
 }
 
-/// Inputs from a little beyond the range that was trained.
+/// Draws inputs from slightly more than the trained range.
 fn inputs<const N: usize>(ranges: [(f32, f32); N], rng: &mut Generator) -> [f32; N] {
     ranges.map(|(low, high)| rng.random_range(1.1 * low - 1.0..1.1 * high))
 }
 
-/// What MicroPython says of each case.
+/// Returns the result of each case in MicroPython.
 fn in_micropython(cases: &[Value]) -> Vec<Value> {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("cases.json");

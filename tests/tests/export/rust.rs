@@ -1,4 +1,4 @@
-//! The Rust module: compiled here as it stands in the golden file, which is what the exporter writes.
+//! The Rust module: the golden file is compiled here, and the exporter writes the same text.
 
 use mindgap_controller_export::{ExportError, Origin, rust};
 use mindgap_core::controller::InvalidController;
@@ -8,7 +8,7 @@ use mindgap_tests::controllers::at_its_limits;
 mod golden;
 
 #[test]
-fn the_module_is_the_golden_file_and_holds_the_controller() {
+fn module_equals_the_golden_file_and_contains_the_controller() {
     let origin = Origin {
         simulator: Some("sim.mgap".to_owned()),
         scene: Some("scene.toml".to_owned()),
@@ -23,7 +23,7 @@ fn the_module_is_the_golden_file_and_holds_the_controller() {
 }
 
 #[test]
-fn a_controller_out_of_range_is_refused() {
+fn controller_out_of_range_is_rejected() {
     let mut wild = at_its_limits();
     wild.tuples[0].threshold_cm = -1;
     let refused = ExportError::Controller(InvalidController::Threshold(0));

@@ -1,4 +1,4 @@
-//! The .rxe writer against the real compiler's decompiler and assembler, and against its budget.
+//! The .rxe writer is compared with the decompiler and assembler of the real compiler, and with its budget.
 
 use std::path::Path;
 use std::process::Command;
@@ -12,10 +12,10 @@ use mindgap_controller_export::{ExportError, rxe};
 use mindgap_core::controller::Controller;
 use mindgap_tests::controllers::at_its_limits;
 
-const MOST_FILE_BYTES: usize = 2_500;
-const MOST_POOL_BYTES: usize = 1_024;
-/// Most of them look at the orange button while the step passes.
-const MOST_INSTRUCTIONS_PER_STEP: u64 = 500;
+const MAX_FILE_BYTES: usize = 2_500;
+const MAX_POOL_BYTES: usize = 1_024;
+/// Most of them check the orange button during the step.
+const MAX_INSTRUCTIONS_PER_STEP: u64 = 500;
 
 fn run(file: &[u8], sonar: &[Sonar]) -> Report {
     brick::run(&Program::load(file).unwrap(), &mut ScriptedWorld::sonar(sonar), &RunConfig::default())
@@ -29,7 +29,7 @@ fn nbc(arguments: &[&str], folder: &Path) -> String {
 }
 
 #[test]
-fn the_compiler_takes_the_file_apart_and_puts_it_together_again() {
+fn compiler_decompiles_and_reassembles_the_file() {
     let written = rxe::program(&at_its_limits(), &Wiring::default(), Safety::default()).unwrap();
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("own.rxe"), &written).unwrap();
@@ -51,31 +51,31 @@ fn the_compiler_takes_the_file_apart_and_puts_it_together_again() {
 }
 
 #[test]
-fn the_program_keeps_its_budget() {
+fn program_keeps_its_budget() {
     for max_steps in [1, u16::MAX] {
         let file =
             rxe::program(&Controller { max_steps, ..at_its_limits() }, &Wiring::default(), Safety::default()).unwrap();
-        assert!(file.len() <= MOST_FILE_BYTES, "{} bytes", file.len());
+        assert!(file.len() <= MAX_FILE_BYTES, "{} bytes", file.len());
         let report = run(&file, &[Sonar::Echo(50)]);
-        assert!(report.pool_bytes <= MOST_POOL_BYTES, "{} bytes of memory", report.pool_bytes);
+        assert!(report.pool_bytes <= MAX_POOL_BYTES, "{} bytes of memory", report.pool_bytes);
     }
 }
 
 #[test]
-fn no_step_takes_more_instructions_than_planned() {
+fn no_step_takes_more_instructions_than_budgeted() {
     let file = rxe::program(&at_its_limits(), &Wiring::default(), Safety::default()).unwrap();
     let instructions = |sonar: &[Sonar]| run(&file, &[&[Sonar::Echo(60)][..], sonar].concat()).instructions;
     let hangs_once = [Sonar::Hangs, Sonar::Echo(0), Sonar::Hangs, Sonar::Echo(1)];
     for sonar in [&[Sonar::Echo(41), Sonar::Echo(1), Sonar::Echo(0)][..], &[Sonar::Echo(255); 5], &hangs_once] {
         for steps in 1..=sonar.len() {
             let step = instructions(&sonar[..steps]) - instructions(&sonar[..steps - 1]);
-            assert!(step < MOST_INSTRUCTIONS_PER_STEP, "{step} instructions in step {steps} of {sonar:?}");
+            assert!(step < MAX_INSTRUCTIONS_PER_STEP, "{step} instructions in step {steps} of {sonar:?}");
         }
     }
 }
 
 #[test]
-fn a_dead_sensor_stops_the_motors_within_two_steps() {
+fn dead_sensor_stops_the_motors_within_two_steps() {
     let file = rxe::program(&at_its_limits(), &Wiring::default(), Safety::default()).unwrap();
     for dead in [Sonar::Silent, Sonar::Hangs] {
         let report = run(&file, &[Sonar::Echo(60), dead, dead]);
@@ -84,12 +84,12 @@ fn a_dead_sensor_stops_the_motors_within_two_steps() {
         assert_eq!(report.end, Termination::Finished);
         assert!((1200..1260).contains(&stopped_ms), "{stopped_ms}");
     }
-    // One lost answer is no reason to stop.
+    // A single lost answer does not stop the robot.
     assert!(run(&file, &[Sonar::Silent, Sonar::Echo(60), Sonar::Silent, Sonar::Echo(60)]).ended_ms > 6 * 400);
 }
 
 #[test]
-fn what_the_brick_cannot_run_is_refused() {
+fn impossible_program_is_rejected() {
     let hasty = Controller { step_ms: 1, ..at_its_limits() };
     assert!(matches!(
         rxe::program(&hasty, &Wiring::default(), Safety::default()),

@@ -1,5 +1,5 @@
-//! What keeps a robot and its surroundings safe, in both formats: looking before driving, stopping at once, and logs that
-//! replace no file.
+//! Safety of the robot and its surroundings in both formats: a check of the sensor before driving, immediate stops, and logs
+//! that replace no file.
 
 use std::collections::BTreeMap;
 
@@ -42,20 +42,20 @@ fn run(program: &Program, mut world: ScriptedWorld) -> Report {
     brick::run(program, &mut world, &RunConfig::default())
 }
 
-/// Times of the motors' commands, left and right together.
+/// Returns the times of the motor commands, left and right together.
 fn driven_ms(report: &Report) -> Vec<u32> {
-    let of_left = |kind: &EventKind| matches!(kind, EventKind::Motor { port: 1, .. });
-    report.events.iter().filter(|event| of_left(&event.kind)).map(|event| event.t_ms).collect()
+    let is_left = |kind: &EventKind| matches!(kind, EventKind::Motor { port: 1, .. });
+    report.events.iter().filter(|event| is_left(&event.kind)).map(|event| event.t_ms).collect()
 }
 
 #[track_caller]
-fn assert_told(report: &Report, ending: Ending) {
-    let told = |kind: &EventKind| match kind {
+fn assert_ending(report: &Report, ending: Ending) {
+    let reports = |kind: &EventKind| match kind {
         EventKind::Text { text, .. } => text == ending.text(),
         EventKind::Tone { hz, .. } => *hz == ending.hz(),
         _ => false,
     };
-    let count = report.events.iter().filter(|event| told(&event.kind)).count();
+    let count = report.events.iter().filter(|event| reports(&event.kind)).count();
     assert_eq!((report.end, count), (Termination::Finished, 2), "{ending:?}: {report:?}");
 }
 
@@ -65,40 +65,40 @@ fn nothing_moves_unless_the_sensor_answers() {
         let on_another_port = ScriptedWorld { sonar_port: 0, ..ScriptedWorld::sonar(FAR) };
         for world in [ScriptedWorld::sonar([]), ScriptedWorld::sonar([Sonar::Hangs; 9]), on_another_port] {
             let report = run(&program, world);
-            assert_told(&report, Ending::NoSonar);
+            assert_ending(&report, Ending::NoSonar);
             assert!(driven_ms(&report).is_empty(), "{report:?}");
         }
-        // Looking takes no reading: the first one is that of the first step.
+        // The check takes no reading: the first one is that of the first step.
         let mut world = ScriptedWorld::sonar(FAR);
         let report = brick::run(&program, &mut world, &RunConfig::default());
-        assert_told(&report, Ending::TimedOut);
-        assert_eq!(world.asked, STEPS);
+        assert_ending(&report, Ending::TimedOut);
+        assert_eq!(world.requests, STEPS);
     }
 }
 
 #[test]
-fn the_orange_button_stops_at_once() {
+fn orange_button_stops_at_once() {
     for program in programs(Safety::default()) {
-        let began_ms = driven_ms(&run(&program, ScriptedWorld::sonar(FAR)))[0];
-        for pressed_ms in (began_ms + 1..began_ms + 1_700).step_by(37) {
+        let start_ms = driven_ms(&run(&program, ScriptedWorld::sonar(FAR)))[0];
+        for pressed_ms in (start_ms + 1..start_ms + 1_700).step_by(37) {
             for held_ms in [1, 300] {
                 let press = Press::orange(pressed_ms, pressed_ms + held_ms);
                 let report = run(&program, ScriptedWorld { presses: vec![press], ..ScriptedWorld::sonar(FAR) });
-                assert_told(&report, Ending::Stopped);
+                assert_ending(&report, Ending::Stopped);
                 let stopped_ms = *driven_ms(&report).last().unwrap();
                 let at_once = pressed_ms..=pressed_ms + u32::from(BUTTON_POLL_MS) + 5;
                 assert!(at_once.contains(&stopped_ms), "pressed at {pressed_ms}, stopped at {stopped_ms}");
                 assert_eq!(report.motors[1..], [Drive::Brake; 2]);
             }
         }
-        // The press that starts the program stops nothing, however long it is; one while the sensor warms up does.
+        // The press that starts the program does not stop it, however long it is. One while the sensor warms up does.
         let started = Press::orange(0, 900);
         let report = run(&program, ScriptedWorld { presses: vec![started], ..ScriptedWorld::sonar(FAR) });
-        assert_told(&report, Ending::TimedOut);
+        assert_ending(&report, Ending::TimedOut);
         assert!(driven_ms(&report)[0] > 900);
         let early = vec![Press::orange(0, 50), Press::orange(100, 110)];
         let report = run(&program, ScriptedWorld { presses: early, ..ScriptedWorld::sonar(FAR) });
-        assert_told(&report, Ending::Stopped);
+        assert_ending(&report, Ending::Stopped);
         assert!(
             !report.events.iter().any(|event| matches!(event.kind, EventKind::Motor { drive: Drive::Power(_), .. }))
         );
@@ -106,28 +106,28 @@ fn the_orange_button_stops_at_once() {
 }
 
 #[test]
-fn near_things_and_stalled_wheels_stop_it_on_demand() {
+fn near_obstacle_and_stalled_wheels_stop_it_if_asked_to() {
     let near = || ScriptedWorld::sonar([Sonar::Echo(60), Sonar::Echo(43), Sonar::Echo(44)]);
     let blocked = || ScriptedWorld { wheels_blocked: true, ..ScriptedWorld::sonar(FAR) };
     for program in programs(Safety { stop_cm: Some(44), stall: true }) {
         let report = run(&program, near());
-        assert_told(&report, Ending::Near);
+        assert_ending(&report, Ending::Near);
         let driven_ms = driven_ms(&report);
         assert!((800..830).contains(&(driven_ms.last().unwrap() - driven_ms[0])), "{driven_ms:?}");
         let report = run(&program, blocked());
-        assert_told(&report, Ending::Stalled);
+        assert_ending(&report, Ending::Stalled);
         assert!(report.ended_ms < 4_000, "{}", report.ended_ms);
-        assert_told(&run(&program, ScriptedWorld::sonar(FAR)), Ending::TimedOut);
+        assert_ending(&run(&program, ScriptedWorld::sonar(FAR)), Ending::TimedOut);
     }
     for program in programs(Safety::default()) {
-        assert_told(&run(&program, blocked()), Ending::TimedOut);
-        let beside = ScriptedWorld::sonar([Sonar::Echo(43); STEPS]);
-        assert_told(&run(&program, beside), Ending::TimedOut);
+        assert_ending(&run(&program, blocked()), Ending::TimedOut);
+        let near = ScriptedWorld::sonar([Sonar::Echo(43); STEPS]);
+        assert_ending(&run(&program, near), Ending::TimedOut);
     }
 }
 
 #[test]
-fn a_clock_that_wraps_changes_nothing() {
+fn clock_wraparound_changes_nothing() {
     let collected = collect::program(&CollectOptions {
         program: BrickName::program("collect").unwrap(),
         wiring: Wiring::default(),
@@ -149,8 +149,8 @@ fn a_clock_that_wraps_changes_nothing() {
 }
 
 #[test]
-fn every_start_logs_to_a_file_of_its_own() {
-    let log = Some(RunLogs::of(&"run.csv".parse().unwrap()).unwrap());
+fn every_start_logs_to_a_new_file() {
+    let log = Some(RunLogs::named_after(&"run.csv".parse().unwrap()).unwrap());
     let program = nxc_program(&NxcOptions { log, ..options(Safety::default()) });
     let collected = BTreeMap::from([("run-000.csv".to_owned(), b"collected".to_vec())]);
     let start = |files| {
@@ -164,9 +164,9 @@ fn every_start_logs_to_a_file_of_its_own() {
     assert_eq!(twice["run_000.csv"], once["run_000.csv"]);
     assert_eq!(String::from_utf8_lossy(&once["run_000.csv"]).lines().count(), 1 + 1 + STEPS);
 
-    // The flash is as full as it is then, whatever the export was told.
+    // The flash may be fuller than it was when the program was exported.
     let config = RunConfig { flash_bytes: 512, ..RunConfig::default() };
     let report = brick::run(&program, &mut ScriptedWorld::sonar(FAR), &config);
-    assert_told(&report, Ending::NoRoom);
+    assert_ending(&report, Ending::NoRoom);
     assert!(driven_ms(&report).is_empty() && report.files.is_empty());
 }

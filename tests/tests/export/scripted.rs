@@ -1,11 +1,11 @@
-//! Runs by script of programs for boards: random controllers, what the sensor answers, and what the core's machine does.
+//! Scripted runs of programs for boards: random controllers, answers of the sensor, and the behaviour of the core's machine.
 
 use mindgap_controller_export::onboard::{Ending, FAILED_STEPS_TO_STOP};
 use mindgap_core::controller::{Controller, Machine, Motors, Status, Tuple, When};
 use mindgap_foundations::chance::Generator;
 use rand::RngExt;
 
-/// What the sensor answers.
+/// An answer of the sensor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Answer {
     /// A distance in mm.
@@ -16,14 +16,14 @@ pub enum Answer {
     Dead,
 }
 
-/// Answers of a run at most.
-pub const MOST_STEPS: u16 = 40;
+/// Largest number of answers in a run.
+pub const MAX_STEPS: u16 = 40;
 
-/// When motors were set, and to what.
+/// Time in ms and motor commands that were set.
 pub type Command = (u32, Motors);
 
-/// Any controller whose run ends.
-pub fn controller(least_step_ms: u16, rng: &mut Generator) -> Controller {
+/// Draws a controller whose run ends.
+pub fn controller(min_step_ms: u16, rng: &mut Generator) -> Controller {
     let mut tuple = || Tuple {
         left: rng.random_range(-100..=100),
         right: rng.random_range(-100..=100),
@@ -31,10 +31,10 @@ pub fn controller(least_step_ms: u16, rng: &mut Generator) -> Controller {
         threshold_cm: rng.random_range(0..=255),
     };
     let tuples = std::array::from_fn(|_| tuple());
-    Controller { step_ms: rng.random_range(least_step_ms..1_000), max_steps: rng.random_range(1..MOST_STEPS), tuples }
+    Controller { step_ms: rng.random_range(min_step_ms..1_000), max_steps: rng.random_range(1..MAX_STEPS), tuples }
 }
 
-/// Answers of a sensor that tells whole multiples of `resolution_mm`, often the controller's own thresholds.
+/// Draws answers of a sensor with this resolution, often the controller's own thresholds.
 pub fn answers(controller: &Controller, resolution_mm: u16, rng: &mut Generator) -> Vec<Answer> {
     let mut answer = || match rng.random_range(0..20) {
         0 => Answer::Dead,
@@ -42,17 +42,17 @@ pub fn answers(controller: &Controller, resolution_mm: u16, rng: &mut Generator)
         4..8 => Answer::Mm(10 * controller.tuples[rng.random_range(0..6)].threshold_cm as u16),
         _ => Answer::Mm(rng.random_range(0..2_000 / resolution_mm) * resolution_mm),
     };
-    (0..MOST_STEPS).map(|_| answer()).collect()
+    (0..MAX_STEPS).map(|_| answer()).collect()
 }
 
-/// The ending and all motor commands with their times, as the core's machine has them. The first answer also tells whether
-/// a sensor is there, before anything moves.
+/// Returns the ending and all motor commands with their times, by the core's machine. The first answer also shows whether a
+/// sensor is there, before anything moves.
 pub fn expected(controller: &Controller, answers: &[Answer]) -> (Ending, Vec<Command>) {
     if answers[0] == Answer::Dead {
         return (Ending::NoSonar, Vec::new());
     }
-    let mut machine = Machine::start();
-    let mut commands = vec![(0, machine.motors(controller))];
+    let mut machine = Machine::start(controller);
+    let mut commands = vec![(0, machine.motors())];
     let mut failed_steps = 0;
     for (step, answer) in (1u32..).zip(answers) {
         let tuple = machine.tuple();
@@ -61,7 +61,7 @@ pub fn expected(controller: &Controller, answers: &[Answer]) -> (Ending, Vec<Com
             Answer::NoEcho | Answer::Dead => None,
         };
         failed_steps = if *answer == Answer::Dead { failed_steps + 1 } else { 0 };
-        let status = machine.step(controller, reading_cm);
+        let status = machine.step(reading_cm);
         let t_ms = step * u32::from(controller.step_ms);
         let ending = match status {
             Status::Finished => Some(Ending::Finished),
@@ -74,7 +74,7 @@ pub fn expected(controller: &Controller, answers: &[Answer]) -> (Ending, Vec<Com
             return (ending, commands);
         }
         if machine.tuple() != tuple {
-            commands.push((t_ms, machine.motors(controller)));
+            commands.push((t_ms, machine.motors()));
         }
     }
     panic!("more steps than answers");

@@ -1,13 +1,13 @@
-//! The networks of firmware and example are those that their generator makes.
+//! The networks of the firmware and the example are up to date.
 
 use std::fs;
 use std::path::Path;
 
 #[test]
-fn the_sources_are_what_the_generator_makes() {
+fn sources_equal_the_output_of_the_generator() {
     let top = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
-    for (file, made) in mindgap_tests::firmware_networks::files().unwrap() {
-        let there = fs::read_to_string(top.join(file)).unwrap();
-        assert!(there == made, "{file} is old: run the binary firmware-networks");
+    for (file, generated) in mindgap_tests::firmware_networks::files().unwrap() {
+        let existing = fs::read_to_string(top.join(file)).unwrap();
+        assert!(existing == generated, "{file} is out of date: run the binary firmware-networks");
     }
 }

@@ -1,4 +1,4 @@
-//! Fixed point against the truth, function by function and network by network.
+//! Accuracy of fixed point, function by function and network by network.
 
 mod firmware_networks;
 mod function_error;

@@ -1,4 +1,4 @@
-//! Fixed-point networks of the sizes of Table I against the same networks in f32.
+//! Fixed-point networks of the sizes in Table I of the paper, compared with the same networks in f32.
 
 use fixed::types::I16F16;
 use mindgap_core::network::Network;
@@ -9,7 +9,7 @@ use rand::RngExt;
 
 const SAMPLES: usize = 20_000;
 
-/// The largest difference over samples drawn evenly from `ranges`, and the bound on the rounding error.
+/// Returns the largest difference over uniform samples from `ranges`, and the bound on the rounding error.
 fn largest_difference<const N: usize>(network: &Network<f32, N>, ranges: [(f32, f32); N]) -> (f64, f64) {
     let Quantised { network: fixed, error_bound } = Quantised::new(network).unwrap();
     let mut generator = generator(1, &[]);
@@ -24,7 +24,7 @@ fn largest_difference<const N: usize>(network: &Network<f32, N>, ranges: [(f32, 
 }
 
 #[test]
-fn fixed_point_answers_as_float_does() {
+fn fixed_point_agrees_with_float() {
     for seed in 0..10 {
         let networks = plausible_networks(seed);
         let commands = [(-100.0, 100.0); 4];

@@ -27,20 +27,20 @@ impl Brick<'_, '_> {
                 self.open(argument[1], opened)?
             }
             Syscall::FileRead => {
-                let (handle, most) = (self.memory.get_id(argument[1])? as u8, self.memory.get_id(argument[3])?);
+                let (handle, limit) = (self.memory.get_id(argument[1])? as u8, self.memory.get_id(argument[3])?);
                 // The firmware allocates the requested size before it reads.
-                let room = vec![0; usize::from(most as u16) + 1];
-                self.memory.set_array(Place::of(argument[2]), &room)?;
-                let (status, mut bytes) = self.flash.read(handle, u32::from(most as u16));
+                let room = vec![0; usize::from(limit as u16) + 1];
+                self.memory.set_array(Place::new(argument[2]), &room)?;
+                let (status, mut bytes) = self.flash.read(handle, u32::from(limit as u16));
                 self.memory.set_id(argument[3], bytes.len() as u32)?;
                 bytes.resize(room.len(), 0);
-                self.memory.set_array(Place::of(argument[2]), &bytes)?;
+                self.memory.set_array(Place::new(argument[2]), &bytes)?;
                 status
             }
             Syscall::FileWrite => {
                 let (handle, length) = (self.memory.get_id(argument[1])? as u8, self.memory.get_id(argument[3])?);
-                let buffer = self.memory.array(Place::of(argument[2]))?;
-                // The firmware would write whatever lies behind the buffer.
+                let buffer = self.memory.array(Place::new(argument[2]))?;
+                // The firmware would write the memory after the buffer.
                 let bytes = buffer.get(..length as usize).ok_or(Fault::Pointer)?;
                 let (status, written) = self.flash.write(handle, bytes);
                 self.memory.set_id(argument[3], written)?;
@@ -62,7 +62,7 @@ impl Brick<'_, '_> {
                 let pattern = self.name(argument[1])?;
                 let names: Vec<Vec<u8>> =
                     self.flash.list(&pattern).iter().map(|name| [name.as_bytes(), &[0]].concat()).collect();
-                let list = Place::of(argument[2]);
+                let list = Place::new(argument[2]);
                 self.memory.resize(list, names.len())?;
                 for (at, name) in names.iter().enumerate() {
                     let element = self.memory.element(list, at)?;

@@ -1,18 +1,18 @@
-//! System calls for mailboxes, Bluetooth, I/O maps, and what else the firmware offers.
+//! System calls for mailboxes, Bluetooth, I/O maps and the remaining functions of the firmware.
 
 use super::Arguments;
-use crate::brick::io_map::{MOST_BYTES, Module};
+use crate::brick::io_map::{MAX_BYTES, Module};
 use crate::brick::memory::Place;
 use crate::brick::{Brick, Fault};
 use crate::bytecode::{Syscall, comm};
 
-/// Connections to other bricks.
+/// Number of connections to other bricks.
 const CONNECTIONS: u32 = 4;
 const MS_PER_MIN: u32 = 60_000;
-/// The loader's code for a module that there is not, and for a place outside its map.
+/// The loader's codes for a module that does not exist, and for an offset outside its map.
 const NO_MODULE: i8 = 0x90u8 as i8;
 const BAD_FIELD: i8 = -17;
-/// Sensors are calibrated by files, of which there are none: values are shares of the whole range.
+/// Sensors are calibrated by files, and there are none: values are shares of the full range.
 const NOT_CALIBRATED: i8 = -64;
 const FULL_RANGE: i32 = 1023;
 
@@ -22,12 +22,12 @@ impl Brick<'_, '_> {
         let status = match call {
             Syscall::MessageWrite => {
                 let mailbox = self.memory.get_id(argument[1])?;
-                self.mailboxes.write(mailbox, self.memory.array(Place::of(argument[2]))?)
+                self.mailboxes.write(mailbox, self.memory.array(Place::new(argument[2]))?)
             }
             Syscall::MessageRead => {
-                let (mailbox, takes) = (self.memory.get_id(argument[1])?, self.memory.get_id(argument[2])? != 0);
-                let (status, message) = self.mailboxes.read(mailbox, takes);
-                self.memory.set_array(Place::of(argument[3]), &message)?;
+                let (mailbox, removes) = (self.memory.get_id(argument[1])?, self.memory.get_id(argument[2])? != 0);
+                let (status, message) = self.mailboxes.read(mailbox, removes);
+                self.memory.set_array(Place::new(argument[3]), &message)?;
                 status
             }
             // No other brick is connected, and none can be found.
@@ -37,7 +37,7 @@ impl Brick<'_, '_> {
             }
             Syscall::CommBtConnection => comm::NOT_READY,
             Syscall::CommBtOnOff | Syscall::DatalogWrite | Syscall::UpdateCalibCacheInfo => comm::OK,
-            // The firmware itself does not implement it.
+            // The firmware does not implement this call.
             Syscall::CommBtRead => return Err(Fault::Instruction),
             Syscall::KeepAlive => return self.memory.set_id(result, self.sleep_timeout_min * MS_PER_MIN),
             Syscall::SetSleepTimeout => {
@@ -45,7 +45,7 @@ impl Brick<'_, '_> {
                 self.sleep_timeout_min = if timeout_ms == 0 { 0 } else { (timeout_ms / MS_PER_MIN).max(1) & 0xFF };
                 return Ok(());
             }
-            // The firmware writes the time of the last synchronisation one argument too far on.
+            // The firmware writes the time of the last synchronisation to the next argument by mistake.
             Syscall::DatalogGetTimes => return self.memory.set_id(argument[1], 0),
             Syscall::IoMapRead => self.read_module(argument)?,
             Syscall::IoMapWrite => self.write_module(argument)?,
@@ -72,8 +72,8 @@ impl Brick<'_, '_> {
 
     fn read_module(&mut self, argument: Arguments) -> Result<i8, Fault> {
         let (offset, count) = (self.memory.get_id(argument[2])? as usize, self.memory.get_id(argument[3])? as usize);
-        let to = Place::of(argument[4]);
-        if count > MOST_BYTES {
+        let to = Place::new(argument[4]);
+        if count > MAX_BYTES {
             self.memory.set_array(to, &[])?;
             return Ok(comm::INVALID_SIZE);
         }
@@ -85,8 +85,8 @@ impl Brick<'_, '_> {
 
     fn write_module(&mut self, argument: Arguments) -> Result<i8, Fault> {
         let offset = self.memory.get_id(argument[2])? as usize;
-        let bytes = self.memory.array(Place::of(argument[3]))?.to_vec();
-        if bytes.len() > MOST_BYTES {
+        let bytes = self.memory.array(Place::new(argument[3]))?.to_vec();
+        if bytes.len() > MAX_BYTES {
             return Ok(comm::INVALID_SIZE);
         }
         let Some(module) = Module::named(self.string(argument[1])?) else { return Ok(NO_MODULE) };

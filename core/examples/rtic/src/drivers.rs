@@ -1,19 +1,19 @@
-//! Where your hardware comes in. Here motors and sonar are made up: a wall 90 cm ahead of the start, and a ghost at 20 cm
-//! in every seventh reading.
+//! The drivers: replace them with those of your hardware. These simulate a wall 90 cm ahead of the start, and a ghost echo
+//! at 20 cm in every seventh reading.
 
 use core::sync::atomic::{AtomicI32, AtomicU32, Ordering};
 
-use fixed::types::I16F16;
 use mindgap_core::controller::Motors;
+use mindgap_core::fixed::types::I16F16;
 
-/// The processor's clock.
+/// Frequency of the processor's clock.
 pub const CLOCK_HZ: u32 = 25_000_000;
 
 static DISTANCE_MM: AtomicI32 = AtomicI32::new(900);
 static READINGS: AtomicU32 = AtomicU32::new(0);
 static SPEED_MM: AtomicI32 = AtomicI32::new(0);
 
-/// Sets the motors, for a step to come.
+/// Sets the motors for the next step.
 pub fn drive(motors: Motors) {
     SPEED_MM.store(i32::from(motors.left) + i32::from(motors.right), Ordering::Relaxed);
 }

@@ -1,11 +1,11 @@
-//! What the robot does with a reading.
+//! Filters implausible readings and steps the controller.
 
-use fixed::types::I16F16;
 use mindgap_core::controller::{Controller, Machine, Motors, Status, Tuple, When};
+use mindgap_core::fixed::types::I16F16;
 
 use crate::networks::{ECHO_PROBABILITY, FORWARD};
 
-/// A controller as `mindgap export --format rust` writes it.
+/// A controller in the form that `mindgap export --format rust` writes.
 pub static CONTROLLER: Controller = Controller {
     step_ms: 400,
     max_steps: 150,
@@ -19,55 +19,55 @@ pub static CONTROLLER: Controller = Controller {
     ],
 };
 
-/// How much shorter a reading may be than the simulator expects before it is taken for a ghost.
+/// Difference by which a reading has to be shorter than the simulator predicts to count as a ghost echo.
 const GHOST_CM: I16F16 = I16F16::const_from_int(30);
-/// Where the sensor can be trusted to hear anything.
-const LEAST_PROBABILITY: I16F16 = I16F16::lit("0.25");
+/// Probability of an echo below which the simulator's prediction is not trusted.
+const MIN_PROBABILITY: I16F16 = I16F16::lit("0.25");
 
-/// The controller's place in its run, and what the simulator needs to expect the next reading.
+/// The controller's run, and the state from which the simulator predicts the next reading.
 pub struct Robot {
-    machine: Machine,
+    machine: Machine<'static>,
     previous: Motors,
     last_cm: Option<I16F16>,
 }
 
 impl Robot {
-    /// A robot at its start.
+    /// Returns a robot at its start.
     pub fn start() -> Self {
-        Robot { machine: Machine::start(), previous: Motors { left: 0, right: 0 }, last_cm: None }
+        Robot { machine: Machine::start(&CONTROLLER), previous: Motors { left: 0, right: 0 }, last_cm: None }
     }
 
-    /// Takes the reading of a step; what the motors are told next.
+    /// Takes the reading of a step. Returns the next motor commands.
     pub fn step(&mut self, reading_cm: Option<I16F16>) -> Motors {
         let current = self.motors();
         let commands = [current.left, current.right, self.previous.left, self.previous.right].map(I16F16::from);
         let moved_cm = FORWARD.evaluate(commands).value;
         let expected_cm = self.last_cm.map(|last_cm| last_cm.saturating_sub(moved_cm));
-        let believed_cm = reading_cm.filter(|reading_cm| expected_cm.is_none_or(|e| is_plausible(*reading_cm, e)));
-        self.last_cm = believed_cm.or(expected_cm);
+        let accepted_cm = reading_cm.filter(|reading_cm| expected_cm.is_none_or(|e| is_plausible(*reading_cm, e)));
+        self.last_cm = accepted_cm.or(expected_cm);
         self.previous = current;
-        self.machine.step(&CONTROLLER, believed_cm);
+        self.machine.step(accepted_cm);
         self.motors()
     }
 
-    /// What the motors are told now.
+    /// Returns the current motor commands.
     pub fn motors(&self) -> Motors {
-        self.machine.motors(&CONTROLLER)
+        self.machine.motors()
     }
 
-    /// The tuple that is held, from 0.
+    /// Returns the index of the current tuple, from 0.
     pub fn tuple(&self) -> usize {
         self.machine.tuple()
     }
 
-    /// Where the run stands.
+    /// Returns the status of the run.
     pub fn status(&self) -> Status {
         self.machine.status()
     }
 }
 
-/// A reading far shorter than expected is a ghost, unless no echo was to be expected from there anyway.
+/// Returns whether a reading is plausible. One far shorter than predicted is a ghost echo, unless no echo was predicted.
 fn is_plausible(reading_cm: I16F16, expected_cm: I16F16) -> bool {
     let echo = ECHO_PROBABILITY.evaluate([expected_cm, I16F16::ZERO]);
-    echo.value < LEAST_PROBABILITY || reading_cm > expected_cm.saturating_sub(GHOST_CM)
+    echo.value < MIN_PROBABILITY || reading_cm > expected_cm.saturating_sub(GHOST_CM)
 }

@@ -73,12 +73,12 @@ mod tests {
             controller in controllers(),
             readings in prop::collection::vec(30..70i16, 12),
         ) {
-            let mut machine = Machine::start();
+            let mut machine = Machine::start(&controller);
             let mut rows = Vec::new();
             for reading_cm in readings {
-                let motors = machine.motors(&controller);
+                let motors = machine.motors();
                 rows.push(Row { left: motors.left.into(), right: motors.right.into(), ..Row::default() });
-                if machine.step(&controller, Some(reading_cm)) != Status::Running {
+                if machine.step(Some(reading_cm)) != Status::Running {
                     break;
                 }
             }

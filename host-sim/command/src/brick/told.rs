@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use mindgap_controller_export::brick::{CodePlace, Drive, Event, EventKind, Fault, Report, Termination};
+use mindgap_controller_export::brick::{CodeLocation, Drive, Event, EventKind, Report, Termination};
 use serde_json::{Value, json};
 
 const MOTORS: [char; 3] = ['A', 'B', 'C'];
@@ -37,7 +37,7 @@ pub fn text(report: &Report) -> String {
         end_words(report.end),
         motors.collect::<Vec<_>>().join(", ")
     );
-    if let Some(CodePlace { clump, word, instruction }) = &report.failed_at {
+    if let Some(CodeLocation { clump, word, instruction, .. }) = &report.failed_at {
         let _ = writeln!(text, "at word {word} of clump {clump}: {instruction}");
     }
     let _ = writeln!(text, "{instructions} instructions, {pool_bytes} bytes of memory");
@@ -61,7 +61,7 @@ pub fn facts(report: &Report) -> Value {
         .map(|(name, content)| (name.clone(), Value::from(String::from_utf8_lossy(content).into_owned())))
         .collect();
     let failed_at = report.failed_at.as_ref().map(
-        |CodePlace { clump, word, instruction }| json!({"clump": clump, "word": word, "instruction": instruction}),
+        |CodeLocation { clump, word, instruction, .. }| json!({"clump": clump, "word": word, "instruction": instruction}),
     );
     json!({
         "schema": 1,
@@ -85,15 +85,11 @@ fn drive_word(drive: Drive) -> String {
     }
 }
 
-fn end_words(end: Termination) -> &'static str {
+fn end_words(end: Termination) -> String {
     match end {
-        Termination::Finished => "finished",
-        Termination::Aborted => "aborted by the dark button",
-        Termination::OutOfTime => "still running, given up",
-        Termination::Failed(Fault::Instruction) => "failed: an instruction that there is not",
-        Termination::Failed(Fault::Argument) => "failed: a wrong operand or index",
-        Termination::Failed(Fault::Pointer) => "failed: data outside the dataspace",
-        Termination::Failed(Fault::Memory) => "failed: no memory left",
-        Termination::Failed(Fault::Endless) => "failed: arrays that lie within each other",
+        Termination::Finished => "finished".into(),
+        Termination::Aborted => "aborted by the dark button".into(),
+        Termination::OutOfTime => "still running, given up".into(),
+        Termination::Failed(fault) => format!("failed: {fault}"),
     }
 }

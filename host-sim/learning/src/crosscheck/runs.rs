@@ -117,7 +117,8 @@ pub(super) fn side_by_side(
         let start = starts[generator.random_range(0..starts.len())];
         let random = decoder.controller(&decoder.random(&mut generator));
         let controller = controller.unwrap_or(&random);
-        let found = pair(&world, controller, Walker::new(float, start), Walker::new(fixed, start), run + 1, seed);
+        let (float, fixed) = (Walker::new(float, controller, start), Walker::new(fixed, controller, start));
+        let found = pair(&world, float, fixed, run + 1, seed);
         counter.one_more();
         found
     });
@@ -125,22 +126,15 @@ pub(super) fn side_by_side(
 }
 
 /// One pair of runs.
-fn pair(
-    world: &World,
-    controller: &Controller,
-    mut float: Walker<Float>,
-    mut fixed: Walker<Fixed>,
-    run: usize,
-    seed: u64,
-) -> Runs {
+fn pair(world: &World, mut float: Walker<Float>, mut fixed: Walker<Fixed>, run: usize, seed: u64) -> Runs {
     let (mut steps, mut same_decisions) = (0, 0);
     let (mut first_divergence, mut apart) = (None, Apart::default());
     while float.is_under_way() || fixed.is_under_way() {
         steps += 1;
         // Each step has its own draws, so that one echo more or less leaves those of later steps alone.
         let mut generator = Generator::seed_from_u64(derive(seed, &[STEP, steps as u64]));
-        float.step(world, controller, &mut generator.clone());
-        fixed.step(world, controller, &mut generator);
+        float.step(world, &mut generator.clone());
+        fixed.step(world, &mut generator);
         let states = [float.state(), fixed.state()];
         let decisions = states.map(|s| (s.tuple, s.crashed, s.stopped));
         if decisions[0] == decisions[1] {
@@ -166,16 +160,16 @@ struct World {
 struct Walker<'a, A: Arithmetic> {
     arithmetic: &'a A,
     pose: Pose,
-    machine: Machine,
+    machine: Machine<'a>,
     previous: Motors,
     echo_cm: Option<A::Reading>,
     crashed: bool,
 }
 
 impl<'a, A: Arithmetic> Walker<'a, A> {
-    fn new(arithmetic: &'a A, start: Pose) -> Self {
+    fn new(arithmetic: &'a A, controller: &'a Controller, start: Pose) -> Self {
         let previous = Motors { left: 0, right: 0 };
-        Walker { arithmetic, pose: start, machine: Machine::start(), previous, echo_cm: None, crashed: false }
+        Walker { arithmetic, pose: start, machine: Machine::start(controller), previous, echo_cm: None, crashed: false }
     }
 
     fn is_under_way(&self) -> bool {
@@ -183,11 +177,11 @@ impl<'a, A: Arithmetic> Walker<'a, A> {
     }
 
     /// Straight in the heading that it had, then the turn; then the reading, unless it has touched something.
-    fn step(&mut self, world: &World, controller: &Controller, generator: &mut Generator) {
+    fn step(&mut self, world: &World, generator: &mut Generator) {
         if !self.is_under_way() {
             return;
         }
-        let now = self.machine.motors(controller);
+        let now = self.machine.motors();
         let speeds = [now.left, now.right, self.previous.left, self.previous.right];
         self.previous = now;
         let [forward_cm, lateral_cm, turn_deg] = self.arithmetic.motion(speeds, generator);
@@ -201,7 +195,7 @@ impl<'a, A: Arithmetic> Walker<'a, A> {
         self.echo_cm = cast(&world.sides, sensor.position_cm, sensor.direction()).and_then(|hit| {
             self.arithmetic.reading([hit.distance_cm, hit.incidence_rad.abs().to_degrees()], generator)
         });
-        self.machine.step(controller, self.echo_cm);
+        self.machine.step(self.echo_cm);
     }
 
     fn state(&self) -> RunState {

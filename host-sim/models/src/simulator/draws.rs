@@ -78,7 +78,7 @@ impl<S: Simd> Draws<S> {
         let s = self.simd;
         let fraction = s.wrapping_dyn_shr_u32s(self.bits(), s.splat_u32s(9));
         // In the low bits of one the fraction makes a number of [1, 2).
-        let one_and = s.transmute_f32s_u32s(s.or_u32s(fraction, s.splat_u32s(mindgap_core::maths::ONE_BITS)));
+        let one_and = s.transmute_f32s_u32s(s.or_u32s(fraction, s.splat_u32s(1.0f32.to_bits())));
         Lanes::new(s, s.sub_f32s(one_and, s.splat_f32s(1.0)))
     }
 

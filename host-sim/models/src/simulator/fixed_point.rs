@@ -12,9 +12,9 @@ use mindgap_foundations::error::{Error, Result};
 
 /// What the networks answer, in the order turn, forward, lateral, echo_probability, echo_value.
 pub const DOCUMENTATION: [&str; 5] = [
-    "Turn to the left in a step, degrees.",
-    "Way forward in a step, cm.",
-    "Way to the left in a step, cm.",
+    "Turn per step, degrees, positive to the left.",
+    "Forward motion per step, cm.",
+    "Lateral motion per step, cm, positive to the left.",
     "Probability of an echo.",
     "Mean reading, cm.",
 ];
@@ -26,11 +26,11 @@ pub const FACING: [&str; 2] = ["distance_cm", "incidence_deg"];
 /// The five networks, quantised.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FixedNetworks {
-    /// Turn to the left in a step, degrees.
+    /// Turn per step, degrees, positive to the left.
     pub turn: Quantised<4>,
-    /// Way forward in a step, cm.
+    /// Forward motion per step, cm.
     pub forward: Quantised<4>,
-    /// Way to the left in a step, cm.
+    /// Lateral motion per step, cm, positive to the left.
     pub lateral: Quantised<4>,
     /// Probability that the sensor produces a value.
     pub echo_probability: Quantised<2>,

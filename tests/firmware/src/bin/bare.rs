@@ -1,5 +1,5 @@
-//! Networks, controller and draws without anything that prints. Its size is what they take in flash, and
-//! `run.sh` counts the instructions between the two marks.
+//! Networks, controller and random draws without any output. The size of the image is their flash, and `run.sh` counts the
+//! instructions between the two marks.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 #[cfg(not(target_os = "none"))]
@@ -12,9 +12,9 @@ mod on_target {
 
     use mindgap_core::chance::Generator;
     use mindgap_core::controller::Machine;
+    use mindgap_core::rand_core::SeedableRng;
     use mindgap_firmware::controller::CONTROLLER;
     use mindgap_firmware::job;
-    use rand_core::SeedableRng;
 
     #[cfg(cortex_m)]
     use cortex_m_rt as _;
@@ -26,14 +26,14 @@ mod on_target {
     #[unsafe(no_mangle)]
     extern "C" fn main() -> ! {
         let mut generator = Generator::seed_from_u64(black_box(1));
-        let mut machine = Machine::start();
+        let mut machine = Machine::start(&CONTROLLER);
         for _ in 0..SAMPLES {
             let sample = black_box(job::sample(&mut generator));
             count_from_here();
-            let answers = job::evaluate(&sample);
+            let outputs = job::evaluate(&sample);
             count_to_here();
-            machine.step(&CONTROLLER, job::reading_cm(&answers, &mut generator));
-            black_box((machine.motors(&CONTROLLER), &answers));
+            machine.step(job::reading_cm(&outputs, &mut generator));
+            black_box((machine.motors(), &outputs));
         }
         semihosting::process::exit(0)
     }

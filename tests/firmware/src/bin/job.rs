@@ -1,4 +1,4 @@
-//! Does the job and reports it; on a processor also how much stack the networks and a controller's step take.
+//! Does the job and reports it. On a processor it also reports the stack of the networks and a step of the controller.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 #[cfg(not(target_os = "none"))]
@@ -13,9 +13,9 @@ mod on_target {
 
     use mindgap_core::chance::Generator;
     use mindgap_core::controller::Machine;
+    use mindgap_core::rand_core::SeedableRng;
     use mindgap_firmware::controller::CONTROLLER;
     use mindgap_firmware::{job, report, stack};
-    use rand_core::SeedableRng;
 
     #[cfg(cortex_m)]
     use {cortex_m as _, cortex_m_rt as _, defmt_semihosting as _};
@@ -29,10 +29,10 @@ mod on_target {
 
     fn one_step() {
         let mut generator = Generator::seed_from_u64(black_box(1));
-        let mut machine = Machine::start();
-        let answers = job::evaluate(&job::sample(&mut generator));
-        machine.step(&CONTROLLER, job::reading_cm(&answers, &mut generator));
-        black_box((machine.motors(&CONTROLLER), &answers));
+        let mut machine = Machine::start(&CONTROLLER);
+        let outputs = job::evaluate(&job::sample(&mut generator));
+        machine.step(job::reading_cm(&outputs, &mut generator));
+        black_box((machine.motors(), &outputs));
     }
 
     #[panic_handler]

@@ -1,4 +1,4 @@
-//! Calls all that `mindgap-core` offers. It is never run: it is linked only if no panic can be reached from any of it.
+//! Calls everything in `mindgap-core`. The image is never run: it links only if no panic is reachable.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 #[cfg(not(target_os = "none"))]
@@ -39,10 +39,10 @@ mod on_target {
     fn controller() {
         let tuple = Tuple { left: black_box(0), threshold_cm: black_box(0), ..CONTROLLER.tuples[0] };
         let controller = Controller { step_ms: black_box(0), max_steps: black_box(0), tuples: black_box([tuple; 6]) };
-        let mut machine = Machine::start();
-        while black_box(machine.step(&controller, Some(black_box(1.0f32)))) != black_box(machine.status()) {}
-        machine.hold(&controller, black_box(1));
-        black_box((machine.motors(&controller), machine.steps(), machine.tuple(), controller.check().is_ok()));
+        let mut machine = Machine::start(&controller);
+        while black_box(machine.step(Some(black_box(1.0f32)))) != black_box(machine.status()) {}
+        machine.hold(black_box(1));
+        black_box((machine.motors(), machine.steps(), machine.tuple(), controller.check().is_ok()));
     }
 
     fn network<const N: usize>() {

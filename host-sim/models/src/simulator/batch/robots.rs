@@ -61,7 +61,7 @@ pub struct Robots<'a> {
 pub struct Run<'a> {
     number: usize,
     request: RolloutRequest<'a>,
-    machine: Machine,
+    machine: Machine<'a>,
     /// What added effects look back on.
     pub memory: EffectMemory,
     /// Steps for which its tuple and the one before were held, as far back as effects look.
@@ -117,7 +117,7 @@ impl<'a> Robots<'a> {
             Run {
                 number,
                 request,
-                machine: Machine::start(),
+                machine: Machine::start(request.controller),
                 memory: EffectMemory::default(),
                 held_steps: HISTORY,
                 held_before: HISTORY,
@@ -215,7 +215,7 @@ impl<'a> Robots<'a> {
         let run = self.runs[lane].as_mut()?;
         let controller = run.request.controller;
         let steps = (f32::from(controller.max_steps) - steps_left) as u16;
-        run.machine.hold(controller, steps - 1 - run.machine.steps());
+        run.machine.hold(steps - 1 - run.machine.steps());
         let touch = || self.environment.room.touch(from_cm, to_cm, self.environment.robot.body_radius_cm);
         if let Some(share) = (happens == MAY_TOUCH).then(touch).flatten() {
             return Some((
@@ -224,7 +224,7 @@ impl<'a> Robots<'a> {
             ));
         }
         let tuple = run.machine.tuple();
-        let termination = match run.machine.step(controller, reading(echo_cm[lane])) {
+        let termination = match run.machine.step(reading(echo_cm[lane])) {
             Status::Running => {
                 let next = run.machine.tuple();
                 if next != tuple || self.first[lane] > 0.0 {

@@ -162,11 +162,11 @@ fn every_run_steps_as_the_machine_of_the_core_does() {
         let motions = &environment.motions(controller);
         for seed in 0..20 {
             let (outcome, moments) = environment.trace(RolloutRequest { controller, motions, seed });
-            let mut machine = Machine::start();
+            let mut machine = Machine::start(controller);
             for (i, moment) in moments.iter().enumerate() {
                 let crashed = outcome.termination == Termination::Crashed && i + 1 == moments.len();
                 if !crashed {
-                    machine.step(controller, moment.echo_cm);
+                    machine.step(moment.echo_cm);
                 }
                 assert_eq!(moment.tuple, machine.tuple(), "step {i}");
             }
