@@ -20,7 +20,7 @@ use crate::learn::train;
 use crate::logs::{Logs, Run};
 use crate::simulator::{Missing, kinematic};
 
-/// What there is to say about logs; docs/formats.md has the JSON.
+/// What there is to say about logs; docs/reference/json.md has the JSON.
 #[derive(Clone, Debug, Serialize)]
 pub struct Survey {
     schema: u32,
