@@ -1,7 +1,7 @@
 //! The Python package `mindgap`: arrays and frames in, the library's work, and dicts, frames and pictures out.
 //!
 //! It holds no logic of its own: each function calls what the command of its name calls, with the interpreter released
-//! meanwhile. Types and words for users are in `mindgap.pyi` and `docs/python.md`.
+//! meanwhile. Types and words for users are in `mindgap.pyi` and `docs/how-to/python.md`.
 
 mod controller;
 mod convert;

@@ -217,7 +217,7 @@ mod tests {
     use mindgap_learning::learn::train::{TABLE_ONE, Trainer, train};
 
     /// Regions that hold much less would drive controllers into what nobody expects, and much more would hide them. So few runs
-    /// leave controllers' headings too narrow: docs/loop.md has all figures.
+    /// leave controllers' headings too narrow: docs/reference/measurements.md has all figures.
     #[test]
     fn regions_hold_the_share_of_paths_that_they_should() {
         let recorded = |seed| record(&default_robot(), &training_room(), 50, 60, &[], seed).expect("room to drive");

@@ -16,7 +16,7 @@ pub mod sensitivity;
 
 use std::path::{Path, PathBuf};
 
-/// Paths within the folder of a challenge (docs/formats.md, "A challenge").
+/// Paths within the folder of a challenge (docs/reference/formats.md, "A challenge").
 pub struct Folder<'a>(pub &'a Path);
 
 impl Folder<'_> {

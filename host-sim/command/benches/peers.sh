@@ -6,7 +6,7 @@
 #   host-sim/command/benches/peers.sh [ROUNDS [RAW.csv TABLE.md]]
 set -euo pipefail
 cd "$(dirname "$0")/../.."
-rounds=${1:-5} raw=${2:-docs/peers.csv} table=${3:-docs/peers.md}
+rounds=${1:-5} raw=${2:-docs/reference/peers.csv} table=${3:-docs/reference/peers.md}
 peers=host-sim/command/benches/peers
 work=target/peers
 export RAYON_NUM_THREADS=1 OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1

@@ -14,7 +14,7 @@ use super::scope::{NotCompared, Scope};
 use mindgap_learning::evaluation::final_position::FinalPositionErrors;
 use mindgap_logs::inspection::Finding;
 
-/// What `mindgap diagnose` finds; docs/formats.md has the JSON.
+/// What `mindgap diagnose` finds; docs/reference/json.md has the JSON.
 #[derive(Clone, Debug)]
 pub struct Diagnosis {
     /// What was wrong with the logs before anything was compared.

@@ -27,7 +27,7 @@ pub struct NamedEffect {
     /// How probable it is.
     #[serde(serialize_with = "rounding::number")]
     pub probability: f64,
-    /// How strong it is, by the names of docs/formats.md.
+    /// How strong it is, by the names of docs/reference/effects.md.
     pub parameters: Map<String, Value>,
     /// Effects that these logs cannot tell from it.
     pub ambiguous_with: Vec<&'static str>,

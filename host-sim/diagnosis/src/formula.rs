@@ -29,7 +29,7 @@ use pursuit::{Response, Sum, pursue};
 pub struct Formula {
     /// The channel that it explains.
     pub channel: Channel,
-    /// What is added to what is predicted, cm or radians a step; its variables are those of docs/own-effects.md.
+    /// What is added to what is predicted, cm or radians a step; its variables are those of docs/reference/own-effects.md.
     pub text: String,
     /// The same as an own effect.
     pub definition: Definition,

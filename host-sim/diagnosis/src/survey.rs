@@ -20,7 +20,7 @@ use mindgap_logs::{Logs, Run};
 use mindgap_models::effects::CATALOGUE;
 use mindgap_models::simulator::{Missing, kinematic};
 
-/// What there is to say about logs; docs/formats.md has the JSON.
+/// What there is to say about logs; docs/reference/json.md has the JSON.
 #[derive(Clone, Debug, Serialize)]
 pub struct Survey {
     schema: u32,

@@ -230,7 +230,7 @@ impl Columns {
         for [a, b] in [TWIST, WHEELS, [Quantity::X, Quantity::Y]] {
             if has(&a) != has(&b) {
                 let lacking = if has(&a) { b } else { a };
-                return missing(lacking, "", "as in docs/bring-your-own-robot.md");
+                return missing(lacking, "", "as in docs/how-to/bring-your-own-robot.md");
             }
         }
         let unequal = WHEELS.map(|wheel| self.of(wheel).and_then(|column| Some(column.unit?.dimension)));

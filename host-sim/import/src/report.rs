@@ -7,7 +7,7 @@ use serde::Serialize;
 use super::sides::Sides;
 use mindgap_foundations::statistics::summary::median;
 
-/// Summary of an import; its JSON form is described in docs/formats.md.
+/// Summary of an import; its JSON form is described in docs/reference/json.md.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Report {
     /// The tracks of the cameras.
@@ -63,7 +63,7 @@ pub struct RunReport {
     pub in_gaps: usize,
 }
 
-/// Summary of imported recordings; its JSON form is described in docs/formats.md.
+/// Summary of imported recordings; its JSON form is described in docs/reference/json.md.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct RecordingsReport {
     /// The recordings.

@@ -1,4 +1,4 @@
-//! `controller.toml`: a controller and its origin (docs/formats.md).
+//! `controller.toml`: a controller and its origin (docs/reference/formats.md).
 
 use std::path::Path;
 

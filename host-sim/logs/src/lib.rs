@@ -1,4 +1,4 @@
-//! Robot logs: the only interface between reality and simulator (docs/formats.md, "A folder of logs").
+//! Robot logs: the only interface between reality and simulator (docs/reference/formats.md, "A folder of logs").
 //!
 //! A folder holds a [`Robot`] (`robot.toml`), a [`Scene`] (`scene.toml`) and one [`Run`] a file (`run-*.csv`). Networks
 //! learn from the [`samples`] extracted from it.

@@ -1,4 +1,4 @@
-//! `robot.toml`: the robot as measured by its builder (docs/formats.md).
+//! `robot.toml`: the robot as measured by its builder (docs/reference/formats.md).
 
 use std::path::Path;
 

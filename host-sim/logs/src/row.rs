@@ -1,4 +1,4 @@
-//! One row of `run-*.csv` (docs/formats.md).
+//! One row of `run-*.csv` (docs/reference/formats.md).
 
 use mindgap_foundations::geometry::Pose;
 

@@ -1,4 +1,4 @@
-//! `run-*.csv`: one run of a robot (docs/formats.md).
+//! `run-*.csv`: one run of a robot (docs/reference/formats.md).
 
 use std::io::Read;
 use std::iter;

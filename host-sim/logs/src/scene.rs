@@ -1,4 +1,4 @@
-//! `scene.toml`: walls, obstacles, and the target and starts of controllers (docs/formats.md).
+//! `scene.toml`: walls, obstacles, and the target and starts of controllers (docs/reference/formats.md).
 
 use std::path::Path;
 

@@ -1,6 +1,6 @@
 //! What a simulator may lack of reality: effects, as wrappers round one simulator step with a few named parameters.
 //!
-//! An [`Effect`] has an id of the table in docs/formats.md and one or more [`Variant`]s, the functional forms in which
+//! An [`Effect`] has an id of the table in docs/reference/effects.md and one or more [`Variant`]s, the functional forms in which
 //! it may show. A variant's hooks change the commands that reach the motors, the increment of the pose that comes out,
 //! or the sensor; at its nominal parameters it changes nothing. The same variant is a hypothesis while a gap is
 //! diagnosed and a part of the simulator once it is [`applied`].

@@ -1,4 +1,4 @@
-//! How busy the hand-out keeps a cluster, for docs/clusters.md: simulates what so many ranks make of so many pieces of work,
+//! How busy the hand-out keeps a cluster, for docs/reference/measurements.md: simulates what so many ranks make of so many pieces of work,
 //! whose times are drawn from measured ones, in seconds, one a line on standard input:
 //! `cargo run --release -p mindgap-tests --bin handing-out -- RANKS PIECES < SECONDS`.
 

@@ -1,5 +1,5 @@
 //! How far commands that are held for long turn the built-in robot, and the simulated one in the middle of what its logs
-//! leave open, and how that scatters, as CSV for docs/loop.md: `cargo run --release -p mindgap-tests --bin held-commands --
+//! leave open, and how that scatters, as CSV for docs/reference/measurements.md: `cargo run --release -p mindgap-tests --bin held-commands --
 //! SIM STEPS`.
 
 use std::path::Path;

@@ -1,4 +1,4 @@
-//! Prints the budgets of real robots against the textbook as a table in Markdown, for docs/diagnosis.md:
+//! Prints the budgets of real robots against the textbook as a table in Markdown, for docs/reference/real-robots.md:
 //! `cargo run --release -p mindgap-tests --bin real-budgets -- FOLDER…`, one folder of logs each.
 
 use std::path::Path;

@@ -10,7 +10,7 @@ mod consoles;
 mod lines;
 
 use std::fs;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use libtest_mimic::{Arguments, Trial};
@@ -53,14 +53,27 @@ fn is_asked_for(word: &str) -> bool {
     std::env::var("MINDGAP_DOCS").is_ok_and(|words| words.split(',').any(|other| other == word))
 }
 
-/// All documents, from the top of the workspace.
+/// Returns the paths of all documents, relative to the top of the workspace: those at the top and all below `docs`.
 fn documents() -> Vec<String> {
-    let mut paths: Vec<PathBuf> = vec!["README.md".into()];
-    for folder in ["docs", "docs/commands"] {
-        let entries = fs::read_dir(workspace().join(folder)).expect("a folder of documents");
-        let paths_in = entries.map(|entry| PathBuf::from(folder).join(entry.expect("an entry").file_name()));
-        paths.extend(paths_in.filter(|path| path.extension().is_some_and(|ending| ending == "md")));
+    let mut found = Vec::new();
+    let mut folders = vec![PathBuf::from("docs")];
+    let is_document = |path: &PathBuf| path.extension().is_some_and(|ending| ending == "md");
+    found.extend(entries(Path::new("")).into_iter().filter(is_document));
+    while let Some(folder) = folders.pop() {
+        for path in entries(&folder) {
+            if workspace().join(&path).is_dir() {
+                folders.push(path);
+            } else if is_document(&path) {
+                found.push(path);
+            }
+        }
     }
-    paths.sort();
-    paths.into_iter().map(|path| path.to_string_lossy().into_owned()).collect()
+    found.sort();
+    found.into_iter().map(|path| path.to_string_lossy().into_owned()).collect()
+}
+
+/// Returns the paths of everything in a folder, relative to the top of the workspace.
+fn entries(folder: &Path) -> Vec<PathBuf> {
+    let entries = fs::read_dir(workspace().join(folder)).expect("a folder of documents");
+    entries.map(|entry| folder.join(entry.expect("an entry").file_name())).collect()
 }

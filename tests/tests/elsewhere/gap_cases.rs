@@ -7,7 +7,7 @@ use mindgap_tests::command::Workshop;
 use serde::Deserialize;
 use toml::Table;
 
-/// What is asked of a diagnosis as docs/formats.md has it.
+/// What is asked of a diagnosis as docs/reference/json.md has it.
 #[derive(Deserialize)]
 struct Diagnosis {
     effects: Vec<NamedEffect>,
@@ -59,7 +59,7 @@ pub fn effects_of_another_robot_are_named(data: &Path) {
 
 fn diagnose(workshop: &Workshop, logs: &Path) -> Diagnosis {
     workshop.done(&format!("diagnose sim.json {} --json diagnosis.json", logs.display()));
-    serde_json::from_value(workshop.json("diagnosis.json")).expect("JSON as in docs/formats.md")
+    serde_json::from_value(workshop.json("diagnosis.json")).expect("JSON as in docs/reference/json.md")
 }
 
 fn stands_for(found: &NamedEffect, effect: &str) -> bool {

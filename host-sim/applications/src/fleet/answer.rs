@@ -16,7 +16,7 @@ use mindgap_foundations::statistics::rounding;
 /// Version of the JSON.
 const SCHEMA: u32 = 1;
 
-/// What `mindgap diagnose --fleet` finds; docs/formats.md has the JSON.
+/// What `mindgap diagnose --fleet` finds; docs/reference/json.md has the JSON.
 #[derive(Clone, Debug, Serialize)]
 pub struct Fleet {
     schema: u32,

@@ -21,7 +21,7 @@ const WORKS: f64 = 0.85;
 pub const CONFIRMED: f64 = (WORKS * (SIMULATED + SUCCESSES as f64) - SUCCESSES as f64) / SIMULATED;
 /// Real runs count beside the simulated chance, which counts as so many. Under a beta distribution about the simulated
 /// chance that counts as so many, the successes of 44 controllers in forty runs each are the most probable for 9.5, and within
-/// one nat for 6 to 15 (docs/loop.md): the fewest, since where the robot has an effect the simulator is worse than there.
+/// one nat for 6 to 15 (docs/explanation/loop.md): the fewest, since where the robot has an effect the simulator is worse than there.
 const SIMULATED: f64 = 6.0;
 
 /// A controller that was driven.

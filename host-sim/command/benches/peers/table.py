@@ -16,7 +16,7 @@ cpu = next(line for line in Path("/proc/cpuinfo").read_text().splitlines() if li
 model = next(line for line in Path("/proc/cpuinfo").read_text().splitlines() if line.startswith("model name"))
 widest = "AVX-512" if "avx512f" in cpu else "AVX2" if "avx2" in cpu else "neither AVX2 nor AVX-512"
 
-print("# Beside other tools\n")
+print("# Speed compared with other tools\n")
 print(f"`host-sim/command/benches/peers.sh`, one thread, {model.split(':')[1].strip()} with {widest};")
 rounds, raw = max(len(v) for v in rates["step"].values()), Path(sys.argv[1]).name
 print(f"medians of {rounds} rounds in turn; raw: [{raw}]({raw}).\n")

@@ -26,7 +26,7 @@ use mindgap_logs::{Robot, Scene};
 /// clock of its own.
 ///
 /// Columns are found by their names, such as t_s, v_m_s, w_rad_s, left, right, x_m, y_m, yaw_rad, qx to qw, range_m;
-/// --map states what names do not. docs/bring-your-own-robot.md has the names and units.
+/// --map states what names do not. docs/how-to/bring-your-own-robot.md has the names and units.
 #[derive(Args)]
 pub struct Streams {
     /// The files. One that holds commands and poses is a drive; of others the first with commands belongs to the first with

@@ -1,4 +1,4 @@
-//! The table of effects in docs/formats.md is the catalogue.
+//! The table of effects in docs/reference/effects.md is the catalogue.
 
 use std::path::Path;
 
@@ -17,9 +17,9 @@ fn row(candidate: Candidate) -> String {
 
 #[test]
 fn the_documented_effects_are_those_of_the_catalogue() {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/formats.md");
-    let document = std::fs::read_to_string(path).expect("docs/formats.md is there");
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/reference/effects.md");
+    let document = std::fs::read_to_string(path).expect("docs/reference/effects.md is there");
     let table: String = Candidate::all(CATALOGUE).into_iter().map(row).collect();
     let expected = format!("{HEADER}{table}\n");
-    assert!(document.contains(&expected), "docs/formats.md has to hold this table:\n{expected}");
+    assert!(document.contains(&expected), "docs/reference/effects.md has to hold this table:\n{expected}");
 }

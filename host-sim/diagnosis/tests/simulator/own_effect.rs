@@ -1,4 +1,4 @@
-//! The example of docs/own-effects.md, as it stands there.
+//! The example of docs/how-to/own-effects.md, as it stands there.
 
 use std::fs;
 use std::path::Path;
@@ -16,7 +16,7 @@ use crate::{SIMULATOR, logs};
 
 /// The effects of the page's first block of TOML.
 fn example() -> Vec<&'static Effect> {
-    let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/own-effects.md");
+    let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/how-to/own-effects.md");
     let page = fs::read_to_string(page).expect("the page");
     let (_, begin) = page.split_once("```toml\n").expect("a block of TOML");
     let (toml, _) = begin.split_once("```").expect("its end");

@@ -13,7 +13,7 @@ use mindgap_files::did_you_mean;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct AppliedEffect {
-    /// Its id in the table of docs/formats.md.
+    /// Its id in the table of docs/reference/effects.md.
     pub effect: String,
     /// Id of the variant.
     pub variant: String,

@@ -13,7 +13,7 @@ macro_rules! catalogue {
     ($($effect:ident)*) => {
         $(mod $effect;)*
 
-        /// All effects, in the order of the table in docs/formats.md.
+        /// All effects, in the order of the table in docs/reference/effects.md.
         pub static CATALOGUE: &[&Effect] = &[$(&$effect::EFFECT),*];
     };
 }
@@ -149,7 +149,7 @@ mod tests {
     use mindgap_foundations::geometry::{Pose, wrap_rad};
     use mindgap_logs::{Robot, Scene};
 
-    /// The effects of the table in docs/formats.md.
+    /// The effects of the table in docs/reference/effects.md.
     const TABLE: usize = 29;
     /// Fastest command of an NXT robot.
     const TOP_SPEED_CM_S: f64 = 41.0;
@@ -220,7 +220,7 @@ mod tests {
         }
     }
 
-    /// What the table in docs/formats.md asks each effect to report, and what slip and dropouts tell besides: the loss, and
+    /// What the table in docs/reference/effects.md asks each effect to report, and what slip and dropouts tell besides: the loss, and
     /// the probability that a dropout goes on.
     const REPORTED: [(&str, &[&str]); TABLE + 1] = [
         ("battery_sag", &["loss_per_min"]),

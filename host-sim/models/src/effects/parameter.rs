@@ -39,7 +39,7 @@ pub enum Guesses {
     Every(f64),
 }
 
-/// How a parameter is reported, by the names of the table in docs/formats.md.
+/// How a parameter is reported, by the names of the table in docs/reference/effects.md.
 #[derive(Clone, Copy, Debug)]
 pub enum Report {
     /// Not at all: it describes the form, not the effect.

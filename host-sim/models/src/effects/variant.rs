@@ -11,7 +11,7 @@ use mindgap_logs::Robot;
 
 /// Something that is there in reality and not in the simulator.
 pub struct Effect {
-    /// Its id in the table of docs/formats.md.
+    /// Its id in the table of docs/reference/effects.md.
     pub id: &'static str,
     /// What people call it, without an article.
     pub name: &'static str,
@@ -91,7 +91,7 @@ impl Variant {
         })
     }
 
-    /// The parameters as the table of docs/formats.md names them.
+    /// The parameters as the table of docs/reference/effects.md names them.
     pub fn reported(&self, values: &[f64], robot: &Robot) -> Map<String, Value> {
         self.parameters.iter().zip(values).flat_map(|(p, value)| p.reported(*value, robot)).collect()
     }

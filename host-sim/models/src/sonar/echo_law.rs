@@ -24,7 +24,7 @@
 //! (echoes by detours), else none. A ghost, a weak echo from the robot itself, stands before all that is farther. With a
 //! small probability a reading has nothing to do with any of this.
 //!
-//! The law, its parameters and their spread over sensors were found on the scans of eleven LEGO NXT sensors; `docs/sonar.md`
+//! The law, its parameters and their spread over sensors were found on the scans of eleven LEGO NXT sensors; `docs/explanation/sonar.md`
 //! tells them. Planes that answer near their normal, and corners, are those of Kuc and Siegel (1987), Physically based
 //! simulation model for acoustic sensor robot navigation, IEEE PAMI 9; constant distance over a range of directions those of
 //! Leonard and Durrant-Whyte (1991), Mobile robot localization by tracking geometric beacons, IEEE Trans. Robot. Autom. 7.

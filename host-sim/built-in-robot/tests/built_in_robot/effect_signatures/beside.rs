@@ -1,4 +1,4 @@
-//! Effects outside the table of docs/formats.md: a diagnosis should call them unknown.
+//! Effects outside the table of docs/reference/effects.md: a diagnosis should call them unknown.
 
 use mindgap_built_in_robot::Effect;
 use mindgap_foundations::geometry::cast;

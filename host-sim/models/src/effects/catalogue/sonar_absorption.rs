@@ -75,7 +75,7 @@ const SPREADING: f64 = 3.65;
 
 parameters! {
     Mirrors {
-        /// Share of what walls usually send elsewhere and air usually spreads (docs/sonar.md, the first-echo law): nothing in
+        /// Share of what walls usually send elsewhere and air usually spreads (docs/explanation/sonar.md, the first-echo law): nothing in
         /// a textbook, one of a usual sensor, and seldom much more.
         share: Parameter::new("", 0.0, [0.0, 1.5]).from(Guesses::At(&[1.0])).report(Report::Hidden),
         /// Log-odds of an echo that are lost squarely before a wall at a metre: usual sensors differ by 2 in that.

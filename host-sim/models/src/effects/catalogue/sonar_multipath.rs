@@ -73,7 +73,7 @@ parameters! {
         /// Chance that sound of which nothing comes straight back is heard by way of another wall: filters and rooms differ in
         /// that from next to none to more than half.
         probability: Parameter::new("", 0.0, [0.0, 0.98]).from(Guesses::At(&[0.3])),
-        /// Share of what walls usually send on rather than back (docs/sonar.md, the first-echo law): one of usual walls.
+        /// Share of what walls usually send on rather than back (docs/explanation/sonar.md, the first-echo law): one of usual walls.
         share: Parameter::new("", 0.0, [0.0, 1.5]).from(Guesses::At(&[1.0])).report(Report::Hidden),
     }
 }

@@ -119,7 +119,7 @@ fn functions(text: &str) -> impl Iterator<Item = &str> {
 /// A function that is not known is found only where it is called, and that may be in a branch that is seldom taken.
 fn know_functions(text: &str) -> Result<(), String> {
     match functions(text).find(|name| Context::<f64>::call(&Math, name, &[]).is_none()) {
-        Some(name) => Err(format!("{name}() is no function that is known: see docs/own-effects.md")),
+        Some(name) => Err(format!("{name}() is no function that is known: see docs/reference/own-effects.md")),
         None => Ok(()),
     }
 }

@@ -46,7 +46,7 @@ const fn variable(name: &'static str, stages: &'static [Stage], value: fn(&Circu
     Variable { name, stages, value }
 }
 
-/// All variables, as docs/own-effects.md lists them.
+/// All variables, as docs/reference/own-effects.md lists them.
 pub static VARIABLES: &[Variable] = &[
     variable("left", DRIVING, |at| Some(at.commands[0][0])),
     variable("right", DRIVING, |at| Some(at.commands[0][1])),
