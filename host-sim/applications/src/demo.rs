@@ -18,7 +18,7 @@ use mindgap_built_in_robot::{self as built_in_robot, BuiltInRobot, Trajectory};
 use mindgap_figures::pictures;
 use mindgap_figures::report::paths::{PathPanel, Trace};
 use mindgap_files as files;
-use mindgap_foundations::chance::{derive, generator};
+use mindgap_foundations::random::{derive, generator};
 use mindgap_foundations::error::{Error, Result};
 use mindgap_learning::evaluation::accuracy::{self, Evaluation};
 use mindgap_learning::evolve::controller_file::{self, ControllerFile};

@@ -21,7 +21,7 @@ use mindgap_core::controller::Controller;
 use crate::adapt::{Adapted, adapt};
 use jury::{Candidate, Tried};
 use mindgap_files as files;
-use mindgap_foundations::chance::derive;
+use mindgap_foundations::random::derive;
 use mindgap_foundations::error::{Error, Result};
 use mindgap_foundations::geometry::Pose;
 use mindgap_learning::evolve::chance::Chance;

@@ -6,7 +6,7 @@ use glam::DVec2;
 use rand::RngExt;
 
 use super::noise::normal;
-use mindgap_foundations::chance::generator;
+use mindgap_foundations::random::generator;
 use mindgap_foundations::geometry::Pose;
 
 /// How loud echoes are over a room, in standard deviations: a smooth function of the sensor's pose, random from room to

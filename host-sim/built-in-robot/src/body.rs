@@ -8,7 +8,7 @@ use super::BuiltInRobot;
 use super::drivetrain::Drivetrain;
 use super::noise::happens;
 use super::sonar::{Ping, Receiver};
-use mindgap_foundations::chance::Generator;
+use mindgap_foundations::random::Generator;
 use mindgap_foundations::geometry::Pose;
 use mindgap_logs::Row;
 

@@ -3,7 +3,7 @@
 use mindgap_core::controller::{Controller, Machine, Motors, Status};
 
 use super::BuiltInRobot;
-use mindgap_foundations::chance::Generator;
+use mindgap_foundations::random::Generator;
 use mindgap_foundations::geometry::Pose;
 use mindgap_logs::{Row, Run};
 

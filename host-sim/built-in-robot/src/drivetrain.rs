@@ -8,7 +8,7 @@ use rand::RngExt;
 use super::hardware::{GRAVITY, Hardware, LEFT, RIGHT};
 use super::noise::{Wander, happens, normal};
 use super::wheel::{Tick, Wheel, dragged};
-use mindgap_foundations::chance::Generator;
+use mindgap_foundations::random::Generator;
 use mindgap_foundations::geometry::{Pose, direction, wrap_rad};
 
 /// Time after which the floor under the wheels has changed.

@@ -2,7 +2,7 @@
 
 use rand::RngExt;
 
-use mindgap_foundations::chance::Generator;
+use mindgap_foundations::random::Generator;
 
 /// A kind of random driving. Logs of a kind other than that of the training logs excite other effects.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -100,7 +100,7 @@ impl Driving {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use mindgap_foundations::chance::generator;
+    use mindgap_foundations::random::generator;
 
     #[test]
     fn every_third_run_holds_commands_for_long() {

@@ -15,7 +15,7 @@ pub use catalogue::Effect;
 pub use held_out::HeldOut;
 pub use scale::Scale;
 
-use mindgap_foundations::chance::Generator;
+use mindgap_foundations::random::Generator;
 
 /// An active effect; its text form is `ID`, `ID=STRENGTH` or `ID=STRENGTH@DETAIL`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -76,7 +76,7 @@ impl FromStr for ActiveEffect {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use mindgap_foundations::chance::generator;
+    use mindgap_foundations::random::generator;
 
     #[test]
     fn text_and_effect_are_one() {

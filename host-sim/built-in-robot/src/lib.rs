@@ -32,7 +32,7 @@ pub use rooms::{default_robot, four_obstacles, training_room};
 
 use effects::fitting;
 use hardware::Hardware;
-use mindgap_foundations::chance::Generator;
+use mindgap_foundations::random::Generator;
 use mindgap_foundations::geometry::{Pose, Wall};
 use mindgap_logs::{Robot, Scene};
 use noise::normal;

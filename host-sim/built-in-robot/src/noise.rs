@@ -2,7 +2,7 @@
 
 use rand::RngExt;
 
-use mindgap_foundations::chance::Generator;
+use mindgap_foundations::random::Generator;
 
 /// A standard normal variable, by Marsaglia's polar method with libm's logarithm: a platform's own would make logs differ
 /// between machines.
@@ -46,7 +46,7 @@ impl Wander {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use mindgap_foundations::chance::generator;
+    use mindgap_foundations::random::generator;
 
     #[test]
     fn both_kinds_have_mean_zero_and_deviation_one() {

@@ -8,7 +8,7 @@ use rand::RngExt;
 use rayon::prelude::*;
 
 use super::{ActiveEffect, Body, BuiltInRobot, Driving};
-use mindgap_foundations::chance::{Generator, generator};
+use mindgap_foundations::random::{Generator, generator};
 use mindgap_foundations::error::{Error, Result};
 use mindgap_foundations::geometry::{Pose, Rectangle, cast, direction};
 use mindgap_logs::{Logs, Robot, Row, Run, Scene};

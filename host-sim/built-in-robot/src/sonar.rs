@@ -6,7 +6,7 @@ use rand::RngExt;
 
 use super::hardware::Sonar;
 use super::noise::{happens, normal};
-use mindgap_foundations::chance::Generator;
+use mindgap_foundations::random::Generator;
 use mindgap_foundations::geometry::{Pose, Wall};
 
 /// Standard deviation of the distance at which the transducer's own ringing, or a fixed object, triggers the sensor.

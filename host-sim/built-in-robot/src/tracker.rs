@@ -6,7 +6,7 @@ use glam::DVec2;
 
 use super::hardware::Tracker;
 use super::noise::{happens, normal};
-use mindgap_foundations::chance::Generator;
+use mindgap_foundations::random::Generator;
 use mindgap_foundations::geometry::{Pose, direction, wrap_rad};
 
 impl Tracker {

@@ -7,7 +7,7 @@ use divan::counter::ItemsCount;
 use mindgap_built_in_robot::{default_robot, four_obstacles, record, training_room};
 use mindgap_core::controller::{Controller, Tuple, When};
 use mindgap_core::network::Activation;
-use mindgap_foundations::chance::generator;
+use mindgap_foundations::random::generator;
 use mindgap_foundations::geometry::Pose;
 use mindgap_learning::evolve::fitness::{FitnessEvaluator, RandomNumbers};
 use mindgap_learning::evolve::genome::GenotypeDecoder;

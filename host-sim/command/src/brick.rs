@@ -18,7 +18,7 @@ use mindgap_figures::report::paths::{PathPanel, Trace};
 use mindgap_figures::report::{Figure, paths};
 use mindgap_files as files;
 use mindgap_files::places::Places;
-use mindgap_foundations::chance::generator;
+use mindgap_foundations::random::generator;
 use mindgap_foundations::error::{Error, Result};
 use mindgap_foundations::geometry::Pose;
 use mindgap_logs::world_script::{self, WorldScript};

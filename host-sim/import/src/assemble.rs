@@ -68,7 +68,7 @@ pub fn assemble(
         let (of_recording, report) = runs_of(recording, &robot, offset_ms, runs.len())?;
         runs.extend(of_recording);
         reports.push(report);
-        counter.one_more();
+        counter.increment();
     }
     let logs = Logs { robot, scene, runs };
     let sides = Sides::of_commands(&logs.runs, &logs.robot);
@@ -112,7 +112,7 @@ fn fitted(
         let mut runs = Vec::new();
         for recording in recordings {
             runs.extend(runs_of(recording, &robot, offset_ms, runs.len())?.0);
-            counter.one_more();
+            counter.increment();
         }
         let sides = Sides::of_commands(&runs, &robot);
         let fit = |value: f64, what: &str| {

@@ -61,7 +61,7 @@ pub fn import(
             }
             Err(why) => LogReport { left_out: Some(why), ..report },
         });
-        counter.one_more();
+        counter.increment();
     }
     if runs.is_empty() {
         let first = &reports[0];

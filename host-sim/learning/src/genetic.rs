@@ -11,7 +11,7 @@ pub mod tournament;
 use rand::RngExt;
 use serde::{Deserialize, Serialize};
 
-use mindgap_foundations::chance::{Generator, generator};
+use mindgap_foundations::random::{Generator, generator};
 use mindgap_foundations::error::Result;
 use mindgap_workers as workers;
 use mutation::Mutation;

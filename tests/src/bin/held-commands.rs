@@ -8,7 +8,7 @@ use std::process::ExitCode;
 use glam::DVec2;
 use mindgap_built_in_robot::{BuiltInRobot, default_robot, run_controller};
 use mindgap_core::controller::{Controller, Tuple, When};
-use mindgap_foundations::chance::generator;
+use mindgap_foundations::random::generator;
 use mindgap_foundations::error::{Error, Result};
 use mindgap_foundations::geometry::{Pose, wrap_rad};
 use mindgap_foundations::statistics::summary::{mean, root_mean_square};

@@ -4,7 +4,7 @@ use glam::DVec2;
 use rand::RngExt;
 
 use mindgap_built_in_robot::default_robot;
-use mindgap_foundations::chance::Generator;
+use mindgap_foundations::random::Generator;
 use mindgap_foundations::geometry::Rectangle;
 use mindgap_logs::{Robot, Scene, Ultrasonic};
 

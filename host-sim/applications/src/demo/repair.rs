@@ -9,7 +9,7 @@ use super::robot::TrialledRobot;
 use crate::trials::state::State;
 use crate::trials::{self, Event};
 use mindgap_built_in_robot::{self as built_in_robot, ActiveEffect, BuiltInRobot, Effect};
-use mindgap_foundations::chance::generator;
+use mindgap_foundations::random::generator;
 use mindgap_foundations::error::Result;
 use mindgap_learning::evolve::controller_file::ControllerFile;
 use mindgap_learning::evolve::fitness::Success;

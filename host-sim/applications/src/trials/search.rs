@@ -6,7 +6,7 @@ use mindgap_core::controller::{Controller, Tuple};
 
 use super::jury::{CONFIRMED, Found, Jury, Tried};
 use super::state::{IfKnown, SimulatedPath, place_cm};
-use mindgap_foundations::chance::derive;
+use mindgap_foundations::random::derive;
 use mindgap_foundations::error::{Error, Result};
 use mindgap_foundations::geometry::Pose;
 use mindgap_learning::evolve::chance::{Judge, ROBOTS, RUNS};

@@ -7,7 +7,7 @@ use glam::DVec2;
 use crate::hardware::Sonar;
 use crate::noise::normal;
 use crate::sonar::Ping;
-use mindgap_foundations::chance::Generator;
+use mindgap_foundations::random::Generator;
 use mindgap_foundations::geometry::{Hit, Pose, Wall, cast, direction};
 
 const RAYS: u32 = 15;
@@ -101,7 +101,7 @@ mod tests {
     use super::*;
     use crate::hardware::Hardware;
     use crate::{default_robot, training_room};
-    use mindgap_foundations::chance::generator;
+    use mindgap_foundations::random::generator;
     use mindgap_foundations::geometry::Rectangle;
 
     /// A noise-free sensor at the middle of the axle.

@@ -8,7 +8,7 @@ use mindgap_built_in_robot::{
     training_room,
 };
 use mindgap_core::controller::{Controller, Tuple, When};
-use mindgap_foundations::chance::generator;
+use mindgap_foundations::random::generator;
 use mindgap_foundations::geometry::{Pose, Rectangle};
 use mindgap_logs::samples::{motion, sonar};
 use mindgap_logs::{Logs, Scene};

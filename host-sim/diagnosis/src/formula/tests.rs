@@ -3,7 +3,7 @@ use rand_distr::StandardNormal;
 
 use super::*;
 use crate::test_support::*;
-use mindgap_foundations::chance::generator;
+use mindgap_foundations::random::generator;
 use mindgap_foundations::geometry::Pose;
 
 /// Blocks of steps under random commands, half of them straight, with noise of the usual scatter and the forward error

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use glam::DVec2;
 use mindgap_built_in_robot::default_robot;
 use mindgap_diagnosis::diagnose;
-use mindgap_foundations::chance::generator;
+use mindgap_foundations::random::generator;
 use mindgap_foundations::geometry::{Pose, Wall, direction, wrap_rad};
 use mindgap_learning::evaluation::predictions;
 use mindgap_logs::{Logs, Row, Run, Scene};

@@ -9,7 +9,7 @@ use serde::Serialize;
 
 use super::arithmetic::{Arithmetic, Fixed, Float};
 use crate::evolve::genome::GenotypeDecoder;
-use mindgap_foundations::chance::{derive, generator};
+use mindgap_foundations::random::{derive, generator};
 use mindgap_foundations::counter::Counter;
 use mindgap_foundations::error::{Error, Result};
 use mindgap_foundations::geometry::{Pose, Wall, cast, wrap_rad};
@@ -118,7 +118,7 @@ pub(super) fn side_by_side(
         let random = decoder.controller(&decoder.random(&mut generator));
         let controller = controller.unwrap_or(&random);
         let found = pair(&world, controller, Walker::new(float, start), Walker::new(fixed, start), run + 1, seed);
-        counter.one_more();
+        counter.increment();
         found
     });
     Ok(pairs.collect::<Vec<Runs>>().into_iter().fold(Runs::default(), Runs::and))

@@ -7,7 +7,7 @@ use glam::DVec2;
 use mindgap_core::controller::Controller;
 use serde::{Deserialize, Serialize};
 
-use mindgap_foundations::chance::derive;
+use mindgap_foundations::random::derive;
 use mindgap_foundations::error::Result;
 use mindgap_foundations::geometry::Pose;
 use mindgap_logs::Scene;
@@ -147,7 +147,7 @@ mod tests {
     use crate::evolve::genome::GenotypeDecoder;
     use crate::evolve::test_support::SIMULATOR;
     use mindgap_built_in_robot::four_obstacles;
-    use mindgap_foundations::chance::generator;
+    use mindgap_foundations::random::generator;
 
     const SEED: u64 = 5;
 

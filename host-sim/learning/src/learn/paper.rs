@@ -8,7 +8,7 @@ use super::dataset::Dataset;
 use super::genome::{NetworkTemplate, Shape, unscale_output};
 use super::kernel::Samples;
 use crate::genetic::{self, Settings};
-use mindgap_foundations::chance::Generator;
+use mindgap_foundations::random::Generator;
 use mindgap_foundations::error::Result;
 
 /// Parameters of the trainer. The defaults are those of the paper; where it gives none (marked "open"), they are common

@@ -4,7 +4,7 @@ use glam::DVec2;
 use rand::seq::SliceRandom;
 use rayon::prelude::*;
 
-use mindgap_foundations::chance::generator;
+use mindgap_foundations::random::generator;
 use mindgap_foundations::geometry::{Pose, wrap_rad};
 use mindgap_logs::{Logs, Ultrasonic};
 

@@ -4,7 +4,7 @@ use rand::RngExt;
 
 use crate::sonar::FirstEchoLaw;
 use crate::sonar::echo_law::Surfaces;
-use mindgap_foundations::chance::generator;
+use mindgap_foundations::random::generator;
 use mindgap_foundations::geometry::Pose;
 use mindgap_logs::{Scene, Ultrasonic};
 

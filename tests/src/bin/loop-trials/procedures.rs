@@ -7,7 +7,7 @@ use mindgap_applications::demo::robot::TrialledRobot;
 use mindgap_applications::trials::{self, Job};
 use mindgap_built_in_robot::Termination;
 use mindgap_core::controller::Controller;
-use mindgap_foundations::chance::derive;
+use mindgap_foundations::random::derive;
 use mindgap_foundations::error::{Error, Result};
 use mindgap_learning::evolve::chance::{Judge, ROBOTS, RUNS};
 use mindgap_learning::evolve::controller_file::ControllerFile;

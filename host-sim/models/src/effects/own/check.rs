@@ -8,7 +8,7 @@ use super::expression::{Expression, is_constant};
 use super::variables::VARIABLES;
 use crate::effects::context::{RunHistory, Surroundings};
 use crate::effects::{CATALOGUE, Hook, Parameter, PoseIncrement, SensorState, StepContext, Variant};
-use mindgap_foundations::chance::generator;
+use mindgap_foundations::random::generator;
 use mindgap_foundations::geometry::Pose;
 use mindgap_logs::{Robot, Scene, Ultrasonic};
 

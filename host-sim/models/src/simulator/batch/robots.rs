@@ -16,7 +16,7 @@ use crate::simulator::known_steps::KnownSteps;
 use crate::simulator::motion::{Motion, speeds};
 use crate::simulator::rollout::{RolloutOutcome, RolloutRequest, Termination, TrajectoryPoint};
 use crate::simulator::room::Point;
-use mindgap_foundations::chance::derive;
+use mindgap_foundations::random::derive;
 use mindgap_foundations::geometry::Pose;
 use mindgap_foundations::lanes::{Lanes, Mask, WIDEST};
 

@@ -8,7 +8,7 @@ use crate::simulator::rollout::Termination;
 use crate::simulator::{Noise, Simulator};
 use mindgap_built_in_robot::{default_robot, four_obstacles, record, training_room};
 use mindgap_core::controller::{Controller, Machine, Status, TUPLES};
-use mindgap_foundations::chance::generator;
+use mindgap_foundations::random::generator;
 use mindgap_learning::evolve::genome::GenotypeDecoder;
 use mindgap_learning::learn::train::{self, TABLE_ONE, Trainer};
 use sha2::{Digest, Sha256};

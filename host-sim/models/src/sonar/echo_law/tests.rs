@@ -6,7 +6,7 @@ use super::{FirstEchoLaw, Surfaces, Target, TargetKind, reach_cm, targets_at};
 use crate::sonar::Perturbation;
 use crate::sonar::outcomes::{Outcomes, Source};
 use crate::sonar::partition::{PERTURBED, Partition, assert_follow, scenes, sensors};
-use mindgap_foundations::chance::generator;
+use mindgap_foundations::random::generator;
 use mindgap_foundations::geometry::{Pose, Rectangle, Wall};
 use mindgap_foundations::statistics::summary::logistic;
 
