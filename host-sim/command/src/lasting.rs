@@ -97,7 +97,7 @@ fn task((mut command, mut matches): (&Command, &ArgMatches), places: &Places, ou
         for argument in command.get_arguments().filter(|argument| argument.get_id() != OPTION) {
             if let Ok(Some(values)) = matches.try_get_raw(argument.get_id().as_str()) {
                 let is_path = argument.get_value_parser().type_id() == TypeId::of::<PathBuf>();
-                let is_place = |value: &OsStr| is_path && places.contain(Path::new(value));
+                let is_place = |value: &OsStr| is_path && places.contains(Path::new(value));
                 let word = |value| if is_place(value) { GIVEN.into() } else { value.to_string_lossy() };
                 let values: Vec<_> = values.map(word).collect();
                 let name = argument.get_long().map_or(argument.get_id().to_string(), |long| format!("--{long}"));

@@ -162,7 +162,7 @@ fn answer() -> Result<()> {
     if workers::is_first() {
         places.check(general.force, kept.as_ref().is_some_and(Kept::is_there))?;
     } else if asked.is_shared() {
-        files::leave_writing();
+        files::disable_writing();
     } else {
         return Ok(());
     }
@@ -172,7 +172,7 @@ fn answer() -> Result<()> {
     progress::end();
     let text = done?;
     // What goes to standard output as a file stands alone there.
-    if general.quiet || places.take_standard_output() { Ok(()) } else { say(&text) }
+    if general.quiet || places.use_standard_output() { Ok(()) } else { say(&text) }
 }
 
 /// Writes to standard output.

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
-use mindgap_files::places::at;
+use mindgap_files::places::resolved;
 
 /// A call of a command.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -30,9 +30,9 @@ impl Task {
     /// A command with its arguments by name. Of what it reads, `outputs` and hidden files count for nothing, and what cannot
     /// be read is for the command to tell.
     pub fn new(command: String, arguments: BTreeMap<String, String>, inputs: &[PathBuf], outputs: &[PathBuf]) -> Self {
-        let outputs: Vec<PathBuf> = outputs.iter().map(|output| at(output)).collect();
+        let outputs: Vec<PathBuf> = outputs.iter().map(|output| resolved(output)).collect();
         let digested =
-            |input: &PathBuf| Input { path: input.display().to_string(), sha256: digest(&at(input), &outputs) };
+            |input: &PathBuf| Input { path: input.display().to_string(), sha256: digest(&resolved(input), &outputs) };
         let inputs = inputs.iter().map(digested).collect();
         Task { version: env!("CARGO_PKG_VERSION").into(), command, arguments, inputs }
     }

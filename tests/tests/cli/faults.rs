@@ -30,7 +30,7 @@ const REFUSED: [Fault; 22] = [
         [0xFEFF].into_iter().chain(text.encode_utf16()).flat_map(u16::to_le_bytes).collect()
     }),
     fault("UTF-16 without", ": is UTF-16", |text| text.encode_utf16().flat_map(u16::to_be_bytes).collect()),
-    fault("Latin-1", ":1: is no UTF-8: save it as UTF-8", |text| {
+    fault("Latin-1", ":1: is not UTF-8: save it as UTF-8", |text| {
         let (header, rows) = text.split_once("battery_mv").expect("a column");
         [header.as_bytes(), b"ger\xE4usch", rows.as_bytes()].concat()
     }),
@@ -66,7 +66,7 @@ const REFUSED: [Fault; 22] = [
         let header = lines.next().expect("a header");
         format!("{header}\n{}", lines.map(|line| format!("{line}\n{line}\n")).collect::<String>()).into()
     }),
-    fault("a line torn", "cells where the header has 10: torn or wrong line", |text| {
+    fault("a line torn", "cells where the header has 10: incomplete or malformed line", |text| {
         let end = text.trim_end().rfind(',').expect("cells");
         text[..end].into()
     }),
