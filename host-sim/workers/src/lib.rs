@@ -1,11 +1,11 @@
-//! Independent pieces of work, handed out by index to whoever is free: threads, and with the feature `mpi` the ranks of a
-//! cluster. What comes of them is taken in the order of their indices, so that it is the same whoever did the work, and
-//! kept in a [`checkpoint`], from which a run goes on that was broken off.
+//! Runs independent work items by index on threads and, with the feature `mpi`, on the ranks of a cluster. Results are taken in
+//! index order, so that they do not depend on who computed them, and saved in a [`checkpoint`], from which an interrupted run
+//! resumes.
 //!
-//! [`begin`] and [`end`] stand around a command; without them there are threads alone, and no checkpoint.
+//! A command calls [`begin`] and [`end`]; without them work runs on threads only, without a checkpoint.
 
 pub mod checkpoint;
-mod handing_out;
+mod distribute;
 #[cfg(not(feature = "mpi"))]
 mod no_ranks;
 #[cfg(feature = "mpi")]
@@ -23,27 +23,27 @@ use rayon::prelude::*;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-use checkpoint::{Begin, Checkpoint};
-use handing_out::hand_out;
+use checkpoint::{Checkpoint, CreateFile};
+use distribute::hand_out;
 use mindgap_foundations::error::{Error, Result};
 #[cfg(not(feature = "mpi"))]
 use no_ranks as ranks;
 use ranks::Ranks;
 use task::Task;
 
-/// So many pieces a thread are begun before the first of them is taken: whoever waits for a slow one has other work.
+/// Items per thread that may be started ahead of the next one to be taken, so that no thread waits for a slow item.
 const AHEAD: usize = 4;
-/// How the variables begin by which a process knows that it is a rank.
+/// Prefixes of the environment variables by which a process recognises that it is a rank.
 const RANK_VARIABLES: [&str; 3] = ["OMPI_", "PMIX_", "PMI_"];
 
-/// What stands around the work of a thread: of the main one alone, if at all.
+/// State of the current run. Only the main thread has one.
 #[derive(Default)]
 struct Run {
     ranks: Option<Ranks>,
     checkpoint: Option<Checkpoint>,
-    /// Parts that have begun: each hand-out is one.
+    /// Number of parts started; each distribution of work is one.
     parts: u32,
-    /// Whether all that is left to do is the first rank's.
+    /// Whether only the first rank has work left.
     is_released: bool,
 }
 
@@ -51,47 +51,48 @@ thread_local! {
     static RUN: RefCell<Run> = RefCell::default();
 }
 
-/// Joins the ranks with which this process was started, if it was by `mpirun`.
+/// Joins the other ranks if this process was started by `mpirun`.
 ///
 /// # Errors
-/// When MPI cannot be begun.
+/// When MPI cannot be initialised.
 pub fn join() -> Result<()> {
     let ranks = Ranks::join()?;
     RUN.with_borrow_mut(|run| run.ranks = ranks);
     Ok(())
 }
 
-/// Keeps another program that is called from taking itself for one of the ranks.
-pub fn keep_out(program: &mut Command) {
-    let of_ranks = |name: &OsString| RANK_VARIABLES.iter().any(|prefix| name.to_string_lossy().starts_with(prefix));
-    for name in env::vars_os().map(|(name, _)| name).filter(of_ranks) {
+/// Prevents a child process from joining the MPI job.
+pub fn remove_rank_variables(program: &mut Command) {
+    let is_rank_variable =
+        |name: &OsString| RANK_VARIABLES.iter().any(|prefix| name.to_string_lossy().starts_with(prefix));
+    for name in env::vars_os().map(|(name, _)| name).filter(is_rank_variable) {
         program.env_remove(name);
     }
 }
 
-/// Whether this is the process that writes, prints and asks: the first rank, or the only one.
+/// Returns whether this process writes and prints: the first rank, or the only process.
 pub fn is_first() -> bool {
     RUN.with_borrow(|run| run.ranks.as_ref().is_none_or(Ranks::is_first))
 }
 
-/// Threads for each of several ranks: those on one machine share its processors.
+/// Returns the number of threads per rank, since the ranks on one machine share its processors; `None` without ranks.
 pub fn threads() -> Option<usize> {
     let processors = available_parallelism().map_or(1, usize::from);
     let ranks = RUN.with_borrow(|run| run.ranks.as_ref().map(Ranks::on_this_machine))?;
     Some((processors / ranks).max(1))
 }
 
-/// Leaves the work to the first rank alone.
-pub fn go_alone() {
+/// Leaves the MPI job: the first rank works alone from here on.
+pub fn leave_ranks() {
     RUN.with_borrow_mut(|run| run.ranks = None);
 }
 
-/// Begins a task whose work is handed out, from where the checkpoint stands if there is one; returns the number of pieces
-/// of work in it. `warn` is told when some of them are lost.
+/// Begins a task, resuming from its checkpoint if there is one; returns the number of items in the checkpoint. `warn` receives
+/// a message if some of them are lost.
 ///
 /// # Errors
-/// When other ranks have another task, or the checkpoint has, or it cannot be read or written.
-pub fn begin(task: Task, checkpoint: Option<(&Path, Begin)>, warn: impl FnMut(String)) -> Result<usize> {
+/// When other ranks or the checkpoint have another task, or the checkpoint cannot be read or written.
+pub fn begin(task: Task, checkpoint: Option<(&Path, CreateFile)>, warn: impl FnMut(String)) -> Result<usize> {
     RUN.with_borrow_mut(|run| {
         if let Some(ranks) = &run.ranks {
             ranks.agree(&task)?;
@@ -103,7 +104,8 @@ pub fn begin(task: Task, checkpoint: Option<(&Path, Begin)>, warn: impl FnMut(St
     })
 }
 
-/// Ends what was begun, and `complain`s where it failed; returns whether it was done. Its checkpoint is then removed.
+/// Ends the task begun by [`begin`] and returns whether it succeeded: then its checkpoint is removed, otherwise `complain`
+/// receives the error.
 pub fn end(done: Result<()>, complain: impl FnOnce(&Error)) -> bool {
     let Run { ranks, checkpoint, is_released, .. } = RUN.take();
     let done = done.and_then(|()| checkpoint.map_or(Ok(()), Checkpoint::remove));
@@ -118,31 +120,32 @@ pub fn end(done: Result<()>, complain: impl FnOnce(&Error)) -> bool {
     }
 }
 
-/// What comes of pieces of work, by index, on every rank.
+/// Computes all items and returns their results in index order, on every rank.
 ///
 /// # Errors
-/// What a piece returns; the others are then left.
+/// The first error of an item; the remaining items are then skipped.
 pub fn map<T: Serialize + DeserializeOwned + Send>(
     count: usize,
     work: impl Fn(usize) -> Result<T> + Sync,
 ) -> Result<Vec<T>> {
-    map_told(count, work, |_, _| {})
+    map_watched(count, work, |_, _| {})
 }
 
-/// The same; the first rank is `told` of each with its index when all before it are done, too.
+/// As [`map`]; on the first rank, `watch` receives each result with its index, in order, as soon as it and all before it are
+/// done.
 ///
 /// # Errors
 /// As [`map`].
-pub fn map_told<T: Serialize + DeserializeOwned + Send>(
+pub fn map_watched<T: Serialize + DeserializeOwned + Send>(
     count: usize,
     work: impl Fn(usize) -> Result<T> + Sync,
-    told: impl FnMut(usize, &T),
+    watch: impl FnMut(usize, &T),
 ) -> Result<Vec<T>> {
-    let pieces = map_all(count, |_| (), |index, ()| work(index), told)?;
-    once(|| Ok(pieces))
+    let items = map_all(count, |_| (), |index, ()| work(index), watch)?;
+    once(|| Ok(items))
 }
 
-/// What comes of pieces that only the first rank knows, and which it `gives` with their indices; only there is it known.
+/// Computes items whose inputs only the first rank knows and `give`s by index; only the first rank gets the results.
 ///
 /// # Errors
 /// As [`map`].
@@ -154,35 +157,34 @@ pub fn map_given<P: Serialize + DeserializeOwned + Send, T: Serialize + Deserial
     map_all(count, give, work, |_, _| {})
 }
 
-/// Does pieces of work and gives each with its index to `take`, the first one first. Only so many are there at once as
-/// there are workers, times a few. `take` hands out nothing itself. This is the end for ranks other than the first:
-/// nothing is taken on them.
+/// Computes items and passes each result with its index to `take`, in order. Only a few results per worker are in memory at
+/// once. `take` must not distribute work itself. Ranks other than the first take nothing, and their run ends here.
 ///
 /// # Errors
-/// What a piece or `take` returns; the other pieces are then left.
+/// The first error of an item or of `take`; the remaining items are then skipped.
 pub fn in_order<T: Serialize + DeserializeOwned + Send>(
     count: usize,
     work: impl Fn(usize) -> Result<T> + Sync,
     take: impl FnMut(usize, T) -> Result<()>,
 ) -> Result<()> {
     let ranks = RUN.with_borrow(|run| run.ranks.as_ref().map_or(1, Ranks::count));
-    distribute(count, AHEAD * ranks * rayon::current_num_threads(), |_| (), |index, ()| work(index), take)?;
+    run_in_order(count, AHEAD * ranks * rayon::current_num_threads(), |_| (), |index, ()| work(index), take)?;
     if is_first() {
         return Ok(());
     }
     RUN.with_borrow_mut(|run| run.is_released = true);
-    Err(Error::new("the rest is the first rank's"))
+    Err(Error::new("the first rank does the rest"))
 }
 
-/// What the first rank does alone and all need to know.
+/// Computes a value on the first rank only and returns it on all ranks.
 ///
 /// # Errors
-/// What the work returns.
+/// The error that `work` returns.
 pub fn once<T: Serialize + DeserializeOwned>(work: impl FnOnce() -> Result<T>) -> Result<T> {
     let value = if is_first() { Some(work()?) } else { None };
     RUN.with_borrow(|run| match (&run.ranks, value) {
         (None, Some(value)) => Ok(value),
-        (Some(ranks), value) => ranks.everywhere(value),
+        (Some(ranks), value) => ranks.broadcast(value),
         (None, None) => Err(Error::new("there is no first rank")),
     })
 }
@@ -191,19 +193,19 @@ fn map_all<P: Serialize + DeserializeOwned + Send, T: Serialize + DeserializeOwn
     count: usize,
     give: impl Fn(usize) -> P + Sync,
     work: impl Fn(usize, P) -> Result<T> + Sync,
-    mut told: impl FnMut(usize, &T),
+    mut watch: impl FnMut(usize, &T),
 ) -> Result<Vec<T>> {
     let mut done = Vec::with_capacity(count);
-    distribute(count, count, give, work, |index, piece| {
-        told(index, &piece);
-        done.push(piece);
+    run_in_order(count, count, give, work, |index, item| {
+        watch(index, &item);
+        done.push(item);
         Ok(())
     })?;
     Ok(done)
 }
 
-/// Does pieces of work and takes them in order, at most `ahead` of them on their way.
-fn distribute<P: Serialize + DeserializeOwned + Send, T: Serialize + DeserializeOwned + Send>(
+/// Computes items and takes them in order, with at most `ahead` of them in progress.
+fn run_in_order<P: Serialize + DeserializeOwned + Send, T: Serialize + DeserializeOwned + Send>(
     count: usize,
     ahead: usize,
     give: impl Fn(usize) -> P + Sync,
@@ -213,11 +215,11 @@ fn distribute<P: Serialize + DeserializeOwned + Send, T: Serialize + Deserialize
     if rayon::current_thread_index().is_none() {
         return hand_out(count, ahead, &give, &work, take);
     }
-    // It is called within a piece of other work, and a thread that does pieces must not wait for others to.
+    // Within an item of other work, a worker thread must not wait for other workers.
     for first in (0..count).step_by(ahead) {
-        let piece = |index: usize| work(index, give(index));
-        let pieces = (first..count.min(first + ahead)).into_par_iter().map(piece).collect::<Result<Vec<T>>>()?;
-        (first..).zip(pieces).try_for_each(|(index, piece)| take(index, piece))?;
+        let item = |index: usize| work(index, give(index));
+        let items = (first..count.min(first + ahead)).into_par_iter().map(item).collect::<Result<Vec<T>>>()?;
+        (first..).zip(items).try_for_each(|(index, item)| take(index, item))?;
     }
     Ok(())
 }
@@ -232,7 +234,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn pieces_come_in_order_whichever_is_done_first() {
+    fn results_come_in_order_whichever_finishes_first() {
         let slow_first = |index: usize| {
             thread::sleep(Duration::from_millis((50 - index as u64) / 10));
             Ok(index * index)
@@ -242,13 +244,13 @@ mod tests {
     }
 
     #[test]
-    fn a_piece_may_hand_out_work_of_its_own() {
+    fn items_may_distribute_work_themselves() {
         let sums = map(40, |outer| Ok(map(40, |inner| Ok(outer * inner))?.iter().sum::<usize>())).unwrap();
         assert_eq!(sums, (0..40).map(|outer| outer * 780).collect::<Vec<usize>>());
     }
 
     #[test]
-    fn no_more_is_begun_than_can_be_taken_soon() {
+    fn number_of_items_in_progress_is_bounded() {
         let begun = AtomicUsize::new(0);
         let work = |index: usize| {
             begun.fetch_add(1, Ordering::SeqCst);
@@ -263,7 +265,7 @@ mod tests {
     }
 
     #[test]
-    fn a_failure_leaves_the_rest() {
+    fn failure_skips_the_remaining_items() {
         let begun = AtomicUsize::new(0);
         let work = |index: usize| {
             begun.fetch_add(1, Ordering::SeqCst);
@@ -275,16 +277,16 @@ mod tests {
         assert_eq!(refused.unwrap_err().to_string(), "full");
     }
 
-    /// As when Ctrl-C ends it.
+    /// As when Ctrl-C is pressed.
     #[test]
-    fn a_panic_of_whoever_is_told_leaves_what_has_not_begun() {
+    fn panic_of_the_watcher_skips_items_not_yet_started() {
         let begun = AtomicUsize::new(0);
         let work = |index: usize| {
             begun.fetch_add(1, Ordering::SeqCst);
             thread::sleep(Duration::from_millis(20));
             Ok(index)
         };
-        let panics = || map_told(100, work, |_, _| panic!("enough"));
+        let panics = || map_watched(100, work, |_, _| panic!("enough"));
         assert!(catch_unwind(AssertUnwindSafe(panics)).is_err());
         let begun = begun.load(Ordering::SeqCst);
         assert!(begun <= 3 * rayon::current_num_threads(), "{begun}");
@@ -292,7 +294,7 @@ mod tests {
 
     #[test]
     #[should_panic(expected = "a mistake")]
-    fn a_panic_goes_through() {
+    fn panic_in_an_item_propagates() {
         let _ = map(10, |index| if index == 5 { panic!("a mistake") } else { Ok(index) });
     }
 }

@@ -1,12 +1,12 @@
-//! Without the feature `mpi` there are no ranks.
+//! Stands in for `ranks` without the feature `mpi`.
 
 use std::sync::mpsc::Receiver;
 
-use super::handing_out::{Sent, Told};
+use super::distribute::{Message, Sent};
 use super::task::Task;
 use mindgap_foundations::error::Result;
 
-/// None of them is ever there.
+/// Ranks, of which there are none.
 pub enum Ranks {}
 
 impl Ranks {
@@ -30,7 +30,7 @@ impl Ranks {
         match *self {}
     }
 
-    pub fn everywhere<T>(&self, _: Option<T>) -> Result<T> {
+    pub fn broadcast<T>(&self, _: Option<T>) -> Result<T> {
         match *self {}
     }
 
@@ -42,11 +42,11 @@ impl Ranks {
         match *self {}
     }
 
-    pub fn over(&self) -> Result<()> {
+    pub fn finish_part(&self) -> Result<()> {
         match *self {}
     }
 
-    pub fn told<T>(&self, _: u32) -> Result<Option<Told<T>>> {
+    pub fn poll<T>(&self, _: u32) -> Result<Option<Message<T>>> {
         match *self {}
     }
 
