@@ -15,7 +15,7 @@ use mindgap_files::is_stream;
 use mindgap_files::places::Places;
 use mindgap_foundations::error::Result;
 use mindgap_workers as workers;
-use mindgap_workers::checkpoint::Begin;
+use mindgap_workers::checkpoint::CreateFile;
 use mindgap_workers::task::Task;
 
 /// The name of the option, which says nothing of what is to be done.
@@ -36,18 +36,18 @@ pub struct KeepOption {
 /// Where and when what is done is kept.
 pub struct Kept {
     path: PathBuf,
-    begin: Begin,
+    begin: CreateFile,
 }
 
 impl KeepOption {
     /// Where what is done for an output is kept.
     pub fn beside(&self, out: &Path) -> Option<Kept> {
         if let Some(path) = &self.checkpoint {
-            return Some(Kept { path: path.clone(), begin: Begin::AtOnce });
+            return Some(Kept { path: path.clone(), begin: CreateFile::AtOnce });
         }
         let mut path = out.components().as_path().as_os_str().to_owned();
         path.push(".checkpoint");
-        (!is_stream(out)).then(|| Kept { path: path.into(), begin: Begin::AfterAMinute })
+        (!is_stream(out)).then(|| Kept { path: path.into(), begin: CreateFile::AfterAMinute })
     }
 
     /// The file that is asked for.
@@ -69,7 +69,7 @@ impl Kept {
 /// When another run stood there, or other ranks have another task.
 pub fn begin(is_shared: bool, kept: Option<Kept>, places: &Places, call: (&Command, &ArgMatches)) -> Result<()> {
     if !is_shared {
-        workers::go_alone();
+        workers::leave_ranks();
     }
     if !is_shared && kept.is_none() {
         return Ok(());

@@ -189,7 +189,7 @@ fn head((part, index): ItemId, bytes: &[u8]) -> [u8; HEAD] {
     head
 }
 
-/// Reads the next item of a file with `rest` bytes and returns its length; `None` at the end or where it is damaged.
+/// Reads the next item with `remaining` bytes left in the file and returns its length; `None` at the end or where it is damaged.
 fn record(reader: &mut impl Read, remaining: u64) -> Option<(ItemId, usize)> {
     let mut read = [0; HEAD];
     reader.read_exact(&mut read).ok()?;

@@ -102,7 +102,7 @@ pub fn explore(task: &EvolutionTask, mut watch: impl FnMut(usize, f64)) -> Resul
         let fitness = found.iter().map(|judged| judged.fitness);
         watch((number + 1) * ROUNDS - 1, fitness.fold(f64::NAN, f64::max));
     };
-    let mut found = workers::map_told(SEARCHES, search, told)?.concat();
+    let mut found = workers::map_watched(SEARCHES, search, told)?.concat();
     sort(&mut found);
     Ok(found.into_iter().map(|judged| judged.controller).collect())
 }
