@@ -1,4 +1,4 @@
-//! Logs of the built-in robot: in longer steps, and as tables in memory.
+//! Logs of the built-in robot, resampled and as tables in memory.
 
 mod resample;
 mod tables;
