@@ -203,7 +203,7 @@ fn read_logs(folder: &Path) -> Result<Logs> {
 /// When they cannot be read, or when something in them is wrong that could not be put right.
 fn read_sound_logs(folder: &Path) -> Result<Logs> {
     let told = |found| warn(format!("{}: {found}", folder.display()));
-    Inspection::of(read_logs(folder)?).sound(told).map_err(|error| error.or_in_file(folder))
+    Inspection::new(read_logs(folder)?).into_usable(told).map_err(|error| error.or_in_file(folder))
 }
 
 /// The same of logs that have to be of a simulator's robot.

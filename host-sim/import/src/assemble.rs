@@ -72,7 +72,7 @@ pub fn assemble(
     }
     let logs = Logs { robot, scene, runs };
     let sides = Sides::of_commands(&logs.runs, &logs.robot);
-    let inspected = Inspection::of(logs.clone());
+    let inspected = Inspection::new(logs.clone());
     let units = sides.refusal("the commands", "the track");
     if let Some(why) = units.or_else(|| inspected.refusal().map(str::to_owned)) {
         return Err(Error::in_file(&recordings[0].track, why));

@@ -64,7 +64,7 @@ fn the_same_is_told_once() {
     for run in 0..6 {
         workshop.edit(&format!("logs/run-00{run}.csv"), |text| text.replacen("battery_mv", "mood", 1));
     }
-    let told = "mindgap: warning: logs/run-000.csv:1: column \"mood\" is not known and left out (and so in 6 files)\n";
+    let told = "mindgap: warning: logs/run-000.csv:1: unknown column \"mood\" ignored (in 6 files)\n";
     assert_eq!(workshop.call("check logs").err, told);
 }
 

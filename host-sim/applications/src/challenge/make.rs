@@ -9,7 +9,7 @@ use super::cases::{self, Setting};
 use super::seal::{Published, Sealed};
 use mindgap_files as files;
 use mindgap_foundations::error::Result;
-use mindgap_logs::Texts;
+use mindgap_logs::LogFiles;
 use mindgap_workers as workers;
 
 /// Writes a challenge of `count` cases to a folder; `watch` is told how many are done, and of how many.
@@ -42,10 +42,10 @@ fn fill(folder: &Folder, count: usize, seed: u64, setting: Setting, mut watch: i
             fresh_seed: made.rng.next_u64(),
             salt: format!("{:016x}", made.rng.next_u64()),
         };
-        Ok((made.logs.to_texts(), made.robot, sealed))
+        Ok((made.logs.to_files(), made.robot, sealed))
     };
     let (mut sealed, mut published) = (Vec::with_capacity(count), Vec::with_capacity(count));
-    workers::in_order(count, make, |number, (logs, robot, case): (Texts, usize, Sealed)| {
+    workers::in_order(count, make, |number, (logs, robot, case): (LogFiles, usize, Sealed)| {
         logs.write(&folder.case(&case.case))?;
         published.push(Published { case: case.case.clone(), robot: robot.to_string(), commitment: case.commitment() });
         sealed.push(case);
