@@ -1,7 +1,7 @@
 //! Checks clocks: runs with times in seconds or at another rate, and commands shifted in time against the motion.
 
 use super::finding::{Finding, Handling, Part, RunRows};
-use super::segments::{MIN_SAMPLES, command_at, is_gap, stride};
+use super::segments::{MIN_SAMPLES, commanded, is_gap, stride};
 use crate::{Logs, Robot, Row, Run};
 use mindgap_foundations::geometry::wrap_rad;
 use mindgap_foundations::statistics::summary::median;

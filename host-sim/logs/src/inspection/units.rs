@@ -39,7 +39,7 @@ pub fn commands(logs: &mut Logs) -> Vec<Finding> {
     };
     if handling == Handling::Corrected {
         logs.runs.iter_mut().for_each(|run| {
-            run.rows.edit_each(|row| (row.left, row.converted) = (row.left * 100.0, row.converted * 100.0));
+            run.rows.edit_each(|row| (row.left, row.right) = (row.left * 100.0, row.right * 100.0));
         });
     }
     vec![found]
