@@ -97,7 +97,7 @@ fn inspection(bytes: &[u8]) {
     let Ok(text) = str::from_utf8(bytes) else { return };
     let Ok(run) = Run::parse(Path::new("run-000.csv"), text, &["t_ms"], |_| {}) else { return };
     let logs = Logs { robot: default_robot(), scene: four_obstacles(), runs: vec![run] };
-    let _ = Inspection::of(logs).sound(|_| {});
+    let _ = Inspection::new(logs).sound(|_| {});
 }
 
 /// A scene round-trips through its own text.

@@ -34,7 +34,7 @@ impl Logs {
         let scene = scene.map(convert::scene).transpose()?.unwrap_or_default();
         let tables = convert::tables(runs)?;
         let mut oddities = Vec::new();
-        let read = py.detach(|| logs::Logs::of_tables(robot, scene, &tables, |oddity| oddities.push(oddity)));
+        let read = py.detach(|| logs::Logs::from_tables(robot, scene, &tables, |oddity| oddities.push(oddity)));
         warn(py, oddities)?;
         Ok(Logs { inner: Arc::new(read.map_err(raised)?), folder: None })
     }
@@ -60,7 +60,7 @@ impl Logs {
     fn runs<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let runs = PyDict::new(py);
         for run in &self.inner.runs {
-            runs.set_item(&run.name, convert::arrays(py, Table::of(run))?)?;
+            runs.set_item(&run.name, convert::arrays(py, Table::from_run(run))?)?;
         }
         Ok(runs)
     }
@@ -69,7 +69,7 @@ impl Logs {
     fn frame<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let pandas = py.import("pandas")?;
         let frames = self.inner.runs.iter().map(|run| {
-            let frame = pandas.call_method1("DataFrame", (convert::arrays(py, Table::of(run))?,))?;
+            let frame = pandas.call_method1("DataFrame", (convert::arrays(py, Table::from_run(run))?,))?;
             frame.call_method1("insert", (0, "run", &run.name))?;
             Ok(frame)
         });
@@ -119,7 +119,7 @@ impl Logs {
     pub fn sound(&self, py: Python<'_>, of: Option<&Simulator>) -> PyResult<logs::Logs> {
         let mut put_right = Vec::new();
         let sound = py.detach(|| {
-            let sound = Inspection::of((*self.inner).clone()).sound(|found| put_right.push(found))?;
+            let sound = Inspection::new((*self.inner).clone()).into_usable(|found| put_right.push(found))?;
             of.map_or(Ok(()), |simulator| same_robot(&simulator.robot, &sound.robot))?;
             Ok(sound)
         });

@@ -28,38 +28,38 @@ pub const RUN: usize = 4;
 
 /// Faults of motion: in commands, poses and clocks.
 pub const MOTION: [Fault; 20] = [
-    fault("commands in -1..1", "command_fraction", Handling::PutRight, |logs| {
+    fault("commands in -1..1", "command_fraction", Handling::Corrected, |logs| {
         each(logs, |row| (row.left, row.right) = (row.left / 100.0, row.right / 100.0));
     }),
-    fault("radians", "heading_radians", Handling::PutRight, |logs| poses(logs, |p| p.heading_rad *= PI / 180.0)),
-    fault("metres", "length_metres", Handling::PutRight, |logs| poses(logs, |p| p.position_cm *= 0.01)),
-    fault("millimetres", "length_millimetres", Handling::PutRight, |logs| poses(logs, |p| p.position_cm *= 10.0)),
-    fault("y counted downwards", "y_downwards", Handling::Told, |logs| {
+    fault("radians", "heading_radians", Handling::Corrected, |logs| poses(logs, |p| p.heading_rad *= PI / 180.0)),
+    fault("metres", "length_metres", Handling::Corrected, |logs| poses(logs, |p| p.position_cm *= 0.01)),
+    fault("millimetres", "length_millimetres", Handling::Corrected, |logs| poses(logs, |p| p.position_cm *= 10.0)),
+    fault("y counted downwards", "y_downwards", Handling::Reported, |logs| {
         let high_cm = room(logs).y;
         poses(logs, |p| p.position_cm.y = high_cm - p.position_cm.y);
     }),
-    fault("left and right exchanged", "left_right_exchanged", Handling::Told, |logs| {
+    fault("left and right exchanged", "left_right_exchanged", Handling::Reported, |logs| {
         each(logs, |row| (row.left, row.right) = (row.right, row.left));
     }),
-    fault("x and y exchanged", "xy_exchanged", Handling::Told, |logs| {
+    fault("x and y exchanged", "xy_exchanged", Handling::Reported, |logs| {
         poses(logs, |p| p.position_cm = DVec2::new(p.position_cm.y, p.position_cm.x));
     }),
-    fault("headings clockwise", "heading_clockwise", Handling::Told, |logs| {
+    fault("headings clockwise", "heading_clockwise", Handling::Reported, |logs| {
         poses(logs, |p| p.heading_rad = wrap_rad(-p.heading_rad));
     }),
-    fault("headings of a compass", "heading_clockwise", Handling::Told, |logs| {
+    fault("headings of a compass", "heading_clockwise", Handling::Reported, |logs| {
         poses(logs, |p| p.heading_rad = wrap_rad(FRAC_PI_2 - p.heading_rad));
     }),
-    fault("headings a quarter of a turn on", "frame_turned", Handling::Told, |logs| {
+    fault("headings a quarter of a turn on", "frame_turned", Handling::Reported, |logs| {
         poses(logs, |p| p.heading_rad = wrap_rad(p.heading_rad + FRAC_PI_2));
     }),
-    fault("front taken for back", "frame_turned", Handling::Told, |logs| {
+    fault("front taken for back", "frame_turned", Handling::Reported, |logs| {
         poses(logs, |p| p.heading_rad = wrap_rad(p.heading_rad + PI));
     }),
-    fault("both motors reversed", "commands_reversed", Handling::Told, |logs| {
+    fault("both motors reversed", "commands_reversed", Handling::Reported, |logs| {
         each(logs, |row| (row.left, row.right) = (-row.left, -row.right));
     }),
-    fault("every tenth heading flipped", "heading_flipped", Handling::PutRight, |logs| {
+    fault("every tenth heading flipped", "heading_flipped", Handling::Corrected, |logs| {
         let mut count = 0..;
         each(logs, |row| {
             if count.next().is_some_and(|k| k % 10 == 5) {
@@ -67,27 +67,29 @@ pub const MOTION: [Fault; 20] = [
             }
         });
     }),
-    fault("a stretch of headings flipped", "heading_flipped", Handling::PutRight, |logs| {
+    fault("a stretch of headings flipped", "heading_flipped", Handling::Corrected, |logs| {
         (12..26).for_each(|k| logs.runs[RUN].rows.edit_pose(k, flip));
     }),
-    fault("five headings off by 88°", "heading_jump", Handling::LeftOut, |logs| {
+    fault("five headings off by 88°", "heading_jump", Handling::Excluded, |logs| {
         let turn = |p: &mut Pose| p.heading_rad = wrap_rad(p.heading_rad + 88f64.to_radians());
         (6..).step_by(9).take(5).for_each(|k| logs.runs[RUN].rows.edit_pose(k, turn));
     }),
-    fault("five positions off by 31 cm", "tracker_jump", Handling::LeftOut, |logs| {
+    fault("five positions off by 31 cm", "tracker_jump", Handling::Excluded, |logs| {
         let jump = |p: &mut Pose| p.position_cm += DVec2::new(18.6, -24.8);
         (6..).step_by(9).take(5).for_each(|k| logs.runs[RUN].rows.edit_pose(k, jump));
     }),
-    fault("a frozen tracker", "tracker_frozen", Handling::LeftOut, |logs| {
+    fault("a frozen tracker", "tracker_frozen", Handling::Excluded, |logs| {
         let rows = &mut logs.runs[RUN].rows;
         let stands = rows.at(20).pose;
         (21..25).for_each(|k| rows.edit(k, |row| row.pose = stands));
     }),
-    fault("a run in seconds", "clock_seconds", Handling::PutRight, |logs| {
+    fault("a run in seconds", "clock_seconds", Handling::Corrected, |logs| {
         logs.runs[RUN].rows.edit_each(|row| row.t_ms /= 1000.0);
     }),
-    fault("a run's commands 1.6 s late", "clock_shifted", Handling::LeftOut, |logs| shift(&mut logs.runs[RUN].rows, 4)),
-    fault("a run copied", "run_copied", Handling::LeftOut, |logs| {
+    fault("a run's commands 1.6 s late", "clock_shifted", Handling::Excluded, |logs| {
+        shift(&mut logs.runs[RUN].rows, 4)
+    }),
+    fault("a run copied", "run_copied", Handling::Excluded, |logs| {
         let mut copy = logs.runs[RUN].clone();
         copy.name = "run-999".into();
         logs.runs.push(copy);
@@ -96,17 +98,17 @@ pub const MOTION: [Fault; 20] = [
 
 /// Faults that show only where a sensor reads walls.
 pub const SONAR: [Fault; 8] = [
-    fault("readings in millimetres", "echo_unit", Handling::PutRight, |logs| readings(logs, |cm| cm * 10.0)),
-    fault("readings in metres", "echo_unit", Handling::PutRight, |logs| readings(logs, |cm| cm / 100.0)),
-    fault("readings in inches", "echo_unit", Handling::PutRight, |logs| readings(logs, |cm| cm / 2.54)),
-    fault("255 for none", "echo_none_number", Handling::PutRight, |logs| none(logs, 255.0)),
-    fault("0 for none", "echo_none_number", Handling::PutRight, |logs| none(logs, 0.0)),
-    fault("inf for none", "echo_none_number", Handling::PutRight, |logs| none(logs, 1e7)),
-    fault("poses turned in the room", "frame_turned", Handling::Told, |logs| {
+    fault("readings in millimetres", "echo_unit", Handling::Corrected, |logs| readings(logs, |cm| cm * 10.0)),
+    fault("readings in metres", "echo_unit", Handling::Corrected, |logs| readings(logs, |cm| cm / 100.0)),
+    fault("readings in inches", "echo_unit", Handling::Corrected, |logs| readings(logs, |cm| cm / 2.54)),
+    fault("255 for none", "echo_none_number", Handling::Corrected, |logs| none(logs, 255.0)),
+    fault("0 for none", "echo_none_number", Handling::Corrected, |logs| none(logs, 0.0)),
+    fault("inf for none", "echo_none_number", Handling::Corrected, |logs| none(logs, 1e7)),
+    fault("poses turned in the room", "frame_turned", Handling::Reported, |logs| {
         let size_cm = room(logs);
         poses(logs, |p| *p = Pose::new(size_cm.x - p.position_cm.x, size_cm.y - p.position_cm.y, p.heading_rad + PI));
     }),
-    fault("poses mirrored in the room", "frame_mirrored", Handling::Told, |logs| {
+    fault("poses mirrored in the room", "frame_mirrored", Handling::Reported, |logs| {
         let size_cm = room(logs);
         poses(logs, |p| *p = Pose::new(p.position_cm.x, size_cm.y - p.position_cm.y, -p.heading_rad));
     }),
@@ -121,13 +123,13 @@ pub fn assert_found(good: &Logs, fault: &Fault) {
     let what = fault.what;
     let mut faulty = good.clone();
     (fault.put)(&mut faulty);
-    let (before, after) = (Inspection::of(good.clone()), Inspection::of(faulty.clone()));
+    let (before, after) = (Inspection::new(good.clone()), Inspection::new(faulty.clone()));
     let is_new = |found: &&Finding| !before.findings.iter().any(|known| known.id == found.id);
     let new: Vec<&Finding> = after.findings.iter().filter(is_new).collect();
     let [found] = new.as_slice() else { panic!("{what}: {new:?}") };
     assert_eq!((found.id, found.handling), (fault.id, fault.handling), "{what}");
     // What is only told must not be compared.
-    assert_eq!(found.handling == Handling::Told, !found.withholds.is_empty(), "{what}");
+    assert_eq!(found.handling == Handling::Reported, !found.withholds.is_empty(), "{what}");
     if !found.withholds.is_empty() || fault.id == "run_copied" {
         return;
     }
@@ -136,7 +138,7 @@ pub fn assert_found(good: &Logs, fault: &Fault) {
         rows.map(|(row, _)| (a.name.clone(), row)).collect::<Vec<_>>()
     });
     let put_in: Vec<(String, usize)> = put_in.collect();
-    let places = found.places.iter().flat_map(|place| place.rows.iter().map(|row| (place.run.clone(), *row)));
+    let places = found.rows_by_run.iter().flat_map(|place| place.rows.iter().map(|row| (place.run.clone(), *row)));
     let found_rows: Vec<(String, usize)> = places.collect();
     assert!(put_in.iter().all(|row| found_rows.contains(row)), "{what}: {put_in:?} but {found_rows:?}");
     // A zero is the same in all units.
@@ -145,7 +147,7 @@ pub fn assert_found(good: &Logs, fault: &Fault) {
     for run in &after.logs.runs {
         let as_it_was = before.logs.runs.iter().find(|other| other.name == run.name).expect("a run of the good logs");
         for (k, (row, was)) in run.rows.iter().zip(&as_it_was.rows).enumerate() {
-            let is_left_out = fault.handling == Handling::LeftOut && found_rows.contains(&(run.name.clone(), k));
+            let is_left_out = fault.handling == Handling::Excluded && found_rows.contains(&(run.name.clone(), k));
             assert!(is_left_out && row.pose.is_none() || are_equal(&row, &was), "{what}: {row:?} was {was:?}");
         }
     }

@@ -27,7 +27,7 @@ const DEVIATION_DEG: f64 = 4.0;
 impl HeldOut {
     /// Of logs whose runs are scans, one a place; what is no reading is left out of them as everywhere.
     pub fn of(logs: Logs) -> Self {
-        let logs = Inspection::of(logs).logs;
+        let logs = Inspection::new(logs).logs;
         let surfaces = Surfaces::new(logs.scene.sides());
         let mut sum = HeldOut { readings: 0, poses_refitted: 0.0, heading_refitted: 0.0, as_logged: 0.0 };
         for out in 0..logs.runs.len() {

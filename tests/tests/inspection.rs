@@ -18,7 +18,7 @@ fn logs(runs: usize, effects: &[ActiveEffect]) -> Logs {
 #[test]
 fn faults_are_found_and_put_right_or_left_out() {
     let good = logs(24, &[]);
-    assert!(Inspection::of(good.clone()).findings.is_empty());
+    assert!(Inspection::new(good.clone()).findings.is_empty());
     MOTION.iter().chain(&SONAR).for_each(|fault| assert_found(&good, fault));
 }
 
@@ -27,7 +27,7 @@ fn faults_are_found_and_put_right_or_left_out() {
 fn no_effect_is_taken_for_a_fault() {
     for effect in Effect::all().filter(|effect| effect.id() != "lost_commands") {
         let logs = logs(12, &[ActiveEffect::new(effect)]);
-        let inspected = Inspection::of(logs.clone());
+        let inspected = Inspection::new(logs.clone());
         assert!(inspected.findings.is_empty(), "{effect}: {:?}", inspected.findings);
         assert!(inspected.logs == logs, "{effect}");
     }
@@ -40,12 +40,12 @@ fn lost_commands_look_like_jumps_in_few_rows() {
     let lost = Effect::all().find(|effect| effect.id() == "lost_commands").expect("an effect outside the table");
     let logs = logs(12, &[ActiveEffect::new(lost)]);
     let rows: usize = logs.runs.iter().map(|run| run.rows.len()).sum();
-    let findings = Inspection::of(logs).findings;
+    let findings = Inspection::new(logs).findings;
     assert!(
         findings.iter().all(|found| found.id.starts_with("heading_") && found.withholds.is_empty()),
         "{findings:?}"
     );
-    let touched: usize = findings.iter().flat_map(|found| &found.places).map(|place| place.rows.len()).sum();
+    let touched: usize = findings.iter().flat_map(|found| &found.rows_by_run).map(|place| place.rows.len()).sum();
     assert!(50 * touched <= rows, "{touched} of {rows} rows");
 }
 
@@ -59,7 +59,7 @@ fn a_shifted_clock_of_all_runs_withholds_motion() {
             run.rows.edit(k, |row| [row.left, row.right] = command);
         }
     }
-    let inspected = Inspection::of(logs);
+    let inspected = Inspection::new(logs);
     let [found] = inspected.findings.as_slice() else { panic!("{:?}", inspected.findings) };
     assert_eq!(found.id, "clock_shifted");
     assert!(found.sentence.contains("ms behind the motion"), "{}", found.sentence);
@@ -80,10 +80,10 @@ fn motion_at_zero_commands_is_left_out() {
         let pose = Some(Pose::new(x_cm, y_cm, stood.heading_rad));
         rows.edit(k, |row| *row = Row { left: 0.0, right: 0.0, pose, ..*row });
     }
-    let inspected = Inspection::of(logs.clone());
+    let inspected = Inspection::new(logs.clone());
     let found: Vec<&str> = inspected.findings.iter().map(|found| found.id).collect();
     assert_eq!(found, ["moves_at_zero_command"]);
-    let place = &inspected.findings[0].places[0];
+    let place = &inspected.findings[0].rows_by_run[0];
     assert_eq!((&place.run, place.rows.first(), place.rows.last()), (&logs.runs[RUN].name, Some(&27), Some(&31)));
 }
 
@@ -92,13 +92,13 @@ fn motion_at_zero_commands_is_left_out() {
 fn a_drive_that_is_cut_starts_moving() {
     let late: ActiveEffect = "latency=140".parse().expect("an effect");
     let mut logs = logs(12, &[late]);
-    assert!(Inspection::of(logs.clone()).findings.is_empty());
+    assert!(Inspection::new(logs.clone()).findings.is_empty());
     for run in &mut logs.runs {
         let begin_ms = run.rows.at(7).t_ms;
         let cut = run.rows.between(7..run.rows.len()).map(|row| Row { t_ms: row.t_ms - begin_ms, ..row }).collect();
         run.rows = cut;
     }
-    let found: Vec<&str> = Inspection::of(logs).findings.iter().map(|found| found.id).collect();
+    let found: Vec<&str> = Inspection::new(logs).findings.iter().map(|found| found.id).collect();
     assert_eq!(found, ["starts_moving"]);
 }
 
@@ -115,7 +115,7 @@ fn logs_that_say_little_pass() {
         (1..run.rows.len()).step_by(2).for_each(|k| run.rows.edit(k, |row| row.pose = None));
     }
     for logs in [still, unseen, silent, sparse] {
-        let inspected = Inspection::of(logs.clone());
+        let inspected = Inspection::new(logs.clone());
         assert!(inspected.findings.is_empty() && inspected.logs == logs, "{:?}", inspected.findings);
     }
 }
@@ -129,7 +129,7 @@ fn no_fault_reaches_a_confident_cause() {
     let sure_of = |logs: Logs| {
         let baseline = Baseline::of_middle(&simulator).expect("a reference");
         // Nothing is sure where nothing can be compared.
-        let found = findings(baseline, &Inspection::of(logs), Method::default());
+        let found = findings(baseline, &Inspection::new(logs), Method::default());
         let effects = found.map_or_else(|_| Vec::new(), |found| found.diagnosis.effects().to_vec());
         effects.into_iter().filter(|effect| effect.probability > SURE).map(|effect| effect.id).collect::<Vec<_>>()
     };
@@ -138,7 +138,7 @@ fn no_fault_reaches_a_confident_cause() {
     };
     let weak: ActiveEffect = "motor_asymmetry=0.15".parse().expect("an effect");
     assert_eq!(sure_of(fresh(&[weak])), ["motor_asymmetry"], "what is changed in the robot is found in such logs");
-    for fault in MOTION.iter().chain(&SONAR).filter(|fault| fault.handling != Handling::PutRight) {
+    for fault in MOTION.iter().chain(&SONAR).filter(|fault| fault.handling != Handling::Corrected) {
         let mut faulty = fresh(&[]);
         (fault.put)(&mut faulty);
         assert_eq!(sure_of(faulty), Vec::<&str>::new(), "{}", fault.what);

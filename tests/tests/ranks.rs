@@ -95,7 +95,7 @@ fn ranks_with_other_arguments_or_files_are_refused() {
         own_lines(&done)[0].to_owned()
     };
     assert!(refused(&here, "--seed 2").ends_with("rank 1 differs from rank 0: it has --seed 2, not 1"));
-    assert!(refused(&there, "").ends_with("it has another content of scene.toml"));
+    assert!(refused(&there, "").ends_with("it has different content in scene.toml"));
 }
 
 #[test]

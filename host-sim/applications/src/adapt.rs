@@ -131,7 +131,7 @@ fn of_no_motion(
 /// The effects that a diagnosis names; none where the logs do not suffice for one.
 fn diagnosed(baseline: Baseline, logs: &Logs, seed: u64, watch: impl Fn(Stage)) -> Vec<AppliedEffect> {
     let method = Method { seed, ..Method::default() };
-    let found = findings_watched(baseline, &Inspection::of(logs.clone()), method, watch);
+    let found = findings_watched(baseline, &Inspection::new(logs.clone()), method, watch);
     found.map_or_else(|_| Vec::new(), |found| found.applied)
 }
 

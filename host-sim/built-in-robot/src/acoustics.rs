@@ -1,4 +1,4 @@
-//! Loudness that belongs to the place: how a room makes an echo louder here and fainter there, the same every time.
+//! Place-dependent loudness: a room makes echoes louder in some places and fainter in others, repeatably.
 
 use std::f64::consts::TAU;
 
@@ -6,11 +6,11 @@ use glam::DVec2;
 use rand::RngExt;
 
 use super::noise::normal;
-use mindgap_foundations::chance::generator;
 use mindgap_foundations::geometry::Pose;
+use mindgap_foundations::random::generator;
 
-/// How loud echoes are over a room, in standard deviations: a smooth function of the sensor's pose, random from room to
-/// room, as a sum of plane waves (Rahimi and Recht 2007, Random features). The default is a room that is alike everywhere.
+/// Echo loudness over a room, in standard deviations: a smooth random function of the sensor's pose, as a sum of plane waves
+/// (Rahimi and Recht 2007, Random features). The default is a uniform room.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Acoustics {
     waves: Vec<Wave>,
@@ -21,36 +21,36 @@ pub(super) struct Acoustics {
 struct Wave {
     /// Wave vector, rad/cm.
     vector: DVec2,
-    /// Waves in a full turn of the sensor.
-    in_a_turn: f64,
+    /// Number of waves in a full turn of the sensor.
+    per_turn: f64,
     phase_rad: f64,
 }
 
-/// Enough that their sum is nearly normal everywhere.
+/// Number of waves: enough for their sum to be nearly normal everywhere.
 const WAVES: usize = 100;
-/// Length over which loudness changes: that of what stands at a wall, such as panels, radiators and skirting.
+/// Correlation length of loudness: the size of features along a wall, such as panels, radiators and skirting.
 const LENGTH_CM: f64 = 40.0;
-/// Turn over which it changes: about the beam's half-power width, which then takes in other parts of a wall.
+/// Correlation angle of loudness: about the beam's half-power width.
 const ANGLE_RAD: f64 = 0.45;
 /// Stream key of a room's generator.
 const ROOM: u64 = u64::from_be_bytes(*b"acoustic");
 
 impl Acoustics {
-    /// A room; any number stands for another one.
+    /// Returns the acoustics of a room; each number stands for a different room.
     pub fn of_room(number: f64) -> Self {
         let mut rng = generator(number.to_bits(), &[ROOM]);
         let waves = (0..WAVES).map(|_| Wave {
             vector: DVec2::new(normal(&mut rng), normal(&mut rng)) / LENGTH_CM,
-            in_a_turn: (normal(&mut rng) / ANGLE_RAD).round(),
+            per_turn: (normal(&mut rng) / ANGLE_RAD).round(),
             phase_rad: rng.random_range(0.0..TAU),
         });
         Acoustics { waves: waves.collect() }
     }
 
-    /// Loudness at a pose of the sensor, in standard deviations.
+    /// Returns the loudness at a pose of the sensor, in standard deviations.
     pub fn at(&self, sensor: &Pose) -> f64 {
         let wave =
-            |w: &Wave| libm::cos(w.vector.dot(sensor.position_cm) + w.in_a_turn * sensor.heading_rad + w.phase_rad);
+            |w: &Wave| libm::cos(w.vector.dot(sensor.position_cm) + w.per_turn * sensor.heading_rad + w.phase_rad);
         (2.0 / WAVES as f64).sqrt() * self.waves.iter().map(wave).sum::<f64>()
     }
 }
@@ -59,7 +59,7 @@ impl Acoustics {
 mod tests {
     use super::*;
 
-    /// Poses at random in a large room.
+    /// Random poses in a large room.
     fn poses() -> Vec<Pose> {
         let mut rng = generator(1, &[]);
         let mut pose =
@@ -67,24 +67,24 @@ mod tests {
         (0..4000).map(|_| pose()).collect()
     }
 
-    /// The mean product of the loudness at poses and at others near them.
-    fn agreement(near: impl Fn(&Pose) -> Pose) -> f64 {
+    /// The mean product of the loudness at poses and at poses near them.
+    fn correlation(near: impl Fn(&Pose) -> Pose) -> f64 {
         let room = Acoustics::of_room(7.0);
         let poses = poses();
         poses.iter().map(|pose| room.at(pose) * room.at(&near(pose))).sum::<f64>() / poses.len() as f64
     }
 
     #[test]
-    fn loudness_repeats_at_a_pose_and_is_forgotten_away_from_it() {
-        let there = |x_cm: f64, turn_rad: f64| agreement(|p| p.compose(&Pose::new(x_cm, 0.0, turn_rad)));
-        assert!((there(0.0, 0.0) - 1.0).abs() < 0.2, "{}", there(0.0, 0.0));
-        // A Gaussian of the way in lengths: exp(-1/2) after one.
-        assert!((there(LENGTH_CM, 0.0) - 0.61).abs() < 0.2, "{}", there(LENGTH_CM, 0.0));
-        assert!(there(4.0 * LENGTH_CM, 0.0).abs() < 0.15 && there(0.0, 4.0 * ANGLE_RAD).abs() < 0.15);
+    fn loudness_repeats_at_a_pose_and_decorrelates_away_from_it() {
+        let moved = |x_cm: f64, turn_rad: f64| correlation(|p| p.compose(&Pose::new(x_cm, 0.0, turn_rad)));
+        assert!((moved(0.0, 0.0) - 1.0).abs() < 0.2, "{}", moved(0.0, 0.0));
+        // A Gaussian of the distance in correlation lengths: exp(-1/2) after one.
+        assert!((moved(LENGTH_CM, 0.0) - 0.61).abs() < 0.2, "{}", moved(LENGTH_CM, 0.0));
+        assert!(moved(4.0 * LENGTH_CM, 0.0).abs() < 0.15 && moved(0.0, 4.0 * ANGLE_RAD).abs() < 0.15);
     }
 
     #[test]
-    fn rooms_differ_and_a_full_turn_changes_nothing() {
+    fn rooms_differ_and_full_turns_change_nothing() {
         let (pose, turned) = (Pose::new(80.0, 120.0, 1.0), Pose::new(80.0, 120.0, 1.0 + TAU));
         let [one, other] = [1.0, 2.0].map(Acoustics::of_room);
         assert!((one.at(&pose) - one.at(&turned)).abs() < 1e-9);

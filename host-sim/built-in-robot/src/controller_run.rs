@@ -3,14 +3,14 @@
 use mindgap_core::controller::{Controller, Machine, Motors, Status};
 
 use super::BuiltInRobot;
-use mindgap_foundations::chance::Generator;
 use mindgap_foundations::geometry::Pose;
+use mindgap_foundations::random::Generator;
 use mindgap_logs::{Row, Run, Termination};
 
 /// The trajectory of a controller's run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Trajectory {
-    /// One point a step, beginning at the start; the last one step after the motors stopped, when the robot is at rest.
+    /// One point per step from the start on; the last is one step after the motors stopped, when the robot is at rest.
     pub points: Vec<TrajectoryPoint>,
     /// How the run ended; a crash is one with the motors on or while the robot coasts to a halt.
     pub termination: Termination,
@@ -21,7 +21,7 @@ pub struct Trajectory {
 pub struct TrajectoryPoint {
     /// The true pose.
     pub true_pose: Pose,
-    /// The row of the log: the commands from here on, the tracked pose, and the reading here.
+    /// The row of the log: commands from here on, tracked pose, and reading.
     pub row: Row,
 }
 
@@ -30,8 +30,8 @@ pub fn run_controller(robot: &BuiltInRobot, controller: &Controller, start: Pose
     let mut body = robot.start(start, rng);
     let mut machine = Machine::start(controller);
     let mut points: Vec<TrajectoryPoint> = Vec::new();
-    // Every row is read, but a controller looks only once it has driven a step and while it does. Where it does not look, the
-    // reading moves no robot: it draws from a copy.
+    // Every row has a reading, but the controller only uses those after its first step and while it runs. The others
+    // must not change the run, so they draw from a copy of the generator.
     while machine.status() == Status::Running && !body.crashed() {
         let echo_cm = if points.is_empty() {
             body.read_sonar(&mut rng.clone())
@@ -55,17 +55,17 @@ pub fn run_controller(robot: &BuiltInRobot, controller: &Controller, start: Pose
 }
 
 impl Trajectory {
-    /// Steps that the controller took: the first point is its start, and after the last step the motors stop.
+    /// Returns the number of the controller's steps: the first point is its start, and the motors stop after the last step.
     pub fn steps(&self) -> usize {
         self.points.len() - 2
     }
 
-    /// The true pose at which the robot came to rest.
+    /// Returns the true pose at which the robot came to rest.
     pub fn end(&self) -> Pose {
         self.points[self.points.len() - 1].true_pose
     }
 
-    /// The run as a log.
+    /// Converts the run to a log.
     pub fn to_run(&self, name: impl Into<String>) -> Run {
         Run { name: name.into(), rows: self.points.iter().map(|point| point.row).collect() }
     }

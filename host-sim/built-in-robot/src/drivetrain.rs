@@ -8,16 +8,16 @@ use rand::RngExt;
 use super::hardware::{GRAVITY, Hardware, LEFT, RIGHT};
 use super::noise::{Wander, happens, normal};
 use super::wheel::{Tick, Wheel, dragged};
-use mindgap_foundations::chance::Generator;
 use mindgap_foundations::geometry::{Pose, direction, wrap_rad};
+use mindgap_foundations::random::Generator;
 
-/// Time after which the floor under the wheels has changed.
+/// Time after which the floor properties under the wheels change.
 const PATCH_MS: f64 = 40.0;
-/// Probability of a grain under a wheel, where there is grit at all.
+/// Probability of a grain under a wheel if there is grit.
 const GRAINS: f64 = 0.3;
 /// Distance between the crests of a wavy floor.
 const WAVE_CM: f64 = 30.0;
-/// Least speed at which the castor aligns with the motion, m/s.
+/// Minimum speed at which the castor aligns with the motion, m/s.
 const STANDSTILL_M_S: f64 = 1e-4;
 
 /// Pose, velocities and electrical state.
@@ -26,20 +26,21 @@ pub(super) struct Drivetrain {
     pose: Pose,
     /// A unit vector along the heading.
     facing: DVec2,
-    /// Forward and to the left, in the robot's own frame.
+    /// Velocity forward and to the left, in the robot's own frame.
     speed_m_s: DVec2,
     turning_rad_s: f64,
     wheels: [Wheel; 2],
     /// A unit vector along which the castor rolls, in the robot's own frame.
     castor: DVec2,
-    /// Battery current now, and charge drawn since the run began.
+    /// Present battery current.
     current_a: f64,
+    /// Charge drawn since the start of the run.
     drawn_c: f64,
     patch: Patch,
     patch_left_ms: f64,
 }
 
-/// Random properties of the floor under the wheels, in standard deviations; the grit as a share of the ground.
+/// Random properties of the floor under the wheels, in standard deviations; grit as a fraction of the distance.
 #[derive(Clone, Debug)]
 struct Patch {
     grit: [f64; 2],
@@ -50,7 +51,7 @@ struct Patch {
 }
 
 impl Drivetrain {
-    /// A robot at rest with a fresh battery.
+    /// Returns a robot at rest with a fresh battery.
     pub fn at_rest(hardware: &Hardware, pose: Pose, rng: &mut Generator) -> Self {
         Drivetrain {
             pose,
@@ -63,10 +64,10 @@ impl Drivetrain {
             drawn_c: 0.0,
             patch: Patch {
                 grit: [0.0; 2],
-                roll: [Wander::anywhere(rng), Wander::anywhere(rng)],
-                contact: Wander::anywhere(rng),
-                toe: Wander::anywhere(rng),
-                scrub: Wander::anywhere(rng),
+                roll: [Wander::stationary(rng), Wander::stationary(rng)],
+                contact: Wander::stationary(rng),
+                toe: Wander::stationary(rng),
+                scrub: Wander::stationary(rng),
             },
             patch_left_ms: PATCH_MS,
         }
@@ -76,24 +77,24 @@ impl Drivetrain {
         self.pose
     }
 
-    /// The motors' rotation counters.
+    /// Returns the motors' rotation counters.
     pub fn counters_deg(&self) -> [f64; 2] {
         [self.wheels[LEFT].counter_deg(), self.wheels[RIGHT].counter_deg()]
     }
 
-    /// Mean speed of the wheels' rims, forwards or backwards, relative to full speed.
+    /// Returns the mean absolute rim speed of the wheels relative to full speed.
     pub fn wheel_speed(&self, hardware: &Hardware) -> f64 {
         let [left, right] = [LEFT, RIGHT].map(|side| self.wheels[side].rim_m_s(&hardware.tyres[side]).abs());
         (left + right) / (2.0 * hardware.full_speed_m_s)
     }
 
-    /// Terminal voltage of the battery.
+    /// Returns the terminal voltage of the battery.
     pub fn battery_v(&self, hardware: &Hardware) -> f64 {
         let battery = &hardware.battery;
         (battery.fresh_v - battery.fade_v_per_c * self.drawn_c - battery.inner_ohm * self.current_a).max(0.0)
     }
 
-    /// Advances by one time step under left and right command, -100..=100; returns the distance travelled, cm.
+    /// Advances by one time step under a left and right command, -100..=100; returns the distance travelled, cm.
     pub fn tick(&mut self, hardware: &Hardware, command: [f64; 2], tick_ms: f64, rng: &mut Generator) -> f64 {
         self.patch_left_ms -= tick_ms;
         if self.patch_left_ms <= 0.0 {
@@ -109,7 +110,7 @@ impl Drivetrain {
         self.advance(seconds)
     }
 
-    /// Force and torque on the body from both tyres.
+    /// Returns force and torque on the body from both tyres.
     fn wheels_push(&mut self, hardware: &Hardware, command: [f64; 2], seconds: f64) -> (DVec2, f64) {
         let supply_v = self.battery_v(hardware);
         let floor = &hardware.floor;
@@ -134,7 +135,7 @@ impl Drivetrain {
         (force_n, torque_nm)
     }
 
-    /// Force and torque of the castor, which swivels into the direction of motion and pushes sideways until it has.
+    /// Returns force and torque of the castor, which swivels into the direction of motion and pushes sideways until then.
     fn castor_push(&mut self, hardware: &Hardware, seconds: f64) -> (DVec2, f64) {
         let castor = &hardware.castor;
         let dragged_m_s = DVec2::new(self.speed_m_s.x, self.speed_m_s.y - self.turning_rad_s * castor.behind_m);
@@ -149,7 +150,7 @@ impl Drivetrain {
         (force_n, -castor.behind_m * force_n.y)
     }
 
-    /// Component of gravity along the tilted floor, N.
+    /// Returns the component of gravity along the tilted floor, N.
     fn weight_push(&self, hardware: &Hardware) -> DVec2 {
         let floor = &hardware.floor;
         let wave_n = floor.waves_n * libm::sin(TAU * self.pose.position_cm.x / WAVE_CM);
@@ -162,7 +163,7 @@ impl Drivetrain {
         let turned_away = -self.turning_rad_s * self.speed_m_s.perp();
         let free_m_s = (force_n / chassis.mass_kg + turned_away) * seconds;
         let castor = &hardware.castor;
-        let turning_n = (castor.turning_drag_n_s * self.turning_rad_s.abs()).min(castor.most_turning_drag_n);
+        let turning_n = (castor.turning_drag_n_s * self.turning_rad_s.abs()).min(castor.max_turning_drag_n);
         let castor_n = castor.drag_n + turning_n;
         let drag_n = castor_n + self.floor_drag_n(hardware);
         self.speed_m_s.x = dragged(self.speed_m_s.x, free_m_s.x, drag_n * seconds / chassis.mass_kg, 1.0);
@@ -177,23 +178,23 @@ impl Drivetrain {
         );
     }
 
-    /// Drag of the floor, N: leaning fibres resist motion against them only, a rough patch resists any motion.
+    /// Returns the drag of the floor, N: leaning fibres resist only motion against them, a rough patch resists any motion.
     fn floor_drag_n(&self, hardware: &Hardware) -> f64 {
         let floor = &hardware.floor;
-        let way = self.facing * self.speed_m_s.x.signum();
-        let on_patch = self.pose.position_cm.distance(floor.patch_middle_cm) < floor.patch_radius_cm;
+        let direction_of_motion = self.facing * self.speed_m_s.x.signum();
+        let on_patch = self.pose.position_cm.distance(floor.patch_centre_cm) < floor.patch_radius_cm;
         let patch_n = if on_patch { floor.patch_n } else { 0.0 };
-        (floor.nap_n.length() + floor.nap_n.dot(way)) / 2.0 + patch_n
+        (floor.nap_n.length() + floor.nap_n.dot(direction_of_motion)) / 2.0 + patch_n
     }
 
     fn advance(&mut self, seconds: f64) -> f64 {
         let turned_rad = self.turning_rad_s * seconds;
-        let way_cm = self.speed_m_s * (100.0 * seconds);
+        let displacement_cm = self.speed_m_s * (100.0 * seconds);
         let faced = self.facing;
         self.pose.heading_rad = wrap_rad(self.pose.heading_rad + turned_rad);
         self.facing = self.pose.direction();
-        self.pose.position_cm += ((faced + self.facing) / 2.0).rotate(way_cm);
-        way_cm.length()
+        self.pose.position_cm += ((faced + self.facing) / 2.0).rotate(displacement_cm);
+        displacement_cm.length()
     }
 }
 

@@ -2,18 +2,18 @@
 
 use rand::RngExt;
 
-use mindgap_foundations::chance::Generator;
+use mindgap_foundations::random::Generator;
 
 /// A kind of random driving. Logs of a kind other than that of the training logs excite other effects.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Driving {
-    /// Its name.
+    /// Name of the kind.
     pub name: &'static str,
     /// Slowest and fastest command of the faster wheel.
     pace: [f64; 2],
-    /// Least and largest number of steps for which a command is held.
+    /// Smallest and largest number of steps for which a command is held.
     held: [usize; 2],
-    /// The largest such number in every third run, where it is another.
+    /// Largest number of steps in every third run, if different.
     long_hold: Option<usize>,
     /// Relative frequencies of: nearly straight, an arc, a spin, nearly straight back, any two commands.
     weights: [u32; 5],
@@ -27,7 +27,7 @@ const ANY: [f64; 2] = [-60.0, 80.0];
 const NEARLY: f64 = 12.0;
 /// Speed backwards relative to forwards.
 const BACK: f64 = 0.7;
-/// Of so many runs the last has commands that are held for long.
+/// One run in this many holds commands for long.
 const LONG_EVERY: u64 = 3;
 
 impl Driving {
@@ -45,17 +45,17 @@ impl Driving {
         Driving { name: "back and forth", pace: [15.0, 85.0], held: [1, 3], long_hold: None, weights: [5, 2, 4, 7, 2] },
     ];
 
-    /// The kind of a name; `None` for an unknown name.
+    /// Returns the kind with a name; `None` if unknown.
     pub fn named(name: &str) -> Option<Driving> {
         Driving::ALL.into_iter().find(|kind| kind.name == name)
     }
 
-    /// The same with commands that are held for up to so many steps in every third run, as controllers hold theirs.
+    /// Holds commands for up to `long_hold` steps in every third run, as controllers do.
     pub fn holding(self, long_hold: usize) -> Driving {
         Driving { long_hold: Some(long_hold.max(self.held[0])), ..self }
     }
 
-    /// How a run of this number is driven.
+    /// Returns the kind of driving in run number `run`.
     pub(super) fn of_run(&self, run: u64) -> Driving {
         match self.long_hold {
             Some(longest) if run % LONG_EVERY == LONG_EVERY - 1 => Driving { held: [self.held[0], longest], ..*self },
@@ -63,12 +63,12 @@ impl Driving {
         }
     }
 
-    /// Random number of steps for which a command is held.
+    /// Draws the number of steps for which a command is held.
     pub(super) fn steps(&self, rng: &mut Generator) -> usize {
         rng.random_range(self.held[0]..=self.held[1])
     }
 
-    /// Random left and right command, integers.
+    /// Draws a left and right command, as integers.
     pub(super) fn command(&self, rng: &mut Generator) -> [f64; 2] {
         let fastest = self.pace[1];
         let pace = rng.random_range(self.pace[0]..=fastest);
@@ -86,7 +86,7 @@ impl Driving {
         command.map(|c| c.round())
     }
 
-    /// A random index, distributed by the weights.
+    /// Draws an index by the weights.
     fn drawn(&self, rng: &mut Generator) -> usize {
         let drawn = rng.random_range(0..self.weights.iter().sum::<u32>());
         let until = self.weights.iter().scan(0, |sum, weight| {
@@ -100,7 +100,7 @@ impl Driving {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use mindgap_foundations::chance::generator;
+    use mindgap_foundations::random::generator;
 
     #[test]
     fn every_third_run_holds_commands_for_long() {

@@ -1,6 +1,6 @@
 //! Effects: deviations of the built-in robot from its healthy state, each with an id.
 //!
-//! An effect changes a part or the floor (`fitting`), never a step of a simulator.
+//! An effect changes a part or the floor (`fitting`), never a simulator step.
 
 mod catalogue;
 mod entry;
@@ -15,7 +15,7 @@ pub use catalogue::Effect;
 pub use held_out::HeldOut;
 pub use scale::Scale;
 
-use mindgap_foundations::chance::Generator;
+use mindgap_foundations::random::Generator;
 
 /// An active effect; its text form is `ID`, `ID=STRENGTH` or `ID=STRENGTH@DETAIL`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,13 +29,13 @@ pub struct ActiveEffect {
 }
 
 impl ActiveEffect {
-    /// The effect at its default strength, which is clearly visible in logs.
+    /// Returns the effect at its default strength, which is clearly visible in logs.
     pub fn new(effect: Effect) -> Self {
         let detail = effect.detail_range().map_or(0.0, |range| range.default);
         ActiveEffect { effect, strength: effect.strength_range().default, detail }
     }
 
-    /// The effect at a random strength within its range and away from neutral.
+    /// Returns the effect at a random strength within its range and away from neutral.
     pub fn random(effect: Effect, rng: &mut Generator) -> Self {
         let strength = effect.strength_range().draw(rng);
         let detail = effect.detail_range().map_or(0.0, |range| range.draw(rng));
@@ -76,10 +76,10 @@ impl FromStr for ActiveEffect {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use mindgap_foundations::chance::generator;
+    use mindgap_foundations::random::generator;
 
     #[test]
-    fn text_and_effect_are_one() {
+    fn text_form_round_trips() {
         let mut rng = generator(1, &[]);
         for effect in Effect::all() {
             for active in [ActiveEffect::new(effect), ActiveEffect::random(effect, &mut rng)] {
@@ -90,14 +90,14 @@ mod tests {
     }
 
     #[test]
-    fn a_wrong_name_or_number_is_refused() {
+    fn invalid_name_or_number_is_rejected() {
         let wrong = |text: &str| text.parse::<ActiveEffect>().unwrap_err();
         let unknown = wrong("battery_sagg");
         assert!(Effect::all().all(|effect| unknown.contains(effect.id())), "{unknown}");
-        assert!(wrong("battery_sag=much").contains("\"much\" is no number"));
+        assert!(wrong("battery_sag=much").contains("\"much\" is not a number"));
         assert!(wrong("battery_sag=-1").contains("between 0 and"));
         assert!(wrong("battery_sag=NaN").contains("between 0 and"));
         assert!(wrong("battery_sag=0.2@3").contains("no second number"));
-        assert!(wrong("slope=0.05@north").contains("\"north\" is no number"));
+        assert!(wrong("slope=0.05@north").contains("\"north\" is not a number"));
     }
 }

@@ -1,5 +1,5 @@
-//! Parameters of the built-in robot in SI units: a LEGO NXT differential drive as its parts are measured, without
-//! effects. Every parameter that an effect changes has its healthy value here.
+//! Parameters of the built-in robot in SI units: a LEGO NXT differential drive with measured parts and without effects. Every
+//! parameter that an effect changes has its healthy value here.
 
 use glam::DVec2;
 
@@ -13,7 +13,7 @@ pub(super) const LEFT: usize = 0;
 /// Index of the right side.
 pub(super) const RIGHT: usize = 1;
 
-/// All parts, and the floor that they stand on.
+/// All parts, and the floor.
 #[derive(Clone, Debug)]
 pub(super) struct Hardware {
     /// Time between two rows of a log.
@@ -36,9 +36,9 @@ pub(super) struct Hardware {
 pub(super) struct Link {
     /// Delay between the logged time and the driver.
     pub delay_ms: f64,
-    /// Largest random delay on top of it, drawn for each command.
+    /// Maximum additional random delay, drawn per command.
     pub delay_jitter_ms: f64,
-    /// Probability that a command is lost on its way.
+    /// Probability that a command is lost.
     pub lost: f64,
     /// Quantisation step of commands at the driver; zero for none.
     pub grain: f64,
@@ -52,7 +52,7 @@ pub(super) struct Battery {
     pub inner_ohm: f64,
     /// Current drawn by the brick itself.
     pub idle_a: f64,
-    /// Voltage lost for each coulomb drawn since the run began.
+    /// Voltage lost per coulomb drawn since the start of the run.
     pub fade_v_per_c: f64,
 }
 
@@ -65,19 +65,19 @@ pub(super) struct Motor {
     pub inertia_kg_m2: f64,
     /// Dry friction of the gear while it turns.
     pub friction_nm: f64,
-    /// Dry friction at rest as a multiple of that.
+    /// Dry friction at rest as a multiple of `friction_nm`.
     pub breakaway: f64,
     /// Viscous friction of the gear.
     pub viscous_nm_s: f64,
-    /// Viscous friction of cold grease in addition, when a run begins.
+    /// Additional viscous friction of cold grease at the start of a run.
     pub cold_nm_s: f64,
-    /// Share of the commanded voltage that its bridge lets through.
+    /// Fraction of the commanded voltage that the bridge passes.
     pub bridge: f64,
     /// Speed backwards relative to forwards.
     pub backwards: f64,
     /// Largest voltage of the bridge.
     pub limit_v: f64,
-    /// Time in which the bridge raises its duty cycle from 0 to 1; it lowers it at once.
+    /// Time in which the bridge raises its duty cycle from 0 to 1; it lowers it instantly.
     pub rise_ms: f64,
     /// Backlash between shaft and wheel.
     pub play_rad: f64,
@@ -86,19 +86,19 @@ pub(super) struct Motor {
 #[derive(Clone, Debug)]
 pub(super) struct Tyre {
     pub radius_m: f64,
-    /// Eccentricity of the hub, as a share of the radius.
+    /// Eccentricity of the hub, as a fraction of the radius.
     pub eccentricity: f64,
-    /// Coefficient of static friction: largest force as a share of the load.
+    /// Coefficient of static friction: maximum force as a fraction of the load.
     pub grip: f64,
     /// Sliding friction relative to static friction.
     pub sliding: f64,
-    /// Slip velocity at which the force approaches its largest.
+    /// Slip velocity at which the force approaches its maximum.
     pub creep_m_s: f64,
     /// Load on the tyre.
     pub load_n: f64,
-    /// Rolling resistance as a share of the load: the dry part.
+    /// Dry rolling resistance as a fraction of the load.
     pub rolling: f64,
-    /// The part that grows with speed, as the tyre flexes.
+    /// Rolling resistance per speed from flexing of the tyre, as a fraction of the load.
     pub flexing_s_per_m: f64,
 }
 
@@ -106,7 +106,7 @@ pub(super) struct Tyre {
 pub(super) struct Chassis {
     pub mass_kg: f64,
     pub yaw_inertia_kg_m2: f64,
-    /// Distance from the middle of the axle to the contact points of the tyres.
+    /// Distance from the centre of the axle to the contact points of the tyres.
     pub half_track_m: f64,
 }
 
@@ -119,110 +119,120 @@ pub(super) struct Castor {
     pub trail_m: f64,
     /// Sideways force while it swivels.
     pub scrub_n: f64,
-    /// Rolling drag, and the addition to it for each rad/s that the robot turns.
+    /// Rolling drag.
     pub drag_n: f64,
+    /// Additional drag per rad/s of turn rate.
     pub turning_drag_n_s: f64,
-    /// The most of that: a castor that is jammed rubs with what rests on it, and half as much again where it digs in.
-    pub most_turning_drag_n: f64,
+    /// Maximum of that additional drag: a jammed castor rubs with its load, and half as much again where it digs in.
+    pub max_turning_drag_n: f64,
 }
 
 #[derive(Clone, Debug)]
 pub(super) struct Floor {
     /// Sine of its tilt along the world's axes, pointing downhill.
     pub downhill: DVec2,
-    /// Drag of leaning fibres against motion; the vector points in the direction of most drag.
+    /// Drag of leaning fibres; the vector points in the direction of greatest drag.
     pub nap_n: DVec2,
     /// Drag on a round patch in the middle of the room.
     pub patch_n: f64,
-    pub patch_middle_cm: DVec2,
+    pub patch_centre_cm: DVec2,
     pub patch_radius_cm: f64,
-    /// Component of the weight along the floor where waves across the x axis are steepest.
+    /// Component of the weight along the floor where the waves across the x axis are steepest.
     pub waves_n: f64,
     /// Scrub torque of the wide tyres against turning on the spot.
     pub scrub_nm: f64,
-    /// Largest share of the ground that a wheel loses or wins on a grain of grit.
+    /// Maximum fraction of distance that a wheel loses or gains on a grain of grit.
     pub grit: f64,
-    /// Standard deviations of what varies from place to place: rolling radius (share), contact point, toe angle, scrub
-    /// (share).
+    /// Standard deviation of the relative rolling radius from place to place.
     pub roughness: f64,
+    /// Standard deviation of the contact point from place to place.
     pub contact_wander_m: f64,
+    /// Standard deviation of the toe angle from place to place.
     pub toe_wander_rad: f64,
+    /// Standard deviation of the relative scrub torque from place to place.
     pub scrub_wander: f64,
 }
 
 /// The ultrasonic sensor and the acoustics of the room. Levels are dB above the threshold of the sensor.
 #[derive(Clone, Debug)]
 pub(super) struct Sonar {
-    /// Position ahead of the axle's middle and to its left, cm; direction of the axis, counter-clockwise.
-    pub place_cm: DVec2,
+    /// Position ahead of the centre of the axle and to its left.
+    pub mount_cm: DVec2,
+    /// Direction of the axis, counter-clockwise.
     pub yaw_rad: f64,
     pub min_cm: f64,
     pub max_cm: f64,
     pub half_angle_rad: f64,
-    /// Level at the beam's edge relative to its middle.
+    /// Attenuation at the beam's edge relative to its axis.
     pub edge_db: f64,
-    /// Level added at the left edge and subtracted at the right one.
+    /// Level added at the beam's left edge and subtracted at the right one.
     pub lean_db: f64,
     /// Level of an echo from a wall one metre ahead at normal incidence.
     pub level_db: f64,
     pub absorption_db_per_m: f64,
-    /// Level added to echoes from anything but the arena's own sides, and the number of these, which come first in the list
-    /// of all sides.
+    /// Level added to echoes from anything other than the arena's own sides.
     pub obstacle_db: f64,
+    /// Number of the arena's own sides, which come first in the list of all sides.
     pub arena_sides: usize,
     /// Incidence angle at which the amplitude of the echo from a wall's facets falls to 1/e.
     pub facet_rad: f64,
-    /// Share of the sound that a wall scatters diffusely.
+    /// Fraction of the sound that a wall scatters diffusely.
     pub diffuse: f64,
     /// Loss of a specular reflection.
     pub mirror_db: f64,
-    /// Standard deviations of the level: from ping to ping, and between directions within one.
+    /// Standard deviation of the level from ping to ping.
     pub ping_db: f64,
+    /// Standard deviation of the level between directions within a ping.
     pub speckle_db: f64,
-    /// Standard deviation of the level from place to place, and how it is spread over the room.
+    /// Standard deviation of the level from place to place.
     pub place_db: f64,
+    /// Distribution of the place-dependent level over the room.
     pub acoustics: Acoustics,
-    /// Level lost to the motors' noise when both run at full speed.
+    /// Level lost to motor noise when both motors run at full speed.
     pub whine_db: f64,
-    /// Standard deviation of a reading at normal incidence, and the addition at grazing incidence.
+    /// Standard deviation of a reading at normal incidence.
     pub scatter_cm: f64,
+    /// Additional standard deviation at grazing incidence.
     pub grazing_cm: f64,
-    /// Clock rate and delay of its timer.
+    /// Clock rate of the timer.
     pub timer: f64,
+    /// Delay of the timer.
     pub delay_cm: f64,
-    /// Change of its clock rate in a minute, as it warms.
+    /// Change of the clock rate per minute as the timer warms up.
     pub warming_per_min: f64,
-    /// Probability that the transducer's own ringing triggers it, and the distance then.
+    /// Probability that the transducer's own ringing triggers the sensor.
     pub ringing: f64,
+    /// Distance read when the ringing triggers the sensor.
     pub ringing_cm: f64,
-    /// Probability of an echo from a fixed object such as the floor or a cable, and its distance.
+    /// Probability of an echo from a fixed object such as the floor or a cable.
     pub ghost: f64,
+    /// Distance of the fixed object.
     pub ghost_cm: f64,
     /// Probability of receiving the ping of another sensor.
     pub crosstalk: f64,
-    /// Share of the time in which its plug has no contact.
+    /// Fraction of time in which the plug has no contact.
     pub loose: f64,
-    /// Age of the ping that a reading comes from.
+    /// Age of the ping behind a reading.
     pub age_ms: f64,
 }
 
-/// The camera at the ceiling and the compass on the robot.
+/// The ceiling camera and the compass on the robot.
 #[derive(Clone, Debug)]
 pub(super) struct Tracker {
-    /// Point of the floor at the middle of the picture, cm.
-    pub middle_cm: DVec2,
+    /// Point of the floor at the centre of the picture, cm.
+    pub centre_cm: DVec2,
     pub scale: f64,
     pub turn_rad: f64,
     /// Radial distortion of the lens.
     pub distortion_per_m2: f64,
-    /// Position of the marker ahead of the axle's middle and to its left.
+    /// Position of the marker ahead of the centre of the axle and to its left.
     pub marker_cm: DVec2,
-    /// Field of the iron on the robot relative to the earth's, in the robot's frame.
+    /// Field of iron on the robot relative to the earth's field, in the robot's frame.
     pub iron: DVec2,
-    /// Time constant of the compass's needle.
+    /// Time constant of the compass needle.
     pub needle_ms: f64,
     pub position_noise_cm: f64,
-    /// Addition to it one metre from the middle of the picture; it grows with the square of that distance.
+    /// Additional position noise one metre from the centre of the picture; it grows with the square of the distance.
     pub blur_cm_per_m2: f64,
     pub marker_noise_rad: f64,
     pub compass_noise_rad: f64,
@@ -231,7 +241,7 @@ pub(super) struct Tracker {
 }
 
 impl Hardware {
-    /// The healthy robot, with the battery voltage that gives the specified full speed on the specified wheels.
+    /// Returns the healthy robot, with the battery voltage that gives the specified full speed on the specified wheels.
     pub fn new(spec: &Robot, scene: &Scene) -> Self {
         let motor = Motor {
             torque_nm_per_a: 0.317,
@@ -266,7 +276,7 @@ impl Hardware {
             scrub_n: 0.0,
             drag_n: 0.05,
             turning_drag_n_s: 0.0,
-            most_turning_drag_n: 1.5 * (chassis.mass_kg * GRAVITY - 2.0 * tyre.load_n),
+            max_turning_drag_n: 1.5 * (chassis.mass_kg * GRAVITY - 2.0 * tyre.load_n),
         };
         let battery = Battery {
             fresh_v: voltage_for(&motor, &tyre, &castor, full_speed_m_s),
@@ -287,7 +297,7 @@ impl Hardware {
                 downhill: DVec2::ZERO,
                 nap_n: DVec2::ZERO,
                 patch_n: 0.0,
-                patch_middle_cm: middle_cm(scene),
+                patch_centre_cm: centre_cm(scene),
                 patch_radius_cm: 70.0,
                 waves_n: 0.0,
                 scrub_nm: 0.02,
@@ -302,33 +312,33 @@ impl Hardware {
         }
     }
 
-    /// Speed that a wheel loses for each newton that holds it back.
-    pub fn yielding_m_s_per_n(&self) -> f64 {
+    /// Returns the speed that a wheel loses per newton of drag.
+    pub fn compliance_m_s_per_n(&self) -> f64 {
         let (motor, radius_m) = (&self.motors[LEFT], self.tyres[LEFT].radius_m);
         radius_m * radius_m / (motor.damping_nm_s() + motor.viscous_nm_s)
     }
 
-    /// Force on the body at which both wheels together lose this share of half their full speed.
+    /// Returns the force on the body at which both wheels together lose a fraction `share` of half their full speed.
     pub fn force_for_loss_n(&self, share: f64) -> f64 {
-        share * self.full_speed_m_s / self.yielding_m_s_per_n()
+        share * self.full_speed_m_s / self.compliance_m_s_per_n()
     }
 }
 
 impl Link {
-    /// What the driver makes of a command.
-    pub fn passes(&self, command: f64) -> f64 {
+    /// Returns a command as quantised by the driver.
+    pub fn quantised(&self, command: f64) -> f64 {
         if self.grain > 0.0 { (command / self.grain).round() * self.grain } else { command }
     }
 }
 
 impl Motor {
-    /// The motor's own braking: torque for each rad/s at a fixed voltage.
+    /// Returns the motor's own damping: torque per rad/s at a fixed voltage.
     pub fn damping_nm_s(&self) -> f64 {
         self.torque_nm_per_a * self.back_emf_v_s / self.winding_ohm
     }
 }
 
-/// The voltage at which a wheel's rim keeps this speed.
+/// Returns the voltage at which a wheel's rim keeps a speed.
 fn voltage_for(motor: &Motor, tyre: &Tyre, castor: &Castor, speed_m_s: f64) -> f64 {
     let turning = speed_m_s / tyre.radius_m;
     let drag_n = tyre.load_n * (tyre.rolling + tyre.flexing_s_per_m * speed_m_s) + castor.drag_n / 2.0;
@@ -338,10 +348,10 @@ fn voltage_for(motor: &Motor, tyre: &Tyre, castor: &Castor, speed_m_s: f64) -> f
 
 impl Sonar {
     fn new(spec: &Robot, scene: &Scene) -> Self {
-        // Without a sensor nothing is heard, since no reading lies within this range.
+        // No reading lies within the empty range of a robot without a sensor.
         let [min_cm, max_cm] = spec.ultrasonic.map_or([0.0; 2], |sensor| sensor.range_cm());
         Sonar {
-            place_cm: spec.ultrasonic.map_or(DVec2::ZERO, |sensor| DVec2::new(sensor.x_cm, sensor.y_cm)),
+            mount_cm: spec.ultrasonic.map_or(DVec2::ZERO, |sensor| DVec2::new(sensor.x_cm, sensor.y_cm)),
             yaw_rad: spec.ultrasonic.map_or(0.0, |sensor| sensor.yaw_deg.to_radians()),
             min_cm,
             max_cm,
@@ -379,7 +389,7 @@ impl Sonar {
 impl Tracker {
     fn new(scene: &Scene) -> Self {
         Tracker {
-            middle_cm: middle_cm(scene),
+            centre_cm: centre_cm(scene),
             scale: 1.0,
             turn_rad: 0.0,
             distortion_per_m2: 0.0,
@@ -395,7 +405,7 @@ impl Tracker {
     }
 }
 
-/// The middle of a scene, above which the camera hangs, cm.
-fn middle_cm(scene: &Scene) -> DVec2 {
+/// Returns the centre of a scene, above which the camera hangs, cm.
+fn centre_cm(scene: &Scene) -> DVec2 {
     scene.bounding_box().map_or(DVec2::ZERO, |all| (all.low_cm + all.high_cm) / 2.0)
 }

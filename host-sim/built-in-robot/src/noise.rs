@@ -2,10 +2,10 @@
 
 use rand::RngExt;
 
-use mindgap_foundations::chance::Generator;
+use mindgap_foundations::random::Generator;
 
-/// A standard normal variable, by Marsaglia's polar method with libm's logarithm: a platform's own would make logs differ
-/// between machines.
+/// Draws a standard normal variable by Marsaglia's polar method with libm's logarithm: the platform's own would make logs
+/// differ between machines.
 pub(super) fn normal(rng: &mut Generator) -> f64 {
     loop {
         let (x, y) = (rng.random_range(-1.0..1.0f64), rng.random_range(-1.0..1.0f64));
@@ -16,7 +16,7 @@ pub(super) fn normal(rng: &mut Generator) -> f64 {
     }
 }
 
-/// A Bernoulli variable of this probability.
+/// Draws a Bernoulli variable.
 pub(super) fn happens(probability: f64, rng: &mut Generator) -> bool {
     rng.random::<f64>() < probability
 }
@@ -27,15 +27,16 @@ pub(super) struct Wander(f64);
 
 impl Wander {
     /// Autocorrelation over one [`Wander::step`].
-    const KEPT: f64 = 0.85;
+    const AUTOCORRELATION: f64 = 0.85;
 
-    /// A value from the stationary distribution.
-    pub fn anywhere(rng: &mut Generator) -> Self {
+    /// Starts the process with a draw from the stationary distribution.
+    pub fn stationary(rng: &mut Generator) -> Self {
         Wander(normal(rng))
     }
 
     pub fn step(&mut self, rng: &mut Generator) {
-        self.0 = Self::KEPT * self.0 + (1.0 - Self::KEPT * Self::KEPT).sqrt() * normal(rng);
+        self.0 =
+            Self::AUTOCORRELATION * self.0 + (1.0 - Self::AUTOCORRELATION * Self::AUTOCORRELATION).sqrt() * normal(rng);
     }
 
     pub fn value(&self) -> f64 {
@@ -46,12 +47,12 @@ impl Wander {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use mindgap_foundations::chance::generator;
+    use mindgap_foundations::random::generator;
 
     #[test]
-    fn both_kinds_have_mean_zero_and_deviation_one() {
+    fn both_processes_have_zero_mean_and_unit_deviation() {
         let mut rng = generator(5, &[]);
-        let mut wander = Wander::anywhere(&mut rng);
+        let mut wander = Wander::stationary(&mut rng);
         let white: Vec<f64> = (0..40_000).map(|_| normal(&mut rng)).collect();
         let brown: Vec<f64> = (0..40_000)
             .map(|_| {

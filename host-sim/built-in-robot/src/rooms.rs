@@ -5,7 +5,7 @@ use glam::DVec2;
 use mindgap_foundations::geometry::{Pose, Rectangle};
 use mindgap_logs::{Robot, Scene, Ultrasonic};
 
-/// The default `robot.toml`: a LEGO NXT differential drive as its builder measured it.
+/// Returns the default `robot.toml`: a LEGO NXT differential drive as measured by its builder.
 pub fn default_robot() -> Robot {
     Robot {
         wheel_diameter_cm: 5.6,
@@ -17,7 +17,7 @@ pub fn default_robot() -> Robot {
     }
 }
 
-/// A room with four obstacles for random driving.
+/// Returns a room with four obstacles for random driving.
 pub fn training_room() -> Scene {
     Scene {
         arena_cm: Some(DVec2::new(300.0, 220.0)),
@@ -31,7 +31,7 @@ pub fn training_room() -> Scene {
     }
 }
 
-/// A room with four obstacles, a target and four starts, after figure 4 of the paper, which gives no dimensions.
+/// Returns a room with four obstacles, a target and four starts, after figure 4 of the paper, which gives no dimensions.
 pub fn four_obstacles() -> Scene {
     Scene {
         arena_cm: Some(DVec2::new(300.0, 220.0)),
@@ -57,10 +57,10 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_robot_has_room_at_every_start_and_at_the_target() {
+    fn robot_fits_at_every_start_and_the_target() {
         let (robot, scene) = (default_robot(), four_obstacles());
-        let mut places = scene.starts.iter().map(|start| start.position_cm).chain(scene.target_cm);
-        assert!(places.all(|at| scene.has_room_for(at, robot.body_radius_cm)));
+        let mut positions = scene.starts.iter().map(|start| start.position_cm).chain(scene.target_cm);
+        assert!(positions.all(|at| scene.has_room_for(at, robot.body_radius_cm)));
         assert_eq!(scene.starts.len(), 4);
     }
 }

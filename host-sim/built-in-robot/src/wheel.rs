@@ -4,23 +4,23 @@ use glam::DVec2;
 
 use super::hardware::{Motor, Tyre};
 
-/// Time in which running gears warm their grease to 1/e of its additional stiffness.
+/// Time constant with which running gears warm their grease.
 const WARMING_S: f64 = 8.0;
 
 /// State of a motor, gear and wheel.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Wheel {
-    /// Angular velocity of the motor's shaft at the axle.
+    /// Angular velocity of the shaft, as seen at the axle.
     turning_rad_s: f64,
-    /// Angle of the shaft since the run began.
+    /// Angle of the shaft since the start of the run.
     turned_rad: f64,
     /// Angle of the shaft within the gear's backlash, from 0 (engaged backwards) to `play_rad` (engaged forwards).
     in_play_rad: f64,
-    /// Angle of the wheel when the run began.
+    /// Angle of the wheel at the start of the run.
     rim_rad: f64,
     /// Duty cycle of the bridge, -1..=1.
     duty: f64,
-    /// Time since the run began.
+    /// Time since the start of the run.
     age_s: f64,
 }
 
@@ -49,25 +49,25 @@ pub(super) struct WheelOutput {
 }
 
 impl Wheel {
-    /// A wheel at rest.
+    /// Returns a wheel at rest.
     pub fn at_rest(motor: &Motor, rim_rad: f64) -> Self {
         Wheel { in_play_rad: motor.play_rad / 2.0, rim_rad, ..Wheel::default() }
     }
 
-    /// The motor's rotation counter, in whole degrees.
+    /// Returns the motor's rotation counter, in whole degrees.
     pub fn counter_deg(&self) -> f64 {
         self.turned_rad.to_degrees().round()
     }
 
-    /// Speed of the rim, forwards above zero.
+    /// Returns the speed of the rim, positive forwards.
     pub fn rim_m_s(&self, tyre: &Tyre) -> f64 {
         self.turning_rad_s * tyre.radius_m
     }
 
     pub fn tick(&mut self, motor: &Motor, tyre: &Tyre, tick: &Tick) -> WheelOutput {
         self.duty = motor.ramped(self.duty, tick.duty, tick.seconds);
-        let way = if self.duty < 0.0 { motor.backwards } else { 1.0 };
-        let volts = (self.duty * tick.supply_v * motor.bridge * way).clamp(-motor.limit_v, motor.limit_v);
+        let direction_gain = if self.duty < 0.0 { motor.backwards } else { 1.0 };
+        let volts = (self.duty * tick.supply_v * motor.bridge * direction_gain).clamp(-motor.limit_v, motor.limit_v);
         let current_a = (volts - motor.back_emf_v_s * self.turning_rad_s) / motor.winding_ohm;
         let radius_m = tyre.radius_m * self.hub(tyre) * tick.roll;
         let slip = DVec2::new(self.turning_rad_s * radius_m, 0.0) - tick.ground_m_s;
@@ -91,26 +91,26 @@ impl Wheel {
         WheelOutput { push_n, current_a: current_a * self.duty.abs() }
     }
 
-    /// Viscous friction of the gear with its grease as warm as it is by now.
+    /// Returns the viscous friction of the gear at the present temperature of its grease.
     fn viscous_nm_s(&self, motor: &Motor) -> f64 {
         let cold = if motor.cold_nm_s == 0.0 { 0.0 } else { libm::exp(-self.age_s / WARMING_S) };
         motor.viscous_nm_s + motor.cold_nm_s * cold
     }
 
-    /// Height of the hub over the floor relative to the tyre's radius.
+    /// Returns the height of the hub over the floor relative to the tyre's radius.
     fn hub(&self, tyre: &Tyre) -> f64 {
         if tyre.eccentricity == 0.0 { 1.0 } else { 1.0 + tyre.eccentricity * libm::sin(self.turned_rad + self.rim_rad) }
     }
 
-    /// Whether the backlash is taken up on the side that the shaft presses.
+    /// Returns whether the backlash is taken up on the side that the shaft pushes.
     fn takes_up(&self, motor: &Motor, ahead_m_s: f64) -> bool {
         if ahead_m_s >= 0.0 { self.in_play_rad >= motor.play_rad } else { self.in_play_rad <= 0.0 }
     }
 }
 
 impl Motor {
-    /// The bridge's next duty cycle on its way from one to another: its magnitude rises no faster than the bridge raises
-    /// it, from zero when the sign changes.
+    /// Returns the bridge's next duty cycle between two values: its magnitude rises no faster than the bridge allows, starting from
+    /// zero when the sign changes.
     fn ramped(&self, from: f64, to: f64, seconds: f64) -> f64 {
         if self.rise_ms == 0.0 {
             return to;
@@ -121,8 +121,8 @@ impl Motor {
 }
 
 impl Tyre {
-    /// Force on the robot for a slip velocity of the rim over the floor: nearly proportional for small slip, then limited
-    /// by grip, and smaller once the tyre slides.
+    /// Returns the force on the robot for a slip velocity of the rim over the floor: nearly proportional for small slip, then
+    /// limited by grip, and smaller once the tyre slides.
     fn push_n(&self, slip_m_s: DVec2) -> DVec2 {
         let slide2 = slip_m_s.length_squared();
         let sliding = slide2 / (slide2 + 25.0 * self.creep_m_s * self.creep_m_s);
@@ -131,15 +131,14 @@ impl Tyre {
     }
 }
 
-/// A speed after an unresisted change and Coulomb friction, which removes at most `dry`, or `breakaway` times that from
-/// rest.
+/// Returns a speed after a free change and Coulomb friction, which removes at most `dry`, or `breakaway` times that from rest.
 pub(super) fn dragged(speed: f64, free_change: f64, dry: f64, breakaway: f64) -> f64 {
     if speed == 0.0 && free_change.abs() <= breakaway * dry {
         return 0.0;
     }
     let free = speed + free_change;
-    let left = free.abs() - dry;
-    if left > 0.0 { left.copysign(free) } else { 0.0 }
+    let remaining = free.abs() - dry;
+    if remaining > 0.0 { remaining.copysign(free) } else { 0.0 }
 }
 
 #[cfg(test)]
@@ -165,7 +164,7 @@ mod tests {
     }
 
     #[test]
-    fn a_lifted_wheel_comes_to_where_torque_and_friction_balance() {
+    fn lifted_wheel_settles_where_torque_and_friction_balance() {
         let (motor, _) = parts();
         let (volts, speed) = (0.8 * 7.5, spun_rad_s(0.8, &motor));
         let torque_nm = motor.torque_nm_per_a * (volts - motor.back_emf_v_s * speed) / motor.winding_ohm;
@@ -174,7 +173,7 @@ mod tests {
     }
 
     #[test]
-    fn a_motor_breaks_away_above_its_friction_at_rest_alone() {
+    fn motor_breaks_away_only_above_its_static_friction() {
         let (motor, _) = parts();
         let needed_v = motor.friction_nm * motor.breakaway / motor.torque_nm_per_a * motor.winding_ohm;
         assert_eq!(spun_rad_s(0.99 * needed_v / 7.5, &motor), 0.0);
@@ -182,7 +181,7 @@ mod tests {
     }
 
     #[test]
-    fn a_tyre_pushes_against_its_slip_and_no_harder_than_its_grip() {
+    fn tyre_force_opposes_slip_and_is_limited_by_grip() {
         let (_, tyre) = parts();
         for slip in [0.001, 0.01, 0.1, 1.0] {
             let push_n = tyre.push_n(DVec2::new(slip, -slip));

@@ -10,9 +10,9 @@ use super::facts::FactsOption;
 use super::{Run, kinds};
 use mindgap_built_in_robot::{ActiveEffect, BuiltInRobot, default_robot, run_controller};
 use mindgap_files::places::Places;
-use mindgap_foundations::chance::generator;
 use mindgap_foundations::error::Result;
 use mindgap_foundations::executor::Executor;
+use mindgap_foundations::random::generator;
 use mindgap_logs::Scene;
 use mindgap_logs::controller_file::ControllerFile;
 

@@ -120,8 +120,8 @@ fn told(report: &Report) -> String {
     let rows: Vec<[String; 7]> = runs.map(|(log, run)| row(log, run)).collect();
     let header = ["log", "run", "offset (ms)", "drift (ppm)", "differs (%)", "rows", "without pose"];
     text += &table::text(header, &rows);
-    for LogReport { file, torn, left_out, .. } in &report.logs {
-        if *torn {
+    for LogReport { file, truncated, left_out, .. } in &report.logs {
+        if *truncated {
             text += &format!("{}: the last line has no end and is left out\n", file.display());
         }
         if let Some(why) = left_out {

@@ -140,7 +140,7 @@ fn told(simulator: &Simulator) -> String {
 }
 
 fn of_toml(path: &Path) -> Result<String> {
-    if (kinds::CALIBRATION.is_one)(files::read_text(path)?.as_bytes()) {
+    if (kinds::CALIBRATION.is_own)(files::read_text(path)?.as_bytes()) {
         return Ok("thresholds of the diagnosis: `mindgap challenge calibrate`".into());
     }
     // Keys alone: a table of values has no room for the larger half of seeds.

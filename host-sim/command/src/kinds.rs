@@ -9,30 +9,31 @@ use mindgap_workers::checkpoint;
 
 /// A simulator.
 pub const SIMULATOR: Kind =
-    Kind { name: "a simulator", is_one: |content| has_keys(content, &["schema", "origin", "robot"]) };
+    Kind { name: "a simulator", is_own: |content| has_keys(content, &["schema", "origin", "robot"]) };
 /// What a command found, as `--json` has it.
-pub const REPORT: Kind = Kind { name: "a report", is_one: is_report };
+pub const REPORT: Kind = Kind { name: "a report", is_own: is_report };
 /// A controller that was evolved: one without an origin is somebody's own.
 pub const CONTROLLER: Kind = Kind {
     name: "an evolved controller",
-    is_one: |content| text(content).contains("[[tuple]]") && text(content).contains("[origin]"),
+    is_own: |content| text(content).contains("[[tuple]]") && text(content).contains("[origin]"),
 };
 /// An onboard program or constants for one.
-pub const PROGRAM: Kind = Kind { name: "a program", is_one: is_program };
+pub const PROGRAM: Kind = Kind { name: "a program", is_own: is_program };
 /// The thresholds of the diagnosis.
 pub const CALIBRATION: Kind =
-    Kind { name: "a calibration", is_one: |content| content.starts_with(b"# Made by: mindgap challenge calibrate") };
+    Kind { name: "a calibration", is_own: |content| content.starts_with(b"# Made by: mindgap challenge calibrate") };
 /// A page for a browser.
 pub const PAGE: Kind =
-    Kind { name: "a page", is_one: |content| text(content).contains(r#"<meta name="generator" content="mindgap">"#) };
+    Kind { name: "a page", is_own: |content| text(content).contains(r#"<meta name="generator" content="mindgap">"#) };
 /// The formula of a diagnosis.
-pub const FORMULA: Kind = Kind { name: "a formula", is_one: |content| text(content).starts_with(FORMULA_SIGN) };
+pub const FORMULA: Kind = Kind { name: "a formula", is_own: |content| text(content).starts_with(FORMULA_SIGN) };
 /// What the file of a formula begins with: own effects without it are somebody's own.
 pub const FORMULA_SIGN: &str = "# Made by: mindgap diagnose\n";
 /// What a run that was broken off had done.
-pub const CHECKPOINT: Kind = Kind { name: "a checkpoint", is_one: |content| content.starts_with(checkpoint::SIGN) };
+pub const CHECKPOINT: Kind =
+    Kind { name: "a checkpoint", is_own: |content| content.starts_with(checkpoint::SIGNATURE) };
 /// What carries no sign of who wrote it, as tables and runs in CSV.
-pub const UNSIGNED: Kind = Kind { name: "anything", is_one: |_| false };
+pub const UNSIGNED: Kind = Kind { name: "anything", is_own: |_| false };
 
 /// What stands in the first lines of the programs that `export` writes, in any format but the brick's executable.
 const PROGRAMS: [&str; 5] = [
@@ -76,7 +77,7 @@ pub const REPORTS: &[(&[&str], &str)] = &[
 ];
 
 fn is_report(content: &[u8]) -> bool {
-    REPORTS.iter().any(|(keys, _)| has_keys(content, keys)) && !(SIMULATOR.is_one)(content)
+    REPORTS.iter().any(|(keys, _)| has_keys(content, keys)) && !(SIMULATOR.is_own)(content)
 }
 
 /// Whether content is a JSON object with these keys.

@@ -15,7 +15,7 @@ use mindgap_files::is_stream;
 use mindgap_files::places::Places;
 use mindgap_foundations::error::Result;
 use mindgap_workers::Workers;
-use mindgap_workers::checkpoint::Begin;
+use mindgap_workers::checkpoint::CreateFile;
 use mindgap_workers::task::Task;
 
 /// The name of the option, which says nothing of what is to be done.
@@ -36,18 +36,18 @@ pub struct KeepOption {
 /// Where and when what is done is kept.
 pub struct Kept {
     path: PathBuf,
-    begin: Begin,
+    begin: CreateFile,
 }
 
 impl KeepOption {
     /// Where what is done for an output is kept.
     pub fn beside(&self, out: &Path) -> Option<Kept> {
         if let Some(path) = &self.checkpoint {
-            return Some(Kept { path: path.clone(), begin: Begin::AtOnce });
+            return Some(Kept { path: path.clone(), begin: CreateFile::AtOnce });
         }
         let mut path = out.components().as_path().as_os_str().to_owned();
         path.push(".checkpoint");
-        (!is_stream(out)).then(|| Kept { path: path.into(), begin: Begin::AfterAMinute })
+        (!is_stream(out)).then(|| Kept { path: path.into(), begin: CreateFile::AfterAMinute })
     }
 
     /// The file that is asked for.
@@ -75,7 +75,7 @@ pub fn begin(
     call: (&Command, &ArgMatches),
 ) -> Result<()> {
     if !is_shared {
-        workers.go_alone();
+        workers.leave_ranks();
     }
     if !is_shared && kept.is_none() {
         return Ok(());
@@ -103,7 +103,7 @@ fn task((mut command, mut matches): (&Command, &ArgMatches), places: &Places, ou
         for argument in command.get_arguments().filter(|argument| argument.get_id() != OPTION) {
             if let Ok(Some(values)) = matches.try_get_raw(argument.get_id().as_str()) {
                 let is_path = argument.get_value_parser().type_id() == TypeId::of::<PathBuf>();
-                let is_place = |value: &OsStr| is_path && places.contain(Path::new(value));
+                let is_place = |value: &OsStr| is_path && places.contains(Path::new(value));
                 let word = |value| if is_place(value) { GIVEN.into() } else { value.to_string_lossy() };
                 let values: Vec<_> = values.map(word).collect();
                 let name = argument.get_long().map_or(argument.get_id().to_string(), |long| format!("--{long}"));

@@ -173,7 +173,7 @@ fn answer(workers: &mut Workers) -> Result<()> {
     if workers.is_first() {
         places.check(general.force, kept.as_ref().is_some_and(Kept::is_there))?;
     } else if asked.is_shared() {
-        files::leave_writing();
+        files::disable_writing();
     } else {
         return Ok(());
     }
@@ -183,7 +183,7 @@ fn answer(workers: &mut Workers) -> Result<()> {
     progress::end();
     let text = done?;
     // What goes to standard output as a file stands alone there.
-    if general.quiet || places.take_standard_output() { Ok(()) } else { say(&text) }
+    if general.quiet || places.use_standard_output() { Ok(()) } else { say(&text) }
 }
 
 /// Writes to standard output.
@@ -214,7 +214,7 @@ fn read_logs(folder: &Path) -> Result<Logs> {
 /// When they cannot be read, or when something in them is wrong that could not be put right.
 fn read_sound_logs(folder: &Path) -> Result<Logs> {
     let told = |found| warn(format!("{}: {found}", folder.display()));
-    Inspection::of(read_logs(folder)?).sound(told).map_err(|error| error.or_in_file(folder))
+    Inspection::new(read_logs(folder)?).into_usable(told).map_err(|error| error.or_in_file(folder))
 }
 
 /// The same of logs that have to be of a simulator's robot.

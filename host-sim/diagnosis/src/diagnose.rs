@@ -50,7 +50,7 @@ impl Findings {
 /// # Errors
 /// When the logs say nothing that the baseline could be compared with.
 pub fn diagnose(baseline: Baseline, logs: &Logs) -> Result<Diagnosis> {
-    Ok(findings(baseline, &Inspection::of(logs.clone()), Method::default())?.diagnosis)
+    Ok(findings(baseline, &Inspection::new(logs.clone()), Method::default())?.diagnosis)
 }
 
 /// Diagnoses inspected logs.
@@ -182,7 +182,7 @@ pub struct GapStatistics {
 /// # Errors
 /// When the logs say nothing that the baseline could be compared with.
 pub fn statistics(mut baseline: Baseline, logs: &Logs, method: Method) -> Result<GapStatistics> {
-    let (conditioned, _) = conditioned(&mut baseline, &Inspection::of(logs.clone()))?;
+    let (conditioned, _) = conditioned(&mut baseline, &Inspection::new(logs.clone()))?;
     let context = FitContext::new(&baseline, &conditioned.identification, method);
     let none = Fitted::none(&context);
     let singles = best_of_each(none.with_each(None, &context));
@@ -204,7 +204,7 @@ pub fn confirmed<T>(
     calibrations: &[Calibration],
     look: impl Fn(Comparison, &FitContext, Option<&Observations>) -> T,
 ) -> Result<Vec<T>> {
-    let (conditioned, _) = conditioned(&mut baseline, &Inspection::of(logs.clone()))?;
+    let (conditioned, _) = conditioned(&mut baseline, &Inspection::new(logs.clone()))?;
     let context = |method: Method| FitContext::new(&baseline, &conditioned.identification, method);
     let hold_out = conditioned.hold_out.as_ref();
     let usual = context(Method::default());
@@ -224,7 +224,7 @@ pub fn confirmed<T>(
 /// When the logs say nothing that the simulator could be compared with.
 pub fn closed(simulator: &Simulator, applied: &[AppliedEffect], logs: &Logs) -> Result<Option<f64>> {
     let mut baseline = Baseline::of_middle(simulator)?;
-    let (conditioned, _) = conditioned(&mut baseline, &Inspection::of(logs.clone()))?;
+    let (conditioned, _) = conditioned(&mut baseline, &Inspection::new(logs.clone()))?;
     let context = FitContext::new(&baseline, &conditioned.identification, Method::default());
     let given = Comparison::given(applied, &context);
     let reduction = account::account(&given, &[], &context, conditioned.confirming()).reduction;

@@ -16,7 +16,7 @@ use super::channel::Channel;
 use super::compare::Comparison;
 use super::remainder::Remainder;
 use mindgap_foundations::statistics::rounding;
-use mindgap_foundations::statistics::summary::{error_of_sum, logistic};
+use mindgap_foundations::statistics::summary::{logistic, standard_error_of_sum};
 use mindgap_logs::Robot;
 
 /// An effect that explains the gap, or a part of it.
@@ -173,7 +173,7 @@ impl Explained {
     /// Where so many nats are explained, beside what is left in a channel.
     fn beside(explained: f64, channel: Channel, found: &Comparison) -> Self {
         let remainder = found.beyond_chosen.iter().find(|r| r.channel() == channel);
-        let (nats, error) = remainder.map_or((0.0, 0.0), |r| (r.nats(), error_of_sum(&r.by_block)));
+        let (nats, error) = remainder.map_or((0.0, 0.0), |r| (r.nats(), standard_error_of_sum(&r.by_block)));
         let (explained, left) = (explained.max(0.0), nats.max(0.0));
         let all = explained + left;
         if all > 0.0 {

@@ -1,6 +1,6 @@
 //! What one hypothesis gains over another, and whether that counts.
 
-use mindgap_foundations::statistics::summary::error_of_sum;
+use mindgap_foundations::statistics::summary::standard_error_of_sum;
 
 /// How much better one hypothesis does than another on runs that it was not fitted on.
 #[derive(Clone, Copy, Debug)]
@@ -42,7 +42,7 @@ impl Gain {
     pub fn without_best(by_block: &[f64], left_out: usize) -> Self {
         let others = by_block.len().saturating_sub(left_out);
         let broad_nats = ascending(by_block)[..others].iter().sum();
-        Gain { nats: by_block.iter().sum(), broad_nats, error: error_of_sum(by_block) }
+        Gain { nats: by_block.iter().sum(), broad_nats, error: standard_error_of_sum(by_block) }
     }
 
     /// The same at a price.

@@ -45,7 +45,7 @@ impl<'a> Request<'a> {
             return Err(Error::new("where a controller's runs end needs a simulator that can run it"));
         }
         // What is wrong with rows shows in the rows as they came.
-        let mut inspected = Inspection::of(logs);
+        let mut inspected = Inspection::new(logs);
         inspected.logs = self.in_steps(inspected.logs)?;
         if let Some(simulator) = self.simulator {
             same_robot(&simulator.robot, &inspected.logs.robot)?;
@@ -103,7 +103,7 @@ impl<'a> Request<'a> {
         if step_ms < own_ms {
             return Err(Error::new(format!("steps of {step_ms} ms cannot be compared: rows are {own_ms} ms apart")));
         }
-        let logs = if step_ms > own_ms { logs.in_steps_of(step_ms) } else { logs };
+        let logs = if step_ms > own_ms { logs.resampled(step_ms) } else { logs };
         if logs.runs.is_empty() {
             Err(Error::new(format!("no run is as long as a step of {step_ms} ms")))
         } else {

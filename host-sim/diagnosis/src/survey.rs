@@ -44,7 +44,7 @@ const SCHEMA: u32 = 1;
 impl Survey {
     /// Surveys logs.
     pub fn of(logs: Logs) -> Self {
-        let mut inspected = Inspection::of(logs);
+        let mut inspected = Inspection::new(logs);
         let refused = inspected.refusal().map(str::to_owned);
         let enough = enough_of(&inspected.logs);
         let missing_networks = train::unsupported(&enough);
@@ -97,7 +97,7 @@ fn shown(inspected: &Inspection) -> Result<Excitation> {
 /// Logs in the steps that a diagnosis compares, where those are longer.
 fn in_steps_that_motion_shows_in(logs: &Logs) -> Option<Logs> {
     let step_ms = condition::step_ms(logs.robot.step_ms);
-    (step_ms > logs.robot.step_ms).then(|| logs.in_steps_of(step_ms))
+    (step_ms > logs.robot.step_ms).then(|| logs.resampled(step_ms))
 }
 
 #[cfg(test)]

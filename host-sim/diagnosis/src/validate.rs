@@ -143,7 +143,7 @@ mod tests {
 
     fn notes_of(logs: &Logs) -> (Vec<String>, Baseline<'static>) {
         let mut baseline = baseline_with_sonar();
-        let inspected = Inspection::of(logs.clone());
+        let inspected = Inspection::new(logs.clone());
         let rows = Observations::of(&inspected.logs, None);
         let validated = validate(&mut baseline, &rows, &inspected).expect("something to compare");
         (validated.notes, baseline)
@@ -207,7 +207,7 @@ mod tests {
     fn what_the_baseline_does_not_know_is_said() {
         let logs = driven(8, 4, mixed);
         let rows = Observations::of(&logs, None);
-        let inspected = Inspection::of(logs);
+        let inspected = Inspection::new(logs);
         let Validated { notes, scope, .. } = validate(&mut baseline(), &rows, &inspected).expect("motion");
         assert!(only(&notes, "From too few readings"), "{notes:?}");
         assert_eq!(scope.compared, [Channel::Forward, Channel::Lateral, Channel::Turn]);
@@ -238,7 +238,7 @@ mod tests {
         exchanged.runs.iter_mut().for_each(|run| {
             run.rows.edit_each(|row| (row.left, row.right) = (row.right, row.left));
         });
-        let inspected = Inspection::of(exchanged);
+        let inspected = Inspection::new(exchanged);
         let rows = Observations::of(&inspected.logs, None);
         let mut baseline = baseline_with_sonar();
         let scope = validate(&mut baseline, &rows, &inspected).expect("a sensor").scope;

@@ -1,12 +1,12 @@
-//! Whole files in and out: reading with a clear problem, and writing so that nothing is ever left half-written.
+//! Reads and writes whole files: read errors name file and line, and writes never leave a partial file.
 
-mod leftovers;
+mod parser_messages;
 pub mod places;
 mod records;
+mod staging;
+mod stale_temp;
 mod temporary;
 mod text;
-mod words;
-mod workshop;
 mod write;
 
 use std::fs;
@@ -19,29 +19,29 @@ use jiff::tz::TimeZone;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-pub use leftovers::remove_ours as remove_temporary;
+pub use parser_messages::did_you_mean;
 pub use records::Records;
-pub use text::{NO_UTF8, TextFile, line_at, read_text};
-pub use words::did_you_mean;
-pub use write::{is_stream, leave_writing, make_folder, reason, to_standard_output, write, write_folder};
+pub use stale_temp::remove_own as remove_temporary;
+pub use text::{NOT_UTF8, TextFile, line_at, read_text};
+pub use write::{disable_writing, is_stream, make_folder, reason, to_standard_output, write, write_folder};
 
 use mindgap_foundations::error::{Error, Result};
 
-/// A TOML file as a `T`; a problem names the line.
+/// Reads a TOML file as a `T`.
 ///
 /// # Errors
-/// When the file cannot be read, is no TOML, or lacks what `T` needs.
+/// When the file cannot be read, is not TOML, or does not fit `T`; the error names the line.
 pub fn read_toml<T: DeserializeOwned>(path: &Path) -> Result<T> {
     from_toml(path, &read_text(path)?)
 }
 
-/// The text of a TOML file as a `T`; a problem names the line.
+/// Parses the text of a TOML file as a `T`; `path` is for messages.
 ///
 /// # Errors
-/// When it is no TOML, or lacks what `T` needs.
+/// When it is not TOML or does not fit `T`; the error names the line.
 pub fn from_toml<T: DeserializeOwned>(path: &Path, text: &str) -> Result<T> {
     toml::from_str(text).map_err(|e| {
-        let what = words::of_toml(e.message());
+        let what = parser_messages::toml_message(e.message());
         match e.span() {
             Some(span) => Error::at_line(path, line_at(text, span.start), what),
             None => Error::in_file(path, what),
@@ -58,7 +58,7 @@ pub fn read_json<T: DeserializeOwned>(path: &Path) -> Result<T> {
     serde_json::from_str(&text).map_err(|e| Error::at_line(path, e.line() as u64, e.to_string()))
 }
 
-/// Writes rows as CSV under their fields' names.
+/// Writes rows as CSV; the header holds the field names.
 ///
 /// # Errors
 /// As [`write()`].
@@ -92,17 +92,17 @@ pub fn write_json(path: &Path, value: &impl Serialize) -> Result<()> {
     write(path, json(path, value)?)
 }
 
-/// A value as the text of a JSON file.
+/// Returns a value as the text of a JSON file; `path` is for messages.
 ///
 /// # Errors
-/// When it has no form in JSON; the message names `path`.
+/// When JSON cannot represent it.
 pub fn json(path: &Path, value: &impl Serialize) -> Result<String> {
     let text = serde_json::to_string_pretty(value).map_err(|e| Error::in_file(path, e.to_string()))?;
     Ok(text + "\n")
 }
 
-/// The first and the last day (UTC) on which the CSV files of a folder were written; none where the file system does not
-/// tell.
+/// Returns the first and last day (UTC) on which the CSV files of a folder were modified, or `None` if the file system does
+/// not say.
 ///
 /// # Errors
 /// When the folder cannot be read.

@@ -1,4 +1,4 @@
-//! Temporary names: recognisable, locked while their process is at work, and known to it, so that nothing stays under them.
+//! Temporary files: recognisable by name, locked while their process runs, and registered in it, so that none is left behind.
 
 use std::collections::BTreeSet;
 use std::fs::{self, File, TryLockError};
@@ -8,21 +8,21 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use tempfile::{Builder, NamedTempFile};
 
-/// Between these stand random letters and digits.
+/// Temporary names have random letters and digits between prefix and suffix.
 const PREFIX: &str = ".mindgap-";
 const SUFFIX: &str = ".tmp";
 const RANDOM: usize = 6;
 
-/// Those of this process.
+/// The temporary paths of this process.
 pub type Names = BTreeSet<PathBuf>;
 static IN_USE: Mutex<Names> = Mutex::new(Names::new());
 
-/// The temporary names of this process. While they are held, none is added, and no signal ends the process.
+/// Locks the temporary paths of this process. While they are locked, none is added and no signal ends the process.
 pub fn in_use() -> MutexGuard<'static, Names> {
     IN_USE.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Keeps a path among the temporary names of this process.
+/// Registers a temporary path of this process until it is dropped.
 pub struct InUse(pub PathBuf);
 
 impl Drop for InUse {
@@ -31,17 +31,17 @@ impl Drop for InUse {
     }
 }
 
-/// A file that is given its name once it is complete.
+/// A file that gets its final name once it is complete.
 pub struct TemporaryFile {
     file: NamedTempFile,
     _in_use: InUse,
 }
 
 impl TemporaryFile {
-    /// A new file in a folder, as readable as any new file there.
+    /// Creates a file in a folder, with the permissions of any new file there.
     ///
     /// # Errors
-    /// When it cannot be made.
+    /// When it cannot be created.
     pub fn in_folder(folder: &Path) -> io::Result<Self> {
         let mut names = in_use();
         loop {
@@ -52,7 +52,7 @@ impl TemporaryFile {
                 builder.permissions(fs::Permissions::from_mode(0o666));
             }
             let file = builder.tempfile_in(folder)?;
-            if is_kept(file.as_file(), file.path()) {
+            if lock_new(file.as_file(), file.path()) {
                 names.insert(file.path().to_owned());
                 let in_use = InUse(file.path().to_owned());
                 return Ok(TemporaryFile { file, _in_use: in_use });
@@ -60,49 +60,48 @@ impl TemporaryFile {
         }
     }
 
-    /// Writes to it; the system tells now what it could not keep, and not when it is too late.
+    /// Writes and synchronises the content, so that a full disk is reported before the file gets its final name.
     ///
     /// # Errors
-    /// When something cannot be written.
+    /// When it cannot be written.
     pub fn write(&mut self, content: &[u8]) -> io::Result<()> {
         self.file.write_all(content)?;
         self.file.as_file().sync_all()
     }
 
-    /// Gives it the mode of another file, if that is there.
+    /// Copies the permissions of another file, if that exists.
     ///
     /// # Errors
-    /// When it cannot have that.
-    pub fn take_mode_of(&self, path: &Path) -> io::Result<()> {
+    /// When they cannot be set.
+    pub fn copy_mode_from(&self, path: &Path) -> io::Result<()> {
         fs::metadata(path).map_or(Ok(()), |before| self.file.as_file().set_permissions(before.permissions()))
     }
 
-    /// Puts it in the place of what is at `path`.
+    /// Renames it to `path`, replacing what is there.
     ///
     /// # Errors
-    /// When it cannot be there.
-    pub fn become_file(self, path: &Path) -> io::Result<()> {
+    /// When it cannot be renamed.
+    pub fn rename_to(self, path: &Path) -> io::Result<()> {
         self.file.persist(path)?;
         Ok(())
     }
 }
 
-/// What makes temporary names.
+/// Returns a builder of temporary names.
 pub fn builder() -> Builder<'static, 'static> {
     let mut builder = Builder::new();
     builder.prefix(PREFIX).suffix(SUFFIX).rand_bytes(RANDOM);
     builder
 }
 
-/// Whether a path has a temporary name.
+/// Returns whether a path has a temporary name.
 pub fn is_temporary(path: &Path) -> bool {
     let between = |name: &str| Some(name.strip_prefix(PREFIX)?.strip_suffix(SUFFIX)?.len());
     path.file_name().and_then(|name| name.to_str()).and_then(between) == Some(RANDOM)
 }
 
-/// Locks what has just been made at `path` until it is closed. False when somebody who clears leftovers came between the two
-/// and took it away.
-pub fn is_kept(lock: &File, path: &Path) -> bool {
-    // Where the file system has no locks, nobody clears leftovers.
+/// Locks a file just created at `path` until it is closed. Returns `false` if another process removed it as stale in between.
+pub fn lock_new(lock: &File, path: &Path) -> bool {
+    // Without locks in the file system, no process removes stale files.
     !matches!(lock.try_lock(), Err(TryLockError::WouldBlock)) && path.exists()
 }

@@ -1,4 +1,4 @@
-//! Text as editors and spreadsheets leave it: what is no UTF-8 is named, and a byte order mark is no part of it.
+//! Reads text as editors and spreadsheets save it: other encodings than UTF-8 are rejected, a byte-order mark is skipped.
 
 use std::fs::File;
 use std::io::{BufRead, BufReader, Read};
@@ -6,16 +6,16 @@ use std::path::Path;
 
 use mindgap_foundations::error::{Error, Result};
 
-const UTF8_MARK: &[u8] = b"\xEF\xBB\xBF";
-/// The marks of UTF-16, lower byte first and last.
-const UTF16_MARKS: [&[u8]; 2] = [b"\xFF\xFE", b"\xFE\xFF"];
+const UTF8_BOM: &[u8] = b"\xEF\xBB\xBF";
+/// Byte-order marks of UTF-16, little and big endian.
+const UTF16_BOMS: [&[u8]; 2] = [b"\xFF\xFE", b"\xFE\xFF"];
 
-/// A text file that is read bit by bit.
+/// A text file that is read in pieces.
 pub struct TextFile {
     reader: BufReader<File>,
-    /// It began with a byte order mark, which is passed over.
-    pub had_mark: bool,
-    /// The last byte that was read, if there was one.
+    /// Whether it started with a byte-order mark, which is skipped.
+    pub had_bom: bool,
+    /// The last byte read so far, if any.
     pub last: Option<u8>,
 }
 
@@ -27,18 +27,15 @@ impl TextFile {
     pub fn open(path: &Path) -> Result<Self> {
         let failed = |e: std::io::Error| Error::in_file(path, format!("cannot be read: {e}"));
         let mut reader = BufReader::with_capacity(1 << 16, File::open(path).map_err(failed)?);
-        let begin = reader.fill_buf().map_err(failed)?;
-        if is_utf16(begin) {
-            return Err(Error::in_file(
-                path,
-                "is UTF-16, in which Windows programs save \"Unicode\": save it as UTF-8",
-            ));
+        let start = reader.fill_buf().map_err(failed)?;
+        if is_utf16(start) {
+            return Err(Error::in_file(path, "is UTF-16, which Windows programs call \"Unicode\": save it as UTF-8"));
         }
-        let had_mark = begin.starts_with(UTF8_MARK);
-        if had_mark {
-            reader.consume(UTF8_MARK.len());
+        let had_bom = start.starts_with(UTF8_BOM);
+        if had_bom {
+            reader.consume(UTF8_BOM.len());
         }
-        Ok(TextFile { reader, had_mark, last: None })
+        Ok(TextFile { reader, had_bom, last: None })
     }
 }
 
@@ -50,32 +47,33 @@ impl Read for TextFile {
     }
 }
 
-/// The text of a file.
+/// Reads a text file.
 ///
 /// # Errors
-/// When the file is missing, unreadable or no UTF-8.
+/// When the file is missing, unreadable or not UTF-8.
 pub fn read_text(path: &Path) -> Result<String> {
     let mut bytes = Vec::new();
     let read = TextFile::open(path)?.read_to_end(&mut bytes);
     read.map_err(|e| Error::in_file(path, format!("cannot be read: {e}")))?;
     String::from_utf8(bytes).map_err(|e| {
         let valid = e.utf8_error().valid_up_to();
-        Error::at_line(path, line_at(e.as_bytes(), valid), NO_UTF8)
+        Error::at_line(path, line_at(e.as_bytes(), valid), NOT_UTF8)
     })
 }
 
-/// What there is to say of bytes that are no text.
-pub const NO_UTF8: &str = "is no UTF-8: save it as UTF-8";
+/// The error message for bytes that are not UTF-8.
+pub const NOT_UTF8: &str = "is not UTF-8: save it as UTF-8";
 
-/// The line, from 1, of a byte in a text.
+/// Returns the line, from 1, of a byte offset in a text.
 pub fn line_at(text: impl AsRef<[u8]>, byte: usize) -> u64 {
     1 + text.as_ref().iter().take(byte).filter(|b| **b == b'\n').count() as u64
 }
 
-/// By its mark, or since every other byte of plain letters is zero.
-fn is_utf16(begin: &[u8]) -> bool {
-    let is_halved = |offset: usize| begin.len() >= 4 && begin[..4].iter().skip(offset).step_by(2).all(|b| *b == 0);
-    UTF16_MARKS.iter().any(|mark| begin.starts_with(mark)) || is_halved(0) != is_halved(1)
+/// Recognises UTF-16 by its byte-order mark, or since every other byte of ASCII letters is zero.
+fn is_utf16(start: &[u8]) -> bool {
+    let is_every_other_zero =
+        |offset: usize| start.len() >= 4 && start[..4].iter().skip(offset).step_by(2).all(|b| *b == 0);
+    UTF16_BOMS.iter().any(|mark| start.starts_with(mark)) || is_every_other_zero(0) != is_every_other_zero(1)
 }
 
 #[cfg(test)]
@@ -90,17 +88,17 @@ mod tests {
     }
 
     #[test]
-    fn a_mark_is_no_part_of_the_text() {
+    fn byte_order_mark_is_skipped() {
         assert_eq!(read(b"\xEF\xBB\xBFt_ms\n"), Ok("t_ms\n".into()));
         assert_eq!(read(b""), Ok(String::new()));
     }
 
     #[test]
-    fn what_is_no_utf8_is_named() {
+    fn other_encodings_are_rejected() {
         for bytes in [b"\xFF\xFEt\0_\0".as_slice(), b"\xFE\xFF\0t\0_", b"t\0_\0m\0", b"\0t\0_\0m"] {
             let why = read(bytes).expect_err("UTF-16");
             assert!(why.starts_with("a.txt: is UTF-16") && why.ends_with("save it as UTF-8"), "{why}");
         }
-        assert_eq!(read(b"one\ntwo \xE9\n"), Err("a.txt:2: is no UTF-8: save it as UTF-8".into()));
+        assert_eq!(read(b"one\ntwo \xE9\n"), Err("a.txt:2: is not UTF-8: save it as UTF-8".into()));
     }
 }

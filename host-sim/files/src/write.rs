@@ -1,56 +1,56 @@
-//! Writing so that nothing is ever left half-written, and what is there keeps its mode, its links and its neighbours.
+//! Writes files and folders atomically, keeping permissions, links and unrelated files.
 
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use super::leftovers;
+use super::staging::StagingFolder;
+use super::stale_temp;
 use super::temporary::{TemporaryFile, is_temporary};
-use super::workshop::Workshop;
 use mindgap_foundations::error::{Error, Result};
 
-/// What stands for standard output, as a path.
+/// Paths that mean standard output.
 const STANDARD_OUTPUT: [&str; 2] = ["-", "/dev/stdout"];
-/// Folders of a process's open files: what lies there is written where it stands, whatever it is.
+/// Folders of a process's open files: files there are written in place.
 const OPEN_FILES: [&str; 4] = ["/dev/stdout", "/dev/stderr", "/dev/fd", "/proc/self/fd"];
-/// Chains of links are followed so far, as by the system.
+/// Maximum number of links to follow, as on Linux.
 const MOST_LINKS: usize = 40;
 
-/// Whether another process writes what this one would.
-static IS_LEFT: AtomicBool = AtomicBool::new(false);
+/// Whether another process writes the outputs.
+static IS_DISABLED: AtomicBool = AtomicBool::new(false);
 
-/// From now on nothing is written: another process does the same and writes it.
-pub fn leave_writing() {
-    IS_LEFT.store(true, Ordering::Relaxed);
+/// Disables all writing in this process, for ranks other than the first.
+pub fn disable_writing() {
+    IS_DISABLED.store(true, Ordering::Relaxed);
 }
 
-/// Whether a path is that of standard output.
+/// Returns whether a path means standard output.
 pub fn is_standard_output(path: &Path) -> bool {
     STANDARD_OUTPUT.iter().any(|name| path.as_os_str() == *name)
 }
 
-/// Whether what is there takes bytes as they come: a pipe, a terminal, a device, a file that is open already.
+/// Returns whether a path is a stream: a pipe, a terminal, a device, a file that is already open.
 pub fn is_stream(path: &Path) -> bool {
     let is_open = OPEN_FILES.iter().any(|open| path.starts_with(open));
     is_standard_output(path) || is_open || fs::metadata(path).is_ok_and(|it| !it.is_file() && !it.is_dir())
 }
 
-/// Writes a file under a temporary name beside `path`, then renames it. A file that is there already keeps its mode, and
-/// a link to it stays; a stream is written as it stands. Of several processes that write one file, the last stays.
+/// Writes a file under a temporary name next to `path`, then renames it. An existing file keeps its permissions, and a link to
+/// it stays; a stream is written directly. If several processes write one file, the last one wins.
 ///
 /// # Errors
-/// When the folder is missing or not writable; `path` is then as it was.
+/// When the folder is missing or not writable; `path` then stays as it was.
 pub fn write(path: &Path, content: impl AsRef<[u8]>) -> Result<()> {
     let content = content.as_ref();
-    let written = if IS_LEFT.load(Ordering::Relaxed) {
+    let written = if IS_DISABLED.load(Ordering::Relaxed) {
         Ok(())
     } else if is_standard_output(path) {
         to_standard_output(content)
     } else if is_stream(path) {
         OpenOptions::new().append(true).open(path).and_then(|mut stream| stream.write_all(content))
-    } else if is_in_workshop(path) {
-        // It has no name yet that anybody looks for.
+    } else if is_staged(path) {
+        // Nobody reads it before its folder is moved into place.
         fs::write(path, content)
     } else {
         replace(&behind_links(path), content)
@@ -58,20 +58,20 @@ pub fn write(path: &Path, content: impl AsRef<[u8]>) -> Result<()> {
     };
     written.map_err(|e| {
         let folder = folder_of(path);
-        let why = if folder.is_dir() { reason(&e) } else { no_folder(folder) };
+        let why = if folder.is_dir() { reason(&e) } else { missing_folder(folder) };
         Error::in_file(path, format!("cannot be written: {why}"))
     })
 }
 
-/// What the system says, without the temporary path that is named by what makes those.
+/// Returns the system's error message without the temporary path that the tempfile crate adds.
 pub fn reason(e: &io::Error) -> String {
-    let said = e.to_string();
-    said.split_once(" at path \"").map_or(said.clone(), |(why, _)| why.to_owned())
+    let message = e.to_string();
+    message.split_once(" at path \"").map_or(message.clone(), |(why, _)| why.to_owned())
 }
 
-/// Writes to standard output. That nobody reads on is no error.
+/// Writes to standard output. A closed pipe is not an error.
 pub fn to_standard_output(content: &[u8]) -> io::Result<()> {
-    if IS_LEFT.load(Ordering::Relaxed) {
+    if IS_DISABLED.load(Ordering::Relaxed) {
         return Ok(());
     }
     let mut out = io::stdout().lock();
@@ -81,61 +81,61 @@ pub fn to_standard_output(content: &[u8]) -> io::Result<()> {
     }
 }
 
-/// Makes a folder unless it is there, and clears it of what killed processes left.
+/// Creates a folder unless it exists, and removes what killed processes left in it.
 ///
 /// # Errors
-/// When it cannot be made.
+/// When it cannot be created.
 pub fn make_folder(path: &Path) -> Result<()> {
-    if IS_LEFT.load(Ordering::Relaxed) {
+    if IS_DISABLED.load(Ordering::Relaxed) {
         return Ok(());
     }
-    fs::create_dir_all(path).map_err(|e| Error::in_file(path, format!("cannot be made: {e}")))?;
-    leftovers::clear(path);
+    fs::create_dir_all(path).map_err(|e| Error::in_file(path, format!("cannot be created: {e}")))?;
+    stale_temp::clear(path);
     Ok(())
 }
 
-/// Fills a folder under a temporary name, then puts what is in it into `path`: all of it or nothing. Of a folder that is
-/// there already, what `ours` holds for goes, and everything else stays. Of several processes that fill a folder that was
-/// there, the last stays; one that is there only when it is complete is not replaced. Returns what `fill` does.
+/// Fills a folder under a temporary name, then moves its content to `path`: all of it or nothing. In an existing folder, files
+/// for which `is_own` holds are removed and all others stay. If several processes fill one existing folder, the last one wins;
+/// a new folder is not replaced once it is there. Returns what `fill` returns.
 ///
 /// # Errors
 /// What `fill` returns, or when the folder cannot be written.
-pub fn write_folder<T>(path: &Path, ours: impl Fn(&str) -> bool, fill: impl FnOnce(&Path) -> Result<T>) -> Result<T> {
-    if IS_LEFT.load(Ordering::Relaxed) {
+pub fn write_folder<T>(path: &Path, is_own: impl Fn(&str) -> bool, fill: impl FnOnce(&Path) -> Result<T>) -> Result<T> {
+    if IS_DISABLED.load(Ordering::Relaxed) {
         return fill(path);
     }
     let failed = |e: io::Error| Error::in_file(path, format!("cannot be written: {}", reason(&e)));
-    if is_in_workshop(path) {
+    if is_staged(path) {
         fs::create_dir_all(path).map_err(failed)?;
         return fill(path);
     }
-    let is_there = path.is_dir();
-    // A folder may be a file system of its own, so that nothing can be renamed into it from beside it.
-    let home = if is_there { path } else { folder_of(path) };
-    fs::create_dir_all(home).map_err(failed)?;
-    let workshop = Workshop::in_folder(home).map_err(failed)?;
-    let fresh = workshop.new_folder();
-    let filled = fill(&fresh).map_err(|e| e.moved(&fresh, path))?;
-    if is_there { workshop.exchange(ours) } else { fs::rename(&fresh, path) }.map_err(failed)?;
+    let exists = path.is_dir();
+    // A folder may be a mount point, so that files next to it cannot be renamed into it.
+    let staged_in = if exists { path } else { folder_of(path) };
+    fs::create_dir_all(staged_in).map_err(failed)?;
+    let staging = StagingFolder::in_folder(staged_in).map_err(failed)?;
+    let new_folder = staging.new_folder();
+    let filled = fill(&new_folder).map_err(|e| e.moved(&new_folder, path))?;
+    if exists { staging.exchange(is_own) } else { fs::rename(&new_folder, path) }.map_err(failed)?;
     Ok(filled)
 }
 
-/// Whether a path lies in a folder that is being made and is put in its place as a whole.
-fn is_in_workshop(path: &Path) -> bool {
+/// Returns whether a path lies in a staging folder.
+fn is_staged(path: &Path) -> bool {
     path.ancestors().any(is_temporary)
 }
 
-/// The folder in which a path lies.
+/// Returns the folder that contains a path.
 pub fn folder_of(path: &Path) -> &Path {
     path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
-/// What there is to say of a folder that is not there.
-pub fn no_folder(folder: &Path) -> String {
+/// Returns the message for a missing folder.
+pub fn missing_folder(folder: &Path) -> String {
     format!("there is no folder {}", folder.display())
 }
 
-/// The path at the end of a chain of links, which need not lead to a file yet.
+/// Follows a chain of links to its end, where there need not be a file yet.
 pub fn behind_links(path: &Path) -> PathBuf {
     let mut path = path.to_owned();
     for _ in 0..MOST_LINKS {
@@ -148,14 +148,14 @@ pub fn behind_links(path: &Path) -> PathBuf {
 fn replace(path: &Path, content: &[u8]) -> io::Result<()> {
     let mut file = TemporaryFile::in_folder(folder_of(path))?;
     file.write(content)?;
-    file.take_mode_of(path)?;
-    file.become_file(path)
+    file.copy_mode_from(path)?;
+    file.rename_to(path)
 }
 
-/// Whether a file can be made in a folder.
+/// Checks that a file can be created in a folder.
 ///
 /// # Errors
-/// Why not.
+/// When it cannot.
 pub fn try_folder(folder: &Path) -> io::Result<()> {
     tempfile::tempfile_in(folder).map(|_: File| ())
 }
@@ -167,7 +167,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_link_stays_and_a_mode_too() {
+    fn links_and_permissions_are_kept() {
         let folder = tempfile::tempdir().expect("a temporary folder");
         let (file, link) = (folder.path().join("file"), folder.path().join("link"));
         fs::write(&file, "old").expect("a file");
@@ -180,7 +180,7 @@ mod tests {
     }
 
     #[test]
-    fn a_link_to_nothing_yet_leads_to_the_file() {
+    fn dangling_link_is_written_through() {
         let folder = tempfile::tempdir().expect("a temporary folder");
         let link = folder.path().join("link");
         symlink("later", &link).expect("a link");
@@ -189,12 +189,12 @@ mod tests {
     }
 
     #[test]
-    fn what_others_keep_in_a_folder_stays() {
+    fn unrelated_files_in_a_folder_stay() {
         let folder = tempfile::tempdir().expect("a temporary folder");
         for name in ["ours-1", "theirs"] {
             fs::write(folder.path().join(name), "old").expect("a file");
         }
-        let fill = |fresh: &Path| write(&fresh.join("ours-2"), "new");
+        let fill = |new_folder: &Path| write(&new_folder.join("ours-2"), "new");
         write_folder(folder.path(), |name| name.starts_with("ours"), fill).expect("written");
         let mut names: Vec<_> =
             fs::read_dir(folder.path()).expect("a folder").flatten().map(|e| e.file_name()).collect();

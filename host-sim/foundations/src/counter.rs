@@ -1,22 +1,22 @@
-//! How much of some work is done, for whoever shows it.
+//! Progress of a known number of work items.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Counts what is done on any thread, and tells it, with how much there is.
+/// Counts finished items on any thread and reports `(done, total)` to `watch` after each.
 pub struct Counter<W> {
     done: AtomicUsize,
-    of: usize,
+    total: usize,
     watch: W,
 }
 
 impl<W: Fn(usize, usize)> Counter<W> {
-    /// Nothing is done yet, of so much.
-    pub fn new(of: usize, watch: W) -> Self {
-        Counter { done: AtomicUsize::new(0), of, watch }
+    /// Returns a counter of `total` items, none of them done.
+    pub fn new(total: usize, watch: W) -> Self {
+        Counter { done: AtomicUsize::new(0), total, watch }
     }
 
-    /// One more is done.
-    pub fn one_more(&self) {
-        (self.watch)(self.done.fetch_add(1, Ordering::Relaxed) + 1, self.of);
+    /// Counts one more finished item.
+    pub fn increment(&self) {
+        (self.watch)(self.done.fetch_add(1, Ordering::Relaxed) + 1, self.total);
     }
 }

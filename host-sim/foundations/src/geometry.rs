@@ -1,10 +1,10 @@
-//! Poses, walls and rays in the plane: centimetres, radians, x right, y up, headings counter-clockwise from +x.
+//! Poses, walls and rays in the plane: centimetres, radians, x to the right, y up, headings counter-clockwise from +x.
 
 use std::f64::consts::{PI, TAU};
 
 use glam::DVec2;
 
-/// Where something is and which way it faces.
+/// A position and a heading.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pose {
     /// Position in the world, cm.
@@ -13,7 +13,7 @@ pub struct Pose {
     pub heading_rad: f64,
 }
 
-/// A straight piece of wall, or one edge of an obstacle.
+/// A straight wall segment, or one edge of an obstacle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Wall {
     /// One end, cm.
@@ -34,34 +34,34 @@ pub struct Rectangle {
 /// Where a ray first meets a wall.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit {
-    /// From the ray's origin, cm (D of the paper's figure 1).
+    /// Distance from the ray's origin, cm (D in the paper's figure 1).
     pub distance_cm: f64,
-    /// Angle from the reversed ray to the wall's normal on this side, in (-π/2, π/2), positive when the normal lies
-    /// counter-clockwise of it. Its magnitude is α of the paper's figure 1.
+    /// Incidence angle: from the reversed ray to the wall's normal on the ray's side, in (-π/2, π/2), positive if the normal
+    /// lies counter-clockwise of the ray. Its magnitude is α in the paper's figure 1.
     pub incidence_rad: f64,
-    /// The wall that was met: its place in the list.
+    /// Index of the wall in the list.
     pub wall: usize,
 }
 
 impl Pose {
-    /// A pose; the heading is wrapped.
+    /// Returns a pose with the heading wrapped to (-π, π].
     pub fn new(x_cm: f64, y_cm: f64, heading_rad: f64) -> Self {
         Pose { position_cm: DVec2::new(x_cm, y_cm), heading_rad: wrap_rad(heading_rad) }
     }
 
-    /// A unit vector along the heading.
+    /// Returns the unit vector along the heading.
     pub fn direction(&self) -> DVec2 {
         direction(self.heading_rad)
     }
 
-    /// `other` as seen from here: forward, left, and the turn to its heading.
+    /// Returns `other` in this pose's frame: forward, left, and the turn to its heading.
     pub fn relative(&self, other: &Pose) -> Pose {
         let unturn = direction(-self.heading_rad);
         let position_cm = unturn.rotate(other.position_cm - self.position_cm);
         Pose { position_cm, heading_rad: wrap_rad(other.heading_rad - self.heading_rad) }
     }
 
-    /// The pose that `relative` describes as seen from here: the inverse of [`Pose::relative`].
+    /// Returns the world pose of `relative`, given in this pose's frame: the inverse of [`Pose::relative`].
     pub fn compose(&self, relative: &Pose) -> Pose {
         Pose {
             position_cm: self.position_cm + self.direction().rotate(relative.position_cm),
@@ -71,12 +71,12 @@ impl Pose {
 }
 
 impl Rectangle {
-    /// Whether a point lies inside or on the edge.
+    /// Returns whether a point lies inside or on the edge.
     pub fn contains(&self, point_cm: DVec2) -> bool {
         point_cm.cmpge(self.low_cm).all() && point_cm.cmple(self.high_cm).all()
     }
 
-    /// The four edges, counter-clockwise from the lower left corner.
+    /// Returns the four edges, counter-clockwise from the lower left corner.
     pub fn edges(&self) -> [Wall; 4] {
         let (low, high) = (self.low_cm, self.high_cm);
         let corners = [low, DVec2::new(high.x, low.y), high, DVec2::new(low.x, high.y)];
@@ -84,7 +84,7 @@ impl Rectangle {
     }
 }
 
-/// The smallest axis-parallel rectangle that contains all walls; `None` without walls.
+/// Returns the smallest axis-parallel rectangle that contains all walls, or `None` without walls.
 pub fn bounding_box(walls: &[Wall]) -> Option<Rectangle> {
     let ends = || walls.iter().flat_map(|wall| [wall.from_cm, wall.to_cm]);
     let low_cm = ends().reduce(DVec2::min)?;
@@ -93,7 +93,7 @@ pub fn bounding_box(walls: &[Wall]) -> Option<Rectangle> {
 }
 
 impl Wall {
-    /// The distance along a ray to this wall, if the ray meets it.
+    /// Returns the distance along a ray to this wall, cm, if the ray hits it; `direction` has length one.
     pub fn distance_along_cm(&self, origin_cm: DVec2, direction: DVec2) -> Option<f64> {
         let along = self.to_cm - self.from_cm;
         let across = direction.perp_dot(along);
@@ -102,11 +102,11 @@ impl Wall {
         }
         let offset = self.from_cm - origin_cm;
         let distance_cm = offset.perp_dot(along) / across;
-        let is_met = distance_cm >= 0.0 && (0.0..=1.0).contains(&(offset.perp_dot(direction) / across));
-        is_met.then_some(distance_cm)
+        let is_hit = distance_cm >= 0.0 && (0.0..=1.0).contains(&(offset.perp_dot(direction) / across));
+        is_hit.then_some(distance_cm)
     }
 
-    /// The signed incidence angle of a ray that meets it.
+    /// Returns the signed incidence angle of a ray that hits this wall (see [`Hit::incidence_rad`]).
     fn incidence_rad(&self, direction: DVec2) -> f64 {
         let along = self.to_cm - self.from_cm;
         let normal = along.perp() * direction.perp_dot(along).signum();
@@ -115,7 +115,7 @@ impl Wall {
         libm::atan2(back.perp_dot(normal), back.dot(normal))
     }
 
-    /// The point of this wall nearest to `point_cm`.
+    /// Returns the point of this wall nearest to `point_cm`.
     pub fn nearest(&self, point_cm: DVec2) -> DVec2 {
         let along = self.to_cm - self.from_cm;
         let length2 = along.length_squared();
@@ -123,7 +123,7 @@ impl Wall {
         self.from_cm + along * share
     }
 
-    /// The least distance between two straight pieces; zero where they cross.
+    /// Returns the smallest distance between two segments, cm; zero if they cross.
     pub fn distance_cm(&self, other: &Wall) -> f64 {
         let (p, r) = (self.from_cm, self.to_cm - self.from_cm);
         let (q, s) = (other.from_cm, other.to_cm - other.from_cm);
@@ -144,14 +144,14 @@ impl Wall {
     }
 }
 
-/// The first wall that a ray meets; `direction` has length one.
+/// Returns where a ray first hits a wall; `direction` has length one.
 pub fn cast(walls: &[Wall], origin_cm: DVec2, direction: DVec2) -> Option<Hit> {
-    let (distance_cm, wall) = first_met(walls, origin_cm, direction)?;
+    let (distance_cm, wall) = first_hit(walls, origin_cm, direction)?;
     Some(Hit { distance_cm, incidence_rad: walls[wall].incidence_rad(direction), wall })
 }
 
-/// How far away the first wall is that a ray meets, cm, and which it is; `direction` has length one.
-pub fn first_met(walls: &[Wall], origin_cm: DVec2, direction: DVec2) -> Option<(f64, usize)> {
+/// Returns the distance to the first wall that a ray hits, cm, and that wall's index; `direction` has length one.
+pub fn first_hit(walls: &[Wall], origin_cm: DVec2, direction: DVec2) -> Option<(f64, usize)> {
     let mut first: Option<(f64, usize)> = None;
     for (wall, w) in walls.iter().enumerate() {
         if let Some(distance_cm) = w.distance_along_cm(origin_cm, direction)
@@ -163,12 +163,12 @@ pub fn first_met(walls: &[Wall], origin_cm: DVec2, direction: DVec2) -> Option<(
     first
 }
 
-/// A unit vector at an angle.
+/// Returns the unit vector at an angle.
 pub fn direction(angle_rad: f64) -> DVec2 {
     DVec2::new(libm::cos(angle_rad), libm::sin(angle_rad))
 }
 
-/// The same angle in (-π, π].
+/// Wraps an angle to (-π, π].
 pub fn wrap_rad(angle_rad: f64) -> f64 {
     let wrapped = angle_rad - TAU * libm::round(angle_rad / TAU);
     if wrapped <= -PI { wrapped + TAU } else { wrapped }
@@ -184,13 +184,13 @@ mod tests {
     }
 
     #[test]
-    fn a_ray_straight_at_a_wall_has_no_incidence_angle() {
+    fn head_on_ray_has_zero_incidence() {
         let hit = cast(&room(), DVec2::new(100.0, 50.0), DVec2::X).unwrap();
         assert_eq!((hit.distance_cm, hit.incidence_rad, hit.wall), (200.0, 0.0, 1));
     }
 
     #[test]
-    fn the_sign_of_the_incidence_tells_the_side() {
+    fn sign_of_incidence_gives_the_side() {
         let hit = cast(&room(), DVec2::new(100.0, 50.0), direction(0.3)).unwrap();
         // The normal points to -x (heading π); the reversed ray points to 0.3 - π, so the normal lies clockwise of it.
         assert!((hit.incidence_rad + 0.3).abs() < 1e-12);
@@ -199,14 +199,14 @@ mod tests {
     }
 
     #[test]
-    fn an_open_map_gives_no_hit() {
+    fn open_map_gives_no_hit() {
         let wall = Wall { from_cm: DVec2::new(0.0, 10.0), to_cm: DVec2::new(10.0, 10.0) };
         assert_eq!(cast(&[wall], DVec2::new(5.0, 0.0), DVec2::NEG_Y), None);
         assert_eq!(cast(&[wall], DVec2::new(5.0, 0.0), DVec2::X), None);
     }
 
     #[test]
-    fn half_a_turn_is_positive() {
+    fn half_turn_wraps_to_positive() {
         assert_eq!(wrap_rad(-PI), PI);
         assert_eq!(wrap_rad(3.0 * PI), PI);
     }
@@ -217,17 +217,17 @@ mod tests {
 
     proptest! {
         #[test]
-        fn compose_undoes_relative(a in pose(), b in pose()) {
+        fn compose_inverts_relative(a in pose(), b in pose()) {
             let back = a.compose(&a.relative(&b));
             prop_assert!(back.position_cm.distance(b.position_cm) < 1e-9);
             prop_assert!(wrap_rad(back.heading_rad - b.heading_rad).abs() < 1e-12);
         }
 
         #[test]
-        fn inside_a_room_every_ray_hits_where_it_says(x in 1.0..299.0, y in 1.0..219.0, h in -PI..PI) {
-            let (origin, way) = (DVec2::new(x, y), direction(h));
-            let hit = cast(&room(), origin, way).unwrap();
-            let at = origin + way * hit.distance_cm;
+        fn every_ray_inside_a_room_hits_the_reported_point(x in 1.0..299.0, y in 1.0..219.0, h in -PI..PI) {
+            let (origin, along) = (DVec2::new(x, y), direction(h));
+            let hit = cast(&room(), origin, along).unwrap();
+            let at = origin + along * hit.distance_cm;
             prop_assert!(room()[hit.wall].nearest(at).distance(at) < 1e-9);
             prop_assert!(hit.incidence_rad.abs() <= PI / 2.0);
             let normal_distance = room()[hit.wall].nearest(origin).distance(origin);
@@ -235,7 +235,7 @@ mod tests {
         }
 
         #[test]
-        fn distance_between_pieces_is_the_least_over_their_points(
+        fn distance_between_segments_is_the_minimum_over_their_points(
             a in prop::array::uniform4(-50.0..50.0), b in prop::array::uniform4(-50.0..50.0),
         ) {
             let wall = |v: [f64; 4]| Wall { from_cm: DVec2::new(v[0], v[1]), to_cm: DVec2::new(v[2], v[3]) };

@@ -1,7 +1,7 @@
-//! Lanes: numbers that go through the same operations side by side, one a robot or one a sample.
+//! SIMD lanes: numbers that undergo the same operations side by side, one per robot or one per sample.
 //!
-//! The instruction set is chosen when the program runs. Whichever it is, the bits are the same: no operation is fused
-//! or reordered, and [`mindgap_core::maths`] is the one source of powers, logarithms and sines.
+//! The instruction set is chosen at run time. Results are bit-identical on all of them: no operation is fused or reordered,
+//! and [`mindgap_core::maths`] is the only source of powers, logarithms and sines.
 
 #[cfg(test)]
 mod tests;
@@ -13,20 +13,20 @@ use mindgap_core::maths::Binary32;
 use mindgap_core::scalar::Scalar;
 use pulp::Simd;
 
-/// The widest vector of any instruction set, in f32 numbers. Sums over samples are kept in so many parts whatever the
-/// real width, so that they group alike everywhere.
+/// Width of the widest vector of any instruction set, in f32 numbers. Sums over samples are always kept in this many parts,
+/// so that they group alike on every machine.
 pub const WIDEST: usize = 16;
 /// Bit pattern of 1.
 const ONE_BITS: u32 = 1.0f32.to_bits();
 
-/// A vector of f32, as wide as the instruction set `S` has it.
+/// A vector of f32, as wide as the instruction set `S` allows.
 #[derive(Clone, Copy, Debug)]
 pub struct Lanes<S: Simd> {
     simd: S,
     values: S::f32s,
 }
 
-/// A yes or no for every member of a vector.
+/// One boolean per lane of a vector.
 #[derive(Clone, Copy, Debug)]
 pub struct Mask<S: Simd> {
     simd: S,
@@ -34,22 +34,22 @@ pub struct Mask<S: Simd> {
 }
 
 impl<S: Simd> Lanes<S> {
-    /// Members of a vector.
+    /// Number of lanes.
     pub const WIDTH: usize = S::F32_LANES;
 
-    /// Lanes of a vector.
+    /// Wraps a vector.
     #[inline(always)]
     pub fn new(simd: S, values: S::f32s) -> Self {
         Lanes { simd, values }
     }
 
-    /// The same number in every lane.
+    /// Returns `value` in every lane.
     #[inline(always)]
     pub fn splat(simd: S, value: f32) -> Self {
         Lanes { simd, values: simd.splat_f32s(value) }
     }
 
-    /// The first [`WIDTH`](Self::WIDTH) numbers of `source`, zeros where it is shorter.
+    /// Loads the first [`WIDTH`](Self::WIDTH) numbers of `source`, padded with zeros.
     #[inline(always)]
     pub fn load(simd: S, source: &[f32]) -> Self {
         match S::as_simd_f32s(source).0.first() {
@@ -58,34 +58,34 @@ impl<S: Simd> Lanes<S> {
         }
     }
 
-    /// Writes the lanes to the front of `target`, as many as it holds.
+    /// Stores the lanes at the start of `target`, as many as it holds.
     #[inline(always)]
     pub fn store(self, target: &mut [f32]) {
         match S::as_mut_simd_f32s(target).0.first_mut() {
-            Some(place) => *place = self.values,
+            Some(first) => *first = self.values,
             None => self.simd.partial_store_f32s(target, self.values),
         }
     }
 
-    /// Where `self` is less than `other`.
+    /// Compares lane by lane: `self < other`.
     #[inline(always)]
     pub fn less(self, other: Self) -> Mask<S> {
         Mask { simd: self.simd, bits: self.simd.less_than_f32s(self.values, other.values) }
     }
 
-    /// The lesser of two numbers; `other` where either is NaN.
+    /// Returns the smaller number per lane; `other` if either is NaN.
     #[inline(always)]
     pub fn min(self, other: Self) -> Self {
         self.less(other).select(self, other)
     }
 
-    /// The greater of two numbers; `other` where either is NaN.
+    /// Returns the larger number per lane; `other` if either is NaN.
     #[inline(always)]
     pub fn max(self, other: Self) -> Self {
         other.less(self).select(self, other)
     }
 
-    /// The square root.
+    /// Returns the square root per lane.
     #[inline(always)]
     pub fn sqrt(self) -> Self {
         Lanes { simd: self.simd, values: self.simd.sqrt_f32s(self.values) }
@@ -93,13 +93,13 @@ impl<S: Simd> Lanes<S> {
 }
 
 impl<S: Simd> Mask<S> {
-    /// `yes` where the mask holds, else `no`.
+    /// Returns `yes` in lanes where the mask is set, `no` in the others.
     #[inline(always)]
     pub fn select(self, yes: Lanes<S>, no: Lanes<S>) -> Lanes<S> {
         Lanes { simd: self.simd, values: self.simd.select_f32s(self.bits, yes.values, no.values) }
     }
 
-    /// Whether the mask holds anywhere.
+    /// Returns whether any lane is set.
     #[inline(always)]
     pub fn any(self) -> bool {
         self.simd.first_true_m32s(self.bits) < S::F32_LANES
@@ -141,8 +141,8 @@ impl<S: Simd> Binary32 for Lanes<S> {
     fn frexp(self) -> (Self, Self) {
         let s = self.simd;
         let bits = s.transmute_u32s_f32s(self.values);
-        // As for f32, with the exponent kept biased, since vectors have no cheap way from integers to f32: in the low
-        // bits of 2^23 it is a whole number.
+        // As for f32, but with a biased exponent, since vectors have no cheap conversion from integers to f32: placed in
+        // the low bits of 2^23 it is a whole number.
         let above = s.add_u32s(bits, s.splat_u32s(ONE_BITS.wrapping_sub(FRAC_1_SQRT_2.to_bits())));
         let biased = s.wrapping_dyn_shr_u32s(above, s.splat_u32s(23));
         let whole = s.transmute_f32s_u32s(s.or_u32s(biased, s.splat_u32s(0x4b00_0000)));
@@ -153,7 +153,7 @@ impl<S: Simd> Binary32 for Lanes<S> {
     }
 }
 
-/// Implements an operator of [`Lanes`] by the function of [`Simd`] with its name.
+/// Implements an operator of [`Lanes`] with the [`Simd`] function `$function`.
 macro_rules! operator {
     ($operator:ident, $method:ident, $function:ident) => {
         impl<S: Simd> $operator for Lanes<S> {

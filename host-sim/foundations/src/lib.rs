@@ -1,9 +1,9 @@
-//! What every other crate of the host builds on: errors, random streams, vector lanes, statistics, geometry.
+//! Foundations of every host crate: errors, random streams, SIMD lanes, statistics, geometry.
 
-pub mod chance;
 pub mod counter;
 pub mod error;
 pub mod executor;
 pub mod geometry;
 pub mod lanes;
+pub mod random;
 pub mod statistics;

@@ -1,4 +1,4 @@
-//! Statistics without a robot in them.
+//! General statistics, independent of robots.
 
 pub mod agreement;
 pub mod bootstrap;

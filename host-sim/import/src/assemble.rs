@@ -1,5 +1,5 @@
-//! Recordings become a folder of logs: clocks aligned, poses and readings at the times of rows, the frame put right, both
-//! sides of the motion held against each other.
+//! Assembles recordings into logs: aligns clocks, resamples poses and readings to rows, corrects the frame, and checks units
+//! and scale.
 
 mod clock;
 mod frame;
@@ -7,36 +7,36 @@ mod rows;
 
 use std::ops::Range;
 
-use self::frame::put_right;
+use self::frame::correct_frame;
 use self::rows::{Prepared, spacing_ms};
 use super::clocks::Clocks;
 use super::draft::{Measure, RobotDraft};
 use super::recording::{Kind, Recording};
 use super::report::{RecordingReport, RecordingsReport};
-use super::sides::Sides;
+use super::scale_check::ScaleCheck;
 use mindgap_foundations::counter::Counter;
 use mindgap_foundations::error::{Error, Result};
 use mindgap_logs::inspection::Inspection;
 use mindgap_logs::{Logs, Robot, Run, Scene};
 
-/// What robots that fit on a floor measure, cm or cm/s.
-const FITTED_CM: Range<f64> = 1.5..500.0;
+/// Plausible range of fitted robot dimensions and speeds, cm or cm/s.
+const PLAUSIBLE_CM: Range<f64> = 1.5..500.0;
 
-/// The logs, and what is to be told about them.
+/// Assembled logs with their report.
 pub struct Assembled {
     /// The logs.
     pub logs: Logs,
-    /// The draft of the robot, where the user gave none.
+    /// Draft of the robot, if the user gave none.
     pub draft: Option<RobotDraft>,
-    /// What was done.
+    /// What was guessed, changed or left out.
     pub report: RecordingsReport,
 }
 
-/// Assembles recordings, of which there is at least one. Without a `robot` its measures are fitted where they can be, and
-/// told. `watch` is told how often the recordings were brought onto one clock, of how often they will be.
+/// Assembles at least one recording. Without a `robot`, its dimensions are fitted where possible and reported. `watch` receives
+/// the number of recordings aligned so far and their total.
 ///
 /// # Errors
-/// When streams have nothing in common, when units or frames do not go together, or when nothing is left.
+/// When streams have nothing in common, when units or frames are inconsistent, or when no rows remain.
 pub fn assemble(
     mut recordings: Vec<Recording>,
     robot: Option<Robot>,
@@ -55,34 +55,34 @@ pub fn assemble(
     if robot.is_some_and(|robot| robot.ultrasonic.is_none()) {
         recordings.iter_mut().for_each(Recording::leave_readings_out);
     }
-    let as_stated = Clocks { offset_ms: offset_ms.unwrap_or(0.0), drift: 0.0 };
+    let stated_clocks = Clocks { offset_ms: offset_ms.unwrap_or(0.0), drift: 0.0 };
     let mut runs = Vec::new();
     for recording in &recordings {
-        runs.extend(Prepared::of(recording, &first_guess)?.runs(&as_stated, &first_guess, runs.len()));
+        runs.extend(Prepared::of(recording, &first_guess)?.runs(&stated_clocks, &first_guess, runs.len()));
     }
-    let frame = put_right(&mut recordings, &Logs { robot: first_guess, scene: scene.clone(), runs });
+    let frame = correct_frame(&mut recordings, &Logs { robot: first_guess, scene: scene.clone(), runs });
     let draft = if robot.is_some() { None } else { Some(fitted(&recordings, offset_ms, &counter)?) };
     let robot = draft.as_ref().map_or(Ok(first_guess), RobotDraft::robot)?;
     let (mut runs, mut reports) = (Vec::new(), Vec::new());
     for recording in &recordings {
-        let (of_recording, report) = runs_of(recording, &robot, offset_ms, runs.len())?;
-        runs.extend(of_recording);
+        let (new_runs, report) = runs_of(recording, &robot, offset_ms, runs.len())?;
+        runs.extend(new_runs);
         reports.push(report);
-        counter.one_more();
+        counter.increment();
     }
     let logs = Logs { robot, scene, runs };
-    let sides = Sides::of_commands(&logs.runs, &logs.robot);
-    let inspected = Inspection::of(logs.clone());
-    let units = sides.refusal("the commands", "the track");
-    if let Some(why) = units.or_else(|| inspected.refusal().map(str::to_owned)) {
+    let scale_check = ScaleCheck::of_commands(&logs.runs, &logs.robot);
+    let inspected = Inspection::new(logs.clone());
+    let mismatch = scale_check.refusal("the commands", "the track");
+    if let Some(why) = mismatch.or_else(|| inspected.refusal().map(str::to_owned)) {
         return Err(Error::in_file(&recordings[0].track, why));
     }
     let findings = inspected.findings.iter().map(|found| found.line()).collect();
-    let report = RecordingsReport { recordings: reports, sides, frame, findings, to_fill_in: Vec::new() };
+    let report = RecordingsReport { recordings: reports, scale_check, frame, findings, to_fill_in: Vec::new() };
     Ok(Assembled { logs, draft, report })
 }
 
-/// A draft that is wide enough for whatever recordings ask for.
+/// Returns a draft fast enough for all commands in the recordings.
 fn first_guess(recordings: &[Recording]) -> Result<RobotDraft> {
     let mut draft = RobotDraft::blank();
     draft.has_sensor = Some(recordings.iter().any(|recording| recording.readings.is_some()));
@@ -96,7 +96,7 @@ fn first_guess(recordings: &[Recording]) -> Result<RobotDraft> {
     Ok(draft)
 }
 
-/// A draft with what recordings say of the robot.
+/// Returns a draft with the dimensions that can be fitted to the recordings.
 fn fitted(
     recordings: &[Recording],
     offset_ms: Option<f64>,
@@ -105,53 +105,50 @@ fn fitted(
     let mut draft = first_guess(recordings)?;
     let robot = draft.robot()?;
     if all_of(recordings, Kind::Twist) {
-        let how =
-            "between the middles of the driven wheels; of commands that are speed and turn rate it changes nothing";
-        draft.track_cm.how = how.into();
+        let how = "between the centres of the driven wheels; has no effect on commands given as speed and turn rate";
+        draft.track_cm.note = how.into();
     } else {
         let mut runs = Vec::new();
         for recording in recordings {
             runs.extend(runs_of(recording, &robot, offset_ms, runs.len())?.0);
-            counter.one_more();
+            counter.increment();
         }
-        let sides = Sides::of_commands(&runs, &robot);
+        let scale_check = ScaleCheck::of_commands(&runs, &robot);
         let fit = |value: f64, what: &str| {
-            if !FITTED_CM.contains(&value) {
-                let why = format!(
-                    "{what} would have to be {value:.3} to explain the track: its unit seems to be another one"
-                );
+            if !PLAUSIBLE_CM.contains(&value) {
+                let why = format!("{what} would have to be {value:.3} to explain the track: its unit seems wrong");
                 return Err(Error::in_file(&recordings[0].track, why));
             }
-            Ok(Measure::open(value, "fitted to these logs, so that no gap in it can show: measure it"))
+            Ok(Measure::placeholder(value, "fitted to these logs, so an error in it cannot show: measure it"))
         };
-        let length = if all_of(recordings, Kind::Motors) { sides.of_travel } else { Some(1.0) };
+        let length = if all_of(recordings, Kind::Motors) { scale_check.travel_ratio } else { Some(1.0) };
         if let Some(length) = length.filter(|_| all_of(recordings, Kind::Motors)) {
             draft.full_speed_cm_s = fit(length * robot.full_speed_cm_s, "full_speed_cm_s")?;
         }
-        if let Some((turn, length)) = sides.of_rotation.zip(length).filter(|(turn, _)| *turn != 0.0) {
+        if let Some((turn, length)) = scale_check.rotation_ratio.zip(length).filter(|(turn, _)| *turn != 0.0) {
             draft.track_cm = fit(robot.track_cm * length / turn.abs(), "track_cm")?;
         }
     }
     if !all_of(recordings, Kind::Motors) {
-        let how = "the fastest that a wheel was asked for, rounded up; commands are shares of it";
+        let how = "the fastest commanded wheel speed, rounded up; commands are fractions of it";
         draft.full_speed_cm_s = Measure::known(fastest_cm_s(recordings, &draft.robot()?), how);
     }
     Ok(draft)
 }
 
-/// Whether the commands of all recordings are of a kind.
+/// Returns whether the commands of all recordings are of one kind.
 fn all_of(recordings: &[Recording], kind: Kind) -> bool {
     recordings.iter().all(|recording| recording.commands.kind == kind)
 }
 
-/// The fastest that a wheel is asked for, rounded up to whole 5 cm/s.
+/// Returns the fastest commanded wheel speed, rounded up to a multiple of 5 cm/s.
 fn fastest_cm_s(recordings: &[Recording], robot: &Robot) -> f64 {
     let commands = recordings.iter().map(|recording| &recording.commands);
     let speeds = commands.flat_map(|c| c.samples.iter().flat_map(|(_, pair)| c.kind.wheels_cm_s(*pair, robot)));
     5.0 * (speeds.map(f64::abs).fold(0.0, f64::max) / 5.0).ceil().max(1.0)
 }
 
-/// The runs of one recording, numbered from `first`.
+/// Returns the runs of one recording, numbered from `first`, and its report.
 fn runs_of(
     recording: &Recording,
     robot: &Robot,
@@ -162,7 +159,7 @@ fn runs_of(
     let (clocks, clocks_report) = clock::aligned(&prepared, robot, recording.has_one_clock, offset_ms)?;
     let runs = prepared.runs(&clocks, robot, first);
     if runs.is_empty() {
-        let what = "has no stretch of poses beside commands that is as long as a few steps";
+        let what = "has no period with both poses and commands that lasts a few steps";
         return Err(Error::in_file(&prepared.file, what));
     }
     let rows = || runs.iter().flat_map(|run| &run.rows);
@@ -174,7 +171,7 @@ fn runs_of(
         without_pose: rows().filter(|row| row.pose.is_none()).count(),
         with_reading: rows().filter(|row| row.echo_cm.is_some()).count(),
         jumps: prepared.jumps,
-        limited: prepared.limited,
+        saturated: prepared.saturated,
     };
     Ok((runs, report))
 }

@@ -1,7 +1,6 @@
-//! ROS 2 bags as MCAP: topics of commands, poses and readings become a recording.
+//! Reads ROS 2 bags (MCAP): topics of commands, poses and readings become a recording.
 //!
-//! `records` reads the file, `messages` decode what is in it, `transforms` compose chains of frames, `topics` say which topic
-//! holds what.
+//! `records` reads the file, `messages` decodes it, `transforms` composes chains of frames, and `topics` selects the topics.
 
 mod messages;
 mod records;
@@ -23,54 +22,54 @@ use mindgap_foundations::statistics::summary::median;
 
 pub use self::topics::Choice;
 
-/// Stamps that are off the times at which messages were logged by more than this are of another clock, ms.
+/// Message stamps further than this from the logging times are on another clock, ms.
 const SAME_CLOCK_MS: f64 = 1000.0;
-/// With more topics and frames of interest than this no robot's bag is meant.
-const MOST_TOPICS: usize = 10_000;
-/// With more messages of interest than this memory runs out.
-const MOST_MESSAGES: usize = 50_000_000;
+/// Maximum number of relevant topics and frames; no robot has more.
+const MAX_TOPICS: usize = 10_000;
+/// Maximum number of relevant messages, to bound memory.
+const MAX_MESSAGES: usize = 50_000_000;
 
-/// Messages of one topic, or of one frame of a topic of transforms.
+/// Messages of one topic, or of one frame of a transform topic.
 #[derive(Default)]
 pub(super) struct Stream {
-    /// The messages' type.
+    /// Message type.
     pub(super) schema: String,
     samples: Vec<Sample>,
-    /// The streams whose transforms these are one after the other, if they are of a chain.
+    /// The streams of a chain of transforms, if this stream is their composition.
     composed_of: Vec<String>,
 }
 
 #[derive(Clone, Copy)]
 struct Sample {
     log_ms: f64,
-    /// The stamp in the message, if it has one.
+    /// Stamp in the message, if it has one.
     stamp_ms: Option<f64>,
     value: Decoded,
 }
 
 impl Sample {
-    /// The time that the message says, or else that at which it was logged.
-    fn said_ms(&self) -> f64 {
+    /// Returns the stamp of the message, or else its logging time.
+    fn stamp_or_log_ms(&self) -> f64 {
         self.stamp_ms.unwrap_or(self.log_ms)
     }
 }
 
-/// Reads a bag. `sonar_yaw_rad` is the direction in which a laser scanner's beams stand for the range sensor.
+/// Reads a bag. `sonar_yaw_rad` is the direction in which a laser scanner's beam stands in for the range sensor.
 ///
 /// # Errors
-/// When the file cannot be read or is corrupt, or when topics are missing or cannot be told apart.
+/// When the file cannot be read or is corrupt, or when topics are missing or ambiguous.
 pub fn recording(file: &Path, choice: &Choice, sonar_yaw_rad: f64) -> Result<Recording> {
     let mut streams: HashMap<String, Stream> = HashMap::new();
-    let (mut messages, mut broken) = (0, 0);
+    let (mut messages, mut undecodable) = (0, 0);
     let ending = records::read(file, |item: Item| {
         match messages::decode(item.schema, item.data, sonar_yaw_rad) {
-            Message::Of(decoded) => {
+            Message::Decoded(decoded) => {
                 for (frame, stamp_ms, value) in decoded {
                     let name = format!("{}{}", item.topic, frame);
                     messages += 1;
-                    if messages > MOST_MESSAGES || (streams.len() >= MOST_TOPICS && !streams.contains_key(&name)) {
+                    if messages > MAX_MESSAGES || (streams.len() >= MAX_TOPICS && !streams.contains_key(&name)) {
                         let what =
-                            format!("holds more than {MOST_TOPICS} topics or {MOST_MESSAGES} messages of interest");
+                            format!("contains more than {MAX_TOPICS} topics or {MAX_MESSAGES} relevant messages");
                         return Err(Error::in_file(file, what));
                     }
                     let stream = streams.entry(name).or_default();
@@ -78,8 +77,8 @@ pub fn recording(file: &Path, choice: &Choice, sonar_yaw_rad: f64) -> Result<Rec
                     stream.samples.push(Sample { log_ms: item.log_ms, stamp_ms, value });
                 }
             }
-            Message::Broken => broken += 1,
-            Message::OfNoInterest => {}
+            Message::Undecodable => undecodable += 1,
+            Message::Ignored => {}
         }
         Ok(())
     })?;
@@ -87,18 +86,18 @@ pub fn recording(file: &Path, choice: &Choice, sonar_yaw_rad: f64) -> Result<Rec
         streams.entry(name).or_insert(chain);
     }
     let topics = Topics::choose(&streams, choice).map_err(|what| Error::in_file(file, what))?;
-    let uses_stamps = stamped_as_logged(&streams, &topics);
+    let uses_stamps = stamps_match_log_times(&streams, &topics);
     let timed = |name: &str| timed(file, name, &streams[name].samples, uses_stamps);
-    let source = |name: &str, times_ms: &[f64], samples: usize, taken: &str| {
+    let source = |name: &str, times_ms: &[f64], samples: usize, role: &str| {
         Source::named(format!("{} {name}", file.display()), times_ms)
-            .taken(vec![format!("{taken} = {}", streams[name].schema)])
-            .left_out(samples - times_ms.len(), "at the time of another one")
+            .mapped(vec![format!("{role} = {}", streams[name].schema)])
+            .left_out(samples - times_ms.len(), "with a duplicate time")
     };
     let mut sources = Vec::new();
-    let mut read = |name: &str, taken: &str| -> Result<Vec<(f64, Decoded)>> {
+    let mut read = |name: &str, role: &str| -> Result<Vec<(f64, Decoded)>> {
         let samples = timed(name)?;
         let times_ms: Vec<f64> = samples.iter().map(|(ms, _)| *ms).collect();
-        sources.push(source(name, &times_ms, streams[name].samples.len(), taken));
+        sources.push(source(name, &times_ms, streams[name].samples.len(), role));
         Ok(samples)
     };
     let commands = read(&topics.commands, "commands")?.into_iter().filter_map(|(ms, value)| match value {
@@ -121,12 +120,12 @@ pub fn recording(file: &Path, choice: &Choice, sonar_yaw_rad: f64) -> Result<Rec
         }
         None => None,
     };
-    let clock = if uses_stamps { "by the stamps in the messages" } else { "by the times at which they were logged" };
+    let clock = if uses_stamps { "from the stamps in the messages" } else { "from the times of logging" };
     if let Some(first) = sources.first_mut() {
         first.guessed.extend(topics.guessed);
         first.guessed.push(format!("time {clock}"));
-        if broken > 0 {
-            first.left_out.push(format!("{broken} messages that could not be decoded"));
+        if undecodable > 0 {
+            first.left_out.push(format!("{undecodable} messages that could not be decoded"));
         }
         if let Ending::Truncated = ending {
             first.left_out.push("the end of the bag, which is cut off".into());
@@ -135,8 +134,8 @@ pub fn recording(file: &Path, choice: &Choice, sonar_yaw_rad: f64) -> Result<Rec
     Ok(Recording { commands, poses, track: file.into(), readings, has_one_clock: true, sources })
 }
 
-/// Whether the stamps in the messages go with the times at which all messages were logged.
-fn stamped_as_logged(streams: &HashMap<String, Stream>, topics: &Topics) -> bool {
+/// Returns whether the message stamps are on the clock of the logging times.
+fn stamps_match_log_times(streams: &HashMap<String, Stream>, topics: &Topics) -> bool {
     topics.all().all(|name| {
         let off_ms = streams[name].samples.iter().filter_map(|s| Some((s.stamp_ms? - s.log_ms).abs()));
         let off_ms = median(off_ms);
@@ -144,16 +143,16 @@ fn stamped_as_logged(streams: &HashMap<String, Stream>, topics: &Topics) -> bool
     })
 }
 
-/// Samples in order of time, each at a time of its own.
+/// Returns samples in temporal order with distinct times.
 fn timed(file: &Path, name: &str, samples: &[Sample], uses_stamps: bool) -> Result<Vec<(f64, Decoded)>> {
-    let ms = |sample: &Sample| if uses_stamps { sample.said_ms() } else { sample.log_ms };
+    let ms = |sample: &Sample| if uses_stamps { sample.stamp_or_log_ms() } else { sample.log_ms };
     let mut timed: Vec<(f64, Decoded)> = samples.iter().map(|sample| (ms(sample), sample.value)).collect();
     let stamps_ms: Vec<f64> = timed.iter().map(|(ms, _)| *ms).collect();
     in_order(&stamps_ms).map_err(|(_, what)| Error::in_file(file, format!("{name}: {what}")))?;
     timed.sort_by(|a, b| a.0.total_cmp(&b.0));
     timed.dedup_by(|later, before| later.0 == before.0);
     if timed.len() < 2 {
-        let what = format!("{name} has {} message(s) at times of their own: the bag has no time", timed.len());
+        let what = format!("{name} has {} distinct timestamp(s): the bag has no usable clock", timed.len());
         return Err(Error::in_file(
             file,
             if samples.len() < 2 { format!("{name} has a single message") } else { what },

@@ -1,24 +1,23 @@
-//! Merges a brick's logs and a camera's tracks into a folder of logs.
+//! Merges brick logs and camera tracks into a log folder.
 //!
-//! Brick and camera have clocks of their own. `clocks` aligns them by matching the motion of the wheels with the motion
-//! that the camera saw; the camera's poses are then interpolated at the times of the brick's rows. The [`Report`] names
-//! everything left out.
+//! Brick and camera have separate clocks. `clocks` aligns them by matching the motion of the wheels with the motion seen by the
+//! camera; the camera's poses are then interpolated at the times of the brick's rows. The [`Report`] lists everything left out.
 
 use std::path::PathBuf;
 
 use super::brick_log::{self, BrickLog};
 use super::clocks::{Alignment, Doubt, align};
+use super::mismatch::Units;
 use super::motion;
 use super::report::{LogReport, Report, RunReport, TrackReport};
-use super::sides::Sides;
+use super::scale_check::ScaleCheck;
 use super::track::{Sighting, Track};
-use super::units::Units;
 use mindgap_foundations::counter::Counter;
 use mindgap_foundations::error::{Error, Result};
 use mindgap_logs::{Logs, Robot, Row, Run, Scene};
 
-/// Merges brick logs and tracks, which are distinguished by their headers. `warn` receives one line for each oddity,
-/// `watch` how many of the logs are matched.
+/// Merges brick logs and tracks, distinguished by their headers. `warn` receives one line for each irregularity, `watch` the
+/// number of logs matched so far and their total.
 ///
 /// # Errors
 /// When a file cannot be read or parsed, when there is no log or no track, or when no log matches a track.
@@ -32,7 +31,7 @@ pub fn import(
 ) -> Result<(Logs, Report)> {
     let (mut logs, mut tracks) = (Vec::new(), Vec::new());
     for file in files {
-        if brick_log::is_one(file)? {
+        if brick_log::is_brick_log(file)? {
             logs.push(BrickLog::read(file, &mut warn)?);
         } else {
             tracks.push(Track::read(file, units, &robot)?);
@@ -47,21 +46,22 @@ pub fn import(
     let mut reports = Vec::new();
     let counter = Counter::new(logs.len(), watch);
     for log in logs {
-        let BrickLog { file, torn, .. } = &log;
-        let report = LogReport { file: file.clone(), torn: *torn, run: None, left_out: None };
-        let joined = matched(&log, &tracks, &robot).and_then(|(track, found)| {
-            let joined = merged(&log, track, &found, format!("run-{:03}", runs.len()));
-            let units = Sides::of_wheels(&joined.0, &robot).refusal("the wheels", &track.file.display().to_string());
-            units.map_or(Ok(joined), Err)
+        let BrickLog { file, is_truncated, .. } = &log;
+        let report = LogReport { file: file.clone(), truncated: *is_truncated, run: None, left_out: None };
+        let merged_run = match_track(&log, &tracks, &robot).and_then(|(track, found)| {
+            let merged_run = merge(&log, track, &found, format!("run-{:03}", runs.len()));
+            let mismatch =
+                ScaleCheck::of_wheels(&merged_run.0, &robot).refusal("the wheels", &track.file.display().to_string());
+            mismatch.map_or(Ok(merged_run), Err)
         });
-        reports.push(match joined {
-            Ok((run, report_of_run)) => {
+        reports.push(match merged_run {
+            Ok((run, run_report)) => {
                 runs.push(run);
-                LogReport { run: Some(report_of_run), ..report }
+                LogReport { run: Some(run_report), ..report }
             }
             Err(why) => LogReport { left_out: Some(why), ..report },
         });
-        counter.one_more();
+        counter.increment();
     }
     if runs.is_empty() {
         let first = &reports[0];
@@ -73,8 +73,8 @@ pub fn import(
     Ok((logs, Report { tracks, logs: reports }))
 }
 
-/// The track that matches a log best and their alignment, or the reason why none does.
-fn matched<'a>(
+/// Returns the track that matches a log best with their alignment, or why none does.
+fn match_track<'a>(
     log: &BrickLog,
     tracks: &'a [Track],
     robot: &Robot,
@@ -82,31 +82,31 @@ fn matched<'a>(
     let by_wheels = motion::by_wheels(&log.run.rows, robot);
     let found = tracks.iter().filter_map(|track| Some((track, align(&by_wheels, &track.motion())?)));
     let Some((track, found)) = found.min_by(|a, b| a.1.unexplained.total_cmp(&b.1.unexplained)) else {
-        return Err("no track overlaps it by half of its steps, or nothing moved".into());
+        return Err("no track overlaps half of its steps, or nothing moved".into());
     };
     let percent = |share: f64| format!("{:.0} %", 100.0 * share);
     match found.doubt() {
         None => Ok((track, found)),
         Some(Doubt::Differs) => Err(format!(
-            "no track saw it: wheels and camera differ in {} of the motion at best",
+            "no track matches: the best candidate leaves {} of the motion unexplained",
             percent(found.unexplained)
         )),
         Some(Doubt::Repeats) => Err(format!(
-            "it matches {} at more than one time: {} and {} of the motion differ",
+            "it matches {} at more than one time, with {} and {} of the motion unexplained",
             track.file.display(),
             percent(found.unexplained),
             percent(found.unexplained_elsewhere)
         )),
         Some(Doubt::Drifts) => Err(format!(
-            "its clock and that of {} run apart by {:.1} ms a second",
+            "its clock and that of {} drift apart by {:.1} ms per second",
             track.file.display(),
             1000.0 * found.clocks.drift
         )),
     }
 }
 
-/// The log's rows with the camera's poses at their times.
-fn merged(log: &BrickLog, track: &Track, found: &Alignment, name: String) -> (Run, RunReport) {
+/// Adds the camera's poses to the rows of a log.
+fn merge(log: &BrickLog, track: &Track, found: &Alignment, name: String) -> (Run, RunReport) {
     let clocks = &found.clocks;
     let seen: Vec<Sighting> = log.run.rows.iter().map(|row| track.at(clocks.camera_ms(row.t_ms))).collect();
     let rows = log.run.rows.iter().zip(&seen).map(|(row, seen)| Row { pose: seen.pose(), ..row });

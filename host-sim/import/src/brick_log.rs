@@ -1,4 +1,4 @@
-//! Reads the log of a brick: the rows of a run without poses.
+//! Reads brick logs: runs without poses.
 
 use std::path::{Path, PathBuf};
 
@@ -6,44 +6,44 @@ use mindgap_files as files;
 use mindgap_foundations::error::Result;
 use mindgap_logs::Run;
 
-/// A brick's log.
+/// A brick log.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BrickLog {
-    /// Its file.
+    /// File of the log.
     pub file: PathBuf,
-    /// Its rows, without poses.
+    /// The rows, without poses.
     pub run: Run,
-    /// Its last line was incomplete and left out: power or flash ran out while it was written.
-    pub torn: bool,
+    /// Whether the last line was incomplete and dropped, because power or flash memory ran out.
+    pub is_truncated: bool,
 }
 
-/// Required columns; the rotation counters are needed to align its clock.
+/// Required columns; the rotation counters are needed to align the clock.
 const REQUIRED: [&str; 5] = ["t_ms", "left", "right", "rot_left_deg", "rot_right_deg"];
 
-/// Whether a file is a brick's log, judged by its first line.
+/// Returns whether a file is a brick log, judging by its first line.
 ///
 /// # Errors
 /// When it cannot be read.
-pub fn is_one(file: &Path) -> Result<bool> {
+pub fn is_brick_log(file: &Path) -> Result<bool> {
     let header = first_line(file)?;
     let has = |name| header.split(',').any(|column| column.trim() == name);
     Ok(has("left") && has("right"))
 }
 
 impl BrickLog {
-    /// Reads a log; a last line without its line end is left out.
+    /// Reads a log; a last line without a line end is dropped.
     ///
     /// # Errors
     /// When a column is missing, fewer than two rows are complete, or a number is invalid.
     pub fn read(file: &Path, warn: impl FnMut(String)) -> Result<Self> {
         let text = files::read_text(file)?;
-        let whole = text.rfind('\n').map_or("", |end| &text[..=end]);
-        let run = Run::parse(file, whole, &REQUIRED, warn)?;
-        Ok(BrickLog { file: file.to_owned(), run, torn: whole.len() < text.len() })
+        let complete = text.rfind('\n').map_or("", |end| &text[..=end]);
+        let run = Run::parse(file, complete, &REQUIRED, warn)?;
+        Ok(BrickLog { file: file.to_owned(), run, is_truncated: complete.len() < text.len() })
     }
 }
 
-/// The first line of a file; empty for an empty file.
+/// Returns the first line of a file, or an empty text.
 fn first_line(file: &Path) -> Result<String> {
     Ok(files::read_text(file)?.lines().next().unwrap_or_default().to_owned())
 }
@@ -59,20 +59,20 @@ mod tests {
         let folder = tempfile::tempdir().expect("a folder");
         let file = folder.path().join("run-000.csv");
         files::write(&file, text)?;
-        assert!(is_one(&file)?);
+        assert!(is_brick_log(&file)?);
         BrickLog::read(&file, |warning| panic!("{warning}"))
     }
 
     #[test]
-    fn a_torn_last_line_is_left_out() {
-        let torn = read(ROWS).expect("two rows are whole");
-        assert!(torn.torn && torn.run.rows.len() == 2, "{torn:?}");
-        let whole = read(&format!("{ROWS}7\r\n")).expect("three rows");
-        assert!(!whole.torn && whole.run.rows.at(2).echo_cm == Some(87.0), "{whole:?}");
+    fn truncated_last_line_is_dropped() {
+        let truncated = read(ROWS).expect("two complete rows");
+        assert!(truncated.is_truncated && truncated.run.rows.len() == 2, "{truncated:?}");
+        let complete = read(&format!("{ROWS}7\r\n")).expect("three rows");
+        assert!(!complete.is_truncated && complete.run.rows.at(2).echo_cm == Some(87.0), "{complete:?}");
     }
 
     #[test]
-    fn without_rotation_counters_the_clock_cannot_be_aligned() {
+    fn missing_rotation_counters_are_rejected() {
         let error = read("t_ms,left,right,echo_cm\n0,1,1,\n400,1,1,\n").expect_err("no counters");
         assert!(error.to_string().contains(":1: columns rot_left_deg, rot_right_deg are missing"), "{error}");
     }

@@ -1,4 +1,4 @@
-//! Drafts of `robot.toml` and `scene.toml`: what is known stands there, and what is not is marked to be filled in.
+//! Drafts of `robot.toml` and `scene.toml`, in which unknown values are marked to be filled in.
 
 use std::path::Path;
 
@@ -9,68 +9,69 @@ use mindgap_logs::Robot;
 /// A draft of `robot.toml`.
 #[derive(Clone, Debug)]
 pub struct RobotDraft {
-    /// What is known of the wheels' diameter, cm.
+    /// Diameter of the wheels, cm.
     pub wheel_diameter_cm: Measure,
-    /// Of the distance between the wheels, cm.
+    /// Distance between the wheels, cm.
     pub track_cm: Measure,
-    /// Of the speed of a wheel's rim at command 100, cm/s.
+    /// Rim speed of a wheel at command 100, cm/s.
     pub full_speed_cm_s: Measure,
-    /// Of the time between two rows, ms.
+    /// Time between two rows, ms.
     pub step_ms: Measure,
-    /// Whether the robot is known to have a range sensor.
+    /// Whether the robot has a range sensor, if known.
     pub has_sensor: Option<bool>,
 }
 
-/// A number and how it came about.
+/// A number and its origin.
 #[derive(Clone, Debug)]
 pub struct Measure {
     /// The number.
     pub value: f64,
-    /// How it came about, or what to measure.
-    pub how: String,
-    /// Whether it stands in for one that has to be filled in.
-    pub is_open: bool,
+    /// Its origin, or what to measure.
+    pub note: String,
+    /// Whether it is a placeholder that must be filled in.
+    pub is_placeholder: bool,
 }
 
-/// What stands before whatever has to be filled in.
+/// Marks values that must be filled in.
 const FILL_IN: &str = "FILL IN";
 
 impl Measure {
-    /// A number that is known.
-    pub fn known(value: f64, how: impl Into<String>) -> Self {
-        Measure { value, how: how.into(), is_open: false }
+    /// Returns a known number.
+    pub fn known(value: f64, note: impl Into<String>) -> Self {
+        Measure { value, note: note.into(), is_placeholder: false }
     }
 
-    /// A stand-in for one that is not.
-    pub fn open(value: f64, how: impl Into<String>) -> Self {
-        Measure { value, how: how.into(), is_open: true }
+    /// Returns a placeholder for an unknown number.
+    pub fn placeholder(value: f64, note: impl Into<String>) -> Self {
+        Measure { value, note: note.into(), is_placeholder: true }
     }
 
     fn line(&self, name: &str) -> String {
-        let mark = if self.is_open { format!("{FILL_IN}: ") } else { String::new() };
+        let mark = if self.is_placeholder { format!("{FILL_IN}: ") } else { String::new() };
         let value = (100.0 * self.value).round() / 100.0;
-        format!("{:<27}# {mark}{}\n", format!("{name} = {value}"), self.how)
+        format!("{:<27}# {mark}{}\n", format!("{name} = {value}"), self.note)
     }
 }
 
 impl RobotDraft {
-    /// A draft of a robot that nothing is known of.
+    /// Returns a draft of an unknown robot.
     pub fn blank() -> Self {
         RobotDraft {
-            wheel_diameter_cm: Measure::open(6.0, "diameter of the driven wheels"),
-            track_cm: Measure::open(15.0, "between the middles of the two driven wheels"),
-            full_speed_cm_s: Measure::open(
+            wheel_diameter_cm: Measure::placeholder(6.0, "diameter of the driven wheels"),
+            track_cm: Measure::placeholder(15.0, "between the centres of the two driven wheels"),
+            full_speed_cm_s: Measure::placeholder(
                 40.0,
-                "speed of a wheel's rim at command 100; for commands in cm/s the fastest that it can do",
+                "rim speed of a wheel at command 100; for commands in cm/s, the maximum speed",
             ),
             step_ms: Measure::known(400.0, "time between two rows of the logs; recordings are resampled to it"),
             has_sensor: None,
         }
     }
 
-    /// The text of the file.
+    /// Returns the text of the file.
     pub fn text(&self) -> String {
-        let body = Measure::open(10.0, "a disc of this radius round the axle's middle must not touch a wall");
+        let body =
+            Measure::placeholder(10.0, "a disc of this radius around the centre of the axle must not touch a wall");
         let mut text = "# The robot. Lengths are in centimetres, times in milliseconds.\n".to_owned();
         text += &self.wheel_diameter_cm.line("wheel_diameter_cm");
         text += &self.track_cm.line("track_cm");
@@ -79,16 +80,16 @@ impl RobotDraft {
         text += &self.full_speed_cm_s.line("full_speed_cm_s");
         let sensor = [
             "[ultrasonic]               # mounting and range of the sensor",
-            "x_cm = 0                   # FILL IN: ahead of the middle of the axle",
+            "x_cm = 0                   # FILL IN: ahead of the centre of the axle",
             "y_cm = 0                   # FILL IN: to its left",
             "yaw_deg = 0                # direction of its axis, counter-clockwise from straight ahead",
-            "min_cm = 4                 # FILL IN: least reading",
+            "min_cm = 4                 # FILL IN: smallest reading",
             "max_cm = 240               # FILL IN: largest reading",
         ];
         let before = match self.has_sensor {
             Some(true) => "",
             Some(false) => "# No range readings were imported. A robot with a range sensor has:\n",
-            None => "# With a range sensor, take the marks before these lines away:\n",
+            None => "# With a range sensor, uncomment these lines:\n",
         };
         let mark = if self.has_sensor == Some(true) { "" } else { "# " };
         text += &format!("\n{before}");
@@ -96,19 +97,19 @@ impl RobotDraft {
         text
     }
 
-    /// The robot as the file has it.
+    /// Parses the draft as a robot.
     ///
     /// # Errors
-    /// When it would be refused.
+    /// When the draft is invalid.
     pub fn robot(&self) -> Result<Robot> {
         files::from_toml(Path::new("robot.toml"), &self.text())
     }
 }
 
-/// A draft of `scene.toml`: open ground.
+/// Draft of `scene.toml`: open ground.
 pub const SCENE: &str = "\
-# Where the robot drove: open ground without walls. With walls, take the marks before what there is away; lengths are in
-# centimetres, in the frame of the poses (x to the right, y up), and every block can be there more than once but the first.
+# Where the robot drove: open ground without walls. Uncomment what applies. Lengths are in centimetres, in the frame of
+# the poses (x to the right, y up). Every block except [arena] and [target] may be repeated.
 
 # [arena]                  # a rectangle from (0, 0) with a wall on each side
 # width_cm = 300
@@ -136,7 +137,7 @@ pub const SCENE: &str = "\
 # heading_deg = 0
 ";
 
-/// The lines of a file's text that have to be filled in.
+/// Returns the lines of a file's text that must be filled in.
 pub fn to_fill_in(file: &str, text: &str) -> Vec<String> {
     let open = text.lines().filter_map(|line| {
         let (setting, what) = line.split_once('#').filter(|(setting, _)| !setting.is_empty())?;
@@ -151,7 +152,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_draft_is_read_and_says_what_is_open() {
+    fn draft_is_valid_and_lists_placeholders() {
         let mut draft = RobotDraft::blank();
         draft.track_cm = Measure::known(23.504, "measured");
         draft.has_sensor = Some(true);
@@ -163,7 +164,7 @@ mod tests {
     }
 
     #[test]
-    fn every_line_of_the_scene_is_ready_to_be_used() {
+    fn every_line_of_the_scene_draft_can_be_uncommented() {
         let uncommented: String =
             SCENE.lines().skip(2).map(|line| line.strip_prefix("# ").unwrap_or(line).to_owned() + "\n").collect();
         let folder = tempfile::tempdir().expect("a folder");

@@ -1,15 +1,15 @@
-//! A frame of a camera: where the robot was seen, and when.
+//! Camera frames: timed poses of the robot.
 
 use mindgap_foundations::geometry::Pose;
 
-/// A frame in which the robot was seen.
+/// A camera frame that shows the robot.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frame {
     /// Time on the camera's clock, ms.
     pub t_ms: f64,
-    /// The axle's middle, in the scene's frame.
+    /// Pose of the centre of the axle, in the scene's frame.
     pub pose: Pose,
 }
 
-/// Frames farther apart than this, ms, leave a gap across which nothing is interpolated.
+/// Frames farther apart than this, ms, leave a gap that is not interpolated.
 pub const GAP_MS: f64 = 250.0;

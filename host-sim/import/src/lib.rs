@@ -1,11 +1,11 @@
-//! Imports recordings of a real robot as a folder of logs.
+//! Imports recordings of a real robot as a log folder.
 //!
-//! - [`brick`]: a brick's logs and a camera's tracks. [`brick_log`] and [`track`] read them, and [`clocks`] aligns theirs.
+//! - [`brick`]: brick logs and camera tracks, read by [`brick_log`] and [`track`] and aligned by [`clocks`].
 //! - [`streams`] and [`bag`]: commands, poses and readings as CSV or as a ROS 2 bag. Both become [`recording`]s, which
-//!   [`assemble`] puts together; [`draft`] writes what is known of the robot, and marks the rest.
+//!   [`assemble`] combines; [`draft`] writes the known dimensions of the robot and marks the missing ones.
 //!
-//! Wherever two sources meet, [`sides`] holds their motion against each other in one unit. Reports name everything that was
-//! guessed, changed or left out.
+//! Wherever two sources meet, [`scale_check`] compares their motion in one unit. Reports list everything that was guessed,
+//! changed or left out.
 
 pub mod assemble;
 pub mod bag;
@@ -20,7 +20,7 @@ pub mod motion;
 mod quantities;
 pub mod recording;
 pub mod report;
-pub mod sides;
+pub mod scale_check;
 pub mod streams;
 mod table;
 mod timestamps;

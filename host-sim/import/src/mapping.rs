@@ -1,6 +1,7 @@
-//! `map.toml`: which columns hold what, where their names do not say it.
+//! `map.toml`: assigns quantities to columns whose names are not recognised.
 //!
-//! A table a file, by its name, with a quantity a line: the name of a column, or a table of `column`, `unit` and `negate`.
+//! It has one table per file, named after it, and one quantity per line: the name of a column, or a table of `column`, `unit`
+//! and `negate`.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -12,23 +13,23 @@ use super::quantities::{QUANTITIES, Quantity, Unit};
 use mindgap_files as files;
 use mindgap_foundations::error::{Error, Result};
 
-/// What a file says about the columns of others.
+/// A parsed mapping file.
 #[derive(Clone, Debug, Default)]
 pub struct Mapping {
     files: BTreeMap<String, Vec<Mapped>>,
     path: PathBuf,
 }
 
-/// A column and what it holds.
+/// A column with its assigned quantity.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mapped {
-    /// What it holds.
+    /// Quantity in the column.
     pub quantity: Quantity,
-    /// Its name.
+    /// Name of the column.
     pub column: String,
-    /// Its unit, if that is stated here.
+    /// Unit, if stated.
     pub unit: Option<Unit>,
-    /// Whether the other sign is meant.
+    /// Whether the sign must be inverted.
     pub negate: bool,
 }
 
@@ -49,10 +50,10 @@ struct FullEntry {
 }
 
 impl Mapping {
-    /// Reads a file.
+    /// Reads a mapping file.
     ///
     /// # Errors
-    /// When it cannot be read or parsed, or names a quantity or unit that there is not.
+    /// When it cannot be read or parsed, or names an unknown quantity or unit.
     pub fn read(path: &Path) -> Result<Self> {
         let text = files::read_text(path)?;
         let tables: BTreeMap<String, BTreeMap<String, Spanned<Entry>>> = files::from_toml(path, &text)?;
@@ -67,20 +68,20 @@ impl Mapping {
         Ok(Mapping { files, path: path.into() })
     }
 
-    /// The columns of a file that it names, if it names the file.
+    /// Returns the columns assigned for a file, if the mapping names it.
     pub fn of(&self, file: &Path) -> Option<&[Mapped]> {
         self.files.get(file.file_name()?.to_str()?).map(Vec::as_slice)
     }
 
-    /// Checks that every file that it names is among `read`.
+    /// Checks that all files named in the mapping are among the input files.
     ///
     /// # Errors
-    /// Names the first one that is not.
-    pub fn check(&self, read: &[PathBuf]) -> Result<()> {
-        let is_read = |name: &str| read.iter().any(|file| file.file_name().is_some_and(|file| file == name));
-        match self.files.keys().find(|name| !is_read(name)) {
+    /// When one is not.
+    pub fn check(&self, inputs: &[PathBuf]) -> Result<()> {
+        let is_input = |name: &str| inputs.iter().any(|file| file.file_name().is_some_and(|file| file == name));
+        match self.files.keys().find(|name| !is_input(name)) {
             Some(name) => {
-                Err(Error::in_file(&self.path, format!("has a table for {name:?}, which is not among the files")))
+                Err(Error::in_file(&self.path, format!("has a table for {name:?}, which is not among the input files")))
             }
             None => Ok(()),
         }
@@ -90,7 +91,7 @@ impl Mapping {
 fn mapped(name: &str, entry: Entry) -> std::result::Result<Mapped, String> {
     let quantity = Quantity::of_name(name).ok_or_else(|| {
         let names: Vec<&str> = QUANTITIES.iter().map(|(_, name, _)| *name).collect();
-        format!("{name:?} is nothing that a column can hold: write one of {}", names.join(", "))
+        format!("unknown quantity {name:?}; expected one of {}", names.join(", "))
     })?;
     let FullEntry { column, unit, negate } = match entry {
         Entry::Column(column) => FullEntry { column, unit: None, negate: false },
@@ -99,8 +100,8 @@ fn mapped(name: &str, entry: Entry) -> std::result::Result<Mapped, String> {
     let unit = unit.map(|name| match Unit::of_name(&name) {
         Some(unit) if quantity.dimensions().contains(&unit.dimension) => Ok(unit),
         _ => Err(format!(
-            "{name:?} is no unit of {}: write s, ms, us, ns, m, cm, mm, rad, deg, m/s, cm/s, mm/s, rad/s, deg/s, rpm or, for \
-             motors, what they get at full command, such as 1 or 255",
+            "{name:?} is not a unit of {}: use s, ms, us, ns, m, cm, mm, rad, deg, m/s, cm/s, mm/s, rad/s, deg/s, rpm or, for \
+             motors, the value of full command, such as 1 or 255",
             quantity.name()
         )),
     });
@@ -119,7 +120,7 @@ mod tests {
     }
 
     #[test]
-    fn columns_are_named_with_unit_and_sign() {
+    fn columns_are_assigned_with_unit_and_sign() {
         let mapping = read("[\"a.csv\"]\ntime = \"T\"\nturn = { column = \"w\", unit = \"deg/s\", negate = true }\n")
             .expect("fine");
         let columns = mapping.of(Path::new("folder/a.csv")).expect("named");
@@ -129,10 +130,10 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_mapping_is_refused_with_its_line() {
+    fn invalid_mapping_is_rejected_with_line_number() {
         for (text, what) in [
-            ("[\"a.csv\"]\nspeed = \"v\"\n", "map.toml:2: \"speed\" is nothing that a column can hold"),
-            ("[\"a.csv\"]\nx = { column = \"x\", unit = \"deg\" }\n", "map.toml:2: \"deg\" is no unit of x"),
+            ("[\"a.csv\"]\nspeed = \"v\"\n", "map.toml:2: unknown quantity \"speed\""),
+            ("[\"a.csv\"]\nx = { column = \"x\", unit = \"deg\" }\n", "map.toml:2: \"deg\" is not a unit of x"),
             ("time = 3\n", "map.toml:1"),
         ] {
             let error = read(text).expect_err(text).to_string();

@@ -1,14 +1,14 @@
-//! Cumulative motion, measured by wheel odometry and by a camera.
+//! Cumulative motion from wheel odometry or a camera.
 
 use std::f64::consts::PI;
 
 use super::frame::{Frame, GAP_MS};
 use mindgap_logs::{Robot, Row, Rows};
 
-/// Number of components: rotation (rad) and forward travel (cm).
+/// Number of motion components: rotation (rad) and forward travel (cm).
 pub const MOTIONS: usize = 2;
 
-/// Number of neighbouring frames that are averaged, which halves the camera's noise.
+/// Number of consecutive frames that are averaged, which halves the camera's noise.
 const NEIGHBOURS: usize = 4;
 
 /// Cumulative motion at a time.
@@ -20,7 +20,7 @@ pub struct CumulativeMotion {
     pub by: [f64; MOTIONS],
 }
 
-/// Cumulative motion from the rotation counters; rows without them are left out.
+/// Integrates motion from the rotation counters; rows without them are skipped.
 pub fn by_wheels(rows: &Rows, robot: &Robot) -> Vec<CumulativeMotion> {
     let cm_per_deg = PI * robot.wheel_diameter_cm / 360.0;
     let moved = |row: Row| {
@@ -33,14 +33,14 @@ pub fn by_wheels(rows: &Rows, robot: &Robot) -> Vec<CumulativeMotion> {
     rows.iter().filter_map(moved).collect()
 }
 
-/// Cumulative motion from a camera's frames, as a moving average over neighbouring frames.
+/// Integrates motion from camera frames, with a moving average over consecutive frames.
 pub fn by_camera(frames: &[Frame]) -> Vec<CumulativeMotion> {
     let mut by = [0.0; MOTIONS];
     let mut before: Option<&Frame> = None;
     let moved = frames.iter().map(|frame| {
         if let Some(before) = before.replace(frame) {
             let change = before.pose.relative(&frame.pose);
-            // Travel along the mean of both headings: the chord of an arc, not its tangent.
+            // Travel along the mean of both headings, which is the direction of an arc's chord.
             let (sin, cos) = libm::sincos(change.heading_rad / 2.0);
             by[0] += change.heading_rad;
             by[1] += change.position_cm.x * cos + change.position_cm.y * sin;

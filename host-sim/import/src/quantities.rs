@@ -1,67 +1,67 @@
-//! What a column holds, by its name: a quantity and the unit that the name states.
+//! Recognises the quantity and unit of a column by its name.
 
-/// What a column can hold.
+/// A quantity that a column can hold.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Quantity {
     /// Time.
     Time,
     /// Position to the right.
     X,
-    /// Position upwards.
+    /// Position upwards on the map.
     Y,
     /// Heading, counter-clockwise from +x.
     Heading,
-    /// The parts of a quaternion.
+    /// X component of a quaternion.
     Qx,
-    /// Its y.
+    /// Y component of a quaternion.
     Qy,
-    /// Its z.
+    /// Z component of a quaternion.
     Qz,
-    /// Its real part.
+    /// Real component of a quaternion.
     Qw,
-    /// Commanded speed ahead.
+    /// Commanded forward speed.
     Forward,
     /// Commanded turn rate, to the left.
     Turn,
     /// Command of the left motor, or speed of its wheel.
     Left,
-    /// The same of the right one.
+    /// Command of the right motor, or speed of its wheel.
     Right,
     /// Reading of the range sensor.
     Range,
 }
 
-/// What a number measures.
+/// The dimension of a number, with its internal unit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Dimension {
-    /// In ms.
+    /// Time, ms.
     Time,
-    /// In cm.
+    /// Length, cm.
     Length,
-    /// In rad.
+    /// Angle, rad.
     Angle,
-    /// In cm/s.
+    /// Speed, cm/s.
     Speed,
-    /// In rad/s.
+    /// Angular rate, rad/s.
     Rate,
-    /// Of a motor, -100 to 100.
+    /// Motor command, -100 to 100.
     Command,
-    /// A part of a quaternion.
+    /// Dimensionless component of a quaternion.
     Number,
 }
 
-/// A unit: what it measures, and how much one of it is.
+/// A unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Unit {
-    /// What it measures.
+    /// Dimension of the unit.
     pub dimension: Dimension,
-    /// One of it, in the unit that [`Dimension`] states.
-    pub one: f64,
+    /// Size of the unit in the internal unit of its [`Dimension`].
+    pub factor: f64,
 }
 
 const DEG: f64 = std::f64::consts::PI / 180.0;
 
-/// Units by their names in lower case with `_` for everything between letters and digits.
+/// Units by lower-case name, with `_` for everything other than letters and digits.
 #[rustfmt::skip]
 const UNITS: [(&str, Dimension, f64); 40] = [
     ("s", Dimension::Time, 1e3), ("sec", Dimension::Time, 1e3), ("secs", Dimension::Time, 1e3), ("seconds", Dimension::Time, 1e3),
@@ -79,7 +79,7 @@ const UNITS: [(&str, Dimension, f64); 40] = [
     ("percent", Dimension::Command, 1.0), ("pct", Dimension::Command, 1.0),
 ];
 
-/// Words that say nothing about what a column holds.
+/// Words in column names that do not identify the quantity.
 const NOISE: [&str; 34] = [
     "pose",
     "position",
@@ -116,13 +116,13 @@ const NOISE: [&str; 34] = [
     "tracker",
     "camera",
 ];
-/// Words that say that a column holds what was asked for rather than what was measured.
+/// Words that mark a column as commanded rather than measured.
 const COMMANDED: [&str; 7] = ["cmd", "command", "commanded", "set", "target", "desired", "ref"];
 const SIDES: [(Quantity, [&str; 4]); 2] =
     [(Quantity::Left, ["left", "l", "vl", "ul"]), (Quantity::Right, ["right", "r", "vr", "ur"])];
-const OF_MOTORS: [&str; 11] =
+const MOTOR_WORDS: [&str; 11] =
     ["speed", "velocity", "vel", "v", "u", "pwm", "power", "duty", "throttle", "effort", "rate"];
-/// Names by quantity, once noise and unit are gone.
+/// Names by quantity, after removing noise words and the unit.
 const NAMES: [(Quantity, &[&str]); 9] = [
     (
         Quantity::Time,
@@ -158,36 +158,36 @@ const FORWARD: [&str; 10] =
     ["v", "vx", "v_x", "speed", "velocity", "vel", "forward", "forward_speed", "lin", "lin_vel"];
 const RANGE: [&str; 8] = ["range", "distance", "dist", "echo", "sonar", "ultrasonic", "ultrasound", "front"];
 
-/// What a name says.
+/// What the name of a column means.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Meaning {
-    /// What the column holds, if the name is plain.
+    /// The quantity, if the name is recognised.
     pub quantity: Option<Quantity>,
     /// The unit, if the name states one.
     pub unit: Option<Unit>,
-    /// Whether the name says that it was asked for.
+    /// Whether the name marks the column as commanded.
     pub is_commanded: bool,
 }
 
 impl Quantity {
-    /// Its name in a mapping file.
+    /// Returns its name in a mapping file.
     pub fn name(self) -> &'static str {
         QUANTITIES.iter().find(|(quantity, ..)| *quantity == self).map_or("", |(_, name, _)| name)
     }
 
-    /// The quantity of a name in a mapping file.
-    pub fn of_name(name: &str) -> Option<Self> {
+    /// Returns the quantity with a name in a mapping file.
+    pub fn from_name(name: &str) -> Option<Self> {
         QUANTITIES.iter().find(|(_, n, _)| *n == name).map(|(quantity, ..)| *quantity)
     }
 
-    /// What it measures; the command of a motor may be a speed as well.
+    /// Returns the possible dimensions; the command of a motor may also be a speed.
     pub fn dimensions(self) -> &'static [Dimension] {
         QUANTITIES.iter().find(|(quantity, ..)| *quantity == self).map_or(&[], |(.., dimensions)| dimensions)
     }
 }
 
-const OF_WHEELS: &[Dimension] = &[Dimension::Command, Dimension::Speed, Dimension::Rate];
-/// All quantities with their names in a mapping file and what they measure.
+const WHEEL_DIMENSIONS: &[Dimension] = &[Dimension::Command, Dimension::Speed, Dimension::Rate];
+/// All quantities with their names in a mapping file and their dimensions.
 pub const QUANTITIES: [(Quantity, &str, &[Dimension]); 13] = [
     (Quantity::Time, "time", &[Dimension::Time]),
     (Quantity::X, "x", &[Dimension::Length]),
@@ -199,40 +199,41 @@ pub const QUANTITIES: [(Quantity, &str, &[Dimension]); 13] = [
     (Quantity::Qw, "qw", &[Dimension::Number]),
     (Quantity::Forward, "forward", &[Dimension::Speed]),
     (Quantity::Turn, "turn", &[Dimension::Rate]),
-    (Quantity::Left, "left", OF_WHEELS),
-    (Quantity::Right, "right", OF_WHEELS),
+    (Quantity::Left, "left", WHEEL_DIMENSIONS),
+    (Quantity::Right, "right", WHEEL_DIMENSIONS),
     (Quantity::Range, "range", &[Dimension::Length]),
 ];
 
 impl Unit {
-    /// A unit by its name, such as `m/s`; a number is what a motor gets at full command, as 1 or 255.
-    pub fn of_name(name: &str) -> Option<Self> {
+    /// Returns a unit by name, such as `m/s`; a number is the value of full command, such as 1 or 255.
+    pub fn from_name(name: &str) -> Option<Self> {
         if let Some(full) = name.trim().parse::<f64>().ok().filter(|full| *full > 0.0 && full.is_finite()) {
-            return Some(Unit { dimension: Dimension::Command, one: 100.0 / full });
+            return Some(Unit { dimension: Dimension::Command, factor: 100.0 / full });
         }
-        let plain = if name.trim() == "%" { "percent".into() } else { words(name).join("_") };
+        let normalised = if name.trim() == "%" { "percent".into() } else { words(name).join("_") };
         UNITS
             .iter()
-            .find(|(unit, ..)| *unit == plain)
-            .map(|(_, dimension, one)| Unit { dimension: *dimension, one: *one })
+            .find(|(unit, ..)| *unit == normalised)
+            .map(|(_, dimension, factor)| Unit { dimension: *dimension, factor: *factor })
     }
 }
 
-/// What a column's name says.
+/// Interprets the name of a column.
 pub fn meaning(name: &str) -> Meaning {
-    let (bare, unit) = without_unit(name);
+    let (bare, unit) = split_unit(name);
     let is_commanded = bare.iter().any(|word| COMMANDED.contains(&word.as_str()));
-    let told: Vec<&str> = bare.iter().map(String::as_str).filter(|word| !NOISE.contains(word)).collect();
-    // `stamp.sec` and the like: what is left may be nothing but the unit.
-    let quantity = quantity(&told).filter(|quantity| unit.is_none_or(|u| quantity.dimensions().contains(&u.dimension)));
+    let informative: Vec<&str> = bare.iter().map(String::as_str).filter(|word| !NOISE.contains(word)).collect();
+    // In names like `stamp.sec`, the unit constrains the quantity.
+    let quantity =
+        quantity(&informative).filter(|quantity| unit.is_none_or(|u| quantity.dimensions().contains(&u.dimension)));
     Meaning { quantity, unit, is_commanded }
 }
 
 fn quantity(words: &[&str]) -> Option<Quantity> {
     let only = |known: &[&str]| !words.is_empty() && words.iter().all(|word| known.contains(word));
     for (quantity, side) in SIDES {
-        let of_side = words.iter().filter(|word| side.contains(word)).count();
-        if of_side == 1 && words.iter().all(|word| side.contains(word) || OF_MOTORS.contains(word)) {
+        let side_words = words.iter().filter(|word| side.contains(word)).count();
+        if side_words == 1 && words.iter().all(|word| side.contains(word) || MOTOR_WORDS.contains(word)) {
             return Some(quantity);
         }
     }
@@ -252,35 +253,37 @@ fn quantity(words: &[&str]) -> Option<Quantity> {
     NAMES.iter().find(|(_, names)| names.contains(&joined.as_str())).map(|(quantity, _)| *quantity)
 }
 
-/// The words of a name without the unit at its end, and the unit.
-fn without_unit(name: &str) -> (Vec<String>, Option<Unit>) {
+/// Splits a name into its words and the unit at its end.
+fn split_unit(name: &str) -> (Vec<String>, Option<Unit>) {
     if let Some((bare, unit)) = name.trim().trim_end_matches([')', ']']).split_once(['(', '[']) {
-        return (words(bare), Unit::of_name(unit));
+        return (words(bare), Unit::from_name(unit));
     }
     let all = words(name);
-    let of_last = |n: usize| {
-        let (bare, unit) = all.split_at(all.len().checked_sub(n).filter(|left| *left > 0)?);
-        let unit =
-            Unit::of_name(&unit.join("_")).filter(|unit| unit.dimension != Dimension::Command || unit.one == 1.0)?;
-        // A number at the end, as in `range_1`, is no unit.
+    let last_words_as_unit = |n: usize| {
+        let (bare, unit) = all.split_at(all.len().checked_sub(n).filter(|rest| *rest > 0)?);
+        let unit = Unit::from_name(&unit.join("_"))
+            .filter(|unit| unit.dimension != Dimension::Command || unit.factor == 1.0)?;
+        // A number at the end, as in `range_1`, is not a unit.
         Some((bare.to_vec(), Some(unit))).filter(|_| !all[all.len() - 1].starts_with(|c: char| c.is_ascii_digit()))
     };
-    of_last(3).or_else(|| of_last(2)).or_else(|| of_last(1)).unwrap_or((all.clone(), None))
+    last_words_as_unit(3)
+        .or_else(|| last_words_as_unit(2))
+        .or_else(|| last_words_as_unit(1))
+        .unwrap_or((all.clone(), None))
 }
 
-/// The words of a name in lower case: what stands between other signs than letters and digits, and between a small and
-/// a capital letter.
+/// Splits a name into lower-case words at non-alphanumeric characters and at changes from lower to upper case.
 fn words(name: &str) -> Vec<String> {
-    let mut parted = String::new();
+    let mut separated = String::new();
     let mut before = ' ';
     for c in name.chars() {
         if before.is_lowercase() && c.is_uppercase() {
-            parted.push(' ');
+            separated.push(' ');
         }
-        parted.extend(if c.is_alphanumeric() { c.to_lowercase().collect::<Vec<_>>() } else { vec![' '] });
+        separated.extend(if c.is_alphanumeric() { c.to_lowercase().collect::<Vec<_>>() } else { vec![' '] });
         before = c;
     }
-    parted.split_whitespace().map(str::to_owned).collect()
+    separated.split_whitespace().map(str::to_owned).collect()
 }
 
 #[cfg(test)]
@@ -288,8 +291,8 @@ mod tests {
     use super::*;
 
     #[test]
-    fn plain_names_say_quantity_and_unit() {
-        for (name, quantity, one) in [
+    fn common_names_are_recognised() {
+        for (name, quantity, factor) in [
             ("t_s", Quantity::Time, Some(1e3)),
             ("header.stamp.nanosec", Quantity::Time, Some(1e-6)),
             ("Timestamp", Quantity::Time, None),
@@ -308,7 +311,7 @@ mod tests {
             ("sonar_front_cm", Quantity::Range, Some(1.0)),
         ] {
             let found = meaning(name);
-            assert_eq!((found.quantity, found.unit.map(|unit| unit.one)), (Some(quantity), one), "{name}");
+            assert_eq!((found.quantity, found.unit.map(|unit| unit.factor)), (Some(quantity), factor), "{name}");
         }
         for name in ["battery", "left_encoder", "linear.y", "angular.x", "range_1", "odom_v", "z_m", "x_s", ""] {
             assert_eq!(meaning(name).quantity, None, "{name}");
@@ -317,9 +320,9 @@ mod tests {
     }
 
     #[test]
-    fn a_number_is_what_full_command_is_called() {
-        assert_eq!(Unit::of_name("255"), Some(Unit { dimension: Dimension::Command, one: 100.0 / 255.0 }));
-        assert_eq!(Unit::of_name("m/s"), Some(Unit { dimension: Dimension::Speed, one: 100.0 }));
-        assert_eq!([Unit::of_name("0"), Unit::of_name("furlong")], [None, None]);
+    fn number_as_unit_is_the_value_of_full_command() {
+        assert_eq!(Unit::from_name("255"), Some(Unit { dimension: Dimension::Command, factor: 100.0 / 255.0 }));
+        assert_eq!(Unit::from_name("m/s"), Some(Unit { dimension: Dimension::Speed, factor: 100.0 }));
+        assert_eq!([Unit::from_name("0"), Unit::from_name("furlong")], [None, None]);
     }
 }

@@ -1,4 +1,4 @@
-//! A recording: the streams of one drive, each with stamps of its own, in centimetres, radians and milliseconds.
+//! Recordings: the streams of one drive, each with its own timestamps, in centimetres, radians and milliseconds.
 
 use std::path::{Path, PathBuf};
 
@@ -10,33 +10,33 @@ use mindgap_logs::Robot;
 /// The streams of one drive.
 #[derive(Clone, Debug)]
 pub struct Recording {
-    /// What the robot was told to do.
+    /// Commands to the robot.
     pub commands: Commands,
-    /// Where it was seen; `None` where it was lost.
+    /// Tracked poses; `None` where the robot was lost.
     pub poses: Vec<Option<Frame>>,
-    /// The file that the poses are from.
+    /// File of the poses.
     pub track: PathBuf,
-    /// What its range sensor read, if it has one.
+    /// Readings of the range sensor, if any.
     pub readings: Option<Readings>,
-    /// Whether one clock stamped all of it for certain.
+    /// Whether all streams are known to share one clock.
     pub has_one_clock: bool,
-    /// What was read, for the report.
+    /// Sources, for the report.
     pub sources: Vec<Source>,
 }
 
-/// What a robot was told to do: pairs of numbers, each held until the next.
+/// Commands to a robot: pairs of numbers, each held until the next.
 #[derive(Clone, Debug)]
 pub struct Commands {
-    /// What the numbers mean.
+    /// Meaning of the numbers.
     pub kind: Kind,
-    /// Time, ms, and the pair, in order of time.
+    /// Time, ms, and the pair, in temporal order.
     pub samples: Vec<(f64, [f64; 2])>,
 }
 
-/// What a pair of numbers commands.
+/// The meaning of a pair of command numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// Speed ahead, cm/s, and turn rate to the left, rad/s.
+    /// Forward speed, cm/s, and turn rate to the left, rad/s.
     Twist,
     /// Speeds of the left and right wheel's rim, cm/s.
     WheelSpeeds,
@@ -49,19 +49,19 @@ pub enum Kind {
 /// Readings of a range sensor.
 #[derive(Clone, Debug)]
 pub struct Readings {
-    /// Time, ms, and distance, cm; `None` where there was no echo.
+    /// Time, ms, and distance, cm; `None` if there was no echo.
     pub samples: Vec<(f64, Option<f64>)>,
-    /// Whether they are stamped by the clock of the poses rather than that of the commands.
+    /// Whether they are on the clock of the poses rather than that of the commands.
     pub on_clock_of_poses: bool,
 }
 
-/// Largest share of the commands that may ask for more than the full speed, at which wheels then turn.
-const MOST_LIMITED: f64 = 0.05;
-/// Speeds this little above full are rounding.
+/// Maximum fraction of commands that may exceed full speed and are then saturated.
+const MAX_SATURATED: f64 = 0.05;
+/// Relative excess over full speed that counts as rounding.
 const ROUNDING: f64 = 1e-6;
 
 impl Kind {
-    /// Speeds of the left and right wheel's rim, cm/s.
+    /// Returns the rim speeds of the left and right wheel, cm/s.
     pub fn wheels_cm_s(self, [a, b]: [f64; 2], robot: &Robot) -> [f64; 2] {
         match self {
             Kind::Twist => [a - b * robot.track_cm / 2.0, a + b * robot.track_cm / 2.0],
@@ -73,8 +73,8 @@ impl Kind {
 }
 
 impl Recording {
-    /// Leaves its readings out, since the robot is said to have no range sensor.
-    pub fn leave_readings_out(&mut self) {
+    /// Drops the readings of a robot without a range sensor.
+    pub fn drop_readings(&mut self) {
         if let (Some(_), Some(source)) = (self.readings.take(), self.sources.last_mut()) {
             source.left_out.push("all readings, since robot.toml has no [ultrasonic]".into());
         }
@@ -82,34 +82,34 @@ impl Recording {
 }
 
 impl Commands {
-    /// The same as commands of the motors, -100 to 100, and how many were beyond what the robot can do.
+    /// Converts to motor commands, -100 to 100, and returns how many were saturated.
     ///
     /// # Errors
-    /// When many ask for more than the robot's full speed.
-    pub fn of_motors(&self, robot: &Robot, file: &Path) -> Result<(Commands, usize)> {
-        let mut most_cm_s: f64 = 0.0;
-        let mut limited = 0;
+    /// When many exceed the robot's full speed.
+    pub fn as_motor_commands(&self, robot: &Robot, file: &Path) -> Result<(Commands, usize)> {
+        let mut max_cm_s: f64 = 0.0;
+        let mut saturated = 0;
         let samples = self.samples.iter().map(|(t_ms, pair)| {
             let wheels_cm_s = self.kind.wheels_cm_s(*pair, robot);
             let fastest_cm_s = wheels_cm_s[0].abs().max(wheels_cm_s[1].abs());
-            most_cm_s = most_cm_s.max(fastest_cm_s);
-            limited += usize::from(fastest_cm_s > robot.full_speed_cm_s * (1.0 + ROUNDING));
+            max_cm_s = max_cm_s.max(fastest_cm_s);
+            saturated += usize::from(fastest_cm_s > robot.full_speed_cm_s * (1.0 + ROUNDING));
             (*t_ms, wheels_cm_s.map(|cm_s| (100.0 * cm_s / robot.full_speed_cm_s).clamp(-100.0, 100.0)))
         });
         let commands = Commands { kind: Kind::Motors, samples: samples.collect() };
-        if limited as f64 > MOST_LIMITED * self.samples.len() as f64 {
+        if saturated as f64 > MAX_SATURATED * self.samples.len() as f64 {
             let what = format!(
-                "{limited} of {} commands ask a wheel for up to {most_cm_s:.1} cm/s, and robot.toml has full_speed_cm_s = {}: \
-                 correct that, or the unit of the commands",
+                "{saturated} of {} commands require wheel speeds of up to {max_cm_s:.1} cm/s, but robot.toml has full_speed_cm_s = {}: \
+                 correct it or the unit of the commands",
                 self.samples.len(),
                 robot.full_speed_cm_s
             );
             return Err(Error::in_file(file, what));
         }
-        Ok((commands, limited))
+        Ok((commands, saturated))
     }
 
-    /// The mean of what is held between two times, the first of which is not before the first command.
+    /// Returns the time-weighted mean command between two times, the first of which is not before the first command.
     pub fn mean(&self, from_ms: f64, to_ms: f64) -> [f64; 2] {
         let mut sum = [0.0; 2];
         let first = self.samples.partition_point(|(t_ms, _)| *t_ms <= from_ms).saturating_sub(1);
@@ -124,10 +124,10 @@ impl Commands {
 }
 
 impl Readings {
-    /// The last reading at a time, unless it is older than `most_ms`.
-    pub fn at(&self, t_ms: f64, most_ms: f64) -> Option<f64> {
+    /// Returns the latest reading at a time, unless it is older than `max_age_ms`.
+    pub fn at(&self, t_ms: f64, max_age_ms: f64) -> Option<f64> {
         let (read_ms, cm) = self.samples.get(self.samples.partition_point(|(ms, _)| *ms <= t_ms).checked_sub(1)?)?;
-        cm.filter(|_| t_ms - read_ms < most_ms)
+        cm.filter(|_| t_ms - read_ms < max_age_ms)
     }
 }
 
@@ -140,27 +140,27 @@ mod tests {
         Robot { track_cm: 20.0, full_speed_cm_s: 50.0, wheel_diameter_cm: 10.0, ..default_robot() }
     }
 
-    fn of_motors(kind: Kind, pair: [f64; 2]) -> Result<[f64; 2]> {
+    fn as_motor_commands(kind: Kind, pair: [f64; 2]) -> Result<[f64; 2]> {
         let commands = Commands { kind, samples: vec![(0.0, pair)] };
-        commands.of_motors(&robot(), Path::new("c.csv")).map(|(commands, _)| commands.samples[0].1)
+        commands.as_motor_commands(&robot(), Path::new("c.csv")).map(|(commands, _)| commands.samples[0].1)
     }
 
     #[test]
-    fn every_kind_becomes_commands_of_motors() {
-        assert_eq!(of_motors(Kind::Twist, [30.0, 1.0]).expect("slow"), [40.0, 80.0]);
-        assert_eq!(of_motors(Kind::WheelSpeeds, [10.0, -20.0]).expect("slow"), [20.0, -40.0]);
-        assert_eq!(of_motors(Kind::WheelRates, [2.0, -4.0]).expect("slow"), [20.0, -40.0]);
-        assert_eq!(of_motors(Kind::Motors, [50.0, -100.0]).expect("slow"), [50.0, -100.0]);
+    fn every_kind_is_converted_to_motor_commands() {
+        assert_eq!(as_motor_commands(Kind::Twist, [30.0, 1.0]).expect("slow"), [40.0, 80.0]);
+        assert_eq!(as_motor_commands(Kind::WheelSpeeds, [10.0, -20.0]).expect("slow"), [20.0, -40.0]);
+        assert_eq!(as_motor_commands(Kind::WheelRates, [2.0, -4.0]).expect("slow"), [20.0, -40.0]);
+        assert_eq!(as_motor_commands(Kind::Motors, [50.0, -100.0]).expect("slow"), [50.0, -100.0]);
     }
 
     #[test]
-    fn more_than_full_speed_is_refused() {
-        let error = of_motors(Kind::WheelSpeeds, [10.0, 60.0]).expect_err("too fast").to_string();
-        assert!(error.contains("60.0 cm/s, and robot.toml has full_speed_cm_s = 50"), "{error}");
+    fn commands_above_full_speed_are_rejected() {
+        let error = as_motor_commands(Kind::WheelSpeeds, [10.0, 60.0]).expect_err("too fast").to_string();
+        assert!(error.contains("60.0 cm/s, but robot.toml has full_speed_cm_s = 50"), "{error}");
     }
 
     #[test]
-    fn what_is_held_counts_by_its_time() {
+    fn mean_is_weighted_by_duration() {
         let commands = Commands { kind: Kind::Motors, samples: vec![(0.0, [0.0, 8.0]), (30.0, [40.0, 8.0])] };
         assert_eq!(commands.mean(0.0, 40.0), [10.0, 8.0]);
         assert_eq!(commands.mean(100.0, 140.0), [40.0, 8.0]);

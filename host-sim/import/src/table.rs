@@ -1,4 +1,4 @@
-//! A table as text: any separator, a header of any form, numbers with a point or a comma.
+//! Reads text tables with any separator, flexible headers, and decimal points or commas.
 
 use std::iter;
 use std::path::{Path, PathBuf};
@@ -10,13 +10,13 @@ use mindgap_foundations::error::{Error, Result};
 
 /// A table with a header.
 pub struct Table {
-    /// Its file.
+    /// File of the table.
     pub file: PathBuf,
-    /// The names of its columns, as they stand there.
+    /// Names of the columns, as written.
     pub names: Vec<String>,
-    /// What is below the header.
+    /// Text below the header.
     body: String,
-    /// Number of the header's line.
+    /// Line number of the header.
     header_line: u64,
     separator: u8,
 }
@@ -24,59 +24,60 @@ pub struct Table {
 /// A line of a table.
 pub struct Line<'a> {
     table: &'a Table,
-    /// Its number in the file.
+    /// Line number in the file.
     pub number: u64,
     record: StringRecord,
 }
 
-/// What parts cells, besides blanks.
+/// Separators of cells, besides whitespace.
 const SEPARATORS: [u8; 4] = [b',', b';', b'\t', b'|'];
-/// What lines of comments begin with.
+/// First characters of comment lines.
 const COMMENT: [char; 2] = ['#', '%'];
 
 impl Table {
-    /// Reads a file's header.
+    /// Reads a table.
     ///
     /// # Errors
-    /// When the file cannot be read, or no line names columns.
+    /// When the file cannot be read or has no header.
     pub fn read(file: &Path) -> Result<Self> {
         let text = files::read_text(file)?;
         let mut lines = text.split_inclusive('\n').enumerate();
-        let (mut header, mut begin, mut at) = (None, 0, 0);
+        let (mut header, mut body_start, mut offset) = (None, 0, 0);
         let first = lines.find_map(|(i, line)| {
-            begin = at;
-            at += line.len();
+            body_start = offset;
+            offset += line.len();
             let is_comment = line.starts_with(COMMENT);
             if is_comment {
                 header = Some((i, line));
             }
             (!is_comment && !line.trim().is_empty()).then_some((i, line))
         });
-        let Some(first) = first else { return Err(Error::in_file(file, "has no line but comments")) };
-        // A header may be a comment, the last one before the numbers.
-        let is_named = |line: &str| !cells(line, separator(line)).iter().any(|cell| number(cell, false).is_some());
-        let ((line, header), begin) = match header {
-            _ if is_named(first.1) => (first, at),
+        let Some(first) = first else { return Err(Error::in_file(file, "contains only comments")) };
+        // The header may be a comment, the last one before the numbers.
+        let is_header = |line: &str| !cells(line, separator(line)).iter().any(|cell| number(cell, false).is_some());
+        let ((line, header), body_start) = match header {
+            _ if is_header(first.1) => (first, offset),
             Some((i, comment)) if separator(comment) == separator(first.1) => {
-                ((i, comment.trim_start_matches(COMMENT)), begin)
+                ((i, comment.trim_start_matches(COMMENT)), body_start)
             }
             _ => {
                 let what =
-                    "has numbers and no header: name the columns in a first line, such as t_s,x_m,y_m,heading_rad";
+                    "has numbers but no header: name the columns in the first line, such as t_s,x_m,y_m,heading_rad";
                 return Err(Error::at_line(file, first.0 as u64 + 1, what));
             }
         };
         let separator = separator(header);
         let body = match separator {
-            b' ' => {
-                text[begin..].lines().map(|line| line.split_whitespace().collect::<Vec<_>>().join(" ") + "\n").collect()
-            }
-            _ => text[begin..].to_owned(),
+            b' ' => text[body_start..]
+                .lines()
+                .map(|line| line.split_whitespace().collect::<Vec<_>>().join(" ") + "\n")
+                .collect(),
+            _ => text[body_start..].to_owned(),
         };
         Ok(Table { file: file.into(), names: cells(header, separator), body, header_line: line as u64 + 1, separator })
     }
 
-    /// The lines below the header, each with as many cells as it.
+    /// Iterates over the lines below the header, each with at least as many cells.
     pub fn lines(&self) -> impl Iterator<Item = Result<Line<'_>>> {
         let mut settings = ReaderBuilder::new();
         settings.has_headers(false).flexible(true).delimiter(self.separator).trim(csv::Trim::All);
@@ -89,8 +90,11 @@ impl Table {
             let (line, record) = read?;
             let number = self.header_line + line;
             if record.len() < self.names.len() {
-                let what =
-                    format!("has {} cells where the header has {}: torn or wrong line", record.len(), self.names.len());
+                let what = format!(
+                    "has {} cells where the header has {}: incomplete or malformed line",
+                    record.len(),
+                    self.names.len()
+                );
                 return Err(Error::at_line(&self.file, number, what));
             }
             Ok(Line { table: self, number, record })
@@ -99,15 +103,15 @@ impl Table {
 }
 
 impl Line<'_> {
-    /// A cell's text.
+    /// Returns the text of a cell.
     pub fn text(&self, column: usize) -> &str {
         self.record.get(column).unwrap_or_default()
     }
 
-    /// A cell's number; `None` where it is empty or `nan`, infinite where it says so.
+    /// Returns the number in a cell; `None` if it is empty or `nan`. Infinity is allowed.
     ///
     /// # Errors
-    /// When it is anything else.
+    /// When the cell is anything else.
     pub fn number(&self, column: usize) -> Result<Option<f64>> {
         let cell = self.text(column);
         if cell.is_empty() || ["nan", "na", "null", "none", "-"].contains(&cell.to_lowercase().as_str()) {
@@ -116,10 +120,10 @@ impl Line<'_> {
         let is_comma_decimal = self.table.separator != b',';
         number(cell, is_comma_decimal)
             .map(Some)
-            .ok_or_else(|| self.error(format!("{} = {cell:?} is no number", self.table.names[column])))
+            .ok_or_else(|| self.error(format!("{} = {cell:?} is not a number", self.table.names[column])))
     }
 
-    /// What is wrong with this line.
+    /// Returns an error at this line.
     pub fn error(&self, what: String) -> Error {
         Error::at_line(&self.table.file, self.number, what)
     }
@@ -131,7 +135,7 @@ fn number(cell: &str, is_comma_decimal: bool) -> Option<f64> {
     value.ok().filter(|v| !v.is_nan())
 }
 
-/// The separator of which a header has most; blanks where it has none.
+/// Returns the most frequent separator of a header, or a space if it has none.
 fn separator(header: &str) -> u8 {
     let count = |separator: &u8| header.bytes().filter(|b| b == separator).count();
     SEPARATORS.into_iter().rev().max_by_key(count).filter(|s| count(s) > 0).unwrap_or(b' ')
@@ -164,7 +168,7 @@ mod tests {
     }
 
     #[test]
-    fn every_separator_and_header_is_read() {
+    fn separators_and_header_styles_are_recognised() {
         let expected =
             (vec!["t".to_owned(), "x m".to_owned()], vec![vec![Some(0.0), Some(1.5)], vec![Some(1.0), None]]);
         for text in [
@@ -176,19 +180,19 @@ mod tests {
         ] {
             assert_eq!(read(text).expect(text), expected, "{text:?}");
         }
-        let blanks = read("% t   x\n  0   1.5\n1 -\n").expect("blanks");
-        assert_eq!(blanks, (vec!["t".to_owned(), "x".to_owned()], expected.1));
+        let spaces = read("% t   x\n  0   1.5\n1 -\n").expect("blanks");
+        assert_eq!(spaces, (vec!["t".to_owned(), "x".to_owned()], expected.1));
     }
 
     #[test]
-    fn what_is_no_table_is_refused_with_its_line() {
+    fn invalid_tables_are_rejected_with_line_number() {
         for (text, what) in [
-            ("", "has no line but comments"),
-            ("# only words\n", "has no line but comments"),
-            ("0,1.5\n1,2\n", ":1: has numbers and no header"),
+            ("", "contains only comments"),
+            ("# only words\n", "contains only comments"),
+            ("0,1.5\n1,2\n", ":1: has numbers but no header"),
             ("t,x\n0,1\n1\n", ":3: has 1 cells where the header has 2"),
-            ("t,x\n0,1\n1,far\n", ":3: x = \"far\" is no number"),
-            ("#c\nt,x\n0,1\n1,far\n", ":4: x = \"far\" is no number"),
+            ("t,x\n0,1\n1,far\n", ":3: x = \"far\" is not a number"),
+            ("#c\nt,x\n0,1\n1,far\n", ":4: x = \"far\" is not a number"),
         ] {
             let error = read(text).expect_err(text).to_string();
             assert!(error.contains(what), "{text:?} gave {error}");

@@ -1,4 +1,4 @@
-//! A camera's track: the robot's pose frame by frame, on the camera's own clock.
+//! Camera tracks: the robot's pose frame by frame, on the camera's own clock.
 
 mod columns;
 mod motive;
@@ -13,57 +13,57 @@ use mindgap_foundations::error::{Error, Result};
 use mindgap_foundations::geometry::{Pose, wrap_rad};
 use mindgap_logs::Robot;
 
-/// A camera's track.
+/// A camera track.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Track {
-    /// Its file.
+    /// File of the track.
     pub file: PathBuf,
-    /// The frames in which the robot was seen, in order of time.
+    /// Frames that show the robot, in temporal order.
     frames: Vec<Frame>,
     lost: usize,
     jumps: usize,
 }
 
-/// What a track says about a time.
+/// The state of a track at a time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Sighting {
     /// The robot's pose.
     At(Pose),
     /// No pose, since the camera had lost the robot.
     Lost,
-    /// No pose, since the time lies before the first or after the last frame.
+    /// No pose, since the time is before the first or after the last frame.
     Outside,
 }
 
-/// Fastest motion of a robot as a multiple of its nominal full speed.
-const FASTEST: f64 = 1.5;
-/// Tracking errors allowed on top of it.
-const ERR_CM: f64 = 4.0;
-const ERR_RAD: f64 = 0.25;
+/// Maximum speed of a robot as a multiple of its nominal full speed.
+const MAX_SPEED_RATIO: f64 = 1.5;
+/// Allowed tracking error in position, cm.
+const TOLERANCE_CM: f64 = 4.0;
+/// Allowed tracking error in heading, rad.
+const TOLERANCE_RAD: f64 = 0.25;
 
 impl Track {
-    /// Reads a track: CSV whose columns name their units, or a rigid body exported by Motive.
+    /// Reads a track: CSV with units in the column names, or a rigid body exported by Motive.
     ///
     /// # Errors
-    /// When the file cannot be read or parsed, when a column or its unit is missing, or when the robot was seen in fewer
-    /// than two frames.
+    /// When the file cannot be read or parsed, when a column or its unit is missing, or when fewer than two frames show the robot.
     pub fn read(file: &Path, units: &Units, robot: &Robot) -> Result<Self> {
         let text = mindgap_files::read_text(file)?;
         let frames =
-            if motive::is_one(&text) { motive::frames(file, &text) } else { columns::frames(file, &text, units) };
+            if motive::is_motive(&text) { motive::frames(file, &text) } else { columns::frames(file, &text, units) };
         Track::of(file, frames?, robot)
     }
 
-    /// A track of frames, `None` where the robot was lost.
+    /// Builds a track from frames, `None` where the robot was lost, without jumps.
     ///
     /// # Errors
-    /// When a frame does not come after the one before, or when the robot was seen in fewer than two.
+    /// When a frame is not later than the one before, or when fewer than two frames show the robot.
     pub fn of(file: &Path, frames: Vec<Option<Frame>>, robot: &Robot) -> Result<Self> {
         let all = frames.len();
         let seen: Vec<Frame> = frames.into_iter().flatten().collect();
         let (lost, whole) = (all - seen.len(), seen.len());
         if let Some(pair) = seen.windows(2).find(|pair| pair[1].t_ms <= pair[0].t_ms) {
-            let what = format!("time {} ms does not come after {} ms", pair[1].t_ms, pair[0].t_ms);
+            let what = format!("time {} ms is not later than {} ms before it", pair[1].t_ms, pair[0].t_ms);
             return Err(Error::in_file(file, what));
         }
         let frames = without_jumps(seen, robot);
@@ -73,34 +73,34 @@ impl Track {
         Ok(Track { file: file.to_owned(), lost, jumps: whole - frames.len(), frames })
     }
 
-    /// A track of frames that are known to be in order and within reach.
+    /// Builds a track from frames known to be in order and without jumps.
     pub fn without_check(file: &Path, frames: Vec<Frame>) -> Self {
         Track { file: file.to_owned(), frames, lost: 0, jumps: 0 }
     }
 
-    /// The frames in which the robot was seen.
+    /// Returns the frames that show the robot.
     pub fn frames(&self) -> &[Frame] {
         &self.frames
     }
 
-    /// When stretches begin and end in which frames are at most `pause_ms` apart.
-    pub fn stretches(&self, pause_ms: f64) -> Vec<[f64; 2]> {
-        let stretches = self.frames.chunk_by(|a, b| b.t_ms - a.t_ms <= pause_ms);
-        stretches.map(|stretch| [stretch[0].t_ms, stretch[stretch.len() - 1].t_ms]).collect()
+    /// Returns start and end of the periods in which frames are at most `pause_ms` apart.
+    pub fn periods(&self, pause_ms: f64) -> Vec<[f64; 2]> {
+        let periods = self.frames.chunk_by(|a, b| b.t_ms - a.t_ms <= pause_ms);
+        periods.map(|period| [period[0].t_ms, period[period.len() - 1].t_ms]).collect()
     }
 
-    /// Number of frames and of those left out.
+    /// Returns the number of frames and of those excluded.
     pub fn report(&self) -> TrackReport {
         let Track { file, frames, lost, jumps } = self;
         TrackReport { file: file.clone(), frames: frames.len() + lost + jumps, lost: *lost, jumps: *jumps }
     }
 
-    /// The robot's cumulative motion.
+    /// Returns the robot's cumulative motion.
     pub fn motion(&self) -> Vec<CumulativeMotion> {
         by_camera(&self.frames)
     }
 
-    /// The robot's pose at a time on the camera's clock, interpolated between two frames.
+    /// Returns the robot's pose at a time on the camera's clock, interpolated between two frames.
     pub fn at(&self, t_ms: f64) -> Sighting {
         let after = self.frames.partition_point(|frame| frame.t_ms < t_ms);
         if let Some(exact) = self.frames.get(after).filter(|frame| frame.t_ms == t_ms) {
@@ -122,7 +122,7 @@ impl Track {
 }
 
 impl Sighting {
-    /// The pose, if there is one.
+    /// Returns the pose, if there is one.
     pub fn pose(&self) -> Option<Pose> {
         match self {
             Sighting::At(pose) => Some(*pose),
@@ -131,17 +131,18 @@ impl Sighting {
     }
 }
 
-/// The frames that the robot can have reached from the last frame kept.
+/// Removes frames that the robot cannot have reached from the last kept frame.
 fn without_jumps(frames: Vec<Frame>, robot: &Robot) -> Vec<Frame> {
-    let cm_ms = FASTEST * robot.full_speed_cm_s / 1000.0;
+    let cm_ms = MAX_SPEED_RATIO * robot.full_speed_cm_s / 1000.0;
     let rad_ms = 2.0 * cm_ms / robot.track_cm;
     let mut kept: Vec<Frame> = Vec::with_capacity(frames.len());
     for frame in frames {
-        let can_be = kept.last().is_none_or(|last| {
+        let is_reachable = kept.last().is_none_or(|last| {
             let (change, ms) = (last.pose.relative(&frame.pose), frame.t_ms - last.t_ms);
-            change.position_cm.length() <= ERR_CM + cm_ms * ms && change.heading_rad.abs() <= ERR_RAD + rad_ms * ms
+            change.position_cm.length() <= TOLERANCE_CM + cm_ms * ms
+                && change.heading_rad.abs() <= TOLERANCE_RAD + rad_ms * ms
         });
-        if can_be {
+        if is_reachable {
             kept.push(frame);
         }
     }
@@ -161,7 +162,7 @@ mod tests {
     }
 
     #[test]
-    fn poses_are_known_between_frames_and_nowhere_else() {
+    fn poses_are_interpolated_only_between_frames() {
         let text = "time_s,x_m,y_m,heading_rad\n10,0.1,0.2,3.1\n10.1,0.11,0.2,-3.1\n11,0.2,0.2,\n11.5,0.21,0.2,3.0\n";
         let track = read(text).expect("a track");
         assert_eq!((track.frames.len(), track.lost, track.jumps), (3, 1, 0));
@@ -174,7 +175,7 @@ mod tests {
     }
 
     #[test]
-    fn a_jump_there_and_back_is_left_out() {
+    fn jump_there_and_back_is_removed() {
         let frame = |i: usize| format!("{},{},50,0\n", 33 * i, if i == 7 { 140.0 } else { 20.0 + i as f64 });
         let text = "t_ms,x_cm,y_cm,heading_deg\n".to_owned() + &(0..20).map(frame).collect::<String>();
         let track = read(&text).expect("a track");
@@ -182,13 +183,13 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_track_is_refused() {
+    fn invalid_tracks_are_rejected() {
         for (text, what) in [
             ("", "no column"),
             ("t_ms,x_cm,y_cm,heading_deg\n", "0 frame(s)"),
-            ("t_ms,x_cm,y_cm,heading_deg\n0,1,1,0\n0,1,1,0\n", "does not come after"),
-            ("t_ms,x_cm,y_cm,heading_deg\n0,1,far,0\n", ":2: y_cm = \"far\" is no number"),
-            ("t_ms,x_cm,y_cm,heading_deg\n0,1,inf,0\n", ":2: y_cm = \"inf\" is no number"),
+            ("t_ms,x_cm,y_cm,heading_deg\n0,1,1,0\n0,1,1,0\n", "is not later than"),
+            ("t_ms,x_cm,y_cm,heading_deg\n0,1,far,0\n", ":2: y_cm = \"far\" is not a number"),
+            ("t_ms,x_cm,y_cm,heading_deg\n0,1,inf,0\n", ":2: y_cm = \"inf\" is not a number"),
             ("t_ms,x_cm,y_cm\n0,1,1\n", ":1: no column for the heading"),
             ("t,x,y,theta\n0,1,1,0\n", ":1: column t has no unit"),
             ("t_ms,x_cm,x_mm,y_cm,heading_deg\n0,1,1,1,0\n", ":1: more than one column for x"),

@@ -1,15 +1,15 @@
-//! Units of time, length and angle in which a track may be written.
+//! Units of time, length and angle in recordings.
 
 use std::str::FromStr;
 
-/// Units of the columns whose names do not state one.
+/// Units of columns whose names do not state one.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Units {
-    /// Of the time.
+    /// Unit of the time.
     pub time: Option<Time>,
-    /// Of x and y.
+    /// Unit of x and y.
     pub length: Option<Length>,
-    /// Of the heading.
+    /// Unit of the heading.
     pub angle: Option<Angle>,
 }
 
@@ -45,7 +45,7 @@ pub enum Angle {
 }
 
 impl Time {
-    /// Milliseconds in one unit.
+    /// Returns the milliseconds in one unit.
     pub fn ms(self) -> f64 {
         match self {
             Time::S => 1e3,
@@ -56,7 +56,7 @@ impl Time {
 }
 
 impl Length {
-    /// Centimetres in one unit.
+    /// Returns the centimetres in one unit.
     pub fn cm(self) -> f64 {
         match self {
             Length::M => 100.0,
@@ -67,7 +67,7 @@ impl Length {
 }
 
 impl Angle {
-    /// Radians in one unit.
+    /// Returns the radians in one unit.
     pub fn rad(self) -> f64 {
         match self {
             Angle::Deg => std::f64::consts::PI / 180.0,

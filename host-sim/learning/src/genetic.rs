@@ -11,9 +11,9 @@ pub mod tournament;
 use rand::RngExt;
 use serde::{Deserialize, Serialize};
 
-use mindgap_foundations::chance::{Generator, generator};
 use mindgap_foundations::error::Result;
 use mindgap_foundations::executor::{self, Executor};
+use mindgap_foundations::random::{Generator, generator};
 use mutation::Mutation;
 use stopping::StagnationCriterion;
 

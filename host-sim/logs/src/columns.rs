@@ -1,4 +1,4 @@
-//! The columns of run-*.csv: where they stand, what their cells say, and what to write where they say something else.
+//! The columns of run-*.csv: finds them in the header, parses their cells, and says how to correct invalid ones.
 
 use std::path::Path;
 
@@ -8,60 +8,60 @@ use super::row::Row;
 use mindgap_foundations::error::{Error, Result};
 use mindgap_foundations::geometry::Pose;
 
-/// The columns, those first that every run must have.
+/// All known columns, starting with those that every run must have.
 pub const COLUMNS: [&str; 10] =
     [TIME, "left", "right", "x_cm", "y_cm", "heading_deg", ECHO, "rot_left_deg", "rot_right_deg", "battery_mv"];
 /// Number of leading [`COLUMNS`] that every run must have.
 pub const REQUIRED: usize = 7;
-/// The same of a robot without a range sensor.
+/// Number of leading [`COLUMNS`] that every run of a robot without a range sensor must have.
 pub const REQUIRED_WITHOUT_SENSOR: usize = 6;
 const TIME: &str = "t_ms";
-/// The one whose cells may hold `inf` or `nan`.
+/// The column whose cells may hold `inf` or `nan`.
 const ECHO: &str = "echo_cm";
 /// Number of leading [`COLUMNS`] whose cells must not be empty.
-const ALWAYS_THERE: usize = 3;
+const NEVER_EMPTY: usize = 3;
 /// Largest magnitude of a number in a log.
-const HUGE: f64 = 1e7;
-/// Largest time, ms: a run takes no twelve days. Beyond it clocks count from 1970.
-const LATEST_MS: f64 = 1e9;
-/// Upper ends of the times that clocks which count from 1970 show until the year 2100, and their units.
-const SINCE_1970: [(f64, &str); 4] = [(4.2e9, "s"), (4.2e12, "ms"), (4.2e15, "us"), (4.2e18, "ns")];
+const MAX_MAGNITUDE: f64 = 1e7;
+/// Largest time, ms: no run takes twelve days, so larger times are Unix times.
+const MAX_TIME_MS: f64 = 1e9;
+/// Upper limits of Unix times until the year 2100, with their units.
+const UNIX_TIME_UNITS: [(f64, &str); 4] = [(4.2e9, "s"), (4.2e12, "ms"), (4.2e15, "us"), (4.2e18, "ns")];
 
-/// Where each of [`COLUMNS`] stands in a file.
+/// The index in a file's header of each of [`COLUMNS`].
 pub struct Columns([Option<usize>; COLUMNS.len()]);
 
 impl Columns {
-    /// Finds them by a header's names; `warn` receives a line for each unknown one.
+    /// Finds the columns in a header; `warn` receives a line for each unknown one.
     ///
     /// # Errors
-    /// Names all that are missing of the `required` ones, and what stands there instead, or one that stands twice.
+    /// When `required` columns are missing or a column is duplicated.
     pub fn find(path: &Path, header: &StringRecord, required: &[&str], warn: &mut impl FnMut(String)) -> Result<Self> {
-        let mut places = [None; COLUMNS.len()];
+        let mut indices = [None; COLUMNS.len()];
         let mut unknown = Vec::new();
         for (i, name) in header.iter().enumerate() {
             match COLUMNS.iter().position(|c| *c == name) {
                 None => unknown.push(name),
-                Some(c) if places[c].is_some() => {
-                    return Err(Error::at_line(path, 1, format!("column {name} stands twice")));
+                Some(c) if indices[c].is_some() => {
+                    return Err(Error::at_line(path, 1, format!("column {name} is duplicated")));
                 }
-                Some(c) => places[c] = Some(i),
+                Some(c) => indices[c] = Some(i),
             }
         }
-        let is_there = |name: &&&str| COLUMNS.iter().zip(places).any(|(c, place)| c == *name && place.is_some());
-        let missing: Vec<&str> = required.iter().filter(|name| !is_there(name)).copied().collect();
+        let is_found = |name: &&&str| COLUMNS.iter().zip(indices).any(|(c, index)| c == *name && index.is_some());
+        let missing: Vec<&str> = required.iter().filter(|name| !is_found(name)).copied().collect();
         if !missing.is_empty() {
-            return Err(Error::at_line(path, 1, without(&missing, header, &unknown)));
+            return Err(Error::at_line(path, 1, missing_columns(&missing, header, &unknown)));
         }
         for name in unknown {
-            warn(format!("{}:1: column {name:?} is not known and left out", path.display()));
+            warn(format!("{}:1: unknown column {name:?} ignored", path.display()));
         }
-        Ok(Columns(places))
+        Ok(Columns(indices))
     }
 
-    /// The row that a record's cells say.
+    /// Parses a record as a row.
     ///
     /// # Errors
-    /// What is wrong with a cell, and what to write instead.
+    /// When a cell is invalid; the message says what to write instead.
     pub fn row(&self, record: &StringRecord) -> std::result::Result<Row, String> {
         let mut v = [None; COLUMNS.len()];
         for (c, name) in COLUMNS.iter().enumerate() {
@@ -69,21 +69,21 @@ impl Columns {
             v[c] = Some(number(c, name, cell)?);
         }
         let [t_ms, left, right, x_cm, y_cm, heading_deg, echo_cm, rot_left_deg, rot_right_deg, battery_mv] = v;
-        let needed = |value: Option<f64>, name: &str| value.ok_or(format!("{name} is empty"));
-        let command = |value: Option<f64>, name: &str| match needed(value, name)? {
+        let required = |value: Option<f64>, name: &str| value.ok_or(format!("{name} is empty"));
+        let command = |value: Option<f64>, name: &str| match required(value, name)? {
             v if v.abs() <= 100.0 => Ok(v),
             v => Err(format!("{name} = {v} lies outside -100..100")),
         };
         let pose = match (x_cm, y_cm, heading_deg) {
             (Some(x), Some(y), Some(heading)) => Some(Pose::new(x, y, heading.to_radians())),
             (None, None, None) => None,
-            _ => return Err("x_cm, y_cm and heading_deg must be there together or empty together".into()),
+            _ => return Err("x_cm, y_cm and heading_deg must be all given or all empty".into()),
         };
         if let Some(echo_cm) = echo_cm.filter(|e| *e < 0.0) {
-            return Err(format!("echo_cm = {echo_cm} is below zero; leave the cell empty where there was no echo"));
+            return Err(format!("echo_cm = {echo_cm} is negative; leave the cell empty if there was no echo"));
         }
         Ok(Row {
-            t_ms: needed(t_ms, TIME)?,
+            t_ms: required(t_ms, TIME)?,
             left: command(left, "left")?,
             right: command(right, "right")?,
             pose,
@@ -95,7 +95,7 @@ impl Columns {
     }
 }
 
-/// The cells of a row, in the order of [`COLUMNS`].
+/// Returns the cells of a row, in the order of [`COLUMNS`].
 pub fn cells(row: &Row) -> [Option<f64>; COLUMNS.len()] {
     [
         Some(row.t_ms),
@@ -111,66 +111,66 @@ pub fn cells(row: &Row) -> [Option<f64>; COLUMNS.len()] {
     ]
 }
 
-/// Why columns are not found, as far as the header tells it.
-fn without(missing: &[&str], header: &StringRecord, unknown: &[&str]) -> String {
+/// Explains why columns are missing, as far as the header shows.
+fn missing_columns(missing: &[&str], header: &StringRecord, unknown: &[&str]) -> String {
     let first = header.get(0).unwrap_or_default();
-    let other_separator = [(';', "semicolons"), ('\t', "tabs"), ('|', "bars"), (' ', "blanks")];
+    let other_separator = [(';', "semicolons"), ('\t', "tabs"), ('|', "bars"), (' ', "spaces")];
     let is_known = |name: &str| COLUMNS.iter().any(|column| column.eq_ignore_ascii_case(name));
-    let parts = |(c, _): &(char, &str)| header.len() == 1 && first.contains(*c) && first.split(*c).any(is_known);
-    if let Some((_, name)) = other_separator.into_iter().find(parts) {
-        return format!(
-            "the columns are parted by {name}: part them by commas, and write numbers with a decimal point"
-        );
+    let separates = |(c, _): &(char, &str)| header.len() == 1 && first.contains(*c) && first.split(*c).any(is_known);
+    if let Some((_, name)) = other_separator.into_iter().find(separates) {
+        return format!("columns are separated by {name}: use commas, and write numbers with a decimal point");
     }
     if let Some(sign) = ["#", "%", "//"].into_iter().find(|sign| first.starts_with(sign)) {
-        return format!("the header begins with {sign}, as comments do: write it without");
+        return format!("the header starts with the comment sign {sign}: remove it");
     }
     if !first.is_empty() && header.iter().all(|cell| cell.is_empty() || cell.parse::<f64>().is_ok()) {
-        return format!("there is no header: write {} as the first line", COLUMNS[..REQUIRED].join(","));
+        return format!("the header is missing: write {} as the first line", COLUMNS[..REQUIRED].join(","));
     }
     let in_capitals = |name: &&&str| unknown.iter().any(|other| other.eq_ignore_ascii_case(name));
     if let Some(name) = missing.iter().find(in_capitals) {
-        return format!("column {name} is written in capitals: write names in small letters");
+        return format!("column {name} is in capitals: use lower-case names");
     }
     let (columns, are) = if missing.len() == 1 { ("column", "is") } else { ("columns", "are") };
-    let others = if unknown.is_empty() { String::new() } else { format!("; not known are {}", unknown.join(", ")) };
+    let others =
+        if unknown.is_empty() { String::new() } else { format!("; unknown columns are {}", unknown.join(", ")) };
     format!("{columns} {} {are} missing{others}", missing.join(", "))
 }
 
 fn number(column: usize, name: &str, cell: &str) -> std::result::Result<f64, String> {
-    let number: f64 = cell.parse().map_err(|_| no_number(column, name, cell))?;
-    if name == TIME && number.abs() > LATEST_MS {
-        return Err(match SINCE_1970.into_iter().find(|(end, _)| number <= *end) {
+    let number: f64 = cell.parse().map_err(|_| not_a_number(column, name, cell))?;
+    if name == TIME && number.abs() > MAX_TIME_MS {
+        return Err(match UNIX_TIME_UNITS.into_iter().find(|(end, _)| number <= *end) {
             Some((_, unit)) if number > 0.0 => {
-                format!("t_ms = {cell} counts from 1970 in {unit}: write milliseconds since the run began")
+                format!("t_ms = {cell} is Unix time in {unit}: write milliseconds since the start of the run")
             }
-            _ => format!("t_ms = {cell} is no number of milliseconds since a run began"),
+            _ => format!("t_ms = {cell} is not a time in milliseconds since the start of a run"),
         });
     }
-    // Drivers say so that there was no echo: an inspection finds it, and no number that counts is not finite.
-    let number = if name == ECHO && !number.is_finite() { HUGE } else { number };
-    if !number.is_finite() || name != TIME && number.abs() > HUGE {
-        let instead = if column < ALWAYS_THERE || number.is_finite() { "" } else { EMPTY };
-        return Err(format!("{name} = {cell} is no number that a robot could log{instead}"));
+    // Some drivers write `inf` or `nan` for no echo. The inspection handles it as a huge number, so that all numbers
+    // in a log are finite.
+    let number = if name == ECHO && !number.is_finite() { MAX_MAGNITUDE } else { number };
+    if !number.is_finite() || name != TIME && number.abs() > MAX_MAGNITUDE {
+        let hint = if column < NEVER_EMPTY || number.is_finite() { "" } else { EMPTY };
+        return Err(format!("{name} = {cell} is not a number that a robot could log{hint}"));
     }
     Ok(number)
 }
 
-/// What to write where there is nothing to write.
-const EMPTY: &str = "; leave the cell empty where there is none";
+/// How to log a missing value.
+const EMPTY: &str = "; leave the cell empty if there is no value";
 
-fn no_number(column: usize, name: &str, cell: &str) -> String {
+fn not_a_number(column: usize, name: &str, cell: &str) -> String {
     let is_date = cell.contains(':') || cell.len() > 6 && cell.get(4..).is_some_and(|rest| rest.starts_with('-'));
-    let instead = if cell == name {
-        ": the header stands here again; give every run a file of its own"
+    let hint = if cell == name {
+        ": the header is repeated here; write each run to its own file"
     } else if name == TIME && cell.is_ascii() && is_date {
-        ", it is a date; write milliseconds since the run began"
+        " but a date; write milliseconds since the start of the run"
     } else if cell.contains(',') && cell.replacen(',', ".", 1).parse::<f64>().is_ok() {
         "; write a decimal point"
-    } else if column >= ALWAYS_THERE {
+    } else if column >= NEVER_EMPTY {
         EMPTY
     } else {
         ""
     };
-    format!("{name} = {cell:?} is no number{instead}")
+    format!("{name} = {cell:?} is not a number{hint}")
 }

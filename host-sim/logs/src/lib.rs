@@ -1,7 +1,7 @@
 //! Robot logs: the only interface between reality and simulator (docs/reference/formats.md, "A folder of logs").
 //!
-//! A folder holds a [`Robot`] (`robot.toml`), a [`Scene`] (`scene.toml`) and one [`Run`] a file (`run-*.csv`). Networks
-//! learn from the [`samples`] extracted from it.
+//! A folder contains a [`Robot`] (`robot.toml`), a [`Scene`] (`scene.toml`) and one [`Run`] per `run-*.csv`. Networks learn from
+//! the [`samples`] extracted from it.
 
 mod columns;
 pub mod controller_file;
@@ -46,29 +46,29 @@ pub struct Logs {
     pub runs: Vec<Run>,
 }
 
-/// The files of a folder of logs: name and text of each.
+/// The files of a log folder, as name and text.
 #[derive(Serialize, Deserialize)]
-pub struct Texts(Vec<(String, String)>);
+pub struct LogFiles(Vec<(String, String)>);
 
-impl Texts {
-    /// Writes the folder, as [`Logs::write`].
+impl LogFiles {
+    /// Writes the folder; see [`Logs::write`].
     ///
     /// # Errors
     /// When it cannot be written.
     pub fn write(&self, folder: &Path) -> Result<()> {
-        let ours = |name: &str| is_run_file(name) || name == "robot.toml" || name == "scene.toml";
-        let Texts(files) = self;
-        files::write_folder(folder, ours, |fresh| {
-            files.iter().try_for_each(|(name, text)| files::write(&fresh.join(name), text))
+        let is_own = |name: &str| is_run_file(name) || name == "robot.toml" || name == "scene.toml";
+        let LogFiles(files) = self;
+        files::write_folder(folder, is_own, |new_folder| {
+            files.iter().try_for_each(|(name, text)| files::write(&new_folder.join(name), text))
         })
     }
 }
 
 impl Logs {
-    /// Reads a folder. `warn` receives one line for each oddity that does not prevent reading.
+    /// Reads a folder. `warn` receives one line for each irregularity that does not prevent reading.
     ///
     /// # Errors
-    /// When a file cannot be read or parsed, when there is no run, or as [`check_step`](Self::check_step).
+    /// When a file cannot be read or parsed, when there is no run, or when [`check_step`](Self::check_step) fails.
     pub fn read(folder: &Path, mut warn: impl FnMut(String)) -> Result<Self> {
         let robot = Robot::read(&folder.join("robot.toml"))?;
         let scene = Scene::read(&folder.join("scene.toml"))?;
@@ -82,49 +82,49 @@ impl Logs {
             return Err(Error::in_file(folder, "has no run-*.csv"));
         }
         let required = robot.required_columns();
-        let mut oddities = Oddities::default();
+        let mut warnings = Warnings::default();
         let read = |name: &String| {
             let path = folder.join(name);
-            Run::read_with(&path, required, |oddity| oddities.add(&path, &oddity))
+            Run::read_with(&path, required, |warning| warnings.add(&path, &warning))
         };
         let runs = names.iter().map(read).collect::<Result<Vec<_>>>()?;
-        oddities.tell(&mut warn);
+        warnings.report(&mut warn);
         Logs { robot, scene, runs }.checked(folder, warn)
     }
 
-    /// The logs without what they cannot have; messages name `folder`.
+    /// Validates logs and drops readings of a robot without a sensor; messages name `folder`.
     fn checked(mut self, folder: &Path, mut warn: impl FnMut(String)) -> Result<Self> {
         let has_sensor = self.robot.ultrasonic.is_some();
-        let count = if has_sensor { 0 } else { self.runs.iter_mut().map(without_readings).sum() };
+        let count = if has_sensor { 0 } else { self.runs.iter_mut().map(remove_readings).sum() };
         if count > 0 {
             let robot = folder.join("robot.toml");
-            warn(format!("{}: has no [ultrasonic]: {count} readings are left out", robot.display()));
+            warn(format!("{}: has no [ultrasonic]: {count} readings ignored", robot.display()));
         }
         self.check_step(folder)?;
         Ok(self)
     }
 
-    /// Writes a folder; logs that are in it already are replaced, and other files stay.
+    /// Writes a folder, replacing logs already in it; other files stay.
     ///
     /// # Errors
     /// When the folder cannot be written.
     pub fn write(&self, folder: &Path) -> Result<()> {
-        self.to_texts().write(folder)
+        self.to_files().write(folder)
     }
 
-    /// The texts of the folder's files.
-    pub fn to_texts(&self) -> Texts {
+    /// Returns the files of the folder.
+    pub fn to_files(&self) -> LogFiles {
         let runs = self.runs.iter().map(|run| (format!("{}.csv", run.name), run.to_text()));
         let others = [("robot.toml".into(), self.robot.to_text()), ("scene.toml".into(), self.scene.to_text())];
-        Texts(others.into_iter().chain(runs).collect())
+        LogFiles(others.into_iter().chain(runs).collect())
     }
 
-    /// The number of rows of all runs.
+    /// Returns the number of rows of all runs.
     pub fn rows(&self) -> usize {
         self.runs.iter().map(|run| run.rows.len()).sum()
     }
 
-    /// Checks that rows are about `step_ms` apart; an error names `folder`.
+    /// Checks that rows are about `step_ms` apart; the error names `folder`.
     ///
     /// # Errors
     /// When the median step time deviates from `step_ms` by more than a fifth.
@@ -132,43 +132,43 @@ impl Logs {
         let mut steps_ms: Vec<f64> =
             self.runs.iter().flat_map(|run| run.rows.pairs().map(|w| w[1].t_ms - w[0].t_ms)).collect();
         steps_ms.sort_by(f64::total_cmp);
-        let middle_ms = steps_ms[steps_ms.len() / 2];
-        if (middle_ms / self.robot.step_ms - 1.0).abs() > STEP_TOLERANCE {
-            let mut what =
-                format!("rows are {middle_ms} ms apart, but robot.toml has step_ms = {}", self.robot.step_ms);
-            if (1000.0 * middle_ms / self.robot.step_ms - 1.0).abs() <= STEP_TOLERANCE {
-                what += ": t_ms seems to be in seconds; write milliseconds";
+        let median_ms = steps_ms[steps_ms.len() / 2];
+        if (median_ms / self.robot.step_ms - 1.0).abs() > STEP_TOLERANCE {
+            let mut message =
+                format!("rows are {median_ms} ms apart, but robot.toml has step_ms = {}", self.robot.step_ms);
+            if (1000.0 * median_ms / self.robot.step_ms - 1.0).abs() <= STEP_TOLERANCE {
+                message += ": t_ms seems to be in seconds; write milliseconds";
             }
-            return Err(Error::in_file(folder, what));
+            return Err(Error::in_file(folder, message));
         }
         Ok(())
     }
 }
 
-/// Leaves out a run's readings, and says how many.
-fn without_readings(run: &mut Run) -> usize {
+/// Removes a run's readings and returns how many there were.
+fn remove_readings(run: &mut Run) -> usize {
     let count = run.rows.iter().filter(|row| row.echo_cm.is_some()).count();
     run.rows.edit_each(|row| row.echo_cm = None);
     count
 }
 
-/// What is odd in files, each told once with the first file that has it.
+/// Warnings about files, each reported once with the first file affected.
 #[derive(Default)]
-struct Oddities(Vec<(String, String, usize)>);
+struct Warnings(Vec<(String, String, usize)>);
 
-impl Oddities {
-    fn add(&mut self, path: &Path, oddity: &str) {
-        // What is left of it is the same in all files.
-        let same = oddity.strip_prefix(&path.display().to_string()).unwrap_or(oddity);
+impl Warnings {
+    fn add(&mut self, path: &Path, warning: &str) {
+        // Without the path, the same warning is equal for all files.
+        let same = warning.strip_prefix(&path.display().to_string()).unwrap_or(warning);
         match self.0.iter_mut().find(|(known, ..)| known == same) {
             Some((.., files)) => *files += 1,
-            None => self.0.push((same.to_owned(), oddity.to_owned(), 1)),
+            None => self.0.push((same.to_owned(), warning.to_owned(), 1)),
         }
     }
 
-    fn tell(self, warn: &mut impl FnMut(String)) {
+    fn report(self, warn: &mut impl FnMut(String)) {
         for (_, first, files) in self.0 {
-            warn(if files == 1 { first } else { format!("{first} (and so in {files} files)") });
+            warn(if files == 1 { first } else { format!("{first} (in {files} files)") });
         }
     }
 }

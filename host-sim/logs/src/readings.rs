@@ -1,4 +1,4 @@
-//! Scripted answers of the ultrasonic sensor for a program that runs in the emulated brick: a list, or a column of a log.
+//! Scripted readings of the ultrasonic sensor for a program in the emulated brick: a list, or a column of a log.
 
 use std::path::Path;
 
@@ -11,10 +11,10 @@ use mindgap_foundations::error::{Error, Result};
 
 const COLUMN: &str = "echo_cm";
 
-/// Parses readings from a list such as `120,80.5,none,silent`, or from the column `echo_cm` of the CSV file of that name.
+/// Parses readings from a list such as `120,80.5,none,silent`, or from the column `echo_cm` of a CSV file.
 ///
-/// A reading is a distance in cm, 0..=255, which is rounded; `none`, `255` or an empty cell if no echo returned; `silent`
-/// if the sensor does not answer; `hangs` if its answer never ends.
+/// A reading is a distance in cm, 0..=255, rounded to whole numbers; `none`, `255` or an empty cell if there was no echo;
+/// `silent` if the sensor does not answer; `hangs` if its answer never ends.
 ///
 /// # Errors
 /// When the text is neither a list nor a file, or when a reading is invalid.
@@ -24,7 +24,7 @@ pub fn read(list_or_file: &str) -> Result<Vec<Sonar>> {
         return read_column(path);
     }
     list_or_file.split(',').map(reading).collect::<std::result::Result<_, _>>().map_err(|what| {
-        Error::new(format!("--readings {list_or_file:?} is no file, and as a list it has a reading that {what}"))
+        Error::new(format!("--readings {list_or_file:?} is not a file, and as a list it has a reading that {what}"))
     })
 }
 
@@ -59,14 +59,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_list_says_what_the_sensor_answers() {
+    fn list_is_parsed() {
         let answers =
             [Sonar::Echo(120), Sonar::Echo(81), Sonar::Echo(255), Sonar::Silent, Sonar::Hangs, Sonar::Echo(0)];
         assert_eq!(read("120, 80.6,none,silent,hangs,0").unwrap(), answers);
     }
 
     #[test]
-    fn what_is_no_reading_is_refused() {
+    fn invalid_readings_are_rejected() {
         for (list, what) in [("12,256", "outside"), ("-1", "outside"), ("NaN", "outside"), ("1,far", "neither")] {
             let error = read(list).unwrap_err().to_string();
             assert!(error.contains(what) && error.contains(list), "{error}");

@@ -17,9 +17,9 @@ use mindgap_foundations::geometry::Pose;
 pub struct Robot {
     /// Diameter of the driven wheels, cm.
     pub wheel_diameter_cm: f64,
-    /// Distance between the middles of the wheels, cm.
+    /// Distance between the wheel centres, cm.
     pub track_cm: f64,
-    /// Radius of the disc round the axle's middle that must not touch a wall or an obstacle, cm.
+    /// Radius of the disc around the centre of the axle that must not touch a wall or an obstacle, cm.
     pub body_radius_cm: f64,
     /// Nominal time between two rows of a log, ms.
     pub step_ms: f64,
@@ -34,13 +34,13 @@ pub struct Robot {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Ultrasonic {
-    /// Distance ahead of the axle's middle, cm.
+    /// Distance ahead of the centre of the axle, cm.
     pub x_cm: f64,
-    /// Distance to the left of the axle's middle, cm.
+    /// Distance to the left of the centre of the axle, cm.
     pub y_cm: f64,
     /// Direction of its axis, degrees counter-clockwise from straight ahead.
     pub yaw_deg: f64,
-    /// Least reading, cm.
+    /// Smallest reading, cm.
     pub min_cm: f64,
     /// Largest reading, cm.
     pub max_cm: f64,
@@ -55,7 +55,7 @@ impl Robot {
         Robot::parse(path, &files::read_text(path)?)
     }
 
-    /// The robot that a text says; `path` is for messages.
+    /// Parses the text of `robot.toml`; `path` is for messages.
     ///
     /// # Errors
     /// As [`Robot::read`].
@@ -79,7 +79,7 @@ impl Robot {
         self.ultrasonic.map_or(*pose, |sensor| sensor.pose_on(pose))
     }
 
-    /// The columns that its runs must have.
+    /// Returns the columns that its runs must have.
     pub fn required_columns(&self) -> &'static [&'static str] {
         &COLUMNS[..if self.ultrasonic.is_none() { REQUIRED_WITHOUT_SENSOR } else { REQUIRED }]
     }
@@ -92,7 +92,7 @@ impl Robot {
         files::write(path, self.to_text())
     }
 
-    /// The text of `robot.toml`.
+    /// Returns the text of `robot.toml`.
     pub fn to_text(&self) -> String {
         toml::to_string(self).expect("numbers have a TOML form")
     }
@@ -119,7 +119,7 @@ impl Ultrasonic {
         [self.min_cm, self.max_cm]
     }
 
-    /// The pose of the sensor on a robot at `robot`; its heading is that of the axis.
+    /// Returns the pose of the sensor on a robot at `robot`; its heading is the direction of the axis.
     pub fn pose_on(&self, robot: &Pose) -> Pose {
         robot.compose(&Pose { position_cm: DVec2::new(self.x_cm, self.y_cm), heading_rad: self.yaw_deg.to_radians() })
     }

@@ -5,13 +5,13 @@ use mindgap_foundations::geometry::Pose;
 /// One row of a run.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Row {
-    /// Time since the run began, ms.
+    /// Time since the start of the run, ms.
     pub t_ms: f64,
     /// Command of the left motor, set at this row and held until the next, -100..=100.
     pub left: f64,
-    /// Command of the right motor, likewise.
+    /// Command of the right motor, set at this row and held until the next, -100..=100.
     pub right: f64,
-    /// Tracked pose of the axle's middle; `None` if the tracker lost the robot.
+    /// Tracked pose of the centre of the axle; `None` if the tracker lost the robot.
     pub pose: Option<Pose>,
     /// Ultrasonic reading, cm; `None` if the sensor produced no value.
     pub echo_cm: Option<f64>,
@@ -24,7 +24,7 @@ pub struct Row {
 }
 
 impl Row {
-    /// Left and right command.
+    /// Returns the left and right command.
     pub fn command(&self) -> [f64; 2] {
         [self.left, self.right]
     }

@@ -1,4 +1,4 @@
-//! The rows of a run, column beside column: a long run takes a quarter of what its rows would take one by one.
+//! The rows of a run, stored by column, which takes a quarter of the memory of a vector of rows.
 
 mod column;
 
@@ -7,11 +7,11 @@ use std::ops::Range;
 
 use glam::DVec2;
 
-use self::column::{Column, Meaning};
+use self::column::{Column, Unit};
 use super::row::Row;
 use mindgap_foundations::geometry::Pose;
 
-/// The rows of a run. What is said of a row comes back as it was said, but NaN, which stands for no number.
+/// The rows of a run. Rows are returned exactly as they were set, except that NaN becomes a missing number.
 #[derive(Clone)]
 pub struct Rows {
     len: usize,
@@ -28,20 +28,20 @@ pub struct Rows {
 }
 
 impl Rows {
-    /// How many there are.
+    /// Returns the number of rows.
     pub fn len(&self) -> usize {
         self.len
     }
 
-    /// Whether there is none.
+    /// Returns whether there are no rows.
     pub fn is_empty(&self) -> bool {
         self.len == 0
     }
 
-    /// A row.
+    /// Returns row `row`.
     ///
     /// # Panics
-    /// When there are not so many rows.
+    /// If `row >= self.len()`.
     #[inline]
     pub fn at(&self, row: usize) -> Row {
         assert!(row < self.len, "row {row} of {}", self.len);
@@ -63,43 +63,43 @@ impl Rows {
         }
     }
 
-    /// A row, if there is such.
+    /// Returns row `row`, or `None` if out of bounds.
     #[inline]
     pub fn get(&self, row: usize) -> Option<Row> {
         (row < self.len).then(|| self.at(row))
     }
 
-    /// The first row.
+    /// Returns the first row, if any.
     pub fn first(&self) -> Option<Row> {
         self.get(0)
     }
 
-    /// The last row.
+    /// Returns the last row, if any.
     pub fn last(&self) -> Option<Row> {
         self.get(self.len.checked_sub(1)?)
     }
 
-    /// All rows in order.
+    /// Iterates over all rows.
     pub fn iter(&self) -> Iter<'_> {
         self.between(0..self.len)
     }
 
-    /// Some rows in order.
+    /// Iterates over a range of rows.
     ///
     /// # Panics
-    /// When there are not so many rows.
-    pub fn between(&self, places: Range<usize>) -> Iter<'_> {
-        assert!(places.end <= self.len, "rows up to {} of {}", places.end, self.len);
-        Iter { rows: self, places }
+    /// If the range ends beyond `self.len()`.
+    pub fn between(&self, range: Range<usize>) -> Iter<'_> {
+        assert!(range.end <= self.len, "rows up to {} of {}", range.end, self.len);
+        Iter { rows: self, range }
     }
 
-    /// Every row with the one after it.
+    /// Iterates over pairs of consecutive rows.
     pub fn pairs(&self) -> impl Iterator<Item = [Row; 2]> + '_ {
         (1..self.len).map(|end| [self.at(end - 1), self.at(end)])
     }
 
-    /// Index of the first row later than a time.
-    pub fn later_than(&self, t_ms: f64) -> usize {
+    /// Returns the index of the first row later than `t_ms`, or `self.len()`.
+    pub fn first_later_than(&self, t_ms: f64) -> usize {
         let (mut low, mut high) = (0, self.len);
         while low < high {
             let middle = low.midpoint(high);
@@ -108,26 +108,26 @@ impl Rows {
         low
     }
 
-    /// Adds a row at the end.
+    /// Appends a row.
     pub fn push(&mut self, row: Row) {
         self.len += 1;
         self.set(self.len - 1, row);
     }
 
-    /// Changes a row.
+    /// Changes row `row`.
     ///
     /// # Panics
-    /// When there are not so many rows.
+    /// If `row >= self.len()`.
     pub fn edit(&mut self, row: usize, change: impl FnOnce(&mut Row)) {
         let mut changed = self.at(row);
         change(&mut changed);
         self.set(row, changed);
     }
 
-    /// Changes the pose of a row, if it has one.
+    /// Changes the pose of row `row`, if it has one.
     ///
     /// # Panics
-    /// When there are not so many rows.
+    /// If `row >= self.len()`.
     pub fn edit_pose(&mut self, row: usize, change: impl FnOnce(&mut Pose)) {
         self.edit(row, |row| {
             if let Some(pose) = &mut row.pose {
@@ -146,13 +146,13 @@ impl Rows {
         self.edit_each(|row| row.pose.iter_mut().for_each(&mut change));
     }
 
-    /// Keeps the first rows only.
+    /// Keeps only the first `rows` rows.
     pub fn truncate(&mut self, rows: usize) {
         self.len = self.len.min(rows);
         self.columns().into_iter().for_each(|column| column.truncate(rows));
     }
 
-    /// Gives back memory that is kept for further rows.
+    /// Releases spare capacity.
     pub fn shrink(&mut self) {
         self.columns().into_iter().for_each(Column::shrink);
     }
@@ -188,7 +188,7 @@ impl Rows {
 
 impl Default for Rows {
     fn default() -> Self {
-        let column = || Column::new(Meaning::Same);
+        let column = || Column::new(Unit::AsWritten);
         Rows {
             len: 0,
             t_ms: column(),
@@ -196,7 +196,7 @@ impl Default for Rows {
             right: column(),
             x_cm: column(),
             y_cm: column(),
-            heading_rad: Column::new(Meaning::Angle),
+            heading_rad: Column::new(Unit::DegreesToRadians),
             echo_cm: column(),
             rot_left_deg: column(),
             rot_right_deg: column(),
@@ -234,28 +234,28 @@ impl<'a> IntoIterator for &'a Rows {
     }
 }
 
-/// Rows in order.
+/// An iterator over rows.
 #[derive(Clone)]
 pub struct Iter<'a> {
     rows: &'a Rows,
-    places: Range<usize>,
+    range: Range<usize>,
 }
 
 impl Iterator for Iter<'_> {
     type Item = Row;
 
     fn next(&mut self) -> Option<Row> {
-        self.places.next().map(|row| self.rows.at(row))
+        self.range.next().map(|row| self.rows.at(row))
     }
 
     fn size_hint(&self) -> (usize, Option<usize>) {
-        self.places.size_hint()
+        self.range.size_hint()
     }
 }
 
 impl DoubleEndedIterator for Iter<'_> {
     fn next_back(&mut self) -> Option<Row> {
-        self.places.next_back().map(|row| self.rows.at(row))
+        self.range.next_back().map(|row| self.rows.at(row))
     }
 }
 
@@ -271,7 +271,7 @@ mod tests {
     }
 
     #[test]
-    fn rows_come_back_as_they_were_and_changed_as_they_were_changed() {
+    fn rows_round_trip_and_edits_persist() {
         let all: Vec<Row> = (0..5).map(row).collect();
         let mut rows: Rows = all.iter().copied().collect();
         assert!(rows.iter().eq(all.iter().copied()) && rows.iter().rev().eq(all.iter().rev().copied()));
@@ -286,9 +286,9 @@ mod tests {
     }
 
     #[test]
-    fn the_first_row_later_than_a_time_is_found() {
+    fn first_later_than_finds_the_row() {
         let rows: Rows = (0..5).map(row).collect();
-        let later = [-1.0, 0.0, 399.0, 400.0, 1600.0].map(|t_ms| rows.later_than(t_ms));
+        let later = [-1.0, 0.0, 399.0, 400.0, 1600.0].map(|t_ms| rows.first_later_than(t_ms));
         assert_eq!(later, [0, 1, 1, 2, 5]);
     }
 }

@@ -11,17 +11,17 @@ use super::rows::Rows;
 use mindgap_files::{self as files, Records, TextFile};
 use mindgap_foundations::error::{Error, Result};
 
-/// One run of a robot: at least two rows in order of time.
+/// One run of a robot: at least two rows in temporal order.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Run {
-    /// File name without its ending.
+    /// File name without its extension.
     pub name: String,
     /// The rows.
     pub rows: Rows,
 }
 
 impl Run {
-    /// Reads a run. `warn` receives a line for each unknown column and other oddity.
+    /// Reads a run. `warn` receives a line for each unknown column and other irregularity.
     ///
     /// # Errors
     /// When the file cannot be read, lacks a column, has fewer than two rows, or has an invalid number.
@@ -35,13 +35,13 @@ impl Run {
     /// As [`Run::read`].
     pub fn read_with(path: &Path, required: &[&str], mut warn: impl FnMut(String)) -> Result<Self> {
         let mut text = TextFile::open(path)?;
-        if text.had_mark {
-            warn(format!("{}: begins with a byte order mark, which is passed over: save it without", path.display()));
+        if text.had_bom {
+            warn(format!("{}: starts with a byte-order mark (ignored)", path.display()));
         }
         let rows = rows(path, &mut text, required, &mut warn)?;
         if text.last != Some(b'\n') {
             warn(format!(
-                "{}: the last line has no line end; if it is torn, its last number may be wrong",
+                "{}: the last line has no line end; if it was cut off, its last number may be wrong",
                 path.display()
             ));
         }
@@ -64,7 +64,7 @@ impl Run {
         files::write(path, self.to_text())
     }
 
-    /// The text of its file; an optional column is there if any row has a value.
+    /// Returns the text of the run's file; an optional column is included if any row has a value.
     pub fn to_text(&self) -> String {
         let cells = || self.rows.iter().map(|row| cells(&row));
         let written: Vec<usize> =
@@ -81,13 +81,13 @@ impl Run {
         String::from_utf8(bytes).expect("names and numbers")
     }
 
-    /// Left and right command of the row before `k`; zeros at the first row, since motors start from rest.
+    /// Returns the left and right command of the row before `k`; zeros at the first row, since motors start from rest.
     pub fn previous_command(&self, k: usize) -> [f64; 2] {
         if k == 0 { [0.0, 0.0] } else { self.rows.at(k - 1).command() }
     }
 }
 
-/// Reads rows one by one: the text of a long run is never there as a whole.
+/// Reads rows one by one, so that the text of a long run is never in memory as a whole.
 fn rows(path: &Path, text: impl Read, required: &[&str], warn: &mut impl FnMut(String)) -> Result<Rows> {
     let mut records = Records::new(path, text);
     let header = records.header()?;
@@ -98,12 +98,10 @@ fn rows(path: &Path, text: impl Read, required: &[&str], warn: &mut impl FnMut(S
         let row = columns.row(&record).map_err(|what| Error::at_line(path, line, what))?;
         if let Some(before) = rows.last().filter(|before| row.t_ms <= before.t_ms) {
             let what = if row.t_ms == before.t_ms {
-                format!("t_ms = {} stands twice: write every row once", row.t_ms)
+                format!("t_ms = {} is duplicated: write each row once", row.t_ms)
             } else {
                 let (t_ms, before_ms) = (row.t_ms, before.t_ms);
-                format!(
-                    "t_ms = {t_ms} does not come after the row before ({before_ms}): give every run a file of its own"
-                )
+                format!("t_ms = {t_ms} is not later than the row before ({before_ms}): write each run to its own file")
             };
             return Err(Error::at_line(path, line, what));
         }
@@ -120,7 +118,7 @@ fn name_of(path: &Path) -> String {
     path.file_stem().unwrap_or_default().to_string_lossy().into_owned()
 }
 
-/// Numbers are written with at most two decimals, the precision of trackers and readings.
+/// Formats a number with at most two decimals, the precision of trackers and sensors.
 fn two_decimals(value: f64) -> String {
     let text = format!("{value:.2}");
     let text = text.trim_end_matches('0').trim_end_matches('.');

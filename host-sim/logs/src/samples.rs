@@ -3,7 +3,7 @@
 use crate::{Logs, Run};
 use mindgap_foundations::geometry::cast;
 
-/// A step longer than this multiple of `step_ms` spans missing rows and is left out.
+/// A step longer than this multiple of `step_ms` spans missing rows and is skipped.
 const LONGEST_STEP: f64 = 1.5;
 
 /// One step of a run: commands and pose increment in the robot's own frame.
@@ -13,7 +13,7 @@ const LONGEST_STEP: f64 = 1.5;
 pub struct MotionSample {
     /// Index of the run.
     pub run: usize,
-    /// Index of the row at which the step begins.
+    /// Index of the row at which the step starts.
     pub row: usize,
     /// Left, right, previous left and previous right command.
     pub speeds: [f64; 4],
@@ -25,7 +25,7 @@ pub struct MotionSample {
     pub turn_rad: f64,
 }
 
-/// One reading of the sensor and the geometry that it faced.
+/// One reading of the sensor and the geometry in front of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SonarSample {
     /// Index of the run.
@@ -34,37 +34,37 @@ pub struct SonarSample {
     pub row: usize,
     /// D: distance along the sensor's axis to the first wall or edge, cm.
     pub distance_cm: f64,
-    /// Signed angle between axis and normal in (-π/2, π/2), rad; its magnitude is α.
+    /// Signed incidence angle between axis and normal in (-π/2, π/2), rad; its magnitude is α.
     pub incidence_rad: f64,
     /// The reading, cm; `None` if the sensor produced no value.
     pub echo_cm: Option<f64>,
 }
 
 impl SonarSample {
-    /// α in degrees, 0..=90.
+    /// Returns α in degrees, 0..=90.
     pub fn alpha_deg(&self) -> f64 {
         self.incidence_rad.abs().to_degrees()
     }
 }
 
-/// All steps between two rows with a tracked pose.
+/// Returns all steps between two rows with tracked poses.
 pub fn motion(logs: &Logs) -> Vec<MotionSample> {
     steps(logs).collect()
 }
 
-/// The same one by one, for logs that are large.
+/// Iterates over the samples of [`motion`], for large logs.
 pub fn steps(logs: &Logs) -> impl Iterator<Item = MotionSample> {
     let step_ms = logs.robot.step_ms;
     let rows = logs.runs.iter().enumerate().flat_map(|(run, r)| (1..r.rows.len()).map(move |end| (run, r, end - 1)));
     rows.filter_map(move |(run, r, row)| step(step_ms, run, r, row))
 }
 
-/// The step from a row of a run.
+/// Returns the step from a row of a run.
 fn step(step_ms: f64, run: usize, r: &Run, row: usize) -> Option<MotionSample> {
     let (begin, end) = (r.rows.at(row), r.rows.at(row + 1));
-    let stretch = (end.t_ms - begin.t_ms) / step_ms;
+    let duration_ratio = (end.t_ms - begin.t_ms) / step_ms;
     let (from, to) = (begin.pose?, end.pose?);
-    if stretch > LONGEST_STEP {
+    if duration_ratio > LONGEST_STEP {
         return None;
     }
     let change = from.relative(&to);
@@ -73,18 +73,18 @@ fn step(step_ms: f64, run: usize, r: &Run, row: usize) -> Option<MotionSample> {
         run,
         row,
         speeds: [left, right, previous_left, previous_right],
-        forward_cm: change.position_cm.x / stretch,
-        lateral_cm: change.position_cm.y / stretch,
-        turn_rad: change.heading_rad / stretch,
+        forward_cm: change.position_cm.x / duration_ratio,
+        lateral_cm: change.position_cm.y / duration_ratio,
+        turn_rad: change.heading_rad / duration_ratio,
     })
 }
 
-/// All rows with a tracked pose at which the sensor, if there is one, faced a wall or an edge.
+/// Returns all rows with a tracked pose at which the sensor, if there is one, faced a wall or an edge.
 pub fn sonar(logs: &Logs) -> Vec<SonarSample> {
     readings(logs).collect()
 }
 
-/// The same one by one, for logs that are large.
+/// Iterates over the samples of [`sonar`], for large logs.
 pub fn readings(logs: &Logs) -> impl Iterator<Item = SonarSample> {
     let sides = logs.scene.sides();
     let sensor = logs.robot.ultrasonic;

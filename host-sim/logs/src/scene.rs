@@ -1,4 +1,4 @@
-//! `scene.toml`: walls, obstacles, and the target and starts of controllers (docs/reference/formats.md).
+//! `scene.toml`: walls, obstacles, and the target and start poses of controllers (docs/reference/formats.md).
 
 use std::path::Path;
 
@@ -29,12 +29,12 @@ impl Scene {
     /// Reads `scene.toml`.
     ///
     /// # Errors
-    /// When the file cannot be read or parsed, holds an impossible size or place.
+    /// When the file cannot be read or parsed, or contains an impossible size or position.
     pub fn read(path: &Path) -> Result<Self> {
         Scene::parse(path, &files::read_text(path)?)
     }
 
-    /// The scene that a text says; `path` is for messages.
+    /// Parses the text of `scene.toml`; `path` is for messages.
     ///
     /// # Errors
     /// As [`Scene::read`].
@@ -69,7 +69,7 @@ impl Scene {
         if let Some(target) = file.target {
             let (start, t) = (target.span().start, target.into_inner());
             let target_cm = DVec2::new(t.x_cm, t.y_cm);
-            if !is_point(target_cm) || !scene.holds(target_cm) {
+            if !is_point(target_cm) || !scene.is_free(target_cm) {
                 return Err(at(start, "the target lies outside the arena or inside an obstacle"));
             }
             scene.target_cm = Some(target_cm);
@@ -79,7 +79,7 @@ impl Scene {
             if !is_point(DVec2::new(s.x_cm, s.y_cm)) || !s.heading_deg.is_finite() {
                 return Err(at(start, "a start needs finite numbers"));
             }
-            if !scene.holds(DVec2::new(s.x_cm, s.y_cm)) {
+            if !scene.is_free(DVec2::new(s.x_cm, s.y_cm)) {
                 return Err(at(start, "the start lies outside the arena or inside an obstacle"));
             }
             scene.starts.push(Pose::new(s.x_cm, s.y_cm, s.heading_deg.to_radians()));
@@ -95,22 +95,22 @@ impl Scene {
         files::write(path, self.to_text())
     }
 
-    /// The text of `scene.toml`.
+    /// Returns the text of `scene.toml`.
     pub fn to_text(&self) -> String {
         let file = SceneFile {
-            arena: self.arena_cm.map(|a| unplaced(ArenaTable { width_cm: a.x, height_cm: a.y })),
-            obstacle: self.obstacles.iter().map(|o| unplaced(o.into())).collect(),
-            wall: self.walls.iter().map(|w| unplaced(w.into())).collect(),
-            target: self.target_cm.map(|t| unplaced(PointTable { x_cm: t.x, y_cm: t.y })),
-            start: self.starts.iter().map(|s| unplaced(s.into())).collect(),
+            arena: self.arena_cm.map(|a| without_span(ArenaTable { width_cm: a.x, height_cm: a.y })),
+            obstacle: self.obstacles.iter().map(|o| without_span(o.into())).collect(),
+            wall: self.walls.iter().map(|w| without_span(w.into())).collect(),
+            target: self.target_cm.map(|t| without_span(PointTable { x_cm: t.x, y_cm: t.y })),
+            start: self.starts.iter().map(|s| without_span(s.into())).collect(),
         };
         toml::to_string(&file).expect("numbers have a TOML form")
     }
 
-    /// Start `number` (from 1), where a robot of this radius has room.
+    /// Returns start pose `number` (from 1) for a robot of radius `radius_cm`.
     ///
     /// # Errors
-    /// When there is no such start, or when the robot touches something there.
+    /// When there is no such start, or the robot would touch something there.
     pub fn start(&self, number: usize, radius_cm: f64) -> Result<Pose> {
         let count = self.starts.len();
         let start = number.checked_sub(1).and_then(|i| self.starts.get(i)).copied();
@@ -122,31 +122,31 @@ impl Scene {
         Ok(start)
     }
 
-    /// All surfaces: the sides of the arena, the edges of obstacles, bare walls, in this order.
+    /// Returns all surfaces: the sides of the arena, the edges of obstacles, bare walls, in this order.
     pub fn sides(&self) -> Vec<Wall> {
         let arena = self.arena_cm.map(|high_cm| Rectangle { low_cm: DVec2::ZERO, high_cm });
         arena.iter().chain(&self.obstacles).flat_map(Rectangle::edges).chain(self.walls.iter().copied()).collect()
     }
 
-    /// The smallest axis-parallel rectangle that contains all sides; `None` for an empty scene.
+    /// Returns the smallest axis-parallel rectangle that contains all surfaces; `None` for an empty scene.
     pub fn bounding_box(&self) -> Option<Rectangle> {
         bounding_box(&self.sides())
     }
 
-    /// Whether a point lies within the arena and in no obstacle.
-    pub fn holds(&self, point_cm: DVec2) -> bool {
+    /// Returns whether a point lies inside the arena and outside all obstacles.
+    pub fn is_free(&self, point_cm: DVec2) -> bool {
         let inside = self.arena_cm.is_none_or(|high_cm| Rectangle { low_cm: DVec2::ZERO, high_cm }.contains(point_cm));
         inside && !self.obstacles.iter().any(|o| o.contains(point_cm))
     }
 
-    /// Whether a disc of `radius_cm` about a point touches nothing.
+    /// Returns whether a disc of radius `radius_cm` around a point touches nothing.
     pub fn has_room_for(&self, point_cm: DVec2, radius_cm: f64) -> bool {
-        self.holds(point_cm) && self.sides().iter().all(|w| w.nearest(point_cm).distance(point_cm) > radius_cm)
+        self.is_free(point_cm) && self.sides().iter().all(|w| w.nearest(point_cm).distance(point_cm) > radius_cm)
     }
 }
 
-/// A table that comes from no file.
-fn unplaced<T>(table: T) -> Spanned<T> {
+/// Wraps a table that does not come from a file.
+fn without_span<T>(table: T) -> Spanned<T> {
     Spanned::new(0..0, table)
 }
 

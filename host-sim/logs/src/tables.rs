@@ -1,4 +1,4 @@
-//! Runs as tables in memory, column by column: for programs that keep logs in arrays and not in files.
+//! Runs as tables of columns in memory, for programs that keep logs in arrays instead of files.
 
 use std::path::Path;
 
@@ -8,23 +8,23 @@ use super::columns::{COLUMNS, cells};
 use super::{Logs, Robot, Run, Scene};
 use mindgap_foundations::error::{Error, Result};
 
-/// What messages call logs that stand in no folder.
+/// Name of logs without a folder in messages.
 const IN_MEMORY: &str = "logs";
 
-/// A run: its name, and its columns by the names of `run-*.csv`. NaN is an empty cell.
+/// A run as columns, named as in `run-*.csv`. NaN is an empty cell.
 pub struct Table {
     /// Name of the run.
     pub name: String,
-    /// The columns, equally long.
+    /// The columns, all of the same length.
     pub columns: Vec<(String, Vec<f64>)>,
 }
 
 impl Logs {
-    /// Logs of tables, with the checks of [`Logs::read`]; line 2 in a message is a table's first row.
+    /// Builds logs from tables, with the checks of [`Logs::read`]; line 2 in a message is the first row of a table.
     ///
     /// # Errors
-    /// As [`Logs::read`], or when the columns of a table are not equally long.
-    pub fn of_tables(robot: Robot, scene: Scene, tables: &[Table], mut warn: impl FnMut(String)) -> Result<Self> {
+    /// As [`Logs::read`], or when the columns of a table differ in length.
+    pub fn from_tables(robot: Robot, scene: Scene, tables: &[Table], mut warn: impl FnMut(String)) -> Result<Self> {
         if tables.is_empty() {
             return Err(Error::in_file(Path::new(IN_MEMORY), "there is no run"));
         }
@@ -36,29 +36,29 @@ impl Logs {
 }
 
 impl Table {
-    /// A run as a table; a column is in it if any row has a value there.
-    pub fn of(run: &Run) -> Self {
+    /// Converts a run to a table; a column is included if any row has a value.
+    pub fn from_run(run: &Run) -> Self {
         let rows: Vec<_> = run.rows.iter().map(|row| cells(&row)).collect();
         let column = |c: usize| rows.iter().map(|row| row[c].unwrap_or(f64::NAN)).collect();
         let written = (0..COLUMNS.len()).filter(|c| rows.iter().any(|row| row[*c].is_some()));
         Table { name: run.name.clone(), columns: written.map(|c| (COLUMNS[c].into(), column(c))).collect() }
     }
 
-    /// The same as the text of a file, with every digit: one place decides what a cell may say.
+    /// Returns the table as the text of a file at full precision, so that cells are validated in one place.
     fn text(&self) -> Result<String> {
-        let named = |what: String| Error::in_file(Path::new(&self.name), what);
+        let located = |what: String| Error::in_file(Path::new(&self.name), what);
         let length = self.columns.first().map_or(0, |(_, first)| first.len());
         if let Some((name, values)) = self.columns.iter().find(|(_, values)| values.len() != length) {
-            return Err(named(format!("column {name} has {} rows, and the first has {length}", values.len())));
+            return Err(located(format!("column {name} has {} rows, but the first has {length}", values.len())));
         }
-        let failed = |e: csv::Error| named(e.to_string());
+        let failed = |e: csv::Error| located(e.to_string());
         let mut writer = Writer::from_writer(Vec::new());
         writer.write_record(self.columns.iter().map(|(name, _)| name)).map_err(failed)?;
         let cell = |value: f64| if value.is_nan() { String::new() } else { value.to_string() };
         for row in 0..length {
             writer.write_record(self.columns.iter().map(|(_, values)| cell(values[row]))).map_err(failed)?;
         }
-        let bytes = writer.into_inner().map_err(|e| named(e.to_string()))?;
-        String::from_utf8(bytes).map_err(|e| named(e.to_string()))
+        let bytes = writer.into_inner().map_err(|e| located(e.to_string()))?;
+        String::from_utf8(bytes).map_err(|e| located(e.to_string()))
     }
 }

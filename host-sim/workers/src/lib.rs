@@ -4,7 +4,7 @@
 //! the work, and can keep them in a [`checkpoint`], from which an interrupted run resumes.
 
 pub mod checkpoint;
-mod handing_out;
+mod distribute;
 #[cfg(not(feature = "mpi"))]
 mod no_ranks;
 #[cfg(feature = "mpi")]
@@ -24,8 +24,8 @@ use mindgap_foundations::executor::{Batch, Executor};
 use rayon::prelude::*;
 use serde_bytes::ByteBuf;
 
-use checkpoint::{Begin, Checkpoint};
-use handing_out::hand_out;
+use checkpoint::{Checkpoint, CreateFile};
+use distribute::hand_out;
 #[cfg(not(feature = "mpi"))]
 use no_ranks as ranks;
 use ranks::Ranks;
@@ -41,8 +41,8 @@ const RANK_VARIABLES: [&str; 3] = ["OMPI_", "PMIX_", "PMI_"];
 pub struct Workers {
     ranks: Option<Ranks>,
     checkpoint: Mutex<Option<Checkpoint>>,
-    /// Number of batches that have begun.
-    batches: AtomicU32,
+    /// Number of batches started, by which ranks and the checkpoint know them.
+    parts: AtomicU32,
     /// Whether only the first rank has work left.
     is_released: AtomicBool,
 }
@@ -64,16 +64,21 @@ impl Workers {
     }
 
     /// Leaves the work to the first rank alone.
-    pub fn go_alone(&mut self) {
+    pub fn leave_ranks(&mut self) {
         self.ranks = None;
     }
 
-    /// Begins a task, resuming from its checkpoint if there is one; returns the number of results in it. `warn` receives a
+    /// CreateFiles a task, resuming from its checkpoint if there is one; returns the number of results in it. `warn` receives a
     /// line when the end of the checkpoint is lost.
     ///
     /// # Errors
     /// When other ranks or the checkpoint have another task, or the checkpoint cannot be read or written.
-    pub fn begin(&mut self, task: Task, checkpoint: Option<(&Path, Begin)>, warn: impl FnMut(String)) -> Result<usize> {
+    pub fn begin(
+        &mut self,
+        task: Task,
+        checkpoint: Option<(&Path, CreateFile)>,
+        warn: impl FnMut(String),
+    ) -> Result<usize> {
         if let Some(ranks) = &self.ranks {
             ranks.agree(&task)?;
         }
@@ -124,7 +129,7 @@ impl Executor for Workers {
             None => work(),
             Some(ranks) => {
                 let value = if ranks.is_first() { Some(ByteBuf::from(work()?)) } else { None };
-                ranks.everywhere(value).map(ByteBuf::into_vec)
+                ranks.broadcast(value).map(ByteBuf::into_vec)
             }
         }
     }
@@ -135,7 +140,7 @@ impl Executor for Workers {
 }
 
 /// Keeps another program that is called from taking itself for one of the ranks.
-pub fn keep_out(program: &mut Command) {
+pub fn remove_rank_variables(program: &mut Command) {
     let of_ranks = |name: &OsString| RANK_VARIABLES.iter().any(|prefix| name.to_string_lossy().starts_with(prefix));
     for name in env::vars_os().map(|(name, _)| name).filter(of_ranks) {
         program.env_remove(name);
@@ -171,7 +176,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn pieces_come_in_order_whichever_is_done_first() {
+    fn results_come_in_order_whichever_finishes_first() {
         let slow_first = |index: usize| {
             thread::sleep(Duration::from_millis((50 - index as u64) / 10));
             Ok(index * index)
@@ -181,15 +186,16 @@ mod tests {
     }
 
     #[test]
-    fn a_piece_may_hand_out_work_of_its_own() {
-        let workers = &Workers::default();
-        let sum = |outer: usize| Ok(map(workers, 40, |inner| Ok(outer * inner))?.iter().sum::<usize>());
-        let sums = map(workers, 40, sum).unwrap();
+    fn items_may_distribute_work_themselves() {
+        let sums = map(&Workers::default(), 40, |outer| {
+            Ok(map(&Workers::default(), 40, |inner| Ok(outer * inner))?.iter().sum::<usize>())
+        })
+        .unwrap();
         assert_eq!(sums, (0..40).map(|outer| outer * 780).collect::<Vec<usize>>());
     }
 
     #[test]
-    fn no_more_is_begun_than_can_be_taken_soon() {
+    fn number_of_items_in_progress_is_bounded() {
         let begun = AtomicUsize::new(0);
         let work = |index: usize| {
             begun.fetch_add(1, Ordering::SeqCst);
@@ -204,7 +210,7 @@ mod tests {
     }
 
     #[test]
-    fn a_failure_leaves_the_rest() {
+    fn failure_skips_the_remaining_items() {
         let begun = AtomicUsize::new(0);
         let work = |index: usize| {
             begun.fetch_add(1, Ordering::SeqCst);
@@ -216,9 +222,9 @@ mod tests {
         assert_eq!(refused.unwrap_err().to_string(), "full");
     }
 
-    /// As when Ctrl-C ends it.
+    /// As when Ctrl-C is pressed.
     #[test]
-    fn a_panic_of_whoever_is_told_leaves_what_has_not_begun() {
+    fn panic_of_the_watcher_skips_items_not_yet_started() {
         let begun = AtomicUsize::new(0);
         let work = |index: usize| {
             begun.fetch_add(1, Ordering::SeqCst);
@@ -233,7 +239,7 @@ mod tests {
 
     #[test]
     #[should_panic(expected = "a mistake")]
-    fn a_panic_goes_through() {
+    fn panic_in_an_item_propagates() {
         let _ = map(&Workers::default(), 10, |index| if index == 5 { panic!("a mistake") } else { Ok(index) });
     }
 }

@@ -1,14 +1,14 @@
-//! Without the feature `mpi` there are no ranks.
+//! Stands in for `ranks` without the feature `mpi`.
 
 use std::sync::mpsc::Receiver;
 
 use serde_bytes::ByteBuf;
 
-use super::handing_out::{Heard, Sent};
+use super::distribute::{Message, Sent};
 use super::task::Task;
 use mindgap_foundations::error::Result;
 
-/// None of them is ever there.
+/// Ranks, of which there are none.
 pub enum Ranks {}
 
 impl Ranks {
@@ -32,7 +32,7 @@ impl Ranks {
         match *self {}
     }
 
-    pub fn everywhere<T>(&self, _: Option<T>) -> Result<T> {
+    pub fn broadcast<T>(&self, _: Option<T>) -> Result<T> {
         match *self {}
     }
 
@@ -44,11 +44,11 @@ impl Ranks {
         match *self {}
     }
 
-    pub fn over(&self) -> Result<()> {
+    pub fn finish_part(&self) -> Result<()> {
         match *self {}
     }
 
-    pub fn heard(&self, _: u32) -> Result<Option<Heard>> {
+    pub fn poll(&self, _: u32) -> Result<Option<Message>> {
         match *self {}
     }
 

@@ -1,9 +1,8 @@
-//! Ranks: processes on one machine or many that `mpirun` started together, all with the same call of the command.
+//! MPI ranks: processes on one or more machines that `mpirun` started with the same command.
 //!
-//! Each takes the same way through the command; pieces of work are done by the one to which the first rank hands them,
-//! and the first alone writes, prints and asks. A rank asks for work for each of its threads, and for more as it is done.
-//! Only the main thread speaks to MPI. It looks for messages now and then, and sleeps: waiting by MPI would take a whole
-//! processor.
+//! All ranks run the same command; the first rank hands out the work items, and it alone writes and prints. A rank asks for
+//! work for each of its threads, and for more when items are done. Only the main thread calls MPI. It polls for messages and
+//! sleeps in between: waiting inside MPI would occupy a whole processor.
 
 use std::panic;
 use std::process;
@@ -19,24 +18,24 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 use serde_bytes::ByteBuf;
 
-use super::handing_out::{Heard, Sent, Waiting, unwound};
+use super::distribute::{Backoff, Message, Sent, unwound};
 use super::task::Task;
 use mindgap_foundations::error::{Error, Result};
 
-/// What fails on all ranks alike is told by the first; another waits so long for the end that this is.
+/// An error on all ranks is reported by the first; the others wait this long to be aborted by it.
 const GRACE: Duration = Duration::from_secs(10);
 
-/// What messages are: a task, for comparison;
+/// Message: a task, to be compared.
 const TASK: Tag = 1;
-/// a thread that is free, in a part of the run;
+/// Message: a thread is free, in a part of the run.
 const FREE: Tag = 2;
-/// pieces to do, with their indices;
-const PIECES: Tag = 3;
-/// what came of one;
+/// Message: items to work on, with their indices.
+const ITEMS: Tag = 3;
+/// Message: the result of an item.
 const DONE: Tag = 4;
-/// that all of a part are done;
-const OVER: Tag = 5;
-/// a value that all are to have.
+/// Message: all items of a part are done.
+const PART_DONE: Tag = 5;
+/// Message: a value for all ranks.
 const VALUE: Tag = 6;
 
 /// The ranks, seen from one of them.
@@ -45,50 +44,50 @@ pub struct Ranks {
 }
 
 impl Ranks {
-    /// The ranks that this process was started with; none without `mpirun`.
+    /// Joins the ranks that this process was started with; `None` without `mpirun`.
     ///
     /// # Errors
-    /// When MPI cannot be begun.
+    /// When MPI cannot be initialised.
     pub fn join() -> Result<Option<Self>> {
         let is_started =
             ["OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "PMIX_RANK"].iter().any(|name| std::env::var_os(name).is_some());
         if !is_started {
             return Ok(None);
         }
-        let begun = mpi::initialize_with_threading(mpi::Threading::Funneled);
-        let (universe, _) = begun.ok_or_else(|| Error::new("MPI was begun already"))?;
-        // A rank that left in good order would be waited for.
-        let tell = panic::take_hook();
+        let started = mpi::initialize_with_threading(mpi::Threading::Funneled);
+        let (universe, _) = started.ok_or_else(|| Error::new("MPI is already initialised"))?;
+        // MPI would wait for a rank that exits normally.
+        let report = panic::take_hook();
         panic::set_hook(Box::new(move |why| {
-            tell(why);
+            report(why);
             process::abort()
         }));
         Ok(Some(Ranks { universe }))
     }
 
-    /// Whether this is the first rank.
+    /// Returns whether this is the first rank.
     pub fn is_first(&self) -> bool {
         self.world().rank() == 0
     }
 
-    /// The number of ranks.
+    /// Returns the number of ranks.
     pub fn count(&self) -> usize {
         self.world().size() as usize
     }
 
-    /// The number of ranks on this machine.
+    /// Returns the number of ranks on this machine.
     pub fn on_this_machine(&self) -> usize {
         self.world().split_shared(0).size() as usize
     }
 
-    /// Makes sure that all ranks do the same.
+    /// Checks that all ranks have the same task.
     ///
     /// # Errors
-    /// On the first rank, when one could not find out what to do, or does something else.
+    /// On the first rank, when another rank has a different task.
     pub fn agree(&self, task: &Task) -> Result<()> {
         if !self.is_first() {
             self.send(0, TASK, task)?;
-            self.everywhere(None::<bool>)?;
+            self.broadcast(None::<bool>)?;
             return Ok(());
         }
         for _ in 1..self.count() {
@@ -97,15 +96,15 @@ impl Ranks {
                 return Err(Error::new(format!("rank {rank} differs from rank 0: it has {difference}")));
             }
         }
-        self.everywhere(Some(true))?;
+        self.broadcast(Some(true))?;
         Ok(())
     }
 
-    /// The value that the first rank gives, on all.
+    /// Sends the value of the first rank to all ranks and returns it.
     ///
     /// # Errors
     /// When it cannot be sent.
-    pub fn everywhere<T: Serialize + DeserializeOwned>(&self, value: Option<T>) -> Result<T> {
+    pub fn broadcast<T: Serialize + DeserializeOwned>(&self, value: Option<T>) -> Result<T> {
         match value {
             Some(value) => {
                 let bytes = encode(&value)?;
@@ -116,8 +115,8 @@ impl Ranks {
         }
     }
 
-    /// Starts the pieces of a part of the run that the first rank hands out, on so many threads, and sends the results,
-    /// until all are done.
+    /// Works on the items of a part that the first rank hands out, on `threads` threads, and sends the results, until the part is
+    /// done.
     ///
     /// # Errors
     /// When a result cannot be sent.
@@ -129,69 +128,69 @@ impl Ranks {
         results: &Receiver<Sent>,
     ) -> Result<()> {
         (0..threads).try_for_each(|_| self.send(0, FREE, &part))?;
-        let (mut begun, mut waiting) = (0, Waiting::begin());
+        let (mut started, mut backoff) = (0, Backoff::new());
         loop {
-            while let Some((_, tag, bytes)) = self.look() {
-                if tag == OVER {
+            while let Some((_, tag, bytes)) = self.probe() {
+                if tag == PART_DONE {
                     return Ok(());
                 }
-                for (index, piece) in decode::<Vec<(usize, ByteBuf)>>(&bytes)? {
-                    start(index, piece);
-                    begun += 1;
+                for (index, item) in decode::<Vec<(usize, ByteBuf)>>(&bytes)? {
+                    start(index, item);
+                    started += 1;
                 }
-                waiting = Waiting::begin();
+                backoff = Backoff::new();
             }
-            // Nothing is handed to a rank all of whose threads are at work.
-            let sent = if begun < threads { results.recv_timeout(waiting.next()).ok() } else { results.recv().ok() };
+            // Nothing is handed to a rank whose threads are all busy.
+            let sent = if started < threads { results.recv_timeout(backoff.next()).ok() } else { results.recv().ok() };
             if let Some(sent) = sent {
-                let (index, piece) = unwound(sent);
-                self.send(0, DONE, &(index, piece.map_err(|e| e.to_string())))?;
-                begun -= 1;
-                waiting = Waiting::begin();
+                let (index, item) = unwound(sent);
+                self.send(0, DONE, &(index, item.map_err(|e| e.to_string())))?;
+                started -= 1;
+                backoff = Backoff::new();
             }
         }
     }
 
-    /// Hands pieces with their indices to a rank.
+    /// Hands items with their indices to a rank.
     ///
     /// # Errors
     /// When they cannot be sent.
-    pub fn hand(&self, rank: usize, pieces: &[(usize, ByteBuf)]) -> Result<()> {
-        self.send(rank, PIECES, &pieces)
+    pub fn hand(&self, rank: usize, items: &[(usize, ByteBuf)]) -> Result<()> {
+        self.send(rank, ITEMS, &items)
     }
 
-    /// Tells all that a part is over.
+    /// Tells all ranks that a part is done.
     ///
     /// # Errors
     /// When it cannot be sent.
-    pub fn over(&self) -> Result<()> {
-        (1..self.count()).try_for_each(|rank| self.send(rank, OVER, &()))
+    pub fn finish_part(&self) -> Result<()> {
+        (1..self.count()).try_for_each(|rank| self.send(rank, PART_DONE, &()))
     }
 
-    /// Returns the next message of a rank about a batch, if there is one.
+    /// Returns the next message of a rank about a part, if there is one.
     ///
     /// # Errors
-    /// When it is not to be understood.
-    pub fn heard(&self, part: u32) -> Result<Option<Heard>> {
-        while let Some((rank, tag, bytes)) = self.look() {
+    /// When it cannot be decoded.
+    pub fn poll(&self, part: u32) -> Result<Option<Message>> {
+        while let Some((rank, tag, bytes)) = self.probe() {
             if tag == DONE {
-                let (index, piece): (usize, std::result::Result<ByteBuf, String>) = decode(&bytes)?;
-                return Ok(Some(Heard::Done(rank, index, piece.map_err(Error::new))));
+                let (index, item): (usize, std::result::Result<ByteBuf, String>) = decode(&bytes)?;
+                return Ok(Some(Message::Done(rank, index, item.map_err(Error::new))));
             }
-            // A rank that was late asks for work of a part that is over; it will hear that.
+            // A late rank asks for work of a finished part; it will be told that the part is done.
             if decode::<u32>(&bytes)? == part {
-                return Ok(Some(Heard::Free(rank)));
+                return Ok(Some(Message::Free(rank)));
             }
         }
         Ok(None)
     }
 
-    /// Ends all ranks after this one has failed; `tell` says why, unless the first rank does.
-    pub fn fail(&self, tell: impl FnOnce()) -> ! {
+    /// Ends all ranks after this one has failed; `report` prints the error, unless the first rank already has.
+    pub fn fail(&self, report: impl FnOnce()) -> ! {
         if !self.is_first() {
             thread::sleep(GRACE);
         }
-        tell();
+        report();
         if self.count() == 1 {
             process::exit(1)
         }
@@ -214,19 +213,19 @@ impl Ranks {
         Ok(())
     }
 
-    /// The next message, whenever it comes.
+    /// Waits for the next message.
     fn receive(&self) -> (usize, Tag, Vec<u8>) {
-        let mut waiting = Waiting::begin();
+        let mut backoff = Backoff::new();
         loop {
-            match self.look() {
+            match self.probe() {
                 Some(message) => return message,
-                None => thread::sleep(waiting.next()),
+                None => thread::sleep(backoff.next()),
             }
         }
     }
 
-    /// The next message and who sent it, if there is one.
-    fn look(&self) -> Option<(usize, Tag, Vec<u8>)> {
+    /// Returns the next message with its sender and tag, if there is one.
+    fn probe(&self) -> Option<(usize, Tag, Vec<u8>)> {
         let found = self.world().any_process().immediate_matched_probe()?;
         let (bytes, status) = found.matched_receive_vec();
         Some((status.source_rank() as usize, status.tag(), bytes))

@@ -1,4 +1,4 @@
-//! What a run does, as far as it decides what comes of it: another run does the same if nothing of this differs.
+//! A task: everything that determines the results of a run. Two runs with equal tasks give equal results.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -7,19 +7,19 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
-use mindgap_files::places::at;
+use mindgap_files::places::resolved;
 
-/// A call of a command.
+/// A call of a command, with its arguments and the content of its inputs.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Task {
     version: String,
     command: String,
     arguments: BTreeMap<String, String>,
-    /// What is read, in the order in which the command names it.
+    /// The inputs, in the order of the command line.
     inputs: Vec<Input>,
 }
 
-/// A file or folder that is read. It counts by what it holds: the same one may be called by another path.
+/// An input file or folder, compared by content: another path to the same content is equal.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 struct Input {
     path: String,
@@ -27,17 +27,17 @@ struct Input {
 }
 
 impl Task {
-    /// A command with its arguments by name. Of what it reads, `outputs` and hidden files count for nothing, and what cannot
-    /// be read is for the command to tell.
+    /// Describes a command with its arguments by name. Among the inputs, `outputs` and hidden files are ignored; unreadable inputs
+    /// are left for the command to report.
     pub fn new(command: String, arguments: BTreeMap<String, String>, inputs: &[PathBuf], outputs: &[PathBuf]) -> Self {
-        let outputs: Vec<PathBuf> = outputs.iter().map(|output| at(output)).collect();
-        let digested =
-            |input: &PathBuf| Input { path: input.display().to_string(), sha256: digest(&at(input), &outputs) };
-        let inputs = inputs.iter().map(digested).collect();
+        let outputs: Vec<PathBuf> = outputs.iter().map(|output| resolved(output)).collect();
+        let with_digest =
+            |input: &PathBuf| Input { path: input.display().to_string(), sha256: digest(&resolved(input), &outputs) };
+        let inputs = inputs.iter().map(with_digest).collect();
         Task { version: env!("CARGO_PKG_VERSION").into(), command, arguments, inputs }
     }
 
-    /// The first thing in which this one differs from another, in words.
+    /// Returns the first difference from another task, as a phrase.
     pub fn difference_from(&self, other: &Task) -> Option<String> {
         if self.version != other.version {
             return Some(format!("version {}, not {}", self.version, other.version));
@@ -45,7 +45,7 @@ impl Task {
         if self.command != other.command {
             return Some(format!("the command {}, not {}", self.command, other.command));
         }
-        let value = |task: &Task, name: &str| task.arguments.get(name).cloned().unwrap_or_else(|| "left out".into());
+        let value = |task: &Task, name: &str| task.arguments.get(name).cloned().unwrap_or_else(|| "unset".into());
         let names = self.arguments.keys().chain(other.arguments.keys());
         let differs = |name: &&String| self.arguments.get(*name) != other.arguments.get(*name);
         if let Some(name) = names.into_iter().find(differs) {
@@ -53,18 +53,18 @@ impl Task {
         }
         let mut theirs = other.inputs.iter();
         let is_changed = |input: &&Input| theirs.next().is_none_or(|other| other.sha256 != input.sha256);
-        self.inputs.iter().find(is_changed).map(|input| format!("another content of {}", input.path))
+        self.inputs.iter().find(is_changed).map(|input| format!("different content in {}", input.path))
     }
 }
 
-/// SHA-256 of a file, or of a folder's files and their names.
+/// Returns the SHA-256 of a file, or of a folder's files and their names.
 fn digest(path: &Path, except: &[PathBuf]) -> String {
     let mut digest = Sha256::new();
     add_readable(path, except, &mut digest);
     digest.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
-/// Adds what can be read, and of the rest why it cannot.
+/// Adds what can be read, and the kind of error for what cannot.
 fn add_readable(path: &Path, except: &[PathBuf], digest: &mut Sha256) {
     add(path, except, digest).unwrap_or_else(|e| digest.update(e.kind().to_string()));
 }
@@ -96,7 +96,7 @@ mod tests {
     }
 
     #[test]
-    fn what_differs_is_named() {
+    fn first_difference_is_reported() {
         let folder = tempfile::tempdir().unwrap();
         fs::write(folder.path().join("a.csv"), "1").unwrap();
         let one = task("1", folder.path());
@@ -107,13 +107,13 @@ mod tests {
         let other = Task { command: "train".into(), ..one.clone() };
         assert_eq!(other.difference_from(&one), Some("the command train, not evolve".into()));
         let without = Task { arguments: BTreeMap::new(), ..one.clone() };
-        assert_eq!(without.difference_from(&one), Some("--seed left out, not 1".into()));
+        assert_eq!(without.difference_from(&one), Some("--seed unset, not 1".into()));
         fs::write(folder.path().join("answers"), "an output").unwrap();
         fs::write(folder.path().join(".hidden"), "on the way").unwrap();
         assert_eq!(one, task("1", folder.path()));
-        assert_eq!(one.difference_from(&task("1", &folder.path().join("."))), None, "another name of the same folder");
+        assert_eq!(one.difference_from(&task("1", &folder.path().join("."))), None, "another path to the same folder");
         fs::write(folder.path().join("a.csv"), "2").unwrap();
-        let changed = format!("another content of {}", folder.path().display());
+        let changed = format!("different content in {}", folder.path().display());
         assert_eq!(one.difference_from(&task("1", folder.path())), Some(changed));
     }
 }

@@ -60,7 +60,7 @@ fn a_wrong_column() {
     let problem = refused_after("run-002.csv", |text| text.replacen("heading_deg", "heading", 1));
     begins(&problem, "logs/run-002.csv:1: column heading_deg is missing");
     let problem = refused_after("run-002.csv", |text| text.replacen("right", "left", 1));
-    begins(&problem, "logs/run-002.csv:1: column left stands twice");
+    begins(&problem, "logs/run-002.csv:1: column left is duplicated");
 }
 
 #[test]
@@ -72,7 +72,7 @@ fn numbers_that_are_none() {
                 continue;
             }
             let problem = refused_after("run-001.csv", |text| with_row(&text, 7, |cells| cells[column] = cell.into()));
-            begins(&problem, &format!("logs/run-001.csv:7: {name} = {word} is no number"));
+            begins(&problem, &format!("logs/run-001.csv:7: {name} = {word} is not a number"));
         }
     }
 }
@@ -82,9 +82,9 @@ fn numbers_that_cannot_be() {
     let problem = refused_after("run-001.csv", |text| with_row(&text, 4, |cells| cells[2] = "101".into()));
     assert_eq!(problem, "logs/run-001.csv:4: right = 101 lies outside -100..100");
     let problem = refused_after("run-001.csv", |text| with_row(&text, 4, |cells| cells[6] = "-1".into()));
-    assert_eq!(problem, "logs/run-001.csv:4: echo_cm = -1 is below zero; leave the cell empty where there was no echo");
+    assert_eq!(problem, "logs/run-001.csv:4: echo_cm = -1 is negative; leave the cell empty if there was no echo");
     let problem = refused_after("run-001.csv", |text| with_row(&text, 4, |cells| cells[0] = "0".into()));
-    begins(&problem, "logs/run-001.csv:4: t_ms = 0 does not come after the row before");
+    begins(&problem, "logs/run-001.csv:4: t_ms = 0 is not later than the row before");
     let problem = refused_after("run-001.csv", |text| with_row(&text, 4, |cells| cells[3].clear()));
     begins(&problem, "logs/run-001.csv:4: x_cm, y_cm and heading_deg must be there together");
 }
@@ -121,7 +121,7 @@ fn an_unknown_column_is_told_and_left_out() {
     workshop.edit("logs/run-000.csv", |text| text.replacen("battery_mv", "mood", 1));
     let done = workshop.call("train logs --out sim.json");
     assert_eq!(done.code, 0);
-    assert_eq!(done.err, "mindgap: warning: logs/run-000.csv:1: column \"mood\" is not known and left out\n");
+    assert_eq!(done.err, "mindgap: warning: logs/run-000.csv:1: unknown column \"mood\" ignored\n");
 }
 
 #[test]

@@ -90,7 +90,7 @@ fn what_cannot_run_is_refused() {
     assert!(workshop.refused("brick none.rxe --readings 1").starts_with("none.rxe: cannot be read: "));
     assert_eq!(
         workshop.refused("brick run.rxe --readings 12,far"),
-        "--readings \"12,far\" is no file, and as a list it has a reading that is \"far\", \
+        "--readings \"12,far\" is not a file, and as a list it has a reading that is \"far\", \
          neither a distance nor none, silent or hangs"
     );
     workshop.write("readings.csv", "t_ms,echo_cm\n0,100\n400,256\n");
@@ -105,7 +105,7 @@ fn what_cannot_run_is_refused() {
     workshop.write("world.csv", "t_ms,port_1\n0,200\n");
     assert_eq!(
         workshop.refused("brick run.rxe --readings none --world world.csv"),
-        "world.csv:2: port_1 = \"200\" is no whole number of 0..100"
+        "world.csv:2: port_1 = \"200\" is not a whole number from 0 to 100"
     );
 }
 

@@ -169,7 +169,7 @@ fn of_a_torn_checkpoint_the_beginning_is_used() {
     assert_eq!(done.code, 0, "{}", done.err);
     let told: Vec<&str> = done.err.lines().collect();
     assert!(
-        told.len() == 2 && told[0].contains("kept: its end is torn") && told[1].contains("kept: goes on"),
+        told.len() == 2 && told[0].contains("kept: its end is damaged") && told[1].contains("kept: goes on"),
         "{told:?}"
     );
     assert_same(&unbroken, &broken, &[EVOLVE]);
@@ -202,9 +202,9 @@ fn a_checkpoint_of_another_run_is_refused_by_name() {
     assert!(refused(EVOLVE).contains("of a run with version 0."));
     broken.write("kept", kept);
     let said = refused_by_another_build(&broken);
-    assert!(said.contains("of a run with another content of /"), "{said}");
+    assert!(said.contains("of a run with different content in /"), "{said}");
     broken.edit("scene.toml", |text| text.replace("x_cm = 160", "x_cm = 161"));
-    assert!(refused(EVOLVE).contains("another content of scene.toml"));
+    assert!(refused(EVOLVE).contains("different content in scene.toml"));
     broken.write("kept", "my own notes\n");
     assert!(refused(EVOLVE).contains("is not a checkpoint that mindgap wrote"));
 }

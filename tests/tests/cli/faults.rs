@@ -17,56 +17,56 @@ const fn fault(what: &'static str, told: &'static str, put: fn(&str) -> Vec<u8>)
 
 /// Those that keep the file from being read.
 const REFUSED: [Fault; 22] = [
-    fault("semicolons", ":1: the columns are parted by semicolons", |text| text.replace(',', ";").into()),
-    fault("tabs", ":1: the columns are parted by tabs", |text| text.replace(',', "\t").into()),
-    fault("blanks", ":1: the columns are parted by blanks", |text| text.replace(',', " ").into()),
+    fault("semicolons", ":1: columns are separated by semicolons", |text| text.replace(',', ";").into()),
+    fault("tabs", ":1: columns are separated by tabs", |text| text.replace(',', "\t").into()),
+    fault("blanks", ":1: columns are separated by spaces", |text| text.replace(',', " ").into()),
     fault("decimal commas", "write numbers with a decimal point", |text| {
         text.replace(',', ";").replace('.', ",").into()
     }),
-    fault("quoted decimal commas", ":2: x_cm = \"1,5\" is no number; write a decimal point", |text| {
+    fault("quoted decimal commas", ":2: x_cm = \"1,5\" is not a number; write a decimal point", |text| {
         with_cells(text, |_, cells| cells[3] = "\"1,5\"".into())
     }),
     fault("UTF-16 with a mark", ": is UTF-16", |text| {
         [0xFEFF].into_iter().chain(text.encode_utf16()).flat_map(u16::to_le_bytes).collect()
     }),
     fault("UTF-16 without", ": is UTF-16", |text| text.encode_utf16().flat_map(u16::to_be_bytes).collect()),
-    fault("Latin-1", ":1: is no UTF-8: save it as UTF-8", |text| {
+    fault("Latin-1", ":1: is not UTF-8: save it as UTF-8", |text| {
         let (header, rows) = text.split_once("battery_mv").expect("a column");
         [header.as_bytes(), b"ger\xE4usch", rows.as_bytes()].concat()
     }),
-    fault("capitals", ":1: column t_ms is written in capitals", |text| {
+    fault("capitals", ":1: column t_ms is in capitals", |text| {
         let (header, rows) = text.split_once('\n').expect("a header");
         format!("{}\n{rows}", header.to_uppercase()).into()
     }),
     fault("a commented header", ":1: the header begins with #", |text| format!("# {text}").into()),
-    fault("no header", ":1: there is no header: write t_ms,left,right,", |text| {
+    fault("no header", ":1: the header is missing: write t_ms,left,right,", |text| {
         text.split_once('\n').expect("a header").1.into()
     }),
-    fault("other names", ":1: columns left, right are missing; not known are l, r", |text| {
+    fault("other names", ":1: columns left, right are missing; unknown columns are l, r", |text| {
         text.replacen("left,right", "l,r", 1).into()
     }),
-    fault("Unix time in ms", "counts from 1970 in ms: write milliseconds since the run began", |text| {
+    fault("Unix time in ms", "is Unix time in ms: write milliseconds since the start of the run", |text| {
         with_cells(text, |t_ms, cells| cells[0] = format!("{}", 1_731_337_261_000 + t_ms))
     }),
-    fault("Unix time in seconds", "counts from 1970 in s: write milliseconds since the run began", |text| {
+    fault("Unix time in seconds", "is Unix time in s: write milliseconds since the start of the run", |text| {
         with_cells(text, |t_ms, cells| cells[0] = format!("{}", 1_731_337_261.0 + t_ms as f64 / 1000.0))
     }),
-    fault("dates", "it is a date; write milliseconds since the run began", |text| {
+    fault("dates", "is not a number but a date; write milliseconds since the start of the run", |text| {
         with_cells(text, |t_ms, cells| cells[0] = format!("2024-11-11T15:01:{:02}Z", t_ms / 1000))
     }),
-    fault("two runs in one file", "does not come after the row before (", |text| {
+    fault("two runs in one file", "is not later than the row before (", |text| {
         let rows = text.split_once('\n').expect("a header").1;
         format!("{text}{rows}").into()
     }),
-    fault("two files in one", "the header stands here again; give every run a file of its own", |text| {
+    fault("two files in one", "the header is repeated here; write each run to its own file", |text| {
         format!("{text}{text}").into()
     }),
-    fault("rows doubled", ":3: t_ms = 0 stands twice: write every row once", |text| {
+    fault("rows doubled", ":3: t_ms = 0 is duplicated: write each row once", |text| {
         let mut lines = text.lines();
         let header = lines.next().expect("a header");
         format!("{header}\n{}", lines.map(|line| format!("{line}\n{line}\n")).collect::<String>()).into()
     }),
-    fault("a line torn", "cells where the header has 10: torn or wrong line", |text| {
+    fault("a line torn", "cells where the header has 10: incomplete or malformed line", |text| {
         let end = text.trim_end().rfind(',').expect("cells");
         text[..end].into()
     }),
@@ -76,10 +76,10 @@ const REFUSED: [Fault; 22] = [
             cells[1] = (2.55 * power + 90.0 * power.signum()).to_string();
         })
     }),
-    fault("NaN where the tracker lost it", "leave the cell empty where there is none", |text| {
+    fault("NaN where the tracker lost it", "leave the cell empty if there is no value", |text| {
         with_cells(text, |_, cells| cells[3..6].fill("NaN".into()))
     }),
-    fault("words for nothing", "x_cm = \"NA\" is no number; leave the cell empty where there is none", |text| {
+    fault("words for nothing", "x_cm = \"NA\" is not a number; leave the cell empty if there is no value", |text| {
         with_cells(text, |_, cells| cells[3..6].fill("NA".into()))
     }),
 ];
@@ -139,7 +139,6 @@ fn a_byte_order_mark_is_told_and_harms_nothing() {
     }
     let done = workshop.call("check logs --json -");
     assert_eq!((done.code, done.out), (0, good));
-    let told =
-        "mindgap: warning: logs/run-002.csv: begins with a byte order mark, which is passed over: save it without\n";
+    let told = "mindgap: warning: logs/run-002.csv: starts with a byte-order mark (ignored)\n";
     assert_eq!(done.err, told);
 }

@@ -84,7 +84,7 @@ fn places_that_are_not_for_a_fleet_are_refused() {
     );
     fs::create_dir(workshop.path().join("mine")).unwrap();
     workshop.write("mine/diary.txt", "dear diary");
-    assert!(workshop.refused("diagnose sim.json . --fleet mine").contains("already: give an empty or new folder"));
+    assert!(workshop.refused("diagnose sim.json . --fleet mine").contains(": give an empty or new folder"));
     fs::remove_dir_all(workshop.path().join("logs")).unwrap();
     let none = workshop.call("diagnose sim.json . --fleet out");
     assert!(none.code == 1 && none.err.contains("none of 1 robots can be diagnosed"), "{}", none.err);

@@ -1,8 +1,8 @@
 //! `mindgap import` on drives of the built-in robot, split into what a brick logs and what a camera sees.
 
 use mindgap_built_in_robot::{BuiltInRobot, default_robot};
-use mindgap_foundations::chance::{Generator, generator};
 use mindgap_foundations::geometry::Pose;
+use mindgap_foundations::random::{Generator, generator};
 use mindgap_logs::{Logs, Scene};
 use mindgap_tests::command::Workshop;
 use rand::RngExt;
@@ -144,14 +144,14 @@ fn what_does_not_belong_together_is_refused() {
     let workshop = workshop(&drive_of(31));
     workshop.write("track.csv", drive_of(32).track);
     let refusal = workshop.refused(CALL);
-    assert!(refusal.starts_with("run-000.csv: no track saw it"), "{refusal}");
+    assert!(refusal.starts_with("run-000.csv: no track matches"), "{refusal}");
     let brief: String = drive_of(31).track.lines().take(40).map(|line| line.to_owned() + "\n").collect();
     workshop.write("track.csv", brief);
     let refusal = workshop.refused(CALL);
-    assert!(refusal.starts_with("run-000.csv: no track overlaps it"), "{refusal}");
+    assert!(refusal.starts_with("run-000.csv: no track overlaps"), "{refusal}");
     workshop.write("track.csv", drive(31, Camera { drift: 0.01, ..camera }).track);
     let refusal = workshop.refused(CALL);
-    assert!(refusal.contains("run apart by 10.") || refusal.contains("run apart by 9."), "{refusal}");
+    assert!(refusal.contains("drift apart by 10.") || refusal.contains("drift apart by 9."), "{refusal}");
     let refusal = workshop.refused(&CALL.replace("track.csv", ""));
     assert!(refusal.contains("none of the files is a track of a camera"), "{refusal}");
     let refusal = workshop.refused(&CALL.replace("run-000.csv", ""));

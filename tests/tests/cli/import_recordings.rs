@@ -197,7 +197,7 @@ fn without_a_robot_a_draft_says_what_to_fill_in() {
     assert!(told.contains("2 more: marked FILL IN, so not measured yet"), "{told}");
     // What is there is the user's by now.
     let refusal = workshop.refused(call);
-    assert!(refusal.starts_with("logs: holds") && refusal.contains("--force"), "{refusal}");
+    assert!(refusal.starts_with("logs: already contains") && refusal.contains("--force"), "{refusal}");
     workshop.done(&format!("{call} --force"));
 }
 
@@ -222,7 +222,7 @@ fn bags_become_the_same_rows_by_whatever_topics() {
     // The last reading, which the clock's last digits may make the one before.
     assert!((tracked[10].echo_cm.expect("a reading") - (50.0 + 0.1 * 80.0)).abs() < 0.11, "{:?}", tracked[10]);
     let (said, by_odometry) = import("odometry.mcap");
-    assert!(said.contains("may be the robot's own reckoning"), "{said}");
+    assert!(said.contains("may be the robot's own odometry"), "{said}");
     assert_alike(&by_odometry, &tracked);
     let (said, by_transforms) = import("transforms.mcap");
     assert!(said.contains("/tf:map>base_link") && by_transforms[10].echo_cm.is_none(), "{said}");
@@ -237,6 +237,6 @@ fn bags_become_the_same_rows_by_whatever_topics() {
     // Beyond the localiser's last word its frame stays where it was.
     assert_driven(&localised, 0.0, 1.0);
     let refusal = workshop.refused("import bag tracker.mcap --poses /nowhere --out other");
-    assert!(refusal.starts_with("tracker.mcap: /nowhere is no topic of poses"), "{refusal}");
+    assert!(refusal.starts_with("tracker.mcap: /nowhere is not a topic of poses"), "{refusal}");
     workshop.done("check logs");
 }

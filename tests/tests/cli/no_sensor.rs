@@ -78,7 +78,7 @@ fn a_column_of_readings_is_needed_by_a_sensor_alone() {
     let workshop = Workshop::with_logs();
     workshop.edit("logs/robot.toml", |text| text.split_once("[ultrasonic]").expect("a sensor").0.to_owned());
     let done = workshop.call("check logs");
-    assert!(done.err.contains("has no [ultrasonic]") && done.err.contains("readings are left out"), "{}", done.err);
+    assert!(done.err.contains("has no [ultrasonic]") && done.err.contains("readings ignored"), "{}", done.err);
 }
 
 /// A sensor in open ground reads nothing, and a controller drives on regardless.

@@ -19,7 +19,7 @@ fn only_with_force(workshop: &Workshop, call: &str, why: &str) {
 fn logs_are_not_recorded_over() {
     let workshop = Workshop::with_logs();
     workshop.write("logs/diary.txt", "dear diary");
-    only_with_force(&workshop, "record --out logs --runs 2 --steps 5", "already: give an empty or new folder");
+    only_with_force(&workshop, "record --out logs --runs 2 --steps 5", ": give an empty or new folder");
     assert_eq!(workshop.text("logs/diary.txt"), "dear diary", "what is not ours stays even then");
     assert!(!workshop.path().join("logs/run-002.csv").exists(), "what was recorded before does not");
     fs::create_dir(workshop.path().join("empty")).unwrap();
@@ -32,7 +32,7 @@ fn answers_are_not_lost_with_their_challenge() {
     fs::create_dir_all(workshop.path().join("blind/answers")).unwrap();
     workshop.write("blind/answers/000.json", "{}");
     for call in ["challenge make --cases 1 --out blind", "challenge answer blind", "demo --out blind"] {
-        assert!(workshop.refused(call).contains("already: give an empty or new folder"), "{call}");
+        assert!(workshop.refused(call).contains(": give an empty or new folder"), "{call}");
     }
 }
 
@@ -51,7 +51,7 @@ fn a_file_is_replaced_by_its_own_kind_alone() {
     workshop.write("photo.png", b"\x89PNG\r\n\x1a\n");
     for file in ["notes.txt", "photo.png", "figures.json", "logs/run-000.csv", "logs/robot.toml"] {
         let refusal = workshop.refused(&format!("train logs --out {file}"));
-        assert!(refusal.contains("is there already and is not a simulator that mindgap wrote"), "{refusal}");
+        assert!(refusal.contains("already exists and is not a simulator that mindgap wrote"), "{refusal}");
     }
     only_with_force(&workshop, "train logs --out notes.txt", "is not a simulator");
     workshop.done("check logs --json figures.json");
@@ -78,7 +78,7 @@ fn an_input_is_no_output_and_no_place_is_two() {
     let refusal = workshop.refused("diagnose sim.json logs --apply sim.json");
     assert!(refusal.starts_with("sim.json: is read by the same command"), "{refusal}");
     let refusal = workshop.refused("diagnose kinematic logs --json d --html ./d --force");
-    assert_eq!(refusal, "./d: is named as two outputs: give each a place of its own");
+    assert_eq!(refusal, "./d: is given for two outputs: give each its own path");
 }
 
 #[test]
@@ -89,7 +89,7 @@ fn places_are_looked_at_before_work_begins() {
     assert_eq!(refusal, "nowhere/sim.json: cannot be written: there is no folder nowhere");
     fs::create_dir(workshop.path().join("folder")).unwrap();
     let refusal = workshop.refused("train nothing --out folder");
-    assert_eq!(refusal, "folder: cannot be written: there is a folder of that name");
+    assert_eq!(refusal, "folder: cannot be written: a folder of that name exists");
 }
 
 #[test]

@@ -90,7 +90,7 @@ fn a_robot_that_fails_teaches_nothing() {
     let cases = [
         ("exec sleep 60", "", "took longer than 1 s and was ended"),
         ("", "rm \"$4\"", "was not written by the robot"),
-        ("", "head -c 300 \"$4\" > cut; mv cut \"$4\"", "torn or wrong line"),
+        ("", "head -c 300 \"$4\" > cut; mv cut \"$4\"", "incomplete or malformed line"),
         ("", "sed -i '6,$d' \"$4\"", "half a log"),
         ("set -- \"$1\" \"$2\" 2 \"$4\" \"$5\"", "", "off the start"),
         (other, "", "another controller or robot"),

@@ -159,7 +159,7 @@ pub fn the_loss_in_turns_of_a_real_robot_is_found_as_a_formula(folder: &Path) {
     let logs = Logs::read(folder, |_| ()).expect("logs");
     let latency: Vec<&'static Effect> = CATALOGUE.iter().copied().filter(|effect| effect.id == "latency").collect();
     let method = Method { catalogue: latency.leak(), ..Method::default() };
-    let found = findings(kinematic::baseline(&logs), &Inspection::of(logs.clone()), method).expect("poses");
+    let found = findings(kinematic::baseline(&logs), &Inspection::new(logs.clone()), method).expect("poses");
     let formula = found.diagnosis.formula.clone().expect("a formula");
     let applied = found.with_formula();
     println!("{formula:?} {applied:?}");

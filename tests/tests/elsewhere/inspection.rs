@@ -20,9 +20,9 @@ fn folders(parent: &Path) -> Vec<PathBuf> {
 
 fn inspected(folder: &Path) -> (Logs, Inspection) {
     let logs = read(folder);
-    let inspected = Inspection::of(logs.clone());
+    let inspected = Inspection::new(logs.clone());
     for found in &inspected.findings {
-        let places = found.places.iter().map(|place| format!("{} {:?}", place.run, place.rows));
+        let places = found.rows_by_run.iter().map(|place| format!("{} {:?}", place.run, place.rows));
         let places: String = places.collect::<Vec<_>>().join("; ").chars().take(300).collect();
         println!("{}: {} {:?}: {places}", folder.display(), found.id, found.handling);
     }
@@ -59,9 +59,9 @@ pub fn scans_at_rest_stay_as_they_are(folder: &Path) {
 pub fn a_drive_cut_into_runs_starts_moving(folder: &Path) {
     let (logs, inspected) = inspected(folder);
     let [found] = inspected.findings.as_slice() else { panic!("{:?}", inspected.findings) };
-    assert_eq!((found.id, found.handling), ("starts_moving", Handling::LeftOut));
-    assert!(found.places.iter().all(|place| place.rows == [0]));
-    assert!(2 * found.places.len() > logs.runs.len(), "{} of {}", found.places.len(), logs.runs.len());
+    assert_eq!((found.id, found.handling), ("starts_moving", Handling::Excluded));
+    assert!(found.rows_by_run.iter().all(|place| place.rows == [0]));
+    assert!(2 * found.rows_by_run.len() > logs.runs.len(), "{} of {}", found.rows_by_run.len(), logs.runs.len());
 }
 
 pub fn faults_of_another_robots_logs_are_found(folder: &Path) {

@@ -17,7 +17,7 @@ use mindgap_controller_export::{ExportError, Origin, arduino};
 use mindgap_core::controller::{Controller, Motors, Tuple, When};
 use mindgap_core::fixed_network::FixedNetwork;
 use mindgap_core::network::Network;
-use mindgap_foundations::chance::{Generator, generator};
+use mindgap_foundations::random::{Generator, generator};
 use mindgap_models::simulator::fixed_point::Quantised;
 use mindgap_tests::command::workspace;
 use mindgap_tests::controllers::at_its_limits;

@@ -6,7 +6,7 @@ use mindgap_controller_export::nxc_networks::{budget, nxc_networks};
 use mindgap_controller_export::tabulated::Tabulated;
 use mindgap_core::fixed_network::FixedNetwork;
 use mindgap_core::network::Network;
-use mindgap_foundations::chance::generator;
+use mindgap_foundations::random::generator;
 use mindgap_models::simulator::fixed_point::Quantised;
 use mindgap_tests::nbc::compile;
 use mindgap_tests::plausible_networks::{PlausibleNetworks, plausible_networks};

@@ -2,7 +2,7 @@
 
 use mindgap_controller_export::onboard::{Ending, FAILED_STEPS_TO_STOP};
 use mindgap_core::controller::{Controller, Machine, Motors, Status, Tuple, When};
-use mindgap_foundations::chance::Generator;
+use mindgap_foundations::random::Generator;
 use rand::RngExt;
 
 /// An answer of the sensor.

@@ -69,7 +69,7 @@ pub fn calibrate(
     let bench = Bench::new(executor, count, seed, size)?;
     let (nulls, others): (Vec<usize>, Vec<usize>) = (0..count).partition(|case| bench.effects[*case].is_empty());
     let counter = Counter::new(count, watch);
-    let counted = |measured: Result<Measured>| measured.inspect(|_| counter.one_more());
+    let counted = |measured: Result<Measured>| measured.inspect(|_| counter.increment());
     let nulls = executor::map(executor, nulls.len(), |null| counted(without_effect(&bench, nulls[null])))?;
     let open = fitting::open(&nulls);
     // The rivals are in no table, and go beside the rest of what was measured.

@@ -10,7 +10,7 @@ use super::seal::{Published, Sealed};
 use mindgap_files as files;
 use mindgap_foundations::error::Result;
 use mindgap_foundations::executor::{self, Executor};
-use mindgap_logs::Texts;
+use mindgap_logs::LogFiles;
 
 /// Writes a challenge of `count` cases to a folder; `watch` is told how many are done, and of how many.
 ///
@@ -52,10 +52,10 @@ fn fill(
             fresh_seed: made.rng.next_u64(),
             salt: format!("{:016x}", made.rng.next_u64()),
         };
-        Ok((made.logs.to_texts(), made.robot, sealed))
+        Ok((made.logs.to_files(), made.robot, sealed))
     };
     let (mut sealed, mut published) = (Vec::with_capacity(count), Vec::with_capacity(count));
-    executor::in_order(executor, count, make, |number, (logs, robot, case): (Texts, usize, Sealed)| {
+    executor::in_order(executor, count, make, |number, (logs, robot, case): (LogFiles, usize, Sealed)| {
         logs.write(&folder.case(&case.case))?;
         published.push(Published { case: case.case.clone(), robot: robot.to_string(), commitment: case.commitment() });
         sealed.push(case);

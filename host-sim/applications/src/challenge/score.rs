@@ -135,7 +135,7 @@ pub fn score(folder: &Path, watch: impl Fn(usize, usize) + Sync) -> Result<Score
             let sealed = sealed.cloned().ok_or_else(broken)?;
             let answer = files::read_json(&folder.answer(&case.case))?;
             let closed_on_fresh_runs = closed_on_fresh_runs(&folder, case, &sealed)?;
-            counter.one_more();
+            counter.increment();
             Ok(Opened { sealed, answer, closed_on_fresh_runs })
         })
         .collect::<Result<Vec<Opened>>>()?;

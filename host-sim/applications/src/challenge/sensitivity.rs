@@ -68,7 +68,7 @@ pub fn sensitivity(
     }
     let calibrations: Vec<Calibration> = changed.iter().map(|(_, _, calibration)| *calibration).collect();
     let counter = Counter::new(cases, watch);
-    let counted = |number| of_case(&bench, number, &calibrations).inspect(|_| counter.one_more());
+    let counted = |number| of_case(&bench, number, &calibrations).inspect(|_| counter.increment());
     let by_case = executor::map(executor, cases, counted)?;
     let row = |(place, (threshold, value, _)): (usize, (String, f64, Calibration))| {
         let count = |is: fn(&Ending) -> bool| by_case.iter().filter(|endings| is(&endings[place])).count();

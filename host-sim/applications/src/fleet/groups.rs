@@ -7,7 +7,7 @@ use rand::RngExt;
 use rand_distr::{Distribution, StandardNormal};
 
 use super::tally::Tally;
-use mindgap_foundations::chance::{Generator, derive, generator};
+use mindgap_foundations::random::{Generator, derive, generator};
 use mindgap_foundations::statistics::summary::mean;
 
 /// There are at most so many groups.

@@ -121,7 +121,7 @@ mod tests {
     use rand_distr::{Distribution, StandardNormal};
 
     use super::*;
-    use mindgap_foundations::chance::generator;
+    use mindgap_foundations::random::generator;
     use mindgap_models::effects::CATALOGUE;
 
     /// Robots with gaps that scatter by chance, and these.

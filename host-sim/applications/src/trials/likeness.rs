@@ -4,7 +4,7 @@
 use glam::DVec2;
 use mindgap_core::controller::Controller;
 
-use mindgap_foundations::chance::derive;
+use mindgap_foundations::random::derive;
 use mindgap_models::simulator::environment::Environment;
 use mindgap_models::simulator::rollout::RolloutRequest;
 

@@ -54,7 +54,7 @@ impl TrialRobot for CommandRobot {
         let program = words.next().ok_or_else(|| Error::new("the robot's command is empty"))?;
         let failed = |what: String| Error::new(format!("the robot's command {program} {what}"));
         let mut command = Command::new(program);
-        workers::keep_out(&mut command);
+        workers::remove_rank_variables(&mut command);
         let mut child = command
             .args(words)
             .args([call.controller, call.scene])

@@ -66,7 +66,7 @@ impl Vetting<'_> {
         let logs = Logs { robot: self.simulator.robot, scene: self.scene.clone(), runs: vec![run] };
         logs.check_step(Path::new("")).map_err(|_| Error::new("has steps of another length than the robot's"))?;
         self.check_frame(&logs)?;
-        let inspected = Inspection::of(logs);
+        let inspected = Inspection::new(logs);
         if let Some(why) = inspected.refusal() {
             return Err(Error::new(why));
         }

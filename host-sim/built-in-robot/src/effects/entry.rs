@@ -1,8 +1,8 @@
-//! What is known of an effect, whichever list it is in.
+//! The entry of an effect in the catalogue or the held-out list.
 
 use super::Scale;
 
-/// An entry of a list of effects.
+/// Description and scales of an effect.
 pub(super) struct Entry {
     pub id: &'static str,
     pub about: &'static str,

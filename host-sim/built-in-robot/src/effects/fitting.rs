@@ -1,4 +1,4 @@
-//! Applies effects to the hardware. Several effects at once change all of their parts.
+//! Applies effects to the hardware. Several effects at once all change their parts.
 
 use glam::DVec2;
 
@@ -7,10 +7,10 @@ use crate::acoustics::Acoustics;
 use crate::hardware::{GRAVITY, Hardware, LEFT, RIGHT};
 use mindgap_foundations::geometry::direction;
 
-/// Mean battery current in random driving, which converts a fade per minute into one per coulomb.
+/// Mean battery current in random driving, which converts a fade per minute to a fade per coulomb.
 const USUAL_CURRENT_A: f64 = 0.137;
 
-/// Force that a tyre transmits, as a share of its load, when the command jumps from 0 to 100.
+/// Force that a tyre transmits, as a fraction of its load, when the command jumps from 0 to 100.
 const STEP_PUSH: f64 = 0.8;
 
 /// Applies an effect to the hardware; neutral strength changes nothing.
@@ -46,8 +46,8 @@ pub(crate) fn fit(hardware: &mut Hardware, active: &ActiveEffect) {
             }
         }
         Effect::Saturation => {
-            let most_v = strength / 100.0 * hardware.battery.fresh_v;
-            hardware.motors.iter_mut().for_each(|motor| motor.limit_v = motor.limit_v.min(most_v));
+            let max_v = strength / 100.0 * hardware.battery.fresh_v;
+            hardware.motors.iter_mut().for_each(|motor| motor.limit_v = motor.limit_v.min(max_v));
         }
         Effect::Payload => load(hardware, if strength > 0.0 { LEFT } else { RIGHT }, strength.abs()),
         Effect::Slope => {
@@ -66,7 +66,7 @@ pub(crate) fn fit(hardware: &mut Hardware, active: &ActiveEffect) {
         }
         Effect::TurnLoss => {
             let lost_m_per_rad = strength / 100.0;
-            hardware.castor.turning_drag_n_s += 2.0 * lost_m_per_rad / hardware.yielding_m_s_per_n();
+            hardware.castor.turning_drag_n_s += 2.0 * lost_m_per_rad / hardware.compliance_m_s_per_n();
         }
         Effect::SonarScale => hardware.sonar.timer *= strength,
         Effect::SonarOffset => hardware.sonar.delay_cm += strength,
@@ -87,7 +87,7 @@ pub(crate) fn fit(hardware: &mut Hardware, active: &ActiveEffect) {
         Effect::LensDistortion => hardware.tracker.distortion_per_m2 += strength,
         Effect::MarkerOffset => hardware.tracker.marker_cm += DVec2::new(strength, detail),
         Effect::CompassDisturbance => {
-            // Half of the compass's error is left after averaging with the camera.
+            // Averaging with the camera halves the compass error.
             let field = libm::sin(2.0 * strength.to_radians());
             hardware.tracker.iron += direction(detail.to_radians()) * field;
         }
@@ -115,10 +115,10 @@ pub(crate) fn fit(hardware: &mut Hardware, active: &ActiveEffect) {
     }
 }
 
-/// Adds the mass over one wheel whose rolling resistance costs this share of half its full speed.
+/// Adds the mass over one wheel whose rolling resistance costs a fraction `share` of half its full speed.
 fn load(hardware: &mut Hardware, side: usize, share: f64) {
     let half_speed_m_s = hardware.full_speed_m_s / 2.0;
-    let drag_n = share * half_speed_m_s / hardware.yielding_m_s_per_n();
+    let drag_n = share * half_speed_m_s / hardware.compliance_m_s_per_n();
     let tyre = &mut hardware.tyres[side];
     let load_n = drag_n / (tyre.rolling + tyre.flexing_s_per_m * half_speed_m_s);
     tyre.load_n += load_n;

@@ -1,12 +1,9 @@
-//! Effects held out: outside the table of the diagnosis, and unseen by all that its thresholds and its residual model were
-//! chosen on.
+//! Held-out effects: outside the table of the diagnosis, and never used to choose its thresholds or its residual model.
 //!
-//! They were made after the residual model (`gap::omnibus`) was, and no diagnosis was tried on them meanwhile. `challenge calibrate`
-//! never draws them, and `challenge make` only with `--outside held-out`. Once a diagnosis is changed on account of one of
-//! them, it belongs in the catalogue with the others outside the table, and a new one here.
+//! `challenge calibrate` never draws them, and `challenge make` only with `--outside held-out`. Once a diagnosis is changed on
+//! account of one of them, it belongs in the catalogue with the others outside the table, and a new one here.
 //!
-//! Four change the motion, one the compass, one the camera, and two the sonar. Two that there were before,
-//! a loss of speed in turns and echoes by way of a second wall, are in the table by now.
+//! Four change the motion, one the compass, one the camera, and two the sonar.
 
 use super::Scale;
 use super::entry::Entry;
@@ -21,15 +18,15 @@ pub enum HeldOut {
     ColdGrease,
     /// Gravity along a slope that is periodic in the position.
     FloorWaves,
-    /// Voltages that rise slowly and fall at once.
+    /// Voltages that rise slowly and drop at once.
     SoftStart,
-    /// A compass that follows the heading late.
+    /// A compass that lags behind the heading.
     CompassDamping,
-    /// Noise of the tracked position that grows with the distance from the middle of the picture.
+    /// Tracking noise that grows with the distance from the centre of the picture.
     EdgeBlur,
     /// Echoes lost at high wheel speeds.
     MotorWhine,
-    /// Nothing heard from near.
+    /// Near echoes lost.
     BlindZone,
 }
 
@@ -45,7 +42,7 @@ impl HeldOut {
         HeldOut::BlindZone,
     ];
 
-    /// All of them.
+    /// Iterates over all held-out effects.
     pub fn all() -> impl Iterator<Item = HeldOut> {
         Self::ALL.into_iter()
     }
@@ -54,43 +51,43 @@ impl HeldOut {
         let (id, about, strength) = match self {
             HeldOut::LostCommands => (
                 "lost_commands",
-                "A link that loses a command now and then, so that the one before stays.",
-                Scale::rising("chance per step", 0.1, 0.25, 0.5),
+                "A link that occasionally loses a command, so that the previous one continues.",
+                Scale::rising("probability per step", 0.1, 0.25, 0.5),
             ),
             HeldOut::ColdGrease => (
                 "cold_grease",
-                "Grease in the gears that is stiff until they have run for a while.",
-                Scale::rising("share of speed lost at the start of a run", 0.08, 0.2, 0.4),
+                "Grease in the gears that is stiff until they have warmed up.",
+                Scale::rising("fraction of speed lost at the start of a run", 0.08, 0.2, 0.4),
             ),
             HeldOut::FloorWaves => (
                 "floor_waves",
-                "A floor of shallow waves, 30 cm from crest to crest.",
-                Scale::rising("share of speed lost at half power where they are steepest", 0.04, 0.1, 0.2),
+                "A floor with shallow waves, 30 cm from crest to crest.",
+                Scale::rising("fraction of speed lost at half power where they are steepest", 0.04, 0.1, 0.2),
             ),
             HeldOut::SoftStart => (
                 "soft_start",
-                "A motor driver that raises voltages slowly and cuts them at once.",
-                Scale::rising("ms from none to the full voltage", 200.0, 500.0, 1000.0),
+                "A motor driver that raises voltages slowly and lowers them at once.",
+                Scale::rising("ms from zero to full voltage", 200.0, 500.0, 1000.0),
             ),
             HeldOut::CompassDamping => (
                 "compass_damping",
-                "A compass whose damped needle follows the robot late.",
+                "A compass with a damped needle that lags behind the robot.",
                 Scale::rising("ms", 60.0, 150.0, 400.0),
             ),
             HeldOut::EdgeBlur => (
                 "edge_blur",
                 "A camera that is out of focus towards the edge of the picture.",
-                Scale::rising("cm of scatter one metre from the middle of the picture", 0.3, 0.8, 2.0),
+                Scale::rising("cm of scatter one metre from the centre of the picture", 0.3, 0.8, 2.0),
             ),
             HeldOut::MotorWhine => (
                 "motor_whine",
-                "Gears that whine at the sensor's pitch and drown faint echoes.",
-                Scale::rising("decibels lost to them at full speed", 8.0, 20.0, 40.0),
+                "Gears that whine at the sensor's frequency and mask faint echoes.",
+                Scale::rising("decibels lost at full speed", 8.0, 20.0, 40.0),
             ),
             HeldOut::BlindZone => (
                 "blind_zone",
-                "A transducer that rings on after its ping and drowns what comes back from near.",
-                Scale::rising("cm within which nothing is heard", 12.0, 25.0, 50.0),
+                "A transducer that rings on after its ping and masks near echoes.",
+                Scale::rising("cm within which nothing is detected", 12.0, 25.0, 50.0),
             ),
         };
         Entry { id, about, in_table: false, strength, detail: None }

@@ -7,11 +7,11 @@ use glam::DVec2;
 use crate::hardware::Sonar;
 use crate::noise::normal;
 use crate::sonar::Ping;
-use mindgap_foundations::chance::Generator;
 use mindgap_foundations::geometry::{Hit, Pose, Wall, cast, direction};
+use mindgap_foundations::random::Generator;
 
 const RAYS: u32 = 15;
-/// Reflected rays start this far off the wall, so that they do not meet it again.
+/// Reflected rays start this far off the wall, so that they do not hit it again.
 const OFF_WALL_CM: f64 = 1e-6;
 
 /// An echo that triggers the sensor.
@@ -25,21 +25,21 @@ pub(super) struct Echo {
     pub grazing: f64,
 }
 
-/// The nearest echo of a ping that triggers the sensor.
+/// Returns the nearest echo of a ping that triggers the sensor.
 pub(super) fn first_echo(sonar: &Sonar, sides: &[Wall], ping: &Ping, rng: &mut Generator) -> Option<Echo> {
-    let sensor = ping.from.compose(&Pose { position_cm: sonar.place_cm, heading_rad: sonar.yaw_rad });
+    let sensor = ping.from.compose(&Pose { position_cm: sonar.mount_cm, heading_rad: sonar.yaw_rad });
     let here_db = sonar.place_db * sonar.acoustics.at(&sensor);
     let ping_db = sonar.ping_db * normal(rng) + here_db - sonar.whine_db * ping.wheel_speed;
     let mut first: Option<Echo> = None;
     for ray in 0..RAYS {
         // -1 at the right edge of the beam, 1 at the left one.
-        let aside = 2.0 * f64::from(ray) / f64::from(RAYS - 1) - 1.0;
-        let way = direction(sensor.heading_rad + aside * sonar.half_angle_rad);
-        let sent_db = sonar.level_db + ping_db - sonar.edge_db * aside * aside + sonar.lean_db * aside;
+        let offset = 2.0 * f64::from(ray) / f64::from(RAYS - 1) - 1.0;
+        let along = direction(sensor.heading_rad + offset * sonar.half_angle_rad);
+        let sent_db = sonar.level_db + ping_db - sonar.edge_db * offset * offset + sonar.lean_db * offset;
         let speckle_db = sonar.speckle_db * normal(rng);
-        let Some(hit) = cast(sides, sensor.position_cm, way) else { continue };
+        let Some(hit) = cast(sides, sensor.position_cm, along) else { continue };
         let straight = returned(sonar, &hit);
-        let mirrored = mirrored(sonar, sides, sensor.position_cm, way, &hit);
+        let mirrored = mirrored(sonar, sides, sensor.position_cm, along, &hit);
         for echo in [Some(straight), mirrored].into_iter().flatten() {
             let level_db = echo.level_db + sent_db + speckle_db;
             let nearer = first.is_none_or(|f| echo.distance_cm < f.distance_cm);
@@ -51,20 +51,20 @@ pub(super) fn first_echo(sonar: &Sonar, sides: &[Wall], ping: &Ping, rng: &mut G
     first
 }
 
-/// The direct echo of a wall, relative to normal incidence at one metre. Its facets scatter, so the sound spreads on the
-/// way there and again on the way back.
+/// Returns the direct echo of a wall, relative to normal incidence at one metre. The wall's facets scatter, so the sound spreads
+/// on the way there and again on the way back.
 fn returned(sonar: &Sonar, hit: &Hit) -> Echo {
     let spread_db = 2.0 * spread_db(hit.distance_cm);
     let level_db = scattered_db(sonar, hit) - spread_db - absorbed_db(sonar, hit.distance_cm);
     Echo { distance_cm: hit.distance_cm, level_db, grazing: grazing(hit) }
 }
 
-/// The echo of sound that a wall reflects specularly to a second one and that returns the same way, which makes the
+/// Returns the echo of sound that a wall reflects specularly to a second one and that returns the same way, which makes the
 /// reading too long. Specular reflection adds no spreading.
-fn mirrored(sonar: &Sonar, sides: &[Wall], from_cm: DVec2, way: DVec2, hit: &Hit) -> Option<Echo> {
-    let normal = direction(libm::atan2(-way.y, -way.x) + hit.incidence_rad);
-    let away = way - normal * (2.0 * way.dot(normal));
-    let at_cm = from_cm + way * hit.distance_cm + normal * OFF_WALL_CM;
+fn mirrored(sonar: &Sonar, sides: &[Wall], from_cm: DVec2, along: DVec2, hit: &Hit) -> Option<Echo> {
+    let normal = direction(libm::atan2(-along.y, -along.x) + hit.incidence_rad);
+    let away = along - normal * (2.0 * along.dot(normal));
+    let at_cm = from_cm + along * hit.distance_cm + normal * OFF_WALL_CM;
     let second = cast(sides, at_cm, away)?;
     let distance_cm = hit.distance_cm + second.distance_cm;
     let lost_db = spread_db(distance_cm) + absorbed_db(sonar, distance_cm) + 2.0 * sonar.mirror_db;
@@ -72,7 +72,8 @@ fn mirrored(sonar: &Sonar, sides: &[Wall], from_cm: DVec2, way: DVec2, hit: &Hit
     Some(Echo { distance_cm, level_db, grazing: grazing(&second) })
 }
 
-/// Backscatter of a wall relative to normal incidence on a hard one, dB; most of it from facets that face the sensor.
+/// Returns the backscatter of a wall relative to normal incidence on a hard one, dB; most of it from facets that face the
+/// sensor.
 fn scattered_db(sonar: &Sonar, hit: &Hit) -> f64 {
     let lean = hit.incidence_rad / sonar.facet_rad;
     let facing = libm::cos(hit.incidence_rad);
@@ -81,19 +82,19 @@ fn scattered_db(sonar: &Sonar, hit: &Hit) -> f64 {
     20.0 * libm::log10(share) + surface_db
 }
 
-/// 0 for normal incidence, 1 for grazing incidence.
+/// Returns 0 for normal incidence, 1 for grazing incidence.
 fn grazing(hit: &Hit) -> f64 {
     hit.incidence_rad.abs() / FRAC_PI_2
 }
 
-/// Spreading loss over a path, dB relative to one metre.
-fn spread_db(way_cm: f64) -> f64 {
-    20.0 * libm::log10(way_cm.max(1.0) / 100.0)
+/// Returns the spreading loss over a path, dB relative to one metre.
+fn spread_db(path_cm: f64) -> f64 {
+    20.0 * libm::log10(path_cm.max(1.0) / 100.0)
 }
 
-/// Absorption in air over a path, dB relative to one metre.
-fn absorbed_db(sonar: &Sonar, way_cm: f64) -> f64 {
-    sonar.absorption_db_per_m * (way_cm / 100.0 - 1.0)
+/// Returns the absorption in air over a path, dB relative to one metre.
+fn absorbed_db(sonar: &Sonar, path_cm: f64) -> f64 {
+    sonar.absorption_db_per_m * (path_cm / 100.0 - 1.0)
 }
 
 #[cfg(test)]
@@ -101,13 +102,13 @@ mod tests {
     use super::*;
     use crate::hardware::Hardware;
     use crate::{default_robot, training_room};
-    use mindgap_foundations::chance::generator;
     use mindgap_foundations::geometry::Rectangle;
+    use mindgap_foundations::random::generator;
 
-    /// A noise-free sensor at the middle of the axle.
+    /// A noise-free sensor at the centre of the axle.
     fn steady() -> Sonar {
         let sonar = Hardware::new(&default_robot(), &training_room()).sonar;
-        Sonar { place_cm: DVec2::ZERO, ping_db: 0.0, speckle_db: 0.0, ..sonar }
+        Sonar { mount_cm: DVec2::ZERO, ping_db: 0.0, speckle_db: 0.0, ..sonar }
     }
 
     fn room() -> Vec<Wall> {
@@ -120,14 +121,14 @@ mod tests {
     }
 
     #[test]
-    fn a_wall_straight_ahead_is_heard_at_its_distance_and_fainter_from_afar() {
+    fn wall_ahead_is_read_at_its_distance_and_fades_with_distance() {
         let (near, far) = (echo(&steady(), 160.0, 0.0).unwrap(), echo(&steady(), 120.0, 0.0).unwrap());
         assert!((near.distance_cm - 40.0).abs() < 1e-9 && (far.distance_cm - 80.0).abs() < 1e-9);
         assert!(near.level_db > far.level_db + 10.0);
     }
 
     #[test]
-    fn an_oblique_wall_is_fainter_and_heard_at_the_near_side_of_the_beam() {
+    fn oblique_wall_is_fainter_and_read_at_the_near_side_of_the_beam() {
         let (square, oblique) = (echo(&steady(), 160.0, 0.0).unwrap(), echo(&steady(), 160.0, 30.0).unwrap());
         let along_axis_cm = 40.0 / libm::cos(30f64.to_radians());
         assert!(oblique.level_db < square.level_db && oblique.grazing > 0.1);
@@ -135,7 +136,7 @@ mod tests {
     }
 
     #[test]
-    fn sound_mirrored_into_a_corner_is_heard_too_late() {
+    fn specular_reflection_into_a_corner_reads_too_long() {
         // To the upper wall at 60 degrees from its normal, then on to the right one.
         let sonar = Sonar { half_angle_rad: 0.0, diffuse: 0.0, mirror_db: 0.0, level_db: 30.0, ..steady() };
         let found = echo(&sonar, 100.0, 30.0).unwrap();

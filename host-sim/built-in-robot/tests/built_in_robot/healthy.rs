@@ -1,4 +1,4 @@
-//! The healthy built-in robot: what its logs look like, and that they are the same again and again.
+//! Logs of the healthy built-in robot, and their reproducibility.
 
 use std::sync::LazyLock;
 
@@ -7,8 +7,8 @@ use mindgap_built_in_robot::{
     ActiveEffect, BuiltInRobot, Effect, default_robot, four_obstacles, record, run_controller, training_room,
 };
 use mindgap_core::controller::{Controller, Tuple, When};
-use mindgap_foundations::chance::generator;
 use mindgap_foundations::geometry::{Pose, Rectangle};
+use mindgap_foundations::random::generator;
 use mindgap_logs::samples::{motion, sonar};
 use mindgap_logs::{Logs, Scene, Termination};
 
@@ -26,7 +26,7 @@ fn deviation(values: &[f64]) -> f64 {
 }
 
 #[test]
-fn three_readings_of_four_give_a_value() {
+fn three_of_four_readings_give_a_value() {
     let rows = HEALTHY.runs.iter().flat_map(|run| &run.rows);
     let (all, with_echo) = rows.fold((0, 0), |(n, e), row| (n + 1, e + usize::from(row.echo_cm.is_some())));
     let rate = f64::from(with_echo as u32) / f64::from(all);
@@ -48,7 +48,7 @@ fn readings_are_whole_centimetres_near_the_wall_ahead() {
 }
 
 #[test]
-fn the_ringing_transducer_gives_a_constant_reading_now_and_then() {
+fn ringing_transducer_occasionally_gives_a_constant_reading() {
     let far = sonar(&HEALTHY).into_iter().filter(|s| s.distance_cm > 60.0);
     let readings: Vec<f64> = far.filter_map(|s| s.echo_cm).collect();
     let around = |cm: f64| readings.iter().filter(|r| (**r - cm).abs() < 2.5).count() as f64 / readings.len() as f64;
@@ -56,7 +56,7 @@ fn the_ringing_transducer_gives_a_constant_reading_now_and_then() {
 }
 
 #[test]
-fn steps_scatter_a_little_and_remember_the_last_command() {
+fn steps_scatter_slightly_and_depend_on_the_previous_command() {
     let steady = motion(&HEALTHY).into_iter().filter(|s| {
         let [left, right, last_left, last_right] = s.speeds;
         (left - right).abs() < 4.0 && left == last_left && right == last_right && left.abs() > 20.0
@@ -74,14 +74,14 @@ fn steps_scatter_a_little_and_remember_the_last_command() {
 }
 
 #[test]
-fn rows_are_a_step_apart_give_or_take_milliseconds() {
+fn rows_are_a_step_apart_within_milliseconds() {
     let steps: Vec<f64> = HEALTHY.runs.iter().flat_map(|run| run.rows.pairs().map(|w| w[1].t_ms - w[0].t_ms)).collect();
     assert!(steps.iter().all(|ms| *ms == ms.round() && (ms - 400.0).abs() < 30.0));
     assert!((1.0..8.0).contains(&deviation(&steps)), "{}", deviation(&steps));
 }
 
 #[test]
-fn nothing_is_hit() {
+fn recordings_are_free_of_collisions() {
     let radius_cm = default_robot().body_radius_cm;
     for row in HEALTHY.runs.iter().flat_map(|run| &run.rows) {
         let Some(pose) = row.pose else { continue };
@@ -92,7 +92,7 @@ fn nothing_is_hit() {
 }
 
 #[test]
-fn one_seed_gives_one_folder_on_any_number_of_threads() {
+fn same_seed_gives_same_logs_on_any_number_of_threads() {
     let effects = [ActiveEffect::new(Effect::SonarDropout), ActiveEffect::new(Effect::Slope)];
     let alone = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap().install(|| short(&effects, 5));
     assert_eq!(alone, short(&effects, 5));
@@ -100,7 +100,7 @@ fn one_seed_gives_one_folder_on_any_number_of_threads() {
 }
 
 #[test]
-fn a_folder_of_logs_comes_back_as_it_went() {
+fn log_folder_round_trips() {
     let folder = tempfile::tempdir().unwrap();
     let logs = short(&[], 5);
     logs.write(&folder.path().join("logs")).unwrap();
@@ -109,7 +109,7 @@ fn a_folder_of_logs_comes_back_as_it_went() {
 }
 
 #[test]
-fn every_effect_at_both_ends_of_its_range_gives_logs_that_can_be_read() {
+fn every_effect_gives_readable_logs_at_both_ends_of_its_range() {
     let folder = tempfile::tempdir().unwrap();
     for effect in Effect::all() {
         let range = effect.strength_range();
@@ -127,7 +127,7 @@ fn every_effect_at_both_ends_of_its_range_gives_logs_that_can_be_read() {
 }
 
 #[test]
-fn an_effect_of_neutral_strength_is_none() {
+fn effect_of_neutral_strength_changes_nothing() {
     let healthy = short(&[], 5);
     for effect in Effect::all() {
         let neutral = ActiveEffect { strength: effect.strength_range().neutral, ..ActiveEffect::new(effect) };
@@ -136,7 +136,7 @@ fn an_effect_of_neutral_strength_is_none() {
 }
 
 #[test]
-fn two_effects_at_once_leave_both_marks() {
+fn two_effects_at_once_leave_both_signatures() {
     let both: Vec<ActiveEffect> = ["sonar_offset=8", "battery_sag=0.8"].map(|text| text.parse().unwrap()).into();
     let logs = record(&default_robot(), &training_room(), 20, 60, &both, 4).unwrap();
     let near = sonar(&logs).into_iter().filter(|s| s.distance_cm < 60.0 && s.alpha_deg() < 12.0);
@@ -151,7 +151,7 @@ fn two_effects_at_once_leave_both_marks() {
 }
 
 #[test]
-fn full_speed_and_wheel_counters_are_the_spec_s() {
+fn full_speed_and_wheel_counters_match_the_specification() {
     let spec = default_robot();
     let open = Scene { arena_cm: Some(DVec2::new(1000.0, 200.0)), ..Scene::default() };
     let robot = BuiltInRobot::new(&spec, &open, &[]);
@@ -170,7 +170,7 @@ fn full_speed_and_wheel_counters_are_the_spec_s() {
 }
 
 #[test]
-fn a_room_without_room_is_a_problem() {
+fn room_that_is_too_small_is_rejected() {
     let narrow = Scene { arena_cm: Some(DVec2::new(300.0, 15.0)), ..Scene::default() };
     assert!(record(&default_robot(), &narrow, 1, 10, &[], 1).unwrap_err().to_string().contains("no room"));
     let open = Scene { arena_cm: None, ..training_room() };
@@ -185,7 +185,7 @@ fn wall_ahead() -> Scene {
 }
 
 #[test]
-fn a_crash_is_where_the_body_touches() {
+fn crash_occurs_where_the_body_touches() {
     let spec = default_robot();
     let robot = BuiltInRobot::new(&spec, &wall_ahead(), &[]);
     let mut rng = generator(2, &[]);
@@ -201,7 +201,7 @@ fn a_crash_is_where_the_body_touches() {
 }
 
 #[test]
-fn a_controller_stops_for_the_wall_or_crashes_into_it_or_runs_out_of_steps() {
+fn controller_stops_at_the_wall_crashes_or_times_out() {
     let robot = BuiltInRobot::new(&default_robot(), &wall_ahead(), &[]);
     let start = Pose::new(30.0, 50.0, 0.0);
     let run = |speed: i8, threshold_cm: i16, max_steps: u16| {
@@ -213,7 +213,7 @@ fn a_controller_stops_for_the_wall_or_crashes_into_it_or_runs_out_of_steps() {
     assert_eq!(finished.termination, Termination::Finished);
     assert!(finished.points.len() >= 8 && finished.end().position_cm.x > 45.0);
     let log = finished.to_run("run-000");
-    // The sensor, 7 cm ahead of the axle, faces the wall at 100 cm before the controller first looks.
+    // The sensor, 7 cm ahead of the axle, faces the wall at 100 cm before the controller's first reading.
     assert_eq!((log.rows.at(0).left, log.rows.at(0).echo_cm), (25.0, Some(63.0)));
     assert_eq!(log.rows.at(log.rows.len() - 1).left, 0.0);
     assert_eq!(run(60, 0, 100).termination, Termination::Crashed);

@@ -1,4 +1,4 @@
-//! The built-in robot, healthy and with its effects, as its logs show it.
+//! Tests of the built-in robot, healthy and with effects, by its logs.
 
 mod effect_signatures;
 mod healthy;

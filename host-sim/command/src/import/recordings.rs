@@ -169,9 +169,9 @@ impl Target {
             logs.runs.iter().try_for_each(|run| run.write(&fresh.join(format!("{}.csv", run.name))))
         })?;
         let text = told(&report, logs.robot.step_ms, &self.out);
-        let RecordingsReport { recordings, sides, frame, findings, to_fill_in } = &report;
+        let RecordingsReport { recordings, odometry_check, frame, findings, to_fill_in } = &report;
         let facts = json!({
-            "schema": 1, "recordings": recordings, "sides": sides, "frame": frame, "findings": findings,
+            "schema": 1, "recordings": recordings, "odometry_check": odometry_check, "frame": frame, "findings": findings,
             "to_fill_in": to_fill_in,
         });
         self.facts.told(&facts, text)
@@ -180,13 +180,13 @@ impl Target {
 
 fn told(report: &RecordingsReport, step_ms: f64, out: &Path) -> String {
     let mut text: String = report.recordings.iter().map(|recording| of_recording(recording, step_ms)).collect();
-    let sides = &report.sides;
+    let check = &report.odometry_check;
     let number = |value: f64| format!("{value:.0}");
     text += &table::text(
         ["motion", "asked for", "tracked"],
         &[
-            ["travel (cm)".to_owned(), number(sides.asked_cm), number(sides.tracked_cm)],
-            ["rotation (deg)".to_owned(), number(sides.asked_deg), number(sides.tracked_deg)],
+            ["travel (cm)".to_owned(), number(check.commanded_cm), number(check.tracked_cm)],
+            ["rotation (deg)".to_owned(), number(check.commanded_deg), number(check.tracked_deg)],
         ],
     );
     let mut lines = |title: &str, lines: &[String]| lines.iter().for_each(|line| text += &format!("{title}: {line}\n"));
@@ -198,7 +198,7 @@ fn told(report: &RecordingsReport, step_ms: f64, out: &Path) -> String {
 }
 
 fn of_recording(recording: &RecordingReport, step_ms: f64) -> String {
-    let RecordingReport { sources, clocks, runs, rows, without_pose, with_reading, jumps, limited } = recording;
+    let RecordingReport { sources, clocks, runs, rows, without_pose, with_reading, jumps, saturated } = recording;
     let mut text: String = sources.iter().map(of_source).collect();
     text += &format!("  {}\n", of_clocks(clocks));
     let names =
@@ -212,16 +212,16 @@ fn of_recording(recording: &RecordingReport, step_ms: f64) -> String {
     if *jumps > 0 {
         text += &format!("  left out: {jumps} poses that no robot can reach\n");
     }
-    if *limited > 0 {
-        text += &format!("  {limited} commands were beyond full_speed_cm_s and limited to it\n");
+    if *saturated > 0 {
+        text += &format!("  {saturated} commands were beyond full_speed_cm_s and limited to it\n");
     }
     text
 }
 
 fn of_source(source: &Source) -> String {
-    let Source { name, samples, lasts_s, rate_hz, taken, guessed, left_out } = source;
+    let Source { name, samples, duration_s, rate_hz, mapped, guessed, left_out } = source;
     let mut text =
-        format!("{name}: {samples} samples in {lasts_s:.1} s, {rate_hz:.1} a second; {}\n", taken.join(", "));
+        format!("{name}: {samples} samples in {duration_s:.1} s, {rate_hz:.1} a second; {}\n", mapped.join(", "));
     for (what, lines) in [("guessed", guessed), ("left out", left_out)] {
         lines.iter().for_each(|line| text += &format!("  {what}: {line}\n"));
     }
@@ -229,10 +229,10 @@ fn of_source(source: &Source) -> String {
 }
 
 fn of_clocks(clocks: &ClocksReport) -> String {
-    let ClocksReport { one, offset_ms, drift, lag_ms, unexplained } = clocks;
+    let ClocksReport { shared, offset_ms, drift, lag_ms, unexplained } = clocks;
     let differs =
         unexplained.map_or("nothing moves".into(), |share| format!("{:.0} % of the motion differ", 100.0 * share));
-    match (one, lag_ms) {
+    match (shared, lag_ms) {
         (true, Some(lag_ms)) => format!("one clock: motion follows the commands by {lag_ms:.0} ms ({differs})"),
         (true, None) => format!("one clock, as stated ({differs})"),
         (false, _) => format!(

@@ -6,7 +6,7 @@ use std::borrow::Cow;
 use super::{FitContext, Fitted, MOST_ITERATIONS, TOLERANCE_NATS};
 use crate::hypothesis::{Hypothesis, LogLikelihood};
 use crate::memo::{Memo, Sights};
-use mindgap_foundations::statistics::maximise::{Bounds, Maximum, Point, climb_on, step_of_one};
+use mindgap_foundations::statistics::maximise::{Bounds, Maximum, Point, climb_from, single_parameter_step};
 use mindgap_learning::evaluation::observations::Observations;
 
 /// A hypothesis whose parameters are sought.
@@ -39,7 +39,7 @@ impl<'a> Problem<'a> {
         let best = starts.first().map_or(0.0, Point::value);
         let promising = starts.into_iter().take(STARTS).take_while(|start| best - start.value() < NEARLY_AS_GOOD_NATS);
         let bounds = self.hypothesis.bounds();
-        let climbs = promising.map(|start| climb_on(&bounds, start, SKETCH_ITERATIONS, TOLERANCE_NATS, terms));
+        let climbs = promising.map(|start| climb_from(&bounds, start, SKETCH_ITERATIONS, TOLERANCE_NATS, terms));
         let best = climbs.max_by(|a, b| a.value().total_cmp(&b.value()));
         best.unwrap_or_else(|| Point::new(&vec![0.0; bounds.len()], terms))
     }
@@ -49,10 +49,12 @@ impl<'a> Problem<'a> {
         let Problem { hypothesis, untouched, context } = &self;
         let (bounds, memo) = (hypothesis.bounds(), Memo::new(context.observations, None));
         let terms = |at: &[f64]| self.terms(&memo, untouched, at);
-        let on = |from: Point| climb_on(&bounds, from, MOST_ITERATIONS, TOLERANCE_NATS, terms).scored(&bounds, terms);
+        let on = |from: Point| {
+            climb_from(&bounds, from, MOST_ITERATIONS, TOLERANCE_NATS, terms).into_maximum(&bounds, terms)
+        };
         let mut found = on(if context.few.is_none() { sketch } else { Point::new(&sketch.at, terms) });
         for _ in 0..MOST_STEPS_OF_ONE {
-            let Some(further) = step_of_one(&bounds, &found, TOLERANCE_NATS, terms) else { break };
+            let Some(further) = single_parameter_step(&bounds, &found, TOLERANCE_NATS, terms) else { break };
             found = on(further);
         }
         let without = without_each_block(&found, &bounds, context);
@@ -68,7 +70,7 @@ impl<'a> Problem<'a> {
         let (rows, untouched) = self.sketched_rows();
         let memo = Memo::new(rows, None);
         let terms = |at: &[f64]| self.terms(&memo, &untouched, at);
-        Point::new(values, terms).scored(&self.hypothesis.bounds(), terms);
+        Point::new(values, terms).into_maximum(&self.hypothesis.bounds(), terms);
         memo.into_sights()
     }
 

@@ -2,7 +2,7 @@ use super::*;
 use crate::residual_law::SCALE_OF_NORMAL;
 use crate::residual_law::log_density;
 use crate::test_support::*;
-use mindgap_foundations::chance::generator;
+use mindgap_foundations::random::generator;
 use mindgap_foundations::statistics::student;
 use rand::RngExt;
 

@@ -166,7 +166,7 @@ mod tests {
 
     use super::*;
     use crate::test_support::CALIBRATION;
-    use mindgap_foundations::chance::generator;
+    use mindgap_foundations::random::generator;
 
     const ROWS: usize = 400;
     const FOLDS: usize = 8;

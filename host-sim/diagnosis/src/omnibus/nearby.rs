@@ -3,7 +3,7 @@
 
 use glam::DVec2;
 
-use mindgap_foundations::statistics::ridge::{MOST_STEPS, SETTLED};
+use mindgap_foundations::statistics::ridge::{CONVERGED, MAX_ITERATIONS};
 
 /// Rows that lie this far apart or farther say nothing of each other: the patches of a floor and the sides of an obstacle
 /// are about so large, and in a smaller circle there is seldom a second run.
@@ -76,7 +76,7 @@ fn settled(
 ) -> (Vec<f64>, Vec<f64>) {
     let mut responses = vec![0.0; spots.len()];
     let mut predictions = vec![0.0; spots.len()];
-    for _ in 0..MOST_STEPS {
+    for _ in 0..MAX_ITERATIONS {
         for i in (0..spots.len()).filter(|i| spots[*i].is_some() && kept(*i)) {
             responses[i] = response(i, predictions[i]);
         }
@@ -88,7 +88,7 @@ fn settled(
         let next: Vec<f64> = (0..spots.len()).map(told).collect();
         let change = next.iter().zip(&predictions).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
         predictions = next;
-        if change < SETTLED {
+        if change < CONVERGED {
             break;
         }
     }

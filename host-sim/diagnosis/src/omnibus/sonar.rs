@@ -65,7 +65,7 @@ pub fn value(beneath: &Fitted, context: &FitContext) -> ResidualFit {
     let heard = Heard::of(&beneath.effects(), context.baseline, context.observations);
     let (surface, predictions) = heard.offsets(context.observations);
     let terms = |at: &[f64]| heard.values(&predictions, &Spread::from(at));
-    let found = climb(&BOUNDS, &START, MOST_ITERATIONS, TOLERANCE_NATS, terms).scored(&BOUNDS, terms);
+    let found = climb(&BOUNDS, &START, MOST_ITERATIONS, TOLERANCE_NATS, terms).into_maximum(&BOUNDS, terms);
     let held_out = (0..context.observations.blocks).flat_map(|block| {
         let rows = context.observations.of_block(block);
         let spread = Spread::from(&found.without(&BOUNDS, |row| rows.contains(&row)));

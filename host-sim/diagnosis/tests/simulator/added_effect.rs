@@ -39,7 +39,7 @@ pub fn with_turning_loss(mut logs: Logs) -> Logs {
 
 #[test]
 fn an_effect_that_is_added_is_found_with_its_strength_and_written() {
-    let inspected = Inspection::of(with_turning_loss(logs(16, &[], 91)));
+    let inspected = Inspection::new(with_turning_loss(logs(16, &[], 91)));
     let method = Method { catalogue: catalogue(), ..Method::default() };
     let found = findings(Baseline::of_middle(&SIMULATOR).expect("a reference"), &inspected, method).expect("poses");
     let written = serde_json::to_value(&found.diagnosis).expect("JSON");
@@ -55,7 +55,7 @@ fn an_effect_that_is_added_is_found_with_its_strength_and_written() {
 /// What is there to be found decides, not what is in the catalogue.
 #[test]
 fn an_effect_that_is_added_is_not_found_where_it_is_not() {
-    let inspected = Inspection::of(logs(16, &["track_width"], 92));
+    let inspected = Inspection::new(logs(16, &["track_width"], 92));
     let method = Method { catalogue: catalogue(), ..Method::default() };
     let found = findings(Baseline::of_middle(&SIMULATOR).expect("a reference"), &inspected, method).expect("poses");
     assert_eq!(found.diagnosis.effects().iter().map(|e| e.id).collect::<Vec<_>>(), ["track_width"]);

@@ -7,8 +7,8 @@ use mindgap_built_in_robot::{BuiltInRobot, default_robot, four_obstacles, run_co
 use mindgap_core::controller::{Controller, Tuple, When};
 use mindgap_diagnosis::diagnosis::Verdict;
 use mindgap_diagnosis::{Method, diagnose, findings};
-use mindgap_foundations::chance::generator;
 use mindgap_foundations::geometry::direction;
+use mindgap_foundations::random::generator;
 use mindgap_learning::evaluation::accuracy::evaluate;
 use mindgap_learning::evaluation::final_position::final_position_errors;
 use mindgap_logs::inspection::Inspection;
@@ -79,7 +79,7 @@ fn way_cm(rollouts: &RolloutReport, steps: Range<usize>) -> f64 {
 #[test]
 fn a_simulator_with_the_effects_found_has_no_gap_on_fresh_logs() {
     let effects = ["drive_scale=1.1", "sonar_offset=5"];
-    let inspected = Inspection::of(logs(16, &effects, 21));
+    let inspected = Inspection::new(logs(16, &effects, 21));
     let found = findings(Baseline::of_middle(&SIMULATOR).expect("a reference"), &inspected, Method::default());
     let applied = with(found.expect("a gap").applied);
     assert_eq!(applied.added.len(), 2, "{:?}", applied.added);

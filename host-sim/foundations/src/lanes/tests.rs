@@ -1,4 +1,4 @@
-//! One evaluator over numbers one by one, pairs and lanes: the same bits.
+//! The network evaluator gives the same bits for single numbers, pairs and lanes.
 
 use super::Lanes;
 use mindgap_core::folded::{FoldedNetwork, evaluate_all};
@@ -7,8 +7,8 @@ use mindgap_core::network::{Network, ProductUnit, Scaling, SummationUnit};
 use mindgap_core::pair::Pair;
 use proptest::prelude::*;
 
-/// Numbers of every size, zero and subnormal ones among them.
-fn any_size() -> impl Strategy<Value = f32> {
+/// Numbers of every magnitude, including zero and subnormals.
+fn any_magnitude() -> impl Strategy<Value = f32> {
     prop_oneof![
         Just(0.0f32),
         Just(f32::MIN_POSITIVE / 8.0),
@@ -44,7 +44,7 @@ fn same(a: f32, b: f32) -> bool {
 proptest! {
     #[test]
     fn lanes_pairs_and_single_numbers_give_the_same_bits(
-        genes in prop::collection::vec(any_size(), 14), inputs in prop::array::uniform2(any_size()),
+        genes in prop::collection::vec(any_magnitude(), 14), inputs in prop::array::uniform2(any_magnitude()),
     ) {
         let folded = FoldedNetwork::<f32, 2>::fold(&network(&genes));
         let single = folded.evaluate(inputs);
@@ -55,7 +55,7 @@ proptest! {
     }
 
     #[test]
-    fn overflow_safe_powers_are_the_general_ones_to_the_bit(
+    fn overflow_safe_powers_equal_the_general_ones_bit_for_bit(
         genes in prop::collection::vec(-20f32..20.0, 20), inputs in prop::array::uniform2(-20f32..120.0),
     ) {
         let folded = FoldedNetwork::<f32, 2>::fold(&network(&genes));
@@ -65,7 +65,7 @@ proptest! {
     }
 
     #[test]
-    fn folding_changes_a_network_by_no_more_than_rounding(
+    fn folding_changes_a_network_only_by_rounding(
         genes in prop::collection::vec(-3f32..3.0, 20), inputs in prop::array::uniform2(-20f32..120.0),
     ) {
         let network = network(&genes);

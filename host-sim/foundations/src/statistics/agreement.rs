@@ -1,15 +1,15 @@
-//! How well predictions agree with what was logged.
+//! Measures of agreement between predictions and observations.
 
 use serde::{Deserialize, Serialize};
 
 use super::summary::mean;
 
-/// A straight line through (expected, predicted), as in the paper's figure 2.
+/// A straight line fitted to (expected, predicted), as in the paper's figure 2.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TrendLine {
-    /// Predicted per expected.
+    /// Predicted change per expected change.
     pub slope: f64,
-    /// Predicted where zero is expected.
+    /// Prediction at an expected value of zero.
     pub intercept: f64,
 }
 
@@ -18,34 +18,35 @@ pub struct TrendLine {
 pub struct ReliabilityBin {
     /// Mean predicted probability.
     pub predicted: f64,
-    /// Share in which it happened.
+    /// Observed frequency.
     pub observed: f64,
-    /// Samples.
+    /// Number of samples.
     pub n: usize,
 }
 
-/// Log loss counts probabilities nearer to 0 or 1 as this near, since one surprise after certainty is infinitely bad.
+/// Probabilities are clamped to at least this distance from 0 and 1 in [`log_loss`]: a single surprise after certainty would
+/// cost infinitely much.
 const NEAREST_TO_CERTAIN: f64 = 0.001;
 
-/// Mean squared error.
+/// Returns the mean squared error.
 pub fn mse(expected: &[f64], predicted: &[f64]) -> f64 {
     mean(expected.iter().zip(predicted).map(|(e, p)| (e - p) * (e - p)))
 }
 
-/// Mean absolute error.
+/// Returns the mean absolute error.
 pub fn mae(expected: &[f64], predicted: &[f64]) -> f64 {
     mean(expected.iter().zip(predicted).map(|(e, p)| (e - p).abs()))
 }
 
-/// Coefficient of determination: the share of the variance of `expected` that is explained. `None` where there is no
-/// variance.
+/// Returns the coefficient of determination R², the fraction of the variance of `expected` that is explained, or `None` if
+/// the variance is zero.
 pub fn r2(expected: &[f64], predicted: &[f64]) -> Option<f64> {
-    let middle = mean(expected.iter().copied());
-    let variance = mean(expected.iter().map(|e| (e - middle) * (e - middle)));
+    let expected_mean = mean(expected.iter().copied());
+    let variance = mean(expected.iter().map(|e| (e - expected_mean) * (e - expected_mean)));
     (variance > 0.0).then(|| 1.0 - mse(expected, predicted) / variance)
 }
 
-/// The line of least squares of predicted over expected. `None` where all expected values are equal.
+/// Returns the least-squares line of predicted over expected, or `None` if all expected values are equal.
 pub fn trend_line(expected: &[f64], predicted: &[f64]) -> Option<TrendLine> {
     let (x, y) = (mean(expected.iter().copied()), mean(predicted.iter().copied()));
     let sxx = mean(expected.iter().map(|e| (e - x) * (e - x)));
@@ -53,7 +54,7 @@ pub fn trend_line(expected: &[f64], predicted: &[f64]) -> Option<TrendLine> {
     (sxx > 0.0).then(|| TrendLine { slope: sxy / sxx, intercept: y - sxy / sxx * x })
 }
 
-/// Mean negative log likelihood of 0/1 outcomes, natural logarithm.
+/// Returns the mean negative log-likelihood of 0/1 outcomes, in nats.
 pub fn log_loss(outcomes: &[f64], probabilities: &[f64]) -> f64 {
     mean(outcomes.iter().zip(probabilities).map(|(o, p)| {
         let p = p.clamp(NEAREST_TO_CERTAIN, 1.0 - NEAREST_TO_CERTAIN);
@@ -61,8 +62,8 @@ pub fn log_loss(outcomes: &[f64], probabilities: &[f64]) -> f64 {
     }))
 }
 
-/// Area under the ROC curve: the chance that a random positive ranks above a random negative, ties counting half.
-/// `None` unless there are both.
+/// Returns the area under the ROC curve: the probability that a random positive ranks above a random negative, with ties
+/// counting half. `None` unless both occur.
 pub fn auc(outcomes: &[f64], probabilities: &[f64]) -> Option<f64> {
     let mut order: Vec<usize> = (0..outcomes.len()).collect();
     order.sort_by(|a, b| probabilities[*a].total_cmp(&probabilities[*b]));
@@ -74,14 +75,14 @@ pub fn auc(outcomes: &[f64], probabilities: &[f64]) -> Option<f64> {
     let mut rank_sum = 0.0;
     let mut first = 0;
     for ties in order.chunk_by(|a, b| probabilities[*a] == probabilities[*b]) {
-        let middle_rank = first as f64 + (ties.len() as f64 + 1.0) / 2.0;
-        rank_sum += middle_rank * ties.iter().filter(|i| outcomes[**i] > 0.5).count() as f64;
+        let mean_rank = first as f64 + (ties.len() as f64 + 1.0) / 2.0;
+        rank_sum += mean_rank * ties.iter().filter(|i| outcomes[**i] > 0.5).count() as f64;
         first += ties.len();
     }
     Some((rank_sum - positives * (positives + 1.0) / 2.0) / (positives * negatives))
 }
 
-/// Predicted against observed in ten equal bins of the predicted probability; empty bins are left out.
+/// Returns a reliability table in ten equal bins of the predicted probability, without empty bins.
 pub fn reliability(outcomes: &[f64], probabilities: &[f64]) -> Vec<ReliabilityBin> {
     const BINS: usize = 10;
     let mut sums = [(0.0, 0.0, 0); BINS];
@@ -99,7 +100,7 @@ mod tests {
     use proptest::prelude::*;
 
     #[test]
-    fn a_perfect_prediction_and_the_mean() {
+    fn r2_is_one_for_a_perfect_prediction_and_zero_for_the_mean() {
         let y = [1.0, 2.0, 4.0];
         assert_eq!(r2(&y, &y), Some(1.0));
         assert!(r2(&y, &[7.0 / 3.0; 3]).unwrap().abs() < 1e-12);
@@ -108,12 +109,12 @@ mod tests {
     }
 
     #[test]
-    fn a_sure_mistake_costs_no_more_than_stated() {
+    fn log_loss_of_a_certain_mistake_is_bounded() {
         assert!((log_loss(&[1.0], &[0.0]) + libm::log(0.001)).abs() < 1e-12);
     }
 
     #[test]
-    fn reliability_of_a_certain_half() {
+    fn reliability_table_skips_empty_bins() {
         let bins = reliability(&[0.0, 1.0, 1.0], &[0.55, 0.55, 1.0]);
         assert_eq!((bins[0].observed, bins[0].n), (0.5, 2));
         assert_eq!((bins[1].observed, bins[1].n), (1.0, 1));
@@ -121,7 +122,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn auc_is_the_share_of_pairs_in_order(pairs in prop::collection::vec((any::<bool>(), 0u8..5), 2..40)) {
+        fn auc_is_the_fraction_of_ordered_pairs(pairs in prop::collection::vec((any::<bool>(), 0u8..5), 2..40)) {
             let outcomes: Vec<f64> = pairs.iter().map(|p| f64::from(u8::from(p.0))).collect();
             let scores: Vec<f64> = pairs.iter().map(|p| f64::from(p.1)).collect();
             let (mut won, mut total) = (0.0f64, 0.0f64);

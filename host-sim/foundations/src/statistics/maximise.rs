@@ -1,135 +1,135 @@
-//! Maximises a sum of log-likelihoods within bounds: the method of Berndt, Hall, Hall and Hausman (1974), which takes
-//! the curvature from the scores themselves.
+//! Maximises a sum of log-likelihoods within bounds by the method of Berndt, Hall, Hall and Hausman (1974), which
+//! approximates the curvature by the outer product of the scores.
 
 use nalgebra::{DMatrix, DVector};
 
-/// A number to be fitted, within what is possible.
+/// Bounds and characteristic scale of a fitted parameter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bounds {
-    /// Least value.
+    /// Smallest value.
     pub low: f64,
     /// Largest value.
     pub high: f64,
-    /// A change that would be large: derivatives are taken over a share of it.
+    /// Characteristic scale; finite-difference steps are a fraction of it.
     pub scale: f64,
 }
 
 impl Bounds {
-    /// Bounds whose distance is a large change.
+    /// Returns bounds with their distance as characteristic scale.
     pub const fn new(low: f64, high: f64) -> Self {
         Bounds { low, high, scale: high - low }
     }
 }
 
-/// A point, and what the terms are there.
+/// A point in parameter space and the log-likelihood terms there.
 #[derive(Clone, Debug)]
 pub struct Point {
-    /// Where it lies.
+    /// Parameter values.
     pub at: Vec<f64>,
-    /// The log-likelihood of each term there.
+    /// Log-likelihood of each term.
     pub terms: Vec<f64>,
 }
 
-/// A maximum, and what is known of its surroundings.
+/// A maximum and the scores there.
 #[derive(Clone, Debug)]
 pub struct Maximum {
-    /// Where it lies.
+    /// Parameter values.
     pub at: Vec<f64>,
-    /// The log-likelihood of all terms there.
+    /// Total log-likelihood.
     pub value: f64,
-    /// The score of each term there, by parameter, per unit of the bounds' scale.
+    /// Score of each term by parameter, per characteristic scale.
     pub scores: Vec<Vec<f64>>,
 }
 
-/// Derivatives are taken over this share of the bounds' scale: small against what is plausible, large against rounding.
+/// Finite-difference step as a fraction of the characteristic scale: small against plausible values, large against rounding.
 const DIFFERENCE: f64 = 0.004;
-/// Keeps the curvature invertible: a weak prior of one scale's standard deviation about the present point, in squared
-/// scores.
+/// Keeps the curvature invertible: a weak prior about the current point with a standard deviation of one characteristic
+/// scale, in squared scores.
 const RIDGE: f64 = 1.0;
-/// A step that does not climb is shortened, and one that does is lengthened, up to this many times: to a five-hundredth
-/// or to the two-hundred-fold, beyond which the quadratic model says nothing.
-const LENGTHS: usize = 6;
-const SHORTER: f64 = 0.35;
-const LONGER: f64 = 2.5;
+/// A step that does not climb is shortened, and one that does is lengthened, up to this many times: to about a five-hundredth
+/// or two hundred times its length, where the quadratic model no longer holds.
+const MAX_LENGTH_CHANGES: usize = 6;
+const SHORTEN: f64 = 0.35;
+const LENGTHEN: f64 = 2.5;
 
-/// Climbs from `start` until a round gains less than `enough`, for `rounds` at most. `terms` gives the log-likelihood
-/// of each term at a point.
+/// Climbs from `start` until an iteration gains less than `tolerance`, for at most `max_iterations`. `terms` returns the
+/// log-likelihood of each term at a point.
 pub fn climb(
     bounds: &[Bounds],
     start: &[f64],
-    rounds: usize,
-    enough: f64,
+    max_iterations: usize,
+    tolerance: f64,
     terms: impl Fn(&[f64]) -> Vec<f64>,
 ) -> Point {
-    climb_on(bounds, Point::new(start, &terms), rounds, enough, terms)
+    climb_from(bounds, Point::new(start, &terms), max_iterations, tolerance, terms)
 }
 
-/// Climbs on from where another climb ended.
-pub fn climb_on(
+/// Climbs on from the end of another climb; see [`climb`].
+pub fn climb_from(
     bounds: &[Bounds],
     from: Point,
-    rounds: usize,
-    enough: f64,
+    max_iterations: usize,
+    tolerance: f64,
     terms: impl Fn(&[f64]) -> Vec<f64>,
 ) -> Point {
     let mut here = from;
-    for _ in 0..rounds {
+    for _ in 0..max_iterations {
         let before = here.value();
         let scores = score(bounds, &here, &terms);
         let direction = step(&gradient(&scores, |_| true), &curvature(&scores, |_| true), &here.at, bounds);
         let best = line_search(before, |length| along(bounds, &here.at, &direction, length, &terms));
         let gain = best.as_ref().map_or(0.0, |best| best.value() - before);
         here = best.unwrap_or(here);
-        if gain < enough {
+        if gain < tolerance {
             break;
         }
     }
     here
 }
 
-/// A step of one parameter alone, of the two that promise most, if one gains `enough`. Where all terms pull alike, as those of
-/// a share and of the place at which they lie, their scores do not tell how far to go in other directions, and a climb ends
-/// on the way.
-pub fn step_of_one(
+/// Tries a step of a single parameter, for the two with the largest expected gain, and returns the first that gains
+/// `tolerance`. Where the scores of all terms are collinear, as for an outlier fraction and the location of the outliers,
+/// they do not determine how far to go in other directions and [`climb`] stops early.
+pub fn single_parameter_step(
     bounds: &[Bounds],
     from: &Maximum,
-    enough: f64,
+    tolerance: f64,
     terms: impl Fn(&[f64]) -> Vec<f64>,
 ) -> Option<Point> {
     let Maximum { at, value: before, scores } = from;
     let (gradient, curvature) = (gradient(scores, |_| true), curvature(scores, |_| true));
-    let promised = |i: &usize| gradient[*i] * gradient[*i] / curvature[(*i, *i)];
+    let expected_gain = |i: &usize| gradient[*i] * gradient[*i] / curvature[(*i, *i)];
     let mut order: Vec<usize> = (0..at.len()).collect();
-    order.sort_by(|a, b| promised(b).total_cmp(&promised(a)));
-    order.into_iter().take(2).filter(|i| promised(i) > enough).find_map(|i| {
+    order.sort_by(|a, b| expected_gain(b).total_cmp(&expected_gain(a)));
+    order.into_iter().take(2).filter(|i| expected_gain(i) > tolerance).find_map(|i| {
         let direction: Vec<f64> =
             (0..at.len()).map(|j| if i == j { gradient[i] / curvature[(i, i)] } else { 0.0 }).collect();
         let best = line_search(*before, |length| along(bounds, at, &direction, length, &terms));
-        best.filter(|best| best.value() - before >= enough)
+        best.filter(|best| best.value() - before >= tolerance)
     })
 }
 
 impl Point {
-    /// A point by its parameters.
+    /// Evaluates the terms at a point.
     pub fn new(at: &[f64], terms: impl Fn(&[f64]) -> Vec<f64>) -> Self {
         Point { at: at.to_vec(), terms: terms(at) }
     }
 
-    /// The value of the sum.
+    /// Returns the total log-likelihood.
     pub fn value(&self) -> f64 {
         self.terms.iter().sum()
     }
 
-    /// The same as a maximum.
-    pub fn scored(self, bounds: &[Bounds], terms: impl Fn(&[f64]) -> Vec<f64>) -> Maximum {
+    /// Evaluates the scores at this point.
+    pub fn into_maximum(self, bounds: &[Bounds], terms: impl Fn(&[f64]) -> Vec<f64>) -> Maximum {
         Maximum { value: self.value(), scores: score(bounds, &self, &terms), at: self.at }
     }
 }
 
 impl Maximum {
-    /// Logarithm of the integral over all points of the exponential of the sum, relative to its maximum, by Laplace's method:
-    /// the sum falls off as its scores say, and as a prior of these precisions (one a parameter, in squared inverse units).
-    /// A share of the terms, `is_term`, makes up the scores: a prior that is among the terms is given by its precision.
+    /// Returns the logarithm of the integral of the likelihood relative to its maximum, by Laplace's method, with a Gaussian
+    /// prior of these `precisions` (one per parameter, in inverse squared units). Only terms for which `is_term` holds contribute
+    /// their scores: a prior among the terms is given by its precision instead.
     pub fn log_volume(&self, bounds: &[Bounds], precisions: &[f64], is_term: impl Fn(usize) -> bool) -> f64 {
         let mut curvature = curvature(&self.scores, is_term);
         for (i, (b, precision)) in bounds.iter().zip(precisions).enumerate() {
@@ -141,35 +141,35 @@ impl Maximum {
         0.5 * (bounds.len() as f64 * libm::log(std::f64::consts::TAU) - log_determinant) + scales
     }
 
-    /// Where the maximum would lie without the terms for which `left_out` holds, to first order.
-    pub fn without(&self, bounds: &[Bounds], left_out: impl Fn(usize) -> bool) -> Vec<f64> {
+    /// Returns where the maximum would lie without the `excluded` terms, to first order.
+    pub fn without(&self, bounds: &[Bounds], excluded: impl Fn(usize) -> bool) -> Vec<f64> {
         let all = gradient(&self.scores, |_| true);
-        let kept = gradient(&self.scores, |i| !left_out(i));
-        // The whole gradient vanishes at the maximum, but for how far the climb went, except along what a bound holds: that
-        // moves where the kept terms no longer pull it against the bound.
+        let kept = gradient(&self.scores, |i| !excluded(i));
+        // The total gradient vanishes at the maximum, up to the climb's tolerance, except for parameters held at a bound:
+        // those move only if the remaining terms no longer push them against it.
         let is_held = |i: usize| is_held(self.at[i], all[i], &bounds[i]);
-        let pull: Vec<f64> = (0..kept.len()).map(|i| if is_held(i) { kept[i] } else { kept[i] - all[i] }).collect();
-        let curvature = curvature(&self.scores, |i| !left_out(i));
-        moved(bounds, &self.at, &step(&pull, &curvature, &self.at, bounds))
+        let force: Vec<f64> = (0..kept.len()).map(|i| if is_held(i) { kept[i] } else { kept[i] - all[i] }).collect();
+        let curvature = curvature(&self.scores, |i| !excluded(i));
+        moved(bounds, &self.at, &step(&force, &curvature, &self.at, bounds))
     }
 }
 
-/// Whether a parameter is pulled against the bound where it is.
-fn is_held(at: f64, pull: f64, bounds: &Bounds) -> bool {
-    (at <= bounds.low && pull < 0.0) || (at >= bounds.high && pull > 0.0)
+/// Returns whether a parameter at a bound is pushed against it.
+fn is_held(at: f64, force: f64, bounds: &Bounds) -> bool {
+    (at <= bounds.low && force < 0.0) || (at >= bounds.high && force > 0.0)
 }
 
 fn along(bounds: &[Bounds], at: &[f64], direction: &[f64], length: f64, terms: &impl Fn(&[f64]) -> Vec<f64>) -> Point {
     Point::new(&moved(bounds, at, &direction.iter().map(|d| d * length).collect::<Vec<f64>>()), terms)
 }
 
-/// The best of a few lengths, if any climbs.
+/// Returns the best of a few step lengths, if any climbs.
 fn line_search(before: f64, along: impl Fn(f64) -> Point) -> Option<Point> {
     let mut length = 1.0;
     let mut best = along(length);
     if best.value() > before {
-        for _ in 0..LENGTHS {
-            length *= LONGER;
+        for _ in 0..MAX_LENGTH_CHANGES {
+            length *= LENGTHEN;
             let further = along(length);
             if further.value() <= best.value() {
                 break;
@@ -178,8 +178,8 @@ fn line_search(before: f64, along: impl Fn(f64) -> Point) -> Option<Point> {
         }
         return Some(best);
     }
-    for _ in 0..LENGTHS {
-        length *= SHORTER;
+    for _ in 0..MAX_LENGTH_CHANGES {
+        length *= SHORTEN;
         best = along(length);
         if best.value() > before {
             return Some(best);
@@ -188,7 +188,7 @@ fn line_search(before: f64, along: impl Fn(f64) -> Point) -> Option<Point> {
     None
 }
 
-/// The sum of the scores of the terms that are kept.
+/// Sums the scores of the kept terms.
 fn gradient(scores: &[Vec<f64>], kept: impl Fn(usize) -> bool) -> Vec<f64> {
     let mut sum = vec![0.0; scores.first().map_or(0, Vec::len)];
     for (_, score) in scores.iter().enumerate().filter(|(i, _)| kept(*i)) {
@@ -197,15 +197,15 @@ fn gradient(scores: &[Vec<f64>], kept: impl Fn(usize) -> bool) -> Vec<f64> {
     sum
 }
 
-/// The step to where the slope vanishes, to first order.
+/// Returns the Newton step, in characteristic scales.
 fn step(gradient: &[f64], curvature: &DMatrix<f64>, at: &[f64], bounds: &[Bounds]) -> Vec<f64> {
     let p = at.len();
-    // A parameter that a bound holds stays out of the step.
+    // Parameters held at a bound do not move.
     let free: Vec<usize> = (0..p).filter(|i| !is_held(at[*i], gradient[*i], &bounds[*i])).collect();
     let matrix = DMatrix::from_fn(free.len(), free.len(), |r, c| curvature[(free[r], free[c])]);
-    let pull = DVector::from_iterator(free.len(), free.iter().map(|i| gradient[*i]));
+    let force = DVector::from_iterator(free.len(), free.iter().map(|i| gradient[*i]));
     let mut step = vec![0.0; p];
-    if let Some(solved) = matrix.cholesky().map(|c| c.solve(&pull)) {
+    if let Some(solved) = matrix.cholesky().map(|c| c.solve(&force)) {
         free.iter().zip(solved.iter()).for_each(|(i, s)| step[*i] = *s);
     }
     step
@@ -229,9 +229,9 @@ fn score(bounds: &[Bounds], here: &Point, terms: &impl Fn(&[f64]) -> Vec<f64>) -
     let mut scores = vec![vec![0.0; at.len()]; here.len()];
     for (i, b) in bounds.iter().enumerate() {
         let h = if at[i] + DIFFERENCE * b.scale <= b.high { DIFFERENCE } else { -DIFFERENCE };
-        let mut beside = at.clone();
-        beside[i] += h * b.scale;
-        let there = terms(&beside);
+        let mut shifted = at.clone();
+        shifted[i] += h * b.scale;
+        let there = terms(&shifted);
         for (s, (a, b)) in scores.iter_mut().zip(there.iter().zip(here)) {
             s[i] = (a - b) / h;
         }
@@ -240,8 +240,8 @@ fn score(bounds: &[Bounds], here: &Point, terms: &impl Fn(&[f64]) -> Vec<f64>) -
 }
 
 fn moved(bounds: &[Bounds], at: &[f64], step: &[f64]) -> Vec<f64> {
-    let one = |((a, s), b): ((&f64, &f64), &Bounds)| (a + s * b.scale).clamp(b.low, b.high);
-    at.iter().zip(step).zip(bounds).map(one).collect()
+    let shifted = |((a, s), b): ((&f64, &f64), &Bounds)| (a + s * b.scale).clamp(b.low, b.high);
+    at.iter().zip(step).zip(bounds).map(shifted).collect()
 }
 
 #[cfg(test)]
@@ -250,50 +250,50 @@ mod tests {
 
     const WIDE: Bounds = Bounds::new(-10.0, 10.0);
 
-    /// Log-likelihood of values under a normal law of unknown mean and of deviation one.
+    /// Log-likelihood of values under a normal distribution of unknown mean and unit standard deviation.
     fn normal(values: &[f64]) -> impl Fn(&[f64]) -> Vec<f64> {
         move |at| values.iter().map(|v| -0.5 * (v - at[0]) * (v - at[0])).collect()
     }
 
     #[test]
-    fn the_mean_is_the_most_likely_middle() {
+    fn mean_of_normal_values_is_found() {
         let values: Vec<f64> = (0..50).map(|i| 2.0 + 0.05 * (f64::from(i) - 24.5)).collect();
         let found = climb(&[WIDE], &[-5.0], 50, 1e-9, normal(&values));
         assert!((found.at[0] - 2.0).abs() < 0.05, "{:?}", found.at);
     }
 
     #[test]
-    fn a_bound_holds() {
+    fn bounds_are_respected() {
         let bounds = [Bounds::new(-10.0, 1.0)];
         let found = climb(&bounds, &[0.0], 50, 1e-9, normal(&[2.0, 3.0, 4.0]));
         assert_eq!(found.at, [1.0]);
     }
 
-    /// Points of a plane whose coordinates deviate by one about (2, −3), and hang together not at all.
+    /// Points about (2, −3) with unit standard deviation and uncorrelated coordinates.
     fn points() -> Vec<[f64; 2]> {
         [[3.0, -2.0], [3.0, -4.0], [1.0, -2.0], [1.0, -4.0]].repeat(10)
     }
 
     #[test]
-    fn two_numbers_are_fitted_together_from_any_start() {
+    fn correlated_parameters_are_fitted_from_any_start() {
         let points = points();
-        // Sum and difference of the two are what the terms depend on: a ridge across both.
+        // The terms depend on sum and difference of the two parameters.
         let terms = |at: &[f64]| -> Vec<f64> {
             let off = |p: &[f64; 2]| [at[0] + at[1] - p[0], at[0] - at[1] - p[1]];
             points.iter().map(off).map(|[a, b]| -0.5 * (a * a + b * b)).collect()
         };
         for start in [[0.0, 0.0], [-10.0, 10.0], [9.0, -9.0]] {
             let found = climb(&[WIDE; 2], &start, 50, 1e-9, terms);
-            // One-sided differences are off by half of what they reach over.
+            // One-sided differences are biased by half their step.
             let off = [found.at[0] + 0.5, found.at[1] - 2.5].map(f64::abs);
             assert!(off.iter().all(|off| *off < 0.05), "{:?}", found.at);
         }
     }
 
     #[test]
-    fn scores_and_value_are_those_of_the_maximum() {
+    fn maximum_has_value_and_scores() {
         let terms = normal(&[1.0, 3.0]);
-        let found = climb(&[WIDE], &[2.0], 1, f64::INFINITY, &terms).scored(&[WIDE], terms);
+        let found = climb(&[WIDE], &[2.0], 1, f64::INFINITY, &terms).into_maximum(&[WIDE], terms);
         assert!((found.value + 1.0).abs() < 0.01, "{}", found.value);
         // The slopes are −1 and 1, per the bounds' scale of 20.
         for (score, slope) in found.scores.iter().zip([-20.0, 20.0]) {
@@ -302,24 +302,24 @@ mod tests {
     }
 
     #[test]
-    fn it_ends_where_a_round_gains_less_than_asked_for() {
+    fn climb_stops_when_an_iteration_gains_less_than_the_tolerance() {
         let values: Vec<f64> = (0..50).map(|i| 2.0 + 0.05 * (f64::from(i) - 24.5)).collect();
-        let calls = |rounds, enough| {
+        let calls = |max_iterations, tolerance| {
             let calls = std::cell::Cell::new(0);
             let counted = |at: &[f64]| {
                 calls.set(calls.get() + 1);
                 normal(&values)(at)
             };
-            climb(&[WIDE], &[-5.0], rounds, enough, counted);
+            climb(&[WIDE], &[-5.0], max_iterations, tolerance, counted);
             calls.get()
         };
         assert!(calls(50, 1e6) < calls(50, 1e-9));
-        assert_eq!(calls(1, 1e-9), calls(50, 1e6), "one round");
-        assert_eq!(calls(0, 1e-9), 1, "here");
+        assert_eq!(calls(1, 1e-9), calls(50, 1e6), "one iteration");
+        assert_eq!(calls(0, 1e-9), 1, "start only");
     }
 
     #[test]
-    fn a_number_at_its_bound_does_not_hold_up_the_others() {
+    fn parameter_at_its_bound_does_not_block_the_others() {
         let points = points();
         let terms = |at: &[f64]| -> Vec<f64> {
             let off = |p: &[f64; 2]| [at[0] - p[0], at[1] - p[1]];
@@ -330,9 +330,9 @@ mod tests {
         assert!((found.at[1] + 3.0).abs() < 0.05, "{:?}", found.at);
     }
 
-    /// A share of the terms is near one value, each just as near: a share and a value to find, and no scatter.
+    /// One term in five lies at an unknown location without scatter: fraction and location are to be found.
     #[test]
-    fn what_pulls_in_one_direction_is_followed_to_the_end() {
+    fn collinear_scores_are_followed_to_the_maximum() {
         let terms = |at: &[f64]| -> Vec<f64> {
             let near = at[0] * libm::exp(-0.5 * (at[1] - 60.0) * (at[1] - 60.0));
             let term =
@@ -340,47 +340,47 @@ mod tests {
             (0..500).map(term).collect()
         };
         let bounds = [Bounds::new(0.0, 0.6), Bounds { low: 5.0, high: 80.0, scale: 1.5 }];
-        let mut found = climb(&bounds, &[0.05, 59.0], 50, 0.1, terms).scored(&bounds, terms);
-        while let Some(further) = step_of_one(&bounds, &found, 0.1, terms) {
-            found = climb_on(&bounds, further, 50, 0.1, terms).scored(&bounds, terms);
+        let mut found = climb(&bounds, &[0.05, 59.0], 50, 0.1, terms).into_maximum(&bounds, terms);
+        while let Some(further) = single_parameter_step(&bounds, &found, 0.1, terms) {
+            found = climb_from(&bounds, further, 50, 0.1, terms).into_maximum(&bounds, terms);
         }
         assert!((found.at[0] - 0.2).abs() < 0.02 && (found.at[1] - 60.0).abs() < 0.1, "{:?}", found.at);
     }
 
     #[test]
-    fn leaving_nothing_out_leaves_the_maximum_where_it_is() {
+    fn excluding_nothing_keeps_the_maximum() {
         let terms = normal(&[1.0, 3.0]);
-        let found = climb(&[WIDE], &[0.0], 50, 1e-9, &terms).scored(&[WIDE], terms);
+        let found = climb(&[WIDE], &[0.0], 50, 1e-9, &terms).into_maximum(&[WIDE], terms);
         assert_eq!(found.without(&[WIDE], |_| false), found.at);
     }
 
     #[test]
-    fn leaving_terms_out_moves_the_maximum_away_from_them() {
-        // Of variance one about their mean of 2, as the law has it, so that a step to first order is exact.
+    fn excluding_terms_moves_the_maximum_away_from_them() {
+        // Unit variance about their mean of 2, as assumed, so that the first-order step is exact.
         let values: Vec<f64> = (0..40).map(|i| if i < 20 { 1.0 } else { 3.0 }).collect();
         let terms = normal(&values);
-        let found = climb(&[WIDE], &[0.0], 50, 1e-9, &terms).scored(&[WIDE], terms);
+        let found = climb(&[WIDE], &[0.0], 50, 1e-9, &terms).into_maximum(&[WIDE], terms);
         let without = found.without(&[WIDE], |i| i < 10)[0];
-        // What is kept: ten ones and twenty threes. One-sided differences are off by half of what they reach over.
+        // Ten ones and twenty threes remain. One-sided differences are biased by half their step.
         let most = 0.5 * DIFFERENCE * (WIDE.high - WIDE.low);
         assert!((without - 70.0 / 30.0).abs() < most, "{} {without}", found.at[0]);
     }
 
-    /// All terms pull the first number against its bound, those of one half less, and hang it together with the second.
+    /// All terms push the first parameter against its bound, half of them less, and couple it to the second.
     #[test]
-    fn a_number_that_a_bound_holds_stays_there_whatever_is_left_out() {
+    fn parameter_held_at_a_bound_stays_there_whatever_is_excluded() {
         let terms = |at: &[f64]| -> Vec<f64> {
             let middle = |i: usize| if i.is_multiple_of(2) { -4.0 } else { -6.0 };
             let off = |i| [at[0] + 0.5 * at[1] - middle(i), at[1]];
             (0..40).map(off).map(|[a, b]| -0.5 * (a * a + b * b)).collect()
         };
         let bounds = [Bounds::new(0.0, 10.0), WIDE];
-        let found = climb(&bounds, &[0.0, -2.0], 50, 1e-9, terms).scored(&bounds, terms);
+        let found = climb(&bounds, &[0.0, -2.0], 50, 1e-9, terms).into_maximum(&bounds, terms);
         assert_eq!(found.at[0], 0.0);
         let [first, second] = found.without(&bounds, |i| i % 4 == 1)[..] else { unreachable!("two numbers") };
         assert_eq!(first, 0.0);
-        // Ten scores of -10 are left out, and thirty of ±10 kept: a thirtieth of the scale of 20, and what one-sided
-        // differences add.
+        // Ten scores of -10 are excluded and thirty of ±10 remain: a thirtieth of the scale of 20, plus the bias of
+        // one-sided differences.
         assert!((second - found.at[1]).abs() < 1.0, "{second} {}", found.at[1]);
     }
 }

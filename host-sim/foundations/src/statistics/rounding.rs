@@ -1,37 +1,37 @@
-//! Figures as they are written: with four decimals, beyond which nothing that is measured here says anything.
+//! Rounding of written figures: four decimals, more than any measurement here resolves.
 
 use serde::{Serialize, Serializer};
 
-/// Four decimals.
+/// Rounds to four decimals.
 pub fn four_decimals(value: f64) -> f64 {
     (value * 1e4).round() / 1e4
 }
 
-/// Three digits, as strengths of effects are told.
+/// Rounds to three significant digits, as effect strengths are reported.
 pub fn three_digits(value: f64) -> f64 {
     format!("{value:.2e}").parse().unwrap_or(value)
 }
 
-/// For `serialize_with`: a number with four decimals.
+/// Serializes a number with four decimals, for `serialize_with`.
 ///
 /// # Errors
-/// Those of the serializer.
+/// Returns the serializer's errors.
 pub fn number<S: Serializer>(value: &f64, to: S) -> Result<S::Ok, S::Error> {
     four_decimals(*value).serialize(to)
 }
 
-/// For `serialize_with`: a number with four decimals, if there is one.
+/// Serializes an optional number with four decimals, for `serialize_with`.
 ///
 /// # Errors
-/// Those of the serializer.
+/// Returns the serializer's errors.
 pub fn optional<S: Serializer>(value: &Option<f64>, to: S) -> Result<S::Ok, S::Error> {
     value.map(four_decimals).serialize(to)
 }
 
-/// For `serialize_with`: an interval with four decimals.
+/// Serializes an interval with four decimals, for `serialize_with`.
 ///
 /// # Errors
-/// Those of the serializer.
+/// Returns the serializer's errors.
 pub fn interval<S: Serializer>(value: &[f64; 2], to: S) -> Result<S::Ok, S::Error> {
     value.map(four_decimals).serialize(to)
 }

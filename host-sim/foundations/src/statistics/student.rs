@@ -1,25 +1,25 @@
-//! Student's t distribution with five degrees of freedom, scaled: errors that are nearly normal with heavier tails.
+//! Scaled Student's t distribution with five degrees of freedom: nearly normal, with heavier tails.
 
 use std::f64::consts::{PI, TAU};
 
-/// Degrees of freedom. With an odd number the distribution function is closed; [`density`] and [`cumulative`] are
+/// Degrees of freedom. With an odd number the distribution function has a closed form; [`density`] and [`cumulative`] are
 /// written for five.
 pub const DEGREES: f64 = 5.0;
-/// 8 / (3 π √5): the density at the middle for scale one.
+/// 8 / (3 π √5): the density at zero for scale one.
 const PEAK: f64 = 0.379_606_689_822_494_4;
-/// [`quantile`] looks within this many scales of the middle, beyond which lies less than 2e-9 of the distribution.
+/// [`quantile`] searches within this many scales of zero; less than 2e-9 of the distribution lies beyond.
 const WIDEST: f64 = 100.0;
-/// Bisections of that interval until it is as narrow as double precision.
+/// Bisections that narrow this interval to double precision.
 const BISECTIONS: usize = 60;
 
-/// The density at `x` from the middle.
+/// Returns the density at `x`.
 pub fn density(x: f64, scale: f64) -> f64 {
     let t = x / scale;
     let base = 1.0 + t * t / DEGREES;
     PEAK / (scale * base * base * base)
 }
 
-/// The probability of less than `t`, for scale one (Abramowitz and Stegun 1964, equation 26.7.3).
+/// Returns the probability of a value below `t`, for scale one (Abramowitz and Stegun 1964, equation 26.7.3).
 pub fn cumulative(t: f64) -> f64 {
     let root = DEGREES.sqrt();
     let cos_squared = DEGREES / (DEGREES + t * t);
@@ -27,7 +27,7 @@ pub fn cumulative(t: f64) -> f64 {
     0.5 + (libm::atan(t / root) + sin_cos * (1.0 + 2.0 / 3.0 * cos_squared)) / PI
 }
 
-/// What a share `p` of the distribution lies below, for scale one.
+/// Returns the `p`-quantile, for scale one.
 pub fn quantile(p: f64) -> f64 {
     let (mut low, mut high) = (-WIDEST, WIDEST);
     for _ in 0..BISECTIONS {
@@ -41,10 +41,10 @@ pub fn quantile(p: f64) -> f64 {
     0.5 * (low + high)
 }
 
-/// A draw for scale one, from draws in [0, 1) (Bailey 1994, Polar generation of random variates with the
+/// Draws a value for scale one, given uniform draws in [0, 1) (Bailey 1994, Polar generation of random variates with the
 /// t-distribution, Mathematics of Computation 62).
 pub fn draw(mut uniform: impl FnMut() -> f64) -> f64 {
-    // Away from zero, whose logarithm would be infinite.
+    // In (0, 1], since zero would give an infinite radius.
     let radius = 1.0 - uniform();
     (DEGREES * (libm::pow(radius, -2.0 / DEGREES) - 1.0)).sqrt() * libm::cos(TAU * uniform())
 }
@@ -54,10 +54,10 @@ mod tests {
     use rand::RngExt;
 
     use super::*;
-    use crate::chance::generator;
+    use crate::random::generator;
 
     #[test]
-    fn quantiles_are_those_of_the_tables() {
+    fn quantiles_match_published_tables() {
         for (p, t) in [(0.5, 0.0), (0.75, 0.726_687), (0.95, 2.015_048), (0.995, 4.032_143), (0.9995, 6.868_827)] {
             assert!((quantile(p) - t).abs() < 1e-6, "{p}: {}", quantile(p));
             assert!((quantile(1.0 - p) + t).abs() < 1e-6, "{p}");
@@ -65,7 +65,7 @@ mod tests {
     }
 
     #[test]
-    fn the_density_is_the_slope_of_the_distribution_function() {
+    fn density_is_the_derivative_of_the_distribution_function() {
         for i in -40..=40 {
             let (t, h) = (0.2 * f64::from(i), 1e-5);
             let slope = (cumulative(t + h) - cumulative(t - h)) / (2.0 * h);
@@ -75,7 +75,7 @@ mod tests {
     }
 
     #[test]
-    fn a_tenth_of_the_draws_lies_in_each_tenth_of_the_distribution() {
+    fn draws_are_uniform_over_deciles() {
         const DRAWS: usize = 100_000;
         let mut rng = generator(5, &[]);
         let mut tenths = [0.0; 10];
@@ -84,7 +84,7 @@ mod tests {
         }
         let expected = DRAWS as f64 / 10.0;
         let squares: f64 = tenths.iter().map(|n| (n - expected) * (n - expected) / expected).sum();
-        // Of nine degrees of freedom; one sample in a thousand exceeds it.
+        // Chi-squared with nine degrees of freedom; one sample in a thousand exceeds it.
         assert!(squares < 27.9, "{tenths:?}");
     }
 }

@@ -1,28 +1,28 @@
-//! Numbers that sum up many.
+//! Summary statistics.
 
-/// Half of a normal law's values lie within so many standard deviations.
+/// Half of a normal distribution lies within this many standard deviations of its mean.
 pub const QUARTILE: f64 = 0.674;
 
-/// The mean; NaN of nothing.
+/// Returns the mean; NaN for an empty iterator.
 pub fn mean(values: impl Iterator<Item = f64>) -> f64 {
     let (sum, n) = values.fold((0.0, 0.0), |(sum, n), v| (sum + v, n + 1.0));
     sum / n
 }
 
-/// Standard error of a sum of independent terms, whose variance is known from themselves.
-pub fn error_of_sum(terms: &[f64]) -> f64 {
+/// Returns the standard error of a sum of independent terms, with their variance estimated from the terms.
+pub fn standard_error_of_sum(terms: &[f64]) -> f64 {
     let n = terms.len() as f64;
     let mean = terms.iter().sum::<f64>() / n;
     let variance = terms.iter().map(|d| (d - mean) * (d - mean)).sum::<f64>() / (n - 1.0).max(1.0);
     (n * variance).sqrt()
 }
 
-/// The square root of the mean of squares; NaN of nothing.
+/// Returns the root mean square; NaN for an empty iterator.
 pub fn root_mean_square(values: impl Iterator<Item = f64>) -> f64 {
     mean(values.map(|v| v * v)).sqrt()
 }
 
-/// The upper median; NaN of nothing.
+/// Returns the upper median; NaN for an empty iterator.
 pub fn median(values: impl Iterator<Item = f64>) -> f64 {
     let mut values: Vec<f64> = values.collect();
     if values.is_empty() {
@@ -32,8 +32,8 @@ pub fn median(values: impl Iterator<Item = f64>) -> f64 {
     *values.select_nth_unstable_by(middle, f64::total_cmp).1
 }
 
-/// The slope through the origin of least absolute deviations, of pairs (y, x): the median of their ratios, weighted by x.
-/// Half of the pairs may be wrong without moving it. `None` where every x is zero.
+/// Returns the least-absolute-deviations slope through the origin of pairs (y, x): the median of their ratios, weighted by
+/// |x|. Up to half of the pairs may be outliers. `None` if every x is zero.
 pub fn robust_slope(pairs: impl Iterator<Item = (f64, f64)>) -> Option<f64> {
     let pairs = pairs.filter(|(_, x)| *x != 0.0);
     let mut ratios: Vec<(f64, f64)> = pairs.map(|(y, x)| (y / x, x.abs())).collect();
@@ -46,12 +46,12 @@ pub fn robust_slope(pairs: impl Iterator<Item = (f64, f64)>) -> Option<f64> {
     })
 }
 
-/// The logistic function: the probability whose log-odds are `x`.
+/// Returns the probability whose log-odds are `x` (logistic function).
 pub fn logistic(x: f64) -> f64 {
     1.0 / (1.0 + libm::exp(-x))
 }
 
-/// The log-odds of a probability.
+/// Returns the log-odds of a probability.
 pub fn log_odds(p: f64) -> f64 {
     libm::log(p / (1.0 - p))
 }

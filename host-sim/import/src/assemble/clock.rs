@@ -1,62 +1,62 @@
-//! One clock for commands and poses: theirs if it is one, or else by their motion.
+//! Finds one clock for commands and poses: the clock they share, or an alignment by their motion.
 
 use crate::clocks::{Clocks, align, lag};
 use crate::motion::CumulativeMotion;
 use crate::recording::Commands;
 use crate::report::ClocksReport;
-use crate::sides::{covered, drive};
+use crate::scale_check::{commanded_wheels_cm, travel_and_rotation};
 use mindgap_foundations::error::{Error, Result};
 use mindgap_logs::{Robot, Row};
 
 use super::rows::Prepared;
 
-/// A lag of motion behind its commands up to this may be the robot's own: clocks that are off by no more are one.
-const LONGEST_LAG_MS: f64 = 1000.0;
-/// Commands and poses on one clock leave at most this share of the motion unexplained, whatever the robot's faults; those of
-/// two drives leave about 0.6, since both mostly go ahead.
-const MOST_UNEXPLAINED: f64 = 0.45;
+/// Up to this lag of motion behind commands may be the robot's own: with no more, the clocks count as one.
+const MAX_LAG_MS: f64 = 1000.0;
+/// Commands and poses on one clock leave at most this fraction of the motion unexplained, whatever the robot's faults; those of
+/// two different drives leave about 0.6, since both mostly go ahead.
+const MAX_UNEXPLAINED: f64 = 0.45;
 
-/// How the clocks of commands and poses go together, which one clock stamped `for_certain` or not; `offset_ms` is what the
-/// user says that the poses' clock is ahead.
+/// Finds how the clocks of commands and poses are related. `is_one_clock` says that they are known to be the same, `offset_ms`
+/// is the lead of the poses' clock if the user states it.
 ///
 /// # Errors
 /// When the streams have nothing in common.
 pub fn aligned(
     prepared: &Prepared,
     robot: &Robot,
-    for_certain: bool,
+    is_one_clock: bool,
     offset_ms: Option<f64>,
 ) -> Result<(Clocks, ClocksReport)> {
-    let asked = asked(&prepared.commands, robot);
-    let seen = prepared.track.motion();
+    let commanded = commanded(&prepared.commands, robot);
+    let observed = prepared.track.motion();
     let stated_ms = offset_ms.unwrap_or(0.0);
     let shifted: Vec<CumulativeMotion> =
-        seen.iter().map(|m| CumulativeMotion { t_ms: m.t_ms - stated_ms, ..*m }).collect();
-    let lag = lag(&asked, &shifted, LONGEST_LAG_MS);
-    let report = |clocks: Clocks, one, lag_ms, unexplained| {
+        observed.iter().map(|m| CumulativeMotion { t_ms: m.t_ms - stated_ms, ..*m }).collect();
+    let lag = lag(&commanded, &shifted, MAX_LAG_MS);
+    let report = |clocks: Clocks, shared, lag_ms, unexplained| {
         let Clocks { offset_ms, drift } = clocks;
-        (clocks, ClocksReport { one, offset_ms, drift, lag_ms, unexplained })
+        (clocks, ClocksReport { shared, offset_ms, drift, lag_ms, unexplained })
     };
-    if offset_ms.is_some() || lag.is_some_and(|(_, unexplained)| unexplained <= MOST_UNEXPLAINED) {
+    if offset_ms.is_some() || lag.is_some_and(|(_, unexplained)| unexplained <= MAX_UNEXPLAINED) {
         let (lag_ms, unexplained) = lag.unzip();
         return Ok(report(Clocks { offset_ms: stated_ms, drift: 0.0 }, true, lag_ms, unexplained));
     }
-    let found = if for_certain { None } else { align(&asked, &seen).filter(|found| found.doubt().is_none()) };
+    let found = if is_one_clock { None } else { align(&commanded, &observed).filter(|found| found.doubt().is_none()) };
     if let Some(found) = found {
         return Ok(report(found.clocks, false, None, Some(found.unexplained)));
     }
     let what = match lag {
         Some((_, unexplained)) => format!(
-            "commands and poses have nothing in common: {:.0} % of the motion differ on the clock that they have, and no other \
-             offset of clocks fits; are they of one drive? (if so, --offset-ms states what the poses' clock is ahead)",
+            "commands and poses have nothing in common: {:.0} % of the motion is unexplained with the given times, and no clock \
+             offset fits; are they from one drive? (if so, state the lead of the poses' clock by --offset-ms)",
             100.0 * unexplained
         ),
         // Nothing moves, or the times do not overlap.
         None => format!(
-            "commands ({}) and poses ({}) do not overlap or nothing moves, and no offset of clocks fits; --offset-ms states \
-             what the poses' clock is ahead",
-            span(&asked),
-            span(&seen)
+            "commands ({}) and poses ({}) do not overlap or nothing moves, and no clock offset fits; state the lead of the \
+             poses' clock by --offset-ms",
+            span(&commanded),
+            span(&observed)
         ),
     };
     Err(Error::in_file(&prepared.file, what))
@@ -67,8 +67,8 @@ fn span(motion: &[CumulativeMotion]) -> String {
     ends.map_or("none".into(), |(a, b)| format!("{:.1} to {:.1} s", a.t_ms / 1e3, b.t_ms / 1e3))
 }
 
-/// The motion that is asked for, cumulated step by step.
-fn asked(commands: &Commands, robot: &Robot) -> Vec<CumulativeMotion> {
+/// Integrates the commanded motion step by step.
+fn commanded(commands: &Commands, robot: &Robot) -> Vec<CumulativeMotion> {
     let (first_ms, last_ms) = (commands.samples[0].0, commands.samples[commands.samples.len() - 1].0);
     let steps = ((last_ms - first_ms) / robot.step_ms) as usize;
     let mut by = [0.0; 2];
@@ -77,8 +77,8 @@ fn asked(commands: &Commands, robot: &Robot) -> Vec<CumulativeMotion> {
         let from_ms = first_ms + step as f64 * robot.step_ms;
         let [left, right] = commands.mean(from_ms, from_ms + robot.step_ms);
         let row = Row { left, right, ..Row::default() };
-        let [left_cm, right_cm] = covered(&row, robot.step_ms, robot);
-        let [cm, rad] = drive(left_cm, right_cm, robot);
+        let [left_cm, right_cm] = commanded_wheels_cm(&row, robot.step_ms, robot);
+        let [cm, rad] = travel_and_rotation(left_cm, right_cm, robot);
         by = [by[0] + rad, by[1] + cm];
         motion.push(CumulativeMotion { t_ms: from_ms + robot.step_ms, by });
     }

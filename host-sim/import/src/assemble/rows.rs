@@ -1,4 +1,4 @@
-//! Rows of logs from streams on one clock.
+//! Resamples streams on one clock to rows of logs.
 
 use std::path::{Path, PathBuf};
 
@@ -11,30 +11,30 @@ use mindgap_foundations::geometry::{Pose, wrap_rad};
 use mindgap_foundations::statistics::summary::median;
 use mindgap_logs::{Robot, Row, Run};
 
-/// Where the poses end for longer than this a run ends.
+/// A gap in the poses longer than this ends a run, ms.
 const PAUSE_MS: f64 = 5000.0;
-/// After its last command a robot is followed for this long.
+/// Rows continue for this long after the last command, ms.
 const AFTER_MS: f64 = 1000.0;
-/// A run has at least so many steps.
-const FEWEST_STEPS: f64 = 4.0;
-/// Poses of slow trackers are taken to lie on a line between two that are this multiple of their usual distance apart,
+/// Minimum number of steps of a run.
+const MIN_STEPS: f64 = 4.0;
+/// Poses of slow trackers are interpolated between frames up to this multiple of their usual interval apart.
 const USUAL_GAP: f64 = 2.5;
-/// and are spread to at most this distance, ms.
+/// Maximum interval of interpolated poses, ms.
 const DENSE_MS: f64 = 50.0;
-/// A recording lasts no longer, ms: a hundred hours.
-const LONGEST_MS: f64 = 3.6e8;
+/// Maximum duration of a recording, ms: a hundred hours.
+const MAX_DURATION_MS: f64 = 3.6e8;
 
-/// A recording whose commands are those of motors and whose track is without jumps.
+/// A recording with motor commands and a track without jumps.
 pub struct Prepared {
-    /// The file of its track.
+    /// File of the track.
     pub file: PathBuf,
-    /// What the motors were told.
+    /// Motor commands.
     pub commands: Commands,
-    /// Number of commands that were limited to the robot's full speed.
-    pub limited: usize,
-    /// Where the robot was.
+    /// Number of commands that were saturated at the robot's full speed.
+    pub saturated: usize,
+    /// The robot's poses.
     pub track: Track,
-    /// Number of poses that no robot can reach.
+    /// Number of poses excluded as jumps.
     pub jumps: usize,
     readings: Option<Readings>,
 }
@@ -43,35 +43,35 @@ impl Prepared {
     /// Prepares a recording.
     ///
     /// # Errors
-    /// When its commands are beyond the robot, or its times beyond any recording's.
+    /// When many commands exceed the robot's speed, or its times span more than any recording.
     pub fn of(recording: &Recording, robot: &Robot) -> Result<Self> {
         let file = recording.track.clone();
-        let (commands, limited) = recording.commands.of_motors(robot, &file)?;
+        let (commands, saturated) = recording.commands.as_motor_commands(robot, &file)?;
         if commands.samples.len() < 2 {
-            return Err(Error::in_file(&file, format!("goes with {} command(s)", commands.samples.len())));
+            return Err(Error::in_file(&file, format!("has only {} command(s)", commands.samples.len())));
         }
         check_span(&file, commands.samples.iter().map(|(ms, _)| *ms))?;
         check_span(&file, recording.poses.iter().flatten().map(|frame| frame.t_ms))?;
         let (track, jumps) = track(&file, &recording.poses, robot)?;
-        Ok(Prepared { file, commands, limited, track, jumps, readings: recording.readings.clone() })
+        Ok(Prepared { file, commands, saturated, track, jumps, readings: recording.readings.clone() })
     }
 
-    /// Its runs, numbered from `first`: one for each stretch of poses beside commands.
+    /// Returns its runs, numbered from `first`: one per period with poses and commands.
     pub fn runs(&self, clocks: &Clocks, robot: &Robot, first: usize) -> Vec<Run> {
         let samples = &self.commands.samples;
         let (begin_ms, end_ms) = (samples[0].0, samples[samples.len() - 1].0 + AFTER_MS.max(robot.step_ms));
-        let own_ms = |camera_ms: f64| (camera_ms - clocks.offset_ms) / (1.0 + clocks.drift);
+        let command_ms = |camera_ms: f64| (camera_ms - clocks.offset_ms) / (1.0 + clocks.drift);
         let mut runs: Vec<Run> = Vec::new();
-        for stretch in self.track.stretches(PAUSE_MS) {
-            let (from_ms, to_ms) = (own_ms(stretch[0]).max(begin_ms), own_ms(stretch[1]).min(end_ms));
+        for period in self.track.periods(PAUSE_MS) {
+            let (from_ms, to_ms) = (command_ms(period[0]).max(begin_ms), command_ms(period[1]).min(end_ms));
             let steps = ((to_ms - from_ms) / robot.step_ms).floor();
-            if steps < FEWEST_STEPS {
+            if steps < MIN_STEPS {
                 continue;
             }
             let row = |step: usize| {
                 let since_ms = step as f64 * robot.step_ms;
-                // A rounding error does not lead out of the stretch.
-                let camera_ms = clocks.camera_ms(from_ms + since_ms).clamp(stretch[0], stretch[1]);
+                // Rounding errors must not lead out of the period.
+                let camera_ms = clocks.camera_ms(from_ms + since_ms).clamp(period[0], period[1]);
                 self.row(robot, from_ms, since_ms, camera_ms)
             };
             let rows = (0..=steps as usize).map(row);
@@ -80,7 +80,7 @@ impl Prepared {
         runs
     }
 
-    /// The row at a time since the run began, which is a time of the poses' clock.
+    /// Returns the row at `since_ms` after the start of the run, at time `camera_ms` of the poses' clock.
     fn row(&self, robot: &Robot, begin_ms: f64, since_ms: f64, camera_ms: f64) -> Row {
         let t_ms = begin_ms + since_ms;
         let [left, right] = self.commands.mean(t_ms, t_ms + robot.step_ms);
@@ -91,28 +91,27 @@ impl Prepared {
     }
 }
 
-/// Refuses times that no recording has, from which millions of rows would follow.
+/// Rejects time spans longer than any recording, which would give millions of rows.
 fn check_span(file: &Path, mut times_ms: impl Iterator<Item = f64>) -> Result<()> {
     let first = times_ms.next().unwrap_or(0.0);
     let span_ms = times_ms.last().unwrap_or(first) - first;
-    if span_ms <= LONGEST_MS {
+    if span_ms <= MAX_DURATION_MS {
         return Ok(());
     }
-    let what =
-        format!("lasts {:.0} hours: the unit of its time seems to be another one; give --time-unit", span_ms / 3.6e6);
+    let what = format!("lasts {:.0} hours: its unit of time seems wrong; give --time-unit", span_ms / 3.6e6);
     Err(Error::in_file(file, what))
 }
 
-/// The track of poses, with those of slow trackers spread on lines between them, and the number of jumps.
+/// Returns the track of poses, interpolated for slow trackers, and the number of jumps.
 fn track(file: &Path, poses: &[Option<Frame>], robot: &Robot) -> Result<(Track, usize)> {
     let seen: Vec<Frame> = poses.iter().flatten().copied().collect();
     let usual_ms = spacing_ms(&seen);
     let plain = Track::of(file, seen.into_iter().map(Some).collect(), robot)?;
     let (report, frames) = (plain.report(), plain.frames());
-    // In another unit nearly every frame is a jump: that is told by the sides of the motion.
-    let is_elsewhere = 2 * report.jumps > report.frames;
-    let kept: Vec<Frame> = if is_elsewhere { poses.iter().flatten().copied().collect() } else { frames.to_vec() };
-    let jumps = if is_elsewhere { 0 } else { report.jumps };
+    // In a wrong unit nearly every frame is a jump: the scale check reports that.
+    let has_wrong_unit = 2 * report.jumps > report.frames;
+    let kept: Vec<Frame> = if has_wrong_unit { poses.iter().flatten().copied().collect() } else { frames.to_vec() };
+    let jumps = if has_wrong_unit { 0 } else { report.jumps };
     let mut dense: Vec<Frame> = Vec::with_capacity(kept.len());
     for pair in kept.windows(2) {
         let ms = pair[1].t_ms - pair[0].t_ms;
@@ -130,7 +129,7 @@ fn between(from: &Frame, to: &Frame, share: f64) -> Frame {
     Frame { t_ms: from.t_ms + share * (to.t_ms - from.t_ms), pose }
 }
 
-/// The usual time between two frames, ms; NaN of fewer.
+/// Returns the median interval of frames, ms; NaN with fewer than two.
 pub fn spacing_ms(frames: &[Frame]) -> f64 {
     median(frames.windows(2).map(|pair| pair[1].t_ms - pair[0].t_ms))
 }

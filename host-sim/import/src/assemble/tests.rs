@@ -1,4 +1,4 @@
-//! Recordings of a drive that is known exactly.
+//! Assembles recordings of an exactly known drive.
 
 use std::path::{Path, PathBuf};
 
@@ -12,7 +12,7 @@ use mindgap_foundations::geometry::Pose;
 const HELD_MS: f64 = 600.0;
 const LASTS_MS: f64 = 60_000.0;
 
-/// Speed ahead (cm/s) and turn rate (rad/s) at a time.
+/// Forward speed (cm/s) and turn rate (rad/s) at a time.
 fn twist(t_ms: f64) -> [f64; 2] {
     let k = (t_ms / HELD_MS).floor() as u64;
     let draw = |salt: u64| {
@@ -23,7 +23,7 @@ fn twist(t_ms: f64) -> [f64; 2] {
     [5.0 + 15.0 * draw(1), 1.6 * draw(2) - 0.8]
 }
 
-/// Poses every 10 ms, as an exact robot drives.
+/// Poses of an exact robot every 10 ms.
 fn path() -> Vec<Frame> {
     let mut pose = Pose::new(50.0, 80.0, 0.3);
     let mut frames = Vec::new();
@@ -57,23 +57,23 @@ fn assembled(recording: Recording) -> Result<Assembled> {
     assemble(vec![recording], Some(robot()), Scene::default(), None, |_, _| ())
 }
 
-/// How far the logs' poses lie from the exact ones, cm, at most.
-fn off_cm(logs: &Logs) -> f64 {
+/// Largest distance between the logs' poses and the exact ones, cm.
+fn max_error_cm(logs: &Logs) -> f64 {
     let path = path();
-    let off = logs.runs[0].rows.iter().filter_map(|row| {
+    let errors = logs.runs[0].rows.iter().filter_map(|row| {
         let exact = path[(row.t_ms / 10.0).round() as usize].pose;
         Some(row.pose?.position_cm.distance(exact.position_cm))
     });
-    off.fold(0.0, f64::max)
+    errors.fold(0.0, f64::max)
 }
 
 #[test]
-fn rows_have_the_commands_and_poses_of_their_times() {
+fn rows_have_commands_and_poses_of_their_times() {
     let Assembled { logs, report, draft } = assembled(recording(|frame| frame)).expect("logs");
     assert!(draft.is_none() && logs.runs.len() == 1 && report.frame.is_none());
-    assert!(report.recordings[0].clocks.one, "{:?}", report.recordings[0].clocks);
-    assert!(off_cm(&logs) < 0.5, "{}", off_cm(&logs));
-    // 400 ms of which 200 belong to the next command.
+    assert!(report.recordings[0].clocks.shared, "{:?}", report.recordings[0].clocks);
+    assert!(max_error_cm(&logs) < 0.5, "{}", max_error_cm(&logs));
+    // 400 ms, half of which belong to the next command.
     let [v, w] = [0, 1].map(|i| (twist(400.0)[i] + twist(600.0)[i]) / 2.0);
     let expected = [v - 10.0 * w, v + 10.0 * w].map(|cm_s| 2.0 * cm_s);
     let row = logs.runs[0].rows.at(1);
@@ -81,18 +81,18 @@ fn rows_have_the_commands_and_poses_of_their_times() {
 }
 
 #[test]
-fn a_lag_is_the_robots_and_another_clock_is_aligned() {
+fn lag_is_kept_and_different_clocks_are_aligned() {
     let late = assembled(recording(|frame| Frame { t_ms: frame.t_ms + 200.0, ..frame })).expect("logs");
     let clocks = &late.report.recordings[0].clocks;
-    assert!(clocks.one && clocks.lag_ms == Some(200.0), "{clocks:?}");
+    assert!(clocks.shared && clocks.lag_ms == Some(200.0), "{clocks:?}");
     let other = assembled(recording(|frame| Frame { t_ms: frame.t_ms + 1.7e12, ..frame })).expect("logs");
     let clocks = &other.report.recordings[0].clocks;
-    assert!(!clocks.one && (clocks.offset_ms - 1.7e12).abs() < 20.0, "{clocks:?}");
-    assert!(off_cm(&other.logs) < 1.0, "{}", off_cm(&other.logs));
+    assert!(!clocks.shared && (clocks.offset_ms - 1.7e12).abs() < 20.0, "{clocks:?}");
+    assert!(max_error_cm(&other.logs) < 1.0, "{}", max_error_cm(&other.logs));
 }
 
 #[test]
-fn frames_are_put_right() {
+fn wrong_frames_are_corrected() {
     let mirrored = |frame: Frame| {
         let at = frame.pose.position_cm;
         Frame { pose: Pose::new(at.x, -at.y, frame.pose.heading_rad), ..frame }
@@ -103,13 +103,13 @@ fn frames_are_put_right() {
     };
     for (change, what) in [(&mirrored as &dyn Fn(Frame) -> Frame, "mirrored back"), (&compass, "clockwise")] {
         let Assembled { logs, report, .. } = assembled(recording(change)).expect("logs");
-        assert!(report.frame.as_ref().is_some_and(|told| told.contains(what)), "{:?}", report.frame);
-        assert!(off_cm(&logs) < 0.5, "{what}: {}", off_cm(&logs));
+        assert!(report.frame.as_ref().is_some_and(|description| description.contains(what)), "{:?}", report.frame);
+        assert!(max_error_cm(&logs) < 0.5, "{what}: {}", max_error_cm(&logs));
     }
 }
 
 #[test]
-fn units_that_do_not_go_together_are_refused_with_both_sides() {
+fn inconsistent_units_are_rejected_with_both_lengths() {
     let metres = |frame: Frame| {
         let at = frame.pose.position_cm / 100.0;
         Frame { pose: Pose::new(at.x, at.y, frame.pose.heading_rad), ..frame }
@@ -125,7 +125,7 @@ fn units_that_do_not_go_together_are_refused_with_both_sides() {
 }
 
 #[test]
-fn what_is_of_two_drives_is_refused() {
+fn streams_of_two_drives_are_rejected() {
     let mut other = recording(|frame| frame);
     other.poses.reverse();
     let times: Vec<f64> = other.poses.iter().rev().flatten().map(|frame| frame.t_ms).collect();
@@ -139,7 +139,7 @@ fn what_is_of_two_drives_is_refused() {
 }
 
 #[test]
-fn without_a_robot_its_measures_are_fitted_and_marked() {
+fn missing_robot_is_fitted_and_marked() {
     let mut wheels = recording(|frame| frame);
     wheels.commands.kind = Kind::Motors;
     wheels.commands.samples.iter_mut().for_each(|(_, pair)| {
@@ -158,7 +158,7 @@ fn without_a_robot_its_measures_are_fitted_and_marked() {
 }
 
 #[test]
-fn a_robot_without_a_range_sensor_has_no_readings() {
+fn readings_are_dropped_without_range_sensor() {
     let mut read = recording(|frame| frame);
     read.readings = Some(Readings { samples: vec![(0.0, Some(50.0))], on_clock_of_poses: false });
     read.sources = vec![Source::named("readings".into(), &[0.0, 1.0])];
@@ -168,7 +168,7 @@ fn a_robot_without_a_range_sensor_has_no_readings() {
 }
 
 #[test]
-fn a_long_pause_of_the_tracker_parts_runs() {
+fn long_tracker_pause_splits_runs() {
     let mut paused = recording(|frame| frame);
     paused
         .poses

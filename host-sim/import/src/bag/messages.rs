@@ -1,4 +1,4 @@
-//! Messages of ROS 2: what of them matters, decoded from CDR.
+//! Decodes the relevant parts of ROS 2 messages from CDR.
 
 use byteorder::{BigEndian, LittleEndian};
 use cdr_encoding::from_bytes;
@@ -8,25 +8,25 @@ use serde::de::DeserializeOwned;
 use crate::streams::heading_rad;
 use mindgap_foundations::geometry::{Pose as PlanarPose, wrap_rad};
 
-/// What a message says, in cm and rad.
+/// The content of a message, in cm and rad.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Decoded {
-    /// Speed ahead, cm/s, and turn rate to the left, rad/s.
+    /// Forward speed, cm/s, and turn rate to the left, rad/s.
     Twist([f64; 2]),
-    /// A pose; `None` where it is none.
+    /// A pose; `None` if it is invalid.
     Pose(Option<PlanarPose>),
-    /// A reading, cm; `None` where there was no echo.
+    /// A reading, cm; `None` if there was no echo.
     Range(Option<f64>),
 }
 
-/// What became of a message.
+/// The result of decoding a message.
 pub enum Message {
-    /// What it says: for each frame the end of its name, its stamp (ms, if it has one) and the value.
-    Of(Vec<(String, Option<f64>, Decoded)>),
-    /// Its bytes are no message of its type.
-    Broken,
-    /// It is of another type.
-    OfNoInterest,
+    /// For each frame, the suffix of the stream's name, the stamp (ms, if any) and the value.
+    Decoded(Vec<(String, Option<f64>, Decoded)>),
+    /// The bytes are not a message of the stated type.
+    Undecodable,
+    /// The message is of an irrelevant type.
+    Ignored,
 }
 
 #[derive(Deserialize)]
@@ -74,14 +74,14 @@ struct Pose {
     orientation: Quaternion,
 }
 
-/// Also the begin of a pose with covariance.
+/// Also decodes the prefix of a PoseWithCovarianceStamped.
 #[derive(Deserialize)]
 struct PoseStamped {
     header: Header,
     pose: Pose,
 }
 
-/// The begin of one.
+/// The prefix of an Odometry message.
 #[derive(Deserialize)]
 struct Odometry {
     header: Header,
@@ -131,34 +131,36 @@ struct LaserScan {
     ranges: Vec<f32>,
 }
 
-/// Coordinates beyond this are no robot's, m.
-const FARTHEST_M: f64 = 1e4;
+/// Sanity limit on coordinates and speeds, m or m/s.
+const MAX_COORDINATE_M: f64 = 1e4;
 
-/// Decodes a message of a type.
+/// Decodes a message of type `schema`.
 pub fn decode(schema: &str, data: &[u8], sonar_yaw_rad: f64) -> Message {
-    let one = |said: Option<(Option<f64>, Decoded)>| match said {
-        Some((stamp_ms, value)) => Message::Of(vec![(String::new(), stamp_ms, value)]),
-        None => Message::Broken,
+    let single = |content: Option<(Option<f64>, Decoded)>| match content {
+        Some((stamp_ms, value)) => Message::Decoded(vec![(String::new(), stamp_ms, value)]),
+        None => Message::Undecodable,
     };
     match schema {
-        "geometry_msgs/msg/Twist" => one(cdr::<Twist>(data).and_then(|twist| Some((None, twist.decoded()?)))),
+        "geometry_msgs/msg/Twist" => single(cdr::<Twist>(data).and_then(|twist| Some((None, twist.decoded()?)))),
         "geometry_msgs/msg/TwistStamped" => {
-            one(cdr::<TwistStamped>(data).and_then(|m| Some((m.header.ms(), m.twist.decoded()?))))
+            single(cdr::<TwistStamped>(data).and_then(|m| Some((m.header.ms(), m.twist.decoded()?))))
         }
         "geometry_msgs/msg/PoseStamped" | "geometry_msgs/msg/PoseWithCovarianceStamped" => {
-            one(cdr::<PoseStamped>(data).map(|m| (m.header.ms(), m.pose.decoded())))
+            single(cdr::<PoseStamped>(data).map(|m| (m.header.ms(), m.pose.decoded())))
         }
-        "nav_msgs/msg/Odometry" => one(cdr::<Odometry>(data).map(|m| (m.header.ms(), m.pose.decoded()))),
-        "tf2_msgs/msg/TFMessage" => cdr::<TfMessage>(data).map_or(Message::Broken, |message| {
-            Message::Of(message.transforms.into_iter().map(TransformStamped::decoded).collect())
+        "nav_msgs/msg/Odometry" => single(cdr::<Odometry>(data).map(|m| (m.header.ms(), m.pose.decoded()))),
+        "tf2_msgs/msg/TFMessage" => cdr::<TfMessage>(data).map_or(Message::Undecodable, |message| {
+            Message::Decoded(message.transforms.into_iter().map(TransformStamped::decoded).collect())
         }),
-        "sensor_msgs/msg/Range" => one(cdr::<Range>(data).map(|m| (m.header.ms(), m.decoded()))),
-        "sensor_msgs/msg/LaserScan" => one(cdr::<LaserScan>(data).map(|m| (m.header.ms(), m.decoded(sonar_yaw_rad)))),
-        _ => Message::OfNoInterest,
+        "sensor_msgs/msg/Range" => single(cdr::<Range>(data).map(|m| (m.header.ms(), m.decoded()))),
+        "sensor_msgs/msg/LaserScan" => {
+            single(cdr::<LaserScan>(data).map(|m| (m.header.ms(), m.decoded(sonar_yaw_rad))))
+        }
+        _ => Message::Ignored,
     }
 }
 
-/// Plain CDR after its four bytes of encapsulation, of either byte order.
+/// Decodes plain CDR of either byte order, after its four-byte encapsulation header.
 fn cdr<T: DeserializeOwned>(data: &[u8]) -> Option<T> {
     match data.split_first_chunk::<4>()? {
         ([0, 1, ..], body) => from_bytes::<T, LittleEndian>(body).ok().map(|(message, _)| message),
@@ -168,7 +170,7 @@ fn cdr<T: DeserializeOwned>(data: &[u8]) -> Option<T> {
 }
 
 impl Header {
-    /// The stamp, ms; none where it was left at zero.
+    /// Returns the stamp, ms, or `None` if it is zero.
     fn ms(&self) -> Option<f64> {
         let Time { sec, nanosec } = self.stamp;
         (sec != 0 || nanosec != 0).then(|| 1e3 * f64::from(sec) + f64::from(nanosec) / 1e6)
@@ -178,8 +180,8 @@ impl Header {
 impl Twist {
     fn decoded(&self) -> Option<Decoded> {
         let [v, w] = [self.linear.x, self.angular.z];
-        let is_one = v.abs() < FARTHEST_M && w.abs() < FARTHEST_M;
-        is_one.then_some(Decoded::Twist([100.0 * v, w]))
+        let is_plausible = v.abs() < MAX_COORDINATE_M && w.abs() < MAX_COORDINATE_M;
+        is_plausible.then_some(Decoded::Twist([100.0 * v, w]))
     }
 }
 
@@ -206,23 +208,23 @@ impl Range {
 }
 
 impl LaserScan {
-    /// The beam nearest to a direction.
+    /// Returns the reading of the beam nearest to a direction.
     fn decoded(&self, yaw_rad: f64) -> Decoded {
-        let off_rad = |i: usize| {
+        let distance_rad = |i: usize| {
             let beam_rad = f64::from(self.angle_min) + i as f64 * f64::from(self.angle_increment);
             wrap_rad(beam_rad - yaw_rad).abs()
         };
-        let nearest = (0..self.ranges.len()).min_by(|a, b| off_rad(*a).total_cmp(&off_rad(*b)));
-        // Beside the outermost beam the scanner looks nowhere.
-        let nearest = nearest.filter(|i| off_rad(*i) <= f64::from(self.angle_increment).abs().max(0.05));
+        let nearest = (0..self.ranges.len()).min_by(|a, b| distance_rad(*a).total_cmp(&distance_rad(*b)));
+        // A direction beyond the outermost beam is not covered.
+        let nearest = nearest.filter(|i| distance_rad(*i) <= f64::from(self.angle_increment).abs().max(0.05));
         let range = nearest.map(|i| self.ranges[i]).filter(|r| r.is_finite() && *r > 0.0);
         let range = range.filter(|r| (self.range_min..=self.range_max).contains(r));
         Decoded::Range(range.map(|r| 100.0 * f64::from(r)))
     }
 }
 
-fn planar(at: &Vector3, turned: &Quaternion) -> Option<PlanarPose> {
-    let heading_rad = heading_rad(turned.x, turned.y, turned.z, turned.w)?;
-    let is_near = at.x.abs() < FARTHEST_M && at.y.abs() < FARTHEST_M && at.z.is_finite();
-    is_near.then(|| PlanarPose::new(100.0 * at.x, 100.0 * at.y, heading_rad))
+fn planar(at: &Vector3, rotation: &Quaternion) -> Option<PlanarPose> {
+    let heading_rad = heading_rad(rotation.x, rotation.y, rotation.z, rotation.w)?;
+    let is_plausible = at.x.abs() < MAX_COORDINATE_M && at.y.abs() < MAX_COORDINATE_M && at.z.is_finite();
+    is_plausible.then(|| PlanarPose::new(100.0 * at.x, 100.0 * at.y, heading_rad))
 }

@@ -1,4 +1,4 @@
-//! The records of an MCAP file, within bounds: a small file may claim to hold much, and a broken one anything.
+//! Reads the records of an MCAP file within memory bounds, since corrupt files may claim any size.
 
 use std::collections::HashMap;
 use std::fs::File;
@@ -11,51 +11,52 @@ use mcap::{McapError, parse_record};
 
 use mindgap_foundations::error::{Error, Result};
 
-/// A message as it lies in the file.
+/// An encoded message.
 pub struct Item<'a> {
-    /// Its topic.
+    /// Topic.
     pub topic: &'a str,
-    /// The name of its type.
+    /// Name of the message type.
     pub schema: &'a str,
-    /// When it was logged, ms.
+    /// Logging time, ms.
     pub log_ms: f64,
-    /// Its bytes.
+    /// Encoded content.
     pub data: &'a [u8],
 }
 
 /// How a file ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ending {
-    /// As it should.
+    /// Complete.
     Whole,
-    /// In the middle, as when power was lost.
+    /// Cut off, as after a power loss.
     Truncated,
 }
 
-/// No record, and no chunk of them, is larger: recorders write chunks of a few megabytes.
-const LARGEST: usize = 1 << 26;
-/// Chunks hold at most this many times the file's size, since what robots log shrinks by a factor of ten,
-const MOST_EXPANDED: u64 = 256;
-/// and this much more, of which a small file may be made.
-const SMALL: u64 = 1 << 20;
-/// So much of a file is read at once: room for a record is made as it comes, and not by the length that it claims to have.
-const STEP: usize = 1 << 16;
-/// Lengths of an opcode and of a record's length.
+/// Maximum size of a record or chunk, bytes: recorders write chunks of a few megabytes.
+const MAX_RECORD_BYTES: usize = 1 << 26;
+/// Maximum ratio of uncompressed data to file size; robot logs compress by about a factor of ten.
+const MAX_EXPANSION: u64 = 256;
+/// Uncompressed size always allowed, bytes, for small files.
+const MIN_EXPANDED_BYTES: u64 = 1 << 20;
+/// Bytes read at once: memory grows with the data that arrives, not with the length that a record claims.
+const READ_BYTES: usize = 1 << 16;
+/// Size of an opcode, bytes.
 const OPCODE: usize = 1;
+/// Size of a record's length field, bytes.
 const LENGTH: usize = 8;
 
-/// What is known of a file so far.
+/// Schemas and channels of a file read so far.
 #[derive(Default)]
-struct Known {
+struct Definitions {
     schemas: HashMap<u16, String>,
-    /// Topic and type of channels whose messages are CDR.
+    /// Topic and type of channels with CDR messages.
     channels: HashMap<u16, (String, String)>,
 }
 
-/// Reads a file and hands every message in CDR to `take`.
+/// Reads a file and passes every CDR message to `take`.
 ///
 /// # Errors
-/// When it cannot be read or is corrupt, or what `take` returns.
+/// When the file cannot be read or is corrupt, or the first error of `take`.
 pub fn read(path: &Path, take: impl FnMut(Item) -> Result<()>) -> Result<Ending> {
     let file = File::open(path).map_err(|e| unreadable(path, &e))?;
     let size = file.metadata().map_err(|e| unreadable(path, &e))?.len();
@@ -66,17 +67,17 @@ fn unreadable(path: &Path, why: &std::io::Error) -> Error {
     Error::in_file(path, format!("cannot be read: {why}"))
 }
 
-/// As [`read`], of a file's content and its size.
+/// As [`read`], from a file's content and size.
 fn read_from(path: &Path, mut file: impl Read, size: u64, mut take: impl FnMut(Item) -> Result<()>) -> Result<Ending> {
-    let most = MOST_EXPANDED * size + SMALL;
-    let options = LinearReaderOptions::default().with_emit_chunks(true).with_record_length_limit(LARGEST);
+    let max_bytes = MAX_EXPANSION * size + MIN_EXPANDED_BYTES;
+    let options = LinearReaderOptions::default().with_emit_chunks(true).with_record_length_limit(MAX_RECORD_BYTES);
     let mut reader = LinearReader::new_with_options(options);
-    let mut known = Known::default();
+    let mut definitions = Definitions::default();
     let mut expanded = 0;
     while let Some(event) = reader.next_event() {
         match event {
             Ok(LinearReadEvent::ReadRequest(need)) => {
-                let written = file.read(reader.insert(need.min(STEP)));
+                let written = file.read(reader.insert(need.min(READ_BYTES)));
                 let written = written.map_err(|e| unreadable(path, &e))?;
                 reader.notify_read(written);
             }
@@ -86,15 +87,17 @@ fn read_from(path: &Path, mut file: impl Read, size: u64, mut take: impl FnMut(I
                     continue;
                 };
                 expanded += header.uncompressed_size;
-                if header.uncompressed_size > LARGEST as u64 || expanded > most {
-                    let what =
-                        format!("a chunk claims to hold {} bytes: no recorder writes that", header.uncompressed_size);
+                if header.uncompressed_size > MAX_RECORD_BYTES as u64 || expanded > max_bytes {
+                    let what = format!(
+                        "a chunk claims to contain {} bytes, which no recorder writes",
+                        header.uncompressed_size
+                    );
                     return Err(Error::in_file(path, what));
                 }
-                in_chunk(path, &header, &data, &mut |opcode, data| known.take(path, opcode, data, &mut take))?;
+                in_chunk(path, &header, &data, &mut |opcode, data| definitions.take(path, opcode, data, &mut take))?;
             }
-            Ok(LinearReadEvent::Record { opcode, data }) => known.take(path, opcode, data, &mut take)?,
-            Err(McapError::UnexpectedEof) if known.channels.is_empty() => {
+            Ok(LinearReadEvent::Record { opcode, data }) => definitions.take(path, opcode, data, &mut take)?,
+            Err(McapError::UnexpectedEof) if definitions.channels.is_empty() => {
                 return Err(Error::in_file(path, "ends before its first message: the bag is empty or cut off"));
             }
             Err(McapError::UnexpectedEof) => return Ok(Ending::Truncated),
@@ -107,21 +110,21 @@ fn read_from(path: &Path, mut file: impl Read, size: u64, mut take: impl FnMut(I
 fn corrupt(path: &Path, e: &McapError) -> Error {
     let what = match e {
         McapError::BadMagic => {
-            "is no MCAP file (or its end is damaged): convert other bags by `ros2 bag convert`".into()
+            "is not an MCAP file (or its end is damaged): convert other bags with `ros2 bag convert`".into()
         }
         e => format!("is corrupt: {}", e.to_string().replace('\n', " ")),
     };
     Error::in_file(path, what)
 }
 
-/// Hands every record of a chunk to `take`.
+/// Passes every record of a chunk to `take`.
 fn in_chunk(
     path: &Path,
     header: &ChunkHeader,
     mut data: &[u8],
     take: &mut impl FnMut(u8, &[u8]) -> Result<()>,
 ) -> Result<()> {
-    // The reader of mcap trusts the lengths within a chunk that is not compressed.
+    // The mcap reader trusts the lengths inside an uncompressed chunk, so that is parsed here.
     if header.compression.is_empty() {
         while !data.is_empty() {
             let (opcode, record, rest) =
@@ -136,16 +139,18 @@ fn in_chunk(
         .with_skip_start_magic(true)
         .with_skip_end_magic(true)
         .with_validate_chunk_crcs(true)
-        .with_record_length_limit(usize::try_from(header.uncompressed_size).map_or(LARGEST, |size| size.min(LARGEST)));
+        .with_record_length_limit(
+            usize::try_from(header.uncompressed_size).map_or(MAX_RECORD_BYTES, |size| size.min(MAX_RECORD_BYTES)),
+        );
     let mut reader = LinearReader::new_with_options(options);
-    let mut left = chunk.as_slice();
+    let mut remaining = chunk.as_slice();
     while let Some(event) = reader.next_event() {
         match event.map_err(|e| corrupt(path, &e))? {
             LinearReadEvent::ReadRequest(need) => {
-                let (now, later) = left.split_at(need.min(left.len()));
+                let (now, later) = remaining.split_at(need.min(remaining.len()));
                 reader.insert(now.len()).copy_from_slice(now);
                 reader.notify_read(now.len());
-                left = later;
+                remaining = later;
             }
             LinearReadEvent::Record { opcode, data } => take(opcode, data)?,
         }
@@ -153,7 +158,7 @@ fn in_chunk(
     Ok(())
 }
 
-/// A chunk as a record of a file: opcode, length, header, data.
+/// Encodes a chunk as a record: opcode, length, header, data.
 fn chunk_record(header: &ChunkHeader, data: &[u8]) -> Vec<u8> {
     let name = header.compression.as_bytes();
     let length = 8 + 8 + 8 + 4 + 4 + name.len() + 8 + data.len();
@@ -170,7 +175,7 @@ fn chunk_record(header: &ChunkHeader, data: &[u8]) -> Vec<u8> {
     record
 }
 
-/// The first of some records: its opcode, its content, and what comes after it.
+/// Splits off the first record: returns its opcode, its content, and the rest.
 fn first_record(data: &[u8]) -> Option<(u8, &[u8], &[u8])> {
     let (head, rest) = data.split_at_checked(OPCODE + LENGTH)?;
     let length = u64::from_le_bytes(head[OPCODE..].try_into().ok()?);
@@ -178,7 +183,7 @@ fn first_record(data: &[u8]) -> Option<(u8, &[u8], &[u8])> {
     Some((head[0], record, rest))
 }
 
-impl Known {
+impl Definitions {
     fn take(&mut self, path: &Path, opcode: u8, data: &[u8], take: &mut impl FnMut(Item) -> Result<()>) -> Result<()> {
         if ![op::SCHEMA, op::CHANNEL, op::MESSAGE].contains(&opcode) {
             return Ok(());
@@ -206,13 +211,13 @@ impl Known {
 mod tests {
     use super::*;
 
-    /// A file that remembers how much was asked of it at once.
-    struct Asked<'a>(&'a [u8], &'a mut usize);
+    /// A file that remembers the largest read request.
+    struct MeasuredFile<'a>(&'a [u8], &'a mut usize);
 
-    impl Read for Asked<'_> {
-        fn read(&mut self, room: &mut [u8]) -> std::io::Result<usize> {
-            *self.1 = room.len().max(*self.1);
-            self.0.read(room)
+    impl Read for MeasuredFile<'_> {
+        fn read(&mut self, buffer: &mut [u8]) -> std::io::Result<usize> {
+            *self.1 = buffer.len().max(*self.1);
+            self.0.read(buffer)
         }
     }
 
@@ -221,22 +226,22 @@ mod tests {
     }
 
     fn read_bytes(bytes: &[u8]) -> (String, usize) {
-        let mut most = 0;
-        let file = Asked(bytes, &mut most);
+        let mut largest = 0;
+        let file = MeasuredFile(bytes, &mut largest);
         let read = read_from(Path::new("a.mcap"), file, bytes.len() as u64, |_| Ok(()));
-        (read.expect_err("nothing is whole").to_string(), most)
+        (read.expect_err("nothing is whole").to_string(), largest)
     }
 
     #[test]
-    fn no_room_is_made_for_what_is_only_claimed() {
-        let bytes = [mcap::MAGIC, &record(op::HEADER, LARGEST, b"short")].concat();
-        let (told, most) = read_bytes(&bytes);
-        assert!(told.contains("ends before its first message"), "{told}");
-        assert!(most <= STEP, "{most}");
+    fn memory_is_not_allocated_for_claimed_lengths() {
+        let bytes = [mcap::MAGIC, &record(op::HEADER, MAX_RECORD_BYTES, b"short")].concat();
+        let (error, max_bytes) = read_bytes(&bytes);
+        assert!(error.contains("ends before its first message"), "{error}");
+        assert!(max_bytes <= READ_BYTES, "{max_bytes}");
     }
 
     #[test]
-    fn a_small_file_holds_no_large_chunk() {
+    fn small_file_with_a_huge_chunk_is_rejected() {
         let chunk = |size: u64| {
             let header = ChunkHeader {
                 message_start_time: 0,
@@ -248,7 +253,7 @@ mod tests {
             };
             read_bytes(&[mcap::MAGIC, &chunk_record(&header, &[])].concat()).0
         };
-        assert!(chunk(2 * SMALL).contains("no recorder writes that"));
-        assert!(!chunk(SMALL).contains("no recorder writes that"));
+        assert!(chunk(2 * MIN_EXPANDED_BYTES).contains("which no recorder writes"));
+        assert!(!chunk(MIN_EXPANDED_BYTES).contains("which no recorder writes"));
     }
 }

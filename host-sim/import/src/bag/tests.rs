@@ -1,4 +1,4 @@
-//! Bags written by the `mcap` crate, whole and broken.
+//! Reads intact and corrupt bags written by the `mcap` crate.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -73,19 +73,19 @@ fn refusal(bytes: &[u8]) -> String {
 }
 
 #[test]
-fn every_compression_gives_the_same_recording() {
+fn all_compressions_give_the_same_recording() {
     for compression in [None, Some(Compression::Zstd), Some(Compression::Lz4)] {
         let recording = read_with(&drive(compression), &Choice::default()).expect("a recording");
         assert_eq!((recording.commands.samples.len(), recording.poses.len()), (100, 100));
         assert_eq!(recording.commands.samples[7].1, [20.0, 0.1]);
         let frame = recording.poses[50].expect("seen");
-        // The stamp in the message rather than when it was logged.
+        // The stamp in the message takes precedence over the logging time.
         assert!((frame.t_ms - 1_002_500.0).abs() < 1e-3 && (frame.pose.position_cm.x - 50.0).abs() < 1e-9, "{frame:?}");
     }
 }
 
 #[test]
-fn a_bag_that_is_cut_off_keeps_what_came_before() {
+fn truncated_bag_is_read_up_to_the_cut() {
     let whole = drive(Some(Compression::Zstd));
     let recording = read_with(&whole[..whole.len() / 2], &Choice::default()).expect("a recording");
     assert!((10..100).contains(&recording.poses.len()), "{}", recording.poses.len());
@@ -94,19 +94,19 @@ fn a_bag_that_is_cut_off_keeps_what_came_before() {
 }
 
 #[test]
-fn what_cannot_be_read_is_refused_in_a_line() {
+fn unreadable_bags_are_rejected_in_one_line() {
     assert!(refusal(b"").contains("ends before its first message"));
-    assert!(refusal(b"SQLite format 3\0 and so on").contains("is no MCAP file"));
+    assert!(refusal(b"SQLite format 3\0 and so on").contains("is not an MCAP file"));
     let mut corrupt = drive(Some(Compression::Zstd));
     let name = corrupt.windows(4).position(|bytes| bytes == b"zstd").expect("a compressed chunk");
     corrupt[name + 40..name + 60].fill(0x55);
     assert!(refusal(&corrupt).contains("is corrupt"), "{}", refusal(&corrupt));
     let nothing = bag(None, &[("/chatter", "std_msgs/msg/String", 1.0, cdr(&"hello"))]);
-    assert!(refusal(&nothing).contains("has no commands") && refusal(&nothing).contains("of interest are none"));
+    assert!(refusal(&nothing).contains("has no commands") && refusal(&nothing).contains("relevant topics are none"));
     let timeless: Vec<_> = (0..9)
         .flat_map(|_| [("/cmd_vel", TWIST, 0.0, twist(0.1, 0.0)), ("/pose", POSE, 0.0, pose(0.0, 0.0))])
         .collect();
-    assert!(refusal(&bag(None, &timeless)).contains("the bag has no time"));
+    assert!(refusal(&bag(None, &timeless)).contains("the bag has no usable clock"));
     let set_back: Vec<_> = (0..9)
         .map(|i| 100.0 + f64::from(if i < 6 { i } else { i - 6 }))
         .flat_map(|s| [("/cmd_vel", TWIST, s, twist(0.1, 0.0)), ("/pose", POSE, s, pose(s, s))])
@@ -116,13 +116,13 @@ fn what_cannot_be_read_is_refused_in_a_line() {
         refused.contains("/cmd_vel: the clock goes back from 105.000 s to 100.000 s: cut the recording"),
         "{refused}"
     );
-    let topics: Vec<String> = (0..=MOST_TOPICS).map(|i| format!("/robot{i}/cmd_vel")).collect();
+    let topics: Vec<String> = (0..=MAX_TOPICS).map(|i| format!("/robot{i}/cmd_vel")).collect();
     let many: Vec<_> = topics.iter().map(|topic| (topic.as_str(), TWIST, 1.0, twist(0.1, 0.0))).collect();
     assert!(refusal(&bag(None, &many)).contains("more than 10000 topics"));
 }
 
 #[test]
-fn two_robots_are_told_apart_by_the_user() {
+fn topics_of_two_robots_are_selected_by_the_user() {
     let messages = |robot: &'static str| {
         let topics: [&str; 2] = if robot == "a" { ["/a/cmd_vel", "/a/pose"] } else { ["/b/cmd_vel", "/b/pose"] };
         (0..9).flat_map(move |i| {
@@ -132,36 +132,36 @@ fn two_robots_are_told_apart_by_the_user() {
     };
     let both = bag(None, &messages("a").chain(messages("b")).collect::<Vec<_>>());
     let refused = refusal(&both);
-    assert!(refused.contains("could be several: /a/cmd_vel, /b/cmd_vel; --commands TOPIC"), "{refused}");
+    assert!(refused.contains("could be any of /a/cmd_vel, /b/cmd_vel; select one with --commands TOPIC"), "{refused}");
     let of_b = Choice { commands: Some("/b/cmd_vel".into()), ..Choice::default() };
     let recording = read_with(&both, &of_b).expect("one robot");
     assert!(recording.sources[1].name.ends_with("/b/pose"), "{:?}", recording.sources);
     let of_none = Choice { poses: Some("/c/pose".into()), ..of_b };
     let refused = read_with(&both, &of_none).expect_err("no such topic").to_string();
-    assert!(refused.contains("/c/pose is no topic of poses") && refused.contains("/a/pose, /b/pose"), "{refused}");
+    assert!(refused.contains("/c/pose is not a topic of poses") && refused.contains("/a/pose, /b/pose"), "{refused}");
 }
 
 #[test]
-fn a_small_file_that_claims_to_hold_much_is_refused() {
+fn small_file_with_a_huge_claimed_size_is_rejected() {
     let mut bomb = drive(Some(Compression::Zstd));
-    // Of a chunk's header the uncompressed size stands before its checksum and the name's length.
+    // In a chunk's header, the uncompressed size comes before the checksum and the length of the compression's name.
     let name = bomb.windows(4).position(|bytes| bytes == b"zstd").expect("a compressed chunk");
     bomb[name - 16..name - 8].copy_from_slice(&(1u64 << 40).to_le_bytes());
     let refused = refusal(&bomb);
-    assert!(refused.contains("claims to hold 1099511627776 bytes"), "{refused}");
+    assert!(refused.contains("claims to contain 1099511627776 bytes"), "{refused}");
 }
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(300))]
     #[test]
-    fn no_bytes_make_it_panic(
+    fn arbitrary_bytes_never_panic(
         compression in 0..3usize, changes in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..12),
         cut in prop::option::of(any::<prop::sample::Index>()),
     ) {
         let mut bytes = drive([None, Some(Compression::Zstd), Some(Compression::Lz4)][compression]);
-        for (place, byte) in changes {
-            let place = place.index(bytes.len());
-            bytes[place] = byte;
+        for (index, byte) in changes {
+            let position = index.index(bytes.len());
+            bytes[position] = byte;
         }
         if let Some(cut) = cut {
             bytes.truncate(cut.index(bytes.len()));

@@ -1,55 +1,55 @@
-//! Which topics of a bag are the robot's commands, poses and readings.
+//! Selects the topics of a bag that hold the robot's commands, poses and readings.
 
 use std::collections::HashMap;
 
 use super::Stream;
 
-/// What the user says of topics; what is left out is guessed.
+/// Topics selected by the user; the others are guessed.
 #[derive(Clone, Debug, Default)]
 pub struct Choice {
-    /// The topic of commands.
+    /// Topic of commands.
     pub commands: Option<String>,
-    /// The topic of poses; of transforms with parent and child, as `/tf:map>base_link`.
+    /// Topic of poses; for transforms with parent and child frame, as in `/tf:map>base_link`.
     pub poses: Option<String>,
-    /// The topic of readings; `none` for none.
+    /// Topic of readings; `none` for no readings.
     pub ranges: Option<String>,
 }
 
-/// The topics that are used.
+/// The topics to use.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Topics {
     pub commands: String,
     pub poses: String,
     pub ranges: Option<String>,
-    /// What was guessed, a sentence each.
+    /// The guesses made, one sentence each.
     pub guessed: Vec<String>,
 }
 
-/// Frames that stay where they are.
+/// Fixed frames.
 const FIXED: [&str; 6] = ["map", "world", "mocap", "vicon", "optitrack", "earth"];
 /// Frames of a robot's body.
 const BODY: [&str; 3] = ["base_link", "base_footprint", "base"];
-/// Poses that a robot should have rather than has.
-const ASKED_FOR: [&str; 4] = ["goal", "target", "initialpose", "setpoint"];
-/// So many topics are named in a message.
-const NAMED: usize = 8;
+/// Words in the names of desired rather than actual poses.
+const DESIRED: [&str; 4] = ["goal", "target", "initialpose", "setpoint"];
+/// Maximum number of topics named in a message.
+const MAX_NAMED: usize = 8;
 
-/// Whether a frame stays where it is.
+/// Returns whether a frame is fixed.
 pub fn is_fixed(frame: &str) -> bool {
-    FIXED.contains(&plain(frame))
+    FIXED.contains(&without_namespace(frame))
 }
 
-/// Whether a frame is that of a robot's body.
+/// Returns whether a frame belongs to a robot's body.
 pub fn is_body(frame: &str) -> bool {
-    BODY.contains(&plain(frame))
+    BODY.contains(&without_namespace(frame))
 }
 
-/// A frame's own name: a robot's frames may have its name before them.
-fn plain(frame: &str) -> &str {
+/// Returns a frame's name without the robot's namespace.
+fn without_namespace(frame: &str) -> &str {
     frame.rsplit('/').next().unwrap_or_default()
 }
 
-/// What a stream can be.
+/// What a stream can be used for.
 #[derive(Clone, Copy, PartialEq)]
 enum Role {
     Commands,
@@ -58,27 +58,28 @@ enum Role {
 }
 
 impl Topics {
-    /// Chooses among streams.
+    /// Selects topics among streams.
     ///
     /// # Errors
-    /// When a topic that the user names is not there, or commands or poses are missing or could be several.
+    /// When a topic named by the user is missing, or commands or poses are missing or ambiguous.
     pub fn choose(streams: &HashMap<String, Stream>, choice: &Choice) -> Result<Self, String> {
         let mut guessed = Vec::new();
-        let mut choose = |role, said: &Option<String>, beside: &str| -> Result<Option<String>, String> {
-            if let Some(name) = said {
-                return found(streams, role, name).map(Some);
+        let mut choose = |role, named: &Option<String>, near: &str| -> Result<Option<String>, String> {
+            if let Some(name) = named {
+                return selected(streams, role, name).map(Some);
             }
-            let one = guess(streams, role, beside)?;
-            if let Some((name, others)) = &one
+            let best = guess(streams, role, near)?;
+            if let Some((name, others)) = &best
                 && *others > 0
             {
-                guessed.push(format!("{name} rather than {others} other topic(s): {} says another", role.option()));
+                guessed
+                    .push(format!("chose {name} over {others} other topic(s); select another with {}", role.option()));
             }
-            Ok(one.map(|(name, _)| name))
+            Ok(best.map(|(name, _)| name))
         };
         let missing = |role: Role| {
             format!(
-                "has no {}: its topics of interest are {}; {} says which",
+                "has no {}: relevant topics are {}; select one with {}",
                 role.name(),
                 list(streams, |_| true),
                 role.option()
@@ -91,7 +92,7 @@ impl Topics {
             _ => choose(Role::Readings, &choice.ranges, &commands)?,
         };
         if streams[&poses].schema == "nav_msgs/msg/Odometry" {
-            guessed.push(format!("{poses} may be the robot's own reckoning, which does not see its wheels slip"));
+            guessed.push(format!("{poses} may be the robot's own odometry, which does not see wheel slip"));
         }
         if let parts @ [_, ..] = streams[&poses].composed_of.as_slice() {
             guessed.push(format!("{poses} is composed of {}", parts.join(" and ")));
@@ -99,7 +100,7 @@ impl Topics {
         Ok(Topics { commands, poses, ranges, guessed })
     }
 
-    /// The names of all of them.
+    /// Returns the names of all selected topics.
     pub fn all(&self) -> impl Iterator<Item = &str> {
         [&self.commands, &self.poses].into_iter().chain(&self.ranges).map(String::as_str)
     }
@@ -131,7 +132,7 @@ impl Role {
         }
     }
 
-    /// How likely a stream is to be this one: the least is the likeliest; `None` if it is not.
+    /// Ranks a stream for this role: the smallest rank is the best; `None` if it is unsuitable.
     fn rank(self, name: &str, schema: &str) -> Option<u32> {
         let last = name.rsplit('/').next().unwrap_or_default();
         match (self, schema.rsplit('/').next()?) {
@@ -140,50 +141,55 @@ impl Role {
                 let (parent, child) = name.rsplit_once(':')?.1.split_once('>')?;
                 match (is_fixed(parent), is_body(child)) {
                     (true, true) => Some(1),
-                    (true, false) if plain(child) != "odom" => Some(3),
-                    (false, true) => (plain(parent) == "odom").then_some(4),
+                    (true, false) if without_namespace(child) != "odom" => Some(3),
+                    (false, true) => (without_namespace(parent) == "odom").then_some(4),
                     _ => None,
                 }
             }
             (Role::Poses, "Odometry") => Some(2),
-            (Role::Poses, _) => (!ASKED_FOR.iter().any(|word| name.contains(word))).then_some(0),
+            (Role::Poses, _) => (!DESIRED.iter().any(|word| name.contains(word))).then_some(0),
             (Role::Readings, "Range") => Some(0),
             (Role::Readings, _) => Some(1),
         }
     }
 }
 
-/// The stream that a user names.
-fn found(streams: &HashMap<String, Stream>, role: Role, name: &str) -> Result<String, String> {
-    let is_one = |schema: &str| Role::of(schema) == Some(role);
+/// Returns the stream named by the user.
+fn selected(streams: &HashMap<String, Stream>, role: Role, name: &str) -> Result<String, String> {
+    let has_role = |schema: &str| Role::of(schema) == Some(role);
     match streams.get(name) {
-        Some(stream) if is_one(&stream.schema) => Ok(name.to_owned()),
+        Some(stream) if has_role(&stream.schema) => Ok(name.to_owned()),
         _ => Err(format!(
-            "{name} is no topic of {}: these are {}",
+            "{name} is not a topic of {}: those are {}",
             role.name(),
-            list(streams, |stream| is_one(&stream.schema))
+            list(streams, |stream| has_role(&stream.schema))
         )),
     }
 }
 
-/// The likeliest stream of a role and the number of others; the robot whose commands are `beside` comes first.
-fn guess(streams: &HashMap<String, Stream>, role: Role, beside: &str) -> Result<Option<(String, usize)>, String> {
+/// Returns the best stream of a role and the number of others; ties go to the robot whose commands are `near`.
+fn guess(streams: &HashMap<String, Stream>, role: Role, near: &str) -> Result<Option<(String, usize)>, String> {
     let of_role = streams.iter().filter(|(_, stream)| Role::of(&stream.schema) == Some(role));
     let mut ranked: Vec<(u32, &str)> =
         of_role.filter_map(|(name, stream)| Some((role.rank(name, &stream.schema)?, name.as_str()))).collect();
     ranked.sort_unstable();
     let Some((least, _)) = ranked.first() else { return Ok(None) };
-    let likeliest: Vec<&str> = ranked.iter().filter(|(rank, _)| rank == least).map(|(_, name)| *name).collect();
+    let best_ranked: Vec<&str> = ranked.iter().filter(|(rank, _)| rank == least).map(|(_, name)| *name).collect();
     let robot = |name: &str| name.trim_start_matches('/').split(['/', ':']).next().unwrap_or_default().to_owned();
-    let of_robot: Vec<&str> = likeliest.iter().copied().filter(|name| robot(name) == robot(beside)).collect();
-    match (likeliest.as_slice(), of_robot.as_slice()) {
-        ([one], _) | (_, [one]) => Ok(Some(((*one).to_owned(), ranked.len() - 1))),
-        _ => Err(format!("{} could be several: {}; {} says which", role.name(), shortened(&likeliest), role.option())),
+    let same_robot: Vec<&str> = best_ranked.iter().copied().filter(|name| robot(name) == robot(near)).collect();
+    match (best_ranked.as_slice(), same_robot.as_slice()) {
+        ([best], _) | (_, [best]) => Ok(Some(((*best).to_owned(), ranked.len() - 1))),
+        _ => Err(format!(
+            "{} could be any of {}; select one with {}",
+            role.name(),
+            shortened(&best_ranked),
+            role.option()
+        )),
     }
 }
 
-fn list(streams: &HashMap<String, Stream>, of: impl Fn(&Stream) -> bool) -> String {
-    let mut names: Vec<&str> = streams.iter().filter(|(_, s)| of(s)).map(|(name, _)| name.as_str()).collect();
+fn list(streams: &HashMap<String, Stream>, matches: impl Fn(&Stream) -> bool) -> String {
+    let mut names: Vec<&str> = streams.iter().filter(|(_, s)| matches(s)).map(|(name, _)| name.as_str()).collect();
     names.sort_unstable();
     shortened(&names)
 }
@@ -191,7 +197,7 @@ fn list(streams: &HashMap<String, Stream>, of: impl Fn(&Stream) -> bool) -> Stri
 fn shortened(names: &[&str]) -> String {
     match names {
         [] => "none".into(),
-        names if names.len() <= NAMED => names.join(", "),
-        names => format!("{} and {} more", names[..NAMED].join(", "), names.len() - NAMED),
+        names if names.len() <= MAX_NAMED => names.join(", "),
+        names => format!("{} and {} more", names[..MAX_NAMED].join(", "), names.len() - MAX_NAMED),
     }
 }

@@ -1,7 +1,7 @@
-//! Chains of transforms: where a robot is in a fixed frame, of which its messages say only the steps between.
+//! Composes chains of transforms into the pose of a robot in a fixed frame.
 //!
-//! A localiser says where `odom` lies in `map`, a base where it is in `odom`, and a static transform where the axle is on
-//! it. As in tf, each is taken at one time, between its neighbours.
+//! A localiser publishes the pose of `odom` in `map`, the base its pose in `odom`, and a static transform the axle on the base.
+//! As in tf, all are interpolated at one time.
 
 use std::collections::{BTreeMap, HashMap};
 
@@ -10,21 +10,21 @@ use super::topics::{is_body, is_fixed};
 use super::{Sample, Stream};
 use mindgap_foundations::geometry::{Pose, wrap_rad};
 
-/// A robot's frames lie no deeper; those that go round in a circle do.
-const DEEPEST: usize = 16;
+/// Maximum depth of a robot's frames, which also ends cycles.
+const MAX_DEPTH: usize = 16;
 
-/// Where a frame is in its parent.
+/// The pose of a frame in its parent over time.
 struct Link {
-    /// The stream that says so.
+    /// Name of the stream.
     name: String,
     parent: String,
-    /// In order of time, ms; a frame that never moves has one.
+    /// Poses with their times, ms, in order; a static frame has one.
     poses: Vec<(f64, Pose)>,
 }
 
-/// Robots in fixed frames, under the names that single transforms would have; where there is such a transform, or only
-/// the robot's own reckoning moves, there is none. `said` is the name that a user gives.
-pub fn chains(streams: &HashMap<String, Stream>, said: Option<&str>) -> Vec<(String, Stream)> {
+/// Returns composed streams of robots in fixed frames, named like single transforms. Chains are omitted if there is such a
+/// single transform or only the robot's odometry moves. `selected` is the stream that the user names.
+pub fn chains(streams: &HashMap<String, Stream>, selected: Option<&str>) -> Vec<(String, Stream)> {
     let mut trees: BTreeMap<&str, BTreeMap<&str, Link>> = BTreeMap::new();
     let mut names: Vec<&String> = streams.keys().collect();
     names.sort_unstable();
@@ -37,23 +37,23 @@ pub fn chains(streams: &HashMap<String, Stream>, said: Option<&str>) -> Vec<(Str
             poses: poses(&streams[name], topic.ends_with("_static")),
         });
     }
-    let of_tree = |(topic, tree): (&&str, &BTreeMap<&str, Link>)| {
+    let chains_of_tree = |(topic, tree): (&&str, &BTreeMap<&str, Link>)| {
         let chain = |child: &&str| {
             let name = |parent: &str| format!("{topic}:{parent}>{child}");
-            let is_said = |parent: &str| said == Some(name(parent).as_str());
-            let links = way_up(tree, child, |parent| is_said(parent) || is_fixed(parent))?;
+            let is_selected = |parent: &str| selected == Some(name(parent).as_str());
+            let links = path_to_root(tree, child, |parent| is_selected(parent) || is_fixed(parent))?;
             let parent = links.last()?.parent.as_str();
-            let another_comes_first = links.iter().any(|link| is_body(&link.parent));
-            let is_meant = is_body(child) && !another_comes_first && !is_reckoning(&links) || is_said(parent);
-            let composed = composed(&links, streams).filter(|_| is_meant && links.len() > 1)?;
+            let passes_another_body = links.iter().any(|link| is_body(&link.parent));
+            let is_wanted = is_body(child) && !passes_another_body && !is_pure_odometry(&links) || is_selected(parent);
+            let composed = composed(&links, streams).filter(|_| is_wanted && links.len() > 1)?;
             Some((name(parent), composed))
         };
         tree.keys().filter_map(chain).collect::<Vec<_>>()
     };
-    trees.iter().flat_map(of_tree).collect()
+    trees.iter().flat_map(chains_of_tree).collect()
 }
 
-/// Topic, parent and child of a stream of transforms.
+/// Returns topic, parent and child of a stream of transforms.
 fn frames(name: &str) -> Option<(&str, &str, &str)> {
     let (topic, frames) = name.rsplit_once(':')?;
     let (parent, child) = frames.split_once('>')?;
@@ -62,7 +62,7 @@ fn frames(name: &str) -> Option<(&str, &str, &str)> {
 
 fn poses(stream: &Stream, is_static: bool) -> Vec<(f64, Pose)> {
     let pose = |sample: &Sample| match sample.value {
-        Decoded::Pose(pose) => Some((sample.said_ms(), pose?)),
+        Decoded::Pose(pose) => Some((sample.stamp_or_log_ms(), pose?)),
         _ => None,
     };
     let mut poses: Vec<(f64, Pose)> = stream.samples.iter().filter_map(pose).collect();
@@ -73,11 +73,15 @@ fn poses(stream: &Stream, is_static: bool) -> Vec<(f64, Pose)> {
     poses
 }
 
-/// The links from a frame up to the first that is an end; none where there is no way.
-fn way_up<'a>(tree: &'a BTreeMap<&str, Link>, child: &str, is_end: impl Fn(&str) -> bool) -> Option<Vec<&'a Link>> {
+/// Returns the links from a frame up to the first end; `None` if no end can be reached.
+fn path_to_root<'a>(
+    tree: &'a BTreeMap<&str, Link>,
+    child: &str,
+    is_end: impl Fn(&str) -> bool,
+) -> Option<Vec<&'a Link>> {
     let mut links = vec![tree.get(child)?];
     while !is_end(&links.last()?.parent) {
-        if links.len() == DEEPEST {
+        if links.len() == MAX_DEPTH {
             return None;
         }
         links.push(tree.get(links.last()?.parent.as_str())?);
@@ -85,14 +89,14 @@ fn way_up<'a>(tree: &'a BTreeMap<&str, Link>, child: &str, is_end: impl Fn(&str)
     Some(links)
 }
 
-/// Whether only the robot's own reckoning moves: its frame lies in the fixed one where somebody put it once.
-fn is_reckoning(links: &[&Link]) -> bool {
+/// Returns whether only the robot's odometry moves, while its frame is static in the fixed one.
+fn is_pure_odometry(links: &[&Link]) -> bool {
     let mut moving = links.iter().filter(|link| link.poses.len() > 1);
-    let is_of_odometry = moving.next().is_some_and(|link| link.parent.rsplit('/').next() == Some("odom"));
-    is_of_odometry && moving.next().is_none()
+    let is_odometry = moving.next().is_some_and(|link| link.parent.rsplit('/').next() == Some("odom"));
+    is_odometry && moving.next().is_none()
 }
 
-/// Links one after the other, at the times of the lowest that moves.
+/// Composes links at the times of the lowest moving one.
 fn composed(links: &[&Link], streams: &HashMap<String, Stream>) -> Option<Stream> {
     let lowest = links.iter().find(|link| link.poses.len() > 1)?;
     let at = |ms: f64| {
@@ -100,7 +104,7 @@ fn composed(links: &[&Link], streams: &HashMap<String, Stream>) -> Option<Stream
         down.reduce(|above, below| Some(above?.compose(&below?))).flatten()
     };
     let stream = &streams[&lowest.name];
-    let sample = |sample: &Sample| Sample { value: Decoded::Pose(at(sample.said_ms())), ..*sample };
+    let sample = |sample: &Sample| Sample { value: Decoded::Pose(at(sample.stamp_or_log_ms())), ..*sample };
     Some(Stream {
         schema: stream.schema.clone(),
         samples: stream.samples.iter().map(sample).collect(),
@@ -109,7 +113,7 @@ fn composed(links: &[&Link], streams: &HashMap<String, Stream>) -> Option<Stream
 }
 
 impl Link {
-    /// Where the frame is at a time; none before it is first seen. The last pose holds until another one is said.
+    /// Returns the pose of the frame at a time; `None` before its first pose. The last pose holds thereafter.
     fn at(&self, ms: f64) -> Option<Pose> {
         if let [(_, always)] = self.poses.as_slice() {
             return Some(*always);
@@ -141,7 +145,7 @@ mod tests {
 
     fn localised() -> HashMap<String, Stream> {
         HashMap::from([
-            // The localiser moves the frame of the reckoning by 10 cm in 100 ms.
+            // The localiser moves the odometry frame by 10 cm in 100 ms.
             stream("/tf:map>odom", &[(0.0, Pose::new(0.0, 0.0, FRAC_PI_2)), (100.0, Pose::new(10.0, 0.0, FRAC_PI_2))]),
             stream("/tf:odom>base_footprint", &[(-5.0, Pose::new(0.0, 0.0, 0.0)), (50.0, Pose::new(20.0, 0.0, 0.0))]),
             stream("/tf_static:base_footprint>base_link", &[(-9.0, Pose::new(1.0, 0.0, 0.0))]),
@@ -149,7 +153,7 @@ mod tests {
     }
 
     #[test]
-    fn a_chain_is_composed_at_the_times_of_the_lowest_that_moves() {
+    fn chain_is_composed_at_the_times_of_the_lowest_moving_frame() {
         let chains = chains(&localised(), None);
         let [(name, chain)] = chains.as_slice() else { panic!("{} chains", chains.len()) };
         assert_eq!(name, "/tf:map>base_footprint");
@@ -157,11 +161,11 @@ mod tests {
         let Decoded::Pose(Some(pose)) = chain.samples[1].value else { panic!("no pose") };
         assert!((pose.position_cm - glam::DVec2::new(5.0, 20.0)).length() < 1e-9, "{pose:?}");
         assert!((pose.heading_rad - FRAC_PI_2).abs() < 1e-12);
-        assert_eq!(chain.samples[0].value, Decoded::Pose(None), "before the localiser began");
+        assert_eq!(chain.samples[0].value, Decoded::Pose(None), "before the localiser started");
     }
 
     #[test]
-    fn a_user_may_name_any_frame() {
+    fn user_may_select_any_frame() {
         let chains = chains(&localised(), Some("/tf:odom>base_link"));
         let parts = chains.iter().find(|(name, _)| name == "/tf:odom>base_link").map(|(_, chain)| &chain.composed_of);
         assert_eq!(parts.map(Vec::len), Some(2));
@@ -175,13 +179,13 @@ mod tests {
     }
 
     #[test]
-    fn frames_in_a_circle_and_reckoning_alone_are_no_chain() {
+    fn cycles_and_pure_odometry_are_not_chains() {
         let still = Pose::new(0.0, 0.0, 0.0);
         let two = [(0.0, still), (50.0, Pose::new(20.0, 0.0, 0.0))];
         let circle = HashMap::from([stream("/tf:a>base_link", &two), stream("/tf:b>a", &two), stream("/tf:a>b", &two)]);
         assert!(chains(&circle, None).is_empty());
-        let reckoning =
+        let odometry =
             HashMap::from([stream("/tf:odom>base_link", &two), stream("/tf_static:map>odom", &[(0.0, still)])]);
-        assert!(chains(&reckoning, None).is_empty());
+        assert!(chains(&odometry, None).is_empty());
     }
 }

@@ -1,4 +1,4 @@
-//! Tracks as OptiTrack's Motive exports a rigid body: y points up, rotations are quaternions.
+//! Tracks of a rigid body exported by OptiTrack's Motive: y points up, rotations are quaternions.
 
 use std::path::Path;
 
@@ -11,16 +11,16 @@ use mindgap_files::Records;
 use mindgap_foundations::error::{Error, Result};
 use mindgap_foundations::geometry::Pose;
 
-/// The beginning of such a file.
-const BEGINNING: &str = "Format Version";
-/// Its header: frame, time, then rotation and position of the first rigid body.
+/// The first words of such a file.
+const SIGNATURE: &str = "Format Version";
+/// The header: frame, time, then rotation and position of the first rigid body.
 const HEADER: [&str; 9] = ["Frame", "Time (Seconds)", "X", "Y", "Z", "W", "X", "Y", "Z"];
 
-pub(super) fn is_one(text: &str) -> bool {
-    text.trim_start_matches('\u{feff}').starts_with(BEGINNING)
+pub(super) fn is_motive(text: &str) -> bool {
+    text.trim_start_matches('\u{feff}').starts_with(SIGNATURE)
 }
 
-/// The frames of the first rigid body; `None` where it was lost. The scene's x is Motive's X, and its y is Motive's -Z.
+/// Reads the frames of the first rigid body; `None` where it was lost. The scene's x is Motive's X, its y is Motive's -Z.
 pub(super) fn frames(file: &Path, text: &str) -> Result<Vec<Option<Frame>>> {
     let mut records = Records::with(file, text.as_bytes(), ReaderBuilder::new().has_headers(false).flexible(true));
     let mut unit = None;
@@ -45,7 +45,7 @@ pub(super) fn frames(file: &Path, text: &str) -> Result<Vec<Option<Frame>>> {
             "" => Ok(None),
             text => match text.parse::<f64>().ok().filter(|v| v.is_finite()) {
                 Some(value) => Ok(Some(value)),
-                None => Err(Error::at_line(file, line, format!("{} = {text:?} is no number", HEADER[at]))),
+                None => Err(Error::at_line(file, line, format!("{} = {text:?} is not a number", HEADER[at]))),
             },
         };
         let time = number(1)?.ok_or_else(|| Error::at_line(file, line, "Time is empty"))?;
@@ -57,7 +57,7 @@ pub(super) fn frames(file: &Path, text: &str) -> Result<Vec<Option<Frame>>> {
         }));
     }
     if !is_body {
-        let what = format!("has no line {}, so no rigid body with quaternions comes first", HEADER.join(","));
+        let what = format!("has no line {}: the first asset must be a rigid body with quaternions", HEADER.join(","));
         return Err(Error::in_file(file, what));
     }
     Ok(frames)
@@ -74,11 +74,11 @@ mod tests {
                         Frame,Time (Seconds),X,Y,Z,W,X,Y,Z,\n";
 
     #[test]
-    fn a_quarter_turn_to_the_left_is_one() {
+    fn quarter_turn_to_the_left_is_positive() {
         let half = std::f64::consts::FRAC_1_SQRT_2;
         let text =
             format!("{HEAD}0,0,0,0,0,1,1.5,0.1,-0.5,0.001\n1,0.01,0,{half},0,{half},1.5,0.1,-0.5,0\n2,0.02,,,,,,,,\n");
-        assert!(is_one(&text));
+        assert!(is_motive(&text));
         let frames = frames(Path::new("take.csv"), &text).expect("frames");
         assert_eq!(frames[0], Some(Frame { t_ms: 0.0, pose: Pose::new(150.0, 50.0, 0.0) }));
         let turned = frames[1].expect("seen");
@@ -87,7 +87,7 @@ mod tests {
     }
 
     #[test]
-    fn euler_angles_and_odd_units_are_refused() {
+    fn euler_angles_and_unknown_units_are_rejected() {
         let refused = |text: String| frames(Path::new("take.csv"), &text).expect_err("refused").to_string();
         assert!(refused(HEAD.replace(",W,", ",")).contains("quaternions"));
         assert!(refused(HEAD.replace("Meters", "Feet") + "0,0,0,0,0,1,1,1,1,\n").contains("Length Units"));

@@ -9,10 +9,10 @@ use serde::Serialize;
 
 use super::arithmetic::{Arithmetic, Fixed, Float};
 use crate::evolve::genome::GenotypeDecoder;
-use mindgap_foundations::chance::{derive, generator};
 use mindgap_foundations::counter::Counter;
 use mindgap_foundations::error::{Error, Result};
 use mindgap_foundations::geometry::{Pose, Wall, cast, wrap_rad};
+use mindgap_foundations::random::{derive, generator};
 use mindgap_logs::{Logs, Robot};
 use mindgap_models::simulator::Simulator;
 use mindgap_models::simulator::room::Room;
@@ -119,7 +119,7 @@ pub(super) fn side_by_side(
         let controller = controller.unwrap_or(&random);
         let (float, fixed) = (Walker::new(float, controller, start), Walker::new(fixed, controller, start));
         let found = pair(&world, float, fixed, run + 1, seed);
-        counter.one_more();
+        counter.increment();
         found
     });
     Ok(pairs.collect::<Vec<Runs>>().into_iter().fold(Runs::default(), Runs::and))

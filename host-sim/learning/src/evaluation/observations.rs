@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 use std::sync::Arc;
 
-use mindgap_foundations::geometry::{Pose, first_met};
+use mindgap_foundations::geometry::{Pose, first_hit};
 use mindgap_logs::{Logs, Run, samples};
 use mindgap_models::effects::context::{RunHistory, Surroundings};
 use mindgap_models::effects::{PoseIncrement, StepContext};
@@ -214,7 +214,7 @@ impl Observations {
 pub fn beside_cm(surroundings: &Surroundings, robot: &Pose) -> [f64; 2] {
     [-BESIDE_DEG, BESIDE_DEG].map(|deg| {
         let ray = surroundings.sensor(robot, deg.to_radians());
-        let met = first_met(surroundings.surfaces.walls(), ray.position_cm, ray.direction());
+        let met = first_hit(surroundings.surfaces.walls(), ray.position_cm, ray.direction());
         met.map_or(f64::INFINITY, |(met_cm, _)| met_cm)
     })
 }

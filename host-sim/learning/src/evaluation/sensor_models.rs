@@ -63,7 +63,7 @@ pub fn sensor_models(simulator: &Simulator, logs: &Logs, watch: impl Fn(usize, u
     let counter = Counter::new(models.iter().filter(|is_there| **is_there).count() * asked(&scans), watch);
     let counted = |at: &(dyn Fn(&Pose) -> Outcomes + Sync)| {
         nats(logs, |sensor| {
-            counter.one_more();
+            counter.increment();
             at(sensor)
         })
     };

@@ -7,10 +7,10 @@ use glam::DVec2;
 use mindgap_core::controller::Controller;
 use serde::{Deserialize, Serialize};
 
-use mindgap_foundations::chance::derive;
 use mindgap_foundations::error::Result;
 use mindgap_foundations::executor::{self, Executor};
 use mindgap_foundations::geometry::Pose;
+use mindgap_foundations::random::derive;
 use mindgap_logs::Scene;
 use mindgap_models::simulator::Simulator;
 use mindgap_models::simulator::ensemble::Member;
@@ -149,8 +149,8 @@ mod tests {
     use crate::evolve::genome::GenotypeDecoder;
     use crate::evolve::test_support::SIMULATOR;
     use mindgap_built_in_robot::four_obstacles;
-    use mindgap_foundations::chance::generator;
     use mindgap_foundations::executor::Serial;
+    use mindgap_foundations::random::generator;
 
     const SEED: u64 = 5;
 

@@ -6,7 +6,7 @@ use mindgap_core::controller::Controller;
 use super::genome::GenotypeDecoder;
 use super::way::WayMap;
 use crate::genetic;
-use mindgap_foundations::chance::{Generator, derive};
+use mindgap_foundations::random::{Generator, derive};
 use mindgap_logs::Termination;
 use mindgap_models::simulator::environment::Environment;
 use mindgap_models::simulator::motion::MotionTable;

@@ -3,7 +3,7 @@
 use mindgap_core::controller::{Controller, MAX_THRESHOLD_CM, TUPLES, Tuple, When};
 use rand::RngExt;
 
-use mindgap_foundations::chance::Generator;
+use mindgap_foundations::random::Generator;
 use mindgap_models::simulator::Simulator;
 
 /// Number of genes a tuple: left, right, larger or smaller, threshold.

@@ -16,9 +16,9 @@ use super::genome::GenotypeDecoder;
 use super::stops::{self, Stop};
 use super::task::{EvolutionTask, Judged, NEARNESS, sort};
 use crate::genetic::mutation::{Mutation, Unit};
-use mindgap_foundations::chance::{Generator, derive, generator};
 use mindgap_foundations::error::Result;
 use mindgap_foundations::executor;
+use mindgap_foundations::random::{Generator, derive, generator};
 use mindgap_models::simulator::rollout::REACHED_CM;
 
 /// Rounds of all searches.

@@ -12,9 +12,9 @@ use super::prefixes;
 use super::task::{EvolutionTask, Judged, sort};
 use crate::genetic::mutation::{Mutation, Unit};
 use crate::genetic::{self, Lineage, Settings};
-use mindgap_foundations::chance::{derive, generator};
 use mindgap_foundations::error::Result;
 use mindgap_foundations::executor;
+use mindgap_foundations::random::{derive, generator};
 
 /// Rounds and generations of all stages.
 pub const GENERATIONS: usize = prefixes::ALL_ROUNDS + REFINING_GENERATIONS;

@@ -5,7 +5,7 @@ use glam::DVec2;
 use mindgap_core::controller::{Controller, Tuple, When};
 
 use super::task::EvolutionTask;
-use mindgap_foundations::chance::derive;
+use mindgap_foundations::random::derive;
 use mindgap_logs::Termination;
 use mindgap_models::simulator::motion::MotionTable;
 use mindgap_models::simulator::rollout::{REACHED_CM, RolloutRequest, TrajectoryPoint};
@@ -196,7 +196,7 @@ impl Stop {
 mod tests {
     use super::*;
     use crate::evolve::test_support::with_task;
-    use mindgap_foundations::chance::generator;
+    use mindgap_foundations::random::generator;
 
     const SEED: u64 = 5;
     const RUNS: usize = 8;

@@ -3,7 +3,7 @@
 use rand::RngExt;
 use rand_distr::{Distribution, StandardNormal};
 
-use mindgap_foundations::chance::Generator;
+use mindgap_foundations::random::Generator;
 
 /// Parameters of Gaussian mutation.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -47,7 +47,7 @@ impl Mutation {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use mindgap_foundations::chance::generator;
+    use mindgap_foundations::random::generator;
 
     const CHILDREN: usize = 2000;
     const GENES: usize = 20;

@@ -6,8 +6,8 @@ use mindgap_core::scalar::Scalar;
 use pulp::{Arch, Simd, WithSimd};
 use rand::RngExt;
 
-use mindgap_foundations::chance::Generator;
 use mindgap_foundations::lanes::{Lanes, WIDEST};
+use mindgap_foundations::random::Generator;
 
 /// Crosses two parents in place, each gene with its own spread factor and without bounds, as in the original.
 /// `index` is the distribution index η.
@@ -64,7 +64,7 @@ fn children<S: Simd>([a, b]: [Lanes<S>; 2], spread: Lanes<S>) -> [Lanes<S>; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use mindgap_foundations::chance::generator;
+    use mindgap_foundations::random::generator;
     use proptest::prelude::*;
 
     fn spread(draw: f32, index: f32) -> f32 {

@@ -2,7 +2,7 @@
 
 use rand::RngExt;
 
-use mindgap_foundations::chance::Generator;
+use mindgap_foundations::random::Generator;
 
 /// Indices of individuals from the fittest to the least fit; NaN comes last, and ties keep their order.
 pub fn ranking(fitness: &[f64]) -> Vec<usize> {
@@ -40,7 +40,7 @@ impl<'a> Tournament<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use mindgap_foundations::chance::generator;
+    use mindgap_foundations::random::generator;
 
     /// Drawn without replacement, the individual of rank r (from 0) wins with the chance C(n-1-r, k-1) / C(n, k).
     #[test]

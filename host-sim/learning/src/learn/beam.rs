@@ -160,7 +160,7 @@ mod tests {
 
     use super::*;
     use mindgap_built_in_robot::{default_robot, record, training_room};
-    use mindgap_foundations::chance::generator;
+    use mindgap_foundations::random::generator;
 
     /// Twelve runs of a sensor like the built-in robot's, which gives this constant reading; and its beam without that.
     fn drawn(p_constant: f64, value_cm: f64) -> (SonarModel, Logs) {

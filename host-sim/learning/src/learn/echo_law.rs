@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::scans::{Heard, Offset, Scans, UNCHANGED};
-use mindgap_foundations::chance::generator;
+use mindgap_foundations::random::generator;
 use mindgap_foundations::statistics::maximise::{Bounds, Point, climb};
 use mindgap_logs::Logs;
 use mindgap_models::sonar::echo_law::{Surfaces, Target, reach_cm, targets_at};

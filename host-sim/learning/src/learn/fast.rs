@@ -14,9 +14,9 @@ use rand::RngExt;
 use super::dataset::Dataset;
 use super::genome::Shape;
 use anchors::Anchored;
-use mindgap_foundations::chance::generator;
 use mindgap_foundations::error::Result;
 use mindgap_foundations::executor::{self, Executor};
+use mindgap_foundations::random::generator;
 use mindgap_foundations::statistics::agreement as statistics;
 use projection::{Projection, Ridges};
 

@@ -112,7 +112,7 @@ mod tests {
     use super::*;
     use crate::learn::genome::{NetworkTemplate, Shape};
     use mindgap_core::network::Activation;
-    use mindgap_foundations::chance::generator;
+    use mindgap_foundations::random::generator;
     use proptest::prelude::*;
     use rand::RngExt;
 

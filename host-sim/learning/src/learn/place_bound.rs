@@ -50,9 +50,9 @@ pub fn seen(law: &SensorLaw, logs: &Logs) -> Vec<Seen> {
 fn rate(seen: &[Seen]) -> f64 {
     let deviation = |row: &Seen| {
         let [off, scatter] = row.rate();
-        Deviation { group: place_of(&row.sensor), run: row.run, off, scatter }
+        Deviation { group: place_of(&row.sensor), run: row.run, residual: off, standard_deviation: scatter }
     };
-    intraclass::share(&seen.iter().map(deviation).collect::<Vec<_>>())
+    intraclass::correlation(&seen.iter().map(deviation).collect::<Vec<_>>())
 }
 
 fn value(seen: &[Seen]) -> f64 {
@@ -62,9 +62,13 @@ fn value(seen: &[Seen]) -> f64 {
         seen.iter().filter_map(|row| Some((place_of(&row.sensor), row.run, within(row.off_cm?)))).collect();
     let middle = mean(off.iter().map(|(.., off)| *off));
     let scatter = root_mean_square(off.iter().map(|(.., off)| off - middle));
-    let deviation =
-        |(place, run, off): &(Place, usize, f64)| Deviation { group: *place, run: *run, off: off - middle, scatter };
-    intraclass::share(&off.iter().map(deviation).collect::<Vec<_>>())
+    let deviation = |(place, run, off): &(Place, usize, f64)| Deviation {
+        group: *place,
+        run: *run,
+        residual: off - middle,
+        standard_deviation: scatter,
+    };
+    intraclass::correlation(&off.iter().map(deviation).collect::<Vec<_>>())
 }
 
 /// The scatter of what is read about what was expected; none where there is none.

@@ -128,7 +128,7 @@ fn sorted(values: impl Iterator<Item = f32>) -> Vec<f32> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use mindgap_foundations::chance::generator;
+    use mindgap_foundations::random::generator;
     use rand::RngExt;
 
     #[test]

@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use super::scans::{Scans, UNCHANGED};
 use super::{beam, echo_law};
-use mindgap_foundations::statistics::summary::error_of_sum;
+use mindgap_foundations::statistics::summary::standard_error_of_sum;
 use mindgap_logs::Logs;
 use mindgap_models::sonar::echo_law::Surfaces;
 use mindgap_models::sonar::{FirstEchoLaw, SensorLaw, SonarModel};
@@ -42,7 +42,7 @@ const PLACE_BOUND: f64 = 0.1;
 /// in other rooms.
 fn is_worth_a_law(gains: &[f64], readings: usize, at_place: f64) -> bool {
     let gained: f64 = gains.iter().sum();
-    let error = error_of_sum(gains);
+    let error = standard_error_of_sum(gains);
     log::info!(
         "on runs that neither saw the first-echo law gains {gained:.1} nats on the beam for {readings} readings, with a standard \
          error of {error:.1}; the place decides {at_place:.2} of what the beam leaves to chance"

@@ -1,37 +1,37 @@
-//! Runs that are there twice: counted twice, they would look like evidence.
+//! Checks for duplicated runs, which would count twice as evidence.
 
 use std::collections::BTreeMap;
 use std::hash::{DefaultHasher, Hash, Hasher};
 
-use super::finding::{Finding, Handling, Place};
+use super::finding::{Finding, Handling, RunRows};
 use crate::{Logs, Run};
 
-/// Leaves out runs that repeat an earlier one number by number. A robot that stands still may repeat itself honestly.
+/// Excludes runs that are identical to an earlier one. Runs of a robot at rest may be identical legitimately.
 pub fn check(logs: &mut Logs) -> Vec<Finding> {
     let mut copies: Vec<[usize; 2]> = Vec::new();
     let mut known: BTreeMap<u64, Vec<usize>> = BTreeMap::new();
     for (later, run) in logs.runs.iter().enumerate() {
-        let alike = known.entry(hash(run)).or_default();
-        match alike.iter().find(|earlier| logs.runs[**earlier].rows == run.rows) {
-            Some(earlier) => copies.extend(is_driven(run).then_some([*earlier, later])),
-            None => alike.push(later),
+        let candidates = known.entry(hash(run)).or_default();
+        match candidates.iter().find(|earlier| logs.runs[**earlier].rows == run.rows) {
+            Some(earlier) => copies.extend(has_moved(run).then_some([*earlier, later])),
+            None => candidates.push(later),
         }
     }
     if copies.is_empty() {
         return Vec::new();
     }
-    let place = |[_, later]: &[usize; 2]| {
+    let rows_of = |[_, later]: &[usize; 2]| {
         let run = &logs.runs[*later];
-        Place { run: run.name.clone(), rows: (0..run.rows.len()).collect() }
+        RunRows { run: run.name.clone(), rows: (0..run.rows.len()).collect() }
     };
     let pairs: Vec<String> =
         copies.iter().map(|[a, b]| format!("{} is {}", logs.runs[*b].name, logs.runs[*a].name)).collect();
     let found = Finding {
         id: "run_copied",
-        places: copies.iter().map(place).collect(),
-        handling: Handling::LeftOut,
+        rows_by_run: copies.iter().map(rows_of).collect(),
+        handling: Handling::Excluded,
         withholds: &[],
-        sentence: format!("Runs are there twice ({}): keep one of each.", pairs.join(", ")),
+        sentence: format!("Runs are duplicated ({}): keep one of each.", pairs.join(", ")),
     };
     let mut is_copy = vec![false; logs.runs.len()];
     copies.iter().for_each(|[_, later]| is_copy[*later] = true);
@@ -40,7 +40,7 @@ pub fn check(logs: &mut Logs) -> Vec<Finding> {
     vec![found]
 }
 
-/// Equal runs have equal hashes, so that not every run is held against every other.
+/// Hashes a run, so that not every run need be compared with every other.
 fn hash(run: &Run) -> u64 {
     let mut hasher = DefaultHasher::new();
     run.rows.len().hash(&mut hasher);
@@ -52,7 +52,7 @@ fn hash(run: &Run) -> u64 {
     hasher.finish()
 }
 
-fn is_driven(run: &Run) -> bool {
+fn has_moved(run: &Run) -> bool {
     let mut poses = run.rows.iter().filter_map(|row| row.pose);
     let first = poses.next();
     run.rows.iter().any(|row| row.command() != [0.0; 2]) && poses.any(|pose| Some(pose) != first)

@@ -1,84 +1,84 @@
-//! What was found wrong with logs, where, and what was done about it.
+//! Defects found in logs: where they are, and how they were handled.
 
 use serde::ser::SerializeStruct;
 use serde::{Serialize, Serializer};
 
 use crate::Logs;
 
-/// One thing that is wrong with logs.
+/// One defect of logs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Finding {
-    /// What it is, for programs.
+    /// Machine-readable identifier.
     pub id: &'static str,
-    /// The rows that have it.
-    pub places: Vec<Place>,
-    /// What was done about it.
+    /// The affected rows.
+    pub rows_by_run: Vec<RunRows>,
+    /// How it was handled.
     pub handling: Handling,
-    /// What must not be compared because of it.
+    /// The parts of the logs that must not be compared because of it.
     pub withholds: &'static [Part],
-    /// What was found and what to write instead, for people.
+    /// What was found and what to log instead, for people.
     pub sentence: String,
 }
 
-/// Rows of a run.
+/// Some rows of a run.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Place {
-    /// The run's name.
+pub struct RunRows {
+    /// Name of the run.
     pub run: String,
-    /// Indices of the rows, rising.
+    /// Indices of the rows, ascending.
     pub rows: Vec<usize>,
 }
 
-/// What was done about a finding.
+/// How a finding was handled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Handling {
-    /// The rows count no more.
-    LeftOut,
-    /// The numbers were put right.
-    PutRight,
-    /// Nothing: the logs stay as they are.
-    Told,
+    /// The rows were excluded.
+    Excluded,
+    /// The numbers were corrected.
+    Corrected,
+    /// The finding was only reported; the logs are unchanged.
+    Reported,
 }
 
 impl Handling {
-    /// The word for people.
+    /// Returns the word for people.
     fn word(self) -> &'static str {
         match self {
-            Handling::LeftOut => "left out",
-            Handling::PutRight => "put right",
-            Handling::Told => "told",
+            Handling::Excluded => "excluded",
+            Handling::Corrected => "corrected",
+            Handling::Reported => "reported",
         }
     }
 }
 
-/// A part of logs that is compared or not.
+/// A part of logs that may be withheld from comparison.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Part {
     /// How commands move the robot.
     Motion,
-    /// What the sensor reads.
+    /// The sensor's readings.
     Sonar,
 }
 
-impl Place {
-    /// Every row of every run.
-    pub fn all(logs: &Logs) -> Vec<Place> {
-        let whole = |run: &crate::Run| Place { run: run.name.clone(), rows: (0..run.rows.len()).collect() };
-        logs.runs.iter().map(whole).collect()
+impl RunRows {
+    /// Returns all rows of all runs.
+    pub fn all(logs: &Logs) -> Vec<RunRows> {
+        let all_rows = |run: &crate::Run| RunRows { run: run.name.clone(), rows: (0..run.rows.len()).collect() };
+        logs.runs.iter().map(all_rows).collect()
     }
 
-    /// Rows given as index of the run and of the row, in order.
-    pub fn of(logs: &Logs, rows: &[(usize, usize)]) -> Vec<Place> {
+    /// Groups rows, given as sorted pairs of run and row index, by run.
+    pub fn group(logs: &Logs, rows: &[(usize, usize)]) -> Vec<RunRows> {
         rows.chunk_by(|a, b| a.0 == b.0)
-            .map(|of_run| Place {
-                run: logs.runs[of_run[0].0].name.clone(),
-                rows: of_run.iter().map(|(_, row)| *row).collect(),
+            .map(|group| RunRows {
+                run: logs.runs[group[0].0].name.clone(),
+                rows: group.iter().map(|(_, row)| *row).collect(),
             })
             .collect()
     }
 
-    /// Line numbers in the run's file as ranges: its header is line 1.
+    /// Returns the line numbers in the run's file as ranges; the header is line 1.
     fn lines(&self) -> Vec<[usize; 2]> {
         let ranges = self.rows.chunk_by(|a, b| a + 1 == *b);
         ranges.map(|range| [range[0] + 2, range[range.len() - 1] + 2]).collect()
@@ -86,8 +86,7 @@ impl Place {
 }
 
 impl Finding {
-    /// That the poses of rows, given as index of the run and of the row, were wrong, which leaves them out of the logs; none
-    /// where there are no such rows.
+    /// Removes the wrong poses of rows, given as pairs of run and row index, and returns the finding; `None` without rows.
     pub fn without_poses(
         logs: &mut Logs,
         id: &'static str,
@@ -97,20 +96,20 @@ impl Finding {
         if rows.is_empty() {
             return None;
         }
-        let places = Place::of(logs, rows);
+        let rows_by_run = RunRows::group(logs, rows);
         rows.iter().for_each(|(run, row)| logs.runs[*run].rows.edit(*row, |row| row.pose = None));
-        Some(Finding { id, places, handling: Handling::LeftOut, withholds: &[], sentence: sentence.into() })
+        Some(Finding { id, rows_by_run, handling: Handling::Excluded, withholds: &[], sentence: sentence.into() })
     }
 
-    /// The finding as one line for people.
+    /// Returns the finding as one line for people.
     pub fn line(&self) -> String {
-        let (rows, runs, handling) = (self.rows(), self.places.len(), self.handling.word());
+        let (rows, runs, handling) = (self.rows(), self.rows_by_run.len(), self.handling.word());
         format!("{} ({rows} rows in {runs} runs, {handling}): {}", self.id, self.sentence)
     }
 
-    /// Number of rows that have it.
+    /// Returns the number of affected rows.
     pub fn rows(&self) -> usize {
-        self.places.iter().map(|place| place.rows.len()).sum()
+        self.rows_by_run.iter().map(|rows| rows.rows.len()).sum()
     }
 }
 
@@ -118,9 +117,9 @@ impl Serialize for Finding {
     fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
         let mut fields = to.serialize_struct("Finding", 6)?;
         fields.serialize_field("finding", self.id)?;
-        fields.serialize_field("runs", &self.places.iter().map(|place| &place.run).collect::<Vec<_>>())?;
+        fields.serialize_field("runs", &self.rows_by_run.iter().map(|rows| &rows.run).collect::<Vec<_>>())?;
         fields.serialize_field("rows", &self.rows())?;
-        fields.serialize_field("lines", &self.places.iter().map(Place::lines).collect::<Vec<_>>())?;
+        fields.serialize_field("lines", &self.rows_by_run.iter().map(RunRows::lines).collect::<Vec<_>>())?;
         fields.serialize_field("handling", &self.handling)?;
         fields.serialize_field("sentence", &self.sentence)?;
         fields.end()

@@ -1,154 +1,159 @@
-//! Frames: which way x, y and headings point, against where the commands take the robot and against the walls.
+//! Checks the frame of poses: the directions of x, y and headings against the commanded motion and the walls.
 
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 
 use glam::DVec2;
 
-use super::finding::{Finding, Handling, Part, Place};
-use super::map::{faced, fitting};
-use super::ways::{FEWEST, Way, straight, turning, ways};
+use super::finding::{Finding, Handling, Part, RunRows};
+use super::map::{fitting_fraction, ranges_along_axis};
+use super::segments::{MIN_SAMPLES, Segment, segments, straight, turning};
 use crate::{Logs, Robot};
 use mindgap_foundations::geometry::{Pose, Rectangle, wrap_rad};
 
-/// The least share of ways that has to agree with a frame: one row in ten may be wrong, and each spoils two ways.
-pub const DECISIVE: f64 = 0.8;
-/// The largest share that agrees with the frame as it is when another one is right. A compass that is off by 20° and a
-/// camera turned by as much leave all ways within the 45° that count as agreement.
-const LEFT: f64 = 0.5;
-/// By so much the share of readings that fit the walls grows in the right frame. A rectangular room looks half the same
-/// when it is turned, and whatever the robot's faults the frame as it is fits best, if only by a few hundredths.
-const MORE_FITTING: f64 = 0.2;
-/// Of fewer readings a share may be off by half of that.
-const FEWEST_READINGS: usize = 100;
+/// Minimum fraction of segments that must agree with a frame: one row in ten may be wrong, and each spoils two segments.
+pub const MIN_AGREEMENT: f64 = 0.8;
+/// Maximum fraction that agrees with the given frame if another one is right. A compass off by 20° and a camera turned by as
+/// much leave all segments within the 45° that count as agreement.
+const MAX_AGREEMENT_OF_WRONG_FRAME: f64 = 0.5;
+/// Minimum gain, in the right frame, of the fraction of readings that fit the walls. A turned rectangular room looks half the
+/// same, and whatever the robot's faults, the given frame fits best if it is right, if only by a few hundredths.
+const MIN_FITTING_GAIN: f64 = 0.2;
+/// With fewer readings the fraction may be off by half of that gain.
+const MIN_READINGS: usize = 100;
 
-/// Shares of straight ways that go where the robot heads, turned by quarters of a turn, and then those that go there when
-/// headings are counted clockwise, turned likewise; none where too few ways tell it.
-pub fn directions(ways: &[Way], robot: &Robot) -> Option<[f64; 8]> {
-    let straight: Vec<&Way> = straight(ways, robot).into_iter().filter(|way| way.chord_cm.length() > 0.0).collect();
-    if straight.len() < FEWEST {
+/// Returns the fractions of straight segments that run along the heading turned by 0 to 3 quarter turns, then the same with
+/// clockwise headings; `None` with too few segments.
+pub fn directions(segments: &[Segment], robot: &Robot) -> Option<[f64; 8]> {
+    let straight: Vec<&Segment> =
+        straight(segments, robot).into_iter().filter(|segment| segment.chord_cm.length() > 0.0).collect();
+    if straight.len() < MIN_SAMPLES {
         return None;
     }
     let mut shares = [0.0; 8];
-    for way in &straight {
-        let backwards = if way.asked.forward_cm < 0.0 { PI } else { 0.0 };
-        let going_rad = libm::atan2(way.chord_cm.y, way.chord_cm.x) + backwards;
+    for segment in &straight {
+        let backwards = if segment.commanded.forward_cm < 0.0 { PI } else { 0.0 };
+        let course_rad = libm::atan2(segment.chord_cm.y, segment.chord_cm.x) + backwards;
         for (i, share) in shares.iter_mut().enumerate() {
-            let heading_rad = if i < 4 { way.heading_rad } else { -way.heading_rad };
-            let off_rad = wrap_rad(going_rad - heading_rad - (i % 4) as f64 * FRAC_PI_2);
+            let heading_rad = if i < 4 { segment.heading_rad } else { -segment.heading_rad };
+            let off_rad = wrap_rad(course_rad - heading_rad - (i % 4) as f64 * FRAC_PI_2);
             *share += f64::from(u8::from(off_rad.abs() < FRAC_PI_4)) / straight.len() as f64;
         }
     }
     Some(shares)
 }
 
-/// The largest share and its place.
-pub fn most_share(shares: &[f64; 8]) -> (usize, f64) {
-    let mut most = (0, shares[0]);
-    shares.iter().enumerate().for_each(|(i, share)| most = if *share > most.1 { (i, *share) } else { most });
-    most
+/// Returns the index of the largest share, and the share.
+pub fn largest_share(shares: &[f64; 8]) -> (usize, f64) {
+    let mut largest = (0, shares[0]);
+    shares.iter().enumerate().for_each(|(i, share)| largest = if *share > largest.1 { (i, *share) } else { largest });
+    largest
 }
 
-/// How the frame of a track lies against the way that its robot goes.
+/// Orientation of a track's frame relative to the robot's motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Orientation {
-    /// In which of the `directions` it goes: 0 where it heads, or where that cannot be told.
-    pub going: usize,
-    /// Whether it turns against the commands.
+    /// Index into `directions`: 0 if the robot moves along its heading, or if that cannot be determined.
+    pub direction: usize,
+    /// Whether the robot turns against the commands.
     pub is_reversed: bool,
 }
 
 impl Orientation {
-    /// That of logs.
+    /// Determines the orientation of logs.
     pub fn of(logs: &Logs) -> Self {
-        let ways = ways(logs);
-        let going = directions(&ways, &logs.robot).map_or(0, |shares| match most_share(&shares) {
-            (best, share) if share >= DECISIVE && shares[0] <= LEFT => best,
+        let segments = segments(logs);
+        let direction = directions(&segments, &logs.robot).map_or(0, |shares| match largest_share(&shares) {
+            (best, share) if share >= MIN_AGREEMENT && shares[0] <= MAX_AGREEMENT_OF_WRONG_FRAME => best,
             _ => 0,
         });
-        Orientation { going, is_reversed: turns_are_reversed(&ways) }
+        Orientation { direction, is_reversed: turns_are_reversed(&segments) }
     }
 }
 
-/// Tells frames that do not fit the motion, or do not fit the walls.
+/// Reports frames that do not fit the motion or the walls.
 pub fn check(logs: &Logs) -> Vec<Finding> {
-    let Orientation { going, is_reversed } = Orientation::of(logs);
-    let (id, sentence): (_, &str) = match (going, is_reversed) {
-        (0, false) => return against_walls(logs, &EVEN, "frame_turned").into_iter().collect(),
+    let Orientation { direction, is_reversed } = Orientation::of(logs);
+    let (id, sentence): (_, &str) = match (direction, is_reversed) {
+        (0, false) => return compare_with_walls(logs, &ROTATIONS, "frame_turned").into_iter().collect(),
         (0, true) => {
-            let mirrored = against_walls(logs, &ODD, "frame_mirrored");
-            return vec![mirrored.unwrap_or_else(|| told(logs, "left_right_exchanged", EXCHANGED, &[Part::Motion]))];
+            let mirrored = compare_with_walls(logs, &REFLECTIONS, "frame_mirrored");
+            return vec![
+                mirrored.unwrap_or_else(|| reported(logs, "left_right_exchanged", EXCHANGED, &[Part::Motion])),
+            ];
         }
         (1..4, false) => (
             "frame_turned",
-            "The robot goes a quarter or half a turn beside its heading: count heading_deg from +x of the frame of x_cm and y_cm.",
+            "The robot moves at a quarter or half turn to its heading: measure heading_deg from the +x axis of x_cm and y_cm.",
         ),
         (2, true) => (
             "commands_reversed",
-            "The robot drives backwards and turns the other way: both motors' signs seem reversed; write positive commands for forwards.",
+            "The robot drives backwards and turns the opposite way: both motors seem reversed; positive commands must drive forwards.",
         ),
         (1..4, true) => (
             "frame_turned",
-            "The robot goes a quarter of a turn beside its heading and turns the other way: count heading_deg counter-clockwise from +x, and check left and right.",
+            "The robot moves at a quarter turn to its heading and turns the opposite way: measure heading_deg counter-clockwise from +x, and check left and right.",
         ),
-        (4, false) => {
-            ("y_downwards", "Positions are mirrored against headings: y_cm seems to count downwards; write it upwards.")
-        }
+        (4, false) => (
+            "y_downwards",
+            "Positions are mirrored against headings: y_cm seems to point downwards; it must point upwards.",
+        ),
         (6, false) => (
             "frame_mirrored",
-            "Positions are mirrored against headings: x_cm seems to count leftwards; write it to the right.",
+            "Positions are mirrored against headings: x_cm seems to point left; it must point right.",
         ),
         (_, false) => {
             ("xy_exchanged", "Positions are mirrored against headings along a diagonal: x_cm and y_cm seem exchanged.")
         }
         (_, true) => (
             "heading_clockwise",
-            "Headings count clockwise, as a compass does: write heading_deg counter-clockwise from +x.",
+            "Headings increase clockwise, like a compass: measure heading_deg counter-clockwise from +x.",
         ),
     };
-    vec![told(logs, id, sentence, &[Part::Motion, Part::Sonar])]
+    vec![reported(logs, id, sentence, &[Part::Motion, Part::Sonar])]
 }
 
-const EXCHANGED: &str = "The robot turns right where the commands turn it left: left and right seem exchanged (or, if they are \
-                         not, the whole frame is mirrored: y_cm and heading_deg together).";
+const EXCHANGED: &str = "The robot turns right when commanded to turn left: left and right seem exchanged (or, if not, the whole \
+                         frame is mirrored: y_cm and heading_deg together).";
 
-fn told(logs: &Logs, id: &'static str, sentence: &str, withholds: &'static [Part]) -> Finding {
-    Finding { id, places: Place::all(logs), handling: Handling::Told, withholds, sentence: sentence.into() }
+fn reported(logs: &Logs, id: &'static str, sentence: &str, withholds: &'static [Part]) -> Finding {
+    Finding { id, rows_by_run: RunRows::all(logs), handling: Handling::Reported, withholds, sentence: sentence.into() }
 }
 
 /// Whether the robot turns against the commands.
-fn turns_are_reversed(ways: &[Way]) -> bool {
-    let turning = turning(ways);
-    let against = turning.iter().filter(|way| way.turn_rad * way.asked.turn_rad < 0.0).count() as f64;
-    turning.len() >= FEWEST && against >= DECISIVE * turning.len() as f64
+fn turns_are_reversed(segments: &[Segment]) -> bool {
+    let turning = turning(segments);
+    let against = turning.iter().filter(|segment| segment.turn_rad * segment.commanded.turn_rad < 0.0).count() as f64;
+    turning.len() >= MIN_SAMPLES && against >= MIN_AGREEMENT * turning.len() as f64
 }
 
-/// A symmetry of a rectangle: whether x and y are exchanged, and whether x and y then count from the other side.
+/// A symmetry of a rectangle: whether x and y are exchanged, then whether x and whether y are flipped.
 type Symmetry = [bool; 3];
-/// Those that turn,
-const EVEN: [Symmetry; 3] = [[false, true, true], [true, true, false], [true, false, true]];
-/// and those that mirror.
-const ODD: [Symmetry; 4] = [[false, false, true], [false, true, false], [true, false, false], [true, true, true]];
+/// The rotations.
+const ROTATIONS: [Symmetry; 3] = [[false, true, true], [true, true, false], [true, false, true]];
+/// The reflections.
+const REFLECTIONS: [Symmetry; 4] =
+    [[false, false, true], [false, true, false], [true, false, false], [true, true, true]];
 
-/// Poses that fit the walls only once they are turned or mirrored.
-fn against_walls(logs: &Logs, symmetries: &[Symmetry], id: &'static str) -> Option<Finding> {
+/// Reports poses that fit the walls only after being turned or mirrored.
+fn compare_with_walls(logs: &Logs, symmetries: &[Symmetry], id: &'static str) -> Option<Finding> {
     let room = logs.scene.bounding_box()?;
-    let as_is = faced(logs, |pose| *pose);
-    if as_is.len() < FEWEST_READINGS {
+    let unchanged = ranges_along_axis(logs, |pose| *pose);
+    if unchanged.len() < MIN_READINGS {
         return None;
     }
     let best = symmetries.iter().map(|symmetry| {
-        let pairs = faced(logs, |pose| moved(pose, &room, *symmetry));
-        // Readings that face nothing then do not fit.
-        fitting(&pairs, 1.0) * pairs.len() as f64 / as_is.len().max(pairs.len()) as f64
+        let pairs = ranges_along_axis(logs, |pose| transformed(pose, &room, *symmetry));
+        // Readings that then face no wall do not fit.
+        fitting_fraction(&pairs, 1.0) * pairs.len() as f64 / unchanged.len().max(pairs.len()) as f64
     });
     let best = best.fold(0.0, f64::max);
-    let sentence = "Readings fit the walls only once all poses are turned or mirrored in the room: write x_cm, y_cm and \
+    let sentence = "Readings fit the walls only after turning or mirroring all poses in the room: write x_cm, y_cm and \
                     heading_deg in the frame of scene.toml, x to the right, y up, headings counter-clockwise from +x.";
     let withholds: &[Part] = if id == "frame_mirrored" { &[Part::Motion, Part::Sonar] } else { &[Part::Sonar] };
-    (best >= fitting(&as_is, 1.0) + MORE_FITTING).then(|| told(logs, id, sentence, withholds))
+    (best >= fitting_fraction(&unchanged, 1.0) + MIN_FITTING_GAIN).then(|| reported(logs, id, sentence, withholds))
 }
 
-fn moved(pose: &Pose, room: &Rectangle, [exchange, flip_x, flip_y]: Symmetry) -> Pose {
+fn transformed(pose: &Pose, room: &Rectangle, [exchange, flip_x, flip_y]: Symmetry) -> Pose {
     let mut at = pose.position_cm - room.low_cm;
     let mut size = room.high_cm - room.low_cm;
     let mut heading_rad = pose.heading_rad;

@@ -1,23 +1,23 @@
-//! Headings that are flipped by half a turn, as trackers of symmetric markers have them, or that jump.
+//! Checks for headings that jump, or that are flipped by half a turn as by trackers of symmetric markers.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use super::chain::cheapest;
-use super::finding::{Finding, Handling, Place};
+use super::finding::{Finding, Handling, RunRows};
+use super::segments::{Displacement, LARGE};
 use super::tolerance::Tolerance;
-use super::ways::{Drive, LARGE};
+use super::viterbi::cheapest_path;
 use crate::{Logs, Run};
 use mindgap_foundations::geometry::{direction, wrap_rad};
 
-/// What a flipped heading costs beside one that is not, so that equal fits count as not flipped.
+/// Cost of a flipped heading, so that equal fits count as not flipped.
 const FLIPPED: f64 = 0.1;
-/// What a turn costs that stays and that the robot can make but was not asked for, as after a lost command or where a wheel is
-/// held: more than a flip, and less than a row left out.
-const UNASKED: f64 = 1.2;
-/// What it costs to go against the heading: less than a flip there and back, since one step may slip.
+/// Cost of a persistent turn that is possible but was not commanded, as after a lost command or with a blocked wheel: more
+/// than a flip, less than an excluded row.
+const UNCOMMANDED: f64 = 1.2;
+/// Cost of moving against the heading: less than a flip there and back, since one step may slip.
 const AGAINST: f64 = 0.6;
 
-/// Turns flipped headings back, and leaves out rows whose heading jumps otherwise.
+/// Corrects flipped headings and excludes rows whose heading jumps otherwise.
 pub fn check(logs: &mut Logs) -> Vec<Finding> {
     let Some(tolerance) = Tolerance::of(logs) else { return Vec::new() };
     let (mut flipped, mut jumped) = (Vec::new(), Vec::new());
@@ -33,21 +33,21 @@ pub fn check(logs: &mut Logs) -> Vec<Finding> {
             if turn(begin, end).is_none_or(|expected| tolerance.admits_turn(turn_rad, &expected)) {
                 return Some(0.0);
             }
-            // A heading that is off comes back with the next row; a turn stays.
+            // A wrong heading reverts with the next row; a turn persists.
             let admits = |[a, b]: [usize; 2]| {
                 let turn_rad = heading_rad([b, to[1]]) - heading_rad([a, from[1]]);
                 turn(posed[a], posed[b]).is_some_and(|expected| tolerance.admits_turn(turn_rad, &expected))
             };
-            let comes_back =
+            let reverts =
                 from[0] > 0 && admits([from[0] - 1, to[0]]) || to[0] + 1 < posed.len() && admits([from[0], to[0] + 1]);
-            (end == begin + 1 && !comes_back && tolerance.is_within_reach(turn_rad)).then_some(UNASKED)
+            (end == begin + 1 && !reverts && tolerance.is_within_reach(turn_rad)).then_some(UNCOMMANDED)
         };
         let goes_against: Vec<Option<bool>> = posed.iter().map(|k| goes_against(logs, &tolerance, r, *k)).collect();
         let cost = |at: usize, state: usize| {
             let is_against = goes_against[at].is_some_and(|against| against == (state == 0));
             FLIPPED * state as f64 + if is_against { AGAINST } else { 0.0 }
         };
-        for (k, kept) in posed.iter().zip(cheapest::<2>(posed.len(), cost, follows)) {
+        for (k, kept) in posed.iter().zip(cheapest_path::<2>(posed.len(), cost, follows)) {
             match kept {
                 Some(kept) if !kept.breaks => flipped.extend((kept.state == 1).then_some((run, *k))),
                 _ => jumped.push((run, *k)),
@@ -58,27 +58,26 @@ pub fn check(logs: &mut Logs) -> Vec<Finding> {
     if !flipped.is_empty() {
         findings.push(Finding {
             id: "heading_flipped",
-            places: Place::of(logs, &flipped),
-            handling: Handling::PutRight,
+            rows_by_run: RunRows::group(logs, &flipped),
+            handling: Handling::Corrected,
             withholds: &[],
-            sentence: "The tracker took the robot's front for its back in some rows: heading_deg is off by 180.".into(),
+            sentence: "The tracker confused the robot's front and back in some rows: heading_deg is off by 180.".into(),
         });
     }
     for (run, row) in flipped {
         logs.runs[run].rows.edit_pose(row, |pose| pose.heading_rad = wrap_rad(pose.heading_rad + PI));
     }
-    let sentence = "The heading jumps farther than the robot can turn: leave the pose empty where the tracker is lost.";
+    let sentence = "The heading jumps farther than the robot can turn: leave the pose empty when tracking is lost.";
     findings.extend(Finding::without_poses(logs, "heading_jump", &jumped, sentence));
     findings
 }
 
-/// Whether the step from row `k` goes against its heading; none where it is too short or too crooked to
-/// tell.
+/// Returns whether the step from row `k` goes against its heading; `None` if the step is too short or too curved to say.
 fn goes_against(logs: &Logs, tolerance: &Tolerance, run: &Run, k: usize) -> Option<bool> {
     let (from, to) = (run.rows.at(k).pose?, run.rows.get(k + 1)?.pose?);
-    let Drive { forward_cm, turn_rad } = tolerance.expected(logs, run, k);
+    let Displacement { forward_cm, turn_rad } = tolerance.expected(logs, run, k);
     let large_cm = LARGE * tolerance.fastest.forward_cm;
     let change_cm = to.position_cm - from.position_cm;
-    let is_plain = forward_cm.abs() >= large_cm && turn_rad.abs() < FRAC_PI_2 && change_cm.length() >= large_cm;
-    is_plain.then(|| change_cm.dot(direction(from.heading_rad + turn_rad / 2.0)) * forward_cm < 0.0)
+    let is_clear = forward_cm.abs() >= large_cm && turn_rad.abs() < FRAC_PI_2 && change_cm.length() >= large_cm;
+    is_clear.then(|| change_cm.dot(direction(from.heading_rad + turn_rad / 2.0)) * forward_cm < 0.0)
 }

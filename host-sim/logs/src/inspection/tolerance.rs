@@ -1,166 +1,169 @@
-//! What a step may do: anything between standing still and what the commands ask for, and somewhat more.
+//! Plausible steps: anything between rest and the commanded motion, with some margin.
 
 use std::f64::consts::TAU;
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::ways::{Drive, Gains, LARGE, asked, is_broken, one_in, ways};
+use super::segments::{Displacement, Gains, LARGE, commanded, is_gap, segments, stride};
 use crate::{Logs, Run};
 use mindgap_foundations::geometry::wrap_rad;
 use mindgap_foundations::statistics::summary::median;
 
-/// Commands that are this old still act, ms: brick, link, camera and inertia together take no second.
+/// Ages of commands that still act, ms: brick, radio link, camera and inertia together take less than a second.
 const AGES_MS: [f64; 3] = [0.0, 400.0, 800.0];
-/// A step may exceed what is asked for by this share of the log's fastest step: the drive of a real robot is not linear,
-const BEYOND: f64 = 0.4;
-/// and by so many times the median deviation, which is noise: ten are beyond any heavy tail.
+/// A step may exceed the commanded one by this fraction of the log's fastest step, since real drives are not linear.
+const NONLINEARITY: f64 = 0.4;
+/// A step may also exceed the commanded one by this multiple of the median deviation, which is noise: ten cover any heavy
+/// tail.
 const NOISE: f64 = 10.0;
-/// A turn may exceed what is asked for by at least this, rad: a compass that is off by 20° here and by -20° there.
-const LEAST_TURN_RAD: f64 = 0.7;
-/// Rounds of reweighting, after which gains stand to three digits.
-const ROUNDS: usize = 20;
+/// Minimum margin for turns, rad: a compass may be off by 20° in one place and by -20° in another.
+const MIN_TURN_MARGIN_RAD: f64 = 0.7;
+/// Iterations of reweighting, enough for three digits of the gains.
+const ITERATIONS: usize = 20;
 
-/// What steps of given logs may do.
+/// Bounds on plausible steps of given logs.
 pub struct Tolerance {
-    /// How much of what commands of [`AGES_MS`] ask for a step covers, forward
+    /// Gains of a step's length on the commands of [`AGES_MS`].
     pub forward: [f64; 3],
-    /// and in turns.
+    /// Gains of a step's turn on the commands of [`AGES_MS`].
     pub turn: [f64; 3],
-    /// Farther than expected by more than this is a jump, cm.
+    /// Larger deviations from the expected length are jumps, cm.
     length_cm: f64,
-    /// More than expected by more than this is a jump, rad.
+    /// Larger deviations from the expected turn are jumps, rad.
     turn_rad: f64,
-    /// The longest step that is asked for, cm, and the largest turn, rad.
-    pub fastest: Drive,
+    /// The longest expected step, cm, and the largest expected turn, rad.
+    pub fastest: Displacement,
 }
 
 impl Tolerance {
-    /// Learned from logs, of which nearly half may be wrong; none where too little was driven to tell.
+    /// Fits the bounds to logs, of which nearly half may be wrong; `None` if too little was driven.
     pub fn of(logs: &Logs) -> Option<Self> {
-        Gains::of(&ways(logs), &logs.robot).length?;
+        Gains::of(&segments(logs), &logs.robot).length?;
         let mut steps: [Vec<([f64; 3], f64)>; 2] = [Vec::new(), Vec::new()];
-        let mut aside_cm = Vec::new();
-        let one_in = one_in(logs.rows());
+        let mut lateral_cm = Vec::new();
+        let stride = stride(logs.rows());
         for run in &logs.runs {
-            for (k, pair) in run.rows.pairs().enumerate().step_by(one_in) {
+            for (k, pair) in run.rows.pairs().enumerate().step_by(stride) {
                 let (Some(a), Some(b)) = (pair[0].pose, pair[1].pose) else { continue };
-                if is_broken(&logs.robot, pair[0].t_ms, pair[1].t_ms) {
+                if is_gap(&logs.robot, pair[0].t_ms, pair[1].t_ms) {
                     continue;
                 }
-                let of_age = of_ages(logs, run, k);
+                let by_age = commands_by_age(logs, run, k);
                 let change = a.relative(&b);
-                steps[0].push((of_age.map(|drive| drive.forward_cm), change.position_cm.x));
-                steps[1].push((of_age.map(|drive| drive.turn_rad), change.heading_rad));
-                aside_cm.push(change.position_cm.y.abs());
+                steps[0].push((by_age.map(|displacement| displacement.forward_cm), change.position_cm.x));
+                steps[1].push((by_age.map(|displacement| displacement.turn_rad), change.heading_rad));
+                lateral_cm.push(change.position_cm.y.abs());
             }
         }
         let [forward, turn] = [0, 1].map(|i| gains(&steps[i]));
         let fastest = |i: usize| {
             let gain = [forward, turn][i].iter().sum::<f64>().abs();
-            gain * steps[i].iter().map(|(asked, _)| asked[0].abs()).fold(0.0, f64::max)
+            gain * steps[i].iter().map(|(commanded, _)| commanded[0].abs()).fold(0.0, f64::max)
         };
-        let fastest = Drive { forward_cm: fastest(0), turn_rad: fastest(1) };
+        let fastest = Displacement { forward_cm: fastest(0), turn_rad: fastest(1) };
         let noise = |i: usize| {
-            let deviation = |(asked, done): &([f64; 3], f64)| (done - sum(&[forward, turn][i], asked)).abs();
+            let deviation =
+                |(commanded, observed): &([f64; 3], f64)| (observed - sum(&[forward, turn][i], commanded)).abs();
             NOISE * median(steps[i].iter().map(deviation))
         };
         Some(Tolerance {
             forward,
             turn,
-            length_cm: BEYOND * fastest.forward_cm + noise(0) + NOISE * median(aside_cm.into_iter()),
-            turn_rad: LEAST_TURN_RAD.max(noise(1)),
+            length_cm: NONLINEARITY * fastest.forward_cm + noise(0) + NOISE * median(lateral_cm.into_iter()),
+            turn_rad: MIN_TURN_MARGIN_RAD.max(noise(1)),
             fastest,
         })
     }
 
-    /// What the step from row `k` comes to.
-    pub fn expected(&self, logs: &Logs, run: &Run, k: usize) -> Drive {
-        let of_age = of_ages(logs, run, k);
-        Drive {
-            forward_cm: sum(&self.forward, &of_age.map(|drive| drive.forward_cm)),
-            turn_rad: sum(&self.turn, &of_age.map(|drive| drive.turn_rad)),
+    /// Returns the expected step from row `k`.
+    pub fn expected(&self, logs: &Logs, run: &Run, k: usize) -> Displacement {
+        let by_age = commands_by_age(logs, run, k);
+        Displacement {
+            forward_cm: sum(&self.forward, &by_age.map(|displacement| displacement.forward_cm)),
+            turn_rad: sum(&self.turn, &by_age.map(|displacement| displacement.turn_rad)),
         }
     }
 
-    /// What the steps between two rows come to together; none where rows or poses are missing between them, over which no
-    /// step is compared.
-    pub fn expected_between(&self, logs: &Logs, run: &Run, from: usize, to: usize) -> Option<Drive> {
-        let mut all = Drive::default();
+    /// Returns the sum of the expected steps between two rows; `None` if rows or poses are missing between them, since steps over
+    /// gaps are not compared.
+    pub fn expected_between(&self, logs: &Logs, run: &Run, from: usize, to: usize) -> Option<Displacement> {
+        let mut total = Displacement::default();
         for k in from..to {
             let is_unseen = k > from && run.rows.at(k).pose.is_none();
-            if is_unseen || is_broken(&logs.robot, run.rows.at(k).t_ms, run.rows.at(k + 1).t_ms) {
+            if is_unseen || is_gap(&logs.robot, run.rows.at(k).t_ms, run.rows.at(k + 1).t_ms) {
                 return None;
             }
-            all = all.and(&self.expected(logs, run, k));
+            total = total.and(&self.expected(logs, run, k));
         }
-        Some(all)
+        Some(total)
     }
 
-    /// Whether a turn is no jump where so much is expected.
-    pub fn admits_turn(&self, turn_rad: f64, expected: &Drive) -> bool {
+    /// Returns whether a turn is plausible given the expected one.
+    pub fn admits_turn(&self, turn_rad: f64, expected: &Displacement) -> bool {
         let turns = [-TAU, 0.0, TAU].map(|whole| wrap_rad(turn_rad) + whole);
         turns.into_iter().any(|turn_rad| excess(turn_rad, expected.turn_rad) <= self.turn_rad)
     }
 
-    /// Whether the robot can turn so far in a step, whatever it is asked for.
+    /// Returns whether the robot can turn this far in a step, whatever the command.
     pub fn is_within_reach(&self, turn_rad: f64) -> bool {
         wrap_rad(turn_rad).abs() <= self.fastest.turn_rad + self.turn_rad
     }
 
-    /// Whether a way is no jump where so much is expected: forward and to the left of the heading halfway, cm.
-    pub fn admits_way(&self, [forward_cm, left_cm]: [f64; 2], expected: &Drive) -> bool {
+    /// Returns whether a displacement, forward and to the left of the mean heading, cm, is plausible given the expected one.
+    pub fn admits_length(&self, [forward_cm, left_cm]: [f64; 2], expected: &Displacement) -> bool {
         libm::hypot(excess(forward_cm, expected.forward_cm), left_cm) <= self.length_cm
     }
 
-    /// Whether a drive is large enough that a robot cannot fail to make it without being held.
-    pub fn is_large(&self, drive: &Drive) -> bool {
-        let Drive { forward_cm, turn_rad } = self.fastest;
-        drive.forward_cm.abs() > LARGE * forward_cm || drive.turn_rad.abs() > LARGE * turn_rad
+    /// Returns whether a displacement is so large that the robot must have moved unless it was held.
+    pub fn is_large(&self, displacement: &Displacement) -> bool {
+        let Displacement { forward_cm, turn_rad } = self.fastest;
+        displacement.forward_cm.abs() > LARGE * forward_cm || displacement.turn_rad.abs() > LARGE * turn_rad
     }
 }
 
-/// How far a number lies beyond everything from zero, as a robot may be held, to what is expected.
+/// Returns how far a number lies outside the range from zero (a robot may be held) to the expected value.
 fn excess(value: f64, expected: f64) -> f64 {
     (expected.min(0.0) - value).max(value - expected.max(0.0)).max(0.0)
 }
 
-/// What the commands of [`AGES_MS`] ask for in the step from row `k`.
-fn of_ages(logs: &Logs, run: &Run, k: usize) -> [Drive; 3] {
+/// Returns the displacements in the step from row `k` that the commands of [`AGES_MS`] would cause.
+fn commands_by_age(logs: &Logs, run: &Run, k: usize) -> [Displacement; 3] {
     let ms = run.rows.get(k + 1).map_or(0.0, |next| next.t_ms - run.rows.at(k).t_ms);
     let mut row = k;
-    let mut begun = true;
+    let mut has_started = true;
     AGES_MS.map(|age_ms| {
-        // Half a step of jitter does not make a command another one's age.
-        while begun && run.rows.at(k).t_ms - run.rows.at(row).t_ms < age_ms - logs.robot.step_ms / 2.0 {
+        // Half a step of jitter does not change the age of a command.
+        while has_started && run.rows.at(k).t_ms - run.rows.at(row).t_ms < age_ms - logs.robot.step_ms / 2.0 {
             if row == 0 {
-                begun = false;
+                has_started = false;
             } else {
                 row -= 1;
             }
         }
-        if begun { asked(&logs.robot, run.rows.at(row).command(), ms) } else { Drive::default() }
+        if has_started { commanded(&logs.robot, run.rows.at(row).command(), ms) } else { Displacement::default() }
     })
 }
 
-fn sum(gains: &[f64; 3], asked: &[f64; 3]) -> f64 {
-    gains.iter().zip(asked).map(|(gain, asked)| gain * asked).sum()
+fn sum(gains: &[f64; 3], commanded: &[f64; 3]) -> f64 {
+    gains.iter().zip(commanded).map(|(gain, commanded)| gain * commanded).sum()
 }
 
-/// The gains of least absolute deviations, by weighted least squares; of what is never asked for, none.
+/// Fits gains by least absolute deviations with iteratively reweighted least squares; zero for commands that never occur.
 fn gains(steps: &[([f64; 3], f64)]) -> [f64; 3] {
-    let scale = median(steps.iter().map(|(_, done)| done.abs()));
-    // A ridge that counts as a thousandth of a step keeps commands that never change from being told apart.
-    let ridge = 1e-3 * steps.iter().flat_map(|(asked, _)| asked).map(|a| a * a).sum::<f64>().max(f64::MIN_POSITIVE);
+    let scale = median(steps.iter().map(|(_, observed)| observed.abs()));
+    // A small ridge keeps the equations solvable if the commands never change.
+    let ridge =
+        1e-3 * steps.iter().flat_map(|(commanded, _)| commanded).map(|a| a * a).sum::<f64>().max(f64::MIN_POSITIVE);
     let mut gains = [0.0; 3];
-    for _ in 0..ROUNDS {
+    for _ in 0..ITERATIONS {
         let mut squares = Matrix3::from_diagonal_element(ridge);
         let mut products = Vector3::zeros();
-        for (asked, done) in steps {
-            // Deviations below a hundredth of a usual step count as that.
-            let weight = scale / (done - sum(&gains, asked)).abs().max(0.01 * scale).max(f64::MIN_POSITIVE);
-            let asked = Vector3::from(*asked);
-            squares += asked * asked.transpose() * weight;
-            products += asked * (*done * weight);
+        for (commanded, observed) in steps {
+            // Deviations are floored at a hundredth of a typical step.
+            let weight = scale / (observed - sum(&gains, commanded)).abs().max(0.01 * scale).max(f64::MIN_POSITIVE);
+            let commanded = Vector3::from(*commanded);
+            squares += commanded * commanded.transpose() * weight;
+            products += commanded * (*observed * weight);
         }
         match squares.cholesky() {
             Some(decomposed) => gains = decomposed.solve(&products).into(),

@@ -1,12 +1,12 @@
-//! Positions that jump farther than the robot can drive.
+//! Checks for positions that jump farther than the robot can drive.
 
-use super::chain::cheapest;
 use super::finding::Finding;
 use super::tolerance::Tolerance;
+use super::viterbi::cheapest_path;
 use crate::Logs;
 use mindgap_foundations::geometry::{direction, wrap_rad};
 
-/// Leaves out rows to which the tracker jumps, and the first one after a jump that stays.
+/// Excludes rows to which the tracker jumps, and the first row after a persistent jump.
 pub fn check(logs: &mut Logs) -> Vec<Finding> {
     let Some(tolerance) = Tolerance::of(logs) else { return Vec::new() };
     let mut jumped = Vec::new();
@@ -21,18 +21,17 @@ pub fn check(logs: &mut Logs) -> Vec<Finding> {
             let change_cm = b.position_cm - a.position_cm;
             let halfway_rad = a.heading_rad + wrap_rad(b.heading_rad - a.heading_rad) / 2.0;
             let local_cm = direction(-halfway_rad).rotate(change_cm);
-            // Of several steps only the length is known: they may turn on the way.
+            // Over several steps only the length is comparable, since the robot may turn in between.
             let along_cm = if end == begin + 1 {
                 local_cm.to_array()
             } else {
                 [change_cm.length() * expected.forward_cm.signum(), 0.0]
             };
-            tolerance.admits_way(along_cm, &expected).then_some(0.0)
+            tolerance.admits_length(along_cm, &expected).then_some(0.0)
         };
-        let read = cheapest::<1>(posed.len(), |_, _| 0.0, follows);
-        jumped.extend(posed.iter().zip(read).filter(|(_, kept)| kept.is_none_or(|k| k.breaks)).map(|(k, _)| (run, *k)));
+        let path = cheapest_path::<1>(posed.len(), |_, _| 0.0, follows);
+        jumped.extend(posed.iter().zip(path).filter(|(_, kept)| kept.is_none_or(|k| k.breaks)).map(|(k, _)| (run, *k)));
     }
-    let sentence =
-        "The tracker jumps farther than the robot can drive: leave the pose empty where the tracker is lost.";
+    let sentence = "The tracker jumps farther than the robot can drive: leave the pose empty when tracking is lost.";
     Finding::without_poses(logs, "tracker_jump", &jumped, sentence).into_iter().collect()
 }

@@ -1,41 +1,43 @@
-//! Units: commands in -1..1, headings in radians, positions in metres or millimetres, a top speed in other units.
+//! Checks units: commands in -1..1, headings in radians, positions in metres or millimetres, full speed in other units.
 
 use std::f64::consts::PI;
 
-use super::finding::{Finding, Handling, Part, Place};
-use super::frames::{directions, most_share};
-use super::ways::{Gains, Way, ways};
+use super::finding::{Finding, Handling, Part, RunRows};
+use super::frames::{directions, largest_share};
+use super::segments::{Gains, Segment, segments};
 use crate::Logs;
 use mindgap_foundations::geometry::wrap_rad;
 
-/// A gain is a unit's when it lies within this factor of it. Wheels, tracks and fresh batteries are off by less: whoever
-/// measured them had a ruler. The units themselves lie a factor of ten and more apart.
+/// A gain indicates a unit if it is within this factor of it. Errors in wheel size, track width or battery are smaller, since
+/// they were measured; the units themselves are at least a factor of ten apart.
 const WITHIN: f64 = 2.0;
 
-/// Degrees in a radian, turned round: what a turn shrinks by when radians are read as degrees.
+/// Factor by which turns shrink if radians are read as degrees.
 const RADIANS: f64 = PI / 180.0;
 
-/// Commands in -1..1 are put right where the robot drives a hundred times as far as they ask for.
+/// Scales commands in -1..1 if the robot drives a hundred times as far as commanded.
 pub fn commands(logs: &mut Logs) -> Vec<Finding> {
-    let most =
+    let largest =
         logs.runs.iter().flat_map(|run| &run.rows).flat_map(|row| row.command()).map(f64::abs).fold(0.0, f64::max);
-    if most == 0.0 || most > 1.0 {
+    if largest == 0.0 || largest > 1.0 {
         return Vec::new();
     }
-    let gains = Gains::of(&ways(logs), &logs.robot);
+    let gains = Gains::of(&segments(logs), &logs.robot);
     let (handling, withholds): (_, &[Part]) = match gains.turn.or(gains.length).map(f64::abs) {
-        Some(gain) if is_near(gain, 100.0) => (Handling::PutRight, &[]),
+        Some(gain) if is_near(gain, 100.0) => (Handling::Corrected, &[]),
         Some(gain) if gain < 100.0 / WITHIN => return Vec::new(),
-        _ => (Handling::Told, &[Part::Motion]),
+        _ => (Handling::Reported, &[Part::Motion]),
     };
     let found = Finding {
         id: "command_fraction",
-        places: Place::all(logs),
+        rows_by_run: RunRows::all(logs),
         handling,
         withholds,
-        sentence: format!("No command exceeds {most}: they seem to be fractions; write -100..100 as left and right."),
+        sentence: format!(
+            "No command exceeds {largest}: they seem to be fractions; write left and right as -100..100."
+        ),
     };
-    if handling == Handling::PutRight {
+    if handling == Handling::Corrected {
         logs.runs.iter_mut().for_each(|run| {
             run.rows.edit_each(|row| (row.left, row.right) = (row.left * 100.0, row.right * 100.0));
         });
@@ -43,46 +45,46 @@ pub fn commands(logs: &mut Logs) -> Vec<Finding> {
     vec![found]
 }
 
-/// Headings in radians are put right where turns are as much smaller than asked for as radians than degrees, and the
-/// robot then goes where it heads.
+/// Converts headings from radians if turns are smaller than commanded by the factor between radians and degrees, and the
+/// robot then moves in a consistent direction to its heading.
 pub fn headings(logs: &mut Logs) -> Vec<Finding> {
-    let ways = ways(logs);
-    let Some(_) = Gains::of(&ways, &logs.robot).turn.filter(|gain| is_near(gain.abs(), RADIANS)) else {
+    let segments = segments(logs);
+    let Some(_) = Gains::of(&segments, &logs.robot).turn.filter(|gain| is_near(gain.abs(), RADIANS)) else {
         return Vec::new();
     };
-    let mut right = logs.clone();
-    for run in &mut right.runs {
+    let mut converted = logs.clone();
+    for run in &mut converted.runs {
         run.rows.edit_poses(|pose| pose.heading_rad = wrap_rad(pose.heading_rad / RADIANS));
     }
-    if !goes_somewhere(&super::ways::ways(&right), &right) {
+    if !has_consistent_direction(&super::segments::segments(&converted), &converted) {
         return Vec::new();
     }
-    *logs = right;
+    *logs = converted;
     vec![Finding {
         id: "heading_radians",
-        places: posed(logs),
-        handling: Handling::PutRight,
+        rows_by_run: rows_with_pose(logs),
+        handling: Handling::Corrected,
         withholds: &[],
-        sentence: "Headings are in radians: write degrees as heading_deg.".into(),
+        sentence: "Headings are in radians: write heading_deg in degrees.".into(),
     }]
 }
 
-/// Positions in metres or millimetres are put right; a top speed in other units is told.
+/// Converts positions from metres or millimetres; reports a full speed in other units.
 pub fn lengths(logs: &mut Logs) -> Vec<Finding> {
-    let ways = ways(logs);
-    let gains = Gains::of(&ways, &logs.robot);
+    let segments = segments(logs);
+    let gains = Gains::of(&segments, &logs.robot);
     let Some(length) = gains.length else { return Vec::new() };
-    let turns_as_asked = gains.turn.is_none_or(|turn| is_near(turn.abs(), 1.0));
-    let metres = [(0.01, 100.0, "length_metres", "metres"), (10.0, 0.1, "length_millimetres", "millimetres")];
-    for (gain, factor, id, unit) in metres {
-        if is_near(length, gain) && turns_as_asked && goes_somewhere(&ways, logs) {
+    let turns_as_commanded = gains.turn.is_none_or(|turn| is_near(turn.abs(), 1.0));
+    let units = [(0.01, 100.0, "length_metres", "metres"), (10.0, 0.1, "length_millimetres", "millimetres")];
+    for (gain, factor, id, unit) in units {
+        if is_near(length, gain) && turns_as_commanded && has_consistent_direction(&segments, logs) {
             logs.runs.iter_mut().for_each(|run| run.rows.edit_poses(|pose| pose.position_cm *= factor));
             return vec![Finding {
                 id,
-                places: posed(logs),
-                handling: Handling::PutRight,
+                rows_by_run: rows_with_pose(logs),
+                handling: Handling::Corrected,
                 withholds: &[],
-                sentence: format!("Positions are in {unit}: write centimetres as x_cm and y_cm."),
+                sentence: format!("Positions are in {unit}: write x_cm and y_cm in centimetres."),
             }];
         }
     }
@@ -92,25 +94,25 @@ pub fn lengths(logs: &mut Logs) -> Vec<Finding> {
     let Some((_, unit)) = other_speed else { return Vec::new() };
     vec![Finding {
         id: "full_speed_unit",
-        places: Place::all(logs),
-        handling: Handling::Told,
+        rows_by_run: RunRows::all(logs),
+        handling: Handling::Reported,
         withholds: &[Part::Motion],
         sentence: format!(
-            "The robot drives {length:.3} times as fast as robot.toml says: full_speed_cm_s seems to be in {unit}; write cm/s."
+            "The robot drives {length:.3} times as fast as robot.toml states: full_speed_cm_s seems to be in {unit}; write cm/s."
         ),
     }]
 }
 
-/// Whether straight ways have one direction against the heading, which noise has not; too few ways do not say otherwise.
-fn goes_somewhere(ways: &[Way], logs: &Logs) -> bool {
-    directions(ways, &logs.robot).is_none_or(|shares| most_share(&shares).1 >= super::frames::DECISIVE)
+/// Returns whether straight segments have a consistent direction to the heading, unlike noise; true with too few segments.
+fn has_consistent_direction(segments: &[Segment], logs: &Logs) -> bool {
+    directions(segments, &logs.robot).is_none_or(|shares| largest_share(&shares).1 >= super::frames::MIN_AGREEMENT)
 }
 
-fn posed(logs: &Logs) -> Vec<Place> {
+fn rows_with_pose(logs: &Logs) -> Vec<RunRows> {
     let rows = logs.runs.iter().enumerate().flat_map(|(run, r)| {
         r.rows.iter().enumerate().filter(|(_, row)| row.pose.is_some()).map(move |(row, _)| (run, row))
     });
-    Place::of(logs, &rows.collect::<Vec<_>>())
+    RunRows::group(logs, &rows.collect::<Vec<_>>())
 }
 
 fn is_near(gain: f64, unit: f64) -> bool {

@@ -1,49 +1,49 @@
-//! One column of a run in as little memory as keeps every number exactly as it was.
+//! A compact, lossless column of numbers.
 
-/// Stands for no number among units.
+/// Marks a missing number among scaled integers.
 const NONE: i32 = i32::MIN;
-/// Numbers are tried with up to so many places: what has more comes of arithmetic and not of a file.
-const MOST_PLACES: usize = 4;
-/// Powers of ten; all are exact, so that a quotient of units and one of them is the number that was written.
-const POWERS: [f64; MOST_PLACES + 1] = [1.0, 10.0, 100.0, 1000.0, 10_000.0];
+/// Maximum number of decimals to try: numbers with more come from arithmetic, not from a file.
+const MAX_DECIMALS: usize = 4;
+/// Powers of ten. All are exact, so that a scaled integer divided by one of them is the number that was written.
+const POWERS: [f64; MAX_DECIMALS + 1] = [1.0, 10.0, 100.0, 1000.0, 10_000.0];
 
-/// Numbers, or none, by row; all rows behind the last that is there have none.
+/// Optional numbers by row; rows beyond the stored ones have none.
 #[derive(Clone)]
 pub struct Column {
-    meaning: Meaning,
+    unit: Unit,
     cells: Cells,
 }
 
-/// What a number means beside how it is written.
+/// The unit of a number in memory relative to the one in the file.
 #[derive(Clone, Copy)]
-pub enum Meaning {
-    /// The same.
-    Same,
-    /// Written in degrees, meant in radians.
-    Angle,
+pub enum Unit {
+    /// The same unit.
+    AsWritten,
+    /// Degrees in the file, radians in memory.
+    DegreesToRadians,
 }
 
 #[derive(Clone)]
 enum Cells {
-    /// Units of a power of ten, as logs are written: half of what a float takes.
-    Decimal { places: usize, units: Vec<i32> },
-    /// Floats, once one of them is no such number; NaN stands for none.
+    /// Integers scaled by a power of ten, as logs are written: half the size of floats.
+    Decimal { decimals: usize, scaled: Vec<i32> },
+    /// Floats, once one number is not such a decimal; NaN marks a missing number.
     Float(Vec<f64>),
 }
 
 impl Column {
-    /// A column without any number.
-    pub const fn new(meaning: Meaning) -> Self {
-        Column { meaning, cells: Cells::Decimal { places: 0, units: Vec::new() } }
+    /// Returns a column without numbers.
+    pub const fn new(unit: Unit) -> Self {
+        Column { unit, cells: Cells::Decimal { decimals: 0, scaled: Vec::new() } }
     }
 
-    /// The number of a row.
+    /// Returns the number of a row.
     #[inline]
     pub fn get(&self, row: usize) -> Option<f64> {
         match &self.cells {
-            Cells::Decimal { places, units } => {
-                let units = units.get(row).copied().filter(|units| *units != NONE)?;
-                Some(self.meaning.of(units, *places))
+            Cells::Decimal { decimals, scaled } => {
+                let scaled = scaled.get(row).copied().filter(|scaled| *scaled != NONE)?;
+                Some(self.unit.decoded(scaled, *decimals))
             }
             Cells::Float(numbers) => numbers.get(row).copied().filter(|number| !number.is_nan()),
         }
@@ -51,72 +51,72 @@ impl Column {
 
     /// Sets the number of a row.
     pub fn set(&mut self, row: usize, number: Option<f64>) {
-        if let (Cells::Decimal { places, .. }, Some(number)) = (&self.cells, number)
-            && self.meaning.units(number, *places).is_none()
+        if let (Cells::Decimal { decimals, .. }, Some(number)) = (&self.cells, number)
+            && self.unit.scaled(number, *decimals).is_none()
         {
             self.widen(number);
         }
         match &mut self.cells {
-            Cells::Decimal { places, units } => {
-                put(units, row, number.and_then(|number| self.meaning.units(number, *places)), NONE);
+            Cells::Decimal { decimals, scaled } => {
+                put(scaled, row, number.and_then(|number| self.unit.scaled(number, *decimals)), NONE);
             }
             Cells::Float(numbers) => put(numbers, row, number, f64::NAN),
         }
     }
 
-    /// Keeps the first rows only.
+    /// Keeps only the first `rows` rows.
     pub fn truncate(&mut self, rows: usize) {
         match &mut self.cells {
-            Cells::Decimal { units, .. } => units.truncate(rows),
+            Cells::Decimal { scaled, .. } => scaled.truncate(rows),
             Cells::Float(numbers) => numbers.truncate(rows),
         }
     }
 
-    /// Gives back memory that is kept for further rows.
+    /// Releases spare capacity.
     pub fn shrink(&mut self) {
         match &mut self.cells {
-            Cells::Decimal { units, .. } => units.shrink_to_fit(),
+            Cells::Decimal { scaled, .. } => scaled.shrink_to_fit(),
             Cells::Float(numbers) => numbers.shrink_to_fit(),
         }
     }
 
-    /// Makes room for a number that the present units do not hold: more places if that does, else floats.
+    /// Changes the representation to hold a number: more decimals if that is enough, otherwise floats.
     fn widen(&mut self, number: f64) {
-        let Cells::Decimal { places, units } = &mut self.cells else { return };
-        let finer = (*places + 1..=MOST_PLACES).find(|places| self.meaning.units(number, *places).is_some());
-        let rescaled = finer.and_then(|finer| Some((finer, rescaled(units, 10i32.pow((finer - *places) as u32))?)));
+        let Cells::Decimal { decimals, scaled } = &mut self.cells else { return };
+        let finer = (*decimals + 1..=MAX_DECIMALS).find(|decimals| self.unit.scaled(number, *decimals).is_some());
+        let rescaled = finer.and_then(|finer| Some((finer, rescaled(scaled, 10i32.pow((finer - *decimals) as u32))?)));
         self.cells = match rescaled {
-            Some((places, units)) => Cells::Decimal { places, units },
+            Some((decimals, scaled)) => Cells::Decimal { decimals, scaled },
             None => Cells::Float(
-                units.iter().map(|u| if *u == NONE { f64::NAN } else { self.meaning.of(*u, *places) }).collect(),
+                scaled.iter().map(|u| if *u == NONE { f64::NAN } else { self.unit.decoded(*u, *decimals) }).collect(),
             ),
         };
     }
 }
 
-impl Meaning {
+impl Unit {
     #[inline]
-    fn of(self, units: i32, places: usize) -> f64 {
-        let number = f64::from(units) / POWERS[places];
+    fn decoded(self, scaled: i32, decimals: usize) -> f64 {
+        let number = f64::from(scaled) / POWERS[decimals];
         match self {
-            Meaning::Same => number,
-            Meaning::Angle => number.to_radians(),
+            Unit::AsWritten => number,
+            Unit::DegreesToRadians => number.to_radians(),
         }
     }
 
-    /// The units that mean a number to its last bit, if there are such.
-    fn units(self, number: f64, places: usize) -> Option<i32> {
+    /// Returns the scaled integer that stands for a number exactly, if there is one.
+    fn scaled(self, number: f64, decimals: usize) -> Option<i32> {
         let written = match self {
-            Meaning::Same => number,
-            Meaning::Angle => number.to_degrees(),
+            Unit::AsWritten => number,
+            Unit::DegreesToRadians => number.to_degrees(),
         };
-        // What does not fit is cut off, and then is not the same.
-        let units = libm::round(written * POWERS[places]) as i32;
-        (units != NONE && self.of(units, places).to_bits() == number.to_bits()).then_some(units)
+        // Numbers out of range saturate and then differ.
+        let scaled = libm::round(written * POWERS[decimals]) as i32;
+        (scaled != NONE && self.decoded(scaled, decimals).to_bits() == number.to_bits()).then_some(scaled)
     }
 }
 
-/// Sets a row of a vector, which grows as far as it must.
+/// Sets a row of a vector, growing it as needed.
 fn put<T: Copy>(cells: &mut Vec<T>, row: usize, value: Option<T>, none: T) {
     match (cells.get_mut(row), value) {
         (Some(cell), value) => *cell = value.unwrap_or(none),
@@ -128,9 +128,9 @@ fn put<T: Copy>(cells: &mut Vec<T>, row: usize, value: Option<T>, none: T) {
     }
 }
 
-/// The same numbers in finer units, unless one is too large.
-fn rescaled(units: &[i32], factor: i32) -> Option<Vec<i32>> {
-    units.iter().map(|u| if *u == NONE { Some(NONE) } else { u.checked_mul(factor) }).collect()
+/// Multiplies all numbers by `factor`, unless one overflows.
+fn rescaled(scaled: &[i32], factor: i32) -> Option<Vec<i32>> {
+    scaled.iter().map(|u| if *u == NONE { Some(NONE) } else { u.checked_mul(factor) }).collect()
 }
 
 #[cfg(test)]
@@ -139,39 +139,39 @@ mod tests {
 
     use super::*;
 
-    /// What a column that is given numbers row by row says of them, and whether it keeps them as decimals.
-    fn kept(meaning: Meaning, numbers: &[Option<f64>]) -> (Vec<Option<f64>>, bool) {
-        let mut column = Column::new(meaning);
+    /// Returns the numbers of a column after setting them row by row, and whether it stores them as decimals.
+    fn stored(unit: Unit, numbers: &[Option<f64>]) -> (Vec<Option<f64>>, bool) {
+        let mut column = Column::new(unit);
         numbers.iter().enumerate().for_each(|(row, number)| column.set(row, *number));
-        let kept = (0..numbers.len()).map(|row| column.get(row)).collect();
-        (kept, matches!(column.cells, Cells::Decimal { .. }))
+        let stored = (0..numbers.len()).map(|row| column.get(row)).collect();
+        (stored, matches!(column.cells, Cells::Decimal { .. }))
     }
 
     #[test]
-    fn numbers_of_few_places_are_kept_as_decimals() {
+    fn numbers_with_few_decimals_are_stored_as_decimals() {
         let numbers = [Some(400.0), None, Some(-12.5), Some(0.07), Some(-7.25), None];
-        assert_eq!(kept(Meaning::Same, &numbers), (numbers.to_vec(), true));
+        assert_eq!(stored(Unit::AsWritten, &numbers), (numbers.to_vec(), true));
         let headings = [26.51, -179.99, 180.0].map(|degrees: f64| Some(degrees.to_radians()));
-        assert_eq!(kept(Meaning::Angle, &headings), (headings.to_vec(), true));
+        assert_eq!(stored(Unit::DegreesToRadians, &headings), (headings.to_vec(), true));
     }
 
     #[test]
-    fn a_number_that_is_no_decimal_makes_floats_of_all_and_changes_none() {
+    fn other_numbers_switch_the_column_to_floats_without_loss() {
         for odd in [1.0 / 3.0, 1e12, f64::INFINITY, 5e-324] {
             let numbers = [None, Some(0.01), Some(odd), Some(2.0)];
-            assert_eq!(kept(Meaning::Same, &numbers), (numbers.to_vec(), false));
+            assert_eq!(stored(Unit::AsWritten, &numbers), (numbers.to_vec(), false));
         }
-        // Finer units would be too large.
+        // More decimals would overflow.
         let numbers = [Some(2e9), Some(0.25)];
-        assert_eq!(kept(Meaning::Same, &numbers), (numbers.to_vec(), false));
-        assert!(kept(Meaning::Same, &[Some(-0.0)]).0[0].is_some_and(f64::is_sign_negative));
+        assert_eq!(stored(Unit::AsWritten, &numbers), (numbers.to_vec(), false));
+        assert!(stored(Unit::AsWritten, &[Some(-0.0)]).0[0].is_some_and(f64::is_sign_negative));
     }
 
     #[test]
-    fn a_column_without_numbers_takes_no_memory() {
-        let mut column = Column::new(Meaning::Same);
+    fn empty_column_takes_no_memory() {
+        let mut column = Column::new(Unit::AsWritten);
         (0..100).for_each(|row| column.set(row, None));
-        assert!(matches!(&column.cells, Cells::Decimal { units, .. } if units.capacity() == 0));
+        assert!(matches!(&column.cells, Cells::Decimal { scaled, .. } if scaled.capacity() == 0));
         column.set(7, Some(1.5));
         assert_eq!([6, 7, 8].map(|row| column.get(row)), [None, Some(1.5), None]);
         column.truncate(7);
@@ -180,19 +180,19 @@ mod tests {
 
     proptest! {
         #[test]
-        fn every_number_comes_back_to_its_last_bit(
+        fn every_number_round_trips_bit_for_bit(
             numbers in prop::collection::vec(
-                prop::option::of(prop_oneof![
-                    (-1_000_000i32..1_000_000, 0u8..6).prop_map(|(units, places)| f64::from(units) / libm::pow(10.0, f64::from(places))),
+                prop::option::decoded(prop_oneof![
+                    (-1_000_000i32..1_000_000, 0u8..6).prop_map(|(scaled, decimals)| f64::from(scaled) / libm::pow(10.0, f64::from(decimals))),
                     any::<f64>().prop_filter("a number", |number| !number.is_nan()),
                 ]),
                 1..20,
             ),
             is_angle: bool,
         ) {
-            let (kept, _) = kept(if is_angle { Meaning::Angle } else { Meaning::Same }, &numbers);
+            let (stored, _) = stored(if is_angle { Unit::DegreesToRadians } else { Unit::AsWritten }, &numbers);
             let bits = |numbers: &[Option<f64>]| numbers.iter().map(|n| n.map(f64::to_bits)).collect::<Vec<_>>();
-            prop_assert_eq!(bits(&kept), bits(&numbers));
+            prop_assert_eq!(bits(&stored), bits(&numbers));
         }
     }
 }

@@ -1,4 +1,4 @@
-//! Logs of the built-in robot: in longer steps, as tables in memory, and the robot that they belong to.
+//! Logs of the built-in robot: resampled, as tables in memory, and the robot that they belong to.
 
 mod resample;
 mod robot;

@@ -8,17 +8,17 @@ fn recorded() -> Logs {
 
 fn refused(change: impl FnOnce(&mut Table)) -> String {
     let logs = recorded();
-    let mut table = Table::of(&logs.runs[0]);
+    let mut table = Table::from_run(&logs.runs[0]);
     change(&mut table);
-    Logs::of_tables(logs.robot, logs.scene, &[table], |_| ()).expect_err("refused").to_string()
+    Logs::from_tables(logs.robot, logs.scene, &[table], |_| ()).expect_err("refused").to_string()
 }
 
 #[test]
-fn logs_come_back_from_their_tables() {
+fn logs_round_trip_through_tables() {
     let logs = recorded();
-    let tables: Vec<Table> = logs.runs.iter().map(Table::of).collect();
-    let back = Logs::of_tables(logs.robot, logs.scene.clone(), &tables, |odd| panic!("{odd}")).expect("logs");
-    // Headings go through degrees and back, and lose a bit there.
+    let tables: Vec<Table> = logs.runs.iter().map(Table::from_run).collect();
+    let back = Logs::from_tables(logs.robot, logs.scene.clone(), &tables, |warning| panic!("{warning}")).expect("logs");
+    // Headings are converted to degrees and back, which costs a bit of precision.
     assert_eq!(back.runs.len(), 2);
     for (back, run) in back.runs.iter().zip(&logs.runs) {
         for (back, row) in back.rows.iter().zip(run.rows.iter()) {
@@ -29,7 +29,7 @@ fn logs_come_back_from_their_tables() {
 }
 
 #[test]
-fn a_wrong_cell_is_told_with_its_run_and_line() {
+fn invalid_cell_is_reported_with_run_and_line() {
     assert_eq!(refused(|t| t.columns[1].1[2] = 140.0), "run-000:4: left = 140 lies outside -100..100");
     assert!(refused(|t| t.columns[0].1[5] = f64::NAN).starts_with("run-000:7: t_ms"));
     assert_eq!(refused(|t| drop(t.columns.remove(0))), "run-000:1: column t_ms is missing");
@@ -37,6 +37,6 @@ fn a_wrong_cell_is_told_with_its_run_and_line() {
         refused(|t| {
             t.columns[2].1.pop();
         }),
-        "run-000: column right has 12 rows, and the first has 13"
+        "run-000: column right has 12 rows, but the first has 13"
     );
 }

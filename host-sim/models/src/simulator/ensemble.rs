@@ -27,7 +27,7 @@ pub use basis::PARTS;
 pub use command_scale::CommandScale;
 pub use evidence::Evidence;
 pub use member::Member;
-use mindgap_foundations::chance::derive;
+use mindgap_foundations::random::derive;
 pub use noise::MotionNoise;
 pub use posterior::Posterior;
 

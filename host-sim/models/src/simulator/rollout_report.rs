@@ -7,8 +7,8 @@ use serde::Serialize;
 use super::environment::Environment;
 use super::motion::MotionTable;
 use super::rollout::{REACHED_CM, RolloutOutcome, RolloutRequest, TrajectoryPoint};
-use mindgap_foundations::chance::derive;
 use mindgap_foundations::counter::Counter;
+use mindgap_foundations::random::derive;
 use mindgap_logs::{Scene, Termination};
 
 /// What `mindgap simulate --json` writes.
@@ -83,7 +83,7 @@ impl RolloutReport {
                 motions: &motions[run % robots.len()],
                 seed: derive(seed, &[run as u64]),
             });
-            counter.one_more();
+            counter.increment();
             Rollout::new(&outcome, &trajectory, environment, scene)
         };
         let runs: Vec<Rollout> = (0..runs).into_par_iter().map(rollout).collect();

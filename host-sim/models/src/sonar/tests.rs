@@ -4,7 +4,7 @@ use super::fan::{RAYS, fan_at};
 use super::outcomes::{Outcomes, Source};
 use super::partition::{PERTURBED, Partition, SENSORS, assert_follow, probability_between, scenes, sensors};
 use super::{MixingWeights, Perturbation, SonarModel};
-use mindgap_foundations::chance::generator;
+use mindgap_foundations::random::generator;
 
 /// The outcomes of every sensor in every place, as it is and perturbed, with what they are of.
 fn grid() -> Vec<(String, Outcomes)> {

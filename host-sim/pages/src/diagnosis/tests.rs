@@ -71,8 +71,8 @@ fn evil() -> Findings {
     let answer = Answer::PartlyKnown { effects: vec![effect], account, experiment: None, profiles: vec![profile] };
     let finding = Finding {
         id: EVIL,
-        places: Vec::new(),
-        handling: Handling::Told,
+        rows_by_run: Vec::new(),
+        handling: Handling::Reported,
         withholds: &[Inspected::Motion],
         sentence: EVIL.into(),
     };

@@ -4,8 +4,8 @@
 use glam::DVec2;
 use mindgap_built_in_robot::{ActiveEffect, BuiltInRobot, Effect, Trajectory, default_robot, run_controller};
 use mindgap_core::controller::Controller;
-use mindgap_foundations::chance::{Generator, generator};
 use mindgap_foundations::geometry::{Pose, Rectangle};
+use mindgap_foundations::random::{Generator, generator};
 use mindgap_learning::evolve::way::WayMap;
 use mindgap_logs::{Scene, Termination};
 use mindgap_models::simulator::rollout::REACHED_CM;

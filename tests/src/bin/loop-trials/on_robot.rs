@@ -2,7 +2,7 @@
 //! more of the controllers that it finds.
 
 use mindgap_core::controller::Controller;
-use mindgap_foundations::chance::generator;
+use mindgap_foundations::random::generator;
 use mindgap_learning::evolve::genome::GenotypeDecoder;
 use mindgap_learning::genetic::mutation::{Mutation, Unit};
 use mindgap_models::simulator::rollout::REACHED_CM;

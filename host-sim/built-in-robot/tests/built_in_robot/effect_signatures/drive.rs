@@ -6,33 +6,33 @@ use super::measures::{
     Measured, asked_cm, asked_motion, covered_cm, drivings, is_steady, jump, mean, slope, surplus_cm, two_slopes,
 };
 
-/// Covered way forward against asked one over chosen steps.
+/// Observed per commanded forward travel over chosen steps.
 fn forward(m: &Measured, chosen: impl Fn(&MotionSample) -> bool) -> f64 {
     slope(m.motion.iter().filter(|s| chosen(s)).map(|s| (asked_motion(s).0, s.forward_cm)))
 }
 
-/// Covered turn against asked one.
+/// Observed per commanded turn.
 fn turn(m: &Measured) -> f64 {
     slope(m.motion.iter().map(|s| (asked_motion(s).1, s.turn_rad)))
 }
 
-/// Covered way of one wheel against asked one.
+/// Observed per commanded travel of one wheel.
 fn wheel(m: &Measured, side: usize) -> f64 {
     slope(m.motion.iter().map(|s| (asked_cm(s)[side], covered_cm(s)[side])))
 }
 
-/// Weights of this step's and the last one's command.
+/// Weights of the present and the previous command.
 fn weights(m: &Measured) -> (f64, f64) {
     two_slopes(m.motion.iter().map(|s| (s.speeds[0] + s.speeds[1], s.speeds[2] + s.speeds[3], s.forward_cm / 0.082)))
 }
 
-/// Heading at the beginning of a step, from the log.
+/// Logged heading at the start of a step.
 fn heading_rad(m: &Measured, s: &MotionSample) -> f64 {
     m.logs.runs[s.run].rows.at(s.row).pose.expect("a sample has a pose").heading_rad
 }
 
 #[test]
-fn battery_sag_weakens_the_drive_as_the_run_goes_on() {
+fn battery_sag_weakens_the_drive_over_the_run() {
     for driving in drivings() {
         let (without, with) =
             driving.without_and_with("battery_sag", |m| forward(m, |s| s.row >= 40) / forward(m, |s| s.row < 20));
@@ -52,7 +52,7 @@ fn motor_asymmetry_weakens_one_wheel() {
 }
 
 #[test]
-fn drive_scale_changes_ways_and_turns_alike() {
+fn drive_scale_changes_travel_and_turns_alike() {
     for driving in drivings() {
         let (without, with) = driving.without_and_with("drive_scale=0.9", |m| (forward(m, |_| true), turn(m)));
         let (ways, turns) = (with.0 / without.0, with.1 / without.1);
@@ -61,7 +61,7 @@ fn drive_scale_changes_ways_and_turns_alike() {
 }
 
 #[test]
-fn track_width_changes_turns_alone() {
+fn track_width_changes_only_turns() {
     for driving in drivings() {
         let (without, with) = driving.without_and_with("track_width=0.87", |m| (forward(m, |_| true), turn(m)));
         let (ways, turns) = (with.0 / without.0, with.1 / without.1);
@@ -97,7 +97,7 @@ fn saturation_keeps_high_commands_from_adding_speed() {
 }
 
 #[test]
-fn latency_gives_the_last_command_more_of_the_step() {
+fn latency_gives_the_previous_command_more_of_the_step() {
     for driving in drivings() {
         let (without, with) = driving.without_and_with("latency=100", weights);
         assert!((0.08..0.18).contains(&without.1) && with.1 - without.1 > 0.18, "{without:?} {with:?}");
@@ -106,7 +106,7 @@ fn latency_gives_the_last_command_more_of_the_step() {
 }
 
 #[test]
-fn inertia_lets_the_last_command_go_on_even_two_steps_later() {
+fn inertia_carries_commands_over_two_steps() {
     for driving in drivings() {
         let two_back = |m: &Measured| {
             let third = m.motion.iter().filter(|s| s.row >= 2 && is_steady(s)).map(|s| {
@@ -135,7 +135,7 @@ fn payload_slows_its_side_most() {
 }
 
 #[test]
-fn slope_adds_way_downhill() {
+fn slope_adds_travel_downhill() {
     for driving in drivings() {
         let (without, with) = driving.without_and_with("slope=0.1@30", |m| {
             two_slopes(m.motion.iter().map(|s| {
@@ -149,7 +149,7 @@ fn slope_adds_way_downhill() {
 }
 
 #[test]
-fn slip_loses_way_when_the_command_jumps() {
+fn slip_loses_travel_when_the_command_jumps() {
     for driving in drivings() {
         let (without, with) = driving.without_and_with("slip=40", |m| {
             let jumped = m.motion.iter().filter(|s| jump(s).abs() > 45.0);
@@ -160,7 +160,7 @@ fn slip_loses_way_when_the_command_jumps() {
 }
 
 #[test]
-fn turn_loss_takes_way_from_turns_and_leaves_spins() {
+fn turn_loss_reduces_travel_in_arcs_but_not_spins() {
     for driving in drivings() {
         let marks = |m: &Measured| {
             let ahead = |s: &&MotionSample| is_steady(s) && asked_motion(s).0 > 5.0;
@@ -169,7 +169,7 @@ fn turn_loss_takes_way_from_turns_and_leaves_spins() {
             (slope(m.motion.iter().filter(ahead).map(lost)), slope(spins.map(|s| (asked_motion(s).1, s.turn_rad))))
         };
         let (without, with) = driving.without_and_with("turn_loss=4", marks);
-        // A castor drags more in the tighter turns.
+        // A castor drags more in tighter turns.
         assert!((2.5..6.5).contains(&(with.0 - without.0)), "{without:?} {with:?}");
         assert!((with.1 / without.1 - 1.0).abs() < 0.05, "{without:?} {with:?}");
     }
@@ -180,7 +180,7 @@ fn carpet_nap_holds_back_in_one_direction() {
     for driving in drivings() {
         let (without, with) = driving.without_and_with("carpet_nap=0.15@-60", |m| {
             two_slopes(m.motion.iter().filter(|s| asked_motion(s).0.abs() > 3.0).map(|s| {
-                // A robot that backs moves the other way than it faces.
+                // A reversing robot moves opposite to its heading.
                 let way_rad = heading_rad(m, s) + 60f64.to_radians();
                 let sign = asked_motion(s).0.signum();
                 (libm::cos(way_rad), libm::sin(way_rad), surplus_cm(s) * sign * sign)

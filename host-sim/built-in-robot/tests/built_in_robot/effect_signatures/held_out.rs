@@ -1,4 +1,4 @@
-//! Effects that are held out from all that a diagnosis is made and fitted on.
+//! Held-out effects, which are never used to design or fit a diagnosis.
 
 use std::f64::consts::TAU;
 
@@ -10,18 +10,18 @@ use super::measures::{
     Measured, asked_motion, covered_cm, drivings, jump, mean, scatter, share, slope, surplus_cm, two_slopes,
 };
 
-/// Covered way forward against asked one over chosen steps.
+/// Observed per commanded forward travel over chosen steps.
 fn forward(m: &Measured, chosen: impl Fn(&MotionSample) -> bool) -> f64 {
     slope(m.motion.iter().filter(|s| chosen(s)).map(|s| (asked_motion(s).0, s.forward_cm)))
 }
 
-/// Logged pose at the beginning of a step.
+/// Logged pose at the start of a step.
 fn pose(m: &Measured, s: &MotionSample) -> Pose {
     m.logs.runs[s.run].rows.at(s.row).pose.expect("a sample has a pose")
 }
 
 #[test]
-fn the_held_out_effects_are_in_no_table_and_end_the_list() {
+fn held_out_effects_are_outside_the_table_and_last() {
     let held_out: Vec<Effect> = HeldOut::all().map(Effect::HeldOut).collect();
     assert_eq!(held_out.len(), 8);
     assert!(held_out.iter().all(|effect| !effect.in_table()));
@@ -29,7 +29,7 @@ fn the_held_out_effects_are_in_no_table_and_end_the_list() {
 }
 
 #[test]
-fn lost_commands_leave_the_one_before_at_work() {
+fn lost_commands_keep_the_previous_one_active() {
     for driving in drivings() {
         let late = |m: &Measured| {
             two_slopes(m.motion.iter().filter(|s| jump(s).abs() > 25.0).map(|s| {
@@ -44,7 +44,7 @@ fn lost_commands_leave_the_one_before_at_work() {
 }
 
 #[test]
-fn cold_grease_holds_the_robot_back_until_it_has_run_for_a_while() {
+fn cold_grease_slows_the_start_of_a_run() {
     for driving in drivings() {
         let early = |m: &Measured| forward(m, |s| (2..10).contains(&s.row)) / forward(m, |s| s.row >= 40);
         let (without, with) = driving.without_and_with("cold_grease", early);
@@ -70,7 +70,7 @@ fn floor_waves_push_and_pull_every_30_cm() {
 }
 
 #[test]
-fn soft_start_loses_way_as_a_wheel_speeds_up_and_none_as_it_slows_down() {
+fn soft_start_loses_travel_only_when_speeding_up() {
     for driving in drivings() {
         let jumps = |m: &Measured| {
             let wheels: Vec<(f64, f64)> = m
@@ -96,7 +96,7 @@ fn soft_start_loses_way_as_a_wheel_speeds_up_and_none_as_it_slows_down() {
 }
 
 #[test]
-fn compass_damping_gives_the_last_command_more_of_the_turn_alone() {
+fn compass_damping_delays_only_the_turn() {
     for driving in drivings() {
         let last = |m: &Measured| {
             let turn = |s: &MotionSample| (s.speeds[1] - s.speeds[0], s.speeds[3] - s.speeds[2], s.turn_rad / 0.0143);
@@ -109,7 +109,7 @@ fn compass_damping_gives_the_last_command_more_of_the_turn_alone() {
 }
 
 #[test]
-fn edge_blur_scatters_positions_far_from_the_middle() {
+fn edge_blur_scatters_positions_far_from_the_centre() {
     for driving in drivings() {
         let aside = |m: &Measured| {
             let middle_cm = m.logs.scene.arena_cm.expect("the room has walls") / 2.0;
@@ -144,7 +144,7 @@ fn motor_whine_drowns_echoes_at_high_wheel_speeds() {
 }
 
 #[test]
-fn a_blind_zone_takes_near_echoes_and_leaves_others() {
+fn blind_zone_removes_only_near_echoes() {
     for driving in drivings() {
         let rates = |m: &Measured| {
             [(10.0, 22.0), (45.0, 70.0)].map(|(near_cm, far_cm)| {

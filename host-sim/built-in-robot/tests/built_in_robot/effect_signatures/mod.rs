@@ -1,10 +1,10 @@
-//! Each effect of the built-in robot leaves its own mark in the logs, and the healthy robot leaves none of them.
+//! Each effect of the built-in robot leaves its own signature in the logs; the healthy robot shows none of them.
 //!
-//! Every test records the same random driving with and without an effect and takes one measure of both.
+//! Every test records the same random driving with and without an effect and compares one measure.
 
-mod beside;
 mod drive;
 mod held_out;
 mod measures;
+mod outside_table;
 mod sonar;
 mod tracker;

@@ -4,7 +4,7 @@ use mindgap_logs::samples::SonarSample;
 
 use super::measures::{Measured, drivings, mean, median, scatter, share};
 
-/// Samples of a wall met nearly squarely at a distance in this range.
+/// Samples of a wall at nearly normal incidence within a range of distances.
 fn square(m: &Measured, near_cm: f64, far_cm: f64) -> impl Iterator<Item = &SonarSample> {
     m.sonar.iter().filter(move |s| s.alpha_deg() < 12.0 && (near_cm..far_cm).contains(&s.distance_cm))
 }
@@ -14,12 +14,12 @@ fn errors<'a>(samples: impl Iterator<Item = &'a SonarSample>) -> impl Iterator<I
     samples.filter_map(|s| Some(s.echo_cm? - s.distance_cm))
 }
 
-/// The share of samples that gave a reading.
+/// Fraction of samples with a reading.
 fn rate<'a>(samples: impl Iterator<Item = &'a SonarSample>) -> f64 {
     share(samples.map(|s| s.echo_cm.is_some()))
 }
 
-/// The share of readings for which something holds.
+/// Fraction of readings that satisfy a condition.
 fn readings_that<'a>(samples: impl Iterator<Item = &'a SonarSample>, holds: impl Fn(f64, f64) -> bool) -> f64 {
     share(samples.filter_map(|s| Some(holds(s.echo_cm?, s.distance_cm))))
 }
@@ -93,9 +93,9 @@ fn sonar_ghost_reads_one_distance() {
 }
 
 #[test]
-fn sonar_dropout_loses_readings_one_after_the_other() {
+fn sonar_dropout_loses_consecutive_readings() {
     for driving in drivings() {
-        // Where a healthy sensor hardly ever misses.
+        // In this range a healthy sensor hardly ever misses.
         let near = |s: &&SonarSample| s.distance_cm < 30.0 && s.alpha_deg() < 40.0;
         let missed = |m: &Measured| 1.0 - rate(m.sonar.iter().filter(near));
         let missed_again = |m: &Measured| {
@@ -109,7 +109,7 @@ fn sonar_dropout_loses_readings_one_after_the_other() {
 }
 
 #[test]
-fn sonar_lag_tells_what_was_ahead_before() {
+fn sonar_lag_reads_past_distances() {
     for driving in drivings() {
         let stale = |m: &Measured| {
             let pairs =
@@ -125,7 +125,7 @@ fn sonar_lag_tells_what_was_ahead_before() {
 }
 
 #[test]
-fn sonar_absorption_takes_far_echoes() {
+fn sonar_absorption_removes_far_echoes() {
     for driving in drivings() {
         let rates = |m: &Measured| [rate(square(m, 10.0, 30.0)), rate(m.sonar.iter().filter(|s| s.distance_cm > 80.0))];
         let (without, with) = driving.without_and_with("sonar_absorption=0.35", rates);

@@ -4,7 +4,7 @@ use mindgap_foundations::geometry::wrap_rad;
 
 use super::measures::{Measured, asked_motion, drivings, slope, two_slopes};
 
-/// Covered way forward against asked one, between these distances from the middle of the picture.
+/// Observed per commanded forward travel between two distances from the centre of the picture.
 fn forward_between(m: &Measured, near_cm: f64, far_cm: f64) -> f64 {
     let middle_cm = m.logs.scene.arena_cm.expect("the room has walls") / 2.0;
     slope(m.motion.iter().filter_map(|s| {
@@ -15,7 +15,7 @@ fn forward_between(m: &Measured, near_cm: f64, far_cm: f64) -> f64 {
 }
 
 #[test]
-fn tracker_rotation_turns_ways_against_headings() {
+fn tracker_rotation_turns_displacements_against_headings() {
     for driving in drivings() {
         let aside = |m: &Measured| {
             let straight = m.motion.iter().filter(|s| s.turn_rad.abs() < 0.1 && s.forward_cm.abs() > 3.0);
@@ -27,7 +27,7 @@ fn tracker_rotation_turns_ways_against_headings() {
 }
 
 #[test]
-fn tracker_scale_stretches_ways_alone() {
+fn tracker_scale_stretches_only_displacements() {
     for driving in drivings() {
         let both = |m: &Measured| {
             let turn = slope(m.motion.iter().map(|s| (asked_motion(s).1, s.turn_rad)));
@@ -40,7 +40,7 @@ fn tracker_scale_stretches_ways_alone() {
 }
 
 #[test]
-fn lens_distortion_stretches_ways_at_the_edge() {
+fn lens_distortion_stretches_displacements_at_the_edge() {
     for driving in drivings() {
         let edge = |m: &Measured| forward_between(m, 110.0, 1e3) / forward_between(m, 0.0, 60.0);
         let (without, with) = driving.without_and_with("lens_distortion=0.05", edge);
@@ -49,7 +49,7 @@ fn lens_distortion_stretches_ways_at_the_edge() {
 }
 
 #[test]
-fn compass_disturbance_makes_headings_wrong_by_heading() {
+fn compass_disturbance_gives_heading_dependent_errors() {
     for driving in drivings() {
         let amplitude_deg = |m: &Measured| {
             let (a, b) = two_slopes(m.motion.iter().filter_map(|s| {
@@ -66,7 +66,7 @@ fn compass_disturbance_makes_headings_wrong_by_heading() {
 }
 
 #[test]
-fn marker_offset_carries_the_tracked_point_round_the_axle() {
+fn marker_offset_moves_the_tracked_point_around_the_axle() {
     for driving in drivings() {
         let carried = |m: &Measured| {
             let spins = || m.motion.iter().filter(|s| (s.speeds[0] + s.speeds[1]).abs() < 1.0);

@@ -171,7 +171,7 @@ mod tests {
     use rand_distr::{Distribution, StandardNormal};
 
     use super::*;
-    use mindgap_foundations::chance::generator;
+    use mindgap_foundations::random::generator;
     use mindgap_models::simulator::ensemble::CommandScale;
     use mindgap_models::simulator::ensemble::command_scale::Percent;
     use mindgap_models::simulator::ensemble::{Ensemble, PARTS, Posterior};

@@ -69,7 +69,7 @@ mod tests {
         #[test]
         fn they_are_what_a_plain_loop_gives(width in 1usize..40, seed in any::<u64>(), count in 0usize..11) {
             let number = |i: usize, j: usize| {
-                let hashed = mindgap_foundations::chance::derive(seed, &[i as u64, j as u64]);
+                let hashed = mindgap_foundations::random::derive(seed, &[i as u64, j as u64]);
                 hashed as f64 / u64::MAX as f64 - 0.5
             };
             let weights: Vec<f64> = (0..count).map(|i| number(i, width).abs()).collect();

@@ -189,7 +189,7 @@ impl<const N: usize> LeastSquaresProblem<f64, Dyn, Dyn> for Projection<N> {
 mod tests {
     use super::*;
     use crate::learn::dataset::Dataset;
-    use mindgap_foundations::chance::generator;
+    use mindgap_foundations::random::generator;
     use rand::RngExt;
 
     const RIDGES: Ridges = Ridges { weights: 1e-3, exponents: 1e-3 };

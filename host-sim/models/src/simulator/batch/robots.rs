@@ -16,9 +16,9 @@ use crate::simulator::known_steps::KnownSteps;
 use crate::simulator::motion::{Motion, speeds};
 use crate::simulator::rollout::{RolloutOutcome, RolloutRequest, TrajectoryPoint};
 use crate::simulator::room::Point;
-use mindgap_foundations::chance::derive;
 use mindgap_foundations::geometry::Pose;
 use mindgap_foundations::lanes::{Lanes, Mask, WIDEST};
+use mindgap_foundations::random::derive;
 use mindgap_logs::Termination;
 
 /// Stream key of what a sensor draws that effects change.

@@ -7,7 +7,7 @@ use rand_distr::{Distribution, StandardNormal};
 use super::basis::weights;
 use super::evidence::cell;
 use super::nugget::Nuggets;
-use mindgap_foundations::chance::generator;
+use mindgap_foundations::random::generator;
 
 /// What one robot does, the same in all its runs. Channels are forward (cm), lateral (cm) and turn
 /// (degrees), of one step.

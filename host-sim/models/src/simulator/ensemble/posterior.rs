@@ -14,7 +14,7 @@ use super::member::Member;
 use super::noise::MotionNoise;
 use super::nugget::Nuggets;
 use super::{Ensemble, Evidence, Held, PARTS};
-use mindgap_foundations::chance::generator;
+use mindgap_foundations::random::generator;
 
 /// Prior standard deviation of the line at full command, in cm and degrees of a step: far more than robots move, so that logs
 /// alone say what it is.

@@ -77,7 +77,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use mindgap_foundations::geometry::first_met;
+    use mindgap_foundations::geometry::first_hit;
 
     fn point() -> impl Strategy<Value = DVec2> {
         // Whole centimetres as well, so that sensors stand on walls and rays meet ends.
@@ -102,7 +102,7 @@ mod tests {
             let one_by_one: Vec<_> = FAN
                 .iter()
                 .filter_map(|(off_axis_deg, turn)| {
-                    let (distance_cm, wall) = first_met(&walls, at_cm, sensor.direction().rotate(*turn))?;
+                    let (distance_cm, wall) = first_hit(&walls, at_cm, sensor.direction().rotate(*turn))?;
                     Some((*off_axis_deg, distance_cm, wall))
                 })
                 .collect();

@@ -6,7 +6,7 @@ use crate::sonar::Perturbation;
 use crate::sonar::model::{CONSTANT_SCATTER_CM, reach_bounds_cm};
 use crate::sonar::outcomes::{Component, Distribution, Outcomes, Source};
 use crate::sonar::perturbation::loss_by_incidence;
-use mindgap_foundations::geometry::{Pose, first_met};
+use mindgap_foundations::geometry::{Pose, first_hit};
 use mindgap_foundations::statistics::summary::logistic;
 
 /// Room for so many echoes, ghost and strays with them: a target that is nearer and stronger silences most others.
@@ -145,5 +145,5 @@ fn incidence_deg(target: &Target) -> f64 {
 
 /// How far the axis reaches, cm; infinite where it meets nothing.
 pub fn reach_cm(surfaces: &Surfaces, sensor: &Pose) -> f64 {
-    first_met(&surfaces.walls, sensor.position_cm, sensor.direction()).map_or(f64::INFINITY, |(met_cm, _)| met_cm)
+    first_hit(&surfaces.walls, sensor.position_cm, sensor.direction()).map_or(f64::INFINITY, |(met_cm, _)| met_cm)
 }

@@ -1,4 +1,4 @@
-//! Effects outside the table of docs/reference/effects.md: a diagnosis should call them unknown.
+//! Effects outside the table of docs/reference/effects.md, which a diagnosis should report as unknown.
 
 use mindgap_built_in_robot::Effect;
 use mindgap_foundations::geometry::cast;
@@ -9,16 +9,16 @@ use super::measures::{
 };
 use super::sonar::one_sidedness;
 
-/// Turn that was covered and not asked for, degrees.
+/// Turn in excess of the healthy robot's, degrees.
 fn turn_surplus_deg(s: &MotionSample) -> f64 {
     (s.turn_rad - 0.88 * asked_motion(s).1).to_degrees()
 }
 
 #[test]
-fn the_table_has_29_effects_and_more_stand_beside_it() {
-    let (inside, beside): (Vec<Effect>, Vec<Effect>) = Effect::all().partition(|effect| effect.in_table());
+fn table_has_29_effects_and_others_are_outside() {
+    let (inside, outside): (Vec<Effect>, Vec<Effect>) = Effect::all().partition(|effect| effect.in_table());
     assert_eq!(inside.len(), 29);
-    assert!(beside.len() >= 7 && beside.contains(&Effect::Unchanged));
+    assert!(outside.len() >= 7 && outside.contains(&Effect::Unchanged));
 }
 
 #[test]
@@ -34,7 +34,7 @@ fn wheel_eccentricity_makes_straight_runs_wobble() {
 }
 
 #[test]
-fn backlash_loses_way_when_a_wheel_reverses() {
+fn backlash_loses_travel_when_a_wheel_reverses() {
     for driving in drivings() {
         let reversal =
             |m: &Measured| {
@@ -85,7 +85,7 @@ fn brush_advance_weakens_wheels_backwards() {
 }
 
 #[test]
-fn sticky_patch_slows_the_robot_in_the_middle_of_the_room() {
+fn sticky_patch_slows_the_robot_in_the_centre_of_the_room() {
     for driving in drivings() {
         let middle = |m: &Measured| {
             let middle_cm = m.logs.scene.arena_cm.expect("the room has walls") / 2.0;
@@ -132,7 +132,7 @@ fn link_jitter_scatters_steps_at_which_the_command_jumps() {
 }
 
 #[test]
-fn soft_obstacles_echo_less_than_the_arena_s_sides() {
+fn soft_obstacles_echo_less_than_the_arena() {
     for driving in drivings() {
         let rate = |m: &Measured, obstacle: bool| {
             let sides = m.logs.scene.sides();
@@ -148,7 +148,7 @@ fn soft_obstacles_echo_less_than_the_arena_s_sides() {
 }
 
 #[test]
-fn sonar_drift_stretches_readings_as_the_run_goes_on() {
+fn sonar_drift_stretches_readings_over_the_run() {
     for driving in drivings() {
         let later = |m: &Measured| {
             let ratio = |late: bool| {
@@ -172,7 +172,7 @@ fn sonar_one_sided_makes_echoes_depend_on_the_side() {
 }
 
 #[test]
-fn motion_noise_scatters_ways_and_leaves_their_mean() {
+fn motion_noise_scatters_travel_but_keeps_its_mean() {
     for driving in drivings() {
         let ways = |m: &Measured| {
             let ahead = || m.motion.iter().filter(|s| is_steady(s) && asked_motion(s).0 > 4.0);

@@ -1,19 +1,19 @@
-//! What is left under temporary names: of killed processes, and of this one when a signal ends it.
+//! Removes stale temporary files: those of killed processes, and those of this process when a signal ends it.
 
 use std::fs::{self, OpenOptions};
 use std::path::Path;
 use std::sync::MutexGuard;
 
+use super::staging;
 use super::temporary::{Names, in_use, is_temporary};
-use super::workshop;
 
-/// Clears a folder of what killed processes left in it. What a process at work holds locked stays.
+/// Removes what killed processes left in a folder. Files that a running process holds locked stay.
 pub fn clear(folder: &Path) {
     let Ok(entries) = fs::read_dir(folder) else { return };
     for entry in entries.flatten().filter(|entry| is_temporary(&entry.path())) {
         let path = entry.path();
         match entry.file_type() {
-            Ok(kind) if kind.is_dir() => workshop::clear(&path),
+            Ok(kind) if kind.is_dir() => staging::clear(&path),
             Ok(kind) if kind.is_file() => clear_file(&path),
             _ => (),
         }
@@ -27,12 +27,12 @@ fn clear_file(path: &Path) {
     }
 }
 
-/// Removes all that this process has under temporary names. Nothing more is begun while the result is held.
-pub fn remove_ours() -> MutexGuard<'static, Names> {
+/// Removes all temporary files and folders of this process. No new ones are created while the returned guard is held.
+pub fn remove_own() -> MutexGuard<'static, Names> {
     let names = in_use();
     for path in names.iter() {
         if path.is_dir() {
-            workshop::discard(path);
+            staging::discard(path);
         } else {
             let _ = fs::remove_file(path);
         }
@@ -46,16 +46,16 @@ mod tests {
     use crate::temporary::TemporaryFile;
 
     #[test]
-    fn what_is_locked_or_somebody_elses_stays() {
+    fn locked_and_foreign_files_stay() {
         let folder = tempfile::tempdir().expect("a temporary folder");
-        let at_work = TemporaryFile::in_folder(folder.path()).expect("a file");
+        let locked = TemporaryFile::in_folder(folder.path()).expect("a file");
         let others = [".mindgap-notes", ".mindgap-abcdef", "mindgap-abcdef.tmp", ".mindgap-abcdefg.tmp"];
         for name in others.iter().chain(&[".mindgap-abcdef.tmp"]) {
             fs::write(folder.path().join(name), "").expect("a file");
         }
         clear(folder.path());
         assert_eq!(fs::read_dir(folder.path()).expect("a folder").count(), 1 + others.len());
-        drop(at_work);
+        drop(locked);
         assert_eq!(fs::read_dir(folder.path()).expect("a folder").count(), others.len());
     }
 }

@@ -1,6 +1,6 @@
-//! What a parser says, in words of the file instead of the program's; and the known word that was meant by another.
+//! Rewords parser messages for people who write files by hand, and suggests the known name closest to a misspelt one.
 
-/// Types of the program, and what they are to somebody who writes a file.
+/// Rust types in parser messages, and how they are reported.
 const TYPES: [(&str, &str); 11] = [
     ("expected i8", "expected a whole number from -128 to 127"),
     ("expected i16", "expected a whole number from -32768 to 32767"),
@@ -10,34 +10,34 @@ const TYPES: [(&str, &str); 11] = [
     ("expected usize", "expected a whole number"),
     ("expected f32", "expected a number"),
     ("expected f64", "expected a number"),
-    ("expected a string", "expected a text in quotes"),
+    ("expected a string", "expected text in quotes"),
     ("expected a sequence", "expected a list"),
     ("expected a map", "expected a table"),
 ];
-/// What is found instead, likewise.
+/// What a parser found instead, and how it is reported.
 const FOUND: [(&str, &str); 7] = [
     ("invalid type: string", "found the text"),
     ("invalid type: floating point", "found the number"),
     ("invalid type: integer", "found the number"),
     ("invalid type: boolean", "found"),
-    ("invalid type: sequence", "found a list (tables of which there are several have two brackets, others one)"),
-    ("invalid type: map", "found a table (tables of which there are several have two brackets, as [[obstacle]])"),
+    ("invalid type: sequence", "found a list ([[name]] starts one of several tables, [name] a single one)"),
+    ("invalid type: map", "found a table (one of several tables starts with two brackets, as in [[obstacle]])"),
     ("invalid value: integer", "found the number"),
 ];
 
-/// Words that are this much alike are taken for each other, as clap does with options.
-const ALIKE: f64 = 0.7;
+/// Names at least this similar are suggested, as clap does for options.
+const MIN_SIMILARITY: f64 = 0.7;
 
-/// "; did you mean X?" where one of the known words is like this one; else nothing.
+/// Returns "; did you mean X?" if a known name is similar to `word`, otherwise an empty text.
 pub fn did_you_mean<'a>(word: &str, known: impl IntoIterator<Item = &'a str>) -> String {
-    let likeness = |other: &'a str| (strsim::jaro(word, other), other);
-    let nearest = known.into_iter().map(likeness).max_by(|a, b| a.0.total_cmp(&b.0));
-    let nearest = nearest.filter(|(likeness, _)| *likeness > ALIKE);
+    let similarity = |other: &'a str| (strsim::jaro(word, other), other);
+    let nearest = known.into_iter().map(similarity).max_by(|a, b| a.0.total_cmp(&b.0));
+    let nearest = nearest.filter(|(similarity, _)| *similarity > MIN_SIMILARITY);
     nearest.map_or_else(String::new, |(_, known)| format!("; did you mean {known}?"))
 }
 
-/// What a TOML parser says, in one line.
-pub fn of_toml(message: &str) -> String {
+/// Rewords a TOML parser's message as one line.
+pub fn toml_message(message: &str) -> String {
     let mut words = message.replace('\n', "; ");
     for (from, to) in FOUND {
         words = words.replace(from, to);
@@ -54,13 +54,13 @@ pub fn of_toml(message: &str) -> String {
     }
 }
 
-/// That a key is not known, and which are.
+/// Rewords the message for an unknown key.
 fn unknown_key(words: &str) -> Option<String> {
     let (key, known) = words.strip_prefix("unknown field ")?.split_once(", expected ")?;
     let known = known.strip_prefix("one of ").unwrap_or(known);
     let names = known.split(", ").map(|name| name.trim_matches('`'));
-    let meant = did_you_mean(key.trim_matches('`'), names);
-    Some(format!("the key {key} is not known; known are {known}{meant}"))
+    let suggestion = did_you_mean(key.trim_matches('`'), names);
+    Some(format!("unknown key {key}; expected one of {known}{suggestion}"))
 }
 
 #[cfg(test)]
@@ -68,7 +68,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn types_are_those_of_the_file() {
+    fn rust_types_are_reworded() {
         for (message, words) in [
             (
                 "invalid type: string \"55\", expected i8",
@@ -81,16 +81,16 @@ mod tests {
             ("invalid type: integer `3`, expected struct ArenaTable", "found the number `3`, expected a table"),
             (
                 "unknown field `obstacles`, expected one of `arena`, `obstacle`",
-                "the key `obstacles` is not known; known are `arena`, `obstacle`; did you mean obstacle?",
+                "unknown key `obstacles`; expected one of `arena`, `obstacle`; did you mean obstacle?",
             ),
             ("expected newline", "expected newline"),
         ] {
-            assert_eq!(of_toml(message), words);
+            assert_eq!(toml_message(message), words);
         }
     }
 
     #[test]
-    fn the_word_that_was_meant_is_the_most_alike() {
+    fn most_similar_name_is_suggested() {
         let known = ["slip", "slope", "latency"];
         assert_eq!(did_you_mean("slipp", known), "; did you mean slip?");
         assert_eq!(did_you_mean("latencies", known), "; did you mean latency?");
