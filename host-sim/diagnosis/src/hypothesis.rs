@@ -261,7 +261,7 @@ fn densities(rows: &[Observation], residuals: &[Option<[f64; 3]>], scatter: [f64
 
 fn fitted(rows: &[Observation], residuals: &[Option<[f64; 3]>], baseline: &Baseline) -> [f64; 3] {
     let Some(drive) = &baseline.motion else { return [1.0; 3] };
-    let least = drive.scatter();
+    let least = drive.scatter().into_array();
     [0, 1, 2].map(|axis| {
         let of_axis = rows.iter().zip(residuals).filter_map(|(row, r)| Some([(*r)?[axis], row.motion_weight[axis]]));
         fitted_scatter(axis, &of_axis.collect::<Vec<[f64; 2]>>(), least[axis])

@@ -14,11 +14,9 @@ pub mod context;
 pub mod legacy;
 pub mod own;
 pub mod parameter;
-pub mod pose_increment;
 pub mod variant;
 
 pub use catalogue::{CATALOGUE, Candidate};
 pub use context::StepContext;
 pub use parameter::Parameter;
-pub use pose_increment::PoseIncrement;
 pub use variant::{Effect, Hook, Late, SensorState, Variant};

@@ -30,7 +30,7 @@ fn driven_by(seed: u64, blocks: usize, law: fn(f64, f64) -> f64) -> Observations
         let (mean, half, heading, mut off) = draws[block * ROWS + at];
         let commands = [[mean - half, mean + half]; 2];
         let predicted = drive.step(commands[0], commands[1]);
-        off[0] += law(predicted.forward_cm, predicted.turn_rad);
+        off[0] += law(predicted.forward, predicted.turn);
         Made { commands, pose: Pose::new(150.0, 100.0, heading), off, ..Made::default() }
     })
 }

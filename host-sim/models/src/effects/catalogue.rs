@@ -6,7 +6,8 @@ mod drive;
 
 use super::context::{CommandHistory, StepContext};
 use super::parameter::parameters;
-use super::{Effect, PoseIncrement, Variant};
+use super::{Effect, Variant};
+use mindgap_foundations::motion::Motion;
 
 /// Declares the modules and lists them, so that an effect cannot be in one place and not in the other.
 macro_rules! catalogue {
@@ -106,7 +107,7 @@ fn each_command(commands: &mut CommandHistory, change: impl Fn(f64, usize) -> f6
 }
 
 /// Changes the distance that each wheel covers; `change` is given it and the wheel, 0 for the left one.
-fn each_wheel(context: &StepContext, increment: &mut PoseIncrement, change: impl Fn(f64, usize) -> f64) {
+fn each_wheel(context: &StepContext, increment: &mut Motion<f64>, change: impl Fn(f64, usize) -> f64) {
     let [left_cm, right_cm] = increment.wheels_cm(context.robot.track_cm);
     increment.set_wheels([change(left_cm, 0), change(right_cm, 1)], context.robot.track_cm);
 }
@@ -142,9 +143,9 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
+    use crate::effects::SensorState;
     use crate::effects::chain::EffectChain;
     use crate::effects::context::{RunHistory, Surroundings};
-    use crate::effects::{PoseIncrement, SensorState};
     use crate::sonar::Perturbation;
     use mindgap_foundations::geometry::{Pose, wrap_rad};
     use mindgap_logs::{Robot, Scene};
@@ -159,13 +160,13 @@ mod tests {
         variant: &'static Variant,
         values: &[f64],
         context: &StepContext,
-    ) -> (CommandHistory, PoseIncrement, SensorState) {
+    ) -> (CommandHistory, Motion<f64>, SensorState) {
         let effects = EffectChain::default().with(&[variant], values);
         let mut commands = [[0.0; 2]; 7];
         let increment = effects.wrap(context, |now, before| {
             commands[0] = now;
             commands[1] = before;
-            PoseIncrement { forward_cm: 7.0, lateral_cm: -0.4, turn_rad: 0.3 }
+            Motion { forward: 7.0, lateral: -0.4, turn: 0.3 }
         });
         (commands, increment, effects.sensor(context))
     }
@@ -296,9 +297,9 @@ mod tests {
                 let commands = c[..2].as_flattened().iter().zip(other_c[..2].as_flattened());
                 let near = |a: f64, b: f64| (a - b).abs() < 1e-9;
                 let same = commands.into_iter().all(|(a, b)| near(*a, TIMES * b))
-                    && near(m.forward_cm, other_m.forward_cm)
-                    && near(m.lateral_cm, other_m.lateral_cm)
-                    && near(m.turn_rad, other_m.turn_rad)
+                    && near(m.forward, other_m.forward)
+                    && near(m.lateral, other_m.lateral)
+                    && near(m.turn, other_m.turn)
                     && s == other_s;
                 assert!(same, "{effect} {} {values:?}", variant.id);
             }
@@ -308,14 +309,14 @@ mod tests {
     proptest! {
         #[test]
         fn a_nominal_effect_changes_nothing(context in context()) {
-            let increment = PoseIncrement { forward_cm: 7.0, lateral_cm: -0.4, turn_rad: 0.3 };
+            let increment = Motion { forward: 7.0, lateral: -0.4, turn: 0.3 };
             for Candidate { effect, variant } in Candidate::all(CATALOGUE) {
                 let (c, m, s) = applied(variant, &variant.nominal(), &context);
                 let near = |a: f64, b: f64| (a - b).abs() < 1e-9;
                 let same = c[..2].as_flattened().iter().zip(context.commands.as_flattened()).all(|(a, b)| near(*a, *b))
-                    && near(m.forward_cm, increment.forward_cm)
-                    && near(m.lateral_cm, increment.lateral_cm)
-                    && near(m.turn_rad, increment.turn_rad)
+                    && near(m.forward, increment.forward)
+                    && near(m.lateral, increment.lateral)
+                    && near(m.turn, increment.turn)
                     && near(s.robot.position_cm.distance(context.pose.position_cm), 0.0)
                     && near(wrap_rad(s.robot.heading_rad - context.pose.heading_rad), 0.0)
                     && near(s.yaw_rad, 0.0)
@@ -370,7 +371,7 @@ mod tests {
                 let values: Vec<f64> = variant.parameters.iter().zip(&corner).map(bound).collect();
                 let (c, m, s) = applied(variant, &values, &context);
                 let finite = c.as_flattened().iter().all(|c| c.is_finite() && c.abs() <= 200.0)
-                    && [m.forward_cm, m.lateral_cm, m.turn_rad, s.yaw_rad, s.perturbation.width].iter().all(|v| v.is_finite())
+                    && [m.forward, m.lateral, m.turn, s.yaw_rad, s.perturbation.width].iter().all(|v| v.is_finite())
                     && s.robot.position_cm.is_finite();
                 prop_assert!(finite, "{effect} {}", variant.id);
             }

@@ -4,9 +4,9 @@ use serde_json::{Map, Value};
 
 use super::context::{CommandHistory, StepContext, Surroundings};
 use super::parameter::Parameter;
-use super::pose_increment::PoseIncrement;
 use crate::sonar::{Outcomes, Perturbation, SensorLaw};
 use mindgap_foundations::geometry::Pose;
+use mindgap_foundations::motion::Motion;
 use mindgap_logs::Robot;
 
 /// Something that is there in reality and not in the simulator.
@@ -45,9 +45,9 @@ pub enum Hook {
     /// By how much the motion comes late.
     Delay(&'static (dyn Fn(&[f64], &StepContext) -> Late + Sync)),
     /// To the increment of the pose that the tracker sees, by this and commands alone.
-    Motion(&'static (dyn Fn(&[f64], &StepContext, &mut PoseIncrement) + Sync)),
+    Motion(&'static (dyn Fn(&[f64], &StepContext, &mut Motion<f64>) + Sync)),
     /// The same, by where and when too.
-    MotionHere(&'static (dyn Fn(&[f64], &StepContext, &mut PoseIncrement) + Sync)),
+    MotionHere(&'static (dyn Fn(&[f64], &StepContext, &mut Motion<f64>) + Sync)),
     /// To the sensor, by whether it heard an echo before and nothing else.
     Sensor(ChangeOfSensor),
     /// The same, by where and when too.

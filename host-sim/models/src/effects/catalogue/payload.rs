@@ -3,7 +3,8 @@
 use super::{LOADED_SPEED_CM_S, distance_lost_cm, each_command, each_wheel, loaded, parameters, pushed_cm, scrubbing};
 use crate::effects::context::CommandHistory;
 use crate::effects::parameter::{Guesses, Report};
-use crate::effects::{Effect, Hook, Parameter, PoseIncrement, StepContext, Variant};
+use crate::effects::{Effect, Hook, Parameter, StepContext, Variant};
+use mindgap_foundations::motion::Motion;
 
 pub const EFFECT: Effect = Effect {
     id: "payload",
@@ -39,7 +40,7 @@ pub const EFFECT: Effect = Effect {
                 Hook::Motion(&|v, context, increment| {
                     let HeavyLoad { loss, other_side, turn_loss, with_rate, .. } = HeavyLoad::read(v);
                     shorten(by_side(loss, other_side), context, increment);
-                    increment.turn_rad = scrubbed_rad(increment.turn_rad, turn_loss * loss.abs(), with_rate, context);
+                    increment.turn = scrubbed_rad(increment.turn, turn_loss * loss.abs(), with_rate, context);
                 }),
             ],
         },
@@ -136,7 +137,7 @@ fn by_side(loss: f64, other_side: f64) -> [f64; 2] {
     if loss > 0.0 { [near, far] } else { [far, near] }
 }
 
-fn shorten(losses: [f64; 2], context: &StepContext, increment: &mut PoseIncrement) {
+fn shorten(losses: [f64; 2], context: &StepContext, increment: &mut Motion<f64>) {
     each_wheel(context, increment, |cm, wheel| cm * (1.0 - losses[wheel]));
 }
 

@@ -57,7 +57,7 @@ pub const EFFECT: Effect = Effect {
                 }),
                 Hook::Motion(&|v, _, increment| {
                     let DraggingSlip { loss, turn_drag_rad, .. } = DraggingSlip::read(v);
-                    increment.turn_rad -= loss * turn_drag_rad * libm::tanh(increment.turn_rad / LITTLE_TURN_RAD);
+                    increment.turn -= loss * turn_drag_rad * libm::tanh(increment.turn / LITTLE_TURN_RAD);
                 }),
             ],
         },

@@ -14,17 +14,17 @@ pub const EFFECT: Effect = Effect {
             id: "at_any_speed",
             parameters: TurnLoss::PARAMETERS,
             hooks: &[Hook::Motion(&|v, context, increment| {
-                let lost_cm = TurnLoss::read(v).cm_per_rad * increment.turn_rad.abs();
-                increment.forward_cm = pushed_cm(increment.forward_cm, -lost_cm, context);
+                let lost_cm = TurnLoss::read(v).cm_per_rad * increment.turn.abs();
+                increment.forward = pushed_cm(increment.forward, -lost_cm, context);
             })],
         },
         Variant {
             id: "with_speed",
             parameters: TurnLoss::PARAMETERS,
             hooks: &[Hook::Motion(&|v, context, increment| {
-                let speed = increment.forward_cm.abs() / (LOADED_SPEED_CM_S * context.step_s());
-                let lost_cm = TurnLoss::read(v).cm_per_rad * increment.turn_rad.abs() * speed;
-                increment.forward_cm = pushed_cm(increment.forward_cm, -lost_cm, context);
+                let speed = increment.forward.abs() / (LOADED_SPEED_CM_S * context.step_s());
+                let lost_cm = TurnLoss::read(v).cm_per_rad * increment.turn.abs() * speed;
+                increment.forward = pushed_cm(increment.forward, -lost_cm, context);
             })],
         },
         Variant {
@@ -33,8 +33,8 @@ pub const EFFECT: Effect = Effect {
             hooks: &[Hook::Motion(&|v, context, increment| {
                 let DryTurnLoss { cm_per_rad, most_from_rad_s } = DryTurnLoss::read(v);
                 let most_from_rad = most_from_rad_s * context.step_s();
-                let lost_cm = cm_per_rad * most_from_rad * up_to_one(increment.turn_rad.abs() / most_from_rad);
-                increment.forward_cm = pushed_cm(increment.forward_cm, -lost_cm, context);
+                let lost_cm = cm_per_rad * most_from_rad * up_to_one(increment.turn.abs() / most_from_rad);
+                increment.forward = pushed_cm(increment.forward, -lost_cm, context);
             })],
         },
     ],

@@ -57,16 +57,16 @@ fn step() -> StepContext {
     StepContext { commands: [[60.0, 40.0]; 7], faced: Some([100.0, -0.5]), ..context }
 }
 
-const AS_PREDICTED: PoseIncrement = PoseIncrement { forward_cm: 7.0, lateral_cm: -0.4, turn_rad: -0.5 };
+const AS_PREDICTED: Motion<f64> = Motion { forward: 7.0, lateral: -0.4, turn: -0.5 };
 
-fn increment(candidate: &Candidate, values: &[f64]) -> PoseIncrement {
+fn increment(candidate: &Candidate, values: &[f64]) -> Motion<f64> {
     EffectChain::default().with(&[candidate.variant], values).wrap(&step(), |_, _| AS_PREDICTED)
 }
 
 #[test]
 fn motion_changes_as_its_expression_says() {
     let caster = own(0);
-    assert_eq!(increment(&caster, &[6.0]), PoseIncrement { forward_cm: 4.0, ..AS_PREDICTED });
+    assert_eq!(increment(&caster, &[6.0]), Motion { forward: 4.0, ..AS_PREDICTED });
     assert_eq!(increment(&caster, &[0.0]), AS_PREDICTED);
     assert!(caster.variant.moves() && !caster.variant.senses());
 }

@@ -3,7 +3,7 @@ use crate::effects::applied::AppliedEffect;
 use crate::effects::catalogue::Candidate;
 use crate::simulator::environment::SensorModel;
 use crate::simulator::known_steps::KnownSteps;
-use crate::simulator::motion::{Motion, MotionTable, speeds};
+use crate::simulator::motion::{MotionTable, PredictedStep, speeds};
 use crate::simulator::rollout::Termination;
 use crate::simulator::{Noise, Simulator};
 use mindgap_built_in_robot::{default_robot, four_obstacles, record, training_room};
@@ -119,7 +119,7 @@ fn motions_worked_out_ahead_are_those_of_every_step() {
             let (environment, table) = (environment(noise), environment(noise).motions(&controller));
             for tuple in 0..TUPLES {
                 for first in [true, false] {
-                    assert_eq!(*table.motion(tuple, first), environment.motion.step(speeds(&controller, tuple, first)));
+                    assert_eq!(*table.step(tuple, first), environment.motion.step(speeds(&controller, tuple, first)));
                 }
             }
         }
@@ -198,7 +198,7 @@ fn effects_act_on_the_robot_as_it_was_known_in_training() {
     for controller in controllers() {
         let (usual_motions, motions) = (usual.motions(&controller), less.motions(&controller));
         for (tuple, less) in motions.transients().expect("worked out ahead").iter().enumerate() {
-            let (expected, less) = (usual_motions.motion(tuple, false), less.last().unwrap());
+            let (expected, less) = (usual_motions.step(tuple, false), less.last().unwrap());
             let less = less.plus(motions.bias(tuple));
             assert!((less.forward_cm - SHARE as f32 * expected.forward_cm).abs() < 1e-4, "{less:?} {expected:?}");
             assert!((less.turn_rad - SHARE as f32 * expected.turn_rad).abs() < 1e-5, "{less:?} {expected:?}");
