@@ -141,7 +141,7 @@ fn diagnosed(baseline: Baseline, logs: &Logs, seed: u64, watch: impl Fn(Stage)) 
 fn steps(baseline: &Baseline, effects: &[AppliedEffect], observations: &Observations) -> Vec<StepResidual> {
     let Some(motion @ MotionModel::Learned { reference, .. }) = &baseline.motion else { return Vec::new() };
     let applied: Vec<AppliedEffect> = baseline.applied.iter().chain(effects).cloned().collect();
-    let chain = EffectChain::of(&applied);
+    let chain = EffectChain::of(&applied, &baseline.robot);
     let step = |row: &mindgap_learning::evaluation::observations::Observation| {
         let [now, before, ..] = row.context.commands;
         let left = predictions::residual(&chain, motion, row).filter(|_| row.then.is_empty())?;

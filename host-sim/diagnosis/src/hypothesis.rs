@@ -65,12 +65,12 @@ impl LogLikelihood {
 impl Hypothesis {
     /// The simulator as it is.
     pub fn none(baseline: &Baseline) -> Self {
-        Hypothesis { given: EffectChain::of(&baseline.applied), candidates: Vec::new() }
+        Hypothesis { given: baseline.chain(), candidates: Vec::new() }
     }
 
     /// The simulator without the effects that it has already.
     pub fn bare() -> Self {
-        Hypothesis { given: EffectChain::of(&[]), candidates: Vec::new() }
+        Hypothesis { given: EffectChain::default(), candidates: Vec::new() }
     }
 
     /// The same simulator with these effects.

@@ -13,7 +13,6 @@ use mindgap_foundations::statistics::summary::{QUARTILE, median};
 use mindgap_learning::evaluation::observations::{Observation, Observations};
 use mindgap_learning::evaluation::predictions::residual;
 use mindgap_models::effects::StepContext;
-use mindgap_models::effects::chain::EffectChain;
 use mindgap_models::simulator::baseline::{Baseline, MotionModel};
 use mindgap_models::simulator::nominal::MotionBias;
 use mindgap_models::simulator::nominal::motion_bias::{FEATURES, features};
@@ -46,7 +45,7 @@ impl OwnErrors {
     /// Of the motion of a simulator on these rows; none where nothing is open.
     pub fn of(baseline: &Baseline, rows: &Observations) -> Option<Self> {
         let drive @ MotionModel::Learned { reference, .. } = baseline.motion.as_ref()? else { return None };
-        let effects = EffectChain::of(&baseline.applied);
+        let effects = baseline.chain();
         let residuals: Vec<Option<[f64; 3]>> = rows.rows.iter().map(|row| residual(&effects, drive, row)).collect();
         OwnErrors::left_by(reference, &rows.rows, &residuals)
     }

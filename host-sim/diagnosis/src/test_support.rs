@@ -65,6 +65,7 @@ pub fn room() -> Scene {
 /// The textbook's drive, without a sensor.
 pub fn baseline() -> Baseline<'static> {
     Baseline {
+        robot: robot(),
         motion: Some(MotionModel::Kinematic { robot: robot(), scatter: SCATTER.into() }),
         sonar: None,
         place_bound: [0.0; 2],

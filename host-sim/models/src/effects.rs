@@ -11,7 +11,6 @@ pub mod applied;
 pub mod catalogue;
 pub mod chain;
 pub mod context;
-pub mod legacy;
 pub mod own;
 pub mod parameter;
 pub mod variant;

@@ -26,7 +26,6 @@ use mindgap_core::network::Network;
 use serde::{Deserialize, Serialize};
 
 use crate::effects::applied::AppliedEffect;
-use crate::effects::legacy;
 use crate::sonar::{FirstEchoLaw, SensorLaw};
 use ensemble::{Ensemble, Posterior, Robots};
 use mindgap_files as files;
@@ -138,11 +137,8 @@ impl Simulator {
                 format!("is a simulator file of version {}; this program reads version {SCHEMA}", version.schema);
             return Err(Error::in_file(path, what));
         }
-        let simulator: serde_json::Result<Self> = match legacy::upgraded(&text) {
-            Some(upgraded) => serde_json::from_value(upgraded),
-            None => serde_json::from_str(&text),
-        };
-        let simulator = simulator.map_err(|e| broken(path, &e, "is a broken simulator file"))?;
+        let simulator: Self =
+            serde_json::from_str(&text).map_err(|e| broken(path, &e, "is a broken simulator file"))?;
         simulator.check(path)?;
         Ok(simulator)
     }
@@ -200,7 +196,7 @@ impl Simulator {
     fn check(&self, path: &Path) -> Result<()> {
         for added in &self.added {
             let what = format!("the added effect {} ({})", added.effect, added.variant);
-            added.resolve().map_err(|why| Error::in_file(path, format!("{what} is not possible: {why}")))?;
+            added.resolve(&self.robot).map_err(|why| Error::in_file(path, format!("{what} is not possible: {why}")))?;
         }
         if self.ensemble.as_ref().is_some_and(|ensemble| !ensemble.is_sound()) {
             return Err(Error::in_file(path, "the distribution over robots holds numbers that cannot be"));

@@ -169,7 +169,7 @@ pub fn the_loss_in_turns_of_a_real_robot_is_found_as_a_formula(folder: &Path) {
     let [effects @ .., formula] = applied.as_slice() else { panic!("something is applied") };
     assert!(effects.iter().all(|effect| effect.effect == "latency"), "{effects:?}");
     // What is lost in a step of 400 ms at 9 cm/s that turns by 0.16 rad.
-    let (candidate, values) = formula.resolve().expect("an effect");
+    let (candidate, values) = formula.resolve(&logs.robot).expect("an effect");
     let robot = Surroundings::new(&logs.robot, &logs.scene);
     let step = robot.context(&RunHistory::default(), 30_000.0, Pose::new(500.0, 500.0, 0.0));
     let predicted = Motion { forward: 3.5, lateral: 0.0, turn: 0.16 };

@@ -116,7 +116,7 @@ fn a_formula_is_an_own_effect() {
     mindgap_files::write(&path, own::to_text(&formula.definition)).expect("a file");
     let read = own::read(&path).expect("a file of effects");
     assert!(std::ptr::eq(&read[0].variants[0], formula.fitted.hypothesis.candidates[0].variant));
-    let applied = formula.fitted.applied();
+    let applied = formula.fitted.applied(&robot());
     assert_eq!(applied[0].definition.as_ref(), Some(&formula.definition));
 }
 

@@ -36,7 +36,7 @@ pub struct Predictions {
 pub fn predict(simulator: &Simulator, logs: &Logs) -> Result<Predictions> {
     let baseline = Baseline::learned(simulator)?;
     let observations = Observations::of(logs, baseline.sonar.as_ref());
-    let effects = EffectChain::of(&baseline.applied);
+    let effects = baseline.chain();
     let mut all = Predictions::default();
     for row in &observations.rows {
         if let (Some(drive), Some(logged)) = (&baseline.motion, &row.motion) {

@@ -4,6 +4,7 @@ use super::applied::AppliedEffect;
 use super::context::{CommandHistory, StepContext};
 use super::variant::{Hook, Late, SensorState, Variant};
 use mindgap_foundations::motion::Motion;
+use mindgap_logs::Robot;
 
 /// Effects that act together, in their order; an empty chain changes nothing.
 #[derive(Clone, Default)]
@@ -12,9 +13,9 @@ pub struct EffectChain {
 }
 
 impl EffectChain {
-    /// The effects of a simulator file; one that this program does not know is left out.
-    pub fn of(applied: &[AppliedEffect]) -> Self {
-        let links = applied.iter().flat_map(AppliedEffect::resolve);
+    /// Returns the effects applied to a simulator of this robot; one that this program does not know is left out.
+    pub fn of(applied: &[AppliedEffect], robot: &Robot) -> Self {
+        let links = applied.iter().flat_map(|effect| effect.resolve(robot));
         EffectChain { links: links.map(|(candidate, values)| (candidate.variant, values)).collect() }
     }
 

@@ -3,7 +3,7 @@
 use serde_json::{Map, Value};
 
 use super::context::{CommandHistory, StepContext, Surroundings};
-use super::parameter::Parameter;
+use super::parameter::{Parameter, Settings};
 use crate::sonar::{Outcomes, Perturbation, SensorLaw};
 use mindgap_foundations::geometry::Pose;
 use mindgap_foundations::motion::Motion;
@@ -91,7 +91,20 @@ impl Variant {
         })
     }
 
-    /// The parameters as the table of docs/formats.md names them.
+    /// Returns its settings at these values, as files hold them.
+    pub fn settings(&self, values: &[f64], robot: &Robot) -> Settings {
+        let settings = self.parameters.iter().zip(values).flat_map(|(p, value)| p.settings(*value, robot));
+        settings.map(|(name, setting)| (name.into(), setting)).collect()
+    }
+
+    /// Returns the values of settings, if these are the variant's and no others, and each is possible.
+    pub fn values(&self, settings: &Settings, robot: &Robot) -> Option<Vec<f64>> {
+        let values = self.parameters.iter().map(|p| p.value(settings, robot)).collect::<Option<Vec<f64>>>()?;
+        let count: usize = self.parameters.iter().map(|p| 1 + usize::from(p.setting().1)).sum();
+        (count == settings.len()).then_some(values)
+    }
+
+    /// Returns the parameters as the table of docs/formats.md names them, rounded for people.
     pub fn reported(&self, values: &[f64], robot: &Robot) -> Map<String, Value> {
         self.parameters.iter().zip(values).flat_map(|(p, value)| p.reported(*value, robot)).collect()
     }

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use crate::effects::applied::AppliedEffect;
+use crate::effects::chain::EffectChain;
 use crate::simulator::ensemble::command_scale::Percent;
 use crate::simulator::ensemble::{CommandScale, HeldMotion, Member, Posterior};
 use crate::simulator::motion::MotionNetworks;
@@ -18,6 +19,8 @@ use mindgap_logs::Robot;
 /// The models of motion and sonar without any gap.
 #[derive(Clone)]
 pub struct Baseline<'s> {
+    /// The robot.
+    pub robot: Robot,
     /// The motion, if the simulator knows it.
     pub motion: Option<MotionModel<'s>>,
     /// The law of the sensor, if the simulator knows it.
@@ -80,6 +83,7 @@ impl<'s> Baseline<'s> {
             },
         });
         Ok(Baseline {
+            robot: simulator.robot,
             motion,
             sonar: simulator.sensor_law(),
             place_bound: reference.place_bound,
@@ -100,6 +104,11 @@ impl<'s> Baseline<'s> {
             *member = open.as_ref().map(|open| open.mean());
         }
         Ok(baseline)
+    }
+
+    /// Returns the effects that were added to the simulator before.
+    pub fn chain(&self) -> EffectChain {
+        EffectChain::of(&self.applied, &self.robot)
     }
 
     /// Number of steps that the motion was learned from, as far as that is known; none of the textbook.

@@ -58,7 +58,7 @@ impl EffectLayer {
         if simulator.added.is_empty() {
             return Ok(None);
         }
-        let effects = EffectChain::of(&simulator.added);
+        let effects = EffectChain::of(&simulator.added, &simulator.robot);
         let law = simulator.drawn_law();
         if effects.senses() && law.is_none() {
             return Err(Error::new("an added effect changes the sonar, and the simulator does not know its usual law"));

@@ -20,6 +20,7 @@ const READING_SCATTER_CM: [f64; 2] = [0.5, 4.0];
 pub fn baseline(logs: &Logs) -> Baseline<'static> {
     let scatter = if samples::motion(logs).is_empty() { LEAST_OWN_SCATTER } else { LEAST_SCATTER };
     Baseline {
+        robot: logs.robot,
         motion: Some(MotionModel::Kinematic { robot: logs.robot, scatter }),
         sonar: sonar(logs),
         place_bound: [0.0; 2],

@@ -193,7 +193,7 @@ mod tests {
     fn baseline() -> Baseline<'static> {
         let robot = mindgap_built_in_robot::default_robot();
         let motion = Some(MotionModel::Kinematic { robot, scatter: SCATTER });
-        Baseline { motion, sonar: None, place_bound: [0.0; 2], familiar: None, applied: Vec::new() }
+        Baseline { robot, motion, sonar: None, place_bound: [0.0; 2], familiar: None, applied: Vec::new() }
     }
 
     proptest! {

@@ -115,14 +115,15 @@ fn a_definition_is_kept_once_and_written_as_it_is_read() {
 
 #[test]
 fn a_simulator_file_holds_the_definition() {
-    let applied = AppliedEffect::new(&own(0), &[6.0]);
+    let robot = mindgap_built_in_robot::default_robot();
+    let applied = AppliedEffect::new(&own(0), &[6.0], &robot);
     let text = serde_json::to_string(&applied).expect("JSON");
     assert!(text.contains("abs(turn_rad)"), "{text}");
     let read: AppliedEffect = serde_json::from_str(&text).expect("what was written");
-    let (candidate, values) = read.resolve().expect("an effect");
+    let (candidate, values) = read.resolve(&robot).expect("an effect");
     assert!(std::ptr::eq(candidate.variant, own(0).variant) && values == [6.0]);
-    assert!(AppliedEffect { effect: "another".into(), ..read }.resolve().is_err());
-    let too_much = AppliedEffect::new(&own(0), &[60.0]).resolve().err().expect("a refusal");
+    assert!(AppliedEffect { effect: "another".into(), ..read }.resolve(&robot).is_err());
+    let too_much = AppliedEffect::new(&own(0), &[60.0], &robot).resolve(&robot).err().expect("a refusal");
     assert!(too_much.contains("these parameters and values"), "{too_much}");
 }
 

@@ -130,7 +130,7 @@ fn motions_worked_out_ahead_are_those_of_every_step() {
 fn what_effects_make_of_motions_is_worked_out_ahead_as_in_every_step() {
     let applied = |effect: &str, variant: &str| {
         let candidate = Candidate::named(effect, variant).unwrap();
-        AppliedEffect::new(&candidate, &candidate.variant.initial_guesses(TOP_SPEED_CM_S)[0])
+        AppliedEffect::new(&candidate, &candidate.variant.initial_guesses(TOP_SPEED_CM_S)[0], &SIMULATOR.robot)
     };
     let of = |added: &[AppliedEffect]| Simulator { added: added.to_vec(), ..SIMULATOR.clone() };
     let scene = four_obstacles();
@@ -187,7 +187,7 @@ fn every_run_steps_as_the_machine_of_the_core_does() {
 #[test]
 fn effects_act_on_the_robot_as_it_was_known_in_training() {
     const SHARE: f64 = 0.75;
-    let less = AppliedEffect::new(&Candidate::named("drive_scale", "distance").unwrap(), &[SHARE]);
+    let less = AppliedEffect::new(&Candidate::named("drive_scale", "distance").unwrap(), &[SHARE], &SIMULATOR.robot);
     let affected = Simulator { added: vec![less], ..SIMULATOR.clone() };
     let (scene, robots) = (four_obstacles(), SIMULATOR.robots(0, SEED).unwrap());
     let of_middle = |simulator| {
