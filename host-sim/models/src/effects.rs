@@ -13,6 +13,7 @@ pub mod chain;
 pub mod context;
 pub mod own;
 pub mod parameter;
+mod small_robot;
 pub mod variant;
 
 pub use catalogue::{CATALOGUE, Candidate};

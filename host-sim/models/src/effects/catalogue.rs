@@ -6,6 +6,7 @@ mod drive;
 
 use super::context::{CommandHistory, StepContext};
 use super::parameter::parameters;
+use super::small_robot::{CREEPING_CM_S, CREEPING_RAD_S, HALF_SPEED_CM_S};
 use super::{Effect, Variant};
 use mindgap_foundations::motion::Motion;
 
@@ -89,12 +90,6 @@ impl PartialEq for Candidate {
 
 /// Where fits of a direction start: the four quarters.
 const DIRECTIONS_DEG: [f64; 4] = [0.0, 90.0, 180.0, -90.0];
-/// The speed to which losses by a force refer: half of an NXT robot's full speed.
-const LOADED_SPEED_CM_S: f64 = 20.0;
-/// Below this speed a force moves or holds back less and less: a robot that stands stays.
-const CREEPING_CM_S: f64 = 3.75;
-/// Turns slower than this scrub less and less.
-const CREEPING_RAD_S: f64 = 0.1;
 
 /// Changes the magnitude of every command and keeps its sign; `change` is given the magnitude and the motor, 0 for the
 /// left one.
@@ -113,9 +108,9 @@ fn each_wheel(context: &StepContext, increment: &mut Motion<f64>, change: impl F
 }
 
 /// The distance that a force of strength one costs in a step: a share of it grows with the distance covered, the rest is
-/// that of [`LOADED_SPEED_CM_S`] at any speed.
+/// that of [`HALF_SPEED_CM_S`] at any speed.
 fn distance_lost_cm(with_speed: f64, covered_cm: f64, context: &StepContext) -> f64 {
-    loaded(with_speed, covered_cm.abs(), LOADED_SPEED_CM_S * context.step_s())
+    loaded(with_speed, covered_cm.abs(), HALF_SPEED_CM_S * context.step_s())
 }
 
 /// A drag of which one share grows with the speed and the rest is that of the `reference` at any speed.
@@ -146,14 +141,13 @@ mod tests {
     use crate::effects::SensorState;
     use crate::effects::chain::EffectChain;
     use crate::effects::context::{RunHistory, Surroundings};
+    use crate::effects::small_robot::FULL_SPEED_CM_S;
     use crate::sonar::Perturbation;
     use mindgap_foundations::geometry::{Pose, wrap_rad};
     use mindgap_logs::{Robot, Scene};
 
     /// The effects of the table in docs/formats.md.
     const TABLE: usize = 29;
-    /// Fastest command of an NXT robot.
-    const TOP_SPEED_CM_S: f64 = 41.0;
 
     /// What comes of a step: commands, increment, sensor.
     fn applied(
@@ -214,7 +208,7 @@ mod tests {
     #[test]
     fn fits_start_within_the_bounds_and_not_where_nothing_changes() {
         for Candidate { effect, variant } in Candidate::all(CATALOGUE) {
-            for start in variant.initial_guesses(TOP_SPEED_CM_S) {
+            for start in variant.initial_guesses(FULL_SPEED_CM_S) {
                 assert!(start.iter().zip(variant.parameters).all(|(v, p)| p.allows(*v)), "{effect} {}", variant.id);
                 assert_ne!(start, variant.nominal(), "{effect} {}", variant.id);
             }
@@ -262,7 +256,7 @@ mod tests {
         for Candidate { effect, variant } in Candidate::all(CATALOGUE) {
             let asked = |id: &str| REPORTED.iter().find(|(known, _)| *known == id).map(|(_, names)| names);
             let asked = asked(&format!("{effect} {}", variant.id)).or_else(|| asked(effect)).expect(effect);
-            let reported = variant.reported(&variant.initial_guesses(TOP_SPEED_CM_S)[0], &robot);
+            let reported = variant.reported(&variant.initial_guesses(FULL_SPEED_CM_S)[0], &robot);
             let mut names: Vec<&str> = reported.keys().map(String::as_str).collect();
             let mut asked = asked.to_vec();
             names.sort_unstable();
@@ -291,7 +285,7 @@ mod tests {
         let refers_to_full_speed = |c: &Candidate| c.effect == "deadband" && c.variant.id == "stretched";
         for candidate in Candidate::all(CATALOGUE).into_iter().filter(|c| !refers_to_full_speed(c)) {
             let Candidate { effect, variant } = candidate;
-            for values in variant.initial_guesses(TOP_SPEED_CM_S) {
+            for values in variant.initial_guesses(FULL_SPEED_CM_S) {
                 let (c, m, s) = applied(variant, &values, &usual);
                 let (other_c, other_m, other_s) = applied(variant, &values, &scaled);
                 let commands = c[..2].as_flattened().iter().zip(other_c[..2].as_flattened());
@@ -329,7 +323,7 @@ mod tests {
         fn what_follows_from_commands_alone_is_the_same_everywhere(here in context(), elsewhere in context()) {
             let elsewhere = StepContext { commands: here.commands, ..elsewhere };
             for Candidate { effect, variant } in Candidate::all(CATALOGUE) {
-                for values in variant.initial_guesses(TOP_SPEED_CM_S) {
+                for values in variant.initial_guesses(FULL_SPEED_CM_S) {
                     let [here, elsewhere] = [&here, &elsewhere].map(|context| applied(variant, &values, context));
                     let same = (here.0, here.1) == (elsewhere.0, elsewhere.1);
                     prop_assert!(same || !variant.moves_by_commands_alone(), "{effect} {}", variant.id);
@@ -342,7 +336,7 @@ mod tests {
         fn no_effect_on_the_motion_asks_for_what_the_sensor_faces(facing in context()) {
             let unseen = StepContext { faced: None, ..facing };
             for Candidate { effect, variant } in Candidate::all(CATALOGUE) {
-                for values in variant.initial_guesses(TOP_SPEED_CM_S) {
+                for values in variant.initial_guesses(FULL_SPEED_CM_S) {
                     let [facing, unseen] = [&facing, &unseen].map(|context| applied(variant, &values, context));
                     prop_assert_eq!((facing.0, facing.1), (unseen.0, unseen.1), "{} {}", effect, variant.id);
                 }
@@ -353,7 +347,7 @@ mod tests {
         fn what_senses_alike_everywhere_does(here in context(), elsewhere in context()) {
             let elsewhere = StepContext { echo_before: here.echo_before, ..elsewhere };
             for Candidate { effect, variant } in Candidate::all(CATALOGUE) {
-                for values in variant.initial_guesses(TOP_SPEED_CM_S) {
+                for values in variant.initial_guesses(FULL_SPEED_CM_S) {
                     let same = [&here, &elsewhere].map(|context| {
                         let (.., sensor) = applied(variant, &values, context);
                         (sensor.robot == context.pose).then_some(SensorState { robot: here.pose, ..sensor })

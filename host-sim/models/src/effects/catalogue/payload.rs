@@ -1,8 +1,9 @@
 //! A load, off the middle.
 
-use super::{LOADED_SPEED_CM_S, distance_lost_cm, each_command, each_wheel, loaded, parameters, pushed_cm, scrubbing};
+use super::{distance_lost_cm, each_command, each_wheel, loaded, parameters, pushed_cm, scrubbing};
 use crate::effects::context::CommandHistory;
 use crate::effects::parameter::{Guesses, Report};
+use crate::effects::small_robot::{HALF_SPEED_CM_S, HALF_TURN_RATE_RAD_S};
 use crate::effects::{Effect, Hook, Parameter, StepContext, Variant};
 use mindgap_foundations::motion::Motion;
 
@@ -68,7 +69,7 @@ pub const EFFECT: Effect = Effect {
                 let RollingLoad { loss, other_side, with_speed, start_loss } = RollingLoad::read(v);
                 start_slowly(start_loss * loss.abs(), commands);
                 // To a motor, the torque of a load is a lower voltage, which is what a command sets.
-                let (lost, reference) = (by_side(loss, other_side), context.command_for(LOADED_SPEED_CM_S));
+                let (lost, reference) = (by_side(loss, other_side), context.command_for(HALF_SPEED_CM_S));
                 each_command(commands, |c, motor| (c - lost[motor] * loaded(with_speed, c, reference)).max(0.0));
             })],
         },
@@ -98,7 +99,7 @@ parameters! {
         loss: LOSS,
         /// The other wheel's loss as a share of it.
         other_side: Parameter::new("", 0.5, [0.0, 0.8]).prior_sd(0.3).report(Report::Hidden),
-        /// Loss of a turn of [`SCRUBBED_RAD_S`] as a multiple of it: tyres and castor that are pressed down scrub in turns.
+        /// Loss of a turn of [`HALF_TURN_RATE_RAD_S`] as a multiple of it: tyres and castor that are pressed down scrub in turns.
         turn_loss: Parameter::new("", 0.0, [0.0, 6.0]).prior_sd(2.0).from(Guesses::At(&[2.0])).report(Report::Hidden),
         /// Share of that which grows with the rate of turn; dry friction costs the rest at any rate.
         with_rate: Parameter::new("", 0.5, [0.0, 1.0]).prior_sd(0.5).report(Report::Hidden),
@@ -109,7 +110,7 @@ parameters! {
 
 parameters! {
     RollingLoad {
-        /// Share of speed lost at [the loaded speed](super::LOADED_SPEED_CM_S); see [`LOSS`].
+        /// Share of speed lost at [half of full speed](HALF_SPEED_CM_S); see [`LOSS`].
         loss: LOSS,
         /// The other wheel's loss as a share of it.
         other_side: Parameter::new("", 0.5, [0.0, 0.8]).prior_sd(0.3).from(Guesses::At(&[0.2])).report(Report::Hidden),
@@ -121,12 +122,9 @@ parameters! {
     }
 }
 
-/// The turn to which the loss of turns refers: half of what an NXT robot's wheels can do.
-const SCRUBBED_RAD_S: f64 = 3.5;
-
 /// A turn that loses the share `lost` to scrubbing: of itself in part, and of the reference turn for the rest.
 fn scrubbed_rad(turn_rad: f64, lost: f64, with_rate: f64, context: &StepContext) -> f64 {
-    let of_rad = with_rate * turn_rad.abs() + (1.0 - with_rate) * (SCRUBBED_RAD_S * context.step_s());
+    let of_rad = with_rate * turn_rad.abs() + (1.0 - with_rate) * (HALF_TURN_RATE_RAD_S * context.step_s());
     let lost_rad = lost * of_rad * scrubbing(turn_rad, context);
     if lost_rad.abs() < turn_rad.abs() { turn_rad - lost_rad } else { 0.0 }
 }

@@ -1,7 +1,8 @@
 //! Forward speed is lost in turns, on both wheels alike.
 
-use super::{LOADED_SPEED_CM_S, parameters, pushed_cm};
+use super::{parameters, pushed_cm};
 use crate::effects::parameter::{Guesses, Report};
+use crate::effects::small_robot::HALF_SPEED_CM_S;
 use crate::effects::{Effect, Hook, Parameter, Variant};
 
 pub const EFFECT: Effect = Effect {
@@ -22,7 +23,7 @@ pub const EFFECT: Effect = Effect {
             id: "with_speed",
             parameters: TurnLoss::PARAMETERS,
             hooks: &[Hook::Motion(&|v, context, increment| {
-                let speed = increment.forward.abs() / (LOADED_SPEED_CM_S * context.step_s());
+                let speed = increment.forward.abs() / (HALF_SPEED_CM_S * context.step_s());
                 let lost_cm = TurnLoss::read(v).cm_per_rad * increment.turn.abs() * speed;
                 increment.forward = pushed_cm(increment.forward, -lost_cm, context);
             })],
@@ -40,7 +41,7 @@ pub const EFFECT: Effect = Effect {
     ],
 };
 
-/// Way lost for each radian of turn; of the second variant at [the loaded speed](LOADED_SPEED_CM_S). A Create loses 7 cm. A
+/// Way lost for each radian of turn; of the second variant at [half of full speed](HALF_SPEED_CM_S). A Create loses 7 cm. A
 /// robot that loses half its track could not turn about a standing wheel, and no small robot's track is wider than 30 cm.
 const CM_PER_RAD: Parameter = Parameter::new("cm/rad", 0.0, [0.0, 15.0]).prior_sd(4.0).from(Guesses::At(&[1.0, 4.0]));
 

@@ -1,6 +1,7 @@
 use super::*;
 use crate::effects::applied::AppliedEffect;
 use crate::effects::catalogue::Candidate;
+use crate::effects::small_robot::FULL_SPEED_CM_S;
 use crate::simulator::environment::SensorModel;
 use crate::simulator::known_steps::KnownSteps;
 use crate::simulator::motion::{MotionTable, PredictedStep, speeds};
@@ -18,7 +19,6 @@ const SEED: u64 = 3;
 const MAX_STEPS: u16 = 150;
 const RUNS: u64 = 100;
 /// Fastest command of the robot.
-const TOP_SPEED_CM_S: f64 = 41.0;
 
 /// Of all outcomes of [`outcomes`] on every kind of course, whatever the machine; made with [`SEED`].
 const CHECKSUM: &str = "87c5cb2d373b54d657536ed606745ce29d47ba87129113ea1a28f5a6d69d5bae";
@@ -130,7 +130,7 @@ fn motions_worked_out_ahead_are_those_of_every_step() {
 fn what_effects_make_of_motions_is_worked_out_ahead_as_in_every_step() {
     let applied = |effect: &str, variant: &str| {
         let candidate = Candidate::named(effect, variant).unwrap();
-        AppliedEffect::new(&candidate, &candidate.variant.initial_guesses(TOP_SPEED_CM_S)[0], &SIMULATOR.robot)
+        AppliedEffect::new(&candidate, &candidate.variant.initial_guesses(FULL_SPEED_CM_S)[0], &SIMULATOR.robot)
     };
     let of = |added: &[AppliedEffect]| Simulator { added: added.to_vec(), ..SIMULATOR.clone() };
     let scene = four_obstacles();
