@@ -236,7 +236,7 @@ mod tests {
         ("sonar_yaw", &["deg"]),
         ("sonar_beam", &["factor"]),
         ("sonar_ghost", &["probability", "cm"]),
-        ("sonar_dropout", &["probability", "goes_on"]),
+        ("sonar_dropout", &["probability", "persistence"]),
         ("sonar_lag", &["steps"]),
         ("sonar_absorption", &["factor"]),
         ("sonar_crosstalk", &["probability"]),

@@ -32,9 +32,9 @@ pub const EFFECT: Effect = Effect {
             id: "dry",
             parameters: DryTurnLoss::PARAMETERS,
             hooks: &[Hook::Motion(&|v, context, increment| {
-                let DryTurnLoss { cm_per_rad, most_from_rad_s } = DryTurnLoss::read(v);
-                let most_from_rad = most_from_rad_s * context.step_s();
-                let lost_cm = cm_per_rad * most_from_rad * up_to_one(increment.turn.abs() / most_from_rad);
+                let DryTurnLoss { cm_per_rad, saturation_rad_s } = DryTurnLoss::read(v);
+                let saturation_rad = saturation_rad_s * context.step_s();
+                let lost_cm = cm_per_rad * saturation_rad * up_to_one(increment.turn.abs() / saturation_rad);
                 increment.forward = pushed_cm(increment.forward, -lost_cm, context);
             })],
         },
@@ -57,7 +57,7 @@ parameters! {
         /// In turns slower than the rate below; see [`CM_PER_RAD`].
         cm_per_rad: CM_PER_RAD,
         /// Rate of turn from which on what drags rubs with all that rests on it, as dry friction does.
-        most_from_rad_s: Parameter::new("rad/s", 2.0, [0.3, 8.0]).prior_sd(2.0).report(Report::Hidden),
+        saturation_rad_s: Parameter::new("rad/s", 2.0, [0.3, 8.0]).prior_sd(2.0).report(Report::Hidden),
     }
 }
 

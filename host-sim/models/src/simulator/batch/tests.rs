@@ -18,7 +18,6 @@ use std::sync::LazyLock;
 const SEED: u64 = 3;
 const MAX_STEPS: u16 = 150;
 const RUNS: u64 = 100;
-/// Fastest command of the robot.
 
 /// Of all outcomes of [`outcomes`] on every kind of course, whatever the machine; made with [`SEED`].
 const CHECKSUM: &str = "87c5cb2d373b54d657536ed606745ce29d47ba87129113ea1a28f5a6d69d5bae";
@@ -136,7 +135,7 @@ fn what_effects_make_of_motions_is_worked_out_ahead_as_in_every_step() {
     let scene = four_obstacles();
     let by_commands = [
         vec![applied("motor_asymmetry", "command")],
-        vec![applied("latency", "of_motion"), applied("inertia", "first_order_lag")],
+        vec![applied("latency", "pose_delay"), applied("inertia", "first_order_lag")],
         vec![applied("slip", "growing"), applied("track_width", "turn")],
     ];
     for added in by_commands {
