@@ -157,7 +157,7 @@ fn answer(bytes: &[u8]) {
 fn added(bytes: &[u8]) {
     let Ok(added) = serde_json::from_slice::<Vec<AppliedEffect>>(bytes) else { return };
     for effect in &added {
-        if let Ok((candidate, values)) = effect.resolve() {
+        if let Ok((candidate, values)) = effect.resolve(&default_robot()) {
             assert_eq!(candidate.variant.parameters.len(), values.len());
         }
     }

@@ -4,11 +4,12 @@
 use glam::DVec2;
 use mindgap_built_in_robot::{BuiltInRobot, default_robot, four_obstacles, run_controller};
 use mindgap_foundations::geometry::{Pose, wrap_rad};
+use mindgap_foundations::motion::Motion;
 use mindgap_foundations::random::{Generator, generator};
 use mindgap_learning::evolve::genome::GenotypeDecoder;
 use mindgap_logs::{Logs, Run, Termination};
 use mindgap_models::simulator::Simulator;
-use mindgap_models::simulator::ensemble::{Member, Robots};
+use mindgap_models::simulator::ensemble::{HeldMotion, Member, Robots};
 use mindgap_models::simulator::motion::{MotionNetworks, Speeds};
 use rand_distr::{Distribution, StandardNormal};
 
@@ -89,7 +90,7 @@ pub fn controller_runs(simulator: &Simulator, runs: usize, seed: u64) -> Logs {
 struct Replay<'a> {
     networks: MotionNetworks<'a>,
     /// Standard deviations of the tracker's error in one pose.
-    tracker: [f64; 3],
+    tracker: Motion<f64>,
     step_ms: f64,
 }
 
@@ -105,8 +106,8 @@ struct LoggedPath<'a> {
 struct Step {
     /// Left, right, previous left and previous right command.
     speeds: Speeds<f32>,
-    /// What the networks say of it beyond a step in which its command is held: forward (cm), lateral (cm), turn (degrees).
-    beyond_held: [f64; 3],
+    /// What the networks predict for it beyond a step in which its command is held; the turn is in degrees.
+    beyond_held: Motion<f64>,
     /// Its length against the usual one.
     stretch: f64,
 }
@@ -128,11 +129,10 @@ impl Replay<'_> {
     fn step(&self, run: &Run, row: usize) -> Step {
         let ([left, right], [left_before, right_before]) = (run.rows.at(row).command(), run.previous_command(row));
         let speeds = [left, right, left_before, right_before].map(|command| command as f32);
-        let [forward_cm, lateral_cm, turn_rad] = self.networks.evaluate(speeds).map(f64::from);
-        let (motion, held) = ([forward_cm, lateral_cm, turn_rad.to_degrees()], self.networks.held([left, right]));
+        let motion = self.networks.evaluate(speeds).map(f64::from).turn_in_degrees();
         Step {
             speeds,
-            beyond_held: [0, 1, 2].map(|channel| motion[channel] - held[channel]),
+            beyond_held: motion - self.networks.motion([left, right]),
             stretch: (run.rows.at(row + 1).t_ms - run.rows.at(row).t_ms) / self.step_ms,
         }
     }
@@ -164,17 +164,15 @@ impl LoggedPath<'_> {
     /// Where a robot ends under these commands, as a tracker sees it that saw the begin.
     fn end(&self, robot: &Member, rng: &mut Generator) -> Pose {
         let seen = |pose: Pose, rng: &mut Generator| {
-            let [forward_cm, lateral_cm, turn_deg] = self.replay.tracker.map(|deviation| deviation * normal(rng));
-            pose.compose(&Pose::new(forward_cm, lateral_cm, turn_deg.to_radians()))
+            self.replay.tracker.map(|deviation| deviation * normal(rng)).turn_in_radians().end(&pose)
         };
         let start = seen(self.from, rng);
-        let mut lasting = [0.0; 3];
+        let mut lasting = Motion::ZERO;
         let end = self.steps.iter().enumerate().fold(start, |pose, (place, step)| {
             if place == 0 || !step.is_steady() {
-                lasting = [0.0; 3].map(|_: f64| normal(rng));
+                lasting = Motion::from_fn(|_| normal(rng));
             }
-            let motion = step.motion(robot, lasting, rng).map(|moved| moved * step.stretch);
-            pose.compose(&Pose::new(motion[0], motion[1], motion[2].to_radians()))
+            step.motion(robot, lasting, rng).scaled(step.stretch).turn_in_radians().end(&pose)
         });
         seen(end, rng)
     }
@@ -186,21 +184,21 @@ impl Step {
         self.speeds[..2] == self.speeds[2..]
     }
 
-    /// What a robot does in it: forward (cm), lateral (cm), turn (degrees). What lasts while a command is held is so many
+    /// What a robot does in it; the turn is in degrees. What lasts while a command is held is so many
     /// standard deviations.
-    fn motion(&self, robot: &Member, lasting: [f64; 3], rng: &mut Generator) -> [f64; 3] {
+    fn motion(&self, robot: &Member, lasting: Motion<f64>, rng: &mut Generator) -> Motion<f64> {
         let [left, right, left_before, right_before] = self.speeds;
         let held = robot.motion([left, right].map(f64::from));
         let first_step = if self.is_steady() {
-            [0.0; 3]
+            Motion::ZERO
         } else {
             robot.first_step([left as i8, right as i8], [left_before as i8, right_before as i8])
         };
         let scatter = robot.scatter([left, right].map(f64::from));
-        [0, 1, 2].map(|channel| {
-            let [step, lasts] = scatter[channel];
-            let chance = step * normal(rng) + lasts * lasting[channel];
-            held[channel] + self.beyond_held[channel] + first_step[channel] + chance
+        Motion::from_fn(|axis| {
+            let [step, lasts] = scatter[axis];
+            let chance = step * normal(rng) + lasts * lasting[axis];
+            held[axis] + self.beyond_held[axis] + first_step[axis] + chance
         })
     }
 }

@@ -6,12 +6,14 @@ use serde::Serialize;
 use mindgap_diagnosis::progress::Stage;
 use mindgap_diagnosis::{Method, findings_watched};
 use mindgap_foundations::error::{Error, Result};
+use mindgap_foundations::motion::{Axis, Motion};
 use mindgap_learning::evaluation::observations::Observations;
 use mindgap_learning::evaluation::predictions;
 use mindgap_learning::learn::ensemble::conditioned;
 use mindgap_learning::learn::ensemble::holds::{Hold, StepResidual, holds};
 use mindgap_logs::inspection::Inspection;
 use mindgap_logs::robot::same_robot;
+use mindgap_logs::samples::RowId;
 use mindgap_logs::{Logs, Robot};
 use mindgap_models::effects::applied::AppliedEffect;
 use mindgap_models::effects::chain::EffectChain;
@@ -47,7 +49,7 @@ pub struct Lesson {
     pub gap: Option<Gap>,
 }
 
-/// The bias of a command: forward (cm), lateral (cm) and turn (degrees) of a step, each with its standard deviation.
+/// The bias of a command per step, each number with its standard deviation; turns are in degrees.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct CommandBias {
     /// Left and right command.
@@ -55,9 +57,9 @@ pub struct CommandBias {
     /// Steps for which it was held.
     pub steps: usize,
     /// Before.
-    pub before: [[f64; 2]; 3],
+    pub before: Motion<[f64; 2]>,
     /// After.
-    pub after: [[f64; 2]; 3],
+    pub after: Motion<[f64; 2]>,
 }
 
 /// Root mean square of what the steps of held commands are off by, the first number before and the second after adapting.
@@ -140,13 +142,14 @@ fn diagnosed(baseline: Baseline, logs: &Logs, seed: u64, watch: impl Fn(Stage)) 
 fn steps(baseline: &Baseline, effects: &[AppliedEffect], observations: &Observations) -> Vec<StepResidual> {
     let Some(motion @ MotionModel::Learned { reference, .. }) = &baseline.motion else { return Vec::new() };
     let applied: Vec<AppliedEffect> = baseline.applied.iter().chain(effects).cloned().collect();
-    let chain = EffectChain::of(&applied);
+    let chain = EffectChain::of(&applied, &baseline.robot);
     let step = |row: &mindgap_learning::evaluation::observations::Observation| {
         let [now, before, ..] = row.context.commands;
         let left = predictions::residual(&chain, motion, row).filter(|_| row.then.is_empty())?;
         let beyond = motion.beyond(now);
-        let off = [0, 1, 2].map(|channel| left[channel] + beyond[channel]);
-        Some(StepResidual::new([row.run, row.at], [now[0], now[1], before[0], before[1]], off, reference))
+        let id = RowId { run: row.run, row: row.at };
+        let off = Motion::from(left) + beyond;
+        Some(StepResidual::new(id, [now[0], now[1], before[0], before[1]], off, reference))
     };
     observations.rows.iter().filter_map(step).collect()
 }
@@ -163,8 +166,7 @@ fn commands(held: &[Hold], said: Held, before: &Ensemble, after: &Ensemble) -> V
         let command = command.map(f64::from);
         let networks = said.motion(command);
         let bias = |of: &Posterior| {
-            let motion = of.motion(command);
-            [0, 1, 2].map(|c| [motion[c][0] - networks[c], motion[c][1]])
+            of.motion(command).zip_with(networks, |[mean, deviation], networks| [mean - networks, deviation])
         };
         CommandBias { command, steps: *steps, before: bias(&before), after: bias(&after) }
     };
@@ -176,8 +178,10 @@ fn commands(held: &[Hold], said: Held, before: &Ensemble, after: &Ensemble) -> V
 impl CommandBias {
     /// How far the turn or the way forward moved, in standard deviations of what was known.
     fn surprise(&self) -> f64 {
-        let moved = |c: usize| (self.after[c][0] - self.before[c][0]).abs() / self.before[c][1].max(f64::EPSILON);
-        moved(0).max(moved(2))
+        let moved = self.before.zip_with(self.after, |[before, deviation], [after, _]| {
+            (after - before).abs() / deviation.max(f64::EPSILON)
+        });
+        moved.forward.max(moved.turn)
     }
 }
 
@@ -194,7 +198,7 @@ fn kept_back(
         return None;
     }
     let before = Posterior::new(ensemble, said)?;
-    let (mut sums, mut count) = ([[0.0; 2]; 3], 0.0);
+    let (mut sums, mut count) = (Motion::splat([0.0; 2]), 0.0);
     for part in 0..runs.min(PARTS) {
         let kept = |step: &&StepResidual| step.run() % PARTS == part;
         let others: Vec<StepResidual> = explained.iter().filter(|step| !kept(step)).copied().collect();
@@ -204,14 +208,14 @@ fn kept_back(
             count += a.steps as f64;
             let networks = said.motion(a.command);
             let off = [(a, before.motion(a.command)), (b, after.motion(b.command))];
-            for channel in 0..3 {
-                for (sum, (hold, motion)) in sums[channel].iter_mut().zip(&off) {
-                    let left = hold.residual[channel] + hold.known[channel] + networks[channel] - motion[channel][0];
+            for axis in Axis::ALL {
+                for (sum, (hold, motion)) in sums[axis].iter_mut().zip(&off) {
+                    let left = hold.residual[axis] + hold.known[axis] + networks[axis] - motion[axis][0];
                     *sum += hold.steps as f64 * left * left;
                 }
             }
         }
     }
-    let [forward_cm, lateral_cm, turn_deg] = sums.map(|pair| pair.map(|sum: f64| (sum / count).sqrt()));
-    Some(Gap { forward_cm, lateral_cm, turn_deg })
+    let rms = sums.map(|pair| pair.map(|sum: f64| (sum / count).sqrt()));
+    Some(Gap { forward_cm: rms.forward, lateral_cm: rms.lateral, turn_deg: rms.turn })
 }

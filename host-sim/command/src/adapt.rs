@@ -146,7 +146,9 @@ fn told(lesson: &Lesson) -> String {
 /// A command, and how much more a step of it does than was thought, with what remains unsure.
 fn row(known: &CommandBias) -> [String; 5] {
     let [left, right] = known.command;
-    let more =
-        |c: usize| format!("{} ±{:.2}", number(Some(known.after[c][0] - known.before[c][0]), 2), known.after[c][1]);
-    [format!("{left} {right}"), known.steps.to_string(), more(0), more(1), more(2)]
+    let [forward, lateral, turn] = known
+        .before
+        .zip_with(known.after, |[before, _], [after, sd]| format!("{} ±{sd:.2}", number(Some(after - before), 2)))
+        .into_array();
+    [format!("{left} {right}"), known.steps.to_string(), forward, lateral, turn]
 }

@@ -16,8 +16,8 @@ use super::validate::Validated;
 use super::{account, confirm, excitation, formula, propose, remainder, validate};
 use mindgap_foundations::error::Result;
 use mindgap_learning::evaluation::observations::Observations;
-use mindgap_logs::Logs;
 use mindgap_logs::inspection::Inspection;
+use mindgap_logs::{Logs, Robot};
 use mindgap_models::effects::applied::AppliedEffect;
 use mindgap_models::simulator::Simulator;
 use mindgap_models::simulator::baseline::Baseline;
@@ -28,6 +28,8 @@ pub struct Findings {
     pub diagnosis: Diagnosis,
     /// The effects that explain the gap, as a simulator takes them; none unless they are known.
     pub applied: Vec<AppliedEffect>,
+    /// The robot to whose simulator they are applied.
+    pub robot: Robot,
     /// How the steps scatter that these effects leave: forward (cm), lateral (cm), turn (rad).
     pub scatter: [f64; 3],
     /// The formula of what no effect explains, where one holds.
@@ -41,7 +43,7 @@ pub struct Findings {
 impl Findings {
     /// All that shrinks the gap, as a simulator takes it: the effects with the formula of what they leave, fitted together.
     pub fn with_formula(&self) -> Vec<AppliedEffect> {
-        self.formula.as_ref().map_or_else(|| self.applied.clone(), |formula| formula.fitted.applied())
+        self.formula.as_ref().map_or_else(|| self.applied.clone(), |formula| formula.fitted.applied(&self.robot))
     }
 }
 
@@ -129,7 +131,7 @@ pub fn findings_watched(
     };
     let (applied, evidence) = match answer {
         Answer::Known { .. } | Answer::PartlyKnown { .. } => {
-            (confirmed.chosen.applied(), evidence(&confirmed, &context))
+            (confirmed.chosen.applied(&baseline.robot), evidence(&confirmed, &context))
         }
         Answer::NoGap | Answer::Unknown { .. } => Default::default(),
     };
@@ -146,7 +148,7 @@ pub fn findings_watched(
         notes,
     };
     let scatter = confirmed.chosen.scatter(&context);
-    Ok(Findings { diagnosis, applied, scatter, formula, evidence, room_map })
+    Ok(Findings { diagnosis, applied, robot: baseline.robot, scatter, formula, evidence, room_map })
 }
 
 /// The effects that logs could not show, and what else limits a diagnosis of them.

@@ -16,6 +16,7 @@ use super::method::Method;
 use super::own_error::OwnErrors;
 use mindgap_foundations::statistics::maximise::Point;
 use mindgap_learning::evaluation::observations::Observations;
+use mindgap_logs::Robot;
 use mindgap_models::effects::applied::AppliedEffect;
 use mindgap_models::effects::chain::EffectChain;
 use mindgap_models::effects::{Candidate, Effect};
@@ -127,7 +128,7 @@ impl Fitted {
     /// Effects that are known and need no fit.
     pub fn given(applied: &[AppliedEffect], context: &FitContext) -> Self {
         let (candidates, values): (Vec<Candidate>, Vec<Vec<f64>>) =
-            applied.iter().flat_map(AppliedEffect::resolve).unzip();
+            applied.iter().flat_map(|effect| effect.resolve(&context.baseline.robot)).unzip();
         Fitted::at(Hypothesis::none(context.baseline).of(candidates), values.concat(), context)
     }
 
@@ -161,9 +162,9 @@ impl Fitted {
     }
 
     /// Its effects as a simulator takes them.
-    pub fn applied(&self) -> Vec<AppliedEffect> {
+    pub fn applied(&self, robot: &Robot) -> Vec<AppliedEffect> {
         let candidates = self.hypothesis.candidates.iter().enumerate();
-        candidates.map(|(place, candidate)| AppliedEffect::new(candidate, self.values_of(place))).collect()
+        candidates.map(|(place, candidate)| AppliedEffect::new(candidate, self.values_of(place), robot)).collect()
     }
 
     /// By how much this beats `other` on each held-out block.

@@ -107,7 +107,7 @@ fn of(channel: Channel, beneath: &Fitted, context: &FitContext, hold_out: Option
     let terms = library::terms(stage, &circumstances);
     let spread = median(rows.iter().map(|row| row.1.abs())) / QUARTILE;
     let least_scatter = match (channel.motion_axis(), &context.baseline.motion) {
-        (Some(axis), Some(drive)) => drive.scatter()[axis],
+        (Some(axis), Some(drive)) => drive.scatter().into_array()[axis],
         _ => spread,
     };
     let bound = FARTHEST * f64::max(spread, least_scatter);

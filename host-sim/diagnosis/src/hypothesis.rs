@@ -65,12 +65,12 @@ impl LogLikelihood {
 impl Hypothesis {
     /// The simulator as it is.
     pub fn none(baseline: &Baseline) -> Self {
-        Hypothesis { given: EffectChain::of(&baseline.applied), candidates: Vec::new() }
+        Hypothesis { given: baseline.chain(), candidates: Vec::new() }
     }
 
     /// The simulator without the effects that it has already.
     pub fn bare() -> Self {
-        Hypothesis { given: EffectChain::of(&[]), candidates: Vec::new() }
+        Hypothesis { given: EffectChain::default(), candidates: Vec::new() }
     }
 
     /// The same simulator with these effects.
@@ -261,7 +261,7 @@ fn densities(rows: &[Observation], residuals: &[Option<[f64; 3]>], scatter: [f64
 
 fn fitted(rows: &[Observation], residuals: &[Option<[f64; 3]>], baseline: &Baseline) -> [f64; 3] {
     let Some(drive) = &baseline.motion else { return [1.0; 3] };
-    let least = drive.scatter();
+    let least = drive.scatter().into_array();
     [0, 1, 2].map(|axis| {
         let of_axis = rows.iter().zip(residuals).filter_map(|(row, r)| Some([(*r)?[axis], row.motion_weight[axis]]));
         fitted_scatter(axis, &of_axis.collect::<Vec<[f64; 2]>>(), least[axis])

@@ -8,11 +8,11 @@
 
 use nalgebra::{Cholesky, DMatrix, DVector, SymmetricEigen};
 
+use mindgap_foundations::motion::Axis;
 use mindgap_foundations::statistics::summary::{QUARTILE, median};
 use mindgap_learning::evaluation::observations::{Observation, Observations};
 use mindgap_learning::evaluation::predictions::residual;
 use mindgap_models::effects::StepContext;
-use mindgap_models::effects::chain::EffectChain;
 use mindgap_models::simulator::baseline::{Baseline, MotionModel};
 use mindgap_models::simulator::nominal::MotionBias;
 use mindgap_models::simulator::nominal::motion_bias::{FEATURES, features};
@@ -45,7 +45,7 @@ impl OwnErrors {
     /// Of the motion of a simulator on these rows; none where nothing is open.
     pub fn of(baseline: &Baseline, rows: &Observations) -> Option<Self> {
         let drive @ MotionModel::Learned { reference, .. } = baseline.motion.as_ref()? else { return None };
-        let effects = EffectChain::of(&baseline.applied);
+        let effects = baseline.chain();
         let residuals: Vec<Option<[f64; 3]>> = rows.rows.iter().map(|row| residual(&effects, drive, row)).collect();
         OwnErrors::left_by(reference, &rows.rows, &residuals)
     }
@@ -56,14 +56,14 @@ impl OwnErrors {
         let features =
             DMatrix::from_row_iterator(rows.len(), FEATURES, rows.iter().flat_map(|row| of_row(reference, row)));
         let open = [0, 1, 2].map(|axis| {
-            let unit = Some(reference.scatter[axis]).filter(|unit| *unit > 0.0)?;
+            let unit = Some(reference.scatter.into_array()[axis]).filter(|unit| *unit > 0.0)?;
             let middle = median(residuals.iter().flatten().map(|r| r[axis].abs())) / QUARTILE;
             let scatter = if middle > unit { middle } else { unit };
             let weights: Vec<f64> =
                 rows.iter().zip(residuals).map(|(row, r)| r.map_or(0.0, |_| row.motion_weight[axis])).collect();
             let share = unit / scatter;
             let told = weighted_products(&features, &weights) * (share * share);
-            let directions = &features * open_directions(precision.of(axis)?, told)?;
+            let directions = &features * open_directions(precision.of(Axis::ALL[axis])?, told)?;
             let without = covariances(&directions, rows, &weights, share);
             Some(OwnError { directions, weights, unit, scatter, without })
         });
@@ -135,15 +135,16 @@ fn covariances(directions: &DMatrix<f64>, rows: &[Observation], weights: &[f64],
 mod tests {
     use super::*;
     use crate::test_support::{Made, SCATTER, SPIN, STRAIGHT, alternating, observations, precision};
+    use mindgap_foundations::motion::Motion;
     use mindgap_models::simulator::ensemble::CommandScale;
 
     const BLOCKS: usize = 8;
 
     /// What so many steps straight on and in spins leave.
     fn learned(straight: usize, spins: usize) -> MotionBias {
-        let weights = [0, 1, 2].map(|_| vec![0.0; FEATURES]);
+        let weights = Motion::from_fn(|_| vec![0.0; FEATURES]);
         let precision = Some(precision(straight, spins));
-        MotionBias { scale: CommandScale::PERCENT, weights, scatter: SCATTER, precision }
+        MotionBias { scale: CommandScale::PERCENT, weights, scatter: SCATTER.into(), precision }
     }
 
     /// Eight runs, half of each straight on and half in spins that turn too far by the scatter; the rows, and what is told of

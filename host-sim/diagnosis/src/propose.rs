@@ -142,7 +142,7 @@ impl Bench<'_> {
             let expected_cm = step.faced.map(|[distance_cm, _]| distance_cm);
             history.leave(Some(&step), expected_cm);
             if let Some(drive) = &self.context.baseline.motion {
-                pose = predictions::step(&self.chosen, drive, &step).from(&pose);
+                pose = predictions::step(&self.chosen, drive, &step).end(&pose);
             }
             steps.push(step);
         }
@@ -156,10 +156,7 @@ impl Bench<'_> {
 
     fn of_motion(&self, step: &StepContext, scatter: [f64; 3]) -> f64 {
         let Some(drive) = &self.context.baseline.motion else { return 0.0 };
-        let [a, b] = [&self.chosen, &self.rival].map(|effects| {
-            let increment = predictions::step(effects, drive, step);
-            [increment.forward_cm, increment.lateral_cm, increment.turn_rad]
-        });
+        let [a, b] = [&self.chosen, &self.rival].map(|effects| predictions::step(effects, drive, step).into_array());
         (0..3).map(|c| 0.5 * ((a[c] - b[c]) / scatter[c]) * ((a[c] - b[c]) / scatter[c])).sum()
     }
 

@@ -148,7 +148,7 @@ mod tests {
     #[test]
     fn what_the_training_logs_leave_open_is_no_remainder() {
         let left_over = |spins: usize| {
-            let mut simulator = textbook::simulator(&baseline(), SCATTER).expect("a simulator");
+            let mut simulator = textbook::simulator(&baseline(), SCATTER.into()).expect("a simulator");
             let motion = simulator.reference.as_mut().and_then(|reference| reference.motion.as_mut());
             motion.expect("a motion").precision = Some(precision(2000, spins));
             let baseline = Baseline::learned(&simulator).expect("a baseline");

@@ -82,7 +82,7 @@ impl<'a> Request<'a> {
         }
         let mut simulator = match self.simulator {
             Some(simulator) => simulator.clone(),
-            None => textbook::simulator(&kinematic::baseline(logs), findings.scatter)?,
+            None => textbook::simulator(&kinematic::baseline(logs), findings.scatter.into())?,
         };
         simulator.added.extend(effects);
         Ok(simulator)

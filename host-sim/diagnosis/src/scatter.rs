@@ -52,7 +52,7 @@ impl WiderScatter {
     /// None where the scatter is within what chance makes of the simulator's.
     fn of(remainder: &Remainder, rest: &[Option<f64>], context: &FitContext) -> Option<Self> {
         let axis = remainder.channel().motion_axis()?;
-        let assumed = context.baseline.motion.as_ref()?.scatter()[axis];
+        let assumed = context.baseline.motion.as_ref()?.scatter().into_array()[axis];
         let rows = &context.observations.rows;
         let own = scatter(axis, rest, rows, assumed, |_| true);
         let slow_speed = slow_speed(rows);

@@ -8,6 +8,7 @@ use super::fit::{FitContext, Fitted};
 use super::hypothesis::{Hypothesis, LogLikelihood};
 use super::method::Method;
 use mindgap_foundations::geometry::Pose;
+use mindgap_foundations::motion::Motion;
 use mindgap_learning::evaluation::observations::{Observation, Observations, beside_cm, number_places};
 use mindgap_logs::{Logs, Robot, Row, Run, Scene, Ultrasonic};
 use mindgap_models::effects::context::{CommandHistory, HISTORY, Surroundings};
@@ -64,7 +65,8 @@ pub fn room() -> Scene {
 /// The textbook's drive, without a sensor.
 pub fn baseline() -> Baseline<'static> {
     Baseline {
-        motion: Some(MotionModel::Kinematic { robot: robot(), scatter: SCATTER }),
+        robot: robot(),
+        motion: Some(MotionModel::Kinematic { robot: robot(), scatter: SCATTER.into() }),
         sonar: None,
         place_bound: [0.0; 2],
         familiar: None,
@@ -91,10 +93,7 @@ pub fn observations(blocks: usize, rows: usize, made: impl Fn(usize, usize) -> M
         commands[0] = now;
         let context =
             StepContext { commands, ..surroundings.context(&Default::default(), 60_000.0 * elapsed_min, pose) };
-        let mut motion = drive.step(now, before);
-        motion.forward_cm += off[0];
-        motion.lateral_cm += off[1];
-        motion.turn_rad += off[2];
+        let motion = drive.step(now, before) + Motion::from(off);
         Observation {
             run: block,
             at,
@@ -130,7 +129,7 @@ pub fn driven(runs: usize, rows: usize, command: impl Fn(usize, usize) -> [f64; 
             let echo_cm = context.faced.map(|[distance_cm, _]| distance_cm);
             let t_ms = at as f64 * surroundings.robot.step_ms;
             let row = Row { t_ms, left, right, pose: Some(pose), echo_cm, ..Row::default() };
-            pose = drive.step([left, right], [0.0; 2]).from(&pose);
+            pose = drive.step([left, right], [0.0; 2]).end(&pose);
             row
         };
         Run { name: format!("run-{run:03}"), rows: (0..rows).map(row).collect() }
@@ -147,7 +146,7 @@ pub const SPIN: [f64; 2] = [-30.0, 30.0];
 pub fn precision(straight: usize, spins: usize) -> Precision {
     let step = |[left, right]: [f64; 2]| features([left, right, left, right], CommandScale::PERCENT.share()).to_vec();
     let rows = [vec![step(STRAIGHT); straight], vec![step(SPIN); spins]].concat();
-    Precision { products: products(&rows), prior: [1.0; 3] }
+    Precision { products: products(&rows), prior: Motion::splat(1.0) }
 }
 
 /// What alternates between plus and minus one.
@@ -169,7 +168,7 @@ pub const LONGER: Effect = Effect {
     variants: &[Variant {
         id: "every_step",
         parameters: &[length("cm")],
-        hooks: &[Hook::Motion(&|v, _, increment| increment.forward_cm += v[0])],
+        hooks: &[Hook::Motion(&|v, _, increment| increment.forward += v[0])],
     }],
 };
 
@@ -197,7 +196,7 @@ pub const LONGER_TO_THE_LEFT: Effect = Effect {
         parameters: &[length("cm")],
         hooks: &[Hook::Motion(&|v, context, increment| {
             let [left, right] = context.commands[0];
-            increment.forward_cm += if right > left { v[0] } else { 0.0 };
+            increment.forward += if right > left { v[0] } else { 0.0 };
         })],
     }],
 };

@@ -2,9 +2,19 @@
 
 use crate::{Logs, Run};
 use mindgap_foundations::geometry::cast;
+use mindgap_foundations::motion::Motion;
 
 /// A step longer than this multiple of `step_ms` spans missing rows and is skipped.
 const LONGEST_STEP: f64 = 1.5;
+
+/// A row of logs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct RowId {
+    /// Index of the run.
+    pub run: usize,
+    /// Index of the row within the run.
+    pub row: usize,
+}
 
 /// One step of a run: commands and pose increment in the robot's own frame.
 ///
@@ -23,6 +33,18 @@ pub struct MotionSample {
     pub lateral_cm: f64,
     /// Turn to the left, rad.
     pub turn_rad: f64,
+}
+
+impl MotionSample {
+    /// Returns the row at which the step begins.
+    pub fn id(&self) -> RowId {
+        RowId { run: self.run, row: self.row }
+    }
+
+    /// Returns the pose increment.
+    pub fn motion(&self) -> Motion<f64> {
+        Motion { forward: self.forward_cm, lateral: self.lateral_cm, turn: self.turn_rad }
+    }
 }
 
 /// One reading of the sensor and the geometry in front of it.

@@ -13,11 +13,10 @@ pub mod chain;
 pub mod context;
 pub mod own;
 pub mod parameter;
-pub mod pose_increment;
+mod small_robot;
 pub mod variant;
 
 pub use catalogue::{CATALOGUE, Candidate};
 pub use context::StepContext;
 pub use parameter::Parameter;
-pub use pose_increment::PoseIncrement;
 pub use variant::{Effect, Hook, Late, SensorState, Variant};

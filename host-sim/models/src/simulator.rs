@@ -196,7 +196,7 @@ impl Simulator {
     fn check(&self, path: &Path) -> Result<()> {
         for added in &self.added {
             let what = format!("the added effect {} ({})", added.effect, added.variant);
-            added.resolve().map_err(|why| Error::in_file(path, format!("{what} is not possible: {why}")))?;
+            added.resolve(&self.robot).map_err(|why| Error::in_file(path, format!("{what} is not possible: {why}")))?;
         }
         if self.ensemble.as_ref().is_some_and(|ensemble| !ensemble.is_sound()) {
             return Err(Error::in_file(path, "the distribution over robots holds numbers that cannot be"));

@@ -14,6 +14,7 @@ use mindgap_learning::evolve::chance::Chance;
 use mindgap_logs::Scene;
 use mindgap_models::effects::CATALOGUE;
 use mindgap_models::effects::applied::AppliedEffect;
+use mindgap_models::effects::parameter::Setting;
 use mindgap_models::simulator::rollout::REACHED_CM;
 
 /// What a page is made of.
@@ -295,10 +296,17 @@ fn effects(trials: &[Trial]) -> Markup {
     }
 }
 
+fn told(setting: Setting) -> String {
+    match setting {
+        Setting::Number(value) => number(value, 3),
+        Setting::Side(_) => setting.to_string(),
+    }
+}
+
 fn cause(applied: &AppliedEffect) -> Markup {
     let known = words::cause(&applied.effect, CATALOGUE);
     let values: Vec<String> =
-        applied.parameters.iter().map(|(name, value)| format!("{name} {}", number(*value, 3))).collect();
+        applied.parameters.iter().map(|(name, setting)| format!("{name} {}", told(*setting))).collect();
     html! {
         article.card aria-labelledby={ "effect-" (applied.effect) } {
             h3 #{ "effect-" (applied.effect) } {

@@ -6,11 +6,12 @@ use std::path::{Path, PathBuf};
 
 use mindgap_diagnosis::{Method, findings};
 use mindgap_foundations::geometry::Pose;
+use mindgap_foundations::motion::Motion;
 use mindgap_logs::inspection::Inspection;
 use mindgap_logs::{Logs, Robot, Row, Run, Scene, Ultrasonic};
 use mindgap_models::effects::chain::EffectChain;
 use mindgap_models::effects::context::{RunHistory, Surroundings};
-use mindgap_models::effects::{CATALOGUE, Effect, PoseIncrement};
+use mindgap_models::effects::{CATALOGUE, Effect};
 use mindgap_models::simulator::kinematic;
 use mindgap_tests::command::Workshop;
 use serde::Deserialize;
@@ -168,11 +169,11 @@ pub fn the_loss_in_turns_of_a_real_robot_is_found_as_a_formula(folder: &Path) {
     let [effects @ .., formula] = applied.as_slice() else { panic!("something is applied") };
     assert!(effects.iter().all(|effect| effect.effect == "latency"), "{effects:?}");
     // What is lost in a step of 400 ms at 9 cm/s that turns by 0.16 rad.
-    let (candidate, values) = formula.resolve().expect("an effect");
+    let (candidate, values) = formula.resolve(&logs.robot).expect("an effect");
     let robot = Surroundings::new(&logs.robot, &logs.scene);
     let step = robot.context(&RunHistory::default(), 30_000.0, Pose::new(500.0, 500.0, 0.0));
-    let predicted = PoseIncrement { forward_cm: 3.5, lateral_cm: 0.0, turn_rad: 0.16 };
+    let predicted = Motion { forward: 3.5, lateral: 0.0, turn: 0.16 };
     let after = EffectChain::default().with(&[candidate.variant], &values).wrap(&step, |_, _| predicted);
-    let loss_cm_per_rad = (predicted.forward_cm - after.forward_cm) / 0.16;
+    let loss_cm_per_rad = (predicted.forward - after.forward) / 0.16;
     assert!((5.5..9.0).contains(&loss_cm_per_rad), "{loss_cm_per_rad} cm a radian");
 }

@@ -50,7 +50,7 @@ fn of(frequency: &Frequency, tally: &Tally) -> Option<Common> {
     })?;
     let medians: Vec<f64> = spreads.iter().map(|spread| three_digits(spread.median)).collect();
     Some(Common {
-        effect: AppliedEffect::new(&Candidate { effect: frequency.id, variant }, &medians),
+        effect: AppliedEffect::new(&Candidate { effect: frequency.id, variant }, &medians, tally.measures.as_ref()?),
         because: format!(
             "{} of {} robots whose logs could show it have it, as {form} {} of them; 95 % interval of the median {}: {} \
              to {}, which leaves out {}, where nothing would change; and it scatters little between robots",
@@ -72,17 +72,18 @@ fn is_the_same(parameter: &Parameter, spread: &Spread) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use std::collections::BTreeMap;
-
     use super::*;
     use crate::fleet::robot::{Cause, Robot};
+    use mindgap_built_in_robot::default_robot;
     use mindgap_diagnosis::diagnosis::Verdict;
     use mindgap_models::effects::CATALOGUE;
+    use mindgap_models::effects::parameter::Setting;
 
     /// Robots with a weak motor of these strengths, and so many without.
     fn fleet(losses: &[f64], healthy: usize) -> Tally {
         let mut tally = Tally::new(CATALOGUE);
         let robot = |effects| Robot {
+            measures: default_robot(),
             verdict: Verdict::Known,
             runs: 1,
             rows: 1,
@@ -93,7 +94,8 @@ mod tests {
             untestable: vec![],
         };
         for loss in losses {
-            let strength = Some(("command".into(), BTreeMap::from([("loss".into(), *loss)])));
+            let weak = Candidate::named("motor_asymmetry", "command").expect("an effect").variant;
+            let strength = Some((weak.id.into(), weak.settings(&[*loss], &default_robot())));
             let cause = Cause { id: "motor_asymmetry".into(), probability: 0.95, strength };
             tally.add("weak".into(), &robot(vec![cause]));
         }
@@ -105,8 +107,8 @@ mod tests {
     fn what_nearly_all_robots_have_alike_is_the_simulators_fault() {
         let alike = common(&fleet(&[0.1, 0.11, 0.12, 0.1, 0.09, 0.11, 0.1], 0));
         let [Common { effect, .. }] = alike.as_slice() else { panic!("{alike:?}") };
-        assert_eq!((effect.effect.as_str(), effect.parameters["loss"]), ("motor_asymmetry", 0.1));
-        assert!(effect.resolve().is_ok(), "a simulator takes it");
+        assert_eq!((effect.effect.as_str(), effect.parameters["factor"]), ("motor_asymmetry", Setting::Number(0.9)));
+        assert!(effect.resolve(&default_robot()).is_ok(), "a simulator takes it");
     }
 
     #[test]

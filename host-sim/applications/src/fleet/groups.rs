@@ -168,7 +168,17 @@ mod tests {
 
     fn with(budget: Vec<(String, f64, [f64; 2])>) -> Robot {
         let (verdict, gap_nats, closed, effects, untestable) = (Verdict::Known, None, None, vec![], vec![]);
-        Robot { verdict, runs: 1, rows: 1, gap_nats, closed, budget, effects, untestable }
+        Robot {
+            measures: mindgap_built_in_robot::default_robot(),
+            verdict,
+            runs: 1,
+            rows: 1,
+            gap_nats,
+            closed,
+            budget,
+            effects,
+            untestable,
+        }
     }
 
     fn sizes(tally: &Tally) -> Vec<usize> {

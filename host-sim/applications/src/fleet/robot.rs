@@ -1,16 +1,17 @@
 //! What is kept of one robot's diagnosis.
 
-use std::collections::BTreeMap;
-
 use serde::{Deserialize, Serialize};
 
 use mindgap_diagnosis::diagnosis::Verdict;
 use mindgap_diagnosis::explain::NamedEffect;
 use mindgap_diagnosis::request::Answered;
+use mindgap_models::effects::parameter::Settings;
 
 /// A robot of a fleet.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Robot {
+    /// Its dimensions.
+    pub measures: mindgap_logs::Robot,
     /// The answer in one word.
     pub verdict: Verdict,
     /// Number of its runs.
@@ -37,7 +38,7 @@ pub struct Cause {
     /// How probable it is.
     pub probability: f64,
     /// Its form and parameters, as a simulator takes them; none of scatter, which is no effect that could be added.
-    pub strength: Option<(String, BTreeMap<String, f64>)>,
+    pub strength: Option<(String, Settings)>,
 }
 
 impl Robot {
@@ -54,6 +55,7 @@ impl Robot {
                 .map(|applied| (applied.variant.clone(), applied.parameters.clone())),
         };
         Robot {
+            measures: logs.robot,
             verdict: diagnosis.verdict(),
             runs: logs.runs.len(),
             rows: logs.rows(),

@@ -203,11 +203,13 @@ mod tests {
 
     use super::*;
     use crate::fleet::robot::Cause;
+    use mindgap_models::effects::parameter::Setting;
 
     #[test]
     fn every_robot_has_a_row_and_one_a_part_of_its_gap() {
-        let strength = Some(("fast".into(), BTreeMap::from([("loss".into(), 0.25)])));
+        let strength = Some(("fast".into(), BTreeMap::from([("loss".into(), Setting::Number(0.25))])));
         let robot = Robot {
+            measures: mindgap_built_in_robot::default_robot(),
             verdict: Verdict::Known,
             runs: 24,
             rows: 900,

@@ -16,6 +16,8 @@ pub struct Tally {
     pub catalogue: &'static [&'static Effect],
     /// Parts of budgets: the effects in the order of the catalogue, scatter, unexplained.
     pub parts: Vec<&'static str>,
+    /// The dimensions of the first robot.
+    pub measures: Option<mindgap_logs::Robot>,
     /// Names of the robots that were diagnosed; what follows is in their order.
     pub names: Vec<String>,
     /// Their answers in one word.
@@ -64,6 +66,7 @@ impl Tally {
             catalogue,
             sightings: vec![Sightings::default(); parts.len()],
             parts,
+            measures: None,
             names: Vec::new(),
             verdicts: Vec::new(),
             gaps_nats: Vec::new(),
@@ -76,6 +79,7 @@ impl Tally {
     pub fn add(&mut self, name: String, robot: &Robot) {
         let place = self.names.len();
         self.names.push(name);
+        self.measures.get_or_insert(robot.measures);
         self.verdicts.push(robot.verdict);
         self.gaps_nats.push(robot.gap_nats);
         let mut budget = vec![0.0; self.parts.len()];
@@ -92,8 +96,7 @@ impl Tally {
             let Some(part) = self.part(&cause.id) else { continue };
             let strength = cause.strength.as_ref().and_then(|(variant, parameters)| {
                 let variant = self.catalogue.get(part)?.variants.iter().find(|known| known.id == variant)?;
-                let values = variant.parameters.iter().map(|parameter| parameters.get(parameter.name).copied());
-                Some((variant.id, values.collect::<Option<Vec<f64>>>()?))
+                Some((variant.id, variant.values(parameters, &robot.measures)?))
             });
             let sightings = &mut self.sightings[part];
             sightings.named += 1;

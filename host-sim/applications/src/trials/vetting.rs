@@ -131,7 +131,7 @@ impl Vetting<'_> {
     fn check_frame(&self, logs: &Logs) -> Result<()> {
         let Some(motion) = Baseline::learned(self.simulator)?.motion else { return Ok(()) };
         let observations = Observations::of(logs, None);
-        let effects = EffectChain::of(&self.simulator.added);
+        let effects = EffectChain::of(&self.simulator.added, &self.simulator.robot);
         let free = logs.runs.first().map_or(0, |run| self.free_rows(run));
         for row in observations.rows.iter().filter(|row| row.at + 1 < free) {
             let Some([forward, lateral, turn_rad]) = predictions::residual(&effects, &motion, row) else { continue };

@@ -156,7 +156,7 @@ fn what_effects_explain_that_the_simulator_has_already_is_known() {
         FitContext::new(&baseline, &rows, METHOD).explained_already
     };
     assert_eq!(explained(Vec::new()), [0.0; 5]);
-    let [forward, others @ ..] = explained(vec![AppliedEffect::new(&faster, &[1.4])]);
+    let [forward, others @ ..] = explained(vec![AppliedEffect::new(&faster, &[1.4], &robot())]);
     assert!(forward > 20.0 && others == [0.0; 4], "{forward} {others:?}");
 }
 

@@ -29,7 +29,7 @@ pub struct Evidence {
 
 /// The evidence for each of the chosen effects; none of one whose rows are too few for a table.
 pub fn evidence(found: &Comparison, context: &FitContext) -> Vec<Evidence> {
-    let applied = found.chosen.applied();
+    let applied = found.chosen.applied(&context.baseline.robot);
     let residuals = |channel, effects: &EffectChain| off(channel, effects, context.baseline, context.observations);
     let with = Channel::ALL.map(|channel| residuals(channel, &found.chosen.effects()));
     let of = |place: usize| {
@@ -51,7 +51,10 @@ type Known<'r> = (&'r Observation, [f64; 2]);
 /// The effects of a fit except one, behind those that the simulator has.
 fn chain_without(applied: &[AppliedEffect], place: usize, context: &FitContext) -> EffectChain {
     let others = applied.iter().enumerate().filter(|(other, _)| *other != place).map(|(_, effect)| effect);
-    EffectChain::of(&context.baseline.applied.iter().chain(others).cloned().collect::<Vec<_>>())
+    EffectChain::of(
+        &context.baseline.applied.iter().chain(others).cloned().collect::<Vec<_>>(),
+        &context.baseline.robot,
+    )
 }
 
 /// The tables along the covariate where the effect brings predictions nearest to what was logged, and by how much.

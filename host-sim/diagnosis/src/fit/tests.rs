@@ -203,9 +203,9 @@ fn given_effects_are_taken_as_they_are() {
     let context = FitContext::new(&baseline, &rows, METHOD);
     // Steps of 5 cm that come out 0.5 cm longer.
     let scale = Candidate::named("drive_scale", "distance").expect("in the catalogue");
-    let given = Fitted::given(&[AppliedEffect::new(&scale, &[1.1])], &context);
+    let given = Fitted::given(&[AppliedEffect::new(&scale, &[1.1], &robot())], &context);
     assert_eq!((given.ids(), given.values.as_slice()), (vec!["drive_scale"], &[1.1][..]));
     let expected = 32.0 * (log_density(0, 0.0, 1.0) - log_density(0, 0.5, 1.0));
     assert!((given.gain_over(&Fitted::none(&context)).nats - expected).abs() < 1e-9);
-    assert_eq!(given.applied(), [AppliedEffect::new(&scale, &[1.1])]);
+    assert_eq!(given.applied(&robot()), [AppliedEffect::new(&scale, &[1.1], &robot())]);
 }

@@ -30,7 +30,7 @@ fn driven_by(seed: u64, blocks: usize, law: fn(f64, f64) -> f64) -> Observations
         let (mean, half, heading, mut off) = draws[block * ROWS + at];
         let commands = [[mean - half, mean + half]; 2];
         let predicted = drive.step(commands[0], commands[1]);
-        off[0] += law(predicted.forward_cm, predicted.turn_rad);
+        off[0] += law(predicted.forward, predicted.turn);
         Made { commands, pose: Pose::new(150.0, 100.0, heading), off, ..Made::default() }
     })
 }
@@ -116,7 +116,7 @@ fn a_formula_is_an_own_effect() {
     mindgap_files::write(&path, own::to_text(&formula.definition)).expect("a file");
     let read = own::read(&path).expect("a file of effects");
     assert!(std::ptr::eq(&read[0].variants[0], formula.fitted.hypothesis.candidates[0].variant));
-    let applied = formula.fitted.applied();
+    let applied = formula.fitted.applied(&robot());
     assert_eq!(applied[0].definition.as_ref(), Some(&formula.definition));
 }
 

@@ -81,7 +81,7 @@ fn channels_are_the_columns_and_their_sum_the_total() {
 #[test]
 fn effects_that_the_simulator_has_already_act_beneath_every_hypothesis() {
     let scale = mindgap_models::effects::Candidate::named("drive_scale", "distance").expect("in the catalogue");
-    let with_scale = Baseline { applied: vec![AppliedEffect::new(&scale, &[1.1])], ..baseline() };
+    let with_scale = Baseline { applied: vec![AppliedEffect::new(&scale, &[1.1], &robot())], ..baseline() };
     let rows = observations(1, 4, |_, _| Made { off: [0.5, 0.0, 0.0], ..Made::default() });
     let none = Hypothesis::none(&with_scale);
     assert!(none.candidates.is_empty() && !none.moves());

@@ -7,11 +7,12 @@ use crate::channel::Channel;
 use crate::fit::{FitContext, Fitted};
 use crate::own_error::FARTHEST;
 use crate::residual_law::{fitted_scatter, log_density};
+use mindgap_foundations::motion::Motion;
 use mindgap_foundations::statistics::summary::root_mean_square;
 use mindgap_learning::evaluation::observations::{Observation, Observations};
 use mindgap_learning::evaluation::predictions::{increment, residual};
+use mindgap_models::effects::StepContext;
 use mindgap_models::effects::chain::EffectChain;
-use mindgap_models::effects::{PoseIncrement, StepContext};
 use mindgap_models::simulator::baseline::{Baseline, MotionModel};
 
 /// The density of a residual.
@@ -55,7 +56,7 @@ pub fn fit(channel: Channel, axis: usize, beneath: &Fitted, context: &FitContext
     let rest = beyond(&residuals, &predictions);
     let (further_variance, shares) = scatter_nearby(&of_axis, |_, i| rest[i].unwrap_or(0.0) / scatter);
     let shares = of_axis.of_all(&shares, 1.0);
-    let least = baseline.motion.as_ref().map_or(1.0, |drive| drive.scatter()[axis]);
+    let least = baseline.motion.as_ref().map_or(1.0, |drive| drive.scatter().into_array()[axis]);
     let scatter = even_scatter(axis, rows, &rest, &shares, least);
     let least_share = least / scatter;
     let own_shares = shares.into_iter().map(|share| share.max(least_share)).collect();
@@ -86,7 +87,7 @@ fn without_own_error(
     let foretold = || {
         let own = context.own_errors.as_ref()?.foretold(axis, &rows.rows, residuals)?;
         let (rest, alike) = (beyond(residuals, &own), vec![1.0; rows.rows.len()]);
-        let least = context.baseline.motion.as_ref()?.scatter()[axis];
+        let least = context.baseline.motion.as_ref()?.scatter().into_array()[axis];
         let scatter = even_scatter(axis, rows, &rest, &alike, least);
         Some((terms(axis, scatter, rows, &rest, &alike), own))
     };
@@ -143,7 +144,7 @@ fn residuals(axis: usize, effects: &EffectChain, baseline: &Baseline, rows: &Obs
 /// Root mean square of what is expected of steps; one where nothing is.
 fn usual_way_cm(effects: &EffectChain, baseline: &Baseline, rows: &Observations) -> f64 {
     let Some(drive) = &baseline.motion else { return 1.0 };
-    let ways_cm = rows.rows.iter().map(|row| increment(effects, drive, row).forward_cm);
+    let ways_cm = rows.rows.iter().map(|row| increment(effects, drive, row).forward);
     let usual_cm = root_mean_square(ways_cm);
     if usual_cm > 0.0 { usual_cm } else { 1.0 }
 }
@@ -163,11 +164,11 @@ fn of_row(effects: &EffectChain, drive: &MotionModel, row: &Observation, usual_w
 
 /// Commands now, before, and two back, whose products with each other make every change of command besides; heading;
 /// time; place; and the motion that is predicted.
-fn of_step(step: &StepContext, predicted: &PoseIncrement, share: f64, usual_way_cm: f64) -> Circumstances {
+fn of_step(step: &StepContext, predicted: &Motion<f64>, share: f64, usual_way_cm: f64) -> Circumstances {
     let [[left, right], [left_1, right_1], [left_2, right_2], ..] = step.commands;
     let direction = step.pose.direction();
     let position_cm = step.pose.position_cm;
-    let way_cm = share * predicted.forward_cm;
+    let way_cm = share * predicted.forward;
     let covariates = vec![
         left,
         right,
@@ -181,7 +182,7 @@ fn of_step(step: &StepContext, predicted: &PoseIncrement, share: f64, usual_way_
         position_cm.x,
         position_cm.y,
         way_cm,
-        share * predicted.turn_rad,
+        share * predicted.turn,
     ];
     // What a floor does to a step shows in proportion to its way.
     Circumstances { covariates, spot: Some(Spot { position_cm, weight: way_cm / usual_way_cm }) }

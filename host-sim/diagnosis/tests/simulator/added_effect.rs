@@ -1,9 +1,10 @@
 //! A further effect is a file, here [`turning_loss`](crate::turning_loss), and a line.
 
 use mindgap_diagnosis::{Method, findings};
+use mindgap_foundations::motion::Motion;
 use mindgap_logs::Logs;
 use mindgap_logs::inspection::Inspection;
-use mindgap_models::effects::{CATALOGUE, Effect, PoseIncrement};
+use mindgap_models::effects::{CATALOGUE, Effect};
 use mindgap_models::simulator::baseline::Baseline;
 
 use crate::{SIMULATOR, logs, turning_loss};
@@ -25,9 +26,9 @@ pub fn with_turning_loss(mut logs: Logs) -> Logs {
         run.rows.edit_poses(|pose| {
             let logged = *pose;
             let altered = last.map_or(logged, |(logged_before, altered_before)| {
-                let mut increment = PoseIncrement::between(&logged_before, &logged);
-                increment.forward_cm *= 1.0 - LOSS_PER_RAD_S * (increment.turn_rad / step_s).abs();
-                increment.from(&altered_before)
+                let mut increment = Motion::between(&logged_before, &logged);
+                increment.forward *= 1.0 - LOSS_PER_RAD_S * (increment.turn / step_s).abs();
+                increment.end(&altered_before)
             });
             last = Some((logged, altered));
             *pose = altered;

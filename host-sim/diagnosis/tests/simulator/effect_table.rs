@@ -7,9 +7,13 @@ use mindgap_models::effects::{CATALOGUE, Candidate, Parameter};
 const HEADER: &str = "| effect | variant | parameters |\n| --- | --- | --- |\n";
 
 fn row(candidate: Candidate) -> String {
-    let parameter = |p: &Parameter| match p.unit {
-        "" => format!("`{}`", p.name),
-        unit => format!("`{}` ({unit})", p.name),
+    let parameter = |p: &Parameter| {
+        let (name, has_side) = p.setting();
+        let side = if has_side { "`side`, " } else { "" };
+        match p.unit {
+            unit if name == p.name && !unit.is_empty() => format!("`{name}` ({unit})"),
+            _ => format!("{side}`{name}`"),
+        }
     };
     let parameters: Vec<String> = candidate.variant.parameters.iter().map(parameter).collect();
     format!("| `{}` | `{}` | {} |\n", candidate.effect, candidate.variant.id, parameters.join(", "))

@@ -34,7 +34,7 @@ fn variant(id: &str) -> Candidate {
 /// The same at the values that change nothing.
 fn nominal(id: &str) -> AppliedEffect {
     let candidate = variant(id);
-    AppliedEffect::new(&candidate, &candidate.variant.nominal())
+    AppliedEffect::new(&candidate, &candidate.variant.nominal(), &SIMULATOR.robot)
 }
 
 /// Forty runs round a small circle, which no reading ends.
@@ -99,7 +99,8 @@ fn an_effect_that_changes_nothing_changes_no_motion_and_no_reading() {
     let before = circling(&SIMULATOR);
     for candidate in Candidate::all(CATALOGUE) {
         let name = format!("{}: {}", candidate.effect, candidate.variant.id);
-        let after = circling(&with(vec![AppliedEffect::new(&candidate, &candidate.variant.nominal())]));
+        let after =
+            circling(&with(vec![AppliedEffect::new(&candidate, &candidate.variant.nominal(), &SIMULATOR.robot)]));
         let farthest_cm = side_by_side(&before, &after).map(|(a, b)| distance_cm(a, b)).fold(0.0, f64::max);
         assert!(farthest_cm < 1e-6, "{name}: {farthest_cm} cm");
         let farther_cm = reads_farther_cm(&before, &after);
@@ -111,7 +112,7 @@ fn an_effect_that_changes_nothing_changes_no_motion_and_no_reading() {
 fn an_effect_changes_runs_as_it_says_and_the_same_seed_repeats_them() {
     let before = circling(&SIMULATOR);
     let after = |id: &str, values: &[f64]| {
-        let changed = with(vec![AppliedEffect::new(&variant(id), values)]);
+        let changed = with(vec![AppliedEffect::new(&variant(id), values, &SIMULATOR.robot)]);
         let after = circling(&changed);
         assert_eq!(after, circling(&changed), "{id}");
         after
@@ -143,7 +144,7 @@ fn an_effect_changes_runs_as_it_says_and_the_same_seed_repeats_them() {
 fn what_no_effect_could_be_is_refused() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("sim.json");
-    let wrong = AppliedEffect::new(&variant("sonar_offset"), &[1e6]);
+    let wrong = AppliedEffect::new(&variant("sonar_offset"), &[1e6], &SIMULATOR.robot);
     with(vec![wrong]).write(&path).expect("a file");
     let refusal = Simulator::read(&path).expect_err("no such offset").to_string();
     assert!(refusal.contains("sonar_offset"), "{refusal}");
@@ -165,7 +166,7 @@ fn a_controllers_ends_are_foretold_better_with_the_effect() {
     };
     let runs = (0..8).map(&mut drive).collect();
     let logs = Logs { robot: default_robot(), scene: scene.clone(), runs };
-    let better = with(vec![AppliedEffect::new(&variant("drive_scale"), &[1.15])]);
+    let better = with(vec![AppliedEffect::new(&variant("drive_scale"), &[1.15], &SIMULATOR.robot)]);
     let found = final_position_errors([&SIMULATOR, &better], &controller, &logs, 1).expect("poses at both ends");
     assert_eq!(found.runs, 8);
     assert!(found.after_cm < 0.7 * found.before_cm && found.floor_cm > 0.0, "{found:?}");

@@ -6,6 +6,7 @@ use glam::DVec2;
 use mindgap_built_in_robot::default_robot;
 use mindgap_diagnosis::diagnose;
 use mindgap_foundations::geometry::{Pose, Wall, direction, wrap_rad};
+use mindgap_foundations::motion::Motion;
 use mindgap_foundations::random::generator;
 use mindgap_learning::evaluation::predictions;
 use mindgap_logs::{Logs, Row, Run, Scene};
@@ -40,7 +41,7 @@ fn late_and_losing() -> Logs {
         .unzip();
     let chain = EffectChain::default().with(&variants, &values.concat());
     let robot = default_robot();
-    let drive = MotionModel::Kinematic { robot, scatter: [0.1; 3] };
+    let drive = MotionModel::Kinematic { robot, scatter: Motion::splat(0.1) };
     let scene = Scene { arena_cm: Some(DVec2::splat(2000.0)), ..Scene::default() };
     let surroundings = Surroundings::new(&robot, &scene);
     let run = |number: u64| {
@@ -57,7 +58,7 @@ fn late_and_losing() -> Logs {
             let t_ms = step as f64 * robot.step_ms;
             let context = surroundings.context(&history, t_ms, pose);
             history.leave(Some(&context), None);
-            pose = predictions::step(&chain, &drive, &context).from(&pose);
+            pose = predictions::step(&chain, &drive, &context).end(&pose);
             Row { t_ms, left: command[0], right: command[1], pose: Some(seen), ..Row::default() }
         };
         Run { name: format!("run-{number:03}"), rows: (0..60).map(row).collect() }

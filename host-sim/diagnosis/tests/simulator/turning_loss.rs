@@ -12,8 +12,8 @@ pub const EFFECT: Effect = Effect {
         id: "with_turn_rate",
         parameters: &[LOSS],
         hooks: &[Hook::Motion(&|v, context, increment| {
-            let turn_rad_s = increment.turn_rad.abs() / context.step_s();
-            increment.forward_cm *= (1.0 - v[0] * turn_rad_s).max(0.0);
+            let turn_rad_s = increment.turn.abs() / context.step_s();
+            increment.forward *= (1.0 - v[0] * turn_rad_s).max(0.0);
         })],
     }],
 };

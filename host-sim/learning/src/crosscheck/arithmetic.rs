@@ -9,6 +9,7 @@ use rand::Rng;
 
 use crate::learn::dataset::{Dataset, Datasets};
 use mindgap_foundations::error::{Error, Result};
+use mindgap_foundations::motion::Motion;
 use mindgap_models::simulator::Simulator;
 use mindgap_models::simulator::fixed_point::FixedNetworks;
 
@@ -17,9 +18,8 @@ pub trait Arithmetic: Sync {
     /// A reading in cm.
     type Reading: PartialOrd + From<i16> + Copy + Into<f64>;
 
-    /// Way forward (cm), way to the left (cm) and turn (degrees) of a step, drawn, for left, right, previous left and
-    /// previous right command.
-    fn motion(&self, speeds: [i8; 4], generator: &mut Generator) -> [f64; 3];
+    /// Draws the motion of a step, its turn in degrees, for left, right, previous left and previous right command.
+    fn motion(&self, speeds: [i8; 4], generator: &mut Generator) -> Motion<f64>;
 
     /// The reading, if there is one, for D (cm) and α (degrees), drawn and brought into the sensor's range.
     fn reading(&self, faced: [f64; 2], generator: &mut Generator) -> Option<Self::Reading>;
@@ -87,10 +87,10 @@ impl<'s> Fixed<'s> {
 impl Arithmetic for Float {
     type Reading = f64;
 
-    fn motion(&self, speeds: [i8; 4], generator: &mut Generator) -> [f64; 3] {
+    fn motion(&self, speeds: [i8; 4], generator: &mut Generator) -> Motion<f64> {
         let speeds = speeds.map(f32::from);
         let Scatter { turn_deg, forward_cm, lateral_cm, .. } = self.scatter;
-        [(&self.forward, forward_cm), (&self.lateral, lateral_cm), (&self.turn, turn_deg)]
+        Motion::from([(&self.forward, forward_cm), (&self.lateral, lateral_cm), (&self.turn, turn_deg)])
             .map(|(network, deviation)| float_normal(network.evaluate(speeds), deviation, generator))
     }
 
@@ -106,11 +106,11 @@ impl Arithmetic for Float {
 impl Arithmetic for Fixed<'_> {
     type Reading = I16F16;
 
-    fn motion(&self, speeds: [i8; 4], generator: &mut Generator) -> [f64; 3] {
+    fn motion(&self, speeds: [i8; 4], generator: &mut Generator) -> Motion<f64> {
         let speeds = speeds.map(I16F16::from);
         let FixedNetworks { forward, lateral, turn, .. } = self.networks;
         let Scatter { turn_deg, forward_cm, lateral_cm, .. } = self.scatter;
-        [(forward, forward_cm), (lateral, lateral_cm), (turn, turn_deg)].map(|(network, deviation)| {
+        Motion::from([(forward, forward_cm), (lateral, lateral_cm), (turn, turn_deg)]).map(|(network, deviation)| {
             let mean = network.network.evaluate(speeds).value;
             normal(mean, I16F16::saturating_from_num(deviation), generator).into()
         })

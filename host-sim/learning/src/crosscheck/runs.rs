@@ -184,7 +184,7 @@ impl<'a, A: Arithmetic> Walker<'a, A> {
         let now = self.machine.motors();
         let speeds = [now.left, now.right, self.previous.left, self.previous.right];
         self.previous = now;
-        let [forward_cm, lateral_cm, turn_deg] = self.arithmetic.motion(speeds, generator);
+        let [forward_cm, lateral_cm, turn_deg] = self.arithmetic.motion(speeds, generator).into_array();
         let from_cm = self.pose.position_cm;
         self.pose = self.pose.compose(&Pose::new(forward_cm, lateral_cm, turn_deg.to_radians()));
         self.crashed = world.room.touch(from_cm, self.pose.position_cm, world.robot.body_radius_cm).is_some();

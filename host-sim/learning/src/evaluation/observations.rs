@@ -5,9 +5,11 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use mindgap_foundations::geometry::{Pose, first_hit};
-use mindgap_logs::{Logs, Run, samples};
+use mindgap_foundations::motion::Motion;
+use mindgap_logs::samples::{self, MotionSample};
+use mindgap_logs::{Logs, Run};
+use mindgap_models::effects::StepContext;
 use mindgap_models::effects::context::{RunHistory, Surroundings};
-use mindgap_models::effects::{PoseIncrement, StepContext};
 use mindgap_models::simulator::baseline::MotionModel;
 use mindgap_models::sonar::familiar::{FamiliarPoses, Recollection};
 use mindgap_models::sonar::place::{Place, place_of};
@@ -54,9 +56,9 @@ pub struct Observation {
     /// poses are not known.
     pub then: Vec<StepContext>,
     /// What the step did, or those that are judged as one, where their end was seen too.
-    pub motion: Option<PoseIncrement>,
+    pub motion: Option<Motion<f64>>,
     /// What the simulator expects of the commands as logged, once [`Observations::expect`] has asked it.
-    pub expected: Option<PoseIncrement>,
+    pub expected: Option<Motion<f64>>,
     /// What the sensor said.
     pub echo_cm: Option<f64>,
     /// What the law of the sensor looks at from here if nothing is changed.
@@ -92,14 +94,10 @@ impl Observations {
             for (k, (row, context)) in logged.rows.iter().zip(&contexts).enumerate() {
                 let (Some(pose), Some(context)) = (row.pose, context) else { continue };
                 let step = steps.next_if(|s| (s.run, s.row) == (run, k));
-                let motion = step.map(|s| PoseIncrement {
-                    forward_cm: s.forward_cm,
-                    lateral_cm: s.lateral_cm,
-                    turn_rad: s.turn_rad,
-                });
+                let motion = step.map(MotionSample::motion);
                 let until = (k + 1..logged.rows.len()).find(|i| logged.rows.at(*i).pose.is_some());
                 let way_until = until.filter(|_| whole_ways);
-                let motion = motion.or_else(|| Some(PoseIncrement::between(&pose, &logged.rows.at(way_until?).pose?)));
+                let motion = motion.or_else(|| Some(Motion::between(&pose, &logged.rows.at(way_until?).pose?)));
                 let until_ms = logged.rows.get(k + 1).map_or(row.t_ms, |next| next.t_ms);
                 let block = run * parts + k * parts / logged.rows.len();
                 rows.push(Observation {

@@ -78,7 +78,7 @@ impl Rollouts<'_> {
     pub fn paths(&self, logs: &Observations, seed: u64) -> Vec<Paths> {
         let stream = seed.wrapping_add(STREAM);
         let (mut floor, mut foretold) = (generator(stream, &[]), generator(stream, &[1]));
-        let noise = [self.drive.scatter(), self.scatter].map(|scatter| Noise::of(self.drive, scatter));
+        let noise = [self.drive.scatter().into_array(), self.scatter].map(|scatter| Noise::of(self.drive, scatter));
         let of_length = |steps| {
             let starts = (0..logs.rows.len().saturating_sub(steps)).step_by(steps.div_ceil(2));
             let pieces = starts.map(|i| &logs.rows[i..=i + steps]).filter(|piece| is_unbroken(piece));
@@ -150,8 +150,8 @@ fn end(
     for row in &piece[..piece.len() - 1] {
         let motion = predictions::step(effects, drive, &StepContext { pose, ..row.context });
         let [forward, lateral, turn] = scatter();
-        let way = [motion.forward_cm + forward, motion.lateral_cm + lateral].map(|w| w * row.stretch);
-        pose = pose.compose(&Pose::new(way[0], way[1], (motion.turn_rad + turn) * row.stretch));
+        let way = [motion.forward + forward, motion.lateral + lateral].map(|w| w * row.stretch);
+        pose = pose.compose(&Pose::new(way[0], way[1], (motion.turn + turn) * row.stretch));
     }
     pose.position_cm
 }
@@ -167,7 +167,7 @@ struct Noise {
 impl Noise {
     /// Of steps that scatter so much; what they do beyond the drive's is the robot's own.
     fn of(drive: &MotionModel, scatter: [f64; 3]) -> Self {
-        let (all, own) = (drive.scatter(), drive.process_noise_fraction());
+        let (all, own) = (drive.scatter().into_array(), drive.process_noise_fraction().into_array());
         let tracker = [0, 1, 2].map(|c| all[c] * (1.0 - own[c] * own[c]).max(0.0).sqrt());
         let further = |c: usize| (scatter[c] * scatter[c] - all[c] * all[c]).max(0.0);
         let robot = [0, 1, 2].map(|c| libm::hypot(all[c] * own[c], further(c).sqrt()));

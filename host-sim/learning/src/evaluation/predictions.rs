@@ -5,9 +5,10 @@ use std::borrow::Cow;
 use super::observations::{Observation, Observations};
 use mindgap_foundations::error::Result;
 use mindgap_foundations::geometry::wrap_rad;
+use mindgap_foundations::motion::Motion;
 use mindgap_logs::Logs;
 use mindgap_models::effects::chain::EffectChain;
-use mindgap_models::effects::{PoseIncrement, SensorState, StepContext};
+use mindgap_models::effects::{SensorState, StepContext};
 use mindgap_models::simulator::Simulator;
 use mindgap_models::simulator::baseline::{Baseline, MotionModel};
 use mindgap_models::sonar::familiar::{self, Familiarity};
@@ -35,14 +36,14 @@ pub struct Predictions {
 pub fn predict(simulator: &Simulator, logs: &Logs) -> Result<Predictions> {
     let baseline = Baseline::learned(simulator)?;
     let observations = Observations::of(logs, baseline.sonar.as_ref());
-    let effects = EffectChain::of(&baseline.applied);
+    let effects = baseline.chain();
     let mut all = Predictions::default();
     for row in &observations.rows {
         if let (Some(drive), Some(logged)) = (&baseline.motion, &row.motion) {
             let predicted = increment(&effects, drive, row);
-            all.forward.push([logged.forward_cm, predicted.forward_cm]);
-            all.lateral.push([logged.lateral_cm, predicted.lateral_cm]);
-            all.turn.push([logged.turn_rad, predicted.turn_rad].map(f64::to_degrees));
+            all.forward.push([logged.forward, predicted.forward]);
+            all.lateral.push([logged.lateral, predicted.lateral]);
+            all.turn.push([logged.turn, predicted.turn].map(f64::to_degrees));
         }
         if row.context.faced.is_some()
             && let Some(faced) = facing(&effects, &observations, row)
@@ -58,12 +59,12 @@ pub fn predict(simulator: &Simulator, logs: &Logs) -> Result<Predictions> {
 }
 
 /// The predicted increment of one step.
-pub fn step(effects: &EffectChain, drive: &MotionModel, context: &StepContext) -> PoseIncrement {
+pub fn step(effects: &EffectChain, drive: &MotionModel, context: &StepContext) -> Motion<f64> {
     effects.wrap(context, |now, before| drive.step(now, before))
 }
 
 /// The predicted increment of a row's step, or of the steps that are judged as one.
-pub fn increment(effects: &EffectChain, drive: &MotionModel, row: &Observation) -> PoseIncrement {
+pub fn increment(effects: &EffectChain, drive: &MotionModel, row: &Observation) -> Motion<f64> {
     let usual = [row.context.commands[0], row.context.commands[1]];
     let first = effects.wrap(&row.context, |now, before| match row.expected {
         Some(expected) if usual == [now, before] => expected,
@@ -76,19 +77,16 @@ pub fn increment(effects: &EffectChain, drive: &MotionModel, row: &Observation) 
     let end = row
         .then
         .iter()
-        .fold(first.from(start), |pose, context| step(effects, drive, &StepContext { pose, ..*context }).from(&pose));
-    PoseIncrement::between(start, &end)
+        .fold(first.end(start), |pose, context| step(effects, drive, &StepContext { pose, ..*context }).end(&pose));
+    Motion::between(start, &end)
 }
 
 /// Logged minus predicted of a row, a step: forward (cm), lateral (cm), turn (rad).
 pub fn residual(effects: &EffectChain, drive: &MotionModel, row: &Observation) -> Option<[f64; 3]> {
     let logged = row.motion?;
     let predicted = increment(effects, drive, row);
-    let off = [
-        logged.forward_cm - predicted.forward_cm,
-        logged.lateral_cm - predicted.lateral_cm,
-        wrap_rad(logged.turn_rad - predicted.turn_rad),
-    ];
+    let off = logged - predicted;
+    let off = [off.forward, off.lateral, wrap_rad(off.turn)];
     // Independent noise adds up over steps that are judged as one.
     let steps = (1 + row.then.len()) as f64;
     Some(off.map(|off| off / steps.sqrt()))

@@ -31,7 +31,9 @@ const MOSTLY: f64 = 0.5;
 pub fn weighed(mut observations: Observations, baseline: &Baseline) -> Observations {
     if let Some(motion) = baseline.motion.as_ref().filter(|motion| motion.is_learned()) {
         let cells = |row: &Observation| commands(row).map(|command| cell(motion.percent(command)));
-        weigh_motion(&mut observations.rows, motion.scatter(), cells, |now, before| motion.own_error(now, before));
+        weigh_motion(&mut observations.rows, motion.scatter().into_array(), cells, |now, before| {
+            motion.own_error(now, before).into_array()
+        });
         fold_together(&mut observations.rows, cells);
     }
     weigh_echoes(&mut observations, baseline.place_bound);

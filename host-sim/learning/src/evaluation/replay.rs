@@ -61,8 +61,7 @@ impl<'a> Player<'a> {
             if let (Some(step), Some(drive), Some(next)) = (&step, &self.baseline.motion, run.rows.get(k + 1)) {
                 let stretch = (next.t_ms - row.t_ms) / self.step_ms;
                 let motion = predictions::step(effects, drive, step);
-                let [forward_cm, lateral_cm] = [motion.forward_cm, motion.lateral_cm].map(|way| way * stretch);
-                at = Some(step.pose.compose(&Pose::new(forward_cm, lateral_cm, motion.turn_rad * stretch)));
+                at = Some(motion.scaled(stretch).end(&step.pose));
                 since += 1;
             }
             history.leave(step.as_ref(), echo_cm);

@@ -7,6 +7,7 @@ pub mod noise;
 use rayon::prelude::*;
 
 use holds::{StepResidual, holds};
+use mindgap_foundations::motion::{Axis, Motion};
 use mindgap_logs::{Logs, Robot, samples};
 use mindgap_models::simulator::Simulator;
 use mindgap_models::simulator::ensemble::basis::{CHANGE, unit_factor};
@@ -53,13 +54,13 @@ fn without_each_fold(pieces: &[&[StepResidual]], plain: &Ensemble, said: Held) -
 fn given(steps: &[StepResidual], said: Held, noise: MotionNoise) -> Ensemble {
     let evidence = by_cell(holds(steps).iter().map(|hold| hold.evidence(&noise, said)), said.scale());
     let factor = unit_factor();
-    let typical = |channel: usize| {
-        let variances = evidence.iter().map(|e| noise.step_variance(e.motion(said), channel));
+    let typical = |axis: Axis| {
+        let variances = evidence.iter().map(|e| noise.step_variance(e.motion(said), axis));
         (variances.sum::<f64>() / evidence.len().max(1) as f64).sqrt()
     };
-    let sizes = |channel: usize| sizes(&Likelihood::new(&factor, &evidence, &noise, said, channel), typical(channel));
-    let prior: Vec<[f64; PARTS]> = (0..3).into_par_iter().map(sizes).collect();
-    Ensemble { prior: [prior[0], prior[1], prior[2]], noise, evidence }
+    let sizes = |axis: Axis| sizes(&Likelihood::new(&factor, &evidence, &noise, said, axis), typical(axis));
+    let prior: Vec<[f64; PARTS]> = Axis::ALL.into_par_iter().map(sizes).collect();
+    Ensemble { prior: Motion::from_fn(|axis| prior[axis as usize]), noise, evidence }
 }
 
 /// A distribution with what further runs say of the robot, which may have changed since the training logs; `said` is what its
@@ -71,11 +72,11 @@ pub fn conditioned(ensemble: &Ensemble, robot: &Robot, said: Held, steps: &[Step
     ensemble.evidence.extend(more);
     let factor = unit_factor();
     let cells = by_cell(ensemble.evidence.iter().copied(), said.scale());
-    for (channel, prior) in ensemble.prior.iter_mut().enumerate() {
-        let likelihood = Likelihood::new(&factor, &cells, &ensemble.noise, said, channel);
+    for (axis, prior) in Axis::ALL.into_iter().zip(ensemble.prior.iter_mut()) {
+        let likelihood = Likelihood::new(&factor, &cells, &ensemble.noise, said, axis);
         let of = |change: f64| {
             let mut prior = *prior;
-            prior[CHANGE] = change * full(robot)[channel];
+            prior[CHANGE] = change * full(robot)[axis];
             (likelihood.log_evidence(&prior), prior)
         };
         let (_, likeliest) = CHANGES
@@ -87,10 +88,10 @@ pub fn conditioned(ensemble: &Ensemble, robot: &Robot, said: Held, steps: &[Step
     ensemble
 }
 
-/// What one wheel at full command moves a robot in a step: forward (cm), lateral (cm), turn (degrees).
-fn full(robot: &Robot) -> [f64; 3] {
+/// How far one wheel at full command moves a robot in a step; the turn is in degrees.
+fn full(robot: &Robot) -> Motion<f64> {
     let way_cm = robot.full_speed_cm_s * robot.step_ms / 1000.0;
-    [0.5 * way_cm, 0.0, (way_cm / robot.track_cm).to_degrees()]
+    Motion { forward: 0.5 * way_cm, lateral: 0.0, turn: way_cm / robot.track_cm }.turn_in_degrees()
 }
 
 /// What the networks leave of every step of training logs.
@@ -98,8 +99,7 @@ fn residuals(simulator: &Simulator, logs: &Logs) -> Option<Vec<StepResidual>> {
     let networks = simulator.motion_networks()?;
     let known = simulator.reference.as_ref()?.motion.as_ref()?;
     let residual = |s: &samples::MotionSample| {
-        let (off, correction) = (networks.residual(s), known.correction(&s.speeds));
-        StepResidual::new([s.run, s.row], s.speeds, [0, 1, 2].map(|c| off[c] - correction[c]), known)
+        StepResidual::new(s.id(), s.speeds, networks.residual(s) - known.correction(&s.speeds), known)
     };
     Some(samples::motion(logs).iter().map(residual).collect())
 }
@@ -142,21 +142,21 @@ mod tests {
         let posterior = Posterior::new(&ensemble, &networks).expect("a posterior");
         let fresh = record(&default_robot(), &training_room(), 40, 60, &[], 4).expect("room to drive");
         let steps = residuals(&simulator, &fresh).expect("residuals");
-        let mut squares = [0.0; 3];
+        let mut squares = Motion::ZERO;
         let held: Vec<holds::Hold> = holds(&steps).into_iter().filter(|hold| !hold.first).collect();
         for hold in &held {
             let motion = posterior.motion(hold.command);
-            for channel in 0..3 {
-                let [mean, deviation] = motion[channel];
+            for axis in Axis::ALL {
+                let [mean, deviation] = motion[axis];
                 let evidence = hold.evidence(&ensemble.noise, &networks);
-                let variance = deviation * deviation + f64::from(evidence.variance[channel]);
-                let off = evidence.motion(&networks)[channel] - mean;
-                squares[channel] += off * off / variance;
+                let variance = deviation * deviation + f64::from(evidence.variance[axis]);
+                let off = evidence.motion(&networks)[axis] - mean;
+                squares[axis] += off * off / variance;
             }
         }
-        for (channel, squares) in squares.iter().enumerate() {
+        for (axis, squares) in Axis::ALL.into_iter().zip(squares) {
             let ratio = squares / held.len() as f64;
-            assert!((0.6..1.5).contains(&ratio), "channel {channel}: {ratio}");
+            assert!((0.6..1.5).contains(&ratio), "{axis:?}: {ratio}");
         }
     }
 }

@@ -1,6 +1,7 @@
 //! Learns what is normal beyond the networks: the yardstick of the gap.
 
 use super::{beam, familiar, place_bound, sensor_law};
+use mindgap_foundations::motion::{Axis, Motion};
 use mindgap_foundations::statistics::ridge;
 use mindgap_foundations::statistics::summary::root_mean_square;
 use mindgap_logs::{Logs, samples};
@@ -53,23 +54,19 @@ fn motion(simulator: &Simulator, logs: &Logs) -> Option<MotionBias> {
     let parts = if logs.runs.len() < FOLDS { FOLDS } else { 1 };
     let part = |s: &samples::MotionSample| s.run + s.row * parts / logs.runs[s.run].rows.len();
     let folds: Vec<usize> = steps.iter().map(|s| part(s) % FOLDS).collect();
-    let residuals: Vec<[f64; 3]> = steps.iter().map(|s| networks.residual(s)).collect();
-    let fit = |c: usize| {
-        let unit = root_mean_square(residuals.iter().map(|r| r[c])).max(f64::MIN_POSITIVE);
-        let ridge = ridge::fit(&rows, &folds, &STRENGTHS, |i, _| residuals[i][c] / unit);
+    let residuals: Vec<Motion<f64>> = steps.iter().map(|s| networks.residual(s)).collect();
+    let fit = |axis: Axis| {
+        let unit = root_mean_square(residuals.iter().map(|r| r[axis])).max(f64::MIN_POSITIVE);
+        let ridge = ridge::fit(&rows, &folds, &STRENGTHS, |i, _| residuals[i][axis] / unit);
         let weights: Vec<f64> = ridge.weights.iter().map(|w| unit * w).collect();
-        let left = residuals.iter().zip(&rows).map(|(r, row)| r[c] - ridge::predicted(row, &weights));
+        let left = residuals.iter().zip(&rows).map(|(r, row)| r[axis] - ridge::predicted(row, &weights));
         let scatter = (left.map(|r| r * r).sum::<f64>() / steps.len().saturating_sub(FEATURES).max(1) as f64).sqrt();
         (weights, scatter, ridge.strength.unwrap_or(STRENGTHS[0]))
     };
-    let [forward, lateral, turn] = [0, 1, 2].map(fit);
+    let fits = Motion::from_fn(fit);
     // Of absurd commands the products are too large to say anything.
     let products = Some(products(&rows)).filter(|products| products.iter().all(|product| product.is_finite()));
-    let precision = products.map(|products| Precision { products, prior: [forward.2, lateral.2, turn.2] });
-    Some(MotionBias {
-        scale,
-        scatter: [forward.1, lateral.1, turn.1],
-        precision,
-        weights: [forward.0, lateral.0, turn.0],
-    })
+    let precision = products.map(|products| Precision { products, prior: fits.each_ref().map(|fit| fit.2) });
+    let scatter = fits.each_ref().map(|fit| fit.1);
+    Some(MotionBias { scale, scatter, precision, weights: fits.map(|fit| fit.0) })
 }

@@ -127,9 +127,9 @@ pub fn train(
     let reference =
         executor::once(executor, || Ok(nominal::learn(&simulator, first_echo.map(|law| law.as_logged), logs)))?;
     if let Some(motion) = &reference.motion {
-        set_residual_quantiles(&mut simulator.forward, &data.forward, |speeds| motion.correction(speeds)[0]);
-        set_residual_quantiles(&mut simulator.lateral, &data.lateral, |speeds| motion.correction(speeds)[1]);
-        set_residual_quantiles(&mut simulator.turn, &data.turn, |speeds| motion.correction(speeds)[2].to_degrees());
+        set_residual_quantiles(&mut simulator.forward, &data.forward, |speeds| motion.correction(speeds).forward);
+        set_residual_quantiles(&mut simulator.lateral, &data.lateral, |speeds| motion.correction(speeds).lateral);
+        set_residual_quantiles(&mut simulator.turn, &data.turn, |speeds| motion.correction(speeds).turn.to_degrees());
     }
     simulator.reference = Some(reference);
     simulator.ensemble = executor::once(executor, || Ok(ensemble::learn(&simulator, logs)))?;

@@ -6,7 +6,9 @@ mod drive;
 
 use super::context::{CommandHistory, StepContext};
 use super::parameter::parameters;
-use super::{Effect, PoseIncrement, Variant};
+use super::small_robot::{CREEPING_CM_S, CREEPING_RAD_S, HALF_SPEED_CM_S};
+use super::{Effect, Variant};
+use mindgap_foundations::motion::Motion;
 
 /// Declares the modules and lists them, so that an effect cannot be in one place and not in the other.
 macro_rules! catalogue {
@@ -88,12 +90,6 @@ impl PartialEq for Candidate {
 
 /// Where fits of a direction start: the four quarters.
 const DIRECTIONS_DEG: [f64; 4] = [0.0, 90.0, 180.0, -90.0];
-/// The speed to which losses by a force refer: half of an NXT robot's full speed.
-const LOADED_SPEED_CM_S: f64 = 20.0;
-/// Below this speed a force moves or holds back less and less: a robot that stands stays.
-const CREEPING_CM_S: f64 = 3.75;
-/// Turns slower than this scrub less and less.
-const CREEPING_RAD_S: f64 = 0.1;
 
 /// Changes the magnitude of every command and keeps its sign; `change` is given the magnitude and the motor, 0 for the
 /// left one.
@@ -106,15 +102,15 @@ fn each_command(commands: &mut CommandHistory, change: impl Fn(f64, usize) -> f6
 }
 
 /// Changes the distance that each wheel covers; `change` is given it and the wheel, 0 for the left one.
-fn each_wheel(context: &StepContext, increment: &mut PoseIncrement, change: impl Fn(f64, usize) -> f64) {
+fn each_wheel(context: &StepContext, increment: &mut Motion<f64>, change: impl Fn(f64, usize) -> f64) {
     let [left_cm, right_cm] = increment.wheels_cm(context.robot.track_cm);
     increment.set_wheels([change(left_cm, 0), change(right_cm, 1)], context.robot.track_cm);
 }
 
 /// The distance that a force of strength one costs in a step: a share of it grows with the distance covered, the rest is
-/// that of [`LOADED_SPEED_CM_S`] at any speed.
+/// that of [`HALF_SPEED_CM_S`] at any speed.
 fn distance_lost_cm(with_speed: f64, covered_cm: f64, context: &StepContext) -> f64 {
-    loaded(with_speed, covered_cm.abs(), LOADED_SPEED_CM_S * context.step_s())
+    loaded(with_speed, covered_cm.abs(), HALF_SPEED_CM_S * context.step_s())
 }
 
 /// A drag of which one share grows with the speed and the rest is that of the `reference` at any speed.
@@ -142,30 +138,29 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
+    use crate::effects::SensorState;
     use crate::effects::chain::EffectChain;
     use crate::effects::context::{RunHistory, Surroundings};
-    use crate::effects::{PoseIncrement, SensorState};
+    use crate::effects::small_robot::FULL_SPEED_CM_S;
     use crate::sonar::Perturbation;
     use mindgap_foundations::geometry::{Pose, wrap_rad};
     use mindgap_logs::{Robot, Scene};
 
     /// The effects of the table in docs/reference/effects.md.
     const TABLE: usize = 29;
-    /// Fastest command of an NXT robot.
-    const TOP_SPEED_CM_S: f64 = 41.0;
 
     /// What comes of a step: commands, increment, sensor.
     fn applied(
         variant: &'static Variant,
         values: &[f64],
         context: &StepContext,
-    ) -> (CommandHistory, PoseIncrement, SensorState) {
+    ) -> (CommandHistory, Motion<f64>, SensorState) {
         let effects = EffectChain::default().with(&[variant], values);
         let mut commands = [[0.0; 2]; 7];
         let increment = effects.wrap(context, |now, before| {
             commands[0] = now;
             commands[1] = before;
-            PoseIncrement { forward_cm: 7.0, lateral_cm: -0.4, turn_rad: 0.3 }
+            Motion { forward: 7.0, lateral: -0.4, turn: 0.3 }
         });
         (commands, increment, effects.sensor(context))
     }
@@ -213,7 +208,7 @@ mod tests {
     #[test]
     fn fits_start_within_the_bounds_and_not_where_nothing_changes() {
         for Candidate { effect, variant } in Candidate::all(CATALOGUE) {
-            for start in variant.initial_guesses(TOP_SPEED_CM_S) {
+            for start in variant.initial_guesses(FULL_SPEED_CM_S) {
                 assert!(start.iter().zip(variant.parameters).all(|(v, p)| p.allows(*v)), "{effect} {}", variant.id);
                 assert_ne!(start, variant.nominal(), "{effect} {}", variant.id);
             }
@@ -241,7 +236,7 @@ mod tests {
         ("sonar_yaw", &["deg"]),
         ("sonar_beam", &["factor"]),
         ("sonar_ghost", &["probability", "cm"]),
-        ("sonar_dropout", &["probability", "goes_on"]),
+        ("sonar_dropout", &["probability", "persistence"]),
         ("sonar_lag", &["steps"]),
         ("sonar_absorption", &["factor"]),
         ("sonar_crosstalk", &["probability"]),
@@ -261,7 +256,7 @@ mod tests {
         for Candidate { effect, variant } in Candidate::all(CATALOGUE) {
             let asked = |id: &str| REPORTED.iter().find(|(known, _)| *known == id).map(|(_, names)| names);
             let asked = asked(&format!("{effect} {}", variant.id)).or_else(|| asked(effect)).expect(effect);
-            let reported = variant.reported(&variant.initial_guesses(TOP_SPEED_CM_S)[0], &robot);
+            let reported = variant.reported(&variant.initial_guesses(FULL_SPEED_CM_S)[0], &robot);
             let mut names: Vec<&str> = reported.keys().map(String::as_str).collect();
             let mut asked = asked.to_vec();
             names.sort_unstable();
@@ -290,15 +285,15 @@ mod tests {
         let refers_to_full_speed = |c: &Candidate| c.effect == "deadband" && c.variant.id == "stretched";
         for candidate in Candidate::all(CATALOGUE).into_iter().filter(|c| !refers_to_full_speed(c)) {
             let Candidate { effect, variant } = candidate;
-            for values in variant.initial_guesses(TOP_SPEED_CM_S) {
+            for values in variant.initial_guesses(FULL_SPEED_CM_S) {
                 let (c, m, s) = applied(variant, &values, &usual);
                 let (other_c, other_m, other_s) = applied(variant, &values, &scaled);
                 let commands = c[..2].as_flattened().iter().zip(other_c[..2].as_flattened());
                 let near = |a: f64, b: f64| (a - b).abs() < 1e-9;
                 let same = commands.into_iter().all(|(a, b)| near(*a, TIMES * b))
-                    && near(m.forward_cm, other_m.forward_cm)
-                    && near(m.lateral_cm, other_m.lateral_cm)
-                    && near(m.turn_rad, other_m.turn_rad)
+                    && near(m.forward, other_m.forward)
+                    && near(m.lateral, other_m.lateral)
+                    && near(m.turn, other_m.turn)
                     && s == other_s;
                 assert!(same, "{effect} {} {values:?}", variant.id);
             }
@@ -308,14 +303,14 @@ mod tests {
     proptest! {
         #[test]
         fn a_nominal_effect_changes_nothing(context in context()) {
-            let increment = PoseIncrement { forward_cm: 7.0, lateral_cm: -0.4, turn_rad: 0.3 };
+            let increment = Motion { forward: 7.0, lateral: -0.4, turn: 0.3 };
             for Candidate { effect, variant } in Candidate::all(CATALOGUE) {
                 let (c, m, s) = applied(variant, &variant.nominal(), &context);
                 let near = |a: f64, b: f64| (a - b).abs() < 1e-9;
                 let same = c[..2].as_flattened().iter().zip(context.commands.as_flattened()).all(|(a, b)| near(*a, *b))
-                    && near(m.forward_cm, increment.forward_cm)
-                    && near(m.lateral_cm, increment.lateral_cm)
-                    && near(m.turn_rad, increment.turn_rad)
+                    && near(m.forward, increment.forward)
+                    && near(m.lateral, increment.lateral)
+                    && near(m.turn, increment.turn)
                     && near(s.robot.position_cm.distance(context.pose.position_cm), 0.0)
                     && near(wrap_rad(s.robot.heading_rad - context.pose.heading_rad), 0.0)
                     && near(s.yaw_rad, 0.0)
@@ -328,7 +323,7 @@ mod tests {
         fn what_follows_from_commands_alone_is_the_same_everywhere(here in context(), elsewhere in context()) {
             let elsewhere = StepContext { commands: here.commands, ..elsewhere };
             for Candidate { effect, variant } in Candidate::all(CATALOGUE) {
-                for values in variant.initial_guesses(TOP_SPEED_CM_S) {
+                for values in variant.initial_guesses(FULL_SPEED_CM_S) {
                     let [here, elsewhere] = [&here, &elsewhere].map(|context| applied(variant, &values, context));
                     let same = (here.0, here.1) == (elsewhere.0, elsewhere.1);
                     prop_assert!(same || !variant.moves_by_commands_alone(), "{effect} {}", variant.id);
@@ -341,7 +336,7 @@ mod tests {
         fn no_effect_on_the_motion_asks_for_what_the_sensor_faces(facing in context()) {
             let unseen = StepContext { faced: None, ..facing };
             for Candidate { effect, variant } in Candidate::all(CATALOGUE) {
-                for values in variant.initial_guesses(TOP_SPEED_CM_S) {
+                for values in variant.initial_guesses(FULL_SPEED_CM_S) {
                     let [facing, unseen] = [&facing, &unseen].map(|context| applied(variant, &values, context));
                     prop_assert_eq!((facing.0, facing.1), (unseen.0, unseen.1), "{} {}", effect, variant.id);
                 }
@@ -352,7 +347,7 @@ mod tests {
         fn what_senses_alike_everywhere_does(here in context(), elsewhere in context()) {
             let elsewhere = StepContext { echo_before: here.echo_before, ..elsewhere };
             for Candidate { effect, variant } in Candidate::all(CATALOGUE) {
-                for values in variant.initial_guesses(TOP_SPEED_CM_S) {
+                for values in variant.initial_guesses(FULL_SPEED_CM_S) {
                     let same = [&here, &elsewhere].map(|context| {
                         let (.., sensor) = applied(variant, &values, context);
                         (sensor.robot == context.pose).then_some(SensorState { robot: here.pose, ..sensor })
@@ -370,7 +365,7 @@ mod tests {
                 let values: Vec<f64> = variant.parameters.iter().zip(&corner).map(bound).collect();
                 let (c, m, s) = applied(variant, &values, &context);
                 let finite = c.as_flattened().iter().all(|c| c.is_finite() && c.abs() <= 200.0)
-                    && [m.forward_cm, m.lateral_cm, m.turn_rad, s.yaw_rad, s.perturbation.width].iter().all(|v| v.is_finite())
+                    && [m.forward, m.lateral, m.turn, s.yaw_rad, s.perturbation.width].iter().all(|v| v.is_finite())
                     && s.robot.position_cm.is_finite();
                 prop_assert!(finite, "{effect} {}", variant.id);
             }

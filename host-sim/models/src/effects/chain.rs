@@ -2,8 +2,9 @@
 
 use super::applied::AppliedEffect;
 use super::context::{CommandHistory, StepContext};
-use super::pose_increment::PoseIncrement;
 use super::variant::{Hook, Late, SensorState, Variant};
+use mindgap_foundations::motion::Motion;
+use mindgap_logs::Robot;
 
 /// Effects that act together, in their order; an empty chain changes nothing.
 #[derive(Clone, Default)]
@@ -12,9 +13,9 @@ pub struct EffectChain {
 }
 
 impl EffectChain {
-    /// The effects of a simulator file; one that this program does not know is left out.
-    pub fn of(applied: &[AppliedEffect]) -> Self {
-        let links = applied.iter().flat_map(AppliedEffect::resolve);
+    /// Returns the effects applied to a simulator of this robot; one that this program does not know is left out.
+    pub fn of(applied: &[AppliedEffect], robot: &Robot) -> Self {
+        let links = applied.iter().flat_map(|effect| effect.resolve(robot));
         EffectChain { links: links.map(|(candidate, values)| (candidate.variant, values)).collect() }
     }
 
@@ -46,7 +47,7 @@ impl EffectChain {
     }
 
     /// The increment of a step with these effects; `step` gives that of the simulator for the commands now and before.
-    pub fn wrap(&self, context: &StepContext, step: impl FnMut([f64; 2], [f64; 2]) -> PoseIncrement) -> PoseIncrement {
+    pub fn wrap(&self, context: &StepContext, step: impl FnMut([f64; 2], [f64; 2]) -> Motion<f64>) -> Motion<f64> {
         let (mut commands, mut late) = (context.commands, Late::default());
         self.each(|hook, values| match hook {
             Hook::Commands(change) | Hook::CommandsHere(change) => change(values, context, &mut commands),
@@ -88,8 +89,8 @@ impl EffectChain {
 fn delayed(
     commands: &CommandHistory,
     late: Late,
-    mut step: impl FnMut([f64; 2], [f64; 2]) -> PoseIncrement,
-) -> PoseIncrement {
+    mut step: impl FnMut([f64; 2], [f64; 2]) -> Motion<f64>,
+) -> Motion<f64> {
     let (whole, part) = (libm::floor(late.poses_steps), late.poses_steps % 1.0);
     let motion = driven_late(commands, late.drive_steps + whole, &mut step);
     if part == 0.0 {
@@ -104,8 +105,8 @@ fn delayed(
 fn driven_late(
     commands: &CommandHistory,
     late_steps: f64,
-    step: &mut impl FnMut([f64; 2], [f64; 2]) -> PoseIncrement,
-) -> PoseIncrement {
+    step: &mut impl FnMut([f64; 2], [f64; 2]) -> Motion<f64>,
+) -> Motion<f64> {
     let (whole, part) = (late_steps as usize, late_steps % 1.0);
     let ago = |steps: usize| commands.get(steps).copied().unwrap_or([0.0; 2]);
     let (now, before) = (ago(whole), ago(whole + 1));
@@ -117,13 +118,8 @@ fn driven_late(
 }
 
 /// The sum of increments, each times its weight.
-fn weighted<const N: usize>(increments: [(f64, PoseIncrement); N]) -> PoseIncrement {
-    let sum = |of: fn(&PoseIncrement) -> f64| increments.iter().map(|(weight, increment)| weight * of(increment)).sum();
-    PoseIncrement {
-        forward_cm: sum(|increment| increment.forward_cm),
-        lateral_cm: sum(|increment| increment.lateral_cm),
-        turn_rad: sum(|increment| increment.turn_rad),
-    }
+fn weighted<const N: usize>(increments: [(f64, Motion<f64>); N]) -> Motion<f64> {
+    Motion::from_fn(|axis| increments.iter().map(|(weight, increment)| weight * increment[axis]).sum())
 }
 
 #[cfg(test)]
@@ -135,14 +131,14 @@ mod tests {
     /// drive has missed its tenth by the end of the first step, and late poses tell half of it in each.
     #[test]
     fn a_late_drive_starts_late_and_late_poses_lie_between_rows() {
-        let step = |now: [f64; 2], before: [f64; 2]| PoseIncrement {
-            forward_cm: now[0] - 0.1 * (now[0] - before[0]),
-            lateral_cm: 0.0,
-            turn_rad: 0.0,
+        let step = |now: [f64; 2], before: [f64; 2]| Motion {
+            forward: now[0] - 0.1 * (now[0] - before[0]),
+            lateral: 0.0,
+            turn: 0.0,
         };
         let started =
             |ago: usize| std::array::from_fn::<_, HISTORY, _>(|age| if age <= ago { [1.0; 2] } else { [0.0; 2] });
-        let forward_cm = |late| [0, 1, 2].map(|ago| delayed(&started(ago), late, step).forward_cm);
+        let forward_cm = |late| [0, 1, 2].map(|ago| delayed(&started(ago), late, step).forward);
         let close = |found: [f64; 3], right: [f64; 3]| {
             assert!(found.iter().zip(right).all(|(f, r)| (f - r).abs() < 1e-12), "{found:?} {right:?}");
         };

@@ -17,11 +17,12 @@ use toml::Spanned;
 
 use super::context::{CommandHistory, StepContext};
 use super::parameter::{Guesses, Parameter};
-use super::{CATALOGUE, Effect, Hook, PoseIncrement, SensorState, Variant};
+use super::{CATALOGUE, Effect, Hook, SensorState, Variant};
 use definition::{Change, Definition, ParameterDefinition};
 use expression::Expression;
 use mindgap_files as files;
 use mindgap_foundations::error::{Error, Result};
+use mindgap_foundations::motion::Motion;
 use variables::{Circumstances, Stage};
 
 /// Id of the one variant of an own effect.
@@ -143,7 +144,7 @@ fn parameter(of: &ParameterDefinition) -> Parameter {
 /// The expressions of a definition.
 struct Compiled {
     commands: [Option<Expression>; 2],
-    motion: [Option<Expression>; 3],
+    motion: Motion<Option<Expression>>,
     reading: Option<Expression>,
     loss: Option<Expression>,
 }
@@ -166,11 +167,11 @@ impl Compiled {
                 compile("left", &change.left, Stage::Command)?,
                 compile("right", &change.right, Stage::Command)?,
             ],
-            motion: [
-                compile("forward_cm", &change.forward_cm, Stage::Motion)?,
-                compile("lateral_cm", &change.lateral_cm, Stage::Motion)?,
-                compile("turn_rad", &change.turn_rad, Stage::Motion)?,
-            ],
+            motion: Motion {
+                forward: compile("forward_cm", &change.forward_cm, Stage::Motion)?,
+                lateral: compile("lateral_cm", &change.lateral_cm, Stage::Motion)?,
+                turn: compile("turn_rad", &change.turn_rad, Stage::Motion)?,
+            },
             reading: compile("echo_cm", &change.echo_cm, Stage::Reading)?,
             loss: compile("echo_loss", &change.echo_loss, Stage::Echo)?,
         };
@@ -194,7 +195,7 @@ impl Compiled {
         }
         if motion.iter().any(Option::is_some) {
             hooks.push(Hook::MotionHere(Box::leak(Box::new(
-                move |values: &[f64], step: &StepContext, increment: &mut PoseIncrement| {
+                move |values: &[f64], step: &StepContext, increment: &mut Motion<f64>| {
                     moved(&motion, values, step, increment);
                 },
             ))));
@@ -213,24 +214,21 @@ impl Compiled {
 /// Where an expression has no value, nothing is changed: there the effect is not possible.
 fn command(change: &[Option<Expression>; 2], values: &[f64], step: &StepContext, sent: &mut CommandHistory) {
     let before = *sent;
-    let at_rest = PoseIncrement { forward_cm: 0.0, lateral_cm: 0.0, turn_rad: 0.0 };
     for (place, pair) in sent.iter_mut().enumerate() {
         // What was sent before the oldest command is not known: taken to be the same.
         let commands = [before[place], *before.get(place + 1).unwrap_or(&before[place])];
-        let at = Circumstances { commands, ..Circumstances::of_step(step, at_rest) };
+        let at = Circumstances { commands, ..Circumstances::of_step(step, Motion::ZERO) };
         for (command, change) in pair.iter_mut().zip(change) {
             *command = change.as_ref().and_then(|change| change.value(values, &at)).unwrap_or(*command);
         }
     }
 }
 
-fn moved(change: &[Option<Expression>; 3], values: &[f64], step: &StepContext, increment: &mut PoseIncrement) {
+fn moved(change: &Motion<Option<Expression>>, values: &[f64], step: &StepContext, increment: &mut Motion<f64>) {
     let at = Circumstances::of_step(step, *increment);
-    let [forward_cm, lateral_cm, turn_rad] =
-        [0, 1, 2].map(|axis| change[axis].as_ref().and_then(|change| change.value(values, &at)));
-    increment.forward_cm = forward_cm.unwrap_or(increment.forward_cm);
-    increment.lateral_cm = lateral_cm.unwrap_or(increment.lateral_cm);
-    increment.turn_rad = turn_rad.unwrap_or(increment.turn_rad);
+    *increment = change.each_ref().zip_with(*increment, |change, predicted| {
+        change.as_ref().and_then(|change| change.value(values, &at)).unwrap_or(predicted)
+    });
 }
 
 fn sensed(

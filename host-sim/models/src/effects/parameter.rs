@@ -1,8 +1,14 @@
 //! The parameters of effects: named, with a unit, physical bounds and a prior.
+//!
+//! An effect computes with values, which suit a fit: a signed loss, a wheel speed, log-odds. Files and answers hold
+//! [settings](Setting) instead, by the names of the table in docs/formats.md: a side and a factor, a command, a factor.
 
+use std::collections::BTreeMap;
+use std::fmt;
+
+use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
-use mindgap_foundations::geometry::wrap_rad;
 use mindgap_foundations::statistics::maximise::Bounds;
 use mindgap_foundations::statistics::rounding::three_digits;
 use mindgap_logs::Robot;
@@ -39,20 +45,20 @@ pub enum Guesses {
     Every(f64),
 }
 
-/// How a parameter is reported, by the names of the table in docs/reference/effects.md.
+/// How a parameter is reported, and written to files (docs/reference/effects.md).
 #[derive(Clone, Copy, Debug)]
 pub enum Report {
-    /// Not at all: it describes the form, not the effect.
+    /// Not reported, since it describes the form and not the effect; written as it is, by its own name.
     Hidden,
     /// As it is, by its own name.
     Value,
     /// An angle within (-180, 180], by its own name.
     Direction,
-    /// The side that its sign means (positive: left), and its magnitude as `loss`.
+    /// The `side` that its sign means (positive: left), and its magnitude as `loss`.
     SideAndLoss,
-    /// The side that its sign means (positive: left), and one minus its magnitude as `factor`.
+    /// The `side` that its sign means (positive: left), and one minus its magnitude as `factor`.
     SideAndFactor,
-    /// A wheel speed, as the command that asks for it.
+    /// A wheel speed, as the `command` that asks for it.
     Command,
     /// A change of wheel speed, as `onset` in commands.
     Onset,
@@ -61,6 +67,32 @@ pub enum Report {
     /// A loss of log-odds, as the `factor` on the odds.
     OddsFactor,
 }
+
+/// What a file or an answer says of a parameter.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(untagged)]
+pub enum Setting {
+    /// A number.
+    Number(f64),
+    /// A side of the robot.
+    Side(Side),
+}
+
+/// A side of the robot.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Side {
+    /// Left.
+    Left,
+    /// Right.
+    Right,
+}
+
+/// Settings by their names.
+pub type Settings = BTreeMap<String, Setting>;
+
+/// A value that comes back from a file this close to a bound or to nominal, relative to it, is that.
+const ROUNDING: f64 = 1e-12;
 
 impl Parameter {
     /// A parameter without a prior that is fitted from its nominal value and reported as it is.
@@ -143,24 +175,67 @@ impl Parameter {
         if guesses.is_empty() { vec![self.nominal] } else { guesses.iter().map(|g| g.clamp(low, high)).collect() }
     }
 
-    pub(super) fn reported(&self, value: f64, robot: &Robot) -> Vec<(String, Value)> {
-        let side = || json!(if value > 0.0 { "left" } else { "right" });
-        let command = 100.0 * value / robot.full_speed_cm_s;
-        let told = |value: f64| json!(three_digits(value));
-        let reported = match self.report {
-            Report::Hidden => vec![],
-            Report::Value => vec![(self.name, told(value))],
-            Report::Direction => {
-                vec![(self.name, json!((wrap_rad(value.to_radians()).to_degrees() * 10.0).round() / 10.0))]
-            }
-            Report::SideAndLoss => vec![("side", side()), ("loss", told(value.abs()))],
-            Report::SideAndFactor => vec![("side", side()), ("factor", told(1.0 - value.abs()))],
-            Report::Command => vec![("command", told(command))],
-            Report::Onset => vec![("onset", told(command))],
-            Report::Steps => vec![("steps", told(value / robot.step_ms))],
-            Report::OddsFactor => vec![("factor", told(libm::exp(-value)))],
+    /// Returns the name of its number in files and answers, and whether it comes with a side.
+    pub fn setting(&self) -> (&'static str, bool) {
+        match self.report {
+            Report::Hidden | Report::Value | Report::Direction => (self.name, false),
+            Report::SideAndLoss => ("loss", true),
+            Report::SideAndFactor => ("factor", true),
+            Report::Command => ("command", false),
+            Report::Onset => ("onset", false),
+            Report::Steps => ("steps", false),
+            Report::OddsFactor => ("factor", false),
+        }
+    }
+
+    /// Returns its settings at a value.
+    pub(super) fn settings(&self, value: f64, robot: &Robot) -> Vec<(&'static str, Setting)> {
+        let number = match self.report {
+            Report::Hidden | Report::Value => value,
+            Report::Direction => value - 360.0 * ((value - 180.0) / 360.0).ceil(),
+            Report::SideAndLoss => value.abs(),
+            Report::SideAndFactor => 1.0 - value.abs(),
+            Report::Command | Report::Onset => 100.0 * value / robot.full_speed_cm_s,
+            Report::Steps => value / robot.step_ms,
+            Report::OddsFactor => libm::exp(-value),
         };
-        reported.into_iter().map(|(name, value)| (name.into(), value)).collect()
+        let (name, has_side) = self.setting();
+        let side = Setting::Side(if value > 0.0 { Side::Left } else { Side::Right });
+        has_side.then_some((SIDE, side)).into_iter().chain([(name, Setting::Number(number))]).collect()
+    }
+
+    /// Returns the value of settings; none where they lack it, or where it is not possible.
+    pub(super) fn value(&self, settings: &Settings, robot: &Robot) -> Option<f64> {
+        let (name, has_side) = self.setting();
+        let Setting::Number(number) = *settings.get(name)? else { return None };
+        let sign = match (has_side, settings.get(SIDE)) {
+            (false, _) | (true, Some(Setting::Side(Side::Left))) => 1.0,
+            (true, Some(Setting::Side(Side::Right))) => -1.0,
+            (true, _) => return None,
+        };
+        let value = match self.report {
+            Report::Hidden | Report::Value | Report::Direction => number,
+            Report::SideAndLoss => sign * number,
+            Report::SideAndFactor => sign * (1.0 - number),
+            Report::Command | Report::Onset => number / 100.0 * robot.full_speed_cm_s,
+            Report::Steps => number * robot.step_ms,
+            Report::OddsFactor => -libm::log(number),
+        };
+        let is_near = |marked: &f64| (value - marked).abs() <= ROUNDING * marked.abs().max(1.0);
+        let marked = self.bounds.into_iter().chain([self.nominal]).find(is_near);
+        Some(marked.unwrap_or(value)).filter(|value| self.allows(*value))
+    }
+
+    /// Returns its settings at a value, rounded for people; none of a parameter that describes the form.
+    pub(super) fn reported(&self, value: f64, robot: &Robot) -> Vec<(String, Value)> {
+        let rounded = |setting: Setting| match (self.report, setting) {
+            (Report::Direction, Setting::Number(deg)) => json!((deg * 10.0).round() / 10.0),
+            (_, Setting::Number(number)) => json!(three_digits(number)),
+            (_, side) => json!(side),
+        };
+        let is_reported = !matches!(self.report, Report::Hidden);
+        let settings = self.settings(value, robot).into_iter().filter(|_| is_reported);
+        settings.map(|(name, setting)| (name.into(), rounded(setting))).collect()
     }
 
     /// Between what the reported numbers of a value lie, where it lies between these.
@@ -180,6 +255,19 @@ impl Parameter {
         let reached = || [low, high].into_iter().chain(nominal).filter_map(|value| Some(numbers(value)?.1));
         let ends = [reached().fold(f64::INFINITY, f64::min), reached().fold(f64::NEG_INFINITY, f64::max)];
         vec![(name, json!(ends))]
+    }
+}
+
+/// Name of the setting that says which side of the robot is meant.
+const SIDE: &str = "side";
+
+impl fmt::Display for Setting {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        match self {
+            Setting::Number(number) => number.fmt(f),
+            Setting::Side(Side::Left) => f.write_str("left"),
+            Setting::Side(Side::Right) => f.write_str("right"),
+        }
     }
 }
 

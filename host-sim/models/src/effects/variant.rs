@@ -3,10 +3,10 @@
 use serde_json::{Map, Value};
 
 use super::context::{CommandHistory, StepContext, Surroundings};
-use super::parameter::Parameter;
-use super::pose_increment::PoseIncrement;
+use super::parameter::{Parameter, Settings};
 use crate::sonar::{Outcomes, Perturbation, SensorLaw};
 use mindgap_foundations::geometry::Pose;
+use mindgap_foundations::motion::Motion;
 use mindgap_logs::Robot;
 
 /// Something that is there in reality and not in the simulator.
@@ -45,9 +45,9 @@ pub enum Hook {
     /// By how much the motion comes late.
     Delay(&'static (dyn Fn(&[f64], &StepContext) -> Late + Sync)),
     /// To the increment of the pose that the tracker sees, by this and commands alone.
-    Motion(&'static (dyn Fn(&[f64], &StepContext, &mut PoseIncrement) + Sync)),
+    Motion(&'static (dyn Fn(&[f64], &StepContext, &mut Motion<f64>) + Sync)),
     /// The same, by where and when too.
-    MotionHere(&'static (dyn Fn(&[f64], &StepContext, &mut PoseIncrement) + Sync)),
+    MotionHere(&'static (dyn Fn(&[f64], &StepContext, &mut Motion<f64>) + Sync)),
     /// To the sensor, by whether it heard an echo before and nothing else.
     Sensor(ChangeOfSensor),
     /// The same, by where and when too.
@@ -91,7 +91,20 @@ impl Variant {
         })
     }
 
-    /// The parameters as the table of docs/reference/effects.md names them.
+    /// Returns its settings at these values, as files hold them.
+    pub fn settings(&self, values: &[f64], robot: &Robot) -> Settings {
+        let settings = self.parameters.iter().zip(values).flat_map(|(p, value)| p.settings(*value, robot));
+        settings.map(|(name, setting)| (name.into(), setting)).collect()
+    }
+
+    /// Returns the values of settings, if these are the variant's and no others, and each is possible.
+    pub fn values(&self, settings: &Settings, robot: &Robot) -> Option<Vec<f64>> {
+        let values = self.parameters.iter().map(|p| p.value(settings, robot)).collect::<Option<Vec<f64>>>()?;
+        let count: usize = self.parameters.iter().map(|p| 1 + usize::from(p.setting().1)).sum();
+        (count == settings.len()).then_some(values)
+    }
+
+    /// Returns the parameters as the table of docs/reference/effects.md names them, rounded for people.
     pub fn reported(&self, values: &[f64], robot: &Robot) -> Map<String, Value> {
         self.parameters.iter().zip(values).flat_map(|(p, value)| p.reported(*value, robot)).collect()
     }

@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
-use crate::effects::PoseIncrement;
 use crate::effects::applied::AppliedEffect;
+use crate::effects::chain::EffectChain;
 use crate::simulator::ensemble::command_scale::Percent;
 use crate::simulator::ensemble::{CommandScale, HeldMotion, Member, Posterior};
 use crate::simulator::motion::MotionNetworks;
@@ -13,11 +13,14 @@ use crate::simulator::{Learned, Simulator};
 use crate::sonar::SensorLaw;
 use crate::sonar::familiar::FamiliarPoses;
 use mindgap_foundations::error::{Error, Result};
+use mindgap_foundations::motion::Motion;
 use mindgap_logs::Robot;
 
 /// The models of motion and sonar without any gap.
 #[derive(Clone)]
 pub struct Baseline<'s> {
+    /// The robot.
+    pub robot: Robot,
     /// The motion, if the simulator knows it.
     pub motion: Option<MotionModel<'s>>,
     /// The law of the sensor, if the simulator knows it.
@@ -46,14 +49,14 @@ pub enum MotionModel<'s> {
         /// The robot whose bias is added, if one is known.
         member: Option<Member>,
         /// Fraction of the noise of forward, lateral and turn that is the robot's own and not the tracker's, 0 to 1.
-        process_noise_fraction: [f64; 3],
+        process_noise_fraction: Motion<f64>,
     },
     /// The textbook's differential drive.
     Kinematic {
         /// The robot.
         robot: Robot,
-        /// Standard deviations of forward (cm), lateral (cm) and turn (rad).
-        scatter: [f64; 3],
+        /// Standard deviations of the motion.
+        scatter: Motion<f64>,
     },
 }
 
@@ -73,10 +76,14 @@ impl<'s> Baseline<'s> {
             commands: simulator.commands.map(f64::from),
             open: None,
             member: None,
-            process_noise_fraction: [&simulator.forward, &simulator.lateral, &simulator.turn]
-                .map(process_noise_fraction),
+            process_noise_fraction: Motion {
+                forward: process_noise_fraction(&simulator.forward),
+                lateral: process_noise_fraction(&simulator.lateral),
+                turn: process_noise_fraction(&simulator.turn),
+            },
         });
         Ok(Baseline {
+            robot: simulator.robot,
             motion,
             sonar: simulator.sensor_law(),
             place_bound: reference.place_bound,
@@ -99,6 +106,11 @@ impl<'s> Baseline<'s> {
         Ok(baseline)
     }
 
+    /// Returns the effects that were added to the simulator before.
+    pub fn chain(&self) -> EffectChain {
+        EffectChain::of(&self.applied, &self.robot)
+    }
+
     /// Number of steps that the motion was learned from, as far as that is known; none of the textbook.
     pub fn trained_on(&self) -> Option<f64> {
         let MotionModel::Learned { reference, .. } = self.motion.as_ref()? else { return None };
@@ -107,46 +119,36 @@ impl<'s> Baseline<'s> {
 }
 
 impl MotionModel<'_> {
-    /// What a step does for the commands now and before.
-    pub fn step(&self, now: [f64; 2], before: [f64; 2]) -> PoseIncrement {
+    /// Predicts a step for the commands now and before.
+    pub fn step(&self, now: [f64; 2], before: [f64; 2]) -> Motion<f64> {
         match self {
             MotionModel::Learned { networks, reference, commands, member, .. } => {
                 let [now, before] = [now, before].map(|command| command.map(|c| c.clamp(commands[0], commands[1])));
                 // Of a command that is held this is all there is to say, and the networks need not be asked.
                 if let Some(member) = member.as_ref().filter(|_| now == before) {
-                    let [forward_cm, lateral_cm, turn_deg] = member.motion(now);
-                    return PoseIncrement { forward_cm, lateral_cm, turn_rad: turn_deg.to_radians() };
+                    return member.motion(now).turn_in_radians();
                 }
                 let speeds = [now[0], now[1], before[0], before[1]];
-                let learned = networks.step(speeds.map(|c| c as f32));
-                let (known, beyond) = (reference.correction(&speeds), self.beyond(now));
-                let more = [0, 1, 2].map(|channel| known[channel] + beyond[channel]);
-                PoseIncrement {
-                    forward_cm: f64::from(learned.forward_cm) + more[0],
-                    lateral_cm: f64::from(learned.lateral_cm) + more[1],
-                    turn_rad: f64::from(learned.turn_rad) + more[2],
-                }
+                let learned = networks.evaluate(speeds.map(|c| c as f32)).map(f64::from);
+                learned + (reference.correction(&speeds) + self.beyond(now))
             }
             MotionModel::Kinematic { robot, .. } => {
                 let way_cm = now.map(|c| c / 100.0 * robot.full_speed_cm_s * robot.step_ms / 1000.0);
-                let turn_rad = (way_cm[1] - way_cm[0]) / robot.track_cm;
+                let turn = (way_cm[1] - way_cm[0]) / robot.track_cm;
                 let arc_cm = 0.5 * (way_cm[0] + way_cm[1]);
                 // The chord of an arc.
-                let half = 0.5 * turn_rad;
+                let half = 0.5 * turn;
                 let chord_cm = if half.abs() < 1e-9 { arc_cm } else { arc_cm * libm::sin(half) / half };
-                let (forward_cm, lateral_cm) = (chord_cm * libm::cos(half), chord_cm * libm::sin(half));
-                PoseIncrement { forward_cm, lateral_cm, turn_rad }
+                Motion { forward: chord_cm * libm::cos(half), lateral: chord_cm * libm::sin(half), turn }
             }
         }
     }
 
     /// What the robot does beyond networks and their bias while a command is held, if one is known.
-    pub fn beyond(&self, command: [f64; 2]) -> [f64; 3] {
-        let MotionModel::Learned { networks, reference, member: Some(member), .. } = self else { return [0.0; 3] };
-        let (does, said) = (member.motion(command), networks.held(command));
-        let known = reference.correction(&[command[0], command[1], command[0], command[1]]);
-        let beyond = [does[0] - said[0], does[1] - said[1], (does[2] - said[2]).to_radians()];
-        [0, 1, 2].map(|channel| beyond[channel] - known[channel])
+    pub fn beyond(&self, command: [f64; 2]) -> Motion<f64> {
+        let MotionModel::Learned { networks, reference, member: Some(member), .. } = self else { return Motion::ZERO };
+        let beyond = (member.motion(command) - networks.motion(command)).turn_in_radians();
+        beyond - reference.correction(&[command[0], command[1], command[0], command[1]])
     }
 
     /// A command in percent of full speed.
@@ -163,43 +165,40 @@ impl MotionModel<'_> {
         matches!(self, MotionModel::Learned { .. })
     }
 
-    /// How far this may be off in every step of commands now and before, as mean squares of forward (cm), lateral (cm) and turn
-    /// (rad): what the training logs leave open of them, and what they say beyond it.
-    pub fn own_error(&self, now: [f64; 2], before: [f64; 2]) -> [f64; 3] {
-        let MotionModel::Learned { open: Some(open), .. } = self else { return [0.0; 3] };
+    /// Returns the mean square error of this model in every step of commands now and before: what the training logs leave
+    /// open of them, and what they say beyond it.
+    pub fn own_error(&self, now: [f64; 2], before: [f64; 2]) -> Motion<f64> {
+        let MotionModel::Learned { open: Some(open), .. } = self else { return Motion::ZERO };
         let mut squares = self.held_error(open, now);
         // The first step of a command is still moved by the one before.
         if now != before {
-            let (others, first) = (self.held_error(open, before), open.first_step_variances());
-            squares = [0, 1, 2].map(|channel| squares[channel] + others[channel] + first[channel]);
+            squares = squares + self.held_error(open, before) + open.first_step_variances();
         }
-        let [forward, lateral, turn] = squares;
-        [forward, lateral, turn.to_radians().to_radians()]
+        // From squared degrees.
+        squares.turn_in_radians().turn_in_radians()
     }
 
-    /// The same of a command that is held; that of the turn in degrees.
-    fn held_error(&self, open: &Posterior, command: [f64; 2]) -> [f64; 3] {
-        let PoseIncrement { forward_cm, lateral_cm, turn_rad } = self.step(command, command);
-        let (does, said) = (open.motion(command), [forward_cm, lateral_cm, turn_rad.to_degrees()]);
-        [0, 1, 2].map(|channel| {
-            let [mean, deviation] = does[channel];
-            (mean - said[channel]) * (mean - said[channel]) + deviation * deviation
+    /// Returns the mean square error for a held command; that of the turn in squared degrees.
+    fn held_error(&self, open: &Posterior, command: [f64; 2]) -> Motion<f64> {
+        let predicted = self.step(command, command).turn_in_degrees();
+        open.motion(command).zip_with(predicted, |[mean, deviation], predicted| {
+            (mean - predicted) * (mean - predicted) + deviation * deviation
         })
     }
 
-    /// Standard deviations of forward (cm), lateral (cm) and turn (rad) where nothing is different.
-    pub fn scatter(&self) -> [f64; 3] {
+    /// Returns the standard deviations of the motion where nothing is different.
+    pub fn scatter(&self) -> Motion<f64> {
         match self {
             MotionModel::Learned { reference, .. } => reference.scatter,
             MotionModel::Kinematic { scatter, .. } => *scatter,
         }
     }
 
-    /// Fraction of that noise which is the robot's own and not the tracker's, 0 to 1.
-    pub fn process_noise_fraction(&self) -> [f64; 3] {
+    /// Returns the fraction of that noise which is the robot's own and not the tracker's, 0 to 1.
+    pub fn process_noise_fraction(&self) -> Motion<f64> {
         match self {
             MotionModel::Learned { process_noise_fraction, .. } => *process_noise_fraction,
-            MotionModel::Kinematic { .. } => [1.0; 3],
+            MotionModel::Kinematic { .. } => Motion::splat(1.0),
         }
     }
 }

@@ -9,9 +9,10 @@ use rand::RngExt;
 use super::Noise;
 use super::effect_layer::EffectMemory;
 use super::environment::Environment;
-use super::motion::Motion;
+use super::motion::PredictedStep;
 use super::residuals::LEVELS;
 use mindgap_foundations::geometry::{Pose, Wall, cast};
+use mindgap_foundations::motion::{Axis, Motion};
 use mindgap_foundations::random::Generator;
 use mindgap_logs::Scene;
 
@@ -27,7 +28,7 @@ pub struct SimulatedBody<'e> {
     /// The command before, while the step in which that still counts goes on.
     before: [f64; 2],
     step: Option<Step>,
-    held_levels: [usize; 3],
+    held_levels: Motion<usize>,
     memory: EffectMemory,
     crashed: bool,
 }
@@ -35,8 +36,8 @@ pub struct SimulatedBody<'e> {
 /// A step of the simulator that is under way.
 struct Step {
     from: Pose,
-    /// Way forward and to the left (cm) and turn to the left (rad) of the whole step.
-    motion: [f64; 3],
+    /// The motion of the whole step.
+    motion: Motion<f64>,
     passed_ms: f64,
 }
 
@@ -50,7 +51,7 @@ impl<'e> SimulatedBody<'e> {
             command: [0.0, 0.0],
             before: [0.0, 0.0],
             step: None,
-            held_levels: [0; 3],
+            held_levels: Motion::splat(0),
             memory: EffectMemory::default(),
             crashed: false,
         }
@@ -61,7 +62,7 @@ impl<'e> SimulatedBody<'e> {
         if command != self.command {
             self.before = std::mem::replace(&mut self.command, command);
             self.step = None;
-            self.held_levels = std::array::from_fn(|_| rng.random_range(0..LEVELS));
+            self.held_levels = Motion::from_fn(|_| rng.random_range(0..LEVELS));
         }
         let step_ms = self.environment.robot.step_ms;
         let mut left_ms = duration_ms;
@@ -70,8 +71,7 @@ impl<'e> SimulatedBody<'e> {
             let passed_ms = TOUCH_MS.min(left_ms).min(step_ms - step.passed_ms);
             step.passed_ms += passed_ms;
             left_ms -= passed_ms;
-            let [forward_cm, lateral_cm, turn_rad] = step.motion.map(|whole| whole * step.passed_ms / step_ms);
-            self.pose = step.from.compose(&Pose::new(forward_cm, lateral_cm, turn_rad));
+            self.pose = step.motion.map(|whole| whole * step.passed_ms / step_ms).end(&step.from);
             self.crashed = self.touches();
             if step.passed_ms < step_ms {
                 self.step = Some(step);
@@ -118,11 +118,11 @@ impl<'e> SimulatedBody<'e> {
     fn begin(&mut self, rng: &mut Generator) -> Step {
         // A robot that stands goes on to stand: no log says so, since none is of a robot that is not driven.
         if [self.command, self.before] == [[0.0; 2]; 2] {
-            return Step { from: self.pose, motion: [0.0; 3], passed_ms: 0.0 };
+            return Step { from: self.pose, motion: Motion::ZERO, passed_ms: 0.0 };
         }
         let environment = self.environment;
         let command = self.command.map(|c| c as f32);
-        let Motion { forward_cm, lateral_cm, turn_rad, cells } = match &environment.effect_layer {
+        let PredictedStep { motion, cells } = match &environment.effect_layer {
             Some(effects) => {
                 effects.motion(&mut self.memory, self.pose, command, |speeds| environment.motion.trained_step(speeds))
             }
@@ -131,12 +131,12 @@ impl<'e> SimulatedBody<'e> {
                 environment.motion.step([command[0], command[1], before[0], before[1]])
             }
         };
-        let mut motion = [forward_cm, lateral_cm, turn_rad].map(f64::from);
+        let mut motion = motion.map(f64::from);
         if environment.noise == Noise::Learned {
-            for (axis, sum) in motion.iter_mut().enumerate() {
+            for axis in Axis::ALL {
                 let level = rng.random_range(0..LEVELS);
                 let noise = &environment.motion_noise[axis];
-                *sum += f64::from(noise.residual(cells[axis], level, self.held_levels[axis], [1.0; 2]));
+                motion[axis] += f64::from(noise.residual(cells[axis], level, self.held_levels[axis], [1.0; 2]));
             }
         }
         Step { from: self.pose, motion, passed_ms: 0.0 }

@@ -8,14 +8,15 @@ use rand::RngExt;
 
 use super::beam::Beam;
 use super::known_steps::KnownSteps;
-use super::motion::{Motion, MotionNetworks, Speeds, Transients, speeds};
+use super::motion::{MotionNetworks, PredictedStep, Speeds, Transients, speeds};
 use super::{Noise, Simulator};
+use crate::effects::StepContext;
 use crate::effects::chain::EffectChain;
 use crate::effects::context::{RunHistory, Surroundings};
-use crate::effects::{PoseIncrement, StepContext};
 use crate::sonar::SensorLaw;
 use mindgap_foundations::error::{Error, Result};
 use mindgap_foundations::geometry::Pose;
+use mindgap_foundations::motion::Motion;
 use mindgap_foundations::random::generator;
 use mindgap_logs::Scene;
 
@@ -57,7 +58,7 @@ impl EffectLayer {
         if simulator.added.is_empty() {
             return Ok(None);
         }
-        let effects = EffectChain::of(&simulator.added);
+        let effects = EffectChain::of(&simulator.added, &simulator.robot);
         let law = simulator.drawn_law();
         if effects.senses() && law.is_none() {
             return Err(Error::new("an added effect changes the sonar, and the simulator does not know its usual law"));
@@ -91,14 +92,14 @@ impl EffectLayer {
         memory: &mut EffectMemory,
         pose: Pose,
         command: [f32; 2],
-        trained: impl FnMut(Speeds<f32>) -> Motion,
-    ) -> Motion {
+        trained: impl FnMut(Speeds<f32>) -> PredictedStep,
+    ) -> PredictedStep {
         memory.command(command);
         let context = if self.looks { self.context(memory, pose) } else { self.unseen(memory, pose) };
-        let motion = self.step(&context, trained);
+        let step = self.step(&context, trained);
         memory.history.was_at(Some(pose));
         memory.steps += 1;
-        motion
+        step
     }
 
     /// The motions of a controller that starts from rest, if they depend on its commands alone.
@@ -121,24 +122,16 @@ impl EffectLayer {
         Some(array::from_fn(of_tuple))
     }
 
-    /// Motion in a step.
-    fn step(&self, context: &StepContext, mut trained: impl FnMut(Speeds<f32>) -> Motion) -> Motion {
-        let mut cells = [0; 3];
+    fn step(&self, context: &StepContext, mut trained: impl FnMut(Speeds<f32>) -> PredictedStep) -> PredictedStep {
+        let mut cells = Motion::splat(0);
         let step = |now: [f64; 2], before: [f64; 2]| {
             let [low, high] = self.commands;
-            let motion = trained([now[0], now[1], before[0], before[1]].map(|c| c.clamp(low, high) as f32));
-            cells = motion.cells;
-            let [forward_cm, lateral_cm, turn_rad] =
-                [motion.forward_cm, motion.lateral_cm, motion.turn_rad].map(f64::from);
-            PoseIncrement { forward_cm, lateral_cm, turn_rad }
+            let step = trained([now[0], now[1], before[0], before[1]].map(|c| c.clamp(low, high) as f32));
+            cells = step.cells;
+            step.motion.map(f64::from)
         };
-        let increment = self.effects.wrap(context, step);
-        Motion {
-            forward_cm: increment.forward_cm as f32,
-            lateral_cm: increment.lateral_cm as f32,
-            turn_rad: increment.turn_rad as f32,
-            cells,
-        }
+        let motion = self.effects.wrap(context, step).map(|value| value as f32);
+        PredictedStep { motion, cells }
     }
 
     /// The same with readings by another law, where effects change them.

@@ -27,16 +27,16 @@ pub use basis::PARTS;
 pub use command_scale::CommandScale;
 pub use evidence::Evidence;
 pub use member::Member;
+use mindgap_foundations::motion::Motion;
 use mindgap_foundations::random::derive;
 pub use noise::MotionNoise;
 pub use posterior::Posterior;
 
-/// A distribution over robots as a simulator file holds it. Channels are forward (cm), lateral (cm) and turn (degrees), all
-/// of one step.
+/// A distribution over robots as a simulator file holds it. Motions are those of one step.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Ensemble {
-    /// Prior standard deviation of each part of the process ([`PARTS`]), for each channel.
-    pub prior: [[f64; PARTS]; 3],
+    /// Prior standard deviation of each part of the process ([`PARTS`]), for each axis.
+    pub prior: Motion<[f64; PARTS]>,
     /// What moves the robot beyond the process.
     pub noise: MotionNoise,
     /// What logs say.
@@ -45,8 +45,8 @@ pub struct Ensemble {
 
 /// What is said of commands that are held before logs are looked at.
 pub trait HeldMotion: Sync {
-    /// Forward (cm), lateral (cm) and turn (degrees) of a step.
-    fn motion(&self, command: [f64; 2]) -> [f64; 3];
+    /// Returns the motion of a step, its turn in degrees.
+    fn motion(&self, command: [f64; 2]) -> Motion<f64>;
 
     /// How large the robot's commands are.
     fn scale(&self) -> CommandScale;
@@ -86,7 +86,7 @@ impl Ensemble {
     pub fn is_sound(&self) -> bool {
         let sizes = self.prior.iter().flatten();
         let sound = |e: &Evidence| {
-            e.command.iter().chain(&e.bias).all(|v| v.is_finite())
+            e.command.iter().chain(e.bias.iter()).all(|v| v.is_finite())
                 && e.variance.iter().all(|v| v.is_finite() && *v > 0.0)
         };
         sizes.copied().all(|size| size.is_finite() && size >= 0.0)
@@ -96,8 +96,8 @@ impl Ensemble {
 }
 
 /// Of commands in percent.
-impl<F: Fn([f64; 2]) -> [f64; 3] + Sync> HeldMotion for F {
-    fn motion(&self, command: [f64; 2]) -> [f64; 3] {
+impl<F: Fn([f64; 2]) -> Motion<f64> + Sync> HeldMotion for F {
+    fn motion(&self, command: [f64; 2]) -> Motion<f64> {
         self(command)
     }
 

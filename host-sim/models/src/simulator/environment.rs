@@ -17,6 +17,7 @@ use super::{Noise, Simulator};
 use crate::sonar::SensorLaw;
 use mindgap_foundations::error::{Error, Result};
 use mindgap_foundations::geometry::Pose;
+use mindgap_foundations::motion::Motion;
 use mindgap_logs::{Robot, Scene, Ultrasonic};
 
 /// Where and how controllers are rolled out.
@@ -30,8 +31,8 @@ pub struct Environment<'s> {
     pub(super) motion: MotionNetworks<'s>,
     /// Whether they are asked in every step and not once for all that a controller does: the same bits, slower.
     pub(super) asks_every_step: bool,
-    /// Of the forward, lateral and turn networks.
-    pub(super) motion_noise: [ResidualNoise; 3],
+    /// Residual noise of the motion networks.
+    pub(super) motion_noise: Motion<ResidualNoise>,
     /// Probability and value of an echo.
     pub(super) sonar: [FoldedNetwork<f32, 2>; 2],
     pub(super) echo_residuals: &'s ResidualQuantiles,

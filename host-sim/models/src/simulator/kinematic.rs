@@ -3,15 +3,16 @@
 
 use crate::simulator::baseline::{Baseline, MotionModel};
 use crate::sonar::{FirstEchoLaw, SensorLaw};
+use mindgap_foundations::motion::Motion;
 use mindgap_foundations::statistics::summary::QUARTILE;
 use mindgap_logs::{Logs, samples};
 
-/// The least scatter of forward (cm), lateral (cm) and turn (rad): that of a good tracker. The logs' own is refitted
+/// The least scatter of the motion: that of a good tracker. The logs' own is refitted
 /// upwards from here.
-const LEAST_SCATTER: [f64; 3] = [0.1, 0.1, 0.005];
+const LEAST_SCATTER: Motion<f64> = Motion { forward: 0.1, lateral: 0.1, turn: 0.005 };
 /// The same where whole ways are compared: the tracker's error is there at both ends alone, the robot's own adds up from
 /// step to step.
-const LEAST_OWN_SCATTER: [f64; 3] = [0.1, 0.1, 0.001];
+const LEAST_OWN_SCATTER: Motion<f64> = Motion { forward: 0.1, lateral: 0.1, turn: 0.001 };
 /// Bounds of the estimated scatter of readings, cm.
 const READING_SCATTER_CM: [f64; 2] = [0.5, 4.0];
 
@@ -19,6 +20,7 @@ const READING_SCATTER_CM: [f64; 2] = [0.5, 4.0];
 pub fn baseline(logs: &Logs) -> Baseline<'static> {
     let scatter = if samples::motion(logs).is_empty() { LEAST_OWN_SCATTER } else { LEAST_SCATTER };
     Baseline {
+        robot: logs.robot,
         motion: Some(MotionModel::Kinematic { robot: logs.robot, scatter }),
         sonar: sonar(logs),
         place_bound: [0.0; 2],

@@ -1,30 +1,30 @@
-//! Steps that were asked for before: runs of one controller ask for the same ones, and so do effects that change commands as
-//! time passes, at the same time of each run.
+//! A cache of predicted steps: all runs of a controller need the same ones, and so do effects that change commands over time,
+//! at the same time of each run.
 
 use std::collections::HashMap;
 
-use super::motion::{Motion, MotionNetworks, Speeds};
+use super::motion::{MotionNetworks, PredictedStep, Speeds};
 
-/// [Steps as they were known in training](MotionNetworks::trained_step), remembered.
+/// [Steps as training knew them](MotionNetworks::trained_step), cached.
 pub(super) struct KnownSteps<'a> {
     networks: &'a MotionNetworks<'a>,
-    motions: HashMap<[u32; 4], Motion>,
+    steps: HashMap<[u32; 4], PredictedStep>,
 }
 
-/// Some four megabytes, whatever is asked.
-const MOST: usize = 1 << 16;
+/// Entries that take some four megabytes.
+const CAPACITY: usize = 1 << 16;
 
 impl<'a> KnownSteps<'a> {
-    /// None of them.
+    /// Returns an empty cache.
     pub fn new(networks: &'a MotionNetworks<'a>) -> Self {
-        KnownSteps { networks, motions: HashMap::new() }
+        KnownSteps { networks, steps: HashMap::new() }
     }
 
-    /// What a step does.
-    pub fn step(&mut self, speeds: Speeds<f32>) -> Motion {
-        if self.motions.len() == MOST {
-            self.motions.clear();
+    /// Predicts a step.
+    pub fn step(&mut self, speeds: Speeds<f32>) -> PredictedStep {
+        if self.steps.len() == CAPACITY {
+            self.steps.clear();
         }
-        *self.motions.entry(speeds.map(f32::to_bits)).or_insert_with(|| self.networks.trained_step(speeds))
+        *self.steps.entry(speeds.map(f32::to_bits)).or_insert_with(|| self.networks.trained_step(speeds))
     }
 }

@@ -17,6 +17,7 @@ use super::residuals::{CELLS, LEVELS, ResidualQuantiles, VarianceComponents};
 use super::{Learned, Origin, SCHEMA, Simulator};
 use crate::sonar::{SensorLaw, SonarModel};
 use mindgap_foundations::error::{Error, Result};
+use mindgap_foundations::motion::{Axis, Motion};
 use mindgap_foundations::statistics::student;
 use mindgap_logs::Robot;
 
@@ -31,11 +32,11 @@ const EDGE_PER_CM: f32 = 10.0;
 /// A polynomial of the scaled left and right command: coefficients by their exponents.
 type Polynomial = BTreeMap<(u8, u8), f64>;
 
-/// The simulator of a textbook baseline whose steps scatter as `scatter` says: forward (cm), lateral (cm), turn (rad).
+/// The simulator of a textbook baseline whose steps scatter by these standard deviations.
 ///
 /// # Errors
 /// When the baseline is learned from logs, or knows no motion.
-pub fn simulator(baseline: &Baseline, scatter: [f64; 3]) -> Result<Simulator> {
+pub fn simulator(baseline: &Baseline, scatter: Motion<f64>) -> Result<Simulator> {
     let Some(MotionModel::Kinematic { robot, .. }) = &baseline.motion else {
         return Err(Error::new("only the textbook's motion can be written as a simulator"));
     };
@@ -46,9 +47,9 @@ pub fn simulator(baseline: &Baseline, scatter: [f64; 3]) -> Result<Simulator> {
     let forward_cm = times(&arc_cm, &series(&turn_rad, &[1.0, 0.0, -1.0 / 6.0, 0.0, 1.0 / 120.0]));
     let lateral_cm = times(&arc_cm, &series(&turn_rad, &[0.0, 0.5, 0.0, -1.0 / 24.0, 0.0, 1.0 / 720.0]));
     let turn_deg = times(&turn_rad, &constant(180.0 / std::f64::consts::PI));
-    let scatters = [scatter[0], scatter[1], scatter[2].to_degrees()];
-    let learned = |polynomial, axis: usize| -> Result<_> {
-        Ok(Some(Learned { network: network(polynomial)?, residuals: residuals(scatters[axis], FULL) }))
+    let network_scatter = scatter.turn_in_degrees();
+    let learned = |polynomial, axis: Axis| -> Result<_> {
+        Ok(Some(Learned { network: network(polynomial)?, residuals: residuals(network_scatter[axis], FULL) }))
     };
     // Runs hear by the same ideal ray as a beam, which lanes of them can draw.
     let (first_echo, sonar) = match &baseline.sonar {
@@ -64,9 +65,9 @@ pub fn simulator(baseline: &Baseline, scatter: [f64; 3]) -> Result<Simulator> {
         origin: Origin { version: env!("CARGO_PKG_VERSION").into(), trainer: "textbook".into(), seed: 0, runs: 0 },
         robot: *robot,
         commands: [-FULL, FULL],
-        turn: learned(&turn_deg, 2)?,
-        forward: learned(&forward_cm, 0)?,
-        lateral: learned(&lateral_cm, 1)?,
+        turn: learned(&turn_deg, Axis::Turn)?,
+        forward: learned(&forward_cm, Axis::Forward)?,
+        lateral: learned(&lateral_cm, Axis::Lateral)?,
         echo_probability: range_cm
             .map(|[_, far_cm]| Learned { network: within(far_cm), residuals: residuals(0.0, far_cm) }),
         echo_value: range_cm
@@ -75,7 +76,7 @@ pub fn simulator(baseline: &Baseline, scatter: [f64; 3]) -> Result<Simulator> {
         reference: Some(NominalModel {
             motion: Some(MotionBias {
                 scale: CommandScale::PERCENT,
-                weights: [const { Vec::new() }; 3].map(|_: Vec<f64>| vec![0.0; FEATURES]),
+                weights: Motion::from_fn(|_| vec![0.0; FEATURES]),
                 scatter,
                 precision: None,
             }),
@@ -187,12 +188,12 @@ mod tests {
     use mindgap_foundations::geometry::Pose;
     use mindgap_logs::Scene;
 
-    const SCATTER: [f64; 3] = [0.1, 0.1, 0.005];
+    const SCATTER: Motion<f64> = Motion { forward: 0.1, lateral: 0.1, turn: 0.005 };
 
     fn baseline() -> Baseline<'static> {
         let robot = mindgap_built_in_robot::default_robot();
         let motion = Some(MotionModel::Kinematic { robot, scatter: SCATTER });
-        Baseline { motion, sonar: None, place_bound: [0.0; 2], familiar: None, applied: Vec::new() }
+        Baseline { robot, motion, sonar: None, place_bound: [0.0; 2], familiar: None, applied: Vec::new() }
     }
 
     proptest! {
@@ -202,11 +203,11 @@ mod tests {
             let right = (left + difference).clamp(-100.0, 100.0);
             let baseline = baseline();
             let simulator = simulator(&baseline, SCATTER).unwrap();
-            let step = simulator.motion_networks().unwrap().step([left, right, 0.0, 0.0].map(|c| c as f32));
+            let step = simulator.motion_networks().unwrap().evaluate([left, right, 0.0, 0.0].map(|c| c as f32));
             let exact = baseline.motion.as_ref().unwrap().step([left, right], [0.0; 2]);
-            prop_assert!((f64::from(step.forward_cm) - exact.forward_cm).abs() < 0.02, "{step:?} {exact:?}");
-            prop_assert!((f64::from(step.lateral_cm) - exact.lateral_cm).abs() < 0.02, "{step:?} {exact:?}");
-            prop_assert!((f64::from(step.turn_rad) - exact.turn_rad).abs() < 1e-4, "{step:?} {exact:?}");
+            prop_assert!((f64::from(step.forward) - exact.forward).abs() < 0.02, "{step:?} {exact:?}");
+            prop_assert!((f64::from(step.lateral) - exact.lateral).abs() < 0.02, "{step:?} {exact:?}");
+            prop_assert!((f64::from(step.turn) - exact.turn).abs() < 1e-4, "{step:?} {exact:?}");
         }
 
         #[test]

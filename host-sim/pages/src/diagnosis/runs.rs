@@ -88,9 +88,9 @@ pub fn replay(subject: &Subject) -> Option<Replay> {
         return None;
     }
     let player = Player::new(baseline, logs);
-    let before = EffectChain::of(&baseline.applied);
+    let before = baseline.chain();
     let found = findings.with_formula();
-    let after = EffectChain::of(&baseline.applied.iter().chain(&found).cloned().collect::<Vec<_>>());
+    let after = EffectChain::of(&baseline.applied.iter().chain(&found).cloned().collect::<Vec<_>>(), &baseline.robot);
     let run = |(number, rows): (usize, usize)| {
         let whole = seen[number];
         let run = Run { name: whole.name.clone(), rows: whole.rows.between(0..rows).collect() };

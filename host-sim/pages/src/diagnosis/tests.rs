@@ -40,7 +40,15 @@ fn no_gap() -> Findings {
         untestable: Vec::new(),
         notes: Vec::new(),
     };
-    Findings { diagnosis, applied: Vec::new(), scatter: [1.0; 3], formula: None, evidence: Vec::new(), room_map: None }
+    Findings {
+        diagnosis,
+        applied: Vec::new(),
+        robot: mindgap_built_in_robot::default_robot(),
+        scatter: [1.0; 3],
+        formula: None,
+        evidence: Vec::new(),
+        room_map: None,
+    }
 }
 
 /// Something foreign in every field that holds words.

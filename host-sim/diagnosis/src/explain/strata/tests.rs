@@ -80,7 +80,7 @@ fn an_unknown_gap_is_that_of_the_residual_model() {
     let per_block = rows.rows.len() / rows.blocks;
     for row in &mut rows.rows {
         let motion = row.motion.as_mut().expect("a step");
-        motion.forward_cm += made(row.at % per_block);
+        motion.forward += made(row.at % per_block);
     }
     let context = FitContext::new(&baseline, &rows, METHOD);
     let none = Fitted::none(&context);

@@ -1,21 +1,23 @@
-//! Stretches of steps under one command. Their mean tells more of the command's bias than single steps do: the robot's
-//! chance averages out, and of the tracker's errors only those at both ends count.
+//! Consecutive steps under one command. Their mean says more about the command's bias than single steps do: the process
+//! noise averages out, and of the tracker's errors only those at both ends count.
 
+use mindgap_foundations::motion::{Axis, Motion};
+use mindgap_logs::samples::RowId;
 use mindgap_models::simulator::ensemble::noise::MotionNoise;
 use mindgap_models::simulator::ensemble::{Evidence, Held};
 use mindgap_models::simulator::nominal::MotionBias;
 
-/// What the networks and their correction leave of a step. Channels are forward (cm), lateral (cm) and turn (degrees).
+/// The residual of a step after the networks and their correction. As in an ensemble, turns are in degrees.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StepResidual {
-    /// The run and the row at which it begins.
-    place: [usize; 2],
+    /// The row at which it begins.
+    row: RowId,
     command: [f64; 2],
     /// Whether the command is that of the step before.
     steady: bool,
-    residual: [f64; 3],
+    residual: Motion<f64>,
     /// What the correction adds where the command is held.
-    known: [f64; 3],
+    known: Motion<f64>,
 }
 
 /// Consecutive steps under one command, the first one apart.
@@ -28,29 +30,28 @@ pub struct Hold {
     /// Number of steps.
     pub steps: usize,
     /// Mean residual of a step.
-    pub residual: [f64; 3],
+    pub residual: Motion<f64>,
     /// What the correction adds to the networks where the command is held.
-    pub known: [f64; 3],
+    pub known: Motion<f64>,
 }
 
 impl StepResidual {
-    /// Logged minus predicted of a step in `place`, its run and row: forward (cm), lateral (cm) and turn (rad), for left,
-    /// right, previous left and previous right command.
-    pub fn new(place: [usize; 2], speeds: [f64; 4], off: [f64; 3], correction: &MotionBias) -> Self {
+    /// Makes one of `residual`, logged minus predicted (cm, cm, rad), of the step that begins at `row`, for left, right,
+    /// previous left and previous right command.
+    pub fn new(row: RowId, speeds: [f64; 4], residual: Motion<f64>, correction: &MotionBias) -> Self {
         let [left, right, left_before, right_before] = speeds;
-        let in_degrees = |[forward_cm, lateral_cm, turn_rad]: [f64; 3]| [forward_cm, lateral_cm, turn_rad.to_degrees()];
         StepResidual {
-            place,
+            row,
             command: [left, right],
             steady: [left, right] == [left_before, right_before],
-            residual: in_degrees(off),
-            known: in_degrees(correction.correction(&[left, right, left, right])),
+            residual: residual.turn_in_degrees(),
+            known: correction.correction(&[left, right, left, right]).turn_in_degrees(),
         }
     }
 
     /// Index of the run.
     pub fn run(&self) -> usize {
-        self.place[0]
+        self.row.run
     }
 
     /// Left and right command.
@@ -65,16 +66,16 @@ impl StepResidual {
 
     /// Whether it begins where another one of the same run ends.
     pub fn follows(&self, before: &StepResidual) -> bool {
-        before.place[0] == self.place[0] && before.place[1] + 1 == self.place[1]
+        before.row.run == self.row.run && before.row.row + 1 == self.row.row
     }
 
     /// Logged minus predicted.
-    pub fn residual(&self) -> [f64; 3] {
+    pub fn residual(&self) -> Motion<f64> {
         self.residual
     }
 
     /// What the correction adds where the command is held.
-    pub fn known(&self) -> [f64; 3] {
+    pub fn known(&self) -> Motion<f64> {
         self.known
     }
 }
@@ -88,9 +89,9 @@ fn stretches(steps: &[StepResidual]) -> Vec<&[StepResidual]> {
 /// The same, summed up.
 pub fn holds(steps: &[StepResidual]) -> Vec<Hold> {
     let hold = |steps: &[StepResidual]| {
-        let mean = |channel: usize| steps.iter().map(|s| s.residual[channel]).sum::<f64>() / steps.len() as f64;
+        let mean = |axis: Axis| steps.iter().map(|s| s.residual[axis]).sum::<f64>() / steps.len() as f64;
         let StepResidual { command, steady, known, .. } = steps[0];
-        Hold { command, first: !steady, steps: steps.len(), residual: [0, 1, 2].map(mean), known }
+        Hold { command, first: !steady, steps: steps.len(), residual: Motion::from_fn(mean), known }
     };
     stretches(steps).into_iter().map(hold).collect()
 }
@@ -99,14 +100,14 @@ impl Hold {
     /// What it says of the command's bias, if noise is this; `said` is what networks say.
     pub fn evidence(&self, noise: &MotionNoise, said: Held) -> Evidence {
         let motion = said.motion(self.command);
-        let variance = |channel: usize| {
-            let first = if self.first { noise.first_step[channel] * noise.first_step[channel] } else { 0.0 };
-            (noise.mean_variance(motion, channel, self.steps) + first) as f32
+        let variance = |axis: Axis| {
+            let first = if self.first { noise.first_step[axis] * noise.first_step[axis] } else { 0.0 };
+            (noise.mean_variance(motion, axis, self.steps) + first) as f32
         };
         Evidence {
             command: self.command.map(|c| c as f32),
-            bias: [0, 1, 2].map(|channel| (self.residual[channel] + self.known[channel]) as f32),
-            variance: [0, 1, 2].map(variance),
+            bias: (self.residual + self.known).map(|bias| bias as f32),
+            variance: Motion::from_fn(variance),
             after_training: false,
         }
     }
@@ -120,12 +121,12 @@ mod tests {
     fn step(run: usize, row: usize, command: [f64; 2], before: [f64; 2], turn_rad: f64) -> StepResidual {
         let none = MotionBias {
             scale: CommandScale::PERCENT,
-            weights: [const { Vec::new() }; 3],
-            scatter: [1.0; 3],
+            weights: Motion::default(),
+            scatter: Motion::splat(1.0),
             precision: None,
         };
         let speeds = [command[0], command[1], before[0], before[1]];
-        StepResidual::new([run, row], speeds, [1.0, 2.0, turn_rad], &none)
+        StepResidual::new(RowId { run, row }, speeds, Motion { forward: 1.0, lateral: 2.0, turn: turn_rad }, &none)
     }
 
     #[test]
@@ -143,6 +144,6 @@ mod tests {
         ];
         let found: Vec<(bool, usize)> = holds(&steps).iter().map(|hold| (hold.first, hold.steps)).collect();
         assert_eq!(found, [(true, 1), (false, 2), (true, 1), (false, 1), (false, 1)]);
-        assert!((holds(&steps)[1].residual[2] - 2.0).abs() < 1e-12);
+        assert!((holds(&steps)[1].residual.turn - 2.0).abs() < 1e-12);
     }
 }

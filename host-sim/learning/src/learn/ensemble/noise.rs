@@ -6,9 +6,10 @@ use nalgebra::{Cholesky, DMatrix, DVector};
 use rayon::prelude::*;
 
 use super::holds::StepResidual;
+use mindgap_foundations::motion::Axis;
 use mindgap_foundations::statistics::maximise::{Bounds, climb};
 use mindgap_models::simulator::ensemble::evidence::cell;
-use mindgap_models::simulator::ensemble::noise::{FORWARD, LATERAL, MotionNoise, TERMS, TURN, is_slow, terms, weighed};
+use mindgap_models::simulator::ensemble::noise::{MotionNoise, TERMS, is_slow, terms, weighed};
 use mindgap_models::simulator::ensemble::{Held, Member};
 
 /// Of the variance of residuals such shares are a step's and the tracker's, before anything is known.
@@ -53,7 +54,7 @@ struct Step {
     comes_back: f64,
 }
 
-/// What is assumed of one channel.
+/// What is assumed along one axis.
 #[derive(Clone, Copy)]
 struct Assumed {
     step: [f64; TERMS],
@@ -66,12 +67,12 @@ struct Assumed {
 /// What steps leave about the networks, before anything is known.
 pub fn rough(steps: &[StepResidual]) -> MotionNoise {
     let mut noise = MotionNoise::default();
-    for channel in [FORWARD, LATERAL, TURN] {
-        let squares = steps.iter().map(|step| step.residual()[channel] * step.residual()[channel]);
+    for axis in Axis::ALL {
+        let squares = steps.iter().map(|step| step.residual()[axis] * step.residual()[axis]);
         let variance = squares.sum::<f64>() / steps.len().max(1) as f64;
-        noise.step[channel][0] = 2.0 * FIRST_STEP * variance;
-        noise.tracker[channel] = FIRST_TRACKER * variance;
-        noise.first_step[channel] = (FIRST_STEP * variance).sqrt();
+        noise.step[axis][0] = 2.0 * FIRST_STEP * variance;
+        noise.tracker[axis] = FIRST_TRACKER * variance;
+        noise.first_step[axis] = (FIRST_STEP * variance).sqrt();
     }
     noise
 }
@@ -85,14 +86,13 @@ pub fn pieces(steps: &[StepResidual]) -> Vec<&[StepResidual]> {
 /// and some more say, and `said` what networks say.
 pub fn learn<'a>(pieces: &[&[StepResidual]], middle: impl Fn(usize) -> &'a Member, said: Held) -> MotionNoise {
     let mut noise = MotionNoise::default();
-    // A heading that is tracked wrongly shows in the lateral channel.
-    for channel in [TURN, FORWARD, LATERAL] {
-        let piece =
-            |(number, steps): (usize, &&[StepResidual])| Piece::new(steps, channel, &noise, middle(number), said);
-        let of_channel: Vec<Piece> = pieces.iter().enumerate().map(piece).collect();
-        let Assumed { step, tracker, nugget, first_step } = likeliest(&of_channel);
-        (noise.step[channel], noise.tracker[channel], noise.nugget[channel]) = (step, tracker, nugget);
-        noise.first_step[channel] = first_step.sqrt();
+    // A heading that is tracked wrongly shows as lateral motion.
+    for axis in [Axis::Turn, Axis::Forward, Axis::Lateral] {
+        let piece = |(number, steps): (usize, &&[StepResidual])| Piece::new(steps, axis, &noise, middle(number), said);
+        let of_axis: Vec<Piece> = pieces.iter().enumerate().map(piece).collect();
+        let Assumed { step, tracker, nugget, first_step } = likeliest(&of_axis);
+        (noise.step[axis], noise.tracker[axis], noise.nugget[axis]) = (step, tracker, nugget);
+        noise.first_step[axis] = first_step.sqrt();
     }
     noise
 }
@@ -118,20 +118,20 @@ fn likeliest(pieces: &[Piece]) -> Assumed {
 }
 
 impl Piece {
-    /// Of a channel; `noise` is what is known of those before.
-    fn new(steps: &[StepResidual], channel: usize, noise: &MotionNoise, middle: &Member, said: Held) -> Self {
+    /// Makes one of an axis; `noise` is what is known of the axes before.
+    fn new(steps: &[StepResidual], axis: Axis, noise: &MotionNoise, middle: &Member, said: Held) -> Self {
         let step = |step: &StepResidual| {
             let command = step.command();
             let percent = said.scale().percent(command);
             let (does, says) = (middle.motion(command), said.motion(command));
-            let left = step.residual()[channel] + step.known()[channel] + says[channel] - does[channel];
+            let left = step.residual()[axis] + step.known()[axis] + says[axis] - does[axis];
             let step = Step {
                 terms: terms(does),
                 cell: cell(percent),
                 class: usize::from(is_slow(percent)),
                 is_first: !step.is_steady(),
-                aslant: noise.aslant_variance(does, channel),
-                comes_back: if channel == TURN { 1.0 } else { libm::cos(does[TURN].to_radians()) },
+                aslant: noise.aslant_variance(does, axis),
+                comes_back: if axis == Axis::Turn { 1.0 } else { libm::cos(does.turn.to_radians()) },
             };
             (step, left)
         };
@@ -171,7 +171,9 @@ mod tests {
     use rand_distr::{Distribution, StandardNormal};
 
     use super::*;
+    use mindgap_foundations::motion::Motion;
     use mindgap_foundations::random::generator;
+    use mindgap_logs::samples::RowId;
     use mindgap_models::simulator::ensemble::CommandScale;
     use mindgap_models::simulator::ensemble::command_scale::Percent;
     use mindgap_models::simulator::ensemble::{Ensemble, PARTS, Posterior};
@@ -187,8 +189,8 @@ mod tests {
         let mut rng = generator(3, &[]);
         let none = MotionBias {
             scale: CommandScale::PERCENT,
-            weights: [const { Vec::new() }; 3],
-            scatter: [1.0; 3],
+            weights: Motion::default(),
+            scatter: Motion::splat(1.0),
             precision: None,
         };
         let mut nuggets: BTreeMap<[i32; 2], f64> = BTreeMap::new();
@@ -214,18 +216,20 @@ mod tests {
                 let turn_deg = normal(deviation) + lasting + first + next - error;
                 error = next;
                 let speeds = [command[0], command[1], before[0], before[1]];
-                steps.push(StepResidual::new([run, row], speeds, [0.0, 0.0, turn_deg.to_radians()], &none));
+                let residual = Motion { turn: turn_deg.to_radians(), ..Motion::ZERO };
+                steps.push(StepResidual::new(RowId { run, row }, speeds, residual, &none));
                 before = command;
             }
         }
-        let still = Ensemble { prior: [[0.0; PARTS]; 3], noise: MotionNoise::default(), evidence: Vec::new() };
-        let said = |_: [f64; 2]| [0.0; 3];
+        let still =
+            Ensemble { prior: Motion::splat([0.0; PARTS]), noise: MotionNoise::default(), evidence: Vec::new() };
+        let said = |_: [f64; 2]| Motion::ZERO;
         let middle = Posterior::new(&still, &said).expect("a posterior").mean();
         let found = learn(&pieces(&steps), |_| &middle, &said);
         // So many steps tell that of first ones to a third, and the others to a tenth, by a search of other make.
         let is_near = |found: f64, true_one: f64, share: f64| (found / true_one - 1.0).abs() < share;
-        assert!(is_near(found.step[TURN][0], step, 0.25) && is_near(found.tracker[TURN], tracker, 0.15), "{found:?}");
-        assert!(is_near(found.first_step[TURN], f64::sqrt(first_step), 0.3), "{found:?}");
-        assert!(found.nugget[TURN].into_iter().zip(nugget).all(|(f, t)| is_near(f, t, 0.25)), "{found:?}");
+        assert!(is_near(found.step.turn[0], step, 0.25) && is_near(found.tracker.turn, tracker, 0.15), "{found:?}");
+        assert!(is_near(found.first_step.turn, f64::sqrt(first_step), 0.3), "{found:?}");
+        assert!(found.nugget.turn.into_iter().zip(nugget).all(|(f, t)| is_near(f, t, 0.25)), "{found:?}");
     }
 }

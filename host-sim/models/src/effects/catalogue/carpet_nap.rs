@@ -2,7 +2,8 @@
 
 use super::{DIRECTIONS_DEG, distance_lost_cm, parameters, pushed_cm};
 use crate::effects::parameter::{Guesses, Report};
-use crate::effects::{Effect, Hook, Parameter, PoseIncrement, StepContext, Variant};
+use crate::effects::{Effect, Hook, Parameter, StepContext, Variant};
+use mindgap_foundations::motion::Motion;
 
 pub const EFFECT: Effect = Effect {
     id: "carpet_nap",
@@ -18,8 +19,8 @@ pub const EFFECT: Effect = Effect {
                 let Nap { direction_deg, loss, with_speed, across } = Nap::read(v);
                 let against = along(direction_deg, context, increment);
                 let drag = across * 0.5 * (1.0 + against) + (1.0 - across) * against.max(0.0);
-                let lost_cm = loss * drag * distance_lost_cm(with_speed, increment.forward_cm, context);
-                increment.forward_cm = pushed_cm(increment.forward_cm, -lost_cm, context);
+                let lost_cm = loss * drag * distance_lost_cm(with_speed, increment.forward, context);
+                increment.forward = pushed_cm(increment.forward, -lost_cm, context);
             })],
         },
         Variant {
@@ -28,8 +29,8 @@ pub const EFFECT: Effect = Effect {
             hooks: &[Hook::MotionHere(&|v, context, increment| {
                 let Axis { direction_deg, loss } = Axis::read(v);
                 let left = 1.0 - loss * along(direction_deg, context, increment).abs();
-                increment.forward_cm *= left;
-                increment.lateral_cm *= left;
+                increment.forward *= left;
+                increment.lateral *= left;
             })],
         },
     ],
@@ -65,7 +66,7 @@ parameters! {
 }
 
 /// Cosine between the direction of travel and a direction of the world; reversing travels against the heading.
-fn along(direction_deg: f64, context: &StepContext, increment: &PoseIncrement) -> f64 {
-    let heading_rad = context.pose.heading_rad + 0.5 * increment.turn_rad;
-    libm::cos(heading_rad - direction_deg.to_radians()) * increment.forward_cm.signum()
+fn along(direction_deg: f64, context: &StepContext, increment: &Motion<f64>) -> f64 {
+    let heading_rad = context.pose.heading_rad + 0.5 * increment.turn;
+    libm::cos(heading_rad - direction_deg.to_radians()) * increment.forward.signum()
 }

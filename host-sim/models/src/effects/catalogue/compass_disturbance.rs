@@ -2,8 +2,9 @@
 
 use super::{DIRECTIONS_DEG, parameters};
 use crate::effects::parameter::{Guesses, Report};
-use crate::effects::{Effect, Hook, Parameter, PoseIncrement, SensorState, StepContext, Variant};
+use crate::effects::{Effect, Hook, Parameter, SensorState, StepContext, Variant};
 use mindgap_foundations::geometry::wrap_rad;
+use mindgap_foundations::motion::Motion;
 
 pub const EFFECT: Effect = Effect {
     id: "compass_disturbance",
@@ -48,11 +49,11 @@ impl Wave {
         self.deg.to_radians() * libm::sin(waves * heading_rad - self.phase_deg.to_radians())
     }
 
-    fn disturb(&self, waves: f64, context: &StepContext, increment: &mut PoseIncrement) {
+    fn disturb(&self, waves: f64, context: &StepContext, increment: &mut Motion<f64>) {
         let here_rad = self.error_rad(waves, context.pose.heading_rad);
-        let there_rad = self.error_rad(waves, context.pose.heading_rad + increment.turn_rad);
+        let there_rad = self.error_rad(waves, context.pose.heading_rad + increment.turn);
         increment.rotate_translation(-here_rad);
-        increment.turn_rad += there_rad - here_rad;
+        increment.turn += there_rad - here_rad;
     }
 
     fn undo(&self, waves: f64, sensor: &mut SensorState) {

@@ -3,6 +3,7 @@
 use super::drive::Drive;
 use super::{each_command, each_wheel, parameters};
 use crate::effects::parameter::{Guesses, Report};
+use crate::effects::small_robot::DEADBAND_EDGE_CM_S;
 use crate::effects::{Effect, Hook, Parameter, Variant};
 
 pub const EFFECT: Effect = Effect {
@@ -17,7 +18,7 @@ pub const EFFECT: Effect = Effect {
             parameters: Deadband::PARAMETERS,
             hooks: &[Hook::Commands(&|v, context, commands| {
                 let edge = context.command_for(Deadband::read(v).break_away_cm_s);
-                let softness = context.command_for(SOFTNESS_CM_S);
+                let softness = context.command_for(DEADBAND_EDGE_CM_S);
                 if edge > 0.0 {
                     each_command(commands, |c, _| c * ((c - edge) / softness + 0.5).clamp(0.0, 1.0));
                 }
@@ -76,5 +77,3 @@ parameters! {
 
 /// Commands above which nothing may be lost leave something to stretch over.
 const MOST_OF_FULL: f64 = 90.0;
-/// A cut is no sharper than this, so that the likelihood has a slope where it lies.
-const SOFTNESS_CM_S: f64 = 0.8;

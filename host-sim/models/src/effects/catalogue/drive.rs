@@ -2,9 +2,7 @@
 
 use crate::effects::StepContext;
 use crate::effects::context::{CommandHistory, HISTORY};
-
-/// Time constant of the drive that simulators know: that of an NXT motor.
-const KNOWN_MS: f64 = 50.0;
+use crate::effects::small_robot::MOTOR_MS;
 
 /// A drive of the first order with dry friction; speeds are in units of the command that keeps them without it.
 pub struct Drive {
@@ -18,12 +16,12 @@ impl Drive {
     /// Slower by so much than the one that simulators know, with dry friction that the command for this wheel speed does no
     /// more than overcome.
     pub fn slower(ms: f64, friction_cm_s: f64, context: &StepContext) -> Self {
-        Drive { steps: (KNOWN_MS + ms) / context.robot.step_ms, friction: context.command_for(friction_cm_s) }
+        Drive { steps: (MOTOR_MS + ms) / context.robot.step_ms, friction: context.command_for(friction_cm_s) }
     }
 
     /// The one that simulators know, where the robot's body weighs by this factor more on the motors.
     pub fn loaded(factor: f64, body_share: f64, context: &StepContext) -> Self {
-        Drive::slower(KNOWN_MS * body_share * (factor - 1.0), 0.0, context)
+        Drive::slower(MOTOR_MS * body_share * (factor - 1.0), 0.0, context)
     }
 
     /// The commands by which this drive moves as the other one does by these.

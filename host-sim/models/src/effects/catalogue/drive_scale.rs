@@ -16,7 +16,7 @@ pub const EFFECT: Effect = Effect {
         Variant {
             id: "distance",
             parameters: Scale::PARAMETERS,
-            hooks: &[Hook::Motion(&|v, _, increment| increment.scale(Scale::read(v).factor))],
+            hooks: &[Hook::Motion(&|v, _, increment| *increment = increment.scaled(Scale::read(v).factor))],
         },
         Variant {
             id: "command",
@@ -38,7 +38,7 @@ pub const EFFECT: Effect = Effect {
                         Drive::slower(0.0, 0.0, context).imitate(&loaded, commands);
                     }
                 }),
-                Hook::Motion(&|v, _, increment| increment.scale(LeverScale::read(v).factor)),
+                Hook::Motion(&|v, _, increment| *increment = increment.scaled(LeverScale::read(v).factor)),
             ],
         },
     ],

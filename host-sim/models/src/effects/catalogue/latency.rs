@@ -25,12 +25,12 @@ pub const EFFECT: Effect = Effect {
             })],
         },
         Variant {
-            id: "of_drive",
+            id: "drive_delay",
             parameters: Latency::PARAMETERS,
             hooks: &[Hook::Delay(&|v, context| Late { drive_steps: late_steps(v, context), ..Late::default() })],
         },
         Variant {
-            id: "of_motion",
+            id: "pose_delay",
             parameters: Latency::PARAMETERS,
             hooks: &[Hook::Delay(&|v, context| Late { poses_steps: late_steps(v, context), ..Late::default() })],
         },

@@ -21,11 +21,11 @@ pub const EFFECT: Effect = Effect {
                 let lens = Lens::read(v);
                 let start_cm = context.pose.position_cm;
                 let heading = direction(context.pose.heading_rad);
-                let translation_cm = heading.rotate(DVec2::new(increment.forward_cm, increment.lateral_cm));
+                let translation_cm = heading.rotate(DVec2::new(increment.forward, increment.lateral));
                 let end_cm = lens.undistorted(start_cm, context.middle_cm) + translation_cm;
                 let seen_cm = lens.distorted(end_cm, context.middle_cm) - start_cm;
                 let seen_cm = direction(-context.pose.heading_rad).rotate(seen_cm);
-                (increment.forward_cm, increment.lateral_cm) = (seen_cm.x, seen_cm.y);
+                (increment.forward, increment.lateral) = (seen_cm.x, seen_cm.y);
             }),
             Hook::SensorHere(&|v, context, sensor| {
                 let seen_cm = sensor.robot.position_cm;

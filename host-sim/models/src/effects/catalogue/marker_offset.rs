@@ -19,9 +19,9 @@ pub const EFFECT: Effect = Effect {
         hooks: &[
             Hook::Motion(&|v, _, increment| {
                 let at_cm = Marker::read(v).on_the_robot();
-                let carried_cm = direction(increment.turn_rad).rotate(at_cm) - at_cm;
-                increment.forward_cm += carried_cm.x;
-                increment.lateral_cm += carried_cm.y;
+                let carried_cm = direction(increment.turn).rotate(at_cm) - at_cm;
+                increment.forward += carried_cm.x;
+                increment.lateral += carried_cm.y;
             }),
             Hook::SensorHere(&|v, _, sensor| {
                 let at_cm = Marker::read(v).on_the_robot();

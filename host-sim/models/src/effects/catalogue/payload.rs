@@ -1,9 +1,11 @@
 //! A load, off the middle.
 
-use super::{LOADED_SPEED_CM_S, distance_lost_cm, each_command, each_wheel, loaded, parameters, pushed_cm, scrubbing};
+use super::{distance_lost_cm, each_command, each_wheel, loaded, parameters, pushed_cm, scrubbing};
 use crate::effects::context::CommandHistory;
 use crate::effects::parameter::{Guesses, Report};
-use crate::effects::{Effect, Hook, Parameter, PoseIncrement, StepContext, Variant};
+use crate::effects::small_robot::{HALF_SPEED_CM_S, HALF_TURN_RATE_RAD_S};
+use crate::effects::{Effect, Hook, Parameter, StepContext, Variant};
+use mindgap_foundations::motion::Motion;
 
 pub const EFFECT: Effect = Effect {
     id: "payload",
@@ -15,8 +17,8 @@ pub const EFFECT: Effect = Effect {
             id: "command",
             parameters: Load::PARAMETERS,
             hooks: &[Hook::Commands(&|v, _, commands| {
-                let Load { loss, other_side } = Load::read(v);
-                let factors = by_side(loss, other_side).map(|lost| 1.0 - lost);
+                let Load { loss, loss_other_wheel } = Load::read(v);
+                let factors = by_side(loss, loss_other_wheel).map(|lost| 1.0 - lost);
                 each_command(commands, |c, motor| c * factors[motor]);
             })],
         },
@@ -24,8 +26,8 @@ pub const EFFECT: Effect = Effect {
             id: "distance",
             parameters: Load::PARAMETERS,
             hooks: &[Hook::Motion(&|v, context, increment| {
-                let Load { loss, other_side } = Load::read(v);
-                shorten(by_side(loss, other_side), context, increment);
+                let Load { loss, loss_other_wheel } = Load::read(v);
+                shorten(by_side(loss, loss_other_wheel), context, increment);
             })],
         },
         Variant {
@@ -37,9 +39,9 @@ pub const EFFECT: Effect = Effect {
                     start_slowly(start_loss * loss.abs(), commands);
                 }),
                 Hook::Motion(&|v, context, increment| {
-                    let HeavyLoad { loss, other_side, turn_loss, with_rate, .. } = HeavyLoad::read(v);
-                    shorten(by_side(loss, other_side), context, increment);
-                    increment.turn_rad = scrubbed_rad(increment.turn_rad, turn_loss * loss.abs(), with_rate, context);
+                    let HeavyLoad { loss, loss_other_wheel, turn_loss, loss_with_speed, .. } = HeavyLoad::read(v);
+                    shorten(by_side(loss, loss_other_wheel), context, increment);
+                    increment.turn = scrubbed_rad(increment.turn, turn_loss * loss.abs(), loss_with_speed, context);
                 }),
             ],
         },
@@ -52,8 +54,8 @@ pub const EFFECT: Effect = Effect {
                     start_slowly(start_loss * loss.abs(), commands);
                 }),
                 Hook::Motion(&|v, context, increment| {
-                    let RollingLoad { loss, other_side, with_speed, .. } = RollingLoad::read(v);
-                    let losses = by_side(loss, other_side);
+                    let RollingLoad { loss, loss_other_wheel, with_speed, .. } = RollingLoad::read(v);
+                    let losses = by_side(loss, loss_other_wheel);
                     each_wheel(context, increment, |cm, wheel| {
                         pushed_cm(cm, -losses[wheel] * distance_lost_cm(with_speed, cm, context), context)
                     });
@@ -64,10 +66,10 @@ pub const EFFECT: Effect = Effect {
             id: "motor_load",
             parameters: RollingLoad::PARAMETERS,
             hooks: &[Hook::Commands(&|v, context, commands| {
-                let RollingLoad { loss, other_side, with_speed, start_loss } = RollingLoad::read(v);
+                let RollingLoad { loss, loss_other_wheel, with_speed, start_loss } = RollingLoad::read(v);
                 start_slowly(start_loss * loss.abs(), commands);
                 // To a motor, the torque of a load is a lower voltage, which is what a command sets.
-                let (lost, reference) = (by_side(loss, other_side), context.command_for(LOADED_SPEED_CM_S));
+                let (lost, reference) = (by_side(loss, loss_other_wheel), context.command_for(HALF_SPEED_CM_S));
                 each_command(commands, |c, motor| (c - lost[motor] * loaded(with_speed, c, reference)).max(0.0));
             })],
         },
@@ -87,7 +89,7 @@ parameters! {
         /// See [`LOSS`].
         loss: LOSS,
         /// The other wheel's loss as a share of it: with none it would be a weaker motor, with all of it a scale.
-        other_side: Parameter::new("", 0.5, [0.15, 0.8]).prior_sd(0.3).report(Report::Hidden),
+        loss_other_wheel: Parameter::new("", 0.5, [0.15, 0.8]).prior_sd(0.3).report(Report::Hidden),
     }
 }
 
@@ -96,11 +98,11 @@ parameters! {
         /// See [`LOSS`].
         loss: LOSS,
         /// The other wheel's loss as a share of it.
-        other_side: Parameter::new("", 0.5, [0.0, 0.8]).prior_sd(0.3).report(Report::Hidden),
-        /// Loss of a turn of [`SCRUBBED_RAD_S`] as a multiple of it: tyres and castor that are pressed down scrub in turns.
+        loss_other_wheel: Parameter::new("", 0.5, [0.0, 0.8]).prior_sd(0.3).report(Report::Hidden),
+        /// Loss of a turn of [`HALF_TURN_RATE_RAD_S`] as a multiple of it: tyres and castor that are pressed down scrub in turns.
         turn_loss: Parameter::new("", 0.0, [0.0, 6.0]).prior_sd(2.0).from(Guesses::At(&[2.0])).report(Report::Hidden),
         /// Share of that which grows with the rate of turn; dry friction costs the rest at any rate.
-        with_rate: Parameter::new("", 0.5, [0.0, 1.0]).prior_sd(0.5).report(Report::Hidden),
+        loss_with_speed: Parameter::new("", 0.5, [0.0, 1.0]).prior_sd(0.5).report(Report::Hidden),
         /// See [`START_LOSS`].
         start_loss: START_LOSS,
     }
@@ -108,10 +110,10 @@ parameters! {
 
 parameters! {
     RollingLoad {
-        /// Share of speed lost at [the loaded speed](super::LOADED_SPEED_CM_S); see [`LOSS`].
+        /// Share of speed lost at [half of full speed](HALF_SPEED_CM_S); see [`LOSS`].
         loss: LOSS,
         /// The other wheel's loss as a share of it.
-        other_side: Parameter::new("", 0.5, [0.0, 0.8]).prior_sd(0.3).from(Guesses::At(&[0.2])).report(Report::Hidden),
+        loss_other_wheel: Parameter::new("", 0.5, [0.0, 0.8]).prior_sd(0.3).from(Guesses::At(&[0.2])).report(Report::Hidden),
         /// Share of the loss that grows with speed, as it does where tyres flex. Gears and hubs rub at any speed: with all of
         /// it it would be a weaker motor.
         with_speed: Parameter::new("", 0.3, [0.0, 0.75]).prior_sd(0.3).report(Report::Hidden),
@@ -120,23 +122,20 @@ parameters! {
     }
 }
 
-/// The turn to which the loss of turns refers: half of what an NXT robot's wheels can do.
-const SCRUBBED_RAD_S: f64 = 3.5;
-
 /// A turn that loses the share `lost` to scrubbing: of itself in part, and of the reference turn for the rest.
-fn scrubbed_rad(turn_rad: f64, lost: f64, with_rate: f64, context: &StepContext) -> f64 {
-    let of_rad = with_rate * turn_rad.abs() + (1.0 - with_rate) * (SCRUBBED_RAD_S * context.step_s());
+fn scrubbed_rad(turn_rad: f64, lost: f64, loss_with_speed: f64, context: &StepContext) -> f64 {
+    let of_rad = loss_with_speed * turn_rad.abs() + (1.0 - loss_with_speed) * (HALF_TURN_RATE_RAD_S * context.step_s());
     let lost_rad = lost * of_rad * scrubbing(turn_rad, context);
     if lost_rad.abs() < turn_rad.abs() { turn_rad - lost_rad } else { 0.0 }
 }
 
 /// Losses of the left and the right wheel.
-fn by_side(loss: f64, other_side: f64) -> [f64; 2] {
-    let (near, far) = (loss.abs(), loss.abs() * other_side);
+fn by_side(loss: f64, loss_other_wheel: f64) -> [f64; 2] {
+    let (near, far) = (loss.abs(), loss.abs() * loss_other_wheel);
     if loss > 0.0 { [near, far] } else { [far, near] }
 }
 
-fn shorten(losses: [f64; 2], context: &StepContext, increment: &mut PoseIncrement) {
+fn shorten(losses: [f64; 2], context: &StepContext, increment: &mut Motion<f64>) {
     each_wheel(context, increment, |cm, wheel| cm * (1.0 - losses[wheel]));
 }
 

@@ -2,6 +2,7 @@
 
 use super::{each_command, parameters};
 use crate::effects::parameter::{Guesses, Report};
+use crate::effects::small_robot::UNREACHED_SPEED_CM_S;
 use crate::effects::{Effect, Hook, Parameter, Variant};
 
 pub const EFFECT: Effect = Effect {
@@ -37,7 +38,7 @@ pub const EFFECT: Effect = Effect {
             hooks: &[Hook::Commands(&|v, context, commands| {
                 let Saturation { limit_cm_s } = Saturation::read(v);
                 let limit = context.command_for(limit_cm_s);
-                if limit_cm_s < NO_LIMIT_CM_S {
+                if limit_cm_s < UNREACHED_SPEED_CM_S {
                     each_command(commands, |c, _| softly_limited(c, limit));
                 }
             })],
@@ -45,14 +46,11 @@ pub const EFFECT: Effect = Effect {
     ],
 };
 
-/// No wheel of an indoor robot turns as fast.
-const NO_LIMIT_CM_S: f64 = 100.0;
-
 parameters! {
     Saturation {
         /// Wheel speed above which nothing is added. A regulated NXT motor under load is flat from half of its full
         /// 41 cm/s at the earliest; robots that clean floors drive at 10 to 50 cm/s, and half of the slowest is left.
-        limit_cm_s: Parameter::new("cm/s", NO_LIMIT_CM_S, [5.0, NO_LIMIT_CM_S])
+        limit_cm_s: Parameter::new("cm/s", UNREACHED_SPEED_CM_S, [5.0, UNREACHED_SPEED_CM_S])
             .scale(33.0)
             .from(Guesses::OfTopSpeed(&[0.35, 0.5, 0.65, 0.8]))
             .report(Report::Command),

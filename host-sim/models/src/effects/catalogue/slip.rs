@@ -3,6 +3,7 @@
 use super::{each_command, each_wheel, parameters};
 use crate::effects::context::CommandHistory;
 use crate::effects::parameter::{Guesses, Report};
+use crate::effects::small_robot::{FULL_SPEED_CM_S, GRIPPING_TURN_RAD, HALF_SLIP_CM_S};
 use crate::effects::{Effect, Hook, Parameter, StepContext, Variant};
 
 pub const EFFECT: Effect = Effect {
@@ -38,7 +39,7 @@ pub const EFFECT: Effect = Effect {
                 let [now, before, ..] = context.commands;
                 each_wheel(context, increment, |cm, m| {
                     let change_cm_s = context.wheel_speed_cm_s((now[m] - before[m]).abs());
-                    let beyond = (change_cm_s - onset_cm_s).max(0.0) / WHOLE_CHANGE_CM_S;
+                    let beyond = (change_cm_s - onset_cm_s).max(0.0) / FULL_SPEED_CM_S;
                     cm * (1.0 - (loss * beyond).min(1.0))
                 });
             })],
@@ -57,7 +58,7 @@ pub const EFFECT: Effect = Effect {
                 }),
                 Hook::Motion(&|v, _, increment| {
                     let DraggingSlip { loss, turn_drag_rad, .. } = DraggingSlip::read(v);
-                    increment.turn_rad -= loss * turn_drag_rad * libm::tanh(increment.turn_rad / LITTLE_TURN_RAD);
+                    increment.turn -= loss * turn_drag_rad * libm::tanh(increment.turn / GRIPPING_TURN_RAD);
                 }),
             ],
         },
@@ -110,18 +111,12 @@ parameters! {
     }
 }
 
-/// The change of wheel speed to which the loss of distance refers: from rest to an NXT's full speed.
-const WHOLE_CHANGE_CM_S: f64 = 41.0;
-/// The loss of a growing slip has reached half of its share so far beyond the onset.
-const HALF_LOST_CM_S: f64 = 16.0;
-/// Turns of a step below this do not pull the tyres to their grip.
-const LITTLE_TURN_RAD: f64 = 0.04;
 /// A change of this many onsets is not caught up with at the end of its step.
 const NOT_CAUGHT_UP: f64 = 2.5;
 
 /// What is lost of a change of command that lies so far beyond the onset: little at first, then in proportion.
 fn growing(loss: f64, context: &StepContext) -> impl Fn(f64) -> f64 + use<> {
-    let half = context.command_for(HALF_LOST_CM_S);
+    let half = context.command_for(HALF_SLIP_CM_S);
     move |beyond| loss * beyond * beyond / (half + beyond)
 }
 

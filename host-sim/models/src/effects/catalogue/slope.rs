@@ -18,9 +18,9 @@ pub const EFFECT: Effect = Effect {
                 let Drift { direction_deg, loss } = Drift::read(v);
                 let [left, right] = increment.wheels_cm(context.robot.track_cm);
                 let down_cm = loss * 0.5 * (left.abs() + right.abs());
-                let drift_cm = direction(angle_rad(direction_deg, context, increment.turn_rad)) * down_cm;
-                increment.forward_cm += drift_cm.x;
-                increment.lateral_cm += drift_cm.y;
+                let drift_cm = direction(angle_rad(direction_deg, context, increment.turn)) * down_cm;
+                increment.forward += drift_cm.x;
+                increment.lateral += drift_cm.y;
             })],
         },
         Variant {
@@ -31,10 +31,10 @@ pub const EFFECT: Effect = Effect {
                 // A wheel that is driven gives way downhill, one that stands holds.
                 let [left, right] = increment.wheels_cm(context.robot.track_cm);
                 let driven = moving(left.abs().max(right.abs()), context);
-                let pull_cm = driven * loss * distance_lost_cm(with_speed, increment.forward_cm, context);
-                let down_cm = direction(angle_rad(direction_deg, context, increment.turn_rad)) * pull_cm;
-                increment.forward_cm += down_cm.x;
-                increment.lateral_cm += sideways * down_cm.y;
+                let pull_cm = driven * loss * distance_lost_cm(with_speed, increment.forward, context);
+                let down_cm = direction(angle_rad(direction_deg, context, increment.turn)) * pull_cm;
+                increment.forward += down_cm.x;
+                increment.lateral += sideways * down_cm.y;
             })],
         },
     ],

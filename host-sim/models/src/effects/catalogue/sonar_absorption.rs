@@ -28,7 +28,7 @@ pub const EFFECT: Effect = Effect {
             })],
         },
         Variant {
-            id: "of_weak_echoes",
+            id: "weak_echoes",
             parameters: WeakEchoes::PARAMETERS,
             hooks: &[Hook::Sensor(&|v, _, s| {
                 let WeakEchoes { log_odds_loss, obliquely } = WeakEchoes::read(v);
@@ -37,7 +37,7 @@ pub const EFFECT: Effect = Effect {
             })],
         },
         Variant {
-            id: "as_mirrors",
+            id: "specular",
             parameters: Mirrors::PARAMETERS,
             hooks: &[Hook::Ray(&|v, _, s| {
                 let Mirrors { share, log_odds_loss } = Mirrors::read(v);

@@ -14,8 +14,8 @@ pub const EFFECT: Effect = Effect {
         id: "two_states",
         parameters: Dropout::PARAMETERS,
         hooks: &[Hook::Sensor(&|v, context, sensor| {
-            let Dropout { goes_on, probability } = Dropout::read(v);
-            let lost = if context.echo_before == Some(false) { goes_on } else { probability };
+            let Dropout { persistence, probability } = Dropout::read(v);
+            let lost = if context.echo_before == Some(false) { persistence } else { probability };
             sensor.perturbation.p_dropout = 1.0 - (1.0 - sensor.perturbation.p_dropout) * (1.0 - lost);
         })],
     }],
@@ -24,7 +24,7 @@ pub const EFFECT: Effect = Effect {
 parameters! {
     Dropout {
         /// Chance that a missing reading is followed by another, as a two-state chain has it: anything from none to all.
-        goes_on: Parameter::new("", 0.0, [0.0, 1.0]).from(Guesses::At(&[0.3, 0.6])),
+        persistence: Parameter::new("", 0.0, [0.0, 1.0]).from(Guesses::At(&[0.3, 0.6])),
         /// Chance that a burst begins. A sensor that loses every second reading is broken.
         probability: Parameter::new("", 0.0, [0.0, 0.5]).prior_sd(0.2).from(Guesses::At(&[0.05, 0.1])),
     }

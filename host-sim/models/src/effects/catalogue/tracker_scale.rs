@@ -31,8 +31,8 @@ pub const EFFECT: Effect = Effect {
 
 const SCALED: Hook = Hook::Motion(&|v, _, increment| {
     let Scale { factor } = Scale::read(v);
-    increment.forward_cm *= factor;
-    increment.lateral_cm *= factor;
+    increment.forward *= factor;
+    increment.lateral *= factor;
 });
 
 parameters! {

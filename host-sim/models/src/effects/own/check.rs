@@ -7,8 +7,9 @@ use super::definition::{Definition, ParameterDefinition};
 use super::expression::{Expression, is_constant};
 use super::variables::VARIABLES;
 use crate::effects::context::{RunHistory, Surroundings};
-use crate::effects::{CATALOGUE, Hook, Parameter, PoseIncrement, SensorState, StepContext, Variant};
+use crate::effects::{CATALOGUE, Hook, Parameter, SensorState, StepContext, Variant};
 use mindgap_foundations::geometry::Pose;
+use mindgap_foundations::motion::Motion;
 use mindgap_foundations::random::generator;
 use mindgap_logs::{Robot, Scene, Ultrasonic};
 
@@ -90,11 +91,11 @@ fn is_name(text: &str) -> bool {
 ///
 /// # Errors
 /// Where it has none.
-pub fn has_values(key: &str, value: impl Fn(&StepContext, PoseIncrement) -> Option<f64>) -> Result<(), String> {
+pub fn has_values(key: &str, value: impl Fn(&StepContext, Motion<f64>) -> Option<f64>) -> Result<(), String> {
     for (step, increment) in samples() {
         if value(&step, increment).is_none() {
             let [[left, right], ..] = step.commands;
-            let PoseIncrement { forward_cm, turn_rad, .. } = increment;
+            let Motion { forward: forward_cm, turn: turn_rad, .. } = increment;
             return Err(format!(
                 "change.{key} is no number at the nominal parameters where left = {left:.0}, right = {right:.0}, \
                  forward_cm = {forward_cm:.1}, turn_rad = {turn_rad:.2}"
@@ -156,9 +157,9 @@ pub fn changes_nothing(variant: &Variant) -> Result<(), String> {
         let pairs = [
             ("left", commands[0][0], left),
             ("right", commands[0][1], right),
-            ("forward_cm", moved.forward_cm, increment.forward_cm),
-            ("lateral_cm", moved.lateral_cm, increment.lateral_cm),
-            ("turn_rad", moved.turn_rad, increment.turn_rad),
+            ("forward_cm", moved.forward, increment.forward),
+            ("lateral_cm", moved.lateral, increment.lateral),
+            ("turn_rad", moved.turn, increment.turn),
             ("echo_cm", sensor.perturbation.gain, usual.gain),
             ("echo_cm", sensor.perturbation.offset_cm, usual.offset_cm),
             ("echo_loss", sensor.perturbation.attenuation, usual.attenuation),
@@ -173,7 +174,7 @@ pub fn changes_nothing(variant: &Variant) -> Result<(), String> {
 }
 
 /// Steps of a robot in a room, the first at rest, with what is predicted of each.
-fn samples() -> Vec<(StepContext, PoseIncrement)> {
+fn samples() -> Vec<(StepContext, Motion<f64>)> {
     let ultrasonic = Ultrasonic { x_cm: 5.0, y_cm: 0.0, yaw_deg: 0.0, min_cm: 4.0, max_cm: 250.0 };
     let robot = Robot {
         wheel_diameter_cm: 5.6,
@@ -192,8 +193,7 @@ fn samples() -> Vec<(StepContext, PoseIncrement)> {
         let context = surroundings.context(&RunHistory::default(), draw(0.0, 120_000.0), pose);
         let commands = context.commands.map(|pair| pair.map(|_| draw(-100.0, 100.0)));
         let step = StepContext { commands, echo_before: Some(place.is_multiple_of(2)), ..context };
-        let increment =
-            PoseIncrement { forward_cm: draw(-16.0, 16.0), lateral_cm: draw(-2.0, 2.0), turn_rad: draw(-2.0, 2.0) };
+        let increment = Motion { forward: draw(-16.0, 16.0), lateral: draw(-2.0, 2.0), turn: draw(-2.0, 2.0) };
         (step, increment)
     };
     (0..=SAMPLES).map(sample).collect()

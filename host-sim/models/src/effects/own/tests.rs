@@ -57,16 +57,16 @@ fn step() -> StepContext {
     StepContext { commands: [[60.0, 40.0]; 7], faced: Some([100.0, -0.5]), ..context }
 }
 
-const AS_PREDICTED: PoseIncrement = PoseIncrement { forward_cm: 7.0, lateral_cm: -0.4, turn_rad: -0.5 };
+const AS_PREDICTED: Motion<f64> = Motion { forward: 7.0, lateral: -0.4, turn: -0.5 };
 
-fn increment(candidate: &Candidate, values: &[f64]) -> PoseIncrement {
+fn increment(candidate: &Candidate, values: &[f64]) -> Motion<f64> {
     EffectChain::default().with(&[candidate.variant], values).wrap(&step(), |_, _| AS_PREDICTED)
 }
 
 #[test]
 fn motion_changes_as_its_expression_says() {
     let caster = own(0);
-    assert_eq!(increment(&caster, &[6.0]), PoseIncrement { forward_cm: 4.0, ..AS_PREDICTED });
+    assert_eq!(increment(&caster, &[6.0]), Motion { forward: 4.0, ..AS_PREDICTED });
     assert_eq!(increment(&caster, &[0.0]), AS_PREDICTED);
     assert!(caster.variant.moves() && !caster.variant.senses());
 }
@@ -115,14 +115,15 @@ fn a_definition_is_kept_once_and_written_as_it_is_read() {
 
 #[test]
 fn a_simulator_file_holds_the_definition() {
-    let applied = AppliedEffect::new(&own(0), &[6.0]);
+    let robot = mindgap_built_in_robot::default_robot();
+    let applied = AppliedEffect::new(&own(0), &[6.0], &robot);
     let text = serde_json::to_string(&applied).expect("JSON");
     assert!(text.contains("abs(turn_rad)"), "{text}");
     let read: AppliedEffect = serde_json::from_str(&text).expect("what was written");
-    let (candidate, values) = read.resolve().expect("an effect");
+    let (candidate, values) = read.resolve(&robot).expect("an effect");
     assert!(std::ptr::eq(candidate.variant, own(0).variant) && values == [6.0]);
-    assert!(AppliedEffect { effect: "another".into(), ..read }.resolve().is_err());
-    let too_much = AppliedEffect::new(&own(0), &[60.0]).resolve().err().expect("a refusal");
+    assert!(AppliedEffect { effect: "another".into(), ..read }.resolve(&robot).is_err());
+    let too_much = AppliedEffect::new(&own(0), &[60.0], &robot).resolve(&robot).err().expect("a refusal");
     assert!(too_much.contains("these parameters and values"), "{too_much}");
 }
 

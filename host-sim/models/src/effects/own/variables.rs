@@ -1,6 +1,7 @@
 //! The names that an expression may use: everything that is known of a step, with its unit.
 
-use crate::effects::{PoseIncrement, StepContext};
+use crate::effects::StepContext;
+use mindgap_foundations::motion::Motion;
 
 /// What an expression changes, which decides what it may look at.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -22,7 +23,7 @@ pub struct Circumstances<'a> {
     /// Left and right command, now and before.
     pub commands: [[f64; 2]; 2],
     /// The motion that is predicted, as the effects before this one leave it.
-    pub increment: PoseIncrement,
+    pub increment: Motion<f64>,
     /// The reading.
     pub echo_cm: f64,
 }
@@ -36,11 +37,11 @@ pub struct Variable {
     pub value: fn(&Circumstances) -> Option<f64>,
 }
 
-use Stage::{Command, Echo, Motion, Reading};
+use Stage::{Command, Echo, Reading};
 
-const ALWAYS: &[Stage] = &[Command, Motion, Reading, Echo];
+const ALWAYS: &[Stage] = &[Command, Stage::Motion, Reading, Echo];
 /// A reading is made between two steps, where no one command is at work.
-const DRIVING: &[Stage] = &[Command, Motion];
+const DRIVING: &[Stage] = &[Command, Stage::Motion];
 
 const fn variable(name: &'static str, stages: &'static [Stage], value: fn(&Circumstances) -> Option<f64>) -> Variable {
     Variable { name, stages, value }
@@ -56,9 +57,9 @@ pub static VARIABLES: &[Variable] = &[
     variable("w_rad_s", DRIVING, |at| Some(at.turn_rate_rad_s(0))),
     variable("previous_v_cm_s", DRIVING, |at| Some(at.speed_cm_s(1))),
     variable("previous_w_rad_s", DRIVING, |at| Some(at.turn_rate_rad_s(1))),
-    variable("forward_cm", &[Motion], |at| Some(at.increment.forward_cm)),
-    variable("lateral_cm", &[Motion], |at| Some(at.increment.lateral_cm)),
-    variable("turn_rad", &[Motion], |at| Some(at.increment.turn_rad)),
+    variable("forward_cm", &[Stage::Motion], |at| Some(at.increment.forward)),
+    variable("lateral_cm", &[Stage::Motion], |at| Some(at.increment.lateral)),
+    variable("turn_rad", &[Stage::Motion], |at| Some(at.increment.turn)),
     variable("echo_cm", &[Reading], |at| Some(at.echo_cm)),
     variable("elapsed_min", ALWAYS, |at| Some(at.step.elapsed_min)),
     variable("x_cm", ALWAYS, |at| Some(at.step.pose.position_cm.x)),
@@ -84,14 +85,13 @@ impl Variable {
 
 impl<'a> Circumstances<'a> {
     /// Of a step.
-    pub fn of_step(step: &'a StepContext, increment: PoseIncrement) -> Self {
+    pub fn of_step(step: &'a StepContext, increment: Motion<f64>) -> Self {
         Circumstances { step, commands: [step.commands[0], step.commands[1]], increment, echo_cm: 0.0 }
     }
 
     /// Of the row at which a step begins.
     pub fn of_row(step: &'a StepContext, echo_cm: f64) -> Self {
-        let at_rest = PoseIncrement { forward_cm: 0.0, lateral_cm: 0.0, turn_rad: 0.0 };
-        Circumstances { echo_cm, ..Circumstances::of_step(step, at_rest) }
+        Circumstances { echo_cm, ..Circumstances::of_step(step, Motion::ZERO) }
     }
 
     /// The speed that commands ask for.

@@ -13,11 +13,12 @@ use crate::simulator::draws::{Draws, Seeds};
 use crate::simulator::effect_layer::EffectMemory;
 use crate::simulator::environment::Environment;
 use crate::simulator::known_steps::KnownSteps;
-use crate::simulator::motion::{Motion, speeds};
+use crate::simulator::motion::{PredictedStep, speeds};
 use crate::simulator::rollout::{RolloutOutcome, RolloutRequest, TrajectoryPoint};
 use crate::simulator::room::Point;
 use mindgap_foundations::geometry::Pose;
 use mindgap_foundations::lanes::{Lanes, Mask, WIDEST};
+use mindgap_foundations::motion::{Axis, Motion};
 use mindgap_foundations::random::derive;
 use mindgap_logs::Termination;
 
@@ -39,8 +40,8 @@ pub struct Robots<'a> {
     pub heading_sin: Row,
     /// The last reading: not a number where there was none.
     pub echo_before_cm: Row,
-    /// Forward (cm), lateral (cm) and turn (rad) of the command that is held.
-    motion: [Row; 3],
+    /// The motion of the command that is held.
+    motion: Motion<Row>,
     /// The commands themselves, where the networks are asked in every step.
     speeds: [Row; 4],
     /// Readings beyond these end the tuple that is held.
@@ -68,9 +69,9 @@ pub struct Run<'a> {
     held_steps: usize,
     held_before: usize,
     /// Residual cells of the motion that is held.
-    cells: [usize; 3],
+    cells: Motion<usize>,
     /// The residuals that last as long as it is held.
-    held_levels: [usize; 3],
+    held_levels: Motion<usize>,
 }
 
 impl<'a> Robots<'a> {
@@ -87,7 +88,7 @@ impl<'a> Robots<'a> {
             heading_cos: row,
             heading_sin: row,
             echo_before_cm: row,
-            motion: [row; 3],
+            motion: Motion::splat(row),
             speeds: [row; 4],
             above_cm: row,
             below_cm: row,
@@ -121,8 +122,8 @@ impl<'a> Robots<'a> {
                 memory: EffectMemory::default(),
                 held_steps: HISTORY,
                 held_before: HISTORY,
-                cells: [0; 3],
-                held_levels: [0; 3],
+                cells: Motion::splat(0),
+                held_levels: Motion::splat(0),
             }
         });
         if self.runs[lane].is_some() {
@@ -161,9 +162,13 @@ impl<'a> Robots<'a> {
     #[inline(always)]
     pub fn advance<S: Simd>(&mut self, simd: S, draws: &StepDraws) -> Mask<S> {
         self.apply_effects();
-        let mut motion = [load(simd, &self.motion[0]), load(simd, &self.motion[1]), load(simd, &self.motion[2])];
+        let mut motion = Motion {
+            forward: load(simd, &self.motion.forward),
+            lateral: load(simd, &self.motion.lateral),
+            turn: load(simd, &self.motion.turn),
+        };
         if self.environment.asks_every_step {
-            let mut speeds = [motion[0]; 4];
+            let mut speeds = [motion.forward; 4];
             for (speed, row) in speeds.iter_mut().zip(&self.speeds) {
                 *speed = load(simd, row);
             }
@@ -171,11 +176,11 @@ impl<'a> Robots<'a> {
         }
         if self.environment.noise == Noise::Learned {
             let residuals = self.residuals(Lanes::<S>::WIDTH, draws);
-            for (sum, residual) in motion.iter_mut().zip(&residuals) {
+            for (sum, residual) in motion.iter_mut().zip(residuals.iter()) {
                 *sum = *sum + load(simd, residual);
             }
         }
-        let [forward, lateral, turn] = motion;
+        let Motion { forward, lateral, turn } = motion;
         let from = Point { x: load(simd, &self.x_cm), y: load(simd, &self.y_cm) };
         let (c, s) = (load(simd, &self.heading_cos), load(simd, &self.heading_sin));
         let to = Point { x: from.x + (forward * c - lateral * s), y: from.y + (forward * s + lateral * c) };
@@ -278,13 +283,13 @@ impl<'a> Robots<'a> {
         for (row, speed) in self.speeds.iter_mut().zip(speeds(run.request.controller, place, first)) {
             row[lane] = speed;
         }
-        let motion = run.request.motions.motion(place, first);
-        run.cells = motion.cells;
-        self.set_motion(lane, motion);
+        let step = run.request.motions.step(place, first);
+        run.cells = step.cells;
+        self.set_motion(lane, step.motion);
     }
 
-    fn set_motion(&mut self, lane: usize, motion: &Motion) {
-        for (row, value) in self.motion.iter_mut().zip([motion.forward_cm, motion.lateral_cm, motion.turn_rad]) {
+    fn set_motion(&mut self, lane: usize, motion: Motion<f32>) {
+        for (row, value) in self.motion.iter_mut().zip(motion) {
             row[lane] = value;
         }
     }
@@ -298,7 +303,7 @@ impl<'a> Robots<'a> {
             let (place, motions) = (run.machine.tuple(), run.request.motions);
             let command = run.request.controller.tuples[place];
             let command = [command.left, command.right].map(f32::from);
-            let motion = match motions.transients() {
+            let step = match motions.transients() {
                 // Nothing else lies as far back as effects look: the motion goes on.
                 Some(_) if run.held_steps == HISTORY => continue,
                 Some(transients) if run.held_steps + run.held_before >= HISTORY - 1 => {
@@ -308,26 +313,27 @@ impl<'a> Robots<'a> {
                 _ => effect_layer.motion(&mut run.memory, pose, command, |speeds| self.known_steps.step(speeds)),
             };
             run.held_steps = HISTORY.min(run.held_steps + 1);
-            let motion = motion.plus(motions.bias(place));
-            run.cells = motion.cells;
-            self.set_motion(lane, &motion);
+            let PredictedStep { motion, cells } = step.plus(motions.bias(place));
+            run.cells = cells;
+            self.set_motion(lane, motion);
         }
     }
 
     /// What chance adds to forward, lateral and turn.
     #[inline(always)]
-    fn residuals(&mut self, width: usize, draws: &StepDraws) -> [Row; 3] {
-        let mut residuals = [[0.0; WIDEST]; 3];
+    fn residuals(&mut self, width: usize, draws: &StepDraws) -> Motion<Row> {
+        let mut residuals = Motion::splat([0.0; WIDEST]);
         for (lane, run) in self.runs.iter_mut().enumerate().take(width) {
             let Some(run) = run else { continue };
             let (bits, held_bits) = (draws.bits[lane], draws.held_bits[lane]);
             if self.first[lane] > 0.0 {
-                run.held_levels = [level(held_bits, 0), level(held_bits, 1), level(held_bits, 2)];
+                run.held_levels = Motion::from_fn(|axis| level(held_bits, axis as u32));
             }
             let times = run.request.motions.scatter(run.machine.tuple());
-            for (network, noise) in self.environment.motion_noise.iter().enumerate() {
-                let (cell, held) = (run.cells[network], run.held_levels[network]);
-                residuals[network][lane] = noise.residual(cell, level(bits, network as u32), held, times[network]);
+            for axis in Axis::ALL {
+                let (cell, held, noise) =
+                    (run.cells[axis], run.held_levels[axis], &self.environment.motion_noise[axis]);
+                residuals[axis][lane] = noise.residual(cell, level(bits, axis as u32), held, times[axis]);
             }
         }
         residuals

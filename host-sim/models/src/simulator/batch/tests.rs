@@ -1,9 +1,10 @@
 use super::*;
 use crate::effects::applied::AppliedEffect;
 use crate::effects::catalogue::Candidate;
+use crate::effects::small_robot::FULL_SPEED_CM_S;
 use crate::simulator::environment::SensorModel;
 use crate::simulator::known_steps::KnownSteps;
-use crate::simulator::motion::{Motion, MotionTable, speeds};
+use crate::simulator::motion::{MotionTable, PredictedStep, speeds};
 use crate::simulator::{Noise, Simulator};
 use mindgap_built_in_robot::{default_robot, four_obstacles, record, training_room};
 use mindgap_core::controller::{Controller, Machine, Status, TUPLES};
@@ -18,8 +19,6 @@ use std::sync::LazyLock;
 const SEED: u64 = 3;
 const MAX_STEPS: u16 = 150;
 const RUNS: u64 = 100;
-/// Fastest command of the robot.
-const TOP_SPEED_CM_S: f64 = 41.0;
 
 /// Of all outcomes of [`outcomes`] on every kind of course, whatever the machine; made with [`SEED`].
 const CHECKSUM: &str = "87c5cb2d373b54d657536ed606745ce29d47ba87129113ea1a28f5a6d69d5bae";
@@ -120,7 +119,7 @@ fn motions_worked_out_ahead_are_those_of_every_step() {
             let (environment, table) = (environment(noise), environment(noise).motions(&controller));
             for tuple in 0..TUPLES {
                 for first in [true, false] {
-                    assert_eq!(*table.motion(tuple, first), environment.motion.step(speeds(&controller, tuple, first)));
+                    assert_eq!(*table.step(tuple, first), environment.motion.step(speeds(&controller, tuple, first)));
                 }
             }
         }
@@ -131,13 +130,13 @@ fn motions_worked_out_ahead_are_those_of_every_step() {
 fn what_effects_make_of_motions_is_worked_out_ahead_as_in_every_step() {
     let applied = |effect: &str, variant: &str| {
         let candidate = Candidate::named(effect, variant).unwrap();
-        AppliedEffect::new(&candidate, &candidate.variant.initial_guesses(TOP_SPEED_CM_S)[0])
+        AppliedEffect::new(&candidate, &candidate.variant.initial_guesses(FULL_SPEED_CM_S)[0], &SIMULATOR.robot)
     };
     let of = |added: &[AppliedEffect]| Simulator { added: added.to_vec(), ..SIMULATOR.clone() };
     let scene = four_obstacles();
     let by_commands = [
         vec![applied("motor_asymmetry", "command")],
-        vec![applied("latency", "of_motion"), applied("inertia", "first_order_lag")],
+        vec![applied("latency", "pose_delay"), applied("inertia", "first_order_lag")],
         vec![applied("slip", "growing"), applied("track_width", "turn")],
     ];
     for added in by_commands {
@@ -188,7 +187,7 @@ fn every_run_steps_as_the_machine_of_the_core_does() {
 #[test]
 fn effects_act_on_the_robot_as_it_was_known_in_training() {
     const SHARE: f64 = 0.75;
-    let less = AppliedEffect::new(&Candidate::named("drive_scale", "distance").unwrap(), &[SHARE]);
+    let less = AppliedEffect::new(&Candidate::named("drive_scale", "distance").unwrap(), &[SHARE], &SIMULATOR.robot);
     let affected = Simulator { added: vec![less], ..SIMULATOR.clone() };
     let (scene, robots) = (four_obstacles(), SIMULATOR.robots(0, SEED).unwrap());
     let of_middle = |simulator| {
@@ -199,7 +198,7 @@ fn effects_act_on_the_robot_as_it_was_known_in_training() {
     for controller in controllers() {
         let (usual_motions, motions) = (usual.motions(&controller), less.motions(&controller));
         for (tuple, less) in motions.transients().expect("worked out ahead").iter().enumerate() {
-            let (expected, less) = (usual_motions.motion(tuple, false), less.last().unwrap());
+            let (expected, less) = (usual_motions.step(tuple, false), less.last().unwrap());
             let less = less.plus(motions.bias(tuple));
             assert!((less.forward_cm - SHARE as f32 * expected.forward_cm).abs() < 1e-4, "{less:?} {expected:?}");
             assert!((less.turn_rad - SHARE as f32 * expected.turn_rad).abs() < 1e-5, "{less:?} {expected:?}");

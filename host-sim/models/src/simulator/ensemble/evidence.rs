@@ -8,6 +8,7 @@ use super::Held;
 use super::basis::{Weights, weights, weights_in_training};
 use super::command_scale::{CommandScale, Percent};
 use super::noise::MotionNoise;
+use mindgap_foundations::motion::{Axis, Motion};
 
 /// Commands as far apart as this, in percent of full speed, are one: finer than friction bends.
 const CELL: f64 = 4.0;
@@ -18,9 +19,9 @@ pub struct Evidence {
     /// Left and right command.
     pub command: [f32; 2],
     /// Logged minus what the networks say of the command when it is held, a step.
-    pub bias: [f32; 3],
+    pub bias: Motion<f32>,
     /// Variance of that, from the robot's chance and the tracker's error.
-    pub variance: [f32; 3],
+    pub variance: Motion<f32>,
     /// Whether the run was driven after training: the robot may have changed by then.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub after_training: bool,
@@ -28,9 +29,8 @@ pub struct Evidence {
 
 impl Evidence {
     /// The motion that was logged: relative to what networks say, which is `held`, it would not be a robot's own.
-    pub fn motion(&self, held: Held) -> [f64; 3] {
-        let said = held.motion(self.command.map(f64::from));
-        [0, 1, 2].map(|channel| f64::from(self.bias[channel]) + said[channel])
+    pub fn motion(&self, held: Held) -> Motion<f64> {
+        self.bias.map(f64::from) + held.motion(self.command.map(f64::from))
     }
 
     /// The nodes of the smooth process that it tells of.
@@ -40,10 +40,9 @@ impl Evidence {
     }
 
     /// The variance of its motion about the smooth process.
-    pub fn variance_about_process(&self, noise: &MotionNoise, held: Held, channel: usize) -> f64 {
+    pub fn variance_about_process(&self, noise: &MotionNoise, held: Held, axis: Axis) -> f64 {
         let command = self.command.map(f64::from);
-        f64::from(self.variance[channel])
-            + noise.nugget_variance(self.percent(held.scale()), held.motion(command), channel)
+        f64::from(self.variance[axis]) + noise.nugget_variance(self.percent(held.scale()), held.motion(command), axis)
     }
 
     /// Its command.
@@ -53,11 +52,8 @@ impl Evidence {
 
     /// What is left of it beside the mean of its [cell](by_cell), as squares of standard deviations.
     pub fn squares_about(&self, mean: &Evidence) -> f64 {
-        let square = |channel: usize| {
-            let off = f64::from(self.bias[channel] - mean.bias[channel]);
-            off * off / f64::from(self.variance[channel])
-        };
-        (0..3).map(square).sum()
+        let square = |(off, variance): (f32, f32)| f64::from(off) * f64::from(off) / f64::from(variance);
+        (self.bias - mean.bias).into_iter().zip(self.variance).map(square).sum()
     }
 }
 
@@ -82,14 +78,14 @@ pub fn cells(evidence: impl IntoIterator<Item = Evidence>, scale: CommandScale) 
 
 /// The mean of evidence of one cell.
 pub fn one(together: &[Evidence]) -> Evidence {
-    let weighted = |channel: usize| {
+    let weighted = |axis: Axis| {
         let (sum, weights) = together.iter().fold((0.0, 0.0), |(sum, weights), e| {
-            let weight = 1.0 / f64::from(e.variance[channel]);
-            (sum + weight * f64::from(e.bias[channel]), weights + weight)
+            let weight = 1.0 / f64::from(e.variance[axis]);
+            (sum + weight * f64::from(e.bias[axis]), weights + weight)
         });
         (sum / weights, 1.0 / weights)
     };
-    let bias = [0, 1, 2].map(weighted);
+    let bias = Motion::from_fn(weighted);
     Evidence {
         command: [0, 1].map(|side| {
             let sum: f32 = together.iter().map(|e| e.command[side]).sum();

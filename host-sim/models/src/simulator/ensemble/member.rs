@@ -7,13 +7,13 @@ use rand_distr::{Distribution, StandardNormal};
 use super::basis::weights;
 use super::evidence::cell;
 use super::nugget::Nuggets;
+use mindgap_foundations::motion::{Axis, Motion};
 use mindgap_foundations::random::generator;
 
-/// What one robot does, the same in all its runs. Channels are forward (cm), lateral (cm) and turn
-/// (degrees), of one step.
+/// What one robot does, the same in all its runs.
 #[derive(Clone, Debug)]
 pub struct Member {
-    nodes: [Vec<f64>; 3],
+    nodes: Motion<Vec<f64>>,
     nuggets: Arc<Nuggets>,
     /// Fixes what is its own of each command; none for the robot in the middle.
     drawn: Option<u64>,
@@ -23,7 +23,7 @@ pub struct Member {
 
 impl Member {
     /// The robot with these motions of the nodes.
-    pub(super) fn new(nodes: [Vec<f64>; 3], nuggets: Arc<Nuggets>, drawn: Option<u64>) -> Self {
+    pub(super) fn new(nodes: Motion<Vec<f64>>, nuggets: Arc<Nuggets>, drawn: Option<u64>) -> Self {
         Member { nodes, nuggets, drawn, trained: None }
     }
 
@@ -33,52 +33,54 @@ impl Member {
     }
 
     /// Its motion in every step of a command that is held, but for chance.
-    pub fn motion(&self, command: [f64; 2]) -> [f64; 3] {
-        let drawn = self.drawn.map_or([0.0; 3], |seed| normals(seed, cell(self.nuggets.scale.percent(command))));
+    pub fn motion(&self, command: [f64; 2]) -> Motion<f64> {
+        let drawn = self.drawn.map_or(Motion::ZERO, |seed| normals(seed, cell(self.nuggets.scale.percent(command))));
         let [process, nugget, deviation] = self.parts(command);
-        [0, 1, 2].map(|channel| process[channel] + nugget[channel] + drawn[channel] * deviation[channel])
+        process + nugget + drawn.zip_with(deviation, |drawn, deviation| drawn * deviation)
     }
 
     /// The same of the robot in the middle of what training logs say: effects act on that, and what runs tell of this one
     /// since then comes on top.
-    pub fn trained(&self, command: [f64; 2]) -> [f64; 3] {
+    pub fn trained(&self, command: [f64; 2]) -> Motion<f64> {
         self.trained.as_deref().unwrap_or(self).motion(command)
     }
 
     /// What the first step of a command after another one does beyond what networks say of that.
-    pub fn first_step(&self, command: [i8; 2], before: [i8; 2]) -> [f64; 3] {
-        let Some(seed) = self.drawn else { return [0.0; 3] };
+    pub fn first_step(&self, command: [i8; 2], before: [i8; 2]) -> Motion<f64> {
+        let Some(seed) = self.drawn else { return Motion::ZERO };
         let pair = [command, before].map(|[left, right]| i32::from(left) << 8 | i32::from(right) & 0xff);
-        let normals = normals(seed ^ FIRST_STEPS, pair);
-        [0, 1, 2].map(|channel| self.nuggets.noise.first_step[channel] * normals[channel])
+        self.nuggets
+            .noise
+            .first_step
+            .zip_with(normals(seed ^ FIRST_STEPS, pair), |deviation, normal| deviation * normal)
     }
 
     /// Standard deviations of what chance adds under a command: in a step, and for as long as it is held. For the robot in
     /// the middle that is what is not known of the command.
-    pub fn scatter(&self, command: [f64; 2]) -> [[f64; 2]; 3] {
+    pub fn scatter(&self, command: [f64; 2]) -> Motion<[f64; 2]> {
         let [process, nugget, deviation] = self.parts(command);
-        let motion = [0, 1, 2].map(|channel| process[channel] + nugget[channel]);
-        [0, 1, 2].map(|channel| {
-            let step = self.nuggets.noise.step_variance(motion, channel).sqrt();
-            [step, if self.drawn.is_some() { 0.0 } else { deviation[channel] }]
+        let motion = process + nugget;
+        Motion::from_fn(|axis| {
+            let step = self.nuggets.noise.step_variance(motion, axis).sqrt();
+            [step, if self.drawn.is_some() { 0.0 } else { deviation[axis] }]
         })
     }
 
     /// What the smooth process says of a command, the mean of what is the command's own, and the standard deviation of that.
-    fn parts(&self, command: [f64; 2]) -> [[f64; 3]; 3] {
+    fn parts(&self, command: [f64; 2]) -> [Motion<f64>; 3] {
         let command = self.nuggets.scale.percent(command);
-        let process = [0, 1, 2].map(|channel| self.process(&weights(command), channel));
+        let process = Motion::from_fn(|axis| self.process(&weights(command), axis));
         let known = self.nuggets.known(command, process);
-        let mean = [0, 1, 2].map(|channel| {
-            let of = &known[channel];
-            of.share * (of.motion - self.process(of.place, channel))
+        let mean = Motion::from_fn(|axis| {
+            let of = &known[axis];
+            of.share * (of.motion - self.process(of.place, axis))
         });
         [process, mean, known.map(|of| of.deviation)]
     }
 
     /// The smooth process in a place.
-    fn process(&self, weights: &[(usize, f64)], channel: usize) -> f64 {
-        weights.iter().map(|(node, weight)| self.nodes[channel][*node] * weight).sum()
+    fn process(&self, weights: &[(usize, f64)], axis: Axis) -> f64 {
+        weights.iter().map(|(node, weight)| self.nodes[axis][*node] * weight).sum()
     }
 }
 
@@ -86,7 +88,7 @@ impl Member {
 const FIRST_STEPS: u64 = 1 << 63;
 
 /// Normal numbers that are a robot's, always the same for one key.
-fn normals(seed: u64, key: [i32; 2]) -> [f64; 3] {
+fn normals(seed: u64, key: [i32; 2]) -> Motion<f64> {
     let mut rng = generator(seed, &key.map(|part| u64::from(part as u32)));
-    [(); 3].map(|()| Distribution::<f64>::sample(&StandardNormal, &mut rng))
+    Motion::from_fn(|_| Distribution::<f64>::sample(&StandardNormal, &mut rng))
 }

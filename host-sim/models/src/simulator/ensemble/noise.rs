@@ -4,13 +4,8 @@
 use serde::{Deserialize, Serialize};
 
 use super::command_scale::Percent;
+use mindgap_foundations::motion::{Axis, Motion};
 
-/// Channel of the way forward, cm.
-pub const FORWARD: usize = 0;
-/// Channel of the way to the left, cm.
-pub const LATERAL: usize = 1;
-/// Channel of the turn, degrees.
-pub const TURN: usize = 2;
 /// What a step's variance is a weighted sum of: a constant, the square of the way, and the square of the turn.
 pub const TERMS: usize = 3;
 /// Variances are at least this, of a resolution that no tracker has: nothing is ever certain.
@@ -19,50 +14,55 @@ const LEAST: f64 = 1e-6;
 /// breaking away.
 const SLOW: f64 = 16.0;
 
-/// Noise of forward (cm), lateral (cm) and turn (degrees).
+/// Noise of the motion of a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct MotionNoise {
     /// Weights of the terms of a step's variance, which is drawn anew in each; motions are in cm and degrees.
-    pub step: [[f64; TERMS]; 3],
+    pub step: Motion<[f64; TERMS]>,
     /// Standard deviation of what a command does beyond the smooth process, the same in every run, as a share of a step's: of
     /// commands that drive both wheels, and of those that leave one [slow](is_slow).
-    pub nugget: [[f64; 2]; 3],
+    pub nugget: Motion<[f64; 2]>,
     /// Standard deviation of what the first step of a command does beyond later ones, the same whenever one command follows
     /// the other.
-    pub first_step: [f64; 3],
+    pub first_step: Motion<f64>,
     /// Variance of the tracker's error in one pose, which no simulated robot has.
-    pub tracker: [f64; 3],
+    pub tracker: Motion<f64>,
 }
 
 impl MotionNoise {
-    /// The variance of what a robot adds in a step that moves it so: forward (cm), lateral (cm), turn (degrees).
-    pub fn step_variance(&self, motion: [f64; 3], channel: usize) -> f64 {
-        weighed(&self.step[channel], &terms(motion)).max(LEAST)
+    /// The variance of what a robot adds in a step that moves it so.
+    pub fn step_variance(&self, motion: Motion<f64>, axis: Axis) -> f64 {
+        weighed(&self.step[axis], &terms(motion)).max(LEAST)
     }
 
     /// The variance of what a command that moves it so does beyond the smooth process.
-    pub fn nugget_variance(&self, command: Percent, motion: [f64; 3], channel: usize) -> f64 {
-        let nugget = self.nugget[channel][usize::from(is_slow(command))];
-        nugget * nugget * self.step_variance(motion, channel)
+    pub fn nugget_variance(&self, command: Percent, motion: Motion<f64>, axis: Axis) -> f64 {
+        let nugget = self.nugget[axis][usize::from(is_slow(command))];
+        nugget * nugget * self.step_variance(motion, axis)
     }
 
     /// The variance of the mean of so many steps of a command that is held, as it is tracked.
-    pub fn mean_variance(&self, motion: [f64; 3], channel: usize, steps: usize) -> f64 {
+    pub fn mean_variance(&self, motion: Motion<f64>, axis: Axis, steps: usize) -> f64 {
         let steps = steps as f64;
-        let own = self.step_variance(motion, channel) + self.aslant_variance(motion, channel);
-        own / steps + 2.0 * self.tracker[channel] / (steps * steps)
+        let own = self.step_variance(motion, axis) + self.aslant_variance(motion, axis);
+        own / steps + 2.0 * self.tracker[axis] / (steps * steps)
     }
 
     /// The variance that the tracker's error in heading adds to a step: what it takes for lateral is way.
-    pub fn aslant_variance(&self, motion: [f64; 3], channel: usize) -> f64 {
-        let way_cm = if channel == LATERAL { motion[FORWARD] } else { 0.0 };
-        way_cm * way_cm * self.tracker[TURN] * 1f64.to_radians() * 1f64.to_radians()
+    pub fn aslant_variance(&self, motion: Motion<f64>, axis: Axis) -> f64 {
+        let way_cm = if axis == Axis::Lateral { motion.forward } else { 0.0 };
+        way_cm * way_cm * self.tracker.turn * 1f64.to_radians() * 1f64.to_radians()
     }
 
     /// Whether a file could have held this.
     pub fn is_sound(&self) -> bool {
-        let all =
-            self.step.iter().flatten().chain(self.nugget.iter().flatten()).chain(&self.first_step).chain(&self.tracker);
+        let all = self
+            .step
+            .iter()
+            .flatten()
+            .chain(self.nugget.iter().flatten())
+            .chain(self.first_step.iter())
+            .chain(self.tracker.iter());
         all.copied().all(|value| value.is_finite() && value >= 0.0)
     }
 }
@@ -73,8 +73,8 @@ pub fn is_slow(Percent(command): Percent) -> bool {
 }
 
 /// What a step's variance is a sum of.
-pub fn terms([forward_cm, _, turn_deg]: [f64; 3]) -> [f64; TERMS] {
-    [1.0, forward_cm * forward_cm, turn_deg * turn_deg]
+pub fn terms(motion: Motion<f64>) -> [f64; TERMS] {
+    [1.0, motion.forward * motion.forward, motion.turn * motion.turn]
 }
 
 /// The sum of terms by their weights.

@@ -8,6 +8,7 @@ use super::basis::Weights;
 use super::command_scale::{CommandScale, Percent};
 use super::evidence::{Evidence, cell};
 use super::noise::MotionNoise;
+use mindgap_foundations::motion::Motion;
 
 /// The nuggets of a robot, as far as logs tell them.
 #[derive(Clone, Debug)]
@@ -26,14 +27,14 @@ struct Logged {
     /// Where the smooth process says what they should have been.
     place: Weights,
     /// What they were.
-    motion: [f64; 3],
+    motion: Motion<f64>,
     /// Of the difference this share is the nugget's.
-    share: [f64; 3],
+    share: Motion<f64>,
     /// Standard deviation that is left of it.
-    deviation: [f64; 3],
+    deviation: Motion<f64>,
 }
 
-/// What is known of a nugget in one channel, given the smooth process: it is `share` of what lies between `motion` and what
+/// What is known of a nugget along one axis, given the smooth process: it is `share` of what lies between `motion` and what
 /// the process says in `place`, more or less `deviation`.
 pub struct Known<'a> {
     /// 0..=1; zero of a command that was not logged.
@@ -52,23 +53,23 @@ impl Nuggets {
         let scale = held.scale();
         let logged = |e: &Evidence| {
             let (command, motion) = (e.percent(scale), held.motion(e.command.map(f64::from)));
-            let nugget = [0, 1, 2].map(|channel| noise.nugget_variance(command, motion, channel));
-            let share = [0, 1, 2].map(|channel| nugget[channel] / e.variance_about_process(&noise, held, channel));
-            let deviation = [0, 1, 2].map(|channel| (nugget[channel] * (1.0 - share[channel])).max(0.0).sqrt());
+            let nugget = Motion::from_fn(|axis| noise.nugget_variance(command, motion, axis));
+            let share = Motion::from_fn(|axis| nugget[axis] / e.variance_about_process(&noise, held, axis));
+            let deviation = nugget.zip_with(share, |nugget, share| (nugget * (1.0 - share)).max(0.0).sqrt());
             (cell(command), Logged { place: e.weights(scale), motion: e.motion(held), share, deviation })
         };
         Nuggets { noise, scale, logged: cells.iter().map(logged).collect() }
     }
 
     /// What is known of a command's nugget, where the smooth process moves the robot so.
-    pub fn known(&self, command: Percent, motion: [f64; 3]) -> [Known<'_>; 3] {
+    pub fn known(&self, command: Percent, motion: Motion<f64>) -> Motion<Known<'_>> {
         let logged = self.logged.get(&cell(command));
-        [0, 1, 2].map(|channel| match logged {
+        Motion::from_fn(|axis| match logged {
             Some(Logged { place, motion, share, deviation }) => {
-                Known { share: share[channel], place, motion: motion[channel], deviation: deviation[channel] }
+                Known { share: share[axis], place, motion: motion[axis], deviation: deviation[axis] }
             }
             None => {
-                let deviation = self.noise.nugget_variance(command, motion, channel).sqrt();
+                let deviation = self.noise.nugget_variance(command, motion, axis).sqrt();
                 Known { share: 0.0, place: &[], motion: 0.0, deviation }
             }
         })

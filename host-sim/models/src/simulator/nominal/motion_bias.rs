@@ -5,17 +5,18 @@ use nalgebra::DMatrix;
 use serde::{Deserialize, Serialize};
 
 use crate::simulator::ensemble::CommandScale;
+use mindgap_foundations::motion::{Axis, Motion};
 
-/// Corrections and scatter of forward (cm), lateral (cm) and turn (rad).
+/// Corrections and scatter of the motion.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct MotionBias {
     /// How large the robot's commands are.
     #[serde(default)]
     pub scale: CommandScale,
-    /// One weight a feature (see [`features`]), for each of the three outputs.
-    pub weights: [Vec<f64>; 3],
+    /// One weight per feature (see [`features`]), for each axis.
+    pub weights: Motion<Vec<f64>>,
     /// Standard deviations about the corrected outputs.
-    pub scatter: [f64; 3],
+    pub scatter: Motion<f64>,
     /// How well the training logs tell the weights.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub precision: Option<Precision>,
@@ -27,14 +28,14 @@ pub struct MotionBias {
 pub struct Precision {
     /// The lower triangle of the products, row by row.
     pub products: Vec<f32>,
-    /// Precision of the prior, for each of the three outputs.
-    pub prior: [f64; 3],
+    /// Precision of the prior, for each axis.
+    pub prior: Motion<f64>,
 }
 
 impl Precision {
-    /// That of the weights of one output; none where a file has another number of products.
-    pub fn of(&self, output: usize) -> Option<DMatrix<f64>> {
-        let mut precision = DMatrix::from_diagonal_element(FEATURES, FEATURES, self.prior[output]);
+    /// Returns the precision of the weights of one axis; none where a file has another number of products.
+    pub fn of(&self, axis: Axis) -> Option<DMatrix<f64>> {
+        let mut precision = DMatrix::from_diagonal_element(FEATURES, FEATURES, self.prior[axis]);
         (self.products.len() == lower_triangle().count()).then_some(())?;
         for ((a, b), product) in lower_triangle().zip(&self.products) {
             precision[(a, b)] += f64::from(*product);
@@ -57,9 +58,9 @@ pub const FEATURES: usize = 1 + 4 + 10 + 20 + 6 * (1 + 2 * KNOTS.len());
 
 impl MotionBias {
     /// What is added to the networks' outputs for left, right, previous left and previous right command.
-    pub fn correction(&self, speeds: &[f64; 4]) -> [f64; 3] {
+    pub fn correction(&self, speeds: &[f64; 4]) -> Motion<f64> {
         let features = features(*speeds, self.scale.share());
-        [0, 1, 2].map(|c| self.weights[c].iter().zip(&features).map(|(w, f)| w * f).sum())
+        self.weights.each_ref().map(|weights| weights.iter().zip(&features).map(|(w, f)| w * f).sum())
     }
 }
 
