@@ -6,26 +6,22 @@ mod places;
 mod runs;
 
 use maud::{Markup, html};
-use serde::Serialize;
 
-use super::document::{Document, Script, Section, chart, table};
+use super::document::{Document, Section, chart, table};
 use super::replay::Replay;
-use super::room::Room;
 use super::{glossary, words};
 use crate::effects::Effect;
 use crate::error::Result;
-use crate::evaluation::paths::PathError;
 use crate::gap::Findings;
-use crate::gap::budget::{Part, SCATTER, UNEXPLAINED};
+use crate::gap::budget::{Part, UNEXPLAINED};
 use crate::gap::diagnosis::{Answer, Diagnosis};
-use crate::gap::explain::evidence::Evidence;
-use crate::gap::explain::profile::ResidualProfile;
-use crate::gap::explain::room_map::RoomMap;
 use crate::logs::Logs;
+use crate::pictures;
+use crate::report::room::Room;
 use crate::simulator::baseline::Baseline;
 use crate::simulator::rollout::REACHED_CM;
 
-/// What a page is made of.
+/// The contents of a page.
 pub struct Subject<'a> {
     /// What was found.
     pub findings: &'a Findings,
@@ -51,88 +47,39 @@ pub struct Source {
     pub seed: u64,
 }
 
-/// What the charts draw.
-#[derive(Serialize)]
-struct Data<'a> {
-    budget: Vec<BudgetBar<'a>>,
-    evidence: &'a [Evidence],
-    profiles: &'a [ResidualProfile],
-    map: Option<&'a RoomMap>,
-    channels: Vec<ChannelBar>,
-    paths: &'a [PathError],
-    room: Room,
-    replay: Option<&'a Replay>,
-}
-
-#[derive(Serialize)]
-struct BudgetBar<'a> {
-    id: &'a str,
-    name: &'a str,
-    named: bool,
-    share: f64,
-    ci95: [f64; 2],
-}
-
-#[derive(Serialize)]
-struct ChannelBar {
-    name: &'static str,
-    before: f64,
-    after: f64,
-}
-
-/// A part of the gap from which on it is worth a walk to the robot: less than a twentieth changes no controller's fate.
+/// Share of the gap above which a cause is worth checking on the robot: less changes no controller's fate.
 const WORTH_A_CHECK: f64 = 0.05;
 
-/// The page, whole in one file.
+/// Returns the page, whole in one file.
 ///
 /// # Errors
 /// When a number in it has no form in JSON.
 pub fn page(subject: &Subject) -> Result<String> {
     let Subject { findings, logs, catalogue, source, .. } = subject;
     let diagnosis = &findings.diagnosis;
-    let replay = runs::replay(subject);
     let poses = logs.runs.iter().flat_map(|run| run.rows.iter().filter_map(|row| row.pose));
-    let mut bars: Vec<BudgetBar> = diagnosis.budget().iter().map(|part| bar(part, catalogue)).collect();
-    // Effects come first, the strongest before the others.
-    let effects = bars.partition_point(|bar| bar.named);
-    bars[..effects].sort_by(|a, b| b.share.total_cmp(&a.share));
-    let data = Data {
-        budget: bars,
-        evidence: &findings.evidence,
-        profiles: diagnosis.profiles(),
-        map: findings.room_map.as_ref(),
-        channels: places::channels(diagnosis),
-        paths: diagnosis.reduction().map_or(&[], |reduction| &reduction.paths),
-        room: Room::new(&logs.scene, REACHED_CM, poses.map(|pose| pose.position_cm)),
-        replay: replay.as_ref(),
-    };
+    let room = Room::new(&logs.scene, REACHED_CM, poses.map(|pose| pose.position_cm));
     let mut sections = Vec::new();
     if !diagnosis.budget().is_empty() {
         sections.push(Section { id: "budget", title: "What the gap is made of", body: budget(diagnosis, catalogue) });
     }
     sections.extend(causes::section(subject));
-    sections.extend(places::section(diagnosis, findings.room_map.is_some()));
+    sections.extend(places::section(findings, &room));
     sections.extend(runs::ends(diagnosis));
+    let replay = runs::replay(subject, room);
     sections.push(runs::section(replay.as_ref(), diagnosis));
     sections.push(next(diagnosis, catalogue));
     sections.push(compared::section(subject));
     sections.push(glossary::section());
-    let scripts: &[Script] = if replay.is_some() { &[Script::Diagnosis, Script::Replay] } else { &[Script::Diagnosis] };
-    Document {
+    Ok(Document {
         kind: "Diagnosis",
         headline: &headline(diagnosis, catalogue),
         subject: &format!("{} against {}", source.logs, source.simulator),
         lead: lead(diagnosis, catalogue, logs),
         sections,
-        scripts,
+        script: replay.as_ref().map(Replay::script).transpose()?,
     }
-    .html(&data)
-}
-
-fn bar<'a>(part: &'a Part, catalogue: &[&'static Effect]) -> BudgetBar<'a> {
-    let Part { id, share, ci95 } = part;
-    let named = id != SCATTER && id != UNEXPLAINED;
-    BudgetBar { id, name: words::name(id, catalogue), named, share: *share, ci95: *ci95 }
+    .html())
 }
 
 /// The verdict in one sentence.
@@ -197,10 +144,11 @@ fn budget(diagnosis: &Diagnosis, catalogue: &[&'static Effect]) -> Markup {
         .iter()
         .map(|part| [words::name(&part.id, catalogue).into(), words::percent_within(part.share, part.ci95)])
         .collect();
+    let drawn = pictures::budget(diagnosis, |id| words::name(id, catalogue)).draw();
     html! {
-        (chart("budget", 0, &format!("Shares of the gap: {}", said.join(", ")), html! {
-            "How much of the gap each cause makes: mend the longest bar first. The thin lines are 95 % intervals. "
-            "Scatter is what no rule reduces; unexplained is what follows rules that no named effect describes."
+        (chart("budget", &drawn, &format!("Shares of the gap: {}", said.join(", ")), html! {
+            "The share of the gap that each cause explains: repair the longest bar first. The thin lines are 95 % intervals. "
+            "Scatter follows no rule; unexplained is what follows rules that no named effect describes."
         }))
         (table("The same in numbers", ["part of the gap", "share (95 % interval)"], &rows))
     }

@@ -4,6 +4,7 @@ use crate::effects::Effect;
 use crate::gap::Diagnosis;
 use crate::gap::budget::{SCATTER, UNEXPLAINED};
 use crate::gap::channel::Channel;
+pub use crate::report::style::number;
 
 /// A part of a gap for people.
 #[derive(Clone, Copy)]
@@ -83,11 +84,6 @@ pub fn percent(share: f64) -> String {
 /// A share with its interval.
 pub fn percent_within(share: f64, [low, high]: [f64; 2]) -> String {
     format!("{} ({:.0} to {:.0})", percent(share), 100.0 * low, 100.0 * high)
-}
-
-/// A number with so many decimals and a true minus.
-pub fn number(value: f64, decimals: usize) -> String {
-    format!("{value:.decimals$}").replace('-', "−")
 }
 
 /// Tenths are as fine as a map of centimetres is seen.

@@ -10,6 +10,7 @@ use crate::gap::explain::evidence::Evidence;
 use crate::gap::explain::profile::{Bin, ResidualProfile};
 use crate::page::document::{Section, chart, table};
 use crate::page::words;
+use crate::pictures;
 
 /// The causes, and what is left that none of them explains; nothing where there is no gap.
 pub fn section(subject: &Subject) -> Option<Section> {
@@ -32,7 +33,7 @@ pub fn section(subject: &Subject) -> Option<Section> {
                     " (" (unit) "): " (words::percent_within(formula.share, formula.ci95)) " of the gap."
                 }
             }
-            @for (number, profile) in profiles.iter().enumerate() { (unexplained(number, profile)) }
+            @for profile in profiles { (unexplained(profile)) }
         }
     };
     Some(Section { id: "causes", title: if effects.is_empty() { "What is unexplained" } else { "The causes" }, body })
@@ -60,16 +61,17 @@ fn cause(effect: &NamedEffect, evidence: &[Evidence], catalogue: &[&'static Effe
                 }
                 @if let Some(cause) = named { dt { "How to check" } dd { (cause.check) } }
             }
-            @if let Some((number, evidence)) = evidence.iter().enumerate().find(|(_, e)| e.effect == effect.id) {
+            @if let Some(evidence) = evidence.iter().find(|e| e.effect == effect.id) {
                 h4 { "The evidence" }
-                (chart("evidence", number, &format!(
+                @let kinds = [("without the effect", evidence.without.as_slice()), ("with it", &evidence.with)];
+                @let drawn = pictures::residuals(evidence.depends_on, evidence.unit, &kinds).draw();
+                (chart("evidence", &drawn, &format!(
                     "Logged minus predicted {} along {}: {} without the effect, {} with it.",
                     words::channel(evidence.channel), evidence.depends_on,
                     reach(&evidence.without), reach(&evidence.with),
                 ), html! {
-                    "How far the logged " (words::channel(evidence.channel))
-                    " is from the predicted one. On the zero line the "
-                    "simulator is right. The vertical lines are 95 % intervals."
+                    "Logged minus predicted " (words::channel(evidence.channel))
+                    ". On the zero line the simulator is right. The vertical lines are 95 % intervals."
                 }))
                 (table("The same in numbers", [evidence.depends_on, "without the effect", "with it"], &rows(evidence)))
             }
@@ -81,14 +83,16 @@ fn has_direction(effect: &NamedEffect) -> bool {
     effect.parameters.contains_key("direction_deg")
 }
 
-fn unexplained(number: usize, profile: &ResidualProfile) -> Markup {
+fn unexplained(profile: &ResidualProfile) -> Markup {
     let off = |bin: &Bin| format!("{} ± {}", words::number(bin.off, 2), words::number(1.96 * bin.error, 2));
     let rows: Vec<[String; 2]> = profile.bins.iter().map(|bin| [range(bin), off(bin)]).collect();
     let name = words::channel(profile.channel);
     let alternative = format!("Logged minus predicted {name} along {}: {}.", profile.depends_on, reach(&profile.bins));
+    let kinds = [("remaining residual", profile.bins.as_slice())];
+    let drawn = pictures::residuals(profile.depends_on, profile.unit, &kinds).draw();
     html! {
-        (chart("profile", number, &alternative,
-            html! { "What is left of the " (name) " depends most on: " (profile.depends_on) "." }))
+        (chart("profile", &drawn, &alternative,
+            html! { "The remaining residual of the " (name) " depends most on " (profile.depends_on) "." }))
         (table("The same in numbers", [profile.depends_on, "logged minus predicted"], &rows))
     }
 }
