@@ -3,25 +3,21 @@
 
 use maud::{Markup, html};
 
-use super::document::{Document, Script, Section, chart, open_table};
+use super::document::{Document, Section, chart, open_table};
 use super::evaluation;
-use super::trials::{self, LINES, Map};
+use super::trials::{self, LINES};
 use super::words::{number, percent};
 use crate::demo::repair::Repair;
 use crate::demo::{JUDGED_RUNS, Summary, TRIALS};
-use crate::error::Result;
 use crate::evolve::fitness::Success;
-use crate::report::paths::{PathPanel, Trace};
+use crate::report;
+use crate::report::paths::PathPanel;
 use crate::simulator::rollout::REACHED_CM;
-use crate::trials::state::place_cm;
 
 const STARTS_HEADER: [&str; 5] = ["start", "simulated", "cm off", "on the robot", "cm off"];
 
-/// The page, whole in one file; `folder` has everything else.
-///
-/// # Errors
-/// When a number in it has no form in JSON, or when there is no start.
-pub fn page(summary: &Summary, folder: &str, seed: u64) -> Result<String> {
+/// Returns the page, whole in one file; `folder` has everything else.
+pub fn page(summary: &Summary, folder: &str, seed: u64) -> String {
     let Summary { evaluation, panels, repair, .. } = summary;
     let mut sections = vec![
         Section {
@@ -32,10 +28,10 @@ pub fn page(summary: &Summary, folder: &str, seed: u64) -> Result<String> {
         Section { id: "starts", title: "A controller for each start", body: starts(summary) },
         Section { id: "change", title: "Then a motor gets weak", body: change(repair) },
     ];
-    sections.extend(trials::sections(&repair.state, panels.len()));
+    let PathPanel { scene, start, .. } = &panels[repair.start - 1];
+    sections.extend(trials::sections(&repair.state, scene, *start));
     sections.push(Section { id: "next", title: "What to do next", body: next() });
     sections.push(Section { id: "compared", title: "What was run", body: source(folder, seed) });
-    let maps = panels.iter().map(map).collect();
     Document {
         kind: "Demo",
         headline: &headline(summary),
@@ -47,9 +43,9 @@ pub fn page(summary: &Summary, folder: &str, seed: u64) -> Result<String> {
             }
         },
         sections,
-        scripts: &[Script::Trials],
+        script: None,
     }
-    .html(&trials::charts(&panels[0].scene, &repair.state, maps))
+    .html()
 }
 
 fn headline(Summary { starts, repair, .. }: &Summary) -> String {
@@ -81,8 +77,9 @@ fn starts(Summary { starts, panels, .. }: &Summary) -> Markup {
         }
         p { (LINES) }
         div.pairs {
-            @for (place, panel) in panels.iter().enumerate() {
-                (chart("map", place, &format!("{}: expected paths and the robot's", panel.title), html! {
+            @for panel in panels {
+                @let drawn = report::paths(&[PathPanel { title: String::new(), ..panel.clone() }]);
+                (chart("map", &drawn, &format!("{}: expected paths and the robot's", panel.title), html! {
                     (panel.title) "."
                 }))
             }
@@ -99,13 +96,6 @@ fn change(repair: &Repair) -> Markup {
             (percent(repair.after.rate)) "."
         }
     }
-}
-
-fn map(panel: &PathPanel) -> Map {
-    let paths = |traces: &[Trace]| -> Vec<Vec<[f64; 2]>> {
-        traces.iter().map(|trace| trace.points_cm.iter().map(|at| place_cm(*at)).collect()).collect()
-    };
-    Map { expected: paths(&panel.simulated), driven: paths(&panel.real) }
 }
 
 fn next() -> Markup {
