@@ -78,10 +78,9 @@ pub fn paths(panels: &[PathPanel]) -> Figure {
     let maps: Vec<Map> = panels
         .iter()
         .map(|panel| {
-            let kind = |name, colour, line, traces| Kind::numbered(name, colour, line, traces);
             let kinds = vec![
-                kind("real path", VERMILION, real, &panel.real),
-                kind("simulated path", BLUE, simulated, &panel.simulated),
+                Kind::numbered("real path", VERMILION, real, &panel.real),
+                Kind::numbered("simulated path", BLUE, simulated, &panel.simulated),
             ];
             Map::new(&panel.title, &panel.scene, panel.start, panel.target_radius_cm, kinds)
         })
@@ -91,13 +90,7 @@ pub fn paths(panels: &[PathPanel]) -> Figure {
 
 /// Draws the runs of a controller, coloured by how they ended: the first way blue, the second vermilion, the third green.
 pub fn endings(scene: &Scene, start: Pose, target_radius_cm: f64, endings: &[Ending]) -> Figure {
-    let kind = |(ending, colour): (&'_ Ending, Colour)| Kind {
-        name: &ending.name,
-        colour,
-        line: colour.line(1.25).opacity(0.5),
-        traces: ending.runs.iter().map(|(run, trace)| (format!("run {run}: {}", ending.name), trace)).collect(),
-    };
-    let kinds = endings.iter().zip([BLUE, VERMILION, GREEN]).map(kind).collect();
+    let kinds = endings.iter().zip([BLUE, VERMILION, GREEN]).map(|(ending, colour)| ending.kind(colour)).collect();
     draw(&[Map::new("", scene, start, target_radius_cm, kinds)])
 }
 
@@ -146,6 +139,13 @@ fn legend(maps: &[Map]) -> Vec<Entry> {
         }));
     }
     entries
+}
+
+impl Ending {
+    fn kind(&self, colour: Colour) -> Kind<'_> {
+        let traces = self.runs.iter().map(|(run, trace)| (format!("run {run}: {}", self.name), trace)).collect();
+        Kind { name: &self.name, colour, line: colour.line(1.25).opacity(0.5), traces }
+    }
 }
 
 impl<'a> Kind<'a> {
