@@ -74,7 +74,7 @@ impl ShareChart {
                 svg.line(&[end - DVec2::Y * TICK_PX, end + DVec2::Y * TICK_PX], INK.line(1.5));
             }
         }
-        let label = format!("{} %  {name}", number(100.0 * share, 0));
+        let label = format!("{} %\u{2002}{name}", number(100.0 * share, 0));
         let label = shortened(&label, TEXT_PX, plane.area.width - 4.0);
         svg.text(place(0.0) + DVec2::new(4.0, 12.0), &label, Text::new(TEXT_PX, INK).from_here());
     }

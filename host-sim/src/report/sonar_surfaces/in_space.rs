@@ -6,7 +6,7 @@ use super::Surface;
 use crate::report::axis::Axis;
 use crate::report::glyph::bead;
 use crate::report::projection::Projection;
-use crate::report::style::{Colour, FAINT, GREY, INK, SMALL_PX, TEXT_PX, Text, WHITE};
+use crate::report::style::{Colour, FAINT, GREY, INK, SMALL_PX, TEXT_PX, Text, WHITE, text_width_px};
 use crate::report::svg::{Area, Svg};
 
 const CELLS: usize = 24;
@@ -14,10 +14,10 @@ const ELEVATION_DEG: f64 = 26.0;
 /// Lengths of the edges along distance, angle and value.
 const EDGES: DVec3 = DVec3::new(1.15, 1.0, 0.72);
 /// Margins around the box for its labels: left, above, right, below, px.
-const ROOM_PX: [f64; 4] = [56.0, 6.0, 30.0, 34.0];
+const ROOM_PX: [f64; 4] = [56.0, 6.0, 30.0, 44.0];
 /// Distances of tick labels and axis names from the box, px.
 const NUMBER_PX: f64 = 12.0;
-const NAME_PX: f64 = 27.0;
+const NAME_PX: f64 = 34.0;
 const UPRIGHT_NAME_PX: f64 = 36.0;
 
 /// Depth bias of samples, so that one that lies in the surface is fully visible.
@@ -30,8 +30,9 @@ enum Piece {
     Sample(DVec3),
 }
 
-/// The box around the surface: how it is seen, and its corner on the floor nearest to the viewer.
+/// The box around the surface: its space, how it is seen, and its corner on the floor nearest to the viewer.
 struct View {
+    space: Area,
     projection: Projection,
     near: DVec2,
 }
@@ -69,7 +70,7 @@ impl View {
         let (near, azimuth_deg) = if far_is_lower { (DVec2::ONE, 42.0) } else { (DVec2::Y, 138.0) };
         let room = space.without(ROOM_PX);
         let (low, high) = (DVec2::new(room.left, room.top), DVec2::new(room.right(), room.bottom()));
-        View { projection: Projection::fitted(EDGES, azimuth_deg, ELEVATION_DEG, low, high), near }
+        View { space, projection: Projection::fitted(EDGES, azimuth_deg, ELEVATION_DEG, low, high), near }
     }
 
     /// The cells of the surface and the test data, farthest first.
@@ -137,8 +138,13 @@ impl View {
         if upright {
             svg.text(middle + outward * UPRIGHT_NAME_PX, &axis.name, words.turned());
         } else {
-            let words = if outward.x < 0.0 { words.to_here() } else { words.from_here() };
-            svg.text(middle + outward * NAME_PX, &axis.name, words);
+            // As far out as the words fit.
+            let (at, width_px) = (middle + outward * NAME_PX, text_width_px(&axis.name, TEXT_PX));
+            if outward.x < 0.0 {
+                svg.text(DVec2::new(at.x.max(self.space.left + width_px), at.y), &axis.name, words.to_here());
+            } else {
+                svg.text(DVec2::new(at.x.min(self.space.right() - width_px), at.y), &axis.name, words.from_here());
+            }
         }
     }
 }
