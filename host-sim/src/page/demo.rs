@@ -73,7 +73,7 @@ fn starts(Summary { starts, panels, .. }: &Summary) -> Markup {
         (open_table(STARTS_HEADER, &rows))
         p.quiet {
             "Shares of runs that end within " (number(REACHED_CM, 0)) " cm of the target without a crash, and the median distance "
-            "to it: of " (JUDGED_RUNS) " simulated runs, and of " (TRIALS) " on the robot."
+            "to it, over " (JUDGED_RUNS) " simulated runs and " (TRIALS) " on the robot."
         }
         p { (LINES) }
         div.pairs {
@@ -90,9 +90,9 @@ fn starts(Summary { starts, panels, .. }: &Summary) -> Markup {
 fn change(repair: &Repair) -> Markup {
     html! {
         p {
-            "The robot changes (" code { (repair.changed.to_string()) } "), and nobody tells the simulator. The controller of "
+            "The robot changes (" code { (repair.changed.to_string()) } "), and the simulator does not know. The controller of "
             "start " (repair.start) " then reaches the target in " (percent(repair.before.rate)) " of its runs. The loop drives "
-            "the robot, learns from each run, and evolves anew; the controller that it settles on reaches it in "
+            "the robot, learns from each run, and evolves a new controller; the last one reaches the target in "
             (percent(repair.after.rate)) "."
         }
     }
@@ -103,10 +103,10 @@ fn next() -> Markup {
         ol {
             li {
                 "Bring a robot of your own: " code { "mindgap new mine" } " makes the files to fill in, and "
-                code { "mindgap import" } " makes logs of what it recorded."
+                code { "mindgap import" } " converts its recordings to logs."
             }
             li {
-                "Ask what separates it from its simulator: "
+                "Diagnose the gap between it and the textbook simulator: "
                 code { "mindgap diagnose kinematic mine/logs --html gap.html" } "."
             }
         }
@@ -117,7 +117,7 @@ fn source(folder: &str, seed: u64) -> Markup {
     html! {
         dl {
             dt { "Folder" }
-            dd { (folder) ": logs, simulator, controllers, NXC programs, figures and, in " code { "loop" } ", what the loop did" }
+            dd { (folder) ": logs, simulator, controllers, NXC programs, figures and, in " code { "loop" } ", the loop's trials" }
             dt { "Seed" } dd { (seed) }
         }
     }

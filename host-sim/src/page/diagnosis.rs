@@ -41,7 +41,7 @@ pub struct Source {
     pub simulator: String,
     /// The folder of logs.
     pub logs: String,
-    /// First and last day on which the logs were written, if the files tell.
+    /// First and last day on which the logs were written, if known.
     pub written: Option<[String; 2]>,
     /// Seed of the draws.
     pub seed: u64,
@@ -100,12 +100,12 @@ fn headline(diagnosis: &Diagnosis, catalogue: &[&'static Effect]) -> String {
 
 /// How probable each named effect is, in words.
 fn sure(diagnosis: &Diagnosis, catalogue: &[&'static Effect]) -> String {
-    let told: Vec<String> = diagnosis
+    let named: Vec<String> = diagnosis
         .effects()
         .iter()
         .map(|effect| format!("{} {}", words::name(effect.id, catalogue), words::percent(effect.probability)))
         .collect();
-    words::list(&told.iter().map(String::as_str).collect::<Vec<_>>())
+    words::list(&named.iter().map(String::as_str).collect::<Vec<_>>())
 }
 
 fn lead(diagnosis: &Diagnosis, catalogue: &[&'static Effect], logs: &Logs) -> Markup {
@@ -118,11 +118,11 @@ fn lead(diagnosis: &Diagnosis, catalogue: &[&'static Effect], logs: &Logs) -> Ma
             p {
                 "With " @if diagnosis.effects().len() == 1 { "it" } @else { "them" } " the simulator closes "
                 strong { (words::percent(reduction.whole.reducible_closed)) }
-                " of the gap that is not chance (95 % interval: " (low) " to " (high) "). "
-                "How sure each is: " (sure(diagnosis, catalogue)) "."
+                " of the gap, apart from chance (95 % interval: " (low) " to " (high) "). "
+                "Probabilities: " (sure(diagnosis, catalogue)) "."
             }
         }
-        @if !matches!(diagnosis.answer, Answer::NoGap) { p { a href="#next" { "What to do next" } " stands below." } }
+        @if !matches!(diagnosis.answer, Answer::NoGap) { p { "See " a href="#next" { "what to do next" } "." } }
         p.quiet {
             "Compared: " (words::list(&compared)) " in " (rows) " rows of " (logs.runs.len())
             @if logs.runs.len() == 1 { " run." } @else { " runs." }
@@ -165,20 +165,20 @@ fn next(diagnosis: &Diagnosis, catalogue: &[&'static Effect]) -> Section {
         ol {
             @for part in parts {
                 @if let Some(cause) = words::cause(&part.id, catalogue) {
-                    li { "Check " strong { (cause.name) } ", which makes " (words::percent(part.share))
+                    li { "Check " strong { (cause.name) } ", " (words::percent(part.share))
                         " of the gap: " (cause.check) }
                 }
             }
             @if !diagnosis.effects().is_empty() {
                 li {
-                    "Mend the robot and log it again; or teach the simulator: the same command with "
-                    code { "--apply better.json" } " writes a simulator with the effects, to evolve controllers in."
+                    "Repair the robot and log it again; or improve the simulator: the same command with "
+                    code { "--apply better.json" } " writes a simulator with the effects, in which to evolve controllers."
                 }
             }
             @if let Some(experiment) = diagnosis.experiment() {
                 @let [one, other] = experiment.between.map(|id| words::name(id, catalogue));
                 li {
-                    "These logs do not tell " (one) " from " (other) " for sure. Drive and log " (experiment.runs)
+                    "These logs do not distinguish " (one) " from " (other) " for certain. Drive and log " (experiment.runs)
                     @if experiment.runs == 1 { " run" } @else { " runs" } " of " (experiment.script) "; "
                     code { "--next-experiment next.csv" } " writes the commands."
                 }
@@ -187,16 +187,16 @@ fn next(diagnosis: &Diagnosis, catalogue: &[&'static Effect]) -> Section {
                 li {
                     @if let Some(left) = left { (words::percent(left.share)) " of the gap is not explained. " }
                     "See " a href="#where" { "where it lies" } ", watch the robot there, and state what you suspect as an "
-                    "effect of your own: " code { "--effects FILE" } " lets it compete with the built-in ones."
+                    "effect of your own: with " code { "--effects FILE" } " it competes with the built-in ones."
                 }
             }
             @if matches!(diagnosis.answer, Answer::NoGap) {
-                li { "Nothing has to be mended for what these logs show. A controller that fails all the same drives "
-                    "where they do not: log it, and diagnose those runs." }
+                li { "By these logs, nothing needs repair. If a controller fails all the same, it drives under other conditions: log "
+                    "those runs and diagnose them." }
             }
             @if !diagnosis.untestable.is_empty() {
                 li {
-                    "These effects may be there or not, for the logs do not excite them: "
+                    "These effects cannot be ruled out, because the logs do not excite them: "
                     (words::list(&diagnosis.untestable.iter().map(|id| words::name(id, catalogue)).collect::<Vec<_>>()))
                     ". Drive more varied commands if you suspect one."
                 }

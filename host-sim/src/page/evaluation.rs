@@ -1,4 +1,4 @@
-//! The page of an evaluation: how well each network does on logs that it was not trained on.
+//! The page of an evaluation: how well each network predicts logs that it was not trained on.
 
 use maud::{Markup, html};
 
@@ -91,15 +91,15 @@ fn headline(values: &[Judged]) -> String {
         (among(USABLE, GOOD), "roughly"),
         (among(f64::NEG_INFINITY, USABLE), "hardly"),
     ];
-    let told: Vec<String> =
+    let said: Vec<String> =
         parts.iter().filter(|p| !p.0.is_empty()).map(|(what, how)| format!("{what} {how}")).collect();
-    match told.as_slice() {
+    match said.as_slice() {
         [] => "The simulator predicts whether there is an echo, and nothing else.".into(),
-        told => format!("The simulator predicts {}.", told.join(", ")),
+        said => format!("The simulator predicts {}.", said.join(", ")),
     }
 }
 
-/// How well each network does, as a table.
+/// Returns a table of how well each network predicts.
 pub fn accuracy(networks: &Networks) -> Markup {
     judged(&values(networks))
 }

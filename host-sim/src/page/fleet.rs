@@ -1,5 +1,4 @@
-//! The page of a fleet: which effects are how frequent, what is the simulator's fault, which robots are alike, and who
-//! stands out.
+//! The page of a fleet: frequencies of effects, effects that the simulator lacks, groups of similar robots, and outliers.
 
 use maud::{Markup, html};
 
@@ -220,7 +219,7 @@ fn groups(fleet: &Fleet, catalogue: &[&'static Effect]) -> Markup {
             [
                 group_name(i + 1),
                 group.robots.len().to_string(),
-                told(&group.budget, catalogue),
+                in_words(&group.budget, catalogue),
                 if more > 0 { format!("{names} and {more} more") } else { names },
             ]
         })
@@ -268,7 +267,7 @@ fn outliers(fleet: &Fleet, catalogue: &[&'static Effect]) -> Markup {
 }
 
 /// Parts of a gap in words.
-fn told(budget: &[Share], catalogue: &[&'static Effect]) -> String {
+fn in_words(budget: &[Share], catalogue: &[&'static Effect]) -> String {
     let parts: Vec<String> = budget
         .iter()
         .take(MOST_PARTS)
@@ -303,7 +302,7 @@ fn robots(fleet: &Fleet, catalogue: &[&'static Effect]) -> Markup {
                             td.n data-value=(row.gap_nats.unwrap_or(0.0)) {
                                 (row.gap_nats.map_or("–".into(), |gap| number(gap, 3)))
                             }
-                            td { (told(&row.budget, catalogue)) }
+                            td { (in_words(&row.budget, catalogue)) }
                             td.n { (row.group) }
                         }
                     }

@@ -1,4 +1,4 @@
-//! The page of a controller's simulated runs: where they end, what the controller does, and the runs to be watched.
+//! The page of a controller's simulated runs: where they end, what the controller does, and a replay of the runs.
 
 use std::collections::BTreeMap;
 

@@ -1,4 +1,4 @@
-//! The page of a loop: what was expected of each controller and what the robot did, and what each run taught.
+//! The page of a loop: the predicted and driven paths of each controller, and what each run taught the simulator.
 
 use maud::{Markup, html};
 
@@ -29,14 +29,14 @@ pub struct Subject<'a> {
     pub seed: u64,
 }
 
-/// What the steps of a channel were off by: number of the trial, before and after it.
+/// Errors of a channel's steps: number of the trial, before and after it.
 struct Gaps {
     name: &'static str,
     unit: &'static str,
     rows: Vec<(usize, [f64; 2])>,
 }
 
-/// A channel, its unit, and what its steps were off by before and after.
+/// A channel, its unit, and the errors of its steps before and after.
 type Channel = (&'static str, &'static str, fn(&Gap) -> [f64; 2]);
 
 const CHANNELS: [Channel; 3] = [
@@ -70,7 +70,7 @@ pub fn page(subject: &Subject) -> String {
     .html()
 }
 
-/// The parts of a page about a loop from a start in a scene.
+/// Returns the parts of a page about a loop from a start in a scene.
 pub fn sections(state: &State, scene: &Scene, start: Pose) -> Vec<Section> {
     let trials = &state.trials;
     let gaps = gaps(trials);
@@ -104,10 +104,10 @@ fn headline(state: &State) -> String {
             format!("The controller works {after}: it reached the target three times, and has {chance} in simulation.")
         }
         Verdict::Spent if state.limit().is_some() => format!(
-            "No six tuples were found that reach the target often enough; {after} the best has {chance}, and chance limits it."
+            "No controller was found that reaches the target often enough; {after} the best has {chance}, limited by noise alone."
         ),
         Verdict::Spent => format!("No controller is confirmed {after}; the best has {chance}."),
-        Verdict::OutOfReach => "No controller was found that reaches the target on a robot that is possible.".into(),
+        Verdict::OutOfReach => "No controller was found that reaches the target on any possible robot.".into(),
         Verdict::Running => format!("The loop is under way {after}."),
     }
 }
@@ -213,7 +213,7 @@ fn maps(trials: &[Trial], scene: &Scene, start: Pose) -> Markup {
     }
 }
 
-/// What the steps of each channel were off by; nothing before two runs can be compared with each other.
+/// Errors of each channel's steps; empty before two runs can be compared with each other.
 fn gaps(trials: &[Trial]) -> Vec<Gaps> {
     let of_channel = |(name, unit, of): &Channel| {
         let row = |trial: &Trial| Some((trial.number, of(trial.gap.as_ref()?)));
@@ -248,7 +248,7 @@ fn errors(unit: &str, rows: &[(usize, [f64; 2])]) -> Figure {
     CurveChart { y_name, ..along_trials(rows.iter().map(|(trial, _)| *trial), curves) }.draw()
 }
 
-/// The effects that all runs together say of the robot.
+/// The effects found in all runs together.
 fn effects(trials: &[Trial]) -> Markup {
     let last = trials.iter().rfind(|trial| trial.chance_after.is_some());
     html! {
@@ -291,22 +291,22 @@ fn next(state: &State) -> Markup {
                 },
                 Verdict::Spent => @match state.limit() {
                     Some(success) => li {
-                        "Make it easier: a start nearer to the target, or a wider way. If all were known of the robot the best of "
-                        "these controllers would reach the target in " (percent(success)) " of its runs: more trials will hardly help."
+                        "Make it easier: a start nearer to the target, or a wider way. Even with a perfectly known robot, the best "
+                        "of these controllers would reach the target in " (percent(success)) " of its runs: more trials will hardly help."
                     },
                     None => li {
-                        "The same call with more " code { "--trials" } " goes on from here: each run narrows what is not known of "
+                        "The same call with more " code { "--trials" } " continues from here: each run reduces the uncertainty about "
                         "the robot."
                     },
                 },
                 Verdict::OutOfReach => li {
-                    "Make it easier: a start nearer to the target, or more " code { "--max-steps" } ". Where even that fails, "
-                    "log the robot while it drives at random, and train the simulator anew."
+                    "Make it easier: a start nearer to the target, or more " code { "--max-steps" } ". If even that fails, "
+                    "log the robot while it drives at random, and train the simulator again."
                 },
-                Verdict::Running => li { "The same call goes on from here." },
+                Verdict::Running => li { "The same call continues from here." },
             }
             @if named {
-                li { "Check on the robot what " a href="#effects" { "its runs say" } ": what is mended there needs no learning." }
+                li { "Check on the robot what " a href="#effects" { "its runs say" } ": a repaired robot needs no learning." }
             }
         }
     }
@@ -321,8 +321,8 @@ fn source(subject: &Subject) -> Markup {
             dt { "Trials" } dd { (state.trials.len()) ", seed " (seed) }
             dt { "In the loop's folder" }
             dd {
-                code { "controller.toml" } ", " code { "simulator.json" } " as it is after all runs, a log and a controller "
-                "for each trial, and all that is on this page in " code { "loop.json" }
+                code { "controller.toml" } ", " code { "simulator.json" } " after all runs, a log and a controller "
+                "for each trial, and all figures of this page in " code { "loop.json" }
             }
         }
     }

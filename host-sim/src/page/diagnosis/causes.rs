@@ -1,4 +1,4 @@
-//! The causes, one by one: what each is, how strong, how sure, how to check it, and its evidence.
+//! The causes, one by one: description, strength, probability, check and evidence.
 
 use maud::{Markup, html};
 
@@ -12,7 +12,7 @@ use crate::page::document::{Section, chart, table};
 use crate::page::words;
 use crate::pictures;
 
-/// The causes, and what is left that none of them explains; nothing where there is no gap.
+/// The causes, and what none of them explains; `None` where there is no gap.
 pub fn section(subject: &Subject) -> Option<Section> {
     let diagnosis = &subject.findings.diagnosis;
     let (effects, profiles) = (diagnosis.effects(), diagnosis.profiles());
@@ -54,9 +54,9 @@ fn cause(effect: &NamedEffect, evidence: &[Evidence], catalogue: &[&'static Effe
                     dd { (effect.strength()) @if has_direction(effect) { ". Directions: 0 is along x, 90 along y." } }
                 }
                 @if let Some(share) = effect.share { dt { "Of the gap" } dd { (words::percent(share)) } }
-                dt { "How sure" }
+                dt { "Probability" }
                 dd {
-                    (words::percent(effect.probability)) " probable"
+                    (words::percent(effect.probability))
                     @if !rivals.is_empty() { ". These logs cannot tell it from " (words::list(&rivals)) "." }
                 }
                 @if let Some(cause) = named { dt { "How to check" } dd { (cause.check) } }
@@ -115,7 +115,7 @@ fn range(bin: &Bin) -> String {
     }
 }
 
-/// From where to where the bins lie.
+/// Least and largest value of the bins.
 fn reach(bins: &[Bin]) -> String {
     let (low, high) = bins.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), b| (l.min(b.off), h.max(b.off)));
     format!("{} to {}", words::number(low, 2), words::number(high, 2))
@@ -126,8 +126,8 @@ mod tests {
     use super::*;
 
     #[test]
-    fn ranges_are_read_as_one_says_them() {
-        let told = |from: f64, to: f64| range(&Bin { from, to, off: 0.0, error: 0.0 });
-        assert_eq!([told(-62.0, 0.0), told(0.0, 0.0), told(1.25, 3.5)], ["−62 to 0", "0.0", "1.2 to 3.5"]);
+    fn ranges_are_written_in_words() {
+        let written = |from: f64, to: f64| range(&Bin { from, to, off: 0.0, error: 0.0 });
+        assert_eq!([written(-62.0, 0.0), written(0.0, 0.0), written(1.25, 3.5)], ["−62 to 0", "0.0", "1.2 to 3.5"]);
     }
 }

@@ -70,9 +70,9 @@ pub fn section(replay: Option<&Replay>, diagnosis: &Diagnosis) -> Section {
     let body = match replay {
         Some(replay) => html! {
             p {
-                "The robot as it was logged, and what the simulator makes of the same commands"
+                "The robot as it was logged, and the simulator with the same commands"
                 @if diagnosis.effects().is_empty() { "." } @else { ", without and with the effects." }
-                " Simulated robots start where the real one was first seen and are put back to it every "
+                " Simulated robots start at the first logged position of the real one and return to it every "
                 (PUT_BACK_STEPS)
                 " steps. Walls do not stop them."
             }
