@@ -53,7 +53,7 @@ need_component clippy clippy
 # What stands behind a macro, as the catalogue of effects does, cargo does not find.
 check_format() {
     cargo fmt --all --check
-    rustfmt --check --edition 2024 host-sim/src/effects/catalogue/*.rs
+    rustfmt --check --edition 2024 host-sim/models/src/effects/catalogue/*.rs
 }
 
 # Which known faults they have stands in a database that not every machine reaches.
@@ -72,7 +72,7 @@ check_rust_version() {
 import json, sys
 packages = json.load(sys.stdin)["packages"]
 number = lambda version: tuple(map(int, (version or "0").split(".")))
-ours = next(p["rust_version"] for p in packages if p["name"] == "mindgap-host-sim")
+ours = next(p["rust_version"] for p in packages if p["name"] == "mindgap-command")
 newer = [p["name"] + " " + p["rust_version"] for p in packages if number(p["rust_version"])[:2] > number(ours)[:2]]
 sys.exit("these need a newer Rust than " + ours + ": " + ", ".join(newer) if newer else 0)'
 }

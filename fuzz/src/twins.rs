@@ -5,15 +5,15 @@ use std::array;
 use std::sync::LazyLock;
 
 use fixed::types::I16F16;
+use mindgap_built_in_robot::{default_robot, four_obstacles, record, training_room};
 use mindgap_core::controller::{Controller, TUPLES, Tuple, When};
 use mindgap_core::maths;
 use mindgap_core::network::Network;
-use mindgap_host_sim::built_in_robot::{default_robot, four_obstacles, record, training_room};
-use mindgap_host_sim::learn::train::{TABLE_ONE, Trainer, train};
-use mindgap_host_sim::simulator::environment::{Environment, SensorModel};
-use mindgap_host_sim::simulator::fixed_point::Quantised;
-use mindgap_host_sim::simulator::rollout::RolloutRequest;
-use mindgap_host_sim::simulator::{Noise, Simulator};
+use mindgap_learning::learn::train::{TABLE_ONE, Trainer, train};
+use mindgap_models::simulator::environment::{Environment, SensorModel};
+use mindgap_models::simulator::fixed_point::Quantised;
+use mindgap_models::simulator::rollout::RolloutRequest;
+use mindgap_models::simulator::{Noise, Simulator};
 
 use crate::Target;
 use mindgap_tests::plausible_networks::{PlausibleNetworks, plausible_networks};

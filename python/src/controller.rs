@@ -2,16 +2,16 @@
 
 use std::path::PathBuf;
 
+use mindgap_command::kinds;
 use mindgap_core::controller::Tuple;
-use mindgap_host_sim::cli::kinds;
-use mindgap_host_sim::evolve::chance::Chance;
-use mindgap_host_sim::evolve::controller_file::{ControllerFile, Origin};
-use mindgap_host_sim::evolve::fitness::RandomNumbers;
-use mindgap_host_sim::evolve::request::{Answered, Request};
-use mindgap_host_sim::logs::Scene;
-use mindgap_host_sim::pictures;
-use mindgap_host_sim::simulator::Noise;
-use mindgap_host_sim::simulator::environment::SensorModel;
+use mindgap_figures::pictures;
+use mindgap_learning::evolve::chance::Chance;
+use mindgap_learning::evolve::controller_file::{ControllerFile, Origin};
+use mindgap_learning::evolve::fitness::RandomNumbers;
+use mindgap_learning::evolve::request::{Answered, Request};
+use mindgap_logs::Scene;
+use mindgap_models::simulator::Noise;
+use mindgap_models::simulator::environment::SensorModel;
 use pyo3::prelude::*;
 use serde::Serialize;
 

@@ -2,9 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use mindgap_host_sim::error::Result;
-use mindgap_host_sim::logs::tables::Table;
-use mindgap_host_sim::logs::{Robot, Scene};
+use mindgap_foundations::error::Result;
+use mindgap_logs::tables::Table;
+use mindgap_logs::{Robot, Scene};
 use pyo3::buffer::PyBuffer;
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;

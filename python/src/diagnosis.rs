@@ -3,13 +3,16 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use mindgap_host_sim::cli::kinds;
-use mindgap_host_sim::effects::own;
-use mindgap_host_sim::gap::Method;
-use mindgap_host_sim::gap::request::{Answered, Request};
-use mindgap_host_sim::page::diagnosis::{Source, Subject, page};
-use mindgap_host_sim::simulator::textbook;
-use mindgap_host_sim::{files, gap, pictures, simulator};
+use mindgap_command::kinds;
+use mindgap_diagnosis as gap;
+use mindgap_diagnosis::Method;
+use mindgap_diagnosis::request::{Answered, Request};
+use mindgap_figures::pictures;
+use mindgap_files as files;
+use mindgap_models::effects::own;
+use mindgap_models::simulator;
+use mindgap_models::simulator::textbook;
+use mindgap_pages::diagnosis::{Source, Subject, page};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 

@@ -2,7 +2,7 @@
 
 use std::ffi::CString;
 
-use mindgap_host_sim::error;
+use mindgap_foundations::error;
 use pyo3::exceptions::{PyException, PyUserWarning};
 use pyo3::prelude::*;
 

@@ -3,9 +3,11 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use mindgap_host_sim::evaluation::accuracy::{self, Networks, Probability, Value};
-use mindgap_host_sim::page::evaluation::{Subject, page};
-use mindgap_host_sim::{logs, pictures, simulator};
+use mindgap_figures::pictures;
+use mindgap_learning::evaluation::accuracy::{self, Networks, Probability, Value};
+use mindgap_logs as logs;
+use mindgap_models::simulator;
+use mindgap_pages::evaluation::{Subject, page};
 use pyo3::prelude::*;
 use serde::Serialize;
 

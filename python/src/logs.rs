@@ -3,13 +3,13 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use mindgap_host_sim::built_in_robot::{self, ActiveEffect, default_robot, training_room};
-use mindgap_host_sim::gap::validate::same_robot;
-use mindgap_host_sim::inspection::Inspection;
-use mindgap_host_sim::logs;
-use mindgap_host_sim::logs::tables::Table;
-use mindgap_host_sim::simulator::Simulator;
-use mindgap_host_sim::survey::Survey;
+use mindgap_built_in_robot::{self as built_in_robot, ActiveEffect, default_robot, training_room};
+use mindgap_diagnosis::survey::Survey;
+use mindgap_diagnosis::validate::same_robot;
+use mindgap_logs as logs;
+use mindgap_logs::inspection::Inspection;
+use mindgap_logs::tables::Table;
+use mindgap_models::simulator::Simulator;
 use pyo3::prelude::*;
 use pyo3::types::{IntoPyDict, PyDict};
 

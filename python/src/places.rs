@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use mindgap_host_sim::files::places::{Kind, Places};
+use mindgap_files::places::{Kind, Places};
 use pyo3::prelude::*;
 
 use crate::error::raised;

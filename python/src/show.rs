@@ -2,10 +2,11 @@
 
 use std::path::PathBuf;
 
-use mindgap_host_sim::cli::kinds;
-use mindgap_host_sim::error::Result;
-use mindgap_host_sim::pictures::NamedFigure;
-use mindgap_host_sim::{files, report};
+use mindgap_command::kinds;
+use mindgap_figures::pictures::NamedFigure;
+use mindgap_figures::report;
+use mindgap_files as files;
+use mindgap_foundations::error::Result;
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 

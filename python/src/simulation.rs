@@ -2,14 +2,14 @@
 
 use std::path::PathBuf;
 
-use mindgap_host_sim::evolve::trial::Trial;
-use mindgap_host_sim::geometry::Pose;
-use mindgap_host_sim::logs::{Robot, Scene};
-use mindgap_host_sim::page::simulation::{Subject, page};
-use mindgap_host_sim::pictures;
-use mindgap_host_sim::simulator::Noise;
-use mindgap_host_sim::simulator::environment::SensorModel;
-use mindgap_host_sim::simulator::rollout_report::{PathPoint, RolloutReport};
+use mindgap_figures::pictures;
+use mindgap_foundations::geometry::Pose;
+use mindgap_learning::evolve::trial::Trial;
+use mindgap_logs::{Robot, Scene};
+use mindgap_models::simulator::Noise;
+use mindgap_models::simulator::environment::SensorModel;
+use mindgap_models::simulator::rollout_report::{PathPoint, RolloutReport};
+use mindgap_pages::simulation::{Subject, page};
 use pyo3::prelude::*;
 use serde::Serialize;
 
@@ -129,7 +129,7 @@ impl Simulation {
 }
 
 impl Simulation {
-    fn panel(&self) -> mindgap_host_sim::report::paths::PathPanel {
+    fn panel(&self) -> mindgap_figures::report::paths::PathPanel {
         pictures::simulated_paths(format!("Start {}", self.start), &self.scene, self.pose, &self.rollouts)
     }
 }

@@ -3,10 +3,10 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use mindgap_host_sim::cli::kinds;
-use mindgap_host_sim::learn::paper;
-use mindgap_host_sim::learn::train::{self as training, TABLE_ONE, Trainer};
-use mindgap_host_sim::simulator;
+use mindgap_command::kinds;
+use mindgap_learning::learn::paper;
+use mindgap_learning::learn::train::{self as training, TABLE_ONE, Trainer};
+use mindgap_models::simulator;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 

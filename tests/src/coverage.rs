@@ -2,14 +2,14 @@
 //! drawn from it, and the region that holds a share of their ends should hold that share of the logged ones.
 
 use glam::DVec2;
-use mindgap_host_sim::built_in_robot::{BuiltInRobot, Termination, default_robot, four_obstacles, run_controller};
-use mindgap_host_sim::chance::{Generator, generator};
-use mindgap_host_sim::evolve::genome::GenotypeDecoder;
-use mindgap_host_sim::geometry::{Pose, wrap_rad};
-use mindgap_host_sim::logs::{Logs, Run};
-use mindgap_host_sim::simulator::Simulator;
-use mindgap_host_sim::simulator::ensemble::{Member, Robots};
-use mindgap_host_sim::simulator::motion::{MotionNetworks, Speeds};
+use mindgap_built_in_robot::{BuiltInRobot, Termination, default_robot, four_obstacles, run_controller};
+use mindgap_foundations::chance::{Generator, generator};
+use mindgap_foundations::geometry::{Pose, wrap_rad};
+use mindgap_learning::evolve::genome::GenotypeDecoder;
+use mindgap_logs::{Logs, Run};
+use mindgap_models::simulator::Simulator;
+use mindgap_models::simulator::ensemble::{Member, Robots};
+use mindgap_models::simulator::motion::{MotionNetworks, Speeds};
 use rand_distr::{Distribution, StandardNormal};
 
 /// Shares of the ends that the regions hold.
@@ -212,8 +212,8 @@ fn normal(rng: &mut Generator) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use mindgap_host_sim::built_in_robot::{record, training_room};
-    use mindgap_host_sim::learn::train::{TABLE_ONE, Trainer, train};
+    use mindgap_built_in_robot::{record, training_room};
+    use mindgap_learning::learn::train::{TABLE_ONE, Trainer, train};
 
     /// Regions that hold much less would drive controllers into what nobody expects, and much more would hide them. So few runs
     /// leave controllers' headings too narrow: docs/loop.md has all figures.

@@ -2,7 +2,7 @@
 
 use std::process::ExitCode;
 
-use mindgap_host_sim::error::Result;
+use mindgap_foundations::error::Result;
 
 /// Success, or failure after one line of why in the name of this program.
 pub fn exit_code(program: &str, done: Result<()>) -> ExitCode {

@@ -3,9 +3,9 @@
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use glam::DVec2;
-use mindgap_host_sim::geometry::{Pose, wrap_rad};
-use mindgap_host_sim::inspection::{Finding, Handling, Inspection};
-use mindgap_host_sim::logs::{Logs, Row, Rows};
+use mindgap_foundations::geometry::{Pose, wrap_rad};
+use mindgap_logs::inspection::{Finding, Handling, Inspection};
+use mindgap_logs::{Logs, Row, Rows};
 
 /// A fault and what an inspection has to make of it.
 pub struct Fault {

@@ -1,11 +1,11 @@
 //! Generated Rust sources of networks: those that the images under `tests/firmware` run, and those of the example under
 //! `core/examples`.
 
+use mindgap_built_in_robot::{default_robot, record, training_room};
 use mindgap_controller_export::rust_networks::rust_networks;
-use mindgap_host_sim::built_in_robot::{default_robot, record, training_room};
-use mindgap_host_sim::error::Result;
-use mindgap_host_sim::learn::train::{TABLE_ONE, Trainer, train};
-use mindgap_host_sim::simulator::fixed_point::FixedNetworks;
+use mindgap_foundations::error::Result;
+use mindgap_learning::learn::train::{TABLE_ONE, Trainer, train};
+use mindgap_models::simulator::fixed_point::FixedNetworks;
 
 /// The logs that the networks are trained on.
 const RUNS: usize = 40;

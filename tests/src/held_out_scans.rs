@@ -1,12 +1,12 @@
 //! How likely the first-echo law makes scans at a place that it was not fitted on.
 
-use mindgap_host_sim::evaluation::sensor_models::nats;
-use mindgap_host_sim::inspection::Inspection;
-use mindgap_host_sim::learn::echo_law;
-use mindgap_host_sim::learn::scans::{Heard, Offset, Scans};
-use mindgap_host_sim::logs::Logs;
-use mindgap_host_sim::sonar::FirstEchoLaw;
-use mindgap_host_sim::sonar::echo_law::Surfaces;
+use mindgap_learning::evaluation::sensor_models::nats;
+use mindgap_learning::learn::echo_law;
+use mindgap_learning::learn::scans::{Heard, Offset, Scans};
+use mindgap_logs::Logs;
+use mindgap_logs::inspection::Inspection;
+use mindgap_models::sonar::FirstEchoLaw;
+use mindgap_models::sonar::echo_law::Surfaces;
 
 /// Mean log-likelihoods of a reading over scans that are left out one by one.
 pub struct HeldOut {

@@ -4,7 +4,7 @@
 //! carries pairs of large product units that almost cancel, as trained networks do.
 
 use mindgap_core::network::{Activation, Network, ProductUnit, Scaling, SummationUnit};
-use mindgap_host_sim::chance::{Generator, generator};
+use mindgap_foundations::chance::{Generator, generator};
 use rand::RngExt;
 
 /// The five networks of a simulator.

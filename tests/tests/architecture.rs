@@ -12,11 +12,23 @@ fn text() -> String {
 }
 
 fn order() -> Order {
-    Order::parse(&text(), "## Which module may know which")
+    Order::parse(&text(), "## Which crate may know which")
 }
 
-fn host_sim() -> Modules {
-    Modules::read(&workspace().join("host-sim/src"))
+fn read(path: &str) -> String {
+    fs::read_to_string(workspace().join(path)).unwrap_or_else(|e| panic!("{path}: {e}"))
+}
+
+/// The crates of the host, by the names of their folders.
+fn crates() -> BTreeSet<String> {
+    let folder = fs::read_dir(workspace().join("host-sim")).expect("the host's crates");
+    folder.map(|entry| entry.expect("an entry").file_name().into_string().expect("UTF-8")).collect()
+}
+
+/// What a crate of the host depends on, its tests apart.
+fn dependencies(name: &str) -> Vec<String> {
+    let manifest: toml::Table = read(&format!("host-sim/{name}/Cargo.toml")).parse().expect("TOML");
+    manifest["dependencies"].as_table().expect("a table").keys().cloned().collect()
 }
 
 #[test]
@@ -33,39 +45,56 @@ fn every_path_that_it_names_exists() {
     }
 }
 
-/// What the workspace forbids, as `unsafe`, is forbidden in a crate that says so.
+/// A crate inherits what the workspace forbids, such as `unsafe`, only if its manifest says so.
 #[test]
 fn every_crate_has_the_lints_of_the_workspace() {
-    let read = |path: &str| fs::read_to_string(workspace().join(path)).expect("a manifest");
-    let root = read("Cargo.toml");
-    assert!(root.contains("unsafe_code = \"forbid\""));
-    let members = root.lines().find_map(|line| line.strip_prefix("members = [")).expect("the members");
-    for name in members.trim_end_matches(']').split(", ").map(|name| name.trim_matches('"')) {
-        assert!(read(&format!("{name}/Cargo.toml")).contains("[lints]\nworkspace = true"), "{name}");
+    assert!(read("Cargo.toml").contains("unsafe_code = \"forbid\""));
+    let others = ["core", "controller-export", "fuzz", "python", "tests"].map(str::to_owned);
+    for folder in crates().into_iter().map(|name| format!("host-sim/{name}")).chain(others) {
+        assert!(read(&format!("{folder}/Cargo.toml")).contains("[lints]\nworkspace = true"), "{folder}");
     }
 }
 
 #[test]
-fn the_order_names_every_module_once() {
+fn the_order_names_every_crate_once() {
     let order = order();
-    let once: BTreeSet<&str> = order.modules().into_iter().collect();
-    assert_eq!(once.len(), order.modules().len(), "a module is listed twice: {:?}", order.modules());
-    assert_eq!(once, host_sim().children(&[]), "left: listed, right: in host-sim/src");
+    let once: BTreeSet<String> = order.modules().into_iter().map(str::to_owned).collect();
+    assert_eq!(once.len(), order.modules().len(), "a crate is listed twice: {:?}", order.modules());
+    assert_eq!(once, crates(), "left: listed, right: in host-sim");
 }
 
 #[test]
-fn modules_know_only_those_that_come_before_them() {
-    let edges = host_sim().edges(&[]);
-    assert!(edges.len() > 30, "imports are found: {edges:?}");
+fn crates_know_only_those_that_come_before_them() {
+    let edges: Vec<Edge> = crates()
+        .iter()
+        .flat_map(|from| {
+            let known =
+                dependencies(from).into_iter().filter_map(|name| name.strip_prefix("mindgap-").map(str::to_owned));
+            let known: Vec<String> = known.filter(|to| crates().contains(to)).collect();
+            known.into_iter().map(move |to| Edge { from: from.clone(), witness: format!("{from} -> {to}"), to })
+        })
+        .collect();
+    assert!(edges.len() > 30, "dependencies are found: {edges:?}");
     let broken = order().broken_by(&edges);
-    assert!(broken.is_empty(), "these know what comes after them, or what is not for them to know:\n{broken:#?}");
+    assert!(broken.is_empty(), "these depend on a later or a private crate:\n{broken:#?}");
+}
+
+/// Python and a browser use the diagnosis without the command: data in, data out.
+#[test]
+fn models_and_diagnosis_know_neither_arguments_nor_threads_nor_clocks() {
+    for name in ["models", "diagnosis"] {
+        for unwanted in ["clap", "mindgap-workers", "indicatif", "jiff"] {
+            assert!(!dependencies(name).contains(&unwanted.to_owned()), "{name} depends on {unwanted}");
+        }
+    }
+    assert!(!dependencies("diagnosis").contains(&"mindgap-files".to_owned()));
 }
 
 #[test]
-fn children_of_one_parent_know_each_other_without_circles() {
-    let modules = host_sim();
-    // The children of the root have their order above.
-    let parents = modules.parents().filter(|parent| !parent.is_empty());
-    let circles: Vec<Edge> = parents.flat_map(|parent| in_circles(&modules.edges(parent))).collect();
-    assert!(circles.is_empty(), "these lead back to where they begin:\n{circles:#?}");
+fn sibling_modules_know_each_other_without_circles() {
+    for name in crates() {
+        let modules = Modules::read(&workspace().join(format!("host-sim/{name}/src")));
+        let circles: Vec<Edge> = modules.parents().flat_map(|parent| in_circles(&modules.edges(parent))).collect();
+        assert!(circles.is_empty(), "{name}: these modules depend on each other in a circle:\n{circles:#?}");
+    }
 }

@@ -1,13 +1,13 @@
 //! Faults that are put into the built-in robot's logs are found, and what it does by itself is none.
 
 use glam::DVec2;
-use mindgap_host_sim::built_in_robot::{ActiveEffect, Effect, default_robot, record, training_room};
-use mindgap_host_sim::gap::{Method, findings};
-use mindgap_host_sim::geometry::Pose;
-use mindgap_host_sim::inspection::{Handling, Inspection, Part};
-use mindgap_host_sim::learn::train::{TABLE_ONE, Trainer, train};
-use mindgap_host_sim::logs::{Logs, Row};
-use mindgap_host_sim::simulator::baseline::Baseline;
+use mindgap_built_in_robot::{ActiveEffect, Effect, default_robot, record, training_room};
+use mindgap_diagnosis::{Method, findings};
+use mindgap_foundations::geometry::Pose;
+use mindgap_learning::learn::train::{TABLE_ONE, Trainer, train};
+use mindgap_logs::inspection::{Handling, Inspection, Part};
+use mindgap_logs::{Logs, Row};
+use mindgap_models::simulator::baseline::Baseline;
 use mindgap_tests::faults::{MOTION, RUN, SONAR, assert_found};
 
 fn logs(runs: usize, effects: &[ActiveEffect]) -> Logs {

@@ -3,8 +3,8 @@
 
 use std::path::Path;
 
-use mindgap_host_sim::error::Result;
-use mindgap_host_sim::files;
+use mindgap_files as files;
+use mindgap_foundations::error::Result;
 
 fn main() -> Result<()> {
     let top = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");

@@ -10,7 +10,7 @@ use mindgap_controller_export::brick::{self, Press, Program, RunConfig, Scripted
 use mindgap_controller_export::onboard::Safety;
 use mindgap_controller_export::rxe;
 use mindgap_controller_export::wiring::Wiring;
-use mindgap_host_sim::chance::{Generator, generator};
+use mindgap_foundations::chance::{Generator, generator};
 use mindgap_tests::command::workspace;
 use mindgap_tests::controllers::at_its_limits;
 use mindgap_tests::nbc::compile;

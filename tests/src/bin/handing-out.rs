@@ -8,7 +8,7 @@ use std::io;
 use std::process::ExitCode;
 use std::time::Duration;
 
-use mindgap_host_sim::chance::{Generator, generator};
+use mindgap_foundations::chance::{Generator, generator};
 use rand::seq::IndexedRandom;
 
 const SEED: u64 = 1;

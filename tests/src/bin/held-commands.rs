@@ -6,16 +6,16 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use glam::DVec2;
+use mindgap_built_in_robot::{BuiltInRobot, default_robot, run_controller};
 use mindgap_core::controller::{Controller, Tuple, When};
-use mindgap_host_sim::built_in_robot::{BuiltInRobot, default_robot, run_controller};
-use mindgap_host_sim::chance::generator;
-use mindgap_host_sim::error::{Error, Result};
-use mindgap_host_sim::geometry::{Pose, wrap_rad};
-use mindgap_host_sim::logs::Scene;
-use mindgap_host_sim::simulator::environment::Environment;
-use mindgap_host_sim::simulator::rollout::RolloutRequest;
-use mindgap_host_sim::simulator::{Noise, Simulator};
-use mindgap_host_sim::statistics::summary::{mean, root_mean_square};
+use mindgap_foundations::chance::generator;
+use mindgap_foundations::error::{Error, Result};
+use mindgap_foundations::geometry::{Pose, wrap_rad};
+use mindgap_foundations::statistics::summary::{mean, root_mean_square};
+use mindgap_logs::Scene;
+use mindgap_models::simulator::environment::Environment;
+use mindgap_models::simulator::rollout::RolloutRequest;
+use mindgap_models::simulator::{Noise, Simulator};
 use mindgap_tests::exit_code::exit_code;
 
 const SEED: u64 = 9;

@@ -4,8 +4,8 @@
 use std::path::Path;
 use std::process::ExitCode;
 
-use mindgap_host_sim::error::Result;
-use mindgap_host_sim::logs::Logs;
+use mindgap_foundations::error::Result;
+use mindgap_logs::Logs;
 use mindgap_tests::exit_code::exit_code;
 use mindgap_tests::held_out_scans::HeldOut;
 

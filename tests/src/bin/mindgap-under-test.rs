@@ -3,5 +3,5 @@
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    mindgap_host_sim::cli::run()
+    mindgap_command::run()
 }

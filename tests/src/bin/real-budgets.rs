@@ -3,11 +3,11 @@
 
 use std::path::Path;
 
-use mindgap_host_sim::gap::budget::Part;
-use mindgap_host_sim::gap::explain::NamedEffect;
-use mindgap_host_sim::gap::{Diagnosis, diagnose};
-use mindgap_host_sim::logs::Logs;
-use mindgap_host_sim::simulator::kinematic;
+use mindgap_diagnosis::budget::Part;
+use mindgap_diagnosis::explain::NamedEffect;
+use mindgap_diagnosis::{Diagnosis, diagnose};
+use mindgap_logs::Logs;
+use mindgap_models::simulator::kinematic;
 use serde_json::Value;
 
 fn main() -> std::process::ExitCode {

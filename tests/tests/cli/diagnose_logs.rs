@@ -3,7 +3,7 @@
 use std::fs;
 use std::sync::LazyLock;
 
-use mindgap_host_sim::logs::Run;
+use mindgap_logs::Run;
 use mindgap_tests::command::Workshop;
 use mindgap_tests::rooms::{trained, with_scene};
 use serde_json::Value;

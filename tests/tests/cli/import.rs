@@ -1,9 +1,9 @@
 //! `mindgap import` on drives of the built-in robot, split into what a brick logs and what a camera sees.
 
-use mindgap_host_sim::built_in_robot::{BuiltInRobot, default_robot};
-use mindgap_host_sim::chance::{Generator, generator};
-use mindgap_host_sim::geometry::Pose;
-use mindgap_host_sim::logs::{Logs, Scene};
+use mindgap_built_in_robot::{BuiltInRobot, default_robot};
+use mindgap_foundations::chance::{Generator, generator};
+use mindgap_foundations::geometry::Pose;
+use mindgap_logs::{Logs, Scene};
 use mindgap_tests::command::Workshop;
 use rand::RngExt;
 

@@ -2,8 +2,8 @@
 
 use std::fmt::Write;
 
-use mindgap_host_sim::geometry::Pose;
-use mindgap_host_sim::logs::{Logs, Row};
+use mindgap_foundations::geometry::Pose;
+use mindgap_logs::{Logs, Row};
 use mindgap_tests::command::Workshop;
 use mindgap_tests::ros_bags;
 

@@ -1,6 +1,6 @@
 //! `mindgap new`: a folder for a robot of one's own.
 
-use mindgap_host_sim::logs::{Robot, Scene};
+use mindgap_logs::{Robot, Scene};
 use mindgap_tests::command::Workshop;
 
 #[test]

@@ -4,8 +4,8 @@
 use std::path::Path;
 
 use glam::DVec2;
-use mindgap_host_sim::geometry::{Pose, wrap_rad};
-use mindgap_host_sim::logs::{Logs, Run};
+use mindgap_foundations::geometry::{Pose, wrap_rad};
+use mindgap_logs::{Logs, Run};
 use mindgap_tests::command::Workshop;
 use rand::rngs::SmallRng;
 use rand::{RngExt, SeedableRng};

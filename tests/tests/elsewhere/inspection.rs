@@ -3,8 +3,8 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use mindgap_host_sim::inspection::{Handling, Inspection};
-use mindgap_host_sim::logs::Logs;
+use mindgap_logs::Logs;
+use mindgap_logs::inspection::{Handling, Inspection};
 use mindgap_tests::faults::{MOTION, SONAR, assert_found};
 
 fn read(folder: &Path) -> Logs {

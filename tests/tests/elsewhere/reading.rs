@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use mindgap_host_sim::logs::{Logs, Scene, samples};
+use mindgap_logs::{Logs, Scene, samples};
 use mindgap_tests::command::Workshop;
 
 /// Rows of each nominal run.
@@ -17,7 +17,7 @@ pub fn nominal_logs_are_read_without_a_warning(data: &Path) {
         let logs = read(&data.join(folder));
         assert_eq!(logs.runs.len(), runs);
         assert!(logs.runs.iter().all(|run| run.rows.len() == ROWS));
-        let lost = |run: &mindgap_host_sim::logs::Run| run.rows.iter().filter(|row| row.pose.is_none()).count();
+        let lost = |run: &mindgap_logs::Run| run.rows.iter().filter(|row| row.pose.is_none()).count();
         let lost: usize = logs.runs.iter().map(lost).sum();
         let most = runs * (ROWS - 1);
         let (steps, rows) = (samples::motion(&logs).len(), samples::sonar(&logs).len());

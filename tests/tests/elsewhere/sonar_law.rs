@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use mindgap_host_sim::logs::Logs;
+use mindgap_logs::Logs;
 use mindgap_tests::held_out_scans::HeldOut;
 
 /// It was −2.00 when this was written; an ideal ray has −3.95 (`docs/sonar.md`).

@@ -2,6 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use mindgap_applications::on_board::{OnBoard, Vehicle};
+use mindgap_built_in_robot::{BuiltInRobot, default_robot, training_room};
 use mindgap_controller_export::ExportError;
 use mindgap_controller_export::brick::{
     self, Drive, EventKind, Press, Program, Report, RunConfig, ScriptedWorld, Sonar, Termination, World,
@@ -10,10 +12,8 @@ use mindgap_controller_export::collect::{self, CollectOptions, Commands};
 use mindgap_controller_export::names::BrickName;
 use mindgap_controller_export::onboard::Safety;
 use mindgap_controller_export::wiring::Wiring;
-use mindgap_host_sim::built_in_robot::{BuiltInRobot, default_robot, training_room};
-use mindgap_host_sim::chance::generator;
-use mindgap_host_sim::geometry::Pose;
-use mindgap_host_sim::on_board::{OnBoard, Vehicle};
+use mindgap_foundations::chance::generator;
+use mindgap_foundations::geometry::Pose;
 use mindgap_tests::nbc::compile;
 
 const STEPS: usize = 150;

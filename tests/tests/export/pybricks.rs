@@ -6,7 +6,7 @@ use mindgap_controller_export::pybricks_networks::{PybricksNetwork, pybricks_net
 use mindgap_controller_export::{Origin, pybricks};
 use mindgap_core::folded::FoldedNetwork;
 use mindgap_core::network::Network;
-use mindgap_host_sim::chance::{Generator, generator};
+use mindgap_foundations::chance::{Generator, generator};
 use mindgap_tests::command::workspace;
 use mindgap_tests::plausible_networks::{PlausibleNetworks, plausible_networks};
 use rand::RngExt;

@@ -2,7 +2,7 @@
 
 use mindgap_controller_export::onboard::{Ending, FAILED_STEPS_TO_STOP};
 use mindgap_core::controller::{Controller, Machine, Motors, Status, Tuple, When};
-use mindgap_host_sim::chance::Generator;
+use mindgap_foundations::chance::Generator;
 use rand::RngExt;
 
 /// What the sensor answers.

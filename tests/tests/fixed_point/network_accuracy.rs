@@ -2,8 +2,8 @@
 
 use fixed::types::I16F16;
 use mindgap_core::network::Network;
-use mindgap_host_sim::chance::generator;
-use mindgap_host_sim::simulator::fixed_point::Quantised;
+use mindgap_foundations::chance::generator;
+use mindgap_models::simulator::fixed_point::Quantised;
 use mindgap_tests::plausible_networks::plausible_networks;
 use rand::RngExt;
 

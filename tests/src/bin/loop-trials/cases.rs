@@ -2,15 +2,15 @@
 //! simulator does not know.
 
 use glam::DVec2;
-use mindgap_core::controller::Controller;
-use mindgap_host_sim::built_in_robot::{
+use mindgap_built_in_robot::{
     ActiveEffect, BuiltInRobot, Effect, Termination, Trajectory, default_robot, run_controller,
 };
-use mindgap_host_sim::chance::{Generator, generator};
-use mindgap_host_sim::evolve::way::WayMap;
-use mindgap_host_sim::geometry::{Pose, Rectangle};
-use mindgap_host_sim::logs::Scene;
-use mindgap_host_sim::simulator::rollout::REACHED_CM;
+use mindgap_core::controller::Controller;
+use mindgap_foundations::chance::{Generator, generator};
+use mindgap_foundations::geometry::{Pose, Rectangle};
+use mindgap_learning::evolve::way::WayMap;
+use mindgap_logs::Scene;
+use mindgap_models::simulator::rollout::REACHED_CM;
 use rand::RngExt;
 use rand::seq::SliceRandom;
 

@@ -9,9 +9,9 @@ mod procedures;
 use std::path::Path;
 use std::process::ExitCode;
 
-use mindgap_host_sim::error::{Error, Result};
-use mindgap_host_sim::logs::Logs;
-use mindgap_host_sim::simulator::Simulator;
+use mindgap_foundations::error::{Error, Result};
+use mindgap_logs::Logs;
+use mindgap_models::simulator::Simulator;
 use mindgap_tests::exit_code::exit_code;
 use procedures::{PROCEDURES, Settled, Workbench};
 

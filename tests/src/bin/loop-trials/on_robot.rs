@@ -2,10 +2,10 @@
 //! more of the controllers that it finds.
 
 use mindgap_core::controller::Controller;
-use mindgap_host_sim::chance::generator;
-use mindgap_host_sim::evolve::genome::GenotypeDecoder;
-use mindgap_host_sim::genetic::mutation::{Mutation, Unit};
-use mindgap_host_sim::simulator::rollout::REACHED_CM;
+use mindgap_foundations::chance::generator;
+use mindgap_learning::evolve::genome::GenotypeDecoder;
+use mindgap_learning::genetic::mutation::{Mutation, Unit};
+use mindgap_models::simulator::rollout::REACHED_CM;
 use rand::RngExt;
 
 use crate::cases::Case;

@@ -2,26 +2,26 @@
 
 use std::path::Path;
 
+use mindgap_applications::adapt::adapt;
+use mindgap_applications::demo::robot::TrialledRobot;
+use mindgap_applications::trials::{self, Job};
+use mindgap_built_in_robot::Termination;
 use mindgap_core::controller::Controller;
-use mindgap_host_sim::adapt::adapt;
-use mindgap_host_sim::built_in_robot::Termination;
-use mindgap_host_sim::chance::derive;
-use mindgap_host_sim::demo::robot::TrialledRobot;
-use mindgap_host_sim::error::{Error, Result};
-use mindgap_host_sim::evolve::chance::{Judge, ROBOTS, RUNS};
-use mindgap_host_sim::evolve::controller_file::ControllerFile;
-use mindgap_host_sim::evolve::fitness::{FitnessEvaluator, RandomNumbers};
-use mindgap_host_sim::evolve::genome::GenotypeDecoder;
-use mindgap_host_sim::evolve::paper;
-use mindgap_host_sim::evolve::robust;
-use mindgap_host_sim::evolve::task::EvolutionTask;
-use mindgap_host_sim::evolve::way::WayMap;
-use mindgap_host_sim::learn::train::{TABLE_ONE, Trainer, train};
-use mindgap_host_sim::logs::{Logs, Run, Scene};
-use mindgap_host_sim::simulator::environment::Environment;
-use mindgap_host_sim::simulator::nominal::NominalModel;
-use mindgap_host_sim::simulator::{Noise, Simulator};
-use mindgap_host_sim::trials::{self, Job};
+use mindgap_foundations::chance::derive;
+use mindgap_foundations::error::{Error, Result};
+use mindgap_learning::evolve::chance::{Judge, ROBOTS, RUNS};
+use mindgap_learning::evolve::controller_file::ControllerFile;
+use mindgap_learning::evolve::fitness::{FitnessEvaluator, RandomNumbers};
+use mindgap_learning::evolve::genome::GenotypeDecoder;
+use mindgap_learning::evolve::paper;
+use mindgap_learning::evolve::robust;
+use mindgap_learning::evolve::task::EvolutionTask;
+use mindgap_learning::evolve::way::WayMap;
+use mindgap_learning::learn::train::{TABLE_ONE, Trainer, train};
+use mindgap_logs::{Logs, Run, Scene};
+use mindgap_models::simulator::environment::Environment;
+use mindgap_models::simulator::nominal::NominalModel;
+use mindgap_models::simulator::{Noise, Simulator};
 
 use crate::cases::{Case, SEED};
 use crate::on_robot;

@@ -1,0 +1,70 @@
+//! Answers a challenge: learns each robot's simulator from its own logs and diagnoses every case.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+
+use super::Folder;
+use super::seal::Published;
+use mindgap_diagnosis::{Method, findings};
+use mindgap_files as files;
+use mindgap_foundations::error::Result;
+use mindgap_learning::learn::train::{TABLE_ONE, Trainer, train};
+use mindgap_logs::Logs;
+use mindgap_logs::inspection::Inspection;
+use mindgap_models::simulator::Simulator;
+use mindgap_models::simulator::baseline::Baseline;
+use mindgap_workers as workers;
+
+/// Seed of the training.
+const SEED: u64 = 1;
+
+/// Diagnoses all cases and returns their number; `watch` is told how many are done, and of how many.
+///
+/// # Errors
+/// When the folder is not a challenge, or when a diagnosis cannot be written.
+pub fn answer(folder: &Path, mut watch: impl FnMut(usize, usize)) -> Result<usize> {
+    let folder = Folder(folder);
+    let cases: Vec<Published> = files::read_csv(&folder.cases())?;
+    let robots: BTreeSet<&str> = cases.iter().map(|case| case.robot.as_str()).collect();
+    let robots = Vec::from_iter(robots);
+    let learned = workers::map(robots.len(), |robot| learn(&Logs::read(&folder.robot(robots[robot]), |_| {})?))?;
+    let simulators: BTreeMap<&str, &Simulator> = robots.into_iter().zip(&learned).collect();
+    let diagnose = |number: usize| {
+        let case = &cases[number];
+        let logs = Logs::read(&folder.case(&case.case), |_| {})?;
+        let baseline = Baseline::of_middle(simulators[case.robot.as_str()])?;
+        let found = findings(baseline, &Inspection::of(logs), Method::default())?;
+        let [answer, added] = [folder.answer(&case.case), folder.added(&case.case)];
+        Ok([files::json(&answer, &found.diagnosis)?, files::json(&added, &found.applied)?])
+    };
+    files::write_folder(
+        &folder.answers(),
+        |name| name.ends_with(".json"),
+        |fresh| {
+            for (robot, simulator) in &simulators {
+                simulator.write(&at(fresh, &folder.simulator(robot)))?;
+            }
+            workers::in_order(cases.len(), diagnose, |number, [answer, added]: [String; 2]| {
+                let case = &cases[number].case;
+                files::write(&at(fresh, &folder.answer(case)), answer)?;
+                files::write(&at(fresh, &folder.added(case)), added)?;
+                watch(number + 1, cases.len());
+                Ok(())
+            })
+        },
+    )?;
+    Ok(cases.len())
+}
+
+/// The place of a file in the folder that is to become its own.
+fn at(fresh: &Path, file: &Path) -> PathBuf {
+    fresh.join(file.file_name().unwrap_or_default())
+}
+
+/// Learns a robot's simulator from its own logs.
+///
+/// # Errors
+/// When the logs support no network.
+pub fn learn(logs: &Logs) -> Result<Simulator> {
+    train(logs, &Trainer::Fast, &TABLE_ONE, SEED, &|_| {})
+}

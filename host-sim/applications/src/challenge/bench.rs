@@ -1,0 +1,63 @@
+//! Cases with known answers, driven as they are asked for: what thresholds are set and tried on.
+
+use super::answer::learn;
+use super::cases::{self, Case, Echoes, Outside, Setting, Size};
+use mindgap_built_in_robot::Effect;
+use mindgap_foundations::error::Result;
+use mindgap_logs::Logs;
+use mindgap_models::simulator::Simulator;
+use mindgap_models::simulator::baseline::Baseline;
+use mindgap_workers as workers;
+
+/// The cases, and the simulators of their robots.
+pub struct Bench {
+    seed: u64,
+    setting: Setting,
+    robots: Vec<Logs>,
+    simulators: Vec<Simulator>,
+    /// What is different in each case.
+    pub effects: Vec<Vec<Effect>>,
+}
+
+impl Bench {
+    /// The robots of a seed, each with the simulator that is learned from its logs.
+    ///
+    /// # Errors
+    /// When a robot has no room to drive in, or its logs teach nothing.
+    pub fn new(count: usize, seed: u64, size: Size) -> Result<Self> {
+        let setting = Setting { outside: OUTSIDE, echoes: Echoes::Fresh, size };
+        let robots = cases::robots(seed, setting)?;
+        let simulators = workers::map(robots.len(), |robot| learn(&robots[robot]))?;
+        Ok(Bench { seed, setting, robots, simulators, effects: effects(count, seed) })
+    }
+
+    /// A case with the baseline of its robot.
+    ///
+    /// # Errors
+    /// When the robot hits something in every room.
+    pub fn case(&self, number: usize) -> Result<(Case, Baseline<'_>)> {
+        let case = cases::case(number, &self.effects[number], &self.robots, self.setting, self.seed)?;
+        let baseline = Baseline::of_middle(&self.simulators[case.robot])?;
+        Ok((case, baseline))
+    }
+}
+
+/// The held-out effects stay unseen.
+const OUTSIDE: Outside = Outside::Usual;
+
+/// The effects of the cases.
+fn effects(count: usize, seed: u64) -> Vec<Vec<Effect>> {
+    cases::effects(count, seed, OUTSIDE)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_case_has_a_held_out_effect() {
+        let drawn: Vec<Effect> = (0..1000).flat_map(|seed| effects(200, seed)).flatten().collect();
+        assert!(drawn.contains(&Effect::SonarDrift), "effects outside the table are drawn");
+        assert!(!drawn.iter().any(|effect| matches!(effect, Effect::HeldOut(_))));
+    }
+}

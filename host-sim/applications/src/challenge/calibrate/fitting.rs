@@ -1,0 +1,154 @@
+//! From what was measured to thresholds: each by the criterion that it stands for.
+
+use super::Measured;
+use mindgap_diagnosis::calibration::{CALIBRATED_STEPS, Calibration, Judgement};
+use mindgap_diagnosis::explain::{Explained, probability};
+
+/// Share of all cases without an effect whose gain passes the gate for an effect. A gain on the runs held out is asked for
+/// besides: fewer than one in a hundred passes both.
+const FALSE_EFFECTS: f64 = 0.02;
+/// The same for what no effect explains, where a simulator's own misfit is often found on the runs held out again.
+const FALSE_REMAINDERS: f64 = 0.02;
+/// Share of all cases with one effect to which a second is added that is not there.
+const FALSE_FURTHER: f64 = 0.05;
+/// What further effects are sought by until it is known how much the first ones' forms feign.
+const FIRST_SHARE: f64 = 0.05;
+/// The law of a tail is read off this share of all.
+const TAIL: f64 = 0.2;
+/// Share of the right answers that leave more over than counts as adequate,
+const FALSE_UNKNOWNS: f64 = 0.05;
+/// once what they leave over is multiplied by this: no variant fits other robots as well as the built-in one, and the worst
+/// right answer on another robot's logs leaves 1.7 times as much.
+const OTHER_ROBOTS: f64 = 2.0;
+/// What is tried for the probabilities. A test asks that the best lies between the first and the last, but for the width,
+/// whose narrowest is a step already, and for the cap: some two hundred right answers cannot show that more than 199 in 200
+/// are right.
+const WIDTHS: [f64; 7] = [0.005, 0.01, 0.02, 0.04, 0.06, 0.1, 0.2];
+const TEMPERATURES: [f64; 9] = [0.25, 0.5, 0.7, 1.0, 1.5, 2.0, 3.0, 4.0, 6.0];
+const ACCURACY_CAPS: [f64; 8] = [0.8, 0.85, 0.9, 0.93, 0.95, 0.97, 0.99, 0.995];
+
+/// Thresholds against false alarms; everything that explains a gap is taken for its cause, and every rival is named.
+pub fn open(nulls: &[Measured]) -> Calibration {
+    let rows = nulls.iter().map(|m| m.rows as f64).sum::<f64>() / nulls.len() as f64;
+    let ungated = Calibration {
+        rows: rows.round(),
+        adequate: 0.0,
+        adequacy_width: 1.0,
+        temperature: 1.0,
+        accuracy_cap: 1.0,
+        effect_nats: 0.0,
+        remainder_nats: 0.0,
+        further_share: FIRST_SHARE,
+        judgement: Judgement::USUAL,
+    };
+    let gate = |share: f64, gain: fn(&Measured) -> f64| {
+        rounded(tail(nulls.iter().map(|m| gain(m) / ungated.growth(m.rows, Some(CALIBRATED_STEPS))).collect(), share))
+    };
+    Calibration {
+        effect_nats: gate(FALSE_EFFECTS, |m| m.effect_nats),
+        remainder_nats: gate(FALSE_REMAINDERS, |m| m.remainder_nats),
+        ..ungated
+    }
+}
+
+/// The same with what tells a cause from something unknown, and how sure an answer is.
+pub fn weighed(open: Calibration, others: &[Measured]) -> Calibration {
+    let answered: Vec<&Measured> = others.iter().filter(|m| !m.first.is_empty()).collect();
+    let right = answered.iter().filter(|m| m.first_is_there());
+    let adequate = 1.0 - OTHER_ROBOTS * (1.0 - quantile(right.map(|m| m.explained_fraction).collect(), FALSE_UNKNOWNS));
+    let feigned: Vec<f64> = others.iter().filter_map(|m| m.feigned_share).collect();
+    let further_share = if feigned.is_empty() { open.further_share } else { quantile(feigned, 1.0 - FALSE_FURTHER) };
+    let settled = Calibration { adequate: rounded(adequate), further_share: rounded(further_share), ..open };
+    let known: Vec<&Measured> = answered.into_iter().filter(|m| m.explained_fraction >= settled.adequate).collect();
+    let tried = WIDTHS.iter().flat_map(|width| {
+        TEMPERATURES
+            .iter()
+            .flat_map(move |temperature| ACCURACY_CAPS.iter().map(move |cap| [*width, *temperature, *cap]))
+    });
+    let tried = tried.map(|[adequacy_width, temperature, accuracy_cap]| {
+        let calibration = Calibration { adequacy_width, temperature, accuracy_cap, ..settled };
+        (known.iter().map(|m| m.log_likelihood(&calibration)).sum::<f64>(), calibration)
+    });
+    tried.max_by(|a, b| a.0.total_cmp(&b.0)).map_or(settled, |(_, calibration)| calibration)
+}
+
+impl Measured {
+    fn first_is_there(&self) -> bool {
+        self.likelihood_of_truth == 1.0
+    }
+
+    /// Of what is true about the first effect under the probability that it is given.
+    fn log_likelihood(&self, calibration: &Calibration) -> f64 {
+        let explained = Explained { fraction: self.explained_fraction, error: self.explained_error };
+        let there = probability(explained, self.rivals.iter().copied(), calibration);
+        libm::log(if self.first_is_there() { there } else { 1.0 - there })
+    }
+}
+
+/// What that share exceeds, if the tail falls off exponentially.
+fn tail(mut values: Vec<f64>, share: f64) -> f64 {
+    values.sort_by(f64::total_cmp);
+    let above = &values[((1.0 - TAIL) * values.len() as f64) as usize..];
+    let mean_excess = above.iter().map(|v| v - above[0]).sum::<f64>() / above.len() as f64;
+    above[0] + mean_excess * libm::log(TAIL / share)
+}
+
+/// The value that the share `at` of all lies below; one where there is none.
+fn quantile(mut values: Vec<f64>, at: f64) -> f64 {
+    values.sort_by(f64::total_cmp);
+    values.get((at * values.len() as f64) as usize).copied().unwrap_or(1.0)
+}
+
+fn rounded(value: f64) -> f64 {
+    (value * 1e3).round() / 1e3
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn measured(truth_weight: f64, adequacy: f64, rival: f64) -> Measured {
+        Measured {
+            truth: "slope".into(),
+            in_table: true,
+            rows: 100,
+            effect_nats: 100.0,
+            remainder_nats: 0.0,
+            feigned_share: Some(0.0),
+            first: "slope".into(),
+            explained_fraction: adequacy,
+            explained_error: 0.0,
+            likelihood_of_truth: truth_weight,
+            rivals: vec![rival],
+        }
+    }
+
+    fn nulls() -> Vec<Measured> {
+        let exponential = |i: usize| -libm::log(1.0 - (i as f64 + 0.5) / 1000.0);
+        (0..1000).map(|i| Measured { effect_nats: 4.0 * exponential(i), ..measured(0.0, 0.0, 0.0) }).collect()
+    }
+
+    #[test]
+    fn gates_let_through_the_share_of_false_alarms() {
+        let nats = open(&nulls()).effect_nats;
+        assert!((nats - 4.0 * libm::log(1.0 / FALSE_EFFECTS)).abs() < 0.4, "{nats}");
+    }
+
+    #[test]
+    fn what_is_often_wrong_is_trusted_less() {
+        let answers = |wrong: usize| -> Vec<Measured> {
+            (0..100).map(|i| measured(if i < wrong { 0.0 } else { 1.0 }, 0.9, 0.0)).collect()
+        };
+        let cap = |wrong: usize| weighed(open(&nulls()), &answers(wrong)).accuracy_cap;
+        assert_eq!([cap(0), cap(5), cap(15)], [0.995, 0.95, 0.85]);
+    }
+
+    /// A value at the edge of its grid is not calibrated: a better one may lie beyond.
+    #[test]
+    fn the_shipped_values_lie_within_their_grids() {
+        let Calibration { adequacy_width, temperature, accuracy_cap, .. } = Calibration::shipped();
+        let within = |value: f64, grid: &[f64]| grid[0] < value && value < grid[grid.len() - 1];
+        assert!(within(temperature, &TEMPERATURES));
+        assert!(adequacy_width < WIDTHS[WIDTHS.len() - 1] && accuracy_cap > ACCURACY_CAPS[0]);
+    }
+}

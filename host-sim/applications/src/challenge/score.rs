@@ -1,0 +1,280 @@
+//! Scores the diagnoses of a challenge.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+
+use super::Folder;
+use super::seal::{Published, Sealed};
+use mindgap_built_in_robot::{ActiveEffect, Driving, Effect, record_driving};
+use mindgap_diagnosis::diagnose::closed;
+use mindgap_diagnosis::diagnosis::Verdict;
+use mindgap_files as files;
+use mindgap_foundations::counter::Counter;
+use mindgap_foundations::error::{Error, Result};
+use mindgap_logs::Logs;
+use mindgap_models::effects::applied::AppliedEffect;
+use mindgap_models::simulator::Simulator;
+
+/// Largest number of rivals beside the first effect in a set that still counts as an answer.
+const MOST_RIVALS: usize = 3;
+/// Probability above which a wrong answer counts as confidently wrong.
+const SURE: f64 = 0.9;
+/// Number of fresh runs of a case, and of steps in each.
+const FRESH: [usize; 2] = [48, 60];
+/// Borders of the bins of the reliability table.
+const BINS: [f64; 6] = [0.0, 0.5, 0.7, 0.9, 0.98, 1.01];
+
+/// The score of one case.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Scored {
+    /// Name of the case.
+    pub case: String,
+    /// Its effects with strengths, separated by blanks.
+    pub truth: String,
+    /// Verdict of the diagnosis.
+    pub verdict: Verdict,
+    /// The effects named, each with its rivals in brackets, separated by blanks.
+    pub named: String,
+    /// Probability of the first.
+    pub probability: f64,
+    /// Share of the reducible gap that the diagnosis claims to close.
+    pub closed: Option<f64>,
+    /// Share that these effects close on fresh runs of the case.
+    pub closed_on_fresh_runs: Option<f64>,
+    /// Whether the answer is right: no gap, all effects (as first or in a set of a few), or unknown.
+    pub right: bool,
+}
+
+/// A share as a fraction.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Share {
+    /// Numerator.
+    pub count: usize,
+    /// Denominator.
+    pub of: usize,
+}
+
+/// The score of a challenge.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Score {
+    /// Cases without effects in which a gap was detected.
+    pub false_alarms: Share,
+    /// Cases with effects in which a gap was detected.
+    pub detected: Share,
+    /// Single effects that were named first.
+    pub top_1: Share,
+    /// Single effects that were named first or in a set of a few.
+    pub top_set: Share,
+    /// Known answers to single effects whose set contains the truth.
+    pub covered: Share,
+    /// Mean number of effects in these sets.
+    pub set_size: f64,
+    /// Pairs of which both were named.
+    pub pairs: Share,
+    /// Effects outside the table beside which a remainder was told: unknown, or known in part.
+    pub unknowns: Share,
+    /// Effects of the table that were called unknown.
+    pub false_unknowns: Share,
+    /// Median absolute difference between the claimed gap reduction and that on fresh runs; `None` without any claim.
+    pub closed_error: Option<f64>,
+    /// Answers with a probability above 0.9 for an effect that is not there.
+    pub confidently_wrong: Share,
+    /// Reliability: for each bin of probability, how many first effects are true.
+    pub calibration: Vec<(String, Share)>,
+    /// Confusions: truth, answer, number of cases.
+    pub confusions: Vec<(String, String, usize)>,
+    /// All cases.
+    #[serde(skip)]
+    pub cases: Vec<Scored>,
+}
+
+/// A case with its answer.
+struct Opened {
+    sealed: Sealed,
+    answer: Answered,
+    closed_on_fresh_runs: Option<f64>,
+}
+
+/// What is scored of a diagnosis as it was written.
+#[derive(Deserialize)]
+struct Answered {
+    verdict: Verdict,
+    effects: Vec<AnsweredEffect>,
+    shrink: Option<AnsweredReduction>,
+}
+
+#[derive(Deserialize)]
+struct AnsweredEffect {
+    id: String,
+    probability: f64,
+    ambiguous_with: Vec<String>,
+}
+
+#[derive(Deserialize)]
+struct AnsweredReduction {
+    reducible_closed: f64,
+}
+
+/// Opens the seal of a challenge and scores its answers; `watch` is told how many are scored, and of how many.
+///
+/// # Errors
+/// When a case has no diagnosis, or when a sealed entry does not match its commitment.
+pub fn score(folder: &Path, watch: impl Fn(usize, usize) + Sync) -> Result<Score> {
+    let folder = Folder(folder);
+    let published: Vec<Published> = files::read_csv(&folder.cases())?;
+    let sealed: Vec<Sealed> = files::read_json(&folder.sealed())?;
+    let counter = Counter::new(published.len(), watch);
+    let opened = published
+        .par_iter()
+        .map(|case| {
+            let sealed = sealed.iter().find(|s| s.case == case.case && s.commitment() == case.commitment);
+            let broken = || Error::in_file(&folder.sealed(), format!("case {}: not what was committed to", case.case));
+            let sealed = sealed.cloned().ok_or_else(broken)?;
+            let answer = files::read_json(&folder.answer(&case.case))?;
+            let closed_on_fresh_runs = closed_on_fresh_runs(&folder, case, &sealed)?;
+            counter.one_more();
+            Ok(Opened { sealed, answer, closed_on_fresh_runs })
+        })
+        .collect::<Result<Vec<Opened>>>()?;
+    Ok(Score::of(&opened))
+}
+
+/// Gap reduction, on fresh runs, of the effects that a case's diagnosis adds to its robot's simulator.
+fn closed_on_fresh_runs(folder: &Folder, case: &Published, sealed: &Sealed) -> Result<Option<f64>> {
+    let added: Vec<AppliedEffect> = files::read_json(&folder.added(&case.case))?;
+    if added.is_empty() {
+        return Ok(None);
+    }
+    let seal = folder.sealed();
+    let unknown = |what: &str| Error::in_file(&seal, format!("case {}: {what} is not known", case.case));
+    let effects = sealed.effects.iter().map(|e| e.parse::<ActiveEffect>().map_err(|_| unknown(e)));
+    let effects = effects.collect::<Result<Vec<_>>>()?;
+    let driving = Driving::named(&sealed.driving).ok_or_else(|| unknown(&sealed.driving))?;
+    let logs = Logs::read(&folder.case(&case.case), |_| {})?;
+    // A robot that hits something in every attempt has no fresh runs.
+    match record_driving(&driving, &logs.robot, &logs.scene, FRESH, &effects, sealed.fresh_seed) {
+        Ok(fresh) => closed(&Simulator::read(&folder.simulator(&case.robot))?, &added, &fresh),
+        Err(_) => Ok(None),
+    }
+}
+
+impl Opened {
+    fn truth(&self) -> Vec<&str> {
+        self.sealed.ids()
+    }
+
+    fn is_null(&self) -> bool {
+        self.truth().is_empty()
+    }
+
+    fn is_outside(&self) -> bool {
+        self.truth().iter().any(|id| id.parse::<Effect>().is_ok_and(|e| !e.in_table()))
+    }
+
+    fn is_single(&self) -> bool {
+        self.truth().len() == 1 && !self.is_outside()
+    }
+
+    fn is_pair(&self) -> bool {
+        self.truth().len() > 1 && !self.is_outside()
+    }
+
+    fn first(&self) -> Option<&str> {
+        self.answer.effects.first().map(|e| e.id.as_str())
+    }
+
+    fn probability(&self) -> f64 {
+        self.answer.effects.first().map_or(0.0, |e| e.probability)
+    }
+
+    fn first_is_there(&self) -> bool {
+        self.first().is_some_and(|id| self.truth().contains(&id))
+    }
+
+    /// Whether an effect is named, as itself or among a few rivals of another.
+    fn names(&self, id: &str, most_rivals: usize) -> bool {
+        let stands_for = |rivals: &[String]| rivals.len() <= most_rivals && rivals.iter().any(|r| r == id);
+        self.answer.effects.iter().any(|e| e.id == id || stands_for(&e.ambiguous_with))
+    }
+
+    fn is_right(&self) -> bool {
+        if self.is_null() {
+            self.answer.verdict == Verdict::NoGap
+        } else if self.is_outside() {
+            matches!(self.answer.verdict, Verdict::Unknown | Verdict::PartlyKnown)
+        } else {
+            self.truth().iter().all(|id| self.names(id, MOST_RIVALS))
+        }
+    }
+
+    fn scored(&self) -> Scored {
+        let named = self.answer.effects.iter().map(|e| match e.ambiguous_with.as_slice() {
+            [] => e.id.clone(),
+            rivals => format!("{}({})", e.id, rivals.join(",")),
+        });
+        Scored {
+            case: self.sealed.case.clone(),
+            truth: self.sealed.effects.join(" "),
+            verdict: self.answer.verdict,
+            named: named.collect::<Vec<String>>().join(" "),
+            probability: self.probability(),
+            closed: self.closed(),
+            closed_on_fresh_runs: self.closed_on_fresh_runs,
+            right: self.is_right(),
+        }
+    }
+
+    fn closed(&self) -> Option<f64> {
+        self.answer.shrink.as_ref().map(|s| s.reducible_closed)
+    }
+
+    fn answered(&self) -> String {
+        self.first().map_or_else(|| format!("({:?})", self.answer.verdict), String::from)
+    }
+}
+
+impl Score {
+    fn of(cases: &[Opened]) -> Self {
+        let share = |among: fn(&Opened) -> bool, holds: &dyn Fn(&Opened) -> bool| {
+            let among: Vec<&Opened> = cases.iter().filter(|c| among(c)).collect();
+            Share { count: among.iter().filter(|c| holds(c)).count(), of: among.len() }
+        };
+        let sees_gap = |c: &Opened| c.answer.verdict != Verdict::NoGap;
+        let named = |c: &Opened| c.is_single() && !c.answer.effects.is_empty();
+        let sizes: Vec<usize> =
+            cases.iter().filter(|c| named(c)).map(|c| 1 + c.answer.effects[0].ambiguous_with.len()).collect();
+        let calibration = BINS.windows(2).map(|bin| {
+            let inside = |c: &&Opened| c.first().is_some() && (bin[0]..bin[1]).contains(&c.probability());
+            let inside: Vec<&Opened> = cases.iter().filter(inside).collect();
+            let there = Share { count: inside.iter().filter(|c| c.first_is_there()).count(), of: inside.len() };
+            (format!("{:.2} to {:.2}", bin[0], bin[1].min(1.0)), there)
+        });
+        let mut confusions: BTreeMap<(String, String), usize> = BTreeMap::new();
+        for case in cases.iter().filter(|c| !c.is_right()) {
+            *confusions.entry((case.truth().join("+"), case.answered())).or_default() += 1;
+        }
+        let closed_error = |c: &Opened| Some((c.closed()? - c.closed_on_fresh_runs?).abs());
+        let mut closed_errors: Vec<f64> = cases.iter().filter_map(closed_error).collect();
+        closed_errors.sort_by(f64::total_cmp);
+        let confidently_wrong = |c: &Opened| c.probability() > SURE && !c.first_is_there();
+        Score {
+            false_alarms: share(Opened::is_null, &sees_gap),
+            detected: share(|c| !c.is_null(), &sees_gap),
+            top_1: share(Opened::is_single, &Opened::first_is_there),
+            top_set: share(Opened::is_single, &Opened::is_right),
+            covered: share(named, &|c| c.names(c.truth()[0], usize::MAX)),
+            set_size: sizes.iter().sum::<usize>() as f64 / sizes.len().max(1) as f64,
+            pairs: share(Opened::is_pair, &Opened::is_right),
+            unknowns: share(Opened::is_outside, &Opened::is_right),
+            false_unknowns: share(|c| c.is_single() || c.is_pair(), &|c| c.answer.verdict == Verdict::Unknown),
+            closed_error: closed_errors.get(closed_errors.len() / 2).copied(),
+            confidently_wrong: share(|_| true, &confidently_wrong),
+            calibration: calibration.collect(),
+            confusions: confusions.into_iter().map(|((truth, answer), n)| (truth, answer, n)).collect(),
+            cases: cases.iter().map(Opened::scored).collect(),
+        }
+    }
+}

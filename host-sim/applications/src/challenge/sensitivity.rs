@@ -1,0 +1,177 @@
+//! How much the thresholds of a diagnosis decide: each halved and doubled, on cases whose answers are known.
+
+use serde::{Deserialize, Serialize};
+use toml::{Table, Value};
+
+use super::bench::Bench;
+use super::cases::{Case, Size};
+use mindgap_diagnosis::Method;
+use mindgap_diagnosis::calibration::Calibration;
+use mindgap_diagnosis::compare::Comparison;
+use mindgap_diagnosis::diagnose::confirmed;
+use mindgap_diagnosis::explain::Judged;
+use mindgap_foundations::counter::Counter;
+use mindgap_foundations::error::{Error, Result};
+use mindgap_workers as workers;
+
+/// What comes of all cases with one threshold changed.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Row {
+    /// The threshold, by its name in calibration.toml; empty for the calibration as it is.
+    pub threshold: String,
+    /// Its value.
+    pub value: f64,
+    /// Cases without an effect in which a gap is seen.
+    pub false_alarms: usize,
+    /// Cases with effects of the table of which the most probable one named is there.
+    pub named: usize,
+    /// Cases with effects of the table that are called unknown.
+    pub false_unknowns: usize,
+    /// Cases with effects outside the table that are called unknown, or known in part.
+    pub unknowns: usize,
+    /// Cases in which the most probable effect named is not there.
+    pub wrong: usize,
+}
+
+/// How a case ends, as a [`Row`] counts it.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+struct Ending {
+    false_alarm: bool,
+    named: bool,
+    false_unknown: bool,
+    unknown: bool,
+    wrong: bool,
+}
+
+/// What a threshold is multiplied by.
+const FACTORS: [f64; 2] = [0.5, 2.0];
+
+/// The table of sensitivity on this many cases; `watch` is told how many are done, and of how many.
+///
+/// # Errors
+/// When a case cannot be driven.
+pub fn sensitivity(cases: usize, seed: u64, watch: impl Fn(usize, usize) + Sync) -> Result<Vec<Row>> {
+    let bench = Bench::new(cases, seed, Size::USUAL)?;
+    let shipped = Calibration::shipped();
+    let thresholds = names(&table(&shipped)?, "");
+    let mut changed = vec![(String::new(), 0.0, shipped)];
+    for name in &thresholds {
+        for factor in FACTORS {
+            changed
+                .extend(with(&shipped, name, factor)?.map(|(value, calibration)| (name.clone(), value, calibration)));
+        }
+    }
+    let calibrations: Vec<Calibration> = changed.iter().map(|(_, _, calibration)| *calibration).collect();
+    let counter = Counter::new(cases, watch);
+    let counted = |number| of_case(&bench, number, &calibrations).inspect(|_| counter.one_more());
+    let by_case = workers::map(cases, counted)?;
+    let row = |(place, (threshold, value, _)): (usize, (String, f64, Calibration))| {
+        let count = |is: fn(&Ending) -> bool| by_case.iter().filter(|endings| is(&endings[place])).count();
+        Row {
+            threshold,
+            value,
+            false_alarms: count(|case| case.false_alarm),
+            named: count(|case| case.named),
+            false_unknowns: count(|case| case.false_unknown),
+            unknowns: count(|case| case.unknown),
+            wrong: count(|case| case.wrong),
+        }
+    };
+    Ok(changed.into_iter().enumerate().map(row).collect())
+}
+
+/// What comes of a case with each calibration.
+fn of_case(bench: &Bench, number: usize, calibrations: &[Calibration]) -> Result<Vec<Ending>> {
+    let (case, baseline) = bench.case(number)?;
+    let trained_on = baseline.trained_on();
+    // Most thresholds of a judgement change nothing of what is searched for.
+    let mut searched: Vec<Calibration> = Vec::new();
+    for calibration in calibrations.iter().map(Calibration::for_search) {
+        if !searched.contains(&calibration) {
+            searched.push(calibration);
+        }
+    }
+    let found = confirmed(baseline, &case.logs, &searched, |found, _, _| found)?;
+    let of = |calibration: &Calibration| {
+        let place = searched.iter().position(|searched| *searched == calibration.for_search())?;
+        Some(judged(&case, trained_on, &found[place], calibration))
+    };
+    Ok(calibrations.iter().filter_map(of).collect())
+}
+
+/// What comes of a case of which this was found, judged by a calibration.
+fn judged(case: &Case, trained_on: Option<f64>, found: &Comparison, calibration: &Calibration) -> Ending {
+    let method = Method { calibration: *calibration, ..Method::default() };
+    let rows = found.none.log_likelihood.motion.len();
+    let judged = Judged::of(found, &case.logs.robot, &method.calibration_for(rows, trained_on));
+    let in_table = case.effects.iter().all(|active| active.effect.in_table());
+    let (is_null, is_unknown) = (case.effects.is_empty(), matches!(judged, Judged::Unknown));
+    let first = match &judged {
+        Judged::Known { effects } | Judged::PartlyKnown { effects } => effects.first().map(|effect| effect.id),
+        Judged::NoGap | Judged::Unknown => None,
+    };
+    let is_there = first.is_some_and(|id| case.effects.iter().any(|active| active.effect.id() == id));
+    Ending {
+        false_alarm: is_null && !matches!(judged, Judged::NoGap),
+        named: in_table && is_there,
+        false_unknown: !is_null && in_table && is_unknown,
+        unknown: !in_table && matches!(judged, Judged::Unknown | Judged::PartlyKnown { .. }),
+        wrong: first.is_some() && !is_there,
+    }
+}
+
+fn table(calibration: &Calibration) -> Result<Table> {
+    Table::try_from(calibration).map_err(|e| Error::new(format!("a calibration that cannot be written: {e}")))
+}
+
+/// Names of all numbers, with dots where tables lie within tables.
+fn names(table: &Table, within: &str) -> Vec<String> {
+    let of = |(key, value): (&String, &Value)| match value {
+        Value::Table(inner) => names(inner, &format!("{within}{key}.")),
+        _ => vec![format!("{within}{key}")],
+    };
+    table.iter().flat_map(of).collect()
+}
+
+/// The calibration with one threshold multiplied, and its value; none where that makes no difference or no calibration.
+fn with(shipped: &Calibration, name: &str, factor: f64) -> Result<Option<(f64, Calibration)>> {
+    let mut changed = table(shipped)?;
+    let (path, key) = name.rsplit_once('.').map_or((None, name), |(path, key)| (Some(path), key));
+    let holder = match path {
+        Some(path) => changed.get_mut(path).and_then(Value::as_table_mut),
+        None => Some(&mut changed),
+    };
+    let Some(value) = holder.and_then(|holder| holder.get_mut(key)) else { return Ok(None) };
+    let number = match value {
+        Value::Integer(count) => {
+            let other = (*count as f64 * factor).round();
+            *count = other as i64;
+            other
+        }
+        Value::Float(number) => {
+            *number *= factor;
+            *number
+        }
+        _ => return Ok(None),
+    };
+    Ok(changed.try_into().ok().filter(|calibration| calibration != shipped).map(|calibration| (number, calibration)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_number_of_the_calibration_has_a_name_and_can_be_changed() {
+        let shipped = Calibration::shipped();
+        let names = names(&table(&shipped).unwrap(), "");
+        assert!(["effect_nats", "judgement.rival_z"].iter().all(|name| names.iter().any(|n| n == name)), "{names:?}");
+        for name in &names {
+            let (value, changed) = with(&shipped, name, 2.0).unwrap().expect(name);
+            assert!(value > 0.0 && changed != shipped, "{name}");
+        }
+        let (_, surer) = with(&shipped, "temperature", 2.0).unwrap().unwrap();
+        let (_, stricter) = with(&shipped, "effect_nats", 2.0).unwrap().unwrap();
+        assert!(surer.for_search() == shipped.for_search() && stricter.for_search() != shipped.for_search());
+    }
+}

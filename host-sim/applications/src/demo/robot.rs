@@ -1,0 +1,23 @@
+//! The built-in robot as one that a loop drives.
+
+use crate::trials::robot::{Call, TrialRobot};
+use mindgap_built_in_robot::{self as built_in_robot, ActiveEffect, BuiltInRobot};
+use mindgap_foundations::chance::generator;
+use mindgap_foundations::error::{Error, Result};
+use mindgap_learning::evolve::controller_file::ControllerFile;
+use mindgap_logs::Scene;
+
+/// The built-in robot with these effects, of which its simulator need not know.
+pub struct TrialledRobot(pub Vec<ActiveEffect>);
+
+impl TrialRobot for TrialledRobot {
+    fn drive(&mut self, call: &Call) -> Result<()> {
+        let controller = ControllerFile::read(call.controller)?.controller;
+        let scene = Scene::read(call.scene)?;
+        let robot = BuiltInRobot::new(&built_in_robot::default_robot(), &scene, &self.0);
+        let start = call.start.checked_sub(1).and_then(|place| scene.starts.get(place));
+        let start = *start.ok_or_else(|| Error::in_file(call.scene, format!("has no start {}", call.start)))?;
+        let driven = built_in_robot::run_controller(&robot, &controller, start, &mut generator(call.seed, &[]));
+        driven.to_run("run").write(call.out)
+    }
+}

@@ -1,0 +1,49 @@
+//! The picture of a loop: the paths that were predicted for every trial, and the real one.
+
+use std::path::Path;
+
+use glam::DVec2;
+
+use super::state::{Ending, State, Trial};
+use mindgap_foundations::error::Result;
+use mindgap_foundations::geometry::Pose;
+use mindgap_logs::Scene;
+use mindgap_figures::report;
+use mindgap_figures::report::paths::{PathPanel, Trace};
+use mindgap_models::simulator::rollout::REACHED_CM;
+
+/// Draws `paths.svg` and `paths.png` into the folder of a loop.
+///
+/// # Errors
+/// When they cannot be written.
+pub fn paths(folder: &Path, scene: &Scene, start: Pose, state: &State) -> Result<()> {
+    let driven = state.trials.iter().filter(|trial| trial.real.is_some());
+    let panels: Vec<PathPanel> =
+        driven.map(|trial| PathPanel { title: title(trial), ..panel(trial, scene, start) }).collect();
+    report::paths(&panels).write(folder, "paths")
+}
+
+/// The predicted paths of a trial and the robot's, if it was driven, without a title.
+pub fn panel(trial: &Trial, scene: &Scene, start: Pose) -> PathPanel {
+    PathPanel {
+        title: String::new(),
+        scene: scene.clone(),
+        start,
+        target_radius_cm: REACHED_CM,
+        simulated: trial.predicted_paths.iter().map(|path| trace(&path.path_cm, path.ending)).collect(),
+        real: trial.real.iter().map(|real| trace(&real.path_cm, real.ending)).collect(),
+    }
+}
+
+fn title(trial: &Trial) -> String {
+    let went = match &trial.real {
+        None => "not driven".into(),
+        Some(real) if real.reached => "reached".into(),
+        Some(real) => format!("{}, {:.0} cm off", real.ending, real.distance_cm),
+    };
+    format!("Trial {}: {went}", trial.number)
+}
+
+fn trace(path_cm: &[[f64; 2]], ending: Ending) -> Trace {
+    Trace { points_cm: path_cm.iter().copied().map(DVec2::from).collect(), crashed: ending == Ending::Crashed }
+}

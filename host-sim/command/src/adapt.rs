@@ -1,0 +1,151 @@
+//! `mindgap adapt`
+
+use std::path::PathBuf;
+
+use clap::Args;
+use serde::Serialize;
+
+use super::facts::FactsOption;
+use super::table::{self, number};
+use super::{Run, kinds, progress, textbook};
+use mindgap_applications::adapt::{Adapted, CommandBias, Gap, Lesson, adapt};
+use mindgap_diagnosis::Method;
+use mindgap_diagnosis::progress::Stage;
+use mindgap_files::places::Places;
+use mindgap_foundations::error::{Error, Result};
+use mindgap_learning::evolve::chance::{Chance, Judge, ROBOTS, RUNS};
+use mindgap_learning::evolve::controller_file::ControllerFile;
+use mindgap_logs::Scene;
+use mindgap_models::simulator::Simulator;
+
+/// Adapt a simulator to runs of the robot.
+///
+/// Effects that a diagnosis names are added, the rest is learned as what this robot does beyond the networks, which stay as
+/// they are.
+#[derive(Args)]
+pub struct Adapt {
+    /// The simulator file.
+    sim: PathBuf,
+    /// Folders of logs.
+    #[arg(required = true)]
+    logs: Vec<PathBuf>,
+    /// The simulator file to write.
+    #[arg(long, value_name = "SIM")]
+    out: PathBuf,
+    /// Also tell how the chance of this controller changes.
+    #[arg(long, requires = "scene")]
+    controller: Option<PathBuf>,
+    /// The scene that the controller is for.
+    #[arg(long, value_name = "FILE")]
+    scene: Option<PathBuf>,
+    /// Which of the scene's starts, from 1.
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    start: usize,
+    /// Fixes every draw.
+    #[arg(long, value_name = "N", default_value_t = Method::SEED)]
+    seed: u64,
+    #[command(flatten)]
+    facts: FactsOption,
+}
+
+/// Commands that are told.
+const COMMANDS: usize = 8;
+
+/// What `--json` writes.
+#[derive(Serialize)]
+struct Told {
+    schema: u32,
+    /// One a folder of logs.
+    lessons: Vec<Lesson>,
+    /// Of the controller, before and after.
+    chance: Option<[Chance; 2]>,
+}
+
+impl Run for Adapt {
+    fn places(&self) -> Places {
+        let inputs = [&self.sim].into_iter().chain(&self.logs).chain(&self.controller).chain(&self.scene);
+        Places::default()
+            .reading(inputs)
+            .writing([&self.out], kinds::SIMULATOR)
+            .writing(self.facts.asked(), kinds::REPORT)
+    }
+
+    fn run(&self) -> Result<String> {
+        let given = textbook::simulator(&self.sim)?;
+        let mut simulator = given.clone();
+        let mut lessons = Vec::new();
+        let bar = progress::shares();
+        for (folder, before) in self.logs.iter().zip(0..) {
+            let logs = super::read_sound_logs(folder)?;
+            let watch = |stage: Stage| {
+                let share = (f64::from(before) + stage.share_before()) / self.logs.len() as f64;
+                progress::at(&bar, share, format!("{}: {}", folder.display(), stage.words()));
+            };
+            let adapted = adapt(&simulator, &logs, self.seed, watch).map_err(|error| error.or_in_file(folder))?;
+            let Adapted { simulator: better, lesson } = adapted;
+            simulator = better;
+            lessons.push(lesson);
+        }
+        bar.finish_and_clear();
+        let chance = match (&self.controller, &self.scene) {
+            (Some(_), Some(_)) => Some([self.chance(&given)?, self.chance(&simulator)?]),
+            _ => None,
+        };
+        simulator.write(&self.out)?;
+        let of_folder = |(logs, lesson): (&PathBuf, &Lesson)| format!("{}:\n{}", logs.display(), told(lesson));
+        let mut text: String = self.logs.iter().zip(&lessons).map(of_folder).collect();
+        if let Some([before, after]) = &chance {
+            text += &format!("chance of the controller: {before} before, {after} after\n");
+        }
+        text += &format!("simulator written to {}\n", self.out.display());
+        self.facts.told(&Told { schema: 1, lessons, chance }, text)
+    }
+}
+
+impl Adapt {
+    /// The chance of the controller on robots that a simulator leaves possible.
+    fn chance(&self, simulator: &Simulator) -> Result<Chance> {
+        let (Some(controller), Some(path)) = (&self.controller, &self.scene) else {
+            return Err(Error::new("--controller needs --scene"));
+        };
+        let controller = ControllerFile::read(controller)?.controller;
+        let scene = Scene::read(path)?;
+        let start = super::evolve::start_of(&scene, self.start, &simulator.robot, path)?;
+        let target_cm = scene.target_cm.ok_or_else(|| Error::in_file(path, "has no [target]"))?;
+        let robots = simulator.robots(ROBOTS, self.seed);
+        let robots =
+            robots.ok_or_else(|| Error::in_file(&self.sim, "does not say what its training logs leave open"))?;
+        let judge = Judge::new(simulator, &robots.drawn, &scene, start, target_cm, self.seed)?;
+        Ok(judge.chances(&[controller], RUNS)?[0])
+    }
+}
+
+fn told(lesson: &Lesson) -> String {
+    let mut text = String::new();
+    for effect in &lesson.effects {
+        let parameters: Vec<String> =
+            effect.parameters.iter().map(|(name, value)| format!("{name} {value:.3}")).collect();
+        text += &format!("  the diagnosis names {}: {}\n", effect.effect, parameters.join(", "));
+    }
+    text += "  what a step of each command (left right) that was held does more than was thought, and how unsure that is:\n";
+    let rows: Vec<[String; 5]> = lesson.commands.iter().take(COMMANDS).map(row).collect();
+    text += &table::text(["command", "steps", "forward (cm)", "left (cm)", "turn (deg)"], &rows);
+    if let Some(Gap { forward_cm, lateral_cm, turn_deg }) = &lesson.gap {
+        let pair = |[before, after]: &[f64; 2]| format!("{before:.2} to {after:.2}");
+        text += &format!(
+            "  off by a step on runs kept back: forward {} cm, left {} cm, turn {} deg\n",
+            pair(forward_cm),
+            pair(lateral_cm),
+            pair(turn_deg)
+        );
+    }
+    text
+}
+
+/// A command, and how much more a step of it does than was thought, with what remains unsure.
+fn row(known: &CommandBias) -> [String; 5] {
+    let [left, right] = known.command;
+    let more =
+        |c: usize| format!("{} ±{:.2}", number(Some(known.after[c][0] - known.before[c][0]), 2), known.after[c][1]);
+    [format!("{left} {right}"), known.steps.to_string(), more(0), more(1), more(2)]
+}

@@ -1,0 +1,128 @@
+//! `mindgap evaluate`
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::facts::FactsOption;
+use super::table::{self, number};
+use super::{Run, kinds, progress, textbook};
+use mindgap_figures::pictures;
+use mindgap_files as files;
+use mindgap_files::places::Places;
+use mindgap_foundations::error::Result;
+use mindgap_learning::evaluation::accuracy::{self, Evaluation, Networks};
+use mindgap_learning::evaluation::sensor_models::SensorModels;
+use mindgap_pages::evaluation::{Subject, page};
+
+/// Judge a simulator's networks on logs that they were not trained on.
+#[derive(Args)]
+pub struct Evaluate {
+    /// The simulator file.
+    sim: PathBuf,
+    /// Folder of logs to judge on.
+    logs: PathBuf,
+    #[command(flatten)]
+    facts: FactsOption,
+    /// Also write a page for a browser here.
+    #[arg(long, value_name = "FILE")]
+    html: Option<PathBuf>,
+    /// Also draw figures into this folder, as SVG and PNG.
+    #[arg(long, value_name = "DIR")]
+    figures: Option<PathBuf>,
+}
+
+impl Run for Evaluate {
+    fn places(&self) -> Places {
+        let places = Places::default().reading([&self.sim, &self.logs]).writing(self.facts.asked(), kinds::REPORT);
+        places.writing(&self.html, kinds::PAGE).filling(&self.figures)
+    }
+
+    fn run(&self) -> Result<String> {
+        let simulator = textbook::simulator(&self.sim)?;
+        let logs = super::read_logs_of(&simulator, &self.logs)?;
+        let bar = progress::shares();
+        let evaluation = accuracy::evaluate(&simulator, &logs, progress::part(&bar, 0..100, "judging the networks"));
+        bar.finish_and_clear();
+        let evaluation = evaluation?;
+        if let Some(path) = &self.html {
+            let names = [&self.sim, &self.logs].map(|path| path.display().to_string());
+            let names = names.each_ref().map(String::as_str);
+            let subject = Subject { evaluation: &evaluation, simulator: &simulator, logs: &logs, names };
+            files::write(path, page(&subject))?;
+        }
+        if let Some(folder) = &self.figures {
+            pictures::networks(folder, &simulator, &evaluation, &logs)?;
+        }
+        self.facts.told(&evaluation, told(&evaluation))
+    }
+}
+
+/// An evaluation as tables, with the reliability of the probability.
+fn told(evaluation: &Evaluation) -> String {
+    let mut text = accuracy(&evaluation.networks);
+    if let Some(table_one) = &evaluation.table_one {
+        text += &format!("\nWith the sizes of the paper's Table I:\n{}", accuracy(table_one));
+    }
+    if let Some(p) = &evaluation.networks.echo_probability {
+        let bins: Vec<[String; 3]> = p
+            .reliability
+            .iter()
+            .map(|b| [number(Some(b.predicted), 3), number(Some(b.observed), 3), b.n.to_string()])
+            .collect();
+        let title = "of readings that were predicted with such a probability, the share that came";
+        text += &format!("\n{title}\n{}", table::text(["predicted", "observed", "n"], &bins));
+    }
+    if let Some(models) = &evaluation.sensor_models {
+        text += &format!("\n{}", sensor_models(models));
+    }
+    text
+}
+
+/// How likely every model of the sensor makes the readings, as a table.
+fn sensor_models(models: &SensorModels) -> String {
+    let SensorModels { n, networks, beam, first_echo, ideal_ray } = models;
+    let models = [("networks", networks), ("beam", beam), ("first echo", first_echo), ("ideal ray", ideal_ray)];
+    let rows: Vec<[String; 4]> = models
+        .into_iter()
+        .filter_map(|(name, nats)| Some((name, nats.as_ref()?)))
+        .map(|(name, nats)| {
+            [name.into(), number(Some(nats.as_logged), 3), number(nats.poses_refitted, 3), n.to_string()]
+        })
+        .collect();
+    table::text(["sensor model", "nats a reading", "scans' poses refitted", "n"], &rows)
+}
+
+/// The accuracy of every network, as tables.
+pub fn accuracy(networks: &Networks) -> String {
+    let Networks { turn, forward, lateral, echo_probability, echo_value } = networks;
+    let values =
+        [("turn (deg)", turn), ("forward (cm)", forward), ("lateral (cm)", lateral), ("echo value (cm)", echo_value)];
+    let rows: Vec<[String; 6]> = values
+        .into_iter()
+        .filter_map(|(name, value)| Some((name, value.as_ref()?)))
+        .map(|(name, v)| {
+            let (slope, intercept) = v.trend.map(|t| (t.slope, t.intercept)).unzip();
+            let trend = [number(slope, 3), number(intercept, 2)];
+            let [slope, intercept] = trend;
+            [name.into(), number(v.r2, 4), number(Some(v.mse), 4), slope, intercept, v.n.to_string()]
+        })
+        .collect();
+    let mut text = table::text(["network", "R2", "MSE", "slope", "intercept", "n"], &rows);
+    if let Some(mae_cm) = echo_value.as_ref().and_then(|v| v.mae_cm) {
+        text += &format!("echo value: mean absolute error {mae_cm:.2} cm\n");
+    }
+    if let Some(p) = echo_probability {
+        let row = [
+            "echo".to_string(),
+            number(Some(p.brier), 4),
+            number(Some(p.log_loss), 4),
+            number(p.auc, 4),
+            number(p.r2, 4),
+            p.n.to_string(),
+        ];
+        let header = ["probability", "Brier", "log loss", "AUC", "R2", "n"];
+        text += &format!("\n{}", table::text(header, &[row]));
+    }
+    text
+}

@@ -1,0 +1,156 @@
+//! `mindgap evolve`
+
+use std::path::{Path, PathBuf};
+
+use clap::{Args, value_parser};
+use serde_json::json;
+
+use super::facts::FactsOption;
+use super::lasting::{KeepOption, Kept};
+use super::{Run, kinds, progress, textbook};
+use mindgap_figures::pictures;
+use mindgap_files::places::Places;
+use mindgap_foundations::error::Result;
+use mindgap_foundations::geometry::Pose;
+use mindgap_learning::evolve::chance::Chance;
+use mindgap_learning::evolve::controller_file::{ControllerFile, Origin};
+use mindgap_learning::evolve::fitness::RandomNumbers;
+use mindgap_learning::evolve::request::{Answered, JUDGED_RUNS, Request};
+use mindgap_logs::{Robot, Scene};
+use mindgap_models::simulator::Noise;
+use mindgap_models::simulator::environment::SensorModel;
+
+/// Evolve one controller in a simulator.
+#[derive(Args)]
+pub struct Evolve {
+    /// The simulator file.
+    sim: PathBuf,
+    /// The scene, with a target and starts.
+    #[arg(long, value_name = "FILE")]
+    scene: PathBuf,
+    /// Which of the scene's starts, from 1.
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    start: usize,
+    /// The controller file to write.
+    #[arg(long)]
+    out: PathBuf,
+    /// Fixes every draw.
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    seed: u64,
+    /// Follow the paper exactly: one run of the genetic algorithm, its fittest individual, echoes that fail as the only
+    /// noise.
+    #[arg(long)]
+    paper: bool,
+    /// Echoes that fail are the only noise.
+    #[arg(long)]
+    paper_noise: bool,
+    /// What makes the readings: the beam that the training logs show, the two networks, or the first-echo law, which is
+    /// slower. With --paper and --paper-noise it is the networks.
+    #[arg(long, value_enum, default_value_t = SensorModel::Beam, conflicts_with_all = ["paper", "paper_noise"])]
+    sonar: SensorModel,
+    /// Steps after which a controller gives up.
+    #[arg(long, default_value_t = 60, value_parser = value_parser!(u16).range(1..))]
+    max_steps: u16,
+    /// Let every individual of a generation meet its own random numbers, as with --paper, and not all the same ones.
+    #[arg(long)]
+    fresh_numbers: bool,
+    #[command(flatten)]
+    facts: FactsOption,
+    /// Also draw simulated runs of the controller into this folder, as SVG and PNG.
+    #[arg(long, value_name = "DIR")]
+    figures: Option<PathBuf>,
+    #[command(flatten)]
+    keep: KeepOption,
+}
+
+impl Run for Evolve {
+    fn places(&self) -> Places {
+        let places = Places::default().reading([&self.sim, &self.scene]).writing([&self.out], kinds::CONTROLLER);
+        let places = places.writing(self.facts.asked(), kinds::REPORT).filling(&self.figures);
+        places.writing(self.keep.asked(), kinds::CHECKPOINT)
+    }
+
+    fn run(&self) -> Result<String> {
+        let simulator = textbook::simulator(&self.sim)?;
+        let scene = Scene::read(&self.scene)?;
+        let start = start_of(&scene, self.start, &simulator.robot, &self.scene)?;
+        let request = Request {
+            simulator: &simulator,
+            scene: &scene,
+            start: self.start,
+            max_steps: self.max_steps,
+            paper: self.paper,
+            noise: if self.paper || self.paper_noise { Noise::Paper } else { Noise::Learned },
+            sensor: self.sonar,
+            random_numbers: match self.paper || self.fresh_numbers {
+                true => RandomNumbers::Independent,
+                false => RandomNumbers::Common,
+            },
+            seed: self.seed,
+        };
+        let bar = progress::bar(request.generations() as u64);
+        let answered = request.evolve(|generation, fitness| {
+            bar.set_position(generation as u64 + 1);
+            bar.set_message(format!("fitness {fitness:.3}"));
+        });
+        bar.finish_and_clear();
+        let Answered { evolved, success, chance, rollouts } =
+            answered.map_err(|error| error.or_in_file(&self.scene))?;
+        let origin = Origin {
+            simulator: name(&self.sim),
+            scene: name(&self.scene),
+            start: self.start,
+            seed: self.seed,
+            generations: evolved.generations,
+            fitness: evolved.fitness,
+            success: success.rate,
+        };
+        if let Some(folder) = &self.figures {
+            let title = format!("Start {}", self.start);
+            pictures::paths(folder, &[pictures::simulated_paths(title, &scene, start, &rollouts)])?;
+        }
+        ControllerFile { controller: evolved.controller, origin: Some(origin) }.write(&self.out)?;
+        let facts = json!({
+            "schema": 1, "controller": self.out, "start": self.start, "seed": self.seed,
+            "generations": evolved.generations, "fitness": evolved.fitness, "success": success.rate,
+            "crashed": success.crashed, "median_cm": success.median_cm, "chance": chance,
+        });
+        let text = format!(
+            "start {}: {:.0} % of {JUDGED_RUNS} fresh simulated runs reach the target, {:.0} % crash; median distance {:.1} cm\n\
+             {}controller written to {}\n",
+            self.start,
+            100.0 * success.rate,
+            100.0 * success.crashed,
+            success.median_cm,
+            chance.map_or_else(String::new, |chance| told(&chance)),
+            self.out.display()
+        );
+        self.facts.told(&facts, text)
+    }
+
+    fn kept(&self) -> Option<Kept> {
+        self.keep.beside(&self.out)
+    }
+
+    fn is_shared(&self) -> bool {
+        true
+    }
+}
+
+fn told(chance: &Chance) -> String {
+    let not_knowing = 100.0 * chance.not_knowing;
+    format!(
+        "over the robots that the logs leave possible {chance}; {not_knowing:.0} % of the doubt is about the robot, the rest \
+         is chance\n"
+    )
+}
+
+/// Start N (from 1) of a scene, where the robot has room.
+pub fn start_of(scene: &Scene, number: usize, robot: &Robot, path: &Path) -> Result<Pose> {
+    scene.start(number, robot.body_radius_cm).map_err(|error| error.or_in_file(path))
+}
+
+/// A file's name alone: where it lay says nothing to others.
+fn name(path: &Path) -> String {
+    path.file_name().unwrap_or_default().to_string_lossy().into_owned()
+}

@@ -1,0 +1,259 @@
+//! `mindgap export`
+
+mod collect;
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use clap::{Args, ValueEnum};
+use mindgap_controller_export::budget::Budget;
+use mindgap_controller_export::c_networks::c_networks;
+use mindgap_controller_export::collect::CollectOptions;
+use mindgap_controller_export::names::{BrickName, RunLogs};
+use mindgap_controller_export::nxc::{self, NxcOptions};
+use mindgap_controller_export::nxc_networks::{self, NetworksBudget, nxc_networks};
+use mindgap_controller_export::onboard::Safety;
+use mindgap_controller_export::pybricks_networks::{PybricksNetwork, pybricks_networks};
+use mindgap_controller_export::rust_networks::rust_networks;
+use mindgap_controller_export::{ExportError, Origin, arduino, c, collect as data_collection, pybricks, rust, rxe};
+use serde_json::{Value, json};
+
+use super::facts::FactsOption;
+use super::ports::PortOptions;
+use super::{Run, kinds};
+use mindgap_files as files;
+use mindgap_files::places::Places;
+use mindgap_foundations::error::{Error, Result};
+use mindgap_learning::evolve::controller_file::ControllerFile;
+use mindgap_models::simulator::fixed_point::{COMMANDS, DOCUMENTATION, FACING, FixedNetworks};
+use mindgap_models::simulator::{Learned, Simulator};
+
+/// Turn a controller into an onboard program.
+///
+/// Or a simulator's networks into constants for a board; or make the program that collects a robot's first logs.
+#[derive(Args)]
+pub struct Export {
+    /// The controller file; or a simulator file, whose networks have all formats but rxe and nxc-collect. For nxc-collect
+    /// none, or a run whose commands are a script.
+    #[arg(
+        value_name = "CONTROLLER",
+        required_if_eq_any = [("format", "nxc"), ("format", "rxe"), ("format", "rust"), ("format", "c"), ("format", "pybricks"), ("format", "arduino")]
+    )]
+    input: Option<PathBuf>,
+    /// What to make of it.
+    #[arg(long, value_enum)]
+    format: Format,
+    /// The file to write.
+    #[arg(long)]
+    out: PathBuf,
+    #[command(flatten)]
+    ports: PortOptions,
+    /// Log every step on the brick: each start of the program writes a file of its own, as NAME_000.csv. They have the
+    /// program's name, or this one.
+    #[arg(long, value_name = "NAME.csv", num_args = 0..=1)]
+    log: Option<Option<BrickName>>,
+    /// Show tuple, reading and outcome on the brick's display.
+    #[arg(long)]
+    display: bool,
+    /// Stop the robot where a reading is below this.
+    #[arg(long, value_name = "CM", value_parser = clap::value_parser!(u8).range(1..=254))]
+    stop_cm: Option<u8>,
+    /// Stop the robot when a driven wheel does not turn.
+    #[arg(long)]
+    stall: bool,
+    #[command(flatten)]
+    facts: FactsOption,
+    #[command(flatten)]
+    collect: collect::Collect,
+}
+
+/// What a program takes of a brick.
+struct Takes {
+    text: String,
+    figures: Value,
+}
+
+impl From<Budget> for Takes {
+    fn from(budget: Budget) -> Self {
+        let Budget { program_bytes, memory_bytes, log_bytes, step_ms, worst_step_ms } = budget;
+        let figures = json!({
+            "program_bytes": program_bytes, "memory_bytes": memory_bytes, "log_bytes": log_bytes, "step_ms": step_ms,
+            "worst_step_ms": worst_step_ms,
+        });
+        Takes { text: budget.to_string(), figures }
+    }
+}
+
+impl From<NetworksBudget> for Takes {
+    fn from(budget: NetworksBudget) -> Self {
+        let NetworksBudget { program_bytes, memory_bytes, answer_ms } = &budget;
+        let answer_ms: BTreeMap<_, _> = answer_ms.iter().cloned().collect();
+        let figures = json!({"program_bytes": program_bytes, "memory_bytes": memory_bytes, "answer_ms": answer_ms});
+        Takes { text: budget.to_string(), figures }
+    }
+}
+
+/// What a controller can be turned into.
+#[derive(Clone, Copy, ValueEnum)]
+enum Format {
+    /// NXC source for the LEGO NXT's standard firmware.
+    Nxc,
+    /// The brick's executable itself, without log and display.
+    Rxe,
+    /// Constants for the crate `mindgap-core`.
+    Rust,
+    /// A C99 header with the stepping machine.
+    C,
+    /// An Arduino sketch; of a simulator the header that one includes.
+    Arduino,
+    /// A MicroPython program for hubs with pybricks firmware; of a simulator the module that one imports.
+    Pybricks,
+    /// NXC source of a program that drives, at random or by a script, and logs.
+    NxcCollect,
+}
+
+impl Run for Export {
+    fn places(&self) -> Places {
+        let places = Places::default().reading(&self.input).writing([&self.out], kinds::PROGRAM);
+        places.writing(self.facts.asked(), kinds::REPORT)
+    }
+
+    fn run(&self) -> Result<String> {
+        if (self.log.is_some() || self.display) && !matches!(self.format, Format::Nxc) {
+            return Err(Error::new("--log and --display are for a controller with --format nxc"));
+        }
+        let runs_on_a_brick = matches!(self.format, Format::Nxc | Format::Rxe | Format::NxcCollect);
+        if self.safety() != Safety::default() && !runs_on_a_brick {
+            return Err(Error::new(
+                "--stop-cm and --stall are for programs of a brick: --format nxc, rxe or nxc-collect",
+            ));
+        }
+        let (program, budget) = match &self.input {
+            None => self.collection(self.collect.options(self.program_name()?, self.ports.wiring()))?,
+            // Simulators are JSON; no TOML begins like that.
+            Some(input) if files::read_text(input)?.trim_start().starts_with('{') => self.networks(input)?,
+            Some(input) => self.onboard(input)?,
+        };
+        let bytes = program.len();
+        files::write(&self.out, program)?;
+        let (budget, figures) = budget.map_or_else(Default::default, |Takes { text, figures }| (text + "\n", figures));
+        let text = format!("{} written\n{budget}", self.out.display());
+        let facts = json!({"schema": 1, "program": self.out, "bytes": bytes, "takes": figures});
+        self.facts.told(&facts, text)
+    }
+}
+
+impl Export {
+    fn collection(&self, options: CollectOptions) -> Result<(Vec<u8>, Option<Takes>)> {
+        let named = self.input.as_ref().unwrap_or(&self.out);
+        let options = CollectOptions { safety: self.safety(), ..options };
+        let source = data_collection::program(&options).map_err(|e| Error::in_file(named, e.to_string()))?;
+        Ok((source.into_bytes(), Some(data_collection::budget(&options).into())))
+    }
+
+    fn networks(&self, input: &Path) -> Result<(Vec<u8>, Option<Takes>)> {
+        let simulator = Simulator::read(input)?;
+        let quantised = || FixedNetworks::quantise(&simulator).map_err(|error| error.or_in_file(input));
+        match self.format {
+            Format::Rust => Ok((rust_networks(&quantised()?.rust_definitions()).into_bytes(), None)),
+            Format::Nxc => {
+                let networks = quantised()?.tabulated(["Turn", "Forward", "Lateral", "EchoProbability", "EchoValue"]);
+                Ok((nxc_networks(&networks).into_bytes(), Some(nxc_networks::budget(&networks).into())))
+            }
+            Format::C | Format::Arduino => Ok((c_networks(&quantised()?.tabulated(NAMES)).into_bytes(), None)),
+            Format::Pybricks => {
+                let networks = float_networks(&simulator).map_err(|error| error.or_in_file(input))?;
+                Ok((pybricks_networks(&networks).into_bytes(), None))
+            }
+            Format::Rxe | Format::NxcCollect => {
+                Err(Error::in_file(input, "holds networks, which have no place in formats rxe and nxc-collect"))
+            }
+        }
+    }
+
+    fn onboard(&self, input: &Path) -> Result<(Vec<u8>, Option<Takes>)> {
+        let read = || {
+            let file = ControllerFile::read(input)?;
+            let origin = Origin::from(&file);
+            Ok((file.controller, origin))
+        };
+        let refused = |e: ExportError| Error::in_file(input, e.to_string());
+        Ok(match self.format {
+            Format::Rxe => {
+                self.program_name()?;
+                let (controller, _) = read()?;
+                (
+                    rxe::program(&controller, &self.ports.wiring(), self.safety()).map_err(refused)?,
+                    Some(rxe::budget(&controller, self.safety()).into()),
+                )
+            }
+            Format::NxcCollect => {
+                self.collection(collect::script(input, self.program_name()?, self.ports.wiring())?)?
+            }
+            Format::Rust => {
+                let (controller, origin) = read()?;
+                (rust::module(&controller, &origin).map_err(refused)?.into_bytes(), None)
+            }
+            Format::C => {
+                let (controller, origin) = read()?;
+                (c::header(&controller, &origin).map_err(refused)?.into_bytes(), None)
+            }
+            Format::Arduino => {
+                let (controller, origin) = read()?;
+                (arduino::sketch(&controller, &origin).map_err(refused)?.into_bytes(), None)
+            }
+            Format::Pybricks => {
+                let (controller, origin) = read()?;
+                (pybricks::program(&controller, &origin).map_err(refused)?.into_bytes(), None)
+            }
+            Format::Nxc => {
+                let ((controller, origin), program) = (read()?, self.program_name()?);
+                let (wiring, safety, display) = (self.ports.wiring(), self.safety(), self.display);
+                let log = self.logs(&program).transpose().map_err(|e| Error::in_file(&self.out, e.to_string()))?;
+                let options = NxcOptions { program, wiring, safety, log, display };
+                let source = nxc::program(&controller, &origin, &options).map_err(refused)?;
+                (source.into_bytes(), Some(nxc::budget(&controller, &options).into()))
+            }
+        })
+    }
+
+    fn safety(&self) -> Safety {
+        Safety { stop_cm: self.stop_cm, stall: self.stall }
+    }
+
+    /// The names of the logs that are asked for.
+    fn logs(&self, program: &BrickName) -> Option<std::result::Result<RunLogs, ExportError>> {
+        let named = |name: &BrickName| RunLogs::of(name);
+        let by_program = || named(&format!("{}.csv", program.stem()).parse()?);
+        self.log.as_ref().map(|name| name.as_ref().map_or_else(by_program, named))
+    }
+
+    /// The compiled program's name on the brick: that of the file that is written.
+    fn program_name(&self) -> Result<BrickName> {
+        let stem = self.out.file_stem().unwrap_or_default().to_string_lossy();
+        BrickName::program(&stem).map_err(|e| Error::in_file(&self.out, e.to_string()))
+    }
+}
+
+/// The networks' names in C and Python.
+const NAMES: [&str; 5] = ["turn", "forward", "lateral", "echo_probability", "echo_value"];
+
+fn float_networks(simulator: &Simulator) -> Result<[PybricksNetwork; 5]> {
+    Ok([
+        float_network(simulator, &simulator.turn, 0, COMMANDS)?,
+        float_network(simulator, &simulator.forward, 1, COMMANDS)?,
+        float_network(simulator, &simulator.lateral, 2, COMMANDS)?,
+        float_network(simulator, &simulator.echo_probability, 3, FACING)?,
+        float_network(simulator, &simulator.echo_value, 4, FACING)?,
+    ])
+}
+
+fn float_network<const N: usize>(
+    simulator: &Simulator,
+    learned: &Option<Learned<N>>,
+    place: usize,
+    inputs: [&str; N],
+) -> Result<PybricksNetwork> {
+    let learned = simulator.need(learned, NAMES[place])?;
+    Ok(PybricksNetwork::new(NAMES[place], DOCUMENTATION[place], inputs, &learned.network))
+}

@@ -1,0 +1,89 @@
+//! `mindgap diagnose --fleet`: a folder of folders, one a robot.
+
+use std::path::Path;
+
+use super::{fleet_text, progress};
+use mindgap_applications::fleet::source::{Source, is_address};
+use mindgap_applications::fleet::{self, ANSWER, DIAGNOSES, Fleet, TABLE};
+use mindgap_diagnosis::request::Request;
+use mindgap_files as files;
+use mindgap_foundations::error::{Error, Result};
+use mindgap_models::effects::Effect;
+use mindgap_pages::fleet::{Subject, page};
+
+/// The page within a fleet's folder.
+const PAGE: &str = "fleet.html";
+
+/// What is asked.
+pub struct FleetRequest<'a> {
+    /// Of each robot.
+    pub request: Request<'a>,
+    /// Where the logs lie.
+    pub logs: &'a Path,
+    /// Where the answer goes.
+    pub out: &'a Path,
+    /// Where a simulator goes that has what is common to all robots.
+    pub apply: Option<&'a Path>,
+    /// The simulator's file, or the word for the textbook.
+    pub simulator: String,
+}
+
+impl FleetRequest<'_> {
+    /// Diagnoses the fleet and writes what is found; returns what there is to say.
+    ///
+    /// # Errors
+    /// When no robot can be diagnosed, or something cannot be read or written.
+    pub fn answer(&self) -> Result<String> {
+        if self.apply.is_some() && self.request.simulator.is_none() {
+            return Err(Error::new("--apply with --fleet needs a simulator file to add to"));
+        }
+        let source = Source::of(self.logs)?;
+        let found = if is_address(self.out) { self.to_storage(&source) } else { self.to_folder(&source, self.out) }?;
+        let mut text = fleet_text::text(&found);
+        if let (Some(path), Some(simulator)) = (self.apply, self.request.simulator) {
+            if found.common.is_empty() {
+                text += &format!("Nothing is common to all robots: {} is not written.\n", path.display());
+            } else {
+                let mut simulator = simulator.clone();
+                simulator.added.extend(found.common.iter().map(|common| common.effect.clone()));
+                simulator.write(path)?;
+            }
+        }
+        Ok(text)
+    }
+
+    fn to_folder(&self, source: &Source, folder: &Path) -> Result<Fleet> {
+        let ours = |name: &str| [ANSWER, PAGE, TABLE, DIAGNOSES].contains(&name);
+        files::write_folder(folder, ours, |fresh| {
+            let bar = progress::bar(0);
+            let fleet = fleet::diagnose(source, &self.request, fresh, progress::counting(&bar));
+            bar.finish_and_clear();
+            let fleet = fleet?;
+            files::write_json(&fresh.join(ANSWER), &fleet)?;
+            let names = [&*self.logs.to_string_lossy(), self.simulator.as_str()];
+            let catalogue: &[&'static Effect] = self.request.method.catalogue;
+            let subject = Subject { fleet: &fleet, catalogue, names, seed: self.request.method.seed };
+            files::write(&fresh.join(PAGE), page(&subject))?;
+            Ok(fleet)
+        })
+    }
+
+    #[cfg(feature = "cloud")]
+    fn to_storage(&self, source: &Source) -> Result<Fleet> {
+        let storage = mindgap_applications::fleet::storage::Storage::of(self.out)?;
+        storage.expect_empty()?;
+        let workshop =
+            tempfile::tempdir().map_err(|e| Error::new(format!("a temporary folder cannot be made: {e}")))?;
+        let folder = workshop.path().join("fleet");
+        let found = self.to_folder(source, &folder)?;
+        // With the answer the rest is there.
+        storage.put_folder(&folder, ANSWER)?;
+        Ok(found)
+    }
+
+    #[cfg(not(feature = "cloud"))]
+    fn to_storage(&self, _: &Source) -> Result<Fleet> {
+        Source::of(self.out)?;
+        Err(Error::in_file(self.out, "is no folder"))
+    }
+}

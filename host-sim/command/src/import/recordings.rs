@@ -1,0 +1,243 @@
+//! `mindgap import streams` and `mindgap import bag`
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use serde_json::json;
+
+use crate::facts::FactsOption;
+use crate::{Run, kinds, progress, table};
+use mindgap_files as files;
+use mindgap_files::places::Places;
+use mindgap_foundations::error::Result;
+use mindgap_import::assemble::{Assembled, assemble};
+use mindgap_import::bag::{Choice, recording};
+use mindgap_import::draft::{RobotDraft, SCENE, to_fill_in};
+use mindgap_import::mapping::Mapping;
+use mindgap_import::recording::Recording;
+use mindgap_import::report::{ClocksReport, RecordingReport, RecordingsReport, Source};
+use mindgap_import::streams::recordings;
+use mindgap_import::units::{Angle, Length, Time, Units};
+use mindgap_logs::{Robot, Scene};
+
+/// Make a folder of logs of streams as CSV: commands, poses and readings of a drive, in one file or several, each with a
+/// clock of its own.
+///
+/// Columns are found by their names, such as t_s, v_m_s, w_rad_s, left, right, x_m, y_m, yaw_rad, qx to qw, range_m;
+/// --map states what names do not. docs/bring-your-own-robot.md has the names and units.
+#[derive(Args)]
+pub struct Streams {
+    /// The files. One that holds commands and poses is a drive; of others the first with commands belongs to the first with
+    /// poses and the first with readings, and so on.
+    #[arg(required = true)]
+    files: Vec<PathBuf>,
+    /// Which columns hold what, in which unit: TOML with a table a file.
+    #[arg(long, value_name = "FILE")]
+    map: Option<PathBuf>,
+    /// Unit of a time whose column names none; guessed if left out.
+    #[arg(long, value_name = "UNIT")]
+    time_unit: Option<Time>,
+    /// Unit of lengths whose columns name none, and of speeds a second.
+    #[arg(long, value_name = "UNIT")]
+    length_unit: Option<Length>,
+    /// Unit of headings whose columns name none, and of turn rates a second.
+    #[arg(long, value_name = "UNIT")]
+    angle_unit: Option<Angle>,
+    /// What the clock of the poses is ahead of that of the commands, ms; found by the motion if left out.
+    #[arg(long, value_name = "MS", allow_negative_numbers = true)]
+    offset_ms: Option<f64>,
+    #[command(flatten)]
+    target: Target,
+}
+
+/// Make a folder of logs of ROS 2 bags (MCAP): Twist, TwistStamped, Odometry, PoseStamped, tf, Range, LaserScan.
+#[derive(Args)]
+pub struct Bag {
+    /// The bags, each of which is a drive.
+    #[arg(value_name = "BAG.mcap", required = true)]
+    bags: Vec<PathBuf>,
+    /// Topic of the commands; guessed if left out.
+    #[arg(long, value_name = "TOPIC")]
+    commands: Option<String>,
+    /// Topic of the poses, of transforms as /tf:map>base_link; guessed if left out.
+    #[arg(long, value_name = "TOPIC")]
+    poses: Option<String>,
+    /// Topic of the readings, or none; guessed if left out.
+    #[arg(long, value_name = "TOPIC")]
+    ranges: Option<String>,
+    #[command(flatten)]
+    target: Target,
+}
+
+#[derive(Args)]
+struct Target {
+    /// What the builder measured of the robot; if left out, a draft to be filled in is written beside the logs.
+    #[arg(long, value_name = "FILE")]
+    robot: Option<PathBuf>,
+    /// Where the robot drove; open ground if left out.
+    #[arg(long, value_name = "FILE")]
+    scene: Option<PathBuf>,
+    /// Folder for the logs.
+    #[arg(long, value_name = "LOGS")]
+    out: PathBuf,
+    #[command(flatten)]
+    facts: FactsOption,
+}
+
+impl Run for Streams {
+    fn places(&self) -> Places {
+        self.target.places().reading(&self.files).reading(&self.map)
+    }
+
+    fn run(&self) -> Result<String> {
+        let given = self.target.read()?;
+        let mapping = self.map.as_deref().map_or(Ok(Mapping::default()), Mapping::read)?;
+        let units = Units { time: self.time_unit, length: self.length_unit, angle: self.angle_unit };
+        self.target.make(given, |watch| recordings(&self.files, &mapping, &units, watch), self.offset_ms)
+    }
+}
+
+impl Run for Bag {
+    fn places(&self) -> Places {
+        self.target.places().reading(&self.bags)
+    }
+
+    fn run(&self) -> Result<String> {
+        let given = self.target.read()?;
+        let choice = Choice { commands: self.commands.clone(), poses: self.poses.clone(), ranges: self.ranges.clone() };
+        let yaw_rad = given.robot.map_or(0.0, |robot| robot.ultrasonic.yaw_deg.to_radians());
+        let read = |watch: &dyn Fn(usize, usize)| {
+            let bags = self.bags.iter().zip(0..);
+            bags.map(|(bag, before)| {
+                watch(before, self.bags.len());
+                recording(bag, &choice, yaw_rad)
+            })
+            .collect()
+        };
+        self.target.make(given, read, None)
+    }
+}
+
+/// What the user gave of robot and scene.
+struct Given {
+    robot: Option<Robot>,
+    robot_text: Option<String>,
+    scene: Scene,
+    scene_text: String,
+}
+
+impl Target {
+    fn places(&self) -> Places {
+        let given = self.robot.iter().chain(&self.scene);
+        Places::default().reading(given).filling([&self.out]).writing(self.facts.asked(), kinds::REPORT)
+    }
+
+    /// Reads what is given of robot and scene.
+    fn read(&self) -> Result<Given> {
+        let robot_text = self.robot.as_deref().map(files::read_text).transpose()?;
+        let robot = self.robot.as_deref().map(Robot::read).transpose()?;
+        let (scene, scene_text) = match &self.scene {
+            Some(path) => (Scene::read(path)?, files::read_text(path)?),
+            None => (Scene::default(), SCENE.to_owned()),
+        };
+        Ok(Given { robot, robot_text, scene, scene_text })
+    }
+
+    /// Makes logs of recordings, which are first `read`, and tells it.
+    fn make(
+        &self,
+        given: Given,
+        read: impl FnOnce(&dyn Fn(usize, usize)) -> Result<Vec<Recording>>,
+        offset_ms: Option<f64>,
+    ) -> Result<String> {
+        let bar = progress::shares();
+        let recordings = read(&progress::part(&bar, 0..50, "reading"))?;
+        let aligning = progress::part(&bar, 50..100, "bringing clocks together");
+        let Assembled { logs, draft, mut report } =
+            assemble(recordings, given.robot, given.scene, offset_ms, aligning)?;
+        bar.finish_and_clear();
+        let robot_text = given.robot_text.or(draft.as_ref().map(RobotDraft::text)).unwrap_or_default();
+        report.to_fill_in = to_fill_in("robot.toml", &robot_text);
+        let ours = |name: &str| {
+            (name.starts_with("run-") && name.ends_with(".csv")) || name == "robot.toml" || name == "scene.toml"
+        };
+        files::write_folder(&self.out, ours, |fresh| {
+            files::write(&fresh.join("robot.toml"), &robot_text)?;
+            files::write(&fresh.join("scene.toml"), &given.scene_text)?;
+            logs.runs.iter().try_for_each(|run| run.write(&fresh.join(format!("{}.csv", run.name))))
+        })?;
+        let text = told(&report, logs.robot.step_ms, &self.out);
+        let RecordingsReport { recordings, sides, frame, findings, to_fill_in } = &report;
+        let facts = json!({
+            "schema": 1, "recordings": recordings, "sides": sides, "frame": frame, "findings": findings,
+            "to_fill_in": to_fill_in,
+        });
+        self.facts.told(&facts, text)
+    }
+}
+
+fn told(report: &RecordingsReport, step_ms: f64, out: &Path) -> String {
+    let mut text: String = report.recordings.iter().map(|recording| of_recording(recording, step_ms)).collect();
+    let sides = &report.sides;
+    let number = |value: f64| format!("{value:.0}");
+    text += &table::text(
+        ["motion", "asked for", "tracked"],
+        &[
+            ["travel (cm)".to_owned(), number(sides.asked_cm), number(sides.tracked_cm)],
+            ["rotation (deg)".to_owned(), number(sides.asked_deg), number(sides.tracked_deg)],
+        ],
+    );
+    let mut lines = |title: &str, lines: &[String]| lines.iter().for_each(|line| text += &format!("{title}: {line}\n"));
+    lines("frame", report.frame.as_slice());
+    lines("logs", &report.findings);
+    lines("fill in", &report.to_fill_in);
+    let runs: usize = report.recordings.iter().map(|recording| recording.runs.len()).sum();
+    text + &format!("{}: {runs} runs\n", out.display())
+}
+
+fn of_recording(recording: &RecordingReport, step_ms: f64) -> String {
+    let RecordingReport { sources, clocks, runs, rows, without_pose, with_reading, jumps, limited } = recording;
+    let mut text: String = sources.iter().map(of_source).collect();
+    text += &format!("  {}\n", of_clocks(clocks));
+    let names =
+        if let [one] = runs.as_slice() { one.clone() } else { format!("{} to {}", runs[0], runs[runs.len() - 1]) };
+    text += &format!(
+        "  {names}: {rows} rows, one every {step_ms} ms; {without_pose} without a pose, {with_reading} with a reading\n"
+    );
+    if *with_reading > 0 {
+        text += &format!("  readings come at times of their own: a row has the last of the {step_ms} ms before it\n");
+    }
+    if *jumps > 0 {
+        text += &format!("  left out: {jumps} poses that no robot can reach\n");
+    }
+    if *limited > 0 {
+        text += &format!("  {limited} commands were beyond full_speed_cm_s and limited to it\n");
+    }
+    text
+}
+
+fn of_source(source: &Source) -> String {
+    let Source { name, samples, lasts_s, rate_hz, taken, guessed, left_out } = source;
+    let mut text =
+        format!("{name}: {samples} samples in {lasts_s:.1} s, {rate_hz:.1} a second; {}\n", taken.join(", "));
+    for (what, lines) in [("guessed", guessed), ("left out", left_out)] {
+        lines.iter().for_each(|line| text += &format!("  {what}: {line}\n"));
+    }
+    text
+}
+
+fn of_clocks(clocks: &ClocksReport) -> String {
+    let ClocksReport { one, offset_ms, drift, lag_ms, unexplained } = clocks;
+    let differs =
+        unexplained.map_or("nothing moves".into(), |share| format!("{:.0} % of the motion differ", 100.0 * share));
+    match (one, lag_ms) {
+        (true, Some(lag_ms)) => format!("one clock: motion follows the commands by {lag_ms:.0} ms ({differs})"),
+        (true, None) => format!("one clock, as stated ({differs})"),
+        (false, _) => format!(
+            "two clocks: that of the poses is {:.3} s ahead and drifts by {:.0} ppm ({differs}); found by the motion, so that \
+             a delay of the robot does not show",
+            offset_ms / 1e3,
+            1e6 * drift
+        ),
+    }
+}

@@ -1,0 +1,140 @@
+//! `mindgap simulate`
+
+use std::path::PathBuf;
+
+use clap::{Args, value_parser};
+
+use super::evolve::start_of;
+use super::facts::FactsOption;
+use super::table::{self, number};
+use super::{Run, kinds, progress, textbook};
+use mindgap_figures::pictures;
+use mindgap_files as files;
+use mindgap_files::places::Places;
+use mindgap_foundations::error::Result;
+use mindgap_learning::evolve::controller_file::ControllerFile;
+use mindgap_learning::evolve::trial::Trial;
+use mindgap_logs::Scene;
+use mindgap_models::simulator::Noise;
+use mindgap_models::simulator::environment::SensorModel;
+use mindgap_models::simulator::rollout_report::RolloutReport;
+use mindgap_pages::simulation::{Subject, page};
+
+/// Run a controller in a simulator: each run is of another robot that its logs leave possible.
+#[derive(Args)]
+pub struct Simulate {
+    /// The simulator file.
+    sim: PathBuf,
+    /// The controller file.
+    controller: PathBuf,
+    /// The scene.
+    #[arg(long, value_name = "FILE")]
+    scene: PathBuf,
+    /// Which of the scene's starts, from 1.
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    start: usize,
+    /// How many runs.
+    #[arg(long, value_name = "N", default_value_t = 10, value_parser = value_parser!(u32).range(1..=1_000_000))]
+    runs: u32,
+    /// Fixes every draw.
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    seed: u64,
+    /// Echoes that fail are the only noise.
+    #[arg(long)]
+    paper_noise: bool,
+    /// What makes the readings: the beam that the training logs show, the two networks, or the first-echo law. With
+    /// --paper-noise it is the networks.
+    #[arg(long, value_enum, default_value_t = SensorModel::Beam, conflicts_with = "paper_noise")]
+    sonar: SensorModel,
+    #[command(flatten)]
+    facts: FactsOption,
+    /// Also write a page for a browser here.
+    #[arg(long, value_name = "FILE")]
+    html: Option<PathBuf>,
+    /// Also draw figures into this folder, as SVG and PNG.
+    #[arg(long, value_name = "DIR")]
+    figures: Option<PathBuf>,
+}
+
+/// Rows of the table at most.
+const ROWS: usize = 20;
+/// The ending that says least by its name.
+const TIMED_OUT: &str = "timed_out";
+
+impl Run for Simulate {
+    fn places(&self) -> Places {
+        let inputs = [&self.sim, &self.controller, &self.scene];
+        let places = Places::default().reading(inputs).writing(self.facts.asked(), kinds::REPORT);
+        places.writing(&self.html, kinds::PAGE).filling(&self.figures)
+    }
+
+    fn run(&self) -> Result<String> {
+        let simulator = textbook::simulator(&self.sim)?;
+        let controller = ControllerFile::read_for(&self.controller, &simulator.robot)?.controller;
+        let scene = Scene::read(&self.scene)?;
+        let start = start_of(&scene, self.start, &simulator.robot, &self.scene)?;
+        let trial = Trial {
+            simulator: &simulator,
+            controller: &controller,
+            scene: &scene,
+            start,
+            noise: if self.paper_noise { Noise::Paper } else { Noise::Learned },
+            sensor: self.sonar,
+            runs: self.runs as usize,
+            seed: self.seed,
+        };
+        let bar = progress::bar(self.runs.into());
+        let rollouts = trial.run(progress::counting(&bar));
+        bar.finish_and_clear();
+        let rollouts = rollouts?;
+        if let Some(path) = &self.html {
+            let names = [&self.sim, &self.controller, &self.scene].map(|path| path.display().to_string());
+            let subject = Subject {
+                rollouts: &rollouts,
+                controller: &controller,
+                robot: &simulator.robot,
+                scene: &scene,
+                names: names.each_ref().map(String::as_str),
+                start: self.start,
+                seed: self.seed,
+            };
+            files::write(path, page(&subject)?)?;
+        }
+        if let Some(folder) = &self.figures {
+            let title = format!("Start {}", self.start);
+            pictures::paths(folder, &[pictures::simulated_paths(title, &scene, start, &rollouts)])?;
+        }
+        self.facts.told(&rollouts, told(&rollouts))
+    }
+}
+
+fn told(rollouts: &RolloutReport) -> String {
+    let rows: Vec<[String; 6]> = rollouts
+        .runs
+        .iter()
+        .take(ROWS)
+        .enumerate()
+        .map(|(i, run)| {
+            let end = [number(Some(run.end_x_cm), 1), number(Some(run.end_y_cm), 1)];
+            let [x, y] = end;
+            [(i + 1).to_string(), run.termination.into(), run.steps.to_string(), x, y, number(run.distance_cm, 1)]
+        })
+        .collect();
+    let mut text = table::text(["run", "ending", "steps", "x (cm)", "y (cm)", "to target (cm)"], &rows);
+    if rollouts.runs.len() > ROWS {
+        text += &format!("... and {} more\n", rollouts.runs.len() - ROWS);
+    }
+    if rollouts.runs.iter().any(|run| run.termination == TIMED_OUT) {
+        text += "timed_out: its steps were spent, so that it stopped; it has reached the target if it stands there\n";
+    }
+    let crashed = rollouts.runs.iter().filter(|run| run.termination == "crashed").count();
+    let crashes = format!("{crashed} of {} crashed", rollouts.runs.len());
+    text + &match rollouts.success {
+        Some(success) => format!(
+            "{:.1} % of the runs reached the target (within {} cm, no crash); {crashes}\n",
+            100.0 * success,
+            rollouts.reached_within_cm
+        ),
+        None => format!("{crashes}; the scene has no target\n"),
+    }
+}

@@ -1,0 +1,104 @@
+//! A survey of logs before anything is made of them: what they hold, what is wrong with them, what they suffice for, and
+//! what to drive more.
+//!
+//! It decides nothing by itself: faults are those of [`inspection`](mindgap_logs::inspection), networks are judged by the limits
+//! of their training, and effects by what a diagnosis against the textbook could see of them.
+
+mod advice;
+mod holdings;
+
+use serde::Serialize;
+
+pub use holdings::{Holdings, Range};
+
+use crate::condition;
+use crate::diagnose::{Excitation, excitation};
+use mindgap_foundations::error::{Error, Result};
+use mindgap_learning::learn::train;
+use mindgap_logs::inspection::{Finding, Inspection};
+use mindgap_logs::{Logs, Run};
+use mindgap_models::effects::CATALOGUE;
+use mindgap_models::simulator::{Missing, kinematic};
+
+/// What there is to say about logs; docs/formats.md has the JSON.
+#[derive(Clone, Debug, Serialize)]
+pub struct Survey {
+    schema: u32,
+    /// What they hold, once what can be put right is put right.
+    pub holds: Holdings,
+    /// What is wrong with them.
+    pub findings: Vec<Finding>,
+    /// Why nothing is learned from them as they are, where that is so.
+    pub refused: Option<String>,
+    /// The networks that could not be trained on them.
+    pub missing_networks: Vec<Missing>,
+    /// The effects that they could not show against the textbook.
+    pub untestable: Vec<&'static str>,
+    /// What is missing, a sentence each.
+    pub drive_more: Vec<String>,
+}
+
+/// Version of the JSON.
+const SCHEMA: u32 = 1;
+
+impl Survey {
+    /// Surveys logs.
+    pub fn of(logs: Logs) -> Self {
+        let mut inspected = Inspection::of(logs);
+        let refused = inspected.refusal().map(str::to_owned);
+        let enough = enough_of(&inspected.logs);
+        let missing_networks = train::unsupported(&enough);
+        let coarse = in_steps_that_motion_shows_in(&inspected.logs);
+        let holds = Holdings::of(&inspected.logs, coarse.as_ref().unwrap_or(&inspected.logs));
+        let mut drive_more = advice::advice(&inspected.logs, &holds);
+        inspected.logs = coarse.map_or(enough, |coarse| enough_of(&coarse));
+        let untestable = match shown(&inspected) {
+            Ok(Excitation { untestable, notes }) => {
+                drive_more.extend(notes);
+                untestable
+            }
+            Err(why) => {
+                drive_more.push(format!("No effect can be told: {why}"));
+                CATALOGUE.iter().map(|effect| effect.id).collect()
+            }
+        };
+        let findings = inspected.findings;
+        Survey { schema: SCHEMA, holds, findings, refused, missing_networks, untestable, drive_more }
+    }
+}
+
+/// What so many rows of random driving do not excite, more of them hardly would; each takes most of a kilobyte to judge.
+const ENOUGH_ROWS: usize = 20_000;
+/// So many runs are not made fewer.
+const ENOUGH_RUNS: usize = 100;
+
+/// Of large logs every so many runs, and of long ones the beginning.
+fn enough_of(logs: &Logs) -> Logs {
+    let rows = logs.rows();
+    if rows <= ENOUGH_ROWS {
+        return logs.clone();
+    }
+    let every = rows.div_ceil(ENOUGH_ROWS).min(logs.runs.len() / ENOUGH_RUNS).max(1);
+    let most = (ENOUGH_ROWS / logs.runs.len().div_ceil(every)).max(2);
+    let begin =
+        |run: &Run| Run { name: run.name.clone(), rows: run.rows.between(0..most.min(run.rows.len())).collect() };
+    let runs = logs.runs.iter().step_by(every).map(begin).collect();
+    Logs { robot: logs.robot, scene: logs.scene.clone(), runs }
+}
+
+/// What a diagnosis against the textbook could show.
+fn shown(inspected: &Inspection) -> Result<Excitation> {
+    if inspected.logs.runs.is_empty() {
+        return Err(Error::new(format!("no run is as long as a step of {} ms.", inspected.logs.robot.step_ms)));
+    }
+    excitation(kinematic::baseline(&inspected.logs), inspected)
+}
+
+/// Logs in the steps that a diagnosis compares, where those are longer.
+fn in_steps_that_motion_shows_in(logs: &Logs) -> Option<Logs> {
+    let step_ms = condition::step_ms(logs.robot.step_ms);
+    (step_ms > logs.robot.step_ms).then(|| logs.in_steps_of(step_ms))
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,75 @@
+//! Fixed point against float: whether a board computes with a simulator's networks what the PC said it would.
+
+mod arithmetic;
+mod differences;
+mod runs;
+
+use mindgap_core::controller::Controller;
+use serde::Serialize;
+
+use crate::learn::dataset::Datasets;
+use arithmetic::{Fixed, Float};
+pub use differences::{Differences, NetworkCheck};
+use mindgap_foundations::error::Result;
+use mindgap_logs::Logs;
+use mindgap_models::simulator::Simulator;
+use mindgap_models::simulator::fixed_point::FixedNetworks;
+pub use runs::{Apart, Divergence, RunState, Runs, Trials};
+
+/// What `mindgap crosscheck --json` writes.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Crosscheck {
+    /// Version of this form.
+    pub schema: u32,
+    /// The five networks.
+    pub networks: Networks,
+    /// Controllers that ran in both arithmetics side by side.
+    pub runs: Runs,
+}
+
+/// How far fixed point is from float.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Networks {
+    /// Turn, degrees.
+    pub turn: NetworkCheck,
+    /// Way forward, cm.
+    pub forward: NetworkCheck,
+    /// Way to the left, cm.
+    pub lateral: NetworkCheck,
+    /// Probability of an echo.
+    pub echo_probability: NetworkCheck,
+    /// The reading, cm.
+    pub echo_value: NetworkCheck,
+}
+
+/// Compares a simulator's networks in both arithmetics: on every sample of the logs, on a grid over all that they were
+/// trained on, and in whole runs, of `controller` or of random ones, in the room of the logs. `watch` is told how many runs of
+/// how many are done.
+///
+/// # Errors
+/// When a network is missing or cannot be represented in fixed point, or when the robot has no room where the logs have
+/// been.
+pub fn crosscheck(
+    simulator: &Simulator,
+    logs: &Logs,
+    controller: Option<&Controller>,
+    trials: Trials,
+    watch: impl Fn(usize, usize) + Sync,
+) -> Result<Crosscheck> {
+    let data = Datasets::from_logs(logs);
+    let float = Float::new(simulator, &data)?;
+    let quantised = FixedNetworks::quantise(simulator)?;
+    let fixed = Fixed::new(&quantised, &float);
+    let (commands, faced) = (&data.turn.inputs, &data.echo_probability.inputs);
+    Ok(Crosscheck {
+        schema: 1,
+        networks: Networks {
+            turn: NetworkCheck::new(&float.turn, &quantised.turn, commands),
+            forward: NetworkCheck::new(&float.forward, &quantised.forward, commands),
+            lateral: NetworkCheck::new(&float.lateral, &quantised.lateral, commands),
+            echo_probability: NetworkCheck::new(&float.echo_probability, &quantised.echo_probability, faced),
+            echo_value: NetworkCheck::new(&float.echo_value, &quantised.echo_value, faced),
+        },
+        runs: runs::side_by_side(&float, &fixed, simulator, logs, controller, trials, watch)?,
+    })
+}

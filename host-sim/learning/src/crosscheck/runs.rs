@@ -1,0 +1,257 @@
+//! Whole runs of controllers in both arithmetics, side by side: from one start, through one room, with the same draws.
+//! Poses and rays are the room's and not the robot's; both have them in double precision.
+
+use mindgap_core::chance::Generator;
+use mindgap_core::controller::{Controller, Machine, Motors, Status};
+use rand::{RngExt, SeedableRng};
+use rayon::prelude::*;
+use serde::Serialize;
+
+use super::arithmetic::{Arithmetic, Fixed, Float};
+use crate::evolve::genome::GenotypeDecoder;
+use mindgap_foundations::chance::{derive, generator};
+use mindgap_foundations::counter::Counter;
+use mindgap_foundations::error::{Error, Result};
+use mindgap_foundations::geometry::{Pose, Wall, cast, wrap_rad};
+use mindgap_logs::{Logs, Robot};
+use mindgap_models::simulator::Simulator;
+use mindgap_models::simulator::room::Room;
+
+/// How many runs, and from which seed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Trials {
+    /// Pairs of runs.
+    pub runs: usize,
+    /// Fixes controllers, starts and draws.
+    pub seed: u64,
+}
+
+/// What became of pairs of runs.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Runs {
+    /// Pairs of runs.
+    pub n: usize,
+    /// Steps of them all, counted while either of a pair was under way.
+    pub steps: usize,
+    /// Steps after which both held the same tuple, or had ended alike.
+    pub same_decisions: usize,
+    /// Pairs in which they did not, at one step at least.
+    pub parted: usize,
+    /// The first of these.
+    pub first_divergence: Option<Divergence>,
+    /// The most that the two were apart, until they parted.
+    pub apart: Apart,
+}
+
+/// A step after which two runs no longer were in the same tuple.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Divergence {
+    /// The pair, from 1.
+    pub run: usize,
+    /// The step, from 1.
+    pub step: usize,
+    /// The run in float after it.
+    pub float: RunState,
+    /// The run in fixed point after it.
+    pub fixed: RunState,
+}
+
+/// The state of a run after a step.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct RunState {
+    /// Position along x.
+    pub x_cm: f64,
+    /// Position along y.
+    pub y_cm: f64,
+    /// Heading in (-180, 180].
+    pub heading_deg: f64,
+    /// The reading; null when there was none.
+    pub echo_cm: Option<f64>,
+    /// The tuple that is held from here on, from 1; 7 once finished.
+    pub tuple: usize,
+    /// Whether the robot has touched something.
+    pub crashed: bool,
+    /// Whether the motors have been stopped.
+    pub stopped: bool,
+}
+
+/// Largest differences of two runs.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Apart {
+    /// Of positions.
+    pub position_cm: f64,
+    /// Of headings.
+    pub heading_deg: f64,
+    /// Of readings.
+    pub echo_cm: f64,
+}
+
+/// The step limit of random controllers.
+const MAX_STEPS: u16 = 150;
+/// Places of generators: what a pair of runs is, and each step of it.
+const PAIR: u64 = 0;
+const STEP: u64 = 1;
+
+/// Runs pairs, from places where the logs saw the robot.
+pub(super) fn side_by_side(
+    float: &Float,
+    fixed: &Fixed,
+    simulator: &Simulator,
+    logs: &Logs,
+    controller: Option<&Controller>,
+    trials: Trials,
+    watch: impl Fn(usize, usize) + Sync,
+) -> Result<Runs> {
+    let world = World { robot: simulator.robot, sides: logs.scene.sides(), room: Room::new(&logs.scene) };
+    let has_room = |pose: &Pose| logs.scene.has_room_for(pose.position_cm, world.robot.body_radius_cm);
+    let poses = logs.runs.iter().flat_map(|run| run.rows.iter().filter_map(|row| row.pose));
+    let starts: Vec<Pose> = poses.filter(has_room).collect();
+    if starts.is_empty() {
+        return Err(Error::new("the robot has no room to start at any pose that the logs hold"));
+    }
+    let decoder = GenotypeDecoder::new(simulator, MAX_STEPS);
+    let counter = Counter::new(trials.runs, watch);
+    let pairs = (0..trials.runs).into_par_iter().map(|run| {
+        let seed = derive(trials.seed, &[run as u64]);
+        let mut generator = generator(seed, &[PAIR]);
+        let start = starts[generator.random_range(0..starts.len())];
+        let random = decoder.controller(&decoder.random(&mut generator));
+        let controller = controller.unwrap_or(&random);
+        let found = pair(&world, controller, Walker::new(float, start), Walker::new(fixed, start), run + 1, seed);
+        counter.one_more();
+        found
+    });
+    Ok(pairs.collect::<Vec<Runs>>().into_iter().fold(Runs::default(), Runs::and))
+}
+
+/// One pair of runs.
+fn pair(
+    world: &World,
+    controller: &Controller,
+    mut float: Walker<Float>,
+    mut fixed: Walker<Fixed>,
+    run: usize,
+    seed: u64,
+) -> Runs {
+    let (mut steps, mut same_decisions) = (0, 0);
+    let (mut first_divergence, mut apart) = (None, Apart::default());
+    while float.is_under_way() || fixed.is_under_way() {
+        steps += 1;
+        // Each step has its own draws, so that one echo more or less leaves those of later steps alone.
+        let mut generator = Generator::seed_from_u64(derive(seed, &[STEP, steps as u64]));
+        float.step(world, controller, &mut generator.clone());
+        fixed.step(world, controller, &mut generator);
+        let states = [float.state(), fixed.state()];
+        let decisions = states.map(|s| (s.tuple, s.crashed, s.stopped));
+        if decisions[0] == decisions[1] {
+            same_decisions += 1;
+        } else if first_divergence.is_none() {
+            first_divergence = Some(Divergence { run, step: steps, float: states[0], fixed: states[1] });
+        }
+        if first_divergence.is_none() {
+            apart = apart.or_more(&states[0].apart(&states[1]));
+        }
+    }
+    Runs { n: 1, steps, same_decisions, parted: usize::from(first_divergence.is_some()), first_divergence, apart }
+}
+
+/// Where the runs take place, and the robot's measures.
+struct World {
+    robot: Robot,
+    sides: Vec<Wall>,
+    room: Room,
+}
+
+/// A robot on its way, computing in one arithmetic.
+struct Walker<'a, A: Arithmetic> {
+    arithmetic: &'a A,
+    pose: Pose,
+    machine: Machine,
+    previous: Motors,
+    echo_cm: Option<A::Reading>,
+    crashed: bool,
+}
+
+impl<'a, A: Arithmetic> Walker<'a, A> {
+    fn new(arithmetic: &'a A, start: Pose) -> Self {
+        let previous = Motors { left: 0, right: 0 };
+        Walker { arithmetic, pose: start, machine: Machine::start(), previous, echo_cm: None, crashed: false }
+    }
+
+    fn is_under_way(&self) -> bool {
+        !self.crashed && self.machine.status() == Status::Running
+    }
+
+    /// Straight in the heading that it had, then the turn; then the reading, unless it has touched something.
+    fn step(&mut self, world: &World, controller: &Controller, generator: &mut Generator) {
+        if !self.is_under_way() {
+            return;
+        }
+        let now = self.machine.motors(controller);
+        let speeds = [now.left, now.right, self.previous.left, self.previous.right];
+        self.previous = now;
+        let [forward_cm, lateral_cm, turn_deg] = self.arithmetic.motion(speeds, generator);
+        let from_cm = self.pose.position_cm;
+        self.pose = self.pose.compose(&Pose::new(forward_cm, lateral_cm, turn_deg.to_radians()));
+        self.crashed = world.room.touch(from_cm, self.pose.position_cm, world.robot.body_radius_cm).is_some();
+        if self.crashed {
+            return;
+        }
+        let sensor = world.robot.ultrasonic.pose_on(&self.pose);
+        self.echo_cm = cast(&world.sides, sensor.position_cm, sensor.direction()).and_then(|hit| {
+            self.arithmetic.reading([hit.distance_cm, hit.incidence_rad.abs().to_degrees()], generator)
+        });
+        self.machine.step(controller, self.echo_cm);
+    }
+
+    fn state(&self) -> RunState {
+        RunState {
+            x_cm: self.pose.position_cm.x,
+            y_cm: self.pose.position_cm.y,
+            heading_deg: self.pose.heading_rad.to_degrees(),
+            echo_cm: self.echo_cm.map(Into::into),
+            tuple: self.machine.tuple() + 1,
+            crashed: self.crashed,
+            stopped: self.machine.status() != Status::Running,
+        }
+    }
+}
+
+impl RunState {
+    fn apart(&self, other: &Self) -> Apart {
+        let echo_cm = self.echo_cm.zip(other.echo_cm).map_or(0.0, |(a, b)| (a - b).abs());
+        Apart {
+            position_cm: libm::hypot(self.x_cm - other.x_cm, self.y_cm - other.y_cm),
+            heading_deg: wrap_rad((self.heading_deg - other.heading_deg).to_radians()).to_degrees().abs(),
+            echo_cm,
+        }
+    }
+}
+
+impl Apart {
+    fn or_more(&self, other: &Self) -> Self {
+        Apart {
+            position_cm: self.position_cm.max(other.position_cm),
+            heading_deg: self.heading_deg.max(other.heading_deg),
+            echo_cm: self.echo_cm.max(other.echo_cm),
+        }
+    }
+}
+
+impl Runs {
+    /// Share of the steps after which both held the same tuple.
+    pub fn same_share(&self) -> f64 {
+        self.same_decisions as f64 / self.steps as f64
+    }
+
+    fn and(self, other: Self) -> Self {
+        Runs {
+            n: self.n + other.n,
+            steps: self.steps + other.steps,
+            same_decisions: self.same_decisions + other.same_decisions,
+            parted: self.parted + other.parted,
+            first_divergence: self.first_divergence.or(other.first_divergence),
+            apart: self.apart.or_more(&other.apart),
+        }
+    }
+}

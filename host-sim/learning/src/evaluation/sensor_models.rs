@@ -1,0 +1,164 @@
+//! How likely each model of the sensor makes the readings of logs, in nats a reading: the two networks, the beam that the
+//! training logs showed, the first-echo law, and the textbook's ideal ray.
+
+use rayon::prelude::*;
+use serde::Serialize;
+
+use crate::learn::scans::{Heard, Offset, Scans, TRIED, UNCHANGED};
+use mindgap_foundations::counter::Counter;
+use mindgap_foundations::geometry::{Pose, cast};
+use mindgap_logs::Logs;
+use mindgap_models::simulator::{Simulator, kinematic};
+use mindgap_models::sonar::SensorLaw;
+use mindgap_models::sonar::echo_law::Surfaces;
+use mindgap_models::sonar::model::{CONSTANT_SCATTER_CM, P_RAND};
+use mindgap_models::sonar::outcomes::{Component, Distribution, Outcomes, Source};
+
+/// The log-likelihood of logs' readings under each model that the simulator has.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct SensorModels {
+    /// Number of readings: rows with a pose, with an echo or none.
+    pub n: usize,
+    /// The two networks, with the scatter that was learned about them.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub networks: Option<Nats>,
+    /// The beam that the training logs show beyond the networks.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub beam: Option<Nats>,
+    /// The first-echo law.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub first_echo: Option<Nats>,
+    /// The textbook's ideal ray, its scatter and its share of lost echoes taken from the judged logs themselves.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub ideal_ray: Option<Nats>,
+}
+
+/// Mean log-likelihood of a reading: of its value per cm, or of none.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Nats {
+    /// With poses as logged.
+    pub as_logged: f64,
+    /// With an offset to the poses of each scan (x, y, heading) that is fitted on that scan itself; null where no run is a scan.
+    pub poses_refitted: Option<f64>,
+}
+
+/// Judges every model that a simulator has by the readings of logs; none where there are no readings with a pose. `watch` is
+/// told how often models were asked, of how often they will be.
+pub fn sensor_models(simulator: &Simulator, logs: &Logs, watch: impl Fn(usize, usize) + Sync) -> Option<SensorModels> {
+    let scans = Scans::of(logs);
+    let n = scans.rows().count();
+    if n == 0 || scans.rows().all(|row| row.echo_cm.is_none()) {
+        return None;
+    }
+    let surfaces = Surfaces::new(logs.scene.sides());
+    let networks = of_networks(simulator, |sensor| {
+        let hit = cast(surfaces.walls(), sensor.position_cm, sensor.direction())?;
+        Some([hit.distance_cm, hit.incidence_rad.abs().to_degrees()].map(|x| x as f32))
+    });
+    let reference = simulator.reference.as_ref();
+    let beam = reference.and_then(|reference| reference.sonar.clone()).map(SensorLaw::Beam);
+    let law = simulator.first_echo.clone().map(SensorLaw::FirstEcho);
+    let ideal_ray = kinematic::baseline(logs).sonar;
+    let models = [networks.is_some(), beam.is_some(), law.is_some(), ideal_ray.is_some()];
+    let counter = Counter::new(models.iter().filter(|is_there| **is_there).count() * asked(&scans), watch);
+    let counted = |at: &(dyn Fn(&Pose) -> Outcomes + Sync)| {
+        nats(logs, |sensor| {
+            counter.one_more();
+            at(sensor)
+        })
+    };
+    let of_law = |law: &SensorLaw| counted(&|sensor| law.outcomes_at(&surfaces, sensor));
+    Some(SensorModels {
+        n,
+        networks: networks.map(|at| counted(&at)),
+        beam: beam.as_ref().map(of_law),
+        first_echo: law.as_ref().map(of_law),
+        ideal_ray: ideal_ray.as_ref().map(of_law),
+    })
+}
+
+/// How often [`nats`] asks a model.
+fn asked(scans: &Scans) -> usize {
+    let rows = scans.rows().count();
+    let of_scans: Vec<usize> =
+        (0..scans.runs.len()).filter(|run| scans.is_scan(*run)).map(|run| scans.runs[run].len()).collect();
+    if of_scans.is_empty() { rows } else { 2 * rows + TRIED * of_scans.iter().sum::<usize>() }
+}
+
+/// How likely a model of the sensor makes the readings of logs, which have a row with a pose; `at` gives the outcomes of a
+/// sensor at a pose.
+pub fn nats(logs: &Logs, at: impl Fn(&Pose) -> Outcomes + Sync) -> Nats {
+    let scans = &Scans::of(logs);
+    let log_likelihood = |sensor: &Pose, echo_cm: Option<f64>| at(sensor).log_likelihood(echo_cm);
+    let mean = |offsets: &[Offset]| {
+        let rows = scans.rows_with(offsets);
+        let term = |(row, offset): &(&Heard, &Offset)| log_likelihood(&scans.sensor(&row.robot, offset), row.echo_cm);
+        let terms: Vec<f64> = rows.par_iter().map(term).collect();
+        terms.iter().sum::<f64>() / terms.len() as f64
+    };
+    let runs = scans.runs.len();
+    let has_scans = (0..runs).any(|run| scans.is_scan(run));
+    Nats {
+        as_logged: mean(&vec![UNCHANGED; runs]),
+        poses_refitted: has_scans.then(|| mean(&scans.offsets(log_likelihood))),
+    }
+}
+
+/// What a simulator's two networks make of a sensor, as its runs draw them: an echo with one network's probability, the other's
+/// value with one of the residuals about it, or the constant reading. What is drawn without scatter has that of whole
+/// centimetres here, and a random answer is as likely as it is to the beam.
+fn of_networks(
+    simulator: &Simulator,
+    axis: impl Fn(&Pose) -> Option<[f32; 2]> + Sync,
+) -> Option<impl Fn(&Pose) -> Outcomes + Sync> {
+    let (probability, value) = simulator.echo_probability.as_ref().zip(simulator.echo_value.as_ref())?;
+    let range_cm = [simulator.robot.ultrasonic.min_cm, simulator.robot.ultrasonic.max_cm];
+    let constant = simulator.constant_reading;
+    Some(move |sensor: &Pose| {
+        let known = 1.0 - P_RAND;
+        let mut components = Vec::new();
+        let mut echo = 0.0;
+        let about = |source, probability, middle_cm: f32| {
+            let distribution = Distribution::Student { middle_cm: f64::from(middle_cm), scale_cm: CONSTANT_SCATTER_CM };
+            Component { source, probability, distribution }
+        };
+        if let Some(context) = axis(sensor) {
+            echo = f64::from(probability.network.evaluate(context)).clamp(0.0, 1.0);
+            let p_constant = constant.map_or(0.0, |constant| f64::from(constant.probability));
+            let residuals = &value.residuals.quantiles[value.residuals.cell(context)];
+            let each = known * echo * (1.0 - p_constant) / residuals.len() as f64;
+            let middle_cm = value.network.evaluate(context);
+            components.extend(residuals.iter().map(|off_cm| about(Source::Hit, each, middle_cm + off_cm)));
+            components.extend(constant.map(|c| about(Source::Constant, known * echo * p_constant, c.value_cm)));
+        }
+        let [low_cm, high_cm] = range_cm;
+        let distribution = Distribution::Uniform { low_cm, high_cm };
+        components.push(Component { source: Source::Stray, probability: 0.5 * P_RAND, distribution });
+        Outcomes { none: known * (1.0 - echo) + 0.5 * P_RAND, components, range_cm }
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::atomic::{AtomicUsize, Ordering};
+
+    use super::*;
+    use mindgap_built_in_robot::{default_robot, record, training_room};
+    use mindgap_logs::Row;
+
+    #[test]
+    fn a_model_is_asked_as_often_as_progress_counts() {
+        let driven = record(&default_robot(), &training_room(), 3, 8, &[], 1).expect("logs");
+        let mut scanned = driven.clone();
+        let place = driven.runs[0].rows.iter().find_map(|row| row.pose);
+        scanned.runs[0].rows = driven.runs[0].rows.iter().map(|row| Row { pose: place, ..row }).collect();
+        for logs in [driven, scanned] {
+            let times = AtomicUsize::new(0);
+            nats(&logs, |_| {
+                times.fetch_add(1, Ordering::Relaxed);
+                Outcomes { none: 0.5, components: Vec::new(), range_cm: [5.0, 240.0] }
+            });
+            assert_eq!(times.into_inner(), asked(&Scans::of(&logs)));
+        }
+    }
+}

@@ -1,0 +1,35 @@
+//! A simulator and a task for what is made of an [`EvolutionTask`].
+
+use std::sync::LazyLock;
+
+use super::fitness::RandomNumbers;
+use super::genome::GenotypeDecoder;
+use super::task::EvolutionTask;
+use super::way::WayMap;
+use crate::learn::train::{TABLE_ONE, Trainer, train};
+use mindgap_built_in_robot::{default_robot, four_obstacles, record, training_room};
+use mindgap_models::simulator::environment::Environment;
+use mindgap_models::simulator::{Noise, Simulator};
+
+const SEED: u64 = 5;
+
+/// Of the built-in robot, from a few logs.
+pub static SIMULATOR: LazyLock<Simulator> = LazyLock::new(|| {
+    let logs = record(&default_robot(), &training_room(), 20, 40, &[], SEED).unwrap();
+    train(&logs, &Trainer::Fast, &TABLE_ONE, SEED, &|_| {}).unwrap()
+});
+
+/// Calls `check` with a task among four obstacles.
+pub fn with_task(check: impl Fn(&EvolutionTask)) {
+    let scene = four_obstacles();
+    let target_cm = scene.target_cm.unwrap();
+    let environment = Environment::new(&SIMULATOR, &scene, scene.starts[0], Noise::Learned).unwrap();
+    check(&EvolutionTask {
+        environment: &environment,
+        target_cm,
+        way: &WayMap::new(&scene, target_cm, SIMULATOR.robot.body_radius_cm),
+        decoder: GenotypeDecoder::new(&SIMULATOR, 60),
+        random_numbers: RandomNumbers::Common,
+        seed: SEED,
+    });
+}

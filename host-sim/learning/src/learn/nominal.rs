@@ -1,0 +1,75 @@
+//! Learns what is normal beyond the networks: the yardstick of the gap.
+
+use super::{beam, familiar, place_bound, sensor_law};
+use mindgap_foundations::statistics::ridge;
+use mindgap_foundations::statistics::summary::root_mean_square;
+use mindgap_logs::{Logs, samples};
+use mindgap_models::simulator::Simulator;
+use mindgap_models::simulator::ensemble::CommandScale;
+use mindgap_models::simulator::nominal::NominalModel;
+use mindgap_models::simulator::nominal::motion_bias::{FEATURES, MotionBias, Precision, features, products};
+use mindgap_models::sonar::{FirstEchoLaw, SensorLaw};
+
+/// Parts of the logs that are left out in turn.
+const FOLDS: usize = 5;
+/// Ratios of noise variance to prior variance that are tried. At the first, a thousand steps hold half a standard deviation of
+/// the noise; at the last, the prior is wide even for bends that only slow wheels pass.
+const STRENGTHS: [f64; 9] = [1000.0, 215.0, 46.0, 10.0, 2.15, 0.46, 0.1, 0.02, 0.004];
+/// Fewer samples than this, about as many as there are features, tell nothing.
+const FEWEST: usize = 100;
+
+/// The reference of a simulator whose networks are trained, from its training logs; `first_echo` is the law of its sensor
+/// with poses as logged.
+pub fn learn(simulator: &Simulator, first_echo: Option<FirstEchoLaw>, logs: &Logs) -> NominalModel {
+    let sonar = beam::learn(simulator.constant_reading, logs);
+    let with_seen = |law: SensorLaw| {
+        let seen = place_bound::seen(&law, logs);
+        (law, seen)
+    };
+    let by_beam = sonar.clone().map(|beam| with_seen(SensorLaw::Beam(beam)));
+    let is_first_echo = |law: &FirstEchoLaw| {
+        sonar.as_ref().zip(by_beam.as_ref()).is_some_and(|(beam, (_, seen))| {
+            let [at_place, _] = place_bound::learn(seen);
+            sensor_law::is_first_echo(law, beam, at_place, logs)
+        })
+    };
+    let first_echo = first_echo.filter(is_first_echo);
+    let (law, seen) = first_echo.clone().map(|law| with_seen(SensorLaw::FirstEcho(law))).or(by_beam).unzip();
+    let seen = seen.unwrap_or_default();
+    let familiar = law.as_ref().and_then(|law| familiar::learn(law, &seen, &logs.scene));
+    let place_bound = place_bound::learn(&seen);
+    NominalModel { motion: motion(simulator, logs), sonar, first_echo, place_bound, familiar }
+}
+
+fn motion(simulator: &Simulator, logs: &Logs) -> Option<MotionBias> {
+    let networks = simulator.motion_networks()?;
+    let steps = samples::motion(logs);
+    if steps.len() < FEWEST {
+        return None;
+    }
+    let scale = CommandScale::of(simulator.commands);
+    let rows: Vec<Vec<f64>> = steps.iter().map(|s| features(s.speeds, scale.share()).to_vec()).collect();
+    // Few runs are cut into parts.
+    let parts = if logs.runs.len() < FOLDS { FOLDS } else { 1 };
+    let part = |s: &samples::MotionSample| s.run + s.row * parts / logs.runs[s.run].rows.len();
+    let folds: Vec<usize> = steps.iter().map(|s| part(s) % FOLDS).collect();
+    let residuals: Vec<[f64; 3]> = steps.iter().map(|s| networks.residual(s)).collect();
+    let fit = |c: usize| {
+        let unit = root_mean_square(residuals.iter().map(|r| r[c])).max(f64::MIN_POSITIVE);
+        let ridge = ridge::fit(&rows, &folds, &STRENGTHS, |i, _| residuals[i][c] / unit);
+        let weights: Vec<f64> = ridge.weights.iter().map(|w| unit * w).collect();
+        let left = residuals.iter().zip(&rows).map(|(r, row)| r[c] - ridge::predicted(row, &weights));
+        let scatter = (left.map(|r| r * r).sum::<f64>() / steps.len().saturating_sub(FEATURES).max(1) as f64).sqrt();
+        (weights, scatter, ridge.strength.unwrap_or(STRENGTHS[0]))
+    };
+    let [forward, lateral, turn] = [0, 1, 2].map(fit);
+    // Of absurd commands the products are too large to say anything.
+    let products = Some(products(&rows)).filter(|products| products.iter().all(|product| product.is_finite()));
+    let precision = products.map(|products| Precision { products, prior: [forward.2, lateral.2, turn.2] });
+    Some(MotionBias {
+        scale,
+        scatter: [forward.1, lateral.1, turn.1],
+        precision,
+        weights: [forward.0, lateral.0, turn.0],
+    })
+}

@@ -1,0 +1,379 @@
+//! The effects that a diagnosis knows: one file each, and one line here.
+//!
+//! What several of them share stands below, how commands, distances and forces change, and in `drive`.
+
+mod drive;
+
+use super::context::{CommandHistory, StepContext};
+use super::parameter::parameters;
+use super::{Effect, PoseIncrement, Variant};
+
+/// Declares the modules and lists them, so that an effect cannot be in one place and not in the other.
+macro_rules! catalogue {
+    ($($effect:ident)*) => {
+        $(mod $effect;)*
+
+        /// All effects, in the order of the table in docs/formats.md.
+        pub static CATALOGUE: &[&Effect] = &[$(&$effect::EFFECT),*];
+    };
+}
+
+catalogue! {
+    battery_sag
+    motor_asymmetry
+    drive_scale
+    track_width
+    deadband
+    saturation
+    latency
+    inertia
+    payload
+    slope
+    slip
+    turn_loss
+    carpet_nap
+    sonar_scale
+    sonar_offset
+    sonar_yaw
+    sonar_beam
+    sonar_ghost
+    sonar_dropout
+    sonar_lag
+    sonar_absorption
+    sonar_crosstalk
+    sonar_multipath
+    sonar_noise
+    tracker_rotation
+    tracker_scale
+    lens_distortion
+    marker_offset
+    compass_disturbance
+}
+
+/// A variant with the id of its effect.
+#[derive(Clone, Copy)]
+pub struct Candidate {
+    /// Id of the effect.
+    pub effect: &'static str,
+    /// One of its variants.
+    pub variant: &'static Variant,
+}
+
+impl Candidate {
+    /// All variants of all effects of a catalogue.
+    pub fn all(catalogue: &[&'static Effect]) -> Vec<Candidate> {
+        let of = |effect: &&'static Effect| {
+            let effect: &'static Effect = effect;
+            effect.variants.iter().map(|variant| Candidate { effect: effect.id, variant })
+        };
+        catalogue.iter().flat_map(of).collect()
+    }
+
+    /// The variant of an effect, by their ids.
+    pub fn named(effect: &str, variant: &str) -> Option<Candidate> {
+        Candidate::named_in(CATALOGUE, effect, variant)
+    }
+
+    /// The same of another catalogue.
+    pub fn named_in(catalogue: &[&'static Effect], effect: &str, variant: &str) -> Option<Candidate> {
+        Candidate::all(catalogue).into_iter().find(|c| c.effect == effect && c.variant.id == variant)
+    }
+}
+
+impl PartialEq for Candidate {
+    fn eq(&self, other: &Self) -> bool {
+        self.effect == other.effect && self.variant.id == other.variant.id
+    }
+}
+
+/// Where fits of a direction start: the four quarters.
+const DIRECTIONS_DEG: [f64; 4] = [0.0, 90.0, 180.0, -90.0];
+/// The speed to which losses by a force refer: half of an NXT robot's full speed.
+const LOADED_SPEED_CM_S: f64 = 20.0;
+/// Below this speed a force moves or holds back less and less: a robot that stands stays.
+const CREEPING_CM_S: f64 = 3.75;
+/// Turns slower than this scrub less and less.
+const CREEPING_RAD_S: f64 = 0.1;
+
+/// Changes the magnitude of every command and keeps its sign; `change` is given the magnitude and the motor, 0 for the
+/// left one.
+fn each_command(commands: &mut CommandHistory, change: impl Fn(f64, usize) -> f64) {
+    for pair in commands {
+        for (motor, command) in pair.iter_mut().enumerate() {
+            *command = change(command.abs(), motor) * command.signum();
+        }
+    }
+}
+
+/// Changes the distance that each wheel covers; `change` is given it and the wheel, 0 for the left one.
+fn each_wheel(context: &StepContext, increment: &mut PoseIncrement, change: impl Fn(f64, usize) -> f64) {
+    let [left_cm, right_cm] = increment.wheels_cm(context.robot.track_cm);
+    increment.set_wheels([change(left_cm, 0), change(right_cm, 1)], context.robot.track_cm);
+}
+
+/// The distance that a force of strength one costs in a step: a share of it grows with the distance covered, the rest is
+/// that of [`LOADED_SPEED_CM_S`] at any speed.
+fn distance_lost_cm(with_speed: f64, covered_cm: f64, context: &StepContext) -> f64 {
+    loaded(with_speed, covered_cm.abs(), LOADED_SPEED_CM_S * context.step_s())
+}
+
+/// A drag of which one share grows with the speed and the rest is that of the `reference` at any speed.
+fn loaded(with_speed: f64, speed: f64, reference: f64) -> f64 {
+    with_speed * speed + (1.0 - with_speed) * reference
+}
+
+/// How much a step counts as motion, 0 to 1.
+fn moving(covered_cm: f64, context: &StepContext) -> f64 {
+    (covered_cm.abs() / (CREEPING_CM_S * context.step_s())).min(1.0)
+}
+
+/// How much a turn scrubs the tyres, and which way, -1 to 1.
+fn scrubbing(turn_rad: f64, context: &StepContext) -> f64 {
+    libm::tanh(turn_rad / (CREEPING_RAD_S * context.step_s()))
+}
+
+/// A distance made longer or shorter, not below nothing; a robot that stands stays.
+fn pushed_cm(covered_cm: f64, more_cm: f64, context: &StepContext) -> f64 {
+    (covered_cm.abs() + moving(covered_cm, context) * more_cm).max(0.0) * covered_cm.signum()
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::effects::chain::EffectChain;
+    use crate::effects::context::{RunHistory, Surroundings};
+    use crate::effects::{PoseIncrement, SensorState};
+    use crate::sonar::Perturbation;
+    use mindgap_foundations::geometry::{Pose, wrap_rad};
+    use mindgap_logs::{Robot, Scene};
+
+    /// The effects of the table in docs/formats.md.
+    const TABLE: usize = 29;
+    /// Fastest command of an NXT robot.
+    const TOP_SPEED_CM_S: f64 = 41.0;
+
+    /// What comes of a step: commands, increment, sensor.
+    fn applied(
+        variant: &'static Variant,
+        values: &[f64],
+        context: &StepContext,
+    ) -> (CommandHistory, PoseIncrement, SensorState) {
+        let effects = EffectChain::default().with(&[variant], values);
+        let mut commands = [[0.0; 2]; 7];
+        let increment = effects.wrap(context, |now, before| {
+            commands[0] = now;
+            commands[1] = before;
+            PoseIncrement { forward_cm: 7.0, lateral_cm: -0.4, turn_rad: 0.3 }
+        });
+        (commands, increment, effects.sensor(context))
+    }
+
+    fn context() -> impl Strategy<Value = StepContext> {
+        let commands = prop::array::uniform7(prop::array::uniform2(-100.0..100.0));
+        let pose = || (10.0..290.0, 10.0..210.0, -3.0..3.0).prop_map(|(x, y, h)| Pose::new(x, y, h));
+        (commands, pose(), pose(), 0.0..2.0, any::<bool>()).prop_map(|(commands, pose, earlier, elapsed_min, echo)| {
+            let robot = mindgap_built_in_robot::default_robot();
+            let scene = Scene { arena_cm: Some(glam::DVec2::new(300.0, 220.0)), ..Scene::default() };
+            StepContext {
+                commands,
+                earlier: std::array::from_fn(|i| (i == 0).then_some(earlier)),
+                faced: Some([80.0, 0.2]),
+                echo_before: Some(echo),
+                ..Surroundings::new(&robot, &scene).context(&RunHistory::default(), elapsed_min * 60_000.0, pose)
+            }
+        })
+    }
+
+    #[test]
+    fn the_catalogue_is_the_table() {
+        let mut ids: Vec<&str> = CATALOGUE.iter().map(|effect| effect.id).collect();
+        ids.sort_unstable();
+        ids.dedup();
+        assert_eq!((ids.len(), CATALOGUE.len()), (TABLE, TABLE), "{ids:?}");
+    }
+
+    #[test]
+    fn ids_of_variants_and_names_of_parameters_are_unique() {
+        let unique = |mut names: Vec<&str>| {
+            let all = names.len();
+            names.sort_unstable();
+            names.dedup();
+            names.len() == all
+        };
+        for effect in CATALOGUE {
+            assert!(unique(effect.variants.iter().map(|v| v.id).collect()), "{}", effect.id);
+            for variant in effect.variants {
+                assert!(unique(variant.parameters.iter().map(|p| p.name).collect()), "{} {}", effect.id, variant.id);
+            }
+        }
+    }
+
+    #[test]
+    fn fits_start_within_the_bounds_and_not_where_nothing_changes() {
+        for Candidate { effect, variant } in Candidate::all(CATALOGUE) {
+            for start in variant.initial_guesses(TOP_SPEED_CM_S) {
+                assert!(start.iter().zip(variant.parameters).all(|(v, p)| p.allows(*v)), "{effect} {}", variant.id);
+                assert_ne!(start, variant.nominal(), "{effect} {}", variant.id);
+            }
+        }
+    }
+
+    /// What the table in docs/formats.md asks each effect to report, and what slip and dropouts tell besides: the loss, and
+    /// the probability that a dropout goes on.
+    const REPORTED: [(&str, &[&str]); TABLE + 1] = [
+        ("battery_sag", &["loss_per_min"]),
+        ("motor_asymmetry", &["side", "factor"]),
+        ("drive_scale", &["factor"]),
+        ("track_width", &["factor"]),
+        ("deadband", &["command"]),
+        ("saturation", &["command"]),
+        ("latency", &["ms"]),
+        ("inertia", &["ms"]),
+        ("payload", &["side", "loss"]),
+        ("slope", &["direction_deg", "loss"]),
+        ("slip", &["onset", "loss"]),
+        ("turn_loss", &["cm_per_rad"]),
+        ("carpet_nap", &["direction_deg", "loss"]),
+        ("sonar_scale", &["factor"]),
+        ("sonar_offset", &["cm"]),
+        ("sonar_yaw", &["deg"]),
+        ("sonar_beam", &["factor"]),
+        ("sonar_ghost", &["probability", "cm"]),
+        ("sonar_dropout", &["probability", "goes_on"]),
+        ("sonar_lag", &["steps"]),
+        ("sonar_absorption", &["factor"]),
+        ("sonar_crosstalk", &["probability"]),
+        ("sonar_multipath", &["probability"]),
+        ("sonar_multipath mirrored", &["factor"]),
+        ("sonar_noise", &["cm"]),
+        ("tracker_rotation", &["deg"]),
+        ("tracker_scale", &["factor"]),
+        ("lens_distortion", &["per_m2"]),
+        ("marker_offset", &["ahead_cm", "left_cm"]),
+        ("compass_disturbance", &["deg"]),
+    ];
+
+    #[test]
+    fn every_variant_reports_by_the_names_of_the_table() {
+        let robot = mindgap_built_in_robot::default_robot();
+        for Candidate { effect, variant } in Candidate::all(CATALOGUE) {
+            let asked = |id: &str| REPORTED.iter().find(|(known, _)| *known == id).map(|(_, names)| names);
+            let asked = asked(&format!("{effect} {}", variant.id)).or_else(|| asked(effect)).expect(effect);
+            let reported = variant.reported(&variant.initial_guesses(TOP_SPEED_CM_S)[0], &robot);
+            let mut names: Vec<&str> = reported.keys().map(String::as_str).collect();
+            let mut asked = asked.to_vec();
+            names.sort_unstable();
+            asked.sort_unstable();
+            assert_eq!(names, asked, "{effect} {}", variant.id);
+        }
+    }
+
+    /// Wheel speeds, not commands, are what effects depend on: a robot of five times the full speed that is sent a fifth of
+    /// the commands is the same robot.
+    #[test]
+    fn the_unit_of_commands_does_not_matter() {
+        const TIMES: f64 = 5.0;
+        let robot = mindgap_built_in_robot::default_robot();
+        let scene = Scene { arena_cm: Some(glam::DVec2::new(300.0, 220.0)), ..Scene::default() };
+        let usual = StepContext {
+            commands: [[90.0, -35.0], [20.0, 60.0], [-45.0, 5.0], [0.0, 80.0], [70.0, 70.0], [10.0, -10.0], [0.0, 0.0]],
+            ..Surroundings::new(&robot, &scene).context(&RunHistory::default(), 60_000.0, Pose::new(120.0, 90.0, 0.7))
+        };
+        let scaled = StepContext {
+            commands: usual.commands.map(|pair| pair.map(|command| command / TIMES)),
+            robot: Robot { full_speed_cm_s: TIMES * robot.full_speed_cm_s, ..robot },
+            ..usual
+        };
+        // A command of 100 is full speed whatever that is, and there this variant changes nothing.
+        let refers_to_full_speed = |c: &Candidate| c.effect == "deadband" && c.variant.id == "stretched";
+        for candidate in Candidate::all(CATALOGUE).into_iter().filter(|c| !refers_to_full_speed(c)) {
+            let Candidate { effect, variant } = candidate;
+            for values in variant.initial_guesses(TOP_SPEED_CM_S) {
+                let (c, m, s) = applied(variant, &values, &usual);
+                let (other_c, other_m, other_s) = applied(variant, &values, &scaled);
+                let commands = c[..2].as_flattened().iter().zip(other_c[..2].as_flattened());
+                let near = |a: f64, b: f64| (a - b).abs() < 1e-9;
+                let same = commands.into_iter().all(|(a, b)| near(*a, TIMES * b))
+                    && near(m.forward_cm, other_m.forward_cm)
+                    && near(m.lateral_cm, other_m.lateral_cm)
+                    && near(m.turn_rad, other_m.turn_rad)
+                    && s == other_s;
+                assert!(same, "{effect} {} {values:?}", variant.id);
+            }
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn a_nominal_effect_changes_nothing(context in context()) {
+            let increment = PoseIncrement { forward_cm: 7.0, lateral_cm: -0.4, turn_rad: 0.3 };
+            for Candidate { effect, variant } in Candidate::all(CATALOGUE) {
+                let (c, m, s) = applied(variant, &variant.nominal(), &context);
+                let near = |a: f64, b: f64| (a - b).abs() < 1e-9;
+                let same = c[..2].as_flattened().iter().zip(context.commands.as_flattened()).all(|(a, b)| near(*a, *b))
+                    && near(m.forward_cm, increment.forward_cm)
+                    && near(m.lateral_cm, increment.lateral_cm)
+                    && near(m.turn_rad, increment.turn_rad)
+                    && near(s.robot.position_cm.distance(context.pose.position_cm), 0.0)
+                    && near(wrap_rad(s.robot.heading_rad - context.pose.heading_rad), 0.0)
+                    && near(s.yaw_rad, 0.0)
+                    && Perturbation { ghost_cm: Perturbation::NONE.ghost_cm, ..s.perturbation } == Perturbation::NONE;
+                prop_assert!(same, "{effect} {}", variant.id);
+            }
+        }
+
+        #[test]
+        fn what_follows_from_commands_alone_is_the_same_everywhere(here in context(), elsewhere in context()) {
+            let elsewhere = StepContext { commands: here.commands, ..elsewhere };
+            for Candidate { effect, variant } in Candidate::all(CATALOGUE) {
+                for values in variant.initial_guesses(TOP_SPEED_CM_S) {
+                    let [here, elsewhere] = [&here, &elsewhere].map(|context| applied(variant, &values, context));
+                    let same = (here.0, here.1) == (elsewhere.0, elsewhere.1);
+                    prop_assert!(same || !variant.moves_by_commands_alone(), "{effect} {}", variant.id);
+                }
+            }
+        }
+
+        /// A simulated step is spared the search for it.
+        #[test]
+        fn no_effect_on_the_motion_asks_for_what_the_sensor_faces(facing in context()) {
+            let unseen = StepContext { faced: None, ..facing };
+            for Candidate { effect, variant } in Candidate::all(CATALOGUE) {
+                for values in variant.initial_guesses(TOP_SPEED_CM_S) {
+                    let [facing, unseen] = [&facing, &unseen].map(|context| applied(variant, &values, context));
+                    prop_assert_eq!((facing.0, facing.1), (unseen.0, unseen.1), "{} {}", effect, variant.id);
+                }
+            }
+        }
+
+        #[test]
+        fn what_senses_alike_everywhere_does(here in context(), elsewhere in context()) {
+            let elsewhere = StepContext { echo_before: here.echo_before, ..elsewhere };
+            for Candidate { effect, variant } in Candidate::all(CATALOGUE) {
+                for values in variant.initial_guesses(TOP_SPEED_CM_S) {
+                    let same = [&here, &elsewhere].map(|context| {
+                        let (.., sensor) = applied(variant, &values, context);
+                        (sensor.robot == context.pose).then_some(SensorState { robot: here.pose, ..sensor })
+                    });
+                    let alike = same[0].is_some() && same[0] == same[1];
+                    prop_assert!(alike || !variant.senses_alike_everywhere(), "{effect} {}", variant.id);
+                }
+            }
+        }
+
+        #[test]
+        fn at_its_bounds_an_effect_stays_finite(context in context(), corner in any::<[bool; 5]>()) {
+            for Candidate { effect, variant } in Candidate::all(CATALOGUE) {
+                let bound = |(p, high): (&super::super::Parameter, &bool)| p.bounds[usize::from(*high)];
+                let values: Vec<f64> = variant.parameters.iter().zip(&corner).map(bound).collect();
+                let (c, m, s) = applied(variant, &values, &context);
+                let finite = c.as_flattened().iter().all(|c| c.is_finite() && c.abs() <= 200.0)
+                    && [m.forward_cm, m.lateral_cm, m.turn_rad, s.yaw_rad, s.perturbation.width].iter().all(|v| v.is_finite())
+                    && s.robot.position_cm.is_finite();
+                prop_assert!(finite, "{effect} {}", variant.id);
+            }
+        }
+    }
+}

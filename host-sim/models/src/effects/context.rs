@@ -1,0 +1,140 @@
+//! What an effect sees of a step: built here for logs, for simulated runs and for runs that are planned.
+
+use glam::DVec2;
+
+use crate::sonar::echo_law::Surfaces;
+use mindgap_foundations::geometry::{Pose, Wall, bounding_box, cast};
+use mindgap_logs::{Robot, Scene};
+
+/// Number of commands visible to an effect, newest first.
+pub const HISTORY: usize = 7;
+/// Left and right command of the present step and of those before it, newest first; zero before the run began.
+pub type CommandHistory = [[f64; 2]; HISTORY];
+
+/// Number of earlier poses visible to an effect: the oldest reading that is thought of, 1.6 s, at 10 steps a second.
+pub const EARLIER: usize = 16;
+
+/// The circumstances of a step, or of the reading at its begin.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StepContext {
+    /// Time since the run began, minutes.
+    pub elapsed_min: f64,
+    /// Commands as they were sent.
+    pub commands: CommandHistory,
+    /// Tracked pose at the step's begin.
+    pub pose: Pose,
+    /// The same one row earlier, two rows earlier and so on, where it is known.
+    pub earlier: [Option<Pose>; EARLIER],
+    /// Distance in cm and signed incidence in radians at which the sensor's axis meets a wall.
+    pub faced: Option<[f64; 2]>,
+    /// Whether the row before had a reading.
+    pub echo_before: Option<bool>,
+    /// Middle of the scene, above which a camera hangs, cm.
+    pub middle_cm: DVec2,
+    /// The robot's measures.
+    pub robot: Robot,
+}
+
+/// What stays the same from step to step: the robot and what is round it.
+#[derive(Clone, Debug)]
+pub struct Surroundings {
+    /// The robot's measures.
+    pub robot: Robot,
+    /// Everything that can return an echo.
+    pub surfaces: Surfaces,
+    middle_cm: DVec2,
+}
+
+/// What lies behind a step of a run.
+#[derive(Clone, Debug, Default)]
+pub struct RunHistory {
+    commands: CommandHistory,
+    poses: [Option<Pose>; EARLIER],
+    echo_cm: Option<Option<f64>>,
+}
+
+impl StepContext {
+    /// Speed of a wheel's rim at a command, cm/s.
+    pub fn wheel_speed_cm_s(&self, command: f64) -> f64 {
+        command / 100.0 * self.robot.full_speed_cm_s
+    }
+
+    /// The command that asks for a wheel speed.
+    pub fn command_for(&self, wheel_speed_cm_s: f64) -> f64 {
+        100.0 * wheel_speed_cm_s / self.robot.full_speed_cm_s
+    }
+
+    /// Usual duration of a step, s.
+    pub fn step_s(&self) -> f64 {
+        self.robot.step_ms / 1000.0
+    }
+}
+
+impl Surroundings {
+    /// Of a robot in a scene.
+    pub fn new(robot: &Robot, scene: &Scene) -> Self {
+        let walls = scene.sides();
+        Surroundings { robot: *robot, middle_cm: middle(&walls), surfaces: Surfaces::new(walls) }
+    }
+
+    /// The context of a step that begins at `pose`, `elapsed_ms` after the run did.
+    pub fn context(&self, history: &RunHistory, elapsed_ms: f64, pose: Pose) -> StepContext {
+        let sensor = self.sensor(&pose, 0.0);
+        let hit = cast(self.surfaces.walls(), sensor.position_cm, sensor.direction());
+        StepContext {
+            faced: hit.map(|hit| [hit.distance_cm, hit.incidence_rad]),
+            ..self.unseen(history, elapsed_ms, pose)
+        }
+    }
+
+    /// The same without what the sensor faces, which takes the longest to find.
+    pub fn unseen(&self, history: &RunHistory, elapsed_ms: f64, pose: Pose) -> StepContext {
+        StepContext {
+            elapsed_min: elapsed_ms / 60_000.0,
+            commands: history.commands,
+            pose,
+            earlier: history.poses,
+            faced: None,
+            echo_before: history.echo_cm.map(|echo| echo.is_some()),
+            middle_cm: self.middle_cm,
+            robot: self.robot,
+        }
+    }
+
+    /// Where the sensor of a robot at `robot` is, its axis turned by `yaw_rad`.
+    pub fn sensor(&self, robot: &Pose, yaw_rad: f64) -> Pose {
+        let mut sensor = self.robot.ultrasonic.pose_on(robot);
+        sensor.heading_rad += yaw_rad;
+        sensor
+    }
+}
+
+impl RunHistory {
+    /// A step begins with these commands.
+    pub fn command(&mut self, command: [f64; 2]) {
+        self.commands.rotate_right(1);
+        self.commands[0] = command;
+    }
+
+    /// The row at which a step began lies behind: where the robot was, if it was seen, and what its sensor said.
+    pub fn leave(&mut self, context: Option<&StepContext>, echo_cm: Option<f64>) {
+        self.was_at(context.map(|context| context.pose));
+        self.sensed(echo_cm);
+    }
+
+    /// Where the robot was at the begin of a step that lies behind, if it was seen.
+    pub fn was_at(&mut self, pose: Option<Pose>) {
+        self.poses.rotate_right(1);
+        self.poses[0] = pose;
+    }
+
+    /// What its sensor said at a row that lies behind.
+    pub fn sensed(&mut self, echo_cm: Option<f64>) {
+        self.echo_cm = Some(echo_cm);
+    }
+}
+
+/// The middle of what walls enclose; the origin where there are none.
+fn middle(walls: &[Wall]) -> DVec2 {
+    bounding_box(walls).map_or(DVec2::ZERO, |enclosed| 0.5 * (enclosed.low_cm + enclosed.high_cm))
+}

@@ -1,0 +1,288 @@
+//! The parameters of effects: named, with a unit, physical bounds and a prior.
+
+use serde_json::{Value, json};
+
+use mindgap_foundations::geometry::wrap_rad;
+use mindgap_foundations::statistics::maximise::Bounds;
+use mindgap_foundations::statistics::rounding::three_digits;
+use mindgap_logs::Robot;
+
+/// A number that is fitted.
+#[derive(Clone, Copy, Debug)]
+pub struct Parameter {
+    /// Its name in files and programs.
+    pub name: &'static str,
+    /// Its unit; empty for a share, a factor or a probability.
+    pub unit: &'static str,
+    /// With this value the parameter changes nothing, or has no say once the others change nothing.
+    pub nominal: f64,
+    /// Least and largest value that is physically possible, in the parameter's unit.
+    pub bounds: [f64; 2],
+    /// Standard deviation of the normal prior about the nominal value; infinite where every value is as likely.
+    pub prior_sd: f64,
+    /// A change that would be large.
+    pub scale: f64,
+    /// Where fits start.
+    pub guesses: Guesses,
+    /// How it is reported.
+    pub report: Report,
+}
+
+/// Where fits of a parameter start.
+#[derive(Clone, Copy, Debug)]
+pub enum Guesses {
+    /// At these values.
+    At(&'static [f64]),
+    /// At these shares of the largest wheel speed that the logs command.
+    OfTopSpeed(&'static [f64]),
+    /// At every so many units between the bounds: for a parameter whose likelihood has many maxima.
+    Every(f64),
+}
+
+/// How a parameter is reported, by the names of the table in docs/formats.md.
+#[derive(Clone, Copy, Debug)]
+pub enum Report {
+    /// Not at all: it describes the form, not the effect.
+    Hidden,
+    /// As it is, by its own name.
+    Value,
+    /// An angle within (-180, 180], by its own name.
+    Direction,
+    /// The side that its sign means (positive: left), and its magnitude as `loss`.
+    SideAndLoss,
+    /// The side that its sign means (positive: left), and one minus its magnitude as `factor`.
+    SideAndFactor,
+    /// A wheel speed, as the command that asks for it.
+    Command,
+    /// A change of wheel speed, as `onset` in commands.
+    Onset,
+    /// A time, as `steps`.
+    Steps,
+    /// A loss of log-odds, as the `factor` on the odds.
+    OddsFactor,
+}
+
+impl Parameter {
+    /// A parameter without a prior that is fitted from its nominal value and reported as it is.
+    pub const fn new(unit: &'static str, nominal: f64, bounds: [f64; 2]) -> Self {
+        Parameter {
+            name: "",
+            unit,
+            nominal,
+            bounds,
+            prior_sd: f64::INFINITY,
+            scale: bounds[1] - bounds[0],
+            guesses: Guesses::At(&[]),
+            report: Report::Value,
+        }
+    }
+
+    /// The same with a normal prior about the nominal value, within five standard deviations of which everything
+    /// plausible lies.
+    pub const fn prior_sd(self, prior_sd: f64) -> Self {
+        Parameter { prior_sd, ..self.scale(5.0 * prior_sd) }
+    }
+
+    /// The same with another large change, where that is less than from bound to bound.
+    pub const fn scale(self, scale: f64) -> Self {
+        Parameter { scale: if scale < self.scale { scale } else { self.scale }, ..self }
+    }
+
+    /// The same with starts for its fit.
+    pub const fn from(self, guesses: Guesses) -> Self {
+        Parameter { guesses, ..self }
+    }
+
+    /// The same with another way to report it.
+    pub const fn report(self, report: Report) -> Self {
+        Parameter { report, ..self }
+    }
+
+    /// Bounds for a fit.
+    pub fn fit_bounds(&self) -> Bounds {
+        let [low, high] = self.bounds;
+        Bounds { low, high, scale: self.scale }
+    }
+
+    /// Whether a value is possible.
+    pub fn allows(&self, value: f64) -> bool {
+        (self.bounds[0]..=self.bounds[1]).contains(&value)
+    }
+
+    /// Whether a value lies at a bound at which something is changed, of a parameter that is reported.
+    pub fn is_at_a_bound(&self, value: f64) -> bool {
+        let reported = !matches!(self.report, Report::Hidden | Report::Direction);
+        reported && value != self.nominal && self.bounds.contains(&value)
+    }
+
+    /// Logarithm of the prior's density relative to its maximum.
+    pub fn log_prior(&self, value: f64) -> f64 {
+        let z = (value - self.nominal) / self.prior_sd;
+        -0.5 * z * z
+    }
+
+    /// Logarithm of the prior's density where it is largest, per unit of the parameter: of the normal law within the bounds,
+    /// or of the uniform law between them.
+    pub fn log_prior_peak(&self) -> f64 {
+        let [low, high] = self.bounds;
+        if self.prior_sd.is_infinite() {
+            return -libm::log(high - low);
+        }
+        let below = |bound: f64| libm::erf((bound - self.nominal) / (self.prior_sd * std::f64::consts::SQRT_2));
+        let within = 0.5 * (below(high) - below(low));
+        -libm::log(self.prior_sd * std::f64::consts::TAU.sqrt() * within)
+    }
+
+    pub(super) fn guesses(&self, top_speed_cm_s: f64) -> Vec<f64> {
+        let [low, high] = self.bounds;
+        let guesses: Vec<f64> = match self.guesses {
+            Guesses::At(values) => values.to_vec(),
+            Guesses::OfTopSpeed(shares) => shares.iter().map(|share| share * top_speed_cm_s).collect(),
+            Guesses::Every(step) => (0..=((high - low) / step) as usize).map(|i| low + i as f64 * step).collect(),
+        };
+        if guesses.is_empty() { vec![self.nominal] } else { guesses.iter().map(|g| g.clamp(low, high)).collect() }
+    }
+
+    pub(super) fn reported(&self, value: f64, robot: &Robot) -> Vec<(String, Value)> {
+        let side = || json!(if value > 0.0 { "left" } else { "right" });
+        let command = 100.0 * value / robot.full_speed_cm_s;
+        let told = |value: f64| json!(three_digits(value));
+        let reported = match self.report {
+            Report::Hidden => vec![],
+            Report::Value => vec![(self.name, told(value))],
+            Report::Direction => {
+                vec![(self.name, json!((wrap_rad(value.to_radians()).to_degrees() * 10.0).round() / 10.0))]
+            }
+            Report::SideAndLoss => vec![("side", side()), ("loss", told(value.abs()))],
+            Report::SideAndFactor => vec![("side", side()), ("factor", told(1.0 - value.abs()))],
+            Report::Command => vec![("command", told(command))],
+            Report::Onset => vec![("onset", told(command))],
+            Report::Steps => vec![("steps", told(value / robot.step_ms))],
+            Report::OddsFactor => vec![("factor", told(libm::exp(-value)))],
+        };
+        reported.into_iter().map(|(name, value)| (name.into(), value)).collect()
+    }
+
+    /// Between what the reported numbers of a value lie, where it lies between these.
+    pub(super) fn reported_between(&self, value: f64, [low, high]: [f64; 2], robot: &Robot) -> Vec<(String, Value)> {
+        let numbers = |value: f64| {
+            let reported = self.reported(value, robot).into_iter();
+            reported.filter_map(|(name, told)| Some((name, told.as_f64()?))).next()
+        };
+        let Some((name, told)) = numbers(value) else { return vec![] };
+        if let Report::Direction = self.report {
+            // Beyond half a turn where the direction is near it: 179 (176 to 182).
+            let ends = [low, high].map(|end| ((told + end - value) * 10.0).round() / 10.0);
+            return vec![(name, json!(ends))];
+        }
+        // A magnitude is least where nothing is changed.
+        let nominal = (low < self.nominal && self.nominal < high).then_some(self.nominal);
+        let reached = || [low, high].into_iter().chain(nominal).filter_map(|value| Some(numbers(value)?.1));
+        let ends = [reached().fold(f64::INFINITY, f64::min), reached().fold(f64::NEG_INFINITY, f64::max)];
+        vec![(name, json!(ends))]
+    }
+}
+
+/// Declares the parameters of a variant once: as a struct whose fields a hook reads by name, and as data.
+///
+/// ```text
+/// parameters! {
+///     Fading {
+///         /// Share of speed lost per minute. Bound: …
+///         loss_per_min: Parameter::new("1/min", 0.0, [0.0, 0.9]),
+///     }
+/// }
+/// ```
+/// makes `Fading::PARAMETERS` and `Fading::read(values)`.
+macro_rules! parameters {
+    ($(#[$about:meta])* $name:ident { $($(#[$meaning:meta])* $field:ident: $parameter:expr,)* }) => {
+        $(#[$about])*
+        struct $name {
+            $($(#[$meaning])* $field: f64,)*
+        }
+
+        impl $name {
+            const PARAMETERS: &'static [$crate::effects::Parameter] =
+                &[$($crate::effects::Parameter { name: stringify!($field), ..$parameter },)*];
+
+            fn read(values: &[f64]) -> Self {
+                let [$($field),*] = values else { unreachable!("one value for each parameter") };
+                $name { $($field: *$field),* }
+            }
+        }
+    };
+}
+pub(super) use parameters;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const LENGTH: Parameter = Parameter { name: "cm", ..Parameter::new("cm", 1.0, [-5.0, 5.0]) };
+
+    #[test]
+    fn the_prior_is_normal_about_the_nominal_value() {
+        assert_eq!(LENGTH.log_prior(4.0), 0.0, "without a prior every value is as likely");
+        assert_eq!(LENGTH.prior_sd(1.5).log_prior(4.0), -2.0);
+        // A large change is five deviations, but never more than from bound to bound.
+        assert_eq!([0.5, 1.5, 3.0].map(|sd| LENGTH.prior_sd(sd).scale), [2.5, 7.5, 10.0]);
+        let Bounds { low, high, scale } = LENGTH.prior_sd(0.5).fit_bounds();
+        assert_eq!([low, high, scale], [-5.0, 5.0, 2.5]);
+    }
+
+    #[test]
+    fn the_prior_integrates_to_one_between_the_bounds() {
+        for parameter in [LENGTH, LENGTH.prior_sd(1.5), LENGTH.prior_sd(8.0)] {
+            let density = |cm: f64| libm::exp(parameter.log_prior_peak() + parameter.log_prior(cm));
+            let sum: f64 = (0..10_000).map(|i| density(-5.0 + (f64::from(i) + 0.5) * 1e-3)).sum();
+            assert!((1e-3 * sum - 1.0).abs() < 1e-6, "{:?}: {}", parameter.prior_sd, 1e-3 * sum);
+        }
+    }
+
+    #[test]
+    fn fits_start_at_the_guesses_within_the_bounds() {
+        let starts = |guesses| LENGTH.from(guesses).guesses(8.0);
+        assert_eq!(LENGTH.guesses(8.0), [1.0], "from the nominal value where nothing is guessed");
+        assert_eq!(starts(Guesses::At(&[2.0, -9.0])), [2.0, -5.0]);
+        assert_eq!(starts(Guesses::OfTopSpeed(&[0.25, 0.5, 1.0])), [2.0, 4.0, 5.0]);
+        assert_eq!(starts(Guesses::Every(4.0)), [-5.0, -1.0, 3.0]);
+    }
+
+    #[test]
+    fn values_are_reported_as_their_effect_is_told() {
+        // 0.4 s a step, and 50 cm/s at a command of 100.
+        let robot = Robot { step_ms: 400.0, full_speed_cm_s: 50.0, ..mindgap_built_in_robot::default_robot() };
+        let told = |report, value| -> Vec<(String, Value)> { LENGTH.report(report).reported(value, &robot) };
+        let one = |name: &str, value: f64| vec![(String::from(name), json!(value))];
+        let side = |side: &str, name: &str, value: f64| vec![("side".into(), json!(side)), (name.into(), json!(value))];
+        assert_eq!(told(Report::Hidden, 3.0), []);
+        assert_eq!(told(Report::Value, 2.7459), one("cm", 2.75));
+        assert_eq!(told(Report::Direction, 270.04), one("cm", -90.0));
+        assert_eq!(told(Report::SideAndLoss, 0.25), side("left", "loss", 0.25));
+        assert_eq!(told(Report::SideAndLoss, -0.25), side("right", "loss", 0.25));
+        assert_eq!(told(Report::SideAndFactor, -0.25), side("right", "factor", 0.75));
+        assert_eq!(told(Report::Command, 10.0), one("command", 20.0));
+        assert_eq!(told(Report::Onset, 10.0), one("onset", 20.0));
+        assert_eq!(told(Report::Steps, 600.0), one("steps", 1.5));
+        assert_eq!(told(Report::OddsFactor, libm::log(2.0)), one("factor", 0.5));
+    }
+
+    #[test]
+    fn intervals_hold_the_value_they_are_of() {
+        let robot = Robot { step_ms: 400.0, full_speed_cm_s: 50.0, ..mindgap_built_in_robot::default_robot() };
+        let between = |report, value, ends| -> Vec<(String, Value)> {
+            let parameter = Parameter { nominal: 0.0, ..LENGTH.report(report) };
+            parameter.reported_between(value, ends, &robot)
+        };
+        let one = |name: &str, ends: [f64; 2]| vec![(String::from(name), json!(ends))];
+        assert_eq!(between(Report::Hidden, 3.0, [2.0, 4.0]), []);
+        assert_eq!(between(Report::Value, 3.0, [2.0, 4.0]), one("cm", [2.0, 4.0]));
+        assert_eq!(between(Report::OddsFactor, 0.0, [-1.0, 1.0]), one("factor", [0.368, 2.72]));
+        assert_eq!(between(Report::SideAndLoss, 0.25, [0.125, 0.375]), one("loss", [0.125, 0.375]));
+        assert_eq!(between(Report::SideAndLoss, -0.002, [-0.008, 0.004]), one("loss", [0.0, 0.008]), "either side");
+        assert_eq!(between(Report::SideAndFactor, -0.25, [-0.5, 0.125]), one("factor", [0.5, 1.0]));
+        assert_eq!(between(Report::Direction, 20.0, [-5.0, 45.0]), one("cm", [-5.0, 45.0]));
+        assert_eq!(between(Report::Direction, 179.0, [176.0, 182.0]), one("cm", [176.0, 182.0]));
+        assert_eq!(between(Report::Direction, -270.0, [-275.0, -265.0]), one("cm", [85.0, 95.0]));
+    }
+}

@@ -1,0 +1,160 @@
+//! Made-up diagnoses as pages: foreign words stay words, and what is missing is said or left out.
+
+use serde_json::json;
+
+use super::*;
+use mindgap_built_in_robot::default_robot;
+use mindgap_learning::evaluation::paths::PathError;
+use mindgap_diagnosis::account::{Account, ChannelReduction, GapReduction, Reduction, RunnerUp};
+use mindgap_diagnosis::channel::Channel;
+use mindgap_diagnosis::explain::NamedEffect;
+use mindgap_diagnosis::explain::profile::Bin;
+use mindgap_diagnosis::explain::room_map::Square;
+use mindgap_diagnosis::explain::strata::Stratum;
+use mindgap_diagnosis::formula::Statement;
+use mindgap_diagnosis::scope::{NotCompared, Scope};
+use mindgap_foundations::geometry::Pose;
+use mindgap_logs::inspection::{Finding, Handling, Part as Inspected};
+use mindgap_logs::{Row, Run, Scene};
+use mindgap_models::simulator::kinematic;
+
+const EVIL: &str = "<x-mark onload=\"evil\">&'</script><!--";
+
+static EVIL_EFFECT: Effect = Effect { id: EVIL, name: EVIL, what: EVIL, check: EVIL, variants: &[] };
+
+fn logs(runs: usize, rows: usize, name: &str) -> Logs {
+    let pose = |k: usize| Pose::new(30.0 + k as f64, 40.0, 0.0);
+    let row = |k: usize| Row { t_ms: 400.0 * k as f64, left: 10.0, pose: Some(pose(k)), ..Row::default() };
+    let run = |i: usize| Run { name: format!("{name}{i}"), rows: (0..rows).map(row).collect() };
+    Logs { robot: default_robot(), scene: Scene::default(), runs: (0..runs).map(run).collect() }
+}
+
+fn no_gap() -> Findings {
+    let diagnosis = Diagnosis {
+        data: Vec::new(),
+        scope: Scope { compared: Channel::ALL.to_vec(), not_compared: Vec::new() },
+        answer: Answer::NoGap,
+        formula: None,
+        strata: Vec::new(),
+        final_positions: None,
+        untestable: Vec::new(),
+        notes: Vec::new(),
+    };
+    Findings { diagnosis, applied: Vec::new(), scatter: [1.0; 3], formula: None, evidence: Vec::new(), room_map: None }
+}
+
+/// Something foreign in every field that holds words.
+fn evil() -> Findings {
+    let reduction = Reduction { before: 1.0, after: 0.1, reducible_closed: 0.9, ci95: [0.8, 1.0] };
+    let bins = || vec![Bin { from: -1.0, to: 1.0, off: 0.2, error: 0.1 }];
+    let profile = ResidualProfile { channel: Channel::Turn, depends_on: EVIL, unit: EVIL, bins: bins() };
+    let account = Account {
+        reduction: Some(GapReduction {
+            whole: reduction,
+            floor: 0.0,
+            runner_up: Some(RunnerUp { id: format!("{EVIL}+{EVIL}"), reducible_closed: 0.5 }),
+            channels: vec![ChannelReduction { channel: Channel::Turn, reduction }],
+            paths: vec![PathError { steps: 5, before_cm: 2.0, after_cm: 1.0, floor_cm: 0.5 }],
+        }),
+        budget: vec![Part { id: EVIL.into(), share: 0.9, ci95: [0.8, 1.0] }],
+        reducible: vec![1.0],
+    };
+    let effect = NamedEffect {
+        id: EVIL,
+        probability: 0.9,
+        parameters: [(EVIL.into(), json!(EVIL))].into_iter().collect(),
+        ambiguous_with: vec![EVIL],
+        share: Some(0.9),
+        intervals: [(EVIL.into(), json!([EVIL, EVIL]))].into_iter().collect(),
+        at_bound: vec![EVIL],
+    };
+    let answer = Answer::PartlyKnown { effects: vec![effect], account, experiment: None, profiles: vec![profile] };
+    let finding = Finding {
+        id: EVIL,
+        places: Vec::new(),
+        handling: Handling::Told,
+        withholds: &[Inspected::Motion],
+        sentence: EVIL.into(),
+    };
+    let diagnosis = Diagnosis {
+        data: vec![finding],
+        scope: Scope {
+            compared: Vec::new(),
+            not_compared: vec![NotCompared { channel: Channel::Turn, reason: EVIL.into() }],
+        },
+        answer,
+        formula: Some(Statement { channel: Channel::Turn, text: EVIL.into(), share: 0.1, ci95: [0.0, 0.2] }),
+        strata: vec![Stratum { channel: Channel::Turn, context: EVIL, gap: 1.0, ci95: [0.5, 1.5], share: 0.5 }],
+        untestable: vec![EVIL],
+        notes: vec![EVIL.into()],
+        ..no_gap().diagnosis
+    };
+    let evidence = Evidence {
+        effect: EVIL.into(),
+        channel: Channel::Turn,
+        depends_on: EVIL,
+        unit: EVIL,
+        without: bins(),
+        with: bins(),
+    };
+    let square = Square { x_cm: 0.0, y_cm: 0.0, rows: 1, nats: 1.0 };
+    let room_map = Some(RoomMap { side_cm: 10.0, squares: vec![square] });
+    Findings { diagnosis, evidence: vec![evidence], room_map, ..no_gap() }
+}
+
+fn page_of(findings: &Findings, logs: &Logs, name: &str) -> String {
+    let source =
+        || Source { simulator: name.into(), logs: name.into(), written: Some([name.into(), name.into()]), seed: 1 };
+    let baseline = &kinematic::baseline(logs);
+    page(&Subject { findings, logs, baseline, catalogue: &[&EVIL_EFFECT], source: source() }).expect("a page")
+}
+
+#[test]
+fn markup_in_any_field_is_escaped() {
+    let page = page_of(&evil(), &logs(2, 5, EVIL), EVIL);
+    assert!(!page.contains("<x-mark"), "markup came through");
+    let escaped = page.matches("&lt;x-mark").count() + page.matches("\\u003cx-mark").count();
+    assert!(escaped > 30, "{escaped} fields are shown");
+    // Scripts end where this program ends them: the data, and what moves the replay.
+    assert_eq!(page.matches("</script").count(), 2);
+}
+
+#[test]
+fn without_a_gap_there_are_no_empty_parts() {
+    let page = page_of(&no_gap(), &logs(2, 5, "run-"), "logs");
+    assert!(page.contains("There is no gap"));
+    for part in ["budget", "causes", "where", "ends"] {
+        assert!(!page.contains(&format!("<section id=\"{part}\"")), "{part}");
+    }
+}
+
+#[test]
+fn without_poses_there_is_no_map_and_the_page_says_so() {
+    let mut logs = logs(2, 5, "run-");
+    logs.runs.iter_mut().for_each(|run| run.rows.edit_each(|row| row.pose = None));
+    let page = page_of(&no_gap(), &logs, "logs");
+    assert!(page.contains("never saw the robot") && !page.contains("id=\"stage\""));
+}
+
+#[test]
+fn ten_thousand_runs_are_sampled_and_the_page_says_so() {
+    let page = page_of(&evil(), &logs(10_000, 60, "run-"), "logs");
+    assert!(page.len() < 2_000_000, "{} bytes", page.len());
+    assert!(page.contains("of 10000 runs, evenly spread"));
+}
+
+#[test]
+fn the_largest_part_of_the_gap_is_checked_first_even_if_it_is_scatter() {
+    let mut findings = evil();
+    let Answer::PartlyKnown { account, .. } = &mut findings.diagnosis.answer else { panic!("it is known in part") };
+    let part = |id: &str, share: f64| Part { id: id.into(), share, ci95: [share, share] };
+    account.budget = vec![part(EVIL, 0.2), part(SCATTER, 0.7), part(UNEXPLAINED, 0.1)];
+    let page = page_of(&findings, &logs(2, 5, "run-"), "logs");
+    let (_, next) = page.split_once("<section id=\"next\"").expect("what to do next");
+    let place = |words: &str| next.find(words).unwrap_or_else(|| panic!("{words} is missing"));
+    let order =
+        ["wider scatter</strong>, 70\u{a0}%", "</strong>, 20\u{a0}%", "10\u{a0}% of the gap is not"];
+    assert!(order.map(place).is_sorted());
+    let (header, _) = page.split_once("<nav").expect("a header");
+    assert!(header.contains("2.0 cm from the real one, 1.0 cm with the effects"), "how far");
+}

@@ -1,7 +1,0 @@
-//! The command `mindgap`.
-
-use std::process::ExitCode;
-
-fn main() -> ExitCode {
-    mindgap_host_sim::cli::run()
-}
