@@ -125,7 +125,7 @@ class Evaluation:
         """The figures of `mindgap evaluate --figures`."""
 
     def write_figures(self, folder: _Path, *, force: bool = False) -> None:
-        """Writes them into a folder as SVG, PNG and PDF."""
+        """Writes them into a folder as SVG and PNG."""
 
     def _repr_html_(self) -> str: ...
 
@@ -166,7 +166,7 @@ class Diagnosis:
         """The figures of `mindgap diagnose --figures`."""
 
     def write_figures(self, folder: _Path, *, force: bool = False) -> None:
-        """Writes them into a folder as SVG, PNG and PDF."""
+        """Writes them into a folder as SVG and PNG."""
 
     def _repr_html_(self) -> str: ...
 
@@ -234,7 +234,7 @@ class Simulation:
         """The figures of `mindgap simulate --figures`."""
 
     def write_figures(self, folder: _Path, *, force: bool = False) -> None:
-        """Writes them into a folder as SVG, PNG and PDF."""
+        """Writes them into a folder as SVG and PNG."""
 
     def _repr_html_(self) -> str: ...
 
@@ -252,9 +252,6 @@ class Figure:
 
     def png(self) -> bytes:
         """The figure as PNG of 288 dots to the inch."""
-
-    def pdf(self) -> bytes:
-        """The figure as PDF."""
 
     def _repr_svg_(self) -> str: ...
 

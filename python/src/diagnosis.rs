@@ -100,7 +100,7 @@ impl Diagnosis {
         show::figures(py.detach(|| pictures::figures_of_diagnosis(self.diagnosis())))
     }
 
-    /// Writes them into a folder as SVG, PNG and PDF.
+    /// Writes them into a folder as SVG and PNG.
     #[pyo3(signature = (folder, *, force=false))]
     fn write_figures(&self, py: Python<'_>, folder: PathBuf, force: bool) -> PyResult<()> {
         places::folder(&folder, force)?;

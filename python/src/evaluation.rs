@@ -74,7 +74,7 @@ impl Evaluation {
     fn page(&self, py: Python<'_>) -> PyResult<Page> {
         let names = self.names.each_ref().map(String::as_str);
         let subject = Subject { evaluation: &self.evaluation, simulator: &self.simulator, logs: &self.logs, names };
-        Page::made(py.detach(|| page(&subject)))
+        Page::made(py.detach(|| Ok(page(&subject))))
     }
 
     /// The figures of `mindgap evaluate --figures`.
@@ -82,7 +82,7 @@ impl Evaluation {
         show::figures(py.detach(|| self.drawn()))
     }
 
-    /// Writes them into a folder as SVG, PNG and PDF.
+    /// Writes them into a folder as SVG and PNG.
     #[pyo3(signature = (folder, *, force=false))]
     fn write_figures(&self, py: Python<'_>, folder: PathBuf, force: bool) -> PyResult<()> {
         places::folder(&folder, force)?;

@@ -38,11 +38,6 @@ impl Figure {
         PyBytes::new(py, &py.detach(|| self.figure.png()))
     }
 
-    /// The figure as PDF.
-    fn pdf<'py>(&self, py: Python<'py>) -> Bound<'py, PyBytes> {
-        PyBytes::new(py, &py.detach(|| self.figure.pdf()))
-    }
-
     fn _repr_svg_(&self) -> &str {
         self.figure.svg()
     }

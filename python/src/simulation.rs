@@ -111,7 +111,7 @@ impl Simulation {
         show::figures(py.detach(|| vec![pictures::figure_of_paths(&[self.panel()])]))
     }
 
-    /// Writes them into a folder as SVG, PNG and PDF.
+    /// Writes them into a folder as SVG and PNG.
     #[pyo3(signature = (folder, *, force=false))]
     fn write_figures(&self, py: Python<'_>, folder: PathBuf, force: bool) -> PyResult<()> {
         places::folder(&folder, force)?;

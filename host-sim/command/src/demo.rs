@@ -68,7 +68,7 @@ impl Run for Demo {
         };
         let summary = demo::run(executor, &self.out, self.seed, size, watch)?;
         bar.finish_and_clear();
-        let page = page(&summary, &self.out.display().to_string(), self.seed)?;
+        let page = page(&summary, &self.out.display().to_string(), self.seed);
         let in_folder = self.out.join(PAGE);
         for path in self.html.iter().chain([&in_folder]) {
             files::write(path, &page)?;

@@ -50,7 +50,7 @@ pub struct Diagnose {
     /// Also write a page for a browser here.
     #[arg(long, value_name = "FILE")]
     html: Option<PathBuf>,
-    /// Also draw figures into this folder, as SVG, PNG and PDF.
+    /// Also draw figures into this folder, as SVG and PNG.
     #[arg(long, value_name = "DIR")]
     figures: Option<PathBuf>,
     /// Write a simulator with the effects added that explain the gap, and the formula of what they leave.

@@ -28,7 +28,7 @@ pub struct Evaluate {
     /// Also write a page for a browser here.
     #[arg(long, value_name = "FILE")]
     html: Option<PathBuf>,
-    /// Also draw figures into this folder, as SVG, PNG and PDF.
+    /// Also draw figures into this folder, as SVG and PNG.
     #[arg(long, value_name = "DIR")]
     figures: Option<PathBuf>,
 }
@@ -50,7 +50,7 @@ impl Run for Evaluate {
             let names = [&self.sim, &self.logs].map(|path| path.display().to_string());
             let names = names.each_ref().map(String::as_str);
             let subject = Subject { evaluation: &evaluation, simulator: &simulator, logs: &logs, names };
-            files::write(path, page(&subject)?)?;
+            files::write(path, page(&subject))?;
         }
         if let Some(folder) = &self.figures {
             pictures::networks(folder, &simulator, &evaluation, &logs)?;

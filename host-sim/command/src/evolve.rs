@@ -54,7 +54,7 @@ pub struct Evolve {
     max_steps: u16,
     #[command(flatten)]
     facts: FactsOption,
-    /// Also draw simulated runs of the controller into this folder, as SVG, PNG and PDF.
+    /// Also draw simulated runs of the controller into this folder, as SVG and PNG.
     #[arg(long, value_name = "DIR")]
     figures: Option<PathBuf>,
     #[command(flatten)]

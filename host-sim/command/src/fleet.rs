@@ -65,7 +65,7 @@ impl FleetRequest<'_> {
             let names = [&*self.logs.to_string_lossy(), self.simulator.as_str()];
             let catalogue: &[&'static Effect] = self.request.method.catalogue;
             let subject = Subject { fleet: &fleet, catalogue, names, seed: self.request.method.seed };
-            files::write(&fresh.join(PAGE), page(&subject)?)?;
+            files::write(&fresh.join(PAGE), page(&subject))?;
             Ok(fleet)
         })
     }

@@ -34,7 +34,6 @@ const PRODUCTS: &[(&str, &str)] = &[
     ("html", "a page: open it in a browser"),
     ("svg", "a figure"),
     ("png", "a figure"),
-    ("pdf", "a figure"),
     ("nxc", "an onboard program in NXC: compile it with nbc"),
     ("rxe", "an onboard program for an NXT: `mindgap brick` runs it"),
     ("rs", "an onboard program in Rust"),

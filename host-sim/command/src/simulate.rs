@@ -53,7 +53,7 @@ pub struct Simulate {
     /// Also write a page for a browser here.
     #[arg(long, value_name = "FILE")]
     html: Option<PathBuf>,
-    /// Also draw figures into this folder, as SVG, PNG and PDF.
+    /// Also draw figures into this folder, as SVG and PNG.
     #[arg(long, value_name = "DIR")]
     figures: Option<PathBuf>,
 }

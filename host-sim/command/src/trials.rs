@@ -107,7 +107,7 @@ impl Run for Loop {
                 start: self.start,
                 seed: self.seed,
             };
-            files::write(path, page(&subject)?)?;
+            files::write(path, page(&subject))?;
         }
         self.facts.told(&state, self.told(&state))
     }

@@ -1,24 +1,32 @@
-//! Figures of the paper and of a diagnosis, drawn from plain data.
+//! Figures of the paper and charts of the pages, drawn from plain data.
 //!
-//! There is one module a figure. Each returns a [`Figure`], which is written as SVG, and as PNG and PDF made from that SVG.
-//! Nothing here depends on how the data were made, and the same data give the same bytes.
+//! There is one module per figure, on a small set of common parts: [`svg`] writes shapes, [`axis`] and [`chart`] draw planes with
+//! axes, `legend` and `glyph` draw keys and marks. Every drawing is a [`Figure`]: a file of its own as SVG or PNG, or an element
+//! of a page. Nothing here depends on how the data were made, and the same data give the same bytes.
 
-pub mod bars;
+pub mod axis;
+pub mod before_and_after;
+pub mod chart;
 pub mod curves;
 pub mod expected_against_predicted;
 pub mod figure;
+pub mod over_time;
 pub mod paths;
+pub mod room;
+pub mod room_map;
+pub mod segments;
+pub mod shares;
 pub mod sonar_surfaces;
+pub mod style;
+pub mod svg;
 
-mod chart;
 mod glyph;
 mod legend;
+mod output;
 mod projection;
-mod style;
+mod scale;
 mod trend;
 
-pub use bars::bars;
-pub use curves::curves;
 pub use expected_against_predicted::expected_against_predicted;
 pub use figure::Figure;
 pub use paths::paths;

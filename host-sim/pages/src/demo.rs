@@ -3,25 +3,21 @@
 
 use maud::{Markup, html};
 
-use super::document::{Document, Script, Section, chart, open_table};
+use super::document::{Document, Section, chart, open_table};
 use super::evaluation;
-use super::trials::{self, LINES, Map};
+use super::trials::{self, LINES};
 use super::words::{number, percent};
 use mindgap_applications::demo::repair::Repair;
 use mindgap_applications::demo::{JUDGED_RUNS, Summary, TRIALS};
-use mindgap_applications::trials::state::place_cm;
-use mindgap_figures::report::paths::{PathPanel, Trace};
-use mindgap_foundations::error::Result;
+use mindgap_figures::report;
+use mindgap_figures::report::paths::PathPanel;
 use mindgap_learning::evolve::fitness::Success;
 use mindgap_models::simulator::rollout::REACHED_CM;
 
 const STARTS_HEADER: [&str; 5] = ["start", "simulated", "cm off", "on the robot", "cm off"];
 
-/// The page, whole in one file; `folder` has everything else.
-///
-/// # Errors
-/// When a number in it has no form in JSON, or when there is no start.
-pub fn page(summary: &Summary, folder: &str, seed: u64) -> Result<String> {
+/// Returns the page, whole in one file; `folder` has everything else.
+pub fn page(summary: &Summary, folder: &str, seed: u64) -> String {
     let Summary { evaluation, panels, repair, .. } = summary;
     let mut sections = vec![
         Section {
@@ -32,10 +28,10 @@ pub fn page(summary: &Summary, folder: &str, seed: u64) -> Result<String> {
         Section { id: "starts", title: "A controller for each start", body: starts(summary) },
         Section { id: "change", title: "Then a motor gets weak", body: change(repair) },
     ];
-    sections.extend(trials::sections(&repair.state, panels.len()));
+    let PathPanel { scene, start, .. } = &panels[repair.start - 1];
+    sections.extend(trials::sections(&repair.state, scene, *start));
     sections.push(Section { id: "next", title: "What to do next", body: next() });
     sections.push(Section { id: "compared", title: "What was run", body: source(folder, seed) });
-    let maps = panels.iter().map(map).collect();
     Document {
         kind: "Demo",
         headline: &headline(summary),
@@ -47,9 +43,9 @@ pub fn page(summary: &Summary, folder: &str, seed: u64) -> Result<String> {
             }
         },
         sections,
-        scripts: &[Script::Trials],
+        script: None,
     }
-    .html(&trials::charts(&panels[0].scene, &repair.state, maps))
+    .html()
 }
 
 fn headline(Summary { starts, repair, .. }: &Summary) -> String {
@@ -77,12 +73,13 @@ fn starts(Summary { starts, panels, .. }: &Summary) -> Markup {
         (open_table(STARTS_HEADER, &rows))
         p.quiet {
             "Shares of runs that end within " (number(REACHED_CM, 0)) " cm of the target without a crash, and the median distance "
-            "to it: of " (JUDGED_RUNS) " simulated runs, and of " (TRIALS) " on the robot."
+            "to it, over " (JUDGED_RUNS) " simulated runs and " (TRIALS) " on the robot."
         }
         p { (LINES) }
         div.pairs {
-            @for (place, panel) in panels.iter().enumerate() {
-                (chart("map", place, &format!("{}: expected paths and the robot's", panel.title), html! {
+            @for panel in panels {
+                @let drawn = report::paths(&[PathPanel { title: String::new(), ..panel.clone() }]);
+                (chart("map", &drawn, &format!("{}: expected paths and the robot's", panel.title), html! {
                     (panel.title) "."
                 }))
             }
@@ -93,19 +90,12 @@ fn starts(Summary { starts, panels, .. }: &Summary) -> Markup {
 fn change(repair: &Repair) -> Markup {
     html! {
         p {
-            "The robot changes (" code { (repair.changed.to_string()) } "), and nobody tells the simulator. The controller of "
+            "The robot changes (" code { (repair.changed.to_string()) } "), and the simulator does not know. The controller of "
             "start " (repair.start) " then reaches the target in " (percent(repair.before.rate)) " of its runs. The loop drives "
-            "the robot, learns from each run, and evolves anew; the controller that it settles on reaches it in "
+            "the robot, learns from each run, and evolves a new controller; the last one reaches the target in "
             (percent(repair.after.rate)) "."
         }
     }
-}
-
-fn map(panel: &PathPanel) -> Map {
-    let paths = |traces: &[Trace]| -> Vec<Vec<[f64; 2]>> {
-        traces.iter().map(|trace| trace.points_cm.iter().map(|at| place_cm(*at)).collect()).collect()
-    };
-    Map { expected: paths(&panel.simulated), driven: paths(&panel.real) }
 }
 
 fn next() -> Markup {
@@ -113,10 +103,10 @@ fn next() -> Markup {
         ol {
             li {
                 "Bring a robot of your own: " code { "mindgap new mine" } " makes the files to fill in, and "
-                code { "mindgap import" } " makes logs of what it recorded."
+                code { "mindgap import" } " converts its recordings to logs."
             }
             li {
-                "Ask what separates it from its simulator: "
+                "Diagnose the gap between it and the textbook simulator: "
                 code { "mindgap diagnose kinematic mine/logs --html gap.html" } "."
             }
         }
@@ -127,7 +117,7 @@ fn source(folder: &str, seed: u64) -> Markup {
     html! {
         dl {
             dt { "Folder" }
-            dd { (folder) ": logs, simulator, controllers, NXC programs, figures and, in " code { "loop" } ", what the loop did" }
+            dd { (folder) ": logs, simulator, controllers, NXC programs, figures and, in " code { "loop" } ", the loop's trials" }
             dt { "Seed" } dd { (seed) }
         }
     }

@@ -6,26 +6,22 @@ mod places;
 mod runs;
 
 use maud::{Markup, html};
-use serde::Serialize;
 
-use super::document::{Document, Script, Section, chart, table};
+use super::document::{Document, Section, chart, table};
 use super::replay::Replay;
-use super::room::Room;
 use super::{glossary, words};
 use mindgap_diagnosis::Findings;
-use mindgap_diagnosis::budget::{Part, SCATTER, UNEXPLAINED};
+use mindgap_diagnosis::budget::{Part, UNEXPLAINED};
 use mindgap_diagnosis::diagnosis::{Answer, Diagnosis};
-use mindgap_diagnosis::explain::evidence::Evidence;
-use mindgap_diagnosis::explain::profile::ResidualProfile;
-use mindgap_diagnosis::explain::room_map::RoomMap;
+use mindgap_figures::pictures;
+use mindgap_figures::report::room::Room;
 use mindgap_foundations::error::Result;
-use mindgap_learning::evaluation::paths::PathError;
 use mindgap_logs::Logs;
 use mindgap_models::effects::Effect;
 use mindgap_models::simulator::baseline::Baseline;
 use mindgap_models::simulator::rollout::REACHED_CM;
 
-/// What a page is made of.
+/// The contents of a page.
 pub struct Subject<'a> {
     /// What was found.
     pub findings: &'a Findings,
@@ -45,94 +41,45 @@ pub struct Source {
     pub simulator: String,
     /// The folder of logs.
     pub logs: String,
-    /// First and last day on which the logs were written, if the files tell.
+    /// First and last day on which the logs were written, if known.
     pub written: Option<[String; 2]>,
     /// Seed of the draws.
     pub seed: u64,
 }
 
-/// What the charts draw.
-#[derive(Serialize)]
-struct Data<'a> {
-    budget: Vec<BudgetBar<'a>>,
-    evidence: &'a [Evidence],
-    profiles: &'a [ResidualProfile],
-    map: Option<&'a RoomMap>,
-    channels: Vec<ChannelBar>,
-    paths: &'a [PathError],
-    room: Room,
-    replay: Option<&'a Replay>,
-}
-
-#[derive(Serialize)]
-struct BudgetBar<'a> {
-    id: &'a str,
-    name: &'a str,
-    named: bool,
-    share: f64,
-    ci95: [f64; 2],
-}
-
-#[derive(Serialize)]
-struct ChannelBar {
-    name: &'static str,
-    before: f64,
-    after: f64,
-}
-
-/// A part of the gap from which on it is worth a walk to the robot: less than a twentieth changes no controller's fate.
+/// Share of the gap above which a cause is worth checking on the robot: less changes no controller's fate.
 const WORTH_A_CHECK: f64 = 0.05;
 
-/// The page, whole in one file.
+/// Returns the page, whole in one file.
 ///
 /// # Errors
 /// When a number in it has no form in JSON.
 pub fn page(subject: &Subject) -> Result<String> {
     let Subject { findings, logs, catalogue, source, .. } = subject;
     let diagnosis = &findings.diagnosis;
-    let replay = runs::replay(subject);
     let poses = logs.runs.iter().flat_map(|run| run.rows.iter().filter_map(|row| row.pose));
-    let mut bars: Vec<BudgetBar> = diagnosis.budget().iter().map(|part| bar(part, catalogue)).collect();
-    // Effects come first, the strongest before the others.
-    let effects = bars.partition_point(|bar| bar.named);
-    bars[..effects].sort_by(|a, b| b.share.total_cmp(&a.share));
-    let data = Data {
-        budget: bars,
-        evidence: &findings.evidence,
-        profiles: diagnosis.profiles(),
-        map: findings.room_map.as_ref(),
-        channels: places::channels(diagnosis),
-        paths: diagnosis.reduction().map_or(&[], |reduction| &reduction.paths),
-        room: Room::new(&logs.scene, REACHED_CM, poses.map(|pose| pose.position_cm)),
-        replay: replay.as_ref(),
-    };
+    let room = Room::new(&logs.scene, REACHED_CM, poses.map(|pose| pose.position_cm));
     let mut sections = Vec::new();
     if !diagnosis.budget().is_empty() {
         sections.push(Section { id: "budget", title: "What the gap is made of", body: budget(diagnosis, catalogue) });
     }
     sections.extend(causes::section(subject));
-    sections.extend(places::section(diagnosis, findings.room_map.is_some()));
+    sections.extend(places::section(findings, &room));
     sections.extend(runs::ends(diagnosis));
+    let replay = runs::replay(subject, room);
     sections.push(runs::section(replay.as_ref(), diagnosis));
     sections.push(next(diagnosis, catalogue));
     sections.push(compared::section(subject));
     sections.push(glossary::section());
-    let scripts: &[Script] = if replay.is_some() { &[Script::Diagnosis, Script::Replay] } else { &[Script::Diagnosis] };
-    Document {
+    Ok(Document {
         kind: "Diagnosis",
         headline: &headline(diagnosis, catalogue),
         subject: &format!("{} against {}", source.logs, source.simulator),
         lead: lead(diagnosis, catalogue, logs),
         sections,
-        scripts,
+        script: replay.as_ref().map(Replay::script).transpose()?,
     }
-    .html(&data)
-}
-
-fn bar<'a>(part: &'a Part, catalogue: &[&'static Effect]) -> BudgetBar<'a> {
-    let Part { id, share, ci95 } = part;
-    let named = id != SCATTER && id != UNEXPLAINED;
-    BudgetBar { id, name: words::name(id, catalogue), named, share: *share, ci95: *ci95 }
+    .html())
 }
 
 /// The verdict, and the names of the effects.
@@ -148,12 +95,12 @@ fn headline(diagnosis: &Diagnosis, catalogue: &[&'static Effect]) -> String {
 
 /// How probable each named effect is, in words.
 fn sure(diagnosis: &Diagnosis, catalogue: &[&'static Effect]) -> String {
-    let told: Vec<String> = diagnosis
+    let named: Vec<String> = diagnosis
         .effects()
         .iter()
         .map(|effect| format!("{} {}", words::name(effect.id, catalogue), words::percent(effect.probability)))
         .collect();
-    words::list(&told.iter().map(String::as_str).collect::<Vec<_>>())
+    words::list(&named.iter().map(String::as_str).collect::<Vec<_>>())
 }
 
 fn lead(diagnosis: &Diagnosis, catalogue: &[&'static Effect], logs: &Logs) -> Markup {
@@ -166,11 +113,11 @@ fn lead(diagnosis: &Diagnosis, catalogue: &[&'static Effect], logs: &Logs) -> Ma
             p {
                 "With " @if diagnosis.effects().len() == 1 { "it" } @else { "them" } " the simulator closes "
                 strong { (words::percent(reduction.whole.reducible_closed)) }
-                " of the gap that is not chance (95 % interval: " (low) " to " (high) "). "
-                "How sure each is: " (sure(diagnosis, catalogue)) "."
+                " of the gap, apart from chance (95 % interval: " (low) " to " (high) "). "
+                "Probabilities: " (sure(diagnosis, catalogue)) "."
             }
         }
-        @if !matches!(diagnosis.answer, Answer::NoGap) { p { a href="#next" { "What to do next" } " stands below." } }
+        @if !matches!(diagnosis.answer, Answer::NoGap) { p { "See " a href="#next" { "what to do next" } "." } }
         p.quiet {
             "Compared: " (words::list(&compared)) " in " (rows) " rows of " (logs.runs.len())
             @if logs.runs.len() == 1 { " run." } @else { " runs." }
@@ -192,10 +139,11 @@ fn budget(diagnosis: &Diagnosis, catalogue: &[&'static Effect]) -> Markup {
         .iter()
         .map(|part| [words::name(&part.id, catalogue).into(), words::percent_within(part.share, part.ci95)])
         .collect();
+    let drawn = pictures::budget(diagnosis, |id| words::name(id, catalogue)).draw();
     html! {
-        (chart("budget", 0, &format!("Shares of the gap: {}", said.join(", ")), html! {
-            "How much of the gap each cause makes: mend the longest bar first. The thin lines are 95 % intervals. "
-            "Scatter is what no rule reduces; unexplained is what follows rules that no named effect describes."
+        (chart("budget", &drawn, &format!("Shares of the gap: {}", said.join(", ")), html! {
+            "The share of the gap that each cause explains: repair the longest bar first. The thin lines are 95 % intervals. "
+            "Scatter follows no rule; unexplained is what follows rules that no named effect describes."
         }))
         (table("The same in numbers", ["part of the gap", "share (95 % interval)"], &rows))
     }
@@ -212,20 +160,20 @@ fn next(diagnosis: &Diagnosis, catalogue: &[&'static Effect]) -> Section {
         ol {
             @for part in parts {
                 @if let Some(cause) = words::cause(&part.id, catalogue) {
-                    li { "Check " strong { (cause.name) } ", which makes " (words::percent(part.share))
+                    li { "Check " strong { (cause.name) } ", " (words::percent(part.share))
                         " of the gap: " (cause.check) }
                 }
             }
             @if !diagnosis.effects().is_empty() {
                 li {
-                    "Mend the robot and log it again; or teach the simulator: the same command with "
-                    code { "--apply better.json" } " writes a simulator with the effects, to evolve controllers in."
+                    "Repair the robot and log it again; or improve the simulator: the same command with "
+                    code { "--apply better.json" } " writes a simulator with the effects, in which to evolve controllers."
                 }
             }
             @if let Some(experiment) = diagnosis.experiment() {
                 @let [one, other] = experiment.between.map(|id| words::name(id, catalogue));
                 li {
-                    "These logs do not tell " (one) " from " (other) " for sure. Drive and log " (experiment.runs)
+                    "These logs do not distinguish " (one) " from " (other) " for certain. Drive and log " (experiment.runs)
                     @if experiment.runs == 1 { " run" } @else { " runs" } " of " (experiment.script) "; "
                     code { "--next-experiment next.csv" } " writes the commands."
                 }
@@ -234,16 +182,16 @@ fn next(diagnosis: &Diagnosis, catalogue: &[&'static Effect]) -> Section {
                 li {
                     @if let Some(left) = left { (words::percent(left.share)) " of the gap is not explained. " }
                     "See " a href="#where" { "where it lies" } ", watch the robot there, and state what you suspect as an "
-                    "effect of your own: " code { "--effects FILE" } " lets it compete with the built-in ones."
+                    "effect of your own: with " code { "--effects FILE" } " it competes with the built-in ones."
                 }
             }
             @if matches!(diagnosis.answer, Answer::NoGap) {
-                li { "Nothing has to be mended for what these logs show. A controller that fails all the same drives "
-                    "where they do not: log it, and diagnose those runs." }
+                li { "By these logs, nothing needs repair. If a controller fails all the same, it drives under other conditions: log "
+                    "those runs and diagnose them." }
             }
             @if !diagnosis.untestable.is_empty() {
                 li {
-                    "These effects may be there or not, for the logs do not excite them: "
+                    "These effects cannot be ruled out, because the logs do not excite them: "
                     (words::list(&diagnosis.untestable.iter().map(|id| words::name(id, catalogue)).collect::<Vec<_>>()))
                     ". Drive more varied commands if you suspect one."
                 }

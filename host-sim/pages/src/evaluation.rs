@@ -1,19 +1,17 @@
-//! The page of an evaluation: how well each network does on logs that it was not trained on.
+//! The page of an evaluation: how well each network predicts logs that it was not trained on.
 
 use maud::{Markup, html};
-use serde::Serialize;
 
-use super::document::{Document, Script, Section, chart, open_table, table};
+use super::document::{Document, Section, chart, open_table, table};
 use super::words::{self, number};
-use mindgap_foundations::error::Result;
-use mindgap_foundations::statistics::agreement::ReliabilityBin;
+use mindgap_figures::pictures;
+use mindgap_figures::report::expected_against_predicted::{Panel, Samples};
+use mindgap_figures::report::sonar_surfaces::Surface;
 use mindgap_learning::evaluation::accuracy::{Evaluation, Networks, Probability, Value};
-use mindgap_learning::evaluation::support::{COLUMNS, ROWS, Support};
-use mindgap_learning::learn::dataset::Datasets;
 use mindgap_logs::Logs;
-use mindgap_models::simulator::{Learned, Simulator};
+use mindgap_models::simulator::Simulator;
 
-/// What a page is made of.
+/// The contents of a page.
 pub struct Subject<'a> {
     /// The figures.
     pub evaluation: &'a Evaluation,
@@ -25,84 +23,47 @@ pub struct Subject<'a> {
     pub names: [&'a str; 2],
 }
 
-#[derive(Serialize)]
-struct Data<'a> {
-    scatter: Vec<Scatter>,
-    reliability: &'a [ReliabilityBin],
-    surfaces: Vec<Surface>,
-}
-
-#[derive(Serialize)]
-struct Scatter {
-    name: &'static str,
-    unit: &'static str,
-    points: Vec<[f64; 2]>,
-}
-
-/// The response of a sonar network, cell by cell, with the samples in it.
-#[derive(Serialize)]
-struct Surface {
-    name: &'static str,
-    unit: &'static str,
-    range: [f64; 2],
-    size: [f64; 2],
-    cells: Vec<Cell>,
-}
-
-#[derive(Serialize)]
-struct Cell {
-    distance: f64,
-    alpha: f64,
-    value: f64,
-    known: bool,
-}
-
-/// As many samples of a network are drawn; more lie upon each other.
-const MOST_SAMPLES: usize = 1200;
-/// Coefficients of determination from which a network counts as good, and as usable.
+/// Least coefficients of determination of a good and of a usable network.
 const GOOD: f64 = 0.9;
 const USABLE: f64 = 0.5;
 
 /// A network's name and unit with its figures.
 type Judged<'a> = (&'static str, &'static str, &'a Value);
 
-/// The page, whole in one file.
-///
-/// # Errors
-/// When a number in it has no form in JSON.
-pub fn page(subject: &Subject) -> Result<String> {
+/// Returns the page, whole in one file.
+pub fn page(subject: &Subject) -> String {
     let Subject { evaluation, simulator, logs, names: [sim, folder] } = subject;
     let networks = &evaluation.networks;
     let values = values(networks);
-    let surfaces = surfaces(simulator, logs);
-    let mut sections = vec![Section { id: "values", title: "Predicted against logged", body: scatters(&values) }];
-    if let Some(probability) = &networks.echo_probability {
-        sections.push(Section { id: "echo", title: "Is there an echo?", body: reliability(probability) });
+    let surfaces = pictures::surfaces(simulator, logs);
+    let panels = pictures::panels(networks);
+    let (events, pairs): (Vec<Panel>, Vec<Panel>) =
+        panels.into_iter().partition(|panel| matches!(panel.samples, Samples::Events(_)));
+    let body = scatters(&values, &pairs);
+    let mut sections = vec![Section { id: "values", title: "Predicted against logged", body }];
+    if let (Some(probability), Some(panel)) = (&networks.echo_probability, events.first()) {
+        sections.push(Section { id: "echo", title: "Is there an echo?", body: reliability(probability, panel) });
     }
     if !surfaces.is_empty() {
-        sections.push(Section { id: "surfaces", title: "What the sonar networks answer", body: turnable(&surfaces) });
+        let body = responses(&surfaces);
+        sections.push(Section { id: "surfaces", title: "What the sonar networks predict", body });
     }
     sections.push(Section { id: "compared", title: "What was compared", body: compared(subject) });
-    let data = Data {
-        scatter: values.iter().map(scatter).collect(),
-        reliability: networks.echo_probability.as_ref().map_or(&[], |p| &p.reliability),
-        surfaces,
-    };
     Document {
         kind: "Evaluation",
         headline: &headline(&values),
         subject: &format!("{sim} on {folder}"),
         lead: html! {
             p {
-                "Well is an R² of " (GOOD) " or more, roughly of " (USABLE) ". Where it predicts less well on these logs than on those "
-                "that it learned from, the robot has changed or drives otherwise: " code { "mindgap diagnose " (sim) " " (folder) }
-                " says why."
+                "“Well” means an R² of " (GOOD) " or more, “roughly” " (USABLE) " or more. If it predicts these logs less well than "
+                "those that it was trained on, the robot has changed or drives differently: "
+                code { "mindgap diagnose " (sim) " " (folder) } " says why."
             }
         },
         sections,
-        scripts: &[Script::Evaluation],
+        script: None,
     }
-    .html(&data)
+    .html()
 }
 
 fn values(networks: &Networks) -> Vec<Judged<'_>> {
@@ -130,21 +91,15 @@ fn headline(values: &[Judged]) -> String {
         (among(USABLE, GOOD), "roughly"),
         (among(f64::NEG_INFINITY, USABLE), "hardly"),
     ];
-    let told: Vec<String> =
+    let said: Vec<String> =
         parts.iter().filter(|p| !p.0.is_empty()).map(|(what, how)| format!("{what} {how}")).collect();
-    match told.as_slice() {
+    match said.as_slice() {
         [] => "The simulator predicts whether there is an echo, and nothing else.".into(),
-        told => format!("The simulator predicts {}.", told.join(", ")),
+        said => format!("The simulator predicts {}.", said.join(", ")),
     }
 }
 
-fn scatter((name, unit, value): &Judged) -> Scatter {
-    let every = value.points.len().div_ceil(MOST_SAMPLES).max(1);
-    let rounded = |p: &[f64; 2]| p.map(|v| libm::round(v * 100.0) / 100.0);
-    Scatter { name, unit, points: value.points.iter().step_by(every).map(rounded).collect() }
-}
-
-/// How well each network does, as a table.
+/// Returns a table of how well each network predicts.
 pub fn accuracy(networks: &Networks) -> Markup {
     judged(&values(networks))
 }
@@ -158,91 +113,57 @@ fn judged(values: &[Judged]) -> Markup {
         })
         .collect();
     html! {
-        p { "R² is the share of what happened that the simulator foretells: 1 is all, 0 is no more than the mean." }
+        p { "R² is the share of the variance that the simulator predicts: 1 is all of it, 0 is no better than the mean." }
         (open_table(["network", "R²", "typical error (RMS)", "samples"], &rows))
     }
 }
 
-fn scatters(values: &[Judged]) -> Markup {
+/// Values and panels are of the same networks, each in its own order.
+fn scatters(values: &[Judged], panels: &[Panel]) -> Markup {
+    let r2 = |value: &Value| value.r2.map_or_else(|| "undefined".into(), |r2| number(r2, 3));
+    let said: Vec<String> = values.iter().map(|(name, _, value)| format!("{name} {}", r2(value))).collect();
     html! {
         (judged(values))
-        p { "Each dot is a sample of the logs. On the diagonal the prediction is right." }
+        p {
+            "Each dot is a sample of the logs. On the grey diagonal the prediction is right; the orange line is the trend. "
+            "Arrowheads at the edge are predictions beyond the frame."
+        }
         div.pairs {
-            @for (i, (name, unit, v)) in values.iter().enumerate() {
-                @let r2 = v.r2.map_or_else(|| "undefined".into(), |r2| number(r2, 3));
-                (chart("scatter", i, &format!("Predicted against logged {name} in {unit}, R² {r2}"), html! {
-                    (name) ": R² " (r2)
-                    @if let Some(trend) = &v.trend {
-                        @let sign = if trend.intercept < 0.0 { " − " } else { " + " };
-                        "; on the whole " (number(trend.slope, 3)) " × logged" (sign) (number(trend.intercept.abs(), 2))
-                    }
-                    @if v.n > MOST_SAMPLES {
-                        "; " (v.n.div_ceil(v.n.div_ceil(MOST_SAMPLES))) " of " (v.n) " samples are drawn"
-                    }
-                    "."
-                }))
+            @for panel in panels {
+                (chart("scatter", &panel.draw(), &format!("Predicted against logged values. R²: {}", said.join(", ")), html! {}))
             }
         }
     }
 }
 
-fn reliability(of: &Probability) -> Markup {
+fn reliability(of: &Probability, panel: &Panel) -> Markup {
     let rows: Vec<[String; 3]> =
         of.reliability.iter().map(|b| [number(b.predicted, 3), number(b.observed, 3), b.n.to_string()]).collect();
+    let drawn = panel.draw();
     html! {
-        (chart("reliability", 0, "How often there was an echo against how probable the simulator called it", html! {
-            "Where the simulator says 80 %, there should be an echo 80 times of 100: on the diagonal. Larger dots "
-            "have more samples. Brier score " (number(of.brier, 4)) ", log loss " (number(of.log_loss, 4))
+        (chart("reliability", &drawn, "How often there was an echo against its predicted probability", html! {
+            "Where the simulator predicts 80 %, there should be an echo 80 times out of 100: on the diagonal. The numbers below "
+            "the dots are samples, the vertical lines 95 % intervals. Brier score " (number(of.brier, 4)) ", log loss "
+            (number(of.log_loss, 4))
             @if let Some(auc) = of.auc { ", area under the ROC curve " (number(auc, 4)) } "."
         }))
         (table("The same in numbers", ["predicted", "observed", "samples"], &rows))
     }
 }
 
-fn surfaces(simulator: &Simulator, logs: &Logs) -> Vec<Surface> {
-    let Some(sensor) = simulator.robot.ultrasonic else { return Vec::new() };
-    let max_cm = sensor.max_cm;
-    let data = Datasets::from_logs(logs);
-    let size = [max_cm / COLUMNS as f64, 90.0 / ROWS as f64];
-    let surface = |name, unit, learned: &Option<Learned<2>>, samples, range: [f64; 2]| {
-        let network = &learned.as_ref()?.network;
-        let support = Support::of(samples, max_cm);
-        let cell = |i: usize| {
-            let (distance, alpha) = ((i % COLUMNS) as f64 * size[0], (i / COLUMNS) as f64 * size[1]);
-            let middle = [distance + 0.5 * size[0], alpha + 0.5 * size[1]];
-            let value = f64::from(network.evaluate(middle.map(|v| v as f32))).clamp(range[0], range[1]);
-            Cell {
-                distance,
-                alpha,
-                value: libm::round(value * 1000.0) / 1000.0,
-                known: support.has(middle[0], middle[1]),
-            }
-        };
-        Some(Surface { name, unit, range, size, cells: (0..COLUMNS * ROWS).map(cell).collect() })
-    };
-    let echo = surface("Probability of an echo", "", &simulator.echo_probability, &data.echo_probability, [0.0, 1.0]);
-    let reading = surface("Reading", "cm", &simulator.echo_value, &data.echo_value, [0.0, max_cm]);
-    echo.into_iter().chain(reading).collect()
-}
-
-fn turnable(surfaces: &[Surface]) -> Markup {
+fn responses(surfaces: &[Surface]) -> Markup {
     html! {
         p {
-            "What the networks answer to a distance D and an incidence angle α. Where the logs have no sample nearby "
-            "the map is hatched and the sheet in space is open: there the answer is a guess."
+            "What the networks predict at a distance D and an incidence angle α. Where the logs have no sample nearby the map "
+            "is hatched and the sheet in space is open: there a prediction would be a guess."
         }
-        @for (i, surface) in surfaces.iter().enumerate() {
-            h3 { (surface.name) @if !surface.unit.is_empty() { " (" (surface.unit) ")" } }
-            (chart("surface", i, &format!("{} over distance and incidence angle, from above", surface.name),
-                html! { "From above." }))
-            figure {
-                div.turnable data-surface=(i) role="img"
-                    aria-label={ (surface.name) " over distance and incidence angle, as a sheet in space" } {}
-                figcaption { "In space: drag it, or turn it with the sliders." }
-            }
-            div.controls {
-                label { "Turn" input type="range" min="-180" max="180" value="50" data-turn=(i); }
-                label { "Tilt" input type="range" min="5" max="90" value="25" data-tilt=(i); }
+        @for surface in surfaces {
+            h3 { (surface.title) }
+            div.pairs {
+                (chart("surface", &surface.from_above(), &format!("{} over distance and incidence angle, from above", surface.title),
+                    html! { "From above." }))
+                (chart("sheet", &surface.in_space(), &format!("{} over distance and incidence angle, in space", surface.title),
+                    html! { "In space." }))
             }
         }
     }

@@ -1,8 +1,6 @@
-//! The page of a fleet: which effects are how frequent, what is the simulator's fault, which robots are alike, and who
-//! stands out.
+//! The page of a fleet: frequencies of effects, effects that the simulator lacks, groups of similar robots, and outliers.
 
 use maud::{Markup, html};
-use serde::Serialize;
 
 use super::document::{Document, Script, Section, chart, open_table};
 use super::glossary;
@@ -10,11 +8,14 @@ use super::words::{self, number, percent, percent_within};
 use mindgap_applications::fleet::answer::{Fleet, Group, Row, Share};
 use mindgap_applications::fleet::frequency::{Frequency, Strength};
 use mindgap_applications::fleet::{ANSWER, DIAGNOSES};
-use mindgap_foundations::error::Result;
+use mindgap_figures::report::Figure;
+use mindgap_figures::report::segments::{self, Segment, SegmentChart};
+use mindgap_figures::report::shares::{self, ShareChart};
+use mindgap_figures::report::style::{KINDS, VERMILION};
 use mindgap_models::effects::Effect;
 use mindgap_models::effects::applied::AppliedEffect;
 
-/// What a page is made of.
+/// The contents of a page.
 pub struct Subject<'a> {
     /// What was found.
     pub fleet: &'a Fleet,
@@ -26,55 +27,22 @@ pub struct Subject<'a> {
     pub seed: u64,
 }
 
-/// What the charts draw.
-#[derive(Serialize)]
-struct Data<'a> {
-    frequencies: Vec<Bar<'a>>,
-    groups: Vec<String>,
-    shares: Vec<Part<'a>>,
-}
-
-#[derive(Serialize)]
-struct Bar<'a> {
-    name: &'a str,
-    share: f64,
-    ci95: [f64; 2],
-}
-
-#[derive(Serialize)]
-struct Part<'a> {
-    group: String,
-    name: &'a str,
-    share: f64,
-}
-
-/// As many robots are listed.
+/// Most robots that are listed.
 const MOST_ROBOTS: usize = 500;
-/// As many names of a group are.
+/// Most robots that are named per group.
 const MOST_NAMES: usize = 12;
-/// As many parts of a robot's gap are told.
+/// Most parts of a robot's gap that are named.
 const MOST_PARTS: usize = 3;
+const SCRIPT: &str = include_str!("../assets/page/sort.js");
 
-/// The page, whole in one file.
-///
-/// # Errors
-/// When a number in it has no form in JSON.
-pub fn page(subject: &Subject) -> Result<String> {
+/// Returns the page, whole in one file.
+pub fn page(subject: &Subject) -> String {
     let Subject { fleet, catalogue, names: [logs, simulator], .. } = subject;
-    let data = Data {
-        frequencies: fleet
-            .effects
-            .iter()
-            .map(|f| Bar { name: words::name(f.id, catalogue), share: f.frequency, ci95: f.ci95 })
-            .collect(),
-        groups: (1..=fleet.groups.len()).map(group_name).collect(),
-        shares: shares(fleet, catalogue),
-    };
     let mut sections = vec![
-        Section { id: "common", title: "What is the simulator's fault", body: common(subject) },
+        Section { id: "common", title: "What the simulator lacks", body: common(subject) },
         Section { id: "effects", title: "How frequent effects are", body: frequencies(&fleet.effects, catalogue) },
-        Section { id: "groups", title: "Robots with gaps of one kind", body: groups(fleet, catalogue) },
-        Section { id: "out", title: "Who stands out", body: outliers(fleet, catalogue) },
+        Section { id: "groups", title: "Robots with similar gaps", body: groups(fleet, catalogue) },
+        Section { id: "out", title: "Outliers", body: outliers(fleet, catalogue) },
         Section { id: "robots", title: "The robots", body: robots(fleet, catalogue) },
     ];
     if !fleet.refused.is_empty() || !fleet.left_out.is_empty() {
@@ -87,9 +55,9 @@ pub fn page(subject: &Subject) -> Result<String> {
         subject: &format!("{logs} against {simulator}"),
         lead: lead(subject),
         sections,
-        scripts: &[Script::Fleet],
+        script: Some(Script::without_data(SCRIPT)),
     }
-    .html(&data)
+    .html()
 }
 
 /// What the robots have, in one sentence.
@@ -117,12 +85,12 @@ fn lead(subject: &Subject) -> Markup {
         p { "Verdicts: " (words::list(&verdicts.iter().map(String::as_str).collect::<Vec<_>>())) "." }
         @if let Some(gap) = &fleet.gap_nats {
             p {
-                "Where there is a gap, it is " strong { (number(gap.median, 3)) " nats a step" } " in the middle"
+                "Where there is a gap, it is " strong { (number(gap.median, 3)) " nats per step" } " in the middle"
                 @if gap.quartiles[0] < gap.quartiles[1] {
                     "; half of the robots have between " (number(gap.quartiles[0], 3)) " and "
                     (number(gap.quartiles[1], 3))
                 }
-                ". What a nat is stands " a href="#words" { "below" } "."
+                ". The " a href="#words" { "glossary" } " explains nats."
             }
         }
         @if !fleet.refused.is_empty() {
@@ -140,14 +108,13 @@ fn common(subject: &Subject) -> Markup {
     html! {
         @if fleet.common.is_empty() {
             p {
-                "No effect is in nearly all robots in the same strength. What the robots have is their own: see below on "
-                "which of them to mend."
+                "No effect is in nearly all robots at the same strength. Each robot has its own: see below which to repair."
             }
         } @else {
             p {
-                "What nearly all robots have alike is no wear of theirs. Train the simulator again with logs of several of "
-                "these robots; or add it: the same command with " code { "--apply better.json" } " writes a simulator that "
-                "has it."
+                "An effect that nearly all robots share is not wear: the simulator lacks it. Train the simulator again with logs "
+                "of several of these robots; or add it: the same command with " code { "--apply better.json" } " writes a "
+                "simulator that has it."
             }
             ul {
                 @for common in &fleet.common {
@@ -172,10 +139,19 @@ fn frequencies(effects: &[Frequency], catalogue: &[&'static Effect]) -> Markup {
     let said: Vec<String> =
         effects.iter().map(|f| format!("{} {}", words::name(f.id, catalogue), percent(f.frequency))).collect();
     let rows: Vec<[String; 4]> = effects.iter().map(|f| row(f, catalogue)).collect();
+    let share = |f: &Frequency| shares::Share {
+        name: words::name(f.id, catalogue).into(),
+        share: f.frequency,
+        interval: f.ci95,
+        colour: VERMILION,
+    };
+    let axis = "robots that have it (%)".into();
+    let shares = effects.iter().map(share).collect();
+    let drawn = ShareChart { axis, rows: shares, points: true, ..ShareChart::default() }.draw();
     html! {
-        (chart("frequencies", 0, &format!("Share of the robots that have an effect: {}", said.join(", ")), html! {
-            "The share of the robots that have an effect, each counted by how probable its diagnosis calls it, among those "
-            "whose logs could show it. The lines are 95 % intervals: few robots tell little."
+        (chart("frequencies", &drawn, &format!("Share of the robots that have an effect: {}", said.join(", ")), html! {
+            "The share of the robots that have an effect, each weighted by the probability in its diagnosis, among those whose "
+            "logs could show it. The lines are 95 % intervals, which are wide for few robots."
         }))
         (open_table(["effect", "frequency (95 %)", "named in", "strength: median (quartiles)"], &rows))
     }
@@ -200,12 +176,36 @@ fn group_name(number: usize) -> String {
     format!("group {number}")
 }
 
-fn shares<'a>(fleet: &Fleet, catalogue: &'a [&'static Effect]) -> Vec<Part<'a>> {
-    let of = |(i, group): (usize, &Group)| -> Vec<Part<'a>> {
-        let part = |s: &Share| Part { group: group_name(i + 1), name: words::name(s.id, catalogue), share: s.share };
-        group.budget.iter().map(part).collect()
+/// The mean gaps of the groups, one colour per effect in the order in which they appear.
+fn drawn_groups(fleet: &Fleet, catalogue: &[&'static Effect]) -> Figure {
+    let mut ids: Vec<&str> = Vec::new();
+    for share in fleet.groups.iter().flat_map(|group| &group.budget) {
+        if !ids.contains(&share.id) {
+            ids.push(share.id);
+        }
+    }
+    let row = |(i, group): (usize, &Group)| {
+        let mut from = 0.0;
+        let segment = |share: &Share| {
+            let name = words::name(share.id, catalogue);
+            let to = from + 100.0 * share.share;
+            let kind = ids.iter().position(|id| *id == share.id).unwrap_or_default();
+            let segment = Segment { from, to, kind, title: format!("{name} {}", percent(share.share)) };
+            from = to;
+            segment
+        };
+        segments::Row { name: group_name(i + 1), segments: group.budget.iter().map(segment).collect() }
     };
-    fleet.groups.iter().enumerate().flat_map(of).collect()
+    let kind = |(id, colour)| (words::name(id, catalogue).to_owned(), colour);
+    SegmentChart {
+        axis: "mean share of the gap (%)".into(),
+        range: 0.0..100.0,
+        names_px: 64.0,
+        row_px: 42.0,
+        kinds: ids.iter().copied().zip(KINDS.into_iter().cycle()).map(kind).collect(),
+        rows: fleet.groups.iter().enumerate().map(row).collect(),
+    }
+    .draw()
 }
 
 fn groups(fleet: &Fleet, catalogue: &[&'static Effect]) -> Markup {
@@ -219,21 +219,21 @@ fn groups(fleet: &Fleet, catalogue: &[&'static Effect]) -> Markup {
             [
                 group_name(i + 1),
                 group.robots.len().to_string(),
-                told(&group.budget, catalogue),
+                in_words(&group.budget, catalogue),
                 if more > 0 { format!("{names} and {more} more") } else { names },
             ]
         })
         .collect();
     html! {
         @if fleet.groups.len() == 1 {
-            p { "The robots' gaps are made of the same things, as far as these robots tell." }
+            p { "As far as these logs show, all robots' gaps consist of the same effects." }
         } @else {
             p {
-                "Robots in one group can be mended alike: their gaps are made of the same things in like shares."
+                "Robots in one group can be repaired alike: their gaps consist of the same effects in similar shares."
             }
         }
-        (chart("groups", 0, "Mean shares of the gap in each group, as in the table below", html! {
-            "What the gaps of each group are made of. A short bar is of robots many of which have no gap."
+        (chart("groups", &drawn_groups(fleet, catalogue), "Mean shares of the gap in each group, as in the table below", html! {
+            "What the gaps of each group are made of. A bar is short where many robots of the group have no gap."
         }))
         (open_table(["group", "robots", "their gap", "who"], &rows))
     }
@@ -242,7 +242,7 @@ fn groups(fleet: &Fleet, catalogue: &[&'static Effect]) -> Markup {
 fn outliers(fleet: &Fleet, catalogue: &[&'static Effect]) -> Markup {
     let what = |what: &str| match what.split_once('.') {
         Some((id, parameter)) => format!("{}: {parameter}", words::name(id, catalogue)),
-        None => "size of the gap, nats a step".into(),
+        None => "size of the gap, nats per step".into(),
     };
     let rows: Vec<[String; 5]> = fleet
         .stands_out
@@ -255,11 +255,11 @@ fn outliers(fleet: &Fleet, catalogue: &[&'static Effect]) -> Markup {
         .collect();
     html! {
         @if rows.is_empty() {
-            p { "No robot is further from the others than chance brings robots." }
+            p { "No robot is further from the others than chance explains." }
         } @else {
             p {
-                "These lie further from the middle of the fleet than any robot would by chance in 19 of 20 fleets. Look at "
-                "them first; or their logs are of something else."
+                "These are further from the middle of the fleet than any robot would be by chance in 19 of 20 fleets. Look at "
+                "them first, or check whether their logs are of another robot."
             }
             (open_table(["robot", "in what", "it has", "the fleet has", "deviations away"], &rows))
         }
@@ -267,7 +267,7 @@ fn outliers(fleet: &Fleet, catalogue: &[&'static Effect]) -> Markup {
 }
 
 /// Parts of a gap in words.
-fn told(budget: &[Share], catalogue: &[&'static Effect]) -> String {
+fn in_words(budget: &[Share], catalogue: &[&'static Effect]) -> String {
     let parts: Vec<String> = budget
         .iter()
         .take(MOST_PARTS)
@@ -277,18 +277,18 @@ fn told(budget: &[Share], catalogue: &[&'static Effect]) -> String {
 }
 
 fn robots(fleet: &Fleet, catalogue: &[&'static Effect]) -> Markup {
-    // Whoever stands out is among them.
+    // Outliers are among them.
     let is_out = |row: &&Row| fleet.stands_out.iter().take(MOST_ROBOTS).any(|outlier| outlier.robot == row.name);
     let spaced = fleet.robots.len().div_ceil(MOST_ROBOTS).max(1);
     let shown: Vec<&Row> =
         fleet.robots.iter().enumerate().filter(|(i, row)| i % spaced == 0 || is_out(row)).map(|(_, row)| row).collect();
-    let header = ["robot", "verdict", "gap (nats a step)", "made of", "group"];
+    let header = ["robot", "verdict", "gap (nats per step)", "made of", "group"];
     html! {
         p {
-            "Each name leads to the robot's diagnosis as JSON; a column's name sorts by it."
+            "Each name links to the robot's diagnosis as JSON. Click on a column's name to sort by it."
             @if shown.len() < fleet.robots.len() {
-                " These are " (shown.len()) " of " (fleet.robots.len()) ", evenly spread and whoever stands out; "
-                "all are in the files beside this page."
+                " These are " (shown.len()) " of " (fleet.robots.len()) ", evenly spread, and all outliers; the files next to "
+                "this page have all of them."
             }
         }
         div.wide tabindex="0" role="region" aria-label="Table: the robots" {
@@ -302,7 +302,7 @@ fn robots(fleet: &Fleet, catalogue: &[&'static Effect]) -> Markup {
                             td.n data-value=(row.gap_nats.unwrap_or(0.0)) {
                                 (row.gap_nats.map_or("–".into(), |gap| number(gap, 3)))
                             }
-                            td { (told(&row.budget, catalogue)) }
+                            td { (in_words(&row.budget, catalogue)) }
                             td.n { (row.group) }
                         }
                     }

@@ -1,7 +1,7 @@
-//! Pages for a browser: what a command found, whole in one file that opens from disk, on a phone, in the dark and in print.
+//! Pages for a browser: the results of a command in one file that opens from disk, on a phone, in the dark and in print.
 //!
-//! There is one module a page. Words and tables are made here, and everything that is put into them is escaped; charts are
-//! drawn in the browser by libraries that the page carries (`assets/vendor`), from data that it carries too.
+//! There is one module per page. Words, tables and charts are made here, and all words are escaped; scripts only move what
+//! moves, the replay and sorted tables.
 
 pub mod demo;
 pub mod diagnosis;
@@ -14,4 +14,3 @@ pub mod words;
 mod document;
 mod glossary;
 mod replay;
-mod room;

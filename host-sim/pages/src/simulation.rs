@@ -1,16 +1,20 @@
-//! The page of a controller's simulated runs: where they end, what the controller does, and the runs to be watched.
+//! The page of a controller's simulated runs: where they end, what the controller does, and a replay of the runs.
 
 use std::collections::BTreeMap;
 
 use glam::DVec2;
 use maud::{Markup, html};
 use mindgap_core::controller::{Controller, TUPLES, When};
-use serde::Serialize;
 
-use super::document::{Document, Script, Section, chart, open_table};
+use super::document::{Document, Section, chart, open_table};
 use super::replay::{Kind, Replay, ReplayedRun, sampled};
-use super::room::Room;
-use super::words::{number, percent, tenths};
+use super::words::{number, percent};
+use mindgap_figures::pictures::simulated;
+use mindgap_figures::report::Figure;
+use mindgap_figures::report::paths::{Ending, endings};
+use mindgap_figures::report::room::Room;
+use mindgap_figures::report::segments::{Row, Segment, SegmentChart};
+use mindgap_figures::report::style::Colour;
 use mindgap_foundations::error::Result;
 use mindgap_foundations::geometry::Pose;
 use mindgap_foundations::statistics::summary::median;
@@ -18,7 +22,7 @@ use mindgap_learning::evaluation::replay::Moment;
 use mindgap_logs::{Robot, Scene, Termination};
 use mindgap_models::simulator::rollout_report::{PathPoint, Rollout, RolloutReport};
 
-/// What a page is made of.
+/// The contents of a page.
 pub struct Subject<'a> {
     /// The runs.
     pub rollouts: &'a RolloutReport,
@@ -36,66 +40,40 @@ pub struct Subject<'a> {
     pub seed: u64,
 }
 
-#[derive(Serialize)]
-struct Data<'a> {
-    room: Room,
-    paths: Vec<Path>,
-    turns: Vec<Turn>,
-    replay: &'a Replay,
-}
-
-#[derive(Serialize)]
-struct Path {
-    run: usize,
-    ending: String,
-    x: Vec<f64>,
-    y: Vec<f64>,
-}
-
-/// A tuple's turn in a run, in steps.
-#[derive(Serialize)]
-struct Turn {
-    run: usize,
-    tuple: usize,
-    from: usize,
-    to: usize,
-}
-
-const TUPLES_HEADER: [&str; 5] = ["tuple", "left, right", "until a reading is", "begins at step (range)", "runs"];
+/// Ways in which a run ends, and what each means.
+const ENDINGS: [(Termination, &str); 3] = [
+    (Termination::TimedOut, "the robot was still driving when it had used up its steps, and was stopped"),
+    (Termination::Crashed, "the robot touched a wall or an obstacle"),
+    (Termination::Finished, "the sixth tuple's test held and the robot stopped"),
+];
+const TUPLES_HEADER: [&str; 5] = ["tuple", "left, right", "until a reading is", "starts at step (range)", "runs"];
 const DRIVEN: Kind = Kind { id: "simulator", name: "the simulated robot" };
 
-/// The page, whole in one file.
+/// Returns the page, whole in one file.
 ///
 /// # Errors
 /// When a number in it has no form in JSON.
 pub fn page(subject: &Subject) -> Result<String> {
-    let Subject { rollouts, scene, names: [sim, controller, room], .. } = subject;
+    let Subject { rollouts, names: [sim, controller, room], .. } = subject;
     let lengths: Vec<usize> = rollouts.runs.iter().map(|run| run.path.len()).collect();
     let shown: Vec<usize> = sampled(&lengths).into_iter().map(|(run, _)| run).collect();
     let replay = replay(subject, &shown);
-    let places = rollouts.runs.iter().flat_map(|run| run.path.iter().map(|p| DVec2::new(p.x_cm, p.y_cm)));
-    let data = Data {
-        room: Room::new(scene, rollouts.reached_within_cm, places),
-        paths: shown.iter().map(|run| path(*run, &rollouts.runs[*run])).collect(),
-        turns: shown.iter().flat_map(|run| turns(*run, &rollouts.runs[*run])).collect(),
-        replay: &replay,
-    };
-    Document {
+    Ok(Document {
         kind: "Simulation",
         headline: &headline(rollouts),
         subject: &format!("{controller} in {sim}, {room}, start {}", subject.start),
         lead: html! {
-            p { "Each run is of another robot that the simulator's logs leave possible, with the noise of its motors and its sensor." }
+            p { "Each run has another robot that is possible by the simulator's logs, with noise of its motors and its sensor." }
         },
         sections: vec![
-            Section { id: "paths", title: "Where the runs end", body: paths(rollouts, shown.len()) },
-            Section { id: "tuples", title: "What the controller does", body: tuples(subject) },
+            Section { id: "paths", title: "Where the runs end", body: paths(subject, &shown) },
+            Section { id: "tuples", title: "What the controller does", body: tuples(subject, &shown) },
             Section { id: "replay", title: "Replay", body: replay.markup() },
             Section { id: "compared", title: "What was run", body: source(subject) },
         ],
-        scripts: &[Script::Simulation, Script::Replay],
+        script: Some(replay.script()?),
     }
-    .html(&data)
+    .html())
 }
 
 fn headline(rollouts: &RolloutReport) -> String {
@@ -112,17 +90,11 @@ fn ended(rollouts: &RolloutReport, how: Termination) -> usize {
     rollouts.runs.iter().filter(|run| run.termination == how).count()
 }
 
-fn paths(rollouts: &RolloutReport, shown: usize) -> Markup {
-    let told = [
-        (Termination::Finished, "the sixth tuple's test held and the robot stopped"),
-        (
-            Termination::TimedOut,
-            "the robot was still driving when the steps that it may take were used up, and was stopped",
-        ),
-        (Termination::Crashed, "the robot touched a wall or an obstacle"),
-    ];
-    let rows: Vec<[String; 3]> = told
+fn paths(subject: &Subject, shown: &[usize]) -> Markup {
+    let rollouts = subject.rollouts;
+    let rows: Vec<[String; 3]> = ENDINGS
         .into_iter()
+        .rev()
         .filter(|(how, _)| ended(rollouts, *how) > 0)
         .map(|(how, meaning)| [how.to_string(), ended(rollouts, how).to_string(), meaning.into()])
         .collect();
@@ -131,17 +103,32 @@ fn paths(rollouts: &RolloutReport, shown: usize) -> Markup {
         @if rollouts.success.is_some() {
             p.quiet {
                 "A run reaches the target when it ends within " (number(rollouts.reached_within_cm, 0))
-                " cm of it without a crash, however it ends: one that times out there has reached it too."
+                " cm of it without a crash, even if it timed out there."
             }
         }
-        (chart("runs", 0, &headline(rollouts), html! {
-            "All paths from the start; the ring is the target. "
-            @if shown < rollouts.runs.len() { (shown) " of " (rollouts.runs.len()) " runs, evenly spread, are drawn." }
+        (chart("runs", &drawn_paths(subject, shown), &headline(rollouts), html! {
+            "All paths from the start. "
+            @if shown.len() < rollouts.runs.len() {
+                (shown.len()) " of " (rollouts.runs.len()) " runs, evenly spread, are drawn."
+            }
         }))
     }
 }
 
-fn tuples(subject: &Subject) -> Markup {
+fn drawn_paths(subject: &Subject, shown: &[usize]) -> Figure {
+    let Subject { rollouts, scene, start, .. } = subject;
+    let ended = |(how, _): (Termination, &str)| Ending {
+        name: how.to_string(),
+        runs: shown
+            .iter()
+            .filter(|run| rollouts.runs[**run].termination == how)
+            .map(|run| (run + 1, simulated(&rollouts.runs[*run])))
+            .collect(),
+    };
+    endings(scene, scene.starts[start - 1], rollouts.reached_within_cm, &ENDINGS.map(ended))
+}
+
+fn tuples(subject: &Subject, shown: &[usize]) -> Markup {
     let Subject { controller, rollouts, .. } = subject;
     let begins = |tuple: usize| -> Vec<f64> {
         let begin = |run: &Rollout| run.path.iter().position(|p| p.tuple == tuple);
@@ -171,39 +158,49 @@ fn tuples(subject: &Subject) -> Markup {
         p { "The robot holds a tuple's commands until a reading is on the stated side of its threshold, then takes "
         "the next." }
         (open_table(TUPLES_HEADER, &rows))
-        p.quiet { "The step is the median over the runs in which the tuple is reached; the last column counts them." }
-        (chart("turns", 0, "Which tuple each run holds, step by step", html! {
-            "Which tuple each run holds, step by step: a row is a run."
+        p.quiet { "The step is the median over the runs that reach the tuple; the last column counts those runs." }
+        (chart("turns", &drawn_tuples(rollouts, shown), "Which tuple each run holds, step by step", html! {
+            "Which tuple each run holds, step by step: one row per run."
         }))
     }
 }
 
-fn path(run: usize, rollout: &Rollout) -> Path {
-    let along = |of: fn(&PathPoint) -> f64| rollout.path.iter().map(|p| tenths(of(p))).collect();
-    Path { run: run + 1, ending: rollout.termination.to_string(), x: along(|p| p.x_cm), y: along(|p| p.y_cm) }
+fn drawn_tuples(rollouts: &RolloutReport, shown: &[usize]) -> Figure {
+    let rows: Vec<Row> =
+        shown.iter().map(|run| Row { name: (run + 1).to_string(), segments: held(&rollouts.runs[*run]) }).collect();
+    let most = rows.iter().flat_map(|row| &row.segments).map(|held| held.to).fold(0.0, f64::max);
+    // The darkest colours of the scale are lost on a dark page.
+    let kind = |tuple: usize| (format!("tuple {}", tuple + 1), Colour::viridis(0.25 + 0.14 * tuple as f64));
+    let kinds = (0..TUPLES).map(kind).collect();
+    SegmentChart { axis: "step".into(), range: 0.0..most, names_px: 32.0, row_px: 16.0, kinds, rows }.draw()
 }
 
-fn turns(run: usize, rollout: &Rollout) -> Vec<Turn> {
+/// The tuples of a run one after the other, in steps.
+fn held(rollout: &Rollout) -> Vec<Segment> {
     let mut from = 0;
     // At its last point a run is over.
     let driven = rollout.path.split_last().map_or(&[][..], |(_, driven)| driven);
-    let held = driven.chunk_by(|a, b| a.tuple == b.tuple).map(|points| {
-        let turn = Turn { run: run + 1, tuple: points[0].tuple, from, to: from + points.len() };
-        from += points.len();
-        turn
+    let turns = driven.chunk_by(|a, b| a.tuple == b.tuple).map(|points| {
+        let (tuple, to) = (points[0].tuple, from + points.len());
+        let title = format!("tuple {tuple}, steps {from} to {to}");
+        let segment = Segment { from: from as f64, to: to as f64, kind: tuple - 1, title };
+        from = to;
+        segment
     });
-    held.filter(|turn| turn.tuple <= TUPLES).collect()
+    turns.filter(|segment| segment.kind < TUPLES).collect()
 }
 
 fn replay(subject: &Subject, shown: &[usize]) -> Replay {
-    let Subject { rollouts, controller, robot, .. } = subject;
+    let Subject { rollouts, controller, robot, scene, .. } = subject;
+    let places = rollouts.runs.iter().flat_map(|run| run.path.iter().map(|p| DVec2::new(p.x_cm, p.y_cm)));
+    let room = Room::new(scene, rollouts.reached_within_cm, places);
     let run = |place: &usize| {
         let rollout = &rollouts.runs[*place];
         let moment = |p: &PathPoint| Moment {
             pose: Some(Pose::new(p.x_cm, p.y_cm, p.heading_deg.to_radians())),
             echo_cm: p.echo_cm.map(f64::from),
         };
-        let told = |p: &PathPoint| match controller.tuples.get(p.tuple - 1) {
+        let remark = |p: &PathPoint| match controller.tuples.get(p.tuple - 1) {
             Some(tuple) => {
                 let [left, right] = [tuple.left, tuple.right].map(|command| number(f64::from(command), 0));
                 format!("tuple {}: commands {left}, {right}", p.tuple)
@@ -213,11 +210,11 @@ fn replay(subject: &Subject, shown: &[usize]) -> Replay {
         ReplayedRun {
             name: format!("run {}: {}", place + 1, rollout.termination),
             t_s: (0..rollout.path.len()).map(|step| step as f64 * f64::from(controller.step_ms) / 1000.0).collect(),
-            told: rollout.path.iter().map(told).collect(),
+            remarks: rollout.path.iter().map(remark).collect(),
             tracks: BTreeMap::from([(DRIVEN.id, rollout.path.iter().map(moment).collect::<Vec<_>>().into())]),
         }
     };
-    Replay::new(robot, &[DRIVEN], shown.iter().map(run).collect(), rollouts.runs.len())
+    Replay::new(robot, room, &[DRIVEN], shown.iter().map(run).collect(), rollouts.runs.len())
 }
 
 fn source(subject: &Subject) -> Markup {

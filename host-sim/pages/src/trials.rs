@@ -1,23 +1,22 @@
-//! The page of a loop: what was expected of each controller and what the robot did, and what each run taught.
+//! The page of a loop: the predicted and driven paths of each controller, and what each run taught the simulator.
 
-use glam::DVec2;
 use maud::{Markup, html};
-use serde::Serialize;
 
-use super::document::{Document, Script, Section, chart, open_table};
-use super::room::Room;
+use super::document::{Document, Section, chart, open_table};
 use super::words::{self, number, percent, percent_within};
 use mindgap_applications::adapt::Gap;
+use mindgap_applications::trials::drawing;
 use mindgap_applications::trials::state::{State, Trial, Verdict};
-use mindgap_foundations::error::Result;
+use mindgap_figures::report::curves::{Curve, CurveChart, Point};
+use mindgap_figures::report::{self, Figure};
+use mindgap_foundations::geometry::Pose;
 use mindgap_learning::evolve::chance::Chance;
 use mindgap_logs::Scene;
 use mindgap_models::effects::CATALOGUE;
 use mindgap_models::effects::applied::AppliedEffect;
 use mindgap_models::effects::parameter::Setting;
-use mindgap_models::simulator::rollout::REACHED_CM;
 
-/// What a page is made of.
+/// The contents of a page.
 pub struct Subject<'a> {
     /// What happened.
     pub state: &'a State,
@@ -31,50 +30,14 @@ pub struct Subject<'a> {
     pub seed: u64,
 }
 
-/// What the charts draw.
-#[derive(Serialize)]
-pub struct Charts {
-    room: Room,
-    chances: Vec<Chances>,
-    maps: Vec<Map>,
-    gaps: Vec<Gaps>,
-}
-
-/// Paths that were expected of a controller, and the robot's.
-#[derive(Serialize)]
-pub struct Map {
-    /// In simulation.
-    pub expected: Vec<Vec<[f64; 2]>>,
-    /// On the robot.
-    pub driven: Vec<Vec<[f64; 2]>>,
-}
-
-/// The chance of a trial's controller before and after it was driven, with its range; and how it went.
-#[derive(Serialize)]
-struct Chances {
-    trial: usize,
-    kind: &'static str,
-    chance: f64,
-    ci95: [f64; 2],
-    reached: Option<bool>,
-}
-
-/// What the steps of a channel were off by, trial by trial.
-#[derive(Serialize)]
+/// Errors of a channel's steps: number of the trial, before and after it.
 struct Gaps {
     name: &'static str,
     unit: &'static str,
-    rows: Vec<GapRow>,
+    rows: Vec<(usize, [f64; 2])>,
 }
 
-#[derive(Serialize)]
-struct GapRow {
-    trial: usize,
-    before: f64,
-    after: f64,
-}
-
-/// A channel, its unit, and what its steps were off by before and after.
+/// A channel, its unit, and the errors of its steps before and after.
 type Channel = (&'static str, &'static str, fn(&Gap) -> [f64; 2]);
 
 const CHANNELS: [Channel; 3] = [
@@ -82,22 +45,19 @@ const CHANNELS: [Channel; 3] = [
     ("sideways motion", "cm", |gap| gap.lateral_cm),
     ("turn", "degrees", |gap| gap.turn_deg),
 ];
-/// As many maps are in a page.
+/// Most maps per page.
 const MOST_MAPS: usize = 24;
 
-/// How maps are read.
-pub const LINES: &str = "Thin lines are what was expected, thick ones are the robot; the ring is the target. Where they part, \
-                         the simulator did not know something.";
+/// How to read a map.
+pub const LINES: &str = "Dashed lines are the simulated paths, solid ones the robot's. Where they part, the simulator lacks \
+                         something.";
 const TURNS_HEADER: [&str; 5] =
     ["trial", "chance before (95 % of robots)", "on the robot", "chance after", "effects found"];
 
-/// The page, whole in one file.
-///
-/// # Errors
-/// When a number in it has no form in JSON.
-pub fn page(subject: &Subject) -> Result<String> {
+/// Returns the page, whole in one file.
+pub fn page(subject: &Subject) -> String {
     let Subject { state, scene, names: [sim, room], start, .. } = subject;
-    let mut sections = sections(state, 0);
+    let mut sections = sections(state, scene, scene.starts[start - 1]);
     sections.push(Section { id: "next", title: "What to do next", body: next(state) });
     sections.push(Section { id: "compared", title: "What was run", body: source(subject) });
     Document {
@@ -106,27 +66,18 @@ pub fn page(subject: &Subject) -> Result<String> {
         subject: &format!("{sim}, {room}, start {start}"),
         lead: html! { p { (lead(state)) } },
         sections,
-        scripts: &[Script::Trials],
+        script: None,
     }
-    .html(&charts(scene, state, Vec::new()))
+    .html()
 }
 
-/// What the charts of a loop draw, with maps `before` its own.
-pub fn charts(scene: &Scene, state: &State, before: Vec<Map>) -> Charts {
-    let trials = &state.trials;
-    let maps: Vec<Map> = before.into_iter().chain(shown(trials.len()).into_iter().map(|i| map(&trials[i]))).collect();
-    let places = maps.iter().flat_map(|map| map.expected.iter().chain(&map.driven).flatten());
-    let room = Room::new(scene, REACHED_CM, places.copied().map(DVec2::from));
-    Charts { room, chances: trials.iter().flat_map(chances).collect(), maps, gaps: gaps(trials) }
-}
-
-/// The parts of a page that tell of a loop, whose first map has this number.
-pub fn sections(state: &State, first_map: usize) -> Vec<Section> {
+/// Returns the parts of a page about a loop from a start in a scene.
+pub fn sections(state: &State, scene: &Scene, start: Pose) -> Vec<Section> {
     let trials = &state.trials;
     let gaps = gaps(trials);
     let mut sections = vec![Section { id: "turns", title: "Turn by turn", body: turns(state) }];
     if !trials.is_empty() {
-        sections.push(Section { id: "paths", title: "Expected and driven", body: maps(trials, first_map) });
+        sections.push(Section { id: "paths", title: "Expected and driven", body: maps(trials, scene, start) });
     }
     if !gaps.is_empty() {
         sections.push(Section { id: "gap", title: "How far the simulator was off", body: off(&gaps) });
@@ -154,10 +105,10 @@ fn headline(state: &State) -> String {
             format!("The controller works {after}: it reached the target three times, and has {chance} in simulation.")
         }
         Verdict::Spent if state.limit().is_some() => format!(
-            "No six tuples were found that reach the target often enough; {after} the best has {chance}, and chance limits it."
+            "No controller was found that reaches the target often enough; {after} the best has {chance}, limited by noise alone."
         ),
         Verdict::Spent => format!("No controller is confirmed {after}; the best has {chance}."),
-        Verdict::OutOfReach => "No controller was found that reaches the target on a robot that is possible.".into(),
+        Verdict::OutOfReach => "No controller was found that reaches the target on any possible robot.".into(),
         Verdict::Running => format!("The loop is under way {after}."),
     }
 }
@@ -182,15 +133,15 @@ fn turns(state: &State) -> Markup {
         @if rows.is_empty() {
             p { "No controller was driven." }
         } @else {
-            (chart("chances", 0, "Chance of each trial's controller before and after it was driven", html! {
-                "The chance that the simulator gave each controller before it was driven, and gives it after the run, with "
-                "the range of 95 % of the robots that were possible; on top whether the robot reached the target. A wide "
-                "range says that the robot is not known well enough."
+            (chart("chances", &chances(&state.trials), "Chance of each trial's controller before and after it was driven", html! {
+                "The chance of success that the simulator predicts for each controller before it is driven, and after the run, "
+                "with the range over 95 % of the possible robots. On top: ✓ the robot reached the target, ✗ it missed it. A wide "
+                "range means that the robot is not known well enough."
             }))
             (open_table(TURNS_HEADER, &rows))
         }
         @if !state.failures.is_empty() {
-            h3 { "Drives that taught nothing" }
+            h3 { "Drives without a usable log" }
             ul { @for failure in &state.failures { li { "Trial " (failure.trial) ": " (failure.reason) } } }
         }
     }
@@ -215,27 +166,36 @@ fn row(trial: &Trial) -> [String; 5] {
     ]
 }
 
-fn chances(trial: &Trial) -> Vec<Chances> {
-    let reached = trial.real.as_ref().map(|real| real.reached);
-    let of = |kind, chance: &Chance| Chances {
-        trial: trial.number,
-        kind,
-        chance: chance.success,
-        ci95: chance.ci95,
-        reached,
+fn chances(trials: &[Trial]) -> Figure {
+    let point = |trial: &Trial, chance: &Chance| Point {
+        interval: chance.ci95.map(|end| 100.0 * end),
+        ..Point::new(trial.number as f64, 100.0 * chance.success)
     };
-    let before = of("before the run", &trial.predicted);
-    [before].into_iter().chain(trial.chance_after.iter().map(|chance| of("after the run", chance))).collect()
-}
-
-fn map(trial: &Trial) -> Map {
-    Map {
-        expected: trial.predicted_paths.iter().map(|path| path.path_cm.clone()).collect(),
-        driven: trial.real.iter().map(|real| real.path_cm.clone()).collect(),
+    let after = |trial: &Trial| Some(point(trial, trial.chance_after.as_ref()?));
+    let curves = vec![
+        Curve { name: "before the run".into(), points: trials.iter().map(|t| point(t, &t.predicted)).collect() },
+        Curve { name: "after the run".into(), points: trials.iter().filter_map(after).collect() },
+    ];
+    let remark = |trial: &Trial| {
+        let mark = if trial.real.as_ref()?.reached { "✓" } else { "✗" };
+        Some((trial.number as f64, mark.into()))
+    };
+    CurveChart {
+        y_name: "chance of reaching the target (%)".into(),
+        y_range: Some(0.0..100.0),
+        apart: true,
+        remarks: trials.iter().filter_map(remark).collect(),
+        ..along_trials(trials.iter().map(|trial| trial.number), curves)
     }
+    .draw()
 }
 
-fn maps(trials: &[Trial], first_map: usize) -> Markup {
+/// A chart with trials along it.
+fn along_trials(trials: impl Iterator<Item = usize>, curves: Vec<Curve>) -> CurveChart {
+    CurveChart { x_name: "trial".into(), counts: trials.collect(), curves, ..CurveChart::default() }
+}
+
+fn maps(trials: &[Trial], scene: &Scene, start: Pose) -> Markup {
     let shown = shown(trials.len());
     html! {
         p { (LINES) }
@@ -243,9 +203,10 @@ fn maps(trials: &[Trial], first_map: usize) -> Markup {
             p.quiet { "The first and the last " (MOST_MAPS / 2) " of " (trials.len()) " trials." }
         }
         div.pairs {
-            @for (number, place) in (first_map..).zip(&shown) {
+            @for place in &shown {
                 @let [trial, before, real, ..] = row(&trials[*place]);
-                (chart("map", number, &format!("Trial {trial}: expected paths and the robot's"), html! {
+                @let drawn = report::paths(&[drawing::panel(&trials[*place], scene, start)]);
+                (chart("map", &drawn, &format!("Trial {trial}: expected paths and the robot's"), html! {
                     "Trial " (trial) ", expected " (before) ": " (real) "."
                 }))
             }
@@ -253,13 +214,10 @@ fn maps(trials: &[Trial], first_map: usize) -> Markup {
     }
 }
 
-/// Of each channel what its steps were off by; nothing before two runs can be held against each other.
+/// Errors of each channel's steps; empty before two runs can be compared with each other.
 fn gaps(trials: &[Trial]) -> Vec<Gaps> {
     let of_channel = |(name, unit, of): &Channel| {
-        let row = |trial: &Trial| {
-            let [before, after] = of(trial.gap.as_ref()?);
-            Some(GapRow { trial: trial.number, before, after })
-        };
+        let row = |trial: &Trial| Some((trial.number, of(trial.gap.as_ref()?)));
         Gaps { name, unit, rows: trials.iter().filter_map(row).collect() }
     };
     CHANNELS.iter().map(of_channel).filter(|gaps| !gaps.rows.is_empty()).collect()
@@ -267,28 +225,38 @@ fn gaps(trials: &[Trial]) -> Vec<Gaps> {
 
 fn off(gaps: &[Gaps]) -> Markup {
     html! {
-        p { "What a simulated step was off by (root mean square) on runs that the simulator had not learned from, before and "
-        "after it learned from the others. What stays is scatter, which no simulator foretells." }
+        p { "The error of a simulated step (root mean square) on runs that the simulator had not learned from, before and "
+        "after it learned from the others. The error that remains is scatter, which no simulator predicts." }
         div.pairs {
-            @for (place, Gaps { name, unit, rows }) in gaps.iter().enumerate() {
-                @let last = &rows[rows.len() - 1];
-                (chart("gaps", place, &format!("What a step was off by in {name}, before and after learning"), html! {
-                    (name) ": after trial " (last.trial) " a step is off by " (number(last.after, 2)) " " (unit)
-                    " in place of " (number(last.before, 2)) "."
+            @for Gaps { name, unit, rows } in gaps {
+                @let (trial, [before, after]) = rows[rows.len() - 1];
+                (chart("gaps", &errors(unit, rows), &format!("Error of a step in {name}, before and after learning"), html! {
+                    (name) ": after trial " (trial) " the error of a step is " (number(after, 2)) " " (unit) " instead of "
+                    (number(before, 2)) "."
                 }))
             }
         }
     }
 }
 
-/// The effects that all runs together say of the robot.
+fn errors(unit: &str, rows: &[(usize, [f64; 2])]) -> Figure {
+    let curve = |name: &str, of: usize| Curve {
+        name: name.into(),
+        points: rows.iter().map(|(trial, ends)| Point::new(*trial as f64, ends[of])).collect(),
+    };
+    let curves = vec![curve("before learning", 0), curve("after learning", 1)];
+    let y_name = format!("error of a step ({unit})");
+    CurveChart { y_name, ..along_trials(rows.iter().map(|(trial, _)| *trial), curves) }.draw()
+}
+
+/// The effects found in all runs together.
 fn effects(trials: &[Trial]) -> Markup {
     let last = trials.iter().rfind(|trial| trial.chance_after.is_some());
     html! {
         @match last.map(|trial| trial.effects.as_slice()) {
-            None => p { "No run has told anything of the robot yet." },
+            None => p { "No run says anything about the robot yet." },
             Some([]) => p {
-                "No named effect is in the runs: what the robot does otherwise than the simulator said, command by command, is "
+                "No named effect is in the runs. Where the robot differs from the simulator, command by command, the difference is "
                 "learned as a bias with its own uncertainty."
             },
             Some(found) => @for effect in found { (cause(effect)) },
@@ -331,22 +299,22 @@ fn next(state: &State) -> Markup {
                 },
                 Verdict::Spent => @match state.limit() {
                     Some(success) => li {
-                        "Make it easier: a start nearer to the target, or a wider way. If all were known of the robot the best of "
-                        "these controllers would reach the target in " (percent(success)) " of its runs: more trials will hardly help."
+                        "Make it easier: a start nearer to the target, or a wider way. Even with a perfectly known robot, the best "
+                        "of these controllers would reach the target in " (percent(success)) " of its runs: more trials will hardly help."
                     },
                     None => li {
-                        "The same call with more " code { "--trials" } " goes on from here: each run narrows what is not known of "
+                        "The same call with more " code { "--trials" } " continues from here: each run reduces the uncertainty about "
                         "the robot."
                     },
                 },
                 Verdict::OutOfReach => li {
-                    "Make it easier: a start nearer to the target, or more " code { "--max-steps" } ". Where even that fails, "
-                    "log the robot while it drives at random, and train the simulator anew."
+                    "Make it easier: a start nearer to the target, or more " code { "--max-steps" } ". If even that fails, "
+                    "log the robot while it drives at random, and train the simulator again."
                 },
-                Verdict::Running => li { "The same call goes on from here." },
+                Verdict::Running => li { "The same call continues from here." },
             }
             @if named {
-                li { "Check on the robot what " a href="#effects" { "its runs say" } ": what is mended there needs no learning." }
+                li { "Check on the robot what " a href="#effects" { "its runs say" } ": a repaired robot needs no learning." }
             }
         }
     }
@@ -361,8 +329,8 @@ fn source(subject: &Subject) -> Markup {
             dt { "Trials" } dd { (state.trials.len()) ", seed " (seed) }
             dt { "In the loop's folder" }
             dd {
-                code { "controller.toml" } ", " code { "simulator.json" } " as it is after all runs, a log and a controller "
-                "for each trial, and all that is on this page in " code { "loop.json" }
+                code { "controller.toml" } ", " code { "simulator.json" } " after all runs, a log and a controller "
+                "for each trial, and all figures of this page in " code { "loop.json" }
             }
         }
     }

@@ -1,37 +1,38 @@
-//! Words and numbers as a page says them.
+//! Words and numbers for people.
 
 use mindgap_diagnosis::Diagnosis;
 use mindgap_diagnosis::budget::{SCATTER, UNEXPLAINED};
 use mindgap_diagnosis::channel::Channel;
 use mindgap_diagnosis::diagnosis::Answer;
+pub use mindgap_figures::report::style::number;
 use mindgap_models::effects::Effect;
 
-/// A part of a gap for people.
+/// A part of a gap in words.
 #[derive(Clone, Copy)]
 pub struct Cause {
     /// Its name, without an article.
     pub name: &'static str,
-    /// A sentence of what it is.
+    /// What it is, in a sentence.
     pub what: &'static str,
-    /// A sentence of how one checks it.
+    /// How to check it, in a sentence.
     pub check: &'static str,
 }
 
 const WIDER_SCATTER: Cause = Cause {
     name: "wider scatter",
-    what: "The robot does the same thing less evenly than the simulator assumes, whatever the circumstances.",
-    check: "Send the same short row of commands ten times from one mark on the floor and measure with a ruler how far \
-            the ends lie apart; look for a loose wheel, a worn castor or a tracker that trembles while the robot \
-            stands.",
+    what: "The robot repeats itself less exactly than the simulator assumes, whatever the circumstances.",
+    check: "Send the same short sequence of commands ten times from one mark on the floor and measure with a ruler how far \
+            apart the ends are; look for a loose wheel, a worn castor or a tracker that jitters while the robot stands \
+            still.",
 };
 
 const NOT_EXPLAINED: Cause = Cause {
     name: "unexplained",
-    what: "The logs follow circumstances in a way that no named effect does.",
+    what: "The logs depend on circumstances in a way that no named effect describes.",
     check: "Watch the robot in the circumstances on which it depends.",
 };
 
-/// What an id of a budget means; none of an effect that is not among these.
+/// Returns what an id of a budget means; `None` if the effect is not in the catalogue.
 pub fn cause(id: &str, catalogue: &[&'static Effect]) -> Option<Cause> {
     match id {
         SCATTER => Some(WIDER_SCATTER),
@@ -61,7 +62,7 @@ pub fn verdict(answer: &Answer) -> &'static str {
 /// What "with" means in charts of before and after.
 pub fn with(diagnosis: &Diagnosis) -> &'static str {
     match diagnosis.effects() {
-        [] => "with the effects that came nearest, though they explain too little to be named",
+        [] => "with the best-fitting effects, which explain too little to be named",
         _ => "with the effects",
     }
 }
@@ -77,7 +78,7 @@ pub fn channel(channel: Channel) -> &'static str {
     }
 }
 
-/// A list as one says it.
+/// A list in words.
 pub fn list(of: &[&str]) -> String {
     match of {
         [] => String::new(),
@@ -86,7 +87,7 @@ pub fn list(of: &[&str]) -> String {
     }
 }
 
-/// A share in per cent, which no line ends within.
+/// A share in per cent, without a line break inside.
 pub fn percent(share: f64) -> String {
     format!("{:.0}\u{a0}%", 100.0 * share)
 }
@@ -96,12 +97,7 @@ pub fn percent_within(share: f64, [low, high]: [f64; 2]) -> String {
     format!("{} ({:.0} to {:.0})", percent(share), 100.0 * low, 100.0 * high)
 }
 
-/// A number with so many decimals and a true minus.
-pub fn number(value: f64, decimals: usize) -> String {
-    format!("{value:.decimals$}").replace('-', "−")
-}
-
-/// Tenths are as fine as a map of centimetres is seen.
+/// Rounds to tenths, which is as fine as a map in centimetres needs.
 pub fn tenths(value: f64) -> f64 {
     libm::round(10.0 * value) / 10.0
 }
@@ -112,7 +108,7 @@ mod tests {
     use mindgap_models::effects::CATALOGUE;
 
     #[test]
-    fn every_effect_says_what_it_is_and_how_one_checks_it() {
+    fn every_effect_has_a_description_and_a_check() {
         for effect in CATALOGUE {
             let Cause { name, what, check } = cause(effect.id, CATALOGUE).expect("an effect of the catalogue");
             assert!(!name.is_empty() && !name.contains('_'), "{}", effect.id);
@@ -122,7 +118,7 @@ mod tests {
     }
 
     #[test]
-    fn lists_are_said_as_one_says_them() {
+    fn lists_are_written_in_words() {
         assert_eq!([list(&[]), list(&["a"]), list(&["a", "b", "c"])], ["", "a", "a, b and c"]);
     }
 }

@@ -31,6 +31,8 @@ fn it_is_sound_on_phones_and_laptops_by_day_and_by_night_and_answers_what_one_as
             .text("#compared")
             .ask("[...document.querySelectorAll('main > section')].map((part) => part.id).join(' ')")
             .ask("document.querySelectorAll('[data-chart=budget] svg rect').length")
+            .ask("document.querySelector('[data-chart=readings] .plane .robot .dots').getAttribute('d').length")
+            .ask("document.querySelectorAll('[data-chart=apart] .plane .trail').length")
     };
     let visits = [
         look(PHONE, "diagnosis-phone"),
@@ -44,6 +46,8 @@ fn it_is_sound_on_phones_and_laptops_by_day_and_by_night_and_answers_what_one_as
         assert!(seen.word(3).contains("seed 1") && seen.word(3).contains("sim.json"), "{}", seen.word(3));
         assert_eq!(seen.word(4), "budget causes where ends replay next compared words");
         assert!(seen.answer(5).as_u64() >= Some(3), "a bar for an effect, for scatter and for what is unexplained");
+        assert!(seen.answer(6).as_u64() > Some(0), "readings are drawn over time");
+        assert!(seen.answer(7).as_u64() >= Some(2), "distances of simulated robots are drawn over time");
     }
 }
 

@@ -5,16 +5,16 @@ use mindgap_tests::rooms::{trained, with_scene};
 use crate::visit::{DARK_LAPTOP, DARK_PHONE, LAPTOP, PHONE, Visit, visit};
 
 #[test]
-fn an_evaluation_has_surfaces_that_turn_and_are_hatched() {
+fn an_evaluation_has_surfaces_that_are_hatched_and_values_under_the_pointer() {
     let workshop = trained();
     workshop.done("evaluate sim.json logs --html page.html");
-    let sheet = "document.querySelector('.turnable canvas').toDataURL()";
     let look = |window, picture| {
         Visit::new(window, picture)
-            .ask("document.querySelectorAll('[fill=\"url(#hatch)\"] rect').length")
-            .ask(sheet)
-            .set("[data-turn='0']", "120")
-            .ask(sheet)
+            .ask("document.querySelectorAll('[data-chart=surface] svg svg').length")
+            .ask("document.querySelectorAll('[data-chart=surface] title').length")
+            .ask("document.querySelectorAll('[data-chart=sheet] polygon').length")
+            .ask("document.querySelector('[data-chart=surface] title').textContent")
+            .ask("document.scripts.length")
     };
     let visits = [
         look(PHONE, "evaluation-phone"),
@@ -23,8 +23,12 @@ fn an_evaluation_has_surfaces_that_turn_and_are_hatched() {
         look(DARK_LAPTOP, "evaluation-laptop-dark"),
     ];
     for seen in visit(&workshop.path().join("page.html"), &visits) {
-        assert!(seen.answer(0).as_u64() > Some(0), "six runs are not everywhere");
-        assert_ne!(seen.answer(1), seen.answer(3), "the sheet turns");
+        // Two maps of 48 by 36 cells, each with a hatch in its plane and one in its legend, and two sheets of 24 by 24.
+        assert_eq!(seen.answer(0), 4, "six runs are not everywhere");
+        assert!((1..2 * 48 * 36).contains(&seen.answer(1).as_u64().unwrap_or(0)), "{} known cells", seen.answer(1));
+        assert_eq!(seen.answer(2), 2 * 24 * 24);
+        assert!(seen.word(3).contains(" cm, ") && seen.word(3).contains("°: "), "{}", seen.word(3));
+        assert_eq!(seen.answer(4), 0, "charts need no scripts");
     }
 }
 
@@ -38,8 +42,8 @@ fn a_simulation_shows_where_runs_end_and_what_the_controller_does() {
             .set("#moment", "5")
             .text("#tuples")
             .text("#replay")
-            .ask("document.querySelectorAll('[data-chart=turns] span[class$=-swatch]').length")
-            .ask("new Set(page.turns.map((turn) => turn.tuple)).size")
+            .ask("[...document.querySelectorAll('[data-chart=turns] text')].map((text) => text.textContent).filter((text) => text.startsWith('tuple ')).join()")
+            .ask("[...new Set([...document.querySelectorAll('[data-chart=turns] title')].map((title) => title.textContent.split(',')[0]))].sort().join()")
     };
     let visits = [
         look(PHONE, "simulation-phone"),
@@ -51,5 +55,6 @@ fn a_simulation_shows_where_runs_end_and_what_the_controller_does() {
         assert!(seen.word(1).contains("until a reading is"), "{}", seen.word(1));
         assert!(seen.word(2).contains("of 1000 runs, evenly spread"), "{}", seen.word(2));
         assert_eq!(seen.answer(3), seen.answer(4), "a legend without tuples that no run holds");
+        assert!(seen.word(3).starts_with("tuple 1"), "{}", seen.word(3));
     }
 }

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use glam::DVec2;
 
-use super::state::{Real, State, Trial};
+use super::state::{State, Trial};
 use mindgap_figures::report;
 use mindgap_figures::report::paths::{PathPanel, Trace};
 use mindgap_foundations::error::Result;
@@ -17,25 +17,29 @@ use mindgap_models::simulator::rollout::REACHED_CM;
 /// # Errors
 /// When they cannot be written.
 pub fn paths(folder: &Path, scene: &Scene, start: Pose, state: &State) -> Result<()> {
-    let panel = |trial: &Trial| {
-        let real = trial.real.as_ref()?;
-        Some(PathPanel {
-            title: title(trial, real),
-            scene: scene.clone(),
-            start,
-            target_radius_cm: REACHED_CM,
-            simulated: trial.predicted_paths.iter().map(|path| trace(&path.path_cm, path.ending)).collect(),
-            real: vec![trace(&real.path_cm, real.ending)],
-        })
-    };
-    let panels: Vec<PathPanel> = state.trials.iter().filter_map(panel).collect();
+    let driven = state.trials.iter().filter(|trial| trial.real.is_some());
+    let panels: Vec<PathPanel> =
+        driven.map(|trial| PathPanel { title: title(trial), ..panel(trial, scene, start) }).collect();
     report::paths(&panels).write(folder, "paths")
 }
 
-fn title(trial: &Trial, real: &Real) -> String {
-    let went = match real.reached {
-        true => "reached".into(),
-        false => format!("{}, {:.0} cm off", real.ending, real.distance_cm),
+/// The predicted paths of a trial and the robot's, if it was driven, without a title.
+pub fn panel(trial: &Trial, scene: &Scene, start: Pose) -> PathPanel {
+    PathPanel {
+        title: String::new(),
+        scene: scene.clone(),
+        start,
+        target_radius_cm: REACHED_CM,
+        simulated: trial.predicted_paths.iter().map(|path| trace(&path.path_cm, path.ending)).collect(),
+        real: trial.real.iter().map(|real| trace(&real.path_cm, real.ending)).collect(),
+    }
+}
+
+fn title(trial: &Trial) -> String {
+    let went = match &trial.real {
+        None => "not driven".into(),
+        Some(real) if real.reached => "reached".into(),
+        Some(real) => format!("{}, {:.0} cm off", real.ending, real.distance_cm),
     };
     format!("Trial {}: {went}", trial.number)
 }

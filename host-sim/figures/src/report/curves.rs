@@ -1,84 +1,148 @@
-//! Curves of a few points with intervals.
+//! Points with intervals along an axis, one colour and mark per kind, joined by lines or not.
 
 use std::ops::Range;
 
 use glam::DVec2;
-use plotters::style::{Color, RGBColor};
 
-use super::chart::{Axis, BELOW_PX, LEFT_PX, chart, headed, heading_px, is_drawable, is_range, no_data};
-use super::figure::{Canvas, Drawn, Figure};
-use super::glyph::{dot, solid_line};
+use super::axis::{Axis, is_drawable, is_range, span};
+use super::chart::{ABOVE_PX, BELOW_PX, Plane, no_data};
+use super::figure::Figure;
+use super::glyph::mark;
 use super::legend::{self, Entry};
-use super::style::{BLUE, GREEN, GREY, VERMILION, line, px};
+use super::style::{BLUE, Colour, GREEN, GREY, INK, SMALL_PX, Text, VERMILION, number};
+use super::svg::Svg;
 
-const PLOT_PX: [f64; 2] = [360.0, 200.0];
-const MARGIN_PX: f64 = 14.0;
-/// Colours of the curves, repeated if there are more.
-const COLOURS: [RGBColor; 3] = [VERMILION, BLUE, GREEN];
+const PLOT_PX: f64 = 190.0;
+/// Room above the plane for remarks.
+const REMARK_PX: f64 = 16.0;
 /// Margin beyond the outermost points, as a share of their span.
 const ROOM: f64 = 0.06;
+const MOST_TICKS: usize = 6;
+/// Colours of the curves, repeated if there are more.
+const COLOURS: [Colour; 3] = [BLUE, VERMILION, GREEN];
+
+/// Curves in one chart, with a line at zero.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct CurveChart {
+    /// Title; may be empty.
+    pub title: String,
+    /// Quantity and unit along the chart.
+    pub x_name: String,
+    /// Quantity and unit upwards.
+    pub y_name: String,
+    /// The curves.
+    pub curves: Vec<Curve>,
+    /// Whole numbers along the chart at which ticks may be; round numbers if there are none.
+    pub counts: Vec<usize>,
+    /// Lowest and highest value; as the points need it if `None`.
+    pub y_range: Option<Range<f64>>,
+    /// Whether points stand alone, each curve a little to the side of the one before.
+    pub apart: bool,
+    /// Words above the chart at places along it.
+    pub remarks: Vec<(f64, String)>,
+}
 
 /// One curve.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Curve {
     /// Its name in the legend.
     pub name: String,
     /// Its points from left to right.
-    pub points: Vec<DVec2>,
-    /// Half width of each point's interval; empty without intervals.
-    pub reach: Vec<f64>,
+    pub points: Vec<Point>,
 }
 
-/// Draws curves into one chart with the zero line. Points that are not finite are left out.
-pub fn curves(title: &str, x_name: &str, y_name: &str, curves: &[Curve]) -> Figure {
-    let entries: Vec<Entry> = curves
-        .iter()
-        .zip(COLOURS.iter().cycle())
-        .map(|(curve, colour)| {
-            Entry::new(curve.name.clone(), |canvas, at| solid_line(canvas, &legend::stroke(at), line(*colour, 1.5)))
-        })
-        .collect();
-    let width_px = LEFT_PX + PLOT_PX[0] + 2.0 * MARGIN_PX;
-    let legend_px = f64::from(legend::height_px(&entries, width_px - 2.0 * MARGIN_PX));
-    let plot_px = heading_px(0) + PLOT_PX[1] + BELOW_PX;
-    let height_px = plot_px + legend_px + 2.0 * MARGIN_PX;
-    Figure::draw(width_px as u32, height_px as u32, |canvas| {
-        let inner = canvas.margin(px(MARGIN_PX), px(MARGIN_PX), px(MARGIN_PX), px(MARGIN_PX));
-        let (plot, strip) = inner.split_vertically(px(plot_px));
-        draw(&headed(&plot, title, &[])?, x_name, y_name, curves)?;
-        legend::draw(&strip, &entries)
-    })
+/// A point of a curve.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Point {
+    /// Where it is.
+    pub at: DVec2,
+    /// 95 % interval of its value; from the value to the value without one.
+    pub interval: [f64; 2],
 }
 
-fn draw(canvas: &Canvas, x_name: &str, y_name: &str, curves: &[Curve]) -> Drawn {
-    let drawable = |curve: &Curve| -> Vec<(DVec2, f64)> {
-        let reach = curve.reach.iter().copied().chain(std::iter::repeat(0.0));
-        curve.points.iter().copied().zip(reach).filter(|(p, r)| is_drawable(*p) && r.is_finite()).collect()
-    };
-    let shown: Vec<Vec<(DVec2, f64)>> = curves.iter().map(drawable).collect();
-    let points = || shown.iter().flatten();
-    let x_range = spanned(points().map(|(p, _)| p.x));
-    let y_range = spanned(points().flat_map(|(p, r)| [0.0, p.y - r, p.y + r]));
-    if !is_range(&x_range) || !is_range(&y_range) {
-        return no_data(canvas);
+impl Point {
+    /// A point without an interval.
+    pub fn new(x: f64, y: f64) -> Self {
+        Point { at: DVec2::new(x, y), interval: [y, y] }
     }
-    let chart = chart(canvas, &Axis::new(x_name, x_range.clone(), 6), &Axis::new(y_name, y_range, 5))?;
-    let zero = [chart.place(x_range.start, 0.0), chart.place(x_range.end, 0.0)];
-    solid_line(&chart.canvas, &zero, line(GREY, 0.75))?;
-    for (points, colour) in shown.iter().zip(COLOURS.iter().cycle()) {
-        let places: Vec<_> = points.iter().map(|(p, _)| chart.place(p.x, p.y)).collect();
-        solid_line(&chart.canvas, &places, line(*colour, 1.5))?;
-        for ((point, reach), place) in points.iter().zip(&places) {
-            let ends = [chart.place(point.x, point.y - reach), chart.place(point.x, point.y + reach)];
-            solid_line(&chart.canvas, &ends, line(*colour, 0.75))?;
-            dot(&chart.canvas, *place, 2.5, colour.mix(1.0))?;
+
+    fn is_drawable(&self) -> bool {
+        is_drawable(self.at) && is_drawable(DVec2::from_array(self.interval))
+    }
+}
+
+impl CurveChart {
+    /// Draws the curves. Points that are not finite are left out.
+    pub fn draw(&self) -> Figure {
+        let entries: Vec<Entry> = self
+            .curves
+            .iter()
+            .enumerate()
+            .map(|(kind, curve)| {
+                let (colour, joined) = (COLOURS[kind % COLOURS.len()], !self.apart);
+                Entry::new(curve.name.clone(), move |svg, at| {
+                    if joined {
+                        svg.line(&legend::stroke(at), colour.line(1.75));
+                    }
+                    mark(svg, at, kind, colour);
+                })
+            })
+            .collect();
+        let above_px = ABOVE_PX + if self.remarks.is_empty() { 0.0 } else { REMARK_PX };
+        Figure::chart(&self.title, above_px + PLOT_PX + BELOW_PX, &entries, |svg, space| {
+            let points = || self.curves.iter().flat_map(|curve| &curve.points).filter(|p| p.is_drawable());
+            let x_range = wider(span(points().map(|p| p.at.x)));
+            let y_range = span(points().flat_map(|p| [0.0, p.at.y, p.interval[0], p.interval[1]]));
+            let y_range = self.y_range.clone().unwrap_or(y_range);
+            if !is_range(&x_range) || !is_range(&y_range) {
+                return no_data(svg, space);
+            }
+            let x = if self.counts.is_empty() {
+                Axis::new(self.x_name.as_str(), x_range, MOST_TICKS)
+            } else {
+                Axis::of_counts(self.x_name.as_str(), x_range, &self.counts, 2 * MOST_TICKS)
+            };
+            let space = space.without([0.0, above_px - ABOVE_PX, 0.0, 0.0]);
+            let plane = Plane::new(space, x.clone(), Axis::rounded(self.y_name.as_str(), y_range, 4));
+            plane.draw_axes(svg);
+            let zero = [plane.place(x.range.start, 0.0), plane.place(x.range.end, 0.0)];
+            svg.line(&zero, GREY.line(1.0));
+            for (kind, curve) in self.curves.iter().enumerate() {
+                self.draw_curve(svg, &plane, kind, curve);
+            }
+            for (x, words) in &self.remarks {
+                let at = DVec2::new(plane.place(*x, 0.0).x, space.top - REMARK_PX / 2.0);
+                svg.text(at, words, Text::new(SMALL_PX, INK).bold());
+            }
+        })
+    }
+
+    fn draw_curve(&self, svg: &mut Svg, plane: &Plane, kind: usize, curve: &Curve) {
+        let colour = COLOURS[kind % COLOURS.len()];
+        // Half of the curves are to the left, half to the right.
+        let aside = if self.apart { 4.5 * (2.0 * kind as f64 + 1.0 - self.curves.len() as f64) } else { 0.0 };
+        let place = |x: f64, y: f64| plane.place(x, y) + DVec2::X * aside;
+        let points: Vec<&Point> = curve.points.iter().filter(|p| p.is_drawable()).collect();
+        if !self.apart {
+            let places: Vec<DVec2> = points.iter().map(|p| place(p.at.x, p.at.y)).collect();
+            svg.line(&places, colour.line(1.75).opacity(0.7));
+        }
+        for Point { at, interval: [low, high] } in points {
+            let interval =
+                if low < high { format!(" ({} to {})", number(*low, 2), number(*high, 2)) } else { String::new() };
+            svg.titled(&format!("{}: {}{interval}", curve.name, number(at.y, 2)), |svg| {
+                if low < high {
+                    svg.line(&[place(at.x, *low), place(at.x, *high)], colour.line(2.0).opacity(0.6));
+                }
+                mark(svg, place(at.x, at.y), kind, colour);
+            });
         }
     }
-    Ok(())
 }
 
-fn spanned(values: impl Iterator<Item = f64>) -> Range<f64> {
-    let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
-    let room = ROOM * (high - low);
-    low - room..high + room
+/// A range with some room beyond its ends; one value has as much room as a step of one.
+fn wider(range: Range<f64>) -> Range<f64> {
+    let span = range.end - range.start;
+    let room = if span > 0.0 { ROOM * span } else { 0.5 };
+    range.start - room..range.end + room
 }

@@ -1,60 +1,56 @@
-//! A finished drawing and its files.
+//! A finished drawing.
 
-use std::path::Path;
-use std::sync::Arc;
+use super::chart::{heading, heading_px};
+use super::legend::{self, Entry};
+use super::style::{FONTS, WHITE};
+use super::svg::{Area, Svg};
 
-use krilla::Document;
-use krilla::geom::Size;
-use krilla::page::PageSettings;
-use krilla_svg::{SurfaceExt, SvgSettings};
-use plotters::coord::Shift;
-use plotters::drawing::{DrawingArea, DrawingAreaErrorKind, IntoDrawingArea};
-use plotters::prelude::SVGBackend;
-use plotters::style::WHITE;
-use resvg::tiny_skia::{Pixmap, Transform};
-use resvg::usvg::fontdb::Database;
-use resvg::usvg::{Options, Tree};
-
-use super::style::UNIT;
-use mindgap_files as files;
-use mindgap_foundations::error::Result;
-
-/// Pixels of the PNG per pixel of the SVG: 288 to the inch, so that it stays sharp in print and on dense screens.
-const PNG_SCALE: u32 = 3;
-/// Points of a PDF, 72 to the inch, per pixel of the SVG, 96 to the inch.
-const POINTS_PER_PX: f32 = 0.75;
-
-/// The canvas of a figure; [`UNIT`] canvas units are one pixel of the SVG.
-pub(super) type Canvas<'a> = DrawingArea<SVGBackend<'a>, Shift>;
-
-/// Result of drawing. The canvas is a string in memory, so a failure is a defect: see [`Figure::draw`].
-pub(super) type Drawn<T = ()> = std::result::Result<T, DrawingAreaErrorKind<std::io::Error>>;
+/// Width of a figure with one chart, px: its letters can still be read on a phone.
+pub const CHART_PX: f64 = 400.0;
+/// Margin on all sides of a figure, px.
+pub const MARGIN_PX: f64 = 8.0;
+/// Pixels of a page per px of a figure where there is room for them, so that letters are about as large as the page's.
+const PAGE_SCALE: f64 = 1.3;
 
 /// A picture.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Figure {
-    svg: String,
-    width_px: u32,
-    height_px: u32,
+    /// As a document of its own.
+    pub(super) svg: String,
+    elements: String,
+    pub(super) width_px: u32,
+    pub(super) height_px: u32,
 }
 
 impl Figure {
-    /// Draws upon a white sheet of this size, px.
-    pub(super) fn draw(width_px: u32, height_px: u32, drawing: impl FnOnce(&Canvas) -> Drawn) -> Self {
-        let (width, height) = (width_px * UNIT, height_px * UNIT);
-        let mut inner = String::new();
-        let canvas = SVGBackend::with_string(&mut inner, (width, height)).into_drawing_area();
-        canvas
-            .fill(&WHITE)
-            .and_then(|()| drawing(&canvas))
-            .and_then(|()| canvas.present())
-            .expect("drawing into memory cannot fail");
-        drop(canvas);
+    /// Draws into a space of this size, px, with a margin around it and a legend below.
+    pub(super) fn draw(width_px: f64, height_px: f64, entries: &[Entry], draw: impl FnOnce(&mut Svg, Area)) -> Self {
+        let all_px = height_px + legend::height_px(entries, width_px);
+        let inner = Area { left: MARGIN_PX, top: MARGIN_PX, width: width_px, height: all_px };
+        let (space, strip) = inner.split_down(height_px);
+        let mut svg = Svg::default();
+        draw(&mut svg, space);
+        legend::draw(&mut svg, strip, entries);
+        Self::of(svg, width_px + 2.0 * MARGIN_PX, all_px + 2.0 * MARGIN_PX)
+    }
+
+    /// Draws one chart with a title, which may be empty, and a body of this height.
+    pub(super) fn chart(title: &str, body_px: f64, entries: &[Entry], draw: impl FnOnce(&mut Svg, Area)) -> Self {
+        let width_px = CHART_PX - 2.0 * MARGIN_PX;
+        Self::draw(width_px, heading_px(title, 0) + body_px, entries, |svg, space| {
+            let body = heading(svg, space, title, &[]);
+            draw(svg, body);
+        })
+    }
+
+    fn of(Svg { elements }: Svg, width_px: f64, height_px: f64) -> Self {
+        let (width, height) = (libm::ceil(width_px) as u32, libm::ceil(height_px) as u32);
         let svg = format!(
-            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width_px}\" height=\"{height_px}\" \
-             viewBox=\"0 0 {width} {height}\">\n{inner}</svg>\n"
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" \
+             viewBox=\"0 0 {width} {height}\" font-family=\"{FONTS}\">\n\
+             <rect width=\"{width}\" height=\"{height}\" fill=\"{WHITE}\"/>\n{elements}</svg>\n"
         );
-        Figure { svg, width_px, height_px }
+        Figure { svg, elements, width_px: width, height_px: height }
     }
 
     /// The picture as an SVG document. Its text prefers Noto Sans and falls back to any sans-serif.
@@ -62,45 +58,13 @@ impl Figure {
         &self.svg
     }
 
-    /// The SVG as a PNG of three times its size, with the font that comes with the program.
-    pub fn png(&self) -> Vec<u8> {
-        let mut pixels =
-            Pixmap::new(self.width_px * PNG_SCALE, self.height_px * PNG_SCALE).expect("a figure has a size");
-        let scale = PNG_SCALE as f32;
-        resvg::render(&self.tree(), Transform::from_scale(scale, scale), &mut pixels.as_mut());
-        pixels.encode_png().expect("encoding into memory cannot fail")
-    }
-
-    /// The SVG as a PDF of one page, with text that can be searched and copied.
-    pub fn pdf(&self) -> Vec<u8> {
-        let (width, height) = (self.width_px as f32 * POINTS_PER_PX, self.height_px as f32 * POINTS_PER_PX);
-        let size = Size::from_wh(width, height).expect("a figure has a size");
-        let mut document = Document::new();
-        let mut page = document.start_page_with(PageSettings::new(size));
-        let mut surface = page.surface();
-        surface.draw_svg(&self.tree(), size, SvgSettings::default()).expect("a figure has nothing that PDF lacks");
-        surface.finish();
-        page.finish();
-        document.finish().expect("a figure has nothing that PDF lacks")
-    }
-
-    fn tree(&self) -> Tree {
-        let mut fonts = Database::new();
-        fonts.load_font_data(ttf_noto_sans::REGULAR.to_vec());
-        fonts.load_font_data(ttf_noto_sans::BOLD.to_vec());
-        // Whatever family is asked for: no other font is there.
-        fonts.set_sans_serif_family("Noto Sans");
-        let options = Options { fontdb: Arc::new(fonts), ..Options::default() };
-        Tree::from_str(&self.svg, &options).expect("the figure is well-formed SVG")
-    }
-
-    /// Writes `name.svg`, `name.png` and `name.pdf` into a folder, each atomically.
-    ///
-    /// # Errors
-    /// When the folder is missing or not writable.
-    pub fn write(&self, folder: &Path, name: &str) -> Result<()> {
-        files::write(&folder.join(format!("{name}.svg")), &self.svg)?;
-        files::write(&folder.join(format!("{name}.png")), self.png())?;
-        files::write(&folder.join(format!("{name}.pdf")), self.pdf())
+    /// The picture as an element of a page, whose style sheet sets fonts and, in the dark, colours. Assistive technology
+    /// ignores it: the page describes it in words.
+    pub fn in_page(&self) -> String {
+        let Figure { elements, width_px: width, height_px: height, .. } = self;
+        let [wide, high] = [width, height].map(|px| libm::round(PAGE_SCALE * f64::from(*px)));
+        format!(
+            "<svg width=\"{wide}\" height=\"{high}\" viewBox=\"0 0 {width} {height}\" aria-hidden=\"true\">\n{elements}</svg>"
+        )
     }
 }

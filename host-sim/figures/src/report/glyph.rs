@@ -1,59 +1,40 @@
-//! Small marks of a fixed size, the same in charts and legends. Positions are in canvas units.
+//! Small marks of a fixed size, the same in charts and legends.
 
 use glam::DVec2;
-use plotters::element::{Circle, DashedPathElement, PathElement, Polygon};
-use plotters::style::{Color, ShapeStyle, WHITE};
 
-use super::figure::{Canvas, Drawn};
-use super::style::{INK, line, px};
+use super::style::{Colour, INK, WHITE};
+use super::svg::Svg;
 
-/// A position on the canvas, right and down.
-pub type Place = (i32, i32);
-
-/// A filled disc.
-pub fn dot(canvas: &Canvas, at: Place, radius_px: f64, colour: impl Color) -> Drawn {
-    canvas.draw(&Circle::new(at, px(radius_px), colour.filled()))
+/// Draws a small disc with a dark rim and a white halo, visible on any colour.
+pub fn bead(svg: &mut Svg, at: DVec2, colour: Colour) {
+    svg.circle(at, 3.25, WHITE.fill().opacity(0.75));
+    svg.circle(at, 2.25, colour.fill().rimmed(INK, 0.75));
 }
 
-/// A disc with a rim.
-pub fn rimmed_dot(canvas: &Canvas, at: Place, radius_px: f64, fill: impl Color, rim: impl Color) -> Drawn {
-    dot(canvas, at, radius_px, fill)?;
-    canvas.draw(&Circle::new(at, px(radius_px), line(rim, 0.75)))
-}
-
-/// A small disc with a dark rim and a white halo, visible on any colour.
-pub fn bead(canvas: &Canvas, at: Place, fill: impl Color) -> Drawn {
-    dot(canvas, at, 3.25, WHITE.mix(0.75))?;
-    rimmed_dot(canvas, at, 2.25, fill, INK)
-}
-
-/// An oblique cross on a white ground, visible on any line.
-pub fn cross(canvas: &Canvas, at: Place, colour: impl Color) -> Drawn {
-    let arm = px(4.0);
-    for style in [line(WHITE, 4.5), line(colour, 2.0)] {
-        for side in [arm, -arm] {
-            let ends = [(at.0 - side, at.1 - arm), (at.0 + side, at.1 + arm)];
-            canvas.draw(&PathElement::new(ends, style))?;
+/// Draws an oblique cross on a white ground, visible on any line.
+pub fn cross(svg: &mut Svg, at: DVec2, colour: Colour) {
+    for style in [WHITE.line(4.5), colour.line(2.0)] {
+        for arm in [DVec2::new(4.0, 4.0), DVec2::new(-4.0, 4.0)] {
+            svg.line(&[at - arm, at + arm], style);
         }
     }
-    Ok(())
 }
 
-/// An arrowhead about a place; `direction` has length one, right and up.
-pub fn arrowhead(canvas: &Canvas, at: Place, direction: DVec2, length_px: f64, colour: impl Color) -> Drawn {
-    let corner = |ahead: f64, left: f64| {
-        let offset = (direction * ahead + direction.perp() * left) * length_px;
-        (at.0 + px(offset.x), at.1 - px(offset.y))
-    };
-    canvas.draw(&Polygon::new([corner(0.6, 0.0), corner(-0.4, 0.4), corner(-0.4, -0.4)], colour.filled()))
+/// Draws an arrowhead about a place; `direction` has length one and points right and down.
+pub fn arrowhead(svg: &mut Svg, at: DVec2, direction: DVec2, length_px: f64, colour: Colour) {
+    let corner = |ahead: f64, aside: f64| at + (direction * ahead + direction.perp() * aside) * length_px;
+    svg.polygon(&[corner(0.6, 0.0), corner(-0.4, 0.4), corner(-0.4, -0.4)], colour.fill());
 }
 
-/// A line through places.
-pub fn solid_line(canvas: &Canvas, places: &[Place], style: ShapeStyle) -> Drawn {
-    canvas.draw(&PathElement::new(places, style))
+/// Draws the mark of a kind of data, of which there are three forms: kinds differ without colours too.
+pub fn mark(svg: &mut Svg, at: DVec2, kind: usize, colour: Colour) {
+    let style = WHITE.fill().rimmed(colour, 1.75);
+    let corners = |radius: f64, turn: DVec2| [0, 1, 2, 3].map(|i| at + radius * turn.rotate(QUARTERS[i]));
+    match kind % 3 {
+        0 => svg.circle(at, 3.5, style),
+        1 => svg.polygon(&corners(4.75, DVec2::X), style),
+        _ => svg.polygon(&corners(4.5, DVec2::splat(std::f64::consts::FRAC_1_SQRT_2)), style),
+    }
 }
 
-/// A dashed line through places.
-pub fn dashed_line(canvas: &Canvas, places: &[Place], style: ShapeStyle) -> Drawn {
-    canvas.draw(&DashedPathElement::new(places.iter().copied(), px(5.0), px(3.5), style))
-}
+const QUARTERS: [DVec2; 4] = [DVec2::X, DVec2::Y, DVec2::NEG_X, DVec2::NEG_Y];

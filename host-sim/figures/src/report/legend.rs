@@ -1,31 +1,28 @@
 //! The legend of a figure, in a strip of its own so that it never covers data.
 
-use plotters::style::text_anchor::{HPos, VPos};
+use glam::DVec2;
 
-use super::figure::{Canvas, Drawn};
-use super::glyph::Place;
-use super::style::{INK, TEXT_PX, px, text, text_width_px};
+use super::style::{INK, TEXT_PX, Text, shortened, text_width_px};
+use super::svg::{Area, Svg};
 
 /// Height of one row, px.
-const ROW_PX: f64 = 20.0;
-/// Width of a mark, px; lines are drawn [`KEY_PX`] / 2 to both sides of their place.
-pub const KEY_PX: f64 = 24.0;
+const ROW_PX: f64 = 21.0;
+/// Width of a mark, px.
+const KEY_PX: f64 = 24.0;
 const GAP_PX: f64 = 6.0;
-const SPACE_PX: f64 = 20.0;
-
-type Mark<'a> = Box<dyn Fn(&Canvas, Place) -> Drawn + 'a>;
+const SPACE_PX: f64 = 18.0;
 
 /// One mark and its meaning.
-pub struct Entry<'a> {
+pub struct Entry {
     /// Draws the mark about a place.
-    pub mark: Mark<'a>,
+    mark: Box<dyn Fn(&mut Svg, DVec2)>,
     /// Its meaning.
-    pub meaning: String,
+    meaning: String,
 }
 
-impl<'a> Entry<'a> {
+impl Entry {
     /// A mark and its meaning.
-    pub fn new(meaning: impl Into<String>, mark: impl Fn(&Canvas, Place) -> Drawn + 'a) -> Self {
+    pub fn new(meaning: impl Into<String>, mark: impl Fn(&mut Svg, DVec2) + 'static) -> Self {
         Entry { mark: Box::new(mark), meaning: meaning.into() }
     }
 
@@ -35,34 +32,33 @@ impl<'a> Entry<'a> {
 }
 
 /// The ends of a line as a mark.
-pub fn stroke(at: Place) -> [Place; 2] {
-    [(at.0 - px(KEY_PX / 2.0), at.1), (at.0 + px(KEY_PX / 2.0), at.1)]
+pub fn stroke(at: DVec2) -> [DVec2; 2] {
+    [at - DVec2::X * KEY_PX / 2.0, at + DVec2::X * KEY_PX / 2.0]
 }
 
 /// Height of a legend for a width, px.
-pub fn height_px(entries: &[Entry], width_px: f64) -> u32 {
-    (rows(entries, width_px).len() as f64 * ROW_PX) as u32
+pub fn height_px(entries: &[Entry], width_px: f64) -> f64 {
+    rows(entries, width_px).len() as f64 * ROW_PX
 }
 
 /// Draws a legend into a strip of [`height_px`], centred.
-pub fn draw(canvas: &Canvas, entries: &[Entry]) -> Drawn {
-    let width_px = f64::from(canvas.dim_in_pixel().0) / f64::from(px(1.0));
-    let style = text(TEXT_PX, INK, HPos::Left, VPos::Center);
-    for (row, entries) in rows(entries, width_px).into_iter().enumerate() {
+pub fn draw(svg: &mut Svg, strip: Area, entries: &[Entry]) {
+    let words = Text::new(TEXT_PX, INK).from_here();
+    for (row, entries) in rows(entries, strip.width).into_iter().enumerate() {
         let used_px = entries.iter().map(Entry::width_px).sum::<f64>() - SPACE_PX;
-        let mut left_px = ((width_px - used_px) / 2.0).max(0.0);
-        let y = px((row as f64 + 0.5) * ROW_PX);
+        let mut left = strip.left + ((strip.width - used_px) / 2.0).max(0.0);
+        let y = strip.top + (row as f64 + 0.5) * ROW_PX;
         for entry in entries {
-            (entry.mark)(canvas, (px(left_px + KEY_PX / 2.0), y))?;
-            canvas.draw_text(&entry.meaning, &style, (px(left_px + KEY_PX + GAP_PX), y))?;
-            left_px += entry.width_px();
+            (entry.mark)(svg, DVec2::new(left + KEY_PX / 2.0, y));
+            let from = left + KEY_PX + GAP_PX;
+            svg.text(DVec2::new(from, y), &shortened(&entry.meaning, TEXT_PX, strip.right() - from), words);
+            left += entry.width_px();
         }
     }
-    Ok(())
 }
 
 /// The entries, row by row.
-fn rows<'e, 'a>(mut entries: &'e [Entry<'a>], width_px: f64) -> Vec<&'e [Entry<'a>]> {
+fn rows(mut entries: &[Entry], width_px: f64) -> Vec<&[Entry]> {
     let mut rows = Vec::new();
     while !entries.is_empty() {
         let mut used_px = -SPACE_PX;

@@ -1,29 +1,23 @@
-//! Figure 4 of the paper: simulated and real paths of a controller, a panel a start.
-
-use std::ops::Range;
+//! Paths on a map of the room: figure 4 of the paper, simulated and real paths per start, and a controller's runs by how they
+//! ended.
 
 use glam::DVec2;
-use plotters::element::{Circle, Rectangle};
-use plotters::style::{Color, RGBColor, WHITE};
 
-use super::chart::{Axis, BELOW_PX, Chart, LEFT_PX, chart, headed, heading_px, is_drawable, no_data};
-use super::figure::{Canvas, Drawn, Figure};
-use super::glyph::{Place, arrowhead, cross, dashed_line, rimmed_dot, solid_line};
+use super::axis::is_drawable;
+use super::chart::{heading, heading_px, no_data};
+use super::figure::{CHART_PX, Figure, MARGIN_PX};
+use super::glyph::{arrowhead, cross};
 use super::legend::{self, Entry};
-use super::style::{BLUE, GREEN, GREY, INK, SOLID, VERMILION, line, px};
+use super::room::Room;
+use super::style::{BLUE, Colour, GREEN, GREY, INK, Style, VERMILION, WHITE};
+use super::svg::{Area, Svg};
 use mindgap_foundations::geometry::Pose;
 use mindgap_logs::Scene;
 
-/// The longer side of the largest plot, px.
-const PLOT_PX: f64 = 380.0;
-const RIGHT_PX: f64 = 24.0;
-const MARGIN_PX: f64 = 14.0;
-const PANELS_A_ROW: usize = 2;
-/// Margin of a panel, as a share of its longer side.
-const EDGE: f64 = 0.03;
-
-const SIMULATED: RGBColor = BLUE;
-const REAL: RGBColor = VERMILION;
+/// Most height of a map with its labels, px.
+const MOST_HEIGHT_PX: f64 = 460.0;
+const GAP_PX: f64 = 14.0;
+const PANELS_PER_ROW: usize = 2;
 
 /// The runs of one controller from one start.
 #[derive(Clone, Debug, PartialEq)]
@@ -51,154 +45,161 @@ pub struct Trace {
     pub crashed: bool,
 }
 
-/// Draws a panel for every start, two a row, with equal scales on both axes.
+/// Runs that ended in one way.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Ending {
+    /// The way.
+    pub name: String,
+    /// Number and path of each run.
+    pub runs: Vec<(usize, Trace)>,
+}
+
+/// A map with paths of several kinds.
+struct Map<'a> {
+    title: &'a str,
+    room: Room,
+    start: Pose,
+    kinds: Vec<Kind<'a>>,
+}
+
+/// Paths that are drawn alike.
+struct Kind<'a> {
+    name: &'a str,
+    colour: Colour,
+    line: Style,
+    /// What is read at the end of each path, and the path.
+    traces: Vec<(String, &'a Trace)>,
+}
+
+/// Draws a panel for every start, two per row, with equal scales on both axes.
 pub fn paths(panels: &[PathPanel]) -> Figure {
-    let columns = panels.len().clamp(1, PANELS_A_ROW);
-    let rows = panels.len().div_ceil(columns).max(1);
-    let plots: Vec<DVec2> = panels.iter().map(plot_size_px).collect();
-    let largest = plots.iter().copied().reduce(DVec2::max).unwrap_or(DVec2::splat(PLOT_PX));
-    let cell = largest + DVec2::new(LEFT_PX + RIGHT_PX, heading_px(0) + BELOW_PX + MARGIN_PX);
-    let inner = cell * DVec2::new(columns as f64, rows as f64);
-    let entries = legend(panels);
-    let legend_px = f64::from(legend::height_px(&entries, inner.x));
-    let size = inner + DVec2::new(2.0 * MARGIN_PX, 2.0 * MARGIN_PX + legend_px);
-    Figure::draw(libm::ceil(size.x) as u32, libm::ceil(size.y) as u32, |canvas| {
-        let inside = canvas.margin(px(MARGIN_PX), px(MARGIN_PX), px(MARGIN_PX), px(MARGIN_PX));
-        let (grid, strip) = inside.split_vertically(px(inner.y));
-        for ((cell, panel), plot) in grid.split_evenly((rows, columns)).iter().zip(panels).zip(&plots) {
-            draw_panel(cell, panel, *plot)?;
+    let real = VERMILION.line(1.5);
+    let simulated = BLUE.line(1.25).dashed();
+    let maps: Vec<Map> = panels
+        .iter()
+        .map(|panel| {
+            let kinds = vec![
+                Kind::numbered("real path", VERMILION, real, &panel.real),
+                Kind::numbered("simulated path", BLUE, simulated, &panel.simulated),
+            ];
+            Map::new(&panel.title, &panel.scene, panel.start, panel.target_radius_cm, kinds)
+        })
+        .collect();
+    draw(&maps)
+}
+
+/// Draws the runs of a controller, coloured by how they ended: the first way blue, the second vermilion, the third green.
+pub fn endings(scene: &Scene, start: Pose, target_radius_cm: f64, endings: &[Ending]) -> Figure {
+    let kinds = endings.iter().zip([BLUE, VERMILION, GREEN]).map(|(ending, colour)| ending.kind(colour)).collect();
+    draw(&[Map::new("", scene, start, target_radius_cm, kinds)])
+}
+
+fn draw(maps: &[Map]) -> Figure {
+    let most = DVec2::new(CHART_PX - 2.0 * MARGIN_PX, MOST_HEIGHT_PX);
+    let sizes: Vec<DVec2> = maps.iter().map(|map| map.room.size_px(most)).collect();
+    let largest = sizes.iter().copied().reduce(DVec2::max).unwrap_or(most);
+    let title_px = maps.iter().map(|map| heading_px(map.title, 0)).fold(0.0, f64::max);
+    let columns = maps.len().clamp(1, PANELS_PER_ROW);
+    let rows = maps.len().div_ceil(columns).max(1);
+    let gap = DVec2::new(GAP_PX * (columns as f64 - 1.0), GAP_PX);
+    let cell = largest + DVec2::new(gap.x, gap.y + title_px);
+    let (width_px, height_px) = (cell.x * columns as f64, cell.y * rows as f64);
+    Figure::draw(width_px, height_px, &legend(maps), |svg, space| {
+        if maps.is_empty() {
+            no_data(svg, space);
         }
-        if panels.is_empty() {
-            no_data(&grid)?;
+        for ((cell, map), size) in space.cells(rows, columns).zip(maps).zip(&sizes) {
+            let body = heading(svg, cell, map.title, &[]);
+            map.draw(svg, Area { width: size.x, height: size.y, ..body });
         }
-        legend::draw(&strip, &entries)
     })
 }
 
-fn draw_panel(cell: &Canvas, panel: &PathPanel, plot_px: DVec2) -> Drawn {
-    let body = headed(cell, &panel.title, &[])?;
-    let body = body.shrink((0, 0), (px(LEFT_PX + plot_px.x), px(BELOW_PX + plot_px.y)));
-    let Some((low, high)) = bounds_cm(panel) else { return no_data(&body) };
-    let axis = |name: &str, range: Range<f64>, length_px: f64| Axis::new(name, range, (length_px / 55.0) as usize + 2);
-    let (x, y) = (axis("x (cm)", low.x..high.x, plot_px.x), axis("y (cm)", low.y..high.y, plot_px.y));
-    let chart = chart(&body, &x, &y)?;
-    draw_scene(&chart, panel)?;
-    for trace in &panel.real {
-        for places in pieces(&chart, trace) {
-            solid_line(&chart.canvas, &places, line(REAL, 1.25))?;
+fn legend(maps: &[Map]) -> Vec<Entry> {
+    let mut entries: Vec<Entry> = Vec::new();
+    let Some(first) = maps.first() else { return entries };
+    let runs = || maps.iter().flat_map(|map| &map.kinds).flat_map(|kind| &kind.traces).map(|(_, trace)| trace);
+    for (i, Kind { name, line, .. }) in first.kinds.iter().enumerate() {
+        let line = *line;
+        if maps.iter().any(|map| !map.kinds[i].traces.is_empty()) {
+            entries.push(Entry::new(*name, move |svg, at| svg.line(&legend::stroke(at), line)));
         }
     }
-    for trace in &panel.simulated {
-        for places in pieces(&chart, trace) {
-            dashed_line(&chart.canvas, &places, line(SIMULATED, 1.25))?;
-        }
+    entries.push(Entry::new("start", |svg, at| arrowhead(svg, at, DVec2::X, 13.0, INK)));
+    if runs().any(|trace| !trace.crashed) {
+        entries.push(Entry::new("end", |svg, at| stop(svg, at, GREY)));
     }
-    arrowhead(&chart.canvas, place(&chart, panel.start.position_cm), panel.start.direction(), 13.0, INK)?;
-    for (traces, colour) in [(&panel.real, REAL), (&panel.simulated, SIMULATED)] {
-        for trace in traces {
-            let Some(end) = trace.points_cm.iter().rev().find(|p| is_drawable(**p)) else { continue };
-            let mark = if trace.crashed { crash } else { stop };
-            mark(&chart.canvas, place(&chart, *end), colour)?;
-        }
+    if runs().any(|trace| trace.crashed) {
+        entries.push(Entry::new("crash", |svg, at| cross(svg, at, GREY)));
     }
-    Ok(())
-}
-
-fn draw_scene(chart: &Chart, panel: &PathPanel) -> Drawn {
-    let corners = |low: DVec2, high: DVec2| [place(chart, low), place(chart, high)];
-    if let Some(size) = panel.scene.arena_cm {
-        let corners = corners(DVec2::ZERO, size);
-        let [(left, bottom), (right, top)] = corners;
-        let round = [(left, bottom), (right, bottom), (right, top), (left, top), (left, bottom)];
-        solid_line(&chart.canvas, &round, line(INK, 1.5))?;
-    }
-    for obstacle in &panel.scene.obstacles {
-        chart.canvas.draw(&Rectangle::new(corners(obstacle.low_cm, obstacle.high_cm), SOLID.filled()))?;
-    }
-    for wall in &panel.scene.walls {
-        solid_line(&chart.canvas, &corners(wall.from_cm, wall.to_cm), line(INK, 1.5))?;
-    }
-    if let Some(target_cm) = panel.scene.target_cm {
-        let at = place(chart, target_cm);
-        let radius = place(chart, target_cm + DVec2::X * panel.target_radius_cm).0 - at.0;
-        chart.canvas.draw(&Circle::new(at, radius, GREEN.mix(0.18).filled()))?;
-        chart.canvas.draw(&Circle::new(at, radius, line(GREEN, 0.75)))?;
-        plus(&chart.canvas, at)?;
-    }
-    Ok(())
-}
-
-fn legend(panels: &[PathPanel]) -> Vec<Entry<'static>> {
-    let mut entries = Vec::new();
-    if panels.is_empty() {
-        return entries;
-    }
-    if panels.iter().any(|p| !p.real.is_empty()) {
-        entries.push(Entry::new("real path", |c, at| solid_line(c, &legend::stroke(at), line(REAL, 1.25))));
-    }
-    if panels.iter().any(|p| !p.simulated.is_empty()) {
-        entries.push(Entry::new("simulated path", |c, at| dashed_line(c, &legend::stroke(at), line(SIMULATED, 1.25))));
-    }
-    entries.push(Entry::new("start", |c, at| arrowhead(c, at, DVec2::X, 13.0, INK)));
-    let ends = |crashed: bool| panels.iter().any(|p| p.real.iter().chain(&p.simulated).any(|t| t.crashed == crashed));
-    if ends(false) {
-        entries.push(Entry::new("end", |c, at| stop(c, at, GREY)));
-    }
-    if ends(true) {
-        entries.push(Entry::new("crash", |c, at| crash(c, at, GREY)));
-    }
-    if panels.iter().any(|p| p.scene.target_cm.is_some()) {
-        entries.push(Entry::new("target", |c, at| {
-            rimmed_dot(c, at, 7.0, GREEN.mix(0.18), GREEN)?;
-            plus(c, at)
+    if maps.iter().any(|map| map.room.scene.target_cm.is_some()) {
+        entries.push(Entry::new("target", |svg, at| {
+            svg.circle(at, 7.0, GREEN.fill().opacity(0.18));
+            svg.circle(at, 7.0, GREEN.line(1.5));
         }));
     }
     entries
 }
 
-fn stop(canvas: &Canvas, at: Place, colour: RGBColor) -> Drawn {
-    rimmed_dot(canvas, at, 3.25, colour, WHITE)
+impl Ending {
+    fn kind(&self, colour: Colour) -> Kind<'_> {
+        let traces = self.runs.iter().map(|(run, trace)| (format!("run {run}: {}", self.name), trace)).collect();
+        Kind { name: &self.name, colour, line: colour.line(1.25).opacity(0.5), traces }
+    }
 }
 
-fn crash(canvas: &Canvas, at: Place, colour: RGBColor) -> Drawn {
-    cross(canvas, at, colour)
+impl<'a> Kind<'a> {
+    fn numbered(name: &'a str, colour: Colour, line: Style, traces: &'a [Trace]) -> Self {
+        let traces = traces.iter().enumerate().map(|(i, trace)| (format!("{name} {}", i + 1), trace)).collect();
+        Kind { name, colour, line, traces }
+    }
 }
 
-/// The middle of the target.
-fn plus(canvas: &Canvas, at: Place) -> Drawn {
-    let arm = px(3.0);
-    solid_line(canvas, &[(at.0 - arm, at.1), (at.0 + arm, at.1)], line(GREEN, 1.0))?;
-    solid_line(canvas, &[(at.0, at.1 - arm), (at.0, at.1 + arm)], line(GREEN, 1.0))
+impl<'a> Map<'a> {
+    fn new(title: &'a str, scene: &Scene, start: Pose, target_radius_cm: f64, kinds: Vec<Kind<'a>>) -> Self {
+        let paths =
+            || kinds.iter().flat_map(|kind| &kind.traces).flat_map(|(_, trace)| trace.points_cm.iter().copied());
+        let reach = DVec2::splat(target_radius_cm);
+        let target = scene.target_cm.map(|at| [at - reach, at + reach]).into_iter().flatten();
+        let room = Room::new(scene, target_radius_cm, paths().chain(target).chain([start.position_cm]));
+        Map { title, room, start, kinds }
+    }
+
+    /// Whether there is neither a wall nor a drawable path.
+    fn is_empty(&self) -> bool {
+        let is_drawn = |(_, trace): &(String, &Trace)| trace.points_cm.iter().any(|p| is_drawable(*p));
+        self.room.scene.sides().is_empty() && !self.kinds.iter().any(|kind| kind.traces.iter().any(is_drawn))
+    }
+
+    fn draw(&self, svg: &mut Svg, area: Area) {
+        if self.is_empty() {
+            return no_data(svg, area);
+        }
+        let plane = self.room.plane(area);
+        let place = |at: DVec2| plane.place(at.x, at.y);
+        plane.draw_axes(svg);
+        svg.clipped(plane.area, |svg| {
+            self.room.draw(svg, &plane);
+            for Kind { line, traces, .. } in &self.kinds {
+                let pieces = traces.iter().flat_map(|(_, trace)| trace.points_cm.split(|p| !is_drawable(*p)));
+                for piece in pieces.filter(|piece| piece.len() > 1) {
+                    svg.line(&piece.iter().map(|p| place(*p)).collect::<Vec<DVec2>>(), *line);
+                }
+            }
+            let ahead = self.start.direction() * DVec2::new(1.0, -1.0);
+            arrowhead(svg, place(self.start.position_cm), ahead, 13.0, INK);
+            for Kind { colour, traces, .. } in &self.kinds {
+                for (title, trace) in traces {
+                    let Some(end) = trace.points_cm.iter().rev().find(|p| is_drawable(**p)) else { continue };
+                    let mark = if trace.crashed { cross } else { stop };
+                    svg.titled(title, |svg| mark(svg, place(*end), *colour));
+                }
+            }
+        });
+    }
 }
 
-/// The contiguous drawable parts of a trace.
-fn pieces(chart: &Chart, trace: &Trace) -> Vec<Vec<Place>> {
-    let stretches = trace.points_cm.split(|p| !is_drawable(*p)).filter(|piece| piece.len() > 1);
-    stretches.map(|piece| piece.iter().map(|p| place(chart, *p)).collect()).collect()
-}
-
-fn place(chart: &Chart, point_cm: DVec2) -> Place {
-    chart.place(point_cm.x, point_cm.y)
-}
-
-/// The size of a panel's plot with equal scales.
-fn plot_size_px(panel: &PathPanel) -> DVec2 {
-    let size_cm = bounds_cm(panel).map_or(DVec2::ONE, |(low, high)| high - low);
-    size_cm * (PLOT_PX / size_cm.max_element())
-}
-
-/// The bounding box of the scene and all paths; `None` if both are empty.
-fn bounds_cm(panel: &PathPanel) -> Option<(DVec2, DVec2)> {
-    let sides = panel.scene.sides();
-    let traces = panel.real.iter().chain(&panel.simulated).flat_map(|t| t.points_cm.iter().copied());
-    let shown = sides.iter().flat_map(|w| [w.from_cm, w.to_cm]).chain(traces).filter(|p| is_drawable(*p));
-    let shown: Vec<DVec2> = shown.collect();
-    let reach = DVec2::splat(panel.target_radius_cm);
-    let target = panel.scene.target_cm.map(|t| [t - reach, t + reach]);
-    let around = shown.first().map(|_| panel.start.position_cm);
-    let all = || shown.iter().copied().chain(around).chain(target.into_iter().flatten());
-    shown.first()?;
-    let (low, high) = (all().reduce(DVec2::min)?, all().reduce(DVec2::max)?);
-    let edge = DVec2::splat(EDGE * (high - low).max_element().max(1.0));
-    Some((low - edge, high + edge))
+/// Where a run ended without a crash.
+fn stop(svg: &mut Svg, at: DVec2, colour: Colour) {
+    svg.circle(at, 3.5, colour.fill().rimmed(WHITE, 1.0));
 }

@@ -8,20 +8,20 @@ mod in_space;
 
 use std::ops::Range;
 
-use glam::DVec3;
-use plotters::prelude::{ColorMap, ViridisRGB};
-use plotters::style::RGBColor;
+use glam::{DVec2, DVec3};
 
-use super::chart::{Axis, headed, heading_px, is_range, no_data, share};
-use super::figure::{Canvas, Figure};
+use super::axis::{Axis, is_range, share};
+use super::chart::{heading, heading_px, no_data};
+use super::figure::{CHART_PX, Figure, MARGIN_PX};
 use super::glyph::bead;
-use super::legend::{self, Entry};
-use super::style::px;
+use super::legend::Entry;
+use super::style::{Colour, number};
+use super::svg::{Area, Svg};
 
-const VIEW_PX: f64 = 400.0;
+const VIEW_PX: f64 = CHART_PX - 2.0 * MARGIN_PX;
 const MAP_PX: f64 = 440.0;
 const ROW_PX: f64 = 300.0;
-const MARGIN_PX: f64 = 14.0;
+const GAP_PX: f64 = 14.0;
 const MOST_TICKS: usize = 6;
 
 /// The response surface of a network and its test data.
@@ -31,7 +31,7 @@ pub struct Surface<'a> {
     /// Quantity and unit of the value.
     pub value_name: String,
     /// The response at a distance D (cm) and an incidence angle α (degrees).
-    pub at: &'a dyn Fn(f64, f64) -> f64,
+    pub at: Box<dyn Fn(f64, f64) -> f64 + 'a>,
     /// Whether there are data near a distance and an angle; elsewhere the response is a guess, and is not shown as one.
     pub known: Box<dyn Fn(f64, f64) -> bool + 'a>,
     /// Distances shown, cm.
@@ -46,47 +46,57 @@ pub struct Surface<'a> {
 
 /// Draws a row for every network. Test data outside the ranges of distance and angle, or not finite, are left out.
 pub fn sonar_surfaces(surfaces: &[Surface]) -> Figure {
-    let inner_px = VIEW_PX + MAP_PX;
-    let row_px = heading_px(0) + ROW_PX + MARGIN_PX;
-    let entries = &legend(surfaces);
-    let legend_px = f64::from(legend::height_px(entries, inner_px));
     let rows = surfaces.len().max(1);
-    let height_px = rows as f64 * row_px + legend_px + 2.0 * MARGIN_PX;
-    Figure::draw((inner_px + 2.0 * MARGIN_PX) as u32, height_px as u32, |canvas| {
-        let inner = canvas.margin(px(MARGIN_PX), px(MARGIN_PX), px(MARGIN_PX), px(MARGIN_PX));
-        let (grid, strip) = inner.split_vertically(px(rows as f64 * row_px));
-        for (row, surface) in grid.split_evenly((rows, 1)).iter().zip(surfaces) {
-            let body = headed(row, &surface.title, &[])?.margin(0, px(MARGIN_PX), 0, 0);
+    let row_px = heading_px("title", 0) + ROW_PX + GAP_PX;
+    Figure::draw(VIEW_PX + MAP_PX, rows as f64 * row_px, &legend(surfaces), |svg, space| {
+        if surfaces.is_empty() {
+            no_data(svg, space);
+        }
+        for (row, surface) in space.cells(rows, 1).zip(surfaces) {
+            let body = heading(svg, row, &surface.title, &[]).without([0.0, 0.0, 0.0, GAP_PX]);
             if surface.is_blank() {
-                no_data(&body)?;
+                no_data(svg, body);
                 continue;
             }
-            let (view, map) = body.split_horizontally(px(VIEW_PX));
-            in_space::draw(&view, surface)?;
-            from_above::draw(&map, surface)?;
+            let (view, map) = body.split_across(VIEW_PX);
+            in_space::draw(svg, view, surface);
+            from_above::draw(svg, map.without([GAP_PX, 0.0, 0.0, 0.0]), surface);
         }
-        if surfaces.is_empty() {
-            no_data(&grid)?;
-        }
-        legend::draw(&strip, entries)
     })
 }
 
-fn legend(surfaces: &[Surface]) -> Vec<Entry<'static>> {
+fn legend(surfaces: &[Surface]) -> Vec<Entry> {
     let mut entries = Vec::new();
     if surfaces.iter().any(|s| !s.test.is_empty()) {
-        let mark = |canvas: &Canvas, at| bead(canvas, at, colour(0.7));
-        entries.push(Entry::new("test sample, coloured by its own value", mark));
+        entries
+            .push(Entry::new("test sample, in the colour of its value", |svg, at| bead(svg, at, Colour::viridis(0.7))));
     }
     if surfaces.iter().any(from_above::has_gaps) {
-        entries.push(Entry::new("no data", |canvas, (x, y)| {
-            from_above::hatched(canvas, [(x - px(6.0), y - px(6.0)), (x + px(6.0), y + px(6.0))])
+        entries.push(Entry::new("no data", |svg, at| {
+            from_above::hatch(svg, Area { left: at.x - 9.0, top: at.y - 6.0, width: 18.0, height: 12.0 });
         }));
     }
     entries
 }
 
 impl Surface<'_> {
+    /// Draws it as a sheet in space, alone.
+    pub fn in_space(&self) -> Figure {
+        self.alone(in_space::draw)
+    }
+
+    /// Draws it as colours on the plane of distance and angle, alone.
+    pub fn from_above(&self) -> Figure {
+        self.alone(from_above::draw)
+    }
+
+    fn alone(&self, draw: fn(&mut Svg, Area, &Surface)) -> Figure {
+        let entries = legend(std::slice::from_ref(self));
+        Figure::draw(VIEW_PX, ROW_PX, &entries, |svg, space| {
+            if self.is_blank() { no_data(svg, space) } else { draw(svg, space, self) }
+        })
+    }
+
     /// Whether there is nothing to show: an axis without a span.
     fn is_blank(&self) -> bool {
         ![&self.distance_cm, &self.incidence_deg, &self.value].into_iter().all(is_range)
@@ -118,6 +128,14 @@ impl Surface<'_> {
         })
     }
 
+    /// What is read at a place: distance, angle and value.
+    fn reading(&self, place: DVec2, value: f64) -> String {
+        let [distance, incidence] =
+            [along(&self.distance_cm, place.x), along(&self.incidence_deg, place.y)].map(|v| number(v, 0));
+        let decimals = if self.value.end - self.value.start < 10.0 { 2 } else { 0 };
+        format!("{distance} cm, {incidence}°: {}", number(along(&self.value, value), decimals))
+    }
+
     fn distance_axis(&self) -> Axis {
         Axis::new("distance D (cm)", self.distance_cm.clone(), MOST_TICKS)
     }
@@ -131,12 +149,7 @@ impl Surface<'_> {
     }
 }
 
-/// What lies at a share of a range.
+/// The value at a share of a range.
 fn along(range: &Range<f64>, share: f64) -> f64 {
     range.start + share * (range.end - range.start)
-}
-
-/// The colour of a share of the scale.
-fn colour(share: f64) -> RGBColor {
-    ViridisRGB.get_color(share)
 }

@@ -2,7 +2,10 @@
 
 use glam::{DVec2, DVec3};
 use mindgap_figures::report::expected_against_predicted::{Panel, Samples};
+use mindgap_figures::report::expected_against_predicted::{Panel, Samples};
 use mindgap_figures::report::paths::{PathPanel, Trace};
+use mindgap_figures::report::paths::{PathPanel, Trace};
+use mindgap_figures::report::sonar_surfaces::Surface;
 use mindgap_figures::report::sonar_surfaces::Surface;
 use mindgap_foundations::geometry::{Pose, Rectangle, direction};
 use mindgap_foundations::random::{Generator, generator};
@@ -67,10 +70,10 @@ pub fn surfaces() -> Vec<Surface<'static>> {
         .map(|(d, a)| DVec3::new(d, a, f64::from(u8::from(chance.random::<f64>() < echo_probability(d, a)))));
     let fired = fired.collect();
     let read = second.into_iter().map(|(d, a)| DVec3::new(d, a, echo_cm(d, a) + (1.0 + a / 4.0) * normal(&mut chance)));
-    let surface = |title: &str, value_name: &str, at, value, test| Surface {
+    let surface = |title: &str, value_name: &str, at: fn(f64, f64) -> f64, value, test| Surface {
         title: title.into(),
         value_name: value_name.into(),
-        at,
+        at: Box::new(at),
         known: Box::new(|_, _| true),
         distance_cm: 0.0..240.0,
         incidence_deg: 0.0..90.0,
@@ -78,8 +81,8 @@ pub fn surfaces() -> Vec<Surface<'static>> {
         test,
     };
     vec![
-        surface("(a) echo probability", "echo probability", &echo_probability, 0.0..1.0, fired),
-        surface("(b) echo reading", "echo reading (cm)", &echo_cm, 0.0..320.0, read.collect()),
+        surface("(a) echo probability", "echo probability", echo_probability, 0.0..1.0, fired),
+        surface("(b) echo reading", "echo reading (cm)", echo_cm, 0.0..320.0, read.collect()),
     ]
 }
 

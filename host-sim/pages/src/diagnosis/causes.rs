@@ -1,4 +1,4 @@
-//! The causes, one by one: what each is, how strong, how sure, how to check it, and its evidence.
+//! The causes, one by one: description, strength, probability, check and evidence.
 
 use maud::{Markup, html};
 
@@ -9,9 +9,10 @@ use mindgap_diagnosis::channel::Channel;
 use mindgap_diagnosis::explain::NamedEffect;
 use mindgap_diagnosis::explain::evidence::Evidence;
 use mindgap_diagnosis::explain::profile::{Bin, ResidualProfile};
+use mindgap_figures::pictures;
 use mindgap_models::effects::Effect;
 
-/// The causes, and what is left that none of them explains; nothing where there is no gap.
+/// The causes, and what none of them explains; `None` where there is no gap.
 pub fn section(subject: &Subject) -> Option<Section> {
     let diagnosis = &subject.findings.diagnosis;
     let (effects, profiles) = (diagnosis.effects(), diagnosis.profiles());
@@ -32,7 +33,7 @@ pub fn section(subject: &Subject) -> Option<Section> {
                     " (" (unit) "): " (words::percent_within(formula.share, formula.ci95)) " of the gap."
                 }
             }
-            @for (number, profile) in profiles.iter().enumerate() { (unexplained(number, profile)) }
+            @for profile in profiles { (unexplained(profile)) }
         }
     };
     Some(Section { id: "causes", title: if effects.is_empty() { "What is unexplained" } else { "The causes" }, body })
@@ -53,23 +54,24 @@ fn cause(effect: &NamedEffect, evidence: &[Evidence], catalogue: &[&'static Effe
                     dd { (effect.strength()) @if has_direction(effect) { ". Directions: 0 is along x, 90 along y." } }
                 }
                 @if let Some(share) = effect.share { dt { "Of the gap" } dd { (words::percent(share)) } }
-                dt { "How sure" }
+                dt { "Probability" }
                 dd {
-                    (words::percent(effect.probability)) " probable"
+                    (words::percent(effect.probability))
                     @if !rivals.is_empty() { ". These logs cannot tell it from " (words::list(&rivals)) "." }
                 }
                 @if let Some(cause) = named { dt { "How to check" } dd { (cause.check) } }
             }
-            @if let Some((number, evidence)) = evidence.iter().enumerate().find(|(_, e)| e.effect == effect.id) {
+            @if let Some(evidence) = evidence.iter().find(|e| e.effect == effect.id) {
                 h4 { "The evidence" }
-                (chart("evidence", number, &format!(
+                @let kinds = [("without the effect", evidence.without.as_slice()), ("with it", &evidence.with)];
+                @let drawn = pictures::residuals(evidence.depends_on, evidence.unit, &kinds).draw();
+                (chart("evidence", &drawn, &format!(
                     "Logged minus predicted {} along {}: {} without the effect, {} with it.",
                     words::channel(evidence.channel), evidence.depends_on,
                     reach(&evidence.without), reach(&evidence.with),
                 ), html! {
-                    "How far the logged " (words::channel(evidence.channel))
-                    " is from the predicted one. On the zero line the "
-                    "simulator is right. The vertical lines are 95 % intervals."
+                    "Logged minus predicted " (words::channel(evidence.channel))
+                    ". On the zero line the simulator is right. The vertical lines are 95 % intervals."
                 }))
                 (table("The same in numbers", [evidence.depends_on, "without the effect", "with it"], &rows(evidence)))
             }
@@ -81,14 +83,16 @@ fn has_direction(effect: &NamedEffect) -> bool {
     effect.parameters.contains_key("direction_deg")
 }
 
-fn unexplained(number: usize, profile: &ResidualProfile) -> Markup {
+fn unexplained(profile: &ResidualProfile) -> Markup {
     let off = |bin: &Bin| format!("{} ± {}", words::number(bin.off, 2), words::number(1.96 * bin.error, 2));
     let rows: Vec<[String; 2]> = profile.bins.iter().map(|bin| [range(bin), off(bin)]).collect();
     let name = words::channel(profile.channel);
     let alternative = format!("Logged minus predicted {name} along {}: {}.", profile.depends_on, reach(&profile.bins));
+    let kinds = [("remaining residual", profile.bins.as_slice())];
+    let drawn = pictures::residuals(profile.depends_on, profile.unit, &kinds).draw();
     html! {
-        (chart("profile", number, &alternative,
-            html! { "What is left of the " (name) " depends most on: " (profile.depends_on) "." }))
+        (chart("profile", &drawn, &alternative,
+            html! { "The remaining residual of the " (name) " depends most on " (profile.depends_on) "." }))
         (table("The same in numbers", [profile.depends_on, "logged minus predicted"], &rows))
     }
 }
@@ -111,7 +115,7 @@ fn range(bin: &Bin) -> String {
     }
 }
 
-/// From where to where the bins lie.
+/// Least and largest value of the bins.
 fn reach(bins: &[Bin]) -> String {
     let (low, high) = bins.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), b| (l.min(b.off), h.max(b.off)));
     format!("{} to {}", words::number(low, 2), words::number(high, 2))
@@ -122,8 +126,8 @@ mod tests {
     use super::*;
 
     #[test]
-    fn ranges_are_read_as_one_says_them() {
-        let told = |from: f64, to: f64| range(&Bin { from, to, off: 0.0, error: 0.0 });
-        assert_eq!([told(-62.0, 0.0), told(0.0, 0.0), told(1.25, 3.5)], ["−62 to 0", "0.0", "1.2 to 3.5"]);
+    fn ranges_are_written_in_words() {
+        let written = |from: f64, to: f64| range(&Bin { from, to, off: 0.0, error: 0.0 });
+        assert_eq!([written(-62.0, 0.0), written(0.0, 0.0), written(1.25, 3.5)], ["−62 to 0", "0.0", "1.2 to 3.5"]);
     }
 }

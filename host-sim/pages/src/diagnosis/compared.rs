@@ -1,4 +1,4 @@
-//! What was compared with what, what was wrong with it, and what limits the answer.
+//! What was compared, what was wrong with the logs, and what limits the answer.
 
 use maud::html;
 
@@ -36,9 +36,9 @@ pub fn section(subject: &Subject) -> Section {
             h3 { "What was wrong with the logs" }
             ul { @for found in &diagnosis.data { li { (found.line()) } } }
         }
-        // Why a channel is not compared stands at the top of the page.
-        @let told = |note: &String| diagnosis.scope.not_compared.iter().any(|missing| missing.reason == *note);
-        @let notes: Vec<&String> = diagnosis.notes.iter().filter(|note| !told(note)).collect();
+        // The reasons for channels that are not compared are at the top of the page.
+        @let is_shown = |note: &String| diagnosis.scope.not_compared.iter().any(|missing| missing.reason == *note);
+        @let notes: Vec<&String> = diagnosis.notes.iter().filter(|note| !is_shown(note)).collect();
         @if !notes.is_empty() {
             h3 { "What else limits this answer" }
             ul { @for note in notes { li { (note) } } }

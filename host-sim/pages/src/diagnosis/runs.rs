@@ -1,4 +1,4 @@
-//! The runs: how far simulated paths end from logged ones, and the runs themselves to be watched.
+//! The runs: how far simulated paths end from logged ones, and the runs themselves as a replay.
 
 use std::collections::BTreeMap;
 
@@ -9,11 +9,13 @@ use crate::document::{Section, chart, table};
 use crate::replay::{ROBOT, Replay, ReplayedRun, SIMULATOR, WITH_EFFECTS, sampled};
 use crate::words;
 use mindgap_diagnosis::diagnosis::Diagnosis;
+use mindgap_figures::pictures;
+use mindgap_figures::report::room::Room;
 use mindgap_learning::evaluation::replay::{PUT_BACK_STEPS, Player};
 use mindgap_logs::{Row, Run};
 use mindgap_models::effects::chain::EffectChain;
 
-/// How far the longest paths go astray, in a sentence; none where no path was compared.
+/// How far the longest paths go astray, in a sentence; `None` where no path was compared.
 pub fn astray(diagnosis: &Diagnosis) -> Option<String> {
     let longest = diagnosis.reduction()?.paths.last()?;
     Some(format!(
@@ -27,7 +29,7 @@ pub fn astray(diagnosis: &Diagnosis) -> Option<String> {
     ))
 }
 
-/// How far paths end from where the robot was; none where no path was compared.
+/// How far paths end from where the robot was; `None` where no path was compared.
 pub fn ends(diagnosis: &Diagnosis) -> Option<Section> {
     let paths = diagnosis.reduction().map_or(&[][..], |reduction| &reduction.paths);
     if paths.is_empty() && diagnosis.final_positions.is_none() {
@@ -41,12 +43,13 @@ pub fn ends(diagnosis: &Diagnosis) -> Option<Section> {
         })
         .collect();
     let last = astray(diagnosis);
+    let drawn = diagnosis.reduction().map(|reduction| pictures::path_ends(reduction).draw());
     let body = html! {
-        @if let Some(last) = &last {
+        @if let (Some(last), Some(drawn)) = (&last, &drawn) {
             p { (last) }
-            (chart("paths", 0, last, html! {
+            (chart("paths", drawn, last, html! {
                 "The simulator drives by the logged commands alone, from a place where the robot was; medians over "
-                "all such paths. Below the line of scatter alone no simulator can come."
+                "all such paths. No simulator can get below the line of scatter alone."
             }))
             (table("The same in numbers", ["steps", "without (cm)", "with (cm)", "scatter alone (cm)"], &rows))
         }
@@ -62,14 +65,14 @@ pub fn ends(diagnosis: &Diagnosis) -> Option<Section> {
     Some(Section { id: "ends", title: "How far simulated paths go astray", body })
 }
 
-/// The runs to be watched.
+/// The runs as a replay.
 pub fn section(replay: Option<&Replay>, diagnosis: &Diagnosis) -> Section {
     let body = match replay {
         Some(replay) => html! {
             p {
-                "The robot as it was logged, and what the simulator makes of the same commands"
+                "The robot as it was logged, and the simulator with the same commands"
                 @if diagnosis.effects().is_empty() { "." } @else { ", without and with the effects." }
-                " Simulated robots start where the real one was first seen and are put back to it every "
+                " Simulated robots start at the first logged position of the real one and return to it every "
                 (PUT_BACK_STEPS)
                 " steps. Walls do not stop them."
             }
@@ -80,8 +83,8 @@ pub fn section(replay: Option<&Replay>, diagnosis: &Diagnosis) -> Section {
     Section { id: "replay", title: "Replay", body }
 }
 
-/// None where the robot was never seen.
-pub fn replay(subject: &Subject) -> Option<Replay> {
+/// The replay of the runs; `None` where the robot was never seen.
+pub fn replay(subject: &Subject, room: Room) -> Option<Replay> {
     let Subject { findings, logs, baseline, .. } = subject;
     let seen: Vec<&Run> = logs.runs.iter().filter(|run| run.rows.iter().any(|row| row.pose.is_some())).collect();
     if seen.is_empty() {
@@ -105,14 +108,14 @@ pub fn replay(subject: &Subject) -> Option<Replay> {
         ReplayedRun {
             name: if cut { format!("{} (first {rows} rows)", run.name) } else { run.name.clone() },
             t_s: run.rows.iter().map(|row| (row.t_ms - run.rows.at(0).t_ms) / 1000.0).collect(),
-            told: run.rows.iter().map(commands).collect(),
+            remarks: run.rows.iter().map(commands).collect(),
             tracks,
         }
     };
     let rows: Vec<usize> = seen.iter().map(|run| run.rows.len()).collect();
     let runs = sampled(&rows).into_iter().map(run).collect();
     let kinds = if found.is_empty() { &[ROBOT, SIMULATOR][..] } else { &[ROBOT, SIMULATOR, WITH_EFFECTS][..] };
-    Some(Replay::new(&logs.robot, kinds, runs, logs.runs.len()))
+    Some(Replay::new(&logs.robot, room, kinds, runs, logs.runs.len()))
 }
 
 fn commands(row: Row) -> String {

@@ -1,13 +1,12 @@
 //! Reliability diagram: the observed frequency of an event in bins of its predicted probability.
 
 use glam::DVec2;
-use plotters::style::text_anchor::{HPos, VPos};
 
-use super::{heading, lines};
-use crate::report::chart::{Axis, chart, no_data};
-use crate::report::figure::{Canvas, Drawn};
-use crate::report::glyph::{Place, dot, solid_line};
-use crate::report::style::{BLUE, GREY, line, px, text};
+use super::{headed, lines};
+use crate::report::axis::Axis;
+use crate::report::chart::{Plane, no_data};
+use crate::report::style::{BLUE, GREY, Text};
+use crate::report::svg::{Area, Svg};
 use crate::report::trend::Trend;
 
 const BINS: usize = 10;
@@ -15,7 +14,7 @@ const BINS: usize = 10;
 const FLOOR: f64 = -0.14;
 const CEILING: f64 = 1.04;
 const COUNT_PX: f64 = 8.5;
-const INTERVAL_PX: f64 = 1.0;
+const INTERVAL_PX: f64 = 1.25;
 const DOT_PX: f64 = 3.0;
 /// Quantile of the normal distribution for a 95 % interval.
 const Z95: f64 = 1.96;
@@ -30,7 +29,7 @@ struct Bin {
 
 /// Draws the bins, and the trend over the single samples. Its R² is that of binary outcomes, which is low even for the
 /// true probabilities.
-pub fn draw(cell: &Canvas, title: &str, events: &[(f64, bool)]) -> Drawn {
+pub fn draw(svg: &mut Svg, space: Area, title: &str, events: &[(f64, bool)]) {
     let sound: Vec<(f64, bool)> = events.iter().copied().filter(|(p, _)| (0.0..=1.0).contains(p)).collect();
     let points: Vec<DVec2> = sound.iter().map(|(p, came)| DVec2::new(*p, f64::from(u8::from(*came)))).collect();
     let trend = Trend::of(&points);
@@ -38,29 +37,31 @@ pub fn draw(cell: &Canvas, title: &str, events: &[(f64, bool)]) -> Drawn {
     if sound.len() < events.len() {
         counts += &format!(", {} not in 0..1", events.len() - sound.len());
     }
-    let body = heading(cell, title, trend, counts)?;
+    let body = headed(svg, space, title, trend, counts);
     let mut y = Axis::new("observed share", 0.0..1.0, 5);
     y.range = FLOOR..CEILING;
-    let chart = chart(&body, &Axis::new("predicted probability", 0.0..1.0, 5), &y)?;
+    let plane = Plane::new(body, Axis::new("predicted probability", 0.0..1.0, 5), y);
+    plane.draw_axes(svg);
     if sound.is_empty() {
-        return no_data(&chart.canvas);
+        return no_data(svg, plane.area);
     }
-    lines(&chart, 0.0, 1.0, trend)?;
+    lines(svg, &plane, 0.0, 1.0, trend);
     for (place, bin) in bins(&sound).iter().enumerate().filter(|(_, bin)| bin.samples > 0) {
         let x = bin.predicted_sum / bin.samples as f64;
         let (low, high) = bin.interval();
-        solid_line(&chart.canvas, &[chart.place(x, low), chart.place(x, high)], line(BLUE, INTERVAL_PX))?;
-        dot(&chart.canvas, chart.place(x, bin.share()), DOT_PX, BLUE)?;
-        let below = chart.place((place as f64 + 0.5) / BINS as f64, FLOOR / 2.0);
-        chart.canvas.draw_text(&bin.samples.to_string(), &text(COUNT_PX, GREY, HPos::Center, VPos::Center), below)?;
+        svg.titled(&format!("{} samples", bin.samples), |svg| {
+            svg.line(&[plane.place(x, low), plane.place(x, high)], BLUE.line(INTERVAL_PX));
+            svg.circle(plane.place(x, bin.share()), DOT_PX, BLUE.fill());
+        });
+        let below = plane.place((place as f64 + 0.5) / BINS as f64, FLOOR / 2.0);
+        svg.text(below, &bin.samples.to_string(), Text::new(COUNT_PX, GREY));
     }
-    Ok(())
 }
 
-/// A bin's mark for the legend.
-pub fn mark(canvas: &Canvas, at: Place) -> Drawn {
-    solid_line(canvas, &[(at.0, at.1 - px(8.0)), (at.0, at.1 + px(8.0))], line(BLUE, INTERVAL_PX))?;
-    dot(canvas, at, DOT_PX, BLUE)
+/// Draws a bin's mark for the legend.
+pub fn mark(svg: &mut Svg, at: DVec2) {
+    svg.line(&[at - DVec2::Y * 8.0, at + DVec2::Y * 8.0], BLUE.line(INTERVAL_PX));
+    svg.circle(at, DOT_PX, BLUE.fill());
 }
 
 fn bins(events: &[(f64, bool)]) -> [Bin; BINS] {

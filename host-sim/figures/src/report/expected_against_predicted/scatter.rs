@@ -1,13 +1,13 @@
 //! Scatter diagram of quantities, one point a sample.
 
 use glam::DVec2;
-use plotters::style::Color;
 
-use super::{heading, lines};
-use crate::report::chart::{Axis, chart, is_drawable, is_range, no_data};
-use crate::report::figure::{Canvas, Drawn};
-use crate::report::glyph::{arrowhead, dot};
-use crate::report::style::{BLUE, INK, px};
+use super::{headed, lines};
+use crate::report::axis::{Axis, is_drawable, is_range};
+use crate::report::chart::{Plane, no_data};
+use crate::report::glyph::arrowhead;
+use crate::report::style::{BLUE, INK};
+use crate::report::svg::{Area, Svg};
 use crate::report::trend::Trend;
 
 /// Predictions farther from the expected values than this share of their span are drawn at the frame's edge: one wild
@@ -18,38 +18,45 @@ const DOT_PX: f64 = 1.75;
 const ARROW_PX: f64 = 7.0;
 /// Number of points above which they are drawn fainter.
 const CROWD: usize = 600;
+/// Most points that are drawn: of more, evenly spread ones are.
+const MOST_DRAWN: usize = 1500;
 
-/// Draws the samples, their trend and the diagonal; a trend counts every finite sample, beyond the frame too.
-pub fn draw(cell: &Canvas, title: &str, unit: &str, pairs: &[DVec2]) -> Drawn {
+/// Draws the samples, their trend and the diagonal; the trend includes every finite sample, beyond the frame too.
+pub fn draw(svg: &mut Svg, space: Area, title: &str, unit: &str, pairs: &[DVec2]) {
     let points: Vec<DVec2> = pairs.iter().copied().filter(|p| is_drawable(*p)).collect();
     let trend = Trend::of(&points);
     let frame = frame(&points);
     let (low, high) = frame.unwrap_or((0.0, 1.0));
+    let every = points.len().div_ceil(MOST_DRAWN).max(1);
+    let drawn = || points.iter().step_by(every);
     let beyond = points.iter().filter(|p| !(low..=high).contains(&p.y)).count();
     let mut counts = format!("n = {}", points.len());
-    for (count, what) in [(beyond, "beyond the frame"), (pairs.len() - points.len(), "not drawable")] {
+    let fewer = if every > 1 { drawn().count() } else { 0 };
+    for (count, what) in [(beyond, "beyond the frame"), (pairs.len() - points.len(), "not drawable"), (fewer, "drawn")]
+    {
         if count > 0 {
             counts += &format!(", {count} {what}");
         }
     }
-    let body = heading(cell, title, trend, counts)?;
+    let body = headed(svg, space, title, trend, counts);
     let axis = |name: &str| Axis::new(format!("{name} ({unit})"), low..high, 6);
-    let chart = chart(&body, &axis("expected"), &axis("predicted"))?;
+    let plane = Plane::new(body, axis("expected"), axis("predicted"));
+    plane.draw_axes(svg);
     if frame.is_none() {
-        return no_data(&chart.canvas);
+        return no_data(svg, plane.area);
     }
-    let colour = BLUE.mix(if points.len() > CROWD { 0.3 } else { 0.5 });
-    for point in &points {
-        let (right, down) = chart.place(point.x, point.y.clamp(low, high));
-        if point.y > high {
-            arrowhead(&chart.canvas, (right, down + px(ARROW_PX)), DVec2::Y, ARROW_PX, INK)?;
-        } else if point.y < low {
-            arrowhead(&chart.canvas, (right, down - px(ARROW_PX)), DVec2::NEG_Y, ARROW_PX, INK)?;
-        } else {
-            dot(&chart.canvas, (right, down), DOT_PX, colour)?;
+    let opacity = if points.len() > CROWD { 0.3 } else { 0.5 };
+    let place = |point: &DVec2| plane.place(point.x, point.y.clamp(low, high));
+    svg.group(BLUE.fill().opacity(opacity), |svg| {
+        for point in drawn().filter(|p| (low..=high).contains(&p.y)) {
+            svg.circle(place(point), DOT_PX, Default::default());
         }
+    });
+    for point in drawn().filter(|p| !(low..=high).contains(&p.y)) {
+        let up = if point.y > high { DVec2::NEG_Y } else { DVec2::Y };
+        arrowhead(svg, place(point) - up * ARROW_PX, up, ARROW_PX, INK);
     }
-    lines(&chart, low, high, trend)
+    lines(svg, &plane, low, high, trend);
 }
 
 /// Common range of both axes: all expected values, and the predictions not far beyond them.

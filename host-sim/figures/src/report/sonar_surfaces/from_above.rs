@@ -1,86 +1,65 @@
 //! The surface as colours on the plane of distance and angle.
 
-use plotters::element::Rectangle;
-use plotters::style::text_anchor::{HPos, VPos};
-use plotters::style::{Color, FontTransform};
+use glam::DVec2;
 
-use super::{ROW_PX, Surface, colour};
-use crate::report::chart::{BELOW_PX, chart};
-use crate::report::figure::{Canvas, Drawn};
-use crate::report::glyph::{Place, bead, solid_line};
-use crate::report::style::{FAINT, GREY, INK, SMALL_PX, TEXT_PX, line, px, text};
+use super::Surface;
+use crate::report::chart::Plane;
+use crate::report::glyph::bead;
+use crate::report::scale::{self, SCALE_PX};
+use crate::report::style::{Colour, FAINT, GREY};
+use crate::report::svg::{Area, Svg};
 
-const COLUMNS: usize = 60;
-const ROWS: usize = 45;
-/// Margin for the colour scale right of the map, px.
-const SCALE_PX: f64 = 88.0;
-const BAR_PX: f64 = 12.0;
-const BAR_STEPS: i32 = 64;
+/// Cells along distance and angle.
+const COLUMNS: usize = 48;
+const ROWS: usize = 36;
+/// Distance of the lines of a hatch, px.
+const HATCH_PX: f64 = 7.0;
 
-pub fn draw(canvas: &Canvas, surface: &Surface) -> Drawn {
-    let (width, _) = canvas.dim_in_pixel();
-    let (map, scale) = canvas.split_horizontally(width as i32 - px(SCALE_PX));
-    draw_map(&map, surface)?;
-    draw_scale(&scale, surface)
-}
-
-fn draw_map(canvas: &Canvas, surface: &Surface) -> Drawn {
-    let chart = chart(canvas, &surface.distance_axis(), &surface.incidence_axis())?;
-    let (width, height) = chart.canvas.dim_in_pixel();
-    let at = |share: f64, length: u32| libm::round(share * f64::from(length)) as i32;
-    for row in 0..ROWS {
-        for column in 0..COLUMNS {
-            let share = |cell: usize, of: usize| (cell as f64 + 0.5) / of as f64;
-            let (distance, incidence) = (share(column, COLUMNS), 1.0 - share(row, ROWS));
-            let Some(value) = surface.share_of_value(surface.at_share(distance, incidence)) else { continue };
-            let edge = |cell: usize, of: usize, length: u32| at(cell as f64 / of as f64, length);
-            let low = (edge(column, COLUMNS, width), edge(row, ROWS, height));
-            // A pixel of overlap with the next cell keeps white from shining through the seam.
-            let high = (edge(column + 1, COLUMNS, width), edge(row + 1, ROWS, height));
-            let high = ((high.0 + px(1.0)).min(width as i32), (high.1 + px(1.0)).min(height as i32));
-            if surface.is_known_at(distance, incidence) {
-                chart.canvas.draw(&Rectangle::new([low, high], colour(value).filled()))?;
-            } else {
-                hatched(&chart.canvas, [low, high])?;
-            }
-        }
+/// Draws the map and its scale.
+pub fn draw(svg: &mut Svg, space: Area, surface: &Surface) {
+    let (map, _) = space.split_across(space.width - SCALE_PX);
+    let plane = Plane::new(map, surface.distance_axis(), surface.incidence_axis());
+    plane.draw_axes(svg);
+    if has_gaps(surface) {
+        hatch(svg, plane.area);
+    }
+    for (cell, place) in plane.area.cells(ROWS, COLUMNS).zip(places()) {
+        let value = surface.share_of_value(surface.at_share(place.x, place.y));
+        let Some(value) = value.filter(|_| surface.is_known_at(place.x, place.y)) else { continue };
+        // A little overlap with the next cells keeps the ground from shining through the seams.
+        let width = (cell.width + 0.5).min(plane.area.right() - cell.left);
+        let height = (cell.height + 0.5).min(plane.area.bottom() - cell.top);
+        let colour = Colour::viridis(value).fill();
+        svg.titled(&surface.reading(place, value), |svg| svg.rect(Area { width, height, ..cell }, colour));
     }
     for sample in surface.test_shares() {
-        let place = (at(sample.x, width), at(1.0 - sample.y, height));
-        bead(&chart.canvas, place, colour(sample.z))?;
+        let at = DVec2::new(sample.x * plane.area.width, (1.0 - sample.y) * plane.area.height);
+        bead(svg, at + DVec2::new(plane.area.left, plane.area.top), Colour::viridis(sample.z));
     }
-    Ok(())
+    scale::draw(svg, plane.area, &surface.value_axis());
 }
 
-/// A cell without data.
-pub fn hatched(canvas: &Canvas, [low, high]: [Place; 2]) -> Drawn {
-    canvas.draw(&Rectangle::new([low, high], FAINT.filled()))?;
-    solid_line(canvas, &[(low.0, high.1), (high.0, low.1)], line(GREY, 0.5))
+/// Draws an area without data.
+pub fn hatch(svg: &mut Svg, area: Area) {
+    svg.clipped(area, |svg| {
+        svg.rect(area, FAINT.fill());
+        svg.group(GREY.line(0.5), |svg| {
+            let lines = ((area.width + area.height) / HATCH_PX) as usize;
+            for right in (0..=lines).map(|line| area.left + line as f64 * HATCH_PX) {
+                let ends = [DVec2::new(right, area.top), DVec2::new(right - area.height, area.bottom())];
+                svg.line(&ends, Default::default());
+            }
+        });
+    });
 }
 
 /// Whether a cell of the map has no data.
 pub fn has_gaps(surface: &Surface) -> bool {
-    let share = |cell: usize, of: usize| (cell as f64 + 0.5) / of as f64;
-    (0..ROWS).any(|row| (0..COLUMNS).any(|column| !surface.is_known_at(share(column, COLUMNS), share(row, ROWS))))
+    places().any(|place| !surface.is_known_at(place.x, place.y))
 }
 
-/// A bar with all colours of the scale and their values.
-fn draw_scale(canvas: &Canvas, surface: &Surface) -> Drawn {
-    let (left, right, height) = (px(16.0), px(16.0 + BAR_PX), px(ROW_PX) - px(BELOW_PX));
-    for step in 0..BAR_STEPS {
-        let edge = |step: i32| height - height * step / BAR_STEPS;
-        let share = (f64::from(step) + 0.5) / f64::from(BAR_STEPS);
-        let corners = [(left, edge(step + 1)), (right, (edge(step) + px(1.0)).min(height))];
-        canvas.draw(&Rectangle::new(corners, colour(share).filled()))?;
-    }
-    let axis = surface.value_axis();
-    let style = text(SMALL_PX, INK, HPos::Left, VPos::Center);
-    for value in &axis.ticks.at {
-        let Some(share) = surface.share_of_value(*value) else { continue };
-        let y = height - libm::round(share * f64::from(height)) as i32;
-        solid_line(canvas, &[(right, y), (right + px(3.0), y)], line(GREY, 0.75))?;
-        canvas.draw_text(&axis.ticks.label(*value), &style, (right + px(6.0), y))?;
-    }
-    let style = text(TEXT_PX, INK, HPos::Center, VPos::Center).transform(FontTransform::Rotate270);
-    canvas.draw_text(&axis.name, &style, (right + px(40.0), height / 2))
+/// Middles of the cells as shares of distance and angle, the row of the largest angle first.
+fn places() -> impl Iterator<Item = DVec2> {
+    let middle = |cell: usize, of: usize| (cell as f64 + 0.5) / of as f64;
+    (0..ROWS * COLUMNS).map(move |i| DVec2::new(middle(i % COLUMNS, COLUMNS), 1.0 - middle(i / COLUMNS, ROWS)))
 }
