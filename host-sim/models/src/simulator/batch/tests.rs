@@ -189,10 +189,10 @@ fn effects_act_on_the_robot_as_it_was_known_in_training() {
     let less = AppliedEffect::new(&Candidate::named("drive_scale", "distance").unwrap(), &[SHARE], &SIMULATOR.robot);
     let affected = Simulator { added: vec![less], ..SIMULATOR.clone() };
     let (scene, robots) = (four_obstacles(), SIMULATOR.robots(0, SEED).unwrap());
-    let of_middle = |simulator| {
+    let at_posterior_mean = |simulator| {
         Environment::new(simulator, &scene, scene.starts[0], Noise::Learned).unwrap().of_robot(&robots.mean)
     };
-    let (usual, less) = (of_middle(&SIMULATOR), of_middle(&affected));
+    let (usual, less) = (at_posterior_mean(&SIMULATOR), at_posterior_mean(&affected));
     let mut beyond_networks_cm: f32 = 0.0;
     for controller in controllers() {
         let (usual_motions, motions) = (usual.motions(&controller), less.motions(&controller));
