@@ -127,7 +127,7 @@ fn no_fault_reaches_a_confident_cause() {
     const SURE: f64 = 0.9;
     let simulator = train(&Serial, &logs(24, &[]), &Trainer::Fast, &TABLE_ONE, 1, &|_| {}).expect("networks");
     let sure_of = |logs: Logs| {
-        let baseline = Baseline::of_middle(&simulator).expect("a reference");
+        let baseline = Baseline::at_posterior_mean(&simulator).expect("a reference");
         // Nothing is sure where nothing can be compared.
         let found = findings(baseline, &Inspection::new(logs), Method::default());
         let effects = found.map_or_else(|_| Vec::new(), |found| found.diagnosis.effects().to_vec());

@@ -84,7 +84,7 @@ pub fn adapt(simulator: &Simulator, logs: &Logs, seed: u64, watch: impl Fn(Stage
     let ensemble = simulator.ensemble.as_ref().ok_or_else(missing)?;
     let robot = &simulator.robot;
     let observations = Observations::of(logs, None);
-    let baseline = Baseline::of_middle(simulator)?;
+    let baseline = Baseline::at_posterior_mean(simulator)?;
     let plain = steps(&baseline, &[], &observations);
     if plain.is_empty() {
         return Err(Error::new("the runs hold no step with a pose at both ends: there is nothing to adapt to"));

@@ -214,7 +214,7 @@ impl<W: Fn(Stage)> DemoRun<'_, W> {
     fn start(&self, start: usize, [evolution, simulation, trial]: [u64; 3]) -> Result<Trial> {
         let pose = self.scene.starts[start];
         let environment = Environment::new(self.simulator, self.scene, pose, Noise::Learned)?;
-        let environment = &environment.of_middle(self.robots);
+        let environment = &environment.at_posterior_mean(self.robots);
         let target_cm = self.scene.target_cm.ok_or_else(|| Error::new("the scene has no target"))?;
         let decoder = GenotypeDecoder::new(self.simulator, MAX_STEPS);
         let seed = derive(evolution, &[start as u64]);

@@ -225,7 +225,7 @@ pub fn confirmed<T>(
 /// # Errors
 /// When the logs say nothing that the simulator could be compared with.
 pub fn closed(simulator: &Simulator, applied: &[AppliedEffect], logs: &Logs) -> Result<Option<f64>> {
-    let mut baseline = Baseline::of_middle(simulator)?;
+    let mut baseline = Baseline::at_posterior_mean(simulator)?;
     let (conditioned, _) = conditioned(&mut baseline, &Inspection::new(logs.clone()))?;
     let context = FitContext::new(&baseline, &conditioned.identification, Method::default());
     let given = Comparison::given(applied, &context);

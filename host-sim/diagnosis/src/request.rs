@@ -64,9 +64,9 @@ impl<'a> Request<'a> {
     /// What logs are compared with.
     ///
     /// # Errors
-    /// As [`Baseline::of_middle`].
+    /// As [`Baseline::at_posterior_mean`].
     pub fn baseline(&self, logs: &Logs) -> Result<Baseline<'a>> {
-        self.simulator.map_or_else(|| Ok(kinematic::baseline(logs)), Baseline::of_middle)
+        self.simulator.map_or_else(|| Ok(kinematic::baseline(logs)), Baseline::at_posterior_mean)
     }
 
     /// The simulator with the effects found and the formula of what they leave; the textbook becomes one that can be run.

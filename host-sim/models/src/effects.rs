@@ -1,11 +1,11 @@
-//! What a simulator may lack of reality: effects, as wrappers round one simulator step with a few named parameters.
+//! Effects: candidate causes of a sim-to-real gap, as wrappers around one simulator step with a few named parameters.
 //!
-//! An [`Effect`] has an id of the table in docs/reference/effects.md and one or more [`Variant`]s, the functional forms in which
-//! it may show. A variant's hooks change the commands that reach the motors, the increment of the pose that comes out,
-//! or the sensor; at its nominal parameters it changes nothing. The same variant is a hypothesis while a gap is
-//! diagnosed and a part of the simulator once it is [`applied`].
+//! An [`Effect`] has an id of the table in docs/reference/effects.md and one or more [`Variant`]s, its functional forms. A variant's
+//! hooks change the commands that reach the motors, the motion that results, or the sensor; at its nominal parameters it
+//! changes nothing. The same variant is a hypothesis while a gap is diagnosed, and a part of the simulator once it is
+//! [`applied`].
 //!
-//! A further effect is a file in `effects/catalogue/` and a line in `effects/catalogue.rs`; users state [`own`] ones.
+//! To add an effect, write a file in `effects/catalogue/` and a line in `effects/catalogue.rs`; users define [`own`] ones.
 
 pub mod applied;
 pub mod catalogue;
@@ -13,7 +13,7 @@ pub mod chain;
 pub mod context;
 pub mod own;
 pub mod parameter;
-mod small_robot;
+pub mod small_robot;
 pub mod variant;
 
 pub use catalogue::{CATALOGUE, Candidate};

@@ -48,7 +48,7 @@ fn measure() -> Result<()> {
     let scene = Scene { arena_cm: Some(DVec2::splat(10_000.0)), ..Scene::default() };
     let start = Pose::new(5000.0, 5000.0, 0.0);
     let robots = simulator.robots(0, SEED);
-    let simulated = Environment::new(&simulator, &scene, start, Noise::Learned)?.of_middle(robots.as_ref());
+    let simulated = Environment::new(&simulator, &scene, start, Noise::Learned)?.at_posterior_mean(robots.as_ref());
     let robot = BuiltInRobot::new(&default_robot(), &scene, &[]);
     println!("left,right,robot_turn_deg,robot_scatter_deg,simulated_turn_deg,simulated_scatter_deg");
     for [left, right] in COMMANDS {

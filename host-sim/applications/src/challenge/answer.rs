@@ -34,7 +34,7 @@ pub fn answer(executor: &dyn Executor, folder: &Path, mut watch: impl FnMut(usiz
     let diagnose = |number: usize| {
         let case = &cases[number];
         let logs = Logs::read(&folder.case(&case.case), |_| {})?;
-        let baseline = Baseline::of_middle(simulators[case.robot.as_str()])?;
+        let baseline = Baseline::at_posterior_mean(simulators[case.robot.as_str()])?;
         let found = findings(baseline, &Inspection::new(logs), Method::default())?;
         let [answer, added] = [folder.answer(&case.case), folder.added(&case.case)];
         Ok([files::json(&answer, &found.diagnosis)?, files::json(&added, &found.applied)?])

@@ -37,7 +37,7 @@ impl Bench {
     /// When the robot hits something in every room.
     pub fn case(&self, number: usize) -> Result<(Case, Baseline<'_>)> {
         let case = cases::case(number, &self.effects[number], &self.robots, self.setting, self.seed)?;
-        let baseline = Baseline::of_middle(&self.simulators[case.robot])?;
+        let baseline = Baseline::at_posterior_mean(&self.simulators[case.robot])?;
         Ok((case, baseline))
     }
 }

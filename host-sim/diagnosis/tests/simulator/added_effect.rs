@@ -42,7 +42,8 @@ pub fn with_turning_loss(mut logs: Logs) -> Logs {
 fn an_effect_that_is_added_is_found_with_its_strength_and_written() {
     let inspected = Inspection::new(with_turning_loss(logs(16, &[], 91)));
     let method = Method { catalogue: catalogue(), ..Method::default() };
-    let found = findings(Baseline::of_middle(&SIMULATOR).expect("a reference"), &inspected, method).expect("poses");
+    let found =
+        findings(Baseline::at_posterior_mean(&SIMULATOR).expect("a reference"), &inspected, method).expect("poses");
     let written = serde_json::to_value(&found.diagnosis).expect("JSON");
     assert_eq!(written["verdict"], "known", "{written}");
     let [effect] = written["effects"].as_array().expect("effects").as_slice() else { panic!("{written}") };
@@ -58,6 +59,7 @@ fn an_effect_that_is_added_is_found_with_its_strength_and_written() {
 fn an_effect_that_is_added_is_not_found_where_it_is_not() {
     let inspected = Inspection::new(logs(16, &["track_width"], 92));
     let method = Method { catalogue: catalogue(), ..Method::default() };
-    let found = findings(Baseline::of_middle(&SIMULATOR).expect("a reference"), &inspected, method).expect("poses");
+    let found =
+        findings(Baseline::at_posterior_mean(&SIMULATOR).expect("a reference"), &inspected, method).expect("poses");
     assert_eq!(found.diagnosis.effects().iter().map(|e| e.id).collect::<Vec<_>>(), ["track_width"]);
 }

@@ -10,7 +10,7 @@ use mindgap_models::simulator::kinematic;
 use crate::{SIMULATOR, logs};
 
 fn diagnosed(logs: &Logs) -> Diagnosis {
-    let baseline = Baseline::of_middle(&SIMULATOR).expect("the simulator knows its scatter");
+    let baseline = Baseline::at_posterior_mean(&SIMULATOR).expect("the simulator knows its scatter");
     diagnose(baseline, logs).expect("there is something to compare")
 }
 
@@ -80,7 +80,7 @@ fn smaller_turns_are_not_taken_for_slip() {
 fn without_poses_there_is_nothing_to_compare() {
     let mut logs = logs(4, &[], 76);
     logs.runs.iter_mut().for_each(|run| run.rows.edit_each(|row| row.pose = None));
-    let baseline = Baseline::of_middle(&SIMULATOR).expect("the simulator knows its scatter");
+    let baseline = Baseline::at_posterior_mean(&SIMULATOR).expect("the simulator knows its scatter");
     assert!(diagnose(baseline, &logs).is_err());
 }
 

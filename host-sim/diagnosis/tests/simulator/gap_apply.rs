@@ -80,11 +80,12 @@ fn way_cm(rollouts: &RolloutReport, steps: Range<usize>) -> f64 {
 fn a_simulator_with_the_effects_found_has_no_gap_on_fresh_logs() {
     let effects = ["drive_scale=1.1", "sonar_offset=5"];
     let inspected = Inspection::new(logs(16, &effects, 21));
-    let found = findings(Baseline::of_middle(&SIMULATOR).expect("a reference"), &inspected, Method::default());
+    let found = findings(Baseline::at_posterior_mean(&SIMULATOR).expect("a reference"), &inspected, Method::default());
     let applied = with(found.expect("a gap").applied);
     assert_eq!(applied.added.len(), 2, "{:?}", applied.added);
     let fresh = logs(16, &effects, 22);
-    let again = diagnose(Baseline::of_middle(&applied).expect("a reference"), &fresh).expect("something to compare");
+    let again =
+        diagnose(Baseline::at_posterior_mean(&applied).expect("a reference"), &fresh).expect("something to compare");
     assert_eq!(again.verdict(), Verdict::NoGap, "{again:?}");
     let error = |simulator: &Simulator| {
         let networks = evaluate(simulator, &fresh, |_, _| ()).expect("samples").networks;

@@ -25,7 +25,7 @@ fn named(baseline: Baseline, logs: &Logs) -> BTreeSet<&'static str> {
 }
 
 fn learned(logs: &Logs) -> BTreeSet<&'static str> {
-    named(Baseline::of_middle(&SIMULATOR).expect("a reference"), logs)
+    named(Baseline::at_posterior_mean(&SIMULATOR).expect("a reference"), logs)
 }
 
 fn textbook(logs: &Logs) -> BTreeSet<&'static str> {

@@ -31,8 +31,9 @@ fn the_example_is_named_with_its_strength_and_applied() {
     let logs = with_turning_loss(logs(16, &[], 91));
     let catalogue: &'static [&'static Effect] = [CATALOGUE, &example()].concat().leak();
     let method = Method { catalogue, ..Method::default() };
-    let found = findings(Baseline::of_middle(&SIMULATOR).expect("a reference"), &Inspection::new(logs.clone()), method)
-        .expect("poses");
+    let found =
+        findings(Baseline::at_posterior_mean(&SIMULATOR).expect("a reference"), &Inspection::new(logs.clone()), method)
+            .expect("poses");
     let written = serde_json::to_value(&found.diagnosis).expect("JSON");
     assert_eq!(written["verdict"], "known", "{written}");
     assert_eq!(written["effects"][0]["id"], "caster_drag", "{written}");
@@ -58,7 +59,7 @@ fn the_example_is_named_with_its_strength_and_applied() {
 fn without_the_example_a_formula_tells_of_the_turns() {
     let logs = with_turning_loss(logs(16, &[], 91));
     let found = findings(
-        Baseline::of_middle(&SIMULATOR).expect("a reference"),
+        Baseline::at_posterior_mean(&SIMULATOR).expect("a reference"),
         &Inspection::new(logs.clone()),
         Method { catalogue: &[], ..Method::default() },
     );
@@ -77,7 +78,7 @@ fn without_the_example_a_formula_tells_of_the_turns() {
 #[test]
 fn logs_without_a_gap_have_no_formula() {
     let found = findings(
-        Baseline::of_middle(&SIMULATOR).expect("a reference"),
+        Baseline::at_posterior_mean(&SIMULATOR).expect("a reference"),
         &Inspection::new(logs(16, &[], 93)),
         Method::default(),
     );

@@ -76,7 +76,7 @@ impl Request<'_> {
         let target_cm = scene.target_cm.ok_or_else(|| Error::new("has no [target]"))?;
         let environment = Environment::new(simulator, scene, start, noise)?;
         let robots = if noise == Noise::Learned { simulator.robots(ROBOTS, seed) } else { None };
-        let environment = &environment.sensing_by(self.sensor, simulator, scene)?.of_middle(robots.as_ref());
+        let environment = &environment.sensing_by(self.sensor, simulator, scene)?.at_posterior_mean(robots.as_ref());
         let decoder = GenotypeDecoder::new(simulator, self.max_steps);
         let (runs, floor_cm) = (paper::RUNS, paper::FLOOR_CM);
         let way = &WayMap::new(scene, target_cm, simulator.robot.body_radius_cm);

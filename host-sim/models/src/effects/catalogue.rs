@@ -1,6 +1,6 @@
 //! The effects that a diagnosis knows: one file each, and one line here.
 //!
-//! What several of them share stands below, how commands, distances and forces change, and in `drive`.
+//! Shared helpers for commands, distances and forces are below and in `drive`.
 
 mod drive;
 
@@ -91,8 +91,7 @@ impl PartialEq for Candidate {
 /// Where fits of a direction start: the four quarters.
 const DIRECTIONS_DEG: [f64; 4] = [0.0, 90.0, 180.0, -90.0];
 
-/// Changes the magnitude of every command and keeps its sign; `change` is given the magnitude and the motor, 0 for the
-/// left one.
+/// Changes the magnitude of every command and keeps its sign; `change` takes the magnitude and the motor, 0 for left.
 fn each_command(commands: &mut CommandHistory, change: impl Fn(f64, usize) -> f64) {
     for pair in commands {
         for (motor, command) in pair.iter_mut().enumerate() {
@@ -101,34 +100,34 @@ fn each_command(commands: &mut CommandHistory, change: impl Fn(f64, usize) -> f6
     }
 }
 
-/// Changes the distance that each wheel covers; `change` is given it and the wheel, 0 for the left one.
+/// Changes the distance that each wheel covers; `change` takes the distance and the wheel, 0 for left.
 fn each_wheel(context: &StepContext, increment: &mut Motion<f64>, change: impl Fn(f64, usize) -> f64) {
     let [left_cm, right_cm] = increment.wheels_cm(context.robot.track_cm);
     increment.set_wheels([change(left_cm, 0), change(right_cm, 1)], context.robot.track_cm);
 }
 
-/// The distance that a force of strength one costs in a step: a share of it grows with the distance covered, the rest is
+/// Returns the distance that a force of strength one costs per step: a fraction grows with the distance covered, the rest is
 /// that of [`HALF_SPEED_CM_S`] at any speed.
 fn distance_lost_cm(with_speed: f64, covered_cm: f64, context: &StepContext) -> f64 {
     loaded(with_speed, covered_cm.abs(), HALF_SPEED_CM_S * context.step_s())
 }
 
-/// A drag of which one share grows with the speed and the rest is that of the `reference` at any speed.
+/// Returns a drag: the fraction `with_speed` of it grows with the speed, and the rest is that at `reference`, at any speed.
 fn loaded(with_speed: f64, speed: f64, reference: f64) -> f64 {
     with_speed * speed + (1.0 - with_speed) * reference
 }
 
-/// How much a step counts as motion, 0 to 1.
+/// Returns how much a step counts as motion, 0 to 1.
 fn moving(covered_cm: f64, context: &StepContext) -> f64 {
     (covered_cm.abs() / (CREEPING_CM_S * context.step_s())).min(1.0)
 }
 
-/// How much a turn scrubs the tyres, and which way, -1 to 1.
+/// Returns how much a turn scrubs the tyres, -1 to 1, with the sign of the turn.
 fn scrubbing(turn_rad: f64, context: &StepContext) -> f64 {
     libm::tanh(turn_rad / (CREEPING_RAD_S * context.step_s()))
 }
 
-/// A distance made longer or shorter, not below nothing; a robot that stands stays.
+/// Returns a distance made longer or shorter, at least 0 in magnitude; a robot at rest stays at rest.
 fn pushed_cm(covered_cm: f64, more_cm: f64, context: &StepContext) -> f64 {
     (covered_cm.abs() + moving(covered_cm, context) * more_cm).max(0.0) * covered_cm.signum()
 }
@@ -149,7 +148,7 @@ mod tests {
     /// The effects of the table in docs/reference/effects.md.
     const TABLE: usize = 29;
 
-    /// What comes of a step: commands, increment, sensor.
+    /// Returns commands, motion and sensor of a step with an effect.
     fn applied(
         variant: &'static Variant,
         values: &[f64],
@@ -215,8 +214,8 @@ mod tests {
         }
     }
 
-    /// What the table in docs/reference/effects.md asks each effect to report, and what slip and dropouts tell besides: the loss, and
-    /// the probability that a dropout goes on.
+    /// What each effect reports by the table in docs/reference/effects.md, and what slip and dropouts report besides: the loss, and
+    /// the persistence of a dropout.
     const REPORTED: [(&str, &[&str]); TABLE + 1] = [
         ("battery_sag", &["loss_per_min"]),
         ("motor_asymmetry", &["side", "factor"]),
@@ -281,7 +280,7 @@ mod tests {
             robot: Robot { full_speed_cm_s: TIMES * robot.full_speed_cm_s, ..robot },
             ..usual
         };
-        // A command of 100 is full speed whatever that is, and there this variant changes nothing.
+        // A command of 100 is full speed by definition, and there this variant changes nothing.
         let refers_to_full_speed = |c: &Candidate| c.effect == "deadband" && c.variant.id == "stretched";
         for candidate in Candidate::all(CATALOGUE).into_iter().filter(|c| !refers_to_full_speed(c)) {
             let Candidate { effect, variant } = candidate;
@@ -320,7 +319,7 @@ mod tests {
         }
 
         #[test]
-        fn what_follows_from_commands_alone_is_the_same_everywhere(here in context(), elsewhere in context()) {
+        fn command_only_effects_do_not_depend_on_place_or_time(here in context(), elsewhere in context()) {
             let elsewhere = StepContext { commands: here.commands, ..elsewhere };
             for Candidate { effect, variant } in Candidate::all(CATALOGUE) {
                 for values in variant.initial_guesses(FULL_SPEED_CM_S) {
@@ -331,9 +330,9 @@ mod tests {
             }
         }
 
-        /// A simulated step is spared the search for it.
+        /// So simulated steps need not compute it.
         #[test]
-        fn no_effect_on_the_motion_asks_for_what_the_sensor_faces(facing in context()) {
+        fn no_motion_effect_depends_on_what_the_sensor_faces(facing in context()) {
             let unseen = StepContext { faced: None, ..facing };
             for Candidate { effect, variant } in Candidate::all(CATALOGUE) {
                 for values in variant.initial_guesses(FULL_SPEED_CM_S) {
@@ -344,7 +343,7 @@ mod tests {
         }
 
         #[test]
-        fn what_senses_alike_everywhere_does(here in context(), elsewhere in context()) {
+        fn uniform_sensor_effects_do_not_depend_on_place_or_time(here in context(), elsewhere in context()) {
             let elsewhere = StepContext { echo_before: here.echo_before, ..elsewhere };
             for Candidate { effect, variant } in Candidate::all(CATALOGUE) {
                 for values in variant.initial_guesses(FULL_SPEED_CM_S) {

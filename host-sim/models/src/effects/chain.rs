@@ -1,4 +1,4 @@
-//! Effects with their parameters, at work one after the other round a simulator's step.
+//! Effects with their parameters, applied one after the other around a simulator step.
 
 use super::applied::AppliedEffect;
 use super::context::{CommandHistory, StepContext};
@@ -6,7 +6,7 @@ use super::variant::{Hook, Late, SensorState, Variant};
 use mindgap_foundations::motion::Motion;
 use mindgap_logs::Robot;
 
-/// Effects that act together, in their order; an empty chain changes nothing.
+/// Effects that act together, in order. An empty chain changes nothing.
 #[derive(Clone, Default)]
 pub struct EffectChain {
     links: Vec<(&'static Variant, Vec<f64>)>,
@@ -19,7 +19,7 @@ impl EffectChain {
         EffectChain { links: links.map(|(candidate, values)| (candidate.variant, values)).collect() }
     }
 
-    /// This chain with further variants behind it, whose parameters follow one another in `values`.
+    /// Returns this chain followed by further variants, whose parameters are concatenated in `values`.
     pub fn with(&self, variants: &[&'static Variant], values: &[f64]) -> Self {
         let mut links = self.links.clone();
         let mut rest = values;
@@ -31,22 +31,22 @@ impl EffectChain {
         EffectChain { links }
     }
 
-    /// Whether any of them changes the sensor.
+    /// Returns whether any effect changes the sensor.
     pub fn senses(&self) -> bool {
         self.links.iter().any(|(variant, _)| variant.senses())
     }
 
-    /// Whether what they do to the motion follows from commands, wherever and whenever they are driven.
+    /// Returns whether their influence on the motion depends on commands alone, not on place or time.
     pub fn moves_by_commands_alone(&self) -> bool {
         self.links.iter().all(|(variant, _)| variant.moves_by_commands_alone())
     }
 
-    /// Whether what they do to the sensor is the same wherever and whenever that is asked.
+    /// Returns whether their influence on the sensor is the same at every place and time.
     pub fn senses_alike_everywhere(&self) -> bool {
         self.links.iter().all(|(variant, _)| variant.senses_alike_everywhere())
     }
 
-    /// The increment of a step with these effects; `step` gives that of the simulator for the commands now and before.
+    /// Returns the motion of a step with these effects; `step` predicts it without them, for the commands now and before.
     pub fn wrap(&self, context: &StepContext, step: impl FnMut([f64; 2], [f64; 2]) -> Motion<f64>) -> Motion<f64> {
         let (mut commands, mut late) = (context.commands, Late::default());
         self.each(|hook, values| match hook {
@@ -67,7 +67,7 @@ impl EffectChain {
         increment
     }
 
-    /// The sensor at a row with these effects.
+    /// Returns the sensor at a row with these effects.
     pub fn sensor(&self, context: &StepContext) -> SensorState {
         let mut sensor = SensorState::nominal(context.pose);
         self.each(|hook, values| {
@@ -85,7 +85,7 @@ impl EffectChain {
     }
 }
 
-/// The motion that comes so late. Poses that are late by a part of a step lie between those of two rows.
+/// Returns the delayed motion. Poses that are late by a fraction of a step lie between those of two rows.
 fn delayed(
     commands: &CommandHistory,
     late: Late,
@@ -100,8 +100,8 @@ fn delayed(
     weighted([(1.0 - part, motion), (part, earlier)])
 }
 
-/// The motion of a drive that is so many steps late. Where that is no whole number, the earlier step lasts into this one at the
-/// speed that it came to, and this one ends so much before it.
+/// Returns the motion of a drive that is late by this number of steps. For a fraction of a step, the earlier step extends into
+/// this one at its final speed, and this one ends earlier by as much.
 fn driven_late(
     commands: &CommandHistory,
     late_steps: f64,
@@ -117,7 +117,7 @@ fn driven_late(
     weighted([(1.0, motion), (part, step(before, before)), (-part, step(now, now))])
 }
 
-/// The sum of increments, each times its weight.
+/// Returns the weighted sum of motions.
 fn weighted<const N: usize>(increments: [(f64, Motion<f64>); N]) -> Motion<f64> {
     Motion::from_fn(|axis| increments.iter().map(|(weight, increment)| weight * increment[axis]).sum())
 }
@@ -127,10 +127,10 @@ mod tests {
     use super::super::context::HISTORY;
     use super::*;
 
-    /// A start, by a drive that misses a tenth of a step's way: half a step late both ways it ends at the same place, but a late
-    /// drive has missed its tenth by the end of the first step, and late poses tell half of it in each.
+    /// A start by a drive that misses a tenth of a step's distance. Half a step late, both forms end at the same place; but a
+    /// late drive has missed its tenth by the end of the first step, and late poses show half of it in each.
     #[test]
-    fn a_late_drive_starts_late_and_late_poses_lie_between_rows() {
+    fn late_drive_starts_late_and_late_poses_lie_between_rows() {
         let step = |now: [f64; 2], before: [f64; 2]| Motion {
             forward: now[0] - 0.1 * (now[0] - before[0]),
             lateral: 0.0,

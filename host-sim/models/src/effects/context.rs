@@ -1,4 +1,4 @@
-//! What an effect sees of a step: built here for logs, for simulated runs and for runs that are planned.
+//! The context of a step, which is all that an effect depends on: for logs, simulated runs and planned runs.
 
 use glam::DVec2;
 
@@ -14,14 +14,14 @@ pub type CommandHistory = [[f64; 2]; HISTORY];
 /// Number of earlier poses visible to an effect: the oldest reading that is thought of, 1.6 s, at 10 steps a second.
 pub const EARLIER: usize = 16;
 
-/// The circumstances of a step, or of the reading at its begin.
+/// The context of a step, or of the reading at its start.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StepContext {
     /// Time since the run began, minutes.
     pub elapsed_min: f64,
     /// Commands as they were sent.
     pub commands: CommandHistory,
-    /// Tracked pose at the step's begin.
+    /// Tracked pose at the start of the step.
     pub pose: Pose,
     /// The same one row earlier, two rows earlier and so on, where it is known.
     pub earlier: [Option<Pose>; EARLIER],
@@ -35,7 +35,7 @@ pub struct StepContext {
     pub robot: Robot,
 }
 
-/// What stays the same from step to step: the robot and what is round it.
+/// What stays the same from step to step: the robot and its environment.
 #[derive(Clone, Debug)]
 pub struct Surroundings {
     /// The robot's measures.
@@ -45,7 +45,7 @@ pub struct Surroundings {
     middle_cm: DVec2,
 }
 
-/// What lies behind a step of a run.
+/// The history of a run before a step.
 #[derive(Clone, Debug, Default)]
 pub struct RunHistory {
     commands: CommandHistory,
@@ -54,17 +54,17 @@ pub struct RunHistory {
 }
 
 impl StepContext {
-    /// Speed of a wheel's rim at a command, cm/s.
+    /// Returns the rim speed of a wheel at a command, cm/s.
     pub fn wheel_speed_cm_s(&self, command: f64) -> f64 {
         command / 100.0 * self.robot.full_speed_cm_s
     }
 
-    /// The command that asks for a wheel speed.
+    /// Returns the command that asks for a wheel speed.
     pub fn command_for(&self, wheel_speed_cm_s: f64) -> f64 {
         100.0 * wheel_speed_cm_s / self.robot.full_speed_cm_s
     }
 
-    /// Usual duration of a step, s.
+    /// Returns the nominal duration of a step, s.
     pub fn step_s(&self) -> f64 {
         self.robot.step_ms / 1000.0
     }
@@ -77,7 +77,7 @@ impl Surroundings {
         Surroundings { robot: *robot, middle_cm: middle(&walls), surfaces: Surfaces::new(walls) }
     }
 
-    /// The context of a step that begins at `pose`, `elapsed_ms` after the run did.
+    /// Returns the context of a step that starts at `pose`, `elapsed_ms` after the start of the run.
     pub fn context(&self, history: &RunHistory, elapsed_ms: f64, pose: Pose) -> StepContext {
         let sensor = self.sensor(&pose, 0.0);
         let hit = cast(self.surfaces.walls(), sensor.position_cm, sensor.direction());
@@ -87,7 +87,7 @@ impl Surroundings {
         }
     }
 
-    /// The same without what the sensor faces, which takes the longest to find.
+    /// Returns the context without what the sensor faces, which is the most expensive part.
     pub fn unseen(&self, history: &RunHistory, elapsed_ms: f64, pose: Pose) -> StepContext {
         StepContext {
             elapsed_min: elapsed_ms / 60_000.0,
@@ -116,19 +116,19 @@ impl RunHistory {
         self.commands[0] = command;
     }
 
-    /// The row at which a step began lies behind: where the robot was, if it was seen, and what its sensor said.
+    /// Adds the row at which a step began: where the robot was, if it was tracked, and what its sensor read.
     pub fn leave(&mut self, context: Option<&StepContext>, echo_cm: Option<f64>) {
         self.was_at(context.map(|context| context.pose));
         self.sensed(echo_cm);
     }
 
-    /// Where the robot was at the begin of a step that lies behind, if it was seen.
+    /// Adds where the robot was at the start of a past step, if it was tracked.
     pub fn was_at(&mut self, pose: Option<Pose>) {
         self.poses.rotate_right(1);
         self.poses[0] = pose;
     }
 
-    /// What its sensor said at a row that lies behind.
+    /// Adds what its sensor read at a past row.
     pub fn sensed(&mut self, echo_cm: Option<f64>) {
         self.echo_cm = Some(echo_cm);
     }

@@ -20,13 +20,13 @@ pub struct Parameter {
     pub name: &'static str,
     /// Its unit; empty for a share, a factor or a probability.
     pub unit: &'static str,
-    /// With this value the parameter changes nothing, or has no say once the others change nothing.
+    /// At this value the parameter changes nothing, or is irrelevant once the others change nothing.
     pub nominal: f64,
-    /// Least and largest value that is physically possible, in the parameter's unit.
+    /// Physically possible range, in the parameter's unit.
     pub bounds: [f64; 2],
-    /// Standard deviation of the normal prior about the nominal value; infinite where every value is as likely.
+    /// Standard deviation of the normal prior about the nominal value; infinite for a uniform prior.
     pub prior_sd: f64,
-    /// A change that would be large.
+    /// A large change.
     pub scale: f64,
     /// Where fits start.
     pub guesses: Guesses,
@@ -39,9 +39,9 @@ pub struct Parameter {
 pub enum Guesses {
     /// At these values.
     At(&'static [f64]),
-    /// At these shares of the largest wheel speed that the logs command.
+    /// At these fractions of the largest wheel speed that the logs command.
     OfTopSpeed(&'static [f64]),
-    /// At every so many units between the bounds: for a parameter whose likelihood has many maxima.
+    /// On a grid of this spacing between the bounds: for a parameter whose likelihood has many maxima.
     Every(f64),
 }
 
@@ -109,23 +109,23 @@ impl Parameter {
         }
     }
 
-    /// The same with a normal prior about the nominal value, within five standard deviations of which everything
-    /// plausible lies.
+    /// Returns the parameter with a normal prior about the nominal value. Plausible values lie within five standard
+    /// deviations.
     pub const fn prior_sd(self, prior_sd: f64) -> Self {
         Parameter { prior_sd, ..self.scale(5.0 * prior_sd) }
     }
 
-    /// The same with another large change, where that is less than from bound to bound.
+    /// Returns the parameter with another large change, at most the distance between the bounds.
     pub const fn scale(self, scale: f64) -> Self {
         Parameter { scale: if scale < self.scale { scale } else { self.scale }, ..self }
     }
 
-    /// The same with starts for its fit.
+    /// Returns the parameter with starting points for its fit.
     pub const fn from(self, guesses: Guesses) -> Self {
         Parameter { guesses, ..self }
     }
 
-    /// The same with another way to report it.
+    /// Returns the parameter with another way to report it.
     pub const fn report(self, report: Report) -> Self {
         Parameter { report, ..self }
     }
@@ -141,7 +141,7 @@ impl Parameter {
         (self.bounds[0]..=self.bounds[1]).contains(&value)
     }
 
-    /// Whether a value lies at a bound at which something is changed, of a parameter that is reported.
+    /// Returns whether the parameter is reported and `value` lies at a bound other than nominal.
     pub fn is_at_a_bound(&self, value: f64) -> bool {
         let reported = !matches!(self.report, Report::Hidden | Report::Direction);
         reported && value != self.nominal && self.bounds.contains(&value)
@@ -238,7 +238,7 @@ impl Parameter {
         settings.map(|(name, setting)| (name.into(), rounded(setting))).collect()
     }
 
-    /// Between what the reported numbers of a value lie, where it lies between these.
+    /// Returns the interval of the reported number, for this interval of the value.
     pub(super) fn reported_between(&self, value: f64, [low, high]: [f64; 2], robot: &Robot) -> Vec<(String, Value)> {
         let numbers = |value: f64| {
             let reported = self.reported(value, robot).into_iter();
@@ -337,8 +337,8 @@ mod tests {
     }
 
     #[test]
-    fn values_are_reported_as_their_effect_is_told() {
-        // 0.4 s a step, and 50 cm/s at a command of 100.
+    fn values_are_reported_by_the_names_of_the_table() {
+        // 0.4 s per step, and 50 cm/s at a command of 100.
         let robot = Robot { step_ms: 400.0, full_speed_cm_s: 50.0, ..mindgap_built_in_robot::default_robot() };
         let told = |report, value| -> Vec<(String, Value)> { LENGTH.report(report).reported(value, &robot) };
         let one = |name: &str, value: f64| vec![(String::from(name), json!(value))];
@@ -356,7 +356,7 @@ mod tests {
     }
 
     #[test]
-    fn intervals_hold_the_value_they_are_of() {
+    fn intervals_contain_their_value() {
         let robot = Robot { step_ms: 400.0, full_speed_cm_s: 50.0, ..mindgap_built_in_robot::default_robot() };
         let between = |report, value, ends| -> Vec<(String, Value)> {
             let parameter = Parameter { nominal: 0.0, ..LENGTH.report(report) };

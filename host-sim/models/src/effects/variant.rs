@@ -9,15 +9,15 @@ use mindgap_foundations::geometry::Pose;
 use mindgap_foundations::motion::Motion;
 use mindgap_logs::Robot;
 
-/// Something that is there in reality and not in the simulator.
+/// Something that is present in reality and missing from the simulator.
 pub struct Effect {
     /// Its id in the table of docs/reference/effects.md.
     pub id: &'static str,
     /// What people call it, without an article.
     pub name: &'static str,
-    /// A sentence of what it is.
+    /// What it is, in one sentence.
     pub what: &'static str,
-    /// A sentence of how one checks it on the robot, with no more than a ruler, a scale, a film or a multimeter.
+    /// How to check it on the robot, with no more than a ruler, scales, a video or a multimeter.
     pub check: &'static str,
     /// The functional forms in which it may show.
     pub variants: &'static [Variant],
@@ -42,9 +42,9 @@ pub enum Hook {
     Commands(&'static (dyn Fn(&[f64], &StepContext, &mut CommandHistory) + Sync)),
     /// The same, by where and when too.
     CommandsHere(&'static (dyn Fn(&[f64], &StepContext, &mut CommandHistory) + Sync)),
-    /// By how much the motion comes late.
+    /// Delays the motion.
     Delay(&'static (dyn Fn(&[f64], &StepContext) -> Late + Sync)),
-    /// To the increment of the pose that the tracker sees, by this and commands alone.
+    /// To the motion that the tracker sees, by this and commands alone.
     Motion(&'static (dyn Fn(&[f64], &StepContext, &mut Motion<f64>) + Sync)),
     /// The same, by where and when too.
     MotionHere(&'static (dyn Fn(&[f64], &StepContext, &mut Motion<f64>) + Sync)),
@@ -56,12 +56,12 @@ pub enum Hook {
     Ray(ChangeOfSensor),
 }
 
-/// By how many steps the motion comes late, 0 and more.
+/// Delay of the motion in steps, at least 0.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Late {
-    /// The drive, which does in a step what it would have done so much earlier.
+    /// Delay of the drive.
     pub drive_steps: f64,
-    /// The poses, which are told by rows and lie on straight lines between them.
+    /// Delay of the tracked poses, which are interpolated linearly between rows.
     pub poses_steps: f64,
 }
 
@@ -77,13 +77,13 @@ pub struct SensorState {
 }
 
 impl Variant {
-    /// The parameters with which it changes nothing.
+    /// Returns the values at which it changes nothing.
     pub fn nominal(&self) -> Vec<f64> {
         self.parameters.iter().map(|p| p.nominal).collect()
     }
 
-    /// Where fits start: all combinations of the parameters' guesses. `top_speed_cm_s` is the largest wheel speed that
-    /// the logs command.
+    /// Returns where fits start: all combinations of the parameters' guesses. `top_speed_cm_s` is the largest wheel speed
+    /// that the logs command.
     pub fn initial_guesses(&self, top_speed_cm_s: f64) -> Vec<Vec<f64>> {
         self.parameters.iter().fold(vec![Vec::new()], |so_far, parameter| {
             let guesses = parameter.guesses(top_speed_cm_s);
@@ -109,28 +109,28 @@ impl Variant {
         self.parameters.iter().zip(values).flat_map(|(p, value)| p.reported(*value, robot)).collect()
     }
 
-    /// Between what the reported numbers lie, where the values lie between these ends.
+    /// Returns the intervals of the reported numbers, for these intervals of the values.
     pub fn reported_between(&self, values: &[f64], ends: &[[f64; 2]], robot: &Robot) -> Map<String, Value> {
         let parameters = self.parameters.iter().zip(values).zip(ends);
         parameters.flat_map(|((p, value), ends)| p.reported_between(*value, *ends, robot)).collect()
     }
 
-    /// Whether it changes what the robot does or how that is seen.
+    /// Returns whether it changes the motion or how that is tracked.
     pub fn moves(&self) -> bool {
         self.hooks.iter().any(|hook| hook.of_sensor().is_none())
     }
 
-    /// Whether what it does to the motion follows from commands, wherever and whenever they are driven.
+    /// Returns whether its influence on the motion depends on commands alone, not on place or time.
     pub fn moves_by_commands_alone(&self) -> bool {
         !self.hooks.iter().any(|hook| matches!(hook, Hook::CommandsHere(_) | Hook::MotionHere(_)))
     }
 
-    /// Whether what it does to the sensor is the same wherever and whenever that is asked.
+    /// Returns whether its influence on the sensor is the same at every place and time.
     pub fn senses_alike_everywhere(&self) -> bool {
         !self.hooks.iter().any(|hook| matches!(hook, Hook::SensorHere(_)))
     }
 
-    /// Whether at these parameters all that it does at a step is to scatter readings more.
+    /// Returns whether at these values it only widens the scatter of readings.
     pub fn only_widens_scatter(&self, values: &[f64], step: &StepContext) -> bool {
         let mut state = SensorState::nominal(step.pose);
         for hook in self.hooks {
@@ -143,19 +143,19 @@ impl Variant {
         widened && state == SensorState::nominal(step.pose) && !self.moves()
     }
 
-    /// Whether it is sought in the textbook's ideal ray alone.
+    /// Returns whether it is a candidate only for the textbook's ideal ray.
     pub fn is_for_a_ray(&self) -> bool {
         self.hooks.iter().any(|hook| matches!(hook, Hook::Ray(_)))
     }
 
-    /// Whether it changes what the sensor says.
+    /// Returns whether it changes the sensor.
     pub fn senses(&self) -> bool {
         self.hooks.iter().any(|hook| hook.of_sensor().is_some())
     }
 }
 
 impl Hook {
-    /// What it changes of the sensor, if it is a change to that.
+    /// Returns its change to the sensor, if it is one.
     pub fn of_sensor(&self) -> Option<ChangeOfSensor> {
         match self {
             Hook::Sensor(change) | Hook::SensorHere(change) | Hook::Ray(change) => Some(*change),
@@ -165,12 +165,12 @@ impl Hook {
 }
 
 impl SensorState {
-    /// The sensor of a robot at `robot` that no effect changes.
+    /// Returns the sensor of a robot at `robot` without effects.
     pub fn nominal(robot: Pose) -> Self {
         SensorState { robot, yaw_rad: 0.0, perturbation: Perturbation::NONE }
     }
 
-    /// What it may report by a law, where it is.
+    /// Returns the possible readings by a law, at its place.
     pub fn outcomes(&self, law: &SensorLaw, surroundings: &Surroundings) -> Outcomes {
         let sensor = surroundings.sensor(&self.robot, self.yaw_rad);
         law.outcomes(&law.view(&surroundings.surfaces, &sensor, self.perturbation.width), &self.perturbation)

@@ -1,4 +1,4 @@
-//! The simulator as the diagnosis sees it: networks, their known bias, and the noise that is normal.
+//! The simulator as the diagnosis sees it: networks, their known bias, and their nominal noise.
 
 use std::sync::Arc;
 
@@ -25,9 +25,9 @@ pub struct Baseline<'s> {
     pub motion: Option<MotionModel<'s>>,
     /// The law of the sensor, if the simulator knows it.
     pub sonar: Option<SensorLaw>,
-    /// Share of the chance in its echo rate and in its readings that belongs to the place, as far as it is known.
+    /// Fraction of the noise of its echo rate and of its readings that is a function of the place, as far as it is known.
     pub place_bound: [f64; 2],
-    /// What belongs to single poses.
+    /// Readings that repeat at single poses.
     pub familiar: Option<&'s FamiliarPoses>,
     /// Effects that were added to the simulator before.
     pub applied: Vec<AppliedEffect>,
@@ -44,7 +44,7 @@ pub enum MotionModel<'s> {
         reference: &'s MotionBias,
         /// Least and largest command that they know.
         commands: [f64; 2],
-        /// What the training logs leave open about the robot, where `member` is the one in its middle.
+        /// What the training logs leave open about the robot; `member` is its mean.
         open: Option<Arc<Posterior>>,
         /// The robot whose bias is added, if one is known.
         member: Option<Member>,
@@ -61,7 +61,7 @@ pub enum MotionModel<'s> {
 }
 
 impl<'s> Baseline<'s> {
-    /// A trained simulator.
+    /// Returns the baseline of a trained simulator.
     ///
     /// # Errors
     /// When the simulator was written without the reference that a diagnosis needs.
@@ -92,12 +92,12 @@ impl<'s> Baseline<'s> {
         })
     }
 
-    /// A trained simulator with the robot in the middle of those that its training logs allow. Networks are off where logs
-    /// are few, which is where controllers drive, and an effect would be fitted to that.
+    /// Returns the baseline of a trained simulator with its posterior mean robot. Networks are biased where logs are sparse,
+    /// which is where controllers drive, and effects would be fitted to that bias.
     ///
     /// # Errors
     /// As [`learned`](Self::learned).
-    pub fn of_middle(simulator: &'s Simulator) -> Result<Self> {
+    pub fn at_posterior_mean(simulator: &'s Simulator) -> Result<Self> {
         let mut baseline = Baseline::learned(simulator)?;
         if let Some(MotionModel::Learned { member, open, .. }) = &mut baseline.motion {
             *open = simulator.trained().map(Arc::new);
@@ -111,7 +111,7 @@ impl<'s> Baseline<'s> {
         EffectChain::of(&self.applied, &self.robot)
     }
 
-    /// Number of steps that the motion was learned from, as far as that is known; none of the textbook.
+    /// Returns the number of steps that the motion was learned from, if known; none for the textbook.
     pub fn trained_on(&self) -> Option<f64> {
         let MotionModel::Learned { reference, .. } = self.motion.as_ref()? else { return None };
         reference.precision.as_ref().and_then(Precision::steps)
@@ -124,7 +124,7 @@ impl MotionModel<'_> {
         match self {
             MotionModel::Learned { networks, reference, commands, member, .. } => {
                 let [now, before] = [now, before].map(|command| command.map(|c| c.clamp(commands[0], commands[1])));
-                // Of a command that is held this is all there is to say, and the networks need not be asked.
+                // For a held command this is the whole prediction, and the networks need not be evaluated.
                 if let Some(member) = member.as_ref().filter(|_| now == before) {
                     return member.motion(now).turn_in_radians();
                 }
@@ -144,14 +144,14 @@ impl MotionModel<'_> {
         }
     }
 
-    /// What the robot does beyond networks and their bias while a command is held, if one is known.
+    /// Returns what the robot does beyond the networks and their bias while a command is held, if a robot is known.
     pub fn beyond(&self, command: [f64; 2]) -> Motion<f64> {
         let MotionModel::Learned { networks, reference, member: Some(member), .. } = self else { return Motion::ZERO };
         let beyond = (member.motion(command) - networks.motion(command)).turn_in_radians();
         beyond - reference.correction(&[command[0], command[1], command[0], command[1]])
     }
 
-    /// A command in percent of full speed.
+    /// Returns a command in percent of full speed.
     pub fn percent(&self, command: [f64; 2]) -> Percent {
         let scale = match self {
             MotionModel::Learned { networks, .. } => networks.scale(),
@@ -160,7 +160,7 @@ impl MotionModel<'_> {
         scale.percent(command)
     }
 
-    /// Whether it was learned from logs, and so is off where they were few.
+    /// Returns whether it was learned from logs, and so is biased where they were sparse.
     pub fn is_learned(&self) -> bool {
         matches!(self, MotionModel::Learned { .. })
     }

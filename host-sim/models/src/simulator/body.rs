@@ -1,7 +1,7 @@
-//! A simulated robot that is driven by the millisecond: for programs whose steps are their own.
+//! A simulated robot with millisecond resolution, for programs that have their own step length.
 //!
-//! The motion networks say what a step of the simulator does. A command begins a step, which goes on in steps of the
-//! simulator until the next command; a part of a step does that share of it.
+//! The motion networks predict steps of the simulator. A command starts a step, and further ones follow until the next
+//! command; a fraction of a step makes that fraction of its motion.
 
 use mindgap_core::folded::evaluate_all;
 use rand::RngExt;
@@ -16,7 +16,7 @@ use mindgap_foundations::motion::{Axis, Motion};
 use mindgap_foundations::random::Generator;
 use mindgap_logs::Scene;
 
-/// Time between two looks whether the body touches something.
+/// Time between two collision checks.
 const TOUCH_MS: f64 = 5.0;
 
 /// A simulated robot during a run.
@@ -25,7 +25,7 @@ pub struct SimulatedBody<'e> {
     sides: Vec<Wall>,
     pose: Pose,
     command: [f64; 2],
-    /// The command before, while the step in which that still counts goes on.
+    /// The previous command, during the first step after a change.
     before: [f64; 2],
     step: Option<Step>,
     held_levels: Motion<usize>,
@@ -33,7 +33,7 @@ pub struct SimulatedBody<'e> {
     crashed: bool,
 }
 
-/// A step of the simulator that is under way.
+/// A step of the simulator in progress.
 struct Step {
     from: Pose,
     /// The motion of the whole step.
@@ -42,7 +42,7 @@ struct Step {
 }
 
 impl<'e> SimulatedBody<'e> {
-    /// A robot at rest at the start of its environment.
+    /// Returns a robot at rest at the start of its environment.
     pub fn at_rest(environment: &'e Environment<'e>, scene: &Scene) -> Self {
         SimulatedBody {
             environment,
@@ -105,18 +105,18 @@ impl<'e> SimulatedBody<'e> {
         Some(range(reading_cm.into()))
     }
 
-    /// Where it is.
+    /// Returns its pose.
     pub fn pose(&self) -> Pose {
         self.pose
     }
 
-    /// Whether the body has touched a wall or an obstacle.
+    /// Returns whether the body has touched a wall or an obstacle.
     pub fn crashed(&self) -> bool {
         self.crashed
     }
 
     fn begin(&mut self, rng: &mut Generator) -> Step {
-        // A robot that stands goes on to stand: no log says so, since none is of a robot that is not driven.
+        // A robot at rest stays at rest: logs do not show it, since they hold driven robots only.
         if [self.command, self.before] == [[0.0; 2]; 2] {
             return Step { from: self.pose, motion: Motion::ZERO, passed_ms: 0.0 };
         }

@@ -1,5 +1,5 @@
-//! The chain of applied effects around each simulated step. Where they depend on commands alone, the motions of a
-//! controller are worked out ahead; else an effect may ask for all that a run did.
+//! Applied effects around each simulated step. Where they depend on commands alone, the motions of a controller are computed
+//! ahead; otherwise an effect may depend on the whole history of a run.
 
 use std::array;
 
@@ -26,16 +26,16 @@ pub(super) struct EffectLayer {
     surroundings: Surroundings,
     /// Least and largest command that the networks know.
     commands: [f64; 2],
-    /// Whether an effect on the motion may ask for what the sensor faces: of the catalogue none does.
+    /// Whether an effect on the motion may depend on what the sensor faces: none of the catalogue does.
     looks: bool,
-    /// There when an effect changes the sensor.
+    /// Present when an effect changes the sensor.
     sonar: Option<SensorLaw>,
-    /// There when what becomes of it is the same everywhere.
+    /// Present when that change is the same everywhere.
     beam: Option<Beam>,
     noise: Noise,
 }
 
-/// What effects depend on: a run's history so far.
+/// The history of a run, on which effects depend.
 #[derive(Clone, Debug, Default)]
 pub(super) struct EffectMemory {
     history: RunHistory,
@@ -43,17 +43,17 @@ pub(super) struct EffectMemory {
 }
 
 impl EffectMemory {
-    /// A step begins with this command.
+    /// Starts a step with this command.
     pub fn command(&mut self, command: [f32; 2]) {
         self.history.command(command.map(f64::from));
     }
 }
 
 impl EffectLayer {
-    /// The effects applied to a simulator, if there are any.
+    /// Returns the effects applied to a simulator, if there are any.
     ///
     /// # Errors
-    /// When an effect changes a sensor of which the simulator does not know what is normal.
+    /// When an effect changes a sensor whose normal behaviour the simulator does not know.
     pub fn of(simulator: &Simulator, scene: &Scene, noise: Noise) -> Result<Option<Self>> {
         if simulator.added.is_empty() {
             return Ok(None);
@@ -86,7 +86,7 @@ impl EffectLayer {
         }))
     }
 
-    /// Motion in a step of a robot at `pose` under `command`, before noise; `trained` says what a step does without effects.
+    /// Predicts the step of a robot at `pose` under `command`, before noise; `trained` predicts a step without effects.
     pub fn motion(
         &self,
         memory: &mut EffectMemory,
@@ -102,7 +102,7 @@ impl EffectLayer {
         step
     }
 
-    /// The motions of a controller that starts from rest, if they depend on its commands alone.
+    /// Predicts the motions of a controller that starts from rest, if they depend on its commands alone.
     pub fn transients(&self, controller: &Controller, networks: &MotionNetworks) -> Option<Transients> {
         // A sensor that asks for more looks back on where the robot was.
         if !self.effects.moves_by_commands_alone() || self.senses() && self.beam.is_none() {
@@ -134,22 +134,22 @@ impl EffectLayer {
         PredictedStep { motion, cells }
     }
 
-    /// The same with readings by another law, where effects change them.
+    /// Returns the effects with readings by another law, where effects change them.
     pub fn hearing_by(self, law: SensorLaw) -> Self {
         EffectLayer { sonar: self.sonar.map(|_| law), beam: None, ..self }
     }
 
-    /// Whether readings are generated here.
+    /// Returns whether readings are generated here.
     pub fn senses(&self) -> bool {
         self.sonar.is_some()
     }
 
-    /// What generates them for lanes of robots, where it can.
+    /// Returns what generates them for lanes of robots, where it can.
     pub fn beam(&self) -> Option<&Beam> {
         self.beam.as_ref()
     }
 
-    /// The reading at `pose`, where the effects change the sensor; `draw` fixes what chance adds.
+    /// Returns the reading at `pose`, where the effects change the sensor; `draw` seeds its noise.
     pub fn echo_cm(&self, memory: &mut EffectMemory, pose: Pose, draw: f32) -> Option<f32> {
         let law = self.sonar.as_ref()?;
         let context = self.context(memory, pose);

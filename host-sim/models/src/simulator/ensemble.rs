@@ -1,12 +1,13 @@
-//! What is not known about a robot, as a distribution over robots.
+//! Epistemic uncertainty about a robot, as a distribution over robots.
 //!
-//! A command that is held does the same in every step and every run, and mostly not quite what the networks say: a bias
-//! that no chance stands for, since it adds up while the command is held. So the motion under a held command is a Gaussian
-//! process over commands, one for each of forward, lateral and turn, whose covariance is that of [`basis`], and a
-//! [`nugget`] of each command beside it; networks say how the first step of a command differs. Nothing of it is left out or
-//! drawn at random, so that where no log has driven it is as wide as its prior, and goes on as the robot does and not as
-//! networks happen to. What logs say is kept as
-//! [`Evidence`]; a run of the robot adds some, and the networks stay as they are.
+//! A held command does the same in every step and every run, and mostly not quite what the networks predict: a bias, which
+//! noise cannot represent since it adds up while the command is held. So the motion under a held command is a Gaussian
+//! process over commands, one per axis, with the covariance of [`basis`] and a [`nugget`] for each command; the networks
+//! predict how the first step of a command differs. The process is exact, so that it is as wide as its prior where no log has
+//! driven, and extrapolates as the robot does and not as networks happen to. What logs contribute is kept as [`Evidence`]; a
+//! run of the robot adds some, and the networks stay unchanged.
+//!
+//! Turns are in degrees throughout this module, as in its file and in the networks' files.
 //!
 //! [`Posterior`] is the distribution given all evidence, a [`Member`] one robot of it.
 
@@ -37,35 +38,35 @@ pub use posterior::Posterior;
 pub struct Ensemble {
     /// Prior standard deviation of each part of the process ([`PARTS`]), for each axis.
     pub prior: Motion<[f64; PARTS]>,
-    /// What moves the robot beyond the process.
+    /// The noise beyond the process.
     pub noise: MotionNoise,
-    /// What logs say.
+    /// The evidence of logs.
     pub evidence: Vec<Evidence>,
 }
 
-/// What is said of commands that are held before logs are looked at.
+/// A prediction for held commands, to which evidence is relative.
 pub trait HeldMotion: Sync {
     /// Returns the motion of a step, its turn in degrees.
     fn motion(&self, command: [f64; 2]) -> Motion<f64>;
 
-    /// How large the robot's commands are.
+    /// Returns the scale of the robot's commands.
     fn scale(&self) -> CommandScale;
 }
 
-/// Mostly networks.
+/// Mostly the networks.
 pub type Held<'a> = &'a dyn HeldMotion;
 
 /// Robots of a distribution.
 pub struct Robots {
-    /// The one in the middle.
+    /// The posterior mean.
     pub mean: Member,
-    /// Random ones, all as likely.
+    /// Random draws.
     pub drawn: Vec<Member>,
 }
 
 impl Ensemble {
-    /// The robot in the middle and `count` drawn ones; none if the numbers allow for no robot. The evidence is relative to
-    /// what networks say, which is `held`.
+    /// Returns the mean robot and `count` drawn ones; none if the numbers allow for no robot. The evidence is relative to
+    /// `held`, the networks' prediction.
     pub fn robots(&self, held: Held, count: usize, seed: u64) -> Option<Robots> {
         let posterior = Posterior::new(self, held)?;
         let mean = posterior.mean();
@@ -76,13 +77,13 @@ impl Ensemble {
         Some(Robots { mean: mean.known_as(&trained), drawn })
     }
 
-    /// What the training logs alone say; none as for [`robots`](Self::robots).
+    /// Returns the posterior of the training logs alone; none as for [`robots`](Self::robots).
     pub fn trained(&self, held: Held) -> Option<Posterior> {
         let evidence = self.evidence.iter().filter(|e| !e.after_training).copied().collect();
         Posterior::new(&Ensemble { evidence, ..self.clone() }, held)
     }
 
-    /// Whether a file could have held this.
+    /// Returns whether all numbers are possible.
     pub fn is_sound(&self) -> bool {
         let sizes = self.prior.iter().flatten();
         let sound = |e: &Evidence| {
@@ -95,7 +96,7 @@ impl Ensemble {
     }
 }
 
-/// Of commands in percent.
+/// For commands in percent.
 impl<F: Fn([f64; 2]) -> Motion<f64> + Sync> HeldMotion for F {
     fn motion(&self, command: [f64; 2]) -> Motion<f64> {
         self(command)

@@ -140,7 +140,7 @@ impl<'s> Environment<'s> {
 
     /// The environment with the robot in the middle of those that its simulator's may be, where that is known: what is
     /// evolved on drawn ones would fit those.
-    pub fn of_middle(self, robots: Option<&'s Robots>) -> Self {
+    pub fn at_posterior_mean(self, robots: Option<&'s Robots>) -> Self {
         robots.into_iter().fold(self, |any, robots| any.of_robot(&robots.mean))
     }
 

@@ -1,7 +1,7 @@
-//! What a simulator's training logs were like: the yardstick of the gap.
+//! The nominal model of a simulator's training logs, against which a gap is measured.
 //!
-//! Networks trained on (D, α) and commands leave a misfit behind where nothing is wrong. The reference is what the
-//! same logs say beyond the networks, with the scatter that then remains: only what exceeds it is a gap.
+//! Networks trained on (D, α) and commands leave a misfit even where nothing is wrong. The nominal model corrects that misfit
+//! from the same logs, and states the scatter that remains: only what exceeds it is a gap.
 
 pub mod motion_bias;
 
@@ -11,14 +11,14 @@ use crate::sonar::familiar::FamiliarPoses;
 use crate::sonar::{FirstEchoLaw, SonarModel};
 pub use motion_bias::MotionBias;
 
-/// What is normal, as far as the training logs show it.
+/// What is normal, as far as the training logs show.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct NominalModel {
     /// Of the motion, if the logs had poses.
     pub motion: Option<MotionBias>,
     /// Of the sonar as a beam, if the logs had echoes.
     pub sonar: Option<SonarModel>,
-    /// Of the sonar by the first-echo law, with poses as logged, if that foretells readings better than the beam.
+    /// Of the sonar by the first-echo law, with poses as logged, if that predicts readings better than the beam.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub first_echo: Option<FirstEchoLaw>,
     /// Share of the chance in its echo rate and in its readings that belongs to the place.

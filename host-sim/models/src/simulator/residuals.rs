@@ -30,7 +30,7 @@ pub struct ResidualQuantiles {
 /// the tracker's error, which a simulated robot does not have.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct VarianceComponents {
-    /// Drawn anew in each step.
+    /// Drawn independently in each step.
     pub step: f32,
     /// Lasts as long as a command is held: a network's misfit there, or a matter of the place.
     pub held: f32,
@@ -53,7 +53,7 @@ pub struct ConstantReading {
 }
 
 impl VarianceComponents {
-    /// All of a residual is drawn anew in each step.
+    /// All of a residual is drawn independently in each step.
     pub const STEP: VarianceComponents = VarianceComponents { step: 1.0, held: 0.0 };
 
     fn is_sound(&self) -> bool {
@@ -73,7 +73,7 @@ impl ResidualQuantiles {
         place(0) * CELLS + place(1)
     }
 
-    /// Whether a file could have held this.
+    /// Returns whether all numbers are possible.
     pub fn is_sound(&self) -> bool {
         let finite = |values: &[f32]| values.iter().all(|v| v.is_finite());
         self.edges.iter().all(|e| finite(e))
@@ -111,15 +111,15 @@ impl ResidualNoise {
         ResidualNoise { step: cells, held: cells }
     }
 
-    /// What a robot adds in a cell: one of the [`LEVELS`] drawn for this step, and one drawn when the command began, so many
-    /// times each.
+    /// Returns the noise in a cell: one of the [`LEVELS`] drawn for this step and one drawn when the command began, each times its
+    /// factor.
     #[inline(always)]
     pub fn residual(&self, cell: usize, step: usize, held: usize, times: [f32; 2]) -> f32 {
         times[0] * self.step[cell][step] + times[1] * self.held[cell][held]
     }
 }
 
-/// The context of a motion network: how much the commands turn the robot, and how much they drive it on. Tyres slip
+/// Returns the context of a motion network: how much the commands turn the robot, and how much they drive it forward. Tyres slip
 /// more in a turn than on the straight.
 pub fn motion_context(speeds: &[f32; 4]) -> [f32; 2] {
     let [left, right, ..] = *speeds;

@@ -186,7 +186,7 @@ impl Workbench<'_> {
         let Case { scene, .. } = self.case;
         let robots = simulator.robots(1, self.seed());
         let environment = Environment::new(simulator, scene, self.case.pose(), Noise::Learned)?;
-        let environment = environment.of_middle(robots.as_ref());
+        let environment = environment.at_posterior_mean(robots.as_ref());
         let target_cm = self.case.target_cm();
         let task = EvolutionTask {
             executor: &Serial,

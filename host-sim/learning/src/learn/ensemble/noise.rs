@@ -49,7 +49,7 @@ struct Step {
     class: usize,
     is_first: bool,
     /// Variance that the tracker's error in heading adds.
-    aslant: f64,
+    misheading: f64,
     /// The share of the tracker's error at its end that comes back in the next step.
     comes_back: f64,
 }
@@ -130,7 +130,7 @@ impl Piece {
                 cell: cell(percent),
                 class: usize::from(is_slow(percent)),
                 is_first: !step.is_steady(),
-                aslant: noise.aslant_variance(does, axis),
+                misheading: noise.misheading_variance(does, axis),
                 comes_back: if axis == Axis::Turn { 1.0 } else { libm::cos(does.turn.to_radians()) },
             };
             (step, left)
@@ -150,7 +150,7 @@ impl Piece {
             let rest = match i.abs_diff(j) {
                 0 => {
                     let first = if one.is_first { assumed.first_step } else { 0.0 };
-                    own[i] + first + one.aslant + 2.0 * assumed.tracker
+                    own[i] + first + one.misheading + 2.0 * assumed.tracker
                 }
                 1 => -assumed.tracker * self.steps[i.min(j)].comes_back,
                 _ => 0.0,

@@ -1,4 +1,4 @@
-//! A drive that follows its commands late and has dry friction: what slows it, and what its friction does to it.
+//! A first-order drive with dry friction, and how one such drive imitates another.
 
 use crate::effects::StepContext;
 use crate::effects::context::{CommandHistory, HISTORY};
@@ -8,23 +8,23 @@ use crate::effects::small_robot::MOTOR_MS;
 pub struct Drive {
     /// Its time constant, in steps.
     steps: f64,
-    /// The command that does no more than overcome the friction.
+    /// The command that just overcomes the friction.
     friction: f64,
 }
 
 impl Drive {
-    /// Slower by so much than the one that simulators know, with dry friction that the command for this wheel speed does no
-    /// more than overcome.
+    /// Returns a drive slower by `ms` than the one that simulators know, with dry friction that the command for this wheel speed
+    /// just overcomes.
     pub fn slower(ms: f64, friction_cm_s: f64, context: &StepContext) -> Self {
         Drive { steps: (MOTOR_MS + ms) / context.robot.step_ms, friction: context.command_for(friction_cm_s) }
     }
 
-    /// The one that simulators know, where the robot's body weighs by this factor more on the motors.
+    /// Returns the drive that simulators know, with the load of the robot's body on the motors scaled by `factor`.
     pub fn loaded(factor: f64, body_share: f64, context: &StepContext) -> Self {
         Drive::slower(MOTOR_MS * body_share * (factor - 1.0), 0.0, context)
     }
 
-    /// The commands by which this drive moves as the other one does by these.
+    /// Replaces `commands` by those with which this drive moves as the other one does with the given ones.
     pub fn imitate(&self, other: &Drive, commands: &mut CommandHistory) {
         for motor in [0, 1] {
             let [now, before] = self.imitating(other, commands.map(|pair| pair[motor]));
@@ -33,7 +33,7 @@ impl Drive {
         }
     }
 
-    /// The same where both wheels turn the robot; what they do alike stays.
+    /// Does so for the turning part of the commands alone, the difference between the wheels.
     pub fn imitate_turning(&self, other: &Drive, commands: &mut CommandHistory) {
         let given = self.imitating(other, commands.map(|[left, right]| (right - left) / 2.0));
         for (pair, turning) in commands.iter_mut().zip(given) {
@@ -42,7 +42,7 @@ impl Drive {
         }
     }
 
-    /// The present command and the one before, of one series of commands.
+    /// Returns the present imitating command and the one before, for one motor.
     fn imitating(&self, other: &Drive, commands: [f64; HISTORY]) -> [f64; 2] {
         // This one follows a command late too: it is given what makes the mean of the other one.
         let missed = self.missed();
@@ -54,17 +54,17 @@ impl Drive {
         [self.command_for((mean - missed * speed) / (1.0 - missed)), self.command_for(speed)]
     }
 
-    /// The speed that a command comes to.
+    /// Returns the steady-state speed of a command.
     fn settled(&self, command: f64) -> f64 {
         (command.abs() - self.friction).max(0.0).copysign(command)
     }
 
-    /// The command that comes to a speed.
+    /// Returns the command with this steady-state speed.
     fn command_for(&self, speed: f64) -> f64 {
         if speed == 0.0 { 0.0 } else { speed + self.friction.copysign(speed) }
     }
 
-    /// The mean speed of a step under a command, and the speed at its end.
+    /// Returns the mean speed of a step under a command, and the speed at its end.
     fn step(&self, speed: f64, command: f64) -> (f64, f64) {
         // Friction acts against the speed until there is none; from rest it acts against the command.
         let towards = if speed == 0.0 { self.settled(command) } else { command - self.friction.copysign(speed) };
@@ -78,13 +78,13 @@ impl Drive {
         (on + back, then)
     }
 
-    /// The way covered in so many steps towards a speed, and the speed then.
+    /// Returns the distance covered in this number of steps towards a speed, and the final speed.
     fn approach(&self, from: f64, towards: f64, steps: f64) -> (f64, f64) {
         let left = libm::exp(-steps / self.steps);
         (towards * steps + (from - towards) * self.steps * (1.0 - left), towards + (from - towards) * left)
     }
 
-    /// The share of a change of speed that its first step misses.
+    /// Returns the fraction of a change of speed that its first step misses.
     fn missed(&self) -> f64 {
         self.steps * (1.0 - libm::exp(-1.0 / self.steps))
     }
@@ -107,7 +107,7 @@ mod tests {
     }
 
     #[test]
-    fn a_step_is_the_integral_of_the_drive_from_rest_to_rest_and_backwards() {
+    fn step_is_the_integral_of_the_drive() {
         let drive = Drive { steps: 0.6, friction: 8.0 };
         for (speed, command) in
             [(0.0, 50.0), (0.0, 5.0), (40.0, 0.0), (2.0, 0.0), (40.0, -60.0), (-3.0, 5.0), (-30.0, 90.0), (10.0, 60.0)]
@@ -120,7 +120,7 @@ mod tests {
     }
 
     #[test]
-    fn a_drive_that_goes_on_one_way_imitates_itself_by_the_commands_that_it_is_given() {
+    fn drive_that_keeps_its_direction_imitates_itself_with_the_same_commands() {
         let drive = Drive { steps: 0.1, friction: 5.0 };
         let mut commands = [[60.0, -40.0], [20.0, -50.0], [80.0, -30.0], [0.0; 2], [0.0; 2], [0.0; 2], [0.0; 2]];
         let given = commands;
@@ -130,9 +130,9 @@ mod tests {
         }
     }
 
-    /// Straight on nothing is different; on the spot each wheel is driven as by a drive that is slower in everything.
+    /// On the spot each wheel moves as with a drive that is slower in everything.
     #[test]
-    fn a_slower_drive_in_turns_goes_straight_on_as_before() {
+    fn drive_that_is_slower_in_turns_is_unchanged_on_the_straight() {
         let (known, slower) = (Drive { steps: 0.1, friction: 0.0 }, Drive { steps: 0.4, friction: 0.0 });
         let straight = [60.0, 20.0, 80.0, 0.0, 0.0, 0.0, 0.0].map(|command| [command; 2]);
         let mut commands = straight;

@@ -32,7 +32,7 @@ pub const EFFECT: Effect = Effect {
             hooks: &[
                 Hook::Commands(&|v, context, commands| {
                     let LeverScale { factor, body_share } = LeverScale::read(v);
-                    // A wheel that goes farther in a turn has less force, and so much more to move for each turn.
+                    // A wheel that covers more ground per turn has less force, and moves more mass per turn.
                     if factor != 1.0 {
                         let loaded = Drive::loaded(factor * factor, body_share, context);
                         Drive::slower(0.0, 0.0, context).imitate(&loaded, commands);

@@ -1,4 +1,4 @@
-//! The tracked marker sits beside the middle of the axle.
+//! The tracked marker is not above the middle of the axle.
 
 use glam::DVec2;
 

@@ -122,14 +122,14 @@ parameters! {
     }
 }
 
-/// A turn that loses the share `lost` to scrubbing: of itself in part, and of the reference turn for the rest.
+/// Returns a turn after the loss of the fraction `lost` to scrubbing: partly of itself, partly of the reference turn.
 fn scrubbed_rad(turn_rad: f64, lost: f64, loss_with_speed: f64, context: &StepContext) -> f64 {
     let of_rad = loss_with_speed * turn_rad.abs() + (1.0 - loss_with_speed) * (HALF_TURN_RATE_RAD_S * context.step_s());
     let lost_rad = lost * of_rad * scrubbing(turn_rad, context);
     if lost_rad.abs() < turn_rad.abs() { turn_rad - lost_rad } else { 0.0 }
 }
 
-/// Losses of the left and the right wheel.
+/// Returns the losses of the left and the right wheel.
 fn by_side(loss: f64, loss_other_wheel: f64) -> [f64; 2] {
     let (near, far) = (loss.abs(), loss.abs() * loss_other_wheel);
     if loss > 0.0 { [near, far] } else { [far, near] }
@@ -139,7 +139,7 @@ fn shorten(losses: [f64; 2], context: &StepContext, increment: &mut Motion<f64>)
     each_wheel(context, increment, |cm, wheel| cm * (1.0 - losses[wheel]));
 }
 
-/// The share `late` of every change of command is not there yet.
+/// Delays the fraction `late` of every change of command to the next step.
 fn start_slowly(late: f64, commands: &mut CommandHistory) {
     let late = late.min(1.0);
     let [now, before, ..] = commands;

@@ -28,7 +28,7 @@ pub const EFFECT: Effect = Effect {
             parameters: Slope::PARAMETERS,
             hooks: &[Hook::MotionHere(&|v, context, increment| {
                 let Slope { direction_deg, loss, with_speed, sideways } = Slope::read(v);
-                // A wheel that is driven gives way downhill, one that stands holds.
+                // A driven wheel yields downhill; a wheel at rest holds.
                 let [left, right] = increment.wheels_cm(context.robot.track_cm);
                 let driven = moving(left.abs().max(right.abs()), context);
                 let pull_cm = driven * loss * distance_lost_cm(with_speed, increment.forward, context);
@@ -65,12 +65,12 @@ parameters! {
         /// Share of the gain that grows with speed; a force that a motor without regulation feels costs the rest at any
         /// speed.
         with_speed: Parameter::new("", 0.5, [0.0, 1.0]).prior_sd(0.5).report(Report::Hidden),
-        /// What slides sideways as a multiple of what is gained forward.
+        /// Sideways slide as a multiple of the gain forward.
         sideways: Parameter::new("", 0.0, [0.0, 1.5]).prior_sd(0.7).from(Guesses::At(&[0.5])).report(Report::Hidden),
     }
 }
 
-/// A direction of the world against the mean heading of a step.
+/// Returns a direction of the world relative to the mean heading of a step.
 fn angle_rad(direction_deg: f64, context: &StepContext, turn_rad: f64) -> f64 {
     direction_deg.to_radians() - context.pose.heading_rad - 0.5 * turn_rad
 }

@@ -28,8 +28,8 @@ parameters! {
     }
 }
 
-/// Where the robot was so long ago, on a straight way between the two known poses next to that; the oldest known pose where
-/// none is as old.
+/// Returns where the robot was `lag_ms` ago, interpolated between the two nearest known poses; the oldest known pose where
+/// none is that old.
 fn earlier(lag_ms: f64, context: &StepContext) -> Pose {
     let steps = lag_ms / context.robot.step_ms;
     let (mut newer, mut newer_steps) = (context.pose, 0.0);
@@ -44,7 +44,7 @@ fn earlier(lag_ms: f64, context: &StepContext) -> Pose {
     newer
 }
 
-/// The pose at a share of the way from `newer` back to `older`.
+/// Returns the pose at a fraction of the way from `newer` back to `older`.
 fn between(newer: &Pose, older: &Pose, share: f64) -> Pose {
     let turn_rad = wrap_rad(older.heading_rad - newer.heading_rad);
     Pose {
@@ -58,7 +58,7 @@ mod tests {
     use super::*;
     use crate::effects::context::{RunHistory, Surroundings};
 
-    /// At 400 ms a step: at x = 100 now, 90 and 60 one and three steps ago, and not seen in between.
+    /// At 400 ms per step: at x = 100 now, 90 and 60 one and three steps ago, and not seen in between.
     fn x_cm(lag_ms: f64) -> f64 {
         let robot = mindgap_built_in_robot::default_robot();
         let surroundings = Surroundings::new(&robot, &mindgap_built_in_robot::training_room());

@@ -63,7 +63,7 @@ parameters! {
             .prior_sd(2.0)
             .from(Guesses::At(&[-1.0, -3.0]))
             .report(Report::OddsFactor),
-        /// Log-odds of an echo that are lost per 45 degrees: what goes on does not come straight back.
+        /// Log-odds of an echo that are lost per 45 degrees: reflected sound does not come straight back.
         log_odds_loss: Parameter::new("", 0.0, [-4.0, 4.0]).prior_sd(1.5).report(Report::Hidden),
     }
 }

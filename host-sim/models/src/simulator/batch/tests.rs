@@ -4,7 +4,7 @@ use crate::effects::catalogue::Candidate;
 use crate::effects::small_robot::FULL_SPEED_CM_S;
 use crate::simulator::environment::SensorModel;
 use crate::simulator::known_steps::KnownSteps;
-use crate::simulator::motion::{MotionTable, PredictedStep, speeds};
+use crate::simulator::motion::{MotionTable, speeds};
 use crate::simulator::{Noise, Simulator};
 use mindgap_built_in_robot::{default_robot, four_obstacles, record, training_room};
 use mindgap_core::controller::{Controller, Machine, Status, TUPLES};
@@ -190,21 +190,20 @@ fn effects_act_on_the_robot_as_it_was_known_in_training() {
     let less = AppliedEffect::new(&Candidate::named("drive_scale", "distance").unwrap(), &[SHARE], &SIMULATOR.robot);
     let affected = Simulator { added: vec![less], ..SIMULATOR.clone() };
     let (scene, robots) = (four_obstacles(), SIMULATOR.robots(0, SEED).unwrap());
-    let of_middle = |simulator| {
+    let at_posterior_mean = |simulator| {
         Environment::new(simulator, &scene, scene.starts[0], Noise::Learned).unwrap().of_robot(&robots.mean)
     };
-    let (usual, less) = (of_middle(&SIMULATOR), of_middle(&affected));
+    let (usual, less) = (at_posterior_mean(&SIMULATOR), at_posterior_mean(&affected));
     let mut beyond_networks_cm: f32 = 0.0;
     for controller in controllers() {
         let (usual_motions, motions) = (usual.motions(&controller), less.motions(&controller));
         for (tuple, less) in motions.transients().expect("worked out ahead").iter().enumerate() {
             let (expected, less) = (usual_motions.step(tuple, false), less.last().unwrap());
-            let less = less.plus(motions.bias(tuple));
-            assert!((less.forward_cm - SHARE as f32 * expected.forward_cm).abs() < 1e-4, "{less:?} {expected:?}");
-            assert!((less.turn_rad - SHARE as f32 * expected.turn_rad).abs() < 1e-5, "{less:?} {expected:?}");
-            let Motion { forward_cm, .. } =
-                SIMULATOR.motion_networks().unwrap().step(speeds(&controller, tuple, false));
-            beyond_networks_cm = beyond_networks_cm.max((expected.forward_cm - forward_cm).abs());
+            let (expected, less) = (expected.motion, less.plus(motions.bias(tuple)).motion);
+            assert!((less.forward - SHARE as f32 * expected.forward).abs() < 1e-4, "{less:?} {expected:?}");
+            assert!((less.turn - SHARE as f32 * expected.turn).abs() < 1e-5, "{less:?} {expected:?}");
+            let networks = SIMULATOR.motion_networks().unwrap().evaluate(speeds(&controller, tuple, false));
+            beyond_networks_cm = beyond_networks_cm.max((expected.forward - networks.forward).abs());
         }
     }
     assert!(beyond_networks_cm > 0.1, "{beyond_networks_cm}");

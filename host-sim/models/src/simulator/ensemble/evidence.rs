@@ -1,4 +1,4 @@
-//! What logs say of a robot's motion.
+//! The evidence of logs about a robot's motion.
 
 use std::collections::BTreeMap;
 
@@ -13,14 +13,14 @@ use mindgap_foundations::motion::{Axis, Motion};
 /// Commands as far apart as this, in percent of full speed, are one: finer than friction bends.
 const CELL: f64 = 4.0;
 
-/// What logs say of the motion under one command.
+/// The evidence about the motion under one command.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Evidence {
     /// Left and right command.
     pub command: [f32; 2],
-    /// Logged minus what the networks say of the command when it is held, a step.
+    /// Logged minus predicted motion per step, where the command is held.
     pub bias: Motion<f32>,
-    /// Variance of that, from the robot's chance and the tracker's error.
+    /// Variance of that, from process noise and the tracker's error.
     pub variance: Motion<f32>,
     /// Whether the run was driven after training: the robot may have changed by then.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
@@ -28,18 +28,18 @@ pub struct Evidence {
 }
 
 impl Evidence {
-    /// The motion that was logged: relative to what networks say, which is `held`, it would not be a robot's own.
+    /// Returns the logged motion, which unlike the bias does not depend on the networks' prediction, `held`.
     pub fn motion(&self, held: Held) -> Motion<f64> {
         self.bias.map(f64::from) + held.motion(self.command.map(f64::from))
     }
 
-    /// The nodes of the smooth process that it tells of.
+    /// Returns the weights of the smooth process's nodes.
     pub fn weights(&self, scale: CommandScale) -> Weights {
         let command = self.percent(scale);
         if self.after_training { weights(command) } else { weights_in_training(command) }
     }
 
-    /// The variance of its motion about the smooth process.
+    /// Returns the variance of its motion about the smooth process.
     pub fn variance_about_process(&self, noise: &MotionNoise, held: Held, axis: Axis) -> f64 {
         let command = self.command.map(f64::from);
         f64::from(self.variance[axis]) + noise.nugget_variance(self.percent(held.scale()), held.motion(command), axis)
@@ -50,7 +50,7 @@ impl Evidence {
         scale.percent(self.command.map(f64::from))
     }
 
-    /// What is left of it beside the mean of its [cell](by_cell), as squares of standard deviations.
+    /// Returns its squared deviation from the mean of its [cell](by_cell), in units of its variance.
     pub fn squares_about(&self, mean: &Evidence) -> f64 {
         let square = |(off, variance): (f32, f32)| f64::from(off) * f64::from(off) / f64::from(variance);
         (self.bias - mean.bias).into_iter().zip(self.variance).map(square).sum()

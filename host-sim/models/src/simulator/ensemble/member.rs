@@ -15,37 +15,37 @@ use mindgap_foundations::random::generator;
 pub struct Member {
     nodes: Motion<Vec<f64>>,
     nuggets: Arc<Nuggets>,
-    /// Fixes what is its own of each command; none for the robot in the middle.
+    /// Seeds its nuggets; none for the mean robot.
     drawn: Option<u64>,
-    /// What was known of it in training; none where that is all that is known.
+    /// What training knew of it; none where nothing more is known.
     trained: Option<Arc<Member>>,
 }
 
 impl Member {
-    /// The robot with these motions of the nodes.
+    /// Returns the robot with these motions of the nodes.
     pub(super) fn new(nodes: Motion<Vec<f64>>, nuggets: Arc<Nuggets>, drawn: Option<u64>) -> Self {
         Member { nodes, nuggets, drawn, trained: None }
     }
 
-    /// The same one, of which this was known in training.
+    /// Returns the robot with what training knew of it.
     pub(super) fn known_as(self, trained: &Arc<Member>) -> Self {
         Member { trained: Some(trained.clone()), ..self }
     }
 
-    /// Its motion in every step of a command that is held, but for chance.
+    /// Returns its motion in every step of a held command, without noise.
     pub fn motion(&self, command: [f64; 2]) -> Motion<f64> {
         let drawn = self.drawn.map_or(Motion::ZERO, |seed| normals(seed, cell(self.nuggets.scale.percent(command))));
         let [process, nugget, deviation] = self.parts(command);
         process + nugget + drawn.zip_with(deviation, |drawn, deviation| drawn * deviation)
     }
 
-    /// The same of the robot in the middle of what training logs say: effects act on that, and what runs tell of this one
-    /// since then comes on top.
+    /// Returns that motion for the mean robot of the training logs: effects act on it, and what later runs say of this robot is
+    /// added.
     pub fn trained(&self, command: [f64; 2]) -> Motion<f64> {
         self.trained.as_deref().unwrap_or(self).motion(command)
     }
 
-    /// What the first step of a command after another one does beyond what networks say of that.
+    /// Returns what the first step of a command after another one does beyond the networks' prediction.
     pub fn first_step(&self, command: [i8; 2], before: [i8; 2]) -> Motion<f64> {
         let Some(seed) = self.drawn else { return Motion::ZERO };
         let pair = [command, before].map(|[left, right]| i32::from(left) << 8 | i32::from(right) & 0xff);
@@ -55,8 +55,8 @@ impl Member {
             .zip_with(normals(seed ^ FIRST_STEPS, pair), |deviation, normal| deviation * normal)
     }
 
-    /// Standard deviations of what chance adds under a command: in a step, and for as long as it is held. For the robot in
-    /// the middle that is what is not known of the command.
+    /// Returns the standard deviations of the noise under a command: per step, and for as long as it is held. For the mean
+    /// robot the latter is what is not known of the command.
     pub fn scatter(&self, command: [f64; 2]) -> Motion<[f64; 2]> {
         let [process, nugget, deviation] = self.parts(command);
         let motion = process + nugget;
@@ -66,7 +66,7 @@ impl Member {
         })
     }
 
-    /// What the smooth process says of a command, the mean of what is the command's own, and the standard deviation of that.
+    /// Returns the smooth process at a command, the mean of the nugget, and its standard deviation.
     fn parts(&self, command: [f64; 2]) -> [Motion<f64>; 3] {
         let command = self.nuggets.scale.percent(command);
         let process = Motion::from_fn(|axis| self.process(&weights(command), axis));
@@ -78,16 +78,16 @@ impl Member {
         [process, mean, known.map(|of| of.deviation)]
     }
 
-    /// The smooth process in a place.
+    /// Returns the smooth process at a place.
     fn process(&self, weights: &[(usize, f64)], axis: Axis) -> f64 {
         weights.iter().map(|(node, weight)| self.nodes[axis][*node] * weight).sum()
     }
 }
 
-/// Sets what first steps draw apart from what commands do.
+/// Separates the draws of first steps from those of commands.
 const FIRST_STEPS: u64 = 1 << 63;
 
-/// Normal numbers that are a robot's, always the same for one key.
+/// Draws a robot's normal numbers, always the same for one key.
 fn normals(seed: u64, key: [i32; 2]) -> Motion<f64> {
     let mut rng = generator(seed, &key.map(|part| u64::from(part as u32)));
     Motion::from_fn(|_| Distribution::<f64>::sample(&StandardNormal, &mut rng))

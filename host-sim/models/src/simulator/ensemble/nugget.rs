@@ -1,5 +1,5 @@
-//! What each command does beyond the smooth process over all of them, the same in every run: the nugget of a Gaussian
-//! process. Logs of a command tell its own, and nothing of another's.
+//! The nugget of the Gaussian process: what each command does beyond the smooth process over all of them, the same in every
+//! run. Logs of a command determine its own nugget and no other.
 
 use std::collections::BTreeMap;
 
@@ -10,27 +10,27 @@ use super::evidence::{Evidence, cell};
 use super::noise::MotionNoise;
 use mindgap_foundations::motion::Motion;
 
-/// The nuggets of a robot, as far as logs tell them.
+/// The nuggets of a robot, as far as logs determine them.
 #[derive(Clone, Debug)]
 pub struct Nuggets {
-    /// What else moves the robot beyond the process.
+    /// The other noise beyond the process.
     pub noise: MotionNoise,
-    /// How large the robot's commands are.
+    /// The scale of the robot's commands.
     pub scale: CommandScale,
     /// By cell.
     logged: BTreeMap<[i32; 2], Logged>,
 }
 
-/// A cell of which there are logs.
+/// A cell with logs.
 #[derive(Clone, Debug)]
 struct Logged {
-    /// Where the smooth process says what they should have been.
+    /// Weights of the smooth process there.
     place: Weights,
-    /// What they were.
+    /// The logged motion.
     motion: Motion<f64>,
-    /// Of the difference this share is the nugget's.
+    /// Fraction of the difference that is the nugget's.
     share: Motion<f64>,
-    /// Standard deviation that is left of it.
+    /// Its remaining standard deviation.
     deviation: Motion<f64>,
 }
 
@@ -41,14 +41,14 @@ pub struct Known<'a> {
     pub share: f64,
     /// Weights of nodes.
     pub place: &'a [(usize, f64)],
-    /// In cm or degrees of a step, as the deviation.
+    /// In cm or degrees per step, as the deviation.
     pub motion: f64,
     /// Standard deviation.
     pub deviation: f64,
 }
 
 impl Nuggets {
-    /// As [cells](super::evidence::by_cell) of evidence tell them: what came after training outranks what was known in it.
+    /// Computes them from [cells](super::evidence::by_cell) of evidence. Later evidence outranks that of training.
     pub fn new(cells: &[Evidence], noise: MotionNoise, held: Held) -> Self {
         let scale = held.scale();
         let logged = |e: &Evidence| {
@@ -61,7 +61,7 @@ impl Nuggets {
         Nuggets { noise, scale, logged: cells.iter().map(logged).collect() }
     }
 
-    /// What is known of a command's nugget, where the smooth process moves the robot so.
+    /// Returns what is known of a command's nugget, where the smooth process predicts this motion.
     pub fn known(&self, command: Percent, motion: Motion<f64>) -> Motion<Known<'_>> {
         let logged = self.logged.get(&cell(command));
         Motion::from_fn(|axis| match logged {

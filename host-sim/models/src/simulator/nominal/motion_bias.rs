@@ -1,4 +1,4 @@
-//! The motion networks' own misfit: what is added to their outputs, and how reality scatters about the sum.
+//! The bias of the motion networks: a correction of their outputs, and the scatter of logs about the sum.
 
 use mindgap_core::scalar::Scalar;
 use nalgebra::DMatrix;
@@ -10,14 +10,14 @@ use mindgap_foundations::motion::{Axis, Motion};
 /// Corrections and scatter of the motion.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct MotionBias {
-    /// How large the robot's commands are.
+    /// The scale of the robot's commands.
     #[serde(default)]
     pub scale: CommandScale,
     /// One weight per feature (see [`features`]), for each axis.
     pub weights: Motion<Vec<f64>>,
     /// Standard deviations about the corrected outputs.
     pub scatter: Motion<f64>,
-    /// How well the training logs tell the weights.
+    /// How well the training logs determine the weights.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub precision: Option<Precision>,
 }
@@ -44,20 +44,20 @@ impl Precision {
         Some(precision)
     }
 
-    /// Number of training steps: the first feature is one.
+    /// Returns the number of training steps: the first feature is one.
     pub fn steps(&self) -> Option<f64> {
         self.products.first().copied().map(f64::from)
     }
 }
 
-/// Magnitudes of commands, and of the difference of right and left one, at which a correction may bend: friction holds
-/// back what is small.
+/// Magnitudes of commands, and of the difference of right and left one, at which a correction may bend: friction dominates
+/// small ones.
 const KNOTS: [f32; 5] = [0.03, 0.06, 0.12, 0.25, 0.5];
 /// Numbers that [`features`] makes of four commands.
 pub const FEATURES: usize = 1 + 4 + 10 + 20 + 6 * (1 + 2 * KNOTS.len());
 
 impl MotionBias {
-    /// What is added to the networks' outputs for left, right, previous left and previous right command.
+    /// Returns the correction of the networks' outputs for left, right, previous left and previous right command.
     pub fn correction(&self, speeds: &[f64; 4]) -> Motion<f64> {
         let features = features(*speeds, self.scale.share());
         self.weights.each_ref().map(|weights| weights.iter().zip(&features).map(|(w, f)| w * f).sum())
