@@ -3,8 +3,8 @@
 
 use glam::DVec2;
 use mindgap_built_in_robot::{BuiltInRobot, Termination, default_robot, four_obstacles, run_controller};
-use mindgap_foundations::random::{Generator, generator};
 use mindgap_foundations::geometry::{Pose, wrap_rad};
+use mindgap_foundations::random::{Generator, generator};
 use mindgap_learning::evolve::genome::GenotypeDecoder;
 use mindgap_logs::{Logs, Run};
 use mindgap_models::simulator::Simulator;

@@ -86,7 +86,9 @@ pub const MOTION: [Fault; 20] = [
     fault("a run in seconds", "clock_seconds", Handling::Corrected, |logs| {
         logs.runs[RUN].rows.edit_each(|row| row.t_ms /= 1000.0);
     }),
-    fault("a run's commands 1.6 s late", "clock_shifted", Handling::Excluded, |logs| shift(&mut logs.runs[RUN].rows, 4)),
+    fault("a run's commands 1.6 s late", "clock_shifted", Handling::Excluded, |logs| {
+        shift(&mut logs.runs[RUN].rows, 4)
+    }),
     fault("a run copied", "run_copied", Handling::Excluded, |logs| {
         let mut copy = logs.runs[RUN].clone();
         copy.name = "run-999".into();

@@ -5,8 +5,8 @@ use mindgap_controller_export::onboard::NO_ECHO_CM;
 use mindgap_controller_export::wiring::Wiring;
 
 use mindgap_built_in_robot::Body;
-use mindgap_foundations::random::Generator;
 use mindgap_foundations::geometry::Pose;
+use mindgap_foundations::random::Generator;
 use mindgap_logs::Row;
 use mindgap_models::simulator::body::SimulatedBody;
 

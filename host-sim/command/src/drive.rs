@@ -10,8 +10,8 @@ use super::facts::FactsOption;
 use super::{Run, kinds};
 use mindgap_built_in_robot::{ActiveEffect, BuiltInRobot, Termination, default_robot, run_controller};
 use mindgap_files::places::Places;
-use mindgap_foundations::random::generator;
 use mindgap_foundations::error::Result;
+use mindgap_foundations::random::generator;
 use mindgap_learning::evolve::controller_file::ControllerFile;
 use mindgap_logs::Scene;
 

@@ -30,7 +30,8 @@ pub const FORMULA: Kind = Kind { name: "a formula", is_own: |content| text(conte
 /// What the file of a formula begins with: own effects without it are somebody's own.
 pub const FORMULA_SIGN: &str = "# Made by: mindgap diagnose\n";
 /// What a run that was broken off had done.
-pub const CHECKPOINT: Kind = Kind { name: "a checkpoint", is_own: |content| content.starts_with(checkpoint::SIGNATURE) };
+pub const CHECKPOINT: Kind =
+    Kind { name: "a checkpoint", is_own: |content| content.starts_with(checkpoint::SIGNATURE) };
 /// What carries no sign of who wrote it, as tables and runs in CSV.
 pub const UNSIGNED: Kind = Kind { name: "anything", is_own: |_| false };
 

@@ -16,7 +16,7 @@ use super::channel::Channel;
 use super::compare::Comparison;
 use super::remainder::Remainder;
 use mindgap_foundations::statistics::rounding;
-use mindgap_foundations::statistics::summary::{standard_error_of_sum, logistic};
+use mindgap_foundations::statistics::summary::{logistic, standard_error_of_sum};
 use mindgap_logs::Robot;
 
 /// An effect that explains the gap, or a part of it.

@@ -11,8 +11,8 @@ pub mod tournament;
 use rand::RngExt;
 use serde::{Deserialize, Serialize};
 
-use mindgap_foundations::random::{Generator, generator};
 use mindgap_foundations::error::Result;
+use mindgap_foundations::random::{Generator, generator};
 use mindgap_workers as workers;
 use mutation::Mutation;
 use stopping::StagnationCriterion;

@@ -139,7 +139,6 @@ fn a_byte_order_mark_is_told_and_harms_nothing() {
     }
     let done = workshop.call("check logs --json -");
     assert_eq!((done.code, done.out), (0, good));
-    let told =
-        "mindgap: warning: logs/run-002.csv: starts with a byte-order mark (ignored)\n";
+    let told = "mindgap: warning: logs/run-002.csv: starts with a byte-order mark (ignored)\n";
     assert_eq!(done.err, told);
 }

@@ -1,8 +1,8 @@
 //! `mindgap import` on drives of the built-in robot, split into what a brick logs and what a camera sees.
 
 use mindgap_built_in_robot::{BuiltInRobot, default_robot};
-use mindgap_foundations::random::{Generator, generator};
 use mindgap_foundations::geometry::Pose;
+use mindgap_foundations::random::{Generator, generator};
 use mindgap_logs::{Logs, Scene};
 use mindgap_tests::command::Workshop;
 use rand::RngExt;

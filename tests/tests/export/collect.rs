@@ -12,8 +12,8 @@ use mindgap_controller_export::collect::{self, CollectOptions, Commands};
 use mindgap_controller_export::names::BrickName;
 use mindgap_controller_export::onboard::Safety;
 use mindgap_controller_export::wiring::Wiring;
-use mindgap_foundations::random::generator;
 use mindgap_foundations::geometry::Pose;
+use mindgap_foundations::random::generator;
 use mindgap_tests::nbc::compile;
 
 const STEPS: usize = 150;

@@ -6,8 +6,8 @@ use rand::{Rng, RngExt};
 
 use super::rooms;
 use mindgap_built_in_robot::{ActiveEffect, Driving, Effect, HeldOut, record, record_driving};
-use mindgap_foundations::random::{Generator, generator};
 use mindgap_foundations::error::Result;
+use mindgap_foundations::random::{Generator, generator};
 use mindgap_logs::Logs;
 
 /// Number of robots in a challenge.

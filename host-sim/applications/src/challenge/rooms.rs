@@ -4,8 +4,8 @@ use glam::DVec2;
 use rand::RngExt;
 
 use mindgap_built_in_robot::default_robot;
-use mindgap_foundations::random::Generator;
 use mindgap_foundations::geometry::Rectangle;
+use mindgap_foundations::random::Generator;
 use mindgap_logs::{Robot, Scene, Ultrasonic};
 
 /// Least width of the passage between two obstacles, or an obstacle and a wall, cm: a robot can pass.

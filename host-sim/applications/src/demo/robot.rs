@@ -2,8 +2,8 @@
 
 use crate::trials::robot::{Call, TrialRobot};
 use mindgap_built_in_robot::{self as built_in_robot, ActiveEffect, BuiltInRobot};
-use mindgap_foundations::random::generator;
 use mindgap_foundations::error::{Error, Result};
+use mindgap_foundations::random::generator;
 use mindgap_learning::evolve::controller_file::ControllerFile;
 use mindgap_logs::Scene;
 

@@ -6,9 +6,9 @@ use mindgap_core::controller::{Controller, Tuple};
 
 use super::jury::{CONFIRMED, Found, Jury, Tried};
 use super::state::{IfKnown, SimulatedPath, place_cm};
-use mindgap_foundations::random::derive;
 use mindgap_foundations::error::{Error, Result};
 use mindgap_foundations::geometry::Pose;
+use mindgap_foundations::random::derive;
 use mindgap_learning::evolve::chance::{Judge, ROBOTS, RUNS};
 use mindgap_learning::evolve::fitness::RandomNumbers;
 use mindgap_learning::evolve::genome::GenotypeDecoder;

@@ -49,7 +49,9 @@ impl<'a> Problem<'a> {
         let Problem { hypothesis, untouched, context } = &self;
         let (bounds, memo) = (hypothesis.bounds(), Memo::new(context.observations, None));
         let terms = |at: &[f64]| self.terms(&memo, untouched, at);
-        let on = |from: Point| climb_from(&bounds, from, MOST_ITERATIONS, TOLERANCE_NATS, terms).into_maximum(&bounds, terms);
+        let on = |from: Point| {
+            climb_from(&bounds, from, MOST_ITERATIONS, TOLERANCE_NATS, terms).into_maximum(&bounds, terms)
+        };
         let mut found = on(if context.few.is_none() { sketch } else { Point::new(&sketch.at, terms) });
         for _ in 0..MOST_STEPS_OF_ONE {
             let Some(further) = single_parameter_step(&bounds, &found, TOLERANCE_NATS, terms) else { break };

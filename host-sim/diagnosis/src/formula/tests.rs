@@ -3,8 +3,8 @@ use rand_distr::StandardNormal;
 
 use super::*;
 use crate::test_support::*;
-use mindgap_foundations::random::generator;
 use mindgap_foundations::geometry::Pose;
+use mindgap_foundations::random::generator;
 
 /// Blocks of steps under random commands, half of them straight, with noise of the usual scatter and the forward error
 /// `law(forward_cm, turn_rad)`.

@@ -3,7 +3,7 @@
 
 use glam::DVec2;
 
-use mindgap_foundations::statistics::ridge::{MAX_ITERATIONS, CONVERGED};
+use mindgap_foundations::statistics::ridge::{CONVERGED, MAX_ITERATIONS};
 
 /// Rows that lie this far apart or farther say nothing of each other: the patches of a floor and the sides of an obstacle
 /// are about so large, and in a smaller circle there is seldom a second run.

@@ -7,8 +7,8 @@ use mindgap_built_in_robot::{BuiltInRobot, default_robot, four_obstacles, run_co
 use mindgap_core::controller::{Controller, Tuple, When};
 use mindgap_diagnosis::diagnosis::Verdict;
 use mindgap_diagnosis::{Method, diagnose, findings};
-use mindgap_foundations::random::generator;
 use mindgap_foundations::geometry::direction;
+use mindgap_foundations::random::generator;
 use mindgap_learning::evaluation::accuracy::evaluate;
 use mindgap_learning::evaluation::final_position::final_position_errors;
 use mindgap_logs::inspection::Inspection;

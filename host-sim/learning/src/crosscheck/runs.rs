@@ -9,10 +9,10 @@ use serde::Serialize;
 
 use super::arithmetic::{Arithmetic, Fixed, Float};
 use crate::evolve::genome::GenotypeDecoder;
-use mindgap_foundations::random::{derive, generator};
 use mindgap_foundations::counter::Counter;
 use mindgap_foundations::error::{Error, Result};
 use mindgap_foundations::geometry::{Pose, Wall, cast, wrap_rad};
+use mindgap_foundations::random::{derive, generator};
 use mindgap_logs::{Logs, Robot};
 use mindgap_models::simulator::Simulator;
 use mindgap_models::simulator::room::Room;

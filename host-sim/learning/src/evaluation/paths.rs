@@ -7,8 +7,8 @@ use serde::Serialize;
 
 use super::observations::{Observation, Observations};
 use super::predictions;
-use mindgap_foundations::random::{Generator, generator};
 use mindgap_foundations::geometry::{Pose, direction};
+use mindgap_foundations::random::{Generator, generator};
 use mindgap_foundations::statistics::summary::median;
 use mindgap_foundations::statistics::{bootstrap, rounding};
 use mindgap_models::effects::StepContext;

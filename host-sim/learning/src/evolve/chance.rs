@@ -7,9 +7,9 @@ use glam::DVec2;
 use mindgap_core::controller::Controller;
 use serde::{Deserialize, Serialize};
 
-use mindgap_foundations::random::derive;
 use mindgap_foundations::error::Result;
 use mindgap_foundations::geometry::Pose;
+use mindgap_foundations::random::derive;
 use mindgap_logs::Scene;
 use mindgap_models::simulator::Simulator;
 use mindgap_models::simulator::ensemble::Member;

@@ -16,8 +16,8 @@ use super::genome::GenotypeDecoder;
 use super::stops::{self, Stop};
 use super::task::{EvolutionTask, Judged, NEARNESS, sort};
 use crate::genetic::mutation::{Mutation, Unit};
-use mindgap_foundations::random::{Generator, derive, generator};
 use mindgap_foundations::error::Result;
+use mindgap_foundations::random::{Generator, derive, generator};
 use mindgap_models::simulator::rollout::REACHED_CM;
 use mindgap_workers as workers;
 

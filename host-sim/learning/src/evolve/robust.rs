@@ -12,8 +12,8 @@ use super::prefixes;
 use super::task::{EvolutionTask, Judged, sort};
 use crate::genetic::mutation::{Mutation, Unit};
 use crate::genetic::{self, Lineage, Settings};
-use mindgap_foundations::random::{derive, generator};
 use mindgap_foundations::error::Result;
+use mindgap_foundations::random::{derive, generator};
 use mindgap_workers as workers;
 
 /// Rounds and generations of all stages.

@@ -6,8 +6,8 @@ use mindgap_core::scalar::Scalar;
 use pulp::{Arch, Simd, WithSimd};
 use rand::RngExt;
 
-use mindgap_foundations::random::Generator;
 use mindgap_foundations::lanes::{Lanes, WIDEST};
+use mindgap_foundations::random::Generator;
 
 /// Crosses two parents in place, each gene with its own spread factor and without bounds, as in the original.
 /// `index` is the distribution index η.

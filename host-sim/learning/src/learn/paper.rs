@@ -8,8 +8,8 @@ use super::dataset::Dataset;
 use super::genome::{NetworkTemplate, Shape, unscale_output};
 use super::kernel::Samples;
 use crate::genetic::{self, Settings};
-use mindgap_foundations::random::Generator;
 use mindgap_foundations::error::Result;
+use mindgap_foundations::random::Generator;
 
 /// Parameters of the trainer. The defaults are those of the paper; where it gives none (marked "open"), they are common
 /// choices.

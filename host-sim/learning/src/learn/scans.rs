@@ -4,8 +4,8 @@ use glam::DVec2;
 use rand::seq::SliceRandom;
 use rayon::prelude::*;
 
-use mindgap_foundations::random::generator;
 use mindgap_foundations::geometry::{Pose, wrap_rad};
+use mindgap_foundations::random::generator;
 use mindgap_logs::{Logs, Ultrasonic};
 
 /// The rows of logs at which the robot was seen.

@@ -11,8 +11,8 @@ use super::effect_layer::EffectMemory;
 use super::environment::Environment;
 use super::motion::Motion;
 use super::residuals::LEVELS;
-use mindgap_foundations::random::Generator;
 use mindgap_foundations::geometry::{Pose, Wall, cast};
+use mindgap_foundations::random::Generator;
 use mindgap_logs::Scene;
 
 /// Time between two looks whether the body touches something.

@@ -14,9 +14,9 @@ use crate::effects::chain::EffectChain;
 use crate::effects::context::{RunHistory, Surroundings};
 use crate::effects::{PoseIncrement, StepContext};
 use crate::sonar::SensorLaw;
-use mindgap_foundations::random::generator;
 use mindgap_foundations::error::{Error, Result};
 use mindgap_foundations::geometry::Pose;
+use mindgap_foundations::random::generator;
 use mindgap_logs::Scene;
 
 /// Applied effects in an environment.

@@ -4,8 +4,8 @@ use rand::RngExt;
 
 use crate::sonar::FirstEchoLaw;
 use crate::sonar::echo_law::Surfaces;
-use mindgap_foundations::random::generator;
 use mindgap_foundations::geometry::Pose;
+use mindgap_foundations::random::generator;
 use mindgap_logs::{Scene, Ultrasonic};
 
 /// A sensor that follows the law, in a scene.

@@ -7,8 +7,8 @@ use serde::Serialize;
 use super::environment::Environment;
 use super::motion::MotionTable;
 use super::rollout::{REACHED_CM, RolloutOutcome, RolloutRequest, Termination, TrajectoryPoint};
-use mindgap_foundations::random::derive;
 use mindgap_foundations::counter::Counter;
+use mindgap_foundations::random::derive;
 use mindgap_logs::Scene;
 
 /// What `mindgap simulate --json` writes.

@@ -6,8 +6,8 @@ use mindgap_built_in_robot::{
     ActiveEffect, BuiltInRobot, Effect, Termination, Trajectory, default_robot, run_controller,
 };
 use mindgap_core::controller::Controller;
-use mindgap_foundations::random::{Generator, generator};
 use mindgap_foundations::geometry::{Pose, Rectangle};
+use mindgap_foundations::random::{Generator, generator};
 use mindgap_learning::evolve::way::WayMap;
 use mindgap_logs::Scene;
 use mindgap_models::simulator::rollout::REACHED_CM;

@@ -8,8 +8,8 @@ use super::expression::{Expression, is_constant};
 use super::variables::VARIABLES;
 use crate::effects::context::{RunHistory, Surroundings};
 use crate::effects::{CATALOGUE, Hook, Parameter, PoseIncrement, SensorState, StepContext, Variant};
-use mindgap_foundations::random::generator;
 use mindgap_foundations::geometry::Pose;
+use mindgap_foundations::random::generator;
 use mindgap_logs::{Robot, Scene, Ultrasonic};
 
 /// More parameters than this fit anything: the largest form of the catalogue has five.

@@ -16,9 +16,9 @@ use crate::simulator::known_steps::KnownSteps;
 use crate::simulator::motion::{Motion, speeds};
 use crate::simulator::rollout::{RolloutOutcome, RolloutRequest, Termination, TrajectoryPoint};
 use crate::simulator::room::Point;
-use mindgap_foundations::random::derive;
 use mindgap_foundations::geometry::Pose;
 use mindgap_foundations::lanes::{Lanes, Mask, WIDEST};
+use mindgap_foundations::random::derive;
 
 /// Stream key of what a sensor draws that effects change.
 const SENSOR: u64 = 1;

@@ -6,8 +6,8 @@ use super::{FirstEchoLaw, Surfaces, Target, TargetKind, reach_cm, targets_at};
 use crate::sonar::Perturbation;
 use crate::sonar::outcomes::{Outcomes, Source};
 use crate::sonar::partition::{PERTURBED, Partition, assert_follow, scenes, sensors};
-use mindgap_foundations::random::generator;
 use mindgap_foundations::geometry::{Pose, Rectangle, Wall};
+use mindgap_foundations::random::generator;
 use mindgap_foundations::statistics::summary::logistic;
 
 /// A sensor with all parts of the law, whose readings scatter little, so that cells tell them apart.
