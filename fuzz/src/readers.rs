@@ -30,7 +30,7 @@ use mindgap_models::effects::own;
 use mindgap_models::effects::own::expression::Expression;
 use mindgap_models::effects::own::variables::Stage;
 use mindgap_models::simulator::Simulator;
-use mindgap_workers::checkpoint::{Begin, Checkpoint};
+use mindgap_workers::checkpoint::{Checkpoint, CreateFile};
 use mindgap_workers::task::Task;
 
 use crate::{Target, as_file};
@@ -97,7 +97,7 @@ fn inspection(bytes: &[u8]) {
     let Ok(text) = str::from_utf8(bytes) else { return };
     let Ok(run) = Run::parse(Path::new("run-000.csv"), text, &["t_ms"], |_| {}) else { return };
     let logs = Logs { robot: default_robot(), scene: four_obstacles(), runs: vec![run] };
-    let _ = Inspection::new(logs).sound(|_| {});
+    let _ = Inspection::new(logs).into_usable(|_| {});
 }
 
 /// A scene round-trips through its own text.
@@ -167,11 +167,11 @@ fn added(bytes: &[u8]) {
 fn checkpoint(bytes: &[u8]) {
     let task = Task::new("evolve".into(), BTreeMap::new(), &[], &[]);
     as_file("a.checkpoint", bytes, |path| {
-        let open = || Checkpoint::open(path, &task, Begin::AtOnce, |_| {});
+        let open = || Checkpoint::open(path, &task, CreateFile::AtOnce, |_| {});
         let Ok(mut checkpoint) = open() else { return };
         let count = checkpoint.count();
-        let _ = checkpoint.recall::<Vec<f64>>((1, 0));
-        checkpoint.keep((u32::MAX, u32::MAX), &[1.0]).expect("room for a piece");
+        let _ = checkpoint.load::<Vec<f64>>((1, 0));
+        checkpoint.save((u32::MAX, u32::MAX), &[1.0]).expect("room for a piece");
         let count_after = open().expect("what was written").count();
         assert!((count.max(1)..=count + 1).contains(&count_after), "{count} items and one more gave {count_after}");
     });
@@ -180,7 +180,7 @@ fn checkpoint(bytes: &[u8]) {
 /// The kind of a file at an output path: a file without a signature is not one of the command's own.
 fn kinds(bytes: &[u8]) {
     let kinds = [SIMULATOR, REPORT, CONTROLLER, PROGRAM, CALIBRATION, PAGE, FORMULA, CHECKPOINT];
-    let recognised = kinds.iter().filter(|kind| (kind.is_one)(bytes)).count();
+    let recognised = kinds.iter().filter(|kind| (kind.is_own)(bytes)).count();
     assert!(recognised == 0 || bytes.len() > 8);
 }
 

@@ -53,7 +53,7 @@ pub fn assemble(
         None => first_guess(&recordings)?.robot()?,
     };
     if robot.is_some_and(|robot| robot.ultrasonic.is_none()) {
-        recordings.iter_mut().for_each(Recording::leave_readings_out);
+        recordings.iter_mut().for_each(Recording::drop_readings);
     }
     let stated_clocks = Clocks { offset_ms: offset_ms.unwrap_or(0.0), drift: 0.0 };
     let mut runs = Vec::new();
@@ -78,7 +78,8 @@ pub fn assemble(
         return Err(Error::in_file(&recordings[0].track, why));
     }
     let findings = inspected.findings.iter().map(|found| found.line()).collect();
-    let report = RecordingsReport { recordings: reports, scale_check, frame, findings, to_fill_in: Vec::new() };
+    let report =
+        RecordingsReport { recordings: reports, odometry_check: scale_check, frame, findings, to_fill_in: Vec::new() };
     Ok(Assembled { logs, draft, report })
 }
 

@@ -7,11 +7,11 @@ use std::path::PathBuf;
 
 use super::brick_log::{self, BrickLog};
 use super::clocks::{Alignment, Doubt, align};
-use super::mismatch::Units;
 use super::motion;
 use super::report::{LogReport, Report, RunReport, TrackReport};
 use super::scale_check::ScaleCheck;
 use super::track::{Sighting, Track};
+use super::units::Units;
 use mindgap_foundations::counter::Counter;
 use mindgap_foundations::error::{Error, Result};
 use mindgap_logs::{Logs, Robot, Row, Run, Scene};

@@ -89,7 +89,7 @@ impl Mapping {
 }
 
 fn mapped(name: &str, entry: Entry) -> std::result::Result<Mapped, String> {
-    let quantity = Quantity::of_name(name).ok_or_else(|| {
+    let quantity = Quantity::from_name(name).ok_or_else(|| {
         let names: Vec<&str> = QUANTITIES.iter().map(|(_, name, _)| *name).collect();
         format!("unknown quantity {name:?}; expected one of {}", names.join(", "))
     })?;
@@ -97,7 +97,7 @@ fn mapped(name: &str, entry: Entry) -> std::result::Result<Mapped, String> {
         Entry::Column(column) => FullEntry { column, unit: None, negate: false },
         Entry::Full(full) => full,
     };
-    let unit = unit.map(|name| match Unit::of_name(&name) {
+    let unit = unit.map(|name| match Unit::from_name(&name) {
         Some(unit) if quantity.dimensions().contains(&unit.dimension) => Ok(unit),
         _ => Err(format!(
             "{name:?} is not a unit of {}: use s, ms, us, ns, m, cm, mm, rad, deg, m/s, cm/s, mm/s, rad/s, deg/s, rpm or, for \
@@ -125,7 +125,7 @@ mod tests {
             .expect("fine");
         let columns = mapping.of(Path::new("folder/a.csv")).expect("named");
         assert_eq!((columns[0].quantity, columns[0].column.as_str()), (Quantity::Time, "T"));
-        assert!(columns[1].negate && columns[1].unit == Unit::of_name("deg/s"));
+        assert!(columns[1].negate && columns[1].unit == Unit::from_name("deg/s"));
         assert!(mapping.check(&[PathBuf::from("b.csv")]).is_err());
     }
 

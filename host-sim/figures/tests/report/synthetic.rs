@@ -2,10 +2,7 @@
 
 use glam::{DVec2, DVec3};
 use mindgap_figures::report::expected_against_predicted::{Panel, Samples};
-use mindgap_figures::report::expected_against_predicted::{Panel, Samples};
 use mindgap_figures::report::paths::{PathPanel, Trace};
-use mindgap_figures::report::paths::{PathPanel, Trace};
-use mindgap_figures::report::sonar_surfaces::Surface;
 use mindgap_figures::report::sonar_surfaces::Surface;
 use mindgap_foundations::geometry::{Pose, Rectangle, direction};
 use mindgap_foundations::random::{Generator, generator};

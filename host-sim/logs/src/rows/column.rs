@@ -182,7 +182,7 @@ mod tests {
         #[test]
         fn every_number_round_trips_bit_for_bit(
             numbers in prop::collection::vec(
-                prop::option::decoded(prop_oneof![
+                prop::option::of(prop_oneof![
                     (-1_000_000i32..1_000_000, 0u8..6).prop_map(|(scaled, decimals)| f64::from(scaled) / libm::pow(10.0, f64::from(decimals))),
                     any::<f64>().prop_filter("a number", |number| !number.is_nan()),
                 ]),
