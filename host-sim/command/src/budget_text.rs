@@ -1,13 +1,13 @@
-//! The budget of a gap in words: one bar a line, so that one sees at once what to mend first.
+//! The budget of a gap as a bar chart in text, so that the largest cause is seen at once.
 
 use mindgap_diagnosis::Diagnosis;
 use mindgap_diagnosis::budget::{Part, SCATTER, UNEXPLAINED};
 use mindgap_diagnosis::explain::NamedEffect;
 
-/// Width of a whole gap, characters.
+/// Width of the whole gap in characters.
 const BAR: usize = 30;
 
-/// The lines of a budget; none where there is none.
+/// Returns one line per part of the budget.
 pub fn lines(diagnosis: &Diagnosis) -> Vec<String> {
     let parts = diagnosis.budget();
     let width = parts.iter().map(|part| part.id.chars().count()).max().unwrap_or(0);
@@ -25,8 +25,8 @@ fn line(part: &Part, width: usize, effects: &[NamedEffect]) -> String {
 fn meaning(id: &str, effects: &[NamedEffect]) -> String {
     match effects.iter().find(|effect| effect.id == id) {
         Some(effect) => effect.strength(),
-        None if id == SCATTER => "steps scatter more than the simulator assumes".into(),
-        None if id == UNEXPLAINED => "follows circumstances, and no named effect does so".into(),
+        None if id == SCATTER => "excess process noise: steps scatter more than the simulator assumes".into(),
+        None if id == UNEXPLAINED => "structured residual: depends on the circumstances as no known effect does".into(),
         None => String::new(),
     }
 }

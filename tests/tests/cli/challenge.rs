@@ -54,7 +54,7 @@ fn diagnosis_without_gap_writes_every_output_but_the_applied_simulator() {
     let workshop = Workshop::with_logs();
     workshop.done("train logs --out sim.json");
     let said = workshop.done("diagnose sim.json logs --apply better.json --json gap.json --html gap.html");
-    assert!(said.contains("Nothing explains a gap: better.json is not written."), "{said}");
+    assert!(said.contains("No effect to apply: better.json was not written."), "{said}");
     assert_eq!(workshop.json("gap.json")["verdict"], "no_gap");
     assert!(workshop.text("gap.html").contains("</html>"));
     assert!(!workshop.path().join("better.json").exists());

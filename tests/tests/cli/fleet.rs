@@ -34,7 +34,7 @@ fn a_fleet_is_diagnosed_though_one_folder_is_broken() {
     let workshop = workshop();
     let done = workshop.call("diagnose sim.json fleet --fleet out");
     assert_eq!(done.code, 0, "{}", done.err);
-    assert!(done.out.starts_with("6 of 7 robots are diagnosed, 1 could not be."), "{}", done.out);
+    assert!(done.out.starts_with("6 of 7 robots diagnosed, 1 failed."), "{}", done.out);
     assert!(done.err.contains("broken is left out: ") && done.err.contains("robot.toml"), "{}", done.err);
 
     let fleet = workshop.json("out/fleet.json");
@@ -60,7 +60,7 @@ fn a_fleet_is_diagnosed_though_one_folder_is_broken() {
     let page = workshop.text("out/fleet.html");
     assert!(page.contains(r#"<a href="diagnoses/c.json">c</a>"#) && page.contains("broken"));
     assert!(workshop.bytes("out/robots.parquet").starts_with(b"PAR1"));
-    assert!(workshop.done("info out/fleet.json").contains("a fleet's answer"));
+    assert!(workshop.done("info out/fleet.json").contains("the diagnosis of a fleet"));
 }
 
 #[test]

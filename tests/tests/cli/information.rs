@@ -37,7 +37,7 @@ fn files_that_it_writes_are_told() {
         ("diagnosis.json", "a diagnosis: `mindgap diagnose --json`, verdict "),
         ("evaluation.json", "an evaluation"),
         ("page.html", "a page"),
-        ("controller.toml", "a controller, a step every 400 ms, 6 at most; evolved in sim.json for start 1"),
+        ("controller.toml", "a controller, 400 ms per step, at most 6 steps; evolved in sim.json for start 1"),
         ("drive.ino", "an onboard program for an Arduino"),
         ("drive.py", "an onboard program for Pybricks"),
         ("drive.rxe", "an onboard program for an NXT"),
@@ -47,7 +47,7 @@ fn files_that_it_writes_are_told() {
         assert!(told.starts_with(&format!("{path}: {what}")), "{told}");
     }
     workshop.write("other.json", "{}");
-    assert!(workshop.refused("info other.json").contains("is no JSON that mindgap writes"));
+    assert!(workshop.refused("info other.json").contains("unrecognised JSON"));
     assert!(workshop.refused("info missing.nxc").contains("cannot be read"));
 }
 
