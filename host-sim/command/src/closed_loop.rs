@@ -8,9 +8,9 @@ use clap::{Args, value_parser};
 use super::json_output::JsonOption;
 use super::logging::status;
 use super::{Run, kinds, progress, textbook, warn};
-use mindgap_applications::trials::robot::{AskRobot, CommandRobot, TrialRobot};
-use mindgap_applications::trials::state::{IfKnown, State, Trial, Verdict};
-use mindgap_applications::trials::{self, Event, Job};
+use mindgap_applications::closed_loop::robot::{AskRobot, CommandRobot, TrialRobot};
+use mindgap_applications::closed_loop::state::{OracleSuccess, State, Trial, Verdict};
+use mindgap_applications::closed_loop::{self, Event, Job};
 use mindgap_files as files;
 use mindgap_files::places::Places;
 use mindgap_foundations::error::Result;
@@ -67,7 +67,7 @@ impl Run for Loop {
         let places = Places::default().reading([&self.sim, &self.scene]).writing(self.json.path(), kinds::REPORT);
         let places = places.writing(&self.html, kinds::PAGE);
         // A folder with a loop in it is resumed, not filled.
-        let fresh = Some(&self.folder).filter(|folder| !folder.join(trials::state::FILE).exists());
+        let fresh = Some(&self.folder).filter(|folder| !folder.join(closed_loop::state::FILE).exists());
         places.filling(fresh)
     }
 
@@ -87,7 +87,7 @@ impl Run for Loop {
         let command = || CommandRobot { command: self.robot.clone(), timeout: Duration::from_secs(self.robot_timeout) };
         let robot: &mut dyn TrialRobot = if self.robot == ASK { &mut AskRobot } else { &mut command() };
         let bar = progress::bar(self.trials.into());
-        let state = trials::run(&job, robot, |event| match event {
+        let state = closed_loop::run(&job, robot, |event| match event {
             Event::Driving(trial) => {
                 bar.set_position(trial.number as u64 - 1);
                 status(&format!("trial {}: predicted success {}, driving", trial.number, trial.predicted));
@@ -126,13 +126,15 @@ impl Loop {
         let chance = state.chance.as_ref().map_or_else(|| "unknown".into(), Chance::to_string);
         let end = match state.verdict {
             Verdict::Works => "works: it reached the target three times; its",
-            Verdict::OutOfReach => {
+            Verdict::Infeasible => {
                 "no controller was found that reaches the target on any plausible robot; the best one's"
             }
-            Verdict::Spent | Verdict::Running => "trials used up before a controller was confirmed; the best one's",
+            Verdict::TrialsExhausted | Verdict::Running => {
+                "trials used up before a controller was confirmed; the best one's"
+            }
         };
         let with_runs = state.chance_with_runs.map_or_else(String::new, with_runs);
-        let known = state.if_known.as_ref().map_or_else(String::new, if_known);
+        let known = state.oracle.as_ref().map_or_else(String::new, oracle);
         format!("{trials}{}: {end} success probability is {chance}{with_runs}\n{known}", controller.display())
     }
 }
@@ -142,7 +144,7 @@ fn with_runs(chance: f64) -> String {
 }
 
 /// Returns what further trials could achieve.
-fn if_known(IfKnown { success, is_enough }: &IfKnown) -> String {
+fn oracle(OracleSuccess { success, is_enough }: &OracleSuccess) -> String {
     let (known, percent) = ("with a perfectly known robot it would be", 100.0 * success);
     if *is_enough {
         format!("{known} {percent:.0} %: further trials may help\n")

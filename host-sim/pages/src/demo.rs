@@ -9,7 +9,7 @@ use super::trials::{self, LINES, Map};
 use super::words::{number, percent};
 use mindgap_applications::demo::repair::Repair;
 use mindgap_applications::demo::{JUDGED_RUNS, Summary, TRIALS};
-use mindgap_applications::trials::state::place_cm;
+use mindgap_applications::closed_loop::state::place_cm;
 use mindgap_figures::report::paths::{PathPanel, Trace};
 use mindgap_foundations::error::Result;
 use mindgap_learning::evolve::fitness::Success;

@@ -8,7 +8,7 @@ use super::document::{Document, Script, Section, chart, open_table};
 use super::room::Room;
 use super::words::{self, number, percent, percent_within};
 use mindgap_applications::adapt::Gap;
-use mindgap_applications::trials::state::{State, Trial, Verdict};
+use mindgap_applications::closed_loop::state::{State, Trial, Verdict};
 use mindgap_foundations::error::Result;
 use mindgap_learning::evolve::chance::Chance;
 use mindgap_logs::Scene;
@@ -152,11 +152,11 @@ fn headline(state: &State) -> String {
         Verdict::Works => {
             format!("The controller works {after}: it reached the target three times, and has {chance} in simulation.")
         }
-        Verdict::Spent if state.limit().is_some() => format!(
+        Verdict::TrialsExhausted if state.limit().is_some() => format!(
             "No six tuples were found that reach the target often enough; {after} the best has {chance}, and chance limits it."
         ),
-        Verdict::Spent => format!("No controller is confirmed {after}; the best has {chance}."),
-        Verdict::OutOfReach => "No controller was found that reaches the target on a robot that is possible.".into(),
+        Verdict::TrialsExhausted => format!("No controller is confirmed {after}; the best has {chance}."),
+        Verdict::Infeasible => "No controller was found that reaches the target on a robot that is possible.".into(),
         Verdict::Running => format!("The loop is under way {after}."),
     }
 }
@@ -321,7 +321,7 @@ fn next(state: &State) -> Markup {
                 Verdict::Works => li {
                     "Make a program of the controller: " code { "mindgap export controller.toml --format nxc --out drive.nxc" } "."
                 },
-                Verdict::Spent => @match state.limit() {
+                Verdict::TrialsExhausted => @match state.limit() {
                     Some(success) => li {
                         "Make it easier: a start nearer to the target, or a wider way. If all were known of the robot the best of "
                         "these controllers would reach the target in " (percent(success)) " of its runs: more trials will hardly help."
@@ -331,7 +331,7 @@ fn next(state: &State) -> Markup {
                         "the robot."
                     },
                 },
-                Verdict::OutOfReach => li {
+                Verdict::Infeasible => li {
                     "Make it easier: a start nearer to the target, or more " code { "--max-steps" } ". Where even that fails, "
                     "log the robot while it drives at random, and train the simulator anew."
                 },

@@ -46,7 +46,7 @@ fn a_challenge_is_made_answered_and_scored() {
 
     workshop.edit("blind/sealed.json", |sealed| sealed.replacen("\"salt\": \"", "\"salt\": \"0", 1));
     let refusal = workshop.refused("challenge score blind");
-    assert!(refusal.contains("not what was committed to"), "{refusal}");
+    assert!(refusal.contains("does not match its commitment"), "{refusal}");
 }
 
 #[test]

@@ -1,10 +1,10 @@
-//! The picture of a loop: the paths that were predicted for every trial, and the real one.
+//! The figure of a loop: predicted and real paths of every trial.
 
 use std::path::Path;
 
 use glam::DVec2;
 
-use super::state::{Real, State, Trial};
+use super::state::{DrivenRun, State, Trial};
 use mindgap_figures::report;
 use mindgap_figures::report::paths::{PathPanel, Trace};
 use mindgap_foundations::error::Result;
@@ -12,10 +12,10 @@ use mindgap_foundations::geometry::Pose;
 use mindgap_logs::{Scene, Termination};
 use mindgap_models::simulator::rollout::REACHED_CM;
 
-/// Draws `paths.svg` and `paths.png` into the folder of a loop.
+/// Writes the figure `paths` into the folder of a loop.
 ///
 /// # Errors
-/// When they cannot be written.
+/// If it cannot be written.
 pub fn paths(folder: &Path, scene: &Scene, start: Pose, state: &State) -> Result<()> {
     let panel = |trial: &Trial| {
         let real = trial.real.as_ref()?;
@@ -32,7 +32,7 @@ pub fn paths(folder: &Path, scene: &Scene, start: Pose, state: &State) -> Result
     report::paths(&panels).write(folder, "paths")
 }
 
-fn title(trial: &Trial, real: &Real) -> String {
+fn title(trial: &Trial, real: &DrivenRun) -> String {
     let went = match real.reached {
         true => "reached".into(),
         false => format!("{}, {:.0} cm off", real.ending, real.distance_cm),
