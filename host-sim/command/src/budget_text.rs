@@ -1,8 +1,9 @@
 //! The budget of a gap as a bar chart in text, so that the largest cause is seen at once.
 
 use mindgap_diagnosis::Diagnosis;
-use mindgap_diagnosis::budget::{Part, SCATTER, UNEXPLAINED};
+use mindgap_diagnosis::budget::Part;
 use mindgap_diagnosis::explain::NamedEffect;
+use mindgap_pages::words;
 
 /// Width of the whole gap in characters.
 const BAR: usize = 30;
@@ -22,11 +23,10 @@ fn line(part: &Part, width: usize, effects: &[NamedEffect]) -> String {
     format!("  {id:<width$}  {bar} {percent:<18} {}", meaning(id, effects)).trim_end().to_string()
 }
 
+/// Returns the strength of an effect, or what another part of the budget is.
 fn meaning(id: &str, effects: &[NamedEffect]) -> String {
     match effects.iter().find(|effect| effect.id == id) {
         Some(effect) => effect.strength(),
-        None if id == SCATTER => "excess process noise: steps scatter more than the simulator assumes".into(),
-        None if id == UNEXPLAINED => "structured residual: depends on the circumstances as no known effect does".into(),
-        None => String::new(),
+        None => words::cause(id, &[]).map_or_else(String::new, |cause| cause.what.into()),
     }
 }

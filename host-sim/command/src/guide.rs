@@ -56,6 +56,7 @@ const WORK: &[Part] = &[
                  a textbook differential drive and an ideal sonar, from robot.toml alone\n  mindgap diagnose \
                  simulator.json robots --fleet answer    for many robots, one folder of logs each",
             ),
+            ("explain", "mindgap explain payload"),
             ("challenge", "mindgap challenge --help"),
         ],
     ),

@@ -19,6 +19,7 @@ mod diagnosis_text;
 mod drive;
 mod evaluate;
 mod evolve;
+mod explain;
 mod export;
 mod fleet;
 mod fleet_text;
@@ -85,6 +86,7 @@ enum Command {
     Train(train::Train),
     Evaluate(evaluate::Evaluate),
     Evolve(evolve::Evolve),
+    Explain(explain::Explain),
     Simulate(simulate::Simulate),
     Export(export::Export),
     Import(import::Import),
@@ -132,6 +134,7 @@ impl Command {
             Command::Train(command) => command,
             Command::Evaluate(command) => command,
             Command::Evolve(command) => command,
+            Command::Explain(command) => command,
             Command::Simulate(command) => command,
             Command::Export(command) => command,
             Command::Import(command) => command,

@@ -14,6 +14,7 @@ pub mod context;
 pub mod own;
 pub mod parameter;
 pub mod pose_increment;
+pub mod signs;
 pub mod variant;
 
 pub use catalogue::{CATALOGUE, Candidate};

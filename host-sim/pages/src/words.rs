@@ -19,7 +19,7 @@ pub struct Cause {
 
 const WIDER_SCATTER: Cause = Cause {
     name: "wider scatter",
-    what: "The robot does the same thing less evenly than the simulator assumes, whatever the circumstances.",
+    what: "Steps scatter more than the simulator assumes, whatever the circumstances.",
     check: "Send the same short row of commands ten times from one mark on the floor and measure with a ruler how far \
             the ends lie apart; look for a loose wheel, a worn castor or a tracker that trembles while the robot \
             stands.",
@@ -27,8 +27,8 @@ const WIDER_SCATTER: Cause = Cause {
 
 const NOT_EXPLAINED: Cause = Cause {
     name: "unexplained",
-    what: "The logs follow circumstances in a way that no named effect does.",
-    check: "Watch the robot in the circumstances on which it depends.",
+    what: "Residuals depend on the circumstances as no known effect does.",
+    check: "See on which circumstances the residuals depend, and watch the robot in them.",
 };
 
 /// What an id of a budget means; none of an effect that is not among these.

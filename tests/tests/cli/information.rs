@@ -3,6 +3,7 @@
 use std::process::Command;
 
 use mindgap_tests::command::Workshop;
+use mindgap_tests::faults::{MOTION, SONAR};
 use mindgap_tests::rooms::{trained, with_scene};
 
 #[test]
@@ -102,4 +103,25 @@ fn figures_are_written_as_svg_png_and_pdf() {
 fn a_page_that_cannot_be_written_is_one_line() {
     let workshop = trained();
     assert!(workshop.refused("evaluate sim.json logs --html nowhere/page.html").contains("nowhere/page.html"));
+}
+
+#[test]
+fn effects_findings_and_verdicts_are_explained() {
+    let workshop = Workshop::new();
+    let payload = workshop.done("explain payload");
+    for part in [
+        "payload (effect)",
+        "  in logs ",
+        "  imitated by   motor_asymmetry",
+        "  check ",
+        "  variant       command: loss",
+    ] {
+        assert!(payload.contains(part), "{part}: {payload}");
+    }
+    for id in MOTION.iter().chain(&SONAR).map(|fault| fault.id).chain(["scatter", "no_gap", "partly_known"]) {
+        assert!(workshop.done(&format!("explain {id}")).starts_with(&format!("{id} (")), "{id}");
+    }
+    assert!(workshop.done("explain").starts_with("effects: battery_sag, "));
+    let refusal = workshop.refused("explain payloads");
+    assert_eq!(refusal, "payloads is not an effect, finding or verdict; did you mean payload?");
 }
