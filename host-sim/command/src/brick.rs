@@ -53,7 +53,7 @@ pub struct Brick {
     /// Number of the start in the scene, from 1.
     #[arg(long, value_name = "N", default_value_t = 1, conflicts_with = "readings")]
     start: usize,
-    /// Simulator that moves the robot [default: the built-in robot].
+    /// Simulator that moves the robot (default: the built-in robot).
     #[arg(long, conflicts_with = "readings")]
     sim: Option<PathBuf>,
     /// Random seed.

@@ -26,8 +26,8 @@ const GIVEN: &str = "given";
 #[derive(Args)]
 pub struct CheckpointOption {
     /// Checkpoint file, written from the beginning. An interrupted run resumes from it when called again with the same
-    /// arguments; the file is removed when the run completes [default: the output's name with `.checkpoint`, written once
-    /// the run takes over a minute].
+    /// arguments; the file is removed when the run completes (default: the output's name with `.checkpoint`, written once
+    /// the run takes over a minute).
     #[arg(long, value_name = "FILE")]
     checkpoint: Option<PathBuf>,
 }

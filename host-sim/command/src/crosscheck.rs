@@ -19,7 +19,7 @@ pub struct Crosscheck {
     sim: PathBuf,
     /// Folder of logs.
     logs: PathBuf,
-    /// Controller to run [default: random controllers].
+    /// Controller to run (default: random controllers).
     #[arg(long)]
     controller: Option<PathBuf>,
     /// Number of runs.

@@ -41,8 +41,8 @@ pub struct Diagnose {
     /// Random seed, for bootstrap intervals and simulated noise.
     #[arg(long, value_name = "N", default_value_t = Method::SEED)]
     seed: u64,
-    /// Step length for the comparison [default: the simulator's, or for faster logs a length in which motion is
-    /// measurable].
+    /// Step length for the comparison (default: the simulator's, or for faster logs a length in which motion is
+    /// measurable).
     #[arg(long, value_name = "MS", value_parser = positive)]
     step_ms: Option<f64>,
     #[command(flatten)]

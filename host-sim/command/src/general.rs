@@ -16,7 +16,7 @@ pub struct General {
     /// Overwrite existing outputs, whatever they are; other files in an output folder are kept.
     #[arg(long, global = true)]
     pub force: bool,
-    /// Number of threads [default: all cores, shared by MPI ranks on one machine]. Results do not depend on it.
+    /// Number of threads (default: all cores, shared by MPI ranks on one machine). Results do not depend on it.
     #[arg(long, global = true, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
     /// Print errors only: no report, no warnings, no progress. Files are still written, including `--json -`.

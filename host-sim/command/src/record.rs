@@ -21,7 +21,7 @@ pub struct Record {
     /// Folder to write the logs to.
     #[arg(long, value_name = "LOGS")]
     out: PathBuf,
-    /// Scene to drive in [default: a room with four obstacles].
+    /// Scene to drive in (default: a room with four obstacles).
     #[arg(long, value_name = "FILE")]
     scene: Option<PathBuf>,
     /// Number of runs.
@@ -30,7 +30,7 @@ pub struct Record {
     /// Steps per run.
     #[arg(long, value_name = "N", default_value_t = 60, value_parser = clap::value_parser!(u32).range(1..=100_000))]
     steps: u32,
-    /// In every third run, hold each command for up to this many steps, as controllers do [default: at most 3 steps].
+    /// In every third run, hold each command for up to this many steps, as controllers do (default: at most 3 steps).
     #[arg(long, value_name = "STEPS", value_parser = clap::value_parser!(u32).range(4..=100_000))]
     hold: Option<u32>,
     /// Fault to inject; repeatable.

@@ -35,7 +35,7 @@ pub struct Streams {
     /// Quantity and unit of each column: TOML with one table per file.
     #[arg(long, value_name = "FILE")]
     map: Option<PathBuf>,
-    /// Unit of times whose column name states none [default: guessed].
+    /// Unit of times whose column name states none (default: guessed).
     #[arg(long, value_name = "UNIT", value_parser = one_of::<Time>(TIMES))]
     time_unit: Option<Time>,
     /// Unit of lengths, and of speeds per second, whose column names state none.
@@ -44,7 +44,7 @@ pub struct Streams {
     /// Unit of headings, and of turn rates per second, whose column names state none.
     #[arg(long, value_name = "UNIT", value_parser = one_of::<Angle>(ANGLES))]
     angle_unit: Option<Angle>,
-    /// Offset of the pose clock relative to the command clock, ms [default: estimated from the motion].
+    /// Offset of the pose clock relative to the command clock, ms (default: estimated from the motion).
     #[arg(long, value_name = "MS", allow_negative_numbers = true)]
     offset_ms: Option<f64>,
     #[command(flatten)]
@@ -57,13 +57,13 @@ pub struct Bag {
     /// Bags, one per drive.
     #[arg(value_name = "BAG.mcap", required = true)]
     bags: Vec<PathBuf>,
-    /// Topic of the commands [default: guessed].
+    /// Topic of the commands (default: guessed).
     #[arg(long, value_name = "TOPIC")]
     commands: Option<String>,
-    /// Topic of the poses, for transforms such as /tf:map>base_link [default: guessed].
+    /// Topic of the poses, for transforms such as /tf:map>base_link (default: guessed).
     #[arg(long, value_name = "TOPIC")]
     poses: Option<String>,
-    /// Topic of the readings, or none [default: guessed].
+    /// Topic of the readings, or none (default: guessed).
     #[arg(long, value_name = "TOPIC")]
     ranges: Option<String>,
     #[command(flatten)]
@@ -72,10 +72,10 @@ pub struct Bag {
 
 #[derive(Args)]
 struct Target {
-    /// Measured dimensions of the robot, robot.toml [default: a draft to fill in is written with the logs].
+    /// Measured dimensions of the robot, robot.toml (default: a draft to fill in is written with the logs).
     #[arg(long, value_name = "FILE")]
     robot: Option<PathBuf>,
-    /// Scene in which the robot drove [default: open ground].
+    /// Scene in which the robot drove (default: open ground).
     #[arg(long, value_name = "FILE")]
     scene: Option<PathBuf>,
     /// Folder to write the logs to.
