@@ -8,7 +8,7 @@ use std::str;
 use mindgap_applications::challenge::Folder;
 use mindgap_applications::challenge::score::score;
 use mindgap_applications::challenge::seal::{Published, Sealed};
-use mindgap_applications::trials::state::State;
+use mindgap_applications::closed_loop::state::State;
 use mindgap_built_in_robot::effects::ActiveEffect;
 use mindgap_built_in_robot::{default_robot, four_obstacles};
 use mindgap_command as cli;

@@ -115,7 +115,7 @@ fn after_a_rank_is_killed_the_run_goes_on_from_its_checkpoint() {
     assert!(!running.wait().expect("mpirun ends").success());
     let done = broken.call(&call);
     assert_eq!(done.code, 0, "{}", done.err);
-    assert!(done.err.contains("kept: goes on, "), "{}", done.err);
+    assert!(done.err.contains("kept: resuming, "), "{}", done.err);
     assert_eq!(unbroken.files(""), broken.files(""));
 }
 

@@ -1,5 +1,5 @@
-//! Adapts a simulator to runs of the robot: a diagnosis of them first, then what no effect explains conditions the
-//! distribution over robots. The networks stay as they are, and what training logs said stays known.
+//! Adapts a simulator to runs of the robot: first the effects of a diagnosis are added, then the remaining residuals
+//! condition the posterior over robots. The networks and the evidence of the training logs are kept.
 
 use serde::Serialize;
 
@@ -23,71 +23,72 @@ use mindgap_models::simulator::ensemble::basis::CHANGE;
 use mindgap_models::simulator::ensemble::posterior::log_evidence;
 use mindgap_models::simulator::ensemble::{Ensemble, Held, Posterior};
 
-/// Effects have to explain the motion better than a bias by command does, by so many nats: strong evidence.
+/// Log evidence in nats by which effects must beat a bias per command: strong evidence.
 const EFFECT_NATS: f64 = 5.0;
-/// Runs are kept back in so many parts at most.
+/// Maximum number of cross-validation folds.
 const PARTS: usize = 8;
-/// Commands held for fewer steps than this are not told.
+/// Commands held for fewer steps than this are not reported.
 const FEWEST_STEPS: usize = 2;
 
 /// An adapted simulator and what it learned.
 pub struct Adapted {
-    /// The simulator.
+    /// The adapted simulator.
     pub simulator: Simulator,
     /// What was learned.
     pub lesson: Lesson,
 }
 
-/// What runs told of a robot.
+/// What was learned from the runs of a robot.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Lesson {
-    /// Effects that the diagnosis named, and that were added.
+    /// Effects that the diagnosis named and that were added to the simulator.
     pub effects: Vec<AppliedEffect>,
-    /// Commands whose motion is known better now, those that differ most first.
+    /// Corrections per command, largest change first.
     pub commands: Vec<CommandBias>,
-    /// What simulated steps are off by on runs kept back, before and after; none of a single run.
+    /// Error per step on held-out runs, before and after; `None` for a single run.
     pub gap: Option<Gap>,
 }
 
-/// The bias of a command per step, each number with its standard deviation; turns are in degrees.
+/// Bias of a command relative to the networks: forward (cm), lateral (cm) and turn (degrees) per step, each with its
+/// standard deviation.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct CommandBias {
     /// Left and right command.
     pub command: [f64; 2],
-    /// Steps for which it was held.
+    /// Number of steps for which the command was held.
     pub steps: usize,
-    /// Before.
+    /// Bias before adaptation.
     pub before: Motion<[f64; 2]>,
-    /// After.
+    /// Bias after adaptation.
     pub after: Motion<[f64; 2]>,
 }
 
-/// Root mean square of what the steps of held commands are off by, the first number before and the second after adapting.
+/// Root-mean-square error per step of held commands, each `[before, after]` adaptation.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, serde::Deserialize)]
 pub struct Gap {
-    /// Forward.
+    /// Forward error.
     pub forward_cm: [f64; 2],
-    /// To the left.
+    /// Lateral error.
     pub lateral_cm: [f64; 2],
-    /// Turn.
+    /// Turn error.
     pub turn_deg: [f64; 2],
 }
 
-/// Adapts a simulator to logs of the robot that it stands for; `seed` fixes the draws of the diagnosis, and `watch` is told each
-/// of its stages when it begins.
+/// Adapts a simulator to logs of its robot. `seed` is the seed of the diagnosis, and `watch` is called when each of its
+/// stages begins.
 ///
 /// # Errors
-/// When the simulator does not say what its training logs left open, or the logs are another robot's or hold no step.
+/// If the simulator has no posterior, the logs are of another robot, or they contain no step with poses at both ends.
 pub fn adapt(simulator: &Simulator, logs: &Logs, seed: u64, watch: impl Fn(Stage)) -> Result<Adapted> {
     same_robot(&simulator.robot, &logs.robot)?;
-    let missing = || Error::new("the simulator file does not say what its training logs leave open: train it again");
+    let missing = || Error::new("the simulator file has no parameter uncertainty: train it again");
     let ensemble = simulator.ensemble.as_ref().ok_or_else(missing)?;
     let robot = &simulator.robot;
     let observations = Observations::of(logs, None);
     let baseline = Baseline::at_posterior_mean(simulator)?;
     let plain = steps(&baseline, &[], &observations);
     if plain.is_empty() {
-        return Err(Error::new("the runs hold no step with a pose at both ends: there is nothing to adapt to"));
+        return Err(Error::new("the runs contain no step with a pose at both ends: nothing to adapt to"));
     }
     let effects = diagnosed(baseline.clone(), logs, seed, watch);
     let explained = steps(&baseline, &effects, &observations);
@@ -99,12 +100,12 @@ pub fn adapt(simulator: &Simulator, logs: &Logs, seed: u64, watch: impl Fn(Stage
     let (effects, steps) = if named {
         (effects, explained)
     } else {
-        (of_no_motion(&baseline, effects, &observations, &plain), plain.clone())
+        (without_motion(&baseline, effects, &observations, &plain), plain.clone())
     };
     let after = given(&steps);
     let lesson = Lesson {
         commands: commands(&holds(&steps), said, ensemble, &after),
-        gap: kept_back(ensemble, robot, said, &plain, &steps),
+        gap: held_out(ensemble, robot, said, &plain, &steps),
         effects: effects.clone(),
     };
     let mut simulator = simulator.clone();
@@ -113,14 +114,14 @@ pub fn adapt(simulator: &Simulator, logs: &Logs, seed: u64, watch: impl Fn(Stage
     Ok(Adapted { simulator, lesson })
 }
 
-/// How probable all evidence is, if the robot did not change but by effects.
+/// Returns the log evidence under the assumption that the robot changed only by effects.
 fn probability(mut ensemble: Ensemble, said: Held) -> f64 {
     ensemble.prior.iter_mut().for_each(|prior| prior[CHANGE] = 0.0);
     log_evidence(&ensemble, said)
 }
 
-/// Those of the effects that leave the motion alone, as those of the sensor do.
-fn of_no_motion(
+/// Returns the effects that do not change the motion, such as those of the sensor.
+fn without_motion(
     baseline: &Baseline,
     mut effects: Vec<AppliedEffect>,
     observations: &Observations,
@@ -130,15 +131,15 @@ fn of_no_motion(
     effects
 }
 
-/// The effects that a diagnosis names; none where the logs do not suffice for one.
+/// Returns the effects that a diagnosis names; empty if the logs do not suffice for a diagnosis.
 fn diagnosed(baseline: Baseline, logs: &Logs, seed: u64, watch: impl Fn(Stage)) -> Vec<AppliedEffect> {
     let method = Method { seed, ..Method::default() };
     let found = findings_watched(baseline, &Inspection::new(logs.clone()), method, watch);
     found.map_or_else(|_| Vec::new(), |found| found.applied)
 }
 
-/// What every logged step is off by, with these effects beside those that were added before. Effects act on the robot as it
-/// was known in training, and what that does beyond the networks is no news.
+/// Returns the residual of every logged step, with these effects in addition to those of the simulator. Effects act on
+/// the robot as known from training, so its bias relative to the networks is added back.
 fn steps(baseline: &Baseline, effects: &[AppliedEffect], observations: &Observations) -> Vec<StepResidual> {
     let Some(motion @ MotionModel::Learned { reference, .. }) = &baseline.motion else { return Vec::new() };
     let applied: Vec<AppliedEffect> = baseline.applied.iter().chain(effects).cloned().collect();
@@ -154,7 +155,7 @@ fn steps(baseline: &Baseline, effects: &[AppliedEffect], observations: &Observat
     observations.rows.iter().filter_map(step).collect()
 }
 
-/// The commands that were held, with what is known of them before and after; those that differ most first.
+/// Returns the held commands with their bias before and after, largest change first.
 fn commands(held: &[Hold], said: Held, before: &Ensemble, after: &Ensemble) -> Vec<CommandBias> {
     let [before, after] = [before, after].map(|ensemble| Posterior::new(ensemble, said));
     let (Some(before), Some(after)) = (before, after) else { return Vec::new() };
@@ -176,7 +177,7 @@ fn commands(held: &[Hold], said: Held, before: &Ensemble, after: &Ensemble) -> V
 }
 
 impl CommandBias {
-    /// How far the turn or the way forward moved, in standard deviations of what was known.
+    /// Returns the change of turn or forward motion in prior standard deviations.
     fn surprise(&self) -> f64 {
         let moved = self.before.zip_with(self.after, |[before, deviation], [after, _]| {
             (after - before).abs() / deviation.max(f64::EPSILON)
@@ -185,8 +186,8 @@ impl CommandBias {
     }
 }
 
-/// The gap on runs kept back: each part is predicted from the others.
-fn kept_back(
+/// Returns the cross-validated error: each fold of runs is predicted from the others.
+fn held_out(
     ensemble: &Ensemble,
     robot: &Robot,
     said: Held,

@@ -1,8 +1,8 @@
-//! Blind test of the diagnosis: cases whose effects are withheld, the diagnoses, and their score.
+//! Blind test of the diagnosis: cases with hidden effects, their diagnoses, and a score.
 //!
 //! [`make`] writes the cases, a sealed file with the effects of each, and a commitment to every entry of it; [`answer`]
-//! reads the cases only; [`score`] opens the seal, checks the commitments and scores the diagnoses. The three share
-//! nothing but the folder. [`calibrate`] fits the thresholds of the diagnosis on [`cases`] of other seeds.
+//! reads only the cases; [`score`] breaks the seal, checks the commitments and scores the diagnoses. The three share only
+//! the folder. [`calibrate`] fits the thresholds of the diagnosis to [`cases`] of other seeds.
 
 pub mod answer;
 mod bench;
@@ -20,42 +20,42 @@ use std::path::{Path, PathBuf};
 pub struct Folder<'a>(pub &'a Path);
 
 impl Folder<'_> {
-    /// The list of cases, with the robot of each and the commitment to its effects.
+    /// Returns the list of cases, with the robot of each and the commitment to its effects.
     pub fn cases(&self) -> PathBuf {
         self.0.join("cases.csv")
     }
 
-    /// The effects of each case.
+    /// Returns the sealed effects of all cases.
     pub fn sealed(&self) -> PathBuf {
         self.0.join("sealed.json")
     }
 
-    /// The logs of a case.
+    /// Returns the logs of a case.
     pub fn case(&self, case: &str) -> PathBuf {
         self.0.join("cases").join(case)
     }
 
-    /// The logs that a robot's simulator is learned from.
+    /// Returns the training logs of a robot.
     pub fn robot(&self, robot: &str) -> PathBuf {
         self.0.join("robots").join(robot)
     }
 
-    /// The diagnoses, and what belongs to them.
+    /// Returns the folder of the diagnoses.
     pub fn answers(&self) -> PathBuf {
         self.0.join("answers")
     }
 
-    /// The diagnosis of a case.
+    /// Returns the diagnosis of a case.
     pub fn answer(&self, case: &str) -> PathBuf {
         self.answers().join(format!("{case}.json"))
     }
 
-    /// The effects that the diagnosis of a case adds to the simulator.
+    /// Returns the effects that the diagnosis of a case adds to the simulator.
     pub fn added(&self, case: &str) -> PathBuf {
         self.answers().join(format!("{case}-added.json"))
     }
 
-    /// The simulator of a robot, as learned for the answers.
+    /// Returns the simulator of a robot, as learned for the answers.
     pub fn simulator(&self, robot: &str) -> PathBuf {
         self.answers().join(format!("simulator-{robot}.json"))
     }

@@ -1,5 +1,5 @@
-//! The whole request on the built-in robot: record, train, evaluate, evolve, simulate, try on the robot, export, draw; and
-//! then what to do when the robot is no longer what its logs say.
+//! The whole pipeline on the built-in robot: record, train, evaluate, evolve, simulate, test on the robot, export, plot;
+//! then the closed loop with a robot that has changed since its logs.
 
 pub mod repair;
 pub mod robot;
@@ -40,34 +40,34 @@ use repair::Repair;
 
 const STEPS: usize = 60;
 const MAX_STEPS: u16 = 60;
-/// Controllers for a start that are tried on the robot.
+/// Number of controllers per start that are tested on the robot.
 pub const TRIED: usize = 3;
 /// Number of runs of each controller on the robot, and of simulated ones (paper, figure 4).
 pub const TRIALS: usize = 3;
-/// Number of fresh simulated runs for a success rate.
+/// Number of new simulated runs for a success rate.
 pub const JUDGED_RUNS: usize = 200;
 
-/// How much is done.
+/// Size of the demo.
 #[derive(Clone, Copy, Debug)]
 pub struct Size {
     training_runs: usize,
     held_out_runs: usize,
-    /// Starts of the scene that controllers are evolved for, the first ones.
+    /// Number of starts for which controllers are evolved.
     pub starts: usize,
-    /// Whether there is one run of the genetic algorithm for each, as in the paper, and one controller.
+    /// Whether each start has a single run of the genetic algorithm and one controller, as in the paper.
     pub paper: bool,
-    /// Runs on the changed robot that the loop may have.
+    /// Maximum number of runs of the loop on the changed robot.
     pub trials: usize,
 }
 
 impl Size {
-    /// That of the paper's experiments.
+    /// Size of the paper's experiments.
     pub const USUAL: Size = Size { training_runs: 100, held_out_runs: 30, starts: 4, paper: false, trials: 5 };
-    /// A little of everything.
+    /// Short version.
     pub const QUICK: Size = Size { training_runs: 12, held_out_runs: 4, starts: 1, paper: true, trials: 1 };
 }
 
-/// Stream keys of the parts of the request.
+/// Keys of the random streams.
 #[derive(Clone, Copy)]
 enum Purpose {
     TrainingLogs,
@@ -79,7 +79,7 @@ enum Purpose {
     Repair,
 }
 
-/// Stage of the request, for a progress display.
+/// Stage of the demo, for a progress display.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Stage {
     /// Recording of logs.
@@ -88,18 +88,18 @@ pub enum Stage {
     Training(train::Progress),
     /// Evolution of a controller.
     Evolving {
-        /// Its start, from 1.
+        /// Number of the start, from 1.
         start: usize,
-        /// Number of generations completed,
+        /// Number of completed generations.
         generation: usize,
-        /// of so many at most.
+        /// Maximum number of generations.
         generations: usize,
     },
     /// Drawing of the figures.
     Drawing,
-    /// Repairing what a change of the robot did to its controllers.
+    /// Closed loop with the changed robot.
     Repairing {
-        /// Which trial, from 1.
+        /// Number of the trial, from 1.
         trial: usize,
     },
 }
@@ -108,35 +108,35 @@ pub enum Stage {
 pub struct Summary {
     /// Accuracy of the networks on held-out logs.
     pub evaluation: Evaluation,
-    /// One entry a start.
+    /// One entry per start.
     pub starts: Vec<StartSummary>,
-    /// Their simulated and real paths.
+    /// Simulated and real paths per start.
     pub panels: Vec<PathPanel>,
-    /// What the loop did about a change of the robot.
+    /// Result of the loop with the changed robot.
     pub repair: Repair,
 }
 
 /// Success of one start's controller in simulation and in reality.
 pub struct StartSummary {
-    /// In fresh simulated runs.
+    /// Success in new simulated runs.
     pub simulated: Success,
-    /// On the built-in robot.
+    /// Success on the built-in robot.
     pub real: Success,
 }
 
 /// A start's controller and its runs.
 struct Trial {
-    /// Evolved controllers, the best in a trial on the robot first.
+    /// Evolved controllers, best in a test on the robot first.
     controllers: Vec<Controller>,
     rollouts: RolloutReport,
     trajectories: Vec<Trajectory>,
     summary: StartSummary,
 }
 
-/// Does the request and leaves everything in the folder `out`, when all is done.
+/// Runs the demo and writes all results to the folder `out` at the end.
 ///
 /// # Errors
-/// When `out` cannot be written.
+/// If `out` cannot be written.
 pub fn run(executor: &dyn Executor, out: &Path, seed: u64, size: Size, watch: impl Fn(Stage)) -> Result<Summary> {
     let made = RefCell::new(Vec::new());
     let is_ours = |name: &str| made.borrow().iter().any(|made| made == name);
@@ -183,7 +183,7 @@ fn fill(executor: &dyn Executor, out: &Path, seed: u64, size: Size, watch: impl 
     pictures::networks(out, &simulator, &evaluation, &held_out)?;
     let panels: Vec<PathPanel> = trials.iter().enumerate().map(|(i, trial)| panel(i, trial, &scene)).collect();
     pictures::paths(out, &panels)?;
-    // The start whose controller does best on the robot as it was.
+    // The start whose controller does best on the unchanged robot.
     let real = |i: usize| &trials[i].summary.real;
     let better = |a: &usize, b: &usize| {
         real(*b).rate.total_cmp(&real(*a).rate).then(real(*a).median_cm.total_cmp(&real(*b).median_cm))
@@ -200,17 +200,17 @@ struct DemoRun<'a, W> {
     executor: &'a dyn Executor,
     out: &'a Path,
     simulator: &'a Simulator,
-    /// Those that the logs leave possible.
+    /// Robots of the posterior.
     robots: Option<&'a Robots>,
     scene: &'a Scene,
-    /// Whether controllers are searched for as in the paper.
+    /// Whether to search for controllers as in the paper.
     paper: bool,
     watch: &'a W,
 }
 
 impl<W: Fn(Stage)> DemoRun<'_, W> {
-    /// Evolves controllers for one start (from 0), keeps the one that is best in a trial on the robot, then writes,
-    /// simulates and drives it.
+    /// Evolves controllers for one start (from 0), keeps the best one in a test on the robot, then writes, simulates and
+    /// drives it.
     fn start(&self, start: usize, [evolution, simulation, trial]: [u64; 3]) -> Result<Trial> {
         let pose = self.scene.starts[start];
         let environment = Environment::new(self.simulator, self.scene, pose, Noise::Learned)?;
@@ -250,7 +250,7 @@ impl<W: Fn(Stage)> DemoRun<'_, W> {
         Ok(Trial { controllers, rollouts, trajectories, summary: StartSummary { simulated, real } })
     }
 
-    /// Controllers for a start (from 1), the most promising first.
+    /// Returns controllers for a start (from 1), the most promising first.
     fn candidates(&self, start: usize, task: &EvolutionTask) -> Result<Vec<Evolved>> {
         let evolving = |generation, generations| (self.watch)(Stage::Evolving { start, generation, generations });
         if !self.paper {
@@ -282,7 +282,7 @@ impl<W: Fn(Stage)> DemoRun<'_, W> {
     }
 }
 
-/// The simulated and the real paths of a start (from 0).
+/// Returns the simulated and real paths of a start (from 0).
 fn panel(start: usize, trial: &Trial, scene: &Scene) -> PathPanel {
     let title = format!("Start {}", start + 1);
     let simulated = pictures::simulated_paths(title, scene, scene.starts[start], &trial.rollouts);
@@ -297,7 +297,7 @@ fn crashed(trajectory: &Trajectory) -> bool {
     trajectory.termination == Termination::Crashed
 }
 
-/// Final distance to the target, the largest there is after a crash.
+/// Returns the final distance to the target in mm, or the largest number after a crash.
 fn millimetres_off(trajectory: &Trajectory, target_cm: DVec2) -> u64 {
     if crashed(trajectory) { u64::MAX } else { (10.0 * trajectory.end().position_cm.distance(target_cm)) as u64 }
 }

@@ -1,7 +1,7 @@
-//! A fleet: one diagnosis a robot, and what they say together. Which effect is how frequent, who stands out, which robots
-//! have gaps of one kind, and what is common to all of them and therefore the simulator's fault.
+//! A fleet: one diagnosis per robot, and joint statistics: prevalence of effects, outliers, groups of robots with similar
+//! gaps, and effects common to all robots, which are errors of the simulator.
 //!
-//! Robots come one after the other in the order of their names; what is kept of each is a [`tally`] of a few hundred bytes.
+//! Robots are processed in the order of their names; a [`tally`] keeps a few hundred bytes per robot.
 
 pub mod answer;
 pub mod common;
@@ -30,26 +30,26 @@ use mindgap_foundations::error::{Error, Result};
 use mindgap_foundations::executor::{self, Executor};
 use mindgap_logs::Logs;
 
-/// The file of the answer within a fleet's folder.
+/// File of the results in a fleet's folder.
 pub const ANSWER: &str = "fleet.json";
-/// The table within it, where it is written.
+/// File of the table in a fleet's folder, if it is written.
 pub const TABLE: &str = "robots.parquet";
-/// The folder of the diagnoses within it.
+/// Folder of the diagnoses in a fleet's folder.
 pub const DIAGNOSES: &str = "diagnoses";
 
-/// What came of one robot's logs.
+/// The result for one robot.
 #[derive(Serialize, Deserialize)]
 struct Examined {
     name: String,
-    /// What is kept of the diagnosis and its JSON, or why there is none.
+    /// Summary and JSON of the diagnosis, or the reason why there is none.
     outcome: std::result::Result<(Robot, String), String>,
 }
 
-/// Diagnoses every robot of a fleet, each a folder in `logs`, into `folder`, and answers for all of them. `watch` receives
-/// how many robots are done, and how many there are.
+/// Diagnoses every robot of a fleet, one per folder in `logs`, writes the diagnoses to `folder`, and returns the joint
+/// results. `watch` is called with the number of finished robots and the total.
 ///
 /// # Errors
-/// When the robots cannot be listed, when none of them can be diagnosed, or when the folder cannot be written.
+/// If the robots cannot be listed, none of them can be diagnosed, or the folder cannot be written.
 pub fn diagnose(
     executor: &dyn Executor,
     logs: &Path,
@@ -77,14 +77,14 @@ pub fn diagnose(
                 tally.add(name, &robot);
             }
             Err(reason) => {
-                log::warn!("{name} is left out: {reason}");
+                log::warn!("{name} is excluded: {reason}");
                 tally.refuse(name, reason);
             }
         }
         Ok(())
     })?;
     if let (true, Some(first)) = (tally.names.is_empty(), tally.refused.first()) {
-        return Err(Error::new(format!("none of {count} robots can be diagnosed; the first one: {}", first.reason)));
+        return Err(Error::new(format!("none of {count} robots can be diagnosed; the first: {}", first.reason)));
     }
     let fleet = Fleet::of(tally, listing.left_out, request.method.seed);
     #[cfg(feature = "parquet")]

@@ -1,4 +1,4 @@
-//! A robot in a scene with a brick on it that runs a real program: the built-in robot, or one in a learned simulator.
+//! A robot in a scene, controlled by an emulated brick program: the built-in robot, or one in a learned simulator.
 
 use mindgap_controller_export::brick::{Drive, Shaft, Sonar, World};
 use mindgap_controller_export::onboard::NO_ECHO_CM;
@@ -10,19 +10,18 @@ use mindgap_foundations::random::Generator;
 use mindgap_logs::Row;
 use mindgap_models::simulator::body::SimulatedBody;
 
-/// What moves and senses.
+/// The simulated vehicle.
 pub enum Vehicle<'r> {
     /// The built-in robot.
     BuiltIn(Box<Body<'r>>),
-    /// A robot in a learned simulator. It says nothing of wheels and battery: shafts turn freely, the battery is charged.
+    /// A robot in a learned simulator, which does not model wheels or battery: shafts turn freely, the battery is charged.
     Simulated(Box<SimulatedBody<'r>>),
 }
 
-/// A robot in its room, as the brick's program sees and moves it, with a log.
+/// The world of a brick's program: a robot in a scene, with a log.
 ///
-/// The log begins when a motor first runs. A row has the commands and the reading that come soon after its time, or a
-/// reading just before it: a program reads the sensor at the beginning of a step, and sets its motors when it has the
-/// answer.
+/// The log begins when a motor first runs. A row takes the commands and the reading shortly after its time, or a reading
+/// just before it, since programs read the sensor at the beginning of a step and then set the motors.
 pub struct OnBoard<'r> {
     vehicle: Vehicle<'r>,
     wiring: Wiring,
@@ -31,24 +30,24 @@ pub struct OnBoard<'r> {
     t_ms: u32,
     /// Time between two rows of the log.
     row_ms: u32,
-    /// When a motor first ran.
+    /// Time at which a motor first ran.
     began_ms: Option<u32>,
     rows: Vec<Row>,
-    /// The last reading that stands in no row, with its time.
+    /// The last reading that is not yet in a row, with its time.
     reading: Option<(u32, Option<f64>)>,
-    /// Whether the last row is there: that of a crash.
+    /// Whether the log has ended with a crash.
     is_over: bool,
     rng: Generator,
 }
 
 const CHARGED_MV: u16 = 7_800;
-/// Share of the time between two rows in which commands and readings are those of the row before.
+/// Share of the row interval in which commands and readings belong to the preceding row.
 const SOON: f64 = 0.25;
-/// Rows of a log at most: a program that runs longer is no longer logged.
+/// Maximum number of rows; later ones are dropped.
 const MOST_ROWS: usize = 100_000;
 
 impl<'r> OnBoard<'r> {
-    /// A robot at rest whose motors and sensor are plugged in so.
+    /// Returns a robot at rest with the given wiring.
     pub fn new(vehicle: Vehicle<'r>, wiring: Wiring, row_ms: u32, rng: Generator) -> Self {
         OnBoard {
             vehicle,
@@ -65,7 +64,7 @@ impl<'r> OnBoard<'r> {
         }
     }
 
-    /// Whether the robot has touched something.
+    /// Returns whether the robot has touched something.
     pub fn crashed(&self) -> bool {
         match &self.vehicle {
             Vehicle::BuiltIn(body) => body.crashed(),
@@ -73,7 +72,7 @@ impl<'r> OnBoard<'r> {
         }
     }
 
-    /// The true pose.
+    /// Returns the true pose.
     pub fn pose(&self) -> Pose {
         match &self.vehicle {
             Vehicle::BuiltIn(body) => body.true_pose(),
@@ -81,7 +80,7 @@ impl<'r> OnBoard<'r> {
         }
     }
 
-    /// Ends the run at this time and returns its log. Its last row is where the robot crashed, or where the program ended.
+    /// Ends the run at `end_ms` and returns its log. The last row is that of the crash or of the program's end.
     pub fn into_rows(mut self, end_ms: u32) -> Vec<Row> {
         self.advance(end_ms);
         if self.began_ms.is_none() {
@@ -110,7 +109,7 @@ impl<'r> OnBoard<'r> {
 
     fn log(&mut self) {
         let mut row = self.row();
-        // The program's clock began a little before its motors ran, so a reading may come just before the row's time.
+        // The program's clock starts slightly before its motors, so a reading may come just before the row's time.
         if let Some((read_ms, echo_cm)) = self.reading.take()
             && f64::from(self.t_ms - read_ms) <= self.soon_ms()
         {
@@ -123,7 +122,7 @@ impl<'r> OnBoard<'r> {
         self.is_over |= self.crashed();
     }
 
-    /// The last row, if this is soon after it.
+    /// Returns the last row if it is still current.
     fn row_of_now(&mut self) -> Option<&mut Row> {
         let now_ms = f64::from(self.t_ms - self.began_ms?);
         let soon_ms = self.soon_ms();

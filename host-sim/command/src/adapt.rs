@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use serde::Serialize;
 
-use super::facts::FactsOption;
+use super::json_output::JsonOption;
 use super::table::{self, number};
 use super::{Run, kinds, progress, textbook};
 use mindgap_applications::adapt::{Adapted, CommandBias, Gap, Lesson, adapt};
@@ -21,8 +21,8 @@ use mindgap_models::simulator::Simulator;
 
 /// Adapt a simulator to runs of the robot.
 ///
-/// Effects that a diagnosis names are added, the rest is learned as what this robot does beyond the networks, which stay as
-/// they are.
+/// Effects that the diagnosis names are added to the simulator; what remains is learned as a correction per command. The
+/// networks themselves stay as they are.
 #[derive(Args)]
 pub struct Adapt {
     /// The simulator file.
@@ -33,32 +33,32 @@ pub struct Adapt {
     /// The simulator file to write.
     #[arg(long, value_name = "SIM")]
     out: PathBuf,
-    /// Also tell how the chance of this controller changes.
+    /// Also report this controller's success probability before and after.
     #[arg(long, requires = "scene")]
     controller: Option<PathBuf>,
-    /// The scene that the controller is for.
+    /// Scene of the controller.
     #[arg(long, value_name = "FILE")]
     scene: Option<PathBuf>,
-    /// Which of the scene's starts, from 1.
+    /// Number of the start in the scene, from 1.
     #[arg(long, value_name = "N", default_value_t = 1)]
     start: usize,
-    /// Fixes every draw.
+    /// Random seed.
     #[arg(long, value_name = "N", default_value_t = Method::SEED)]
     seed: u64,
     #[command(flatten)]
-    facts: FactsOption,
+    json: JsonOption,
 }
 
-/// Commands that are told.
+/// Maximum number of commands in the table.
 const COMMANDS: usize = 8;
 
-/// What `--json` writes.
+/// Contents of the `--json` file.
 #[derive(Serialize)]
-struct Told {
+struct Output {
     schema: u32,
-    /// One a folder of logs.
+    /// One lesson per folder of logs.
     lessons: Vec<Lesson>,
-    /// Of the controller, before and after.
+    /// Success probability of the controller, before and after.
     chance: Option<[Chance; 2]>,
 }
 
@@ -68,7 +68,7 @@ impl Run for Adapt {
         Places::default()
             .reading(inputs)
             .writing([&self.out], kinds::SIMULATOR)
-            .writing(self.facts.asked(), kinds::REPORT)
+            .writing(self.json.path(), kinds::REPORT)
     }
 
     fn run(&self, executor: &dyn Executor) -> Result<String> {
@@ -93,18 +93,18 @@ impl Run for Adapt {
             _ => None,
         };
         simulator.write(&self.out)?;
-        let of_folder = |(logs, lesson): (&PathBuf, &Lesson)| format!("{}:\n{}", logs.display(), told(lesson));
+        let of_folder = |(logs, lesson): (&PathBuf, &Lesson)| format!("{}:\n{}", logs.display(), describe(lesson));
         let mut text: String = self.logs.iter().zip(&lessons).map(of_folder).collect();
         if let Some([before, after]) = &chance {
-            text += &format!("chance of the controller: {before} before, {after} after\n");
+            text += &format!("success probability of the controller: {before} before, {after} after\n");
         }
         text += &format!("simulator written to {}\n", self.out.display());
-        self.facts.told(&Told { schema: 1, lessons, chance }, text)
+        self.json.emit(&Output { schema: 1, lessons, chance }, text)
     }
 }
 
 impl Adapt {
-    /// The chance of the controller on robots that a simulator leaves possible.
+    /// Returns the controller's success probability over the simulator's posterior of robots.
     fn chance(&self, executor: &dyn Executor, simulator: &Simulator) -> Result<Chance> {
         let (Some(controller), Some(path)) = (&self.controller, &self.scene) else {
             return Err(Error::new("--controller needs --scene"));
@@ -114,27 +114,26 @@ impl Adapt {
         let start = super::evolve::start_of(&scene, self.start, &simulator.robot, path)?;
         let target_cm = scene.target_cm.ok_or_else(|| Error::in_file(path, "has no [target]"))?;
         let robots = simulator.robots(ROBOTS, self.seed);
-        let robots =
-            robots.ok_or_else(|| Error::in_file(&self.sim, "does not say what its training logs leave open"))?;
+        let robots = robots.ok_or_else(|| Error::in_file(&self.sim, "has no parameter uncertainty: train it again"))?;
         let judge = Judge::new(executor, simulator, &robots.drawn, &scene, start, target_cm, self.seed)?;
         Ok(judge.chances(&[controller], RUNS)?[0])
     }
 }
 
-fn told(lesson: &Lesson) -> String {
+fn describe(lesson: &Lesson) -> String {
     let mut text = String::new();
     for effect in &lesson.effects {
         let parameters: Vec<String> =
             effect.parameters.iter().map(|(name, value)| format!("{name} {value:.3}")).collect();
-        text += &format!("  the diagnosis names {}: {}\n", effect.effect, parameters.join(", "));
+        text += &format!("  effect added: {}: {}\n", effect.effect, parameters.join(", "));
     }
-    text += "  what a step of each command (left right) that was held does more than was thought, and how unsure that is:\n";
+    text += "  correction per step for each held command (left, right), mean ± SD:\n";
     let rows: Vec<[String; 5]> = lesson.commands.iter().take(COMMANDS).map(row).collect();
     text += &table::text(["command", "steps", "forward (cm)", "left (cm)", "turn (deg)"], &rows);
     if let Some(Gap { forward_cm, lateral_cm, turn_deg }) = &lesson.gap {
         let pair = |[before, after]: &[f64; 2]| format!("{before:.2} to {after:.2}");
         text += &format!(
-            "  off by a step on runs kept back: forward {} cm, left {} cm, turn {} deg\n",
+            "  error per step on held-out runs: forward {} cm, left {} cm, turn {} deg\n",
             pair(forward_cm),
             pair(lateral_cm),
             pair(turn_deg)
@@ -143,7 +142,7 @@ fn told(lesson: &Lesson) -> String {
     text
 }
 
-/// A command, and how much more a step of it does than was thought, with what remains unsure.
+/// Formats the correction of one command as a row of the table.
 fn row(known: &CommandBias) -> [String; 5] {
     let [left, right] = known.command;
     let [forward, lateral, turn] = known

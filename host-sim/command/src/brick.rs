@@ -1,6 +1,6 @@
 //! `mindgap brick`
 
-mod told;
+mod trace;
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -9,7 +9,7 @@ use clap::Args;
 use mindgap_controller_export::brick::{self, Program, Report, RunConfig, ScriptedWorld};
 
 use super::evolve::start_of;
-use super::facts::FactsOption;
+use super::json_output::JsonOption;
 use super::ports::PortOptions;
 use super::{Run, kinds, textbook};
 use mindgap_applications::on_board::{OnBoard, Vehicle};
@@ -29,40 +29,40 @@ use mindgap_models::simulator::body::SimulatedBody;
 use mindgap_models::simulator::environment::Environment;
 use mindgap_models::simulator::rollout::REACHED_CM;
 
-/// Run a compiled program without a brick, and tell what it does: motors, tones, text and files.
+/// Emulate a compiled NXT program and trace it: motors, tones, text and files.
 ///
-/// What it senses comes from a script, or from a robot in a scene: the built-in one, or one in a learned simulator.
+/// Its sensors follow a script, or a robot in a scene: the built-in robot or a learned simulator.
 #[derive(Args)]
 pub struct Brick {
-    /// The program, an .rxe file for standard firmware.
+    /// Program to run, an .rxe file for the standard firmware.
     program: PathBuf,
-    /// What the ultrasonic sensor answers, request by request: a list such as 120,80,none,silent,hangs, or a CSV file
-    /// with a column echo_cm. After the last one it is silent.
+    /// Answers of the ultrasonic sensor, one per request: a list such as 120,80,none,silent,hangs, or a CSV file with a
+    /// column echo_cm. The sensor is silent after the last one.
     #[arg(long, value_name = "LIST|FILE", required_unless_present = "scene", conflicts_with = "scene")]
     readings: Option<String>,
-    /// What else it senses: a CSV file with t_ms and any of port_1 to port_4 (percent; a touch sensor is pressed at more
-    /// than 0), right, left and orange (1 while the button is down).
+    /// Inputs of the other sensors and the buttons: a CSV file with t_ms and any of port_1 to port_4 (percent; a touch
+    /// sensor is pressed above 0), right, left and orange (1 while the button is down).
     #[arg(long, value_name = "FILE", conflicts_with = "scene")]
     world: Option<PathBuf>,
-    /// Something holds the wheels: they do not turn.
+    /// Block the wheels: they do not turn.
     #[arg(long, conflicts_with = "scene")]
     blocked: bool,
-    /// The scene in which the robot drives.
+    /// Scene in which the robot drives.
     #[arg(long, value_name = "FILE")]
     scene: Option<PathBuf>,
-    /// Which of the scene's starts, from 1.
+    /// Number of the start in the scene, from 1.
     #[arg(long, value_name = "N", default_value_t = 1, conflicts_with = "readings")]
     start: usize,
-    /// The simulator that moves the robot; the built-in robot when left out.
+    /// Simulator that moves the robot (default: the built-in robot).
     #[arg(long, conflicts_with = "readings")]
     sim: Option<PathBuf>,
-    /// Fixes every draw.
+    /// Random seed.
     #[arg(long, value_name = "N", default_value_t = 1, conflicts_with = "readings")]
     seed: u64,
-    /// Write the run as a log here.
+    /// Write the run as a log.
     #[arg(long, value_name = "RUN.csv", conflicts_with = "readings")]
     out: Option<PathBuf>,
-    /// Draw its path here, .svg or .png.
+    /// Draw the path, as .svg or .png.
     #[arg(long, value_name = "FILE", conflicts_with = "readings")]
     figure: Option<PathBuf>,
     #[command(flatten)]
@@ -70,28 +70,28 @@ pub struct Brick {
     /// Battery voltage.
     #[arg(long, default_value_t = 7800, conflicts_with = "scene")]
     battery_mv: u16,
-    /// When the dark button is pressed, which ends any program.
+    /// Time at which the dark grey button is pressed, which ends any program.
     #[arg(long, value_name = "MS", conflicts_with = "scene")]
     exit_ms: Option<u32>,
-    /// Time on the brick's clock after which the run is given up.
+    /// Time limit on the brick's clock.
     #[arg(long, default_value_t = 120_000, value_parser = clap::value_parser!(u32).range(1..=600_000))]
     limit_ms: u32,
-    /// Events that are told; later ones are counted.
+    /// Maximum number of events to report; later ones are only counted.
     #[arg(long, value_name = "N", default_value_t = 10_000)]
     limit_events: usize,
     #[command(flatten)]
-    facts: FactsOption,
+    json: JsonOption,
 }
 
 impl Run for Brick {
     fn places(&self) -> Places {
-        // Readings may be a list.
+        // `--readings` takes a list or a file.
         let readings = self.readings.as_ref().map(PathBuf::from);
         let inputs =
             [Some(&self.program), readings.as_ref(), self.world.as_ref(), self.scene.as_ref(), self.sim.as_ref()];
         Places::default()
             .reading(inputs.into_iter().flatten())
-            .writing(self.facts.asked(), kinds::REPORT)
+            .writing(self.json.path(), kinds::REPORT)
             .writing(&self.out, kinds::UNSIGNED)
             .writing(&self.figure, kinds::UNSIGNED)
     }
@@ -100,13 +100,13 @@ impl Run for Brick {
         let file =
             fs::read(&self.program).map_err(|e| Error::in_file(&self.program, format!("cannot be read: {e}")))?;
         let program = Program::load(&file)
-            .map_err(|e| Error::in_file(&self.program, format!("is no program that a brick runs: {e}")))?;
+            .map_err(|e| Error::in_file(&self.program, format!("is not a program that an NXT can run: {e}")))?;
         let config = RunConfig { run_ms: self.limit_ms, limit_events: self.limit_events, ..RunConfig::default() };
         let (report, world) = match &self.scene {
             Some(scene) => self.in_scene(scene, &program, &config)?,
             None => self.by_script(&program, &config)?,
         };
-        self.facts.told(&told::facts(&report), told::text(&report) + &world)
+        self.json.emit(&trace::json(&report), trace::text(&report) + &world)
     }
 }
 
@@ -126,14 +126,14 @@ impl Brick {
         };
         let report = brick::run(program, &mut world, config);
         let used = world.requests.min(world.sonar.len());
-        Ok((report, format!("{used} of {} readings were asked for\n", world.sonar.len())))
+        Ok((report, format!("the program asked for {used} of {} readings\n", world.sonar.len())))
     }
 
     fn in_scene(&self, path: &Path, program: &Program, config: &RunConfig) -> Result<(Report, String)> {
         let wiring = self.ports.wiring();
         wiring.check().map_err(|e| Error::new(e.to_string()))?;
         if let Some(figure) = self.figure.as_ref().filter(|figure| !is_svg(figure) && !has_ending(figure, "png")) {
-            return Err(Error::in_file(figure, "is no name of a picture: it has to end with .svg or .png"));
+            return Err(Error::in_file(figure, "must end with .svg or .png"));
         }
         let scene = Scene::read(path)?;
         let simulator = self.sim.as_deref().map(textbook::simulator).transpose()?;
@@ -161,7 +161,7 @@ impl Brick {
             let figure = self.draw(&scene, start, &run, crashed);
             if is_svg(path) { files::write(path, figure.svg()) } else { files::write(path, figure.png()) }?;
         }
-        Ok((report, self.arrived(&scene, &robot, end, crashed)))
+        Ok((report, self.end_text(&scene, &robot, end, crashed)))
     }
 
     fn draw(&self, scene: &Scene, start: Pose, run: &logs::Run, crashed: bool) -> Figure {
@@ -173,14 +173,14 @@ impl Brick {
         paths(&[panel])
     }
 
-    fn arrived(&self, scene: &Scene, robot: &Robot, end: Pose, crashed: bool) -> String {
+    fn end_text(&self, scene: &Scene, robot: &Robot, end: Pose, crashed: bool) -> String {
         let who = if self.sim.is_some() { "simulated robot" } else { "built-in robot" };
         let at_cm = end.position_cm;
-        let how = if crashed { "crashed" } else { "stands" };
+        let how = if crashed { "crashed" } else { "stopped" };
         let target = scene
             .target_cm
             .map_or(String::new(), |target_cm| format!(", {:.1} cm from the target", at_cm.distance(target_cm)));
-        format!("the {who} {how} at {:.1}, {:.1} cm{target}; rows every {} ms\n", at_cm.x, at_cm.y, robot.step_ms)
+        format!("the {who} {how} at {:.1}, {:.1} cm{target}; one row per {} ms\n", at_cm.x, at_cm.y, robot.step_ms)
     }
 }
 

@@ -1,13 +1,14 @@
-//! The budget of a gap in words: one bar a line, so that one sees at once what to mend first.
+//! The budget of a gap as a bar chart in text, so that the largest cause is seen at once.
 
 use mindgap_diagnosis::Diagnosis;
-use mindgap_diagnosis::budget::{Part, SCATTER, UNEXPLAINED};
+use mindgap_diagnosis::budget::Part;
 use mindgap_diagnosis::explain::NamedEffect;
+use mindgap_pages::words;
 
-/// Width of a whole gap, characters.
+/// Width of the whole gap in characters.
 const BAR: usize = 30;
 
-/// The lines of a budget; none where there is none.
+/// Returns one line per part of the budget.
 pub fn lines(diagnosis: &Diagnosis) -> Vec<String> {
     let parts = diagnosis.budget();
     let width = parts.iter().map(|part| part.id.chars().count()).max().unwrap_or(0);
@@ -22,11 +23,10 @@ fn line(part: &Part, width: usize, effects: &[NamedEffect]) -> String {
     format!("  {id:<width$}  {bar} {percent:<18} {}", meaning(id, effects)).trim_end().to_string()
 }
 
+/// Returns the strength of an effect, or what another part of the budget is.
 fn meaning(id: &str, effects: &[NamedEffect]) -> String {
     match effects.iter().find(|effect| effect.id == id) {
         Some(effect) => effect.strength(),
-        None if id == SCATTER => "steps scatter more than the simulator assumes".into(),
-        None if id == UNEXPLAINED => "follows circumstances, and no named effect does so".into(),
-        None => String::new(),
+        None => words::cause(id, &[]).map_or_else(String::new, |cause| cause.what.into()),
     }
 }

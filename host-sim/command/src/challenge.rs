@@ -1,12 +1,12 @@
-//! `mindgap challenge`: the blind test of `mindgap diagnose`.
+//! `mindgap challenge`: a blind test of `mindgap diagnose`.
 
 use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
 
+use super::checkpoint_args::{Checkpoint, CheckpointOption};
 use super::choices::{OUTSIDE, one_of};
-use super::facts::FactsOption;
-use super::lasting::{KeepOption, Kept};
+use super::json_output::JsonOption;
 use super::{Run, kinds, progress};
 use mindgap_applications::challenge::Folder;
 use mindgap_applications::challenge::answer::answer;
@@ -20,7 +20,7 @@ use mindgap_files::places::Places;
 use mindgap_foundations::error::Result;
 use mindgap_foundations::executor::Executor;
 
-/// The blind test of a diagnosis: make cases with withheld effects, answer them, score the answers.
+/// Blind-test the diagnosis: generate cases with hidden faults, diagnose them, score the answers.
 #[derive(Args)]
 pub struct Challenge {
     #[command(subcommand)]
@@ -29,56 +29,56 @@ pub struct Challenge {
 
 #[derive(Subcommand)]
 enum Part {
-    /// Write cases of the built-in robot, and sealed what is different in each.
+    /// Generate cases of the built-in robot, with the injected faults sealed.
     Make {
         /// Number of cases.
         #[arg(long, value_name = "N", default_value_t = 400, value_parser = clap::value_parser!(u32).range(1..))]
         cases: u32,
-        /// Seed of all that is random.
+        /// Random seed.
         #[arg(long, value_name = "N", default_value_t = 1)]
         seed: u64,
-        /// What the effects that no diagnosis knows are drawn from.
+        /// Set from which effects unknown to the diagnosis are drawn.
         #[arg(long, value_parser = one_of::<Outside>(OUTSIDE), default_value = "usual")]
         outside: Outside,
-        /// Give all robots sensors whose echoes are decided by the place more than by chance, other in every room.
+        /// Give all robots a sensor whose echoes depend on the place more than on chance, differently in every room.
         #[arg(long)]
         place_bound: bool,
         #[command(flatten)]
         size: SizeOption,
-        /// Folder for the challenge.
+        /// Folder to write the challenge to.
         #[arg(long, value_name = "DIR")]
         out: PathBuf,
         #[command(flatten)]
-        keep: KeepOption,
+        checkpoint: CheckpointOption,
     },
-    /// Settle the diagnosis's thresholds on cases of other seeds whose answers are known.
+    /// Fit the thresholds of the diagnosis to cases of other seeds whose faults are known.
     Calibrate {
         /// Number of cases.
         #[arg(long, value_name = "N", default_value_t = 200)]
         cases: u32,
-        /// Seed of all that is random; none that a challenge has.
+        /// Random seed; use another than the challenge's.
         #[arg(long, value_name = "N", default_value_t = 1)]
         seed: u64,
-        /// Write the thresholds here: diagnoses use those in host-sim/diagnosis/src/calibration.toml when they are compiled.
+        /// File to write the thresholds to; builds use host-sim/diagnosis/src/calibration.toml.
         #[arg(long, value_name = "FILE")]
         out: PathBuf,
-        /// Also write what was measured in every case here.
+        /// Also write the measurements of every case as CSV.
         #[arg(long, value_name = "FILE")]
         csv: Option<PathBuf>,
         #[command(flatten)]
         size: SizeOption,
         #[command(flatten)]
-        keep: KeepOption,
+        checkpoint: CheckpointOption,
     },
-    /// Print how much each threshold decides: halved and doubled, on cases whose answers are known.
+    /// Print the sensitivity to each threshold: halved and doubled, on cases whose faults are known.
     Sensitivity {
         /// Number of cases.
         #[arg(long, value_name = "N", default_value_t = 60)]
         cases: u32,
-        /// Seed of all that is random; none that a challenge has.
+        /// Random seed; use another than the challenge's.
         #[arg(long, value_name = "N", default_value_t = 1)]
         seed: u64,
-        /// Also write the table here.
+        /// Also write the table as CSV.
         #[arg(long, value_name = "FILE")]
         csv: Option<PathBuf>,
     },
@@ -87,25 +87,25 @@ enum Part {
         /// Folder of the challenge.
         folder: PathBuf,
         #[command(flatten)]
-        keep: KeepOption,
+        checkpoint: CheckpointOption,
     },
-    /// Open the seal and score the answers.
+    /// Break the seal and score the answers.
     Score {
         /// Folder of the challenge.
         folder: PathBuf,
         #[command(flatten)]
-        facts: FactsOption,
-        /// Also write what happened in every case here.
+        json: JsonOption,
+        /// Also write the outcome of every case as CSV.
         #[arg(long, value_name = "FILE")]
         csv: Option<PathBuf>,
     },
 }
 
-/// How much is logged.
+/// Amount of data per case.
 #[derive(Args)]
 struct SizeOption {
-    /// Log little, to try the command: six short runs a case, and eight that a robot's simulator is learned from. What
-    /// such cases say of the diagnosis counts for nothing.
+    /// Use little data, to try the command: six short runs per case, and eight to train each robot's simulator. The
+    /// scores of such cases mean nothing.
     #[arg(long)]
     quick: bool,
 }
@@ -118,15 +118,15 @@ impl SizeOption {
 
 impl Run for Challenge {
     fn places(&self) -> Places {
-        let keep = self.keep().and_then(|(keep, _)| keep.asked().as_ref());
-        let places = Places::default().writing(keep, kinds::CHECKPOINT);
+        let checkpoint = self.checkpoint_option().and_then(|(checkpoint, _)| checkpoint.path().as_ref());
+        let places = Places::default().writing(checkpoint, kinds::CHECKPOINT);
         match &self.part {
             Part::Make { out, .. } => places.filling([out]),
             Part::Calibrate { out, csv, .. } => places.writing([out], kinds::CALIBRATION).writing(csv, kinds::UNSIGNED),
             Part::Sensitivity { csv, .. } => places.writing(csv, kinds::UNSIGNED),
             Part::Answer { folder, .. } => places.reading([folder]).filling([&Folder(folder).answers()]),
-            Part::Score { folder, facts, csv } => {
-                places.reading([folder]).writing(facts.asked(), kinds::REPORT).writing(csv, kinds::UNSIGNED)
+            Part::Score { folder, json, csv } => {
+                places.reading([folder]).writing(json.path(), kinds::REPORT).writing(csv, kinds::UNSIGNED)
             }
         }
     }
@@ -139,7 +139,7 @@ impl Run for Challenge {
                 let setting = Setting { outside: *outside, echoes, size: size.size() };
                 make(executor, out, *cases as usize, *seed, setting, progress::counting(&bar))?;
                 bar.finish_and_clear();
-                Ok(format!("{}: {cases} cases; sealed.json says what is different in each\n", out.display()))
+                Ok(format!("{}: {cases} cases; sealed.json holds the injected faults\n", out.display()))
             }
             Part::Calibrate { cases, seed, out, csv, size, .. } => {
                 let bar = progress::bar(u64::from(*cases));
@@ -170,20 +170,20 @@ impl Run for Challenge {
                 bar.finish_and_clear();
                 Ok(format!("{}: {count} cases diagnosed\n", folder.display()))
             }
-            Part::Score { folder, facts, csv } => {
+            Part::Score { folder, json, csv } => {
                 let bar = progress::bar(0);
                 let score = score(folder, progress::counting(&bar))?;
                 bar.finish_and_clear();
                 if let Some(path) = csv {
                     files::write_csv(path, &score.cases)?;
                 }
-                facts.told(&score, text(&score))
+                json.emit(&score, text(&score))
             }
         }
     }
 
-    fn kept(&self) -> Option<Kept> {
-        self.keep().and_then(|(keep, out)| keep.beside(&out))
+    fn checkpoint(&self) -> Option<Checkpoint> {
+        self.checkpoint_option().and_then(|(checkpoint, out)| checkpoint.for_output(&out))
     }
 
     fn is_shared(&self) -> bool {
@@ -192,17 +192,19 @@ impl Run for Challenge {
 }
 
 impl Challenge {
-    /// The parts that keep what they have done, and for which output.
-    fn keep(&self) -> Option<(&KeepOption, PathBuf)> {
+    /// Returns the checkpoint option and the output of the parts that have one.
+    fn checkpoint_option(&self) -> Option<(&CheckpointOption, PathBuf)> {
         match &self.part {
-            Part::Make { keep, out, .. } | Part::Calibrate { keep, out, .. } => Some((keep, out.clone())),
-            Part::Answer { keep, folder } => Some((keep, Folder(folder).answers())),
+            Part::Make { checkpoint, out, .. } | Part::Calibrate { checkpoint, out, .. } => {
+                Some((checkpoint, out.clone()))
+            }
+            Part::Answer { checkpoint, folder } => Some((checkpoint, Folder(folder).answers())),
             Part::Sensitivity { .. } | Part::Score { .. } => None,
         }
     }
 }
 
-/// The table of sensitivity, the calibration as it is first.
+/// Returns the sensitivity table, which begins with the unchanged calibration.
 fn table(rows: &[Row]) -> String {
     let head = ["threshold", "value", "false alarms", "named", "called unknown", "unknowns", "wrong"];
     let line = |cells: [String; 7]| {
@@ -212,7 +214,7 @@ fn table(rows: &[Row]) -> String {
     let row = |row: &Row| {
         let Row { threshold, value, false_alarms, named, false_unknowns, unknowns, wrong } = row;
         let (name, value) = match threshold.as_str() {
-            "" => ("as it is".to_string(), String::new()),
+            "" => ("unchanged".to_string(), String::new()),
             name => (name.to_string(), format!("{value:.3}")),
         };
         let counts = [false_alarms, named, false_unknowns, unknowns, wrong].map(|count| count.to_string());
@@ -224,27 +226,25 @@ fn table(rows: &[Row]) -> String {
 
 fn text(score: &Score) -> String {
     let line = |what: &str, Share { count, of }: &Share| match of {
-        0 => format!("{what:<48}     -    there was none"),
+        0 => format!("{what:<48}     -    no such case"),
         _ => format!("{what:<48} {:>5.1} %  {count} of {of}", 100.0 * *count as f64 / *of as f64),
     };
     let mut lines = vec![
-        line("false alarms where nothing is different", &score.false_alarms),
+        line("false alarms without a fault", &score.false_alarms),
         line("gaps detected", &score.detected),
-        line("single effects: named first", &score.top_1),
-        line("single effects: first or among three rivals", &score.top_set),
-        line("known answers whose set holds the effect", &score.covered),
-        format!("{:<48} {:>5.2}", "effects in such a set", score.set_size),
+        line("single faults: named first", &score.top_1),
+        line("single faults: first or among three rivals", &score.top_set),
+        line("known verdicts whose set includes the fault", &score.covered),
+        format!("{:<48} {:>5.2}", "mean size of such a set", score.set_size),
         line("pairs: both named", &score.pairs),
-        line("effects outside the table called unknown", &score.unknowns),
-        line("effects of the table called unknown", &score.false_unknowns),
-        line("wrong with a probability above 0.9", &score.confidently_wrong),
+        line("unknown effects called unknown", &score.unknowns),
+        line("known effects called unknown", &score.false_unknowns),
+        line("wrong with probability above 0.9", &score.confidently_wrong),
     ];
     lines.extend(
-        score.closed_error.map(|error| format!("{:<48} {:>5.3}", "median error of the share of the gap closed", error)),
+        score.closed_error.map(|error| format!("{:<48} {:>5.3}", "median error of the closed share of the gap", error)),
     );
-    lines.extend(
-        score.calibration.iter().map(|(bin, share)| line(&format!("right with a probability of {bin}"), share)),
-    );
+    lines.extend(score.calibration.iter().map(|(bin, share)| line(&format!("right with probability {bin}"), share)));
     lines.extend(score.confusions.iter().map(|(truth, answer, n)| {
         let truth = if truth.is_empty() { "nothing" } else { truth };
         format!("  {n} x {truth} was called {answer}")

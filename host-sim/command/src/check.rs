@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::facts::FactsOption;
+use super::json_output::JsonOption;
 use super::table::count;
 use super::{Run, kinds};
 use mindgap_diagnosis::survey::{Holdings, Range, Survey};
@@ -12,52 +12,52 @@ use mindgap_files::places::Places;
 use mindgap_foundations::error::Result;
 use mindgap_foundations::executor::Executor;
 
-/// Say what logs hold, what is wrong with them, what they suffice for, and what to drive more.
+/// Check logs: contents, defects, what they can identify, and what to drive next.
 #[derive(Args)]
 pub struct Check {
     /// Folder with robot.toml, scene.toml and run-*.csv.
     logs: PathBuf,
     #[command(flatten)]
-    facts: FactsOption,
+    json: JsonOption,
 }
 
 impl Run for Check {
     fn places(&self) -> Places {
-        Places::default().reading([&self.logs]).writing(self.facts.asked(), kinds::REPORT)
+        Places::default().reading([&self.logs]).writing(self.json.path(), kinds::REPORT)
     }
 
     fn run(&self, _: &dyn Executor) -> Result<String> {
         let survey = Survey::of(super::read_logs(&self.logs)?);
-        self.facts.told(&survey, text(&survey))
+        self.json.emit(&survey, text(&survey))
     }
 }
 
-/// A survey in words, on one screen.
+/// Returns a survey as text for one screen.
 fn text(survey: &Survey) -> String {
     let mut lines = holdings(&survey.holds);
     if survey.findings.is_empty() {
-        lines.push("Nothing is wrong with them.".into());
+        lines.push("No defects found.".into());
     } else {
-        lines.push("What is wrong with them:".into());
+        lines.push("Defects:".into());
         lines.extend(survey.findings.iter().map(|found| format!("  {}", found.line())));
     }
     if survey.refused.is_some() {
-        lines.push("Nothing is learned from them before that is mended.".into());
+        lines.push("The logs cannot be used until this is fixed.".into());
     }
     if survey.missing_networks.is_empty() {
-        lines.push("They suffice for all five networks.".into());
+        lines.push("The logs suffice for all five networks.".into());
     } else {
-        lines.push("They do not suffice for these networks:".into());
+        lines.push("The logs do not suffice for these networks:".into());
         lines
             .extend(survey.missing_networks.iter().map(|missing| format!("  {}: {}", missing.network, missing.reason)));
     }
     if survey.untestable.is_empty() {
-        lines.push("They would show every known effect.".into());
+        lines.push("Every known effect is testable with these logs.".into());
     } else {
-        lines.push(format!("Effects that they would not show: {}", survey.untestable.join(", ")));
+        lines.push(format!("Untestable effects (not excited): {}", survey.untestable.join(", ")));
     }
     if !survey.drive_more.is_empty() {
-        lines.push("What is missing:".into());
+        lines.push("Missing excitation:".into());
         lines.extend(survey.drive_more.iter().map(|sentence| format!("  {sentence}")));
     }
     lines.join("\n") + "\n"
@@ -68,35 +68,35 @@ fn holdings(holds: &Holdings) -> Vec<String> {
     let percent = |share: f64| format!("{:.0} %", 100.0 * share);
     vec![
         format!(
-            "{}, {rows} rows, {steps} steps with a pose at both ends, {:.1} min",
+            "{}, {rows} rows, {steps} steps with poses at both ends, {:.1} min",
             count(*runs, "run"),
             duration_s / 60.0
         ),
         format!("  rows      {step_ms:.0} ms apart, 95 % of them within {jitter_ms:.0} ms"),
         format!(
-            "  present   pose in {} and reading in {} of the rows",
+            "  coverage  {} of rows have a pose, {} a reading",
             percent(holds.with_pose),
             percent(holds.with_reading)
         ),
         format!(
-            "  commands  left {}, right {}; {} of the pairs of them; held for {:.0} steps (median), {} at most",
+            "  commands  left {}, right {}; {} of all pairs covered; held for {:.0} steps (median), at most {}",
             range(holds.left),
             range(holds.right),
             percent(holds.command_coverage),
             holds.held_steps,
             holds.longest_held_steps
         ),
-        format!("  speeds    ahead {} cm/s, turning {} deg/s", range(holds.forward_cm_s), range(holds.turn_deg_s)),
+        format!("  speeds    forward {} cm/s, turn rate {} deg/s", range(holds.forward_cm_s), range(holds.turn_deg_s)),
         sensor(holds),
     ]
 }
 
 fn sensor(holds: &Holdings) -> String {
     if holds.reading_cm.is_none() && holds.distance_cm.is_none() {
-        return "  sensor    no reading, and no wall that it could face".into();
+        return "  sensor    no readings, and no wall in view".into();
     }
     format!(
-        "  sensor    reads {} cm; faces walls {} cm away (D) at {} deg to their normal (alpha): {:.0} % of what it could face",
+        "  sensor    reads {} cm; distance D {} cm, incidence angle alpha {} deg: {:.0} % of the possible (D, alpha) covered",
         range(holds.reading_cm),
         range(holds.distance_cm),
         range(holds.alpha_deg),

@@ -1,23 +1,23 @@
-//! Options that take one of a few names.
+//! Options that accept one of a few names.
 
 use std::str::FromStr;
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 
-/// Names, each with its help.
+/// Names, each with its help text.
 type Names = [(&'static str, &'static str)];
 
 /// Names of [`SensorModel`](mindgap_models::simulator::environment::SensorModel).
 pub const SENSOR_MODELS: &Names = &[
-    ("beam", "The beam that the training logs show; the networks where they show none"),
+    ("beam", "The beam model fitted to the training logs; the networks if there is none"),
     ("networks", "The two sonar networks"),
     ("first_echo", "The first-echo law"),
 ];
 
 /// Names of [`Outside`](mindgap_applications::challenge::cases::Outside).
 pub const OUTSIDE: &Names = &[
-    ("usual", "Those that the thresholds of the diagnosis were fitted on as well, on cases of other seeds"),
-    ("held-out", "Those that no part of the diagnosis was made or fitted on"),
+    ("usual", "Effects that were also used, with other seeds, to fit the thresholds of the diagnosis"),
+    ("held-out", "Effects that were used neither to design nor to fit any part of the diagnosis"),
 ];
 
 /// Names of [`Time`](mindgap_import::units::Time).
@@ -29,7 +29,7 @@ pub const LENGTHS: &Names = &[("m", "Metres"), ("cm", "Centimetres"), ("mm", "Mi
 /// Names of [`Angle`](mindgap_import::units::Angle).
 pub const ANGLES: &Names = &[("deg", "Degrees"), ("rad", "Radians")];
 
-/// Returns a parser of one of `names` as a `T`, which reads them all.
+/// Returns a parser that accepts one of `names` and converts it to `T`.
 pub fn one_of<T>(names: &'static Names) -> impl TypedValueParser<Value = T>
 where
     T: FromStr<Err = String> + Clone + Send + Sync + 'static,
@@ -45,17 +45,17 @@ mod tests {
     use mindgap_import::units::{Angle, Length, Time};
     use mindgap_models::simulator::environment::SensorModel;
 
-    fn all_are_read<T: FromStr<Err = String>>(names: &Names) {
+    fn assert_all_parse<T: FromStr<Err = String>>(names: &Names) {
         names.iter().for_each(|(name, _)| assert!(name.parse::<T>().is_ok(), "{name}"));
         assert!("furlong".parse::<T>().is_err());
     }
 
     #[test]
-    fn every_offered_name_is_read() {
-        all_are_read::<SensorModel>(SENSOR_MODELS);
-        all_are_read::<Outside>(OUTSIDE);
-        all_are_read::<Time>(TIMES);
-        all_are_read::<Length>(LENGTHS);
-        all_are_read::<Angle>(ANGLES);
+    fn every_offered_name_parses() {
+        assert_all_parse::<SensorModel>(SENSOR_MODELS);
+        assert_all_parse::<Outside>(OUTSIDE);
+        assert_all_parse::<Time>(TIMES);
+        assert_all_parse::<Length>(LENGTHS);
+        assert_all_parse::<Angle>(ANGLES);
     }
 }

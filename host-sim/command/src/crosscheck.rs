@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, value_parser};
 
-use super::facts::FactsOption;
+use super::json_output::JsonOption;
 use super::{Run, kinds, progress, table, textbook};
 use mindgap_files::places::Places;
 use mindgap_foundations::error::Result;
@@ -12,30 +12,30 @@ use mindgap_foundations::executor::Executor;
 use mindgap_learning::crosscheck::{self, Divergence, NetworkCheck, Networks, RunState, Runs, Trials};
 use mindgap_logs::controller_file::ControllerFile;
 
-/// Check that a board without floating point computes what the PC does: fixed point against float.
+/// Compare fixed point, as on a board without floating point, with float on every sample.
 #[derive(Args)]
 pub struct Crosscheck {
     /// The simulator file.
     sim: PathBuf,
     /// Folder of logs.
     logs: PathBuf,
-    /// Run this controller; random ones when left out.
+    /// Controller to run (default: random controllers).
     #[arg(long)]
     controller: Option<PathBuf>,
-    /// How many runs.
+    /// Number of runs.
     #[arg(long, value_name = "N", default_value_t = 1000, value_parser = value_parser!(u32).range(1..=1_000_000))]
     runs: u32,
-    /// Fixes every draw.
+    /// Random seed.
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
     #[command(flatten)]
-    facts: FactsOption,
+    json: JsonOption,
 }
 
 impl Run for Crosscheck {
     fn places(&self) -> Places {
         let inputs = [&self.sim, &self.logs].into_iter().chain(&self.controller);
-        Places::default().reading(inputs).writing(self.facts.asked(), kinds::REPORT)
+        Places::default().reading(inputs).writing(self.json.path(), kinds::REPORT)
     }
 
     fn run(&self, _: &dyn Executor) -> Result<String> {
@@ -48,11 +48,11 @@ impl Run for Crosscheck {
         let found = crosscheck::crosscheck(&simulator, &logs, controller.as_ref(), trials, progress::counting(&bar));
         bar.finish_and_clear();
         let found = found.map_err(|error| error.or_in_file(&self.sim))?;
-        self.facts.told(&found, networks(&found.networks) + "\n" + &runs(&found.runs))
+        self.json.emit(&found, networks(&found.networks) + "\n" + &runs(&found.runs))
     }
 }
 
-/// Differences as a table.
+/// Returns the differences between fixed point and float as a table.
 fn networks(networks: &Networks) -> String {
     let Networks { turn, forward, lateral, echo_probability, echo_value } = networks;
     let named = [
@@ -71,28 +71,28 @@ fn networks(networks: &Networks) -> String {
     let header = ["fixed - float", "samples", "worst", "mean", "grid worst", "grid mean", "bound"];
     let clamped = named.iter().filter(|(_, check)| check.samples.clamped > 0);
     let clamped = clamped.map(|(name, NetworkCheck { samples, .. })| {
-        format!("{name}: {} of {} samples lie outside the trained range\n", samples.clamped, samples.n)
+        format!("{name}: {} of {} samples are outside the trained range\n", samples.clamped, samples.n)
     });
-    let bound = "bound: the most that fixed point can be off; what float is off comes on top\n";
+    let bound = "bound: upper limit of the fixed-point error; float32 error not included\n";
     table::text(header, &rows) + bound + &clamped.collect::<String>()
 }
 
-/// What became of the runs.
+/// Returns how far the runs in fixed point follow those in float.
 fn runs(runs: &Runs) -> String {
     let share = 100.0 * runs.same_share();
     let apart = &runs.apart;
-    let parted = match &runs.first_divergence {
-        None => "No run parts.\n".into(),
+    let diverged = match &runs.first_divergence {
+        None => "No run diverges.\n".into(),
         Some(Divergence { run, step, float, fixed }) => format!(
-            "{} runs part, first run {run} at step {step}:\n  float {}\n  fixed {}\n",
+            "{} runs diverge; the first is run {run}, at step {step}:\n  float {}\n  fixed {}\n",
             runs.parted,
             state(float),
             state(fixed)
         ),
     };
     format!(
-        "{} runs, {} steps: the controller decides the same in {share:.3} % of them.\n\
-         Until they part, runs are at most {:.4} cm and {:.4} degrees apart.\n{parted}",
+        "{} runs, {} steps: the controller takes the same decision in {share:.3} % of the steps.\n\
+         Before any divergence, the runs differ by at most {:.4} cm and {:.4} degrees.\n{diverged}",
         runs.n, runs.steps, apart.position_cm, apart.heading_deg
     )
 }

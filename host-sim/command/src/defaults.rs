@@ -1,7 +1,7 @@
-//! Defaults of options from `mindgap.toml`, which lies beside the logs: long names of options with what they are when the
-//! call does not say it, for all commands at the top, and for one command in its table.
+//! Defaults of options from a file `mindgap.toml` next to the logs. Keys are the long names of options: at the top level
+//! for all commands, in a table for one command.
 //!
-//! What there is to be set follows from the definitions by which calls are parsed; no list is kept.
+//! The accepted keys follow from the definitions of the command line; there is no separate list.
 
 use std::any::TypeId;
 use std::ffi::OsString;
@@ -15,37 +15,37 @@ use toml::de::{DeTable, DeValue};
 use mindgap_files as files;
 use mindgap_foundations::error::{Error, Result};
 
-/// The file.
+/// File name of the defaults.
 const NAME: &str = "mindgap.toml";
-/// Positional arguments of this name are folders of logs.
+/// Id of positional arguments that are folders of logs.
 const LOGS: &str = "logs";
-/// What nobody may ask for once and for all: to replace others' files.
+/// Options that cannot have a default. `force` could overwrite files of others.
 const NEVER: &[&str] = &["force", "help", "version"];
 
-/// What was taken of a file.
+/// Defaults that apply to this call.
 #[derive(Default)]
 pub struct Defaults {
     path: PathBuf,
-    taken: Vec<Taken>,
+    applied: Vec<Applied>,
 }
 
-/// An option that was taken.
-struct Taken {
+/// One default that applies.
+struct Applied {
     line: u64,
-    /// As clap names it.
+    /// The option as clap displays it.
     option: String,
     argument: OsString,
 }
 
-/// A call with the defaults of its command added that it does not set itself.
+/// Returns the call extended by the defaults of its command that it does not set itself.
 ///
 /// # Errors
-/// When the file cannot be read, has a key that is no option, or a value that no option has.
+/// If the file cannot be read, has a key that is not an option, or a value of the wrong type.
 pub fn with_defaults(command: &Command, mut call: Vec<OsString>) -> Result<(Vec<OsString>, Defaults)> {
-    // General options become those of every command.
+    // Building copies the general options to every subcommand.
     let mut command = command.clone();
     command.build();
-    // What is wrong with the call is told when it is parsed with the defaults.
+    // Errors in the call are reported when it is parsed with the defaults.
     let Ok(stated) = command.clone().ignore_errors(true).try_get_matches_from(&call) else {
         return Ok((call, Defaults::default()));
     };
@@ -56,35 +56,35 @@ pub fn with_defaults(command: &Command, mut call: Vec<OsString>) -> Result<(Vec<
     }
     let text = files::read_text(&path)?;
     let file = File { path: &path, text: &text };
-    let taken = file.taken(&command, &chain)?;
+    let applied = file.applied(&command, &chain)?;
     let end = call.iter().position(|argument| argument == "--").unwrap_or(call.len());
-    call.splice(end..end, taken.iter().map(|taken| taken.argument.clone()));
-    Ok((call, Defaults { path, taken }))
+    call.splice(end..end, applied.iter().map(|applied| applied.argument.clone()));
+    Ok((call, Defaults { path, applied }))
 }
 
 impl Defaults {
-    /// Says what was taken.
-    pub fn tell(&self) {
-        for Taken { line, argument, .. } in &self.taken {
+    /// Logs the defaults that apply.
+    pub fn log(&self) {
+        for Applied { line, argument, .. } in &self.applied {
             log::info!("{}:{line}: {}", self.path.display(), argument.to_string_lossy());
         }
     }
 
-    /// A call that is wrong ends the process here, unless it is wrong by a default.
-    pub fn blamed_for(&self, error: clap::Error) -> Error {
+    /// Returns the error with the line of the default that caused it; exits the process if the call itself is wrong.
+    pub fn locate(&self, error: clap::Error) -> Error {
         let words = error.to_string();
-        let option = self.taken.iter().find(|taken| words.contains(&format!("'{}'", taken.option)));
+        let option = self.applied.iter().find(|applied| words.contains(&format!("'{}'", applied.option)));
         match option {
-            Some(taken) if error.use_stderr() => {
+            Some(applied) if error.use_stderr() => {
                 let first = words.lines().next().unwrap_or_default();
-                Error::at_line(&self.path, taken.line, first.trim_start_matches("error: "))
+                Error::at_line(&self.path, applied.line, first.trim_start_matches("error: "))
             }
             _ => error.exit(),
         }
     }
 }
 
-/// The command and the subcommands of it that were called, each with what the call says to it.
+/// Returns the command and the called subcommands, each with its matches.
 fn chain<'c>(command: &'c Command, stated: &'c ArgMatches) -> Vec<(&'c Command, &'c ArgMatches)> {
     let mut chain = vec![(command, stated)];
     while let Some((command, matches)) = chain.last().and_then(|(command, matches)| {
@@ -96,21 +96,21 @@ fn chain<'c>(command: &'c Command, stated: &'c ArgMatches) -> Vec<(&'c Command, 
     chain
 }
 
-/// Where the logs lie that are read, or else where the call is made.
+/// Returns the parent of the folder of logs, or the current folder if the call reads no logs.
 fn folder(chain: &[(&Command, &ArgMatches)]) -> PathBuf {
     let logs = chain.iter().find_map(|(_, stated)| stated.try_get_one::<PathBuf>(LOGS).ok().flatten());
     logs.and_then(|logs| logs.parent()).map(Path::to_owned).unwrap_or_default()
 }
 
-/// A file of defaults.
+/// The text of a file of defaults.
 struct File<'f> {
     path: &'f Path,
     text: &'f str,
 }
 
 impl File<'_> {
-    /// What it sets for a chain of commands; the innermost command's tables win.
-    fn taken(&self, command: &Command, chain: &[(&Command, &ArgMatches)]) -> Result<Vec<Taken>> {
+    /// Returns the defaults for a chain of commands; the table of the innermost command takes precedence.
+    fn applied(&self, command: &Command, chain: &[(&Command, &ArgMatches)]) -> Result<Vec<Applied>> {
         let parsed = DeTable::parse(self.text).map_err(|e| {
             let line = e.span().map_or(1, |span| files::line_at(self.text, span.start));
             Error::at_line(self.path, line, e.message().replace('\n', "; "))
@@ -132,7 +132,7 @@ impl File<'_> {
             };
             chain.iter().any(|(_, matches)| stated(matches))
         };
-        // What the call says rules out what it conflicts with.
+        // Options of the call override defaults that conflict with them.
         let conflict =
             |a: &Arg, b: &Arg| called.get_arg_conflicts_with(a).iter().any(|other| other.get_id() == b.get_id());
         let is_ruled_out = |option: &Arg| {
@@ -141,7 +141,7 @@ impl File<'_> {
                 .filter(|other| is_stated(other))
                 .any(|other| conflict(option, other) || conflict(other, option))
         };
-        let mut taken = Vec::new();
+        let mut applied = Vec::new();
         for option in called.get_arguments() {
             let Some(name) = option.get_long() else { continue };
             let Some((key, value)) = tables.iter().rev().find_map(|table| table.get_key_value(name)) else { continue };
@@ -149,13 +149,13 @@ impl File<'_> {
                 let line = files::line_at(self.text, key.span().start);
                 let arguments = self.arguments(option, value)?;
                 let option = option.to_string();
-                taken.extend(arguments.map(|argument| Taken { line, option: option.clone(), argument }));
+                applied.extend(arguments.map(|argument| Applied { line, option: option.clone(), argument }));
             }
         }
-        Ok(taken)
+        Ok(applied)
     }
 
-    /// Refuses keys that are neither an option of the command, or of one within it, nor one of its subcommands.
+    /// Rejects keys that are neither a subcommand nor an option of the command or of one of its subcommands.
     fn check(&self, command: &Command, table: &DeTable) -> Result<()> {
         let options = options_within(command);
         for (key, value) in table {
@@ -169,18 +169,19 @@ impl File<'_> {
                 let names = options.iter().filter_map(|option| option.get_long());
                 let commands = command.get_subcommands().map(Command::get_name);
                 let like = files::did_you_mean(name, names.chain(commands));
-                return Err(Error::at_line(self.path, line, format!("{name} is no option of mindgap{like}")));
+                return Err(Error::at_line(self.path, line, format!("{name} is not an option of mindgap{like}")));
             };
             if meant.any(|other| other.get_value_names() != first.get_value_names()) {
-                let what =
-                    format!("commands mean different things by {name}: put it into the table of one, as [train]");
+                let what = format!(
+                    "{name} means different things in different commands: put it in the table of one, such as [train]"
+                );
                 return Err(Error::at_line(self.path, line, what));
             }
         }
         Ok(())
     }
 
-    /// An option's value as arguments of a call.
+    /// Returns the value of an option as command-line arguments.
     fn arguments(&self, option: &Arg, value: &Spanned<DeValue>) -> Result<std::vec::IntoIter<OsString>> {
         let name = option.get_long().unwrap_or_default();
         let line = files::line_at(self.text, value.span().start);
@@ -189,11 +190,11 @@ impl File<'_> {
         let one = |value: &DeValue| match (value, takes_value) {
             (DeValue::Boolean(true), false) => Ok(Some(format!("--{name}").into())),
             (DeValue::Boolean(false), false) => Ok(None),
-            (_, false) => Err(wrong("is true or false")),
+            (_, false) => Err(wrong("must be true or false")),
             (DeValue::String(text), true) => Ok(Some(self.argument(option, text))),
             (DeValue::Integer(number), true) => Ok(Some(format!("--{name}={number}").into())),
             (DeValue::Float(number), true) => Ok(Some(format!("--{name}={number}").into())),
-            _ => Err(wrong("is a text in quotes or a number")),
+            _ => Err(wrong("must be a quoted string or a number")),
         };
         let arguments: Result<Vec<Option<OsString>>> = match value.get_ref() {
             DeValue::Array(values) if matches!(option.get_action(), ArgAction::Append) => {
@@ -204,7 +205,7 @@ impl File<'_> {
         Ok(arguments?.into_iter().flatten().collect::<Vec<OsString>>().into_iter())
     }
 
-    /// An option with a text; files are named from where the file of defaults lies.
+    /// Returns an option with a string value; relative paths are resolved against the folder of the file of defaults.
     fn argument(&self, option: &Arg, text: &str) -> OsString {
         let mut argument = OsString::from(format!("--{}=", option.get_long().unwrap_or_default()));
         let is_path = option.get_value_parser().type_id() == TypeId::of::<PathBuf>();
@@ -216,7 +217,7 @@ impl File<'_> {
     }
 }
 
-/// The options of a command and of all commands within it.
+/// Returns the options of a command and of all its subcommands.
 fn options_within(command: &Command) -> Vec<&Arg> {
     let own = command.get_arguments().filter(|option| option.get_long().is_some_and(|long| !NEVER.contains(&long)));
     own.chain(command.get_subcommands().flat_map(options_within)).collect()

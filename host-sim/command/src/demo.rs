@@ -5,10 +5,10 @@ use std::path::PathBuf;
 use clap::Args;
 use serde_json::{Value, json};
 
-use super::facts::FactsOption;
-use super::lasting::{KeepOption, Kept};
+use super::checkpoint_args::{Checkpoint, CheckpointOption};
+use super::json_output::JsonOption;
 use super::table::{self, number};
-use super::{Run, kinds, progress, trials};
+use super::{Run, closed_loop, kinds, progress};
 use mindgap_applications::demo::repair::Repair;
 use mindgap_applications::demo::{self, Size, Stage, StartSummary, Summary};
 use mindgap_files as files;
@@ -18,37 +18,37 @@ use mindgap_foundations::executor::Executor;
 use mindgap_learning::evolve::fitness::Success;
 use mindgap_pages::demo::page;
 
-/// The page among what the demo leaves.
+/// File name of the page in the output folder.
 const PAGE: &str = "demo.html";
 
-/// Do the whole job on the built-in robot: record, train, evolve, try, export, draw.
+/// Run the whole pipeline on the built-in robot: record, train, evolve, test, export, plot.
 ///
-/// Then weaken a motor, and let the loop find out and repair it. `demo.html` in the folder is a page of all of it.
+/// Then weaken a motor, and let the loop diagnose and compensate for it. `demo.html` in the folder shows the results.
 #[derive(Args)]
 pub struct Demo {
-    /// Where to leave everything.
+    /// Output folder.
     #[arg(long, default_value = "mindgap-out")]
     out: PathBuf,
-    /// Fixes every draw.
+    /// Random seed.
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
-    /// Do little of everything, to see what comes of it: fewer logs, one start, the paper's one run of the genetic
-    /// algorithm, one run of the loop.
+    /// Run a short version: fewer logs, one start, a single run of the genetic algorithm as in the paper, one trial of
+    /// the loop.
     #[arg(long)]
     quick: bool,
     #[command(flatten)]
-    facts: FactsOption,
-    /// Also write a page for a browser here.
+    json: JsonOption,
+    /// Write an HTML page.
     #[arg(long, value_name = "FILE")]
     html: Option<PathBuf>,
     #[command(flatten)]
-    keep: KeepOption,
+    checkpoint: CheckpointOption,
 }
 
 impl Run for Demo {
     fn places(&self) -> Places {
-        let places = Places::default().filling([&self.out]).writing(self.facts.asked(), kinds::REPORT);
-        places.writing(&self.html, kinds::PAGE).writing(self.keep.asked(), kinds::CHECKPOINT)
+        let places = Places::default().filling([&self.out]).writing(self.json.path(), kinds::REPORT);
+        places.writing(&self.html, kinds::PAGE).writing(self.checkpoint.path(), kinds::CHECKPOINT)
     }
 
     fn run(&self, executor: &dyn Executor) -> Result<String> {
@@ -59,10 +59,10 @@ impl Run for Demo {
                 Stage::Recording => "recording logs of the built-in robot".into(),
                 Stage::Training(p) => progress::training_words(p.network, p.evaluations),
                 Stage::Evolving { start, generation, generations } => {
-                    format!("evolving for start {start}: round {} of {generations}", generation + 1)
+                    format!("evolving for start {start}: generation {} of {generations}", generation + 1)
                 }
                 Stage::Drawing => "drawing".into(),
-                Stage::Repairing { trial } => format!("a motor got weak: trial {trial} on the robot"),
+                Stage::Repairing { trial } => format!("weak motor: trial {trial} on the robot"),
             };
             progress::at(&bar, share_before(&stage, size), words);
         };
@@ -74,21 +74,21 @@ impl Run for Demo {
             files::write(path, &page)?;
         }
         let text = format!(
-            "{}\n{}\nlogs, simulator, controllers, NXC programs and pictures are in {}, and a page of it all is {}\n",
-            told(&summary, size),
+            "{}\n{}\nlogs, simulator, controllers, NXC programs and figures are in {}; open {} for an overview\n",
+            describe(&summary, size),
             repaired(&summary.repair),
             self.out.display(),
             in_folder.display()
         );
-        self.facts.told(&facts(&summary), text)
+        self.json.emit(&results(&summary), text)
     }
 
-    fn kept(&self) -> Option<Kept> {
-        self.keep.beside(&self.out)
+    fn checkpoint(&self) -> Option<Checkpoint> {
+        self.checkpoint.for_output(&self.out)
     }
 }
 
-/// The share of the time that has gone by at a stage, roughly.
+/// Returns the approximate share of the run time that is over at a stage.
 fn share_before(stage: &Stage, size: Size) -> f64 {
     match stage {
         Stage::Recording => 0.0,
@@ -101,7 +101,7 @@ fn share_before(stage: &Stage, size: Size) -> f64 {
     }
 }
 
-fn facts(summary: &Summary) -> Value {
+fn results(summary: &Summary) -> Value {
     let success = |of: &Success| json!({"success": of.rate, "crashed": of.crashed, "median_cm": of.median_cm});
     let start = |of: &StartSummary| json!({"simulated": success(&of.simulated), "real": success(&of.real)});
     let starts: Vec<Value> = summary.starts.iter().map(start).collect();
@@ -113,7 +113,7 @@ fn facts(summary: &Summary) -> Value {
     json!({"schema": 1, "networks": summary.evaluation.networks, "starts": starts, "repair": repair})
 }
 
-fn told(summary: &Summary, size: Size) -> String {
+fn describe(summary: &Summary, size: Size) -> String {
     let percent = |rate: f64| format!("{:.0} %", 100.0 * rate);
     let rows: Vec<[String; 5]> = summary
         .starts
@@ -130,7 +130,7 @@ fn told(summary: &Summary, size: Size) -> String {
         })
         .collect();
     let header = ["controller for", "simulated: reached", "median (cm)", "robot: reached", "median (cm)"];
-    let chosen = format!("of {} controllers a start, that which did best in one trial on the robot\n", demo::TRIED);
+    let chosen = format!("best of {} controllers per start, chosen by one trial each on the robot\n", demo::TRIED);
     format!(
         "{}\n{}{}",
         super::evaluate::accuracy(&summary.evaluation.networks),
@@ -139,13 +139,13 @@ fn told(summary: &Summary, size: Size) -> String {
     )
 }
 
-/// What the loop did about a change of the robot.
+/// Returns what the loop did about the changed robot.
 fn repaired(repair: &Repair) -> String {
     let percent = |rate: f64| format!("{:.0} %", 100.0 * rate);
-    let trials: String = repair.state.trials.iter().map(|trial| format!("  {}\n", trials::line(trial))).collect();
+    let trials: String = repair.state.trials.iter().map(|trial| format!("  {}\n", closed_loop::line(trial))).collect();
     format!(
-        "then {} changes the robot: the controller of start {} reaches the target in {} of its runs\n{trials}the loop's \
-         controller reaches it in {} (loop/paths.png)\n",
+        "with {} injected, the controller of start {} reaches the target in {} of its runs\n{trials}the loop's controller \
+         reaches it in {} (loop/paths.png)\n",
         repair.changed,
         repair.start,
         percent(repair.before.rate),

@@ -5,10 +5,10 @@ use std::path::PathBuf;
 use clap::Args;
 use mindgap_core::controller::Controller;
 
-use super::facts::FactsOption;
+use super::checkpoint_args::{Checkpoint, CheckpointOption};
 use super::fleet::FleetRequest;
-use super::lasting::{KeepOption, Kept};
-use super::textbook::{KINEMATIC, simulator_beside_textbook};
+use super::json_output::JsonOption;
+use super::textbook::{KINEMATIC, simulator_or_textbook};
 use super::{Run, diagnosis_text, kinds, progress};
 use mindgap_diagnosis::Method;
 use mindgap_diagnosis::progress::Stage;
@@ -23,47 +23,47 @@ use mindgap_models::effects::own;
 use mindgap_models::simulator::{Simulator, textbook};
 use mindgap_pages::diagnosis::{Source, Subject, page};
 
-/// Find the gap between a simulator and logs: where it lies, what causes it, and how far it shrinks.
+/// Diagnose the gap between a simulator and logs: where it is, what causes it, and how much of it can be closed.
 #[derive(Args)]
 pub struct Diagnose {
-    /// The simulator file; or `kinematic`, which compares with the textbook's differential drive and an ideal sonar, by the
-    /// measures in the logs' robot.toml alone.
+    /// Simulator file; or `kinematic` to compare with a textbook differential drive and an ideal sonar, from the logs'
+    /// robot.toml alone.
     #[arg(value_name = "SIM|kinematic")]
     sim: PathBuf,
-    /// Folder of logs; with --fleet a folder that has one for each robot.
+    /// Folder of logs; with --fleet, a folder that contains one such folder per robot.
     logs: PathBuf,
-    /// The logs are of this controller's runs: also compare where they end.
+    /// Controller that drove the logged runs: also compare final positions.
     #[arg(long, value_name = "CONTROLLER")]
     controller: Option<PathBuf>,
-    /// Effects of your own that compete with the built-in ones; may be given several times.
+    /// User-defined effects that compete with the built-in ones; repeatable.
     #[arg(long, value_name = "FILE")]
     effects: Vec<PathBuf>,
-    /// Fixes every draw: bootstrap intervals and simulated noise.
+    /// Random seed, for bootstrap intervals and simulated noise.
     #[arg(long, value_name = "N", default_value_t = Method::SEED)]
     seed: u64,
-    /// Length of the steps in which rows are compared; by default the simulator's, and of rows that come faster than
-    /// that, a length that motion shows in.
+    /// Step length for the comparison (default: the simulator's, or for faster logs a length in which motion is
+    /// measurable).
     #[arg(long, value_name = "MS", value_parser = positive)]
     step_ms: Option<f64>,
     #[command(flatten)]
-    facts: FactsOption,
-    /// Also write a page for a browser here.
+    json: JsonOption,
+    /// Write an HTML page.
     #[arg(long, value_name = "FILE")]
     html: Option<PathBuf>,
-    /// Also draw figures into this folder, as SVG and PNG.
+    /// Write figures into this folder, as SVG and PNG.
     #[arg(long, value_name = "DIR")]
     figures: Option<PathBuf>,
-    /// Write a simulator with the effects added that explain the gap, and the formula of what they leave.
+    /// Write a copy of the simulator with the effects that explain the gap, and the formula of the residual, if any.
     #[arg(long, value_name = "SIM_OUT")]
     apply: Option<PathBuf>,
-    /// Write the formula of what no effect explains here, as a file of own effects.
+    /// Write the formula of the unexplained residual, as a file for --effects.
     #[arg(long, value_name = "FILE")]
     formula: Option<PathBuf>,
-    /// Write the commands to log next here, as a run in CSV, where causes remain confused.
+    /// Write the commands that best discriminate between ambiguous causes, as a run in CSV.
     #[arg(long, value_name = "FILE")]
     next_experiment: Option<PathBuf>,
-    /// Diagnose a fleet, every folder in LOGS, and write into this folder what the robots have in common, who stands out, and
-    /// each one's diagnosis. --apply then writes a simulator with the effects that nearly all robots have alike.
+    /// Diagnose a fleet, one robot per folder in LOGS, and write common effects, outliers and each robot's diagnosis into
+    /// this folder. --apply then writes a simulator with the effects that nearly all robots share.
     #[arg(
         long,
         value_name = "OUT",
@@ -71,21 +71,21 @@ pub struct Diagnose {
     )]
     fleet: Option<PathBuf>,
     #[command(flatten)]
-    keep: KeepOption,
+    checkpoint: CheckpointOption,
 }
 
 impl Run for Diagnose {
     fn places(&self) -> Places {
         let inputs = self.simulator_file().into_iter().chain([&self.logs]).chain(&self.controller).chain(&self.effects);
-        let places = Places::default().reading(inputs).writing(self.facts.asked(), kinds::REPORT);
+        let places = Places::default().reading(inputs).writing(self.json.path(), kinds::REPORT);
         let places = places.writing(&self.html, kinds::PAGE).writing(&self.apply, kinds::SIMULATOR);
         let places = places.writing(&self.formula, kinds::FORMULA).writing(&self.next_experiment, kinds::UNSIGNED);
         let places = places.filling(&self.figures).filling(&self.fleet);
-        places.writing(self.keep.asked(), kinds::CHECKPOINT)
+        places.writing(self.checkpoint.path(), kinds::CHECKPOINT)
     }
 
-    fn kept(&self) -> Option<Kept> {
-        self.keep.beside(self.fleet.as_ref()?)
+    fn checkpoint(&self) -> Option<Checkpoint> {
+        self.checkpoint.for_output(self.fleet.as_ref()?)
     }
 
     fn is_shared(&self) -> bool {
@@ -93,12 +93,10 @@ impl Run for Diagnose {
     }
 
     fn run(&self, executor: &dyn Executor) -> Result<String> {
-        if self.fleet.is_none() && self.keep.asked().is_some() {
-            return Err(Error::new(
-                "--checkpoint keeps the diagnoses of a --fleet: of one robot there is nothing to keep",
-            ));
+        if self.fleet.is_none() && self.checkpoint.path().is_some() {
+            return Err(Error::new("--checkpoint needs --fleet: the diagnosis of a single robot has no checkpoint"));
         }
-        let simulator = self.simulator_file().map(|path| simulator_beside_textbook(path)).transpose()?;
+        let simulator = self.simulator_file().map(|path| simulator_or_textbook(path)).transpose()?;
         let controller = self.controller_of(simulator.as_ref())?;
         let request = Request {
             simulator: simulator.as_ref(),
@@ -120,7 +118,7 @@ impl Run for Diagnose {
         bar.finish_and_clear();
         let answered = answered?;
         let Answered { findings: found, logs } = &answered;
-        // What can fail is made before anything is written.
+        // Everything that can fail happens before anything is written.
         let applied = match &self.apply {
             Some(path) if !found.with_formula().is_empty() => Some((path, request.mended(&answered)?)),
             _ => None,
@@ -143,34 +141,34 @@ impl Run for Diagnose {
         }
         let mut text = diagnosis_text::text(&found.diagnosis);
         if let (Some(path), None) = (&self.apply, &applied) {
-            text += &format!("Nothing explains a gap: {} is not written.\n", path.display());
+            text += &format!("No effect to apply: {} was not written.\n", path.display());
         }
         match (&self.next_experiment, found.diagnosis.experiment()) {
             (Some(path), Some(experiment)) => experiment.commands.write(path)?,
-            (Some(path), None) => text += &format!("No causes are confused: {} is not written.\n", path.display()),
+            (Some(path), None) => text += &format!("No causes are ambiguous: {} was not written.\n", path.display()),
             (None, _) => (),
         }
         match (&self.formula, &found.formula) {
             (Some(path), Some(formula)) => {
                 files::write(path, kinds::FORMULA_SIGN.to_owned() + &own::to_text(&formula.definition))?;
             }
-            (Some(path), None) => text += &format!("No formula holds: {} is not written.\n", path.display()),
+            (Some(path), None) => text += &format!("No formula was confirmed: {} was not written.\n", path.display()),
             (None, _) => (),
         }
-        self.facts.told(&found.diagnosis, text)
+        self.json.emit(&found.diagnosis, text)
     }
 }
 
 impl Diagnose {
-    /// None where the textbook stands for a simulator.
+    /// Returns the simulator file, or `None` for `kinematic`.
     fn simulator_file(&self) -> Option<&PathBuf> {
         Some(&self.sim).filter(|sim| sim.as_os_str() != KINEMATIC)
     }
 
-    /// The controller whose runs the logs are, where that is said.
+    /// Reads the controller that drove the logged runs, if one is given.
     fn controller_of(&self, simulator: Option<&Simulator>) -> Result<Option<Controller>> {
         let Some(path) = &self.controller else { return Ok(None) };
-        let simulator = simulator.ok_or_else(|| Error::new("--controller needs a simulator file that can run it"))?;
+        let simulator = simulator.ok_or_else(|| Error::new("--controller needs a simulator file"))?;
         Ok(Some(ControllerFile::read_for(path, &simulator.robot)?.controller))
     }
 
@@ -191,8 +189,8 @@ impl Diagnose {
     }
 }
 
-/// A length of time.
+/// Parses a positive length of time, ms.
 fn positive(text: &str) -> std::result::Result<f64, String> {
-    let ms: f64 = text.parse().map_err(|_| String::from("is no number"))?;
-    if ms.is_finite() && ms > 0.0 { Ok(ms) } else { Err("is not above zero".into()) }
+    let ms: f64 = text.parse().map_err(|_| String::from("is not a number"))?;
+    if ms.is_finite() && ms > 0.0 { Ok(ms) } else { Err("must be above zero".into()) }
 }

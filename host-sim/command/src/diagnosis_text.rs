@@ -1,4 +1,4 @@
-//! A diagnosis in words, on one screen.
+//! A diagnosis as text for one screen.
 
 use super::budget_text;
 use mindgap_diagnosis::Diagnosis;
@@ -13,7 +13,7 @@ use mindgap_diagnosis::propose::Experiment;
 use mindgap_learning::evaluation::final_position::FinalPositionErrors;
 use mindgap_pages::words;
 
-/// The words.
+/// Returns a diagnosis as text.
 pub fn text(diagnosis: &Diagnosis) -> String {
     let mut lines = Vec::new();
     if !diagnosis.data.is_empty() {
@@ -23,15 +23,15 @@ pub fn text(diagnosis: &Diagnosis) -> String {
     lines.push(verdict(&diagnosis.answer));
     lines.extend(budget_text::lines(diagnosis));
     if !diagnosis.effects().is_empty() {
-        lines.push("The effects (probability, effect, strength with 95 % interval):".into());
+        lines.push("Effects (probability, effect, strength with 95 % interval):".into());
         lines.extend(diagnosis.effects().iter().flat_map(effect));
     }
     if !diagnosis.strata.is_empty() {
-        lines.push("Where it lies:".into());
+        lines.push("Where it is:".into());
         lines.extend(diagnosis.strata.iter().map(stratum));
     }
     if !diagnosis.profiles().is_empty() {
-        lines.push("What is unexplained (logged minus predicted) follows:".into());
+        lines.push("Unexplained residual (logged minus predicted):".into());
         lines.extend(diagnosis.profiles().iter().map(profile));
     }
     lines.extend(diagnosis.formula.iter().map(formula));
@@ -42,21 +42,21 @@ pub fn text(diagnosis: &Diagnosis) -> String {
     lines.extend(diagnosis.experiment().map(Experiment::sentence));
     if !diagnosis.untestable.is_empty() {
         let ids = diagnosis.untestable.join(", ");
-        lines.push(format!("Not excited by these logs, so neither there nor absent: {ids}"));
+        lines.push(format!("Untestable with these logs (not excited): {ids}"));
     }
     lines.extend(diagnosis.notes.iter().cloned());
     lines.join("\n") + "\n"
 }
 
 fn verdict(answer: &Answer) -> String {
-    let made_of = if matches!(answer, Answer::NoGap) { "" } else { " What it is made of:" };
+    let made_of = if matches!(answer, Answer::NoGap) { "" } else { " Its parts:" };
     format!("{}{made_of}", words::verdict(answer))
 }
 
 fn effect(effect: &NamedEffect) -> Vec<String> {
     let mut lines = vec![format!("  {:>3.0} %  {}: {}", 100.0 * effect.probability, effect.id, effect.strength())];
     if !effect.ambiguous_with.is_empty() {
-        lines.push(format!("         these logs cannot tell it from {}", effect.ambiguous_with.join(", ")));
+        lines.push(format!("         these logs cannot distinguish it from {}", effect.ambiguous_with.join(", ")));
     }
     lines
 }
@@ -71,18 +71,18 @@ fn profile(profile: &ResidualProfile) -> String {
     format!("  {} ({unit}) by {depends_on}: {}", channel.name(), bins.collect::<Vec<_>>().join(" | "))
 }
 
-/// From one number to another, or the number that both are.
+/// Formats a range, or a single number if both ends are equal.
 fn range(from: f64, to: f64) -> String {
-    // Zero has no sign.
+    // Adding zero turns -0 into 0.
     let [from, to] = [from, to].map(|bound| (libm::round(bound) + 0.0).to_string());
     if from == to { from } else { format!("{from} to {to}") }
 }
 
 fn formula(of: &Statement) -> String {
     let Statement { channel, text, share, ci95: [low, high] } = of;
-    let unit = if *channel == Channel::Turn { "rad a step" } else { "cm" };
+    let unit = if *channel == Channel::Turn { "rad per step" } else { "cm" };
     format!(
-        "What no effect explains of {} follows {text} ({unit}): {:.0} % of the gap ({:.0} to {:.0}).",
+        "The unexplained {} residual follows {text} ({unit}): {:.0} % of the gap ({:.0} to {:.0}).",
         channel.name(),
         100.0 * share,
         100.0 * low,
@@ -93,28 +93,28 @@ fn formula(of: &Statement) -> String {
 fn final_positions(of: &FinalPositionErrors) -> String {
     let FinalPositionErrors { runs, before_cm, after_cm, floor_cm } = of;
     format!(
-        "The controller's {runs} run(s) end {before_cm:.1} cm from where the simulator expects, {after_cm:.1} cm with the \
-         effects; scatter alone makes {floor_cm:.1} cm."
+        "The controller's {runs} run(s) end {before_cm:.1} cm from the simulated final positions, {after_cm:.1} cm with the \
+         effects applied; process noise alone accounts for {floor_cm:.1} cm."
     )
 }
 
-/// A table of how large a gap is that nothing explains which could be named.
+/// Returns a table of the size of a gap without named effects.
 fn size(found: &GapReduction) -> Vec<String> {
     let row = |what: &str, size: f64, floor: &str| format!("  {what:<34}{size:>9.3}{floor:>9}").trim_end().to_string();
     let mut lines = vec![
-        format!("{:<36}{:>9}{:>9}", "How large it is:", "gap", "floor"),
-        row("all channels, nats a step", found.whole.before, ""),
+        format!("{:<36}{:>9}{:>9}", "Size of the gap:", "gap", "floor"),
+        row("all channels, nats per step", found.whole.before, ""),
     ];
     lines.extend(found.channels.iter().map(|c| row(&format!("  {}", c.channel.name()), c.reduction.before, "")));
     lines.extend(
         found.paths.iter().map(|p| {
-            row(&format!("end of paths of {} step(s), cm", p.steps), p.before_cm, &format!("{:.3}", p.floor_cm))
+            row(&format!("end point after {} step(s), cm", p.steps), p.before_cm, &format!("{:.3}", p.floor_cm))
         }),
     );
     lines
 }
 
-/// A table of before and after, and of the floor where there is a measured one.
+/// Returns a table of the gap before and after, with the noise floor where there is a measured one.
 fn reduction(found: &GapReduction) -> Vec<String> {
     let closed = |share: f64, [low, high]: [f64; 2]| {
         format!("{:.0} % ({:.0} to {:.0})", 100.0 * share, 100.0 * low, 100.0 * high)
@@ -124,8 +124,13 @@ fn reduction(found: &GapReduction) -> Vec<String> {
     };
     let whole = &found.whole;
     let mut lines = vec![
-        format!("{:<36}{:>9}{:>9}{:>9}  closed (95 %)", "How far it shrinks:", "before", "after", "floor"),
-        row("all channels, nats a step", [whole.before, whole.after], "", &closed(whole.reducible_closed, whole.ci95)),
+        format!("{:<36}{:>9}{:>9}{:>9}  closed (95 %)", "Gap reduction:", "before", "after", "floor"),
+        row(
+            "all channels, nats per step",
+            [whole.before, whole.after],
+            "",
+            &closed(whole.reducible_closed, whole.ci95),
+        ),
     ];
     lines.extend(found.channels.iter().map(|c| {
         let r = &c.reduction;
@@ -133,7 +138,7 @@ fn reduction(found: &GapReduction) -> Vec<String> {
         row(&what, [r.before, r.after], "", &closed(r.reducible_closed, r.ci95))
     }));
     lines.extend(found.paths.iter().map(|p| {
-        let what = format!("end of paths of {} step(s), cm", p.steps);
+        let what = format!("end point after {} step(s), cm", p.steps);
         row(&what, [p.before_cm, p.after_cm], &format!("{:.3}", p.floor_cm), "")
     }));
     if let Some(next) = &found.runner_up {

@@ -6,7 +6,7 @@ use clap::Args;
 use serde_json::json;
 
 use super::evolve::start_of;
-use super::facts::FactsOption;
+use super::json_output::JsonOption;
 use super::{Run, kinds};
 use mindgap_built_in_robot::{ActiveEffect, BuiltInRobot, default_robot, run_controller};
 use mindgap_files::places::Places;
@@ -16,7 +16,7 @@ use mindgap_foundations::random::generator;
 use mindgap_logs::Scene;
 use mindgap_logs::controller_file::ControllerFile;
 
-/// Drive a controller on the built-in robot and log the run.
+/// Run a controller on the built-in robot and log the run.
 #[derive(Args)]
 pub struct Drive {
     /// The controller file.
@@ -24,26 +24,26 @@ pub struct Drive {
     /// The scene.
     #[arg(long, value_name = "FILE")]
     scene: PathBuf,
-    /// Which of the scene's starts, from 1.
+    /// Number of the start in the scene, from 1.
     #[arg(long, value_name = "N", default_value_t = 1)]
     start: usize,
-    /// Fixes every draw.
+    /// Random seed.
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
-    /// What is different about the robot; may be given again. `mindgap record --help` lists what.
+    /// Fault to inject; repeatable. `mindgap record --help` lists them.
     #[arg(long = "effect", value_name = "ID[=STRENGTH[@DETAIL]]")]
     effects: Vec<ActiveEffect>,
-    /// The log to write.
+    /// Log to write.
     #[arg(long, value_name = "RUN.csv")]
     out: PathBuf,
     #[command(flatten)]
-    facts: FactsOption,
+    json: JsonOption,
 }
 
 impl Run for Drive {
     fn places(&self) -> Places {
         let places = Places::default().reading([&self.controller, &self.scene]).writing([&self.out], kinds::UNSIGNED);
-        places.writing(self.facts.asked(), kinds::REPORT)
+        places.writing(self.json.path(), kinds::REPORT)
     }
 
     fn run(&self, _: &dyn Executor) -> Result<String> {
@@ -61,8 +61,8 @@ impl Run for Drive {
         let distance_cm = scene.target_cm.map(|target_cm| driven.end().position_cm.distance(target_cm));
         let distance = distance_cm.map_or_else(String::new, |cm| format!(", {cm:.1} cm from the target"));
         let (how, steps) = (driven.termination.to_string(), driven.steps());
-        let facts = json!({"schema": 1, "run": self.out, "ending": how, "steps": steps, "distance_cm": distance_cm});
+        let results = json!({"schema": 1, "run": self.out, "ending": how, "steps": steps, "distance_cm": distance_cm});
         let text = format!("{}: {how} after {steps} steps{distance}\n", self.out.display());
-        self.facts.told(&facts, text)
+        self.json.emit(&results, text)
     }
 }

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::facts::FactsOption;
+use super::json_output::JsonOption;
 use super::table::{self, number};
 use super::{Run, kinds, progress, textbook};
 use mindgap_figures::pictures;
@@ -16,26 +16,26 @@ use mindgap_learning::evaluation::accuracy::{self, Evaluation, Networks};
 use mindgap_learning::evaluation::sensor_models::SensorModels;
 use mindgap_pages::evaluation::{Subject, page};
 
-/// Judge a simulator's networks on logs that they were not trained on.
+/// Evaluate a simulator's networks on held-out logs.
 #[derive(Args)]
 pub struct Evaluate {
     /// The simulator file.
     sim: PathBuf,
-    /// Folder of logs to judge on.
+    /// Folder of logs that were not used for training.
     logs: PathBuf,
     #[command(flatten)]
-    facts: FactsOption,
-    /// Also write a page for a browser here.
+    json: JsonOption,
+    /// Write an HTML page.
     #[arg(long, value_name = "FILE")]
     html: Option<PathBuf>,
-    /// Also draw figures into this folder, as SVG and PNG.
+    /// Write figures into this folder, as SVG and PNG.
     #[arg(long, value_name = "DIR")]
     figures: Option<PathBuf>,
 }
 
 impl Run for Evaluate {
     fn places(&self) -> Places {
-        let places = Places::default().reading([&self.sim, &self.logs]).writing(self.facts.asked(), kinds::REPORT);
+        let places = Places::default().reading([&self.sim, &self.logs]).writing(self.json.path(), kinds::REPORT);
         places.writing(&self.html, kinds::PAGE).filling(&self.figures)
     }
 
@@ -43,7 +43,7 @@ impl Run for Evaluate {
         let simulator = textbook::simulator(&self.sim)?;
         let logs = super::read_logs_of(&simulator, &self.logs)?;
         let bar = progress::shares();
-        let evaluation = accuracy::evaluate(&simulator, &logs, progress::part(&bar, 0..100, "judging the networks"));
+        let evaluation = accuracy::evaluate(&simulator, &logs, progress::part(&bar, 0..100, "evaluating the networks"));
         bar.finish_and_clear();
         let evaluation = evaluation?;
         if let Some(path) = &self.html {
@@ -55,12 +55,12 @@ impl Run for Evaluate {
         if let Some(folder) = &self.figures {
             pictures::networks(folder, &simulator, &evaluation, &logs)?;
         }
-        self.facts.told(&evaluation, told(&evaluation))
+        self.json.emit(&evaluation, describe(&evaluation))
     }
 }
 
-/// An evaluation as tables, with the reliability of the probability.
-fn told(evaluation: &Evaluation) -> String {
+/// Returns an evaluation as tables, with the reliability diagram of the echo probability.
+fn describe(evaluation: &Evaluation) -> String {
     let mut text = accuracy(&evaluation.networks);
     if let Some(table_one) = &evaluation.table_one {
         text += &format!("\nWith the sizes of the paper's Table I:\n{}", accuracy(table_one));
@@ -71,7 +71,7 @@ fn told(evaluation: &Evaluation) -> String {
             .iter()
             .map(|b| [number(Some(b.predicted), 3), number(Some(b.observed), 3), b.n.to_string()])
             .collect();
-        let title = "of readings that were predicted with such a probability, the share that came";
+        let title = "reliability: predicted probability of a reading and observed share";
         text += &format!("\n{title}\n{}", table::text(["predicted", "observed", "n"], &bins));
     }
     if let Some(models) = &evaluation.sensor_models {
@@ -80,7 +80,7 @@ fn told(evaluation: &Evaluation) -> String {
     text
 }
 
-/// How likely every model of the sensor makes the readings, as a table.
+/// Returns the mean log-likelihood of the readings under each sensor model as a table.
 fn sensor_models(models: &SensorModels) -> String {
     let SensorModels { n, networks, beam, first_echo, ideal_ray } = models;
     let models = [("networks", networks), ("beam", beam), ("first echo", first_echo), ("ideal ray", ideal_ray)];
@@ -91,10 +91,10 @@ fn sensor_models(models: &SensorModels) -> String {
             [name.into(), number(Some(nats.as_logged), 3), number(nats.poses_refitted, 3), n.to_string()]
         })
         .collect();
-    table::text(["sensor model", "nats a reading", "scans' poses refitted", "n"], &rows)
+    table::text(["sensor model", "nats per reading", "scan poses refitted", "n"], &rows)
 }
 
-/// The accuracy of every network, as tables.
+/// Returns the accuracy of every network as tables.
 pub fn accuracy(networks: &Networks) -> String {
     let Networks { turn, forward, lateral, echo_probability, echo_value } = networks;
     let values =

@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 use clap::{Args, value_parser};
 use serde_json::json;
 
+use super::checkpoint_args::{Checkpoint, CheckpointOption};
 use super::choices::{SENSOR_MODELS, one_of};
-use super::facts::FactsOption;
-use super::lasting::{KeepOption, Kept};
+use super::json_output::JsonOption;
 use super::{Run, kinds, progress, textbook};
 use mindgap_figures::pictures;
 use mindgap_files::places::Places;
@@ -26,46 +26,46 @@ use mindgap_models::simulator::environment::SensorModel;
 pub struct Evolve {
     /// The simulator file.
     sim: PathBuf,
-    /// The scene, with a target and starts.
+    /// Scene with a target and starts.
     #[arg(long, value_name = "FILE")]
     scene: PathBuf,
-    /// Which of the scene's starts, from 1.
+    /// Number of the start in the scene, from 1.
     #[arg(long, value_name = "N", default_value_t = 1)]
     start: usize,
     /// The controller file to write.
     #[arg(long)]
     out: PathBuf,
-    /// Fixes every draw.
+    /// Random seed.
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
-    /// Follow the paper exactly: one run of the genetic algorithm, its fittest individual, echoes that fail as the only
+    /// Follow the paper exactly: one run of the genetic algorithm, its fittest individual, echo dropouts as the only
     /// noise.
     #[arg(long)]
     paper: bool,
-    /// Echoes that fail are the only noise.
+    /// Simulate echo dropouts only, as in the paper.
     #[arg(long)]
     paper_noise: bool,
-    /// What makes the readings: the beam that the training logs show, the two networks, or the first-echo law, which is
-    /// slower. With --paper and --paper-noise it is the networks.
+    /// Sensor model: the beam model fitted to the training logs, the two networks, or the first-echo law, which is
+    /// slower. --paper and --paper-noise use the networks.
     #[arg(long, value_parser = one_of::<SensorModel>(SENSOR_MODELS), default_value = "beam", conflicts_with_all = ["paper", "paper_noise"])]
     sonar: SensorModel,
-    /// Steps after which a controller gives up.
+    /// Maximum number of steps.
     #[arg(long, default_value_t = 60, value_parser = value_parser!(u16).range(1..))]
     max_steps: u16,
     #[command(flatten)]
-    facts: FactsOption,
-    /// Also draw simulated runs of the controller into this folder, as SVG and PNG.
+    json: JsonOption,
+    /// Draw simulated runs of the controller into this folder, as SVG and PNG.
     #[arg(long, value_name = "DIR")]
     figures: Option<PathBuf>,
     #[command(flatten)]
-    keep: KeepOption,
+    checkpoint: CheckpointOption,
 }
 
 impl Run for Evolve {
     fn places(&self) -> Places {
         let places = Places::default().reading([&self.sim, &self.scene]).writing([&self.out], kinds::CONTROLLER);
-        let places = places.writing(self.facts.asked(), kinds::REPORT).filling(&self.figures);
-        places.writing(self.keep.asked(), kinds::CHECKPOINT)
+        let places = places.writing(self.json.path(), kinds::REPORT).filling(&self.figures);
+        places.writing(self.checkpoint.path(), kinds::CHECKPOINT)
     }
 
     fn run(&self, executor: &dyn Executor) -> Result<String> {
@@ -105,26 +105,26 @@ impl Run for Evolve {
             pictures::paths(folder, &[pictures::simulated_paths(title, &scene, start, &rollouts)])?;
         }
         ControllerFile { controller: evolved.controller, origin: Some(origin) }.write(&self.out)?;
-        let facts = json!({
+        let results = json!({
             "schema": 1, "controller": self.out, "start": self.start, "seed": self.seed,
             "generations": evolved.generations, "fitness": evolved.fitness, "success": success.rate,
             "crashed": success.crashed, "median_cm": success.median_cm, "chance": chance,
         });
         let text = format!(
-            "start {}: {:.0} % of {JUDGED_RUNS} fresh simulated runs reach the target, {:.0} % crash; median distance {:.1} cm\n\
+            "start {}: {:.0} % of {JUDGED_RUNS} new simulated runs reach the target, {:.0} % crash; median distance {:.1} cm\n\
              {}controller written to {}\n",
             self.start,
             100.0 * success.rate,
             100.0 * success.crashed,
             success.median_cm,
-            chance.map_or_else(String::new, |chance| told(&chance)),
+            chance.map_or_else(String::new, |chance| describe(&chance)),
             self.out.display()
         );
-        self.facts.told(&facts, text)
+        self.json.emit(&results, text)
     }
 
-    fn kept(&self) -> Option<Kept> {
-        self.keep.beside(&self.out)
+    fn checkpoint(&self) -> Option<Checkpoint> {
+        self.checkpoint.for_output(&self.out)
     }
 
     fn is_shared(&self) -> bool {
@@ -132,20 +132,22 @@ impl Run for Evolve {
     }
 }
 
-fn told(chance: &Chance) -> String {
-    let not_knowing = 100.0 * chance.not_knowing;
+fn describe(chance: &Chance) -> String {
+    let epistemic = 100.0 * chance.not_knowing;
     format!(
-        "over the robots that the logs leave possible {chance}; {not_knowing:.0} % of the doubt is about the robot, the rest \
-         is chance\n"
+        "success probability over the posterior of robots: {chance}; {epistemic:.0} % of the uncertainty is epistemic\n"
     )
 }
 
-/// Start N (from 1) of a scene, where the robot has room.
+/// Returns start `number` (from 1) of a scene.
+///
+/// # Errors
+/// If there is no such start, or the robot does not fit there.
 pub fn start_of(scene: &Scene, number: usize, robot: &Robot, path: &Path) -> Result<Pose> {
     scene.start(number, robot.body_radius_cm).map_err(|error| error.or_in_file(path))
 }
 
-/// A file's name alone: where it lay says nothing to others.
+/// Returns the file name without folders: paths of this machine mean nothing to others.
 fn name(path: &Path) -> String {
     path.file_name().unwrap_or_default().to_string_lossy().into_owned()
 }

@@ -18,7 +18,7 @@ use mindgap_controller_export::rust_networks::rust_networks;
 use mindgap_controller_export::{ExportError, Origin, arduino, c, collect as data_collection, pybricks, rust, rxe};
 use serde_json::{Value, json};
 
-use super::facts::FactsOption;
+use super::json_output::JsonOption;
 use super::ports::PortOptions;
 use super::{Run, kinds};
 use mindgap_files as files;
@@ -29,19 +29,19 @@ use mindgap_logs::controller_file::ControllerFile;
 use mindgap_models::simulator::fixed_point::{COMMANDS, DOCUMENTATION, FACING, FixedNetworks};
 use mindgap_models::simulator::{Learned, Simulator};
 
-/// Turn a controller into an onboard program.
+/// Export a controller as an onboard program.
 ///
-/// Or a simulator's networks into constants for a board; or make the program that collects a robot's first logs.
+/// Also exports a simulator's networks as constants for a board, and the program that collects a robot's first logs.
 #[derive(Args)]
 pub struct Export {
-    /// The controller file; or a simulator file, whose networks have all formats but rxe and nxc-collect. For nxc-collect
-    /// none, or a run whose commands are a script.
+    /// Controller file; or a simulator file, for all formats but rxe and nxc-collect. For nxc-collect none, or a run
+    /// whose commands serve as the script.
     #[arg(
         value_name = "CONTROLLER",
         required_if_eq_any = [("format", "nxc"), ("format", "rxe"), ("format", "rust"), ("format", "c"), ("format", "pybricks"), ("format", "arduino")]
     )]
     input: Option<PathBuf>,
-    /// What to make of it.
+    /// Output format.
     #[arg(long, value_enum)]
     format: Format,
     /// The file to write.
@@ -49,26 +49,26 @@ pub struct Export {
     out: PathBuf,
     #[command(flatten)]
     ports: PortOptions,
-    /// Log every step on the brick: each start of the program writes a file of its own, as NAME_000.csv. They have the
-    /// program's name, or this one.
+    /// Log every step on the brick. Each start of the program writes a new file, such as NAME_000.csv; NAME is that of
+    /// the program by default.
     #[arg(long, value_name = "NAME.csv", num_args = 0..=1)]
     log: Option<Option<BrickName>>,
-    /// Show tuple, reading and outcome on the brick's display.
+    /// Show the tuple, reading and outcome on the brick's display.
     #[arg(long)]
     display: bool,
-    /// Stop the robot where a reading is below this.
+    /// Stop the robot when a reading is below this distance.
     #[arg(long, value_name = "CM", value_parser = clap::value_parser!(u8).range(1..=254))]
     stop_cm: Option<u8>,
     /// Stop the robot when a driven wheel does not turn.
     #[arg(long)]
     stall: bool,
     #[command(flatten)]
-    facts: FactsOption,
+    json: JsonOption,
     #[command(flatten)]
     collect: collect::Collect,
 }
 
-/// What a program takes of a brick.
+/// Memory and time that a program needs on a brick, as text and as JSON.
 struct Takes {
     text: String,
     figures: Value,
@@ -94,44 +94,44 @@ impl From<NetworksBudget> for Takes {
     }
 }
 
-/// What a controller can be turned into.
+/// Output formats.
 #[derive(Clone, Copy, ValueEnum)]
 enum Format {
     /// NXC source for the LEGO NXT's standard firmware.
     Nxc,
-    /// The brick's executable itself, without log and display.
+    /// Executable for the brick, without log and display.
     Rxe,
     /// Constants for the crate `mindgap-core`.
     Rust,
-    /// A C99 header with the stepping machine.
+    /// C99 header with the controller's state machine.
     C,
-    /// An Arduino sketch; of a simulator the header that one includes.
+    /// Arduino sketch; for a simulator, a header to include in one.
     Arduino,
-    /// A MicroPython program for hubs with pybricks firmware; of a simulator the module that one imports.
+    /// MicroPython program for hubs with Pybricks firmware; for a simulator, a module to import in one.
     Pybricks,
-    /// NXC source of a program that drives, at random or by a script, and logs.
+    /// NXC source of a program that drives at random or by a script, and logs.
     NxcCollect,
 }
 
 impl Run for Export {
     fn places(&self) -> Places {
         let places = Places::default().reading(&self.input).writing([&self.out], kinds::PROGRAM);
-        places.writing(self.facts.asked(), kinds::REPORT)
+        places.writing(self.json.path(), kinds::REPORT)
     }
 
     fn run(&self, _: &dyn Executor) -> Result<String> {
         if (self.log.is_some() || self.display) && !matches!(self.format, Format::Nxc) {
-            return Err(Error::new("--log and --display are for a controller with --format nxc"));
+            return Err(Error::new("--log and --display need a controller and --format nxc"));
         }
         let runs_on_a_brick = matches!(self.format, Format::Nxc | Format::Rxe | Format::NxcCollect);
         if self.safety() != Safety::default() && !runs_on_a_brick {
             return Err(Error::new(
-                "--stop-cm and --stall are for programs of a brick: --format nxc, rxe or nxc-collect",
+                "--stop-cm and --stall need a program for a brick: --format nxc, rxe or nxc-collect",
             ));
         }
         let (program, budget) = match &self.input {
             None => self.collection(self.collect.options(self.program_name()?, self.ports.wiring()))?,
-            // Simulators are JSON; no TOML begins like that.
+            // Simulators are JSON; no TOML file begins with a brace.
             Some(input) if files::read_text(input)?.trim_start().starts_with('{') => self.networks(input)?,
             Some(input) => self.onboard(input)?,
         };
@@ -139,8 +139,8 @@ impl Run for Export {
         files::write(&self.out, program)?;
         let (budget, figures) = budget.map_or_else(Default::default, |Takes { text, figures }| (text + "\n", figures));
         let text = format!("{} written\n{budget}", self.out.display());
-        let facts = json!({"schema": 1, "program": self.out, "bytes": bytes, "takes": figures});
-        self.facts.told(&facts, text)
+        let results = json!({"schema": 1, "program": self.out, "bytes": bytes, "takes": figures});
+        self.json.emit(&results, text)
     }
 }
 
@@ -167,7 +167,7 @@ impl Export {
                 Ok((pybricks_networks(&networks).into_bytes(), None))
             }
             Format::Rxe | Format::NxcCollect => {
-                Err(Error::in_file(input, "holds networks, which have no place in formats rxe and nxc-collect"))
+                Err(Error::in_file(input, "contains networks, which the formats rxe and nxc-collect do not support"))
             }
         }
     }
@@ -222,21 +222,21 @@ impl Export {
         Safety { stop_cm: self.stop_cm, stall: self.stall }
     }
 
-    /// The names of the logs that are asked for.
+    /// Returns the names of the logs, if logging is requested.
     fn logs(&self, program: &BrickName) -> Option<std::result::Result<RunLogs, ExportError>> {
         let named = |name: &BrickName| RunLogs::named_after(name);
         let by_program = || named(&format!("{}.csv", program.stem()).parse()?);
         self.log.as_ref().map(|name| name.as_ref().map_or_else(by_program, named))
     }
 
-    /// The compiled program's name on the brick: that of the file that is written.
+    /// Returns the compiled program's name on the brick, which is that of the output file.
     fn program_name(&self) -> Result<BrickName> {
         let stem = self.out.file_stem().unwrap_or_default().to_string_lossy();
         BrickName::program(&stem).map_err(|e| Error::in_file(&self.out, e.to_string()))
     }
 }
 
-/// The networks' names in C and Python.
+/// Names of the networks in C and Python.
 const NAMES: [&str; 5] = ["turn", "forward", "lateral", "echo_probability", "echo_value"];
 
 fn float_networks(simulator: &Simulator) -> Result<[PybricksNetwork; 5]> {

@@ -1,4 +1,4 @@
-//! `mindgap diagnose --fleet`: a folder of folders, one a robot.
+//! `mindgap diagnose --fleet`: a folder with one folder of logs per robot.
 
 use std::path::Path;
 
@@ -11,39 +11,39 @@ use mindgap_foundations::executor::Executor;
 use mindgap_models::effects::Effect;
 use mindgap_pages::fleet::{Subject, page};
 
-/// The page within a fleet's folder.
+/// File name of the page in the output folder.
 const PAGE: &str = "fleet.html";
 
-/// What is asked.
+/// A request to diagnose a fleet.
 pub struct FleetRequest<'a> {
     /// Executes the diagnoses.
     pub executor: &'a dyn Executor,
-    /// Of each robot.
+    /// Request for each robot.
     pub request: Request<'a>,
-    /// Where the logs lie.
+    /// Folder with the robots' folders of logs.
     pub logs: &'a Path,
-    /// Where the answer goes.
+    /// Output folder.
     pub out: &'a Path,
-    /// Where a simulator goes that has what is common to all robots.
+    /// Simulator file to write, with the effects that are common to all robots.
     pub apply: Option<&'a Path>,
-    /// The simulator's file, or the word for the textbook.
+    /// Name of the simulator file, or of the textbook model.
     pub simulator: String,
 }
 
 impl FleetRequest<'_> {
-    /// Diagnoses the fleet and writes what is found; returns what there is to say.
+    /// Diagnoses the fleet, writes the results and returns the report for the terminal.
     ///
     /// # Errors
-    /// When no robot can be diagnosed, or something cannot be read or written.
+    /// If no robot can be diagnosed, or a file cannot be read or written.
     pub fn answer(&self) -> Result<String> {
         if self.apply.is_some() && self.request.simulator.is_none() {
-            return Err(Error::new("--apply with --fleet needs a simulator file to add to"));
+            return Err(Error::new("--apply with --fleet needs a simulator file"));
         }
         let found = self.written()?;
         let mut text = fleet_text::text(&found);
         if let (Some(path), Some(simulator)) = (self.apply, self.request.simulator) {
             if found.common.is_empty() {
-                text += &format!("Nothing is common to all robots: {} is not written.\n", path.display());
+                text += &format!("No effect is common to all robots: {} was not written.\n", path.display());
             } else {
                 let mut simulator = simulator.clone();
                 simulator.added.extend(found.common.iter().map(|common| common.effect.clone()));
@@ -53,7 +53,7 @@ impl FleetRequest<'_> {
         Ok(text)
     }
 
-    /// Writes the fleet's folder.
+    /// Diagnoses the fleet and writes its folder.
     fn written(&self) -> Result<Fleet> {
         let ours = |name: &str| [ANSWER, PAGE, TABLE, DIAGNOSES].contains(&name);
         files::write_folder(self.out, ours, |fresh| {

@@ -1,39 +1,36 @@
-//! A fleet's answer in words, on one screen.
+//! The diagnosis of a fleet as text for one screen.
 
 use super::table;
 use mindgap_applications::fleet::Fleet;
 use mindgap_applications::fleet::answer::Group;
 use mindgap_applications::fleet::frequency::Frequency;
 
-/// As many robots are named in a list.
+/// Maximum number of robots named in a list.
 const MOST: usize = 8;
 
-/// The words.
+/// Returns the diagnosis of a fleet as text.
 pub fn text(fleet: &Fleet) -> String {
     let mut lines = vec![match fleet.refused.len() {
-        0 => format!("{} robots are diagnosed.", fleet.diagnosed),
-        refused => format!("{} of {} robots are diagnosed, {refused} could not be.", fleet.diagnosed, fleet.count()),
+        0 => format!("{} robots diagnosed.", fleet.diagnosed),
+        refused => format!("{} of {} robots diagnosed, {refused} failed.", fleet.diagnosed, fleet.count()),
     }];
     let verdicts = fleet.verdicts.iter().map(|(verdict, count)| format!("{count} {}", verdict.replace('_', " ")));
     lines.push(format!("Verdicts: {}", verdicts.collect::<Vec<String>>().join(", ")));
     if !fleet.effects.is_empty() {
         let rows: Vec<[String; 4]> = fleet.effects.iter().map(row).collect();
-        let header = ["Effect", "robots that have it, % (95 %)", "named in", "median strength"];
+        let header = ["Effect", "prevalence, % (95 %)", "named in", "median strength"];
         lines.extend(table::text(header, &rows).lines().map(String::from));
     }
     if !fleet.common.is_empty() {
-        lines.push("Common to nearly all, and so the simulator's fault (train it again, or add it by --apply):".into());
+        lines.push("Common to nearly all robots, so an error of the simulator (train it again, or add the effect with --apply):".into());
         lines.extend(fleet.common.iter().map(|common| format!("  {}: {}", common.effect.effect, common.because)));
     }
-    lines.push("Groups by what their gaps are made of:".into());
+    lines.push("Groups of robots with similar gaps:".into());
     lines.extend(fleet.groups.iter().map(group));
     if !fleet.stands_out.is_empty() {
-        lines.push("Who stands out:".into());
+        lines.push("Outliers:".into());
         lines.extend(fleet.stands_out.iter().take(MOST).map(|o| {
-            format!(
-                "  {}: {} {}, the fleet has {} ({:.1} deviations)",
-                o.robot, o.what, o.value, o.median, o.deviations
-            )
+            format!("  {}: {} {}, fleet median {} ({:.1} deviations)", o.robot, o.what, o.value, o.median, o.deviations)
         }));
         lines.extend(more(fleet.stands_out.len()));
     }

@@ -1,10 +1,10 @@
-//! The options that every command has.
+//! The options of every command.
 
 use clap::Args;
 use log::LevelFilter;
 use rayon::ThreadPoolBuilder;
 
-use super::voice;
+use super::logging;
 use mindgap_foundations::error::{Error, Result};
 use mindgap_foundations::executor::Executor;
 use mindgap_workers::Workers;
@@ -13,35 +13,35 @@ use mindgap_workers::Workers;
 #[derive(Args)]
 #[command(next_help_heading = "General options")]
 pub struct General {
-    /// Replace what is at the place of an output, whatever it is; what else lies in a folder stays.
+    /// Overwrite existing outputs, whatever they are; other files in an output folder are kept.
     #[arg(long, global = true)]
     pub force: bool,
-    /// Work on so many processors at once; on all when left out, which ranks on one machine share. Results are the same.
+    /// Number of threads (default: all cores, shared by MPI ranks on one machine). Results do not depend on it.
     #[arg(long, global = true, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
-    /// Say nothing but errors: no text, no warnings, no progress. Files are written as ever, `--json -` too.
+    /// Print errors only: no report, no warnings, no progress. Files are still written, including `--json -`.
     #[arg(short, long, global = true, conflicts_with = "verbose")]
     pub quiet: bool,
-    /// Also say on standard error what is decided on the way.
+    /// Log decisions to standard error.
     #[arg(short, long, global = true)]
     verbose: bool,
 }
 
 impl General {
-    /// Makes them hold for this process.
+    /// Applies the options to this process.
     ///
     /// # Errors
-    /// When the system gives no threads.
+    /// If threads cannot be started.
     pub fn take_effect(&self, workers: &Workers) -> Result<()> {
-        voice::speak_up_to(match (self.quiet || !workers.is_first(), self.verbose) {
+        logging::set_level(match (self.quiet || !workers.is_first(), self.verbose) {
             (true, _) => LevelFilter::Error,
             (false, false) => LevelFilter::Warn,
             (false, true) => LevelFilter::Info,
         });
-        // None are as many as there are processors.
+        // Zero means as many as there are processors.
         let threads = self.threads.map(usize::from).or_else(|| workers.threads()).unwrap_or_default();
         let pool = ThreadPoolBuilder::new().num_threads(threads).build_global();
-        pool.map_err(|e| Error::new(format!("threads cannot be started: {e}")))?;
+        pool.map_err(|e| Error::new(format!("cannot start threads: {e}")))?;
         log::info!("mindgap {} on {} threads", env!("CARGO_PKG_VERSION"), rayon::current_num_threads());
         Ok(())
     }

@@ -1,14 +1,14 @@
-//! The commands in the order of work, and an example of each: what `--help` says besides what every command says itself.
+//! The commands in the order of work with an example of each, for `--help` and the manual.
 
 use clap::{Command, CommandFactory};
 
 use super::Cli;
 
-/// A part of the work: what it is, and its commands with an example each.
+/// A part of the work: its title, and its commands with an example each.
 type Part = (&'static str, &'static [(&'static str, &'static str)]);
 
 const WORK: &[Part] = &[
-    ("First of all", &[("demo", "mindgap demo --out tried")]),
+    ("Getting started", &[("demo", "mindgap demo --out tried")]),
     (
         "Logs",
         &[
@@ -39,7 +39,7 @@ const WORK: &[Part] = &[
             (
                 "loop",
                 "mindgap loop trials --sim simulator.json --scene scene.toml --start 1 --robot \"sh robot.sh\"\n  mindgap \
-                 loop trials --sim simulator.json --scene scene.toml --robot ask    with a person who drives the robot",
+                 loop trials --sim simulator.json --scene scene.toml --robot ask    for a robot that a person starts",
             ),
             ("adapt", "mindgap adapt simulator.json robot-logs --out adapted.json"),
             ("export", "mindgap export controller.toml --format nxc --out controller.nxc"),
@@ -53,9 +53,10 @@ const WORK: &[Part] = &[
             (
                 "diagnose",
                 "mindgap diagnose simulator.json logs --html gap.html\n  mindgap diagnose kinematic logs    against \
-                 the textbook's differential drive and an ideal sonar, from robot.toml alone\n  mindgap diagnose \
-                 simulator.json robots --fleet answer    of many robots, a folder of logs each",
+                 a textbook differential drive and an ideal sonar, from robot.toml alone\n  mindgap diagnose \
+                 simulator.json robots --fleet answer    for many robots, one folder of logs each",
             ),
+            ("explain", "mindgap explain payload"),
             ("challenge", "mindgap challenge --help"),
         ],
     ),
@@ -71,7 +72,7 @@ const WORK: &[Part] = &[
 
 const TEMPLATE: &str = "{about}\n\n{usage-heading} {usage}{after-help}\n\nOptions:\n{options}";
 
-/// The command with its subcommands, as it is parsed, explained, completed and printed.
+/// Returns the complete definition of the command line, for parsing, help, completion and manual.
 pub fn command() -> Command {
     let examples = WORK.iter().flat_map(|(_, commands)| *commands);
     let command = examples.fold(Cli::command(), |command, (name, example)| {
@@ -84,12 +85,12 @@ pub fn command() -> Command {
     command.help_template(TEMPLATE).after_help(list)
 }
 
-/// The parts of the work in their order, each with the names of its commands.
+/// Returns the parts of the work in order, each with the names of its commands.
 pub fn parts() -> impl Iterator<Item = (&'static str, impl Iterator<Item = &'static str>)> {
     WORK.iter().map(|(title, commands)| (*title, commands.iter().map(|(name, _)| *name)))
 }
 
-/// The commands part by part, each with what it says of itself.
+/// Returns the list of commands by part, each with its summary.
 fn list(command: &Command) -> String {
     let width = parts().flat_map(|(_, names)| names).map(str::len).max().unwrap_or(0);
     let line = |name: &str| {
@@ -108,7 +109,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_command_has_its_place_and_an_example_that_names_it() {
+    fn every_command_is_listed_with_an_example_that_calls_it() {
         let command = Cli::command();
         let mut all: Vec<&str> = command.get_subcommands().map(Command::get_name).collect();
         let mut placed: Vec<&str> = WORK.iter().flat_map(|(_, commands)| *commands).map(|(name, _)| *name).collect();

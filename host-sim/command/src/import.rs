@@ -8,7 +8,7 @@ use clap::{Args, Subcommand};
 use serde_json::json;
 
 use super::choices::{ANGLES, LENGTHS, TIMES, one_of};
-use super::facts::reported;
+use super::json_output::emit;
 use super::table::{self, count};
 use super::{Run, kinds, progress, warn};
 use mindgap_files::places::Places;
@@ -19,7 +19,7 @@ use mindgap_import::report::{LogReport, Report, RunReport, TrackReport};
 use mindgap_import::units::{Angle, Length, Time, Units};
 use mindgap_logs::{Robot, Scene};
 
-/// Make a folder of logs of what a robot recorded: a brick's logs and a camera's tracks, streams as CSV, or ROS 2 bags.
+/// Import recordings as a folder of logs: brick logs with camera tracks, streams as CSV, or ROS 2 bags.
 #[derive(Args)]
 #[command(args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
 pub struct Import {
@@ -35,39 +35,39 @@ enum Way {
     Bag(recordings::Bag),
 }
 
-/// Bring a brick's logs and a camera's tracks together.
+/// Merge a brick's logs with a camera's tracks.
 #[derive(Args)]
 struct Brick {
-    /// Logs of the brick and tracks of the camera, in any order; their first lines tell them apart. Tracks are CSV with
-    /// time, x, y and heading (time_s, x_m, y_m, yaw_rad and the like), or what Motive exports of a rigid body.
+    /// Brick logs and camera tracks in any order; their kind is detected from the first line. Tracks are CSV with time,
+    /// x, y and heading (time_s, x_m, y_m, yaw_rad and the like), or rigid bodies exported by Motive.
     #[arg(value_name = "BRICK_LOG|CAMERA_TRACK", required = true)]
     files: Vec<PathBuf>,
-    /// Where the robot drove.
+    /// Scene in which the robot drove.
     #[arg(long, value_name = "FILE")]
     scene: PathBuf,
-    /// What the builder measured of the robot.
+    /// Measured dimensions of the robot, robot.toml.
     #[arg(long, value_name = "FILE")]
     robot: PathBuf,
-    /// Folder for the logs.
+    /// Folder to write the logs to.
     #[arg(long, value_name = "LOGS")]
     out: PathBuf,
-    /// Unit of a track's time whose column names none.
+    /// Unit of the track's time column, if its name states none.
     #[arg(long, value_name = "UNIT", value_parser = one_of::<Time>(TIMES))]
     time_unit: Option<Time>,
-    /// Unit of a track's x and y whose columns name none.
+    /// Unit of the track's x and y columns, if their names state none.
     #[arg(long, value_name = "UNIT", value_parser = one_of::<Length>(LENGTHS))]
     length_unit: Option<Length>,
-    /// Unit of a track's heading whose column names none.
+    /// Unit of the track's heading column, if its name states none.
     #[arg(long, value_name = "UNIT", value_parser = one_of::<Angle>(ANGLES))]
     angle_unit: Option<Angle>,
-    // No `FactsOption`: clap does not see that a group which is left out as a whole was called where it flattens another.
-    /// Also write the same facts here, for programs; `-` is standard output, in place of the text.
+    // Not `JsonOption`: clap misses that an optional flattened group is present if that group flattens another.
+    /// Write the results as JSON (`-`: to standard output, instead of the text).
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
 }
 
 impl Import {
-    /// The way that was called: clap leaves none out.
+    /// Returns the subcommand; clap guarantees that there is one.
     fn way(&self) -> Option<&dyn Run> {
         match &self.way {
             Some(Way::Streams(streams)) => Some(streams),
@@ -101,31 +101,31 @@ impl Run for Brick {
         bar.finish_and_clear();
         let (logs, report) = imported?;
         logs.write(&self.out)?;
-        let text = format!("{}{}: {}\n", told(&report), self.out.display(), count(logs.runs.len(), "run"));
-        let facts = json!({"schema": 1, "tracks": report.tracks, "logs": report.logs});
-        reported(self.json.as_deref(), &facts, text)
+        let text = format!("{}{}: {}\n", describe(&report), self.out.display(), count(logs.runs.len(), "run"));
+        let results = json!({"schema": 1, "tracks": report.tracks, "logs": report.logs});
+        emit(self.json.as_deref(), &results, text)
     }
 }
 
-fn told(report: &Report) -> String {
+fn describe(report: &Report) -> String {
     let tracks = report.tracks.iter().map(|TrackReport { file, frames, lost, jumps }| {
         let left_out = match (lost, jumps) {
             (0, 0) => String::new(),
-            _ => format!("; left out: {lost} without a pose, {jumps} that no robot can reach"),
+            _ => format!("; excluded: {lost} without a pose, {jumps} impossible jumps"),
         };
         format!("{}: {frames} frames{left_out}\n", file.display())
     });
     let mut text: String = tracks.collect();
     let runs = report.logs.iter().filter_map(|log| Some((log, log.run.as_ref()?)));
     let rows: Vec<[String; 7]> = runs.map(|(log, run)| row(log, run)).collect();
-    let header = ["log", "run", "offset (ms)", "drift (ppm)", "differs (%)", "rows", "without pose"];
+    let header = ["log", "run", "offset (ms)", "drift (ppm)", "mismatch (%)", "rows", "without pose"];
     text += &table::text(header, &rows);
     for LogReport { file, truncated, left_out, .. } in &report.logs {
         if *truncated {
-            text += &format!("{}: the last line has no end and is left out\n", file.display());
+            text += &format!("{}: the last line is incomplete and was excluded\n", file.display());
         }
         if let Some(why) = left_out {
-            text += &format!("{}: left out, {why}\n", file.display());
+            text += &format!("{}: excluded, {why}\n", file.display());
         }
     }
     text

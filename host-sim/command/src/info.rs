@@ -8,7 +8,7 @@ use clap::Args;
 use serde::de::IgnoredAny;
 use serde_json::{Value, json};
 
-use super::facts::FactsOption;
+use super::json_output::JsonOption;
 use super::kinds;
 use super::table::count;
 use mindgap_files as files;
@@ -20,16 +20,16 @@ use mindgap_logs::{Logs, Robot, Run, Scene};
 use mindgap_models::effects::own;
 use mindgap_models::simulator::Simulator;
 
-/// Tell what a file or folder is, and what is in it.
+/// Identify a file or folder and summarise its contents.
 #[derive(Args)]
 pub struct Info {
-    /// The file or folder.
+    /// File or folder to identify.
     path: PathBuf,
     #[command(flatten)]
-    facts: FactsOption,
+    json: JsonOption,
 }
 
-/// What files are that nothing is read from again, by their endings.
+/// Output files that are not read again, by extension.
 const PRODUCTS: &[(&str, &str)] = &[
     ("html", "a page: open it in a browser"),
     ("svg", "a figure"),
@@ -43,30 +43,30 @@ const PRODUCTS: &[(&str, &str)] = &[
     ("1", "a manual page: man -l shows it"),
 ];
 
-/// What folders are that are no logs, by a file in them.
+/// Folders other than logs, by a file in them.
 const FOLDERS: &[(&str, &str)] = &[
-    ("demo.html", "what `mindgap demo` left: open demo.html in a browser"),
+    ("demo.html", "output of `mindgap demo`: open demo.html in a browser"),
     ("loop.json", "a loop on the robot: `mindgap loop`; loop.json has its trials"),
     ("fleet.json", "the diagnoses of a fleet: `mindgap diagnose --fleet`; open fleet.html in a browser"),
     ("mindgap.1", "manual pages: `mindgap manual`"),
 ];
 
-/// What lists in JSON are, by a key of their entries.
+/// JSON lists, by a key of their entries.
 const LISTS: &[(&str, &str)] = &[
-    ("salt", "what is different in the cases of a challenge, sealed: `mindgap challenge make`"),
-    ("variant", "the effects that a diagnosis of a challenge names: `mindgap challenge answer`"),
+    ("salt", "the sealed faults of a challenge: `mindgap challenge make`"),
+    ("variant", "the effects named in a challenge: `mindgap challenge answer`"),
 ];
 
 impl super::Run for Info {
     fn places(&self) -> Places {
-        Places::default().reading([&self.path]).writing(self.facts.asked(), kinds::REPORT)
+        Places::default().reading([&self.path]).writing(self.json.path(), kinds::REPORT)
     }
 
     fn run(&self, _: &dyn Executor) -> Result<String> {
         let path = self.path.as_path();
         let what = if path.is_dir() { folder(path)? } else { file(path)? };
         let text = format!("{}: {what}\n", path.display());
-        self.facts.told(&json!({"schema": 1, "path": path, "what": what}), text)
+        self.json.emit(&json!({"schema": 1, "path": path, "what": what}), text)
     }
 }
 
@@ -75,11 +75,11 @@ fn folder(path: &Path) -> Result<String> {
         let known = FOLDERS.iter().find(|(file, _)| path.join(file).exists());
         return known
             .map(|(_, what)| (*what).into())
-            .ok_or_else(|| Error::in_file(path, "is a folder without robot.toml: no logs that mindgap reads"));
+            .ok_or_else(|| Error::in_file(path, "is not a folder of logs: it has no robot.toml"));
     }
     let logs = Logs::read(path, super::warn)?;
     let (runs, rows, step_ms) = (logs.runs.len(), logs.rows(), logs.robot.step_ms);
-    Ok(format!("logs of {}, {rows} rows, {step_ms} ms apart; `mindgap check` tells more", count(runs, "run")))
+    Ok(format!("logs of {}, {rows} rows, {step_ms} ms apart; see `mindgap check`", count(runs, "run")))
 }
 
 fn file(path: &Path) -> Result<String> {
@@ -94,10 +94,10 @@ fn file(path: &Path) -> Result<String> {
             Ok(format!("a run of {} rows, {seen} with a pose and {heard} with a reading", run.rows.len()))
         }
         _ => {
-            // That there is such a file is a part of the answer.
+            // The file must exist.
             fs::metadata(path).map_err(|e| Error::in_file(path, format!("cannot be read: {e}")))?;
             let product = PRODUCTS.iter().find(|(other, _)| *other == ending);
-            let (_, what) = product.ok_or_else(|| Error::in_file(path, "is nothing that mindgap writes or reads"))?;
+            let (_, what) = product.ok_or_else(|| Error::in_file(path, "unrecognised file type"))?;
             Ok((*what).into())
         }
     }
@@ -106,26 +106,24 @@ fn file(path: &Path) -> Result<String> {
 fn of_json(path: &Path) -> Result<String> {
     let value: Value = files::read_json(path)?;
     if value.get("robot").is_some() && value.get("origin").is_some() {
-        return Simulator::read(path).map(|simulator| told(&simulator));
+        return Simulator::read(path).map(|simulator| describe(&simulator));
     }
     if let Some(first) = value.get(0) {
         let list = LISTS.iter().find(|(key, _)| first.get(key).is_some());
-        return list
-            .map(|(_, what)| (*what).into())
-            .ok_or_else(|| Error::in_file(path, "is no list that mindgap writes"));
+        return list.map(|(_, what)| (*what).into()).ok_or_else(|| Error::in_file(path, "unrecognised list"));
     }
     let report = kinds::REPORTS.iter().find(|(keys, _)| keys.iter().all(|key| value.get(key).is_some()));
-    let (_, what) = report.ok_or_else(|| Error::in_file(path, "is no JSON that mindgap writes"))?;
+    let (_, what) = report.ok_or_else(|| Error::in_file(path, "unrecognised JSON"))?;
     Ok(match value.get("verdict").and_then(Value::as_str) {
         Some(verdict) => format!("{what}, verdict {verdict}"),
         None => (*what).into(),
     })
 }
 
-fn told(simulator: &Simulator) -> String {
+fn describe(simulator: &Simulator) -> String {
     let origin = &simulator.origin;
     let mut text = format!(
-        "a simulator, trained ({}) on {} runs with seed {} by mindgap {}; steps of {} ms",
+        "a simulator, trained ({}) on {} runs with seed {} by mindgap {}; {} ms per step",
         origin.trainer, origin.runs, origin.seed, origin.version, simulator.robot.step_ms
     );
     for missing in &simulator.missing {
@@ -142,7 +140,7 @@ fn of_toml(path: &Path) -> Result<String> {
     if (kinds::CALIBRATION.is_own)(files::read_text(path)?.as_bytes()) {
         return Ok("thresholds of the diagnosis: `mindgap challenge calibrate`".into());
     }
-    // Keys alone: a table of values has no room for the larger half of seeds.
+    // Only keys are parsed: a TOML value cannot hold a seed above 2^63.
     let table: BTreeMap<String, IgnoredAny> = files::read_toml(path)?;
     let has = |key: &str| table.contains_key(key);
     if has("tuple") {
@@ -156,16 +154,16 @@ fn of_toml(path: &Path) -> Result<String> {
                 100.0 * o.success
             )
         });
-        let steps = format!("a controller, a step every {} ms, {} at most", controller.step_ms, controller.max_steps);
+        let steps = format!("a controller, {} ms per step, at most {} steps", controller.step_ms, controller.max_steps);
         return Ok(steps + &evolved.unwrap_or_default());
     }
     if has("effect") {
         let ids: Vec<&str> = own::read(path)?.iter().map(|effect| effect.id).collect();
-        return Ok(format!("effects of your own for `mindgap diagnose --effects`: {}", ids.join(", ")));
+        return Ok(format!("user-defined effects for `mindgap diagnose --effects`: {}", ids.join(", ")));
     }
     if has("ultrasonic") || has("track_cm") {
         let robot = Robot::read(path)?;
-        return Ok(format!("a robot with a track of {} cm, steps of {} ms", robot.track_cm, robot.step_ms));
+        return Ok(format!("a robot with a track of {} cm, {} ms per step", robot.track_cm, robot.step_ms));
     }
     let scene = Scene::read(path)?;
     let target = if scene.target_cm.is_some() { "a target" } else { "no target" };

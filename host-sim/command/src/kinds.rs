@@ -1,4 +1,4 @@
-//! What the commands write, recognised by its content: a file of that kind may be written again.
+//! Kinds of output files, recognised by content: an output may replace a file of its own kind without `--force`.
 
 use std::collections::BTreeMap;
 
@@ -7,12 +7,12 @@ use serde::de::IgnoredAny;
 use mindgap_files::places::Kind;
 use mindgap_workers::checkpoint;
 
-/// A simulator.
+/// A simulator file.
 pub const SIMULATOR: Kind =
     Kind { name: "a simulator", is_own: |content| has_keys(content, &["schema", "origin", "robot"]) };
-/// What a command found, as `--json` has it.
+/// The results of a command, as written by `--json`.
 pub const REPORT: Kind = Kind { name: "a report", is_own: is_report };
-/// A controller that was evolved: one without an origin is somebody's own.
+/// An evolved controller. One without an origin was written by hand and is not replaced.
 pub const CONTROLLER: Kind = Kind {
     name: "an evolved controller",
     is_own: |content| text(content).contains("[[tuple]]") && text(content).contains("[origin]"),
@@ -27,15 +27,15 @@ pub const PAGE: Kind =
     Kind { name: "a page", is_own: |content| text(content).contains(r#"<meta name="generator" content="mindgap">"#) };
 /// The formula of a diagnosis.
 pub const FORMULA: Kind = Kind { name: "a formula", is_own: |content| text(content).starts_with(FORMULA_SIGN) };
-/// What the file of a formula begins with: own effects without it are somebody's own.
+/// First line of a formula's file. Effects without it were written by hand and are not replaced.
 pub const FORMULA_SIGN: &str = "# Made by: mindgap diagnose\n";
-/// What a run that was broken off had done.
+/// The checkpoint of an interrupted run.
 pub const CHECKPOINT: Kind =
     Kind { name: "a checkpoint", is_own: |content| content.starts_with(checkpoint::SIGNATURE) };
-/// What carries no sign of who wrote it, as tables and runs in CSV.
+/// Files that do not show who wrote them, such as tables and runs in CSV.
 pub const UNSIGNED: Kind = Kind { name: "anything", is_own: |_| false };
 
-/// What stands in the first lines of the programs that `export` writes, in any format but the brick's executable.
+/// Phrases in the first lines of programs written by `export`, in all formats but the brick's executable.
 const PROGRAMS: [&str; 5] = [
     "A six-tuple controller",
     "A simulator's networks in fixed point",
@@ -43,9 +43,9 @@ const PROGRAMS: [&str; 5] = [
     "commands for the LEGO NXT with standard firmware",
     "use mindgap_core::fixed_network",
 ];
-/// How a brick's executable begins.
+/// First bytes of a brick's executable.
 const EXECUTABLE: &[u8] = b"MindstormsNXT\0";
-/// A program says in this many lines what it is.
+/// Number of lines in which one of [`PROGRAMS`] must occur.
 const FIRST_LINES: usize = 4;
 
 fn is_program(content: &[u8]) -> bool {
@@ -53,34 +53,34 @@ fn is_program(content: &[u8]) -> bool {
     content.starts_with(EXECUTABLE) || first_lines.any(|line| PROGRAMS.iter().any(|sign| line.contains(sign)))
 }
 
-/// What commands find, as `--json` has it, by keys that no earlier one has.
+/// Reports written by `--json`, by keys that no earlier one has.
 pub const REPORTS: &[(&[&str], &str)] = &[
-    (&["stands_out"], "a fleet's answer: `mindgap diagnose --fleet`"),
+    (&["stands_out"], "the diagnosis of a fleet: `mindgap diagnose --fleet`"),
     (&["verdict"], "a diagnosis: `mindgap diagnose --json`"),
     (&["reached_within_cm"], "simulated runs: `mindgap simulate --json`"),
-    (&["holds"], "what logs hold: `mindgap check --json`"),
+    (&["holds"], "a check of logs: `mindgap check --json`"),
     (&["tracks"], "an import of a brick's logs: `mindgap import --json`"),
     (&["recordings"], "an import of recordings: `mindgap import --json`"),
     (&["events"], "a run of an onboard program: `mindgap brick --json`"),
-    (&["lessons"], "what a simulator learned from runs: `mindgap adapt --json`"),
+    (&["lessons"], "an adaptation to runs: `mindgap adapt --json`"),
     (&["trials"], "a loop on the robot: `mindgap loop`"),
     (&["false_alarms"], "a score: `mindgap challenge score --json`"),
     (&["networks", "starts"], "a demonstration: `mindgap demo --json`"),
-    (&["networks", "runs"], "a comparison of fixed with floating point: `mindgap crosscheck --json`"),
+    (&["networks", "runs"], "a comparison of fixed point with float: `mindgap crosscheck --json`"),
     (&["networks"], "an evaluation: `mindgap evaluate --json`"),
-    (&["logs", "effects"], "what was recorded: `mindgap record --json`"),
+    (&["logs", "effects"], "a recording: `mindgap record --json`"),
     (&["simulator", "evaluations"], "a training: `mindgap train --json`"),
     (&["controller", "generations"], "an evolution: `mindgap evolve --json`"),
     (&["program", "bytes"], "an export: `mindgap export --json`"),
     (&["run", "ending"], "a drive: `mindgap drive --json`"),
-    (&["path", "what"], "what a file is: `mindgap info --json`"),
+    (&["path", "what"], "the type of a file: `mindgap info --json`"),
 ];
 
 fn is_report(content: &[u8]) -> bool {
     REPORTS.iter().any(|(keys, _)| has_keys(content, keys)) && !(SIMULATOR.is_own)(content)
 }
 
-/// Whether content is a JSON object with these keys.
+/// Returns whether the content is a JSON object with these keys.
 fn has_keys(content: &[u8], keys: &[&str]) -> bool {
     let object = serde_json::from_slice::<BTreeMap<String, IgnoredAny>>(content);
     object.is_ok_and(|object| keys.iter().all(|key| object.contains_key(*key)))

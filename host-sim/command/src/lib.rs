@@ -1,14 +1,16 @@
-//! The command `mindgap`: one file a command, nothing but arguments and printing.
+//! The command `mindgap`: one file per subcommand, limited to arguments and text.
 //!
-//! A command returns what it has to say, and says it only once everything is done: whoever reads just the first line
-//! of it, as `mindgap evaluate ... | head -1` does, stops nothing halfway.
+//! A subcommand returns its report as text, which is printed once all work is done: a reader that closes the pipe early,
+//! as in `mindgap evaluate ... | head -1`, cannot stop it halfway.
 
 mod adapt;
 mod brick;
 mod budget_text;
 mod challenge;
 mod check;
+mod checkpoint_args;
 mod choices;
+mod closed_loop;
 mod crosscheck;
 pub mod defaults;
 mod demo;
@@ -17,16 +19,17 @@ mod diagnosis_text;
 mod drive;
 mod evaluate;
 mod evolve;
+mod explain;
 mod export;
-mod facts;
 mod fleet;
 mod fleet_text;
 mod general;
 mod guide;
 mod import;
 mod info;
+mod json_output;
 pub mod kinds;
-mod lasting;
+mod logging;
 mod manual;
 mod new;
 mod ports;
@@ -38,17 +41,15 @@ mod simulate;
 mod table;
 mod textbook;
 mod train;
-mod trials;
-mod voice;
 
 use std::env;
 use std::path::Path;
 use std::process::ExitCode;
 
+use checkpoint_args::Checkpoint;
 use clap::{FromArgMatches, Parser, Subcommand};
 use general::General;
 pub use guide::command;
-use lasting::Kept;
 
 use mindgap_files as files;
 use mindgap_files::places::Places;
@@ -61,7 +62,7 @@ use mindgap_logs::robot::same_robot;
 use mindgap_models::simulator::Simulator;
 use mindgap_workers::Workers;
 
-/// Learns a robot's simulator from its logs, evolves controllers in it, and finds what reality has that it lacks.
+/// Learn a robot's simulator from its logs, evolve controllers in it, and diagnose the gap between simulator and robot.
 #[derive(Parser)]
 #[command(name = "mindgap", version)]
 struct Cli {
@@ -85,37 +86,41 @@ enum Command {
     Train(train::Train),
     Evaluate(evaluate::Evaluate),
     Evolve(evolve::Evolve),
+    Explain(explain::Explain),
     Simulate(simulate::Simulate),
     Export(export::Export),
     Import(import::Import),
-    Loop(trials::Loop),
+    Loop(closed_loop::Loop),
     New(new::New),
     Info(info::Info),
     Completions(manual::Completions),
     Manual(manual::Manual),
 }
 
-/// A command.
+/// A subcommand.
 trait Run {
-    /// What it reads and writes, which is checked before it begins.
+    /// Returns the paths it reads and writes, which are checked before it runs.
     fn places(&self) -> Places;
 
-    /// Does it; returns what there is to say.
+    /// Runs the subcommand and returns its report for the terminal.
+    ///
+    /// # Errors
+    /// If the work cannot be done; the error is one line for the user.
     fn run(&self, executor: &dyn Executor) -> Result<String>;
 
-    /// Where it keeps what is done, for a run that goes on after it was broken off; nowhere when it is soon done.
-    fn kept(&self) -> Option<Kept> {
+    /// Returns the checkpoint from which an interrupted run resumes, or `None` for quick subcommands.
+    fn checkpoint(&self) -> Option<Checkpoint> {
         None
     }
 
-    /// Whether ranks that were started together do its work together, and not the first alone.
+    /// Returns whether all MPI ranks share the work; otherwise only the first rank runs.
     fn is_shared(&self) -> bool {
         false
     }
 }
 
 impl Command {
-    fn which(&self) -> &dyn Run {
+    fn as_run(&self) -> &dyn Run {
         match self {
             Command::Adapt(command) => command,
             Command::Brick(command) => command,
@@ -129,6 +134,7 @@ impl Command {
             Command::Train(command) => command,
             Command::Evaluate(command) => command,
             Command::Evolve(command) => command,
+            Command::Explain(command) => command,
             Command::Simulate(command) => command,
             Command::Export(command) => command,
             Command::Import(command) => command,
@@ -141,10 +147,9 @@ impl Command {
     }
 }
 
-/// Runs the command of this process's arguments. Exits with 0 when it did what was asked, 1 when it could not, and 2
-/// when the call is wrong.
+/// Runs the command line of this process. Exits with 0 on success, 1 on failure and 2 on a usage error.
 pub fn run() -> ExitCode {
-    let complain = |error: &Error| voice::complain(&error.to_string());
+    let complain = |error: &Error| logging::error(&error.to_string());
     let is_done = match Workers::join() {
         Ok(mut workers) => {
             let done = answer(&mut workers);
@@ -158,43 +163,43 @@ pub fn run() -> ExitCode {
     if is_done { ExitCode::SUCCESS } else { ExitCode::FAILURE }
 }
 
-/// Does what this process's arguments and the defaults beside the logs ask for, and says what there is to say.
+/// Parses the arguments and the defaults of `mindgap.toml`, runs the subcommand and prints its report.
 fn answer(workers: &mut Workers) -> Result<()> {
     #[cfg(unix)]
-    signals::heed().map_err(|e| Error::new(format!("signals cannot be heeded: {e}")))?;
-    let command = guide::command();
-    let (arguments, defaults) = defaults::with_defaults(&command, env::args_os().collect())?;
-    let matches = command.clone().try_get_matches_from(arguments).map_err(|error| defaults.blamed_for(error))?;
-    let Cli { general, command: asked } = Cli::from_arg_matches(&matches).unwrap_or_else(|error| error.exit());
+    signals::install().map_err(|e| Error::new(format!("cannot install signal handlers: {e}")))?;
+    let definition = guide::command();
+    let (arguments, defaults) = defaults::with_defaults(&definition, env::args_os().collect())?;
+    let matches = definition.clone().try_get_matches_from(arguments).map_err(|error| defaults.locate(error))?;
+    let Cli { general, command } = Cli::from_arg_matches(&matches).unwrap_or_else(|error| error.exit());
     general.take_effect(workers)?;
-    defaults.tell();
-    let asked = asked.which();
-    let (places, kept) = (asked.places(), asked.kept());
+    defaults.log();
+    let subcommand = command.as_run();
+    let (places, checkpoint) = (subcommand.places(), subcommand.checkpoint());
     if workers.is_first() {
-        places.check(general.force, kept.as_ref().is_some_and(Kept::is_there))?;
-    } else if asked.is_shared() {
+        places.check(general.force, checkpoint.as_ref().is_some_and(Checkpoint::exists))?;
+    } else if subcommand.is_shared() {
         files::disable_writing();
     } else {
         return Ok(());
     }
-    lasting::begin(workers, asked.is_shared(), kept, &places, (&command, &matches))?;
+    checkpoint_args::begin(workers, subcommand.is_shared(), checkpoint, &places, (&definition, &matches))?;
     progress::begin(matches.subcommand_name().unwrap_or_default().to_owned());
-    let done = asked.run(workers);
+    let done = subcommand.run(workers);
     progress::end();
     let text = done?;
-    // What goes to standard output as a file stands alone there.
-    if general.quiet || places.use_standard_output() { Ok(()) } else { say(&text) }
+    // A file written to standard output is the only thing written there.
+    if general.quiet || places.use_standard_output() { Ok(()) } else { print(&text) }
 }
 
-/// Writes to standard output.
-fn say(text: &str) -> Result<()> {
-    let lines: Vec<String> = text.lines().map(voice::printable).collect();
+/// Prints to standard output.
+fn print(text: &str) -> Result<()> {
+    let lines: Vec<String> = text.lines().map(logging::printable).collect();
     let end = if text.ends_with('\n') { "\n" } else { "" };
     let written = files::to_standard_output((lines.join("\n") + end).as_bytes());
-    written.map_err(|e| Error::new(format!("standard output cannot be written: {e}")))
+    written.map_err(|e| Error::new(format!("cannot write to standard output: {e}")))
 }
 
-/// Reads a folder of logs and tells its oddities on standard error.
+/// Reads a folder of logs and reports its oddities as warnings.
 fn read_logs(folder: &Path) -> Result<Logs> {
     let logs = Logs::read(folder, warn)?;
     let (runs, rows, step_ms) = (logs.runs.len(), logs.rows(), logs.robot.step_ms);
@@ -203,31 +208,32 @@ fn read_logs(folder: &Path) -> Result<Logs> {
     let open = to_fill_in(&robot.display().to_string(), &files::read_text(&robot)?);
     if let Some(first) = open.first() {
         let others = if open.len() > 1 { format!(" and {} more", open.len() - 1) } else { String::new() };
-        warn(format!("{first}{others}: marked FILL IN, so not measured yet; what is wrong about it looks like a gap"));
+        warn(format!("{first}{others}: still marked FILL IN: an error in it will show up as a gap"));
     }
     Ok(logs)
 }
 
-/// Reads a folder of logs from which something is learned or judged: what could be put right in them is told and used.
+/// Reads a folder of logs for training or evaluation, corrects what can be corrected, and reports the corrections as
+/// warnings.
 ///
 /// # Errors
-/// When they cannot be read, or when something in them is wrong that could not be put right.
+/// If the logs cannot be read, or have a defect that cannot be corrected.
 fn read_sound_logs(folder: &Path) -> Result<Logs> {
-    let told = |found| warn(format!("{}: {found}", folder.display()));
-    Inspection::new(read_logs(folder)?).into_usable(told).map_err(|error| error.or_in_file(folder))
+    let report = |found| warn(format!("{}: {found}", folder.display()));
+    Inspection::new(read_logs(folder)?).into_usable(report).map_err(|error| error.or_in_file(folder))
 }
 
-/// The same of logs that have to be of a simulator's robot.
+/// Reads logs as [`read_sound_logs`] does, and checks that they are of the simulator's robot.
 ///
 /// # Errors
-/// As [`read_sound_logs`], or when they are another robot's.
+/// As [`read_sound_logs`], or if the logs are of another robot.
 fn read_logs_of(simulator: &Simulator, folder: &Path) -> Result<Logs> {
     let logs = read_sound_logs(folder)?;
     same_robot(&simulator.robot, &logs.robot)?;
     Ok(logs)
 }
 
-/// Tells what does not keep a command from being done.
+/// Logs a warning.
 fn warn(warning: String) {
     log::warn!("{warning}");
 }

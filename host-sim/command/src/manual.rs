@@ -1,4 +1,4 @@
-//! `mindgap completions` and `mindgap manual`: made from the definitions by which the command is parsed.
+//! `mindgap completions` and `mindgap manual`, generated from the definition of the command line.
 
 mod markdown;
 
@@ -15,20 +15,20 @@ use mindgap_files::places::Places;
 use mindgap_foundations::error::{Error, Result};
 use mindgap_foundations::executor::Executor;
 
-/// Print what makes a shell complete this command.
+/// Generate a shell completion script.
 #[derive(Args)]
 pub struct Completions {
-    /// The shell.
+    /// Shell to generate the script for.
     shell: Shell,
 }
 
-/// Write manual pages, one a command.
+/// Write manual pages, one per command.
 #[derive(Args)]
 pub struct Manual {
-    /// The folder to write them into.
+    /// Output folder.
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
-    /// What they are written in.
+    /// Format of the pages.
     #[arg(long, value_enum, default_value_t = Format::Man)]
     format: Format,
 }
@@ -43,7 +43,7 @@ enum Format {
 }
 
 const NAME: &str = "mindgap";
-/// What clap adds to the commands.
+/// Subcommand that clap adds.
 const HELP: &str = "help";
 
 impl Run for Completions {
@@ -55,7 +55,7 @@ impl Run for Completions {
         let mut script = Vec::new();
         clap_complete::generate(self.shell, &mut guide::command(), NAME, &mut script);
         let printed = files::to_standard_output(&script);
-        printed.map_err(|e| Error::new(format!("standard output cannot be written: {e}")))?;
+        printed.map_err(|e| Error::new(format!("cannot write to standard output: {e}")))?;
         Ok(String::new())
     }
 }
@@ -93,12 +93,11 @@ impl Run for Manual {
 
 fn man(page: Command) -> Result<Vec<u8>> {
     let mut text = Vec::new();
-    let told = Man::new(page).render(&mut text);
-    told.map_err(|e| Error::new(format!("the manual cannot be made: {e}")))?;
+    Man::new(page).render(&mut text).map_err(|e| Error::new(format!("cannot render the manual: {e}")))?;
     Ok(text)
 }
 
-/// Names of commands are kept for as long as the program runs.
+/// Leaks a name, since clap needs names that live as long as the program.
 fn leaked(name: &str) -> &'static str {
     String::from(name).leak()
 }

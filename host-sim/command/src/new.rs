@@ -11,17 +11,17 @@ use mindgap_foundations::error::Result;
 use mindgap_foundations::executor::Executor;
 use mindgap_import::draft::{RobotDraft, SCENE};
 
-/// Make a folder for a robot of your own: robot.toml and scene.toml to fill in, and a place for recordings.
+/// Create a folder for your robot: robot.toml and scene.toml to fill in, and a folder for recordings.
 #[derive(Args)]
 pub struct New {
-    /// The folder.
+    /// Folder to create.
     #[arg(value_name = "DIR")]
     folder: PathBuf,
 }
 
-/// Where recordings go.
+/// Folder of the recordings.
 const RECORDINGS: &str = "recordings";
-/// The files of the folder.
+/// Files in the folder.
 const FILES: [&str; 3] = ["robot.toml", "scene.toml", "README.md"];
 
 impl Run for New {
@@ -43,14 +43,14 @@ impl Run for New {
             },
         )?;
         Ok(format!(
-            "{}: fill in robot.toml (and scene.toml, if there are walls), put what the robot recorded into {RECORDINGS}, then:\n{}",
+            "{}: fill in robot.toml (and scene.toml, if there are walls), put the robot's recordings into {RECORDINGS}, then:\n{}",
             self.folder.display(),
             next(&self.folder)
         ))
     }
 }
 
-/// The next three commands.
+/// Returns the next three commands.
 fn next(folder: &Path) -> String {
     let folder = folder.display();
     format!(
@@ -62,13 +62,13 @@ fn next(folder: &Path) -> String {
 fn readme(folder: &Path) -> String {
     format!(
         "# A robot\n\n\
-         - `robot.toml`: measures of the robot. What is marked FILL IN is not known yet.\n\
-         - `scene.toml`: the walls where it drove; open ground as it stands.\n\
-         - `{RECORDINGS}`: what it recorded, as it came: CSV files with commands and poses, or ROS 2 bags (MCAP).\n\n\
+         - `robot.toml`: dimensions of the robot. Values marked FILL IN are not known yet.\n\
+         - `scene.toml`: the walls where it drove; empty means open ground.\n\
+         - `{RECORDINGS}`: its recordings, unchanged: CSV files with commands and poses, or ROS 2 bags (MCAP).\n\n\
          Drive all kinds of commands, slow and fast, straight and in turns, and change them every few steps. In every third \
-         run hold each for ten steps and more: controllers do, and what is a fraction of a degree in one step adds up \
-         there.\n\n\
-         Then, one after the other (`mindgap import bag {}/{RECORDINGS}/*.mcap ...` for bags):\n\n{}",
+         run, hold each command for ten steps or more: controllers do so, and errors of a fraction of a degree per step \
+         add up there.\n\n\
+         Then run these commands (`mindgap import bag {}/{RECORDINGS}/*.mcap ...` for bags):\n\n{}",
         folder.display(),
         next(folder).lines().map(|line| format!("  {line}\n")).collect::<String>()
     )

@@ -1,9 +1,9 @@
-//! Where motors and sensor are plugged into a brick.
+//! Ports of the motors and the sensor on a brick.
 
 use clap::Args;
 use mindgap_controller_export::wiring::{MotorPort, SensorPort, Wiring};
 
-/// The options of commands that make or run a brick's program.
+/// The port options of commands that write or run a brick's program.
 #[derive(Args)]
 pub struct PortOptions {
     /// Port of the left motor.
@@ -18,7 +18,7 @@ pub struct PortOptions {
 }
 
 impl PortOptions {
-    /// The wiring.
+    /// Returns the wiring.
     pub fn wiring(&self) -> Wiring {
         Wiring { left: self.left, right: self.right, sonar: self.sonar }
     }

@@ -1,4 +1,4 @@
-//! Progress on a terminal; nothing in a pipe, nor with `--quiet`.
+//! Progress bars on a terminal; none in a pipe or with `--quiet`.
 
 use std::ops::Range;
 use std::sync::LazyLock;
@@ -9,42 +9,42 @@ use log::LevelFilter;
 
 use mindgap_learning::learn::train::{NETWORKS, Progress};
 
-/// All bars of this process, so that other lines can be written beside them.
+/// All bars of this process, so that other lines can be written without crossing them.
 static BARS: LazyLock<MultiProgress> = LazyLock::new(|| {
     let target = if is_quiet() { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr() };
     MultiProgress::with_draw_target(target)
 });
-/// Stands where the length of the work is not known, until a bar does.
+/// Shown while the amount of work is unknown, until a bar replaces it.
 static SPINNER: LazyLock<ProgressBar> = LazyLock::new(ProgressBar::new_spinner);
 
-/// Whether nothing but errors is said.
+/// Returns whether only errors are printed.
 pub fn is_quiet() -> bool {
     log::max_level() < LevelFilter::Warn
 }
 
-/// Shows that a command is at work, and for how long already.
+/// Shows a spinner with the name of a command and the elapsed time.
 pub fn begin(command: String) {
-    // What is said before it is one of all would be drawn even when nothing is to be.
+    // A bar must join `BARS` before it is changed, or it would be drawn even if hidden.
     add(&SPINNER, "{spinner} {msg} [{elapsed}]");
     SPINNER.set_message(command);
 }
 
-/// Takes away what [`begin`] shows.
+/// Removes the spinner of [`begin`].
 pub fn end() {
     SPINNER.finish_and_clear();
 }
 
-/// A bar for so many steps, with the time left.
+/// Returns a bar for `steps` steps, with the estimated time left.
 pub fn bar(steps: u64) -> ProgressBar {
     shown(steps, "{bar:30} {pos}/{len} [{elapsed}, about {eta} left] {msg}")
 }
 
-/// A bar for work of which the share in percent is known that is done, with the time left.
+/// Returns a bar in percent, with the estimated time left.
 pub fn shares() -> ProgressBar {
     shown(100, "{bar:30} {pos} % [{elapsed}, about {eta} left] {msg}")
 }
 
-/// Moves a bar as so many of so many are done.
+/// Returns a callback `(done, total)` that moves the bar.
 pub fn counting(bar: &ProgressBar) -> impl Fn(usize, usize) + Sync + '_ {
     |done, of| {
         bar.set_length(of as u64);
@@ -52,31 +52,31 @@ pub fn counting(bar: &ProgressBar) -> impl Fn(usize, usize) + Sync + '_ {
     }
 }
 
-/// Moves a bar of [`shares`] through the part of the work in percent that is this, as so many of so many are done.
+/// Returns a callback `(done, total)` that moves a bar of [`shares`] through `part`, in percent.
 pub fn part<'b>(bar: &'b ProgressBar, part: Range<u64>, what: &'static str) -> impl Fn(usize, usize) + Sync + 'b {
     bar.set_message(what);
     move |done, of| bar.set_position(part.start + (part.end - part.start) * done as u64 / of.max(1) as u64)
 }
 
-/// Moves a bar of [`shares`] to a share of the work, 0..=1, and says what is being done.
+/// Moves a bar of [`shares`] to a share of the work, 0..=1, and shows the current activity.
 pub fn at(bar: &ProgressBar, share: f64, what: String) {
     bar.set_position((100.0 * share) as u64);
     bar.set_message(what);
 }
 
-/// Writes something that a bar must not cross.
-pub fn beside(write: impl FnOnce()) {
+/// Calls `write` while all bars are hidden.
+pub fn suspended(write: impl FnOnce()) {
     BARS.suspend(write);
 }
 
-/// Moves a bar of networks that are trained one after the other.
+/// Moves a bar over the networks, which are trained in sequence.
 pub fn training(bar: &ProgressBar, Progress { network, evaluations }: Progress) {
     let place = NETWORKS.iter().position(|name| *name == network);
     bar.set_position(place.unwrap_or_default() as u64);
     bar.set_message(training_words(network, evaluations));
 }
 
-/// What training is at.
+/// Returns a description of the current state of training.
 pub fn training_words(network: &str, evaluations: usize) -> String {
     match evaluations {
         0 => format!("training {network}"),
@@ -93,8 +93,8 @@ fn shown(length: u64, template: &str) -> ProgressBar {
 
 fn add(bar: &ProgressBar, template: &str) {
     let bar = BARS.add(bar.clone());
-    bar.set_style(ProgressStyle::with_template(template).expect("the template is right"));
-    // It takes a thread, and there may be none left: not where nobody sees it.
+    bar.set_style(ProgressStyle::with_template(template).expect("the template is valid"));
+    // Ticking takes a thread, so hidden bars do without.
     if !BARS.is_hidden() {
         bar.enable_steady_tick(Duration::from_secs(1));
     }

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use serde_json::json;
 
-use super::facts::FactsOption;
+use super::json_output::JsonOption;
 use super::table::count;
 use super::{Run, kinds};
 use mindgap_built_in_robot::{ActiveEffect, Driving, Effect, default_robot, record_driving, training_room};
@@ -18,34 +18,34 @@ use mindgap_logs::Scene;
 #[derive(Args)]
 #[command(after_help = effects_help())]
 pub struct Record {
-    /// Folder for the logs.
+    /// Folder to write the logs to.
     #[arg(long, value_name = "LOGS")]
     out: PathBuf,
-    /// Room to drive in; a room with four obstacles when left out.
+    /// Scene to drive in (default: a room with four obstacles).
     #[arg(long, value_name = "FILE")]
     scene: Option<PathBuf>,
     /// Number of runs.
     #[arg(long, value_name = "N", default_value_t = 100, value_parser = clap::value_parser!(u32).range(1..=999))]
     runs: u32,
-    /// Steps of each run.
+    /// Steps per run.
     #[arg(long, value_name = "N", default_value_t = 60, value_parser = clap::value_parser!(u32).range(1..=100_000))]
     steps: u32,
-    /// In every third run, hold commands for up to so many steps, as controllers do; all for three at most when left out.
+    /// In every third run, hold each command for up to this many steps, as controllers do (default: at most 3 steps).
     #[arg(long, value_name = "STEPS", value_parser = clap::value_parser!(u32).range(4..=100_000))]
     hold: Option<u32>,
-    /// What is different about the robot; may be given again.
+    /// Fault to inject; repeatable.
     #[arg(long = "effect", value_name = "ID[=STRENGTH[@DETAIL]]")]
     effects: Vec<ActiveEffect>,
-    /// Fixes every draw.
+    /// Random seed.
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
     #[command(flatten)]
-    facts: FactsOption,
+    json: JsonOption,
 }
 
 impl Run for Record {
     fn places(&self) -> Places {
-        Places::default().reading(&self.scene).filling([&self.out]).writing(self.facts.asked(), kinds::REPORT)
+        Places::default().reading(&self.scene).filling([&self.out]).writing(self.json.path(), kinds::REPORT)
     }
 
     fn run(&self, _: &dyn Executor) -> Result<String> {
@@ -59,20 +59,20 @@ impl Run for Record {
             .map_err(|error| self.scene.iter().fold(error, |p, scene| p.or_in_file(scene)))?;
         logs.write(&self.out)?;
         let effects: Vec<String> = self.effects.iter().map(ToString::to_string).collect();
-        let facts = json!({
+        let results = json!({
             "schema": 1, "logs": self.out, "runs": self.runs, "steps": self.steps, "step_ms": logs.robot.step_ms, "seed": self.seed,
             "effects": effects,
         });
         let text = format!("{}: {} of {} steps\n", self.out.display(), count(amount[0], "run"), self.steps);
-        self.facts.told(&facts, text)
+        self.json.emit(&results, text)
     }
 }
 
-/// Every effect with its unit and default.
+/// Returns the list of effects, each with its unit and default.
 fn effects_help() -> String {
     let lines = Effect::all().map(|effect| {
         let strength = effect.strength_range();
-        let place = if effect.in_table() { "" } else { " (no diagnosis knows it)" };
+        let place = if effect.in_table() { "" } else { " (unknown to the diagnosis)" };
         let about = effect.about();
         let detail = effect.detail_range().map_or(String::new(), |d| format!("; @ {}, default {}", d.unit, d.default));
         let range = format!("{} to {}, default {}", strength.lowest, strength.highest, strength.default);

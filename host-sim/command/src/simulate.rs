@@ -6,7 +6,7 @@ use clap::{Args, value_parser};
 
 use super::choices::{SENSOR_MODELS, one_of};
 use super::evolve::start_of;
-use super::facts::FactsOption;
+use super::json_output::JsonOption;
 use super::table::{self, number};
 use super::{Run, kinds, progress, textbook};
 use mindgap_figures::pictures;
@@ -22,7 +22,7 @@ use mindgap_models::simulator::environment::SensorModel;
 use mindgap_models::simulator::rollout_report::RolloutReport;
 use mindgap_pages::simulation::{Subject, page};
 
-/// Run a controller in a simulator: each run is of another robot that its logs leave possible.
+/// Run a controller in a simulator; each run samples a robot from the posterior.
 #[derive(Args)]
 pub struct Simulate {
     /// The simulator file.
@@ -32,39 +32,39 @@ pub struct Simulate {
     /// The scene.
     #[arg(long, value_name = "FILE")]
     scene: PathBuf,
-    /// Which of the scene's starts, from 1.
+    /// Number of the start in the scene, from 1.
     #[arg(long, value_name = "N", default_value_t = 1)]
     start: usize,
-    /// How many runs.
+    /// Number of runs.
     #[arg(long, value_name = "N", default_value_t = 10, value_parser = value_parser!(u32).range(1..=1_000_000))]
     runs: u32,
-    /// Fixes every draw.
+    /// Random seed.
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
-    /// Echoes that fail are the only noise.
+    /// Simulate echo dropouts only, as in the paper.
     #[arg(long)]
     paper_noise: bool,
-    /// What makes the readings: the beam that the training logs show, the two networks, or the first-echo law. With
-    /// --paper-noise it is the networks.
+    /// Sensor model: the beam model fitted to the training logs, the two networks, or the first-echo law. --paper-noise
+    /// uses the networks.
     #[arg(long, value_parser = one_of::<SensorModel>(SENSOR_MODELS), default_value = "beam", conflicts_with = "paper_noise")]
     sonar: SensorModel,
     #[command(flatten)]
-    facts: FactsOption,
-    /// Also write a page for a browser here.
+    json: JsonOption,
+    /// Write an HTML page.
     #[arg(long, value_name = "FILE")]
     html: Option<PathBuf>,
-    /// Also draw figures into this folder, as SVG and PNG.
+    /// Write figures into this folder, as SVG and PNG.
     #[arg(long, value_name = "DIR")]
     figures: Option<PathBuf>,
 }
 
-/// Rows of the table at most.
+/// Maximum number of rows of the table.
 const ROWS: usize = 20;
 
 impl Run for Simulate {
     fn places(&self) -> Places {
         let inputs = [&self.sim, &self.controller, &self.scene];
-        let places = Places::default().reading(inputs).writing(self.facts.asked(), kinds::REPORT);
+        let places = Places::default().reading(inputs).writing(self.json.path(), kinds::REPORT);
         places.writing(&self.html, kinds::PAGE).filling(&self.figures)
     }
 
@@ -104,11 +104,11 @@ impl Run for Simulate {
             let title = format!("Start {}", self.start);
             pictures::paths(folder, &[pictures::simulated_paths(title, &scene, start, &rollouts)])?;
         }
-        self.facts.told(&rollouts, told(&rollouts))
+        self.json.emit(&rollouts, describe(&rollouts))
     }
 }
 
-fn told(rollouts: &RolloutReport) -> String {
+fn describe(rollouts: &RolloutReport) -> String {
     let rows: Vec<[String; 6]> = rollouts
         .runs
         .iter()
@@ -125,7 +125,7 @@ fn told(rollouts: &RolloutReport) -> String {
         text += &format!("... and {} more\n", rollouts.runs.len() - ROWS);
     }
     if rollouts.runs.iter().any(|run| run.termination == Termination::TimedOut) {
-        text += "timed out: its steps were spent, so that it stopped; it has reached the target if it stands there\n";
+        text += "timed out: step limit reached; success if within the target radius\n";
     }
     let crashed = rollouts.runs.iter().filter(|run| run.termination == Termination::Crashed).count();
     let crashes = format!("{crashed} of {} crashed", rollouts.runs.len());

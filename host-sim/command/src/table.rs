@@ -1,6 +1,6 @@
 //! Plain tables for the terminal.
 
-/// Rows under a header, the first column to the left and all others to the right.
+/// Returns a table with a header, the first column aligned left and all others right.
 pub fn text<const N: usize>(header: [&str; N], rows: &[[String; N]]) -> String {
     let widths: [usize; N] = std::array::from_fn(|i| {
         rows.iter().map(|row| row[i].chars().count()).chain([header[i].chars().count()]).max().unwrap_or(0)
@@ -18,12 +18,12 @@ pub fn text<const N: usize>(header: [&str; N], rows: &[[String; N]]) -> String {
     line(header) + &body.collect::<String>()
 }
 
-/// A number with so many decimals, or a dash for none.
+/// Returns a number with `decimals` decimals, or a dash for `None`.
 pub fn number(value: Option<f64>, decimals: usize) -> String {
     value.map_or("-".into(), |v| format!("{v:.decimals$}"))
 }
 
-/// So many of something, in words: "1 run", "2 runs".
+/// Returns a number with its noun: "1 run", "2 runs".
 pub fn count(of: usize, what: &str) -> String {
     format!("{of} {what}{}", if of == 1 { "" } else { "s" })
 }

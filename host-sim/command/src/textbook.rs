@@ -1,4 +1,4 @@
-//! `kinematic`, which stands for a simulator file where the textbook will do.
+//! `kinematic`, the name of the textbook model in place of a simulator file.
 
 use std::ffi::OsStr;
 use std::path::Path;
@@ -7,38 +7,38 @@ use mindgap_files as files;
 use mindgap_foundations::error::{Error, Result};
 use mindgap_models::simulator::Simulator;
 
-/// Stands for a simulator file: the textbook's.
+/// Argument that selects the textbook model.
 pub const KINEMATIC: &str = "kinematic";
 
-/// Reads a simulator file, or says what was meant by one that is not there.
+/// Reads a simulator file where `kinematic` would be accepted too.
 ///
 /// # Errors
-/// As [`Simulator::read`].
-pub fn simulator_beside_textbook(path: &Path) -> Result<Simulator> {
+/// As [`Simulator::read`]; a missing file with a name like `kinematic` gives a suggestion.
+pub fn simulator_or_textbook(path: &Path) -> Result<Simulator> {
     let meant = files::did_you_mean(&path.to_string_lossy(), [KINEMATIC]);
     if !path.exists() && !meant.is_empty() {
-        return Err(Error::in_file(path, format!("is not there{meant}")));
+        return Err(Error::in_file(path, format!("does not exist{meant}")));
     }
     Simulator::read(path)
 }
 
-/// Reads a simulator file where the textbook will not do.
+/// Reads a simulator file where the textbook model is not accepted.
 ///
 /// # Errors
-/// As [`Simulator::read`], and when the textbook is meant.
+/// As [`Simulator::read`], or if `kinematic` is given.
 pub fn simulator(path: &Path) -> Result<Simulator> {
     learned(path)?;
     Simulator::read(path)
 }
 
-/// Checks that the textbook is not meant where a learned simulator is needed.
+/// Checks that a learned simulator is given rather than the textbook model.
 ///
 /// # Errors
-/// When it is.
+/// If `kinematic` is given.
 pub fn learned(path: &Path) -> Result<()> {
     if path.as_os_str() == OsStr::new(KINEMATIC) && !path.exists() {
-        let what = "stands for the textbook, with which mindgap diagnose compares logs; here a simulator file is needed, \
-                    as mindgap train LOGS --out simulator.json makes it";
+        let what = "is the textbook model, which only mindgap diagnose accepts: give a simulator file, as written by \
+                    mindgap train LOGS --out simulator.json";
         return Err(Error::in_file(path, what));
     }
     Ok(())

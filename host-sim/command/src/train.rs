@@ -7,8 +7,8 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 use serde_json::json;
 
-use super::facts::FactsOption;
-use super::lasting::{KeepOption, Kept};
+use super::checkpoint_args::{Checkpoint, CheckpointOption};
+use super::json_output::JsonOption;
 use super::{Run, kinds, progress, warn};
 use mindgap_files as files;
 use mindgap_files::places::Places;
@@ -26,50 +26,50 @@ pub struct Train {
     /// The simulator file to write.
     #[arg(long)]
     out: PathBuf,
-    /// How to train.
+    /// Training method.
     #[arg(long, value_enum, default_value_t = Trainer::Fast)]
     trainer: Trainer,
-    /// Another number of hidden neurons than the paper's Table I has (turn=4, forward=20, lateral=20,
-    /// echo_probability=10, echo_value=40), half of them product units; `evaluate` then shows both.
+    /// Number of hidden neurons, half of them product units, in place of the paper's Table I (turn=4, forward=20,
+    /// lateral=20, echo_probability=10, echo_value=40); `evaluate` then shows both; repeatable.
     #[arg(long, value_name = "NETWORK=N", value_parser = hidden_layer)]
     hidden: Vec<(String, Shape)>,
-    /// Fixes every draw.
+    /// Random seed.
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
     #[command(flatten)]
-    facts: FactsOption,
+    json: JsonOption,
     #[command(flatten)]
-    keep: KeepOption,
+    checkpoint: CheckpointOption,
 }
 
 fn hidden_layer(text: &str) -> Result<(String, Shape), String> {
-    let (network, hidden) = text.split_once('=').ok_or("needs the form NETWORK=N")?;
+    let (network, hidden) = text.split_once('=').ok_or("expected NETWORK=N")?;
     if TABLE_ONE.clone().of(network).is_none() {
-        return Err(format!("there is no network {network}{}", files::did_you_mean(network, NETWORKS)));
+        return Err(format!("no such network: {network}{}", files::did_you_mean(network, NETWORKS)));
     }
     let shape = hidden.parse().ok().and_then(Shape::checked_halves);
-    Ok((network.into(), shape.ok_or("the hidden layer has two equal halves of 1 to 32 neurons")?))
+    Ok((network.into(), shape.ok_or("N must be even, from 2 to 64")?))
 }
 
 /// The trainers.
 #[derive(Clone, Copy, ValueEnum)]
 enum Trainer {
-    /// The paper's genetic algorithm on all weights.
+    /// The paper's genetic algorithm for all weights.
     Paper,
-    /// Least squares for the linear weights, and a search for the exponents alone.
+    /// Least squares for the linear weights, and a search for the exponents only.
     Fast,
 }
 
 impl Run for Train {
     fn places(&self) -> Places {
         let places = Places::default().reading([&self.logs]).writing([&self.out], kinds::SIMULATOR);
-        places.writing(self.facts.asked(), kinds::REPORT).writing(self.keep.asked(), kinds::CHECKPOINT)
+        places.writing(self.json.path(), kinds::REPORT).writing(self.checkpoint.path(), kinds::CHECKPOINT)
     }
 
     fn run(&self, executor: &dyn Executor) -> error::Result<String> {
         let logs = super::read_sound_logs(&self.logs)?;
         let bar = progress::bar(NETWORKS.len() as u64);
-        // The last that is told of each network.
+        // The latest count of each network.
         let evaluations = RefCell::new(BTreeMap::new());
         let watch = |p: train::Progress| {
             evaluations.borrow_mut().insert(p.network, p.evaluations);
@@ -99,15 +99,15 @@ impl Run for Train {
             counts.join(", "),
             self.out.display()
         );
-        let facts = json!({
+        let results = json!({
             "schema": 1, "simulator": self.out, "runs": simulator.origin.runs, "seed": self.seed,
             "evaluations": evaluations, "missing": simulator.missing,
         });
-        self.facts.told(&facts, text)
+        self.json.emit(&results, text)
     }
 
-    fn kept(&self) -> Option<Kept> {
-        self.keep.beside(&self.out)
+    fn checkpoint(&self) -> Option<Checkpoint> {
+        self.checkpoint.for_output(&self.out)
     }
 
     fn is_shared(&self) -> bool {

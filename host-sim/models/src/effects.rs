@@ -13,6 +13,7 @@ pub mod chain;
 pub mod context;
 pub mod own;
 pub mod parameter;
+pub mod signs;
 pub mod small_robot;
 pub mod variant;
 

@@ -5,8 +5,8 @@ use maud::{Markup, html};
 use super::document::{Document, Section, chart, open_table};
 use super::words::{self, number, percent, percent_within};
 use mindgap_applications::adapt::Gap;
-use mindgap_applications::trials::drawing;
-use mindgap_applications::trials::state::{State, Trial, Verdict};
+use mindgap_applications::closed_loop::drawing;
+use mindgap_applications::closed_loop::state::{State, Trial, Verdict};
 use mindgap_figures::report::curves::{Curve, CurveChart, Point};
 use mindgap_figures::report::{self, Figure};
 use mindgap_foundations::geometry::Pose;
@@ -104,11 +104,11 @@ fn headline(state: &State) -> String {
         Verdict::Works => {
             format!("The controller works {after}: it reached the target three times, and has {chance} in simulation.")
         }
-        Verdict::Spent if state.limit().is_some() => format!(
+        Verdict::TrialsExhausted if state.limit().is_some() => format!(
             "No controller was found that reaches the target often enough; {after} the best has {chance}, limited by noise alone."
         ),
-        Verdict::Spent => format!("No controller is confirmed {after}; the best has {chance}."),
-        Verdict::OutOfReach => "No controller was found that reaches the target on any possible robot.".into(),
+        Verdict::TrialsExhausted => format!("No controller is confirmed {after}; the best has {chance}."),
+        Verdict::Infeasible => "No controller was found that reaches the target on any possible robot.".into(),
         Verdict::Running => format!("The loop is under way {after}."),
     }
 }
@@ -297,7 +297,7 @@ fn next(state: &State) -> Markup {
                 Verdict::Works => li {
                     "Make a program of the controller: " code { "mindgap export controller.toml --format nxc --out drive.nxc" } "."
                 },
-                Verdict::Spent => @match state.limit() {
+                Verdict::TrialsExhausted => @match state.limit() {
                     Some(success) => li {
                         "Make it easier: a start nearer to the target, or a wider way. Even with a perfectly known robot, the best "
                         "of these controllers would reach the target in " (percent(success)) " of its runs: more trials will hardly help."
@@ -307,7 +307,7 @@ fn next(state: &State) -> Markup {
                         "the robot."
                     },
                 },
-                Verdict::OutOfReach => li {
+                Verdict::Infeasible => li {
                     "Make it easier: a start nearer to the target, or more " code { "--max-steps" } ". If even that fails, "
                     "log the robot while it drives at random, and train the simulator again."
                 },

@@ -29,7 +29,7 @@ fn print() -> Result<()> {
             "controllers" => controller_runs(&simulator, CONTROLLERS, SEED),
             folder => Logs::read(Path::new(folder), |_| {})?,
         };
-        let missing = || Error::new("the simulator file does not say what its training logs leave open");
+        let missing = || Error::new("the simulator file has no parameter uncertainty");
         for Coverage { steps, paths, places, headings } in coverage(&simulator, &logs, SEED).ok_or_else(missing)? {
             let shares: Vec<String> =
                 places.iter().chain(&headings).map(|share| format!("{:.0}", 100.0 * share)).collect();

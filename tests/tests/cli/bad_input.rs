@@ -262,7 +262,7 @@ fn options_of_another_format_are_not_passed_over() {
     workshop.write("c.toml", CONTROLLER);
     for options in ["--format rxe --log a.csv", "--format c --display"] {
         let refusal = workshop.refused(&format!("export c.toml --out c.out {options}"));
-        assert_eq!(refusal, "--log and --display are for a controller with --format nxc");
+        assert_eq!(refusal, "--log and --display need a controller and --format nxc");
     }
 }
 
@@ -272,7 +272,7 @@ fn scripts_that_cannot_be_driven() {
     let header = "t_ms,left,right,x_cm,y_cm,heading_deg,echo_cm\n";
     workshop.write("s.csv", format!("{header}0,10,10,,,,\n400,10,10,,,,\n900,10,10,,,,\n"));
     let refusal = workshop.refused("export s.csv --format nxc-collect --out s.nxc");
-    assert_eq!(refusal, "s.csv: is no script: its rows are not equally many whole milliseconds apart");
+    assert_eq!(refusal, "s.csv: is not a script: its rows must be the same whole number of milliseconds apart");
     workshop.write("s.csv", format!("{header}0,10,10,,,,\n50,10,10,,,,\n"));
     let refusal = workshop.refused("export s.csv --format nxc-collect --out s.nxc");
     assert!(refusal.starts_with("s.csv: ") && refusal.contains("50"), "{refusal}");

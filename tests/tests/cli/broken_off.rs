@@ -60,7 +60,7 @@ fn survives(prepared: &Workshop, call: &[&str], usual: usize) {
     );
 }
 
-/// What a call prints, none if it was killed before its end; and whether it said that it goes on.
+/// What a call prints, none if it was killed before its end; and whether it resumed.
 #[track_caller]
 fn output(workshop: &Workshop, call: &[&str], kill_at: Option<Instant>) -> (Option<String>, bool) {
     let mut command = workshop.command("");
@@ -76,7 +76,7 @@ fn output(workshop: &Workshop, call: &[&str], kill_at: Option<Instant>) -> (Opti
         assert_eq!(code, 0, "{call:?}: {stderr}");
         String::from_utf8(stdout).expect("the command writes UTF-8")
     });
-    (printed, stderr.contains("goes on"))
+    (printed, stderr.contains("resuming"))
 }
 
 #[track_caller]
@@ -169,7 +169,7 @@ fn of_a_torn_checkpoint_the_beginning_is_used() {
     assert_eq!(done.code, 0, "{}", done.err);
     let told: Vec<&str> = done.err.lines().collect();
     assert!(
-        told.len() == 2 && told[0].contains("kept: its end is damaged") && told[1].contains("kept: goes on"),
+        told.len() == 2 && told[0].contains("kept: its end is damaged") && told[1].contains("kept: resuming"),
         "{told:?}"
     );
     assert_same(&unbroken, &broken, &[EVOLVE]);
@@ -184,7 +184,7 @@ fn what_is_called_by_another_path_is_the_same() {
     // It lies in the folder that is read, of which it is no part by any name.
     kill_when_kept(&broken, &call("logs", "paper.json"), "logs/kept");
     let done = broken.call(&format!("{} --checkpoint ./logs/kept", call(&format!("{folder}/logs"), "./paper.json")));
-    assert!(done.code == 0 && done.err.contains("kept: goes on"), "{}", done.err);
+    assert!(done.code == 0 && done.err.contains("kept: resuming"), "{}", done.err);
     assert_same(&unbroken, &broken, &[PAPER]);
 }
 

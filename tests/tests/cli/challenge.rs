@@ -46,7 +46,7 @@ fn a_challenge_is_made_answered_and_scored() {
 
     workshop.edit("blind/sealed.json", |sealed| sealed.replacen("\"salt\": \"", "\"salt\": \"0", 1));
     let refusal = workshop.refused("challenge score blind");
-    assert!(refusal.contains("not what was committed to"), "{refusal}");
+    assert!(refusal.contains("does not match its commitment"), "{refusal}");
 }
 
 #[test]
@@ -54,7 +54,7 @@ fn diagnosis_without_gap_writes_every_output_but_the_applied_simulator() {
     let workshop = Workshop::with_logs();
     workshop.done("train logs --out sim.json");
     let said = workshop.done("diagnose sim.json logs --apply better.json --json gap.json --html gap.html");
-    assert!(said.contains("Nothing explains a gap: better.json is not written."), "{said}");
+    assert!(said.contains("No effect to apply: better.json was not written."), "{said}");
     assert_eq!(workshop.json("gap.json")["verdict"], "no_gap");
     assert!(workshop.text("gap.html").contains("</html>"));
     assert!(!workshop.path().join("better.json").exists());

@@ -166,6 +166,6 @@ fn networks_are_exported_as_source_code() {
         workshop.done(&format!("export sim.json --format {format} --out {file}"));
         assert!(workshop.text(file).contains(definition), "{}", workshop.text(file));
     }
-    let problem = "sim.json: holds networks, which have no place in formats rxe and nxc-collect";
+    let problem = "sim.json: contains networks, which the formats rxe and nxc-collect do not support";
     assert_eq!(workshop.refused("export sim.json --format rxe --out networks.rxe"), problem);
 }

@@ -272,13 +272,13 @@ fn the_experiment_that_tells_confused_causes_apart_is_a_run() {
     // Of a load so light six runs do not say whether it is one, or a weaker motor.
     workshop.done("record --out laden --runs 6 --seed 5 --effect payload=0.03");
     let said = workshop.done("diagnose sim.json laden --next-experiment next.csv");
-    assert!(said.contains("cannot tell it from") && said.contains("To tell "), "{said}");
+    assert!(said.contains("cannot distinguish it from") && said.contains("To tell "), "{said}");
     let rows = Run::read(&workshop.path().join("next.csv"), |warning| panic!("{warning}")).expect("a run").rows;
     assert!(rows.len() > 5 && rows.iter().any(|row| row.command() != [0.0, 0.0]), "{rows:?}");
     let budget = workshop.done("export next.csv --format nxc-collect --out next.nxc");
     assert!(budget.contains("next.nxc written") && budget.contains(" of 400 ms at worst"), "{budget}");
     let said = workshop.done("diagnose sim.json logs --next-experiment none.csv");
-    assert!(said.contains("none.csv is not written") && !workshop.path().join("none.csv").exists(), "{said}");
+    assert!(said.contains("none.csv was not written") && !workshop.path().join("none.csv").exists(), "{said}");
 }
 
 #[test]
@@ -293,6 +293,6 @@ fn the_textbook_is_refused_where_a_learned_simulator_is_needed() {
         "loop out --sim kinematic --scene scene.toml --robot false",
     ] {
         let refused = workshop.refused(call);
-        assert!(refused.starts_with("kinematic: stands for the textbook, with which mindgap diagnose"), "{refused}");
+        assert!(refused.starts_with("kinematic: is the textbook model, which only mindgap diagnose"), "{refused}");
     }
 }

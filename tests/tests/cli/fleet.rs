@@ -34,8 +34,8 @@ fn a_fleet_is_diagnosed_though_one_folder_is_broken() {
     let workshop = workshop();
     let done = workshop.call("diagnose sim.json fleet --fleet out");
     assert_eq!(done.code, 0, "{}", done.err);
-    assert!(done.out.starts_with("6 of 7 robots are diagnosed, 1 could not be."), "{}", done.out);
-    assert!(done.err.contains("broken is left out: ") && done.err.contains("robot.toml"), "{}", done.err);
+    assert!(done.out.starts_with("6 of 7 robots diagnosed, 1 failed."), "{}", done.out);
+    assert!(done.err.contains("broken is excluded: ") && done.err.contains("robot.toml"), "{}", done.err);
 
     let fleet = workshop.json("out/fleet.json");
     assert_eq!(fleet["diagnosed"], 6);
@@ -60,7 +60,7 @@ fn a_fleet_is_diagnosed_though_one_folder_is_broken() {
     let page = workshop.text("out/fleet.html");
     assert!(page.contains(r#"<a href="diagnoses/c.json">c</a>"#) && page.contains("broken"));
     assert!(workshop.bytes("out/robots.parquet").starts_with(b"PAR1"));
-    assert!(workshop.done("info out/fleet.json").contains("a fleet's answer"));
+    assert!(workshop.done("info out/fleet.json").contains("the diagnosis of a fleet"));
 }
 
 #[test]
@@ -76,7 +76,7 @@ fn it_is_the_same_on_any_number_of_threads() {
 #[test]
 fn places_that_are_not_for_a_fleet_are_refused() {
     let workshop = trained();
-    assert!(workshop.refused("diagnose sim.json logs --fleet out").contains("has no folder in it"));
+    assert!(workshop.refused("diagnose sim.json logs --fleet out").contains("contains no folder"));
     assert!(workshop.refused("diagnose sim.json . --fleet .").contains("read by the same command"));
     assert!(workshop.refused("diagnose sim.json nowhere --fleet out").contains("nowhere: cannot be read"));
     assert!(

@@ -88,20 +88,20 @@ fn defaults_give_way_to_what_conflicts_with_them() {
     // A program that is none is told only when the call is right.
     workshop.write("none.rxe", "none");
     let told = workshop.refused("brick none.rxe --readings 50");
-    assert!(told.contains("is no program that a brick runs"), "{told}");
+    assert!(told.contains("is not a program that an NXT can run"), "{told}");
 }
 
 #[test]
 fn defaults_that_are_wrong_are_told_with_their_line() {
     let workshop = Workshop::with_logs();
     for (text, told) in [
-        ("threads = 1\nsed = 3\n", "mindgap.toml:2: sed is no option of mindgap; did you mean seed?"),
-        ("[train]\nsceen = 3\n", "mindgap.toml:2: sceen is no option of mindgap"),
-        ("[trian]\nseed = 3\n", "mindgap.toml:1: trian is no option of mindgap; did you mean train?"),
-        ("robot = \"a.toml\"\n", "mindgap.toml:1: commands mean different things by robot"),
-        ("force = true\n", "mindgap.toml:1: force is no option of mindgap"),
-        ("quiet = 1\n", "mindgap.toml:1: quiet: is true or false"),
-        ("seed = true\n", "mindgap.toml:1: seed: is a text in quotes or a number"),
+        ("threads = 1\nsed = 3\n", "mindgap.toml:2: sed is not an option of mindgap; did you mean seed?"),
+        ("[train]\nsceen = 3\n", "mindgap.toml:2: sceen is not an option of mindgap"),
+        ("[trian]\nseed = 3\n", "mindgap.toml:1: trian is not an option of mindgap; did you mean train?"),
+        ("robot = \"a.toml\"\n", "mindgap.toml:1: robot means different things in different commands"),
+        ("force = true\n", "mindgap.toml:1: force is not an option of mindgap"),
+        ("quiet = 1\n", "mindgap.toml:1: quiet: must be true or false"),
+        ("seed = true\n", "mindgap.toml:1: seed: must be a quoted string or a number"),
         ("\nseed = \"x\"\n", "mindgap.toml:2: invalid value 'x' for '--seed <N>'"),
         ("seed = \n", "mindgap.toml:1: "),
     ] {

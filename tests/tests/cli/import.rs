@@ -129,7 +129,7 @@ fn several_runs_find_their_tracks() {
     workshop.write("other.csv", &third.brick_log);
     workshop.write("torn.csv", &first.brick_log[..first.brick_log.len() - 9]);
     let said = workshop.done(&CALL.replace("run-000.csv", "run-000.csv long.csv tired.csv other.csv torn.csv"));
-    assert!(said.contains("torn.csv: the last line has no end and is left out"), "{said}");
+    assert!(said.contains("torn.csv: the last line is incomplete and was excluded"), "{said}");
     let report = workshop.json("report.json");
     let of = |log: usize| report["logs"][log]["run"]["track"].as_str().map(str::to_owned);
     let tracks = ["track.csv", "long.csv", "long.csv", "track.csv"].map(|name| Some(name.to_owned()));

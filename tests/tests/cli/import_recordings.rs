@@ -98,10 +98,7 @@ fn assert_driven(rows: &[Row], off_ms: f64, within_cm: f64) {
 fn streams_become_rows_whatever_their_form() {
     let plain = workshop(&commands(), &track());
     let said = plain.done(STREAMS);
-    assert!(
-        said.contains("forward = v_m_s") && said.contains("one clock: motion follows the commands by 0 ms"),
-        "{said}"
-    );
+    assert!(said.contains("forward = v_m_s") && said.contains("one clock: motion lags the commands by 0 ms"), "{said}");
     assert!(said.ends_with("logs: 1 runs\n"), "{said}");
     let expected = rows(&plain);
     assert_driven(&expected, 0.0, 1.0);
@@ -142,7 +139,7 @@ fn clocks_of_their_own_are_aligned_by_the_motion() {
     });
     let workshop = workshop(&commands(), &iso);
     let said = workshop.done(STREAMS);
-    assert!(said.contains("two clocks") && said.contains("a delay of the robot does not show"), "{said}");
+    assert!(said.contains("two clocks") && said.contains("a delay of the robot is not visible"), "{said}");
     let clocks = workshop.json("report.json")["recordings"][0]["clocks"].clone();
     let off_ms = clocks["offset_ms"].as_f64().expect("a number") - 1e3 * (BEGIN_S + 5.0);
     assert!(off_ms.abs() < 25.0, "{clocks}");
@@ -194,7 +191,7 @@ fn without_a_robot_a_draft_says_what_to_fill_in() {
     assert!(workshop.text("logs/robot.toml").contains("# [ultrasonic]"), "{}", workshop.text("logs/robot.toml"));
     assert_driven(&rows(&workshop), 0.0, 1.0);
     let told = workshop.call("check logs").err;
-    assert!(told.contains("2 more: marked FILL IN, so not measured yet"), "{told}");
+    assert!(told.contains("2 more: still marked FILL IN"), "{told}");
     // What is there is the user's by now.
     let refusal = workshop.refused(call);
     assert!(refusal.starts_with("logs: already contains") && refusal.contains("--force"), "{refusal}");

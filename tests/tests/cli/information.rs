@@ -3,6 +3,7 @@
 use std::process::Command;
 
 use mindgap_tests::command::Workshop;
+use mindgap_tests::faults::{MOTION, SONAR};
 use mindgap_tests::rooms::{trained, with_scene};
 
 #[test]
@@ -37,7 +38,7 @@ fn files_that_it_writes_are_told() {
         ("diagnosis.json", "a diagnosis: `mindgap diagnose --json`, verdict "),
         ("evaluation.json", "an evaluation"),
         ("page.html", "a page"),
-        ("controller.toml", "a controller, a step every 400 ms, 6 at most; evolved in sim.json for start 1"),
+        ("controller.toml", "a controller, 400 ms per step, at most 6 steps; evolved in sim.json for start 1"),
         ("drive.ino", "an onboard program for an Arduino"),
         ("drive.py", "an onboard program for Pybricks"),
         ("drive.rxe", "an onboard program for an NXT"),
@@ -47,7 +48,7 @@ fn files_that_it_writes_are_told() {
         assert!(told.starts_with(&format!("{path}: {what}")), "{told}");
     }
     workshop.write("other.json", "{}");
-    assert!(workshop.refused("info other.json").contains("is no JSON that mindgap writes"));
+    assert!(workshop.refused("info other.json").contains("unrecognised JSON"));
     assert!(workshop.refused("info missing.nxc").contains("cannot be read"));
 }
 
@@ -101,4 +102,25 @@ fn figures_are_written_as_svg_and_png() {
 fn a_page_that_cannot_be_written_is_one_line() {
     let workshop = trained();
     assert!(workshop.refused("evaluate sim.json logs --html nowhere/page.html").contains("nowhere/page.html"));
+}
+
+#[test]
+fn effects_findings_and_verdicts_are_explained() {
+    let workshop = Workshop::new();
+    let payload = workshop.done("explain payload");
+    for part in [
+        "payload (effect)",
+        "  in logs ",
+        "  imitated by   motor_asymmetry",
+        "  check ",
+        "  variant       command: loss",
+    ] {
+        assert!(payload.contains(part), "{part}: {payload}");
+    }
+    for id in MOTION.iter().chain(&SONAR).map(|fault| fault.id).chain(["scatter", "no_gap", "partly_known"]) {
+        assert!(workshop.done(&format!("explain {id}")).starts_with(&format!("{id} (")), "{id}");
+    }
+    assert!(workshop.done("explain").starts_with("effects: battery_sag, "));
+    let refusal = workshop.refused("explain payloads");
+    assert_eq!(refusal, "payloads is not an effect, finding or verdict; did you mean payload?");
 }

@@ -17,7 +17,7 @@ fn its_files_are_read_and_its_commands_are_those_that_it_prints() {
     assert_eq!(commands.len(), 3, "{said}");
     let readme = workshop.text("mine/README.md");
     assert!(commands.iter().all(|command| readme.contains(command)), "{readme}");
-    assert!(readme.contains("hold each for ten steps and more"), "{readme}");
+    assert!(readme.contains("hold each command for ten steps or more"), "{readme}");
 }
 
 #[test]

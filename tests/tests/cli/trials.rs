@@ -42,7 +42,7 @@ fn an_older_simulator_cannot_adapt() {
     });
     workshop.done("evaluate sim.json logs");
     let problem = workshop.refused("adapt sim.json logs --out better.json");
-    assert!(problem.ends_with("does not say what its training logs leave open: train it again"), "{problem}");
+    assert!(problem.ends_with("has no parameter uncertainty: train it again"), "{problem}");
 }
 
 #[test]
@@ -88,11 +88,11 @@ fn a_robot_that_fails_teaches_nothing() {
     let lost = each_row("NR > 5 { $4 = \"\"; $5 = \"\"; $6 = \"\" }");
     let moved = each_row("NR > 4 { $4 += 60; $5 += 30 }");
     let cases = [
-        ("exec sleep 60", "", "took longer than 1 s and was ended"),
+        ("exec sleep 60", "", "took longer than 1 s and was killed"),
         ("", "rm \"$4\"", "was not written by the robot"),
         ("", "head -c 300 \"$4\" > cut; mv cut \"$4\"", "incomplete or malformed line"),
-        ("", "sed -i '6,$d' \"$4\"", "half a log"),
-        ("set -- \"$1\" \"$2\" 2 \"$4\" \"$5\"", "", "off the start"),
+        ("", "sed -i '6,$d' \"$4\"", "incomplete log"),
+        ("set -- \"$1\" \"$2\" 2 \"$4\" \"$5\"", "", "away from the start"),
         (other, "", "another controller or robot"),
         ("", &lost, "the tracker lost the robot"),
         ("", &moved, "the camera moved"),
@@ -139,7 +139,7 @@ impl Loops for Workshop {
     fn fails(&self, options: &str) -> String {
         let done = self.looping(options);
         assert_eq!((done.code, done.out.as_str()), (1, ""), "{}", done.err);
-        assert!(done.err.contains("the loop stands still"), "{}", done.err);
+        assert!(done.err.contains("loop stopped"), "{}", done.err);
         done.err
     }
 }

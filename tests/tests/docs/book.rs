@@ -8,7 +8,7 @@ use libtest_mimic::Failed;
 use mindgap_tests::command::{Workshop, workspace};
 use mindgap_tests::rooms::SCENE;
 
-use crate::{PAGES, documents};
+use crate::{PAGES, documents, is_asked_for};
 
 const SUMMARY: &str = "docs/SUMMARY.md";
 
@@ -62,6 +62,20 @@ pub fn pages_are_those_of_the_command() -> Result<(), Failed> {
         return Err(format!("write them anew with mindgap manual: {} of {there} differ: {stale:?}", stale.len()).into());
     }
     Ok(())
+}
+
+/// `mindgap explain --markdown > docs/effects.md` writes it anew, and so does `MINDGAP_DOCS=overwrite`.
+pub fn the_catalogue_of_effects_is_that_of_the_command() -> Result<(), Failed> {
+    let written = Workshop::new().done("explain --markdown");
+    let path = workspace().join("docs/effects.md");
+    if is_asked_for("overwrite") {
+        fs::write(&path, &written)?;
+    }
+    if fs::read_to_string(path)? == written {
+        Ok(())
+    } else {
+        Err("docs/effects.md differs from mindgap explain".into())
+    }
 }
 
 /// Where the links of a document lead, without places within files.

@@ -1,4 +1,4 @@
-//! Answers a challenge: learns each robot's simulator from its own logs and diagnoses every case.
+//! Answers a challenge: trains a simulator on each robot's logs and diagnoses every case.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -18,10 +18,10 @@ use mindgap_models::simulator::baseline::Baseline;
 /// Seed of the training.
 const SEED: u64 = 1;
 
-/// Diagnoses all cases and returns their number; `watch` is told how many are done, and of how many.
+/// Diagnoses all cases and returns their number. `watch` is called with the number of finished cases and the total.
 ///
 /// # Errors
-/// When the folder is not a challenge, or when a diagnosis cannot be written.
+/// If the folder is not a challenge, or a diagnosis cannot be written.
 pub fn answer(executor: &dyn Executor, folder: &Path, mut watch: impl FnMut(usize, usize)) -> Result<usize> {
     let folder = Folder(folder);
     let cases: Vec<Published> = files::read_csv(&folder.cases())?;
@@ -58,15 +58,15 @@ pub fn answer(executor: &dyn Executor, folder: &Path, mut watch: impl FnMut(usiz
     Ok(cases.len())
 }
 
-/// The place of a file in the folder that is to become its own.
+/// Returns the path of a file in the staging folder.
 fn at(fresh: &Path, file: &Path) -> PathBuf {
     fresh.join(file.file_name().unwrap_or_default())
 }
 
-/// Learns a robot's simulator from its own logs.
+/// Trains a robot's simulator on its logs.
 ///
 /// # Errors
-/// When the logs support no network.
+/// If the logs do not suffice for any network.
 pub fn learn(executor: &dyn Executor, logs: &Logs) -> Result<Simulator> {
     train(executor, logs, &Trainer::Fast, &TABLE_ONE, SEED, &|_| {})
 }

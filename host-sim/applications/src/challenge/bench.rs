@@ -1,4 +1,4 @@
-//! Cases with known answers, driven as they are asked for: what thresholds are set and tried on.
+//! Cases with known effects, generated on demand, to fit and test thresholds.
 
 use super::answer::learn;
 use super::cases::{self, Case, Echoes, Outside, Setting, Size};
@@ -9,21 +9,21 @@ use mindgap_logs::Logs;
 use mindgap_models::simulator::Simulator;
 use mindgap_models::simulator::baseline::Baseline;
 
-/// The cases, and the simulators of their robots.
+/// Cases and the simulators of their robots.
 pub struct Bench {
     seed: u64,
     setting: Setting,
     robots: Vec<Logs>,
     simulators: Vec<Simulator>,
-    /// What is different in each case.
+    /// Effects of each case.
     pub effects: Vec<Vec<Effect>>,
 }
 
 impl Bench {
-    /// The robots of a seed, each with the simulator that is learned from its logs.
+    /// Generates the robots of a seed and trains a simulator on the logs of each.
     ///
     /// # Errors
-    /// When a robot has no room to drive in, or its logs teach nothing.
+    /// If a robot has no room to drive in, or its logs do not suffice for training.
     pub fn new(executor: &dyn Executor, count: usize, seed: u64, size: Size) -> Result<Self> {
         let setting = Setting { outside: OUTSIDE, echoes: Echoes::Fresh, size };
         let robots = cases::robots(seed, setting)?;
@@ -31,10 +31,10 @@ impl Bench {
         Ok(Bench { seed, setting, robots, simulators, effects: effects(count, seed) })
     }
 
-    /// A case with the baseline of its robot.
+    /// Records a case and returns it with the baseline of its robot.
     ///
     /// # Errors
-    /// When the robot hits something in every room.
+    /// If the robot hits something in every room.
     pub fn case(&self, number: usize) -> Result<(Case, Baseline<'_>)> {
         let case = cases::case(number, &self.effects[number], &self.robots, self.setting, self.seed)?;
         let baseline = Baseline::at_posterior_mean(&self.simulators[case.robot])?;
@@ -45,7 +45,7 @@ impl Bench {
 /// The held-out effects stay unseen.
 const OUTSIDE: Outside = Outside::Usual;
 
-/// The effects of the cases.
+/// Returns the effects of the cases.
 fn effects(count: usize, seed: u64) -> Vec<Vec<Effect>> {
     cases::effects(count, seed, OUTSIDE)
 }

@@ -1,8 +1,8 @@
-//! Settles the thresholds of a diagnosis on cases whose answers are known.
+//! Fits the thresholds of the diagnosis to cases with known effects.
 //!
-//! Cases without any effect show how large a gain chance and the simulator's own misfit feign; the others, diagnosed
-//! with the thresholds that follow from that, show how much of a gap its cause explains, how far wrong effects lag, and
-//! how often an answer is right.
+//! Cases without effects show how much gain arises from chance and from the simulator's own misfit. The others, diagnosed
+//! with the resulting thresholds, show how much of a gap its cause explains, how far wrong effects fall behind, and how
+//! often an answer is right.
 
 mod fitting;
 
@@ -19,43 +19,43 @@ use mindgap_foundations::counter::Counter;
 use mindgap_foundations::error::{Error, Result};
 use mindgap_foundations::executor::{self, Executor};
 
-/// What is measured in one case.
+/// The measurements of one case.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Measured {
-    /// What was different, separated by blanks.
+    /// Injected effects, separated by spaces.
     pub truth: String,
-    /// Whether all of it is in the table of effects.
+    /// Whether all of them are known to the diagnosis.
     pub in_table: bool,
-    /// Rows that the gains are summed over.
+    /// Number of rows over which gains are summed.
     pub rows: usize,
-    /// What the best effect gains, or the effects together, with less of the blocks that gain most, nats.
+    /// Winsorised gain of the best effect, or of all effects together, nats.
     pub effect_nats: f64,
-    /// The most that the omnibus residual model gains in a channel, likewise; nothing where effects are sought.
+    /// Largest winsorised gain of the omnibus residual model in a channel, nats; empty if effects are searched for.
     pub remainder_nats: f64,
-    /// Where there is one effect, and it is found first: the share of what it explains that its form would have to feign for
-    /// no other to be named beside it.
+    /// For a single effect that is found first: the model-form error, as a share of its gain, at which no second effect
+    /// would be named.
     pub feigned_share: Option<f64>,
-    /// The effect that was named first; empty when none was.
+    /// The effect named first; empty if there is none.
     pub first: String,
-    /// The share of what could be explained that the effects explain,
+    /// Share of the explainable gap that the effects explain.
     pub explained_fraction: f64,
-    /// and its standard error.
+    /// Standard error of that share.
     pub explained_error: f64,
-    /// Relative likelihood of an effect that is there: one when it is the first, zero when it is none of the rivals.
+    /// Relative likelihood of a true effect: one if it is named first, zero if it is not among the rivals.
     pub likelihood_of_truth: f64,
-    /// Relative likelihoods of the effects that could be in the first one's place.
+    /// Relative likelihoods of the rivals of the first effect.
     #[serde(skip)]
     pub rivals: Vec<f64>,
 }
 
-/// Fewer cases settle nothing.
+/// Minimum number of cases.
 const FEWEST: usize = 40;
 
-/// The thresholds that `count` cases call for, and what was measured in each; `watch` is told how many are done,
-/// and of how many.
+/// Returns the thresholds fitted to `count` cases, and the measurements of each. `watch` is called with the number of
+/// finished cases and the total.
 ///
 /// # Errors
-/// When there are too few cases.
+/// If there are too few cases.
 pub fn calibrate(
     executor: &dyn Executor,
     count: usize,
@@ -64,7 +64,7 @@ pub fn calibrate(
     watch: impl Fn(usize, usize) + Sync,
 ) -> Result<(Calibration, Vec<Measured>)> {
     if count < FEWEST {
-        return Err(Error::new(format!("{count} cases settle nothing: give at least {FEWEST}")));
+        return Err(Error::new(format!("{count} cases are too few: give at least {FEWEST}")));
     }
     let bench = Bench::new(executor, count, seed, size)?;
     let (nulls, others): (Vec<usize>, Vec<usize>) = (0..count).partition(|case| bench.effects[*case].is_empty());
@@ -72,7 +72,7 @@ pub fn calibrate(
     let counted = |measured: Result<Measured>| measured.inspect(|_| counter.increment());
     let nulls = executor::map(executor, nulls.len(), |null| counted(without_effect(&bench, nulls[null])))?;
     let open = fitting::open(&nulls);
-    // The rivals are in no table, and go beside the rest of what was measured.
+    // Rivals are not part of the written table, so they are returned separately.
     let with_rivals = |measured: Measured| (measured.rivals.clone(), measured);
     let others = executor::map(executor, others.len(), |other| {
         counted(with_effects(&bench, others[other], open)).map(with_rivals)
@@ -105,7 +105,7 @@ fn with_effects(bench: &Bench, number: usize, calibration: Calibration) -> Resul
         ..Measured::of(&case, found.none.log_likelihood.motion.len(), found.chosen.gain_over(&found.none))
     };
     let ids = found.chosen.ids();
-    // The effect with the least doubt is the one that is named first.
+    // The most probable effect is the one named first.
     let rivals = (0..ids.len()).map(|place| (place, found.likelihoods_in_place_of(place, &calibration)));
     let doubt = |rivals: &[(&str, f64)]| rivals.iter().map(|(_, likelihood)| likelihood).sum::<f64>();
     let Some((place, rivals)) = rivals.min_by(|a, b| doubt(&a.1).total_cmp(&doubt(&b.1))) else {

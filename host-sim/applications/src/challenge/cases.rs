@@ -13,69 +13,69 @@ use mindgap_logs::Logs;
 
 /// Number of robots in a challenge.
 pub const ROBOTS: usize = 4;
-/// Probability that a case is driven like the logs that its simulator is learned from.
+/// Probability that a case is driven like the training logs of its simulator.
 const DRIVEN_ALIKE: f64 = 0.5;
-/// Of ten cases, this many have no effect.
+/// Number of cases in ten without an effect.
 const WITHOUT: usize = 2;
-/// Of ten cases, this many have an effect outside the table of the diagnosis.
+/// Number of cases in ten with an effect unknown to the diagnosis.
 const OUTSIDE: usize = 1;
-/// Of ten cases, this many have two effects of the table; the others have one.
+/// Number of cases in ten with two known effects; the others have one.
 const PAIRS: usize = 1;
-/// Number of rooms tried, since with a strong effect a robot may hit something in every small room.
+/// Maximum number of rooms tried, since a robot with a strong effect may hit something in every small room.
 const ROOMS_TRIED: usize = 20;
-/// Stream keys of the generators.
+/// Keys of the random streams.
 const ROBOT: u64 = 0;
 const CASE: u64 = 1;
 
-/// The effects outside the table of the diagnosis that cases are drawn from.
+/// The set of effects unknown to the diagnosis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Outside {
-    /// Those that the thresholds of the diagnosis were fitted on as well, on cases of other seeds.
+    /// Effects that were also used, with other seeds, to fit the thresholds of the diagnosis.
     Usual,
-    /// Those that no part of the diagnosis was made or fitted on.
+    /// Effects that were used neither to design nor to fit any part of the diagnosis.
     HeldOut,
 }
 
-/// What the chance in echoes belongs to, in the logs of robots and cases alike.
+/// How the randomness of echoes is correlated, in training logs and cases alike.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Echoes {
-    /// To every reading anew.
+    /// Independent for every reading.
     Fresh,
-    /// To the place mostly, so that rows tell less than their number; every case has a room of its own.
+    /// Mostly determined by the place, so that the effective sample size is smaller; every case has its own room.
     PlaceBound,
 }
 
-/// How much is logged.
+/// Amount of data.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Size {
-    /// Number of steps of a run.
+    /// Steps per run.
     steps: usize,
-    /// Number of runs that a robot's simulator is learned from.
+    /// Training runs per robot.
     nominal_runs: usize,
-    /// Least and largest number of runs of a case.
+    /// Smallest and largest number of runs per case.
     runs: [usize; 2],
 }
 
 impl Size {
-    /// That of a challenge that tells something.
+    /// Size of a meaningful challenge.
     pub const USUAL: Size = Size { steps: 60, nominal_runs: 80, runs: [16, 28] };
-    /// Of everything as little as there has to be: so many runs as are held out from each other.
+    /// Smallest size that still allows a hold-out split.
     pub const QUICK: Size = Size { steps: 25, nominal_runs: 8, runs: [6, 6] };
 }
 
-/// What all cases of a challenge have alike.
+/// Settings common to all cases of a challenge.
 #[derive(Clone, Copy, Debug)]
 pub struct Setting {
-    /// What its effects outside the table are drawn from.
+    /// Set of the unknown effects.
     pub outside: Outside,
-    /// What the chance in its echoes belongs to.
+    /// Correlation of the echoes.
     pub echoes: Echoes,
-    /// How much is logged.
+    /// Amount of data.
     pub size: Size,
 }
 
 impl Echoes {
-    /// The sensor of a robot in another room.
+    /// Draws the sensor of a robot for a new room.
     fn sensor(self, rng: &mut Generator) -> Option<ActiveEffect> {
         (self == Echoes::PlaceBound).then(|| {
             let range = Effect::PlaceBound.detail_range();
@@ -85,24 +85,24 @@ impl Echoes {
     }
 }
 
-/// A case before it is written.
+/// A recorded case.
 pub struct Case {
     /// Index of the robot.
     pub robot: usize,
-    /// Its effects, and the sensor that it shares with its robot where that is none of the usual.
+    /// Injected effects, and the sensor of its robot if that is place-bound.
     pub effects: Vec<ActiveEffect>,
-    /// The kind of driving.
+    /// Kind of driving.
     pub driving: Driving,
-    /// Its logs.
+    /// Logs of the case.
     pub logs: Logs,
-    /// Generator for everything else that is random about the case.
+    /// Generator for the remaining random choices of the case.
     pub rng: Generator,
 }
 
-/// The logs that the simulator of each robot is learned from.
+/// Records the training logs of every robot.
 ///
 /// # Errors
-/// When a room has no space for its robot.
+/// If a room has no space for its robot.
 pub fn robots(seed: u64, Setting { echoes, size, .. }: Setting) -> Result<Vec<Logs>> {
     let robot = |robot: u64| {
         let mut rng = generator(seed, &[ROBOT, robot]);
@@ -117,7 +117,7 @@ pub fn robots(seed: u64, Setting { echoes, size, .. }: Setting) -> Result<Vec<Lo
 /// Records the logs of a case.
 ///
 /// # Errors
-/// When the robot hits something in every room tried.
+/// If the robot hits something in every room tried.
 pub fn case(number: usize, effects: &[Effect], robots: &[Logs], setting: Setting, seed: u64) -> Result<Case> {
     let Setting { echoes, size, .. } = setting;
     let mut rng = generator(seed, &[CASE, number as u64]);
@@ -140,7 +140,7 @@ pub fn case(number: usize, effects: &[Effect], robots: &[Logs], setting: Setting
     }
 }
 
-/// The effects of each of `cases` cases in random order; all effects of a kind occur about equally often.
+/// Draws the effects of `cases` cases in random order; all effects of a kind occur about equally often.
 pub fn effects(cases: usize, seed: u64, outside: Outside) -> Vec<Vec<Effect>> {
     let rng = &mut generator(seed, &[CASE]);
     let known: Vec<Effect> = Effect::all().filter(|e| e.in_table()).collect();
@@ -217,13 +217,13 @@ mod tests {
     use mindgap_diagnosis::calibration::CALIBRATED_STEPS;
 
     #[test]
-    fn robots_are_trained_on_as_many_steps_as_the_gates_are_set_for() {
+    fn training_size_matches_that_of_the_gates() {
         let Size { steps, nominal_runs, .. } = Size::USUAL;
         assert_eq!((steps * nominal_runs) as f64, CALIBRATED_STEPS);
     }
 
     #[test]
-    fn held_out_effects_take_the_place_of_the_usual_ones_outside_the_table() {
+    fn held_out_effects_replace_the_usual_unknown_ones() {
         let drawn = |outside| -> Vec<Effect> {
             let effects = effects(400, 1, outside).into_iter().flatten();
             let mut outside: Vec<Effect> = effects.filter(|effect| !effect.in_table()).collect();

@@ -12,10 +12,10 @@ use mindgap_foundations::error::Result;
 use mindgap_foundations::executor::{self, Executor};
 use mindgap_logs::LogFiles;
 
-/// Writes a challenge of `count` cases to a folder; `watch` is told how many are done, and of how many.
+/// Writes a challenge of `count` cases to a folder. `watch` is called with the number of finished cases and the total.
 ///
 /// # Errors
-/// When the folder cannot be written or a case cannot be recorded.
+/// If the folder cannot be written or a case cannot be recorded.
 pub fn make(
     executor: &dyn Executor,
     folder: &Path,

@@ -8,12 +8,12 @@ use mindgap_foundations::geometry::Rectangle;
 use mindgap_foundations::random::Generator;
 use mindgap_logs::{Robot, Scene, Ultrasonic};
 
-/// Least width of the passage between two obstacles, or an obstacle and a wall, cm: a robot can pass.
+/// Smallest passage between two obstacles, or an obstacle and a wall, cm, so that a robot can pass.
 const PASSAGE_CM: f64 = 38.0;
-/// Number of places tried for obstacles.
+/// Number of attempts to place obstacles.
 const TRIED: usize = 60;
 
-/// A random variation of the default robot.
+/// Draws a random variation of the default robot.
 pub fn robot(rng: &mut Generator) -> Robot {
     let usual = default_robot();
     let mut about = |value: f64, share: f64| {
@@ -30,7 +30,7 @@ pub fn robot(rng: &mut Generator) -> Robot {
     }
 }
 
-/// A random room with a few obstacles between which a robot can pass.
+/// Draws a random room with a few obstacles between which a robot can pass.
 pub fn room(rng: &mut Generator) -> Scene {
     let mut whole = |from: f64, to: f64| rng.random_range(from..=to).round();
     let arena_cm = DVec2::new(whole(240.0, 360.0), whole(190.0, 280.0));

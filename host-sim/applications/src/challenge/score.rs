@@ -18,13 +18,13 @@ use mindgap_logs::Logs;
 use mindgap_models::effects::applied::AppliedEffect;
 use mindgap_models::simulator::Simulator;
 
-/// Largest number of rivals beside the first effect in a set that still counts as an answer.
+/// Largest number of rivals of the first effect at which a set still counts as an answer.
 const MOST_RIVALS: usize = 3;
 /// Probability above which a wrong answer counts as confidently wrong.
 const SURE: f64 = 0.9;
-/// Number of fresh runs of a case, and of steps in each.
+/// Number of new runs of a case, and of steps per run.
 const FRESH: [usize; 2] = [48, 60];
-/// Borders of the bins of the reliability table.
+/// Bin edges of the reliability table.
 const BINS: [f64; 6] = [0.0, 0.5, 0.7, 0.9, 0.98, 1.01];
 
 /// The score of one case.
@@ -32,17 +32,17 @@ const BINS: [f64; 6] = [0.0, 0.5, 0.7, 0.9, 0.98, 1.01];
 pub struct Scored {
     /// Name of the case.
     pub case: String,
-    /// Its effects with strengths, separated by blanks.
+    /// Injected effects with strengths, separated by spaces.
     pub truth: String,
     /// Verdict of the diagnosis.
     pub verdict: Verdict,
-    /// The effects named, each with its rivals in brackets, separated by blanks.
+    /// Named effects, each with its rivals in brackets, separated by spaces.
     pub named: String,
-    /// Probability of the first.
+    /// Probability of the first effect.
     pub probability: f64,
     /// Share of the reducible gap that the diagnosis claims to close.
     pub closed: Option<f64>,
-    /// Share that these effects close on fresh runs of the case.
+    /// Share that these effects close on new runs of the case.
     pub closed_on_fresh_runs: Option<f64>,
     /// Whether the answer is right: no gap, all effects (as first or in a set of a few), or unknown.
     pub right: bool,
@@ -72,17 +72,17 @@ pub struct Score {
     pub covered: Share,
     /// Mean number of effects in these sets.
     pub set_size: f64,
-    /// Pairs of which both were named.
+    /// Pairs of effects that were both named.
     pub pairs: Share,
-    /// Effects outside the table beside which a remainder was told: unknown, or known in part.
+    /// Unknown effects for which a remainder was reported: verdict unknown or partly known.
     pub unknowns: Share,
-    /// Effects of the table that were called unknown.
+    /// Known effects that were called unknown.
     pub false_unknowns: Share,
-    /// Median absolute difference between the claimed gap reduction and that on fresh runs; `None` without any claim.
+    /// Median absolute difference between the claimed gap reduction and that on new runs; `None` without any claim.
     pub closed_error: Option<f64>,
-    /// Answers with a probability above 0.9 for an effect that is not there.
+    /// Answers with a probability above 0.9 for a false effect.
     pub confidently_wrong: Share,
-    /// Reliability: for each bin of probability, how many first effects are true.
+    /// Reliability: share of true first effects per bin of probability.
     pub calibration: Vec<(String, Share)>,
     /// Confusions: truth, answer, number of cases.
     pub confusions: Vec<(String, String, usize)>,
@@ -98,7 +98,7 @@ struct Opened {
     closed_on_fresh_runs: Option<f64>,
 }
 
-/// What is scored of a diagnosis as it was written.
+/// The parts of a written diagnosis that are scored.
 #[derive(Deserialize)]
 struct Answered {
     verdict: Verdict,
@@ -118,10 +118,10 @@ struct AnsweredReduction {
     reducible_closed: f64,
 }
 
-/// Opens the seal of a challenge and scores its answers; `watch` is told how many are scored, and of how many.
+/// Breaks the seal of a challenge and scores its answers. `watch` is called with the number of scored cases and the total.
 ///
 /// # Errors
-/// When a case has no diagnosis, or when a sealed entry does not match its commitment.
+/// If a case has no diagnosis, or a sealed entry does not match its commitment.
 pub fn score(folder: &Path, watch: impl Fn(usize, usize) + Sync) -> Result<Score> {
     let folder = Folder(folder);
     let published: Vec<Published> = files::read_csv(&folder.cases())?;
@@ -131,7 +131,8 @@ pub fn score(folder: &Path, watch: impl Fn(usize, usize) + Sync) -> Result<Score
         .par_iter()
         .map(|case| {
             let sealed = sealed.iter().find(|s| s.case == case.case && s.commitment() == case.commitment);
-            let broken = || Error::in_file(&folder.sealed(), format!("case {}: not what was committed to", case.case));
+            let broken =
+                || Error::in_file(&folder.sealed(), format!("case {}: does not match its commitment", case.case));
             let sealed = sealed.cloned().ok_or_else(broken)?;
             let answer = files::read_json(&folder.answer(&case.case))?;
             let closed_on_fresh_runs = closed_on_fresh_runs(&folder, case, &sealed)?;
@@ -142,19 +143,19 @@ pub fn score(folder: &Path, watch: impl Fn(usize, usize) + Sync) -> Result<Score
     Ok(Score::of(&opened))
 }
 
-/// Gap reduction, on fresh runs, of the effects that a case's diagnosis adds to its robot's simulator.
+/// Returns the gap reduction, on new runs, of the effects that a case's diagnosis adds to its robot's simulator.
 fn closed_on_fresh_runs(folder: &Folder, case: &Published, sealed: &Sealed) -> Result<Option<f64>> {
     let added: Vec<AppliedEffect> = files::read_json(&folder.added(&case.case))?;
     if added.is_empty() {
         return Ok(None);
     }
     let seal = folder.sealed();
-    let unknown = |what: &str| Error::in_file(&seal, format!("case {}: {what} is not known", case.case));
+    let unknown = |what: &str| Error::in_file(&seal, format!("case {}: {what} is unknown", case.case));
     let effects = sealed.effects.iter().map(|e| e.parse::<ActiveEffect>().map_err(|_| unknown(e)));
     let effects = effects.collect::<Result<Vec<_>>>()?;
     let driving = Driving::named(&sealed.driving).ok_or_else(|| unknown(&sealed.driving))?;
     let logs = Logs::read(&folder.case(&case.case), |_| {})?;
-    // A robot that hits something in every attempt has no fresh runs.
+    // A robot that hits something in every attempt has no new runs.
     match record_driving(&driving, &logs.robot, &logs.scene, FRESH, &effects, sealed.fresh_seed) {
         Ok(fresh) => closed(&Simulator::read(&folder.simulator(&case.robot))?, &added, &fresh),
         Err(_) => Ok(None),
@@ -194,7 +195,7 @@ impl Opened {
         self.first().is_some_and(|id| self.truth().contains(&id))
     }
 
-    /// Whether an effect is named, as itself or among a few rivals of another.
+    /// Returns whether an effect is named, directly or among at most `most_rivals` rivals of another.
     fn names(&self, id: &str, most_rivals: usize) -> bool {
         let stands_for = |rivals: &[String]| rivals.len() <= most_rivals && rivals.iter().any(|r| r == id);
         self.answer.effects.iter().any(|e| e.id == id || stands_for(&e.ambiguous_with))

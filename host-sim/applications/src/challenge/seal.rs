@@ -1,4 +1,4 @@
-//! The sealed truth of a case and the commitment to it.
+//! The sealed truth about a case and the commitment to it.
 
 use std::fmt::Write;
 
@@ -12,13 +12,13 @@ use mindgap_built_in_robot::Effect;
 pub struct Sealed {
     /// Name of the case.
     pub case: String,
-    /// The effects with their strengths, as `mindgap record --effect` takes them; none in a case without a gap.
+    /// Effects with strengths, as in `mindgap record --effect`; empty for a case without a gap.
     pub effects: Vec<String>,
     /// Name of the kind of driving.
     pub driving: String,
-    /// Seed of further runs of the case, which no diagnosis has seen.
+    /// Seed of further runs of the case, unseen by any diagnosis.
     pub fresh_seed: u64,
-    /// Random salt, so that the effects cannot be found from the commitment by trying them all.
+    /// Random salt, so that the effects cannot be found from the commitment by brute force.
     pub salt: String,
 }
 
@@ -34,7 +34,7 @@ pub struct Published {
 }
 
 impl Sealed {
-    /// SHA-256 of case, effects, driving, seed and salt, one a line, in hexadecimal digits.
+    /// Returns the SHA-256 of case, effects, driving, seed and salt, one per line, in hexadecimal digits.
     pub fn commitment(&self) -> String {
         let text = format!(
             "{}\n{}\n{}\n{}\n{}\n",
@@ -51,7 +51,7 @@ impl Sealed {
         })
     }
 
-    /// Ids of its effects; a sensor that its robot has as well is none.
+    /// Returns the ids of the effects, without a place-bound sensor, which the robot has as well.
     pub fn ids(&self) -> Vec<&str> {
         let ids = self.effects.iter().map(|effect| effect.split('=').next().unwrap_or(effect));
         ids.filter(|id| *id != Effect::PlaceBound.id()).collect()

@@ -1,4 +1,4 @@
-//! How much the thresholds of a diagnosis decide: each halved and doubled, on cases whose answers are known.
+//! Sensitivity of the diagnosis to its thresholds: each halved and doubled, on cases with known effects.
 
 use serde::{Deserialize, Serialize};
 use toml::{Table, Value};
@@ -14,26 +14,26 @@ use mindgap_foundations::counter::Counter;
 use mindgap_foundations::error::{Error, Result};
 use mindgap_foundations::executor::{self, Executor};
 
-/// What comes of all cases with one threshold changed.
+/// The results of all cases with one threshold changed.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Row {
-    /// The threshold, by its name in calibration.toml; empty for the calibration as it is.
+    /// Name of the threshold in calibration.toml; empty for the unchanged calibration.
     pub threshold: String,
-    /// Its value.
+    /// Value of the threshold.
     pub value: f64,
-    /// Cases without an effect in which a gap is seen.
+    /// Cases without an effect in which a gap is detected.
     pub false_alarms: usize,
-    /// Cases with effects of the table of which the most probable one named is there.
+    /// Cases with known effects in which the most probable named effect is true.
     pub named: usize,
-    /// Cases with effects of the table that are called unknown.
+    /// Cases with known effects that are called unknown.
     pub false_unknowns: usize,
-    /// Cases with effects outside the table that are called unknown, or known in part.
+    /// Cases with unknown effects that are called unknown or partly known.
     pub unknowns: usize,
-    /// Cases in which the most probable effect named is not there.
+    /// Cases in which the most probable named effect is false.
     pub wrong: usize,
 }
 
-/// How a case ends, as a [`Row`] counts it.
+/// The outcome of a case, as counted by [`Row`].
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 struct Ending {
     false_alarm: bool,
@@ -43,13 +43,13 @@ struct Ending {
     wrong: bool,
 }
 
-/// What a threshold is multiplied by.
+/// Factors by which a threshold is multiplied.
 const FACTORS: [f64; 2] = [0.5, 2.0];
 
-/// The table of sensitivity on this many cases; `watch` is told how many are done, and of how many.
+/// Returns the sensitivity table for `count` cases. `watch` is called with the number of finished cases and the total.
 ///
 /// # Errors
-/// When a case cannot be driven.
+/// If a case cannot be recorded.
 pub fn sensitivity(
     executor: &dyn Executor,
     cases: usize,
@@ -85,11 +85,11 @@ pub fn sensitivity(
     Ok(changed.into_iter().enumerate().map(row).collect())
 }
 
-/// What comes of a case with each calibration.
+/// Returns the outcome of a case with each calibration.
 fn of_case(bench: &Bench, number: usize, calibrations: &[Calibration]) -> Result<Vec<Ending>> {
     let (case, baseline) = bench.case(number)?;
     let trained_on = baseline.trained_on();
-    // Most thresholds of a judgement change nothing of what is searched for.
+    // Most thresholds of the verdict do not affect the search.
     let mut searched: Vec<Calibration> = Vec::new();
     for calibration in calibrations.iter().map(Calibration::for_search) {
         if !searched.contains(&calibration) {
@@ -104,7 +104,7 @@ fn of_case(bench: &Bench, number: usize, calibrations: &[Calibration]) -> Result
     Ok(calibrations.iter().filter_map(of).collect())
 }
 
-/// What comes of a case of which this was found, judged by a calibration.
+/// Returns the outcome of a case whose comparison is `found`, under a calibration.
 fn judged(case: &Case, trained_on: Option<f64>, found: &Comparison, calibration: &Calibration) -> Ending {
     let method = Method { calibration: *calibration, ..Method::default() };
     let rows = found.none.log_likelihood.motion.len();
@@ -126,10 +126,10 @@ fn judged(case: &Case, trained_on: Option<f64>, found: &Comparison, calibration:
 }
 
 fn table(calibration: &Calibration) -> Result<Table> {
-    Table::try_from(calibration).map_err(|e| Error::new(format!("a calibration that cannot be written: {e}")))
+    Table::try_from(calibration).map_err(|e| Error::new(format!("the calibration cannot be written: {e}")))
 }
 
-/// Names of all numbers, with dots where tables lie within tables.
+/// Returns the dotted names of all numbers in a table.
 fn names(table: &Table, within: &str) -> Vec<String> {
     let of = |(key, value): (&String, &Value)| match value {
         Value::Table(inner) => names(inner, &format!("{within}{key}.")),
@@ -138,7 +138,7 @@ fn names(table: &Table, within: &str) -> Vec<String> {
     table.iter().flat_map(of).collect()
 }
 
-/// The calibration with one threshold multiplied, and its value; none where that makes no difference or no calibration.
+/// Returns the calibration with one threshold multiplied, and its value; `None` if that changes nothing or is invalid.
 fn with(shipped: &Calibration, name: &str, factor: f64) -> Result<Option<(f64, Calibration)>> {
     let mut changed = table(shipped)?;
     let (path, key) = name.rsplit_once('.').map_or((None, name), |(path, key)| (Some(path), key));
@@ -167,7 +167,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_number_of_the_calibration_has_a_name_and_can_be_changed() {
+    fn every_threshold_can_be_changed_by_name() {
         let shipped = Calibration::shipped();
         let names = names(&table(&shipped).unwrap(), "");
         assert!(["effect_nats", "judgement.rival_z"].iter().all(|name| names.iter().any(|n| n == name)), "{names:?}");

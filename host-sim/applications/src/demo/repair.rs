@@ -1,13 +1,13 @@
-//! The last stage: the robot has changed since its logs were recorded, its controllers fail, and the loop finds out what
-//! is wrong and repairs it.
+//! The last stage: the robot has changed since its logs were recorded, its controllers fail, and the loop finds the cause
+//! and a controller that works.
 
 use std::path::Path;
 
 use mindgap_core::controller::Controller;
 
 use super::robot::TrialledRobot;
-use crate::trials::state::State;
-use crate::trials::{self, Event};
+use crate::closed_loop::state::State;
+use crate::closed_loop::{self, Event};
 use mindgap_built_in_robot::{self as built_in_robot, ActiveEffect, BuiltInRobot, Effect};
 use mindgap_foundations::error::Result;
 use mindgap_foundations::executor::Executor;
@@ -16,43 +16,43 @@ use mindgap_learning::evolve::fitness::Success;
 use mindgap_logs::Scene;
 use mindgap_logs::controller_file::ControllerFile;
 
-/// Runs that tell how a controller does on the changed robot.
+/// Number of runs to measure success on the changed robot.
 const RUNS: u64 = 5;
 /// Stream keys of the runs before and after the loop.
 const BEFORE: u64 = 0;
 const AFTER: u64 = 1;
 
-/// What the loop is given besides.
+/// Parameters of the loop.
 pub struct Job {
-    /// Start of the controllers, from 1.
+    /// Number of the start, from 1.
     pub start: usize,
-    /// Steps after which a controller gives up.
+    /// Maximum number of steps of a controller.
     pub max_steps: u16,
-    /// Runs on the robot that it may have.
+    /// Maximum number of runs on the robot.
     pub trials: usize,
-    /// Seed of all draws.
+    /// Random seed.
     pub seed: u64,
 }
 
-/// What the loop came to.
+/// Result of the loop.
 pub struct Repair {
-    /// What is different about the robot.
+    /// The injected fault.
     pub changed: ActiveEffect,
-    /// Start of the controllers, from 1.
+    /// Number of the start, from 1.
     pub start: usize,
-    /// Success on the robot of the controller that was evolved for it as it was.
+    /// Success of the original controller on the changed robot.
     pub before: Success,
-    /// What happened.
+    /// Final state of the loop.
     pub state: State,
-    /// Success on the robot of the controller that the loop settled on.
+    /// Success of the loop's final controller on the changed robot.
     pub after: Success,
 }
 
-/// Lets the loop repair what a weak motor does to the first of some `controllers` for a start. The folder holds
-/// `simulator.json` and `scene.toml`, and receives `loop`.
+/// Weakens a motor and runs the loop, starting from `controllers`. The folder contains `simulator.json` and `scene.toml`;
+/// the loop's folder is `loop` within it.
 ///
 /// # Errors
-/// When a file cannot be read or written.
+/// If a file cannot be read or written.
 pub fn run(
     executor: &dyn Executor,
     folder: &Path,
@@ -71,7 +71,7 @@ pub fn run(
         };
         super::success((0..RUNS).map(drive), scene.target_cm.unwrap_or_default())
     };
-    let job = trials::Job {
+    let job = closed_loop::Job {
         executor,
         folder: &folder.join("loop"),
         simulator: &simulator,
@@ -82,7 +82,7 @@ pub fn run(
         known: controllers,
         seed,
     };
-    let state = trials::run(&job, &mut TrialledRobot(vec![changed]), |event| {
+    let state = closed_loop::run(&job, &mut TrialledRobot(vec![changed]), |event| {
         if let Event::Driving(trial) = event {
             watch(trial.number);
         }

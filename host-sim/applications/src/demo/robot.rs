@@ -1,13 +1,13 @@
-//! The built-in robot as one that a loop drives.
+//! The built-in robot as the robot of a loop.
 
-use crate::trials::robot::{Call, TrialRobot};
+use crate::closed_loop::robot::{Call, TrialRobot};
 use mindgap_built_in_robot::{self as built_in_robot, ActiveEffect, BuiltInRobot};
 use mindgap_foundations::error::{Error, Result};
 use mindgap_foundations::random::generator;
 use mindgap_logs::Scene;
 use mindgap_logs::controller_file::ControllerFile;
 
-/// The built-in robot with these effects, of which its simulator need not know.
+/// The built-in robot with these faults, which its simulator need not model.
 pub struct TrialledRobot(pub Vec<ActiveEffect>);
 
 impl TrialRobot for TrialledRobot {

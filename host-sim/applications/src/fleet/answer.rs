@@ -1,4 +1,4 @@
-//! The answer for a fleet as data, and as it is written.
+//! The results for a fleet as data and JSON.
 
 use std::collections::BTreeMap;
 
@@ -8,7 +8,7 @@ use super::common::{Common, common};
 use super::frequency::{Frequency, frequencies};
 use super::groups::groups;
 use super::outliers::{Outlier, outliers};
-use super::spread::{Spread, Told};
+use super::spread::{RoundedSpread, Spread};
 use super::tally::{Refused, Tally};
 use mindgap_diagnosis::diagnosis::Verdict;
 use mindgap_foundations::statistics::rounding;
@@ -16,46 +16,46 @@ use mindgap_foundations::statistics::rounding;
 /// Version of the JSON.
 const SCHEMA: u32 = 1;
 
-/// What `mindgap diagnose --fleet` finds; docs/reference/json.md has the JSON.
+/// Results of `mindgap diagnose --fleet`; docs/reference/json.md describes the JSON.
 #[derive(Clone, Debug, Serialize)]
 pub struct Fleet {
     schema: u32,
-    /// Robots that were diagnosed.
+    /// Number of diagnosed robots.
     pub diagnosed: usize,
-    /// How many of them have which answer.
+    /// Number of robots per verdict.
     pub verdicts: BTreeMap<&'static str, usize>,
-    /// The sizes of their gaps, nats a step; none where no robot has one.
-    pub gap_nats: Option<Told>,
-    /// The effects that were named, the most frequent first.
+    /// Distribution of the gap, nats per step; `None` if no robot has a gap.
+    pub gap_nats: Option<RoundedSpread>,
+    /// Named effects, most frequent first.
     pub effects: Vec<Frequency>,
-    /// What nearly all robots have alike: the simulator's fault.
+    /// Effects shared by nearly all robots, which are errors of the simulator.
     pub common: Vec<Common>,
-    /// Robots whose gaps are made of the same things, the largest group first.
+    /// Groups of robots with similar gaps, largest first.
     pub groups: Vec<Group>,
-    /// Robots that stand out, the furthest first.
+    /// Outliers, most extreme first.
     pub stands_out: Vec<Outlier>,
     /// Robots that could not be diagnosed.
     pub refused: Vec<Refused>,
-    /// What else lies beside the robots' folders.
+    /// Files in the folder that belong to no robot.
     pub left_out: Vec<String>,
-    /// The robots as a page lists them.
+    /// Robots as listed on the page.
     #[serde(skip)]
     pub robots: Vec<Row>,
 }
 
-/// Robots whose gaps are made of the same things.
+/// A group of robots with similar gaps.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Group {
-    /// Mean shares of their gaps, the largest first.
+    /// Mean shares of the gap, largest first.
     pub budget: Vec<Share>,
-    /// Median size of their gaps, nats a step.
+    /// Median gap, nats per step.
     #[serde(serialize_with = "rounding::optional")]
     pub gap_nats: Option<f64>,
-    /// Their names.
+    /// Names of the robots.
     pub robots: Vec<String>,
 }
 
-/// A part of a gap.
+/// One part of a gap.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Share {
     /// Its id.
@@ -65,26 +65,26 @@ pub struct Share {
     pub share: f64,
 }
 
-/// A robot in a list.
+/// A row of the list of robots.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Row {
     /// Its name.
     pub name: String,
-    /// Its answer.
+    /// Verdict.
     pub verdict: Verdict,
-    /// The size of its gap, nats a step.
+    /// Gap, nats per step.
     pub gap_nats: Option<f64>,
-    /// What its gap is made of, the largest part first.
+    /// Parts of the gap, largest first.
     pub budget: Vec<Share>,
-    /// Its group, from 1.
+    /// Number of the group, from 1.
     pub group: usize,
 }
 
-/// Shares below this are not listed.
+/// Smallest share that is listed.
 const WORTH_TELLING: f64 = 0.005;
 
 impl Fleet {
-    /// The answer for robots that were diagnosed.
+    /// Computes the results from the tally of all robots.
     pub fn of(tally: Tally, left_out: Vec<String>, seed: u64) -> Self {
         let groups = groups(&tally, seed);
         let mut verdicts = BTreeMap::new();
@@ -114,7 +114,7 @@ impl Fleet {
             schema: SCHEMA,
             diagnosed: tally.names.len(),
             verdicts,
-            gap_nats: gap(&mut (0..tally.names.len())).map(|spread| spread.told()),
+            gap_nats: gap(&mut (0..tally.names.len())).map(|spread| spread.rounded()),
             effects: frequencies(&tally),
             common: common(&tally),
             groups: groups
@@ -132,7 +132,7 @@ impl Fleet {
         }
     }
 
-    /// All robots, diagnosed or not.
+    /// Returns the number of robots, diagnosed or not.
     pub fn count(&self) -> usize {
         self.diagnosed + self.refused.len()
     }

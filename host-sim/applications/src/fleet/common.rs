@@ -1,4 +1,4 @@
-//! What is common to all robots of a fleet, and therefore the simulator's fault rather than theirs.
+//! Effects common to all robots of a fleet, which are errors of the simulator rather than of the robots.
 
 use serde::Serialize;
 
@@ -9,26 +9,25 @@ use mindgap_foundations::statistics::rounding::three_digits;
 use mindgap_models::effects::applied::AppliedEffect;
 use mindgap_models::effects::{Candidate, Parameter};
 
-/// So large a share of the robots is nearly all of them,
+/// Minimum prevalence of a common effect.
 const NEARLY_ALL: f64 = 0.9;
-/// and more than half is certain to 95 %.
+/// Minimum lower end of the 95 % interval of the prevalence.
 const AT_LEAST: f64 = 0.5;
-/// A strength is the same in all robots where it scatters over them by so much of itself at most: then the ends of its 95 %
-/// are of one sign.
+/// Maximum ratio of the scatter of a strength between robots to its median: then the central 95 % have one sign.
 const SCATTERS: f64 = 0.5;
-/// Or by so much of what would be a large change of the parameter: of a direction, what it itself is means nothing.
+/// Maximum ratio of the scatter to the scale of the parameter; for a direction, the ratio to its own value means nothing.
 const OF_LARGE: f64 = 0.1;
 
-/// An effect that nearly all robots have in the same strength.
+/// An effect that nearly all robots share with the same strength.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Common {
-    /// It, as a simulator takes it: with the medians over the robots.
+    /// The effect with the median parameters over the robots, as added to a simulator.
     pub effect: AppliedEffect,
-    /// By which test.
+    /// Explanation of the test that it passed.
     pub because: String,
 }
 
-/// What is the simulator's fault.
+/// Returns the effects common to nearly all robots.
 pub fn common(tally: &Tally) -> Vec<Common> {
     let frequent = frequencies(tally).into_iter().filter(|f| f.frequency >= NEARLY_ALL && f.ci95[0] >= AT_LEAST);
     frequent.filter_map(|frequency| of(&frequency, tally)).collect()
@@ -52,8 +51,8 @@ fn of(frequency: &Frequency, tally: &Tally) -> Option<Common> {
     Some(Common {
         effect: AppliedEffect::new(&Candidate { effect: frequency.id, variant }, &medians, tally.measures.as_ref()?),
         because: format!(
-            "{} of {} robots whose logs could show it have it, as {form} {} of them; 95 % interval of the median {}: {} \
-             to {}, which leaves out {}, where nothing would change; and it scatters little between robots",
+            "{} of the {} robots with sufficient excitation have it, {} of them as {form}; the 95 % interval of the median {} \
+             is {} to {}, which excludes the neutral value {}, and it scatters little between robots",
             frequency.named,
             frequency.testable,
             robots.len(),
@@ -79,7 +78,7 @@ mod tests {
     use mindgap_models::effects::CATALOGUE;
     use mindgap_models::effects::parameter::Setting;
 
-    /// Robots with a weak motor of these strengths, and so many without.
+    /// Returns robots with weak motors of these strengths, and `healthy` robots without.
     fn fleet(losses: &[f64], healthy: usize) -> Tally {
         let mut tally = Tally::new(CATALOGUE);
         let robot = |effects| Robot {
@@ -104,7 +103,7 @@ mod tests {
     }
 
     #[test]
-    fn what_nearly_all_robots_have_alike_is_the_simulators_fault() {
+    fn effect_shared_by_nearly_all_robots_is_common() {
         let alike = common(&fleet(&[0.1, 0.11, 0.12, 0.1, 0.09, 0.11, 0.1], 0));
         let [Common { effect, .. }] = alike.as_slice() else { panic!("{alike:?}") };
         assert_eq!((effect.effect.as_str(), effect.parameters["factor"]), ("motor_asymmetry", Setting::Number(0.9)));
@@ -112,7 +111,7 @@ mod tests {
     }
 
     #[test]
-    fn what_differs_between_robots_or_is_seen_in_few_is_not() {
+    fn effect_that_varies_or_is_rare_is_not_common() {
         for (what, losses, healthy) in [
             ("one side or the other", [0.1, -0.1, 0.12, -0.11, 0.1, -0.09, -0.1].as_slice(), 0),
             ("five robots tell no interval", &[0.1, 0.11, 0.1, 0.12, 0.09], 0),

@@ -1,34 +1,34 @@
-//! How frequent effects are in a fleet, and how strong.
+//! Prevalence and strength of effects in a fleet.
 
 use serde::Serialize;
 
-use super::spread::{Spread, Told};
+use super::spread::{RoundedSpread, Spread};
 use super::tally::{Sightings, Tally};
 use mindgap_foundations::statistics::rounding;
 use mindgap_models::effects::Parameter;
 
-/// An effect in a fleet.
+/// The statistics of an effect in a fleet.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Frequency {
     /// Its id.
     pub id: &'static str,
-    /// Robots in which it is named.
+    /// Number of robots in which the effect is named.
     pub named: usize,
-    /// Robots whose logs could have shown it.
+    /// Number of robots in whose logs the effect is testable.
     pub testable: usize,
-    /// The share of those that have it, each robot counted by the probability that it has.
+    /// Prevalence among the testable robots, each weighted by the probability of the effect.
     #[serde(serialize_with = "rounding::number")]
     pub frequency: f64,
-    /// 95 % interval of that (Wilson 1927).
+    /// 95 % interval of the prevalence (Wilson 1927).
     #[serde(serialize_with = "rounding::interval")]
     pub ci95: [f64; 2],
-    /// The form in which it shows in most robots.
+    /// Most common variant.
     pub variant: Option<&'static str>,
-    /// How the parameters of that form are distributed.
+    /// Distributions of the parameters of that variant.
     pub strengths: Vec<Strength>,
 }
 
-/// How a parameter of an effect is distributed over robots.
+/// The distribution of a parameter over robots.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Strength {
     /// Its name.
@@ -37,15 +37,15 @@ pub struct Strength {
     pub unit: &'static str,
     /// Number of robots.
     pub robots: usize,
-    /// Over them.
+    /// Distribution over these robots.
     #[serde(flatten)]
-    pub spread: Told,
+    pub spread: RoundedSpread,
 }
 
-/// Standard deviations that a normal law's 95 % interval reaches.
+/// Half-width of the 95 % interval of a normal distribution, in standard deviations.
 const WITHIN: f64 = 1.96;
 
-/// Every effect that was named, the most frequent first.
+/// Returns every named effect, most frequent first.
 pub fn frequencies(tally: &Tally) -> Vec<Frequency> {
     let all = tally.parts.iter().zip(&tally.sightings).enumerate();
     let mut frequencies: Vec<Frequency> =
@@ -60,11 +60,16 @@ fn of(id: &'static str, seen: &Sightings, part: usize, tally: &Tally) -> Frequen
         let variant = effect.variants.iter().find(|variant| variant.id == form)?;
         let strength = |(place, parameter): (usize, &Parameter)| {
             let spread = Spread::of(robots.iter().map(|(_, values)| values[place]).collect())?;
-            Some(Strength { parameter: parameter.name, unit: parameter.unit, robots: spread.n, spread: spread.told() })
+            Some(Strength {
+                parameter: parameter.name,
+                unit: parameter.unit,
+                robots: spread.n,
+                spread: spread.rounded(),
+            })
         };
         Some(variant.parameters.iter().enumerate().filter_map(strength).collect())
     });
-    // An effect may be named though most of its trace is missing: then those robots count as testable.
+    // An effect may be named although it is listed as untestable: such robots count as testable.
     let testable = seen.testable.max(seen.named);
     Frequency {
         id,
@@ -77,8 +82,7 @@ fn of(id: &'static str, seen: &Sightings, part: usize, tally: &Tally) -> Frequen
     }
 }
 
-/// The interval of a share of which `k` of `n` were seen: shares from which what was seen lies within two standard
-/// deviations.
+/// Returns Wilson's 95 % interval of a proportion of which `k` of `n` were observed.
 fn wilson(k: f64, n: f64) -> [f64; 2] {
     let (share, square) = (k / n, WITHIN * WITHIN);
     let middle = (share + 0.5 * square / n) / (1.0 + square / n);
@@ -92,7 +96,7 @@ mod tests {
 
     /// Newcombe 1998, Statistics in Medicine 17, table I, method 3.
     #[test]
-    fn intervals_are_those_of_the_tables() {
+    fn wilson_intervals_match_published_table() {
         for (k, n, expected) in
             [(81.0, 263.0, [0.2553, 0.3662]), (15.0, 148.0, [0.0624, 0.1605]), (0.0, 20.0, [0.0, 0.1611])]
         {

@@ -1,7 +1,7 @@
-//! Robots whose gaps are made of the same things: k-means on their budgets, with the number of groups by the gap statistic.
+//! Groups of robots with similar gaps: k-means on their budgets, with the number of groups chosen by the gap statistic.
 //!
-//! Shares of a whole are compared by their square roots (Hellinger distance): two budgets without a common part are √2
-//! apart, whatever is in them.
+//! Budgets are compared by the square roots of their shares (Hellinger distance): two budgets without a common part are
+//! always √2 apart.
 
 use rand::RngExt;
 use rand_distr::{Distribution, StandardNormal};
@@ -10,25 +10,25 @@ use super::tally::Tally;
 use mindgap_foundations::random::{Generator, derive, generator};
 use mindgap_foundations::statistics::summary::mean;
 
-/// There are at most so many groups.
+/// Maximum number of groups.
 const MOST: usize = 8;
-/// Budgets that differ by this much (root mean square) are as good as equal: shares are known no better.
+/// Root-mean-square distance below which budgets count as equal, given the accuracy of the shares.
 const ALIKE: f64 = 0.05;
-/// The number of groups is sought on so many robots, drawn by chance.
+/// Size of the random sample of robots on which the number of groups is chosen.
 const SAMPLE: usize = 500;
-/// Numbers of groups are as good as the best within so many errors.
+/// Number of standard errors within which a number of groups is as good as the best.
 const ERRORS: f64 = 2.0;
-/// With so many fleets without groups a fleet is compared.
+/// Number of reference fleets without groups.
 const REFERENCES: u64 = 20;
-/// Each division into groups begins so many times anew,
+/// Number of restarts of k-means.
 const STARTS: u64 = 4;
-/// and goes on for so long at most.
+/// Maximum number of iterations of k-means.
 const ROUNDS: usize = 100;
 
 /// A group of robots.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Group {
-    /// Places of its robots in the tally.
+    /// Indices of its robots in the tally.
     pub members: Vec<usize>,
     /// Mean share of each part of the budget.
     pub budget: Vec<f64>,
@@ -36,7 +36,7 @@ pub struct Group {
 
 type Point = Vec<f64>;
 
-/// The groups, the largest first.
+/// Returns the groups, largest first.
 pub fn groups(tally: &Tally, seed: u64) -> Vec<Group> {
     let occurring: Vec<usize> =
         (0..tally.parts.len()).filter(|part| tally.budgets.iter().any(|budget| budget[*part] > 0.0)).collect();
@@ -61,9 +61,9 @@ fn mean_budget(tally: &Tally, members: &[usize]) -> Vec<f64> {
     (0..tally.parts.len()).map(share).collect()
 }
 
-/// The smallest number of groups that is as much tighter than in fleets without groups as any number is, within two errors
-/// of that (Tibshirani, Walther and Hastie 2001, Estimating the number of clusters in a data set via the gap statistic);
-/// and no more than it takes for robots to be alike in their groups.
+/// Returns the smallest number of groups whose gap statistic is within two standard errors of the best (Tibshirani,
+/// Walther and Hastie 2001, Estimating the number of clusters in a data set via the gap statistic), and at most the number
+/// at which robots are equal within their groups.
 fn number_of_groups(points: &[Point], seed: u64) -> usize {
     let alike = points.len() as f64 * ALIKE * ALIKE;
     let most = MOST.min(points.len() / 2).max(1);
@@ -82,7 +82,7 @@ fn number_of_groups(points: &[Point], seed: u64) -> usize {
     gaps.iter().position(|gap| gap.0 >= widest.0 - ERRORS * widest.1).map_or(1, |place| place + 1)
 }
 
-/// As many points that scatter about their mean as these do on the whole, by a normal law with their covariance.
+/// Returns a reference sample without groups: as many points from a normal distribution with the same mean and covariance.
 fn without_groups(points: &[Point], rng: &mut Generator) -> Vec<Point> {
     let count = points.len() as f64;
     let middle: Point = (0..points[0].len()).map(|axis| mean(points.iter().map(|point| point[axis]))).collect();
@@ -99,15 +99,14 @@ fn without_groups(points: &[Point], rng: &mut Generator) -> Vec<Point> {
     points.iter().map(|_| draw(rng)).collect()
 }
 
-/// The tightest division that was found: the sum of the squared distances to the middles of the groups, and the group of
-/// each point.
+/// Returns the best clustering found: the sum of squared distances to the centres, and the group of each point.
 fn divided(points: &[Point], groups: usize, seed: u64) -> (f64, Vec<usize>) {
     let starts = if groups == 1 { 1 } else { STARTS };
     let found = (0..starts).map(|start| from_start(points, groups, &mut generator(seed, &[1, groups as u64, start])));
     found.min_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or_default()
 }
 
-/// Lloyd's algorithm from middles that are drawn far apart (Arthur and Vassilvitskii 2007, k-means++).
+/// Runs Lloyd's algorithm from k-means++ centres (Arthur and Vassilvitskii 2007).
 fn from_start(points: &[Point], groups: usize, rng: &mut Generator) -> (f64, Vec<usize>) {
     let mut middles = vec![points[rng.random_range(0..points.len())].clone()];
     while middles.len() < groups {
@@ -138,7 +137,7 @@ fn from_start(points: &[Point], groups: usize, rng: &mut Generator) -> (f64, Vec
     (distances.iter().sum(), of)
 }
 
-/// The nearest of some middles, and the square of its distance.
+/// Returns the nearest centre and its squared distance.
 fn nearest(point: &[f64], middles: &[Point]) -> (usize, f64) {
     let distances = middles.iter().map(|middle| point.iter().zip(middle).map(|(a, b)| (a - b) * (a - b)).sum());
     distances.enumerate().min_by(|a: &(usize, f64), b| a.1.total_cmp(&b.1)).unwrap_or((0, 0.0))
@@ -151,7 +150,7 @@ mod tests {
     use mindgap_diagnosis::diagnosis::Verdict;
     use mindgap_models::effects::CATALOGUE;
 
-    /// Robots with budgets that scatter about these, in turn.
+    /// Returns robots whose budgets scatter around these, in turn.
     fn fleet(robots: usize, kinds: &[&[(&str, f64)]]) -> Tally {
         let (mut tally, mut rng) = (Tally::new(CATALOGUE), generator(3, &[]));
         for i in 0..robots {
@@ -195,9 +194,8 @@ mod tests {
         }
     }
 
-    /// Shares that scatter widely, and by one law.
     #[test]
-    fn robots_that_scatter_widely_are_one_group() {
+    fn widely_scattered_robots_of_one_distribution_are_one_group() {
         for robots in [10, 40, 200] {
             let mut rng = generator(robots, &[]);
             let mut tally = Tally::new(CATALOGUE);
@@ -212,10 +210,10 @@ mod tests {
     }
 
     #[test]
-    fn robots_of_several_kinds_are_as_many_groups() {
+    fn robots_of_several_kinds_form_as_many_groups() {
         assert_eq!(sizes(&fleet(6, &[SLIP, LATE, SLIP])), [4, 2]);
         assert_eq!(sizes(&fleet(12, &[SLIP, SLIP, LATE, SLIP, &[], SLIP])), [8, 2, 2]);
-        // More robots than the sample divide alike.
+        // A fleet larger than the sample has the same groups.
         assert_eq!(sizes(&fleet(3 * SAMPLE, &[SLIP, LATE, &[]])), [SAMPLE; 3]);
     }
 }

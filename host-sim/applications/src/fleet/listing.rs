@@ -5,20 +5,20 @@ use std::path::Path;
 
 use mindgap_foundations::error::{Error, Result};
 
-/// The robots of a fleet by the names of their folders, in order.
+/// The robots of a fleet, sorted by the names of their folders.
 #[derive(Debug, Default, PartialEq)]
 pub struct Listing {
-    /// The robots.
+    /// Names of the robots.
     pub names: Vec<String>,
-    /// Files beside them, which belong to no robot.
+    /// Files that belong to no robot.
     pub left_out: Vec<String>,
 }
 
 impl Listing {
-    /// Lists the robots whose logs lie in a folder, each in a folder of its own.
+    /// Lists the robots in a folder, which contains one folder of logs per robot.
     ///
     /// # Errors
-    /// When the folder cannot be read, or has no folder in it.
+    /// If the folder cannot be read or contains no folder.
     pub fn of(folder: &Path) -> Result<Self> {
         let failed = |e: std::io::Error| Error::in_file(folder, format!("cannot be read: {e}"));
         let mut listing = Listing::default();
@@ -26,7 +26,7 @@ impl Listing {
             let entry = entry.map_err(failed)?;
             match entry.file_name().into_string() {
                 Ok(name) if name.starts_with('.') => (),
-                // Behind a link as well.
+                // Follows symbolic links.
                 Ok(name) if entry.path().is_dir() => listing.names.push(name),
                 Ok(name) => listing.left_out.push(name),
                 Err(name) => listing.left_out.push(name.to_string_lossy().into_owned()),
@@ -35,7 +35,7 @@ impl Listing {
         if listing.names.is_empty() {
             return Err(Error::in_file(
                 folder,
-                "has no folder in it: a fleet is a folder with a folder of logs for each robot",
+                "contains no folder: a fleet is a folder with one folder of logs per robot",
             ));
         }
         listing.names.sort();
@@ -49,9 +49,9 @@ mod tests {
     use super::*;
 
     #[test]
-    fn listing_holds_folders_as_robots_and_files_as_left_out() {
+    fn folders_are_robots_and_files_are_left_out() {
         let place = tempfile::tempdir().expect("a temporary folder");
-        assert!(Listing::of(place.path()).unwrap_err().to_string().contains("has no folder in it"));
+        assert!(Listing::of(place.path()).unwrap_err().to_string().contains("contains no folder"));
         for name in ["b", "a", ".git"] {
             fs::create_dir(place.path().join(name)).expect("a folder");
         }

@@ -1,4 +1,4 @@
-//! Robots that stand out: the size of their gap or a parameter of an effect lies far from the fleet's.
+//! Outliers: robots whose gap or effect parameter is far from the fleet's median.
 
 use serde::Serialize;
 
@@ -6,41 +6,41 @@ use super::spread::Spread;
 use super::tally::Tally;
 use mindgap_foundations::statistics::rounding::three_digits;
 
-/// One fleet in so many, whose robots scatter by chance alone, has a robot that stands out.
+/// Inverse of the family-wise false-alarm rate.
 const FLEETS: f64 = 20.0;
-/// A median deviation of n numbers is known as well as a standard deviation of this share of them (Rousseeuw and Croux
-/// 1993, Alternatives to the median absolute deviation).
+/// Efficiency of the median absolute deviation relative to the standard deviation (Rousseeuw and Croux 1993, Alternatives
+/// to the median absolute deviation).
 const EFFICIENCY: f64 = 0.37;
-/// Of fewer robots a deviation is not known.
+/// Minimum number of robots to estimate a deviation.
 const FEWEST: usize = 10;
-/// Bisections until a quantile is as narrow as double precision.
+/// Number of bisections to find a quantile in double precision.
 const BISECTIONS: usize = 60;
 
-/// A robot that stands out in something.
+/// A robot that is an outlier in one quantity.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Outlier {
     /// Its name.
     pub robot: String,
-    /// In what: `gap_nats`, or `EFFECT.PARAMETER`.
+    /// Quantity: `gap_nats` or `EFFECT.PARAMETER`.
     pub what: String,
-    /// What it has there.
+    /// Value of the robot.
     pub value: f64,
-    /// What the fleet has.
+    /// Median of the fleet.
     pub median: f64,
-    /// How far it is from that, in deviations of the fleet.
+    /// Distance from the median, in deviations of the fleet.
     pub deviations: f64,
-    /// From how far on robots stand out here.
+    /// Distance beyond which a robot is an outlier.
     pub threshold: f64,
 }
 
-/// Numbers of some robots: what they are, whether they are judged by their ratios, and the numbers by place in the tally.
+/// A quantity of several robots: its name, whether it is compared by ratios, and the values by index in the tally.
 struct Measure {
     what: String,
     by_ratio: bool,
     values: Vec<(usize, f64)>,
 }
 
-/// Whoever stands out, the furthest first.
+/// Returns the outliers, most extreme first.
 pub fn outliers(tally: &Tally) -> Vec<Outlier> {
     let measures = measures(tally);
     let mut outliers: Vec<Outlier> =
@@ -49,9 +49,9 @@ pub fn outliers(tally: &Tally) -> Vec<Outlier> {
     outliers
 }
 
-/// All in which enough robots can be compared.
+/// Returns the quantities that enough robots have.
 fn measures(tally: &Tally) -> Vec<Measure> {
-    // Gaps grow with the square of what is wrong.
+    // Gaps grow with the square of the error.
     let gaps =
         tally.gaps_nats.iter().enumerate().filter_map(|(place, gap)| Some((place, gap.filter(|gap| *gap > 0.0)?)));
     let mut measures = vec![Measure { what: "gap_nats".into(), by_ratio: true, values: gaps.collect() }];
@@ -74,7 +74,7 @@ fn beyond(measure: &Measure, measures: usize, tally: &Tally) -> Vec<Outlier> {
         return Vec::new();
     };
     let threshold = threshold(spread.n, measures);
-    // Where more than half of the robots are the very same, no deviation is known.
+    // If more than half of the values are equal, the deviation is zero and nothing can be compared.
     let far = |value: f64| (spread.deviation > 0.0).then(|| (scaled(value) - spread.median).abs() / spread.deviation);
     let outlier = |(place, value): &(usize, f64)| {
         let deviations = far(*value).filter(|deviations| *deviations > threshold)?;
@@ -90,8 +90,9 @@ fn beyond(measure: &Measure, measures: usize, tally: &Tally) -> Vec<Outlier> {
     measure.values.iter().filter_map(outlier).collect()
 }
 
-/// So many deviations from the median nothing lies by chance, of so many robots in so many measures: a quantile of
-/// Student's distribution by its expansion about the normal one's (Abramowitz and Stegun 1964, equation 26.7.5).
+/// Returns the distance from the median, in deviations, that no robot exceeds by chance: a quantile of Student's
+/// distribution by its expansion about the normal quantile (Abramowitz and Stegun 1964, equation 26.7.5), corrected for the
+/// number of robots and measures.
 fn threshold(robots: usize, measures: usize) -> f64 {
     let z = normal_beyond(1.0 / (FLEETS * (robots * measures) as f64));
     let degrees = EFFICIENCY * (robots - 1) as f64;
@@ -102,7 +103,7 @@ fn threshold(robots: usize, measures: usize) -> f64 {
     z + first / degrees + second / (degrees * degrees) + third / (degrees * degrees * degrees)
 }
 
-/// From how far on, to either side, a normal law has this probability.
+/// Returns the two-sided quantile of the normal distribution for a tail probability.
 fn normal_beyond(probability: f64) -> f64 {
     let (mut low, mut high) = (0.0, 40.0);
     for _ in 0..BISECTIONS {
@@ -124,7 +125,7 @@ mod tests {
     use mindgap_foundations::random::generator;
     use mindgap_models::effects::CATALOGUE;
 
-    /// Robots with gaps that scatter by chance, and these.
+    /// Returns robots with randomly scattered gaps, and those with the given gaps.
     fn fleet(robots: usize, odd_nats: &[f64], seed: u64) -> Tally {
         let (mut tally, mut rng) = (Tally::new(CATALOGUE), generator(seed, &[]));
         let scattered = (0..robots).map(|_| {
@@ -137,7 +138,7 @@ mod tests {
     }
 
     #[test]
-    fn a_robot_with_a_far_larger_gap_stands_out_alone() {
+    fn only_the_robot_with_a_far_larger_gap_is_an_outlier() {
         let found = outliers(&fleet(50, &[40.0], 1));
         let [Outlier { robot, what, .. }] = found.as_slice() else { panic!("{found:?}") };
         assert_eq!((robot.as_str(), what.as_str()), ("50", "gap_nats"));
@@ -145,7 +146,7 @@ mod tests {
     }
 
     #[test]
-    fn in_few_fleets_that_scatter_by_chance_alone_a_robot_stands_out() {
+    fn random_scatter_rarely_gives_an_outlier() {
         for robots in [10, 20, 100, 1000] {
             let fleets = 200;
             let alarms = (0..fleets).filter(|seed| !outliers(&fleet(robots, &[], *seed)).is_empty()).count();

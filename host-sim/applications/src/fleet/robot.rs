@@ -1,4 +1,4 @@
-//! What is kept of one robot's diagnosis.
+//! The summary of one robot's diagnosis.
 
 use serde::{Deserialize, Serialize};
 
@@ -7,42 +7,42 @@ use mindgap_diagnosis::explain::NamedEffect;
 use mindgap_diagnosis::request::Answered;
 use mindgap_models::effects::parameter::Settings;
 
-/// A robot of a fleet.
+/// The summary of a robot of a fleet.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Robot {
     /// Its dimensions.
     pub measures: mindgap_logs::Robot,
-    /// The answer in one word.
+    /// Verdict.
     pub verdict: Verdict,
-    /// Number of its runs.
+    /// Number of runs.
     pub runs: usize,
-    /// Number of their rows.
+    /// Number of rows.
     pub rows: usize,
-    /// The gap that could be reduced, nats a step; none where there is none.
+    /// Reducible gap, nats per step; `None` if there is no gap.
     pub gap_nats: Option<f64>,
-    /// The share of it that the named effects close.
+    /// Share of the reducible gap that the named effects close.
     pub closed: Option<f64>,
-    /// What the gap is made of: ids with their shares and 95 % intervals of them.
+    /// Parts of the gap: id, share and 95 % interval.
     pub budget: Vec<(String, f64, [f64; 2])>,
-    /// The effects that are named.
+    /// Named effects.
     pub effects: Vec<Cause>,
-    /// Effects that its logs could not show.
+    /// Effects that are not testable with its logs.
     pub untestable: Vec<String>,
 }
 
-/// An effect that is named in a robot.
+/// An effect named for a robot.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Cause {
     /// Its id.
     pub id: String,
-    /// How probable it is.
+    /// Probability of the effect.
     pub probability: f64,
-    /// Its form and parameters, as a simulator takes them; none of scatter, which is no effect that could be added.
+    /// Variant and parameters, as added to a simulator; `None` for scatter, which is not an effect.
     pub strength: Option<(String, Settings)>,
 }
 
 impl Robot {
-    /// Of what was found in a robot's logs.
+    /// Summarises the diagnosis of a robot.
     pub fn of(Answered { findings, logs }: &Answered) -> Self {
         let diagnosis = &findings.diagnosis;
         let cause = |named: &NamedEffect| Cause {

@@ -1,31 +1,30 @@
-//! How numbers of many robots are distributed, told so that a few odd ones change little.
+//! Robust statistics of a quantity over many robots.
 
 use serde::Serialize;
 
 use mindgap_foundations::statistics::rounding::three_digits;
 use mindgap_foundations::statistics::summary::QUARTILE;
 
-/// Half the width of a normal law's 95 % interval over twice its standard deviation: what the ranks of a median scatter by,
-/// in roots of the number.
+/// Half-width of the 95 % interval of the rank of a median, in units of the square root of the sample size.
 const RANKS: f64 = 0.98;
 
-/// The distribution of some numbers.
+/// The distribution of a sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Spread {
-    /// How many.
+    /// Sample size.
     pub n: usize,
-    /// In the middle.
+    /// Median.
     pub median: f64,
-    /// A quarter lies below the first, and a quarter above the second.
+    /// Lower and upper quartile.
     pub quartiles: [f64; 2],
-    /// 95 % interval of the median, by order statistics; none of fewer than six numbers.
+    /// 95 % interval of the median by order statistics; `None` for fewer than six values.
     pub median_ci95: Option<[f64; 2]>,
-    /// Median of the absolute deviations from the median, as the standard deviation that a normal law with it has.
+    /// Median absolute deviation, scaled to the standard deviation of a normal distribution.
     pub deviation: f64,
 }
 
 impl Spread {
-    /// Of some numbers; none of none.
+    /// Computes the distribution of a sample; `None` if it is empty.
     pub fn of(mut values: Vec<f64>) -> Option<Self> {
         let n = values.len();
         values.sort_by(f64::total_cmp);
@@ -41,9 +40,9 @@ impl Spread {
         })
     }
 
-    /// As it is written.
-    pub fn told(&self) -> Told {
-        Told {
+    /// Returns the distribution rounded for output.
+    pub fn rounded(&self) -> RoundedSpread {
+        RoundedSpread {
             median: three_digits(self.median),
             quartiles: self.quartiles.map(three_digits),
             median_ci95: self.median_ci95.map(|ends| ends.map(three_digits)),
@@ -52,9 +51,9 @@ impl Spread {
     }
 }
 
-/// A distribution as it is written, with three digits.
+/// A distribution for output, rounded to three digits.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Told {
+pub struct RoundedSpread {
     /// See [`Spread::median`].
     pub median: f64,
     /// See [`Spread::quartiles`].
@@ -65,7 +64,7 @@ pub struct Told {
     pub deviation: f64,
 }
 
-/// What a share of sorted numbers lies below, interpolated; none of none.
+/// Returns a quantile of sorted values by interpolation; `None` if there are none.
 fn quantile(sorted: &[f64], share: f64) -> Option<f64> {
     let place = share * sorted.len().checked_sub(1)? as f64;
     let below = place as usize;
@@ -73,8 +72,8 @@ fn quantile(sorted: &[f64], share: f64) -> Option<f64> {
     Some(sorted[below] + (place - below as f64) * (above - sorted[below]))
 }
 
-/// Between the number of this rank, from 0, and the one as far from the end lies the median with 95 %: each number is as
-/// likely below it as above (sign test, with the binomial law's normal approximation and correction of continuity).
+/// Returns the rank, from 0, of the lower end of the 95 % interval of the median; the upper end has the same rank from the
+/// top (sign test, by the normal approximation of the binomial distribution with continuity correction).
 fn lowest_rank(n: usize) -> Option<usize> {
     let rank = 0.5 * n as f64 - RANKS * (n as f64).sqrt() - 0.5;
     (rank >= 0.0).then_some(rank as usize)
@@ -85,7 +84,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_few_odd_numbers_change_little() {
+    fn a_few_outliers_hardly_change_the_statistics() {
         let mut values: Vec<f64> = (0..99).map(|i| f64::from(i) / 98.0).collect();
         let calm = Spread::of(values.clone()).unwrap();
         values.extend([1e9; 3]);
@@ -95,9 +94,9 @@ mod tests {
         assert_eq!(Spread::of(vec![]), None);
     }
 
-    /// The exact probability that the median lies outside.
+    /// Compares with the exact probability that the median lies outside the interval.
     #[test]
-    fn the_interval_of_a_median_misses_it_one_time_in_twenty() {
+    fn interval_of_the_median_misses_it_one_time_in_twenty() {
         assert_eq!([0, 1, 5].map(lowest_rank), [None; 3]);
         for n in 6..200 {
             let rank = lowest_rank(n).unwrap();

@@ -1,4 +1,4 @@
-//! `robots.parquet`: a row for each part of each robot's gap, written as the robots come, and then one for each robot.
+//! `robots.parquet`: one row per part of each robot's gap, written as the robots are finished, then one row per robot.
 
 use std::collections::BTreeMap;
 use std::fs::File;
@@ -16,9 +16,9 @@ use super::robot::Robot;
 use mindgap_diagnosis::diagnosis::Verdict;
 use mindgap_foundations::error::{Error, Result};
 
-/// So many rows are kept before they are written.
+/// Number of rows per row group.
 const GROUP: usize = 1000;
-/// The columns, in the order in which [`Table::write`] fills them.
+/// The columns, in the order of [`Table::write`].
 const SCHEMA: &str = "message robots {
     REQUIRED BYTE_ARRAY robot (STRING);
     OPTIONAL BYTE_ARRAY verdict (STRING);
@@ -37,17 +37,17 @@ const SCHEMA: &str = "message robots {
     OPTIONAL BYTE_ARRAY refused (STRING);
 }";
 
-/// A table that is being written.
+/// A table in progress.
 pub struct Table {
     path: PathBuf,
-    /// None until the first rows are written.
+    /// `None` until the first rows are written.
     writer: Option<SerializedFileWriter<File>>,
     rows: Vec<Row>,
-    /// The robots' own, for which their groups are not known yet.
+    /// Rows of the robots, whose groups are not known until the end.
     own: Vec<Row>,
 }
 
-/// A row; a robot's own has no effect, and another's no verdict.
+/// A row of the table. That of a robot has no effect, that of a part has no verdict.
 #[derive(Default)]
 struct Row {
     robot: String,
@@ -67,15 +67,15 @@ struct Row {
 }
 
 impl Table {
-    /// A table at a path, where nothing is yet.
+    /// Returns a new table for a path.
     pub fn at(path: &Path) -> Self {
         Table { path: path.to_owned(), writer: None, rows: Vec::new(), own: Vec::new() }
     }
 
-    /// Adds a robot, or why it could not be diagnosed.
+    /// Adds a robot, or the reason why it could not be diagnosed.
     ///
     /// # Errors
-    /// When the file cannot be written.
+    /// If the file cannot be written.
     pub fn add(&mut self, name: &str, robot: std::result::Result<&Robot, &String>) -> Result<()> {
         match robot {
             Ok(robot) => {
@@ -89,10 +89,10 @@ impl Table {
         if self.rows.len() >= GROUP { self.write().map_err(|e| failed(&self.path, &e)) } else { Ok(()) }
     }
 
-    /// Writes what is left, with the group of each robot that has one.
+    /// Writes the remaining rows, with the group of each robot that has one.
     ///
     /// # Errors
-    /// When the file cannot be written.
+    /// If the file cannot be written.
     pub fn close(mut self, groups: &BTreeMap<&str, usize>) -> Result<()> {
         let own = std::mem::take(&mut self.own).into_iter();
         self.rows.extend(own.map(|row| Row { group: groups.get(row.robot.as_str()).copied(), ..row }));
@@ -104,7 +104,7 @@ impl Table {
         let rows = std::mem::take(&mut self.rows);
         let writer = match self.writer.take() {
             Some(writer) => writer,
-            None => begun(&self.path)?,
+            None => create(&self.path)?,
         };
         let mut group = self.writer.insert(writer).next_row_group()?;
         let texts = |of: &dyn Fn(&Row) -> Option<&str>| -> Vec<Option<ByteArray>> {
@@ -133,8 +133,8 @@ impl Table {
     }
 }
 
-/// A file with the columns and no row.
-fn begun(path: &Path) -> std::result::Result<SerializedFileWriter<File>, ParquetError> {
+/// Creates the file with its columns.
+fn create(path: &Path) -> std::result::Result<SerializedFileWriter<File>, ParquetError> {
     let schema = Arc::new(parse_message_type(SCHEMA)?);
     let properties = WriterProperties::builder()
         .set_created_by(format!("mindgap {}", env!("CARGO_PKG_VERSION")))
@@ -142,7 +142,7 @@ fn begun(path: &Path) -> std::result::Result<SerializedFileWriter<File>, Parquet
     SerializedFileWriter::new(File::create(path)?, schema, Arc::new(properties.build()))
 }
 
-/// A robot's own row.
+/// Returns the row of a robot.
 fn own(name: &str, robot: &Robot) -> Row {
     Row {
         robot: name.into(),
@@ -155,7 +155,7 @@ fn own(name: &str, robot: &Robot) -> Row {
     }
 }
 
-/// The rows of a robot's effects, and of the other parts of its gap.
+/// Returns the rows of a robot's effects and of the other parts of its gap.
 fn parts(name: &str, robot: &Robot) -> Vec<Row> {
     let part = |id: &str| robot.budget.iter().find(|part| part.0 == id);
     let effects = robot.effects.iter().map(|cause| Row {
@@ -179,7 +179,7 @@ fn parts(name: &str, robot: &Robot) -> Vec<Row> {
     effects.chain(others).collect()
 }
 
-/// Writes a group's next column.
+/// Writes the next column of a row group.
 fn column<T: DataType>(
     group: &mut SerializedRowGroupWriter<'_, File>,
     cells: &[Option<T::T>],
@@ -206,7 +206,7 @@ mod tests {
     use mindgap_models::effects::parameter::Setting;
 
     #[test]
-    fn every_robot_has_a_row_and_one_a_part_of_its_gap() {
+    fn every_robot_has_a_row_and_one_per_part_of_its_gap() {
         let strength = Some(("fast".into(), BTreeMap::from([("loss".into(), Setting::Number(0.25))])));
         let robot = Robot {
             measures: mindgap_built_in_robot::default_robot(),

@@ -1,5 +1,5 @@
-//! What is kept of all robots while they come: sums, and of each robot its name, the size of its gap, its budget and the
-//! strengths of its effects, a few hundred bytes.
+//! Running statistics over the robots: sums, and for each robot its name, gap, budget and effect strengths, in a few
+//! hundred bytes.
 
 use std::collections::BTreeMap;
 
@@ -10,43 +10,42 @@ use mindgap_diagnosis::budget::{SCATTER, UNEXPLAINED};
 use mindgap_diagnosis::diagnosis::Verdict;
 use mindgap_models::effects::Effect;
 
-/// Robots so far.
+/// Running statistics of a fleet.
 pub struct Tally {
-    /// The effects that competed.
+    /// Effects that competed.
     pub catalogue: &'static [&'static Effect],
-    /// Parts of budgets: the effects in the order of the catalogue, scatter, unexplained.
+    /// Parts of the budget: the effects in the order of the catalogue, scatter, unexplained.
     pub parts: Vec<&'static str>,
     /// The dimensions of the first robot.
     pub measures: Option<mindgap_logs::Robot>,
-    /// Names of the robots that were diagnosed; what follows is in their order.
+    /// Names of the diagnosed robots; the following fields have the same order.
     pub names: Vec<String>,
-    /// Their answers in one word.
+    /// Verdicts.
     pub verdicts: Vec<Verdict>,
-    /// The sizes of their gaps, nats a step.
+    /// Gaps, nats per step.
     pub gaps_nats: Vec<Option<f64>>,
-    /// Their budgets: shares of the gap, part by part; all zero where there is no gap.
+    /// Budgets: shares of the gap by part; all zero if there is no gap.
     pub budgets: Vec<Vec<f32>>,
-    /// How often each part was named.
+    /// Counts of each part.
     pub sightings: Vec<Sightings>,
     /// Robots that could not be diagnosed.
     pub refused: Vec<Refused>,
 }
 
-/// How often a part of budgets was named, and how strong it was.
+/// Counts and strengths of a part of the budget.
 #[derive(Clone, Default)]
 pub struct Sightings {
-    /// Robots whose logs could have shown it.
+    /// Number of robots in whose logs it is testable.
     pub testable: usize,
-    /// Robots in which it is named.
+    /// Number of robots in which it is named.
     pub named: usize,
-    /// The same, each counted by the probability that it is there.
+    /// The same, each weighted by its probability.
     pub expected: f64,
-    /// By the form of the effect.
+    /// Robots by variant of the effect.
     pub strengths: BTreeMap<&'static str, Seen>,
 }
 
-/// Robots in which a form of an effect is seen, as places in [`Tally::names`], each with the values of its parameters in their
-/// order.
+/// Robots with a variant of an effect, as indices into [`Tally::names`], each with the values of its parameters in order.
 pub type Seen = Vec<(usize, Vec<f64>)>;
 
 /// A robot that could not be diagnosed.
@@ -54,12 +53,12 @@ pub type Seen = Vec<(usize, Vec<f64>)>;
 pub struct Refused {
     /// Its name.
     pub robot: String,
-    /// Why.
+    /// Reason.
     pub reason: String,
 }
 
 impl Tally {
-    /// Of no robot yet.
+    /// Returns an empty tally.
     pub fn new(catalogue: &'static [&'static Effect]) -> Self {
         let parts: Vec<&'static str> = catalogue.iter().map(|effect| effect.id).chain([SCATTER, UNEXPLAINED]).collect();
         Tally {
@@ -75,7 +74,7 @@ impl Tally {
         }
     }
 
-    /// With a robot that was diagnosed.
+    /// Adds a diagnosed robot.
     pub fn add(&mut self, name: String, robot: &Robot) {
         let place = self.names.len();
         self.names.push(name);
@@ -107,7 +106,7 @@ impl Tally {
         }
     }
 
-    /// With a robot that could not be diagnosed.
+    /// Adds a robot that could not be diagnosed.
     pub fn refuse(&mut self, robot: String, reason: String) {
         self.refused.push(Refused { robot, reason });
     }
@@ -118,7 +117,7 @@ impl Tally {
 }
 
 impl Sightings {
-    /// The form in which it was seen in most robots.
+    /// Returns the most common variant with its robots.
     pub fn main_form(&self) -> Option<(&'static str, &Seen)> {
         let most = self.strengths.iter().max_by_key(|(variant, seen)| (seen.len(), std::cmp::Reverse(**variant)));
         most.map(|(variant, seen)| (*variant, seen))

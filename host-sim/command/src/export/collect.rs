@@ -1,4 +1,4 @@
-//! What `mindgap export --format nxc-collect` takes.
+//! Options of `mindgap export --format nxc-collect`.
 
 use std::path::Path;
 
@@ -13,26 +13,26 @@ use mindgap_files as files;
 use mindgap_foundations::error::{Error, Result};
 use mindgap_logs::Run;
 
-/// Options of the format nxc-collect alone; a script says itself what they would.
+/// Options of the format nxc-collect; a script replaces them.
 #[derive(Args)]
 #[command(next_help_heading = "Options of nxc-collect without a script")]
 pub struct Collect {
-    /// Time between two rows of the log, milliseconds; the controllers' step.
+    /// Time between two rows of the log, ms; also the controllers' step.
     #[arg(long, default_value_t = 400, conflicts_with = "input")]
     step_ms: u16,
-    /// Steps of a run.
+    /// Steps per run.
     #[arg(long, default_value_t = 150, conflicts_with = "input")]
     steps: u16,
-    /// Something nearer than this makes the robot turn away.
+    /// Turn away from anything nearer than this.
     #[arg(long, default_value_t = 40, conflicts_with = "input")]
     near_cm: u8,
-    /// Where the random commands start from.
+    /// Random seed of the commands.
     #[arg(long, value_name = "N", default_value_t = 1, conflicts_with = "input")]
     seed: u32,
 }
 
 impl Collect {
-    /// The program that drives at random.
+    /// Returns the options of a program that drives at random.
     pub fn options(&self, program: BrickName, wiring: Wiring) -> CollectOptions {
         let Collect { step_ms, steps, near_cm, seed } = *self;
         let commands = Commands::Random { steps, near_cm, seed };
@@ -40,19 +40,22 @@ impl Collect {
     }
 }
 
-/// The columns that a script needs; those of a log may stand beside them.
+/// Required columns of a script; it may have those of a log as well.
 const COLUMNS: [&str; 3] = ["t_ms", "left", "right"];
 
-/// The program that drives the commands of a script, such as `diagnose --next-experiment` writes it, or of a run.
+/// Returns the options of a program that replays the commands of a run or of a script from `diagnose --next-experiment`.
 ///
 /// # Errors
-/// When the file holds neither, or its steps are not of one length of whole milliseconds.
+/// If the file is neither, or its steps are not all the same whole number of milliseconds.
 pub fn script(path: &Path, program: BrickName, wiring: Wiring) -> Result<CollectOptions> {
     let rows = Run::parse(path, &files::read_text(path)?, &COLUMNS, warn)?.rows;
     let step_ms = rows.at(1).t_ms - rows.at(0).t_ms;
     let is_even = rows.pairs().all(|pair| pair[1].t_ms - pair[0].t_ms == step_ms);
     if !is_even || step_ms.fract() != 0.0 || step_ms > f64::from(u16::MAX) {
-        return Err(Error::in_file(path, "is no script: its rows are not equally many whole milliseconds apart"));
+        return Err(Error::in_file(
+            path,
+            "is not a script: its rows must be the same whole number of milliseconds apart",
+        ));
     }
     let powers = rows.iter().map(|row| [row.left, row.right].map(|power| power.round() as i8)).collect();
     let commands = Commands::Script(powers);

@@ -6,7 +6,7 @@ use clap::Args;
 use serde_json::json;
 
 use crate::choices::{ANGLES, LENGTHS, TIMES, one_of};
-use crate::facts::FactsOption;
+use crate::json_output::JsonOption;
 use crate::{Run, kinds, progress, table};
 use mindgap_files as files;
 use mindgap_files::places::Places;
@@ -22,49 +22,48 @@ use mindgap_import::streams::recordings;
 use mindgap_import::units::{Angle, Length, Time, Units};
 use mindgap_logs::{Robot, Scene};
 
-/// Make a folder of logs of streams as CSV: commands, poses and readings of a drive, in one file or several, each with a
-/// clock of its own.
+/// Import streams as CSV: commands, poses and readings of a drive, in one file or several, each with its own clock.
 ///
-/// Columns are found by their names, such as t_s, v_m_s, w_rad_s, left, right, x_m, y_m, yaw_rad, qx to qw, range_m;
-/// --map states what names do not. docs/how-to/bring-your-own-robot.md has the names and units.
+/// Columns are recognised by name, such as t_s, v_m_s, w_rad_s, left, right, x_m, y_m, yaw_rad, qx to qw, range_m;
+/// --map describes others. docs/how-to/bring-your-own-robot.md lists names and units.
 #[derive(Args)]
 pub struct Streams {
-    /// The files. One that holds commands and poses is a drive; of others the first with commands belongs to the first with
-    /// poses and the first with readings, and so on.
+    /// Files. A file with commands and poses is a drive of its own; otherwise the first file with commands belongs to the
+    /// first with poses and the first with readings, and so on.
     #[arg(required = true)]
     files: Vec<PathBuf>,
-    /// Which columns hold what, in which unit: TOML with a table a file.
+    /// Quantity and unit of each column: TOML with one table per file.
     #[arg(long, value_name = "FILE")]
     map: Option<PathBuf>,
-    /// Unit of a time whose column names none; guessed if left out.
+    /// Unit of times whose column name states none (default: guessed).
     #[arg(long, value_name = "UNIT", value_parser = one_of::<Time>(TIMES))]
     time_unit: Option<Time>,
-    /// Unit of lengths whose columns name none, and of speeds a second.
+    /// Unit of lengths, and of speeds per second, whose column names state none.
     #[arg(long, value_name = "UNIT", value_parser = one_of::<Length>(LENGTHS))]
     length_unit: Option<Length>,
-    /// Unit of headings whose columns name none, and of turn rates a second.
+    /// Unit of headings, and of turn rates per second, whose column names state none.
     #[arg(long, value_name = "UNIT", value_parser = one_of::<Angle>(ANGLES))]
     angle_unit: Option<Angle>,
-    /// What the clock of the poses is ahead of that of the commands, ms; found by the motion if left out.
+    /// Offset of the pose clock relative to the command clock, ms (default: estimated from the motion).
     #[arg(long, value_name = "MS", allow_negative_numbers = true)]
     offset_ms: Option<f64>,
     #[command(flatten)]
     target: Target,
 }
 
-/// Make a folder of logs of ROS 2 bags (MCAP): Twist, TwistStamped, Odometry, PoseStamped, tf, Range, LaserScan.
+/// Import ROS 2 bags (MCAP): Twist, TwistStamped, Odometry, PoseStamped, tf, Range, LaserScan.
 #[derive(Args)]
 pub struct Bag {
-    /// The bags, each of which is a drive.
+    /// Bags, one per drive.
     #[arg(value_name = "BAG.mcap", required = true)]
     bags: Vec<PathBuf>,
-    /// Topic of the commands; guessed if left out.
+    /// Topic of the commands (default: guessed).
     #[arg(long, value_name = "TOPIC")]
     commands: Option<String>,
-    /// Topic of the poses, of transforms as /tf:map>base_link; guessed if left out.
+    /// Topic of the poses, for transforms such as /tf:map>base_link (default: guessed).
     #[arg(long, value_name = "TOPIC")]
     poses: Option<String>,
-    /// Topic of the readings, or none; guessed if left out.
+    /// Topic of the readings, or none (default: guessed).
     #[arg(long, value_name = "TOPIC")]
     ranges: Option<String>,
     #[command(flatten)]
@@ -73,17 +72,17 @@ pub struct Bag {
 
 #[derive(Args)]
 struct Target {
-    /// What the builder measured of the robot; if left out, a draft to be filled in is written beside the logs.
+    /// Measured dimensions of the robot, robot.toml (default: a draft to fill in is written with the logs).
     #[arg(long, value_name = "FILE")]
     robot: Option<PathBuf>,
-    /// Where the robot drove; open ground if left out.
+    /// Scene in which the robot drove (default: open ground).
     #[arg(long, value_name = "FILE")]
     scene: Option<PathBuf>,
-    /// Folder for the logs.
+    /// Folder to write the logs to.
     #[arg(long, value_name = "LOGS")]
     out: PathBuf,
     #[command(flatten)]
-    facts: FactsOption,
+    json: JsonOption,
 }
 
 impl Run for Streams {
@@ -120,7 +119,7 @@ impl Run for Bag {
     }
 }
 
-/// What the user gave of robot and scene.
+/// Robot and scene as given by the user.
 struct Given {
     robot: Option<Robot>,
     robot_text: Option<String>,
@@ -131,10 +130,10 @@ struct Given {
 impl Target {
     fn places(&self) -> Places {
         let given = self.robot.iter().chain(&self.scene);
-        Places::default().reading(given).filling([&self.out]).writing(self.facts.asked(), kinds::REPORT)
+        Places::default().reading(given).filling([&self.out]).writing(self.json.path(), kinds::REPORT)
     }
 
-    /// Reads what is given of robot and scene.
+    /// Reads the robot and scene files that are given.
     fn read(&self) -> Result<Given> {
         let robot_text = self.robot.as_deref().map(files::read_text).transpose()?;
         let robot = self.robot.as_deref().map(Robot::read).transpose()?;
@@ -145,7 +144,7 @@ impl Target {
         Ok(Given { robot, robot_text, scene, scene_text })
     }
 
-    /// Makes logs of recordings, which are first `read`, and tells it.
+    /// Reads recordings with `read`, writes them as logs, and returns the report for the terminal.
     fn make(
         &self,
         given: Given,
@@ -154,7 +153,7 @@ impl Target {
     ) -> Result<String> {
         let bar = progress::shares();
         let recordings = read(&progress::part(&bar, 0..50, "reading"))?;
-        let aligning = progress::part(&bar, 50..100, "bringing clocks together");
+        let aligning = progress::part(&bar, 50..100, "aligning clocks");
         let Assembled { logs, draft, mut report } =
             assemble(recordings, given.robot, given.scene, offset_ms, aligning)?;
         bar.finish_and_clear();
@@ -168,22 +167,22 @@ impl Target {
             files::write(&fresh.join("scene.toml"), &given.scene_text)?;
             logs.runs.iter().try_for_each(|run| run.write(&fresh.join(format!("{}.csv", run.name))))
         })?;
-        let text = told(&report, logs.robot.step_ms, &self.out);
+        let text = describe(&report, logs.robot.step_ms, &self.out);
         let RecordingsReport { recordings, odometry_check, frame, findings, to_fill_in } = &report;
-        let facts = json!({
+        let results = json!({
             "schema": 1, "recordings": recordings, "odometry_check": odometry_check, "frame": frame, "findings": findings,
             "to_fill_in": to_fill_in,
         });
-        self.facts.told(&facts, text)
+        self.json.emit(&results, text)
     }
 }
 
-fn told(report: &RecordingsReport, step_ms: f64, out: &Path) -> String {
+fn describe(report: &RecordingsReport, step_ms: f64, out: &Path) -> String {
     let mut text: String = report.recordings.iter().map(|recording| of_recording(recording, step_ms)).collect();
     let check = &report.odometry_check;
     let number = |value: f64| format!("{value:.0}");
     text += &table::text(
-        ["motion", "asked for", "tracked"],
+        ["motion", "commanded", "tracked"],
         &[
             ["travel (cm)".to_owned(), number(check.commanded_cm), number(check.tracked_cm)],
             ["rotation (deg)".to_owned(), number(check.commanded_deg), number(check.tracked_deg)],
@@ -204,25 +203,25 @@ fn of_recording(recording: &RecordingReport, step_ms: f64) -> String {
     let names =
         if let [one] = runs.as_slice() { one.clone() } else { format!("{} to {}", runs[0], runs[runs.len() - 1]) };
     text += &format!(
-        "  {names}: {rows} rows, one every {step_ms} ms; {without_pose} without a pose, {with_reading} with a reading\n"
+        "  {names}: {rows} rows, one per {step_ms} ms; {without_pose} without a pose, {with_reading} with a reading\n"
     );
     if *with_reading > 0 {
-        text += &format!("  readings come at times of their own: a row has the last of the {step_ms} ms before it\n");
+        text +=
+            &format!("  readings have their own timestamps: each row has the last one of the {step_ms} ms before it\n");
     }
     if *jumps > 0 {
-        text += &format!("  left out: {jumps} poses that no robot can reach\n");
+        text += &format!("  excluded: {jumps} poses that are impossible jumps\n");
     }
     if *saturated > 0 {
-        text += &format!("  {saturated} commands were beyond full_speed_cm_s and limited to it\n");
+        text += &format!("  {saturated} commands exceeded full_speed_cm_s and were limited to it\n");
     }
     text
 }
 
 fn of_source(source: &Source) -> String {
     let Source { name, samples, duration_s, rate_hz, mapped, guessed, left_out } = source;
-    let mut text =
-        format!("{name}: {samples} samples in {duration_s:.1} s, {rate_hz:.1} a second; {}\n", mapped.join(", "));
-    for (what, lines) in [("guessed", guessed), ("left out", left_out)] {
+    let mut text = format!("{name}: {samples} samples in {duration_s:.1} s, {rate_hz:.1} Hz; {}\n", mapped.join(", "));
+    for (what, lines) in [("guessed", guessed), ("excluded", left_out)] {
         lines.iter().for_each(|line| text += &format!("  {what}: {line}\n"));
     }
     text
@@ -231,13 +230,13 @@ fn of_source(source: &Source) -> String {
 fn of_clocks(clocks: &ClocksReport) -> String {
     let ClocksReport { shared, offset_ms, drift, lag_ms, unexplained } = clocks;
     let differs =
-        unexplained.map_or("nothing moves".into(), |share| format!("{:.0} % of the motion differ", 100.0 * share));
+        unexplained.map_or("no motion".into(), |share| format!("{:.0} % of the motion unexplained", 100.0 * share));
     match (shared, lag_ms) {
-        (true, Some(lag_ms)) => format!("one clock: motion follows the commands by {lag_ms:.0} ms ({differs})"),
+        (true, Some(lag_ms)) => format!("one clock: motion lags the commands by {lag_ms:.0} ms ({differs})"),
         (true, None) => format!("one clock, as stated ({differs})"),
         (false, _) => format!(
-            "two clocks: that of the poses is {:.3} s ahead and drifts by {:.0} ppm ({differs}); found by the motion, so that \
-             a delay of the robot does not show",
+            "two clocks: the pose clock is {:.3} s ahead and drifts by {:.0} ppm ({differs}); estimated from the motion, so a \
+             delay of the robot is not visible",
             offset_ms / 1e3,
             1e6 * drift
         ),

@@ -1,4 +1,4 @@
-//! Pages of commands in Markdown, from the definitions by which calls are parsed.
+//! Manual pages in Markdown, generated from the definition of the command line.
 
 use clap::builder::StyledStr;
 use clap::{Arg, ArgAction, Command};
@@ -6,12 +6,12 @@ use clap::{Arg, ArgAction, Command};
 use super::{HELP, NAME};
 use crate::guide;
 
-/// The page of a command that was built, with those within it.
+/// Returns the page of a built command and its subcommands.
 pub fn page(command: &Command) -> String {
     section(command, 1)
 }
 
-/// The page of all commands: what each is for, and the options that all have.
+/// Returns the overview of all commands and the options common to them.
 pub fn overview(command: &Command) -> String {
     let mut text = heading(command, 1);
     for (title, names) in guide::parts() {
@@ -45,7 +45,7 @@ fn section(command: &Command, level: usize) -> String {
     text
 }
 
-/// What is said by name, but for what every command of every program has.
+/// Returns the options other than help and version.
 fn options(command: &Command) -> impl Iterator<Item = &Arg> {
     let is_usual = |of: &Arg| {
         matches!(of.get_action(), ArgAction::Help | ArgAction::HelpShort | ArgAction::HelpLong | ArgAction::Version)
@@ -53,7 +53,7 @@ fn options(command: &Command) -> impl Iterator<Item = &Arg> {
     command.get_arguments().filter(move |of| !of.is_positional() && !is_usual(of))
 }
 
-/// Name, purpose and usage.
+/// Returns the name, purpose and usage of a command.
 fn heading(command: &Command, level: usize) -> String {
     let name = command.get_bin_name().unwrap_or(command.get_name());
     let about = words(command.get_long_about().or(command.get_about()));
@@ -62,7 +62,7 @@ fn heading(command: &Command, level: usize) -> String {
     format!("{} {name}\n\n{about}\n\n```text\n{usage}\n```\n", "#".repeat(level))
 }
 
-/// An argument or option as an entry of a list.
+/// Returns an argument or option as a list item.
 fn entry(of: &Arg) -> String {
     let short = of.get_short().map_or_else(String::new, |short| format!("`-{short}`, "));
     let mut text = format!("- {short}`{of}`: {}", words(of.get_long_help().or(of.get_help())));
@@ -78,7 +78,7 @@ fn entry(of: &Arg) -> String {
     text + "\n"
 }
 
-/// A text as a sentence on one line.
+/// Returns a text on one line, ending with a full stop.
 fn words(text: Option<&StyledStr>) -> String {
     let text = text.map(ToString::to_string).unwrap_or_default();
     let line = text.split_whitespace().collect::<Vec<&str>>().join(" ");

@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use mindgap_applications::adapt::adapt;
+use mindgap_applications::closed_loop::{self, Job};
 use mindgap_applications::demo::robot::TrialledRobot;
-use mindgap_applications::trials::{self, Job};
 use mindgap_core::controller::Controller;
 use mindgap_foundations::error::{Error, Result};
 use mindgap_foundations::executor::Serial;
@@ -154,13 +154,13 @@ fn loops(bench: &Workbench) -> Result<Settled> {
         known: &[],
         seed: bench.seed(),
     };
-    let state = trials::run(&job, &mut TrialledRobot(bench.case.effects()), |_| {})?;
+    let state = closed_loop::run(&job, &mut TrialledRobot(bench.case.effects()), |_| {})?;
     let controller = ControllerFile::read(&job.folder.join("controller.toml"))?.controller;
     let verdict = match state.verdict {
-        trials::state::Verdict::Works => "works",
-        trials::state::Verdict::OutOfReach => "out of reach",
-        trials::state::Verdict::Spent if state.limit().is_some() => "limited by chance",
-        trials::state::Verdict::Spent | trials::state::Verdict::Running => "spent",
+        closed_loop::state::Verdict::Works => "works",
+        closed_loop::state::Verdict::Infeasible => "out of reach",
+        closed_loop::state::Verdict::TrialsExhausted if state.limit().is_some() => "limited by chance",
+        closed_loop::state::Verdict::TrialsExhausted | closed_loop::state::Verdict::Running => "spent",
     };
     Ok(Settled { controller, trials: state.trials.len(), verdict })
 }

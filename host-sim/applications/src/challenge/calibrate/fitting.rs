@@ -1,33 +1,34 @@
-//! From what was measured to thresholds: each by the criterion that it stands for.
+//! Fits each threshold to the measurements by its own criterion.
 
 use super::Measured;
 use mindgap_diagnosis::calibration::{CALIBRATED_STEPS, Calibration, Judgement};
 use mindgap_diagnosis::explain::{Explained, probability};
 
-/// Share of all cases without an effect whose gain passes the gate for an effect. A gain on the runs held out is asked for
-/// besides: fewer than one in a hundred passes both.
+/// Share of the cases without effects that pass the gate for an effect. A gain on held-out runs is required as well: fewer
+/// than one in a hundred passes both.
 const FALSE_EFFECTS: f64 = 0.02;
-/// The same for what no effect explains, where a simulator's own misfit is often found on the runs held out again.
+/// The same for the unexplained residual, where the simulator's own misfit often recurs on held-out runs.
 const FALSE_REMAINDERS: f64 = 0.02;
-/// Share of all cases with one effect to which a second is added that is not there.
+/// Share of the cases with one effect to which a false second effect is added.
 const FALSE_FURTHER: f64 = 0.05;
-/// What further effects are sought by until it is known how much the first ones' forms feign.
+/// Provisional threshold for further effects, until the model-form error of the first ones is known.
 const FIRST_SHARE: f64 = 0.05;
-/// The law of a tail is read off this share of all.
+/// Share of the sample from which the tail distribution is estimated.
 const TAIL: f64 = 0.2;
-/// Share of the right answers that leave more over than counts as adequate,
+/// Share of the right answers whose unexplained remainder exceeds the limit of adequacy.
 const FALSE_UNKNOWNS: f64 = 0.05;
-/// once what they leave over is multiplied by this: no variant fits other robots as well as the built-in one, and the worst
-/// right answer on another robot's logs leaves 1.7 times as much.
+/// Factor applied to these remainders: no variant fits other robots as well as the built-in one, and the worst right
+/// answer on another robot's logs leaves 1.7 times as much.
 const OTHER_ROBOTS: f64 = 2.0;
-/// What is tried for the probabilities. A test asks that the best lies between the first and the last, but for the width,
-/// whose narrowest is a step already, and for the cap: some two hundred right answers cannot show that more than 199 in 200
-/// are right.
+/// Grids for the parameters of the probabilities. A test checks that the best value is not at the edge, except for the
+/// width, whose narrowest value is already a step, and for the cap, since some two hundred right answers cannot show that
+/// more than 199 in 200 are right.
 const WIDTHS: [f64; 7] = [0.005, 0.01, 0.02, 0.04, 0.06, 0.1, 0.2];
 const TEMPERATURES: [f64; 9] = [0.25, 0.5, 0.7, 1.0, 1.5, 2.0, 3.0, 4.0, 6.0];
 const ACCURACY_CAPS: [f64; 8] = [0.8, 0.85, 0.9, 0.93, 0.95, 0.97, 0.99, 0.995];
 
-/// Thresholds against false alarms; everything that explains a gap is taken for its cause, and every rival is named.
+/// Returns the thresholds against false alarms; everything that explains a gap counts as its cause, and every rival is
+/// named.
 pub fn open(nulls: &[Measured]) -> Calibration {
     let rows = nulls.iter().map(|m| m.rows as f64).sum::<f64>() / nulls.len() as f64;
     let ungated = Calibration {
@@ -51,7 +52,7 @@ pub fn open(nulls: &[Measured]) -> Calibration {
     }
 }
 
-/// The same with what tells a cause from something unknown, and how sure an answer is.
+/// Adds the thresholds that separate known from unknown causes, and the calibration of the probabilities.
 pub fn weighed(open: Calibration, others: &[Measured]) -> Calibration {
     let answered: Vec<&Measured> = others.iter().filter(|m| !m.first.is_empty()).collect();
     let right = answered.iter().filter(|m| m.first_is_there());
@@ -77,7 +78,7 @@ impl Measured {
         self.likelihood_of_truth == 1.0
     }
 
-    /// Of what is true about the first effect under the probability that it is given.
+    /// Returns the log-likelihood of the truth about the first effect under its reported probability.
     fn log_likelihood(&self, calibration: &Calibration) -> f64 {
         let explained = Explained { fraction: self.explained_fraction, error: self.explained_error };
         let there = probability(explained, self.rivals.iter().copied(), calibration);
@@ -85,7 +86,7 @@ impl Measured {
     }
 }
 
-/// What that share exceeds, if the tail falls off exponentially.
+/// Returns the value exceeded by a share of the sample, assuming an exponential tail.
 fn tail(mut values: Vec<f64>, share: f64) -> f64 {
     values.sort_by(f64::total_cmp);
     let above = &values[((1.0 - TAIL) * values.len() as f64) as usize..];
@@ -93,7 +94,7 @@ fn tail(mut values: Vec<f64>, share: f64) -> f64 {
     above[0] + mean_excess * libm::log(TAIL / share)
 }
 
-/// The value that the share `at` of all lies below; one where there is none.
+/// Returns the quantile `at`, or one if there are no values.
 fn quantile(mut values: Vec<f64>, at: f64) -> f64 {
     values.sort_by(f64::total_cmp);
     values.get((at * values.len() as f64) as usize).copied().unwrap_or(1.0)
@@ -129,13 +130,13 @@ mod tests {
     }
 
     #[test]
-    fn gates_let_through_the_share_of_false_alarms() {
+    fn gates_pass_the_specified_share_of_false_alarms() {
         let nats = open(&nulls()).effect_nats;
         assert!((nats - 4.0 * libm::log(1.0 / FALSE_EFFECTS)).abs() < 0.4, "{nats}");
     }
 
     #[test]
-    fn what_is_often_wrong_is_trusted_less() {
+    fn frequent_errors_lower_the_probability() {
         let answers = |wrong: usize| -> Vec<Measured> {
             (0..100).map(|i| measured(if i < wrong { 0.0 } else { 1.0 }, 0.9, 0.0)).collect()
         };
@@ -143,9 +144,9 @@ mod tests {
         assert_eq!([cap(0), cap(5), cap(15)], [0.995, 0.95, 0.85]);
     }
 
-    /// A value at the edge of its grid is not calibrated: a better one may lie beyond.
+    /// A value at the edge of its grid is not calibrated, since a better one may lie beyond.
     #[test]
-    fn the_shipped_values_lie_within_their_grids() {
+    fn shipped_values_lie_within_their_grids() {
         let Calibration { adequacy_width, temperature, accuracy_cap, .. } = Calibration::shipped();
         let within = |value: f64, grid: &[f64]| grid[0] < value && value < grid[grid.len() - 1];
         assert!(within(temperature, &TEMPERATURES));

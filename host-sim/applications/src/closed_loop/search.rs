@@ -1,11 +1,11 @@
-//! The search of a turn: controllers from new explorations and from those that did well, judged on many robots and by real
-//! runs.
+//! The search of one iteration: controllers from new explorations and from earlier ones that did well, evaluated over the
+//! posterior and by real runs.
 
 use glam::DVec2;
 use mindgap_core::controller::{Controller, Tuple};
 
-use super::jury::{CONFIRMED, Found, Jury, Tried};
-use super::state::{IfKnown, SimulatedPath, place_cm};
+use super::evaluator::{CONFIRMED, Evaluator, Found, Tried};
+use super::state::{OracleSuccess, SimulatedPath, place_cm};
 use mindgap_foundations::error::{Error, Result};
 use mindgap_foundations::executor::Executor;
 use mindgap_foundations::geometry::Pose;
@@ -22,40 +22,40 @@ use mindgap_models::simulator::environment::Environment;
 use mindgap_models::simulator::rollout::RolloutRequest;
 use mindgap_models::simulator::{Noise, Simulator};
 
-/// Generations that a controller has behind it at most.
+/// Maximum number of generations behind a controller.
 pub const GENERATIONS: usize = robust::REFINING_GENERATIONS;
-/// Runs on each robot that tell which candidates are worth more.
+/// Runs per robot for a first ranking of the candidates.
 const FEW_RUNS: usize = 3;
-/// Controllers from which a search goes on.
+/// Number of earlier controllers that a search refines.
 const INCUMBENTS: usize = 2;
-/// Where the best known controller has this chance, nothing is explored anew.
+/// Success probability of the best known controller above which no new exploration is made.
 const GOOD: f64 = 0.9;
-/// Runs on each robot that tell which controller is best there.
-const KNOWING_RUNS: usize = 48;
-/// Candidates that a search leaves.
+/// Runs per robot to find the best controller for each robot.
+const ORACLE_RUNS: usize = 48;
+/// Number of candidates kept by a search.
 const SHORTLISTED: usize = 8;
-/// Those that the next turn begins with.
+/// Number of candidates kept for the next iteration.
 pub const ARCHIVED: usize = 12;
-/// Robots whose paths are kept with a trial.
+/// Number of robots whose paths are stored with a trial.
 const SHOWN: usize = 5;
 
-/// What a turn searches in.
+/// The inputs of a search.
 pub struct Search<'a> {
-    /// Executes independent pieces of work.
+    /// Executor of independent work items.
     pub executor: &'a dyn Executor,
-    /// The simulator, adapted to all runs so far.
+    /// Simulator adapted to all runs so far.
     pub simulator: &'a Simulator,
-    /// The scene.
+    /// Scene with a target.
     pub scene: &'a Scene,
-    /// Where controllers start.
+    /// Start pose of the controllers.
     pub start: Pose,
-    /// Steps after which a controller gives up.
+    /// Maximum number of steps of a controller.
     pub max_steps: u16,
-    /// Seed of all draws.
+    /// Random seed.
     pub seed: u64,
 }
 
-/// Streams of random numbers.
+/// Keys of the random streams.
 #[derive(Clone, Copy)]
 enum Purpose {
     Robots,
@@ -66,40 +66,40 @@ enum Purpose {
 }
 
 impl Search<'_> {
-    /// The controllers that were driven, as they are judged now.
+    /// Re-evaluates the controllers that were driven.
     ///
     /// # Errors
     /// As [`best`](Self::best).
     pub fn judged(&self, tried: &[Tried]) -> Result<Found> {
         let robots = self.robots()?;
-        self.jury(&robots, tried)?.ranked(Vec::new(), RUNS)
+        self.evaluator(&robots, tried)?.ranked(Vec::new(), RUNS)
     }
 
-    /// The best controllers, from those of earlier turns, those that were driven, and new ones.
+    /// Returns the best controllers among those of earlier iterations, those that were driven, and new ones.
     ///
     /// # Errors
-    /// When the simulator lacks a network or what its logs left open, or the robot does not fit at the start.
+    /// If the simulator lacks a network or the posterior, or the robot does not fit at the start.
     pub fn best(&self, archive: &[Vec<Tuple>], tried: &[Tried]) -> Result<Found> {
         let robots = self.robots()?;
-        let jury = self.jury(&robots, tried)?;
-        let known = jury.ranked(self.archived(archive), FEW_RUNS)?;
-        let found = self.searched(&jury.middle, &known)?;
+        let evaluator = self.evaluator(&robots, tried)?;
+        let known = evaluator.ranked(self.archived(archive), FEW_RUNS)?;
+        let found = self.searched(&evaluator.middle, &known)?;
         let all = known.controllers().chain(found).collect();
-        let promising = jury.ranked(all, FEW_RUNS)?.controllers().take(ARCHIVED).collect();
-        jury.ranked(promising, RUNS)
+        let promising = evaluator.ranked(all, FEW_RUNS)?.controllers().take(ARCHIVED).collect();
+        evaluator.ranked(promising, RUNS)
     }
 
-    /// The chance of success with the best of these controllers if the robot were known: what a search can reach.
+    /// Returns the success probability of the best controller for each robot: an upper limit for what a search can reach.
     ///
     /// # Errors
     /// As [`best`](Self::best).
-    pub fn if_known(&self, archive: &[Vec<Tuple>], tried: &[Tried]) -> Result<IfKnown> {
+    pub fn oracle(&self, archive: &[Vec<Tuple>], tried: &[Tried]) -> Result<OracleSuccess> {
         let robots = self.robots()?;
-        let success = self.jury(&robots, tried)?.if_known(self.archived(archive), KNOWING_RUNS)?;
-        Ok(IfKnown { success, is_enough: success >= CONFIRMED })
+        let success = self.evaluator(&robots, tried)?.oracle(self.archived(archive), ORACLE_RUNS)?;
+        Ok(OracleSuccess { success, is_enough: success >= CONFIRMED })
     }
 
-    /// Paths of a controller on some of the robots that it was judged on.
+    /// Simulates paths of a controller on some robots of the posterior.
     ///
     /// # Errors
     /// As [`best`](Self::best).
@@ -119,7 +119,7 @@ impl Search<'_> {
         Ok((0..).zip(&robots).map(run).collect())
     }
 
-    /// New controllers, on the robot in the middle: exploring on drawn ones would be a bad search.
+    /// Searches for new controllers at the posterior mean; exploring on drawn robots would be a poor search.
     fn searched(&self, middle: &Environment, known: &Found) -> Result<Vec<Controller>> {
         let target_cm = self.target_cm()?;
         let task = EvolutionTask {
@@ -140,20 +140,20 @@ impl Search<'_> {
     }
 
     fn robots(&self) -> Result<Robots> {
-        self.simulator.robots(ROBOTS, self.stream(Purpose::Robots, 0)).ok_or_else(|| {
-            Error::new("the simulator file does not say what its training logs leave open: train it again")
-        })
+        self.simulator
+            .robots(ROBOTS, self.stream(Purpose::Robots, 0))
+            .ok_or_else(|| Error::new("the simulator file has no parameter uncertainty: train it again"))
     }
 
-    fn jury<'a>(&'a self, robots: &'a Robots, tried: &'a [Tried]) -> Result<Jury<'a>> {
+    fn evaluator<'a>(&'a self, robots: &'a Robots, tried: &'a [Tried]) -> Result<Evaluator<'a>> {
         let seed = self.stream(Purpose::Judging, 0);
         let judge =
             Judge::new(self.executor, self.simulator, &robots.drawn, self.scene, self.start, self.target_cm()?, seed)?;
         let middle = Environment::new(self.simulator, self.scene, self.start, Noise::Learned)?.of_robot(&robots.mean);
-        Ok(Jury { judge, middle, seed: self.stream(Purpose::Comparing, 0), tried })
+        Ok(Evaluator { judge, middle, seed: self.stream(Purpose::Comparing, 0), tried })
     }
 
-    /// The controllers of earlier turns.
+    /// Returns the controllers of earlier iterations.
     fn archived(&self, archive: &[Vec<Tuple>]) -> Vec<Controller> {
         archive.iter().filter_map(|tuples| self.controller(tuples)).collect()
     }

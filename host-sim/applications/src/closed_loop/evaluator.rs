@@ -1,27 +1,27 @@
-//! What controllers are worth: their chances on many simulated robots, and what the real one did.
+//! Controller evaluation: success probability over the posterior of robots, updated with real runs.
 //!
-//! What real runs say of the robot is in the simulator by then. What they came to against that says how far the simulator is
-//! wrong about them, and so about controllers whose paths are alike (`likeness`), as in adapting from trial to trial
-//! by a Gaussian process over behaviours (Cully and others, Nature 2015).
+//! The simulator is already adapted to the motion in the real runs. Their outcomes, compared with the prediction, show how
+//! wrong the simulator still is for these controllers and for those with similar paths (`similarity`), as in trial-to-trial
+//! adaptation by a Gaussian process over behaviours (Cully et al., Nature 2015).
 
 use std::cmp::Reverse;
 
 use mindgap_core::controller::{Controller, Tuple};
 
-use super::likeness::{Paths, likeness, paths};
+use super::similarity::{Paths, paths, similarity};
 use mindgap_foundations::error::Result;
 use mindgap_learning::evolve::chance::{Chance, Judge, ROBOTS};
 use mindgap_models::simulator::environment::Environment;
 
-/// A controller works after so many real successes with this chance, real runs counted: two alone were luck for 4 of 16
-/// controllers, which then reached the target in three of five fresh runs or fewer.
+/// A controller works after this many real successes with this success probability, real runs included: two successes were
+/// luck for 4 of 16 controllers, which then reached the target in at most three of five new runs.
 const SUCCESSES: usize = 3;
 const WORKS: f64 = 0.85;
-/// The simulated chance that three of three successes confirm.
+/// Simulated success probability that three of three successes confirm.
 pub const CONFIRMED: f64 = (WORKS * (SIMULATED + SUCCESSES as f64) - SUCCESSES as f64) / SIMULATED;
-/// Real runs count beside the simulated chance, which counts as so many. Under a beta distribution about the simulated
-/// chance that counts as so many, the successes of 44 controllers in forty runs each are the most probable for 9.5, and within
-/// one nat for 6 to 15 (docs/explanation/loop.md): the fewest, since where the robot has an effect the simulator is worse than there.
+/// Weight of the simulated success probability, in real runs (the concentration of a beta prior). The successes of 44
+/// controllers in forty runs each are most likely at 9.5, and within one nat at 6 to 15 (docs/explanation/loop.md). The smallest is
+/// used, since the simulator is worse if the robot has an unmodelled effect.
 const SIMULATED: f64 = 6.0;
 
 /// A controller that was driven.
@@ -31,40 +31,40 @@ pub struct Tried {
     pub controller: Controller,
     /// Runs on the robot.
     pub runs: usize,
-    /// Those that reached the target.
+    /// Runs that reached the target.
     pub successes: usize,
-    /// Steps of the longest one.
+    /// Steps of the longest run.
     pub steps: usize,
 }
 
-/// Robots to judge on, and what the real one did.
-pub struct Jury<'a> {
-    /// Robots that are possible.
+/// Evaluates controllers on robots of the posterior and by real runs.
+pub struct Evaluator<'a> {
+    /// Success probability over the posterior of robots.
     pub judge: Judge<'a>,
-    /// The one in their middle, on which paths are compared.
+    /// Robot at the posterior mean, on which paths are compared.
     pub middle: Environment<'a>,
-    /// Seed of the runs that are compared.
+    /// Seed of the compared runs.
     pub seed: u64,
-    /// What was driven.
+    /// Controllers that were driven on the robot.
     pub tried: &'a [Tried],
 }
 
-/// Controllers with their chances, the most promising first.
+/// Evaluated controllers, the most promising first.
 pub struct Found(Vec<Candidate>);
 
-/// A controller with what it is worth.
+/// An evaluated controller.
 #[derive(Clone, Debug)]
 pub struct Candidate {
     /// The controller.
     pub controller: Controller,
-    /// Its simulated chance.
+    /// Simulated success probability.
     pub chance: Chance,
-    /// The chance with what real runs came to, its own and those of controllers like it.
+    /// Success probability updated with the real runs of this and similar controllers.
     pub score: f64,
 }
 
-impl Jury<'_> {
-    /// These controllers and those that were driven, each once, with their chances in so many runs of each robot.
+impl Evaluator<'_> {
+    /// Evaluates these controllers and those that were driven, with `runs` runs on each robot.
     ///
     /// # Errors
     /// As [`Judge::chances`].
@@ -83,15 +83,15 @@ impl Jury<'_> {
         Ok(Found::of(controllers.into_iter().zip(chances).map(candidate).collect()))
     }
 
-    /// The chance of success with the best of these controllers and those that were driven if the robot were known.
+    /// Returns the mean success probability if, for each robot, the best of these and the driven controllers could be used.
     ///
     /// # Errors
     /// As [`Judge::chances`].
-    pub fn if_known(&self, controllers: Vec<Controller>, runs: usize) -> Result<f64> {
+    pub fn oracle(&self, controllers: Vec<Controller>, runs: usize) -> Result<f64> {
         self.judge.if_known(&self.with_tried(controllers), runs)
     }
 
-    /// Each once, those that were driven first.
+    /// Returns the distinct controllers, driven ones first.
     fn with_tried(&self, controllers: Vec<Controller>) -> Vec<Controller> {
         let mut distinct: Vec<Controller> = self.tried.iter().map(|tried| tried.controller.clone()).collect();
         for controller in controllers {
@@ -113,27 +113,27 @@ impl Jury<'_> {
     }
 }
 
-/// What real runs of a controller came to against what is foretold by now.
+/// The real results of a controller relative to the present prediction.
 struct Surprise {
     paths: Paths,
     steps: usize,
     runs: f64,
-    /// More successes than foretold.
+    /// Successes beyond the predicted number.
     more: f64,
 }
 
-/// The simulated chance, corrected by real runs; by others' as far as paths are alike.
+/// Returns the simulated success probability corrected by real runs, weighted by the similarity of paths.
 fn score(paths: &Paths, chance: f64, surprises: &[Surprise]) -> f64 {
     let (mut runs, mut more) = (SIMULATED, 0.0);
     for surprise in surprises {
-        let alike = likeness(&surprise.paths, paths, surprise.steps);
+        let alike = similarity(&surprise.paths, paths, surprise.steps);
         runs += alike * surprise.runs;
         more += alike * surprise.more;
     }
     (chance + more / runs).clamp(0.0, 1.0)
 }
 
-/// That of a chance over the robots that it was judged on, by Laplace's rule: even a chance of one has an error.
+/// Returns the standard error of a probability estimated on [`ROBOTS`] robots, by Laplace's rule of succession.
 fn standard_error(chance: f64) -> f64 {
     let robots = ROBOTS as f64;
     let chance = (robots * chance + 1.0) / (robots + 2.0);
@@ -146,18 +146,18 @@ impl Found {
         Found(candidates)
     }
 
-    /// The most promising one.
+    /// Returns the most promising controller.
     pub fn best(&self) -> Option<&Candidate> {
         self.0.first()
     }
 
-    /// The controllers alone.
+    /// Returns the controllers without their evaluation.
     pub fn controllers(&self) -> impl Iterator<Item = Controller> {
         self.0.iter().map(|candidate| candidate.controller.clone())
     }
 
-    /// The one to drive. Of those that the judgement cannot tell from the most promising, one that the robot has proven:
-    /// whether it works is what the loop wants to know.
+    /// Returns the controller to drive next. Among those within one standard error of the most promising, controllers with
+    /// real successes come first, since the loop must confirm one.
     pub fn choice(&self, tried: &[Tried]) -> Option<&Candidate> {
         let best = self.best()?.score;
         let alike = self.0.iter().take_while(|candidate| best - candidate.score <= standard_error(best));
@@ -168,7 +168,7 @@ impl Found {
         alike.min_by_key(proven)
     }
 
-    /// The controller that works.
+    /// Returns the controller that is confirmed to work, if any.
     pub fn confirmed(&self, tried: &[Tried]) -> Option<&Candidate> {
         let works = |candidate: &&Candidate| {
             let again = tried.iter().any(|t| t.controller == candidate.controller && t.successes >= SUCCESSES);
@@ -177,12 +177,12 @@ impl Found {
         self.0.iter().find(works)
     }
 
-    /// The chance of a controller, if it was judged.
+    /// Returns the success probability of a controller, if it was evaluated.
     pub fn chance_of(&self, controller: &Controller) -> Option<Chance> {
         self.0.iter().find(|candidate| candidate.controller == *controller).map(|candidate| candidate.chance)
     }
 
-    /// The tuples of so many of the best.
+    /// Returns the tuples of the best `count` controllers.
     pub fn tuples(&self, count: usize) -> Vec<Vec<Tuple>> {
         self.0.iter().take(count).map(|candidate| candidate.controller.tuples.to_vec()).collect()
     }
@@ -200,30 +200,30 @@ mod tests {
         Controller { step_ms: 400, max_steps: 60, tuples: [tuple; 6] }
     }
 
-    /// Ten steps of ten centimetres in a direction.
+    /// Returns a path of ten steps of ten centimetres.
     fn straight(angle_deg: f64) -> Paths {
         vec![(0..=10).map(|step| DVec2::from_angle(angle_deg.to_radians()) * 10.0 * f64::from(step)).collect()]
     }
 
-    fn failed(times: f64, foretold: f64, steps: usize) -> [Surprise; 1] {
-        [Surprise { paths: straight(0.0), steps, runs: times, more: -times * foretold }]
+    fn failed(times: f64, predicted: f64, steps: usize) -> [Surprise; 1] {
+        [Surprise { paths: straight(0.0), steps, runs: times, more: -times * predicted }]
     }
 
     #[test]
-    fn real_runs_count_for_a_controller() {
+    fn real_runs_correct_the_score_of_a_controller() {
         assert!((score(&straight(0.0), 0.9, &failed(2.0, 0.9, 10)) - 6.0 * 0.9 / 8.0).abs() < 1e-9);
         assert!((score(&straight(0.0), 0.9, &[]) - 0.9).abs() < 1e-9);
     }
 
     #[test]
-    fn they_count_for_those_that_drive_alike_but_for_what_the_simulator_knows_by_now() {
-        let turned = |deg: f64, foretold: f64| score(&straight(deg), 0.9, &failed(2.0, foretold, 10));
+    fn real_runs_correct_similar_controllers_unless_already_predicted() {
+        let turned = |deg: f64, predicted: f64| score(&straight(deg), 0.9, &failed(2.0, predicted, 10));
         assert!(turned(1.0, 0.9) < 0.7 && turned(40.0, 0.9) > 0.89);
         assert!((turned(1.0, 0.0) - 0.9).abs() < 1e-9);
     }
 
     #[test]
-    fn a_controller_works_after_three_successes_with_a_good_chance_and_is_driven_again_unless_another_is_better() {
+    fn three_successes_confirm_a_controller_and_fewer_repeat_it_unless_another_is_better() {
         let chance = Chance { success: 0.0, ci95: [0.0, 1.0], not_knowing: 0.0 };
         let found = |simulated: f64, tried: &[Tried]| {
             let [Tried { runs, successes, .. }] = tried else { unreachable!("one") };
@@ -240,9 +240,9 @@ mod tests {
         let again = |simulated, tried: &[Tried]| {
             found(simulated, tried).choice(tried).is_some_and(|next| next.controller == controller(40))
         };
-        // Its score is 0.74 and 0.66 where the other's is 0.8, more or less 0.06.
+        // The scores are 0.74 and 0.66; that of the other controller is 0.8 with a standard error of 0.06.
         assert!(again(0.7, &tried(1, 1)) && !again(0.6, &tried(1, 1)));
-        // 0.76 after a failure is only less.
+        // After a failure a score of 0.76 is not preferred.
         assert!(!again(0.85, &tried(2, 1)) && again(1.0, &tried(2, 1)));
     }
 }

@@ -1,5 +1,4 @@
-//! How alike two controllers drive, as far as a real run of one got: what the simulator does not know of that run happens to
-//! the other as well.
+//! Similarity of two controllers' paths up to the end of a real run: on similar paths the simulator has similar errors.
 
 use glam::DVec2;
 use mindgap_core::controller::Controller;
@@ -8,17 +7,17 @@ use mindgap_foundations::random::derive;
 use mindgap_models::simulator::environment::Environment;
 use mindgap_models::simulator::rollout::RolloutRequest;
 
-/// Where a robot is at the start and after each step, cm, run by run.
+/// Position in cm at the start and after each step, for each run.
 pub type Paths = Vec<Vec<DVec2>>;
 
-/// Runs that are compared.
+/// Number of compared runs.
 const RUNS: usize = 8;
-/// Paths this far apart, as a share of the way, are as alike as one standard deviation. What keeps a controller from working
-/// displaces a robot by about that: a motor 10 % weaker turns it by 0.05 rad each step of 11 cm, and on other tyres it goes a
-/// tenth too far.
+/// Length scale of the similarity: distance between two paths as a share of the path length. Typical faults displace a
+/// robot by about that: a motor that is 10 % weaker turns it by 0.05 rad per step of 11 cm, and other tyres change the
+/// distance by a tenth.
 const APART: f64 = 0.1;
 
-/// Simulated paths of a controller. The same seed gives all controllers the same chance.
+/// Simulates paths of a controller. The same seed gives all controllers common random numbers.
 pub fn paths(environment: &Environment, controller: &Controller, seed: u64) -> Paths {
     let motions = environment.motions(controller);
     let request = |run| RolloutRequest { controller, motions: &motions, seed: derive(seed, &[run as u64]) };
@@ -28,8 +27,9 @@ pub fn paths(environment: &Environment, controller: &Controller, seed: u64) -> P
     paths
 }
 
-/// How alike the first steps of two controllers are, 0..=1: the mean over runs. Whose run has ended stays where it is.
-pub fn likeness(one: &Paths, other: &Paths, steps: usize) -> f64 {
+/// Returns the similarity of the first `steps` steps of two controllers, 0..=1, as the mean over runs. A robot stays where
+/// its run ended.
+pub fn similarity(one: &Paths, other: &Paths, steps: usize) -> f64 {
     let of = |(one, other): (&Vec<DVec2>, &Vec<DVec2>)| {
         let at = |path: &[DVec2], step: usize| path[step.min(path.len() - 1)];
         let apart_cm = (1..=steps).map(|step| at(one, step).distance(at(other, step))).fold(0.0, f64::max);
@@ -44,7 +44,7 @@ pub fn likeness(one: &Paths, other: &Paths, steps: usize) -> f64 {
 mod tests {
     use super::*;
 
-    /// Ten steps along x and ten along y, so long each, from one place.
+    /// Returns a path of ten steps along x and ten along y with the given step lengths.
     fn corner(first_cm: f64, then_cm: f64) -> Paths {
         let x_cm = |step: usize| first_cm * step.min(10) as f64;
         let y_cm = |step: usize| then_cm * step.saturating_sub(10) as f64;
@@ -52,8 +52,8 @@ mod tests {
     }
 
     #[test]
-    fn paths_are_alike_within_a_tenth_of_the_way() {
-        let alike = |first_cm| likeness(&corner(10.0, 0.0), &corner(first_cm, 0.0), 10);
+    fn similarity_decays_over_a_tenth_of_the_path_length() {
+        let alike = |first_cm| similarity(&corner(10.0, 0.0), &corner(first_cm, 0.0), 10);
         assert_eq!(alike(10.0), 1.0);
         // They end ten centimetres apart after a metre.
         assert!((alike(9.0) - libm::exp(-0.5)).abs() < 1e-9 && (alike(11.0) - libm::exp(-0.5)).abs() < 1e-9);
@@ -61,16 +61,16 @@ mod tests {
     }
 
     #[test]
-    fn what_comes_after_the_end_of_a_run_does_not_count() {
-        let alike = |steps| likeness(&corner(10.0, 10.0), &corner(10.0, -10.0), steps);
+    fn steps_after_the_end_of_the_real_run_are_ignored() {
+        let alike = |steps| similarity(&corner(10.0, 10.0), &corner(10.0, -10.0), steps);
         assert!(alike(10) == 1.0 && alike(11) < 1.0 && alike(20) < 1e-9);
     }
 
     #[test]
-    fn who_has_ended_stays_where_it_is() {
+    fn an_ended_run_stays_at_its_last_position() {
         let mut ended = corner(10.0, 0.0);
         ended[0].truncate(11);
-        assert_eq!(likeness(&corner(10.0, 0.0), &ended, 20), 1.0);
-        assert_eq!(likeness(&ended, &corner(10.0, 0.0), 20), 1.0);
+        assert_eq!(similarity(&corner(10.0, 0.0), &ended, 20), 1.0);
+        assert_eq!(similarity(&ended, &corner(10.0, 0.0), 20), 1.0);
     }
 }

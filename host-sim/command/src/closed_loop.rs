@@ -5,12 +5,12 @@ use std::time::Duration;
 
 use clap::{Args, value_parser};
 
-use super::facts::FactsOption;
-use super::voice::meanwhile;
+use super::json_output::JsonOption;
+use super::logging::status;
 use super::{Run, kinds, progress, textbook, warn};
-use mindgap_applications::trials::robot::{AskRobot, CommandRobot, TrialRobot};
-use mindgap_applications::trials::state::{IfKnown, State, Trial, Verdict};
-use mindgap_applications::trials::{self, Event, Job};
+use mindgap_applications::closed_loop::robot::{AskRobot, CommandRobot, TrialRobot};
+use mindgap_applications::closed_loop::state::{OracleSuccess, State, Trial, Verdict};
+use mindgap_applications::closed_loop::{self, Event, Job};
 use mindgap_files as files;
 use mindgap_files::places::Places;
 use mindgap_foundations::error::Result;
@@ -19,55 +19,55 @@ use mindgap_learning::evolve::chance::Chance;
 use mindgap_logs::Scene;
 use mindgap_pages::trials::{Subject, page};
 
-/// Evolve a controller, drive it on the robot, adapt the simulator to the run, and again until it works.
+/// Evolve a controller, drive it on the robot, adapt the simulator to the run, and repeat until it works.
 ///
-/// The folder holds the state after every step: the same call goes on from there. At the end it holds controller.toml,
+/// The folder holds the state after every step; the same call resumes from there. In the end it contains controller.toml,
 /// simulator.json, loop.json, the controllers and logs of all trials, and paths.png.
 #[derive(Args)]
 pub struct Loop {
-    /// Folder for the state and the results.
+    /// Folder of the state and the results.
     folder: PathBuf,
     /// The simulator file.
     #[arg(long)]
     sim: PathBuf,
-    /// The scene, with a target and starts.
+    /// Scene with a target and starts.
     #[arg(long, value_name = "FILE")]
     scene: PathBuf,
-    /// Which of the scene's starts, from 1.
+    /// Number of the start in the scene, from 1.
     #[arg(long, value_name = "N", default_value_t = 1)]
     start: usize,
-    /// Command that drives, with its first arguments, parted by blanks; CONTROLLER.toml SCENE.toml START OUT.csv SEED are
-    /// added. `ask` asks a person to drive and to name the log.
+    /// Command that drives the robot, with its first arguments, separated by spaces; CONTROLLER.toml SCENE.toml START
+    /// OUT.csv SEED are appended. `ask` asks a person to drive and to name the log.
     #[arg(long, value_name = "COMMAND")]
     robot: String,
-    /// How long the command may take.
+    /// Timeout of the command.
     #[arg(long, value_name = "SECONDS", default_value_t = 300, value_parser = value_parser!(u64).range(1..))]
     robot_timeout: u64,
-    /// Runs on the robot at most.
+    /// Maximum number of runs on the robot.
     #[arg(long, value_name = "N", default_value_t = 5, value_parser = value_parser!(u32).range(1..=1000))]
     trials: u32,
-    /// Steps after which a controller gives up.
+    /// Maximum number of steps.
     #[arg(long, default_value_t = 60, value_parser = value_parser!(u16).range(1..))]
     max_steps: u16,
-    /// Fixes every draw.
+    /// Random seed.
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
     #[command(flatten)]
-    facts: FactsOption,
-    /// Also write a page for a browser here.
+    json: JsonOption,
+    /// Write an HTML page.
     #[arg(long, value_name = "FILE")]
     html: Option<PathBuf>,
 }
 
-/// Stands for a person who drives.
+/// Value of `--robot` for a person who drives.
 const ASK: &str = "ask";
 
 impl Run for Loop {
     fn places(&self) -> Places {
-        let places = Places::default().reading([&self.sim, &self.scene]).writing(self.facts.asked(), kinds::REPORT);
+        let places = Places::default().reading([&self.sim, &self.scene]).writing(self.json.path(), kinds::REPORT);
         let places = places.writing(&self.html, kinds::PAGE);
-        // A folder in which a loop was begun is gone on with.
-        let fresh = Some(&self.folder).filter(|folder| !folder.join(trials::state::FILE).exists());
+        // A folder with a loop in it is resumed, not filled.
+        let fresh = Some(&self.folder).filter(|folder| !folder.join(closed_loop::state::FILE).exists());
         places.filling(fresh)
     }
 
@@ -87,13 +87,15 @@ impl Run for Loop {
         let command = || CommandRobot { command: self.robot.clone(), timeout: Duration::from_secs(self.robot_timeout) };
         let robot: &mut dyn TrialRobot = if self.robot == ASK { &mut AskRobot } else { &mut command() };
         let bar = progress::bar(self.trials.into());
-        let state = trials::run(&job, robot, |event| match event {
+        let state = closed_loop::run(&job, robot, |event| match event {
             Event::Driving(trial) => {
                 bar.set_position(trial.number as u64 - 1);
-                meanwhile(&format!("trial {}: chance {}, driving", trial.number, trial.predicted));
+                status(&format!("trial {}: predicted success {}, driving", trial.number, trial.predicted));
             }
-            Event::Driven(trial) => meanwhile(&line(trial)),
-            Event::Failed(failure) => warn(format!("trial {}: nothing is learned: {}", failure.trial, failure.reason)),
+            Event::Driven(trial) => status(&line(trial)),
+            Event::Failed(failure) => {
+                warn(format!("trial {}: failed, nothing learned: {}", failure.trial, failure.reason))
+            }
         });
         bar.finish_and_clear();
         let state = state?;
@@ -109,7 +111,7 @@ impl Run for Loop {
             };
             files::write(path, page(&subject))?;
         }
-        self.facts.told(&state, self.told(&state))
+        self.json.emit(&state, self.describe(&state))
     }
 
     fn is_shared(&self) -> bool {
@@ -118,49 +120,51 @@ impl Run for Loop {
 }
 
 impl Loop {
-    fn told(&self, state: &State) -> String {
+    fn describe(&self, state: &State) -> String {
         let trials: String = state.trials.iter().map(|trial| line(trial) + "\n").collect();
         let controller = self.folder.join("controller.toml");
         let chance = state.chance.as_ref().map_or_else(|| "unknown".into(), Chance::to_string);
         let end = match state.verdict {
-            Verdict::Works => "it works: it reached the target three times, and by all that is known",
-            Verdict::OutOfReach => {
-                "no six tuples were found that reach the target on a robot that is possible; of the best"
+            Verdict::Works => "works: it reached the target three times; its",
+            Verdict::Infeasible => {
+                "no controller was found that reaches the target on any plausible robot; the best one's"
             }
-            Verdict::Spent | Verdict::Running => "the trials are spent before one was confirmed; of the best",
+            Verdict::TrialsExhausted | Verdict::Running => {
+                "trials used up before a controller was confirmed; the best one's"
+            }
         };
         let with_runs = state.chance_with_runs.map_or_else(String::new, with_runs);
-        let known = state.if_known.as_ref().map_or_else(String::new, if_known);
-        format!("{trials}{}: {end} the chance is {chance}{with_runs}\n{known}", controller.display())
+        let known = state.oracle.as_ref().map_or_else(String::new, oracle);
+        format!("{trials}{}: {end} success probability is {chance}{with_runs}\n{known}", controller.display())
     }
 }
 
 fn with_runs(chance: f64) -> String {
-    format!(", {:.0} % with real runs of it and its like", 100.0 * chance)
+    format!(", {:.0} % after real runs of this and similar controllers", 100.0 * chance)
 }
 
-/// What further trials may do.
-fn if_known(IfKnown { success, is_enough }: &IfKnown) -> String {
-    let (known, percent) = ("if the robot were known it would be", 100.0 * success);
+/// Returns what further trials could achieve.
+fn oracle(OracleSuccess { success, is_enough }: &OracleSuccess) -> String {
+    let (known, percent) = ("with a perfectly known robot it would be", 100.0 * success);
     if *is_enough {
-        format!("{known} {percent:.0} %: further trials may get there\n")
+        format!("{known} {percent:.0} %: further trials may help\n")
     } else {
         format!(
-            "{known} {percent:.0} %: no six tuples were found that do better against chance in motion and readings; further \
-             trials will hardly change that, a nearer start or a wider way may\n"
+            "{known} {percent:.0} %: noise in motion and readings limits every controller that was found; further trials will \
+             hardly help, a nearer start or a wider passage may\n"
         )
     }
 }
 
-/// A trial in one line.
+/// Returns a trial as one line.
 pub(super) fn line(trial: &Trial) -> String {
     let Some(real) = &trial.real else { return format!("trial {}: not driven", trial.number) };
     let reached = if real.reached { "reached the target" } else { "missed the target" };
     let effects: Vec<&str> = trial.effects.iter().map(|effect| effect.effect.as_str()).collect();
     let effects = if effects.is_empty() { String::new() } else { format!("; effects: {}", effects.join(", ")) };
-    let after = trial.chance_after.as_ref().map_or_else(String::new, |chance| format!(", then {chance}"));
+    let after = trial.chance_after.as_ref().map_or_else(String::new, |chance| format!(", afterwards {chance}"));
     format!(
-        "trial {}: {reached} ({} after {} steps, {:.0} cm off); chance {}{after}{effects}",
+        "trial {}: {reached} ({} after {} steps, {:.0} cm off); predicted success {}{after}{effects}",
         trial.number, real.ending, real.steps, real.distance_cm, trial.predicted
     )
 }

@@ -1,4 +1,4 @@
-//! `loop.json`: what happened in a loop so far, and all that it needs to go on.
+//! `loop.json`: the history of a loop and all it needs to resume.
 
 use std::path::Path;
 
@@ -15,9 +15,9 @@ use mindgap_learning::evolve::chance::Chance;
 use mindgap_logs::Termination;
 use mindgap_models::effects::applied::AppliedEffect;
 
-/// The version of this format.
+/// Version of the format.
 const SCHEMA: u32 = 1;
-/// The file's name within the loop's folder.
+/// File name in the loop's folder.
 pub const FILE: &str = "loop.json";
 
 /// The state of a loop.
@@ -25,69 +25,71 @@ pub const FILE: &str = "loop.json";
 pub struct State {
     /// Version of the format.
     schema: u32,
-    /// SHA-256 of all that decides how the loop goes: simulator, scene, start, seed.
+    /// SHA-256 of the inputs that determine the loop: simulator, scene, start, seed, step limit.
     job: String,
-    /// How it stands.
+    /// Status of the loop.
     pub verdict: Verdict,
-    /// Simulated chance of the controller that it settled on.
+    /// Simulated success probability of the final controller.
     pub chance: Option<Chance>,
-    /// The same with what real runs came to, its own and those of controllers like it.
+    /// Success probability of the final controller, updated with the real runs of this and similar controllers.
     #[serde(default)]
     pub chance_with_runs: Option<f64>,
-    /// Where the trials were spent, what could be reached if the robot were known.
-    #[serde(default)]
-    pub if_known: Option<IfKnown>,
+    /// Success with a perfectly known robot; only if the trials were used up.
+    #[serde(default, alias = "if_known")]
+    pub oracle: Option<OracleSuccess>,
     /// The trials.
     pub trials: Vec<Trial>,
-    /// Drives that nothing was learned from.
+    /// Failed drives.
     pub failures: Vec<Failure>,
-    /// Tuples of controllers from which the next search goes on.
+    /// Tuples of the controllers with which the next search begins.
     pub archive: Vec<Vec<Tuple>>,
 }
 
-/// How a loop stands.
+/// Status of a loop.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Verdict {
-    /// It has not ended.
+    /// The loop has not ended.
     Running,
-    /// A controller succeeded on the robot often enough, and has a good chance by all that is known.
+    /// A controller succeeded on the robot often enough and has a high success probability.
     Works,
-    /// The trials are spent before that.
-    Spent,
-    /// No six tuples were found that reach the target on any robot that is possible.
-    OutOfReach,
+    /// The trials were used up before a controller was confirmed.
+    #[serde(alias = "spent")]
+    TrialsExhausted,
+    /// No controller was found that reaches the target on any plausible robot.
+    #[serde(alias = "out_of_reach")]
+    Infeasible,
 }
 
-/// What the best of the controllers that were found reaches on a robot that is known.
+/// Success of the best controller for each robot of the posterior, as if the robot were known.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct IfKnown {
-    /// Its chance of success.
+pub struct OracleSuccess {
+    /// Mean success probability.
     pub success: f64,
-    /// Whether that could be confirmed. If not, chance is what limits it, which further trials will hardly change.
+    /// Whether that could be confirmed. If not, process noise is the limit, and further trials will hardly help.
     pub is_enough: bool,
 }
 
-/// A controller on the robot.
+/// One trial: a controller on the robot.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Trial {
-    /// Which, from 1.
+    /// Number of the trial, from 1.
     pub number: usize,
     /// File of the controller.
     pub controller: String,
     /// File of the log.
     pub log: String,
-    /// Its chance before it was driven.
+    /// Success probability before the run.
     pub predicted: Chance,
-    /// Its paths on robots that were possible then.
+    /// Simulated paths on robots of the posterior before the run.
     pub predicted_paths: Vec<SimulatedPath>,
-    /// How it went; null until then.
-    pub real: Option<Real>,
-    /// Its chance by what the run told.
+    /// The run on the robot; null until it was driven.
+    pub real: Option<DrivenRun>,
+    /// Success probability after adapting to the run.
     pub chance_after: Option<Chance>,
-    /// What simulated steps were off by on runs kept back, before and after adapting to the others.
+    /// Error per step on held-out runs, before and after adapting to the others.
     pub gap: Option<Gap>,
-    /// Effects that a diagnosis of all runs up to this one names.
+    /// Effects named by a diagnosis of all runs up to this one.
     pub effects: Vec<AppliedEffect>,
 }
 
@@ -96,43 +98,43 @@ pub struct Trial {
 pub struct SimulatedPath {
     /// How it ended.
     pub ending: Termination,
-    /// Where the robot was at the start and after each step, along x and y.
+    /// Position at the start and after each step, `[x, y]`.
     pub path_cm: Vec<[f64; 2]>,
 }
 
-/// How a run on the robot went.
+/// A run on the robot.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Real {
+pub struct DrivenRun {
     /// How it ended.
     pub ending: Termination,
-    /// Steps taken.
+    /// Number of steps.
     pub steps: usize,
-    /// Where it ended, along x.
+    /// Final position, x.
     pub end_x_cm: f64,
-    /// And along y.
+    /// Final position, y.
     pub end_y_cm: f64,
-    /// How far from the target that is.
+    /// Final distance to the target.
     pub distance_cm: f64,
     /// Whether it reached the target.
     pub reached: bool,
-    /// Where the tracker saw the robot at each row, along x and y.
+    /// Tracked position at each row, `[x, y]`.
     pub path_cm: Vec<[f64; 2]>,
 }
 
-/// A drive that nothing was learned from.
+/// A failed drive, whose log is not used.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Failure {
-    /// Which trial it was to be.
+    /// Number of the trial.
     pub trial: usize,
-    /// What was wrong.
+    /// Reason of the failure.
     pub reason: String,
 }
 
 impl State {
-    /// The state of a job's folder, new where it holds none.
+    /// Reads the state from a job's folder, or returns a new one if there is none.
     ///
     /// # Errors
-    /// When a file cannot be read, or when the folder's loop has another simulator, scene, start or seed.
+    /// If a file cannot be read, or the folder holds a loop with another simulator, scene, start, seed or step limit.
     pub fn open(job: &Job) -> Result<Self> {
         let mut digest = Sha256::new();
         for path in [job.simulator, job.scene] {
@@ -148,7 +150,7 @@ impl State {
                 verdict: Verdict::Running,
                 chance: None,
                 chance_with_runs: None,
-                if_known: None,
+                oracle: None,
                 trials: Vec::new(),
                 failures: Vec::new(),
                 archive: job.known.iter().map(|controller| controller.tuples.to_vec()).collect(),
@@ -159,29 +161,29 @@ impl State {
             let what = "is of a loop with another simulator, scene, start, seed or step limit: give another folder";
             return Err(Error::in_file(&path, what));
         }
-        if state.verdict == Verdict::Spent && state.trials.len() < job.trials {
+        if state.verdict == Verdict::TrialsExhausted && state.trials.len() < job.trials {
             state.verdict = Verdict::Running;
-            state.if_known = None;
+            state.oracle = None;
         }
         Ok(state)
     }
 
-    /// The chance of success beyond which no controller that was found gets, if that cannot be confirmed.
+    /// Returns the upper limit of the success probability if it is too low to be confirmed.
     pub fn limit(&self) -> Option<f64> {
-        self.if_known.filter(|known| !known.is_enough).map(|known| known.success)
+        self.oracle.filter(|known| !known.is_enough).map(|known| known.success)
     }
 
-    /// Writes it.
+    /// Writes the state into a folder.
     ///
     /// # Errors
-    /// When it cannot be written.
+    /// If it cannot be written.
     pub fn write(&self, folder: &Path) -> Result<()> {
         files::write_json(&folder.join(FILE), self)
     }
 }
 
 impl Trial {
-    /// A trial that is still to be driven.
+    /// Returns a trial that is still to be driven.
     pub fn planned(number: usize, predicted: Chance, predicted_paths: Vec<SimulatedPath>) -> Self {
         Trial {
             number,
@@ -197,7 +199,7 @@ impl Trial {
     }
 }
 
-/// A place as it is written, to the millimetre.
+/// Rounds a position to millimetres for output.
 pub fn place_cm(at: DVec2) -> [f64; 2] {
     at.to_array().map(|cm| (10.0 * cm).round() / 10.0)
 }

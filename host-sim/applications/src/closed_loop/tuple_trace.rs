@@ -1,30 +1,30 @@
-//! Which of a controller's tuples a run held, by the commands of its log alone.
+//! The tuples that a run went through, inferred from the commands of its log.
 
 use mindgap_core::controller::{Controller, TUPLES};
 
 use mindgap_foundations::error::{Error, Result};
 use mindgap_logs::Run;
 
-/// What the logged commands say of a run.
-pub struct Driven {
-    /// The tuples that may have been held last: consecutive ones with the same command look alike.
+/// The tuples of a run.
+pub struct TupleTrace {
+    /// Tuples that may have been active last: consecutive ones with the same command cannot be distinguished.
     last: [bool; TUPLES],
-    /// Rows at which a tuple was held.
+    /// Number of rows at which a tuple was active.
     pub steps: usize,
-    /// Whether the motors were stopped then.
+    /// Whether the motors were stopped afterwards.
     stopped: bool,
 }
 
-impl Driven {
+impl TupleTrace {
     /// Follows the controller's tuples through the commands of a run.
     ///
     /// # Errors
-    /// Names the line whose commands are not those of this controller.
+    /// If a line has commands that this controller cannot give at that point.
     pub fn of(controller: &Controller, run: &Run) -> Result<Self> {
         let commands = controller.tuples.each_ref().map(|tuple| [f64::from(tuple.left), f64::from(tuple.right)]);
-        let mut driven = Driven { last: [false; TUPLES], steps: 0, stopped: false };
+        let mut driven = TupleTrace { last: [false; TUPLES], steps: 0, stopped: false };
         for (i, row) in run.rows.iter().enumerate() {
-            // A tuple is held from the first row on, or after itself or the one before.
+            // The first tuple is active at the first row; later, the last active tuple or the next one is.
             let held: [bool; TUPLES] = std::array::from_fn(|tuple| {
                 let follows = driven.last[tuple] || tuple > 0 && driven.last[tuple - 1];
                 commands[tuple] == row.command() && if i == 0 { tuple == 0 } else { follows }
@@ -36,14 +36,14 @@ impl Driven {
                 (driven.last, driven.steps) = (held, driven.steps + 1);
             } else {
                 let [left, right] = row.command();
-                let what = format!("line {}: commands {left}, {right} are not this controller's at that point", i + 2);
+                let what = format!("line {}: this controller cannot give the commands {left}, {right} here", i + 2);
                 return Err(Error::new(format!("{what}: it is the log of another controller or robot")));
             }
         }
         Ok(driven)
     }
 
-    /// Whether the last tuple's test may have ended the run.
+    /// Returns whether the last tuple's test may have ended the run.
     pub fn may_have_finished(&self) -> bool {
         self.stopped && self.last[TUPLES - 1]
     }
@@ -56,7 +56,7 @@ mod tests {
     use mindgap_logs::Row;
     use proptest::prelude::*;
 
-    /// Few commands and thresholds, so that neighbours are often the same.
+    /// Controllers with few distinct commands, so that neighbouring tuples are often equal.
     fn controllers() -> impl Strategy<Value = Controller> {
         let tuple = (-1..=1i8, 0..=1i8, 40..60i16).prop_map(|(left, right, threshold_cm)| Tuple {
             left,
@@ -69,7 +69,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn every_run_of_a_controller_is_its_own(
+        fn every_run_of_a_controller_is_recognised(
             controller in controllers(),
             readings in prop::collection::vec(30..70i16, 12),
         ) {
@@ -85,7 +85,7 @@ mod tests {
             let steps = rows.len();
             rows.push(Row::default());
             let run = Run { name: "run".into(), rows: rows.into_iter().collect() };
-            let driven = Driven::of(&controller, &run).expect("its own commands");
+            let driven = TupleTrace::of(&controller, &run).expect("its own commands");
             prop_assert_eq!(driven.steps, steps);
             prop_assert!(machine.status() != Status::Finished || driven.may_have_finished());
         }

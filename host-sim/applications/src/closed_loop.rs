@@ -1,17 +1,17 @@
-//! The loop on the robot: evolve a controller, drive it, adapt the simulator to the run, and again until it works.
+//! The closed loop with a robot: evolve a controller, drive it, adapt the simulator to the run, and repeat until it works.
 //!
-//! A turn begins with what all runs so far say of the robot ([`adapt`](mod@crate::adapt)), [searches](search) on the robot in
-//! the middle of those that remain possible, judges on many of them, and drives the best. Everything is in the folder's
-//! [state] after every step, so that a loop that is stopped anywhere goes on.
+//! Each iteration [adapts](mod@crate::adapt) the simulator to all runs so far, [searches](search) for controllers at the
+//! posterior mean, evaluates them over the posterior, and drives the best one. The [state] in the folder is written after
+//! every step, so an interrupted loop resumes from there.
 
 pub mod drawing;
-mod driven;
-pub mod jury;
-mod likeness;
+pub mod evaluator;
+pub mod log_check;
 pub mod robot;
 pub mod search;
+mod similarity;
 pub mod state;
-pub mod vetting;
+mod tuple_trace;
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -19,7 +19,8 @@ use std::path::{Path, PathBuf};
 use mindgap_core::controller::Controller;
 
 use crate::adapt::{Adapted, adapt};
-use jury::{Candidate, Tried};
+use evaluator::{Candidate, Tried};
+use log_check::LogCheck;
 use mindgap_files as files;
 use mindgap_foundations::error::{Error, Result};
 use mindgap_foundations::executor::{self, Executor};
@@ -32,47 +33,46 @@ use mindgap_models::simulator::Simulator;
 use robot::{Call, TrialRobot};
 use search::Search;
 use state::{Failure, State, Trial, Verdict};
-use vetting::Vetting;
 
-/// Where no controller has this chance on robots that are possible, none is driven.
+/// Success probability below which no controller is worth driving.
 const HOPELESS: f64 = 0.03;
-/// A drive that fails is tried so often.
+/// Number of attempts per trial.
 const ATTEMPTS: usize = 2;
 
-/// The job of a loop.
+/// The inputs of a loop.
 pub struct Job<'a> {
-    /// Executes independent pieces of work.
+    /// Executor of independent work items.
     pub executor: &'a dyn Executor,
-    /// Folder of its state and results.
+    /// Folder of the state and the results.
     pub folder: &'a Path,
     /// Simulator file.
     pub simulator: &'a Path,
     /// Scene file.
     pub scene: &'a Path,
-    /// Start within the scene, from 1.
+    /// Number of the start in the scene, from 1.
     pub start: usize,
-    /// Runs on the robot at most.
+    /// Maximum number of runs on the robot.
     pub trials: usize,
-    /// Steps after which a controller gives up.
+    /// Maximum number of steps of a controller.
     pub max_steps: u16,
     /// Controllers to begin with.
     pub known: &'a [Controller],
-    /// Seed of all draws.
+    /// Random seed.
     pub seed: u64,
 }
 
-/// What a loop tells while it runs.
+/// Events of a running loop.
 pub enum Event<'a> {
-    /// A controller is to be driven.
+    /// A controller is about to be driven.
     Driving(&'a Trial),
-    /// It was driven.
+    /// A controller was driven.
     Driven(&'a Trial),
     /// A drive failed.
     Failed(&'a Failure),
 }
 
-/// A loop that is under way.
-struct Trials<'a> {
+/// A loop in progress.
+struct ClosedLoop<'a> {
     job: &'a Job<'a>,
     simulator: Simulator,
     scene: Scene,
@@ -80,27 +80,27 @@ struct Trials<'a> {
     state: State,
 }
 
-/// Runs a loop to its end, from where it stood if its folder holds one.
+/// Runs a loop to its end, resuming the one in its folder if there is one.
 ///
 /// # Errors
-/// When a file cannot be read or written, when the folder holds another loop, or when the robot fails twice in a row.
-pub fn run(job: &Job, robot: &mut dyn TrialRobot, mut tell: impl FnMut(Event)) -> Result<State> {
-    let mut trials = Trials::open(job)?;
-    // Before anything else lies in the folder, so that it is known for a loop's.
+/// If a file cannot be read or written, the folder holds another loop, or the robot fails twice in a row.
+pub fn run(job: &Job, robot: &mut dyn TrialRobot, mut on_event: impl FnMut(Event)) -> Result<State> {
+    let mut trials = ClosedLoop::open(job)?;
+    // Written first, so that the folder is recognised as a loop's.
     trials.state.write(job.folder)?;
     while trials.state.verdict == Verdict::Running {
         if trials.state.trials.last().is_some_and(|trial| trial.real.is_none()) {
             trials.state =
-                executor::once(job.executor, || trials.drive(robot, &mut tell).map(|()| trials.state.clone()))?;
+                executor::once(job.executor, || trials.drive(robot, &mut on_event).map(|()| trials.state.clone()))?;
         } else {
-            trials.turn()?;
+            trials.plan_next()?;
         }
         trials.state.write(job.folder)?;
     }
     Ok(trials.state)
 }
 
-impl<'a> Trials<'a> {
+impl<'a> ClosedLoop<'a> {
     fn open(job: &'a Job<'a>) -> Result<Self> {
         let simulator = Simulator::read(job.simulator)?;
         let scene = Scene::read(job.scene)?;
@@ -110,11 +110,11 @@ impl<'a> Trials<'a> {
         }
         files::make_folder(job.folder)?;
         let state = executor::once(job.executor, || State::open(job))?;
-        Ok(Trials { job, simulator, scene, start, state })
+        Ok(ClosedLoop { job, simulator, scene, start, state })
     }
 
     /// Adapts to all runs so far, and ends the loop or plans the next trial.
-    fn turn(&mut self) -> Result<()> {
+    fn plan_next(&mut self) -> Result<()> {
         let runs = self.runs()?;
         let logs = Logs { robot: self.simulator.robot, scene: self.scene.clone(), runs };
         let adapted = match logs.runs.as_slice() {
@@ -142,14 +142,14 @@ impl<'a> Trials<'a> {
         let archive = found.tuples(search::ARCHIVED);
         let choice = found.choice(&tried).ok_or_else(|| Error::new("no controller was found"))?;
         if count >= self.job.trials {
-            // The last run may have told what none of the driven ones was made for.
-            self.state.if_known = Some(search.if_known(&archive, &tried)?);
-            // The archive stays as it is: with more trials this turn is made again, from what it is made from now.
-            return self.settle(Verdict::Spent, choice);
+            // The last run may favour a controller that was not driven.
+            self.state.oracle = Some(search.oracle(&archive, &tried)?);
+            // The archive is unchanged: with more trials this iteration is repeated from the same state.
+            return self.settle(Verdict::TrialsExhausted, choice);
         }
         self.state.archive = archive;
         if choice.chance.success < HOPELESS {
-            return self.settle(Verdict::OutOfReach, choice);
+            return self.settle(Verdict::Infeasible, choice);
         }
         let trial = Trial::planned(count + 1, choice.chance, search.paths(&choice.controller)?);
         self.write_controller(&self.job.folder.join(&trial.controller), choice)?;
@@ -157,7 +157,7 @@ impl<'a> Trials<'a> {
         Ok(())
     }
 
-    /// What the last run told, at its trial.
+    /// Stores at the last trial what was learned from its run.
     fn note(&mut self, adapted: Option<Adapted>, chance: Option<Chance>) {
         if let (Some(trial), Some(Adapted { lesson, .. })) = (self.state.trials.last_mut(), adapted) {
             trial.effects = lesson.effects;
@@ -166,53 +166,50 @@ impl<'a> Trials<'a> {
         }
     }
 
-    /// Drives the controller of the last trial and keeps its log if it is one to learn from.
-    fn drive(&mut self, robot: &mut dyn TrialRobot, tell: &mut impl FnMut(Event)) -> Result<()> {
+    /// Drives the controller of the last trial and keeps its log if it is valid.
+    fn drive(&mut self, robot: &mut dyn TrialRobot, on_event: &mut impl FnMut(Event)) -> Result<()> {
         let folder = self.job.folder;
         let Some(trial) = self.state.trials.last().cloned() else { return Ok(()) };
         let path = folder.join(&trial.controller);
         let controller = ControllerFile::read(&path)?.controller;
         let attempt = self.state.failures.iter().filter(|failure| failure.trial == trial.number).count();
         let out = folder.join("driving.csv");
-        // What an interrupted drive left is of no run that is known.
+        // An interrupted drive may have left a log of an unknown run.
         let _ = fs::remove_file(&out);
-        tell(Event::Driving(&trial));
+        on_event(Event::Driving(&trial));
         let call = Call {
             controller: &path,
             scene: self.job.scene,
             start: self.job.start,
             out: &out,
-            // Robots see small numbers.
+            // A short number is easier to handle for robot scripts.
             seed: derive(self.job.seed, &[trial.number as u64, attempt as u64]) % 1_000_000,
         };
-        let vetting =
-            Vetting { simulator: &self.simulator, scene: &self.scene, start: self.start, controller: &controller };
-        let driven = robot.drive(&call).and_then(|()| vetting.read(&out));
+        let check =
+            LogCheck { simulator: &self.simulator, scene: &self.scene, start: self.start, controller: &controller };
+        let driven = robot.drive(&call).and_then(|()| check.read(&out));
         match driven {
             Ok((run, real)) => {
                 run.write(&folder.join(&trial.log))?;
                 let _ = fs::remove_file(&out);
                 if let Some(trial) = self.state.trials.last_mut() {
                     trial.real = Some(real);
-                    tell(Event::Driven(trial));
+                    on_event(Event::Driven(trial));
                 }
                 drawing::paths(folder, &self.scene, self.start, &self.state)
             }
             Err(problem) => {
                 let failure = Failure { trial: trial.number, reason: problem.to_string() };
-                tell(Event::Failed(&failure));
+                on_event(Event::Failed(&failure));
                 self.state.failures.push(failure);
                 self.state.write(folder)?;
                 if attempt + 1 < ATTEMPTS {
                     return Ok(());
                 }
-                // Whoever starts the loop again means to try again.
+                // Calling the loop again retries the trial.
                 self.state.failures.retain(|failure| failure.trial != trial.number);
                 self.state.write(folder)?;
-                Err(Error::new(format!(
-                    "trial {} failed {ATTEMPTS} times, and the loop stands still: {problem}",
-                    trial.number
-                )))
+                Err(Error::new(format!("trial {} failed {ATTEMPTS} times, loop stopped: {problem}", trial.number)))
             }
         }
     }
@@ -226,13 +223,13 @@ impl<'a> Trials<'a> {
         Ok(())
     }
 
-    /// The logs of all trials.
+    /// Reads the logs of all trials.
     fn runs(&self) -> Result<Vec<Run>> {
         let driven = self.state.trials.iter().filter(|trial| trial.real.is_some());
         driven.map(|trial| Run::read(&self.job.folder.join(&trial.log), |_| {})).collect()
     }
 
-    /// The controllers of all trials, each once, with how they did.
+    /// Returns the distinct controllers of all trials with their results.
     fn tried(&self) -> Result<Vec<Tried>> {
         let mut tried: Vec<Tried> = Vec::new();
         for trial in &self.state.trials {

@@ -1,4 +1,4 @@
-//! The picture of a loop: the paths that were predicted for every trial, and the real one.
+//! The figure of a loop: predicted and real paths of every trial.
 
 use std::path::Path;
 
@@ -12,10 +12,10 @@ use mindgap_foundations::geometry::Pose;
 use mindgap_logs::{Scene, Termination};
 use mindgap_models::simulator::rollout::REACHED_CM;
 
-/// Draws `paths.svg` and `paths.png` into the folder of a loop.
+/// Writes the figure `paths` into the folder of a loop.
 ///
 /// # Errors
-/// When they cannot be written.
+/// If it cannot be written.
 pub fn paths(folder: &Path, scene: &Scene, start: Pose, state: &State) -> Result<()> {
     let driven = state.trials.iter().filter(|trial| trial.real.is_some());
     let panels: Vec<PathPanel> =

@@ -1,5 +1,4 @@
-//! Commands that take long: what they have done is kept, so that a run that was broken off goes on, and ranks that were
-//! started together do their work together.
+//! Long commands: checkpoints from which an interrupted run resumes, and the work shared by MPI ranks.
 
 use std::any::TypeId;
 use std::collections::BTreeMap;
@@ -9,7 +8,7 @@ use std::path::{Path, PathBuf};
 
 use clap::{ArgMatches, Args, Command};
 
-use super::voice::meanwhile;
+use super::logging::status;
 use super::warn;
 use mindgap_files::is_stream;
 use mindgap_files::places::Places;
@@ -18,80 +17,81 @@ use mindgap_workers::Workers;
 use mindgap_workers::checkpoint::CreateFile;
 use mindgap_workers::task::Task;
 
-/// The name of the option, which says nothing of what is to be done.
+/// Id of the option, which does not affect results.
 const OPTION: &str = "checkpoint";
-/// Stands for the path of a place.
+/// Placeholder for the path of an input or output.
 const GIVEN: &str = "given";
 
-/// The option of commands that keep what they have done.
+/// The option `--checkpoint` of long commands.
 #[derive(Args)]
-pub struct KeepOption {
-    /// Keep what is done here, from the beginning. A run that was broken off, called again in the same way, goes on from
-    /// there, and the file goes when the run is done. Left out, the name is that of the output with `.checkpoint`, and
-    /// only what takes over a minute is kept.
+pub struct CheckpointOption {
+    /// Checkpoint file, written from the beginning. An interrupted run resumes from it when called again with the same
+    /// arguments; the file is removed when the run completes (default: the output's name with `.checkpoint`, written once
+    /// the run takes over a minute).
     #[arg(long, value_name = "FILE")]
     checkpoint: Option<PathBuf>,
 }
 
-/// Where and when what is done is kept.
-pub struct Kept {
+/// Where and when a checkpoint is written.
+pub struct Checkpoint {
     path: PathBuf,
     begin: CreateFile,
 }
 
-impl KeepOption {
-    /// Where what is done for an output is kept.
-    pub fn beside(&self, out: &Path) -> Option<Kept> {
+impl CheckpointOption {
+    /// Returns the checkpoint of an output.
+    pub fn for_output(&self, out: &Path) -> Option<Checkpoint> {
         if let Some(path) = &self.checkpoint {
-            return Some(Kept { path: path.clone(), begin: CreateFile::AtOnce });
+            return Some(Checkpoint { path: path.clone(), begin: CreateFile::AtOnce });
         }
         let mut path = out.components().as_path().as_os_str().to_owned();
         path.push(".checkpoint");
-        (!is_stream(out)).then(|| Kept { path: path.into(), begin: CreateFile::AfterAMinute })
+        (!is_stream(out)).then(|| Checkpoint { path: path.into(), begin: CreateFile::AfterAMinute })
     }
 
-    /// The file that is asked for.
-    pub fn asked(&self) -> &Option<PathBuf> {
+    /// Returns the requested file, if any.
+    pub fn path(&self) -> &Option<PathBuf> {
         &self.checkpoint
     }
 }
 
-impl Kept {
-    /// Whether a run before has left something.
-    pub fn is_there(&self) -> bool {
+impl Checkpoint {
+    /// Returns whether an earlier run left a checkpoint.
+    pub fn exists(&self) -> bool {
         self.path.exists()
     }
 }
 
-/// Begins the work of a command, from where a run before stood.
+/// Begins the work of a command, resuming from its checkpoint if there is one.
 ///
 /// # Errors
-/// When another run stood there, or other ranks have another task.
+/// If the checkpoint is of another run, or other ranks have another task.
 pub fn begin(
     workers: &mut Workers,
     is_shared: bool,
-    kept: Option<Kept>,
+    checkpoint: Option<Checkpoint>,
     places: &Places,
     call: (&Command, &ArgMatches),
 ) -> Result<()> {
     if !is_shared {
         workers.leave_ranks();
     }
-    if !is_shared && kept.is_none() {
+    if !is_shared && checkpoint.is_none() {
         return Ok(());
     }
-    let checkpoint = kept.as_ref().map(|kept| (kept.path.as_path(), kept.begin));
-    // Neither what is written nor what is kept counts where it lies in a folder that is read.
-    let outputs: Vec<PathBuf> = places.outputs().chain(kept.as_ref().map(|kept| kept.path.clone())).collect();
-    let count = workers.begin(task(call, places, &outputs), checkpoint, warn)?;
-    if let Some(kept) = kept.filter(|_| count > 0) {
-        meanwhile(&format!("{}: goes on, {count} pieces of work are done", kept.path.display()));
+    let place = checkpoint.as_ref().map(|checkpoint| (checkpoint.path.as_path(), checkpoint.begin));
+    // Outputs and checkpoints inside an input folder are not part of the input.
+    let outputs: Vec<PathBuf> =
+        places.outputs().chain(checkpoint.as_ref().map(|checkpoint| checkpoint.path.clone())).collect();
+    let count = workers.begin(task(call, places, &outputs), place, warn)?;
+    if let Some(checkpoint) = checkpoint.filter(|_| count > 0) {
+        status(&format!("{}: resuming, {count} work items already done", checkpoint.path.display()));
     }
     Ok(())
 }
 
-/// What a call asks for. Of its places only that they are given is an argument: what is read counts by its content, and
-/// where results go changes none of them. The program is read too: two builds of one version may give other results.
+/// Returns the identity of the work. Paths are reduced to whether they are given: inputs count by content, and output
+/// paths do not affect results. The program itself is an input, since two builds of one version may give other results.
 fn task((mut command, mut matches): (&Command, &ArgMatches), places: &Places, outputs: &[PathBuf]) -> Task {
     let mut names = Vec::new();
     let mut arguments = BTreeMap::new();

@@ -1,4 +1,4 @@
-//! What a program did, as text and as facts for programs.
+//! The trace of an emulated program, as text and as JSON.
 
 use std::fmt::Write;
 
@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 
 const MOTORS: [char; 3] = ['A', 'B', 'C'];
 
-/// A line for every event, the files, and how it ended.
+/// Returns one line per event, the files, and how the program ended.
 pub fn text(report: &Report) -> String {
     let mut text = String::new();
     for Event { t_ms, kind } in &report.events {
@@ -21,7 +21,7 @@ pub fn text(report: &Report) -> String {
         };
     }
     if report.further_events > 0 {
-        let _ = writeln!(text, "and {} events more (--limit-events)", report.further_events);
+        let _ = writeln!(text, "and {} more events (--limit-events)", report.further_events);
     }
     for (name, content) in &report.files {
         let _ = writeln!(text, "file {name}, {} bytes", content.len());
@@ -44,8 +44,8 @@ pub fn text(report: &Report) -> String {
     text
 }
 
-/// The same for programs.
-pub fn facts(report: &Report) -> Value {
+/// Returns the trace as JSON.
+pub fn json(report: &Report) -> Value {
     let event = |Event { t_ms, kind }: &Event| match kind {
         EventKind::Motor { port, drive: Drive::Power(power) } => {
             json!({"t_ms": t_ms, "motor": MOTORS[*port], "power": power})
@@ -89,7 +89,7 @@ fn end_words(end: Termination) -> String {
     match end {
         Termination::Finished => "finished".into(),
         Termination::Aborted => "aborted by the dark button".into(),
-        Termination::OutOfTime => "still running, given up".into(),
+        Termination::OutOfTime => "still running, stopped".into(),
         Termination::Failed(fault) => format!("failed: {fault}"),
     }
 }

@@ -1,4 +1,4 @@
-//! Robots that a loop can drive: a command, or a person with a brick.
+//! Robots that a loop can drive: an external command, or a person with a brick.
 
 use std::fs;
 use std::io::{self, BufRead, Write};
@@ -13,39 +13,40 @@ use mindgap_workers as workers;
 
 /// A robot that drives a controller and logs the run.
 pub trait TrialRobot {
-    /// Drives, and leaves the log in the call's file.
+    /// Drives a controller and writes the log to `call.out`.
     ///
     /// # Errors
-    /// When it could not be driven; nothing is learned then.
+    /// If the drive failed; its log is not used.
     fn drive(&mut self, call: &Call) -> Result<()>;
 }
 
-/// One drive.
+/// The arguments of one drive.
 pub struct Call<'a> {
-    /// The controller file.
+    /// Controller file.
     pub controller: &'a Path,
-    /// The scene file.
+    /// Scene file.
     pub scene: &'a Path,
-    /// The start within the scene, from 1.
+    /// Number of the start in the scene, from 1.
     pub start: usize,
-    /// The log to write.
+    /// Log to write.
     pub out: &'a Path,
-    /// For robots that are simulated.
+    /// Seed for simulated robots.
     pub seed: u64,
 }
 
-/// A robot behind a command: it is called with controller, scene, start, log and seed, writes the log and exits with 0.
+/// A robot driven by an external command, which is called with controller, scene, start, log and seed, writes the log and
+/// exits with 0.
 pub struct CommandRobot {
-    /// The command with its first arguments, parted by blanks.
+    /// Command with its first arguments, separated by spaces.
     pub command: String,
-    /// How long it may take.
+    /// Timeout of one call.
     pub timeout: Duration,
 }
 
-/// A person who loads the controller onto a brick, drives, and tells where the log is.
+/// A person who loads the controller onto a brick, drives, and enters the path of the log.
 pub struct AskRobot;
 
-/// How often a command is looked after.
+/// Polling interval of the command.
 const GLANCE: Duration = Duration::from_millis(20);
 
 impl TrialRobot for CommandRobot {
@@ -62,7 +63,7 @@ impl TrialRobot for CommandRobot {
             .arg(call.out)
             .arg(call.seed.to_string())
             .stdin(Stdio::null())
-            // What the loop itself says is on standard output.
+            // Standard output is reserved for the report of the loop.
             .stdout(Stdio::from(io::stderr()))
             .spawn()
             .map_err(|e| failed(format!("cannot be started: {e}")))?;
@@ -72,10 +73,10 @@ impl TrialRobot for CommandRobot {
                 Some(status) if status.success() => return Ok(()),
                 Some(status) => return Err(failed(format!("failed: {status}"))),
                 None if begun.elapsed() > self.timeout => {
-                    // It may have ended just now.
+                    // Killing fails if it has just ended.
                     let _ = child.kill();
                     let _ = child.wait();
-                    return Err(failed(format!("took longer than {} s and was ended", self.timeout.as_secs_f64())));
+                    return Err(failed(format!("took longer than {} s and was killed", self.timeout.as_secs_f64())));
                 }
                 None => thread::sleep(GLANCE),
             }
@@ -87,17 +88,20 @@ impl TrialRobot for AskRobot {
     fn drive(&mut self, call: &Call) -> Result<()> {
         eprintln!(
             "Load {} on the robot (mindgap export {0} --format rxe --out loop.rxe), put it on start {} of {}, and let it drive.\n\
-             Then type the path of the run's log:",
+             Then enter the path of the run's log:",
             call.controller.display(),
             call.start,
             call.scene.display()
         );
         io::stderr().flush().map_err(|e| Error::new(format!("standard error cannot be written: {e}")))?;
         let mut answer = String::new();
-        io::stdin().lock().read_line(&mut answer).map_err(|e| Error::new(format!("no answer can be read: {e}")))?;
+        io::stdin()
+            .lock()
+            .read_line(&mut answer)
+            .map_err(|e| Error::new(format!("standard input cannot be read: {e}")))?;
         let path = PathBuf::from(answer.trim());
         if path.as_os_str().is_empty() {
-            return Err(Error::new("no log was named"));
+            return Err(Error::new("no log was given"));
         }
         let log = fs::read(&path).map_err(|e| Error::in_file(&path, format!("cannot be read: {e}")))?;
         files::write(call.out, log)
@@ -115,13 +119,13 @@ mod tests {
     }
 
     #[test]
-    fn a_command_that_fails_or_hangs_is_told() {
+    fn failing_and_hanging_commands_are_errors() {
         assert!(drive("true").is_ok());
         let problem = |command: &str| drive(command).unwrap_err().to_string();
         assert!(problem("false").starts_with("the robot's command false failed: "));
         assert!(problem("mindgap-has-no-such-robot").contains("cannot be started"));
         assert!(
-            problem("tail -f /dev/null --").contains("took longer than 0.2 s") || problem("sleep 9").contains("ended")
+            problem("tail -f /dev/null --").contains("took longer than 0.2 s") || problem("sleep 9").contains("killed")
         );
         assert_eq!(problem(" "), "the robot's command is empty");
     }
