@@ -11,7 +11,7 @@
 //! | [`cos_pi`] | - | - |
 //!
 //! Each is within 1 unit of the last place (2^-16 or 2^-26) at every input of both formats: `cargo run --release -p
-//! mindgap-tests --bin exhaustive-fixed-point` goes through them all.
+//! mindgap-tests --example exhaustive-fixed-point` goes through them all.
 
 mod cosine;
 mod powers;

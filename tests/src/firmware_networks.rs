@@ -1,5 +1,4 @@
-//! Generated Rust sources of networks: those that the images under `tests/firmware` run, and those of the example under
-//! `core/examples`.
+//! Generated Rust sources of networks, for the images in `tests/firmware` and the example in `core/examples`.
 
 use mindgap_built_in_robot::{default_robot, record, training_room};
 use mindgap_controller_export::rust_networks::rust_networks;
@@ -13,10 +12,10 @@ const RUNS: usize = 40;
 const STEPS: usize = 60;
 const SEED: u64 = 1;
 
-/// Each file from the top of the project, and what it has to hold: networks trained on the built-in robot.
+/// Returns the path of each file in the project and its content: networks trained on the built-in robot.
 ///
 /// # Errors
-/// When a network cannot be trained or has no fixed-point form.
+/// If a network cannot be trained or does not fit fixed point.
 pub fn files() -> Result<[(&'static str, String); 2]> {
     let logs = record(&default_robot(), &training_room(), RUNS, STEPS, &[], SEED)?;
     let simulator = train(&Serial, &logs, &Trainer::Fast, &TABLE_ONE, SEED, &|_| {})?;
@@ -30,6 +29,6 @@ pub fn files() -> Result<[(&'static str, String); 2]> {
 
 fn file(networks: &[String]) -> String {
     let head = "//! Networks trained on logs of the built-in robot; made by
-//! `cargo run --release -p mindgap-tests --bin firmware-networks`.";
+//! `cargo run --release -p mindgap-tests --example firmware-networks`.";
     format!("{head}\n\n{}", rust_networks(networks))
 }

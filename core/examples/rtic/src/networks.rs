@@ -1,5 +1,5 @@
 //! Networks trained on logs of the built-in robot; made by
-//! `cargo run --release -p mindgap-tests --bin firmware-networks`.
+//! `cargo run --release -p mindgap-tests --example firmware-networks`.
 
 use fixed::types::{I6F26, I38F26};
 use heapless::Vec;

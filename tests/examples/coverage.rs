@@ -1,6 +1,6 @@
-//! Prints how often open-loop paths of held-out logs end within the regions that a simulator predicts, as the rows of the
-//! table in docs/loop.md: `cargo run --release -p mindgap-tests --bin coverage -- SIM LOGS…`. In place of a folder,
-//! `controllers` stands for runs of random controllers on the built-in robot.
+//! Prints the share of open-loop paths in held-out logs that end within the predicted regions, as the table in docs/loop.md:
+//! `cargo run --release -p mindgap-tests --example coverage -- SIM LOGS…`. Instead of a folder, `controllers` stands for runs of
+//! random controllers on the built-in robot.
 
 use std::path::Path;
 use std::process::ExitCode;

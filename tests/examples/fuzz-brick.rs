@@ -1,8 +1,7 @@
-//! Feeds the machine for the NXT's bytecode with programs that are broken in every way: those of `tests/conformance` and
-//! exported controllers, with bytes changed, cut out and put in. Nothing may panic, hang or take memory without bound.
+//! Fuzzes the NXT emulator with broken programs: those in `tests/conformance` and exported controllers, with bytes changed,
+//! removed and inserted. The emulator must not panic, hang or use unbounded memory.
 //!
-//! `cargo run --release -p mindgap-tests --bin fuzz-brick -- [MILLIONS] [SEED]` goes on until so many millions of
-//! instructions have been executed.
+//! `cargo run --release -p mindgap-tests --example fuzz-brick -- [MILLIONS] [SEED]` executes that number of million instructions.
 
 use std::time::Instant;
 
@@ -16,7 +15,7 @@ use mindgap_tests::controllers::at_its_limits;
 use mindgap_tests::nbc::compile;
 use rand::RngExt;
 
-/// Time of a run on the brick's clock.
+/// Duration of a run on the brick's clock.
 const RUN_MS: u32 = 2_000;
 
 fn main() {
@@ -50,7 +49,7 @@ fn main() {
     );
 }
 
-/// Programs to be broken.
+/// Returns the programs to be mutated.
 fn seeds() -> Vec<Vec<u8>> {
     let kit = std::fs::read_dir(workspace().join("tests/conformance")).expect("the kit");
     let mut sources: Vec<_> = kit.map(|entry| entry.expect("a file").path()).collect();

@@ -1,6 +1,6 @@
-//! Measures the loop on the built-in robot in generated rooms against procedures without it, as rows of CSV for
-//! docs/loop.md: `cargo run --release -p mindgap-tests --bin loop-trials -- SIM LOGS FIRST COUNT PROCEDURE…`. `LOGS` are those
-//! that `SIM` was trained on; `FIRST` and `COUNT` say which of the 360 cases, which are in random order.
+//! Compares `mindgap loop` with other procedures on the built-in robot in generated rooms, as CSV for docs/loop.md:
+//! `cargo run --release -p mindgap-tests --example loop-trials -- SIM LOGS FIRST COUNT PROCEDURE…`. `LOGS` are the training logs of
+//! `SIM`. `FIRST` and `COUNT` choose some of the 360 cases, which are in random order.
 
 mod cases;
 mod on_robot;

@@ -1,5 +1,5 @@
-//! Prints how likely the first-echo law makes scans at places that it was not fitted on, as a table in Markdown for
-//! docs/sonar.md: `cargo run --release -p mindgap-tests --bin held-out-scans -- FOLDER…`, one folder of scans each.
+//! Prints the log-likelihood of held-out scans under the first-echo law as a Markdown table for docs/sonar.md:
+//! `cargo run --release -p mindgap-tests --example held-out-scans -- FOLDER…`, with one folder of scans per robot.
 
 use std::path::Path;
 use std::process::ExitCode;

@@ -1,5 +1,5 @@
-//! Checks the functions of `mindgap_core::fixed_point` at every input there is, in four minutes of processor time:
-//! `cargo run --release -p mindgap-tests --bin exhaustive-fixed-point`. Ends with 1 where a bound is broken.
+//! Checks the functions of `mindgap_core::fixed_point` at every input, in four minutes of CPU time:
+//! `cargo run --release -p mindgap-tests --example exhaustive-fixed-point`. Exits with 1 if an error is out of bounds.
 
 use std::ops::RangeInclusive;
 use std::process::ExitCode;
@@ -15,11 +15,11 @@ fn main() -> ExitCode {
     if held.contains(&false) { ExitCode::FAILURE } else { ExitCode::SUCCESS }
 }
 
-/// Prints what was found for every function; whether all bounds hold.
+/// Prints the result for every function and returns whether all bounds hold.
 fn check<F: Format + Sync>(format: &str) -> bool {
     println!("{format}");
     let one = FixedI32::<F>::ONE.to_bits();
-    // Below this the answer is under half an ulp; from there on it does not fit.
+    // Below the first the result is under half an ulp. From the second on it does not fit.
     let zero_below = (-F::I32 - 1) * one;
     let saturates_from = (31 - F::I32) * one;
     let held = [
@@ -28,13 +28,13 @@ fn check<F: Format + Sync>(format: &str) -> bool {
         every("exp2 above that", saturates_from..=i32::MAX, exp2::<F>, FixedI32::MAX),
         bound::<F>("log2 of positive numbers", 1..=i32::MAX, of_log2::<F>),
         every("log2 of the others", i32::MIN..=0, log2::<F>, FixedI32::from_num(-F::I32)),
-        // Whole turns are shifted out, so one turn is every input.
+        // The function shifts out whole turns, so one turn covers every input.
         bound::<F>("cos_pi of one turn", -one..=one - 1, of_cos_pi::<F>),
     ];
     !held.contains(&false)
 }
 
-/// Prints the largest error over the inputs with these bits; whether it is within 1 ulp.
+/// Prints the largest error over the inputs with these bits and returns whether it is within 1 ulp.
 fn bound<F: Format>(what: &str, bits: RangeInclusive<i32>, error_ulp: fn(i32) -> f64) -> bool {
     let inputs = bits.clone().count();
     let larger = |a: (f64, i32), b: (f64, i32)| if b.0 > a.0 { b } else { a };
@@ -43,7 +43,7 @@ fn bound<F: Format>(what: &str, bits: RangeInclusive<i32>, error_ulp: fn(i32) ->
     worst_ulp <= 1.0
 }
 
-/// Prints whether a function has one answer at all inputs with these bits.
+/// Prints and returns whether a function gives `answer` at all inputs with these bits.
 fn every<F: Format + Sync>(
     what: &str,
     bits: RangeInclusive<i32>,
