@@ -1,8 +1,8 @@
-//! Controllers to try things on.
+//! Controllers for tests.
 
 use mindgap_core::controller::{Controller, Tuple, When};
 
-/// A controller at the ends of every range: full speeds, both directions, standing still, and thresholds 0 and 255.
+/// Returns a controller at the ends of every range: full speed in both directions, standstill, thresholds 0 and 255.
 pub fn at_its_limits() -> Controller {
     let tuple = |left, right, when, threshold_cm| Tuple { left, right, when, threshold_cm };
     Controller {

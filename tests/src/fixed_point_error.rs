@@ -1,21 +1,21 @@
-//! How far the functions of `mindgap_core::fixed_point` are from the truth, in units of the last place.
+//! Errors of the functions in `mindgap_core::fixed_point`, in units of the last place.
 
 use fixed::FixedI32;
 use mindgap_core::fixed_point::{Format, cos_pi, exp2, log2};
 
-/// The error of `exp2` at the number with these bits; the truth saturates as the function does.
+/// Returns the error of `exp2` at the number with these bits. The true value saturates like the function.
 pub fn of_exp2<F: Format>(bits: i32) -> f64 {
     let x = FixedI32::<F>::from_bits(bits);
     error_ulp(exp2(x), libm::exp2(x.to_num()))
 }
 
-/// The error of `log2` at the number with these bits, which is positive.
+/// Returns the error of `log2` at the positive number with these bits.
 pub fn of_log2<F: Format>(bits: i32) -> f64 {
     let x = FixedI32::<F>::from_bits(bits);
     error_ulp(log2(x), libm::log2(x.to_num()))
 }
 
-/// The error of `cos_pi` at the number with these bits.
+/// Returns the error of `cos_pi` at the number with these bits.
 pub fn of_cos_pi<F: Format>(bits: i32) -> f64 {
     let x = FixedI32::<F>::from_bits(bits);
     error_ulp(cos_pi(x), libm::cos(std::f64::consts::PI * x.to_num::<f64>()))

@@ -1,16 +1,22 @@
-//! The compiler for NXT programs, `nbc`, as a black box.
+//! `nbc`, the compiler for NXT programs.
 
 use std::process::Command;
 
-/// Compiles NXC for standard firmware and returns the .rxe; panics with the compiler's words when it refuses or warns.
+/// Compiles NXC for standard firmware and returns the .rxe.
+///
+/// # Panics
+/// If the compiler reports an error or a warning.
 pub fn compile(source: &str) -> Vec<u8> {
     compile_for(source, "-v=128")
 }
 
-/// Compiles NXC for the firmware that the option names.
+/// Compiles NXC for the firmware that an option of `nbc` names.
+///
+/// # Panics
+/// If the compiler reports an error or a warning.
 pub fn compile_for(source: &str, firmware: &str) -> Vec<u8> {
     let folder = tempfile::tempdir().expect("a temporary folder");
-    // The compiler chooses the language by the ending; with another than .nxc it writes rubbish and reports success.
+    // The compiler chooses the language by the extension. With any other than .nxc it writes rubbish and reports success.
     let (nxc, rxe) = (folder.path().join("program.nxc"), folder.path().join("program.rxe"));
     std::fs::write(&nxc, source).expect("a file in a temporary folder");
     let output = Command::new("nbc")

@@ -1,7 +1,7 @@
-//! Networks of the sizes of Table I with made-up weights, for tests that need networks and no training.
+//! Networks of the sizes in Table I with synthetic weights, for tests that need no trained networks.
 //!
-//! Each follows a plain law (a differential drive, a sonar that reads a little long and hears less at an angle) and
-//! carries pairs of large product units that almost cancel, as trained networks do.
+//! Each follows a simple law: a differential drive, and a sonar that reads a little long and gets fewer echoes at an angle. Each
+//! has pairs of large product units that almost cancel, like trained networks.
 
 use mindgap_core::network::{Activation, Network, ProductUnit, Scaling, SummationUnit};
 use mindgap_foundations::chance::{Generator, generator};
@@ -9,19 +9,19 @@ use rand::RngExt;
 
 /// The five networks of a simulator.
 pub struct PlausibleNetworks {
-    /// Turn of a step in degrees, from current left and right and previous left and right command.
+    /// Turn in a step, degrees, from the current left and right and the previous left and right command.
     pub turn: Network<f32, 4>,
-    /// Forward movement in a step in cm, from the same.
+    /// Forward motion in a step, cm, from the same inputs.
     pub forward: Network<f32, 4>,
-    /// Movement to the left in a step in cm, from the same.
+    /// Lateral motion to the left in a step, cm, from the same inputs.
     pub lateral: Network<f32, 4>,
     /// Probability of an echo, from the distance in cm and the incidence angle in degrees.
     pub echo_probability: Network<f32, 2>,
-    /// Mean reading in cm, from the same.
+    /// Mean reading, cm, from the same inputs.
     pub echo_value: Network<f32, 2>,
 }
 
-/// The networks that a seed makes.
+/// Returns the networks for a seed.
 pub fn plausible_networks(seed: u64) -> PlausibleNetworks {
     let commands = [Scaling::onto_one_to_two(-100.0, 100.0); 4];
     let sonar = [Scaling::onto_one_to_two(0.0, 255.0), Scaling::onto_one_to_two(0.0, 90.0)];
@@ -37,8 +37,8 @@ pub fn plausible_networks(seed: u64) -> PlausibleNetworks {
     }
 }
 
-/// A network of `hidden` units that answers `at_low` at the low ends of its inputs' ranges and `rises` by so much over
-/// each, give or take what product units with output weights up to `largest_weight` leave.
+/// Returns a network of `hidden` units with output `at_low` at the low ends of its input ranges, which rises by about `rises`
+/// over each range. Product units with output weights up to `largest_weight` almost cancel.
 fn made<const N: usize>(
     hidden: usize,
     inputs: [Scaling<f32>; N],

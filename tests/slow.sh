@@ -1,0 +1,31 @@
+#!/usr/bin/env bash
+# The long forms of the tests in tests/run.sh, and measurements that check something. Takes several hours on two cores.
+#
+# tests/run.sh has a short form of each, so a fault that this script finds is usually found there first:
+#
+#   what                                    in tests/run.sh                           here
+#   kills of commands with a checkpoint     3 per command; 1 of calibrate and demo    200 and 20
+#   failing disk calls                      2 per quick command, 1 per slow one       every call, twice; 8
+#   the demo                                demo --quick: its files and texts         the whole demo: the target is reached
+#   cases of another robot                  three of 31                               all
+#   changes put into real logs              three per robot and no change             26 in each third, 13 scans
+#   real sonars                             two teams                                 all
+#   consoles in the documents               those that are quick                      all
+#   controllers through NXC's compiler      24                                        10,000
+#   fixed-point functions                   samples                                   every input
+#   broken NXT programs                     a few in fuzz/tests                       120 million instructions
+#   fuzz targets                            kept inputs and 1,000 made of them each   libFuzzer, for an hour
+#
+# What is cut are more samples of the same kind. Each kind of fault, command and format keeps at least one.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+exec </dev/null
+. tests/install.sh
+need_all
+
+export MINDGAP_SLOW=1 MINDGAP_DOCS=slow MINDGAP_CONTROLLERS=10000
+cargo test --workspace --tests --features mindgap-tests/mpi --no-fail-fast
+cargo run --release -p mindgap-tests --example exhaustive-fixed-point
+cargo run -p mindgap-tests --example fuzz-brick -- 120 7
+fuzz/run.sh 1
+echo "all slow checks passed"
