@@ -69,7 +69,7 @@ part dependencies check_dependencies
 part rust-version check_rust_version
 part packages check_packages
 part book mdbook build
-part lints cargo clippy --workspace --all-targets "${features[@]}" -- -D warnings
+part lints cargo clippy --workspace --all-targets "${features[@]}" --features mindgap-fuzz/libfuzzer -- -D warnings
 part documentation env RUSTDOCFLAGS="-D warnings" cargo doc --no-deps --workspace "${features[@]}"
 part compilation cargo test --workspace --tests "${features[@]}" --no-run
 part tests run_tests

@@ -4,11 +4,11 @@
 # tests/run.sh has a short form of each, so a fault that this script finds is usually found there first:
 #
 #   what                                    in tests/run.sh                           here
-#   kills of commands with a checkpoint     3 per command; 1 of calibrate and demo    200 and 20
-#   failing disk calls                      2 per quick command, 1 per slow one       every call, twice; 8
+#   kills of commands with a checkpoint     3 per command                             200; 20 of calibrate and the demo
+#   failing disk calls                      2 per quick command, 1 per slow one       every call, twice; 8 also of the demo
 #   the demo                                demo --quick: its files and texts         the whole demo: the target is reached
 #   cases of another robot                  three of 31                               all
-#   changes put into real logs              three per robot and no change             26 in each third, 13 scans
+#   changes put into real logs              three per robot, and no change            26 in each third, 13 scans
 #   real sonars                             two teams                                 all
 #   consoles in the documents               those that are quick                      all
 #   controllers through NXC's compiler      24                                        10,000
@@ -16,7 +16,8 @@
 #   broken NXT programs                     a few in fuzz/tests                       120 million instructions
 #   fuzz targets                            kept inputs and 1,000 made of them each   libFuzzer, for an hour
 #
-# What is cut are more samples of the same kind. Each kind of fault, command and format keeps at least one.
+# tests/run.sh leaves out more samples of the same kind. Each kind of fault and format keeps at least one; kills and failing disks
+# of the demo and of the calibration, which consist of commands that are tested there, are left out and listed as skipped.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 exec </dev/null

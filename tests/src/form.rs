@@ -1,6 +1,8 @@
 //! The short and the long form of a test. `tests/run.sh` runs the short forms, `tests/slow.sh` the long ones.
 
+use std::io::{Write, stderr};
 use std::sync::LazyLock;
+use std::thread;
 
 /// Returns whether the environment asks for long forms: `MINDGAP_SLOW=1`.
 pub fn is_long() -> bool {
@@ -12,6 +14,19 @@ pub fn is_long() -> bool {
 /// Returns the size of a test in the form that is asked for.
 pub fn short_or_long<T>(short: T, long: T) -> T {
     if is_long() { long } else { short }
+}
+
+/// Returns whether a test that has only a long form is skipped. Says so in the words of the test runner, for the list of skipped
+/// tests in `tests/run.sh`: unlike a macro's, this output is not captured.
+///
+/// # Panics
+/// If standard error cannot be written.
+pub fn is_skipped() -> bool {
+    if !is_long() {
+        let name = thread::current().name().unwrap_or("a test without a name").to_owned();
+        write!(stderr(), "\ntest {name} ... ignored, MINDGAP_SLOW=1 runs it\n").expect("standard error");
+    }
+    !is_long()
 }
 
 /// Returns `count` of the items, evenly spread, or all of them where there are fewer.

@@ -8,7 +8,7 @@ use std::path::PathBuf;
 use std::process::Command;
 
 use mindgap_tests::command::{Outcome, Sandbox, program};
-use mindgap_tests::form::{short_or_long, spread};
+use mindgap_tests::form::{is_skipped, short_or_long, spread};
 use mindgap_tests::rooms::{challenge, robot, trained, with_scene};
 use rayon::prelude::*;
 
@@ -117,6 +117,9 @@ fn a_loop_resumes_after_a_disk_failure() {
 
 #[test]
 fn a_demo_resumes_after_a_disk_failure() {
+    if is_skipped() {
+        return;
+    }
     assert_whole(&Sandbox::new(), "demo --quick --out demo --html page.html --force", few(), State);
 }
 

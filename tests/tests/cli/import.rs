@@ -5,6 +5,7 @@ use mindgap_foundations::chance::{Generator, generator};
 use mindgap_foundations::geometry::Pose;
 use mindgap_logs::{Logs, Scene};
 use mindgap_tests::command::Sandbox;
+use mindgap_tests::form::short_or_long;
 use rand::RngExt;
 
 /// Largest error of a clock offset.
@@ -96,7 +97,7 @@ fn sandbox(drive: &Drive) -> Sandbox {
 
 #[test]
 fn clocks_are_aligned_and_each_row_gets_its_pose() {
-    for seed in 0..12u64 {
+    for seed in 0..short_or_long(3, 12u64) {
         let rng = &mut generator(seed, &[2]);
         let camera = Camera { offset_ms: rng.random_range(-9e4..9e5), drift: rng.random_range(-2e-4..2e-4) };
         let drive = drive(seed, camera);
