@@ -8,8 +8,8 @@
 #   failing disk calls                      2 per quick command, 1 per slow one       every call, twice; 8 also of the demo
 #   the demo                                demo --quick: its files and texts         the whole demo: the target is reached
 #   cases of another robot                  three of 31                               all
-#   changes put into real logs              three per robot, and no change            26 in each third, 13 scans
-#   real sonars                             two teams                                 all
+#   changes put into real logs              three and none in the last third          26 in each third, 13 in scans
+#   real sonars                             one team                                  all six
 #   consoles in the documents               those that are quick                      all
 #   controllers through NXC's compiler      24                                        10,000
 #   fixed-point functions                   samples                                   every input

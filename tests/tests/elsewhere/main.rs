@@ -1,5 +1,5 @@
 //! Tests on logs of other robots and other programs. These logs are not part of the project. On machines without them each test
-//! is reported as ignored, by name.
+//! is reported as ignored, by name. So is a test that has only a long form.
 
 mod gap_cases;
 mod gap_real;
@@ -14,6 +14,7 @@ use std::process::ExitCode;
 
 use libtest_mimic::{Arguments, Trial};
 use mindgap_tests::command::workspace;
+use mindgap_tests::form::is_long;
 
 /// Makes a test from its function and the path of its logs below the folder of all logs.
 macro_rules! trial {
@@ -29,7 +30,7 @@ fn main() -> ExitCode {
         trial!(gap_real::the_loss_in_turns_of_a_real_robot_is_found_as_a_formula, "real/create"),
         trial!(gap_real::a_real_sonar_at_rest_is_compared_with_the_kinematic_model, "real/nxt-sonar"),
         trial!(injections::changes_of_a_real_drive_are_named, "real/create"),
-        trial!(injections::changes_of_a_real_sonar_at_rest_are_named, "real/nxt-sonar/sacha_repeat"),
+        only_long(trial!(injections::changes_of_a_real_sonar_at_rest_are_named, "real/nxt-sonar/sacha_repeat")),
         trial!(inspection::simulated_logs_are_left_unchanged, "data"),
         trial!(inspection::scans_at_rest_are_left_unchanged, "real/nxt-sonar"),
         trial!(inspection::runs_cut_from_a_drive_start_moving, "real/create"),
@@ -54,6 +55,11 @@ fn trial(name: &str, logs: &str, test: fn(&Path)) -> Trial {
         Ok(())
     };
     Trial::test(name, run).with_ignored_flag(!folder.is_dir())
+}
+
+/// Ignores a test in the short form.
+fn only_long(trial: Trial) -> Trial {
+    if is_long() { trial } else { trial.with_ignored_flag(true) }
 }
 
 /// Returns `$MINDGAP_SHARED`, or else the folder `shared` next to the workspace.
