@@ -19,7 +19,7 @@ fn sandbox() -> Sandbox {
 }
 
 /// Returns the same folder with a changed simulator.
-fn workshop_with(change: impl FnOnce(&mut Value)) -> Sandbox {
+fn sandbox_with(change: impl FnOnce(&mut Value)) -> Sandbox {
     let sandbox = sandbox();
     let mut simulator = sandbox.json("sim.json");
     change(&mut simulator);
@@ -90,7 +90,7 @@ fn runs_use_the_given_controller() {
 #[test]
 fn a_difference_in_arithmetic_is_found() {
     // Two terms that cancel, so large that their difference in single precision is tenths of a centimetre.
-    let sandbox = workshop_with(|simulator| {
+    let sandbox = sandbox_with(|simulator| {
         let units = simulator["echo_value"]["network"]["product"].as_array_mut().unwrap();
         units.extend([3e6, -3e6].map(|output| json!({ "exponents": [0.3, 0.2], "output": output })));
     });
@@ -136,13 +136,13 @@ fn logs_without_a_place_to_start_are_refused() {
 
 #[test]
 fn a_network_that_cannot_be_represented_is_refused() {
-    let wild = workshop_with(|s| s["forward"]["network"]["product"][2]["exponents"][1] = json!(40.5));
+    let wild = sandbox_with(|s| s["forward"]["network"]["product"][2]["exponents"][1] = json!(40.5));
     let problem = "sim.json: the forward network cannot be represented in fixed point: \
                    product unit 3: exponent of input 2 = 40.5 does not fit Q6.26 (-32..32)";
     assert_eq!(wild.refused("crosscheck sim.json held-out --json found.json"), problem);
     assert_eq!(wild.refused("export sim.json --format rust --out networks.rs"), problem);
 
-    let missing = workshop_with(|s| s["turn"] = Value::Null);
+    let missing = sandbox_with(|s| s["turn"] = Value::Null);
     let problem = "sim.json: the simulator has no turn network: it is not there";
     assert_eq!(missing.refused("crosscheck sim.json held-out --json found.json"), problem);
 }
