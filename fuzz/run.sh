@@ -16,7 +16,7 @@ for option in level=4 inline-8bit-counters pc-table trace-compares; do
     flags+=" -Cllvm-args=-sanitizer-coverage-$option"
 done
 host=$(rustc -vV | sed -n 's/^host: //p')
-RUSTFLAGS=$flags cargo build --quiet --profile fuzz -p mindgap-fuzz --target "$host" --target-dir $out/build
+RUSTFLAGS=$flags cargo build --quiet --profile fuzz -p mindgap-fuzz --features libfuzzer,libfuzzer-sys/link_libfuzzer --target "$host" --target-dir $out/build
 
 TMPDIR=$(mktemp -d -p "$([ -d /dev/shm ] && echo /dev/shm || echo /tmp)")
 export TMPDIR

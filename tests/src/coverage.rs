@@ -1,5 +1,5 @@
-//! How often a robot ends where the distribution over robots expects it: commands of logs are replayed open-loop on robots
-//! drawn from it, and the region that holds a share of their ends should hold that share of the logged ones.
+//! Coverage of predicted end poses. Logged commands are replayed open-loop on robots drawn from the posterior. A region that
+//! contains a share of their end poses should contain the same share of the logged ones.
 
 use glam::DVec2;
 use mindgap_built_in_robot::{BuiltInRobot, default_robot, four_obstacles, run_controller};
@@ -13,33 +13,33 @@ use mindgap_models::simulator::ensemble::{HeldMotion, Member, Robots};
 use mindgap_models::simulator::motion::{MotionNetworks, Speeds};
 use rand_distr::{Distribution, StandardNormal};
 
-/// Shares of the ends that the regions hold.
+/// Shares of the drawn end poses that the regions contain.
 pub const REGIONS: [f64; 3] = [0.5, 0.8, 0.95];
 /// Lengths of paths in steps.
 pub const LENGTHS: [usize; 3] = [5, 10, 25];
 
-/// Robots drawn, of which each drives every path once.
+/// Number of robots drawn. Each drives every path once.
 const ROBOTS: usize = 200;
-/// A step longer than this multiple of the usual one spans missing rows.
+/// A step longer than this multiple of the nominal one spans missing rows.
 const LONGEST_STEP: f64 = 1.5;
-/// Rows at the end of a run that a wall may have ended.
+/// Rows at the end of a crashed run that a wall may have affected.
 const LAST_ROWS: usize = 3;
 const MAX_STEPS: u16 = 60;
 
-/// What was found for one length.
+/// Coverage for paths of one length.
 #[derive(Clone, Copy, Debug)]
 pub struct Coverage {
     /// Length of the paths in steps.
     pub steps: usize,
-    /// Paths.
+    /// Number of paths.
     pub paths: usize,
-    /// Share of them that end within each of [`REGIONS`] about the place that is expected.
+    /// Share of paths that end within each of [`REGIONS`] about the expected position.
     pub places: [f64; 3],
-    /// Share whose heading then is within each.
+    /// Share of paths whose final heading is within each region.
     pub headings: [f64; 3],
 }
 
-/// The coverage for every length of which the logs have paths; none of a simulator that does not say what it leaves open.
+/// Returns the coverage for every length of which the logs have paths, or `None` if the simulator has no posterior.
 pub fn coverage(simulator: &Simulator, logs: &Logs, seed: u64) -> Option<Vec<Coverage>> {
     let Robots { drawn, .. } = simulator.robots(ROBOTS, seed)?;
     let correction = simulator.reference.as_ref()?.motion.as_ref()?;
@@ -64,7 +64,8 @@ pub fn coverage(simulator: &Simulator, logs: &Logs, seed: u64) -> Option<Vec<Cov
     Some(LENGTHS.map(&mut of_length).into_iter().filter(|coverage| coverage.paths > 0).collect())
 }
 
-/// Runs of random controllers on the built-in robot, without what a wall did to it. Their commands are held for long.
+/// Returns runs of random controllers on the built-in robot, without rows that a wall may have affected. They hold their
+/// commands for many steps.
 pub fn controller_runs(simulator: &Simulator, runs: usize, seed: u64) -> Logs {
     let (robot, scene) = (default_robot(), four_obstacles());
     let built_in = BuiltInRobot::new(&robot, &scene, &[]);
@@ -86,7 +87,7 @@ pub fn controller_runs(simulator: &Simulator, runs: usize, seed: u64) -> Logs {
     Logs { robot, scene, runs: driven }
 }
 
-/// What predicts a step.
+/// Predicts logged steps.
 struct Replay<'a> {
     networks: MotionNetworks<'a>,
     /// Standard deviations of the tracker's error in one pose.
@@ -94,7 +95,7 @@ struct Replay<'a> {
     step_ms: f64,
 }
 
-/// Steps of a run between two poses.
+/// Consecutive steps of a run between two poses.
 struct LoggedPath<'a> {
     replay: &'a Replay<'a>,
     steps: Vec<Step>,
@@ -113,7 +114,7 @@ struct Step {
 }
 
 impl Replay<'_> {
-    /// Paths of a run, each beginning in the middle of the one before.
+    /// Returns paths of a run. Each begins in the middle of the one before.
     fn paths<'a>(&'a self, run: &'a Run, steps: usize) -> impl Iterator<Item = LoggedPath<'a>> {
         let last = run.rows.len().saturating_sub(steps);
         (0..last).step_by(steps.div_ceil(2)).filter_map(move |first| self.path(run, first, steps))
@@ -139,7 +140,7 @@ impl Replay<'_> {
 }
 
 impl LoggedPath<'_> {
-    /// The share of drawn ends that are nearer to the expected one than the logged end is: of places, and of headings.
+    /// Returns the shares of drawn end positions and headings that are nearer to the expected one than the logged one.
     fn levels(&self, robots: &[Member], rng: &mut Generator) -> [f64; 2] {
         let ends: Vec<Pose> = robots.iter().map(|robot| self.end(robot, rng)).collect();
         let count = ends.len() as f64;
@@ -161,7 +162,7 @@ impl LoggedPath<'_> {
         [share(&distance), share(&angle)]
     }
 
-    /// Where a robot ends under these commands, as a tracker sees it that saw the begin.
+    /// Returns where a tracker sees a robot at the end of these commands.
     fn end(&self, robot: &Member, rng: &mut Generator) -> Pose {
         let seen = |pose: Pose, rng: &mut Generator| {
             self.replay.tracker.map(|deviation| deviation * normal(rng)).turn_in_radians().end(&pose)
@@ -179,7 +180,7 @@ impl LoggedPath<'_> {
 }
 
 impl Step {
-    /// Whether its command is that of the step before.
+    /// Returns whether the command equals that of the step before.
     fn is_steady(&self) -> bool {
         self.speeds[..2] == self.speeds[2..]
     }
@@ -217,7 +218,7 @@ mod tests {
     /// Regions that hold much less would drive controllers into what nobody expects, and much more would hide them. So few runs
     /// leave controllers' headings too narrow: docs/reference/measurements.md has all figures.
     #[test]
-    fn regions_hold_the_share_of_paths_that_they_should() {
+    fn regions_contain_their_share_of_paths() {
         let recorded = |seed| record(&default_robot(), &training_room(), 50, 60, &[], seed).expect("room to drive");
         let simulator = train(&Serial, &recorded(1), &Trainer::Fast, &TABLE_ONE, 1, &|_| {}).expect("networks");
         for (name, logs) in [("random", recorded(2)), ("controllers", controller_runs(&simulator, 60, 3))] {

@@ -1,12 +1,12 @@
-//! How programs that measure end.
+//! Exit codes of the measurement programs.
 
 use std::process::ExitCode;
 
 use mindgap_foundations::error::Result;
 
-/// Success, or failure after one line of why in the name of this program.
-pub fn exit_code(program: &str, done: Result<()>) -> ExitCode {
-    match done {
+/// Returns success, or prints the error after the name of the program and returns failure.
+pub fn exit_code(program: &str, result: Result<()>) -> ExitCode {
+    match result {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             eprintln!("{program}: {error}");

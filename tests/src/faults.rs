@@ -1,4 +1,4 @@
-//! Faults of logs as they happen to people, to be put into good logs.
+//! Faults that occur in real logs, to be put into good logs.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -7,15 +7,15 @@ use mindgap_foundations::geometry::{Pose, wrap_rad};
 use mindgap_logs::inspection::{Finding, Handling, Inspection};
 use mindgap_logs::{Logs, Row, Rows};
 
-/// A fault and what an inspection has to make of it.
+/// A fault and the finding that the inspection has to make.
 pub struct Fault {
-    /// What it is, for people.
+    /// Description.
     pub what: &'static str,
-    /// What the finding is called.
+    /// Name of the finding.
     pub id: &'static str,
-    /// What is done about it.
+    /// How the inspection handles it.
     pub handling: Handling,
-    /// Puts it in.
+    /// Puts the fault into logs.
     pub put: fn(&mut Logs),
 }
 
@@ -23,7 +23,7 @@ const fn fault(what: &'static str, id: &'static str, handling: Handling, put: fn
     Fault { what, id, handling, put }
 }
 
-/// The run into which faults of single rows are put.
+/// Run into which faults of single rows are put.
 pub const RUN: usize = 4;
 
 /// Faults of motion: in commands, poses and clocks.
@@ -96,7 +96,7 @@ pub const MOTION: [Fault; 20] = [
     }),
 ];
 
-/// Faults that show only where a sensor reads walls.
+/// Faults that only readings of walls show.
 pub const SONAR: [Fault; 8] = [
     fault("readings in millimetres", "echo_unit", Handling::Corrected, |logs| readings(logs, |cm| cm * 10.0)),
     fault("readings in metres", "echo_unit", Handling::Corrected, |logs| readings(logs, |cm| cm / 100.0)),
@@ -114,11 +114,11 @@ pub const SONAR: [Fault; 8] = [
     }),
 ];
 
-/// Puts a fault into good logs and checks what an inspection makes of it: nothing beyond what it says of the good ones but
-/// the fault, in its rows, and logs that are as the good ones in what counts.
+/// Puts a fault into good logs and expects the inspection to find that fault and no other, in the right rows, and to restore or
+/// leave out the faulty values.
 ///
 /// # Panics
-/// When it is not so.
+/// If the inspection does otherwise.
 pub fn assert_found(good: &Logs, fault: &Fault) {
     let what = fault.what;
     let mut faulty = good.clone();
@@ -153,7 +153,7 @@ pub fn assert_found(good: &Logs, fault: &Fault) {
     }
 }
 
-/// Whether two rows are equal within rounding.
+/// Returns whether two rows are equal within rounding.
 fn are_equal(a: &Row, b: &Row) -> bool {
     const ROUNDING: f64 = 1e-9;
     let near = |a: f64, b: f64| (a - b).abs() <= ROUNDING;
@@ -190,7 +190,7 @@ fn flip(pose: &mut Pose) {
     pose.heading_rad = wrap_rad(pose.heading_rad + PI);
 }
 
-/// Commands as they would stand if they were logged so many rows late.
+/// Shifts the commands as if they were logged `late` rows too late.
 fn shift(rows: &mut Rows, late: usize) {
     let commands: Vec<[f64; 2]> = rows.iter().map(|row| row.command()).collect();
     for k in 0..rows.len() {

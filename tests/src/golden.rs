@@ -1,10 +1,10 @@
-//! Golden files: what the program once wrote, with the seed that made it.
+//! Golden files: expected outputs, made with a fixed seed.
 
 use std::fs;
 
 use crate::command::workspace;
 
-/// Compares with `tests/tests/golden/NAME`. With `MINDGAP_BLESS=1` in the environment writes that file instead.
+/// Expects a text to equal `tests/tests/golden/NAME`. `MINDGAP_BLESS=1` in the environment writes that file first.
 #[track_caller]
 pub fn assert_golden(name: &str, text: &str) {
     let path = workspace().join("tests/tests/golden").join(name);
@@ -12,5 +12,9 @@ pub fn assert_golden(name: &str, text: &str) {
         fs::write(&path, text).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
     }
     let golden = fs::read_to_string(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
-    assert!(text == golden, "{} differs; if that is meant, MINDGAP_BLESS=1 renews it. Now:\n{text}", path.display());
+    assert!(
+        text == golden,
+        "{} differs; if the change is intended, MINDGAP_BLESS=1 writes it. Now:\n{text}",
+        path.display()
+    );
 }

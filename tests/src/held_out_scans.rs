@@ -1,4 +1,4 @@
-//! How likely the first-echo law makes scans at a place that it was not fitted on.
+//! Log-likelihood of held-out scans under the first-echo law.
 
 use mindgap_learning::evaluation::sensor_models::nats;
 use mindgap_learning::learn::echo_law;
@@ -8,24 +8,27 @@ use mindgap_logs::inspection::Inspection;
 use mindgap_models::sonar::FirstEchoLaw;
 use mindgap_models::sonar::echo_law::Surfaces;
 
-/// Mean log-likelihoods of a reading over scans that are left out one by one.
+/// Mean log-likelihoods per reading over scans that are held out one by one, nats.
 pub struct HeldOut {
     /// Number of readings.
     pub readings: usize,
-    /// With offsets in x, y and heading that are fitted on the judged scan itself.
+    /// With offsets in x, y and heading that are fitted to the held-out scan itself.
     pub poses_refitted: f64,
-    /// With an offset in heading alone.
+    /// With an offset in heading only.
     pub heading_refitted: f64,
     /// With poses as logged.
     pub as_logged: f64,
 }
 
-/// Headings of a judged scan that are tried, half degrees to either side, and their standard deviation beforehand, degrees.
+/// Largest heading offset that is tried, in half degrees, and the prior standard deviation of the offset, degrees.
 const HALF_DEGREES: i32 = 30;
 const DEVIATION_DEG: f64 = 4.0;
 
 impl HeldOut {
-    /// Of logs whose runs are scans, one a place; what is no reading is left out of them as everywhere.
+    /// Fits the law to all scans but one, for each scan in turn. Each run of the logs is the scan at one place.
+    ///
+    /// # Panics
+    /// If the logs hold too few readings to fit the law.
     pub fn of(logs: Logs) -> Self {
         let logs = Inspection::new(logs).logs;
         let surfaces = Surfaces::new(logs.scene.sides());
@@ -51,7 +54,7 @@ impl HeldOut {
     }
 }
 
-/// The log-likelihood of a scan at the most probable of its headings.
+/// Returns the log-likelihood of a scan at its most probable heading offset, nats.
 fn heading_refitted(law: &FirstEchoLaw, surfaces: &Surfaces, scan: &Logs) -> f64 {
     let scans = Scans::of(scan);
     let at = |half: i32| {

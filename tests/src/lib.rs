@@ -1,6 +1,4 @@
-//! What the tests share: the built command, golden files, error bounds of fixed point, the compiler for NXT programs,
-//! ROS 2 bags, how often robots end where they are expected, how programs that measure end, and which modules of a crate
-//! know which.
+//! Helpers that tests of several crates share, and measurements that the programs in `examples` print.
 
 pub mod command;
 pub mod controllers;
@@ -9,6 +7,7 @@ pub mod exit_code;
 pub mod faults;
 pub mod firmware_networks;
 pub mod fixed_point_error;
+pub mod form;
 pub mod golden;
 pub mod held_out_scans;
 pub mod module_order;

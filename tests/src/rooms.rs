@@ -1,8 +1,8 @@
-//! A small room and a simulator for it, and a small challenge, quick to make and to answer.
+//! A small room with its simulator, and a small challenge.
 
 use std::sync::LazyLock;
 
-use crate::command::Workshop;
+use crate::command::Sandbox;
 
 /// A room with one obstacle, a target and two starts.
 pub const SCENE: &str = "\
@@ -31,38 +31,38 @@ y_cm = 30
 heading_deg = 90
 ";
 
-/// A folder with small logs in `logs` and a simulator that was trained on them in `sim.json`.
-pub fn trained() -> Workshop {
-    static TRAINED: LazyLock<Workshop> = LazyLock::new(|| {
-        let workshop = Workshop::with_logs();
-        workshop.done("train logs --out sim.json");
-        workshop
+/// Returns a folder with small logs in `logs` and a simulator in `sim.json` that was trained on them.
+pub fn trained() -> Sandbox {
+    static TRAINED: LazyLock<Sandbox> = LazyLock::new(|| {
+        let sandbox = Sandbox::with_logs();
+        sandbox.run("train logs --out sim.json");
+        sandbox
     });
     TRAINED.copy()
 }
 
-/// The same with the room in `scene.toml`.
-pub fn with_scene() -> Workshop {
-    let workshop = trained();
-    workshop.write("scene.toml", SCENE);
-    workshop
+/// Returns the same folder with the room in `scene.toml`.
+pub fn with_scene() -> Sandbox {
+    let sandbox = trained();
+    sandbox.write("scene.toml", SCENE);
+    sandbox
 }
 
-/// Short cases of a challenge in `blind`.
-pub fn challenge(cases: usize) -> Workshop {
-    let workshop = Workshop::new();
-    workshop.done(&format!("challenge make --quick --cases {cases} --seed 5 --out blind"));
-    workshop
+/// Returns a folder with short cases of a challenge in `blind`.
+pub fn challenge(cases: usize) -> Sandbox {
+    let sandbox = Sandbox::new();
+    sandbox.run(&format!("challenge make --quick --cases {cases} --seed 5 --out blind"));
+    sandbox
 }
 
-/// The built-in robot, with a weak motor, as the command `robot.sh` of a loop. `before` prepares its arguments, and `after`
-/// is done to the log, a file `$4`.
+/// Writes `robot.sh`, which drives the built-in robot with a weak motor for `mindgap loop`. The shell code `before` may change the
+/// arguments, and `after` may change the log, the file `$4`.
 ///
 /// # Panics
-/// When the path of the command is no UTF-8.
-pub fn robot(workshop: &Workshop, before: &str, after: &str) {
-    let command = workshop.command("");
+/// If the path of the command is not UTF-8.
+pub fn robot(sandbox: &Sandbox, before: &str, after: &str) {
+    let command = sandbox.command("");
     let mindgap = command.get_program().to_str().expect("a path in UTF-8");
     let drive = format!("'{mindgap}' drive \"$1\" --scene \"$2\" --start \"$3\" --out \"$4\" --seed \"$5\"");
-    workshop.write("robot.sh", format!("set -e\n{before}\n{drive} --effect motor_asymmetry=0.1\n{after}\n"));
+    sandbox.write("robot.sh", format!("set -e\n{before}\n{drive} --effect motor_asymmetry=0.1\n{after}\n"));
 }

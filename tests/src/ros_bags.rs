@@ -1,4 +1,4 @@
-//! ROS 2 bags by their official Python writer, which comes from PyPI into an environment of its own below `target`.
+//! ROS 2 bags, written by the official Python package in a virtual environment under `target`.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -6,30 +6,37 @@ use std::sync::LazyLock;
 
 use crate::command::workspace;
 
-/// The writer; what it needs comes with it.
+/// The package that writes bags.
 const PACKAGE: &str = "mcap-ros2-support==0.6.0";
 
-/// Writes `tracker.mcap`, `odometry.mcap`, `transforms.mcap` and `localised.mcap` of a drive into a folder. The drive is CSV with t_s,
-/// v_m_s, w_rad_s, x_m, y_m, qz, qw and range_m.
+/// Writes `tracker.mcap`, `odometry.mcap`, `transforms.mcap` and `localised.mcap` of a drive into a folder. The drive is a CSV
+/// file with columns t_s, v_m_s, w_rad_s, x_m, y_m, qz, qw and range_m.
 pub fn write(drive: &Path, folder: &Path) {
     let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/ros_bags.py");
-    done(Command::new(&*PYTHON).arg(script).args([drive, folder]));
+    succeed(Command::new(&*PYTHON).arg(script).args([drive, folder]));
 }
 
-/// A Python that has the writer.
+/// A Python with the package.
 static PYTHON: LazyLock<PathBuf> = LazyLock::new(|| {
     let environment = workspace().join("target/ros-bags");
     let python = environment.join("bin/python");
     let has_it =
         Command::new(&python).args(["-c", "import mcap_ros2.writer"]).output().is_ok_and(|o| o.status.success());
     if !has_it {
-        done(Command::new("python3").args(["-m", "venv", "--clear"]).arg(&environment));
-        done(Command::new(&python).args(["-m", "pip", "install", "--quiet", "--disable-pip-version-check", PACKAGE]));
+        succeed(Command::new("python3").args(["-m", "venv", "--clear"]).arg(&environment));
+        succeed(Command::new(&python).args([
+            "-m",
+            "pip",
+            "install",
+            "--quiet",
+            "--disable-pip-version-check",
+            PACKAGE,
+        ]));
     }
     python
 });
 
-fn done(command: &mut Command) {
+fn succeed(command: &mut Command) {
     let output = command.output().unwrap_or_else(|e| panic!("{command:?}: {e}; apt-get install python3-venv"));
     assert!(output.status.success(), "{command:?}: {}", String::from_utf8_lossy(&output.stderr));
 }

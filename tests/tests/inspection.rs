@@ -1,4 +1,4 @@
-//! Faults that are put into the built-in robot's logs are found, and what it does by itself is none.
+//! The inspection finds faults that are put into the built-in robot's logs, and no others.
 
 use glam::DVec2;
 use mindgap_built_in_robot::{ActiveEffect, Effect, default_robot, record, training_room};
@@ -16,15 +16,15 @@ fn logs(runs: usize, effects: &[ActiveEffect]) -> Logs {
 }
 
 #[test]
-fn faults_are_found_and_put_right_or_left_out() {
+fn faults_are_found_and_corrected_or_left_out() {
     let good = logs(24, &[]);
     assert!(Inspection::new(good.clone()).findings.is_empty());
     MOTION.iter().chain(&SONAR).for_each(|fault| assert_found(&good, fault));
 }
 
-/// What is changed in a robot is no fault of its logs.
+/// A changed robot still writes correct logs.
 #[test]
-fn no_effect_is_taken_for_a_fault() {
+fn no_effect_is_mistaken_for_a_fault() {
     for effect in Effect::all().filter(|effect| effect.id() != "lost_commands") {
         let logs = logs(12, &[ActiveEffect::new(effect)]);
         let inspected = Inspection::new(logs.clone());
@@ -33,8 +33,8 @@ fn no_effect_is_taken_for_a_fault() {
     }
 }
 
-/// A robot that does not hear its commands for seconds spins against them by 90 degrees a step: no log tells that from a
-/// tracker that jumps. Few rows are taken for that, and they are told.
+/// A robot that misses its commands for seconds may spin against them by 90 degrees per step, which looks like a jump of the
+/// tracker. That happens in few rows, and they are reported.
 #[test]
 fn lost_commands_look_like_jumps_in_few_rows() {
     let lost = Effect::all().find(|effect| effect.id() == "lost_commands").expect("an effect outside the table");
@@ -66,7 +66,7 @@ fn a_shifted_clock_of_all_runs_withholds_motion() {
     assert!(inspected.withheld(Part::Motion).is_some() && inspected.withheld(Part::Sonar).is_none());
 }
 
-/// Somebody carries the robot on while its motors stand still.
+/// Someone carries the robot while its motors are at rest.
 #[test]
 fn motion_at_zero_commands_is_left_out() {
     let mut logs = logs(12, &[]);
@@ -87,9 +87,9 @@ fn motion_at_zero_commands_is_left_out() {
     assert_eq!((&place.run, place.rows.first(), place.rows.last()), (&logs.runs[RUN].name, Some(&27), Some(&31)));
 }
 
-/// A brick that acts a third of a second late, cut out of the middle of its drive.
+/// A brick acts a third of a second late, and its runs are cut out of longer drives.
 #[test]
-fn a_drive_that_is_cut_starts_moving() {
+fn a_run_cut_from_a_drive_starts_moving() {
     let late: ActiveEffect = "latency=140".parse().expect("an effect");
     let mut logs = logs(12, &[late]);
     assert!(Inspection::new(logs.clone()).findings.is_empty());
@@ -103,7 +103,7 @@ fn a_drive_that_is_cut_starts_moving() {
 }
 
 #[test]
-fn logs_that_say_little_pass() {
+fn logs_with_little_information_pass() {
     let mut still = logs(6, &[]);
     still.runs.iter_mut().for_each(|run| run.rows.edit_each(|row| (row.left, row.right) = (0.0, 0.0)));
     let mut unseen = logs(6, &[]);
@@ -120,8 +120,8 @@ fn logs_that_say_little_pass() {
     }
 }
 
-/// What is wrong with logs of a robot that is as its simulator says is no cause of a gap. Faults that are put right leave
-/// logs as they were, which is held above; those that are left out or told are here.
+/// A fault of the logs is not a cause of a gap. Corrected faults leave the logs unchanged, as tested above. This test is about
+/// faults that are left out or reported.
 #[test]
 fn no_fault_reaches_a_confident_cause() {
     const SURE: f64 = 0.9;

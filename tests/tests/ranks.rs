@@ -1,4 +1,4 @@
-//! `mpirun -n R mindgap …`: the same files as from threads, and one line where something is wrong.
+//! `mpirun -n R mindgap …` writes the same files as threads do, and reports a failure in one line.
 
 use std::fs;
 use std::os::unix::fs::PermissionsExt;
@@ -7,35 +7,35 @@ use std::process::{Command, Stdio};
 use std::thread;
 use std::time::Duration;
 
-use mindgap_tests::command::{Done, Workshop, program};
+use mindgap_tests::command::{Outcome, Sandbox, program};
 use mindgap_tests::rooms::{challenge, robot, with_scene};
 
-/// A process with so many ranks in a workshop's folder, each with these arguments.
-fn ranks(workshop: &Workshop, count: usize, arguments: &str) -> Command {
+/// Returns a process that runs the command on `count` ranks in a folder.
+fn ranks(sandbox: &Sandbox, count: usize, arguments: &str) -> Command {
     let mut command = Command::new("mpirun");
-    command.current_dir(workshop.path()).args(["--allow-run-as-root", "--oversubscribe", "--quiet"]);
+    command.current_dir(sandbox.path()).args(["--allow-run-as-root", "--oversubscribe", "--quiet"]);
     command.args(["-n", &count.to_string()]).arg(program()).args(arguments.split_whitespace());
     command
 }
 
-/// The lines that are the command's own: `mpirun` adds some where it fails.
-fn own_lines(done: &Done) -> Vec<&str> {
-    done.err.lines().filter(|line| line.starts_with("mindgap: ")).collect()
+/// Returns the lines of the command itself: `mpirun` adds some on failure.
+fn own_lines(outcome: &Outcome) -> Vec<&str> {
+    outcome.err.lines().filter(|line| line.starts_with("mindgap: ")).collect()
 }
 
-/// Threads and any number of ranks leave the same files after `calls`.
+/// Expects the same files and output from `calls` on threads and on any number of ranks.
 #[track_caller]
-fn same_at_any_number(prepared: &Workshop, calls: &[&str]) {
+fn same_at_any_number(prepared: &Sandbox, calls: &[&str]) {
     let threads = prepared.copy();
-    let told: Vec<String> = calls.iter().map(|call| threads.done(call)).collect();
+    let outputs: Vec<String> = calls.iter().map(|call| threads.run(call)).collect();
     for count in [1, 2, 4] {
-        let workshop = prepared.copy();
-        for (call, told) in calls.iter().zip(&told) {
-            let done = workshop.run(ranks(&workshop, count, call));
-            assert_eq!(done.code, 0, "{count} ranks: {call}: {}", done.err);
-            assert_eq!(done.out, *told, "{count} ranks: {call}");
+        let sandbox = prepared.copy();
+        for (call, output) in calls.iter().zip(&outputs) {
+            let outcome = sandbox.execute(ranks(&sandbox, count, call));
+            assert_eq!(outcome.code, 0, "{count} ranks: {call}: {}", outcome.err);
+            assert_eq!(outcome.out, *output, "{count} ranks: {call}");
         }
-        let (expected, found) = (threads.files(""), workshop.files(""));
+        let (expected, found) = (threads.files(""), sandbox.files(""));
         assert_eq!(expected.len(), found.len(), "{count} ranks: {calls:?}");
         for (a, b) in expected.iter().zip(&found) {
             assert!(a == b, "{count} ranks: {calls:?}: {} and {}", a.0.display(), b.0.display());
@@ -44,65 +44,65 @@ fn same_at_any_number(prepared: &Workshop, calls: &[&str]) {
 }
 
 #[test]
-fn training_and_evolution() {
+fn training_and_evolution_do_not_depend_on_the_number_of_ranks() {
     same_at_any_number(&with_scene(), &["train logs --out again.json", EVOLVE]);
 }
 
 #[test]
-fn a_challenge() {
-    same_at_any_number(&Workshop::new(), &["challenge make --cases 3 --seed 5 --out blind"]);
+fn a_challenge_does_not_depend_on_the_number_of_ranks() {
+    same_at_any_number(&Sandbox::new(), &["challenge make --cases 3 --seed 5 --out blind"]);
     same_at_any_number(&challenge(2), &["challenge answer blind"]);
 }
 
 #[test]
-fn a_loop() {
-    let workshop = with_scene();
-    robot(&workshop, "", "");
-    let path = workshop.path().join("robot.sh");
-    workshop.edit("robot.sh", |text| format!("#!/bin/sh\n{text}"));
+fn a_loop_does_not_depend_on_the_number_of_ranks() {
+    let sandbox = with_scene();
+    robot(&sandbox, "", "");
+    let path = sandbox.path().join("robot.sh");
+    sandbox.edit("robot.sh", |text| format!("#!/bin/sh\n{text}"));
     fs::set_permissions(&path, fs::Permissions::from_mode(0o755)).expect("a command");
     let call = "loop out --sim sim.json --scene scene.toml --max-steps 20 --trials 1 --robot";
-    same_at_any_number(&workshop, &[&format!("{call} {}", path.display())]);
+    same_at_any_number(&sandbox, &[&format!("{call} {}", path.display())]);
 }
 
 #[test]
-fn what_is_not_shared_is_done_once() {
-    same_at_any_number(&Workshop::new(), &["record --out logs --runs 2 --steps 5", "check logs"]);
+fn commands_without_shared_work_run_once() {
+    same_at_any_number(&Sandbox::new(), &["record --out logs --runs 2 --steps 5", "check logs"]);
 }
 
 const EVOLVE: &str = "evolve sim.json --scene scene.toml --max-steps 20 --paper --out controller.toml";
 
 #[test]
-fn a_failure_is_told_once() {
-    let workshop = with_scene();
-    workshop.edit("scene.toml", |text| text.replace("[target]", "[aim]"));
-    let done = workshop.run(ranks(&workshop, 3, EVOLVE));
-    assert_eq!((done.code, own_lines(&done).len()), (1, 1), "{done:?}");
-    assert!(!workshop.path().join("controller.toml").exists());
+fn a_failure_is_reported_once() {
+    let sandbox = with_scene();
+    sandbox.edit("scene.toml", |text| text.replace("[target]", "[aim]"));
+    let outcome = sandbox.execute(ranks(&sandbox, 3, EVOLVE));
+    assert_eq!((outcome.code, own_lines(&outcome).len()), (1, 1), "{outcome:?}");
+    assert!(!sandbox.path().join("controller.toml").exists());
 }
 
 #[test]
 fn ranks_with_other_arguments_or_files_are_refused() {
     let (here, there) = (with_scene(), with_scene());
     there.edit("scene.toml", |text| text.replace("x_cm = 160", "x_cm = 161"));
-    let refused = |folder: &Workshop, more: &str| {
+    let refused = |folder: &Sandbox, more: &str| {
         let mut command = ranks(&here, 1, EVOLVE);
         command.args([":", "-n", "1", "-wdir"]).arg(folder.path()).arg(program());
         command.args(EVOLVE.split_whitespace()).args(more.split_whitespace());
-        let done = here.run(command);
-        assert_eq!((done.code, own_lines(&done).len()), (1, 1), "{done:?}");
+        let outcome = here.execute(command);
+        assert_eq!((outcome.code, own_lines(&outcome).len()), (1, 1), "{outcome:?}");
         assert!(!here.path().join("controller.toml").exists());
-        own_lines(&done)[0].to_owned()
+        own_lines(&outcome)[0].to_owned()
     };
     assert!(refused(&here, "--seed 2").ends_with("rank 1 differs from rank 0: it has --seed 2, not 1"));
     assert!(refused(&there, "").ends_with("it has different content in scene.toml"));
 }
 
 #[test]
-fn after_a_rank_is_killed_the_run_goes_on_from_its_checkpoint() {
+fn a_run_resumes_from_its_checkpoint_after_a_rank_is_killed() {
     let unbroken = with_scene();
     let broken = unbroken.copy();
-    unbroken.done(EVOLVE);
+    unbroken.run(EVOLVE);
     let call = format!("{EVOLVE} --checkpoint kept");
     let mut command = ranks(&broken, 3, &call);
     let mut running = command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().expect("mpirun starts");
@@ -113,13 +113,13 @@ fn after_a_rank_is_killed_the_run_goes_on_from_its_checkpoint() {
     let victim = rank_in(broken.path(), 1).expect("rank 1 runs");
     assert!(Command::new("kill").args(["-9", &victim]).status().expect("kill runs").success());
     assert!(!running.wait().expect("mpirun ends").success());
-    let done = broken.call(&call);
-    assert_eq!(done.code, 0, "{}", done.err);
-    assert!(done.err.contains("kept: resuming, "), "{}", done.err);
+    let outcome = broken.call(&call);
+    assert_eq!(outcome.code, 0, "{}", outcome.err);
+    assert!(outcome.err.contains("kept: resuming, "), "{}", outcome.err);
     assert_eq!(unbroken.files(""), broken.files(""));
 }
 
-/// The process of a rank that works in a folder.
+/// Returns the process of a rank that works in a folder.
 fn rank_in(folder: &Path, rank: usize) -> Option<String> {
     let folder = folder.canonicalize().ok()?;
     let sign = format!("OMPI_COMM_WORLD_RANK={rank}");

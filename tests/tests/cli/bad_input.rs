@@ -2,17 +2,17 @@
 
 use std::fs;
 
-use mindgap_tests::command::Workshop;
+use mindgap_tests::command::Sandbox;
 use mindgap_tests::rooms::{SCENE, trained, with_scene};
 
-/// Changes one file of small logs and expects that training on them is refused.
+/// Changes one file of small logs, expects training to be refused, and returns the message.
 fn refused_after(file: &str, change: impl FnOnce(String) -> String) -> String {
-    let workshop = Workshop::with_logs();
-    workshop.edit(&format!("logs/{file}"), change);
-    workshop.refused("train logs --out sim.json")
+    let sandbox = Sandbox::with_logs();
+    sandbox.edit(&format!("logs/{file}"), change);
+    sandbox.refused("train logs --out sim.json")
 }
 
-/// Changes the cells of row `line` (from 1, the header being 1) of a run's text.
+/// Returns a run's text with changed cells in line `line`, which counts from 1 at the header.
 fn with_row(text: &str, line: usize, change: impl Fn(&mut Vec<String>)) -> String {
     let mut lines: Vec<String> = text.lines().map(str::to_owned).collect();
     let mut cells: Vec<String> = lines[line - 1].split(',').map(str::to_owned).collect();
@@ -21,7 +21,7 @@ fn with_row(text: &str, line: usize, change: impl Fn(&mut Vec<String>)) -> Strin
     lines.join("\n") + "\n"
 }
 
-/// Changes the cells of every row below the header.
+/// Returns a text with changed cells in every row below the header.
 fn with_rows(text: &str, change: impl Fn(&mut Vec<String>)) -> String {
     (2..=text.lines().count()).fold(text.to_owned(), |text, line| with_row(&text, line, &change))
 }
@@ -31,32 +31,32 @@ fn begins(problem: &str, start: &str) {
 }
 
 #[test]
-fn files_that_are_missing() {
-    let workshop = Workshop::new();
-    begins(&workshop.refused("train logs --out sim.json"), "logs/robot.toml: cannot be read: ");
-    begins(&workshop.refused("evaluate sim.json logs"), "sim.json: cannot be read: ");
-    begins(&workshop.refused("export c.toml --format nxc --out c.nxc"), "c.toml: cannot be read: ");
-    begins(&workshop.refused("record --out logs --scene room.toml"), "room.toml: cannot be read: ");
-    let workshop = trained();
-    begins(&workshop.refused("evolve sim.json --scene room.toml --out c.toml"), "room.toml: cannot be read: ");
+fn missing_files_are_refused() {
+    let sandbox = Sandbox::new();
+    begins(&sandbox.refused("train logs --out sim.json"), "logs/robot.toml: cannot be read: ");
+    begins(&sandbox.refused("evaluate sim.json logs"), "sim.json: cannot be read: ");
+    begins(&sandbox.refused("export c.toml --format nxc --out c.nxc"), "c.toml: cannot be read: ");
+    begins(&sandbox.refused("record --out logs --scene room.toml"), "room.toml: cannot be read: ");
+    let sandbox = trained();
+    begins(&sandbox.refused("evolve sim.json --scene room.toml --out c.toml"), "room.toml: cannot be read: ");
     for (file, problem) in [("scene.toml", "logs/scene.toml: cannot be read: "), ("robot.toml", "logs/robot.toml: ")] {
-        let workshop = Workshop::with_logs();
-        fs::remove_file(workshop.path().join("logs").join(file)).unwrap();
-        begins(&workshop.refused("train logs --out sim.json"), problem);
+        let sandbox = Sandbox::with_logs();
+        fs::remove_file(sandbox.path().join("logs").join(file)).unwrap();
+        begins(&sandbox.refused("train logs --out sim.json"), problem);
     }
 }
 
 #[test]
-fn a_folder_without_runs() {
-    let workshop = Workshop::with_logs();
+fn a_folder_without_runs_is_refused() {
+    let sandbox = Sandbox::with_logs();
     for run in 0..6 {
-        fs::remove_file(workshop.path().join(format!("logs/run-00{run}.csv"))).unwrap();
+        fs::remove_file(sandbox.path().join(format!("logs/run-00{run}.csv"))).unwrap();
     }
-    assert_eq!(workshop.refused("train logs --out sim.json"), "logs: has no run-*.csv");
+    assert_eq!(sandbox.refused("train logs --out sim.json"), "logs: has no run-*.csv");
 }
 
 #[test]
-fn a_wrong_column() {
+fn missing_and_duplicate_columns_are_refused() {
     let problem = refused_after("run-002.csv", |text| text.replacen("heading_deg", "heading", 1));
     begins(&problem, "logs/run-002.csv:1: column heading_deg is missing");
     let problem = refused_after("run-002.csv", |text| text.replacen("right", "left", 1));
@@ -64,10 +64,10 @@ fn a_wrong_column() {
 }
 
 #[test]
-fn numbers_that_are_none() {
+fn cells_that_are_not_numbers_are_refused() {
     for (cell, word) in [("NaN", "NaN"), ("inf", "inf"), ("1e300", "1e300"), ("ten", "\"ten\"")] {
         for (column, name) in [(0, "t_ms"), (1, "left"), (3, "x_cm"), (6, "echo_cm")] {
-            // Drivers say inf or nan where there was no echo.
+            // Drivers write inf or nan where there was no echo.
             if name == "echo_cm" && ["NaN", "inf"].contains(&word) {
                 continue;
             }
@@ -78,7 +78,7 @@ fn numbers_that_are_none() {
 }
 
 #[test]
-fn numbers_that_cannot_be() {
+fn numbers_out_of_range_are_refused() {
     let problem = refused_after("run-001.csv", |text| with_row(&text, 4, |cells| cells[2] = "101".into()));
     assert_eq!(problem, "logs/run-001.csv:4: right = 101 lies outside -100..100");
     let problem = refused_after("run-001.csv", |text| with_row(&text, 4, |cells| cells[6] = "-1".into()));
@@ -90,7 +90,7 @@ fn numbers_that_cannot_be() {
 }
 
 #[test]
-fn a_log_that_is_empty_or_too_short() {
+fn an_empty_or_one_row_log_is_refused() {
     begins(&refused_after("run-003.csv", |_| String::new()), "logs/run-003.csv:1: ");
     let lines =
         |text: String, count: usize| text.lines().take(count).map(|line| format!("{line}\n")).collect::<String>();
@@ -101,38 +101,38 @@ fn a_log_that_is_empty_or_too_short() {
 }
 
 #[test]
-fn a_torn_last_line() {
+fn a_truncated_last_line_is_refused() {
     let problem = refused_after("run-000.csv", |text| text[..text.trim_end().rfind(',').unwrap()].to_owned());
     begins(&problem, "logs/run-000.csv:27: has 9 cells where the header has 10");
 }
 
 #[test]
-fn a_last_line_without_its_end_is_told_and_used() {
-    let workshop = Workshop::with_logs();
-    workshop.edit("logs/run-000.csv", |text| text.trim_end().to_owned());
-    let done = workshop.call("train logs --out sim.json");
-    assert_eq!(done.code, 0);
-    begins(&done.err, "mindgap: warning: logs/run-000.csv: the last line has no line end");
+fn a_last_line_without_newline_is_used_with_a_warning() {
+    let sandbox = Sandbox::with_logs();
+    sandbox.edit("logs/run-000.csv", |text| text.trim_end().to_owned());
+    let outcome = sandbox.call("train logs --out sim.json");
+    assert_eq!(outcome.code, 0);
+    begins(&outcome.err, "mindgap: warning: logs/run-000.csv: the last line has no line end");
 }
 
 #[test]
-fn an_unknown_column_is_told_and_left_out() {
-    let workshop = Workshop::with_logs();
-    workshop.edit("logs/run-000.csv", |text| text.replacen("battery_mv", "mood", 1));
-    let done = workshop.call("train logs --out sim.json");
-    assert_eq!(done.code, 0);
-    assert_eq!(done.err, "mindgap: warning: logs/run-000.csv:1: unknown column \"mood\" ignored\n");
+fn an_unknown_column_is_ignored_with_a_warning() {
+    let sandbox = Sandbox::with_logs();
+    sandbox.edit("logs/run-000.csv", |text| text.replacen("battery_mv", "mood", 1));
+    let outcome = sandbox.call("train logs --out sim.json");
+    assert_eq!(outcome.code, 0);
+    assert_eq!(outcome.err, "mindgap: warning: logs/run-000.csv:1: unknown column \"mood\" ignored\n");
 }
 
 #[test]
-fn a_step_that_is_not_the_robots() {
+fn rows_at_another_interval_than_the_robots_are_refused() {
     let problem = refused_after("robot.toml", |text| text.replace("step_ms = 400", "step_ms = 200"));
     begins(&problem, "logs: rows are ");
     assert!(problem.ends_with("robot.toml has step_ms = 200"), "{problem}");
 }
 
 #[test]
-fn robots_and_scenes_that_cannot_be() {
+fn impossible_robots_and_scenes_are_refused() {
     begins(
         &refused_after("robot.toml", |text| text.replace("track_cm = 11.5", "track_cm = -1")),
         "logs/robot.toml: track_cm = -1",
@@ -150,72 +150,72 @@ fn robots_and_scenes_that_cannot_be() {
 }
 
 #[test]
-fn all_equal_commands_train_no_motion() {
-    let workshop = Workshop::with_logs();
+fn constant_commands_train_no_motion_network() {
+    let sandbox = Sandbox::with_logs();
     for run in 0..6 {
         let equal = |text: String| with_rows(&text, |cells| cells[1..3].fill("50".into()));
-        workshop.edit(&format!("logs/run-00{run}.csv"), equal);
+        sandbox.edit(&format!("logs/run-00{run}.csv"), equal);
     }
-    let done = workshop.call("train logs --out sim.json");
-    assert_eq!(done.code, 0, "the two sonar networks are there: {}", done.err);
-    // The runs drove by other commands than are written there now, which is told too.
-    let told: Vec<&str> = done.err.lines().filter(|line| line.contains("network")).collect();
-    assert_eq!(told.len(), 3, "{told:?}");
-    for (line, network) in told.iter().zip(["turn", "forward", "lateral"]) {
+    let outcome = sandbox.call("train logs --out sim.json");
+    assert_eq!(outcome.code, 0, "the two sonar networks are there: {}", outcome.err);
+    // Another warning says that the runs did not drive as these commands ask.
+    let warnings: Vec<&str> = outcome.err.lines().filter(|line| line.contains("network")).collect();
+    assert_eq!(warnings.len(), 3, "{warnings:?}");
+    for (line, network) in warnings.iter().zip(["turn", "forward", "lateral"]) {
         begins(line, &format!("mindgap: warning: no {network} network: "));
         assert!(line.contains("commands"), "{line}");
     }
-    workshop.write("scene.toml", SCENE);
-    let problem = workshop.refused("evolve sim.json --scene scene.toml --out c.toml");
+    sandbox.write("scene.toml", SCENE);
+    let problem = sandbox.refused("evolve sim.json --scene scene.toml --out c.toml");
     assert!(problem.contains("the simulator has no forward network"), "{problem}");
 }
 
 #[test]
-fn logs_without_an_echo_train_no_sonar() {
-    let workshop = Workshop::with_logs();
+fn logs_without_an_echo_train_no_sonar_network() {
+    let sandbox = Sandbox::with_logs();
     for run in 0..6 {
-        workshop.edit(&format!("logs/run-00{run}.csv"), |text| with_rows(&text, |cells| cells[6].clear()));
+        sandbox.edit(&format!("logs/run-00{run}.csv"), |text| with_rows(&text, |cells| cells[6].clear()));
     }
-    let done = workshop.call("train logs --out sim.json");
-    assert_eq!(done.code, 0, "the three motion networks are there: {}", done.err);
-    let told: Vec<&str> = done.err.lines().collect();
-    assert_eq!(told.len(), 2, "{told:?}");
-    begins(told[0], "mindgap: warning: no echo_probability network: ");
-    begins(told[1], "mindgap: warning: no echo_value network: ");
-    workshop.write("scene.toml", SCENE);
-    let problem = workshop.refused("evolve sim.json --scene scene.toml --out c.toml");
+    let outcome = sandbox.call("train logs --out sim.json");
+    assert_eq!(outcome.code, 0, "the three motion networks are there: {}", outcome.err);
+    let warnings: Vec<&str> = outcome.err.lines().collect();
+    assert_eq!(warnings.len(), 2, "{warnings:?}");
+    begins(warnings[0], "mindgap: warning: no echo_probability network: ");
+    begins(warnings[1], "mindgap: warning: no echo_value network: ");
+    sandbox.write("scene.toml", SCENE);
+    let problem = sandbox.refused("evolve sim.json --scene scene.toml --out c.toml");
     assert!(problem.contains("the simulator has no echo_probability network"), "{problem}");
 }
 
 #[test]
-fn logs_that_support_no_network() {
-    let workshop = Workshop::with_logs();
+fn logs_that_support_no_network_are_refused() {
+    let sandbox = Sandbox::with_logs();
     for run in 0..6 {
         let lost = |text: String| with_rows(&text, |cells| cells[3..6].fill(String::new()));
-        workshop.edit(&format!("logs/run-00{run}.csv"), lost);
+        sandbox.edit(&format!("logs/run-00{run}.csv"), lost);
     }
-    begins(&workshop.refused("train logs --out sim.json"), "no network can be trained on these logs (turn: ");
+    begins(&sandbox.refused("train logs --out sim.json"), "no network can be trained on these logs (turn: ");
 }
 
 #[test]
-fn a_room_without_room() {
-    let workshop = trained();
+fn a_room_too_small_for_the_robot_is_refused() {
+    let sandbox = trained();
     let small = "[arena]\nwidth_cm = 15\nheight_cm = 15\n\n[target]\nx_cm = 8\ny_cm = 8\n\n[[start]]\nx_cm = 7\ny_cm = 7\nheading_deg = 0\n";
-    workshop.write("small.toml", small);
-    begins(&workshop.refused("record --out more --scene small.toml --runs 2"), "small.toml: ");
+    sandbox.write("small.toml", small);
+    begins(&sandbox.refused("record --out more --scene small.toml --runs 2"), "small.toml: ");
     begins(
-        &workshop.refused("evolve sim.json --scene small.toml --out c.toml"),
+        &sandbox.refused("evolve sim.json --scene small.toml --out c.toml"),
         "small.toml: start 1 leaves no room for a robot of radius 10 cm",
     );
 }
 
 #[test]
-fn starts_and_targets_that_cannot_be() {
-    let workshop = trained();
-    workshop.write("c.toml", CONTROLLER);
+fn impossible_starts_and_targets_are_refused() {
+    let sandbox = trained();
+    sandbox.write("c.toml", CONTROLLER);
     let change = |from: &str, to: &str| {
         assert!(SCENE.contains(from));
-        workshop.write("scene.toml", SCENE.replacen(from, to, 1));
+        sandbox.write("scene.toml", SCENE.replacen(from, to, 1));
     };
     let calls = [
         "evolve sim.json --scene scene.toml --out d.toml",
@@ -223,24 +223,24 @@ fn starts_and_targets_that_cannot_be() {
     ];
     for call in calls {
         change("x_cm = 40\ny_cm = 40", "x_cm = 95\ny_cm = 75");
-        begins(&workshop.refused(call), "scene.toml:15: the start lies outside the arena or inside an obstacle");
+        begins(&sandbox.refused(call), "scene.toml:15: the start lies outside the arena or inside an obstacle");
         change("x_cm = 160", "x_cm = 260");
-        begins(&workshop.refused(call), "scene.toml:11: the target lies outside the arena");
-        workshop.write("scene.toml", SCENE);
+        begins(&sandbox.refused(call), "scene.toml:11: the target lies outside the arena");
+        sandbox.write("scene.toml", SCENE);
         begins(
-            &workshop.refused(&format!("{call} --start 3")),
+            &sandbox.refused(&format!("{call} --start 3")),
             "scene.toml: has 2 [[start]] table(s); there is no start 3",
         );
         begins(
-            &workshop.refused(&format!("{call} --start 0")),
+            &sandbox.refused(&format!("{call} --start 0")),
             "scene.toml: has 2 [[start]] table(s); there is no start 0",
         );
     }
-    workshop.write(
+    sandbox.write(
         "scene.toml",
         "[arena]\nwidth_cm = 200\nheight_cm = 150\n\n[[start]]\nx_cm = 40\ny_cm = 40\nheading_deg = 0\n",
     );
-    assert_eq!(workshop.refused(calls[0]), "scene.toml: has no [target]");
+    assert_eq!(sandbox.refused(calls[0]), "scene.toml: has no [target]");
 }
 
 const CONTROLLER: &str = "\
@@ -257,39 +257,39 @@ tuple = [
 ";
 
 #[test]
-fn options_of_another_format_are_not_passed_over() {
-    let workshop = Workshop::new();
-    workshop.write("c.toml", CONTROLLER);
+fn options_of_another_export_format_are_refused() {
+    let sandbox = Sandbox::new();
+    sandbox.write("c.toml", CONTROLLER);
     for options in ["--format rxe --log a.csv", "--format c --display"] {
-        let refusal = workshop.refused(&format!("export c.toml --out c.out {options}"));
+        let refusal = sandbox.refused(&format!("export c.toml --out c.out {options}"));
         assert_eq!(refusal, "--log and --display need a controller and --format nxc");
     }
 }
 
 #[test]
-fn scripts_that_cannot_be_driven() {
-    let workshop = Workshop::new();
+fn scripts_that_cannot_be_driven_are_refused() {
+    let sandbox = Sandbox::new();
     let header = "t_ms,left,right,x_cm,y_cm,heading_deg,echo_cm\n";
-    workshop.write("s.csv", format!("{header}0,10,10,,,,\n400,10,10,,,,\n900,10,10,,,,\n"));
-    let refusal = workshop.refused("export s.csv --format nxc-collect --out s.nxc");
+    sandbox.write("s.csv", format!("{header}0,10,10,,,,\n400,10,10,,,,\n900,10,10,,,,\n"));
+    let refusal = sandbox.refused("export s.csv --format nxc-collect --out s.nxc");
     assert_eq!(refusal, "s.csv: is not a script: its rows must be the same whole number of milliseconds apart");
-    workshop.write("s.csv", format!("{header}0,10,10,,,,\n50,10,10,,,,\n"));
-    let refusal = workshop.refused("export s.csv --format nxc-collect --out s.nxc");
+    sandbox.write("s.csv", format!("{header}0,10,10,,,,\n50,10,10,,,,\n"));
+    let refusal = sandbox.refused("export s.csv --format nxc-collect --out s.nxc");
     assert!(refusal.starts_with("s.csv: ") && refusal.contains("50"), "{refusal}");
-    let wrong = workshop.call("export s.csv --format nxc-collect --out s.nxc --steps 10");
+    let wrong = sandbox.call("export s.csv --format nxc-collect --out s.nxc --steps 10");
     assert!(wrong.code == 2 && wrong.err.contains("cannot be used with"), "{}", wrong.err);
 }
 
 #[test]
-fn controllers_that_cannot_be() {
-    let workshop = with_scene();
+fn impossible_controllers_are_refused() {
+    let sandbox = with_scene();
     let calls = ["export c.toml --format nxc --out c.nxc", "simulate sim.json c.toml --scene scene.toml --json r.json"];
     let line = "  { left = 55, right = 48, when = \"larger\", threshold_cm = 42 },\n";
     for call in calls {
         let refused = |controller: String| {
             assert_ne!(controller, CONTROLLER);
-            workshop.write("c.toml", controller);
-            workshop.refused(call)
+            sandbox.write("c.toml", controller);
+            sandbox.refused(call)
         };
         assert_eq!(refused(CONTROLLER.replacen(line, "", 1)), "c.toml: has 5 tuples; a controller has exactly 6");
         assert_eq!(
@@ -306,10 +306,10 @@ fn controllers_that_cannot_be() {
 }
 
 #[test]
-fn simulators_that_cannot_be() {
-    let workshop = trained();
+fn invalid_simulator_files_are_refused() {
+    let sandbox = trained();
     let refused = |change: &dyn Fn(String) -> String| {
-        let copy = workshop.copy();
+        let copy = sandbox.copy();
         copy.edit("sim.json", change);
         copy.refused("evaluate sim.json logs --json figures.json")
     };
@@ -334,18 +334,18 @@ fn simulators_that_cannot_be() {
 }
 
 #[test]
-fn own_effects_that_cannot_be() {
-    let workshop = trained();
-    let refused = || workshop.refused("diagnose sim.json logs --effects own.toml");
+fn invalid_effect_files_are_refused() {
+    let sandbox = trained();
+    let refused = || sandbox.refused("diagnose sim.json logs --effects own.toml");
     begins(&refused(), "own.toml: cannot be read: ");
-    workshop.write("own.toml", "[[effect]]\nid = \"mine\"\n");
+    sandbox.write("own.toml", "[[effect]]\nid = \"mine\"\n");
     begins(&refused(), "own.toml:1: missing field `description`");
     let effect = "[[effect]]\nid = \"mine\"\ndescription = \"?\"\nchange.turn_rad = \"turn_rad + k * speed\"\n\
                   [[effect.parameter]]\nname = \"k\"\nnominal = 0.0\nbounds = [-1.0, 1.0]\n";
-    workshop.write("own.toml", format!("# Mine.\n{effect}"));
+    sandbox.write("own.toml", format!("# Mine.\n{effect}"));
     begins(&refused(), "own.toml:2: effect mine: change.turn_rad: speed is not known here; known are left, right, ");
-    workshop.write("own.toml", effect.replace("speed", "left"));
-    workshop.write("other.toml", effect.replace("speed", "right"));
-    let twice = workshop.refused("diagnose sim.json logs --effects own.toml --effects other.toml");
+    sandbox.write("own.toml", effect.replace("speed", "left"));
+    sandbox.write("other.toml", effect.replace("speed", "right"));
+    let twice = sandbox.refused("diagnose sim.json logs --effects own.toml --effects other.toml");
     begins(&twice, "other.toml: effect mine is in another file too");
 }

@@ -1,42 +1,42 @@
-//! `mindgap crosscheck` and the export of networks: what a board computes, against the PC.
+//! `mindgap crosscheck` and the export of networks: fixed point on a board against floating point on a PC.
 
 use std::sync::LazyLock;
 
-use mindgap_tests::command::Workshop;
+use mindgap_tests::command::Sandbox;
 use mindgap_tests::nbc::compile;
 use serde_json::{Value, json};
 
-/// A folder with a simulator and logs that it was not trained on.
-fn workshop() -> Workshop {
-    static MADE: LazyLock<Workshop> = LazyLock::new(|| {
-        let workshop = Workshop::new();
-        workshop.done("record --out logs --runs 40 --steps 60 --seed 1");
-        workshop.done("record --out held-out --runs 5 --steps 30 --seed 2");
-        workshop.done("train logs --out sim.json");
-        workshop
+/// Returns a folder with a simulator and held-out logs.
+fn sandbox() -> Sandbox {
+    static MADE: LazyLock<Sandbox> = LazyLock::new(|| {
+        let sandbox = Sandbox::new();
+        sandbox.run("record --out logs --runs 40 --steps 60 --seed 1");
+        sandbox.run("record --out held-out --runs 5 --steps 30 --seed 2");
+        sandbox.run("train logs --out sim.json");
+        sandbox
     });
     MADE.copy()
 }
 
-/// The same with a changed simulator.
-fn workshop_with(change: impl FnOnce(&mut Value)) -> Workshop {
-    let workshop = workshop();
-    let mut simulator = workshop.json("sim.json");
+/// Returns the same folder with a changed simulator.
+fn sandbox_with(change: impl FnOnce(&mut Value)) -> Sandbox {
+    let sandbox = sandbox();
+    let mut simulator = sandbox.json("sim.json");
     change(&mut simulator);
-    workshop.write("sim.json", simulator.to_string());
-    workshop
+    sandbox.write("sim.json", simulator.to_string());
+    sandbox
 }
 
 const NETWORKS: [&str; 5] = ["turn", "forward", "lateral", "echo_probability", "echo_value"];
 
 #[test]
-fn a_board_computes_what_the_pc_does() {
-    let workshop = workshop();
-    let table = workshop.done("crosscheck sim.json held-out --json found.json");
+fn fixed_point_networks_agree_with_floating_point() {
+    let sandbox = sandbox();
+    let table = sandbox.run("crosscheck sim.json held-out --json found.json");
     assert!(table.lines().count() < 24 && table.lines().all(|line| line.len() <= 80), "{table}");
-    let found = workshop.json("found.json");
+    let found = sandbox.json("found.json");
     assert_eq!(found["schema"], 1);
-    // In degrees, cm, cm, 1 and cm.
+    // Limits in degrees, cm, cm, 1 and cm.
     for (network, limit) in NETWORKS.into_iter().zip([0.1, 0.05, 0.05, 0.002, 0.2]) {
         let check = &found["networks"][network];
         for over in ["samples", "grid"] {
@@ -55,51 +55,51 @@ fn a_board_computes_what_the_pc_does() {
 }
 
 #[test]
-fn every_sample_counts() {
-    let workshop = workshop();
-    workshop.done("crosscheck sim.json held-out --runs 1 --json found.json");
-    workshop.done("evaluate sim.json held-out --json figures.json");
-    let (found, figures) = (workshop.json("found.json"), workshop.json("figures.json"));
+fn every_sample_is_compared() {
+    let sandbox = sandbox();
+    sandbox.run("crosscheck sim.json held-out --runs 1 --json found.json");
+    sandbox.run("evaluate sim.json held-out --json figures.json");
+    let (found, figures) = (sandbox.json("found.json"), sandbox.json("figures.json"));
     for network in ["turn", "forward", "lateral", "echo_probability"] {
         assert_eq!(found["networks"][network]["samples"]["n"], figures["networks"][network]["n"], "{network}");
     }
 }
 
 #[test]
-fn the_seed_alone_fixes_what_is_found() {
-    let workshop = workshop();
+fn only_the_seed_decides_the_result() {
+    let sandbox = sandbox();
     let found = |threads: usize, seed: u64| {
         let call = format!("crosscheck sim.json held-out --runs 50 --seed {seed} --json found.json");
-        assert_eq!(workshop.call_on_threads(threads, &call).code, 0);
-        workshop.text("found.json")
+        assert_eq!(sandbox.call_on_threads(threads, &call).code, 0);
+        sandbox.text("found.json")
     };
     assert_eq!(found(1, 1), found(2, 1));
     assert_ne!(found(1, 1), found(1, 2));
 }
 
 #[test]
-fn runs_are_those_of_the_users_controller() {
-    let workshop = workshop();
+fn runs_use_the_given_controller() {
+    let sandbox = sandbox();
     let tuple = "[[tuple]]\nleft = 30\nright = 30\nwhen = \"larger\"\nthreshold_cm = 255\n";
-    workshop.write("c.toml", format!("step_ms = 400\nmax_steps = 2\n{}", tuple.repeat(6)));
-    workshop.done("crosscheck sim.json held-out --runs 100 --controller c.toml --json found.json");
-    let steps = workshop.json("found.json")["runs"]["steps"].as_u64().unwrap();
+    sandbox.write("c.toml", format!("step_ms = 400\nmax_steps = 2\n{}", tuple.repeat(6)));
+    sandbox.run("crosscheck sim.json held-out --runs 100 --controller c.toml --json found.json");
+    let steps = sandbox.json("found.json")["runs"]["steps"].as_u64().unwrap();
     assert!((100..=200).contains(&steps), "{steps} steps of 100 runs of 2 at most");
 }
 
 #[test]
-fn arithmetics_that_differ_are_told_apart() {
-    // Two terms that cancel, so large that single precision leaves tenths of a centimetre of them.
-    let workshop = workshop_with(|simulator| {
+fn a_difference_in_arithmetic_is_found() {
+    // Two terms that cancel, so large that their difference in single precision is tenths of a centimetre.
+    let sandbox = sandbox_with(|simulator| {
         let units = simulator["echo_value"]["network"]["product"].as_array_mut().unwrap();
         units.extend([3e6, -3e6].map(|output| json!({ "exponents": [0.3, 0.2], "output": output })));
     });
-    let table = workshop.done("crosscheck sim.json held-out --json found.json");
-    let found = workshop.json("found.json");
+    let table = sandbox.run("crosscheck sim.json held-out --json found.json");
+    let found = sandbox.json("found.json");
     let worst = |network: &str| found["networks"][network]["grid"]["worst"].as_f64().unwrap();
     assert!(worst("echo_value") > 0.1, "{table}");
-    let untouched = self::workshop();
-    untouched.done("crosscheck sim.json held-out --json found.json");
+    let untouched = self::sandbox();
+    untouched.run("crosscheck sim.json held-out --json found.json");
     let untouched = untouched.json("found.json");
     assert_eq!(found["networks"]["forward"], untouched["networks"]["forward"], "{table}");
     assert!(untouched["networks"]["echo_value"]["grid"]["worst"].as_f64().unwrap() < 0.01, "{untouched}");
@@ -115,57 +115,57 @@ fn arithmetics_that_differ_are_told_apart() {
 
 #[test]
 fn inputs_outside_the_trained_range_are_counted() {
-    let workshop = workshop();
-    // Faster than any command that the simulator has seen.
-    workshop.edit_cells("held-out/run-000.csv", |cells| cells[1] = "100");
-    let table = workshop.done("crosscheck sim.json held-out --runs 1 --json found.json");
-    let clamped = &workshop.json("found.json")["networks"]["turn"]["samples"]["clamped"];
+    let sandbox = sandbox();
+    // Faster than any command in the training logs.
+    sandbox.edit_cells("held-out/run-000.csv", |cells| cells[1] = "100");
+    let table = sandbox.run("crosscheck sim.json held-out --runs 1 --json found.json");
+    let clamped = &sandbox.json("found.json")["networks"]["turn"]["samples"]["clamped"];
     assert!(clamped.as_u64().unwrap() > 10, "{clamped}");
     assert!(table.contains(&format!("turn (deg): {clamped} of ")), "{table}");
 }
 
 #[test]
 fn logs_without_a_place_to_start_are_refused() {
-    let workshop = workshop();
+    let sandbox = sandbox();
     for run in 0..5 {
-        workshop.edit_cells(&format!("held-out/run-00{run}.csv"), |cells| cells[3..6].fill(""));
+        sandbox.edit_cells(&format!("held-out/run-00{run}.csv"), |cells| cells[3..6].fill(""));
     }
     let problem = "sim.json: the robot has no room to start at any pose that the logs hold";
-    assert_eq!(workshop.refused("crosscheck sim.json held-out --json found.json"), problem);
+    assert_eq!(sandbox.refused("crosscheck sim.json held-out --json found.json"), problem);
 }
 
 #[test]
 fn a_network_that_cannot_be_represented_is_refused() {
-    let wild = workshop_with(|s| s["forward"]["network"]["product"][2]["exponents"][1] = json!(40.5));
+    let wild = sandbox_with(|s| s["forward"]["network"]["product"][2]["exponents"][1] = json!(40.5));
     let problem = "sim.json: the forward network cannot be represented in fixed point: \
                    product unit 3: exponent of input 2 = 40.5 does not fit Q6.26 (-32..32)";
     assert_eq!(wild.refused("crosscheck sim.json held-out --json found.json"), problem);
     assert_eq!(wild.refused("export sim.json --format rust --out networks.rs"), problem);
 
-    let missing = workshop_with(|s| s["turn"] = Value::Null);
+    let missing = sandbox_with(|s| s["turn"] = Value::Null);
     let problem = "sim.json: the simulator has no turn network: it is not there";
     assert_eq!(missing.refused("crosscheck sim.json held-out --json found.json"), problem);
 }
 
 #[test]
 fn networks_are_exported_as_source_code() {
-    let workshop = workshop();
-    assert_eq!(workshop.done("export sim.json --format rust --out networks.rs"), "networks.rs written\n");
-    let source = workshop.text("networks.rs");
+    let sandbox = sandbox();
+    assert_eq!(sandbox.run("export sim.json --format rust --out networks.rs"), "networks.rs written\n");
+    let source = sandbox.text("networks.rs");
     for definition in ["TURN: FixedNetwork<4, 2>", "ECHO_VALUE: FixedNetwork<2, "] {
         assert!(source.contains(&format!("pub static {definition}")), "{source}");
     }
-    let said = workshop.done("export sim.json --format nxc --out networks.nxc");
+    let said = sandbox.run("export sim.json --format nxc --out networks.nxc");
     assert!(said.starts_with("networks.nxc written\nprogram ") && said.contains("\nEchoValue "), "{said}");
-    compile(&format!("{} task main() {{ NumOut(0, LCD_LINE1, EchoValue(1, 2)); }}", workshop.text("networks.nxc")));
+    compile(&format!("{} task main() {{ NumOut(0, LCD_LINE1, EchoValue(1, 2)); }}", sandbox.text("networks.nxc")));
     for (format, file, definition) in [
         ("c", "networks.h", "static inline int32_t network_echo_value(int32_t distance_cm, int32_t incidence_deg) {"),
         ("arduino", "networks.h", "static inline int32_t network_turn("),
         ("pybricks", "networks.py", "def echo_value(distance_cm, incidence_deg):"),
     ] {
-        workshop.done(&format!("export sim.json --format {format} --out {file}"));
-        assert!(workshop.text(file).contains(definition), "{}", workshop.text(file));
+        sandbox.run(&format!("export sim.json --format {format} --out {file}"));
+        assert!(sandbox.text(file).contains(definition), "{}", sandbox.text(file));
     }
     let problem = "sim.json: contains networks, which the formats rxe and nxc-collect do not support";
-    assert_eq!(workshop.refused("export sim.json --format rxe --out networks.rxe"), problem);
+    assert_eq!(sandbox.refused("export sim.json --format rxe --out networks.rxe"), problem);
 }

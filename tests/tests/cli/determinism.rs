@@ -1,16 +1,15 @@
 //! The same seed and inputs give the same bytes on any number of threads, and another seed gives others.
 
-use mindgap_tests::command::Workshop;
+use mindgap_tests::command::Sandbox;
 use mindgap_tests::rooms::with_scene;
 
-/// Calls a command that writes to the file or folder `out` on one and on two threads, and checks that it writes the
-/// same; and that it writes something else with another seed.
-fn assert_settled(workshop: &Workshop, command: &str) {
+/// Expects a command that writes `out` to write the same on one and on two threads, and something else with another seed.
+fn assert_depends_on_seed_only(sandbox: &Sandbox, command: &str) {
     let written = |threads: usize, seed: u64| {
-        let copy = workshop.copy();
-        let done = copy.call_on_threads(threads, &format!("{command} --out out --seed {seed}"));
-        assert_eq!(done.code, 0, "{}", done.err);
-        (done.out, copy.files(""))
+        let copy = sandbox.copy();
+        let outcome = copy.call_on_threads(threads, &format!("{command} --out out --seed {seed}"));
+        assert_eq!(outcome.code, 0, "{}", outcome.err);
+        (outcome.out, copy.files(""))
     };
     let first = written(1, 5);
     assert!(first == written(2, 5), "mindgap {command} depends on the number of threads");
@@ -18,23 +17,23 @@ fn assert_settled(workshop: &Workshop, command: &str) {
 }
 
 #[test]
-fn recording() {
-    assert_settled(&Workshop::new(), "record --runs 4 --steps 15 --effect slip");
+fn recording_depends_on_the_seed_only() {
+    assert_depends_on_seed_only(&Sandbox::new(), "record --runs 4 --steps 15 --effect slip");
 }
 
 #[test]
-fn training() {
-    assert_settled(&Workshop::with_logs(), "train logs");
+fn training_depends_on_the_seed_only() {
+    assert_depends_on_seed_only(&Sandbox::with_logs(), "train logs");
 }
 
 #[test]
-fn evolution() {
-    let workshop = with_scene();
-    assert_settled(&workshop, "evolve sim.json --scene scene.toml --max-steps 12");
+fn evolution_depends_on_the_seed_only() {
+    let sandbox = with_scene();
+    assert_depends_on_seed_only(&sandbox, "evolve sim.json --scene scene.toml --max-steps 4");
 }
 
 #[test]
-fn evolution_as_the_paper_has_it() {
-    let workshop = with_scene();
-    assert_settled(&workshop, "evolve sim.json --scene scene.toml --max-steps 6 --paper");
+fn the_papers_evolution_depends_on_the_seed_only() {
+    let sandbox = with_scene();
+    assert_depends_on_seed_only(&sandbox, "evolve sim.json --scene scene.toml --max-steps 6 --paper");
 }

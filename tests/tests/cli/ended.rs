@@ -1,4 +1,4 @@
-//! Commands that are ended from outside, run out of something, or meet another at the same place.
+//! Commands that are interrupted, exhaust a resource, or write to the same place as another.
 
 use std::fs::{self, File};
 use std::os::unix::process::ExitStatusExt;
@@ -6,57 +6,57 @@ use std::process::{Child, Command, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-use mindgap_tests::command::{Workshop, program};
+use mindgap_tests::command::{Sandbox, program};
 
-/// Takes minutes, and fills a folder all the time.
+/// A command that takes minutes and adds to a folder all the time.
 const LONG: &str = "challenge make --cases 999 --out blind -q";
 
 #[test]
-fn a_signal_leaves_nothing() {
+fn an_interrupted_command_leaves_no_file() {
     for (signal, number) in [("INT", 2), ("TERM", 15)] {
-        let workshop = Workshop::new();
-        let mut child = at_work(&workshop);
+        let sandbox = Sandbox::new();
+        let mut child = at_work(&sandbox);
         kill(&child, signal);
         assert_eq!(child.wait().expect("it ends").signal(), Some(number));
-        assert_eq!(workshop.listing(), [], "{signal}");
+        assert_eq!(sandbox.listing(), [], "{signal}");
     }
 }
 
 #[test]
-fn the_next_start_clears_what_a_killed_process_left() {
-    let workshop = Workshop::new();
-    let [mut killed, mut other] = [(); 2].map(|()| at_work(&workshop));
+fn the_next_command_removes_files_of_a_killed_one() {
+    let sandbox = Sandbox::new();
+    let [mut killed, mut other] = [(); 2].map(|()| at_work(&sandbox));
     kill(&killed, "KILL");
     assert!(killed.wait().expect("it ends").code().is_none());
-    assert_eq!(temporary(&workshop), 2);
-    workshop.done("record --out logs --runs 1 --steps 5");
-    assert_eq!(temporary(&workshop), 1, "what another process is at work on stays");
+    assert_eq!(temporary(&sandbox), 2);
+    sandbox.run("record --out logs --runs 1 --steps 5");
+    assert_eq!(temporary(&sandbox), 1, "what another process is at work on stays");
     kill(&other, "TERM");
     other.wait().expect("it ends");
-    assert_eq!(temporary(&workshop), 0);
+    assert_eq!(temporary(&sandbox), 0);
 }
 
-/// The last of several processes at one place stays, and nothing is a mixture.
+/// The logs of the last of several processes remain, and no mixture of them.
 #[test]
-fn processes_at_one_place_do_not_mix() {
-    let workshop = Workshop::new();
+fn concurrent_processes_do_not_mix_their_logs() {
+    let sandbox = Sandbox::new();
     let seeds = [1, 2, 3, 4];
     for seed in seeds {
-        workshop.done(&format!("record --out logs-{seed} --runs 8 --steps 5 --seed {seed}"));
+        sandbox.run(&format!("record --out logs-{seed} --runs 8 --steps 5 --seed {seed}"));
     }
     let start = |force: &str| {
         let mut children = seeds.map(|seed| {
-            let mut command = workshop.command(&format!("record --out logs --runs 8 --steps 5 --seed {seed} {force}"));
+            let mut command = sandbox.command(&format!("record --out logs --runs 8 --steps 5 --seed {seed} {force}"));
             command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().expect("it starts")
         });
         children.iter_mut().map(|child| child.wait().expect("it ends").code()).collect::<Vec<_>>()
     };
     let assert_one = || {
         let of =
-            |folder: &str| (0..8).map(|run| workshop.bytes(&format!("{folder}/run-{run:03}.csv"))).collect::<Vec<_>>();
+            |folder: &str| (0..8).map(|run| sandbox.bytes(&format!("{folder}/run-{run:03}.csv"))).collect::<Vec<_>>();
         let logs = of("logs");
         assert!(seeds.iter().any(|seed| of(&format!("logs-{seed}")) == logs), "a mixture");
-        assert_eq!(fs::read_dir(workshop.path().join("logs")).expect("a folder").count(), 8 + 2);
+        assert_eq!(fs::read_dir(sandbox.path().join("logs")).expect("a folder").count(), 8 + 2);
     };
     for _ in 0..4 {
         let codes = start("");
@@ -64,95 +64,95 @@ fn processes_at_one_place_do_not_mix() {
         assert_one();
         assert_eq!(start("--force"), [Some(0); 4]);
         assert_one();
-        fs::remove_dir_all(workshop.path().join("logs")).expect("a folder");
+        fs::remove_dir_all(sandbox.path().join("logs")).expect("a folder");
     }
 }
 
 #[test]
-fn of_what_several_processes_write_into_one_file_one_stays() {
-    let workshop = Workshop::with_logs();
+fn concurrent_writers_of_a_file_leave_one_complete_version() {
+    let sandbox = Sandbox::with_logs();
     let seeds = [1, 2, 3];
-    let train = |out: &str, seed: u32| workshop.command(&format!("train logs --out {out} --seed {seed} -q"));
+    let train = |out: &str, seed: u32| sandbox.command(&format!("train logs --out {out} --seed {seed} -q"));
     let alone = seeds.map(|seed| {
         assert!(train("alone.json", seed).status().expect("it starts").success());
-        workshop.bytes("alone.json")
+        sandbox.bytes("alone.json")
     });
     let children = seeds.map(|seed| train("sim.json", seed).spawn().expect("it starts"));
     children.into_iter().for_each(|mut child| assert!(child.wait().expect("it ends").success()));
-    assert!(alone.contains(&workshop.bytes("sim.json")));
-    assert_eq!(temporary(&workshop), 0);
+    assert!(alone.contains(&sandbox.bytes("sim.json")));
+    assert_eq!(temporary(&sandbox), 0);
 }
 
-/// What was written before the clock was set back is of tomorrow.
+/// Files that were written before the clock was set back have a time in the future.
 #[test]
-fn a_clock_that_is_set_back_changes_nothing() {
-    let workshop = Workshop::with_logs();
-    let unchanged = workshop.copy();
-    workshop.write(".mindgap-AbCdEf.tmp", "left by a process that was killed");
+fn a_clock_set_back_changes_nothing() {
+    let sandbox = Sandbox::with_logs();
+    let unchanged = sandbox.copy();
+    sandbox.write(".mindgap-AbCdEf.tmp", "left by a process that was killed");
     let day = Duration::from_secs(24 * 3600);
-    for (path, _) in workshop.listing() {
+    for (path, _) in sandbox.listing() {
         let file = File::open(path).expect("a file");
         let written = file.metadata().and_then(|about| about.modified()).expect("a time");
         file.set_modified(written + day).expect("a file of one's own");
     }
-    for folder in [&workshop, &unchanged] {
-        folder.done("train logs --out sim.json");
+    for folder in [&sandbox, &unchanged] {
+        folder.run("train logs --out sim.json");
     }
-    assert_eq!(workshop.listing().len(), unchanged.listing().len(), "what was left is gone");
-    assert_eq!(workshop.bytes("sim.json"), unchanged.bytes("sim.json"));
+    assert_eq!(sandbox.listing().len(), unchanged.listing().len(), "what was left is gone");
+    assert_eq!(sandbox.bytes("sim.json"), unchanged.bytes("sim.json"));
 }
 
-/// With whatever little, a command does its work or says in a line why not.
+/// With any limit on memory, files or their size a command does its work or gives the reason in one line.
 #[test]
-fn what_runs_out_is_told() {
-    let good = Workshop::with_logs();
+fn exhausted_resources_are_reported() {
+    let good = Sandbox::with_logs();
     let call = "check logs --json facts.json";
     let limited = |limit: &str, call: &str| {
         let mut shell = Command::new("sh");
         shell.args(["-c", &format!("ulimit {limit}; exec {} {call}", program().display())]);
         shell
     };
-    // With less it is ended by the system, the loader or Rust's start, before its own first instruction.
+    // With less memory the system, the loader or the Rust runtime ends it before its first instruction.
     let begins = |kib: &usize| limited(&format!("-v {kib}"), "--version").output().expect("a shell").status.success();
     let least_kib = (1..).map(|i| 2_000 * i).find(begins).expect("a limit");
     let limits = (0..10).map(|i| format!("-v {}", least_kib + 2_000 * i)).chain((4..=10).map(|n| format!("-n {n}")));
     let mut refused = 0;
     for limit in limits.chain(["-f 1".to_owned()]) {
-        let workshop = good.copy();
+        let sandbox = good.copy();
         let mut shell = limited(&limit, call);
-        shell.current_dir(workshop.path());
-        let before = workshop.listing();
-        let done = workshop.run(shell);
-        if done.code == 0 {
+        shell.current_dir(sandbox.path());
+        let before = sandbox.listing();
+        let outcome = sandbox.execute(shell);
+        if outcome.code == 0 {
             continue;
         }
         refused += 1;
-        // The loader of programs has words of its own, and so have Rust's library and C's where there is no memory.
+        // The loader, and the libraries of Rust and C without memory, have messages of their own.
         let of_memory =
-            ["memory allocation of ", "Fatal glibc error: "].iter().any(|words| done.err.starts_with(words));
-        assert!(done.code == 1 || done.err.contains("shared"), "{limit}: {done:?}");
-        assert!(of_memory || done.err.lines().count() == 1, "{limit}: {}", done.err);
-        workshop.done("check logs --json check.json");
-        fs::remove_file(workshop.path().join("check.json")).expect("a file");
-        assert_eq!(workshop.listing(), before, "{limit}");
+            ["memory allocation of ", "Fatal glibc error: "].iter().any(|words| outcome.err.starts_with(words));
+        assert!(outcome.code == 1 || outcome.err.contains("shared"), "{limit}: {outcome:?}");
+        assert!(of_memory || outcome.err.lines().count() == 1, "{limit}: {}", outcome.err);
+        sandbox.run("check logs --json check.json");
+        fs::remove_file(sandbox.path().join("check.json")).expect("a file");
+        assert_eq!(sandbox.listing(), before, "{limit}");
     }
     assert!(refused > 3, "{refused} of them were too little");
 }
 
-/// A long command that has begun to fill a folder of its own.
-fn at_work(workshop: &Workshop) -> Child {
-    let before = temporary(workshop);
-    let child = workshop.command(LONG).stdout(Stdio::null()).spawn().expect("it starts");
+/// Starts a long command and waits until it writes to a folder of its own.
+fn at_work(sandbox: &Sandbox) -> Child {
+    let before = temporary(sandbox);
+    let child = sandbox.command(LONG).stdout(Stdio::null()).spawn().expect("it starts");
     let begun = Instant::now();
-    while temporary(workshop) == before {
+    while temporary(sandbox) == before {
         assert!(begun.elapsed() < Duration::from_secs(60), "nothing is being made");
         sleep(Duration::from_millis(5));
     }
     child
 }
 
-fn temporary(workshop: &Workshop) -> usize {
-    let entries = fs::read_dir(workshop.path()).expect("a folder");
+fn temporary(sandbox: &Sandbox) -> usize {
+    let entries = fs::read_dir(sandbox.path()).expect("a folder");
     entries.flatten().filter(|entry| entry.file_name().to_string_lossy().starts_with(".mindgap-")).count()
 }
 

@@ -1,38 +1,47 @@
-//! Disks that fail: each call of the system by which a command changes a disk is made to fail, one after the other.
+//! Disk failures: `strace` lists the system calls by which a command changes a disk, then makes them fail one by one.
 //!
-//! `strace` does that: it lists the calls of a run that nothing disturbs, and then fails the one that it is told.
+//! The short form fails a few calls of each command. The long form fails every call of the quick commands.
 
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::PathBuf;
 use std::process::Command;
 
-use mindgap_tests::command::{Done, Workshop, program};
+use mindgap_tests::command::{Outcome, Sandbox, program};
+use mindgap_tests::form::{is_skipped, short_or_long, spread};
 use mindgap_tests::rooms::{challenge, robot, trained, with_scene};
 use rayon::prelude::*;
 
 use super::import_recordings;
 
-/// By these a disk is changed.
+/// System calls that change a disk.
 const CALLS: &str = "openat,write,fsync,fchmod,mkdir,mkdirat,rename,renameat,renameat2";
-/// What disks say: full, quota used up, read-only, broken, file handles spent, not allowed.
+/// Disk full, quota exceeded, read-only, hardware error, out of file descriptors, permission denied.
 const ERRORS: [&str; 6] = ["ENOSPC", "EDQUOT", "EROFS", "EIO", "EMFILE", "EACCES"];
-/// Of the calls of slow commands, and of those that are much like others, so many fail, evenly spread.
-const FEW: usize = 4;
 
-/// What there may be after a command that failed.
+/// Returns how many calls of a quick command fail, evenly spread.
+fn many() -> usize {
+    short_or_long(2, usize::MAX)
+}
+
+/// Returns how many calls of a slow command fail, or of one that resembles others.
+fn few() -> usize {
+    short_or_long(1, 8)
+}
+
+/// What a failed command may leave.
 #[derive(Clone, Copy, PartialEq)]
 enum Leaves {
-    /// What there was before, or all that it makes.
+    /// The files from before, or all files that the command makes.
     AllOrNothing,
-    /// Files that are complete, of some of its stages.
+    /// Complete files of some of its stages.
     Stages,
-    /// Files from which the same call goes on to the same end.
+    /// Files from which the same call resumes to the same end.
     State,
 }
 use Leaves::{AllOrNothing, Stages, State};
 
-/// A call of the system: its name, and which of that name it is in its thread, from 1.
+/// A system call: its name, and its number among the calls of that name in its thread, from 1.
 #[derive(Clone, Debug)]
 struct SystemCall {
     name: String,
@@ -40,11 +49,11 @@ struct SystemCall {
 }
 
 #[test]
-fn quick_commands_fail_at_every_call() {
-    let workshop = with_scene();
+fn quick_commands_leave_complete_files_when_a_disk_fails() {
+    let sandbox = with_scene();
     let tuple = "  { left = 55, right = 48, when = \"larger\", threshold_cm = 42 },\n";
-    workshop.write("six.toml", format!("step_ms = 400\nmax_steps = 10\ntuple = [\n{}]\n", tuple.repeat(6)));
-    workshop.done("export six.toml --format rxe --out six.rxe");
+    sandbox.write("six.toml", format!("step_ms = 400\nmax_steps = 10\ntuple = [\n{}]\n", tuple.repeat(6)));
+    sandbox.run("export six.toml --format rxe --out six.rxe");
     let formats = ["nxc", "c", "rust", "rxe", "pybricks", "arduino"];
     let exports = formats.map(|format| format!("export six.toml --format {format} --out made.{format}"));
     let calls = [
@@ -62,97 +71,108 @@ fn quick_commands_fail_at_every_call() {
         "new mine",
     ];
     for call in calls {
-        assert_whole(&workshop, call, usize::MAX, AllOrNothing);
+        assert_whole(&sandbox, call, many(), AllOrNothing);
     }
     for call in exports.iter().map(String::as_str).chain(["manual --out pages"]) {
-        assert_whole(&workshop, call, FEW, AllOrNothing);
+        assert_whole(&sandbox, call, few(), AllOrNothing);
     }
-    assert_whole(&import_recordings::with_streams(), import_recordings::STREAMS, usize::MAX, Stages);
+    assert_whole(&import_recordings::with_streams(), import_recordings::STREAMS, many(), Stages);
 }
 
 #[test]
-fn slow_commands_fail_at_some() {
-    let workshop = trained();
-    workshop.done("record --out slow --runs 4 --steps 25 --seed 9 --effect drive_scale=0.85");
+fn slow_commands_leave_complete_files_when_a_disk_fails() {
+    let sandbox = trained();
+    sandbox.run("record --out slow --runs 4 --steps 25 --seed 9 --effect drive_scale=0.85");
     for (call, leaves) in [
         ("adapt sim.json slow --out better.json", AllOrNothing),
         ("evaluate sim.json logs --json facts.json --html page.html --figures figures", Stages),
         ("diagnose sim.json slow --json facts.json --html page.html --figures figures --apply better.json", Stages),
         ("challenge make --cases 2 --out blind", AllOrNothing),
     ] {
-        assert_whole(&workshop, call, FEW, leaves);
+        assert_whole(&sandbox, call, few(), leaves);
     }
 }
 
-/// What writes one result after the other, and what keeps a checkpoint: what is there is complete, and goes on.
+/// Commands that write one result after the other or keep a checkpoint leave complete results and resume.
 #[test]
-fn long_commands_fail_at_some() {
-    let workshop = with_scene();
-    assert_whole(&workshop, "evolve sim.json --scene scene.toml --max-steps 5 --paper --out c.toml", FEW, AllOrNothing);
-    assert_whole(&challenge(2), "challenge answer blind", FEW, Stages);
+fn commands_with_checkpoints_leave_complete_files_when_a_disk_fails() {
+    let sandbox = with_scene();
+    assert_whole(
+        &sandbox,
+        "evolve sim.json --scene scene.toml --max-steps 5 --paper --out c.toml",
+        few(),
+        AllOrNothing,
+    );
+    assert_whole(&challenge(2), "challenge answer blind", few(), Stages);
 }
 
-/// The robot's command is another program, which does not fail: `strace` lets go of it.
+/// The robot's command is another program, whose calls do not fail: `strace` detaches from it.
 #[test]
-fn a_loop_fails_at_some() {
-    let workshop = with_scene();
-    robot(&workshop, "", "");
+fn a_loop_resumes_after_a_disk_failure() {
+    let sandbox = with_scene();
+    robot(&sandbox, "", "");
     let call = "loop out --sim sim.json --scene scene.toml --max-steps 5 --trials 1 --robot 'sh robot.sh'";
-    assert_whole(&workshop, call, FEW, State);
+    assert_whole(&sandbox, call, few(), State);
 }
 
 #[test]
-fn a_demo_fails_at_some() {
-    assert_whole(&Workshop::new(), "demo --quick --out demo --html page.html --force", FEW, State);
+fn a_demo_resumes_after_a_disk_failure() {
+    if is_skipped() {
+        return;
+    }
+    assert_whole(&Sandbox::new(), "demo --quick --out demo --html page.html --force", few(), State);
 }
 
-/// Files that are late are the same files.
 #[test]
-fn a_slow_network_folder_changes_nothing() {
-    let workshop = Workshop::new();
-    let late = workshop.copy();
-    workshop.done("record --out logs --runs 1 --steps 5");
+fn a_slow_network_folder_changes_no_file() {
+    let sandbox = Sandbox::new();
+    let late = sandbox.copy();
+    sandbox.run("record --out logs --runs 1 --steps 5");
     let inject = ["-e", "trace=openat,write,fsync,rename", "-e", "inject=openat,write,fsync,rename:delay_enter=20000"];
     assert_eq!(traced(&late, &inject, "record --out logs --runs 1 --steps 5").code, 0);
-    assert_eq!(late.files(""), workshop.files(""));
+    assert_eq!(late.files(""), sandbox.files(""));
 }
 
-/// Fails calls of a command, and checks what it leaves.
-fn assert_whole(workshop: &Workshop, call: &str, most: usize, leaves: Leaves) {
-    let undisturbed = workshop.copy();
+/// Makes up to `most` disk calls of a command fail, one per run, and checks the files that each run leaves.
+fn assert_whole(sandbox: &Sandbox, call: &str, most: usize, leaves: Leaves) {
+    let undisturbed = sandbox.copy();
     let trace = undisturbed.path().join("trace");
     let list = ["-o", trace.to_str().expect("a path in UTF-8"), "-e", &format!("trace={CALLS}")];
-    let done = traced(&undisturbed, &list, call);
-    assert_eq!(done.code, 0, "{call}: {}", done.err);
+    let outcome = traced(&undisturbed, &list, call);
+    assert_eq!(outcome.code, 0, "{call}: {}", outcome.err);
     let changes = changes(&fs::read_to_string(&trace).expect("strace is there: install the package strace"));
     assert!(changes.len() > 3, "{call}: {changes:?}");
     fs::remove_file(trace).expect("a trace");
-    let (before, after) = (workshop.files(""), undisturbed.files(""));
-    let stride = changes.len().div_ceil(most);
-    let failing: Vec<(usize, &SystemCall)> = changes.iter().enumerate().step_by(stride).collect();
-    failing.par_iter().for_each(|(number, SystemCall { name, count })| {
+    let (before, after) = (sandbox.files(""), undisturbed.files(""));
+    let failing = spread(changes.iter().enumerate().collect(), most);
+    failing.par_iter().enumerate().for_each(|(turn, (number, SystemCall { name, count }))| {
         let error = ERRORS[number % ERRORS.len()];
-        // Once, and from then on, unless nothing could then be said; of a few one or the other in turn.
+        // One failure, and failures from then on, alternating where not every call is tried. Writes never fail for good: then
+        // not even the message could be written.
         let modes = match name.as_str() {
             "write" => &[""][..],
-            _ if stride == 1 => &["", "+"],
-            _ if (number / stride).is_multiple_of(2) => &[""],
+            _ if failing.len() == changes.len() => &["", "+"],
+            _ if turn % 2 == 0 => &[""],
             _ => &["+"],
         };
         for lasts in modes {
             let what = format!("{call}: {name} {count}{lasts}: {error}");
-            let failing = workshop.copy();
+            let failing = sandbox.copy();
             let inject = format!("inject={name}:error={error}:when={count}{lasts}");
-            let done = traced(&failing, &["-o", "/dev/null", "-e", &format!("trace={name}"), "-e", &inject], call);
+            let outcome = traced(&failing, &["-o", "/dev/null", "-e", &format!("trace={name}"), "-e", &inject], call);
             let left = failing.files("");
-            if done.code == 0 {
+            if outcome.code == 0 {
                 assert_eq!(left, after, "{what}");
                 continue;
             }
-            assert_eq!(done.code, 1, "{what}: {}", done.err);
-            assert!(done.err.starts_with("mindgap: ") && done.err.lines().count() == 1, "{what}: {}", done.err);
+            assert_eq!(outcome.code, 1, "{what}: {}", outcome.err);
+            assert!(
+                outcome.err.starts_with("mindgap: ") && outcome.err.lines().count() == 1,
+                "{what}: {}",
+                outcome.err
+            );
             let is_kept = is_kept(&failing);
-            // Where nothing can be opened or renamed any more, what is left waits for the next command.
+            // Temporary files stay only where nothing can be opened or renamed any more. The next command removes them.
             assert!(!is_kept || (name.starts_with("rename") || name == "openat") && *lasts == "+", "{what}");
             if is_kept || leaves == State {
                 assert_eq!(traced(&failing, &["-o", "/dev/null"], call).code, 0, "{what}");
@@ -171,15 +191,15 @@ fn assert_whole(workshop: &Workshop, call: &str, most: usize, leaves: Leaves) {
     });
 }
 
-/// Runs a command under strace, without what it is not asked for.
-fn traced(workshop: &Workshop, options: &[&str], call: &str) -> Done {
+/// Runs a command under strace.
+fn traced(sandbox: &Sandbox, options: &[&str], call: &str) -> Outcome {
     let mut strace = Command::new("strace");
     let words = shlex::split(call).expect("closed quotes");
-    strace.current_dir(workshop.path()).args(["-f", "-b", "execve", "-qq"]).args(options).arg(program()).args(words);
-    workshop.run(strace)
+    strace.current_dir(sandbox.path()).args(["-f", "-b", "execve", "-qq"]).args(options).arg(program()).args(words);
+    sandbox.execute(strace)
 }
 
-/// The calls of a trace that change a disk, in order.
+/// Returns the calls of a trace that change a disk, in order.
 fn changes(trace: &str) -> Vec<SystemCall> {
     let mut counts: BTreeMap<(&str, &str), usize> = BTreeMap::new();
     let mut changes = Vec::new();
@@ -194,7 +214,7 @@ fn changes(trace: &str) -> Vec<SystemCall> {
                 !["1,", "2,"].iter().any(|stream| arguments.starts_with(stream))
                     && !arguments.contains("\\0\\0\\0\", 8")
             }
-            // What is there already is not made.
+            // A folder that exists already is not made.
             _ => !arguments.contains("= -1"),
         };
         if changes_a_disk && CALLS.split(',').any(|known| known == name) {
@@ -204,7 +224,7 @@ fn changes(trace: &str) -> Vec<SystemCall> {
     changes
 }
 
-/// Whether something under a temporary name is left.
-fn is_kept(workshop: &Workshop) -> bool {
-    workshop.files("").keys().any(|path| path.to_string_lossy().contains(".mindgap-"))
+/// Returns whether a file under a temporary name is left.
+fn is_kept(sandbox: &Sandbox) -> bool {
+    sandbox.files("").keys().any(|path| path.to_string_lossy().contains(".mindgap-"))
 }

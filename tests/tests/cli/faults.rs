@@ -1,21 +1,21 @@
-//! Faults of files as spreadsheets, loggers and people make them: `check` names each, and no diagnosis is made of them.
+//! Faults of log files as spreadsheets, loggers and people make them. `check` names each, and no such log is diagnosed.
 //!
-//! Faults of what the numbers mean (units, frames, clocks) are in `tests/inspection.rs`.
+//! Faults in the meaning of numbers (units, frames, clocks) are in `tests/inspection.rs`.
 
-use mindgap_tests::command::Workshop;
+use mindgap_tests::command::Sandbox;
 
-/// A fault of a run's file, and what has to be said of it.
+/// A fault of a run's file, and a part of the message about it.
 struct Fault {
     what: &'static str,
-    told: &'static str,
+    message: &'static str,
     put: fn(&str) -> Vec<u8>,
 }
 
-const fn fault(what: &'static str, told: &'static str, put: fn(&str) -> Vec<u8>) -> Fault {
-    Fault { what, told, put }
+const fn fault(what: &'static str, message: &'static str, put: fn(&str) -> Vec<u8>) -> Fault {
+    Fault { what, message, put }
 }
 
-/// Those that keep the file from being read.
+/// Faults of one run that make it unreadable.
 const REFUSED: [Fault; 22] = [
     fault("semicolons", ":1: columns are separated by semicolons", |text| text.replace(',', ";").into()),
     fault("tabs", ":1: columns are separated by tabs", |text| text.replace(',', "\t").into()),
@@ -84,7 +84,7 @@ const REFUSED: [Fault; 22] = [
     }),
 ];
 
-/// Those of all runs together, after which they are not of their robot.
+/// Faults of all runs together that contradict their robot.toml.
 const OF_ALL: [Fault; 2] = [
     fault("every second row missing", "apart, but robot.toml has step_ms = 400", |text| {
         let mut line = 0;
@@ -99,7 +99,7 @@ const OF_ALL: [Fault; 2] = [
     }),
 ];
 
-/// Changes the cells of every row below the header; `change` is handed the row's time as well.
+/// Returns a text with changed cells in every row below the header. `change` takes the row's time and cells.
 fn with_cells(text: &str, change: impl Fn(u64, &mut [String])) -> Vec<u8> {
     let (header, rows) = text.split_once('\n').expect("a header");
     let changed = rows.lines().map(|row| {
@@ -110,35 +110,35 @@ fn with_cells(text: &str, change: impl Fn(u64, &mut [String])) -> Vec<u8> {
     format!("{header}\n{}", changed.collect::<String>()).into()
 }
 
-fn assert_refused(good: &Workshop, fault: &Fault, runs: &[usize]) {
-    let workshop = good.copy();
+fn assert_refused(good: &Sandbox, fault: &Fault, runs: &[usize]) {
+    let sandbox = good.copy();
     for run in runs {
         let file = format!("logs/run-{run:03}.csv");
-        workshop.write(&file, (fault.put)(&workshop.text(&file)));
+        sandbox.write(&file, (fault.put)(&sandbox.text(&file)));
     }
     for call in ["check logs", "diagnose kinematic logs --json diagnosis.json"] {
-        let refusal = workshop.refused(call);
-        assert!(refusal.contains(fault.told), "{}: {call}: {refusal}", fault.what);
+        let refusal = sandbox.refused(call);
+        assert!(refusal.contains(fault.message), "{}: {call}: {refusal}", fault.what);
     }
 }
 
 #[test]
-fn what_cannot_be_read_is_named_and_not_diagnosed() {
-    let good = Workshop::with_logs();
+fn unreadable_logs_are_named_and_not_diagnosed() {
+    let good = Sandbox::with_logs();
     REFUSED.iter().for_each(|fault| assert_refused(&good, fault, &[3]));
     OF_ALL.iter().for_each(|fault| assert_refused(&good, fault, &[0, 1, 2, 3, 4, 5]));
 }
 
-/// Some editors write a mark that is no part of the text.
+/// Some editors write a byte order mark at the start of a file.
 #[test]
-fn a_byte_order_mark_is_told_and_harms_nothing() {
-    let workshop = Workshop::with_logs();
-    let good = workshop.done("check logs --json -");
+fn a_byte_order_mark_is_ignored_with_a_warning() {
+    let sandbox = Sandbox::with_logs();
+    let good = sandbox.run("check logs --json -");
     for file in ["run-002.csv", "robot.toml", "scene.toml"].map(|name| format!("logs/{name}")) {
-        workshop.edit(&file, |text| format!("\u{FEFF}{text}"));
+        sandbox.edit(&file, |text| format!("\u{FEFF}{text}"));
     }
-    let done = workshop.call("check logs --json -");
-    assert_eq!((done.code, done.out), (0, good));
+    let outcome = sandbox.call("check logs --json -");
+    assert_eq!((outcome.code, outcome.out), (0, good));
     let told = "mindgap: warning: logs/run-002.csv: starts with a byte-order mark (ignored)\n";
-    assert_eq!(done.err, told);
+    assert_eq!(outcome.err, told);
 }

@@ -1,24 +1,24 @@
-//! `mindgap diagnose --fleet`: one diagnosis a robot, and what they say together.
+//! `mindgap diagnose --fleet`: one diagnosis per robot and a summary of all.
 
 use std::fs;
 use std::sync::LazyLock;
 
-use mindgap_tests::command::Workshop;
+use mindgap_tests::command::Sandbox;
 use mindgap_tests::rooms::trained;
 use serde_json::Value;
 
-/// Six robots, of which two have a weak motor, with a broken folder in their middle and a note beside them.
-fn workshop() -> Workshop {
-    static WORKSHOP: LazyLock<Workshop> = LazyLock::new(|| {
-        let workshop = trained();
-        fs::create_dir_all(workshop.path().join("fleet/broken")).unwrap();
+/// Returns a folder with the logs of six robots, two of them with a weak motor, a broken folder and a note.
+fn sandbox() -> Sandbox {
+    static WORKSHOP: LazyLock<Sandbox> = LazyLock::new(|| {
+        let sandbox = trained();
+        fs::create_dir_all(sandbox.path().join("fleet/broken")).unwrap();
         for (name, effect) in [("a", ""), ("b", ""), ("c", WEAK), ("d", ""), ("e", ""), ("f", WEAK)] {
             let seed = 20 + u32::from(name.as_bytes()[0]);
-            workshop.done(&format!("record --out fleet/{name} --runs 6 --steps 25 --seed {seed} {effect}"));
+            sandbox.run(&format!("record --out fleet/{name} --runs 6 --steps 25 --seed {seed} {effect}"));
         }
-        workshop.write("fleet/broken/run-000.csv", "t_ms\n");
-        workshop.write("fleet/notes.txt", "which robot is whose");
-        workshop
+        sandbox.write("fleet/broken/run-000.csv", "t_ms\n");
+        sandbox.write("fleet/notes.txt", "which robot is whose");
+        sandbox
     });
     WORKSHOP.copy()
 }
@@ -30,14 +30,14 @@ fn ids<'a>(list: &'a Value, key: &str) -> Vec<&'a str> {
 }
 
 #[test]
-fn a_fleet_is_diagnosed_though_one_folder_is_broken() {
-    let workshop = workshop();
-    let done = workshop.call("diagnose sim.json fleet --fleet out");
-    assert_eq!(done.code, 0, "{}", done.err);
-    assert!(done.out.starts_with("6 of 7 robots diagnosed, 1 failed."), "{}", done.out);
-    assert!(done.err.contains("broken is excluded: ") && done.err.contains("robot.toml"), "{}", done.err);
+fn a_fleet_is_diagnosed_despite_a_broken_folder() {
+    let sandbox = sandbox();
+    let outcome = sandbox.call("diagnose sim.json fleet --fleet out");
+    assert_eq!(outcome.code, 0, "{}", outcome.err);
+    assert!(outcome.out.starts_with("6 of 7 robots diagnosed, 1 failed."), "{}", outcome.out);
+    assert!(outcome.err.contains("broken is excluded: ") && outcome.err.contains("robot.toml"), "{}", outcome.err);
 
-    let fleet = workshop.json("out/fleet.json");
+    let fleet = sandbox.json("out/fleet.json");
     assert_eq!(fleet["diagnosed"], 6);
     assert_eq!(ids(&fleet["refused"], "robot"), ["broken"]);
     assert_eq!(fleet["left_out"], Value::from(vec!["notes.txt"]));
@@ -54,40 +54,38 @@ fn a_fleet_is_diagnosed_though_one_folder_is_broken() {
     };
     assert!(group("c") == group("f") && group("c") != group("a"), "{}", fleet["groups"]);
 
-    // Each one's own diagnosis is the one that it would have had alone.
-    workshop.done("diagnose sim.json fleet/c --json alone.json");
-    assert_eq!(workshop.text("out/diagnoses/c.json"), workshop.text("alone.json"));
-    let page = workshop.text("out/fleet.html");
+    // Each robot has the same diagnosis as alone.
+    sandbox.run("diagnose sim.json fleet/c --json alone.json");
+    assert_eq!(sandbox.text("out/diagnoses/c.json"), sandbox.text("alone.json"));
+    let page = sandbox.text("out/fleet.html");
     assert!(page.contains(r#"<a href="diagnoses/c.json">c</a>"#) && page.contains("broken"));
-    assert!(workshop.bytes("out/robots.parquet").starts_with(b"PAR1"));
-    assert!(workshop.done("info out/fleet.json").contains("the diagnosis of a fleet"));
+    assert!(sandbox.bytes("out/robots.parquet").starts_with(b"PAR1"));
+    assert!(sandbox.run("info out/fleet.json").contains("the diagnosis of a fleet"));
 }
 
 #[test]
-fn it_is_the_same_on_any_number_of_threads() {
-    let workshop = workshop();
+fn a_fleet_is_diagnosed_alike_on_any_number_of_threads() {
+    let sandbox = sandbox();
     for (threads, out) in [(1, "one"), (2, "two")] {
-        let done = workshop.call_on_threads(threads, &format!("diagnose sim.json fleet --fleet {out}"));
-        assert_eq!(done.code, 0, "{}", done.err);
+        let outcome = sandbox.call_on_threads(threads, &format!("diagnose sim.json fleet --fleet {out}"));
+        assert_eq!(outcome.code, 0, "{}", outcome.err);
     }
-    assert!(workshop.files("one") == workshop.files("two"));
+    assert!(sandbox.files("one") == sandbox.files("two"));
 }
 
 #[test]
-fn places_that_are_not_for_a_fleet_are_refused() {
-    let workshop = trained();
-    assert!(workshop.refused("diagnose sim.json logs --fleet out").contains("contains no folder"));
-    assert!(workshop.refused("diagnose sim.json . --fleet .").contains("read by the same command"));
-    assert!(workshop.refused("diagnose sim.json nowhere --fleet out").contains("nowhere: cannot be read"));
-    assert!(
-        workshop.refused("diagnose kinematic . --fleet out --apply better.json").contains("needs a simulator file")
-    );
-    fs::create_dir(workshop.path().join("mine")).unwrap();
-    workshop.write("mine/diary.txt", "dear diary");
-    assert!(workshop.refused("diagnose sim.json . --fleet mine").contains(": give an empty or new folder"));
-    fs::remove_dir_all(workshop.path().join("logs")).unwrap();
-    let none = workshop.call("diagnose sim.json . --fleet out");
+fn unsuitable_fleet_folders_are_refused() {
+    let sandbox = trained();
+    assert!(sandbox.refused("diagnose sim.json logs --fleet out").contains("contains no folder"));
+    assert!(sandbox.refused("diagnose sim.json . --fleet .").contains("read by the same command"));
+    assert!(sandbox.refused("diagnose sim.json nowhere --fleet out").contains("nowhere: cannot be read"));
+    assert!(sandbox.refused("diagnose kinematic . --fleet out --apply better.json").contains("needs a simulator file"));
+    fs::create_dir(sandbox.path().join("mine")).unwrap();
+    sandbox.write("mine/diary.txt", "dear diary");
+    assert!(sandbox.refused("diagnose sim.json . --fleet mine").contains(": give an empty or new folder"));
+    fs::remove_dir_all(sandbox.path().join("logs")).unwrap();
+    let none = sandbox.call("diagnose sim.json . --fleet out");
     assert!(none.code == 1 && none.err.contains("none of 1 robots can be diagnosed"), "{}", none.err);
-    assert!(!workshop.path().join("out").exists(), "nothing is left behind");
-    assert_eq!(workshop.call("diagnose sim.json . --fleet out --json x.json").code, 2);
+    assert!(!sandbox.path().join("out").exists(), "nothing is left behind");
+    assert_eq!(sandbox.call("diagnose sim.json . --fleet out --json x.json").code, 2);
 }

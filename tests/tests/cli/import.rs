@@ -1,23 +1,24 @@
-//! `mindgap import` on drives of the built-in robot, split into what a brick logs and what a camera sees.
+//! `mindgap import` on drives of the built-in robot, each split into the log of a brick and the track of a camera.
 
 use mindgap_built_in_robot::{BuiltInRobot, default_robot};
 use mindgap_foundations::geometry::Pose;
 use mindgap_foundations::random::{Generator, generator};
 use mindgap_logs::{Logs, Scene};
-use mindgap_tests::command::Workshop;
+use mindgap_tests::command::Sandbox;
+use mindgap_tests::form::short_or_long;
 use rand::RngExt;
 
-/// Offsets have to be found this well.
+/// Largest error of a clock offset.
 const ALIGNED_MS: f64 = 15.0;
 const STEPS: usize = 60;
 const STEP_MS: f64 = 400.0;
-/// A camera's frame comes after three or four of these.
+/// Step of the simulation. A camera's frame comes after three or four of them.
 const SLICE_MS: f64 = 10.0;
 const SIDE_CM: f64 = 1000.0;
 const SCENE: &str = "[arena]\nwidth_cm = 1000\nheight_cm = 1000\n";
 const CALL: &str = "import run-000.csv track.csv --scene scene.toml --robot robot.toml --out logs --json report.json";
 
-/// The camera's clock against the brick's.
+/// The camera's clock relative to the brick's.
 #[derive(Clone, Copy)]
 struct Camera {
     offset_ms: f64,
@@ -30,12 +31,12 @@ impl Camera {
     }
 }
 
-/// What is left of a drive.
+/// A drive as its two recordings show it.
 struct Drive {
     brick_log: String,
-    /// The robot stands for three seconds before and after it drives; a second and a half is lost, and jumps are in it.
+    /// The robot rests for three seconds before and after the drive. The track has a gap of 1.5 s and some jumps.
     track: String,
-    /// Where the robot was at every row.
+    /// True pose at every row.
     poses: Vec<Pose>,
 }
 
@@ -84,34 +85,34 @@ fn drive(seed: u64, camera: Camera) -> Drive {
     Drive { brick_log, track, poses }
 }
 
-/// A folder with robot, scene, and a drive's two files.
-fn workshop(drive: &Drive) -> Workshop {
-    let workshop = Workshop::new();
-    default_robot().write(&workshop.path().join("robot.toml")).expect("a folder that can be written");
-    workshop.write("scene.toml", SCENE);
-    workshop.write("run-000.csv", &drive.brick_log);
-    workshop.write("track.csv", &drive.track);
-    workshop
+/// Returns a folder with a robot, a scene and the two files of a drive.
+fn sandbox(drive: &Drive) -> Sandbox {
+    let sandbox = Sandbox::new();
+    default_robot().write(&sandbox.path().join("robot.toml")).expect("a folder that can be written");
+    sandbox.write("scene.toml", SCENE);
+    sandbox.write("run-000.csv", &drive.brick_log);
+    sandbox.write("track.csv", &drive.track);
+    sandbox
 }
 
 #[test]
-fn clocks_are_aligned_and_poses_are_those_of_the_rows() {
-    for seed in 0..12u64 {
+fn clocks_are_aligned_and_each_row_gets_its_pose() {
+    for seed in 0..short_or_long(3, 12u64) {
         let rng = &mut generator(seed, &[2]);
         let camera = Camera { offset_ms: rng.random_range(-9e4..9e5), drift: rng.random_range(-2e-4..2e-4) };
         let drive = drive(seed, camera);
-        let workshop = workshop(&drive);
-        workshop.done(CALL);
-        let run = workshop.json("report.json")["logs"][0]["run"].clone();
+        let sandbox = sandbox(&drive);
+        sandbox.run(CALL);
+        let run = sandbox.json("report.json")["logs"][0]["run"].clone();
         let number = |name: &str| run[name].as_f64().expect("a number");
         for brick_ms in [0.0, STEP_MS * STEPS as f64] {
             let off_ms = number("offset_ms") + (1.0 + number("drift")) * brick_ms - camera.ms(brick_ms);
             assert!(off_ms.abs() < ALIGNED_MS, "seed {seed}: off by {off_ms} ms at {brick_ms} ms: {run}");
         }
         assert!((3.0..7.0).contains(&number("in_gaps")) && number("outside") == 0.0, "{run}");
-        let jumps = workshop.json("report.json")["tracks"][0]["jumps"].as_f64().expect("a number");
+        let jumps = sandbox.json("report.json")["tracks"][0]["jumps"].as_f64().expect("a number");
         assert!((1.0..30.0).contains(&jumps), "{jumps}");
-        let logs = Logs::read(&workshop.path().join("logs"), |warning| panic!("{warning}")).expect("logs");
+        let logs = Logs::read(&sandbox.path().join("logs"), |warning| panic!("{warning}")).expect("logs");
         for (row, pose) in logs.runs[0].rows.iter().zip(&drive.poses) {
             let off_cm = row.pose.map_or(0.0, |seen| seen.position_cm.distance(pose.position_cm));
             assert!(off_cm < 2.5, "seed {seed}: {off_cm} cm off at {} ms", row.t_ms);
@@ -120,43 +121,43 @@ fn clocks_are_aligned_and_poses_are_those_of_the_rows() {
 }
 
 #[test]
-fn several_runs_find_their_tracks() {
+fn several_runs_are_matched_to_their_tracks() {
     let cameras = [3e4, -2e3, 7e5].map(|offset_ms| Camera { offset_ms, drift: 5e-5 });
     let [first, second, third] = [21, 22, 23].map(|seed| drive(seed, cameras[seed as usize - 21]));
-    let workshop = workshop(&first);
-    workshop.write("tired.csv", &second.brick_log);
-    workshop.write("long.csv", second.track + third.track.split_once('\n').expect("a header").1);
-    workshop.write("other.csv", &third.brick_log);
-    workshop.write("torn.csv", &first.brick_log[..first.brick_log.len() - 9]);
-    let said = workshop.done(&CALL.replace("run-000.csv", "run-000.csv long.csv tired.csv other.csv torn.csv"));
+    let sandbox = sandbox(&first);
+    sandbox.write("tired.csv", &second.brick_log);
+    sandbox.write("long.csv", second.track + third.track.split_once('\n').expect("a header").1);
+    sandbox.write("other.csv", &third.brick_log);
+    sandbox.write("torn.csv", &first.brick_log[..first.brick_log.len() - 9]);
+    let said = sandbox.run(&CALL.replace("run-000.csv", "run-000.csv long.csv tired.csv other.csv torn.csv"));
     assert!(said.contains("torn.csv: the last line is incomplete and was excluded"), "{said}");
-    let report = workshop.json("report.json");
+    let report = sandbox.json("report.json");
     let of = |log: usize| report["logs"][log]["run"]["track"].as_str().map(str::to_owned);
     let tracks = ["track.csv", "long.csv", "long.csv", "track.csv"].map(|name| Some(name.to_owned()));
     assert_eq!([of(0), of(1), of(2), of(3)], tracks, "{said}");
-    workshop.done("diagnose kinematic logs");
+    sandbox.run("diagnose kinematic logs");
 }
 
 #[test]
-fn what_does_not_belong_together_is_refused() {
+fn logs_and_tracks_of_different_drives_are_refused() {
     let camera = Camera { offset_ms: 5e3, drift: 0.0 };
     let drive_of = |seed| drive(seed, camera);
-    let workshop = workshop(&drive_of(31));
-    workshop.write("track.csv", drive_of(32).track);
-    let refusal = workshop.refused(CALL);
+    let sandbox = sandbox(&drive_of(31));
+    sandbox.write("track.csv", drive_of(32).track);
+    let refusal = sandbox.refused(CALL);
     assert!(refusal.starts_with("run-000.csv: no track matches"), "{refusal}");
     let brief: String = drive_of(31).track.lines().take(40).map(|line| line.to_owned() + "\n").collect();
-    workshop.write("track.csv", brief);
-    let refusal = workshop.refused(CALL);
+    sandbox.write("track.csv", brief);
+    let refusal = sandbox.refused(CALL);
     assert!(refusal.starts_with("run-000.csv: no track overlaps"), "{refusal}");
-    workshop.write("track.csv", drive(31, Camera { drift: 0.01, ..camera }).track);
-    let refusal = workshop.refused(CALL);
+    sandbox.write("track.csv", drive(31, Camera { drift: 0.01, ..camera }).track);
+    let refusal = sandbox.refused(CALL);
     assert!(refusal.contains("drift apart by 10.") || refusal.contains("drift apart by 9."), "{refusal}");
-    let refusal = workshop.refused(&CALL.replace("track.csv", ""));
+    let refusal = sandbox.refused(&CALL.replace("track.csv", ""));
     assert!(refusal.contains("none of the files is a track of a camera"), "{refusal}");
-    let refusal = workshop.refused(&CALL.replace("run-000.csv", ""));
+    let refusal = sandbox.refused(&CALL.replace("run-000.csv", ""));
     assert!(refusal.contains("none of the files is a log of a brick"), "{refusal}");
-    workshop.write("track.csv", "t,x,y,theta\n0,1,1,0\n33,1,1,0\n");
-    let refusal = workshop.refused(CALL);
+    sandbox.write("track.csv", "t,x,y,theta\n0,1,1,0\n33,1,1,0\n");
+    let refusal = sandbox.refused(CALL);
     assert!(refusal.starts_with("track.csv:1: column t has no unit: give --time-unit"), "{refusal}");
 }

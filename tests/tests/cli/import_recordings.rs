@@ -1,24 +1,24 @@
-//! `mindgap import streams` and `mindgap import bag` on a drive that is known exactly.
+//! `mindgap import streams` and `mindgap import bag` on an exactly known drive.
 
 use std::fmt::Write;
 
 use mindgap_foundations::geometry::Pose;
 use mindgap_logs::{Logs, Row};
-use mindgap_tests::command::Workshop;
+use mindgap_tests::command::Sandbox;
 use mindgap_tests::ros_bags;
 
 pub(super) const STREAMS: &str =
     "import streams command.csv track.csv --robot robot.toml --out logs --json report.json";
 const ROBOT: &str = "wheel_diameter_cm = 6\ntrack_cm = 20\nbody_radius_cm = 12\nstep_ms = 400\nfull_speed_cm_s = 50\n";
 const SENSOR: &str = "[ultrasonic]\nx_cm = 0\ny_cm = 0\nyaw_deg = 0\nmin_cm = 4\nmax_cm = 250\n";
-/// Commands change after so many samples.
+/// Number of samples between changes of the command.
 const HELD: usize = 12;
 const SAMPLES: usize = 1600;
 const SAMPLE_S: f64 = 0.05;
-/// When the drive begins, Unix time.
+/// Start of the drive, Unix time.
 const BEGIN_S: f64 = 1_717_243_200.0;
 
-/// What is known of a drive at a time.
+/// State of the drive at one time.
 struct Sample {
     s: f64,
     /// m/s and rad/s.
@@ -27,7 +27,7 @@ struct Sample {
     range_m: f64,
 }
 
-/// Sums of commands that never repeat, driven exactly.
+/// Returns a drive by commands that never repeat, without noise.
 fn drive() -> Vec<Sample> {
     let mut pose = Pose::new(100.0, 50.0, 0.4);
     let samples = (0..SAMPLES).map(|i| {
@@ -63,25 +63,25 @@ fn y_m(sample: &Sample) -> f64 {
     sample.pose.position_cm.y / 100.0
 }
 
-fn workshop(commands: &str, track: &str) -> Workshop {
-    let workshop = Workshop::new();
-    workshop.write("robot.toml", ROBOT);
-    workshop.write("command.csv", commands);
-    workshop.write("track.csv", track);
-    workshop
+fn sandbox(commands: &str, track: &str) -> Sandbox {
+    let sandbox = Sandbox::new();
+    sandbox.write("robot.toml", ROBOT);
+    sandbox.write("command.csv", commands);
+    sandbox.write("track.csv", track);
+    sandbox
 }
 
-/// A folder with what [`STREAMS`] reads.
-pub(super) fn with_streams() -> Workshop {
-    workshop(&commands(), &track())
+/// Returns a folder with the inputs of [`STREAMS`].
+pub(super) fn with_streams() -> Sandbox {
+    sandbox(&commands(), &track())
 }
 
-fn rows(workshop: &Workshop) -> Vec<Row> {
-    let logs = Logs::read(&workshop.path().join("logs"), |warning| panic!("{warning}")).expect("logs");
+fn rows(sandbox: &Sandbox) -> Vec<Row> {
+    let logs = Logs::read(&sandbox.path().join("logs"), |warning| panic!("{warning}")).expect("logs");
     logs.runs.iter().flat_map(|run| &run.rows).collect()
 }
 
-/// Holds rows against the drive, `off_ms` after whose begin they begin.
+/// Expects rows that follow the drive, the first of them `off_ms` after its start.
 #[track_caller]
 fn assert_driven(rows: &[Row], off_ms: f64, within_cm: f64) {
     let drive = drive();
@@ -95,9 +95,9 @@ fn assert_driven(rows: &[Row], off_ms: f64, within_cm: f64) {
 }
 
 #[test]
-fn streams_become_rows_whatever_their_form() {
-    let plain = workshop(&commands(), &track());
-    let said = plain.done(STREAMS);
+fn streams_in_any_form_become_the_same_rows() {
+    let plain = sandbox(&commands(), &track());
+    let said = plain.run(STREAMS);
     assert!(said.contains("forward = v_m_s") && said.contains("one clock: motion lags the commands by 0 ms"), "{said}");
     assert!(said.ends_with("logs: 1 runs\n"), "{said}");
     let expected = rows(&plain);
@@ -105,7 +105,7 @@ fn streams_become_rows_whatever_their_form() {
     let twist = drive()[0].twist;
     assert!((expected[0].left - 200.0 * (twist[0] - 0.1 * twist[1])).abs() < 0.02, "{:?}", expected[0]);
 
-    // Other separators, names, units and stamps say the same.
+    // Other separators, names, units and timestamps give the same rows.
     let wheels = table("Time (ms);VL [cm/s];VR [cm/s]", |s| {
         let [v, w] = s.twist;
         format!("{:.0};{:.4};{:.4}", 1000.0 * s.s, 100.0 * v - 10.0 * w, 100.0 * v + 10.0 * w).replace('.', ",")
@@ -114,8 +114,8 @@ fn streams_become_rows_whatever_their_form() {
         let (sin, cos) = libm::sincos(s.pose.heading_rad / 2.0);
         format!("{:.3}\t{:.2}\t{:.2}\t{sin:.6}\t{cos:.6}", s.s, 1000.0 * x_m(s), 1000.0 * y_m(s))
     });
-    let other = workshop(&wheels, &quaternions);
-    other.done(STREAMS);
+    let other = sandbox(&wheels, &quaternions);
+    other.run(STREAMS);
     assert_alike(&rows(&other), &expected);
 }
 
@@ -130,93 +130,93 @@ fn assert_alike(found: &[Row], expected: &[Row]) {
 }
 
 #[test]
-fn clocks_of_their_own_are_aligned_by_the_motion() {
+fn separate_clocks_are_aligned_by_the_motion() {
     let iso = table("timestamp,x_m,y_m,yaw_deg", |s| {
         let seconds = 5.0 + s.s;
         let (minutes, seconds) = ((seconds / 60.0).floor(), seconds % 60.0);
         let heading_deg = s.pose.heading_rad.to_degrees();
         format!("2024-06-01T12:{minutes:02}:{seconds:06.3}Z,{:.5},{:.5},{heading_deg:.3}", x_m(s), y_m(s))
     });
-    let workshop = workshop(&commands(), &iso);
-    let said = workshop.done(STREAMS);
+    let sandbox = sandbox(&commands(), &iso);
+    let said = sandbox.run(STREAMS);
     assert!(said.contains("two clocks") && said.contains("a delay of the robot is not visible"), "{said}");
-    let clocks = workshop.json("report.json")["recordings"][0]["clocks"].clone();
+    let clocks = sandbox.json("report.json")["recordings"][0]["clocks"].clone();
     let off_ms = clocks["offset_ms"].as_f64().expect("a number") - 1e3 * (BEGIN_S + 5.0);
     assert!(off_ms.abs() < 25.0, "{clocks}");
-    assert_driven(&rows(&workshop), 0.0, 1.5);
-    workshop.done(&format!("{STREAMS} --force --offset-ms {}", 1e3 * (BEGIN_S + 5.0)));
-    assert_driven(&rows(&workshop), 0.0, 1.0);
+    assert_driven(&rows(&sandbox), 0.0, 1.5);
+    sandbox.run(&format!("{STREAMS} --force --offset-ms {}", 1e3 * (BEGIN_S + 5.0)));
+    assert_driven(&rows(&sandbox), 0.0, 1.0);
 }
 
 #[test]
-fn what_does_not_go_together_is_refused_with_both_sides() {
+fn inconsistent_streams_are_refused_with_both_values() {
     let metres_as_cm = track().replacen("x_m,y_m", "x_cm,y_cm", 1);
-    let refusal = workshop(&commands(), &metres_as_cm).refused(STREAMS);
+    let refusal = sandbox(&commands(), &metres_as_cm).refused(STREAMS);
     assert!(refusal.starts_with("track.csv: the commands travel 1"), "{refusal}");
     assert!(refusal.contains("the track seems to be in m and was read in cm"), "{refusal}");
     let degrees_as_rad = table("t_s,x_m,y_m,yaw_rad", |s| {
         format!("{:.3},{:.5},{:.5},{:.4}", s.s, x_m(s), y_m(s), s.pose.heading_rad.to_degrees())
     });
-    workshop(&commands(), &degrees_as_rad).refused(STREAMS);
+    sandbox(&commands(), &degrees_as_rad).refused(STREAMS);
     let later = table("t_s,x_m,y_m,yaw_rad", |s| format!("{:.3},1,1,0", 500.0 + s.s));
-    let refusal = workshop(&commands(), &later).refused(STREAMS);
+    let refusal = sandbox(&commands(), &later).refused(STREAMS);
     assert!(refusal.contains("do not overlap or nothing moves"), "{refusal}");
-    let unknown = workshop(&commands().replacen("v_m_s", "speedy", 1), &track());
+    let unknown = sandbox(&commands().replacen("v_m_s", "speedy", 1), &track());
     let refusal = unknown.refused(STREAMS);
     assert!(refusal.starts_with("command.csv:1: no column for forward"), "{refusal}");
     unknown.write(
         "map.toml",
         "[\"command.csv\"]\ntime = \"t_s\"\nforward = { column = \"speedy\", unit = \"m/s\" }\nturn = \"w_rad_s\"\n",
     );
-    unknown.done(&format!("{STREAMS} --map map.toml"));
+    unknown.run(&format!("{STREAMS} --map map.toml"));
     assert_driven(&rows(&unknown), 0.0, 1.0);
 }
 
 #[test]
-fn a_frame_with_y_downwards_is_put_right() {
+fn a_frame_with_y_downwards_is_corrected() {
     let downwards =
         table("t_s,x_m,y_m,yaw_rad", |s| format!("{:.3},{:.5},{:.5},{:.5}", s.s, x_m(s), -y_m(s), s.pose.heading_rad));
-    let workshop = workshop(&commands(), &downwards);
-    let said = workshop.done(STREAMS);
+    let sandbox = sandbox(&commands(), &downwards);
+    let said = sandbox.run(STREAMS);
     assert!(said.contains("frame: positions are mirrored"), "{said}");
-    assert_driven(&rows(&workshop), 0.0, 1.0);
+    assert_driven(&rows(&sandbox), 0.0, 1.0);
 }
 
 #[test]
-fn without_a_robot_a_draft_says_what_to_fill_in() {
-    let workshop = workshop(&commands(), &track());
+fn without_a_robot_file_a_draft_asks_for_its_values() {
+    let sandbox = sandbox(&commands(), &track());
     let call = "import streams command.csv track.csv --out logs";
-    let said = workshop.done(call);
+    let said = sandbox.run(call);
     assert!(said.contains("fill in: robot.toml: track_cm = 15"), "{said}");
-    assert!(workshop.text("logs/robot.toml").contains("# [ultrasonic]"), "{}", workshop.text("logs/robot.toml"));
-    assert_driven(&rows(&workshop), 0.0, 1.0);
-    let told = workshop.call("check logs").err;
+    assert!(sandbox.text("logs/robot.toml").contains("# [ultrasonic]"), "{}", sandbox.text("logs/robot.toml"));
+    assert_driven(&rows(&sandbox), 0.0, 1.0);
+    let told = sandbox.call("check logs").err;
     assert!(told.contains("2 more: still marked FILL IN"), "{told}");
     // What is there is the user's by now.
-    let refusal = workshop.refused(call);
+    let refusal = sandbox.refused(call);
     assert!(refusal.starts_with("logs: already contains") && refusal.contains("--force"), "{refusal}");
-    workshop.done(&format!("{call} --force"));
+    sandbox.run(&format!("{call} --force"));
 }
 
 #[test]
-fn bags_become_the_same_rows_by_whatever_topics() {
-    let workshop = workshop(&commands(), &track());
-    workshop.write("robot.toml", format!("{ROBOT}{SENSOR}"));
+fn bags_give_the_same_rows_from_different_topics() {
+    let sandbox = sandbox(&commands(), &track());
+    sandbox.write("robot.toml", format!("{ROBOT}{SENSOR}"));
     let drive = table("t_s,v_m_s,w_rad_s,x_m,y_m,qz,qw,range_m", |s| {
         let (sin, cos) = libm::sincos(s.pose.heading_rad / 2.0);
         let [v, w] = s.twist;
         format!("{:.3},{v},{w},{},{},{sin},{cos},{}", BEGIN_S + s.s, x_m(s), y_m(s), s.range_m)
     });
-    workshop.write("drive.csv", drive);
-    ros_bags::write(&workshop.path().join("drive.csv"), workshop.path());
+    sandbox.write("drive.csv", drive);
+    ros_bags::write(&sandbox.path().join("drive.csv"), sandbox.path());
     let import = |bag: &str| {
-        let said = workshop.done(&format!("import bag {bag} --robot robot.toml --out logs --json report.json --force"));
-        (said, rows(&workshop))
+        let said = sandbox.run(&format!("import bag {bag} --robot robot.toml --out logs --json report.json --force"));
+        (said, rows(&sandbox))
     };
     let (said, tracked) = import("tracker.mcap");
     assert!(said.contains("/robot/pose") && said.contains("one clock"), "{said}");
     assert_driven(&tracked, 0.0, 1.0);
-    // The last reading, which the clock's last digits may make the one before.
+    // The latest reading, or the one before, depending on the last digits of the clock.
     assert!((tracked[10].echo_cm.expect("a reading") - (50.0 + 0.1 * 80.0)).abs() < 0.11, "{:?}", tracked[10]);
     let (said, by_odometry) = import("odometry.mcap");
     assert!(said.contains("may be the robot's own odometry"), "{said}");
@@ -231,9 +231,9 @@ fn bags_become_the_same_rows_by_whatever_topics() {
         ),
         "{said}"
     );
-    // Beyond the localiser's last word its frame stays where it was.
+    // After the last message of the localiser its frame stays in place.
     assert_driven(&localised, 0.0, 1.0);
-    let refusal = workshop.refused("import bag tracker.mcap --poses /nowhere --out other");
+    let refusal = sandbox.refused("import bag tracker.mcap --poses /nowhere --out other");
     assert!(refusal.starts_with("tracker.mcap: /nowhere is not a topic of poses"), "{refusal}");
-    workshop.done("check logs");
+    sandbox.run("check logs");
 }

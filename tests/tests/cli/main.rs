@@ -1,10 +1,9 @@
 //! The command `mindgap` as a black box.
 //!
-//! One program for all of them: it is linked once, and its tests share the processors.
+//! All tests of the command are one program, which is linked once.
 
 mod bad_input;
 mod brick;
-mod broken_off;
 mod challenge;
 mod check;
 mod commands;
@@ -24,6 +23,7 @@ mod golden_files;
 mod import;
 mod import_recordings;
 mod information;
+mod killed;
 mod messages;
 mod new;
 mod no_sensor;

@@ -1,18 +1,18 @@
-//! Messages that mend: what was found and what to write instead.
+//! Error messages name what was found and what to write instead.
 
 use std::fs;
 
-use mindgap_tests::command::Workshop;
+use mindgap_tests::command::Sandbox;
 use mindgap_tests::rooms::{trained, with_scene};
 
 #[test]
-fn keys_and_types_are_told_in_words_of_the_file() {
-    let workshop = Workshop::with_logs();
+fn wrong_keys_and_types_are_reported_in_the_terms_of_the_file() {
+    let sandbox = Sandbox::with_logs();
     let refused = |file: &str, from: &str, to: &str| {
-        let before = workshop.text(file);
-        workshop.edit(file, |text| text.replacen(from, to, 1));
-        let refusal = workshop.refused("check logs");
-        workshop.write(file, before);
+        let before = sandbox.text(file);
+        sandbox.edit(file, |text| text.replacen(from, to, 1));
+        let refusal = sandbox.refused("check logs");
+        sandbox.write(file, before);
         refusal
     };
     let refusal = refused("logs/scene.toml", "[[obstacle]]", "[[obstacles]]");
@@ -30,57 +30,58 @@ fn controller(step_ms: u32) -> String {
 }
 
 #[test]
-fn controllers_are_told_what_to_write() {
-    let workshop = with_scene();
-    workshop.write("c.toml", controller(400).replacen("left = 55", "left = \"fast\"", 1));
-    let refusal = workshop.refused("export c.toml --format nxc --out c.nxc");
+fn wrong_controllers_are_reported_with_the_correction() {
+    let sandbox = with_scene();
+    sandbox.write("c.toml", controller(400).replacen("left = 55", "left = \"fast\"", 1));
+    let refusal = sandbox.refused("export c.toml --format nxc --out c.nxc");
     assert_eq!(refusal, "c.toml:4: found the text \"fast\", expected a whole number from -128 to 127");
-    workshop.write("c.toml", controller(200));
+    sandbox.write("c.toml", controller(200));
     let calls = [
         "simulate sim.json c.toml --scene scene.toml",
         "crosscheck sim.json logs --controller c.toml",
         "diagnose sim.json logs --controller c.toml",
     ];
     for call in calls {
-        let refusal = workshop.refused(call);
-        let told = "c.toml: has step_ms = 200, but the simulator's steps are 400 ms: write step_ms = 400";
-        assert!(refusal.starts_with(told), "{call}: {refusal}");
+        let refusal = sandbox.refused(call);
+        let expected = "c.toml: has step_ms = 200, but the simulator's steps are 400 ms: write step_ms = 400";
+        assert!(refusal.starts_with(expected), "{call}: {refusal}");
     }
 }
 
 #[test]
-fn logs_of_another_robot_are_not_judged() {
-    let workshop = trained();
-    workshop.edit("logs/robot.toml", |text| text.replace("track_cm = 11.5", "track_cm = 15"));
+fn logs_of_another_robot_are_not_evaluated() {
+    let sandbox = trained();
+    sandbox.edit("logs/robot.toml", |text| text.replace("track_cm = 11.5", "track_cm = 15"));
     for call in ["evaluate sim.json logs", "crosscheck sim.json logs"] {
-        let refusal = workshop.refused(call);
+        let refusal = sandbox.refused(call);
         assert!(refusal.contains("track_cm is 15 in the logs' robot.toml and 11.5 in the simulator"), "{refusal}");
     }
 }
 
 #[test]
-fn the_same_is_told_once() {
-    let workshop = Workshop::with_logs();
+fn a_warning_about_many_files_is_printed_once() {
+    let sandbox = Sandbox::with_logs();
     for run in 0..6 {
-        workshop.edit(&format!("logs/run-00{run}.csv"), |text| text.replacen("battery_mv", "mood", 1));
+        sandbox.edit(&format!("logs/run-00{run}.csv"), |text| text.replacen("battery_mv", "mood", 1));
     }
     let told = "mindgap: warning: logs/run-000.csv:1: unknown column \"mood\" ignored (in 6 files)\n";
-    assert_eq!(workshop.call("check logs").err, told);
+    assert_eq!(sandbox.call("check logs").err, told);
 }
 
 #[test]
-fn names_of_files_move_no_cursor() {
-    let workshop = Workshop::with_logs();
+fn control_characters_in_file_names_are_escaped() {
+    let sandbox = Sandbox::with_logs();
     let name = "lo\u{1b}[2Jg\u{202e}s\n";
-    fs::rename(workshop.path().join("logs"), workshop.path().join(name)).unwrap();
-    let mut command = workshop.command("check");
-    let done = command.arg(name).output().unwrap();
-    assert!(done.status.success());
-    fs::remove_file(workshop.path().join(name).join("robot.toml")).unwrap();
-    let done = command.output().unwrap();
-    let told = String::from_utf8(done.stderr).unwrap();
+    fs::rename(sandbox.path().join("logs"), sandbox.path().join(name)).unwrap();
+    let mut command = sandbox.command("check");
+    let outcome = command.arg(name).output().unwrap();
+    assert!(outcome.status.success());
+    fs::remove_file(sandbox.path().join(name).join("robot.toml")).unwrap();
+    let outcome = command.output().unwrap();
+    let output = String::from_utf8(outcome.stderr).unwrap();
     assert!(
-        told.starts_with("mindgap: lo\\u{1b}[2Jg\\u{202e}s\\n/robot.toml: cannot be read") && told.lines().count() == 1,
-        "{told}"
+        output.starts_with("mindgap: lo\\u{1b}[2Jg\\u{202e}s\\n/robot.toml: cannot be read")
+            && output.lines().count() == 1,
+        "{output}"
     );
 }

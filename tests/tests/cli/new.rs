@@ -1,13 +1,13 @@
-//! `mindgap new`: a folder for a robot of one's own.
+//! `mindgap new`: a folder for the user's own robot.
 
 use mindgap_logs::{Robot, Scene};
-use mindgap_tests::command::Workshop;
+use mindgap_tests::command::Sandbox;
 
 #[test]
-fn its_files_are_read_and_its_commands_are_those_that_it_prints() {
-    let workshop = Workshop::new();
-    let said = workshop.done("new mine");
-    let folder = workshop.path().join("mine");
+fn a_new_folder_is_readable_and_lists_its_commands() {
+    let sandbox = Sandbox::new();
+    let said = sandbox.run("new mine");
+    let folder = sandbox.path().join("mine");
     let robot = Robot::read(&folder.join("robot.toml")).expect("a robot");
     assert!(robot.ultrasonic.is_none());
     let scene = Scene::read(&folder.join("scene.toml")).expect("a scene");
@@ -15,18 +15,18 @@ fn its_files_are_read_and_its_commands_are_those_that_it_prints() {
     assert!(folder.join("recordings").is_dir());
     let commands: Vec<&str> = said.lines().filter_map(|line| line.strip_prefix("  mindgap ")).collect();
     assert_eq!(commands.len(), 3, "{said}");
-    let readme = workshop.text("mine/README.md");
+    let readme = sandbox.text("mine/README.md");
     assert!(commands.iter().all(|command| readme.contains(command)), "{readme}");
     assert!(readme.contains("hold each command for ten steps or more"), "{readme}");
 }
 
 #[test]
-fn nothing_that_is_there_is_touched() {
-    let workshop = Workshop::new();
-    workshop.done("new mine");
-    workshop.write("mine/robot.toml", "my own");
-    let refusal = workshop.refused("new mine");
+fn existing_files_are_not_touched() {
+    let sandbox = Sandbox::new();
+    sandbox.run("new mine");
+    sandbox.write("mine/robot.toml", "my own");
+    let refusal = sandbox.refused("new mine");
     assert!(refusal.starts_with("mine: holds"), "{refusal}");
-    workshop.write("file", "my own");
-    assert!(workshop.refused("new file").starts_with("file: "), "{refusal}");
+    sandbox.write("file", "my own");
+    assert!(sandbox.refused("new file").starts_with("file: "), "{refusal}");
 }

@@ -1,41 +1,41 @@
-//! What commands that take long show on a terminal: how much is done, and how long the rest will take.
+//! Progress of long commands on a terminal: the share done and the time left.
 
 use std::process::Command;
 
-use mindgap_tests::command::{Done, Workshop, program};
+use mindgap_tests::command::{Outcome, Sandbox, program};
 use mindgap_tests::rooms::with_scene;
 
-/// Calls the command on a terminal of its own.
-fn on_a_terminal(workshop: &Workshop, arguments: &str) -> Done {
+/// Calls the command on a pseudo-terminal.
+fn on_a_terminal(sandbox: &Sandbox, arguments: &str) -> Outcome {
     let mut terminal = Command::new("script");
     terminal.args(["-qec", &format!("{} {arguments}", program().display()), "/dev/null"]);
-    terminal.current_dir(workshop.path()).env("TERM", "xterm").env("COLUMNS", "120");
-    workshop.run(terminal)
+    terminal.current_dir(sandbox.path()).env("TERM", "xterm").env("COLUMNS", "120");
+    sandbox.execute(terminal)
 }
 
 #[test]
-fn a_terminal_sees_how_much_is_done_and_a_pipe_does_not() {
-    let workshop = with_scene();
-    workshop.done("evolve sim.json --scene scene.toml --out controller.toml --max-steps 6");
-    workshop.write("drive.csv", drive());
+fn progress_is_shown_on_a_terminal_only() {
+    let sandbox = with_scene();
+    sandbox.run("evolve sim.json --scene scene.toml --out controller.toml --max-steps 6 --paper");
+    sandbox.write("drive.csv", drive());
     for (call, shown) in [
         ("evaluate sim.json logs", " %"),
         ("simulate sim.json controller.toml --scene scene.toml --runs 3000", "/3000"),
         ("import streams drive.csv --out imported", " %"),
         ("crosscheck sim.json logs --runs 40", "/40"),
-        ("diagnose kinematic logs", " %"),
+        ("diagnose sim.json logs", " %"),
     ] {
-        let seen = on_a_terminal(&workshop, call);
+        let seen = on_a_terminal(&sandbox, call);
         assert_eq!(seen.code, 0, "{call}: {}", seen.out);
         assert!(seen.out.contains(" left]") && seen.out.contains(shown), "{call}: {}", seen.out);
-        let quiet = on_a_terminal(&workshop, &format!("{call} -q --force"));
+        let quiet = on_a_terminal(&sandbox, &format!("{call} -q --force"));
         assert_eq!((quiet.code, quiet.out.as_str()), (0, ""), "{call}");
-        let piped = workshop.call(&format!("{call} --force"));
+        let piped = sandbox.call(&format!("{call} --force"));
         assert!(!piped.out.contains(" left]") && !piped.err.contains(" left]"), "{call}: {}", piped.err);
     }
 }
 
-/// A robot that goes straight on, then turns, as a stream: it knows its place exactly.
+/// Returns the stream of a robot that drives straight and in arcs by turns, with exact poses.
 fn drive() -> String {
     let mut text = String::from("t_s,v_m_s,w_rad_s,x_m,y_m,yaw_rad\n");
     let (mut x, mut y, mut yaw) = (0.0_f64, 0.0_f64, 0.0_f64);

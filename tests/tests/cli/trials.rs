@@ -1,86 +1,86 @@
-//! `mindgap adapt` and `mindgap loop`: what runs of a robot teach, and what must teach nothing.
+//! `mindgap adapt` and `mindgap loop` learn from good runs of a robot and from nothing else.
 
-use mindgap_tests::command::{Done, Workshop};
+use mindgap_tests::command::{Outcome, Sandbox};
 use mindgap_tests::rooms::{robot, trained, with_scene};
 
 const LOOP: &str = "loop out --sim sim.json --scene scene.toml --max-steps 20";
 
-fn with_robot() -> Workshop {
-    let workshop = with_scene();
-    robot(&workshop, "", "");
-    workshop
+fn with_robot() -> Sandbox {
+    let sandbox = with_scene();
+    robot(&sandbox, "", "");
+    sandbox
 }
 
 #[test]
 fn a_simulator_adapts_to_runs_and_keeps_its_networks() {
-    let workshop = trained();
-    workshop.done("record --out slow --runs 4 --steps 25 --seed 9 --effect drive_scale=0.85");
-    let told = workshop.done("adapt sim.json slow --out better.json --json lesson.json");
-    assert!(told.ends_with("simulator written to better.json\n"), "{told}");
-    let lesson = &workshop.json("lesson.json")["lessons"][0];
+    let sandbox = trained();
+    sandbox.run("record --out slow --runs 4 --steps 25 --seed 9 --effect drive_scale=0.85");
+    let output = sandbox.run("adapt sim.json slow --out better.json --json lesson.json");
+    assert!(output.ends_with("simulator written to better.json\n"), "{output}");
+    let lesson = &sandbox.json("lesson.json")["lessons"][0];
     let gap = &lesson["gap"]["forward_cm"];
     assert!(gap[1].as_f64() < gap[0].as_f64(), "forward steps are less off: {lesson}");
-    let (before, after) = (workshop.json("sim.json"), workshop.json("better.json"));
+    let (before, after) = (sandbox.json("sim.json"), sandbox.json("better.json"));
     for network in ["turn", "forward", "lateral", "echo_probability", "echo_value"] {
         assert_eq!(before[network], after[network], "{network}");
     }
     let evidence = |file: &serde_json::Value| file["robots"]["evidence"].as_array().map_or(0, Vec::len);
     assert!(evidence(&after) > evidence(&before));
-    workshop.done("crosscheck better.json logs");
-    let again = workshop.copy();
+    sandbox.run("crosscheck better.json logs");
+    let again = sandbox.copy();
     assert_eq!(again.call_on_threads(1, "adapt sim.json slow --out better.json").code, 0);
-    assert_eq!(again.bytes("better.json"), workshop.bytes("better.json"), "on any number of threads");
+    assert_eq!(again.bytes("better.json"), sandbox.bytes("better.json"), "on any number of threads");
 }
 
 #[test]
 fn an_older_simulator_cannot_adapt() {
-    let workshop = trained();
-    workshop.edit("sim.json", |text| {
+    let sandbox = trained();
+    sandbox.edit("sim.json", |text| {
         let mut file: serde_json::Value = serde_json::from_str(&text).expect("JSON");
         file.as_object_mut().expect("an object").remove("robots");
         file.to_string()
     });
-    workshop.done("evaluate sim.json logs");
-    let problem = workshop.refused("adapt sim.json logs --out better.json");
+    sandbox.run("evaluate sim.json logs");
+    let problem = sandbox.refused("adapt sim.json logs --out better.json");
     assert!(problem.ends_with("has no parameter uncertainty: train it again"), "{problem}");
 }
 
 #[test]
-fn a_loop_leaves_all_that_happened_and_goes_on_from_where_it_stood() {
-    let workshop = with_robot();
-    let stopped = workshop.copy();
-    let told = workshop.loops("--trials 2");
-    assert!(told.contains("trial 1: ") && told.contains("out/controller.toml: "), "{told}");
-    let state = workshop.json("out/loop.json");
+fn a_loop_records_its_trials_and_resumes() {
+    let sandbox = with_robot();
+    let stopped = sandbox.copy();
+    let output = sandbox.loops("--trials 2");
+    assert!(output.contains("trial 1: ") && output.contains("out/controller.toml: "), "{output}");
+    let state = sandbox.json("out/loop.json");
     assert_eq!(state["schema"], 1);
     let trials = state["trials"].as_array().expect("trials");
     assert!((1..=2).contains(&trials.len()), "{state}");
     for (trial, number) in trials.iter().zip(1..) {
         assert!(trial["real"]["distance_cm"].is_number() && trial["predicted"]["success"].is_number(), "{trial}");
-        assert!(workshop.text(&format!("out/trial-{number}.csv")).starts_with("t_ms,"));
+        assert!(sandbox.text(&format!("out/trial-{number}.csv")).starts_with("t_ms,"));
     }
-    assert!(workshop.bytes("out/paths.png").starts_with(b"\x89PNG"));
-    let controller = workshop.text("out/controller.toml");
+    assert!(sandbox.bytes("out/paths.png").starts_with(b"\x89PNG"));
+    let controller = sandbox.text("out/controller.toml");
     assert_eq!(controller.matches("[[tuple]]").count(), 6);
-    // It was selected by its chance of success.
+    // It was selected by its probability of success.
     assert!(controller.contains("success = ") && !controller.contains("fitness"), "{controller}");
-    assert!(workshop.json("out/simulator.json")["robots"].is_object());
+    assert!(sandbox.json("out/simulator.json")["robots"].is_object());
 
-    // One trial, and then the second: the same as both at once.
+    // One trial and then another give the same as two at once.
     stopped.loops("--trials 1");
     stopped.loops("--trials 2");
     assert_eq!(stopped.json("out/loop.json"), state);
 
-    // What has ended drives no more.
-    workshop.write("robot.sh", "exit 1\n");
-    workshop.loops("--trials 2");
-    let problem = workshop.refused(&format!("{LOOP} --seed 2 --robot none"));
+    // A finished loop drives no further run.
+    sandbox.write("robot.sh", "exit 1\n");
+    sandbox.loops("--trials 2");
+    let problem = sandbox.refused(&format!("{LOOP} --seed 2 --robot none"));
     assert!(problem.starts_with("out/loop.json: is of a loop with another simulator, scene, start, seed"), "{problem}");
 }
 
-/// What goes wrong with the robot is told, and nothing is learned from it.
+/// A failure of the robot is reported, and nothing is learned from its run.
 #[test]
-fn a_robot_that_fails_teaches_nothing() {
+fn a_failed_run_teaches_nothing() {
     let planned = with_robot();
     planned.write("robot.sh", "exit 3\n");
     assert!(planned.fails("").contains("the robot's command sh failed: exit status: 3"));
@@ -98,48 +98,48 @@ fn a_robot_that_fails_teaches_nothing() {
         ("", &moved, "the camera moved"),
     ];
     for (before, after, problem) in cases {
-        let workshop = planned.copy();
-        robot(&workshop, before, after);
-        let told = workshop.fails(if before.contains("sleep") { "--robot-timeout 1" } else { "" });
-        assert!(told.contains(problem), "{before}; {after}\n{told}");
-        let state = workshop.json("out/loop.json");
+        let sandbox = planned.copy();
+        robot(&sandbox, before, after);
+        let output = sandbox.fails(if before.contains("sleep") { "--robot-timeout 1" } else { "" });
+        assert!(output.contains(problem), "{before}; {after}\n{output}");
+        let state = sandbox.json("out/loop.json");
         assert!(state["trials"][0]["real"].is_null(), "{state}");
-        assert!(!workshop.path().join("out/trial-1.csv").exists());
+        assert!(!sandbox.path().join("out/trial-1.csv").exists());
     }
 }
 
-/// Changes the cells of a log's rows.
+/// Returns a shell command that changes the rows of a log.
 fn each_row(change: &str) -> String {
     format!("awk -F, -v OFS=, '{change} {{ print }}' \"$4\" > changed; mv changed \"$4\"")
 }
 
 trait Loops {
-    fn looping(&self, options: &str) -> Done;
+    fn looping(&self, options: &str) -> Outcome;
     fn loops(&self, options: &str) -> String;
     fn fails(&self, options: &str) -> String;
 }
 
-impl Loops for Workshop {
+impl Loops for Sandbox {
     /// Calls the loop with the robot of `robot.sh`.
-    fn looping(&self, options: &str) -> Done {
+    fn looping(&self, options: &str) -> Outcome {
         let mut command = self.command(&format!("{LOOP} {options}"));
         command.args(["--robot", "sh robot.sh"]);
-        self.run(command)
+        self.execute(command)
     }
 
     #[track_caller]
     fn loops(&self, options: &str) -> String {
-        let done = self.looping(options);
-        assert_eq!(done.code, 0, "{}", done.err);
-        done.out
+        let outcome = self.looping(options);
+        assert_eq!(outcome.code, 0, "{}", outcome.err);
+        outcome.out
     }
 
-    /// What it says when it cannot go on.
+    /// Calls the loop, which has to fail, and returns its message.
     #[track_caller]
     fn fails(&self, options: &str) -> String {
-        let done = self.looping(options);
-        assert_eq!((done.code, done.out.as_str()), (1, ""), "{}", done.err);
-        assert!(done.err.contains("loop stopped"), "{}", done.err);
-        done.err
+        let outcome = self.looping(options);
+        assert_eq!((outcome.code, outcome.out.as_str()), (1, ""), "{}", outcome.err);
+        assert!(outcome.err.contains("loop stopped"), "{}", outcome.err);
+        outcome.err
     }
 }

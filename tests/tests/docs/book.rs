@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use libtest_mimic::Failed;
-use mindgap_tests::command::{Workshop, workspace};
+use mindgap_tests::command::{Sandbox, workspace};
 use mindgap_tests::rooms::SCENE;
 
 use crate::{PAGES, documents, is_asked_for};
@@ -51,10 +51,10 @@ pub fn every_link_leads_somewhere() -> Result<(), Failed> {
 
 /// `mindgap manual --format markdown --out docs/commands --force` writes them anew.
 pub fn pages_are_those_of_the_command() -> Result<(), Failed> {
-    let workshop = Workshop::new();
-    workshop.done("manual --format markdown --out pages");
+    let sandbox = Sandbox::new();
+    sandbox.run("manual --format markdown --out pages");
     let written: Vec<(PathBuf, Vec<u8>)> =
-        workshop.files("pages").into_iter().map(|(name, bytes)| (Path::new(PAGES).join(name), bytes)).collect();
+        sandbox.files("pages").into_iter().map(|(name, bytes)| (Path::new(PAGES).join(name), bytes)).collect();
     let stale = written.iter().filter(|(path, bytes)| fs::read(workspace().join(path)).ok().as_ref() != Some(bytes));
     let stale: Vec<String> = stale.map(|(path, _)| path.display().to_string()).collect();
     let there = documents().into_iter().filter(|name| name.starts_with(PAGES)).count();
@@ -66,7 +66,7 @@ pub fn pages_are_those_of_the_command() -> Result<(), Failed> {
 
 /// `mindgap explain --markdown > docs/effects.md` writes it anew, and so does `MINDGAP_DOCS=overwrite`.
 pub fn the_catalogue_of_effects_is_that_of_the_command() -> Result<(), Failed> {
-    let written = Workshop::new().done("explain --markdown");
+    let written = Sandbox::new().run("explain --markdown");
     let path = workspace().join("docs/effects.md");
     if is_asked_for("overwrite") {
         fs::write(&path, &written)?;

@@ -8,7 +8,7 @@ use std::path::PathBuf;
 use std::process::Command;
 
 use libtest_mimic::Failed;
-use mindgap_tests::command::{Workshop, program, workspace};
+use mindgap_tests::command::{Sandbox, program, workspace};
 use mindgap_tests::rooms::{SCENE, trained};
 
 use crate::lines::{FENCE, PROMPT, is_run};
@@ -67,12 +67,12 @@ pub fn run(name: &str, text: &str) -> Result<(), Failed> {
 }
 
 /// Where a document's commands are run.
-fn folder_for(name: &str) -> Workshop {
+fn folder_for(name: &str) -> Sandbox {
     let is_from_nothing = FROM_NOTHING.contains(&name);
-    let folder = if is_from_nothing { Workshop::new() } else { trained() };
+    let folder = if is_from_nothing { Sandbox::new() } else { trained() };
     folder.write("scene.toml", SCENE);
     if !is_from_nothing {
-        folder.done("record --out held-out --runs 6 --steps 25 --seed 2");
+        folder.run("record --out held-out --runs 6 --steps 25 --seed 2");
         let controller = fs::read(workspace().join("tests/tests/golden/controller.toml")).expect("a controller");
         folder.write("controller.toml", controller);
     }

@@ -1,20 +1,21 @@
-//! Changes put into held-out real logs: a simulator is trained on some of a robot's runs, others are changed as another
-//! robot or tracker would have changed them, and the diagnosis has to name what was put in.
+//! Changes are put into held-out real logs. A simulator is trained on some runs of a robot, other runs are changed as another
+//! robot or tracker would have changed them, and the diagnosis has to name the change.
 
 use std::path::Path;
 
 use glam::DVec2;
 use mindgap_foundations::geometry::{Pose, wrap_rad};
 use mindgap_logs::{Logs, Run};
-use mindgap_tests::command::Workshop;
+use mindgap_tests::command::Sandbox;
+use mindgap_tests::form::is_long;
 use rand::rngs::SmallRng;
 use rand::{RngExt, SeedableRng};
 use serde_json::Value;
 
-/// A change, what the diagnosis may call it, and how it changes a run.
+/// A change to a run and the effects that may be named for it.
 struct Injection {
     name: &'static str,
-    /// Empty where nothing is changed.
+    /// Empty if nothing is changed.
     called: &'static [&'static str],
     change: fn(&mut Run),
 }
@@ -123,7 +124,7 @@ const DRIVE: &[Injection] = &[
     },
 ];
 
-/// Changes put into scans of a real sonar from places where it stands still.
+/// Changes put into scans of a real sonar at rest.
 const SCANS: &[Injection] = &[
     Injection { name: "none", called: &[], change: |_| {} },
     Injection {
@@ -146,7 +147,7 @@ const SCANS: &[Injection] = &[
         called: &["sonar_scale"],
         change: |run| echoes(run, |cm, _| Some(0.93 * cm)),
     },
-    // Of a robot that stands still, a sensor that looks elsewhere is a heading that is wrong.
+    // At rest, a turned sensor cannot be told from a wrong heading.
     Injection {
         name: "sensor turned by 8 degrees",
         called: &["sonar_yaw", "tracker_rotation"],
@@ -173,53 +174,61 @@ const SCANS: &[Injection] = &[
     },
 ];
 
-/// Nothing is where nothing was changed, no wrong name is sure, and nine of ten changes are named first: in the runs of one
-/// third, and in those of all, each by what the others taught. What a third drives that the others hardly do, as spins, its
-/// simulator does not know.
+/// Changes of the short form.
+const SHORT: [&str; 4] = ["none", "turns 15 % smaller", "left motor 5 % weaker", "camera's scale 6 % too large"];
+
+/// Unchanged runs have no gap, no wrong name has a probability above 0.9, and nine of ten changes are named first: in the last
+/// third of the runs, and in all thirds together, each against a simulator trained on the other two. Such a simulator does not
+/// know motion that only its third contains, such as spins. The short form takes the last third.
 pub fn changes_of_a_real_drive_are_named(folder: &Path) {
     let logs = Logs::read(folder, |_| ()).expect("logs");
     let part = |third: usize, held_out: bool| {
         let runs = logs.runs.iter().enumerate().filter(|(i, _)| (i % 3 == third) == held_out);
         Logs { runs: runs.map(|(_, run)| run.clone()).collect(), ..logs.clone() }
     };
-    let thirds = [0, 1, 2].map(|third| judged(&part(third, false), &part(third, true), DRIVE));
-    enough(thirds[2]);
-    enough(thirds.into_iter().reduce(|[named, asked], [n, a]| [named + n, asked + a]).expect("thirds"));
+    let judged_third = |third: usize| judged(&part(third, false), &part(third, true), DRIVE);
+    let last = judged_third(2);
+    assert_most_named(last);
+    if is_long() {
+        let thirds = [judged_third(0), judged_third(1), last];
+        assert_most_named(thirds.into_iter().reduce(|[named, asked], [n, a]| [named + n, asked + a]).expect("thirds"));
+    }
 }
 
-/// The same of a sonar that stands still: three of the five scans from each place are learned from.
-pub fn changes_of_a_real_sonar_that_stands_still_are_named(folder: &Path) {
+/// The same for a sonar at rest. Three of the five scans from each place are for training.
+pub fn changes_of_a_real_sonar_at_rest_are_named(folder: &Path) {
     let logs = Logs::read(folder, |_| ()).expect("logs");
     let part = |held_out: bool| {
         let runs = logs.runs.iter().enumerate().filter(|(i, _)| (i % 5 >= 3) == held_out).map(|(_, run)| run.clone());
         Logs { runs: runs.collect(), ..logs.clone() }
     };
-    enough(judged(&part(false), &part(true), SCANS));
+    assert_most_named(judged(&part(false), &part(true), SCANS));
 }
 
-/// Nine of ten are named first.
-fn enough([named, asked]: [usize; 2]) {
+/// Expects nine of ten changes to be named first.
+fn assert_most_named([named, asked]: [usize; 2]) {
     assert!(10 * named >= 9 * asked, "{named} of {asked}");
 }
 
-/// How many changes are named first, of how many.
+/// Returns how many changes are named first, and how many there are.
 fn judged(training: &Logs, held_out: &Logs, injections: &[Injection]) -> [usize; 2] {
-    let workshop = Workshop::new();
-    training.write(&workshop.path().join("training")).expect("a folder");
-    workshop.done("train training --out sim.json");
+    let sandbox = Sandbox::new();
+    training.write(&sandbox.path().join("training")).expect("a folder");
+    sandbox.run("train training --out sim.json");
     let (mut named, mut asked) = (0, 0);
     let mut wrong = Vec::new();
-    for (number, injection) in injections.iter().enumerate() {
+    let injections = injections.iter().filter(|injection| is_long() || SHORT.contains(&injection.name));
+    for (number, injection) in injections.enumerate() {
         let mut changed = held_out.clone();
         changed.runs.iter_mut().for_each(injection.change);
         let place = format!("changed-{number}");
-        changed.write(&workshop.path().join(&place)).expect("a folder");
-        workshop.done(&format!("diagnose sim.json {place} --json {place}.json"));
-        let diagnosis = workshop.json(&format!("{place}.json"));
+        changed.write(&sandbox.path().join(&place)).expect("a folder");
+        sandbox.run(&format!("diagnose sim.json {place} --json {place}.json"));
+        let diagnosis = sandbox.json(&format!("{place}.json"));
         let effects = diagnosis["effects"].as_array().expect("a list");
         let first = effects.first().and_then(|effect| effect["id"].as_str());
         let probability = effects.first().and_then(|effect| effect["probability"].as_f64()).unwrap_or(0.0);
-        println!("{}: {} {}", injection.name, diagnosis["verdict"], told(effects));
+        println!("{}: {} {}", injection.name, diagnosis["verdict"], summary(effects));
         if injection.called.is_empty() {
             if diagnosis["verdict"] != "no_gap" {
                 wrong.push(format!("{}: {}", injection.name, diagnosis["verdict"]));
@@ -238,19 +247,19 @@ fn judged(training: &Logs, held_out: &Logs, injections: &[Injection]) -> [usize;
     [named, asked]
 }
 
-fn told(effects: &[Value]) -> String {
+fn summary(effects: &[Value]) -> String {
     let one = |effect: &Value| format!("{} {} {}", effect["id"], effect["probability"], effect["parameters"]);
     effects.iter().map(one).collect::<Vec<_>>().join(", ")
 }
 
-/// A step as its wheels make it.
+/// Motion in one step.
 struct Step {
     forward_cm: f64,
     lateral_cm: f64,
     turn_rad: f64,
 }
 
-/// Distance between the wheels, cm: half of what a turn takes is theirs.
+/// Distance between the wheels, cm.
 const TRACK_CM: f64 = 23.5;
 
 impl Step {
@@ -267,7 +276,7 @@ impl Step {
         });
     }
 
-    /// Changes what the left and then the right wheel cover.
+    /// Changes the distances of the left wheel and then of the right one, cm.
     fn each_wheel(&mut self, mut change: impl FnMut(f64) -> f64) {
         let half_cm = 0.5 * TRACK_CM * self.turn_rad;
         let left_cm = change(self.forward_cm - half_cm);
@@ -276,7 +285,7 @@ impl Step {
     }
 }
 
-/// Drives every step anew, changed; `change` is given the time since the run began, minutes.
+/// Drives every step again with a change. `change` takes the step and the time since the start of the run, minutes.
 fn steps(run: &mut Run, change: impl Fn(&mut Step, f64)) {
     let begin_ms = run.rows.at(0).t_ms;
     let poses: Vec<Option<Pose>> = run.rows.iter().map(|row| row.pose).collect();
@@ -295,12 +304,12 @@ fn steps(run: &mut Run, change: impl Fn(&mut Step, f64)) {
     }
 }
 
-/// Changes every pose as the tracker sees it.
+/// Changes every tracked pose.
 fn seen(run: &mut Run, change: impl FnMut(&mut Pose)) {
     run.rows.edit_poses(change);
 }
 
-/// The robot is where it was so long ago.
+/// Delays the poses by `ms`.
 fn later(run: &mut Run, ms: f64) {
     let poses: Vec<Option<Pose>> = run.rows.iter().map(|row| row.pose).collect();
     for i in 0..poses.len() {
@@ -316,12 +325,12 @@ fn later(run: &mut Run, ms: f64) {
     }
 }
 
-/// The tracked marker sits ahead of the axle's middle.
+/// Moves the tracked marker ahead of the middle of the axle.
 fn marker(run: &mut Run, ahead_cm: f64) {
     seen(run, |pose| pose.position_cm += ahead_cm * pose.direction());
 }
 
-/// The tracker scatters.
+/// Adds noise to the poses.
 fn noise(run: &mut Run, cm: f64, rad: f64) {
     let mut rng = generator(run);
     seen(run, |pose| {
@@ -330,7 +339,7 @@ fn noise(run: &mut Run, cm: f64, rad: f64) {
     });
 }
 
-/// Changes every reading, given in whole centimetres.
+/// Changes every reading and rounds it to whole centimetres.
 fn echoes(run: &mut Run, change: impl Fn(f64, &mut SmallRng) -> Option<f64>) {
     let mut rng = generator(run);
     run.rows.edit_each(|row| {
@@ -338,12 +347,12 @@ fn echoes(run: &mut Run, change: impl Fn(f64, &mut SmallRng) -> Option<f64>) {
     });
 }
 
-/// Now and then one wrong reading.
+/// Replaces readings by `cm` with a probability.
 fn ghost(run: &mut Run, cm: f64, probability: f64) {
     echoes(run, |right_cm, rng| Some(if rng.random::<f64>() < probability { cm } else { right_cm }));
 }
 
-/// Readings fail for five rows in a row on average.
+/// Removes a share of the readings, in bursts of five rows on average.
 fn bursts(run: &mut Run, share: f64) {
     let begins = 0.2 * share / (1.0 - share);
     let mut rng = generator(run);
@@ -358,7 +367,7 @@ fn generator(run: &Run) -> SmallRng {
     SmallRng::seed_from_u64(run.rows.len() as u64 + run.name.bytes().map(u64::from).sum::<u64>())
 }
 
-/// The sum of twelve uniform draws is nearly normal.
+/// Returns a nearly normal draw, the sum of twelve uniform ones.
 fn normal(rng: &mut SmallRng) -> f64 {
     (0..12).map(|_| rng.random::<f64>()).sum::<f64>() - 6.0
 }

@@ -1,4 +1,4 @@
-//! What an inspection makes of logs that other robots and other programs wrote.
+//! The inspection of logs that other robots and other programs wrote.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -29,8 +29,8 @@ fn inspected(folder: &Path) -> (Logs, Inspection) {
     (logs, inspected)
 }
 
-/// Whatever is changed in the robot, its logs are as they should be.
-pub fn made_up_logs_stay_as_they_are(data: &Path) {
+/// A changed robot still writes correct logs.
+pub fn simulated_logs_are_left_unchanged(data: &Path) {
     let changed: Vec<PathBuf> = folders(data)
         .into_iter()
         .chain(folders(&data.join("cases")))
@@ -42,8 +42,8 @@ pub fn made_up_logs_stay_as_they_are(data: &Path) {
     assert!(changed.is_empty(), "{changed:?}");
 }
 
-/// Zeros beyond the sensor's range are all that is wrong with the scans.
-pub fn scans_at_rest_stay_as_they_are(folder: &Path) {
+/// The only fault of the scans is a zero where the sensor had no echo.
+pub fn scans_at_rest_are_left_unchanged(folder: &Path) {
     for team in folders(folder) {
         let (logs, inspected) = inspected(&team);
         let rows = |logs: &Logs| logs.runs.iter().flat_map(|run| &run.rows).collect::<Vec<_>>();
@@ -55,8 +55,8 @@ pub fn scans_at_rest_stay_as_they_are(folder: &Path) {
     }
 }
 
-/// Its runs were cut out of longer drives.
-pub fn a_drive_cut_into_runs_starts_moving(folder: &Path) {
+/// These runs were cut out of longer drives.
+pub fn runs_cut_from_a_drive_start_moving(folder: &Path) {
     let (logs, inspected) = inspected(folder);
     let [found] = inspected.findings.as_slice() else { panic!("{:?}", inspected.findings) };
     assert_eq!((found.id, found.handling), ("starts_moving", Handling::Excluded));
@@ -69,7 +69,7 @@ pub fn faults_of_another_robots_logs_are_found(folder: &Path) {
     MOTION.iter().chain(&SONAR).for_each(|fault| assert_found(&good, fault));
 }
 
-/// It drives so smoothly that a clock 1.6 s off in one run of them could be another drive's.
+/// The robot drives so smoothly that a clock error of 1.6 s in one run cannot be found.
 pub fn faults_of_a_real_drives_logs_are_found(folder: &Path) {
     let good = read(folder);
     MOTION.iter().filter(|fault| fault.id != "clock_shifted").for_each(|fault| assert_found(&good, fault));

@@ -1,5 +1,5 @@
-//! Logs from elsewhere: other robots, other programs. They are not part of the project, so most machines lack them, and
-//! there each of these tests is reported as ignored, by name.
+//! Tests on logs of other robots and other programs. These logs are not part of the project. On machines without them each test
+//! is reported as ignored, by name. So is a test that has only a long form.
 
 mod gap_cases;
 mod gap_real;
@@ -14,8 +14,9 @@ use std::process::ExitCode;
 
 use libtest_mimic::{Arguments, Trial};
 use mindgap_tests::command::workspace;
+use mindgap_tests::form::is_long;
 
-/// A test with the path of the logs that it needs, from the folder of all of them.
+/// Makes a test from its function and the path of its logs below the folder of all logs.
 macro_rules! trial {
     ($module:ident::$test:ident, $logs:literal) => {
         trial(concat!(stringify!($module), "::", stringify!($test)), $logs, $module::$test)
@@ -25,27 +26,26 @@ macro_rules! trial {
 fn main() -> ExitCode {
     let trials = vec![
         trial!(gap_cases::effects_of_another_robot_are_named, "data"),
-        trial!(gap_real::the_ends_of_a_neatos_runs_show_its_gap_to_the_textbook, "real/neato"),
+        trial!(gap_real::the_end_poses_of_a_neato_show_its_gap_to_the_kinematic_model, "real/neato"),
         trial!(gap_real::the_loss_in_turns_of_a_real_robot_is_found_as_a_formula, "real/create"),
-        trial!(gap_real::a_real_sonar_that_stands_still_is_compared_with_the_textbook, "real/nxt-sonar"),
+        trial!(gap_real::a_real_sonar_at_rest_is_compared_with_the_kinematic_model, "real/nxt-sonar"),
         trial!(injections::changes_of_a_real_drive_are_named, "real/create"),
-        trial!(injections::changes_of_a_real_sonar_that_stands_still_are_named, "real/nxt-sonar/sacha_repeat"),
-        trial!(inspection::made_up_logs_stay_as_they_are, "data"),
-        trial!(inspection::scans_at_rest_stay_as_they_are, "real/nxt-sonar"),
-        trial!(inspection::a_drive_cut_into_runs_starts_moving, "real/create"),
+        only_long(trial!(injections::changes_of_a_real_sonar_at_rest_are_named, "real/nxt-sonar/sacha_repeat")),
+        trial!(inspection::simulated_logs_are_left_unchanged, "data"),
+        trial!(inspection::scans_at_rest_are_left_unchanged, "real/nxt-sonar"),
+        trial!(inspection::runs_cut_from_a_drive_start_moving, "real/create"),
         trial!(inspection::faults_of_another_robots_logs_are_found, "data/nominal-holdout"),
         trial!(inspection::faults_of_a_real_drives_logs_are_found, "real/create"),
         trial!(own_robot::streams_lead_to_the_causes_in_three_commands, "real/create"),
         trial!(reading::nominal_logs_are_read_without_a_warning, "data"),
-        trial!(reading::a_real_sonar_that_stands_still_trains_the_two_sonar_networks, "real/nxt-sonar/kentheo"),
-        trial!(sonar_law::a_scan_elsewhere_is_likely_by_the_first_echo_law, "real/nxt-sonar/chunnx"),
+        trial!(reading::a_real_sonar_at_rest_trains_the_two_sonar_networks, "real/nxt-sonar/kentheo"),
+        trial!(sonar_law::the_first_echo_law_predicts_scans_at_another_place, "real/nxt-sonar/chunnx"),
         trial!(reading::the_scene_with_four_obstacles_is_read, "data/scenes/four-obstacles.toml"),
     ];
     libtest_mimic::run(&Arguments::from_args(), trials).exit_code()
 }
 
-/// A test that is ignored where there are no logs from elsewhere at all; where there are some, those that it needs have
-/// to be among them.
+/// Returns a test that is ignored if the folder of all logs is missing. If the folder is there, the logs must be too.
 fn trial(name: &str, logs: &str, test: fn(&Path)) -> Trial {
     let folder = folder();
     let logs = folder.join(logs);
@@ -57,7 +57,12 @@ fn trial(name: &str, logs: &str, test: fn(&Path)) -> Trial {
     Trial::test(name, run).with_ignored_flag(!folder.is_dir())
 }
 
-/// `$MINDGAP_SHARED`, or `shared` beside the workspace.
+/// Ignores a test in the short form.
+fn only_long(trial: Trial) -> Trial {
+    if is_long() { trial } else { trial.with_ignored_flag(true) }
+}
+
+/// Returns `$MINDGAP_SHARED`, or else the folder `shared` next to the workspace.
 fn folder() -> PathBuf {
     std::env::var_os("MINDGAP_SHARED").map_or_else(|| workspace().join("../shared"), PathBuf::from)
 }

@@ -1,9 +1,9 @@
-//! Logs that other robots and other programs wrote are read, and train what they can.
+//! Logs that other robots and other programs wrote are read, and can be used for training.
 
 use std::path::Path;
 
 use mindgap_logs::{Logs, Scene, samples};
-use mindgap_tests::command::Workshop;
+use mindgap_tests::command::Sandbox;
 
 /// Rows of each nominal run.
 const ROWS: usize = 60;
@@ -26,15 +26,15 @@ pub fn nominal_logs_are_read_without_a_warning(data: &Path) {
     }
 }
 
-pub fn a_real_sonar_that_stands_still_trains_the_two_sonar_networks(logs: &Path) {
-    let (workshop, logs) = (Workshop::new(), logs.display());
-    let done = workshop.call(&format!("train {logs} --out sim.json"));
-    assert_eq!(done.code, 0, "{}", done.err);
+pub fn a_real_sonar_at_rest_trains_the_two_sonar_networks(logs: &Path) {
+    let (sandbox, logs) = (Sandbox::new(), logs.display());
+    let outcome = sandbox.call(&format!("train {logs} --out sim.json"));
+    assert_eq!(outcome.code, 0, "{}", outcome.err);
     for network in ["turn", "forward", "lateral"] {
-        assert!(done.err.contains(&format!("warning: no {network} network: ")), "{}", done.err);
+        assert!(outcome.err.contains(&format!("warning: no {network} network: ")), "{}", outcome.err);
     }
-    workshop.done(&format!("evaluate sim.json {logs} --json figures.json"));
-    let figures = workshop.json("figures.json");
+    sandbox.run(&format!("evaluate sim.json {logs} --json figures.json"));
+    let figures = sandbox.json("figures.json");
     let mut judged: Vec<&String> = figures["networks"].as_object().unwrap().keys().collect();
     judged.sort();
     assert_eq!(judged, ["echo_probability", "echo_value"]);

@@ -4,17 +4,17 @@ use std::fs;
 use std::path::PathBuf;
 use std::sync::LazyLock;
 
-use mindgap_tests::command::Workshop;
+use mindgap_tests::command::Sandbox;
 use mindgap_tests::rooms::trained;
 
 use crate::visit::{DARK_LAPTOP, DARK_PHONE, LAPTOP, PHONE, Visit, visit};
 
 /// A folder with the page of a robot that covers less ground and whose readings are too long.
-static DIAGNOSED: LazyLock<Workshop> = LazyLock::new(|| {
-    let workshop = trained();
-    workshop.done("record --out worn --runs 8 --steps 40 --effect drive_scale=0.85 --effect sonar_offset --seed 9");
-    workshop.done("diagnose sim.json worn --html page.html");
-    workshop
+static DIAGNOSED: LazyLock<Sandbox> = LazyLock::new(|| {
+    let sandbox = trained();
+    sandbox.run("record --out worn --runs 8 --steps 40 --effect drive_scale=0.85 --effect sonar_offset --seed 9");
+    sandbox.run("diagnose sim.json worn --html page.html");
+    sandbox
 });
 
 fn page() -> PathBuf {
@@ -85,28 +85,28 @@ fn the_replay_moves_with_hand_keyboard_and_time() {
 /// Names of folders and files, and words in files, are what somebody else wrote.
 #[test]
 fn markup_and_scripts_in_names_and_files_stay_words() {
-    let workshop = trained();
+    let sandbox = trained();
     let evil = "logs<img/src=x/onerror=evil=1>&\"'".replace('/', "\u{2215}");
-    workshop.done("record --out worn --runs 8 --steps 40 --effect drive_scale=0.85 --seed 9");
-    fs::rename(workshop.path().join("worn"), workshop.path().join(&evil)).expect("such a name is possible");
+    sandbox.run("record --out worn --runs 8 --steps 40 --effect drive_scale=0.85 --seed 9");
+    fs::rename(sandbox.path().join("worn"), sandbox.path().join(&evil)).expect("such a name is possible");
     for run in 0..8 {
-        let folder = workshop.path().join(&evil);
+        let folder = sandbox.path().join(&evil);
         let name = format!("run-{run}<svg onload=evil=1><!--{}.csv", "long".repeat(40));
         fs::rename(folder.join(format!("run-00{run}.csv")), folder.join(name)).expect("such a name is possible");
     }
-    workshop.write(
+    sandbox.write(
         "own.toml",
         "[[effect]]\nid = \"caster\"\ndescription = \"</script><script>evil = 1</script><img src=x onerror=evil=1>\"\n\
          parameter = [{ name = \"k\", unit = \"cm/rad\", nominal = 0.0, bounds = [0.0, 20.0] }]\n\
          change = { forward_cm = \"forward_cm - k * abs(turn_rad)\" }\n",
     );
-    workshop.done(&format!("diagnose sim.json {evil} --effects own.toml --html page.html"));
+    sandbox.run(&format!("diagnose sim.json {evil} --effects own.toml --html page.html"));
     let foreign = Visit::new(PHONE, "diagnosis-foreign-words")
         .set("#run", "2")
         .ask("typeof evil === 'undefined' && document.images.length === 0")
         .text("option")
         .text(".kind");
-    let seen = &visit(&workshop.path().join("page.html"), &[foreign])[0];
+    let seen = &visit(&sandbox.path().join("page.html"), &[foreign])[0];
     assert_eq!(seen.answer(1), true);
     assert!(seen.word(2).contains("<svg onload=evil=1><!--"), "{}", seen.word(2));
     assert!(seen.word(3).contains(&evil), "{}", seen.word(3));
@@ -114,15 +114,15 @@ fn markup_and_scripts_in_names_and_files_stay_words() {
 
 #[test]
 fn logs_without_echoes_or_company_have_pages_too() {
-    let workshop = trained();
-    workshop.done("record --out one-run --runs 1 --steps 60 --seed 4");
-    workshop.done("record --out no-echoes --runs 4 --steps 40 --effect drive_scale=0.8 --seed 5");
+    let sandbox = trained();
+    sandbox.run("record --out one-run --runs 1 --steps 60 --seed 4");
+    sandbox.run("record --out no-echoes --runs 4 --steps 40 --effect drive_scale=0.8 --seed 5");
     for run in 0..4 {
-        workshop.edit_cells(&format!("no-echoes/run-00{run}.csv"), |cells| cells[6] = "");
+        sandbox.edit_cells(&format!("no-echoes/run-00{run}.csv"), |cells| cells[6] = "");
     }
     for (logs, picture) in [("one-run", "diagnosis-one-run"), ("no-echoes", "diagnosis-no-echoes")] {
-        workshop.done(&format!("diagnose kinematic {logs} --html {logs}.html"));
-        let seen = visit(&workshop.path().join(format!("{logs}.html")), &[Visit::new(PHONE, picture).text("header")]);
+        sandbox.run(&format!("diagnose kinematic {logs} --html {logs}.html"));
+        let seen = visit(&sandbox.path().join(format!("{logs}.html")), &[Visit::new(PHONE, picture).text("header")]);
         let not_compared = seen[0].word(0).contains("Not compared: echo rate and sonar reading");
         assert_eq!(not_compared, logs == "no-echoes", "{}", seen[0].word(0));
     }

@@ -11,16 +11,16 @@ const ROBOT: &str = "robot<img src=x onerror=evil=1>&\"'";
 
 #[test]
 fn a_fleet_shows_what_is_frequent_sorts_its_robots_and_keeps_names_words() {
-    let workshop = trained();
-    fs::create_dir(workshop.path().join("fleet")).expect("a folder");
+    let sandbox = trained();
+    fs::create_dir(sandbox.path().join("fleet")).expect("a folder");
     for (name, effect) in [("a", ""), ("b", ""), ("c", "--effect motor_asymmetry=0.25"), ("d", "")] {
         let seed = 20 + u32::from(name.as_bytes()[0]);
-        workshop.done(&format!("record --out fleet/{name} --runs 6 --steps 25 --seed {seed} {effect}"));
+        sandbox.run(&format!("record --out fleet/{name} --runs 6 --steps 25 --seed {seed} {effect}"));
     }
-    let robot = workshop.path().join("fleet").join(ROBOT);
-    fs::rename(workshop.path().join("fleet/c"), robot).expect("such a name is possible");
-    fs::create_dir(workshop.path().join("fleet/broken<svg onload=evil=1>")).expect("such a name is possible");
-    workshop.done("diagnose sim.json fleet --fleet out");
+    let robot = sandbox.path().join("fleet").join(ROBOT);
+    fs::rename(sandbox.path().join("fleet/c"), robot).expect("such a name is possible");
+    fs::create_dir(sandbox.path().join("fleet/broken<svg onload=evil=1>")).expect("such a name is possible");
+    sandbox.run("diagnose sim.json fleet --fleet out");
     let names = "[...document.querySelectorAll('#robots tbody th')].map((robot) => robot.textContent).join('|')";
     let look = |window, picture| {
         Visit::new(window, picture)
@@ -39,7 +39,7 @@ fn a_fleet_shows_what_is_frequent_sorts_its_robots_and_keeps_names_words() {
         look(DARK_PHONE, "fleet-phone-dark"),
         look(DARK_LAPTOP, "fleet-laptop-dark"),
     ];
-    for seen in visit(&workshop.path().join("out/fleet.html"), &visits) {
+    for seen in visit(&sandbox.path().join("out/fleet.html"), &visits) {
         assert!(seen.word(0).starts_with("4 robots: "), "{}", seen.word(0));
         assert!(seen.answer(1).as_u64() >= Some(1), "a point for an effect");
         assert_eq!(seen.word(2), ["a", "b", "d", ROBOT].join("|"));

@@ -5,9 +5,9 @@ use mindgap_tests::rooms::{trained, with_scene};
 use crate::visit::{DARK_LAPTOP, DARK_PHONE, LAPTOP, PHONE, Visit, visit};
 
 #[test]
-fn an_evaluation_has_surfaces_that_are_hatched_and_values_under_the_pointer() {
-    let workshop = trained();
-    workshop.done("evaluate sim.json logs --html page.html");
+fn an_evaluation_has_surfaces_that_turn_and_are_hatched() {
+    let sandbox = trained();
+    sandbox.run("evaluate sim.json logs --html page.html");
     let look = |window, picture| {
         Visit::new(window, picture)
             .ask("document.querySelectorAll('[data-chart=surface] svg svg').length")
@@ -22,7 +22,7 @@ fn an_evaluation_has_surfaces_that_are_hatched_and_values_under_the_pointer() {
         look(DARK_PHONE, "evaluation-phone-dark"),
         look(DARK_LAPTOP, "evaluation-laptop-dark"),
     ];
-    for seen in visit(&workshop.path().join("page.html"), &visits) {
+    for seen in visit(&sandbox.path().join("page.html"), &visits) {
         // Two maps of 48 by 36 cells, each with a hatch in its plane and one in its legend, and two sheets of 24 by 24.
         assert_eq!(seen.answer(0), 4, "six runs are not everywhere");
         assert!((1..2 * 48 * 36).contains(&seen.answer(1).as_u64().unwrap_or(0)), "{} known cells", seen.answer(1));
@@ -34,9 +34,9 @@ fn an_evaluation_has_surfaces_that_are_hatched_and_values_under_the_pointer() {
 
 #[test]
 fn a_simulation_shows_where_runs_end_and_what_the_controller_does() {
-    let workshop = with_scene();
-    workshop.done("evolve sim.json --scene scene.toml --out controller.toml --max-steps 20");
-    workshop.done("simulate sim.json controller.toml --scene scene.toml --runs 1000 --html page.html");
+    let sandbox = with_scene();
+    sandbox.run("evolve sim.json --scene scene.toml --out controller.toml --max-steps 20");
+    sandbox.run("simulate sim.json controller.toml --scene scene.toml --runs 1000 --html page.html");
     let look = |window, picture| {
         Visit::new(window, picture)
             .set("#moment", "5")
@@ -51,7 +51,7 @@ fn a_simulation_shows_where_runs_end_and_what_the_controller_does() {
         look(DARK_PHONE, "simulation-phone-dark"),
         look(DARK_LAPTOP, "simulation-laptop-dark"),
     ];
-    for seen in visit(&workshop.path().join("page.html"), &visits) {
+    for seen in visit(&sandbox.path().join("page.html"), &visits) {
         assert!(seen.word(1).contains("until a reading is"), "{}", seen.word(1));
         assert!(seen.word(2).contains("of 1000 runs, evenly spread"), "{}", seen.word(2));
         assert_eq!(seen.answer(3), seen.answer(4), "a legend without tuples that no run holds");

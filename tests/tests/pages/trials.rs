@@ -1,6 +1,6 @@
 //! The page of a loop on the robot.
 
-use mindgap_tests::command::Workshop;
+use mindgap_tests::command::Sandbox;
 use mindgap_tests::rooms::{SCENE, robot, trained};
 
 use crate::visit::{DARK_LAPTOP, DARK_PHONE, LAPTOP, PHONE, Visit, visit};
@@ -9,22 +9,22 @@ use crate::visit::{DARK_LAPTOP, DARK_PHONE, LAPTOP, PHONE, Visit, visit};
 const ROOM: &str = "room<img\u{a0}src=x\u{a0}onerror=evil=1>&'.toml";
 
 /// A loop of so many trials, and its page.
-fn looped(trials: usize) -> Workshop {
-    let workshop = trained();
-    workshop.write(ROOM, SCENE);
-    robot(&workshop, "", "");
+fn looped(trials: usize) -> Sandbox {
+    let sandbox = trained();
+    sandbox.write(ROOM, SCENE);
+    robot(&sandbox, "", "");
     let mut command =
-        workshop.command(&format!("loop out --sim sim.json --max-steps 20 --trials {trials} --html page.html"));
+        sandbox.command(&format!("loop out --sim sim.json --max-steps 20 --trials {trials} --html page.html"));
     command.args(["--robot", "sh robot.sh", "--scene", ROOM]);
-    let done = workshop.run(command);
+    let done = sandbox.execute(command);
     assert_eq!(done.code, 0, "{}", done.err);
-    workshop
+    sandbox
 }
 
 #[test]
 fn a_loop_shows_what_was_expected_what_happened_and_what_it_taught() {
-    let workshop = looped(3);
-    let trials = workshop.json("out/loop.json")["trials"].as_array().map_or(0, Vec::len);
+    let sandbox = looped(3);
+    let trials = sandbox.json("out/loop.json")["trials"].as_array().map_or(0, Vec::len);
     let look = |window, picture| {
         Visit::new(window, picture)
             .text("h1")
@@ -40,7 +40,7 @@ fn a_loop_shows_what_was_expected_what_happened_and_what_it_taught() {
         look(DARK_PHONE, "loop-phone-dark"),
         look(DARK_LAPTOP, "loop-laptop-dark"),
     ];
-    for seen in visit(&workshop.path().join("page.html"), &visits) {
+    for seen in visit(&sandbox.path().join("page.html"), &visits) {
         assert!(seen.word(0).contains("controller"), "{}", seen.word(0));
         assert!(seen.word(1).contains("reached the target") || seen.word(1).contains("missed it"), "{}", seen.word(1));
         assert_eq!(seen.answer(2).as_u64(), Some(trials as u64), "a map for each trial");
@@ -52,13 +52,13 @@ fn a_loop_shows_what_was_expected_what_happened_and_what_it_taught() {
 
 #[test]
 fn a_loop_that_found_nothing_has_a_page_too() {
-    let workshop = trained();
+    let sandbox = trained();
     // Two steps lead nowhere.
-    workshop.write("scene.toml", SCENE);
-    let mut command = workshop.command("loop out --sim sim.json --scene scene.toml --max-steps 2 --html page.html");
+    sandbox.write("scene.toml", SCENE);
+    let mut command = sandbox.command("loop out --sim sim.json --scene scene.toml --max-steps 2 --html page.html");
     command.args(["--robot", "false"]);
-    let done = workshop.run(command);
+    let done = sandbox.execute(command);
     assert_eq!(done.code, 0, "{}", done.err);
-    let seen = visit(&workshop.path().join("page.html"), &[Visit::new(PHONE, "loop-out-of-reach").text("h1")]);
+    let seen = visit(&sandbox.path().join("page.html"), &[Visit::new(PHONE, "loop-out-of-reach").text("h1")]);
     assert!(seen[0].word(0).contains("No controller was found"), "{}", seen[0].word(0));
 }

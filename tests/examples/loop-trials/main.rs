@@ -1,5 +1,5 @@
 //! Measures the loop on the built-in robot in generated rooms against procedures without it, as rows of CSV for
-//! docs/reference/measurements.md: `cargo run --release -p mindgap-tests --bin loop-trials -- SIM LOGS FIRST COUNT PROCEDURE…`. `LOGS` are those
+//! docs/reference/measurements.md: `cargo run --release -p mindgap-tests --example loop-trials -- SIM LOGS FIRST COUNT PROCEDURE…`. `LOGS` are those
 //! that `SIM` was trained on; `FIRST` and `COUNT` say which of the 360 cases, which are in random order.
 
 mod cases;

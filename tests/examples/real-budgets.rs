@@ -1,5 +1,5 @@
 //! Prints the budgets of real robots against the textbook as a table in Markdown, for docs/reference/real-robots.md:
-//! `cargo run --release -p mindgap-tests --bin real-budgets -- FOLDER…`, one folder of logs each.
+//! `cargo run --release -p mindgap-tests --example real-budgets -- FOLDER…`, one folder of logs each.
 
 use std::path::Path;
 
@@ -31,7 +31,7 @@ fn main() -> std::process::ExitCode {
 fn row(folder: &Path, diagnosis: &Diagnosis) -> String {
     let name = folder.file_name().unwrap_or_default().to_string_lossy();
     let verdict = serde_json::to_value(diagnosis.verdict()).unwrap_or_default();
-    let parts: Vec<String> = diagnosis.budget().iter().map(|part| told(part, diagnosis.effects())).collect();
+    let parts: Vec<String> = diagnosis.budget().iter().map(|part| cell(part, diagnosis.effects())).collect();
     let closed = diagnosis.reduction().map_or(String::new(), |reduction| {
         let [low, high] = reduction.whole.ci95.map(|share| 100.0 * share);
         format!("{:.0} % ({low:.0} to {high:.0})", 100.0 * reduction.whole.reducible_closed)
@@ -39,7 +39,7 @@ fn row(folder: &Path, diagnosis: &Diagnosis) -> String {
     format!("| {name} | {} | {} | {closed} |", verdict.as_str().unwrap_or_default(), parts.join("; "))
 }
 
-fn told(part: &Part, effects: &[NamedEffect]) -> String {
+fn cell(part: &Part, effects: &[NamedEffect]) -> String {
     let [low, high] = part.ci95.map(|share| 100.0 * share);
     let share = format!("{:.0} % ({low:.0} to {high:.0})", 100.0 * part.share);
     let strength = effects.iter().find(|effect| effect.id == part.id).map_or(String::new(), strength);

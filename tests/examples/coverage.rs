@@ -1,5 +1,5 @@
 //! Prints how often open-loop paths of held-out logs end within the regions that a simulator predicts, as the rows of the
-//! table in docs/reference/measurements.md: `cargo run --release -p mindgap-tests --bin coverage -- SIM LOGS…`. In place of a folder,
+//! table in docs/reference/measurements.md: `cargo run --release -p mindgap-tests --example coverage -- SIM LOGS…`. In place of a folder,
 //! `controllers` stands for runs of random controllers on the built-in robot.
 
 use std::path::Path;

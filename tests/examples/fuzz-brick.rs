@@ -1,7 +1,7 @@
 //! Feeds the NXT emulator with damaged programs: those of `tests/conformance` and exported controllers, with bytes changed,
 //! removed and copied. Nothing may panic, hang or use unbounded memory.
 //!
-//! `cargo run --release -p mindgap-tests --bin fuzz-brick -- [MILLIONS] [SEED]` runs until the given number of millions of
+//! `cargo run --release -p mindgap-tests --example fuzz-brick -- [MILLIONS] [SEED]` runs until the given number of millions of
 //! instructions have been executed.
 
 use std::time::Instant;
@@ -16,7 +16,7 @@ use mindgap_tests::controllers::at_its_limits;
 use mindgap_tests::nbc::compile;
 use rand::RngExt;
 
-/// Time of a run on the brick's clock.
+/// Duration of a run on the brick's clock.
 const RUN_MS: u32 = 2_000;
 
 fn main() {

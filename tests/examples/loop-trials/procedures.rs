@@ -1,4 +1,4 @@
-//! Procedures that come to a controller for a robot, with or without trials on it.
+//! Procedures that find a controller for a robot, with or without trials on it.
 
 use std::path::Path;
 
@@ -26,7 +26,7 @@ use mindgap_models::simulator::{Noise, Simulator};
 use crate::cases::{Case, SEED};
 use crate::on_robot;
 
-/// A name, and what it stands for.
+/// The name of a procedure and its function.
 pub type Procedure = (&'static str, fn(&Workbench) -> Result<Settled>);
 
 /// All procedures.
@@ -43,34 +43,34 @@ pub const PROCEDURES: [Procedure; 8] = [
 
 const TRIALS: usize = 5;
 const MAX_STEPS: u16 = 60;
-/// Rows at the end of a run that a wall may have ended.
+/// Rows at the end of a crashed run that a wall may have affected.
 const LAST_ROWS: usize = 2;
-/// The first of the runs that procedures see.
+/// Number of the first run that procedures see.
 const SEEN: u64 = 1000;
 
-/// What a procedure is given.
+/// Inputs of a procedure.
 pub struct Workbench<'a> {
     /// The simulator's file.
     pub path: &'a Path,
-    /// The same as it was read.
+    /// The simulator.
     pub simulator: &'a Simulator,
-    /// The logs that it was trained on.
+    /// The simulator's training logs.
     pub logs: &'a Logs,
-    /// What it is for.
+    /// The case to solve.
     pub case: &'a Case,
 }
 
-/// What a procedure comes to.
+/// Result of a procedure.
 pub struct Settled {
     /// The controller.
     pub controller: Controller,
-    /// Runs on the robot until then.
+    /// Number of runs on the robot.
     pub trials: usize,
-    /// What the procedure itself says of it.
+    /// The procedure's own verdict.
     pub verdict: &'static str,
 }
 
-/// The paper's: the networks as they are, the straight distance, one run of its genetic algorithm.
+/// The paper's procedure: networks without corrections, straight distance to the target, one run of its genetic algorithm.
 fn by_the_paper(bench: &Workbench) -> Result<Settled> {
     let Workbench { simulator, case, .. } = bench;
     let evaluator = FitnessEvaluator {
@@ -86,20 +86,20 @@ fn by_the_paper(bench: &Workbench) -> Result<Settled> {
     Ok(untried(paper::evolve(&Serial, &evaluator, &paper::settings(), |_, _| {})?.controller))
 }
 
-/// As `mindgap evolve` was before it knew ways round obstacles and what logs leave open.
+/// `mindgap evolve` without paths around obstacles and without the posterior.
 fn evolve_straight(bench: &Workbench) -> Result<Settled> {
     let plain = Simulator { ensemble: None, ..bench.simulator.clone() };
-    // In a room without obstacles every way is straight.
+    // Without obstacles every path is straight.
     let empty = Scene { obstacles: Vec::new(), ..bench.case.scene.clone() };
     Ok(untried(bench.candidates(&plain, &empty)?.swap_remove(0)))
 }
 
-/// As `mindgap evolve` does.
+/// `mindgap evolve`.
 fn evolve(bench: &Workbench) -> Result<Settled> {
     Ok(untried(bench.judged()?.swap_remove(0)))
 }
 
-/// The one of its three best candidates that comes nearest in a trial.
+/// The one of the three best candidates of `mindgap evolve` that comes nearest to the target in a trial.
 fn try_three(bench: &Workbench) -> Result<Settled> {
     let case = bench.case;
     let mut candidates = bench.judged()?;
@@ -111,11 +111,11 @@ fn try_three(bench: &Workbench) -> Result<Settled> {
     Ok(Settled { controller, trials, verdict: "" })
 }
 
-/// Motion networks that are trained again on all logs after each trial.
+/// Trains the motion networks again on all logs after each trial.
 fn retrain(bench: &Workbench) -> Result<Settled> {
     let Workbench { simulator, logs, .. } = bench;
     bench.with_trials(|runs| {
-        // Without walls nothing is learned of the sensor: the new runs were driven in another room.
+        // The new runs were driven in another room. Without walls they train no sensor model.
         let runs = logs.runs.iter().chain(runs).cloned().collect();
         let all = Logs { robot: logs.robot, scene: Scene::default(), runs };
         let again = train(&Serial, &all, &Trainer::Fast, &TABLE_ONE, bench.seed(), &|_| {})?;
@@ -126,7 +126,7 @@ fn retrain(bench: &Workbench) -> Result<Settled> {
     })
 }
 
-/// The robot in the middle of those that remain possible after each trial, as if it were certain.
+/// Evolves at the posterior mean after each trial, without regard to its uncertainty.
 fn correct(bench: &Workbench) -> Result<Settled> {
     let Workbench { simulator, case, .. } = bench;
     bench.with_trials(|runs| {
@@ -165,7 +165,7 @@ fn loops(bench: &Workbench) -> Result<Settled> {
     Ok(Settled { controller, trials: state.trials.len(), verdict })
 }
 
-/// Thousands of runs on the robot, after `mindgap evolve`.
+/// `mindgap evolve`, then evolution on the robot.
 fn on_robot(bench: &Workbench) -> Result<Settled> {
     let decoder = GenotypeDecoder::new(bench.simulator, MAX_STEPS);
     let (controller, trials) = on_robot::evolved(bench.case, &decoder, &bench.judged()?, bench.seed());
@@ -181,7 +181,7 @@ impl Workbench<'_> {
         derive(SEED, &[self.case.room, self.case.start as u64])
     }
 
-    /// Controllers that are evolved on the robot in the middle, or the networks alone, with ways as they are in a room.
+    /// Returns controllers evolved at the posterior mean, or by the networks alone, with the paths of a room.
     fn candidates(&self, simulator: &Simulator, ways_of: &Scene) -> Result<Vec<Controller>> {
         let Case { scene, .. } = self.case;
         let robots = simulator.robots(1, self.seed());
@@ -199,7 +199,7 @@ impl Workbench<'_> {
         Ok(robust::candidates(&task, |_, _| {})?.into_iter().map(|evolved| evolved.controller).collect())
     }
 
-    /// The candidates of `mindgap evolve`, those first that are most likely to succeed on robots that are possible.
+    /// Returns the candidates of `mindgap evolve`, the most likely to succeed over the posterior first.
     fn judged(&self) -> Result<Vec<Controller>> {
         let Workbench { simulator, case, .. } = self;
         let candidates = self.candidates(simulator, &case.scene)?;
@@ -213,8 +213,8 @@ impl Workbench<'_> {
         Ok(judged.into_iter().map(|(controller, _)| controller).collect())
     }
 
-    /// Evolves in what `learn` makes of the runs so far, and drives; a controller that reached the target is driven again
-    /// and kept if it does so twice.
+    /// Evolves in the simulator that `learn` makes of the runs so far, then drives. A controller that reaches the target is driven
+    /// again and is kept if it succeeds twice.
     fn with_trials(&self, learn: impl Fn(&[Run]) -> Result<Simulator>) -> Result<Settled> {
         let (mut runs, mut last): (Vec<Run>, Option<(Controller, bool)>) = (Vec::new(), None);
         for trial in 1..=TRIALS {

@@ -1,6 +1,6 @@
 //! How busy the hand-out keeps a cluster, for docs/reference/measurements.md: simulates what so many ranks make of so many pieces of work,
 //! whose times are drawn from measured ones, in seconds, one a line on standard input:
-//! `cargo run --release -p mindgap-tests --bin handing-out -- RANKS PIECES < SECONDS`.
+//! `cargo run --release -p mindgap-tests --example handing-out -- RANKS PIECES < SECONDS`.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -12,10 +12,10 @@ use mindgap_foundations::random::{Generator, generator};
 use rand::seq::IndexedRandom;
 
 const SEED: u64 = 1;
-/// From when a piece is done until the first rank looks for messages, and from when it sends the next one until the rank
-/// does: the longest time between two looks, and the network.
+/// Time from the end of an item until rank 0 sees the message, and from sending the next item until the other rank sees it: the
+/// longest polling interval plus the network.
 const ON_THE_WAY: Duration = Duration::from_micros(500);
-/// What the first rank does about one piece: it reads the message, keeps the piece, and sends the next.
+/// Time in which rank 0 reads a message, stores its item and sends the next one.
 const SERVED_IN: Duration = Duration::from_micros(100);
 
 fn main() -> ExitCode {
@@ -32,9 +32,9 @@ fn main() -> ExitCode {
     ExitCode::SUCCESS
 }
 
-/// How long it takes until all pieces are done, and how long they take together.
+/// Returns the time until all items are finished, and the sum of their durations.
 fn handed_out(times: &[Duration], ranks: usize, pieces: usize, rng: &mut Generator) -> (Duration, Duration) {
-    // When the next message of each rank reaches the first one.
+    // Time at which the next message of each rank reaches rank 0.
     let mut asking: BinaryHeap<Reverse<Duration>> = (0..ranks).map(|_| Reverse(ON_THE_WAY)).collect();
     let (mut now, mut worked) = (Duration::ZERO, Duration::ZERO);
     for _ in 0..pieces {

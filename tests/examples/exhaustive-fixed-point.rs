@@ -1,5 +1,5 @@
 //! Checks the functions of `mindgap_core::fixed_point` at every input, in four minutes of processor time:
-//! `cargo run --release -p mindgap-tests --bin exhaustive-fixed-point`. Exits with 1 if a bound is exceeded.
+//! `cargo run --release -p mindgap-tests --example exhaustive-fixed-point`. Exits with 1 if a bound is exceeded.
 
 use std::ops::RangeInclusive;
 use std::process::ExitCode;

@@ -1,5 +1,4 @@
-//! What is measured: starts in rooms that nobody looked at before, for the built-in robot as it is and with effects that its
-//! simulator does not know.
+//! The cases: starts in generated rooms, for the built-in robot without and with effects that its simulator does not know.
 
 use glam::DVec2;
 use mindgap_built_in_robot::{ActiveEffect, BuiltInRobot, Effect, Trajectory, default_robot, run_controller};
@@ -12,7 +11,7 @@ use mindgap_models::simulator::rollout::REACHED_CM;
 use rand::RngExt;
 use rand::seq::SliceRandom;
 
-/// Seed of the rooms and of all that happens in them.
+/// Seed of the rooms and of all runs in them.
 pub const SEED: u64 = 1703;
 const ROOMS: u64 = 10;
 const STARTS: usize = 4;
@@ -31,17 +30,17 @@ const EFFECTS: [Effect; 8] = [
 
 /// A start in a room for a robot.
 pub struct Case {
-    /// Which room.
+    /// Number of the room.
     pub room: u64,
-    /// Which of its starts, from 1.
+    /// Number of the start in the room, from 1.
     pub start: usize,
-    /// What is different about the robot.
+    /// Effect on the robot.
     pub effect: Option<ActiveEffect>,
     /// The room.
     pub scene: Scene,
 }
 
-/// All cases in an order in which the first ones are a fair sample; `radius_cm` is that of the robot's body.
+/// Returns all cases in random order. `radius_cm` is the radius of the robot's body.
 pub fn all(radius_cm: f64) -> Vec<Case> {
     let mut cases = Vec::new();
     for room in 0..ROOMS {
@@ -59,45 +58,45 @@ pub fn all(radius_cm: f64) -> Vec<Case> {
 }
 
 impl Case {
-    /// Where the robot starts.
+    /// Returns the start pose of the robot.
     pub fn pose(&self) -> Pose {
         self.scene.starts[self.start - 1]
     }
 
-    /// Where it has to get, cm.
+    /// Returns the target, cm.
     pub fn target_cm(&self) -> DVec2 {
         self.scene.target_cm.unwrap_or_default()
     }
 
-    /// What is different about the robot.
+    /// Returns the effects on the robot.
     pub fn effects(&self) -> Vec<ActiveEffect> {
         self.effect.into_iter().collect()
     }
 
-    /// A run; other numbers give others.
+    /// Returns the run with this number.
     pub fn drive(&self, controller: &Controller, run: u64) -> Trajectory {
         let robot = BuiltInRobot::new(&default_robot(), &self.scene, &self.effects());
         run_controller(&robot, controller, self.pose(), &mut generator(SEED, &[self.room, self.start as u64, run]))
     }
 
-    /// How far from the target a run ended; infinite after a crash.
+    /// Returns the final distance from the target, infinite after a crash.
     pub fn missed_cm(&self, driven: &Trajectory) -> f64 {
         let crashed = driven.termination == Termination::Crashed;
         if crashed { f64::INFINITY } else { driven.end().position_cm.distance(self.target_cm()) }
     }
 
-    /// Whether a run reached the target.
+    /// Returns whether a run reached the target.
     pub fn reached(&self, driven: &Trajectory) -> bool {
         self.missed_cm(driven) <= REACHED_CM
     }
 
-    /// Successes in five runs that no procedure saw.
+    /// Returns the number of successes in five runs that no procedure has seen.
     pub fn fresh_successes(&self, controller: &Controller) -> usize {
         (1..=FRESH_RUNS).filter(|run| self.reached(&self.drive(controller, *run))).count()
     }
 }
 
-/// A room with obstacles, a target and starts, from each of which there is a way.
+/// Returns a room with obstacles, a target and starts that all have a path to it.
 fn generated(room: u64, radius_cm: f64) -> Scene {
     let mut rng = generator(SEED, &[room]);
     loop {

@@ -1,5 +1,4 @@
-//! What evolution comes to that has the robot itself in place of a simulator, and thousands of runs: no procedure can expect
-//! more of the controllers that it finds.
+//! Evolution on the robot itself instead of a simulator, with thousands of runs: an upper bound on what any procedure can find.
 
 use mindgap_core::controller::Controller;
 use mindgap_foundations::random::generator;
@@ -14,25 +13,25 @@ const GENERATIONS: u64 = 40;
 /// Controllers that a generation keeps, and mutants of them that it tries.
 const KEPT: usize = 8;
 const MUTANTS: usize = 30;
-/// Runs of each controller in each generation: those that stay are driven again, so that luck fades.
+/// Runs of each controller in each generation. Controllers that stay are driven again, which averages out luck.
 const RUNS: u64 = 10;
-/// A mutant differs in so many of its genes, by one of these deviations.
+/// Number of genes in which a mutant differs, and the standard deviations of the differences.
 const CHANCE: f64 = 0.15;
 const DEVIATIONS: [f32; 3] = [0.01, 0.03, 0.08];
-/// The first run that it drives: no other procedure drives these.
+/// Number of the first run. No other procedure drives these runs.
 const FIRST: u64 = 1_000_000;
 
-/// A run that comes near counts for so much of one that arrives: it shows where to go on.
+/// Score of a run that comes near the target, relative to one that reaches it.
 const NEARNESS: f64 = 0.1;
 
-/// A controller, how often it was driven and what that was worth.
+/// A controller, the number of its runs, and their score.
 struct Driven {
     genes: Vec<f32>,
     runs: u64,
     worth: f64,
 }
 
-/// The best controller that comes of these by selection on the robot, and how many runs that took.
+/// Returns the best controller that selection on the robot makes of these, and the number of runs.
 pub fn evolved(case: &Case, decoder: &GenotypeDecoder, from: &[Controller], seed: u64) -> (Controller, usize) {
     let mut rng = generator(seed, &[]);
     let driven = |genes: Vec<f32>| Driven { genes, runs: 0, worth: 0.0 };
@@ -67,7 +66,7 @@ pub fn evolved(case: &Case, decoder: &GenotypeDecoder, from: &[Controller], seed
 }
 
 impl Driven {
-    /// What is expected of a run (Laplace's rule).
+    /// Returns the expected score of a run, by Laplace's rule of succession.
     fn expected(&self) -> f64 {
         (self.worth + 1.0) / (self.runs + 2) as f64
     }

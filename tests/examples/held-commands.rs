@@ -1,5 +1,5 @@
 //! How far commands that are held for long turn the built-in robot, and the simulated one in the middle of what its logs
-//! leave open, and how that scatters, as CSV for docs/reference/measurements.md: `cargo run --release -p mindgap-tests --bin held-commands --
+//! leave open, and how that scatters, as CSV for docs/reference/measurements.md: `cargo run --release -p mindgap-tests --example held-commands --
 //! SIM STEPS`.
 
 use std::path::Path;
@@ -44,7 +44,7 @@ fn measure() -> Result<()> {
     let [sim, steps] = arguments.as_slice() else { return Err(Error::new("SIM STEPS")) };
     let max_steps: u16 = steps.parse().map_err(|e| Error::new(format!("{steps}: {e}")))?;
     let simulator = Simulator::read(Path::new(sim))?;
-    // Walls are far beyond what any command reaches.
+    // The walls are beyond the reach of any command.
     let scene = Scene { arena_cm: Some(DVec2::splat(10_000.0)), ..Scene::default() };
     let start = Pose::new(5000.0, 5000.0, 0.0);
     let robots = simulator.robots(0, SEED);
@@ -57,7 +57,7 @@ fn measure() -> Result<()> {
         let motions = &simulated.motions(controller);
         let real = (0..RUNS).map(|run| {
             let driven = run_controller(&robot, controller, start, &mut generator(SEED, &[run]));
-            // The last point is that of a robot that has come to rest.
+            // At the last point the robot has come to rest.
             turned_deg(driven.points[1..].iter().take(usize::from(max_steps)).map(|point| point.true_pose))
         });
         let model = (0..RUNS).map(|seed| {
@@ -70,7 +70,7 @@ fn measure() -> Result<()> {
     Ok(())
 }
 
-/// How far a robot turns that starts at a heading of zero; in a step it turns less than half round.
+/// Returns the total turn of a robot that starts at heading 0 and turns by less than 180 degrees per step.
 fn turned_deg(poses: impl Iterator<Item = Pose>) -> f64 {
     let mut before_rad = 0.0;
     let turned_rad: f64 = poses
@@ -83,7 +83,7 @@ fn turned_deg(poses: impl Iterator<Item = Pose>) -> f64 {
     turned_rad.to_degrees()
 }
 
-/// Mean and standard deviation.
+/// Returns the mean and the standard deviation.
 fn summary(values: Vec<f64>) -> [f64; 2] {
     let middle = mean(values.iter().copied());
     [middle, root_mean_square(values.iter().map(|value| value - middle))]

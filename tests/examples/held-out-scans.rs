@@ -1,5 +1,5 @@
 //! Prints how likely the first-echo law makes scans at places that it was not fitted on, as a table in Markdown for
-//! docs/reference/measurements.md: `cargo run --release -p mindgap-tests --bin held-out-scans -- FOLDER…`, one folder of scans each.
+//! docs/reference/measurements.md: `cargo run --release -p mindgap-tests --example held-out-scans -- FOLDER…`, one folder of scans each.
 
 use std::path::Path;
 use std::process::ExitCode;

@@ -1,5 +1,5 @@
 //! Trains the networks of the firmware and the example, and writes them as Rust source:
-//! `cargo run --release -p mindgap-tests --bin firmware-networks`.
+//! `cargo run --release -p mindgap-tests --example firmware-networks`.
 
 use std::path::Path;
 

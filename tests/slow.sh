@@ -1,0 +1,32 @@
+#!/usr/bin/env bash
+# The long forms of the tests in tests/run.sh, and measurements that check something. Takes several hours on two cores.
+#
+# tests/run.sh has a short form of each, so a fault that this script finds is usually found there first:
+#
+#   what                                    in tests/run.sh                           here
+#   kills of commands with a checkpoint     3 per command                             200; 20 of calibrate and the demo
+#   failing disk calls                      2 per quick command, 1 per slow one       every call, twice; 8 also of the demo
+#   the demo                                demo --quick: its files and texts         the whole demo: the target is reached
+#   cases of another robot                  three of 31                               all
+#   changes put into real logs              three and none in the last third          26 in each third, 13 in scans
+#   real sonars                             one team                                  all six
+#   consoles in the documents               those that are quick                      all
+#   controllers through NXC's compiler      24                                        10,000
+#   fixed-point functions                   samples                                   every input
+#   broken NXT programs                     a few in fuzz/tests                       120 million instructions
+#   fuzz targets                            kept inputs and 1,000 made of them each   libFuzzer, for an hour
+#
+# tests/run.sh leaves out more samples of the same kind. Each kind of fault and format keeps at least one; kills and failing disks
+# of the demo and of the calibration, which consist of commands that are tested there, are left out and listed as skipped.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+exec </dev/null
+. tests/install.sh
+need_all
+
+export MINDGAP_SLOW=1 MINDGAP_DOCS=slow MINDGAP_CONTROLLERS=10000
+cargo test --workspace --tests --features mindgap-tests/mpi --no-fail-fast
+cargo run --release -p mindgap-tests --example exhaustive-fixed-point
+cargo run -p mindgap-tests --example fuzz-brick -- 120 7
+fuzz/run.sh 1
+echo "all slow checks passed"
