@@ -80,8 +80,8 @@ pub fn adapt(simulator: &Simulator, logs: &Logs, seed: u64, watch: impl Fn(Stage
     let missing = || Error::new("the simulator file does not say what its training logs leave open: train it again");
     let ensemble = simulator.ensemble.as_ref().ok_or_else(missing)?;
     let robot = &simulator.robot;
-    let observations = Observations::of(logs, None);
     let baseline = Baseline::of_middle(simulator)?;
+    let observations = Observations::of(logs, baseline.motion.as_ref(), None);
     let plain = steps(&baseline, &[], &observations);
     if plain.is_empty() {
         return Err(Error::new("the runs hold no step with a pose at both ends: there is nothing to adapt to"));
@@ -142,7 +142,7 @@ fn steps(baseline: &Baseline, effects: &[AppliedEffect], observations: &Observat
     let chain = EffectChain::of(&applied);
     let step = |row: &crate::evaluation::observations::Observation| {
         let [now, before, ..] = row.context.commands;
-        let left = predictions::residual(&chain, motion, row).filter(|_| row.then.is_empty())?;
+        let left = predictions::residual(&chain, motion, row).filter(|_| row.following_steps.is_empty())?;
         let beyond = motion.beyond(now);
         let off = [0, 1, 2].map(|channel| left[channel] + beyond[channel]);
         Some(StepResidual::new([row.run, row.at], [now[0], now[1], before[0], before[1]], off, reference))

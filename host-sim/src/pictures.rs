@@ -137,7 +137,7 @@ pub fn diagnosis(folder: &Path, diagnosis: &Diagnosis) -> Result<()> {
 /// The figures of a diagnosis: its budget, the ends of paths, and what is left; nothing of what it does not have.
 pub fn figures_of_diagnosis(diagnosis: &Diagnosis) -> Vec<NamedFigure> {
     let budget: Vec<Bar> = diagnosis
-        .budget()
+        .budget
         .iter()
         .map(|part| Bar { name: part.id.clone(), share: part.share, interval: part.ci95 })
         .collect();
@@ -145,9 +145,9 @@ pub fn figures_of_diagnosis(diagnosis: &Diagnosis) -> Vec<NamedFigure> {
     if !budget.is_empty() {
         figures.push(named("budget", report::bars("What the gap is made of", "share of the gap (%)", &budget)));
     }
-    let reduction = diagnosis.reduction().filter(|reduction| !reduction.paths.is_empty());
+    let reduction = diagnosis.reduction.as_ref().filter(|reduction| !reduction.paths.is_empty());
     figures.extend(reduction.map(|reduction| named("path-ends", ends(reduction))));
-    figures.extend(diagnosis.profiles().iter().map(|profile| {
+    figures.extend(diagnosis.profiles.iter().map(|profile| {
         named(&format!("unexplained-{}", profile.channel.name().replace('_', "-")), unexplained(profile))
     }));
     figures

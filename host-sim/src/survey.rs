@@ -13,8 +13,8 @@ pub use holdings::{Holdings, Range};
 
 use crate::effects::CATALOGUE;
 use crate::error::{Error, Result};
-use crate::gap::condition;
 use crate::gap::diagnose::{Excitation, excitation};
+use crate::gap::split;
 use crate::inspection::{Finding, Inspection};
 use crate::learn::train;
 use crate::logs::{Logs, Run};
@@ -96,7 +96,7 @@ fn shown(inspected: &Inspection) -> Result<Excitation> {
 
 /// Logs in the steps that a diagnosis compares, where those are longer.
 fn in_steps_that_motion_shows_in(logs: &Logs) -> Option<Logs> {
-    let step_ms = condition::step_ms(logs.robot.step_ms);
+    let step_ms = split::step_ms(logs.robot.step_ms);
     (step_ms > logs.robot.step_ms).then(|| logs.in_steps_of(step_ms))
 }
 

@@ -13,7 +13,7 @@ use crate::effects::applied::AppliedEffect;
 use crate::error::{Error, Result};
 use crate::files;
 use crate::gap::diagnose::closed;
-use crate::gap::diagnosis::Verdict;
+use crate::gap::verdict::Verdict;
 use crate::logs::Logs;
 use crate::simulator::Simulator;
 use crate::workers::counter::Counter;

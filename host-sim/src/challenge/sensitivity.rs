@@ -8,9 +8,9 @@ use super::cases::{Case, Size};
 use crate::error::{Error, Result};
 use crate::gap::Method;
 use crate::gap::calibration::Calibration;
-use crate::gap::compare::Comparison;
+use crate::gap::confirm::Confirmed;
 use crate::gap::diagnose::confirmed;
-use crate::gap::explain::Judged;
+use crate::gap::verdict::{Conclusion, Verdict};
 use crate::workers;
 use crate::workers::counter::Counter;
 
@@ -100,22 +100,20 @@ fn of_case(bench: &Bench, number: usize, calibrations: &[Calibration]) -> Result
 }
 
 /// What comes of a case of which this was found, judged by a calibration.
-fn judged(case: &Case, trained_on: Option<f64>, found: &Comparison, calibration: &Calibration) -> Ending {
+fn judged(case: &Case, trained_on: Option<f64>, found: &Confirmed, calibration: &Calibration) -> Ending {
     let method = Method { calibration: *calibration, ..Method::default() };
-    let rows = found.none.log_likelihood.motion.len();
-    let judged = Judged::of(found, &case.logs.robot, &method.calibration_for(rows, trained_on));
+    let rows = found.chosen.scores.rows().len();
+    let calibration = method.calibration_for(rows, trained_on);
+    let Conclusion { verdict, effects } = Conclusion::of(found, &case.logs.robot, &calibration);
     let in_table = case.effects.iter().all(|active| active.effect.in_table());
-    let (is_null, is_unknown) = (case.effects.is_empty(), matches!(judged, Judged::Unknown));
-    let first = match &judged {
-        Judged::Known { effects } | Judged::PartlyKnown { effects } => effects.first().map(|effect| effect.id),
-        Judged::NoGap | Judged::Unknown => None,
-    };
+    let (is_null, is_unknown) = (case.effects.is_empty(), verdict == Verdict::Unknown);
+    let first = effects.first().map(|effect| effect.id);
     let is_there = first.is_some_and(|id| case.effects.iter().any(|active| active.effect.id() == id));
     Ending {
-        false_alarm: is_null && !matches!(judged, Judged::NoGap),
+        false_alarm: is_null && verdict != Verdict::NoGap,
         named: in_table && is_there,
         false_unknown: !is_null && in_table && is_unknown,
-        unknown: !in_table && matches!(judged, Judged::Unknown | Judged::PartlyKnown { .. }),
+        unknown: !in_table && matches!(verdict, Verdict::Unknown | Verdict::PartlyKnown),
         wrong: first.is_some() && !is_there,
     }
 }

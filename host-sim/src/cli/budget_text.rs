@@ -2,16 +2,16 @@
 
 use crate::gap::Diagnosis;
 use crate::gap::budget::{Part, SCATTER, UNEXPLAINED};
-use crate::gap::explain::NamedEffect;
+use crate::gap::verdict::NamedEffect;
 
 /// Width of a whole gap, characters.
 const BAR: usize = 30;
 
 /// The lines of a budget; none where there is none.
 pub fn lines(diagnosis: &Diagnosis) -> Vec<String> {
-    let parts = diagnosis.budget();
+    let parts = &diagnosis.budget;
     let width = parts.iter().map(|part| part.id.chars().count()).max().unwrap_or(0);
-    parts.iter().map(|part| line(part, width, diagnosis.effects())).collect()
+    parts.iter().map(|part| line(part, width, &diagnosis.effects)).collect()
 }
 
 fn line(part: &Part, width: usize, effects: &[NamedEffect]) -> String {

@@ -139,10 +139,10 @@ impl Run for Diagnose {
             pictures::diagnosis(folder, &found.diagnosis)?;
         }
         if let Some(path) = &self.apply {
-            request.mended(&answered).map_err(|error| Error::new(format!("--apply: {error}")))?.write(path)?;
+            request.with_effects_applied(&answered).map_err(|error| Error::new(format!("--apply: {error}")))?.write(path)?;
         }
         let mut text = diagnosis_text::text(&found.diagnosis);
-        match (&self.next_experiment, found.diagnosis.experiment()) {
+        match (&self.next_experiment, found.diagnosis.experiment.as_ref()) {
             (Some(path), Some(experiment)) => experiment.commands.write(path)?,
             (Some(path), None) => text += &format!("No causes are confused: {} is not written.\n", path.display()),
             (None, _) => (),

@@ -5,8 +5,7 @@ use crate::evaluation::final_position::FinalPositionErrors;
 use crate::gap::Diagnosis;
 use crate::gap::account::GapReduction;
 use crate::gap::channel::Channel;
-use crate::gap::diagnosis::Answer;
-use crate::gap::explain::NamedEffect;
+use crate::gap::verdict::{NamedEffect, Verdict};
 use crate::gap::explain::profile::ResidualProfile;
 use crate::gap::explain::strata::Stratum;
 use crate::gap::formula::Statement;
@@ -19,26 +18,26 @@ pub fn text(diagnosis: &Diagnosis) -> String {
         lines.push("Data:".into());
         lines.extend(diagnosis.data.iter().map(|found| format!("  {}", found.line())));
     }
-    lines.push(verdict(&diagnosis.answer).to_string());
+    lines.push(verdict(diagnosis.verdict).to_string());
     lines.extend(budget_text::lines(diagnosis));
-    if !diagnosis.effects().is_empty() {
+    if !diagnosis.effects.is_empty() {
         lines.push("The effects (probability, effect, strength with 95 % interval):".into());
-        lines.extend(diagnosis.effects().iter().flat_map(effect));
+        lines.extend(diagnosis.effects.iter().flat_map(effect));
     }
     if !diagnosis.strata.is_empty() {
         lines.push("Where it lies:".into());
         lines.extend(diagnosis.strata.iter().map(stratum));
     }
-    if !diagnosis.profiles().is_empty() {
+    if !diagnosis.profiles.is_empty() {
         lines.push("What is unexplained (logged minus predicted) follows:".into());
-        lines.extend(diagnosis.profiles().iter().map(profile));
+        lines.extend(diagnosis.profiles.iter().map(profile));
     }
     lines.extend(diagnosis.formula.iter().map(formula));
-    let is_explained = !matches!(diagnosis.answer, Answer::Unknown { .. });
+    let is_explained = diagnosis.verdict != Verdict::Unknown;
     let table = |found| if is_explained { reduction(found) } else { size(found) };
-    lines.extend(diagnosis.reduction().into_iter().flat_map(table));
+    lines.extend(diagnosis.reduction.as_ref().into_iter().flat_map(table));
     lines.extend(diagnosis.final_positions.iter().map(final_positions));
-    lines.extend(diagnosis.experiment().map(Experiment::sentence));
+    lines.extend(diagnosis.experiment.as_ref().map(Experiment::sentence));
     if !diagnosis.untestable.is_empty() {
         let ids = diagnosis.untestable.join(", ");
         lines.push(format!("Not excited by these logs, so neither there nor absent: {ids}"));
@@ -47,14 +46,14 @@ pub fn text(diagnosis: &Diagnosis) -> String {
     lines.join("\n") + "\n"
 }
 
-fn verdict(answer: &Answer) -> &'static str {
-    match answer {
-        Answer::NoGap => "No gap: the logs agree with the simulator within its own error.",
-        Answer::Known { .. } => "There is a gap, and known effects explain it. What it is made of:",
-        Answer::PartlyKnown { .. } => {
+fn verdict(verdict: Verdict) -> &'static str {
+    match verdict {
+        Verdict::NoGap => "No gap: the logs agree with the simulator within its own error.",
+        Verdict::Known => "There is a gap, and known effects explain it. What it is made of:",
+        Verdict::PartlyKnown => {
             "There is a gap. Known effects explain a part of it, and something is left. What it is made of:"
         }
-        Answer::Unknown { .. } => "There is a gap, and no known effect explains it. What it is made of:",
+        Verdict::Unknown => "There is a gap, and no known effect explains it. What it is made of:",
     }
 }
 

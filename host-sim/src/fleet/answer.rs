@@ -10,7 +10,7 @@ use super::groups::groups;
 use super::outliers::{Outlier, outliers};
 use super::spread::{Spread, Told};
 use super::tally::{Refused, Tally};
-use crate::gap::diagnosis::Verdict;
+use crate::gap::verdict::Verdict;
 use crate::statistics::rounding;
 
 /// Version of the JSON.

@@ -77,7 +77,7 @@ mod tests {
     use super::*;
     use crate::effects::CATALOGUE;
     use crate::fleet::robot::{Cause, Robot};
-    use crate::gap::diagnosis::Verdict;
+    use crate::gap::verdict::Verdict;
 
     /// Robots with a weak motor of these strengths, and so many without.
     fn fleet(losses: &[f64], healthy: usize) -> Tally {

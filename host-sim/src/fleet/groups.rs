@@ -149,7 +149,7 @@ mod tests {
     use super::*;
     use crate::effects::CATALOGUE;
     use crate::fleet::robot::Robot;
-    use crate::gap::diagnosis::Verdict;
+    use crate::gap::verdict::Verdict;
 
     /// Robots with budgets that scatter about these, in turn.
     fn fleet(robots: usize, kinds: &[&[(&str, f64)]]) -> Tally {

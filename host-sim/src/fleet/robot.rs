@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use crate::gap::diagnosis::Verdict;
-use crate::gap::explain::NamedEffect;
+use crate::gap::verdict::Verdict;
+use crate::gap::verdict::NamedEffect;
 use crate::gap::request::Answered;
 
 /// A robot of a fleet.
@@ -54,13 +54,13 @@ impl Robot {
                 .map(|applied| (applied.variant.clone(), applied.parameters.clone())),
         };
         Robot {
-            verdict: diagnosis.verdict(),
+            verdict: diagnosis.verdict,
             runs: logs.runs.len(),
             rows: logs.rows(),
-            gap_nats: diagnosis.reduction().map(|reduction| reduction.whole.before),
-            closed: diagnosis.reduction().map(|reduction| reduction.whole.reducible_closed),
-            budget: diagnosis.budget().iter().map(|part| (part.id.clone(), part.share, part.ci95)).collect(),
-            effects: diagnosis.effects().iter().map(cause).collect(),
+            gap_nats: diagnosis.reduction.as_ref().map(|reduction| reduction.whole.before),
+            closed: diagnosis.reduction.as_ref().map(|reduction| reduction.whole.reducible_closed),
+            budget: diagnosis.budget.iter().map(|part| (part.id.clone(), part.share, part.ci95)).collect(),
+            effects: diagnosis.effects.iter().map(cause).collect(),
             untestable: diagnosis.untestable.iter().map(|id| (*id).into()).collect(),
         }
     }

@@ -14,7 +14,7 @@ use parquet::schema::parser::parse_message_type;
 
 use super::robot::Robot;
 use crate::error::{Error, Result};
-use crate::gap::diagnosis::Verdict;
+use crate::gap::verdict::Verdict;
 
 /// So many rows are kept before they are written.
 const GROUP: usize = 1000;

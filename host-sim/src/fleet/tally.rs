@@ -8,7 +8,7 @@ use serde::Serialize;
 use super::robot::Robot;
 use crate::effects::Effect;
 use crate::gap::budget::{SCATTER, UNEXPLAINED};
-use crate::gap::diagnosis::Verdict;
+use crate::gap::verdict::Verdict;
 
 /// Robots so far.
 pub struct Tally {

@@ -1,16 +1,16 @@
-//! The five things that a simulator predicts of a step.
+//! The five quantities that a simulator predicts per step.
 
 use serde::{Deserialize, Serialize};
 
-/// What a gap can lie in.
+/// A quantity in which a gap can lie.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Channel {
-    /// The way forward.
+    /// Forward motion.
     Forward,
-    /// The way to the left.
+    /// Motion to the left.
     Lateral,
-    /// The turn.
+    /// Turn.
     Turn,
     /// Whether there is an echo.
     EchoRate,
@@ -19,24 +19,27 @@ pub enum Channel {
 }
 
 impl Channel {
-    /// All of them.
-    pub const ALL: [Channel; 5] =
+    /// Number of channels.
+    pub const COUNT: usize = 5;
+
+    /// All channels.
+    pub const ALL: [Channel; Channel::COUNT] =
         [Channel::Forward, Channel::Lateral, Channel::Turn, Channel::EchoRate, Channel::EchoValue];
 
-    /// Those of a step's motion.
+    /// The channels of a step's motion.
     pub const MOTION: [Channel; 3] = [Channel::Forward, Channel::Lateral, Channel::Turn];
 
-    /// Its place among all.
+    /// Returns its index in [`Channel::ALL`].
     pub fn index(self) -> usize {
         self as usize
     }
 
-    /// Its place among forward, lateral and turn.
+    /// Returns its index in [`Channel::MOTION`], or `None` for a channel of the sonar.
     pub fn motion_axis(self) -> Option<usize> {
         Self::MOTION.iter().position(|c| *c == self)
     }
 
-    /// Its name in a diagnosis.
+    /// Returns its name in diagnosis.json.
     pub fn name(self) -> &'static str {
         match self {
             Channel::Forward => "forward",

@@ -17,10 +17,11 @@ use crate::error::Result;
 use crate::evaluation::paths::PathError;
 use crate::gap::Findings;
 use crate::gap::budget::{Part, SCATTER, UNEXPLAINED};
-use crate::gap::diagnosis::{Answer, Diagnosis};
+use crate::gap::diagnosis::Diagnosis;
 use crate::gap::explain::evidence::Evidence;
 use crate::gap::explain::profile::ResidualProfile;
 use crate::gap::explain::room_map::RoomMap;
+use crate::gap::verdict::Verdict;
 use crate::logs::Logs;
 use crate::simulator::baseline::Baseline;
 use crate::simulator::rollout::REACHED_CM;
@@ -92,22 +93,22 @@ pub fn page(subject: &Subject) -> Result<String> {
     let diagnosis = &findings.diagnosis;
     let replay = runs::replay(subject);
     let poses = logs.runs.iter().flat_map(|run| run.rows.iter().filter_map(|row| row.pose));
-    let mut bars: Vec<BudgetBar> = diagnosis.budget().iter().map(|part| bar(part, catalogue)).collect();
+    let mut bars: Vec<BudgetBar> = diagnosis.budget.iter().map(|part| bar(part, catalogue)).collect();
     // Effects come first, the strongest before the others.
     let effects = bars.partition_point(|bar| bar.named);
     bars[..effects].sort_by(|a, b| b.share.total_cmp(&a.share));
     let data = Data {
         budget: bars,
         evidence: &findings.evidence,
-        profiles: diagnosis.profiles(),
+        profiles: &diagnosis.profiles,
         map: findings.room_map.as_ref(),
         channels: places::channels(diagnosis),
-        paths: diagnosis.reduction().map_or(&[], |reduction| &reduction.paths),
+        paths: diagnosis.reduction.as_ref().map_or(&[], |reduction| &reduction.paths),
         room: Room::new(&logs.scene, REACHED_CM, poses.map(|pose| pose.position_cm)),
         replay: replay.as_ref(),
     };
     let mut sections = Vec::new();
-    if !diagnosis.budget().is_empty() {
+    if !diagnosis.budget.is_empty() {
         sections.push(Section { id: "budget", title: "What the gap is made of", body: budget(diagnosis, catalogue) });
     }
     sections.extend(causes::section(subject));
@@ -137,24 +138,24 @@ fn bar<'a>(part: &'a Part, catalogue: &[&'static Effect]) -> BudgetBar<'a> {
 
 /// The verdict in one sentence.
 fn headline(diagnosis: &Diagnosis, catalogue: &[&'static Effect]) -> String {
-    let names: Vec<&str> = diagnosis.effects().iter().map(|effect| words::name(effect.id, catalogue)).collect();
+    let names: Vec<&str> = diagnosis.effects.iter().map(|effect| words::name(effect.id, catalogue)).collect();
     let names = words::list(&names);
-    match &diagnosis.answer {
-        Answer::NoGap => "There is no gap: the logs agree with the simulator within its own error.".into(),
-        Answer::Known { .. } => {
+    match diagnosis.verdict {
+        Verdict::NoGap => "There is no gap: the logs agree with the simulator within its own error.".into(),
+        Verdict::Known => {
             format!("There is a gap between simulator and robot. Known effects explain it: {names}.")
         }
-        Answer::PartlyKnown { .. } => {
+        Verdict::PartlyKnown => {
             format!("There is a gap between simulator and robot. Known effects explain a part of it: {names}.")
         }
-        Answer::Unknown { .. } => "There is a gap between simulator and robot, and no known effect explains it.".into(),
+        Verdict::Unknown => "There is a gap between simulator and robot, and no known effect explains it.".into(),
     }
 }
 
 /// How probable each named effect is, in words.
 fn sure(diagnosis: &Diagnosis, catalogue: &[&'static Effect]) -> String {
     let told: Vec<String> = diagnosis
-        .effects()
+        .effects
         .iter()
         .map(|effect| format!("{} {}", words::name(effect.id, catalogue), words::percent(effect.probability)))
         .collect();
@@ -166,16 +167,16 @@ fn lead(diagnosis: &Diagnosis, catalogue: &[&'static Effect], logs: &Logs) -> Ma
     let rows: usize = logs.runs.iter().map(|run| run.rows.len()).sum();
     html! {
         @if let Some(astray) = runs::astray(diagnosis) { p { (astray) } }
-        @if let (Some(reduction), false) = (diagnosis.reduction(), diagnosis.effects().is_empty()) {
+        @if let (Some(reduction), false) = (diagnosis.reduction.as_ref(), diagnosis.effects.is_empty()) {
             @let [low, high] = reduction.whole.ci95.map(words::percent);
             p {
-                "With " @if diagnosis.effects().len() == 1 { "it" } @else { "them" } " the simulator closes "
+                "With " @if diagnosis.effects.len() == 1 { "it" } @else { "them" } " the simulator closes "
                 strong { (words::percent(reduction.whole.reducible_closed)) }
                 " of the gap that is not chance (95 % interval: " (low) " to " (high) "). "
                 "How sure each is: " (sure(diagnosis, catalogue)) "."
             }
         }
-        @if !matches!(diagnosis.answer, Answer::NoGap) { p { a href="#next" { "What to do next" } " stands below." } }
+        @if diagnosis.verdict != Verdict::NoGap { p { a href="#next" { "What to do next" } " stands below." } }
         p.quiet {
             "Compared: " (words::list(&compared)) " in " (rows) " rows of " (logs.runs.len())
             @if logs.runs.len() == 1 { " run." } @else { " runs." }
@@ -188,7 +189,7 @@ fn lead(diagnosis: &Diagnosis, catalogue: &[&'static Effect], logs: &Logs) -> Ma
 }
 
 fn budget(diagnosis: &Diagnosis, catalogue: &[&'static Effect]) -> Markup {
-    let parts = diagnosis.budget();
+    let parts = &diagnosis.budget;
     let said: Vec<String> = parts
         .iter()
         .map(|part| format!("{} {}", words::name(&part.id, catalogue), words::percent(part.share)))
@@ -208,7 +209,7 @@ fn budget(diagnosis: &Diagnosis, catalogue: &[&'static Effect]) -> Markup {
 
 /// What to do now.
 fn next(diagnosis: &Diagnosis, catalogue: &[&'static Effect]) -> Section {
-    let mut parts: Vec<&Part> = diagnosis.budget().iter().filter(|part| part.share >= WORTH_A_CHECK).collect();
+    let mut parts: Vec<&Part> = diagnosis.budget.iter().filter(|part| part.share >= WORTH_A_CHECK).collect();
     parts.sort_by(|a, b| b.share.total_cmp(&a.share));
     let is_left = |part: &&Part| part.id == UNEXPLAINED;
     let left = parts.iter().copied().find(is_left);
@@ -221,13 +222,13 @@ fn next(diagnosis: &Diagnosis, catalogue: &[&'static Effect]) -> Section {
                         " of the gap: " (cause.check) }
                 }
             }
-            @if !diagnosis.effects().is_empty() {
+            @if !diagnosis.effects.is_empty() {
                 li {
                     "Mend the robot and log it again; or teach the simulator: the same command with "
                     code { "--apply better.json" } " writes a simulator with the effects, to evolve controllers in."
                 }
             }
-            @if let Some(experiment) = diagnosis.experiment() {
+            @if let Some(experiment) = diagnosis.experiment.as_ref() {
                 @let [one, other] = experiment.between.map(|id| words::name(id, catalogue));
                 li {
                     "These logs do not tell " (one) " from " (other) " for sure. Drive and log " (experiment.runs)
@@ -235,14 +236,14 @@ fn next(diagnosis: &Diagnosis, catalogue: &[&'static Effect]) -> Section {
                     code { "--next-experiment next.csv" } " writes the commands."
                 }
             }
-            @if left.is_some() || matches!(diagnosis.answer, Answer::Unknown { .. }) {
+            @if left.is_some() || diagnosis.verdict == Verdict::Unknown {
                 li {
                     @if let Some(left) = left { (words::percent(left.share)) " of the gap is not explained. " }
                     "See " a href="#where" { "where it lies" } ", watch the robot there, and state what you suspect as an "
                     "effect of your own: " code { "--effects FILE" } " lets it compete with the built-in ones."
                 }
             }
-            @if matches!(diagnosis.answer, Answer::NoGap) {
+            @if diagnosis.verdict == Verdict::NoGap {
                 li { "Nothing has to be mended for what these logs show. A controller that fails all the same drives "
                     "where they do not: log it, and diagnose those runs." }
             }

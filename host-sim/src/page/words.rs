@@ -49,7 +49,7 @@ pub fn name<'a>(id: &'a str, catalogue: &[&'static Effect]) -> &'a str {
 
 /// What "with" means in charts of before and after.
 pub fn with(diagnosis: &Diagnosis) -> &'static str {
-    match diagnosis.effects() {
+    match diagnosis.effects.as_slice() {
         [] => "with the effects that came nearest, though they explain too little to be named",
         _ => "with the effects",
     }

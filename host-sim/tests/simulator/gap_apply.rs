@@ -10,7 +10,7 @@ use mindgap_host_sim::effects::applied::AppliedEffect;
 use mindgap_host_sim::effects::{CATALOGUE, Candidate};
 use mindgap_host_sim::evaluation::accuracy::evaluate;
 use mindgap_host_sim::evaluation::final_position::final_position_errors;
-use mindgap_host_sim::gap::diagnosis::Verdict;
+use mindgap_host_sim::gap::verdict::Verdict;
 use mindgap_host_sim::gap::{Method, diagnose, findings};
 use mindgap_host_sim::geometry::direction;
 use mindgap_host_sim::inspection::Inspection;
@@ -85,7 +85,7 @@ fn a_simulator_with_the_effects_found_has_no_gap_on_fresh_logs() {
     assert_eq!(applied.added.len(), 2, "{:?}", applied.added);
     let fresh = logs(16, &effects, 22);
     let again = diagnose(Baseline::of_middle(&applied).expect("a reference"), &fresh).expect("something to compare");
-    assert_eq!(again.verdict(), Verdict::NoGap, "{again:?}");
+    assert_eq!(again.verdict, Verdict::NoGap, "{again:?}");
     let error = |simulator: &Simulator| {
         let networks = evaluate(simulator, &fresh, |_, _| ()).expect("samples").networks;
         [networks.forward.expect("poses").mse, networks.echo_value.expect("echoes").mse]

@@ -2,7 +2,7 @@
 
 use super::Measured;
 use crate::gap::calibration::{CALIBRATED_STEPS, Calibration, Judgement};
-use crate::gap::explain::{Explained, probability};
+use crate::gap::verdict::{Explained, probability};
 
 /// Share of all cases without an effect whose gain passes the gate for an effect. A gain on the runs held out is asked for
 /// besides: fewer than one in a hundred passes both.

@@ -5,7 +5,7 @@ use maud::{Markup, html};
 use super::Subject;
 use crate::effects::Effect;
 use crate::gap::channel::Channel;
-use crate::gap::explain::NamedEffect;
+use crate::gap::verdict::NamedEffect;
 use crate::gap::explain::evidence::Evidence;
 use crate::gap::explain::profile::{Bin, ResidualProfile};
 use crate::page::document::{Section, chart, table};
@@ -14,7 +14,7 @@ use crate::page::words;
 /// The causes, and what is left that none of them explains; nothing where there is no gap.
 pub fn section(subject: &Subject) -> Option<Section> {
     let diagnosis = &subject.findings.diagnosis;
-    let (effects, profiles) = (diagnosis.effects(), diagnosis.profiles());
+    let (effects, profiles) = (&diagnosis.effects, &diagnosis.profiles);
     if effects.is_empty() && profiles.is_empty() && diagnosis.formula.is_none() {
         return None;
     }

@@ -15,7 +15,7 @@ const MAP: &str = "Map of the room: squares coloured by how much the logs differ
 
 /// The gap of every channel that has one.
 pub fn channels(diagnosis: &Diagnosis) -> Vec<ChannelBar> {
-    let all = diagnosis.reduction().map_or(&[][..], |reduction| &reduction.channels);
+    let all = diagnosis.reduction.as_ref().map_or(&[][..], |reduction| &reduction.channels);
     let bar = |of: &ChannelReduction| ChannelBar {
         name: words::channel(of.channel),
         before: of.reduction.before,

@@ -15,7 +15,7 @@ use crate::page::words;
 
 /// How far the longest paths go astray, in a sentence; none where no path was compared.
 pub fn astray(diagnosis: &Diagnosis) -> Option<String> {
-    let longest = diagnosis.reduction()?.paths.last()?;
+    let longest = diagnosis.reduction.as_ref()?.paths.last()?;
     Some(format!(
         "After {} steps of the same commands the simulated robot is {:.1} cm from the real one, {:.1} cm {}; scatter alone \
          makes {:.1} cm.",
@@ -29,7 +29,7 @@ pub fn astray(diagnosis: &Diagnosis) -> Option<String> {
 
 /// How far paths end from where the robot was; none where no path was compared.
 pub fn ends(diagnosis: &Diagnosis) -> Option<Section> {
-    let paths = diagnosis.reduction().map_or(&[][..], |reduction| &reduction.paths);
+    let paths = diagnosis.reduction.as_ref().map_or(&[][..], |reduction| &reduction.paths);
     if paths.is_empty() && diagnosis.final_positions.is_none() {
         return None;
     }
@@ -68,7 +68,7 @@ pub fn section(replay: Option<&Replay>, diagnosis: &Diagnosis) -> Section {
         Some(replay) => html! {
             p {
                 "The robot as it was logged, and what the simulator makes of the same commands"
-                @if diagnosis.effects().is_empty() { "." } @else { ", without and with the effects." }
+                @if diagnosis.effects.is_empty() { "." } @else { ", without and with the effects." }
                 " Simulated robots start where the real one was first seen and are put back to it every "
                 (PUT_BACK_STEPS)
                 " steps. Walls do not stop them."
