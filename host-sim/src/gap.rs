@@ -7,6 +7,7 @@
 //! that bounds what any effect could explain, a [formula], [wider noise](wider_noise), or the simulator's
 //! [epistemic error](epistemic_error). The thresholds are those of the [calibration].
 //!
+//! [`minimal`] is the same method in a few pages. Read it first.
 
 pub mod account;
 pub mod budget;
@@ -26,6 +27,7 @@ pub mod gain;
 pub mod hypothesis;
 mod ledger;
 pub mod method;
+pub mod minimal;
 pub mod noise_model;
 pub mod omnibus;
 mod predictive_check;

@@ -14,9 +14,9 @@ use crate::error::{Error, Result};
 use crate::gap::Method;
 use crate::gap::calibration::Calibration;
 use crate::gap::diagnose::{confirmed, statistics};
-use crate::gap::verdict::Explained;
 use crate::gap::explanation::Explanation;
 use crate::gap::gain::Gain;
+use crate::gap::verdict::Explained;
 use crate::workers;
 use crate::workers::counter::Counter;
 

@@ -139,7 +139,10 @@ impl Run for Diagnose {
             pictures::diagnosis(folder, &found.diagnosis)?;
         }
         if let Some(path) = &self.apply {
-            request.with_effects_applied(&answered).map_err(|error| Error::new(format!("--apply: {error}")))?.write(path)?;
+            request
+                .with_effects_applied(&answered)
+                .map_err(|error| Error::new(format!("--apply: {error}")))?
+                .write(path)?;
         }
         let mut text = diagnosis_text::text(&found.diagnosis);
         match (&self.next_experiment, found.diagnosis.experiment.as_ref()) {

@@ -5,11 +5,11 @@ use crate::evaluation::final_position::FinalPositionErrors;
 use crate::gap::Diagnosis;
 use crate::gap::account::GapReduction;
 use crate::gap::channel::Channel;
-use crate::gap::verdict::{NamedEffect, Verdict};
 use crate::gap::explain::profile::ResidualProfile;
 use crate::gap::explain::strata::Stratum;
 use crate::gap::formula::Statement;
 use crate::gap::propose::Experiment;
+use crate::gap::verdict::{NamedEffect, Verdict};
 
 /// The words.
 pub fn text(diagnosis: &Diagnosis) -> String {

@@ -184,7 +184,10 @@ mod tests {
             ([0.5; 3], [0.5; 3], [0.5; 3])
         );
         assert_eq!(rows[11].motion_weight, [1.0; 3], "no step begins there");
-        assert!(weighted(Observations::of(&logs, None, None), &kinematic::baseline(&logs)).rows[3].motion_weight == [1.0; 3]);
+        assert!(
+            weighted(Observations::of(&logs, None, None), &kinematic::baseline(&logs)).rows[3].motion_weight
+                == [1.0; 3]
+        );
     }
 
     /// Returns the folds of nine runs whose command changes half-way, each run under one of `commands` pairs of commands.

@@ -94,7 +94,7 @@ mod tests {
 
     /// At command 50 the textbook's robot drives 8.2 cm per step, the logged one 4 cm.
     #[test]
-    fn the_simulated_robot_follows_commands_and_is_reset() {
+    fn simulated_robot_follows_commands_and_is_reset() {
         let logs = logs(PUT_BACK_STEPS + 5);
         let baseline = kinematic::baseline(&logs);
         let player = Player::new(&baseline, &logs);

@@ -47,7 +47,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_sample_supports_its_cell_and_the_neighbouring_cells() {
+    fn sample_supports_its_cell_and_its_neighbours() {
         let mut samples = Dataset::default();
         samples.push([105.0, 42.0], 1.0, 0);
         samples.push([400.0, 42.0], 1.0, 0);

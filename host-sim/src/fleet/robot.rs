@@ -4,9 +4,9 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use crate::gap::verdict::Verdict;
-use crate::gap::verdict::NamedEffect;
 use crate::gap::request::Answered;
+use crate::gap::verdict::NamedEffect;
+use crate::gap::verdict::Verdict;
 
 /// A robot of a fleet.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -108,11 +108,7 @@ impl MotionUncertainty {
         MotionUncertainty::of_residuals(reference, &rows.rows, &residuals)
     }
 
-    fn of_residuals(
-        reference: &MotionBias,
-        rows: &[Observation],
-        residuals: &[Option<[f64; 3]>],
-    ) -> Option<Self> {
+    fn of_residuals(reference: &MotionBias, rows: &[Observation], residuals: &[Option<[f64; 3]>]) -> Option<Self> {
         let precision = reference.precision.as_ref()?;
         let features =
             DMatrix::from_row_iterator(rows.len(), FEATURES, rows.iter().flat_map(|row| row_features(reference, row)));
@@ -140,7 +136,8 @@ impl MotionUncertainty {
             pulls[row.fold] += directions.row(i).transpose() * (weights[i] * off);
         }
         let all: DVector<f64> = pulls.iter().sum();
-        let of_fold = |(covariance, own): (&DMatrix<f64>, DVector<f64>)| covariance * (&all - own) * (unit * unit / noise);
+        let of_fold =
+            |(covariance, own): (&DMatrix<f64>, DVector<f64>)| covariance * (&all - own) * (unit * unit / noise);
         let errors: Vec<DVector<f64>> = without.iter().zip(pulls).map(of_fold).collect();
         let error = |(i, row): (usize, &Observation)| directions.row(i).transpose().dot(&errors[row.fold]);
         Some(rows.iter().enumerate().map(error).collect())

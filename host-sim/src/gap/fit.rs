@@ -294,7 +294,9 @@ impl Fitted {
             sonar.fold(of(moving).clone(), |scores, channel| scores.with(channel, &of(sensing).of(channel)))
         };
         Fitted {
-            hypothesis: self.hypothesis.of([self.hypothesis.candidates.as_slice(), &other.hypothesis.candidates].concat()),
+            hypothesis: self
+                .hypothesis
+                .of([self.hypothesis.candidates.as_slice(), &other.hypothesis.candidates].concat()),
             values: [self.values.as_slice(), &other.values].concat(),
             errors: [self.errors.as_slice(), &other.errors].concat(),
             noise: moving.noise,

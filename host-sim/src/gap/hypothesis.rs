@@ -178,7 +178,8 @@ impl Hypothesis {
 /// Returns the weighted log-density of each channel, zero where nothing was logged.
 fn densities(rows: &[Observation], residuals: &[Option<[f64; 3]>], noise: [f64; 3]) -> Vec<[f64; 3]> {
     let of_row = |(row, residual): (&Observation, &Option<[f64; 3]>)| {
-        let density = |r: [f64; 3]| [0, 1, 2].map(|axis| row.motion_weight[axis] * log_density(axis, r[axis], noise[axis]));
+        let density =
+            |r: [f64; 3]| [0, 1, 2].map(|axis| row.motion_weight[axis] * log_density(axis, r[axis], noise[axis]));
         residual.map_or([0.0; 3], density)
     };
     rows.iter().zip(residuals).map(of_row).collect()

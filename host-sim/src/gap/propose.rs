@@ -70,7 +70,9 @@ impl Experiment {
     /// Describes the proposal in one sentence.
     pub fn sentence(&self) -> String {
         let Experiment { between: [one, other], script, runs, nats_per_run, .. } = self;
-        format!("To distinguish {one} from {other}: log {runs} run(s) of {script} (about {nats_per_run:.1} nats per run).")
+        format!(
+            "To distinguish {one} from {other}: log {runs} run(s) of {script} (about {nats_per_run:.1} nats per run)."
+        )
     }
 }
 

@@ -119,8 +119,7 @@ mod tests {
     /// Returns the same once held-out rows confirm them.
     fn confirmed(off_cm: fn(usize) -> f64, held_out_cm: fn(usize) -> f64) -> Vec<Channel> {
         let baseline = baseline();
-        let (found, held_out) =
-            (identification(&baseline, rows(off_cm)), HoldOut::new(&baseline, rows(held_out_cm)));
+        let (found, held_out) = (identification(&baseline, rows(off_cm)), HoldOut::new(&baseline, rows(held_out_cm)));
         let context = FitContext::new(&found, METHOD);
         let mut remainders = remainders(&Fitted::null(&context), &context);
         remainders.iter_mut().for_each(|remainder| remainder.confirm(&context, &held_out));

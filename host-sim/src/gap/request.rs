@@ -76,7 +76,9 @@ impl<'a> Request<'a> {
     pub fn with_effects_applied(&self, Answered { findings, logs }: &Answered) -> Result<Simulator> {
         let effects = findings.with_formula();
         if effects.is_empty() {
-            return Err(Error::new("no effect and no formula explains a gap, so there is nothing to add to a simulator"));
+            return Err(Error::new(
+                "no effect and no formula explains a gap, so there is nothing to add to a simulator",
+            ));
         }
         let mut simulator = match self.simulator {
             Some(simulator) => simulator.clone(),

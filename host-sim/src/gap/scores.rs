@@ -85,7 +85,10 @@ impl Scores {
 
     /// Sums all channels of every row.
     pub fn by_row(&self) -> Vec<f64> {
-        self.nats.iter().map(|[forward, lateral, turn, rate, value]| forward + lateral + turn + (rate + value)).collect()
+        self.nats
+            .iter()
+            .map(|[forward, lateral, turn, rate, value]| forward + lateral + turn + (rate + value))
+            .collect()
     }
 
     /// Sums all channels of every block.

@@ -99,7 +99,9 @@ mod tests {
             assert!((against([3.0, 11.0]) - libm::exp(-0.5 * z_squared)).abs() < 1e-12);
             let more_complex = Fitted { complexity_penalty: 1.0, ..fit(&FARTHER, [10.0, 10.0]) };
             let z = 1.0 / 3.0;
-            assert!((relative_likelihood(&winner, &more_complex, &CALIBRATION) - libm::exp(-0.5 * z * z)).abs() < 1e-12);
+            assert!(
+                (relative_likelihood(&winner, &more_complex, &CALIBRATION) - libm::exp(-0.5 * z * z)).abs() < 1e-12
+            );
         });
     }
 

@@ -192,8 +192,12 @@ mod tests {
     #[test]
     fn rows_know_what_the_simulator_expects() {
         let drive = baseline().motion.expect("a drive");
-        assert!(parts_of(8, 4).identification.rows.iter().all(|row| {
-            row.expected == Some(drive.step([50.0; 2], row.context.commands[1]))
-        }));
+        assert!(
+            parts_of(8, 4)
+                .identification
+                .rows
+                .iter()
+                .all(|row| { row.expected == Some(drive.step([50.0; 2], row.context.commands[1])) })
+        );
     }
 }

@@ -92,10 +92,15 @@ pub fn validate(baseline: &mut Baseline, observations: &Observations, inspected:
         return Err(Error::new(format!("nothing can be compared. {}", reasons.join(" "))));
     }
     if logs.runs.len() == 1 {
-        notes.push("One run only: its parts are used as runs, and whether the result holds for other runs remains open.".into());
+        notes.push(
+            "One run only: its parts are used as runs, and whether the result holds for other runs remains open."
+                .into(),
+        );
     }
     if logs.runs.len() > 1 && logs.runs.windows(2).all(|pair| same_commands(&pair[0], &pair[1])) {
-        notes.push("All runs have the same commands: effects that show only under other commands are not excited.".into());
+        notes.push(
+            "All runs have the same commands: effects that show only under other commands are not excited.".into(),
+        );
     }
     let moved_uncommanded = knows_motion && !is_commanded(observations) && moves(observations);
     Ok(Validated { notes, scope: Scope::without(&reasons), moved_uncommanded })
@@ -110,9 +115,7 @@ fn without_motion(baseline: &Baseline, observations: &Observations) -> Option<&'
     } else if is_commanded(observations) {
         None
     } else if moves(observations) {
-        Some(
-            "No command drives the motors, but the robot moves: motion is not excited, and its cause is not logged.",
-        )
+        Some("No command drives the motors, but the robot moves: motion is not excited, and its cause is not logged.")
     } else {
         Some("The motors stand still: motion is not excited.")
     }
@@ -147,7 +150,9 @@ fn without_sonar(baseline: &Baseline, observations: &Observations) -> Option<&'s
     if observations.rows.iter().all(|row| row.echo_cm.is_none()) {
         Some("There are no readings: the sonar is not compared.")
     } else if baseline.sonar.is_none() {
-        Some("The simulator has no model of the sonar, since its training logs had too few readings: the sonar is not compared.")
+        Some(
+            "The simulator has no model of the sonar, since its training logs had too few readings: the sonar is not compared.",
+        )
     } else {
         None
     }

@@ -253,7 +253,8 @@ fn noise_alone(noise: &[WiderNoise], calibration: &Calibration) -> Option<NamedE
         1 => ("lateral_cm", noise.fitted),
         _ => ("turn_deg", noise.fitted.to_degrees()),
     };
-    let parameters = noise.iter().map(parameter).map(|(name, value)| (name.into(), rounding::three_digits(value).into()));
+    let parameters =
+        noise.iter().map(parameter).map(|(name, value)| (name.into(), rounding::three_digits(value).into()));
     (!noise.is_empty()).then(|| NamedEffect {
         id: SCATTER,
         probability: calibration.accuracy_cap,

@@ -51,7 +51,7 @@ fn logs_of_another_robot_are_refused() {
     let workshop = trained();
     workshop.edit("logs/robot.toml", |robot| robot.replace("track_cm = 11.5", "track_cm = 17.5"));
     let refusal = workshop.refused("diagnose sim.json logs");
-    assert!(refusal.contains("another robot") && refusal.contains("track_cm"), "{refusal}");
+    assert!(refusal.contains("robot mismatch") && refusal.contains("track_cm"), "{refusal}");
 }
 
 #[test]
@@ -122,7 +122,7 @@ fn without_poses_nothing_can_be_compared() {
 fn without_readings_motion_alone_is_compared() {
     let workshop = trained();
     rewrite(&workshop, without(&["echo_cm"]));
-    assert_noted(&workshop, "no reading at all");
+    assert_noted(&workshop, "There are no readings");
 }
 
 /// Somebody carries the robot about: its readings agree, and what moves it is nowhere.
@@ -151,7 +151,7 @@ fn one_run_and_runs_alike_are_said_to_be_little() {
 
 #[test]
 fn few_runs_are_said_to_be_fitted_and_not_kept_back() {
-    assert_noted(&trained(), "With fewer than 8 runs none is kept back");
+    assert_noted(&trained(), "With fewer than 8 runs none is held out");
 }
 
 #[test]
@@ -272,7 +272,7 @@ fn the_experiment_that_tells_confused_causes_apart_is_a_run() {
     // Of a load so light six runs do not say whether it is one, or a weaker motor.
     workshop.done("record --out laden --runs 6 --seed 5 --effect payload=0.03");
     let said = workshop.done("diagnose sim.json laden --next-experiment next.csv");
-    assert!(said.contains("cannot tell it from") && said.contains("To tell "), "{said}");
+    assert!(said.contains("cannot tell it from") && said.contains("To distinguish "), "{said}");
     let rows = Run::read(&workshop.path().join("next.csv"), |warning| panic!("{warning}")).expect("a run").rows;
     assert!(rows.len() > 5 && rows.iter().any(|row| row.command() != [0.0, 0.0]), "{rows:?}");
     let budget = workshop.done("export next.csv --format nxc-collect --out next.nxc");

@@ -110,7 +110,7 @@ pub fn the_ends_of_a_neatos_runs_show_its_gap_to_the_textbook(folder: &Path) {
     neato(folder).write(&workshop.path().join("logs")).expect("a folder that can be written");
     let diagnosis = diagnosed(&workshop, "logs");
     assert_ne!(diagnosis["verdict"], "no_gap", "its owner measured one");
-    assert!(diagnosis["notes"].to_string().contains("whole ways between poses"), "{diagnosis}");
+    assert!(diagnosis["notes"].to_string().contains("whole segments between poses"), "{diagnosis}");
     let shrink = &diagnosis["shrink"];
     let number = |value: &Value| value.as_f64().expect("a number");
     assert!(number(&shrink["before"]) > 1.0 && number(&shrink["reducible_closed"]) > 0.8, "{shrink}");

@@ -25,6 +25,7 @@ macro_rules! trial {
 fn main() -> ExitCode {
     let trials = vec![
         trial!(gap_cases::effects_of_another_robot_are_named, "data"),
+        trial!(gap_cases::minimal_method_agrees_with_the_full_one, "data"),
         trial!(gap_real::the_ends_of_a_neatos_runs_show_its_gap_to_the_textbook, "real/neato"),
         trial!(gap_real::the_loss_in_turns_of_a_real_robot_is_found_as_a_formula, "real/create"),
         trial!(gap_real::a_real_sonar_that_stands_still_is_compared_with_the_textbook, "real/nxt-sonar"),

@@ -132,7 +132,7 @@ mod tests {
     }
 
     #[test]
-    fn the_reading_before() {
+    fn covariate_of_the_reading_before() {
         let mut row = placed(150.0, 100.0, 0.0);
         let before = [None, Some(false), Some(true)].map(|echo| {
             row.context.echo_before = echo;
@@ -144,7 +144,7 @@ mod tests {
     /// Inverse distances to a wall are linear in the tangent of the angle, so that a wall alone is no edge; a step of a
     /// fifth is one.
     #[test]
-    fn an_edge_is_what_no_wall_could_be() {
+    fn edge_in_the_beam_differs_from_an_oblique_wall() {
         let mut row = placed(250.0, 100.0, 20.0);
         assert!(!edge_in_beam(&row));
         row.context.faced = row.context.faced.map(|[axis_cm, incidence_rad]| [1.2 * axis_cm, incidence_rad]);

@@ -50,7 +50,8 @@ impl<'a> Problem<'a> {
         let rows = context.rows;
         let (bounds, cache) = (hypothesis.bounds(), SensorCache::new(rows, None));
         let terms = |at: &[f64]| with_prior(&cache, &hypothesis, untouched, at);
-        let climb = |from: Point| climb_on(&bounds, from, MOST_ITERATIONS, TOLERANCE_NATS, terms).scored(&bounds, terms);
+        let climb =
+            |from: Point| climb_on(&bounds, from, MOST_ITERATIONS, TOLERANCE_NATS, terms).scored(&bounds, terms);
         let mut found = climb(if rows.sketch().is_none() { sketch } else { Point::new(&sketch.at, terms) });
         for _ in 0..MOST_STEPS_OF_ONE {
             let Some(further) = step_of_one(&bounds, &found, TOLERANCE_NATS, terms) else { break };

@@ -172,7 +172,8 @@ fn evidence_is_the_likelihood_averaged_over_the_prior() {
 fn useless_parameter_has_a_complexity_penalty() {
     in_context(scattered(&[0.0; 8], 50, 1.0), |context| {
         let null = Fitted::null(context);
-        let [flat, with_prior] = [&LONGER, &SLIGHTLY_LONGER].map(|effect| fitted(effect, context).gain_over(&null).nats);
+        let [flat, with_prior] =
+            [&LONGER, &SLIGHTLY_LONGER].map(|effect| fitted(effect, context).gain_over(&null).nats);
         assert!(flat < -3.0 && flat < with_prior, "{flat} {with_prior}");
     });
 }

@@ -38,8 +38,7 @@ fn prior_is_normal_about_the_nominal_value_or_flat() {
 #[test]
 fn untouched_channels_are_copied() {
     let baseline = baseline_with_sonar();
-    let rows =
-        identification(&baseline, observations(2, 2, |_, _| Made { echo_off_cm: Some(0.0), ..Made::default() }));
+    let rows = identification(&baseline, observations(2, 2, |_, _| Made { echo_off_cm: Some(0.0), ..Made::default() }));
     let untouched = Scores::zero(rows.row_blocks()).with_motion(&[[7.0; 3]; 4]).with_sonar(&[[9.0; 2]; 4]);
     let with = |effect| {
         let hypothesis = Hypothesis::null(&baseline).with(candidate(effect));
@@ -81,10 +80,7 @@ fn equal_values_for_all_blocks_score_as_one_fit() {
 fn effects_of_the_simulator_act_under_every_hypothesis() {
     let scale = Candidate::named("drive_scale", "distance").expect("in the catalogue");
     let with_scale = Baseline { applied: vec![AppliedEffect::new(&scale, &[1.1])], ..baseline() };
-    let rows = identification(
-        &with_scale,
-        observations(1, 4, |_, _| Made { off: [0.5, 0.0, 0.0], ..Made::default() }),
-    );
+    let rows = identification(&with_scale, observations(1, 4, |_, _| Made { off: [0.5, 0.0, 0.0], ..Made::default() }));
     let null = Hypothesis::null(&with_scale);
     assert!(null.candidates.is_empty() && !null.moves());
     let exact = expected();

@@ -114,7 +114,8 @@ mod tests {
         let basis = basis(&rows);
         let terms: Vec<Vec<f64>> = rows.iter().map(|row| basis.at(row)).collect();
         let variance = |terms_of: std::ops::Range<usize>| -> f64 {
-            terms.iter().map(|t| t[terms_of.clone()].iter().map(|v| v * v).sum::<f64>()).sum::<f64>() / rows.len() as f64
+            terms.iter().map(|t| t[terms_of.clone()].iter().map(|v| v * v).sum::<f64>()).sum::<f64>()
+                / rows.len() as f64
         };
         for order in [0..1, 1..4, 4..7, 7..10] {
             assert!((variance(order.clone()) - 1.0).abs() < 1e-9, "{order:?}");

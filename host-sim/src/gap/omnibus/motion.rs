@@ -172,9 +172,8 @@ impl LocalNoise {
     /// Returns each row's noise over the usual noise.
     pub fn ratios(&self, rows: RowSet) -> Vec<f64> {
         let RowSet::HeldOut(rows) = rows else { return self.fitted_ratios.clone() };
-        let spot = |row: &Observation| {
-            row.following_steps.is_empty().then(|| Spot::unweighted(row.context.pose.position_cm))
-        };
+        let spot =
+            |row: &Observation| row.following_steps.is_empty().then(|| Spot::unweighted(row.context.pose.position_cm));
         rows.rows.iter().map(|row| noise_ratio(self.excess_variance.at(spot(row))).max(self.least_ratio)).collect()
     }
 }

@@ -5,9 +5,9 @@ use maud::{Markup, html};
 use super::Subject;
 use crate::effects::Effect;
 use crate::gap::channel::Channel;
-use crate::gap::verdict::NamedEffect;
 use crate::gap::explain::evidence::Evidence;
 use crate::gap::explain::profile::{Bin, ResidualProfile};
+use crate::gap::verdict::NamedEffect;
 use crate::page::document::{Section, chart, table};
 use crate::page::words;
 

@@ -114,7 +114,6 @@ fn names_contain_the_borders() {
 #[test]
 fn names_describe_headings_and_distances() {
     let rows = observations(1, 4, |_, at| Made {
-    
         pose: crate::geometry::Pose::new(150.0, 100.0, at as f64 * std::f64::consts::FRAC_PI_2),
         ..Made::default()
     });
