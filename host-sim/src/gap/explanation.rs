@@ -5,7 +5,7 @@
 //! predicts the held-out rows, and pays a penalty for its complexity. Everything else in a diagnosis is a difference of scores.
 
 use super::gain::Gain;
-use super::sample::{HoldOut, RowSet};
+use super::sample::HoldOut;
 use super::scores::Scores;
 
 /// An explanation of logs that was fitted to identification rows.
@@ -18,14 +18,6 @@ pub trait Explanation {
 
     /// Returns the nats that the marginal likelihood lies below the cross-validated score (Occam factor).
     fn complexity_penalty(&self) -> f64;
-
-    /// Returns cross-validated scores of fitted rows, or predictions of held-out rows.
-    fn scores_on(&self, rows: RowSet) -> Scores {
-        match rows {
-            RowSet::Fitted(_) => self.cross_validated().clone(),
-            RowSet::HeldOut(rows) => self.predict(rows),
-        }
-    }
 
     /// Returns the logarithm of the marginal likelihood. Blocks are its unit: it uses the likelihood of each block at the
     /// parameters of the others in place of the likelihood at its maximum.

@@ -9,10 +9,10 @@ use rayon::prelude::*;
 
 use super::calibration::Calibration;
 use super::channel::Channel;
-use super::epistemic_error::MotionUncertainty;
 use super::explanation::Explanation;
 use super::hypothesis::Hypothesis;
 use super::method::Method;
+use super::motion_uncertainty::MotionUncertainty;
 use super::sample::{HoldOut, Identification, Sample};
 use super::scores::Scores;
 use super::sensor_cache::FacedRows;

@@ -42,6 +42,7 @@ use super::calibration::Calibration;
 use super::gain::Gain;
 use super::verdict::Verdict;
 use crate::evaluation::observations::{Observation, Observations};
+use crate::statistics::summary::root_mean_square;
 
 /// One step of a robot.
 #[derive(Clone, Copy, Debug)]
@@ -205,8 +206,8 @@ impl Explanation {
             without,
             noise_cm,
         };
-        let squares = steps.iter().map(|step| explanation.residual_cm(step, &explanation.coefficients).powi(2));
-        explanation.noise_cm = (squares.sum::<f64>() / steps.len() as f64).sqrt().max(noise_cm);
+        let residuals = steps.iter().map(|step| explanation.residual_cm(step, &explanation.coefficients));
+        explanation.noise_cm = root_mean_square(residuals).max(noise_cm);
         let scores = runs.iter().zip(&explanation.without).map(|(run, without)| explanation.nats_at(without, run));
         explanation.cross_validated = scores.collect();
         explanation
@@ -248,9 +249,8 @@ impl Explanation {
             let own = first..first + effect.coefficients;
             first = own.end;
             let size = (effect.size)(&self.coefficients[own.clone()]);
-            let n = self.without.len() as f64;
-            let squares = self.without.iter().map(|without| ((effect.size)(&without[own.clone()]) - size).powi(2));
-            let reach = NORMAL_95 * ((n - 1.0) / n * squares.sum::<f64>()).sqrt();
+            let changes = self.without.iter().map(|without| (effect.size)(&without[own.clone()]) - size);
+            let reach = NORMAL_95 * (self.without.len() as f64 - 1.0).sqrt() * root_mean_square(changes);
             Found { id: effect.id, size, interval: [size - reach, size + reach] }
         };
         self.effects.iter().map(found).collect()
@@ -258,7 +258,6 @@ impl Explanation {
 }
 
 /// Normal equations of least squares, XᵀX β = Xᵀr, which add up over steps.
-#[derive(Clone)]
 struct Equations {
     xx: DMatrix<f64>,
     xr: DVector<f64>,

@@ -14,13 +14,13 @@ use super::epistemic_error::EpistemicError;
 use super::explanation::Explanation;
 use super::fit::{FitContext, Fitted};
 use super::gain::Gain;
+use super::residuals::{log_likelihoods, subtract};
 use super::sample::{HoldOut, RowSet};
 use super::scores::Scores;
 use crate::evaluation::observations::FEWEST_BLOCKS;
 use crate::statistics::ridge;
 use basis::{Basis, Covariates};
 use kernel::{KernelRegression, Neighbours, Spot};
-pub(super) use motion::{log_likelihoods, usual_noise};
 
 /// A regression of one channel's residual on covariates, on top of a fit.
 pub struct Regression {
@@ -136,7 +136,7 @@ impl Regression {
             Likelihood::Motion(local) => {
                 let residuals = self.beyond_prediction(local.axis, rows);
                 let noise = noise.unwrap_or(local.noise);
-                motion::log_likelihoods(local.axis, noise, sample, &residuals, &local.ratios(rows))
+                log_likelihoods(local.axis, noise, sample, &residuals, &local.ratios(rows))
             }
             _ if matches!(rows, RowSet::Fitted(_)) => self.cross_validated.of(self.channel),
             Likelihood::EchoRate => self.readings(rows).rates(&self.predictions(rows)),
@@ -265,9 +265,4 @@ fn sum_over_steps(steps: &Steps, terms: impl Fn(&Covariates) -> Vec<f64>) -> Vec
     let sum = terms.reduce(|sum, terms| sum.iter().zip(&terms).map(|(a, b)| a + b).collect()).unwrap_or_default();
     let share = 1.0 / (steps.len() as f64).sqrt();
     sum.into_iter().map(|term| share * term).collect()
-}
-
-/// Subtracts predictions from residuals.
-pub(super) fn subtract(residuals: &[Option<f64>], predictions: &[f64]) -> Vec<Option<f64>> {
-    residuals.iter().zip(predictions).map(|(residual, prediction)| Some((*residual)? - prediction)).collect()
 }

@@ -2,15 +2,16 @@
 
 use super::basis::Covariates;
 use super::kernel::{self, KernelRegression, Spot};
-use super::{Design, Likelihood, Regression, Steps, subtract};
+use super::{Design, Likelihood, Regression, Steps};
 use crate::effects::chain::EffectChain;
 use crate::effects::{PoseIncrement, StepContext};
 use crate::evaluation::observations::Observation;
 use crate::evaluation::predictions::increment;
 use crate::gap::channel::Channel;
-use crate::gap::epistemic_error::{EpistemicError, FARTHEST};
+use crate::gap::epistemic_error::EpistemicError;
 use crate::gap::fit::{FitContext, Fitted};
-use crate::gap::noise_model::{fitted_noise, log_density};
+use crate::gap::motion_uncertainty::FARTHEST;
+use crate::gap::residuals::{log_likelihoods, subtract, usual_noise};
 use crate::gap::sample::{RowSet, Sample};
 use crate::simulator::baseline::MotionModel;
 use crate::statistics::summary::root_mean_square;
@@ -75,27 +76,6 @@ pub fn regression(channel: Channel, axis: usize, underneath: Fitted, context: &F
             fitted_ratios,
         }),
     }
-}
-
-/// Returns the log-likelihood of each row; `residuals` are beyond all predictions, `ratios` each row's noise over `noise`.
-pub fn log_likelihoods(
-    axis: usize,
-    noise: f64,
-    sample: &Sample,
-    residuals: &[Option<f64>],
-    ratios: &[f64],
-) -> Vec<f64> {
-    let term = |((row, residual), ratio): ((&Observation, &Option<f64>), &f64)| {
-        residual.map_or(0.0, |r| row.motion_weight[axis] * log_density(axis, r, ratio * noise))
-    };
-    sample.rows.iter().zip(residuals).zip(ratios).map(term).collect()
-}
-
-/// Fits the standard deviation, `least` or more, of residuals that are divided by their ratios.
-pub fn usual_noise(axis: usize, sample: &Sample, residuals: &[Option<f64>], ratios: &[f64], least: f64) -> f64 {
-    let scaled = residuals.iter().zip(ratios).zip(&sample.rows);
-    let scaled = scaled.filter_map(|((residual, ratio), row)| Some([(*residual)? / ratio, row.motion_weight[axis]]));
-    fitted_noise(axis, &scaled.collect::<Vec<[f64; 2]>>(), least)
 }
 
 /// Fits the relative variance by place to `relative(index, row)`, the residuals over the usual noise. Also returns each used row's
