@@ -70,8 +70,8 @@ impl Diagnosis {
     }
 
     /// The simulator with the effects added that explain the gap, and the formula of what they leave.
-    fn mended(&self, py: Python<'_>) -> PyResult<Simulator> {
-        py.detach(|| self.request().mended(&self.answered)).map(Simulator::made).map_err(raised)
+    fn corrected_simulator(&self, py: Python<'_>) -> PyResult<Simulator> {
+        py.detach(|| self.request().corrected_simulator(&self.answered)).map(Simulator::made).map_err(raised)
     }
 
     /// Writes the commands to log next, as a run in CSV; False where no causes are confused.

@@ -1,5 +1,5 @@
-//! How busy the hand-out keeps a cluster, for docs/reference/measurements.md: simulates what so many ranks make of so many pieces of work,
-//! whose times are drawn from measured ones, in seconds, one a line on standard input:
+//! How busy the hand-out keeps a cluster, for docs/reference/measurements.md: simulates RANKS ranks that work on PIECES
+//! pieces of work. Their times are drawn from measured ones, in seconds, one per line on standard input:
 //! `cargo run --release -p mindgap-tests --example handing-out -- RANKS PIECES < SECONDS`.
 
 use std::cmp::Reverse;

@@ -185,8 +185,8 @@ impl Step {
         self.speeds[..2] == self.speeds[2..]
     }
 
-    /// What a robot does in it; the turn is in degrees. What lasts while a command is held is so many
-    /// standard deviations.
+    /// Draws the motion of a robot in the step; the turn is in degrees. `lasting` is the deviation that persists while a command
+    /// is held, in standard deviations.
     fn motion(&self, robot: &Member, lasting: Motion<f64>, rng: &mut Generator) -> Motion<f64> {
         let [left, right, left_before, right_before] = self.speeds;
         let held = robot.motion([left, right].map(f64::from));

@@ -128,7 +128,7 @@ pub fn assert_found(good: &Logs, fault: &Fault) {
     let new: Vec<&Finding> = after.findings.iter().filter(is_new).collect();
     let [found] = new.as_slice() else { panic!("{what}: {new:?}") };
     assert_eq!((found.id, found.handling), (fault.id, fault.handling), "{what}");
-    // What is only told must not be compared.
+    // What is only reported must not be compared.
     assert_eq!(found.handling == Handling::Reported, !found.withholds.is_empty(), "{what}");
     if !found.withholds.is_empty() || fault.id == "run_copied" {
         return;

@@ -120,7 +120,7 @@ impl Run for Diagnose {
         let Answered { findings: found, logs } = &answered;
         // Everything that can fail happens before anything is written.
         let applied = match &self.apply {
-            Some(path) if !found.with_formula().is_empty() => Some((path, request.mended(&answered)?)),
+            Some(path) if !found.with_formula().is_empty() => Some((path, request.corrected_simulator(&answered)?)),
             _ => None,
         };
         if let Some(path) = &self.html {

@@ -73,7 +73,7 @@ impl<'a> Request<'a> {
     ///
     /// # Errors
     /// When nothing was found that explains a gap.
-    pub fn mended(&self, Answered { findings, logs }: &Answered) -> Result<Simulator> {
+    pub fn corrected_simulator(&self, Answered { findings, logs }: &Answered) -> Result<Simulator> {
         let effects = findings.with_formula();
         if effects.is_empty() {
             return Err(Error::new(

@@ -264,7 +264,7 @@ fn effects(trials: &[Trial]) -> Markup {
     }
 }
 
-fn told(setting: Setting) -> String {
+fn rounded(setting: Setting) -> String {
     match setting {
         Setting::Number(value) => number(value, 3),
         Setting::Side(_) => setting.to_string(),
@@ -274,7 +274,7 @@ fn told(setting: Setting) -> String {
 fn cause(applied: &AppliedEffect) -> Markup {
     let known = words::cause(&applied.effect, CATALOGUE);
     let values: Vec<String> =
-        applied.parameters.iter().map(|(name, setting)| format!("{name} {}", told(*setting))).collect();
+        applied.parameters.iter().map(|(name, setting)| format!("{name} {}", rounded(*setting))).collect();
     html! {
         article.card aria-labelledby={ "effect-" (applied.effect) } {
             h3 #{ "effect-" (applied.effect) } {

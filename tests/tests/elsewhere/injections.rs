@@ -147,7 +147,7 @@ const SCANS: &[Injection] = &[
         called: &["sonar_scale"],
         change: |run| echoes(run, |cm, _| Some(0.93 * cm)),
     },
-    // At rest, a turned sensor cannot be told from a wrong heading.
+    // At rest, a turned sensor cannot be distinguished from a wrong heading.
     Injection {
         name: "sensor turned by 8 degrees",
         called: &["sonar_yaw", "tracker_rotation"],
