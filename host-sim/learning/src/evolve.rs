@@ -1,10 +1,10 @@
 //! Evolution of controllers in a simulator (paper, section IX).
 
-pub mod chance;
+pub mod success_probability;
 pub mod fitness;
 pub mod genome;
 pub mod paper;
-pub mod prefixes;
+pub mod explore;
 pub mod request;
 pub mod robust;
 mod stops;
@@ -12,4 +12,4 @@ pub mod task;
 #[cfg(test)]
 mod test_support;
 pub mod trial;
-pub mod way;
+pub mod route;
