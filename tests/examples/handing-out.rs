@@ -12,8 +12,8 @@ use mindgap_foundations::random::{Generator, generator};
 use rand::seq::IndexedRandom;
 
 const SEED: u64 = 1;
-/// Time from the end of an item until rank 0 sees the message, and from sending the next item until the other rank sees it: the
-/// longest polling interval plus the network.
+/// Time from the end of an item until rank 0 sees the message, and from sending the next item until the other rank sees it:
+/// the longest polling interval plus the network.
 const ON_THE_WAY: Duration = Duration::from_micros(500);
 /// Time in which rank 0 reads a message, stores its item and sends the next one.
 const SERVED_IN: Duration = Duration::from_micros(100);

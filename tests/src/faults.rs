@@ -114,8 +114,8 @@ pub const SONAR: [Fault; 8] = [
     }),
 ];
 
-/// Puts a fault into good logs and expects the inspection to find that fault and no other, in the right rows, and to restore or
-/// leave out the faulty values.
+/// Puts a fault into good logs and expects the inspection to find that fault and no other, in the right rows, and to restore
+/// or leave out the faulty values.
 ///
 /// # Panics
 /// If the inspection does otherwise.

@@ -42,9 +42,9 @@ pub struct Networks {
     pub echo_value: NetworkCheck,
 }
 
-/// Compares a simulator's networks in both arithmetics: on every sample of the logs, on a grid over their trained range, and in
-/// whole runs of `controller`, or of random controllers, in the scene of the logs. `watch` receives the number of finished runs
-/// and of all runs.
+/// Compares a simulator's networks in both arithmetics: on every sample of the logs, on a grid over their trained range, and
+/// in whole runs of `controller`, or of random controllers, in the scene of the logs. `watch` receives the number of
+/// finished runs and of all runs.
 ///
 /// # Errors
 /// If a network is missing or cannot be represented in fixed point, or if the robot does not fit at any pose of the logs.

@@ -52,8 +52,8 @@ pub struct RunResult {
     pub population: Vec<Vec<f32>>,
 }
 
-/// Number of individuals per piece of work. With five, training a small network spent a third of its time on distributing work;
-/// more than 25 leave processors idle.
+/// Number of individuals per piece of work. With five, training a small network spent a third of its time on distributing
+/// work; more than 25 leave processors idle.
 const BATCH_SIZE: usize = 25;
 
 /// An optimisation problem: how genotypes are made, repaired and evaluated.
@@ -66,7 +66,8 @@ pub trait Problem: Sync {
     fn batch_size(&self) -> usize {
         BATCH_SIZE
     }
-    /// Returns the fitness of consecutive individuals of a generation, from index `first`; larger is better, and NaN is worst.
+    /// Returns the fitness of consecutive individuals of a generation, from index `first`; larger is better, and NaN is
+    /// worst.
     fn fitness(&self, generation: usize, first: usize, individuals: &[Vec<f32>]) -> Vec<f64>;
 }
 
@@ -264,7 +265,8 @@ mod tests {
 
     #[test]
     fn lineages_side_by_side_run_as_if_alone() {
-        // Each ends when ten generations have not halved its squared distance from the optimum, so they end at different times.
+        // Each ends when ten generations have not halved its squared distance from the optimum, so they end at different
+        // times.
         let stagnation = Some(StagnationCriterion { generations: 10, improvement: -0.5 });
         let settings = Settings { stagnation, ..settings() };
         let lineages = [5, 6, 7].map(|seed| Lineage::random(&settings, &Sphere, seed));

@@ -67,8 +67,8 @@ pub struct Simulator {
     /// What the training logs say beyond the networks: the yardstick of the gap.
     #[serde(default)]
     pub reference: Option<NominalModel>,
-    /// Epistemic uncertainty of the robot's motion given those logs and the runs since. Earlier files call it "ensemble", which
-    /// held no noise: it is ignored.
+    /// Epistemic uncertainty of the robot's motion given those logs and the runs since. Earlier files call it "ensemble",
+    /// which held no noise: it is ignored.
     #[serde(default, skip_serializing_if = "Option::is_none", rename = "robots")]
     pub ensemble: Option<Ensemble>,
     /// What the same logs give with the sizes of the paper's Table I, when these networks have others.
@@ -174,8 +174,8 @@ impl Simulator {
         first_echo.or_else(|| reference.sonar.clone().map(SensorLaw::Beam))
     }
 
-    /// The law by which readings are drawn that effects change: the beam, since vector lanes draw from it and evolution takes a
-    /// tenth of the time; but an ideal ray is one by the first-echo law alone.
+    /// The law by which readings are drawn that effects change: the beam, since vector lanes draw from it and evolution
+    /// takes a tenth of the time; but an ideal ray is one by the first-echo law alone.
     pub fn drawn_law(&self) -> Option<SensorLaw> {
         let beam = self.reference.as_ref().and_then(|reference| reference.sonar.clone());
         self.sensor_law().filter(SensorLaw::is_ray).or_else(|| beam.map(SensorLaw::Beam))

@@ -115,8 +115,8 @@ impl Ranks {
         }
     }
 
-    /// Works on the items of a part that the first rank hands out, on `threads` threads, and sends the results, until the part is
-    /// done.
+    /// Works on the items of a part that the first rank hands out, on `threads` threads, and sends the results, until the
+    /// part is done.
     ///
     /// # Errors
     /// When a result cannot be sent.

@@ -213,8 +213,8 @@ impl Workbench<'_> {
         Ok(judged.into_iter().map(|(controller, _)| controller).collect())
     }
 
-    /// Evolves in the simulator that `learn` makes of the runs so far, then drives. A controller that reaches the target is driven
-    /// again and is kept if it succeeds twice.
+    /// Evolves in the simulator that `learn` makes of the runs so far, then drives. A controller that reaches the target is
+    /// driven again and is kept if it succeeds twice.
     fn with_trials(&self, learn: impl Fn(&[Run]) -> Result<Simulator>) -> Result<Settled> {
         let (mut runs, mut last): (Vec<Run>, Option<(Controller, bool)>) = (Vec::new(), None);
         for trial in 1..=TRIALS {

@@ -20,8 +20,8 @@ const WORKS: f64 = 0.85;
 /// Simulated success probability that three of three successes confirm.
 pub const CONFIRMED: f64 = (WORKS * (SIMULATED + SUCCESSES as f64) - SUCCESSES as f64) / SIMULATED;
 /// Weight of the simulated success probability, in real runs (the concentration of a beta prior). The successes of 44
-/// controllers in forty runs each are most likely at 9.5, and within one nat at 6 to 15 (docs/explanation/loop.md). The smallest is
-/// used, since the simulator is worse if the robot has an unmodelled effect.
+/// controllers in forty runs each are most likely at 9.5, and within one nat at 6 to 15 (docs/explanation/loop.md). The
+/// smallest is used, since the simulator is worse if the robot has an unmodelled effect.
 const SIMULATED: f64 = 6.0;
 
 /// A controller that was driven.

@@ -45,7 +45,7 @@ pub struct Nats {
 /// Judges every model that a simulator has by the readings of logs; none where there are no readings with a pose. `watch` is
 /// told how often models were asked, of how often they will be.
 pub fn sensor_models(simulator: &Simulator, logs: &Logs, watch: impl Fn(usize, usize) + Sync) -> Option<SensorModels> {
-    let scans = Scans::of(logs);
+    let scans = Scans::new(logs);
     let n = scans.rows().count();
     if n == 0 || scans.rows().all(|row| row.echo_cm.is_none()) {
         return None;
@@ -88,7 +88,7 @@ fn asked(scans: &Scans) -> usize {
 /// How likely a model of the sensor makes the readings of logs, which have a row with a pose; `at` gives the outcomes of a
 /// sensor at a pose.
 pub fn nats(logs: &Logs, at: impl Fn(&Pose) -> Outcomes + Sync) -> Nats {
-    let scans = &Scans::of(logs);
+    let scans = &Scans::new(logs);
     let log_likelihood = |sensor: &Pose, echo_cm: Option<f64>| at(sensor).log_likelihood(echo_cm);
     let mean = |offsets: &[Offset]| {
         let rows = scans.rows_with(offsets);
@@ -158,7 +158,7 @@ mod tests {
                 times.fetch_add(1, Ordering::Relaxed);
                 Outcomes { none: 0.5, components: Vec::new(), range_cm: [5.0, 240.0] }
             });
-            assert_eq!(times.into_inner(), asked(&Scans::of(&logs)));
+            assert_eq!(times.into_inner(), asked(&Scans::new(&logs)));
         }
     }
 }

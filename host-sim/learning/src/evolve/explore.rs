@@ -2,8 +2,8 @@
 //! least scatter (MAP-Elites; Mouret and Clune 2015). The search returns to such a pose and tries commands from there
 //! (Go-Explore; Ecoffet et al. 2021). Every threshold of a command is tried at once.
 //!
-//! A genetic algorithm on whole controllers has to find six tuples that work together. This search instead appends a tuple to a
-//! prefix that already leads somewhere, and prefixes whose scatter the sensor reduces win their cells.
+//! A genetic algorithm on whole controllers has to find six tuples that work together. This search instead appends a tuple
+//! to a prefix that already leads somewhere, and prefixes whose scatter the sensor reduces win their cells.
 
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
@@ -92,8 +92,8 @@ struct Archive<'a> {
     candidates: BTreeMap<Cell, Candidate>,
 }
 
-/// Returns controllers by descending success rate in fresh runs. `watch` receives the last round completed, of [`ALL_ROUNDS`],
-/// and the fitness of the best controller of its search.
+/// Returns controllers by descending success rate in fresh runs. `watch` receives the last round completed, of
+/// [`ALL_ROUNDS`], and the fitness of the best controller of its search.
 ///
 /// # Errors
 /// If the executor fails.

@@ -52,8 +52,8 @@ pub struct Success {
     pub median_cm: f64,
 }
 
-/// Returns the fitness of one run that ended `distance_cm` from the target (paper, equation 3), in 1/cm: 0.5 / distance after
-/// a crash, else 1 / distance. Distances below `floor_cm` are raised to it, since 1 / distance is unbounded.
+/// Returns the fitness of one run that ended `distance_cm` from the target (paper, equation 3), in 1/cm: 0.5 / distance
+/// after a crash, else 1 / distance. Distances below `floor_cm` are raised to it, since 1 / distance is unbounded.
 pub fn fitness(outcome: &RolloutOutcome, distance_cm: f64, floor_cm: f64) -> f64 {
     let distance_cm = distance_cm.max(floor_cm);
     if outcome.termination == Termination::Crashed { 0.5 / distance_cm } else { 1.0 / distance_cm }

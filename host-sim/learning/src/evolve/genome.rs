@@ -47,7 +47,8 @@ impl GenotypeDecoder {
         genes.iter_mut().for_each(|gene| *gene = gene.clamp(0.0, 1.0));
     }
 
-    /// Returns the controller that a genotype encodes; commands and thresholds are rounded to integers, as a brick takes them.
+    /// Returns the controller that a genotype encodes; commands and thresholds are rounded to integers, as a brick takes
+    /// them.
     pub fn controller(&self, genes: &[f32]) -> Controller {
         let within = |[low, high]: [f32; 2], gene: f32| (low + gene * (high - low)).round();
         let tuple = |g: &[f32]| Tuple {

@@ -66,7 +66,8 @@ impl Request<'_> {
     /// Evolves a controller; `watch` receives the generation and the best fitness.
     ///
     /// # Errors
-    /// If the scene lacks a target or the start, if `max_steps` is 0, or if the simulator cannot run controllers in the scene.
+    /// If the scene lacks a target or the start, if `max_steps` is 0, or if the simulator cannot run controllers in the
+    /// scene.
     pub fn evolve(&self, watch: impl FnMut(usize, f64)) -> Result<Answered> {
         let Request { executor, simulator, scene, noise, seed, .. } = *self;
         if self.max_steps == 0 {

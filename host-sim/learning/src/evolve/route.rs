@@ -1,5 +1,5 @@
-//! Length of the route from anywhere in a room to the target, around the obstacles. The straight line may lead through a wall,
-//! so it would reward controllers that end behind one.
+//! Length of the route from anywhere in a room to the target, around the obstacles. The straight line may lead through a
+//! wall, so it would reward controllers that end behind one.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -121,7 +121,7 @@ mod tests {
     use super::*;
     use mindgap_foundations::geometry::Wall;
 
-    /// A room with a wall across it that is open at the top.
+    /// Returns a room with a wall across it that is open at the top.
     fn room() -> Scene {
         let wall = Wall { from_cm: DVec2::new(100.0, 0.0), to_cm: DVec2::new(100.0, 150.0) };
         Scene { arena_cm: Some(DVec2::new(200.0, 200.0)), walls: vec![wall], ..Scene::default() }

@@ -1,5 +1,5 @@
-//! Probability that a controller reaches the target, and its epistemic uncertainty: over robots drawn from the posterior of the
-//! simulator, each with its own success rate.
+//! Probability that a controller reaches the target, and its epistemic uncertainty: over robots drawn from the posterior of
+//! the simulator, each with its own success rate.
 
 use std::fmt;
 
@@ -68,9 +68,9 @@ impl<'a> Judge<'a> {
         Ok((0..controllers.len()).map(|controller| SuccessProbability::from_rates(rates(controller), runs)).collect())
     }
 
-    /// Returns the probability of success if the robot were known: the mean over robots of that of the best controller for each.
-    /// One half of the `runs` runs selects the controller and the other half measures it, since the rate by which one has
-    /// selected is biased upwards.
+    /// Returns the probability of success if the robot were known: the mean over robots of that of the best controller for
+    /// each. One half of the `runs` runs selects the controller and the other half measures it, since the rate by which one
+    /// has selected is biased upwards.
     ///
     /// # Errors
     /// If the executor fails.

@@ -1,7 +1,8 @@
 //! The parameters of effects: named, with a unit, physical bounds and a prior.
 //!
 //! An effect computes with values, which suit a fit: a signed loss, a wheel speed, log-odds. Files and answers hold
-//! [settings](Setting) instead, by the names of the table in docs/reference/effects.md: a side and a factor, a command, a factor.
+//! [settings](Setting) instead, by the names of the table in docs/reference/effects.md: a side and a factor, a command, a
+//! factor.
 
 use std::collections::BTreeMap;
 use std::fmt;

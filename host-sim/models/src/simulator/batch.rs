@@ -24,8 +24,8 @@ impl Environment<'_> {
         self.run_watched(requests, |_, _| {})
     }
 
-    /// As [`run`](Self::run); `watch` receives every point of every trajectory, in order within each run, with the index of its
-    /// request.
+    /// As [`run`](Self::run); `watch` receives every point of every trajectory, in order within each run, with the index of
+    /// its request.
     pub fn run_watched(
         &self,
         requests: &[RolloutRequest],

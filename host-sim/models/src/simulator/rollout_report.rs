@@ -65,8 +65,8 @@ impl RolloutReport {
         Self::of_robots(std::slice::from_ref(environment), scene, controller, runs, seed, |_, _| ())
     }
 
-    /// As [`new`](Self::new), with several robots that take turns; there must be at least one. `watch` receives the number of
-    /// finished runs and of all runs.
+    /// As [`new`](Self::new), with several robots that take turns; there must be at least one. `watch` receives the number
+    /// of finished runs and of all runs.
     pub fn of_robots(
         robots: &[Environment],
         scene: &Scene,

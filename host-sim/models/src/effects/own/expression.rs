@@ -65,8 +65,8 @@ impl Expression {
         names(text).any(|mentioned| mentioned == name)
     }
 
-    /// Returns its value; `None` if one of its variables is unknown, or if the value is not a number or is larger than anything
-    /// that a step could do.
+    /// Returns its value; `None` if one of its variables is unknown, or if the value is not a number or is larger than
+    /// anything that a step could do.
     pub fn value(&self, parameters: &[f64], at: &Circumstances) -> Option<f64> {
         let value = self.program.evaluate(&(Scope { expression: self, parameters, at }, Math)).ok()?;
         (value.abs() <= LARGEST).then_some(value)
