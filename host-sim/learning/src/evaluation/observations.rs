@@ -11,7 +11,7 @@ use mindgap_logs::{Logs, Run};
 use mindgap_models::effects::StepContext;
 use mindgap_models::effects::context::{RunHistory, Surroundings};
 use mindgap_models::simulator::baseline::MotionModel;
-use mindgap_models::sonar::familiar::{FamiliarPoses, Recollection};
+use mindgap_models::sonar::familiar::{FamiliarPoses, PoseMemory};
 use mindgap_models::sonar::place::{Place, place_of};
 use mindgap_models::sonar::{SensorLaw, View};
 
@@ -22,7 +22,7 @@ pub struct Observations {
     /// The law of the sensor; none where it is not judged.
     pub law: Option<SensorLaw>,
     /// What is known of single poses in this room.
-    pub recollection: Option<Arc<Recollection>>,
+    pub recollection: Option<Arc<PoseMemory>>,
     /// How many blocks of rows are judged together: the runs, or parts of them where there are few.
     pub blocks: usize,
     /// How many places its sensor was at.
@@ -126,7 +126,7 @@ impl Observations {
 
     /// Recalls what is known of single poses, if this is their room.
     pub fn recalling(self, familiar: Option<&FamiliarPoses>) -> Self {
-        let recollection = familiar.and_then(|familiar| Recollection::of(familiar, self.surroundings.surfaces.walls()));
+        let recollection = familiar.and_then(|familiar| PoseMemory::for_room(familiar, self.surroundings.surfaces.walls()));
         Observations { recollection: recollection.map(Arc::new), ..self }
     }
 

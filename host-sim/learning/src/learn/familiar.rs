@@ -40,7 +40,7 @@ pub fn learn(law: &SensorLaw, seen: &[Seen], scene: &Scene) -> Option<FamiliarPo
     let surfaces = Surfaces::new(walls.clone());
     let views: Vec<View> = seen.iter().map(|row| law.view(&surfaces, &row.sensor, 1.0)).collect();
     let judged = |repeats: &RepeatLaw, i: usize| {
-        let known = Familiarity::of(others[i].iter().map(|other| &readings[*other]), repeats);
+        let known = Familiarity::from_readings(others[i].iter().map(|other| &readings[*other]), repeats);
         outcomes(known.as_ref(), law, &views[i], &Perturbation::NONE)
     };
     let terms = |at: &[f64]| {
