@@ -64,17 +64,17 @@ pub fn pages_are_those_of_the_command() -> Result<(), Failed> {
     Ok(())
 }
 
-/// `mindgap explain --markdown > docs/effects.md` updates it, and so does `MINDGAP_DOCS=overwrite`.
+/// `mindgap explain --markdown > docs/reference/catalogue.md` updates it, and so does `MINDGAP_DOCS=overwrite`.
 pub fn the_catalogue_of_effects_is_that_of_the_command() -> Result<(), Failed> {
     let written = Sandbox::new().run("explain --markdown");
-    let path = workspace().join("docs/effects.md");
+    let path = workspace().join("docs/reference/catalogue.md");
     if is_asked_for("overwrite") {
         fs::write(&path, &written)?;
     }
     if fs::read_to_string(path)? == written {
         Ok(())
     } else {
-        Err("docs/effects.md differs from mindgap explain".into())
+        Err("docs/reference/catalogue.md differs from mindgap explain".into())
     }
 }
 
