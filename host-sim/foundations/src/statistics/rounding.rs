@@ -12,7 +12,7 @@ pub fn three_digits(value: f64) -> f64 {
     format!("{value:.2e}").parse().unwrap_or(value)
 }
 
-/// Serializes a number with four decimals, for `serialize_with`.
+/// Serialises a number with four decimals, for `serialize_with`.
 ///
 /// # Errors
 /// Returns the serializer's errors.
@@ -20,7 +20,7 @@ pub fn number<S: Serializer>(value: &f64, to: S) -> Result<S::Ok, S::Error> {
     four_decimals(*value).serialize(to)
 }
 
-/// Serializes an optional number with four decimals, for `serialize_with`.
+/// Serialises an optional number with four decimals, for `serialize_with`.
 ///
 /// # Errors
 /// Returns the serializer's errors.
@@ -28,7 +28,7 @@ pub fn optional<S: Serializer>(value: &Option<f64>, to: S) -> Result<S::Ok, S::E
     value.map(four_decimals).serialize(to)
 }
 
-/// Serializes an interval with four decimals, for `serialize_with`.
+/// Serialises an interval with four decimals, for `serialize_with`.
 ///
 /// # Errors
 /// Returns the serializer's errors.
