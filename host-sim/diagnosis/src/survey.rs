@@ -24,7 +24,7 @@ use mindgap_models::simulator::{Missing, kinematic};
 #[derive(Clone, Debug, Serialize)]
 pub struct Survey {
     schema: u32,
-    /// What they hold, once what can be put right is put right.
+    /// What they hold, after all correctable faults are corrected.
     pub holds: Holdings,
     /// What is wrong with them.
     pub findings: Vec<Finding>,
@@ -58,7 +58,7 @@ impl Survey {
                 untestable
             }
             Err(why) => {
-                drive_more.push(format!("No effect can be told: {why}"));
+                drive_more.push(format!("No effect can be tested: {why}"));
                 CATALOGUE.iter().map(|effect| effect.id).collect()
             }
         };
@@ -67,12 +67,12 @@ impl Survey {
     }
 }
 
-/// What so many rows of random driving do not excite, more of them hardly would; each takes most of a kilobyte to judge.
+/// More rows of random driving than this hardly excite any further effect, and each row takes most of a kilobyte to analyse.
 const ENOUGH_ROWS: usize = 20_000;
-/// So many runs are not made fewer.
+/// At least this number of runs is kept.
 const ENOUGH_RUNS: usize = 100;
 
-/// Of large logs every so many runs, and of long ones the beginning.
+/// Thins large logs: keeps runs at regular intervals, and the beginning of long ones.
 fn enough_of(logs: &Logs) -> Logs {
     let rows = logs.rows();
     if rows <= ENOUGH_ROWS {
