@@ -153,8 +153,8 @@ class Diagnosis:
     def where(self) -> pd.DataFrame:
         """Where the gap lies."""
 
-    def mended(self) -> Simulator:
-        """The simulator with the effects added that explain the gap, and the formula of what they leave."""
+    def corrected_simulator(self) -> Simulator:
+        """Returns the simulator with the effects that explain the gap, and the formula of the remaining residual."""
 
     def write_next_experiment(self, path: _Path, *, force: bool = False) -> bool:
         """Writes the commands to log next, as a run in CSV; False where no causes are confused."""

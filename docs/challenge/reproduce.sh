@@ -1,5 +1,5 @@
 #!/bin/sh
-# Makes the fixed challenge anew, answers it, and writes its score beside this script: cases.csv is raw, score.json the
+# Makes the fixed challenge again, answers it, and writes its score beside this script: cases.csv is raw, score.json the
 # counts. Twenty to thirty minutes on two free cores.
 set -eu
 here=$(dirname "$0")

@@ -5,8 +5,8 @@ use std::path::PathBuf;
 use mindgap_command::kinds;
 use mindgap_core::controller::Tuple;
 use mindgap_figures::pictures;
-use mindgap_learning::evolve::chance::Chance;
 use mindgap_learning::evolve::request::{Answered, Request};
+use mindgap_learning::evolve::success_probability::SuccessProbability;
 use mindgap_logs::Scene;
 use mindgap_logs::controller_file::{ControllerFile, Origin};
 use mindgap_models::simulator::Noise;
@@ -91,7 +91,7 @@ struct Success {
     success: f64,
     crashed: f64,
     median_cm: f64,
-    chance: Option<Chance>,
+    chance: Option<SuccessProbability>,
 }
 
 #[pymethods]

@@ -70,7 +70,7 @@ impl Diagnosis {
     }
 
     /// The simulator with the effects added that explain the gap, and the formula of what they leave.
-    fn mended(&self, py: Python<'_>) -> PyResult<Simulator> {
+    fn corrected_simulator(&self, py: Python<'_>) -> PyResult<Simulator> {
         py.detach(|| self.request().with_effects_applied(&self.answered)).map(Simulator::made).map_err(raised)
     }
 

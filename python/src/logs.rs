@@ -115,15 +115,15 @@ impl Logs {
         self.folder.as_ref().map_or_else(|| "logs from Python".into(), |folder| folder.display().to_string())
     }
 
-    /// The logs to learn from or to judge by, with what could be put right; of a simulator's robot where one is given.
+    /// Returns the usable logs, corrected where the inspection can; they must be of the same robot as `of`, if given.
     pub fn sound(&self, py: Python<'_>, of: Option<&Simulator>) -> PyResult<logs::Logs> {
-        let mut put_right = Vec::new();
+        let mut findings = Vec::new();
         let sound = py.detach(|| {
-            let sound = Inspection::new((*self.inner).clone()).into_usable(|found| put_right.push(found))?;
+            let sound = Inspection::new((*self.inner).clone()).into_usable(|found| findings.push(found))?;
             of.map_or(Ok(()), |simulator| same_robot(&simulator.robot, &sound.robot))?;
             Ok(sound)
         });
-        warn(py, put_right)?;
+        warn(py, findings)?;
         sound.map_err(raised)
     }
 }

@@ -1,5 +1,5 @@
-//! How busy the hand-out keeps a cluster, for docs/reference/measurements.md: simulates what so many ranks make of so many pieces of work,
-//! whose times are drawn from measured ones, in seconds, one a line on standard input:
+//! How busy the hand-out keeps a cluster, for docs/reference/measurements.md: simulates RANKS ranks that work on PIECES
+//! pieces of work. Their times are drawn from measured ones, in seconds, one per line on standard input:
 //! `cargo run --release -p mindgap-tests --example handing-out -- RANKS PIECES < SECONDS`.
 
 use std::cmp::Reverse;
@@ -12,8 +12,8 @@ use mindgap_foundations::random::{Generator, generator};
 use rand::seq::IndexedRandom;
 
 const SEED: u64 = 1;
-/// Time from the end of an item until rank 0 sees the message, and from sending the next item until the other rank sees it: the
-/// longest polling interval plus the network.
+/// Time from the end of an item until rank 0 sees the message, and from sending the next item until the other rank sees it:
+/// the longest polling interval plus the network.
 const ON_THE_WAY: Duration = Duration::from_micros(500);
 /// Time in which rank 0 reads a message, stores its item and sends the next one.
 const SERVED_IN: Duration = Duration::from_micros(100);

@@ -121,10 +121,10 @@ def test_an_evaluation_is_that_of_the_command(simulator, logs, tmp_path):
     assert networks.loc["turn", "r2"] > 0.8 and np.isnan(networks.loc["turn", "brier"])
 
 
-def test_a_mended_simulator_has_the_effect(diagnosis, weak):
-    mended = diagnosis.mended()
-    assert [effect["effect"] for effect in mended.added] == ["motor_asymmetry"]
-    assert mindgap.diagnose(mended, weak).verdict == "no_gap"
+def test_corrected_simulator_has_the_effect(diagnosis, weak):
+    corrected = diagnosis.corrected_simulator()
+    assert [effect["effect"] for effect in corrected.added] == ["motor_asymmetry"]
+    assert mindgap.diagnose(corrected, weak).verdict == "no_gap"
 
 
 def test_a_controller_is_evolved_and_run_as_by_the_command(simulator, tmp_path):
@@ -138,12 +138,12 @@ def test_a_controller_is_evolved_and_run_as_by_the_command(simulator, tmp_path):
     mindgap.Logs(mindgap.record(runs=1, steps=3).runs, simulator.robot, SCENE).write(tmp_path / "room")
     again = mindgap.Controller.read(tmp_path / "controller.toml")
     assert again.facts["tuple"] == evolution.controller.facts["tuple"]
-    told = command(
+    facts = command(
         tmp_path, "simulate", "sim.json", "controller.toml", "--scene", "room/scene.toml",
         "--runs", "8", "--seed", "4", "--json", "-",
     )
-    assert simulation.success == told["success"] and len(told["runs"]) == 8
-    assert [run["end_x_cm"] for run in told["runs"]] == pytest.approx(list(simulation.runs["end_x_cm"]))
+    assert simulation.success == facts["success"] and len(facts["runs"]) == 8
+    assert [run["end_x_cm"] for run in facts["runs"]] == pytest.approx(list(simulation.runs["end_x_cm"]))
 
 
 def test_pictures_and_pages_are_shown_and_written(diagnosis, simulator, logs, tmp_path):

@@ -185,8 +185,8 @@ impl Step {
         self.speeds[..2] == self.speeds[2..]
     }
 
-    /// What a robot does in it; the turn is in degrees. What lasts while a command is held is so many
-    /// standard deviations.
+    /// Draws the motion of a robot in the step; the turn is in degrees. `lasting` is the deviation that persists while a
+    /// command is held, in standard deviations.
     fn motion(&self, robot: &Member, lasting: Motion<f64>, rng: &mut Generator) -> Motion<f64> {
         let [left, right, left_before, right_before] = self.speeds;
         let held = robot.motion([left, right].map(f64::from));
@@ -215,8 +215,8 @@ mod tests {
     use mindgap_foundations::executor::Serial;
     use mindgap_learning::learn::train::{TABLE_ONE, Trainer, train};
 
-    /// Regions that hold much less would drive controllers into what nobody expects, and much more would hide them. So few runs
-    /// leave controllers' headings too narrow: docs/reference/measurements.md has all figures.
+    /// Regions that hold much less would drive controllers into what nobody expects, and much more would hide them. So few
+    /// runs leave controllers' headings too narrow: docs/reference/measurements.md has all figures.
     #[test]
     fn regions_contain_their_share_of_paths() {
         let recorded = |seed| record(&default_robot(), &training_room(), 50, 60, &[], seed).expect("room to drive");

@@ -114,8 +114,8 @@ pub const SONAR: [Fault; 8] = [
     }),
 ];
 
-/// Puts a fault into good logs and expects the inspection to find that fault and no other, in the right rows, and to restore or
-/// leave out the faulty values.
+/// Puts a fault into good logs and expects the inspection to find that fault and no other, in the right rows, and to restore
+/// or leave out the faulty values.
 ///
 /// # Panics
 /// If the inspection does otherwise.
@@ -128,7 +128,7 @@ pub fn assert_found(good: &Logs, fault: &Fault) {
     let new: Vec<&Finding> = after.findings.iter().filter(is_new).collect();
     let [found] = new.as_slice() else { panic!("{what}: {new:?}") };
     assert_eq!((found.id, found.handling), (fault.id, fault.handling), "{what}");
-    // What is only told must not be compared.
+    // What is only reported must not be compared.
     assert_eq!(found.handling == Handling::Reported, !found.withholds.is_empty(), "{what}");
     if !found.withholds.is_empty() || fault.id == "run_copied" {
         return;

@@ -37,7 +37,7 @@ impl HeldOut {
             let mut others = logs.clone();
             let scan = Logs { runs: vec![others.runs.remove(out)], ..others.clone() };
             let law = echo_law::learn(&others, 1).expect("readings").sensor;
-            let readings = Scans::of(&scan).rows().count();
+            let readings = Scans::new(&scan).rows().count();
             let judged = nats(&scan, |sensor| law.outcomes_at(&surfaces, sensor));
             sum.readings += readings;
             sum.poses_refitted += readings as f64 * judged.poses_refitted.expect("a scan");
@@ -56,7 +56,7 @@ impl HeldOut {
 
 /// Returns the log-likelihood of a scan at its most probable heading offset, nats.
 fn heading_refitted(law: &FirstEchoLaw, surfaces: &Surfaces, scan: &Logs) -> f64 {
-    let scans = Scans::of(scan);
+    let scans = Scans::new(scan);
     let at = |half: i32| {
         let deg = 0.5 * f64::from(half);
         let offset: Offset = [0.0, 0.0, deg];

@@ -26,7 +26,7 @@ use mindgap_foundations::error::{Error, Result};
 use mindgap_foundations::executor::{self, Executor};
 use mindgap_foundations::geometry::Pose;
 use mindgap_foundations::random::derive;
-use mindgap_learning::evolve::chance::Chance;
+use mindgap_learning::evolve::success_probability::SuccessProbability;
 use mindgap_logs::controller_file::{ControllerFile, Origin};
 use mindgap_logs::{Logs, Run, Scene};
 use mindgap_models::simulator::Simulator;
@@ -158,7 +158,7 @@ impl<'a> ClosedLoop<'a> {
     }
 
     /// Stores at the last trial what was learned from its run.
-    fn note(&mut self, adapted: Option<Adapted>, chance: Option<Chance>) {
+    fn note(&mut self, adapted: Option<Adapted>, chance: Option<SuccessProbability>) {
         if let (Some(trial), Some(Adapted { lesson, .. })) = (self.state.trials.last_mut(), adapted) {
             trial.effects = lesson.effects;
             trial.gap = lesson.gap;

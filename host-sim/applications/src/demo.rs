@@ -27,8 +27,8 @@ use mindgap_learning::evolve::genome::GenotypeDecoder;
 use mindgap_learning::evolve::paper::Evolved;
 use mindgap_learning::evolve::request::Request;
 use mindgap_learning::evolve::robust;
+use mindgap_learning::evolve::route::RouteMap;
 use mindgap_learning::evolve::task::EvolutionTask;
-use mindgap_learning::evolve::way::WayMap;
 use mindgap_learning::learn::train::{self, TABLE_ONE, Trainer};
 use mindgap_logs::controller_file::{self, ControllerFile};
 use mindgap_logs::{Scene, Termination};
@@ -218,8 +218,8 @@ impl<W: Fn(Stage)> DemoRun<'_, W> {
         let target_cm = self.scene.target_cm.ok_or_else(|| Error::new("the scene has no target"))?;
         let decoder = GenotypeDecoder::new(self.simulator, MAX_STEPS);
         let seed = derive(evolution, &[start as u64]);
-        let way = &WayMap::new(self.scene, target_cm, self.simulator.robot.body_radius_cm);
-        let task = EvolutionTask { executor: self.executor, environment, target_cm, way, decoder, seed };
+        let routes = &RouteMap::new(self.scene, target_cm, self.simulator.robot.body_radius_cm);
+        let task = EvolutionTask { executor: self.executor, environment, target_cm, routes, decoder, seed };
         let robot = &BuiltInRobot::new(&self.simulator.robot, self.scene, &[]);
         let drive = |controller: &Controller, place: &[u64]| {
             built_in_robot::run_controller(robot, controller, pose, &mut generator(trial, place))

@@ -103,7 +103,7 @@ fn evolving_generations(bencher: Bencher) {
     let evaluator = FitnessEvaluator {
         environment,
         target_cm: scene.target_cm.expect("the scene has a target"),
-        way: None,
+        routes: None,
         decoder: GenotypeDecoder::new(&simulator, MAX_STEPS),
         runs: paper::RUNS,
         floor_cm: paper::FLOOR_CM,

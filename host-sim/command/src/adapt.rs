@@ -14,7 +14,7 @@ use mindgap_diagnosis::progress::Stage;
 use mindgap_files::places::Places;
 use mindgap_foundations::error::{Error, Result};
 use mindgap_foundations::executor::Executor;
-use mindgap_learning::evolve::chance::{Chance, Judge, ROBOTS, RUNS};
+use mindgap_learning::evolve::success_probability::{Judge, ROBOTS, RUNS, SuccessProbability};
 use mindgap_logs::Scene;
 use mindgap_logs::controller_file::ControllerFile;
 use mindgap_models::simulator::Simulator;
@@ -59,7 +59,7 @@ struct Output {
     /// One lesson per folder of logs.
     lessons: Vec<Lesson>,
     /// Success probability of the controller, before and after.
-    chance: Option<[Chance; 2]>,
+    chance: Option<[SuccessProbability; 2]>,
 }
 
 impl Run for Adapt {
@@ -105,7 +105,7 @@ impl Run for Adapt {
 
 impl Adapt {
     /// Returns the controller's success probability over the simulator's posterior of robots.
-    fn chance(&self, executor: &dyn Executor, simulator: &Simulator) -> Result<Chance> {
+    fn chance(&self, executor: &dyn Executor, simulator: &Simulator) -> Result<SuccessProbability> {
         let (Some(controller), Some(path)) = (&self.controller, &self.scene) else {
             return Err(Error::new("--controller needs --scene"));
         };
@@ -116,7 +116,7 @@ impl Adapt {
         let robots = simulator.robots(ROBOTS, self.seed);
         let robots = robots.ok_or_else(|| Error::in_file(&self.sim, "has no parameter uncertainty: train it again"))?;
         let judge = Judge::new(executor, simulator, &robots.drawn, &scene, start, target_cm, self.seed)?;
-        Ok(judge.chances(&[controller], RUNS)?[0])
+        Ok(judge.success_probabilities(&[controller], RUNS)?[0])
     }
 }
 

@@ -15,7 +15,7 @@ use mindgap_files as files;
 use mindgap_files::places::Places;
 use mindgap_foundations::error::Result;
 use mindgap_foundations::executor::Executor;
-use mindgap_learning::evolve::chance::Chance;
+use mindgap_learning::evolve::success_probability::SuccessProbability;
 use mindgap_logs::Scene;
 use mindgap_pages::trials::{Subject, page};
 
@@ -123,7 +123,7 @@ impl Loop {
     fn describe(&self, state: &State) -> String {
         let trials: String = state.trials.iter().map(|trial| line(trial) + "\n").collect();
         let controller = self.folder.join("controller.toml");
-        let chance = state.chance.as_ref().map_or_else(|| "unknown".into(), Chance::to_string);
+        let chance = state.chance.as_ref().map_or_else(|| "unknown".into(), SuccessProbability::to_string);
         let end = match state.verdict {
             Verdict::Works => "works: it reached the target three times; its",
             Verdict::Infeasible => {

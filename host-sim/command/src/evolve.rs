@@ -14,8 +14,8 @@ use mindgap_files::places::Places;
 use mindgap_foundations::error::Result;
 use mindgap_foundations::executor::Executor;
 use mindgap_foundations::geometry::Pose;
-use mindgap_learning::evolve::chance::Chance;
 use mindgap_learning::evolve::request::{Answered, JUDGED_RUNS, Request};
+use mindgap_learning::evolve::success_probability::SuccessProbability;
 use mindgap_logs::controller_file::{ControllerFile, Origin};
 use mindgap_logs::{Robot, Scene};
 use mindgap_models::simulator::Noise;
@@ -132,8 +132,8 @@ impl Run for Evolve {
     }
 }
 
-fn describe(chance: &Chance) -> String {
-    let epistemic = 100.0 * chance.not_knowing;
+fn describe(chance: &SuccessProbability) -> String {
+    let epistemic = 100.0 * chance.epistemic_fraction;
     format!(
         "success probability over the posterior of robots: {chance}; {epistemic:.0} % of the uncertainty is epistemic\n"
     )

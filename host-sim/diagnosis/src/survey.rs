@@ -24,7 +24,7 @@ use mindgap_models::simulator::{Missing, kinematic};
 #[derive(Clone, Debug, Serialize)]
 pub struct Survey {
     schema: u32,
-    /// What they hold, after all correctable faults are corrected.
+    /// Contents of the logs after inspection has corrected what it can.
     pub holds: Holdings,
     /// What is wrong with them.
     pub findings: Vec<Finding>,
@@ -58,7 +58,7 @@ impl Survey {
                 untestable
             }
             Err(why) => {
-                drive_more.push(format!("No effect can be tested: {why}"));
+                drive_more.push(format!("No effect can be identified: {why}"));
                 CATALOGUE.iter().map(|effect| effect.id).collect()
             }
         };
@@ -67,12 +67,13 @@ impl Survey {
     }
 }
 
-/// More rows of random driving than this hardly excite any further effect, and each row takes most of a kilobyte to analyse.
+/// Rows that are judged at most. An effect that this much random driving does not excite would hardly be excited by more; each row
+/// takes almost a kilobyte to judge.
 const ENOUGH_ROWS: usize = 20_000;
-/// At least this number of runs is kept.
+/// Number of runs that are always kept.
 const ENOUGH_RUNS: usize = 100;
 
-/// Thins large logs: keeps runs at regular intervals, and the beginning of long ones.
+/// Returns every nth run of large logs, and the beginning of long runs.
 fn enough_of(logs: &Logs) -> Logs {
     let rows = logs.rows();
     if rows <= ENOUGH_ROWS {

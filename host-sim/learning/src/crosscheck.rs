@@ -1,4 +1,4 @@
-//! Fixed point against float: whether a board computes with a simulator's networks what the PC said it would.
+//! Fixed point against float: whether a board computes the same as the PC with a simulator's networks.
 
 mod arithmetic;
 mod differences;
@@ -19,7 +19,7 @@ pub use runs::{Apart, Divergence, RunState, Runs, Trials};
 /// What `mindgap crosscheck --json` writes.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Crosscheck {
-    /// Version of this form.
+    /// Version of the format.
     pub schema: u32,
     /// The five networks.
     pub networks: Networks,
@@ -32,9 +32,9 @@ pub struct Crosscheck {
 pub struct Networks {
     /// Turn, degrees.
     pub turn: NetworkCheck,
-    /// Way forward, cm.
+    /// Displacement forward, cm.
     pub forward: NetworkCheck,
-    /// Way to the left, cm.
+    /// Displacement to the left, cm.
     pub lateral: NetworkCheck,
     /// Probability of an echo.
     pub echo_probability: NetworkCheck,
@@ -42,13 +42,12 @@ pub struct Networks {
     pub echo_value: NetworkCheck,
 }
 
-/// Compares a simulator's networks in both arithmetics: on every sample of the logs, on a grid over all that they were
-/// trained on, and in whole runs, of `controller` or of random ones, in the room of the logs. `watch` is told how many runs of
-/// how many are done.
+/// Compares a simulator's networks in both arithmetics: on every sample of the logs, on a grid over their trained range, and
+/// in whole runs of `controller`, or of random controllers, in the scene of the logs. `watch` receives the number of
+/// finished runs and of all runs.
 ///
 /// # Errors
-/// When a network is missing or cannot be represented in fixed point, or when the robot has no room where the logs have
-/// been.
+/// If a network is missing or cannot be represented in fixed point, or if the robot does not fit at any pose of the logs.
 pub fn crosscheck(
     simulator: &Simulator,
     logs: &Logs,

@@ -52,21 +52,22 @@ pub struct RunResult {
     pub population: Vec<Vec<f32>>,
 }
 
-/// With five at a time a small network's training spent a third of its time in handing out; more leave processors idle.
-const TOGETHER: usize = 25;
+/// Number of individuals per piece of work. With five, training a small network spent a third of its time on distributing
+/// work; more than 25 leave processors idle.
+const BATCH_SIZE: usize = 25;
 
 /// An optimisation problem: how genotypes are made, repaired and evaluated.
 pub trait Problem: Sync {
-    /// A random genotype for the first generation.
+    /// Draws a random genotype for the first generation.
     fn random(&self, rng: &mut Generator) -> Vec<f32>;
     /// Brings the genes of a child back into their bounds.
     fn repair(&self, genes: &mut [f32]);
-    /// Number of individuals that are evaluated as one piece of work.
-    fn together(&self) -> usize {
-        TOGETHER
+    /// Returns the number of individuals that are evaluated as one piece of work.
+    fn batch_size(&self) -> usize {
+        BATCH_SIZE
     }
-    /// The fitness of some individuals of a generation, the first of which has the index `first` therein; larger is better,
-    /// and NaN is worst.
+    /// Returns the fitness of consecutive individuals of a generation, from index `first`; larger is better, and NaN is
+    /// worst.
     fn fitness(&self, generation: usize, first: usize, individuals: &[Vec<f32>]) -> Vec<f64>;
 }
 
@@ -85,7 +86,7 @@ impl Default for Settings {
     }
 }
 
-/// A run of the algorithm on its way: a population that descends from another, by draws of its own.
+/// A run of the algorithm in progress: a population with its own random draws.
 pub struct Lineage<'a, P> {
     problem: &'a P,
     seed: u64,
@@ -100,7 +101,7 @@ pub struct Lineage<'a, P> {
 /// fitness up to it, on the first rank.
 ///
 /// # Errors
-/// When fitness cannot be computed by those to whom it is handed out.
+/// If the executor fails.
 pub fn run(
     executor: &dyn Executor,
     settings: &Settings,
@@ -108,43 +109,43 @@ pub fn run(
     seed: u64,
     watch: impl FnMut(usize, f64),
 ) -> Result<RunResult> {
-    let result = run_beside(executor, settings, vec![Lineage::random(settings, problem, seed)], watch)?;
-    Ok(result.into_iter().next().expect("a result of each"))
+    let result = run_side_by_side(executor, settings, vec![Lineage::random(settings, problem, seed)], watch)?;
+    Ok(result.into_iter().next().expect("one result per lineage"))
 }
 
-/// Runs several lineages, each as it would run alone. Their generations go side by side, so that the individuals of all
-/// can be handed out at once. `watch` receives the generation and the best fitness in any of them.
+/// Runs several lineages, each as it would run alone. Their generations run side by side, so that the individuals of all
+/// lineages are distributed at once. `watch` receives the generation and the best fitness of any lineage.
 ///
 /// # Errors
-/// As [`run`].
-pub fn run_beside<P: Problem>(
+/// If the executor fails.
+pub fn run_side_by_side<P: Problem>(
     executor: &dyn Executor,
     settings: &Settings,
     mut lineages: Vec<Lineage<P>>,
     mut watch: impl FnMut(usize, f64),
 ) -> Result<Vec<RunResult>> {
     for generation in 0.. {
-        let together = |number: usize| lineages[number].problem.together();
+        let batch_size = |number: usize| lineages[number].problem.batch_size();
         let pieces: Vec<(usize, usize)> = (0..lineages.len())
             .filter(|number| !lineages[*number].is_over)
             .flat_map(|number| {
-                (0..lineages[number].population.len()).step_by(together(number)).map(move |i| (number, i))
+                (0..lineages[number].population.len()).step_by(batch_size(number)).map(move |i| (number, i))
             })
             .collect();
         let give = |piece: usize| {
             let (number, first) = pieces[piece];
             let population = &lineages[number].population;
-            (number, first, population[first..population.len().min(first + together(number))].to_vec())
+            (number, first, population[first..population.len().min(first + batch_size(number))].to_vec())
         };
         let evaluate = |_, (number, first, some): (usize, usize, Vec<Vec<f32>>)| {
             Ok(lineages[number].problem.fitness(generation, first, &some))
         };
         let mut fitness = executor::map_inputs(executor, pieces.len(), give, evaluate)?.into_iter().flatten();
-        // The first rank alone breeds: the others are handed the individuals that they evaluate.
+        // Only the first rank breeds; the others receive the individuals that they evaluate.
         let is_over = executor::once(executor, || {
             for lineage in lineages.iter_mut().filter(|lineage| !lineage.is_over) {
                 let own: Vec<f64> = fitness.by_ref().take(lineage.population.len()).collect();
-                lineage.go_on(settings, generation, &own);
+                lineage.advance(settings, generation, &own);
             }
             let best = lineages.iter().filter_map(|lineage| lineage.history.last().copied());
             watch(generation, best.fold(f64::NAN, f64::max));
@@ -158,19 +159,19 @@ pub fn run_beside<P: Problem>(
 }
 
 impl<'a, P: Problem> Lineage<'a, P> {
-    /// Begins with a random population.
+    /// Starts from a random population.
     pub fn random(settings: &Settings, problem: &'a P, seed: u64) -> Self {
         let mut rng = generator(seed, &[0]);
         Lineage::from(problem, (0..settings.population).map(|_| problem.random(&mut rng)).collect(), seed)
     }
 
-    /// Begins with a given population, whose size it keeps.
+    /// Starts from a given population, whose size it keeps.
     pub fn from(problem: &'a P, population: Vec<Vec<f32>>, seed: u64) -> Self {
         Lineage { problem, seed, population, best: None, history: Vec::new(), is_over: false }
     }
 
-    /// Breeds the next generation, unless this is the last, which is then sorted.
-    fn go_on(&mut self, settings: &Settings, generation: usize, fitness: &[f64]) {
+    /// Breeds the next generation, or sorts the last one by fitness.
+    fn advance(&mut self, settings: &Settings, generation: usize, fitness: &[f64]) {
         let ranking = tournament::ranking(fitness);
         let leader = ranking[0];
         if self.best.as_ref().is_none_or(|(_, f)| fitness[leader] > *f) {
@@ -235,7 +236,7 @@ mod tests {
 
         fn repair(&self, _: &mut [f32]) {}
 
-        fn together(&self) -> usize {
+        fn batch_size(&self) -> usize {
             7
         }
 
@@ -249,42 +250,43 @@ mod tests {
     }
 
     #[test]
-    fn finds_the_top_of_a_sphere() {
+    fn sphere_function_is_maximised() {
         let outcome = run(&Serial, &settings(), &Sphere, 1, |_, _| {}).unwrap();
         assert!(outcome.fitness > -0.05, "{}", outcome.fitness);
         assert_eq!(outcome.generations, 150);
     }
 
     #[test]
-    fn the_same_seed_gives_the_same_run_and_another_seed_another() {
+    fn seed_determines_the_run() {
         let again = |seed| run(&Serial, &settings(), &Sphere, seed, |_, _| {}).unwrap();
         assert_eq!(again(5), again(5));
         assert_ne!(again(5).best, again(6).best);
     }
 
     #[test]
-    fn a_run_beside_others_is_as_alone() {
-        // Each ends when ten generations have not halved its distance from the top, squared: not all at once.
+    fn lineages_side_by_side_run_as_if_alone() {
+        // Each ends when ten generations have not halved its squared distance from the optimum, so they end at different
+        // times.
         let stagnation = Some(StagnationCriterion { generations: 10, improvement: -0.5 });
         let settings = Settings { stagnation, ..settings() };
         let lineages = [5, 6, 7].map(|seed| Lineage::random(&settings, &Sphere, seed));
-        let beside = run_beside(&Serial, &settings, lineages.into(), |_, _| {}).unwrap();
+        let beside = run_side_by_side(&Serial, &settings, lineages.into(), |_, _| {}).unwrap();
         assert_eq!(beside, [5, 6, 7].map(|seed| run(&Serial, &settings, &Sphere, seed, |_, _| {}).unwrap()));
     }
 
     #[test]
-    fn an_elite_never_loses_its_best() {
+    fn elite_never_loses_the_best_individual() {
         let mut last = f64::NEG_INFINITY;
         let outcome = run(&Serial, &Settings { elite: 1, ..settings() }, &Sphere, 2, |_, best| {
             assert!(best >= last);
             last = best;
         })
         .unwrap();
-        assert_eq!(Sphere.fitness(0, 0, &outcome.population)[0], outcome.fitness, "the elite is still there");
+        assert_eq!(Sphere.fitness(0, 0, &outcome.population)[0], outcome.fitness, "the elite survives");
     }
 
     #[test]
-    fn one_individual_still_runs() {
+    fn population_of_one_runs() {
         let outcome =
             run(&Serial, &Settings { population: 1, max_generations: 3, ..settings() }, &Sphere, 3, |_, _| {}).unwrap();
         assert_eq!(outcome.population.len(), 1);

@@ -88,7 +88,7 @@ impl ControllerFile {
             return Ok(());
         }
         Err(Error::new(format!(
-            "has step_ms = {its}, but the simulator's steps are {robots} ms: write step_ms = {robots}, or evolve it anew"
+            "has step_ms = {its}, but the simulator's steps are {robots} ms: write step_ms = {robots}, or evolve it again"
         )))
     }
 

@@ -67,8 +67,8 @@ pub struct Simulator {
     /// What the training logs say beyond the networks: the yardstick of the gap.
     #[serde(default)]
     pub reference: Option<NominalModel>,
-    /// What those logs leave open about the robot's motion, and what runs told since. Earlier files call theirs "ensemble",
-    /// which held no noise: they are read without.
+    /// Epistemic uncertainty of the robot's motion given those logs and the runs since. Earlier files call it "ensemble",
+    /// which held no noise: it is ignored.
     #[serde(default, skip_serializing_if = "Option::is_none", rename = "robots")]
     pub ensemble: Option<Ensemble>,
     /// What the same logs give with the sizes of the paper's Table I, when these networks have others.
@@ -103,13 +103,13 @@ pub struct Origin {
     pub runs: usize,
 }
 
-/// A network, and how what was logged scatters about it.
+/// A network, and the distribution of the residuals of what was logged.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Learned<const N: usize> {
     /// The network.
     pub network: Network<f32, N>,
-    /// Logged minus predicted: for the sonar in logs that the network was not trained on, for motion after the misfit
-    /// that the reference knows of is put right.
+    /// Logged minus predicted: for the sonar in logs that the network was not trained on, for motion after correction of the
+    /// bias that the reference knows of.
     #[serde(rename = "spread")]
     pub residuals: ResidualQuantiles,
 }
@@ -167,15 +167,15 @@ impl Simulator {
         MotionNetworks::of(self).ok()
     }
 
-    /// The law by which its sensor is judged: the reference's first-echo law where that is the likelier, else its beam.
+    /// Returns the law by which its sensor is judged: the reference's first-echo law if it is more likely, else its beam.
     pub fn sensor_law(&self) -> Option<SensorLaw> {
         let reference = self.reference.as_ref()?;
         let first_echo = reference.first_echo.clone().map(SensorLaw::FirstEcho);
         first_echo.or_else(|| reference.sonar.clone().map(SensorLaw::Beam))
     }
 
-    /// The law by which readings are drawn that effects change: the beam, since vector lanes draw from it and evolution takes a
-    /// tenth of the time; but an ideal ray is one by the first-echo law alone.
+    /// The law by which readings are drawn that effects change: the beam, since vector lanes draw from it and evolution
+    /// takes a tenth of the time; but an ideal ray is one by the first-echo law alone.
     pub fn drawn_law(&self) -> Option<SensorLaw> {
         let beam = self.reference.as_ref().and_then(|reference| reference.sonar.clone());
         self.sensor_law().filter(SensorLaw::is_ray).or_else(|| beam.map(SensorLaw::Beam))

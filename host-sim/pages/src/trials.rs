@@ -10,7 +10,7 @@ use mindgap_applications::closed_loop::state::{State, Trial, Verdict};
 use mindgap_figures::report::curves::{Curve, CurveChart, Point};
 use mindgap_figures::report::{self, Figure};
 use mindgap_foundations::geometry::Pose;
-use mindgap_learning::evolve::chance::Chance;
+use mindgap_learning::evolve::success_probability::SuccessProbability;
 use mindgap_logs::Scene;
 use mindgap_models::effects::CATALOGUE;
 use mindgap_models::effects::applied::AppliedEffect;
@@ -133,7 +133,7 @@ fn turns(state: &State) -> Markup {
         @if rows.is_empty() {
             p { "No controller was driven." }
         } @else {
-            (chart("chances", &chances(&state.trials), "Chance of each trial's controller before and after it was driven", html! {
+            (chart("chances", &success_probabilities(&state.trials), "Chance of each trial's controller before and after it was driven", html! {
                 "The chance of success that the simulator predicts for each controller before it is driven, and after the run, "
                 "with the range over 95 % of the possible robots. On top: ✓ the robot reached the target, ✗ it missed it. A wide "
                 "range means that the robot is not known well enough."
@@ -148,7 +148,7 @@ fn turns(state: &State) -> Markup {
 }
 
 fn row(trial: &Trial) -> [String; 5] {
-    let chance = |chance: &Chance| percent_within(chance.success, chance.ci95);
+    let chance = |chance: &SuccessProbability| percent_within(chance.success, chance.ci95);
     let real = trial.real.as_ref().map_or_else(
         || "not driven".into(),
         |real| {
@@ -166,8 +166,8 @@ fn row(trial: &Trial) -> [String; 5] {
     ]
 }
 
-fn chances(trials: &[Trial]) -> Figure {
-    let point = |trial: &Trial, chance: &Chance| Point {
+fn success_probabilities(trials: &[Trial]) -> Figure {
+    let point = |trial: &Trial, chance: &SuccessProbability| Point {
         interval: chance.ci95.map(|end| 100.0 * end),
         ..Point::new(trial.number as f64, 100.0 * chance.success)
     };
@@ -264,7 +264,7 @@ fn effects(trials: &[Trial]) -> Markup {
     }
 }
 
-fn told(setting: Setting) -> String {
+fn rounded(setting: Setting) -> String {
     match setting {
         Setting::Number(value) => number(value, 3),
         Setting::Side(_) => setting.to_string(),
@@ -274,7 +274,7 @@ fn told(setting: Setting) -> String {
 fn cause(applied: &AppliedEffect) -> Markup {
     let known = words::cause(&applied.effect, CATALOGUE);
     let values: Vec<String> =
-        applied.parameters.iter().map(|(name, setting)| format!("{name} {}", told(*setting))).collect();
+        applied.parameters.iter().map(|(name, setting)| format!("{name} {}", rounded(*setting))).collect();
     html! {
         article.card aria-labelledby={ "effect-" (applied.effect) } {
             h3 #{ "effect-" (applied.effect) } {

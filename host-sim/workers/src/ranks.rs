@@ -115,8 +115,8 @@ impl Ranks {
         }
     }
 
-    /// Works on the items of a part that the first rank hands out, on `threads` threads, and sends the results, until the part is
-    /// done.
+    /// Works on the items of a part that the first rank hands out, on `threads` threads, and sends the results, until the
+    /// part is done.
     ///
     /// # Errors
     /// When a result cannot be sent.
@@ -177,7 +177,7 @@ impl Ranks {
                 let (index, item): (usize, std::result::Result<ByteBuf, String>) = decode(&bytes)?;
                 return Ok(Some(Message::Done(rank, index, item.map_err(Error::new))));
             }
-            // A late rank asks for work of a finished part; it will be told that the part is done.
+            // A late rank asks for work of a finished part; the answer will be that the part is done.
             if decode::<u32>(&bytes)? == part {
                 return Ok(Some(Message::Free(rank)));
             }

@@ -5,7 +5,7 @@ use mindgap_built_in_robot::{ActiveEffect, BuiltInRobot, Effect, Trajectory, def
 use mindgap_core::controller::Controller;
 use mindgap_foundations::geometry::{Pose, Rectangle};
 use mindgap_foundations::random::{Generator, generator};
-use mindgap_learning::evolve::way::WayMap;
+use mindgap_learning::evolve::route::RouteMap;
 use mindgap_logs::{Scene, Termination};
 use mindgap_models::simulator::rollout::REACHED_CM;
 use rand::RngExt;
@@ -102,8 +102,8 @@ fn generated(room: u64, radius_cm: f64) -> Scene {
     loop {
         let scene = drawn(&mut rng, radius_cm);
         let Some(target_cm) = scene.target_cm else { continue };
-        let way = WayMap::new(&scene, target_cm, radius_cm + 5.0);
-        let far = |start: &Pose| (120.0..450.0).contains(&way.cm(start.position_cm));
+        let routes = RouteMap::new(&scene, target_cm, radius_cm + 5.0);
+        let far = |start: &Pose| (120.0..450.0).contains(&routes.length_cm(start.position_cm));
         if scene.starts.len() == STARTS && scene.starts.iter().all(far) {
             return scene;
         }

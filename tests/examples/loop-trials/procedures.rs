@@ -9,13 +9,13 @@ use mindgap_core::controller::Controller;
 use mindgap_foundations::error::{Error, Result};
 use mindgap_foundations::executor::Serial;
 use mindgap_foundations::random::derive;
-use mindgap_learning::evolve::chance::{Judge, ROBOTS, RUNS};
 use mindgap_learning::evolve::fitness::{FitnessEvaluator, RandomNumbers};
 use mindgap_learning::evolve::genome::GenotypeDecoder;
 use mindgap_learning::evolve::paper;
 use mindgap_learning::evolve::robust;
+use mindgap_learning::evolve::route::RouteMap;
+use mindgap_learning::evolve::success_probability::{Judge, ROBOTS, RUNS};
 use mindgap_learning::evolve::task::EvolutionTask;
-use mindgap_learning::evolve::way::WayMap;
 use mindgap_learning::learn::train::{TABLE_ONE, Trainer, train};
 use mindgap_logs::controller_file::ControllerFile;
 use mindgap_logs::{Logs, Run, Scene, Termination};
@@ -76,7 +76,7 @@ fn by_the_paper(bench: &Workbench) -> Result<Settled> {
     let evaluator = FitnessEvaluator {
         environment: &Environment::new(simulator, &case.scene, case.pose(), Noise::Paper)?,
         target_cm: case.target_cm(),
-        way: None,
+        routes: None,
         decoder: GenotypeDecoder::new(simulator, MAX_STEPS),
         runs: paper::RUNS,
         floor_cm: paper::FLOOR_CM,
@@ -192,7 +192,7 @@ impl Workbench<'_> {
             executor: &Serial,
             environment: &environment,
             target_cm,
-            way: &WayMap::new(ways_of, target_cm, simulator.robot.body_radius_cm),
+            routes: &RouteMap::new(ways_of, target_cm, simulator.robot.body_radius_cm),
             decoder: GenotypeDecoder::new(simulator, MAX_STEPS),
             seed: self.seed(),
         };
@@ -207,14 +207,14 @@ impl Workbench<'_> {
         let robots = robots.ok_or_else(|| Error::new("the simulator does not say what its logs leave open"))?;
         let judge =
             Judge::new(&Serial, simulator, &robots.drawn, &case.scene, case.pose(), case.target_cm(), self.seed())?;
-        let chances = judge.chances(&candidates, RUNS)?;
+        let chances = judge.success_probabilities(&candidates, RUNS)?;
         let mut judged: Vec<_> = candidates.into_iter().zip(chances).collect();
         judged.sort_by(|a, b| b.1.success.total_cmp(&a.1.success));
         Ok(judged.into_iter().map(|(controller, _)| controller).collect())
     }
 
-    /// Evolves in the simulator that `learn` makes of the runs so far, then drives. A controller that reaches the target is driven
-    /// again and is kept if it succeeds twice.
+    /// Evolves in the simulator that `learn` makes of the runs so far, then drives. A controller that reaches the target is
+    /// driven again and is kept if it succeeds twice.
     fn with_trials(&self, learn: impl Fn(&[Run]) -> Result<Simulator>) -> Result<Settled> {
         let (mut runs, mut last): (Vec<Run>, Option<(Controller, bool)>) = (Vec::new(), None);
         for trial in 1..=TRIALS {

@@ -114,8 +114,11 @@ fn unusable_programs_and_readings_are_refused() {
 fn a_failing_program_reports_the_instruction() {
     let sandbox = Sandbox::new();
     sandbox.write("fails.rxe", compile("task main() { int a[] = {1}; int i = 5; NumOut(0, LCD_LINE1, a[i]); }"));
-    let told = sandbox.run("brick fails.rxe --readings none --json facts.json");
-    assert!(told.contains("failed: wrong operand or index after ") && told.contains(" of clump 0: index\n"), "{told}");
+    let output = sandbox.run("brick fails.rxe --readings none --json facts.json");
+    assert!(
+        output.contains("failed: wrong operand or index after ") && output.contains(" of clump 0: index\n"),
+        "{output}"
+    );
     assert_eq!(sandbox.json("facts.json")["failed_at"]["instruction"], "index");
 }
 
@@ -124,9 +127,9 @@ fn an_endless_writer_fills_neither_memory_nor_output() {
     let sandbox = Sandbox::new();
     let source = "task main() { string s = \"01234567\"; repeat(8) s = StrCat(s, s); while (true) TextOut(0, 0, s); }";
     sandbox.write("ever.rxe", compile(source));
-    let told = sandbox.run("brick ever.rxe --readings none --limit-events 5");
-    assert_eq!(told.matches("text     \"0123456701234567\" at 0, 0").count(), 5, "{told}");
-    assert!(told.contains(" more events (--limit-events)"), "{told}");
+    let output = sandbox.run("brick ever.rxe --readings none --limit-events 5");
+    assert_eq!(output.matches("text     \"0123456701234567\" at 0, 0").count(), 5, "{output}");
+    assert!(output.contains(" more events (--limit-events)"), "{output}");
 }
 
 #[test]

@@ -80,17 +80,17 @@ fn an_endless_reading_is_none() {
 }
 
 #[test]
-fn what_cannot_be_put_right_is_refused_with_what_to_write() {
+fn uncorrectable_logs_are_refused_with_a_remedy() {
     let sandbox = trained();
     edit_cells(&sandbox, |cells| cells.swap(1, 2));
     for call in ["train logs --out other.json", "evaluate sim.json logs", "crosscheck sim.json logs"] {
         let refusal = sandbox.refused(call);
         assert!(refusal.starts_with("logs: ") && refusal.contains("left and right seem exchanged"), "{refusal}");
     }
-    let told = sandbox.run("check logs");
+    let output = sandbox.run("check logs");
     assert!(
-        told.contains("left_right_exchanged") && told.contains("The logs cannot be used until this is fixed"),
-        "{told}"
+        output.contains("left_right_exchanged") && output.contains("The logs cannot be used until this is fixed"),
+        "{output}"
     );
 }
 

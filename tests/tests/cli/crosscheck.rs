@@ -130,7 +130,7 @@ fn logs_without_a_place_to_start_are_refused() {
     for run in 0..5 {
         sandbox.edit_cells(&format!("held-out/run-00{run}.csv"), |cells| cells[3..6].fill(""));
     }
-    let problem = "sim.json: the robot has no room to start at any pose that the logs hold";
+    let problem = "sim.json: the robot does not fit at any pose in the logs, so no run can start";
     assert_eq!(sandbox.refused("crosscheck sim.json held-out --json found.json"), problem);
 }
 

@@ -139,6 +139,6 @@ fn a_byte_order_mark_is_ignored_with_a_warning() {
     }
     let outcome = sandbox.call("check logs --json -");
     assert_eq!((outcome.code, outcome.out), (0, good));
-    let told = "mindgap: warning: logs/run-002.csv: starts with a byte-order mark (ignored)\n";
-    assert_eq!(outcome.err, told);
+    let warning = "mindgap: warning: logs/run-002.csv: starts with a byte-order mark (ignored)\n";
+    assert_eq!(outcome.err, warning);
 }

@@ -85,10 +85,10 @@ fn options_override_conflicting_defaults() {
     let sandbox = Sandbox::new();
     sandbox.write("scene.toml", SCENE);
     sandbox.write("mindgap.toml", "scene = \"scene.toml\"\n");
-    // A program that is none is told only when the call is right.
+    // An invalid program is reported only if the call is valid.
     sandbox.write("none.rxe", "none");
-    let told = sandbox.refused("brick none.rxe --readings 50");
-    assert!(told.contains("is not a program that an NXT can run"), "{told}");
+    let output = sandbox.refused("brick none.rxe --readings 50");
+    assert!(output.contains("is not a program that an NXT can run"), "{output}");
 }
 
 #[test]

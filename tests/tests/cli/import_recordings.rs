@@ -190,8 +190,8 @@ fn without_a_robot_file_a_draft_asks_for_its_values() {
     assert!(said.contains("fill in: robot.toml: track_cm = 15"), "{said}");
     assert!(sandbox.text("logs/robot.toml").contains("# [ultrasonic]"), "{}", sandbox.text("logs/robot.toml"));
     assert_driven(&rows(&sandbox), 0.0, 1.0);
-    let told = sandbox.call("check logs").err;
-    assert!(told.contains("2 more: still marked FILL IN"), "{told}");
+    let output = sandbox.call("check logs").err;
+    assert!(output.contains("2 more: still marked FILL IN"), "{output}");
     // What is there is the user's by now.
     let refusal = sandbox.refused(call);
     assert!(refusal.starts_with("logs: already contains") && refusal.contains("--force"), "{refusal}");

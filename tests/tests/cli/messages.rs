@@ -64,8 +64,8 @@ fn a_warning_about_many_files_is_printed_once() {
     for run in 0..6 {
         sandbox.edit(&format!("logs/run-00{run}.csv"), |text| text.replacen("battery_mv", "mood", 1));
     }
-    let told = "mindgap: warning: logs/run-000.csv:1: unknown column \"mood\" ignored (in 6 files)\n";
-    assert_eq!(sandbox.call("check logs").err, told);
+    let warning = "mindgap: warning: logs/run-000.csv:1: unknown column \"mood\" ignored (in 6 files)\n";
+    assert_eq!(sandbox.call("check logs").err, warning);
 }
 
 #[test]

@@ -49,7 +49,7 @@ pub fn every_link_leads_somewhere() -> Result<(), Failed> {
     if broken.is_empty() { Ok(()) } else { Err(broken.join("\n").into()) }
 }
 
-/// `mindgap manual --format markdown --out docs/commands --force` writes them anew.
+/// `mindgap manual --format markdown --out docs/commands --force` updates them.
 pub fn pages_are_those_of_the_command() -> Result<(), Failed> {
     let sandbox = Sandbox::new();
     sandbox.run("manual --format markdown --out pages");
@@ -59,22 +59,22 @@ pub fn pages_are_those_of_the_command() -> Result<(), Failed> {
     let stale: Vec<String> = stale.map(|(path, _)| path.display().to_string()).collect();
     let there = documents().into_iter().filter(|name| name.starts_with(PAGES)).count();
     if !stale.is_empty() || there != written.len() {
-        return Err(format!("write them anew with mindgap manual: {} of {there} differ: {stale:?}", stale.len()).into());
+        return Err(format!("update them with mindgap manual: {} of {there} differ: {stale:?}", stale.len()).into());
     }
     Ok(())
 }
 
-/// `mindgap explain --markdown > docs/effects.md` writes it anew, and so does `MINDGAP_DOCS=overwrite`.
+/// `mindgap explain --markdown > docs/reference/catalogue.md` updates it, and so does `MINDGAP_DOCS=overwrite`.
 pub fn the_catalogue_of_effects_is_that_of_the_command() -> Result<(), Failed> {
     let written = Sandbox::new().run("explain --markdown");
-    let path = workspace().join("docs/effects.md");
+    let path = workspace().join("docs/reference/catalogue.md");
     if is_asked_for("overwrite") {
         fs::write(&path, &written)?;
     }
     if fs::read_to_string(path)? == written {
         Ok(())
     } else {
-        Err("docs/effects.md differs from mindgap explain".into())
+        Err("docs/reference/catalogue.md differs from mindgap explain".into())
     }
 }
 

@@ -33,7 +33,7 @@ pub fn run(name: &str, text: &str) -> Result<(), Failed> {
     let paths = [bin.path().to_owned()].into_iter().chain(env::split_paths(&others));
     let path = env::join_paths(paths.collect::<Vec<PathBuf>>())?;
     let lines: Vec<&str> = text.lines().collect();
-    let (mut told, mut differing) = (lines.clone(), Vec::new());
+    let (mut updated, mut differing) = (lines.clone(), Vec::new());
     let mut outputs: Vec<(Range<usize>, String)> = Vec::new();
     for Call { command, says } in calls(&lines) {
         let mut shell = Command::new("sh");
@@ -54,9 +54,9 @@ pub fn run(name: &str, text: &str) -> Result<(), Failed> {
     }
     if is_asked_for("overwrite") {
         for (says, said) in outputs.iter().rev() {
-            told.splice(says.clone(), said.lines());
+            updated.splice(says.clone(), said.lines());
         }
-        fs::write(workspace().join(name), told.join("\n") + "\n")?;
+        fs::write(workspace().join(name), updated.join("\n") + "\n")?;
         return Ok(());
     }
     if differing.is_empty() {

@@ -56,10 +56,10 @@ pub fn are_calls(text: &str) -> Result<(), Failed> {
 
 /// Why the command does not take a call.
 fn refusal(CommandLine { number, text, .. }: &CommandLine) -> Option<String> {
-    // What it is for stands beside an example; where its output goes is not the command's business.
+    // A comment follows an example; where its output goes is not the command's business.
     let call = text.split("    ").next().and_then(|call| call.split(" > ").next()).unwrap_or_default();
     let Some(words) = shlex::split(call) else { return Some(format!("line {number}: {text}: quotes are open")) };
     let error = mindgap_command::command().try_get_matches_from(words).err()?;
-    // Help is asked for and told.
+    // Help that is asked for is not an error.
     error.use_stderr().then(|| format!("line {number}: {text}: {error}"))
 }

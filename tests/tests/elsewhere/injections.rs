@@ -1,5 +1,5 @@
-//! Changes are put into held-out real logs. A simulator is trained on some runs of a robot, other runs are changed as another
-//! robot or tracker would have changed them, and the diagnosis has to name the change.
+//! Changes are put into held-out real logs. A simulator is trained on some runs of a robot, other runs are changed as
+//! another robot or tracker would have changed them, and the diagnosis has to name the change.
 
 use std::path::Path;
 
@@ -147,7 +147,7 @@ const SCANS: &[Injection] = &[
         called: &["sonar_scale"],
         change: |run| echoes(run, |cm, _| Some(0.93 * cm)),
     },
-    // At rest, a turned sensor cannot be told from a wrong heading.
+    // At rest, a turned sensor cannot be distinguished from a wrong heading.
     Injection {
         name: "sensor turned by 8 degrees",
         called: &["sonar_yaw", "tracker_rotation"],
@@ -177,9 +177,9 @@ const SCANS: &[Injection] = &[
 /// Changes of the short form.
 const SHORT: [&str; 4] = ["none", "turns 15 % smaller", "left motor 5 % weaker", "camera's scale 6 % too large"];
 
-/// Unchanged runs have no gap, no wrong name has a probability above 0.9, and nine of ten changes are named first: in the last
-/// third of the runs, and in all thirds together, each against a simulator trained on the other two. Such a simulator does not
-/// know motion that only its third contains, such as spins. The short form takes the last third.
+/// Unchanged runs have no gap, no wrong name has a probability above 0.9, and nine of ten changes are named first: in the
+/// last third of the runs, and in all thirds together, each against a simulator trained on the other two. Such a simulator
+/// does not know motion that only its third contains, such as spins. The short form takes the last third.
 pub fn changes_of_a_real_drive_are_named(folder: &Path) {
     let logs = Logs::read(folder, |_| ()).expect("logs");
     let part = |third: usize, held_out: bool| {

@@ -5,10 +5,10 @@ use mindgap_tests::rooms::{SCENE, robot, trained};
 
 use crate::visit::{DARK_LAPTOP, DARK_PHONE, LAPTOP, PHONE, Visit, visit};
 
-/// What somebody might call a room.
+/// A hostile name for a room.
 const ROOM: &str = "room<img\u{a0}src=x\u{a0}onerror=evil=1>&'.toml";
 
-/// A loop of so many trials, and its page.
+/// Runs a loop of `trials` trials and writes its page.
 fn looped(trials: usize) -> Sandbox {
     let sandbox = trained();
     sandbox.write(ROOM, SCENE);

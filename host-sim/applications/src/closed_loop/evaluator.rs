@@ -10,7 +10,7 @@ use mindgap_core::controller::{Controller, Tuple};
 
 use super::similarity::{Paths, paths, similarity};
 use mindgap_foundations::error::Result;
-use mindgap_learning::evolve::chance::{Chance, Judge, ROBOTS};
+use mindgap_learning::evolve::success_probability::{Judge, ROBOTS, SuccessProbability};
 use mindgap_models::simulator::environment::Environment;
 
 /// A controller works after this many real successes with this success probability, real runs included: two successes were
@@ -20,8 +20,8 @@ const WORKS: f64 = 0.85;
 /// Simulated success probability that three of three successes confirm.
 pub const CONFIRMED: f64 = (WORKS * (SIMULATED + SUCCESSES as f64) - SUCCESSES as f64) / SIMULATED;
 /// Weight of the simulated success probability, in real runs (the concentration of a beta prior). The successes of 44
-/// controllers in forty runs each are most likely at 9.5, and within one nat at 6 to 15 (docs/explanation/loop.md). The smallest is
-/// used, since the simulator is worse if the robot has an unmodelled effect.
+/// controllers in forty runs each are most likely at 9.5, and within one nat at 6 to 15 (docs/explanation/loop.md). The
+/// smallest is used, since the simulator is worse if the robot has an unmodelled effect.
 const SIMULATED: f64 = 6.0;
 
 /// A controller that was driven.
@@ -58,7 +58,7 @@ pub struct Candidate {
     /// The controller.
     pub controller: Controller,
     /// Simulated success probability.
-    pub chance: Chance,
+    pub chance: SuccessProbability,
     /// Success probability updated with the real runs of this and similar controllers.
     pub score: f64,
 }
@@ -70,9 +70,9 @@ impl Evaluator<'_> {
     /// As [`Judge::chances`].
     pub fn ranked(&self, controllers: Vec<Controller>, runs: usize) -> Result<Found> {
         let controllers = self.with_tried(controllers);
-        let chances = self.judge.chances(&controllers, runs)?;
+        let chances = self.judge.success_probabilities(&controllers, runs)?;
         let surprises: Vec<Surprise> = self.tried.iter().zip(&chances).map(|(t, c)| self.surprise(t, c)).collect();
-        let candidate = |(controller, chance): (Controller, Chance)| {
+        let candidate = |(controller, chance): (Controller, SuccessProbability)| {
             let score = if surprises.is_empty() {
                 chance.success
             } else {
@@ -102,7 +102,7 @@ impl Evaluator<'_> {
         distinct
     }
 
-    fn surprise(&self, tried: &Tried, chance: &Chance) -> Surprise {
+    fn surprise(&self, tried: &Tried, chance: &SuccessProbability) -> Surprise {
         let (runs, successes) = (tried.runs as f64, tried.successes as f64);
         let paths = self.paths(&tried.controller);
         Surprise { paths, steps: tried.steps, runs, more: successes - runs * chance.success }
@@ -178,7 +178,7 @@ impl Found {
     }
 
     /// Returns the success probability of a controller, if it was evaluated.
-    pub fn chance_of(&self, controller: &Controller) -> Option<Chance> {
+    pub fn chance_of(&self, controller: &Controller) -> Option<SuccessProbability> {
         self.0.iter().find(|candidate| candidate.controller == *controller).map(|candidate| candidate.chance)
     }
 
@@ -224,7 +224,7 @@ mod tests {
 
     #[test]
     fn three_successes_confirm_a_controller_and_fewer_repeat_it_unless_another_is_better() {
-        let chance = Chance { success: 0.0, ci95: [0.0, 1.0], not_knowing: 0.0 };
+        let chance = SuccessProbability { success: 0.0, ci95: [0.0, 1.0], epistemic_fraction: 0.0 };
         let found = |simulated: f64, tried: &[Tried]| {
             let [Tried { runs, successes, .. }] = tried else { unreachable!("one") };
             let (runs, successes) = (*runs as f64, *successes as f64);

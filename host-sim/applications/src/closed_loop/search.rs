@@ -10,12 +10,12 @@ use mindgap_foundations::error::{Error, Result};
 use mindgap_foundations::executor::Executor;
 use mindgap_foundations::geometry::Pose;
 use mindgap_foundations::random::derive;
-use mindgap_learning::evolve::chance::{Judge, ROBOTS, RUNS};
+use mindgap_learning::evolve::explore;
 use mindgap_learning::evolve::genome::GenotypeDecoder;
-use mindgap_learning::evolve::prefixes;
 use mindgap_learning::evolve::robust::{self, REFINED};
+use mindgap_learning::evolve::route::RouteMap;
+use mindgap_learning::evolve::success_probability::{Judge, ROBOTS, RUNS};
 use mindgap_learning::evolve::task::{EvolutionTask, Judged};
-use mindgap_learning::evolve::way::WayMap;
 use mindgap_logs::Scene;
 use mindgap_models::simulator::ensemble::Robots;
 use mindgap_models::simulator::environment::Environment;
@@ -126,12 +126,12 @@ impl Search<'_> {
             executor: self.executor,
             environment: middle,
             target_cm,
-            way: &WayMap::new(self.scene, target_cm, self.simulator.robot.body_radius_cm),
+            routes: &RouteMap::new(self.scene, target_cm, self.simulator.robot.body_radius_cm),
             decoder: self.decoder(),
             seed: self.stream(Purpose::Searching, 0),
         };
         let explores = known.best().is_none_or(|best| best.score < GOOD);
-        let explored = if explores { prefixes::explore(&task, |_, _| {})? } else { Vec::new() };
+        let explored = if explores { explore::explore(&task, |_, _| {})? } else { Vec::new() };
         let incumbents = known.controllers().take(INCUMBENTS);
         let begun: Vec<Controller> = incumbents.chain(explored.into_iter().take(REFINED)).collect();
         let refined = robust::refine(&task, &begun, |_, _| {})?;

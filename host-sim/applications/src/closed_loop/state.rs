@@ -11,7 +11,7 @@ use super::Job;
 use crate::adapt::Gap;
 use mindgap_files as files;
 use mindgap_foundations::error::{Error, Result};
-use mindgap_learning::evolve::chance::Chance;
+use mindgap_learning::evolve::success_probability::SuccessProbability;
 use mindgap_logs::Termination;
 use mindgap_models::effects::applied::AppliedEffect;
 
@@ -30,7 +30,7 @@ pub struct State {
     /// Status of the loop.
     pub verdict: Verdict,
     /// Simulated success probability of the final controller.
-    pub chance: Option<Chance>,
+    pub chance: Option<SuccessProbability>,
     /// Success probability of the final controller, updated with the real runs of this and similar controllers.
     #[serde(default)]
     pub chance_with_runs: Option<f64>,
@@ -80,13 +80,13 @@ pub struct Trial {
     /// File of the log.
     pub log: String,
     /// Success probability before the run.
-    pub predicted: Chance,
+    pub predicted: SuccessProbability,
     /// Simulated paths on robots of the posterior before the run.
     pub predicted_paths: Vec<SimulatedPath>,
     /// The run on the robot; null until it was driven.
     pub real: Option<DrivenRun>,
     /// Success probability after adapting to the run.
-    pub chance_after: Option<Chance>,
+    pub chance_after: Option<SuccessProbability>,
     /// Error per step on held-out runs, before and after adapting to the others.
     pub gap: Option<Gap>,
     /// Effects named by a diagnosis of all runs up to this one.
@@ -184,7 +184,7 @@ impl State {
 
 impl Trial {
     /// Returns a trial that is still to be driven.
-    pub fn planned(number: usize, predicted: Chance, predicted_paths: Vec<SimulatedPath>) -> Self {
+    pub fn planned(number: usize, predicted: SuccessProbability, predicted_paths: Vec<SimulatedPath>) -> Self {
         Trial {
             number,
             controller: format!("trial-{number}.toml"),

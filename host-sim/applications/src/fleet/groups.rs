@@ -16,7 +16,7 @@ const MOST: usize = 8;
 const ALIKE: f64 = 0.05;
 /// Size of the random sample of robots on which the number of groups is chosen.
 const SAMPLE: usize = 500;
-/// Number of standard errors within which a number of groups is as good as the best.
+/// Number of standard errors within which a number of groups counts as equal to the best.
 const ERRORS: f64 = 2.0;
 /// Number of reference fleets without groups.
 const REFERENCES: u64 = 20;

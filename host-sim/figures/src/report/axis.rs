@@ -63,7 +63,7 @@ impl Axis {
         Self::new(name, start * step..end * step, most + 1)
     }
 
-    /// An axis with ticks at whole numbers, every so many of them that at most `most` remain.
+    /// Returns an axis with ticks at some of the `counts`, evenly thinned so that at most `most` remain.
     pub fn of_counts(name: impl Into<String>, range: Range<f64>, counts: &[usize], most: usize) -> Self {
         let every = counts.len().div_ceil(most).max(1);
         let ticks = counts.iter().step_by(every).map(|count| *count as f64).collect();

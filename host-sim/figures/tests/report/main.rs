@@ -149,7 +149,7 @@ fn panels_without_sound_data_say_so() {
 }
 
 #[test]
-fn a_surface_that_is_no_number_is_left_out() {
+fn non_finite_surface_values_are_left_out() {
     let half = |distance_cm: f64, _| if distance_cm < 50.0 { f64::NAN } else { f64::INFINITY };
     let surface = |value| Surface {
         title: "s".into(),

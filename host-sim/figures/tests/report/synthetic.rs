@@ -24,7 +24,7 @@ pub fn echo_cm(distance_cm: f64, incidence_deg: f64) -> f64 {
     distance_cm * (1.0 + 0.25 * libm::sin(incidence_deg / 40.0)) + 4.0
 }
 
-/// The five networks; the sonar's reading has one wild prediction and one that is no number.
+/// The five networks; the sonar's reading has one wild prediction and one that is not a number.
 pub fn networks() -> Vec<Panel> {
     let mut chance = generator(1, &[2]);
     let mut values = |title: &str, unit: &str, span: f64, noise: f64, n: usize| {

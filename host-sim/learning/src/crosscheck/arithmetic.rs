@@ -1,4 +1,4 @@
-//! A simulated robot's answers in both arithmetics: the networks, and the draws about them.
+//! The responses of a simulated robot in both arithmetics: the outputs of the networks, with noise.
 
 use std::f64::consts::PI;
 
@@ -13,7 +13,7 @@ use mindgap_foundations::motion::Motion;
 use mindgap_models::simulator::Simulator;
 use mindgap_models::simulator::fixed_point::FixedNetworks;
 
-/// What a simulated robot computes with.
+/// An arithmetic in which a simulated robot computes.
 pub trait Arithmetic: Sync {
     /// A reading in cm.
     type Reading: PartialOrd + From<i16> + Copy + Into<f64>;
@@ -21,7 +21,7 @@ pub trait Arithmetic: Sync {
     /// Draws the motion of a step, its turn in degrees, for left, right, previous left and previous right command.
     fn motion(&self, speeds: [i8; 4], generator: &mut Generator) -> Motion<f64>;
 
-    /// The reading, if there is one, for D (cm) and α (degrees), drawn and brought into the sensor's range.
+    /// Draws the reading for D (cm) and α (degrees), clamped to the sensor's range; `None` if there is no echo.
     fn reading(&self, faced: [f64; 2], generator: &mut Generator) -> Option<Self::Reading>;
 }
 
@@ -41,22 +41,22 @@ pub struct Fixed<'s> {
     scatter: Scatter,
 }
 
-/// Standard deviations of what is logged about the networks, and the sensor's range.
+/// Standard deviations of the logged values about the networks, and the sensor's range.
 #[derive(Clone, Copy)]
 struct Scatter {
     turn_deg: f64,
     forward_cm: f64,
     lateral_cm: f64,
     echo_cm: f64,
-    /// Least and largest reading.
+    /// Least and largest reading, cm.
     range_cm: [f64; 2],
 }
 
 impl Float {
-    /// The networks of a simulator, scattered as these logs are about them.
+    /// Returns the networks of a simulator, with the scatter of these logs about them.
     ///
     /// # Errors
-    /// Names a network that is missing.
+    /// If a network is missing; the message names it.
     pub fn new(simulator: &Simulator, data: &Datasets) -> Result<Self> {
         let turn = FoldedNetwork::fold(&simulator.need(&simulator.turn, "turn")?.network);
         let forward = FoldedNetwork::fold(&simulator.need(&simulator.forward, "forward")?.network);
@@ -78,7 +78,7 @@ impl Float {
 }
 
 impl<'s> Fixed<'s> {
-    /// Quantised networks with the scatter of those that they were made from.
+    /// Returns quantised networks, with the scatter of the networks that they were made from.
     pub fn new(networks: &'s FixedNetworks, float: &Float) -> Self {
         Fixed { networks, scatter: float.scatter }
     }
@@ -126,8 +126,7 @@ impl Arithmetic for Fixed<'_> {
     }
 }
 
-/// The standard deviation of what is logged about a network, by the median of its magnitude, which a few wrong readings
-/// do not move.
+/// Returns the standard deviation of the residuals of a network, from their median magnitude, which is robust to outliers.
 fn deviation<const N: usize>(network: &FoldedNetwork<f32, N>, data: &Dataset<N>) -> f64 {
     /// For a normal distribution.
     const DEVIATION_PER_MEDIAN: f64 = 1.4826;
@@ -139,7 +138,7 @@ fn deviation<const N: usize>(network: &FoldedNetwork<f32, N>, data: &Dataset<N>)
 
 const TWO_TO_32: f64 = 4_294_967_296.0;
 
-/// The draw of [`normal`] from the same words, in double precision (Box and Muller 1958).
+/// Makes the draw of [`normal`] from the same random words, in double precision (Box and Muller 1958).
 fn float_normal(mean: f32, deviation: f64, generator: &mut Generator) -> f64 {
     let u = f64::from(generator.next_u32().max(1)) / TWO_TO_32;
     let turns = f64::from(generator.next_u32()) / TWO_TO_32;

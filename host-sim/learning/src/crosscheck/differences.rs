@@ -8,14 +8,14 @@ use serde::Serialize;
 
 use mindgap_models::simulator::fixed_point::Quantised;
 
-/// How far a network in fixed point is from the same in float, in its output's unit.
+/// Errors of a network in fixed point relative to float, in the unit of its output.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct NetworkCheck {
-    /// The most that rounding can do at any input whose output fits Q16.16, worked out from the weights.
+    /// Upper bound of the rounding error at any input whose output fits Q16.16, derived from the weights.
     pub error_bound: f64,
-    /// On the samples of the logs.
+    /// Differences on the samples of the logs.
     pub samples: Differences,
-    /// On an even grid over the trained range of all inputs.
+    /// Differences on an even grid over the trained range of all inputs.
     pub grid: Differences,
 }
 
@@ -30,7 +30,7 @@ pub struct Differences {
     pub worst_at: Vec<f32>,
     /// The mean absolute difference.
     pub mean: f64,
-    /// Inputs outside the trained range, where both take the range's end.
+    /// Number of inputs outside the trained range, which both arithmetics clamp to it.
     pub clamped: usize,
 }
 
@@ -86,7 +86,7 @@ impl Differences {
     }
 }
 
-/// The inputs that scaling does not clamp, as far as Q16.16 goes.
+/// Returns the range of inputs that scaling does not clamp, within Q16.16.
 fn trained_range(scaling: Scaling<f32>) -> [f64; 2] {
     let Scaling { gain, offset, low, high } = scaling;
     if gain == 0.0 {
@@ -96,7 +96,7 @@ fn trained_range(scaling: Scaling<f32>) -> [f64; 2] {
     [low, high].map(|end| ((f64::from(end) - f64::from(offset)) / f64::from(gain)).clamp(-limit, limit))
 }
 
-/// A point of a grid of `side` points along each input, numbered with the last input changing fastest.
+/// Returns a point of a grid of `side` points along each input, numbered with the last input changing fastest.
 fn grid_point<const N: usize>(number: usize, side: usize, ranges: &[[f64; 2]; N]) -> [f32; N] {
     std::array::from_fn(|input| {
         let place = number / side.pow((N - 1 - input) as u32) % side;
@@ -110,7 +110,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_grid_covers_the_whole_range() {
+    fn grid_covers_the_whole_range() {
         let ranges = [[-70.0, 80.0], [0.0, 90.0]];
         assert_eq!(grid_point(0, 4, &ranges), [-70.0, 0.0]);
         assert_eq!(grid_point(7, 4, &ranges), [-20.0, 90.0]);
@@ -118,7 +118,7 @@ mod tests {
     }
 
     #[test]
-    fn the_worst_difference_keeps_its_place() {
+    fn worst_difference_keeps_its_input() {
         let at = |x: f32, difference| Differences {
             n: 1,
             worst: difference,

@@ -1,5 +1,5 @@
-//! Whole runs of controllers in both arithmetics, side by side: from one start, through one room, with the same draws.
-//! Poses and rays are the room's and not the robot's; both have them in double precision.
+//! Whole runs of controllers in both arithmetics, side by side: from the same start, in the same room, with the same draws.
+//! Poses and rays belong to the room and not to the robot; they are in double precision for both.
 
 use mindgap_core::chance::Generator;
 use mindgap_core::controller::{Controller, Machine, Motors, Status};
@@ -17,57 +17,57 @@ use mindgap_logs::{Logs, Robot};
 use mindgap_models::simulator::Simulator;
 use mindgap_models::simulator::room::Room;
 
-/// How many runs, and from which seed.
+/// Number and seed of the runs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Trials {
-    /// Pairs of runs.
+    /// Number of pairs of runs.
     pub runs: usize,
-    /// Fixes controllers, starts and draws.
+    /// Seed of controllers, starts and draws.
     pub seed: u64,
 }
 
-/// What became of pairs of runs.
+/// Summary of pairs of runs.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Runs {
-    /// Pairs of runs.
+    /// Number of pairs of runs.
     pub n: usize,
-    /// Steps of them all, counted while either of a pair was under way.
+    /// Number of steps of all pairs, counted while either run of a pair was under way.
     pub steps: usize,
-    /// Steps after which both held the same tuple, or had ended alike.
+    /// Number of steps after which both runs held the same tuple, or had ended alike.
     pub same_decisions: usize,
-    /// Pairs in which they did not, at one step at least.
+    /// Number of pairs that diverged at one or more steps.
     pub parted: usize,
-    /// The first of these.
+    /// The first divergence.
     pub first_divergence: Option<Divergence>,
-    /// The most that the two were apart, until they parted.
+    /// Largest differences within a pair before it diverged.
     pub apart: Apart,
 }
 
-/// A step after which two runs no longer were in the same tuple.
+/// The first step after which the two runs of a pair were no longer in the same tuple.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Divergence {
     /// The pair, from 1.
     pub run: usize,
     /// The step, from 1.
     pub step: usize,
-    /// The run in float after it.
+    /// State of the run in float after it.
     pub float: RunState,
-    /// The run in fixed point after it.
+    /// State of the run in fixed point after it.
     pub fixed: RunState,
 }
 
 /// The state of a run after a step.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct RunState {
-    /// Position along x.
+    /// Position along x, cm.
     pub x_cm: f64,
-    /// Position along y.
+    /// Position along y, cm.
     pub y_cm: f64,
-    /// Heading in (-180, 180].
+    /// Heading in (-180, 180], degrees.
     pub heading_deg: f64,
-    /// The reading; null when there was none.
+    /// The reading, cm; null if there was none.
     pub echo_cm: Option<f64>,
-    /// The tuple that is held from here on, from 1; 7 once finished.
+    /// Number of the tuple held from here on, from 1; 7 once finished.
     pub tuple: usize,
     /// Whether the robot has touched something.
     pub crashed: bool,
@@ -75,24 +75,24 @@ pub struct RunState {
     pub stopped: bool,
 }
 
-/// Largest differences of two runs.
+/// Largest differences between two runs.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Apart {
-    /// Of positions.
+    /// Distance between the positions, cm.
     pub position_cm: f64,
-    /// Of headings.
+    /// Difference of the headings, degrees.
     pub heading_deg: f64,
-    /// Of readings.
+    /// Difference of the readings, cm.
     pub echo_cm: f64,
 }
 
 /// The step limit of random controllers.
 const MAX_STEPS: u16 = 150;
-/// Places of generators: what a pair of runs is, and each step of it.
+/// Stream keys of the draws of a pair of runs, and of each of its steps.
 const PAIR: u64 = 0;
 const STEP: u64 = 1;
 
-/// Runs pairs, from places where the logs saw the robot.
+/// Runs pairs from poses of the logs.
 pub(super) fn side_by_side(
     float: &Float,
     fixed: &Fixed,
@@ -107,7 +107,7 @@ pub(super) fn side_by_side(
     let poses = logs.runs.iter().flat_map(|run| run.rows.iter().filter_map(|row| row.pose));
     let starts: Vec<Pose> = poses.filter(has_room).collect();
     if starts.is_empty() {
-        return Err(Error::new("the robot has no room to start at any pose that the logs hold"));
+        return Err(Error::new("the robot does not fit at any pose in the logs, so no run can start"));
     }
     let decoder = GenotypeDecoder::new(simulator, MAX_STEPS);
     let counter = Counter::new(trials.runs, watch);
@@ -125,7 +125,7 @@ pub(super) fn side_by_side(
     Ok(pairs.collect::<Vec<Runs>>().into_iter().fold(Runs::default(), Runs::and))
 }
 
-/// One pair of runs.
+/// Runs one pair.
 fn pair(world: &World, mut float: Walker<Float>, mut fixed: Walker<Fixed>, run: usize, seed: u64) -> Runs {
     let (mut steps, mut same_decisions) = (0, 0);
     let (mut first_divergence, mut apart) = (None, Apart::default());
@@ -149,14 +149,14 @@ fn pair(world: &World, mut float: Walker<Float>, mut fixed: Walker<Fixed>, run: 
     Runs { n: 1, steps, same_decisions, parted: usize::from(first_divergence.is_some()), first_divergence, apart }
 }
 
-/// Where the runs take place, and the robot's measures.
+/// The environment of the runs, and the robot's dimensions.
 struct World {
     robot: Robot,
     sides: Vec<Wall>,
     room: Room,
 }
 
-/// A robot on its way, computing in one arithmetic.
+/// A robot under way that computes in one arithmetic.
 struct Walker<'a, A: Arithmetic> {
     arithmetic: &'a A,
     pose: Pose,
@@ -176,7 +176,7 @@ impl<'a, A: Arithmetic> Walker<'a, A> {
         !self.crashed && self.machine.status() == Status::Running
     }
 
-    /// Straight in the heading that it had, then the turn; then the reading, unless it has touched something.
+    /// Moves straight along its heading, turns, and takes a reading unless it has touched something.
     fn step(&mut self, world: &World, generator: &mut Generator) {
         if !self.is_under_way() {
             return;
@@ -233,7 +233,7 @@ impl Apart {
 }
 
 impl Runs {
-    /// Share of the steps after which both held the same tuple.
+    /// Returns the share of the steps after which both runs held the same tuple.
     pub fn same_share(&self) -> f64 {
         self.same_decisions as f64 / self.steps as f64
     }

@@ -12,7 +12,7 @@ use mindgap_logs::{Logs, Run};
 use mindgap_models::effects::StepContext;
 use mindgap_models::effects::context::{RunHistory, Surroundings};
 use mindgap_models::simulator::baseline::MotionModel;
-use mindgap_models::sonar::familiar::{FamiliarPoses, Recollection};
+use mindgap_models::sonar::familiar::{FamiliarPoses, PoseMemory};
 use mindgap_models::sonar::place::{Place, place_of};
 use mindgap_models::sonar::{SensorLaw, View};
 
@@ -23,7 +23,7 @@ pub struct Observations {
     /// The law of the sensor, or `None` if the sensor is not compared.
     pub law: Option<SensorLaw>,
     /// What earlier readings showed at single poses of this room.
-    pub recollection: Option<Arc<Recollection>>,
+    pub recollection: Option<Arc<PoseMemory>>,
     /// Number of blocks. A block is a run, or a part of a run where there are few runs; blocks are treated as independent.
     pub blocks: usize,
     /// Number of places at which the sensor was.
@@ -127,7 +127,8 @@ impl Observations {
 
     /// Adds what earlier readings showed at single poses, if those were of this room.
     pub fn recalling(self, familiar: Option<&FamiliarPoses>) -> Self {
-        let recollection = familiar.and_then(|familiar| Recollection::of(familiar, self.surroundings.surfaces.walls()));
+        let recollection =
+            familiar.and_then(|familiar| PoseMemory::for_room(familiar, self.surroundings.surfaces.walls()));
         Observations { recollection: recollection.map(Arc::new), ..self }
     }
 

@@ -45,7 +45,7 @@ pub struct Nats {
 /// Scores every sensor model that a simulator has by the readings of logs. Returns `None` if there are no readings with a pose.
 /// `watch` receives the number of model evaluations so far and in all.
 pub fn sensor_models(simulator: &Simulator, logs: &Logs, watch: impl Fn(usize, usize) + Sync) -> Option<SensorModels> {
-    let scans = Scans::of(logs);
+    let scans = Scans::new(logs);
     let n = scans.rows().count();
     if n == 0 || scans.rows().all(|row| row.echo_cm.is_none()) {
         return None;
@@ -88,7 +88,7 @@ fn evaluations(scans: &Scans) -> usize {
 /// Returns the mean log-likelihood of the readings of logs, which need a row with a pose. `at` gives the distribution of the
 /// reading for a pose of the sensor.
 pub fn nats(logs: &Logs, at: impl Fn(&Pose) -> Outcomes + Sync) -> Nats {
-    let scans = &Scans::of(logs);
+    let scans = &Scans::new(logs);
     let log_likelihood = |sensor: &Pose, echo_cm: Option<f64>| at(sensor).log_likelihood(echo_cm);
     let mean = |offsets: &[Offset]| {
         let rows = scans.rows_with(offsets);
@@ -158,7 +158,7 @@ mod tests {
                 times.fetch_add(1, Ordering::Relaxed);
                 Outcomes { none: 0.5, components: Vec::new(), range_cm: [5.0, 240.0] }
             });
-            assert_eq!(times.into_inner(), evaluations(&Scans::of(&logs)));
+            assert_eq!(times.into_inner(), evaluations(&Scans::new(&logs)));
         }
     }
 }

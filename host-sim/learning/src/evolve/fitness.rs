@@ -1,10 +1,10 @@
-//! Fitness of a controller: equation (3) of the paper, summed over several runs, and its success rate.
+//! Fitness of a controller, equation (3) of the paper summed over several runs, and its success rate.
 
 use glam::DVec2;
 use mindgap_core::controller::Controller;
 
 use super::genome::GenotypeDecoder;
-use super::way::WayMap;
+use super::route::RouteMap;
 use crate::genetic;
 use mindgap_foundations::random::{Generator, derive};
 use mindgap_logs::Termination;
@@ -23,12 +23,12 @@ pub enum RandomNumbers {
 
 /// Evaluates the fitness of controllers, as an optimisation problem for the genetic algorithm.
 pub struct FitnessEvaluator<'a> {
-    /// Where controllers run.
+    /// The environment in which controllers run.
     pub environment: &'a Environment<'a>,
-    /// Where they have to stop, cm.
+    /// The target at which they have to stop, cm.
     pub target_cm: DVec2,
-    /// What counts as distance to that: the way round the obstacles, or none for the straight line.
-    pub way: Option<&'a WayMap>,
+    /// Routes whose length counts as distance to the target; `None` for the straight line.
+    pub routes: Option<&'a RouteMap>,
     /// Decodes genotypes into controllers.
     pub decoder: GenotypeDecoder,
     /// Number of runs whose fitness is summed (paper: five).
@@ -41,7 +41,7 @@ pub struct FitnessEvaluator<'a> {
     pub seed: u64,
 }
 
-/// Success of a number of runs.
+/// Success statistics of a number of runs.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Success {
     /// Share of runs that ended within [`REACHED_CM`] of the target without a crash, 0..=1.
@@ -52,15 +52,15 @@ pub struct Success {
     pub median_cm: f64,
 }
 
-/// Fitness of one run that ended `distance_cm` from the target (paper, equation 3), 1/cm: 0.5 / distance after a crash, else
-/// 1 / distance. Distances below `floor_cm` are raised to it, since 1 / distance is unbounded.
+/// Returns the fitness of one run that ended `distance_cm` from the target (paper, equation 3), in 1/cm: 0.5 / distance
+/// after a crash, else 1 / distance. Distances below `floor_cm` are raised to it, since 1 / distance is unbounded.
 pub fn fitness(outcome: &RolloutOutcome, distance_cm: f64, floor_cm: f64) -> f64 {
     let distance_cm = distance_cm.max(floor_cm);
     if outcome.termination == Termination::Crashed { 0.5 / distance_cm } else { 1.0 / distance_cm }
 }
 
 impl FitnessEvaluator<'_> {
-    /// Outcomes of a number of runs of a controller; another `purpose` gives independent random numbers.
+    /// Returns the outcomes of `runs` runs of a controller; each `purpose` has independent random numbers.
     pub fn outcomes(&self, controller: &Controller, runs: usize, purpose: u64) -> Vec<RolloutOutcome> {
         let motions = &self.environment.motions(controller);
         let seed = |run: usize| derive(self.seed, &[purpose, run as u64]);
@@ -69,20 +69,20 @@ impl FitnessEvaluator<'_> {
         self.environment.run(&requests)
     }
 
-    /// Success of a controller in a number of runs; random numbers as for [`outcomes`](Self::outcomes).
+    /// Returns the success of a controller in `runs` runs, with the random numbers of [`outcomes`](Self::outcomes).
     pub fn success(&self, controller: &Controller, runs: usize, purpose: u64) -> Success {
         self.success_of(&self.outcomes(controller, runs, purpose))
     }
 
-    /// Success of outcomes.
+    /// Returns the success of runs with these outcomes.
     pub fn success_of(&self, outcomes: &[RolloutOutcome]) -> Success {
         Success::of(outcomes, self.target_cm)
     }
 
-    /// Fitness summed over outcomes.
+    /// Returns the fitness, summed over outcomes.
     pub fn fitness_of(&self, outcomes: &[RolloutOutcome]) -> f64 {
-        let distance_cm = |o: &RolloutOutcome| match self.way {
-            Some(way) => way.cm(o.end_cm),
+        let distance_cm = |o: &RolloutOutcome| match self.routes {
+            Some(routes) => routes.length_cm(o.end_cm),
             None => o.end_cm.distance(self.target_cm),
         };
         outcomes.iter().map(|o| fitness(o, distance_cm(o), self.floor_cm)).sum()
@@ -90,13 +90,13 @@ impl FitnessEvaluator<'_> {
 }
 
 impl Success {
-    /// Success of outcomes for a target, cm.
+    /// Returns the success of runs with these outcomes, for a target in cm.
     pub fn of(outcomes: &[RolloutOutcome], target_cm: DVec2) -> Self {
         let end = |o: &RolloutOutcome| (o.end_cm.distance(target_cm), o.termination == Termination::Crashed);
         Self::of_ends(outcomes.iter().map(end))
     }
 
-    /// Success of runs given as their final distance to the target, cm, and whether they crashed.
+    /// Returns the success of runs, each given as its final distance to the target in cm and whether it crashed.
     pub fn of_ends(ends: impl Iterator<Item = (f64, bool)>) -> Self {
         let (mut distances, mut reached, mut crashed) = (Vec::new(), 0, 0);
         for (distance_cm, has_crashed) in ends {

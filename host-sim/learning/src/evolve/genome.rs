@@ -6,7 +6,7 @@ use rand::RngExt;
 use mindgap_foundations::random::Generator;
 use mindgap_models::simulator::Simulator;
 
-/// Number of genes a tuple: left, right, larger or smaller, threshold.
+/// Number of genes per tuple: left, right, larger or smaller, threshold.
 const GENES_PER_TUPLE: usize = 4;
 
 /// Decodes genotypes into controllers. Every gene runs from 0 to 1 over its range, so that one mutation step suits all.
@@ -26,7 +26,7 @@ impl GenotypeDecoder {
     /// Number of genes of a controller.
     pub const GENES: usize = TUPLES * GENES_PER_TUPLE;
 
-    /// The decoder for a simulator's robot.
+    /// Returns the decoder for a simulator's robot.
     pub fn new(simulator: &Simulator, max_steps: u16) -> Self {
         let [min_cm, max_cm] = simulator.robot.ultrasonic.map_or([0.0; 2], |sensor| sensor.range_cm());
         GenotypeDecoder {
@@ -37,7 +37,7 @@ impl GenotypeDecoder {
         }
     }
 
-    /// A random genotype: [`Self::GENES`] uniform genes.
+    /// Returns a random genotype: [`Self::GENES`] uniform genes.
     pub fn random(&self, rng: &mut Generator) -> Vec<f32> {
         (0..Self::GENES).map(|_| rng.random()).collect()
     }
@@ -47,7 +47,8 @@ impl GenotypeDecoder {
         genes.iter_mut().for_each(|gene| *gene = gene.clamp(0.0, 1.0));
     }
 
-    /// The controller that a genotype encodes; commands and thresholds are rounded to integers, as a brick takes them.
+    /// Returns the controller that a genotype encodes; commands and thresholds are rounded to integers, as a brick takes
+    /// them.
     pub fn controller(&self, genes: &[f32]) -> Controller {
         let within = |[low, high]: [f32; 2], gene: f32| (low + gene * (high - low)).round();
         let tuple = |g: &[f32]| Tuple {
@@ -59,12 +60,12 @@ impl GenotypeDecoder {
         self.with_tuples(std::array::from_fn(|t| tuple(&genes[t * GENES_PER_TUPLE..])))
     }
 
-    /// The controller of these tuples.
+    /// Returns the controller with these tuples.
     pub fn with_tuples(&self, tuples: [Tuple; TUPLES]) -> Controller {
         Controller { step_ms: self.step_ms, max_steps: self.max_steps, tuples }
     }
 
-    /// A genotype that encodes a controller, as far as the ranges allow.
+    /// Returns a genotype that encodes a controller, with values clamped to the ranges.
     pub fn genes(&self, controller: &Controller) -> Vec<f32> {
         let share = |[low, high]: [f32; 2], value: f32| ((value - low) / (high - low)).clamp(0.0, 1.0);
         let of_tuple = |t: &Tuple| {

@@ -19,7 +19,7 @@ pub struct Evolved {
     pub generations: usize,
 }
 
-/// Parameters of the paper, section IX: those of section VII, ended after 1000 generations.
+/// Returns the parameters of the paper, section IX: those of section VII, ended after 1000 generations.
 pub fn settings() -> Settings {
     Settings { stagnation: None, max_generations: 1000, ..Settings::default() }
 }

@@ -1,14 +1,14 @@
-//! An evolution as it is asked for: one controller for a start of a scene, the likeliest of those found, and how good it is.
+//! A request for a controller: the evolution of one for a start of a scene, and the success of the most promising one found.
 
 use mindgap_core::controller::Controller;
 
-use super::chance::{Chance, Judge, ROBOTS, RUNS};
 use super::fitness::{FitnessEvaluator, RandomNumbers, Success};
 use super::genome::GenotypeDecoder;
 use super::paper::{self, Evolved};
 use super::robust;
+use super::route::RouteMap;
+use super::success_probability::{Judge, ROBOTS, RUNS, SuccessProbability};
 use super::task::EvolutionTask;
-use super::way::WayMap;
 use mindgap_foundations::error::{Error, Result};
 use mindgap_foundations::executor::Executor;
 use mindgap_logs::Scene;
@@ -16,57 +16,58 @@ use mindgap_models::simulator::environment::{Environment, SensorModel};
 use mindgap_models::simulator::rollout_report::RolloutReport;
 use mindgap_models::simulator::{Noise, Simulator};
 
-/// What is asked.
+/// A request to evolve a controller.
 pub struct Request<'a> {
     /// Executes independent pieces of the search.
     pub executor: &'a dyn Executor,
-    /// Where the controller is evolved.
+    /// The simulator in which the controller is evolved.
     pub simulator: &'a Simulator,
     /// The scene, which has a target.
     pub scene: &'a Scene,
     /// Start within the scene, from 1.
     pub start: usize,
-    /// Steps after which a controller gives up.
+    /// Maximum number of steps of a run.
     pub max_steps: u16,
-    /// One run of the genetic algorithm and its fittest individual, as in the paper.
+    /// Whether to use the procedure of the paper: one run of the genetic algorithm, and its fittest individual.
     pub paper: bool,
-    /// What scatters.
+    /// The noise of the simulated robot.
     pub noise: Noise,
-    /// What makes the readings, where more scatters than in the paper.
+    /// The model of the sensor, unless the noise is that of the paper.
     pub sensor: SensorModel,
     /// Seed of all draws.
     pub seed: u64,
 }
 
-/// What was found.
+/// The result of a [`Request`].
 pub struct Answered {
     /// The controller.
     pub evolved: Evolved,
-    /// How it did in [`JUDGED_RUNS`] fresh runs.
+    /// Its success in [`JUDGED_RUNS`] fresh runs.
     pub success: Success,
-    /// Its chance over robots that the logs leave possible, where the simulator knows of them.
-    pub chance: Option<Chance>,
-    /// A few runs, to be drawn.
+    /// Its probability of success over the posterior of robots, if the simulator has one.
+    pub chance: Option<SuccessProbability>,
+    /// A few runs, for figures.
     pub rollouts: RolloutReport,
 }
 
-/// Fresh runs that tell how well a controller does.
+/// Number of fresh runs that measure the success of a controller.
 pub const JUDGED_RUNS: usize = 200;
-/// Sets the judging runs apart from all others.
+/// Stream key of these runs.
 const JUDGING: u64 = 1;
-/// Runs that are drawn.
+/// Number of runs for figures.
 const DRAWN_RUNS: usize = 10;
 
 impl Request<'_> {
-    /// Generations that it takes at most.
+    /// Returns the maximum number of generations.
     pub fn generations(&self) -> usize {
         if self.paper { paper::settings().max_generations } else { robust::GENERATIONS }
     }
 
-    /// Evolves it; `watch` receives the generation and the best fitness.
+    /// Evolves a controller; `watch` receives the generation and the best fitness.
     ///
     /// # Errors
-    /// When the scene has no target or not this start, when there are no steps, or when the simulator cannot run controllers there.
+    /// If the scene lacks a target or the start, if `max_steps` is 0, or if the simulator cannot run controllers in the
+    /// scene.
     pub fn evolve(&self, watch: impl FnMut(usize, f64)) -> Result<Answered> {
         let Request { executor, simulator, scene, noise, seed, .. } = *self;
         if self.max_steps == 0 {
@@ -79,20 +80,20 @@ impl Request<'_> {
         let environment = &environment.sensing_by(self.sensor, simulator, scene)?.at_posterior_mean(robots.as_ref());
         let decoder = GenotypeDecoder::new(simulator, self.max_steps);
         let (runs, floor_cm) = (paper::RUNS, paper::FLOOR_CM);
-        let way = &WayMap::new(scene, target_cm, simulator.robot.body_radius_cm);
+        let routes = &RouteMap::new(scene, target_cm, simulator.robot.body_radius_cm);
         let random_numbers = RandomNumbers::Independent;
         let evaluator =
-            FitnessEvaluator { environment, target_cm, way: None, decoder, runs, floor_cm, random_numbers, seed };
+            FitnessEvaluator { environment, target_cm, routes: None, decoder, runs, floor_cm, random_numbers, seed };
         let candidates = if self.paper {
             vec![paper::evolve(executor, &evaluator, &paper::settings(), watch)?]
         } else {
-            robust::candidates(&EvolutionTask { executor, environment, target_cm, way, decoder, seed }, watch)?
+            robust::candidates(&EvolutionTask { executor, environment, target_cm, routes, decoder, seed }, watch)?
         };
         let chances = match &robots {
             Some(robots) => {
                 let controllers: Vec<Controller> = candidates.iter().map(|c| c.controller.clone()).collect();
                 let judge = Judge::new(executor, simulator, &robots.drawn, scene, start, target_cm, seed)?;
-                judge.chances(&controllers, RUNS)?
+                judge.success_probabilities(&controllers, RUNS)?
             }
             None => Vec::new(),
         };
@@ -103,11 +104,15 @@ impl Request<'_> {
     }
 }
 
-/// The controller with the best chance, as far as chances are known; else the first.
-fn most_likely(mut candidates: Vec<Evolved>, chances: &[Chance]) -> (Evolved, Option<Chance>) {
+/// Returns the controller with the largest probability of success, or the first if `chances` is empty.
+fn most_likely(mut candidates: Vec<Evolved>, chances: &[SuccessProbability]) -> (Evolved, Option<SuccessProbability>) {
     let better = |a: &usize, b: &usize| chances[*a].success.total_cmp(&chances[*b].success).then(b.cmp(a));
     for (number, (candidate, chance)) in candidates.iter().zip(chances).enumerate() {
-        log::info!("controller {} of the search: fitness {:.3}, chance {chance}", number + 1, candidate.fitness);
+        log::info!(
+            "controller {} of the search: fitness {:.3}, probability of success {chance}",
+            number + 1,
+            candidate.fitness
+        );
     }
     let best = (0..chances.len()).max_by(better);
     (candidates.swap_remove(best.unwrap_or(0)), best.map(|best| chances[best]))

@@ -1,14 +1,14 @@
 //! Robust evolution, the default. A single run of the paper's procedure often stagnates at a poor controller, or selects one
 //! that was lucky in its five runs. Here every run has the learned noise. There are three stages:
 //!
-//! 1. exploration: controllers from [beginnings](super::prefixes) that lead somewhere with little scatter;
-//! 2. refinement: the genetic algorithm from mutants of each of the best, with small mutations and many runs an individual;
-//! 3. selection: of each last population the individual that succeeds most often in many fresh runs.
+//! 1. exploration: controllers from [prefixes](super::explore) that lead somewhere with little scatter;
+//! 2. refinement: the genetic algorithm on mutants of each of the best, with small mutations and many runs per individual;
+//! 3. selection: from each last population, the individual that succeeds most often in many fresh runs.
 
 use mindgap_core::controller::Controller;
 
+use super::explore;
 use super::paper::Evolved;
-use super::prefixes;
 use super::task::{EvolutionTask, Judged, sort};
 use crate::genetic::mutation::{Mutation, Unit};
 use crate::genetic::{self, Lineage, Settings};
@@ -16,11 +16,11 @@ use mindgap_foundations::error::Result;
 use mindgap_foundations::executor;
 use mindgap_foundations::random::{derive, generator};
 
-/// Rounds and generations of all stages.
-pub const GENERATIONS: usize = prefixes::ALL_ROUNDS + REFINING_GENERATIONS;
-/// Generations of [`refine`].
+/// Number of rounds and generations of all stages.
+pub const GENERATIONS: usize = explore::ALL_ROUNDS + REFINING_GENERATIONS;
+/// Number of generations of [`refine`].
 pub const REFINING_GENERATIONS: usize = REFINING.max_generations;
-/// Explored controllers that are refined.
+/// Number of explored controllers that are refined.
 pub const REFINED: usize = 6;
 
 const REFINING: Settings = Settings {
@@ -35,26 +35,26 @@ const REFINING: Settings = Settings {
 };
 /// Number of fresh runs of each individual of a last population.
 const CHOOSING_RUNS: usize = 200;
-/// Stream key of what the genetic algorithm draws.
+/// Stream key of the draws of the genetic algorithm.
 const REFINEMENT: u64 = 3;
 
-/// [`REFINED`] controllers by falling success rate in fresh runs. They may take different routes to the target. `watch`
-/// receives the last round or generation completed, of [`GENERATIONS`], and the best fitness in it.
+/// Returns [`REFINED`] controllers by descending success rate in fresh runs. They may take different routes to the target.
+/// `watch` receives the last round or generation completed, of [`GENERATIONS`], and the best fitness in it.
 ///
 /// # Errors
 /// As [`genetic::run`].
 pub fn candidates(task: &EvolutionTask, mut watch: impl FnMut(usize, f64)) -> Result<Vec<Evolved>> {
-    let explored = prefixes::explore(task, &mut watch)?;
+    let explored = explore::explore(task, &mut watch)?;
     let explored: Vec<Controller> = explored.into_iter().take(REFINED).collect();
-    let refined = refine(task, &explored, |generation, best| watch(prefixes::ALL_ROUNDS + generation, best))?;
+    let refined = refine(task, &explored, |generation, best| watch(explore::ALL_ROUNDS + generation, best))?;
     let mut chosen: Vec<Judged> = refined.into_iter().map(|mut ranked| ranked.swap_remove(0)).collect();
     sort(&mut chosen);
     let evolved = |Judged { controller, fitness, .. }| Evolved { controller, fitness, generations: GENERATIONS };
     Ok(chosen.into_iter().map(evolved).collect())
 }
 
-/// The second and third stage from given controllers, side by side: of each what became of it and its mutants, by falling
-/// success rate in fresh runs. `watch` receives the generation and the best fitness in it.
+/// Runs the second and third stage from given controllers, side by side. Returns for each controller its last population, by
+/// descending success rate in fresh runs. `watch` receives the generation and the best fitness in it.
 ///
 /// # Errors
 /// As [`genetic::run`].
@@ -69,11 +69,11 @@ pub fn refine(
         Lineage::from(&evaluator, mutants(task, controller, seed), seed)
     };
     let lineages = controllers.iter().zip(0..).map(lineage).collect();
-    let refined = genetic::run_beside(task.executor, &REFINING, lineages, watch)?;
+    let refined = genetic::run_side_by_side(task.executor, &REFINING, lineages, watch)?;
     refined.into_iter().map(|refined| ranked(task, &refined.population)).collect()
 }
 
-/// A population of a controller and its mutants.
+/// Returns a population of a controller and its mutants.
 fn mutants(task: &EvolutionTask, controller: &Controller, seed: u64) -> Vec<Vec<f32>> {
     let mut rng = generator(seed, &[]);
     let mutant = |of: usize| {
@@ -87,7 +87,7 @@ fn mutants(task: &EvolutionTask, controller: &Controller, seed: u64) -> Vec<Vec<
     (0..REFINING.population).map(mutant).collect()
 }
 
-/// Individuals as they do in fresh runs.
+/// Returns individuals by descending success rate in fresh runs.
 fn ranked(task: &EvolutionTask, population: &[Vec<f32>]) -> Result<Vec<Judged>> {
     let judged = |number: usize| Ok(task.judged(task.decoder.controller(&population[number]), CHOOSING_RUNS));
     let mut ranked = executor::map(task.executor, population.len(), judged)?;

@@ -1,5 +1,5 @@
-//! Where a command ends that is held, for every threshold at once: runs that hold it until something is touched show where
-//! each threshold would have ended it.
+//! Where a held command ends, for every threshold at once: runs that hold it until they touch something show where each
+//! threshold would have ended it.
 
 use glam::DVec2;
 use mindgap_core::controller::{Controller, Tuple, When};
@@ -10,43 +10,43 @@ use mindgap_logs::Termination;
 use mindgap_models::simulator::motion::MotionTable;
 use mindgap_models::simulator::rollout::{REACHED_CM, RolloutRequest, TrajectoryPoint};
 
-/// Thresholds lie this far apart, cm: about the scatter of a reading.
+/// Spacing of thresholds, cm: about the scatter of a reading.
 const APART_CM: usize = 4;
-/// No reading is larger, and thus none ends a tuple.
+/// A tuple that no reading ends.
 const NEVER: Tuple = Tuple { left: 0, right: 0, when: When::Larger, threshold_cm: 255 };
-/// Any reading ends this one, and without one the robot stays where it is.
+/// A tuple that any reading ends; without a reading the robot stays where it is.
 const REST: Tuple = Tuple { left: 0, right: 0, when: When::Larger, threshold_cm: 0 };
 
 /// Where the first tuples of a controller lead with one threshold of the last.
 pub struct Stop {
     /// The last tuple with its threshold.
     pub tuple: Tuple,
-    /// Mean place where it ends, cm.
+    /// Mean position at which it ends, cm.
     pub place_cm: DVec2,
     /// Mean heading there, rad.
     pub heading_rad: f64,
-    /// Root mean square distance from the mean place, cm.
+    /// Root-mean-square distance from the mean position, cm.
     pub scatter_cm: f64,
-    /// The same of the heading, rad.
+    /// Circular standard deviation of the heading, rad.
     pub heading_scatter_rad: f64,
-    /// Share of runs that do not get there: they touch something, or the tuple does not end. The rest is of the others.
+    /// Share of runs that are lost: they touch something, or the tuple does not end. Means and scatter are over the others.
     pub lost: f64,
     /// Share of all runs that reach the target.
     pub reached: f64,
-    /// Mean of what ending there is worth to all runs: the radius of the target over the way to it, at most 1.
+    /// Nearness to the target, averaged over all runs: the target radius divided by the length of the route, at most 1.
     pub nearness: f64,
 }
 
-/// What a run shows that holds the last tuple.
+/// The record of a run that holds the last tuple.
 #[derive(Default)]
 struct Path {
     steps: usize,
-    /// The steps whose readings are larger or smaller than all before: others end no tuple that has not ended.
+    /// The steps whose readings are larger or smaller than all before; only these can end a tuple.
     steps_to_end: Vec<Step>,
     range_cm: Option<[f32; 2]>,
 }
 
-/// Where a run is after a step of the last tuple.
+/// The state of a run after a step of the last tuple.
 struct Step {
     number: usize,
     place_cm: DVec2,
@@ -56,15 +56,16 @@ struct Step {
     reaches: bool,
 }
 
-/// The whole controller of its first tuples: after them it rests.
+/// Completes the first tuples to a controller that rests after them.
 pub fn controller(task: &EvolutionTask, first: &[Tuple]) -> Controller {
     task.decoder.with_tuples(std::array::from_fn(|i| first.get(i).copied().unwrap_or(REST)))
 }
 
-/// For each of some beginnings of controllers, of a tuple at least, the thresholds of its last tuple that end it at different
-/// places, in as many runs. Fewer than half of the runs tell nothing of a place.
-pub fn stops(task: &EvolutionTask, beginnings: &[&[Tuple]], runs: usize, seed: u64) -> Vec<Vec<Stop>> {
-    let held: Vec<Controller> = beginnings.iter().map(|first| holding(task, first)).collect();
+/// Returns for each prefix of a controller the stops of its last tuple: one for every threshold that ends it at other places
+/// than the threshold before, from `runs` runs. A threshold that ends fewer than half of the runs has no stop. A prefix must
+/// have at least one tuple.
+pub fn stops(task: &EvolutionTask, prefixes: &[&[Tuple]], runs: usize, seed: u64) -> Vec<Vec<Stop>> {
+    let held: Vec<Controller> = prefixes.iter().map(|first| holding(task, first)).collect();
     let motions: Vec<MotionTable> = held.iter().map(|controller| task.environment.motions(controller)).collect();
     let request = |number: usize| RolloutRequest {
         controller: &held[number / runs],
@@ -73,13 +74,13 @@ pub fn stops(task: &EvolutionTask, beginnings: &[&[Tuple]], runs: usize, seed: u
     };
     let requests: Vec<RolloutRequest> = (0..runs * held.len()).map(request).collect();
     let mut paths: Vec<Path> = requests.iter().map(|_| Path::default()).collect();
-    // The step that ends the tuple before is not one of the last.
-    let mut has_begun: Vec<bool> = (0..requests.len()).map(|number| beginnings[number / runs].len() == 1).collect();
+    // The step that ends the tuple before does not belong to the last tuple.
+    let mut has_begun: Vec<bool> = (0..requests.len()).map(|number| prefixes[number / runs].len() == 1).collect();
     let outcomes = task.environment.run_watched(&requests, |number, point| {
         if has_begun[number] {
-            paths[number].go_on(&point, task);
+            paths[number].record(&point, task);
         }
-        has_begun[number] |= point.tuple + 1 == beginnings[number / runs].len();
+        has_begun[number] |= point.tuple + 1 == prefixes[number / runs].len();
     });
     for (path, outcome) in paths.iter_mut().zip(&outcomes) {
         if outcome.termination == Termination::Crashed {
@@ -88,11 +89,11 @@ pub fn stops(task: &EvolutionTask, beginnings: &[&[Tuple]], runs: usize, seed: u
     }
     let [low, high] = task.decoder.thresholds_cm.map(|cm| cm as i16);
     let thresholds: Vec<i16> = (low..=high).step_by(APART_CM).collect();
-    let of_each = paths.chunks(runs).zip(beginnings);
+    let of_each = paths.chunks(runs).zip(prefixes);
     of_each.map(|(paths, first)| of_paths(paths, first[first.len() - 1], &thresholds)).collect()
 }
 
-/// The controller that holds the last of its first tuples.
+/// Returns the controller that holds the last of its first tuples.
 fn holding(task: &EvolutionTask, first: &[Tuple]) -> Controller {
     let mut whole = controller(task, first);
     let last = &mut whole.tuples[first.len() - 1];
@@ -100,7 +101,7 @@ fn holding(task: &EvolutionTask, first: &[Tuple]) -> Controller {
     whole
 }
 
-/// Where these runs that hold a tuple would end with each of the thresholds.
+/// Returns the stops of runs that hold a tuple, for each of the thresholds.
 fn of_paths(paths: &[Path], tuple: Tuple, thresholds: &[i16]) -> Vec<Stop> {
     let mut stops = Vec::new();
     for when in [When::Larger, When::Smaller] {
@@ -118,10 +119,10 @@ fn of_paths(paths: &[Path], tuple: Tuple, thresholds: &[i16]) -> Vec<Stop> {
     stops
 }
 
-/// The first step whose reading is beyond each threshold; these rise.
+/// Returns for each threshold the first step whose reading is beyond it; thresholds must be ascending.
 fn first_beyond(path: &Path, when: When, thresholds: &[i16]) -> Vec<Option<usize>> {
     let mut first = vec![None; thresholds.len()];
-    // Those that were passed are the lowest or the highest.
+    // The thresholds that were passed are the lowest or the highest ones.
     let mut waiting: Vec<usize> = (0..thresholds.len()).collect();
     if when == When::Larger {
         waiting.reverse();
@@ -136,7 +137,7 @@ fn first_beyond(path: &Path, when: When, thresholds: &[i16]) -> Vec<Option<usize
 }
 
 impl Path {
-    fn go_on(&mut self, point: &TrajectoryPoint, task: &EvolutionTask) {
+    fn record(&mut self, point: &TrajectoryPoint, task: &EvolutionTask) {
         self.steps += 1;
         let Some(echo_cm) = point.echo_cm else { return };
         let [smallest_cm, largest_cm] = self.range_cm.unwrap_or([f32::INFINITY, f32::NEG_INFINITY]);
@@ -146,7 +147,7 @@ impl Path {
         }
     }
 
-    /// Takes back the last step, which touched something.
+    /// Removes the last step, which touched something.
     fn take_back(&mut self) {
         self.steps_to_end.pop_if(|step| step.number == self.steps);
     }
@@ -160,14 +161,14 @@ impl Step {
             place_cm,
             heading: DVec2::from_angle(point.pose.heading_rad),
             echo_cm,
-            nearness: REACHED_CM / task.way.cm(place_cm).max(REACHED_CM),
+            nearness: REACHED_CM / task.routes.length_cm(place_cm).max(REACHED_CM),
             reaches: place_cm.distance(task.target_cm) <= REACHED_CM,
         }
     }
 }
 
 impl Stop {
-    /// Of the step in which each run ends.
+    /// Summarises the steps in which the runs end; `None` if fewer than half of them end.
     fn of(tuple: Tuple, paths: &[Path], ends: &[Option<usize>]) -> Option<Self> {
         let ended: Vec<&Step> =
             paths.iter().zip(ends).filter_map(|(path, end)| Some(&path.steps_to_end[(*end)?])).collect();
@@ -183,7 +184,7 @@ impl Stop {
             place_cm,
             heading_rad: heading.to_angle(),
             scatter_cm: variance.sqrt(),
-            // Of a normal distribution wrapped round the circle (Mardia and Jupp 2000, section 3.4).
+            // Wrapped normal distribution (Mardia and Jupp 2000, section 3.4).
             heading_scatter_rad: (-2.0 * libm::log(heading.length().clamp(f64::EPSILON, 1.0))).sqrt(),
             lost: 1.0 - count / runs,
             reached: ended.iter().filter(|step| step.reaches).count() as f64 / runs,
@@ -201,7 +202,7 @@ mod tests {
     const SEED: u64 = 5;
     const RUNS: usize = 8;
 
-    /// Where the runs of a controller end that are not lost, with the seeds of a single beginning.
+    /// Returns where the runs of a controller end that are not lost, with the seeds of a single prefix.
     fn ends(task: &EvolutionTask, controller: &Controller) -> Vec<DVec2> {
         let motions = &task.environment.motions(controller);
         let request = |run: usize| RolloutRequest { controller, motions, seed: derive(SEED, &[run as u64]) };
@@ -210,9 +211,9 @@ mod tests {
         finished.map(|outcome| outcome.end_cm).collect()
     }
 
-    /// With a threshold, the same runs end where that is foretold.
+    /// With a threshold, the same runs end where the held runs predict.
     #[test]
-    fn thresholds_end_a_command_where_runs_that_hold_it_say() {
+    fn stops_are_where_runs_with_that_threshold_end() {
         with_task(|task| {
             let mut compared = 0;
             for number in 0..200 {
@@ -234,7 +235,7 @@ mod tests {
     }
 
     #[test]
-    fn a_beginning_is_a_controller_that_then_rests() {
+    fn prefix_is_completed_by_rest() {
         with_task(|task| {
             let tuple = Tuple { left: 40, right: 50, when: When::Larger, threshold_cm: 60 };
             let whole = controller(task, &[tuple, tuple]);

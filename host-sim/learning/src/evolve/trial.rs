@@ -1,8 +1,8 @@
-//! A controller tried in a simulator: each run is of another robot that the simulator's logs leave possible.
+//! Simulated trials of a controller: each run samples a robot from the posterior of the simulator.
 
 use mindgap_core::controller::Controller;
 
-use super::chance::ROBOTS;
+use super::success_probability::ROBOTS;
 use mindgap_foundations::error::{Error, Result};
 use mindgap_foundations::geometry::Pose;
 use mindgap_logs::Scene;
@@ -10,31 +10,31 @@ use mindgap_models::simulator::environment::{Environment, SensorModel};
 use mindgap_models::simulator::rollout_report::RolloutReport;
 use mindgap_models::simulator::{Noise, Simulator};
 
-/// What is asked.
+/// A request to run a controller in a simulator.
 pub struct Trial<'a> {
-    /// Where it is tried.
+    /// The simulator in which it runs.
     pub simulator: &'a Simulator,
-    /// What is tried.
+    /// The controller.
     pub controller: &'a Controller,
-    /// In this scene,
+    /// Scene of the runs.
     pub scene: &'a Scene,
-    /// from here.
+    /// Pose at which they start.
     pub start: Pose,
-    /// What scatters.
+    /// The noise of the simulated robot.
     pub noise: Noise,
-    /// What makes the readings, where more scatters than in the paper.
+    /// The model of the sensor, unless the noise is that of the paper.
     pub sensor: SensorModel,
-    /// How many runs.
+    /// Number of runs.
     pub runs: usize,
     /// Seed of all draws.
     pub seed: u64,
 }
 
 impl Trial<'_> {
-    /// Runs it; `watch` is told how many of the runs are done.
+    /// Runs the controller; `watch` receives the number of finished runs and of all runs.
     ///
     /// # Errors
-    /// When there are no runs, when the simulator cannot run controllers, or has no first-echo law where it is asked for.
+    /// If `runs` is 0, if the simulator cannot run controllers, or if it lacks a first-echo law that `sensor` needs.
     pub fn run(&self, watch: impl Fn(usize, usize) + Sync) -> Result<RolloutReport> {
         let Trial { simulator, controller, scene, start, noise, sensor, runs, seed } = *self;
         if runs == 0 {

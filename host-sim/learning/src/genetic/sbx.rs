@@ -43,7 +43,7 @@ impl WithSimd for Cross<'_> {
     }
 }
 
-/// The spread factor β for a uniform draw in [0, 1): below one the children lie between their parents, above one
+/// Returns the spread factor β for a uniform draw in [0, 1): below one the children lie between their parents, above one
 /// outside. A larger index keeps them nearer to the parents.
 #[inline(always)]
 fn spread<S: Simd>(draw: Lanes<S>, index: f32) -> Lanes<S> {

@@ -16,8 +16,8 @@ impl Default for StagnationCriterion {
 }
 
 impl StagnationCriterion {
-    /// Whether the best fitness, one entry a generation, has stopped growing. Fitness must be positive, as an inverse
-    /// error is; an infinite fitness cannot grow.
+    /// Returns whether the best fitness, one entry per generation, has stopped growing. Fitness must be positive, as an
+    /// inverse error is; an infinite fitness cannot grow.
     pub fn has_stalled(&self, best: &[f64]) -> bool {
         let Some(now) = best.last() else { return false };
         let Some(then) = best.len().checked_sub(self.generations + 1).map(|i| best[i]) else { return false };

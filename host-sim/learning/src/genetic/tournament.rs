@@ -4,7 +4,7 @@ use rand::RngExt;
 
 use mindgap_foundations::random::Generator;
 
-/// Indices of individuals from the fittest to the least fit; NaN comes last, and ties keep their order.
+/// Returns the indices of individuals from the fittest to the least fit; NaN comes last, and ties keep their order.
 pub fn ranking(fitness: &[f64]) -> Vec<usize> {
     let mut order: Vec<usize> = (0..fitness.len()).collect();
     let key = |i: &usize| if fitness[*i].is_nan() { f64::NEG_INFINITY } else { fitness[*i] };
@@ -24,7 +24,7 @@ impl<'a> Tournament<'a> {
         Tournament { ranking, places: (0..ranking.len() as u32).collect() }
     }
 
-    /// Index of the fittest of `size` different individuals; `size` is clamped to one and the population.
+    /// Returns the index of the fittest of `size` different individuals; `size` is clamped to one and the population.
     pub fn winner(&mut self, size: usize, rng: &mut Generator) -> usize {
         let total = self.places.len() as u32;
         let mut best = total - 1;
@@ -42,7 +42,7 @@ mod tests {
     use super::*;
     use mindgap_foundations::random::generator;
 
-    /// Drawn without replacement, the individual of rank r (from 0) wins with the chance C(n-1-r, k-1) / C(n, k).
+    /// Drawn without replacement, the individual of rank r (from 0) wins with probability C(n-1-r, k-1) / C(n, k).
     #[test]
     fn win_rates_are_those_of_draws_without_replacement() {
         let fitness: Vec<f64> = (0..10).map(f64::from).collect();
@@ -62,7 +62,7 @@ mod tests {
     }
 
     #[test]
-    fn a_tournament_of_all_is_won_by_the_best_and_one_of_one_by_anybody() {
+    fn tournament_of_all_is_won_by_the_best_and_of_one_by_anyone() {
         let ranking = ranking(&[1.0, 7.0, 3.0]);
         let mut arena = Tournament::new(&ranking);
         let mut rng = generator(3, &[]);

@@ -12,8 +12,8 @@ use mindgap_models::simulator::residuals::ConstantReading;
 use mindgap_models::sonar::model::{CONSTANT_SCATTER_CM, STRENGTHS};
 use mindgap_models::sonar::{Perturbation, SonarModel, fan_at};
 
-/// The beam of the sensor that made these logs, with the reading that it gives where there is nothing if that is known, and else
-/// with one that makes them likely; none where they hold too few readings.
+/// Fits the beam of the sensor that made these logs. Its constant reading is `constant` if given, else one that makes the
+/// logs likely. Returns `None` if they hold too few readings.
 pub fn learn(constant: Option<ConstantReading>, logs: &Logs) -> Option<SonarModel> {
     let sides = logs.scene.sides();
     let mount = logs.robot.ultrasonic?;
@@ -31,7 +31,7 @@ pub fn learn(constant: Option<ConstantReading>, logs: &Logs) -> Option<SonarMode
     })
 }
 
-/// The beam of these logs, sought from another on.
+/// Fits a beam to logs, starting the search at another beam.
 pub fn learn_from(start: &SonarModel, logs: &Logs) -> SonarModel {
     let sides = logs.scene.sides();
     let seen = seen(logs);
@@ -47,9 +47,9 @@ pub fn learn_from(start: &SonarModel, logs: &Logs) -> SonarModel {
     model(&climb(&BOUNDS, &numbers(start), ROUNDS, ENOUGH, terms).at)
 }
 
-/// The reading in whole cm that makes these logs most likely if the sensor gives it now and then whatever it faces; none where
-/// it gains no more than the logarithm of the number of values, of which any might have been it. Small logs hold too few for
-/// [`scatter::constant_reading`](super::scatter::constant_reading), which asks for a peak of the readings that are far off.
+/// Returns the constant reading, in whole cm, that makes the logs most likely; `None` if it gains no more than the logarithm
+/// of the number of candidate values. Small logs hold too few readings for
+/// [`scatter::constant_reading`](super::scatter::constant_reading), which needs a peak among the readings that are far off.
 fn likely_constant_cm(beam: &SonarModel, logs: &Logs) -> Option<f64> {
     let sides = logs.scene.sides();
     let outcomes = |sensor: &Pose| beam.outcomes(&fan_at(&sides, sensor, beam.fan_width), &Perturbation::NONE);
@@ -65,7 +65,7 @@ fn likely_constant_cm(beam: &SonarModel, logs: &Logs) -> Option<f64> {
         };
         rows.iter().map(gain).sum()
     };
-    // Of a range that is absurdly long few values were read.
+    // Only values that were read are candidates, since the range may be absurdly long.
     let read = rows.iter().filter_map(|(echo_cm, _)| Some(echo_cm.as_ref()?.round() as i64));
     let read: BTreeSet<i64> = read.filter(|cm| (low..=high).contains(cm)).collect();
     let gains = read.into_iter().map(|cm| (cm as f64, gain(cm as f64)));
@@ -73,23 +73,23 @@ fn likely_constant_cm(beam: &SonarModel, logs: &Logs) -> Option<f64> {
     (gained > libm::log((high - low + 1) as f64)).then_some(value_cm)
 }
 
-/// The same beam with a constant reading of this probability, in place of an echo and of none.
+/// Returns the beam with a constant reading of this probability, in place of an echo and of none.
 fn with_constant(beam: &SonarModel, probability: f64, value_cm: f64) -> SonarModel {
     SonarModel { constant: [probability, value_cm], p_constant_given_none: probability, ..beam.clone() }
 }
 
-/// Where the sensor was at every row, and what it read.
+/// Returns the sensor pose and the reading, cm, of every row with a pose.
 fn seen(logs: &Logs) -> Vec<(Pose, Option<f64>)> {
     let rows = logs.runs.iter().flat_map(|run| &run.rows);
     rows.filter_map(|row| Some((logs.robot.sensor_pose(&row.pose?), row.echo_cm))).collect()
 }
 
-/// Fewer readings than this tell nothing of some twenty parameters.
+/// Minimum number of readings: fewer do not determine some twenty parameters.
 const FEWEST: usize = 100;
-/// Bounds of the model's numbers: strengths (log-odds, far beyond the ten that make a certainty), bias (20 cm, 30 %), the
+/// Bounds of the model's numbers: strengths (log-odds, far beyond the ten that are a certainty), bias (20 cm, 30 %), the
 /// logarithm of the scatter (0.2 to 20 cm), three probabilities (a sensor that errs more often is broken), the width of the
-/// beam (4 to 50 degrees to either side), a fourth probability, and what a mirrored ray loses (log-odds: at six one in four hundred is left,
-/// which is less than logs show).
+/// beam (4 to 50 degrees to either side), a fourth probability, and the loss of a mirrored ray (log-odds: six leaves
+/// one in four hundred, less than logs show).
 const BOUNDS: [Bounds; STRENGTHS + 12] = {
     let mut bounds = [Bounds::new(-60.0, 60.0); STRENGTHS + 12];
     bounds[STRENGTHS] = Bounds::new(-20.0, 20.0);
@@ -106,7 +106,7 @@ const BOUNDS: [Bounds; STRENGTHS + 12] = {
     bounds[STRENGTHS + 11] = Bounds::new(-3.0, 6.0);
     bounds
 };
-/// Where the search begins: a beam that sees what is near and faces it.
+/// Start of the search: a beam that detects near surfaces that face it.
 const START: [f64; STRENGTHS + 12] = [
     3.0, -2.0, 0.0, -1.0, 0.0, 0.0, 0.0, 0.0, -1.0, -1.0, // strengths
     0.0, 0.0, 0.0, // bias
@@ -117,7 +117,7 @@ const START: [f64; STRENGTHS + 12] = [
     2.0,  // loss where a wall mirrors
 ];
 const CONSTANT_AT_START: f64 = START[STRENGTHS + 6];
-/// The search ends after this many iterations, or when one gains less than half a nat, a sixth of what is strong evidence.
+/// The search ends after this many iterations, or when one gains less than half a nat, a sixth of strong evidence.
 const ROUNDS: usize = 40;
 const ENOUGH: f64 = 0.5;
 
@@ -137,7 +137,7 @@ fn model(at: &[f64], value_cm: f64, range_cm: [f64; 2]) -> SonarModel {
     }
 }
 
-/// What [`model`] makes a model of.
+/// Returns the parameters of a model, the inverse of [`model`].
 fn numbers(model: &SonarModel) -> [f64; STRENGTHS + 12] {
     let mut at = START;
     at[..STRENGTHS].copy_from_slice(&model.strength);
@@ -162,7 +162,7 @@ mod tests {
     use mindgap_built_in_robot::{default_robot, record, training_room};
     use mindgap_foundations::random::generator;
 
-    /// Twelve runs of a sensor like the built-in robot's, which gives this constant reading; and its beam without that.
+    /// Returns twelve runs of a sensor like the built-in robot's with this constant reading, and its beam without it.
     fn drawn(p_constant: f64, value_cm: f64) -> (SonarModel, Logs) {
         let mut logs = record(&default_robot(), &training_room(), 12, 40, &[], 1).expect("room to drive");
         let beam = with_constant(&learn(None, &logs).expect("readings"), 0.0, 4.0);
@@ -183,7 +183,7 @@ mod tests {
     }
 
     #[test]
-    fn a_constant_reading_is_found_in_a_few_runs() {
+    fn constant_reading_is_found_in_a_few_runs() {
         let (beam, logs) = drawn(0.025, 57.0);
         let near = |value_cm: f64| (value_cm - 57.0).abs() <= 1.0;
         assert!(likely_constant_cm(&beam, &logs).is_some_and(near));
@@ -194,7 +194,7 @@ mod tests {
     }
 
     #[test]
-    fn a_search_begins_at_the_model_that_it_is_given() {
+    fn search_starts_at_the_given_model() {
         let at: [f64; STRENGTHS + 12] = std::array::from_fn(|i| i as f64 + 0.5);
         let made_up = model(&at, 20.0, [4.0, 240.0]);
         assert_eq!(model(&numbers(&made_up), 20.0, [4.0, 240.0]), made_up);

@@ -9,7 +9,7 @@ use mindgap_logs::{Logs, samples};
 pub struct Dataset<const N: usize> {
     /// The inputs, in the units of the logs.
     pub inputs: Vec<[f32; N]>,
-    /// The desired outputs, one a sample.
+    /// The target outputs, one per sample.
     pub targets: Vec<f32>,
     /// The index of the run that each sample comes from.
     pub runs: Vec<usize>,
@@ -18,15 +18,15 @@ pub struct Dataset<const N: usize> {
 /// The data sets of the five networks.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Datasets {
-    /// Left, right, previous left and previous right command to the turn in a step, degrees.
+    /// From left, right, previous left and previous right command to the turn in a step, degrees.
     pub turn: Dataset<4>,
-    /// The same to the displacement forward, cm.
+    /// From the same to the displacement forward, cm.
     pub forward: Dataset<4>,
-    /// The same to the displacement to the left, cm.
+    /// From the same to the displacement to the left, cm.
     pub lateral: Dataset<4>,
-    /// D (cm) and α (degrees) to 1 where the sensor produced a value, else 0.
+    /// From D (cm) and α (degrees) to 1 if the sensor produced a value, else 0.
     pub echo_probability: Dataset<2>,
-    /// D and α to the reading, cm, of those samples that have one.
+    /// From D and α to the reading, cm, of those samples that have one.
     pub echo_value: Dataset<2>,
 }
 
@@ -54,12 +54,12 @@ impl Datasets {
 }
 
 impl<const N: usize> Dataset<N> {
-    /// The number of samples.
+    /// Returns the number of samples.
     pub fn len(&self) -> usize {
         self.targets.len()
     }
 
-    /// Whether there is no sample.
+    /// Returns whether there is no sample.
     pub fn is_empty(&self) -> bool {
         self.targets.is_empty()
     }
@@ -71,7 +71,7 @@ impl<const N: usize> Dataset<N> {
         self.runs.push(run);
     }
 
-    /// The samples of the runs whose index satisfies `keep`.
+    /// Returns the samples of the runs whose index satisfies `keep`.
     pub fn of_runs(&self, keep: impl Fn(usize) -> bool) -> Self {
         let mut kept = Dataset::default();
         for ((inputs, target), run) in self.inputs.iter().zip(&self.targets).zip(&self.runs) {
@@ -82,12 +82,12 @@ impl<const N: usize> Dataset<N> {
         kept
     }
 
-    /// Least and largest value of each input.
+    /// Returns the least and largest value of each input.
     pub fn ranges(&self) -> [RangeInclusive<f32>; N] {
         std::array::from_fn(|i| range(self.inputs.iter().map(|x| x[i])))
     }
 
-    /// Least and largest target.
+    /// Returns the least and largest target.
     pub fn target_range(&self) -> RangeInclusive<f32> {
         range(self.targets.iter().copied())
     }

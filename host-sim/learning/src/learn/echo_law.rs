@@ -1,4 +1,4 @@
-//! Fits the first-echo law to logs: the most probable parameters for what is known of such sensors.
+//! Fits the first-echo law to logs: the parameters of maximum posterior probability, with priors from other sensors.
 
 use rand::RngExt;
 use rayon::prelude::*;
@@ -11,7 +11,7 @@ use mindgap_logs::Logs;
 use mindgap_models::sonar::echo_law::{Surfaces, Target, reach_cm, targets_at};
 use mindgap_models::sonar::{FirstEchoLaw, Perturbation};
 
-/// What is known of a parameter before any log is seen.
+/// Prior of a parameter.
 struct Prior {
     middle: f64,
     deviation: f64,
@@ -25,9 +25,9 @@ const fn prior(middle: f64, deviation: f64, low: f64, high: f64) -> Prior {
 
 /// Number of parameters.
 const PARAMETERS: usize = 20;
-/// In the order of [`FirstEchoLaw`]'s fields: medians over eleven LEGO NXT sensors, and wider than they spread, so that the
-/// sensor's own logs decide; bounds are what is physically possible. Narrow priors on the first six, which share the unit of
-/// the threshold's noise, would blur the beam.
+/// Priors in the order of [`FirstEchoLaw`]'s fields: medians over eleven LEGO NXT sensors, with deviations wider than their
+/// spread, so that the sensor's own logs decide; bounds are what is physically possible. Narrow priors on the first six,
+/// which share the unit of the threshold's noise, would blur the beam.
 const PRIORS: [Prior; PARAMETERS] = [
     prior(2.7, 2.0, -6.0, 20.0),
     prior(3.65, 1.3, 0.0, 12.0),
@@ -50,44 +50,44 @@ const PRIORS: [Prior; PARAMETERS] = [
     prior(21.5, 2.0, 5.0, 60.0),
     prior(0.02, 0.02, 0.004, 0.2),
 ];
-/// Where the first search begins: the medians, with a little of each wrong reading.
+/// Start of the first search: the medians, with a small probability of each kind of wrong reading.
 const GHOST_AT_START: f64 = 0.01;
 const GHOST: usize = 17;
 
-/// Searches begin here: at the medians, and at points drawn from the priors.
+/// Number of searches: one starts at the medians, the others at points drawn from the priors.
 const STARTS: usize = 5;
-/// Rounds of each search, then of the best one after each new fit of poses.
+/// Number of rounds of each search, then of the best one after each new fit of poses.
 const FIRST_ROUNDS: usize = 12;
 const LATER_ROUNDS: usize = 12;
-/// How often the poses of scans and parameters are fitted in turn.
+/// Number of alternations between fitting the poses of scans and the parameters.
 const TURNS: usize = 3;
 /// Searches end when a round gains less than this, in nats.
 const ENOUGH: f64 = 0.2;
-/// The first searches look at this many rows at most, which tell one hill from another. How wide a beam is they tell no better
-/// than the logs that a diagnosis compares with it, so the climb goes on over all rows.
+/// Maximum number of rows for the first searches, enough to distinguish local maxima. They determine the beam's width no
+/// better than the logs that a diagnosis compares with it, so the final climb uses all rows.
 const MOST_ROWS: usize = 1000;
-/// Fewer readings than this, the least for a network too, tell nothing beyond the priors.
+/// Minimum number of readings, as for a network: fewer add nothing to the priors.
 const FEWEST: usize = 30;
 
-/// The law of the sensor that made these logs; none where they hold too few readings.
+/// Fits the law of the sensor that made these logs; `None` if they hold too few readings.
 pub fn learn(logs: &Logs, seed: u64) -> Option<Found> {
     let all = Fit::new(logs, logs.robot.ultrasonic?.range_cm());
     let readings = all.scans.rows().filter(|row| row.echo_cm.is_some()).count();
     (readings >= FEWEST).then(|| all.most_probable(all.clone().sampled(seed).best_of(&starts(seed))))
 }
 
-/// The law of these logs, with poses as logged, sought from another on.
+/// Fits a law to logs, with poses as logged, starting the search at another law.
 pub fn learn_from(start: &FirstEchoLaw, logs: &Logs) -> FirstEchoLaw {
     let range_cm = logs.robot.ultrasonic.map_or(start.range_cm, |sensor| sensor.range_cm());
     Fit::new(logs, range_cm).as_logged(&numbers(start))
 }
 
-/// The most probable law of a sensor; where no run is a scan both are the same.
+/// The most probable law of a sensor. Without scans both variants are equal.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Found {
-    /// With the poses of scans as nuisances: what the sensor is like.
+    /// With the poses of scans as nuisance parameters: the sensor itself.
     pub sensor: FirstEchoLaw,
-    /// With poses as they are logged: how readings lie about them, with what the poses of such scans are off by.
+    /// With poses as logged: it includes the effect of the pose errors of scans.
     pub as_logged: FirstEchoLaw,
 }
 
@@ -99,7 +99,7 @@ struct Fit {
     range_cm: [f64; 2],
 }
 
-/// What a sensor faced at a row, and what it said.
+/// The targets of a sensor at a row, and its reading.
 struct Faced {
     targets: Vec<Target>,
     reach_cm: f64,
@@ -108,16 +108,16 @@ struct Faced {
 
 impl Fit {
     fn new(logs: &Logs, range_cm: [f64; 2]) -> Self {
-        let scans = Scans::of(logs);
+        let scans = Scans::new(logs);
         Fit { surfaces: Surfaces::new(logs.scene.sides()), weight: scans.weight(), scans, range_cm }
     }
 
-    /// The same with [`MOST_ROWS`] rows at most.
+    /// Returns a sample of at most [`MOST_ROWS`] rows.
     fn sampled(self, seed: u64) -> Self {
         Fit { scans: self.scans.sampled(MOST_ROWS, seed), ..self }
     }
 
-    /// Where the highest of several searches ends, with poses as logged.
+    /// Returns the end of the best of several searches, with poses as logged.
     fn best_of(&self, starts: &[[f64; PARAMETERS]]) -> Vec<f64> {
         let unchanged = self.unchanged();
         let search =
@@ -131,7 +131,7 @@ impl Fit {
         best.expect("there are several starts").at
     }
 
-    /// The most probable law with poses as logged, sought from here on.
+    /// Returns the most probable law with poses as logged, starting the search at `start`.
     fn as_logged(&self, start: &[f64]) -> FirstEchoLaw {
         let unchanged = self.unchanged();
         let found = climb(&bounds(), start, TURNS * LATER_ROUNDS, ENOUGH, |at| self.terms(at, &unchanged));
@@ -157,7 +157,7 @@ impl Fit {
         self.faced(&vec![UNCHANGED; self.scans.runs.len()])
     }
 
-    /// What was faced at every row, with an offset to the poses of each run.
+    /// Returns the targets and the reading of every row, with an offset of the poses of each run.
     fn faced(&self, offsets: &[Offset]) -> Vec<Faced> {
         let faced = |(row, offset): &(&Heard, &Offset)| {
             let sensor = self.scans.sensor(&row.robot, offset);
@@ -167,7 +167,7 @@ impl Fit {
         self.scans.rows_with(offsets).par_iter().map(faced).collect()
     }
 
-    /// Log-likelihoods of all rows, weighted, and of the parameters before any row.
+    /// Returns the weighted log-likelihoods of all rows, and the log prior of the parameters.
     fn terms(&self, at: &[f64], faced: &[Faced]) -> Vec<f64> {
         let law = law(at, self.range_cm);
         let term = |row: &Faced| {
@@ -183,7 +183,7 @@ impl Fit {
     }
 }
 
-/// A step of one prior's standard deviation is a large one.
+/// Returns the bounds of the search; the standard deviation of a prior is the scale of a parameter.
 fn bounds() -> [Bounds; PARAMETERS] {
     PRIORS.map(|Prior { low, high, deviation, .. }| Bounds { low, high, scale: deviation })
 }
@@ -227,7 +227,7 @@ fn law(at: &[f64], range_cm: [f64; 2]) -> FirstEchoLaw {
     }
 }
 
-/// What [`law`] makes a law of.
+/// Returns the parameters of a law, the inverse of [`law`].
 fn numbers(law: &FirstEchoLaw) -> [f64; PARAMETERS] {
     [
         law.gain,
@@ -260,7 +260,7 @@ pub(super) mod tests {
     use mindgap_foundations::geometry::Pose;
     use mindgap_logs::{Row, Run};
 
-    /// A sensor unlike the prior's middle.
+    /// Returns a sensor that differs from the prior mean.
     fn made_up() -> FirstEchoLaw {
         let mut at = PRIORS.map(|prior| prior.middle);
         at[0] = 4.0;
@@ -271,10 +271,10 @@ pub(super) mod tests {
         law(&at, [4.0, 240.0])
     }
 
-    /// By how much headings are off, degrees.
+    /// Errors of the headings, degrees.
     pub const MIXED_UP_DEG: [f64; 12] = [0.0, 3.0, -4.0, 6.0, -2.0, 1.0, 0.0, -5.0, 4.0, 2.0, -3.0, 0.0];
 
-    /// Scans of a sensor that turns by 5 degrees a row at places of a room, with headings off by these.
+    /// Returns scans of a sensor that turns by 5 degrees per row at places of a room, with these errors of the headings.
     pub fn scans(seed: u64, off_deg: [f64; 12]) -> Logs {
         let scene = training_room();
         let surfaces = Surfaces::new(scene.sides());
@@ -300,13 +300,13 @@ pub(super) mod tests {
     }
 
     #[test]
-    fn a_made_up_sensor_is_found_again() {
+    fn made_up_sensor_is_recovered() {
         let off_deg = MIXED_UP_DEG;
         let logs = scans(1, off_deg);
         let found = learn(&logs, 1).expect("readings").sensor;
         let truth = made_up();
         let near = |name: &str, found: f64, truth: f64, within: f64| {
-            assert!((found - truth).abs() < within, "{name}: {found}, and {truth} in truth");
+            assert!((found - truth).abs() < within, "{name}: {found}, true value {truth}");
         };
         near("gain", found.gain, truth.gain, 1.0);
         near("spreading", found.spreading, truth.spreading, 1.0);
@@ -316,10 +316,10 @@ pub(super) mod tests {
         near("ghost_cm", found.ghost_cm, truth.ghost_cm, 0.7);
         near("p_other", found.p_other, truth.p_other, 0.08);
 
-        // Headings are found again, and readings of other scans are as likely as to the sensor itself.
+        // Headings are recovered, and readings of other scans are as likely as under the true law.
         let (surfaces, others) = (Surfaces::new(logs.scene.sides()), scans(2, [0.0; 12]));
         let likely = |law: &FirstEchoLaw| {
-            let scans = Scans::of(&others);
+            let scans = Scans::new(&others);
             let rows: Vec<f64> = scans
                 .rows()
                 .map(|row| {
@@ -328,19 +328,19 @@ pub(super) mod tests {
                 .collect();
             rows.iter().sum::<f64>() / rows.len() as f64
         };
-        near("nats a reading", likely(&found), likely(&truth), 0.1);
+        near("nats per reading", likely(&found), likely(&truth), 0.1);
         let offsets =
-            Scans::of(&logs).offsets(|sensor, echo_cm| found.outcomes_at(&surfaces, sensor).log_likelihood(echo_cm));
+            Scans::new(&logs).offsets(|sensor, echo_cm| found.outcomes_at(&surfaces, sensor).log_likelihood(echo_cm));
         for ([x_cm, y_cm, deg], off_deg) in offsets.iter().zip(off_deg) {
             near("x_cm", *x_cm, 0.0, 2.0);
             near("y_cm", *y_cm, 0.0, 2.0);
-            // Rows are 5 degrees apart, and the prior pulls towards none.
+            // Rows are 5 degrees apart, and the prior pulls towards zero.
             near("heading", *deg, off_deg, 3.5);
         }
     }
 
     #[test]
-    fn all_rows_tell_of_a_sensor() {
+    fn all_rows_are_used_for_the_fit() {
         let mut logs = scans(1, [0.0; 12]);
         logs.runs.extend(scans(2, [0.0; 12]).runs);
         let fit = Fit::new(&logs, [4.0, 240.0]);
@@ -354,12 +354,12 @@ pub(super) mod tests {
     }
 
     #[test]
-    fn a_search_begins_at_the_law_that_it_is_given() {
+    fn search_starts_at_the_given_law() {
         assert_eq!(law(&numbers(&made_up()), [4.0, 240.0]), made_up());
     }
 
     #[test]
-    fn few_readings_tell_nothing() {
+    fn few_readings_give_no_law() {
         let mut logs = scans(1, [0.0; 12]);
         logs.runs.truncate(1);
         logs.runs[0].rows.truncate(20);

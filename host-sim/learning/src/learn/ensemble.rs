@@ -1,5 +1,5 @@
-//! Learns the distribution over robots from logs: what they say of the motion under each command, and how far such biases
-//! reach and how large they are.
+//! Learns the distribution over robots from logs: the evidence about the motion under each command, and the reach and size
+//! of the biases.
 
 pub mod holds;
 pub mod noise;
@@ -15,22 +15,24 @@ use mindgap_models::simulator::ensemble::evidence::by_cell;
 use mindgap_models::simulator::ensemble::posterior::Likelihood;
 use mindgap_models::simulator::ensemble::{Ensemble, Evidence, Held, Member, MotionNoise, PARTS, Posterior};
 
-/// Sizes of the process's parts are sought by factors that get smaller, from this share of the robot's chance in a step.
+/// Start of the search for the sizes of the process's parts, as a share of the robot's process noise in a step; and the
+/// factors by which they are varied.
 const FIRST_SIZE: f64 = 0.5;
 const FACTORS: [f64; 4] = [4.0, 4.0, 2.0, 1.4];
 
-/// Parts of the logs that are left out in turn.
+/// Number of folds of cross-validation.
 const FOLDS: usize = 5;
 
-/// How much a wheel may have changed since training, as a share: the one under which the runs are most probable.
+/// Candidate standard deviations of a wheel's change since training, as a share; the one with the largest evidence is
+/// chosen.
 const CHANGES: [f64; 4] = [0.0, 0.02, 0.06, 0.2];
 
-/// The distribution that the training logs of a simulator leave; none without motion networks and what is normal beyond
-/// them.
+/// Learns the posterior over robots from the training logs of a simulator; `None` without motion networks and their
+/// reference.
 pub fn learn(simulator: &Simulator, logs: &Logs) -> Option<Ensemble> {
     let networks = simulator.motion_networks()?;
     let steps = residuals(simulator, logs)?;
-    // Noise is what a process leaves, and how large the process is depends on noise.
+    // The noise is the residual of the process, and the size of the process depends on the noise.
     let plain = given(&steps, &networks, noise::rough(&steps));
     let pieces = noise::pieces(&steps);
     let middles = without_each_fold(&pieces, &plain, &networks)?;
@@ -38,8 +40,8 @@ pub fn learn(simulator: &Simulator, logs: &Logs) -> Option<Ensemble> {
     Some(given(&steps, &networks, noise::learn(&pieces, middle, &networks)))
 }
 
-/// The robot in the middle by all pieces of the logs but those of a fold, for each fold: a process that has seen a step leaves
-/// too little of it.
+/// Returns the posterior mean without each fold of the pieces: residuals of a process that was fitted to a step are too
+/// small.
 fn without_each_fold(pieces: &[&[StepResidual]], plain: &Ensemble, said: Held) -> Option<Vec<Member>> {
     let without = |fold: usize| {
         let others = pieces.iter().enumerate().filter(|(piece, _)| piece % FOLDS != fold);
@@ -50,7 +52,7 @@ fn without_each_fold(pieces: &[&[StepResidual]], plain: &Ensemble, said: Held) -
     (0..FOLDS).into_par_iter().map(without).collect()
 }
 
-/// The distribution that steps leave, if noise is this.
+/// Returns the posterior given steps and their noise.
 fn given(steps: &[StepResidual], said: Held, noise: MotionNoise) -> Ensemble {
     let evidence = by_cell(holds(steps).iter().map(|hold| hold.evidence(&noise, said)), said.scale());
     let factor = unit_factor();
@@ -63,8 +65,8 @@ fn given(steps: &[StepResidual], said: Held, noise: MotionNoise) -> Ensemble {
     Ensemble { prior: Motion::from_fn(|axis| prior[axis as usize]), noise, evidence }
 }
 
-/// A distribution with what further runs say of the robot, which may have changed since the training logs; `said` is what its
-/// networks say.
+/// Conditions a distribution on further runs of a robot that may have changed since the training logs; `said` returns the
+/// predictions of its networks.
 pub fn conditioned(ensemble: &Ensemble, robot: &Robot, said: Held, steps: &[StepResidual]) -> Ensemble {
     let mut ensemble = ensemble.clone();
     let more = holds(steps).into_iter().map(|hold| hold.evidence(&ensemble.noise, said));
@@ -74,27 +76,27 @@ pub fn conditioned(ensemble: &Ensemble, robot: &Robot, said: Held, steps: &[Step
     let cells = by_cell(ensemble.evidence.iter().copied(), said.scale());
     for (axis, prior) in Axis::ALL.into_iter().zip(ensemble.prior.iter_mut()) {
         let likelihood = Likelihood::new(&factor, &cells, &ensemble.noise, said, axis);
-        let of = |change: f64| {
+        let evidence_of = |change: f64| {
             let mut prior = *prior;
             prior[CHANGE] = change * full(robot)[axis];
             (likelihood.log_evidence(&prior), prior)
         };
-        let (_, likeliest) = CHANGES
-            .map(of)
+        let (_, most_likely) = CHANGES
+            .map(evidence_of)
             .into_iter()
             .fold((f64::NEG_INFINITY, *prior), |best, other| if other.0 > best.0 { other } else { best });
-        *prior = likeliest;
+        *prior = most_likely;
     }
     ensemble
 }
 
-/// How far one wheel at full command moves a robot in a step; the turn is in degrees.
+/// Returns the motion of a robot in a step with one wheel at full command; the turn is in degrees.
 fn full(robot: &Robot) -> Motion<f64> {
-    let way_cm = robot.full_speed_cm_s * robot.step_ms / 1000.0;
-    Motion { forward: 0.5 * way_cm, lateral: 0.0, turn: way_cm / robot.track_cm }.turn_in_degrees()
+    let distance_cm = robot.full_speed_cm_s * robot.step_ms / 1000.0;
+    Motion { forward: 0.5 * distance_cm, lateral: 0.0, turn: distance_cm / robot.track_cm }.turn_in_degrees()
 }
 
-/// What the networks leave of every step of training logs.
+/// Returns the residuals of the networks for every step of training logs.
 fn residuals(simulator: &Simulator, logs: &Logs) -> Option<Vec<StepResidual>> {
     let networks = simulator.motion_networks()?;
     let known = simulator.reference.as_ref()?.motion.as_ref()?;
@@ -104,7 +106,7 @@ fn residuals(simulator: &Simulator, logs: &Logs) -> Option<Vec<StepResidual>> {
     Some(samples::motion(logs).iter().map(residual).collect())
 }
 
-/// The sizes of the process's parts under which the evidence is most probable, one after the other.
+/// Returns the sizes of the process's parts that maximise the evidence, by coordinate ascent.
 fn sizes(likelihood: &Likelihood, noise: f64) -> [f64; PARTS] {
     let mut best = [FIRST_SIZE * noise; PARTS];
     best[CHANGE] = 0.0;
@@ -131,9 +133,9 @@ mod tests {
     use mindgap_built_in_robot::{default_robot, record, training_room};
     use mindgap_foundations::executor::Serial;
 
-    /// A robot that is driven by the same commands for long does what the distribution allows.
+    /// The motion of a robot under long-held commands agrees with the distribution.
     #[test]
-    fn held_commands_stay_within_what_is_not_known() {
+    fn held_commands_agree_with_the_posterior() {
         let logs = record(&default_robot(), &training_room(), 40, 60, &[], 3).expect("room to drive");
         let simulator = train(&Serial, &logs, &Trainer::Fast, &TABLE_ONE, 1, &|_| {}).expect("networks");
         let ensemble = simulator.ensemble.clone().expect("a distribution");

@@ -63,7 +63,7 @@ const REWEIGHTINGS: usize = 4;
 /// Trains one network on `fitted` and selects among starts by the loss on `judged`; both data sets must have samples.
 ///
 /// # Errors
-/// When a start cannot be searched by those to whom it is handed out.
+/// If the executor fails.
 pub fn train<const N: usize>(
     executor: &dyn Executor,
     fitted: &Dataset<N>,
@@ -106,7 +106,7 @@ fn is_steep<const N: usize>(network: &Network<f32, N>) -> bool {
     network.product.iter().flat_map(|unit| unit.exponents).any(|exponent| exponent.abs() > LARGEST_EXPONENT)
 }
 
-/// The problem with its exponents at a local minimum, and the number of evaluations.
+/// Returns the problem with its exponents at a local minimum, and the number of evaluations.
 fn search<const N: usize>(problem: Projection<N>) -> (Projection<N>, usize) {
     let method = LevenbergMarquardt::new().with_patience(PATIENCE).with_ftol(1e-6).with_xtol(1e-4);
     let (found, report) = method.minimize(problem);
@@ -128,8 +128,8 @@ fn reweight<const N: usize>(problem: &mut Projection<N>, loss: Loss, targets: &[
     problem.reweight(targets, &weights);
 }
 
-/// Target and weight of a sample for the log-likelihood of a ramp output. The weight is the inverse variance of the
-/// outcome; where the ramp saturates at the outcome, the target is the prediction itself, which exerts no pull.
+/// Returns the target and weight of a sample for the log-likelihood of a ramp output. The weight is the inverse variance of
+/// the outcome; where the ramp saturates at the outcome, the target is the prediction itself, which exerts no pull.
 fn logistic_step((predicted, happened): (f64, f64)) -> (f64, f64) {
     let ramp = predicted.clamp(LEAST_PROBABILITY, 1.0 - LEAST_PROBABILITY);
     let saturated = (predicted <= 0.0 && happened < 0.5) || (predicted >= 1.0 && happened > 0.5);
@@ -154,7 +154,7 @@ impl ContaminatedNormal {
         ContaminatedNormal { deviation: ORDINARY * (median / 0.6745).max(LEAST_DEVIATION) }
     }
 
-    /// Probability that a residual belongs to the normal component.
+    /// Returns the probability that a residual belongs to the normal component.
     fn inlier_probability(&self, residual: f64) -> f64 {
         let z = residual / self.deviation;
         let inlier = libm::exp(-0.5 * z * z);
@@ -165,7 +165,7 @@ impl ContaminatedNormal {
 /// Least standard deviation, cm: readings are whole centimetres.
 const LEAST_DEVIATION: f64 = 0.5;
 /// Residuals up to this multiple of the standard deviation of the better half count as inliers: a beam that meets an edge
-/// beside its axis reads short by that much, and the network has to follow it. On held-out logs 1 leaves R² at 0.75, 10
+/// off its axis reads short by that much, and the network has to follow it. On held-out logs 1 leaves R² at 0.75, 10
 /// reaches 0.79.
 const ORDINARY: f64 = 10.0;
 /// Density of outliers relative to the normal component at its mode.
@@ -201,7 +201,7 @@ fn network<const N: usize>(
     }
 }
 
-/// Mean loss of a network on samples.
+/// Returns the mean loss of a network on samples.
 fn cost<const N: usize>(network: &Network<f32, N>, data: &Dataset<N>, loss: Loss) -> f64 {
     let predicted: Vec<f64> = data.inputs.iter().map(|x| f64::from(network.evaluate(*x))).collect();
     let expected: Vec<f64> = data.targets.iter().map(|t| f64::from(*t)).collect();

@@ -24,7 +24,7 @@ pub struct NetworkTemplate<const N: usize> {
 }
 
 impl Shape {
-    /// A hidden layer of `hidden` neurons, half of each kind (paper, Table I).
+    /// Returns a hidden layer of `hidden` neurons, half of each kind (paper, Table I).
     ///
     /// # Panics
     /// When `hidden` is odd or a half exceeds [`MAX_HALF`].
@@ -33,19 +33,19 @@ impl Shape {
         Shape { summation: hidden / 2, product: hidden / 2 }
     }
 
-    /// As [`halves`](Self::halves), `None` where that would panic or `hidden` is 0.
+    /// As [`halves`](Self::halves), but returns `None` if that would panic or if `hidden` is 0.
     pub fn checked_halves(hidden: usize) -> Option<Self> {
         (hidden > 0 && hidden.is_multiple_of(2) && hidden / 2 <= MAX_HALF).then(|| Self::halves(hidden))
     }
 }
 
 impl<const N: usize> NetworkTemplate<N> {
-    /// The number of genes.
+    /// Returns the number of genes.
     pub fn genes(&self) -> usize {
         self.shape.summation * (N + 2) + self.shape.product * (N + 1) + 1
     }
 
-    /// Indices of the exponents among the genes.
+    /// Returns the indices of the exponents among the genes.
     pub fn exponents(&self) -> impl Iterator<Item = usize> + use<N> {
         let first = self.shape.summation * (N + 2);
         (0..self.shape.product).flat_map(move |unit| (0..N).map(move |i| first + unit * (N + 1) + i))

@@ -50,7 +50,7 @@ impl<const N: usize> Samples<N> {
         Samples { blocks: (0..data.len()).step_by(BLOCK).map(block).collect(), count: data.len() }
     }
 
-    /// Mean squared error of a network over the samples, in the unit of the mapped targets; NaN without samples.
+    /// Returns the mean squared error of a network over the samples, in the unit of the mapped targets; NaN without samples.
     pub fn mean_squared_error(&self, network: &Network<f32, N>) -> f64 {
         Arch::new().dispatch(SquaredError { samples: self, network: &FoldedNetwork::fold(network) }) / self.count as f64
     }

@@ -1,4 +1,4 @@
-//! Learns what is normal beyond the networks: the yardstick of the gap.
+//! Learns the reference of a simulator: its nominal behaviour beyond the networks, relative to which the gap is measured.
 
 use super::{beam, familiar, place_bound, sensor_law};
 use mindgap_foundations::motion::{Axis, Motion};
@@ -11,15 +11,15 @@ use mindgap_models::simulator::nominal::NominalModel;
 use mindgap_models::simulator::nominal::motion_bias::{FEATURES, MotionBias, Precision, features, products};
 use mindgap_models::sonar::{FirstEchoLaw, SensorLaw};
 
-/// Parts of the logs that are left out in turn.
+/// Number of folds of cross-validation.
 const FOLDS: usize = 5;
-/// Ratios of noise variance to prior variance that are tried. At the first, a thousand steps hold half a standard deviation of
-/// the noise; at the last, the prior is wide even for bends that only slow wheels pass.
+/// Ratios of noise variance to prior variance that are tried. At the first, a thousand steps hold half a standard deviation
+/// of the noise; at the last, the prior is wide even for bends that only slow wheels pass.
 const STRENGTHS: [f64; 9] = [1000.0, 215.0, 46.0, 10.0, 2.15, 0.46, 0.1, 0.02, 0.004];
-/// Fewer samples than this, about as many as there are features, tell nothing.
+/// Minimum number of samples, about the number of features.
 const FEWEST: usize = 100;
 
-/// The reference of a simulator whose networks are trained, from its training logs; `first_echo` is the law of its sensor
+/// Learns the reference of a simulator with trained networks from its training logs; `first_echo` is the law of its sensor
 /// with poses as logged.
 pub fn learn(simulator: &Simulator, first_echo: Option<FirstEchoLaw>, logs: &Logs) -> NominalModel {
     let sonar = beam::learn(simulator.constant_reading, logs);
@@ -28,13 +28,13 @@ pub fn learn(simulator: &Simulator, first_echo: Option<FirstEchoLaw>, logs: &Log
         (law, seen)
     };
     let by_beam = sonar.clone().map(|beam| with_seen(SensorLaw::Beam(beam)));
-    let is_first_echo = |law: &FirstEchoLaw| {
+    let prefers_first_echo = |law: &FirstEchoLaw| {
         sonar.as_ref().zip(by_beam.as_ref()).is_some_and(|(beam, (_, seen))| {
             let [at_place, _] = place_bound::learn(seen);
-            sensor_law::is_first_echo(law, beam, at_place, logs)
+            sensor_law::prefers_first_echo(law, beam, at_place, logs)
         })
     };
-    let first_echo = first_echo.filter(is_first_echo);
+    let first_echo = first_echo.filter(prefers_first_echo);
     let (law, seen) = first_echo.clone().map(|law| with_seen(SensorLaw::FirstEcho(law))).or(by_beam).unzip();
     let seen = seen.unwrap_or_default();
     let familiar = law.as_ref().and_then(|law| familiar::learn(law, &seen, &logs.scene));
@@ -50,7 +50,7 @@ fn motion(simulator: &Simulator, logs: &Logs) -> Option<MotionBias> {
     }
     let scale = CommandScale::of(simulator.commands);
     let rows: Vec<Vec<f64>> = steps.iter().map(|s| features(s.speeds, scale.share()).to_vec()).collect();
-    // Few runs are cut into parts.
+    // If there are few runs, they are cut into parts.
     let parts = if logs.runs.len() < FOLDS { FOLDS } else { 1 };
     let part = |s: &samples::MotionSample| s.run + s.row * parts / logs.runs[s.run].rows.len();
     let folds: Vec<usize> = steps.iter().map(|s| part(s) % FOLDS).collect();
@@ -64,7 +64,7 @@ fn motion(simulator: &Simulator, logs: &Logs) -> Option<MotionBias> {
         (weights, scatter, ridge.strength.unwrap_or(STRENGTHS[0]))
     };
     let fits = Motion::from_fn(fit);
-    // Of absurd commands the products are too large to say anything.
+    // Absurd commands make the products overflow.
     let products = Some(products(&rows)).filter(|products| products.iter().all(|product| product.is_finite()));
     let precision = products.map(|products| Precision { products, prior: fits.each_ref().map(|fit| fit.2) });
     let scatter = fits.each_ref().map(|fit| fit.1);

@@ -1,5 +1,6 @@
-//! Learns how much of the chance in echoes belongs to the place: whether a grazing wall answers may be drawn anew for every
-//! reading, or be decided by where the sensor is. In the second case readings tell less of a sensor than their number.
+//! Learns how much of the randomness of echoes belongs to the place. Whether a grazing wall returns an echo may be drawn for
+//! every reading, or be determined by where the sensor is. In the second case the effective sample size of readings is
+//! smaller than their number.
 
 use rayon::prelude::*;
 
@@ -11,29 +12,29 @@ use mindgap_models::sonar::SensorLaw;
 use mindgap_models::sonar::echo_law::Surfaces;
 use mindgap_models::sonar::place::{Place, place_of};
 
-/// A reading that is farther off counts as this many standard deviations: wrong readings say nothing of readings.
-const FARTHEST: f64 = 3.0;
+/// Residuals are clamped to this many standard deviations, since wrong readings say nothing about the others.
+const LARGEST_RESIDUAL: f64 = 3.0;
 
-/// A row at which the robot was seen.
+/// A row with a pose.
 pub struct Seen {
-    /// Where the sensor was.
+    /// Pose of the sensor.
     pub sensor: Pose,
-    /// Which run.
+    /// Index of the run.
     pub run: usize,
     /// Probability of no reading.
     pub none: f64,
-    /// What was read, cm.
+    /// The reading, cm; `None` if there was none.
     pub echo_cm: Option<f64>,
-    /// Reading minus what was expected, if there is one.
+    /// Reading minus expected reading, cm, if there is one.
     pub off_cm: Option<f64>,
 }
 
-/// The shares of the echo rate and of the readings.
+/// Returns the shares of the variance that belong to the place: of the echo rate, and of the readings.
 pub fn learn(seen: &[Seen]) -> [f64; 2] {
     [rate(seen), value(seen)]
 }
 
-/// What the sensor said in its training logs, beside what its model expects.
+/// Returns the rows of training logs with the expectations of the sensor's law.
 pub fn seen(law: &SensorLaw, logs: &Logs) -> Vec<Seen> {
     let surfaces = Surfaces::new(logs.scene.sides());
     let rows: Vec<(usize, Row)> =
@@ -57,7 +58,7 @@ fn rate(seen: &[Seen]) -> f64 {
 
 fn value(seen: &[Seen]) -> f64 {
     let Some(scatter_cm) = scatter_cm(seen) else { return 0.0 };
-    let within = |off_cm: f64| (off_cm / scatter_cm).clamp(-FARTHEST, FARTHEST);
+    let within = |off_cm: f64| (off_cm / scatter_cm).clamp(-LARGEST_RESIDUAL, LARGEST_RESIDUAL);
     let off: Vec<(Place, usize, f64)> =
         seen.iter().filter_map(|row| Some((place_of(&row.sensor), row.run, within(row.off_cm?)))).collect();
     let middle = mean(off.iter().map(|(.., off)| *off));
@@ -71,14 +72,14 @@ fn value(seen: &[Seen]) -> f64 {
     intraclass::correlation(&off.iter().map(deviation).collect::<Vec<_>>())
 }
 
-/// The scatter of what is read about what was expected; none where there is none.
+/// Returns the scatter of readings about their expectations, cm; `None` if there is none.
 fn scatter_cm(seen: &[Seen]) -> Option<f64> {
     let scatter_cm = median(seen.iter().filter_map(|row| row.off_cm).map(f64::abs)) / QUARTILE;
     (scatter_cm > 0.0).then_some(scatter_cm)
 }
 
 impl Seen {
-    /// Reading or none minus the probability of one, and the standard deviation of that.
+    /// Returns the residual of the detection (1 for a reading, else 0, minus its probability), and its standard deviation.
     fn rate(&self) -> [f64; 2] {
         let off = if self.echo_cm.is_some() { self.none } else { self.none - 1.0 };
         [off, (self.none * (1.0 - self.none)).sqrt()]
@@ -91,7 +92,7 @@ mod tests {
     use mindgap_built_in_robot::{default_robot, record, training_room};
     use mindgap_foundations::executor::Serial;
 
-    /// The share of the echo rate that a simulator learns of the built-in robot's sensor.
+    /// Returns the share of the echo rate that a simulator learns for the built-in robot's sensor.
     fn learned(sensor: &str) -> f64 {
         let effects: Vec<_> = sensor.split_whitespace().map(|text| text.parse().expect("an effect")).collect();
         let logs = record(&default_robot(), &training_room(), 40, 60, &effects, 3).expect("room to drive");
@@ -100,7 +101,7 @@ mod tests {
     }
 
     #[test]
-    fn chance_that_belongs_to_the_place_is_told_from_chance_that_does_not() {
+    fn place_dependent_noise_is_distinguished_from_independent_noise() {
         let (free, bound) = (learned(""), learned("place_bound=0.95@7"));
         assert!(free < 0.06 && bound > 0.12, "{free} {bound}");
     }

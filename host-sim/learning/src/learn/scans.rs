@@ -1,4 +1,4 @@
-//! What a sensor heard, run by run, and how much of it repeats; and how far the poses of a run at one place are off.
+//! The readings of a sensor by run, how much of them is repetition, and the pose errors of runs at one place.
 
 use glam::DVec2;
 use rand::seq::SliceRandom;
@@ -8,7 +8,7 @@ use mindgap_foundations::geometry::{Pose, wrap_rad};
 use mindgap_foundations::random::generator;
 use mindgap_logs::{Logs, Robot};
 
-/// The rows of logs at which the robot was seen.
+/// The rows of logs that have a pose.
 #[derive(Clone, Debug)]
 pub struct Scans {
     robot: Robot,
@@ -16,40 +16,40 @@ pub struct Scans {
     pub runs: Vec<Vec<Heard>>,
 }
 
-/// What the sensor said at a row.
+/// The reading at a row.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Heard {
-    /// Where the robot was.
+    /// Pose of the robot.
     pub robot: Pose,
-    /// The reading, cm; none where there was none.
+    /// The reading, cm; `None` if there was none.
     pub echo_cm: Option<f64>,
 }
 
-/// A robot that stays within this of where it was does not move, as far as a tracker can tell, cm.
+/// A displacement below this is indistinguishable from rest for a tracker, cm.
 const UNMOVED_CM: f64 = 1.0;
-/// What is added to x and y, cm, and to headings, degrees.
+/// Offset of x and y, cm, and of the heading, degrees.
 pub type Offset = [f64; 3];
 
-/// Nothing is added.
+/// No offset.
 pub const UNCHANGED: Offset = [0.0; 3];
-/// How far the poses of a scan are off: a robot is placed by hand, nobody tracks its sensor's head, and a reading that is
-/// taken while the head turns lags behind.
+/// Prior standard deviations of the pose offset of a scan: the robot is placed by hand, its sensor's head is not tracked,
+/// and readings taken while the head turns lag behind.
 const DEVIATIONS: Offset = [1.5, 1.5, 4.0];
-/// Angles that are tried first, degrees; then steps along each coordinate in shares of its deviation.
+/// Heading offsets that are tried first, degrees; then steps along each coordinate, as shares of its deviation.
 const COARSE_DEG: [f64; 13] = [0.0, -2.0, 2.0, -4.0, 4.0, -6.0, 6.0, -8.0, 8.0, -10.0, 10.0, -12.0, 12.0];
 const FINE: [f64; 8] = [0.5, 0.5, 0.5, 0.25, 0.25, 0.25, 0.12, 0.06];
-/// So many offsets of a scan are tried.
+/// Number of offsets that are tried per scan.
 pub const TRIED: usize = COARSE_DEG.len() + 2 * DEVIATIONS.len() * FINE.len();
 
 impl Scans {
-    /// The rows of logs at which the robot was seen.
-    pub fn of(logs: &Logs) -> Self {
+    /// Returns the rows of logs that have a pose.
+    pub fn new(logs: &Logs) -> Self {
         let heard = |row: mindgap_logs::Row| Some(Heard { robot: row.pose?, echo_cm: row.echo_cm });
         let runs = logs.runs.iter().map(|run| run.rows.iter().filter_map(heard).collect()).collect();
         Scans { robot: logs.robot, runs }
     }
 
-    /// At most `most` of these rows, in order; which is a matter of `seed`.
+    /// Keeps a random sample of at most `most` rows, in order.
     pub fn sampled(mut self, most: usize, seed: u64) -> Self {
         let rows = self.rows().count();
         if rows > most {
@@ -61,24 +61,24 @@ impl Scans {
         self
     }
 
-    /// All rows.
+    /// Returns all rows.
     pub fn rows(&self) -> impl Iterator<Item = &Heard> {
         self.runs.iter().flatten()
     }
 
-    /// All rows, each with the offset of its run.
+    /// Returns all rows, each with the offset of its run.
     pub fn rows_with<'s>(&'s self, offsets: &'s [Offset]) -> Vec<(&'s Heard, &'s Offset)> {
         self.runs.iter().zip(offsets).flat_map(|(run, offset)| run.iter().map(move |row| (row, offset))).collect()
     }
 
-    /// The sensor of a robot to whose pose an offset is added.
+    /// Returns the sensor pose of a robot whose pose is shifted by an offset.
     pub fn sensor(&self, robot: &Pose, [x_cm, y_cm, deg]: &Offset) -> Pose {
         let position_cm = robot.position_cm + DVec2::new(*x_cm, *y_cm);
         self.robot.sensor_pose(&Pose { position_cm, heading_rad: wrap_rad(robot.heading_rad + deg.to_radians()) })
     }
 
-    /// How much a row counts: runs of equal readings of an unmoved sensor are one observation each, though their ends tell
-    /// of the beam's width and all rows are kept.
+    /// Returns the weight of a row. A series of equal readings of a sensor at rest counts as one observation; all its rows
+    /// are kept, since its ends indicate the width of the beam.
     pub fn weight(&self) -> f64 {
         let repeats = |pair: &[Heard]| {
             let [before, now] = pair else { return false };
@@ -89,15 +89,15 @@ impl Scans {
         (rows - repeated) as f64 / rows.max(1) as f64
     }
 
-    /// Whether a run is a scan: the robot stayed at one place.
+    /// Returns whether a run is a scan: the robot stayed at one place.
     pub fn is_scan(&self, run: usize) -> bool {
         let rows = &self.runs[run];
         let first = rows.first().map(|row| row.robot.position_cm);
         rows.iter().all(|row| first.is_some_and(|first| row.robot.position_cm.distance(first) < UNMOVED_CM))
     }
 
-    /// What to add to the poses of each scan so that it is likeliest for a sensor's `log_likelihood` of a reading at a pose;
-    /// nothing for runs that are no scans. Each is fitted on its own run.
+    /// Fits the pose offset of each run that is a scan, by maximum posterior probability given a sensor's `log_likelihood`
+    /// of a reading at a pose. Other runs have no offset.
     pub fn offsets(&self, log_likelihood: impl Fn(&Pose, Option<f64>) -> f64 + Sync) -> Vec<Offset> {
         let weight = self.weight();
         let score = |run: &[Heard], offset: &Offset| {

@@ -13,7 +13,8 @@ const WINDOW_CM: f32 = 1.5;
 /// Number of standard deviations by which a peak of wrong readings must exceed its neighbourhood.
 const STANDS_OUT: f64 = 6.0;
 
-/// Quantiles of residuals (logged minus predicted) by context. Cell borders are quantiles of the contexts along each axis.
+/// Returns the quantiles of residuals (logged minus predicted) by context. Cell borders are quantiles of the contexts along
+/// each axis.
 pub fn residual_quantiles(contexts: &[[f32; 2]], residuals: &[f32]) -> ResidualQuantiles {
     let edges = [0, 1].map(|axis| {
         let values = sorted(contexts.iter().map(|c| c[axis]));
@@ -40,12 +41,12 @@ pub fn residual_quantiles(contexts: &[[f32; 2]], residuals: &[f32]) -> ResidualQ
     quantiles
 }
 
-/// Variance components of a motion network's residuals in each cell: the robot's own process noise, as opposed to the
-/// tracker's measurement noise.
+/// Returns the variance components of a motion network's residuals in each cell: the robot's own process noise, as opposed
+/// to the tracker's measurement noise.
 ///
 /// The tracker's error at a row enters the steps before and after it with opposite signs, which gives neighbouring
 /// residuals a negative covariance. Noise that lasts while a command is held adds to the covariance of neighbours under
-/// one command. The rest of a cell's variance is independent in each step. All slices have one entry a residual:
+/// one command. The rest of a cell's variance is independent in each step. All slices have one entry per residual:
 /// `commands` are the inputs of the network, and `runs` the run that the residual comes from.
 pub fn variance_components(
     quantiles: &ResidualQuantiles,
@@ -77,7 +78,7 @@ pub fn variance_components(
         .collect()
 }
 
-/// The mean of at least [`FEWEST_TO_AVERAGE`] numbers.
+/// Returns the mean of at least [`FEWEST_TO_AVERAGE`] numbers.
 fn mean(values: impl Iterator<Item = f32>) -> Option<f32> {
     let (sum, count) = values.fold((0.0, 0), |(sum, count), v| (sum + f64::from(v), count + 1));
     (count >= FEWEST_TO_AVERAGE).then(|| (sum / count as f64) as f32)
@@ -107,12 +108,12 @@ pub fn constant_reading(echoes_cm: &[f32], predicted_cm: &[f32]) -> Option<Const
     outstanding.then(|| ConstantReading { value_cm, probability: (excess / echoes_cm.len() as f64) as f32 })
 }
 
-/// Whether a reading is closer to the constant one than to its prediction.
+/// Returns whether a reading is closer to the constant one than to its prediction.
 pub fn is_constant(constant: &ConstantReading, echo_cm: f32, predicted_cm: f32) -> bool {
     (echo_cm - constant.value_cm).abs() <= WINDOW_CM && (echo_cm - predicted_cm).abs() > FAR_OFF_CM
 }
 
-/// Equally likely representatives of values: the quantiles at the middles of equal shares.
+/// Returns equally likely representatives of values: the quantiles at the middles of equal shares.
 fn levels(values: &[f32]) -> Vec<f32> {
     let values = sorted(values.iter().copied());
     let at = |share: f64| values.get((share * values.len() as f64) as usize).copied().unwrap_or(0.0);
@@ -156,8 +157,8 @@ mod tests {
     fn measurement_noise_is_separated_from_process_noise() {
         let mut rng = generator(4, &[]);
         let mut error = || rng.random::<f32>() - 0.5;
-        // Sixty runs of commands held for four steps. Of six parts of the variance two are the tracker's, one is held with
-        // the command, and three are independent.
+        // Sixty runs of commands held for four steps. Two sixths of the variance belong to the tracker, one sixth persists
+        // with the command, and three sixths are independent.
         let (mut residuals, mut commands, mut runs) = (Vec::new(), Vec::new(), Vec::new());
         for run in 0..60 {
             let (mut before, mut lasting, mut command) = (error(), 0.0, [0.0; 2]);
@@ -181,7 +182,7 @@ mod tests {
     }
 
     #[test]
-    fn a_constant_reading_is_found_with_its_chance() {
+    fn constant_reading_is_found_with_its_probability() {
         let mut rng = generator(2, &[]);
         let predicted: Vec<f32> = (0..4000).map(|_| rng.random_range(15.0..200.0)).collect();
         let echoes: Vec<f32> = predicted
@@ -199,7 +200,7 @@ mod tests {
     }
 
     #[test]
-    fn scattered_wrong_readings_are_no_constant_one() {
+    fn scattered_wrong_readings_are_not_a_constant_reading() {
         let mut rng = generator(3, &[]);
         let predicted: Vec<f32> = (0..4000).map(|_| rng.random_range(15.0..200.0)).collect();
         let echoes: Vec<f32> = predicted

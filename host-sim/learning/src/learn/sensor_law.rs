@@ -1,4 +1,4 @@
-//! Chooses the law by which a diagnosis judges a sensor: the one that foretells readings of runs that it was not fitted to.
+//! Chooses the law by which a diagnosis judges a sensor: the one that better predicts readings of held-out runs.
 
 use rayon::prelude::*;
 
@@ -9,54 +9,55 @@ use mindgap_logs::Logs;
 use mindgap_models::sonar::echo_law::Surfaces;
 use mindgap_models::sonar::{FirstEchoLaw, SensorLaw, SonarModel};
 
-/// Whether the first-echo law foretells the sensor's readings, at poses as logged, better than a beam does: by more than runs
-/// differ in that, and so that it will in another room. Both have some twenty parameters and are fitted to other runs
-/// again, since what either makes of its own runs says little: five scans hold as few places as a beam has parameters for.
-/// `at_place` is the share of the chance of an echo that the beam leaves to the place.
-pub fn is_first_echo(first_echo: &FirstEchoLaw, beam: &SonarModel, at_place: f64, logs: &Logs) -> bool {
+/// Returns whether the first-echo law predicts the sensor's readings, at poses as logged, better than a beam: by more than
+/// the variation between runs, and so that the gain carries over to other rooms. Both have some twenty parameters and are
+/// refitted to the other runs, since the fit to their own runs says little: five scans hold as few places as a beam has
+/// parameters for. `at_place` is the share of the residual variance of the beam's echo rate that belongs to the place.
+pub fn prefers_first_echo(first_echo: &FirstEchoLaw, beam: &SonarModel, at_place: f64, logs: &Logs) -> bool {
     if logs.runs.len() < FEWEST_RUNS {
         return false;
     }
     let fold = |fold: usize| gains(first_echo, beam, logs, fold);
     let gains: Vec<f64> = (0..FOLDS.min(logs.runs.len())).into_par_iter().map(fold).collect::<Vec<_>>().concat();
-    is_worth_a_law(&gains, Scans::of(logs).rows().count(), at_place)
+    is_worth_a_law(&gains, Scans::new(logs).rows().count(), at_place)
 }
 
-/// Fewer runs say nothing of how runs differ.
+/// Minimum number of runs to estimate the variation between them.
 const FEWEST_RUNS: usize = 3;
-/// Every run is foretold once, from the runs of the other folds.
+/// Number of folds; each run is predicted once, from the runs of the other folds.
 const FOLDS: usize = 5;
-/// The simpler of two models is kept unless the other is better by more than this (Breiman and others 1984, Classification and
-/// Regression Trees, section 3.4.3): here the beam, which lanes of robots can draw.
+/// The simpler of two models is kept unless the other is better by more than this many standard errors (Breiman et al. 1984,
+/// Classification and Regression Trees, section 3.4.3). Here the simpler one is the beam, which the vectorised simulator
+/// draws.
 const STANDARD_ERRORS: f64 = 1.0;
-/// Models whose held-out scores differ by fewer nats a reading are alike: by so much a model's score differs from place to place
-/// and from team to team, and a diagnosis is made in another room. Many readings make a smaller difference certain, and the
-/// effects that are found are applied with the beam, so that another model costs them some of their meaning.
+/// Models whose held-out scores differ by fewer nats per reading count as equal: the score of one model varies this much
+/// between places and teams, and a diagnosis is made in another room. With many readings a smaller difference would be
+/// significant, but the effects found are applied with the beam, so another model would change their meaning.
 const ALIKE_NATS: f64 = 0.1;
-/// Where the place decides more than this share of the chance of an echo, rooms are what matters: a beam, which nothing but
-/// readings is known of, learns the training room, and the law has priors from eleven sensors. So any gain will do. Of sensors
-/// that draw anew the beam leaves up to 0.03 to the place, of those that do not 0.15 and more (`challenge make --place-bound`).
+/// If more than this share of the echo variance belongs to the place, any gain suffices: a beam has no priors and learns the
+/// training room, whereas the law has priors from eleven sensors. The share is up to 0.03 for sensors whose echoes are drawn
+/// independently, and 0.15 or more for the others (`challenge make --place-bound`).
 const PLACE_BOUND: f64 = 0.1;
 
-/// Whether gains on runs of so many readings in all, of whose chance the place decides a share, are more than chance and hold
-/// in other rooms.
+/// Returns whether held-out gains on runs with `readings` readings in all are significant and carry over to other rooms;
+/// `at_place` is the share of the echo variance that belongs to the place.
 fn is_worth_a_law(gains: &[f64], readings: usize, at_place: f64) -> bool {
     let gained: f64 = gains.iter().sum();
     let error = standard_error_of_sum(gains);
     log::info!(
-        "on runs that neither saw the first-echo law gains {gained:.1} nats on the beam for {readings} readings, with a standard \
-         error of {error:.1}; the place decides {at_place:.2} of what the beam leaves to chance"
+        "on held-out runs the first-echo law gains {gained:.1} nats over the beam for {readings} readings, with a standard \
+         error of {error:.1}; {at_place:.2} of the beam's residual variance belongs to the place"
     );
     gained > STANDARD_ERRORS * error && (at_place > PLACE_BOUND || gained > ALIKE_NATS * readings as f64)
 }
 
-/// By how many nats the first-echo law foretells each run of a fold better than the beam.
+/// Returns the gain of the first-echo law over the beam on each run of a fold, in nats.
 fn gains(first_echo: &FirstEchoLaw, beam: &SonarModel, logs: &Logs, fold: usize) -> Vec<f64> {
     let part = |held_out: bool| {
         let runs = logs.runs.iter().enumerate().filter(|(run, _)| (run % FOLDS == fold) == held_out);
         Logs { runs: runs.map(|(_, run)| run.clone()).collect(), ..logs.clone() }
     };
-    let (others, held_out) = (part(false), Scans::of(&part(true)));
+    let (others, held_out) = (part(false), Scans::new(&part(true)));
     let first_echo = SensorLaw::FirstEcho(echo_law::learn_from(first_echo, &others));
     let beam = SensorLaw::Beam(beam::learn_from(beam, &others));
     let surfaces = Surfaces::new(logs.scene.sides());
@@ -86,11 +87,11 @@ mod tests {
         simulator.sensor_law().expect("enough readings")
     }
 
-    /// The built-in robot's sensor follows neither, so that the beam, which lanes of robots can draw, is as good.
+    /// The built-in robot's sensor follows neither law, so the simpler beam is kept.
     #[test]
-    fn a_sensor_is_judged_by_the_law_that_it_follows() {
+    fn sensor_is_judged_by_the_law_that_it_follows() {
         assert!(matches!(law_of(&scans(1, MIXED_UP_DEG)), SensorLaw::FirstEcho(_)));
-        // Two runs do not say how runs differ.
+        // Two runs are too few to estimate the variation between runs.
         let mut few = scans(1, MIXED_UP_DEG);
         few.runs.truncate(2);
         assert!(matches!(law_of(&few), SensorLaw::Beam(_)));
@@ -98,17 +99,17 @@ mod tests {
         assert!(matches!(law_of(&driven), SensorLaw::Beam(_)));
     }
 
-    /// Runs of a hundred readings that gain so much each, and as much more or less in turn.
+    /// The runs have a hundred readings each, and their gains are alternately `scatter` above and below `gain`.
     #[test]
-    fn a_law_has_to_gain_more_than_chance_and_to_hold_in_other_rooms() {
+    fn law_must_gain_significantly_and_carry_over_to_other_rooms() {
         let is_worth = |gain: f64, scatter: f64, at_place: f64| {
             let gains: Vec<f64> =
                 (0..50).map(|run| if run % 2 == 0 { gain + scatter } else { gain - scatter }).collect();
             is_worth_a_law(&gains, 5000, at_place)
         };
         assert!(is_worth(15.0, 20.0, 0.0));
-        assert!(!is_worth(15.0, 200.0, 0.2), "chance");
-        assert!(!is_worth(5.0, 1.0, 0.02), "certain, but less than rooms differ");
-        assert!(is_worth(5.0, 1.0, 0.2), "of a sensor whose beam would be that of one room");
+        assert!(!is_worth(15.0, 200.0, 0.2), "not significant");
+        assert!(!is_worth(5.0, 1.0, 0.02), "significant, but less than the variation between rooms");
+        assert!(is_worth(5.0, 1.0, 0.2), "a beam would learn the training room");
     }
 }

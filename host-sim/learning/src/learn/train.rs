@@ -93,7 +93,7 @@ pub fn train(
     )?;
     let mut echo_value = network_trainer.train("echo_value", &data.echo_value, shapes.echo_value, reading, sonar)?;
     let constant_reading = echo_value.as_mut().and_then(|value| split_constant_reading(value, &data.echo_value));
-    let missing = for_want_of_a_sensor(network_trainer.missing, &logs.robot);
+    let missing = blame_missing_sensor(network_trainer.missing, &logs.robot);
     if missing.len() == NETWORKS.len() {
         let reasons: Vec<String> = missing.iter().map(|m| format!("{}: {}", m.network, m.reason)).collect();
         return Err(Error::new(format!("no network can be trained on these logs ({})", reasons.join("; "))));
@@ -136,7 +136,7 @@ pub fn train(
     Ok(simulator)
 }
 
-/// The networks that logs do not support, and why.
+/// Returns the networks that logs do not support, and why.
 pub fn unsupported(logs: &Logs) -> Vec<Missing> {
     let (data, runs) = (Datasets::from_logs(logs), logs.runs.len());
     let reasons = [
@@ -149,11 +149,11 @@ pub fn unsupported(logs: &Logs) -> Vec<Missing> {
     let missing =
         |(network, reason): (&str, Option<String>)| Some(Missing { network: network.into(), reason: reason? });
     let missing = reasons.into_iter().filter_map(missing).collect();
-    for_want_of_a_sensor(missing, &logs.robot)
+    blame_missing_sensor(missing, &logs.robot)
 }
 
-/// Where the robot has no range sensor, that is why what it would report is not learned.
-fn for_want_of_a_sensor(mut missing: Vec<Missing>, robot: &Robot) -> Vec<Missing> {
+/// Gives the lack of a range sensor, if the robot has none, as the reason why its networks are missing.
+fn blame_missing_sensor(mut missing: Vec<Missing>, robot: &Robot) -> Vec<Missing> {
     if robot.ultrasonic.is_none() {
         let of_sensor = missing.iter_mut().filter(|missing| missing.network.starts_with("echo"));
         of_sensor.for_each(|missing| {
@@ -175,7 +175,7 @@ fn set_residual_quantiles(learned: &mut Option<Learned<4>>, data: &Dataset<4>, c
 }
 
 impl Shapes {
-    /// The hidden layer of the network of this name.
+    /// Returns the hidden layer of the network of this name.
     pub fn of(&mut self, network: &str) -> Option<&mut Shape> {
         match network {
             "turn" => Some(&mut self.turn),
@@ -188,13 +188,13 @@ impl Shapes {
     }
 }
 
-/// Whether a run is held out of training, so that its residuals are unbiased; none is when there are too few runs.
+/// Returns whether a run is held out of training, so that its residuals are unbiased; none is when there are too few runs.
 pub fn is_held_out(run: usize, runs: usize) -> bool {
     runs >= HELD_OUT && run % HELD_OUT == HELD_OUT - 1
 }
 
 impl Trainer {
-    /// Its name on the command line.
+    /// Returns its name on the command line.
     pub fn name(&self) -> &'static str {
         match self {
             Trainer::Paper(_) => "paper",
@@ -257,12 +257,12 @@ impl NetworkTrainer<'_> {
     }
 }
 
-/// The samples of the runs that are not held out.
+/// Returns the samples of the runs that are not held out.
 fn fitted_runs<const N: usize>(data: &Dataset<N>, runs: usize) -> Dataset<N> {
     data.of_runs(|run| !is_held_out(run, runs))
 }
 
-/// Why a data set cannot train a network; `None` if it can.
+/// Returns the reason why a data set cannot train a network; `None` if it can.
 fn reason_against<const N: usize>(data: &Dataset<N>) -> Option<String> {
     if data.len() < FEWEST_SAMPLES {
         return Some(format!("the logs hold {} samples for it, fewer than {FEWEST_SAMPLES}", data.len()));
@@ -275,7 +275,7 @@ fn reason_against<const N: usize>(data: &Dataset<N>) -> Option<String> {
     flat(&targets).then(|| format!("its target is {} in every sample", targets.start()))
 }
 
-/// Separates a constant wrong reading from the others and estimates the noise of those anew.
+/// Separates a constant wrong reading from the others and estimates the noise of those again.
 fn split_constant_reading(value: &mut Learned<2>, data: &Dataset<2>) -> Option<ConstantReading> {
     let predicted: Vec<f32> = data.inputs.iter().map(|x| value.network.evaluate(*x)).collect();
     let constant = scatter::constant_reading(&data.targets, &predicted)?;

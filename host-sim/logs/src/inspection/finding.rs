@@ -34,6 +34,7 @@ pub struct RunRows {
 #[serde(rename_all = "snake_case")]
 pub enum Handling {
     /// The rows were excluded.
+    #[serde(rename = "left_out")]
     Excluded,
     /// The numbers were corrected.
     Corrected,

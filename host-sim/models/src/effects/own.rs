@@ -29,8 +29,8 @@ use variables::{Circumstances, Stage};
 const VARIANT: &str = "own";
 /// How one checks an own effect.
 const CHECK: &str = "Measure on the robot what the definition of this effect of your own describes.";
-/// A share of the way from nominal to a bound at which a fit starts unless it is told otherwise: near enough that what is
-/// likely there is like nominal, and far enough that a direction shows.
+/// Default start of a fit, as a fraction of the range from nominal to a bound: near enough that the likelihood still
+/// resembles the nominal one, and far enough that the gradient has a direction.
 const FIRST_GUESS: f64 = 0.1;
 /// The readings between which a change of readings is a straight line, cm.
 const SPAN_CM: f64 = 100.0;

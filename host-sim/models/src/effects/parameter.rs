@@ -1,7 +1,8 @@
 //! The parameters of effects: named, with a unit, physical bounds and a prior.
 //!
 //! An effect computes with values, which suit a fit: a signed loss, a wheel speed, log-odds. Files and answers hold
-//! [settings](Setting) instead, by the names of the table in docs/reference/effects.md: a side and a factor, a command, a factor.
+//! [settings](Setting) instead, by the names of the table in docs/reference/effects.md: a side and a factor, a command, a
+//! factor.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -242,12 +243,12 @@ impl Parameter {
     pub(super) fn reported_between(&self, value: f64, [low, high]: [f64; 2], robot: &Robot) -> Vec<(String, Value)> {
         let numbers = |value: f64| {
             let reported = self.reported(value, robot).into_iter();
-            reported.filter_map(|(name, told)| Some((name, told.as_f64()?))).next()
+            reported.filter_map(|(name, number)| Some((name, number.as_f64()?))).next()
         };
-        let Some((name, told)) = numbers(value) else { return vec![] };
+        let Some((name, number)) = numbers(value) else { return vec![] };
         if let Report::Direction = self.report {
             // Beyond half a turn where the direction is near it: 179 (176 to 182).
-            let ends = [low, high].map(|end| ((told + end - value) * 10.0).round() / 10.0);
+            let ends = [low, high].map(|end| ((number + end - value) * 10.0).round() / 10.0);
             return vec![(name, json!(ends))];
         }
         // A magnitude is least where nothing is changed.
@@ -340,19 +341,19 @@ mod tests {
     fn values_are_reported_by_the_names_of_the_table() {
         // 0.4 s per step, and 50 cm/s at a command of 100.
         let robot = Robot { step_ms: 400.0, full_speed_cm_s: 50.0, ..mindgap_built_in_robot::default_robot() };
-        let told = |report, value| -> Vec<(String, Value)> { LENGTH.report(report).reported(value, &robot) };
+        let reported = |report, value| -> Vec<(String, Value)> { LENGTH.report(report).reported(value, &robot) };
         let one = |name: &str, value: f64| vec![(String::from(name), json!(value))];
         let side = |side: &str, name: &str, value: f64| vec![("side".into(), json!(side)), (name.into(), json!(value))];
-        assert_eq!(told(Report::Hidden, 3.0), []);
-        assert_eq!(told(Report::Value, 2.7459), one("cm", 2.75));
-        assert_eq!(told(Report::Direction, 270.04), one("cm", -90.0));
-        assert_eq!(told(Report::SideAndLoss, 0.25), side("left", "loss", 0.25));
-        assert_eq!(told(Report::SideAndLoss, -0.25), side("right", "loss", 0.25));
-        assert_eq!(told(Report::SideAndFactor, -0.25), side("right", "factor", 0.75));
-        assert_eq!(told(Report::Command, 10.0), one("command", 20.0));
-        assert_eq!(told(Report::Onset, 10.0), one("onset", 20.0));
-        assert_eq!(told(Report::Steps, 600.0), one("steps", 1.5));
-        assert_eq!(told(Report::OddsFactor, libm::log(2.0)), one("factor", 0.5));
+        assert_eq!(reported(Report::Hidden, 3.0), []);
+        assert_eq!(reported(Report::Value, 2.7459), one("cm", 2.75));
+        assert_eq!(reported(Report::Direction, 270.04), one("cm", -90.0));
+        assert_eq!(reported(Report::SideAndLoss, 0.25), side("left", "loss", 0.25));
+        assert_eq!(reported(Report::SideAndLoss, -0.25), side("right", "loss", 0.25));
+        assert_eq!(reported(Report::SideAndFactor, -0.25), side("right", "factor", 0.75));
+        assert_eq!(reported(Report::Command, 10.0), one("command", 20.0));
+        assert_eq!(reported(Report::Onset, 10.0), one("onset", 20.0));
+        assert_eq!(reported(Report::Steps, 600.0), one("steps", 1.5));
+        assert_eq!(reported(Report::OddsFactor, libm::log(2.0)), one("factor", 0.5));
     }
 
     #[test]

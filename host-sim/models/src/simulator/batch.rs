@@ -19,13 +19,13 @@ use mindgap_foundations::lanes::{Lanes, WIDEST};
 use robots::Robots;
 
 impl Environment<'_> {
-    /// Simulates runs side by side; the outcomes are in the order of the requests.
+    /// Simulates runs side by side and returns their outcomes, in the order of the requests.
     pub fn run(&self, requests: &[RolloutRequest]) -> Vec<RolloutOutcome> {
         self.run_watched(requests, |_, _| {})
     }
 
-    /// The same; `watch` is told every point of every run's trajectory, each run's in their order, by the number of its
-    /// request.
+    /// As [`run`](Self::run); `watch` receives every point of every trajectory, in order within each run, with the index of
+    /// its request.
     pub fn run_watched(
         &self,
         requests: &[RolloutRequest],
@@ -37,7 +37,7 @@ impl Environment<'_> {
         outcomes.into_iter().flatten().collect()
     }
 
-    /// Simulates one run and keeps its trajectory.
+    /// Simulates one run and returns its outcome and trajectory.
     pub fn trace(&self, request: RolloutRequest) -> (RolloutOutcome, Vec<TrajectoryPoint>) {
         let mut trajectory = Vec::new();
         let outcomes = self.run_watched(&[request], |_, point| trajectory.push(point));
@@ -45,7 +45,7 @@ impl Environment<'_> {
     }
 }
 
-/// Runs `requests`; `finish` is told the outcome of each by its number, `watch` every trajectory point by the same.
+/// Runs `requests`; `finish` receives the outcome of each with its index, and `watch` every trajectory point.
 struct Batch<'a, W, F> {
     pub environment: &'a Environment<'a>,
     pub requests: &'a [RolloutRequest<'a>],

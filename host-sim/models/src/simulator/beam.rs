@@ -1,8 +1,8 @@
 //! The sensor as its logs show it beyond the networks, for lanes of robots: a fan of rays, each of which comes back or
 //! does not; the nearest that does gives the reading (see [`SonarModel`]).
 //!
-//! The networks know the axis alone, so what a real beam meets beside it is chance to them, drawn anew at each step.
-//! Here it is a matter of where the robot stands.
+//! The networks know the axis alone, so what a real beam meets off axis is noise to them, drawn independently at each step.
+//! Here it follows from where the robot stands.
 //!
 //! The probabilities are those of [`Outcomes`](crate::sonar::Outcomes). A lane does not work out all candidates: it
 //! draws whether each ray comes back and keeps the nearest, then one draw falls to an outcome by the [`MixingWeights`].

@@ -12,7 +12,7 @@ pub struct Draws<S: Simd> {
     state: [S::u32s; 4],
 }
 
-/// The states of as many generators, one lane after the other, so that single lanes can be seeded anew.
+/// The states of as many generators, one lane after the other, so that single lanes can be reseeded.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Seeds([[u32; WIDEST]; 4]);
 

@@ -65,7 +65,8 @@ impl RolloutReport {
         Self::of_robots(std::slice::from_ref(environment), scene, controller, runs, seed, |_, _| ())
     }
 
-    /// The same with several robots that take turns; there is at least one. `watch` is told how many of the runs are done.
+    /// As [`new`](Self::new), with several robots that take turns; there must be at least one. `watch` receives the number
+    /// of finished runs and of all runs.
     pub fn of_robots(
         robots: &[Environment],
         scene: &Scene,

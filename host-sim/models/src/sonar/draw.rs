@@ -4,15 +4,15 @@ use super::outcomes::{Component, Distribution, Outcomes};
 use mindgap_foundations::statistics::student;
 
 impl Outcomes {
-    /// A reading, cm, within the sensor's range; none where there is no reading. `uniform` draws from [0, 1). Where
-    /// readings do not scatter, those about a value are that value.
+    /// Draws a reading, cm, within the sensor's range; `None` if there is no reading. `uniform` draws from [0, 1). Without
+    /// scatter, readings about a value equal that value.
     pub fn draw(&self, scatters: bool, mut uniform: impl FnMut() -> f64) -> Option<f64> {
         let [low, high] = self.range_cm;
         let component = self.pick(uniform())?;
         Some(component.distribution.draw(scatters, uniform).clamp(low, high))
     }
 
-    /// The component that a uniform draw from [0, 1) falls to; none where there is no reading.
+    /// Returns the component that a uniform draw from [0, 1) selects; `None` if there is no reading.
     pub fn pick(&self, draw: f64) -> Option<&Component> {
         let mut above = draw;
         self.components.iter().find(|component| {

@@ -1,6 +1,6 @@
 //! The first-echo law: a reading is the first echo that rises above the sensor's threshold.
 //!
-//! A wide beam meets many things at once: walls along its rays, the feet of the perpendiculars on walls, and corners
+//! A wide beam hits many targets at once: walls along its rays, the feet of the perpendiculars on walls, and corners
 //! (`targets`). Each returns an echo of some strength, in units of the threshold's logistic noise:
 //!
 //! ```text
@@ -8,26 +8,27 @@
 //! s = G − n ln d − (β/b)^q + c         a corner, or an edge
 //! ```
 //!
-//! with the distance d in metres, the angle β off the axis and the incidence ι. In the order of distance, with σ the logistic
-//! function and S_j the largest strength up to target j,
+//! with the distance d in metres, the angle β off the axis and the incidence ι. In the order of distance, with σ the
+//! logistic function and S_j the largest strength up to target j,
 //!
 //! ```text
 //! P(first echo is j)   = σ(S_j) − σ(S_{j−1})
 //! P(no direct echo)    = 1 − σ(S_last)
 //! ```
 //!
-//! so that reading, loss and masking come from one law: all targets share one threshold, and one behind another is heard
-//! only where it is the stronger. The reading of target j scatters by Student's t distribution about o + k d + e (β/10°)²,
-//! with the scale s₀ exp(a d + c β/10°) and, along walls, with what lies between two rays.
+//! so that reading, loss and masking follow from one law: all targets share one threshold, and a target behind another is
+//! heard only if it is stronger. The reading of target j scatters by Student's t distribution about o + k d + e (β/10°)²,
+//! with the scale s₀ exp(a d + c β/10°) and, along walls, by the spacing of the rays.
 //!
-//! Where no direct echo comes there is another reading with some probability, longer or shorter than what the axis meets
-//! (echoes by detours), else none. A ghost, a weak echo from the robot itself, stands before all that is farther. With a
-//! small probability a reading has nothing to do with any of this.
+//! Without a direct echo there is another reading with some probability, longer or shorter than the distance along the axis
+//! (echoes by detours), else none. A ghost, a weak echo from the robot itself, precedes all farther echoes. With a small
+//! probability a reading is random.
 //!
-//! The law, its parameters and their spread over sensors were found on the scans of eleven LEGO NXT sensors; `docs/explanation/sonar.md`
-//! tells them. Planes that answer near their normal, and corners, are those of Kuc and Siegel (1987), Physically based
-//! simulation model for acoustic sensor robot navigation, IEEE PAMI 9; constant distance over a range of directions those of
-//! Leonard and Durrant-Whyte (1991), Mobile robot localization by tracking geometric beacons, IEEE Trans. Robot. Autom. 7.
+//! The law, its parameters and their spread over sensors were found on the scans of eleven LEGO NXT sensors;
+//! `docs/explanation/sonar.md` describes them. Planes that return echoes near their normal, and corners, follow Kuc and
+//! Siegel (1987), Physically based simulation model for acoustic sensor robot navigation, IEEE PAMI 9; constant distance
+//! over a range of directions follows Leonard and Durrant-Whyte (1991), Mobile robot localization by tracking geometric
+//! beacons, IEEE Trans. Robot. Autom. 7.
 
 mod rays;
 mod readings;
@@ -56,17 +57,17 @@ pub struct FirstEchoLaw {
     pub beam_power: f64,
     /// i₀: incidence at which a wall has lost about one unit of strength, degrees.
     pub specular_deg: f64,
-    /// f: the most that a wall loses by its incidence.
+    /// f: largest loss of a wall by its incidence.
     pub oblique_loss: f64,
-    /// Strength of a concave corner against a wall that faces the sensor.
+    /// Strength of a concave corner relative to a wall that faces the sensor.
     pub corner: f64,
-    /// Strength of a convex edge, or of a wall's free end.
+    /// Strength of a convex edge, or of a wall's free end, relative to the same.
     pub edge: f64,
     /// o: reading minus distance on the axis, cm.
     pub offset_cm: f64,
-    /// k: reading over distance.
+    /// k: ratio of reading to distance.
     pub scale: f64,
-    /// e: what a reading is longer by at 10 degrees off the axis, where the threshold is crossed later, cm.
+    /// e: increase of a reading at 10 degrees off the axis, where the threshold is crossed later, cm.
     pub off_axis_cm: f64,
     /// s₀: scale of the scatter at the sensor, cm.
     pub scatter_cm: f64,
@@ -76,13 +77,13 @@ pub struct FirstEchoLaw {
     pub scatter_off_axis: f64,
     /// Probability that a direct echo is dropped.
     pub p_dropout: f64,
-    /// Probability of another reading where there is no direct echo.
+    /// Probability of another reading if there is no direct echo.
     pub p_other: f64,
-    /// Probability that this reading is longer than what the axis meets, and not shorter.
+    /// Probability that this reading is longer, not shorter, than the distance along the axis.
     pub p_long_given_other: f64,
-    /// Probability of the ghost where nothing nearer is heard.
+    /// Probability of the ghost if nothing nearer is heard.
     pub p_ghost: f64,
-    /// Its reading, cm.
+    /// Reading of the ghost, cm.
     pub ghost_cm: f64,
     /// Probability of a random answer, as often none as a reading.
     pub p_stray: f64,
@@ -90,14 +91,14 @@ pub struct FirstEchoLaw {
     pub range_cm: [f64; 2],
 }
 
-/// An ideal ray's echo comes back for certain: in units of the threshold's noise.
+/// Strength of an ideal ray's echo, practically certain, in units of the threshold's noise.
 const CERTAIN: f64 = 6.0;
-/// An ideal ray is a twentieth as wide as a usual beam, degrees: nothing beside the axis is heard.
+/// Width of an ideal ray, degrees: a twentieth of a usual beam, so that nothing off axis is heard.
 const RAY_DEG: f64 = 8.7 / 20.0;
 
 impl FirstEchoLaw {
-    /// The textbook's ideal ray: all that it meets returns it, however far and however slanted; `p_dropout` of the echoes are
-    /// lost, and readings scatter.
+    /// Returns the textbook's ideal ray: every surface returns it, at any distance and incidence. A share `p_dropout` of the
+    /// echoes is lost, and readings scatter by `scatter_cm`.
     pub fn ideal_ray(scatter_cm: f64, p_dropout: f64, range_cm: [f64; 2]) -> Self {
         FirstEchoLaw {
             gain: CERTAIN,
@@ -124,12 +125,12 @@ impl FirstEchoLaw {
         }
     }
 
-    /// Whether it is such a ray.
+    /// Returns whether it is an ideal ray.
     pub fn is_ray(&self) -> bool {
         *self == FirstEchoLaw::ideal_ray(self.scatter_cm, self.p_dropout, self.range_cm)
     }
 
-    /// Whether the numbers can be those of a sensor, so that every outcome has a probability.
+    /// Returns whether the parameters are those of a possible sensor, so that every outcome has a probability.
     pub fn is_sound(&self) -> bool {
         let FirstEchoLaw { p_dropout, p_other, p_long_given_other, p_ghost, p_stray, .. } = *self;
         let FirstEchoLaw { beam_deg, beam_power, specular_deg, oblique_loss, scatter_cm, .. } = *self;

@@ -1,10 +1,10 @@
-//! Readings from where others were taken before: what a pose in a room does to a sensor beyond its law comes again there.
+//! Readings at poses where others were taken before: what a pose in a room does to a sensor beyond its law repeats there.
 //!
-//! Whether there is an echo is decided for a pose by a share ρ of its chance, and the rest is drawn anew for every reading:
-//! after h echoes of n, where each was expected with probability p, the next one comes with probability (κ p + h) / (κ + n)
-//! with κ = (1 − ρ) / ρ, the mean of a beta-binomial law whose intraclass correlation is ρ. What an echo reads is one of the
-//! readings before or drawn from the sensor's law, with weights 1 each and κ (Blackwell and MacQueen 1973, Annals of
-//! Statistics 1: the urn scheme of a Dirichlet process).
+//! A share ρ of the variance of an echo's occurrence belongs to the pose, and the rest is drawn independently for every
+//! reading: after h echoes of n, each expected with probability p, the probability of the next one is (κ p + h) / (κ + n)
+//! with κ = (1 − ρ) / ρ, the mean of a beta-binomial law whose intraclass correlation is ρ. The value of an echo is that of
+//! one of the readings before or drawn from the sensor's law, with weights 1 each and κ (Blackwell and MacQueen 1973, Annals
+//! of Statistics 1: the urn scheme of a Dirichlet process).
 
 use serde::{Deserialize, Serialize};
 
@@ -15,104 +15,104 @@ use super::{SensorLaw, View};
 use mindgap_foundations::geometry::{Pose, Wall};
 use mindgap_foundations::statistics::summary::log_odds;
 
-/// The readings of training logs that came from the same poses again and again.
+/// The readings of training logs that revisit the same poses.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FamiliarPoses {
-    /// The walls of the room, both ends of each, cm: in another one nothing is familiar.
+    /// The walls of the room, both ends of each, cm. In other rooms no pose is familiar.
     pub walls_cm: Vec<[f64; 4]>,
-    /// How readings come again.
+    /// How readings repeat.
     pub law: RepeatLaw,
-    /// Share of what earlier readings leave open, of the echo rate and of the readings, that readings at a place have in
-    /// common all the same: a robot is never put back just where it was.
+    /// Share of the residual variance given earlier readings, of the echo rate and of the readings, that readings at a place
+    /// still have in common: a robot is never put back exactly where it was.
     pub left_share: [f64; 2],
     /// The readings.
     pub readings: Vec<PastReading>,
 }
 
-/// How readings come again at a pose.
+/// How readings repeat at a pose.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RepeatLaw {
-    /// Share of the chance of an echo that belongs to the pose.
+    /// Share of the variance of an echo's occurrence that belongs to the pose, 0..=1.
     pub rate_share: f64,
-    /// The same of what is read.
+    /// Share of the variance of the reading that belongs to the pose, 0..=1.
     pub value_share: f64,
-    /// Scale at which a reading comes again, cm.
+    /// Scale of the scatter of a repeated reading, cm.
     pub scale_cm: f64,
 }
 
-/// A reading of the training logs, or none.
+/// A row of the training logs: a reading, or none.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PastReading {
-    /// Where the sensor was: x and y in cm, heading in rad.
+    /// Pose of the sensor: x and y in cm, heading in rad.
     pub sensor: [f64; 3],
     /// Probability of an echo by the sensor's law.
     pub p_echo: f64,
-    /// What was read, cm.
+    /// The reading, cm; `None` if there was none.
     pub echo_cm: Option<f64>,
 }
 
-/// Familiar poses of a room that one is in.
-pub struct Recollection {
+/// The readings at familiar poses of the current room.
+pub struct PoseMemory {
     law: RepeatLaw,
     /// See [`FamiliarPoses::left_share`].
     pub left_share: [f64; 2],
     readings: PoseGrid<PastReading>,
 }
 
-/// What is known of a pose.
+/// Knowledge of a pose from earlier readings.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Familiarity {
     /// Added to the log-odds of every ray.
     log_odds: f64,
-    /// What was read, cm.
+    /// Earlier readings, cm.
     readings_cm: Vec<f64>,
-    /// Probability that an echo reads as one of them did.
+    /// Probability that an echo repeats one of them.
     p_again: f64,
-    /// Scale at which it does, cm.
+    /// Scale of the scatter of a repeated reading, cm.
     scale_cm: f64,
 }
 
-/// An echo that is as good as certain, or as good as impossible, says no more than a thousand to one.
+/// Bound of the probability of an echo: certainty counts as odds of a thousand to one.
 const MOST_CERTAIN: f64 = 0.999;
 
 impl FamiliarPoses {
-    /// Walls as they stand in files.
+    /// Returns walls in the format of files, cm.
     pub fn walls_cm(walls: &[Wall]) -> Vec<[f64; 4]> {
         walls.iter().map(|wall| [wall.from_cm.x, wall.from_cm.y, wall.to_cm.x, wall.to_cm.y]).collect()
     }
 }
 
 impl PastReading {
-    /// Where the sensor was.
+    /// Returns the pose of the sensor.
     pub fn pose(&self) -> Pose {
         let [x_cm, y_cm, heading_rad] = self.sensor;
         Pose::new(x_cm, y_cm, heading_rad)
     }
 }
 
-impl Recollection {
-    /// None in another room than that of the familiar poses.
-    pub fn of(familiar: &FamiliarPoses, walls: &[Wall]) -> Option<Self> {
+impl PoseMemory {
+    /// Loads the familiar poses; `None` if these are not the walls of their room.
+    pub fn for_room(familiar: &FamiliarPoses, walls: &[Wall]) -> Option<Self> {
         let FamiliarPoses { law, left_share, .. } = *familiar;
         let readings = || PoseGrid::new(familiar.readings.iter().map(|reading| (reading.pose(), *reading)));
         let is_here = familiar.walls_cm == FamiliarPoses::walls_cm(walls);
-        is_here.then(|| Recollection { law, left_share, readings: readings() })
+        is_here.then(|| PoseMemory { law, left_share, readings: readings() })
     }
 
-    /// What is known of a pose; none where nothing was read nearby.
+    /// Returns the knowledge of a pose; `None` if there are no readings near it.
     pub fn at(&self, sensor: &Pose) -> Option<Familiarity> {
-        Familiarity::of(self.readings.near(sensor), &self.law)
+        Familiarity::from_readings(self.readings.near(sensor), &self.law)
     }
 }
 
-/// The outcomes of a reading of `view`, by what is `known` of the pose, if anything is.
+/// Returns the outcomes of a reading of `view`, given the knowledge of the pose, if any.
 pub fn outcomes(known: Option<&Familiarity>, law: &SensorLaw, view: &View, change: &Perturbation) -> Outcomes {
     known.map_or_else(|| law.outcomes(view, change), |known| known.outcomes(law, view, change))
 }
 
 impl Familiarity {
-    /// What readings near a pose tell of it; none where there are none.
-    pub fn of<'r>(readings: impl Iterator<Item = &'r PastReading>, law: &RepeatLaw) -> Option<Self> {
+    /// Infers the knowledge of a pose from readings near it; `None` if there are none.
+    pub fn from_readings<'r>(readings: impl Iterator<Item = &'r PastReading>, law: &RepeatLaw) -> Option<Self> {
         let (mut rows, mut expected, mut readings_cm) = (0.0, 0.0, Vec::new());
         for past in readings {
             rows += 1.0;
@@ -130,7 +130,7 @@ impl Familiarity {
         })
     }
 
-    /// The outcomes of a reading of `view`. The readings that may come again stand last among the components.
+    /// Returns the outcomes of a reading of `view`. Repeated readings are the last components.
     fn outcomes(&self, law: &SensorLaw, view: &View, change: &Perturbation) -> Outcomes {
         let change = Perturbation { attenuation: change.attenuation - self.log_odds, ..*change };
         let mut outcomes = law.outcomes(view, &change);
@@ -169,7 +169,7 @@ mod tests {
     }
 
     fn recalled(share: f64, readings: &[PastReading]) -> Familiarity {
-        let here = Recollection::of(&familiar(share, readings), &training_room().sides()).expect("the same room");
+        let here = PoseMemory::for_room(&familiar(share, readings), &training_room().sides()).expect("the same room");
         here.at(&READING.pose()).expect("a familiar pose")
     }
 
@@ -183,9 +183,9 @@ mod tests {
     }
 
     #[test]
-    fn what_belongs_to_the_pose_alone_comes_again() {
+    fn readings_repeat_if_all_variance_belongs_to_the_pose() {
         let familiarity = recalled(1.0, &[READING, PastReading { echo_cm: Some(94.0), ..READING }]);
-        // Two of two, where 0.8 were expected: as good as certain, ln(999) against ln(4).
+        // Two of two, where 0.8 were expected: almost certain, ln(999) against ln(4).
         assert!((familiarity.log_odds - libm::log(999.0) + libm::log(4.0)).abs() < 1e-9);
         assert!((outcomes(&familiarity, &Perturbation::NONE).mean_hit_cm().expect("echoes") - 92.0).abs() < 1e-9);
         let change = Perturbation { gain: 1.1, offset_cm: 2.0, ..Perturbation::NONE };
@@ -193,7 +193,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_drawn_anew_tells_nothing() {
+    fn independent_readings_change_nothing() {
         let law = SensorLaw::Beam(SENSORS[0].clone());
         let (known, unknown) =
             (outcomes(&recalled(0.0, &[READING]), &PERTURBED), law.outcomes(&view(&law), &PERTURBED));
@@ -212,18 +212,18 @@ mod tests {
     }
 
     #[test]
-    fn one_reading_counts_as_much_as_the_law_where_the_shares_are_equal() {
+    fn one_reading_weighs_as_much_as_the_law_at_a_share_of_one_half() {
         assert!((recalled(0.5, &[READING]).p_again - 0.5).abs() < 1e-12);
         assert_eq!(recalled(0.5, &[PastReading { echo_cm: None, ..READING }]).p_again, 0.0);
     }
 
     #[test]
-    fn nothing_is_familiar_elsewhere() {
+    fn other_rooms_and_poses_are_unfamiliar() {
         let familiar = familiar(0.5, &[READING]);
         let mut other = training_room();
         other.arena_cm = other.arena_cm.map(|arena| 1.1 * arena);
-        assert!(Recollection::of(&familiar, &other.sides()).is_none());
-        let here = Recollection::of(&familiar, &training_room().sides()).expect("the same room");
+        assert!(PoseMemory::for_room(&familiar, &other.sides()).is_none());
+        let here = PoseMemory::for_room(&familiar, &training_room().sides()).expect("the same room");
         assert!(here.at(&Pose::new(56.0, 60.0, 0.5)).is_none() && here.at(&Pose::new(50.0, 60.0, 0.6)).is_none());
     }
 }

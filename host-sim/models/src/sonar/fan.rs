@@ -1,8 +1,8 @@
-//! What a fan of rays from the sensor meets.
+//! The surfaces that a fan of rays from the sensor hits.
 //!
-//! The networks know the axis alone (D, α). A real beam is wide, and a wall that is met aslant mirrors sound on to
-//! another, from which it comes back by the same way: seen from the sensor, that other wall lies behind the first as in
-//! a mirror, at the length of the whole way.
+//! The networks know the axis alone (D, α). A real beam is wide, and a wall hit obliquely reflects sound specularly onto
+//! another one, from which it returns along the same path. Seen from the sensor, the other wall lies behind the first as in
+//! a mirror, at the length of the whole path.
 
 use glam::DVec2;
 
@@ -10,23 +10,23 @@ use mindgap_foundations::geometry::{Hit, Pose, Wall, cast, direction};
 
 /// Number of rays.
 pub const RAYS: usize = DIRECT + MIRRORED.len();
-/// Number of rays that come straight back from what they meet; they are the first.
+/// Number of direct rays, which return from the first surface that they hit; they come first.
 pub const DIRECT: usize = 9;
-/// The direct rays that are followed on to a second wall besides, in their order: three show where its nearest part is.
+/// The direct rays that are also continued to a second wall, in order; three locate its nearest part.
 pub const MIRRORED: [usize; 3] = [2, AXIS, 6];
 /// Offsets of the rays from the axis, degrees.
 pub const FAN_DEG: [f64; RAYS] = [-20.0, -15.0, -10.0, -5.0, 0.0, 5.0, 10.0, 15.0, 20.0, -10.0, 0.0, 10.0];
 /// The ray along the axis.
 pub const AXIS: usize = DIRECT / 2;
-/// A mirrored ray begins this far before the wall that mirrors it, so that it does not meet it again, cm.
+/// Distance in front of the mirroring wall at which a mirrored ray starts, so that it does not hit that wall again, cm.
 pub const BEFORE_WALL_CM: f64 = 0.01;
 
-/// What one ray meets.
+/// The path of one ray.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ray {
-    /// Length of its way, cm; infinite where there is nothing.
+    /// Length of the path, cm; infinite if the ray hits nothing.
     pub distance_cm: f64,
-    /// Incidence angle where its way ends, degrees, 0..=90.
+    /// Incidence angle at the end of the path, degrees, 0..=90.
     pub alpha_deg: f64,
 }
 
@@ -37,7 +37,7 @@ impl Ray {
     const NOTHING: Ray = Ray { distance_cm: f64::INFINITY, alpha_deg: 90.0 };
 }
 
-/// The fan of a sensor at `sensor` whose beam is `width` times as wide as [`FAN_DEG`].
+/// Returns the fan of a sensor at `sensor` whose beam is `width` times as wide as [`FAN_DEG`].
 pub fn fan_at(sides: &[Wall], sensor: &Pose, width: f64) -> Fan {
     let heading_rad = |place: usize| sensor.heading_rad + (FAN_DEG[place] * width).to_radians();
     let hits: [Option<Hit>; DIRECT] =
@@ -53,7 +53,7 @@ pub fn fan_at(sides: &[Wall], sensor: &Pose, width: f64) -> Fan {
     })
 }
 
-/// The ray that `first` mirrors on.
+/// Returns the ray after its specular reflection at `first`.
 fn mirrored(sides: &[Wall], from_cm: DVec2, heading_rad: f64, first: &Hit) -> Ray {
     let way_cm = first.distance_cm - BEFORE_WALL_CM;
     let back_rad = heading_rad + std::f64::consts::PI;
@@ -69,9 +69,10 @@ mod tests {
     use super::*;
     use mindgap_foundations::geometry::Rectangle;
 
-    /// In a corner, at 30 degrees from the lower wall: on to the right one, as if that stood on behind the lower wall.
+    /// In a corner, at 30 degrees to the lower wall: the ray continues to the right wall, as if that extended below the
+    /// lower one.
     #[test]
-    fn a_mirrored_ray_is_as_long_as_its_way() {
+    fn mirrored_ray_has_the_length_of_its_path() {
         let room = Rectangle { low_cm: DVec2::ZERO, high_cm: DVec2::new(200.0, 100.0) }.edges();
         let fan = fan_at(&room, &Pose::new(100.0, 20.0, f64::to_radians(-30.0)), 0.0);
         let [first, .., on] = fan;
@@ -81,7 +82,7 @@ mod tests {
     }
 
     #[test]
-    fn where_nothing_is_met_nothing_is_mirrored() {
+    fn rays_that_hit_nothing_are_not_mirrored() {
         assert!(fan_at(&[], &Pose::new(0.0, 0.0, 0.0), 1.0).iter().all(|ray| *ray == Ray::NOTHING));
     }
 }

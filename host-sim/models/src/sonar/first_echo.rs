@@ -1,6 +1,6 @@
-//! Which echo of a fan arrives first: each ray comes back with a probability that depends on the length of its way, its
-//! incidence and its angle off the axis, independently of the others, and the nearest that does gives the reading. One that
-//! a wall has mirrored loses something there.
+//! The first echo of a fan. Each ray returns independently, with a probability that depends on its path length, its
+//! incidence and its angle off the axis, and the nearest one that returns gives the reading. Mirrored rays lose strength at
+//! the mirroring wall.
 
 use super::Perturbation;
 use super::fan::{DIRECT, FAN_DEG, Fan, RAYS, Ray};
@@ -10,15 +10,15 @@ use mindgap_foundations::statistics::summary::logistic;
 /// A candidate for the first echo.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FirstEcho {
-    /// Probability that it arrives, and none before it.
+    /// Probability that it arrives and that no nearer one does.
     pub probability: f64,
-    /// Middle of its reading, cm.
+    /// Centre of its reading's distribution, cm.
     pub middle_cm: f64,
     /// Scale of its reading's Student distribution, cm.
     pub scale_cm: f64,
 }
 
-/// The candidates, nearest first.
+/// Returns the candidates, nearest first.
 pub fn first_echoes(model: &SonarModel, fan: &Fan, perturbation: &Perturbation) -> [FirstEcho; RAYS] {
     let mut order: [usize; RAYS] = std::array::from_fn(|i| i);
     order.sort_by(|a, b| fan[*a].distance_cm.total_cmp(&fan[*b].distance_cm));
@@ -45,14 +45,14 @@ pub fn first_echoes(model: &SonarModel, fan: &Fan, perturbation: &Perturbation) 
     })
 }
 
-/// The log-odds that a ray comes back.
+/// Returns the log-odds that a ray returns.
 fn log_odds(model: &SonarModel, ray: &Ray, offset_deg: f64, perturbation: &Perturbation) -> f64 {
     let [metres, incidence] = units(ray);
     let strength: f64 = ray_features(ray, offset_deg).iter().zip(&model.strength).map(|(f, w)| f * w).sum();
     strength - perturbation.loss(metres, incidence)
 }
 
-/// The reading that a ray gives, before scatter.
+/// Returns the reading that a ray gives, before scatter, cm.
 fn middle_cm(model: &SonarModel, ray: &Ray, perturbation: &Perturbation) -> f64 {
     let bias = model.bias[0] + model.bias[1] * ray.distance_cm + model.bias[2] * ray.alpha_deg / 45.0;
     perturbation.middle_cm(ray.distance_cm + bias, model.range_cm)
@@ -64,14 +64,14 @@ fn scale_cm(model: &SonarModel, ray: &Ray, perturbation: &Perturbation) -> f64 {
     (own * own + perturbation.scatter_cm * perturbation.scatter_cm).sqrt()
 }
 
-/// What the weights of a ray's log-odds belong to.
+/// Returns the features of a ray's log-odds.
 fn ray_features(ray: &Ray, offset_deg: f64) -> [f64; STRENGTHS] {
     let [x, a] = units(ray);
     let off = offset_deg / 15.0;
     [1.0, x, x * x, a, a * a, a * a * a, a * x, a * a * x, off * off, off.abs()]
 }
 
-/// Distance in metres, and incidence in units of 45 degrees.
+/// Returns the distance in metres, and the incidence in units of 45 degrees.
 fn units(ray: &Ray) -> [f64; 2] {
     [ray.distance_cm.min(FAR_CM) / 100.0, ray.alpha_deg / 45.0]
 }

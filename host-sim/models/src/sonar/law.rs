@@ -1,4 +1,4 @@
-//! The law that a sensor follows, whichever that is, and what the law looks at from a pose.
+//! The law that a sensor follows, and the view of a room that it depends on.
 
 use super::echo_law::{Surfaces, Target, reach_cm, targets_at};
 use super::{Fan, FirstEchoLaw, Outcomes, Perturbation, SonarModel, fan_at};
@@ -7,29 +7,29 @@ use mindgap_foundations::geometry::Pose;
 /// The law of a sensor.
 #[derive(Clone, Debug, PartialEq)]
 pub enum SensorLaw {
-    /// A fan of rays, each of which comes back or does not.
+    /// A fan of rays, each of which returns or does not.
     Beam(SonarModel),
     /// The first echo that rises above a threshold.
     FirstEcho(FirstEchoLaw),
 }
 
-/// What a law looks at from a pose.
+/// The part of a room that a law depends on, from a pose.
 #[derive(Clone, Debug, PartialEq)]
 pub enum View {
-    /// What the rays of a beam meet.
+    /// The paths of the rays of a beam.
     Fan(Fan),
-    /// What can return an echo.
+    /// The targets of the first-echo law.
     Targets {
-        /// Nearest first, each with the strength of its echo if it stood on the axis.
+        /// Targets, nearest first, each with the strength of its echo if it were on the axis.
         targets: Vec<(Target, f64)>,
-        /// How far the axis reaches, cm; infinite where it meets nothing.
+        /// Distance to the first wall on the axis, cm; infinite if there is none.
         reach_cm: f64,
     },
 }
 
 impl SensorLaw {
-    /// What a sensor at a pose looks at if its beam is so much wider than the law says; the first-echo law looks at the same
-    /// whatever its width.
+    /// Returns the view of a sensor at a pose whose beam is `width` times as wide as in the law. The view of the first-echo
+    /// law does not depend on the width.
     pub fn view(&self, surfaces: &Surfaces, sensor: &Pose, width: f64) -> View {
         match self {
             SensorLaw::Beam(model) => View::Fan(fan_at(surfaces.walls(), sensor, model.fan_width * width)),
@@ -41,7 +41,7 @@ impl SensorLaw {
         }
     }
 
-    /// What it may report of a view that it made.
+    /// Returns the outcomes of a reading of a view that this law made.
     pub fn outcomes(&self, view: &View, change: &Perturbation) -> Outcomes {
         match (self, view) {
             (SensorLaw::Beam(model), View::Fan(fan)) => model.outcomes(fan, change),
@@ -52,22 +52,22 @@ impl SensorLaw {
         }
     }
 
-    /// What a sensor at a pose may report.
+    /// Returns the outcomes of a reading of a sensor at a pose.
     pub fn outcomes_at(&self, surfaces: &Surfaces, sensor: &Pose) -> Outcomes {
         self.outcomes(&self.view(surfaces, sensor, 1.0), &Perturbation::NONE)
     }
 
-    /// Whether what it looks at depends on the width of its beam.
+    /// Returns whether the view depends on the width of the beam.
     pub fn looks_by_width(&self) -> bool {
         matches!(self, SensorLaw::Beam(_))
     }
 
-    /// Whether it is the textbook's ideal ray.
+    /// Returns whether it is the textbook's ideal ray.
     pub fn is_ray(&self) -> bool {
         matches!(self, SensorLaw::FirstEcho(law) if law.is_ray())
     }
 
-    /// Least and largest reading, cm.
+    /// Returns the least and largest reading, cm.
     pub fn range_cm(&self) -> [f64; 2] {
         match self {
             SensorLaw::Beam(model) => model.range_cm,

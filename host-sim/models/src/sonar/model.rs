@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 /// Number of weights that make up a ray's log-odds.
 pub const STRENGTHS: usize = 10;
-/// Distance from which neither log-odds nor scatter change any more, cm: beyond any sensor's range.
+/// Distance beyond which neither log-odds nor scatter change, cm: beyond any sensor's range.
 pub const FAR_CM: f64 = 300.0;
 /// Probability of a random answer: no model is certain. It bounds what one reading can say against a hypothesis (six
 /// nats for or against an echo, eleven for a place).
@@ -12,16 +12,16 @@ pub const P_RAND: f64 = 0.006;
 /// Constant and ghost readings scatter by this scale, cm: they are logged in whole centimetres, and the paper's is
 /// "roughly" constant (section VIII).
 pub const CONSTANT_SCATTER_CM: f64 = 0.8;
-/// Short and long readings are uniform over this length at least, cm, however near to an end of the range the axis' wall
-/// is, so that their density stays bounded.
+/// Least length over which short and long readings are uniform, cm, even if the wall on the axis is near an end of the
+/// range: it bounds their density.
 const LEAST_INTERVAL_CM: f64 = 10.0;
 
-/// The sensor as its training logs show it. The names in files are the serde names.
+/// The parameters of a sensor, fitted to its training logs. The names in files are the serde names.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SonarModel {
-    /// Weights of the ray features: the log-odds that a ray comes back.
+    /// Weights of the ray features: the log-odds that a ray returns.
     pub strength: [f64; STRENGTHS],
-    /// Log-odds that a ray loses where a wall mirrors it on to another; none where no sound comes back by such a way.
+    /// Log-odds that a ray loses by a specular reflection; `None` if mirrored rays never return.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub mirror_loss: Option<f64>,
     /// Reading minus distance: a constant, a share of the distance, and per 45 degrees of incidence; cm.
@@ -45,13 +45,13 @@ pub struct SonarModel {
     pub range_cm: [f64; 2],
 }
 
-/// An ideal ray is so much narrower than a usual beam.
+/// Width of an ideal ray relative to a usual beam.
 const RAY_WIDTH: f64 = 0.05;
-/// Log-odds that it comes back: it does.
+/// Log-odds that an ideal ray returns: practically certain.
 const CERTAIN: f64 = 6.0;
 
 impl SonarModel {
-    /// The textbook's ideal ray: `p_dropout` of the echoes are lost, and readings scatter.
+    /// Returns the textbook's ideal ray with a dropout probability and scatter, cm.
     pub fn ideal_ray(scatter_cm: f64, p_dropout: f64, range_cm: [f64; 2]) -> Self {
         let mut strength = [0.0; STRENGTHS];
         strength[0] = CERTAIN;
@@ -69,13 +69,13 @@ impl SonarModel {
         }
     }
 
-    /// Bounds of the distance that parts short readings from long ones, cm.
+    /// Returns the bounds of the distance that separates short readings from long ones, cm.
     pub fn reach_bounds_cm(&self) -> [f64; 2] {
         reach_bounds_cm(self.range_cm)
     }
 }
 
-/// Bounds of the distance that parts short readings from long ones within a range of readings, cm.
+/// Returns the bounds of the distance that separates short readings from long ones within a range of readings, cm.
 pub fn reach_bounds_cm([low, high]: [f64; 2]) -> [f64; 2] {
     let least = LEAST_INTERVAL_CM.min(0.5 * (high - low));
     [low + least, high - least]

@@ -37,11 +37,11 @@ pub enum Source {
     Ghost,
     /// The constant reading of the sensor.
     Constant,
-    /// From before what the axis meets.
+    /// A reading shorter than the distance along the axis.
     Short,
-    /// From beyond what the axis meets.
+    /// A reading longer than the distance along the axis.
     Long,
-    /// From anywhere.
+    /// A reading from anywhere in the range.
     Stray,
 }
 
@@ -50,55 +50,55 @@ pub enum Source {
 pub enum Distribution {
     /// Student's t with five degrees of freedom.
     Student {
-        /// Its middle.
+        /// Its centre, cm.
         middle_cm: f64,
-        /// Its scale.
+        /// Its scale, cm.
         scale_cm: f64,
     },
-    /// The same, without those readings that a change of the sensor led beyond its range.
+    /// Student's t without the readings that a perturbation leads beyond the range.
     Within {
-        /// The middle of all.
+        /// The centre of the untruncated distribution, cm.
         middle_cm: f64,
-        /// Their scale.
+        /// Its scale, cm.
         scale_cm: f64,
-        /// The share of all that lies below the range.
+        /// Probability below the range.
         below: f64,
-        /// The share that lies within.
+        /// Probability within the range.
         inside: f64,
-        /// The shares below and above that are reported all the same, as the range's ends.
+        /// Probabilities below and above that are reported nevertheless, as the ends of the range.
         at_ends: [f64; 2],
     },
     /// Uniform on an interval.
     Uniform {
-        /// Where it begins.
+        /// Its lower end, cm.
         low_cm: f64,
-        /// Where it ends.
+        /// Its upper end, cm.
         high_cm: f64,
     },
 }
 
-/// The weights of the mixture where an echo arrives at the sensor, or where none does: the hit's is that of whichever
-/// echo arrives first. They add up to one.
+/// The weights of the mixture if an echo arrives at the sensor, or if none does; the weight of the hit is for the echo that
+/// arrives first. They add up to one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MixingWeights {
-    /// Of the first echo.
+    /// Weight of the first echo.
     pub hit: f64,
-    /// Of the ghost.
+    /// Weight of the ghost.
     pub ghost: f64,
-    /// Of the constant reading.
+    /// Weight of the constant reading.
     pub constant: f64,
-    /// Of a short reading.
+    /// Weight of a short reading.
     pub short: f64,
-    /// Of a long reading.
+    /// Weight of a long reading.
     pub long: f64,
-    /// Of a reading from anywhere.
+    /// Weight of a reading from anywhere.
     pub stray: f64,
-    /// Of no reading.
+    /// Weight of no reading.
     pub none: f64,
 }
 
 impl MixingWeights {
-    /// The weights of a sensor where an echo `arrives`, or none.
+    /// Returns the weights of a sensor if an echo `arrives`, or if none does.
     pub fn new(model: &SonarModel, perturbation: &Perturbation, arrives: bool) -> Self {
         let Perturbation { p_ghost_given_echo, p_ghost_given_none, p_long, .. } = *perturbation;
         let detected = if arrives { neither(model.p_dropout, perturbation.p_dropout) } else { 0.0 };
@@ -128,7 +128,7 @@ impl MixingWeights {
 }
 
 impl Outcomes {
-    /// The outcomes of a reading of `fan`.
+    /// Returns the outcomes of a reading of `fan`.
     pub fn new(model: &SonarModel, fan: &Fan, perturbation: &Perturbation) -> Self {
         let echoes = first_echoes(model, fan, perturbation);
         let arrives: f64 = echoes.iter().map(|echo| echo.probability).sum();
@@ -158,8 +158,9 @@ impl Outcomes {
         outcomes.without_hits_led_beyond_range(perturbation)
     }
 
-    /// The same with the faults of a perturbation that come in place of what there would be: the ghost, then a short reading,
-    /// then a long one, each in place of all before it, and a long one in place of none. The axis reaches as far as `reach_cm`, which leaves room on both sides.
+    /// Returns the outcomes with the faults of a perturbation, which replace other outcomes: the ghost, then a short
+    /// reading, then a long one, each in place of all before it, and a long one in place of none. `reach_cm` is the distance
+    /// along the axis, within the range on both sides.
     pub(super) fn with_faults(mut self, change: &Perturbation, reach_cm: f64) -> Self {
         let [low_cm, high_cm] = self.range_cm;
         let reading = 1.0 - self.none;
@@ -184,8 +185,8 @@ impl Outcomes {
         self
     }
 
-    /// The same where hits that a change of the sensor leads beyond the range are not reported. What lies or scatters beyond it
-    /// without that is reported as its ends, as in the logs that a model was fitted on.
+    /// Returns the outcomes without the hits that a perturbation leads beyond the range. Other hits beyond the range are
+    /// reported as its ends, as in the logs that the model was fitted to.
     pub(super) fn without_hits_led_beyond_range(mut self, change: &Perturbation) -> Self {
         let ends = change.leads_ends_beyond(self.range_cm);
         if change.scatter_cm > 0.0 || ends.contains(&true) {
@@ -198,7 +199,7 @@ impl Outcomes {
         self
     }
 
-    /// The mean reading of the hits, cm; none where no echo can come back.
+    /// Returns the mean reading of the hits, cm; `None` if no echo can return.
     pub fn mean_hit_cm(&self) -> Option<f64> {
         let [low, high] = self.range_cm;
         let hits = self.components.iter().filter(|c| c.source == Source::Hit && c.probability > 0.0);
@@ -208,15 +209,16 @@ impl Outcomes {
         (probability > 0.0).then(|| sum / probability)
     }
 
-    /// A reading minus the mean one, cm; none where there is no reading, or no echo can come back.
+    /// Returns a reading minus the mean hit, cm; `None` if there is no reading or no echo can return.
     pub fn off_cm(&self, echo_cm: Option<f64>) -> Option<f64> {
         Some(echo_cm? - self.mean_hit_cm()?)
     }
 }
 
 impl Component {
-    /// What of it is reported of a range. Where all that reads an end is led beyond it, all that lies beyond is lost, and
-    /// elsewhere what a further scatter, which is part of its scale, leads there.
+    /// Returns the part of a hit that is reported within a range. At an end that readings are led beyond, all readings
+    /// beyond it are lost; at other ends, those that the additional scatter `further_cm`, which is part of the scale, leads
+    /// there.
     fn within(self, [low_cm, high_cm]: [f64; 2], leads_ends_beyond: [bool; 2], further_cm: f64) -> Self {
         let Distribution::Student { middle_cm, scale_cm } = self.distribution else { return self };
         let farther = |by_cm: f64, scale_cm: f64| {
@@ -241,7 +243,7 @@ impl Component {
 }
 
 impl Distribution {
-    /// The share of its readings that is reported.
+    /// Returns the share of its readings that is reported.
     pub(super) fn reported(&self) -> f64 {
         match *self {
             Distribution::Within { inside, at_ends: [low, high], .. } => inside + low + high,
@@ -258,13 +260,13 @@ impl Distribution {
 }
 
 impl SonarModel {
-    /// The outcomes of a reading; see [`Outcomes::new`].
+    /// Returns the outcomes of a reading; see [`Outcomes::new`].
     pub fn outcomes(&self, fan: &Fan, perturbation: &Perturbation) -> Outcomes {
         Outcomes::new(self, fan, perturbation)
     }
 }
 
-/// The probability of neither of two independent events.
+/// Returns the probability of neither of two independent events.
 fn neither(p: f64, q: f64) -> f64 {
     (1.0 - p) * (1.0 - q)
 }

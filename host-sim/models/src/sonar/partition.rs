@@ -1,4 +1,4 @@
-//! For tests: the readings in cells, so that shares of draws can be held against the outcomes.
+//! For tests: the readings in cells, so that the frequencies of draws can be compared with the outcomes.
 
 use glam::DVec2;
 
@@ -8,7 +8,7 @@ use mindgap_foundations::geometry::{Pose, Rectangle};
 use mindgap_foundations::statistics::student;
 use mindgap_logs::Scene;
 
-/// Sensors in which no part of the mixture is missing. Hits scatter little, so that cells tell them apart.
+/// Sensors in which no part of the mixture is missing. Hits scatter little, so that cells separate them.
 pub const SENSORS: [SonarModel; 3] = [
     SonarModel {
         strength: [1.0, 2.0, -2.0, 1.0, -1.0, -0.5, -1.0, -0.5, -1.0, -0.5],
@@ -48,7 +48,7 @@ pub const SENSORS: [SonarModel; 3] = [
     },
 ];
 
-/// A perturbation in which nothing is missing either.
+/// A perturbation in which no part is missing either.
 pub const PERTURBED: Perturbation = Perturbation {
     width: 1.0,
     attenuation: 0.2,
@@ -69,7 +69,7 @@ pub const PERTURBED: Perturbation = Perturbation {
     p_long_given_none: 0.05,
 };
 
-/// A room with an obstacle, and the obstacle alone: there a fan may meet nothing.
+/// Returns a room with an obstacle, and the obstacle alone, where a fan may hit nothing.
 pub fn scenes() -> [Scene; 2] {
     let obstacles = vec![Rectangle { low_cm: DVec2::new(110.0, 60.0), high_cm: DVec2::new(140.0, 90.0) }];
     [Some(DVec2::new(300.0, 220.0)), None].map(|arena_cm| Scene {
@@ -79,8 +79,7 @@ pub fn scenes() -> [Scene; 2] {
     })
 }
 
-/// Places of the sensor: before the obstacle and before its edge, before walls near and far, into a corner, and away
-/// from everything.
+/// Returns poses of the sensor: facing the obstacle and its edge, walls near and far, a corner, and open space.
 pub fn sensors() -> [Pose; 6] {
     [
         (40.0, 70.0, 0.0),
@@ -93,7 +92,7 @@ pub fn sensors() -> [Pose; 6] {
     .map(|(x, y, deg)| Pose::new(x, y, f64::to_radians(deg)))
 }
 
-/// Cells that part what scatters about values from each other and from the rest.
+/// Cells that separate the readings about each value from one another and from the rest.
 pub struct Partition {
     /// Inner borders, cm, ascending.
     borders_cm: Vec<f64>,
@@ -103,7 +102,7 @@ impl Partition {
     /// Number of scales to either side of a value that its cell holds: all but one in ten thousand of its readings.
     const SCALES: f64 = 10.0;
 
-    /// The cells of these outcomes.
+    /// Returns the cells of these outcomes.
     pub fn new(outcomes: &Outcomes) -> Self {
         let window = |distribution: &Distribution| match *distribution {
             Distribution::Student { middle_cm, scale_cm } | Distribution::Within { middle_cm, scale_cm, .. } => {
@@ -125,19 +124,19 @@ impl Partition {
         Partition { borders_cm: joined.into_iter().flatten().filter(|cm| (low..high).contains(cm)).collect() }
     }
 
-    /// Both ends of each cell; the first and the last are unbounded, since readings are limited to the range.
+    /// Returns both ends of each cell, cm; the first and the last are unbounded, since readings are limited to the range.
     pub fn cells(&self) -> Vec<[f64; 2]> {
         let ends = [&[f64::NEG_INFINITY], self.borders_cm.as_slice(), &[f64::INFINITY]].concat();
         ends.windows(2).map(|ends| [ends[0], ends[1]]).collect()
     }
 
-    /// The probability of no reading, then of one in each cell.
+    /// Returns the probability of no reading, then of one in each cell.
     pub fn probabilities(&self, outcomes: &Outcomes) -> Vec<f64> {
         let cells = self.cells().into_iter().map(|[from, to]| probability_between(outcomes, from, to));
         [outcomes.none].into_iter().chain(cells).collect()
     }
 
-    /// How many of these readings fall to each of these.
+    /// Returns the number of these readings in each of these outcomes.
     pub fn count(&self, readings: impl Iterator<Item = Option<f64>>) -> Vec<f64> {
         let mut counts = vec![0.0; self.borders_cm.len() + 2];
         for reading in readings {
@@ -147,7 +146,7 @@ impl Partition {
     }
 }
 
-/// The probability of a reading between two values, before readings are limited to the range.
+/// Returns the probability of a reading between two values, before readings are limited to the range.
 pub fn probability_between(outcomes: &Outcomes, from: f64, to: f64) -> f64 {
     let below = |distribution: &Distribution, cm: f64| match *distribution {
         _ if cm.is_infinite() => f64::from(u8::from(cm > 0.0)),
@@ -162,7 +161,7 @@ pub fn probability_between(outcomes: &Outcomes, from: f64, to: f64) -> f64 {
     outcomes.components.iter().map(|c| c.probability * between(&c.distribution)).sum()
 }
 
-/// Asserts by Pearson's chi-square test that counts follow probabilities. What is expected less than five times is
+/// Asserts by Pearson's chi-square test that counts follow probabilities. Outcomes expected less than five times are
 /// pooled.
 pub fn assert_follow(counts: &[f64], probabilities: &[f64], what: &str) {
     let total: f64 = counts.iter().sum();
@@ -178,7 +177,7 @@ pub fn assert_follow(counts: &[f64], probabilities: &[f64], what: &str) {
             add(*n, total * p);
         }
     }
-    // Fewer than this are nothing to test by.
+    // Fewer outcomes cannot be tested.
     if pooled[1] >= 1.0 {
         add(pooled[0], pooled[1]);
     }

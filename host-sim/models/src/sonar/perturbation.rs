@@ -1,9 +1,9 @@
-//! How a sensor differs from its model.
+//! Differences of a sensor from its model.
 
 /// i₀ and f of the first-echo law's loss by incidence, the medians over eleven sensors.
 const USUAL_SPECULAR_DEG: f64 = 15.0;
 const USUAL_OBLIQUE_LOSS: f64 = 10.7;
-/// Sensors report whole centimetres, so that what lies beyond the range by no more than this is reported.
+/// Readings that exceed the range by no more than this are still reported, since sensors report whole centimetres, cm.
 pub const ROUNDED_BY_CM: f64 = 0.5;
 
 /// Changes to a sensor; [`Perturbation::NONE`] changes nothing.
@@ -19,10 +19,9 @@ pub struct Perturbation {
     pub attenuation_per_incidence: f64,
     /// Subtracted from a ray's log-odds per unit of the natural logarithm of its distance in metres: sound spreads.
     pub spreading: f64,
-    /// Share of what walls usually swallow or send on by incidence that is subtracted from a ray's log-odds: see
-    /// [`loss_by_incidence`].
+    /// Share of the usual loss of walls by incidence that is subtracted from a ray's log-odds: see [`loss_by_incidence`].
     pub mirroring: f64,
-    /// Subtracted from the log-odds of a ray that a wall has mirrored.
+    /// Subtracted from the log-odds of a mirrored ray.
     pub attenuation_mirrored: f64,
     /// Factor on the readings of echoes and on the constant one, which the same electronics measure.
     pub gain: f64,
@@ -40,14 +39,14 @@ pub struct Perturbation {
     pub ghost_cm: f64,
     /// Probability of a random short reading.
     pub p_short: f64,
-    /// Probability of a random reading from beyond what the axis meets, in place of a reading.
+    /// Probability of a random reading from beyond the wall on the axis, in place of a reading.
     pub p_long: f64,
     /// Probability of the same in place of none.
     pub p_long_given_none: f64,
 }
 
 impl Perturbation {
-    /// What an echo loses in log-odds over a distance in metres, at an incidence in units of 45 degrees.
+    /// Returns the loss of an echo in log-odds over a distance in metres, at an incidence in units of 45 degrees.
     pub fn loss(&self, metres: f64, incidence: f64) -> f64 {
         let loss = self.attenuation + self.attenuation_per_m * metres + self.attenuation_per_incidence * incidence;
         if !self.shapes_losses() {
@@ -57,37 +56,37 @@ impl Perturbation {
         loss + self.spreading * libm::log(metres) + self.mirroring * usual
     }
 
-    /// Whether what echoes lose is more than a plane over distance and incidence.
+    /// Returns whether the loss of echoes is not linear in distance and incidence.
     pub fn shapes_losses(&self) -> bool {
         self.spreading != 0.0 || self.mirroring != 0.0
     }
 
-    /// The reading of what otherwise reads `echo_cm`.
+    /// Returns the reading of the perturbed sensor where the model reads `echo_cm`.
     pub fn reading_cm(&self, echo_cm: f64) -> f64 {
         echo_cm * self.gain + self.offset_cm
     }
 
-    /// The middle of the readings of what otherwise reads `echo_cm`.
+    /// Returns the centre of the perturbed readings where the model reads `echo_cm`.
     pub fn middle_cm(&self, echo_cm: f64, range_cm: [f64; 2]) -> f64 {
         let [least_cm, most_cm] = self.middle_bounds_cm(range_cm);
         self.reading_cm(echo_cm).clamp(least_cm, most_cm)
     }
 
-    /// Between what the middles of readings lie: the ends of the range, but for those that are
+    /// Returns the bounds of the centres of readings: the ends of the range, or infinity at ends that are
     /// [led beyond it](Self::leads_ends_beyond).
     pub fn middle_bounds_cm(&self, [low_cm, high_cm]: [f64; 2]) -> [f64; 2] {
         let [below, above] = self.leads_ends_beyond([low_cm, high_cm]);
         [if below { f64::NEG_INFINITY } else { low_cm }, if above { f64::INFINITY } else { high_cm }]
     }
 
-    /// Whether what otherwise reads the low and the high end of a range is led beyond it, and so is not reported. What lies
-    /// beyond the range without that is reported as its end.
+    /// Returns for the low and the high end of a range whether readings there are led beyond it, and so are not reported.
+    /// Other readings beyond the range are reported as its end.
     pub fn leads_ends_beyond(&self, [low_cm, high_cm]: [f64; 2]) -> [bool; 2] {
         [low_cm - self.reading_cm(low_cm), self.reading_cm(high_cm) - high_cm]
             .map(|beyond_cm| beyond_cm > ROUNDED_BY_CM)
     }
 
-    /// The sensor as its model has it.
+    /// No perturbation.
     pub const NONE: Perturbation = Perturbation {
         width: 1.0,
         attenuation: 0.0,
@@ -109,8 +108,8 @@ impl Perturbation {
     };
 }
 
-/// What a wall loses in log-odds by its incidence: as a mirror does, but never more than `most`; at `specular_deg` it is about
-/// one.
+/// Returns the loss of a wall in log-odds by its incidence: that of a mirror, but at most `most`; at `specular_deg` it is
+/// about one.
 pub fn loss_by_incidence(incidence_deg: f64, specular_deg: f64, most: f64) -> f64 {
     let turned = incidence_deg / specular_deg;
     most * (1.0 - libm::exp(-turned * turned / most))

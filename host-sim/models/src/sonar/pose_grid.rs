@@ -1,31 +1,31 @@
-//! Finds what is known near a pose of a sensor.
+//! Finds items near a pose of a sensor.
 
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
 use mindgap_foundations::geometry::{Pose, wrap_rad};
 
-/// Things by the pose of the sensor that they belong to.
+/// Items by the pose of the sensor that they belong to.
 pub struct PoseGrid<T> {
     cells: BTreeMap<[i32; 3], Vec<(Pose, T)>>,
 }
 
-/// Poses are near each other within this. A robot that is put where it was, or a tracker that sees it there again, is off by
-/// one or two centimetres and degrees; a beam of 40 degrees covers nearly the same surfaces then.
+/// Poses within this distance are near each other. A robot that is put back, or tracked again, at a pose is off by one or
+/// two centimetres and degrees, and a beam of 40 degrees then covers nearly the same surfaces.
 const NEAR_CM: f64 = 4.0;
 /// Number of sectors of 4 degrees.
 const SECTORS: i32 = 90;
 const NEAR_RAD: f64 = TAU / SECTORS as f64;
 
 impl<T> PoseGrid<T> {
-    /// Puts things where they belong.
-    pub fn new(things: impl IntoIterator<Item = (Pose, T)>) -> Self {
+    /// Makes the grid of items with their poses.
+    pub fn new(items: impl IntoIterator<Item = (Pose, T)>) -> Self {
         let mut cells: BTreeMap<[i32; 3], Vec<(Pose, T)>> = BTreeMap::new();
-        things.into_iter().for_each(|(pose, thing)| cells.entry(cell_of(&pose)).or_default().push((pose, thing)));
+        items.into_iter().for_each(|(pose, item)| cells.entry(cell_of(&pose)).or_default().push((pose, item)));
         PoseGrid { cells }
     }
 
-    /// What belongs near a pose.
+    /// Returns the items near a pose.
     pub fn near(&self, pose: &Pose) -> impl Iterator<Item = &T> {
         let ([x, y, sector], pose) = (cell_of(pose), *pose);
         let around = (0..27).filter_map(move |i| {
@@ -39,7 +39,7 @@ impl<T> PoseGrid<T> {
         around
             .filter_map(|cell| self.cells.get(&cell))
             .flatten()
-            .filter_map(move |(at, thing)| is_near(at).then_some(thing))
+            .filter_map(move |(at, item)| is_near(at).then_some(item))
     }
 }
 
@@ -60,9 +60,9 @@ mod tests {
     }
 
     proptest! {
-        /// Every pair is found that comparing all finds, from both ends.
+        /// Finds the same pairs as comparing all poses, from both ends.
         #[test]
-        fn what_is_near_is_found(poses in prop::collection::vec(pose(), 1..60)) {
+        fn all_near_items_are_found(poses in prop::collection::vec(pose(), 1..60)) {
             let grid = PoseGrid::new(poses.iter().enumerate().map(|(i, pose)| (*pose, i)));
             for one in &poses {
                 let mut found: Vec<usize> = grid.near(one).copied().collect();
@@ -78,7 +78,7 @@ mod tests {
     }
 
     #[test]
-    fn poses_far_outside_are_no_overflow() {
+    fn distant_poses_do_not_overflow() {
         let far = Pose::new(1e300, -1e300, 0.0);
         assert_eq!(PoseGrid::new([(far, 7)]).near(&far).copied().collect::<Vec<_>>(), [7]);
     }

@@ -6,7 +6,7 @@ use super::partition::{PERTURBED, Partition, SENSORS, assert_follow, probability
 use super::{MixingWeights, Perturbation, SonarModel};
 use mindgap_foundations::random::generator;
 
-/// The outcomes of every sensor in every place, as it is and perturbed, with what they are of.
+/// Returns the outcomes of every sensor at every pose, unperturbed and perturbed, with a label.
 fn grid() -> Vec<(String, Outcomes)> {
     let mut grid = Vec::new();
     for (s, scene) in scenes().iter().enumerate() {
@@ -48,10 +48,10 @@ fn probabilities_add_up_to_one() {
     }
 }
 
-/// Before a wall at the near end of the range half of what scatters far is too near to be reported, and of what scatters by
-/// less than readings are rounded by next to nothing.
+/// In front of a wall at the near end of the range, half of the readings with large scatter are too near to be reported, but
+/// almost none of those whose scatter is below the rounding.
 #[test]
-fn what_a_perturbation_scatters_beyond_the_range_is_not_reported() {
+fn readings_scattered_beyond_the_range_are_not_reported() {
     let model = &SENSORS[0];
     let mut fan = fan_at(&scenes()[0].sides(), &sensors()[0], model.fan_width);
     fan.iter_mut().for_each(|ray| ray.distance_cm = model.range_cm[0]);
@@ -64,10 +64,10 @@ fn what_a_perturbation_scatters_beyond_the_range_is_not_reported() {
     assert!(lost(&hardly) < 0.01, "{}", lost(&hardly));
 }
 
-/// All hits come from one distance and scatter little. A wall that would read the end of the range, or half a centimetre
-/// beyond it, is the last that does; what the change does not lead beyond an end is reported as that end.
+/// All hits come from one distance and scatter little. A wall that reads the end of the range, or half a centimetre beyond
+/// it, is the last one reported; readings that the perturbation does not lead beyond an end are reported as that end.
 #[test]
-fn what_an_offset_or_a_gain_leads_beyond_the_range_is_not_reported() {
+fn readings_led_beyond_the_range_are_not_reported() {
     let model = SonarModel { bias: [0.0; 3], ..SENSORS[0].clone() };
     let [low_cm, high_cm] = model.range_cm;
     let lost = |distance_cm: f64, change: &Perturbation| {
@@ -92,17 +92,17 @@ fn what_an_offset_or_a_gain_leads_beyond_the_range_is_not_reported() {
 fn no_component_is_missing_from_the_grid() {
     let grid = grid();
     for i in 0..grid[0].1.components.len() {
-        let likeliest = grid.iter().map(|(_, o)| o.components[i].probability).fold(0.0, f64::max);
+        let largest = grid.iter().map(|(_, o)| o.components[i].probability).fold(0.0, f64::max);
         let least = if i < RAYS { 0.01 } else { 0.002 };
-        assert!(likeliest > least, "{:?} {i}: {likeliest}", grid[0].1.components[i].source);
+        assert!(largest > least, "{:?} {i}: {largest}", grid[0].1.components[i].source);
     }
     let nothing = grid.iter().filter(|(_, o)| o.components[..RAYS].iter().all(|c| c.probability == 0.0));
     assert!(nothing.count() > 0, "no fan of the grid meets nothing");
 }
 
-/// Each component alone, and all together in cells: the density adds up to the probability.
+/// The density integrates to the probability for each component alone, and for all together in cells.
 #[test]
-fn the_likelihood_integrates_to_the_probabilities() {
+fn likelihood_integrates_to_the_probabilities() {
     const STEPS: usize = 500;
     let integral = |outcomes: &Outcomes, [from, to]: [f64; 2]| {
         let width = (to - from) / STEPS as f64;
@@ -129,7 +129,7 @@ fn the_likelihood_integrates_to_the_probabilities() {
 }
 
 #[test]
-fn draws_fall_to_each_component_as_often_as_it_is_probable() {
+fn draws_select_components_by_their_probabilities() {
     const DRAWS: usize = 20_000;
     for (at, (what, outcomes)) in grid().into_iter().enumerate() {
         let mut rng = generator(3, &[at as u64]);
@@ -146,7 +146,7 @@ fn draws_fall_to_each_component_as_often_as_it_is_probable() {
 }
 
 #[test]
-fn drawn_readings_are_as_likely_as_they_come() {
+fn frequencies_of_drawn_readings_follow_the_likelihood() {
     const DRAWS: usize = 20_000;
     for (at, (what, outcomes)) in grid().into_iter().enumerate() {
         let mut rng = generator(4, &[at as u64]);
@@ -157,7 +157,7 @@ fn drawn_readings_are_as_likely_as_they_come() {
 }
 
 #[test]
-fn without_scatter_a_hit_is_its_middle() {
+fn hit_without_scatter_is_its_centre() {
     let model = SonarModel { constant: [0.0, 20.0], p_short: 0.0, p_dropout: 0.0, ..SENSORS[2].clone() };
     let fan = fan_at(&scenes()[0].sides(), &sensors()[0], 0.0);
     let outcomes = model.outcomes(&fan, &Perturbation::NONE);

@@ -10,17 +10,17 @@ use mindgap_models::simulator::nominal::MotionBias;
 /// The residual of a step after the networks and their correction. As in an ensemble, turns are in degrees.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StepResidual {
-    /// The row at which it begins.
+    /// The row at which the step begins.
     row: RowId,
     command: [f64; 2],
-    /// Whether the command is that of the step before.
+    /// Whether the command equals that of the step before.
     steady: bool,
     residual: Motion<f64>,
-    /// What the correction adds where the command is held.
+    /// Correction of the networks under the held command.
     known: Motion<f64>,
 }
 
-/// Consecutive steps under one command, the first one apart.
+/// Consecutive steps under one command. The first step after another command is separate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hold {
     /// Left and right command.
@@ -29,15 +29,15 @@ pub struct Hold {
     pub first: bool,
     /// Number of steps.
     pub steps: usize,
-    /// Mean residual of a step.
+    /// Mean residual per step.
     pub residual: Motion<f64>,
-    /// What the correction adds to the networks where the command is held.
+    /// Correction of the networks under the held command.
     pub known: Motion<f64>,
 }
 
 impl StepResidual {
-    /// Makes one of `residual`, logged minus predicted (cm, cm, rad), of the step that begins at `row`, for left, right,
-    /// previous left and previous right command.
+    /// Makes the residual of the step that begins at `row` from `residual`, logged minus predicted (cm, cm, rad), and from
+    /// left, right, previous left and previous right command.
     pub fn new(row: RowId, speeds: [f64; 4], residual: Motion<f64>, correction: &MotionBias) -> Self {
         let [left, right, left_before, right_before] = speeds;
         StepResidual {
@@ -49,44 +49,44 @@ impl StepResidual {
         }
     }
 
-    /// Index of the run.
+    /// Returns the index of the run.
     pub fn run(&self) -> usize {
         self.row.run
     }
 
-    /// Left and right command.
+    /// Returns the left and right command.
     pub fn command(&self) -> [f64; 2] {
         self.command
     }
 
-    /// Whether the command is that of the step before.
+    /// Returns whether the command equals that of the step before.
     pub fn is_steady(&self) -> bool {
         self.steady
     }
 
-    /// Whether it begins where another one of the same run ends.
+    /// Returns whether the step begins where another one of the same run ends.
     pub fn follows(&self, before: &StepResidual) -> bool {
         before.row.run == self.row.run && before.row.row + 1 == self.row.row
     }
 
-    /// Logged minus predicted.
+    /// Returns logged minus predicted motion.
     pub fn residual(&self) -> Motion<f64> {
         self.residual
     }
 
-    /// What the correction adds where the command is held.
+    /// Returns the correction of the networks under the held command.
     pub fn known(&self) -> Motion<f64> {
         self.known
     }
 }
 
-/// The stretches of steps, which are in the order of runs and rows.
+/// Splits steps into stretches under one command; they must be in the order of runs and rows.
 fn stretches(steps: &[StepResidual]) -> Vec<&[StepResidual]> {
     let together = |a: &StepResidual, b: &StepResidual| b.follows(a) && a.steady && b.steady && a.command == b.command;
     steps.chunk_by(together).collect()
 }
 
-/// The same, summed up.
+/// Summarises the stretches of steps.
 pub fn holds(steps: &[StepResidual]) -> Vec<Hold> {
     let hold = |steps: &[StepResidual]| {
         let mean = |axis: Axis| steps.iter().map(|s| s.residual[axis]).sum::<f64>() / steps.len() as f64;
@@ -97,7 +97,7 @@ pub fn holds(steps: &[StepResidual]) -> Vec<Hold> {
 }
 
 impl Hold {
-    /// What it says of the command's bias, if noise is this; `said` is what networks say.
+    /// Returns the evidence about the command's bias, given the noise; `said` returns the predictions of the networks.
     pub fn evidence(&self, noise: &MotionNoise, said: Held) -> Evidence {
         let motion = said.motion(self.command);
         let variance = |axis: Axis| {
@@ -130,7 +130,7 @@ mod tests {
     }
 
     #[test]
-    fn a_command_that_is_held_is_one_stretch_after_its_first_step() {
+    fn held_command_is_one_stretch_after_its_first_step() {
         let (a, b) = ([50.0, 40.0], [10.0, 20.0]);
         let turn = 1f64.to_radians();
         let steps = [

@@ -1,6 +1,6 @@
-//! Learns the noise of a robot from all steps of its logs: the robot's own part is drawn anew in each, the tracker's error at
-//! the end of a step comes back with the other sign in the next one, a nugget is the same in all steps of a command, and so is
-//! what a first step does beyond later ones.
+//! Learns the noise of a robot from all steps of its logs. The process noise is independent in each step, the tracker's
+//! error at the end of a step recurs with opposite sign in the next one, a nugget is the same in all steps of a command, and
+//! the first step of a command has additional noise.
 
 use nalgebra::{Cholesky, DMatrix, DVector};
 use rayon::prelude::*;
@@ -12,12 +12,12 @@ use mindgap_models::simulator::ensemble::evidence::cell;
 use mindgap_models::simulator::ensemble::noise::{MotionNoise, TERMS, is_slow, terms, weighed};
 use mindgap_models::simulator::ensemble::{Held, Member};
 
-/// Of the variance of residuals such shares are a step's and the tracker's, before anything is known.
+/// Initial shares of the variance of residuals: of a step, and of the tracker.
 const FIRST_STEP: f64 = 0.1;
 const FIRST_TRACKER: f64 = 0.4;
-/// What is sought: the terms of a step's, the tracker's and a first step's standard deviation, as shares of that of residuals,
-/// and the two nuggets, as shares of what a step adds. Where a square is zero nothing shows which way to go, so that all
-/// begin above.
+/// Indices of the parameters: the terms of the standard deviation of a step, those of the tracker and of a first step, as
+/// shares of that of residuals; and the two nuggets, as shares of that of a step. The gradient vanishes at zero, so all
+/// start above it.
 const TRACKER: usize = TERMS;
 const OF_FIRST: usize = TERMS + 1;
 const NUGGETS: usize = TERMS + 2;
@@ -27,44 +27,44 @@ const BOUNDS: [Bounds; NUGGETS + 2] = {
     bounds
 };
 const START: [f64; NUGGETS + 2] = [0.2, 0.2, 0.2, 0.6, 0.3, 0.5, 0.5];
-/// The search ends after so many rounds, or where one gains less than this, in nats.
+/// The search ends after this many rounds, or when one gains less than [`ENOUGH`] nats.
 const ROUNDS: usize = 40;
 const ENOUGH: f64 = 0.05;
-/// Where the numbers have no inverse.
+/// Log-likelihood of a covariance that is not positive definite.
 const LEAST_LIKELY: f64 = -1e9;
-/// So many steps are looked at together: the time they take grows with the third power.
-const TOGETHER: usize = 20;
+/// Maximum number of steps of a piece: computation time grows with its cube.
+const PIECE_STEPS: usize = 20;
 
-/// Consecutive steps of a run and what they leave, about what the robot in the middle does.
+/// Consecutive steps of a run and their residuals about the posterior mean.
 struct Piece {
     steps: Vec<Step>,
     left: DVector<f64>,
 }
 
-/// What the noise of a step depends on.
+/// The quantities that the noise of a step depends on.
 struct Step {
     terms: [f64; TERMS],
     cell: [i32; 2],
-    /// Which nugget is its command's.
+    /// Index of the nugget of its command.
     class: usize,
     is_first: bool,
     /// Variance that the tracker's error in heading adds.
     misheading: f64,
-    /// The share of the tracker's error at its end that comes back in the next step.
-    comes_back: f64,
+    /// Share of the tracker's error at its end that recurs in the next step.
+    recurring: f64,
 }
 
-/// What is assumed along one axis.
+/// Noise parameters along one axis.
 #[derive(Clone, Copy)]
 struct Assumed {
     step: [f64; TERMS],
     tracker: f64,
     nugget: [f64; 2],
-    /// Variance.
+    /// Additional variance of a first step.
     first_step: f64,
 }
 
-/// What steps leave about the networks, before anything is known.
+/// Returns a rough estimate of the noise from the residuals of the networks.
 pub fn rough(steps: &[StepResidual]) -> MotionNoise {
     let mut noise = MotionNoise::default();
     for axis in Axis::ALL {
@@ -77,28 +77,28 @@ pub fn rough(steps: &[StepResidual]) -> MotionNoise {
     noise
 }
 
-/// Pieces of runs, each looked at as a whole.
+/// Cuts runs into pieces whose steps are treated jointly.
 pub fn pieces(steps: &[StepResidual]) -> Vec<&[StepResidual]> {
-    steps.chunk_by(|before, step| step.follows(before)).flat_map(|run| run.chunks(TOGETHER)).collect()
+    steps.chunk_by(|before, step| step.follows(before)).flat_map(|run| run.chunks(PIECE_STEPS)).collect()
 }
 
-/// The noise under which the pieces are the most probable. `middle` is the robot in the middle by what others than this piece
-/// and some more say, and `said` what networks say.
+/// Returns the noise of maximum likelihood. `middle` returns the posterior mean without the fold of a piece, and `said` the
+/// predictions of the networks.
 pub fn learn<'a>(pieces: &[&[StepResidual]], middle: impl Fn(usize) -> &'a Member, said: Held) -> MotionNoise {
     let mut noise = MotionNoise::default();
-    // A heading that is tracked wrongly shows as lateral motion.
+    // An error in the tracked heading appears as lateral motion, so the turn comes first.
     for axis in [Axis::Turn, Axis::Forward, Axis::Lateral] {
         let piece = |(number, steps): (usize, &&[StepResidual])| Piece::new(steps, axis, &noise, middle(number), said);
         let of_axis: Vec<Piece> = pieces.iter().enumerate().map(piece).collect();
-        let Assumed { step, tracker, nugget, first_step } = likeliest(&of_axis);
+        let Assumed { step, tracker, nugget, first_step } = most_likely(&of_axis);
         (noise.step[axis], noise.tracker[axis], noise.nugget[axis]) = (step, tracker, nugget);
         noise.first_step[axis] = first_step.sqrt();
     }
     noise
 }
 
-/// What makes the pieces the most probable.
-fn likeliest(pieces: &[Piece]) -> Assumed {
+/// Returns the noise parameters that maximise the likelihood of the pieces.
+fn most_likely(pieces: &[Piece]) -> Assumed {
     let steps = || pieces.iter().flat_map(|piece| &piece.steps);
     let count = steps().count().max(1) as f64;
     let variance = pieces.iter().map(|piece| piece.left.norm_squared()).sum::<f64>() / count;
@@ -118,7 +118,7 @@ fn likeliest(pieces: &[Piece]) -> Assumed {
 }
 
 impl Piece {
-    /// Makes one of an axis; `noise` is what is known of the axes before.
+    /// Makes the piece for an axis; `noise` holds the results of the axes before.
     fn new(steps: &[StepResidual], axis: Axis, noise: &MotionNoise, middle: &Member, said: Held) -> Self {
         let step = |step: &StepResidual| {
             let command = step.command();
@@ -131,7 +131,7 @@ impl Piece {
                 class: usize::from(is_slow(percent)),
                 is_first: !step.is_steady(),
                 misheading: noise.misheading_variance(does, axis),
-                comes_back: if axis == Axis::Turn { 1.0 } else { libm::cos(does.turn.to_radians()) },
+                recurring: if axis == Axis::Turn { 1.0 } else { libm::cos(does.turn.to_radians()) },
             };
             (step, left)
         };
@@ -152,7 +152,7 @@ impl Piece {
                     let first = if one.is_first { assumed.first_step } else { 0.0 };
                     own[i] + first + one.misheading + 2.0 * assumed.tracker
                 }
-                1 => -assumed.tracker * self.steps[i.min(j)].comes_back,
+                1 => -assumed.tracker * self.steps[i.min(j)].recurring,
                 _ => 0.0,
             };
             nugget + rest
@@ -182,9 +182,9 @@ mod tests {
     const RUNS: usize = 80;
     const STEPS: usize = 60;
 
-    /// Steps of a robot that stands still but for noise, whose commands are held for twenty steps at most.
+    /// The robot is at rest except for noise, and commands are held for at most twenty steps.
     #[test]
-    fn the_noise_that_made_the_steps_is_found() {
+    fn noise_of_simulated_steps_is_recovered() {
         let (step, tracker, first_step, nugget) = (0.2, 0.5, 0.36, [0.65, 2.25]);
         let mut rng = generator(3, &[]);
         let none = MotionBias {
@@ -226,7 +226,7 @@ mod tests {
         let said = |_: [f64; 2]| Motion::ZERO;
         let middle = Posterior::new(&still, &said).expect("a posterior").mean();
         let found = learn(&pieces(&steps), |_| &middle, &said);
-        // So many steps tell that of first ones to a third, and the others to a tenth, by a search of other make.
+        // These steps determine the noise of first steps to a third, and the others to a tenth, by an independent search.
         let is_near = |found: f64, true_one: f64, share: f64| (found / true_one - 1.0).abs() < share;
         assert!(is_near(found.step.turn[0], step, 0.25) && is_near(found.tracker.turn, tracker, 0.15), "{found:?}");
         assert!(is_near(found.first_step.turn, f64::sqrt(first_step), 0.3), "{found:?}");

@@ -9,7 +9,7 @@ use crate::learn::dataset::Dataset;
 pub struct Anchored<const N: usize> {
     /// First the samples, then the anchors.
     pub data: Dataset<N>,
-    /// One weight a sample or anchor.
+    /// One weight per sample or anchor.
     pub weights: Vec<f64>,
 }
 

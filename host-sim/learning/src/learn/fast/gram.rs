@@ -10,7 +10,7 @@ const BLOCK: usize = 4;
 /// Number of f64 lanes of the widest vector; rows are padded to a multiple of it.
 const WIDEST: usize = lanes::WIDEST / 2;
 
-/// The weighted Gram matrix, `width` by `width`, of a table that has one row for each weight.
+/// Returns the weighted Gram matrix, `width` by `width`, of a table that has one row for each weight.
 ///
 /// `fill` writes the row of an index into a slice of `width` numbers. Each sum adds the rows in their order, so that the
 /// result is the same to the bit whatever the instruction set.
@@ -67,7 +67,7 @@ mod tests {
     proptest! {
         /// Bit for bit what a plain loop gives, for any width and any number of rows.
         #[test]
-        fn they_are_what_a_plain_loop_gives(width in 1usize..40, seed in any::<u64>(), count in 0usize..11) {
+        fn products_equal_those_of_a_plain_loop(width in 1usize..40, seed in any::<u64>(), count in 0usize..11) {
             let number = |i: usize, j: usize| {
                 let hashed = mindgap_foundations::random::derive(seed, &[i as u64, j as u64]);
                 hashed as f64 / u64::MAX as f64 - 0.5

@@ -1,4 +1,4 @@
-//! Variable projection (Golub and Pereyra 1973): the residuals that the best linear weights leave for given exponents,
+//! Variable projection (Golub and Pereyra 1973): the residuals of the best linear weights for given exponents,
 //! and their Jacobian in Kaufman's (1975) approximation.
 //!
 //! Least squares and Levenberg–Marquardt need the samples only through the inner products of their columns, so these are
@@ -29,14 +29,14 @@ pub struct Projection<const N: usize> {
     x: Vec<[f64; N]>,
     log2_x: Vec<[f64; N]>,
     targets: Vec<f64>,
-    /// Weight of each sample, whatever the loss.
+    /// Weight of each sample, independent of the loss.
     base_weights: Vec<f64>,
     /// Weight of each sample in the current iteration.
     sample_weights: Vec<f64>,
     exponents: DVector<f64>,
     /// Penalty on the square of a linear weight, in units of squared residuals.
     weight_prior: f64,
-    /// The same for an exponent.
+    /// Penalty on the square of an exponent, in units of squared residuals.
     exponent_prior: f64,
     fit: Option<Fit>,
 }
@@ -75,7 +75,7 @@ impl<const N: usize> Projection<N> {
         problem
     }
 
-    /// The predictions, one a sample.
+    /// Returns the predictions, one per sample.
     pub fn predictions(&self) -> Vec<f64> {
         let weights = self.weights();
         let mut features = vec![0.0; weights.len()];
@@ -93,17 +93,17 @@ impl<const N: usize> Projection<N> {
         self.solve();
     }
 
-    /// Bias, slopes and output weights of the product units; zeros where the normal equations are singular.
+    /// Returns bias, slopes and output weights of the product units; zeros where the normal equations are singular.
     pub fn weights(&self) -> Vec<f64> {
         self.fit.as_ref().map_or(vec![0.0; self.width()], |fit| fit.weights.as_slice().to_vec())
     }
 
-    /// The exponents, unit by unit.
+    /// Returns the exponents, unit by unit.
     pub fn exponents(&self) -> &[f64] {
         self.exponents.as_slice()
     }
 
-    /// Number of linear weights: bias, slopes, product units.
+    /// Returns the number of linear weights: bias, slopes, product units.
     fn width(&self) -> usize {
         1 + N + self.exponents.len() / N
     }
@@ -194,7 +194,8 @@ mod tests {
 
     const RIDGES: Ridges = Ridges { weights: 1e-3, exponents: 1e-3 };
 
-    /// Forty samples of a curved surface and two product units somewhere, a third of the samples counting double.
+    /// Returns a problem with forty samples of a curved surface, a third of which count double, and two random product
+    /// units.
     fn problem(seed: u64) -> Projection<2> {
         let mut rng = generator(seed, &[]);
         let mut data = Dataset::default();
@@ -208,7 +209,7 @@ mod tests {
         Projection::new(&Anchored { data, weights }, &inputs, RIDGES, exponents)
     }
 
-    /// The penalised sum of squares, from every sample and every ridge.
+    /// Returns the penalised sum of squares, from every sample and every ridge.
     fn sum_of_squares(problem: &Projection<2>) -> f64 {
         let errors = problem.predictions().into_iter().zip(&problem.targets).map(|(p, t)| (t - p) * (t - p));
         let samples: f64 = errors.zip(&problem.sample_weights).map(|(e, w)| e * w).sum();

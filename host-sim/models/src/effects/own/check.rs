@@ -97,7 +97,7 @@ pub fn has_values(key: &str, value: impl Fn(&StepContext, Motion<f64>) -> Option
             let [[left, right], ..] = step.commands;
             let Motion { forward: forward_cm, turn: turn_rad, .. } = increment;
             return Err(format!(
-                "change.{key} is no number at the nominal parameters where left = {left:.0}, right = {right:.0}, \
+                "change.{key} is not a number at the nominal parameters where left = {left:.0}, right = {right:.0}, \
                  forward_cm = {forward_cm:.1}, turn_rad = {turn_rad:.2}"
             ));
         }

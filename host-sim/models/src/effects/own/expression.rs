@@ -26,17 +26,17 @@ impl Expression {
     /// What is wrong with it, in one line.
     pub fn compile(text: &str, parameters: &[&'static str], stage: Stage) -> Result<Self, String> {
         let variables = Self::check(text, parameters, stage)?;
-        // Only what is sound is kept for as long as the program runs.
+        // Only valid expressions are kept for as long as the program runs.
         let text: &'static str = String::from(text).leak();
         let code = vec![Instruction::default(); text.len() + 1].leak();
-        let program = nanoexpr::compile(text, code).map_err(|error| told(text, &error))?;
+        let program = nanoexpr::compile(text, code).map_err(|error| message(text, &error))?;
         Ok(Expression { program, variables, parameters: parameters.to_vec() })
     }
 
-    /// The variables of a text that can be compiled for a stage.
+    /// Returns the variables of a text that can be compiled for a stage.
     ///
     /// # Errors
-    /// What is wrong with it, in one line.
+    /// If the text is invalid; the error is one line.
     pub fn check(text: &str, parameters: &[&str], stage: Stage) -> Result<Vec<&'static Variable>, String> {
         if text.len() > LONGEST {
             return Err(format!("is longer than {LONGEST} characters"));
@@ -55,18 +55,18 @@ impl Expression {
         }
         // As many instructions as there are characters are always enough.
         let mut code = vec![Instruction::default(); text.len() + 1];
-        let _: Program<f64> = nanoexpr::compile(text, &mut code).map_err(|error| told(text, &error))?;
+        let _: Program<f64> = nanoexpr::compile(text, &mut code).map_err(|error| message(text, &error))?;
         know_functions(text)?;
         Ok(variables)
     }
 
-    /// Whether a parameter or variable is in it.
+    /// Returns whether a parameter or variable occurs in the text.
     pub fn mentions(text: &str, name: &str) -> bool {
         names(text).any(|mentioned| mentioned == name)
     }
 
-    /// Its value; none where something in it is not known, and where it is no number or larger than anything that a step
-    /// could do.
+    /// Returns its value; `None` if one of its variables is unknown, or if the value is not a number or is larger than
+    /// anything that a step could do.
     pub fn value(&self, parameters: &[f64], at: &Circumstances) -> Option<f64> {
         let value = self.program.evaluate(&(Scope { expression: self, parameters, at }, Math)).ok()?;
         (value.abs() <= LARGEST).then_some(value)
@@ -124,7 +124,7 @@ fn know_functions(text: &str) -> Result<(), String> {
     }
 }
 
-fn told(text: &str, error: &Error) -> String {
+fn message(text: &str, error: &Error) -> String {
     let part = text.get(error.span.start..error.span.end).unwrap_or_default();
     match error.kind {
         ErrorKind::UnexpectedEnd => "ends where something is missing".into(),
@@ -176,7 +176,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_number_has_no_value() {
+    fn values_that_are_not_numbers_are_none() {
         for text in
             ["k / 0", "sqrt(-k)", "exp(1000 * k)", "1e300 * k", "0 / (left - left)", "previous_echo", "9 ^ 9 ^ 9 ^ k"]
         {
@@ -185,7 +185,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_read_is_told() {
+    fn unreadable_expressions_are_reported() {
         assert!(refusal("k * speed").starts_with("speed is not known here; known are left, right, "));
         assert!(refusal("k * turn_rad").contains("turn_rad is not known here"), "commands come before motion");
         assert!(refusal("k > 5 ? 1 : sine(k)").starts_with("sine() is no function"));

@@ -8,7 +8,7 @@ use crate::effects::context::{RunHistory, Surroundings};
 use mindgap_foundations::geometry::Pose;
 use mindgap_logs::Scene;
 
-/// A caster that holds a robot back as it turns, and a sensor that reads short of what it faces aslant.
+/// A caster that holds a robot back as it turns, and a sensor that reads short at oblique incidence.
 const FILE: &str = r#"
 [[effect]]
 id = "caster"
@@ -147,37 +147,52 @@ fn refusal(from: &str, to: &str) -> String {
 }
 
 #[test]
-fn what_is_wrong_is_told_with_its_place() {
-    let told = |from: &str, to: &str, place: &str, what: &str| {
+fn errors_are_reported_with_their_place() {
+    let assert_refused = |from: &str, to: &str, place: &str, what: &str| {
         let message = refusal(from, to);
         assert!(message.contains(place) && message.contains(what), "{message}");
     };
     let first = ":2: effect caster: ";
     let key = ":2: effect caster: change.forward_cm: ";
     let parameter = ":2: effect caster: parameter cm_per_rad: ";
-    told("description", "describes", ":4: ", "the key `describes` is not known");
-    told("bounds = [0.0, 20.0]", "bounds = [0.0, 20.0", ":", "");
-    told("abs(turn_rad)", "abs(turn)", key, "turn is not known here; known are left, right, ");
-    told("abs(turn_rad)", "magnitude(turn_rad)", key, "magnitude() is no function");
-    told("abs(turn_rad)", "abs(turn_rad", key, "unclosed parenthesis");
-    told("abs(turn_rad)", "echo_cm", key, "echo_cm is not known here");
-    told("bounds = [0.0, 20.0]", "bounds = [20.0, 0.0]", parameter, "bounds [20, 0]");
-    told("bounds = [0.0, 20.0]", "bounds = [0.0, inf]", parameter, "bounds [0, inf]");
-    told("nominal = 0.0", "nominal = -1.0", parameter, "nominal -1 lies outside the bounds 0 to 20");
-    told("nominal = 0.0", "nominal = nan", parameter, "nominal NaN");
-    told("nominal = 0.0", "nominal = 1.0", first, "change.forward_cm changes something at the nominal parameters");
-    told("bounds = [0.0, 20.0]", "bounds = [0.0, 20.0]\nguesses = [30.0]", parameter, "guess 30");
-    told("bounds = [0.0, 20.0]", "bounds = [0.0, 20.0]\nprior_sd = 0.0", parameter, "prior_sd");
-    told("name = \"cm_per_rad\"", "name = \"x_cm\"", ":2: effect caster: parameter x_cm: ", "name of a variable");
-    told("cm_per_rad * abs(turn_rad)", "0", first, "parameter cm_per_rad is in no expression");
-    told(
+    assert_refused("description", "describes", ":4: ", "the key `describes` is not known");
+    assert_refused("bounds = [0.0, 20.0]", "bounds = [0.0, 20.0", ":", "");
+    assert_refused("abs(turn_rad)", "abs(turn)", key, "turn is not known here; known are left, right, ");
+    assert_refused("abs(turn_rad)", "magnitude(turn_rad)", key, "magnitude() is no function");
+    assert_refused("abs(turn_rad)", "abs(turn_rad", key, "unclosed parenthesis");
+    assert_refused("abs(turn_rad)", "echo_cm", key, "echo_cm is not known here");
+    assert_refused("bounds = [0.0, 20.0]", "bounds = [20.0, 0.0]", parameter, "bounds [20, 0]");
+    assert_refused("bounds = [0.0, 20.0]", "bounds = [0.0, inf]", parameter, "bounds [0, inf]");
+    assert_refused("nominal = 0.0", "nominal = -1.0", parameter, "nominal -1 lies outside the bounds 0 to 20");
+    assert_refused("nominal = 0.0", "nominal = nan", parameter, "nominal NaN");
+    assert_refused(
+        "nominal = 0.0",
+        "nominal = 1.0",
+        first,
+        "change.forward_cm changes something at the nominal parameters",
+    );
+    assert_refused("bounds = [0.0, 20.0]", "bounds = [0.0, 20.0]\nguesses = [30.0]", parameter, "guess 30");
+    assert_refused("bounds = [0.0, 20.0]", "bounds = [0.0, 20.0]\nprior_sd = 0.0", parameter, "prior_sd");
+    assert_refused(
+        "name = \"cm_per_rad\"",
+        "name = \"x_cm\"",
+        ":2: effect caster: parameter x_cm: ",
+        "name of a variable",
+    );
+    assert_refused("cm_per_rad * abs(turn_rad)", "0", first, "parameter cm_per_rad is in no expression");
+    assert_refused(
         "forward_cm - cm_per_rad",
         "forward_cm / abs(turn_rad) - cm_per_rad",
         key.trim_end_matches(": "),
-        "is no number at the nominal",
+        "is not a number at the nominal",
     );
-    told("id = \"caster\"", "id = \"latency\"", ":2: effect latency: ", "built-in effect");
-    told("id = \"caster\"", "id = \"A caster\"", ":2: ", "small letters");
-    told("id = \"tired\"", "id = \"caster\"", ":13: effect caster: ", "is there twice");
-    told("(1 + k) * echo_cm", "(1 + k * echo_cm) * echo_cm", ":13: effect tired: ", "has to be a factor times echo_cm");
+    assert_refused("id = \"caster\"", "id = \"latency\"", ":2: effect latency: ", "built-in effect");
+    assert_refused("id = \"caster\"", "id = \"A caster\"", ":2: ", "small letters");
+    assert_refused("id = \"tired\"", "id = \"caster\"", ":13: effect caster: ", "is there twice");
+    assert_refused(
+        "(1 + k) * echo_cm",
+        "(1 + k * echo_cm) * echo_cm",
+        ":13: effect tired: ",
+        "has to be a factor times echo_cm",
+    );
 }

@@ -50,7 +50,7 @@ fn controllers() -> Vec<Controller> {
     TRAINED.1.clone()
 }
 
-/// So many runs of every controller, mixed.
+/// Returns a number of runs of every controller, interleaved.
 fn requests<'a>(controllers: &'a [Controller], tables: &'a [MotionTable]) -> Vec<RolloutRequest<'a>> {
     let of_seed =
         |seed| controllers.iter().zip(tables).map(move |(c, m)| RolloutRequest { controller: c, motions: m, seed });

@@ -1,4 +1,4 @@
-//! What a fan of rays about a sensor's axis meets.
+//! The walls that a fan of rays about a sensor's axis hits.
 
 use std::ops::Range;
 use std::sync::LazyLock;
@@ -8,26 +8,26 @@ use glam::DVec2;
 use super::surfaces::Surfaces;
 use mindgap_foundations::geometry::{Pose, Wall, direction};
 
-/// What a ray meets first.
+/// The first wall that a ray hits.
 pub(super) struct Met {
-    /// The angle between the ray and the sensor's axis, degrees; to the left it is above zero.
+    /// The angle between the ray and the sensor's axis, degrees; positive to the left.
     pub off_axis_deg: f64,
-    /// How far away it is, cm.
+    /// Distance to the wall, cm.
     pub distance_cm: f64,
-    /// Number of the wall.
+    /// Index of the wall.
     pub wall: usize,
 }
 
 /// Angle between two rays, degrees.
 pub(super) const SPACING_DEG: f64 = 3.0;
-/// The outermost rays to either side: at 60 degrees a wall a hand's breadth away is no longer heard.
+/// Angle of the outermost rays to either side, degrees: at 60 degrees a wall a hand's breadth away is no longer heard.
 pub(super) const OUTERMOST_DEG: f64 = SPACING_DEG * TO_A_SIDE as f64;
 const TO_A_SIDE: usize = 20;
 const RAYS: usize = 2 * TO_A_SIDE + 1;
-/// A sensor that is as near to a wall's line as this may stand on the wall, cm.
+/// A sensor within this distance of a wall's line may be on the wall, cm.
 const ON_WALL_CM: f64 = 1e-6;
 
-/// What the rays meet, from the rightmost to the leftmost; those that meet nothing are left out.
+/// Returns the walls that the rays hit, from the rightmost ray to the leftmost, without the rays that hit nothing.
 pub(super) fn met_by_rays(surfaces: &Surfaces, sensor: &Pose) -> impl Iterator<Item = Met> {
     let axis = sensor.direction();
     let directions = FAN.each_ref().map(|(_, turn)| axis.rotate(*turn));
@@ -45,7 +45,7 @@ pub(super) fn met_by_rays(surfaces: &Surfaces, sensor: &Pose) -> impl Iterator<I
     met.map(|((distance_cm, wall), (off_axis_deg, _))| Met { off_axis_deg: *off_axis_deg, distance_cm, wall })
 }
 
-/// The rays: their angles off the axis, degrees, and the unit vectors there if the axis is that of x.
+/// The rays: their angles off the axis, degrees, and their unit vectors if the axis is +x.
 static FAN: LazyLock<[(f64, DVec2); RAYS]> = LazyLock::new(|| {
     std::array::from_fn(|ray| {
         let off_axis_deg = SPACING_DEG * (ray as f64 - TO_A_SIDE as f64);
@@ -53,7 +53,7 @@ static FAN: LazyLock<[(f64, DVec2); RAYS]> = LazyLock::new(|| {
     })
 });
 
-/// Which rays may meet a wall: most walls of a room lie across few of them.
+/// Returns the rays that may hit a wall; most walls of a room lie across few of them.
 fn across(wall: &Wall, from_cm: DVec2, axis: DVec2, directions: &[DVec2; RAYS]) -> Range<usize> {
     let (from, to) = (wall.from_cm - from_cm, wall.to_cm - from_cm);
     let turn = from.perp_dot(to);
@@ -66,7 +66,7 @@ fn across(wall: &Wall, from_cm: DVec2, axis: DVec2, directions: &[DVec2; RAYS]) 
         return 0..0;
     }
     let on_its_right = |end: DVec2| directions.partition_point(|ray| ray.perp_dot(end) > 0.0);
-    // One more to either side, for rays that just touch an end.
+    // One more ray to either side, for rays that just touch an end.
     let first = if is_ahead(right) { on_its_right(right).saturating_sub(1) } else { 0 };
     let end = if is_ahead(left) { (on_its_right(left) + 1).min(RAYS) } else { RAYS };
     first..end
@@ -80,7 +80,7 @@ mod tests {
     use mindgap_foundations::geometry::first_hit;
 
     fn point() -> impl Strategy<Value = DVec2> {
-        // Whole centimetres as well, so that sensors stand on walls and rays meet ends.
+        // Whole centimetres too, so that some sensors are on walls and some rays hit ends.
         let coordinate = || prop_oneof![-200.0..200.0, (-20..20).prop_map(f64::from)];
         (coordinate(), coordinate()).prop_map(|(x, y)| DVec2::new(x, y))
     }

@@ -9,33 +9,33 @@ use crate::sonar::perturbation::loss_by_incidence;
 use mindgap_foundations::geometry::{Pose, first_hit};
 use mindgap_foundations::statistics::summary::logistic;
 
-/// Room for so many echoes, ghost and strays with them: a target that is nearer and stronger silences most others.
+/// Initial capacity for echoes, with ghost and stray readings: nearer and stronger targets mask most others.
 const USUALLY_HEARD: usize = 16;
 
-/// What comes straight back.
+/// Direct echoes.
 struct Direct {
     /// The echoes, nearest first.
     components: Vec<Component>,
-    /// Probability that one of them is heard,
+    /// Probability that one of them is heard.
     heard: f64,
-    /// and that one is that reads less than the ghost.
+    /// Probability that one is heard that reads less than the ghost.
     heard_before_ghost: f64,
 }
 
 impl FirstEchoLaw {
-    /// The outcomes of a reading of a sensor at a pose.
+    /// Returns the outcomes of a reading of a sensor at a pose.
     pub fn outcomes_at(&self, surfaces: &Surfaces, sensor: &Pose) -> Outcomes {
         self.outcomes(&targets_at(surfaces, sensor), reach_cm(surfaces, sensor), &Perturbation::NONE)
     }
 
-    /// The outcomes of a reading of targets, nearest first, where the axis reaches as far as `reach_cm`, by a sensor that
-    /// differs from the law by a perturbation.
+    /// Returns the outcomes of a reading of targets, nearest first, by a perturbed sensor; `reach_cm` is the distance along
+    /// the axis.
     pub fn outcomes(&self, targets: &[Target], reach_cm: f64, change: &Perturbation) -> Outcomes {
         let echoes = targets.iter().map(|target| (target, self.on_axis(target)));
         self.outcomes_of(echoes, reach_cm, change)
     }
 
-    /// The same, each target with the strength that it had on the axis.
+    /// As [`outcomes`](Self::outcomes), each target with the strength that it would have on the axis.
     pub fn outcomes_of<'t>(
         &self,
         echoes: impl Iterator<Item = (&'t Target, f64)>,
@@ -67,7 +67,7 @@ impl FirstEchoLaw {
         outcomes.without_hits_led_beyond_range(change)
     }
 
-    /// The direct echoes of targets, where no reading is a stray one.
+    /// Returns the direct echoes of targets, without stray readings.
     fn direct<'t>(&self, echoes: impl Iterator<Item = (&'t Target, f64)>, change: &Perturbation) -> Direct {
         let log_width_deg = libm::log(self.beam_deg * change.width);
         let mut components = Vec::with_capacity(USUALLY_HEARD);
@@ -101,12 +101,12 @@ impl FirstEchoLaw {
         Direct { components, heard, heard_before_ghost: heard_before_ghost.unwrap_or(heard) }
     }
 
-    /// The strength of a target's echo, in units of the threshold's noise.
+    /// Returns the strength of a target's echo, in units of the threshold's noise.
     pub fn strength(&self, target: &Target) -> f64 {
         self.on_axis(target) - self.beam_loss(target, libm::log(self.beam_deg))
     }
 
-    /// The strength if it stood on the axis.
+    /// Returns the strength that a target would have on the axis.
     pub fn on_axis(&self, target: &Target) -> f64 {
         let kind = match target.kind {
             TargetKind::Ray { incidence_deg } => {
@@ -119,17 +119,17 @@ impl FirstEchoLaw {
         self.gain - self.spreading * target.known.log_metres + kind
     }
 
-    /// What it loses where it stands, by a beam with this logarithm of its width in degrees.
+    /// Returns the loss of a target off the axis, for a beam with this logarithm of its width in degrees.
     fn beam_loss(&self, target: &Target, log_width_deg: f64) -> f64 {
         libm::exp(self.beam_power * (target.known.log_off_axis - log_width_deg))
     }
 
-    /// What it reads before scatter, cm, at an angle off the axis in units of 10 degrees.
+    /// Returns the reading of a target before scatter, cm, at an angle off the axis in units of 10 degrees.
     fn direct_cm(&self, target: &Target, off_axis: f64) -> f64 {
         self.offset_cm + self.scale * target.distance_cm + self.off_axis_cm * off_axis * off_axis
     }
 
-    /// The scale of its readings, cm.
+    /// Returns the scale of a target's readings, cm.
     fn scale_cm(&self, target: &Target, off_axis: f64) -> f64 {
         let growth = self.scatter_per_m * target.distance_cm / 100.0 + self.scatter_off_axis * off_axis;
         let own = self.scatter_cm * libm::exp(growth);
@@ -138,12 +138,12 @@ impl FirstEchoLaw {
     }
 }
 
-/// The incidence of a target, degrees; a point has none.
+/// Returns the incidence of a target, degrees; 0 for points.
 fn incidence_deg(target: &Target) -> f64 {
     target.kind.incidence_deg().unwrap_or(0.0)
 }
 
-/// How far the axis reaches, cm; infinite where it meets nothing.
+/// Returns the distance along the axis to the first wall, cm; infinite if there is none.
 pub fn reach_cm(surfaces: &Surfaces, sensor: &Pose) -> f64 {
     first_hit(&surfaces.walls, sensor.position_cm, sensor.direction()).map_or(f64::INFINITY, |(met_cm, _)| met_cm)
 }

@@ -8,7 +8,7 @@ use mindgap_foundations::geometry::Wall;
 #[derive(Clone, Debug)]
 pub struct Surfaces {
     pub(super) walls: Vec<Wall>,
-    /// Where the normals of the walls point to, degrees.
+    /// Directions of the normals of the walls, degrees.
     normals_deg: Vec<f64>,
     pub(super) corners: Vec<Corner>,
 }
@@ -17,26 +17,26 @@ pub struct Surfaces {
 #[derive(Clone, Debug)]
 pub(super) struct Corner {
     pub at_cm: DVec2,
-    /// The directions along walls away from it, in pairs of one wall's and the other's; none at a free end.
+    /// Directions along the walls away from it, cm, as a pair for each two walls; empty at a free end.
     arms: Vec<[DVec2; 2]>,
 }
 
-/// What a corner is from somewhere.
+/// The kind of a corner, seen from a point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Side {
-    /// Between two walls.
+    /// The point is between the two walls.
     Concave,
-    /// Outside of both, or the end of one.
+    /// The point is outside both walls, or the corner is a free end.
     Convex,
-    /// Behind a wall that another stands on from the other side.
+    /// The point is behind a wall that another wall meets from the other side.
     Flat,
 }
 
-/// Walls as near to each other as this touch, cm.
+/// Walls within this distance touch, cm.
 const TOUCHING_CM: f64 = 0.1;
 
 impl Surfaces {
-    /// The surfaces that walls make.
+    /// Returns the surfaces of walls.
     pub fn new(walls: Vec<Wall>) -> Self {
         let mut corners = Vec::new();
         for (i, one) in walls.iter().enumerate() {
@@ -56,34 +56,34 @@ impl Surfaces {
         Surfaces { walls, normals_deg, corners }
     }
 
-    /// The walls.
+    /// Returns the walls.
     pub fn walls(&self) -> &[Wall] {
         &self.walls
     }
 
-    /// The angle between a ray at `ray_deg` and a wall's normal, degrees, 0 to 90.
+    /// Returns the angle between a ray at `ray_deg` and a wall's normal, degrees, 0 to 90.
     pub(super) fn incidence_deg(&self, wall: usize, ray_deg: f64) -> f64 {
         let turned = (ray_deg - self.normals_deg[wall]) / 180.0;
         180.0 * (turned - libm::round(turned)).abs()
     }
 
-    /// Whether nothing stands between two points.
+    /// Returns whether no wall is between two points.
     pub(super) fn is_visible(&self, from_cm: DVec2, point_cm: DVec2) -> bool {
         let way = point_cm - from_cm;
         let distance_cm = way.length();
         let direction = way / distance_cm;
-        let stands_between = |wall: &Wall| {
+        let is_between = |wall: &Wall| {
             wall.distance_along_cm(from_cm, direction).is_some_and(|met_cm| met_cm <= distance_cm - TOUCHING_CM)
         };
-        !self.walls.iter().any(stands_between)
+        !self.walls.iter().any(is_between)
     }
 }
 
 impl Corner {
-    /// What it is from a point.
+    /// Returns the kind of the corner, seen from a point.
     pub fn side(&self, from_cm: DVec2) -> Side {
         let way = from_cm - self.at_cm;
-        // Between two directions, a positive combination of both.
+        // A direction between two others is a positive combination of both.
         let between =
             |[a, b]: &[DVec2; 2]| way.perp_dot(*b) / a.perp_dot(*b) > 0.0 && a.perp_dot(way) / a.perp_dot(*b) > 0.0;
         match self.arms.as_slice() {
@@ -94,7 +94,7 @@ impl Corner {
     }
 }
 
-/// Where two walls meet, unless they go on along one line.
+/// Returns the corner where two walls meet; `None` if they do not meet or are collinear.
 fn meeting(one: &Wall, other: &Wall) -> Option<Corner> {
     let (a, b) = (one.to_cm - one.from_cm, other.to_cm - other.from_cm);
     let across = a.perp_dot(b);

@@ -1,4 +1,4 @@
-//! What can return an echo to a sensor at a pose.
+//! The targets that can return an echo to a sensor at a pose.
 
 use glam::DVec2;
 
@@ -13,32 +13,32 @@ pub struct Target {
     pub distance_cm: f64,
     /// Angle off the axis, degrees, 0 to 180.
     pub off_axis_deg: f64,
-    /// What it is.
+    /// Kind of target.
     pub kind: TargetKind,
-    /// Laws ask for these again and again.
+    /// Derived quantities, cached since laws use them repeatedly.
     pub(super) known: Known,
 }
 
-/// What follows from a target's place.
+/// Quantities derived from a target's position.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Known {
     /// The logarithm of its distance in metres.
     pub log_metres: f64,
     /// The logarithm of its angle off the axis in degrees.
     pub log_off_axis: f64,
-    /// Standard deviation of what lies between two rays along a wall, cm.
+    /// Standard deviation of the distance between two rays along a wall, cm.
     pub between_cm: f64,
 }
 
-/// What returns an echo.
+/// Kind of target.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum TargetKind {
-    /// A wall where a ray meets it.
+    /// A point of a wall that a ray hits.
     Ray {
         /// The angle between the ray and the wall's normal, degrees, 0 to 90.
         incidence_deg: f64,
     },
-    /// A wall where its normal points to the sensor.
+    /// The foot of the perpendicular from the sensor to a wall.
     Foot,
     /// A concave corner.
     Corner,
@@ -46,18 +46,18 @@ pub enum TargetKind {
     Edge,
 }
 
-/// Beyond this incidence a wall's part between two rays is as long as the range, degrees.
+/// Incidence beyond which the part of a wall between two rays is as long as the range, degrees.
 const GRAZING_DEG: f64 = 80.0;
-/// Nothing is nearer to the sensor than its own membrane, cm.
+/// Least distance of a target, cm: that of the sensor's own membrane.
 const NEAREST_CM: f64 = 1.0;
 /// The cosine of an angle off the axis that is just beyond the outermost ray's.
 const WITHIN_COSINE: f64 = 0.4999;
-/// A foot within this of its wall's end may be that end itself, cm.
+/// A foot within this distance of its wall's end may be that end itself, cm.
 const END_CM: f64 = 1e-6;
 
-/// The targets of a sensor, nearest first, without such as cannot be the first echo whatever the sensor's parameters:
-/// a wall behind another part of a wall that is nearer to the axis and faces the sensor more, a corner behind another corner
-/// that is nearer to the axis, and an edge behind an edge.
+/// Returns the targets of a sensor, nearest first, without those that cannot be the first echo for any parameters of the
+/// sensor: a wall behind another part of a wall that is nearer to the axis and faces the sensor more, a corner behind
+/// another corner nearer to the axis, and an edge behind such an edge.
 pub fn targets_at(surfaces: &Surfaces, sensor: &Pose) -> Vec<Target> {
     let mut found = walls(surfaces, sensor);
     found.extend(feet(surfaces, sensor));
@@ -68,10 +68,10 @@ pub fn targets_at(surfaces: &Surfaces, sensor: &Pose) -> Vec<Target> {
     found.iter().map(|target| Target::new(target.distance_cm, target.off_axis_deg, target.kind)).collect()
 }
 
-/// A room's targets are seldom more than this.
-const MOST_USUAL: usize = 64;
+/// Initial capacity for targets, which few rooms exceed.
+const CAPACITY: usize = 64;
 
-/// A target before what follows from its place is worked out.
+/// A target without derived quantities.
 #[derive(Clone, Copy)]
 struct Found {
     distance_cm: f64,
@@ -80,7 +80,7 @@ struct Found {
 }
 
 impl Found {
-    /// Whether this part of a wall is stronger than another for certain, and nearer.
+    /// Returns whether this part of a wall is nearer than another and certainly stronger.
     fn masks(&self, other: &Found) -> bool {
         let faces_more = match (self.kind.incidence_deg(), other.kind.incidence_deg()) {
             (Some(own), Some(other)) => own <= other,
@@ -90,24 +90,24 @@ impl Found {
     }
 }
 
-/// Targets that are nearer than the next one.
+/// The targets that are nearer than the next one.
 struct Nearer {
     /// Angle off the axis and incidence of each part of a wall, degrees.
     walls: Vec<[f64; 2]>,
-    /// The least angle off the axis of a corner,
+    /// The least angle off the axis of a corner, degrees.
     corner_deg: f64,
-    /// and of an edge.
+    /// The least angle off the axis of an edge, degrees.
     edge_deg: f64,
 }
 
 impl Default for Nearer {
     fn default() -> Self {
-        Nearer { walls: Vec::with_capacity(MOST_USUAL), corner_deg: f64::INFINITY, edge_deg: f64::INFINITY }
+        Nearer { walls: Vec::with_capacity(CAPACITY), corner_deg: f64::INFINITY, edge_deg: f64::INFINITY }
     }
 }
 
 impl Nearer {
-    /// Adds one that is no nearer than these, unless one of these is stronger for certain; whether it was added.
+    /// Adds a target that is not nearer than these unless one of these is certainly stronger. Returns whether it was added.
     fn add(&mut self, target: &Found) -> bool {
         let off_axis_deg = target.off_axis_deg;
         let is_new_least = |least_deg: &mut f64| {
@@ -132,7 +132,7 @@ impl Nearer {
 }
 
 impl Target {
-    /// A target at a distance in cm, so many degrees off the axis.
+    /// Returns a target at `distance_cm`, and at `off_axis_deg` off the axis.
     pub fn new(distance_cm: f64, off_axis_deg: f64, kind: TargetKind) -> Self {
         let incidence_deg = kind.incidence_deg().unwrap_or(0.0);
         // A uniform distribution has a standard deviation of its width over the root of twelve.
@@ -147,7 +147,7 @@ impl Target {
 }
 
 impl TargetKind {
-    /// The incidence of a wall, degrees.
+    /// Returns the incidence on a wall, degrees; `None` for points.
     pub fn incidence_deg(&self) -> Option<f64> {
         match self {
             TargetKind::Ray { incidence_deg } => Some(*incidence_deg),
@@ -157,12 +157,12 @@ impl TargetKind {
     }
 }
 
-/// The walls where rays meet them. Along a wall most parts are masked by the next one, and are left out here already.
+/// Returns the points of walls that rays hit, without those that the next point of the same wall masks.
 fn walls(surfaces: &Surfaces, sensor: &Pose) -> Vec<Found> {
     let axis_deg = sensor.heading_rad.to_degrees();
-    let mut found: Vec<Found> = Vec::with_capacity(MOST_USUAL);
+    let mut found: Vec<Found> = Vec::with_capacity(CAPACITY);
     let mut along = None;
-    let mut begin = 0;
+    let mut start = 0;
     for Met { off_axis_deg, distance_cm, wall } in met_by_rays(surfaces, sensor) {
         let incidence_deg = surfaces.incidence_deg(wall, axis_deg + off_axis_deg);
         let part = Found {
@@ -171,20 +171,20 @@ fn walls(surfaces: &Surfaces, sensor: &Pose) -> Vec<Found> {
             kind: TargetKind::Ray { incidence_deg },
         };
         if along.replace(wall) != Some(wall) {
-            begin = found.len();
+            start = found.len();
         }
-        while found.len() > begin && found.last().is_some_and(|before| part.masks(before)) {
+        while found.len() > start && found.last().is_some_and(|before| part.masks(before)) {
             found.pop();
         }
-        if found.len() == begin || !found.last().is_some_and(|before| before.masks(&part)) {
+        if found.len() == start || !found.last().is_some_and(|before| before.masks(&part)) {
             found.push(part);
         }
     }
     found
 }
 
-/// The feet of the perpendiculars that lie on their walls. The nearest point of a wall to which no perpendicular leads is
-/// its end, and that is no mirror.
+/// Returns the feet of perpendiculars that lie on their walls. If the foot lies outside, the nearest point of a wall is its
+/// end, which does not reflect specularly.
 fn feet(surfaces: &Surfaces, sensor: &Pose) -> impl Iterator<Item = Found> {
     let axis = sensor.direction();
     surfaces.walls.iter().filter_map(move |wall| {
@@ -206,7 +206,7 @@ fn corners(surfaces: &Surfaces, sensor: &Pose) -> impl Iterator<Item = Found> {
     surfaces.corners.iter().filter_map(corner)
 }
 
-/// A point as a target, if it is one, within the beam and in sight; most are not within the beam.
+/// Returns a point as a target if it is one, within the beam and visible; most points are outside the beam.
 fn point(
     surfaces: &Surfaces,
     sensor: &Pose,
@@ -232,7 +232,7 @@ mod tests {
     use super::*;
     use mindgap_built_in_robot::four_obstacles;
 
-    /// Whether a target, which is no farther, is stronger for certain.
+    /// Returns whether a target that is not farther is certainly stronger.
     fn masks(nearer: &Found, farther: &Target) -> bool {
         let is_alike = match (nearer.kind.incidence_deg(), farther.kind.incidence_deg()) {
             (Some(own), Some(other)) => own <= other,
@@ -243,9 +243,9 @@ mod tests {
     }
 
     proptest! {
-        /// All that are left out have one of those that are heard before them, and none of these has another before it.
+        /// Every omitted target has a masking target in front of it, and no returned target has one.
         #[test]
-        fn what_is_left_out_is_masked(x_cm in 5.0..295.0, y_cm in 5.0..215.0, heading_deg in -180.0..180.0) {
+        fn omitted_targets_are_masked(x_cm in 5.0..295.0, y_cm in 5.0..215.0, heading_deg in -180.0..180.0) {
             let (surfaces, sensor) = (Surfaces::new(four_obstacles().sides()), Pose::new(x_cm, y_cm, f64::to_radians(heading_deg)));
             let heard = targets_at(&surfaces, &sensor);
             prop_assert!(heard.is_sorted_by(|a, b| a.distance_cm <= b.distance_cm));

@@ -10,7 +10,7 @@ use mindgap_foundations::geometry::{Pose, Rectangle, Wall};
 use mindgap_foundations::random::generator;
 use mindgap_foundations::statistics::summary::logistic;
 
-/// A sensor with all parts of the law, whose readings scatter little, so that cells tell them apart.
+/// A sensor with all parts of the law, whose readings scatter little, so that cells separate them.
 const LAW: FirstEchoLaw = FirstEchoLaw {
     gain: 2.7,
     spreading: 3.6,
@@ -39,7 +39,7 @@ fn wall(from: [f64; 2], to: [f64; 2]) -> Wall {
     Wall { from_cm: from.into(), to_cm: to.into() }
 }
 
-/// A wall across the x axis, `distance_cm` from the origin.
+/// Returns a wall across the x axis, `distance_cm` from the origin.
 fn wall_ahead(distance_cm: f64) -> Surfaces {
     Surfaces::new(vec![wall([distance_cm, -500.0], [distance_cm, 500.0])])
 }
@@ -52,13 +52,13 @@ fn hits(outcomes: &Outcomes) -> f64 {
     outcomes.components.iter().filter(|c| c.source == Source::Hit).map(|c| c.probability).sum()
 }
 
-/// The probability of a hit where the loudest echo of all has this strength and is beyond the ghost.
+/// Returns the probability of a hit if the strongest echo has this strength and is farther than the ghost.
 fn heard(loudest: f64) -> f64 {
     (1.0 - LAW.p_stray) * (1.0 - LAW.p_ghost) * (1.0 - LAW.p_dropout) * logistic(loudest)
 }
 
 #[test]
-fn a_wall_ahead_is_heard_by_its_foot_alone() {
+fn wall_ahead_is_heard_only_at_its_foot() {
     for distance_cm in [30.0, 80.0, 200.0] {
         let outcomes = LAW.outcomes_at(&wall_ahead(distance_cm), &at(0.0, 0.0, 0.0));
         let expected = heard(2.7 - 3.6 * libm::log(distance_cm / 100.0));
@@ -69,9 +69,9 @@ fn a_wall_ahead_is_heard_by_its_foot_alone() {
 }
 
 #[test]
-fn an_oblique_wall_is_as_loud_as_its_loudest_part() {
-    // The wall's foot is 30 degrees off the axis at 60 cm, and a ray at so many degrees towards it meets the wall under
-    // what is left of these.
+fn oblique_wall_is_as_strong_as_its_strongest_part() {
+    // The wall's foot is 30 degrees off the axis at 60 cm, and a ray turned towards it hits the wall at an incidence of 30
+    // degrees minus the angle of the ray.
     let outcomes = LAW.outcomes_at(&wall_ahead(60.0), &at(0.0, 0.0, 30.0));
     let strength = |off_deg: f64| {
         let incidence_deg = 30.0 - off_deg;
@@ -85,7 +85,7 @@ fn an_oblique_wall_is_as_loud_as_its_loudest_part() {
 }
 
 #[test]
-fn a_corner_answers_where_no_wall_does() {
+fn corner_returns_an_echo_where_walls_do_not() {
     let room = Rectangle { low_cm: DVec2::ZERO, high_cm: DVec2::splat(200.0) };
     let surfaces = Surfaces::new(room.edges().to_vec());
     let sensor = at(100.0, 100.0, 45.0);
@@ -99,23 +99,23 @@ fn a_corner_answers_where_no_wall_does() {
 }
 
 #[test]
-fn corners_are_told_from_edges_by_the_side_that_they_are_seen_from() {
+fn corners_and_edges_depend_on_the_viewpoint() {
     let obstacle = Rectangle { low_cm: DVec2::splat(90.0), high_cm: DVec2::splat(110.0) };
     let points = |walls: &[Wall], x_cm: f64, y_cm: f64, deg: f64| {
         let targets = targets_at(&Surfaces::new(walls.to_vec()), &at(x_cm, y_cm, deg));
         [TargetKind::Corner, TargetKind::Edge].map(|kind| targets.iter().filter(|t| t.kind == kind).count())
     };
     assert_eq!(points(&obstacle.edges(), 50.0, 50.0, 45.0), [0, 1], "the others are masked");
-    // A wall that ends on the middle of another: two corners in one, from the side where it stands.
+    // A wall that ends at the middle of another makes two corners in one, from its side.
     let junction = [wall([0.0, 100.0], [200.0, 100.0]), wall([100.0, 100.0], [100.0, 150.0])];
     assert_eq!(points(&junction, 60.0, 130.0, -20.0), [1, 1], "and its free end");
     assert_eq!(points(&junction, 100.0, 50.0, 90.0)[0], 0, "from behind it is flat");
-    // Walls that go on along a line meet in nothing.
+    // Collinear walls make no corner.
     assert_eq!(points(&[wall([0.0, 90.0], [50.0, 90.0]), wall([50.0, 90.0], [100.0, 90.0])], 50.0, 60.0, 90.0)[0], 0);
 }
 
 #[test]
-fn a_foot_off_its_wall_is_no_target() {
+fn foot_outside_its_wall_is_not_a_target() {
     let feet = |y_cm: f64| {
         let surfaces = Surfaces::new(vec![wall([50.0, 0.0], [50.0, 40.0])]);
         let targets = targets_at(&surfaces, &at(0.0, y_cm, 20.5));
@@ -125,14 +125,14 @@ fn a_foot_off_its_wall_is_no_target() {
 }
 
 #[test]
-fn what_stands_behind_another_wall_is_no_target() {
+fn hidden_surfaces_are_not_targets() {
     let walls = [wall([50.0, -200.0], [50.0, 200.0]), wall([80.0, -200.0], [80.0, 200.0])];
     let targets = targets_at(&Surfaces::new(walls.to_vec()), &at(0.0, 0.0, 0.0));
     assert!(targets.iter().all(|target| target.distance_cm < 79.0 || target.off_axis_deg > 30.0), "{targets:?}");
 }
 
 #[test]
-fn a_weaker_echo_behind_a_stronger_one_is_never_the_first() {
+fn weaker_echo_behind_a_stronger_one_is_never_first() {
     let target = |distance_cm, kind| Target::new(distance_cm, 0.0, kind);
     let near = target(50.0, TargetKind::Foot);
     let [weak, strong] = [TargetKind::Edge, TargetKind::Foot].map(|kind| target(60.0, kind));
@@ -141,9 +141,9 @@ fn a_weaker_echo_behind_a_stronger_one_is_never_the_first() {
     assert!((hits_of(&[weak, strong]) - heard(LAW.strength(&strong))).abs() < 1e-12);
 }
 
-/// What effects change of a sensor is what a sensor with other parameters does.
+/// A perturbation equals a change of the sensor's parameters.
 #[test]
-fn a_perturbed_sensor_is_another_sensor() {
+fn perturbed_sensor_equals_a_sensor_with_other_parameters() {
     let louder = FirstEchoLaw { gain: LAW.gain + 0.7, ..LAW };
     let wider = FirstEchoLaw { beam_deg: 1.5 * LAW.beam_deg, off_axis_cm: LAW.off_axis_cm / 2.25, ..LAW };
     let wider = FirstEchoLaw { scatter_off_axis: LAW.scatter_off_axis / 1.5, ..wider };
@@ -169,9 +169,9 @@ fn a_perturbed_sensor_is_another_sensor() {
     }
 }
 
-/// With a beam's width and the usual losses the textbook's ray hears what a usual sensor does.
+/// With the width of a beam and the usual losses, the ideal ray behaves as a usual sensor.
 #[test]
-fn an_ideal_ray_becomes_a_sensor() {
+fn perturbed_ideal_ray_equals_a_usual_sensor() {
     let ray = FirstEchoLaw::ideal_ray(0.5, 0.0, LAW.range_cm);
     let usual = FirstEchoLaw {
         gain: 2.7,
@@ -195,7 +195,7 @@ fn an_ideal_ray_becomes_a_sensor() {
     }
 }
 
-/// The outcomes in every place of every scene, of the sensor as it is and perturbed.
+/// Returns the outcomes at every pose in every scene, of the unperturbed and the perturbed sensor.
 fn grid() -> Vec<(String, Outcomes)> {
     let mut grid = Vec::new();
     for (s, scene) in scenes().iter().enumerate() {
@@ -211,7 +211,7 @@ fn grid() -> Vec<(String, Outcomes)> {
 }
 
 #[test]
-fn drawn_readings_are_as_likely_as_they_come() {
+fn frequencies_of_drawn_readings_follow_the_likelihood() {
     const DRAWS: usize = 20_000;
     for (place, (what, outcomes)) in grid().into_iter().enumerate() {
         let mut rng = generator(7, &[place as u64]);
@@ -258,9 +258,9 @@ proptest! {
         }
     }
 
-    /// Turning and shifting room and sensor together changes nothing that is heard.
+    /// Rotating and shifting the room with the sensor changes no outcome.
     #[test]
-    fn the_room_has_no_preferred_direction(x in 20.0..80.0, deg in -180.0..180.0, turn in -3.0..3.0) {
+    fn outcomes_are_invariant_under_rigid_motion(x in 20.0..80.0, deg in -180.0..180.0, turn in -3.0..3.0) {
         let scene = &scenes()[0];
         let origin = Pose::new(37.0, -12.0, turn);
         let moved = |point_cm: DVec2| origin.compose(&Pose { position_cm: point_cm, heading_rad: 0.0 }).position_cm;

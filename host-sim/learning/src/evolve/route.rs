@@ -1,5 +1,5 @@
-//! The length of the way from anywhere in a room to the target, round the obstacles. Straight through a wall is near, and a
-//! controller that ends there has got nowhere.
+//! Length of the route from anywhere in a room to the target, around the obstacles. The straight line may lead through a
+//! wall, so it would reward controllers that end behind one.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -11,10 +11,10 @@ use mindgap_logs::Scene;
 
 /// Side of a cell, cm.
 const CELL_CM: f64 = 4.0;
-/// Where the robot's body has no room a centimetre counts as many: places there have a length too, and no way is shorter
+/// Factor on lengths where the robot's body does not fit: places there have a finite length too, but no route is shorter
 /// through them.
 const BLOCKED: f64 = 20.0;
-/// Ways go from cell to cell in sixteen directions: they are 2.7 % too long at most.
+/// Steps from cell to cell, in sixteen directions: routes are at most 2.7 % too long.
 const STEPS: [IVec2; 16] = [
     IVec2::new(1, 0),
     IVec2::new(2, 1),
@@ -36,27 +36,27 @@ const STEPS: [IVec2; 16] = [
 /// Lengths are compared in whole hundredths of a millimetre.
 const UNITS_PER_CM: f64 = 1000.0;
 
-/// Lengths of ways to a target.
+/// Lengths of the routes to a target.
 #[derive(Clone, Debug)]
-pub struct WayMap {
+pub struct RouteMap {
     low_cm: DVec2,
     /// Number of cells along x and y.
     cells: IVec2,
-    /// One a cell, row by row.
+    /// One length per cell, in row-major order.
     lengths_cm: Vec<f32>,
 }
 
-impl WayMap {
-    /// The ways of a disc of `radius_cm` through a scene (Dijkstra 1959).
+impl RouteMap {
+    /// Finds the shortest routes of a disc of `radius_cm` through a scene (Dijkstra 1959).
     pub fn new(scene: &Scene, target_cm: DVec2, radius_cm: f64) -> Self {
         let Rectangle { low_cm, high_cm } =
             scene.bounding_box().unwrap_or(Rectangle { low_cm: target_cm, high_cm: target_cm });
         let (low_cm, high_cm) = (low_cm.min(target_cm), high_cm.max(target_cm));
         let cells = ((high_cm - low_cm) / CELL_CM).ceil().as_ivec2() + IVec2::ONE;
-        let mut map = WayMap { low_cm, cells, lengths_cm: Vec::new() };
+        let mut map = RouteMap { low_cm, cells, lengths_cm: Vec::new() };
         let count = (cells.x * cells.y) as usize;
         let free: Vec<bool> = (0..count).map(|i| scene.has_room_for(map.middle_cm(map.cell(i)), radius_cm)).collect();
-        // Whole numbers, so that a way is never shorter than itself.
+        // Integer lengths, so that rounding never makes a route shorter than itself.
         let mut lengths = vec![u64::MAX; count];
         let mut next = BinaryHeap::new();
         let nearest = ((target_cm - low_cm) / CELL_CM).round().as_ivec2();
@@ -83,8 +83,8 @@ impl WayMap {
         map
     }
 
-    /// The length of the way from a point, cm; beyond the room, from its edge.
-    pub fn cm(&self, from_cm: DVec2) -> f64 {
+    /// Returns the length of the route from a point, cm; from outside the room, the length from its edge.
+    pub fn length_cm(&self, from_cm: DVec2) -> f64 {
         let last = (self.cells - IVec2::ONE).as_dvec2();
         let place = ((from_cm - self.low_cm) / CELL_CM).clamp(DVec2::ZERO, last);
         let corner = place.floor().min((last - DVec2::ONE).max(DVec2::ZERO));
@@ -121,37 +121,37 @@ mod tests {
     use super::*;
     use mindgap_foundations::geometry::Wall;
 
-    /// A room with a wall across it that is open at the top.
+    /// Returns a room with a wall across it that is open at the top.
     fn room() -> Scene {
         let wall = Wall { from_cm: DVec2::new(100.0, 0.0), to_cm: DVec2::new(100.0, 150.0) };
         Scene { arena_cm: Some(DVec2::new(200.0, 200.0)), walls: vec![wall], ..Scene::default() }
     }
 
     #[test]
-    fn it_is_straight_where_nothing_is_between() {
+    fn route_is_straight_in_free_space() {
         let target = DVec2::new(150.0, 50.0);
-        let map = WayMap::new(&room(), target, 10.0);
+        let map = RouteMap::new(&room(), target, 10.0);
         for from in [DVec2::new(180.0, 50.0), DVec2::new(120.0, 90.0), DVec2::new(141.0, 163.0)] {
             let straight = from.distance(target);
-            assert!((map.cm(from) / straight - 1.0).abs() < 0.04, "{from}: {} {straight}", map.cm(from));
+            assert!((map.length_cm(from) / straight - 1.0).abs() < 0.04, "{from}: {} {straight}", map.length_cm(from));
         }
     }
 
     #[test]
-    fn it_goes_round_what_is_between() {
+    fn route_leads_around_a_wall() {
         let target = DVec2::new(150.0, 50.0);
-        let map = WayMap::new(&room(), target, 10.0);
+        let map = RouteMap::new(&room(), target, 10.0);
         let from = DVec2::new(50.0, 50.0);
         // Two tangents to the disc of the body's radius about the end of the wall, and the arc between them.
         let round = 2.0 * 111.36 + 23.9;
-        assert!((map.cm(from) / round - 1.0).abs() < 0.05, "{} {round}", map.cm(from));
+        assert!((map.length_cm(from) / round - 1.0).abs() < 0.05, "{} {round}", map.length_cm(from));
     }
 
     #[test]
-    fn places_without_room_or_outside_have_a_length_too() {
-        let map = WayMap::new(&room(), DVec2::new(150.0, 50.0), 10.0);
+    fn blocked_and_outside_places_have_finite_lengths() {
+        let map = RouteMap::new(&room(), DVec2::new(150.0, 50.0), 10.0);
         for from in [DVec2::new(0.0, 0.0), DVec2::new(-500.0, 900.0), DVec2::new(99.0, 20.0)] {
-            assert!(map.cm(from).is_finite() && map.cm(from) > 50.0, "{from}: {}", map.cm(from));
+            assert!(map.length_cm(from).is_finite() && map.length_cm(from) > 50.0, "{from}: {}", map.length_cm(from));
         }
     }
 }

@@ -1,5 +1,5 @@
-//! How often a controller reaches the target, as far as that is known: over robots drawn from what the simulator leaves
-//! open, each with its own chance.
+//! Probability that a controller reaches the target, and its epistemic uncertainty: over robots drawn from the posterior of
+//! the simulator, each with its own success rate.
 
 use std::fmt;
 
@@ -17,23 +17,23 @@ use mindgap_models::simulator::ensemble::Member;
 use mindgap_models::simulator::environment::Environment;
 use mindgap_models::simulator::rollout::{RolloutOutcome, RolloutRequest};
 
-/// Robots that tell how far a controller's chance is known.
+/// Number of robots over which the epistemic uncertainty is estimated.
 pub const ROBOTS: usize = 48;
-/// Runs on each for a chance that is told.
+/// Number of runs per robot for a probability that is reported.
 pub const RUNS: usize = 12;
 
-/// The chance of success of a controller.
+/// The probability of success of a controller.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Chance {
-    /// Over all robots, 0..=1.
+pub struct SuccessProbability {
+    /// Mean over all robots, 0..=1.
     pub success: f64,
-    /// What the chances of 95 % of the robots lie between.
+    /// Interval that contains the success rates of 95 % of the robots, 0..=1.
     pub ci95: [f64; 2],
-    /// Share of the variance of one run's success that is between robots: not knowing, where the rest is chance.
-    pub not_knowing: f64,
+    /// Share of the variance of a single run's success that is between robots, 0..=1. It is epistemic; the rest is noise.
+    pub epistemic_fraction: f64,
 }
 
-/// Robots that controllers are judged on.
+/// Evaluates controllers on robots drawn from the posterior.
 pub struct Judge<'a> {
     executor: &'a dyn Executor,
     robots: Vec<Environment<'a>>,
@@ -42,7 +42,7 @@ pub struct Judge<'a> {
 }
 
 impl<'a> Judge<'a> {
-    /// Of these robots, in a scene with a target, from a start. The same seed gives all controllers the same runs.
+    /// Places the robots at a start of a scene with a target. All controllers have the same runs, which `seed` fixes.
     ///
     /// # Errors
     /// As [`Environment::new`].
@@ -58,21 +58,22 @@ impl<'a> Judge<'a> {
         Ok(Judge { executor, robots: Environment::of_robots(simulator, members, scene, start)?, target_cm, seed })
     }
 
-    /// The chance of each controller in `runs` runs of every robot.
+    /// Returns the probability of success of each controller, from `runs` runs of every robot.
     ///
     /// # Errors
-    /// When it cannot be computed by those to whom it is handed out.
-    pub fn chances(&self, controllers: &[Controller], runs: usize) -> Result<Vec<Chance>> {
+    /// If the executor fails.
+    pub fn success_probabilities(&self, controllers: &[Controller], runs: usize) -> Result<Vec<SuccessProbability>> {
         let by_robot = self.successes(controllers, runs)?;
-        let of = |controller: usize| by_robot.iter().map(|robot| share(&robot[controller])).collect();
-        Ok((0..controllers.len()).map(|controller| Chance::of(of(controller), runs)).collect())
+        let rates = |controller: usize| by_robot.iter().map(|robot| share(&robot[controller])).collect();
+        Ok((0..controllers.len()).map(|controller| SuccessProbability::from_rates(rates(controller), runs)).collect())
     }
 
-    /// The chance of success if the robot were known: on each robot that of the controller which does best there. One half
-    /// of `runs` runs each chooses and the other one tells, since a chance by which one has chosen is too good.
+    /// Returns the probability of success if the robot were known: the mean over robots of that of the best controller for
+    /// each. One half of the `runs` runs selects the controller and the other half measures it, since the rate by which one
+    /// has selected is biased upwards.
     ///
     /// # Errors
-    /// As [`chances`](Self::chances).
+    /// If the executor fails.
     pub fn if_known(&self, controllers: &[Controller], runs: usize) -> Result<f64> {
         let by_robot = self.successes(controllers, runs)?;
         let best = by_robot.iter().flat_map(|robot| {
@@ -85,7 +86,7 @@ impl<'a> Judge<'a> {
         Ok(best.sum::<f64>() / (2 * self.robots.len()) as f64)
     }
 
-    /// Of every robot, and there of every controller, which runs reach the target.
+    /// Returns for every robot, controller and run whether it reaches the target.
     fn successes(&self, controllers: &[Controller], runs: usize) -> Result<Vec<Vec<Vec<bool>>>> {
         let of_robot = |number: usize| Ok(self.successes_on(number, &self.robots[number], controllers, runs));
         executor::map(self.executor, self.robots.len(), of_robot)
@@ -113,33 +114,33 @@ impl<'a> Judge<'a> {
     }
 }
 
-/// Share of the runs that reach the target.
+/// Returns the share of the runs that reach the target.
 fn share(reached: &[bool]) -> f64 {
     reached.iter().filter(|reached| **reached).count() as f64 / reached.len() as f64
 }
 
-/// In percent, with the range of the robots.
-impl fmt::Display for Chance {
+/// Writes the probability in percent, with the interval over robots.
+impl fmt::Display for SuccessProbability {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [success, low, high] = [self.success, self.ci95[0], self.ci95[1]].map(|share| 100.0 * share);
         write!(f, "{success:.0} % ({low:.0} to {high:.0})")
     }
 }
 
-impl Chance {
-    /// From the success rates of robots in `runs` runs each.
-    fn of(mut rates: Vec<f64>, runs: usize) -> Self {
+impl SuccessProbability {
+    /// Estimates the probability from the success rates of robots in `runs` runs each.
+    fn from_rates(mut rates: Vec<f64>, runs: usize) -> Self {
         rates.sort_by(f64::total_cmp);
         let count = rates.len() as f64;
         let success = rates.iter().sum::<f64>() / count;
         let spread = rates.iter().map(|rate| (rate - success) * (rate - success)).sum::<f64>() / (count - 1.0).max(1.0);
         let whole = success * (1.0 - success);
-        // Rates of few runs scatter where all robots have one chance.
+        // Rates of few runs scatter even if all robots have the same probability.
         let runs = runs as f64;
         let between = if runs > 1.0 { (runs * spread - whole) / (runs - 1.0) } else { 0.0 };
         let at = |share: f64| rates[((count - 1.0) * share).round() as usize];
-        let not_knowing = if whole > 0.0 { (between / whole).clamp(0.0, 1.0) } else { 0.0 };
-        Chance { success, ci95: [at(0.025), at(0.975)], not_knowing }
+        let epistemic_fraction = if whole > 0.0 { (between / whole).clamp(0.0, 1.0) } else { 0.0 };
+        SuccessProbability { success, ci95: [at(0.025), at(0.975)], epistemic_fraction }
     }
 }
 
@@ -155,22 +156,22 @@ mod tests {
     const SEED: u64 = 5;
 
     #[test]
-    fn a_robot_that_is_known_gets_the_controller_that_is_best_for_it() {
+    fn known_robot_gets_its_best_controller() {
         let (scene, robots) = (four_obstacles(), SIMULATOR.robots(12, SEED).expect("robots"));
         let start = scene.starts[0];
-        // Some of what drives at random gets there.
+        // Some random controllers get there.
         let target_cm = start.position_cm + DVec2::new(25.0, 0.0);
         let judge = Judge::new(&Serial, &SIMULATOR, &robots.drawn, &scene, start, target_cm, SEED).expect("room");
         let decoder = GenotypeDecoder::new(&SIMULATOR, 60);
         let controllers: Vec<Controller> =
             (0..300).map(|number| decoder.controller(&decoder.random(&mut generator(SEED, &[number])))).collect();
-        let chances = judge.chances(&controllers, 4 * RUNS).expect("chances");
+        let chances = judge.success_probabilities(&controllers, 4 * RUNS).expect("probabilities");
         let uncertain: Vec<usize> =
             (0..300).filter(|number| (0.1..0.9).contains(&chances[*number].success)).take(5).collect();
         assert_eq!(uncertain.len(), 5);
         let known = |numbers: &[usize]| {
             let some: Vec<Controller> = numbers.iter().map(|number| controllers[*number].clone()).collect();
-            judge.if_known(&some, 4 * RUNS).expect("a chance")
+            judge.if_known(&some, 4 * RUNS).expect("a probability")
         };
         let never = (0..300).find(|number| chances[*number].success == 0.0).expect("one that does not get there");
         for number in &uncertain {
@@ -182,16 +183,16 @@ mod tests {
     }
 
     #[test]
-    fn robots_that_always_or_never_succeed_are_not_known_and_coins_are_chance() {
+    fn variance_between_robots_is_epistemic_and_that_of_coins_is_not() {
         let split: Vec<f64> = (0..40).map(|robot| f64::from(robot % 2)).collect();
-        let chance = Chance::of(split, 10);
+        let chance = SuccessProbability::from_rates(split, 10);
         assert!(
-            (chance.success - 0.5).abs() < 1e-9 && chance.not_knowing > 0.95 && chance.ci95 == [0.0, 1.0],
+            (chance.success - 0.5).abs() < 1e-9 && chance.epistemic_fraction > 0.95 && chance.ci95 == [0.0, 1.0],
             "{chance:?}"
         );
         // As often as ten fair coins show heads.
         let coins = [0.2, 0.3, 0.4, 0.4, 0.5, 0.5, 0.6, 0.6, 0.7, 0.8].repeat(4);
-        let chance = Chance::of(coins, 10);
-        assert!((chance.success - 0.5).abs() < 1e-9 && chance.not_knowing < 0.1, "{chance:?}");
+        let chance = SuccessProbability::from_rates(coins, 10);
+        assert!((chance.success - 0.5).abs() < 1e-9 && chance.epistemic_fraction < 0.1, "{chance:?}");
     }
 }
