@@ -49,8 +49,9 @@ fn from_toml<T>(
     if let Ok(path) = from.extract::<PathBuf>() {
         return read(&path).map_err(raised);
     }
-    let form =
-        |e: String| PyTypeError::new_err(format!("{name}: expected a path of {name}.toml or a dict with its contents: {e}"));
+    let form = |e: String| {
+        PyTypeError::new_err(format!("{name}: expected a path of {name}.toml or a dict with its contents: {e}"))
+    };
     let text: String = from.py().import("json")?.call_method1("dumps", (from,))?.extract()?;
     let tables: toml::Table = serde_json::from_str(&text).map_err(|e| form(e.to_string()))?;
     let text = toml::to_string(&tables).map_err(|e| form(e.to_string()))?;

@@ -14,7 +14,7 @@ use mindgap_diagnosis::progress::Stage;
 use mindgap_files::places::Places;
 use mindgap_foundations::error::{Error, Result};
 use mindgap_foundations::executor::Executor;
-use mindgap_learning::evolve::success_probability::{SuccessProbability, Judge, ROBOTS, RUNS};
+use mindgap_learning::evolve::success_probability::{Judge, ROBOTS, RUNS, SuccessProbability};
 use mindgap_logs::Scene;
 use mindgap_logs::controller_file::ControllerFile;
 use mindgap_models::simulator::Simulator;

@@ -115,7 +115,10 @@ fn a_failing_program_reports_the_instruction() {
     let sandbox = Sandbox::new();
     sandbox.write("fails.rxe", compile("task main() { int a[] = {1}; int i = 5; NumOut(0, LCD_LINE1, a[i]); }"));
     let output = sandbox.run("brick fails.rxe --readings none --json facts.json");
-    assert!(output.contains("failed: wrong operand or index after ") && output.contains(" of clump 0: index\n"), "{output}");
+    assert!(
+        output.contains("failed: wrong operand or index after ") && output.contains(" of clump 0: index\n"),
+        "{output}"
+    );
     assert_eq!(sandbox.json("facts.json")["failed_at"]["instruction"], "index");
 }
 

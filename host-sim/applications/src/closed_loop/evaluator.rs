@@ -10,7 +10,7 @@ use mindgap_core::controller::{Controller, Tuple};
 
 use super::similarity::{Paths, paths, similarity};
 use mindgap_foundations::error::Result;
-use mindgap_learning::evolve::success_probability::{SuccessProbability, Judge, ROBOTS};
+use mindgap_learning::evolve::success_probability::{Judge, ROBOTS, SuccessProbability};
 use mindgap_models::simulator::environment::Environment;
 
 /// A controller works after this many real successes with this success probability, real runs included: two successes were

@@ -126,7 +126,8 @@ impl Observations {
 
     /// Recalls what is known of single poses, if this is their room.
     pub fn recalling(self, familiar: Option<&FamiliarPoses>) -> Self {
-        let recollection = familiar.and_then(|familiar| PoseMemory::for_room(familiar, self.surroundings.surfaces.walls()));
+        let recollection =
+            familiar.and_then(|familiar| PoseMemory::for_room(familiar, self.surroundings.surfaces.walls()));
         Observations { recollection: recollection.map(Arc::new), ..self }
     }
 

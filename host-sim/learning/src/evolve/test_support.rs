@@ -3,8 +3,8 @@
 use std::sync::LazyLock;
 
 use super::genome::GenotypeDecoder;
-use super::task::EvolutionTask;
 use super::route::RouteMap;
+use super::task::EvolutionTask;
 use crate::learn::train::{TABLE_ONE, Trainer, train};
 use mindgap_built_in_robot::{default_robot, four_obstacles, record, training_room};
 use mindgap_foundations::executor::Serial;

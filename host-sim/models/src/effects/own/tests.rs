@@ -165,10 +165,20 @@ fn errors_are_reported_with_their_place() {
     assert_refused("bounds = [0.0, 20.0]", "bounds = [0.0, inf]", parameter, "bounds [0, inf]");
     assert_refused("nominal = 0.0", "nominal = -1.0", parameter, "nominal -1 lies outside the bounds 0 to 20");
     assert_refused("nominal = 0.0", "nominal = nan", parameter, "nominal NaN");
-    assert_refused("nominal = 0.0", "nominal = 1.0", first, "change.forward_cm changes something at the nominal parameters");
+    assert_refused(
+        "nominal = 0.0",
+        "nominal = 1.0",
+        first,
+        "change.forward_cm changes something at the nominal parameters",
+    );
     assert_refused("bounds = [0.0, 20.0]", "bounds = [0.0, 20.0]\nguesses = [30.0]", parameter, "guess 30");
     assert_refused("bounds = [0.0, 20.0]", "bounds = [0.0, 20.0]\nprior_sd = 0.0", parameter, "prior_sd");
-    assert_refused("name = \"cm_per_rad\"", "name = \"x_cm\"", ":2: effect caster: parameter x_cm: ", "name of a variable");
+    assert_refused(
+        "name = \"cm_per_rad\"",
+        "name = \"x_cm\"",
+        ":2: effect caster: parameter x_cm: ",
+        "name of a variable",
+    );
     assert_refused("cm_per_rad * abs(turn_rad)", "0", first, "parameter cm_per_rad is in no expression");
     assert_refused(
         "forward_cm - cm_per_rad",
@@ -179,5 +189,10 @@ fn errors_are_reported_with_their_place() {
     assert_refused("id = \"caster\"", "id = \"latency\"", ":2: effect latency: ", "built-in effect");
     assert_refused("id = \"caster\"", "id = \"A caster\"", ":2: ", "small letters");
     assert_refused("id = \"tired\"", "id = \"caster\"", ":13: effect caster: ", "is there twice");
-    assert_refused("(1 + k) * echo_cm", "(1 + k * echo_cm) * echo_cm", ":13: effect tired: ", "has to be a factor times echo_cm");
+    assert_refused(
+        "(1 + k) * echo_cm",
+        "(1 + k * echo_cm) * echo_cm",
+        ":13: effect tired: ",
+        "has to be a factor times echo_cm",
+    );
 }
