@@ -153,7 +153,7 @@ class Diagnosis:
     def where(self) -> pd.DataFrame:
         """Where the gap lies."""
 
-    def corrected_simulator(self) -> Simulator:
+    def with_effects_applied(self) -> Simulator:
         """Returns the simulator with the effects that explain the gap, and the formula of the remaining residual."""
 
     def write_next_experiment(self, path: _Path, *, force: bool = False) -> bool:

@@ -48,19 +48,19 @@ impl Diagnosis {
     /// `no_gap`, `known`, `partly_known` or `unknown`.
     #[getter]
     fn verdict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        convert::facts(py, &self.diagnosis().verdict())
+        convert::facts(py, &self.diagnosis().verdict)
     }
 
     /// The effects found, as a frame.
     #[getter]
     fn effects<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        convert::frame(py, &self.diagnosis().effects())
+        convert::frame(py, &self.diagnosis().effects)
     }
 
     /// The contributions to the gap, as a frame.
     #[getter]
     fn budget<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        convert::frame(py, &self.diagnosis().budget())
+        convert::frame(py, &self.diagnosis().budget)
     }
 
     /// Where the gap lies, as a frame.
@@ -70,14 +70,14 @@ impl Diagnosis {
     }
 
     /// Returns the simulator with the effects that explain the gap, and the formula of the remaining residual.
-    fn corrected_simulator(&self, py: Python<'_>) -> PyResult<Simulator> {
-        py.detach(|| self.request().corrected_simulator(&self.answered)).map(Simulator::made).map_err(raised)
+    fn with_effects_applied(&self, py: Python<'_>) -> PyResult<Simulator> {
+        py.detach(|| self.request().with_effects_applied(&self.answered)).map(Simulator::made).map_err(raised)
     }
 
     /// Writes the commands to log next, as a run in CSV. Returns False if no causes are confused.
     #[pyo3(signature = (path, *, force=false))]
     fn write_next_experiment(&self, path: PathBuf, force: bool) -> PyResult<bool> {
-        let Some(experiment) = self.diagnosis().experiment() else { return Ok(false) };
+        let Some(experiment) = self.diagnosis().experiment.as_ref() else { return Ok(false) };
         places::file(&path, kinds::UNSIGNED, force)?;
         experiment.commands.write(&path).map_err(raised)?;
         Ok(true)
@@ -112,7 +112,7 @@ impl Diagnosis {
     }
 
     fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
-        let ids: Vec<&str> = self.diagnosis().effects().iter().map(|effect| effect.id).collect();
+        let ids: Vec<&str> = self.diagnosis().effects.iter().map(|effect| effect.id).collect();
         let effects = if ids.is_empty() { String::new() } else { format!(": {}", ids.join(", ")) };
         Ok(format!("<mindgap.Diagnosis {}{effects}>", self.verdict(py)?))
     }

@@ -4,7 +4,7 @@
 use std::path::Path;
 
 use mindgap_diagnosis::budget::Part;
-use mindgap_diagnosis::explain::NamedEffect;
+use mindgap_diagnosis::verdict::NamedEffect;
 use mindgap_diagnosis::{Diagnosis, diagnose};
 use mindgap_logs::Logs;
 use mindgap_models::simulator::kinematic;
@@ -30,9 +30,9 @@ fn main() -> std::process::ExitCode {
 
 fn row(folder: &Path, diagnosis: &Diagnosis) -> String {
     let name = folder.file_name().unwrap_or_default().to_string_lossy();
-    let verdict = serde_json::to_value(diagnosis.verdict()).unwrap_or_default();
-    let parts: Vec<String> = diagnosis.budget().iter().map(|part| cell(part, diagnosis.effects())).collect();
-    let closed = diagnosis.reduction().map_or(String::new(), |reduction| {
+    let verdict = serde_json::to_value(diagnosis.verdict).unwrap_or_default();
+    let parts: Vec<String> = diagnosis.budget.iter().map(|part| cell(part, &diagnosis.effects)).collect();
+    let closed = diagnosis.reduction.as_ref().map_or(String::new(), |reduction| {
         let [low, high] = reduction.whole.ci95.map(|share| 100.0 * share);
         format!("{:.0} % ({low:.0} to {high:.0})", 100.0 * reduction.whole.reducible_closed)
     });

@@ -121,8 +121,8 @@ def test_evaluation_equals_that_of_the_command(simulator, logs, tmp_path):
     assert networks.loc["turn", "r2"] > 0.8 and np.isnan(networks.loc["turn", "brier"])
 
 
-def test_corrected_simulator_has_the_effect(diagnosis, weak):
-    corrected = diagnosis.corrected_simulator()
+def test_simulator_with_effects_applied_has_no_gap(diagnosis, weak):
+    corrected = diagnosis.with_effects_applied()
     assert [effect["effect"] for effect in corrected.added] == ["motor_asymmetry"]
     assert mindgap.diagnose(corrected, weak).verdict == "no_gap"
 

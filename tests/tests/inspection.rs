@@ -130,7 +130,7 @@ fn no_fault_reaches_a_confident_cause() {
         let baseline = Baseline::at_posterior_mean(&simulator).expect("a reference");
         // Nothing is sure where nothing can be compared.
         let found = findings(baseline, &Inspection::new(logs), Method::default());
-        let effects = found.map_or_else(|_| Vec::new(), |found| found.diagnosis.effects().to_vec());
+        let effects = found.map_or_else(|_| Vec::new(), |found| found.diagnosis.effects.to_vec());
         effects.into_iter().filter(|effect| effect.probability > SURE).map(|effect| effect.id).collect::<Vec<_>>()
     };
     let fresh = |effects: &[ActiveEffect]| {

@@ -84,8 +84,8 @@ pub fn adapt(simulator: &Simulator, logs: &Logs, seed: u64, watch: impl Fn(Stage
     let missing = || Error::new("the simulator file has no parameter uncertainty: train it again");
     let ensemble = simulator.ensemble.as_ref().ok_or_else(missing)?;
     let robot = &simulator.robot;
-    let observations = Observations::of(logs, None);
     let baseline = Baseline::at_posterior_mean(simulator)?;
+    let observations = Observations::of(logs, baseline.motion.as_ref(), None);
     let plain = steps(&baseline, &[], &observations);
     if plain.is_empty() {
         return Err(Error::new("the runs contain no step with a pose at both ends: nothing to adapt to"));
@@ -146,7 +146,7 @@ fn steps(baseline: &Baseline, effects: &[AppliedEffect], observations: &Observat
     let chain = EffectChain::of(&applied, &baseline.robot);
     let step = |row: &mindgap_learning::evaluation::observations::Observation| {
         let [now, before, ..] = row.context.commands;
-        let left = predictions::residual(&chain, motion, row).filter(|_| row.then.is_empty())?;
+        let left = predictions::residual(&chain, motion, row).filter(|_| row.following_steps.is_empty())?;
         let beyond = motion.beyond(now);
         let id = RowId { run: row.run, row: row.at };
         let off = Motion::from(left) + beyond;

@@ -2,7 +2,7 @@
 
 use mindgap_diagnosis::Diagnosis;
 use mindgap_diagnosis::budget::Part;
-use mindgap_diagnosis::explain::NamedEffect;
+use mindgap_diagnosis::verdict::NamedEffect;
 use mindgap_pages::words;
 
 /// Width of the whole gap in characters.
@@ -10,9 +10,9 @@ const BAR: usize = 30;
 
 /// Returns one line per part of the budget.
 pub fn lines(diagnosis: &Diagnosis) -> Vec<String> {
-    let parts = diagnosis.budget();
+    let parts = &diagnosis.budget;
     let width = parts.iter().map(|part| part.id.chars().count()).max().unwrap_or(0);
-    parts.iter().map(|part| line(part, width, diagnosis.effects())).collect()
+    parts.iter().map(|part| line(part, width, &diagnosis.effects)).collect()
 }
 
 fn line(part: &Part, width: usize, effects: &[NamedEffect]) -> String {

@@ -120,7 +120,7 @@ impl Run for Diagnose {
         let Answered { findings: found, logs } = &answered;
         // Everything that can fail happens before anything is written.
         let applied = match &self.apply {
-            Some(path) if !found.with_formula().is_empty() => Some((path, request.corrected_simulator(&answered)?)),
+            Some(path) if !found.with_formula().is_empty() => Some((path, request.with_effects_applied(&answered)?)),
             _ => None,
         };
         if let Some(path) = &self.html {
@@ -143,7 +143,7 @@ impl Run for Diagnose {
         if let (Some(path), None) = (&self.apply, &applied) {
             text += &format!("No effect to apply: {} was not written.\n", path.display());
         }
-        match (&self.next_experiment, found.diagnosis.experiment()) {
+        match (&self.next_experiment, found.diagnosis.experiment.as_ref()) {
             (Some(path), Some(experiment)) => experiment.commands.write(path)?,
             (Some(path), None) => text += &format!("No causes are ambiguous: {} was not written.\n", path.display()),
             (None, _) => (),

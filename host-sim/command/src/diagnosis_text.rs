@@ -4,12 +4,11 @@ use super::budget_text;
 use mindgap_diagnosis::Diagnosis;
 use mindgap_diagnosis::account::GapReduction;
 use mindgap_diagnosis::channel::Channel;
-use mindgap_diagnosis::diagnosis::Answer;
-use mindgap_diagnosis::explain::NamedEffect;
 use mindgap_diagnosis::explain::profile::ResidualProfile;
 use mindgap_diagnosis::explain::strata::Stratum;
 use mindgap_diagnosis::formula::Statement;
 use mindgap_diagnosis::propose::Experiment;
+use mindgap_diagnosis::verdict::{NamedEffect, Verdict};
 use mindgap_learning::evaluation::final_position::FinalPositionErrors;
 use mindgap_pages::words;
 
@@ -20,26 +19,26 @@ pub fn text(diagnosis: &Diagnosis) -> String {
         lines.push("Data:".into());
         lines.extend(diagnosis.data.iter().map(|found| format!("  {}", found.line())));
     }
-    lines.push(verdict(&diagnosis.answer));
+    lines.push(verdict(diagnosis.verdict));
     lines.extend(budget_text::lines(diagnosis));
-    if !diagnosis.effects().is_empty() {
+    if !diagnosis.effects.is_empty() {
         lines.push("Effects (probability, effect, strength with 95 % interval):".into());
-        lines.extend(diagnosis.effects().iter().flat_map(effect));
+        lines.extend(diagnosis.effects.iter().flat_map(effect));
     }
     if !diagnosis.strata.is_empty() {
         lines.push("Where it is:".into());
         lines.extend(diagnosis.strata.iter().map(stratum));
     }
-    if !diagnosis.profiles().is_empty() {
+    if !diagnosis.profiles.is_empty() {
         lines.push("Unexplained residual (logged minus predicted):".into());
-        lines.extend(diagnosis.profiles().iter().map(profile));
+        lines.extend(diagnosis.profiles.iter().map(profile));
     }
     lines.extend(diagnosis.formula.iter().map(formula));
-    let is_explained = !matches!(diagnosis.answer, Answer::Unknown { .. });
+    let is_explained = diagnosis.verdict != Verdict::Unknown;
     let table = |found| if is_explained { reduction(found) } else { size(found) };
-    lines.extend(diagnosis.reduction().into_iter().flat_map(table));
+    lines.extend(diagnosis.reduction.as_ref().into_iter().flat_map(table));
     lines.extend(diagnosis.final_positions.iter().map(final_positions));
-    lines.extend(diagnosis.experiment().map(Experiment::sentence));
+    lines.extend(diagnosis.experiment.as_ref().map(Experiment::sentence));
     if !diagnosis.untestable.is_empty() {
         let ids = diagnosis.untestable.join(", ");
         lines.push(format!("Untestable with these logs (not excited): {ids}"));
@@ -48,9 +47,9 @@ pub fn text(diagnosis: &Diagnosis) -> String {
     lines.join("\n") + "\n"
 }
 
-fn verdict(answer: &Answer) -> String {
-    let made_of = if matches!(answer, Answer::NoGap) { "" } else { " Its parts:" };
-    format!("{}{made_of}", words::verdict(answer))
+fn verdict(verdict: Verdict) -> String {
+    let made_of = if verdict == Verdict::NoGap { "" } else { " Its parts:" };
+    format!("{}{made_of}", words::verdict(verdict))
 }
 
 fn effect(effect: &NamedEffect) -> Vec<String> {

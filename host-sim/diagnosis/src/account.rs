@@ -1,108 +1,111 @@
-//! Accounting: how far the gap shrinks with the named effects, channel by channel, on runs that nothing was sought on.
+//! Gap reduction: how much of the gap the named effects close, by channel, on held-out rows.
 
 use serde::Serialize;
 
 use super::budget::{Part, budget};
 use super::channel::Channel;
-use super::compare::Comparison;
+use super::confirm::Confirmed;
 use super::fit::FitContext;
 use super::ledger::Ledger;
+use super::sample::RowSet;
 use mindgap_foundations::statistics::{bootstrap, rounding};
-use mindgap_learning::evaluation::observations::Observations;
 use mindgap_learning::evaluation::paths::PathError;
 
-/// What a gap is made of, and how far it shrinks.
+/// The size of a gap, its parts, and its reduction by the named effects.
 #[derive(Clone, Debug)]
 pub struct Account {
-    /// How far it shrinks; none where the confirming runs show none that could be reduced.
+    /// Its reduction, or `None` if these rows show no reducible gap.
     pub reduction: Option<GapReduction>,
     /// Its parts.
     pub budget: Vec<Part>,
-    /// What could be reduced, nats by block.
+    /// The reducible gap per block, in nats.
     pub reducible: Vec<f64>,
 }
 
-/// A gap in nats a step: how much likelier the logs could be.
+/// A gap in nats per step: how much more likely the logs could be.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct GapReduction {
     /// All channels together.
     #[serde(flatten)]
     pub whole: Reduction,
-    /// Gaps are measured from what cannot be reduced by anything that follows circumstances, so that this is zero.
+    /// Always zero: gaps are measured relative to what no covariate can reduce.
     pub floor: f64,
-    /// The next best explanation.
+    /// The second best explanation.
     pub runner_up: Option<RunnerUp>,
-    /// The same channel by channel, where there is something to close.
+    /// The channels with a gap that can be reduced.
     pub channels: Vec<ChannelReduction>,
-    /// Paths that the simulator drives open-loop from a logged pose.
+    /// Errors of open-loop paths from logged poses.
     pub paths: Vec<PathError>,
 }
 
-/// How far a gap shrinks, nats a step.
+/// Reduction of a gap, in nats per step.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Reduction {
     /// The gap of the simulator as it is.
     #[serde(serialize_with = "rounding::number")]
     pub before: f64,
-    /// With the effects.
+    /// The gap with the effects.
     #[serde(serialize_with = "rounding::number")]
     pub after: f64,
-    /// The share of the reducible gap that is closed.
+    /// The fraction of the reducible gap that is closed.
     #[serde(serialize_with = "rounding::number")]
     pub reducible_closed: f64,
-    /// 95 % interval of that share, by bootstrap over blocks of runs.
+    /// 95 % interval of that fraction, by bootstrap over blocks.
     #[serde(serialize_with = "rounding::interval")]
     pub ci95: [f64; 2],
 }
 
-/// How far the gap of a channel shrinks.
+/// Reduction of the gap in a channel.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct ChannelReduction {
     /// The channel.
     pub channel: Channel,
-    /// Its gap.
+    /// The reduction.
     #[serde(flatten)]
     pub reduction: Reduction,
 }
 
-/// The next best explanation.
+/// The second best explanation.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct RunnerUp {
-    /// Its effect, or effects joined by `+`.
+    /// The ids of its effects, joined by `+`.
     pub id: String,
-    /// The share of the reducible gap that it closes.
+    /// The fraction of the reducible gap that it closes.
     #[serde(serialize_with = "rounding::number")]
     pub reducible_closed: f64,
 }
 
-/// Nats by block: what the effects gained, and what remains that a learner of anything can gain beyond them.
+/// Nats per block: the gain of the effects, and what the omnibus regression gains beyond them.
 struct Tally {
     gained: Vec<f64>,
     remaining: Vec<f64>,
 }
 
-/// The account of a gap on some logs, among the effects that are named.
-pub fn account(found: &Comparison, named: &[&'static str], context: &FitContext, logs: &Observations) -> Account {
-    let ledger = Ledger::of(found, context, logs);
+/// Accounts for a gap on some rows. Effects that are not among the `named` count as unexplained.
+pub fn account(found: &Confirmed, named: &[&'static str], context: &FitContext, rows: RowSet) -> Account {
+    let ledger = Ledger::of(found, rows);
     let budget = budget(named, &ledger, context.seed);
-    Account { reduction: reduction(found, &ledger, context, logs), budget, reducible: ledger.reducible() }
+    Account { reduction: reduction(found, &ledger, context, rows), budget, reducible: ledger.reducible() }
 }
 
-/// None where these logs show no reducible gap.
-fn reduction(found: &Comparison, ledger: &Ledger, context: &FitContext, logs: &Observations) -> Option<GapReduction> {
+/// Returns `None` if these rows show no reducible gap.
+fn reduction(found: &Confirmed, ledger: &Ledger, context: &FitContext, rows: RowSet) -> Option<GapReduction> {
     let seed = context.seed;
-    let tally =
-        |channels: &[Channel]| Tally { gained: ledger.gained(channels), remaining: ledger.unexplained.of(channels) };
-    let steps = logs.rows.len() as f64;
+    let gained = ledger.gained();
+    let tally = |channels: &[Channel]| Tally {
+        gained: gained.only(channels).by_block(),
+        remaining: ledger.unexplained.only(channels).by_block(),
+    };
+    let steps = rows.sample().rows.len() as f64;
     let all = tally(&Channel::ALL);
     let whole = all.reduction(steps, seed)?;
     let channel = |channel: Channel| {
         let tally = tally(&[channel]);
-        let told = tally.reducible() >= context.calibration.judgement.strong_nats;
-        Some(ChannelReduction { channel, reduction: tally.reduction(steps, seed).filter(|_| told)? })
+        let is_plain = tally.reducible() >= context.calibration.judgement.strong_nats;
+        Some(ChannelReduction { channel, reduction: tally.reduction(steps, seed).filter(|_| is_plain)? })
     };
     let runner_up = found.runner_up().map(|fit| {
-        let gained: f64 = ledger.gained_by(fit, found, context, logs).of(&Channel::ALL).iter().sum();
+        let gained = ledger.gained_by(fit, found, rows.sample());
         RunnerUp { id: fit.ids().join("+"), reducible_closed: gained / all.reducible() }
     });
     let paths = found.paths.iter().map(|paths| paths.error).collect();
@@ -137,36 +140,36 @@ impl Tally {
 mod tests {
     use super::*;
     use crate::fit::Fitted;
-    use crate::residual_law::log_density;
+    use crate::noise_model::log_density;
+    use crate::sample::HoldOut;
     use crate::test_support::*;
 
     fn tally(gained: &[f64], remaining: &[f64]) -> Tally {
         Tally { gained: gained.to_vec(), remaining: remaining.to_vec() }
     }
 
-    /// Every block gains six nats of eight: the share is three quarters however blocks are drawn.
+    /// Every block gains six nats of eight: every resample of blocks closes three quarters.
     #[test]
-    fn the_closed_share_is_what_is_gained_of_what_could_be() {
+    fn closed_fraction_is_gain_over_reducible_gap() {
         let found = tally(&[6.0; 4], &[2.0; 4]).reduction(16.0, 1).expect("a gap");
         assert_eq!(found, Reduction { before: 2.0, after: 0.5, reducible_closed: 0.75, ci95: [0.75; 2] });
     }
 
     #[test]
-    fn nothing_remains_where_less_than_nothing_does() {
+    fn negative_remaining_gain_counts_as_zero() {
         let found = tally(&[6.0; 4], &[-2.0; 4]).reduction(24.0, 1).expect("a gap");
         assert_eq!((found.before, found.after, found.reducible_closed), (1.0, 0.0, 1.0));
     }
 
     #[test]
-    fn without_anything_to_reduce_there_is_no_share() {
+    fn no_reducible_gap_has_no_reduction() {
         assert_eq!(tally(&[0.0; 4], &[0.0; 4]).reduction(10.0, 1), None);
         assert_eq!(tally(&[-3.0; 4], &[2.0; 4]).reduction(10.0, 1), None);
     }
 
-    /// Blocks gain two or six nats of eight: over a hundred of them the mean share of a half has a standard error of
-    /// 0.025.
+    /// Blocks gain two or six nats of eight: over a hundred blocks the mean fraction of one half has a standard error of 0.025.
     #[test]
-    fn the_interval_is_that_of_resampled_blocks() {
+    fn interval_is_that_of_resampled_blocks() {
         let gained: Vec<f64> = (0..100).map(|block| 4.0 + 2.0 * alternating(block)).collect();
         let remaining: Vec<f64> = gained.iter().map(|g| 8.0 - g).collect();
         let found = tally(&gained, &remaining).reduction(100.0, 1).expect("a gap");
@@ -175,17 +178,19 @@ mod tests {
         assert!((low - 0.451).abs() < 0.008 && (high - 0.549).abs() < 0.008, "{low} {high}");
     }
 
-    /// All rows go 0.9 cm too far and may scatter by 1 cm; the effect is known exactly.
+    /// All rows go 0.9 cm too far with noise of 1 cm, and the effect is known exactly.
     #[test]
-    fn an_effect_that_explains_all_leaves_nothing_of_its_channel() {
+    fn effect_that_explains_everything_leaves_nothing_of_its_channel() {
         let rows = || observations(8, 10, |_, _| Made { off: [0.9, 0.0, 0.0], ..Made::default() });
-        let (baseline, rows, confirming) = (baseline(), rows(), rows());
-        let context = FitContext::new(&baseline, &rows, METHOD);
-        let mut found = comparison(&[&LONGER], &[10.0; 8], &context);
+        let baseline = baseline();
+        let (found_on, held_out) = (identification(&baseline, rows()), HoldOut::new(&baseline, rows()));
+        let context = FitContext::new(&found_on, METHOD);
+        let mut found = confirmed(&[&LONGER], &[10.0; 8], &context);
         found.chosen.values = vec![0.9];
-        found.none = Fitted::none(&context);
-        let ledger = Ledger::of(&found, &context, &confirming);
-        let reduction = reduction(&found, &ledger, &context, &confirming).expect("a gap");
+        found.fits.null = Fitted::null(&context);
+        let rows = RowSet::HeldOut(&held_out);
+        let ledger = Ledger::of(&found, rows);
+        let reduction = reduction(&found, &ledger, &context, rows).expect("a gap");
         let nats = log_density(0, 0.0, 1.0) - log_density(0, 0.9, 1.0);
         let Reduction { before, after, reducible_closed, .. } = reduction.whole;
         assert!((before - nats).abs() < 1e-9 && after.abs() < 1e-9 && (reducible_closed - 1.0).abs() < 1e-9);

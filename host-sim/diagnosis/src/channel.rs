@@ -1,3 +1,3 @@
-//! The five things that a simulator predicts of a step.
+//! The five quantities that a simulator predicts per step.
 
 pub use mindgap_foundations::channel::Channel;

@@ -1,204 +1,62 @@
-//! The answer as data, and as it is written.
+//! The diagnosis as data, in the form of diagnosis.json.
 
-use serde::{Deserialize, Serialize, Serializer};
+use serde::{Serialize, Serializer};
 
-use super::account::{Account, GapReduction};
+use super::account::GapReduction;
 use super::budget::Part;
-use super::channel::Channel;
-use super::explain::NamedEffect;
 use super::explain::profile::ResidualProfile;
 use super::explain::strata::Stratum;
 use super::formula::Statement;
 use super::propose::Experiment;
-use super::scope::{NotCompared, Scope};
+use super::scope::Scope;
+use super::verdict::{NamedEffect, Verdict};
 use mindgap_learning::evaluation::final_position::FinalPositionErrors;
 use mindgap_logs::inspection::Finding;
 
-/// What `mindgap diagnose` finds; docs/reference/json.md has the JSON.
-#[derive(Clone, Debug)]
+/// What `mindgap diagnose` finds; docs/reference/json.md describes the JSON.
+#[derive(Clone, Debug, Serialize)]
 pub struct Diagnosis {
-    /// What was wrong with the logs before anything was compared.
-    pub data: Vec<Finding>,
-    /// What the answer speaks of.
-    pub scope: Scope,
-    /// The answer.
-    pub answer: Answer,
-    /// The best simple expression for what no effect explains, where one holds.
-    pub formula: Option<Statement>,
+    /// Version of the JSON, [`Diagnosis::SCHEMA`].
+    pub schema: u32,
+    /// The answer in one word.
+    pub verdict: Verdict,
+    /// The parts of the gap; none if there is no gap.
+    pub budget: Vec<Part>,
+    /// The named effects, most probable first; none unless the gap is known or partly known.
+    pub effects: Vec<NamedEffect>,
     /// Where the gap lies.
+    #[serde(rename = "where")]
     pub strata: Vec<Stratum>,
-    /// Where a controller's runs end, if the logs are said to be those of a controller.
+    /// How far the gap shrinks with the effects, if held-out rows show a reducible gap.
+    #[serde(rename = "shrink")]
+    pub reduction: Option<GapReduction>,
+    /// Errors of final positions, if the logs are runs of a given controller.
+    #[serde(rename = "endings")]
     pub final_positions: Option<FinalPositionErrors>,
+    /// What to drive next, if causes are confused.
+    #[serde(rename = "next_experiment", serialize_with = "as_sentence")]
+    pub experiment: Option<Experiment>,
+    /// The best simple expression for what no effect explains, if one holds.
+    pub formula: Option<Statement>,
+    /// What the unexplained part depends on, by channel.
+    #[serde(rename = "unexplained")]
+    pub profiles: Vec<ResidualProfile>,
+    /// The channels that were compared and those that were not.
+    #[serde(flatten)]
+    pub scope: Scope,
+    /// Defects of the logs.
+    pub data: Vec<Finding>,
     /// Effects that these logs could not show: untestable, not absent.
     pub untestable: Vec<&'static str>,
-    /// What else limits this diagnosis.
+    /// Other limits of this diagnosis, one sentence each.
     pub notes: Vec<String>,
 }
 
-/// What an answer holds.
-#[derive(Clone, Debug)]
-pub enum Answer {
-    /// The logs agree with the simulator within its own error.
-    NoGap,
-    /// Effects of the catalogue explain the gap, or steps do nothing but scatter more.
-    Known {
-        /// The effects, the most probable first.
-        effects: Vec<NamedEffect>,
-        /// How far they close it.
-        account: Account,
-        /// What to drive next, where causes are confused.
-        experiment: Option<Experiment>,
-    },
-    /// Effects explain a part of the gap.
-    PartlyKnown {
-        /// The effects, the most probable first.
-        effects: Vec<NamedEffect>,
-        /// How far they close it.
-        account: Account,
-        /// What to drive next, where causes are confused.
-        experiment: Option<Experiment>,
-        /// How what is unexplained follows covariates, channel by channel.
-        profiles: Vec<ResidualProfile>,
-    },
-    /// There is a gap and no effect explains it.
-    Unknown {
-        /// How far the effects close it that came nearest.
-        account: Account,
-        /// How what is unexplained follows covariates, channel by channel.
-        profiles: Vec<ResidualProfile>,
-    },
-}
-
-impl Answer {
-    /// What the gap is made of, and how far it shrinks; none where there is none.
-    pub fn account(&self) -> Option<&Account> {
-        match self {
-            Answer::NoGap => None,
-            Answer::Known { account, .. } | Answer::PartlyKnown { account, .. } | Answer::Unknown { account, .. } => {
-                Some(account)
-            }
-        }
-    }
-}
-
-/// The answer in one word.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Verdict {
-    /// See [`Answer::NoGap`].
-    NoGap,
-    /// See [`Answer::Known`].
-    Known,
-    /// See [`Answer::PartlyKnown`].
-    PartlyKnown,
-    /// See [`Answer::Unknown`].
-    Unknown,
-}
-
-impl Verdict {
-    /// As it is written.
-    pub fn id(self) -> &'static str {
-        match self {
-            Verdict::NoGap => "no_gap",
-            Verdict::Known => "known",
-            Verdict::PartlyKnown => "partly_known",
-            Verdict::Unknown => "unknown",
-        }
-    }
-}
-
 impl Diagnosis {
-    /// The answer in one word.
-    pub fn verdict(&self) -> Verdict {
-        match self.answer {
-            Answer::NoGap => Verdict::NoGap,
-            Answer::Known { .. } => Verdict::Known,
-            Answer::PartlyKnown { .. } => Verdict::PartlyKnown,
-            Answer::Unknown { .. } => Verdict::Unknown,
-        }
-    }
-
-    /// The effects that are named, the most probable first.
-    pub fn effects(&self) -> &[NamedEffect] {
-        match &self.answer {
-            Answer::Known { effects, .. } | Answer::PartlyKnown { effects, .. } => effects,
-            Answer::NoGap | Answer::Unknown { .. } => &[],
-        }
-    }
-
-    /// How far the gap shrinks.
-    pub fn reduction(&self) -> Option<&GapReduction> {
-        self.answer.account().and_then(|account| account.reduction.as_ref())
-    }
-
-    /// What the gap is made of; nothing where there is none.
-    pub fn budget(&self) -> &[Part] {
-        self.answer.account().map_or(&[], |account| &account.budget)
-    }
-
-    /// How what is unexplained follows covariates.
-    pub fn profiles(&self) -> &[ResidualProfile] {
-        match &self.answer {
-            Answer::PartlyKnown { profiles, .. } | Answer::Unknown { profiles, .. } => profiles,
-            Answer::NoGap | Answer::Known { .. } => &[],
-        }
-    }
-
-    /// What to drive next.
-    pub fn experiment(&self) -> Option<&Experiment> {
-        match &self.answer {
-            Answer::Known { experiment, .. } | Answer::PartlyKnown { experiment, .. } => experiment.as_ref(),
-            Answer::NoGap | Answer::Unknown { .. } => None,
-        }
-    }
+    /// Version of the JSON.
+    pub const SCHEMA: u32 = 1;
 }
 
-/// Version of the JSON.
-const SCHEMA: u32 = 1;
-
-/// A diagnosis as it is written.
-#[derive(Serialize)]
-struct Written<'a> {
-    schema: u32,
-    verdict: Verdict,
-    budget: &'a [Part],
-    effects: &'a [NamedEffect],
-    #[serde(rename = "where")]
-    strata: &'a [Stratum],
-    #[serde(rename = "shrink")]
-    reduction: Option<&'a GapReduction>,
-    #[serde(rename = "endings")]
-    final_positions: &'a Option<FinalPositionErrors>,
-    next_experiment: Option<String>,
-    formula: &'a Option<Statement>,
-    #[serde(rename = "unexplained")]
-    profiles: &'a [ResidualProfile],
-    compared: &'a [Channel],
-    not_compared: &'a [NotCompared],
-    data: &'a [Finding],
-    untestable: &'a [&'static str],
-    notes: &'a [String],
-}
-
-impl Serialize for Diagnosis {
-    fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
-        let written = Written {
-            schema: SCHEMA,
-            verdict: self.verdict(),
-            budget: self.budget(),
-            effects: self.effects(),
-            strata: &self.strata,
-            reduction: self.reduction(),
-            final_positions: &self.final_positions,
-            next_experiment: self.experiment().map(Experiment::sentence),
-            formula: &self.formula,
-            profiles: self.profiles(),
-            compared: &self.scope.compared,
-            not_compared: &self.scope.not_compared,
-            data: &self.data,
-            untestable: &self.untestable,
-            notes: &self.notes,
-        };
-        written.serialize(to)
-    }
+fn as_sentence<S: Serializer>(experiment: &Option<Experiment>, to: S) -> Result<S::Ok, S::Error> {
+    experiment.as_ref().map(Experiment::sentence).serialize(to)
 }

@@ -1,235 +1,245 @@
-//! The omnibus residual model: how much of what a fit leaves over follows any circumstance at all.
+//! The omnibus test for unmodelled structure: how much of a fit's residual any covariate predicts.
 //!
-//! First comes what other rows say near the same spot of the room (`nearby`). Over that every channel has the same neutral
-//! basis ([`basis`]) in all covariates of a row, fitted by ridge regression ([`ridge`]) whose strength cross-validation over
-//! runs chooses. Nothing in it stands for a particular effect. What it gains on runs that it was not fitted on bounds what
-//! any effect could explain.
+//! Kernel regression over the room comes first ([`kernel`]). On top of it every channel has the same neutral [`basis`] in all
+//! covariates of a row, fitted by [ridge] regression whose strength is chosen by cross-validation over runs. Nothing in it
+//! stands for a particular effect. Its cross-validated gain bounds what any effect could explain.
 
 pub mod basis;
+mod kernel;
 mod motion;
-mod nearby;
 mod sonar;
 
 use super::channel::Channel;
+use super::epistemic_error::EpistemicError;
+use super::explanation::Explanation;
 use super::fit::{FitContext, Fitted};
 use super::gain::Gain;
-use basis::{Basis, Circumstances};
+use super::residuals::{log_likelihoods, subtract};
+use super::sample::{HoldOut, RowSet};
+use super::scores::Scores;
+use basis::{Basis, Covariates};
+use kernel::{KernelRegression, Neighbours, Spot};
 use mindgap_foundations::statistics::ridge;
-use mindgap_learning::evaluation::observations::{FEWEST_BLOCKS, Observations};
-use mindgap_models::effects::chain::EffectChain;
-use nearby::{Nearby, Neighbours, Spot};
+use mindgap_learning::evaluation::observations::FEWEST_BLOCKS;
 
-/// What the rest of a channel follows beyond a fit.
-pub struct ResidualFit {
+/// A regression of one channel's residual on covariates, on top of a fit.
+pub struct Regression {
     /// The channel.
     pub channel: Channel,
-    /// The log-likelihood of each row that it was fitted on, by the fit to other runs.
-    pub held_out: Vec<f64>,
-    /// The same by the fit beneath and what the simulator does not know of its own motion.
-    without: Vec<f64>,
-    /// What that is; none where it foretells nothing.
-    pub own_error: Option<Foretold>,
+    /// The simulator's epistemic error in that channel, if it predicts anything.
+    pub epistemic_error: Option<EpistemicError>,
+    /// The fit underneath, its parameters taken as given.
+    underneath: Fitted,
+    cross_validated: Scores,
     surface: Surface,
+    /// Prediction of each identification row by the other folds.
     predictions: Vec<f64>,
-    law: Law,
-    /// The effects of the fit beneath.
-    effects: EffectChain,
+    likelihood: Likelihood,
 }
 
-/// What the simulator does not know of its own motion, as rows of other runs tell it.
-pub struct Foretold {
-    /// By how much likelier rows are with it, nats.
-    pub nats: f64,
-    /// Root mean square of it, cm or rad a step.
-    pub root_mean_square: f64,
-}
-
-/// How likely a prediction makes a row.
-enum Law {
-    Motion(motion::Law),
+/// The likelihood of a row given a prediction.
+enum Likelihood {
+    Motion(motion::LocalNoise),
     EchoRate,
     EchoValue(sonar::Spread),
 }
 
-/// A fitted response surface: what belongs to spots of the room, and over that what follows circumstances.
+/// A fitted response surface: one part by place, and one by covariates on top of it.
 struct Surface {
-    nearby: Nearby,
+    by_place: KernelRegression,
     basis: Basis,
     weights: Vec<f64>,
-    /// What a prediction of one means in the channel's unit.
+    /// A prediction of one in the channel's unit.
     unit: f64,
 }
 
-/// The circumstances of a row, step by step: several where the ways of several steps are judged as one.
-type Steps = Vec<Circumstances>;
+/// The covariates of a row, step by step if several steps are compared as one.
+type Steps = Vec<Covariates>;
 
-/// From this share of their chance on, echoes count as bound to places. Training logs of 24 runs show at most 0.03 where
-/// there is none (the fixed challenge's robots) and at least 0.09 where most of it is (the same with `--place-bound`): halfway
-/// between the two, by factors.
+/// From this fraction of their variance on, echoes count as place-bound. Training logs of 24 runs show at most 0.03 where
+/// nothing is place-bound (robots of the fixed challenge) and at least 0.09 where most of the variance is (the same robots with
+/// `--place-bound`); this is the geometric middle.
 const PLACE_BOUND: f64 = 0.05;
 
-/// Ratios of noise variance to prior variance that are tried. At the first, a thousand rows hold half a nat; at the last, the
-/// prior is wider than the noise and the penalty has no say. The error is flat between neighbours.
+/// Ratios of noise variance to prior variance that are tried. With the first, a thousand rows outweigh the prior by half a nat;
+/// with the last, the prior is wider than the noise and has no influence. The error is flat between neighbours.
 const STRENGTHS: [f64; 7] = [1000.0, 215.0, 46.0, 10.0, 2.15, 0.46, 0.1];
 
-/// As many folds as there are blocks of rows at least, so that none is empty.
+/// Number of folds: no more than the number of blocks, so that none is empty.
 const FOLDS: usize = FEWEST_BLOCKS;
 
-impl ResidualFit {
-    /// What the rest of a channel follows beyond the fit `beneath`.
-    pub fn of(channel: Channel, beneath: &Fitted, context: &FitContext) -> Self {
+impl Explanation for Regression {
+    fn cross_validated(&self) -> &Scores {
+        &self.cross_validated
+    }
+
+    fn predict(&self, rows: &HoldOut) -> Scores {
+        self.underneath.predict(rows).with(self.channel, &self.column(None, RowSet::HeldOut(rows)))
+    }
+
+    /// The strength of the ridge is chosen by nested cross-validation, which already pays for complexity.
+    fn complexity_penalty(&self) -> f64 {
+        0.0
+    }
+}
+
+impl Regression {
+    /// Fits the residual of `underneath` in a channel.
+    pub fn of(channel: Channel, underneath: &Fitted, context: &FitContext) -> Self {
+        let underneath = underneath.taken_as_given();
         match channel.motion_axis() {
-            Some(axis) => motion::fit(channel, axis, beneath, context),
-            None if channel == Channel::EchoRate => sonar::rate(beneath, context),
-            None => sonar::value(beneath, context),
+            Some(axis) => motion::regression(channel, axis, underneath, context),
+            None if channel == Channel::EchoRate => sonar::rate(underneath, context),
+            None => sonar::value(underneath, context),
         }
     }
 
-    /// Where readings lie; their scatter is left as it is.
-    pub fn moved_readings(beneath: &Fitted, context: &FitContext) -> Self {
-        sonar::moved(beneath, context)
+    /// Fits a shift of the readings and leaves their noise as it is.
+    pub fn of_shifted_readings(underneath: &Fitted, context: &FitContext) -> Self {
+        sonar::shift(underneath.taken_as_given(), context)
     }
 
-    /// The gain on each block over the fit beneath, by fits to other blocks.
-    pub fn gains(&self, context: &FitContext) -> Vec<f64> {
-        context.observations.by_block(&self.gain_of_rows())
+    /// Returns what the regression is compared with: the fit underneath, together with the simulator's epistemic error.
+    pub fn reference(&self) -> &dyn Explanation {
+        match &self.epistemic_error {
+            Some(error) => error,
+            None => &self.underneath,
+        }
     }
 
-    /// What it gains over the fit beneath. What a channel follows may be at one spot of the room, which few runs meet: where
-    /// one meets it as the others tell, it is no chance, so that no more than one run is left out. Where the chance of echoes
-    /// belongs to places, every room has such spots, and what a few places show is no property of the robot.
+    /// Returns the gain over the reference per block.
+    pub fn gains(&self) -> Vec<f64> {
+        self.gains_over(self.reference())
+    }
+
+    /// Returns the gain over the reference. A residual can belong to one spot of the room that few runs meet; a run that meets
+    /// it as the others predict is no coincidence, so only the best run is trimmed. If echoes are place-bound, every room has
+    /// such spots, and what a few places show is not a property of the robot.
     pub fn gain(&self, context: &FitContext) -> Gain {
-        if self.channel.motion_axis().is_some() || context.baseline.place_bound[0] < PLACE_BOUND {
-            return Gain::without_best(&self.gains(context), 1);
+        if self.channel.motion_axis().is_some() || context.baseline().place_bound[0] < PLACE_BOUND {
+            return Gain::trimmed(&self.gains(), 1);
         }
-        Gain::of_free_form(&context.observations.by_place(&self.gain_of_rows()))
+        let gains = (&self.cross_validated - self.reference().cross_validated()).of(self.channel);
+        Gain::of_free_form(&context.rows.by_place(&gains))
     }
 
-    fn gain_of_rows(&self) -> Vec<f64> {
-        self.held_out.iter().zip(&self.without).map(|(a, b)| a - b).collect()
+    /// Returns the gain over the fit underneath on held-out rows.
+    pub fn held_out_gain(&self, rows: &HoldOut) -> f64 {
+        self.held_out_gain_over(&self.underneath, rows)
     }
 
-    /// The log-likelihood of each row in the channel, never by a fit to its own run.
-    pub fn judged_on(&self, rows: &Observations, context: &FitContext) -> Vec<f64> {
-        if is_own(rows, context) { self.held_out.clone() } else { self.terms(rows, context) }
-    }
-
-    /// The same of a motion channel with this scatter in place of the model's own.
-    pub fn judged_with(&self, scatter: Option<f64>, rows: &Observations, context: &FitContext) -> Vec<f64> {
-        match (&self.law, scatter) {
-            (Law::Motion(law), Some(scatter)) => self.steps(law, scatter, rows, context),
-            _ => self.judged_on(rows, context),
-        }
-    }
-
-    /// The scatter of a motion channel that the model leaves, cm or rad.
-    pub fn scatter(&self) -> Option<f64> {
-        match &self.law {
-            Law::Motion(law) => Some(law.scatter),
-            Law::EchoRate | Law::EchoValue(_) => None,
+    /// Returns the log-likelihood of each row in the channel, for a motion channel with the given standard deviation if there is
+    /// one.
+    pub fn column(&self, noise: Option<f64>, rows: RowSet) -> Vec<f64> {
+        let sample = rows.sample();
+        match &self.likelihood {
+            Likelihood::Motion(local) => {
+                let residuals = self.beyond_prediction(local.axis, rows);
+                let noise = noise.unwrap_or(local.noise);
+                log_likelihoods(local.axis, noise, sample, &residuals, &local.ratios(rows))
+            }
+            _ if matches!(rows, RowSet::Fitted(_)) => self.cross_validated.of(self.channel),
+            Likelihood::EchoRate => self.readings(rows).rates(&self.predictions(rows)),
+            Likelihood::EchoValue(spread) => self.readings(rows).values(&self.predictions(rows), spread),
         }
     }
 
-    /// What is left of each row of a motion channel: with the effects alone, or with the model's prediction taken away
-    /// too and as it would be where steps scatter as usual.
-    pub fn rest(&self, with_model: bool, rows: &Observations, context: &FitContext) -> Option<Vec<Option<f64>>> {
-        let Law::Motion(law) = &self.law else { return None };
-        if !with_model {
-            return Some(law.residuals(&self.effects, context.baseline, rows));
-        }
-        let shares = law.shares(rows, is_own(rows, context));
-        let rest = self.beyond_prediction(law, rows, context);
-        Some(rest.iter().zip(shares).map(|(rest, share)| Some((*rest)? / share)).collect())
-    }
-
-    fn terms(&self, rows: &Observations, context: &FitContext) -> Vec<f64> {
-        let heard = || sonar::Heard::of(&self.effects, context.baseline, rows);
-        match &self.law {
-            Law::Motion(law) => self.steps(law, law.scatter, rows, context),
-            Law::EchoRate => heard().rates(&self.predictions(rows, context)),
-            Law::EchoValue(spread) => heard().values(&self.predictions(rows, context), spread),
+    /// Returns the standard deviation that the regression leaves in a motion channel, cm or rad.
+    pub fn noise(&self) -> Option<f64> {
+        match &self.likelihood {
+            Likelihood::Motion(local) => Some(local.noise),
+            Likelihood::EchoRate | Likelihood::EchoValue(_) => None,
         }
     }
 
-    fn steps(&self, law: &motion::Law, scatter: f64, rows: &Observations, context: &FitContext) -> Vec<f64> {
-        let rest = self.beyond_prediction(law, rows, context);
-        law.terms(scatter, rows, &rest, &law.shares(rows, is_own(rows, context)))
-    }
-
-    fn beyond_prediction(&self, law: &motion::Law, rows: &Observations, context: &FitContext) -> Vec<Option<f64>> {
-        let residuals = law.residuals(&self.effects, context.baseline, rows);
-        beyond(&residuals, &self.predictions(rows, context))
-    }
-
-    fn predictions(&self, rows: &Observations, context: &FitContext) -> Vec<f64> {
-        if is_own(rows, context) {
-            return self.predictions.clone();
+    /// Returns the residuals of a motion channel: of the fit underneath, or with the prediction subtracted as well and scaled to
+    /// the usual noise. Returns `None` for a sonar channel.
+    pub fn residuals(&self, subtract_prediction: bool, rows: RowSet) -> Option<Vec<Option<f64>>> {
+        let Likelihood::Motion(local) = &self.likelihood else { return None };
+        if !subtract_prediction {
+            return Some(motion::residuals(local.axis, &self.underneath.effects(), rows.sample()));
         }
-        let steps = match &self.law {
-            Law::Motion(law) => law.covariates(&self.effects, context.baseline, rows),
-            Law::EchoRate | Law::EchoValue(_) => sonar::covariates(rows),
+        let residuals = self.beyond_prediction(local.axis, rows);
+        Some(residuals.iter().zip(local.ratios(rows)).map(|(residual, ratio)| Some((*residual)? / ratio)).collect())
+    }
+
+    fn readings<'r>(&self, rows: RowSet<'r>) -> sonar::Readings<'r> {
+        sonar::Readings::of(&self.underneath.effects(), rows.sample())
+    }
+
+    fn beyond_prediction(&self, axis: usize, rows: RowSet) -> Vec<Option<f64>> {
+        let residuals = motion::residuals(axis, &self.underneath.effects(), rows.sample());
+        subtract(&residuals, &self.predictions(rows))
+    }
+
+    fn predictions(&self, rows: RowSet) -> Vec<f64> {
+        let RowSet::HeldOut(rows) = rows else { return self.predictions.clone() };
+        let steps = match &self.likelihood {
+            Likelihood::Motion(local) => motion::covariates(&self.underneath.effects(), rows, local.typical_step_cm),
+            Likelihood::EchoRate | Likelihood::EchoValue(_) => sonar::covariates(rows),
         };
         steps.iter().map(|steps| self.surface.at(steps)).collect()
     }
 }
 
-/// The rows of a channel that there is something to fit to.
-struct Rows<'a> {
+/// The rows of a channel on which a regression is fitted.
+struct Design<'a> {
     covariates: &'a [Steps],
+    /// Indices of the rows among all.
     used: Vec<usize>,
     folds: Vec<usize>,
     spots: Vec<Option<Spot>>,
     neighbours: Neighbours,
 }
 
-impl<'a> Rows<'a> {
-    /// Those that have any, in blocks that are never told of themselves.
-    fn of(covariates: &'a [Steps], has_any: impl Fn(usize) -> bool, block: impl Fn(usize) -> usize) -> Self {
-        let used: Vec<usize> = (0..covariates.len()).filter(|i| has_any(*i)).collect();
-        let folds = used.iter().map(|i| block(*i) % FOLDS).collect();
+impl<'a> Design<'a> {
+    /// Selects the rows for which a test holds. Rows of the same `group` never predict each other.
+    fn of(covariates: &'a [Steps], is_used: impl Fn(usize) -> bool, group: impl Fn(usize) -> usize) -> Self {
+        let used: Vec<usize> = (0..covariates.len()).filter(|i| is_used(*i)).collect();
+        let folds = used.iter().map(|i| group(*i) % FOLDS).collect();
         let spots: Vec<Option<Spot>> = used.iter().map(|i| spot(&covariates[*i])).collect();
-        Rows { covariates, used, folds, neighbours: Neighbours::of(&spots), spots }
+        Design { covariates, used, folds, neighbours: Neighbours::of(&spots), spots }
     }
 
-    /// What is told near each row's spot of `response(row, prediction)`.
-    fn nearby(&self, response: impl Fn(usize, f64) -> f64) -> (Nearby, Vec<f64>) {
-        nearby::fit(&self.spots, &self.neighbours, &self.folds, |place, p| response(self.used[place], p))
+    /// Fits `response(row, prediction)` by place. Also returns the cross-validated prediction of each used row.
+    fn by_place(&self, response: impl Fn(usize, f64) -> f64) -> (KernelRegression, Vec<f64>) {
+        kernel::fit(&self.spots, &self.neighbours, &self.folds, |index, p| response(self.used[index], p))
     }
 
-    /// Fits a surface of `response(row, prediction, share)`, in units of `unit`, over what is told near each row's spot;
-    /// with the predictions of all rows from the other folds. `shares` are those of the noise, one for a usual row.
+    /// Fits a surface of `response(row, prediction, ratio)`, in units of `unit`, on top of a kernel regression and its
+    /// predictions. `ratios` are the rows' noise over the usual noise. Also returns the cross-validated predictions of all rows.
     fn surface(
         &self,
-        (nearby, told): (Nearby, Vec<f64>),
-        shares: &[f64],
+        (by_place, placed): (KernelRegression, Vec<f64>),
+        ratios: &[f64],
         unit: f64,
         response: impl Fn(usize, f64, f64) -> f64,
     ) -> (Surface, Vec<f64>) {
-        let first_steps: Vec<&Circumstances> = self.used.iter().filter_map(|i| self.covariates[*i].first()).collect();
+        let first_steps: Vec<&Covariates> = self.used.iter().filter_map(|i| self.covariates[*i].first()).collect();
         let basis = Basis::of(&first_steps);
-        let evenly = |(i, share): (&usize, &f64)| {
-            let terms = together(&self.covariates[*i], |step| basis.at(step));
-            terms.into_iter().map(|term| term / share).collect()
+        let scaled = |(i, ratio): (&usize, &f64)| {
+            let terms = sum_over_steps(&self.covariates[*i], |step| basis.at(step));
+            terms.into_iter().map(|term| term / ratio).collect()
         };
-        let columns: Vec<Vec<f64>> = self.used.iter().zip(shares).map(evenly).collect();
-        let over = |place: usize, p: f64| {
-            let share = shares[place];
-            (response(self.used[place], told[place] + share * p, share) - told[place]) / share
+        let columns: Vec<Vec<f64>> = self.used.iter().zip(ratios).map(scaled).collect();
+        let beyond_place = |index: usize, p: f64| {
+            let (ratio, placed) = (ratios[index], placed[index]);
+            (response(self.used[index], placed + ratio * p, ratio) - placed) / ratio
         };
-        let surface = ridge::fit(&columns, &self.folds, &STRENGTHS, over);
-        let predictions: Vec<f64> =
-            (0..told.len()).map(|place| unit * (told[place] + shares[place] * surface.held_out[place])).collect();
-        (Surface { nearby, basis, weights: surface.weights, unit }, self.of_all(&predictions, 0.0))
+        let ridge = ridge::fit(&columns, &self.folds, &STRENGTHS, beyond_place);
+        let prediction = |index: usize| unit * (placed[index] + ratios[index] * ridge.held_out[index]);
+        let predictions: Vec<f64> = (0..placed.len()).map(prediction).collect();
+        (Surface { by_place, basis, weights: ridge.weights, unit }, self.among_all(&predictions, 0.0))
     }
 
-    /// The same where all rows scatter alike.
-    fn evenly(&self, unit: f64, response: impl Fn(usize, f64) -> f64) -> (Surface, Vec<f64>) {
-        let told = self.nearby(&response);
-        self.surface(told, &vec![1.0; self.used.len()], unit, |i, prediction, _| response(i, prediction))
+    /// Fits both parts where all rows have the same noise.
+    fn uniform_surface(&self, unit: f64, response: impl Fn(usize, f64) -> f64) -> (Surface, Vec<f64>) {
+        let by_place = self.by_place(&response);
+        self.surface(by_place, &vec![1.0; self.used.len()], unit, |i, prediction, _| response(i, prediction))
     }
 
-    /// Values of these rows among those of all.
-    fn of_all(&self, values: &[f64], otherwise: f64) -> Vec<f64> {
+    /// Spreads values of the used rows over all rows.
+    fn among_all(&self, values: &[f64], otherwise: f64) -> Vec<f64> {
         let mut all = vec![otherwise; self.covariates.len()];
         self.used.iter().zip(values).for_each(|(i, value)| all[*i] = *value);
         all
@@ -238,30 +248,21 @@ impl<'a> Rows<'a> {
 
 impl Surface {
     fn at(&self, steps: &Steps) -> f64 {
-        let surface = ridge::predicted(&together(steps, |step| self.basis.at(step)), &self.weights);
-        self.unit * (self.nearby.at(spot(steps)) + surface)
+        let by_covariates = ridge::predicted(&sum_over_steps(steps, |step| self.basis.at(step)), &self.weights);
+        self.unit * (self.by_place.at(spot(steps)) + by_covariates)
     }
 }
 
-/// Where a row is; steps that are judged as one are at many places.
+/// Returns where a row is; steps that are compared as one have no single place.
 fn spot(steps: &Steps) -> Option<Spot> {
     let [step] = steps.as_slice() else { return None };
     step.spot
 }
 
-/// What is off adds up over steps that are judged as one, and is given a step as their scatter is.
-fn together(steps: &Steps, terms: impl Fn(&Circumstances) -> Vec<f64>) -> Vec<f64> {
+/// Sums terms over n steps that are compared as one and divides by √n, as [residuals](mindgap_learning::evaluation::predictions::residual) are.
+fn sum_over_steps(steps: &Steps, terms: impl Fn(&Covariates) -> Vec<f64>) -> Vec<f64> {
     let terms = steps.iter().map(terms);
     let sum = terms.reduce(|sum, terms| sum.iter().zip(&terms).map(|(a, b)| a + b).collect()).unwrap_or_default();
     let share = 1.0 / (steps.len() as f64).sqrt();
     sum.into_iter().map(|term| share * term).collect()
-}
-
-/// What predictions leave of residuals.
-fn beyond(residuals: &[Option<f64>], predictions: &[f64]) -> Vec<Option<f64>> {
-    residuals.iter().zip(predictions).map(|(residual, prediction)| Some((*residual)? - prediction)).collect()
-}
-
-fn is_own(rows: &Observations, context: &FitContext) -> bool {
-    std::ptr::eq(rows, context.observations)
 }

@@ -1,20 +1,20 @@
-//! How far a diagnosis is, for those who wait.
+//! Progress of a diagnosis.
 
-/// What a diagnosis is at.
+/// A stage of a diagnosis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stage {
-    /// Fitting each effect alone.
+    /// Fits each effect alone.
     Fitting,
-    /// Comparing effects and their combinations.
+    /// Compares effects and combinations of them.
     Comparing,
-    /// Confirming the best on runs that were kept back.
+    /// Confirms the best ones on held-out runs.
     Confirming,
-    /// Explaining what was found, and what is left.
+    /// Explains what was found and what remains.
     Explaining,
 }
 
 impl Stage {
-    /// The share of the time that has gone by when it begins, roughly: logs differ in how many effects are compared.
+    /// Returns the approximate fraction of the time before this stage. It depends on how many combinations are compared.
     pub fn share_before(self) -> f64 {
         match self {
             Stage::Fitting => 0.0,
@@ -24,13 +24,13 @@ impl Stage {
         }
     }
 
-    /// What it is, for people.
+    /// Describes it for people.
     pub fn words(self) -> &'static str {
         match self {
             Stage::Fitting => "fitting each effect",
             Stage::Comparing => "comparing effects and combinations",
-            Stage::Confirming => "confirming on runs kept back",
-            Stage::Explaining => "explaining what is left",
+            Stage::Confirming => "confirming on held-out runs",
+            Stage::Explaining => "explaining the remainder",
         }
     }
 }

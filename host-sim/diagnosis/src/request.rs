@@ -1,11 +1,11 @@
-//! A diagnosis as it is asked for: of logs in any steps, against a simulator or the textbook, with what is made of it.
+//! A request for a diagnosis: of logs in steps of any length, against a simulator or the textbook.
 
 use mindgap_core::controller::Controller;
 
-use super::condition;
 use super::diagnose::{Findings, findings_watched};
 use super::method::Method;
 use super::progress::Stage;
+use super::split;
 use mindgap_foundations::error::{Error, Result};
 use mindgap_learning::evaluation::final_position::final_position_errors;
 use mindgap_logs::Logs;
@@ -14,11 +14,11 @@ use mindgap_logs::robot::same_robot;
 use mindgap_models::simulator::baseline::Baseline;
 use mindgap_models::simulator::{Simulator, kinematic, textbook};
 
-/// What is asked.
+/// A request for a diagnosis.
 pub struct Request<'a> {
-    /// What logs are compared with; none is the textbook.
+    /// The simulator, or `None` for the textbook.
     pub simulator: Option<&'a Simulator>,
-    /// The controller whose runs the logs are, where they are.
+    /// The controller of the logged runs, if they are runs of a controller.
     pub controller: Option<&'a Controller>,
     /// The settings.
     pub method: Method,
@@ -26,25 +26,25 @@ pub struct Request<'a> {
     pub step_ms: Option<f64>,
 }
 
-/// What was found.
+/// The answer to a request.
 pub struct Answered {
-    /// It.
+    /// The findings.
     pub findings: Findings,
-    /// The logs in the steps in which they were compared, after inspection as it found them.
+    /// The inspected logs in the steps in which they were compared.
     pub logs: Logs,
 }
 
 impl<'a> Request<'a> {
-    /// Diagnoses logs as they were read; `watch` is told each stage when it begins.
+    /// Diagnoses logs. `watch` receives each stage when it begins.
     ///
     /// # Errors
-    /// When they are another robot's, cannot be compared in such steps, or say nothing that could be compared, and when a
-    /// controller is given without a simulator.
+    /// If the logs are of another robot, cannot be compared in such steps, or contain nothing to compare, or if there is a
+    /// controller and no simulator.
     pub fn of(&self, logs: Logs, watch: impl Fn(Stage)) -> Result<Answered> {
         if self.controller.is_some() && self.simulator.is_none() {
-            return Err(Error::new("where a controller's runs end needs a simulator that can run it"));
+            return Err(Error::new("comparing the final positions of a controller needs a simulator that can run it"));
         }
-        // What is wrong with rows shows in the rows as they came.
+        // Defects show in the rows as they were logged.
         let mut inspected = Inspection::new(logs);
         inspected.logs = self.in_steps(inspected.logs)?;
         if let Some(simulator) = self.simulator {
@@ -53,15 +53,15 @@ impl<'a> Request<'a> {
         let mut findings = findings_watched(self.baseline(&inspected.logs)?, &inspected, self.method, watch)?;
         let logs = inspected.logs;
         if let Some((simulator, controller)) = self.simulator.zip(self.controller) {
-            let mut better = simulator.clone();
-            better.added.extend(findings.with_formula());
-            let ends = final_position_errors([simulator, &better], controller, &logs, self.method.seed)?;
-            findings.diagnosis.final_positions = Some(ends);
+            let mut improved = simulator.clone();
+            improved.added.extend(findings.with_formula());
+            let errors = final_position_errors([simulator, &improved], controller, &logs, self.method.seed)?;
+            findings.diagnosis.final_positions = Some(errors);
         }
         Ok(Answered { findings, logs })
     }
 
-    /// What logs are compared with.
+    /// Returns what logs are compared with.
     ///
     /// # Errors
     /// As [`Baseline::at_posterior_mean`].
@@ -69,36 +69,36 @@ impl<'a> Request<'a> {
         self.simulator.map_or_else(|| Ok(kinematic::baseline(logs)), Baseline::at_posterior_mean)
     }
 
-    /// The simulator with the effects found and the formula of what they leave; the textbook becomes one that can be run.
+    /// Returns the simulator with the found effects and formula; the textbook becomes a simulator that can be run.
     ///
     /// # Errors
-    /// When nothing was found that explains a gap.
-    pub fn corrected_simulator(&self, Answered { findings, logs }: &Answered) -> Result<Simulator> {
+    /// If nothing was found that explains a gap.
+    pub fn with_effects_applied(&self, Answered { findings, logs }: &Answered) -> Result<Simulator> {
         let effects = findings.with_formula();
         if effects.is_empty() {
             return Err(Error::new(
-                "neither a known effect nor a formula explains a gap here, so there is nothing to add to a simulator",
+                "no effect and no formula explains a gap, so there is nothing to add to a simulator",
             ));
         }
         let mut simulator = match self.simulator {
             Some(simulator) => simulator.clone(),
-            None => textbook::simulator(&kinematic::baseline(logs), findings.scatter.into())?,
+            None => textbook::simulator(&kinematic::baseline(logs), findings.noise.into())?,
         };
         simulator.added.extend(effects);
         Ok(simulator)
     }
 
-    /// The logs in the steps of the simulator, or in those that are asked for.
+    /// Resamples logs to the steps of the simulator, or to those requested.
     fn in_steps(&self, logs: Logs) -> Result<Logs> {
         let own_ms = logs.robot.step_ms;
         let step_ms = match (self.step_ms, self.simulator) {
-            (Some(asked_ms), Some(simulator)) if asked_ms != simulator.robot.step_ms => {
-                let what = format!("steps of {asked_ms} ms: the simulator's steps are {} ms", simulator.robot.step_ms);
-                return Err(Error::new(what));
+            (Some(requested_ms), Some(simulator)) if requested_ms != simulator.robot.step_ms => {
+                let own_ms = simulator.robot.step_ms;
+                return Err(Error::new(format!("steps of {requested_ms} ms: the simulator's steps are {own_ms} ms")));
             }
-            (Some(asked_ms), None) => asked_ms,
+            (Some(requested_ms), None) => requested_ms,
             (_, Some(simulator)) => simulator.robot.step_ms,
-            (None, None) => condition::step_ms(own_ms),
+            (None, None) => split::step_ms(own_ms),
         };
         if step_ms < own_ms {
             return Err(Error::new(format!("steps of {step_ms} ms cannot be compared: rows are {own_ms} ms apart")));

@@ -1,33 +1,33 @@
-//! Which channels a diagnosis speaks of, and why it does not speak of the others.
+//! The channels that a diagnosis compares, and why it does not compare the others.
 
 use serde::Serialize;
 
 use super::channel::Channel;
 use mindgap_logs::inspection::Part;
 
-/// What was compared and what was not.
-#[derive(Clone, Debug)]
+/// The channels that were compared and those that were not.
+#[derive(Clone, Debug, Serialize)]
 pub struct Scope {
     /// Channels that were compared.
     pub compared: Vec<Channel>,
-    /// Channels that were not.
+    /// Channels that were not compared.
     pub not_compared: Vec<NotCompared>,
 }
 
 /// A channel that was not compared.
 #[derive(Clone, Debug, Serialize)]
 pub struct NotCompared {
-    /// Which.
+    /// The channel.
     pub channel: Channel,
-    /// Why.
+    /// The reason, as a sentence.
     pub reason: String,
 }
 
 impl Scope {
-    /// Everything but the parts that have a reason.
+    /// Compares everything but the parts of the logs for which there is a reason not to.
     pub fn without(reasons: &[(Part, String)]) -> Self {
         let part = |channel: &Channel| if channel.motion_axis().is_some() { Part::Motion } else { Part::Sonar };
-        let reason = |channel: &Channel| reasons.iter().find(|(of, _)| *of == part(channel));
+        let reason = |channel: &Channel| reasons.iter().find(|(excluded, _)| *excluded == part(channel));
         let not_compared = Channel::ALL
             .into_iter()
             .filter_map(|channel| Some(NotCompared { channel, reason: reason(&channel)?.1.clone() }));

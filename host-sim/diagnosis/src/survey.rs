@@ -11,8 +11,8 @@ use serde::Serialize;
 
 pub use holdings::{Holdings, Range};
 
-use crate::condition;
 use crate::diagnose::{Excitation, excitation};
+use crate::split;
 use mindgap_foundations::error::{Error, Result};
 use mindgap_learning::learn::train;
 use mindgap_logs::inspection::{Finding, Inspection};
@@ -96,7 +96,7 @@ fn shown(inspected: &Inspection) -> Result<Excitation> {
 
 /// Logs in the steps that a diagnosis compares, where those are longer.
 fn in_steps_that_motion_shows_in(logs: &Logs) -> Option<Logs> {
-    let step_ms = condition::step_ms(logs.robot.step_ms);
+    let step_ms = split::step_ms(logs.robot.step_ms);
     (step_ms > logs.robot.step_ms).then(|| logs.resampled(step_ms))
 }
 

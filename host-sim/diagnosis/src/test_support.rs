@@ -1,15 +1,18 @@
-//! Made-up robots, rows, effects and fits, plain enough that what a stage has to answer is known in closed form.
+//! Made-up robots, rows, effects and fits, simple enough that the right answer of each stage is known in closed form.
 
 use glam::DVec2;
 
 use super::calibration::{Calibration, Judgement};
-use super::compare::Comparison;
+use super::channel::Channel;
+use super::confirm::Confirmed;
 use super::fit::{FitContext, Fitted};
-use super::hypothesis::{Hypothesis, LogLikelihood};
+use super::hypothesis::Hypothesis;
 use super::method::Method;
+use super::sample::Identification;
+use super::scores::{Blocks, Scores};
 use mindgap_foundations::geometry::Pose;
 use mindgap_foundations::motion::Motion;
-use mindgap_learning::evaluation::observations::{Observation, Observations, beside_cm, number_places};
+use mindgap_learning::evaluation::observations::{Observation, Observations, number_places, side_ray_ranges_cm};
 use mindgap_logs::{Logs, Robot, Row, Run, Scene, Ultrasonic};
 use mindgap_models::effects::context::{CommandHistory, HISTORY, Surroundings};
 use mindgap_models::effects::parameter::Guesses;
@@ -19,15 +22,15 @@ use mindgap_models::simulator::ensemble::CommandScale;
 use mindgap_models::simulator::nominal::motion_bias::{Precision, features, products};
 use mindgap_models::sonar::{SensorLaw, SonarModel};
 
-/// Standard deviations of the drive: forward (cm), lateral (cm) and turn (rad).
-pub const SCATTER: [f64; 3] = [1.0, 1.0, 0.1];
+/// Noise of the drive, as standard deviations of forward (cm), lateral (cm) and turn (rad).
+pub const NOISE: [f64; 3] = [1.0, 1.0, 0.1];
 
-/// A row as it is made up.
+/// A made-up row.
 #[derive(Clone, Copy)]
 pub struct Made {
-    /// Command of the step, and of the one before.
+    /// Commands of the step and of the one before.
     pub commands: [[f64; 2]; 2],
-    /// Pose at the begin of the step.
+    /// Pose at the beginning of the step.
     pub pose: Pose,
     /// Time since the run began, minutes.
     pub elapsed_min: f64,
@@ -38,14 +41,14 @@ pub struct Made {
 }
 
 impl Default for Made {
-    /// Straight on from the middle, as expected, without a reading.
+    /// A straight step from the middle of the room, as expected, without a reading.
     fn default() -> Self {
         let pose = Pose::new(150.0, 100.0, 0.0);
         Made { commands: [[50.0; 2]; 2], pose, elapsed_min: 0.0, off: [0.0; 3], echo_off_cm: None }
     }
 }
 
-/// A robot that covers a centimetre a step for every ten of command.
+/// A robot that drives one centimetre per step for every ten units of command.
 pub fn robot() -> Robot {
     Robot {
         wheel_diameter_cm: 5.6,
@@ -62,11 +65,11 @@ pub fn room() -> Scene {
     Scene { arena_cm: Some(DVec2::new(300.0, 200.0)), ..Scene::default() }
 }
 
-/// The textbook's drive, without a sensor.
+/// The textbook's drive without a sensor.
 pub fn baseline() -> Baseline<'static> {
     Baseline {
         robot: robot(),
-        motion: Some(MotionModel::Kinematic { robot: robot(), scatter: SCATTER.into() }),
+        motion: Some(MotionModel::Kinematic { robot: robot(), scatter: NOISE.into() }),
         sonar: None,
         place_bound: [0.0; 2],
         familiar: None,
@@ -74,7 +77,7 @@ pub fn baseline() -> Baseline<'static> {
     }
 }
 
-/// The same with a ray that comes back for certain and scatters by a centimetre.
+/// The same with a ray that always returns, with noise of one centimetre.
 pub fn baseline_with_sonar() -> Baseline<'static> {
     Baseline { sonar: Some(ray()), ..baseline() }
 }
@@ -83,7 +86,7 @@ fn ray() -> SensorLaw {
     SensorLaw::Beam(SonarModel::ideal_ray(1.0, 0.0, [3.0, 250.0]))
 }
 
-/// Blocks of equally many rows.
+/// Makes blocks of equally many rows.
 pub fn observations(blocks: usize, rows: usize, made: impl Fn(usize, usize) -> Made) -> Observations {
     let (surroundings, law) = (Surroundings::new(&robot(), &room()), ray());
     let drive = baseline().motion.expect("a drive");
@@ -102,14 +105,14 @@ pub fn observations(blocks: usize, rows: usize, made: impl Fn(usize, usize) -> M
             fold: block,
             motion_weight: [1.0; 3],
             echo_weight: [1.0; 2],
-            stretch: 1.0,
+            duration_ratio: 1.0,
             context,
-            then: Vec::new(),
+            following_steps: Vec::new(),
             motion: Some(motion),
-            expected: None,
+            expected: Some(drive.step(now, before)),
             echo_cm: echo_off_cm.zip(context.faced).map(|(off_cm, [distance_cm, _])| distance_cm + off_cm),
             view: Some(law.view(&surroundings.surfaces, &surroundings.sensor(&pose, 0.0), 1.0)),
-            beside_cm: beside_cm(&surroundings, &pose),
+            side_ray_ranges_cm: side_ray_ranges_cm(&surroundings, &pose),
         }
     };
     let rows = (0..blocks).flat_map(|block| (0..rows).map(move |at| (block, at))).map(|(block, at)| row(block, at));
@@ -118,7 +121,19 @@ pub fn observations(blocks: usize, rows: usize, made: impl Fn(usize, usize) -> M
     Observations { rows, surroundings, law: Some(law), recollection: None, blocks, places }
 }
 
-/// Logs of runs that do what the textbook says of their commands, with readings that are the distance.
+/// Returns identification rows for these observations.
+pub fn identification<'a>(baseline: &'a Baseline<'a>, observations: Observations) -> Identification<'a> {
+    Identification::new(baseline, observations)
+}
+
+/// Calls `check` with the context of two rows in two blocks.
+pub fn with_two_rows(check: impl Fn(&FitContext)) {
+    let baseline = baseline();
+    let rows = identification(&baseline, observations(2, 1, |_, _| Made::default()));
+    check(&FitContext::new(&rows, METHOD));
+}
+
+/// Logs of runs that follow the textbook's drive, with readings equal to the distance.
 pub fn driven(runs: usize, rows: usize, command: impl Fn(usize, usize) -> [f64; 2]) -> Logs {
     let (surroundings, drive) = (Surroundings::new(&robot(), &room()), baseline().motion.expect("a drive"));
     let run = |run: usize| {
@@ -137,24 +152,24 @@ pub fn driven(runs: usize, rows: usize, command: impl Fn(usize, usize) -> [f64; 
     Logs { robot: robot(), scene: room(), runs: (0..runs).map(run).collect() }
 }
 
-/// Straight on, and a spin to the left.
+/// Commands of a straight step.
 pub const STRAIGHT: [f64; 2] = [50.0, 50.0];
-/// See [`STRAIGHT`].
+/// Commands of a spin to the left.
 pub const SPIN: [f64; 2] = [-30.0, 30.0];
 
-/// What so many steps straight on and in spins tell of a correction's weights, with a prior as wide as the noise.
+/// Returns the information about a correction's weights of this many straight steps and spins, with a prior as wide as the noise.
 pub fn precision(straight: usize, spins: usize) -> Precision {
     let step = |[left, right]: [f64; 2]| features([left, right, left, right], CommandScale::PERCENT.share()).to_vec();
     let rows = [vec![step(STRAIGHT); straight], vec![step(SPIN); spins]].concat();
     Precision { products: products(&rows), prior: Motion::splat(1.0) }
 }
 
-/// What alternates between plus and minus one.
+/// Alternates between plus and minus one.
 pub fn alternating(at: usize) -> f64 {
     if at.is_multiple_of(2) { 1.0 } else { -1.0 }
 }
 
-/// A length without a prior, fitted from a millimetre; derivatives are taken over a fifth of one.
+/// A length with a flat prior, fitted from one millimetre.
 const fn length(name: &'static str) -> Parameter {
     Parameter { name, ..Parameter::new("cm", 0.0, [-9.0, 9.0]).scale(5.0).from(Guesses::At(&[0.1])) }
 }
@@ -172,7 +187,7 @@ pub const LONGER: Effect = Effect {
     }],
 };
 
-/// A length added to every step, and expected to be small: its prior deviates by 0.05 cm.
+/// A length added to every step that is expected to be small: the standard deviation of its prior is 0.05 cm.
 pub const SLIGHTLY_LONGER: Effect = Effect {
     id: "slightly_longer",
     name: "slightly_longer",
@@ -201,7 +216,7 @@ pub const LONGER_TO_THE_LEFT: Effect = Effect {
     }],
 };
 
-/// A length by which readings are too long, in two variants of which the second works with half of it.
+/// A length added to readings, in two variants of which the second adds half of it.
 pub const FARTHER: Effect = Effect {
     id: "farther",
     name: "farther",
@@ -224,7 +239,7 @@ pub const FARTHER: Effect = Effect {
 /// The effects that compete in tests.
 pub const CATALOGUE: &[&Effect] = &[&LONGER, &LONGER_TO_THE_LEFT, &FARTHER];
 
-/// Round thresholds that do not grow with the rows of a test.
+/// Round thresholds that do not grow with the number of rows.
 pub const CALIBRATION: Calibration = Calibration {
     rows: 1e9,
     adequate: 0.8,
@@ -237,32 +252,39 @@ pub const CALIBRATION: Calibration = Calibration {
     judgement: Judgement::USUAL,
 };
 
-/// Diagnoses with [`CATALOGUE`] and [`CALIBRATION`].
+/// The method with [`CATALOGUE`] and [`CALIBRATION`].
 pub const METHOD: Method = Method { catalogue: CATALOGUE, calibration: CALIBRATION, seed: 1 };
 
-/// The first variant of an effect.
+/// Returns the first variant of an effect.
 pub fn candidate(effect: &'static Effect) -> Candidate {
     Candidate { effect: effect.id, variant: &effect.variants[0] }
 }
 
-/// A fit of effects at these values, each of one parameter, and with these log-likelihoods of blocks; its rows are
-/// left at zero.
-pub fn made_up(effects: &[&'static Effect], values: &[f64], held_out: &[f64], context: &FitContext) -> Fitted {
+/// Makes a fit of effects with one parameter each, with these cross-validated scores per block and rows that score zero.
+pub fn made_up(effects: &[&'static Effect], values: &[f64], by_block: &[f64], context: &FitContext) -> Fitted {
     let candidates = effects.iter().map(|effect| candidate(effect)).collect();
-    let rows = context.observations.rows.len();
+    let mut column = vec![0.0; context.rows.rows.len()];
+    by_block.iter().enumerate().for_each(|(block, nats)| column[context.rows.of_block(block).start] = *nats);
     Fitted {
-        hypothesis: Hypothesis::none(context.baseline).of(candidates),
+        hypothesis: Hypothesis::null(context.baseline()).of(candidates),
         values: values.to_vec(),
-        log_likelihood: LogLikelihood { motion: vec![[0.0; 3]; rows], sonar: vec![[0.0; 2]; rows] },
-        held_out: held_out.to_vec(),
         errors: vec![0.0; values.len()],
-        occam: 0.0,
+        noise: NOISE,
+        scores: Scores::zero(context.rows.row_blocks()),
+        cross_validated: context.rows.scores_of(Channel::Forward, &column),
+        complexity_penalty: 0.0,
     }
 }
 
-/// A comparison whose chosen effects gain this on each block over none, and leave nothing over.
-pub fn comparison(effects: &[&'static Effect], gains: &[f64], context: &FitContext) -> Comparison {
-    let none = made_up(&[], &[], &vec![0.0; gains.len()], context);
+/// Confirms effects that gain this on each block over none, and leave no remainder.
+pub fn confirmed(effects: &[&'static Effect], gains: &[f64], context: &FitContext) -> Confirmed {
+    let null = made_up(&[], &[], &vec![0.0; gains.len()], context);
     let chosen = made_up(effects, &vec![0.5; effects.len()], gains, context);
-    Comparison::of(none, chosen)
+    Confirmed::unexamined(null, chosen)
+}
+
+/// Makes scores of one row per block.
+pub fn block_scores(channel: Channel, by_block: &[f64]) -> Scores {
+    let rows = observations(by_block.len(), 1, |_, _| Made::default());
+    Scores::zero(&Blocks::of(&rows)).with(channel, by_block)
 }

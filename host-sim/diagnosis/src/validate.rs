@@ -1,4 +1,4 @@
-//! Validation: what logs cannot say.
+//! Validation: what logs cannot show.
 
 use glam::DVec2;
 
@@ -11,28 +11,27 @@ use mindgap_logs::Run;
 use mindgap_logs::inspection::{Inspection, Part};
 use mindgap_models::simulator::baseline::Baseline;
 
-/// The track of a robot that stands scatters by less: a camera's marker by a centimetre or two,
+/// Largest position noise of a standing robot; a camera's marker scatters by one or two centimetres.
 const STANDING_CM: f64 = 4.0;
-/// and a compass by a few degrees (here 15).
+/// Largest heading noise of a standing robot, 15 degrees; a compass scatters by a few degrees.
 const STANDING_RAD: f64 = 0.26;
-/// A robot moved where at least this share of a run's poses lies beyond: a few jumps of the tracker are fewer.
+/// A robot moved if at least this fraction of a run's poses lies beyond that noise; jumps of the tracker are fewer.
 const MOVED: f64 = 0.1;
 
-/// What a diagnosis can speak of.
+/// What a diagnosis can compare.
 pub struct Validated {
-    /// What limits it.
+    /// What limits it, one sentence each.
     pub notes: Vec<String>,
-    /// What it compares.
+    /// The channels that it compares.
     pub scope: Scope,
-    /// Whether the robot moved though no command asked for it: a gap, whatever else agrees.
+    /// Whether the robot moved without commands. That is a gap even if everything else agrees.
     pub moved_uncommanded: bool,
 }
 
-/// Takes out of a baseline what the logs say nothing about or must not be asked for, and tells it, with what else limits a
-/// diagnosis.
+/// Removes from a baseline what the logs do not contain or what an inspection excludes, and notes the limits of a diagnosis.
 ///
 /// # Errors
-/// When the logs say nothing that the baseline could be compared with.
+/// If nothing is left to compare.
 pub fn validate(baseline: &mut Baseline, observations: &Observations, inspected: &Inspection) -> Result<Validated> {
     let knows_motion = baseline.motion.is_some();
     let logs = &inspected.logs;
@@ -46,8 +45,8 @@ pub fn validate(baseline: &mut Baseline, observations: &Observations, inspected:
         reasons.push((Part::Motion, why.to_owned()));
         baseline.motion = None;
     }
-    if observations.rows.iter().any(|row| !row.then.is_empty()) {
-        notes.push("No step has a pose at both ends: whole ways between poses are compared.".into());
+    if observations.rows.iter().any(|row| !row.following_steps.is_empty()) {
+        notes.push("No step has a pose at both ends: whole segments between poses are compared.".into());
     }
     if let Some(why) = inspected.withheld(Part::Sonar) {
         reasons.push((Part::Sonar, why.to_owned()));
@@ -63,47 +62,50 @@ pub fn validate(baseline: &mut Baseline, observations: &Observations, inspected:
         return Err(Error::new(format!("nothing can be compared. {}", reasons.join(" "))));
     }
     if logs.runs.len() == 1 {
-        notes.push("One run only: its parts stand for runs, and what holds for other runs cannot be told.".into());
+        notes.push(
+            "One run only: its parts are used as runs, and whether the result holds for other runs remains open."
+                .into(),
+        );
     }
     if logs.runs.len() > 1 && logs.runs.windows(2).all(|pair| same_commands(&pair[0], &pair[1])) {
-        notes.push("All runs have the same commands: what other commands would show is not excited.".into());
+        notes.push(
+            "All runs have the same commands: effects that show only under other commands are not excited.".into(),
+        );
     }
     let moved_uncommanded = knows_motion && !is_commanded(observations) && moves(observations);
     Ok(Validated { notes, scope: Scope::without(&reasons), moved_uncommanded })
 }
 
-/// Why motion cannot be compared.
+/// Returns why motion cannot be compared, if it cannot.
 fn without_motion(baseline: &Baseline, observations: &Observations) -> Option<&'static str> {
     if baseline.motion.is_none() {
-        Some("From too few logs, or none with poses, the simulator does not know motion: it is not compared.")
+        Some("The simulator has no model of motion, since its training logs had too few poses: motion is not compared.")
     } else if observations.rows.iter().all(|row| row.motion.is_none()) {
         Some("No run has two poses: motion cannot be compared.")
     } else if is_commanded(observations) {
         None
     } else if moves(observations) {
-        Some(
-            "No command drives the motors, but the robot moves: motion is not excited, and what causes it is not logged.",
-        )
+        Some("No command drives the motors, but the robot moves: motion is not excited, and its cause is not logged.")
     } else {
         Some("The motors stand still: motion is not excited.")
     }
 }
 
-/// Whether any command drives a motor.
+/// Returns whether any command drives a motor.
 fn is_commanded(observations: &Observations) -> bool {
-    let mut steps = observations.rows.iter().flat_map(|row| std::iter::once(&row.context).chain(&row.then));
+    let mut steps = observations.rows.iter().flat_map(|row| std::iter::once(&row.context).chain(&row.following_steps));
     steps.any(|step| step.commands[0].iter().any(|c| c.abs() >= 1.0))
 }
 
-/// Whether the robot is elsewhere, in a part of some run, than where it mostly is.
+/// Returns whether the robot leaves its median pose for a part of some run.
 fn moves(observations: &Observations) -> bool {
     observations.rows.chunk_by(|a, b| a.run == b.run).any(|rows| {
         let first = rows[0].context.pose;
         let turned = |row: &Observation| wrap_rad(row.context.pose.heading_rad - first.heading_rad);
-        let of = |number: &dyn Fn(&Observation) -> f64| median(rows.iter().map(number));
-        let x_cm = of(&|row| row.context.pose.position_cm.x);
-        let y_cm = of(&|row| row.context.pose.position_cm.y);
-        let turn_rad = of(&turned);
+        let median_of = |number: &dyn Fn(&Observation) -> f64| median(rows.iter().map(number));
+        let x_cm = median_of(&|row| row.context.pose.position_cm.x);
+        let y_cm = median_of(&|row| row.context.pose.position_cm.y);
+        let turn_rad = median_of(&turned);
         let is_away = |row: &&Observation| {
             row.context.pose.position_cm.distance(DVec2::new(x_cm, y_cm)) > STANDING_CM
                 || wrap_rad(turned(row) - turn_rad).abs() > STANDING_RAD
@@ -112,13 +114,15 @@ fn moves(observations: &Observations) -> bool {
     })
 }
 
-/// Why the sensor cannot be compared.
+/// Returns why the sensor cannot be compared, if it cannot.
 fn without_sonar(baseline: &Baseline, observations: &Observations) -> Option<&'static str> {
-    // The textbook's sensor is made from the readings themselves.
+    // The textbook's sensor is fitted to the readings themselves.
     if observations.rows.iter().all(|row| row.echo_cm.is_none()) {
-        Some("There is no reading at all: the sonar is not compared.")
+        Some("There are no readings: the sonar is not compared.")
     } else if baseline.sonar.is_none() {
-        Some("From too few readings, or none, the simulator does not know the sonar: it is not compared.")
+        Some(
+            "The simulator has no model of the sonar, since its training logs had too few readings: the sonar is not compared.",
+        )
     } else {
         None
     }
@@ -136,7 +140,7 @@ mod tests {
     use mindgap_foundations::geometry::Pose;
     use mindgap_logs::Logs;
 
-    /// Commands that differ from run to run.
+    /// Returns commands that differ from run to run.
     fn mixed(run: usize, at: usize) -> [f64; 2] {
         [10.0 * run as f64 + 5.0, 20.0 + at as f64]
     }
@@ -144,29 +148,29 @@ mod tests {
     fn notes_of(logs: &Logs) -> (Vec<String>, Baseline<'static>) {
         let mut baseline = baseline_with_sonar();
         let inspected = Inspection::new(logs.clone());
-        let rows = Observations::of(&inspected.logs, None);
+        let rows = Observations::of(&inspected.logs, None, None);
         let validated = validate(&mut baseline, &rows, &inspected).expect("something to compare");
         (validated.notes, baseline)
     }
 
-    /// Whether there is one note, which begins so.
+    /// Returns whether there is exactly one note, with this beginning.
     fn only(notes: &[String], begin: &str) -> bool {
         matches!(notes, [note] if note.starts_with(begin))
     }
 
     #[test]
-    fn logs_that_say_everything_need_no_note() {
+    fn complete_logs_have_no_note() {
         let (notes, baseline) = notes_of(&driven(8, 4, mixed));
         assert!(notes.is_empty(), "{notes:?}");
         assert!(baseline.motion.is_some() && baseline.sonar.is_some());
     }
 
     #[test]
-    fn what_the_logs_do_not_say_is_taken_out_of_the_baseline() {
+    fn what_logs_do_not_contain_is_removed_from_the_baseline() {
         let mut silent = driven(8, 4, mixed);
         silent.runs.iter_mut().for_each(|run| run.rows.edit_each(|row| row.echo_cm = None));
         let (notes, baseline) = notes_of(&silent);
-        assert!(only(&notes, "There is no reading at all") && baseline.sonar.is_none(), "{notes:?}");
+        assert!(only(&notes, "There are no readings") && baseline.sonar.is_none(), "{notes:?}");
 
         let mut unseen = driven(8, 4, mixed);
         unseen
@@ -180,13 +184,13 @@ mod tests {
         assert!(notes[0].starts_with("The motors stand still") && baseline.motion.is_none(), "{notes:?}");
     }
 
-    /// Runs of twenty rows whose commands are zero and whose poses are changed.
-    fn uncommanded(change: impl Fn(usize, &mut Pose)) -> bool {
+    /// Returns whether a robot with zero commands moved, for runs of twenty rows with changed poses.
+    fn moved_uncommanded(change: impl Fn(usize, &mut Pose)) -> bool {
         let mut logs = driven(8, 20, |_, _| [0.0; 2]);
         for run in &mut logs.runs {
             (0..run.rows.len()).for_each(|at| run.rows.edit_pose(at, |pose| change(at, pose)));
         }
-        let rows = Observations::of(&logs, None);
+        let rows = Observations::of(&logs, None, None);
         let inspected = Inspection { logs, findings: Vec::new() };
         let validated = validate(&mut baseline_with_sonar(), &rows, &inspected).expect("a sensor");
         let reason = &validated.scope.not_compared[0].reason;
@@ -195,35 +199,35 @@ mod tests {
     }
 
     #[test]
-    fn motion_without_commands_is_told_from_the_noise_and_jumps_of_a_tracker() {
-        assert!(!uncommanded(|_, _| ()));
-        assert!(!uncommanded(|at, pose| pose.position_cm.x += 1.5 * alternating(at)));
-        assert!(!uncommanded(|at, pose| pose.position_cm.x += if at == 7 { 60.0 } else { 0.0 }));
-        assert!(uncommanded(|at, pose| pose.position_cm.y += at as f64));
-        assert!(uncommanded(|at, pose| pose.heading_rad = wrap_rad(pose.heading_rad + 0.1 * at as f64)));
+    fn motion_without_commands_differs_from_tracker_noise_and_jumps() {
+        assert!(!moved_uncommanded(|_, _| ()));
+        assert!(!moved_uncommanded(|at, pose| pose.position_cm.x += 1.5 * alternating(at)));
+        assert!(!moved_uncommanded(|at, pose| pose.position_cm.x += if at == 7 { 60.0 } else { 0.0 }));
+        assert!(moved_uncommanded(|at, pose| pose.position_cm.y += at as f64));
+        assert!(moved_uncommanded(|at, pose| pose.heading_rad = wrap_rad(pose.heading_rad + 0.1 * at as f64)));
     }
 
     #[test]
-    fn what_the_baseline_does_not_know_is_said() {
+    fn missing_models_are_noted() {
         let logs = driven(8, 4, mixed);
-        let rows = Observations::of(&logs, None);
+        let rows = Observations::of(&logs, None, None);
         let inspected = Inspection::new(logs);
         let Validated { notes, scope, .. } = validate(&mut baseline(), &rows, &inspected).expect("motion");
-        assert!(only(&notes, "From too few readings"), "{notes:?}");
+        assert!(only(&notes, "The simulator has no model of the sonar"), "{notes:?}");
         assert_eq!(scope.compared, [Channel::Forward, Channel::Lateral, Channel::Turn]);
         let mut without_motion = Baseline { motion: None, ..baseline_with_sonar() };
         let Validated { notes, scope, .. } = validate(&mut without_motion, &rows, &inspected).expect("a sensor");
-        assert!(only(&notes, "From too few logs"), "{notes:?}");
+        assert!(only(&notes, "The simulator has no model of motion"), "{notes:?}");
         assert_eq!(scope.compared, [Channel::EchoRate, Channel::EchoValue]);
         assert!(scope.not_compared.iter().all(|channel| channel.reason == notes[0]));
         assert!(validate(&mut Baseline { motion: None, ..baseline() }, &rows, &inspected).is_err());
     }
 
     #[test]
-    fn one_run_and_equal_runs_are_said() {
+    fn single_run_and_equal_runs_are_noted() {
         assert!(only(&notes_of(&driven(1, 16, mixed)).0, "One run only"));
         let mut equal = driven(8, 4, |_, at| mixed(0, at));
-        // Runs that agree in every number are copies.
+        // Runs that agree in every number would count as copies.
         for (number, run) in equal.runs.iter_mut().enumerate() {
             run.rows.edit_poses(|pose| pose.position_cm.y += number as f64);
         }
@@ -231,7 +235,7 @@ mod tests {
     }
 
     #[test]
-    fn what_an_inspection_withholds_is_not_compared() {
+    fn what_an_inspection_excludes_is_not_compared() {
         let mut exchanged = driven(8, 31, |run, at| {
             [((run * 7 + at * 13) % 9) as f64 * 20.0 - 80.0, ((run * 5 + at * 11) % 7) as f64 * 25.0 - 75.0]
         });
@@ -239,7 +243,7 @@ mod tests {
             run.rows.edit_each(|row| (row.left, row.right) = (row.right, row.left));
         });
         let inspected = Inspection::new(exchanged);
-        let rows = Observations::of(&inspected.logs, None);
+        let rows = Observations::of(&inspected.logs, None, None);
         let mut baseline = baseline_with_sonar();
         let scope = validate(&mut baseline, &rows, &inspected).expect("a sensor").scope;
         assert!(baseline.motion.is_none() && baseline.sonar.is_some());
@@ -248,7 +252,7 @@ mod tests {
     }
 
     #[test]
-    fn where_no_step_has_both_ends_whole_ways_are_compared() {
+    fn whole_segments_are_compared_if_no_step_has_both_poses() {
         let mut logs = driven(8, 5, mixed);
         for run in &mut logs.runs {
             (1..run.rows.len()).step_by(2).for_each(|k| run.rows.edit(k, |row| row.pose = None));

@@ -144,16 +144,16 @@ pub fn diagnosis(folder: &Path, diagnosis: &Diagnosis) -> Result<()> {
 /// The figures of a diagnosis: its budget, the ends of paths, and what is left; only those for which it has data.
 pub fn figures_of_diagnosis(diagnosis: &Diagnosis) -> Vec<NamedFigure> {
     let mut figures = Vec::new();
-    if !diagnosis.budget().is_empty() {
+    if !diagnosis.budget.is_empty() {
         let title = "What the gap is made of".into();
         let budget = ShareChart { title, ..budget(diagnosis, |id| id) };
         figures.push(named("budget", budget.draw()));
     }
-    if let Some(reduction) = diagnosis.reduction().filter(|reduction| !reduction.paths.is_empty()) {
+    if let Some(reduction) = diagnosis.reduction.as_ref().filter(|reduction| !reduction.paths.is_empty()) {
         let title = "Median distance of predicted from logged ends".into();
         figures.push(named("path-ends", CurveChart { title, ..path_ends(reduction) }.draw()));
     }
-    figures.extend(diagnosis.profiles().iter().map(|profile| {
+    figures.extend(diagnosis.profiles.iter().map(|profile| {
         let ResidualProfile { channel, depends_on, unit, bins } = profile;
         let title = format!("{} by {depends_on}", channel.name());
         let chart = residuals(depends_on, unit, &[("remaining residual, 95 %", bins)]);
@@ -164,7 +164,7 @@ pub fn figures_of_diagnosis(diagnosis: &Diagnosis) -> Vec<NamedFigure> {
 
 /// The parts of a gap, effects first and the largest of them at the top, with names from their ids.
 pub fn budget<'a>(diagnosis: &'a Diagnosis, name: impl Fn(&'a str) -> &'a str) -> ShareChart {
-    let mut parts: Vec<&Part> = diagnosis.budget().iter().collect();
+    let mut parts: Vec<&Part> = diagnosis.budget.iter().collect();
     let effects = parts.partition_point(|part| part.id != SCATTER && part.id != UNEXPLAINED);
     parts[..effects].sort_by(|a, b| b.share.total_cmp(&a.share));
     let row = |part: &&'a Part| Share {

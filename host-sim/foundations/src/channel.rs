@@ -21,8 +21,11 @@ pub enum Channel {
 }
 
 impl Channel {
+    /// Number of channels.
+    pub const COUNT: usize = 5;
+
     /// All channels.
-    pub const ALL: [Channel; 5] =
+    pub const ALL: [Channel; Channel::COUNT] =
         [Channel::Forward, Channel::Lateral, Channel::Turn, Channel::EchoRate, Channel::EchoValue];
 
     /// The channels of a step's motion.

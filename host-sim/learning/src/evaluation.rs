@@ -1,5 +1,4 @@
-//! How far a simulator's predictions are off on logs: step by step, over open-loop paths, and at the end of a
-//! controller's runs.
+//! Prediction errors of a simulator on logs: per step, over open-loop paths, and at the end of a controller's runs.
 
 pub mod accuracy;
 pub mod final_position;

@@ -12,7 +12,8 @@ use super::replay::Replay;
 use super::{glossary, words};
 use mindgap_diagnosis::Findings;
 use mindgap_diagnosis::budget::{Part, UNEXPLAINED};
-use mindgap_diagnosis::diagnosis::{Answer, Diagnosis};
+use mindgap_diagnosis::diagnosis::Diagnosis;
+use mindgap_diagnosis::verdict::Verdict;
 use mindgap_figures::pictures;
 use mindgap_figures::report::room::Room;
 use mindgap_foundations::error::Result;
@@ -60,7 +61,7 @@ pub fn page(subject: &Subject) -> Result<String> {
     let poses = logs.runs.iter().flat_map(|run| run.rows.iter().filter_map(|row| row.pose));
     let room = Room::new(&logs.scene, REACHED_CM, poses.map(|pose| pose.position_cm));
     let mut sections = Vec::new();
-    if !diagnosis.budget().is_empty() {
+    if !diagnosis.budget.is_empty() {
         sections.push(Section { id: "budget", title: "What the gap is made of", body: budget(diagnosis, catalogue) });
     }
     sections.extend(causes::section(subject));
@@ -84,8 +85,8 @@ pub fn page(subject: &Subject) -> Result<String> {
 
 /// The verdict, and the names of the effects.
 fn headline(diagnosis: &Diagnosis, catalogue: &[&'static Effect]) -> String {
-    let verdict = words::verdict(&diagnosis.answer);
-    let names: Vec<&str> = diagnosis.effects().iter().map(|effect| words::name(effect.id, catalogue)).collect();
+    let verdict = words::verdict(diagnosis.verdict);
+    let names: Vec<&str> = diagnosis.effects.iter().map(|effect| words::name(effect.id, catalogue)).collect();
     match names.as_slice() {
         [] => verdict.into(),
         [name] => format!("{verdict} The effect: {name}."),
@@ -96,7 +97,7 @@ fn headline(diagnosis: &Diagnosis, catalogue: &[&'static Effect]) -> String {
 /// How probable each named effect is, in words.
 fn sure(diagnosis: &Diagnosis, catalogue: &[&'static Effect]) -> String {
     let named: Vec<String> = diagnosis
-        .effects()
+        .effects
         .iter()
         .map(|effect| format!("{} {}", words::name(effect.id, catalogue), words::percent(effect.probability)))
         .collect();
@@ -108,16 +109,16 @@ fn lead(diagnosis: &Diagnosis, catalogue: &[&'static Effect], logs: &Logs) -> Ma
     let rows: usize = logs.runs.iter().map(|run| run.rows.len()).sum();
     html! {
         @if let Some(astray) = runs::astray(diagnosis) { p { (astray) } }
-        @if let (Some(reduction), false) = (diagnosis.reduction(), diagnosis.effects().is_empty()) {
+        @if let (Some(reduction), false) = (diagnosis.reduction.as_ref(), diagnosis.effects.is_empty()) {
             @let [low, high] = reduction.whole.ci95.map(words::percent);
             p {
-                "With " @if diagnosis.effects().len() == 1 { "it" } @else { "them" } " the simulator closes "
+                "With " @if diagnosis.effects.len() == 1 { "it" } @else { "them" } " the simulator closes "
                 strong { (words::percent(reduction.whole.reducible_closed)) }
                 " of the gap, apart from chance (95 % interval: " (low) " to " (high) "). "
                 "Probabilities: " (sure(diagnosis, catalogue)) "."
             }
         }
-        @if !matches!(diagnosis.answer, Answer::NoGap) { p { "See " a href="#next" { "what to do next" } "." } }
+        @if diagnosis.verdict != Verdict::NoGap { p { "See " a href="#next" { "what to do next" } "." } }
         p.quiet {
             "Compared: " (words::list(&compared)) " in " (rows) " rows of " (logs.runs.len())
             @if logs.runs.len() == 1 { " run." } @else { " runs." }
@@ -130,7 +131,7 @@ fn lead(diagnosis: &Diagnosis, catalogue: &[&'static Effect], logs: &Logs) -> Ma
 }
 
 fn budget(diagnosis: &Diagnosis, catalogue: &[&'static Effect]) -> Markup {
-    let parts = diagnosis.budget();
+    let parts = &diagnosis.budget;
     let said: Vec<String> = parts
         .iter()
         .map(|part| format!("{} {}", words::name(&part.id, catalogue), words::percent(part.share)))
@@ -151,7 +152,7 @@ fn budget(diagnosis: &Diagnosis, catalogue: &[&'static Effect]) -> Markup {
 
 /// What to do now.
 fn next(diagnosis: &Diagnosis, catalogue: &[&'static Effect]) -> Section {
-    let mut parts: Vec<&Part> = diagnosis.budget().iter().filter(|part| part.share >= WORTH_A_CHECK).collect();
+    let mut parts: Vec<&Part> = diagnosis.budget.iter().filter(|part| part.share >= WORTH_A_CHECK).collect();
     parts.sort_by(|a, b| b.share.total_cmp(&a.share));
     let is_left = |part: &&Part| part.id == UNEXPLAINED;
     let left = parts.iter().copied().find(is_left);
@@ -164,13 +165,13 @@ fn next(diagnosis: &Diagnosis, catalogue: &[&'static Effect]) -> Section {
                         " of the gap: " (cause.check) }
                 }
             }
-            @if !diagnosis.effects().is_empty() {
+            @if !diagnosis.effects.is_empty() {
                 li {
                     "Repair the robot and log it again; or improve the simulator: the same command with "
                     code { "--apply better.json" } " writes a simulator with the effects, in which to evolve controllers."
                 }
             }
-            @if let Some(experiment) = diagnosis.experiment() {
+            @if let Some(experiment) = diagnosis.experiment.as_ref() {
                 @let [one, other] = experiment.between.map(|id| words::name(id, catalogue));
                 li {
                     "These logs do not distinguish " (one) " from " (other) " for certain. Drive and log " (experiment.runs)
@@ -178,14 +179,14 @@ fn next(diagnosis: &Diagnosis, catalogue: &[&'static Effect]) -> Section {
                     code { "--next-experiment next.csv" } " writes the commands."
                 }
             }
-            @if left.is_some() || matches!(diagnosis.answer, Answer::Unknown { .. }) {
+            @if left.is_some() || diagnosis.verdict == Verdict::Unknown {
                 li {
                     @if let Some(left) = left { (words::percent(left.share)) " of the gap is not explained. " }
                     "See " a href="#where" { "where it lies" } ", watch the robot there, and state what you suspect as an "
                     "effect of your own: with " code { "--effects FILE" } " it competes with the built-in ones."
                 }
             }
-            @if matches!(diagnosis.answer, Answer::NoGap) {
+            @if diagnosis.verdict == Verdict::NoGap {
                 li { "By these logs, nothing needs repair. If a controller fails all the same, it drives under other conditions: log "
                     "those runs and diagnose them." }
             }

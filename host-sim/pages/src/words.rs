@@ -3,7 +3,7 @@
 use mindgap_diagnosis::Diagnosis;
 use mindgap_diagnosis::budget::{SCATTER, UNEXPLAINED};
 use mindgap_diagnosis::channel::Channel;
-use mindgap_diagnosis::diagnosis::Answer;
+use mindgap_diagnosis::verdict::Verdict;
 pub use mindgap_figures::report::style::number;
 use mindgap_models::effects::Effect;
 
@@ -50,18 +50,18 @@ pub fn name<'a>(id: &'a str, catalogue: &[&'static Effect]) -> &'a str {
 }
 
 /// The verdict as a sentence.
-pub fn verdict(answer: &Answer) -> &'static str {
-    match answer {
-        Answer::NoGap => "No gap: the logs agree with the simulator within its own error.",
-        Answer::Known { .. } => "There is a gap, and known effects explain it.",
-        Answer::PartlyKnown { .. } => "There is a gap. Known effects explain a part of it, and something is left.",
-        Answer::Unknown { .. } => "There is a gap, and no known effect explains it.",
+pub fn verdict(verdict: Verdict) -> &'static str {
+    match verdict {
+        Verdict::NoGap => "No gap: the logs agree with the simulator within its own error.",
+        Verdict::Known => "There is a gap, and known effects explain it.",
+        Verdict::PartlyKnown => "There is a gap. Known effects explain a part of it, and something is left.",
+        Verdict::Unknown => "There is a gap, and no known effect explains it.",
     }
 }
 
 /// What "with" means in charts of before and after.
 pub fn with(diagnosis: &Diagnosis) -> &'static str {
-    match diagnosis.effects() {
+    match diagnosis.effects.as_slice() {
         [] => "with the best-fitting effects, which explain too little to be named",
         _ => "with the effects",
     }

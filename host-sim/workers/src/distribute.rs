@@ -10,7 +10,6 @@ use std::time::Duration;
 use rayon::Scope;
 use serde_bytes::ByteBuf;
 
-use super::ranks::Ranks;
 use super::{AHEAD, Workers};
 use mindgap_foundations::error::{Error, Result};
 use mindgap_foundations::executor::Batch;
@@ -52,7 +51,7 @@ pub fn hand_out(workers: &Workers, batch: Batch<'_>) -> Result<()> {
     let Batch { count, is_bounded, input, work, take, .. } = batch;
     let part = workers.parts.fetch_add(1, Ordering::Relaxed) + 1;
     let threads = rayon::current_num_threads();
-    let all_threads = threads * workers.ranks.as_ref().map_or(1, Ranks::count);
+    let all_threads = threads * workers.ranks.as_ref().map_or(1, |ranks| ranks.count());
     let ahead = if is_bounded { AHEAD * all_threads } else { count };
     let is_over = &AtomicBool::new(false);
     rayon::in_place_scope(|scope| {
@@ -115,7 +114,7 @@ pub fn hand_out(workers: &Workers, batch: Batch<'_>) -> Result<()> {
             }
         };
         let taken = (0..count).try_for_each(|next| take(next, result(next)?.into_vec()));
-        taken.and_then(|()| workers.ranks.as_ref().map_or(Ok(()), Ranks::finish_part))
+        taken.and_then(|()| workers.ranks.as_ref().map_or(Ok(()), |ranks| ranks.finish_part()))
     })
 }
 

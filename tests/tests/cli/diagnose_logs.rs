@@ -123,7 +123,7 @@ fn without_poses_nothing_can_be_compared() {
 fn without_readings_motion_alone_is_compared() {
     let sandbox = trained();
     rewrite(&sandbox, without(&["echo_cm"]));
-    assert_noted(&sandbox, "no reading at all");
+    assert_noted(&sandbox, "There are no readings");
 }
 
 /// Someone carries the robot: its readings agree with its poses, but no command moves it.
@@ -152,7 +152,7 @@ fn a_single_run_and_copies_of_one_run_are_noted() {
 
 #[test]
 fn few_runs_are_noted_as_fitted_without_hold_out() {
-    assert_noted(&trained(), "With fewer than 8 runs none is kept back");
+    assert_noted(&trained(), "With fewer than 8 runs none is held out");
 }
 
 #[test]
@@ -273,7 +273,7 @@ fn the_next_experiment_is_a_run_that_can_be_exported() {
     // Of a load so light six runs do not say whether it is one, or a weaker motor.
     sandbox.run("record --out laden --runs 6 --seed 5 --effect payload=0.03");
     let said = sandbox.run("diagnose sim.json laden --next-experiment next.csv");
-    assert!(said.contains("cannot distinguish it from") && said.contains("To tell "), "{said}");
+    assert!(said.contains("cannot distinguish it from") && said.contains("To distinguish "), "{said}");
     let rows = Run::read(&sandbox.path().join("next.csv"), |warning| panic!("{warning}")).expect("a run").rows;
     assert!(rows.len() > 5 && rows.iter().any(|row| row.command() != [0.0, 0.0]), "{rows:?}");
     let budget = sandbox.run("export next.csv --format nxc-collect --out next.nxc");

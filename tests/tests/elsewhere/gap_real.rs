@@ -112,7 +112,7 @@ pub fn the_end_poses_of_a_neato_show_its_gap_to_the_kinematic_model(folder: &Pat
     neato(folder).write(&sandbox.path().join("logs")).expect("a folder that can be written");
     let diagnosis = diagnosed(&sandbox, "logs");
     assert_ne!(diagnosis["verdict"], "no_gap", "its owner measured one");
-    assert!(diagnosis["notes"].to_string().contains("whole ways between poses"), "{diagnosis}");
+    assert!(diagnosis["notes"].to_string().contains("whole segments between poses"), "{diagnosis}");
     let shrink = &diagnosis["shrink"];
     let number = |value: &Value| value.as_f64().expect("a number");
     assert!(number(&shrink["before"]) > 1.0 && number(&shrink["reducible_closed"]) > 0.8, "{shrink}");

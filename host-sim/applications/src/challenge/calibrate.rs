@@ -13,8 +13,9 @@ use super::cases::{Case, Size};
 use mindgap_diagnosis::Method;
 use mindgap_diagnosis::calibration::Calibration;
 use mindgap_diagnosis::diagnose::{confirmed, statistics};
-use mindgap_diagnosis::explain::Explained;
+use mindgap_diagnosis::explanation::Explanation;
 use mindgap_diagnosis::gain::Gain;
+use mindgap_diagnosis::verdict::Explained;
 use mindgap_foundations::counter::Counter;
 use mindgap_foundations::error::{Error, Result};
 use mindgap_foundations::executor::{self, Executor};
@@ -85,7 +86,7 @@ fn without_effect(bench: &Bench, number: usize) -> Result<Measured> {
     let (case, baseline) = bench.case(number)?;
     let statistics = statistics(baseline, &case.logs, Method::default())?;
     Ok(Measured {
-        remainder_nats: statistics.remainder.broad_nats,
+        remainder_nats: statistics.remainder.winsorized_nats,
         ..Measured::of(&case, statistics.rows, statistics.effect)
     })
 }
@@ -94,7 +95,7 @@ fn with_effects(bench: &Bench, number: usize, calibration: Calibration) -> Resul
     let (case, baseline) = bench.case(number)?;
     let (found, feigned_share) = confirmed(baseline, &case.logs, &[calibration], |found, context, hold_out| {
         let feigned_share = match &case.effects[..] {
-            [one] => found.feigned_share(one.effect.id(), context, hold_out),
+            [one] => found.fits.form_error_fraction(one.effect.id(), context, hold_out),
             _ => None,
         };
         (found, feigned_share)
@@ -102,11 +103,11 @@ fn with_effects(bench: &Bench, number: usize, calibration: Calibration) -> Resul
     .swap_remove(0);
     let measured = Measured {
         feigned_share,
-        ..Measured::of(&case, found.none.log_likelihood.motion.len(), found.chosen.gain_over(&found.none))
+        ..Measured::of(&case, found.chosen.scores.rows().len(), found.chosen.gain_over(&found.fits.null))
     };
     let ids = found.chosen.ids();
     // The most probable effect is the one named first.
-    let rivals = (0..ids.len()).map(|place| (place, found.likelihoods_in_place_of(place, &calibration)));
+    let rivals = (0..ids.len()).map(|place| (place, found.rival_likelihoods(place, &calibration)));
     let doubt = |rivals: &[(&str, f64)]| rivals.iter().map(|(_, likelihood)| likelihood).sum::<f64>();
     let Some((place, rivals)) = rivals.min_by(|a, b| doubt(&a.1).total_cmp(&doubt(&b.1))) else {
         return Ok(measured);
@@ -131,7 +132,7 @@ impl Measured {
             truth: names.join(" "),
             in_table: case.effects.iter().all(|active| active.effect.in_table()),
             rows,
-            effect_nats: effect.broad_nats,
+            effect_nats: effect.winsorized_nats,
             remainder_nats: 0.0,
             feigned_share: None,
             first: String::new(),

@@ -10,7 +10,7 @@ use super::Folder;
 use super::seal::{Published, Sealed};
 use mindgap_built_in_robot::{ActiveEffect, Driving, Effect, record_driving};
 use mindgap_diagnosis::diagnose::closed;
-use mindgap_diagnosis::diagnosis::Verdict;
+use mindgap_diagnosis::verdict::Verdict;
 use mindgap_files as files;
 use mindgap_foundations::counter::Counter;
 use mindgap_foundations::error::{Error, Result};

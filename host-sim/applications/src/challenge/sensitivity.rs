@@ -7,9 +7,9 @@ use super::bench::Bench;
 use super::cases::{Case, Size};
 use mindgap_diagnosis::Method;
 use mindgap_diagnosis::calibration::Calibration;
-use mindgap_diagnosis::compare::Comparison;
+use mindgap_diagnosis::confirm::Confirmed;
 use mindgap_diagnosis::diagnose::confirmed;
-use mindgap_diagnosis::explain::Judged;
+use mindgap_diagnosis::verdict::{Conclusion, Verdict};
 use mindgap_foundations::counter::Counter;
 use mindgap_foundations::error::{Error, Result};
 use mindgap_foundations::executor::{self, Executor};
@@ -104,23 +104,21 @@ fn of_case(bench: &Bench, number: usize, calibrations: &[Calibration]) -> Result
     Ok(calibrations.iter().filter_map(of).collect())
 }
 
-/// Returns the outcome of a case whose comparison is `found`, under a calibration.
-fn judged(case: &Case, trained_on: Option<f64>, found: &Comparison, calibration: &Calibration) -> Ending {
+/// Returns the outcome of a case with these confirmed effects, under a calibration.
+fn judged(case: &Case, trained_on: Option<f64>, found: &Confirmed, calibration: &Calibration) -> Ending {
     let method = Method { calibration: *calibration, ..Method::default() };
-    let rows = found.none.log_likelihood.motion.len();
-    let judged = Judged::of(found, &case.logs.robot, &method.calibration_for(rows, trained_on));
+    let rows = found.chosen.scores.rows().len();
+    let calibration = method.calibration_for(rows, trained_on);
+    let Conclusion { verdict, effects } = Conclusion::of(found, &case.logs.robot, &calibration);
     let in_table = case.effects.iter().all(|active| active.effect.in_table());
-    let (is_null, is_unknown) = (case.effects.is_empty(), matches!(judged, Judged::Unknown));
-    let first = match &judged {
-        Judged::Known { effects } | Judged::PartlyKnown { effects } => effects.first().map(|effect| effect.id),
-        Judged::NoGap | Judged::Unknown => None,
-    };
+    let (is_null, is_unknown) = (case.effects.is_empty(), verdict == Verdict::Unknown);
+    let first = effects.first().map(|effect| effect.id);
     let is_there = first.is_some_and(|id| case.effects.iter().any(|active| active.effect.id() == id));
     Ending {
-        false_alarm: is_null && !matches!(judged, Judged::NoGap),
+        false_alarm: is_null && verdict != Verdict::NoGap,
         named: in_table && is_there,
         false_unknown: !is_null && in_table && is_unknown,
-        unknown: !in_table && matches!(judged, Judged::Unknown | Judged::PartlyKnown { .. }),
+        unknown: !in_table && matches!(verdict, Verdict::Unknown | Verdict::PartlyKnown),
         wrong: first.is_some() && !is_there,
     }
 }

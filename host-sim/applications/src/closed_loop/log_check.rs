@@ -130,7 +130,7 @@ impl LogCheck<'_> {
     /// Checks for steps that are physically impossible.
     fn check_frame(&self, logs: &Logs) -> Result<()> {
         let Some(motion) = Baseline::learned(self.simulator)?.motion else { return Ok(()) };
-        let observations = Observations::of(logs, None);
+        let observations = Observations::of(logs, Some(&motion), None);
         let effects = EffectChain::of(&self.simulator.added, &self.simulator.robot);
         let free = logs.runs.first().map_or(0, |run| self.free_rows(run));
         for row in observations.rows.iter().filter(|row| row.at + 1 < free) {

@@ -10,7 +10,7 @@ use super::groups::groups;
 use super::outliers::{Outlier, outliers};
 use super::spread::{RoundedSpread, Spread};
 use super::tally::{Refused, Tally};
-use mindgap_diagnosis::diagnosis::Verdict;
+use mindgap_diagnosis::verdict::Verdict;
 use mindgap_foundations::statistics::rounding;
 
 /// Version of the JSON.

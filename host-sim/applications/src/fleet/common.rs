@@ -74,7 +74,7 @@ mod tests {
     use super::*;
     use crate::fleet::robot::{Cause, Robot};
     use mindgap_built_in_robot::default_robot;
-    use mindgap_diagnosis::diagnosis::Verdict;
+    use mindgap_diagnosis::verdict::Verdict;
     use mindgap_models::effects::CATALOGUE;
     use mindgap_models::effects::parameter::Setting;
 

@@ -147,7 +147,7 @@ fn nearest(point: &[f64], middles: &[Point]) -> (usize, f64) {
 mod tests {
     use super::*;
     use crate::fleet::robot::Robot;
-    use mindgap_diagnosis::diagnosis::Verdict;
+    use mindgap_diagnosis::verdict::Verdict;
     use mindgap_models::effects::CATALOGUE;
 
     /// Returns robots whose budgets scatter around these, in turn.

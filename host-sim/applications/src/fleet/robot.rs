@@ -2,9 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use mindgap_diagnosis::diagnosis::Verdict;
-use mindgap_diagnosis::explain::NamedEffect;
 use mindgap_diagnosis::request::Answered;
+use mindgap_diagnosis::verdict::{NamedEffect, Verdict};
 use mindgap_models::effects::parameter::Settings;
 
 /// The summary of a robot of a fleet.
@@ -56,13 +55,13 @@ impl Robot {
         };
         Robot {
             measures: logs.robot,
-            verdict: diagnosis.verdict(),
+            verdict: diagnosis.verdict,
             runs: logs.runs.len(),
             rows: logs.rows(),
-            gap_nats: diagnosis.reduction().map(|reduction| reduction.whole.before),
-            closed: diagnosis.reduction().map(|reduction| reduction.whole.reducible_closed),
-            budget: diagnosis.budget().iter().map(|part| (part.id.clone(), part.share, part.ci95)).collect(),
-            effects: diagnosis.effects().iter().map(cause).collect(),
+            gap_nats: diagnosis.reduction.as_ref().map(|reduction| reduction.whole.before),
+            closed: diagnosis.reduction.as_ref().map(|reduction| reduction.whole.reducible_closed),
+            budget: diagnosis.budget.iter().map(|part| (part.id.clone(), part.share, part.ci95)).collect(),
+            effects: diagnosis.effects.iter().map(cause).collect(),
             untestable: diagnosis.untestable.iter().map(|id| (*id).into()).collect(),
         }
     }

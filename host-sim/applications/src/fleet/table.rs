@@ -13,7 +13,7 @@ use parquet::file::writer::{SerializedFileWriter, SerializedRowGroupWriter};
 use parquet::schema::parser::parse_message_type;
 
 use super::robot::Robot;
-use mindgap_diagnosis::diagnosis::Verdict;
+use mindgap_diagnosis::verdict::Verdict;
 use mindgap_foundations::error::{Error, Result};
 
 /// Number of rows per row group.

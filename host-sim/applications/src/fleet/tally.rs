@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use super::robot::Robot;
 use mindgap_diagnosis::budget::{SCATTER, UNEXPLAINED};
-use mindgap_diagnosis::diagnosis::Verdict;
+use mindgap_diagnosis::verdict::Verdict;
 use mindgap_models::effects::Effect;
 
 /// Running statistics of a fleet.

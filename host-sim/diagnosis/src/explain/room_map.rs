@@ -1,20 +1,19 @@
-//! Where in the room the gap lies.
+//! Map of the gap over the floor.
 
 use glam::DVec2;
 use serde::Serialize;
 
-use super::Judged;
 use super::strata::excess;
-use crate::channel::Channel;
-use crate::compare::Comparison;
+use crate::confirm::Confirmed;
 use crate::fit::FitContext;
+use crate::verdict::Verdict;
 
-/// The gap over the floor, in squares.
+/// The gap by squares of the floor.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct RoomMap {
     /// Side of a square, cm.
     pub side_cm: f64,
-    /// The squares in which the robot was, row by row from below.
+    /// The squares that the robot visited, row by row from the bottom.
     pub squares: Vec<Square>,
 }
 
@@ -25,28 +24,22 @@ pub struct Square {
     pub x_cm: f64,
     /// Its lower left corner, cm.
     pub y_cm: f64,
-    /// Rows of the logs in it.
+    /// Number of logged rows in it.
     pub rows: usize,
-    /// By how many nats each of them would be likelier.
+    /// Mean gap of these rows, nats.
     pub nats: f64,
 }
 
-/// Squares along the longer side of what was driven over.
+/// Number of squares along the longer side of the visited area.
 const SQUARES: f64 = 12.0;
 
-/// The map of a gap; none where there is no gap or nothing was tracked.
-pub fn room_map(found: &Comparison, judged: &Judged, context: &FitContext) -> Option<RoomMap> {
-    if matches!(judged, Judged::NoGap) {
+/// Returns the map of a gap, or `None` if there is no gap.
+pub fn room_map(found: &Confirmed, verdict: Verdict, context: &FitContext) -> Option<RoomMap> {
+    if verdict == Verdict::NoGap {
         return None;
     }
-    let known = !matches!(judged, Judged::Unknown);
-    let rows = &context.observations.rows;
-    let mut nats = vec![0.0; rows.len()];
-    for channel in Channel::ALL {
-        let excess = excess(found, known, channel, context);
-        nats.iter_mut().zip(excess).for_each(|(sum, excess)| *sum += excess);
-    }
-    let places: Vec<(DVec2, f64)> = rows.iter().map(|row| row.context.pose.position_cm).zip(nats).collect();
+    let positions = context.rows.rows.iter().map(|row| row.context.pose.position_cm);
+    let places: Vec<(DVec2, f64)> = positions.zip(excess(found, verdict).by_row()).collect();
     in_squares(&places)
 }
 
@@ -75,17 +68,17 @@ mod tests {
     use super::*;
 
     #[test]
-    fn squares_hold_the_mean_of_what_lies_in_them() {
+    fn square_has_the_mean_gap_of_its_rows() {
         let at = |x: f64, y: f64| DVec2::new(x, y);
         let map = in_squares(&[(at(0.0, 0.0), 1.0), (at(3.0, 9.0), 2.0), (at(115.0, 1.0), -4.0)]).expect("places");
         assert_eq!(map.side_cm, 10.0);
-        let told: Vec<_> = map.squares.iter().map(|s| (s.x_cm, s.y_cm, s.rows, s.nats)).collect();
-        assert_eq!(told, [(0.0, 0.0, 2, 1.5), (110.0, 0.0, 1, -4.0)]);
+        let squares: Vec<_> = map.squares.iter().map(|s| (s.x_cm, s.y_cm, s.rows, s.nats)).collect();
+        assert_eq!(squares, [(0.0, 0.0, 2, 1.5), (110.0, 0.0, 1, -4.0)]);
         assert_eq!(in_squares(&[]), None);
     }
 
     #[test]
-    fn a_robot_that_stands_has_one_square() {
+    fn standing_robot_has_one_square() {
         let map = in_squares(&[(DVec2::splat(7.5), 1.0); 3]).expect("places");
         assert_eq!((map.side_cm, map.squares.len(), map.squares[0].rows), (1.0, 1, 3));
     }

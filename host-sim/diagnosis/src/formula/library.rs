@@ -1,30 +1,30 @@
-//! The terms that a formula may consist of: factors that a roboticist would write down, and the products of two.
+//! The terms that a formula may contain: simple factors and products of two.
 
 use std::sync::LazyLock;
 
 use mindgap_models::effects::own::expression::Expression;
 use mindgap_models::effects::own::variables::{Circumstances, Stage};
 
-/// A term at the rows of logs.
+/// A term with its values.
 pub struct Term {
     /// As an expression.
     pub text: String,
-    /// The units of its factors, those without one left out.
+    /// The units of its factors that have one.
     pub units: Vec<&'static str>,
     /// Number of factors.
     pub factors: usize,
-    /// Its value at each row.
+    /// Its value for each row.
     pub values: Vec<f64>,
 }
 
-/// A quantity as an expression, and its unit.
+/// A factor as an expression, and its unit.
 struct Factor {
     text: &'static str,
     unit: &'static str,
     expression: Expression,
 }
 
-/// What motion may follow: the motion that is predicted, whether there is any, what changes of it, time, heading, place.
+/// Factors of motion: the predicted motion, its sign, its change, time, heading, and position.
 const MOTION: &[(&str, &str)] = &[
     ("1", ""),
     ("forward_cm", "cm"),
@@ -43,7 +43,7 @@ const MOTION: &[(&str, &str)] = &[
     ("(x_cm - middle_x_cm)", "cm"),
     ("(y_cm - middle_y_cm)", "cm"),
 ];
-/// What readings may follow: distance and incidence, time, heading, place.
+/// Factors of readings: distance and incidence, time, heading, and position.
 const READING: &[(&str, &str)] = &[
     ("1", ""),
     ("distance_cm", "cm"),
@@ -59,7 +59,7 @@ const READING: &[(&str, &str)] = &[
 static MOTION_FACTORS: LazyLock<Vec<Factor>> = LazyLock::new(|| compiled(MOTION, Stage::Motion));
 static READING_FACTORS: LazyLock<Vec<Factor>> = LazyLock::new(|| compiled(READING, Stage::Reading));
 
-/// A factor that could not be read would be left out; a test reads all.
+/// Compiles factors. One that failed to compile would be left out; a test compiles all.
 fn compiled(table: &[(&'static str, &'static str)], stage: Stage) -> Vec<Factor> {
     let factor = |(text, unit): &(&'static str, &'static str)| {
         Some(Factor { text, unit, expression: Expression::compile(text, &[], stage).ok()? })
@@ -67,7 +67,7 @@ fn compiled(table: &[(&'static str, &'static str)], stage: Stage) -> Vec<Factor>
     table.iter().filter_map(factor).collect()
 }
 
-/// The terms at these rows, factors first; what is not known somewhere counts as nothing there.
+/// Returns all terms with their values, factors first. Unknown values count as zero.
 pub fn terms(stage: Stage, rows: &[Circumstances]) -> Vec<Term> {
     let factors = if stage == Stage::Reading { &READING_FACTORS } else { &MOTION_FACTORS };
     let single = |factor: &Factor| Term {
@@ -77,7 +77,7 @@ pub fn terms(stage: Stage, rows: &[Circumstances]) -> Vec<Term> {
         values: rows.iter().map(|row| factor.expression.value(&[], row).unwrap_or(0.0)).collect(),
     };
     let singles: Vec<Term> = factors.iter().map(single).collect();
-    // A product with one is no product.
+    // Products with the constant one are left out.
     let pairs = (1..singles.len()).flat_map(|i| (i..singles.len()).map(move |j| (i, j)));
     let products: Vec<Term> = pairs.map(|(i, j)| product(&singles[i], &singles[j])).collect();
     singles.into_iter().chain(products).collect()
@@ -97,12 +97,12 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_factor_can_be_read() {
+    fn every_factor_compiles() {
         assert_eq!((MOTION_FACTORS.len(), READING_FACTORS.len()), (MOTION.len(), READING.len()));
     }
 
     #[test]
-    fn factors_come_before_products_and_each_once() {
+    fn factors_come_before_products_without_duplicates() {
         let terms = terms(Stage::Reading, &[]);
         let n = READING.len();
         assert_eq!(terms.len(), n + (n - 1) * n / 2);

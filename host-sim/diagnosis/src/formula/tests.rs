@@ -5,10 +5,11 @@ use super::*;
 use crate::test_support::*;
 use mindgap_foundations::geometry::Pose;
 use mindgap_foundations::random::generator;
+use mindgap_learning::evaluation::observations::Observations;
 
-/// Blocks of steps under random commands, half of them straight, with noise of the usual scatter and the forward error
+/// Makes blocks of steps under random commands, half of them straight, with the usual noise and the forward error
 /// `law(forward_cm, turn_rad)`.
-fn driven_by(seed: u64, blocks: usize, law: fn(f64, f64) -> f64) -> Observations {
+fn random_steps(seed: u64, blocks: usize, law: fn(f64, f64) -> f64) -> Observations {
     let draws: Vec<(f64, f64, f64, [f64; 3])> = {
         let mut rng = generator(seed, &[]);
         (0..blocks * ROWS)
@@ -20,7 +21,7 @@ fn driven_by(seed: u64, blocks: usize, law: fn(f64, f64) -> f64) -> Observations
                     mean,
                     if straight { 0.0 } else { half },
                     heading,
-                    SCATTER.map(|sd| sd * rng.sample::<f64, _>(StandardNormal)),
+                    NOISE.map(|sd| sd * rng.sample::<f64, _>(StandardNormal)),
                 )
             })
             .collect()
@@ -38,25 +39,26 @@ fn driven_by(seed: u64, blocks: usize, law: fn(f64, f64) -> f64) -> Observations
 const ROWS: usize = 60;
 const BLOCKS: usize = 16;
 
-/// What explains these rows beyond no effect, confirmed on four blocks of others.
+/// Searches a formula for the gap without any effect, confirmed on four other blocks.
 fn searched(seed: u64, law: fn(f64, f64) -> f64, confirming: fn(f64, f64) -> f64) -> Option<Formula> {
-    let (baseline, rows) = (baseline(), driven_by(seed, BLOCKS, law));
-    let context = FitContext::new(&baseline, &rows, METHOD);
-    let found = Comparison::given(&[], &context);
-    search(&found, &context, Some(&driven_by(seed + 1000, 4, confirming)))
+    let baseline = baseline();
+    let rows = identification(&baseline, random_steps(seed, BLOCKS, law));
+    let hold_out = HoldOut::new(&baseline, random_steps(seed + 1000, 4, confirming));
+    let context = FitContext::new(&rows, METHOD);
+    search(&Confirmed::given(&[], &context), &context, Some(&hold_out))
 }
 
 const NOTHING: fn(f64, f64) -> f64 = |_, _| 0.0;
 const LOSS_IN_TURNS: fn(f64, f64) -> f64 = |_, turn_rad| -6.0 * turn_rad.abs();
 
 #[test]
-fn a_law_is_found_with_its_form_and_its_coefficient() {
+fn formula_is_found_with_its_coefficient() {
     let formula = searched(1, LOSS_IN_TURNS, LOSS_IN_TURNS).expect("a formula");
     assert_eq!(formula.channel, Channel::Forward);
     assert!(formula.text.starts_with('-') && formula.text.ends_with(" * abs(turn_rad)"), "{}", formula.text);
     assert_eq!(formula.definition.change.forward_cm.as_deref(), Some("forward_cm + k1 * abs(turn_rad)"));
     assert_eq!(formula.definition.parameters[0].unit, "cm/rad");
-    // A thousand rows of 1 cm of scatter and a mean square turn of about 0.1 rad² fix it to about 0.15 cm/rad.
+    // A thousand rows with noise of 1 cm and a mean square turn of about 0.1 rad² give a standard error of about 0.15 cm/rad.
     let [loss] = formula.fitted.values.as_slice() else { panic!("one parameter") };
     assert!((loss + 6.0).abs() < 0.5, "{loss}");
     let held_out: f64 = formula.gains_held_out.as_ref().expect("runs held out").iter().sum();
@@ -64,15 +66,15 @@ fn a_law_is_found_with_its_form_and_its_coefficient() {
 }
 
 #[test]
-fn a_product_is_found_too() {
+fn product_is_found() {
     let formula = searched(2, |f, w| -0.6 * f * w.abs(), |f, w| -0.6 * f * w.abs()).expect("a formula");
     let product = ["forward_cm * abs(turn_rad)", "abs(forward_cm) * abs(turn_rad)"];
     assert!(product.iter().any(|product| formula.text.ends_with(product)), "{}", formula.text);
 }
 
-/// Readings that are 4 cm too long toward +x and as much too short toward -x.
+/// Readings are 4 cm too long towards +x and 4 cm too short towards -x.
 #[test]
-fn readings_have_formulas_too() {
+fn formula_of_readings_is_found() {
     let rows = |seed: u64, blocks: usize| {
         let mut rng = generator(seed, &[]);
         let draws: Vec<(f64, f64)> =
@@ -83,33 +85,34 @@ fn readings_have_formulas_too() {
             Made { pose: Pose::new(150.0, 100.0, heading), echo_off_cm, ..Made::default() }
         })
     };
-    let (baseline, identification) = (baseline_with_sonar(), rows(5, BLOCKS));
-    let context = FitContext::new(&baseline, &identification, METHOD);
-    let found = Comparison::given(&[], &context);
-    let formula = search(&found, &context, Some(&rows(6, 4))).expect("a formula");
+    let baseline = baseline_with_sonar();
+    let found_on = identification(&baseline, rows(5, BLOCKS));
+    let context = FitContext::new(&found_on, METHOD);
+    let hold_out = HoldOut::new(&baseline, rows(6, 4));
+    let formula = search(&Confirmed::given(&[], &context), &context, Some(&hold_out)).expect("a formula");
     assert_eq!(formula.channel, Channel::EchoValue);
-    // A slanted wall's nearest ray makes a little difference besides.
+    // The nearest ray to an oblique wall adds a small term.
     let first = formula.text.split(" + ").next().expect("a term");
     assert!(first.ends_with(" * cos(heading_rad)"), "{}", formula.text);
-    // A thousand readings that scatter by a centimetre fix it to 0.05 cm.
+    // A thousand readings with noise of 1 cm give a standard error of 0.05 cm.
     assert!((formula.fitted.values[0] - 4.0).abs() < 0.2, "{:?}", formula.fitted.values);
 }
 
 #[test]
-fn where_nothing_is_left_over_there_is_none() {
+fn noise_has_no_formula() {
     for seed in 10..30 {
         assert!(searched(seed, NOTHING, NOTHING).is_none(), "{seed}");
     }
 }
 
 #[test]
-fn what_the_runs_held_out_do_not_show_is_none() {
+fn formula_that_held_out_runs_refute_is_dropped() {
     assert!(searched(1, LOSS_IN_TURNS, NOTHING).is_none());
 }
 
-/// The file of a formula is one of own effects, and leads to the same effect.
+/// The file of a formula is read as a file of custom effects.
 #[test]
-fn a_formula_is_an_own_effect() {
+fn formula_is_a_custom_effect() {
     let formula = searched(1, LOSS_IN_TURNS, LOSS_IN_TURNS).expect("a formula");
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("formula.toml");
@@ -121,18 +124,18 @@ fn a_formula_is_an_own_effect() {
 }
 
 #[test]
-fn its_share_is_that_of_what_could_be_gained() {
+fn share_is_that_of_the_reducible_gap() {
     let formula = searched(1, LOSS_IN_TURNS, LOSS_IN_TURNS).expect("a formula");
     let gains = formula.gains_held_out.clone().expect("runs held out");
     let twice: Vec<f64> = gains.iter().map(|gain| 2.0 * gain).collect();
     let Statement { share, ci95, .. } = formula.stated(&twice, 1);
     assert!((share - 0.5).abs() < 1e-9 && (ci95[0] - 0.5).abs() < 1e-9 && (ci95[1] - 0.5).abs() < 1e-9);
-    // It cannot explain more than there is.
+    // It cannot explain more than the whole gap.
     assert_eq!(formula.stated(&vec![0.0; gains.len()], 1).share, 1.0);
 }
 
 #[test]
-fn sums_and_units_are_written_as_one_reads_them() {
+fn sums_and_units_are_written_for_people() {
     let term = |text: &str, units: &[&'static str]| Term {
         text: text.into(),
         units: units.to_vec(),

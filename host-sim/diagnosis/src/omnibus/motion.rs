@@ -1,175 +1,136 @@
-//! What the rest of a motion channel follows.
+//! The regression of a motion channel's residual.
 
-use super::basis::Circumstances;
-use super::nearby::{self, Nearby, Spot};
-use super::{Foretold, ResidualFit, Rows, Steps, beyond};
+use super::basis::Covariates;
+use super::kernel::{self, KernelRegression, Spot};
+use super::{Design, Likelihood, Regression, Steps};
 use crate::channel::Channel;
+use crate::epistemic_error::EpistemicError;
 use crate::fit::{FitContext, Fitted};
-use crate::own_error::FARTHEST;
-use crate::residual_law::{fitted_scatter, log_density};
+use crate::motion_uncertainty::FARTHEST;
+use crate::residuals::{log_likelihoods, subtract, usual_noise};
+use crate::sample::{RowSet, Sample};
 use mindgap_foundations::motion::Motion;
 use mindgap_foundations::statistics::summary::root_mean_square;
-use mindgap_learning::evaluation::observations::{Observation, Observations};
-use mindgap_learning::evaluation::predictions::{increment, residual};
+use mindgap_learning::evaluation::observations::Observation;
+use mindgap_learning::evaluation::predictions::increment;
 use mindgap_models::effects::StepContext;
 use mindgap_models::effects::chain::EffectChain;
-use mindgap_models::simulator::baseline::{Baseline, MotionModel};
+use mindgap_models::simulator::baseline::MotionModel;
 
-/// The density of a residual.
-#[derive(Clone)]
-pub struct Law {
-    /// The place among forward, lateral and turn.
+/// Noise of a motion channel that varies over the room.
+pub struct LocalNoise {
+    /// Index among forward, lateral and turn.
     pub axis: usize,
-    /// Standard deviation where nothing is different, cm or rad.
-    pub scatter: f64,
-    /// By how much more than one the variance differs from that near a spot: where a floor holds a robot back now and then,
-    /// steps scatter more than elsewhere, whatever is expected of them.
-    further_variance: Nearby,
-    /// Nowhere do steps scatter less than the simulator's: that it is sure of less than it could be is no gap.
-    least_share: f64,
-    /// The share of the scatter of the rows that it was fitted on, by the fit to other runs.
-    own_shares: Vec<f64>,
-    usual_way_cm: f64,
+    /// Usual standard deviation, cm or rad.
+    pub noise: f64,
+    /// Root mean square of the forward motion that is expected per step.
+    pub typical_step_cm: f64,
+    /// Relative variance minus one by place: where a floor holds a robot back now and then, steps have more noise than
+    /// elsewhere, whatever is expected of them.
+    excess_variance: KernelRegression,
+    /// The simulator's noise over the usual one. No place has less: a simulator that is less certain than it could be is no gap.
+    least_ratio: f64,
+    /// Relative standard deviation of each identification row by the other folds.
+    fitted_ratios: Vec<f64>,
 }
 
-/// The rest of a motion channel.
-pub fn fit(channel: Channel, axis: usize, beneath: &Fitted, context: &FitContext) -> ResidualFit {
-    let effects = beneath.effects();
-    let scatter = beneath.hypothesis.scatter(context.baseline, context.observations, &beneath.values)[axis];
-    let (baseline, rows) = (context.baseline, context.observations);
-    let residuals = residuals(axis, &effects, baseline, rows);
-    let usual_way_cm = usual_way_cm(&effects, baseline, rows);
-    let covariates = covariates(&effects, baseline, rows, usual_way_cm);
-    let of_axis = Rows::of(&covariates, |i| residuals[i].is_some(), |i| rows.rows[i].fold);
-    let (without, own, own_error) = without_own_error(channel, axis, beneath, &residuals, context);
-    let residuals = beyond(&residuals, &own);
-    let off = |i: usize| residuals[i].unwrap_or(0.0) / scatter;
-    // Of what repeats a row says less.
-    let response = |i: usize, prediction: f64, share: f64| {
-        let off = (off(i) - prediction).clamp(-FARTHEST * share, FARTHEST * share);
+/// Fits the residual of `underneath` in a motion channel.
+pub fn regression(channel: Channel, axis: usize, underneath: Fitted, context: &FitContext) -> Regression {
+    let (effects, rows, noise) = (underneath.effects(), context.rows, underneath.noise[axis]);
+    let residuals = residuals(axis, &effects, rows);
+    let typical_step_cm = typical_step_cm(&effects, rows);
+    let covariates = covariates(&effects, rows, typical_step_cm);
+    let design = Design::of(&covariates, |i| residuals[i].is_some(), |i| rows.rows[i].fold);
+    let epistemic_error = EpistemicError::of(channel, axis, &underneath, &residuals, context);
+    let known = epistemic_error.as_ref().map_or_else(|| vec![0.0; residuals.len()], |error| error.predictions.clone());
+    let residuals = subtract(&residuals, &known);
+    let relative = |i: usize| residuals[i].unwrap_or(0.0) / noise;
+    let response = |i: usize, prediction: f64, ratio: f64| {
+        let off = (relative(i) - prediction).clamp(-FARTHEST * ratio, FARTHEST * ratio);
         prediction + rows.rows[i].motion_weight[axis] * off
     };
-    let (nearby, told) = of_axis.nearby(|i, prediction| response(i, prediction, 1.0));
-    // Steps that scatter more say less of what steps follow.
-    let (_, shares) = scatter_nearby(&of_axis, |place, i| off(i) - told[place]);
-    let (surface, predictions) = of_axis.surface((nearby, told), &shares, scatter, response);
-    let rest = beyond(&residuals, &predictions);
-    let (further_variance, shares) = scatter_nearby(&of_axis, |_, i| rest[i].unwrap_or(0.0) / scatter);
-    let shares = of_axis.of_all(&shares, 1.0);
-    let least = baseline.motion.as_ref().map_or(1.0, |drive| drive.scatter().into_array()[axis]);
-    let scatter = even_scatter(axis, rows, &rest, &shares, least);
-    let least_share = least / scatter;
-    let own_shares = shares.into_iter().map(|share| share.max(least_share)).collect();
-    let law = Law { axis, scatter, further_variance, own_shares, least_share, usual_way_cm };
-    ResidualFit {
+    let (by_place, placed) = design.by_place(|i, prediction| response(i, prediction, 1.0));
+    // Steps with more noise carry less weight in the regression.
+    let (_, ratios) = noise_by_place(&design, |index, i| relative(i) - placed[index]);
+    let (surface, predictions) = design.surface((by_place, placed), &ratios, noise, response);
+    let residuals = subtract(&residuals, &predictions);
+    let (excess_variance, ratios) = noise_by_place(&design, |_, i| residuals[i].unwrap_or(0.0) / noise);
+    let ratios = design.among_all(&ratios, 1.0);
+    let least = rows.baseline.motion.as_ref().map_or(1.0, |drive| drive.scatter().into_array()[axis]);
+    let noise = usual_noise(axis, rows, &residuals, &ratios, least);
+    let least_ratio = least / noise;
+    let fitted_ratios: Vec<f64> = ratios.into_iter().map(|ratio| ratio.max(least_ratio)).collect();
+    let column = log_likelihoods(axis, noise, rows, &residuals, &fitted_ratios);
+    Regression {
         channel,
-        held_out: law.terms(law.scatter, rows, &rest, &law.own_shares),
-        without,
-        own_error,
+        epistemic_error,
+        cross_validated: underneath.scores.clone().with(channel, &column),
+        underneath,
         surface,
-        predictions: own.iter().zip(&predictions).map(|(own, p)| own + p).collect(),
-        law: super::Law::Motion(law),
-        effects,
+        predictions: known.iter().zip(&predictions).map(|(known, p)| known + p).collect(),
+        likelihood: Likelihood::Motion(LocalNoise {
+            axis,
+            noise,
+            typical_step_cm,
+            excess_variance,
+            least_ratio,
+            fitted_ratios,
+        }),
     }
 }
 
-/// The log-likelihood of each row by the fit beneath once what the simulator does not know of its own motion is taken away, and
-/// what that is, cm or rad; nothing where rows are no likelier without it.
-fn without_own_error(
-    channel: Channel,
-    axis: usize,
-    beneath: &Fitted,
-    residuals: &[Option<f64>],
-    context: &FitContext,
-) -> (Vec<f64>, Vec<f64>, Option<Foretold>) {
-    let rows = context.observations;
-    let with = beneath.log_likelihood.channel(channel);
-    let foretold = || {
-        let own = context.own_errors.as_ref()?.foretold(axis, &rows.rows, residuals)?;
-        let (rest, alike) = (beyond(residuals, &own), vec![1.0; rows.rows.len()]);
-        let least = context.baseline.motion.as_ref()?.scatter().into_array()[axis];
-        let scatter = even_scatter(axis, rows, &rest, &alike, least);
-        Some((terms(axis, scatter, rows, &rest, &alike), own))
-    };
-    let nats = |without: &[f64]| without.iter().sum::<f64>() - with.iter().sum::<f64>();
-    match foretold().map(|(without, own)| (nats(&without), without, own)) {
-        Some((nats, without, own)) if nats > 0.0 => {
-            let root_mean_square = root_mean_square(own.iter().copied());
-            (without, own, Some(Foretold { nats, root_mean_square }))
-        }
-        _ => (with, vec![0.0; rows.rows.len()], None),
-    }
-}
-
-/// The log-likelihood of each row where this is the scatter, of which it has a share, and the rest is what predictions leave.
-fn terms(axis: usize, scatter: f64, rows: &Observations, rest: &[Option<f64>], shares: &[f64]) -> Vec<f64> {
-    let term = |((row, rest), share): ((&Observation, &Option<f64>), &f64)| {
-        rest.map_or(0.0, |r| row.motion_weight[axis] * log_density(axis, r, share * scatter))
-    };
-    rows.rows.iter().zip(rest).zip(shares).map(term).collect()
-}
-
-/// The scatter of rows of which each has its share of it, `least` or more, where the rest is what predictions leave.
-fn even_scatter(axis: usize, rows: &Observations, rest: &[Option<f64>], shares: &[f64], least: f64) -> f64 {
-    let even = rest.iter().zip(shares).zip(&rows.rows);
-    let even = even.filter_map(|((rest, share), row)| Some([(*rest)? / share, row.motion_weight[axis]]));
-    fitted_scatter(axis, &even.collect::<Vec<[f64; 2]>>(), least)
-}
-
-/// How steps scatter near a spot, by what is `left` of each place and row in units of the usual scatter: by how much more
-/// than one its variance is, and each row's share of the scatter by the fit to other runs.
-fn scatter_nearby(rows: &Rows, left: impl Fn(usize, usize) -> f64) -> (Nearby, Vec<f64>) {
+/// Fits the relative variance by place to `relative(index, row)`, the residuals over the usual noise. Also returns each used row's
+/// relative standard deviation by the other folds.
+fn noise_by_place(design: &Design, relative: impl Fn(usize, usize) -> f64) -> (KernelRegression, Vec<f64>) {
     let spots: Vec<Option<Spot>> =
-        rows.spots.iter().map(|spot| spot.map(|spot| Spot::usual(spot.position_cm))).collect();
-    let further = |place: usize, _| {
-        let left = left(place, rows.used[place]).clamp(-FARTHEST, FARTHEST);
-        left * left - 1.0
+        design.spots.iter().map(|spot| spot.map(|spot| Spot::unweighted(spot.position_cm))).collect();
+    let excess = |index: usize, _| {
+        let relative = relative(index, design.used[index]).clamp(-FARTHEST, FARTHEST);
+        relative * relative - 1.0
     };
-    let (nearby, told) = nearby::fit(&spots, &rows.neighbours, &rows.folds, further);
-    (nearby, told.into_iter().map(share).collect())
+    let (regression, excess) = kernel::fit(&spots, &design.neighbours, &design.folds, excess);
+    (regression, excess.into_iter().map(noise_ratio).collect())
 }
 
-/// Of a standard deviation, where the variance is so much more than one. What [`nearby`] tells of squares is more than minus
-/// one, since its prior is worth some rows.
-fn share(further_variance: f64) -> f64 {
-    (1.0 + further_variance).sqrt()
+/// Returns the relative standard deviation. A kernel regression of squares exceeds minus one since its prior has weight.
+fn noise_ratio(excess_variance: f64) -> f64 {
+    (1.0 + excess_variance).sqrt()
 }
 
-/// Logged minus predicted.
-fn residuals(axis: usize, effects: &EffectChain, baseline: &Baseline, rows: &Observations) -> Vec<Option<f64>> {
-    let Some(drive) = &baseline.motion else { return vec![None; rows.rows.len()] };
-    rows.rows.iter().map(|row| residual(effects, drive, row).map(|r| r[axis])).collect()
+/// Returns logged minus predicted motion along an axis.
+pub fn residuals(axis: usize, effects: &EffectChain, sample: &Sample) -> Vec<Option<f64>> {
+    sample.residuals(effects).into_iter().map(|r| r.map(|r| r[axis])).collect()
 }
 
-/// Root mean square of what is expected of steps; one where nothing is.
-fn usual_way_cm(effects: &EffectChain, baseline: &Baseline, rows: &Observations) -> f64 {
-    let Some(drive) = &baseline.motion else { return 1.0 };
-    let ways_cm = rows.rows.iter().map(|row| increment(effects, drive, row).forward);
-    let usual_cm = root_mean_square(ways_cm);
-    if usual_cm > 0.0 { usual_cm } else { 1.0 }
+/// Returns the root mean square of the expected forward motion, or one if none is expected.
+fn typical_step_cm(effects: &EffectChain, sample: &Sample) -> f64 {
+    let Some(drive) = &sample.baseline.motion else { return 1.0 };
+    let forward_cm = sample.rows.iter().map(|row| increment(effects, drive, row).forward);
+    let typical_cm = root_mean_square(forward_cm);
+    if typical_cm > 0.0 { typical_cm } else { 1.0 }
 }
 
-/// The covariates of every step of every row.
-fn covariates(effects: &EffectChain, baseline: &Baseline, rows: &Observations, usual_way_cm: f64) -> Vec<Steps> {
-    let Some(drive) = &baseline.motion else { return vec![Vec::new(); rows.rows.len()] };
-    rows.rows.iter().map(|row| of_row(effects, drive, row, usual_way_cm)).collect()
+/// Returns the covariates of every step of every row.
+pub fn covariates(effects: &EffectChain, sample: &Sample, typical_step_cm: f64) -> Vec<Steps> {
+    let Some(drive) = &sample.baseline.motion else { return vec![Vec::new(); sample.rows.len()] };
+    sample.rows.iter().map(|row| row_covariates(effects, drive, row, typical_step_cm)).collect()
 }
 
-fn of_row(effects: &EffectChain, drive: &MotionModel, row: &Observation, usual_way_cm: f64) -> Steps {
+fn row_covariates(effects: &EffectChain, drive: &MotionModel, row: &Observation, typical_step_cm: f64) -> Steps {
     let predicted = increment(effects, drive, row);
-    let share = 1.0 / (1 + row.then.len()) as f64;
-    let of_step = |step| of_step(step, &predicted, share, usual_way_cm);
-    std::iter::once(&row.context).chain(&row.then).map(of_step).collect()
+    let share = 1.0 / row.steps() as f64;
+    let of_step = |step| step_covariates(step, &predicted, share, typical_step_cm);
+    std::iter::once(&row.context).chain(&row.following_steps).map(of_step).collect()
 }
 
-/// Commands now, before, and two back, whose products with each other make every change of command besides; heading;
-/// time; place; and the motion that is predicted.
-fn of_step(step: &StepContext, predicted: &Motion<f64>, share: f64, usual_way_cm: f64) -> Circumstances {
+/// Returns the commands now, before, and two steps back, whose products include every change of command; heading; time; place;
+/// and the predicted motion.
+fn step_covariates(step: &StepContext, predicted: &Motion<f64>, share: f64, typical_step_cm: f64) -> Covariates {
     let [[left, right], [left_1, right_1], [left_2, right_2], ..] = step.commands;
     let direction = step.pose.direction();
     let position_cm = step.pose.position_cm;
-    let way_cm = share * predicted.forward;
-    let covariates = vec![
+    let forward_cm = share * predicted.forward;
+    let values = vec![
         left,
         right,
         left_1,
@@ -181,35 +142,19 @@ fn of_step(step: &StepContext, predicted: &Motion<f64>, share: f64, usual_way_cm
         step.elapsed_min,
         position_cm.x,
         position_cm.y,
-        way_cm,
+        forward_cm,
         share * predicted.turn,
     ];
-    // What a floor does to a step shows in proportion to its way.
-    Circumstances { covariates, spot: Some(Spot { position_cm, weight: way_cm / usual_way_cm }) }
+    // What a floor does to a step is proportional to its length.
+    Covariates { values, spot: Some(Spot { position_cm, weight: forward_cm / typical_step_cm }) }
 }
 
-impl Law {
-    /// The circumstances of rows, as it was fitted in them.
-    pub fn covariates(&self, effects: &EffectChain, baseline: &Baseline, rows: &Observations) -> Vec<Steps> {
-        covariates(effects, baseline, rows, self.usual_way_cm)
-    }
-
-    /// Logged minus predicted.
-    pub fn residuals(&self, effects: &EffectChain, baseline: &Baseline, rows: &Observations) -> Vec<Option<f64>> {
-        residuals(self.axis, effects, baseline, rows)
-    }
-
-    /// Each row's share of the scatter: of the rows that it was fitted on, by the fit to other runs.
-    pub fn shares(&self, rows: &Observations, is_own: bool) -> Vec<f64> {
-        if is_own {
-            return self.own_shares.clone();
-        }
-        let spot = |row: &Observation| row.then.is_empty().then(|| Spot::usual(row.context.pose.position_cm));
-        rows.rows.iter().map(|row| share(self.further_variance.at(spot(row))).max(self.least_share)).collect()
-    }
-
-    /// The log-likelihood of each row where this is the scatter, and the rest is what predictions leave.
-    pub fn terms(&self, scatter: f64, rows: &Observations, rest: &[Option<f64>], shares: &[f64]) -> Vec<f64> {
-        terms(self.axis, scatter, rows, rest, shares)
+impl LocalNoise {
+    /// Returns each row's noise over the usual noise.
+    pub fn ratios(&self, rows: RowSet) -> Vec<f64> {
+        let RowSet::HeldOut(rows) = rows else { return self.fitted_ratios.clone() };
+        let spot =
+            |row: &Observation| row.following_steps.is_empty().then(|| Spot::unweighted(row.context.pose.position_cm));
+        rows.rows.iter().map(|row| noise_ratio(self.excess_variance.at(spot(row))).max(self.least_ratio)).collect()
     }
 }

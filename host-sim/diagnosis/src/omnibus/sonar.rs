@@ -1,121 +1,120 @@
-//! What the rest of the two sonar channels follows.
+//! The regressions of the two sonar channels.
 
-use super::basis::Circumstances;
-use super::nearby::Spot;
-use super::{Law, ResidualFit, Rows, Steps, Surface};
+use super::basis::Covariates;
+use super::kernel::Spot;
+use super::{Design, Likelihood, Regression, Steps, Surface};
 use crate::channel::Channel;
 use crate::fit::{FitContext, Fitted, MOST_ITERATIONS, TOLERANCE_NATS};
+use crate::sample::Sample;
 use mindgap_foundations::statistics::maximise::{Bounds, climb};
 use mindgap_foundations::statistics::summary::{QUARTILE, median};
-use mindgap_learning::evaluation::observations::{Observation, Observations};
+use mindgap_learning::evaluation::observations::Observation;
 use mindgap_learning::evaluation::predictions::{Faced, facing};
 use mindgap_models::effects::StepContext;
 use mindgap_models::effects::chain::EffectChain;
-use mindgap_models::simulator::baseline::Baseline;
 use mindgap_models::sonar::Perturbation;
 use mindgap_models::sonar::model::FAR_CM;
 
-/// How readings spread about where they are predicted, beyond the simulator.
+/// Noise of readings in addition to the simulator's.
 #[derive(Clone, Copy, Debug)]
 pub struct Spread {
-    /// Further scatter, cm.
-    scatter_cm: f64,
-    /// Chance of a random short reading.
+    /// Standard deviation, cm.
+    noise_cm: f64,
+    /// Probability of a random short reading.
     short: f64,
-    /// Chance of a random reading from beyond what the axis meets.
+    /// Probability of a random reading from beyond what the axis meets.
     long: f64,
 }
 
-/// What the sensor said at each row, and what it should have.
-pub struct Heard<'a> {
+/// The readings of all rows, with what the sensor faces.
+pub struct Readings<'a> {
     rows: Vec<Reading<'a>>,
 }
 
 struct Reading<'a> {
-    /// None where the sensor is not judged.
+    /// `None` if the sensor is not compared.
     faced: Option<Faced<'a>>,
     echo_cm: Option<f64>,
     weight: [f64; 2],
 }
 
-/// Bounds and start of scatter, short and long: the widest that a beam and a room leave any sense to, and near none.
+/// Bounds of noise, short and long readings: the widest that make sense for a beam in a room.
 const BOUNDS: [Bounds; 3] = [Bounds::new(0.0, 10.0), Bounds::new(0.0, 0.5), Bounds::new(0.0, 0.5)];
+/// Start of their fit, close to none.
 const START: [f64; 3] = [0.3, 0.002, 0.002];
-/// The scatter of what is given in whole centimetres is never less: √(1/12) cm.
-const LEAST_SCATTER_CM: f64 = 0.29;
-/// The unit of log-odds of the rays' return: what a yes or no tells of them, largest where each of the nine rays comes
-/// back once in ten times, is 0.52 a squared log-odds, and about one a squared unit.
+/// Standard deviation of rounding to centimetres, √(1/12) cm: readings never have less noise.
+const LEAST_NOISE_CM: f64 = 0.29;
+/// Unit of the log-odds of an echo. The information of a yes or no about them is largest if each of the nine rays returns one
+/// time in ten: 0.52 per squared log-odds, about one per squared unit.
 const LOG_ODDS: f64 = 1.4;
-/// Derivatives are taken over this many of these units: far below one, far above rounding.
+/// Step of numerical derivatives in these units: far below one, far above rounding.
 const DIFFERENCE: f64 = 0.01;
 
-/// Whether there is an echo.
-pub fn rate(beneath: &Fitted, context: &FitContext) -> ResidualFit {
-    let heard = Heard::of(&beneath.effects(), context.baseline, context.observations);
-    let response = |i: usize, prediction: f64| prediction + heard.rows[i].score(prediction);
-    let covariates = covariates(context.observations);
-    let rows = Rows::of(&covariates, |i| heard.rows[i].faced.is_some(), place(context.observations));
-    let (surface, predictions) = rows.evenly(LOG_ODDS, response);
-    let held_out = heard.rates(&predictions);
-    fitted(Channel::EchoRate, beneath, held_out, surface, predictions, Law::EchoRate)
+/// Fits the residual of the echo rate.
+pub fn rate(underneath: Fitted, context: &FitContext) -> Regression {
+    let readings = Readings::of(&underneath.effects(), context.rows);
+    let response = |i: usize, prediction: f64| prediction + readings.rows[i].score(prediction);
+    let covariates = covariates(context.rows);
+    let design = Design::of(&covariates, |i| readings.rows[i].faced.is_some(), place(context.rows));
+    let fitted = design.uniform_surface(LOG_ODDS, response);
+    let column = readings.rates(&fitted.1);
+    regression(Channel::EchoRate, underneath, column, fitted, Likelihood::EchoRate)
 }
 
-/// What is read, and how it spreads.
-pub fn value(beneath: &Fitted, context: &FitContext) -> ResidualFit {
-    let heard = Heard::of(&beneath.effects(), context.baseline, context.observations);
-    let (surface, predictions) = heard.offsets(context.observations);
-    let terms = |at: &[f64]| heard.values(&predictions, &Spread::from(at));
+/// Fits the residual of the readings: a shift, and additional noise.
+pub fn value(underneath: Fitted, context: &FitContext) -> Regression {
+    let readings = Readings::of(&underneath.effects(), context.rows);
+    let fitted = readings.shift(context.rows);
+    let terms = |at: &[f64]| readings.values(&fitted.1, &Spread::from(at));
     let found = climb(&BOUNDS, &START, MOST_ITERATIONS, TOLERANCE_NATS, terms).into_maximum(&BOUNDS, terms);
-    let held_out = (0..context.observations.blocks).flat_map(|block| {
-        let rows = context.observations.of_block(block);
+    let of_block = |block: usize| {
+        let rows = context.rows.of_block(block);
         let spread = Spread::from(&found.without(&BOUNDS, |row| rows.contains(&row)));
-        let value = |i: usize| heard.rows[i].value(predictions[i], &spread);
-        rows.map(value).collect::<Vec<f64>>()
-    });
-    let held_out = held_out.collect();
-    fitted(Channel::EchoValue, beneath, held_out, surface, predictions, Law::EchoValue(Spread::from(&found.at)))
+        rows.map(|i| readings.rows[i].value(fitted.1[i], &spread)).collect::<Vec<f64>>()
+    };
+    let column = (0..context.rows.blocks).flat_map(of_block).collect();
+    regression(Channel::EchoValue, underneath, column, fitted, Likelihood::EchoValue(Spread::from(&found.at)))
 }
 
-/// What is read, and no spread beyond the fit beneath.
-pub fn moved(beneath: &Fitted, context: &FitContext) -> ResidualFit {
-    let heard = Heard::of(&beneath.effects(), context.baseline, context.observations);
-    let (surface, predictions) = heard.offsets(context.observations);
-    let held_out = heard.values(&predictions, &Spread::NONE);
-    fitted(Channel::EchoValue, beneath, held_out, surface, predictions, Law::EchoValue(Spread::NONE))
+/// Fits a shift of the readings, without additional noise.
+pub fn shift(underneath: Fitted, context: &FitContext) -> Regression {
+    let readings = Readings::of(&underneath.effects(), context.rows);
+    let fitted = readings.shift(context.rows);
+    let column = readings.values(&fitted.1, &Spread::NONE);
+    regression(Channel::EchoValue, underneath, column, fitted, Likelihood::EchoValue(Spread::NONE))
 }
 
-fn fitted(
+fn regression(
     channel: Channel,
-    beneath: &Fitted,
-    held_out: Vec<f64>,
-    surface: Surface,
-    predictions: Vec<f64>,
-    law: Law,
-) -> ResidualFit {
-    let without = beneath.log_likelihood.channel(channel);
-    ResidualFit { channel, held_out, without, own_error: None, surface, predictions, law, effects: beneath.effects() }
+    underneath: Fitted,
+    column: Vec<f64>,
+    (surface, predictions): (Surface, Vec<f64>),
+    likelihood: Likelihood,
+) -> Regression {
+    let cross_validated = underneath.scores.clone().with(channel, &column);
+    Regression { channel, epistemic_error: None, underneath, cross_validated, surface, predictions, likelihood }
 }
 
-/// The place of a row: what belongs to a place is judged by others.
-fn place(rows: &Observations) -> impl Fn(usize) -> usize {
-    |i| rows.rows[i].place
+/// Groups rows by place: what belongs to a place is predicted by others.
+fn place(sample: &Sample) -> impl Fn(usize) -> usize {
+    |i| sample.rows[i].place
 }
 
-/// The covariates of every reading.
-pub fn covariates(rows: &Observations) -> Vec<Steps> {
-    rows.rows.iter().map(|row| vec![of_reading(&row.context)]).collect()
+/// Returns the covariates of every reading.
+pub fn covariates(sample: &Sample) -> Vec<Steps> {
+    sample.rows.iter().map(|row| vec![reading_covariates(&row.context)]).collect()
 }
 
-/// Distance and incidence; the commands until the reading; heading; time; and the places of the robot and of what it
-/// faces. Whether there was a reading before is no circumstance: what belongs to the place repeats a row later, when the
-/// robot is still about there.
-fn of_reading(step: &StepContext) -> Circumstances {
+/// Returns distance and incidence angle; the commands until the reading; heading; time; and the places of the robot and of what
+/// it faces. Whether there was a reading before is left out: what belongs to a place repeats at the next row, when the robot is
+/// still near it.
+fn reading_covariates(step: &StepContext) -> Covariates {
     let [distance_cm, incidence_rad] = step.faced.unwrap_or([FAR_CM, 0.0]);
     let distance_cm = distance_cm.min(FAR_CM);
     let [_, [left, right], ..] = step.commands;
     let (position_cm, direction) = (step.pose.position_cm, step.pose.direction());
     let faced_cm = position_cm + direction * distance_cm;
-    let covariates = vec![
+    let values = vec![
         distance_cm,
         incidence_rad,
         left,
@@ -128,22 +127,21 @@ fn of_reading(step: &StepContext) -> Circumstances {
         faced_cm.x,
         faced_cm.y,
     ];
-    Circumstances { covariates, spot: step.faced.map(|_| Spot::usual(faced_cm)) }
+    Covariates { values, spot: step.faced.map(|_| Spot::unweighted(faced_cm)) }
 }
 
-impl<'a> Heard<'a> {
-    /// With effects.
-    pub fn of(effects: &EffectChain, baseline: &Baseline, observations: &'a Observations) -> Self {
-        let judged = baseline.sonar.is_some();
+impl<'a> Readings<'a> {
+    /// Pairs readings with what the sensor faces under these effects.
+    pub fn of(effects: &EffectChain, sample: &'a Sample) -> Self {
+        let is_compared = sample.baseline.sonar.is_some();
         let reading = |row: &'a Observation| {
-            let faced = if judged { facing(effects, observations, row) } else { None };
-            let Observation { echo_cm, echo_weight: weight, .. } = *row;
-            Reading { faced, echo_cm, weight }
+            let faced = if is_compared { facing(effects, sample, row) } else { None };
+            Reading { faced, echo_cm: row.echo_cm, weight: row.echo_weight }
         };
-        Heard { rows: observations.rows.iter().map(reading).collect() }
+        Readings { rows: sample.rows.iter().map(reading).collect() }
     }
 
-    /// The log-likelihood of an echo or none at each row, the log-odds of every ray moved by the predictions.
+    /// Returns the log-likelihood of an echo or none at each row, with the log-odds of every ray shifted by the predictions.
     pub fn rates(&self, predictions: &[f64]) -> Vec<f64> {
         let rate = |(reading, prediction): (&Reading, &f64)| {
             let Some(none) = reading.none(*prediction) else { return 0.0 };
@@ -152,62 +150,61 @@ impl<'a> Heard<'a> {
         self.rows.iter().zip(predictions).map(rate).collect()
     }
 
-    /// The log-likelihood of each reading that there is, moved by the predictions and spread.
+    /// Returns the log-likelihood of each reading, shifted by the predictions and with additional noise.
     pub fn values(&self, predictions: &[f64], spread: &Spread) -> Vec<f64> {
         self.rows.iter().zip(predictions).map(|(reading, cm)| reading.value(*cm, spread)).collect()
     }
 
-    /// By how much readings are off, cm.
-    fn offsets(&self, observations: &Observations) -> (Surface, Vec<f64>) {
-        let off = |reading: &Reading| reading.faced.as_ref()?.outcomes().off_cm(reading.echo_cm);
-        let off: Vec<Option<f64>> = self.rows.iter().map(off).collect();
-        let scatter_cm = (median(off.iter().flatten().map(|off_cm| off_cm.abs())) / QUARTILE).max(LEAST_SCATTER_CM);
-        // As far as the likelihood says, to which a reading from elsewhere than the echo is one of the others, and no farther
-        // than to the reading.
+    /// Fits the residual of the readings, cm.
+    fn shift(&self, sample: &Sample) -> (Surface, Vec<f64>) {
+        let residual = |reading: &Reading| reading.faced.as_ref()?.outcomes().off_cm(reading.echo_cm);
+        let residuals: Vec<Option<f64>> = self.rows.iter().map(residual).collect();
+        let noise_cm = (median(residuals.iter().flatten().map(|cm| cm.abs())) / QUARTILE).max(LEAST_NOISE_CM);
+        // The response is bounded by the likelihood, to which a reading of something else is an outlier, and by the reading.
         let response = |i: usize, prediction: f64| {
-            let value = |prediction: f64| self.rows[i].value(scatter_cm * prediction, &Spread::NONE);
+            let value = |prediction: f64| self.rows[i].value(noise_cm * prediction, &Spread::NONE);
             let score = (value(prediction + DIFFERENCE) - value(prediction)) / DIFFERENCE;
-            let most = (off[i].unwrap_or(0.0) / scatter_cm - prediction).abs();
+            let most = (residuals[i].unwrap_or(0.0) / noise_cm - prediction).abs();
             prediction + score.clamp(-most, most)
         };
-        let covariates = covariates(observations);
-        Rows::of(&covariates, |i| off[i].is_some(), place(observations)).evenly(scatter_cm, response)
+        let covariates = covariates(sample);
+        Design::of(&covariates, |i| residuals[i].is_some(), place(sample)).uniform_surface(noise_cm, response)
     }
 }
 
 impl Reading<'_> {
-    /// The derivative of the log-likelihood of an echo or none by a prediction in units.
+    /// Returns the derivative of the log-likelihood of an echo or none by a prediction in units of [`LOG_ODDS`].
     fn score(&self, prediction: f64) -> f64 {
         let nones = [prediction, prediction + DIFFERENCE].map(|units| self.none(LOG_ODDS * units));
-        let [Some(none), Some(fewer)] = nones else { return 0.0 };
-        let slope = (none - fewer) / DIFFERENCE;
+        let [Some(none), Some(shifted)] = nones else { return 0.0 };
+        let slope = (none - shifted) / DIFFERENCE;
         if self.echo_cm.is_some() { slope / (1.0 - none) } else { -slope / none }
     }
 
-    /// The probability of no reading, the log-odds of every echo moved by a prediction.
+    /// Returns the probability of no reading, with the log-odds of every echo shifted by a prediction.
     fn none(&self, prediction: f64) -> Option<f64> {
         let faced = self.faced.as_ref()?;
-        let change = Perturbation { attenuation: faced.change.attenuation - prediction, ..faced.change };
-        Some(faced.perturbed(&change).none)
+        let attenuation = faced.perturbation.attenuation - prediction;
+        Some(faced.perturbed(&Perturbation { attenuation, ..faced.perturbation }).none)
     }
 
-    /// The log-likelihood of a reading that there is, moved by a prediction and spread.
+    /// Returns the log-likelihood of a reading if there is one, shifted by a prediction and with additional noise.
     fn value(&self, prediction_cm: f64, spread: &Spread) -> f64 {
         let (Some(faced), Some(_)) = (&self.faced, self.echo_cm) else { return 0.0 };
-        let mut change = faced.change;
-        change.offset_cm += prediction_cm;
-        change.scatter_cm += spread.scatter_cm;
-        change.p_short = 1.0 - (1.0 - change.p_short) * (1.0 - spread.short);
-        change.p_long += spread.long;
-        let outcomes = faced.perturbed(&change);
+        let mut perturbation = faced.perturbation;
+        perturbation.offset_cm += prediction_cm;
+        perturbation.scatter_cm += spread.noise_cm;
+        perturbation.p_short = 1.0 - (1.0 - perturbation.p_short) * (1.0 - spread.short);
+        perturbation.p_long += spread.long;
+        let outcomes = faced.perturbed(&perturbation);
         self.weight[1] * (outcomes.log_likelihood(self.echo_cm) - outcomes.log_detection(self.echo_cm))
     }
 }
 
 impl Spread {
-    const NONE: Spread = Spread { scatter_cm: 0.0, short: 0.0, long: 0.0 };
+    const NONE: Spread = Spread { noise_cm: 0.0, short: 0.0, long: 0.0 };
 
     fn from(values: &[f64]) -> Self {
-        Spread { scatter_cm: values[0], short: values[1], long: values[2] }
+        Spread { noise_cm: values[0], short: values[1], long: values[2] }
     }
 }

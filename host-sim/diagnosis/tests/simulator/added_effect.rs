@@ -61,5 +61,5 @@ fn an_effect_that_is_added_is_not_found_where_it_is_not() {
     let method = Method { catalogue: catalogue(), ..Method::default() };
     let found =
         findings(Baseline::at_posterior_mean(&SIMULATOR).expect("a reference"), &inspected, method).expect("poses");
-    assert_eq!(found.diagnosis.effects().iter().map(|e| e.id).collect::<Vec<_>>(), ["track_width"]);
+    assert_eq!(found.diagnosis.effects.iter().map(|e| e.id).collect::<Vec<_>>(), ["track_width"]);
 }

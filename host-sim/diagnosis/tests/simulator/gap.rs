@@ -1,7 +1,7 @@
 //! The diagnosis on logs of the built-in robot, from the logs alone.
 
 use mindgap_diagnosis::channel::Channel;
-use mindgap_diagnosis::diagnosis::Verdict;
+use mindgap_diagnosis::verdict::Verdict;
 use mindgap_diagnosis::{Diagnosis, diagnose};
 use mindgap_logs::Logs;
 use mindgap_models::simulator::baseline::Baseline;
@@ -15,15 +15,15 @@ fn diagnosed(logs: &Logs) -> Diagnosis {
 }
 
 fn ids(diagnosis: &Diagnosis) -> Vec<&str> {
-    diagnosis.effects().iter().map(|e| e.id).collect()
+    diagnosis.effects.iter().map(|e| e.id).collect()
 }
 
 #[test]
 fn a_robot_like_any_other_has_no_gap() {
     for seed in [71, 72] {
         let diagnosis = diagnosed(&logs(16, &[], seed));
-        assert_eq!(diagnosis.verdict(), Verdict::NoGap, "{diagnosis:?}");
-        assert!(diagnosis.effects().is_empty() && diagnosis.reduction().is_none());
+        assert_eq!(diagnosis.verdict, Verdict::NoGap, "{diagnosis:?}");
+        assert!(diagnosis.effects.is_empty() && diagnosis.reduction.is_none());
     }
 }
 
@@ -32,7 +32,7 @@ fn single_effects_are_named_and_close_the_gap() {
     for effect in ["drive_scale", "deadband", "sonar_offset", "sonar_yaw", "tracker_rotation"] {
         let diagnosis = diagnosed(&logs(16, &[effect], 73));
         assert_eq!(ids(&diagnosis), [effect], "{diagnosis:?}");
-        let whole = diagnosis.reduction().expect("a gap that shrinks").whole;
+        let whole = diagnosis.reduction.as_ref().expect("a gap that shrinks").whole;
         assert!(whole.reducible_closed > 0.8, "{effect}: {whole:?}");
         assert!(whole.ci95[0] <= whole.reducible_closed && whole.reducible_closed <= whole.ci95[1]);
     }
@@ -42,7 +42,7 @@ fn single_effects_are_named_and_close_the_gap() {
 fn the_strength_is_found_again() {
     let diagnosis = diagnosed(&logs(16, &["sonar_offset=3", "drive_scale=0.94"], 74));
     let parameter = |id: &str, name: &str| {
-        let found = diagnosis.effects().iter().find(|e| e.id == id).unwrap_or_else(|| panic!("{diagnosis:?}"));
+        let found = diagnosis.effects.iter().find(|e| e.id == id).unwrap_or_else(|| panic!("{diagnosis:?}"));
         found.parameters[name].as_f64().expect("a number")
     };
     assert!((parameter("sonar_offset", "cm") - 3.0).abs() < 0.5);
@@ -52,8 +52,8 @@ fn the_strength_is_found_again() {
 #[test]
 fn what_is_outside_the_table_is_unknown() {
     let diagnosis = diagnosed(&logs(16, &["command_quantisation"], 75));
-    assert_eq!(diagnosis.verdict(), Verdict::Unknown, "{diagnosis:?}");
-    assert!(diagnosis.effects().is_empty() && !diagnosis.strata.is_empty());
+    assert_eq!(diagnosis.verdict, Verdict::Unknown, "{diagnosis:?}");
+    assert!(diagnosis.effects.is_empty() && !diagnosis.strata.is_empty());
 }
 
 /// What moves readings one way early in a run and another way late is no scatter, although it looks like it on the
@@ -61,8 +61,8 @@ fn what_is_outside_the_table_is_unknown() {
 #[test]
 fn scatter_that_follows_circumstances_is_no_cause() {
     let diagnosis = diagnosed(&logs(16, &["sonar_drift=0.4"], 78));
-    assert_eq!(diagnosis.verdict(), Verdict::Unknown, "{diagnosis:?}");
-    let mut profiles = diagnosis.profiles().iter();
+    assert_eq!(diagnosis.verdict, Verdict::Unknown, "{diagnosis:?}");
+    let mut profiles = diagnosis.profiles.iter();
     assert!(profiles.any(|p| p.depends_on.starts_with("elapsed time")), "{diagnosis:?}");
     assert_eq!(ids(&diagnosed(&logs(16, &["sonar_noise"], 78))), ["sonar_noise"]);
 }
@@ -97,12 +97,12 @@ fn without_readings_motion_is_still_diagnosed() {
 fn the_textbook_serves_where_there_is_no_simulator() {
     let logs = logs(16, &[], 78);
     let diagnosis = diagnose(kinematic::baseline(&logs), &logs).expect("there is something to compare");
-    assert_ne!(diagnosis.verdict(), Verdict::NoGap, "a real robot differs from the textbook");
+    assert_ne!(diagnosis.verdict, Verdict::NoGap, "a real robot differs from the textbook");
     // Its motors have no memory: it is off most where a command is new.
     let worst = diagnosis.strata.iter().max_by(|a, b| a.gap.total_cmp(&b.gap)).expect("a place");
     assert!(matches!(worst.channel, Channel::Forward | Channel::Turn), "{worst:?}");
     assert!(["new command", "reverses"].iter().any(|what| worst.context.contains(what)), "{worst:?}");
-    let reduction = diagnosis.reduction().expect("a gap that shrinks");
+    let reduction = diagnosis.reduction.as_ref().expect("a gap that shrinks");
     assert!(reduction.whole.reducible_closed > 0.4, "{reduction:?}");
     assert!(reduction.paths.iter().all(|path| path.after_cm < 0.7 * path.before_cm), "{:?}", reduction.paths);
 }

@@ -5,7 +5,7 @@ use std::ops::Range;
 use glam::DVec2;
 use mindgap_built_in_robot::{BuiltInRobot, default_robot, four_obstacles, run_controller};
 use mindgap_core::controller::{Controller, Tuple, When};
-use mindgap_diagnosis::diagnosis::Verdict;
+use mindgap_diagnosis::verdict::Verdict;
 use mindgap_diagnosis::{Method, diagnose, findings};
 use mindgap_foundations::geometry::direction;
 use mindgap_foundations::random::generator;
@@ -86,7 +86,7 @@ fn a_simulator_with_the_effects_found_has_no_gap_on_fresh_logs() {
     let fresh = logs(16, &effects, 22);
     let again =
         diagnose(Baseline::at_posterior_mean(&applied).expect("a reference"), &fresh).expect("something to compare");
-    assert_eq!(again.verdict(), Verdict::NoGap, "{again:?}");
+    assert_eq!(again.verdict, Verdict::NoGap, "{again:?}");
     let error = |simulator: &Simulator| {
         let networks = evaluate(simulator, &fresh, |_, _| ()).expect("samples").networks;
         [networks.forward.expect("poses").mse, networks.echo_value.expect("echoes").mse]

@@ -21,7 +21,7 @@ use rand_distr::StandardNormal;
 use crate::{SIMULATOR, logs};
 
 fn named(baseline: Baseline, logs: &Logs) -> BTreeSet<&'static str> {
-    diagnose(baseline, logs).expect("poses").effects().iter().map(|effect| effect.id).collect()
+    diagnose(baseline, logs).expect("poses").effects.iter().map(|effect| effect.id).collect()
 }
 
 fn learned(logs: &Logs) -> BTreeSet<&'static str> {

@@ -1,4 +1,4 @@
-//! How well a simulator's networks do on logs: the paper's figure 2 in numbers, and what a probability asks beyond.
+//! Accuracy of a simulator's networks on logs: the paper's figure 2 in numbers, and proper scores of the echo probability.
 
 use mindgap_core::network::Network;
 use serde::Serialize;
@@ -11,17 +11,17 @@ use mindgap_foundations::statistics::agreement::{self as statistics, Reliability
 use mindgap_logs::Logs;
 use mindgap_models::simulator::{Learned, Simulator};
 
-/// What `mindgap evaluate --json` writes.
+/// The output of `mindgap evaluate --json`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Evaluation {
-    /// Version of this form.
+    /// Version of this schema.
     pub schema: u32,
-    /// The networks that both the simulator and the logs have.
+    /// Accuracy of the networks that the simulator has and the logs have samples for.
     pub networks: Networks,
-    /// The same with the sizes of the paper's Table I, for a simulator of other sizes.
+    /// Accuracy of networks of the sizes in the paper's Table I, if the simulator's have other sizes.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub table_one: Option<Networks>,
-    /// The models of the sensor, where the logs have readings.
+    /// Likelihoods of the sensor models, if the logs have readings.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub sensor_models: Option<SensorModels>,
 }
@@ -32,10 +32,10 @@ pub struct Networks {
     /// Turn, degrees.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub turn: Option<Value>,
-    /// Way forward, cm.
+    /// Forward motion, cm.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub forward: Option<Value>,
-    /// Way to the left, cm.
+    /// Motion to the left, cm.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub lateral: Option<Value>,
     /// Whether there is an echo.
@@ -49,18 +49,18 @@ pub struct Networks {
 /// Accuracy of a network that predicts a value.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Value {
-    /// Coefficient of determination; null when all logged values are equal.
+    /// Coefficient of determination, or null if all logged values are equal.
     pub r2: Option<f64>,
-    /// Mean squared error, in the square of the value's unit.
+    /// Mean squared error, in squared units of the value.
     pub mse: f64,
     /// Mean absolute error of the reading.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mae_cm: Option<f64>,
-    /// Predicted over expected.
+    /// Regression line of predicted on logged values.
     pub trend: Option<TrendLine>,
-    /// Samples.
+    /// Number of samples.
     pub n: usize,
-    /// Expected and predicted, sample by sample.
+    /// Logged and predicted value of each sample.
     #[serde(skip)]
     pub points: Vec<[f64; 2]>,
 }
@@ -68,53 +68,54 @@ pub struct Value {
 /// Accuracy of a network that predicts a probability.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Probability {
-    /// Coefficient of determination against 0 and 1; null when all outcomes are equal.
+    /// Coefficient of determination of the outcomes 0 and 1, or null if all are equal.
     pub r2: Option<f64>,
-    /// Brier score: the mean squared error.
+    /// Brier score, the mean squared error.
     pub brier: f64,
-    /// Mean negative log likelihood, probabilities held within 0.001..0.999.
+    /// Mean negative log-likelihood, with probabilities clamped to 0.001..0.999.
     pub log_loss: f64,
-    /// Area under the ROC curve; null when all outcomes are equal.
+    /// Area under the ROC curve, or null if all outcomes are equal.
     pub auc: Option<f64>,
-    /// Predicted over expected.
+    /// Regression line of predicted on logged values.
     pub trend: Option<TrendLine>,
-    /// Samples.
+    /// Number of samples.
     pub n: usize,
-    /// Predicted against observed.
+    /// Observed frequency per bin of predicted probability.
     pub reliability: Vec<ReliabilityBin>,
-    /// Expected and predicted, sample by sample.
+    /// Logged and predicted value of each sample.
     #[serde(skip)]
     pub points: Vec<[f64; 2]>,
 }
 
-/// Judges a simulator, with the effects that were added to it if there are any, on logs, best on such as it was not trained on.
-/// `watch` is told how much of it is done, of how much.
+/// Evaluates a simulator, with any effects added to it, on logs that it was preferably not trained on. `watch` receives the
+/// work done and the total.
 ///
 /// # Errors
-/// When the simulator and the logs have no network in common.
+/// If the logs have no sample for any network of the simulator.
 pub fn evaluate(simulator: &Simulator, logs: &Logs, watch: impl Fn(usize, usize) + Sync) -> Result<Evaluation> {
-    let networks = judge(simulator, logs)?;
+    let networks = networks(simulator, logs)?;
     if networks == Networks::default() {
         return Err(Error::new("these logs hold no sample for any network of this simulator"));
     }
-    let table_one = simulator.table_one.as_ref().map(|simulator| judge(simulator, logs)).transpose()?;
+    let table_one = simulator.table_one.as_ref().map(|simulator| self::networks(simulator, logs)).transpose()?;
     Ok(Evaluation { schema: 1, networks, table_one, sensor_models: sensor_models(simulator, logs, watch) })
 }
 
-fn judge(simulator: &Simulator, logs: &Logs) -> Result<Networks> {
-    let samples = if simulator.added.is_empty() { of_networks(simulator, logs) } else { predict(simulator, logs)? };
+fn networks(simulator: &Simulator, logs: &Logs) -> Result<Networks> {
+    let samples =
+        if simulator.added.is_empty() { network_predictions(simulator, logs) } else { predict(simulator, logs)? };
     let value = |points: Vec<[f64; 2]>| (!points.is_empty()).then(|| Value::of(points));
     let mut echo_value = value(samples.echo_value);
     if let Some(value) = &mut echo_value {
         let [expected, predicted] = columns(&value.points);
         value.mae_cm = Some(statistics::mae(&expected, &predicted));
     }
-    let chances = samples.echo_probability;
+    let echoes = samples.echo_probability;
     Ok(Networks {
         turn: value(samples.turn),
         forward: value(samples.forward),
         lateral: value(samples.lateral),
-        echo_probability: (!chances.is_empty()).then(|| Probability::of(chances)),
+        echo_probability: (!echoes.is_empty()).then(|| Probability::of(echoes)),
         echo_value,
     })
 }
@@ -149,25 +150,25 @@ impl Probability {
     }
 }
 
-/// What the networks alone predict of logs.
-fn of_networks(simulator: &Simulator, logs: &Logs) -> Predictions {
+/// Returns what the networks alone predict of logs.
+fn network_predictions(simulator: &Simulator, logs: &Logs) -> Predictions {
     let data = Datasets::from_logs(logs);
     Predictions {
-        forward: answers(&simulator.forward, &data.forward),
-        lateral: answers(&simulator.lateral, &data.lateral),
-        turn: answers(&simulator.turn, &data.turn),
-        echo_probability: answers(&simulator.echo_probability, &data.echo_probability),
-        echo_value: answers(&simulator.echo_value, &data.echo_value),
+        forward: points(&simulator.forward, &data.forward),
+        lateral: points(&simulator.lateral, &data.lateral),
+        turn: points(&simulator.turn, &data.turn),
+        echo_probability: points(&simulator.echo_probability, &data.echo_probability),
+        echo_value: points(&simulator.echo_value, &data.echo_value),
     }
 }
 
-/// Expected and predicted for each sample; none without a network.
-fn answers<const N: usize>(learned: &Option<Learned<N>>, data: &Dataset<N>) -> Vec<[f64; 2]> {
-    let ask = |network: &Network<f32, N>| {
+/// Returns the logged and predicted value of each sample, or nothing without a network.
+fn points<const N: usize>(learned: &Option<Learned<N>>, data: &Dataset<N>) -> Vec<[f64; 2]> {
+    let points = |network: &Network<f32, N>| {
         let samples = data.inputs.iter().zip(&data.targets);
         samples.map(|(x, t)| [f64::from(*t), f64::from(network.evaluate(*x))]).collect()
     };
-    learned.as_ref().map_or_else(Vec::new, |learned| ask(&learned.network))
+    learned.as_ref().map_or_else(Vec::new, |learned| points(&learned.network))
 }
 
 fn columns(points: &[[f64; 2]]) -> [Vec<f64>; 2] {

@@ -12,29 +12,29 @@ use mindgap_models::simulator::environment::Environment;
 use mindgap_models::simulator::rollout_report::RolloutReport;
 use mindgap_models::simulator::{Noise, Simulator};
 
-/// How far the runs of a controller end from where they are expected to, as medians over the runs, cm.
+/// Median distances between logged and expected final positions of a controller's runs.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FinalPositionErrors {
-    /// Runs with a pose at the first row and a later one.
+    /// Number of runs with a pose at the first row and a later one.
     pub runs: usize,
-    /// With the simulator as it is.
+    /// Error of the simulator as it is, cm.
     pub before_cm: f64,
-    /// With the effects added; the same where none is.
+    /// Error with the effects added, cm; the same as before if there are none.
     pub after_cm: f64,
-    /// How far simulated runs with the effects end from where they are expected to themselves.
+    /// Distance of simulated runs with the effects from their own expected final position, cm.
     pub floor_cm: f64,
 }
 
-/// Simulated runs from each logged start.
+/// Simulated runs per logged start.
 const DRAWS: usize = 64;
-/// Added to the seed, so that these draws are not those of a diagnosis.
+/// Added to the seed, so that these draws are independent of those of a diagnosis.
 const STREAM: u64 = 5;
 
-/// Compares logs of a controller's runs with the simulator as it is (first) and with effects added (second). Simulated
-/// runs draw from `seed`.
+/// Compares logs of a controller's runs with the simulator as it is (first) and with effects added (second). `seed` fixes the
+/// noise of the simulated runs.
 ///
 /// # Errors
-/// When no run has a pose at its first row and at a later one, or when the simulator cannot run a controller from there.
+/// If no run has a pose at its first row and at a later one, or if the simulator cannot run a controller from there.
 pub fn final_position_errors(
     simulators: [&Simulator; 2],
     controller: &Controller,
@@ -50,29 +50,27 @@ pub fn final_position_errors(
         })
         .collect();
     if logged.is_empty() {
-        return Err(Error::new(
-            "no run has a pose at its first row and at a later one: where a controller ends is not known",
-        ));
+        return Err(Error::new("no run has a pose at its first row and at a later one: no final position is known"));
     }
-    let [before, after] = simulators.map(|simulator| Ends::of(simulator, controller, logs, &logged, seed));
+    let [before, after] = simulators.map(|simulator| Distances::of(simulator, controller, logs, &logged, seed));
     let (before, after) = (before?, after?);
     Ok(FinalPositionErrors {
         runs: logged.len(),
-        before_cm: median(before.off_cm.into_iter()),
-        after_cm: median(after.off_cm.into_iter()),
-        floor_cm: median(after.scatter_cm.into_iter()),
+        before_cm: median(before.logged_cm.into_iter()),
+        after_cm: median(after.logged_cm.into_iter()),
+        floor_cm: median(after.simulated_cm.into_iter()),
     })
 }
 
-/// Distances from where a simulator expects the runs to end.
-struct Ends {
-    /// Of the logged ends.
-    off_cm: Vec<f64>,
-    /// Of its own.
-    scatter_cm: Vec<f64>,
+/// Distances from the final positions that a simulator expects.
+struct Distances {
+    /// Those of the logged final positions.
+    logged_cm: Vec<f64>,
+    /// Those of the simulated final positions.
+    simulated_cm: Vec<f64>,
 }
 
-impl Ends {
+impl Distances {
     fn of(
         simulator: &Simulator,
         controller: &Controller,
@@ -80,21 +78,16 @@ impl Ends {
         logged: &[(Pose, DVec2)],
         seed: u64,
     ) -> Result<Self> {
-        let mut ends = Ends { off_cm: Vec::new(), scatter_cm: Vec::new() };
+        let mut distances = Distances { logged_cm: Vec::new(), simulated_cm: Vec::new() };
         for (run, (start, end)) in logged.iter().enumerate() {
             let environment = Environment::new(simulator, &logs.scene, *start, Noise::Learned)?;
-            let drawn = RolloutReport::new(
-                &environment,
-                &logs.scene,
-                controller,
-                DRAWS,
-                seed.wrapping_add(STREAM + run as u64),
-            );
+            let seed = seed.wrapping_add(STREAM + run as u64);
+            let drawn = RolloutReport::new(&environment, &logs.scene, controller, DRAWS, seed);
             let drawn: Vec<DVec2> = drawn.runs.iter().map(|run| DVec2::new(run.end_x_cm, run.end_y_cm)).collect();
             let expected = DVec2::new(median(drawn.iter().map(|e| e.x)), median(drawn.iter().map(|e| e.y)));
-            ends.off_cm.push(expected.distance(*end));
-            ends.scatter_cm.extend(drawn.iter().map(|e| expected.distance(*e)));
+            distances.logged_cm.push(expected.distance(*end));
+            distances.simulated_cm.extend(drawn.iter().map(|e| expected.distance(*e)));
         }
-        Ok(ends)
+        Ok(distances)
     }
 }

@@ -1,10 +1,10 @@
-//! What a simulator with effects predicts of logs, beside what was logged.
+//! What a simulator with effects predicts of logs, next to what was logged.
 
 use std::borrow::Cow;
 
 use super::observations::{Observation, Observations};
 use mindgap_foundations::error::Result;
-use mindgap_foundations::geometry::wrap_rad;
+use mindgap_foundations::geometry::{Pose, wrap_rad};
 use mindgap_foundations::motion::Motion;
 use mindgap_logs::Logs;
 use mindgap_models::effects::chain::EffectChain;
@@ -14,28 +14,28 @@ use mindgap_models::simulator::baseline::{Baseline, MotionModel};
 use mindgap_models::sonar::familiar::{self, Familiarity};
 use mindgap_models::sonar::{Outcomes, Perturbation, SensorLaw, View};
 
-/// Logged and predicted, sample by sample.
+/// Pairs of logged and predicted values, sample by sample.
 #[derive(Clone, Debug, Default)]
 pub struct Predictions {
-    /// Way forward, cm.
+    /// Forward motion, cm.
     pub forward: Vec<[f64; 2]>,
-    /// Way to the left, cm.
+    /// Motion to the left, cm.
     pub lateral: Vec<[f64; 2]>,
     /// Turn, degrees.
     pub turn: Vec<[f64; 2]>,
-    /// One for an echo and zero for none, and the probability of one.
+    /// Echo (one) or none (zero), and the probability of an echo.
     pub echo_probability: Vec<[f64; 2]>,
-    /// The reading, cm.
+    /// Reading, cm.
     pub echo_value: Vec<[f64; 2]>,
 }
 
 /// Predicts every row of logs by a simulator with the effects that were applied to it.
 ///
 /// # Errors
-/// When the simulator does not know how its training logs scattered.
+/// If the simulator file lacks the noise of its training logs.
 pub fn predict(simulator: &Simulator, logs: &Logs) -> Result<Predictions> {
     let baseline = Baseline::learned(simulator)?;
-    let observations = Observations::of(logs, baseline.sonar.as_ref());
+    let observations = Observations::of(logs, baseline.motion.as_ref(), baseline.sonar.as_ref());
     let effects = baseline.chain();
     let mut all = Predictions::default();
     for row in &observations.rows {
@@ -58,81 +58,80 @@ pub fn predict(simulator: &Simulator, logs: &Logs) -> Result<Predictions> {
     Ok(all)
 }
 
-/// The predicted increment of one step.
+/// Returns the predicted motion of one step.
 pub fn step(effects: &EffectChain, drive: &MotionModel, context: &StepContext) -> Motion<f64> {
     effects.wrap(context, |now, before| drive.step(now, before))
 }
 
-/// The predicted increment of a row's step, or of the steps that are judged as one.
+/// Returns the predicted motion of a row's step, or of the steps that are compared as one.
 pub fn increment(effects: &EffectChain, drive: &MotionModel, row: &Observation) -> Motion<f64> {
-    let usual = [row.context.commands[0], row.context.commands[1]];
+    let logged = row.commands();
     let first = effects.wrap(&row.context, |now, before| match row.expected {
-        Some(expected) if usual == [now, before] => expected,
+        Some(expected) if logged == [now, before] => expected,
         _ => drive.step(now, before),
     });
-    if row.then.is_empty() {
+    if row.following_steps.is_empty() {
         return first;
     }
     let start = &row.context.pose;
-    let end = row
-        .then
-        .iter()
-        .fold(first.end(start), |pose, context| step(effects, drive, &StepContext { pose, ..*context }).end(&pose));
+    let next = |pose: Pose, context: &StepContext| step(effects, drive, &StepContext { pose, ..*context }).end(&pose);
+    let end = row.following_steps.iter().fold(first.end(start), next);
     Motion::between(start, &end)
 }
 
-/// Logged minus predicted of a row, a step: forward (cm), lateral (cm), turn (rad).
+/// Returns logged minus predicted motion of a row: forward (cm), lateral (cm), turn (rad). The sum over n steps that are
+/// compared as one is divided by √n, since independent noise adds up in squares.
 pub fn residual(effects: &EffectChain, drive: &MotionModel, row: &Observation) -> Option<[f64; 3]> {
     let logged = row.motion?;
     let predicted = increment(effects, drive, row);
-    let off = logged - predicted;
-    let off = [off.forward, off.lateral, wrap_rad(off.turn)];
-    // Independent noise adds up over steps that are judged as one.
-    let steps = (1 + row.then.len()) as f64;
-    Some(off.map(|off| off / steps.sqrt()))
+    let residual = [
+        logged.forward - predicted.forward,
+        logged.lateral - predicted.lateral,
+        wrap_rad(logged.turn - predicted.turn),
+    ];
+    let steps = row.steps() as f64;
+    Some(residual.map(|sum| sum / steps.sqrt()))
 }
 
 /// What the sensor faces at a row.
 pub struct Faced<'o> {
-    /// Its law.
     law: &'o SensorLaw,
-    /// What that looks at.
     view: Cow<'o, View>,
-    /// How its readings are perturbed.
-    pub change: Perturbation,
-    /// What is known of its pose.
-    pub familiarity: Option<Familiarity>,
+    /// How effects perturb its readings.
+    pub perturbation: Perturbation,
+    /// What earlier readings showed at this pose.
+    familiarity: Option<Familiarity>,
 }
 
-/// What the sensor faces at a row with these effects; none where no law of it is known.
+/// Returns what the sensor faces at a row with these effects, or `None` if the sensor is not compared.
 pub fn facing<'o>(effects: &EffectChain, observations: &'o Observations, row: &'o Observation) -> Option<Faced<'o>> {
     facing_in(observations, row, &effects.sensor(&row.context))
 }
 
-/// What it faces at a row in a state.
+/// Returns what the sensor faces at a row in a given state.
 pub fn facing_in<'o>(observations: &'o Observations, row: &'o Observation, state: &SensorState) -> Option<Faced<'o>> {
-    let (law, usual) = observations.law.as_ref().zip(row.view.as_ref())?;
-    let SensorState { robot, yaw_rad, perturbation: change } = *state;
-    let widened = change.width != 1.0 && law.looks_by_width();
-    let moved = robot != row.context.pose || yaw_rad != 0.0 || widened;
+    let (law, unchanged) = observations.law.as_ref().zip(row.view.as_ref())?;
+    let SensorState { robot, yaw_rad, perturbation } = *state;
+    let is_widened = perturbation.width != 1.0 && law.looks_by_width();
+    let is_moved = robot != row.context.pose || yaw_rad != 0.0 || is_widened;
     let sensor = observations.surroundings.sensor(&robot, yaw_rad);
     let familiarity = observations.recollection.as_ref().and_then(|recollection| recollection.at(&sensor));
-    let view = if moved {
-        Cow::Owned(law.view(&observations.surroundings.surfaces, &sensor, change.width))
+    let view = if is_moved {
+        Cow::Owned(law.view(&observations.surroundings.surfaces, &sensor, perturbation.width))
     } else {
-        Cow::Borrowed(usual)
+        Cow::Borrowed(unchanged)
     };
-    Some(Faced { law, view, change, familiarity })
+    Some(Faced { law, view, perturbation, familiarity })
 }
 
 impl Faced<'_> {
-    /// What the sensor may report.
+    /// Returns the distribution of the reading.
     pub fn outcomes(&self) -> Outcomes {
-        self.perturbed(&self.change)
+        self.perturbed(&self.perturbation)
     }
 
-    /// The same with another perturbation.
-    pub fn perturbed(&self, change: &Perturbation) -> Outcomes {
-        familiar::outcomes(self.familiarity.as_ref(), self.law, &self.view, change)
+    /// Returns the distribution of the reading under another perturbation.
+    pub fn perturbed(&self, perturbation: &Perturbation) -> Outcomes {
+        familiar::outcomes(self.familiarity.as_ref(), self.law, &self.view, perturbation)
     }
 }

@@ -1,14 +1,14 @@
-//! How much a step and a reading count where others repeat them: rows are fewer than they look.
+//! Effective weights of steps and readings that repeat each other (design effect).
 //!
-//! Of m rows at a place that have a share ρ of their chance in common each tells 1/(1 + (m − 1) ρ) of what a row alone
-//! would, the design effect of clusters (Kish 1965, Survey Sampling). What they have in common is twice as far off where
-//! they are compared with a simulator: it was learned in a room that had its own. At poses that are familiar from the room
-//! that it was learned in, only what earlier readings leave open is in common. Equal readings of an unmoved sensor are one.
+//! If m rows at a place share the fraction ρ of their variance, each of them carries 1/(1 + (m − 1) ρ) of the information of a
+//! single row, the design effect of clusters (Kish 1965, Survey Sampling). The shared part counts twice where rows are compared
+//! with a simulator, since the simulator was learned in a room with a shared part of its own. At poses that are known from the
+//! training room, only what earlier readings leave open is shared. Equal readings of an unmoved sensor count as one.
 //!
-//! A simulator is off by the same in every step of the same commands. Its training logs say by how much about (`own_error`);
-//! against the scatter of a step that is what these steps have in common. A controller that holds a command for thirty steps
-//! says of the robot hardly more than one that holds it for ten. And what runs of one controller leave, all in the same steps,
-//! other runs of it foretell, whatever the simulator is off by there: only what runs under other commands foretell is the robot's.
+//! A simulator makes the same error in every step under the same commands. Its training logs tell the size of that error; over
+//! the noise of a step it is the fraction that these steps share. A controller that holds a command for thirty steps says
+//! hardly more about the robot than one that holds it for ten. Runs of one controller all repeat the simulator's error, so one
+//! of them predicts the residuals of the others. Only what runs under other commands predict is a property of the robot.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -17,59 +17,62 @@ use mindgap_foundations::geometry::wrap_rad;
 use mindgap_models::simulator::baseline::Baseline;
 use mindgap_models::simulator::ensemble::evidence::cell;
 
-/// The room of the logs, and the one that the simulator was learned in.
+/// Number of rooms with a shared part: the room of the logs, and the one in which the simulator was learned.
 const ROOMS: f64 = 2.0;
-/// A sensor that is still within this of where it was, cm and degrees, has not moved as far as a tracker can tell.
+/// A sensor that moved by less than this counts as unmoved: a tracker cannot tell.
 const UNMOVED_CM: f64 = 1.0;
 const UNMOVED_DEG: f64 = 2.0;
 
-/// From this share of its steps on a run repeats another one: runs of one controller end some tuples earlier or later, and
-/// those under commands at random share hardly any step.
+/// A run repeats another one if it shares this fraction of its steps. Runs of one controller end some tuples earlier or later;
+/// runs under random commands share hardly any step.
 const MOSTLY: f64 = 0.5;
 
-/// Weighs every row by what the simulator knows of its chance and of its own error.
-pub fn weighed(mut observations: Observations, baseline: &Baseline) -> Observations {
+/// Commands now and before, rounded to cells within which commands count as the same.
+type Cells = [[i32; 2]; 2];
+
+/// Weights every row by what the simulator knows of its own error and of the variance that belongs to places.
+pub fn weighted(mut observations: Observations, baseline: &Baseline) -> Observations {
     if let Some(motion) = baseline.motion.as_ref().filter(|motion| motion.is_learned()) {
-        let cells = |row: &Observation| commands(row).map(|command| cell(motion.percent(command)));
-        weigh_motion(&mut observations.rows, motion.scatter().into_array(), cells, |now, before| {
+        let cells = |row: &Observation| row.commands().map(|command| cell(motion.percent(command)));
+        weight_motion(&mut observations.rows, motion.scatter().into_array(), cells, |now, before| {
             motion.own_error(now, before).into_array()
         });
         fold_together(&mut observations.rows, cells);
     }
-    weigh_echoes(&mut observations, baseline.place_bound);
+    weight_echoes(&mut observations, baseline.place_bound);
     observations
 }
 
-/// A step repeats others of the same commands, now and before: the simulator is off by the same in all of them, with these
-/// mean squares where steps scatter so. Those of the same `cells` are the same.
-fn weigh_motion(
+/// Weights steps that repeat others of the same cells. `own_error` returns the mean squares of the error that the simulator
+/// makes in all of them.
+fn weight_motion(
     rows: &mut [Observation],
-    scatter: [f64; 3],
-    cells: impl Fn(&Observation) -> [[i32; 2]; 2],
+    noise: [f64; 3],
+    cells: impl Fn(&Observation) -> Cells,
     own_error: impl Fn([f64; 2], [f64; 2]) -> [f64; 3],
 ) {
-    let mut repeated: BTreeMap<[[i32; 2]; 2], Vec<usize>> = BTreeMap::new();
-    for (i, row) in rows.iter().enumerate().filter(|(_, row)| row.motion.is_some() && row.then.is_empty()) {
+    let mut repeated: BTreeMap<Cells, Vec<usize>> = BTreeMap::new();
+    for (i, row) in rows.iter().enumerate().filter(|(_, row)| row.motion.is_some() && row.following_steps.is_empty()) {
         repeated.entry(cells(row)).or_default().push(i);
     }
     for steps in repeated.into_values().filter(|steps| steps.len() > 1) {
-        let [now, before] = commands(&rows[steps[0]]);
+        let [now, before] = rows[steps[0]].commands();
         let (own_error, others) = (own_error(now, before), (steps.len() - 1) as f64);
-        let weight = [0, 1, 2].map(|i| 1.0 / (1.0 + others * own_error[i] / (scatter[i] * scatter[i])));
+        let weight = [0, 1, 2].map(|i| 1.0 / (1.0 + others * own_error[i] / (noise[i] * noise[i])));
         steps.into_iter().for_each(|i| rows[i].motion_weight = weight);
     }
 }
 
-/// Runs most of whose steps are of the same `cells` are one fold, where there are others.
-fn fold_together(rows: &mut [Observation], cells: impl Fn(&Observation) -> [[i32; 2]; 2]) {
-    let mut steps: BTreeMap<usize, BTreeSet<[[i32; 2]; 2]>> = BTreeMap::new();
+/// Joins runs that share most of their cells in one fold, unless that would leave a single fold.
+fn fold_together(rows: &mut [Observation], cells: impl Fn(&Observation) -> Cells) {
+    let mut steps: BTreeMap<usize, BTreeSet<Cells>> = BTreeMap::new();
     for row in rows.iter().filter(|row| row.motion.is_some()) {
         steps.entry(row.run).or_default().insert(cells(row));
     }
     let repeats = |one: &BTreeSet<_>, other: &BTreeSet<_>| {
         one.intersection(other).count() as f64 >= MOSTLY * one.len().min(other.len()) as f64
     };
-    // Each run is of the group of the first one that it repeats.
+    // Each run joins the group of the first run that it repeats.
     let mut groups: BTreeMap<usize, usize> = BTreeMap::new();
     for (run, of_run) in &steps {
         let first = steps.range(..run).find(|(_, of_other)| repeats(of_run, of_other));
@@ -84,25 +87,19 @@ fn fold_together(rows: &mut [Observation], cells: impl Fn(&Observation) -> [[i32
     rows.iter_mut().for_each(|row| row.fold = number(&row.run));
 }
 
-/// The commands of a row's step, now and before.
-fn commands(row: &Observation) -> [[f64; 2]; 2] {
-    let [now, before, ..] = row.context.commands;
-    [now, before]
-}
-
-/// The echo rate and the reading; `place_bound` are the shares of their chance that belong to the place.
-fn weigh_echoes(observations: &mut Observations, place_bound: [f64; 2]) {
+/// Weights echo rate and echo value; `place_bound` are the fractions of their variance that belong to the place.
+fn weight_echoes(observations: &mut Observations, place_bound: [f64; 2]) {
     let Observations { places, rows, recollection, surroundings, .. } = observations;
-    let mut heard = vec![[0.0; 2]; *places];
+    let mut counts = vec![[0.0; 2]; *places];
     for row in rows.iter() {
-        heard[row.place][0] += 1.0;
-        heard[row.place][1] += f64::from(u8::from(row.echo_cm.is_some()));
+        counts[row.place][0] += 1.0;
+        counts[row.place][1] += f64::from(u8::from(row.echo_cm.is_some()));
     }
     for row in rows.iter_mut() {
-        let others = heard[row.place].map(|rows| (rows - 1.0).max(0.0));
+        let others = counts[row.place].map(|rows| (rows - 1.0).max(0.0));
         let recalled = recollection.as_ref().filter(|r| r.at(&surroundings.sensor(&row.context.pose, 0.0)).is_some());
-        let common = recalled.map_or(place_bound.map(|share| ROOMS * share), |recollection| recollection.left_share);
-        [0, 1].into_iter().for_each(|i| row.echo_weight[i] /= 1.0 + others[i] * common[i]);
+        let shared = recalled.map_or(place_bound.map(|share| ROOMS * share), |recollection| recollection.left_share);
+        [0, 1].into_iter().for_each(|i| row.echo_weight[i] /= 1.0 + others[i] * shared[i]);
     }
     let mut begin = 0;
     for end in 1..=rows.len() {
@@ -114,7 +111,7 @@ fn weigh_echoes(observations: &mut Observations, place_bound: [f64; 2]) {
     }
 }
 
-/// Whether a row of the same run has the same reading of a sensor that has not moved.
+/// Returns whether two rows of a run have the same reading of an unmoved sensor.
 fn repeats(one: &Observation, other: &Observation) -> bool {
     let (here, there) = (one.context.pose, other.context.pose);
     one.run == other.run
@@ -132,7 +129,7 @@ mod tests {
     use mindgap_models::simulator::ensemble::command_scale::Percent;
     use mindgap_models::simulator::kinematic;
 
-    /// Two runs of twelve rows: the places and readings of their rows.
+    /// Returns the weighted rows of two runs of twelve rows; `row` gives the place and the reading of a row.
     fn rows_of(place_bound: [f64; 2], row: impl Fn(usize) -> (f64, Option<f64>)) -> Vec<Observation> {
         let row = |at: usize| {
             let (x_cm, echo_cm) = row(at);
@@ -141,21 +138,21 @@ mod tests {
         let run = |run: usize| Run { name: format!("run-{run:03}"), rows: (0..12).map(row).collect() };
         let logs = Logs { robot: default_robot(), scene: training_room(), runs: (0..2).map(run).collect() };
         let baseline = Baseline { place_bound, ..kinematic::baseline(&logs) };
-        weighed(Observations::of(&logs, None), &baseline).rows
+        weighted(Observations::of(&logs, None, None), &baseline).rows
     }
 
-    /// The cells of a robot whose commands are percent.
+    /// Returns the cells of a robot whose commands are percentages.
     fn in_percent(row: &Observation) -> [[i32; 2]; 2] {
-        commands(row).map(|command| cell(Percent(command)))
+        row.commands().map(|command| cell(Percent(command)))
     }
 
-    /// One of three places, far from one another.
+    /// Returns one of three distant places.
     fn place_cm(at: usize) -> f64 {
         20.0 + 65.0 * (at % 3) as f64
     }
 
     #[test]
-    fn rows_of_a_place_count_as_many_as_they_tell() {
+    fn rows_at_one_place_have_the_weight_of_their_effective_number() {
         // Eight rows at each place: 1 + 2 * 7 / 2, and 1 + 2 * 7.
         let rows = rows_of([0.5, 1.0], |at| (place_cm(at), Some(at as f64)));
         assert!(rows.iter().all(|row| row.echo_weight == [1.0 / 8.0, 1.0 / 15.0]));
@@ -164,9 +161,9 @@ mod tests {
         assert!(free.iter().all(|row| row.echo_weight == [1.0; 2]));
     }
 
-    /// Two runs of twelve rows under two commands, of which one is held and one comes after another and again before it.
+    /// Two runs of twelve rows hold one command, interrupted by one step of another command.
     #[test]
-    fn steps_of_the_same_commands_count_as_many_as_they_tell() {
+    fn steps_under_the_same_commands_have_the_weight_of_their_effective_number() {
         let command = |at: usize| if at == 6 { [30.0, 50.0] } else { [50.0, 50.0] };
         let row = |at: usize| {
             let pose = Some(Pose::new(20.0 + 5.0 * at as f64, 100.0, 0.0));
@@ -175,24 +172,27 @@ mod tests {
         };
         let run = |run: usize| Run { name: format!("run-{run:03}"), rows: (0..12).map(row).collect() };
         let logs = Logs { robot: default_robot(), scene: training_room(), runs: (0..2).map(run).collect() };
-        let mut rows = Observations::of(&logs, None).rows;
-        weigh_motion(
+        let mut rows = Observations::of(&logs, None, None).rows;
+        weight_motion(
             &mut rows,
             [2.0; 3],
             in_percent,
             |now, before| if now == before { [1.0, 2.0, 0.0] } else { [4.0; 3] },
         );
-        // Eight steps of a run go on with the command: 1 + 15 / 4 and 1 + 15 / 2. Its others are like that of the other run.
+        // Eight steps per run continue the command: 1 + 15 / 4 and 1 + 15 / 2. Each other step is repeated by the other run.
         assert_eq!(rows[3].motion_weight, [1.0 / 4.75, 1.0 / 8.5, 1.0]);
         assert_eq!(
             (rows[0].motion_weight, rows[6].motion_weight, rows[7].motion_weight),
             ([0.5; 3], [0.5; 3], [0.5; 3])
         );
         assert_eq!(rows[11].motion_weight, [1.0; 3], "no step begins there");
-        assert!(weighed(Observations::of(&logs, None), &kinematic::baseline(&logs)).rows[3].motion_weight == [1.0; 3]);
+        assert!(
+            weighted(Observations::of(&logs, None, None), &kinematic::baseline(&logs)).rows[3].motion_weight
+                == [1.0; 3]
+        );
     }
 
-    /// Nine runs of a command that changes half-way, each under one of so many.
+    /// Returns the folds of nine runs whose command changes half-way, each run under one of `commands` pairs of commands.
     fn folds(commands: usize) -> Vec<usize> {
         let row = |run: usize, at: usize| {
             let command = 30.0 + 8.0 * (run % commands) as f64 + if at < 6 { 0.0 } else { 4.0 };
@@ -201,13 +201,13 @@ mod tests {
         };
         let run = |run: usize| Run { name: format!("run-{run:03}"), rows: (0..12).map(|at| row(run, at)).collect() };
         let logs = Logs { robot: default_robot(), scene: training_room(), runs: (0..9).map(run).collect() };
-        let mut rows = Observations::of(&logs, None).rows;
+        let mut rows = Observations::of(&logs, None, None).rows;
         fold_together(&mut rows, in_percent);
         rows.iter().filter(|row| row.at == 0).map(|row| row.fold).collect()
     }
 
     #[test]
-    fn what_one_controller_leaves_another_one_foretells() {
+    fn runs_of_one_controller_share_a_fold() {
         assert_eq!(folds(2), [0, 1, 0, 1, 0, 1, 0, 1, 0]);
         assert_eq!(folds(4), [0, 1, 2, 3, 0, 1, 2, 3, 0]);
         let each_alone: Vec<usize> = (0..9).collect();
@@ -215,12 +215,12 @@ mod tests {
     }
 
     #[test]
-    fn where_nothing_is_read_no_reading_repeats() {
+    fn missing_readings_repeat_no_value() {
         assert!(rows_of([0.0, 1.0], |at| (place_cm(at), None)).iter().all(|row| row.echo_weight == [1.0; 2]));
     }
 
     #[test]
-    fn rows_at_an_end_that_no_run_reads_tell_nothing_of_the_sensor() {
+    fn unpolled_first_and_last_rows_have_no_weight() {
         let weights = |is_read: fn(usize) -> bool| {
             let rows = rows_of([0.0; 2], |at| (place_cm(at), is_read(at).then_some(at as f64)));
             [0, 1, 10, 11, 12].map(|row| rows[row].echo_weight[0])
@@ -230,7 +230,7 @@ mod tests {
     }
 
     #[test]
-    fn equal_readings_of_an_unmoved_sensor_are_one() {
+    fn equal_readings_of_an_unmoved_sensor_count_as_one() {
         let rows = rows_of([0.0; 2], |at| (50.0, Some((at / 3) as f64)));
         assert!(rows.iter().all(|row| (row.echo_weight[0] - 1.0 / 3.0).abs() < 1e-12));
     }

@@ -1,4 +1,4 @@
-//! Logged runs beside what a simulator makes of their commands, with and without effects: paths and readings kept whole.
+//! Replay of a run's commands in the simulator, with or without effects, next to the logged path and readings.
 
 use crate::evaluation::predictions;
 use mindgap_foundations::geometry::Pose;
@@ -7,40 +7,40 @@ use mindgap_models::effects::chain::EffectChain;
 use mindgap_models::effects::context::{RunHistory, Surroundings};
 use mindgap_models::simulator::baseline::Baseline;
 
-/// A moment of a run: where a robot is and what its sensor says.
+/// Pose and reading of a robot at one row of a run.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Moment {
-    /// Where it is; none where that is not known.
+    /// The pose, if it is known.
     pub pose: Option<Pose>,
-    /// The reading, cm; none where there is none, or none is expected.
+    /// The logged or expected reading, cm, if there is one.
     pub echo_cm: Option<f64>,
 }
 
-/// What is replayed of runs.
+/// Replays runs against a baseline.
 pub struct Player<'a> {
     baseline: &'a Baseline<'a>,
     surroundings: Surroundings,
     step_ms: f64,
 }
 
-/// Steps after which a simulated robot is put back where the logged one is: errors add up without end, and nobody learns
-/// anything from the simulator's way through a wall.
+/// Steps after which the simulated robot is reset to the logged pose. Errors accumulate without bound, and a simulated path
+/// through a wall shows nothing.
 pub const PUT_BACK_STEPS: usize = 60;
 
 impl<'a> Player<'a> {
-    /// In the scene of logs.
+    /// Prepares a replay in the scene of the logs.
     pub fn new(baseline: &'a Baseline<'a>, logs: &Logs) -> Self {
         let surroundings = Surroundings::new(&logs.robot, &logs.scene);
         Player { baseline, surroundings, step_ms: logs.robot.step_ms }
     }
 
-    /// The run as it was logged.
+    /// Returns the run as it was logged.
     pub fn logged(run: &Run) -> Vec<Moment> {
         run.rows.iter().map(|row| Moment { pose: row.pose, echo_cm: row.echo_cm }).collect()
     }
 
-    /// What the simulator with these effects makes of the run's commands, a moment a row. It starts where the robot is
-    /// first seen and is put back to it every [`PUT_BACK_STEPS`]; without a model of motion it stays with the robot.
+    /// Simulates the run's commands with these effects, one moment per row. The simulated robot starts at the first tracked
+    /// pose and is reset to the logged one every [`PUT_BACK_STEPS`]; without a model of motion it follows the logged poses.
     pub fn simulated(&self, effects: &EffectChain, run: &Run) -> Vec<Moment> {
         let begin_ms = run.rows.at(0).t_ms;
         let (mut history, mut at, mut since) = (RunHistory::default(), None, 0);
@@ -59,9 +59,9 @@ impl<'a> Player<'a> {
             });
             moments.push(Moment { pose: at, echo_cm });
             if let (Some(step), Some(drive), Some(next)) = (&step, &self.baseline.motion, run.rows.get(k + 1)) {
-                let stretch = (next.t_ms - row.t_ms) / self.step_ms;
+                let duration_ratio = (next.t_ms - row.t_ms) / self.step_ms;
                 let motion = predictions::step(effects, drive, step);
-                at = Some(motion.scaled(stretch).end(&step.pose));
+                at = Some(motion.scaled(duration_ratio).end(&step.pose));
                 since += 1;
             }
             history.leave(step.as_ref(), echo_cm);
@@ -91,26 +91,26 @@ mod tests {
         Logs { robot: default_robot(), scene, runs: vec![run] }
     }
 
-    /// At command 50 the textbook covers 8.2 cm a step, and the logged robot 4.
+    /// At command 50 the textbook's robot drives 8.2 cm per step, the logged one 4 cm.
     #[test]
-    fn the_simulator_follows_the_commands_and_is_put_back() {
+    fn simulated_robot_follows_commands_and_is_reset() {
         let logs = logs(PUT_BACK_STEPS + 5);
         let baseline = kinematic::baseline(&logs);
         let player = Player::new(&baseline, &logs);
         let moments = player.simulated(&EffectChain::default(), &logs.runs[0]);
-        let x_cm: Vec<f64> = moments.iter().map(|m| m.pose.expect("it is somewhere").position_cm.x).collect();
+        let x_cm: Vec<f64> = moments.iter().map(|m| m.pose.expect("a pose").position_cm.x).collect();
         let step_cm = logs.robot.full_speed_cm_s * 0.5 * 0.4;
         for (k, x) in x_cm.iter().enumerate().take(PUT_BACK_STEPS) {
             assert!((x - (30.0 + step_cm * k as f64)).abs() < 1e-9, "{k}: {x}");
         }
         assert!((x_cm[PUT_BACK_STEPS] - (30.0 + 4.0 * PUT_BACK_STEPS as f64)).abs() < 1e-9);
         let wall_cm = WALL_CM - x_cm[30] - logs.robot.ultrasonic.expect("a sensor").x_cm;
-        let echo_cm = moments[30].echo_cm.expect("the wall ahead is near enough to be heard");
+        let echo_cm = moments[30].echo_cm.expect("an echo from the wall ahead");
         assert!((echo_cm - wall_cm).abs() < 5.0, "{echo_cm} for {wall_cm}");
     }
 
     #[test]
-    fn what_was_logged_is_shown_as_it_was() {
+    fn logged_moments_equal_the_rows() {
         let logged = Player::logged(&logs(3).runs[0]);
         assert_eq!(logged.iter().map(|m| m.pose.is_some()).collect::<Vec<_>>(), [true, false, true]);
         assert_eq!(logged[1].echo_cm, Some(90.0));

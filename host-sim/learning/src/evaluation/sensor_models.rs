@@ -1,5 +1,5 @@
-//! How likely each model of the sensor makes the readings of logs, in nats a reading: the two networks, the beam that the
-//! training logs showed, the first-echo law, and the textbook's ideal ray.
+//! Log-likelihood of logged readings under each sensor model, in nats per reading: the two networks, the beam model fitted to
+//! the training logs, the first-echo law, and the textbook's ideal ray.
 
 use rayon::prelude::*;
 use serde::Serialize;
@@ -14,36 +14,36 @@ use mindgap_models::sonar::echo_law::Surfaces;
 use mindgap_models::sonar::model::{CONSTANT_SCATTER_CM, P_RAND};
 use mindgap_models::sonar::outcomes::{Component, Distribution, Outcomes, Source};
 
-/// The log-likelihood of logs' readings under each model that the simulator has.
+/// Log-likelihood of the readings of logs under each model that the simulator has.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SensorModels {
-    /// Number of readings: rows with a pose, with an echo or none.
+    /// Number of readings: rows with a pose, with or without an echo.
     pub n: usize,
-    /// The two networks, with the scatter that was learned about them.
+    /// The two networks with their learned residuals.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub networks: Option<Nats>,
-    /// The beam that the training logs show beyond the networks.
+    /// The beam model fitted to the training logs.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub beam: Option<Nats>,
     /// The first-echo law.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub first_echo: Option<Nats>,
-    /// The textbook's ideal ray, its scatter and its share of lost echoes taken from the judged logs themselves.
+    /// The textbook's ideal ray, with noise and dropout rate taken from these logs themselves.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub ideal_ray: Option<Nats>,
 }
 
-/// Mean log-likelihood of a reading: of its value per cm, or of none.
+/// Mean log-likelihood per reading: of its value per cm, or of no echo.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Nats {
-    /// With poses as logged.
+    /// Mean with the poses as logged.
     pub as_logged: f64,
-    /// With an offset to the poses of each scan (x, y, heading) that is fitted on that scan itself; null where no run is a scan.
+    /// Mean with an offset (x, y, heading) to the poses of each scan, fitted to that scan; null if no run is a scan.
     pub poses_refitted: Option<f64>,
 }
 
-/// Judges every model that a simulator has by the readings of logs; none where there are no readings with a pose. `watch` is
-/// told how often models were asked, of how often they will be.
+/// Scores every sensor model that a simulator has by the readings of logs. Returns `None` if there are no readings with a pose.
+/// `watch` receives the number of model evaluations so far and in all.
 pub fn sensor_models(simulator: &Simulator, logs: &Logs, watch: impl Fn(usize, usize) + Sync) -> Option<SensorModels> {
     let scans = Scans::new(logs);
     let n = scans.rows().count();
@@ -51,7 +51,7 @@ pub fn sensor_models(simulator: &Simulator, logs: &Logs, watch: impl Fn(usize, u
         return None;
     }
     let surfaces = Surfaces::new(logs.scene.sides());
-    let networks = of_networks(simulator, |sensor| {
+    let networks = network_outcomes(simulator, |sensor| {
         let hit = cast(surfaces.walls(), sensor.position_cm, sensor.direction())?;
         Some([hit.distance_cm, hit.incidence_rad.abs().to_degrees()].map(|x| x as f32))
     });
@@ -60,33 +60,33 @@ pub fn sensor_models(simulator: &Simulator, logs: &Logs, watch: impl Fn(usize, u
     let law = simulator.first_echo.clone().map(SensorLaw::FirstEcho);
     let ideal_ray = kinematic::baseline(logs).sonar;
     let models = [networks.is_some(), beam.is_some(), law.is_some(), ideal_ray.is_some()];
-    let counter = Counter::new(models.iter().filter(|is_there| **is_there).count() * asked(&scans), watch);
-    let counted = |at: &(dyn Fn(&Pose) -> Outcomes + Sync)| {
+    let counter = Counter::new(models.iter().filter(|is_there| **is_there).count() * evaluations(&scans), watch);
+    let score = |at: &(dyn Fn(&Pose) -> Outcomes + Sync)| {
         nats(logs, |sensor| {
             counter.increment();
             at(sensor)
         })
     };
-    let of_law = |law: &SensorLaw| counted(&|sensor| law.outcomes_at(&surfaces, sensor));
+    let of_law = |law: &SensorLaw| score(&|sensor| law.outcomes_at(&surfaces, sensor));
     Some(SensorModels {
         n,
-        networks: networks.map(|at| counted(&at)),
+        networks: networks.map(|at| score(&at)),
         beam: beam.as_ref().map(of_law),
         first_echo: law.as_ref().map(of_law),
         ideal_ray: ideal_ray.as_ref().map(of_law),
     })
 }
 
-/// How often [`nats`] asks a model.
-fn asked(scans: &Scans) -> usize {
+/// Returns how often [`nats`] evaluates a model.
+fn evaluations(scans: &Scans) -> usize {
     let rows = scans.rows().count();
     let of_scans: Vec<usize> =
         (0..scans.runs.len()).filter(|run| scans.is_scan(*run)).map(|run| scans.runs[run].len()).collect();
     if of_scans.is_empty() { rows } else { 2 * rows + TRIED * of_scans.iter().sum::<usize>() }
 }
 
-/// How likely a model of the sensor makes the readings of logs, which have a row with a pose; `at` gives the outcomes of a
-/// sensor at a pose.
+/// Returns the mean log-likelihood of the readings of logs, which need a row with a pose. `at` gives the distribution of the
+/// reading for a pose of the sensor.
 pub fn nats(logs: &Logs, at: impl Fn(&Pose) -> Outcomes + Sync) -> Nats {
     let scans = &Scans::new(logs);
     let log_likelihood = |sensor: &Pose, echo_cm: Option<f64>| at(sensor).log_likelihood(echo_cm);
@@ -104,10 +104,10 @@ pub fn nats(logs: &Logs, at: impl Fn(&Pose) -> Outcomes + Sync) -> Nats {
     }
 }
 
-/// What a simulator's two networks make of a sensor, as its runs draw them: an echo with one network's probability, the other's
-/// value with one of the residuals about it, or the constant reading. What is drawn without scatter has that of whole
-/// centimetres here, and a random answer is as likely as it is to the beam.
-fn of_networks(
+/// Returns the distribution of readings of the two networks, as simulated runs draw them: an echo with the probability of the
+/// first network; its value from the second plus one of the residuals; or the constant reading. Values drawn without noise get
+/// that of rounding to centimetres, and random readings have the probability that the beam model gives them.
+fn network_outcomes(
     simulator: &Simulator,
     axis: impl Fn(&Pose) -> Option<[f32; 2]> + Sync,
 ) -> Option<impl Fn(&Pose) -> Outcomes + Sync> {
@@ -147,7 +147,7 @@ mod tests {
     use mindgap_logs::Row;
 
     #[test]
-    fn a_model_is_asked_as_often_as_progress_counts() {
+    fn progress_counts_every_model_evaluation() {
         let driven = record(&default_robot(), &training_room(), 3, 8, &[], 1).expect("logs");
         let mut scanned = driven.clone();
         let place = driven.runs[0].rows.iter().find_map(|row| row.pose);
@@ -158,7 +158,7 @@ mod tests {
                 times.fetch_add(1, Ordering::Relaxed);
                 Outcomes { none: 0.5, components: Vec::new(), range_cm: [5.0, 240.0] }
             });
-            assert_eq!(times.into_inner(), asked(&Scans::new(&logs)));
+            assert_eq!(times.into_inner(), evaluations(&Scans::new(&logs)));
         }
     }
 }

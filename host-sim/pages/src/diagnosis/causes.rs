@@ -6,16 +6,16 @@ use super::Subject;
 use crate::document::{Section, chart, table};
 use crate::words;
 use mindgap_diagnosis::channel::Channel;
-use mindgap_diagnosis::explain::NamedEffect;
 use mindgap_diagnosis::explain::evidence::Evidence;
 use mindgap_diagnosis::explain::profile::{Bin, ResidualProfile};
+use mindgap_diagnosis::verdict::NamedEffect;
 use mindgap_figures::pictures;
 use mindgap_models::effects::Effect;
 
 /// The causes, and what none of them explains; `None` where there is no gap.
 pub fn section(subject: &Subject) -> Option<Section> {
     let diagnosis = &subject.findings.diagnosis;
-    let (effects, profiles) = (diagnosis.effects(), diagnosis.profiles());
+    let (effects, profiles) = (&diagnosis.effects, &diagnosis.profiles);
     if effects.is_empty() && profiles.is_empty() && diagnosis.formula.is_none() {
         return None;
     }

@@ -25,7 +25,7 @@ const LEAST_NATS: f64 = 0.01;
 /// The section; `None` where there is no gap.
 pub fn section(findings: &Findings, room: &Room) -> Option<Section> {
     let diagnosis = &findings.diagnosis;
-    let channels = diagnosis.reduction().map_or(&[][..], |reduction| &reduction.channels);
+    let channels = diagnosis.reduction.as_ref().map_or(&[][..], |reduction| &reduction.channels);
     if channels.is_empty() && diagnosis.strata.is_empty() {
         return None;
     }

@@ -17,7 +17,7 @@ use mindgap_models::effects::chain::EffectChain;
 
 /// How far the longest paths go astray, in a sentence; `None` where no path was compared.
 pub fn astray(diagnosis: &Diagnosis) -> Option<String> {
-    let longest = diagnosis.reduction()?.paths.last()?;
+    let longest = diagnosis.reduction.as_ref()?.paths.last()?;
     Some(format!(
         "After {} steps of the same commands the simulated robot is {:.1} cm from the real one, {:.1} cm {}; scatter alone \
          makes {:.1} cm.",
@@ -31,7 +31,7 @@ pub fn astray(diagnosis: &Diagnosis) -> Option<String> {
 
 /// How far paths end from where the robot was; `None` where no path was compared.
 pub fn ends(diagnosis: &Diagnosis) -> Option<Section> {
-    let paths = diagnosis.reduction().map_or(&[][..], |reduction| &reduction.paths);
+    let paths = diagnosis.reduction.as_ref().map_or(&[][..], |reduction| &reduction.paths);
     if paths.is_empty() && diagnosis.final_positions.is_none() {
         return None;
     }
@@ -43,7 +43,7 @@ pub fn ends(diagnosis: &Diagnosis) -> Option<Section> {
         })
         .collect();
     let last = astray(diagnosis);
-    let drawn = diagnosis.reduction().map(|reduction| pictures::path_ends(reduction).draw());
+    let drawn = diagnosis.reduction.as_ref().map(|reduction| pictures::path_ends(reduction).draw());
     let body = html! {
         @if let (Some(last), Some(drawn)) = (&last, &drawn) {
             p { (last) }
@@ -71,7 +71,7 @@ pub fn section(replay: Option<&Replay>, diagnosis: &Diagnosis) -> Section {
         Some(replay) => html! {
             p {
                 "The robot as it was logged, and the simulator with the same commands"
-                @if diagnosis.effects().is_empty() { "." } @else { ", without and with the effects." }
+                @if diagnosis.effects.is_empty() { "." } @else { ", without and with the effects." }
                 " Simulated robots start at the first logged position of the real one and return to it every "
                 (PUT_BACK_STEPS)
                 " steps. Walls do not stop them."

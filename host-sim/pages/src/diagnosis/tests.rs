@@ -4,16 +4,16 @@ use serde_json::json;
 
 use super::*;
 use mindgap_built_in_robot::default_robot;
-use mindgap_diagnosis::account::{Account, ChannelReduction, GapReduction, Reduction, RunnerUp};
+use mindgap_diagnosis::account::{ChannelReduction, GapReduction, Reduction, RunnerUp};
 use mindgap_diagnosis::budget::SCATTER;
 use mindgap_diagnosis::channel::Channel;
-use mindgap_diagnosis::explain::NamedEffect;
 use mindgap_diagnosis::explain::evidence::Evidence;
 use mindgap_diagnosis::explain::profile::{Bin, ResidualProfile};
 use mindgap_diagnosis::explain::room_map::{RoomMap, Square};
 use mindgap_diagnosis::explain::strata::Stratum;
 use mindgap_diagnosis::formula::Statement;
 use mindgap_diagnosis::scope::{NotCompared, Scope};
+use mindgap_diagnosis::verdict::NamedEffect;
 use mindgap_foundations::geometry::Pose;
 use mindgap_learning::evaluation::paths::PathError;
 use mindgap_logs::inspection::{Finding, Handling, Part as Inspected};
@@ -33,12 +33,18 @@ fn logs(runs: usize, rows: usize, name: &str) -> Logs {
 
 fn no_gap() -> Findings {
     let diagnosis = Diagnosis {
-        data: Vec::new(),
-        scope: Scope { compared: Channel::ALL.to_vec(), not_compared: Vec::new() },
-        answer: Answer::NoGap,
-        formula: None,
+        schema: Diagnosis::SCHEMA,
+        verdict: Verdict::NoGap,
+        budget: Vec::new(),
+        effects: Vec::new(),
         strata: Vec::new(),
+        reduction: None,
         final_positions: None,
+        experiment: None,
+        formula: None,
+        profiles: Vec::new(),
+        scope: Scope { compared: Channel::ALL.to_vec(), not_compared: Vec::new() },
+        data: Vec::new(),
         untestable: Vec::new(),
         notes: Vec::new(),
     };
@@ -46,7 +52,7 @@ fn no_gap() -> Findings {
         diagnosis,
         applied: Vec::new(),
         robot: mindgap_built_in_robot::default_robot(),
-        scatter: [1.0; 3],
+        noise: [1.0; 3],
         formula: None,
         evidence: Vec::new(),
         room_map: None,
@@ -58,16 +64,12 @@ fn evil() -> Findings {
     let reduction = Reduction { before: 1.0, after: 0.1, reducible_closed: 0.9, ci95: [0.8, 1.0] };
     let bins = || vec![Bin { from: -1.0, to: 1.0, off: 0.2, error: 0.1 }];
     let profile = ResidualProfile { channel: Channel::Turn, depends_on: EVIL, unit: EVIL, bins: bins() };
-    let account = Account {
-        reduction: Some(GapReduction {
-            whole: reduction,
-            floor: 0.0,
-            runner_up: Some(RunnerUp { id: format!("{EVIL}+{EVIL}"), reducible_closed: 0.5 }),
-            channels: vec![ChannelReduction { channel: Channel::Turn, reduction }],
-            paths: vec![PathError { steps: 5, before_cm: 2.0, after_cm: 1.0, floor_cm: 0.5 }],
-        }),
-        budget: vec![Part { id: EVIL.into(), share: 0.9, ci95: [0.8, 1.0] }],
-        reducible: vec![1.0],
+    let gap_reduction = GapReduction {
+        whole: reduction,
+        floor: 0.0,
+        runner_up: Some(RunnerUp { id: format!("{EVIL}+{EVIL}"), reducible_closed: 0.5 }),
+        channels: vec![ChannelReduction { channel: Channel::Turn, reduction }],
+        paths: vec![PathError { steps: 5, before_cm: 2.0, after_cm: 1.0, floor_cm: 0.5 }],
     };
     let effect = NamedEffect {
         id: EVIL,
@@ -78,7 +80,6 @@ fn evil() -> Findings {
         intervals: [(EVIL.into(), json!([EVIL, EVIL]))].into_iter().collect(),
         at_bound: vec![EVIL],
     };
-    let answer = Answer::PartlyKnown { effects: vec![effect], account, experiment: None, profiles: vec![profile] };
     let finding = Finding {
         id: EVIL,
         rows_by_run: Vec::new(),
@@ -87,12 +88,16 @@ fn evil() -> Findings {
         sentence: EVIL.into(),
     };
     let diagnosis = Diagnosis {
+        verdict: Verdict::PartlyKnown,
+        budget: vec![Part { id: EVIL.into(), share: 0.9, ci95: [0.8, 1.0] }],
+        effects: vec![effect],
+        reduction: Some(gap_reduction),
+        profiles: vec![profile],
         data: vec![finding],
         scope: Scope {
             compared: Vec::new(),
             not_compared: vec![NotCompared { channel: Channel::Turn, reason: EVIL.into() }],
         },
-        answer,
         formula: Some(Statement { channel: Channel::Turn, text: EVIL.into(), share: 0.1, ci95: [0.0, 0.2] }),
         strata: vec![Stratum { channel: Channel::Turn, context: EVIL, gap: 1.0, ci95: [0.5, 1.5], share: 0.5 }],
         untestable: vec![EVIL],
@@ -156,9 +161,8 @@ fn ten_thousand_runs_are_sampled_and_the_page_says_so() {
 #[test]
 fn the_largest_part_of_the_gap_is_checked_first_even_if_it_is_scatter() {
     let mut findings = evil();
-    let Answer::PartlyKnown { account, .. } = &mut findings.diagnosis.answer else { panic!("it is known in part") };
     let part = |id: &str, share: f64| Part { id: id.into(), share, ci95: [share, share] };
-    account.budget = vec![part(EVIL, 0.2), part(SCATTER, 0.7), part(UNEXPLAINED, 0.1)];
+    findings.diagnosis.budget = vec![part(EVIL, 0.2), part(SCATTER, 0.7), part(UNEXPLAINED, 0.1)];
     let page = page_of(&findings, &logs(2, 5, "run-"), "logs");
     let (_, next) = page.split_once("<section id=\"next\"").expect("what to do next");
     let place = |words: &str| next.find(words).unwrap_or_else(|| panic!("{words} is missing"));

@@ -2,7 +2,7 @@
 
 use super::Measured;
 use mindgap_diagnosis::calibration::{CALIBRATED_STEPS, Calibration, Judgement};
-use mindgap_diagnosis::explain::{Explained, probability};
+use mindgap_diagnosis::verdict::{Explained, probability};
 
 /// Share of the cases without effects that pass the gate for an effect. A gain on held-out runs is required as well: fewer
 /// than one in a hundred passes both.
