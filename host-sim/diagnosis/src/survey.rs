@@ -24,7 +24,7 @@ use mindgap_models::simulator::{Missing, kinematic};
 #[derive(Clone, Debug, Serialize)]
 pub struct Survey {
     schema: u32,
-    /// What they hold, once what can be put right is put right.
+    /// Contents of the logs after correction.
     pub holds: Holdings,
     /// What is wrong with them.
     pub findings: Vec<Finding>,
@@ -58,7 +58,7 @@ impl Survey {
                 untestable
             }
             Err(why) => {
-                drive_more.push(format!("No effect can be told: {why}"));
+                drive_more.push(format!("No effect can be identified: {why}"));
                 CATALOGUE.iter().map(|effect| effect.id).collect()
             }
         };
@@ -67,12 +67,12 @@ impl Survey {
     }
 }
 
-/// What so many rows of random driving do not excite, more of them hardly would; each takes most of a kilobyte to judge.
+/// Maximum number of rows: effects that these do not excite, more random driving hardly would. A row takes almost a kilobyte.
 const ENOUGH_ROWS: usize = 20_000;
-/// So many runs are not made fewer.
+/// Minimum number of runs of a sample.
 const ENOUGH_RUNS: usize = 100;
 
-/// Of large logs every so many runs, and of long ones the beginning.
+/// Returns a sample of large logs: evenly spaced runs, and the beginnings of long ones.
 fn enough_of(logs: &Logs) -> Logs {
     let rows = logs.rows();
     if rows <= ENOUGH_ROWS {

@@ -53,7 +53,7 @@ impl Explanation for Noise<'_> {
         Noise::scores(self.remainder, self.axis, self.width, RowSet::HeldOut(rows))
     }
 
-    /// One width for thousands of rows costs as good as nothing.
+    /// One width for thousands of rows costs almost nothing.
     fn complexity_penalty(&self) -> f64 {
         0.0
     }

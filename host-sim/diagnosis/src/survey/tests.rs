@@ -67,11 +67,11 @@ fn logs_without_anything_to_compare_show_no_effect() {
     let survey = Survey::of(empty);
     assert_eq!(survey.untestable.len(), CATALOGUE.len());
     assert_eq!(survey.missing_networks.len(), 5);
-    assert!(lacks(&survey.drive_more, "No effect can be told"), "{:?}", survey.drive_more);
+    assert!(lacks(&survey.drive_more, "No effect can be identified"), "{:?}", survey.drive_more);
 }
 
 #[test]
-fn faults_are_found_and_what_cannot_be_put_right_is_refused() {
+fn faults_are_found_and_uncorrectable_logs_are_refused() {
     let mut endless = driven(8, 31, everything);
     endless.runs[2].rows.edit(5, |row| row.echo_cm = Some(1e7));
     let survey = Survey::of(endless);
