@@ -133,7 +133,7 @@ fn turns(state: &State) -> Markup {
         @if rows.is_empty() {
             p { "No controller was driven." }
         } @else {
-            (chart("chances", &chances(&state.trials), "SuccessProbability of each trial's controller before and after it was driven", html! {
+            (chart("chances", &success_probabilities(&state.trials), "Chance of each trial's controller before and after it was driven", html! {
                 "The chance of success that the simulator predicts for each controller before it is driven, and after the run, "
                 "with the range over 95 % of the possible robots. On top: ✓ the robot reached the target, ✗ it missed it. A wide "
                 "range means that the robot is not known well enough."
