@@ -15,7 +15,7 @@ const KEPT: usize = 8;
 const MUTANTS: usize = 30;
 /// Runs of each controller in each generation. Controllers that stay are driven again, which averages out luck.
 const RUNS: u64 = 10;
-/// Number of genes in which a mutant differs, and the standard deviations of the differences.
+/// Probability that a gene of a mutant differs, and the standard deviations of the differences.
 const PROBABILITY: f64 = 0.15;
 const DEVIATIONS: [f32; 3] = [0.01, 0.03, 0.08];
 /// Number of the first run. No other procedure drives these runs.
