@@ -1,7 +1,7 @@
 """Finds the gap between a small robot and its simulator, and evolves controllers that cross it.
 
-Lengths are centimetres, angles degrees, times milliseconds, as the names say. The same seed, inputs and version give the
-same results on any number of threads. Other threads run while a function works; an interrupt is heard when it has ended.
+Lengths are in centimetres, angles in degrees and times in milliseconds, as the names say. The same seed, inputs and version
+give the same results on any number of threads. Functions release the interpreter, and Ctrl-C interrupts long ones.
 """
 
 from collections.abc import Mapping, Sequence
@@ -40,35 +40,35 @@ _Tables: TypeAlias = _Path | Mapping[str, Any]
 _Run: TypeAlias = pd.DataFrame | np.ndarray[Any, Any] | Mapping[str, ArrayLike]
 
 class Error(Exception):
-    """Why something could not be done, in one line."""
+    """An operation that failed; the message is one line."""
 
 @final
 class Logs:
-    """Runs of a robot in a scene."""
+    """Logged runs of a robot in a scene."""
 
     def __new__(cls, runs: pd.DataFrame | Mapping[str, _Run], robot: _Tables, scene: _Tables | None = None) -> Logs:
-        """Logs from frames or arrays, with the checks of a folder of logs.
+        """Makes logs from frames or arrays, with the checks of a folder of logs.
 
-        runs: one frame with a column `run`, or for each run's name a frame, a structured array or a dict of arrays.
-            Columns are those of run-*.csv: t_ms, left, right (-100 to 100), x_cm, y_cm, heading_deg, echo_cm. NaN stands
-            where the tracker lost the robot or the sensor gave no value.
-        robot: path of robot.toml, or a dict of what stands in one.
-        scene: the same of scene.toml; open ground without one.
+        runs: one frame with a column `run`, or a mapping from run names to frames, structured arrays or dicts of arrays.
+            Columns are those of run-*.csv: t_ms, left, right (-100 to 100), x_cm, y_cm, heading_deg, echo_cm. NaN means
+            that the tracker lost the robot or the sensor gave no value.
+        robot: path of robot.toml, or a dict with its contents.
+        scene: likewise for scene.toml; None for open ground.
         """
 
     @staticmethod
     def read(folder: _Path) -> Logs:
-        """Reads a folder of logs; what is odd in it is warned of."""
+        """Reads a folder of logs; warns of oddities."""
 
     def write(self, folder: _Path, *, force: bool = False) -> None:
-        """Writes a folder of logs; one that is not empty is taken with `force` only, and what others keep there stays."""
+        """Writes a folder of logs. A folder that is not empty needs `force`; unrelated files in it are kept."""
 
     @property
     def runs(self) -> dict[str, dict[str, np.ndarray[Any, Any]]]:
-        """The runs: arrays by name of column, by name of run. NaN stands where a cell is empty."""
+        """The runs: arrays by column name, by run name. Empty cells are NaN."""
 
     def frame(self) -> pd.DataFrame:
-        """All runs in one frame, with a column `run`."""
+        """Returns all runs in one frame, with a column `run`."""
 
     @property
     def robot(self) -> _Facts:
@@ -79,36 +79,36 @@ class Logs:
         """The scene, as in scene.toml."""
 
     def check(self) -> _Facts:
-        """What the logs hold, what is wrong with them, what they suffice for, and what to drive more."""
+        """Checks the logs: contents, defects, what they can identify, and what to drive next."""
 
     def __len__(self) -> int: ...
 
 @final
 class Simulator:
-    """A simulator of a robot: five networks, and how reality scatters about them."""
+    """A simulator of a robot: five networks and their noise."""
 
     @staticmethod
     def read(path: _Path) -> Simulator:
         """Reads a simulator file."""
 
     def write(self, path: _Path, *, force: bool = False) -> None:
-        """Writes a simulator file; what is there and no simulator is replaced with `force` only."""
+        """Writes a simulator file; replacing anything but a simulator needs `force`."""
 
     @property
     def origin(self) -> _Facts:
-        """How it was made."""
+        """How the simulator was made."""
 
     @property
     def robot(self) -> _Facts:
-        """Its robot, as in robot.toml."""
+        """The robot, as in robot.toml."""
 
     @property
     def added(self) -> list[_Facts]:
-        """The effects that were added to it, in the order in which they act."""
+        """The effects added to the simulator, in the order in which they act."""
 
 @final
 class Evaluation:
-    """How well a simulator's networks do."""
+    """The accuracy of a simulator's networks."""
 
     @property
     def facts(self) -> _Facts:
@@ -119,19 +119,19 @@ class Evaluation:
         """The accuracy of each network."""
 
     def page(self) -> Page:
-        """The page of `mindgap evaluate --html`."""
+        """Returns the page of `mindgap evaluate --html`."""
 
     def figures(self) -> list[Figure]:
-        """The figures of `mindgap evaluate --figures`."""
+        """Returns the figures of `mindgap evaluate --figures`."""
 
     def write_figures(self, folder: _Path, *, force: bool = False) -> None:
-        """Writes them into a folder as SVG and PNG."""
+        """Writes the figures into a folder as SVG and PNG."""
 
     def _repr_html_(self) -> str: ...
 
 @final
 class Diagnosis:
-    """What the gap is, where it lies, what causes it, and how far it shrinks."""
+    """The size, location and causes of a gap, and how much of it they explain."""
 
     @property
     def facts(self) -> _Facts:
@@ -139,34 +139,34 @@ class Diagnosis:
 
     @property
     def verdict(self) -> Literal["no_gap", "known", "partly_known", "unknown"]:
-        """The answer in one word."""
+        """The verdict."""
 
     @property
     def effects(self) -> pd.DataFrame:
-        """The effects that are named, the most probable first; a parameter `p` is the column `parameters.p`."""
+        """The effects found, most probable first; a parameter `p` is the column `parameters.p`."""
 
     @property
     def budget(self) -> pd.DataFrame:
-        """What the gap is made of."""
+        """The contributions to the gap."""
 
     @property
     def where(self) -> pd.DataFrame:
         """Where the gap lies."""
 
-    def corrected_simulator(self) -> Simulator:
+    def with_effects_applied(self) -> Simulator:
         """Returns the simulator with the effects that explain the gap, and the formula of the remaining residual."""
 
     def write_next_experiment(self, path: _Path, *, force: bool = False) -> bool:
-        """Writes the commands to log next, as a run in CSV; False where no causes are confused."""
+        """Writes the commands to log next, as a run in CSV. Returns False if no causes are confused."""
 
     def page(self) -> Page:
-        """The page of `mindgap diagnose --html`."""
+        """Returns the page of `mindgap diagnose --html`."""
 
     def figures(self) -> list[Figure]:
-        """The figures of `mindgap diagnose --figures`."""
+        """Returns the figures of `mindgap diagnose --figures`."""
 
     def write_figures(self, folder: _Path, *, force: bool = False) -> None:
-        """Writes them into a folder as SVG and PNG."""
+        """Writes the figures into a folder as SVG and PNG."""
 
     def _repr_html_(self) -> str: ...
 
@@ -179,11 +179,11 @@ class Controller:
         """Reads a controller file."""
 
     def write(self, path: _Path, *, force: bool = False) -> None:
-        """Writes a controller file; what is there and was not evolved by mindgap is replaced with `force` only."""
+        """Writes a controller file; replacing anything that mindgap did not evolve needs `force`."""
 
     @property
     def facts(self) -> _Facts:
-        """What stands in its file."""
+        """The contents of its file."""
 
     @property
     def tuples(self) -> pd.DataFrame:
@@ -191,7 +191,7 @@ class Controller:
 
 @final
 class Evolution:
-    """A controller that was evolved, and how good it is."""
+    """An evolved controller and its success in simulation."""
 
     @property
     def controller(self) -> Controller:
@@ -199,11 +199,11 @@ class Evolution:
 
     @property
     def facts(self) -> _Facts:
-        """`success` and `crashed` in 200 fresh simulated runs, their `median_cm` from the target, and the `chance` over
-        robots that the logs leave possible, None where the simulator knows of none."""
+        """`success` and `crashed` in 200 fresh simulated runs, their `median_cm` from the target, and the `chance` of
+        success over the posterior of robots, None if the simulator has no posterior."""
 
     def figures(self) -> list[Figure]:
-        """The figures of `mindgap evolve --figures`."""
+        """Returns the figures of `mindgap evolve --figures`."""
 
     def _repr_html_(self) -> str: ...
 
@@ -217,7 +217,7 @@ class Simulation:
 
     @property
     def success(self) -> float | None:
-        """Share of the runs that reached the target; None in a scene without one."""
+        """Share of the runs that reached the target; None if the scene has no target."""
 
     @property
     def runs(self) -> pd.DataFrame:
@@ -228,43 +228,43 @@ class Simulation:
         """The paths of all runs, step by step."""
 
     def page(self) -> Page:
-        """The page of `mindgap simulate --html`."""
+        """Returns the page of `mindgap simulate --html`."""
 
     def figures(self) -> list[Figure]:
-        """The figures of `mindgap simulate --figures`."""
+        """Returns the figures of `mindgap simulate --figures`."""
 
     def write_figures(self, folder: _Path, *, force: bool = False) -> None:
-        """Writes them into a folder as SVG and PNG."""
+        """Writes the figures into a folder as SVG and PNG."""
 
     def _repr_html_(self) -> str: ...
 
 @final
 class Figure:
-    """A figure; a notebook shows it."""
+    """A figure that a notebook displays."""
 
     @property
     def name(self) -> str:
-        """The name that its files have."""
+        """The name of its files."""
 
     @property
     def svg(self) -> str:
         """The figure as SVG."""
 
     def png(self) -> bytes:
-        """The figure as PNG of 288 dots to the inch."""
+        """Returns the figure as PNG with 288 dots per inch."""
 
     def _repr_svg_(self) -> str: ...
 
 @final
 class Page:
-    """A page for a browser, whole in one text; a notebook shows it."""
+    """A self-contained HTML page that a notebook displays."""
 
     @property
     def html(self) -> str:
         """Its HTML."""
 
     def write(self, path: _Path, *, force: bool = False) -> None:
-        """Writes it; what is there and no page of mindgap's is replaced with `force` only."""
+        """Writes the page; replacing anything but a page by mindgap needs `force`."""
 
     def _repr_html_(self) -> str: ...
 
@@ -278,15 +278,15 @@ def record(
 ) -> Logs:
     """Records random-command logs of the built-in robot.
 
-    effects: what is different about it, each as `ID`, `ID=STRENGTH` or `ID=STRENGTH@DETAIL`; `mindgap record --help`
+    effects: faults to inject, each as `ID`, `ID=STRENGTH` or `ID=STRENGTH@DETAIL`; `mindgap record --help`
         lists them.
     """
 
 def train(logs: Logs, *, trainer: Literal["fast", "paper"] = "fast", seed: int = 1) -> Simulator:
-    """Trains the five networks of a simulator on logs; one that they do not suffice for is warned of."""
+    """Trains the five networks of a simulator on logs; warns of networks that the logs do not support."""
 
 def evaluate(simulator: Simulator, logs: Logs) -> Evaluation:
-    """Judges a simulator's networks on logs, best on such as it was not trained on."""
+    """Evaluates a simulator's networks on logs, preferably logs that it was not trained on."""
 
 def diagnose(
     simulator: Simulator | Literal["kinematic"],
@@ -300,9 +300,9 @@ def diagnose(
     """Finds the gap between a simulator and logs.
 
     simulator: the simulator, or "kinematic" for the textbook's differential drive and an ideal sonar.
-    controller: whose runs the logs are, where they are: also compares where they end.
-    effects: files of effects of your own that compete with the built-in ones.
-    step_ms: length of the steps in which rows are compared, unless it is the usual one.
+    controller: the controller that drove the logged runs, if any; also compares their end points.
+    effects: files with custom effects that compete with the built-in ones.
+    step_ms: duration of the steps in which rows are compared; None for the usual one.
     """
 
 def evolve(
@@ -310,7 +310,7 @@ def evolve(
 ) -> Evolution:
     """Evolves one controller for a start (from 1) of a scene in a simulator.
 
-    scene: path of scene.toml, or a dict of what stands in one, with a target and starts.
+    scene: path of scene.toml, or a dict with its contents, which has a target and starts.
     """
 
 def simulate(
@@ -322,4 +322,4 @@ def simulate(
     runs: int = 10,
     seed: int = 1,
 ) -> Simulation:
-    """Runs a controller in a simulator: each run is of another robot that its logs leave possible."""
+    """Runs a controller in a simulator; each run samples a robot from the posterior."""

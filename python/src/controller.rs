@@ -24,9 +24,9 @@ use crate::{convert, places};
 /// A six-tuple controller.
 #[pyclass(frozen, module = "mindgap")]
 pub struct Controller {
-    /// It, with its origin.
+    /// The controller and its origin.
     pub file: ControllerFile,
-    /// What pages call it.
+    /// Its name in pages.
     pub name: String,
 }
 
@@ -47,14 +47,14 @@ impl Controller {
         Ok(Controller { file: ControllerFile::read(&path).map_err(raised)?, name: path.display().to_string() })
     }
 
-    /// Writes a controller file; what is there and was not evolved by mindgap is replaced with `force` only.
+    /// Writes a controller file; replacing anything that mindgap did not evolve needs `force`.
     #[pyo3(signature = (path, *, force=false))]
     fn write(&self, path: PathBuf, force: bool) -> PyResult<()> {
         places::file(&path, kinds::CONTROLLER, force)?;
         self.file.write(&path).map_err(raised)
     }
 
-    /// What stands in its file.
+    /// The contents of its file.
     #[getter]
     fn facts<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let ControllerFile { controller, origin } = &self.file;
@@ -73,7 +73,7 @@ impl Controller {
     }
 }
 
-/// A controller that was evolved, and how good it is.
+/// An evolved controller and its success in simulation.
 #[pyclass(frozen, module = "mindgap")]
 pub struct Evolution {
     answered: Answered,
@@ -81,7 +81,7 @@ pub struct Evolution {
     scene: Scene,
 }
 
-/// How good a controller is in simulation, and how it came about: what `mindgap evolve --json` writes of it.
+/// The success of a controller in simulation and its origin, as `mindgap evolve --json` writes them.
 #[derive(Serialize)]
 struct Success {
     start: usize,
@@ -104,8 +104,8 @@ impl Evolution {
         Controller { file, name: "a controller from Python".into() }
     }
 
-    /// Success and crashes in fresh simulated runs, the median distance to the target, the chance over robots that the logs
-    /// leave possible, and how it was evolved.
+    /// Success and crashes in fresh simulated runs, the median distance to the target, the probability of success over the
+    /// posterior of robots, and how it was evolved.
     #[getter]
     fn facts<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let Answered { evolved, success, chance, .. } = &self.answered;
@@ -116,7 +116,7 @@ impl Evolution {
         convert::facts(py, &Success { start, seed, generations, fitness, success, crashed, median_cm, chance: *chance })
     }
 
-    /// The figures of `mindgap evolve --figures`.
+    /// Returns the figures of `mindgap evolve --figures`.
     fn figures(&self, py: Python<'_>) -> PyResult<Vec<Figure>> {
         Ok(show::figures(py.detach(|| self.drawn())?))
     }

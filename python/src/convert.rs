@@ -1,4 +1,4 @@
-//! Between Python's values and the library's.
+//! Conversions between Python's values and the library's.
 
 use std::path::{Path, PathBuf};
 
@@ -13,28 +13,28 @@ use serde::Serialize;
 
 use crate::error::raised;
 
-/// A value as `--json` writes it, in dicts, lists and numbers.
+/// Converts a value to the dicts, lists and numbers that `--json` writes.
 pub fn facts<'py>(py: Python<'py>, value: &impl Serialize) -> PyResult<Bound<'py, PyAny>> {
     let text = serde_json::to_string(value).map_err(|e| PyTypeError::new_err(e.to_string()))?;
     py.import("json")?.call_method1("loads", (text,))
 }
 
-/// Rows as a frame; what is nested in them has dots in its column's name.
+/// Converts rows to a frame; nested fields have dots in their column names.
 pub fn frame<'py>(py: Python<'py>, rows: &impl Serialize) -> PyResult<Bound<'py, PyAny>> {
     py.import("pandas")?.call_method1("json_normalize", (facts(py, rows)?,))
 }
 
-/// A robot from a path of robot.toml or a dict of what stands in one.
+/// Reads a robot from a path of robot.toml or a dict with its contents.
 pub fn robot(from: &Bound<PyAny>) -> PyResult<Robot> {
     from_toml(from, "robot", Robot::read, Robot::parse)
 }
 
-/// A scene from a path of scene.toml or a dict of what stands in one.
+/// Reads a scene from a path of scene.toml or a dict with its contents.
 pub fn scene(from: &Bound<PyAny>) -> PyResult<Scene> {
     from_toml(from, "scene", Scene::read, Scene::parse)
 }
 
-/// A scene as a dict.
+/// Returns a scene as a dict.
 pub fn scene_facts<'py>(py: Python<'py>, scene: &Scene) -> PyResult<Bound<'py, PyAny>> {
     let tables: toml::Table = scene.to_text().parse().map_err(|e| PyTypeError::new_err(format!("{e}")))?;
     facts(py, &tables)
@@ -49,15 +49,16 @@ fn from_toml<T>(
     if let Ok(path) = from.extract::<PathBuf>() {
         return read(&path).map_err(raised);
     }
-    let form =
-        |e: String| PyTypeError::new_err(format!("{name}: a path of {name}.toml or a dict of what stands in it: {e}"));
+    let form = |e: String| {
+        PyTypeError::new_err(format!("{name}: expected a path of {name}.toml or a dict with its contents: {e}"))
+    };
     let text: String = from.py().import("json")?.call_method1("dumps", (from,))?.extract()?;
     let tables: toml::Table = serde_json::from_str(&text).map_err(|e| form(e.to_string()))?;
     let text = toml::to_string(&tables).map_err(|e| form(e.to_string()))?;
     parse(Path::new(name), &text).map_err(raised)
 }
 
-/// Runs from one frame with a column `run`, or from a table for each run's name.
+/// Reads runs from one frame with a column `run`, or from a mapping from run names to tables.
 pub fn tables(runs: &Bound<PyAny>) -> PyResult<Vec<Table>> {
     let py = runs.py();
     if !runs.hasattr("groupby")? {
@@ -75,7 +76,7 @@ pub fn tables(runs: &Bound<PyAny>) -> PyResult<Vec<Table>> {
         .collect()
 }
 
-/// A frame, a structured array, or a dict of arrays.
+/// Reads a run from a frame, a structured array, or a dict of arrays.
 fn table((name, rows): &(String, Bound<PyAny>)) -> PyResult<Table> {
     let names = match rows.getattr("dtype") {
         Ok(kind) => kind.getattr("names")?,
@@ -96,7 +97,7 @@ fn numbers(column: &Bound<PyAny>) -> PyResult<Vec<f64>> {
     PyBuffer::get(&array)?.to_vec(py)
 }
 
-/// A run as a dict of arrays.
+/// Returns a run as a dict of arrays.
 pub fn arrays<'py>(py: Python<'py>, table: Table) -> PyResult<Bound<'py, PyDict>> {
     let numpy = py.import("numpy")?;
     let arrays = PyDict::new(py);

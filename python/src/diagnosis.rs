@@ -24,10 +24,10 @@ use crate::show::{self, Figure, Page};
 use crate::simulator::Simulator;
 use crate::{convert, places};
 
-/// Stands for a simulator: the textbook's.
+/// Name of the textbook simulator, in place of a simulator.
 const KINEMATIC: &str = "kinematic";
 
-/// What the gap is, where it lies, what causes it, and how far it shrinks.
+/// The size, location and causes of a gap, and how much of it they explain.
 #[pyclass(frozen, module = "mindgap")]
 pub struct Diagnosis {
     answered: Answered,
@@ -51,13 +51,13 @@ impl Diagnosis {
         convert::facts(py, &self.diagnosis().verdict)
     }
 
-    /// The effects that are named, as a frame.
+    /// The effects found, as a frame.
     #[getter]
     fn effects<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         convert::frame(py, &self.diagnosis().effects)
     }
 
-    /// What the gap is made of, as a frame.
+    /// The contributions to the gap, as a frame.
     #[getter]
     fn budget<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         convert::frame(py, &self.diagnosis().budget)
@@ -69,12 +69,12 @@ impl Diagnosis {
         convert::frame(py, &self.diagnosis().strata)
     }
 
-    /// The simulator with the effects added that explain the gap, and the formula of what they leave.
-    fn corrected_simulator(&self, py: Python<'_>) -> PyResult<Simulator> {
+    /// Returns the simulator with the effects that explain the gap, and the formula of the remaining residual.
+    fn with_effects_applied(&self, py: Python<'_>) -> PyResult<Simulator> {
         py.detach(|| self.request().with_effects_applied(&self.answered)).map(Simulator::made).map_err(raised)
     }
 
-    /// Writes the commands to log next, as a run in CSV; False where no causes are confused.
+    /// Writes the commands to log next, as a run in CSV. Returns False if no causes are confused.
     #[pyo3(signature = (path, *, force=false))]
     fn write_next_experiment(&self, path: PathBuf, force: bool) -> PyResult<bool> {
         let Some(experiment) = self.diagnosis().experiment.as_ref() else { return Ok(false) };
@@ -83,7 +83,7 @@ impl Diagnosis {
         Ok(true)
     }
 
-    /// The page of `mindgap diagnose --html`.
+    /// Returns the page of `mindgap diagnose --html`.
     fn page(&self, py: Python<'_>) -> PyResult<Page> {
         Page::made(py.detach(|| {
             let Answered { findings, logs } = &self.answered;
@@ -95,12 +95,12 @@ impl Diagnosis {
         }))
     }
 
-    /// The figures of `mindgap diagnose --figures`.
+    /// Returns the figures of `mindgap diagnose --figures`.
     fn figures(&self, py: Python<'_>) -> Vec<Figure> {
         show::figures(py.detach(|| pictures::figures_of_diagnosis(self.diagnosis())))
     }
 
-    /// Writes them into a folder as SVG and PNG.
+    /// Writes the figures into a folder as SVG and PNG.
     #[pyo3(signature = (folder, *, force=false))]
     fn write_figures(&self, py: Python<'_>, folder: PathBuf, force: bool) -> PyResult<()> {
         places::folder(&folder, force)?;
@@ -123,7 +123,7 @@ impl Diagnosis {
         &self.answered.findings.diagnosis
     }
 
-    /// What was asked, without the controller and the steps, which are in the answer.
+    /// Returns the request, without the controller and the steps, which are in the answer.
     fn request(&self) -> Request<'_> {
         Request { simulator: self.simulator.as_deref(), controller: None, method: self.method, step_ms: None }
     }
@@ -158,7 +158,7 @@ pub fn diagnose(
     Ok(Diagnosis { answered, simulator, method, names: [name, logs.name()], folder: logs.folder.clone() })
 }
 
-/// A simulator, or none for the textbook, and what pages call it.
+/// Returns a simulator, or `None` for the textbook's, and its name in pages.
 fn against(given: &Bound<PyAny>) -> PyResult<(Option<Arc<simulator::Simulator>>, String)> {
     if let Ok(simulator) = given.cast::<Simulator>() {
         return Ok((Some(simulator.get().inner.clone()), simulator.get().name.clone()));
@@ -166,5 +166,5 @@ fn against(given: &Bound<PyAny>) -> PyResult<(Option<Arc<simulator::Simulator>>,
     if given.extract::<&str>().is_ok_and(|word| word == KINEMATIC) {
         return Ok((None, textbook::NAME.into()));
     }
-    Err(PyTypeError::new_err(format!("simulator: a mindgap.Simulator or {KINEMATIC:?}")))
+    Err(PyTypeError::new_err(format!("simulator: expected a mindgap.Simulator or {KINEMATIC:?}")))
 }

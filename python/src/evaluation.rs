@@ -1,4 +1,4 @@
-//! How well a simulator's networks do on logs.
+//! The accuracy of a simulator's networks on logs.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -17,7 +17,7 @@ use crate::show::{self, Figure, Page};
 use crate::simulator::Simulator;
 use crate::{convert, places};
 
-/// How well a simulator's networks do.
+/// The accuracy of a simulator's networks.
 #[pyclass(frozen, module = "mindgap")]
 pub struct Evaluation {
     evaluation: accuracy::Evaluation,
@@ -26,7 +26,7 @@ pub struct Evaluation {
     names: [String; 2],
 }
 
-/// A network's row.
+/// The row of a network.
 #[derive(Default, Serialize)]
 struct Row {
     network: &'static str,
@@ -70,19 +70,19 @@ impl Evaluation {
         convert::frame(py, &rows)
     }
 
-    /// The page of `mindgap evaluate --html`.
+    /// Returns the page of `mindgap evaluate --html`.
     fn page(&self, py: Python<'_>) -> PyResult<Page> {
         let names = self.names.each_ref().map(String::as_str);
         let subject = Subject { evaluation: &self.evaluation, simulator: &self.simulator, logs: &self.logs, names };
         Page::made(py.detach(|| Ok(page(&subject))))
     }
 
-    /// The figures of `mindgap evaluate --figures`.
+    /// Returns the figures of `mindgap evaluate --figures`.
     fn figures(&self, py: Python<'_>) -> Vec<Figure> {
         show::figures(py.detach(|| self.drawn()))
     }
 
-    /// Writes them into a folder as SVG and PNG.
+    /// Writes the figures into a folder as SVG and PNG.
     #[pyo3(signature = (folder, *, force=false))]
     fn write_figures(&self, py: Python<'_>, folder: PathBuf, force: bool) -> PyResult<()> {
         places::folder(&folder, force)?;
@@ -104,7 +104,7 @@ impl Evaluation {
     }
 }
 
-/// Judges a simulator's networks on logs, best on such as it was not trained on.
+/// Evaluates a simulator's networks on logs, preferably logs that it was not trained on.
 #[pyfunction]
 pub fn evaluate(py: Python<'_>, simulator: &Simulator, logs: &Logs) -> PyResult<Evaluation> {
     let sound = logs.sound(py, Some(&simulator.inner))?;

@@ -1,18 +1,18 @@
-//! Long work that Ctrl-C ends, as it ends everything else in Python.
+//! Long operations that Ctrl-C interrupts, as anything else in Python.
 
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::{Mutex, PoisonError};
 
 use pyo3::prelude::*;
 
-/// Asks in the middle of some work whether somebody wants it ended.
+/// Checks for interrupts during an operation.
 #[derive(Default)]
 pub struct Interrupt(Mutex<Option<PyErr>>);
 
-/// Does work with the interpreter released, until a signal's handler raises in one of its checks.
+/// Runs an operation with the interpreter released, until a signal handler raises in one of its checks.
 ///
 /// # Errors
-/// What the handler raised: `KeyboardInterrupt` after Ctrl-C.
+/// If the handler raises; the error is what it raised: `KeyboardInterrupt` after Ctrl-C.
 pub fn interruptible<T: Send>(py: Python<'_>, work: impl FnOnce(&Interrupt) -> T + Send) -> PyResult<T> {
     let interrupt = Interrupt::default();
     let done = py.detach(|| catch_unwind(AssertUnwindSafe(|| work(&interrupt))));
@@ -25,8 +25,8 @@ pub fn interruptible<T: Send>(py: Python<'_>, work: impl FnOnce(&Interrupt) -> T
 }
 
 impl Interrupt {
-    /// Unwinds to [`interruptible`] if a signal's handler raises. The library's work has no other way out: what it says of
-    /// its progress is not answered.
+    /// Unwinds to [`interruptible`] if a signal handler raises. The library has no other way to stop an operation: its
+    /// progress callbacks return nothing.
     pub fn check(&self) {
         if let Err(raised) = Python::attach(|py| py.check_signals()) {
             *self.0.lock().unwrap_or_else(PoisonError::into_inner) = Some(raised);

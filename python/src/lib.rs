@@ -1,7 +1,7 @@
 //! The Python package `mindgap`: arrays and frames in, the library's work, and dicts, frames and pictures out.
 //!
-//! It holds no logic of its own: each function calls what the command of its name calls, with the interpreter released
-//! meanwhile. Types and words for users are in `mindgap.pyi` and `docs/how-to/python.md`.
+//! It has no logic of its own: each function calls the same code as the command of its name, with the interpreter released.
+//! Types and documentation for users are in `mindgap.pyi` and `docs/how-to/python.md`.
 
 mod controller;
 mod convert;
@@ -38,6 +38,6 @@ mod mindgap {
     use super::simulator::{Simulator, train};
 
     #[pymodule_export]
-    #[expect(non_upper_case_globals, reason = "Python's name for it")]
+    #[expect(non_upper_case_globals, reason = "name in Python")]
     const __version__: &str = env!("CARGO_PKG_VERSION");
 }

@@ -16,12 +16,12 @@ use pyo3::types::{IntoPyDict, PyDict};
 use crate::error::{Error, raised, warn};
 use crate::{convert, places};
 
-/// Runs of a robot in a scene.
+/// Logged runs of a robot in a scene.
 #[pyclass(frozen, module = "mindgap")]
 pub struct Logs {
     /// The logs.
     pub inner: Arc<logs::Logs>,
-    /// Where they were read.
+    /// The folder that they were read from.
     pub folder: Option<PathBuf>,
 }
 
@@ -48,14 +48,14 @@ impl Logs {
         Ok(Logs { inner: Arc::new(read.map_err(raised)?), folder: Some(folder) })
     }
 
-    /// Writes a folder of logs; one that is not empty is taken with `force` only, and what others keep there stays.
+    /// Writes a folder of logs. A folder that is not empty needs `force`; unrelated files in it are kept.
     #[pyo3(signature = (folder, *, force=false))]
     fn write(&self, py: Python<'_>, folder: PathBuf, force: bool) -> PyResult<()> {
         places::folder(&folder, force)?;
         py.detach(|| self.inner.write(&folder)).map_err(raised)
     }
 
-    /// The runs: arrays by name of column, by name of run. NaN stands where a cell is empty.
+    /// The runs: arrays by column name, by run name. Empty cells are NaN.
     #[getter]
     fn runs<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let runs = PyDict::new(py);
@@ -65,7 +65,7 @@ impl Logs {
         Ok(runs)
     }
 
-    /// All runs in one frame, with a column `run`.
+    /// Returns all runs in one frame, with a column `run`.
     fn frame<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let pandas = py.import("pandas")?;
         let frames = self.inner.runs.iter().map(|run| {
@@ -89,7 +89,7 @@ impl Logs {
         convert::scene_facts(py, &self.inner.scene)
     }
 
-    /// What the logs hold, what is wrong with them, what they suffice for, and what to drive more.
+    /// Checks the logs: contents, defects, what they can identify, and what to drive next.
     fn check<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let survey = py.detach(|| Survey::of((*self.inner).clone()));
         convert::facts(py, &survey)
@@ -105,12 +105,12 @@ impl Logs {
 }
 
 impl Logs {
-    /// Logs that were made.
+    /// Wraps logs.
     pub fn made(logs: logs::Logs) -> Self {
         Logs { inner: Arc::new(logs), folder: None }
     }
 
-    /// What pages call them.
+    /// Returns their name in pages.
     pub fn name(&self) -> String {
         self.folder.as_ref().map_or_else(|| "logs from Python".into(), |folder| folder.display().to_string())
     }

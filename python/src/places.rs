@@ -1,4 +1,4 @@
-//! What may be written over: as the command does, nothing of others unless it is asked for.
+//! Protection of existing files: as in the command, those of others are replaced only on request.
 
 use std::path::PathBuf;
 
@@ -7,12 +7,12 @@ use pyo3::prelude::*;
 
 use crate::error::raised;
 
-/// Checks a file that is to be written.
+/// Checks that a file may be written.
 pub fn file(path: &PathBuf, kind: Kind, force: bool) -> PyResult<()> {
     Places::default().writing([path], kind).check(force, false).map_err(raised)
 }
 
-/// Checks a folder that is to be filled.
+/// Checks that a folder may be filled.
 pub fn folder(path: &PathBuf, force: bool) -> PyResult<()> {
     Places::default().filling([path]).check(force, false).map_err(raised)
 }

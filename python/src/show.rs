@@ -1,4 +1,4 @@
-//! What a notebook shows: figures and pages.
+//! Figures and pages that a notebook displays.
 
 use std::path::PathBuf;
 
@@ -19,7 +19,7 @@ const PAGE_HEIGHT_PX: u32 = 700;
 /// A figure.
 #[pyclass(frozen, module = "mindgap")]
 pub struct Figure {
-    /// The name that its files have.
+    /// The name of its files.
     #[pyo3(get)]
     name: String,
     figure: report::Figure,
@@ -33,7 +33,7 @@ impl Figure {
         self.figure.svg()
     }
 
-    /// The figure as PNG of 288 dots to the inch.
+    /// Returns the figure as PNG with 288 dots per inch.
     fn png<'py>(&self, py: Python<'py>) -> Bound<'py, PyBytes> {
         PyBytes::new(py, &py.detach(|| self.figure.png()))
     }
@@ -47,12 +47,12 @@ impl Figure {
     }
 }
 
-/// Figures as Python has them.
+/// Converts figures for Python.
 pub fn figures(figures: Vec<NamedFigure>) -> Vec<Figure> {
     figures.into_iter().map(|NamedFigure { name, figure }| Figure { name, figure }).collect()
 }
 
-/// Figures one below the other.
+/// Returns the SVG of figures one below the other.
 pub fn below_each_other(figures: &[NamedFigure]) -> String {
     figures.iter().map(|named| format!("<div>{}</div>", named.figure.svg())).collect()
 }
@@ -60,13 +60,13 @@ pub fn below_each_other(figures: &[NamedFigure]) -> String {
 /// A page for a browser.
 #[pyclass(frozen, module = "mindgap")]
 pub struct Page {
-    /// Its HTML, whole in one text.
+    /// Its self-contained HTML.
     #[pyo3(get)]
     html: String,
 }
 
 impl Page {
-    /// A page that could be made.
+    /// Wraps the HTML of a page.
     pub fn made(html: Result<String>) -> PyResult<Self> {
         html.map(|html| Page { html }).map_err(raised)
     }
@@ -74,7 +74,7 @@ impl Page {
 
 #[pymethods]
 impl Page {
-    /// Writes it; what is there and no page of mindgap's is replaced with `force` only.
+    /// Writes the page; replacing anything but a page by mindgap needs `force`.
     #[pyo3(signature = (path, *, force=false))]
     fn write(&self, path: PathBuf, force: bool) -> PyResult<()> {
         places::file(&path, kinds::PAGE, force)?;
@@ -82,7 +82,7 @@ impl Page {
     }
 
     fn _repr_html_(&self) -> String {
-        // All that would end an attribute.
+        // These characters would end the attribute.
         let whole = self.html.replace('&', "&amp;").replace('"', "&quot;");
         format!(
             "<iframe title=\"A page by mindgap\" srcdoc=\"{whole}\" \

@@ -32,7 +32,7 @@ pub struct Simulation {
     seed: u64,
 }
 
-/// A run's row.
+/// The row of a run.
 #[derive(Serialize)]
 struct Run {
     run: usize,
@@ -61,7 +61,7 @@ impl Simulation {
         convert::facts(py, &self.rollouts)
     }
 
-    /// Share of the runs that reached the target; None in a scene without one.
+    /// Share of the runs that reached the target; None if the scene has no target.
     #[getter]
     fn success(&self) -> Option<f64> {
         self.rollouts.success
@@ -91,7 +91,7 @@ impl Simulation {
         convert::frame(py, &points.collect::<Vec<_>>())
     }
 
-    /// The page of `mindgap simulate --html`.
+    /// Returns the page of `mindgap simulate --html`.
     fn page(&self, py: Python<'_>) -> PyResult<Page> {
         let [simulator, controller] = self.names.each_ref().map(String::as_str);
         let subject = Subject {
@@ -106,12 +106,12 @@ impl Simulation {
         Page::made(py.detach(|| page(&subject)))
     }
 
-    /// The figures of `mindgap simulate --figures`.
+    /// Returns the figures of `mindgap simulate --figures`.
     fn figures(&self, py: Python<'_>) -> Vec<Figure> {
         show::figures(py.detach(|| vec![pictures::figure_of_paths(&[self.panel()])]))
     }
 
-    /// Writes them into a folder as SVG and PNG.
+    /// Writes the figures into a folder as SVG and PNG.
     #[pyo3(signature = (folder, *, force=false))]
     fn write_figures(&self, py: Python<'_>, folder: PathBuf, force: bool) -> PyResult<()> {
         places::folder(&folder, force)?;
@@ -134,7 +134,7 @@ impl Simulation {
     }
 }
 
-/// Runs a controller in a simulator: each run is of another robot that its logs leave possible.
+/// Runs a controller in a simulator; each run samples a robot from the posterior.
 #[pyfunction]
 #[pyo3(signature = (simulator, controller, scene, *, start=1, runs=10, seed=1))]
 pub fn simulate(

@@ -21,7 +21,7 @@ use crate::{convert, places};
 pub struct Simulator {
     /// The simulator.
     pub inner: Arc<simulator::Simulator>,
-    /// What pages call it.
+    /// Its name in pages.
     pub name: String,
 }
 
@@ -34,26 +34,26 @@ impl Simulator {
         Ok(Simulator { inner: Arc::new(read), name: path.display().to_string() })
     }
 
-    /// Writes a simulator file; what is there and no simulator is replaced with `force` only.
+    /// Writes a simulator file; replacing anything but a simulator needs `force`.
     #[pyo3(signature = (path, *, force=false))]
     fn write(&self, path: PathBuf, force: bool) -> PyResult<()> {
         places::file(&path, kinds::SIMULATOR, force)?;
         self.inner.write(&path).map_err(raised)
     }
 
-    /// How it was made.
+    /// How the simulator was made.
     #[getter]
     fn origin<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         convert::facts(py, &self.inner.origin)
     }
 
-    /// Its robot, as in robot.toml.
+    /// The robot, as in robot.toml.
     #[getter]
     fn robot<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         convert::facts(py, &self.inner.robot)
     }
 
-    /// The effects that were added to it, in the order in which they act.
+    /// The effects added to the simulator, in the order in which they act.
     #[getter]
     fn added<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         convert::facts(py, &self.inner.added)
@@ -65,7 +65,7 @@ impl Simulator {
 }
 
 impl Simulator {
-    /// A simulator that was made.
+    /// Wraps a simulator.
     pub fn made(simulator: simulator::Simulator) -> Self {
         Simulator { inner: Arc::new(simulator), name: "a simulator from Python".into() }
     }
@@ -78,7 +78,7 @@ pub fn train(py: Python<'_>, logs: &Logs, trainer: &str, seed: u64) -> PyResult<
     let trainer = match trainer {
         "fast" => Trainer::Fast,
         "paper" => Trainer::Paper(paper::Options::default()),
-        other => return Err(PyValueError::new_err(format!("trainer {other:?}: there are \"fast\" and \"paper\""))),
+        other => return Err(PyValueError::new_err(format!("trainer {other:?}: expected \"fast\" or \"paper\""))),
     };
     let sound = logs.sound(py, None)?;
     let train = |interrupt: &Interrupt| {

@@ -1,4 +1,4 @@
-"""The wheel as a user meets it: frames in, and what the command finds out."""
+"""Tests the wheel as a user does: frames in, and the same results as the command."""
 
 import json
 import os
@@ -46,7 +46,7 @@ def diagnosis(simulator, weak):
 
 
 def command(folder, *arguments):
-    """What the command writes to standard output, as JSON."""
+    """Runs the command and returns its standard output as JSON."""
     done = subprocess.run([os.environ["MINDGAP"], *arguments], cwd=folder, check=True, capture_output=True)
     return json.loads(done.stdout)
 
@@ -56,7 +56,7 @@ def in_one_line(refusal):
     return str(refusal.value)
 
 
-def test_logs_go_through_frames_and_arrays_unchanged(logs):
+def test_logs_survive_frames_and_arrays_unchanged(logs):
     frame = logs.frame()
     assert set(frame["run"]) == set(logs.runs) and len(logs) == 12
     assert frame["echo_cm"].isna().any(), "some readings are missing"
@@ -67,13 +67,13 @@ def test_logs_go_through_frames_and_arrays_unchanged(logs):
         assert (again.robot, again.scene) == (logs.robot, logs.scene)
 
 
-def test_arrays_of_any_number_and_stride_are_taken(logs):
+def test_arrays_of_any_type_and_stride_are_accepted(logs):
     runs = {name: {column: array[::2].astype("float32") for column, array in run.items()} for name, run in logs.runs.items()}
     robot = logs.robot | {"step_ms": 2 * logs.robot["step_ms"]}
     assert len(mindgap.Logs(runs, robot).frame()) == sum(len(run["t_ms"]) for run in runs.values())
 
 
-def test_what_is_wrong_is_one_line_with_its_place(logs, simulator, tmp_path):
+def test_errors_are_one_line_with_their_place(logs, simulator, tmp_path):
     frame = logs.frame()
     frame.loc[3, "left"] = 180.0
     with pytest.raises(mindgap.Error) as refusal:
@@ -92,12 +92,12 @@ def test_what_is_wrong_is_one_line_with_its_place(logs, simulator, tmp_path):
         mindgap.diagnose("textbook", logs)
 
 
-def test_an_unknown_column_is_warned_of(logs):
+def test_unknown_column_gives_a_warning(logs):
     with pytest.warns(UserWarning, match="temperature"):
         mindgap.Logs(logs.frame().assign(temperature=20.0), logs.robot, logs.scene)
 
 
-def test_a_diagnosis_is_that_of_the_command(simulator, weak, diagnosis, tmp_path):
+def test_diagnosis_equals_that_of_the_command(simulator, weak, diagnosis, tmp_path):
     simulator.write(tmp_path / "sim.json")
     weak.write(tmp_path / "weak")
     read = mindgap.diagnose(mindgap.Simulator.read(tmp_path / "sim.json"), mindgap.Logs.read(tmp_path / "weak"))
@@ -112,7 +112,7 @@ def test_a_diagnosis_is_that_of_the_command(simulator, weak, diagnosis, tmp_path
     assert set(diagnosis.where["channel"]) <= {"forward", "lateral", "turn", "echo_probability", "echo_value"}
 
 
-def test_an_evaluation_is_that_of_the_command(simulator, logs, tmp_path):
+def test_evaluation_equals_that_of_the_command(simulator, logs, tmp_path):
     simulator.write(tmp_path / "sim.json")
     logs.write(tmp_path / "logs")
     evaluation = mindgap.evaluate(simulator, mindgap.Logs.read(tmp_path / "logs"))
@@ -121,13 +121,13 @@ def test_an_evaluation_is_that_of_the_command(simulator, logs, tmp_path):
     assert networks.loc["turn", "r2"] > 0.8 and np.isnan(networks.loc["turn", "brier"])
 
 
-def test_corrected_simulator_has_the_effect(diagnosis, weak):
-    corrected = diagnosis.corrected_simulator()
+def test_simulator_with_effects_applied_has_no_gap(diagnosis, weak):
+    corrected = diagnosis.with_effects_applied()
     assert [effect["effect"] for effect in corrected.added] == ["motor_asymmetry"]
     assert mindgap.diagnose(corrected, weak).verdict == "no_gap"
 
 
-def test_a_controller_is_evolved_and_run_as_by_the_command(simulator, tmp_path):
+def test_evolution_and_simulation_equal_those_of_the_command(simulator, tmp_path):
     evolution = mindgap.evolve(simulator, SCENE, max_steps=15, seed=3)
     simulation = mindgap.simulate(simulator, evolution.controller, SCENE, runs=8, seed=4)
     assert len(simulation.runs) == 8 and set(simulation.paths["run"]) == set(range(1, 9))
@@ -146,7 +146,7 @@ def test_a_controller_is_evolved_and_run_as_by_the_command(simulator, tmp_path):
     assert [run["end_x_cm"] for run in facts["runs"]] == pytest.approx(list(simulation.runs["end_x_cm"]))
 
 
-def test_pictures_and_pages_are_shown_and_written(diagnosis, simulator, logs, tmp_path):
+def test_figures_and_pages_are_displayed_and_written(diagnosis, simulator, logs, tmp_path):
     for found in [diagnosis, mindgap.evaluate(simulator, logs)]:
         for figure in found.figures():
             assert figure._repr_svg_() == figure.svg and figure.svg.startswith("<svg")
@@ -160,7 +160,7 @@ def test_pictures_and_pages_are_shown_and_written(diagnosis, simulator, logs, tm
     assert (tmp_path / "gap.html").read_text() == page.html
 
 
-def test_what_others_wrote_is_replaced_only_if_asked_for(simulator, tmp_path):
+def test_files_of_others_are_replaced_only_with_force(simulator, tmp_path):
     mine = tmp_path / "sim.json"
     mine.write_text("mine")
     with pytest.raises(mindgap.Error, match="sim.json"):
@@ -170,7 +170,7 @@ def test_what_others_wrote_is_replaced_only_if_asked_for(simulator, tmp_path):
     assert mindgap.Simulator.read(mine).origin == simulator.origin
 
 
-def test_other_threads_run_meanwhile(logs):
+def test_other_threads_run_during_long_work(logs):
     ended, ticks = threading.Event(), []
     def tick():
         while not ended.is_set():
@@ -186,9 +186,9 @@ def test_other_threads_run_meanwhile(logs):
     assert meanwhile > 10
 
 
-def test_ctrl_c_ends_long_work(simulator):
-    """The handler runs in the main thread, which is where the work is asked for."""
-    # Shells start what runs in the background with SIGINT ignored, and Python leaves it so.
+def test_ctrl_c_interrupts_long_work(simulator):
+    """The handler runs in the main thread, which is the one that calls the work."""
+    # Shells start background jobs with SIGINT ignored, and Python keeps it ignored.
     signal.signal(signal.SIGINT, signal.default_int_handler)
     begun = threading.Event()
 
@@ -205,7 +205,7 @@ def test_ctrl_c_ends_long_work(simulator):
     assert mindgap.evolve(simulator, SCENE, max_steps=5, seed=1).facts["start"] == 1, "and nothing is broken"
 
 
-def test_the_notebook_runs_from_top_to_bottom(tmp_path):
+def test_notebook_runs_from_top_to_bottom(tmp_path):
     notebook = nbformat.read(NOTEBOOK, as_version=4)
     NotebookClient(notebook, timeout=600, resources={"metadata": {"path": str(tmp_path)}}).execute()
     shown = [output.get("data", {}) for cell in notebook.cells if cell.cell_type == "code" for output in cell.outputs]

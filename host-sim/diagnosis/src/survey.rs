@@ -24,7 +24,7 @@ use mindgap_models::simulator::{Missing, kinematic};
 #[derive(Clone, Debug, Serialize)]
 pub struct Survey {
     schema: u32,
-    /// Contents of the logs after inspection has corrected what it can.
+    /// Contents of the logs after correction.
     pub holds: Holdings,
     /// What is wrong with them.
     pub findings: Vec<Finding>,
@@ -67,13 +67,12 @@ impl Survey {
     }
 }
 
-/// Rows that are judged at most. An effect that this much random driving does not excite would hardly be excited by more; each row
-/// takes almost a kilobyte to judge.
+/// Maximum number of rows: effects that these do not excite, more random driving hardly would. A row takes almost a kilobyte.
 const ENOUGH_ROWS: usize = 20_000;
-/// Number of runs that are always kept.
+/// Minimum number of runs of a sample.
 const ENOUGH_RUNS: usize = 100;
 
-/// Returns every nth run of large logs, and the beginning of long runs.
+/// Returns a sample of large logs: evenly spaced runs, and the beginnings of long ones.
 fn enough_of(logs: &Logs) -> Logs {
     let rows = logs.rows();
     if rows <= ENOUGH_ROWS {

@@ -26,7 +26,7 @@ pub struct Settings {
     /// Number of individuals in a tournament, drawn without replacement (paper: 33).
     pub tournament: usize,
     /// Probability that two parents cross over (paper: 0.8).
-    pub crossover_chance: f64,
+    pub crossover_probability: f64,
     /// Distribution index of the simulated binary crossover (open; 15 is common).
     pub sbx_index: f32,
     /// How children mutate (paper: 5 %, normal).
@@ -76,7 +76,7 @@ impl Default for Settings {
         Settings {
             population: 100,
             tournament: 33,
-            crossover_chance: 0.8,
+            crossover_probability: 0.8,
             sbx_index: 15.0,
             mutation: Mutation::default(),
             elite: 0,
@@ -207,7 +207,7 @@ fn offspring(
         let mother = &parents[arena.winner(settings.tournament, rng)];
         let father = &parents[arena.winner(settings.tournament, rng)];
         let (mut daughter, mut son) = (mother.clone(), father.clone());
-        if rng.random_bool(settings.crossover_chance) {
+        if rng.random_bool(settings.crossover_probability) {
             sbx::cross(&mut daughter, &mut son, settings.sbx_index, rng);
         }
         for mut child in [daughter, son] {

@@ -15,8 +15,8 @@ const KEPT: usize = 8;
 const MUTANTS: usize = 30;
 /// Runs of each controller in each generation. Controllers that stay are driven again, which averages out luck.
 const RUNS: u64 = 10;
-/// Number of genes in which a mutant differs, and the standard deviations of the differences.
-const CHANCE: f64 = 0.15;
+/// Probability that a gene of a mutant differs, and the standard deviations of the differences.
+const PROBABILITY: f64 = 0.15;
 const DEVIATIONS: [f32; 3] = [0.01, 0.03, 0.08];
 /// Number of the first run. No other procedure drives these runs.
 const FIRST: u64 = 1_000_000;
@@ -42,7 +42,7 @@ pub fn evolved(case: &Case, decoder: &GenotypeDecoder, from: &[Controller], seed
             .map(|_| {
                 let mut genes = kept[rng.random_range(0..kept.len())].genes.clone();
                 let deviation = DEVIATIONS[rng.random_range(0..DEVIATIONS.len())];
-                Mutation { chance: CHANCE, unit: Unit::Gene, deviation }.apply(&mut genes, &mut rng);
+                Mutation { probability: PROBABILITY, unit: Unit::Gene, deviation }.apply(&mut genes, &mut rng);
                 decoder.repair(&mut genes);
                 genes
             })

@@ -35,7 +35,7 @@ pub struct Measured {
     pub remainder_nats: f64,
     /// For a single effect that is found first: the model-form error, as a share of its gain, at which no second effect
     /// would be named.
-    pub form_error_share: Option<f64>,
+    pub form_error_fraction: Option<f64>,
     /// The effect named first; empty if there is none.
     pub first: String,
     /// Share of the explainable gap that the effects explain.
@@ -93,16 +93,16 @@ fn without_effect(bench: &Bench, number: usize) -> Result<Measured> {
 
 fn with_effects(bench: &Bench, number: usize, calibration: Calibration) -> Result<Measured> {
     let (case, baseline) = bench.case(number)?;
-    let (found, form_error_share) = confirmed(baseline, &case.logs, &[calibration], |found, context, hold_out| {
-        let form_error_share = match &case.effects[..] {
+    let (found, form_error_fraction) = confirmed(baseline, &case.logs, &[calibration], |found, context, hold_out| {
+        let form_error_fraction = match &case.effects[..] {
             [one] => found.fits.form_error_fraction(one.effect.id(), context, hold_out),
             _ => None,
         };
-        (found, form_error_share)
+        (found, form_error_fraction)
     })?
     .swap_remove(0);
     let measured = Measured {
-        form_error_share,
+        form_error_fraction,
         ..Measured::of(&case, found.chosen.scores.rows().len(), found.chosen.gain_over(&found.fits.null))
     };
     let ids = found.chosen.ids();
@@ -134,7 +134,7 @@ impl Measured {
             rows,
             effect_nats: effect.winsorized_nats,
             remainder_nats: 0.0,
-            form_error_share: None,
+            form_error_fraction: None,
             first: String::new(),
             explained_fraction: 0.0,
             explained_error: 0.0,

@@ -67,7 +67,7 @@ impl Evaluator<'_> {
     /// Evaluates these controllers and those that were driven, with `runs` runs on each robot.
     ///
     /// # Errors
-    /// As [`Judge::chances`].
+    /// As [`Judge::success_probabilities`].
     pub fn ranked(&self, controllers: Vec<Controller>, runs: usize) -> Result<Found> {
         let controllers = self.with_tried(controllers);
         let chances = self.judge.success_probabilities(&controllers, runs)?;
@@ -86,7 +86,7 @@ impl Evaluator<'_> {
     /// Returns the mean success probability if, for each robot, the best of these and the driven controllers could be used.
     ///
     /// # Errors
-    /// As [`Judge::chances`].
+    /// As [`Judge::success_probabilities`].
     pub fn oracle(&self, controllers: Vec<Controller>, runs: usize) -> Result<f64> {
         self.judge.if_known(&self.with_tried(controllers), runs)
     }

@@ -11,7 +11,7 @@ const SMALL: f64 = 20.0;
 const LARGE: f64 = 80.0;
 /// Brick, link and inertia take up to a second until a command acts in full, ms.
 const SETTLED_MS: f64 = 1000.0;
-/// Steps for which controllers hold commands. A fraction of a degree per step adds up over them.
+/// Controllers hold commands for at least this many steps; what is a fraction of a degree in one step adds up there.
 const LONG_HOLD: u32 = 10;
 /// Echoes begin to fail in the last quarter of a sensor's range; within the first one a controller decides to stop.
 const QUARTER: f64 = 0.25;

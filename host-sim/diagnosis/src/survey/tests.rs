@@ -71,7 +71,7 @@ fn logs_without_anything_to_compare_show_no_effect() {
 }
 
 #[test]
-fn faults_are_found_and_those_without_a_correction_are_refused() {
+fn faults_are_found_and_uncorrectable_logs_are_refused() {
     let mut endless = driven(8, 31, everything);
     endless.runs[2].rows.edit(5, |row| row.echo_cm = Some(1e7));
     let survey = Survey::of(endless);

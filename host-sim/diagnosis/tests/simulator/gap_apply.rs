@@ -154,7 +154,7 @@ fn what_no_effect_could_be_is_refused() {
 }
 
 #[test]
-fn effect_improves_predicted_final_positions_of_a_controller() {
+fn final_positions_are_predicted_better_with_the_effect() {
     // It drives an arc and waits for a reading that never comes: what chance adds to its end stays small.
     let tuple = Tuple { left: 60, right: 52, when: When::Smaller, threshold_cm: 1 };
     let controller = Controller { step_ms: 400, max_steps: 10, tuples: [tuple; 6] };

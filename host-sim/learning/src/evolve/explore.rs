@@ -47,7 +47,7 @@ const BEST: usize = 100;
 /// Shares of the prefixes tried that are mutants of candidates and of elites; the others are extensions.
 const CANDIDATES: f64 = 0.3;
 const ELITES: f64 = 0.2;
-const MUTATION: Mutation = Mutation { chance: 0.3, unit: Unit::Gene, deviation: 0.08 };
+const MUTATION: Mutation = Mutation { probability: 0.3, unit: Unit::Gene, deviation: 0.08 };
 /// Shares of the appended tuples that drive nearly straight and that turn nearly on the spot: most random commands drive
 /// small circles.
 const STRAIGHT: f64 = 0.2;

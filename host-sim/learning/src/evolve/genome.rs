@@ -100,7 +100,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn a_controller_comes_back_from_its_genes(genes in prop::collection::vec(0f32..1.0, GenotypeDecoder::GENES)) {
+        fn genes_encode_their_controller(genes in prop::collection::vec(0f32..1.0, GenotypeDecoder::GENES)) {
             let controller = DECODER.controller(&genes);
             prop_assert_eq!(DECODER.controller(&DECODER.genes(&controller)), controller);
         }

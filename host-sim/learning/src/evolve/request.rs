@@ -89,7 +89,7 @@ impl Request<'_> {
         } else {
             robust::candidates(&EvolutionTask { executor, environment, target_cm, routes, decoder, seed }, watch)?
         };
-        let chances = match &robots {
+        let probabilities = match &robots {
             Some(robots) => {
                 let controllers: Vec<Controller> = candidates.iter().map(|c| c.controller.clone()).collect();
                 let judge = Judge::new(executor, simulator, &robots.drawn, scene, start, target_cm, seed)?;
@@ -97,23 +97,26 @@ impl Request<'_> {
             }
             None => Vec::new(),
         };
-        let (evolved, chance) = most_likely(candidates, &chances);
+        let (evolved, chance) = most_likely(candidates, &probabilities);
         let success = evaluator.success(&evolved.controller, JUDGED_RUNS, JUDGING);
         let rollouts = RolloutReport::new(environment, scene, &evolved.controller, DRAWN_RUNS, seed);
         Ok(Answered { evolved, success, chance, rollouts })
     }
 }
 
-/// Returns the controller with the largest probability of success, or the first if `chances` is empty.
-fn most_likely(mut candidates: Vec<Evolved>, chances: &[SuccessProbability]) -> (Evolved, Option<SuccessProbability>) {
-    let better = |a: &usize, b: &usize| chances[*a].success.total_cmp(&chances[*b].success).then(b.cmp(a));
-    for (number, (candidate, chance)) in candidates.iter().zip(chances).enumerate() {
+/// Returns the controller with the largest probability of success, or the first if `probabilities` is empty.
+fn most_likely(
+    mut candidates: Vec<Evolved>,
+    probabilities: &[SuccessProbability],
+) -> (Evolved, Option<SuccessProbability>) {
+    let better = |a: &usize, b: &usize| probabilities[*a].success.total_cmp(&probabilities[*b].success).then(b.cmp(a));
+    for (number, (candidate, chance)) in candidates.iter().zip(probabilities).enumerate() {
         log::info!(
             "controller {} of the search: fitness {:.3}, probability of success {chance}",
             number + 1,
             candidate.fitness
         );
     }
-    let best = (0..chances.len()).max_by(better);
-    (candidates.swap_remove(best.unwrap_or(0)), best.map(|best| chances[best]))
+    let best = (0..probabilities.len()).max_by(better);
+    (candidates.swap_remove(best.unwrap_or(0)), best.map(|best| probabilities[best]))
 }

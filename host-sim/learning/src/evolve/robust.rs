@@ -26,9 +26,9 @@ pub const REFINED: usize = 6;
 const REFINING: Settings = Settings {
     population: 100,
     tournament: 5,
-    crossover_chance: 0.8,
+    crossover_probability: 0.8,
     sbx_index: 15.0,
-    mutation: Mutation { chance: 0.1, unit: Unit::Gene, deviation: 0.05 },
+    mutation: Mutation { probability: 0.1, unit: Unit::Gene, deviation: 0.05 },
     elite: 5,
     stagnation: None,
     max_generations: 60,

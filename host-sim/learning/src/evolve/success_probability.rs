@@ -165,34 +165,36 @@ mod tests {
         let decoder = GenotypeDecoder::new(&SIMULATOR, 60);
         let controllers: Vec<Controller> =
             (0..300).map(|number| decoder.controller(&decoder.random(&mut generator(SEED, &[number])))).collect();
-        let chances = judge.success_probabilities(&controllers, 4 * RUNS).expect("probabilities");
+        let probabilities = judge.success_probabilities(&controllers, 4 * RUNS).expect("probabilities");
         let uncertain: Vec<usize> =
-            (0..300).filter(|number| (0.1..0.9).contains(&chances[*number].success)).take(5).collect();
+            (0..300).filter(|number| (0.1..0.9).contains(&probabilities[*number].success)).take(5).collect();
         assert_eq!(uncertain.len(), 5);
         let known = |numbers: &[usize]| {
             let some: Vec<Controller> = numbers.iter().map(|number| controllers[*number].clone()).collect();
             judge.if_known(&some, 4 * RUNS).expect("a probability")
         };
-        let never = (0..300).find(|number| chances[*number].success == 0.0).expect("one that does not get there");
+        let never = (0..300).find(|number| probabilities[*number].success == 0.0).expect("one that does not get there");
         for number in &uncertain {
-            assert!((known(&[*number]) - chances[*number].success).abs() < 1e-9);
-            assert!((known(&[*number, never]) - chances[*number].success).abs() < 0.05);
+            assert!((known(&[*number]) - probabilities[*number].success).abs() < 1e-9);
+            assert!((known(&[*number, never]) - probabilities[*number].success).abs() < 0.05);
         }
-        let best = uncertain.iter().map(|number| chances[*number].success).fold(0.0, f64::max);
+        let best = uncertain.iter().map(|number| probabilities[*number].success).fold(0.0, f64::max);
         assert!(known(&uncertain) > best - 0.1 && known(&uncertain) <= 1.0, "{} of {best}", known(&uncertain));
     }
 
     #[test]
     fn variance_between_robots_is_epistemic_and_that_of_coins_is_not() {
         let split: Vec<f64> = (0..40).map(|robot| f64::from(robot % 2)).collect();
-        let chance = SuccessProbability::from_rates(split, 10);
+        let probability = SuccessProbability::from_rates(split, 10);
         assert!(
-            (chance.success - 0.5).abs() < 1e-9 && chance.epistemic_fraction > 0.95 && chance.ci95 == [0.0, 1.0],
-            "{chance:?}"
+            (probability.success - 0.5).abs() < 1e-9
+                && probability.epistemic_fraction > 0.95
+                && probability.ci95 == [0.0, 1.0],
+            "{probability:?}"
         );
         // As often as ten fair coins show heads.
         let coins = [0.2, 0.3, 0.4, 0.4, 0.5, 0.5, 0.6, 0.6, 0.7, 0.8].repeat(4);
-        let chance = SuccessProbability::from_rates(coins, 10);
-        assert!((chance.success - 0.5).abs() < 1e-9 && chance.epistemic_fraction < 0.1, "{chance:?}");
+        let probability = SuccessProbability::from_rates(coins, 10);
+        assert!((probability.success - 0.5).abs() < 1e-9 && probability.epistemic_fraction < 0.1, "{probability:?}");
     }
 }

@@ -9,7 +9,7 @@ use mindgap_foundations::random::Generator;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mutation {
     /// Probability of a mutation (paper: 0.05).
-    pub chance: f64,
+    pub probability: f64,
     /// What mutates with that probability.
     pub unit: Unit,
     /// Standard deviation of the added noise, in units of the gene (open; 0.1).
@@ -27,16 +27,16 @@ pub enum Unit {
 
 impl Default for Mutation {
     fn default() -> Self {
-        Mutation { chance: 0.05, unit: Unit::Gene, deviation: 0.1 }
+        Mutation { probability: 0.05, unit: Unit::Gene, deviation: 0.1 }
     }
 }
 
 impl Mutation {
     /// Mutates a child in place.
     pub fn apply(&self, genes: &mut [f32], rng: &mut Generator) {
-        let everything = self.unit == Unit::Individual && rng.random_bool(self.chance);
+        let everything = self.unit == Unit::Individual && rng.random_bool(self.probability);
         for gene in genes {
-            if everything || (self.unit == Unit::Gene && rng.random_bool(self.chance)) {
+            if everything || (self.unit == Unit::Gene && rng.random_bool(self.probability)) {
                 let step: f32 = StandardNormal.sample(rng);
                 *gene += self.deviation * step;
             }

@@ -95,13 +95,13 @@ mod tests {
         }
 
         #[test]
-        fn the_children_keep_their_parents_mean(a in -10f32..10.0, b in -10f32..10.0, draw in 0f32..1.0, index in 1f32..30.0) {
+        fn children_keep_their_parents_mean(a in -10f32..10.0, b in -10f32..10.0, draw in 0f32..1.0, index in 1f32..30.0) {
             let (c, d) = children(a, b, spread(draw, index));
             prop_assert!(((c + d) - (a + b)).abs() <= 1e-5 * (1.0 + c.abs() + d.abs()));
         }
 
         #[test]
-        fn the_distance_of_the_children_is_the_spread_times_their_parents(a in -10f32..10.0, b in -10f32..10.0, draw in 0f32..1.0) {
+        fn distance_of_the_children_is_the_spread_times_their_parents(a in -10f32..10.0, b in -10f32..10.0, draw in 0f32..1.0) {
             let factor = spread(draw, 15.0);
             let (c, d) = children(a, b, factor);
             prop_assert!((((d - c) - factor * (b - a)).abs()) <= 1e-4 * (1.0 + factor * (b - a).abs()));
@@ -116,7 +116,7 @@ mod tests {
     /// By the definition of SBX half of the factors lie below one, and below one their cube-like distribution function
     /// is ½ β^(η+1).
     #[test]
-    fn the_spread_follows_the_index() {
+    fn spread_follows_the_index() {
         let mut rng = generator(1, &[]);
         for index in [2.0f32, 15.0] {
             let factors: Vec<f32> = (0..40_000).map(|_| spread(rng.random(), index)).collect();

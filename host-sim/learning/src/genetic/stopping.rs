@@ -46,7 +46,7 @@ mod tests {
     }
 
     #[test]
-    fn a_perfect_fit_stops() {
+    fn perfect_fit_stops() {
         assert!(SHORT.has_stalled(&[1.0, 2.0, 3.0, f64::INFINITY]));
     }
 

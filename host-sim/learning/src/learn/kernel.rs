@@ -132,7 +132,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn the_kernel_agrees_with_the_network(
+        fn kernel_agrees_with_the_network(
             genes in prop::collection::vec(-1.5f32..1.5, 22), count in 1usize..70,
         ) {
             let (template, data) = (template(), data(count));

@@ -58,8 +58,8 @@ pub fn variance_components(
     // A step is steady if its command is that of the step before.
     let is_steady = |i: usize| commands[i][..2] == commands[i][2..];
     let neighbours: Vec<usize> = (1..residuals.len()).filter(|i| runs[i - 1] == runs[*i]).collect();
-    let covariance = |of: &dyn Fn(usize) -> bool| {
-        let pairs = neighbours.iter().filter(|i| of(**i));
+    let covariance = |is_counted: &dyn Fn(usize) -> bool| {
+        let pairs = neighbours.iter().filter(|i| is_counted(**i));
         mean(pairs.map(|i| residuals[i - 1] * residuals[*i]))
     };
     let Some(changed) = covariance(&|i| !is_steady(i)) else { return vec![VarianceComponents::STEP; CELLS * CELLS] };

@@ -57,8 +57,9 @@ pub fn weighed(open: Calibration, others: &[Measured]) -> Calibration {
     let answered: Vec<&Measured> = others.iter().filter(|m| !m.first.is_empty()).collect();
     let right = answered.iter().filter(|m| m.first_is_there());
     let adequate = 1.0 - OTHER_ROBOTS * (1.0 - quantile(right.map(|m| m.explained_fraction).collect(), FALSE_UNKNOWNS));
-    let shares: Vec<f64> = others.iter().filter_map(|m| m.form_error_share).collect();
-    let further_share = if shares.is_empty() { open.further_share } else { quantile(shares, 1.0 - FALSE_FURTHER) };
+    let form_errors: Vec<f64> = others.iter().filter_map(|m| m.form_error_fraction).collect();
+    let further_share =
+        if form_errors.is_empty() { open.further_share } else { quantile(form_errors, 1.0 - FALSE_FURTHER) };
     let settled = Calibration { adequate: rounded(adequate), further_share: rounded(further_share), ..open };
     let known: Vec<&Measured> = answered.into_iter().filter(|m| m.explained_fraction >= settled.adequate).collect();
     let tried = WIDTHS.iter().flat_map(|width| {
@@ -115,7 +116,7 @@ mod tests {
             rows: 100,
             effect_nats: 100.0,
             remainder_nats: 0.0,
-            form_error_share: Some(0.0),
+            form_error_fraction: Some(0.0),
             first: "slope".into(),
             explained_fraction: adequacy,
             explained_error: 0.0,

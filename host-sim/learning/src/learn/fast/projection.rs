@@ -220,7 +220,7 @@ mod tests {
     }
 
     #[test]
-    fn the_reduced_problem_has_the_norm_and_the_gradient_of_all_samples() {
+    fn reduced_problem_has_the_norm_and_the_gradient_of_all_samples() {
         for seed in 0..20 {
             let problem = problem(seed);
             let residuals = problem.residuals().unwrap();

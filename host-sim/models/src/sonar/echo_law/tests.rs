@@ -222,7 +222,7 @@ fn frequencies_of_drawn_readings_follow_the_likelihood() {
 }
 
 #[test]
-fn the_likelihood_integrates_to_one() {
+fn likelihood_integrates_to_one() {
     const STEPS: usize = 100_000;
     for (what, outcomes) in grid() {
         let [low, high] = LAW.range_cm;
