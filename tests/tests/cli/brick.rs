@@ -220,7 +220,7 @@ fn a_script_needs_only_times_and_commands() {
     sandbox.write("script.csv", "t_ms,left,right\n0,40,40\n400,-30,30\n800,0,0\n");
     sandbox.run("export script.csv --format nxc-collect --out script.nxc");
     let source = sandbox.text("script.nxc");
-    assert!(source.contains("The robot does not\n// look where it drives"), "{source}");
+    assert!(source.contains("The robot does\n// not look where it drives"), "{source}");
     sandbox.write("script.rxe", compile(&source));
     let output = sandbox.run("brick script.rxe --readings 100,100,100,100");
     assert!(output.contains("motor B  40") && output.contains("motor B  -30"), "{output}");

@@ -52,7 +52,7 @@ fn a_loop_records_its_trials_and_resumes() {
     let output = sandbox.loops("--trials 2");
     assert!(output.contains("trial 1: ") && output.contains("out/controller.toml: "), "{output}");
     let state = sandbox.json("out/loop.json");
-    assert_eq!(state["schema"], 1);
+    assert_eq!(state["schema"], 2);
     let trials = state["trials"].as_array().expect("trials");
     assert!((1..=2).contains(&trials.len()), "{state}");
     for (trial, number) in trials.iter().zip(1..) {

@@ -16,7 +16,7 @@ use mindgap_logs::Termination;
 use mindgap_models::effects::applied::AppliedEffect;
 
 /// Version of the format.
-const SCHEMA: u32 = 1;
+const SCHEMA: u32 = 2;
 /// File name in the loop's folder.
 pub const FILE: &str = "loop.json";
 
@@ -35,7 +35,7 @@ pub struct State {
     #[serde(default)]
     pub chance_with_runs: Option<f64>,
     /// Success with a perfectly known robot; only if the trials were used up.
-    #[serde(default, alias = "if_known")]
+    #[serde(default)]
     pub oracle: Option<OracleSuccess>,
     /// The trials.
     pub trials: Vec<Trial>,
@@ -54,10 +54,8 @@ pub enum Verdict {
     /// A controller succeeded on the robot often enough and has a high success probability.
     Works,
     /// The trials were used up before a controller was confirmed.
-    #[serde(alias = "spent")]
     TrialsExhausted,
     /// No controller was found that reaches the target on any plausible robot.
-    #[serde(alias = "out_of_reach")]
     Infeasible,
 }
 
