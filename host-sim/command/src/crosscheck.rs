@@ -91,8 +91,8 @@ fn runs(runs: &Runs) -> String {
         ),
     };
     format!(
-        "{} runs, {} steps: the controller takes the same decision in {share:.3} % of the steps.\n\
-         Before any divergence, the runs differ by at most {:.4} cm and {:.4} degrees.\n{diverged}",
+        "{} runs, {} steps: the same decision in {share:.3} % of the steps.\n\
+         Until they diverge, runs differ by at most {:.4} cm and {:.4} degrees.\n{diverged}",
         runs.n, runs.steps, apart.position_cm, apart.heading_deg
     )
 }

@@ -28,6 +28,9 @@ pub trait Executor: Sync {
     fn is_first(&self) -> bool;
 }
 
+/// Executes the piece with an index and an encoded input, and returns its encoded result.
+pub type Work<'a> = dyn Fn(usize, &[u8]) -> Result<Vec<u8>> + Sync + 'a;
+
 /// Independent pieces of work with indices from 0.
 pub struct Batch<'a> {
     /// Number of pieces.
@@ -39,7 +42,7 @@ pub struct Batch<'a> {
     /// Returns the input of a piece; called on the first rank only.
     pub input: &'a (dyn Fn(usize) -> Result<Vec<u8>> + Sync),
     /// Executes a piece with its input, on any thread of any rank.
-    pub work: &'a (dyn Fn(usize, &[u8]) -> Result<Vec<u8>> + Sync),
+    pub work: &'a Work<'a>,
     /// Receives each result on the first rank.
     pub take: &'a mut dyn FnMut(usize, Vec<u8>) -> Result<()>,
 }

@@ -110,7 +110,10 @@ fn a_difference_in_arithmetic_is_found() {
         "{table}"
     );
     assert_ne!(divergence["float"]["tuple"], divergence["fixed"]["tuple"], "{divergence}");
-    assert!(table.contains(&format!("first run {} at step {}:", divergence["run"], divergence["step"])), "{table}");
+    assert!(
+        table.contains(&format!("the first is run {}, at step {}:", divergence["run"], divergence["step"])),
+        "{table}"
+    );
 }
 
 #[test]

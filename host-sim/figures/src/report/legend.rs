@@ -12,10 +12,13 @@ const KEY_PX: f64 = 24.0;
 const GAP_PX: f64 = 6.0;
 const SPACE_PX: f64 = 18.0;
 
+/// Draws a mark about a place.
+type DrawMark = Box<dyn Fn(&mut Svg, DVec2)>;
+
 /// One mark and its meaning.
 pub struct Entry {
     /// Draws the mark about a place.
-    mark: Box<dyn Fn(&mut Svg, DVec2)>,
+    mark: DrawMark,
     /// Its meaning.
     meaning: String,
 }

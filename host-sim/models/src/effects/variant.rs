@@ -36,6 +36,9 @@ pub struct Variant {
 /// A change to the sensor at a row, by parameters and circumstances.
 pub type ChangeOfSensor = &'static (dyn Fn(&[f64], &StepContext, &mut SensorState) + Sync);
 
+/// Changes the motion of a step, given the values of the parameters and the step's context.
+pub type MotionHook = dyn Fn(&[f64], &StepContext, &mut Motion<f64>) + Sync;
+
 /// A change to one stage of a step; parameters come in the order of [`Variant::parameters`].
 pub enum Hook {
     /// To the commands that reach the motors, for every step of the history, by these commands alone.
@@ -45,9 +48,9 @@ pub enum Hook {
     /// Delays the motion.
     Delay(&'static (dyn Fn(&[f64], &StepContext) -> Late + Sync)),
     /// To the motion that the tracker sees, by this and commands alone.
-    Motion(&'static (dyn Fn(&[f64], &StepContext, &mut Motion<f64>) + Sync)),
+    Motion(&'static MotionHook),
     /// The same, by where and when too.
-    MotionHere(&'static (dyn Fn(&[f64], &StepContext, &mut Motion<f64>) + Sync)),
+    MotionHere(&'static MotionHook),
     /// To the sensor, by whether it heard an echo before and nothing else.
     Sensor(ChangeOfSensor),
     /// The same, by where and when too.

@@ -3,9 +3,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// What the largest command of training logs is taken for: they leave some of full speed out, as those of [`record`] do.
-///
-/// [`record`]: mindgap_built_in_robot::record
+/// What the largest command of training logs is taken for: they leave some of full speed out, as those of `mindgap record` do.
 const LARGEST_PERCENT: f64 = 80.0;
 
 /// Commands in percent of full speed, left and right.
