@@ -38,7 +38,7 @@ const REFUSED: [Fault; 22] = [
         let (header, rows) = text.split_once('\n').expect("a header");
         format!("{}\n{rows}", header.to_uppercase()).into()
     }),
-    fault("a commented header", ":1: the header begins with #", |text| format!("# {text}").into()),
+    fault("a commented header", ":1: the header starts with the comment sign #", |text| format!("# {text}").into()),
     fault("no header", ":1: the header is missing: write t_ms,left,right,", |text| {
         text.split_once('\n').expect("a header").1.into()
     }),
