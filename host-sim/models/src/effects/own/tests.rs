@@ -155,7 +155,7 @@ fn errors_are_reported_with_their_place() {
     let first = ":2: effect caster: ";
     let key = ":2: effect caster: change.forward_cm: ";
     let parameter = ":2: effect caster: parameter cm_per_rad: ";
-    assert_refused("description", "describes", ":4: ", "the key `describes` is not known");
+    assert_refused("description", "describes", ":4: ", "unknown key `describes`");
     assert_refused("bounds = [0.0, 20.0]", "bounds = [0.0, 20.0", ":", "");
     assert_refused("abs(turn_rad)", "abs(turn)", key, "turn is not known here; known are left, right, ");
     assert_refused("abs(turn_rad)", "magnitude(turn_rad)", key, "magnitude() is no function");
