@@ -2,7 +2,7 @@
 //!
 //! [`mod@diagnose`] is the method, one stage after the other: [`Fits`](search::Fits) → [`Search`](search::Search) →
 //! [`Confirmed`](confirm::Confirmed) → [`Findings`]; each stage owns the one before. Logs are split into [rows](sample) that
-//! explanations are fitted to and rows that they predict. An [explanation] of any kind [scores](scores) them: a [fit] of
+//! explanations are fitted to and rows that they predict. An [explanation] of any kind [scores] them: a [fit] of
 //! one or more [effects](mindgap_models::effects) around a step of the [baseline](mindgap_models::simulator::baseline), the [omnibus] regression
 //! that bounds what any effect could explain, a [formula], [wider noise](wider_noise), or the simulator's
 //! [epistemic error](epistemic_error). The thresholds are those of the [calibration].

@@ -1,6 +1,6 @@
 //! The omnibus test for unmodelled structure: how much of a fit's residual any covariate predicts.
 //!
-//! Kernel regression over the room comes first ([`kernel`]). On top of it every channel has the same neutral [`basis`] in all
+//! Kernel regression over the room comes first (`kernel`). On top of it every channel has the same neutral [`basis`] in all
 //! covariates of a row, fitted by [ridge] regression whose strength is chosen by cross-validation over runs. Nothing in it
 //! stands for a particular effect. Its cross-validated gain bounds what any effect could explain.
 
