@@ -22,7 +22,9 @@ pub const EFFECT: Effect = Effect {
         Variant {
             id: "distance",
             parameters: Sag::PARAMETERS,
-            hooks: &[Hook::MotionHere(&|v, context, increment| *increment = increment.scaled(Sag::read(v).left(context)))],
+            hooks: &[Hook::MotionHere(&|v, context, increment| {
+                *increment = increment.scaled(Sag::read(v).left(context))
+            })],
         },
     ],
 };
