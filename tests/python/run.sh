@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
-# The Python package: builds the wheel, installs it into a fresh environment, holds its types against what it is, and runs
-# its tests and its notebook. Follows the Rust tests, and builds the wheel from what was compiled for those.
+# Checks the Python package: builds the wheel, installs it into a fresh environment, compares its type stubs with the module,
+# and runs its tests and its notebook. It reuses what the Rust tests have compiled.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 exec </dev/null
 . tests/install.sh
 
-# With its venv, which Debian packs apart.
+# Debian packages venv separately.
 python3 -c 'import ensurepip' 2>/dev/null || need python3-venv python3-venv
 if ! python3 -c 'import sys; sys.exit(sys.version_info < (3, 11))'; then
     echo "the Python package needs Python 3.11 or newer" >&2
@@ -19,7 +19,7 @@ quietly() { PIP_DISABLE_PIP_VERSION_CHECK=1 "$@" -q; }
 
 tools=target/python/tools
 [ -x $tools/bin/maturin ] || { python3 -m venv $tools && quietly $tools/bin/pip install maturin==1.16.0; }
-# The library for ranks, which the tests of the other crates ask for, stays where it is.
+# The wheel does not bundle the MPI library, which the shared build links.
 $tools/bin/maturin build --quiet --profile dev --features as-in-tests --auditwheel skip \
     --manifest-path python/Cargo.toml --out "$fresh/wheels"
 

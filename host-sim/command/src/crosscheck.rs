@@ -80,12 +80,12 @@ fn networks(networks: &Networks) -> String {
 /// Returns how far the runs in fixed point follow those in float.
 fn runs(runs: &Runs) -> String {
     let share = 100.0 * runs.same_share();
-    let apart = &runs.apart;
+    let largest = &runs.largest_difference;
     let diverged = match &runs.first_divergence {
         None => "No run diverges.\n".into(),
         Some(Divergence { run, step, float, fixed }) => format!(
             "{} runs diverge; the first is run {run}, at step {step}:\n  float {}\n  fixed {}\n",
-            runs.parted,
+            runs.diverged,
             state(float),
             state(fixed)
         ),
@@ -93,7 +93,7 @@ fn runs(runs: &Runs) -> String {
     format!(
         "{} runs, {} steps: the same decision in {share:.3} % of the steps.\n\
          Until they diverge, runs differ by at most {:.4} cm and {:.4} degrees.\n{diverged}",
-        runs.n, runs.steps, apart.position_cm, apart.heading_deg
+        runs.n, runs.steps, largest.position_cm, largest.heading_deg
     )
 }
 

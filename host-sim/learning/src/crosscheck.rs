@@ -14,7 +14,7 @@ use mindgap_foundations::error::Result;
 use mindgap_logs::Logs;
 use mindgap_models::simulator::Simulator;
 use mindgap_models::simulator::fixed_point::FixedNetworks;
-pub use runs::{Apart, Divergence, RunState, Runs, Trials};
+pub use runs::{Difference, Divergence, RunState, Runs, Trials};
 
 /// What `mindgap crosscheck --json` writes.
 #[derive(Clone, Debug, PartialEq, Serialize)]

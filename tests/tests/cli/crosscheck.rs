@@ -106,7 +106,7 @@ fn a_difference_in_arithmetic_is_found() {
     let runs = &found["runs"];
     let divergence = &runs["first_divergence"];
     assert!(
-        runs["parted"].as_u64().unwrap() > 0 && runs["same_decisions"].as_u64() < runs["steps"].as_u64(),
+        runs["diverged"].as_u64().unwrap() > 0 && runs["same_decisions"].as_u64() < runs["steps"].as_u64(),
         "{table}"
     );
     assert_ne!(divergence["float"]["tuple"], divergence["fixed"]["tuple"], "{divergence}");

@@ -26,7 +26,7 @@ fn existing_files_are_not_touched() {
     sandbox.run("new mine");
     sandbox.write("mine/robot.toml", "my own");
     let refusal = sandbox.refused("new mine");
-    assert!(refusal.starts_with("mine: holds"), "{refusal}");
+    assert!(refusal.starts_with("mine: already contains"), "{refusal}");
     sandbox.write("file", "my own");
     assert!(sandbox.refused("new file").starts_with("file: "), "{refusal}");
 }

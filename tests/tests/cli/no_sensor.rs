@@ -74,7 +74,7 @@ fn only_a_robot_with_a_sensor_needs_a_column_of_readings() {
         sandbox.edit(&file, |text| text.replacen("echo_cm", "nothing", 1));
     }
     let outcome = sandbox.call("check logs");
-    assert!(outcome.code == 0 && outcome.err.contains("\"nothing\" is not known"), "{}", outcome.err);
+    assert!(outcome.code == 0 && outcome.err.contains("unknown column \"nothing\""), "{}", outcome.err);
     let sandbox = Sandbox::with_logs();
     sandbox.edit("logs/robot.toml", |text| text.split_once("[ultrasonic]").expect("a sensor").0.to_owned());
     let outcome = sandbox.call("check logs");

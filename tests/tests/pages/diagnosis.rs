@@ -41,7 +41,7 @@ fn it_is_sound_on_phones_and_laptops_by_day_and_by_night_and_answers_what_one_as
         look(DARK_LAPTOP, "diagnosis-laptop-dark"),
     ];
     for seen in visit(&page(), &visits) {
-        assert!(seen.word(1).contains("There is a gap between simulator and robot"), "{}", seen.word(1));
+        assert!(seen.word(1).contains("There is a gap, and known effects explain it."), "{}", seen.word(1));
         assert!(seen.word(2).contains("How to check"), "{}", seen.word(2));
         assert!(seen.word(3).contains("seed 1") && seen.word(3).contains("sim.json"), "{}", seen.word(3));
         assert_eq!(seen.word(4), "budget causes where ends replay next compared words");

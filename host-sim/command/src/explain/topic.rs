@@ -118,14 +118,20 @@ fn of_entry(kind: Kind, &Entry { id, what, imitated_by, check }: &Entry) -> Topi
     Topic { id, kind, name: id, what, in_logs: None, imitated_by, check, variants: Vec::new() }
 }
 
-/// Returns a variant with its parameters and their units.
+/// Returns a variant with its parameters, named as in files and answers, and their units.
 fn variant(variant: &Variant) -> String {
-    let parameter = |parameter: &Parameter| match parameter.unit {
-        "" => parameter.name.to_owned(),
-        unit => format!("{} ({unit})", parameter.name),
-    };
     let parameters: Vec<String> = variant.parameters.iter().map(parameter).collect();
     format!("{}: {}", variant.id, parameters.join(", "))
+}
+
+fn parameter(parameter: &Parameter) -> String {
+    let (name, has_side) = parameter.setting();
+    let side = if has_side { "side (left or right), " } else { "" };
+    // The unit is that of the fitted number; a number with another name is a share of it.
+    match parameter.unit {
+        unit if name == parameter.name && !unit.is_empty() => format!("{name} ({unit})"),
+        _ => format!("{side}{name}"),
+    }
 }
 
 #[cfg(test)]

@@ -59,7 +59,10 @@ fn two_effects_are_both_named() {
         let against = libm::cos(step.heading_rad - 2.0) * step.predicted_cm.signum();
         0.1 * step.predicted_cm - 0.1 * 0.5 * (1.0 + against) * step.reference_cm * step.predicted_cm.signum()
     });
-    assert!((size_of(&both, "drive_scale") - 1.1).abs() < 0.01 && (size_of(&both, "carpet_nap") - 0.1).abs() < 0.01);
+    // Both brake in proportion to the sign of the speed or to the speed itself, so the noise leaves each with a standard error
+    // of 0.008: this allows three.
+    assert!((size_of(&both, "drive_scale") - 1.1).abs() < 0.025, "{both:?}");
+    assert!((size_of(&both, "carpet_nap") - 0.1).abs() < 0.025, "{both:?}");
 }
 
 /// Held-out runs are every fourth; there the effect has the opposite sign.

@@ -1,7 +1,6 @@
 //! A simulator trained on logs of the built-in robot, and what it is good for.
 
 mod added_effect;
-mod effect_table;
 mod extrapolation;
 mod gap;
 mod gap_apply;

@@ -36,11 +36,11 @@ pub struct Runs {
     /// Number of steps after which both runs held the same tuple, or had ended alike.
     pub same_decisions: usize,
     /// Number of pairs that diverged at one or more steps.
-    pub parted: usize,
+    pub diverged: usize,
     /// The first divergence.
     pub first_divergence: Option<Divergence>,
     /// Largest differences within a pair before it diverged.
-    pub apart: Apart,
+    pub largest_difference: Difference,
 }
 
 /// The first step after which the two runs of a pair were no longer in the same tuple.
@@ -77,7 +77,7 @@ pub struct RunState {
 
 /// Largest differences between two runs.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct Apart {
+pub struct Difference {
     /// Distance between the positions, cm.
     pub position_cm: f64,
     /// Difference of the headings, degrees.
@@ -128,7 +128,7 @@ pub(super) fn side_by_side(
 /// Runs one pair.
 fn pair(world: &World, mut float: Walker<Float>, mut fixed: Walker<Fixed>, run: usize, seed: u64) -> Runs {
     let (mut steps, mut same_decisions) = (0, 0);
-    let (mut first_divergence, mut apart) = (None, Apart::default());
+    let (mut first_divergence, mut largest_difference) = (None, Difference::default());
     while float.is_under_way() || fixed.is_under_way() {
         steps += 1;
         // Each step has its own draws, so that one echo more or less leaves those of later steps alone.
@@ -143,10 +143,17 @@ fn pair(world: &World, mut float: Walker<Float>, mut fixed: Walker<Fixed>, run: 
             first_divergence = Some(Divergence { run, step: steps, float: states[0], fixed: states[1] });
         }
         if first_divergence.is_none() {
-            apart = apart.or_more(&states[0].apart(&states[1]));
+            largest_difference = largest_difference.max(&states[0].difference(&states[1]));
         }
     }
-    Runs { n: 1, steps, same_decisions, parted: usize::from(first_divergence.is_some()), first_divergence, apart }
+    Runs {
+        n: 1,
+        steps,
+        same_decisions,
+        diverged: usize::from(first_divergence.is_some()),
+        first_divergence,
+        largest_difference,
+    }
 }
 
 /// The environment of the runs, and the robot's dimensions.
@@ -212,9 +219,9 @@ impl<'a, A: Arithmetic> Walker<'a, A> {
 }
 
 impl RunState {
-    fn apart(&self, other: &Self) -> Apart {
+    fn difference(&self, other: &Self) -> Difference {
         let echo_cm = self.echo_cm.zip(other.echo_cm).map_or(0.0, |(a, b)| (a - b).abs());
-        Apart {
+        Difference {
             position_cm: libm::hypot(self.x_cm - other.x_cm, self.y_cm - other.y_cm),
             heading_deg: wrap_rad((self.heading_deg - other.heading_deg).to_radians()).to_degrees().abs(),
             echo_cm,
@@ -222,9 +229,9 @@ impl RunState {
     }
 }
 
-impl Apart {
-    fn or_more(&self, other: &Self) -> Self {
-        Apart {
+impl Difference {
+    fn max(&self, other: &Self) -> Self {
+        Difference {
             position_cm: self.position_cm.max(other.position_cm),
             heading_deg: self.heading_deg.max(other.heading_deg),
             echo_cm: self.echo_cm.max(other.echo_cm),
@@ -243,9 +250,9 @@ impl Runs {
             n: self.n + other.n,
             steps: self.steps + other.steps,
             same_decisions: self.same_decisions + other.same_decisions,
-            parted: self.parted + other.parted,
+            diverged: self.diverged + other.diverged,
             first_divergence: self.first_divergence.or(other.first_divergence),
-            apart: self.apart.or_more(&other.apart),
+            largest_difference: self.largest_difference.max(&other.largest_difference),
         }
     }
 }

@@ -11,7 +11,7 @@ use mindgap_logs::Robot;
 
 /// Something that is present in reality and missing from the simulator.
 pub struct Effect {
-    /// Its id in the table of docs/reference/effects.md.
+    /// Its id in the table of docs/reference/catalogue.md.
     pub id: &'static str,
     /// What people call it, without an article.
     pub name: &'static str,
