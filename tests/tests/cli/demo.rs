@@ -45,7 +45,7 @@ fn evolved_controllers_reach_the_target_on_the_robot() {
         assert!(svg.contains("<svg") && svg.trim_end().ends_with("</svg>"), "{figure}.svg");
     }
     // A motor got weak: the first controller misses, the diagnosis names the motor, and a later one reaches the target.
-    let (_, repair) = outcome.out.split_once("with motor_asymmetry injected").expect("a robot with a weak motor");
+    let (_, repair) = outcome.out.split_once("\nwith motor_asymmetry").expect("a robot with a weak motor");
     assert!(!is_long() || repair.contains("effects: motor_asymmetry"), "{repair}");
     let state = sandbox.json("out/loop/loop.json");
     let trials = state["trials"].as_array().expect("trials");

@@ -114,7 +114,7 @@ fn effects_findings_and_verdicts_are_explained() {
         "  in logs ",
         "  imitated by   motor_asymmetry",
         "  check ",
-        "  variant       command: loss",
+        "  variant       command: side (left or right), loss",
     ] {
         assert!(payload.contains(part), "{part}: {payload}");
     }
