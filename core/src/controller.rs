@@ -2,6 +2,8 @@
 
 use core::fmt;
 
+#[cfg(feature = "schemars")]
+use schemars::JsonSchema;
 #[cfg(feature = "serde")]
 use serde::{Deserialize, Serialize};
 
@@ -57,6 +59,7 @@ pub struct Controller {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(Serialize, Deserialize), serde(deny_unknown_fields))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "schemars", derive(JsonSchema))]
 pub struct Tuple {
     /// Command of the left motor, -100..=100 (mot1).
     pub left: i8,
@@ -79,6 +82,7 @@ pub struct Tuple {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(Serialize, Deserialize), serde(rename_all = "lowercase"))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "schemars", derive(JsonSchema))]
 pub enum When {
     /// A reading larger than the threshold ends the tuple.
     Larger,

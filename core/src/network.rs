@@ -4,6 +4,8 @@ mod units;
 
 use core::fmt;
 
+#[cfg(feature = "schemars")]
+use schemars::JsonSchema;
 #[cfg(feature = "serde")]
 use serde::{Deserialize, Serialize};
 
@@ -36,9 +38,11 @@ pub const MAX_HALF: usize = 32;
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
 #[cfg_attr(feature = "serde", serde(bound(serialize = "W: Serialize", deserialize = "W: Deserialize<'de>")))]
+#[cfg_attr(feature = "schemars", derive(JsonSchema), schemars(description = "A trained network."))]
 pub struct Network<W, const N: usize> {
     /// Scaling of each input to the range in which the units work.
     #[cfg_attr(feature = "serde", serde(with = "array_as_sequence"))]
+    #[cfg_attr(feature = "schemars", schemars(with = "[Scaling<W>]"))]
     pub inputs: [Scaling<W>; N],
     /// Range in which product units take their inputs.
     pub product_form: ProductForm,
@@ -47,8 +51,10 @@ pub struct Network<W, const N: usize> {
     /// Bias of the output unit.
     pub bias: W,
     /// Summation half of the hidden layer.
+    #[cfg_attr(feature = "schemars", schemars(with = "[SummationUnit<W, N>]"))]
     pub summation: heapless::Vec<SummationUnit<W, N>, MAX_HALF>,
     /// Product half of the hidden layer.
+    #[cfg_attr(feature = "schemars", schemars(with = "[ProductUnit<W, N>]"))]
     pub product: heapless::Vec<ProductUnit<W, N>, MAX_HALF>,
 }
 

@@ -1,5 +1,7 @@
 //! The parts of a network: how inputs are scaled, the units of the hidden layer, and what the output unit does.
 
+#[cfg(feature = "schemars")]
+use schemars::JsonSchema;
 #[cfg(feature = "serde")]
 use serde::{Deserialize, Serialize};
 
@@ -17,6 +19,7 @@ use crate::scalar::Scalar;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
+#[cfg_attr(feature = "schemars", derive(JsonSchema))]
 pub struct Scaling<W> {
     /// Factor.
     pub gain: W,
@@ -42,9 +45,11 @@ pub struct Scaling<W> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
 #[cfg_attr(feature = "serde", serde(bound(serialize = "W: Serialize", deserialize = "W: Deserialize<'de>")))]
+#[cfg_attr(feature = "schemars", derive(JsonSchema))]
 pub struct SummationUnit<W, const N: usize> {
     /// One weight per input.
     #[cfg_attr(feature = "serde", serde(with = "array_as_sequence"))]
+    #[cfg_attr(feature = "schemars", schemars(with = "[W]"))]
     pub weights: [W; N],
     /// Bias, added to the weighted sum.
     pub bias: W,
@@ -68,9 +73,11 @@ pub struct SummationUnit<W, const N: usize> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
 #[cfg_attr(feature = "serde", serde(bound(serialize = "W: Serialize", deserialize = "W: Deserialize<'de>")))]
+#[cfg_attr(feature = "schemars", derive(JsonSchema))]
 pub struct ProductUnit<W, const N: usize> {
     /// One exponent per input.
     #[cfg_attr(feature = "serde", serde(with = "array_as_sequence"))]
+    #[cfg_attr(feature = "schemars", schemars(with = "[W]"))]
     pub exponents: [W; N],
     /// Weight of this unit in the output sum.
     pub output: W,
@@ -87,6 +94,7 @@ pub struct ProductUnit<W, const N: usize> {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(Serialize, Deserialize), serde(rename_all = "snake_case"))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "schemars", derive(JsonSchema))]
 pub enum ProductForm {
     /// The range [1, 2], in which every logarithm is finite and no power needs a sign.
     Positive,
@@ -103,6 +111,7 @@ pub enum ProductForm {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(Serialize, Deserialize), serde(rename_all = "snake_case"))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "schemars", derive(JsonSchema))]
 pub enum Activation {
     /// The identity.
     Linear,

@@ -1,6 +1,7 @@
 //! Adapts a simulator to runs of the robot: first the effects of a diagnosis are added, then the remaining residuals
 //! condition the posterior over robots. The networks and the evidence of the training logs are kept.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use mindgap_diagnosis::progress::Stage;
@@ -39,19 +40,19 @@ pub struct Adapted {
 }
 
 /// What was learned from the runs of a robot.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Lesson {
     /// Effects that the diagnosis named and that were added to the simulator.
     pub effects: Vec<AppliedEffect>,
     /// Corrections per command, largest change first.
     pub commands: Vec<CommandBias>,
-    /// Error per step on held-out runs, before and after; `None` for a single run.
+    /// Error per step on held-out runs, before and after; null for a single run.
     pub gap: Option<Gap>,
 }
 
 /// Bias of a command relative to the networks: forward (cm), lateral (cm) and turn (degrees) per step, each with its
 /// standard deviation.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct CommandBias {
     /// Left and right command.
     pub command: [f64; 2],
@@ -64,13 +65,13 @@ pub struct CommandBias {
 }
 
 /// Root-mean-square error per step of held commands, each `[before, after]` adaptation.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, serde::Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, serde::Deserialize, JsonSchema)]
 pub struct Gap {
-    /// Forward error.
+    /// Forward error, cm.
     pub forward_cm: [f64; 2],
-    /// Lateral error.
+    /// Lateral error, cm.
     pub lateral_cm: [f64; 2],
-    /// Turn error.
+    /// Turn error, degrees.
     pub turn_deg: [f64; 2],
 }
 

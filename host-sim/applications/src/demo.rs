@@ -13,6 +13,8 @@ use mindgap_controller_export::Origin;
 use mindgap_controller_export::names::BrickName;
 use mindgap_controller_export::nxc::{self, NxcOptions};
 use mindgap_core::controller::Controller;
+use schemars::JsonSchema;
+use serde::Serialize;
 
 use mindgap_built_in_robot::{self as built_in_robot, BuiltInRobot, Trajectory};
 use mindgap_figures::pictures;
@@ -117,6 +119,7 @@ pub struct Summary {
 }
 
 /// Success of one start's controller in simulation and in reality.
+#[derive(Serialize, JsonSchema)]
 pub struct StartSummary {
     /// Success in new simulated runs.
     pub simulated: Success,

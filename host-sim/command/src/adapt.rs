@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::json_output::JsonOption;
@@ -14,6 +15,7 @@ use mindgap_diagnosis::progress::Stage;
 use mindgap_files::places::Places;
 use mindgap_foundations::error::{Error, Result};
 use mindgap_foundations::executor::Executor;
+use mindgap_foundations::schema_number::SchemaNumber;
 use mindgap_learning::evolve::success_probability::{Judge, ROBOTS, RUNS, SuccessProbability};
 use mindgap_logs::Scene;
 use mindgap_logs::controller_file::ControllerFile;
@@ -52,13 +54,14 @@ pub struct Adapt {
 /// Maximum number of commands in the table.
 const COMMANDS: usize = 8;
 
-/// Contents of the `--json` file.
-#[derive(Serialize)]
-struct Output {
-    schema: u32,
+/// Results of `mindgap adapt`.
+#[derive(Serialize, JsonSchema)]
+pub struct AdaptResults {
+    /// Version of the JSON.
+    schema: SchemaNumber<1>,
     /// One lesson per folder of logs.
     lessons: Vec<Lesson>,
-    /// Success probability of the controller, before and after.
+    /// Success probability of the controller, before and after; null without a controller.
     chance: Option<[SuccessProbability; 2]>,
 }
 
@@ -99,7 +102,7 @@ impl Run for Adapt {
             text += &format!("success probability of the controller: {before} before, {after} after\n");
         }
         text += &format!("simulator written to {}\n", self.out.display());
-        self.json.emit(&Output { schema: 1, lessons, chance }, text)
+        self.json.emit(&AdaptResults { schema: SchemaNumber, lessons, chance }, text)
     }
 }
 

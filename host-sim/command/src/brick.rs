@@ -1,5 +1,6 @@
 //! `mindgap brick`
 
+pub mod results;
 mod trace;
 
 use std::fs;
@@ -28,6 +29,7 @@ use mindgap_models::simulator::Noise;
 use mindgap_models::simulator::body::SimulatedBody;
 use mindgap_models::simulator::environment::Environment;
 use mindgap_models::simulator::rollout::REACHED_CM;
+use results::BrickResults;
 
 /// Emulate a compiled NXT program and trace it: motors, tones, text and files.
 ///
@@ -106,7 +108,7 @@ impl Run for Brick {
             Some(scene) => self.in_scene(scene, &program, &config)?,
             None => self.by_script(&program, &config)?,
         };
-        self.json.emit(&trace::json(&report), trace::text(&report) + &world)
+        self.json.emit_sorted(&BrickResults::from(&report), trace::text(&report) + &world)
     }
 }
 

@@ -3,7 +3,8 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use serde_json::{Value, json};
+use schemars::JsonSchema;
+use serde::Serialize;
 
 use super::checkpoint_args::{Checkpoint, CheckpointOption};
 use super::json_output::JsonOption;
@@ -15,6 +16,8 @@ use mindgap_files as files;
 use mindgap_files::places::Places;
 use mindgap_foundations::error::Result;
 use mindgap_foundations::executor::Executor;
+use mindgap_foundations::schema_number::SchemaNumber;
+use mindgap_learning::evaluation::accuracy::Networks;
 use mindgap_learning::evolve::fitness::Success;
 use mindgap_pages::demo::page;
 
@@ -43,6 +46,35 @@ pub struct Demo {
     html: Option<PathBuf>,
     #[command(flatten)]
     checkpoint: CheckpointOption,
+}
+
+/// Results of `mindgap demo`.
+#[derive(Serialize, JsonSchema)]
+pub struct DemoResults<'a> {
+    /// Version of the JSON.
+    schema: SchemaNumber<1>,
+    /// Accuracy of the networks on held-out logs.
+    networks: &'a Networks,
+    /// Success of each start's controller.
+    starts: &'a [StartSummary],
+    /// What the loop did about a fault.
+    repair: RepairResults,
+}
+
+/// What the loop did about a fault of the robot.
+#[derive(Serialize, JsonSchema)]
+#[schemars(rename = "Repair")]
+struct RepairResults {
+    /// The injected fault, as ID=STRENGTH.
+    changed: String,
+    /// Number of the start, from 1.
+    start: usize,
+    /// Success of the original controller on the changed robot.
+    before: Success,
+    /// Number of trials on the changed robot.
+    trials: usize,
+    /// Success of the loop's final controller on the changed robot.
+    after: Success,
 }
 
 impl Run for Demo {
@@ -80,7 +112,7 @@ impl Run for Demo {
             self.out.display(),
             in_folder.display()
         );
-        self.json.emit(&results(&summary), text)
+        self.json.emit_sorted(&results(&summary), text)
     }
 
     fn checkpoint(&self) -> Option<Checkpoint> {
@@ -101,16 +133,15 @@ fn share_before(stage: &Stage, size: Size) -> f64 {
     }
 }
 
-fn results(summary: &Summary) -> Value {
-    let success = |of: &Success| json!({"success": of.rate, "crashed": of.crashed, "median_cm": of.median_cm});
-    let start = |of: &StartSummary| json!({"simulated": success(&of.simulated), "real": success(&of.real)});
-    let starts: Vec<Value> = summary.starts.iter().map(start).collect();
+fn results(summary: &Summary) -> DemoResults<'_> {
     let Repair { changed, start, before, state, after } = &summary.repair;
-    let repair = json!({
-        "changed": changed.to_string(), "start": start, "before": success(before), "trials": state.trials.len(),
-        "after": success(after),
-    });
-    json!({"schema": 1, "networks": summary.evaluation.networks, "starts": starts, "repair": repair})
+    let (changed, trials) = (changed.to_string(), state.trials.len());
+    DemoResults {
+        schema: SchemaNumber,
+        networks: &summary.evaluation.networks,
+        starts: &summary.starts,
+        repair: RepairResults { changed, start: *start, before: *before, trials, after: *after },
+    }
 }
 
 fn describe(summary: &Summary, size: Size) -> String {

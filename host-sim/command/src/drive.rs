@@ -1,9 +1,10 @@
 //! `mindgap drive`: one run of the built-in robot under a controller.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
-use serde_json::json;
+use schemars::JsonSchema;
+use serde::Serialize;
 
 use super::evolve::start_of;
 use super::json_output::JsonOption;
@@ -13,6 +14,7 @@ use mindgap_files::places::Places;
 use mindgap_foundations::error::Result;
 use mindgap_foundations::executor::Executor;
 use mindgap_foundations::random::generator;
+use mindgap_foundations::schema_number::SchemaNumber;
 use mindgap_logs::Scene;
 use mindgap_logs::controller_file::ControllerFile;
 
@@ -40,6 +42,21 @@ pub struct Drive {
     json: JsonOption,
 }
 
+/// Results of `mindgap drive`.
+#[derive(Serialize, JsonSchema)]
+pub struct DriveResults<'a> {
+    /// Version of the JSON.
+    schema: SchemaNumber<1>,
+    /// The log of the run.
+    run: &'a Path,
+    /// How the run ended: `finished`, `timed out` or `crashed`.
+    ending: String,
+    /// Number of steps.
+    steps: usize,
+    /// Final distance from the target, cm; null in a scene without one.
+    distance_cm: Option<f64>,
+}
+
 impl Run for Drive {
     fn places(&self) -> Places {
         let places = Places::default().reading([&self.controller, &self.scene]).writing([&self.out], kinds::UNSIGNED);
@@ -60,9 +77,9 @@ impl Run for Drive {
         driven.to_run("run").write(&self.out)?;
         let distance_cm = scene.target_cm.map(|target_cm| driven.end().position_cm.distance(target_cm));
         let distance = distance_cm.map_or_else(String::new, |cm| format!(", {cm:.1} cm from the target"));
-        let (how, steps) = (driven.termination.to_string(), driven.steps());
-        let results = json!({"schema": 1, "run": self.out, "ending": how, "steps": steps, "distance_cm": distance_cm});
-        let text = format!("{}: {how} after {steps} steps{distance}\n", self.out.display());
-        self.json.emit(&results, text)
+        let (ending, steps) = (driven.termination.to_string(), driven.steps());
+        let text = format!("{}: {ending} after {steps} steps{distance}\n", self.out.display());
+        let results = DriveResults { schema: SchemaNumber, run: &self.out, ending, steps, distance_cm };
+        self.json.emit_sorted(&results, text)
     }
 }

@@ -3,7 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use clap::{Args, value_parser};
-use serde_json::json;
+use schemars::JsonSchema;
+use serde::Serialize;
 
 use super::checkpoint_args::{Checkpoint, CheckpointOption};
 use super::choices::{SENSOR_MODELS, one_of};
@@ -14,6 +15,8 @@ use mindgap_files::places::Places;
 use mindgap_foundations::error::Result;
 use mindgap_foundations::executor::Executor;
 use mindgap_foundations::geometry::Pose;
+use mindgap_foundations::schema_number::SchemaNumber;
+use mindgap_learning::evolve::fitness::Success;
 use mindgap_learning::evolve::request::{Answered, JUDGED_RUNS, Request};
 use mindgap_learning::evolve::success_probability::SuccessProbability;
 use mindgap_logs::controller_file::{ControllerFile, Origin};
@@ -61,6 +64,28 @@ pub struct Evolve {
     checkpoint: CheckpointOption,
 }
 
+/// Results of `mindgap evolve`.
+#[derive(Serialize, JsonSchema)]
+pub struct EvolveResults<'a> {
+    /// Version of the JSON.
+    schema: SchemaNumber<1>,
+    /// The controller file.
+    controller: &'a Path,
+    /// Number of the start in the scene, from 1.
+    start: usize,
+    /// Random seed.
+    seed: u64,
+    /// Number of generations of the genetic algorithm.
+    generations: usize,
+    /// Fitness of the controller in the search, 1/cm.
+    fitness: f64,
+    /// Success in new simulated runs.
+    #[serde(flatten)]
+    success: Success,
+    /// Success probability over the robots that the logs leave possible; null if the simulator has no such robots.
+    chance: Option<SuccessProbability>,
+}
+
 impl Run for Evolve {
     fn places(&self) -> Places {
         let places = Places::default().reading([&self.sim, &self.scene]).writing([&self.out], kinds::CONTROLLER);
@@ -105,11 +130,16 @@ impl Run for Evolve {
             pictures::paths(folder, &[pictures::simulated_paths(title, &scene, start, &rollouts)])?;
         }
         ControllerFile { controller: evolved.controller, origin: Some(origin) }.write(&self.out)?;
-        let results = json!({
-            "schema": 1, "controller": self.out, "start": self.start, "seed": self.seed,
-            "generations": evolved.generations, "fitness": evolved.fitness, "success": success.rate,
-            "crashed": success.crashed, "median_cm": success.median_cm, "chance": chance,
-        });
+        let results = EvolveResults {
+            schema: SchemaNumber,
+            controller: &self.out,
+            start: self.start,
+            seed: self.seed,
+            generations: evolved.generations,
+            fitness: evolved.fitness,
+            success,
+            chance,
+        };
         let text = format!(
             "start {}: {:.0} % of {JUDGED_RUNS} new simulated runs reach the target, {:.0} % crash; median distance {:.1} cm\n\
              {}controller written to {}\n",
@@ -120,7 +150,7 @@ impl Run for Evolve {
             chance.map_or_else(String::new, |chance| describe(&chance)),
             self.out.display()
         );
-        self.json.emit(&results, text)
+        self.json.emit_sorted(&results, text)
     }
 
     fn checkpoint(&self) -> Option<Checkpoint> {

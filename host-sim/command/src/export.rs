@@ -16,7 +16,8 @@ use mindgap_controller_export::onboard::Safety;
 use mindgap_controller_export::pybricks_networks::{PybricksNetwork, pybricks_networks};
 use mindgap_controller_export::rust_networks::rust_networks;
 use mindgap_controller_export::{ExportError, Origin, arduino, c, collect as data_collection, pybricks, rust, rxe};
-use serde_json::{Value, json};
+use schemars::JsonSchema;
+use serde::Serialize;
 
 use super::json_output::JsonOption;
 use super::ports::PortOptions;
@@ -25,6 +26,7 @@ use mindgap_files as files;
 use mindgap_files::places::Places;
 use mindgap_foundations::error::{Error, Result};
 use mindgap_foundations::executor::Executor;
+use mindgap_foundations::schema_number::SchemaNumber;
 use mindgap_logs::controller_file::ControllerFile;
 use mindgap_models::simulator::fixed_point::{COMMANDS, DOCUMENTATION, FACING, FixedNetworks};
 use mindgap_models::simulator::{Learned, Simulator};
@@ -68,29 +70,67 @@ pub struct Export {
     collect: collect::Collect,
 }
 
+/// Results of `mindgap export`.
+#[derive(Serialize, JsonSchema)]
+pub struct ExportResults<'a> {
+    /// Version of the JSON.
+    schema: SchemaNumber<1>,
+    /// The program.
+    program: &'a Path,
+    /// Size of the program, bytes.
+    bytes: usize,
+    /// Resources of a brick that it needs; null for other boards.
+    takes: Option<Resources>,
+}
+
+/// Memory and time that a program needs on a brick.
+#[derive(Serialize, JsonSchema)]
+#[serde(untagged)]
+enum Resources {
+    /// Those of a program.
+    Program {
+        /// Upper limit of the program's size on the brick, bytes.
+        program_bytes: u32,
+        /// Upper limit of the memory, bytes.
+        memory_bytes: u32,
+        /// Flash memory reserved for the log, bytes.
+        log_bytes: u32,
+        /// Time between two steps, ms.
+        step_ms: u16,
+        /// Upper limit of the duration of a step, ms.
+        worst_step_ms: u16,
+    },
+    /// Those of networks.
+    Networks {
+        /// Upper limit of the size on the brick of a program that only evaluates the networks, bytes.
+        program_bytes: usize,
+        /// Upper limit of its memory, bytes.
+        memory_bytes: usize,
+        /// Upper limit of the time to evaluate each network, ms.
+        answer_ms: BTreeMap<&'static str, usize>,
+    },
+}
+
 /// Memory and time that a program needs on a brick, as text and as JSON.
 struct Takes {
     text: String,
-    figures: Value,
+    resources: Resources,
 }
 
 impl From<Budget> for Takes {
     fn from(budget: Budget) -> Self {
         let Budget { program_bytes, memory_bytes, log_bytes, step_ms, worst_step_ms, .. } = budget;
-        let figures = json!({
-            "program_bytes": program_bytes, "memory_bytes": memory_bytes, "log_bytes": log_bytes, "step_ms": step_ms,
-            "worst_step_ms": worst_step_ms,
-        });
-        Takes { text: budget.to_string(), figures }
+        let resources = Resources::Program { program_bytes, memory_bytes, log_bytes, step_ms, worst_step_ms };
+        Takes { text: budget.to_string(), resources }
     }
 }
 
 impl From<NetworksBudget> for Takes {
     fn from(budget: NetworksBudget) -> Self {
-        let NetworksBudget { program_bytes, memory_bytes, answer_ms, .. } = &budget;
-        let answer_ms: BTreeMap<_, _> = answer_ms.iter().cloned().collect();
-        let figures = json!({"program_bytes": program_bytes, "memory_bytes": memory_bytes, "answer_ms": answer_ms});
-        Takes { text: budget.to_string(), figures }
+        let text = budget.to_string();
+        let NetworksBudget { program_bytes, memory_bytes, answer_ms, .. } = budget;
+        let answer_ms = answer_ms.into_iter().collect();
+        Takes { text, resources: Resources::Networks { program_bytes, memory_bytes, answer_ms } }
     }
 }
 
@@ -137,10 +177,10 @@ impl Run for Export {
         };
         let bytes = program.len();
         files::write(&self.out, program)?;
-        let (budget, figures) = budget.map_or_else(Default::default, |Takes { text, figures }| (text + "\n", figures));
-        let text = format!("{} written\n{budget}", self.out.display());
-        let results = json!({"schema": 1, "program": self.out, "bytes": bytes, "takes": figures});
-        self.json.emit(&results, text)
+        let (budget, takes) = budget.map(|Takes { text, resources }| (text + "\n", resources)).unzip();
+        let text = format!("{} written\n{}", self.out.display(), budget.unwrap_or_default());
+        let results = ExportResults { schema: SchemaNumber, program: &self.out, bytes, takes };
+        self.json.emit_sorted(&results, text)
     }
 }
 

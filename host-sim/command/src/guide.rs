@@ -66,6 +66,7 @@ const WORK: &[Part] = &[
             ("info", "mindgap info simulator.json"),
             ("completions", "mindgap completions bash > ~/.local/share/bash-completion/completions/mindgap"),
             ("manual", "mindgap manual --out ~/.local/share/man/man1\n  mindgap manual --format markdown --out pages"),
+            ("schema", "mindgap schema diagnose"),
         ],
     ),
 ];

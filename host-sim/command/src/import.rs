@@ -1,19 +1,21 @@
 //! `mindgap import`
 
-mod recordings;
+pub mod recordings;
 
 use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
-use serde_json::json;
+use schemars::JsonSchema;
+use serde::Serialize;
 
 use super::choices::{ANGLES, LENGTHS, TIMES, one_of};
-use super::json_output::emit;
+use super::json_output::emit_sorted;
 use super::table::{self, count};
 use super::{Run, kinds, progress, warn};
 use mindgap_files::places::Places;
 use mindgap_foundations::error::Result;
 use mindgap_foundations::executor::Executor;
+use mindgap_foundations::schema_number::SchemaNumber;
 use mindgap_import::brick::import;
 use mindgap_import::report::{LogReport, Report, RunReport, TrackReport};
 use mindgap_import::units::{Angle, Length, Time, Units};
@@ -66,6 +68,16 @@ struct Brick {
     json: Option<PathBuf>,
 }
 
+/// Results of `mindgap import` for brick logs and camera tracks.
+#[derive(Serialize, JsonSchema)]
+pub struct ImportResults<'a> {
+    /// Version of the JSON.
+    schema: SchemaNumber<2>,
+    /// What was merged and what was left out.
+    #[serde(flatten)]
+    report: &'a Report,
+}
+
 impl Import {
     /// Returns the subcommand; clap guarantees that there is one.
     fn way(&self) -> Option<&dyn Run> {
@@ -102,8 +114,8 @@ impl Run for Brick {
         let (logs, report) = imported?;
         logs.write(&self.out)?;
         let text = format!("{}{}: {}\n", describe(&report), self.out.display(), count(logs.runs.len(), "run"));
-        let results = json!({"schema": 1, "tracks": report.tracks, "logs": report.logs});
-        emit(self.json.as_deref(), &results, text)
+        let results = ImportResults { schema: SchemaNumber, report: &report };
+        emit_sorted(self.json.as_deref(), &results, text)
     }
 }
 

@@ -5,8 +5,10 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
 use serde::de::IgnoredAny;
-use serde_json::{Value, json};
+use serde_json::Value;
 
 use super::json_output::JsonOption;
 use super::kinds;
@@ -15,6 +17,7 @@ use mindgap_files as files;
 use mindgap_files::places::Places;
 use mindgap_foundations::error::{Error, Result};
 use mindgap_foundations::executor::Executor;
+use mindgap_foundations::schema_number::SchemaNumber;
 use mindgap_logs::controller_file::ControllerFile;
 use mindgap_logs::{Logs, Robot, Run, Scene};
 use mindgap_models::effects::own;
@@ -27,6 +30,17 @@ pub struct Info {
     path: PathBuf,
     #[command(flatten)]
     json: JsonOption,
+}
+
+/// Results of `mindgap info`.
+#[derive(Serialize, JsonSchema)]
+pub struct InfoResults<'a> {
+    /// Version of the JSON.
+    schema: SchemaNumber<1>,
+    /// The file or folder.
+    path: &'a Path,
+    /// What it is, in words.
+    what: String,
 }
 
 /// Output files that are not read again, by extension.
@@ -66,7 +80,7 @@ impl super::Run for Info {
         let path = self.path.as_path();
         let what = if path.is_dir() { folder(path)? } else { file(path)? };
         let text = format!("{}: {what}\n", path.display());
-        self.json.emit(&json!({"schema": 1, "path": path, "what": what}), text)
+        self.json.emit_sorted(&InfoResults { schema: SchemaNumber, path, what }, text)
     }
 }
 

@@ -6,7 +6,7 @@ use clap::Args;
 use serde::Serialize;
 
 use mindgap_files as files;
-use mindgap_foundations::error::Result;
+use mindgap_foundations::error::{Error, Result};
 
 /// The option `--json` of commands with results.
 #[derive(Args)]
@@ -29,13 +29,33 @@ impl JsonOption {
     pub fn emit(&self, results: &impl Serialize, text: String) -> Result<String> {
         emit(self.json.as_deref(), results, text)
     }
+
+    /// As [`emit`](Self::emit), with the keys of all objects in alphabetical order.
+    ///
+    /// # Errors
+    /// If the file cannot be written.
+    pub fn emit_sorted(&self, results: &impl Serialize, text: String) -> Result<String> {
+        emit_sorted(self.json.as_deref(), results, text)
+    }
+}
+
+/// As [`emit`], with the keys of all objects in alphabetical order.
+///
+/// # Errors
+/// If the file cannot be written.
+pub fn emit_sorted(json: Option<&Path>, results: &impl Serialize, text: String) -> Result<String> {
+    let sorted = |path| {
+        let value = serde_json::to_value(results);
+        value.map_err(|e| Error::in_file(path, format!("cannot be written: {e}")))
+    };
+    emit(json, &json.map(sorted).transpose()?, text)
 }
 
 /// Writes `results` to `json`, if given, and returns `text`.
 ///
 /// # Errors
 /// If the file cannot be written.
-pub fn emit(json: Option<&Path>, results: &impl Serialize, text: String) -> Result<String> {
+fn emit(json: Option<&Path>, results: &impl Serialize, text: String) -> Result<String> {
     json.map_or(Ok(()), |path| files::write_json(path, results))?;
     Ok(text)
 }

@@ -35,6 +35,7 @@ mod new;
 mod ports;
 mod progress;
 mod record;
+mod schema;
 #[cfg(unix)]
 mod signals;
 mod simulate;
@@ -95,6 +96,7 @@ enum Command {
     Info(info::Info),
     Completions(manual::Completions),
     Manual(manual::Manual),
+    Schema(schema::Schema),
 }
 
 /// A subcommand.
@@ -143,6 +145,7 @@ impl Command {
             Command::Info(command) => command,
             Command::Completions(command) => command,
             Command::Manual(command) => command,
+            Command::Schema(command) => command,
         }
     }
 }

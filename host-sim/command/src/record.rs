@@ -1,9 +1,10 @@
 //! `mindgap record`: random-command logs of the built-in robot.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
-use serde_json::json;
+use schemars::JsonSchema;
+use serde::Serialize;
 
 use super::json_output::JsonOption;
 use super::table::count;
@@ -12,6 +13,7 @@ use mindgap_built_in_robot::{ActiveEffect, Driving, Effect, default_robot, recor
 use mindgap_files::places::Places;
 use mindgap_foundations::error::Result;
 use mindgap_foundations::executor::Executor;
+use mindgap_foundations::schema_number::SchemaNumber;
 use mindgap_logs::Scene;
 
 /// Record random-command logs of the built-in robot.
@@ -43,6 +45,25 @@ pub struct Record {
     json: JsonOption,
 }
 
+/// Results of `mindgap record`.
+#[derive(Serialize, JsonSchema)]
+pub struct RecordResults<'a> {
+    /// Version of the JSON.
+    schema: SchemaNumber<1>,
+    /// Folder of the logs.
+    logs: &'a Path,
+    /// Number of runs.
+    runs: u32,
+    /// Number of steps per run.
+    steps: u32,
+    /// Time between two rows, ms.
+    step_ms: f64,
+    /// Random seed.
+    seed: u64,
+    /// Injected faults, as ID=STRENGTH@DETAIL.
+    effects: Vec<String>,
+}
+
 impl Run for Record {
     fn places(&self) -> Places {
         Places::default().reading(&self.scene).filling([&self.out]).writing(self.json.path(), kinds::REPORT)
@@ -58,13 +79,17 @@ impl Run for Record {
         let logs = record_driving(&driving, &default_robot(), &scene, amount, &self.effects, self.seed)
             .map_err(|error| self.scene.iter().fold(error, |p, scene| p.or_in_file(scene)))?;
         logs.write(&self.out)?;
-        let effects: Vec<String> = self.effects.iter().map(ToString::to_string).collect();
-        let results = json!({
-            "schema": 1, "logs": self.out, "runs": self.runs, "steps": self.steps, "step_ms": logs.robot.step_ms, "seed": self.seed,
-            "effects": effects,
-        });
+        let results = RecordResults {
+            schema: SchemaNumber,
+            logs: &self.out,
+            runs: self.runs,
+            steps: self.steps,
+            step_ms: logs.robot.step_ms,
+            seed: self.seed,
+            effects: self.effects.iter().map(ToString::to_string).collect(),
+        };
         let text = format!("{}: {} of {} steps\n", self.out.display(), count(amount[0], "run"), self.steps);
-        self.json.emit(&results, text)
+        self.json.emit_sorted(&results, text)
     }
 }
 

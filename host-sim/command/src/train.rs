@@ -2,10 +2,11 @@
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
-use serde_json::json;
+use schemars::JsonSchema;
+use serde::Serialize;
 
 use super::checkpoint_args::{Checkpoint, CheckpointOption};
 use super::json_output::JsonOption;
@@ -14,9 +15,11 @@ use mindgap_files as files;
 use mindgap_files::places::Places;
 use mindgap_foundations::error;
 use mindgap_foundations::executor::Executor;
+use mindgap_foundations::schema_number::SchemaNumber;
 use mindgap_learning::learn::genome::Shape;
 use mindgap_learning::learn::train::{NETWORKS, TABLE_ONE};
 use mindgap_learning::learn::{paper, train};
+use mindgap_models::simulator::Missing;
 
 /// Train the five networks of a simulator on a folder of logs.
 #[derive(Args)]
@@ -60,6 +63,23 @@ enum Trainer {
     Fast,
 }
 
+/// Results of `mindgap train`.
+#[derive(Serialize, JsonSchema)]
+pub struct TrainResults<'a> {
+    /// Version of the JSON.
+    schema: SchemaNumber<1>,
+    /// The simulator file.
+    simulator: &'a Path,
+    /// Number of runs of the logs.
+    runs: usize,
+    /// Random seed.
+    seed: u64,
+    /// Number of times that each network was evaluated over all samples.
+    evaluations: BTreeMap<&'static str, usize>,
+    /// Networks that the logs could not support.
+    missing: &'a [Missing],
+}
+
 impl Run for Train {
     fn places(&self) -> Places {
         let places = Places::default().reading([&self.logs]).writing([&self.out], kinds::SIMULATOR);
@@ -99,11 +119,15 @@ impl Run for Train {
             counts.join(", "),
             self.out.display()
         );
-        let results = json!({
-            "schema": 1, "simulator": self.out, "runs": simulator.origin.runs, "seed": self.seed,
-            "evaluations": evaluations, "missing": simulator.missing,
-        });
-        self.json.emit(&results, text)
+        let results = TrainResults {
+            schema: SchemaNumber,
+            simulator: &self.out,
+            runs: simulator.origin.runs,
+            seed: self.seed,
+            evaluations,
+            missing: &simulator.missing,
+        };
+        self.json.emit_sorted(&results, text)
     }
 
     fn checkpoint(&self) -> Option<Checkpoint> {

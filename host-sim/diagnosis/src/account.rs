@@ -1,5 +1,6 @@
 //! Gap reduction: how much of the gap the named effects close, by channel, on held-out rows.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::budget::{Part, budget};
@@ -23,7 +24,7 @@ pub struct Account {
 }
 
 /// A gap in nats per step: how much more likely the logs could be.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct GapReduction {
     /// All channels together.
     #[serde(flatten)]
@@ -39,12 +40,12 @@ pub struct GapReduction {
 }
 
 /// Reduction of a gap, in nats per step.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Reduction {
-    /// The gap of the simulator as it is.
+    /// The gap of the simulator as it is, nats per step.
     #[serde(serialize_with = "rounding::number")]
     pub before: f64,
-    /// The gap with the effects.
+    /// The gap with the effects, nats per step.
     #[serde(serialize_with = "rounding::number")]
     pub after: f64,
     /// The fraction of the reducible gap that is closed.
@@ -56,7 +57,7 @@ pub struct Reduction {
 }
 
 /// Reduction of the gap in a channel.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct ChannelReduction {
     /// The channel.
     pub channel: Channel,
@@ -66,7 +67,7 @@ pub struct ChannelReduction {
 }
 
 /// The second best explanation.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct RunnerUp {
     /// The ids of its effects, joined by `+`.
     pub id: String,

@@ -1,15 +1,16 @@
 //! The budget of the gap: the shares of the named effects, of noise beyond the simulator's, and of structure that no named effect
 //! explains.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::ledger::Ledger;
 use mindgap_foundations::statistics::{bootstrap, rounding};
 
 /// A part of the gap.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Part {
-    /// The id of an effect, [`SCATTER`] or [`UNEXPLAINED`].
+    /// The id of an effect, `scatter` or `unexplained`.
     pub id: String,
     /// Its share of the gap. The shares of a budget add up to one.
     #[serde(serialize_with = "rounding::number")]

@@ -19,6 +19,7 @@ use super::validate::{Validated, validate};
 use super::verdict::{Conclusion, Verdict, with_shares};
 use super::{account, excitation, formula, predictive_check, propose, remainder};
 use mindgap_foundations::error::Result;
+use mindgap_foundations::schema_number::SchemaNumber;
 use mindgap_logs::inspection::Inspection;
 use mindgap_logs::{Logs, Robot};
 use mindgap_models::effects::applied::AppliedEffect;
@@ -108,7 +109,7 @@ impl Findings {
         let stated = stated.map(|(formula, account)| formula.stated(&account.reducible, context.seed));
         let (reduction, budget) = account.map_or_else(Default::default, |a| (a.reduction, a.budget));
         let diagnosis = Diagnosis {
-            schema: Diagnosis::SCHEMA,
+            schema: SchemaNumber,
             verdict,
             effects: with_shares(effects, &budget),
             budget,

@@ -1,5 +1,6 @@
 //! The diagnosis as data, in the form of diagnosis.json.
 
+use schemars::JsonSchema;
 use serde::{Serialize, Serializer};
 
 use super::account::GapReduction;
@@ -10,14 +11,15 @@ use super::formula::Statement;
 use super::propose::Experiment;
 use super::scope::Scope;
 use super::verdict::{NamedEffect, Verdict};
+use mindgap_foundations::schema_number::SchemaNumber;
 use mindgap_learning::evaluation::final_position::FinalPositionErrors;
 use mindgap_logs::inspection::Finding;
 
 /// What `mindgap diagnose` finds; docs/reference/json.md describes the JSON.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Diagnosis {
-    /// Version of the JSON, [`Diagnosis::SCHEMA`].
-    pub schema: u32,
+    /// Version of the JSON.
+    pub schema: SchemaNumber<1>,
     /// The answer in one word.
     pub verdict: Verdict,
     /// The parts of the gap; none if there is no gap.
@@ -35,6 +37,7 @@ pub struct Diagnosis {
     pub final_positions: Option<FinalPositionErrors>,
     /// What to drive next, if causes are confused.
     #[serde(rename = "next_experiment", serialize_with = "as_sentence")]
+    #[schemars(with = "Option<String>")]
     pub experiment: Option<Experiment>,
     /// The best simple expression for what no effect explains, if one holds.
     pub formula: Option<Statement>,
@@ -50,11 +53,6 @@ pub struct Diagnosis {
     pub untestable: Vec<&'static str>,
     /// Other limits of this diagnosis, one sentence each.
     pub notes: Vec<String>,
-}
-
-impl Diagnosis {
-    /// Version of the JSON.
-    pub const SCHEMA: u32 = 1;
 }
 
 fn as_sentence<S: Serializer>(experiment: &Option<Experiment>, to: S) -> Result<S::Ok, S::Error> {

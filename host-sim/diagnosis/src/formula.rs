@@ -8,6 +8,7 @@
 mod library;
 mod pursuit;
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::channel::Channel;
@@ -44,7 +45,7 @@ pub struct Formula {
 }
 
 /// A formula in a diagnosis.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Statement {
     /// The channel that it explains.
     pub channel: Channel,

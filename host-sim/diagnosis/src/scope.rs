@@ -1,12 +1,13 @@
 //! The channels that a diagnosis compares, and why it does not compare the others.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::channel::Channel;
 use mindgap_logs::inspection::Part;
 
 /// The channels that were compared and those that were not.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Scope {
     /// Channels that were compared.
     pub compared: Vec<Channel>,
@@ -15,7 +16,7 @@ pub struct Scope {
 }
 
 /// A channel that was not compared.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct NotCompared {
     /// The channel.
     pub channel: Channel,

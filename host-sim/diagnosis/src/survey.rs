@@ -7,6 +7,7 @@
 mod advice;
 mod holdings;
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 pub use holdings::{Holdings, Range};
@@ -14,6 +15,7 @@ pub use holdings::{Holdings, Range};
 use crate::diagnose::{Excitation, excitation};
 use crate::split;
 use mindgap_foundations::error::{Error, Result};
+use mindgap_foundations::schema_number::SchemaNumber;
 use mindgap_learning::learn::train;
 use mindgap_logs::inspection::{Finding, Inspection};
 use mindgap_logs::{Logs, Run};
@@ -21,9 +23,10 @@ use mindgap_models::effects::CATALOGUE;
 use mindgap_models::simulator::{Missing, kinematic};
 
 /// What there is to say about logs; docs/reference/json.md has the JSON.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Survey {
-    schema: u32,
+    /// Version of the JSON.
+    schema: SchemaNumber<1>,
     /// Contents of the logs after correction.
     pub holds: Holdings,
     /// What is wrong with them.
@@ -37,9 +40,6 @@ pub struct Survey {
     /// What is missing, a sentence each.
     pub drive_more: Vec<String>,
 }
-
-/// Version of the JSON.
-const SCHEMA: u32 = 1;
 
 impl Survey {
     /// Surveys logs.
@@ -63,7 +63,7 @@ impl Survey {
             }
         };
         let findings = inspected.findings;
-        Survey { schema: SCHEMA, holds, findings, refused, missing_networks, untestable, drive_more }
+        Survey { schema: SchemaNumber, holds, findings, refused, missing_networks, untestable, drive_more }
     }
 }
 

@@ -1,5 +1,8 @@
 //! The verdict: is there a gap, which effects cause it, and how probable is each.
 
+use std::collections::BTreeMap;
+
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
@@ -15,9 +18,10 @@ use mindgap_foundations::statistics::rounding;
 use mindgap_foundations::statistics::summary::{logistic, standard_error_of_sum};
 use mindgap_logs::Robot;
 use mindgap_models::effects::Candidate;
+use mindgap_models::effects::parameter::Settings;
 
 /// The answer in one word.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Verdict {
     /// The logs agree with the simulator within its own error.
@@ -40,7 +44,7 @@ pub struct Conclusion {
 }
 
 /// An effect that explains the gap or a part of it.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct NamedEffect {
     /// Its id.
     pub id: &'static str,
@@ -48,6 +52,7 @@ pub struct NamedEffect {
     #[serde(serialize_with = "rounding::number")]
     pub probability: f64,
     /// Its strength, by the names in docs/reference/effects.md.
+    #[schemars(with = "Settings")]
     pub parameters: Map<String, Value>,
     /// Ids of effects that these logs cannot distinguish from it.
     pub ambiguous_with: Vec<&'static str>,
@@ -55,6 +60,7 @@ pub struct NamedEffect {
     #[serde(serialize_with = "rounding::optional")]
     pub share: Option<f64>,
     /// 95 % intervals of the numeric parameters, by the jackknife over blocks.
+    #[schemars(with = "BTreeMap<String, [f64; 2]>")]
     pub intervals: Map<String, Value>,
     /// Names of the parameters that lie at a physical bound.
     pub at_bound: Vec<&'static str>,

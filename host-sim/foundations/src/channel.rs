@@ -1,11 +1,12 @@
 //! The channels in which a simulator predicts a step.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::motion::Axis;
 
 /// What a gap can lie in.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Channel {
     /// Distance forward.

@@ -8,4 +8,5 @@ pub mod geometry;
 pub mod lanes;
 pub mod motion;
 pub mod random;
+pub mod schema_number;
 pub mod statistics;

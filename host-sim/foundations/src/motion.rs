@@ -3,6 +3,7 @@
 use std::ops::{Add, Index, IndexMut, Sub};
 
 use glam::DVec2;
+use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use crate::geometry::{Pose, direction};
@@ -22,7 +23,8 @@ pub enum Axis {
 /// One value per axis. A displacement is in cm and a turn in radians, unless stated otherwise.
 ///
 /// Files hold it as an array: forward, lateral, turn.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, JsonSchema)]
+#[schemars(with = "[T; 3]")]
 pub struct Motion<T> {
     /// Straight ahead, at the heading with which the step begins.
     pub forward: T,

@@ -2,13 +2,14 @@
 
 use std::path::{Path, PathBuf};
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::scale_check::ScaleCheck;
 use mindgap_foundations::statistics::summary::median;
 
 /// Summary of an import; its JSON form is described in docs/reference/json.md.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Report {
     /// Camera tracks.
     pub tracks: Vec<TrackReport>,
@@ -17,7 +18,7 @@ pub struct Report {
 }
 
 /// Summary of a camera track.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct TrackReport {
     /// File of the track.
     pub file: PathBuf,
@@ -30,20 +31,20 @@ pub struct TrackReport {
 }
 
 /// Summary of a brick log.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct LogReport {
     /// File of the log.
     pub file: PathBuf,
     /// Whether the last line was incomplete and dropped.
     pub truncated: bool,
-    /// The run in the log folder; `None` if the log was left out.
+    /// The run in the log folder; null if the log was left out.
     pub run: Option<RunReport>,
-    /// Why the log was left out, if so.
+    /// Why the log was left out; null if it was not.
     pub left_out: Option<String>,
 }
 
 /// A run that was imported.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct RunReport {
     /// Name in the log folder.
     pub name: String,
@@ -64,13 +65,13 @@ pub struct RunReport {
 }
 
 /// Summary of imported recordings; its JSON form is described in docs/reference/json.md.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct RecordingsReport {
     /// The recordings.
     pub recordings: Vec<RecordingReport>,
     /// Commanded against tracked motion.
     pub odometry_check: ScaleCheck,
-    /// Correction of the frame of the poses, if any.
+    /// What was changed in the frame of the poses; null if nothing was.
     pub frame: Option<String>,
     /// Findings of the inspection, one line each.
     pub findings: Vec<String>,
@@ -79,7 +80,7 @@ pub struct RecordingsReport {
 }
 
 /// A recording that was imported.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct RecordingReport {
     /// The files or topics that it was read from.
     pub sources: Vec<Source>,
@@ -100,7 +101,7 @@ pub struct RecordingReport {
 }
 
 /// Relation of the clocks of commands and poses.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct ClocksReport {
     /// Whether commands and poses share one clock.
     pub shared: bool,
@@ -108,14 +109,14 @@ pub struct ClocksReport {
     pub offset_ms: f64,
     /// Relative drift of the poses' clock.
     pub drift: f64,
-    /// Delay of the motion after the commands on a shared clock, ms.
+    /// Delay of the motion after the commands on a shared clock, ms; null if it is unknown.
     pub lag_ms: Option<f64>,
-    /// Fraction of the motion's variance that commands do not explain, 0..=1; `None` if nothing moves.
+    /// Fraction of the motion's variance that commands do not explain, 0..=1; null if nothing moves.
     pub unexplained: Option<f64>,
 }
 
 /// A file or topic that was read.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Source {
     /// Name of the file or topic.
     pub name: String,

@@ -5,6 +5,7 @@
 
 use std::f64::consts::PI;
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use mindgap_foundations::geometry::Pose;
@@ -12,7 +13,7 @@ use mindgap_foundations::statistics::summary::robust_slope;
 use mindgap_logs::{Robot, Row, Run};
 
 /// Commanded (or wheel) and tracked motion, summed over the steps with a command.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, JsonSchema)]
 pub struct ScaleCheck {
     /// Commanded travel, cm.
     pub commanded_cm: f64,

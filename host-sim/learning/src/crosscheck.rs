@@ -5,22 +5,24 @@ mod differences;
 mod runs;
 
 use mindgap_core::controller::Controller;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::learn::dataset::Datasets;
 use arithmetic::{Fixed, Float};
 pub use differences::{Differences, NetworkCheck};
 use mindgap_foundations::error::Result;
+use mindgap_foundations::schema_number::SchemaNumber;
 use mindgap_logs::Logs;
 use mindgap_models::simulator::Simulator;
 use mindgap_models::simulator::fixed_point::FixedNetworks;
 pub use runs::{Difference, Divergence, RunState, Runs, Trials};
 
 /// What `mindgap crosscheck --json` writes.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Crosscheck {
-    /// Version of the format.
-    pub schema: u32,
+    /// Version of the JSON.
+    pub schema: SchemaNumber<2>,
     /// The five networks.
     pub networks: Networks,
     /// Controllers that ran in both arithmetics side by side.
@@ -28,7 +30,7 @@ pub struct Crosscheck {
 }
 
 /// How far fixed point is from float.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Networks {
     /// Turn, degrees.
     pub turn: NetworkCheck,
@@ -61,7 +63,7 @@ pub fn crosscheck(
     let fixed = Fixed::new(&quantised, &float);
     let (commands, faced) = (&data.turn.inputs, &data.echo_probability.inputs);
     Ok(Crosscheck {
-        schema: 1,
+        schema: SchemaNumber,
         networks: Networks {
             turn: NetworkCheck::new(&float.turn, &quantised.turn, commands),
             forward: NetworkCheck::new(&float.forward, &quantised.forward, commands),

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use glam::DVec2;
+use schemars::JsonSchema;
 use serde::de::Error as _;
 use serde::{Deserialize, Deserializer, Serialize};
 
@@ -12,7 +13,7 @@ use mindgap_foundations::error::{Error, Result};
 use mindgap_foundations::geometry::Pose;
 
 /// A differential-drive robot with one ultrasonic sensor or none.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Robot {
     /// Diameter of the driven wheels, cm.
@@ -31,7 +32,7 @@ pub struct Robot {
 }
 
 /// Mounting and range of the ultrasonic sensor.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Ultrasonic {
     /// Distance ahead of the centre of the axle, cm.

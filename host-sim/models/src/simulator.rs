@@ -23,6 +23,7 @@ pub mod textbook;
 use std::path::Path;
 
 use mindgap_core::network::Network;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::effects::applied::AppliedEffect;
@@ -39,9 +40,10 @@ use residuals::{ConstantReading, ResidualQuantiles};
 pub const SCHEMA: u32 = 1;
 
 /// A simulator as `mindgap train` writes it, in JSON.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Simulator {
-    /// [`SCHEMA`].
+    /// Version of the file.
+    #[schemars(extend("const" = SCHEMA))]
     pub schema: u32,
     /// How it was made.
     pub origin: Origin,
@@ -91,7 +93,7 @@ pub enum Noise {
 }
 
 /// Where a simulator comes from.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Origin {
     /// Version of the program.
     pub version: String,
@@ -104,7 +106,7 @@ pub struct Origin {
 }
 
 /// A network, and the distribution of the residuals of what was logged.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Learned<const N: usize> {
     /// The network.
     pub network: Network<f32, N>,
@@ -115,7 +117,7 @@ pub struct Learned<const N: usize> {
 }
 
 /// A network that the logs could not support.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Missing {
     /// Its name.
     pub network: String,

@@ -35,7 +35,7 @@ fn fixed_point_networks_agree_with_floating_point() {
     let table = sandbox.run("crosscheck sim.json held-out --json found.json");
     assert!(table.lines().count() < 24 && table.lines().all(|line| line.len() <= 80), "{table}");
     let found = sandbox.json("found.json");
-    assert_eq!(found["schema"], 1);
+    assert_eq!(found["schema"], 2);
     // Limits in degrees, cm, cm, 1 and cm.
     for (network, limit) in NETWORKS.into_iter().zip([0.1, 0.05, 0.05, 0.002, 0.2]) {
         let check = &found["networks"][network];

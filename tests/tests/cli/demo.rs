@@ -5,6 +5,8 @@ use std::fs;
 use mindgap_tests::command::Sandbox;
 use mindgap_tests::form::{is_long, short_or_long};
 
+use super::schemas::is_described;
+
 /// The short form is `demo --quick`, which promises no success.
 #[test]
 fn evolved_controllers_reach_the_target_on_the_robot() {
@@ -13,6 +15,7 @@ fn evolved_controllers_reach_the_target_on_the_robot() {
         sandbox.call(&format!("demo --out out --html page.html --json facts.json{}", short_or_long(" --quick", "")));
     assert_eq!(outcome.code, 0, "{}", outcome.err);
     assert_eq!(outcome.err, "", "a pipe shows no progress");
+    is_described(&sandbox, "demo", "facts.json");
 
     // controller for | simulated: reached | median | robot: reached | median
     let rows = outcome.out.lines().filter(|line| line.starts_with("start "));

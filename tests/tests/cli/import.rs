@@ -16,7 +16,8 @@ const STEP_MS: f64 = 400.0;
 const SLICE_MS: f64 = 10.0;
 const SIDE_CM: f64 = 1000.0;
 const SCENE: &str = "[arena]\nwidth_cm = 1000\nheight_cm = 1000\n";
-const CALL: &str = "import run-000.csv track.csv --scene scene.toml --robot robot.toml --out logs --json report.json";
+pub(super) const CALL: &str =
+    "import run-000.csv track.csv --scene scene.toml --robot robot.toml --out logs --json report.json";
 
 /// The camera's clock relative to the brick's.
 #[derive(Clone, Copy)]
@@ -93,6 +94,11 @@ fn sandbox(drive: &Drive) -> Sandbox {
     sandbox.write("run-000.csv", &drive.brick_log);
     sandbox.write("track.csv", &drive.track);
     sandbox
+}
+
+/// Returns a folder with the inputs of [`CALL`].
+pub(super) fn with_a_drive() -> Sandbox {
+    sandbox(&drive(0, Camera { offset_ms: 3e4, drift: 5e-5 }))
 }
 
 #[test]

@@ -30,4 +30,5 @@ mod no_sensor;
 mod outputs;
 #[cfg(target_os = "linux")]
 mod progress;
+mod schemas;
 mod trials;

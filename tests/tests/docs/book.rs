@@ -78,6 +78,24 @@ pub fn the_catalogue_of_effects_is_that_of_the_command() -> Result<(), Failed> {
     }
 }
 
+/// `mindgap schema --out docs/reference/schemas --force` updates them, and so does `MINDGAP_DOCS=overwrite`.
+pub fn schemas_are_those_of_the_command() -> Result<(), Failed> {
+    let sandbox = Sandbox::new();
+    sandbox.run("schema --out written");
+    let (written, folder) = (sandbox.files("written"), workspace().join("docs/reference/schemas"));
+    if is_asked_for("overwrite") {
+        fs::create_dir_all(&folder)?;
+        written.iter().try_for_each(|(name, bytes)| fs::write(folder.join(name), bytes))?;
+    }
+    let differs = |(name, bytes): &(&PathBuf, &Vec<u8>)| fs::read(folder.join(name)).ok().as_ref() != Some(*bytes);
+    let stale: Vec<&PathBuf> = written.iter().filter(differs).map(|(name, _)| name).collect();
+    if stale.is_empty() && fs::read_dir(folder)?.count() == written.len() {
+        Ok(())
+    } else {
+        Err(format!("update docs/reference/schemas with mindgap schema: {stale:?} differ").into())
+    }
+}
+
 /// Where the links of a document lead, without places within files.
 fn links(text: &str) -> Vec<String> {
     let ends = text.split("](").skip(1).filter_map(|rest| rest.split(')').next());

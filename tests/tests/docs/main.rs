@@ -28,6 +28,7 @@ fn main() -> ExitCode {
         Trial::test("book: the tutorial shows its scene", book::the_tutorial_shows_its_scene),
         Trial::test("book: pages of commands are those of the command", book::pages_are_those_of_the_command),
         Trial::test("book: the catalogue of effects is current", book::the_catalogue_of_effects_is_that_of_the_command),
+        Trial::test("book: the schemas of outputs are current", book::schemas_are_those_of_the_command),
     ];
     for name in documents() {
         let text = fs::read_to_string(workspace().join(&name)).expect("a document that can be read");

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use rayon::prelude::*;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::Folder;
@@ -28,7 +29,7 @@ const FRESH: [usize; 2] = [48, 60];
 const BINS: [f64; 6] = [0.0, 0.5, 0.7, 0.9, 0.98, 1.01];
 
 /// The score of one case.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Scored {
     /// Name of the case.
     pub case: String,
@@ -49,7 +50,7 @@ pub struct Scored {
 }
 
 /// A share as a fraction.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Share {
     /// Numerator.
     pub count: usize,
@@ -58,7 +59,7 @@ pub struct Share {
 }
 
 /// The score of a challenge.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Score {
     /// Cases without effects in which a gap was detected.
     pub false_alarms: Share,
@@ -78,7 +79,7 @@ pub struct Score {
     pub unknowns: Share,
     /// Known effects that were called unknown.
     pub false_unknowns: Share,
-    /// Median absolute difference between the claimed gap reduction and that on new runs; `None` without any claim.
+    /// Median absolute difference between the claimed gap reduction and that on new runs; null without any claim.
     pub closed_error: Option<f64>,
     /// Answers with a probability above 0.9 for a false effect.
     pub confidently_wrong: Share,

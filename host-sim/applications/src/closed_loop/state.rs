@@ -4,6 +4,7 @@ use std::path::Path;
 
 use glam::DVec2;
 use mindgap_core::controller::Tuple;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
@@ -21,9 +22,10 @@ const SCHEMA: u32 = 2;
 pub const FILE: &str = "loop.json";
 
 /// The state of a loop.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct State {
-    /// Version of the format.
+    /// Version of the file.
+    #[schemars(extend("const" = SCHEMA))]
     schema: u32,
     /// SHA-256 of the inputs that determine the loop: simulator, scene, start, seed, step limit.
     job: String,
@@ -46,7 +48,7 @@ pub struct State {
 }
 
 /// Status of a loop.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Verdict {
     /// The loop has not ended.
@@ -60,7 +62,7 @@ pub enum Verdict {
 }
 
 /// Success of the best controller for each robot of the posterior, as if the robot were known.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct OracleSuccess {
     /// Mean success probability.
     pub success: f64,
@@ -69,7 +71,7 @@ pub struct OracleSuccess {
 }
 
 /// One trial: a controller on the robot.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Trial {
     /// Number of the trial, from 1.
     pub number: usize,
@@ -92,35 +94,35 @@ pub struct Trial {
 }
 
 /// A simulated run.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct SimulatedPath {
     /// How it ended.
     pub ending: Termination,
-    /// Position at the start and after each step, `[x, y]`.
+    /// Position at the start and after each step, `[x, y]`, cm.
     pub path_cm: Vec<[f64; 2]>,
 }
 
 /// A run on the robot.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct DrivenRun {
     /// How it ended.
     pub ending: Termination,
     /// Number of steps.
     pub steps: usize,
-    /// Final position, x.
+    /// Final position, x, cm.
     pub end_x_cm: f64,
-    /// Final position, y.
+    /// Final position, y, cm.
     pub end_y_cm: f64,
-    /// Final distance to the target.
+    /// Final distance to the target, cm.
     pub distance_cm: f64,
     /// Whether it reached the target.
     pub reached: bool,
-    /// Tracked position at each row, `[x, y]`.
+    /// Tracked position at each row, `[x, y]`, cm.
     pub path_cm: Vec<[f64; 2]>,
 }
 
 /// A failed drive, whose log is not used.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Failure {
     /// Number of the trial.
     pub trial: usize,

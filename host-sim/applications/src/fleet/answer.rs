@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::common::{Common, common};
@@ -11,20 +12,19 @@ use super::outliers::{Outlier, outliers};
 use super::spread::{RoundedSpread, Spread};
 use super::tally::{Refused, Tally};
 use mindgap_diagnosis::verdict::Verdict;
+use mindgap_foundations::schema_number::SchemaNumber;
 use mindgap_foundations::statistics::rounding;
 
-/// Version of the JSON.
-const SCHEMA: u32 = 1;
-
 /// Results of `mindgap diagnose --fleet`; docs/reference/json.md describes the JSON.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Fleet {
-    schema: u32,
+    /// Version of the JSON.
+    schema: SchemaNumber<1>,
     /// Number of diagnosed robots.
     pub diagnosed: usize,
     /// Number of robots per verdict.
     pub verdicts: BTreeMap<&'static str, usize>,
-    /// Distribution of the gap, nats per step; `None` if no robot has a gap.
+    /// Distribution of the gap, nats per step; null if no robot has a gap.
     pub gap_nats: Option<RoundedSpread>,
     /// Named effects, most frequent first.
     pub effects: Vec<Frequency>,
@@ -44,7 +44,7 @@ pub struct Fleet {
 }
 
 /// A group of robots with similar gaps.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Group {
     /// Mean shares of the gap, largest first.
     pub budget: Vec<Share>,
@@ -56,7 +56,7 @@ pub struct Group {
 }
 
 /// One part of a gap.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Share {
     /// Its id.
     pub id: &'static str,
@@ -111,7 +111,7 @@ impl Fleet {
             group.members.iter().for_each(|member| robots[*member].group = number + 1);
         }
         Fleet {
-            schema: SCHEMA,
+            schema: SchemaNumber,
             diagnosed: tally.names.len(),
             verdicts,
             gap_nats: gap(&mut (0..tally.names.len())).map(|spread| spread.rounded()),

@@ -1,5 +1,6 @@
 //! Effects common to all robots of a fleet, which are errors of the simulator rather than of the robots.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::frequency::{Frequency, frequencies};
@@ -19,7 +20,7 @@ const SCATTERS: f64 = 0.5;
 const OF_LARGE: f64 = 0.1;
 
 /// An effect that nearly all robots share with the same strength.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Common {
     /// The effect with the median parameters over the robots, as added to a simulator.
     pub effect: AppliedEffect,

@@ -1,5 +1,6 @@
 //! Prevalence and strength of effects in a fleet.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::spread::{RoundedSpread, Spread};
@@ -8,7 +9,7 @@ use mindgap_foundations::statistics::rounding;
 use mindgap_models::effects::Parameter;
 
 /// The statistics of an effect in a fleet.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Frequency {
     /// Its id.
     pub id: &'static str,
@@ -29,7 +30,7 @@ pub struct Frequency {
 }
 
 /// The distribution of a parameter over robots.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Strength {
     /// Its name.
     pub parameter: &'static str,

@@ -1,5 +1,6 @@
 //! Outliers: robots whose gap or effect parameter is far from the fleet's median.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::spread::Spread;
@@ -17,7 +18,7 @@ const FEWEST: usize = 10;
 const BISECTIONS: usize = 60;
 
 /// A robot that is an outlier in one quantity.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Outlier {
     /// Its name.
     pub robot: String,

@@ -1,5 +1,6 @@
 //! Robust statistics of a quantity over many robots.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use mindgap_foundations::statistics::rounding::three_digits;
@@ -52,15 +53,15 @@ impl Spread {
 }
 
 /// A distribution for output, rounded to three digits.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct RoundedSpread {
-    /// See [`Spread::median`].
+    /// Median.
     pub median: f64,
-    /// See [`Spread::quartiles`].
+    /// Lower and upper quartile.
     pub quartiles: [f64; 2],
-    /// See [`Spread::median_ci95`].
+    /// 95 % interval of the median; null for fewer than six robots.
     pub median_ci95: Option<[f64; 2]>,
-    /// See [`Spread::deviation`].
+    /// Median absolute deviation, scaled to a standard deviation.
     pub deviation: f64,
 }
 

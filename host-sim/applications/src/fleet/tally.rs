@@ -3,6 +3,7 @@
 
 use std::collections::BTreeMap;
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::robot::Robot;
@@ -49,7 +50,7 @@ pub struct Sightings {
 pub type Seen = Vec<(usize, Vec<f64>)>;
 
 /// A robot that could not be diagnosed.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Refused {
     /// Its name.
     pub robot: String,

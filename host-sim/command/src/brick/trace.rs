@@ -1,11 +1,11 @@
-//! The trace of an emulated program, as text and as JSON.
+//! The trace of an emulated program as text.
 
 use std::fmt::Write;
 
 use mindgap_controller_export::brick::{CodeLocation, Drive, Event, EventKind, Report, Termination};
-use serde_json::{Value, json};
 
-const MOTORS: [char; 3] = ['A', 'B', 'C'];
+/// Names of the motors.
+pub(super) const MOTORS: [char; 3] = ['A', 'B', 'C'];
 
 /// Returns one line per event, the files, and how the program ended.
 pub fn text(report: &Report) -> String {
@@ -44,40 +44,8 @@ pub fn text(report: &Report) -> String {
     text
 }
 
-/// Returns the trace as JSON.
-pub fn json(report: &Report) -> Value {
-    let event = |Event { t_ms, kind }: &Event| match kind {
-        EventKind::Motor { port, drive: Drive::Power(power) } => {
-            json!({"t_ms": t_ms, "motor": MOTORS[*port], "power": power})
-        }
-        EventKind::Motor { port, drive } => json!({"t_ms": t_ms, "motor": MOTORS[*port], "drive": drive_word(*drive)}),
-        EventKind::Tone { hz, ms } => json!({"t_ms": t_ms, "tone_hz": hz, "tone_ms": ms}),
-        EventKind::Sound(name) => json!({"t_ms": t_ms, "sound": name}),
-        EventKind::Text { x, y, text } => json!({"t_ms": t_ms, "text": text, "x": x, "y": y}),
-    };
-    let files: serde_json::Map<_, _> = report
-        .files
-        .iter()
-        .map(|(name, content)| (name.clone(), Value::from(String::from_utf8_lossy(content).into_owned())))
-        .collect();
-    let failed_at = report.failed_at.as_ref().map(
-        |CodeLocation { clump, word, instruction, .. }| json!({"clump": clump, "word": word, "instruction": instruction}),
-    );
-    json!({
-        "schema": 1,
-        "end": end_words(report.end),
-        "failed_at": failed_at,
-        "ended_ms": report.ended_ms,
-        "instructions": report.instructions,
-        "pool_bytes": report.pool_bytes,
-        "motors": report.motors.map(drive_word),
-        "events": report.events.iter().map(event).collect::<Vec<_>>(),
-        "further_events": report.further_events,
-        "files": files,
-    })
-}
-
-fn drive_word(drive: Drive) -> String {
+/// Returns the power of a motor, or how it is stopped.
+pub(super) fn drive_word(drive: Drive) -> String {
     match drive {
         Drive::Power(power) => power.to_string(),
         Drive::Brake => "brake".into(),
@@ -85,7 +53,8 @@ fn drive_word(drive: Drive) -> String {
     }
 }
 
-fn end_words(end: Termination) -> String {
+/// Returns how a program ended, in words.
+pub(super) fn end_words(end: Termination) -> String {
     match end {
         Termination::Finished => "finished".into(),
         Termination::Aborted => "aborted by the dark button".into(),

@@ -3,7 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use serde_json::json;
+use schemars::JsonSchema;
+use serde::Serialize;
 
 use crate::choices::{ANGLES, LENGTHS, TIMES, one_of};
 use crate::json_output::JsonOption;
@@ -12,6 +13,7 @@ use mindgap_files as files;
 use mindgap_files::places::Places;
 use mindgap_foundations::error::Result;
 use mindgap_foundations::executor::Executor;
+use mindgap_foundations::schema_number::SchemaNumber;
 use mindgap_import::assemble::{Assembled, assemble};
 use mindgap_import::bag::{Choice, recording};
 use mindgap_import::draft::{RobotDraft, SCENE, to_fill_in};
@@ -68,6 +70,16 @@ pub struct Bag {
     ranges: Option<String>,
     #[command(flatten)]
     target: Target,
+}
+
+/// Results of `mindgap import streams` and `mindgap import bag`.
+#[derive(Serialize, JsonSchema)]
+pub struct RecordingsResults<'a> {
+    /// Version of the JSON.
+    schema: SchemaNumber<2>,
+    /// What was merged and what was left out.
+    #[serde(flatten)]
+    report: &'a RecordingsReport,
 }
 
 #[derive(Args)]
@@ -168,12 +180,8 @@ impl Target {
             logs.runs.iter().try_for_each(|run| run.write(&fresh.join(format!("{}.csv", run.name))))
         })?;
         let text = describe(&report, logs.robot.step_ms, &self.out);
-        let RecordingsReport { recordings, odometry_check, frame, findings, to_fill_in } = &report;
-        let results = json!({
-            "schema": 1, "recordings": recordings, "odometry_check": odometry_check, "frame": frame, "findings": findings,
-            "to_fill_in": to_fill_in,
-        });
-        self.json.emit(&results, text)
+        let results = RecordingsResults { schema: SchemaNumber, report: &report };
+        self.json.emit_sorted(&results, text)
     }
 }
 

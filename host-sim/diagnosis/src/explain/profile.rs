@@ -1,5 +1,6 @@
 //! What the unexplained part of a gap depends on: a small table for each channel.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::covariates as of;
@@ -13,13 +14,13 @@ use mindgap_learning::evaluation::predictions::facing;
 use mindgap_models::effects::chain::EffectChain;
 
 /// The residual of a channel by one covariate.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct ResidualProfile {
     /// The channel.
     pub channel: Channel,
     /// The covariate on which the residual depends most.
     pub depends_on: &'static str,
-    /// The unit of [`Bin::off`].
+    /// The unit of the residual.
     pub unit: &'static str,
     /// The mean residual in ranges of the covariate, from low to high.
     #[serde(rename = "shape")]
@@ -27,7 +28,7 @@ pub struct ResidualProfile {
 }
 
 /// A range of the covariate.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Bin {
     /// Lower end.
     #[serde(serialize_with = "rounding::number")]

@@ -1,5 +1,6 @@
 //! Where the gap lies: the strata of rows that carry it, channel by channel.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::covariates::{
@@ -16,7 +17,7 @@ use mindgap_foundations::statistics::{bootstrap, rounding};
 use mindgap_learning::evaluation::observations::Observation;
 
 /// The part of a channel's gap that lies in one stratum of rows.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Stratum {
     /// The channel.
     pub channel: Channel,

@@ -2,6 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use mindgap_foundations::statistics::rounding;
@@ -9,7 +10,7 @@ use mindgap_foundations::statistics::summary::median;
 use mindgap_logs::{Logs, Run, Ultrasonic, rows, samples};
 
 /// Amount, rates, ranges and coverage of logs. Ranges are none where there is nothing.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Holdings {
     /// Runs.
     pub runs: usize,
@@ -59,7 +60,7 @@ pub struct Holdings {
 }
 
 /// Least and largest of some numbers.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Range {
     /// Least.
     #[serde(serialize_with = "rounding::number")]

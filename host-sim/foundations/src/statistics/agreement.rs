@@ -1,11 +1,12 @@
 //! Measures of agreement between predictions and observations.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::summary::mean;
 
 /// A straight line fitted to (expected, predicted), as in the paper's figure 2.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct TrendLine {
     /// Predicted change per expected change.
     pub slope: f64,
@@ -14,7 +15,7 @@ pub struct TrendLine {
 }
 
 /// One row of a reliability table.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ReliabilityBin {
     /// Mean predicted probability.
     pub predicted: f64,

@@ -4,12 +4,13 @@ use fixed::types::I16F16;
 use mindgap_core::folded::FoldedNetwork;
 use mindgap_core::network::Scaling;
 use rayon::prelude::*;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use mindgap_models::simulator::fixed_point::Quantised;
 
 /// Errors of a network in fixed point relative to float, in the unit of its output.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct NetworkCheck {
     /// Upper bound of the rounding error at any input whose output fits Q16.16, derived from the weights.
     pub error_bound: f64,
@@ -20,7 +21,7 @@ pub struct NetworkCheck {
 }
 
 /// Differences at many inputs.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, JsonSchema)]
 pub struct Differences {
     /// Number of inputs.
     pub n: usize,

@@ -5,6 +5,7 @@ use mindgap_core::chance::Generator;
 use mindgap_core::controller::{Controller, Machine, Motors, Status};
 use rand::{RngExt, SeedableRng};
 use rayon::prelude::*;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::arithmetic::{Arithmetic, Fixed, Float};
@@ -27,7 +28,7 @@ pub struct Trials {
 }
 
 /// Summary of pairs of runs.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, JsonSchema)]
 pub struct Runs {
     /// Number of pairs of runs.
     pub n: usize,
@@ -44,7 +45,7 @@ pub struct Runs {
 }
 
 /// The first step after which the two runs of a pair were no longer in the same tuple.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Divergence {
     /// The pair, from 1.
     pub run: usize,
@@ -57,7 +58,7 @@ pub struct Divergence {
 }
 
 /// The state of a run after a step.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct RunState {
     /// Position along x, cm.
     pub x_cm: f64,
@@ -76,7 +77,7 @@ pub struct RunState {
 }
 
 /// Largest differences between two runs.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, JsonSchema)]
 pub struct Difference {
     /// Distance between the positions, cm.
     pub position_cm: f64,

@@ -1,21 +1,23 @@
 //! Accuracy of a simulator's networks on logs: the paper's figure 2 in numbers, and proper scores of the echo probability.
 
 use mindgap_core::network::Network;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::predictions::{Predictions, predict};
 use super::sensor_models::{SensorModels, sensor_models};
 use crate::learn::dataset::{Dataset, Datasets};
 use mindgap_foundations::error::{Error, Result};
+use mindgap_foundations::schema_number::SchemaNumber;
 use mindgap_foundations::statistics::agreement::{self as statistics, ReliabilityBin, TrendLine};
 use mindgap_logs::Logs;
 use mindgap_models::simulator::{Learned, Simulator};
 
 /// The output of `mindgap evaluate --json`.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Evaluation {
-    /// Version of this schema.
-    pub schema: u32,
+    /// Version of the JSON.
+    pub schema: SchemaNumber<1>,
     /// Accuracy of the networks that the simulator has and the logs have samples for.
     pub networks: Networks,
     /// Accuracy of networks of the sizes in the paper's Table I, if the simulator's have other sizes.
@@ -27,7 +29,7 @@ pub struct Evaluation {
 }
 
 /// Accuracy of each network.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, JsonSchema)]
 pub struct Networks {
     /// Turn, degrees.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -47,7 +49,7 @@ pub struct Networks {
 }
 
 /// Accuracy of a network that predicts a value.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Value {
     /// Coefficient of determination, or null if all logged values are equal.
     pub r2: Option<f64>,
@@ -66,7 +68,7 @@ pub struct Value {
 }
 
 /// Accuracy of a network that predicts a probability.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Probability {
     /// Coefficient of determination of the outcomes 0 and 1, or null if all are equal.
     pub r2: Option<f64>,
@@ -98,7 +100,7 @@ pub fn evaluate(simulator: &Simulator, logs: &Logs, watch: impl Fn(usize, usize)
         return Err(Error::new("these logs hold no sample for any network of this simulator"));
     }
     let table_one = simulator.table_one.as_ref().map(|simulator| self::networks(simulator, logs)).transpose()?;
-    Ok(Evaluation { schema: 1, networks, table_one, sensor_models: sensor_models(simulator, logs, watch) })
+    Ok(Evaluation { schema: SchemaNumber, networks, table_one, sensor_models: sensor_models(simulator, logs, watch) })
 }
 
 fn networks(simulator: &Simulator, logs: &Logs) -> Result<Networks> {

@@ -2,6 +2,7 @@
 
 use glam::DVec2;
 use mindgap_core::controller::Controller;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use mindgap_foundations::error::{Error, Result};
@@ -13,7 +14,7 @@ use mindgap_models::simulator::rollout_report::RolloutReport;
 use mindgap_models::simulator::{Noise, Simulator};
 
 /// Median distances between logged and expected final positions of a controller's runs.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct FinalPositionErrors {
     /// Number of runs with a pose at the first row and a later one.
     pub runs: usize,

@@ -3,6 +3,7 @@
 
 use glam::DVec2;
 use rand_distr::{Distribution, StandardNormal};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::observations::{Observation, Observations};
@@ -27,7 +28,7 @@ pub struct Paths {
 }
 
 /// Median distances between predicted and logged ends of paths.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct PathError {
     /// Length of a path in steps.
     pub steps: usize,

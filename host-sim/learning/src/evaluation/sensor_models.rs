@@ -2,6 +2,7 @@
 //! the training logs, the first-echo law, and the textbook's ideal ray.
 
 use rayon::prelude::*;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::learn::scans::{Heard, Offset, Scans, TRIED, UNCHANGED};
@@ -15,7 +16,7 @@ use mindgap_models::sonar::model::{CONSTANT_SCATTER_CM, P_RAND};
 use mindgap_models::sonar::outcomes::{Component, Distribution, Outcomes, Source};
 
 /// Log-likelihood of the readings of logs under each model that the simulator has.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct SensorModels {
     /// Number of readings: rows with a pose, with or without an echo.
     pub n: usize,
@@ -34,7 +35,7 @@ pub struct SensorModels {
 }
 
 /// Mean log-likelihood per reading: of its value per cm, or of no echo.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Nats {
     /// Mean with the poses as logged.
     pub as_logged: f64,

@@ -2,6 +2,8 @@
 
 use glam::DVec2;
 use mindgap_core::controller::Controller;
+use schemars::JsonSchema;
+use serde::Serialize;
 
 use super::genome::GenotypeDecoder;
 use super::route::RouteMap;
@@ -42,13 +44,14 @@ pub struct FitnessEvaluator<'a> {
 }
 
 /// Success statistics of a number of runs.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, JsonSchema)]
 pub struct Success {
-    /// Share of runs that ended within [`REACHED_CM`] of the target without a crash, 0..=1.
+    /// Share of runs that reached the target without a crash, 0..=1.
+    #[serde(rename = "success")]
     pub rate: f64,
     /// Share of runs that crashed, 0..=1.
     pub crashed: f64,
-    /// Median final distance to the target, cm; NaN without runs.
+    /// Median final distance to the target, cm.
     pub median_cm: f64,
 }
 

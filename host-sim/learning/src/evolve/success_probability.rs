@@ -5,6 +5,7 @@ use std::fmt;
 
 use glam::DVec2;
 use mindgap_core::controller::Controller;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use mindgap_foundations::error::Result;
@@ -23,7 +24,7 @@ pub const ROBOTS: usize = 48;
 pub const RUNS: usize = 12;
 
 /// The probability of success of a controller.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct SuccessProbability {
     /// Mean over all robots, 0..=1.
     pub success: f64,

@@ -1,12 +1,14 @@
 //! Defects found in logs: where they are, and how they were handled.
 
-use serde::ser::SerializeStruct;
-use serde::{Serialize, Serializer};
+use schemars::JsonSchema;
+use serde::Serialize;
 
 use crate::Logs;
 
 /// One defect of logs.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+#[serde(into = "WrittenFinding")]
+#[schemars(with = "WrittenFinding")]
 pub struct Finding {
     /// Machine-readable identifier.
     pub id: &'static str,
@@ -30,7 +32,7 @@ pub struct RunRows {
 }
 
 /// How a finding was handled.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Handling {
     /// The rows were excluded.
@@ -114,15 +116,33 @@ impl Finding {
     }
 }
 
-impl Serialize for Finding {
-    fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
-        let mut fields = to.serialize_struct("Finding", 6)?;
-        fields.serialize_field("finding", self.id)?;
-        fields.serialize_field("runs", &self.rows_by_run.iter().map(|rows| &rows.run).collect::<Vec<_>>())?;
-        fields.serialize_field("rows", &self.rows())?;
-        fields.serialize_field("lines", &self.rows_by_run.iter().map(RunRows::lines).collect::<Vec<_>>())?;
-        fields.serialize_field("handling", &self.handling)?;
-        fields.serialize_field("sentence", &self.sentence)?;
-        fields.end()
+/// A finding in the form of JSON files.
+#[derive(Serialize, JsonSchema)]
+#[schemars(rename = "Finding")]
+struct WrittenFinding {
+    /// What is wrong, as an id.
+    finding: &'static str,
+    /// Names of the affected runs.
+    runs: Vec<String>,
+    /// Number of affected rows.
+    rows: usize,
+    /// For each of these runs the affected lines of its file, as ranges; the header is line 1.
+    lines: Vec<Vec<[usize; 2]>>,
+    /// How it was handled.
+    handling: Handling,
+    /// What was found and what to write instead.
+    sentence: String,
+}
+
+impl From<Finding> for WrittenFinding {
+    fn from(found: Finding) -> Self {
+        WrittenFinding {
+            finding: found.id,
+            runs: found.rows_by_run.iter().map(|rows| rows.run.clone()).collect(),
+            rows: found.rows(),
+            lines: found.rows_by_run.iter().map(RunRows::lines).collect(),
+            handling: found.handling,
+            sentence: found.sentence,
+        }
     }
 }

@@ -1,5 +1,6 @@
 //! Effects that were applied to a simulator: what a diagnosis confirmed and its networks do not know.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::catalogue::{CATALOGUE, Candidate};
@@ -11,7 +12,7 @@ use mindgap_logs::Robot;
 
 /// One effect as files hold it: by the ids of the effect and its variant, and the names under which its parameters are
 /// reported.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct AppliedEffect {
     /// Its id in the table of docs/reference/effects.md.

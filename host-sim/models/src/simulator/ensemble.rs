@@ -22,6 +22,7 @@ pub mod posterior;
 use std::sync::Arc;
 
 use rayon::prelude::*;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 pub use basis::PARTS;
@@ -34,9 +35,9 @@ pub use noise::MotionNoise;
 pub use posterior::Posterior;
 
 /// A distribution over robots as a simulator file holds it. Motions are those of one step.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Ensemble {
-    /// Prior standard deviation of each part of the process ([`PARTS`]), for each axis.
+    /// Prior standard deviation of each part of the process, for each axis.
     pub prior: Motion<[f64; PARTS]>,
     /// The noise beyond the process.
     pub noise: MotionNoise,

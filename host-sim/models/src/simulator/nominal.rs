@@ -5,6 +5,7 @@
 
 pub mod motion_bias;
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::sonar::familiar::FamiliarPoses;
@@ -12,7 +13,7 @@ use crate::sonar::{FirstEchoLaw, SonarModel};
 pub use motion_bias::MotionBias;
 
 /// What is normal, as far as the training logs show.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct NominalModel {
     /// Of the motion, if the logs had poses.
     pub motion: Option<MotionBias>,

@@ -1,5 +1,6 @@
 //! Residual noise about a network: the paper's simulators leave all of it out but the failing echoes.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Cells along each of the two context variables.
@@ -14,11 +15,12 @@ const NORMAL: [f32; LEVELS / 2] = [
 ];
 
 /// Residuals of a network by context: turning and driving command for motion, D and α for the sonar.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ResidualQuantiles {
     /// Inner borders of the cells along the two context variables, ascending.
     pub edges: [[f32; CELLS - 1]; 2],
-    /// [`LEVELS`] residuals a cell, ascending; cell (i, j) is entry i · [`CELLS`] + j.
+    /// Equally likely residuals of each cell, ascending; cell (i, j) is entry i · n + j, where n is the number of cells along an
+    /// axis.
     #[serde(rename = "residuals")]
     pub quantiles: Vec<Vec<f32>>,
     /// What of a residual a simulated robot has, one entry a cell.
@@ -28,7 +30,7 @@ pub struct ResidualQuantiles {
 
 /// Components of a residual, as fractions of its standard deviation: their squares add up to one at most. The rest is
 /// the tracker's error, which a simulated robot does not have.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct VarianceComponents {
     /// Drawn independently in each step.
     pub step: f32,
@@ -44,7 +46,7 @@ pub struct ResidualNoise {
 }
 
 /// A wrong reading that the sensor produces now and then wherever it looks ("roughly 20cm", paper, section VIII).
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ConstantReading {
     /// The reading, cm.
     pub value_cm: f32,

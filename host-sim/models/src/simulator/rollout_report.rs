@@ -2,6 +2,7 @@
 
 use mindgap_core::controller::Controller;
 use rayon::prelude::*;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::environment::Environment;
@@ -9,14 +10,15 @@ use super::motion::MotionTable;
 use super::rollout::{REACHED_CM, RolloutOutcome, RolloutRequest, TrajectoryPoint};
 use mindgap_foundations::counter::Counter;
 use mindgap_foundations::random::derive;
+use mindgap_foundations::schema_number::SchemaNumber;
 use mindgap_logs::{Scene, Termination};
 
 /// What `mindgap simulate --json` writes.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct RolloutReport {
-    /// Version of this format.
-    pub schema: u32,
-    /// Runs that end within this of the target, without a crash, reach it.
+    /// Version of the JSON.
+    pub schema: SchemaNumber<1>,
+    /// Runs that end within this distance of the target, without a crash, reach it, cm.
     pub reached_within_cm: f64,
     /// Share of the runs that reached the target; null in a scene without one.
     pub success: Option<f64>,
@@ -25,35 +27,35 @@ pub struct RolloutReport {
 }
 
 /// One run.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Rollout {
     /// How it ended.
     #[serde(rename = "ending")]
     pub termination: Termination,
     /// Number of steps taken.
     pub steps: u16,
-    /// Final position along x.
+    /// Final position along x, cm.
     pub end_x_cm: f64,
-    /// Final position along y.
+    /// Final position along y, cm.
     pub end_y_cm: f64,
-    /// Distance from there to the target; null in a scene without one.
+    /// Distance from there to the target, cm; null in a scene without one.
     pub distance_cm: Option<f64>,
-    /// Whether it reached the target.
+    /// Whether it reached the target; null in a scene without one.
     pub reached: Option<bool>,
     /// The pose at the start and after each step.
     pub path: Vec<PathPoint>,
 }
 
 /// One point of a run's path.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct PathPoint {
-    /// Position along x.
+    /// Position along x, cm.
     pub x_cm: f64,
-    /// Position along y.
+    /// Position along y, cm.
     pub y_cm: f64,
-    /// Heading in (-180, 180].
+    /// Heading in (-180, 180], degrees.
     pub heading_deg: f64,
-    /// The reading; null when the sensor produced none.
+    /// The reading, cm; null when the sensor produced none.
     pub echo_cm: Option<f32>,
     /// Number of the tuple held from here on, from 1; 7 once finished.
     pub tuple: usize,
@@ -90,7 +92,7 @@ impl RolloutReport {
         let runs: Vec<Rollout> = (0..runs).into_par_iter().map(rollout).collect();
         let successes = runs.iter().filter(|run| run.reached == Some(true)).count();
         let success = scene.target_cm.map(|_| successes as f64 / runs.len() as f64);
-        RolloutReport { schema: 1, reached_within_cm: REACHED_CM, success, runs }
+        RolloutReport { schema: SchemaNumber, reached_within_cm: REACHED_CM, success, runs }
     }
 }
 

@@ -37,6 +37,7 @@ mod targets;
 #[cfg(test)]
 mod tests;
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::model::P_RAND;
@@ -45,7 +46,7 @@ pub use surfaces::Surfaces;
 pub use targets::{Target, TargetKind, targets_at};
 
 /// The parameters of the law for a sensor.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct FirstEchoLaw {
     /// G: strength of a wall that faces the sensor on its axis at 1 m.
     pub gain: f64,

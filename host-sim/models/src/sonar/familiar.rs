@@ -6,6 +6,7 @@
 //! one of the readings before or drawn from the sensor's law, with weights 1 each and κ (Blackwell and MacQueen 1973, Annals
 //! of Statistics 1: the urn scheme of a Dirichlet process).
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::outcomes::{Component, Distribution, Outcomes, Source};
@@ -16,7 +17,7 @@ use mindgap_foundations::geometry::{Pose, Wall};
 use mindgap_foundations::statistics::summary::log_odds;
 
 /// The readings of training logs that revisit the same poses.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct FamiliarPoses {
     /// The walls of the room, both ends of each, cm. In other rooms no pose is familiar.
     pub walls_cm: Vec<[f64; 4]>,
@@ -30,7 +31,7 @@ pub struct FamiliarPoses {
 }
 
 /// How readings repeat at a pose.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct RepeatLaw {
     /// Share of the variance of an echo's occurrence that belongs to the pose, 0..=1.
     pub rate_share: f64,
@@ -41,13 +42,13 @@ pub struct RepeatLaw {
 }
 
 /// A row of the training logs: a reading, or none.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct PastReading {
     /// Pose of the sensor: x and y in cm, heading in rad.
     pub sensor: [f64; 3],
     /// Probability of an echo by the sensor's law.
     pub p_echo: f64,
-    /// The reading, cm; `None` if there was none.
+    /// The reading, cm; null if there was none.
     pub echo_cm: Option<f64>,
 }
 

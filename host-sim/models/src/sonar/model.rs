@@ -1,5 +1,6 @@
 //! The parameters of a sensor.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Number of weights that make up a ray's log-odds.
@@ -17,11 +18,11 @@ pub const CONSTANT_SCATTER_CM: f64 = 0.8;
 const LEAST_INTERVAL_CM: f64 = 10.0;
 
 /// The parameters of a sensor, fitted to its training logs. The names in files are the serde names.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct SonarModel {
     /// Weights of the ray features: the log-odds that a ray returns.
     pub strength: [f64; STRENGTHS],
-    /// Log-odds that a ray loses by a specular reflection; `None` if mirrored rays never return.
+    /// Log-odds that a ray loses by a specular reflection; absent if mirrored rays never return.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub mirror_loss: Option<f64>,
     /// Reading minus distance: a constant, a share of the distance, and per 45 degrees of incidence; cm.
@@ -39,7 +40,7 @@ pub struct SonarModel {
     /// Probability that an echo is dropped.
     #[serde(rename = "lost")]
     pub p_dropout: f64,
-    /// Width of the beam relative to [`FAN_DEG`](super::fan::FAN_DEG).
+    /// Width of the beam relative to that of a usual sensor.
     pub fan_width: f64,
     /// Least and largest reading, cm.
     pub range_cm: [f64; 2],

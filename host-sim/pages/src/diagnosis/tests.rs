@@ -15,6 +15,7 @@ use mindgap_diagnosis::formula::Statement;
 use mindgap_diagnosis::scope::{NotCompared, Scope};
 use mindgap_diagnosis::verdict::NamedEffect;
 use mindgap_foundations::geometry::Pose;
+use mindgap_foundations::schema_number::SchemaNumber;
 use mindgap_learning::evaluation::paths::PathError;
 use mindgap_logs::inspection::{Finding, Handling, Part as Inspected};
 use mindgap_logs::{Row, Run, Scene};
@@ -33,7 +34,7 @@ fn logs(runs: usize, rows: usize, name: &str) -> Logs {
 
 fn no_gap() -> Findings {
     let diagnosis = Diagnosis {
-        schema: Diagnosis::SCHEMA,
+        schema: SchemaNumber,
         verdict: Verdict::NoGap,
         budget: Vec::new(),
         effects: Vec::new(),

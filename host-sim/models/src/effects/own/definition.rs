@@ -1,9 +1,10 @@
 //! An own effect as files hold it.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// A hypothesis that a user states: named parameters, and expressions for what they change.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Definition {
     /// By which it is named in an answer.
@@ -17,8 +18,8 @@ pub struct Definition {
     pub change: Change,
 }
 
-/// A number that is fitted, as [`Parameter`](crate::effects::Parameter) describes it.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+/// A number that is fitted.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ParameterDefinition {
     /// Its name in expressions and answers.
@@ -39,7 +40,7 @@ pub struct ParameterDefinition {
 }
 
 /// An expression for the new value of each thing that changes; what is not there stays as it is.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Change {
     /// Command of the left motor, -100 to 100.

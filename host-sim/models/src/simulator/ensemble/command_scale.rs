@@ -1,6 +1,7 @@
 //! How large a robot's commands are. They are percent of full speed for one robot, cm/s for another and duty cycles of 255
 //! for a third; where friction bends what wheels do, and how fine commands differ, goes by what the robot can drive.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// What the largest command of training logs is taken for: they leave some of full speed out, as those of `mindgap record` do.
@@ -11,7 +12,7 @@ const LARGEST_PERCENT: f64 = 80.0;
 pub struct Percent(pub [f64; 2]);
 
 /// The factor that makes percent of a robot's commands.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct CommandScale(f64);
 
 impl Default for CommandScale {

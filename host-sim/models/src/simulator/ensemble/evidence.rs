@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::Held;
@@ -14,7 +15,7 @@ use mindgap_foundations::motion::{Axis, Motion};
 const CELL: f64 = 4.0;
 
 /// The evidence about the motion under one command.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Evidence {
     /// Left and right command.
     pub command: [f32; 2],

@@ -1,6 +1,7 @@
 //! Noise of a robot beyond a smooth process over commands. The variance of a step grows with the squares of the distance
 //! and of the turn (Thrun, Burgard and Fox 2005, Probabilistic Robotics, section 5.3).
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::command_scale::Percent;
@@ -15,12 +16,12 @@ const LEAST: f64 = 1e-6;
 const SLOW: f64 = 16.0;
 
 /// Noise of the motion of a step.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct MotionNoise {
     /// Weights of the terms of a step's variance, which is drawn independently; motions are in cm and degrees.
     pub step: Motion<[f64; TERMS]>,
     /// Standard deviation of what a command does beyond the smooth process, the same in every run, as a share of a step's: of
-    /// commands that drive both wheels, and of those that leave one [slow](is_slow).
+    /// commands that drive both wheels, and of those that leave one slow.
     pub nugget: Motion<[f64; 2]>,
     /// Standard deviation of what the first step of a command does beyond later ones, the same whenever one command follows
     /// the other.

@@ -2,18 +2,19 @@
 
 use mindgap_core::scalar::Scalar;
 use nalgebra::DMatrix;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::simulator::ensemble::CommandScale;
 use mindgap_foundations::motion::{Axis, Motion};
 
 /// Corrections and scatter of the motion.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct MotionBias {
     /// The scale of the robot's commands.
     #[serde(default)]
     pub scale: CommandScale,
-    /// One weight per feature (see [`features`]), for each axis.
+    /// One weight per feature of the command, for each axis.
     pub weights: Motion<Vec<f64>>,
     /// Standard deviations about the corrected outputs.
     pub scatter: Motion<f64>,
@@ -24,7 +25,7 @@ pub struct MotionBias {
 
 /// The precision of weights by Bayesian linear regression, in units of the scatter: the products of features summed over all
 /// training steps, and what the prior adds on the diagonal.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Precision {
     /// The lower triangle of the products, row by row.
     pub products: Vec<f32>,
