@@ -120,16 +120,38 @@ impl Motion<f64> {
         (self.forward, self.lateral) = (translation.x, translation.y);
     }
 
-    /// Returns the distances that the left and right wheel cover, for a distance of `track_cm` between them.
+    /// Returns the distances that the left and right wheel cover, for a distance of `track_cm` between them. The middle of the
+    /// axle follows an arc.
     pub fn wheels_cm(&self, track_cm: f64) -> [f64; 2] {
-        let half = 0.5 * track_cm * self.turn;
-        [self.forward - half, self.forward + half]
+        let half_cm = 0.5 * track_cm * self.turn;
+        let [length_cm, _] = self.arc_cm();
+        [length_cm - half_cm, length_cm + half_cm]
     }
 
-    /// Sets forward and turn from the distances that the left and right wheel cover.
+    /// Sets the motion to that of wheels which cover these distances, and leaves what the robot slides across its arc.
     pub fn set_wheels(&mut self, [left_cm, right_cm]: [f64; 2], track_cm: f64) {
-        self.forward = 0.5 * (left_cm + right_cm);
-        self.turn = (right_cm - left_cm) / track_cm;
+        let [_, across_cm] = self.arc_cm();
+        *self = Motion::along_arc(0.5 * (left_cm + right_cm), across_cm, (right_cm - left_cm) / track_cm);
+    }
+
+    /// Turns by another angle along an arc of the same length.
+    pub fn set_turn(&mut self, turn_rad: f64) {
+        let [length_cm, across_cm] = self.arc_cm();
+        *self = Motion::along_arc(length_cm, across_cm, turn_rad);
+    }
+
+    /// Returns the motion along an arc of this length, moved by `across_cm` to the left of its chord.
+    fn along_arc(length_cm: f64, across_cm: f64, turn_rad: f64) -> Self {
+        let mut motion = Motion { forward: length_cm * chord(turn_rad), lateral: across_cm, turn: turn_rad };
+        motion.rotate_translation(0.5 * turn_rad);
+        motion
+    }
+
+    /// Returns the length of the arc that leads here, and the distance across its chord.
+    fn arc_cm(&self) -> [f64; 2] {
+        let mut chord_frame = *self;
+        chord_frame.rotate_translation(-0.5 * self.turn);
+        [chord_frame.forward / chord(self.turn), chord_frame.lateral]
     }
 
     /// Returns the motion with its turn, so far in radians, in degrees: for files and networks.
@@ -220,6 +242,13 @@ impl<'de, T: Deserialize<'de>> Deserialize<'de> for Motion<T> {
     }
 }
 
+/// Returns the length of an arc's chord as a share of the arc's. Near a full circle, where it vanishes, it is kept away from zero:
+/// no step turns so far, but a fit may try.
+fn chord(turn_rad: f64) -> f64 {
+    let half_rad = 0.5 * turn_rad;
+    if half_rad.abs() < 1e-6 { 1.0 } else { (libm::sin(half_rad) / half_rad).max(0.1) }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -247,10 +276,23 @@ mod tests {
         }
 
         #[test]
-        fn wheels_give_back_forward_and_turn(motion in motion(), track_cm in 5.0..30.0) {
+        fn wheels_give_back_the_motion(motion in motion(), track_cm in 5.0..30.0) {
             let mut found = motion;
             found.set_wheels(motion.wheels_cm(track_cm), track_cm);
             prop_assert!((found - motion).into_iter().all(|off| off.abs() < 1e-9), "{found:?}");
+        }
+
+        /// A quarter circle of radius r leads to (r, r), whatever the track.
+        #[test]
+        fn wheels_follow_an_arc(radius_cm in 1.0..100.0, track_cm in 5.0..30.0) {
+            let quarter_rad = std::f64::consts::FRAC_PI_2;
+            let wheels_cm = [radius_cm - 0.5 * track_cm, radius_cm + 0.5 * track_cm].map(|wheel| wheel * quarter_rad);
+            let mut found = Motion::ZERO;
+            found.set_wheels(wheels_cm, track_cm);
+            let expected = Motion { forward: radius_cm, lateral: radius_cm, turn: quarter_rad };
+            prop_assert!((found - expected).into_iter().all(|off| off.abs() < 1e-9), "{found:?}");
+            found.set_turn(0.0);
+            prop_assert!((found.forward - radius_cm * quarter_rad).abs() < 1e-9 && found.lateral.abs() < 1e-9, "{found:?}");
         }
     }
 }

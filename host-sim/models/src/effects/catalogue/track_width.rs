@@ -16,7 +16,7 @@ pub const EFFECT: Effect = Effect {
         Variant {
             id: "turn",
             parameters: Track::PARAMETERS,
-            hooks: &[Hook::Motion(&|v, _, increment| increment.turn *= Track::read(v).factor)],
+            hooks: &[Hook::Motion(&|v, _, increment| increment.set_turn(increment.turn * Track::read(v).factor))],
         },
         Variant {
             id: "lever",
@@ -34,7 +34,7 @@ pub const EFFECT: Effect = Effect {
                     let LeverTrack { factor, scrub_rad_s, .. } = LeverTrack::read(v);
                     let turn_rad = increment.turn;
                     let scrubbed_rad = scrub_rad_s * context.step_s() * scrubbing(turn_rad, context);
-                    increment.turn = factor * (turn_rad - (factor - 1.0) * scrubbed_rad);
+                    increment.set_turn(factor * (turn_rad - (factor - 1.0) * scrubbed_rad));
                 }),
             ],
         },
