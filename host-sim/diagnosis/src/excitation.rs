@@ -7,7 +7,7 @@ use mindgap_models::effects::Candidate;
 
 /// Returns the ids of the effects whose typical strengths promise no strong evidence, in the order of the catalogue.
 pub fn untestable(null: &Fitted, context: &FitContext) -> Vec<&'static str> {
-    let candidates = Candidate::all(context.catalogue);
+    let candidates = Candidate::all(&context.catalogue);
     let expected = |candidate: &Candidate| {
         let hypothesis = null.hypothesis.with(*candidate);
         let nats = |start: &Vec<f64>| {

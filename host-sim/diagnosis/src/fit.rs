@@ -21,7 +21,7 @@ use mindgap_logs::Robot;
 use mindgap_models::effects::applied::AppliedEffect;
 use mindgap_models::effects::chain::EffectChain;
 use mindgap_models::effects::{Candidate, Effect};
-use mindgap_models::simulator::baseline::Baseline;
+use mindgap_models::simulator::baseline::{Baseline, MotionModel};
 use mindgap_models::sonar::SensorLaw;
 
 /// The data that explanations are fitted to, and the settings.
@@ -29,7 +29,7 @@ pub struct FitContext<'a> {
     /// The rows, with the simulator that they are compared with.
     pub rows: &'a Identification<'a>,
     /// The effects that compete.
-    pub catalogue: &'static [&'static Effect],
+    pub catalogue: Vec<&'static Effect>,
     /// Thresholds for this number of rows.
     pub calibration: Calibration,
     /// Seed of random draws.
@@ -75,7 +75,7 @@ impl<'a> FitContext<'a> {
     pub fn new(rows: &'a Identification<'a>, method: Method) -> Self {
         FitContext {
             rows,
-            catalogue: method.catalogue,
+            catalogue: candidates(method, rows),
             calibration: method.calibration_for(rows.rows.len(), rows.baseline.trained_on()),
             seed: method.seed,
             motion_uncertainty: MotionUncertainty::of(rows),
@@ -98,6 +98,12 @@ impl<'a> FitContext<'a> {
     pub fn initial_guesses(&self, candidate: &Candidate) -> Vec<Vec<f64>> {
         candidate.variant.initial_guesses(self.top_speed_cm_s)
     }
+}
+
+/// Returns the effects that compete against this simulator.
+fn candidates(method: Method, rows: &Identification) -> Vec<&'static Effect> {
+    let is_known = rows.baseline.motion.as_ref().is_none_or(MotionModel::is_learned);
+    method.catalogue.iter().copied().filter(|effect| is_known || !effect.needs_known_robot()).collect()
 }
 
 fn already_explained(rows: &Identification) -> [f64; Channel::COUNT] {
@@ -240,7 +246,7 @@ impl Fitted {
 
     /// Returns each variant of each effect of the catalogue that is not included yet.
     fn further_candidates(&self, context: &FitContext) -> Vec<Candidate> {
-        let mut further = Candidate::all(context.catalogue);
+        let mut further = Candidate::all(&context.catalogue);
         let is_ray = context.baseline().sonar.as_ref().is_some_and(SensorLaw::is_ray);
         let applies = |candidate: &Candidate| is_ray || !candidate.variant.is_for_a_ray();
         further.retain(|candidate| !self.ids().contains(&candidate.effect) && applies(candidate));

@@ -130,3 +130,15 @@ fn stands_for(found: &NamedEffect, effect: &str) -> bool {
     let rivals = &found.ambiguous_with;
     found.id == effect || (rivals.len() <= MOST_RIVALS && rivals.iter().any(|r| r == effect))
 }
+
+/// A lag of 80 ms, and a right motor that gives 0.9615 of its speed. A textbook states no load, so nothing can be one.
+pub fn a_lagging_robot_with_a_weak_motor_carries_no_load(logs: &Path) {
+    let sandbox = Sandbox::new();
+    sandbox.run(&format!("diagnose kinematic {} --json found.json", logs.display()));
+    let found = sandbox.json("found.json");
+    let effect = |id: &str| found["effects"].as_array()?.iter().find(|effect| effect["id"] == id);
+    let motor = effect("motor_asymmetry").unwrap_or_else(|| panic!("{found}"));
+    assert_eq!(motor["parameters"]["side"], "right", "{found}");
+    assert!((motor["parameters"]["factor"].as_f64().expect("a factor") - 0.9615).abs() < 0.005, "{found}");
+    assert!(effect("inertia").or(effect("latency")).is_some() && effect("payload").is_none(), "{found}");
+}

@@ -27,6 +27,7 @@ fn main() -> ExitCode {
     let trials = vec![
         trial!(gap_cases::effects_of_another_robot_are_named, "data"),
         trial!(gap_cases::minimal_method_agrees_with_the_full_one, "data"),
+        trial!(gap_cases::a_lagging_robot_with_a_weak_motor_carries_no_load, "cases/lag-and-weak-motor/logs"),
         trial!(gap_real::the_end_poses_of_a_neato_show_its_gap_to_the_kinematic_model, "real/neato"),
         trial!(gap_real::the_loss_in_turns_of_a_real_robot_is_found_as_a_formula, "real/create"),
         trial!(gap_real::a_real_sonar_at_rest_is_compared_with_the_kinematic_model, "real/nxt-sonar"),

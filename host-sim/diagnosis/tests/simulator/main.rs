@@ -6,6 +6,7 @@ mod gap;
 mod gap_apply;
 mod metamorphic;
 mod own_effect;
+mod skid;
 mod turning_loss;
 
 use std::sync::LazyLock;

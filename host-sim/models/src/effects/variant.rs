@@ -23,6 +23,14 @@ pub struct Effect {
     pub variants: &'static [Variant],
 }
 
+impl Effect {
+    /// Whether it is a change against a robot that was known before, which a textbook does not know: a textbook states no
+    /// load, and what a load does to it is a drive scale, a weak motor, a lag and scrubbing.
+    pub fn needs_known_robot(&self) -> bool {
+        self.id == "payload"
+    }
+}
+
 /// One functional form of an effect.
 pub struct Variant {
     /// Unique among the variants of its effect, and stable: users' files hold it.

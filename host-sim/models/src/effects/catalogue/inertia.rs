@@ -17,17 +17,19 @@ pub const EFFECT: Effect = Effect {
             id: "first_order_lag",
             parameters: Lag::PARAMETERS,
             hooks: &[Hook::Commands(&|v, context, commands| {
-                let Lag { ms, remaining } = Lag::read(v);
+                let Lag { ms } = Lag::read(v);
                 if ms == 0.0 {
                     return;
                 }
-                // The speed at the step's begin has come within `remaining` of the command before.
+                // The speed comes nearer to its command as exp(-t / ms): by the end of a step, and in the mean over it.
+                let steps = ms / context.robot.step_ms;
+                let missing = libm::exp(-1.0 / steps);
+                let mean_missing = steps * (1.0 - missing);
                 let mut speed = commands[HISTORY - 1];
                 for command in commands[1..].iter().rev() {
-                    speed = [0, 1].map(|m| command[m] + remaining * (speed[m] - command[m]));
+                    speed = [0, 1].map(|m| command[m] + missing * (speed[m] - command[m]));
                 }
-                let share = (ms / context.robot.step_ms).min(1.0);
-                commands[0] = [0, 1].map(|m| commands[0][m] + share * (speed[m] - commands[0][m]));
+                commands[0] = [0, 1].map(|m| commands[0][m] + mean_missing * (speed[m] - commands[0][m]));
                 commands[1] = speed;
             })],
         },
@@ -45,20 +47,15 @@ pub const EFFECT: Effect = Effect {
     ],
 };
 
-/// Time that is added to the drive's time constant. An NXT motor takes about 50 ms; more than 300 ms would need many times
-/// its rotor's inertia.
+/// Time that is added to the drive's time constant. An NXT motor takes about 50 ms, a skid-steered robot of half a tonne half a
+/// second.
 const ADDED_MS: Parameter =
-    Parameter::new("ms", 0.0, [0.0, 320.0]).prior_sd(120.0).from(Guesses::At(&[40.0, 120.0, 200.0]));
+    Parameter::new("ms", 0.0, [0.0, 800.0]).prior_sd(200.0).from(Guesses::At(&[40.0, 120.0, 200.0, 400.0]));
 
 parameters! {
     Lag {
         /// See [`ADDED_MS`].
         ms: ADDED_MS,
-        /// Share of a change of speed that is still missing a step later: never none, or it would be a delay.
-        remaining: Parameter::new("", 0.2, [0.03, 0.8])
-            .prior_sd(0.3)
-            .from(Guesses::At(&[0.15, 0.4]))
-            .report(Report::Hidden),
     }
 }
 

@@ -95,8 +95,8 @@ parameters! {
             .prior_sd(20.0)
             .from(Guesses::At(&[12.0, 25.0]))
             .report(Report::Onset),
-        /// Share lost of what lies far beyond; more than all of it where wheels spin on.
-        loss: Parameter::new("", 0.0, [0.0, 1.5]).prior_sd(0.7).from(Guesses::At(&[0.3, 0.8])),
+        /// Share lost of what lies far beyond: all of it at the most.
+        loss: Parameter::new("", 0.0, [0.0, 1.0]).prior_sd(0.7).from(Guesses::At(&[0.3, 0.8])),
         /// Turn that a step loses for a loss of one: a tyre of little grip creeps where it is held back.
         turn_drag_rad: Parameter::new("rad", 0.0, [0.0, 0.1])
             .prior_sd(0.05)
