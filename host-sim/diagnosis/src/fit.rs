@@ -38,7 +38,7 @@ pub struct FitContext<'a> {
     pub motion_uncertainty: Option<MotionUncertainty>,
     /// Nats by channel that the effects explain which the simulator has already.
     pub already_explained: [f64; Channel::COUNT],
-    top_speed_cm_s: f64,
+    top_speed: f64,
 }
 
 /// A hypothesis fitted to identification rows: the simulator as it is, or effects, a formula among them.
@@ -80,7 +80,7 @@ impl<'a> FitContext<'a> {
             seed: method.seed,
             motion_uncertainty: MotionUncertainty::of(rows),
             already_explained: already_explained(rows),
-            top_speed_cm_s: rows.top_speed_cm_s(),
+            top_speed: rows.top_speed(),
         }
     }
 
@@ -96,7 +96,7 @@ impl<'a> FitContext<'a> {
 
     /// Returns where fits of an effect start.
     pub fn initial_guesses(&self, candidate: &Candidate) -> Vec<Vec<f64>> {
-        candidate.variant.initial_guesses(self.top_speed_cm_s)
+        candidate.variant.initial_guesses(self.top_speed)
     }
 }
 
@@ -203,7 +203,7 @@ impl Fitted {
     /// Returns the names of the reported parameters of one effect that lie at a bound.
     pub fn at_bound(&self, effect: usize) -> Vec<&'static str> {
         let parameters = self.hypothesis.candidates[effect].variant.parameters.iter().zip(self.values_of(effect));
-        parameters.filter(|(parameter, value)| parameter.is_at_a_bound(**value)).map(|(p, _)| p.name).collect()
+        parameters.filter(|(parameter, value)| parameter.is_at_a_bound(**value)).map(|(p, _)| p.setting().0).collect()
     }
 
     /// Scores rows at the fitted parameters with given standard deviations of motion.

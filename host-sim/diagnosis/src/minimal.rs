@@ -43,6 +43,7 @@ use super::gain::Gain;
 use super::verdict::Verdict;
 use mindgap_foundations::statistics::summary::root_mean_square;
 use mindgap_learning::evaluation::observations::{Observation, Observations};
+use mindgap_models::effects::scales::HALF_SPEED;
 
 /// One step of a robot.
 #[derive(Clone, Copy, Debug)]
@@ -55,7 +56,7 @@ pub struct Step {
     pub logged_cm: f64,
     /// Heading halfway through the step, rad.
     pub heading_rad: f64,
-    /// Length of a step at the reference speed, cm; zero if the motors are off.
+    /// Length of a step at the reference speed, [`HALF_SPEED`] of full speed, cm; zero if the motors are off.
     pub reference_cm: f64,
 }
 
@@ -122,8 +123,6 @@ pub struct Found {
     pub interval: [f64; 2],
 }
 
-/// Speed for which the size of a slope or a nap is reported, as in the full method's catalogue.
-const REFERENCE_CM_S: f64 = 20.0;
 /// One run in this many is held out.
 const EVERY: usize = 4;
 /// Residuals are clipped at this many standard deviations of the noise: a jump of the tracker says nothing about steps.
@@ -140,7 +139,7 @@ pub fn steps(observations: &Observations) -> Vec<Step> {
             predicted_cm: predicted.forward,
             logged_cm: logged.forward,
             heading_rad: row.context.pose.heading_rad + 0.5 * predicted.turn,
-            reference_cm: if row.commands()[0] == [0.0; 2] { 0.0 } else { REFERENCE_CM_S * row.context.step_s() },
+            reference_cm: if row.commands()[0] == [0.0; 2] { 0.0 } else { HALF_SPEED * row.context.full_cm() },
         })
     };
     observations.rows.iter().filter_map(step).collect()

@@ -13,8 +13,8 @@ pub mod chain;
 pub mod context;
 pub mod own;
 pub mod parameter;
+pub mod scales;
 pub mod signs;
-pub mod small_robot;
 pub mod variant;
 
 pub use catalogue::{CATALOGUE, Candidate};

@@ -5,6 +5,7 @@ use std::collections::BTreeSet;
 use glam::DVec2;
 use mindgap_built_in_robot::default_robot;
 use mindgap_diagnosis::diagnose;
+use mindgap_diagnosis::verdict::NamedEffect;
 use mindgap_foundations::geometry::{Pose, Wall, direction, wrap_rad};
 use mindgap_foundations::motion::Motion;
 use mindgap_foundations::random::generator;
@@ -32,9 +33,9 @@ fn textbook(logs: &Logs) -> BTreeSet<&'static str> {
     named(kinematic::baseline(logs), logs)
 }
 
-/// Runs of a textbook robot whose commands act 150 ms late and which loses 7 cm of ground in a radian of turn.
+/// Runs of a textbook robot whose commands act 150 ms late and which loses 0.6 of its track in a radian of turn.
 fn late_and_losing() -> Logs {
-    let effects = [("latency", "delay", vec![150.0]), ("turn_loss", "at_any_speed", vec![7.0])];
+    let effects = [("latency", "delay", vec![150.0]), ("turn_loss", "at_any_speed", vec![0.6])];
     let (variants, values): (Vec<_>, Vec<Vec<f64>>) = effects
         .map(|(effect, variant, values)| (Candidate::named(effect, variant).expect(effect).variant, values))
         .into_iter()
@@ -136,4 +137,38 @@ fn what_acts_on_the_textbook_is_found_whatever_the_units_and_the_hand() {
         ]
     });
     assert_eq!(textbook(&Logs { runs: halves.collect(), ..logs.clone() }), causes, "runs cut in two");
+}
+
+#[test]
+fn a_robot_ten_times_as_large_has_the_same_causes() {
+    let logs = late_and_losing();
+    let diagnosed = |logs: &Logs| diagnose(kinematic::baseline(logs), logs).expect("poses").effects;
+    let of = diagnosed(&logs);
+    for scale in [0.1, 10.0] {
+        let scaled = diagnosed(&scaled(&logs, scale));
+        let ids = |effects: &[NamedEffect]| effects.iter().map(|effect| effect.id).collect::<Vec<_>>();
+        assert_eq!(ids(&scaled), ids(&of), "{scale}");
+        for (effect, name, factor) in [("latency", "ms", 1.0), ("turn_loss", "cm_per_rad", scale)] {
+            let [size, expected] = [&scaled, &of].map(|effects| {
+                let found = effects.iter().find(|found| found.id == effect).expect(effect);
+                found.parameters[name].as_f64().expect("a number")
+            });
+            assert!((size / (factor * expected) - 1.0).abs() < 0.015, "{scale}: {effect} {size} for {expected}");
+        }
+    }
+}
+
+/// The same logs with all lengths scaled.
+fn scaled(logs: &Logs, scale: f64) -> Logs {
+    let mut logs = with_rows(logs.clone(), |row| {
+        row.pose = row.pose.map(|pose| Pose { position_cm: scale * pose.position_cm, ..pose });
+    });
+    let robot = &mut logs.robot;
+    for length in
+        [&mut robot.wheel_diameter_cm, &mut robot.track_cm, &mut robot.body_radius_cm, &mut robot.full_speed_cm_s]
+    {
+        *length *= scale;
+    }
+    logs.scene = Scene { arena_cm: logs.scene.arena_cm.map(|cm| scale * cm), ..Scene::default() };
+    logs
 }

@@ -175,11 +175,9 @@ impl Observations {
         sums
     }
 
-    /// Returns the largest commanded wheel speed, cm/s.
-    pub fn top_speed_cm_s(&self) -> f64 {
-        let speeds =
-            self.rows.iter().flat_map(|row| row.context.commands[0].map(|c| row.context.wheel_speed_cm_s(c).abs()));
-        speeds.fold(0.0, f64::max)
+    /// Returns the largest commanded wheel speed, as a share of full speed.
+    pub fn top_speed(&self) -> f64 {
+        self.rows.iter().flat_map(|row| row.context.commands[0].map(|c| c.abs() / 100.0)).fold(0.0, f64::max)
     }
 }
 

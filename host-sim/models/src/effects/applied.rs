@@ -67,7 +67,6 @@ mod tests {
 
     use super::*;
     use crate::effects::parameter::{Report, Setting};
-    use crate::effects::small_robot::FULL_SPEED_CM_S;
 
     /// Reads back what is written.
     fn round_trip(candidate: &Candidate, values: &[f64], robot: &Robot) -> Vec<f64> {
@@ -123,7 +122,7 @@ mod tests {
     fn files_hold_the_names_that_a_diagnosis_reports() {
         let robot = mindgap_built_in_robot::default_robot();
         for candidate in Candidate::all(CATALOGUE) {
-            let values = candidate.variant.initial_guesses(FULL_SPEED_CM_S).remove(0);
+            let values = candidate.variant.initial_guesses(1.0).remove(0);
             let applied = AppliedEffect::new(&candidate, &values, &robot);
             for (name, reported) in candidate.variant.reported(&values, &robot) {
                 match (applied.parameters[&name], reported.as_f64()) {

@@ -6,7 +6,7 @@ mod drive;
 
 use super::context::{CommandHistory, StepContext};
 use super::parameter::parameters;
-use super::small_robot::{CREEPING_CM_S, CREEPING_RAD_S, HALF_SPEED_CM_S};
+use super::scales::{CREEPING, CREEPING_TURN, HALF_SPEED, full_turn_rad_s};
 use super::{Effect, Variant};
 use mindgap_foundations::motion::Motion;
 
@@ -107,9 +107,9 @@ fn each_wheel(context: &StepContext, increment: &mut Motion<f64>, change: impl F
 }
 
 /// Returns the distance that a force of strength one costs per step: a fraction grows with the distance covered, the rest is
-/// that of [`HALF_SPEED_CM_S`] at any speed.
+/// that of [`HALF_SPEED`] at any speed.
 fn distance_lost_cm(with_speed: f64, covered_cm: f64, context: &StepContext) -> f64 {
-    loaded(with_speed, covered_cm.abs(), HALF_SPEED_CM_S * context.step_s())
+    loaded(with_speed, covered_cm.abs(), HALF_SPEED * context.full_cm())
 }
 
 /// Returns a drag: the fraction `with_speed` of it grows with the speed, and the rest is that at `reference`, at any speed.
@@ -119,12 +119,12 @@ fn loaded(with_speed: f64, speed: f64, reference: f64) -> f64 {
 
 /// Returns how much a step counts as motion, 0 to 1.
 fn moving(covered_cm: f64, context: &StepContext) -> f64 {
-    (covered_cm.abs() / (CREEPING_CM_S * context.step_s())).min(1.0)
+    (covered_cm.abs() / (CREEPING * context.full_cm())).min(1.0)
 }
 
 /// Returns how much a turn scrubs the tyres, -1 to 1, with the sign of the turn.
 fn scrubbing(turn_rad: f64, context: &StepContext) -> f64 {
-    libm::tanh(turn_rad / (CREEPING_RAD_S * context.step_s()))
+    libm::tanh(turn_rad / (CREEPING_TURN * full_turn_rad_s(&context.robot) * context.step_s()))
 }
 
 /// Returns a distance made longer or shorter, at least 0 in magnitude; a robot at rest stays at rest.
@@ -140,7 +140,6 @@ mod tests {
     use crate::effects::SensorState;
     use crate::effects::chain::EffectChain;
     use crate::effects::context::{RunHistory, Surroundings};
-    use crate::effects::small_robot::FULL_SPEED_CM_S;
     use crate::sonar::Perturbation;
     use mindgap_foundations::geometry::{Pose, wrap_rad};
     use mindgap_logs::{Robot, Scene};
@@ -207,7 +206,7 @@ mod tests {
     #[test]
     fn fits_start_within_the_bounds_and_not_where_nothing_changes() {
         for Candidate { effect, variant } in Candidate::all(CATALOGUE) {
-            for start in variant.initial_guesses(FULL_SPEED_CM_S) {
+            for start in variant.initial_guesses(1.0) {
                 assert!(start.iter().zip(variant.parameters).all(|(v, p)| p.allows(*v)), "{effect} {}", variant.id);
                 assert_ne!(start, variant.nominal(), "{effect} {}", variant.id);
             }
@@ -255,7 +254,7 @@ mod tests {
         for Candidate { effect, variant } in Candidate::all(CATALOGUE) {
             let asked = |id: &str| REPORTED.iter().find(|(known, _)| *known == id).map(|(_, names)| names);
             let asked = asked(&format!("{effect} {}", variant.id)).or_else(|| asked(effect)).expect(effect);
-            let reported = variant.reported(&variant.initial_guesses(FULL_SPEED_CM_S)[0], &robot);
+            let reported = variant.reported(&variant.initial_guesses(1.0)[0], &robot);
             let mut names: Vec<&str> = reported.keys().map(String::as_str).collect();
             let mut asked = asked.to_vec();
             names.sort_unstable();
@@ -284,7 +283,7 @@ mod tests {
         let refers_to_full_speed = |c: &Candidate| c.effect == "deadband" && c.variant.id == "stretched";
         for candidate in Candidate::all(CATALOGUE).into_iter().filter(|c| !refers_to_full_speed(c)) {
             let Candidate { effect, variant } = candidate;
-            for values in variant.initial_guesses(FULL_SPEED_CM_S) {
+            for values in variant.initial_guesses(1.0) {
                 let (c, m, s) = applied(variant, &values, &usual);
                 let (other_c, other_m, other_s) = applied(variant, &values, &scaled);
                 let commands = c[..2].as_flattened().iter().zip(other_c[..2].as_flattened());
@@ -322,7 +321,7 @@ mod tests {
         fn command_only_effects_do_not_depend_on_place_or_time(here in context(), elsewhere in context()) {
             let elsewhere = StepContext { commands: here.commands, ..elsewhere };
             for Candidate { effect, variant } in Candidate::all(CATALOGUE) {
-                for values in variant.initial_guesses(FULL_SPEED_CM_S) {
+                for values in variant.initial_guesses(1.0) {
                     let [here, elsewhere] = [&here, &elsewhere].map(|context| applied(variant, &values, context));
                     let same = (here.0, here.1) == (elsewhere.0, elsewhere.1);
                     prop_assert!(same || !variant.moves_by_commands_alone(), "{effect} {}", variant.id);
@@ -335,7 +334,7 @@ mod tests {
         fn no_motion_effect_depends_on_what_the_sensor_faces(facing in context()) {
             let unseen = StepContext { faced: None, ..facing };
             for Candidate { effect, variant } in Candidate::all(CATALOGUE) {
-                for values in variant.initial_guesses(FULL_SPEED_CM_S) {
+                for values in variant.initial_guesses(1.0) {
                     let [facing, unseen] = [&facing, &unseen].map(|context| applied(variant, &values, context));
                     prop_assert_eq!((facing.0, facing.1), (unseen.0, unseen.1), "{} {}", effect, variant.id);
                 }
@@ -346,7 +345,7 @@ mod tests {
         fn uniform_sensor_effects_do_not_depend_on_place_or_time(here in context(), elsewhere in context()) {
             let elsewhere = StepContext { echo_before: here.echo_before, ..elsewhere };
             for Candidate { effect, variant } in Candidate::all(CATALOGUE) {
-                for values in variant.initial_guesses(FULL_SPEED_CM_S) {
+                for values in variant.initial_guesses(1.0) {
                     let same = [&here, &elsewhere].map(|context| {
                         let (.., sensor) = applied(variant, &values, context);
                         (sensor.robot == context.pose).then_some(SensorState { robot: here.pose, ..sensor })

@@ -64,6 +64,11 @@ impl StepContext {
         100.0 * wheel_speed_cm_s / self.robot.full_speed_cm_s
     }
 
+    /// Returns what a wheel at full speed covers in a step, cm.
+    pub fn full_cm(&self) -> f64 {
+        self.robot.full_speed_cm_s * self.step_s()
+    }
+
     /// Returns the nominal duration of a step, s.
     pub fn step_s(&self) -> f64 {
         self.robot.step_ms / 1000.0

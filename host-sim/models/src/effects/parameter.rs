@@ -41,7 +41,7 @@ pub struct Parameter {
 pub enum Guesses {
     /// At these values.
     At(&'static [f64]),
-    /// At these fractions of the largest wheel speed that the logs command.
+    /// At these fractions of the largest wheel speed that the logs command, itself a share of full speed.
     OfTopSpeed(&'static [f64]),
     /// On a grid of this spacing between the bounds: for a parameter whose likelihood has many maxima.
     Every(f64),
@@ -60,10 +60,12 @@ pub enum Report {
     SideAndLoss,
     /// The `side` that its sign means (positive: left), and one minus its magnitude as `factor`.
     SideAndFactor,
-    /// A wheel speed, as the `command` that asks for it.
+    /// A share of full speed, as the `command` that asks for it.
     Command,
-    /// A change of wheel speed, as `onset` in commands.
+    /// A change of wheel speed, as a share of full speed; as `onset` in commands.
     Onset,
+    /// A share of the track, as a length in cm by this name.
+    OfTrack(&'static str),
     /// A time, as `steps`.
     Steps,
     /// A loss of log-odds, as the `factor` on the odds.
@@ -167,11 +169,11 @@ impl Parameter {
         -libm::log(self.prior_sd * std::f64::consts::TAU.sqrt() * within)
     }
 
-    pub(super) fn guesses(&self, top_speed_cm_s: f64) -> Vec<f64> {
+    pub(super) fn guesses(&self, top_speed: f64) -> Vec<f64> {
         let [low, high] = self.bounds;
         let guesses: Vec<f64> = match self.guesses {
             Guesses::At(values) => values.to_vec(),
-            Guesses::OfTopSpeed(shares) => shares.iter().map(|share| share * top_speed_cm_s).collect(),
+            Guesses::OfTopSpeed(shares) => shares.iter().map(|share| share * top_speed).collect(),
             Guesses::Every(step) => (0..=((high - low) / step) as usize).map(|i| low + i as f64 * step).collect(),
         };
         if guesses.is_empty() { vec![self.nominal] } else { guesses.iter().map(|g| g.clamp(low, high)).collect() }
@@ -185,6 +187,7 @@ impl Parameter {
             Report::SideAndFactor => ("factor", true),
             Report::Command => ("command", false),
             Report::Onset => ("onset", false),
+            Report::OfTrack(name) => (name, false),
             Report::Steps => ("steps", false),
             Report::OddsFactor => ("factor", false),
         }
@@ -197,7 +200,8 @@ impl Parameter {
             Report::Direction => value - 360.0 * ((value - 180.0) / 360.0).ceil(),
             Report::SideAndLoss => value.abs(),
             Report::SideAndFactor => 1.0 - value.abs(),
-            Report::Command | Report::Onset => 100.0 * value / robot.full_speed_cm_s,
+            Report::Command | Report::Onset => 100.0 * value,
+            Report::OfTrack(_) => value * robot.track_cm,
             Report::Steps => value / robot.step_ms,
             Report::OddsFactor => libm::exp(-value),
         };
@@ -219,7 +223,8 @@ impl Parameter {
             Report::Hidden | Report::Value | Report::Direction => number,
             Report::SideAndLoss => sign * number,
             Report::SideAndFactor => sign * (1.0 - number),
-            Report::Command | Report::Onset => number / 100.0 * robot.full_speed_cm_s,
+            Report::Command | Report::Onset => number / 100.0,
+            Report::OfTrack(_) => number / robot.track_cm,
             Report::Steps => number * robot.step_ms,
             Report::OddsFactor => -libm::log(number),
         };
@@ -351,8 +356,9 @@ mod tests {
         assert_eq!(reported(Report::SideAndLoss, 0.25), side("left", "loss", 0.25));
         assert_eq!(reported(Report::SideAndLoss, -0.25), side("right", "loss", 0.25));
         assert_eq!(reported(Report::SideAndFactor, -0.25), side("right", "factor", 0.75));
-        assert_eq!(reported(Report::Command, 10.0), one("command", 20.0));
-        assert_eq!(reported(Report::Onset, 10.0), one("onset", 20.0));
+        assert_eq!(reported(Report::Command, 0.2), one("command", 20.0));
+        assert_eq!(reported(Report::Onset, 0.2), one("onset", 20.0));
+        assert_eq!(reported(Report::OfTrack("ahead_cm"), 0.5), one("ahead_cm", 5.75));
         assert_eq!(reported(Report::Steps, 600.0), one("steps", 1.5));
         assert_eq!(reported(Report::OddsFactor, libm::log(2.0)), one("factor", 0.5));
     }

@@ -93,11 +93,11 @@ impl Variant {
         self.parameters.iter().map(|p| p.nominal).collect()
     }
 
-    /// Returns where fits start: all combinations of the parameters' guesses. `top_speed_cm_s` is the largest wheel speed
-    /// that the logs command.
-    pub fn initial_guesses(&self, top_speed_cm_s: f64) -> Vec<Vec<f64>> {
+    /// Returns where fits start: all combinations of the parameters' guesses. `top_speed` is the largest wheel speed
+    /// that the logs command, as a share of full speed.
+    pub fn initial_guesses(&self, top_speed: f64) -> Vec<Vec<f64>> {
         self.parameters.iter().fold(vec![Vec::new()], |so_far, parameter| {
-            let guesses = parameter.guesses(top_speed_cm_s);
+            let guesses = parameter.guesses(top_speed);
             so_far.iter().flat_map(|start| guesses.iter().map(move |g| [start.as_slice(), &[*g]].concat())).collect()
         })
     }

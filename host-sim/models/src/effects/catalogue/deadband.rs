@@ -3,7 +3,7 @@
 use super::drive::Drive;
 use super::{each_command, each_wheel, parameters};
 use crate::effects::parameter::{Guesses, Report};
-use crate::effects::small_robot::DEADBAND_EDGE_CM_S;
+use crate::effects::scales::DEADBAND_EDGE;
 use crate::effects::{Effect, Hook, Parameter, Variant};
 
 pub const EFFECT: Effect = Effect {
@@ -16,9 +16,9 @@ pub const EFFECT: Effect = Effect {
         Variant {
             id: "cut",
             parameters: Deadband::PARAMETERS,
-            hooks: &[Hook::Commands(&|v, context, commands| {
-                let edge = context.command_for(Deadband::read(v).break_away_cm_s);
-                let softness = context.command_for(DEADBAND_EDGE_CM_S);
+            hooks: &[Hook::Commands(&|v, _, commands| {
+                let edge = 100.0 * Deadband::read(v).break_away;
+                let softness = 100.0 * DEADBAND_EDGE;
                 if edge > 0.0 {
                     each_command(commands, |c, _| c * ((c - edge) / softness + 0.5).clamp(0.0, 1.0));
                 }
@@ -27,17 +27,17 @@ pub const EFFECT: Effect = Effect {
         Variant {
             id: "subtracted",
             parameters: Deadband::PARAMETERS,
-            hooks: &[Hook::Commands(&|v, context, commands| {
-                let edge = context.command_for(Deadband::read(v).break_away_cm_s);
+            hooks: &[Hook::Commands(&|v, _, commands| {
+                let edge = 100.0 * Deadband::read(v).break_away;
                 each_command(commands, |c, _| (c - edge).max(0.0));
             })],
         },
         Variant {
             id: "stretched",
             parameters: Deadband::PARAMETERS,
-            hooks: &[Hook::Commands(&|v, context, commands| {
+            hooks: &[Hook::Commands(&|v, _, commands| {
                 // A command for full speed still gives full speed.
-                let edge = context.command_for(Deadband::read(v).break_away_cm_s).min(MOST_OF_FULL);
+                let edge = (100.0 * Deadband::read(v).break_away).min(MOST_OF_FULL);
                 each_command(commands, |c, _| (c - edge).max(0.0) * 100.0 / (100.0 - edge));
             })],
         },
@@ -45,7 +45,7 @@ pub const EFFECT: Effect = Effect {
             id: "wheel",
             parameters: Deadband::PARAMETERS,
             hooks: &[Hook::Motion(&|v, context, increment| {
-                let held_cm = Deadband::read(v).break_away_cm_s * context.step_s();
+                let held_cm = Deadband::read(v).break_away * context.full_cm();
                 each_wheel(context, increment, |cm, _| (cm.abs() - held_cm).max(0.0).copysign(cm));
             })],
         },
@@ -53,11 +53,11 @@ pub const EFFECT: Effect = Effect {
             id: "friction",
             parameters: Deadband::PARAMETERS,
             hooks: &[Hook::Commands(&|v, context, commands| {
-                let edge_cm_s = Deadband::read(v).break_away_cm_s;
-                if edge_cm_s > 0.0 {
+                let Deadband { break_away } = Deadband::read(v);
+                if break_away > 0.0 {
                     // What keeps a drive from moving helps it to stop, too.
                     let known = Drive::slower(0.0, 0.0, context);
-                    known.imitate(&Drive::slower(0.0, edge_cm_s, context), commands);
+                    known.imitate(&Drive::slower(0.0, break_away, context), commands);
                 }
             })],
         },
@@ -66,10 +66,10 @@ pub const EFFECT: Effect = Effect {
 
 parameters! {
     Deadband {
-        /// Wheel speed below whose command nothing moves. Real NXT motors on the ground break away at 12 to 16 % of full
-        /// power, about 6 cm/s; 20 cm/s is half of their full speed.
-        break_away_cm_s: Parameter::new("cm/s", 0.0, [0.0, 20.0])
-            .prior_sd(8.0)
+        /// Share of full speed below whose command nothing moves. Real NXT motors on the ground break away at 12 to 16 % of full
+        /// power.
+        break_away: Parameter::new("", 0.0, [0.0, 0.5])
+            .prior_sd(0.2)
             .from(Guesses::OfTopSpeed(&[0.04, 0.08, 0.14, 0.22, 0.3]))
             .report(Report::Command),
     }

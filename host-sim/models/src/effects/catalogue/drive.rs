@@ -2,7 +2,7 @@
 
 use crate::effects::StepContext;
 use crate::effects::context::{CommandHistory, HISTORY};
-use crate::effects::small_robot::MOTOR_MS;
+use crate::effects::scales::MOTOR_MS;
 
 /// A drive of the first order with dry friction; speeds are in units of the command that keeps them without it.
 pub struct Drive {
@@ -13,10 +13,10 @@ pub struct Drive {
 }
 
 impl Drive {
-    /// Returns a drive slower by `ms` than the one that simulators know, with dry friction that the command for this wheel speed
-    /// just overcomes.
-    pub fn slower(ms: f64, friction_cm_s: f64, context: &StepContext) -> Self {
-        Drive { steps: (MOTOR_MS + ms) / context.robot.step_ms, friction: context.command_for(friction_cm_s) }
+    /// Returns a drive slower by `ms` than the one that simulators know, with dry friction that the command for this share
+    /// of full speed just overcomes.
+    pub fn slower(ms: f64, friction: f64, context: &StepContext) -> Self {
+        Drive { steps: (MOTOR_MS + ms) / context.robot.step_ms, friction: 100.0 * friction }
     }
 
     /// Returns the drive that simulators know, with the load of the robot's body on the motors scaled by `factor`.

@@ -37,10 +37,10 @@ pub const EFFECT: Effect = Effect {
             id: "drive_with_friction",
             parameters: SlowDrive::PARAMETERS,
             hooks: &[Hook::Commands(&|v, context, commands| {
-                let SlowDrive { ms, friction_cm_s } = SlowDrive::read(v);
+                let SlowDrive { ms, friction } = SlowDrive::read(v);
                 if ms > 0.0 {
-                    let known = Drive::slower(0.0, friction_cm_s, context);
-                    known.imitate(&Drive::slower(ms, friction_cm_s, context), commands);
+                    let known = Drive::slower(0.0, friction, context);
+                    known.imitate(&Drive::slower(ms, friction, context), commands);
                 }
             })],
         },
@@ -63,11 +63,11 @@ parameters! {
     SlowDrive {
         /// See [`ADDED_MS`].
         ms: ADDED_MS,
-        /// The wheel speed whose command does no more than overcome the drive's dry friction, which helps it to stop and not
-        /// to start. Of an NXT motor it is 2 cm/s.
-        friction_cm_s: Parameter::new("cm/s", 0.0, [0.0, 12.0])
-            .prior_sd(4.0)
-            .from(Guesses::At(&[2.0]))
+        /// The share of full speed whose command does no more than overcome the drive's dry friction, which helps it to stop and
+        /// not to start. Of an NXT motor it is a twentieth.
+        friction: Parameter::new("", 0.0, [0.0, 0.3])
+            .prior_sd(0.1)
+            .from(Guesses::At(&[0.05]))
             .report(Report::Hidden),
     }
 }

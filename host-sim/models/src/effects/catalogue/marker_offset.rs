@@ -3,8 +3,8 @@
 use glam::DVec2;
 
 use super::parameters;
-use crate::effects::parameter::Guesses;
-use crate::effects::{Effect, Hook, Parameter, Variant};
+use crate::effects::parameter::{Guesses, Report};
+use crate::effects::{Effect, Hook, Parameter, StepContext, Variant};
 use mindgap_foundations::geometry::direction;
 
 pub const EFFECT: Effect = Effect {
@@ -17,34 +17,34 @@ pub const EFFECT: Effect = Effect {
         id: "rigid",
         parameters: Marker::PARAMETERS,
         hooks: &[
-            Hook::Motion(&|v, _, increment| {
-                let at_cm = Marker::read(v).on_the_robot();
+            Hook::Motion(&|v, context, increment| {
+                let at_cm = Marker::read(v).on_the_robot_cm(context);
                 let carried_cm = direction(increment.turn).rotate(at_cm) - at_cm;
                 increment.forward += carried_cm.x;
                 increment.lateral += carried_cm.y;
             }),
-            Hook::SensorHere(&|v, _, sensor| {
-                let at_cm = Marker::read(v).on_the_robot();
+            Hook::SensorHere(&|v, context, sensor| {
+                let at_cm = Marker::read(v).on_the_robot_cm(context);
                 sensor.robot.position_cm -= direction(sensor.robot.heading_rad).rotate(at_cm);
             }),
         ],
     }],
 };
 
-/// Either way: a marker farther off would not lie on the robot's body.
-const OFFSET: Parameter = Parameter::new("cm", 0.0, [-15.0, 15.0]).prior_sd(4.0);
+/// Either way, in tracks: a marker farther off would not lie on the robot's body.
+const OFFSET: Parameter = Parameter::new("", 0.0, [-1.3, 1.3]).prior_sd(0.35);
 
 parameters! {
     Marker {
         /// How far ahead of the axle's middle.
-        ahead_cm: OFFSET.from(Guesses::At(&[2.0, -2.0])),
+        ahead: OFFSET.from(Guesses::At(&[0.17, -0.17])).report(Report::OfTrack("ahead_cm")),
         /// How far to its left.
-        left_cm: OFFSET,
+        left: OFFSET.report(Report::OfTrack("left_cm")),
     }
 }
 
 impl Marker {
-    fn on_the_robot(&self) -> DVec2 {
-        DVec2::new(self.ahead_cm, self.left_cm)
+    fn on_the_robot_cm(&self, context: &StepContext) -> DVec2 {
+        context.robot.track_cm * DVec2::new(self.ahead, self.left)
     }
 }

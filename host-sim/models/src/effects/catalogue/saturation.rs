@@ -2,7 +2,7 @@
 
 use super::{each_command, parameters};
 use crate::effects::parameter::{Guesses, Report};
-use crate::effects::small_robot::UNREACHED_SPEED_CM_S;
+use crate::effects::scales::UNREACHED_SPEED;
 use crate::effects::{Effect, Hook, Parameter, Variant};
 
 pub const EFFECT: Effect = Effect {
@@ -15,8 +15,8 @@ pub const EFFECT: Effect = Effect {
         Variant {
             id: "hard",
             parameters: Saturation::PARAMETERS,
-            hooks: &[Hook::Commands(&|v, context, commands| {
-                let limit = context.command_for(Saturation::read(v).limit_cm_s);
+            hooks: &[Hook::Commands(&|v, _, commands| {
+                let limit = 100.0 * Saturation::read(v).limit;
                 each_command(commands, |c, _| c.min(limit));
             })],
         },
@@ -24,7 +24,7 @@ pub const EFFECT: Effect = Effect {
             id: "wheel",
             parameters: Saturation::PARAMETERS,
             hooks: &[Hook::Motion(&|v, context, increment| {
-                let most_cm = Saturation::read(v).limit_cm_s * context.step_s();
+                let most_cm = Saturation::read(v).limit * context.full_cm();
                 let wheels = increment.wheels_cm(context.robot.track_cm);
                 let within = wheels.map(|covered_cm| covered_cm.clamp(-most_cm, most_cm));
                 if within != wheels {
@@ -35,11 +35,10 @@ pub const EFFECT: Effect = Effect {
         Variant {
             id: "soft",
             parameters: Saturation::PARAMETERS,
-            hooks: &[Hook::Commands(&|v, context, commands| {
-                let Saturation { limit_cm_s } = Saturation::read(v);
-                let limit = context.command_for(limit_cm_s);
-                if limit_cm_s < UNREACHED_SPEED_CM_S {
-                    each_command(commands, |c, _| softly_limited(c, limit));
+            hooks: &[Hook::Commands(&|v, _, commands| {
+                let Saturation { limit } = Saturation::read(v);
+                if limit < UNREACHED_SPEED {
+                    each_command(commands, |c, _| softly_limited(c, 100.0 * limit));
                 }
             })],
         },
@@ -48,10 +47,10 @@ pub const EFFECT: Effect = Effect {
 
 parameters! {
     Saturation {
-        /// Wheel speed above which nothing is added. A regulated NXT motor under load is flat from half of its full
-        /// 41 cm/s at the earliest; robots that clean floors drive at 10 to 50 cm/s, and half of the slowest is left.
-        limit_cm_s: Parameter::new("cm/s", UNREACHED_SPEED_CM_S, [5.0, UNREACHED_SPEED_CM_S])
-            .scale(33.0)
+        /// Share of full speed above which nothing is added. A regulated NXT motor under load is flat from half of its full
+        /// speed at the earliest; bases on ROS are often limited to a fifth of what robot.toml says.
+        limit: Parameter::new("", UNREACHED_SPEED, [0.12, UNREACHED_SPEED])
+            .scale(0.8)
             .from(Guesses::OfTopSpeed(&[0.35, 0.5, 0.65, 0.8]))
             .report(Report::Command),
     }

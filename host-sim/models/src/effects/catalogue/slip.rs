@@ -3,8 +3,8 @@
 use super::{each_command, each_wheel, parameters};
 use crate::effects::context::CommandHistory;
 use crate::effects::parameter::{Guesses, Report};
-use crate::effects::small_robot::{FULL_SPEED_CM_S, GRIPPING_TURN_RAD, HALF_SLIP_CM_S};
-use crate::effects::{Effect, Hook, Parameter, StepContext, Variant};
+use crate::effects::scales::{GRIPPING_TURN_RAD, HALF_SLIP};
+use crate::effects::{Effect, Hook, Parameter, Variant};
 
 pub const EFFECT: Effect = Effect {
     id: "slip",
@@ -16,30 +16,30 @@ pub const EFFECT: Effect = Effect {
         Variant {
             id: "fast",
             parameters: FastSlip::PARAMETERS,
-            hooks: &[Hook::Commands(&|v, context, commands| {
-                let FastSlip { onset_cm_s, loss } = FastSlip::read(v);
-                let onset = context.command_for(onset_cm_s);
+            hooks: &[Hook::Commands(&|v, _, commands| {
+                let FastSlip { onset, loss } = FastSlip::read(v);
+                let onset = 100.0 * onset;
                 each_command(commands, |c, _| c - loss * (c - onset).max(0.0));
             })],
         },
         Variant {
             id: "change",
             parameters: Slip::PARAMETERS,
-            hooks: &[Hook::Commands(&|v, context, commands| {
-                let Slip { onset_cm_s, loss } = Slip::read(v);
+            hooks: &[Hook::Commands(&|v, _, commands| {
+                let Slip { onset, loss } = Slip::read(v);
                 // A wheel that slips in a step has caught up at its end.
-                lose_change(commands, 0, context.command_for(onset_cm_s), |beyond| loss * beyond);
+                lose_change(commands, 0, 100.0 * onset, |beyond| loss * beyond);
             })],
         },
         Variant {
             id: "distance",
             parameters: Slip::PARAMETERS,
             hooks: &[Hook::Motion(&|v, context, increment| {
-                let Slip { onset_cm_s, loss } = Slip::read(v);
+                let Slip { onset, loss } = Slip::read(v);
                 let [now, before, ..] = context.commands;
                 each_wheel(context, increment, |cm, m| {
-                    let change_cm_s = context.wheel_speed_cm_s((now[m] - before[m]).abs());
-                    let beyond = (change_cm_s - onset_cm_s).max(0.0) / FULL_SPEED_CM_S;
+                    let change = (now[m] - before[m]).abs() / 100.0;
+                    let beyond = (change - onset).max(0.0);
                     cm * (1.0 - (loss * beyond).min(1.0))
                 });
             })],
@@ -49,12 +49,12 @@ pub const EFFECT: Effect = Effect {
             parameters: DraggingSlip::PARAMETERS,
             hooks: &[
                 Hook::Commands(&|v, context, commands| {
-                    let DraggingSlip { onset_cm_s, loss, creep_ms, .. } = DraggingSlip::read(v);
-                    let lost = growing(loss, context);
+                    let DraggingSlip { onset, loss, creep_ms, .. } = DraggingSlip::read(v);
+                    let lost = growing(loss);
                     // What a tyre creeps does not make it slide.
                     lose_change(commands, 0, 0.0, |change| change * loss * creep_ms / context.robot.step_ms);
-                    lose_change(commands, 0, context.command_for(onset_cm_s), &lost);
-                    lose_change(commands, 1, NOT_CAUGHT_UP * context.command_for(onset_cm_s), &lost);
+                    lose_change(commands, 0, 100.0 * onset, &lost);
+                    lose_change(commands, 1, NOT_CAUGHT_UP * 100.0 * onset, &lost);
                 }),
                 Hook::Motion(&|v, _, increment| {
                     let DraggingSlip { loss, turn_drag_rad, .. } = DraggingSlip::read(v);
@@ -65,15 +65,15 @@ pub const EFFECT: Effect = Effect {
     ],
 };
 
-/// Change of wheel speed from which the tyres slide. Rubber on a floor holds about half a robot's weight, which a motor
-/// reaches within 6 cm/s at the least: below that it would be a scale or a lag. Above 50 cm/s nothing slides.
+/// Change of wheel speed from which the tyres slide, as a share of full speed. Rubber on a floor holds about half a robot's
+/// weight, which an NXT reaches within 6 cm/s at the least: below that it would be a scale or a lag.
 const ONSET: Parameter =
-    Parameter::new("cm/s", 50.0, [6.0, 50.0]).scale(43.0).from(Guesses::At(&[8.0, 16.0, 28.0])).report(Report::Onset);
+    Parameter::new("", 1.22, [0.146, 1.22]).scale(1.05).from(Guesses::At(&[0.195, 0.39, 0.68])).report(Report::Onset);
 
 parameters! {
     FastSlip {
         /// Wheel speed from which the tyres slide; see [`ONSET`].
-        onset_cm_s: ONSET,
+        onset: ONSET,
         /// Share lost of what lies beyond: what loses more than half is a limit.
         loss: Parameter::new("", 0.0, [0.0, 0.5]).prior_sd(0.3).from(Guesses::At(&[0.3])),
     }
@@ -82,7 +82,7 @@ parameters! {
 parameters! {
     Slip {
         /// See [`ONSET`].
-        onset_cm_s: ONSET,
+        onset: ONSET,
         /// Share lost of what lies beyond: all of it at the most.
         loss: Parameter::new("", 0.0, [0.0, 1.0]).prior_sd(0.5).from(Guesses::At(&[0.2, 0.4])),
     }
@@ -91,9 +91,9 @@ parameters! {
 parameters! {
     DraggingSlip {
         /// See [`ONSET`].
-        onset_cm_s: Parameter::new("cm/s", 25.0, [6.0, 37.0])
-            .prior_sd(20.0)
-            .from(Guesses::At(&[12.0, 25.0]))
+        onset: Parameter::new("", 0.61, [0.146, 0.9])
+            .prior_sd(0.49)
+            .from(Guesses::At(&[0.29, 0.61]))
             .report(Report::Onset),
         /// Share lost of what lies far beyond: all of it at the most.
         loss: Parameter::new("", 0.0, [0.0, 1.0]).prior_sd(0.7).from(Guesses::At(&[0.3, 0.8])),
@@ -115,8 +115,8 @@ parameters! {
 const NOT_CAUGHT_UP: f64 = 2.5;
 
 /// What is lost of a change of command that lies so far beyond the onset: little at first, then in proportion.
-fn growing(loss: f64, context: &StepContext) -> impl Fn(f64) -> f64 + use<> {
-    let half = context.command_for(HALF_SLIP_CM_S);
+fn growing(loss: f64) -> impl Fn(f64) -> f64 {
+    let half = 100.0 * HALF_SLIP;
     move |beyond| loss * beyond * beyond / (half + beyond)
 }
 

@@ -2,7 +2,7 @@
 
 use super::{parameters, pushed_cm};
 use crate::effects::parameter::{Guesses, Report};
-use crate::effects::small_robot::HALF_SPEED_CM_S;
+use crate::effects::scales::{HALF_SPEED, full_turn_rad_s};
 use crate::effects::{Effect, Hook, Parameter, Variant};
 
 pub const EFFECT: Effect = Effect {
@@ -15,7 +15,7 @@ pub const EFFECT: Effect = Effect {
             id: "at_any_speed",
             parameters: TurnLoss::PARAMETERS,
             hooks: &[Hook::Motion(&|v, context, increment| {
-                let lost_cm = TurnLoss::read(v).cm_per_rad * increment.turn.abs();
+                let lost_cm = TurnLoss::read(v).tracks_per_rad * context.robot.track_cm * increment.turn.abs();
                 increment.forward = pushed_cm(increment.forward, -lost_cm, context);
             })],
         },
@@ -23,8 +23,8 @@ pub const EFFECT: Effect = Effect {
             id: "with_speed",
             parameters: TurnLoss::PARAMETERS,
             hooks: &[Hook::Motion(&|v, context, increment| {
-                let speed = increment.forward.abs() / (HALF_SPEED_CM_S * context.step_s());
-                let lost_cm = TurnLoss::read(v).cm_per_rad * increment.turn.abs() * speed;
+                let speed = increment.forward.abs() / (HALF_SPEED * context.full_cm());
+                let lost_cm = TurnLoss::read(v).tracks_per_rad * context.robot.track_cm * increment.turn.abs() * speed;
                 increment.forward = pushed_cm(increment.forward, -lost_cm, context);
             })],
         },
@@ -32,32 +32,35 @@ pub const EFFECT: Effect = Effect {
             id: "dry",
             parameters: DryTurnLoss::PARAMETERS,
             hooks: &[Hook::Motion(&|v, context, increment| {
-                let DryTurnLoss { cm_per_rad, saturation_rad_s } = DryTurnLoss::read(v);
-                let saturation_rad = saturation_rad_s * context.step_s();
-                let lost_cm = cm_per_rad * saturation_rad * up_to_one(increment.turn.abs() / saturation_rad);
+                let DryTurnLoss { tracks_per_rad, saturation } = DryTurnLoss::read(v);
+                let saturation_rad = saturation * full_turn_rad_s(&context.robot) * context.step_s();
+                let lost_cm = tracks_per_rad * context.robot.track_cm * saturation_rad * up_to_one(increment.turn.abs() / saturation_rad);
                 increment.forward = pushed_cm(increment.forward, -lost_cm, context);
             })],
         },
     ],
 };
 
-/// Way lost for each radian of turn; of the second variant at [half of full speed](HALF_SPEED_CM_S). A Create loses 7 cm. A
-/// robot that loses half its track could not turn about a standing wheel, and no small robot's track is wider than 30 cm.
-const CM_PER_RAD: Parameter = Parameter::new("cm/rad", 0.0, [0.0, 15.0]).prior_sd(4.0).from(Guesses::At(&[1.0, 4.0]));
+/// Way lost for each radian of turn, in tracks; of the second variant at [half of full speed](HALF_SPEED). A Create loses a
+/// third of its track. A robot that loses half of it could hardly turn about a standing wheel.
+const LOSS: Parameter = Parameter::new("", 0.0, [0.0, 0.7])
+    .prior_sd(0.35)
+    .from(Guesses::At(&[0.09, 0.35]))
+    .report(Report::OfTrack("cm_per_rad"));
 
 parameters! {
     TurnLoss {
-        /// See [`CM_PER_RAD`].
-        cm_per_rad: CM_PER_RAD,
+        /// See [`LOSS`].
+        tracks_per_rad: LOSS,
     }
 }
 
 parameters! {
     DryTurnLoss {
-        /// In turns slower than the rate below; see [`CM_PER_RAD`].
-        cm_per_rad: CM_PER_RAD,
-        /// Rate of turn from which on what drags rubs with all that rests on it, as dry friction does.
-        saturation_rad_s: Parameter::new("rad/s", 2.0, [0.3, 8.0]).prior_sd(2.0).report(Report::Hidden),
+        /// In turns slower than the rate below; see [`LOSS`].
+        tracks_per_rad: LOSS,
+        /// Share of the fastest turn from which on what drags rubs with all that rests on it, as dry friction does.
+        saturation: Parameter::new("", 0.28, [0.042, 1.12]).prior_sd(0.28).report(Report::Hidden),
     }
 }
 

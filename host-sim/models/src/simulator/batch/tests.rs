@@ -1,7 +1,6 @@
 use super::*;
 use crate::effects::applied::AppliedEffect;
 use crate::effects::catalogue::Candidate;
-use crate::effects::small_robot::FULL_SPEED_CM_S;
 use crate::simulator::environment::SensorModel;
 use crate::simulator::known_steps::KnownSteps;
 use crate::simulator::motion::{MotionTable, speeds};
@@ -130,7 +129,7 @@ fn motions_worked_out_ahead_are_those_of_every_step() {
 fn what_effects_make_of_motions_is_worked_out_ahead_as_in_every_step() {
     let applied = |effect: &str, variant: &str| {
         let candidate = Candidate::named(effect, variant).unwrap();
-        AppliedEffect::new(&candidate, &candidate.variant.initial_guesses(FULL_SPEED_CM_S)[0], &SIMULATOR.robot)
+        AppliedEffect::new(&candidate, &candidate.variant.initial_guesses(1.0)[0], &SIMULATOR.robot)
     };
     let of = |added: &[AppliedEffect]| Simulator { added: added.to_vec(), ..SIMULATOR.clone() };
     let scene = four_obstacles();
