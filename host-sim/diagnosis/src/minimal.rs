@@ -56,7 +56,7 @@ pub struct Step {
     pub logged_cm: f64,
     /// Heading halfway through the step, rad.
     pub heading_rad: f64,
-    /// Length of a step at the reference speed, [`HALF_SPEED`] of full speed, cm; zero if the motors are off.
+    /// Length of a step at the reference speed, [`HALF_SPEED`], cm; zero if the motors are off.
     pub reference_cm: f64,
 }
 
@@ -139,7 +139,7 @@ pub fn steps(observations: &Observations) -> Vec<Step> {
             predicted_cm: predicted.forward,
             logged_cm: logged.forward,
             heading_rad: row.context.pose.heading_rad + 0.5 * predicted.turn,
-            reference_cm: if row.commands()[0] == [0.0; 2] { 0.0 } else { HALF_SPEED * row.context.full_cm() },
+            reference_cm: if row.commands()[0] == [0.0; 2] { 0.0 } else { HALF_SPEED * row.context.reference_cm() },
         })
     };
     observations.rows.iter().filter_map(step).collect()

@@ -146,7 +146,7 @@ fn a_robot_ten_times_as_large_has_the_same_causes() {
     let of = diagnosed(&logs);
     for scale in [0.1, 10.0] {
         let scaled = diagnosed(&scaled(&logs, scale));
-        let ids = |effects: &[NamedEffect]| effects.iter().map(|effect| effect.id).collect::<Vec<_>>();
+        let ids = |effects: &[NamedEffect]| effects.iter().map(|effect| effect.id).collect::<BTreeSet<_>>();
         assert_eq!(ids(&scaled), ids(&of), "{scale}");
         for (effect, name, factor) in [("latency", "ms", 1.0), ("turn_loss", "cm_per_rad", scale)] {
             let [size, expected] = [&scaled, &of].map(|effects| {

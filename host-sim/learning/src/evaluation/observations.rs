@@ -175,9 +175,12 @@ impl Observations {
         sums
     }
 
-    /// Returns the largest commanded wheel speed, as a share of full speed.
+    /// Returns the largest commanded wheel speed, as a share of the effects' reference speed.
     pub fn top_speed(&self) -> f64 {
-        self.rows.iter().flat_map(|row| row.context.commands[0].map(|c| c.abs() / 100.0)).fold(0.0, f64::max)
+        self.rows
+            .iter()
+            .flat_map(|row| row.context.commands[0].map(|c| row.context.share_of(c.abs())))
+            .fold(0.0, f64::max)
     }
 }
 

@@ -6,7 +6,7 @@ mod drive;
 
 use super::context::{CommandHistory, StepContext};
 use super::parameter::parameters;
-use super::scales::{CREEPING, CREEPING_TURN, HALF_SPEED, full_turn_rad_s};
+use super::scales::{CREEPING, CREEPING_RAD_S, HALF_SPEED};
 use super::{Effect, Variant};
 use mindgap_foundations::motion::Motion;
 
@@ -109,7 +109,7 @@ fn each_wheel(context: &StepContext, increment: &mut Motion<f64>, change: impl F
 /// Returns the distance that a force of strength one costs per step: a fraction grows with the distance covered, the rest is
 /// that of [`HALF_SPEED`] at any speed.
 fn distance_lost_cm(with_speed: f64, covered_cm: f64, context: &StepContext) -> f64 {
-    loaded(with_speed, covered_cm.abs(), HALF_SPEED * context.full_cm())
+    loaded(with_speed, covered_cm.abs(), HALF_SPEED * context.reference_cm())
 }
 
 /// Returns a drag: the fraction `with_speed` of it grows with the speed, and the rest is that at `reference`, at any speed.
@@ -119,12 +119,12 @@ fn loaded(with_speed: f64, speed: f64, reference: f64) -> f64 {
 
 /// Returns how much a step counts as motion, 0 to 1.
 fn moving(covered_cm: f64, context: &StepContext) -> f64 {
-    (covered_cm.abs() / (CREEPING * context.full_cm())).min(1.0)
+    (covered_cm.abs() / (CREEPING * context.reference_cm())).min(1.0)
 }
 
 /// Returns how much a turn scrubs the tyres, -1 to 1, with the sign of the turn.
 fn scrubbing(turn_rad: f64, context: &StepContext) -> f64 {
-    libm::tanh(turn_rad / (CREEPING_TURN * full_turn_rad_s(&context.robot) * context.step_s()))
+    libm::tanh(turn_rad / (CREEPING_RAD_S * context.step_s()))
 }
 
 /// Returns a distance made longer or shorter, at least 0 in magnitude; a robot at rest stays at rest.

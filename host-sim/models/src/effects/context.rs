@@ -2,6 +2,7 @@
 
 use glam::DVec2;
 
+use super::scales::reference_cm_s;
 use crate::sonar::echo_law::Surfaces;
 use mindgap_foundations::geometry::{Pose, Wall, bounding_box, cast};
 use mindgap_logs::{Robot, Scene};
@@ -59,14 +60,19 @@ impl StepContext {
         command / 100.0 * self.robot.full_speed_cm_s
     }
 
-    /// Returns the command that asks for a wheel speed.
-    pub fn command_for(&self, wheel_speed_cm_s: f64) -> f64 {
-        100.0 * wheel_speed_cm_s / self.robot.full_speed_cm_s
+    /// Returns the share of the [reference speed](reference_cm_s) that a command asks for.
+    pub fn share_of(&self, command: f64) -> f64 {
+        self.wheel_speed_cm_s(command) / reference_cm_s(&self.robot)
     }
 
-    /// Returns what a wheel at full speed covers in a step, cm.
-    pub fn full_cm(&self) -> f64 {
-        self.robot.full_speed_cm_s * self.step_s()
+    /// Returns the command that asks for a share of the [reference speed](reference_cm_s).
+    pub fn command_for(&self, share: f64) -> f64 {
+        100.0 * share * reference_cm_s(&self.robot) / self.robot.full_speed_cm_s
+    }
+
+    /// Returns what a wheel at the [reference speed](reference_cm_s) covers in a step, cm.
+    pub fn reference_cm(&self) -> f64 {
+        reference_cm_s(&self.robot) * self.step_s()
     }
 
     /// Returns the nominal duration of a step, s.

@@ -11,6 +11,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
+use super::scales::reference_cm_s;
 use mindgap_foundations::statistics::maximise::Bounds;
 use mindgap_foundations::statistics::rounding::three_digits;
 use mindgap_logs::Robot;
@@ -41,7 +42,7 @@ pub struct Parameter {
 pub enum Guesses {
     /// At these values.
     At(&'static [f64]),
-    /// At these fractions of the largest wheel speed that the logs command, itself a share of full speed.
+    /// At these fractions of the largest wheel speed that the logs command, itself a share of the reference speed.
     OfTopSpeed(&'static [f64]),
     /// On a grid of this spacing between the bounds: for a parameter whose likelihood has many maxima.
     Every(f64),
@@ -60,9 +61,9 @@ pub enum Report {
     SideAndLoss,
     /// The `side` that its sign means (positive: left), and one minus its magnitude as `factor`.
     SideAndFactor,
-    /// A share of full speed, as the `command` that asks for it.
+    /// A share of the [reference speed](reference_cm_s), as the `command` that asks for it.
     Command,
-    /// A change of wheel speed, as a share of full speed; as `onset` in commands.
+    /// A change of wheel speed, as such a share; as `onset` in commands.
     Onset,
     /// A share of the track, as a length in cm by this name.
     OfTrack(&'static str),
@@ -200,7 +201,7 @@ impl Parameter {
             Report::Direction => value - 360.0 * ((value - 180.0) / 360.0).ceil(),
             Report::SideAndLoss => value.abs(),
             Report::SideAndFactor => 1.0 - value.abs(),
-            Report::Command | Report::Onset => 100.0 * value,
+            Report::Command | Report::Onset => 100.0 * value * reference_cm_s(robot) / robot.full_speed_cm_s,
             Report::OfTrack(_) => value * robot.track_cm,
             Report::Steps => value / robot.step_ms,
             Report::OddsFactor => libm::exp(-value),
@@ -223,7 +224,7 @@ impl Parameter {
             Report::Hidden | Report::Value | Report::Direction => number,
             Report::SideAndLoss => sign * number,
             Report::SideAndFactor => sign * (1.0 - number),
-            Report::Command | Report::Onset => number / 100.0,
+            Report::Command | Report::Onset => number / 100.0 * robot.full_speed_cm_s / reference_cm_s(robot),
             Report::OfTrack(_) => number / robot.track_cm,
             Report::Steps => number * robot.step_ms,
             Report::OddsFactor => -libm::log(number),
@@ -345,8 +346,8 @@ mod tests {
 
     #[test]
     fn values_are_reported_by_the_names_of_the_table() {
-        // 0.4 s per step, and 50 cm/s at a command of 100.
-        let robot = Robot { step_ms: 400.0, full_speed_cm_s: 50.0, ..mindgap_built_in_robot::default_robot() };
+        // 0.4 s per step, and 82 cm/s at a command of 100, twice the reference speed.
+        let robot = Robot { step_ms: 400.0, full_speed_cm_s: 82.0, ..mindgap_built_in_robot::default_robot() };
         let reported = |report, value| -> Vec<(String, Value)> { LENGTH.report(report).reported(value, &robot) };
         let one = |name: &str, value: f64| vec![(String::from(name), json!(value))];
         let side = |side: &str, name: &str, value: f64| vec![("side".into(), json!(side)), (name.into(), json!(value))];
@@ -356,8 +357,8 @@ mod tests {
         assert_eq!(reported(Report::SideAndLoss, 0.25), side("left", "loss", 0.25));
         assert_eq!(reported(Report::SideAndLoss, -0.25), side("right", "loss", 0.25));
         assert_eq!(reported(Report::SideAndFactor, -0.25), side("right", "factor", 0.75));
-        assert_eq!(reported(Report::Command, 0.2), one("command", 20.0));
-        assert_eq!(reported(Report::Onset, 0.2), one("onset", 20.0));
+        assert_eq!(reported(Report::Command, 0.2), one("command", 10.0));
+        assert_eq!(reported(Report::Onset, 0.2), one("onset", 10.0));
         assert_eq!(reported(Report::OfTrack("ahead_cm"), 0.5), one("ahead_cm", 5.75));
         assert_eq!(reported(Report::Steps, 600.0), one("steps", 1.5));
         assert_eq!(reported(Report::OddsFactor, libm::log(2.0)), one("factor", 0.5));

@@ -94,7 +94,7 @@ impl Variant {
     }
 
     /// Returns where fits start: all combinations of the parameters' guesses. `top_speed` is the largest wheel speed
-    /// that the logs command, as a share of full speed.
+    /// that the logs command, as a share of the reference speed.
     pub fn initial_guesses(&self, top_speed: f64) -> Vec<Vec<f64>> {
         self.parameters.iter().fold(vec![Vec::new()], |so_far, parameter| {
             let guesses = parameter.guesses(top_speed);

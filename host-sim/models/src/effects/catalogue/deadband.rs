@@ -16,9 +16,9 @@ pub const EFFECT: Effect = Effect {
         Variant {
             id: "cut",
             parameters: Deadband::PARAMETERS,
-            hooks: &[Hook::Commands(&|v, _, commands| {
-                let edge = 100.0 * Deadband::read(v).break_away;
-                let softness = 100.0 * DEADBAND_EDGE;
+            hooks: &[Hook::Commands(&|v, context, commands| {
+                let edge = context.command_for(Deadband::read(v).break_away);
+                let softness = context.command_for(DEADBAND_EDGE);
                 if edge > 0.0 {
                     each_command(commands, |c, _| c * ((c - edge) / softness + 0.5).clamp(0.0, 1.0));
                 }
@@ -27,17 +27,17 @@ pub const EFFECT: Effect = Effect {
         Variant {
             id: "subtracted",
             parameters: Deadband::PARAMETERS,
-            hooks: &[Hook::Commands(&|v, _, commands| {
-                let edge = 100.0 * Deadband::read(v).break_away;
+            hooks: &[Hook::Commands(&|v, context, commands| {
+                let edge = context.command_for(Deadband::read(v).break_away);
                 each_command(commands, |c, _| (c - edge).max(0.0));
             })],
         },
         Variant {
             id: "stretched",
             parameters: Deadband::PARAMETERS,
-            hooks: &[Hook::Commands(&|v, _, commands| {
+            hooks: &[Hook::Commands(&|v, context, commands| {
                 // A command for full speed still gives full speed.
-                let edge = (100.0 * Deadband::read(v).break_away).min(MOST_OF_FULL);
+                let edge = context.command_for(Deadband::read(v).break_away).min(MOST_OF_FULL);
                 each_command(commands, |c, _| (c - edge).max(0.0) * 100.0 / (100.0 - edge));
             })],
         },
@@ -45,7 +45,7 @@ pub const EFFECT: Effect = Effect {
             id: "wheel",
             parameters: Deadband::PARAMETERS,
             hooks: &[Hook::Motion(&|v, context, increment| {
-                let held_cm = Deadband::read(v).break_away * context.full_cm();
+                let held_cm = Deadband::read(v).break_away * context.reference_cm();
                 each_wheel(context, increment, |cm, _| (cm.abs() - held_cm).max(0.0).copysign(cm));
             })],
         },
@@ -66,8 +66,8 @@ pub const EFFECT: Effect = Effect {
 
 parameters! {
     Deadband {
-        /// Share of full speed below whose command nothing moves. Real NXT motors on the ground break away at 12 to 16 % of full
-        /// power.
+        /// Share of the reference speed below whose command nothing moves. Real NXT motors on the ground break away at 12 to 16 %
+        /// of full power.
         break_away: Parameter::new("", 0.0, [0.0, 0.5])
             .prior_sd(0.2)
             .from(Guesses::OfTopSpeed(&[0.04, 0.08, 0.14, 0.22, 0.3]))

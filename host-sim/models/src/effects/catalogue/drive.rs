@@ -14,9 +14,9 @@ pub struct Drive {
 
 impl Drive {
     /// Returns a drive slower by `ms` than the one that simulators know, with dry friction that the command for this share
-    /// of full speed just overcomes.
+    /// of the reference speed just overcomes.
     pub fn slower(ms: f64, friction: f64, context: &StepContext) -> Self {
-        Drive { steps: (MOTOR_MS + ms) / context.robot.step_ms, friction: 100.0 * friction }
+        Drive { steps: (MOTOR_MS + ms) / context.robot.step_ms, friction: context.command_for(friction) }
     }
 
     /// Returns the drive that simulators know, with the load of the robot's body on the motors scaled by `factor`.

@@ -63,7 +63,7 @@ parameters! {
     SlowDrive {
         /// See [`ADDED_MS`].
         ms: ADDED_MS,
-        /// The share of full speed whose command does no more than overcome the drive's dry friction, which helps it to stop and
+        /// The share of the reference speed whose command does no more than overcome the drive's dry friction, which helps it to stop and
         /// not to start. Of an NXT motor it is a twentieth.
         friction: Parameter::new("", 0.0, [0.0, 0.3])
             .prior_sd(0.1)

@@ -3,7 +3,7 @@
 use super::{distance_lost_cm, each_command, each_wheel, loaded, parameters, pushed_cm, scrubbing};
 use crate::effects::context::CommandHistory;
 use crate::effects::parameter::{Guesses, Report};
-use crate::effects::scales::{HALF_SPEED, HALF_TURN_RATE, full_turn_rad_s};
+use crate::effects::scales::{HALF_SPEED, HALF_TURN_RATE_RAD_S};
 use crate::effects::{Effect, Hook, Parameter, StepContext, Variant};
 use mindgap_foundations::motion::Motion;
 
@@ -65,11 +65,11 @@ pub const EFFECT: Effect = Effect {
         Variant {
             id: "motor_load",
             parameters: RollingLoad::PARAMETERS,
-            hooks: &[Hook::Commands(&|v, _, commands| {
+            hooks: &[Hook::Commands(&|v, context, commands| {
                 let RollingLoad { loss, loss_other_wheel, with_speed, start_loss } = RollingLoad::read(v);
                 start_slowly(start_loss * loss.abs(), commands);
                 // To a motor, the torque of a load is a lower voltage, which is what a command sets.
-                let (lost, reference) = (by_side(loss, loss_other_wheel), 100.0 * HALF_SPEED);
+                let (lost, reference) = (by_side(loss, loss_other_wheel), context.command_for(HALF_SPEED));
                 each_command(commands, |c, motor| (c - lost[motor] * loaded(with_speed, c, reference)).max(0.0));
             })],
         },
@@ -99,7 +99,7 @@ parameters! {
         loss: LOSS,
         /// The other wheel's loss as a share of it.
         loss_other_wheel: Parameter::new("", 0.5, [0.0, 0.8]).prior_sd(0.3).report(Report::Hidden),
-        /// Loss of a turn of [`HALF_TURN_RATE`] as a multiple of it: tyres and castor that are pressed down scrub in turns.
+        /// Loss of a turn of [`HALF_TURN_RATE_RAD_S`] as a multiple of it: tyres and castor that are pressed down scrub in turns.
         turn_loss: Parameter::new("", 0.0, [0.0, 6.0]).prior_sd(2.0).from(Guesses::At(&[2.0])).report(Report::Hidden),
         /// Share of that which grows with the rate of turn; dry friction costs the rest at any rate.
         loss_with_speed: Parameter::new("", 0.5, [0.0, 1.0]).prior_sd(0.5).report(Report::Hidden),
@@ -124,7 +124,7 @@ parameters! {
 
 /// Returns a turn after the loss of the fraction `lost` to scrubbing: partly of itself, partly of the reference turn.
 fn scrubbed_rad(turn_rad: f64, lost: f64, loss_with_speed: f64, context: &StepContext) -> f64 {
-    let reference_rad = HALF_TURN_RATE * full_turn_rad_s(&context.robot) * context.step_s();
+    let reference_rad = HALF_TURN_RATE_RAD_S * context.step_s();
     let of_rad = loss_with_speed * turn_rad.abs() + (1.0 - loss_with_speed) * reference_rad;
     let lost_rad = lost * of_rad * scrubbing(turn_rad, context);
     if lost_rad.abs() < turn_rad.abs() { turn_rad - lost_rad } else { 0.0 }

@@ -15,8 +15,8 @@ pub const EFFECT: Effect = Effect {
         Variant {
             id: "hard",
             parameters: Saturation::PARAMETERS,
-            hooks: &[Hook::Commands(&|v, _, commands| {
-                let limit = 100.0 * Saturation::read(v).limit;
+            hooks: &[Hook::Commands(&|v, context, commands| {
+                let limit = context.command_for(Saturation::read(v).limit);
                 each_command(commands, |c, _| c.min(limit));
             })],
         },
@@ -24,7 +24,7 @@ pub const EFFECT: Effect = Effect {
             id: "wheel",
             parameters: Saturation::PARAMETERS,
             hooks: &[Hook::Motion(&|v, context, increment| {
-                let most_cm = Saturation::read(v).limit * context.full_cm();
+                let most_cm = Saturation::read(v).limit * context.reference_cm();
                 let wheels = increment.wheels_cm(context.robot.track_cm);
                 let within = wheels.map(|covered_cm| covered_cm.clamp(-most_cm, most_cm));
                 if within != wheels {
@@ -35,10 +35,10 @@ pub const EFFECT: Effect = Effect {
         Variant {
             id: "soft",
             parameters: Saturation::PARAMETERS,
-            hooks: &[Hook::Commands(&|v, _, commands| {
+            hooks: &[Hook::Commands(&|v, context, commands| {
                 let Saturation { limit } = Saturation::read(v);
                 if limit < UNREACHED_SPEED {
-                    each_command(commands, |c, _| softly_limited(c, 100.0 * limit));
+                    each_command(commands, |c, _| softly_limited(c, context.command_for(limit)));
                 }
             })],
         },
@@ -47,7 +47,7 @@ pub const EFFECT: Effect = Effect {
 
 parameters! {
     Saturation {
-        /// Share of full speed above which nothing is added. A regulated NXT motor under load is flat from half of its full
+        /// Share of the reference speed above which nothing is added. A regulated NXT motor under load is flat from half of its full
         /// speed at the earliest; bases on ROS are often limited to a fifth of what robot.toml says.
         limit: Parameter::new("", UNREACHED_SPEED, [0.12, UNREACHED_SPEED])
             .scale(0.8)

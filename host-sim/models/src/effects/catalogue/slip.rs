@@ -4,7 +4,7 @@ use super::{each_command, each_wheel, parameters};
 use crate::effects::context::CommandHistory;
 use crate::effects::parameter::{Guesses, Report};
 use crate::effects::scales::{GRIPPING_TURN_RAD, HALF_SLIP};
-use crate::effects::{Effect, Hook, Parameter, Variant};
+use crate::effects::{Effect, Hook, Parameter, StepContext, Variant};
 
 pub const EFFECT: Effect = Effect {
     id: "slip",
@@ -16,19 +16,19 @@ pub const EFFECT: Effect = Effect {
         Variant {
             id: "fast",
             parameters: FastSlip::PARAMETERS,
-            hooks: &[Hook::Commands(&|v, _, commands| {
+            hooks: &[Hook::Commands(&|v, context, commands| {
                 let FastSlip { onset, loss } = FastSlip::read(v);
-                let onset = 100.0 * onset;
+                let onset = context.command_for(onset);
                 each_command(commands, |c, _| c - loss * (c - onset).max(0.0));
             })],
         },
         Variant {
             id: "change",
             parameters: Slip::PARAMETERS,
-            hooks: &[Hook::Commands(&|v, _, commands| {
+            hooks: &[Hook::Commands(&|v, context, commands| {
                 let Slip { onset, loss } = Slip::read(v);
                 // A wheel that slips in a step has caught up at its end.
-                lose_change(commands, 0, 100.0 * onset, |beyond| loss * beyond);
+                lose_change(commands, 0, context.command_for(onset), |beyond| loss * beyond);
             })],
         },
         Variant {
@@ -38,7 +38,7 @@ pub const EFFECT: Effect = Effect {
                 let Slip { onset, loss } = Slip::read(v);
                 let [now, before, ..] = context.commands;
                 each_wheel(context, increment, |cm, m| {
-                    let change = (now[m] - before[m]).abs() / 100.0;
+                    let change = context.share_of((now[m] - before[m]).abs());
                     let beyond = (change - onset).max(0.0);
                     cm * (1.0 - (loss * beyond).min(1.0))
                 });
@@ -50,11 +50,11 @@ pub const EFFECT: Effect = Effect {
             hooks: &[
                 Hook::Commands(&|v, context, commands| {
                     let DraggingSlip { onset, loss, creep_ms, .. } = DraggingSlip::read(v);
-                    let lost = growing(loss);
+                    let lost = growing(loss, context);
                     // What a tyre creeps does not make it slide.
                     lose_change(commands, 0, 0.0, |change| change * loss * creep_ms / context.robot.step_ms);
-                    lose_change(commands, 0, 100.0 * onset, &lost);
-                    lose_change(commands, 1, NOT_CAUGHT_UP * 100.0 * onset, &lost);
+                    lose_change(commands, 0, context.command_for(onset), &lost);
+                    lose_change(commands, 1, NOT_CAUGHT_UP * context.command_for(onset), &lost);
                 }),
                 Hook::Motion(&|v, _, increment| {
                     let DraggingSlip { loss, turn_drag_rad, .. } = DraggingSlip::read(v);
@@ -65,7 +65,7 @@ pub const EFFECT: Effect = Effect {
     ],
 };
 
-/// Change of wheel speed from which the tyres slide, as a share of full speed. Rubber on a floor holds about half a robot's
+/// Change of wheel speed from which the tyres slide, as a share of the reference speed. Rubber on a floor holds about half a robot's
 /// weight, which an NXT reaches within 6 cm/s at the least: below that it would be a scale or a lag.
 const ONSET: Parameter =
     Parameter::new("", 1.22, [0.146, 1.22]).scale(1.05).from(Guesses::At(&[0.195, 0.39, 0.68])).report(Report::Onset);
@@ -115,8 +115,8 @@ parameters! {
 const NOT_CAUGHT_UP: f64 = 2.5;
 
 /// What is lost of a change of command that lies so far beyond the onset: little at first, then in proportion.
-fn growing(loss: f64) -> impl Fn(f64) -> f64 {
-    let half = 100.0 * HALF_SLIP;
+fn growing(loss: f64, context: &StepContext) -> impl Fn(f64) -> f64 + use<> {
+    let half = context.command_for(HALF_SLIP);
     move |beyond| loss * beyond * beyond / (half + beyond)
 }
 

@@ -3,7 +3,6 @@
 use super::drive::Drive;
 use super::{parameters, scrubbing};
 use crate::effects::parameter::{Guesses, Report};
-use crate::effects::scales::full_turn_rad_s;
 use crate::effects::{Effect, Hook, Parameter, Variant};
 
 pub const EFFECT: Effect = Effect {
@@ -32,9 +31,9 @@ pub const EFFECT: Effect = Effect {
                     }
                 }),
                 Hook::Motion(&|v, context, increment| {
-                    let LeverTrack { factor, scrub, .. } = LeverTrack::read(v);
+                    let LeverTrack { factor, scrub_rad_s, .. } = LeverTrack::read(v);
                     let turn_rad = increment.turn;
-                    let scrubbed_rad = scrub * full_turn_rad_s(&context.robot) * context.step_s() * scrubbing(turn_rad, context);
+                    let scrubbed_rad = scrub_rad_s * context.step_s() * scrubbing(turn_rad, context);
                     increment.set_turn(factor * (turn_rad - (factor - 1.0) * scrubbed_rad));
                 }),
             ],
@@ -60,7 +59,7 @@ parameters! {
         factor: FACTOR,
         /// Share of the drive's time constant in turns that the robot's body makes; the motors' rotors make the rest.
         body_share: Parameter::new("", 0.5, [0.0, 1.0]).prior_sd(0.3).report(Report::Hidden),
-        /// Share of the fastest turn that scrubbing tyres cost on the track that is known.
-        scrub: Parameter::new("", 0.0, [0.0, 0.14]).prior_sd(0.056).from(Guesses::At(&[0.028])).report(Report::Hidden),
+        /// Rate of turn that scrubbing tyres cost on the track that is known.
+        scrub_rad_s: Parameter::new("rad/s", 0.0, [0.0, 1.0]).prior_sd(0.4).from(Guesses::At(&[0.2])).report(Report::Hidden),
     }
 }

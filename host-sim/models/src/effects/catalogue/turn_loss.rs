@@ -2,7 +2,7 @@
 
 use super::{parameters, pushed_cm};
 use crate::effects::parameter::{Guesses, Report};
-use crate::effects::scales::{HALF_SPEED, full_turn_rad_s};
+use crate::effects::scales::HALF_SPEED;
 use crate::effects::{Effect, Hook, Parameter, Variant};
 
 pub const EFFECT: Effect = Effect {
@@ -23,7 +23,7 @@ pub const EFFECT: Effect = Effect {
             id: "with_speed",
             parameters: TurnLoss::PARAMETERS,
             hooks: &[Hook::Motion(&|v, context, increment| {
-                let speed = increment.forward.abs() / (HALF_SPEED * context.full_cm());
+                let speed = increment.forward.abs() / (HALF_SPEED * context.reference_cm());
                 let lost_cm = TurnLoss::read(v).tracks_per_rad * context.robot.track_cm * increment.turn.abs() * speed;
                 increment.forward = pushed_cm(increment.forward, -lost_cm, context);
             })],
@@ -32,8 +32,8 @@ pub const EFFECT: Effect = Effect {
             id: "dry",
             parameters: DryTurnLoss::PARAMETERS,
             hooks: &[Hook::Motion(&|v, context, increment| {
-                let DryTurnLoss { tracks_per_rad, saturation } = DryTurnLoss::read(v);
-                let saturation_rad = saturation * full_turn_rad_s(&context.robot) * context.step_s();
+                let DryTurnLoss { tracks_per_rad, saturation_rad_s } = DryTurnLoss::read(v);
+                let saturation_rad = saturation_rad_s * context.step_s();
                 let lost_cm = tracks_per_rad * context.robot.track_cm * saturation_rad * up_to_one(increment.turn.abs() / saturation_rad);
                 increment.forward = pushed_cm(increment.forward, -lost_cm, context);
             })],
@@ -59,8 +59,8 @@ parameters! {
     DryTurnLoss {
         /// In turns slower than the rate below; see [`LOSS`].
         tracks_per_rad: LOSS,
-        /// Share of the fastest turn from which on what drags rubs with all that rests on it, as dry friction does.
-        saturation: Parameter::new("", 0.28, [0.042, 1.12]).prior_sd(0.28).report(Report::Hidden),
+        /// Rate of turn from which on what drags rubs with all that rests on it, as dry friction does.
+        saturation_rad_s: Parameter::new("rad/s", 2.0, [0.3, 8.0]).prior_sd(2.0).report(Report::Hidden),
     }
 }
 
