@@ -34,7 +34,10 @@ pub const EFFECT: Effect = Effect {
             hooks: &[Hook::Motion(&|v, context, increment| {
                 let DryTurnLoss { tracks_per_rad, saturation_rad_s } = DryTurnLoss::read(v);
                 let saturation_rad = saturation_rad_s * context.step_s();
-                let lost_cm = tracks_per_rad * context.robot.track_cm * saturation_rad * up_to_one(increment.turn.abs() / saturation_rad);
+                let lost_cm = tracks_per_rad
+                    * context.robot.track_cm
+                    * saturation_rad
+                    * up_to_one(increment.turn.abs() / saturation_rad);
                 increment.forward = pushed_cm(increment.forward, -lost_cm, context);
             })],
         },
