@@ -103,7 +103,7 @@ impl<'a> FitContext<'a> {
 /// Returns the effects that compete against this simulator.
 fn candidates(method: Method, rows: &Identification) -> Vec<&'static Effect> {
     let is_known = rows.baseline.motion.as_ref().is_none_or(MotionModel::is_learned);
-    method.catalogue.iter().copied().filter(|effect| is_known || !effect.needs_known_robot()).collect()
+    method.catalogue.iter().copied().filter(|effect| is_known || !effect.needs_known_robot).collect()
 }
 
 fn already_explained(rows: &Identification) -> [f64; Channel::COUNT] {

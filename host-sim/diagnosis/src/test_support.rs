@@ -180,6 +180,7 @@ pub const LONGER: Effect = Effect {
     name: "longer",
     what: "Made up.",
     check: "None.",
+    needs_known_robot: false,
     variants: &[Variant {
         id: "every_step",
         parameters: &[length("cm")],
@@ -193,6 +194,7 @@ pub const SLIGHTLY_LONGER: Effect = Effect {
     name: "slightly_longer",
     what: "Made up.",
     check: "None.",
+    needs_known_robot: false,
     variants: &[Variant {
         id: "every_step",
         parameters: &[length("cm").prior_sd(0.05)],
@@ -206,6 +208,7 @@ pub const LONGER_TO_THE_LEFT: Effect = Effect {
     name: "longer_to_the_left",
     what: "Made up.",
     check: "None.",
+    needs_known_robot: false,
     variants: &[Variant {
         id: "left_turns",
         parameters: &[length("cm")],
@@ -222,6 +225,7 @@ pub const FARTHER: Effect = Effect {
     name: "farther",
     what: "Made up.",
     check: "None.",
+    needs_known_robot: false,
     variants: &[
         Variant {
             id: "length",

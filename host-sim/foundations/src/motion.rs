@@ -120,38 +120,11 @@ impl Motion<f64> {
         (self.forward, self.lateral) = (translation.x, translation.y);
     }
 
-    /// Returns the distances that the left and right wheel cover, for a distance of `track_cm` between them. The middle of the
-    /// axle follows an arc.
-    pub fn wheels_cm(&self, track_cm: f64) -> [f64; 2] {
-        let half_cm = 0.5 * track_cm * self.turn;
-        let [length_cm, _] = self.arc_cm();
-        [length_cm - half_cm, length_cm + half_cm]
-    }
-
-    /// Sets the motion to that of wheels which cover these distances, and leaves what the robot slides across its arc.
-    pub fn set_wheels(&mut self, [left_cm, right_cm]: [f64; 2], track_cm: f64) {
-        let [_, across_cm] = self.arc_cm();
-        *self = Motion::along_arc(0.5 * (left_cm + right_cm), across_cm, (right_cm - left_cm) / track_cm);
-    }
-
-    /// Turns by another angle along an arc of the same length.
-    pub fn set_turn(&mut self, turn_rad: f64) {
-        let [length_cm, across_cm] = self.arc_cm();
-        *self = Motion::along_arc(length_cm, across_cm, turn_rad);
-    }
-
-    /// Returns the motion along an arc of this length, moved by `across_cm` to the left of its chord.
-    fn along_arc(length_cm: f64, across_cm: f64, turn_rad: f64) -> Self {
-        let mut motion = Motion { forward: length_cm * chord(turn_rad), lateral: across_cm, turn: turn_rad };
-        motion.rotate_translation(0.5 * turn_rad);
-        motion
-    }
-
-    /// Returns the length of the arc that leads here, and the distance across its chord.
-    fn arc_cm(&self) -> [f64; 2] {
-        let mut chord_frame = *self;
-        chord_frame.rotate_translation(-0.5 * self.turn);
-        [chord_frame.forward / chord(self.turn), chord_frame.lateral]
+    /// Returns the arc that leads here.
+    pub fn arc(&self) -> Arc {
+        let mut along_chord = *self;
+        along_chord.rotate_translation(-0.5 * self.turn);
+        Arc { length_cm: along_chord.forward / chord(self.turn), across_cm: along_chord.lateral, turn_rad: self.turn }
     }
 
     /// Returns the motion with its turn, so far in radians, in degrees: for files and networks.
@@ -242,6 +215,38 @@ impl<'de, T: Deserialize<'de>> Deserialize<'de> for Motion<T> {
     }
 }
 
+/// The arc that the middle of the axle follows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Arc {
+    /// Its length, cm.
+    pub length_cm: f64,
+    /// What the robot slides to the left of the arc's chord, cm.
+    pub across_cm: f64,
+    /// Its angle, rad.
+    pub turn_rad: f64,
+}
+
+impl Arc {
+    /// Returns the motion along it.
+    pub fn motion(&self) -> Motion<f64> {
+        let Arc { length_cm, across_cm, turn_rad } = *self;
+        let mut motion = Motion { forward: length_cm * chord(turn_rad), lateral: across_cm, turn: turn_rad };
+        motion.rotate_translation(0.5 * turn_rad);
+        motion
+    }
+
+    /// Returns the distances that the left and right wheel cover, for a distance of `track_cm` between them.
+    pub fn wheels_cm(&self, track_cm: f64) -> [f64; 2] {
+        let half_cm = 0.5 * track_cm * self.turn_rad;
+        [self.length_cm - half_cm, self.length_cm + half_cm]
+    }
+
+    /// Returns the arc of wheels that cover these distances; the robot slides as before.
+    pub fn with_wheels(self, [left_cm, right_cm]: [f64; 2], track_cm: f64) -> Self {
+        Arc { length_cm: 0.5 * (left_cm + right_cm), turn_rad: (right_cm - left_cm) / track_cm, ..self }
+    }
+}
+
 /// Returns the length of an arc's chord as a share of the arc's. Near a full circle, where it vanishes, it is kept away from zero:
 /// no step turns so far, but a fit may try.
 fn chord(turn_rad: f64) -> f64 {
@@ -277,8 +282,8 @@ mod tests {
 
         #[test]
         fn wheels_give_back_the_motion(motion in motion(), track_cm in 5.0..30.0) {
-            let mut found = motion;
-            found.set_wheels(motion.wheels_cm(track_cm), track_cm);
+            let arc = motion.arc();
+            let found = arc.with_wheels(arc.wheels_cm(track_cm), track_cm).motion();
             prop_assert!((found - motion).into_iter().all(|off| off.abs() < 1e-9), "{found:?}");
         }
 
@@ -287,11 +292,11 @@ mod tests {
         fn wheels_follow_an_arc(radius_cm in 1.0..100.0, track_cm in 5.0..30.0) {
             let quarter_rad = std::f64::consts::FRAC_PI_2;
             let wheels_cm = [radius_cm - 0.5 * track_cm, radius_cm + 0.5 * track_cm].map(|wheel| wheel * quarter_rad);
-            let mut found = Motion::ZERO;
-            found.set_wheels(wheels_cm, track_cm);
+            let arc = Motion::ZERO.arc().with_wheels(wheels_cm, track_cm);
+            let found = arc.motion();
             let expected = Motion { forward: radius_cm, lateral: radius_cm, turn: quarter_rad };
             prop_assert!((found - expected).into_iter().all(|off| off.abs() < 1e-9), "{found:?}");
-            found.set_turn(0.0);
+            let found = Arc { turn_rad: 0.0, ..arc }.motion();
             prop_assert!((found.forward - radius_cm * quarter_rad).abs() < 1e-9 && found.lateral.abs() < 1e-9, "{found:?}");
         }
     }

@@ -127,10 +127,9 @@ fn variant(variant: &Variant) -> String {
 fn parameter(parameter: &Parameter) -> String {
     let (name, has_side) = parameter.setting();
     let side = if has_side { "side (left or right), " } else { "" };
-    // The unit is that of the fitted number; a number with another name is a share of it.
-    match parameter.unit {
-        unit if name == parameter.name && !unit.is_empty() => format!("{name} ({unit})"),
-        _ => format!("{side}{name}"),
+    match parameter.reported_unit() {
+        "" => format!("{side}{name}"),
+        unit => format!("{side}{name} ({unit})"),
     }
 }
 

@@ -51,7 +51,7 @@ pub struct Success {
     pub rate: f64,
     /// Share of runs that crashed, 0..=1.
     pub crashed: f64,
-    /// Median final distance to the target, cm.
+    /// Median final distance to the target, cm; NaN, written as null, without runs.
     pub median_cm: f64,
 }
 

@@ -102,8 +102,9 @@ fn each_command(commands: &mut CommandHistory, change: impl Fn(f64, usize) -> f6
 
 /// Changes the distance that each wheel covers; `change` takes the distance and the wheel, 0 for left.
 fn each_wheel(context: &StepContext, increment: &mut Motion<f64>, change: impl Fn(f64, usize) -> f64) {
-    let [left_cm, right_cm] = increment.wheels_cm(context.robot.track_cm);
-    increment.set_wheels([change(left_cm, 0), change(right_cm, 1)], context.robot.track_cm);
+    let (arc, track_cm) = (increment.arc(), context.robot.track_cm);
+    let [left_cm, right_cm] = arc.wheels_cm(track_cm);
+    *increment = arc.with_wheels([change(left_cm, 0), change(right_cm, 1)], track_cm).motion();
 }
 
 /// Returns the distance that a force of strength one costs per step: a fraction grows with the distance covered, the rest is

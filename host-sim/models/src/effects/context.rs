@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use super::scales::reference_cm_s;
+use super::scales::{self, reference_cm_s};
 use crate::sonar::echo_law::Surfaces;
 use mindgap_foundations::geometry::{Pose, Wall, bounding_box, cast};
 use mindgap_logs::{Robot, Scene};
@@ -62,12 +62,12 @@ impl StepContext {
 
     /// Returns the share of the [reference speed](reference_cm_s) that a command asks for.
     pub fn share_of(&self, command: f64) -> f64 {
-        self.wheel_speed_cm_s(command) / reference_cm_s(&self.robot)
+        scales::share_of(command, &self.robot)
     }
 
     /// Returns the command that asks for a share of the [reference speed](reference_cm_s).
     pub fn command_for(&self, share: f64) -> f64 {
-        100.0 * share * reference_cm_s(&self.robot) / self.robot.full_speed_cm_s
+        scales::command_for(share, &self.robot)
     }
 
     /// Returns what a wheel at the [reference speed](reference_cm_s) covers in a step, cm.

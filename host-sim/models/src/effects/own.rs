@@ -124,7 +124,14 @@ fn make(definition: &Definition) -> std::result::Result<&'static Effect, String>
     let variants = vec![Variant { id: VARIANT, parameters, hooks }].leak();
     check::changes_nothing(&variants[0])?;
     let id = leaked(&definition.id);
-    Ok(Box::leak(Box::new(Effect { id, name: id, what: leaked(&definition.description), check: CHECK, variants })))
+    Ok(Box::leak(Box::new(Effect {
+        id,
+        name: id,
+        what: leaked(&definition.description),
+        check: CHECK,
+        needs_known_robot: false,
+        variants,
+    })))
 }
 
 fn leaked(text: &str) -> &'static str {

@@ -11,7 +11,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
-use super::scales::reference_cm_s;
+use super::scales;
 use mindgap_foundations::statistics::maximise::Bounds;
 use mindgap_foundations::statistics::rounding::three_digits;
 use mindgap_logs::Robot;
@@ -21,7 +21,7 @@ use mindgap_logs::Robot;
 pub struct Parameter {
     /// Its name in files and programs.
     pub name: &'static str,
-    /// Its unit; empty for a share, a factor or a probability.
+    /// Unit of its number in files and answers; empty for a share, a factor or a probability.
     pub unit: &'static str,
     /// At this value the parameter changes nothing, or is irrelevant once the others change nothing.
     pub nominal: f64,
@@ -61,7 +61,7 @@ pub enum Report {
     SideAndLoss,
     /// The `side` that its sign means (positive: left), and one minus its magnitude as `factor`.
     SideAndFactor,
-    /// A share of the [reference speed](reference_cm_s), as the `command` that asks for it.
+    /// A share of the [reference speed](scales::reference_cm_s), as the `command` that asks for it.
     Command,
     /// A change of wheel speed, as such a share; as `onset` in commands.
     Onset,
@@ -194,6 +194,11 @@ impl Parameter {
         }
     }
 
+    /// Returns the unit of that number; empty if it has none.
+    pub fn reported_unit(&self) -> &'static str {
+        if let Report::Steps = self.report { "" } else { self.unit }
+    }
+
     /// Returns its settings at a value.
     pub(super) fn settings(&self, value: f64, robot: &Robot) -> Vec<(&'static str, Setting)> {
         let number = match self.report {
@@ -201,7 +206,7 @@ impl Parameter {
             Report::Direction => value - 360.0 * ((value - 180.0) / 360.0).ceil(),
             Report::SideAndLoss => value.abs(),
             Report::SideAndFactor => 1.0 - value.abs(),
-            Report::Command | Report::Onset => 100.0 * value * reference_cm_s(robot) / robot.full_speed_cm_s,
+            Report::Command | Report::Onset => scales::command_for(value, robot),
             Report::OfTrack(_) => value * robot.track_cm,
             Report::Steps => value / robot.step_ms,
             Report::OddsFactor => libm::exp(-value),
@@ -224,7 +229,7 @@ impl Parameter {
             Report::Hidden | Report::Value | Report::Direction => number,
             Report::SideAndLoss => sign * number,
             Report::SideAndFactor => sign * (1.0 - number),
-            Report::Command | Report::Onset => number / 100.0 * robot.full_speed_cm_s / reference_cm_s(robot),
+            Report::Command | Report::Onset => scales::share_of(number, robot),
             Report::OfTrack(_) => number / robot.track_cm,
             Report::Steps => number * robot.step_ms,
             Report::OddsFactor => -libm::log(number),

@@ -6,7 +6,7 @@ use mindgap_logs::Robot;
 
 /// Speeds are shares of this many tracks a second.
 const TRACKS_PER_S: f64 = 41.0 / 11.5;
-/// Half of a typical full speed: the speed at which the loss by a force is stated.
+/// About half of the reference speed, and of full speed: at which the loss by a force is stated.
 pub const HALF_SPEED: f64 = 20.0 / 41.0;
 /// Below this speed a force moves the robot or holds it back less and less: at rest it stays where it is.
 pub const CREEPING: f64 = 3.75 / 41.0;
@@ -26,7 +26,17 @@ pub const GRIPPING_TURN_RAD: f64 = 0.04;
 /// Time constant of the motors that simulators know.
 pub const MOTOR_MS: f64 = 50.0;
 
-/// Returns the speed that speeds are shares of, cm/s.
+/// Returns the reference speed, cm/s: speeds are shares of it.
 pub fn reference_cm_s(robot: &Robot) -> f64 {
     TRACKS_PER_S * robot.track_cm
+}
+
+/// Returns the command that asks for a share of the reference speed.
+pub fn command_for(share: f64, robot: &Robot) -> f64 {
+    100.0 * share * reference_cm_s(robot) / robot.full_speed_cm_s
+}
+
+/// Returns the share of the reference speed that a command asks for.
+pub fn share_of(command: f64, robot: &Robot) -> f64 {
+    command / 100.0 * robot.full_speed_cm_s / reference_cm_s(robot)
 }

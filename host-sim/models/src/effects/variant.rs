@@ -19,16 +19,10 @@ pub struct Effect {
     pub what: &'static str,
     /// How to check it on the robot, with no more than a ruler, scales, a video or a multimeter.
     pub check: &'static str,
+    /// Whether it is a change of a robot that was known without it. Against a textbook it does not compete.
+    pub needs_known_robot: bool,
     /// The functional forms in which it may show.
     pub variants: &'static [Variant],
-}
-
-impl Effect {
-    /// Whether it is a change against a robot that was known before, which a textbook does not know: a textbook states no
-    /// load, and what a load does to it is a drive scale, a weak motor, a lag and scrubbing.
-    pub fn needs_known_robot(&self) -> bool {
-        self.id == "payload"
-    }
 }
 
 /// One functional form of an effect.

@@ -23,7 +23,8 @@ use mindgap_models::simulator::kinematic;
 
 const EVIL: &str = "<x-mark onload=\"evil\">&'</script><!--";
 
-static EVIL_EFFECT: Effect = Effect { id: EVIL, name: EVIL, what: EVIL, check: EVIL, variants: &[] };
+static EVIL_EFFECT: Effect =
+    Effect { id: EVIL, name: EVIL, what: EVIL, check: EVIL, needs_known_robot: false, variants: &[] };
 
 fn logs(runs: usize, rows: usize, name: &str) -> Logs {
     let pose = |k: usize| Pose::new(30.0 + k as f64, 40.0, 0.0);

@@ -10,6 +10,7 @@ pub const EFFECT: Effect = Effect {
     what: "The drive gets weaker as the run goes on, as it does on a battery that empties.",
     check: "Measure the battery's voltage under load with a multimeter before and after a run; then drive straight \
             for one second with it full and with it used, and compare both ways with a ruler.",
+    needs_known_robot: false,
     variants: &[
         Variant {
             id: "command",

@@ -11,6 +11,7 @@ pub const EFFECT: Effect = Effect {
     what: "Drag depends on the direction of travel, as on a carpet whose fibres lie one way.",
     check: "Drive the same straight command in four directions and measure the ways with a ruler; stroke the carpet \
             by hand to feel its direction.",
+    needs_known_robot: false,
     variants: &[
         Variant {
             id: "against_the_nap",

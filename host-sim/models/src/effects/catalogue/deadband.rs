@@ -12,6 +12,7 @@ pub const EFFECT: Effect = Effect {
     what: "Friction in the drive keeps it from moving at small commands.",
     check: "Raise the command in small steps from zero, on the floor, and note the one at which the wheels begin to \
             turn.",
+    needs_known_robot: false,
     variants: &[
         Variant {
             id: "cut",

@@ -12,6 +12,7 @@ pub const EFFECT: Effect = Effect {
            battery.",
     check: "Command a straight metre and measure the way with a ruler; the wheel's diameter, measured with calipers, \
             should be the one in robot.toml.",
+    needs_known_robot: false,
     variants: &[
         Variant {
             id: "distance",

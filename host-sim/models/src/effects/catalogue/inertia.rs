@@ -12,6 +12,7 @@ pub const EFFECT: Effect = Effect {
     what: "The drive takes longer to reach the commanded speed.",
     check: "Film a start beside a ruler and mark the robot's place frame by frame: the way grows as a curve before \
             it grows as a line.",
+    needs_known_robot: false,
     variants: &[
         Variant {
             id: "first_order_lag",
@@ -63,8 +64,8 @@ parameters! {
     SlowDrive {
         /// See [`ADDED_MS`].
         ms: ADDED_MS,
-        /// The share of the reference speed whose command does no more than overcome the drive's dry friction, which helps it to stop and
-        /// not to start. Of an NXT motor it is a twentieth.
+        /// The share of the reference speed whose command does no more than overcome the drive's dry friction, which helps it to
+        /// stop and not to start. Of an NXT motor it is a twentieth.
         friction: Parameter::new("", 0.0, [0.0, 0.3])
             .prior_sd(0.1)
             .from(Guesses::At(&[0.05]))

@@ -11,6 +11,7 @@ pub const EFFECT: Effect = Effect {
     what: "Commands take effect late, by a fixed time.",
     check: "Film the robot together with the screen that sends the command, and count the frames from the command to \
             the first motion.",
+    needs_known_robot: false,
     variants: &[
         Variant {
             id: "delay",

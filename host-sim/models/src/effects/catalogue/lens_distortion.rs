@@ -13,6 +13,7 @@ pub const EFFECT: Effect = Effect {
     what: "The camera's scale changes towards the edge of its picture.",
     check: "Lay a long ruler in the middle of the picture and along its edge: one length should have one tracked \
             length.",
+    needs_known_robot: false,
     variants: &[Variant {
         id: "quadratic",
         parameters: Lens::PARAMETERS,

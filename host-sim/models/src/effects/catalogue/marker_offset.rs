@@ -13,6 +13,7 @@ pub const EFFECT: Effect = Effect {
     what: "The tracked marker does not sit over the middle of the axle, so turns on the spot look like motion.",
     check: "Measure from the marker to the middle of the axle with a ruler; turned on the spot by hand, the marker \
             draws a circle of that radius.",
+    needs_known_robot: false,
     variants: &[Variant {
         id: "rigid",
         parameters: Marker::PARAMETERS,
@@ -32,7 +33,7 @@ pub const EFFECT: Effect = Effect {
 };
 
 /// Either way, in tracks: a marker farther off would not lie on the robot's body.
-const OFFSET: Parameter = Parameter::new("", 0.0, [-1.3, 1.3]).prior_sd(0.35);
+const OFFSET: Parameter = Parameter::new("cm", 0.0, [-1.3, 1.3]).prior_sd(0.35);
 
 parameters! {
     Marker {

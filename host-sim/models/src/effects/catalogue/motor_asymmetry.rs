@@ -10,6 +10,7 @@ pub const EFFECT: Effect = Effect {
     what: "One motor turns slower than it did at the same command, so the robot bends to that side.",
     check: "Lift the robot, give both motors the same command for ten seconds, and count the turns of both wheels; \
             or command a straight metre and measure how far to one side it ends.",
+    needs_known_robot: false,
     variants: &[
         Variant {
             id: "command",

@@ -12,6 +12,8 @@ pub const EFFECT: Effect = Effect {
     name: "payload",
     what: "A load that does not sit in the middle slows the robot, and one wheel more than the other.",
     check: "Put a kitchen scale under each wheel in turn; take off what was added and drive the same commands again.",
+    // A textbook states no load, and what a load does to it is a drive scale, a weak motor, a lag and scrubbing.
+    needs_known_robot: true,
     variants: &[
         Variant {
             id: "command",
@@ -110,7 +112,7 @@ parameters! {
 
 parameters! {
     RollingLoad {
-        /// Share of speed lost at [half of full speed](HALF_SPEED); see [`LOSS`].
+        /// Share of speed lost at [half of the reference speed](HALF_SPEED); see [`LOSS`].
         loss: LOSS,
         /// The other wheel's loss as a share of it.
         loss_other_wheel: Parameter::new("", 0.5, [0.0, 0.8]).prior_sd(0.3).from(Guesses::At(&[0.2])).report(Report::Hidden),

@@ -11,6 +11,7 @@ pub const EFFECT: Effect = Effect {
     what: "Commands above some value add no speed.",
     check: "Time a straight metre at commands of 60, 80 and 100: where the time no longer falls, the drive is at its \
             limit.",
+    needs_known_robot: false,
     variants: &[
         Variant {
             id: "hard",
@@ -25,10 +26,11 @@ pub const EFFECT: Effect = Effect {
             parameters: Saturation::PARAMETERS,
             hooks: &[Hook::Motion(&|v, context, increment| {
                 let most_cm = Saturation::read(v).limit * context.reference_cm();
-                let wheels = increment.wheels_cm(context.robot.track_cm);
+                let (arc, track_cm) = (increment.arc(), context.robot.track_cm);
+                let wheels = arc.wheels_cm(track_cm);
                 let within = wheels.map(|covered_cm| covered_cm.clamp(-most_cm, most_cm));
                 if within != wheels {
-                    increment.set_wheels(within, context.robot.track_cm);
+                    *increment = arc.with_wheels(within, track_cm).motion();
                 }
             })],
         },
@@ -47,8 +49,8 @@ pub const EFFECT: Effect = Effect {
 
 parameters! {
     Saturation {
-        /// Share of the reference speed above which nothing is added. A regulated NXT motor under load is flat from half of its full
-        /// speed at the earliest; bases on ROS are often limited to a fifth of what robot.toml says.
+        /// Share of the reference speed above which nothing is added. A regulated NXT motor under load is flat from half of its
+        /// full speed at the earliest; bases on ROS are often limited to a fifth of what robot.toml says.
         limit: Parameter::new("", UNREACHED_SPEED, [0.12, UNREACHED_SPEED])
             .scale(0.8)
             .from(Guesses::OfTopSpeed(&[0.35, 0.5, 0.65, 0.8]))

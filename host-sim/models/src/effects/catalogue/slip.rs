@@ -12,6 +12,7 @@ pub const EFFECT: Effect = Effect {
     what: "The tyres lose grip when they are pushed hard.",
     check: "Clean the tyres and the floor and drive the same commands again; a chalk mark on a tyre shows in a film \
             whether it turns more than the robot moves.",
+    needs_known_robot: false,
     variants: &[
         Variant {
             id: "fast",
@@ -65,8 +66,8 @@ pub const EFFECT: Effect = Effect {
     ],
 };
 
-/// Change of wheel speed from which the tyres slide, as a share of the reference speed. Rubber on a floor holds about half a robot's
-/// weight, which an NXT reaches within 6 cm/s at the least: below that it would be a scale or a lag.
+/// Change of wheel speed from which the tyres slide, as a share of the reference speed. Rubber on a floor holds about half a
+/// robot's weight, which an NXT reaches within 6 cm/s at the least: below that it would be a scale or a lag.
 const ONSET: Parameter =
     Parameter::new("", 1.22, [0.146, 1.22]).scale(1.05).from(Guesses::At(&[0.195, 0.39, 0.68])).report(Report::Onset);
 

@@ -10,13 +10,14 @@ pub const EFFECT: Effect = Effect {
     name: "slope",
     what: "The floor is tilted: the robot gains way downhill and loses it uphill.",
     check: "Lay a spirit level on the floor in two directions, or see where a ball rolls.",
+    needs_known_robot: false,
     variants: &[
         Variant {
             id: "drift",
             parameters: Drift::PARAMETERS,
             hooks: &[Hook::MotionHere(&|v, context, increment| {
                 let Drift { direction_deg, loss } = Drift::read(v);
-                let [left, right] = increment.wheels_cm(context.robot.track_cm);
+                let [left, right] = increment.arc().wheels_cm(context.robot.track_cm);
                 let down_cm = loss * 0.5 * (left.abs() + right.abs());
                 let drift_cm = direction(angle_rad(direction_deg, context, increment.turn)) * down_cm;
                 increment.forward += drift_cm.x;
@@ -29,7 +30,7 @@ pub const EFFECT: Effect = Effect {
             hooks: &[Hook::MotionHere(&|v, context, increment| {
                 let Slope { direction_deg, loss, with_speed, sideways } = Slope::read(v);
                 // A driven wheel yields downhill; a wheel at rest holds.
-                let [left, right] = increment.wheels_cm(context.robot.track_cm);
+                let [left, right] = increment.arc().wheels_cm(context.robot.track_cm);
                 let driven = moving(left.abs().max(right.abs()), context);
                 let pull_cm = driven * loss * distance_lost_cm(with_speed, increment.forward, context);
                 let down_cm = direction(angle_rad(direction_deg, context, increment.turn)) * pull_cm;

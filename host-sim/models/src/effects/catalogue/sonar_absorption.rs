@@ -9,6 +9,7 @@ pub const EFFECT: Effect = Effect {
     name: "absorbing surfaces",
     what: "Surfaces return less sound, so that echoes are missing.",
     check: "Hold a hard board before the wall that gives no reading: if it gives one, the wall swallows the sound.",
+    needs_known_robot: false,
     variants: &[
         Variant {
             id: "everywhere",

@@ -9,6 +9,7 @@ pub const EFFECT: Effect = Effect {
     name: "beam width",
     what: "The beam is wider or narrower than assumed, so that it meets edges earlier or later.",
     check: "Move a post across in front of the sensor at one metre and measure how far to each side it is still seen.",
+    needs_known_robot: false,
     variants: &[
         Variant {
             id: "width",

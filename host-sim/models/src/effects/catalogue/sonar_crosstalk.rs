@@ -9,6 +9,7 @@ pub const EFFECT: Effect = Effect {
     name: "crosstalk",
     what: "Now and then there is a random reading that is too short, from another source of sound.",
     check: "Switch off every other ultrasonic sensor, and compressed air, in the room, and log again.",
+    needs_known_robot: false,
     variants: &[Variant {
         id: "short",
         parameters: Crosstalk::PARAMETERS,

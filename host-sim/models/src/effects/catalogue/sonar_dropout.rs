@@ -10,6 +10,7 @@ pub const EFFECT: Effect = Effect {
     what: "Missing readings come one after the other.",
     check: "Let the robot stand before a wall, log a few hundred readings, and see whether the missing ones come in \
             rows; wiggle the sensor's cable meanwhile.",
+    needs_known_robot: false,
     variants: &[Variant {
         id: "two_states",
         parameters: Dropout::PARAMETERS,

@@ -10,6 +10,7 @@ pub const EFFECT: Effect = Effect {
     name: "old readings",
     what: "Readings are of where the robot was a while ago.",
     check: "Drive straight at a wall and film the display beside a ruler: the reading is that of a place behind.",
+    needs_known_robot: false,
     variants: &[Variant {
         id: "earlier_pose",
         parameters: Lag::PARAMETERS,

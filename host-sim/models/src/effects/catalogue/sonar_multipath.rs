@@ -13,6 +13,7 @@ pub const EFFECT: Effect = Effect {
            another.",
     check: "Stand the robot at 45 degrees to a wall: too long readings become right when a soft cloth covers the \
             opposite wall.",
+    needs_known_robot: false,
     variants: &[
         Variant {
             id: "mirrored",

@@ -10,6 +10,7 @@ pub const EFFECT: Effect = Effect {
     what: "Readings scatter more than the simulator assumes.",
     check: "Let the robot stand one metre before a wall, log a hundred readings, and compare their range with that \
             of the earlier logs.",
+    needs_known_robot: false,
     variants: &[Variant {
         id: "normal",
         parameters: Noise::PARAMETERS,

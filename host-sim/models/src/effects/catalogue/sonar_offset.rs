@@ -9,6 +9,7 @@ pub const EFFECT: Effect = Effect {
     name: "sonar offset",
     what: "Readings are too long or too short by one length.",
     check: "Place the sensor squarely before a wall at 50, 100 and 200 cm by a ruler: the error is the same at each.",
+    needs_known_robot: false,
     variants: &[Variant {
         id: "length",
         parameters: Offset::PARAMETERS,

@@ -10,6 +10,7 @@ pub const EFFECT: Effect = Effect {
     what: "Readings are too long or too short by one factor.",
     check: "Place the sensor squarely before a wall at 50, 100 and 200 cm by a ruler: the error grows with the \
             distance.",
+    needs_known_robot: false,
     variants: &[Variant {
         id: "gain",
         parameters: Scale::PARAMETERS,

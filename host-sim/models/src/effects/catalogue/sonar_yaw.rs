@@ -10,6 +10,7 @@ pub const EFFECT: Effect = Effect {
     what: "The sensor is mounted turned against the robot's heading.",
     check: "Lay a ruler along the robot and one along the sensor's two eyes: they should make a right angle. If they do, the \
             sensor hears better to one side, which looks the same in logs.",
+    needs_known_robot: false,
     variants: &[Variant {
         id: "axis",
         parameters: Yaw::PARAMETERS,

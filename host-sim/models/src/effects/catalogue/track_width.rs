@@ -4,6 +4,7 @@ use super::drive::Drive;
 use super::{parameters, scrubbing};
 use crate::effects::parameter::{Guesses, Report};
 use crate::effects::{Effect, Hook, Parameter, Variant};
+use mindgap_foundations::motion::{Arc, Motion};
 
 pub const EFFECT: Effect = Effect {
     id: "track_width",
@@ -12,11 +13,12 @@ pub const EFFECT: Effect = Effect {
            apart or nearer than thought.",
     check: "Measure the distance between the middles of the two tyres where they touch the floor, or command ten \
             full turns on the spot and see how many the robot makes.",
+    needs_known_robot: false,
     variants: &[
         Variant {
             id: "turn",
             parameters: Track::PARAMETERS,
-            hooks: &[Hook::Motion(&|v, _, increment| increment.set_turn(increment.turn * Track::read(v).factor))],
+            hooks: &[Hook::Motion(&|v, _, increment| turn_by(increment, increment.turn * Track::read(v).factor))],
         },
         Variant {
             id: "lever",
@@ -34,7 +36,7 @@ pub const EFFECT: Effect = Effect {
                     let LeverTrack { factor, scrub_rad_s, .. } = LeverTrack::read(v);
                     let turn_rad = increment.turn;
                     let scrubbed_rad = scrub_rad_s * context.step_s() * scrubbing(turn_rad, context);
-                    increment.set_turn(factor * (turn_rad - (factor - 1.0) * scrubbed_rad));
+                    turn_by(increment, factor * (turn_rad - (factor - 1.0) * scrubbed_rad));
                 }),
             ],
         },
@@ -62,4 +64,9 @@ parameters! {
         /// Rate of turn that scrubbing tyres cost on the track that is known.
         scrub_rad_s: Parameter::new("rad/s", 0.0, [0.0, 1.0]).prior_sd(0.4).from(Guesses::At(&[0.2])).report(Report::Hidden),
     }
+}
+
+/// Turns by another angle along an arc of the same length.
+fn turn_by(increment: &mut Motion<f64>, turn_rad: f64) {
+    *increment = Arc { turn_rad, ..increment.arc() }.motion();
 }

@@ -13,6 +13,7 @@ pub const EFFECT: Effect = Effect {
     what: "The camera's frame is turned against the one that headings are measured in.",
     check: "Push the robot along a wall by hand: the tracked heading should be the direction of the tracked path, \
             and both the wall's.",
+    needs_known_robot: false,
     variants: &[
         Variant {
             id: "about_the_middle",

@@ -9,6 +9,7 @@ pub const EFFECT: Effect = Effect {
     name: "camera scale",
     what: "Tracked lengths are off by one factor.",
     check: "Put the robot at two marks that are one metre apart by a ruler, and compare the tracked distance.",
+    needs_known_robot: false,
     variants: &[
         Variant {
             id: "about_the_middle",

@@ -3,20 +3,21 @@
 use super::{parameters, pushed_cm};
 use crate::effects::parameter::{Guesses, Report};
 use crate::effects::scales::HALF_SPEED;
-use crate::effects::{Effect, Hook, Parameter, Variant};
+use crate::effects::{Effect, Hook, Parameter, StepContext, Variant};
+use mindgap_foundations::motion::Motion;
 
 pub const EFFECT: Effect = Effect {
     id: "turn_loss",
     name: "loss of way in turns",
     what: "Both wheels lose way in turns, more the sharper the turn is.",
     check: "Command an arc of one metre and a straight metre, and measure both with a string along the track.",
+    needs_known_robot: false,
     variants: &[
         Variant {
             id: "at_any_speed",
             parameters: TurnLoss::PARAMETERS,
             hooks: &[Hook::Motion(&|v, context, increment| {
-                let lost_cm = TurnLoss::read(v).tracks_per_rad * context.robot.track_cm * increment.turn.abs();
-                increment.forward = pushed_cm(increment.forward, -lost_cm, context);
+                lose(increment, TurnLoss::read(v).tracks_per_rad * increment.turn.abs(), context);
             })],
         },
         Variant {
@@ -24,8 +25,7 @@ pub const EFFECT: Effect = Effect {
             parameters: TurnLoss::PARAMETERS,
             hooks: &[Hook::Motion(&|v, context, increment| {
                 let speed = increment.forward.abs() / (HALF_SPEED * context.reference_cm());
-                let lost_cm = TurnLoss::read(v).tracks_per_rad * context.robot.track_cm * increment.turn.abs() * speed;
-                increment.forward = pushed_cm(increment.forward, -lost_cm, context);
+                lose(increment, TurnLoss::read(v).tracks_per_rad * increment.turn.abs() * speed, context);
             })],
         },
         Variant {
@@ -34,19 +34,16 @@ pub const EFFECT: Effect = Effect {
             hooks: &[Hook::Motion(&|v, context, increment| {
                 let DryTurnLoss { tracks_per_rad, saturation_rad_s } = DryTurnLoss::read(v);
                 let saturation_rad = saturation_rad_s * context.step_s();
-                let lost_cm = tracks_per_rad
-                    * context.robot.track_cm
-                    * saturation_rad
-                    * up_to_one(increment.turn.abs() / saturation_rad);
-                increment.forward = pushed_cm(increment.forward, -lost_cm, context);
+                let turned_rad = saturation_rad * up_to_one(increment.turn.abs() / saturation_rad);
+                lose(increment, tracks_per_rad * turned_rad, context);
             })],
         },
     ],
 };
 
-/// Way lost for each radian of turn, in tracks; of the second variant at [half of full speed](HALF_SPEED). A Create loses a
+/// Way lost for each radian of turn, in tracks; of the second variant at [half of the reference speed](HALF_SPEED). A Create loses a
 /// third of its track. A robot that loses half of it could hardly turn about a standing wheel.
-const LOSS: Parameter = Parameter::new("", 0.0, [0.0, 0.7])
+const LOSS: Parameter = Parameter::new("cm/rad", 0.0, [0.0, 0.7])
     .prior_sd(0.35)
     .from(Guesses::At(&[0.09, 0.35]))
     .report(Report::OfTrack("cm_per_rad"));
@@ -65,6 +62,11 @@ parameters! {
         /// Rate of turn from which on what drags rubs with all that rests on it, as dry friction does.
         saturation_rad_s: Parameter::new("rad/s", 2.0, [0.3, 8.0]).prior_sd(2.0).report(Report::Hidden),
     }
+}
+
+/// Shortens the way forward by a number of tracks.
+fn lose(increment: &mut Motion<f64>, tracks: f64, context: &StepContext) {
+    increment.forward = pushed_cm(increment.forward, -tracks * context.robot.track_cm, context);
 }
 
 /// The number where it is small, and one where it is large; rounded between, since a robot does not turn alike all through a
