@@ -17,7 +17,6 @@ use mindgap_logs::robot::same_robot;
 use mindgap_logs::samples::RowId;
 use mindgap_logs::{Logs, Robot};
 use mindgap_models::effects::applied::AppliedEffect;
-use mindgap_models::effects::chain::EffectChain;
 use mindgap_models::simulator::Simulator;
 use mindgap_models::simulator::baseline::{Baseline, MotionModel};
 use mindgap_models::simulator::ensemble::basis::CHANGE;
@@ -143,8 +142,7 @@ fn diagnosed(baseline: Baseline, logs: &Logs, seed: u64, watch: impl Fn(Stage)) 
 /// the robot as known from training, so its bias relative to the networks is added back.
 fn steps(baseline: &Baseline, effects: &[AppliedEffect], observations: &Observations) -> Vec<StepResidual> {
     let Some(motion @ MotionModel::Learned { reference, .. }) = &baseline.motion else { return Vec::new() };
-    let applied: Vec<AppliedEffect> = baseline.applied.iter().chain(effects).cloned().collect();
-    let chain = EffectChain::of(&applied, &baseline.robot);
+    let chain = baseline.chain_with(effects);
     let step = |row: &mindgap_learning::evaluation::observations::Observation| {
         let [now, before, ..] = row.context.commands;
         let left = predictions::residual(&chain, motion, row).filter(|_| row.following_steps.is_empty())?;

@@ -280,6 +280,7 @@ impl Export {
 const NAMES: [&str; 5] = ["turn", "forward", "lateral", "echo_probability", "echo_value"];
 
 fn float_networks(simulator: &Simulator) -> Result<[PybricksNetwork; 5]> {
+    simulator.need_no_filter()?;
     Ok([
         float_network(simulator, &simulator.turn, 0, COMMANDS)?,
         float_network(simulator, &simulator.forward, 1, COMMANDS)?,

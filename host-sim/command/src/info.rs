@@ -143,6 +143,9 @@ fn describe(simulator: &Simulator) -> String {
     for missing in &simulator.missing {
         text += &format!("; no network {}: {}", missing.network, missing.reason);
     }
+    if !simulator.filter.is_none() {
+        text += &format!("; behind a filter of the drive: {}", simulator.filter.in_words(&simulator.robot));
+    }
     if !simulator.added.is_empty() {
         let ids: Vec<&str> = simulator.added.iter().map(|effect| effect.effect.as_str()).collect();
         text += &format!("; with the effects {}", ids.join(", "));

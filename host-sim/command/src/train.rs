@@ -114,8 +114,16 @@ impl Run for Train {
         simulator.write(&self.out)?;
         let evaluations = evaluations.take();
         let counts: Vec<String> = evaluations.iter().map(|(name, n)| format!("{name} {n}")).collect();
+        let filter = if simulator.filter.is_none() {
+            String::new()
+        } else {
+            let filter = simulator.filter.in_words(&simulator.robot);
+            format!(
+                "the robot takes more than a step to respond; its networks see commands behind a filter: {filter}\n"
+            )
+        };
         let text = format!(
-            "networks evaluated over all samples: {}\nsimulator written to {}\n",
+            "{filter}networks evaluated over all samples: {}\nsimulator written to {}\n",
             counts.join(", "),
             self.out.display()
         );

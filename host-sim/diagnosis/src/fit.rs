@@ -110,8 +110,8 @@ fn already_explained(rows: &Identification) -> [f64; Channel::COUNT] {
     if rows.baseline.applied.is_empty() {
         return Default::default();
     }
-    let [with, without] =
-        [Hypothesis::null(rows.baseline), Hypothesis::without_applied()].map(|hypothesis| hypothesis.scores(rows, &[]));
+    let [with, without] = [Hypothesis::null(rows.baseline), Hypothesis::without_applied(rows.baseline)]
+        .map(|hypothesis| hypothesis.scores(rows, &[]));
     Channel::ALL.map(|channel| (with.total_of(channel) - without.total_of(channel)).max(0.0))
 }
 
@@ -248,7 +248,10 @@ impl Fitted {
     fn further_candidates(&self, context: &FitContext) -> Vec<Candidate> {
         let mut further = Candidate::all(&context.catalogue);
         let is_ray = context.baseline().sonar.as_ref().is_some_and(SensorLaw::is_ray);
-        let applies = |candidate: &Candidate| is_ray || !candidate.variant.is_for_a_ray();
+        let is_quick = context.baseline().motion.as_ref().is_some_and(MotionModel::answers_within_a_step);
+        let applies = |candidate: &Candidate| {
+            (is_ray || !candidate.variant.is_for_a_ray()) && !(is_quick && candidate.variant.delays_in_the_filter())
+        };
         further.retain(|candidate| !self.ids().contains(&candidate.effect) && applies(candidate));
         further
     }

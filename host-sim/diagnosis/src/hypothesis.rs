@@ -29,8 +29,8 @@ impl Hypothesis {
     }
 
     /// The simulator without the effects that it has already.
-    pub fn without_applied() -> Self {
-        Hypothesis { given: EffectChain::default(), candidates: Vec::new() }
+    pub fn without_applied(baseline: &Baseline) -> Self {
+        Hypothesis::null(&Baseline { applied: Vec::new(), ..baseline.clone() })
     }
 
     /// The same simulator with these effects.

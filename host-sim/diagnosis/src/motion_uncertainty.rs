@@ -6,7 +6,7 @@ use super::sample::Identification;
 use mindgap_foundations::motion::Axis;
 use mindgap_foundations::statistics::summary::{QUARTILE, median};
 use mindgap_learning::evaluation::observations::Observation;
-use mindgap_models::effects::StepContext;
+use mindgap_models::effects::drive_filter::FilteredDrive;
 use mindgap_models::simulator::baseline::MotionModel;
 use mindgap_models::simulator::nominal::MotionBias;
 use mindgap_models::simulator::nominal::motion_bias::{FEATURES, features};
@@ -38,15 +38,23 @@ const MOST_ITERATIONS: usize = 10_000;
 impl MotionUncertainty {
     /// Finds the open directions of a learned simulator on these rows. Returns `None` if there are none.
     pub fn of(rows: &Identification) -> Option<Self> {
-        let MotionModel::Learned { reference, .. } = rows.baseline.motion.as_ref()? else { return None };
+        let MotionModel::Learned { reference, filter, .. } = rows.baseline.motion.as_ref()? else { return None };
         let residuals = rows.residuals(&rows.baseline.chain());
-        MotionUncertainty::of_residuals(reference, &rows.rows, &residuals)
+        MotionUncertainty::of_residuals(reference, &FilteredDrive::from(*filter), &rows.rows, &residuals)
     }
 
-    fn of_residuals(reference: &MotionBias, rows: &[Observation], residuals: &[Option<[f64; 3]>]) -> Option<Self> {
+    fn of_residuals(
+        reference: &MotionBias,
+        drive: &FilteredDrive,
+        rows: &[Observation],
+        residuals: &[Option<[f64; 3]>],
+    ) -> Option<Self> {
         let precision = reference.precision.as_ref()?;
-        let features =
-            DMatrix::from_row_iterator(rows.len(), FEATURES, rows.iter().flat_map(|row| row_features(reference, row)));
+        let features = DMatrix::from_row_iterator(
+            rows.len(),
+            FEATURES,
+            rows.iter().flat_map(|row| row_features(reference, drive, row)),
+        );
         let open = [0, 1, 2].map(|axis| {
             let unit = Some(reference.scatter.into_array()[axis]).filter(|unit| *unit > 0.0)?;
             let middle = median(residuals.iter().flatten().map(|r| r[axis].abs())) / QUARTILE;
@@ -81,11 +89,11 @@ impl MotionUncertainty {
 
 /// Returns the features of a row's step. Those of n steps that are compared as one are added up and divided by √n, as their
 /// residuals are.
-fn row_features(reference: &MotionBias, row: &Observation) -> [f64; FEATURES] {
+fn row_features(reference: &MotionBias, drive: &FilteredDrive, row: &Observation) -> [f64; FEATURES] {
     let mut sum = [0.0; FEATURES];
     for step in std::iter::once(&row.context).chain(&row.following_steps) {
-        let StepContext { commands: [[left, right], [left_before, right_before], ..], .. } = step;
-        let of_step: [f64; FEATURES] = features([*left, *right, *left_before, *right_before], reference.scale.share());
+        let speeds = drive.speeds(&step.commands, 0, &step.robot);
+        let of_step: [f64; FEATURES] = features(speeds.inputs(), reference.scale.share());
         sum.iter_mut().zip(of_step).for_each(|(sum, feature)| *sum += feature);
     }
     let share = 1.0 / (row.steps() as f64).sqrt();
@@ -129,6 +137,7 @@ mod tests {
     use super::*;
     use crate::test_support::{Made, NOISE, SPIN, STRAIGHT, alternating, observations, precision};
     use mindgap_foundations::motion::Motion;
+    use mindgap_models::effects::drive_filter::DriveFilter;
     use mindgap_models::simulator::ensemble::CommandScale;
 
     const BLOCKS: usize = 8;
@@ -153,7 +162,8 @@ mod tests {
             residuals[23] = Some([0.0, 0.0, absurd]);
         }
         let turns: Vec<Option<f64>> = residuals.iter().map(|r| r.map(|r| r[2])).collect();
-        MotionUncertainty::of_residuals(reference, &rows.rows, &residuals)?.predict(2, &rows.rows, &turns)
+        MotionUncertainty::of_residuals(reference, &DriveFilter::default().into(), &rows.rows, &residuals)?
+            .predict(2, &rows.rows, &turns)
     }
 
     /// Twelve spins of seven runs predict the eighth run, up to the prior.
@@ -182,9 +192,9 @@ mod tests {
     #[test]
     fn features_of_steps_that_are_compared_as_one_add_up() {
         let mut rows = observations(1, 1, |_, _| Made { commands: [SPIN; 2], ..Made::default() }).rows;
-        let one = row_features(&learned(1, 0), &rows[0]);
+        let one = row_features(&learned(1, 0), &DriveFilter::default().into(), &rows[0]);
         rows[0].following_steps = vec![rows[0].context; 3];
-        let four = row_features(&learned(1, 0), &rows[0]);
+        let four = row_features(&learned(1, 0), &DriveFilter::default().into(), &rows[0]);
         assert!(one.iter().zip(four).all(|(one, four)| (2.0 * one - four).abs() < 1e-12));
     }
 }

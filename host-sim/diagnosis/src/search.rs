@@ -7,6 +7,7 @@ use super::gain::Gain;
 use super::omnibus::Regression;
 use super::remainder::{Remainder, remainders};
 use super::slot::{FurtherGain, Slot, is_ambiguous};
+use mindgap_models::effects::Candidate;
 
 /// The first stage: every effect fitted alone.
 #[derive(Clone)]
@@ -41,6 +42,9 @@ pub(super) struct Selection<'a> {
 
 /// Number of effects whose gains are logged.
 const LOGGED: usize = 5;
+/// Variants that are free under every hypothesis against a textbook, which answers at once: every robot has some dead time and
+/// some lag, and what is not free is taken by the first effect that can imitate it.
+const ALWAYS_FREE: [(&str, &str); 2] = [("latency", "delay"), ("inertia", "first_order_lag")];
 
 impl Fits {
     /// Fits every variant of every effect alone.
@@ -69,7 +73,7 @@ impl Fits {
 impl Search {
     /// Chooses other effects in place of those that were found.
     pub fn choosing(self, chosen: Fitted, context: &FitContext) -> Self {
-        let slots = Selection::new(&self.fits, context).slots_of(&chosen);
+        let slots = Selection::new(&self.fits, context).slots_of(&chosen, 0);
         Search { beyond_chosen: remainders(&chosen, context), chosen, slots, ..self }
     }
 }
@@ -83,37 +87,59 @@ impl<'a> Selection<'a> {
         let Fits { null, singles } = self.fits;
         let best_singles = best_of_each(singles.clone());
         self.log_singles(&best_singles);
-        let mut chosen = self.first(&best_singles).unwrap_or(null).clone();
-        let mut slots = Vec::new();
-        if !chosen.ids().is_empty() {
-            slots.push(Slot::new(null.clone(), best_singles, self.further_gain(&chosen, null)));
-        }
-        while !chosen.ids().is_empty() && chosen.ids().len() < self.calibration().judgement.most_effects {
+        let (mut chosen, mut slots) = match self.with_always_free() {
+            Some(free) => (free, Vec::new()),
+            None => match self.first(&best_singles) {
+                Some(first) => {
+                    let slot = Slot::new(null.clone(), best_singles.clone(), self.further_gain(first, null));
+                    (first.clone(), vec![slot])
+                }
+                None => (null.clone(), Vec::new()),
+            },
+        };
+        let free = if slots.is_empty() { chosen.ids().len() } else { 0 };
+        while !chosen.ids().is_empty() && chosen.ids().len() - free < self.calibration().judgement.most_effects {
             let further = best_of_each(chosen.with_each(singles, self.context));
             for fit in further.iter().take(LOGGED) {
                 log::info!("{}: {}", fit.name(), self.further_gain(fit, &chosen).in_words());
             }
             let Some(next) = further.into_iter().find(|fit| self.is_worth_adding(fit, &chosen)) else { break };
-            let (swapped, slots_of_swapped) = self.swap_best(next);
+            let (swapped, slots_of_swapped) = self.swap_best(next, free);
             if !self.is_clear(&swapped, &slots_of_swapped, &chosen) {
                 log::info!("{} is ambiguous with many others", swapped.name());
                 break;
             }
             let evidence_before = chosen.log_evidence();
-            (chosen, slots) = self.prune(swapped, slots_of_swapped);
+            (chosen, slots) = self.prune(swapped, slots_of_swapped, free);
             log::info!("{} together gain {:.1} nats", chosen.name(), chosen.gain_over(null).nats);
             // A swap back to what was pruned would repeat forever.
             if chosen.log_evidence() <= evidence_before {
                 break;
             }
         }
+        if free > 0 {
+            slots = self.slots_of(&chosen, 0);
+            (chosen, slots) = self.prune(chosen, slots, 0);
+        }
         match self.without_false_noise(&chosen) {
             Some(others) => {
-                let slots = self.slots_of(&others);
+                let slots = self.slots_of(&others, 0);
                 (others, slots)
             }
             None => (chosen, slots),
         }
+    }
+
+    /// Returns the fit of what is free under every hypothesis; `None` where nothing is.
+    fn with_always_free(&self) -> Option<Fitted> {
+        let motion = self.context.baseline().motion.as_ref()?;
+        let free = ALWAYS_FREE
+            .iter()
+            .filter_map(|(effect, variant)| Candidate::named_in(&self.context.catalogue, effect, variant));
+        let fit = |fit: Fitted, candidate: Candidate| fit.with(candidate, self.context);
+        let fitted = (!motion.is_learned()).then(|| free.fold(self.fits.null.clone(), fit))?;
+        log::info!("always free: {}", fitted.name());
+        (!fitted.ids().is_empty()).then_some(fitted)
     }
 
     fn log_singles(&self, singles: &[Fitted]) {
@@ -165,24 +191,25 @@ impl<'a> Selection<'a> {
         gain.passes(calibration.effect_nats) || !slots.iter().any(is_ambiguous)
     }
 
-    /// Swaps one effect for the best rival in its slot if that is better. Returns the effects with their slots.
-    pub fn swap_best(&self, chosen: Fitted) -> (Fitted, Vec<Slot>) {
-        let slots = self.slots_of(&chosen);
+    /// Swaps one effect for the best rival in its slot if that is better, but none of the first, which are always free. Returns
+    /// the effects with their slots.
+    pub fn swap_best(&self, chosen: Fitted, free: usize) -> (Fitted, Vec<Slot>) {
+        let slots = self.slots_of(&chosen, free);
         let rivals = slots.iter().flat_map(|slot| &slot.rivals);
         let best = rivals.max_by(|a, b| a.log_evidence().total_cmp(&b.log_evidence()));
         match best.filter(|f| f.log_evidence() > chosen.log_evidence() && f.ids() != chosen.ids()) {
-            Some(best) => (best.clone(), self.slots_of(best)),
+            Some(best) => (best.clone(), self.slots_of(best, free)),
             None => (chosen, slots),
         }
     }
 
-    /// Drops effects that would no longer be added to the others.
-    fn prune(&self, chosen: Fitted, slots: Vec<Slot>) -> (Fitted, Vec<Slot>) {
+    /// Drops effects that would no longer be added to the others, but none of the first, which are always free.
+    fn prune(&self, chosen: Fitted, slots: Vec<Slot>, free: usize) -> (Fitted, Vec<Slot>) {
         let redundant = slots.iter().filter(|slot| !self.counts(&slot.gain)).map(|slot| &slot.without);
         match redundant.max_by(|a, b| a.log_evidence().total_cmp(&b.log_evidence())).cloned() {
             Some(fewer) => {
-                let slots = self.slots_of(&fewer);
-                self.prune(fewer, slots)
+                let slots = self.slots_of(&fewer, free);
+                self.prune(fewer, slots, free)
             }
             None => (chosen, slots),
         }
@@ -201,14 +228,15 @@ impl<'a> Selection<'a> {
         (others.log_evidence() + shifted > chosen.log_evidence()).then_some(others)
     }
 
-    pub fn slots_of(&self, chosen: &Fitted) -> Vec<Slot> {
+    /// Returns the slots of the effects, but none of the first, which are always free.
+    pub fn slots_of(&self, chosen: &Fitted, free: usize) -> Vec<Slot> {
         let slot = |effect: usize| {
             let without = chosen.without(effect, self.context);
             let taken = best_of_each(without.with_each(&self.fits.singles, self.context));
             let gain = self.further_gain(chosen, &without);
             Slot::new(without, taken, gain)
         };
-        (0..chosen.ids().len()).map(slot).collect()
+        (free..chosen.ids().len()).map(slot).collect()
     }
 }
 

@@ -15,6 +15,7 @@ use mindgap_foundations::motion::Motion;
 use mindgap_learning::evaluation::observations::{Observation, Observations, number_places, side_ray_ranges_cm};
 use mindgap_logs::{Logs, Robot, Row, Run, Scene, Ultrasonic};
 use mindgap_models::effects::context::{CommandHistory, HISTORY, Surroundings};
+use mindgap_models::effects::drive_filter::StepSpeeds;
 use mindgap_models::effects::parameter::Guesses;
 use mindgap_models::effects::{Candidate, Effect, Hook, Parameter, StepContext, Variant};
 use mindgap_models::simulator::baseline::{Baseline, MotionModel};
@@ -109,6 +110,7 @@ pub fn observations(blocks: usize, rows: usize, made: impl Fn(usize, usize) -> M
             context,
             following_steps: Vec::new(),
             motion: Some(motion),
+            speeds: StepSpeeds { now, before, drift_cm: 0.0 },
             expected: Some(drive.step(now, before)),
             echo_cm: echo_off_cm.zip(context.faced).map(|(off_cm, [distance_cm, _])| distance_cm + off_cm),
             view: Some(law.view(&surroundings.surfaces, &surroundings.sensor(&pose, 0.0), 1.0)),
@@ -180,6 +182,7 @@ pub const LONGER: Effect = Effect {
     name: "longer",
     what: "Made up.",
     check: "None.",
+    place: None,
     needs_known_robot: false,
     variants: &[Variant {
         id: "every_step",
@@ -194,6 +197,7 @@ pub const SLIGHTLY_LONGER: Effect = Effect {
     name: "slightly_longer",
     what: "Made up.",
     check: "None.",
+    place: None,
     needs_known_robot: false,
     variants: &[Variant {
         id: "every_step",
@@ -208,6 +212,7 @@ pub const LONGER_TO_THE_LEFT: Effect = Effect {
     name: "longer_to_the_left",
     what: "Made up.",
     check: "None.",
+    place: None,
     needs_known_robot: false,
     variants: &[Variant {
         id: "left_turns",
@@ -225,6 +230,7 @@ pub const FARTHER: Effect = Effect {
     name: "farther",
     what: "Made up.",
     check: "None.",
+    place: None,
     needs_known_robot: false,
     variants: &[
         Variant {

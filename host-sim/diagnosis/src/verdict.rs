@@ -19,6 +19,7 @@ use mindgap_foundations::statistics::summary::{logistic, standard_error_of_sum};
 use mindgap_logs::Robot;
 use mindgap_models::effects::Candidate;
 use mindgap_models::effects::parameter::Settings;
+use mindgap_models::effects::{Place, catalogue};
 
 /// The answer in one word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
@@ -48,6 +49,9 @@ pub struct Conclusion {
 pub struct NamedEffect {
     /// Its id.
     pub id: &'static str,
+    /// Where in the robot it sits, if that is known.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub place: Option<Place>,
     /// Its probability.
     #[serde(serialize_with = "rounding::number")]
     pub probability: f64,
@@ -232,6 +236,7 @@ fn named(found: &Confirmed, explained: Explained, robot: &Robot, calibration: &C
         let probability = gap * next_to_others * probability(explained, rivals.iter().map(|r| r.1), calibration);
         NamedEffect {
             id: candidate.effect,
+            place: catalogue::place(candidate.effect),
             probability: probability.min(most),
             parameters: candidate.variant.reported(found.chosen.values_of(effect), robot),
             ambiguous_with: ambiguous.map(|(id, _)| *id).collect(),
@@ -263,6 +268,7 @@ fn noise_alone(noise: &[WiderNoise], calibration: &Calibration) -> Option<NamedE
         noise.iter().map(parameter).map(|(name, value)| (name.into(), rounding::three_digits(value).into()));
     (!noise.is_empty()).then(|| NamedEffect {
         id: SCATTER,
+        place: None,
         probability: calibration.accuracy_cap,
         parameters: parameters.collect(),
         ambiguous_with: Vec::new(),

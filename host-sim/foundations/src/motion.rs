@@ -109,6 +109,13 @@ impl Motion<f64> {
         pose.compose(&Pose::new(self.forward, self.lateral, self.turn))
     }
 
+    /// Returns this motion followed by another one.
+    pub fn then(self, next: Self) -> Self {
+        let mut turned = next;
+        turned.rotate_translation(self.turn);
+        self + turned
+    }
+
     /// Returns the motion `factor` times as large.
     pub fn scaled(self, factor: f64) -> Self {
         self.map(|value| value * factor)
@@ -233,6 +240,20 @@ impl Arc {
         let mut motion = Motion { forward: length_cm * chord(turn_rad), lateral: across_cm, turn: turn_rad };
         motion.rotate_translation(0.5 * turn_rad);
         motion
+    }
+
+    /// Returns the arc along `factor` times its length.
+    pub fn scaled(self, factor: f64) -> Self {
+        Arc { length_cm: factor * self.length_cm, across_cm: factor * self.across_cm, turn_rad: factor * self.turn_rad }
+    }
+
+    /// Returns the arc whose length, slide and angle are the sums of both.
+    pub fn plus(self, other: Self) -> Self {
+        Arc {
+            length_cm: self.length_cm + other.length_cm,
+            across_cm: self.across_cm + other.across_cm,
+            turn_rad: self.turn_rad + other.turn_rad,
+        }
     }
 
     /// Returns the distances that the left and right wheel cover, for a distance of `track_cm` between them.

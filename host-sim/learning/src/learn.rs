@@ -2,6 +2,7 @@
 
 pub mod beam;
 pub mod dataset;
+pub mod drive_filter;
 pub mod echo_law;
 pub mod ensemble;
 pub mod familiar;

@@ -27,6 +27,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::effects::applied::AppliedEffect;
+use crate::effects::chain::EffectChain;
+use crate::effects::drive_filter::DriveFilter;
 use crate::sonar::{FirstEchoLaw, SensorLaw};
 use ensemble::{Ensemble, Posterior, Robots};
 use mindgap_files as files;
@@ -51,6 +53,9 @@ pub struct Simulator {
     pub robot: Robot,
     /// Least and largest motor command in those logs; networks say nothing of commands outside.
     pub commands: [f32; 2],
+    /// The filter behind which the motion networks see commands: that of a robot which takes more than a step to respond.
+    #[serde(default, skip_serializing_if = "DriveFilter::is_none")]
+    pub filter: DriveFilter,
     /// Turn to the left in a step, degrees.
     pub turn: Option<Learned<4>>,
     /// Way forward in a step, cm.
@@ -164,6 +169,25 @@ impl Simulator {
         })
     }
 
+    /// Returns what lies between commands and networks, and the effects that were added.
+    pub fn chain(&self) -> EffectChain {
+        EffectChain::of(self.filter, &self.added, &self.robot)
+    }
+
+    /// Whether the motion networks see commands as they are sent.
+    ///
+    /// # Errors
+    /// Describes the filter before them, which programs for boards do not compute.
+    pub fn need_no_filter(&self) -> Result<()> {
+        if self.filter.is_none() {
+            return Ok(());
+        }
+        let filter = self.filter.in_words(&self.robot);
+        Err(Error::new(format!(
+            "the motion networks see commands behind a filter ({filter}), which boards do not compute"
+        )))
+    }
+
     /// The three motion networks, if all are there.
     pub fn motion_networks(&self) -> Option<MotionNetworks<'_>> {
         MotionNetworks::of(self).ok()
@@ -199,6 +223,9 @@ impl Simulator {
         for added in &self.added {
             let what = format!("the added effect {} ({})", added.effect, added.variant);
             added.resolve(&self.robot).map_err(|why| Error::in_file(path, format!("{what} is not possible: {why}")))?;
+        }
+        if !self.filter.is_sound() {
+            return Err(Error::in_file(path, "the filter of the drive holds numbers that cannot be"));
         }
         if self.ensemble.as_ref().is_some_and(|ensemble| !ensemble.is_sound()) {
             return Err(Error::in_file(path, "the distribution over robots holds numbers that cannot be"));

@@ -267,7 +267,7 @@ fn effects(trials: &[Trial]) -> Markup {
 fn rounded(setting: Setting) -> String {
     match setting {
         Setting::Number(value) => number(value, 3),
-        Setting::Side(_) => setting.to_string(),
+        Setting::Side(_) | Setting::ActsOn(_) => setting.to_string(),
     }
 }
 

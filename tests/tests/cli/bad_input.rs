@@ -327,7 +327,7 @@ fn invalid_simulator_files_are_refused() {
         })
     };
     let known = "sim.json: the added effect latency (delay) is not possible: this program knows no such variant with";
-    begins(&with("latency", -1.0), known);
+    begins(&with("latency", -4000.0), known);
     let unknown =
         "sim.json: the added effect latencies (delay) is not possible: it is not known to this program; did you";
     begins(&with("latencies", 100.0), unknown);

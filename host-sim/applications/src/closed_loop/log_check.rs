@@ -14,7 +14,6 @@ use mindgap_learning::evaluation::observations::Observations;
 use mindgap_learning::evaluation::predictions;
 use mindgap_logs::inspection::Inspection;
 use mindgap_logs::{Logs, Row, Run, Scene, Termination};
-use mindgap_models::effects::chain::EffectChain;
 use mindgap_models::simulator::Simulator;
 use mindgap_models::simulator::baseline::Baseline;
 use mindgap_models::simulator::rollout::REACHED_CM;
@@ -131,7 +130,7 @@ impl LogCheck<'_> {
     fn check_frame(&self, logs: &Logs) -> Result<()> {
         let Some(motion) = Baseline::learned(self.simulator)?.motion else { return Ok(()) };
         let observations = Observations::of(logs, Some(&motion), None);
-        let effects = EffectChain::of(&self.simulator.added, &self.simulator.robot);
+        let effects = self.simulator.chain();
         let free = logs.runs.first().map_or(0, |run| self.free_rows(run));
         for row in observations.rows.iter().filter(|row| row.at + 1 < free) {
             let Some([forward, lateral, turn_rad]) = predictions::residual(&effects, &motion, row) else { continue };

@@ -49,9 +49,9 @@ type Known<'r> = (&'r Observation, [f64; 2]);
 
 /// Returns all effects but one, after those that the simulator has already.
 fn chain_without(applied: &[AppliedEffect], left_out: usize, context: &FitContext) -> EffectChain {
-    let others = applied.iter().enumerate().filter(|(other, _)| *other != left_out).map(|(_, effect)| effect);
-    let baseline = context.baseline();
-    EffectChain::of(&baseline.applied.iter().chain(others).cloned().collect::<Vec<_>>(), &baseline.robot)
+    let mut others = applied.to_vec();
+    others.remove(left_out);
+    context.baseline().chain_with(&others)
 }
 
 /// Returns the tables along the covariate by which the effect reduces residuals most, with that reduction.

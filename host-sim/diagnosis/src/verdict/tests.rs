@@ -228,6 +228,7 @@ fn effect_within_the_error_of_adequacy_is_partly_known() {
 #[test]
 fn equally_probable_effects_are_sorted_by_share() {
     let effect = |id: &'static str, probability: f64| NamedEffect {
+        place: None,
         id,
         probability,
         parameters: Map::new(),

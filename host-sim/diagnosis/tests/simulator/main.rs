@@ -4,9 +4,11 @@ mod added_effect;
 mod extrapolation;
 mod gap;
 mod gap_apply;
+mod made_up;
 mod metamorphic;
 mod own_effect;
 mod skid;
+mod slow_drive;
 mod turning_loss;
 
 use std::sync::LazyLock;

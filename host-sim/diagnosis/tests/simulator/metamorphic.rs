@@ -35,7 +35,7 @@ fn textbook(logs: &Logs) -> BTreeSet<&'static str> {
 
 /// Runs of a textbook robot whose commands act 150 ms late and which loses 0.6 of its track in a radian of turn.
 fn late_and_losing() -> Logs {
-    let effects = [("latency", "delay", vec![150.0]), ("turn_loss", "at_any_speed", vec![0.6])];
+    let effects = [("latency", "delay", vec![0.375]), ("turn_loss", "at_any_speed", vec![0.6])];
     let (variants, values): (Vec<_>, Vec<Vec<f64>>) = effects
         .map(|(effect, variant, values)| (Candidate::named(effect, variant).expect(effect).variant, values))
         .into_iter()

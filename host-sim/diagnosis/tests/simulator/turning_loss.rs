@@ -8,6 +8,7 @@ pub const EFFECT: Effect = Effect {
     name: "turning_loss",
     what: "Made up.",
     check: "None.",
+    place: None,
     needs_known_robot: false,
     variants: &[Variant {
         id: "with_turn_rate",

@@ -105,7 +105,7 @@ pub fn evaluate(simulator: &Simulator, logs: &Logs, watch: impl Fn(usize, usize)
 
 fn networks(simulator: &Simulator, logs: &Logs) -> Result<Networks> {
     let samples =
-        if simulator.added.is_empty() { network_predictions(simulator, logs) } else { predict(simulator, logs)? };
+        if simulator.chain().is_empty() { network_predictions(simulator, logs) } else { predict(simulator, logs)? };
     let value = |points: Vec<[f64; 2]>| (!points.is_empty()).then(|| Value::of(points));
     let mut echo_value = value(samples.echo_value);
     if let Some(value) = &mut echo_value {

@@ -11,6 +11,7 @@ use mindgap_logs::samples::{self, MotionSample};
 use mindgap_logs::{Logs, Run};
 use mindgap_models::effects::StepContext;
 use mindgap_models::effects::context::{RunHistory, Surroundings};
+use mindgap_models::effects::drive_filter::{DriveFilter, FilteredDrive, StepSpeeds};
 use mindgap_models::simulator::baseline::MotionModel;
 use mindgap_models::sonar::familiar::{FamiliarPoses, PoseMemory};
 use mindgap_models::sonar::place::{Place, place_of};
@@ -57,6 +58,8 @@ pub struct Observation {
     pub following_steps: Vec<StepContext>,
     /// The motion of the step, or of the steps that are compared as one, if its end was tracked.
     pub motion: Option<Motion<f64>>,
+    /// What the simulator's filter makes of the commands of the step and of the one before.
+    pub speeds: StepSpeeds,
     /// The motion that the simulator expects of the logged commands, if it has a model of motion.
     pub expected: Option<Motion<f64>>,
     /// The reading, or `None` for no echo.
@@ -86,6 +89,7 @@ impl Observations {
         // Where no step has a pose at both ends, whole segments between poses are compared.
         let whole_segments = steps.is_empty();
         let mut steps = steps.iter().peekable();
+        let drive = FilteredDrive::from(motion.map_or_else(DriveFilter::default, MotionModel::filter));
         let mut rows = Vec::new();
         let parts = parts_per_run(logs);
         let is_unpolled = unpolled_rows(logs);
@@ -100,7 +104,7 @@ impl Observations {
                 let segment = || Some(Motion::between(&pose, &logged.rows.at(segment_end?).pose?));
                 let end_ms = logged.rows.get(k + 1).map_or(row.t_ms, |next| next.t_ms);
                 let block = run * parts + k * parts / logged.rows.len();
-                let [now, before, ..] = context.commands;
+                let speeds = drive.speeds(&context.commands, 0, &logs.robot);
                 rows.push(Observation {
                     run,
                     at: k,
@@ -113,7 +117,8 @@ impl Observations {
                     context: *context,
                     following_steps: segment_end.map_or_else(Vec::new, |end| untracked(logged, k + 1..end, context)),
                     motion: increment.or_else(segment),
-                    expected: motion.map(|motion| motion.step(now, before)),
+                    speeds,
+                    expected: motion.map(|motion| motion.step(speeds.now, speeds.before)),
                     echo_cm: row.echo_cm,
                     view: law.map(|law| law.view(&surroundings.surfaces, &surroundings.sensor(&pose, 0.0), 1.0)),
                     side_ray_ranges_cm: side_ray_ranges_cm(&surroundings, &pose),

@@ -65,9 +65,8 @@ pub fn step(effects: &EffectChain, drive: &MotionModel, context: &StepContext) -
 
 /// Returns the predicted motion of a row's step, or of the steps that are compared as one.
 pub fn increment(effects: &EffectChain, drive: &MotionModel, row: &Observation) -> Motion<f64> {
-    let logged = row.commands();
     let first = effects.wrap(&row.context, |now, before| match row.expected {
-        Some(expected) if logged == [now, before] => expected,
+        Some(expected) if [row.speeds.now, row.speeds.before] == [now, before] => expected,
         _ => drive.step(now, before),
     });
     if row.following_steps.is_empty() {

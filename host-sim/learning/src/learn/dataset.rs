@@ -2,7 +2,9 @@
 
 use std::ops::RangeInclusive;
 
+use super::drive_filter;
 use mindgap_logs::{Logs, samples};
+use mindgap_models::effects::drive_filter::DriveFilter;
 
 /// Samples for one network with `N` inputs.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -33,8 +35,13 @@ pub struct Datasets {
 impl Datasets {
     /// Extracts the samples from logs.
     pub fn from_logs(logs: &Logs) -> Self {
+        Datasets::behind(DriveFilter::default(), logs)
+    }
+
+    /// Extracts the samples from logs, with commands as they come out of a filter.
+    pub fn behind(filter: DriveFilter, logs: &Logs) -> Self {
         let [mut turn, mut forward, mut lateral] = std::array::from_fn(|_| Dataset::default());
-        for step in samples::steps(logs) {
+        for step in drive_filter::steps(filter, logs) {
             let inputs = step.speeds.map(|v| v as f32);
             turn.push(inputs, step.turn_rad.to_degrees() as f32, step.run);
             forward.push(inputs, step.forward_cm as f32, step.run);

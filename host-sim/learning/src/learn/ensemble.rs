@@ -6,6 +6,7 @@ pub mod noise;
 
 use rayon::prelude::*;
 
+use super::drive_filter;
 use holds::{StepResidual, holds};
 use mindgap_foundations::motion::{Axis, Motion};
 use mindgap_logs::{Logs, Robot, samples};
@@ -100,10 +101,12 @@ fn full(robot: &Robot) -> Motion<f64> {
 fn residuals(simulator: &Simulator, logs: &Logs) -> Option<Vec<StepResidual>> {
     let networks = simulator.motion_networks()?;
     let known = simulator.reference.as_ref()?.motion.as_ref()?;
-    let residual = |s: &samples::MotionSample| {
-        StepResidual::new(s.id(), s.speeds, networks.residual(s) - known.correction(&s.speeds), known)
+    // What is held is a command; what the networks see of it comes out of the filter.
+    let residual = |(sent, filtered): (samples::MotionSample, samples::MotionSample)| {
+        let left = networks.residual(&filtered) - known.correction(&filtered.speeds);
+        StepResidual::new(sent.id(), sent.speeds, left, known)
     };
-    Some(samples::motion(logs).iter().map(residual).collect())
+    Some(samples::steps(logs).zip(drive_filter::steps(simulator.filter, logs)).map(residual).collect())
 }
 
 /// Returns the sizes of the process's parts that maximise the evidence, by coordinate ascent.

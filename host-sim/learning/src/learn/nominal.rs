@@ -1,6 +1,6 @@
 //! Learns the reference of a simulator: its nominal behaviour beyond the networks, relative to which the gap is measured.
 
-use super::{beam, familiar, place_bound, sensor_law};
+use super::{beam, drive_filter, familiar, place_bound, sensor_law};
 use mindgap_foundations::motion::{Axis, Motion};
 use mindgap_foundations::statistics::ridge;
 use mindgap_foundations::statistics::summary::root_mean_square;
@@ -44,7 +44,7 @@ pub fn learn(simulator: &Simulator, first_echo: Option<FirstEchoLaw>, logs: &Log
 
 fn motion(simulator: &Simulator, logs: &Logs) -> Option<MotionBias> {
     let networks = simulator.motion_networks()?;
-    let steps = samples::motion(logs);
+    let steps: Vec<samples::MotionSample> = drive_filter::steps(simulator.filter, logs).collect();
     if steps.len() < FEWEST {
         return None;
     }

@@ -5,10 +5,12 @@ use mindgap_core::network::{Activation, Network};
 use super::dataset::{Dataset, Datasets};
 use super::fast::{self, Loss};
 use super::genome::Shape;
-use super::{echo_law, ensemble, nominal, paper, scatter};
+use super::{drive_filter, echo_law, ensemble, nominal, paper, scatter};
 use mindgap_foundations::error::{Error, Result};
 use mindgap_foundations::executor::{self, Executor};
-use mindgap_logs::{Logs, Robot};
+use mindgap_foundations::motion::Axis;
+use mindgap_logs::{Logs, Robot, samples};
+use mindgap_models::effects::drive_filter::DriveFilter;
 use mindgap_models::simulator::residuals::{ConstantReading, motion_context};
 use mindgap_models::simulator::{Learned, Missing, Origin, SCHEMA, Simulator};
 
@@ -73,7 +75,11 @@ pub fn train(
     seed: u64,
     watch: &dyn Fn(Progress),
 ) -> Result<Simulator> {
-    let data = Datasets::from_logs(logs);
+    let filter = match trainer {
+        Trainer::Paper(_) => DriveFilter::default(),
+        Trainer::Fast => executor::once(executor, || Ok(drive_filter::learn(logs)))?,
+    };
+    let data = Datasets::behind(filter, logs);
     let mut network_trainer =
         NetworkTrainer { executor, trainer, seed, runs: logs.runs.len(), watch, missing: Vec::new() };
     // D and α themselves are the context of the sonar networks.
@@ -111,6 +117,7 @@ pub fn train(
         },
         robot: logs.robot,
         commands: [low as f32, high as f32],
+        filter,
         turn,
         forward,
         lateral,
@@ -127,9 +134,11 @@ pub fn train(
     let reference =
         executor::once(executor, || Ok(nominal::learn(&simulator, first_echo.map(|law| law.as_logged), logs)))?;
     if let Some(motion) = &reference.motion {
-        set_residual_quantiles(&mut simulator.forward, &data.forward, |speeds| motion.correction(speeds).forward);
-        set_residual_quantiles(&mut simulator.lateral, &data.lateral, |speeds| motion.correction(speeds).lateral);
-        set_residual_quantiles(&mut simulator.turn, &data.turn, |speeds| motion.correction(speeds).turn.to_degrees());
+        let sent: Vec<[f32; 4]> = samples::steps(logs).map(|step| step.speeds.map(|v| v as f32)).collect();
+        let misfit = |axis: Axis| move |speeds: &[f64; 4]| motion.correction(speeds).turn_in_degrees()[axis];
+        set_residual_quantiles(&mut simulator.forward, &data.forward, &sent, misfit(Axis::Forward));
+        set_residual_quantiles(&mut simulator.lateral, &data.lateral, &sent, misfit(Axis::Lateral));
+        set_residual_quantiles(&mut simulator.turn, &data.turn, &sent, misfit(Axis::Turn));
     }
     simulator.reference = Some(reference);
     simulator.ensemble = executor::once(executor, || Ok(ensemble::learn(&simulator, logs)))?;
@@ -163,15 +172,19 @@ fn blame_missing_sensor(mut missing: Vec<Missing>, robot: &Robot) -> Vec<Missing
     missing
 }
 
-/// Estimates the noise of a motion network about its bias-corrected predictions.
-fn set_residual_quantiles(learned: &mut Option<Learned<4>>, data: &Dataset<4>, correction: impl Fn(&[f64; 4]) -> f64) {
+/// Estimates the noise of a motion network about its bias-corrected predictions; `sent` are the commands before the filter.
+fn set_residual_quantiles(
+    learned: &mut Option<Learned<4>>,
+    data: &Dataset<4>,
+    sent: &[[f32; 4]],
+    correction: impl Fn(&[f64; 4]) -> f64,
+) {
     let Some(learned) = learned else { return };
     let contexts: Vec<[f32; 2]> = data.inputs.iter().map(motion_context).collect();
     let misfit = data.inputs.iter().map(|speeds| correction(&speeds.map(f64::from)) as f32);
     let left: Vec<f32> = residuals(&learned.network, data).iter().zip(misfit).map(|(r, m)| r - m).collect();
     learned.residuals = scatter::residual_quantiles(&contexts, &left);
-    learned.residuals.components =
-        scatter::variance_components(&learned.residuals, &contexts, &left, &data.inputs, &data.runs);
+    learned.residuals.components = scatter::variance_components(&learned.residuals, &contexts, &left, sent, &data.runs);
 }
 
 impl Shapes {

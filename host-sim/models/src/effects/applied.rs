@@ -145,7 +145,7 @@ mod tests {
         };
         let latency = |parameters: &str| resolve("latency", "delay", parameters);
         assert!(latency(r#"{"ms": 100.0}"#).is_ok());
-        for wrong in [r#"{"ms": -1.0}"#, r#"{"ms": "left"}"#, "{}", r#"{"ms": 100.0, "s": 0.1}"#] {
+        for wrong in [r#"{"ms": -4000.0}"#, r#"{"ms": "left"}"#, "{}", r#"{"ms": 100.0, "s": 0.1}"#] {
             assert!(latency(wrong).is_err(), "{wrong}");
         }
         let weak = |parameters: &str| resolve("motor_asymmetry", "command", parameters).ok().map(|(_, values)| values);

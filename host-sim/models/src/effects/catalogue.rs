@@ -7,7 +7,7 @@ mod drive;
 use super::context::{CommandHistory, StepContext};
 use super::parameter::parameters;
 use super::scales::{CREEPING, CREEPING_RAD_S, HALF_SPEED};
-use super::{Effect, Variant};
+use super::{Effect, Place, Variant};
 use mindgap_foundations::motion::Motion;
 
 /// Declares the modules and lists them, so that an effect cannot be in one place and not in the other.
@@ -29,6 +29,8 @@ catalogue! {
     saturation
     latency
     inertia
+    rate_limit
+    turn_lag
     payload
     slope
     slip
@@ -88,6 +90,11 @@ impl PartialEq for Candidate {
     }
 }
 
+/// Returns where in the robot the effect with this id sits, if that is known.
+pub fn place(effect: &str) -> Option<Place> {
+    CATALOGUE.iter().find(|known| known.id == effect)?.place
+}
+
 /// Where fits of a direction start: the four quarters.
 const DIRECTIONS_DEG: [f64; 4] = [0.0, 90.0, 180.0, -90.0];
 
@@ -140,13 +147,13 @@ mod tests {
     use super::*;
     use crate::effects::SensorState;
     use crate::effects::chain::EffectChain;
-    use crate::effects::context::{RunHistory, Surroundings};
+    use crate::effects::context::{HISTORY, RunHistory, Surroundings};
     use crate::sonar::Perturbation;
     use mindgap_foundations::geometry::{Pose, wrap_rad};
     use mindgap_logs::{Robot, Scene};
 
     /// The effects of the table in docs/reference/effects.md.
-    const TABLE: usize = 29;
+    const TABLE: usize = 31;
 
     /// Returns commands, motion and sensor of a step with an effect.
     fn applied(
@@ -155,7 +162,7 @@ mod tests {
         context: &StepContext,
     ) -> (CommandHistory, Motion<f64>, SensorState) {
         let effects = EffectChain::default().with(&[variant], values);
-        let mut commands = [[0.0; 2]; 7];
+        let mut commands = [[0.0; 2]; HISTORY];
         let increment = effects.wrap(context, |now, before| {
             commands[0] = now;
             commands[1] = before;
@@ -165,7 +172,7 @@ mod tests {
     }
 
     fn context() -> impl Strategy<Value = StepContext> {
-        let commands = prop::array::uniform7(prop::array::uniform2(-100.0..100.0));
+        let commands = prop::array::uniform16(prop::array::uniform2(-100.0..100.0));
         let pose = || (10.0..290.0, 10.0..210.0, -3.0..3.0).prop_map(|(x, y, h)| Pose::new(x, y, h));
         (commands, pose(), pose(), 0.0..2.0, any::<bool>()).prop_map(|(commands, pose, earlier, elapsed_min, echo)| {
             let robot = mindgap_built_in_robot::default_robot();
@@ -216,15 +223,19 @@ mod tests {
 
     /// What each effect reports by the table in docs/reference/effects.md, and what slip and dropouts report besides: the loss, and
     /// the persistence of a dropout.
-    const REPORTED: [(&str, &[&str]); TABLE + 1] = [
+    const REPORTED: [(&str, &[&str]); TABLE + 3] = [
         ("battery_sag", &["loss_per_min"]),
         ("motor_asymmetry", &["side", "factor"]),
         ("drive_scale", &["factor"]),
         ("track_width", &["factor"]),
         ("deadband", &["command"]),
-        ("saturation", &["command"]),
+        ("saturation", &["acts_on", "command"]),
+        ("saturation twist", &["acts_on", "command", "turn_deg_s"]),
         ("latency", &["ms"]),
         ("inertia", &["ms"]),
+        ("rate_limit wheel", &["acts_on", "cm_s2"]),
+        ("rate_limit twist", &["acts_on", "cm_s2", "deg_s2"]),
+        ("turn_lag", &["ms"]),
         ("payload", &["side", "loss"]),
         ("slope", &["direction_deg", "loss"]),
         ("slip", &["onset", "loss"]),
@@ -272,7 +283,7 @@ mod tests {
         let robot = mindgap_built_in_robot::default_robot();
         let scene = Scene { arena_cm: Some(glam::DVec2::new(300.0, 220.0)), ..Scene::default() };
         let usual = StepContext {
-            commands: [[90.0, -35.0], [20.0, 60.0], [-45.0, 5.0], [0.0, 80.0], [70.0, 70.0], [10.0, -10.0], [0.0, 0.0]],
+            commands: std::array::from_fn(|age| [[90.0, -35.0], [20.0, 60.0], [-45.0, 5.0], [0.0, 80.0]][age % 4]),
             ..Surroundings::new(&robot, &scene).context(&RunHistory::default(), 60_000.0, Pose::new(120.0, 90.0, 0.7))
         };
         let scaled = StepContext {

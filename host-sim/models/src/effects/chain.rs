@@ -1,34 +1,62 @@
 //! Effects with their parameters, applied one after the other around a simulator step.
 
 use super::applied::AppliedEffect;
-use super::context::{CommandHistory, StepContext};
+use super::context::StepContext;
+use super::drive_filter::{DriveFilter, FilteredDrive, StepSpeeds};
 use super::variant::{Hook, Late, SensorState, Variant};
 use mindgap_foundations::motion::Motion;
 use mindgap_logs::Robot;
 
 /// Effects that act together, in order. An empty chain changes nothing.
-#[derive(Clone, Default)]
+#[derive(Clone)]
 pub struct EffectChain {
+    /// What lies between commands and networks: the filter that these were learned behind, as effects change it.
+    drive: FilteredDrive,
     links: Vec<(&'static Variant, Vec<f64>)>,
 }
 
+impl Default for EffectChain {
+    fn default() -> Self {
+        EffectChain { drive: DriveFilter::default().into(), links: Vec::new() }
+    }
+}
+
 impl EffectChain {
-    /// Returns the effects applied to a simulator of this robot; one that this program does not know is left out.
-    pub fn of(applied: &[AppliedEffect], robot: &Robot) -> Self {
+    /// Returns the effects applied to a simulator of this robot, whose networks see commands behind `filter`; an effect that
+    /// this program does not know is left out.
+    pub fn of(filter: DriveFilter, applied: &[AppliedEffect], robot: &Robot) -> Self {
         let links = applied.iter().flat_map(|effect| effect.resolve(robot));
-        EffectChain { links: links.map(|(candidate, values)| (candidate.variant, values)).collect() }
+        EffectChain::default().followed_by(filter, links.map(|(candidate, values)| (candidate.variant, values)))
     }
 
     /// Returns this chain followed by further variants, whose parameters are concatenated in `values`.
     pub fn with(&self, variants: &[&'static Variant], values: &[f64]) -> Self {
-        let mut links = self.links.clone();
         let mut rest = values;
-        for variant in variants {
+        let links = variants.iter().map(|variant| {
             let (own, others) = rest.split_at(variant.parameters.len());
-            links.push((variant, own.to_vec()));
             rest = others;
+            (*variant, own.to_vec())
+        });
+        self.followed_by(self.drive.filter(), links)
+    }
+
+    fn followed_by(&self, mut filter: DriveFilter, links: impl Iterator<Item = (&'static Variant, Vec<f64>)>) -> Self {
+        let further: Vec<_> = links.collect();
+        for (variant, values) in &further {
+            for hook in variant.hooks {
+                match hook {
+                    Hook::DeadTime(steps) => filter.dead_time_steps += steps(values),
+                    Hook::Filter(change) => change(values, &mut filter),
+                    _ => {}
+                }
+            }
         }
-        EffectChain { links }
+        EffectChain { drive: filter.into(), links: [self.links.as_slice(), &further].concat() }
+    }
+
+    /// Returns whether it changes nothing.
+    pub fn is_empty(&self) -> bool {
+        self.links.is_empty() && self.drive.filter().is_none()
     }
 
     /// Returns whether any effect changes the sensor.
@@ -52,13 +80,19 @@ impl EffectChain {
         self.each(|hook, values| match hook {
             Hook::Commands(change) | Hook::CommandsHere(change) => change(values, context, &mut commands),
             Hook::Delay(delay) => {
-                let more = delay(values, context);
+                let more = delay(values);
                 late.drive_steps += more.drive_steps;
                 late.poses_steps += more.poses_steps;
             }
-            Hook::Motion(_) | Hook::MotionHere(_) | Hook::Sensor(_) | Hook::SensorHere(_) | Hook::Ray(_) => {}
+            Hook::DeadTime(_)
+            | Hook::Filter(_)
+            | Hook::Motion(_)
+            | Hook::MotionHere(_)
+            | Hook::Sensor(_)
+            | Hook::SensorHere(_)
+            | Hook::Ray(_) => {}
         });
-        let mut increment = delayed(&commands, late, step);
+        let mut increment = delayed(|steps_ago| self.drive.speeds(&commands, steps_ago, &context.robot), late, step);
         self.each(|hook, values| {
             if let Hook::Motion(change) | Hook::MotionHere(change) = hook {
                 change(values, context, &mut increment);
@@ -85,36 +119,39 @@ impl EffectChain {
     }
 }
 
-/// Returns the delayed motion. Poses that are late by a fraction of a step lie between those of two rows.
+/// Returns the delayed motion; `speeds` returns what the networks see of a step, by how long ago it was, in steps. Poses that
+/// are late by a fraction of a step lie between those of two rows.
 fn delayed(
-    commands: &CommandHistory,
+    speeds: impl Fn(usize) -> StepSpeeds,
     late: Late,
     mut step: impl FnMut([f64; 2], [f64; 2]) -> Motion<f64>,
 ) -> Motion<f64> {
     let (whole, part) = (libm::floor(late.poses_steps), late.poses_steps % 1.0);
-    let motion = driven_late(commands, late.drive_steps + whole, &mut step);
+    let motion = driven_late(&speeds, late.drive_steps + whole, &mut step);
     if part == 0.0 {
         return motion;
     }
-    let earlier = driven_late(commands, late.drive_steps + whole + 1.0, &mut step);
+    let earlier = driven_late(&speeds, late.drive_steps + whole + 1.0, &mut step);
     weighted([(1.0 - part, motion), (part, earlier)])
 }
 
 /// Returns the motion of a drive that is late by this number of steps. For a fraction of a step, the earlier step extends into
 /// this one at its final speed, and this one ends earlier by as much.
 fn driven_late(
-    commands: &CommandHistory,
+    speeds: &impl Fn(usize) -> StepSpeeds,
     late_steps: f64,
     step: &mut impl FnMut([f64; 2], [f64; 2]) -> Motion<f64>,
 ) -> Motion<f64> {
     let (whole, part) = (late_steps as usize, late_steps % 1.0);
-    let ago = |steps: usize| commands.get(steps).copied().unwrap_or([0.0; 2]);
-    let (now, before) = (ago(whole), ago(whole + 1));
-    let motion = step(now, before);
+    let StepSpeeds { now, before, drift_cm } = speeds(whole);
+    let mut motion = step(now, before);
+    motion.lateral += drift_cm;
     if part == 0.0 {
         return motion;
     }
-    weighted([(1.0, motion), (part, step(before, before)), (-part, step(now, now))])
+    let earlier = step(before, before).arc().scaled(part);
+    let rest = motion.arc().plus(step(now, now).arc().scaled(-part));
+    earlier.motion().then(rest.motion())
 }
 
 /// Returns the weighted sum of motions.
@@ -138,7 +175,13 @@ mod tests {
         };
         let started =
             |ago: usize| std::array::from_fn::<_, HISTORY, _>(|age| if age <= ago { [1.0; 2] } else { [0.0; 2] });
-        let forward_cm = |late| [0, 1, 2].map(|ago| delayed(&started(ago), late, step).forward);
+        let robot = mindgap_built_in_robot::default_robot();
+        let forward_cm = |late| {
+            let speeds = |ago| {
+                move |steps_ago| FilteredDrive::from(DriveFilter::default()).speeds(&started(ago), steps_ago, &robot)
+            };
+            [0, 1, 2].map(|ago| delayed(speeds(ago), late, step).forward)
+        };
         let close = |found: [f64; 3], right: [f64; 3]| {
             assert!(found.iter().zip(right).all(|(f, r)| (f - r).abs() < 1e-12), "{found:?} {right:?}");
         };

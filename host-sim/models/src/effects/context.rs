@@ -8,7 +8,7 @@ use mindgap_foundations::geometry::{Pose, Wall, bounding_box, cast};
 use mindgap_logs::{Robot, Scene};
 
 /// Number of commands visible to an effect, newest first.
-pub const HISTORY: usize = 7;
+pub const HISTORY: usize = 16;
 /// Left and right command of the present step and of those before it, newest first; zero before the run began.
 pub type CommandHistory = [[f64; 2]; HISTORY];
 
@@ -121,6 +121,11 @@ impl Surroundings {
 }
 
 impl RunHistory {
+    /// Returns the commands, newest first.
+    pub fn commands(&self) -> &CommandHistory {
+        &self.commands
+    }
+
     /// A step begins with these commands.
     pub fn command(&mut self, command: [f64; 2]) {
         self.commands.rotate_right(1);

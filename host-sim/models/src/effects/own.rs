@@ -129,6 +129,7 @@ fn make(definition: &Definition) -> std::result::Result<&'static Effect, String>
         name: id,
         what: leaked(&definition.description),
         check: CHECK,
+        place: None,
         needs_known_robot: false,
         variants,
     })))

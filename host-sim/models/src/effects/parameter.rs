@@ -11,7 +11,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
-use super::scales;
+use super::scales::{self, reference_cm_s};
 use mindgap_foundations::statistics::maximise::Bounds;
 use mindgap_foundations::statistics::rounding::three_digits;
 use mindgap_logs::Robot;
@@ -63,12 +63,23 @@ pub enum Report {
     SideAndFactor,
     /// A share of the [reference speed](scales::reference_cm_s), as the `command` that asks for it.
     Command,
+    /// The same of a limit, with what it `acts_on`.
+    SpeedLimit(ActsOn),
+    /// Such a share of the speed of both wheels in opposite directions, as the turn rate `turn_deg_s`.
+    TurnLimit,
+    /// Steps in which speeds change by the reference speed, as the limit `cm_s2` on how fast they change, with what it
+    /// `acts_on`.
+    RateLimit(ActsOn),
+    /// The same of the turn alone, as `deg_s2`.
+    TurnRateLimit,
     /// A change of wheel speed, as such a share; as `onset` in commands.
     Onset,
     /// A share of the track, as a length in cm by this name.
     OfTrack(&'static str),
     /// A time, as `steps`.
     Steps,
+    /// A number of steps, as a time by its own name.
+    Duration,
     /// A loss of log-odds, as the `factor` on the odds.
     OddsFactor,
 }
@@ -81,6 +92,8 @@ pub enum Setting {
     Number(f64),
     /// A side of the robot.
     Side(Side),
+    /// What a limit acts on.
+    ActsOn(ActsOn),
 }
 
 /// A side of the robot.
@@ -91,6 +104,18 @@ pub enum Side {
     Left,
     /// Right.
     Right,
+}
+
+/// What a limit acts on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum ActsOn {
+    /// Each wheel by itself.
+    Wheel,
+    /// Both wheels by one factor, so that the robot keeps to its curve.
+    Pair,
+    /// Forward speed and turn rate, each by itself.
+    Twist,
 }
 
 /// Settings by their names.
@@ -183,10 +208,13 @@ impl Parameter {
     /// Returns the name of its number in files and answers, and whether it comes with a side.
     pub fn setting(&self) -> (&'static str, bool) {
         match self.report {
-            Report::Hidden | Report::Value | Report::Direction => (self.name, false),
+            Report::Hidden | Report::Value | Report::Direction | Report::Duration => (self.name, false),
             Report::SideAndLoss => ("loss", true),
             Report::SideAndFactor => ("factor", true),
-            Report::Command => ("command", false),
+            Report::Command | Report::SpeedLimit(_) => ("command", false),
+            Report::TurnLimit => ("turn_deg_s", false),
+            Report::RateLimit(_) => ("cm_s2", false),
+            Report::TurnRateLimit => ("deg_s2", false),
             Report::Onset => ("onset", false),
             Report::OfTrack(name) => (name, false),
             Report::Steps => ("steps", false),
@@ -199,6 +227,14 @@ impl Parameter {
         if let Report::Steps = self.report { "" } else { self.unit }
     }
 
+    /// Returns what a limit acts on.
+    fn acts_on(&self) -> Option<ActsOn> {
+        match self.report {
+            Report::SpeedLimit(acts_on) | Report::RateLimit(acts_on) => Some(acts_on),
+            _ => None,
+        }
+    }
+
     /// Returns its settings at a value.
     pub(super) fn settings(&self, value: f64, robot: &Robot) -> Vec<(&'static str, Setting)> {
         let number = match self.report {
@@ -206,14 +242,20 @@ impl Parameter {
             Report::Direction => value - 360.0 * ((value - 180.0) / 360.0).ceil(),
             Report::SideAndLoss => value.abs(),
             Report::SideAndFactor => 1.0 - value.abs(),
-            Report::Command | Report::Onset => scales::command_for(value, robot),
+            Report::Command | Report::SpeedLimit(_) | Report::Onset => scales::command_for(value, robot),
+            Report::TurnLimit => value * fastest_turn_deg_s(robot),
+            Report::RateLimit(_) => reference_cm_s(robot) * per_second(value, robot),
+            Report::TurnRateLimit => fastest_turn_deg_s(robot) * per_second(value, robot),
             Report::OfTrack(_) => value * robot.track_cm,
             Report::Steps => value / robot.step_ms,
+            Report::Duration => value * robot.step_ms,
             Report::OddsFactor => libm::exp(-value),
         };
         let (name, has_side) = self.setting();
         let side = Setting::Side(if value > 0.0 { Side::Left } else { Side::Right });
-        has_side.then_some((SIDE, side)).into_iter().chain([(name, Setting::Number(number))]).collect()
+        let side = has_side.then_some((SIDE, side));
+        let acts_on = self.acts_on().map(|acts_on| (ACTS_ON, Setting::ActsOn(acts_on)));
+        side.into_iter().chain(acts_on).chain([(name, Setting::Number(number))]).collect()
     }
 
     /// Returns the value of settings; none where they lack it, or where it is not possible.
@@ -229,9 +271,13 @@ impl Parameter {
             Report::Hidden | Report::Value | Report::Direction => number,
             Report::SideAndLoss => sign * number,
             Report::SideAndFactor => sign * (1.0 - number),
-            Report::Command | Report::Onset => scales::share_of(number, robot),
+            Report::Command | Report::SpeedLimit(_) | Report::Onset => scales::share_of(number, robot),
+            Report::TurnLimit => number / fastest_turn_deg_s(robot),
+            Report::RateLimit(_) => reference_cm_s(robot) * per_second(number, robot),
+            Report::TurnRateLimit => fastest_turn_deg_s(robot) * per_second(number, robot),
             Report::OfTrack(_) => number / robot.track_cm,
             Report::Steps => number * robot.step_ms,
+            Report::Duration => number / robot.step_ms,
             Report::OddsFactor => -libm::log(number),
         };
         let is_near = |marked: &f64| (value - marked).abs() <= ROUNDING * marked.abs().max(1.0);
@@ -271,13 +317,31 @@ impl Parameter {
     }
 }
 
+/// Fewer steps than this are none.
+const NO_STEPS: f64 = 1e-13;
 /// Name of the setting that says which side of the robot is meant.
 const SIDE: &str = "side";
+/// Name of the setting that says what a limit acts on. The variant says it too, so files need not.
+pub(super) const ACTS_ON: &str = "acts_on";
+
+/// Returns how fast wheels turn the robot that run at the reference speed in opposite directions.
+fn fastest_turn_deg_s(robot: &Robot) -> f64 {
+    (2.0 * reference_cm_s(robot) / robot.track_cm).to_degrees()
+}
+
+/// Returns how often a change of this number of steps fits into a second, or the number of steps from how often it does. A ramp
+/// of no steps is a very fast one, since a file has no infinity.
+fn per_second(steps: f64, robot: &Robot) -> f64 {
+    1000.0 / (steps.max(NO_STEPS) * robot.step_ms)
+}
 
 impl fmt::Display for Setting {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         match self {
             Setting::Number(number) => number.fmt(f),
+            Setting::ActsOn(ActsOn::Wheel) => f.write_str("wheel"),
+            Setting::ActsOn(ActsOn::Pair) => f.write_str("pair"),
+            Setting::ActsOn(ActsOn::Twist) => f.write_str("twist"),
             Setting::Side(Side::Left) => f.write_str("left"),
             Setting::Side(Side::Right) => f.write_str("right"),
         }
@@ -366,6 +430,7 @@ mod tests {
         assert_eq!(reported(Report::Onset, 0.2), one("onset", 10.0));
         assert_eq!(reported(Report::OfTrack("ahead_cm"), 0.5), one("ahead_cm", 5.75));
         assert_eq!(reported(Report::Steps, 600.0), one("steps", 1.5));
+        assert_eq!(reported(Report::Duration, 1.5), one("cm", 600.0));
         assert_eq!(reported(Report::OddsFactor, libm::log(2.0)), one("factor", 0.5));
     }
 

@@ -59,6 +59,16 @@ const SIGNS: &[Signs] = &[
         imitated_by: &["latency", "slip"],
     },
     Signs {
+        effect: "rate_limit",
+        in_logs: "After a change of the command the motion approaches its new value at a constant rate: large changes take longer.",
+        imitated_by: &["inertia", "slip"],
+    },
+    Signs {
+        effect: "turn_lag",
+        in_logs: "After a change of the command turns approach their new value over several steps; straight runs do at once.",
+        imitated_by: &["inertia", "latency"],
+    },
+    Signs {
         effect: "payload",
         in_logs: "The robot is slower at all speeds, slow to start, and bends to the loaded side.",
         imitated_by: &["motor_asymmetry", "drive_scale", "slope"],

@@ -1,9 +1,12 @@
 //! An effect as data: its id, its variants, their parameters and hooks.
 
+use schemars::JsonSchema;
+use serde::Serialize;
 use serde_json::{Map, Value};
 
 use super::context::{CommandHistory, StepContext, Surroundings};
-use super::parameter::{Parameter, Settings};
+use super::drive_filter::DriveFilter;
+use super::parameter::{ACTS_ON, Parameter, Settings};
 use crate::sonar::{Outcomes, Perturbation, SensorLaw};
 use mindgap_foundations::geometry::Pose;
 use mindgap_foundations::motion::Motion;
@@ -19,10 +22,32 @@ pub struct Effect {
     pub what: &'static str,
     /// How to check it on the robot, with no more than a ruler, scales, a video or a multimeter.
     pub check: &'static str,
+    /// Where in the robot it sits; not known of a user's own effect.
+    pub place: Option<Place>,
     /// Whether it is a change of a robot that was known without it. Against a textbook it does not compete.
     pub needs_known_robot: bool,
     /// The functional forms in which it may show.
     pub variants: &'static [Variant],
+}
+
+/// Where in the robot a cause sits, in the order in which a command passes through.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Place {
+    /// Between the program and the motors.
+    Link,
+    /// In the motors and their control.
+    Motor,
+    /// At the rims.
+    Wheel,
+    /// Between wheels and floor.
+    Ground,
+    /// In the body that the wheels move.
+    Body,
+    /// In what tracks the robot.
+    Tracker,
+    /// In the range sensor.
+    Sensor,
 }
 
 /// One functional form of an effect.
@@ -47,8 +72,12 @@ pub enum Hook {
     Commands(&'static (dyn Fn(&[f64], &StepContext, &mut CommandHistory) + Sync)),
     /// The same, by where and when too.
     CommandsHere(&'static (dyn Fn(&[f64], &StepContext, &mut CommandHistory) + Sync)),
+    /// A dead time in the filter between commands and wheel speeds, steps.
+    DeadTime(&'static (dyn Fn(&[f64]) -> f64 + Sync)),
+    /// To that filter otherwise.
+    Filter(&'static (dyn Fn(&[f64], &mut DriveFilter) + Sync)),
     /// Delays the motion.
-    Delay(&'static (dyn Fn(&[f64], &StepContext) -> Late + Sync)),
+    Delay(&'static (dyn Fn(&[f64]) -> Late + Sync)),
     /// To the motion that the tracker sees, by this and commands alone.
     Motion(&'static MotionHook),
     /// The same, by where and when too.
@@ -106,7 +135,8 @@ impl Variant {
     pub fn values(&self, settings: &Settings, robot: &Robot) -> Option<Vec<f64>> {
         let values = self.parameters.iter().map(|p| p.value(settings, robot)).collect::<Option<Vec<f64>>>()?;
         let count: usize = self.parameters.iter().map(|p| 1 + usize::from(p.setting().1)).sum();
-        (count == settings.len()).then_some(values)
+        let named = settings.keys().filter(|name| *name != ACTS_ON).count();
+        (count == named).then_some(values)
     }
 
     /// Returns the parameters as the table of docs/reference/effects.md names them, rounded for people.
@@ -153,6 +183,12 @@ impl Variant {
         self.hooks.iter().any(|hook| matches!(hook, Hook::Ray(_)))
     }
 
+    /// Returns whether it delays commands in the filter. Networks that answer within a step contain the drive's lag, which a
+    /// delay has to shift with the command and a filter before them cannot.
+    pub fn delays_in_the_filter(&self) -> bool {
+        self.hooks.iter().any(|hook| matches!(hook, Hook::DeadTime(_)))
+    }
+
     /// Returns whether it changes the sensor.
     pub fn senses(&self) -> bool {
         self.hooks.iter().any(|hook| hook.of_sensor().is_some())
@@ -164,7 +200,13 @@ impl Hook {
     pub fn of_sensor(&self) -> Option<ChangeOfSensor> {
         match self {
             Hook::Sensor(change) | Hook::SensorHere(change) | Hook::Ray(change) => Some(*change),
-            Hook::Commands(_) | Hook::CommandsHere(_) | Hook::Delay(_) | Hook::Motion(_) | Hook::MotionHere(_) => None,
+            Hook::Commands(_)
+            | Hook::CommandsHere(_)
+            | Hook::DeadTime(_)
+            | Hook::Filter(_)
+            | Hook::Delay(_)
+            | Hook::Motion(_)
+            | Hook::MotionHere(_) => None,
         }
     }
 }

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use crate::effects::applied::AppliedEffect;
 use crate::effects::chain::EffectChain;
+use crate::effects::drive_filter::DriveFilter;
 use crate::simulator::ensemble::command_scale::Percent;
 use crate::simulator::ensemble::{CommandScale, HeldMotion, Member, Posterior};
 use crate::simulator::motion::MotionNetworks;
@@ -38,6 +39,8 @@ pub struct Baseline<'s> {
 pub enum MotionModel<'s> {
     /// As learned from logs.
     Learned {
+        /// The filter behind which the networks see commands.
+        filter: DriveFilter,
         /// The networks.
         networks: MotionNetworks<'s>,
         /// Their bias and noise.
@@ -71,6 +74,7 @@ impl<'s> Baseline<'s> {
         })?;
         let drive = simulator.motion_networks().zip(reference.motion.as_ref());
         let motion = drive.map(|(networks, reference)| MotionModel::Learned {
+            filter: simulator.filter,
             networks,
             reference,
             commands: simulator.commands.map(f64::from),
@@ -106,9 +110,15 @@ impl<'s> Baseline<'s> {
         Ok(baseline)
     }
 
-    /// Returns the effects that were added to the simulator before.
+    /// Returns its filter, and the effects that were added to the simulator before.
     pub fn chain(&self) -> EffectChain {
-        EffectChain::of(&self.applied, &self.robot)
+        self.chain_with(&[])
+    }
+
+    /// Returns the same with further effects.
+    pub fn chain_with(&self, further: &[AppliedEffect]) -> EffectChain {
+        let filter = self.motion.as_ref().map_or_else(DriveFilter::default, MotionModel::filter);
+        EffectChain::of(filter, &[self.applied.as_slice(), further].concat(), &self.robot)
     }
 
     /// Returns the number of steps that the motion was learned from, if known; none for the textbook.
@@ -119,7 +129,15 @@ impl<'s> Baseline<'s> {
 }
 
 impl MotionModel<'_> {
-    /// Predicts a step for the commands now and before.
+    /// Returns the filter behind which it sees commands.
+    pub fn filter(&self) -> DriveFilter {
+        match self {
+            MotionModel::Learned { filter, .. } => *filter,
+            MotionModel::Kinematic { .. } => DriveFilter::default(),
+        }
+    }
+
+    /// Predicts a step for the commands now and before, as they come out of its filter.
     pub fn step(&self, now: [f64; 2], before: [f64; 2]) -> Motion<f64> {
         match self {
             MotionModel::Learned { networks, reference, commands, member, .. } => {
@@ -158,6 +176,11 @@ impl MotionModel<'_> {
             MotionModel::Kinematic { .. } => CommandScale::PERCENT,
         };
         scale.percent(command)
+    }
+
+    /// Returns whether it contains the lag of a drive that answers within a step.
+    pub fn answers_within_a_step(&self) -> bool {
+        self.is_learned() && self.filter().is_none()
     }
 
     /// Returns whether it was learned from logs, and so is biased where they were sparse.

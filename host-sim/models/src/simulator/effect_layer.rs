@@ -50,15 +50,15 @@ impl EffectMemory {
 }
 
 impl EffectLayer {
-    /// Returns the effects applied to a simulator, if there are any.
+    /// Returns the filter of a simulator and the effects applied to it, if there are any.
     ///
     /// # Errors
     /// When an effect changes a sensor whose normal behaviour the simulator does not know.
     pub fn of(simulator: &Simulator, scene: &Scene, noise: Noise) -> Result<Option<Self>> {
-        if simulator.added.is_empty() {
+        let effects = simulator.chain();
+        if effects.is_empty() {
             return Ok(None);
         }
-        let effects = EffectChain::of(&simulator.added, &simulator.robot);
         let law = simulator.drawn_law();
         if effects.senses() && law.is_none() {
             return Err(Error::new("an added effect changes the sonar, and the simulator does not know its usual law"));

@@ -42,8 +42,9 @@ impl FixedNetworks {
     /// Quantises the networks of a simulator.
     ///
     /// # Errors
-    /// Names a network that is missing, and a weight that has no place in fixed point.
+    /// Names a network that is missing, a weight that has no place in fixed point, and a filter before the networks.
     pub fn quantise(simulator: &Simulator) -> Result<Self> {
+        simulator.need_no_filter()?;
         Ok(FixedNetworks {
             turn: quantise(simulator, &simulator.turn, "turn")?,
             forward: quantise(simulator, &simulator.forward, "forward")?,

@@ -15,6 +15,7 @@ use super::nominal::NominalModel;
 use super::nominal::motion_bias::{FEATURES, MotionBias};
 use super::residuals::{CELLS, LEVELS, ResidualQuantiles, VarianceComponents};
 use super::{Learned, Origin, SCHEMA, Simulator};
+use crate::effects::drive_filter::DriveFilter;
 use crate::sonar::{SensorLaw, SonarModel};
 use mindgap_foundations::error::{Error, Result};
 use mindgap_foundations::motion::{Axis, Motion};
@@ -65,6 +66,7 @@ pub fn simulator(baseline: &Baseline, scatter: Motion<f64>) -> Result<Simulator>
         origin: Origin { version: env!("CARGO_PKG_VERSION").into(), trainer: "textbook".into(), seed: 0, runs: 0 },
         robot: *robot,
         commands: [-FULL, FULL],
+        filter: DriveFilter::default(),
         turn: learned(&turn_deg, Axis::Turn)?,
         forward: learned(&forward_cm, Axis::Forward)?,
         lateral: learned(&lateral_cm, Axis::Lateral)?,

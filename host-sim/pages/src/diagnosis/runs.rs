@@ -13,7 +13,6 @@ use mindgap_figures::pictures;
 use mindgap_figures::report::room::Room;
 use mindgap_learning::evaluation::replay::{PUT_BACK_STEPS, Player};
 use mindgap_logs::{Row, Run};
-use mindgap_models::effects::chain::EffectChain;
 
 /// How far the longest paths go astray, in a sentence; `None` where no path was compared.
 pub fn astray(diagnosis: &Diagnosis) -> Option<String> {
@@ -93,7 +92,7 @@ pub fn replay(subject: &Subject, room: Room) -> Option<Replay> {
     let player = Player::new(baseline, logs);
     let before = baseline.chain();
     let found = findings.with_formula();
-    let after = EffectChain::of(&baseline.applied.iter().chain(&found).cloned().collect::<Vec<_>>(), &baseline.robot);
+    let after = baseline.chain_with(&found);
     let run = |(number, rows): (usize, usize)| {
         let whole = seen[number];
         let run = Run { name: whole.name.clone(), rows: whole.rows.between(0..rows).collect() };

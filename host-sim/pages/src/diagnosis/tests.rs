@@ -24,7 +24,7 @@ use mindgap_models::simulator::kinematic;
 const EVIL: &str = "<x-mark onload=\"evil\">&'</script><!--";
 
 static EVIL_EFFECT: Effect =
-    Effect { id: EVIL, name: EVIL, what: EVIL, check: EVIL, needs_known_robot: false, variants: &[] };
+    Effect { id: EVIL, name: EVIL, what: EVIL, check: EVIL, place: None, needs_known_robot: false, variants: &[] };
 
 fn logs(runs: usize, rows: usize, name: &str) -> Logs {
     let pose = |k: usize| Pose::new(30.0 + k as f64, 40.0, 0.0);
@@ -74,6 +74,7 @@ fn evil() -> Findings {
         paths: vec![PathError { steps: 5, before_cm: 2.0, after_cm: 1.0, floor_cm: 0.5 }],
     };
     let effect = NamedEffect {
+        place: None,
         id: EVIL,
         probability: 0.9,
         parameters: [(EVIL.into(), json!(EVIL))].into_iter().collect(),

@@ -2,7 +2,7 @@
 
 use super::{each_command, parameters};
 use crate::effects::parameter::Guesses;
-use crate::effects::{Effect, Hook, Parameter, StepContext, Variant};
+use crate::effects::{Effect, Hook, Parameter, Place, StepContext, Variant};
 
 pub const EFFECT: Effect = Effect {
     id: "battery_sag",
@@ -10,6 +10,7 @@ pub const EFFECT: Effect = Effect {
     what: "The drive gets weaker as the run goes on, as it does on a battery that empties.",
     check: "Measure the battery's voltage under load with a multimeter before and after a run; then drive straight \
             for one second with it full and with it used, and compare both ways with a ruler.",
+    place: Some(Place::Motor),
     needs_known_robot: false,
     variants: &[
         Variant {

@@ -2,7 +2,7 @@
 
 use super::{DIRECTIONS_DEG, distance_lost_cm, parameters, pushed_cm};
 use crate::effects::parameter::{Guesses, Report};
-use crate::effects::{Effect, Hook, Parameter, StepContext, Variant};
+use crate::effects::{Effect, Hook, Parameter, Place, StepContext, Variant};
 use mindgap_foundations::motion::Motion;
 
 pub const EFFECT: Effect = Effect {
@@ -11,6 +11,7 @@ pub const EFFECT: Effect = Effect {
     what: "Drag depends on the direction of travel, as on a carpet whose fibres lie one way.",
     check: "Drive the same straight command in four directions and measure the ways with a ruler; stroke the carpet \
             by hand to feel its direction.",
+    place: Some(Place::Ground),
     needs_known_robot: false,
     variants: &[
         Variant {

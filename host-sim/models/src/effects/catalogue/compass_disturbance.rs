@@ -2,7 +2,7 @@
 
 use super::{DIRECTIONS_DEG, parameters};
 use crate::effects::parameter::{Guesses, Report};
-use crate::effects::{Effect, Hook, Parameter, SensorState, StepContext, Variant};
+use crate::effects::{Effect, Hook, Parameter, Place, SensorState, StepContext, Variant};
 use mindgap_foundations::geometry::wrap_rad;
 use mindgap_foundations::motion::Motion;
 
@@ -11,6 +11,7 @@ pub const EFFECT: Effect = Effect {
     name: "disturbed compass",
     what: "The error of the heading depends on the heading, as iron near a compass makes it.",
     check: "Turn the robot on a disc with marks of 30 degrees and compare the reported headings.",
+    place: Some(Place::Tracker),
     needs_known_robot: false,
     variants: &[
         // Iron on the robot gives one wave a turn (hard iron), what it magnetises two (soft iron).

@@ -4,7 +4,7 @@ use super::drive::Drive;
 use super::{each_command, each_wheel, parameters};
 use crate::effects::parameter::{Guesses, Report};
 use crate::effects::scales::DEADBAND_EDGE;
-use crate::effects::{Effect, Hook, Parameter, Variant};
+use crate::effects::{Effect, Hook, Parameter, Place, Variant};
 
 pub const EFFECT: Effect = Effect {
     id: "deadband",
@@ -12,6 +12,7 @@ pub const EFFECT: Effect = Effect {
     what: "Friction in the drive keeps it from moving at small commands.",
     check: "Raise the command in small steps from zero, on the floor, and note the one at which the wheels begin to \
             turn.",
+    place: Some(Place::Motor),
     needs_known_robot: false,
     variants: &[
         Variant {

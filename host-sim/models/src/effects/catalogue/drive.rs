@@ -122,7 +122,8 @@ mod tests {
     #[test]
     fn drive_that_keeps_its_direction_imitates_itself_with_the_same_commands() {
         let drive = Drive { steps: 0.1, friction: 5.0 };
-        let mut commands = [[60.0, -40.0], [20.0, -50.0], [80.0, -30.0], [0.0; 2], [0.0; 2], [0.0; 2], [0.0; 2]];
+        let mut commands = [[0.0; 2]; HISTORY];
+        commands[..3].copy_from_slice(&[[60.0, -40.0], [20.0, -50.0], [80.0, -30.0]]);
         let given = commands;
         drive.imitate(&drive, &mut commands);
         for (given, made) in given[..2].iter().zip(&commands).flat_map(|(a, b)| a.iter().zip(b)) {
@@ -134,7 +135,8 @@ mod tests {
     #[test]
     fn drive_that_is_slower_in_turns_is_unchanged_on_the_straight() {
         let (known, slower) = (Drive { steps: 0.1, friction: 0.0 }, Drive { steps: 0.4, friction: 0.0 });
-        let straight = [60.0, 20.0, 80.0, 0.0, 0.0, 0.0, 0.0].map(|command| [command; 2]);
+        let mut straight = [[0.0; 2]; HISTORY];
+        straight[..3].copy_from_slice(&[[60.0; 2], [20.0; 2], [80.0; 2]]);
         let mut commands = straight;
         known.imitate_turning(&slower, &mut commands);
         assert_eq!(commands, straight);

@@ -3,7 +3,7 @@
 use super::drive::Drive;
 use super::{each_command, parameters};
 use crate::effects::parameter::{Guesses, Report};
-use crate::effects::{Effect, Hook, Parameter, Variant};
+use crate::effects::{Effect, Hook, Parameter, Place, Variant};
 
 pub const EFFECT: Effect = Effect {
     id: "drive_scale",
@@ -12,6 +12,7 @@ pub const EFFECT: Effect = Effect {
            battery.",
     check: "Command a straight metre and measure the way with a ruler; the wheel's diameter, measured with calipers, \
             should be the one in robot.toml.",
+    place: Some(Place::Wheel),
     needs_known_robot: false,
     variants: &[
         Variant {
@@ -46,8 +47,8 @@ pub const EFFECT: Effect = Effect {
 };
 
 /// Factor on the distance covered. The two wheels that LEGO sells with the NXT, 43.2 and 56 mm, differ by 1.3; a regulated
-/// motor on a flat battery loses up to a third.
-const FACTOR: Parameter = Parameter::new("", 1.0, [0.6, 1.5]).prior_sd(0.15).from(Guesses::At(&[1.03, 0.97]));
+/// motor on a flat battery loses up to a third, and a robot.toml with another gear is off by a factor of up to two.
+const FACTOR: Parameter = Parameter::new("", 1.0, [0.5, 2.0]).prior_sd(0.2).from(Guesses::At(&[1.03, 0.97]));
 
 parameters! {
     Scale {

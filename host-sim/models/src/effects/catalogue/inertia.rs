@@ -2,9 +2,8 @@
 
 use super::drive::Drive;
 use super::parameters;
-use crate::effects::context::HISTORY;
 use crate::effects::parameter::{Guesses, Report};
-use crate::effects::{Effect, Hook, Parameter, Variant};
+use crate::effects::{Effect, Hook, Parameter, Place, Variant};
 
 pub const EFFECT: Effect = Effect {
     id: "inertia",
@@ -12,27 +11,13 @@ pub const EFFECT: Effect = Effect {
     what: "The drive takes longer to reach the commanded speed.",
     check: "Film a start beside a ruler and mark the robot's place frame by frame: the way grows as a curve before \
             it grows as a line.",
+    place: Some(Place::Motor),
     needs_known_robot: false,
     variants: &[
         Variant {
             id: "first_order_lag",
             parameters: Lag::PARAMETERS,
-            hooks: &[Hook::Commands(&|v, context, commands| {
-                let Lag { ms } = Lag::read(v);
-                if ms == 0.0 {
-                    return;
-                }
-                // The speed comes nearer to its command as exp(-t / ms): by the end of a step, and in the mean over it.
-                let steps = ms / context.robot.step_ms;
-                let missing = libm::exp(-1.0 / steps);
-                let mean_missing = steps * (1.0 - missing);
-                let mut speed = commands[HISTORY - 1];
-                for command in commands[1..].iter().rev() {
-                    speed = [0, 1].map(|m| command[m] + missing * (speed[m] - command[m]));
-                }
-                commands[0] = [0, 1].map(|m| commands[0][m] + mean_missing * (speed[m] - commands[0][m]));
-                commands[1] = speed;
-            })],
+            hooks: &[Hook::Filter(&|v, filter| filter.lag_steps += Lag::read(v).ms)],
         },
         Variant {
             id: "drive_with_friction",
@@ -41,29 +26,31 @@ pub const EFFECT: Effect = Effect {
                 let SlowDrive { ms, friction } = SlowDrive::read(v);
                 if ms > 0.0 {
                     let known = Drive::slower(0.0, friction, context);
-                    known.imitate(&Drive::slower(ms, friction, context), commands);
+                    known.imitate(&Drive::slower(ms * context.robot.step_ms, friction, context), commands);
                 }
             })],
         },
     ],
 };
 
-/// Time that is added to the drive's time constant. An NXT motor takes about 50 ms, a skid-steered robot of half a tonne half a
-/// second.
-const ADDED_MS: Parameter =
-    Parameter::new("ms", 0.0, [0.0, 800.0]).prior_sd(200.0).from(Guesses::At(&[40.0, 120.0, 200.0, 400.0]));
+/// Time that is added to the drive's time constant, steps. An NXT motor takes about 50 ms, a skid-steered robot of half a tonne
+/// half a second.
+const ADDED: Parameter = Parameter::new("ms", 0.0, [-8.0, 8.0])
+    .prior_sd(1.0)
+    .from(Guesses::At(&[0.1, 0.3, 0.5, 1.0]))
+    .report(Report::Duration);
 
 parameters! {
     Lag {
-        /// See [`ADDED_MS`].
-        ms: ADDED_MS,
+        /// See [`ADDED`]. It is negative for a robot that answers faster than its simulator, whose drive filter it changes.
+        ms: ADDED,
     }
 }
 
 parameters! {
     SlowDrive {
-        /// See [`ADDED_MS`].
-        ms: ADDED_MS,
+        /// See [`ADDED`].
+        ms: Parameter { bounds: [0.0, 8.0], ..ADDED },
         /// The share of the reference speed whose command does no more than overcome the drive's dry friction, which helps it to
         /// stop and not to start. Of an NXT motor it is a twentieth.
         friction: Parameter::new("", 0.0, [0.0, 0.3])

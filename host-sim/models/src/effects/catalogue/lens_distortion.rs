@@ -4,7 +4,7 @@ use glam::DVec2;
 
 use super::parameters;
 use crate::effects::parameter::Guesses;
-use crate::effects::{Effect, Hook, Parameter, Variant};
+use crate::effects::{Effect, Hook, Parameter, Place, Variant};
 use mindgap_foundations::geometry::direction;
 
 pub const EFFECT: Effect = Effect {
@@ -13,6 +13,7 @@ pub const EFFECT: Effect = Effect {
     what: "The camera's scale changes towards the edge of its picture.",
     check: "Lay a long ruler in the middle of the picture and along its edge: one length should have one tracked \
             length.",
+    place: Some(Place::Tracker),
     needs_known_robot: false,
     variants: &[Variant {
         id: "quadratic",

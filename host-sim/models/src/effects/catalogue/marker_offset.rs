@@ -4,7 +4,7 @@ use glam::DVec2;
 
 use super::parameters;
 use crate::effects::parameter::{Guesses, Report};
-use crate::effects::{Effect, Hook, Parameter, StepContext, Variant};
+use crate::effects::{Effect, Hook, Parameter, Place, StepContext, Variant};
 use mindgap_foundations::geometry::direction;
 
 pub const EFFECT: Effect = Effect {
@@ -13,6 +13,7 @@ pub const EFFECT: Effect = Effect {
     what: "The tracked marker does not sit over the middle of the axle, so turns on the spot look like motion.",
     check: "Measure from the marker to the middle of the axle with a ruler; turned on the spot by hand, the marker \
             draws a circle of that radius.",
+    place: Some(Place::Tracker),
     needs_known_robot: false,
     variants: &[Variant {
         id: "rigid",

@@ -2,7 +2,7 @@
 
 use super::{each_wheel, parameters};
 use crate::effects::parameter::{Guesses, Report};
-use crate::effects::{Effect, Hook, Parameter, Variant};
+use crate::effects::{Effect, Hook, Parameter, Place, Variant};
 
 pub const EFFECT: Effect = Effect {
     id: "motor_asymmetry",
@@ -10,6 +10,7 @@ pub const EFFECT: Effect = Effect {
     what: "One motor turns slower than it did at the same command, so the robot bends to that side.",
     check: "Lift the robot, give both motors the same command for ten seconds, and count the turns of both wheels; \
             or command a straight metre and measure how far to one side it ends.",
+    place: Some(Place::Motor),
     needs_known_robot: false,
     variants: &[
         Variant {

@@ -4,7 +4,7 @@ use super::{distance_lost_cm, each_command, each_wheel, loaded, parameters, push
 use crate::effects::context::CommandHistory;
 use crate::effects::parameter::{Guesses, Report};
 use crate::effects::scales::{HALF_SPEED, HALF_TURN_RATE_RAD_S};
-use crate::effects::{Effect, Hook, Parameter, StepContext, Variant};
+use crate::effects::{Effect, Hook, Parameter, Place, StepContext, Variant};
 use mindgap_foundations::motion::Motion;
 
 pub const EFFECT: Effect = Effect {
@@ -12,6 +12,7 @@ pub const EFFECT: Effect = Effect {
     name: "payload",
     what: "A load that does not sit in the middle slows the robot, and one wheel more than the other.",
     check: "Put a kitchen scale under each wheel in turn; take off what was added and drive the same commands again.",
+    place: Some(Place::Body),
     // A textbook states no load, and what a load does to it is a drive scale, a weak motor, a lag and scrubbing.
     needs_known_robot: true,
     variants: &[

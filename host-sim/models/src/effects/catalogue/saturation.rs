@@ -1,9 +1,9 @@
 //! Commands above some value add nothing.
 
 use super::{each_command, parameters};
-use crate::effects::parameter::{Guesses, Report};
+use crate::effects::parameter::{ActsOn, Guesses, Report};
 use crate::effects::scales::UNREACHED_SPEED;
-use crate::effects::{Effect, Hook, Parameter, Variant};
+use crate::effects::{Effect, Hook, Parameter, Place, Variant};
 
 pub const EFFECT: Effect = Effect {
     id: "saturation",
@@ -11,6 +11,7 @@ pub const EFFECT: Effect = Effect {
     what: "Commands above some value add no speed.",
     check: "Time a straight metre at commands of 60, 80 and 100: where the time no longer falls, the drive is at its \
             limit.",
+    place: Some(Place::Motor),
     needs_known_robot: false,
     variants: &[
         Variant {
@@ -35,6 +36,33 @@ pub const EFFECT: Effect = Effect {
             })],
         },
         Variant {
+            id: "pair",
+            parameters: PairSaturation::PARAMETERS,
+            hooks: &[Hook::Commands(&|v, context, commands| {
+                let limit = context.command_for(PairSaturation::read(v).limit);
+                for pair in commands {
+                    let fastest = pair[0].abs().max(pair[1].abs());
+                    if fastest > limit {
+                        *pair = pair.map(|command| command * limit / fastest);
+                    }
+                }
+            })],
+        },
+        Variant {
+            id: "twist",
+            parameters: TwistSaturation::PARAMETERS,
+            hooks: &[Hook::Commands(&|v, context, commands| {
+                let TwistSaturation { limit, turn_limit } = TwistSaturation::read(v);
+                let [limit, turn_limit] = [limit, turn_limit].map(|share| context.command_for(share));
+                for pair in commands {
+                    let [left, right] = *pair;
+                    let mean = (0.5 * (left + right)).clamp(-limit, limit);
+                    let turning = (0.5 * (right - left)).clamp(-turn_limit, turn_limit);
+                    *pair = [mean - turning, mean + turning];
+                }
+            })],
+        },
+        Variant {
             id: "soft",
             parameters: Saturation::PARAMETERS,
             hooks: &[Hook::Commands(&|v, context, commands| {
@@ -47,14 +75,38 @@ pub const EFFECT: Effect = Effect {
     ],
 };
 
+/// Share of the reference speed above which nothing is added. A regulated NXT motor under load is flat from half of its full
+/// speed at the earliest; bases on ROS are often limited to a fifth of what robot.toml says.
+const LIMIT: Parameter = Parameter::new("", UNREACHED_SPEED, [0.12, UNREACHED_SPEED])
+    .scale(0.8)
+    .from(Guesses::OfTopSpeed(&[0.35, 0.5, 0.65, 0.8]));
+
 parameters! {
+    /// Of each wheel.
     Saturation {
-        /// Share of the reference speed above which nothing is added. A regulated NXT motor under load is flat from half of its
-        /// full speed at the earliest; bases on ROS are often limited to a fifth of what robot.toml says.
-        limit: Parameter::new("", UNREACHED_SPEED, [0.12, UNREACHED_SPEED])
+        /// See [`LIMIT`].
+        limit: LIMIT.report(Report::SpeedLimit(ActsOn::Wheel)),
+    }
+}
+
+parameters! {
+    /// Of the faster wheel, to which the other one keeps its ratio.
+    PairSaturation {
+        /// See [`LIMIT`].
+        limit: LIMIT.report(Report::SpeedLimit(ActsOn::Pair)),
+    }
+}
+
+parameters! {
+    /// Of forward speed and turn rate, as most bases on ROS have it.
+    TwistSaturation {
+        /// See [`LIMIT`].
+        limit: LIMIT.report(Report::SpeedLimit(ActsOn::Twist)),
+        /// The same for wheels that run in opposite directions, down to a fiftieth: skid-steered robots are turned slowly.
+        turn_limit: Parameter::new("deg/s", UNREACHED_SPEED, [0.02, UNREACHED_SPEED])
             .scale(0.8)
-            .from(Guesses::OfTopSpeed(&[0.35, 0.5, 0.65, 0.8]))
-            .report(Report::Command),
+            .from(Guesses::OfTopSpeed(&[0.15, 0.35, 0.65]))
+            .report(Report::TurnLimit),
     }
 }
 

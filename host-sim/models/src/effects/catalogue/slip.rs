@@ -4,7 +4,7 @@ use super::{each_command, each_wheel, parameters};
 use crate::effects::context::CommandHistory;
 use crate::effects::parameter::{Guesses, Report};
 use crate::effects::scales::{GRIPPING_TURN_RAD, HALF_SLIP};
-use crate::effects::{Effect, Hook, Parameter, StepContext, Variant};
+use crate::effects::{Effect, Hook, Parameter, Place, StepContext, Variant};
 
 pub const EFFECT: Effect = Effect {
     id: "slip",
@@ -12,6 +12,7 @@ pub const EFFECT: Effect = Effect {
     what: "The tyres lose grip when they are pushed hard.",
     check: "Clean the tyres and the floor and drive the same commands again; a chalk mark on a tyre shows in a film \
             whether it turns more than the robot moves.",
+    place: Some(Place::Ground),
     needs_known_robot: false,
     variants: &[
         Variant {

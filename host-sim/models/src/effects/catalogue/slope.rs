@@ -2,7 +2,7 @@
 
 use super::{DIRECTIONS_DEG, distance_lost_cm, moving, parameters};
 use crate::effects::parameter::{Guesses, Report};
-use crate::effects::{Effect, Hook, Parameter, StepContext, Variant};
+use crate::effects::{Effect, Hook, Parameter, Place, StepContext, Variant};
 use mindgap_foundations::geometry::direction;
 
 pub const EFFECT: Effect = Effect {
@@ -10,6 +10,7 @@ pub const EFFECT: Effect = Effect {
     name: "slope",
     what: "The floor is tilted: the robot gains way downhill and loses it uphill.",
     check: "Lay a spirit level on the floor in two directions, or see where a ball rolls.",
+    place: Some(Place::Ground),
     needs_known_robot: false,
     variants: &[
         Variant {

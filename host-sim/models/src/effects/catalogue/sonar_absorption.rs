@@ -2,13 +2,14 @@
 
 use super::parameters;
 use crate::effects::parameter::{Guesses, Report};
-use crate::effects::{Effect, Hook, Parameter, Variant};
+use crate::effects::{Effect, Hook, Parameter, Place, Variant};
 
 pub const EFFECT: Effect = Effect {
     id: "sonar_absorption",
     name: "absorbing surfaces",
     what: "Surfaces return less sound, so that echoes are missing.",
     check: "Hold a hard board before the wall that gives no reading: if it gives one, the wall swallows the sound.",
+    place: Some(Place::Sensor),
     needs_known_robot: false,
     variants: &[
         Variant {

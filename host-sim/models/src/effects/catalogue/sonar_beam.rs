@@ -2,13 +2,14 @@
 
 use super::parameters;
 use crate::effects::parameter::{Guesses, Report};
-use crate::effects::{Effect, Hook, Parameter, Variant};
+use crate::effects::{Effect, Hook, Parameter, Place, Variant};
 
 pub const EFFECT: Effect = Effect {
     id: "sonar_beam",
     name: "beam width",
     what: "The beam is wider or narrower than assumed, so that it meets edges earlier or later.",
     check: "Move a post across in front of the sensor at one metre and measure how far to each side it is still seen.",
+    place: Some(Place::Sensor),
     needs_known_robot: false,
     variants: &[
         Variant {

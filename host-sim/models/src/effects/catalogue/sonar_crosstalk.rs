@@ -2,13 +2,14 @@
 
 use super::parameters;
 use crate::effects::parameter::Guesses;
-use crate::effects::{Effect, Hook, Parameter, Variant};
+use crate::effects::{Effect, Hook, Parameter, Place, Variant};
 
 pub const EFFECT: Effect = Effect {
     id: "sonar_crosstalk",
     name: "crosstalk",
     what: "Now and then there is a random reading that is too short, from another source of sound.",
     check: "Switch off every other ultrasonic sensor, and compressed air, in the room, and log again.",
+    place: Some(Place::Sensor),
     needs_known_robot: false,
     variants: &[Variant {
         id: "short",

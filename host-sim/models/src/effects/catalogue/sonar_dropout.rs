@@ -2,7 +2,7 @@
 
 use super::parameters;
 use crate::effects::parameter::Guesses;
-use crate::effects::{Effect, Hook, Parameter, Variant};
+use crate::effects::{Effect, Hook, Parameter, Place, Variant};
 
 pub const EFFECT: Effect = Effect {
     id: "sonar_dropout",
@@ -10,6 +10,7 @@ pub const EFFECT: Effect = Effect {
     what: "Missing readings come one after the other.",
     check: "Let the robot stand before a wall, log a few hundred readings, and see whether the missing ones come in \
             rows; wiggle the sensor's cable meanwhile.",
+    place: Some(Place::Sensor),
     needs_known_robot: false,
     variants: &[Variant {
         id: "two_states",

@@ -2,7 +2,7 @@
 
 use super::parameters;
 use crate::effects::parameter::Guesses;
-use crate::effects::{Effect, Hook, Parameter, Variant};
+use crate::effects::{Effect, Hook, Parameter, Place, Variant};
 
 pub const EFFECT: Effect = Effect {
     id: "sonar_ghost",
@@ -10,6 +10,7 @@ pub const EFFECT: Effect = Effect {
     what: "Now and then there is one constant wrong reading, whatever is in front.",
     check: "Point the sensor into an empty room and list its readings: the ghost is the one that comes again; look \
             for a cable or a part of the robot at that distance.",
+    place: Some(Place::Sensor),
     needs_known_robot: false,
     variants: &[
         Variant {

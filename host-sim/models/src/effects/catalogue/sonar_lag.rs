@@ -2,7 +2,7 @@
 
 use super::parameters;
 use crate::effects::parameter::{Guesses, Report};
-use crate::effects::{Effect, Hook, Parameter, StepContext, Variant};
+use crate::effects::{Effect, Hook, Parameter, Place, StepContext, Variant};
 use mindgap_foundations::geometry::{Pose, wrap_rad};
 
 pub const EFFECT: Effect = Effect {
@@ -10,6 +10,7 @@ pub const EFFECT: Effect = Effect {
     name: "old readings",
     what: "Readings are of where the robot was a while ago.",
     check: "Drive straight at a wall and film the display beside a ruler: the reading is that of a place behind.",
+    place: Some(Place::Sensor),
     needs_known_robot: false,
     variants: &[Variant {
         id: "earlier_pose",

@@ -4,7 +4,7 @@
 
 use super::parameters;
 use crate::effects::parameter::{Guesses, Report};
-use crate::effects::{Effect, Hook, Parameter, SensorState, StepContext, Variant};
+use crate::effects::{Effect, Hook, Parameter, Place, SensorState, StepContext, Variant};
 
 pub const EFFECT: Effect = Effect {
     id: "sonar_multipath",
@@ -13,6 +13,7 @@ pub const EFFECT: Effect = Effect {
            another.",
     check: "Stand the robot at 45 degrees to a wall: too long readings become right when a soft cloth covers the \
             opposite wall.",
+    place: Some(Place::Sensor),
     needs_known_robot: false,
     variants: &[
         Variant {

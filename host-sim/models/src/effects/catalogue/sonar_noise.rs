@@ -2,7 +2,7 @@
 
 use super::parameters;
 use crate::effects::parameter::Guesses;
-use crate::effects::{Effect, Hook, Parameter, Variant};
+use crate::effects::{Effect, Hook, Parameter, Place, Variant};
 
 pub const EFFECT: Effect = Effect {
     id: "sonar_noise",
@@ -10,6 +10,7 @@ pub const EFFECT: Effect = Effect {
     what: "Readings scatter more than the simulator assumes.",
     check: "Let the robot stand one metre before a wall, log a hundred readings, and compare their range with that \
             of the earlier logs.",
+    place: Some(Place::Sensor),
     needs_known_robot: false,
     variants: &[Variant {
         id: "normal",

@@ -2,13 +2,14 @@
 
 use super::parameters;
 use crate::effects::parameter::Guesses;
-use crate::effects::{Effect, Hook, Parameter, Variant};
+use crate::effects::{Effect, Hook, Parameter, Place, Variant};
 
 pub const EFFECT: Effect = Effect {
     id: "sonar_offset",
     name: "sonar offset",
     what: "Readings are too long or too short by one length.",
     check: "Place the sensor squarely before a wall at 50, 100 and 200 cm by a ruler: the error is the same at each.",
+    place: Some(Place::Sensor),
     needs_known_robot: false,
     variants: &[Variant {
         id: "length",

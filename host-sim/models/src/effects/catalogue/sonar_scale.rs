@@ -2,7 +2,7 @@
 
 use super::parameters;
 use crate::effects::parameter::Guesses;
-use crate::effects::{Effect, Hook, Parameter, Variant};
+use crate::effects::{Effect, Hook, Parameter, Place, Variant};
 
 pub const EFFECT: Effect = Effect {
     id: "sonar_scale",
@@ -10,6 +10,7 @@ pub const EFFECT: Effect = Effect {
     what: "Readings are too long or too short by one factor.",
     check: "Place the sensor squarely before a wall at 50, 100 and 200 cm by a ruler: the error grows with the \
             distance.",
+    place: Some(Place::Sensor),
     needs_known_robot: false,
     variants: &[Variant {
         id: "gain",

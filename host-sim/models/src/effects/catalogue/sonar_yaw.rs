@@ -2,7 +2,7 @@
 
 use super::parameters;
 use crate::effects::parameter::Guesses;
-use crate::effects::{Effect, Hook, Parameter, Variant};
+use crate::effects::{Effect, Hook, Parameter, Place, Variant};
 
 pub const EFFECT: Effect = Effect {
     id: "sonar_yaw",
@@ -10,6 +10,7 @@ pub const EFFECT: Effect = Effect {
     what: "The sensor is mounted turned against the robot's heading.",
     check: "Lay a ruler along the robot and one along the sensor's two eyes: they should make a right angle. If they do, the \
             sensor hears better to one side, which looks the same in logs.",
+    place: Some(Place::Sensor),
     needs_known_robot: false,
     variants: &[Variant {
         id: "axis",

@@ -3,7 +3,7 @@
 use super::drive::Drive;
 use super::{parameters, scrubbing};
 use crate::effects::parameter::{Guesses, Report};
-use crate::effects::{Effect, Hook, Parameter, Variant};
+use crate::effects::{Effect, Hook, Parameter, Place, Variant};
 use mindgap_foundations::motion::{Arc, Motion};
 
 pub const EFFECT: Effect = Effect {
@@ -13,6 +13,7 @@ pub const EFFECT: Effect = Effect {
            apart or nearer than thought.",
     check: "Measure the distance between the middles of the two tyres where they touch the floor, or command ten \
             full turns on the spot and see how many the robot makes.",
+    place: Some(Place::Ground),
     needs_known_robot: false,
     variants: &[
         Variant {

@@ -4,7 +4,7 @@ use glam::DVec2;
 
 use super::parameters;
 use crate::effects::parameter::Guesses;
-use crate::effects::{Effect, Hook, Parameter, Variant};
+use crate::effects::{Effect, Hook, Parameter, Place, Variant};
 use mindgap_foundations::geometry::direction;
 
 pub const EFFECT: Effect = Effect {
@@ -13,6 +13,7 @@ pub const EFFECT: Effect = Effect {
     what: "The camera's frame is turned against the one that headings are measured in.",
     check: "Push the robot along a wall by hand: the tracked heading should be the direction of the tracked path, \
             and both the wall's.",
+    place: Some(Place::Tracker),
     needs_known_robot: false,
     variants: &[
         Variant {

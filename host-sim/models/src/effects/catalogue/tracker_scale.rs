@@ -2,13 +2,14 @@
 
 use super::parameters;
 use crate::effects::parameter::Guesses;
-use crate::effects::{Effect, Hook, Parameter, Variant};
+use crate::effects::{Effect, Hook, Parameter, Place, Variant};
 
 pub const EFFECT: Effect = Effect {
     id: "tracker_scale",
     name: "camera scale",
     what: "Tracked lengths are off by one factor.",
     check: "Put the robot at two marks that are one metre apart by a ruler, and compare the tracked distance.",
+    place: Some(Place::Tracker),
     needs_known_robot: false,
     variants: &[
         Variant {

@@ -3,7 +3,7 @@
 use super::{parameters, pushed_cm};
 use crate::effects::parameter::{Guesses, Report};
 use crate::effects::scales::HALF_SPEED;
-use crate::effects::{Effect, Hook, Parameter, StepContext, Variant};
+use crate::effects::{Effect, Hook, Parameter, Place, StepContext, Variant};
 use mindgap_foundations::motion::Motion;
 
 pub const EFFECT: Effect = Effect {
@@ -11,6 +11,7 @@ pub const EFFECT: Effect = Effect {
     name: "loss of way in turns",
     what: "Both wheels lose way in turns, more the sharper the turn is.",
     check: "Command an arc of one metre and a straight metre, and measure both with a string along the track.",
+    place: Some(Place::Ground),
     needs_known_robot: false,
     variants: &[
         Variant {

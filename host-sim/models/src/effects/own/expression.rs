@@ -136,7 +136,7 @@ fn message(text: &str, error: &Error) -> String {
 mod tests {
     use super::*;
     use crate::effects::StepContext;
-    use crate::effects::context::{RunHistory, Surroundings};
+    use crate::effects::context::{HISTORY, RunHistory, Surroundings};
     use mindgap_foundations::geometry::Pose;
     use mindgap_logs::Scene;
 
@@ -144,7 +144,10 @@ mod tests {
         let scene = Scene { arena_cm: Some(glam::DVec2::new(300.0, 220.0)), ..Scene::default() };
         let surroundings = Surroundings::new(&mindgap_built_in_robot::default_robot(), &scene);
         let pose = Pose::new(100.0, 50.0, 0.5);
-        StepContext { commands: [[60.0, 40.0]; 7], ..surroundings.context(&RunHistory::default(), 30_000.0, pose) }
+        StepContext {
+            commands: [[60.0, 40.0]; HISTORY],
+            ..surroundings.context(&RunHistory::default(), 30_000.0, pose)
+        }
     }
 
     fn value(text: &str) -> Option<f64> {

@@ -4,7 +4,7 @@ use super::*;
 use crate::effects::applied::AppliedEffect;
 use crate::effects::catalogue::Candidate;
 use crate::effects::chain::EffectChain;
-use crate::effects::context::{RunHistory, Surroundings};
+use crate::effects::context::{HISTORY, RunHistory, Surroundings};
 use mindgap_foundations::geometry::Pose;
 use mindgap_logs::Scene;
 
@@ -54,7 +54,7 @@ fn step() -> StepContext {
     let scene = Scene { arena_cm: Some(glam::DVec2::new(300.0, 220.0)), ..Scene::default() };
     let surroundings = Surroundings::new(&mindgap_built_in_robot::default_robot(), &scene);
     let context = surroundings.context(&RunHistory::default(), 30_000.0, Pose::new(100.0, 50.0, 0.5));
-    StepContext { commands: [[60.0, 40.0]; 7], faced: Some([100.0, -0.5]), ..context }
+    StepContext { commands: [[60.0, 40.0]; HISTORY], faced: Some([100.0, -0.5]), ..context }
 }
 
 const AS_PREDICTED: Motion<f64> = Motion { forward: 7.0, lateral: -0.4, turn: -0.5 };
