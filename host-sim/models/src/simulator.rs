@@ -183,9 +183,8 @@ impl Simulator {
             return Ok(());
         }
         let filter = self.filter.in_words(&self.robot);
-        Err(Error::new(format!(
-            "the motion networks see commands behind a filter ({filter}), which boards do not compute"
-        )))
+        let what = format!("the motion networks see commands behind a filter ({filter}), which boards do not compute");
+        Err(Error::new(format!("{what}: train again with `--trainer paper`, which has none")))
     }
 
     /// The three motion networks, if all are there.

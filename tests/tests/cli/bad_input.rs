@@ -305,6 +305,24 @@ fn impossible_controllers_are_refused() {
     }
 }
 
+/// A simulator whose networks see filtered commands drives on the PC; a board would drive with something else.
+#[test]
+fn networks_behind_a_filter_are_not_exported() {
+    let sandbox = trained().copy();
+    let filter =
+        "\"filter\": {\"dead_time_steps\": 0.5, \"lag_steps\": 0.4, \"turn_lag_steps\": 0.0, \"drift_factor\": 1.0},";
+    sandbox.edit("sim.json", |text| text.replacen("\"schema\": 1,", &format!("\"schema\": 1, {filter}"), 1));
+    assert!(sandbox.run("info sim.json").contains("filter of the drive: dead time 200 ms, lag 160 ms"));
+    let refused = "sim.json: the motion networks see commands behind a filter (dead time 200 ms, lag 160 ms)";
+    begins(&sandbox.refused("export sim.json --format c --out networks.h"), refused);
+    begins(&sandbox.refused("export sim.json --format pybricks --out networks.py"), refused);
+    sandbox.edit("sim.json", |text| text.replacen("\"lag_steps\": 0.4", "\"lag_steps\": -0.4", 1));
+    begins(
+        &sandbox.refused("evaluate sim.json logs"),
+        "sim.json: the filter of the drive holds numbers that cannot be",
+    );
+}
+
 #[test]
 fn invalid_simulator_files_are_refused() {
     let sandbox = trained();
