@@ -30,7 +30,7 @@ impl JsonOption {
         emit(self.json.as_deref(), results, text)
     }
 
-    /// As [`emit`](Self::emit), with the keys of all objects in alphabetical order, as these commands have always written them.
+    /// As [`emit`](Self::emit), with the keys of all objects in alphabetical order.
     ///
     /// # Errors
     /// If the file cannot be written.

@@ -45,7 +45,7 @@ struct Swapped {
 
 impl Swapped {
     fn of(next: Fitted, selection: &Selection, hold_out: Option<&HoldOut>) -> Self {
-        let (fit, slots) = selection.swap_best(next, 0);
+        let (fit, slots) = selection.swap_best(next);
         let null = &selection.fits.null;
         let confirmed = |rows| confirmed_on_hold_out(&fit, null, selection.context, rows).ids().len();
         let is_confirmed = hold_out.map_or(fit.ids().len(), confirmed) > 1;

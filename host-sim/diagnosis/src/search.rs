@@ -38,6 +38,8 @@ pub(super) struct Selection<'a> {
     pub context: &'a FitContext<'a>,
     /// Fraction of what effects explain in a channel that a better form of them could gain there.
     pub form_error: f64,
+    /// The first of the chosen effects are not swapped or pruned: this number of them is free under every hypothesis.
+    pub always_free: usize,
 }
 
 /// Number of effects whose gains are logged.
@@ -73,61 +75,65 @@ impl Fits {
 impl Search {
     /// Chooses other effects in place of those that were found.
     pub fn choosing(self, chosen: Fitted, context: &FitContext) -> Self {
-        let slots = Selection::new(&self.fits, context).slots_of(&chosen, 0);
+        let slots = Selection::new(&self.fits, context).slots_of(&chosen);
         Search { beyond_chosen: remainders(&chosen, context), chosen, slots, ..self }
     }
 }
 
 impl<'a> Selection<'a> {
     pub fn new(fits: &'a Fits, context: &'a FitContext<'a>) -> Self {
-        Selection { fits, context, form_error: context.calibration.further_share }
+        Selection { fits, context, form_error: context.calibration.further_share, always_free: 0 }
     }
 
     fn select(&self) -> (Fitted, Vec<Slot>) {
-        let Fits { null, singles } = self.fits;
-        let best_singles = best_of_each(singles.clone());
+        let best_singles = best_of_each(self.fits.singles.clone());
         self.log_singles(&best_singles);
-        let (mut chosen, mut slots) = match self.with_always_free() {
-            Some(free) => (free, Vec::new()),
-            None => match self.first(&best_singles) {
-                Some(first) => {
-                    let slot = Slot::new(null.clone(), best_singles.clone(), self.further_gain(first, null));
-                    (first.clone(), vec![slot])
-                }
-                None => (null.clone(), Vec::new()),
-            },
+        let (chosen, slots) = match (self.with_always_free(), self.first(&best_singles)) {
+            (Some(free), _) => {
+                let searching = Selection { always_free: free.ids().len(), ..*self };
+                let (chosen, _) = searching.add_further(free, Vec::new());
+                let slots = self.slots_of(&chosen);
+                self.prune(chosen, slots)
+            }
+            (None, Some(first)) => {
+                let gain = self.further_gain(first, &self.fits.null);
+                let slot = Slot::new(self.fits.null.clone(), best_singles.clone(), gain);
+                self.add_further(first.clone(), vec![slot])
+            }
+            (None, None) => (self.fits.null.clone(), Vec::new()),
         };
-        let free = if slots.is_empty() { chosen.ids().len() } else { 0 };
-        while !chosen.ids().is_empty() && chosen.ids().len() - free < self.calibration().judgement.most_effects {
-            let further = best_of_each(chosen.with_each(singles, self.context));
+        match self.without_false_noise(&chosen) {
+            Some(others) => {
+                let slots = self.slots_of(&others);
+                (others, slots)
+            }
+            None => (chosen, slots),
+        }
+    }
+
+    /// Adds one effect at a time to those chosen so far, as long as one is worth it.
+    fn add_further(&self, mut chosen: Fitted, mut slots: Vec<Slot>) -> (Fitted, Vec<Slot>) {
+        let most_effects = self.always_free + self.calibration().judgement.most_effects;
+        while !chosen.ids().is_empty() && chosen.ids().len() < most_effects {
+            let further = best_of_each(chosen.with_each(&self.fits.singles, self.context));
             for fit in further.iter().take(LOGGED) {
                 log::info!("{}: {}", fit.name(), self.further_gain(fit, &chosen).in_words());
             }
             let Some(next) = further.into_iter().find(|fit| self.is_worth_adding(fit, &chosen)) else { break };
-            let (swapped, slots_of_swapped) = self.swap_best(next, free);
+            let (swapped, slots_of_swapped) = self.swap_best(next);
             if !self.is_clear(&swapped, &slots_of_swapped, &chosen) {
                 log::info!("{} is ambiguous with many others", swapped.name());
                 break;
             }
             let evidence_before = chosen.log_evidence();
-            (chosen, slots) = self.prune(swapped, slots_of_swapped, free);
-            log::info!("{} together gain {:.1} nats", chosen.name(), chosen.gain_over(null).nats);
+            (chosen, slots) = self.prune(swapped, slots_of_swapped);
+            log::info!("{} together gain {:.1} nats", chosen.name(), chosen.gain_over(&self.fits.null).nats);
             // A swap back to what was pruned would repeat forever.
             if chosen.log_evidence() <= evidence_before {
                 break;
             }
         }
-        if free > 0 {
-            slots = self.slots_of(&chosen, 0);
-            (chosen, slots) = self.prune(chosen, slots, 0);
-        }
-        match self.without_false_noise(&chosen) {
-            Some(others) => {
-                let slots = self.slots_of(&others, 0);
-                (others, slots)
-            }
-            None => (chosen, slots),
-        }
+        (chosen, slots)
     }
 
     /// Returns the fit of what is free under every hypothesis; `None` where nothing is.
@@ -191,25 +197,24 @@ impl<'a> Selection<'a> {
         gain.passes(calibration.effect_nats) || !slots.iter().any(is_ambiguous)
     }
 
-    /// Swaps one effect for the best rival in its slot if that is better, but none of the first, which are always free. Returns
-    /// the effects with their slots.
-    pub fn swap_best(&self, chosen: Fitted, free: usize) -> (Fitted, Vec<Slot>) {
-        let slots = self.slots_of(&chosen, free);
+    /// Swaps one effect for the best rival in its slot if that is better. Returns the effects with their slots.
+    pub fn swap_best(&self, chosen: Fitted) -> (Fitted, Vec<Slot>) {
+        let slots = self.slots_of(&chosen);
         let rivals = slots.iter().flat_map(|slot| &slot.rivals);
         let best = rivals.max_by(|a, b| a.log_evidence().total_cmp(&b.log_evidence()));
         match best.filter(|f| f.log_evidence() > chosen.log_evidence() && f.ids() != chosen.ids()) {
-            Some(best) => (best.clone(), self.slots_of(best, free)),
+            Some(best) => (best.clone(), self.slots_of(best)),
             None => (chosen, slots),
         }
     }
 
-    /// Drops effects that would no longer be added to the others, but none of the first, which are always free.
-    fn prune(&self, chosen: Fitted, slots: Vec<Slot>, free: usize) -> (Fitted, Vec<Slot>) {
+    /// Drops effects that would no longer be added to the others.
+    fn prune(&self, chosen: Fitted, slots: Vec<Slot>) -> (Fitted, Vec<Slot>) {
         let redundant = slots.iter().filter(|slot| !self.counts(&slot.gain)).map(|slot| &slot.without);
         match redundant.max_by(|a, b| a.log_evidence().total_cmp(&b.log_evidence())).cloned() {
             Some(fewer) => {
-                let slots = self.slots_of(&fewer, free);
-                self.prune(fewer, slots, free)
+                let slots = self.slots_of(&fewer);
+                self.prune(fewer, slots)
             }
             None => (chosen, slots),
         }
@@ -228,15 +233,15 @@ impl<'a> Selection<'a> {
         (others.log_evidence() + shifted > chosen.log_evidence()).then_some(others)
     }
 
-    /// Returns the slots of the effects, but none of the first, which are always free.
-    pub fn slots_of(&self, chosen: &Fitted, free: usize) -> Vec<Slot> {
+    /// Returns the slots of the effects that are not always free.
+    pub fn slots_of(&self, chosen: &Fitted) -> Vec<Slot> {
         let slot = |effect: usize| {
             let without = chosen.without(effect, self.context);
             let taken = best_of_each(without.with_each(&self.fits.singles, self.context));
             let gain = self.further_gain(chosen, &without);
             Slot::new(without, taken, gain)
         };
-        (free..chosen.ids().len()).map(slot).collect()
+        (self.always_free..chosen.ids().len()).map(slot).collect()
     }
 }
 

@@ -17,9 +17,8 @@ use super::wider_noise::WiderNoise;
 use mindgap_foundations::statistics::rounding;
 use mindgap_foundations::statistics::summary::{logistic, standard_error_of_sum};
 use mindgap_logs::Robot;
-use mindgap_models::effects::Candidate;
 use mindgap_models::effects::parameter::Settings;
-use mindgap_models::effects::{Place, catalogue};
+use mindgap_models::effects::{Candidate, Place, catalogue};
 
 /// The answer in one word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]

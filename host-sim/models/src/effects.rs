@@ -16,6 +16,7 @@ pub mod own;
 pub mod parameter;
 pub mod scales;
 pub mod signs;
+pub mod twist;
 pub mod variant;
 
 pub use catalogue::{CATALOGUE, Candidate};

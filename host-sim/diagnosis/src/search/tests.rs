@@ -52,11 +52,11 @@ fn worse_effect_is_swapped_for_a_better_one() {
     let fits = Fits::of(&context);
     let selection = Selection::new(&fits, &context);
     let worse = fits.singles.iter().find(|f| f.ids() == ["longer_to_the_left"]).expect("a fit").clone();
-    let (swapped, slots) = selection.swap_best(worse, 0);
+    let (swapped, slots) = selection.swap_best(worse);
     assert_eq!(swapped.ids(), ["longer"]);
     assert_eq!(slots.len(), 1);
     assert_eq!(slots[0].rivals.iter().map(|f| f.ids()[0]).collect::<Vec<_>>(), ["longer", "longer_to_the_left"]);
-    assert_eq!(selection.swap_best(swapped, 0).0.ids(), ["longer"], "the best one stays");
+    assert_eq!(selection.swap_best(swapped).0.ids(), ["longer"], "the best one stays");
 }
 
 /// With more than three others in reach an effect has to gain twice as much.

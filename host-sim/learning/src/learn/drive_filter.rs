@@ -6,9 +6,9 @@
 
 use mindgap_foundations::motion::{Axis, Motion};
 use mindgap_foundations::statistics::summary::median;
-use mindgap_logs::Logs;
 use mindgap_logs::samples::{self, MotionSample};
-use mindgap_models::effects::context::RunHistory;
+use mindgap_logs::{Logs, Robot};
+use mindgap_models::effects::context::{CommandHistory, RunHistory};
 use mindgap_models::effects::drive_filter::{DriveFilter, FilteredDrive, MostChange};
 use mindgap_models::simulator::nominal::motion_bias::{FEATURES, features};
 use nalgebra::{DMatrix, DVector};
@@ -43,23 +43,28 @@ pub fn learn(logs: &Logs) -> DriveFilter {
 
 /// Returns the steps of logs with commands as they come out of a filter, less the drift that it adds.
 pub fn steps(filter: DriveFilter, logs: &Logs) -> impl Iterator<Item = MotionSample> {
-    let (robot, drive) = (&logs.robot, FilteredDrive::from(filter));
-    let mut filtered = logs.runs.iter().map(move |run| {
-        let mut history = RunHistory::default();
-        let speeds = |row: mindgap_logs::Row| {
-            history.command(row.command());
-            drive.speeds(history.commands(), 0, robot)
-        };
-        run.rows.iter().map(speeds).collect::<Vec<_>>()
-    });
-    let mut of_run = (0, filtered.next());
+    let drive = FilteredDrive::from(filter);
+    sent(logs).map(move |(step, commands)| filtered(&drive, step, &commands, &logs.robot))
+}
+
+/// Returns the steps of logs, each with the commands so far.
+fn sent(logs: &Logs) -> impl Iterator<Item = (MotionSample, CommandHistory)> {
+    let (mut run, mut rows, mut history) = (0, 0, RunHistory::default());
     samples::steps(logs).map(move |step| {
-        while of_run.0 < step.run {
-            of_run = (of_run.0 + 1, filtered.next());
+        if step.run != run {
+            (run, rows, history) = (step.run, 0, RunHistory::default());
         }
-        let speeds = of_run.1.as_ref().and_then(|speeds| speeds.get(step.row)).copied().unwrap_or_default();
-        MotionSample { speeds: speeds.inputs(), lateral_cm: step.lateral_cm - speeds.drift_cm, ..step }
+        while rows <= step.row {
+            history.command(logs.runs[run].rows.at(rows).command());
+            rows += 1;
+        }
+        (step, *history.commands())
     })
+}
+
+fn filtered(drive: &FilteredDrive, step: MotionSample, commands: &CommandHistory, robot: &Robot) -> MotionSample {
+    let speeds = drive.speeds(commands, 0, robot);
+    MotionSample { speeds: speeds.inputs(), lateral_cm: step.lateral_cm - speeds.drift_cm, ..step }
 }
 
 /// Dead time, lag, lag of the turn, and the steps in which a ramp changes speed and turn by the reference speed.
@@ -125,28 +130,29 @@ impl Inputs {
 
 /// The regression of steps on filtered commands.
 struct Regression<'a> {
-    logs: &'a Logs,
+    robot: &'a Robot,
     /// Scales commands to about one.
     share: f32,
-    /// Numbers of the steps that are used, in order.
-    steps: Vec<usize>,
+    /// The steps that are used, each with the commands so far.
+    steps: Vec<(MotionSample, CommandHistory)>,
 }
 
 impl<'a> Regression<'a> {
     /// Returns `None` where there are too few steps.
     fn new(logs: &'a Logs) -> Option<Self> {
-        let all: Vec<MotionSample> = samples::motion(logs);
-        let top = all.iter().flat_map(|step| step.speeds).fold(0.0, |top: f64, command| top.max(command.abs()));
-        let steps: Vec<usize> = (0..all.len()).step_by(all.len().div_ceil(MOST).max(1)).collect();
+        let (count, top) = samples::steps(logs).fold((0, 0.0), |(count, top), step| {
+            (count + 1, step.speeds.iter().fold(top, |top: f64, command| top.max(command.abs())))
+        });
+        let steps: Vec<_> = sent(logs).step_by(usize::div_ceil(count, MOST).max(1)).collect();
         if top == 0.0 || steps.len() < FEWEST_PER_FEATURE * FEATURES {
             return None;
         }
-        let mut regression = Regression { logs, share: (1.0 / top) as f32, steps };
+        let mut regression = Regression { robot: &logs.robot, share: (1.0 / top) as f32, steps };
         let residuals = regression.residuals(DriveFilter::default(), Inputs::NowAndBefore);
         let widths = Motion::from_fn(|axis| median(residuals.iter().map(|r| r[axis].abs())));
         let is_near = |r: &Motion<f64>| Axis::ALL.iter().all(|axis| r[*axis].abs() <= FARTHEST * widths[*axis]);
-        let near = regression.steps.iter().zip(&residuals).filter(|(_, residual)| is_near(residual));
-        regression.steps = near.map(|(step, _)| *step).collect();
+        let near = regression.steps.into_iter().zip(&residuals).filter(|(_, residual)| is_near(residual));
+        regression.steps = near.map(|(step, _)| step).collect();
         Some(regression)
     }
 
@@ -214,10 +220,10 @@ impl<'a> Regression<'a> {
 
     /// Returns what a regression on the filtered commands leaves of the steps.
     fn residuals(&self, filter: DriveFilter, inputs: Inputs) -> Vec<Motion<f64>> {
-        let mut used = self.steps.iter().peekable();
-        let all = steps(filter, self.logs).enumerate().filter(|(number, _)| used.next_if_eq(&number).is_some());
+        let drive = FilteredDrive::from(filter);
+        let steps = self.steps.iter().map(|(step, commands)| filtered(&drive, *step, commands, self.robot));
         let (rows, logged): (Vec<[f64; FEATURES]>, Vec<Motion<f64>>) =
-            all.map(|(_, step)| (features(inputs.of(step.speeds), self.share), step.motion())).unzip();
+            steps.map(|step| (features(inputs.of(step.speeds), self.share), step.motion())).unzip();
         let rows = DMatrix::from_row_iterator(rows.len(), FEATURES, rows.into_iter().flatten());
         let factor = (rows.tr_mul(&rows) + DMatrix::identity(FEATURES, FEATURES) * RIDGE).cholesky();
         let left = Motion::from_fn(|axis| {

@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize};
 
 use super::context::{CommandHistory, HISTORY};
 use super::scales::{command_for, reference_cm_s};
+use super::twist::{twist, wheels};
 use mindgap_logs::Robot;
 
 /// What lies between commands and the motion of the body. The default changes nothing.
@@ -194,13 +195,15 @@ struct Lag {
     mean_missing: f64,
 }
 
-/// A drive in motion. Pairs are the mean of both wheels and half of the difference of right and left one.
+/// A drive in motion.
 struct Moving {
     /// The command for the reference speed.
     unit: f64,
+    /// Speed of the left and the right wheel.
     wheels: [f64; 2],
     /// Of the body, half of the difference of the wheels that would hold it.
     turn_rate: f64,
+    /// What the body has covered, as a [`twist`].
     covered: [f64; 2],
     /// The way weighted by the turn covered before.
     drift: f64,
@@ -292,15 +295,6 @@ impl StepSpeeds {
     pub fn inputs(&self) -> [f64; 4] {
         [self.now[0], self.now[1], self.before[0], self.before[1]]
     }
-}
-
-/// Returns the mean of both wheels, and half of the difference of right and left one.
-fn twist([left, right]: [f64; 2]) -> [f64; 2] {
-    [0.5 * (left + right), 0.5 * (right - left)]
-}
-
-fn wheels([mean, half_difference]: [f64; 2]) -> [f64; 2] {
-    [mean - half_difference, mean + half_difference]
 }
 
 #[cfg(test)]

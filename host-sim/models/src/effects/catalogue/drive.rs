@@ -3,6 +3,7 @@
 use crate::effects::StepContext;
 use crate::effects::context::{CommandHistory, HISTORY};
 use crate::effects::scales::MOTOR_MS;
+use crate::effects::twist::{twist, wheels};
 
 /// A drive of the first order with dry friction; speeds are in units of the command that keeps them without it.
 pub struct Drive {
@@ -35,10 +36,9 @@ impl Drive {
 
     /// Does so for the turning part of the commands alone, the difference between the wheels.
     pub fn imitate_turning(&self, other: &Drive, commands: &mut CommandHistory) {
-        let given = self.imitating(other, commands.map(|[left, right]| (right - left) / 2.0));
+        let given = self.imitating(other, commands.map(|pair| twist(pair)[1]));
         for (pair, turning) in commands.iter_mut().zip(given) {
-            let straight = (pair[0] + pair[1]) / 2.0;
-            *pair = [straight - turning, straight + turning];
+            *pair = wheels([twist(*pair)[0], turning]);
         }
     }
 

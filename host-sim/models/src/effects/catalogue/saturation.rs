@@ -3,6 +3,7 @@
 use super::{each_command, parameters};
 use crate::effects::parameter::{ActsOn, Guesses, Report};
 use crate::effects::scales::UNREACHED_SPEED;
+use crate::effects::twist::{twist, wheels};
 use crate::effects::{Effect, Hook, Parameter, Place, Variant};
 
 pub const EFFECT: Effect = Effect {
@@ -55,10 +56,8 @@ pub const EFFECT: Effect = Effect {
                 let TwistSaturation { limit, turn_limit } = TwistSaturation::read(v);
                 let [limit, turn_limit] = [limit, turn_limit].map(|share| context.command_for(share));
                 for pair in commands {
-                    let [left, right] = *pair;
-                    let mean = (0.5 * (left + right)).clamp(-limit, limit);
-                    let turning = (0.5 * (right - left)).clamp(-turn_limit, turn_limit);
-                    *pair = [mean - turning, mean + turning];
+                    let [mean, turning] = twist(*pair);
+                    *pair = wheels([mean.clamp(-limit, limit), turning.clamp(-turn_limit, turn_limit)]);
                 }
             })],
         },
